@@ -1,8 +1,9 @@
 #version 460
 #extension GL_EXT_samplerless_texture_functions : require
-// A host's pass after Dermis: albedo and specular light. `lighting` is the image that was bound to
-// Dermis. Where `dermis_applied_albedo` is 1 (`albedo` was bound and the setting `result` is "color"),
-// pixels with a profile already contain albedo. docs/integration.md, "After Dermis".
+// A host's pass after Dermis: applies albedo and adds specular light. `lighting` is the image that
+// was bound to Dermis. If `dermis_applied_albedo` is 1 (`albedo` was bound and the setting `result`
+// is "color"), pixels with a profile already contain albedo. See docs/integration.md, "After
+// Dermis".
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(set = 0, binding = 0) uniform texture2D lighting;
 layout(set = 0, binding = 1) uniform utexture2D material;

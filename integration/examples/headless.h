@@ -1,5 +1,5 @@
-/* What an engine has before it embeds Dermis, as small as it can be: a device, a command buffer, cleared
- * images. Errors end the program. C99 and C++. */
+/* The minimum of an engine before it embeds Dermis: a device, a command buffer, cleared images.
+ * Errors end the program. C99 and C++. */
 #ifndef DERMIS_EXAMPLE_HEADLESS_H
 #define DERMIS_EXAMPLE_HEADLESS_H
 
@@ -20,7 +20,7 @@ typedef struct headless {
   VkInstance instance;
   VkPhysicalDevice gpu;
   VkDevice device;
-  VkQueue queue; /* of family 0 */
+  VkQueue queue; /* queue of family 0 */
   VkCommandPool pool;
   VkCommandBuffer commands;
   headless_texture textures[HEADLESS_MAX_IMAGES];
@@ -37,13 +37,14 @@ static void headless_die(const char* what, const char* which) {
   do {                                                                                                       \
     if ((call) != VK_SUCCESS) headless_die("failed", #call);                                                 \
   } while (0)
-/* A Vulkan struct of zeros but for its type; C and C++ agree on no shorter way. */
+/* Declares a Vulkan struct that is zero except for its type. No shorter form works in both C and
+ * C++. */
 #define HEADLESS_STRUCT(type, name, s_type)                                                                  \
   type name;                                                                                                 \
   memset(&name, 0, sizeof name);                                                                             \
   name.sType = VK_STRUCTURE_TYPE_##s_type
 
-/* The device has the features that dermis_query_requirements lists. */
+/* Creates a device with the features that dermis_query_requirements lists. */
 static headless headless_create(void) {
   headless host;
   uint32_t count = 1;
@@ -92,7 +93,8 @@ static uint32_t headless_memory_type(const headless* host, uint32_t allowed, VkM
   return 0;
 }
 
-/* An image in layout GENERAL that the recorded commands clear to `value`; it lives as long as the host. */
+/* Creates an image in layout GENERAL that the recorded commands clear to `value`. The host owns the
+ * image. */
 static VkImage headless_image(headless* host, VkFormat format, uint32_t width, uint32_t height,
                               VkImageUsageFlags usage, VkClearColorValue value, VkImageView* view) {
   HEADLESS_STRUCT(VkImageCreateInfo, image_info, IMAGE_CREATE_INFO);

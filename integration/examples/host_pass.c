@@ -1,7 +1,8 @@
-/* A host whose own pass stands in the graph: it registers a pass type, an overlay puts a pass of it between
- * those of the library, and the library calls it with the images and with all barriers in place. C99 and C++.
- * usage: host_pass configs/graphs/burley.json configs/profiles/skin.json integration/examples/host_pass.json
- */
+/* A host that inserts its own pass into the graph. It registers a pass type, and an overlay inserts
+ * a pass of this type between those of the library. The library calls the pass with its images and
+ * with all barriers in place. C99 and C++.
+ * usage: host_pass configs/graphs/burley.json configs/profiles/skin.json
+ * integration/examples/host_pass.json */
 #include "headless.h"
 
 #include "host_pass.spv.h"
@@ -11,7 +12,7 @@
 enum { SIDE = 64, MOST = 64, TILE = 8, MAX_FILE_BYTES = 65536 };
 
 static void check(dermis_result result, const char* call) {
-  if (result >= 0) return; /* above 0 are no errors */
+  if (result >= 0) return; /* positive results are no errors */
   fprintf(stderr, "%s: ", call);
   headless_die(dermis_result_name(result), dermis_last_error());
 }
@@ -23,13 +24,14 @@ static void DERMIS_CALL say(void* user, const dermis_message* message) {
   fprintf(stderr, "%s: %s\n", severity[message->severity], message->text);
 }
 
-/* ---- the pass: a pipeline, and a set that points to what stands at its two ports ---- */
+/* ---- the pass: a pipeline, and a set that points to the images at its two ports ---- */
 
 typedef struct tone {
   VkDevice device;
   VkDescriptorSetLayout set_layout;
   VkDescriptorPool pool;
-  VkDescriptorSet set; /* of the one frame of this example; an engine has one for each frame in flight */
+  /* The set for the only frame of this example; an engine needs a set per frame in flight. */
+  VkDescriptorSet set;
   VkPipelineLayout layout;
   VkPipeline pipeline;
 } tone;
@@ -85,7 +87,8 @@ static void free_tone(tone* pass) {
   vkDestroyDescriptorSetLayout(pass->device, pass->set_layout, NULL);
 }
 
-/* Called by dermis_graph_record. The ports come in the order in which the pass type declares them. */
+/* Called by dermis_graph_record. The ports are in the order of the pass type's
+ * declaration. */
 static void DERMIS_CALL record_tone(void* user, const dermis_pass_call* call) {
   const tone* pass = (const tone*)user;
   const float level = (float)call->settings[0];

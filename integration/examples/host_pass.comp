@@ -1,6 +1,6 @@
 #version 460
 #extension GL_EXT_samplerless_texture_functions : require
-// What the host's own pass does: light above a level becomes warmer.
+// The host's own pass: light above a level becomes warmer.
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(set = 0, binding = 0) uniform texture2D light;
 layout(set = 0, binding = 1, rgba16f) uniform writeonly image2D toned;

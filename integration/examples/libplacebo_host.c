@@ -1,6 +1,6 @@
-/* Dermis between the passes of a foreign renderer: libplacebo owns instance, device, queue and images, fills
- * them, lets go of them, and reads the picture back. usage: libplacebo_host configs/graphs/burley.json
- * configs/profiles/skin.json */
+/* Dermis between the passes of another renderer. libplacebo owns instance, device, queue and
+ * images. It fills the images, releases them to Dermis, and reads the picture back.
+ * usage: libplacebo_host configs/graphs/burley.json configs/profiles/skin.json */
 #include <dermis/dermis.h>
 #include <libplacebo/vulkan.h>
 
@@ -11,12 +11,13 @@
 
 enum { SIDE = 64, SLOTS = 3 };
 
-typedef struct slot_image { /* what the graph binds, and libplacebo's texture behind it */
+/* A binding of the graph and its libplacebo texture. */
+typedef struct slot_image {
   const char* name;
-  const char* format; /* as libplacebo calls it */
+  const char* format; /* name in libplacebo */
   size_t texel;       /* bytes */
   pl_tex texture;
-  VkSemaphore semaphore; /* counts: held, given back */
+  VkSemaphore semaphore; /* values: 1 held, 2 released */
 } slot_image;
 
 static void die(const char* what, const char* which) {
@@ -40,12 +41,12 @@ static char* read_file(const char* path, size_t* length) {
   return text;
 }
 
-/* A half float of 0 or 1. */
+/* Returns a half float of 0 or 1. */
 static uint16_t half_bit(int one) {
   return one ? 0x3c00 : 0;
 }
 
-/* Light on the left half, half a metre away, profile 1 everywhere. */
+/* Returns the texels of a slot: light on the left half, 0.5 m away, profile 1 everywhere. */
 static void* contents_of(const slot_image* slot) {
   unsigned char* texels = (unsigned char*)malloc(slot->texel * SIDE * SIDE);
   int x, y, c;
@@ -65,7 +66,7 @@ static void* contents_of(const slot_image* slot) {
   return texels;
 }
 
-/* A device with what Dermis needs, made by libplacebo. */
+/* Creates a device with the requirements of Dermis through libplacebo. */
 static pl_vulkan make_device(pl_log log, pl_vk_inst* instance) {
   static VkPhysicalDeviceMaintenance4Features maintenance4;
   static VkPhysicalDeviceSynchronization2Features synchronization2;
@@ -73,8 +74,8 @@ static pl_vulkan make_device(pl_log log, pl_vk_inst* instance) {
   struct pl_vk_inst_params instance_params = pl_vk_inst_default_params;
   struct pl_vulkan_params params = pl_vulkan_default_params;
   pl_vulkan device;
-  static const char* const names[] = {
-      VK_EXT_DEBUG_UTILS_EXTENSION_NAME}; /* libplacebo names its objects unasked */
+  /* libplacebo always names its objects. */
+  static const char* const names[] = {VK_EXT_DEBUG_UTILS_EXTENSION_NAME};
   instance_params.opt_extensions = names;
   instance_params.num_opt_extensions = 1;
   *instance = pl_vk_inst_create(log, &instance_params);
@@ -135,7 +136,8 @@ static VkImageView make_view(pl_vulkan device, VkImage image, VkFormat format) {
   return view;
 }
 
-/* Waits until libplacebo let go of every image, runs the commands, tells that they are free again. */
+/* Waits until libplacebo releases every image, runs the commands, and signals that the images are
+ * free again. */
 static void submit(pl_vulkan device, VkCommandBuffer commands, slot_image* images) {
   VkSemaphoreSubmitInfo waits[SLOTS], signals[SLOTS];
   VkCommandBufferSubmitInfo buffer;
@@ -164,13 +166,14 @@ static void submit(pl_vulkan device, VkCommandBuffer commands, slot_image* image
   vkGetDeviceQueue(device->device, device->queue_graphics.index, 0, &queue);
   device->lock_queue(device, (int)device->queue_graphics.index, 0);
   check_vk(vkQueueSubmit2(queue, 1, &info, VK_NULL_HANDLE), "vkQueueSubmit2");
-  /* The semaphores order everything, and an engine leaves it at that. Older validation layers do not follow
-   * semaphores that count from one submit to the next, but they do see that the queue is empty. */
+  /* The semaphores order everything, which suffices in an engine. The wait is for older validation
+   * layers, which do not track timeline semaphores across submits, but do see that the queue is
+   * empty. */
   check_vk(vkQueueWaitIdle(queue), "vkQueueWaitIdle");
   device->unlock_queue(device, (int)device->queue_graphics.index, 0);
 }
 
-/* Light that crossed the edge: the right half was dark. */
+/* Reports light that crossed the edge: the right half was dark. */
 static void report(pl_vulkan device, slot_image* lighting) {
   static uint16_t texels[SIDE * SIDE * 4];
   struct pl_tex_transfer_params download;
@@ -214,7 +217,7 @@ int main(int argc, char** argv) {
   log = pl_log_create(PL_API_VER, &log_params);
   device = make_device(log, &instance);
 
-  /* Dermis on a device that it did not make. */
+  /* Creates a context on a device that Dermis did not create. */
   context_desc.instance = device->instance;
   context_desc.physical_device = device->phys_device;
   context_desc.device = device->device;
@@ -250,7 +253,7 @@ int main(int argc, char** argv) {
   begin.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO;
   check_vk(vkBeginCommandBuffer(commands, &begin), "vkBeginCommandBuffer");
 
-  /* libplacebo renders (here: uploads), and holds each image in the layout that the graph likes best. */
+  /* libplacebo renders (here: uploads), and holds each image in the graph's preferred layout. */
   for (i = 0; i < SLOTS; ++i) {
     dermis_image_binding binding = DERMIS_IMAGE_BINDING_INIT;
     pl_vulkan_sem held;
@@ -267,7 +270,8 @@ int main(int argc, char** argv) {
       die("pl_vulkan_hold", images[i].name);
     binding.view = make_view(device, binding.image, binding.format);
     binding.width = binding.height = SIDE;
-    /* The semaphore makes everything before visible: only the order of our own commands is left to tell. */
+    /* The semaphore makes all earlier work visible, so only the order of our own commands must be
+     * stated. */
     binding.before.stages = binding.after.stages = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
     binding.after.layout = VK_IMAGE_LAYOUT_GENERAL;
     binding.after.access = VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT;
@@ -278,7 +282,7 @@ int main(int argc, char** argv) {
   frame.binding_count = SLOTS;
   frame.frame_index = 1;
   frame.depth_kind = DERMIS_DEPTH_VIEW_UNITS;
-  frame.clip_from_view[0] = 62.5f; /* orthographic: 32 mm wide, half a millimetre a pixel */
+  frame.clip_from_view[0] = 62.5f; /* orthographic: 32 mm wide, 0.5 mm per pixel */
   frame.clip_from_view[5] = -62.5f;
   frame.clip_from_view[10] = -1.0f;
   frame.clip_from_view[15] = 1.0f;
@@ -286,7 +290,7 @@ int main(int argc, char** argv) {
   check_vk(vkEndCommandBuffer(commands), "vkEndCommandBuffer");
   submit(device, commands, images);
 
-  /* libplacebo goes on with what Dermis made. */
+  /* libplacebo continues with the result of Dermis. */
   for (i = 0; i < SLOTS; ++i) {
     pl_vulkan_sem free_again;
     free_again.sem = images[i].semaphore;

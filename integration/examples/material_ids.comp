@@ -1,7 +1,7 @@
 #version 460
 #extension GL_EXT_samplerless_texture_functions : require
 // Writes the image for the slot `material` (r8_uint): profile ids from a bit field of an integer
-// G-buffer image, or from stencil. docs/integration.md, "Profile ids from other images".
+// G-buffer image, or from stencil. See docs/integration.md, "Profile ids from other images".
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(set = 0, binding = 0) uniform utexture2D source; // a stencil view also works here
 layout(set = 0, binding = 1) uniform writeonly uimage2D material;

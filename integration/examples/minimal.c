@@ -1,4 +1,4 @@
-/* One frame of a lit wall of skin. usage: minimal configs/graphs/burley.json configs/profiles/skin.json */
+/* Renders a lit wall of skin. usage: minimal configs/graphs/burley.json configs/profiles/skin.json */
 #include "headless.h"
 
 #include <dermis/dermis.h>
@@ -6,7 +6,7 @@
 enum { SIDE = 64, MOST = 64 };
 
 static void check(dermis_result result) {
-  if (result < 0) headless_die(dermis_result_name(result), dermis_last_error()); /* above 0: none */
+  if (result < 0) headless_die(dermis_result_name(result), dermis_last_error()); /* > 0: no error */
 }
 
 static void DERMIS_CALL say(void* user, const dermis_message* message) {
@@ -84,7 +84,7 @@ int main(int argc, char** argv) {
   frame.bindings = bindings;
   frame.frame_index = 1;
   frame.depth_kind = DERMIS_DEPTH_VIEW_UNITS;
-  frame.clip_from_view[0] = 2.0f; /* a perspective: half the field of view has the tangent 1/2 */
+  frame.clip_from_view[0] = 2.0f; /* perspective; the tangent of half the field of view is 1/2 */
   frame.clip_from_view[5] = -2.0f;
   frame.clip_from_view[10] = frame.clip_from_view[14] = -1.0f;
   frame.clip_from_view[11] = -0.1f;

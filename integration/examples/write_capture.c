@@ -6,7 +6,8 @@ enum { SIDE = 64 };
 
 static const float near_plane = 0.1f;
 
-/* Metres along the view axis from a depth buffer of clip_from_view below: reversed, infinite. */
+/* Returns the metres along the view axis for a depth value of clip_from_view below: reversed,
+ * infinite. */
 static float metres_from_depth(float value) {
   return value > 0.0f ? near_plane / value : 0.0f;
 }
@@ -27,7 +28,7 @@ int main(int argc, char** argv) {
   headless host = headless_create();
   if (argc != 2) headless_die("usage", "write_capture FOLDER");
 
-  /* The engine's frame: a lit wall of skin half a metre away. */
+  /* The engine's frame: a lit wall of skin 0.5 m away. */
   memset(&value, 0, sizeof value);
   value.float32[0] = 1.0f;
   value.float32[1] = 0.5f;

@@ -9,7 +9,7 @@
 #include <math.h>
 #include <stdint.h>
 
-/* ---- OpenEXR: one part, scanlines, 32-bit floats, no compression, little endian ---------------- */
+/* ---- OpenEXR: one part, scanlines, 32-bit floats, no compression, little endian -------------- */
 
 static void capture_int(FILE* file, uint32_t value) {
   const uint8_t bytes[4] = {(uint8_t)value, (uint8_t)(value >> 8), (uint8_t)(value >> 16),
@@ -29,8 +29,8 @@ static void capture_attribute(FILE* file, const char* name, const char* type, ui
   capture_int(file, bytes);
 }
 
-/* `channels` are one-letter names in alphabetical order, "BGR" or "Y". `values` are interleaved in that
- * order, first row on top. */
+/* Writes an EXR file. `channels` are one-letter names in alphabetical order, "BGR" or "Y". `values`
+ * are interleaved in that order, first row on top. */
 static void capture_write_exr(const char* path, uint32_t width, uint32_t height, const char* channels,
                               const float* values) {
   const uint32_t count = (uint32_t)strlen(channels);
@@ -72,7 +72,7 @@ static void capture_write_exr(const char* path, uint32_t width, uint32_t height,
   capture_float(file, 1.0f);
   fputc(0, file); /* end of the header */
   first_line = ftell(file) + (long)height * 8;
-  for (y = 0; y < height; ++y) { /* where each line begins */
+  for (y = 0; y < height; ++y) { /* offset of each line */
     capture_int(file, (uint32_t)first_line + y * (line_bytes + 8));
     capture_int(file, 0);
   }
@@ -86,7 +86,7 @@ static void capture_write_exr(const char* path, uint32_t width, uint32_t height,
   if (ferror(file) || fclose(file) != 0) headless_die("cannot write", path);
 }
 
-/* ---- images ------------------------------------------------------------------------------------ */
+/* ---- images ---------------------------------------------------------------------------------- */
 
 static float capture_half(uint16_t bits) {
   const int exponent = (bits >> 10) & 31, mantissa = bits & 1023;
@@ -96,7 +96,7 @@ static float capture_half(uint16_t bits) {
   return (bits & 0x8000) != 0 ? -magnitude : magnitude;
 }
 
-/* Channel `c` of a texel. Extend it by the formats of your engine. */
+/* Returns channel `c` of a texel. Add the formats of your engine here. */
 static float capture_channel(VkFormat format, const uint8_t* texel, uint32_t c) {
   float single;
   uint16_t half;
@@ -135,8 +135,8 @@ static uint32_t capture_texel_bytes(VkFormat format) {
 }
 
 /* Copies a 2-D image in layout GENERAL, created with TRANSFER_SRC, to host memory and writes it to
- * `path`. Submits and waits: `host->commands` is recorded anew. `decode` (may be NULL) maps each value,
- * for depth from the buffer's value to metres. `channels`: "BGR", or "Y" for the first channel. */
+ * `path`. Submits and waits; records `host->commands` anew. `decode` (may be NULL) maps each value,
+ * for example depth values to metres. `channels`: "BGR", or "Y" for the first channel. */
 static void capture_image(headless* host, VkImage image, VkFormat format, uint32_t width, uint32_t height,
                           const char* channels, float (*decode)(float), const char* path) {
   HEADLESS_STRUCT(VkBufferCreateInfo, buffer_info, BUFFER_CREATE_INFO);
@@ -193,7 +193,8 @@ static void capture_image(headless* host, VkImage image, VkFormat format, uint32
   HEADLESS_CHECK(vkMapMemory(host->device, memory, 0, VK_WHOLE_SIZE, 0, &bytes));
   for (i = 0; i < pixels; ++i)
     for (c = 0; c < count; ++c) {
-      const uint32_t channel = count == 1 ? 0 : count - 1 - c; /* "BGR" runs backwards */
+      /* the channels of "BGR" are in reverse order */
+      const uint32_t channel = count == 1 ? 0 : count - 1 - c;
       const float value = capture_channel(format, (const uint8_t*)bytes + i * texel_bytes, channel);
       values[i * count + c] = decode != NULL ? decode(value) : value;
     }
@@ -203,10 +204,11 @@ static void capture_image(headless* host, VkImage image, VkFormat format, uint32
   vkFreeMemory(host->device, memory, NULL);
 }
 
-/* ---- frame.json -------------------------------------------------------------------------------- */
+/* ---- frame.json ------------------------------------------------------------------------------ */
 
-/* The matrices are dermis_frame's, except that captures hold `clip_from_view` without jitter.
- * `profile_file` is the profile of id 1, a path relative to frame.json or the name of a shipped one. */
+/* Writes frame.json. The matrices are those of dermis_frame, except that captures hold
+ * `clip_from_view` without jitter. `profile_file` is the profile of id 1: a path relative to
+ * frame.json, or the name of a shipped profile. */
 static void capture_write_json(const char* path, uint32_t width, uint32_t height, int perspective,
                                const float* clip_from_view, const float* view_from_world,
                                float metres_per_unit, const char* profile_file) {

@@ -51,8 +51,8 @@ using CompileOne = std::function<std::optional<CompiledPlan>(const CompileInput&
 
 struct OutcomePlans {
   std::vector<Outcome> outcomes; // at least one; the first has the default values
-  std::vector<CompiledPlan>
-      plans; // Distinct plans: outcomes whose settings turn no pass on or off share a plan.
+  // Distinct plans: outcomes whose settings turn no pass on or off share a plan.
+  std::vector<CompiledPlan> plans;
 };
 
 // Returns the name of a work, such as "subsurface.separable axis=vertical taps=25". `values`: one

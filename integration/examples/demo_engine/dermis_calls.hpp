@@ -1,5 +1,5 @@
 #pragma once
-// What whoever calls Dermis for a VulkanHost has in common: a context of its device, texts, and errors.
+// Helpers for calls of Dermis with a VulkanHost: a context for its device, texts, and errors.
 
 #include "integration/examples/demo_engine/context_hooks.hpp"
 #include "integration/examples/demo_engine/result.hpp"
@@ -11,7 +11,7 @@
 
 namespace demo {
 
-// Of one call; destroyed with it.
+// Owns the report of one call.
 struct Report {
   dermis_report handle = nullptr;
   Report() = default;
@@ -20,14 +20,16 @@ struct Report {
   ~Report() { dermis_report_destroy(handle); }
 };
 
-// The report says more than the last error where there is one; it stays the caller's.
+// Returns an error with the text of the report, or of the last error if the report is empty. The
+// caller keeps the report.
 Error dermis_error(const char* call, dermis_result result, dermis_report report = nullptr);
 
-// Points into both.
+// Returns a source that points into both strings.
 dermis_source source_of(const std::string& name, const std::string& text);
 
-// Made once, into `context`, one of the host's. With times where the device has timestamps, with ray queries
-// where the host enabled them and they are `wanted`. Errors: environment, those of `hooks.prepare`.
+// Makes a context of the host in `context`, once. The context measures times if the device has
+// timestamps, and has ray queries if the host enabled them and `rays_wanted` is set. Errors:
+// environment, those of `hooks.prepare`.
 Result<> make_context(const VulkanHost& host, uint32_t frames_in_flight, bool rays_wanted,
                       std::shared_ptr<dermis_context_t>& context, const ContextHooks& hooks);
 

@@ -39,7 +39,7 @@ bool queue_fits(VkPhysicalDevice device, bool& timestamps) {
   return found != families.end();
 }
 
-// What the library asks of a device by itself.
+// Returns the requirements of the library itself on a device.
 Result<std::vector<SurveyItem>> requirements_of(VkInstance instance, VkPhysicalDevice device) {
   std::array<dermis_requirement, 16> requested;
   requested.fill(DERMIS_REQUIREMENT_INIT);
@@ -54,7 +54,7 @@ Result<std::vector<SurveyItem>> requirements_of(VkInstance instance, VkPhysicalD
   return items;
 }
 
-// Formats that the shipped graphs keep light, depth and history in.
+// Formats of light, depth and history in the shipped graphs.
 struct WantedFormat {
   VkFormat format;
   const char* name;

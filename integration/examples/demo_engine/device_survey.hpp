@@ -1,6 +1,6 @@
 #pragma once
-// What Vulkan on this machine offers to Dermis: loader, layer, devices, and of each what the library needs or
-// can use.
+// Surveys Vulkan on this machine: loader, layer, devices, and the features of each device that the
+// library needs or can use.
 
 #include "integration/examples/demo_engine/result.hpp"
 
@@ -10,22 +10,22 @@
 
 namespace demo {
 
-// One thing that is looked for in a device.
+// One feature that is looked up on a device.
 struct SurveyItem {
   std::string name;
   bool present = false;
-  bool required = false; // without it the library does not run on the device
-  std::string why;       // what it is for; for what is missing and not required, what happens instead
+  bool required = false; // the library does not run on the device without this feature
+  std::string why;       // purpose; for an optional feature that is missing, the consequence
 };
 
 struct SurveyedDevice {
   std::string name, type;    // "discrete GPU", "CPU"
   std::string driver;        // name and version as the driver states them
   uint32_t api_version = 0;  // as VK_MAKE_API_VERSION packs it
-  uint64_t memory_bytes = 0; // of its largest device-local heap
+  uint64_t memory_bytes = 0; // size of its largest device-local heap
   std::vector<SurveyItem> items;
-  bool fits = false;   // has all that is required
-  bool chosen = false; // the one that `dermis render` takes
+  bool fits = false;   // has all required features
+  bool chosen = false; // the device that `dermis render` uses
 };
 
 struct DeviceSurvey {
@@ -34,7 +34,8 @@ struct DeviceSurvey {
   std::vector<SurveyedDevice> devices; // in the order of the driver
 };
 
-// Makes an instance, looks, and destroys it. Errors: environment when there is no loader or no driver.
+// Creates an instance, inspects its devices, and destroys it. Errors: environment if there is no
+// loader or no driver.
 Result<DeviceSurvey> survey_devices();
 
 } // namespace demo

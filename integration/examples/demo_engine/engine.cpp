@@ -91,9 +91,9 @@ Result<> read_inputs(VulkanHost& host, const Renderer& renderer, const SceneStat
   return success();
 }
 
-// Phases end where the next one begins.
+// A phase ends when the next one begins.
 struct PhaseClock {
-  Clock::time_point start; // of rendering
+  Clock::time_point start; // start of rendering
   std::vector<HostPhase>& phases;
 
   void begin(const char* name) {
@@ -112,16 +112,16 @@ struct Session {
   DermisHost* dermis; // may be null
   Taa* taa;           // may be null
   const Scene& scene;
-  KeptFrames* kept; // null: none are
+  KeptFrames* kept; // may be null: no frames are kept
   Clock::time_point start;
 };
 
-// What of a frame is read back.
+// Which outputs of a frame are read back.
 struct Wanted {
   bool inputs = true, pictures = true;
 };
 
-// Renders the scene, or brings back what it left when it was rendered before.
+// Renders the scene, or restores its kept result if the frame was rendered before.
 Result<> run_scene(Session& session, const SceneState& state, uint32_t frame, PhaseClock& clock) {
   const bool again = session.kept && is_kept(*session.kept, frame);
   clock.begin("record scene");
@@ -176,7 +176,8 @@ Result<FrameOutputs> render_frame(Session& session, uint32_t frame, uint64_t fra
   if (!done) return done.error();
   if (wanted.inputs) {
     clock.begin("read inputs");
-    done = read_inputs(host, renderer, state, out.inputs); // before the graph updates the lighting in place
+    // before the graph updates the lighting in place
+    done = read_inputs(host, renderer, state, out.inputs);
     if (!done) return done.error();
   }
   if (session.dermis && wants_rays(*session.dermis)) {

@@ -1,6 +1,6 @@
 #pragma once
-// Renders a scene frame by frame without a window, with or without Dermis, and hands out what an engine, its
-// graph and its user see: pictures, the graph's inputs as floats, the camera, device times.
+// Renders a scene frame by frame without a window, with or without Dermis. Returns what an engine,
+// its graph and its user see: pictures, the graph's inputs as floats, the camera, device times.
 
 #include "integration/examples/demo_engine/context_hooks.hpp"
 #include "integration/examples/demo_engine/result.hpp"
@@ -16,15 +16,15 @@
 
 namespace demo {
 
-// A glTF file that takes the place of each object of shape "model". Maps override those of the file.
+// A glTF file that replaces each object of shape "model". Maps override those of the file.
 struct ModelOptions {
   std::string mesh;                     // .glb or .gltf; "" = none
   std::string albedo, normal, specular; // image files; "" = none
-  double height_metres = 0.0;           // scales the model to this height; 0 = as in the file (metres)
+  double height_metres = 0.0;           // height in metres; 0 = as in the file
   bool operator==(const ModelOptions&) const = default;
 };
 
-// A perspective camera that takes the place of the scene's and stays where it is.
+// A static perspective camera that replaces the scene's camera.
 struct CameraPlace {
   std::array<double, 3> position{}, target{}; // metres
   double vertical_fov = 25.0;                 // degrees, 1..150
@@ -32,54 +32,64 @@ struct CameraPlace {
 };
 
 struct NamedText {
-  std::string name, text; // name: of the file, for messages
+  std::string name, text; // name of the file, for messages
 };
 
 struct RenderOptions {
   std::string scene; // scene file
-  std::string graph; // graph file; "" = without Dermis: light times albedo, as an engine has it before
-  std::vector<NamedText> overlays;                                          // of the graph, in order
-  std::function<std::optional<NamedText>(const std::string& name)> include; // opens what the graph includes
-  // Opens shaders that take the place of the library's ("sap/subsurface_sap_up.comp", "sap/sap.glsl"); empty:
-  // none do.
+  // Graph file; "" = without Dermis: light times albedo, as in an engine before the integration.
+  std::string graph;
+  std::vector<NamedText> overlays; // overlays of the graph, in order
+  // Opens files that the graph includes.
+  std::function<std::optional<NamedText>(const std::string& name)> include;
+  // Opens shaders that replace those of the library ("sap/subsurface_sap_up.comp", "sap/sap.glsl").
+  // Empty: no replacements.
   std::function<std::optional<NamedText>(const std::string& name)> shaders = {};
   ModelOptions model;
-  std::string profile; // file that takes the place of each of the scene's profiles; "" = as the scene says
-  std::vector<std::string> roots = {}; // folders that scene and model may read from, beside their own
-  uint32_t width = 640, height = 360;  // pixels, 1..16384
+  // File that replaces each of the scene's profiles; "" = the profiles of the scene.
+  std::string profile;
+  // Folders that scene and model may read from, in addition to their own.
+  std::vector<std::string> roots = {};
+  uint32_t width = 640, height = 360; // pixels, 1..16384
   uint32_t first_frame = 0, frames = 1;
   double frames_per_second = 0; // 0: the scene's
   bool reversed_depth = false;  // far plane at depth 0
   bool jitter = false;          // sub-pixel camera jitter (Halton 2, 3; period 8)
   bool taa = false;             // temporal anti-aliasing of `color`, with jitter
-  bool sampling = false;        // hand out what the graph says of its samples
-  bool skips = false;           // and of what it left out
+  bool sampling = false;        // reads back the graph's `sampling` output
+  bool skips = false;           // reads back the graph's `skips` output
   bool validation = false;      // run under the Khronos validation layer
   std::string device;           // part of the device's name; "" = choose
   std::optional<CameraPlace> camera;
-  double zoom = 1.0; // how many times larger the camera shows things: its field of view shrinks; > 0
-  std::vector<std::pair<std::string, std::string>> settings; // of the graph: name, JSON text
-  double budget_ms = 0;       // of device time for the graph's choices, a frame; 0: their defaults
-  bool deterministic = false; // judge times by the calibration alone: the same choices on every machine
-  // Texts that the graph is reloaded with before a frame, one after the other; those with errors leave it as
-  // it is. May be empty. The graph must include nothing.
+  // Magnification by a smaller field of view of the camera; > 0.
+  double zoom = 1.0;
+  // settings of the graph: name, JSON text
+  std::vector<std::pair<std::string, std::string>> settings;
+  // Device time per frame for the graph's choices; 0: their defaults.
+  double budget_ms = 0;
+  // Decides by the calibration only: the same choices on every machine.
+  bool deterministic = false;
+  // Returns texts with which the graph is reloaded before a frame, in order. A text with errors
+  // leaves the graph unchanged. May be empty. The graph must include nothing.
   std::function<std::vector<std::string>(uint32_t frame)> reloads = {};
-  // Are a frame's pictures read back? Empty: of every frame. The others come without them.
+  // Returns whether a frame's pictures are read back. Empty: for every frame.
   std::function<bool(uint32_t frame)> pictures_of = {};
-  std::function<bool(uint32_t frame)> inputs_of = {}; // the same of its inputs; empty: as of its pictures
-  NamedText calibration;   // JSON of an earlier run's RenderSummary::calibration; "": the library's own
-  ContextHooks hooks = {}; // of a new stage's context
+  // Returns whether a frame's inputs are read back. Empty: if its pictures are.
+  std::function<bool(uint32_t frame)> inputs_of = {};
+  // JSON of an earlier run's RenderSummary::calibration; "": the library's own.
+  NamedText calibration;
+  ContextHooks hooks = {}; // hooks of a new stage's context
 };
 
-// Row by row from the top left; channels floats a pixel.
+// Pixels row by row from the top left; `channels` floats per pixel.
 struct FloatImage {
   uint32_t width = 0, height = 0, channels = 0;
   std::vector<float> texels;
 };
 
 struct ScatteringProfile {
-  uint32_t id = 0;  // in the profile image; 1..255
-  std::string name; // as the scene calls it
+  uint32_t id = 0;  // id in the profile image; 1..255
+  std::string name; // name in the scene
   std::string file; // path of the profile file
 };
 
@@ -94,52 +104,54 @@ struct FrameCamera {
 
 struct PassTime {
   std::string pass;
-  double milliseconds = 0.0; // of device time
+  double milliseconds = 0.0; // device time
 };
 
-// What the host's thread did, milliseconds since rendering began; one behind the other.
+// A phase of the host's thread, in milliseconds since rendering began. Phases are consecutive.
 struct HostPhase {
   std::string name;
   double begin_ms = 0.0, end_ms = 0.0;
 };
 
-// What the graph was given; read back before it ran.
+// The graph's inputs, read back before the graph ran. The comments give the number of channels.
 struct GraphInputs {
   FloatImage lighting; // 3: diffuse light before albedo
-  FloatImage depth;    // 1: metres along the view axis, 0 = nothing there
-  FloatImage normal;   // 3: geometric normal in view space, unit length; 0 where nothing is
+  FloatImage depth;    // 1: metres along the view axis, 0 = nothing visible
+  FloatImage normal;   // 3: geometric normal in view space, unit length; 0 if nothing is visible
   FloatImage albedo;   // 3: linear
   FloatImage profile;  // 1: id, 0 = no subsurface
   FloatImage velocity; // 2: pixels, now - previous, +x right, +y down, without jitter
-  FloatImage specular; // 3: reflected light, never given to the graph
-  // Of the light that brings most through from behind: its way through the object, metres (1), and its
-  // irradiance on the far side (3).
+  FloatImage specular; // 3: reflected light, not an input of the graph
+  // For the light with most transmission from behind: thickness of the object along its direction,
+  // metres (1), and irradiance on the far side (3).
   FloatImage thickness, back_lighting;
 };
 
-// What the library chose for the frame, and what it expected.
+// The library's choice for the frame and its expectations.
 struct FrameChoice {
-  std::string outcome, technique, why, next_better; // next_better: lacks least time; "": none
+  // next_better: the more accurate outcome that exceeds the budget by least time; "": none.
+  std::string outcome, technique, why, next_better;
   double budget_ms = 0, predicted_ms = 0, predicted_spread_ms = 0, measured_ms = -1, metered_ms = 0,
          predicted_rmse = 0;
   double next_better_missing_ms = 0, mean_d_px = 0;
   uint32_t outcomes = 1, view_tiles = 0, scattering_tiles = 0, copied_tiles = 0, switches = 0;
   uint32_t uniform_tiles = 0, dispatches = 0;
   uint64_t groups = 0;
-  std::array<uint32_t, 3> sampled_tiles{};      // of the scattering ones, with 8, 16 and 32 samples a pixel
-  uint32_t sample_units = 0, sample_demand = 0; // taken; that would be without a budget
-  uint32_t probed_tiles = 0;                    // 0: the frame's error is not known
+  std::array<uint32_t, 3> sampled_tiles{};      // tiles with 8, 16 and 32 samples a pixel
+  uint32_t sample_units = 0, sample_demand = 0; // units spent; units that all tiles would take
+  uint32_t probed_tiles = 0;                    // 0: the frame's error is unknown
   double probed_rmse = 0, probed_rmse_low = 0, probed_rmse_high = 0;
-  double transmitted_rms = 0; // light through thin parts, exposed; 0: none, or not counted
-  std::string miss;           // why it took longer than the budget; "": it did not
+  double transmitted_rms = 0; // RMS of transmitted light, exposed; 0: none, or not counted
+  std::string miss;           // why the frame exceeded the budget; "": it did not
 };
 
-// What a history of the graph holds after the frame.
+// State of a history of the graph after the frame.
 struct FrameHistory {
   std::string name;
   bool valid = false;
-  uint32_t age = 0; // frames in a row that are in it
-  std::string why;  // it holds nothing; where it holds something, why it held nothing when it last did not
+  uint32_t age = 0; // number of consecutive frames in the history
+  // Why the history is invalid; if valid, why it was invalid last.
+  std::string why;
 };
 
 struct FrameOutputs {
@@ -149,46 +161,54 @@ struct FrameOutputs {
   float exposure = 1.0f;
   FrameCamera camera;
   GraphInputs inputs;
-  FloatImage scattered; // 3: light before albedo after scattering; empty when the graph does not export
-                        // "scattered_light"
-  FloatImage sampling;  // 4: samples, those behind history, confidence or spread, 1 where a surface was new;
-                        // anything where there is no subsurface. Empty unless asked for and exported
-  FloatImage skips; // 2: class of the tile (0 nothing, 1 scatters, 2 below a pixel, 3 flat light), profile
-                    // id. Empty unless asked for and exported
-  FloatImage color; // 3: linear radiance times exposure
-  std::vector<uint8_t> display;        // RGB, tonemapped and sRGB encoded
-  std::vector<PassTime> host_times;    // shadows, gbuffer, lighting, composite
-  std::optional<FrameChoice> choice;   // none without Dermis
-  std::vector<FrameHistory> histories; // of the graph, also of plans that did not run
-  std::vector<HostPhase> phases;       // of this frame; "run scene" and "run graph" wait for the device
-  std::vector<PassTime> dermis_times; // passes of the graph in plan order; empty without Dermis or timestamps
+  // 3: light before albedo after scattering; empty unless the graph exports "scattered_light".
+  FloatImage scattered;
+  // 4: samples, samples in history, confidence or spread, 1 for a new surface. Undefined without
+  // subsurface. Empty unless requested and exported.
+  FloatImage sampling;
+  // 2: class of the tile (0 nothing, 1 scatters, 2 below a pixel, 3 uniform light), profile id.
+  // Empty unless requested and exported.
+  FloatImage skips;
+  FloatImage color;                  // 3: linear radiance times exposure
+  std::vector<uint8_t> display;      // RGB, tonemapped and sRGB encoded
+  std::vector<PassTime> host_times;  // shadows, gbuffer, lighting, composite
+  std::optional<FrameChoice> choice; // none without Dermis
+  // Histories of the graph, including those of plans that did not run.
+  std::vector<FrameHistory> histories;
+  // Phases of this frame; "run scene" and "run graph" wait for the device.
+  std::vector<HostPhase> phases;
+  // Passes of the graph in plan order; empty without Dermis or timestamps.
+  std::vector<PassTime> dermis_times;
 };
 
-// Known once everything is loaded, before the first frame.
+// Information that is known after loading, before the first frame.
 struct RenderInfo {
   std::string scene, device;
   uint64_t triangles = 0;
   double load_seconds = 0.0;
   float metres_per_unit = 1.0f;
   std::vector<ScatteringProfile> profiles;
-  std::vector<std::string> credits;  // to be printed: who made the model, under which licence
-  std::vector<std::string> warnings; // of the scene, the model and the graph
+  std::vector<std::string> credits;  // texts that must be printed: author and licence of the model
+  std::vector<std::string> warnings; // warnings of the scene, the model and the graph
 };
 
 struct RenderSummary {
   uint32_t frames = 0;
-  uint32_t reloads = 0, rejected_reloads = 0; // refused: among `reloads`
-  std::string calibration; // what the graph learned of the device's times, JSON; "" without Dermis
+  uint32_t reloads = 0, rejected_reloads = 0; // rejected_reloads are included in `reloads`
+  // Learned costs of the device, JSON; "" without Dermis.
+  std::string calibration;
   std::vector<std::string> validation_messages; // empty unless validation found something
 };
 
 struct RenderCallbacks {
-  std::function<Result<>(const RenderInfo&)> on_start;   // may be empty
-  std::function<Result<>(const FrameOutputs&)> on_frame; // may be empty; an error ends the rendering with it
+  std::function<Result<>(const RenderInfo&)> on_start; // may be empty
+  // May be empty; an error ends the rendering and is returned.
+  std::function<Result<>(const FrameOutputs&)> on_frame;
 };
 
-// A device, a scene that is loaded on it, and its frames as graphs are given them, up to a gigabyte of them:
-// kept from one call of render() to the next, so that only the graph begins anew. Belongs to one thread.
+// A device, a scene that is loaded on it, and up to 1 GiB of frames with the graph's inputs. A
+// stage is kept from one call of render() to the next, so that only the graph is rebuilt. Belongs
+// to one thread.
 struct Stage;
 struct StageDeleter {
   void operator()(Stage* stage) const;
@@ -196,14 +216,16 @@ struct StageDeleter {
 using StageHandle = std::unique_ptr<Stage, StageDeleter>;
 StageHandle make_stage();
 
-// Runs on the calling thread (loading uses two more). With a stage, frames that it keeps are the same bits as
-// if they were rendered, and `host_times` has no times for them; it is made anew where a call asks for
-// another device, scene, model, camera or size. Errors: input (scene, model, graph, profile; the text holds
-// all located messages), usage (size, frames), environment (no driver, no memory), internal.
+// Renders on the calling thread (loading uses two more threads). With a stage, kept frames are
+// bit-identical to rendered frames, and `host_times` has no times for them. The stage is rebuilt if
+// a call needs another device, scene, model, camera or size. Errors: input (scene, model, graph,
+// profile; the text holds all located messages), usage (size, frames), environment (no driver, no
+// memory), internal.
 Result<RenderSummary> render(const RenderOptions& options, const RenderCallbacks& callbacks,
                              Stage* stage = nullptr);
 
-// Filmic curve after Narkowicz 2016, "ACES Filmic Tone Mapping Curve", then the sRGB curve; 8 bits a channel.
+// Applies a filmic curve after Narkowicz 2016, "ACES Filmic Tone Mapping Curve", then the sRGB
+// curve; returns 8 bits per channel.
 std::vector<uint8_t> tonemap(const FloatImage& linear_rgb);
 
 } // namespace demo

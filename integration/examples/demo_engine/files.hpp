@@ -1,5 +1,5 @@
 #pragma once
-// Whole files into memory, with limits and messages that name them.
+// Reads whole files into memory, with limits and messages that name the file.
 
 #include "integration/examples/demo_engine/result.hpp"
 
@@ -10,9 +10,9 @@
 
 namespace demo {
 
-// Errors: input (absent, not a regular file, larger than `most` bytes, unreadable).
+// Errors: input (absent, not a regular file, larger than `maximum` bytes, unreadable).
 Result<std::vector<std::byte>> read_binary_file(const std::string& path, uint64_t maximum);
-// At most 16 MiB, as the library itself accepts.
+// Reads at most 16 MiB, the limit of the library itself.
 Result<std::string> read_text_file(const std::string& path);
 
 } // namespace demo

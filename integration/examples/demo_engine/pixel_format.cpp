@@ -55,17 +55,18 @@ Scalar scalar_of(VkFormat format) {
   }
 }
 
-// Unsigned small float with 5 exponent bits (bias 15) and `mantissa` bits: binary16 without sign, shortened.
+// Returns an unsigned small float with 5 exponent bits (bias 15) and `mantissa` bits: a shortened
+// binary16 without sign.
 uint32_t small_float_from_float(float value, int mantissa) {
   if (!(value > 0.0f)) return 0;
   const int shift = 10 - mantissa;
-  const uint32_t largest = (30u << mantissa) | ((1u << mantissa) - 1u); // finite
+  const uint32_t largest = (30u << mantissa) | ((1u << mantissa) - 1u); // largest finite value
   const uint32_t half = half_from_float(std::min(value, 65504.0f));
   return std::min(largest, (half + (1u << (shift - 1))) >> shift);
 }
 
 void store_uint(std::byte* out, uint32_t bytes, uint32_t value) {
-  std::memcpy(out, &value, bytes); // little endian, as Vulkan on every platform we run on
+  std::memcpy(out, &value, bytes); // little endian, as Vulkan on all supported platforms
 }
 
 uint32_t load_uint(const std::byte* in, uint32_t bytes) {
@@ -94,13 +95,15 @@ uint16_t half_from_float(float value) {
   if (magnitude > 0x7f800000u) return static_cast<uint16_t>(sign | 0x7e00u);
   if (magnitude >= 0x47800000u) return static_cast<uint16_t>(sign | 0x7c00u); // >= 65536
   if (magnitude < 0x38800000u) {                                              // subnormal halves
-    // Adding 0.5 aligns the last bit of the sum with 2^-24, the unit of subnormals; the addition rounds.
+    // Adding 0.5 aligns the last bit of the sum with 2^-24, the unit of subnormals; the addition
+    // rounds.
     const float aligned = std::bit_cast<float>(magnitude) + 0.5f;
     return static_cast<uint16_t>(sign | (std::bit_cast<uint32_t>(aligned) - 0x3f000000u));
   }
   const uint32_t odd = (magnitude >> 13) & 1u;
   const uint32_t rounded = magnitude - 0x38000000u + 0xfffu + odd;
-  return static_cast<uint16_t>(sign | (rounded >> 13)); // a carry into the exponent is right, up to infinity
+  // a carry into the exponent is correct, up to infinity
+  return static_cast<uint16_t>(sign | (rounded >> 13));
 }
 
 float float_from_half(uint16_t bits) {

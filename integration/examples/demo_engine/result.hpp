@@ -1,5 +1,6 @@
 #pragma once
-// Errors of the demo engine are values: a text that says what, why and what to do, and who can mend it.
+// Errors of the demo engine are values: a text that says what is wrong, why and what to do, and a
+// kind.
 
 #include <optional>
 #include <string>
@@ -12,7 +13,7 @@ namespace demo {
 enum class ErrorKind : int {
   input = 1,       // a file or its data is wrong
   usage = 2,       // an option or a value is wrong
-  environment = 3, // no driver, not enough memory, nothing can be written
+  environment = 3, // no driver, not enough memory, failed writes
   internal = 4,    // a defect of this program
 };
 
@@ -23,8 +24,8 @@ struct Error {
 
 struct Nothing {};
 
-// Either a value or an Error. Reading the wrong one is a defect of the caller (std::get terminates: no throw
-// is caught on the way).
+// Either a value or an Error. Reading the wrong alternative is a defect of the caller: std::get
+// throws, nothing catches the exception, and the program terminates.
 template <class T = Nothing> class [[nodiscard]] Result {
 public:
   Result(T value) : content(std::move(value)) {}

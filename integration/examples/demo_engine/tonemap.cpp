@@ -7,7 +7,7 @@
 namespace demo {
 namespace {
 
-// Narkowicz 2016: x(ax + b) / (x(cx + d) + e); his curve expects exposure 0.6 less than a plain one.
+// Narkowicz 2016: x(ax + b) / (x(cx + d) + e); the curve expects an exposure factor of 0.6.
 float filmic(float x) {
   constexpr float a = 2.51f, b = 0.03f, c = 2.43f, d = 0.59f, e = 0.14f, exposure = 0.6f;
   const float v = std::max(0.0f, x) * exposure;

@@ -11,7 +11,7 @@
 namespace demo {
 namespace {
 
-// The features that were extensions before they became part of 1.3.
+// Features that were extensions before Vulkan 1.3.
 struct ExtensionFeatures {
   VkPhysicalDeviceSynchronization2Features synchronization2 =
       vulkan_struct<VkPhysicalDeviceSynchronization2Features>(

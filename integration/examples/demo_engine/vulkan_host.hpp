@@ -1,6 +1,6 @@
 #pragma once
 // The host side of Vulkan without a window: instance, device, one queue, and the wait for its work.
-// It is what an engine has before it embeds Dermis, and keeps the contexts that it made of this device.
+// This is what an engine has before it embeds Dermis. Also keeps the contexts made for this device.
 
 #include "integration/examples/demo_engine/vulkan_instance.hpp"
 
@@ -11,8 +11,8 @@ struct dermis_context_t;
 
 namespace demo {
 
-// Owns instance, device and a command pool. Images, buffers and pipelines made with it must die before it.
-// One thread at a time.
+// Owns instance, device and a command pool. Images, buffers and pipelines of the host must be
+// destroyed before it. One thread at a time.
 struct VulkanHost {
   VkInstance instance = VK_NULL_HANDLE;
   VkDebugUtilsMessengerEXT messenger = VK_NULL_HANDLE;
@@ -28,8 +28,8 @@ struct VulkanHost {
   bool ray_query = false;      // VK_KHR_ray_query and VK_KHR_acceleration_structure are enabled
   uint64_t timestamp_mask = 0; // 0: the queue has no timestamps
   ValidationLog log;
-  // Shared by graphs that the engine made, and by those that tools made beside it; null until the first is
-  // made.
+  // Contexts shared by the graphs of the engine and by the graphs of tools; null until first
+  // created.
   std::shared_ptr<dermis_context_t> engine_context, tool_context;
 
   VulkanHost() = default;
@@ -38,14 +38,17 @@ struct VulkanHost {
   ~VulkanHost();
 };
 
-// Enables every feature of Vulkan 1.0 to 1.3 that the device has, except robust buffer access (it costs time
-// and hides defects). Errors: environment when there is no loader, no driver, no layer or no fitting device.
+// Enables every feature of Vulkan 1.0 to 1.3 that the device has, except robust buffer access (it
+// costs time and hides defects). Errors: environment if there is no loader, no driver, no layer or
+// no suitable device.
 Result<std::unique_ptr<VulkanHost>> create_vulkan_host(const HostOptions& options);
 
-// Records with `record`, submits and waits. Errors: environment (Vulkan failed), or what `record` returns.
+// Records with `record`, submits and waits. Errors: environment (Vulkan failed), or what `record`
+// returns.
 Result<> run_commands(VulkanHost& host, const std::function<Result<>(VkCommandBuffer)>& record);
 
-// Index of a memory type with all `wanted` flags, else with `needed`; UINT32_MAX when there is none.
+// Returns the index of a memory type with all `wanted` flags, else with `needed`; UINT32_MAX if
+// there is none.
 uint32_t find_memory_type(const VulkanHost& host, uint32_t type_bits, VkMemoryPropertyFlags wanted,
                           VkMemoryPropertyFlags needed);
 

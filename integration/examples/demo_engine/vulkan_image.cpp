@@ -23,7 +23,8 @@ VkResult create_view(VulkanHost& host, const Image& image, VkImageViewType type,
   return host.vk.vkCreateImageView(host.device, &info, nullptr, &view);
 }
 
-// One mip from the one above it; both in TRANSFER_DST at first, the upper one ends in TRANSFER_SRC.
+// Records the computation of one mip from the next finer one. Both must be in TRANSFER_DST; the
+// finer mip ends in TRANSFER_SRC.
 void record_mip(const VulkanHost& host, VkCommandBuffer commands, const Image& image, uint32_t mip) {
   auto barrier = vulkan_struct<VkImageMemoryBarrier2>(VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2);
   barrier.srcStageMask = VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT;
@@ -245,7 +246,7 @@ Result<> upload_texels(VulkanHost& host, Image& image, std::span<const std::byte
     host.vk.vkCmdCopyBufferToImage(commands, staging->buffer, image.image, target.layout, 1, &region);
     for (uint32_t mip = 1; mip < image.mips; ++mip)
       record_mip(host, commands, image, mip);
-    if (image.mips > 1) { // all but the last mip are in TRANSFER_SRC now
+    if (image.mips > 1) { // all mips except the last are in TRANSFER_SRC now
       ImageState last = target;
       auto barrier = vulkan_struct<VkImageMemoryBarrier2>(VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2);
       barrier.srcStageMask = last.stages;

@@ -99,7 +99,8 @@ Result<> create_instance(const HostOptions& options, ValidationLog& log, VulkanI
                                "vulkan-validationlayers)",
                                validation_layer)};
     }
-    // The check across submissions has no place in VkValidationFeaturesEXT; the layer reads it from here.
+    // The check across submissions is not part of VkValidationFeaturesEXT; the layer reads this
+    // variable instead.
     setenv("VK_LAYER_ENABLES",
            "VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT:"
            "VALIDATION_CHECK_ENABLE_SYNCHRONIZATION_VALIDATION_QUEUE_SUBMIT",

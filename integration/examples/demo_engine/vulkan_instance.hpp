@@ -1,5 +1,5 @@
 #pragma once
-// The way to a Vulkan device: loader, instance, and which of the devices is taken.
+// Access to a Vulkan device: loader, instance, and selection of a device.
 
 #include "integration/examples/demo_engine/result.hpp"
 
@@ -12,13 +12,16 @@
 namespace demo {
 
 struct HostOptions {
-  bool validation = false;   // Khronos layer with core and synchronization checks, also across submissions
-  std::string device;        // part of the device's name; "" = the first discrete GPU, else the first device
-  bool as_vulkan_12 = false; // as an engine that is not on 1.3 yet: 1.2 and extensions
-  bool separate_depth_stencil = true; // false: without the feature separateDepthStencilLayouts
+  // Khronos layer with core and synchronization checks, also across submissions
+  bool validation = false;
+  // Part of the device's name; "" = the first discrete GPU, else the first device.
+  std::string device;
+  bool as_vulkan_12 = false; // emulates an engine before Vulkan 1.3: 1.2 and extensions
+  // false: without the feature separateDepthStencilLayouts
+  bool separate_depth_stencil = true;
 };
 
-// What the validation layer said. Filled from any thread that calls Vulkan.
+// Messages of the validation layer. Any thread that calls Vulkan may add messages.
 struct ValidationLog {
   std::mutex mutex;
   std::vector<std::string> messages; // warnings and errors
@@ -26,7 +29,7 @@ struct ValidationLog {
 
 struct VulkanInstance {
   VkInstance instance = VK_NULL_HANDLE;
-  VkDebugUtilsMessengerEXT messenger = VK_NULL_HANDLE; // with validation alone
+  VkDebugUtilsMessengerEXT messenger = VK_NULL_HANDLE; // only with validation
 };
 
 struct ChosenDevice {
@@ -36,26 +39,26 @@ struct ChosenDevice {
   uint64_t timestamp_mask = 0; // 0: the queue has no timestamps
 };
 
-// Loads the functions that need no instance. Errors: environment when there is no loader.
+// Loads the functions that need no instance. Errors: environment if there is no loader.
 Result<> load_vulkan();
 
-// Is the Khronos layer installed? After load_vulkan().
+// Returns whether the Khronos layer is installed. Call load_vulkan() first.
 bool validation_layer_is_there();
 
-// An instance for Vulkan 1.3 (or 1.2), whose messages go to `log`. `made` is filled as far as it came also on
-// failure. Errors: environment when there is no driver or no layer.
+// Creates an instance for Vulkan 1.3 (or 1.2), whose messages go to `log`. On failure, `made` holds
+// what was created so far. Errors: environment if there is no driver or no layer.
 Result<> create_instance(const HostOptions& options, ValidationLog& log, VulkanInstance& made);
 
-// All devices of the instance, in the driver's order.
+// Returns all devices of the instance, in the driver's order.
 std::vector<VkPhysicalDevice> all_devices(VkInstance instance);
 
-// Errors: environment when no device fits.
+// Errors: environment if no device is suitable.
 Result<ChosenDevice> choose_device(VkInstance instance, const HostOptions& options);
 
-// "vkQueueSubmit2 failed: VK_ERROR_DEVICE_LOST", as an Error of kind environment.
+// Returns an Error of kind environment, such as "vkQueueSubmit2 failed: VK_ERROR_DEVICE_LOST".
 Error vulkan_error(const char* call, VkResult result);
 
-// A zeroed Vulkan struct with its type set.
+// Returns a zeroed Vulkan struct with its type set.
 template <class T> T vulkan_struct(VkStructureType type) {
   T value{};
   value.sType = type;

@@ -7,8 +7,8 @@ namespace {
 
 using glm::vec3;
 
-// All numbers below are a sculptor's: centimetres, chosen by eye against the canon of a 24 cm head
-// (eyes at half the height, nose and brow a third of the face each).
+// All numbers below are in centimetres, chosen by eye after the canon of a 24 cm head (eyes at half
+// the height, nose and brow a third of the face each).
 
 vec3 turned_y(const vec3& p, float radians) {
   const float c = std::cos(radians), s = std::sin(radians);
@@ -27,28 +27,34 @@ vec3 turned_z(const vec3& p, float radians) {
 
 float skull(const vec3& q) {
   float d = ellipsoid(q, vec3(0.0f, 3.4f, -1.0f), vec3(7.2f, 8.1f, 9.2f));
-  d = soft_union(d, ellipsoid(q, vec3(0.0f, 3.2f, 3.2f), vec3(6.1f, 5.5f, 5.3f)), 2.5f);  // forehead
+  // forehead
+  d = soft_union(d, ellipsoid(q, vec3(0.0f, 3.2f, 3.2f), vec3(6.1f, 5.5f, 5.3f)), 2.5f);
   d = soft_union(d, ellipsoid(q, vec3(0.0f, -3.6f, 2.0f), vec3(6.2f, 7.0f, 6.3f)), 2.5f); // face
   d = soft_union(d, round_cone(q, vec3(5.0f, -2.6f, -0.6f), vec3(4.6f, -6.9f, 0.6f), 1.6f, 1.4f),
                  2.4f); // jaw
   d = soft_union(d, round_cone(q, vec3(4.6f, -6.9f, 0.6f), vec3(1.3f, -10.2f, 6.0f), 1.5f, 1.5f), 2.4f);
-  d = soft_union(d, ellipsoid(q, vec3(0.0f, -10.4f, 6.7f), vec3(1.8f, 1.4f, 1.5f)), 1.8f);    // chin
-  d = soft_union(d, ellipsoid(q, vec3(4.3f, -2.5f, 4.9f), vec3(1.7f, 1.3f, 1.9f)), 2.6f);     // cheekbone
-  d = soft_union(d, ellipsoid(q, vec3(3.2f, -5.0f, 5.7f), vec3(1.9f, 2.6f, 1.7f)), 2.4f);     // cheek
-  d = soft_difference(d, ellipsoid(q, vec3(7.9f, 1.4f, 4.6f), vec3(1.2f, 2.2f, 2.6f)), 2.4f); // temple
+  d = soft_union(d, ellipsoid(q, vec3(0.0f, -10.4f, 6.7f), vec3(1.8f, 1.4f, 1.5f)), 1.8f); // chin
+  // cheekbone
+  d = soft_union(d, ellipsoid(q, vec3(4.3f, -2.5f, 4.9f), vec3(1.7f, 1.3f, 1.9f)), 2.6f);
+  d = soft_union(d, ellipsoid(q, vec3(3.2f, -5.0f, 5.7f), vec3(1.9f, 2.6f, 1.7f)), 2.4f); // cheek
+  // temple
+  d = soft_difference(d, ellipsoid(q, vec3(7.9f, 1.4f, 4.6f), vec3(1.2f, 2.2f, 2.6f)), 2.4f);
   return d;
 }
 
 float with_eyes(float d, const vec3& q) {
-  d = soft_union(d, round_cone(q, vec3(1.2f, 2.0f, 7.9f), vec3(4.9f, 2.3f, 6.1f), 0.75f, 0.6f), 1.6f); // brow
-  d = soft_difference(d, ellipsoid(q, vec3(3.1f, 0.3f, 8.8f), vec3(2.1f, 1.35f, 1.9f)), 1.2f); // socket
-  // Closed lids over the ball; they meet below its middle in a line that falls towards the outer corner.
+  // brow
+  d = soft_union(d, round_cone(q, vec3(1.2f, 2.0f, 7.9f), vec3(4.9f, 2.3f, 6.1f), 0.75f, 0.6f), 1.6f);
+  // socket
+  d = soft_difference(d, ellipsoid(q, vec3(3.1f, 0.3f, 8.8f), vec3(2.1f, 1.35f, 1.9f)), 1.2f);
+  // Closed lids over the ball. They meet below its middle in a line that falls towards the outer
+  // corner.
   const vec3 e = q - vec3(3.15f, 0.0f, 6.3f);
   d = soft_union(d, ellipsoid(e, vec3(0.0f), vec3(1.60f, 1.32f, 1.40f)), 0.5f);
   const float line = -0.46f - 0.05f * e.x + 0.085f * e.x * e.x;
   d = soft_difference(
       d, ellipsoid(vec3(e.x, e.y - line, e.z - 1.30f), vec3(0.0f), vec3(1.62f, 0.055f, 0.30f)), 0.14f);
-  // The upper lid stands a little over the lower one.
+  // The upper lid protrudes slightly over the lower lid.
   d = soft_union(d,
                  ellipsoid(vec3(e.x, e.y - line - 0.13f, e.z - 1.17f + 0.16f * e.x * e.x), vec3(0.0f),
                            vec3(1.40f, 0.11f, 0.14f)),
@@ -60,13 +66,15 @@ float with_eyes(float d, const vec3& q) {
 }
 
 float with_nose(float d, const vec3& q) {
-  // Bridge and back are one wedge: a ridge in front, flanks that run out into the cheeks.
+  // Bridge and back form one wedge: a ridge in front, with flanks that run into the cheeks.
   d = soft_union(d, round_cone(q, vec3(0.0f, 1.9f, 7.7f), vec3(0.0f, -3.2f, 8.0f), 0.9f, 1.5f), 1.5f);
   float nose = round_cone(q, vec3(0.0f, 1.2f, 8.25f), vec3(0.0f, -3.85f, 10.65f), 0.62f, 0.86f);
-  nose = soft_union(nose, ellipsoid(q, vec3(0.40f, -4.0f, 10.70f), vec3(0.62f, 0.64f, 0.66f)), 0.5f); // tip
+  // tip
+  nose = soft_union(nose, ellipsoid(q, vec3(0.40f, -4.0f, 10.70f), vec3(0.62f, 0.64f, 0.66f)), 0.5f);
   nose =
       soft_union(nose, round_cone(q, vec3(0.0f, -4.55f, 10.6f), vec3(0.0f, -5.05f, 8.9f), 0.42f, 0.5f), 0.5f);
-  nose = soft_union(nose, ellipsoid(q, vec3(1.25f, -4.40f, 9.35f), vec3(0.74f, 0.76f, 1.15f)), 0.7f); // wing
+  // wing
+  nose = soft_union(nose, ellipsoid(q, vec3(1.25f, -4.40f, 9.35f), vec3(0.74f, 0.76f, 1.15f)), 0.7f);
   d = soft_union(d, nose, 1.0f);
   d = soft_difference(
       d, ellipsoid(turned_z(q - vec3(0.76f, -5.08f, 9.8f), 0.35f), vec3(0.0f), vec3(0.34f, 0.5f, 0.7f)),
@@ -82,7 +90,7 @@ float lower_lip(const vec3& q) {
   return ellipsoid(q, vec3(0.0f, -7.78f, 8.22f), vec3(1.80f, 0.56f, 0.66f));
 }
 
-// Height of the line between the lips; it dips in the middle and at the corners.
+// Returns the height of the line between the lips, which dips in the middle and at the corners.
 float mouth_line(float x) {
   return -7.36f + 0.07f * std::cos(x * 2.6f) - 0.02f * x * x;
 }
@@ -100,7 +108,7 @@ float with_mouth(float d, const vec3& q) {
   return d;
 }
 
-// A thin shell: an oval plate with a rolled rim, hollowed towards the front.
+// Returns a thin shell: an oval plate with a rolled rim, hollow towards the front.
 float ear(const vec3& q) {
   vec3 p = turned_y(q - vec3(6.75f, -0.9f, -1.0f), 0.42f);
   p = turned_x(p, -0.14f);
@@ -114,9 +122,11 @@ float ear(const vec3& q) {
   d = soft_union(d, rim + 0.6f * front, 0.25f);
   const float fold = torus(p, vec3(0.55f, 0.15f, 0.25f), vec3(1.0f, 0.0f, 0.0f), 1.15f, 0.22f);
   d = soft_union(d, fold + 1.2f * smooth_step(-0.2f, 0.8f, p.z), 0.25f);
-  d = soft_union(d, ellipsoid(p, vec3(0.35f, -2.85f, 0.55f), vec3(0.42f, 0.85f, 0.75f)), 0.4f); // lobe
-  d = soft_union(d, ellipsoid(p, vec3(0.35f, -0.7f, 1.55f), vec3(0.45f, 0.6f, 0.35f)), 0.35f);  // tragus
-  d = soft_union(d, ellipsoid(p, vec3(-0.35f, -0.4f, 0.7f), vec3(0.7f, 1.9f, 0.9f)), 0.5f);     // root
+  // lobe
+  d = soft_union(d, ellipsoid(p, vec3(0.35f, -2.85f, 0.55f), vec3(0.42f, 0.85f, 0.75f)), 0.4f);
+  // tragus
+  d = soft_union(d, ellipsoid(p, vec3(0.35f, -0.7f, 1.55f), vec3(0.45f, 0.6f, 0.35f)), 0.35f);
+  d = soft_union(d, ellipsoid(p, vec3(-0.35f, -0.4f, 0.7f), vec3(0.7f, 1.9f, 0.9f)), 0.5f); // root
   d = soft_difference(d, ellipsoid(p, vec3(0.85f, -0.55f, 0.55f), vec3(0.75f, 1.15f, 0.85f)),
                       0.25f); // concha
   d = soft_difference(d, ellipsoid(p, vec3(0.95f, 1.6f, 0.35f), vec3(0.55f, 0.8f, 0.75f)), 0.25f);
@@ -128,22 +138,23 @@ float torso(const vec3& q) {
   d = soft_union(d, round_cone(q, vec3(5.2f, -6.0f, -2.6f), vec3(1.3f, -18.2f, 1.6f), 1.1f, 0.9f), 1.6f);
   d = soft_union(d, sphere(q, vec3(0.0f, -12.9f, 2.4f), 0.9f), 1.2f); // larynx
   float chest = ellipsoid(q, vec3(0.0f, -29.0f, -4.2f), vec3(17.5f, 12.0f, 9.2f));
-  chest =
-      soft_union(chest, ellipsoid(q, vec3(15.5f, -24.0f, -4.8f), vec3(5.6f, 5.2f, 5.4f)), 4.0f); // shoulder
+  // shoulder
+  chest = soft_union(chest, ellipsoid(q, vec3(15.5f, -24.0f, -4.8f), vec3(5.6f, 5.2f, 5.4f)), 4.0f);
   chest = soft_union(chest, round_cone(q, vec3(3.0f, -14.5f, -6.0f), vec3(13.0f, -20.5f, -5.5f), 3.2f, 3.0f),
                      3.5f);
-  chest = soft_union(chest, ellipsoid(q, vec3(6.0f, -28.0f, 2.2f), vec3(7.0f, 5.5f, 3.2f)), 3.0f); // breast
+  // breast
+  chest = soft_union(chest, ellipsoid(q, vec3(6.0f, -28.0f, 2.2f), vec3(7.0f, 5.5f, 3.2f)), 3.0f);
   d = soft_union(d, chest, 3.2f);
   d = soft_union(d, round_cone(q, vec3(1.9f, -19.3f, 2.2f), vec3(12.0f, -18.9f, -2.6f), 0.8f, 0.6f),
                  2.2f);                                                    // collar
   d = soft_difference(d, sphere(q, vec3(0.0f, -18.6f, 3.6f), 0.9f), 1.0f); // hollow of the throat
-  // The classical cut: an oval that narrows below, hollow arms.
+  // The classical cut: an oval that narrows below, with hollow arms.
   const float cut = ellipsoid(q, vec3(0.0f, -14.0f, -2.0f), vec3(18.8f, 19.0f, 15.0f));
   d = soft_intersection(d, cut, 0.8f);
   return d;
 }
 
-// Foot: a turned stand under the cut.
+// Returns the distance of the foot, a turned base under the cut.
 float foot(const vec3& q) {
   const float across = glm::length(glm::vec2(q.x, q.z + 2.6f));
   const float waist =
@@ -151,7 +162,7 @@ float foot(const vec3& q) {
   return soft_intersection(across - waist, std::abs(q.y + 34.0f) - 5.0f, 0.6f) * 0.8f;
 }
 
-// How much of a soft mark of `radius` around `center` is felt at q.
+// Returns the strength at q of a soft mark around `center`.
 float mark(const vec3& q, const vec3& center, const vec3& radii) {
   const float r = glm::length((q - center) / radii);
   return std::exp(-r * r);
@@ -197,8 +208,8 @@ float bust_distance(const vec3& p) {
 }
 
 Mesh make_bust(float spacing) {
-  constexpr float occlusion_reach = 3.0f; // sockets, nostrils and the shade under the chin
-  // Fine where the features are, coarse on the shoulders.
+  constexpr float occlusion_reach = 3.0f; // covers sockets, nostrils and the shade under the chin
+  // Places planes densely at the features and sparsely on the shoulders.
   const auto graded = [&](float fine_low, float fine_high, float fine, float coarse) {
     return [=](float at) {
       const float away = std::max({fine_low - at, at - fine_high, 0.0f});

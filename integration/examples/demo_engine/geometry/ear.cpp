@@ -8,15 +8,15 @@ namespace {
 using glm::vec2;
 using glm::vec3;
 
-// All numbers below are a sculptor's: centimetres, chosen by eye.
+// All numbers below are in centimetres, chosen by eye.
 
 float bump(const vec2& p, const vec2& center, const vec2& radii) {
   const vec2 q = (p - center) / radii;
   return std::exp(-glm::dot(q, q));
 }
 
-// How far the sheet's middle stands out: bent as a whole, hollow where the ear canal would be, with the fold
-// that runs along inside of the rim.
+// Returns the height of the sheet's middle: bent as a whole, hollow at the ear canal, with the fold
+// along the inside of the rim.
 float bend(const vec2& p) {
   const float whole = 0.07f * p.x * p.x + 0.02f * p.y * p.y - 0.10f * p.x;
   const float hollow = 0.60f * bump(p, vec2(0.45f, -0.35f), vec2(0.80f, 1.05f));
@@ -26,7 +26,7 @@ float bend(const vec2& p) {
   return whole - hollow + fold;
 }
 
-// The outline's egg, wider above: below 0 inside.
+// Returns the distance to the egg-shaped outline, which is wider above; negative inside.
 float outline(const vec2& p) {
   return 1.8f * (glm::length(p / vec2(1.75f + 0.10f * p.y, 3.05f)) - 1.0f);
 }
@@ -35,15 +35,17 @@ float outline(const vec2& p) {
 
 float ear_distance(const vec3& q) {
   const vec2 p(q.x, q.y);
-  const float edge = outline(p), above = 0.75f * (q.z - bend(p));    // .75: the sheet is steep in places
+  // 0.75: the sheet is steep in places
+  const float edge = outline(p), above = 0.75f * (q.z - bend(p));
   const float half = 0.13f + 0.11f * smooth_step(-1.7f, -2.5f, q.y); // the lobe is thicker
   float d = soft_intersection(std::abs(above) - half, edge, 0.12f);
-  // The rim rolls outwards; it ends in the hollow in front and at the lobe below.
+  // The rim rolls outwards. It ends in the hollow in front and at the lobe below.
   const float rim = glm::length(vec2(edge + 0.16f, above - 0.14f)) - 0.24f;
   const float open =
       smooth_step(0.5f, 1.2f, q.x) * smooth_step(1.2f, 0.2f, q.y) + smooth_step(-1.6f, -2.2f, q.y);
   d = soft_union(d, rim + 0.5f * std::min(open, 1.0f), 0.12f);
-  return soft_union(d, ellipsoid(q, vec3(1.35f, -0.55f, 0.25f), vec3(0.32f, 0.52f, 0.20f)), 0.25f); // tragus
+  // tragus
+  return soft_union(d, ellipsoid(q, vec3(1.35f, -0.55f, 0.25f), vec3(0.32f, 0.52f, 0.20f)), 0.25f);
 }
 
 Mesh make_ear(float spacing) {

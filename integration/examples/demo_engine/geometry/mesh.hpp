@@ -1,5 +1,5 @@
 #pragma once
-// Triangles as the renderer wants them, whatever they come from.
+// Triangle meshes in the renderer's format.
 
 #include <glm/glm.hpp>
 
@@ -8,31 +8,33 @@
 
 namespace demo {
 
-// Object space, metres; counter-clockwise seen from outside.
+// A vertex in object space, metres. Triangles are counter-clockwise seen from outside.
 struct Vertex {
   glm::vec3 position{0.0f};
-  glm::vec3 normal{0.0f, 1.0f, 0.0f};        // unit
-  glm::vec2 uv{0.0f};                        // v down, as images are stored
-  glm::vec4 tangent{1.0f, 0.0f, 0.0f, 1.0f}; // unit, along u; w * cross(normal, tangent) is against v
-  glm::vec3 tint{1.0f};                      // multiplies the albedo (linear)
-  float openness = 1.0f;                     // share of the ambient light that arrives, 0..1
-  float gloss = 1.0f;                        // multiplies the reflectance
+  glm::vec3 normal{0.0f, 1.0f, 0.0f}; // unit length
+  glm::vec2 uv{0.0f};                 // v down, as images are stored
+  // Unit vector along u; w * cross(normal, tangent) points against v.
+  glm::vec4 tangent{1.0f, 0.0f, 0.0f, 1.0f};
+  glm::vec3 tint{1.0f};  // factor on the albedo (linear)
+  float openness = 1.0f; // fraction of the ambient light that reaches the vertex, 0..1
+  float gloss = 1.0f;    // factor on the reflectance
 };
 
 struct Mesh {
   std::vector<Vertex> vertices;
-  std::vector<uint32_t> indices; // three a triangle
+  std::vector<uint32_t> indices; // three per triangle
 };
 
 struct Bounds {
   glm::vec3 low{0.0f}, high{0.0f};
 };
 
-// Of all vertices; zero for an empty mesh.
+// Returns the bounds of all vertices; zero for an empty mesh.
 Bounds bounds_of(const Mesh& mesh);
-// Area- and angle-free average of face normals, for meshes that come without. Any thread.
+// Computes normals as plain averages of face normals, without area or angle weights, for meshes
+// without normals. Thread: any.
 void compute_normals(Mesh& mesh);
-// Per-vertex tangents from uv gradients (Lengyel 2001, orthonormalised). Any thread.
+// Computes per-vertex tangents from uv gradients (Lengyel 2001, orthonormalised). Thread: any.
 void compute_tangents(Mesh& mesh);
 
 } // namespace demo

@@ -8,7 +8,8 @@ namespace {
 
 constexpr float tau = 6.28318530717958648f;
 
-// A grid of (columns + 1) x (rows + 1) points place(u, v), u and v in [0, 1]; normals from the neighbours.
+// Returns a grid of (columns + 1) x (rows + 1) points place(u, v), u and v in [0, 1], with normals
+// from neighbouring points.
 Mesh sweep(uint32_t columns, uint32_t rows, const std::function<glm::vec3(float, float)>& place) {
   Mesh mesh;
   constexpr float step = 1e-3f;
@@ -19,7 +20,7 @@ Mesh sweep(uint32_t columns, uint32_t rows, const std::function<glm::vec3(float,
       Vertex vertex;
       vertex.position = place(u, v);
       vertex.uv = {u, v};
-      // Where a row shrinks to a point, the normal is that of a little further inside.
+      // At a row that shrinks to a point, the normal is taken slightly further inside.
       const float w = std::clamp(v, 2.0f * step, 1.0f - 2.0f * step);
       const glm::vec3 du = place(u + step, w) - place(u - step, w);
       const glm::vec3 normal = glm::cross(du, place(u, w + step) - place(u, w - step));
@@ -109,22 +110,23 @@ Mesh make_knot() {
   const float scale = 0.12f / (bounds.high.y - bounds.low.y);
   for (Vertex& vertex : mesh.vertices) {
     vertex.position = (vertex.position - glm::vec3(0.0f, bounds.low.y, 0.0f)) * scale;
-    const float depth =
-        vertex.position.z / (scale * 1.5f); // parts that lie behind others see less of the sky
+    // Parts at the back see less of the sky.
+    const float depth = vertex.position.z / (scale * 1.5f);
     vertex.openness = 0.8f + 0.2f * std::tanh(depth);
   }
   return mesh;
 }
 
 Mesh make_candle() {
-  // Outline from the foot up the outside, over the rim, down into the hollow: radius and height in metres.
+  // Outline from the foot up the outside, over the rim, down into the hollow: radius and height in
+  // metres.
   constexpr glm::vec2 outline[] = {
       {0.0f, 0.0f},      {0.030f, 0.0f},    {0.032f, 0.002f},   {0.032f, 0.03f},    {0.0315f, 0.07f},
       {0.0312f, 0.105f}, {0.0308f, 0.124f}, {0.0298f, 0.1295f}, {0.0282f, 0.1300f}, {0.0268f, 0.127f},
       {0.0250f, 0.117f}, {0.0215f, 0.107f}, {0.0150f, 0.1020f}, {0.0070f, 0.1005f}, {0.0f, 0.1000f}};
   constexpr uint32_t count = sizeof(outline) / sizeof(outline[0]);
   Mesh mesh = sweep(128, (count - 1) * 8, [&](float u, float v) {
-    // Catmull-Rom through the outline.
+    // Catmull-Rom spline through the outline.
     const float s = v * static_cast<float>(count - 1);
     const auto k = std::min(static_cast<uint32_t>(s), count - 2);
     const float t = s - static_cast<float>(k);
@@ -134,7 +136,7 @@ Mesh make_candle() {
                               (3.0f * b - a - 3.0f * c + d) * t * t * t);
     point.x = std::max(point.x, 0.0f);
     const float angle = -tau * u;
-    // Wax that has run down on two sides, and a rim that is not level.
+    // Wax that has run down on two sides, and an uneven rim.
     const bool outside = v < 8.0f / static_cast<float>(count - 1);
     const auto run = [&](float where, float width, float low) {
       const float across = std::remainder(angle - where, tau) / width;

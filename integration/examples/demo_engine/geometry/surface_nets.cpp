@@ -7,14 +7,14 @@
 namespace demo {
 namespace {
 
-constexpr uint32_t block = 8; // cells a side of a block that is skipped or sampled as one
+constexpr uint32_t block = 8; // side in cells of a block that is skipped or sampled as a whole
 constexpr uint32_t worker_count = 2;
-constexpr float slack = 1.6f; // how far the field may be from a true distance
+constexpr float slack = 1.6f; // maximum ratio of a true distance and the field
 constexpr uint32_t no_vertex = UINT32_MAX;
 
 struct Grid {
   const GridPlanes& planes;
-  uint32_t nx, ny, nz; // planes
+  uint32_t nx, ny, nz; // number of planes
   std::vector<float> value;
 
   size_t at(uint32_t x, uint32_t y, uint32_t z) const { return (size_t{z} * ny + y) * nx + x; }
@@ -23,7 +23,7 @@ struct Grid {
   }
 };
 
-// Calls work(i) for all i below count from `worker_count` threads.
+// Calls work(i) for all i below count on `worker_count` threads.
 void in_parallel(uint32_t count, const std::function<void(uint32_t)>& work) {
   std::atomic<uint32_t> next = 0;
   const auto run = [&] {
@@ -38,7 +38,7 @@ void in_parallel(uint32_t count, const std::function<void(uint32_t)>& work) {
     thread.join();
 }
 
-// Samples the corners of one layer of blocks. Far blocks get the sign of their centre only.
+// Samples the corners of one layer of blocks. Far blocks receive only the sign of their centre.
 void sample_layer(Grid& grid, const Field& field, uint32_t layer) {
   const uint32_t z0 = layer * block, z1 = std::min(z0 + block, grid.nz);
   for (uint32_t y0 = 0; y0 < grid.ny; y0 += block) {
@@ -57,7 +57,7 @@ void sample_layer(Grid& grid, const Field& field, uint32_t layer) {
   }
 }
 
-// Mean of the points where the cell's edges cross the surface.
+// Returns the mean of the points where the cell's edges cross the surface.
 glm::vec3 crossing_mean(const Grid& grid, uint32_t x, uint32_t y, uint32_t z) {
   glm::vec3 sum(0.0f);
   float count = 0.0f;
@@ -107,7 +107,8 @@ glm::vec3 gradient(const Field& field, const glm::vec3& p, float step) {
          (2.0f * step);
 }
 
-// Ambient occlusion of a distance field from a few steps along the normal (Evans 2006; weights after Quilez).
+// Returns the ambient openness of a distance field from a few steps along the normal (Evans 2006;
+// weights after Quilez).
 float openness_at(const Field& field, const glm::vec3& p, const glm::vec3& normal, float reach) {
   float hidden = 0.0f, weight = 1.0f, sum = 0.0f;
   constexpr int steps = 5;
@@ -140,7 +141,7 @@ Mesh mesh_field(const Field& field, const GridPlanes& planes, float occlusion_re
 
   Mesh mesh;
   std::vector<uint32_t> vertex_of(grid.value.size(), no_vertex);
-  std::vector<float> reach; // a vertex may move this far from the crossing
+  std::vector<float> reach; // maximum distance that a vertex may move from the crossing
   for (uint32_t z = 0; z + 1 < grid.nz; ++z)
     for (uint32_t y = 0; y + 1 < grid.ny; ++y)
       for (uint32_t x = 0; x + 1 < grid.nx; ++x) {
@@ -153,7 +154,8 @@ Mesh mesh_field(const Field& field, const GridPlanes& planes, float occlusion_re
         reach.push_back(std::min({size.x, size.y, size.z}));
       }
 
-  // A quad around each edge of the grid that crosses the surface, from the four cells that share the edge.
+  // Adds a quad around each grid edge that crosses the surface, from the four cells that share the
+  // edge.
   for (uint32_t z = 0; z + 1 < grid.nz; ++z)
     for (uint32_t y = 0; y + 1 < grid.ny; ++y)
       for (uint32_t x = 0; x + 1 < grid.nx; ++x) {

@@ -26,14 +26,15 @@ struct Decoding {
     return {ErrorKind::input, fmt::format("{}: {}: {}", path, what, why)};
   }
 
-  // Both formats pack so well that a small file may ask for all memory.
+  // Limits the decoded bytes, because both formats compress so well that a small file could exhaust
+  // the memory.
   bool has_space(uint64_t bytes) {
     if (bytes > max_model_bytes - decoded) return false;
     decoded += bytes;
     return true;
   }
 
-  // Null where the range is not in the buffer.
+  // Returns null if the range is not inside the buffer.
   const unsigned char* range(size_t buffer, size_t offset, size_t length) const {
     if (buffer >= model.buffers.size()) return nullptr;
     const std::vector<unsigned char>& data = model.buffers[buffer].data;
@@ -48,7 +49,8 @@ struct Decoding {
   }
 };
 
-// A whole number of an extension; `otherwise` where there is none, and more than any limit where it is wrong.
+// Returns a whole number of an extension; `otherwise` if absent, and a value above every limit if
+// invalid.
 size_t number_of(const tinygltf::Value& extension, const char* key, size_t otherwise) {
   if (!extension.Has(key)) return otherwise;
   const tinygltf::Value& value = extension.Get(key);
@@ -123,7 +125,7 @@ int add_accessor(Decoding& decoding, std::vector<unsigned char> data, size_t cou
   return static_cast<int>(decoding.model.accessors.size()) - 1;
 }
 
-// Vertices become floats, as the mesh needs them in the end.
+// Decodes vertices to floats, the format of the final mesh.
 Result<int> decode_attribute(Decoding& decoding, const std::string& what, const draco::Mesh& mesh,
                              const std::string& name, size_t id) {
   const draco::PointAttribute* attribute =
@@ -172,7 +174,7 @@ Result<> decode_primitive(Decoding& decoding, const std::string& what, tinygltf:
   if (!attributes.IsObject() || !attributes.Has("POSITION")) return decoding.refuse(what, "has no positions");
   for (const std::string& name : attributes.Keys()) {
     if (name != "POSITION" && name != "NORMAL" && name != "TANGENT" && !name.starts_with("TEXCOORD_"))
-      continue; // nothing else of a mesh is drawn
+      continue; // other attributes are not rendered
     auto accessor =
         decode_attribute(decoding, what, mesh, name, number_of(attributes, name.c_str(), SIZE_MAX));
     if (!accessor) return accessor.error();

@@ -1,6 +1,6 @@
 #pragma once
-// Compressed parts of a glTF file. Each extension is read where the library that decodes it was there when
-// this was built.
+// Compressed parts of a glTF file. An extension is supported if the library that decodes it was
+// available at build time.
 
 #include "integration/examples/demo_engine/result.hpp"
 
@@ -23,9 +23,9 @@ inline constexpr bool reads_draco = true;
 inline constexpr bool reads_draco = false;
 #endif
 
-// Puts views of decoded bytes, and accessors of decoded vertices, in the place of compressed ones, as far as
-// this build reads them; others stay as they are, with the uncompressed bytes that the file may have beside
-// them. `path` names the file in messages. Errors: input.
+// Replaces compressed parts by views of decoded bytes and accessors of decoded vertices, for the
+// extensions of this build. Other parts are unchanged and keep the uncompressed fallback that the
+// file may have. `path` names the file in messages. Errors: input.
 Result<> decompress(tinygltf::Model& model, const std::string& path);
 
 } // namespace demo

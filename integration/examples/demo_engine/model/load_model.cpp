@@ -32,8 +32,8 @@ glm::dmat4 local_matrix(const tinygltf::Node& node) {
   return m;
 }
 
-// Three indices a triangle, of a list, a strip or a fan of vertices. A strip turns every second triangle
-// over.
+// Returns three indices per triangle, from a list, a strip or a fan of vertices. Every second
+// triangle of a strip is flipped.
 std::vector<uint32_t> as_triangles(std::vector<uint32_t> indices, int mode) {
   if (mode == TINYGLTF_MODE_TRIANGLES) {
     indices.resize(indices.size() - indices.size() % 3);
@@ -117,8 +117,8 @@ struct Gathering {
     return there ? &file.materials[static_cast<size_t>(material)] : nullptr;
   }
 
-  // Vertices have one pair of coordinates: that of maps beside the model, else of the base colour's map, else
-  // of the normal map.
+  // Vertices have one pair of texture coordinates: that of maps from separate files, else that of
+  // the base colour's map, else that of the normal map.
   MapPlace place_of_maps() const {
     const tinygltf::Material* from = first_material();
     if (from == nullptr || !options.albedo.empty() || !options.normal.empty() || !options.specular.empty())
@@ -185,7 +185,7 @@ struct Gathering {
       }
       model.mesh.vertices.push_back(vertex);
     }
-    // glTF has tangents without normals ignored.
+    // glTF requires that tangents without normals are ignored.
     Part part{
         first, count, model.mesh.indices.size(), 0, !normals.empty(), !normals.empty() && !tangents.empty()};
     if (auto done = add_indices(primitive, mode, part, mirrored); !done) return done;
@@ -193,7 +193,7 @@ struct Gathering {
     return success();
   }
 
-  // A mirrored triangle is seen from its other side: two corners change places.
+  // A mirrored triangle would face the other way, so two of its corners are swapped.
   Result<> add_indices(const tinygltf::Primitive& primitive, int mode, Part& part, bool mirrored) {
     const auto first = static_cast<uint32_t>(part.first_vertex), count = static_cast<uint32_t>(part.vertices);
     std::vector<uint32_t> indices(count);
@@ -242,7 +242,7 @@ struct Gathering {
   }
 };
 
-// The file's own map, if it can be read; a map that cannot is a warning, since the shape is there.
+// Returns the file's own map. An unreadable map gives only a warning, since the shape is valid.
 Texture own_map(Gathering& gathering, int texture) {
   const tinygltf::Model& file = gathering.file;
   if (texture < 0) return {};
@@ -300,7 +300,7 @@ Result<> read_maps(Gathering& gathering, const ModelOptions& options) {
     flip_rows(one.texture);
   }
   if (!options.albedo.empty()) model.albedo_factor = glm::dvec3(1.0);
-  if (!options.normal.empty()) // upside down, "up" is the other way
+  if (!options.normal.empty()) // flipped rows invert the y component of normals
     for (size_t i = 1; i < model.normal.texels.size(); i += 4)
       model.normal.texels[i] =
           std::byte{static_cast<uint8_t>(255 - static_cast<int>(model.normal.texels[i]))};

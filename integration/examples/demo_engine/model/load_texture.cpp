@@ -15,7 +15,8 @@ namespace demo {
 
 namespace {
 
-// stb reads more formats than are asked for; the fewer parsers a hostile file can choose from, the better.
+// stb reads more formats than needed. Excluding the others limits the parsers that a hostile file
+// can reach.
 bool other_format(std::span<const std::byte> bytes) {
   constexpr std::array<std::string_view, 6> beginnings = {"GIF8", "8BPS", "\x53\x80\xf6\x34",
                                                           "P5",   "P6",   "#?"};

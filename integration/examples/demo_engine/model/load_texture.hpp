@@ -8,16 +8,17 @@
 
 namespace demo {
 
-// Largest side of a map, in texels.
+// Maximum side of a map in texels.
 inline constexpr int max_texels_per_side = 8192;
 
-// Whatever stb_image reads, as RGBA. Errors: input (unreadable, not an image, too large).
+// Returns an image file in any allowed format of stb_image, as RGBA. Errors: input (unreadable, not
+// an image, too large).
 Result<Texture> load_texture(const std::string& path);
-// The same for an image file in memory; `name` is for messages.
+// Decodes an image file in memory; `name` is for messages.
 Result<Texture> decode_texture(const std::string& name, std::span<const std::byte> bytes);
 
-// Turns the rows upside down: maps that come beside a model count v upwards, as drawing programs do, while
-// glTF counts it downwards.
+// Flips the rows: maps in separate files count v upwards, as drawing programs do, while glTF counts
+// v downwards.
 void flip_rows(Texture& texture);
 
 } // namespace demo

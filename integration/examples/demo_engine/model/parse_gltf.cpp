@@ -21,12 +21,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// What tinygltf asks for while it parses.
+// State for tinygltf's callbacks, which look up files next to the model.
 struct Beside {
   const tinygltf::Model& model;
   fs::path folder;
   std::vector<fs::path> roots;
-  std::string refused; // the first name that leads out, and why
+  std::string refused; // the first name outside of the allowed folders, and why
 };
 
 bool is_there(const std::string& name, void* user) {
@@ -59,8 +59,8 @@ bool read_whole(std::vector<unsigned char>* out, std::string* error, const std::
   return true;
 }
 
-// Images are decoded by decode_texture, when they are wanted. tinygltf 2.7 hands out views of buffers without
-// looking whether they reach beyond their end.
+// Keeps images encoded; decode_texture decodes them on demand. tinygltf 2.7 returns views of
+// buffers without a check of their end.
 bool keep_encoded(tinygltf::Image* image, const int, std::string*, std::string*, int, int,
                   const unsigned char* bytes, int size, void* user) {
   const tinygltf::Model& model = static_cast<const Beside*>(user)->model;
@@ -75,7 +75,8 @@ bool keep_encoded(tinygltf::Image* image, const int, std::string*, std::string*,
   return true;
 }
 
-// "": well. tinygltf 2.7 takes eight bytes more than there are for a chunk's.
+// Returns "" if the chunks are valid. tinygltf 2.7 accepts a chunk that is eight bytes longer than
+// the file.
 std::string wrong_chunks(std::span<const std::byte> bytes) {
   constexpr size_t header = 12, chunk_header = 8;
   if (bytes.size() < header + chunk_header) return "it ends within its header";
@@ -92,7 +93,7 @@ std::string wrong_chunks(std::span<const std::byte> bytes) {
   return "";
 }
 
-// Objects and arrays inside each other, of any text. tinygltf follows them by calling itself.
+// Returns the depth of nested objects and arrays of any text, because tinygltf parses recursively.
 uint32_t nesting_of(std::string_view text) {
   uint32_t depth = 0, deepest = 0;
   bool in_string = false;
@@ -117,7 +118,7 @@ bool is_read(std::string_view extension) {
          (reads_meshopt && extension == meshopt_extension) || (reads_draco && extension == draco_extension);
 }
 
-// "": a version of glTF that is read; else what is wrong with `asset`.
+// Returns "" for a supported version of glTF, else the fault in `asset`.
 std::string wrong_version(const Json& file) {
   const auto asset = file.find("asset");
   if (asset == file.end() || !asset->is_object() || !asset->contains("version"))
@@ -137,7 +138,7 @@ std::string wrong_version(const Json& file) {
   return "";
 }
 
-// "": all extensions that the file cannot be read without are known.
+// Returns "" if all required extensions are supported.
 std::string unknown_extensions(const Json& file) {
   const auto required = file.find("extensionsRequired");
   if (required == file.end()) return "";
@@ -154,7 +155,7 @@ std::string unknown_extensions(const Json& file) {
                      unknown);
 }
 
-// tinygltf 2.7 takes '+' in names for a space, which it is in forms of the web alone.
+// Escapes '+' in names, which tinygltf 2.7 decodes as a space; this is correct only for web forms.
 bool keep_plus_signs(Json& file) {
   bool changed = false;
   for (const char* key : {"buffers", "images"}) {
@@ -173,8 +174,8 @@ bool keep_plus_signs(Json& file) {
   return changed;
 }
 
-// Buffers that are there for readers without meshoptimizer may have no bytes, which tinygltf 2.7 refuses:
-// they get a byte, since nothing of them is read.
+// Gives fallback buffers for readers without meshoptimizer one byte: they may have no bytes, which
+// tinygltf 2.7 refuses, and are never read.
 bool fill_fallbacks(Json& file) {
   const auto buffers = file.find("buffers");
   if (!reads_meshopt || buffers == file.end() || !buffers->is_array()) return false;
@@ -192,7 +193,8 @@ bool fill_fallbacks(Json& file) {
   return changed;
 }
 
-// Indices of compressed primitives have no view, which tinygltf 2.7 refuses; decompress makes others anyway.
+// Removes the indices of compressed primitives: they have no view, which tinygltf 2.7 refuses, and
+// decompress replaces them.
 bool drop_packed_indices(Json& file) {
   const auto meshes = file.find("meshes");
   if (!reads_draco || meshes == file.end() || !meshes->is_array()) return false;
@@ -210,7 +212,7 @@ bool drop_packed_indices(Json& file) {
   return changed;
 }
 
-// What tinygltf would misread or refuse is written otherwise. Whether there was any.
+// Rewrites parts that tinygltf would misread or refuse. Returns whether there were any.
 bool prepare(Json& file) {
   if (!file.is_object()) return false;
   const bool names = keep_plus_signs(file), fallbacks = fill_fallbacks(file),
@@ -218,7 +220,7 @@ bool prepare(Json& file) {
   return names || fallbacks || packed;
 }
 
-// The file with `json` in the place of its own.
+// Returns the file with `json` in place of its own JSON.
 std::vector<std::byte> with_json(std::span<const std::byte> bytes, const Json& json, size_t old_size,
                                  bool binary) {
   std::string text = json.dump();
@@ -269,7 +271,7 @@ Result<tinygltf::Model> parse_gltf(const std::string& path, std::span<const std:
     return refuse(fmt::format("objects and arrays are nested deeper than {}", dermis::limits::nesting));
 
   Json json = Json::parse(text, nullptr, false);
-  if (json.is_object()) { // else tinygltf says what is wrong
+  if (json.is_object()) { // otherwise tinygltf reports the fault
     if (const std::string wrong = wrong_version(json); !wrong.empty()) return refuse(wrong);
     if (const std::string unknown = unknown_extensions(json); !unknown.empty()) return refuse(unknown);
   }
@@ -289,7 +291,7 @@ Result<tinygltf::Model> parse_gltf(const std::string& path, std::span<const std:
   const auto size = static_cast<unsigned int>(bytes.size());
   bool loaded = false;
   try {
-    // No folder is given: what is asked for is a name as the file has it.
+    // The folder is empty, so that callbacks receive names as in the file.
     loaded = binary
                  ? loader.LoadBinaryFromMemory(&model, &error, &warning,
                                                reinterpret_cast<const unsigned char*>(bytes.data()), size, "")

@@ -1,5 +1,5 @@
 #pragma once
-// A glTF file as tinygltf has it, after what that library does not look at was checked.
+// Parses a glTF file with tinygltf, after checks that tinygltf does not make.
 
 #include "integration/examples/demo_engine/result.hpp"
 
@@ -13,11 +13,12 @@
 
 namespace demo {
 
-inline constexpr uint64_t max_model_bytes = uint64_t{1} << 30; // of a file or a buffer beside it
+// limit of a file or of a separate buffer
+inline constexpr uint64_t max_model_bytes = uint64_t{1} << 30;
 
-// `path` names the file in messages; buffers and pictures that it names are read from its folder and from
-// below `roots` (dermis::place_file). Pictures stay encoded; one whose bytes are not there is empty. Errors:
-// input.
+// Parses a file. `path` names the file in messages. Buffers and pictures that the file names are
+// read from its folder and from below `roots` (dermis::place_file). Pictures stay encoded; a
+// missing picture is empty. Errors: input.
 Result<tinygltf::Model> parse_gltf(const std::string& path, std::span<const std::byte> bytes,
                                    const std::vector<std::string>& roots);
 

@@ -12,16 +12,16 @@ namespace {
 constexpr size_t max_elements = size_t{1} << 26;
 
 struct Elements {
-  const unsigned char* first = nullptr; // null: all zero, as glTF has it for accessors without a view
+  const unsigned char* first = nullptr; // null: all zero, as for glTF accessors without a view
   size_t stride = 0, count = 0;
   int component = 0;
   bool normalized = false;
-  // Sparse accessors: the elements that are replaced, in ascending order, and their tightly packed values.
+  // Sparse accessors: the indices of replaced elements, ascending, and their tightly packed values.
   std::vector<uint32_t> replaced;
   const unsigned char* values = nullptr;
   size_t value_stride = 0;
 
-  // Null: the element is 0.
+  // Returns null if the element is 0.
   const unsigned char* at(size_t element) const {
     const auto found = std::lower_bound(replaced.begin(), replaced.end(), element);
     if (found != replaced.end() && *found == element)
@@ -40,7 +40,7 @@ template <class T> T load(const unsigned char* from) {
   return value;
 }
 
-// Where `count` elements of `element` bytes begin in a buffer view; checked to lie inside of view and buffer.
+// The start of elements in a buffer view, checked to lie inside view and buffer.
 struct Range {
   const unsigned char* first = nullptr;
   size_t stride = 0;
@@ -139,7 +139,7 @@ Result<Elements> find_elements(const tinygltf::Model& model, const std::string& 
   return elements;
 }
 
-// The lowest normalised value has no opposite: glTF has it stand for -1 as the next one does.
+// The lowest normalised value has no positive counterpart; glTF maps it to -1, as the next value.
 float signed_component(int value, bool normalized, float one) {
   return normalized ? std::max(static_cast<float>(value) / one, -1.0f) : static_cast<float>(value);
 }
@@ -158,7 +158,7 @@ float component_at(const Elements& elements, size_t element, uint32_t component)
     return signed_component(load<int8_t>(at + component), elements.normalized, 127.0f);
   case TINYGLTF_COMPONENT_TYPE_SHORT:
     return signed_component(load<int16_t>(at + 2 * component), elements.normalized, 32767.0f);
-  default: // refused by read_floats
+  default: // read_floats refuses other types
     return 0.0f;
   }
 }

@@ -11,20 +11,21 @@
 
 namespace demo {
 
-// Keeps the texts that it delivers until the call that asks for them is over.
+// Keeps the delivered texts alive until the requesting call returns.
 struct Delivery {
   std::function<std::optional<NamedText>(const std::string& name)> open;
   std::deque<NamedText> delivered = {};
 };
 
 struct DermisHost {
-  std::shared_ptr<dermis_context_t> context; // the device's, which its graphs share
+  std::shared_ptr<dermis_context_t> context; // the device's context, which its graphs share
   dermis_graph graph = nullptr;
   std::vector<dermis_slot> slots;
-  std::vector<std::string> slot_names; // slots' own strings end with the graph that is replaced
+  // copies, because the strings of slots die with a replaced graph
+  std::vector<std::string> slot_names;
   std::vector<std::string> warnings;
-  Delivery shaders;                   // asked as long as the graph lives
-  std::function<Result<>()> recorded; // asked after each recorded frame, if not empty
+  Delivery shaders;                   // called as long as the graph lives
+  std::function<Result<>()> recorded; // called after each recorded frame if not empty
 };
 
 namespace {
@@ -56,7 +57,7 @@ Result<Sources> read_sources(const DermisDesc& desc) {
   return sources;
 }
 
-// What rays see of the scene, by the name of the slot.
+// The part of the ray scene that a slot binds, by the name of the slot.
 enum class RayPart : uint8_t { none, structure, vertices, indices, instances, lights };
 
 RayPart ray_part_of(const dermis_slot& slot) {
@@ -97,7 +98,7 @@ uint32_t DERMIS_CALL deliver(void* user, const char* name, dermis_source* source
   return 1;
 }
 
-// Builds the graph; `unbound` and the formats may only name slots that it has.
+// Builds the graph. `unbound` and the formats may only name slots of the graph.
 Result<> build_graph(DermisHost& host, const DermisDesc& desc, const Sources& sources,
                      const std::vector<std::string>& unbound) {
   std::vector<dermis_profile> profiles;
@@ -136,7 +137,8 @@ Result<> build_graph(DermisHost& host, const DermisDesc& desc, const Sources& so
   info.overlay_count = static_cast<uint32_t>(overlays.size());
   Delivery includes{desc.include};
   if (desc.include) info.include = deliver;
-  info.include_user = &includes; // never asked again: this engine reloads no graph that includes others
+  // Local, because this engine never reloads a graph that includes files.
+  info.include_user = &includes;
   Report report;
   dermis_graph graph = nullptr;
   const dermis_result result = dermis_graph_create(host.context.get(), &info, &graph, &report.handle);
@@ -177,7 +179,7 @@ Result<> use_shaders(DermisHost& host, const DermisDesc& desc) {
   return success();
 }
 
-// Slots that this engine does not fill. Errors: input (the graph requires one of them).
+// Returns the slots that this engine does not fill. Errors: input (the graph requires one of them).
 Result<std::vector<std::string>> find_unbound(const DermisHost& host, const DermisDesc& desc, bool rays) {
   std::vector<std::string> unbound;
   for (const dermis_slot& slot : host.slots) {
@@ -219,8 +221,8 @@ Result<DermisHandle> create_dermis_host(VulkanHost& vulkan, const DermisDesc& de
     host->slot_names = known->names;
     unbound = known->unbound;
   } else {
-    // The slots are known only when the graph is there: a first one tells their names, a second one is built
-    // for the formats of this engine and without what it cannot bind.
+    // The slots are known only after the graph was built. The first build gives their names; the
+    // second uses this engine's formats and leaves out the slots that it cannot bind.
     if (auto done = build_graph(*host, desc, *sources, {}); !done) return done.error();
     auto found = find_unbound(*host, desc, vulkan.ray_query);
     if (!found) return found.error();
@@ -234,12 +236,12 @@ Result<DermisHandle> create_dermis_host(VulkanHost& vulkan, const DermisDesc& de
         dermis_graph_set_setting(host->graph, name.c_str(), json.c_str(), &report.handle);
     if (set == DERMIS_OK) continue;
     Error error = dermis_error("dermis_graph_set_setting", set, report.handle);
-    error.kind = ErrorKind::usage; // names and values come from whoever starts the rendering
+    error.kind = ErrorKind::usage; // names and values come from the user
     return error;
   }
   if (auto done = set_budget(*host, desc); !done) return done.error();
   if (auto done = use_shaders(*host, desc); !done) return done.error();
-  // A setting may change what the graph uses; slots and their names belong to the plan that was replaced.
+  // A setting may change the slots, and the replaced plan owns the old slots and their names.
   if (auto done = query_slots(*host); !done) return done.error();
   return host;
 }
@@ -302,7 +304,8 @@ const std::vector<std::string>& warnings_of(const DermisHost& host) {
 
 namespace {
 
-// This engine waits for its uploads and builds: nothing is left to wait for.
+// Binds a part of the ray scene. This engine waits for its uploads and builds, so no further wait
+// is needed.
 void bind_rays(const dermis_slot& slot, const RayScene& rays, std::vector<dermis_buffer_binding>& buffers,
                dermis_acceleration_structure_binding& structure) {
   const RayPart part = ray_part_of(slot);

@@ -1,5 +1,5 @@
 #pragma once
-// The engine's only acquaintance with Dermis: a context, a graph, and the targets it is given.
+// The engine's only interface to Dermis: a context, a graph, and the bound targets.
 
 #include "integration/examples/demo_engine/context_hooks.hpp"
 #include "integration/examples/demo_engine/engine.hpp"
@@ -22,32 +22,34 @@ struct DermisDesc {
   double budget_ms = 0;
   bool deterministic = false;
   NamedText calibration = {};
-  bool sampling = false; // bind `sampling`, which costs the graph a write
-  bool skips = false;    // the same of `skips`
+  bool sampling = false; // binds `sampling`, which adds a write to the graph
+  bool skips = false;    // binds `skips`
   ContextHooks hooks = {};
 };
 
-struct DermisHost; // opaque: dermis.h stays in dermis_host.cpp
+struct DermisHost; // opaque: only dermis_host.cpp includes dermis.h
 struct DermisHostDeleter {
   void operator()(DermisHost* host) const;
 };
 using DermisHandle = std::unique_ptr<DermisHost, DermisHostDeleter>;
 
-// The slots of a graph that was built before, so that it need not be built to learn of them.
+// Slots of a graph from an earlier build, which saves the first of two builds.
 struct KnownSlots {
-  std::string graph; // its text; "": none
+  std::string graph; // text of the graph; "": none
   std::vector<std::string> names, unbound;
 };
 
-// Reads graph and profile files, builds the graph, names the slots that this engine cannot fill as unbound.
-// `known` may be null; of a graph that is one file alone it is read and written. Errors: input (with all
-// messages of the report), environment (the device lacks something), internal.
+// Reads graph and profile files, builds the graph, and declares the slots that this engine cannot
+// fill as unbound. `known` may be null; it is read and updated for a graph that consists of one
+// file. Errors: input (with all messages of the report), environment (the device lacks something),
+// internal.
 Result<DermisHandle> create_dermis_host(VulkanHost& host, const DermisDesc& desc,
                                         KnownSlots* known = nullptr);
 
-// What the graph adds to each target's usage.
+// Returns the usage that the graph adds to each target.
 std::array<VkImageUsageFlags, target_count> usage_for_graph(const DermisHost& host);
-// In place if the graph writes `lighting`, else apart if it writes `scattered_light`, else none.
+// Returns in_place if the graph writes `lighting`, else apart if it writes `scattered_light`, else
+// none.
 Scattering scattering_of(const DermisHost& host);
 bool hands_out_light(const DermisHost& host);
 bool wants_rays(const DermisHost& host); // buffers and acceleration structures are bound
@@ -55,21 +57,22 @@ bool hands_out_sampling(const DermisHost& host);
 bool hands_out_skips(const DermisHost& host);
 const std::vector<std::string>& warnings_of(const DermisHost& host);
 
-// The graph anew from another text; false: it has errors, and what ran runs on. Errors: environment,
-// internal.
+// Reloads the graph from another text. Returns false if the text has errors; the present graph then
+// continues. Errors: environment, internal.
 Result<bool> reload_graph(DermisHost& host, const std::string& text);
 
-// Records the graph between lighting and composite. All targets rest before and after. frame_index from 1.
-// Errors: environment, internal.
+// Records the graph between lighting and composite. All targets are in the resting state before and
+// after. frame_index starts at 1. Errors: environment, internal.
 Result<> record_graph(DermisHost& host, const Renderer& renderer, const SceneState& state,
                       VkCommandBuffer commands, uint64_t frame_index);
-// Device times of the frame; the device must have finished it. Empty where the device has no timestamps.
+// Returns the device times of the frame, which the device must have finished. Empty if the device
+// has no timestamps.
 std::vector<PassTime> graph_times(DermisHost& host, uint64_t frame_index);
-// What was chosen for the frame; the device must have finished it. Errors: internal.
+// Returns the choice for the frame, which the device must have finished. Errors: internal.
 Result<FrameChoice> graph_choice(DermisHost& host, uint64_t frame_index);
-// What its histories hold now.
+// Returns the present state of the graph's histories.
 Result<std::vector<FrameHistory>> graph_histories(DermisHost& host);
-// What the graph learned of the device's times, as JSON.
+// Returns the learned costs of the device, as JSON.
 std::string graph_calibration(DermisHost& host);
 
 } // namespace demo

@@ -1,6 +1,6 @@
 #pragma once
-// What the shaders know; mirrors shaders/frame.glsl, object.glsl and gbuffer.frag. glm stores columns, as
-// GLSL.
+// Shader data; mirrors shaders/frame.glsl, object.glsl and gbuffer.frag. glm stores columns, as
+// GLSL does.
 
 #include "integration/examples/demo_engine/scene/scene_state.hpp"
 
@@ -35,14 +35,14 @@ struct ObjectData {
   glm::vec4 world[3], previous[3]; // rows
   uint32_t material, layer;
 };
-static_assert(sizeof(ObjectData) == 104); // within the 128 bytes that every device has
+static_assert(sizeof(ObjectData) == 104); // within the 128 bytes that every device supports
 
 struct MaterialData {
   glm::vec4 albedo, finish;
   glm::uvec4 kind;
 };
 
-// How the light under the skin reaches the composite; FrameData::counts.y.
+// How scattered light reaches the composite; FrameData::counts.y.
 enum class Scattering : uint32_t { none = 0, in_place = 1, apart = 2 };
 
 } // namespace demo

@@ -5,7 +5,7 @@ namespace {
 
 constexpr uint64_t max_bytes = uint64_t{1} << 30;
 
-// All but `shading`, which lighting alone reads, and what comes after the scene.
+// All targets of the scene except `shading`, which only lighting reads.
 constexpr std::array kept_targets = {
     Target::depth,    Target::normal,   Target::albedo,   Target::material,  Target::finish,
     Target::velocity, Target::lighting, Target::specular, Target::thickness, Target::back_lighting};
@@ -15,7 +15,7 @@ constexpr ImageState source = {VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, VK_PIPELINE
 constexpr ImageState destination = {VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
                                     VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT};
 
-// One behind the other in a frame's buffer, each at a multiple of the largest texel.
+// Parts are consecutive in a frame's buffer, each at a multiple of the largest texel.
 struct KeptPart {
   Target target;
   VkBufferImageCopy region;
@@ -65,7 +65,8 @@ Result<> keep_frame(KeptFrames& kept, const Renderer& renderer, uint32_t frame) 
       host.vk.vkCmdCopyImageToBuffer(commands, image.image, source.layout, buffer->buffer, 1, &part.region);
       transition(host, commands, image, source, resting);
     }
-    memory_barrier(host, commands, destination, source); // what is copied out is there for copies back in
+    // makes the copies visible to later copies back
+    memory_barrier(host, commands, destination, source);
     return success();
   });
   if (!done) return done.error();

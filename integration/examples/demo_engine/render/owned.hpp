@@ -1,5 +1,5 @@
 #pragma once
-// Vulkan objects that are destroyed with their owner. They must die before their host.
+// Vulkan objects that are destroyed with their owner. They must be destroyed before their host.
 
 #include "integration/examples/demo_engine/vulkan_host.hpp"
 

@@ -119,7 +119,8 @@ Result<OwnedPipeline> create_graphics(VulkanHost& host, const GraphicsDesc& desc
   raster.frontFace = VK_FRONT_FACE_COUNTER_CLOCKWISE;
   raster.lineWidth = 1.0f;
   raster.depthBiasEnable = desc.depth_bias ? VK_TRUE : VK_FALSE;
-  raster.depthBiasConstantFactor = 2.0f; // least steps of the depth format, and texels of slope
+  // Units: the smallest step of the depth format, and the slope per texel.
+  raster.depthBiasConstantFactor = 2.0f;
   raster.depthBiasSlopeFactor = 2.0f;
   auto samples = vulkan_struct<VkPipelineMultisampleStateCreateInfo>(
       VK_STRUCTURE_TYPE_PIPELINE_MULTISAMPLE_STATE_CREATE_INFO);
@@ -187,7 +188,7 @@ Result<OwnedSampler> create_sampler(VulkanHost& host, Sampling sampling) {
 }
 
 Result<OwnedDescriptorPool> create_descriptor_pool(VulkanHost& host, uint32_t sets) {
-  // No set of the renderer has more than eight of a type.
+  // No set of the renderer has more than eight descriptors of a type.
   constexpr uint32_t each = 8;
   const VkDescriptorPoolSize sizes[] = {{VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, sets * each},
                                         {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, sets * each},

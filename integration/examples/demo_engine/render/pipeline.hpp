@@ -1,5 +1,5 @@
 #pragma once
-// Pipelines, their layouts and descriptor sets, in as few words as the renderer needs.
+// Helpers for pipelines, their layouts and descriptor sets.
 
 #include "integration/examples/demo_engine/render/owned.hpp"
 #include "integration/examples/demo_engine/vulkan_image.hpp"
@@ -14,7 +14,7 @@ struct Binding {
   VkShaderStageFlags stages;
 };
 
-// Set layouts by position; bindings by position.
+// Set layouts by index; bindings by index.
 struct ProgramLayout {
   std::vector<OwnedSetLayout> sets;
   OwnedPipelineLayout layout;
@@ -26,7 +26,7 @@ struct Program {
 };
 
 struct GraphicsDesc {
-  std::span<const uint32_t> vertex, fragment; // SPIR-V; fragment empty for depth alone
+  std::span<const uint32_t> vertex, fragment; // SPIR-V; empty fragment for depth only
   std::vector<VkFormat> colors;
   VkFormat depth = VK_FORMAT_D32_SFLOAT;
   VkCompareOp compare = VK_COMPARE_OP_LESS;
@@ -39,12 +39,13 @@ Result<ProgramLayout> create_layout(VulkanHost& host, const std::vector<std::vec
                                     uint32_t push_bytes, VkShaderStageFlags push_stages);
 Result<Program> create_compute(VulkanHost& host, std::span<const uint32_t> code,
                                const std::vector<std::vector<Binding>>& sets);
-// Vertices as in geometry/mesh.hpp; viewport and scissor are dynamic; no culling.
+// Creates a pipeline. Vertices as in geometry/mesh.hpp; viewport and scissor are dynamic; no
+// culling.
 Result<OwnedPipeline> create_graphics(VulkanHost& host, const GraphicsDesc& desc,
                                       const ProgramLayout& layout);
 
 enum class Sampling : uint8_t {
-  nearest, // of images that are read texel by texel
+  nearest, // for images that are read texel by texel
   smooth,  // trilinear, repeating
   compare, // less or equal, bilinear
 };

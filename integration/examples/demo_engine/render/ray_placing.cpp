@@ -3,7 +3,7 @@
 namespace demo {
 namespace {
 
-constexpr float sun_distance = 1000.0f; // metres that shadow rays of directional lights go
+constexpr float sun_distance = 1000.0f; // length in metres of shadow rays of directional lights
 
 RayLight ray_light(const Light& light, double seconds) {
   RayLight out;

@@ -1,12 +1,12 @@
 #pragma once
-// The rendered scene as rays see it: its meshes where they stand, its lights.
+// Converts the rendered scene to the ray scene: placed meshes and lights.
 
 #include "integration/examples/demo_engine/render/renderer.hpp"
 
 namespace demo {
 
-// Places the objects and lights of this moment in renderer.rays, which is made when this is first asked for.
-// The device must have ray queries and be idle. Spots shine as points. Errors: environment.
+// Places the present objects and lights in renderer.rays, which is created on the first call. The
+// device must have ray queries and be idle. Spots are treated as points. Errors: environment.
 Result<> place_rays(Renderer& renderer, const SceneState& state);
 
 } // namespace demo

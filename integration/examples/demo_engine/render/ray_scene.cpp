@@ -10,7 +10,7 @@ constexpr VkBufferUsageFlags read_by_builds =
     VK_BUFFER_USAGE_ACCELERATION_STRUCTURE_BUILD_INPUT_READ_ONLY_BIT_KHR |
     VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT;
 
-struct InstanceData { // restir/instances.glsl
+struct InstanceData { // mirrors restir/instances.glsl
   glm::vec4 world_from_object[3];
   glm::uvec4 place;
 };
@@ -22,7 +22,7 @@ VkDeviceAddress address_of(const VulkanHost& host, const Buffer& buffer) {
   return host.vk.vkGetBufferDeviceAddress(host.device, &info);
 }
 
-// One structure of one geometry with `count` primitives. Waits for the device.
+// Builds one structure of one geometry with `count` primitives. Waits for the device.
 Result<RayStructure> build(VulkanHost& host, VkAccelerationStructureTypeKHR type,
                            const VkAccelerationStructureGeometryKHR& geometry, uint32_t count) {
   auto info = vulkan_struct<VkAccelerationStructureBuildGeometryInfoKHR>(
@@ -55,8 +55,8 @@ Result<RayStructure> build(VulkanHost& host, VkAccelerationStructureTypeKHR type
     made.handle = VK_NULL_HANDLE;
     return vulkan_error("vkCreateAccelerationStructureKHR", result);
   }
-  constexpr uint64_t scratch_alignment =
-      256; // minAccelerationStructureScratchOffsetAlignment is at most this
+  // minAccelerationStructureScratchOffsetAlignment is at most this.
+  constexpr uint64_t scratch_alignment = 256;
   auto scratch =
       create_buffer(host, std::max<uint64_t>(sizes.buildScratchSize, 1) + scratch_alignment,
                     VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT, false);
@@ -78,7 +78,7 @@ VkAccelerationStructureGeometryKHR geometry_of(VkGeometryTypeKHR type) {
   auto geometry = vulkan_struct<VkAccelerationStructureGeometryKHR>(
       VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_GEOMETRY_KHR);
   geometry.geometryType = type;
-  // Probes ask for every triangle, once.
+  // Probes need every triangle exactly once.
   geometry.flags = VK_GEOMETRY_NO_DUPLICATE_ANY_HIT_INVOCATION_BIT_KHR;
   return geometry;
 }

@@ -1,6 +1,6 @@
 #pragma once
-// The scene for ray queries: acceleration structures, and the buffers that graphs import beside them
-// (docs/pass_types.md, restir.initial). Made only where the device has VK_KHR_ray_query.
+// The scene for ray queries: acceleration structures, and the buffers that graphs import in
+// addition (docs/pass_types.md, restir.initial). Only created if the device has VK_KHR_ray_query.
 
 #include "integration/examples/demo_engine/geometry/mesh.hpp"
 #include "integration/examples/demo_engine/vulkan_image.hpp"
@@ -19,25 +19,26 @@ struct RayInstance {
   glm::dmat4 world_from_object{1.0}; // metres
 };
 
-// As shaders of graphs read it; 64 bytes.
+// A light as the graph's shaders read it; 64 bytes.
 struct RayLight {
-  glm::vec3 position{
-      0.0f};              // point: where; parallelogram: a corner; directional: unit vector towards the light
+  // point: position; parallelogram: a corner; directional: unit vector towards the light
+  glm::vec3 position{0.0f};
   uint32_t type = 0;      // 0 point, 1 parallelogram, 2 triangle, 3 directional
-  glm::vec3 edge_u{0.0f}; // parallelogram: it shines where cross(edge_u, edge_v) points
-  float fraction = 1;     // probability of being picked: set by make_ray_lights
+  glm::vec3 edge_u{0.0f}; // parallelogram: emits towards cross(edge_u, edge_v)
+  float fraction = 1;     // probability of selection, set by make_ray_lights
   glm::vec3 edge_v{0.0f};
   float area = 1;           // directional: length of its shadow rays
   glm::vec3 emission{0.0f}; // point: intensity; parallelogram: radiance; directional: irradiance
-  float until = 1;          // set by make_ray_lights
+  float until = 1;          // sum of fractions, set by make_ray_lights
 };
 static_assert(sizeof(RayLight) == 64);
 
-// Shares by emitted power, never 0 for a light that shines. At least one light: a dark one where there is
-// none.
+// Sets selection probabilities by emitted power, never 0 for a light that emits. Returns at least
+// one light: a dark light if there is none.
 std::vector<RayLight> make_ray_lights(std::vector<RayLight> lights);
 
-struct RayStructure { // owns the structure; dies before its host
+// Owns the structure; must be destroyed before its host.
+struct RayStructure {
   const VulkanHost* host = nullptr;
   VkAccelerationStructureKHR handle = VK_NULL_HANDLE;
   Buffer memory;
@@ -50,19 +51,20 @@ struct RayStructure { // owns the structure; dies before its host
 
 struct RayScene {
   Buffer vertices, indices, instances, lights;
-  std::vector<RayStructure> meshes; // bottom levels
+  std::vector<RayStructure> meshes; // bottom-level structures
   RayStructure top;
-  std::vector<glm::uvec2> first; // of each mesh: vertex, index
+  std::vector<glm::uvec2> first; // first vertex and index of each mesh
 };
 
-// What commands leave behind that build them: for a binding's `before`.
+// Stages and access of the commands that build the structures, for a binding's `before`.
 inline constexpr VkPipelineStageFlags2 ray_build_stages =
     VK_PIPELINE_STAGE_2_ACCELERATION_STRUCTURE_BUILD_BIT_KHR;
 inline constexpr VkAccessFlags2 ray_build_access = VK_ACCESS_2_ACCELERATION_STRUCTURE_WRITE_BIT_KHR;
 
-// Bottom levels of all meshes. Waits for the device. Errors: environment.
+// Builds the bottom-level structures of all meshes. Waits for the device. Errors: environment.
 Result<RayScene> create_ray_scene(VulkanHost& host, std::span<const Mesh> meshes);
-// Instances, lights and top level anew; the device must be idle. Waits for it. Errors: environment.
+// Rebuilds instances, lights and the top level. The device must be idle. Waits for the device.
+// Errors: environment.
 Result<> place_rays(VulkanHost& host, RayScene& scene, std::span<const RayInstance> instances,
                     const std::vector<RayLight>& lights);
 

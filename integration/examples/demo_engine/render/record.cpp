@@ -77,7 +77,7 @@ void draw_object(Renderer& renderer, VkCommandBuffer commands, const ProgramLayo
 }
 
 void record_shadows(Renderer& renderer, VkCommandBuffer commands, const SceneState& state) {
-  // Maps stay valid while neither lights nor objects move; only intensities may have changed.
+  // Maps stay valid while neither lights nor objects move; changed intensities do not matter.
   if (state.shadow_from_world == renderer.rendered_shadows && state.world == renderer.drawn_world) return;
   renderer.rendered_shadows = state.shadow_from_world;
   renderer.drawn_world = state.world;

@@ -64,7 +64,7 @@ Result<> create_targets(Renderer& renderer, const RendererDesc& desc) {
   shadows.format = VK_FORMAT_D32_SFLOAT;
   shadows.width = shadow_map_size;
   shadows.height = shadow_map_size;
-  shadows.layers = std::max(layers, 2u); // an array view even where there is little to put into it
+  shadows.layers = std::max(layers, 2u); // at least 2, so that the view is always an array view
   shadows.usage = VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT;
   auto made = create_image(host, shadows);
   if (!made) return made.error();
@@ -215,7 +215,7 @@ Result<std::unique_ptr<Renderer>> create_renderer(VulkanHost& host, const Scene&
     if (!sampler) return sampler.error();
     one.out = sampler.take();
   }
-  constexpr uint32_t sets = 8; // four of the passes, two of the scene, two to spare
+  constexpr uint32_t sets = 8; // four for the passes, two for the scene, two spare
   auto pool = create_descriptor_pool(host, sets);
   if (!pool) return pool.error();
   renderer->pool = pool.take();

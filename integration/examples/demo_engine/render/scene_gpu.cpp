@@ -102,7 +102,7 @@ Result<SceneGpu> load_scene(VulkanHost& host, const Scene& scene, const Model& m
     if (!image) return image.error();
     gpu.images.push_back(image.take());
   }
-  std::array<VkDescriptorSet, 2> sets{}; // plain objects, the model
+  std::array<VkDescriptorSet, 2> sets{}; // for plain objects, for the model
   for (uint32_t s = 0; s < sets.size(); ++s) {
     auto set = allocate_set(host, pool, maps);
     if (!set) return set.error();

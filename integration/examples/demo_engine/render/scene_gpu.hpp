@@ -11,13 +11,13 @@
 
 namespace demo {
 
-// Four bytes a texel, row by row from the top.
+// A texture with four bytes per texel, row by row from the top.
 struct Texture {
   uint32_t width = 0, height = 0; // 0: none
   std::vector<std::byte> texels;
 };
 
-// What takes the place of objects of shape "model".
+// The model that replaces objects of shape "model".
 struct Model {
   Mesh mesh; // empty: none
   Texture albedo, normal, specular;
@@ -32,12 +32,12 @@ struct DrawnMesh {
 
 struct SceneGpu {
   std::vector<DrawnMesh> meshes;
-  std::vector<Mesh> shapes;             // of meshes, where the device has ray queries
-  std::vector<uint32_t> mesh_of;        // one an object
-  std::vector<VkDescriptorSet> maps_of; // one an object
+  std::vector<Mesh> shapes;             // copies of the meshes if the device has ray queries
+  std::vector<uint32_t> mesh_of;        // by object
+  std::vector<VkDescriptorSet> maps_of; // by object
   Buffer materials;
   std::vector<Image> images;
-  uint64_t triangles = 0; // of all objects
+  uint64_t triangles = 0; // number for all objects
 };
 
 // Builds each shape once. `maps` is the layout of the set with albedo, normal and specular map.

@@ -22,7 +22,7 @@ Result<Scene> read(const std::string& path, const std::vector<std::string>& root
   return Error{ErrorKind::input, text};
 }
 
-// A model takes the place of the bust in scenes that were not made for one.
+// Replaces the bust by the model in scenes that contain no model.
 void put_in_place(Scene& scene) {
   const auto is = [](Shape shape) { return [shape](const Object& object) { return object.shape == shape; }; };
   if (std::any_of(scene.objects.begin(), scene.objects.end(), is(Shape::model))) return;
@@ -30,7 +30,7 @@ void put_in_place(Scene& scene) {
   if (bust == scene.objects.end()) return;
   bust->shape = Shape::model;
   bust->pattern = Pattern::plain;
-  bust->albedo = glm::dvec3(1.0); // the map has it
+  bust->albedo = glm::dvec3(1.0); // the map contains the albedo
 }
 
 void move_camera(Scene& scene, const CameraPlace& place) {
@@ -84,7 +84,7 @@ Result<> load_stage(Stage& stage, const RenderOptions& options) {
   auto host = create_vulkan_host(host_options);
   if (!host) return host.error();
   stage.host = host.take();
-  stage.slots = {}; // other devices may have others
+  stage.slots = {}; // another device may have other slots
   stage.made_for = options;
   return success();
 }

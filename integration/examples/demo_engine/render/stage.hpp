@@ -1,5 +1,6 @@
 #pragma once
-// What frames are rendered on: made bit by bit, and anew where another call wants another.
+// The stage of a rendering: device, scene, renderer and kept frames. Each part is rebuilt only if a
+// call needs another.
 
 #include "integration/examples/demo_engine/engine.hpp"
 #include "integration/examples/demo_engine/render/dermis_host.hpp"
@@ -10,9 +11,9 @@
 
 namespace demo {
 
-// Members die from the last to the first.
+// Members are destroyed from the last to the first.
 struct Stage {
-  std::optional<RenderOptions> made_for; // what of them is the scene's, the camera's and the device's
+  std::optional<RenderOptions> made_for; // options for which scene, camera and device were made
   std::unique_ptr<VulkanHost> host;
   std::unique_ptr<const Scene> scene;
   Model model;
@@ -22,10 +23,11 @@ struct Stage {
   KnownSlots slots;
 };
 
-// Loads scene and model and finds a device, unless the stage was made for the same ones. Errors: input,
-// usage, environment.
+// Loads scene and model and selects a device, unless the stage was made for equal options. Errors:
+// input, usage, environment.
 Result<> load_stage(Stage& stage, const RenderOptions& options);
-// Makes the renderer, unless there is one whose targets have this usage. Errors: usage, environment.
+// Makes the renderer, unless there is one whose targets have this usage. Errors: usage,
+// environment.
 Result<> furnish_stage(Stage& stage, const RenderOptions& options,
                        const std::array<VkImageUsageFlags, target_count>& usage);
 

@@ -10,7 +10,7 @@ namespace {
 // Mirrors shaders/taa.comp.
 struct TaaData {
   glm::vec2 jitter; // pixels
-  uint32_t begins;  // 1: there is no past
+  uint32_t begins;  // 1: no history
   uint32_t unused;  // rounds the block to 16 bytes
 };
 

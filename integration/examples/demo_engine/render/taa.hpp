@@ -1,7 +1,7 @@
 #pragma once
-// Temporal anti-aliasing as games have it: each frame's jittered picture is mixed into what the frames before
-// made of it, followed by velocity and kept within the colours around (Karis 2014, "High Quality Temporal
-// Supersampling").
+// Temporal anti-aliasing as in games: blends each frame's jittered picture into the accumulated
+// picture, which is reprojected by velocity and clipped to the surrounding colours (Karis 2014,
+// "High Quality Temporal Supersampling").
 
 #include "integration/examples/demo_engine/render/renderer.hpp"
 
@@ -10,13 +10,13 @@
 
 namespace demo {
 
-// Belongs to one thread; dies before the renderer whose targets it reads.
+// Belongs to one thread; must be destroyed before the renderer whose targets it reads.
 struct Taa {
-  std::array<Image, 2> resolved; // this frame's and the last one's, in turn
+  std::array<Image, 2> resolved; // this frame's and the last frame's picture, alternating
   Buffer constants;
   OwnedDescriptorPool pool;
   Program program;
-  std::array<VkDescriptorSet, 2> sets{}; // one for each of `resolved` to be written
+  std::array<VkDescriptorSet, 2> sets{}; // by the index of `resolved` that is written
   uint32_t newest = 0;
   bool begun = false;
 };
@@ -24,11 +24,11 @@ struct Taa {
 // Errors: environment.
 Result<std::unique_ptr<Taa>> create_taa(const Renderer& renderer);
 
-// Records the frame's turn after record_composite; everything rests before and after. The device must be
-// idle. After a cut, and at first, the picture is the frame's own.
+// Records the pass after record_composite. All images are in the resting state before and after.
+// The device must be idle. After a cut, and in the first frame, the picture is the frame's own.
 void record_taa(Taa& taa, const Renderer& renderer, VkCommandBuffer commands, const SceneState& state);
 
-// What the last frame became.
+// Returns the picture of the last frame.
 const Image& taa_result(const Taa& taa);
 
 } // namespace demo

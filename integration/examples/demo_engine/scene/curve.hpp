@@ -8,15 +8,14 @@
 
 namespace demo {
 
-// Keyframes with straight lines between them, constant before the first and after the last; on top of that a
-// sine.
+// Keyframes with linear interpolation, constant before the first and after the last, plus a sine.
 template <class T> struct Curve {
   struct Key {
     double seconds;
     T value;
   };
   std::vector<Key> keys = {{0.0, T(0.0)}};          // at least one, ascending
-  double amplitude = 0.0, hertz = 0.0, phase = 0.0; // added: amplitude * sin(2 pi (hertz t + phase))
+  double amplitude = 0.0, hertz = 0.0, phase = 0.0; // adds amplitude * sin(2 pi (hertz t + phase))
 
   Curve() = default;
   explicit Curve(T constant) : keys{{0.0, constant}} {}

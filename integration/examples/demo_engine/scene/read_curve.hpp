@@ -1,5 +1,5 @@
 #pragma once
-// Curves in scene files: a constant, {"keys": [[seconds, value...], ...]} or {"sine": {...}}.
+// Reads curves of scene files: a constant, {"keys": [[seconds, value...], ...]} or {"sine": {...}}.
 
 #include "framegraph/text/reader.hpp"
 #include "integration/examples/demo_engine/scene/curve.hpp"
@@ -8,14 +8,15 @@
 
 namespace demo {
 
-inline constexpr double longest_seconds = 86400.0; // of a scene
+inline constexpr double longest_seconds = 86400.0; // maximum length of a scene
 
-// Inclusive range of every value on the curve's keys.
+// Inclusive range of every value at the curve's keys.
 struct ValueRange {
   double minimum, maximum;
 };
 
-// Leave `curve` untouched when the key is absent and optional, or wrong (an error was added then).
+// Read a curve. They leave `curve` unchanged if the key is absent and optional, or wrong (then they
+// add an error).
 void read_curve(dermis::ObjectReader& object, std::string_view key, const ValueRange& range,
                 dermis::Need need, const dermis::Document& document, dermis::Diagnostics& diagnostics,
                 Curve<double>& curve);

@@ -38,7 +38,7 @@ struct SceneReader {
   Diagnostics& diagnostics;
   Scene& scene;
   std::filesystem::path folder;
-  std::vector<std::filesystem::path> roots; // that profiles are read below
+  std::vector<std::filesystem::path> roots; // folders below which profiles may be read
 
   void curve(ObjectReader& object, string_view key, const ValueRange& range, Need need, auto& out) const {
     read_curve(object, key, range, need, document, diagnostics, out);

@@ -7,7 +7,8 @@
 namespace demo {
 namespace {
 
-// Camera or light at `from`, looking at `to`; upright unless it looks straight up or down.
+// Returns the view matrix of a camera or light at `from` that looks at `to`; upright unless the
+// direction is vertical.
 glm::dmat4 look(const glm::dvec3& from, const glm::dvec3& to) {
   const glm::dvec3 along = to - from;
   const double length = glm::length(along);
@@ -16,7 +17,8 @@ glm::dmat4 look(const glm::dvec3& from, const glm::dvec3& to) {
   return glm::lookAt(from, to, steep ? glm::dvec3(0, 0, -1) : glm::dvec3(0, 1, 0));
 }
 
-// `extent` is the tangent of half the vertical angle (perspective) or half the height (orthographic).
+// Returns a projection. `extent` is the tangent of half the vertical angle (perspective) or half
+// the height (orthographic).
 glm::dmat4 project(bool orthographic, double extent, double aspect, double near, double far, bool reversed) {
   glm::dmat4 m(0.0); // m[column][row]
   m[0][0] = 1.0 / (extent * aspect);
@@ -91,7 +93,7 @@ void add_shadow_layers(const Light& light, double seconds, std::vector<glm::dmat
     break;
   }
   case LightType::point: {
-    // A little wider than a right angle, so that the filter at a face's edge finds texels.
+    // Slightly wider than a right angle, so that the filter finds texels at a face's edge.
     constexpr double extent = 1.0 + 6.0 / shadow_map_size;
     const glm::dmat4 lens = project(false, extent, 1.0, nearest, reach, false);
     for (const glm::dvec3 axis : {glm::dvec3(1, 0, 0), glm::dvec3(-1, 0, 0), glm::dvec3(0, 1, 0),
@@ -132,7 +134,7 @@ SceneState state_at(const Scene& scene, uint32_t frame, const ViewDesc& desc) {
 }
 
 double view_depth(const glm::dmat4& m, double depth) {
-  // depth = (m22 z + m23) / (m32 z + m33), solved for z; view space looks down -z.
+  // Solves depth = (m22 z + m23) / (m32 z + m33) for z; view space looks along -z.
   const double z = (m[3][2] - depth * m[3][3]) / (depth * m[2][3] - m[2][2]);
   return -z;
 }

@@ -12,10 +12,11 @@ layout(set = 0, binding = 6) uniform sampler2D finish_image;
 layout(set = 0, binding = 7) uniform sampler2D scattered_image;
 layout(set = 0, binding = 8, rgba32f) uniform writeonly image2D color_image;
 
-// How the light under the skin comes: counts.y.
-const uint scattering_none = 0u;     // not at all: light times albedo everywhere
-const uint scattering_in_place = 1u; // lighting holds scattered light times albedo where there is a profile
-const uint scattering_apart = 2u;    // scattered_image holds it, before albedo
+// Where scattered light is stored: counts.y.
+const uint scattering_none = 0u;     // no scattering: light times albedo everywhere
+// lighting holds scattered light times albedo in pixels with a profile
+const uint scattering_in_place = 1u;
+const uint scattering_apart = 2u;    // scattered_image holds scattered light, before albedo
 
 const float largest_emission = 16.0; // as in gbuffer.frag
 

@@ -1,4 +1,4 @@
-// What every program of the demo engine knows of the frame; mirrors render/frame_data.hpp.
+// Frame constants of every program of the demo engine; mirrors render/frame_data.hpp.
 #ifndef DEMO_FRAME_GLSL
 #define DEMO_FRAME_GLSL
 
@@ -11,24 +11,25 @@ const uint no_shadow = 0xffffffffu;
 
 struct Light {
   vec4 position;  // view space; w = type
-  vec4 direction; // view space, of travel; w = cosine of the outer cone
+  vec4 direction; // view space, direction of travel; w = cosine of the outer cone
   vec4 intensity; // rgb; w = cosine of the inner cone
   uvec4 shadow;   // x = first layer or no_shadow
 };
 
 layout(set = 0, binding = 0, std140) uniform Frame {
   mat4 clip_from_world;          // with jitter
-  mat4 clip_from_world_steady;   // without
-  mat4 previous_clip_from_world; // without
+  mat4 clip_from_world_steady;   // without jitter
+  mat4 previous_clip_from_world; // without jitter
   mat4 view_from_world;
   mat4 view_from_clip;
-  vec4 sky;        // rgb of the ambient light from above
-  vec4 ground;     // rgb from below
+  vec4 sky;        // rgb: ambient light from above
+  vec4 ground;     // rgb: ambient light from below
   vec4 background; // rgb
   vec4 up;         // view space
   vec4 size;       // pixels, 1 / pixels
-  vec4 misc;       // x = depth of nothing, y = exposure, z = shadow texel in uv, w = 1 for orthographic
-  uvec4 counts;    // x = lights, y = how scattered light comes (composite.comp)
+  // x = depth of the background, y = exposure, z = shadow texel in uv, w = 1 for orthographic
+  vec4 misc;
+  uvec4 counts;    // x = number of lights, y = storage of scattered light (composite.comp)
   Light lights[max_lights];
   mat4 shadow_from_view[max_shadow_layers];
 } frame;

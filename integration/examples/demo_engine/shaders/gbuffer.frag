@@ -13,7 +13,8 @@ const uint pattern_checker = 5u;
 
 struct Material {
   vec4 albedo; // linear; w = roughness
-  vec4 finish; // x = reflectance at normal incidence, y = emission (times albedo), z = normal map strength
+  // x = reflectance at normal incidence, y = emission (times albedo), z = normal map strength
+  vec4 finish;
   uvec4 kind;  // x = profile id, y = pattern
 };
 layout(set = 0, binding = 1, std430) readonly buffer Materials { Material materials[]; };
@@ -31,15 +32,17 @@ layout(location = 6) in vec3 clip_now;
 layout(location = 7) in vec3 clip_previous;
 
 layout(location = 0) out vec4 out_normal;  // view space, geometric
-layout(location = 1) out vec4 out_shading; // view space, with bumps
+layout(location = 1) out vec4 out_shading; // view space, with normal map
 layout(location = 2) out vec4 out_albedo;
 layout(location = 3) out uint out_material;
-layout(location = 4) out vec4 out_finish; // roughness, reflectance, openness, emission / largest_emission
+// roughness, reflectance, openness, emission / largest_emission
+layout(location = 4) out vec4 out_finish;
 layout(location = 5) out vec2 out_velocity;
 
 const float largest_emission = 16.0;
 
-// Colour and bumps by place. The lengths are those of the thing itself (metres), the strengths by eye.
+// Applies colour and bumps by place. Lengths are those of the real material (metres); strengths are
+// chosen by eye.
 void paint(uint pattern, vec3 p, inout vec3 albedo, inout float roughness, inout float reflectance,
            out vec3 bump) {
   bump = vec3(0.0);
@@ -73,7 +76,8 @@ void main() {
   Material material = materials[object.material];
   mat3 view = mat3(frame.view_from_world);
   vec3 n = normalize(world_normal);
-  // The back of a sheet shows its other side; at a silhouette interpolated normals may lean away a little.
+  // Back faces show the other side of a sheet; interpolated normals may point slightly away at a
+  // silhouette.
   vec3 to_viewer = frame.misc.w > 0.0 ? vec3(0.0, 0.0, 1.0) : -view_position(gl_FragCoord.xy, gl_FragCoord.z);
   if (dot(view * n, normalize(to_viewer)) < -0.2) n = -n;
   vec3 t = world_tangent.xyz - n * dot(n, world_tangent.xyz);

@@ -10,11 +10,12 @@ layout(set = 0, binding = 4) uniform sampler2D finish_image;
 layout(set = 0, binding = 5) uniform sampler2DArrayShadow shadow_maps;
 layout(set = 0, binding = 6, rgba16f) uniform writeonly image2D lighting_image;
 layout(set = 0, binding = 7, rgba16f) uniform writeonly image2D specular_image;
-layout(set = 0, binding = 8) uniform sampler2DArray shadow_depths; // the same maps, as depths
+layout(set = 0, binding = 8) uniform sampler2DArray shadow_depths; // the shadow maps as depths
 layout(set = 0, binding = 9, r32f) uniform writeonly image2D thickness_image;
 layout(set = 0, binding = 10, rgba16f) uniform writeonly image2D back_lighting_image;
 
-// Which of the six faces of a point light sees direction d (world axes of the view): +x -x +y -y +z -z.
+// Returns the face of a point light's cube that contains direction d (world axes of the view): +x
+// -x +y -y +z -z.
 uint cube_face(vec3 d) {
   vec3 a = abs(d);
   if (a.x >= a.y && a.x >= a.z) return d.x > 0.0 ? 0u : 1u;
@@ -22,7 +23,8 @@ uint cube_face(vec3 d) {
   return d.z > 0.0 ? 4u : 5u;
 }
 
-// Layer of the light's map that shows p, and p's place in it; false outside of the map or without one.
+// Computes the layer of the light's map that shows p, and the place of p in it. Returns false
+// outside the map or without a map.
 bool shadow_place(Light light, vec3 p, out uint layer, out vec3 place) {
   layer = light.shadow.x;
   place = vec3(0.0);
@@ -35,8 +37,8 @@ bool shadow_place(Light light, vec3 p, out uint layer, out vec3 place) {
   return all(lessThan(abs(place.xy), vec2(1.0))) && place.z <= 1.0;
 }
 
-// Metres that light travels inside from where it first meets anything to p: mean of 3x3 texels of the map.
-// Negative: not known.
+// Returns the path length of light inside the object, from its first surface to p, in metres: the
+// mean of 3x3 texels of the map. Negative: unknown.
 float way_through(Light light, vec3 p, vec3 to_light) {
   uint layer;
   vec3 place;
@@ -54,7 +56,7 @@ float way_through(Light light, vec3 p, vec3 to_light) {
   return sum / 9.0;
 }
 
-// Share of the light that arrives: 3x3 comparisons, each bilinear.
+// Returns the fraction of the light that reaches p: 3x3 comparisons, each bilinear.
 float visibility(Light light, vec3 p, vec3 n, vec3 to_light) {
   if (light.shadow.x == no_shadow) return 1.0;
   uint layer = light.shadow.x;
@@ -62,7 +64,7 @@ float visibility(Light light, vec3 p, vec3 n, vec3 to_light) {
     vec3 world = transpose(mat3(frame.view_from_world)) * (p - light.position.xyz);
     layer += cube_face(world);
   }
-  // Lifted off the surface by a texel or so, more where light grazes.
+  // Offsets p from the surface by about a texel, and more at grazing light.
   float sine = sqrt(max(0.0, 1.0 - dot(n, to_light) * dot(n, to_light)));
   vec4 s = frame.shadow_from_view[layer] * vec4(p + n * (0.0004 + 0.0012 * sine), 1.0);
   if (s.w <= 0.0) return 1.0;
@@ -76,8 +78,8 @@ float visibility(Light light, vec3 p, vec3 n, vec3 to_light) {
   return lit / 9.0;
 }
 
-// GGX with height-correlated Smith visibility (Heitz 2014) and Schlick's Fresnel term; times pi, since a light of
-// intensity 1 is meant to lift a white diffuse surface to radiance 1.
+// GGX with height-correlated Smith visibility (Heitz 2014) and Schlick's Fresnel term; times pi,
+// because a light of intensity 1 gives a white diffuse surface a radiance of 1.
 vec3 reflect_light(vec3 n, vec3 v, vec3 l, float roughness, float reflectance) {
   vec3 h = normalize(l + v);
   float nl = max(dot(n, l), 0.0), nv = max(dot(n, v), 1e-3), nh = max(dot(n, h), 0.0);
@@ -119,8 +121,10 @@ void main() {
       if (type == light_spot)
         falloff *= smoothstep(light.direction.w, light.intensity.w, -dot(l, light.direction.xyz));
       float behind = -dot(n, l);
-      if (falloff > 0.0 && behind > 0.0) { // of all lights from behind the one that brings most through
-        const float reach = 0.005; // metres; ranks lights, the graph's profile decides what comes through
+      // Keeps the light from behind with most transmission.
+      if (falloff > 0.0 && behind > 0.0) {
+        // Metres; only ranks lights, because the graph's profile decides the transmission.
+        const float reach = 0.005;
         float way = way_through(light, p, l);
         vec3 arriving = light.intensity.rgb * falloff * behind;
         float through = dot(arriving, vec3(0.2126, 0.7152, 0.0722)) * exp(-way / reach);
@@ -131,8 +135,9 @@ void main() {
         }
       }
       if (falloff <= 0.0 || dot(s, l) <= 0.0 || dot(n, l) <= 0.0) continue;
+      // bumps must not be lit from behind the surface
       vec3 arriving = light.intensity.rgb * falloff * visibility(light, p, n, l) *
-                      smoothstep(0.0, 0.1, dot(n, l)); // no bump is lit from behind the surface
+                      smoothstep(0.0, 0.1, dot(n, l));
       lighting += arriving * dot(s, l);
       specular += arriving * reflect_light(s, v, l, finish.x, finish.y) * mix(0.3, 1.0, finish.z);
     }

@@ -15,7 +15,7 @@ uvec3 pcg3d(uvec3 v) {
 
 vec3 hash3(ivec3 cell) { return vec3(pcg3d(uvec3(cell)) >> 8u) * (1.0 / 16777216.0); }
 
-// Three independent smooth values in [0, 1].
+// Returns three independent smooth values in [0, 1].
 vec3 noise3(vec3 p) {
   ivec3 cell = ivec3(floor(p));
   vec3 f = p - vec3(cell);
@@ -27,7 +27,8 @@ vec3 noise3(vec3 p) {
   return mix(near, far, w.z);
 }
 
-// How far p is from the nearest of one point a cell, and that point's number in [0, 1].
+// Returns the distance of p from the nearest of one point per cell, and that point's number in [0,
+// 1].
 vec2 speckle(vec3 p) {
   ivec3 cell = ivec3(floor(p));
   vec2 nearest = vec2(8.0, 0.0);

@@ -1,11 +1,11 @@
 #version 460
-// Temporal anti-aliasing: this frame's samples, filtered about the pixel's centre, mixed into the history that velocity
-// finds, which may not leave the colours around.
+// Temporal anti-aliasing: filters this frame's samples about the pixel's centre and blends them
+// into the history found by velocity, clipped to the surrounding colours.
 
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(set = 0, binding = 0, std140) uniform Constants {
-  vec2 jitter; // pixels: where this frame's samples lie is their pixel less this
-  uint begins; // 1: there is no past
+  vec2 jitter; // pixels: this frame's samples lie at their pixel minus this
+  uint begins; // 1: no history
   uint unused;
 } constants;
 layout(set = 0, binding = 1) uniform sampler2D color_image;
@@ -13,12 +13,14 @@ layout(set = 0, binding = 2) uniform sampler2D velocity_image;
 layout(set = 0, binding = 3) uniform sampler2D history_image;
 layout(set = 0, binding = 4, rgba32f) uniform writeonly image2D resolved_image;
 
-const float new_fraction = 0.1; // of this frame, in the long run
+const float new_fraction = 0.1; // weight of this frame in the long run
 const float clip_deviations = 1.25;
-const float filter_width = -2.29; // exp(this * squared pixels) is close to a Blackman-Harris window (Karis 2014)
-const float snap = 1.0 / 256.0;   // pixels; a camera that rests must not blur
+// exp(this * squared pixels) is close to a Blackman-Harris window (Karis 2014)
+const float filter_width = -2.29;
+const float snap = 1.0 / 256.0;   // pixels; a static camera must not blur
 
-// Luma and two chromas, in which the box around colours is smaller than in red, green and blue.
+// Converts to luma and two chromas, in which the box around colours is smaller than in red, green
+// and blue.
 vec3 to_ycocg(vec3 c) {
   return vec3(0.25 * c.r + 0.5 * c.g + 0.25 * c.b, 0.5 * c.r - 0.5 * c.b, -0.25 * c.r + 0.5 * c.g - 0.25 * c.b);
 }
@@ -61,7 +63,8 @@ void main() {
       sum += color;
       squares += color * color;
       count += 1.0;
-      vec2 velocity = texelFetch(velocity_image, q, 0).xy; // the longest around takes edges along
+      // The longest velocity around moves edges with their object.
+      vec2 velocity = texelFetch(velocity_image, q, 0).xy;
       if (dot(velocity, velocity) > maximum) {
         maximum = dot(velocity, velocity);
         fastest = velocity;
