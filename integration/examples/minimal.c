@@ -1,4 +1,4 @@
-/* Renders a lit wall of skin. usage: minimal configs/graphs/burley.json configs/profiles/skin.json */
+/* A lit wall of skin. usage: minimal configs/graphs/burley.json configs/profiles/skin.json */
 #include "headless.h"
 
 #include <dermis/dermis.h>

@@ -32,8 +32,8 @@ inline constexpr double accumulate_min_brightness = 1e-6;
 // brightest light around.
 inline constexpr double accumulate_largest_remainder = 4.5;
 
-// Returns what history keeps of a pixel's scattered light: the part that the nearest pixels
-// (`near`) do not explain, divided by the brightness around.
+// Returns the part of a pixel's scattered light that history keeps: the light that the nearest
+// pixels (`near`) do not explain, divided by the brightness around.
 std::array<double, 3> remainder_of(const std::array<double, 3>& light, const std::array<double, 3>& near,
                                    const std::array<double, 3>& brightness);
 bool can_be_kept(const std::array<double, 3>& remainder);

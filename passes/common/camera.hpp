@@ -58,8 +58,8 @@ enum class CameraFault : uint8_t {
 
 // Mirrors the matrices of a left-handed view space along z, because all other functions expect
 // right-handed matrices. The sign of the w row gives the handedness of a perspective projection (w
-// = -z: right, w = z: left). An orthographic projection has the handedness `declared`, or right if
-// it is nullopt. An invalid previous projection is ignored. A fault leaves the matrices unchanged.
+// = -z: right, w = z: left). An orthographic projection has the handedness `declared`; nullopt
+// means right. An invalid previous projection is ignored. A fault leaves the matrices unchanged.
 // Allocates nothing. Thread: any.
 CameraFault to_right_handed(CameraMatrices& matrices, std::optional<Handedness> declared, Handedness& found);
 

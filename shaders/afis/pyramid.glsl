@@ -16,8 +16,8 @@ const int pyramid_border = 2;
 const float apart_scale = 0.0625;
 const float mixed_mask = 65504.0; // the largest fp16
 const float mixed_above = 0.07;
-// Returns whether one of the four or sixteen texels that a coarser texel is made of has
-// `mixed_mask`. The smallest weight is 1/64.
+// Returns whether one of the 4 or 16 finer texels of a texel has `mixed_mask`. The smallest weight
+// is 1/64.
 bool spreads_mixed(float mask) { return mask > 2.0; }
 
 // Returns a filtered read of a level at texel coordinates. Integers are the centres of texels.

@@ -39,9 +39,9 @@ accumulated_light add_frame(accumulated_light history, vec3 light, float minimum
                            min(history.count + 1.0, 1.0 / minimum));
 }
 
-// Returns what history keeps of a pixel's scattered light: the part that the nearest pixels do not
-// explain, divided by the brightness around. The nearest pixels carry the sharp detail and are read
-// anew in each frame; the brightness follows lights that change.
+// Returns the part of a pixel's scattered light that history keeps: the light that the nearest
+// pixels do not explain, divided by the brightness around. The nearest pixels carry the sharp
+// detail and are read again in each frame; the brightness follows lights that change.
 vec3 remainder_of(vec3 light, vec3 near, vec3 brightness) {
   return (light - near) / max(brightness, vec3(accumulate_min_brightness));
 }

@@ -26,8 +26,7 @@ layout(std140, set = 1, binding = 0) uniform frame_block {
   vec2 previous_jitter; // pixels
   uint sample_units;    // samples that subsurface.allocate_samples may spend, in units
   float unused;
-  // x, y, width, height of the area that may have subsurface, relative to the rectangle's corner
-  // and inside the rectangle
+  // units of samples that subsurface.allocate_samples may spend
   ivec4 bounds;
   // Rows of M: view position (mm) = M * (world position in the host's units, 1).
   vec4 view_from_world[3];

@@ -24,8 +24,8 @@ void unpack_range(uvec4 range, out vec3 low, out vec3 high) {
 // less than 0.1 % of the light goes further.
 int flat_reach(float d_px) { return int(ceil(flat_reach_d * d_px / 8.0)); }
 
-// Returns whether all of `range` is within the tolerance of the light between `low` and `high`. If
-// a range is, every range inside it is, too.
+// Returns whether all of `range` is within the tolerance of the light between `low` and `high`. The
+// result then also holds for every range inside `range`.
 bool is_alike(uvec4 range, vec3 low, vec3 high) {
   vec3 other_low, other_high;
   unpack_range(range, other_low, other_high);

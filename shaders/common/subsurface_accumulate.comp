@@ -76,7 +76,7 @@ accumulated_light history_of(ivec2 pixel, float depth, uint id, float rise) {
   return found;
 }
 
-// What history keeps of this frame's light, by pixel of the group and a ring of neighbours.
+// Remainders of this frame's light, by pixel of the group and a ring of neighbours.
 shared vec3 shared_remainders[near_columns * near_columns];
 int remainder_index(ivec2 local) { return (local.y + 1) * near_columns + local.x + 1; }
 

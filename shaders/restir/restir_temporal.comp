@@ -15,8 +15,8 @@
 vec2 surface_before(ivec2 pixel);
 #include "common/reproject.glsl"
 
-// Returns the light as it was in the frame before. Lights beyond the kept ones are returned as they
-// are now.
+// Returns the light as it was in the frame before. A light without a kept copy is returned as it is
+// now.
 light_source previous_light_at(uint index) {
   light_source light = light_at(index);
   if (index < uint(lights_before_data.length())) // an if instead of ?:, because the layouts differ

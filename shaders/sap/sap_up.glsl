@@ -145,8 +145,8 @@ bool sap_takes_second(sap_texel own, sap_texel first, float first_off, sap_texel
 sap_sum sap_tent(int level, sap_texel own, int layers) {
   float spacing = float(1 << level);
   float per_sigma = 1.0 / (sap_sigma * spacing), per_sigma_mm = per_sigma / sap_footprint(own.depth);
-  // Tilt in units of the tent's width: across, down, and along both diagonals. It is symmetric to
-  // both sides.
+  // Tilt in units of the tent's width: across, down, and along both diagonals. The tilt is
+  // symmetric to both sides.
   vec2 tilt = own.slope * (spacing * per_sigma);
   vec4 tilts = vec4(tilt, tilt.x + tilt.y, tilt.x - tilt.y);
   vec4 narrowing = exp2(sap_factor(sap_tilt_width_tent) * tilts * tilts);

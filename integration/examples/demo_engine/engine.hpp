@@ -137,7 +137,7 @@ struct FrameChoice {
   uint32_t outcomes = 1, view_tiles = 0, scattering_tiles = 0, copied_tiles = 0, switches = 0;
   uint32_t uniform_tiles = 0, dispatches = 0;
   uint64_t groups = 0;
-  std::array<uint32_t, 3> sampled_tiles{};      // tiles with 8, 16 and 32 samples a pixel
+  std::array<uint32_t, 3> sampled_tiles{};      // tiles with 8, 16, 32 samples per pixel
   uint32_t sample_units = 0, sample_demand = 0; // units spent; units that all tiles would take
   uint32_t probed_tiles = 0;                    // 0: the frame's error is unknown
   double probed_rmse = 0, probed_rmse_low = 0, probed_rmse_high = 0;

@@ -20,9 +20,9 @@ namespace dermis::subsurface {
 
 namespace {
 
-// Returns e^x for x in [-700, 0] without branches or tables, so that a loop over it is vectorised.
-// x = n ln 2 + f with |f| <= ln 2 / 2; Taylor's series of e^f to its 12th term (the next is below
-// 2e-16); n is added to the exponent's bits.
+// Returns e^x for x in [-700, 0] without branches or tables, so that a loop over the function is
+// vectorised. x = n ln 2 + f with |f| <= ln 2 / 2; Taylor's series of e^f to its 12th term (the
+// next is below 2e-16); n is added to the exponent's bits.
 inline double exp_of_negative(double x) {
   // adding this moves the integer part of a number to its lowest bits
   constexpr double to_integer = 0x1.8p52;

@@ -6,7 +6,7 @@ namespace dermis::subsurface {
 
 // All functions are pure. Lengths have one unit; coefficients are per that unit. Single scattering
 // is not included. dipole_albedo is the surface's own total (its diffuse albedo). R is divided by
-// it, because albedo is multiplied in after scattering.
+// this total, because albedo is multiplied in after scattering.
 struct Dipole {
   double z_real = 0;    // depth of the source below the surface: 1 / sigma_t'
   double z_virtual = 0; // height of the mirror image of the source: z_real (1 + 4 A / 3)

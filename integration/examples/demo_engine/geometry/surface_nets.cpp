@@ -9,7 +9,7 @@ namespace {
 
 constexpr uint32_t block = 8; // side in cells of a block that is skipped or sampled as a whole
 constexpr uint32_t worker_count = 2;
-constexpr float slack = 1.6f; // maximum ratio of a true distance and the field
+constexpr float slack = 1.6f; // maximum ratio of the field to the true distance
 constexpr uint32_t no_vertex = UINT32_MAX;
 
 struct Grid {

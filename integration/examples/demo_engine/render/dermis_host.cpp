@@ -21,7 +21,7 @@ struct DermisHost {
   std::shared_ptr<dermis_context_t> context; // the device's context, which its graphs share
   dermis_graph graph = nullptr;
   std::vector<dermis_slot> slots;
-  // copies, because the strings of slots die with a replaced graph
+  // copies, because a reload frees the strings of the replaced graph's slots
   std::vector<std::string> slot_names;
   std::vector<std::string> warnings;
   Delivery shaders;                   // called as long as the graph lives

@@ -12,7 +12,7 @@ layout(set = 0, binding = 6) uniform sampler2D finish_image;
 layout(set = 0, binding = 7) uniform sampler2D scattered_image;
 layout(set = 0, binding = 8, rgba32f) uniform writeonly image2D color_image;
 
-// Where scattered light is stored: counts.y.
+// Storage of scattered light: counts.y.
 const uint scattering_none = 0u;     // no scattering: light times albedo everywhere
 // lighting holds scattered light times albedo in pixels with a profile
 const uint scattering_in_place = 1u;
