@@ -1,5 +1,6 @@
-// Light over frames (configs/overlays/accumulate.json) keeps the history of one profile out of another, also
-// where a surface moves by a fraction of a pixel and history is filtered over 4x4 texels.
+// Accumulation (configs/overlays/accumulate.json) keeps the history of one profile out of another
+// profile. This also holds where a surface moves by a fraction of a pixel, so that history is
+// filtered over 4x4 texels.
 
 #include "tests/integration/abi/dermis_fixture.hpp"
 
@@ -9,7 +10,7 @@
 namespace dermis::abi_test {
 namespace {
 
-constexpr uint32_t border = 32; // of 64 columns: profile 1 to its left, 2 from there on
+constexpr uint32_t border = 32; // In 64 columns: profile 1 to its left, profile 2 from there on.
 
 struct AccumulatedProfiles : DermisTest {
   dermis_graph make() {
@@ -42,13 +43,13 @@ struct AccumulatedProfiles : DermisTest {
   }
 };
 
-TEST_F(AccumulatedProfiles, KeepEvenLightBesideGlare) {
+TEST_F(AccumulatedProfiles, KeepEvenLightNextToGlare) {
   const dermis_graph graph = make();
   for (int i = 0; i < 6; ++i) {
     record_frame(graph);
     const std::vector<float> light = texels("lighting");
     for (uint32_t y = 0; y < 64; ++y)
-      for (uint32_t x = 0; x < border; ++x) // half floats between passes: 2^-11 each time
+      for (uint32_t x = 0; x < border; ++x) // Half floats between passes: 2^-11 each time.
         ASSERT_NEAR(light[4 * (y * 64 + x)], 1.0f, std::ldexp(1.0f, -9))
             << "frame " << i << ", pixel " << x << ' ' << y;
   }

@@ -1,4 +1,4 @@
-// Budgets: what is chosen, what it does to the picture, and what is told about it.
+// Tests budgets: the chosen configuration, its effect on the picture, and the report.
 
 #include "framegraph/text/document.hpp"
 #include "passes/common/environment.hpp"
@@ -49,10 +49,11 @@ TEST_F(Choice, WithoutABudgetTheDefaultsRun) {
   EXPECT_STREQ(choice.technique, "sap smooth");
   EXPECT_EQ(choice.budget_ms, 0);
   EXPECT_EQ(choice.outcome_count,
-            9u); // sap with three variants, hybrid with two, separable with three numbers of taps, off
+            // sap with three variants, hybrid with two, separable with three numbers of taps, off.
+            9u);
 }
 
-TEST_F(Choice, EachBudgetGetsTheLeastErrorThatFits) {
+TEST_F(Choice, EachBudgetGetsTheSmallestErrorThatFits) {
   make();
   std::string before;
   for (const float budget : {30.0f, 5.0f, 0.5f}) {
@@ -61,14 +62,14 @@ TEST_F(Choice, EachBudgetGetsTheLeastErrorThatFits) {
     if (budget > 1) {
       EXPECT_LE(choice.predicted_ms, budget);
     }
-    EXPECT_NE(choice.outcome, before) << budget; // a smaller budget leads elsewhere
+    EXPECT_NE(choice.outcome, before) << budget; // A smaller budget gives another choice.
     before = choice.outcome;
     EXPECT_EQ(choice.budget_ms, budget);
   }
-  EXPECT_THAT(before, HasSubstr("technique=off")); // nothing fits half a millisecond: the fastest
+  EXPECT_THAT(before, HasSubstr("technique=off")); // Nothing fits 0.5 ms: the fastest runs.
 }
 
-TEST_F(Choice, WhatTheHostSetsItselfTheLibraryLeavesAlone) {
+TEST_F(Choice, SettingsOfTheHostAreNotChosen) {
   make();
   ASSERT_EQ(dermis_graph_set_setting(graph, "technique", "\"separable\"", nullptr), DERMIS_OK);
   make_images(graph);
@@ -76,11 +77,11 @@ TEST_F(Choice, WhatTheHostSetsItselfTheLibraryLeavesAlone) {
     set_budget(budget);
     const dermis_choice choice = run_frame();
     EXPECT_THAT(choice.outcome, HasSubstr("technique=separable")) << budget;
-    EXPECT_EQ(choice.outcome_count, 3u); // the taps are still open
+    EXPECT_EQ(choice.outcome_count, 3u); // The library still chooses the taps.
   }
 }
 
-TEST_F(Choice, SwitchingPlansShowsThePictureOfThePlanThatRuns) {
+TEST_F(Choice, SwitchingPlans_ShowsTheRunningPlansPicture) {
   make();
   const auto picture = [&] {
     make_images(graph);
@@ -94,10 +95,10 @@ TEST_F(Choice, SwitchingPlansShowsThePictureOfThePlanThatRuns) {
   set_budget(0);
   const auto again = picture();
   EXPECT_NE(sap, off);
-  EXPECT_EQ(sap, again); // the validation layer has watched over the memory that both share
+  EXPECT_EQ(sap, again); // The validation layer has checked the memory that both plans share.
 }
 
-TEST_F(Choice, FlippingEveryFrameKeepsMemoryInOrder) {
+TEST_F(Choice, SwitchingEveryFrame_KeepsMemoryIntact) {
   make();
   set_budget(0);
   const auto sap = [&] {
@@ -114,7 +115,8 @@ TEST_F(Choice, FlippingEveryFrameKeepsMemoryInOrder) {
 }
 
 struct KeptHistory : Choice {
-  // Light over frames on top of both techniques: its history is the same resource in both plans.
+  // Makes a graph that accumulates light of both techniques: its history is one resource in both
+  // plans.
   void make_accumulating() {
     GraphOptions options;
     options.text = read_text("configs/graphs/skin.json");
@@ -125,9 +127,9 @@ struct KeptHistory : Choice {
     ASSERT_EQ(dermis_graph_set_setting(graph, "accumulate_clip", "0", nullptr), DERMIS_OK);
     make_images(graph);
   }
-  // One frame lit from one side, because light that is the same everywhere is copied. Two pixels in the
-  // middle are brighter by `spot`, which scattering blurs and copying leaves: what history keeps shows which
-  // ran.
+  // Runs one frame lit from one side, because even light is copied. Two pixels in the middle are
+  // brighter by `spot`; scattering blurs them and copying does not, so the history shows which
+  // technique ran.
   dermis_choice lit_frame(float spot, uint32_t flags = 0) {
     fill("lighting", [&](uint32_t x, uint32_t y) {
       return 0.75f + 0.5f * (float(x) + 0.5f) / 64 + (y == 32 && (x == 31 || x == 32) ? spot : 0.0f);
@@ -135,7 +137,7 @@ struct KeptHistory : Choice {
     const auto bound = bindings(graph);
     dermis_frame one = frame(bound);
     one.flags |= flags;
-    for (size_t i = 0; i < 16; ++i) // the camera rests
+    for (size_t i = 0; i < 16; ++i) // The camera is at rest.
       one.view_from_world[i] = one.previous_view_from_world[i] = i % 5 == 0 ? 1.0f : 0.0f;
     std::copy(std::begin(one.clip_from_view), std::end(one.clip_from_view),
               std::begin(one.previous_clip_from_view));
@@ -144,7 +146,7 @@ struct KeptHistory : Choice {
     EXPECT_EQ(dermis_graph_choice(graph, last_frame, &choice), DERMIS_OK) << dermis_last_error();
     return choice;
   }
-  // Recorded, not submitted, and taken back; in the light of the frame before.
+  // Records a frame in the previous frame's light and discards it without submission.
   void lost_frame(uint32_t flags = 0) {
     const auto bound = bindings(graph);
     dermis_frame one = frame(bound);
@@ -162,7 +164,7 @@ struct KeptHistory : Choice {
     const auto light = texels("lighting");
     return (light[4 * (64 * 32 + 31)] + light[4 * (64 * 32 + 32)]) / 2;
   }
-  // In the middle, of a frame without history: scattered, and copied.
+  // Returns the middle pixel's light in a frame without history: scattered, and copied.
   std::pair<float, float> levels() {
     set_budget(0);
     lit_frame(1, DERMIS_FRAME_RESET_HISTORY);
@@ -173,30 +175,31 @@ struct KeptHistory : Choice {
   }
 };
 
-TEST_F(KeptHistory, APlanThatTakesOverReadsWhatTheOtherKept) {
+TEST_F(KeptHistory, NextPlan_ReadsTheHistoryOfTheOther) {
   make_accumulating();
   const auto [scattered, copied] = levels();
   EXPECT_GT(copied, scattered + 0.3f);
-  const float tolerance = 0.02f * (copied - scattered); // brightness around differs a little between the two
+  // The light around the spot differs a little between the two techniques.
+  const float tolerance = 0.02f * (copied - scattered);
   set_budget(0);
   lit_frame(1, DERMIS_FRAME_RESET_HISTORY);
   for (int i = 0; i < 3; ++i)
     lit_frame(1);
   EXPECT_NEAR(middle(), scattered, 2e-3);
-  set_budget(0.5f); // too little for the pyramid
+  set_budget(0.5f); // Too little for the pyramid.
   const dermis_choice switched = lit_frame(1);
   EXPECT_THAT(switched.outcome, HasSubstr("technique=off"));
   EXPECT_EQ(switched.skips & DERMIS_SKIP_HISTORY, 0u);
-  EXPECT_NEAR(middle(), (4 * scattered + copied) / 5, tolerance); // the mean of five frames
+  EXPECT_NEAR(middle(), (4 * scattered + copied) / 5, tolerance); // The mean of five frames.
   set_budget(0);
   const dermis_choice back = lit_frame(1);
   EXPECT_THAT(back.outcome, HasSubstr("technique=sap"));
   EXPECT_EQ(back.skips & DERMIS_SKIP_HISTORY, 0u);
   EXPECT_NEAR(middle(), (5 * scattered + copied) / 6,
-              tolerance); // and not what this plan kept four frames ago
+              tolerance); // This differs from what this plan stored four frames ago.
 }
 
-TEST_F(KeptHistory, ACutInTheFrameOfTheSwitchForgetsIt) {
+TEST_F(KeptHistory, CutInTheSwitchingFrame_ResetsIt) {
   make_accumulating();
   const float copied = levels().second;
   set_budget(0);
@@ -208,7 +211,7 @@ TEST_F(KeptHistory, ACutInTheFrameOfTheSwitchForgetsIt) {
   EXPECT_NEAR(middle(), copied, 2e-3);
 }
 
-TEST_F(KeptHistory, AReloadedGraphReadsWhatItKeptBefore) {
+TEST_F(KeptHistory, ReloadedGraph_ReadsItsHistory) {
   const std::string text = read_text("configs/graphs/skin.json");
   make_accumulating();
   set_budget(0);
@@ -227,16 +230,16 @@ TEST_F(KeptHistory, AReloadedGraphReadsWhatItKeptBefore) {
   EXPECT_EQ(run(true), steady) << "bit by bit";
 }
 
-TEST_F(KeptHistory, AFrameThatWasTakenBackNeverHappened) {
+TEST_F(KeptHistory, DiscardedFrame_HasNoEffect) {
   const std::string text = read_text("configs/graphs/skin.json");
   make_accumulating();
   const auto run = [&](bool lose) {
     set_budget(0);
     lit_frame(2, DERMIS_FRAME_RESET_HISTORY);
     for (int i = 0; i < 8; ++i) {
-      if (i == 2) set_budget(0.5f); // the first of another plan
+      if (i == 2) set_budget(0.5f); // The first frame of another plan.
       if (i == 4) set_budget(0);
-      if (i == 6) { // the first of a graph made anew
+      if (i == 6) { // The first frame of a recreated graph.
         const dermis_source source = source_of(text, "skin.json");
         EXPECT_EQ(reload_text(graph, source), DERMIS_OK) << dermis_last_error();
       }
@@ -261,18 +264,18 @@ TEST_F(KeptHistory, SwitchingEveryFrameKeepsAllFrames) {
   EXPECT_NEAR(middle(), (5 * scattered + 4 * copied) / 9, 0.02f * (copied - scattered));
 }
 
-TEST_F(Choice, CountsTilesAndTellsHowFarLightGoes) {
+TEST_F(Choice, ReportsTilesAndScatteringDistance) {
   make();
   const dermis_choice choice = run_frame();
-  EXPECT_EQ(choice.view_tiles, 64u); // 64x64 pixels
+  EXPECT_EQ(choice.view_tiles, 64u); // 64x64 pixels.
   EXPECT_EQ(choice.scattering_tiles, 64u);
   EXPECT_EQ(choice.copied_tiles, 0u);
-  // Skin's widest d is 1.04 mm, a pixel half a millimetre; a step of the counter is a sixteenth of an octave.
+  // Skin's widest d is 1.04 mm and a pixel is 0.5 mm; a step of the counter is 1/16 of an octave.
   EXPECT_NEAR(std::log2(choice.mean_d_px), std::log2(3.67 / 3.5 / 0.5), 1.0 / 16);
 }
 
 struct TransmissionStats : Choice {
-  // Of a host that gives no scene.
+  // Options of a host that gives no scene.
   static GraphOptions without_scene() {
     GraphOptions options;
     options.text = read_text("configs/graphs/papers/restir.json");
@@ -285,7 +288,7 @@ struct TransmissionStats : Choice {
     ASSERT_NE(graph, nullptr);
     make_images(graph);
   }
-  // Of a slab on the left half of the picture.
+  // Returns the measured transmission of a slab on the left half of the picture.
   double counted(float thickness_m, float light, float exposure = 1) {
     fill("thickness", [&](uint32_t x, uint32_t) { return x < 32 ? thickness_m : 0.1f; });
     fill("back_lighting", [&](uint32_t, uint32_t) { return light; });
@@ -299,8 +302,8 @@ struct TransmissionStats : Choice {
   }
 };
 
-// What Burley's profile carries further than t, 1/4 e^(-t/d) + 3/4 e^(-t/3d), by channel.
-TEST_F(TransmissionStats, AreCountedByTheLightThatComesThroughThem) {
+// The fraction of Burley's profile beyond t, by channel: 1/4 e^(-t/d) + 3/4 e^(-t/3d).
+TEST_F(TransmissionStats, MatchTheTransmittedLight) {
   make();
   Diagnostics diagnostics;
   const auto document = parse_document("skin", read_text("configs/profiles/skin.json"), diagnostics);
@@ -312,9 +315,10 @@ TEST_F(TransmissionStats, AreCountedByTheLightThatComesThroughThem) {
     const double e = std::exp(-thickness_mm / (3 * skin->d_mm[c]));
     through += luminance[c] * (0.25 * e * e * e + 0.75 * e);
   }
-  const double square = 0.5 * std::pow(exposure * light * through, 2); // on half of the picture
+  const double square = 0.5 * std::pow(exposure * light * through, 2); // On half of the picture.
   const double found = counted(0.8e-3f, 0.5f, 1.5f);
-  // A step of the counter, which is rounded by tile; thickness and light are bound as they come.
+  // Tolerance: a step of the counter, which is rounded per tile, and the formats of thickness and
+  // light.
   EXPECT_NEAR(found * found, square, 2e-3 * square + 1.0 / subsurface::through_square_steps);
   EXPECT_EQ(counted(0.8e-3f, 0), 0) << "no light behind";
   EXPECT_EQ(counted(0.1f, 0.5f), 0) << "a decimetre";
@@ -322,7 +326,7 @@ TEST_F(TransmissionStats, AreCountedByTheLightThatComesThroughThem) {
   EXPECT_LE(counted(0, 6e4f, 1e4f), 1) << "no more than the brightest light";
 }
 
-TEST_F(TransmissionStats, AreUnknownWhereTheHostDoesNotSayHowThickTheyAre) {
+TEST_F(TransmissionStats, NoThicknessBound_AreUnknown) {
   GraphOptions options = without_scene();
   options.unbound.emplace_back("thickness");
   dermis_report report = nullptr;
@@ -335,7 +339,7 @@ TEST_F(TransmissionStats, AreUnknownWhereTheHostDoesNotSayHowThickTheyAre) {
   EXPECT_EQ(run_frame().transmitted_rms, 0);
 }
 
-TEST_F(TransmissionStats, CountAgainstTechniquesThatDoNotSeeThem) {
+TEST_F(TransmissionStats, AddErrorToTechniquesWithoutTransmission) {
   make();
   const std::string table = R"({ "dermis_errors": 2, "scenes": "invented",
     "unscattered": [[1, 0.001]], "unscattered_through": 2,
@@ -350,7 +354,7 @@ TEST_F(TransmissionStats, CountAgainstTechniquesThatDoNotSeeThem) {
   EXPECT_NEAR(double(run_frame().predicted_rmse), std::hypot(0.003, 0.5 * through), 1e-6);
 }
 
-TEST_F(Choice, LearnsTheDevicesTimesAndHandsThemOut) {
+TEST_F(Choice, LearnsAndExportsTheDevicesTimes) {
   make();
   set_budget(0, 0);
   for (int i = 0; i < 8; ++i)
@@ -369,7 +373,7 @@ TEST_F(Choice, LearnsTheDevicesTimesAndHandsThemOut) {
   EXPECT_EQ(dermis_graph_set_budget(graph, &budget, nullptr), DERMIS_OK) << dermis_last_error();
 }
 
-TEST_F(Choice, ChoicesByBudgetShareTheMemoryOfTheLargest) {
+TEST_F(Choice, ConfigurationsShareTheLargestMemory) {
   make();
   dermis_memory all = DERMIS_MEMORY_INIT, one = DERMIS_MEMORY_INIT;
   ASSERT_EQ(dermis_graph_memory(graph, &all), DERMIS_OK);
@@ -379,12 +383,12 @@ TEST_F(Choice, ChoicesByBudgetShareTheMemoryOfTheLargest) {
   const dermis_graph hybrid = make_graph(options);
   ASSERT_NE(hybrid, nullptr);
   ASSERT_EQ(dermis_graph_memory(hybrid, &one), DERMIS_OK);
-  // That of the pyramid with samples is the largest.
+  // The largest plan is the pyramid with samples.
   EXPECT_GE(all.transient_bytes, one.transient_bytes);
   EXPECT_LT(all.transient_bytes, one.transient_bytes + one.transient_bytes / 100);
 }
 
-TEST_F(Choice, AFrameThatIsNotThereYetIsNotReady) {
+TEST_F(Choice, UnfinishedFrame_IsNotReady) {
   make();
   dermis_choice choice = DERMIS_CHOICE_INIT;
   EXPECT_EQ(dermis_graph_choice(graph, 0, &choice), DERMIS_NOT_READY);

@@ -1,10 +1,11 @@
-// The pass after Dermis that docs/integration.md describes: integration/examples/composite.comp shows the
-// same light whether Dermis or the host multiplies it by albedo.
+// The host pass after Dermis that docs/integration.md describes:
+// integration/examples/composite.comp shows equal light whether Dermis or the host multiplies by
+// albedo.
 
 #include "tests/integration/abi/dermis_fixture.hpp"
 #include "tests/integration/abi/example_shader.hpp"
 
-#include "composite.spv.h" // needs the types of those above
+#include "composite.spv.h" // Needs the types of the headers above.
 
 #include <cmath>
 
@@ -33,11 +34,12 @@ struct Composite : DermisTest {
     return image.take();
   }
 
-  // Red of what the host shows, by texel; albedo is 0.5 and specular light 0.25.
+  // Returns the red channel of the host's picture, by texel; albedo is 0.5 and specular light 0.25.
   std::vector<float> shown(bool bind_albedo, const std::string& result) {
     GraphOptions options;
     options.text = read_text("configs/graphs/burley.json");
-    const std::string set = R"("set": { "texturing": "$texturing" } })"; // of combine
+    // Setting of the combine pass.
+    const std::string set = R"("set": { "texturing": "$texturing" } })";
     const size_t at = options.text.rfind(set);
     EXPECT_NE(at, std::string::npos);
     options.text.insert(at + 8, R"("result": ")" + result + R"(", )");
@@ -49,7 +51,8 @@ struct Composite : DermisTest {
     make_images(graph);
     fill("material", [](uint32_t x, uint32_t) { return is_skin(x) ? 1.0f : 0.0f; });
     if (bind_albedo) fill("albedo", [](uint32_t, uint32_t) { return 0.5f; });
-    fill("lighting", [](uint32_t x, uint32_t) { return is_skin(x) ? 1.0f : 0.75f; }); // even on the skin
+    // Even on the skin.
+    fill("lighting", [](uint32_t x, uint32_t) { return is_skin(x) ? 1.0f : 0.75f; });
     const auto bound = bindings(graph);
     last_frame = 0;
     dermis_frame one = frame(bound);
@@ -70,16 +73,16 @@ struct Composite : DermisTest {
   }
 };
 
-TEST_F(Composite, ShowsTheSameLightWhoeverMultipliesAlbedo) {
+TEST_F(Composite, AlbedoByHostOrLibrary_GivesEqualLight) {
   const std::vector<float> unbound = shown(false, "color"), light = shown(true, "light"),
                            color = shown(true, "color");
   ASSERT_EQ(unbound.size(), size_t{shown_side} * shown_side);
   for (size_t i = 0; i < unbound.size(); ++i) {
     const float lit = is_skin(static_cast<uint32_t>(i % shown_side)) ? 1.0f : 0.75f;
-    // Even light on a material of its own stays even; half floats store it within 2^-11 of it.
+    // Even light on one material stays even; half floats store it within 2^-11 of its value.
     ASSERT_NEAR(unbound[i], lit * 0.5f + 0.25f, std::ldexp(1.0f, -10)) << i;
     ASSERT_NEAR(light[i], unbound[i], std::ldexp(1.0f, -10)) << i;
-    ASSERT_NEAR(color[i], unbound[i], 2.0f / 255) << i; // the bound albedo has 8 bits, in sRGB
+    ASSERT_NEAR(color[i], unbound[i], 2.0f / 255) << i; // The bound albedo has 8 bits, in sRGB.
   }
 }
 

@@ -1,4 +1,4 @@
-// What the library asks of a device, and what it says when something is missing.
+// Tests the requirements on a device, and the messages if a requirement is missing.
 
 #include "tests/integration/abi/dermis_fixture.hpp"
 
@@ -35,7 +35,7 @@ TEST_F(Context, RequirementsAreListedWithTheirReasonAndPresence) {
   EXPECT_EQ(items.back().name, nullptr) << "no element beyond the room is written";
 }
 
-// A loader that hides two functions: the host's mistake or an old driver.
+// A loader that hides two functions, as by a host's mistake or an old driver.
 PFN_vkVoidFunction VKAPI_CALL hiding_device_proc_addr(VkDevice device, const char* name) {
   if (std::strcmp(name, "vkCmdPipelineBarrier2") == 0 || std::strcmp(name, "vkCmdDispatchIndirect") == 0)
     return nullptr;
@@ -93,7 +93,7 @@ TEST_F(Context, OutOfRangeFieldsAreNamed) {
   refused(DERMIS_ERROR_ARGUMENT, "struct_size", [](auto& desc) { desc.struct_size = 1; });
 }
 
-TEST_F(Context, ANewerHeadersDescriptionIsAcceptedWhenItsNewFieldsAreZero) {
+TEST_F(Context, NewerHeader_ZeroNewFieldsAreAccepted) {
   struct Newer {
     dermis_context_desc known;
     uint64_t unknown;
@@ -107,7 +107,7 @@ TEST_F(Context, ANewerHeadersDescriptionIsAcceptedWhenItsNewFieldsAreZero) {
   EXPECT_EQ(other, nullptr);
 }
 
-TEST_F(Context, AGraphThatOutlivesItsContextIsDestroyedWithItAndTold) {
+TEST_F(Context, GraphOutlivingItsContext_IsDestroyedAndReported) {
   const dermis_context_desc desc = context_desc();
   dermis_context other = nullptr;
   ASSERT_EQ(dermis_context_create(&desc, &other), DERMIS_OK);
@@ -125,7 +125,7 @@ void DERMIS_CALL throwing_log(void*, const dermis_message*) {
   throw 1;
 }
 
-TEST_F(Context, ALogCallbackThatThrowsDoesNotReachTheCaller) {
+TEST_F(Context, ThrowingLogCallback_IsContained) {
   dermis_context_desc desc = context_desc();
   desc.log = throwing_log;
   desc.frames_in_flight = 9;

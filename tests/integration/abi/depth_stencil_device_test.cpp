@@ -1,5 +1,5 @@
-// Combined depth-stencil images of a host on a device: the validation layer accepts every barrier, and
-// stencil keeps its contents.
+// Tests a host's combined depth-stencil images on a device: the validation layer accepts every
+// barrier, and stencil keeps its contents.
 
 #include "tests/integration/abi/dermis_fixture.hpp"
 
@@ -9,11 +9,11 @@ namespace dermis::abi_test {
 namespace {
 
 constexpr VkImageAspectFlags both_aspects = VK_IMAGE_ASPECT_DEPTH_BIT | VK_IMAGE_ASPECT_STENCIL_BIT;
-constexpr uint32_t marked = 7; // stencil
+constexpr uint32_t marked = 7; // Stencil value.
 
 struct DepthLayouts {
   VkImageLayout before, after;
-  bool depth_only; // neither the layouts nor the barriers are about stencil
+  bool depth_only; // Neither layouts nor barriers include stencil.
 };
 
 class DepthStencilImages : public DermisTest {
@@ -59,7 +59,7 @@ protected:
     host->vk.vkCmdPipelineBarrier2(commands, &info);
   }
 
-  // Depth 0.5 and the stencil mark, in layouts in which the host would leave them.
+  // Clears to depth 0.5 and the stencil mark, in the layouts of the host.
   void clear(VkImage image, VkImageLayout depth, VkImageLayout stencil) {
     const auto ran = demo::run_commands(*host, [&](VkCommandBuffer commands) -> demo::Result<> {
       move(commands, image, both_aspects, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL);
@@ -100,7 +100,7 @@ protected:
     return {first, first + buffer->size};
   }
 
-  // A combined image of the view's size, and a view of its depth.
+  // Makes a combined image of the view's size and a depth view of it.
   static demo::Image make_depth(VkFormat format) {
     demo::Image made;
     made.host = host.get();
@@ -143,7 +143,7 @@ protected:
     return found;
   }
 
-  // Three frames on one image: from `before` to `after`, then from `after` to `after`.
+  // Runs three frames on one image: from `before` to `after`, then from `after` to `after`.
   void run(VkFormat format, uint32_t flags, const DepthLayouts& layouts) {
     const dermis_context usual = context;
     context = context_with(flags);
@@ -201,7 +201,7 @@ struct WithSeparateLayouts : DepthStencilImages {
   static void SetUpTestSuite() { make_host(true); }
 };
 
-TEST_F(WithSeparateLayouts, LayoutsOfDepthAloneLeaveStencilAlone) {
+TEST_F(WithSeparateLayouts, DepthLayouts_LeaveStencilUnchanged) {
   constexpr DepthLayouts cases[] = {
       {VK_IMAGE_LAYOUT_DEPTH_READ_ONLY_OPTIMAL, VK_IMAGE_LAYOUT_DEPTH_READ_ONLY_OPTIMAL, true},
       {VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL, VK_IMAGE_LAYOUT_DEPTH_READ_ONLY_OPTIMAL, true}};

@@ -81,7 +81,7 @@ dermis_context_desc DermisTest::context_desc() {
 
 namespace {
 
-// Calls use(desc) with a description that says what `options` say.
+// Calls use(desc) with the description of `options`.
 template <class Use> dermis_result described(const GraphOptions& options, Use use) {
   const std::string text = options.text.empty() ? read_text("configs/graphs/burley.json") : options.text;
   const std::string skin =

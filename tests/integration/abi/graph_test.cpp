@@ -1,4 +1,4 @@
-// Life of a graph: creation, its errors, slots, reload, resize, settings.
+// Tests the life of a graph: creation, its errors, slots, reload, resize, settings.
 
 #include "tests/integration/abi/dermis_fixture.hpp"
 
@@ -77,7 +77,7 @@ TEST(Validate, RefusesASourceWithoutTextOrLength) {
   EXPECT_THAT(dermis_last_error(), HasSubstr("length"));
 }
 
-TEST_F(GraphLife, SlotsTellWhatToBind) {
+TEST_F(GraphLife, SlotsDescribeTheBindings) {
   const dermis_graph graph = make_graph();
   ASSERT_NE(graph, nullptr);
   std::map<std::string, dermis_slot> slots;
@@ -99,7 +99,7 @@ TEST_F(GraphLife, SlotsTellWhatToBind) {
   EXPECT_EQ(slots["scattered_light"].bound, 0u);
 }
 
-TEST_F(GraphLife, ErrorsOfGraphAndProfilesComeBackInOneReport) {
+TEST_F(GraphLife, ErrorsOfGraphAndProfilesAreInOneReport) {
   GraphOptions options;
   options.text = with("\"subsurface.burley\"", "\"subsurface.burly\"");
   dermis_graph graph = nullptr;
@@ -110,7 +110,7 @@ TEST_F(GraphLife, ErrorsOfGraphAndProfilesComeBackInOneReport) {
   EXPECT_THAT(said.all, AllOf(HasSubstr("graph.json:"), HasSubstr("subsurface.burley")));
 }
 
-TEST_F(GraphLife, HostsMistakesAboutSlotsAreTold) {
+TEST_F(GraphLife, WrongSlotsOfTheHostAreReported) {
   GraphOptions options;
   dermis_graph graph = nullptr;
   dermis_report report = nullptr;
@@ -166,7 +166,7 @@ TEST_F(GraphLife, SizesAndProfilesOutOfRangeAreRefused) {
       << "not the first's size";
 }
 
-TEST_F(GraphLife, DescriptionsAreWholeOrIncomplete) {
+TEST_F(GraphLife, DescriptionsAreCompleteOrNotWritten) {
   const dermis_graph graph = make_graph();
   ASSERT_NE(graph, nullptr);
   EXPECT_TRUE(nlohmann::json::accept(described(graph, DERMIS_DESCRIBE_JSON)));
@@ -218,7 +218,7 @@ uint32_t DERMIS_CALL deliver(void* user, const char* name, dermis_source* source
   return 1;
 }
 
-TEST_F(GraphLife, IncludedFilesComeFromTheHostOncePerCreationAndReload) {
+TEST_F(GraphLife, IncludedFilesAreOpenedOncePerCreationAndReload) {
   const size_t begin = burley.find("{ \"pass\": \"classify\"");
   const size_t end = burley.find("} }", begin) + 3;
   ASSERT_LT(end, burley.size());
@@ -247,7 +247,7 @@ TEST_F(GraphLife, IncludedFilesComeFromTheHostOncePerCreationAndReload) {
   EXPECT_EQ(dermis_graph_resize(graph, 64, 64, nullptr), DERMIS_OK) << "the running graph kept its own";
 }
 
-TEST_F(GraphLife, MemoryIsThatOfThePlan) {
+TEST_F(GraphLife, MemoryMatchesThePlan) {
   const dermis_graph graph = make_graph();
   ASSERT_NE(graph, nullptr);
   dermis_memory memory = DERMIS_MEMORY_INIT;
@@ -260,7 +260,7 @@ TEST_F(GraphLife, MemoryIsThatOfThePlan) {
   EXPECT_EQ(dermis_graph_memory(graph, &memory), DERMIS_ERROR_ARGUMENT);
 }
 
-TEST_F(GraphLife, AFailedReloadLeavesTheRunningGraphBitIdentical) {
+TEST_F(GraphLife, FailedReload_KeepsTheGraphBitIdentical) {
   const auto run = [&](bool reload) {
     last_frame = 0;
     const dermis_graph graph = make_graph();
@@ -284,7 +284,7 @@ TEST_F(GraphLife, AFailedReloadLeavesTheRunningGraphBitIdentical) {
   EXPECT_EQ(run(false), run(true));
 }
 
-TEST_F(GraphLife, AReloadTakesOverAtTheNextRecordAndKeepsSettings) {
+TEST_F(GraphLife, Reload_StartsAtTheNextRecordAndKeepsSettings) {
   const dermis_graph graph = make_graph();
   ASSERT_NE(graph, nullptr);
   make_images(graph);
@@ -310,7 +310,7 @@ TEST_F(GraphLife, AReloadTakesOverAtTheNextRecordAndKeepsSettings) {
   EXPECT_THAT(take(report).names, Contains("setting_not_carried")) << "64 is beyond the new range";
 }
 
-TEST_F(GraphLife, ALibraryWithoutACompilerOfShadersSaysSoAndRunsOn) {
+TEST_F(GraphLife, NoShaderCompiler_IsReported) {
   const dermis_graph graph = make_graph();
   ASSERT_NE(graph, nullptr);
   dermis_report report = nullptr;
@@ -330,7 +330,7 @@ TEST_F(GraphLife, ALibraryWithoutACompilerOfShadersSaysSoAndRunsOn) {
   EXPECT_EQ(record(graph, one), DERMIS_OK) << dermis_last_error();
 }
 
-TEST_F(GraphLife, AResizeTakesOverAtTheNextRecord) {
+TEST_F(GraphLife, Resize_StartsAtTheNextRecord) {
   const dermis_graph graph = make_graph();
   ASSERT_NE(graph, nullptr);
   make_images(graph);
@@ -369,8 +369,8 @@ TEST_F(GraphLife, SettingsAreCheckedAndNamed) {
   EXPECT_EQ(dermis_graph_set_setting(graph, "samples", nullptr, nullptr), DERMIS_ERROR_ARGUMENT);
 }
 
-// Looks inside: nothing else tells a plan that was found from one that was compiled again.
-TEST_F(GraphLife, ASettingThatFlipsBackFindsThePlanOfItsSide) {
+// Reads internals, because the interface does not show whether a plan was cached or compiled again.
+TEST_F(GraphLife, SettingFlippedBack_ReusesItsPlan) {
   std::string text = with("\"settings\": {", "\"settings\": { \"combined\": { \"bool\": true },");
   const std::string pass = "\"pass\": \"combine\",";
   text.replace(text.find(pass), pass.size(), pass + " \"when\": \"combined\",");
@@ -395,7 +395,7 @@ TEST_F(GraphLife, ASettingThatFlipsBackFindsThePlanOfItsSide) {
   EXPECT_EQ(plans.hits + plans.misses, 1u + flips) << "a setting that no `when` asks about needs no plan";
 }
 
-TEST_F(GraphLife, ASettingIsInEffectAtTheNextRecord) {
+TEST_F(GraphLife, SettingIsInEffectAtTheNextRecord) {
   const auto run = [&](const char* samples) {
     last_frame = 0;
     const dermis_graph graph = make_graph();

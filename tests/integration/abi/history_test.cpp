@@ -1,4 +1,4 @@
-// What a graph tells of its histories: whether they hold something, for how long, and why they last did not.
+// Tests the reported state of histories: validity, age, and why a history was last invalid.
 
 #include "tests/integration/abi/dermis_fixture.hpp"
 #include "tests/support/shipped_graphs.hpp"
@@ -14,7 +14,7 @@ using testing::HasSubstr;
 struct Histories : DermisTest {
   dermis_graph graph = nullptr;
 
-  // `resize` and `when`: of the light over frames.
+  // `resize` and `when` apply to the accumulated light.
   GraphOptions keeping(const std::string& graph_name, const std::string& resize = "rescale",
                        const std::string& when = "") const {
     std::string overlay = read_text("configs/overlays/accumulate.json");
@@ -61,7 +61,7 @@ struct Histories : DermisTest {
   void expect(uint32_t age, dermis_history_reason reason, const char* text) const {
     std::vector<std::string> names;
     for (const dermis_history& one : reported(graph)) {
-      if (std::strncmp(one.name, "past", 4) != 0) continue; // the graph's own
+      if (std::strncmp(one.name, "past", 4) != 0) continue; // The graph's own histories.
       names.emplace_back(one.name);
       EXPECT_EQ(one.valid, age > 0 ? 1u : 0u);
       EXPECT_EQ(one.age, age);
@@ -72,18 +72,18 @@ struct Histories : DermisTest {
   }
 };
 
-TEST_F(Histories, GrowOlderFrameByFrameAndRememberACut) {
+TEST_F(Histories, AgeGrowsAndACutIsReported) {
   make(keeping("burley"));
   expect(0, DERMIS_HISTORY_NEVER_WRITTEN, "nothing has been recorded");
   run(3);
   expect(3, DERMIS_HISTORY_NEVER_WRITTEN, "valid since its first frame");
   run(1, DERMIS_FRAME_RESET_HISTORY);
-  expect(1, DERMIS_HISTORY_CUT, "camera cut"); // what the cut's own frame wrote
+  expect(1, DERMIS_HISTORY_CUT, "camera cut"); // Written by the frame of the cut.
   run(2);
   expect(3, DERMIS_HISTORY_CUT, "camera cut");
 }
 
-TEST_F(Histories, GoOnOverAReloadAndARescaledSizeButNotOverAnother) {
+TEST_F(Histories, SurviveReloadAndRescale) {
   make(keeping("burley"));
   run(2);
   const std::string text = read_text("configs/graphs/burley.json");
@@ -107,7 +107,7 @@ TEST_F(Histories, GoOnOverAReloadAndARescaledSizeButNotOverAnother) {
   expect(1, DERMIS_HISTORY_RESIZED, "resized");
 }
 
-TEST_F(Histories, ThatGoOnAreNotReportedAsNew) {
+TEST_F(Histories, Surviving_AreNotReportedAsRestarted) {
   make(keeping("burley"));
   run(2);
   dermis_report report = nullptr;
@@ -120,7 +120,7 @@ TEST_F(Histories, ThatGoOnAreNotReportedAsNew) {
   EXPECT_EQ(std::count(said.names.begin(), said.names.end(), "history_restarts"), 2);
 }
 
-// What a call reports, by the names of the histories that start anew.
+// Returns the names of the histories that a report lists as restarted.
 std::vector<std::string> restarted(const Said& said) {
   std::vector<std::string> names;
   for (size_t i = 0; i < said.names.size(); ++i) {
@@ -131,7 +131,7 @@ std::vector<std::string> restarted(const Said& said) {
   return names;
 }
 
-TEST_F(Histories, AReloadReportsOnlyThoseThatStartAnew) {
+TEST_F(Histories, Reload_ReportsOnlyRestartedOnes) {
   make(keeping("burley"));
   run(2);
   dermis_report report = nullptr;
@@ -140,7 +140,8 @@ TEST_F(Histories, AReloadReportsOnlyThoseThatStartAnew) {
   GraphOptions changed = keeping("burley");
   std::string& overlay = changed.overlays.front();
   const std::string past =
-      R"("size": "view", "history": { "frames": 1, "on_resize": "rescale" })"; // of `past`
+      // Declaration of `past`.
+      R"("size": "view", "history": { "frames": 1, "on_resize": "rescale" })";
   ASSERT_NE(overlay.find(past), std::string::npos);
   overlay.replace(overlay.find(past), past.size(),
                   R"("size": "view", "border": 1, "history": { "frames": 1, "on_resize": "invalidate" })");
@@ -153,7 +154,7 @@ TEST_F(Histories, AReloadReportsOnlyThoseThatStartAnew) {
   EXPECT_THAT(restarted(take(report)), testing::IsEmpty());
 }
 
-TEST_F(Histories, ASettingThatKeepsThePassesLosesNone) {
+TEST_F(Histories, SettingThatKeepsThePasses_KeepsAll) {
   make(keeping("burley"));
   run(2);
   for (const auto& [name, value] : {std::pair{"samples", "8"}, {"texturing", "\"pre_post\""}}) {
@@ -165,7 +166,7 @@ TEST_F(Histories, ASettingThatKeepsThePassesLosesNone) {
   expect(4, DERMIS_HISTORY_NEVER_WRITTEN, "valid since its first frame");
 }
 
-TEST_F(Histories, AnotherProfileLosesNone) {
+TEST_F(Histories, OtherProfile_KeepsAll) {
   make(keeping("burley"));
   run(2);
   const std::string wax = read_text("configs/profiles/wax.json");
@@ -177,7 +178,7 @@ TEST_F(Histories, AnotherProfileLosesNone) {
   expect(3, DERMIS_HISTORY_NEVER_WRITTEN, "valid since its first frame");
 }
 
-TEST_F(Histories, ASettingThatBringsPassesBackRestartsTheirs) {
+TEST_F(Histories, ReenabledPasses_RestartTheirHistories) {
   make(keeping("skin", "rescale", "technique == 'sap'"));
   run(2);
   for (const auto& [value, names] : {std::pair<const char*, std::vector<std::string>>{"\"separable\"", {}},
@@ -189,7 +190,7 @@ TEST_F(Histories, ASettingThatBringsPassesBackRestartsTheirs) {
   }
 }
 
-TEST_F(Histories, TheLastProfileTakesThemAlong) {
+TEST_F(Histories, RemovingTheLastProfile_DropsThem) {
   make(keeping("burley"));
   run(2);
   const std::string skin = read_text("configs/profiles/skin.json");
@@ -206,7 +207,7 @@ TEST_F(Histories, TheLastProfileTakesThemAlong) {
   EXPECT_THAT(restarted(take(report)), testing::UnorderedElementsAre("past", "past_place"));
 }
 
-TEST_F(Histories, ThatTheGraphBeforeAReloadDidNotHaveSaySo) {
+TEST_F(Histories, NewAfterAReload_AreReportedAsNew) {
   const std::string text = read_text("configs/graphs/papers/sap_residual.json");
   GraphOptions options;
   options.text = text;
@@ -221,7 +222,7 @@ TEST_F(Histories, ThatTheGraphBeforeAReloadDidNotHaveSaySo) {
   const dermis_source source = source_of(text, "graph.json");
   ASSERT_EQ(reload_text(graph, source), DERMIS_OK) << dermis_last_error();
   const auto before = reported(graph);
-  ASSERT_EQ(before.size(), 2u); // ratio and place
+  ASSERT_EQ(before.size(), 2u); // Ratio and position.
   EXPECT_EQ(named(before, "ratio").valid, 0u);
   EXPECT_EQ(named(before, "ratio").reason, DERMIS_HISTORY_RELOADED);
   EXPECT_EQ(named(before, "place").age, 2u);
@@ -233,22 +234,23 @@ TEST_F(Histories, ThatTheGraphBeforeAReloadDidNotHaveSaySo) {
   EXPECT_EQ(named(after, "place").reason, DERMIS_HISTORY_NEVER_WRITTEN);
 }
 
-TEST_F(Histories, FramesWithNothingToScatterLeaveThemOut) {
+TEST_F(Histories, EmptyFrames_InvalidateThem) {
   make(keeping("burley"));
   run(2);
-  run(1, DERMIS_FRAME_BOUNDS); // empty
+  run(1, DERMIS_FRAME_BOUNDS); // Empty bounds.
   expect(0, DERMIS_HISTORY_LEFT_OUT, "without the passes that write it");
   run(1);
   expect(1, DERMIS_HISTORY_LEFT_OUT, "without the passes that write it");
 }
 
-TEST_F(Histories, OfAPlanThatDidNotRunAreInvalid) {
+TEST_F(Histories, OfAPlanThatDidNotRun_AreInvalid) {
   make(keeping("skin", "rescale", "technique == 'sap'"));
   expect(0, DERMIS_HISTORY_NEVER_WRITTEN, "nothing has been recorded");
   run(2);
   expect(2, DERMIS_HISTORY_NEVER_WRITTEN, "valid since its first frame");
   dermis_budget budget = DERMIS_BUDGET_INIT;
-  budget.milliseconds = 1e-4f; // too little for anything: what is fastest, which keeps no light
+  // Too little for anything: the fastest configuration runs, which stores no light.
+  budget.milliseconds = 1e-4f;
   budget.flags = DERMIS_BUDGET_DETERMINISTIC;
   ASSERT_EQ(dermis_graph_set_budget(graph, &budget, nullptr), DERMIS_OK) << dermis_last_error();
   run(1);
@@ -259,7 +261,7 @@ TEST_F(Histories, OfAPlanThatDidNotRunAreInvalid) {
   expect(1, DERMIS_HISTORY_OTHER_PLAN, "another plan");
 }
 
-TEST_F(Histories, ADiscardedFrameNeverWas) {
+TEST_F(Histories, DiscardedFrame_HasNoEffect) {
   make(keeping("burley"));
   run(2);
   const auto bound = bindings(graph);
@@ -276,7 +278,7 @@ TEST_F(Histories, ADiscardedFrameNeverWas) {
   expect(2, DERMIS_HISTORY_NEVER_WRITTEN, "valid since its first frame");
 }
 
-TEST_F(Histories, OfAViewAreItsOwn) {
+TEST_F(Histories, ViewsHaveSeparateHistories) {
   make(keeping("burley"));
   dermis_view view = nullptr;
   ASSERT_EQ(dermis_view_create(graph, nullptr, &view, nullptr), DERMIS_OK) << dermis_last_error();
@@ -290,7 +292,7 @@ TEST_F(Histories, OfAViewAreItsOwn) {
   expect(2, DERMIS_HISTORY_NEVER_WRITTEN, "valid since its first frame");
 }
 
-TEST_F(Histories, AGraphWithoutAnyTellsNone) {
+TEST_F(Histories, GraphWithoutHistories_ReportsNone) {
   graph = make_graph();
   EXPECT_TRUE(reported(graph).empty());
 }
@@ -305,7 +307,8 @@ TEST_F(Histories, WrongArgumentsAreNamed) {
   refused(dermis_graph_histories(nullptr, &count, nullptr), "graph is NULL");
   refused(dermis_graph_histories(graph, nullptr, nullptr), "count is NULL");
   refused(dermis_view_histories(nullptr, &count, nullptr), "view is NULL");
-  // Every size below the first version's; larger ones are filled with zeros behind what is known.
+  // Every size below that of the first version is refused; bytes beyond the known size are filled
+  // with zeros.
   for (size_t size = 0; size < sizeof(dermis_history); ++size) {
     dermis_history small = DERMIS_HISTORY_INIT;
     small.struct_size = size;

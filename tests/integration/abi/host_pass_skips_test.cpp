@@ -1,4 +1,4 @@
-// Passes of the host where nothing scatters: without a profile, and in frames with empty bounds.
+// Tests host passes when nothing scatters: without a profile, and in frames with empty bounds.
 
 #include "tests/integration/abi/dermis_fixture.hpp"
 
@@ -90,7 +90,7 @@ struct HostPassSkips : DermisTest {
     make_images(graph);
     again(flags);
   }
-  void again(uint32_t flags) { // the next frame
+  void again(uint32_t flags) { // Records the next frame.
     calls.clear();
     const auto bound = bindings(graph);
     dermis_frame one = frame(bound);
@@ -142,7 +142,7 @@ TEST_F(HostPassSkips, InputsOfSkippedPassesAreUnboundOrSkip) {
   }
 }
 
-TEST_F(HostPassSkips, OtherwiseStandsIn) {
+TEST_F(HostPassSkips, OtherwiseIsRead) {
   for (const Way& way : nothing_scatters) {
     run(R"({ "pass": "scatter", "type": "studio.scatter", "write": { "out": "lit" }, "otherwise": { "lit": "given" } },
            { "pass": "tone", "type": "studio.tone", "read": { "from": "lit" }, "write": { "out": "toned" } })",
@@ -153,8 +153,8 @@ TEST_F(HostPassSkips, OtherwiseStandsIn) {
   }
 }
 
-// The export keeps what it holds: no pass of such a frame writes it.
-TEST_F(HostPassSkips, ARequiredExportMayWaitForBounds) {
+// The export keeps its contents, because no pass of such a frame writes it.
+TEST_F(HostPassSkips, RequiredExport_KeepsContentsInEmptyFrames) {
   export_is_optional = false;
   const std::string scatter =
       R"({ "pass": "scatter", "type": "studio.scatter", "write": { "out": "lit" } }, )";
@@ -168,7 +168,7 @@ TEST_F(HostPassSkips, ARequiredExportMayWaitForBounds) {
   EXPECT_THAT(calls, ElementsAre("scatter", "tone"));
 }
 
-TEST_F(HostPassSkips, ABufferStandsInForABuffer) {
+TEST_F(HostPassSkips, BufferOtherwise_IsRead) {
   for (const Way& way : nothing_scatters) {
     run(R"({ "pass": "usual", "type": "clear", "write": { "target": "usual" } },
            { "pass": "list", "type": "studio.scatter_list", "write": { "list": "list" }, "otherwise": { "list": "usual" } },
@@ -192,7 +192,7 @@ TEST_F(HostPassSkips, AnUpdateNeedsContents) {
   }
 }
 
-TEST_F(HostPassSkips, WhatLacksItsInputLeavesOthersWithoutTheirs) {
+TEST_F(HostPassSkips, SkippedPass_SkipsItsReaders) {
   for (const Way& way : nothing_scatters) {
     run(R"({ "pass": "scatter", "type": "studio.scatter", "write": { "out": "lit" } },
            { "pass": "first", "type": "studio.tone", "read": { "from": "lit" }, "write": { "out": "kept" } },
@@ -202,7 +202,7 @@ TEST_F(HostPassSkips, WhatLacksItsInputLeavesOthersWithoutTheirs) {
   }
 }
 
-TEST_F(HostPassSkips, EachMipHasWritersOfItsOwn) {
+TEST_F(HostPassSkips, MipsHaveSeparateWriters) {
   const std::string chain = R"({ "pass": "make", "type": "studio.make", "write": { "out": "chain#0" } },
       { "pass": "scatter", "type": "studio.scatter", "write": { "out": "chain#1" } }, )";
   run(chain +
@@ -229,7 +229,7 @@ TEST_F(HostPassSkips, EachMipHasWritersOfItsOwn) {
   }
 }
 
-TEST_F(HostPassSkips, ADiscardedFrameIsForgottenByBothPlans) {
+TEST_F(HostPassSkips, DiscardedFrame_IsRevertedInBothPlans) {
   run(R"({ "pass": "scatter", "type": "studio.scatter", "write": { "out": "lit" }, "otherwise": { "lit": "given" } },
          { "pass": "remember", "type": "studio.remember", "read": { "from": "lit", "before": "kept@-1" },
            "write": { "out": "kept" } },
@@ -256,7 +256,7 @@ TEST_F(HostPassSkips, ADiscardedFrameIsForgottenByBothPlans) {
   EXPECT_EQ(age(), 2u);
 }
 
-TEST_F(HostPassSkips, PlansTakeTurnsAndKeepTheHostsHistory) {
+TEST_F(HostPassSkips, AlternatingPlans_KeepTheHostsHistory) {
   run(R"({ "pass": "scatter", "type": "studio.scatter", "write": { "out": "lit" }, "otherwise": { "lit": "given" } },
          { "pass": "remember", "type": "studio.remember", "read": { "from": "lit", "before": "kept@-1" },
            "write": { "out": "kept" } },

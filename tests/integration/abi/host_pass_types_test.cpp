@@ -1,5 +1,4 @@
-// Passes that the host records: what it is told, in which order it is called, and every declaration that is
-// refused.
+// Tests host-recorded passes: the call's arguments, the call order, and every refused declaration.
 
 #include "tests/integration/abi/dermis_fixture.hpp"
 
@@ -115,7 +114,7 @@ struct HostPassTypes : DermisTest {
   std::vector<dermis_image_binding> bound;
 };
 
-TEST_F(HostPassTypes, AreCalledInTheOrderOfThePlanWithWhatStandsAtTheirPorts) {
+TEST_F(HostPassTypes, AreCalledInPlanOrderWithTheirBindings) {
   register_both();
   const dermis_graph graph = bloom_with_images();
   ASSERT_NE(graph, nullptr);
@@ -156,7 +155,7 @@ TEST_F(HostPassTypes, SeeASettingChangeAtTheNextRecord) {
   EXPECT_THAT(calls.at(0).settings, ElementsAre(2.5, 5.0));
 }
 
-TEST_F(HostPassTypes, AreTimedAsAllPasses) {
+TEST_F(HostPassTypes, AreTimedLikeAllPasses) {
   register_both();
   const dermis_graph graph = bloom_with_images();
   ASSERT_NE(graph, nullptr);
@@ -170,7 +169,7 @@ TEST_F(HostPassTypes, AreTimedAsAllPasses) {
   EXPECT_STREQ(timings[1].pass, "add");
 }
 
-TEST_F(HostPassTypes, OutliveAReload) {
+TEST_F(HostPassTypes, SurviveAReload) {
   register_both();
   const dermis_graph graph = bloom_with_images();
   ASSERT_NE(graph, nullptr);
@@ -183,7 +182,7 @@ TEST_F(HostPassTypes, OutliveAReload) {
   EXPECT_EQ(calls.size(), 4u);
 }
 
-TEST_F(HostPassTypes, NamedInAGraphThatDoesNotKnowThemAreAnErrorOfTheGraph) {
+TEST_F(HostPassTypes, UnregisteredType_IsAnErrorOfTheGraph) {
   dermis_graph graph = nullptr;
   dermis_report report = nullptr;
   GraphOptions options;
@@ -192,7 +191,7 @@ TEST_F(HostPassTypes, NamedInAGraphThatDoesNotKnowThemAreAnErrorOfTheGraph) {
   EXPECT_THAT(take(report).names, testing::Contains("unknown_pass_type"));
 }
 
-TEST_F(HostPassTypes, AreRefusedWithTheFieldThatIsWrong) {
+TEST_F(HostPassTypes, WrongField_IsNamed) {
   dermis_pass_type wrong = type("bloom", add_ports);
   expect_rejected(wrong, "kind.name is 'bloom'");
   wrong.name = nullptr;
@@ -233,7 +232,7 @@ TEST_F(HostPassTypes, AreRefusedWithTheFieldThatIsWrong) {
   EXPECT_EQ(dermis_register_pass_type(nullptr, &wrong), DERMIS_ERROR_ARGUMENT);
 }
 
-TEST_F(HostPassTypes, AreRegisteredOnceAndBeforeTheFirstGraph) {
+TEST_F(HostPassTypes, MustBeRegisteredOnceBeforeTheFirstGraph) {
   register_both();
   expect_rejected(type("studio.add", add_ports), "there is a pass type 'studio.add' already");
   ASSERT_NE(bloom(), nullptr);
@@ -255,7 +254,7 @@ TEST_F(HostPassTypes, AreExportedForTools) {
   EXPECT_EQ(dermis_export_pass_types(nullptr, &size, nullptr), DERMIS_ERROR_ARGUMENT);
 }
 
-TEST_F(HostPassTypes, MayWriteWhatTheyReadOnlyWithOwnTexels) {
+TEST_F(HostPassTypes, UpdateInPlaceNeedsOwnTexels) {
   std::vector<dermis_port> ports = {port("light", DERMIS_PORT_SAMPLED_IMAGE),
                                     port("result", DERMIS_PORT_STORAGE_IMAGE_WRITE)};
   const dermis_pass_type blur = type("studio.blur", ports);

@@ -1,4 +1,5 @@
-// Samples by tile: the device gives them as the rule on the CPU does, and where they matter to the host.
+// Tests samples per tile: the device allocates them like the rule on the CPU, and follows the
+// host's importance.
 
 #include "passes/choice/controller.hpp"
 #include "passes/choice/sample_allocation.hpp"
@@ -12,7 +13,7 @@ namespace {
 
 constexpr uint32_t side = 64, tiles_across = side / 8;
 
-// A unit of samples costs a microsecond, everything else nothing.
+// A unit of samples costs 1 us, all other work nothing.
 constexpr const char* unit_times = R"({ "dermis_calibration": 2, "device": "invented", "costs": [
   { "work": "subsurface.tile_refine lod_bias=-1.5 below=0.8 share=0.5", "base_us": 0, "group_us": 1, "spread": 0 },
   { "work": "subsurface.classify texturing=post", "base_us": 0, "group_us": 0, "spread": 0 },
@@ -29,7 +30,7 @@ constexpr const char* unit_times = R"({ "dermis_calibration": 2, "device": "inve
   { "work": "subsurface.export_scattered texturing=post", "base_us": 0, "group_us": 0, "spread": 0 },
   { "work": "subsurface.combine texturing=post result=color", "base_us": 0, "group_us": 0, "spread": 0 } ] })";
 
-// Doubts are painted, and tiles that get samples show what is painted.
+// The test sets the tile errors, and tiles with samples show the test's picture.
 constexpr const char* painted = R"({ "dermis_overlay": 2, "edits": [
   { "set": "/imports/painted", "to": { "format": "rgba16f", "size": "view" } },
   { "set": "/passes/estimate_tile_error/read/scattered", "to": "painted" },
@@ -57,7 +58,7 @@ struct Hybrid : DermisTest {
   std::string times = unit_times;
   std::vector<std::string> overlays;
 
-  // A surface in steps, which the pyramid is unsure of.
+  // A stepped surface, for which the pyramid has low confidence.
   void make_hybrid() {
     GraphOptions options;
     options.text = read_text(file);
@@ -73,8 +74,9 @@ struct Hybrid : DermisTest {
     fill("lighting", [](uint32_t x, uint32_t y) { return float((x * 37 + y * 61) % 97) / 64.0f; });
   }
 
-  // The picture of a second frame, which knows how many units are wanted. Each is the second frame of a graph
-  // of its own: samples go on from frame to frame. Right of `matters` pixels errors count a hundredth.
+  // Returns the picture of a second frame, which knows the sample demand. Each is the second frame
+  // of a new graph, because samples continue from frame to frame. Right of `matters` pixels, errors
+  // count 0.01.
   std::vector<float> picture(uint32_t units, uint32_t matters = side) {
     last_frame = 0;
     make_hybrid();
@@ -89,16 +91,18 @@ struct Hybrid : DermisTest {
   dermis_choice reported = DERMIS_CHOICE_INIT;
 };
 
-TEST_F(Hybrid, TheDeviceGivesSamplesAsTheRuleOnTheCpuDoes) {
+TEST_F(Hybrid, DeviceAllocatesSamplesLikeTheCpu) {
   GraphOptions options;
   options.text = read_text("configs/graphs/papers/hybrid.json");
   options.overlays = {painted};
-  options.unbound = {"albedo", "scatter_scale", "importance"}; // handed out light keeps the samples alive
+  // Exporting the light keeps the samples alive.
+  options.unbound = {"albedo", "scatter_scale", "importance"};
   graph = make_graph(options);
   ASSERT_NE(graph, nullptr);
   make_images(graph);
   paint();
-  const auto unmet = [](uint32_t x, uint32_t y) { // of 1024; a half float holds 1 - lacks / 1024 exactly
+  // In units of 1/1024; a half float holds 1 - unmet / 1024 exactly.
+  const auto unmet = [](uint32_t x, uint32_t y) {
     const uint32_t tile = y / 8 * tiles_across + x / 8;
     return tile % 5 == 0 ? 0u : tile * 2654435761u % 509;
   };
@@ -113,7 +117,7 @@ TEST_F(Hybrid, TheDeviceGivesSamplesAsTheRuleOnTheCpuDoes) {
   const uint32_t wanted = choice::allocate_samples(tile_errors, {}, UINT32_MAX).wanted;
   std::vector<uint32_t> before;
   for (const uint32_t units : {wanted, wanted / 2, wanted / 3, 7u, 1u, 0u}) {
-    fill("lighting", [](uint32_t x, uint32_t) { return x % 2 == 0 ? 0.25f : 0.5f; }); // not flat
+    fill("lighting", [](uint32_t x, uint32_t) { return x % 2 == 0 ? 0.25f : 0.5f; }); // Not flat.
     set_units(units);
     const dermis_choice choice = run_frame();
     const choice::SampleAllocation expected = choice::allocate_samples(tile_errors, before, units);
@@ -133,7 +137,7 @@ TEST_F(Hybrid, TheDeviceGivesSamplesAsTheRuleOnTheCpuDoes) {
   }
 }
 
-TEST_F(Hybrid, WithoutUnitsThePictureIsThePyramidsAndWithAllItIsNot) {
+TEST_F(Hybrid, NoUnits_ShowThePyramid) {
   const auto none = picture(0);
   const auto all = picture(100000);
   EXPECT_NE(none, all);
@@ -150,7 +154,7 @@ TEST_F(Hybrid, WithoutUnitsThePictureIsThePyramidsAndWithAllItIsNot) {
   EXPECT_EQ(texels("lighting"), none);
 }
 
-// Root of the mean square over columns first .. last - 1.
+// Returns the root mean square of the difference over columns first .. last - 1.
 double rms(const std::vector<float>& a, const std::vector<float>& b, uint32_t first, uint32_t last) {
   double sum = 0;
   for (uint32_t y = 0; y < side; ++y)
@@ -162,25 +166,26 @@ double rms(const std::vector<float>& a, const std::vector<float>& b, uint32_t fi
   return std::sqrt(sum / (3.0 * side * (last - first)));
 }
 
-TEST_F(Hybrid, WithHalfTheBudgetTilesThatMatterKeepTheirPictureAndOthersPay) {
+TEST_F(Hybrid, HalfBudget_ImportantTilesKeepTheirSamples) {
   const auto none = picture(0);
   const auto all = picture(100000);
   const dermis_choice choice = reported;
   ASSERT_GT(choice.sample_demand, 0u);
-  constexpr uint32_t matters = 3 * side / 8; // what is left of it wants less than half of all
+  // The remaining tiles request less than half of all samples.
+  constexpr uint32_t matters = 3 * side / 8;
   const auto half = picture(choice.sample_demand / 2, matters);
-  // All tiles that matter have the samples that the full budget gives them: their picture is the same,
-  // whatever the truth is. Without the column of tiles whose share falls towards tiles that were given none.
+  // All important tiles have the samples of the full budget, so their picture is equal. The column
+  // of tiles whose samples fade towards tiles without samples is excluded.
   EXPECT_EQ(rms(half, all, 0, matters - 8), 0);
   EXPECT_GT(rms(half, all, matters + 8, side), 0.2 * rms(none, all, matters + 8, side));
 }
 
-TEST_F(Hybrid, TilesWhoseLightScatteringDoesNotChangeGetNoSamples) {
+TEST_F(Hybrid, TilesUnchangedByScattering_GetNoSamples) {
   const auto sampled = [&] {
     last_frame = 0;
     make_hybrid();
     fill("lighting", [](uint32_t x, uint32_t y) {
-      if (x < 48) return x % 16 == 0 && y % 16 == 0 ? 0.505f : 0.5f; // not flat, and almost
+      if (x < 48) return x % 16 == 0 && y % 16 == 0 ? 0.505f : 0.5f; // Not flat, but almost.
       return float((x * 37 + y * 61) % 97) / 64.0f;
     });
     set_units(100000);
@@ -191,12 +196,12 @@ TEST_F(Hybrid, TilesWhoseLightScatteringDoesNotChangeGetNoSamples) {
   overlays = {
       R"({ "dermis_overlay": 2, "edits": [ { "remove": "/passes/estimate_tile_error/read/light" } ] })"};
   const uint32_t all = sampled();
-  EXPECT_EQ(all, 64u); // the pyramid is as unsure left as right
+  EXPECT_EQ(all, 64u); // The pyramid's confidence is equal on the left and on the right.
   EXPECT_GE(some, 16u);
-  EXPECT_LE(some, 48u); // and those beside the border
+  EXPECT_LE(some, 48u); // Includes the tiles next to the border.
 }
 
-// Energy of the rows' differences at frequency k of 64.
+// Returns the energy of the rows' differences at frequency k of 64.
 double energy(const std::vector<float>& a, const std::vector<float>& b, uint32_t k) {
   constexpr double two_pi = 6.283185307179586;
   double sum = 0;
@@ -213,7 +218,8 @@ double energy(const std::vector<float>& a, const std::vector<float>& b, uint32_t
   return sum;
 }
 
-// Between pictures with no samples and with all that are wanted, one with a third of them.
+// Compares a picture with a third of the samples with pictures with no samples and with all
+// samples.
 void expect_no_seams(const std::vector<float>& none, const std::vector<float>& all,
                      const std::vector<float>& half) {
   for (const auto* pure : {&none, &all})
@@ -232,7 +238,7 @@ TEST_F(Hybrid, TilesLeaveNoSeams) {
   expect_no_seams(none, all, picture(choice.sample_demand / 3));
 }
 
-TEST_F(Hybrid, ABudgetBetweenBuysSomeOfTheSamplesAndSaysWhatErrorIsLeft) {
+TEST_F(Hybrid, PartialBudget_BuysSamplesAndReportsTheError) {
   file = "configs/graphs/skin.json";
   const auto run = [&](uint32_t units) {
     picture(units);
@@ -263,7 +269,7 @@ struct Pair : Hybrid {
   }
 };
 
-// Light without a period of its own, which varies more in some places than in others.
+// Light without a period, which varies more in some places than in others.
 struct UnevenPair : Pair {
   void paint() override {
     Pair::paint();
@@ -271,13 +277,13 @@ struct UnevenPair : Pair {
       uint32_t h = (x * 0x9e3779b9u) ^ (y * 0x85ebca6bu);
       h = (h ^ h >> 15) * 0x2c1b3c6du;
       h = (h ^ h >> 12) * 0x297a2d39u;
-      const float unit = float(h >> 16 & 255) / 256; // a half holds it
+      const float unit = float(h >> 16 & 255) / 256; // Exact in a half float.
       return 0.5f + (unit - 0.5f) * std::abs(std::sin(0.09f * float(x) + 0.07f * float(y)));
     });
   }
 };
 
-TEST_F(Pair, WithoutUnitsThePictureIsSeparablesAndWithAllItIsNot) {
+TEST_F(Pair, NoUnits_ShowSeparable) {
   const auto none = picture(0);
   EXPECT_EQ(reported.sample_units, 0u);
   const auto all = picture(100000);
@@ -307,7 +313,7 @@ TEST_F(Pair, TilesWithEvenLightGetNoSamples) {
 TEST_F(UnevenPair, TilesLeaveNoSeams) {
   const auto none = picture(0), all = picture(100000);
   const dermis_choice choice = reported;
-  const auto some = picture(choice.sample_demand / 6); // enough for two thirds of the tiles
+  const auto some = picture(choice.sample_demand / 6); // Enough for two thirds of the tiles.
   ASSERT_GT(reported.sampled_tiles[0], 16u);
   ASSERT_LT(reported.sampled_tiles[0] + reported.sampled_tiles[1] + reported.sampled_tiles[2], 60u);
   expect_no_seams(none, all, some);

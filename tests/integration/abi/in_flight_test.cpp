@@ -1,4 +1,4 @@
-// Frames in flight: what a reload replaces lives until the device has finished with it.
+// Tests frames in flight: replaced objects live until the device has finished with them.
 
 #include "tests/integration/abi/in_flight.hpp"
 
@@ -18,9 +18,8 @@ struct InFlight : InFlightTest {
   }
 };
 
-// Plans of one graph lie in the same memory: without a wait in between, only their own barriers keep them
-// apart.
-TEST_F(InFlight, PlansThatTakeTurnsWaitForEachOthersMemory) {
+// Plans of one graph share memory. Without a wait in between, only their own barriers order them.
+TEST_F(InFlight, AlternatingPlans_WaitForTheSharedMemory) {
   GraphOptions options;
   options.text = read_text("configs/graphs/skin.json");
   const dermis_graph graph = make_graph(options);
@@ -29,7 +28,8 @@ TEST_F(InFlight, PlansThatTakeTurnsWaitForEachOthersMemory) {
   const auto bound = bindings(graph);
   for (uint64_t index = 1; index <= 9; ++index) {
     dermis_budget budget = DERMIS_BUDGET_INIT;
-    budget.milliseconds = index % 2 == 0 ? 0.001f : 0; // the fastest outcome, or the defaults
+    // The fastest configuration, or the defaults.
+    budget.milliseconds = index % 2 == 0 ? 0.001f : 0;
     budget.flags = DERMIS_BUDGET_DETERMINISTIC;
     ASSERT_EQ(dermis_graph_set_budget(graph, &budget, nullptr), DERMIS_OK) << dermis_last_error();
     run(graph, bound, index);
@@ -41,7 +41,7 @@ TEST_F(InFlight, PlansThatTakeTurnsWaitForEachOthersMemory) {
   ASSERT_EQ(choice.frame_index, 9u);
 }
 
-TEST_F(InFlight, AReplacedProgramLivesUntilTheDeviceHasFinishedItsFrames) {
+TEST_F(InFlight, ReplacedPlan_LivesUntilItsFramesFinish) {
   const dermis_graph graph = make_graph();
   ASSERT_NE(graph, nullptr);
   make_images(graph);
@@ -52,10 +52,10 @@ TEST_F(InFlight, AReplacedProgramLivesUntilTheDeviceHasFinishedItsFrames) {
     run(graph, bound, index);
     ASSERT_EQ(reload_text(graph, source), DERMIS_OK) << dermis_last_error();
   }
-  // TearDown asks the validation layer, which knows when an object in use was destroyed.
+  // In TearDown the validation layer reports objects that were destroyed while in use.
 }
 
-TEST_F(InFlight, TimesOutliveTheReuseOfTheirQueries) {
+TEST_F(InFlight, TimesSurviveTheReuseOfTheirQueries) {
   const dermis_graph graph = make_graph();
   ASSERT_NE(graph, nullptr);
   make_images(graph);
@@ -64,7 +64,8 @@ TEST_F(InFlight, TimesOutliveTheReuseOfTheirQueries) {
   times[0].struct_size = sizeof times[0];
   for (uint64_t index = 1; index <= 6; ++index) {
     run(graph, bound, index);
-    const uint64_t completed = completed_before(index); // the frame whose queries this one took over
+    // The frame whose queries this frame reused.
+    const uint64_t completed = completed_before(index);
     if (completed == 0) continue;
     uint32_t count = 16;
     ASSERT_EQ(dermis_graph_timings(graph, completed, &count, times.data()), DERMIS_OK);

@@ -1,11 +1,11 @@
-// Inputs as other engines have them: light that contains albedo, packed light, profile ids in other
+// Tests inputs of other engines: light that contains albedo, packed light, and profile ids in other
 // images than r8_uint.
 
 #include "tests/integration/abi/dermis_fixture.hpp"
 #include "tests/integration/abi/example_shader.hpp"
 #include "tests/support/shipped_graphs.hpp"
 
-#include "material_ids.spv.h" // needs the types of those above
+#include "material_ids.spv.h" // Needs the types of the headers above.
 
 #include <cmath>
 
@@ -24,8 +24,8 @@ struct InputFormats : DermisTest {
     return options;
   }
 
-  // The picture of one frame, RGB; the graph's frames are numbered from 1, so that all graphs draw the
-  // same samples.
+  // Returns the picture of one frame, RGB. The graph's frames are numbered from 1, so that all
+  // graphs use equal samples.
   std::vector<float> picture(dermis_graph graph) {
     last_frame = 0;
     const auto bound = bindings(graph);
@@ -48,9 +48,10 @@ float largest_gap(const std::vector<float>& a, const std::vector<float>& b) {
   return largest;
 }
 
-// ---- lighting that contains albedo ------------------------------------------------------------------
+// ---- Lighting that contains albedo
 
-// A checkerboard of 8x8 squares; the dark squares of the blue channel are just above the floor of 1/64.
+// A checkerboard of 8x8 squares; the dark squares of the blue channel are just above the floor of
+// 1/64.
 float albedo_at(uint32_t x, uint32_t y, uint32_t c) {
   const bool bright = ((x / 8 + y / 8) & 1) != 0;
   return bright ? 0.9f : c == 2 ? 0.02f : 0.2f;
@@ -81,8 +82,8 @@ struct Demodulation : InputFormats, testing::WithParamInterface<const char*> {
   }
 };
 
-// Under even irradiance nothing changes, whatever the texture is: two roundings to half precision, of
-// 2^-11 each.
+// Under even irradiance the light is unchanged for any texture, within two roundings to half floats
+// (2^-11 each).
 TEST_P(Demodulation, KeepsTextureUnderEvenLight) {
   const dermis_graph graph = graph_with_albedo("demodulate");
   const auto textured = [](uint32_t x, uint32_t y, uint32_t c) { return 0.5f * albedo_at(x, y, c); };
@@ -95,7 +96,7 @@ TEST_P(Demodulation, KeepsTextureUnderEvenLight) {
       }
 }
 
-// Lighting times albedo with `demodulate` shows what irradiance shows with `post`.
+// Lighting times albedo with `demodulate` equals irradiance with `post`.
 TEST_P(Demodulation, EqualsIrradianceTexturedAfterwards) {
   const auto irradiance = [](uint32_t x, uint32_t, uint32_t) { return x < image_side / 2 ? 1.0f : 0.25f; };
   const auto albedo = [](uint32_t x, uint32_t y, uint32_t) { return albedo_at(x, y, 0); };
@@ -113,7 +114,7 @@ TEST_P(Demodulation, EqualsIrradianceTexturedAfterwards) {
 INSTANTIATE_TEST_SUITE_P(Graphs, Demodulation, testing::Values("burley", "pyramid", "sap", "skin"),
                          [](const auto& one) { return std::string(one.param); });
 
-// ---- packed light -----------------------------------------------------------------------------------
+// ---- Packed light
 
 TEST_F(InputFormats, LightingMayBeB10g11r11) {
   VkFormatProperties properties{};
@@ -128,13 +129,13 @@ TEST_F(InputFormats, LightingMayBeB10g11r11) {
     make_images(graph);
     pictures.push_back(picture(graph));
   }
-  // Values up to 1 are stored with 5 bits behind the point (blue) and may be truncated.
+  // Values up to 1 have 5 fraction bits (blue) and may be truncated.
   EXPECT_LT(largest_gap(pictures[0], pictures[1]), 0x1p-5f);
 }
 
-// ---- profile ids ------------------------------------------------------------------------------------
+// ---- Profile ids
 
-std::vector<float> striped_ids() { // profile 1, none, and one of which no profile was given
+std::vector<float> striped_ids() { // Profile 1, none, and an id without a profile.
   std::vector<float> ids;
   for (uint32_t i = 0; i < image_pixels; ++i)
     ids.push_back(static_cast<float>(i % image_side / 24));
@@ -165,7 +166,7 @@ struct IdExtraction : InputFormats {
                 {material_ids_spirv, {source}, &images.at("material"), std::as_bytes(std::span(field))});
   }
 
-  // As the host's own pass needs it: the image for `material` is also a storage image.
+  // The host's own pass needs the image for `material` as a storage image, too.
   void make_graph_with_cleared_ids() {
     make_images(make_graph(options_of("burley")));
     demo::ImageDesc desc;
@@ -190,7 +191,7 @@ TEST_F(IdExtraction, FromABitFieldOfAPackedImage) {
   ASSERT_TRUE(packed) << packed.error().text;
   std::vector<float> values;
   for (const float id : striped_ids())
-    values.push_back(id * 4096.0f + 5.0f); // bits 12 to 15; other bits mean something else
+    values.push_back(id * 4096.0f + 5.0f); // Bits 12 to 15; other bits hold other data.
   const demo::ImageState general{VK_IMAGE_LAYOUT_GENERAL, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
                                  VK_ACCESS_2_MEMORY_READ_BIT};
   ASSERT_TRUE(demo::upload_image(*host, *packed, values, 1, general));

@@ -1,10 +1,9 @@
 #pragma once
-// A calibration for configs/graphs/skin.json with which every machine chooses the same.
+// A calibration for configs/graphs/skin.json that makes the choice equal on every machine.
 
 namespace dermis::abi_test {
 
-// Times that no device has, so that what is chosen is known: 1 ms a dispatch of the pyramid, less for the
-// rest.
+// Times of no real device: 1 ms per dispatch of the pyramid, less for all other passes.
 inline constexpr const char* invented_times = R"({ "dermis_calibration": 2, "device": "invented", "costs": [
   { "work": "subsurface.sap_up level=1 variant=smooth storage=half", "base_us": 1000, "group_us": 0, "spread": 0 },
   { "work": "subsurface.sap_up level=1 variant=base storage=half", "base_us": 500, "group_us": 0, "spread": 0 },

@@ -1,4 +1,5 @@
-// Every pointer argument NULL, one by one: a documented code and a message that names it, never a crash.
+// For each NULL pointer argument a function returns a documented code and a message that names the
+// argument, and never crashes.
 
 #include <dermis/dermis.h>
 
@@ -89,20 +90,20 @@ TEST(NullArguments, AreHarmlessToReportsAndDestruction) {
   dermis_context_destroy(nullptr);
 }
 
-TEST(LastError, BelongsToTheThreadThatFailed) {
+TEST(LastError, IsKeptPerThread) {
   expect_argument_error(dermis_validate(nullptr, nullptr), "source");
   std::thread([] { EXPECT_EQ(dermis_last_error(), nullptr); }).join();
   EXPECT_NE(dermis_last_error(), nullptr);
 }
 
-TEST(Names, EveryResultHasOneAndUnknownValuesToo) {
+TEST(Names, EveryResultHasAName) {
   for (int value = DERMIS_ERROR_INTERNAL; value <= DERMIS_NOT_READY; ++value)
     EXPECT_STRNE(dermis_result_name(static_cast<dermis_result>(value)), "DERMIS_UNKNOWN") << value;
   EXPECT_STREQ(dermis_result_name(static_cast<dermis_result>(1234)), "DERMIS_UNKNOWN");
   EXPECT_STREQ(dermis_result_name(DERMIS_ERROR_CONFIG), "DERMIS_ERROR_CONFIG");
 }
 
-TEST(Version, IsThatOfTheHeader) {
+TEST(Version, MatchesTheHeader) {
   EXPECT_EQ(dermis_version(),
             (DERMIS_VERSION_MAJOR << 22u) | (DERMIS_VERSION_MINOR << 12u) | DERMIS_VERSION_PATCH);
 }

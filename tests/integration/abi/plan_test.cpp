@@ -1,5 +1,5 @@
-// docs/integration.md says which test holds what of the interface, docs/security.md which holds what is
-// promised of hostile files: tests that exist.
+// Checks that the tests named in docs/integration.md (interface) and docs/security.md (hostile
+// files) exist.
 
 #include "tests/integration/abi/dermis_fixture.hpp"
 
@@ -13,7 +13,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The word at `at`, and `at` behind it.
+// Returns the word at `at`, and moves `at` past it.
 std::string word(const std::string& text, size_t& at) {
   const size_t begin = at;
   while (at < text.size() && (std::isalnum(static_cast<unsigned char>(text[at])) != 0 || text[at] == '_'))
@@ -21,7 +21,7 @@ std::string word(const std::string& text, size_t& at) {
   return text.substr(begin, at - begin);
 }
 
-// Adds "First.Second" wherever `mark` and two words with `between` stand.
+// Adds "First.Second" for each `mark` that is followed by two words separated by `between`.
 void add_names(const std::string& text, const std::string& mark, const std::string& between,
                std::set<std::string>& found) {
   for (size_t at = text.find(mark); at != std::string::npos; at = text.find(mark, at)) {
@@ -30,12 +30,12 @@ void add_names(const std::string& text, const std::string& mark, const std::stri
     if (text.compare(at, between.size(), between) != 0) continue;
     at += between.size();
     while (at < text.size() && std::isspace(static_cast<unsigned char>(text[at])) != 0)
-      ++at; // the formatter breaks lines
+      ++at; // The formatter may break lines here.
     found.insert(suite + "." + word(text, at));
   }
 }
 
-// Of all tests below tests/, whether of a program or of the build.
+// Returns the names of all tests below tests/, of programs and of the build.
 std::set<std::string> all_tests() {
   std::set<std::string> found;
   for (const auto& entry : fs::recursive_directory_iterator(fs::path(DERMIS_SOURCE_DIR) / "tests")) {
@@ -53,7 +53,7 @@ std::set<std::string> all_tests() {
   return found;
 }
 
-// Each test that the page names behind `heading` is there, and it names at least so many.
+// Expects that each test named after `heading` exists, and that at least `minimum` are named.
 void expect_tests_exist(const std::string& page, const std::string& heading, uint32_t minimum) {
   const std::set<std::string> tests = all_tests();
   const std::string text = read_text(page);

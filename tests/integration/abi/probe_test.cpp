@@ -1,4 +1,4 @@
-// The error probe finds the error that the exact reference finds.
+// The error probe measures the error that the exact reference gives.
 
 #include "framegraph/text/document.hpp"
 #include "passes/common/profiles/profile.hpp"
@@ -11,7 +11,7 @@
 namespace dermis::abi_test {
 namespace {
 
-constexpr uint32_t probed_side = 64; // one run of tiles: each frame probes one
+constexpr uint32_t probed_side = 64; // One run of tiles: each frame probes one.
 
 struct Probe : DermisTest {
   dermis_graph graph = nullptr;
@@ -32,7 +32,7 @@ struct Probe : DermisTest {
     return DermisTest::run_frame(graph);
   }
 
-  // Mean squared error, of luminance, of light that was not scattered: the one picture that needs no device.
+  // Returns the mean squared luminance error of unscattered light, which needs no device.
   static double unscattered_error(Light light) {
     Diagnostics diagnostics;
     const auto document = parse_document("skin", read_text("configs/profiles/skin.json"), diagnostics);
@@ -73,17 +73,16 @@ float spread(uint32_t x, uint32_t y) {
   return float((x * 37 + y * 61) % 97) / 64.0f;
 }
 
-TEST_F(Probe, WithoutItTheErrorIsNotKnown) {
+TEST_F(Probe, WithoutProbe_TheErrorIsUnknown) {
   make("\"sap\"", false);
   const dermis_choice choice = run_frame(spread);
   EXPECT_EQ(choice.probed_tiles, 0u);
   EXPECT_EQ(choice.probed_rmse, 0);
 }
 
-TEST_F(Probe, FindsTheErrorThatTheExactReferenceFinds) {
-  // Each pixel of a chequered light is as far off as any other, but for checks that the picture's border cuts
-  // off: 1 % from tile to tile, half a per cent of a mean over frames. The pole of the centre pixel alone is
-  // worth 2 %.
+TEST_F(Probe, MatchesTheExactReference) {
+  // Each pixel of a chequered light has an equal error, except near the picture's border: 1 % from
+  // tile to tile, 0.5 % of a mean over frames. The pole of the centre pixel contributes 2 %.
   make("\"off\"");
   constexpr int frames = 16;
   double mean = 0;
@@ -91,14 +90,14 @@ TEST_F(Probe, FindsTheErrorThatTheExactReferenceFinds) {
     const dermis_choice choice = run_frame(checks);
     EXPECT_EQ(choice.probed_tiles, 1u);
     mean += std::pow(double(choice.probed_rmse), 2) / frames;
-    EXPECT_EQ(choice.probed_rmse_low, 0); // one tile says nothing of the others
+    EXPECT_EQ(choice.probed_rmse_low, 0); // One tile gives no bound for the others.
     EXPECT_TRUE(std::isinf(choice.probed_rmse_high));
   }
   const double exact = std::sqrt(unscattered_error(checks));
   EXPECT_NEAR(std::sqrt(mean), exact, 5e-3 * exact);
 }
 
-TEST_F(Probe, OverFramesItsMeanIsThePicturesError) {
+TEST_F(Probe, MeanOverFramesIsThePicturesError) {
   make("\"off\"");
   const double exact = unscattered_error(spread);
   constexpr int frames = 48;
@@ -110,32 +109,32 @@ TEST_F(Probe, OverFramesItsMeanIsThePicturesError) {
   }
   const double mean = sum / frames, deviation = std::sqrt((squares / frames - mean * mean) / (frames - 1));
   EXPECT_NEAR(mean, exact, 4 * deviation);
-  EXPECT_LT(deviation, 0.2 * exact); // so that this says something
+  EXPECT_LT(deviation, 0.2 * exact); // Otherwise the comparison means nothing.
 }
 
-TEST_F(Probe, WhatIsFoundCorrectsWhatIsExpected) {
+TEST_F(Probe, MeasuredErrorCorrectsTheExpectedError) {
   make("\"off\"", false);
   run_frame(checks);
-  const float before = run_frame(checks).predicted_rmse; // the table's, once tiles were counted
+  const float before = run_frame(checks).predicted_rmse; // From the table, once tiles were counted.
   make("\"off\"");
   dermis_choice choice = DERMIS_CHOICE_INIT;
   for (int i = 0; i < 60; ++i)
     choice = run_frame(checks);
   EXPECT_GT(std::abs(before - choice.probed_rmse),
-            0.3f * choice.probed_rmse); // another light than the table's
-  // 4 of 27 frames are the table's word; the factor is at most 4.
+            0.3f * choice.probed_rmse); // The light differs from the table's.
+  // 4 of 27 frames follow the table; the factor is at most 4.
   const double found = std::sqrt((23 * std::pow(choice.probed_rmse, 2) + 4 * std::pow(before, 2)) / 27);
   EXPECT_NEAR(choice.predicted_rmse, std::clamp(found, before / 4.0, before * 4.0), 0.05 * found);
 }
 
-TEST_F(Probe, ThePyramidIsNearerToTheReferenceThanLightThatIsNotScattered) {
+TEST_F(Probe, PyramidIsBetterThanUnscatteredLight) {
   make("\"sap\"");
   const auto with = run_frame(spread);
   EXPECT_EQ(with.probed_tiles, 1u);
   EXPECT_LT(with.probed_rmse, 0.05 * std::sqrt(unscattered_error(spread)));
 }
 
-TEST_F(Probe, ThePictureStaysAsItIs) {
+TEST_F(Probe, DoesNotChangeThePicture) {
   make("\"sap\"");
   run_frame(spread);
   const auto probed = texels("lighting");

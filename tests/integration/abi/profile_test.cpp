@@ -1,5 +1,5 @@
-// Profiles that change while a graph runs: pictures are those of a new graph with the new profile, histories
-// go on, and frames in flight keep what they were recorded with.
+// Tests profiles that change while a graph runs: pictures match a new graph with the new profile,
+// histories continue, and frames in flight keep their profile.
 
 #include "tests/integration/abi/dermis_fixture.hpp"
 
@@ -33,13 +33,13 @@ struct SetProfile : DermisTest {
     const dermis_source source = source_of(text, "profile.json");
     return dermis_graph_set_profile(graph, id, &source, report);
   }
-  // Frame `index`, whose light and noise are the same for each graph.
+  // Runs frame `index`, whose light and noise are equal for each graph.
   std::vector<float> picture(dermis_graph graph, uint64_t index) {
     make_images(graph);
     const auto bound = bindings(graph);
     last_frame = index - 1;
     dermis_frame one = frame(bound);
-    std::ranges::copy(one.clip_from_view, one.previous_clip_from_view); // a camera that stands still
+    std::ranges::copy(one.clip_from_view, one.previous_clip_from_view); // The camera is at rest.
     for (size_t i = 0; i < 16; i += 5)
       one.view_from_world[i] = one.previous_view_from_world[i] = 1;
     EXPECT_EQ(record(graph, one), DERMIS_OK) << dermis_last_error();
@@ -63,7 +63,7 @@ double largest_difference(const std::vector<float>& a, const std::vector<float>&
   return largest;
 }
 
-TEST_F(SetProfile, GivesThePicturesOfANewGraph) {
+TEST_F(SetProfile, MatchesTheNewGraphsPictures) {
   for (const char* graph_name : {"burley", "separable", "sap"})
     for (const char* profile : {"marble", "skin_dipole", "skin_artist"}) {
       const dermis_graph graph = make_graph(with(graph_name, "skin"));
@@ -79,7 +79,7 @@ TEST_F(SetProfile, GivesThePicturesOfANewGraph) {
     }
 }
 
-TEST_F(SetProfile, LeavesRecordedFramesTheirOwn) {
+TEST_F(SetProfile, RecordedFramesKeepTheirProfile) {
   const dermis_graph graph = make_graph(with("burley", "skin")), skin = make_graph(with("burley", "skin")),
                      marble = make_graph(with("burley", "marble"));
   const std::vector<float> expected = picture(skin, 1), later = picture(marble, 2);
@@ -91,7 +91,7 @@ TEST_F(SetProfile, LeavesRecordedFramesTheirOwn) {
     one.command_buffer = commands;
     EXPECT_EQ(dermis_graph_record(graph, &one), DERMIS_OK) << dermis_last_error();
     EXPECT_EQ(set_profile(graph, profile_text("marble")), DERMIS_OK) << dermis_last_error();
-    return demo::success(); // submitted after the profile has changed
+    return demo::success(); // Submitted after the profile has changed.
   });
   ASSERT_TRUE(ran);
   EXPECT_EQ(texels("lighting"), expected);
@@ -115,12 +115,13 @@ TEST_F(SetProfile, TakesEffectAfterADiscardedFrame) {
   EXPECT_EQ(picture(graph, 1), picture(marble, 1));
 }
 
-TEST_F(SetProfile, KeepsHistoriesWhichSettleAsStated) {
-  constexpr uint64_t changed = 20; // frames with the old profile
+TEST_F(SetProfile, KeepsHistoriesThatConvergeAsStated) {
+  constexpr uint64_t changed = 20; // Frames with the old profile.
   GraphOptions skin = with("burley", "skin"), marble = with("burley", "marble");
   skin.overlays = marble.overlays = {read_text("configs/overlays/accumulate.json")};
   const dermis_graph graph = make_graph(skin), fresh = make_graph(marble);
-  for (const dermis_graph one : {graph, fresh}) // a running mean alone: what settles_after is computed from
+  // Only a running mean, from which settles_after is computed.
+  for (const dermis_graph one : {graph, fresh})
     ASSERT_EQ(dermis_graph_set_setting(one, "accumulate_clip", "0", nullptr), DERMIS_OK)
         << dermis_last_error();
   const uint32_t settles = settles_after(graph, "past");
@@ -135,7 +136,7 @@ TEST_F(SetProfile, KeepsHistoriesWhichSettleAsStated) {
   const Said said = take(report);
   EXPECT_THAT(said.names, testing::ElementsAre("profile_settles"));
   EXPECT_THAT(said.texts, Contains(HasSubstr("after 44 frames at most 1 % of history 'past'")));
-  const double rounding = 2.0 / 1024; // of half floats near 1, twice
+  const double rounding = 2.0 / 1024; // Half floats near 1, twice.
   for (uint64_t index = changed + 1; index <= changed + settles; ++index) {
     const double now = largest_difference(picture(graph, index), picture(fresh, index));
     if (index == changed + settles / 4) {
@@ -147,7 +148,7 @@ TEST_F(SetProfile, KeepsHistoriesWhichSettleAsStated) {
   }
 }
 
-TEST_F(SetProfile, OfTheFirstAndTheLastCompileAgain) {
+TEST_F(SetProfile, FirstAndLastProfile_Recompile) {
   GraphOptions none = with("burley", "skin");
   none.profiles = false;
   const dermis_graph graph = make_graph(none), empty = make_graph(none),
@@ -185,7 +186,7 @@ TEST_F(SetProfile, IsKeptOverAReloadAndForNewViews) {
   EXPECT_EQ(texels("lighting"), expected);
 }
 
-TEST_F(SetProfile, ThatIsWrongIsNamedAndChangesNothing) {
+TEST_F(SetProfile, WrongProfile_IsNamedAndChangesNothing) {
   const dermis_graph graph = make_graph(with("burley", "skin")), skin = make_graph(with("burley", "skin"));
   const auto refused = [](dermis_result result, const char* said) {
     EXPECT_EQ(result, DERMIS_ERROR_ARGUMENT) << said;
@@ -204,7 +205,7 @@ TEST_F(SetProfile, ThatIsWrongIsNamedAndChangesNothing) {
   EXPECT_EQ(picture(graph, 1), picture(skin, 1));
 }
 
-TEST(HistoryWeights, NamePortsAndSettingsOfTheirKinds) {
+TEST(HistoryWeights, NamePortsAndSettingsOfTheirTypes) {
   const PassTypeRegistry pass_types = subsurface::make_pass_types();
   size_t mixes = 0;
   for (uint32_t k = 0; k < pass_types.size(); ++k)

@@ -1,4 +1,4 @@
-// A frame: what it does to the light, and every field that can be wrong.
+// Tests a frame: its effect on the light, and every field that can be wrong.
 
 #include "tests/integration/abi/dermis_fixture.hpp"
 
@@ -15,7 +15,7 @@ using testing::Not;
 
 struct Record : DermisTest {};
 
-TEST_F(Record, LightCrossesAnEdgeAndNoneIsMade) {
+TEST_F(Record, LightCrossesAnEdgeAndIsConserved) {
   const dermis_graph graph = make_graph();
   ASSERT_NE(graph, nullptr);
   ASSERT_EQ(dermis_graph_set_setting(graph, "samples", "256", nullptr), DERMIS_OK);
@@ -26,7 +26,8 @@ TEST_F(Record, LightCrossesAnEdgeAndNoneIsMade) {
   ASSERT_EQ(record(graph, one), DERMIS_OK) << dermis_last_error();
   const auto after = texels("lighting");
   ASSERT_EQ(after.size(), before.size());
-  // Mean of a column over its rows, red. Albedo is unbound, so the light is not multiplied.
+  // Returns the mean of a column over its rows, red. Albedo is unbound, so the light is not
+  // multiplied.
   const auto column = [&](uint32_t x) {
     double sum = 0;
     for (uint32_t y = 0; y < 64; ++y)
@@ -39,16 +40,16 @@ TEST_F(Record, LightCrossesAnEdgeAndNoneIsMade) {
   EXPECT_LT(column(31), 0.95) << "and is missing in the bright half";
   EXPECT_GT(column(31), column(32));
   EXPECT_GT(column(32), column(36));
-  // Far from the edge compared with d (two pixels): what is left beyond 30 pixels is below exp(-30/6) of the
-  // light; fp16 stores add less than 2^-10.
+  // Far from the edge compared with d (two pixels): beyond 30 pixels less than exp(-30/6) of the
+  // light is left; fp16 stores add less than 2^-10.
   EXPECT_NEAR(column(2), 1.0, 0.01);
   EXPECT_NEAR(column(61), 0.0, 0.01);
-  // Symmetry of the edge: what one side lacks the other has. Sampling noise of 256 samples over 64 rows is
-  // below .5 / sqrt(256 * 64) = .004 a column.
+  // Symmetry of the edge: one side gains what the other loses. The noise of 256 samples over 64
+  // rows is below 0.5 / sqrt(256 * 64) = 0.004 per column.
   EXPECT_NEAR(column(31) + column(32), 1.0, 0.02);
 }
 
-TEST_F(Record, ImagesComeBackInTheStateThatWasAskedFor) {
+TEST_F(Record, ImagesAreReturnedInTheRequestedState) {
   const dermis_graph graph = make_graph();
   ASSERT_NE(graph, nullptr);
   make_images(graph);
@@ -59,7 +60,7 @@ TEST_F(Record, ImagesComeBackInTheStateThatWasAskedFor) {
   }
   dermis_frame one = frame(bound);
   ASSERT_EQ(record(graph, one), DERMIS_OK) << dermis_last_error();
-  // The validation layer speaks if the layout or the visibility were not as asked.
+  // The validation layer reports a wrong layout or missing visibility.
   for (const auto& [name, image] : images) {
     const auto read = demo::read_image(
         *host, image,
@@ -75,7 +76,8 @@ TEST_F(Record, ImagesAreReleasedToAndAcquiredFromOutside) {
   auto bound = bindings(graph);
   for (auto& binding : bound)
     binding.after.queue_family = binding.before.queue_family = VK_QUEUE_FAMILY_EXTERNAL;
-  for (const uint32_t acquired : {0u, 1u, 1u}) { // the first frame finds them as they were made
+  // The first frame gets the images in their initial state.
+  for (const uint32_t acquired : {0u, 1u, 1u}) {
     for (auto& binding : bound) {
       binding.before.transfer = acquired;
       binding.before.queue_family = acquired == 1 ? VK_QUEUE_FAMILY_EXTERNAL : 0;
@@ -86,7 +88,7 @@ TEST_F(Record, ImagesAreReleasedToAndAcquiredFromOutside) {
   }
 }
 
-TEST_F(Record, ARectangleLeavesTheRestUntouched) {
+TEST_F(Record, Rectangle_LeavesTheRestUnchanged) {
   const dermis_graph graph = make_graph();
   ASSERT_NE(graph, nullptr);
   make_images(graph);
@@ -227,7 +229,7 @@ TEST_F(Record, EveryWrongFieldIsNamedAndNothingIsRecorded) {
   EXPECT_EQ(record(graph, next), DERMIS_OK) << "the graph runs on";
 }
 
-TEST_F(Record, NewerFramesAndBindingsAreAcceptedWhenTheirNewFieldsAreZero) {
+TEST_F(Record, NewerStructs_ZeroNewFieldsAreAccepted) {
   const dermis_graph graph = make_graph();
   ASSERT_NE(graph, nullptr);
   make_images(graph);

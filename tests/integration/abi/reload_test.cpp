@@ -1,4 +1,4 @@
-// A reload with a description: all that a graph is made from may change, and pictures are those of a new
+// Tests reloads with a new description, which may change everything: pictures match those of a new
 // graph.
 
 #include "tests/integration/abi/dermis_fixture.hpp"
@@ -15,7 +15,7 @@ struct Reload : DermisTest {
     const auto found = std::ranges::find_if(slots, [&](const dermis_slot& one) { return one.name == name; });
     return found == slots.end() ? nullptr : &*found;
   }
-  // Frame `index` with fresh images: what it shows. The noise of a frame follows its number.
+  // Returns the picture of frame `index` with new images. A frame's noise follows its number.
   std::vector<float> picture(dermis_graph graph, uint64_t index) {
     make_images(graph);
     const auto bound = bindings(graph);
@@ -41,7 +41,7 @@ TEST_F(Reload, ChangesWhichSlotsAreBoundAndTheirFormats) {
   EXPECT_EQ(picture(graph, 1), picture(make_graph(), 1));
 }
 
-TEST_F(Reload, ChangesProfilesAndOverlaysAsANewGraphHasThem) {
+TEST_F(Reload, ChangesProfilesAndOverlays_MatchesANewGraph) {
   const dermis_graph graph = make_graph();
   const std::vector<float> skin = picture(graph, 1);
   GraphOptions marble;
@@ -74,7 +74,7 @@ TEST_F(Reload, ChangesTheSizeOrKeepsIt) {
   EXPECT_EQ(slot(slots_of(graph), "albedo")->bound, 0u);
 }
 
-TEST_F(Reload, ThatFailsLeavesTheRunningGraphBitForBit) {
+TEST_F(Reload, Failure_KeepsTheRunningGraphBitForBit) {
   const dermis_graph graph = make_graph(), untouched = make_graph();
   for (uint64_t index = 1; index < 4; ++index) {
     std::vector<GraphOptions> wrong(5);

@@ -1,4 +1,5 @@
-// struct_size: what a caller may state, and what the library reads and writes for it.
+// Tests struct_size: the sizes that a caller may state, and what the library reads and writes for
+// each size.
 
 #include "integration/abi/sized_struct.hpp"
 
@@ -10,7 +11,7 @@
 
 namespace {
 
-struct Grown { // version 1 had `first` only
+struct Grown { // Version 1 had only `first`.
   size_t struct_size;
   uint64_t first;
   uint64_t second;
@@ -24,7 +25,8 @@ inline constexpr size_t dermis::abi::first_version_size<Grown> = offsetof(Grown,
 namespace dermis::abi {
 namespace {
 
-// `size` bytes on the heap, no more, so that the address sanitizer sees a read or write beyond them.
+// Allocates exactly `size` bytes on the heap, so that the address sanitizer detects accesses beyond
+// them.
 std::unique_ptr<std::byte[]> structure(size_t allocated, size_t stated, std::byte tail = std::byte{0}) {
   auto bytes = std::make_unique<std::byte[]>(std::max(allocated, sizeof(size_t)));
   for (size_t i = sizeof(size_t); i < allocated; ++i)
@@ -33,21 +35,21 @@ std::unique_ptr<std::byte[]> structure(size_t allocated, size_t stated, std::byt
   return bytes;
 }
 
-TEST(SizedStruct, SizesBelowTheFirstVersionAreRefusedAndNotReadBeyondTheSize) {
+TEST(SizedStruct, SizeBelowTheFirstVersion_IsRefused) {
   for (size_t size = 0; size < first_version_size<Grown>; ++size) {
     Grown read{};
     EXPECT_EQ(read_sized(structure(size, size).get(), read), SizedRead::too_small) << size;
   }
 }
 
-TEST(SizedStruct, FieldsThatAnOlderCallerDoesNotKnowKeepTheirDefaults) {
+TEST(SizedStruct, OlderCaller_NewFieldsKeepTheirDefaults) {
   Grown read{sizeof(Grown), 7, 9};
   ASSERT_EQ(read_sized(structure(16, 16).get(), read), SizedRead::ok);
   EXPECT_EQ(read.first, 0x0101010101010101u);
   EXPECT_EQ(read.second, 9u);
 }
 
-TEST(SizedStruct, ANewerCallersTailIsAcceptedWhenItIsZeroAndRefusedWhenItIsNot) {
+TEST(SizedStruct, NewerCaller_TailMustBeZero) {
   for (size_t size = sizeof(Grown); size <= sizeof(Grown) + 64; ++size) {
     Grown read{};
     EXPECT_EQ(read_sized(structure(size, size).get(), read), SizedRead::ok) << size;
@@ -59,13 +61,13 @@ TEST(SizedStruct, ANewerCallersTailIsAcceptedWhenItIsZeroAndRefusedWhenItIsNot) 
   }
 }
 
-TEST(SizedStruct, AnUninitialisedSizeIsRefusedBeforeTheTailIsRead) {
+TEST(SizedStruct, UninitialisedSize_IsRefusedBeforeReadingTheTail) {
   Grown read{};
   EXPECT_EQ(read_sized(structure(sizeof(Grown), largest_struct_size + 1).get(), read), SizedRead::too_large);
   EXPECT_EQ(read_sized(structure(sizeof(Grown), ~size_t{0}).get(), read), SizedRead::too_large);
 }
 
-TEST(SizedStruct, WritingFillsWhatTheCallerKnowsAndZeroesWhatTheLibraryDoesNot) {
+TEST(SizedStruct, Writing_FillsKnownFieldsAndZeroesTheRest) {
   auto old_caller = structure(16, 16);
   write_sized(old_caller.get(), 16, Grown{0, 3, 4});
   EXPECT_EQ(stated_size(old_caller.get()), 16u);

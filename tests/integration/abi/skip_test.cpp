@@ -1,4 +1,4 @@
-// What frames do not need is not done, and the picture is the one that doing it would give.
+// Tests that unneeded work of a frame is skipped without changing the picture.
 
 #include "passes/common/uniform_light.hpp"
 #include "tests/integration/abi/dermis_fixture.hpp"
@@ -8,14 +8,14 @@
 namespace dermis::abi_test {
 namespace {
 
-// What looks for flat light taken out.
+// An overlay that removes the detection of flat light.
 constexpr const char* without_uniform_light = R"({ "dermis_overlay": 2, "edits": [
   { "remove": "/passes/classify_uniform_light" }, { "remove": "/passes/classify/write/light_range" },
   { "remove": "/passes/classify/write/light_cells" } ] })";
 
 struct Skip : DermisTest {
   dermis_graph graph = nullptr;
-  bool handed_out = false; // scattered_light is bound
+  bool handed_out = false; // Whether scattered_light is bound.
 
   void make(bool profiles = true, bool skips = true) {
     GraphOptions options;
@@ -46,7 +46,7 @@ struct Skip : DermisTest {
   }
 };
 
-TEST_F(Skip, WithoutAProfileThePlanIsEmptyAndTheLightStays) {
+TEST_F(Skip, NoProfile_EmptyPlanAndUnchangedLight) {
   make(false);
   no_subsurface();
   const auto before = texels("lighting");
@@ -60,7 +60,7 @@ TEST_F(Skip, WithoutAProfileThePlanIsEmptyAndTheLightStays) {
   EXPECT_EQ(texels("lighting"), before);
 }
 
-TEST_F(Skip, WithoutAProfileLightIsStillHandedOut) {
+TEST_F(Skip, NoProfile_LightIsStillExported) {
   handed_out = true;
   make(false);
   no_subsurface();
@@ -74,7 +74,7 @@ TEST_F(Skip, WithoutAProfileLightIsStillHandedOut) {
     }
 }
 
-TEST_F(Skip, EmptyBoundsLaunchNothingAndTheLightStays) {
+TEST_F(Skip, EmptyBounds_LaunchNothing) {
   make();
   const auto before = texels("lighting");
   const dermis_choice choice = run_frame(DERMIS_FRAME_BOUNDS);
@@ -84,11 +84,12 @@ TEST_F(Skip, EmptyBoundsLaunchNothingAndTheLightStays) {
   EXPECT_EQ(texels("lighting"), before);
 }
 
-TEST_F(Skip, EmptyBoundsStillHandOutLight) {
+TEST_F(Skip, EmptyBounds_LightIsStillExported) {
   handed_out = true;
   make();
   const auto before = texels("lighting");
-  EXPECT_EQ(run_frame(DERMIS_FRAME_BOUNDS, {64, 0, 8, 8}).dispatches, 1u); // outside of the picture
+  // Outside of the picture.
+  EXPECT_EQ(run_frame(DERMIS_FRAME_BOUNDS, {64, 0, 8, 8}).dispatches, 1u);
   const auto out = texels("scattered_light");
   for (size_t i = 0; i < out.size(); ++i)
     if (i % 4 != 3) {
@@ -96,7 +97,7 @@ TEST_F(Skip, EmptyBoundsStillHandOutLight) {
     }
 }
 
-TEST_F(Skip, AFrameAfterEmptyBoundsIsAsAnyOther) {
+TEST_F(Skip, FrameAfterEmptyBounds_IsNormal) {
   make();
   const auto before = texels("lighting");
   run_frame();
@@ -132,20 +133,20 @@ TEST_F(Skip, BoundsWithoutTheirFlagAreRefused) {
   EXPECT_THAT(dermis_last_error(), testing::HasSubstr("DERMIS_FRAME_BOUNDS"));
 }
 
-TEST_F(Skip, WithNothingOnScreenOnlyTilesAreLookedAt) {
+TEST_F(Skip, NothingOnScreen_OnlyClassifiesTiles) {
   make();
   no_subsurface();
   const auto before = texels("lighting");
   const dermis_choice choice = run_frame();
   EXPECT_EQ(choice.skips, DERMIS_SKIP_NOTHING_SEEN);
-  EXPECT_EQ(choice.groups, 4u + 1 + 1); // classes by 4x4 tiles, flat light by 64, the list
+  EXPECT_EQ(choice.groups, 4u + 1 + 1); // Classes by 4x4 tiles, flat light by 64 tiles, the list.
   EXPECT_EQ(texels("lighting"), before);
 }
 
-TEST_F(Skip, FlatLightIsCopiedAndThePictureStaysWithinTheTolerance) {
+TEST_F(Skip, FlatLight_IsCopiedWithinTheTolerance) {
   const auto light = [](uint32_t x, uint32_t) {
     return 0.75f + 0.0005f * float(x % 2);
-  }; // within half a step of 8 bits
+  }; // Within half a step of 8 bits.
   make(true, false);
   fill("lighting", light);
   EXPECT_EQ(run_frame().uniform_tiles, 0u);
@@ -157,13 +158,13 @@ TEST_F(Skip, FlatLightIsCopiedAndThePictureStaysWithinTheTolerance) {
   EXPECT_EQ(choice.scattering_tiles, 0u);
   EXPECT_EQ(choice.skips, DERMIS_SKIP_UNIFORM_LIGHT);
   const auto skipped = texels("lighting");
-  // What differs: the tolerance, and three roundings to half floats (2^-11 each) of the pyramid's own.
+  // Difference: the tolerance, and the pyramid's three roundings to half floats (2^-11 each).
   const double bound = 0.7505 * (subsurface::flat_tolerance + 3.0 / 2048);
   for (size_t i = 0; i < skipped.size(); ++i)
     ASSERT_NEAR(skipped[i], unskipped[i], i % 4 == 3 ? 0 : bound) << i;
 }
 
-TEST_F(Skip, FlatLightIsHandedOutAsItIs) {
+TEST_F(Skip, FlatLight_IsExportedUnchanged) {
   handed_out = true;
   make();
   fill("lighting", [](uint32_t, uint32_t) { return 0.75f; });
@@ -175,8 +176,8 @@ TEST_F(Skip, FlatLightIsHandedOutAsItIs) {
     }
 }
 
-TEST_F(Skip, LightThatIsOnlyCopiedComesOutTheSameWhereverAlbedoIsApplied) {
-  // Once taken from the lighting on the way back, once through scattered, as passes of overlays want it.
+TEST_F(Skip, CopiedLight_IsEqualForEveryTexturing) {
+  // Once from the lighting directly, and once through `scattered`, which passes of overlays need.
   for (const char* texturing : {"\"post\"", "\"pre_post\"", "\"pre\""}) {
     const auto picture = [&](bool through) {
       GraphOptions options;
@@ -194,7 +195,7 @@ TEST_F(Skip, LightThatIsOnlyCopiedComesOutTheSameWhereverAlbedoIsApplied) {
       fill("albedo", [](uint32_t x, uint32_t y) { return float((x * 13 + y * 7) % 32) / 32.0f; });
       const auto bound = bindings(graph);
       dermis_frame one = frame(bound);
-      one.metres_per_unit = 100; // all of it below a pixel
+      one.metres_per_unit = 100; // All scattering is below a pixel.
       EXPECT_EQ(record(graph, one), DERMIS_OK);
       return texels("lighting");
     };
@@ -202,7 +203,7 @@ TEST_F(Skip, LightThatIsOnlyCopiedComesOutTheSameWhereverAlbedoIsApplied) {
   }
 }
 
-TEST_F(Skip, LightThatOneFarTileBreaksIsNotFlatAsFarAsItReaches) {
+TEST_F(Skip, OneDifferentTile_IsSeenWithinTheReach) {
   make();
   fill("lighting", [](uint32_t x, uint32_t y) { return x < 8 && y < 8 ? 1.0f : 0.5f; });
   const dermis_choice choice = run_frame();
@@ -212,9 +213,9 @@ TEST_F(Skip, LightThatOneFarTileBreaksIsNotFlatAsFarAsItReaches) {
   EXPECT_EQ(choice.scattering_tiles, (reach + 1) * (reach + 1));
 }
 
-TEST_F(Skip, FarLightThatDiffersInTheSameCellIsSeenExactlyAsFarAsItReaches) {
-  // Cells of 4x4 tiles are looked at first: what differs in one lies beyond the reach of some of its
-  // neighbours.
+TEST_F(Skip, DifferenceInACell_IsSeenExactlyWithinTheReach) {
+  // Cells of 4x4 tiles are tested first. Differing light in a cell is beyond the reach of some
+  // neighbouring tiles.
   const auto reach = static_cast<uint32_t>(std::ceil(subsurface::flat_reach_d * 3.67 / 3.5 / 0.5 / 8));
   for (const uint32_t column : {0u, 1u, 2u, 3u}) {
     make();
@@ -226,7 +227,7 @@ TEST_F(Skip, FarLightThatDiffersInTheSameCellIsSeenExactlyAsFarAsItReaches) {
   }
 }
 
-TEST_F(Skip, LightBesideScatteringBelowAPixelDoesNotCountAsFlat) {
+TEST_F(Skip, SubpixelScattering_LightIsNotTested) {
   GraphOptions options;
   options.text = read_text("configs/graphs/skin.json");
   options.unbound = {"albedo", "scattered_light"};
@@ -238,11 +239,11 @@ TEST_F(Skip, LightBesideScatteringBelowAPixelDoesNotCountAsFlat) {
   const dermis_choice choice = run_frame();
   const auto reach = static_cast<uint32_t>(std::ceil(subsurface::flat_reach_d * 3.67 / 3.5 / 0.5 / 8));
   EXPECT_EQ(choice.copied_tiles, 1u);
-  EXPECT_EQ(choice.scattering_tiles, (reach + 1) * (reach + 1) - 1); // its light is not looked at
+  EXPECT_EQ(choice.scattering_tiles, (reach + 1) * (reach + 1) - 1); // Its light is not tested.
 }
 
-TEST_F(Skip, BoundsCutTilesWhereverTheyEnd) {
-  // Pixels outside of the bounds count as without subsurface, in the middle of a tile, too.
+TEST_F(Skip, BoundsCanCutTiles) {
+  // Pixels outside of the bounds count as having no subsurface, also in the middle of a tile.
   for (const std::array<uint32_t, 4> bounds :
        {std::array<uint32_t, 4>{3, 5, 1, 1}, {7, 7, 2, 2}, {0, 0, 64, 1}, {33, 0, 30, 64}, {8, 8, 8, 8}}) {
     make();
@@ -253,7 +254,7 @@ TEST_F(Skip, BoundsCutTilesWhereverTheyEnd) {
   }
 }
 
-TEST_F(Skip, ToolsAreShownTheClassOfEachTile) {
+TEST_F(Skip, ToolsGetTheClassOfEachTile) {
   GraphOptions options;
   options.text = read_text("configs/graphs/skin.json");
   options.overlays = {read_text("configs/overlays/skips.json")};
@@ -267,7 +268,7 @@ TEST_F(Skip, ToolsAreShownTheClassOfEachTile) {
   const auto shown = texels("skips");
   for (uint32_t y = 0; y < 64; ++y)
     for (uint32_t x = 0; x < 64; ++x) {
-      ASSERT_EQ(shown[4 * (64 * y + x)], x < 32 ? 3.0f : 0.0f) << x << ", " << y; // flat in light
+      ASSERT_EQ(shown[4 * (64 * y + x)], x < 32 ? 3.0f : 0.0f) << x << ", " << y; // Flat light.
       ASSERT_EQ(shown[4 * (64 * y + x) + 1], x < 32 ? 1.0f : 0.0f);
     }
 }
@@ -277,17 +278,18 @@ TEST_F(Skip, ScatteringBelowAPixelIsCopiedExactly) {
   const auto before = texels("lighting");
   const auto bound = bindings(graph);
   dermis_frame one = frame(bound);
-  one.metres_per_unit = 100; // a pixel is five centimetres
+  one.metres_per_unit = 100; // A pixel is 5 cm.
   ASSERT_EQ(record(graph, one), DERMIS_OK);
   dermis_choice choice = DERMIS_CHOICE_INIT;
   ASSERT_EQ(dermis_graph_choice(graph, last_frame, &choice), DERMIS_OK);
   EXPECT_EQ(choice.copied_tiles, 64u);
   EXPECT_EQ(choice.skips, DERMIS_SKIP_SUBPIXEL);
-  EXPECT_EQ(choice.groups, 4u + 1 + 1 + 64); // classes, flat light, the list, and once over the listed tiles
+  // Classes, flat light, the list, and once over the listed tiles.
+  EXPECT_EQ(choice.groups, 4u + 1 + 1 + 64);
   const auto after = texels("lighting");
   for (size_t i = 0; i < after.size(); ++i)
     if (i % 4 != 3) {
-      ASSERT_EQ(after[i], before[i]) << i; // light was given in halves
+      ASSERT_EQ(after[i], before[i]) << i; // The input light consists of half floats.
     }
 }
 

@@ -1,4 +1,5 @@
-// What is asked for in two calls: how much there is, then all of it, or as much as there is room for.
+// Tests two-call queries: the first call returns the count, the second all elements or as many as
+// fit.
 
 #include "tests/integration/abi/sources.hpp"
 #include "tests/integration/embedding/null_host.hpp"
@@ -65,7 +66,7 @@ template <class T> void expect_array_property(const std::function<dermis_result(
   EXPECT_THAT(dermis_last_error(), HasSubstr("struct_size"));
 }
 
-TEST_F(TwoCalls, FillNoMoreOfAnArrayThanThereIsRoomFor) {
+TEST_F(TwoCalls, FillAtMostTheCapacity) {
   expect_array_property<dermis_requirement>([&](uint32_t* count, dermis_requirement* items) {
     return dermis_query_requirements(NullDevice::loader(), host.device.instance(), host.device.physical(),
                                      count, items);
@@ -113,7 +114,7 @@ void expect_text_property(const std::function<dermis_result(size_t*, char*)>& as
   EXPECT_EQ(std::strlen(text.c_str()), all - 1) << "the final 0 is counted";
 }
 
-TEST_F(TwoCalls, WriteATextWholeOrNotAtAll) {
+TEST_F(TwoCalls, TextIsWrittenCompletelyOrNotAtAll) {
   for (const dermis_describe_format format :
        {DERMIS_DESCRIBE_JSON, DERMIS_DESCRIBE_DOT, DERMIS_DESCRIBE_TEXT})
     expect_text_property(
@@ -124,7 +125,7 @@ TEST_F(TwoCalls, WriteATextWholeOrNotAtAll) {
       [&](size_t* size, char* text) { return dermis_export_pass_types(host.context, size, text); });
 }
 
-TEST_F(TwoCalls, AskForFramesThatWereRecorded) {
+TEST_F(TwoCalls, OnlyRecordedFramesCanBeQueried) {
   uint32_t count = 0;
   dermis_choice choice = DERMIS_CHOICE_INIT;
   for (const uint64_t later : {uint64_t{2}, ~uint64_t{0}}) {

@@ -1,4 +1,5 @@
-// A queue family with compute and without graphics records every frame, the one after a resize included.
+// A queue family with compute and without graphics records every frame, including the frame after a
+// resize.
 
 #include "tests/integration/abi/sources.hpp"
 #include "tests/integration/embedding/null_host.hpp"
@@ -8,8 +9,8 @@
 namespace dermis::abi_test {
 namespace {
 
-// Stages that a family with compute and transfer supports (Vulkan 1.3, table "Supported pipeline stage
-// flags").
+// Stages that a family with compute and transfer supports (Vulkan 1.3, table "Supported pipeline
+// stage flags").
 constexpr VkPipelineStageFlags2 compute_stages =
     VK_PIPELINE_STAGE_2_TOP_OF_PIPE_BIT | VK_PIPELINE_STAGE_2_DRAW_INDIRECT_BIT |
     VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT |

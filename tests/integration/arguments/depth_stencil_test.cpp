@@ -1,4 +1,4 @@
-// Which aspects of a combined depth-stencil image barriers name.
+// Tests which aspects the barriers of a combined depth-stencil image name.
 
 #include "tests/integration/abi/sources.hpp"
 #include "tests/integration/embedding/null_host.hpp"
@@ -18,7 +18,7 @@ struct Layouts {
   VkImageLayout before, after;
 };
 
-// Aspects of all barriers of the depth image in one frame.
+// Returns the aspects of all barriers on the depth image in one frame.
 std::vector<VkImageAspectFlags> aspects(uint32_t flags, VkFormat depth_format, const Layouts& layouts) {
   NullHost host;
   dermis_context_desc context = host.context_desc();

@@ -1,5 +1,4 @@
-// Devices that lack something, refuse something, or hand out memory that cannot be used: what the call says
-// then.
+// Tests the messages for devices with missing features, failing calls, or unusable memory.
 
 #include "framegraph/vulkan/function_table.hpp"
 #include "tests/integration/abi/sources.hpp"
@@ -17,15 +16,16 @@ using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
 
-// A physical device that is less than the one that runs nothing. Vulkan's functions have no user pointer, so
-// what they share is static; tests of this file run one by one.
+// The null device with missing features. Vulkan functions have no user pointer, so the state is
+// static; tests of this file run sequentially.
 struct Lack {
-  const char* function = ""; // that the loader does not know
-  const char* renamed = "";  // of the device, that it knows with "KHR" behind alone
+  const char* function = ""; // Unknown to the loader.
+  const char* renamed = "";  // A device function that is only known with the suffix "KHR".
   uint32_t api_version = VK_API_VERSION_1_3;
-  uint32_t instance_version = VK_API_VERSION_1_3; // the device gives only functions of this version
-  bool extensions_enabled = false;                // of the device: functions under their "KHR" names
-  bool features_unknown = false;                  // a 1.0 instance without properties2
+  // The device gives only functions of this version.
+  uint32_t instance_version = VK_API_VERSION_1_3;
+  bool extensions_enabled = false; // The device gives functions under their "KHR" names.
+  bool features_unknown = false;   // A 1.0 instance without properties2.
   std::vector<const char*> extensions;
   VkQueueFlags queue_flags = VK_QUEUE_COMPUTE_BIT;
   VkResult enumeration = VK_SUCCESS;
@@ -57,7 +57,7 @@ VKAPI_ATTR VkResult VKAPI_CALL some_extensions(VkPhysicalDevice, const char*, ui
 }
 VKAPI_ATTR void VKAPI_CALL no_features(VkPhysicalDevice, VkPhysicalDeviceFeatures2*) {}
 
-// The Vulkan version that added a function to the core.
+// Returns the Vulkan version that added a function to the core.
 uint32_t core_version_of(std::string_view name) {
   if (name.starts_with("vkBind") && name.ends_with("2")) return VK_API_VERSION_1_1;
   if (name == "vkResetQueryPool") return VK_API_VERSION_1_2;
@@ -117,7 +117,7 @@ struct PoorDevice : ::testing::Test {
   }
 };
 
-TEST_F(PoorDevice, OfAnOlderVulkanIsRefusedAndAskedForNoFeatureOfANewer) {
+TEST_F(PoorDevice, OlderVulkan_IsRefusedWithoutNewerQueries) {
   lack.api_version = VK_API_VERSION_1_1;
   EXPECT_EQ(create(), DERMIS_ERROR_UNSUPPORTED);
   EXPECT_THAT(dermis_last_error(), AllOf(HasSubstr("VK_API_VERSION_1_2"), HasSubstr("synchronization2")));
@@ -126,7 +126,7 @@ TEST_F(PoorDevice, OfAnOlderVulkanIsRefusedAndAskedForNoFeatureOfANewer) {
     EXPECT_EQ(item.present, 0u) << item.name;
 }
 
-TEST_F(PoorDevice, OfVulkan12NeedsTheTwoExtensionsThat13Has) {
+TEST_F(PoorDevice, Vulkan12_NeedsTwoExtensions) {
   lack.api_version = VK_API_VERSION_1_2;
   EXPECT_EQ(create(), DERMIS_ERROR_UNSUPPORTED);
   EXPECT_THAT(dermis_last_error(), AllOf(HasSubstr(VK_KHR_SYNCHRONIZATION_2_EXTENSION_NAME),
@@ -143,7 +143,7 @@ TEST_F(PoorDevice, OfVulkan12NeedsTheTwoExtensionsThat13Has) {
     EXPECT_TRUE(item.present == 1 || item.required == 0) << item.name;
 }
 
-TEST_F(PoorDevice, ThatCannotBeAskedLacksEverythingAndNothingIsCalled) {
+TEST_F(PoorDevice, NoFeatureQuery_EverythingIsMissing) {
   for (const char* function : {"vkGetPhysicalDeviceProperties", "vkGetPhysicalDeviceFeatures2"}) {
     lack.function = function;
     EXPECT_EQ(create(), DERMIS_ERROR_UNSUPPORTED) << function;
@@ -159,10 +159,10 @@ constexpr const char* device_functions[] = {DERMIS_DEVICE_FUNCTIONS(DERMIS_NAME)
 constexpr const char* label_functions[] = {DERMIS_LABEL_FUNCTIONS(DERMIS_NAME)};
 #undef DERMIS_NAME
 
-TEST_F(PoorDevice, WithoutOneOfTheFunctionsIsRefusedByItsName) {
+TEST_F(PoorDevice, MissingFunction_IsNamed) {
   for (const char* name : instance_functions) {
     if (std::string_view(name) == "vkGetPhysicalDeviceProperties")
-      continue; // without it nothing is asked, above
+      continue; // Without this function no feature is queried, as above.
     lack.function = name;
     EXPECT_EQ(create(), DERMIS_ERROR_UNSUPPORTED) << name;
     EXPECT_THAT(dermis_last_error(), HasSubstr(name));
@@ -219,7 +219,7 @@ TEST_F(PoorDevice, Vulkan12WithoutEnabledExtension_NamesIt) {
                     HasSubstr(VK_KHR_MAINTENANCE_4_EXTENSION_NAME), Not(HasSubstr("apiVersion"))));
 }
 
-TEST_F(PoorDevice, WithoutLabelsIsRefusedWhereTheyAreAskedForAlone) {
+TEST_F(PoorDevice, MissingLabels_AreAnErrorOnlyIfRequested) {
   for (const char* name : label_functions) {
     lack.function = name;
     EXPECT_EQ(create(), DERMIS_OK) << dermis_last_error();
@@ -232,14 +232,14 @@ TEST_F(PoorDevice, WithoutLabelsIsRefusedWhereTheyAreAskedForAlone) {
   }
 }
 
-TEST_F(PoorDevice, WhoseQueueCannotComputeIsRefused) {
+TEST_F(PoorDevice, QueueWithoutCompute_IsRefused) {
   lack.queue_flags = VK_QUEUE_GRAPHICS_BIT;
   EXPECT_EQ(create(), DERMIS_ERROR_ARGUMENT);
   EXPECT_THAT(dermis_last_error(), HasSubstr("queue family 0 has no compute"));
   EXPECT_EQ(host.context, nullptr);
 }
 
-TEST_F(PoorDevice, WithTheExtensionsForRaysIsAskedForTheirFeatures) {
+TEST_F(PoorDevice, RayExtensions_FeaturesAreQueried) {
   lack.extensions = {VK_KHR_ACCELERATION_STRUCTURE_EXTENSION_NAME, VK_KHR_RAY_QUERY_EXTENSION_NAME};
   for (const dermis_requirement& item : requirements()) {
     if (item.type == DERMIS_REQUIREMENT_DEVICE_EXTENSION && item.required == 0) {
@@ -251,9 +251,9 @@ TEST_F(PoorDevice, WithTheExtensionsForRaysIsAskedForTheirFeatures) {
   }
 }
 
-// ---- results of Vulkan
+// ---- Results of Vulkan
 
-TEST(VulkanResults, BecomeTheDocumentedResultsAndAreNamed) {
+TEST(VulkanResults, MapToTheDocumentedResults) {
   struct Case {
     VkResult given;
     dermis_result expected;
@@ -289,7 +289,7 @@ TEST(VulkanResults, BecomeTheDocumentedResultsAndAreNamed) {
   }
 }
 
-TEST(VulkanResults, OfAViewMadeForABoundImageAreToldAndTheFrameCanBeRecordedAgain) {
+TEST(VulkanResults, FailedViewCreation_FrameCanBeRecordedAgain) {
   NullHost host;
   ASSERT_EQ(host.make_context(host.context_desc()), DERMIS_OK);
   ASSERT_EQ(host.make_graph(), DERMIS_OK);
@@ -312,12 +312,12 @@ TEST(VulkanResults, OfAViewMadeForABoundImageAreToldAndTheFrameCanBeRecordedAgai
   EXPECT_EQ(lost.record(), DERMIS_ERROR_DEVICE_LOST) << "it is remembered";
 }
 
-// ---- memory that the host hands out
+// ---- Memory of the host
 
 struct BadBlocks {
   enum class Fault { none, no_memory, misaligned, unmapped } fault = Fault::none;
   uint64_t alive = 0;
-  uint64_t taken = 0, bad_at = 0; // number of the block, from 1
+  uint64_t taken = 0, bad_at = 0; // Number of the block, from 1.
 
   static VkResult DERMIS_CALL take(void* user, const dermis_memory_request* request,
                                    dermis_memory_block* block) {
@@ -336,7 +336,7 @@ struct BadBlocks {
   }
 };
 
-TEST(HostsDeviceMemory, ThatCannotBeUsedIsRefusedAndGoesBack) {
+TEST(HostsDeviceMemory, UnusableBlock_IsRefusedAndFreed) {
   const std::pair<BadBlocks::Fault, const char*> faults[] = {
       {BadBlocks::Fault::no_memory, "gave no memory"},
       {BadBlocks::Fault::misaligned, "no multiple of"},
@@ -360,7 +360,7 @@ TEST(HostsDeviceMemory, ThatCannotBeUsedIsRefusedAndGoesBack) {
       if (result == DERMIS_ERROR_VULKAN) {
         ++refusals;
         EXPECT_THAT(dermis_last_error(), HasSubstr(said)) << nth;
-        // A block without memory has nothing to give back.
+        // A block without memory is not freed.
         EXPECT_EQ(blocks.alive, fault == BadBlocks::Fault::no_memory ? 1u : 0u) << nth;
       } else {
         EXPECT_EQ(result, DERMIS_OK) << dermis_last_error();

@@ -1,4 +1,5 @@
-// Every field of a description that can be wrong: the message names it, and nothing is made.
+// Tests every field of a description that can be wrong: the message names the field, and nothing is
+// created.
 
 #include "framegraph/text/limits.hpp"
 #include "tests/integration/abi/sources.hpp"
@@ -15,7 +16,7 @@ namespace {
 
 using testing::HasSubstr;
 
-// A description with one of everything, and its arrays.
+// A complete description and its arrays.
 struct Description {
   std::string graph = read_text("configs/graphs/burley.json"), skin = read_text("configs/profiles/skin.json"),
               overlay = read_text("configs/overlays/accumulate.json");
@@ -55,7 +56,7 @@ struct Fields : ::testing::Test {
   }
 };
 
-TEST_F(Fields, OfAGraphThatAreWrongAreNamedOneByOne) {
+TEST_F(Fields, OfAGraph_WrongOnesAreNamed) {
   using Change = std::function<void(Description&)>;
   const std::pair<const char*, Change> changes[] = {
       {"desc.keep is 0x1, expected 0", [](auto& d) { d.desc.keep = DERMIS_KEEP_SOURCE; }},
@@ -102,8 +103,8 @@ TEST_F(Fields, OfAGraphThatAreWrongAreNamedOneByOne) {
   EXPECT_THAT(dermis_last_error(), HasSubstr("graph is NULL"));
 }
 
-// Sources without a name are named by what they are.
-TEST_F(Fields, OfTextsThatAreWrongAreToldByTheirPlace) {
+// Sources without a name are named by their role.
+TEST_F(Fields, OfTexts_WrongOnesAreReportedWithTheirPlace) {
   const std::string broken = "{ \"dermis\": 2, }", not_a_profile = "{ \"scale\": 1 }";
   const std::pair<const char*, std::function<void(Description&)>> changes[] = {
       {"profile 2:1:", [&](auto& d) { d.profiles[1].source = source_of(broken, nullptr); }},
@@ -125,7 +126,7 @@ TEST_F(Fields, OfTextsThatAreWrongAreToldByTheirPlace) {
   }
 }
 
-TEST_F(Fields, OfCallsOnAGraphThatAreNullAreNamed) {
+TEST_F(Fields, OfCallsOnAGraph_NullOnesAreNamed) {
   ASSERT_EQ(host.make_graph(), DERMIS_OK) << dermis_last_error();
   const auto refused = [](dermis_result result, const char* said) {
     EXPECT_EQ(result, DERMIS_ERROR_ARGUMENT) << said;
@@ -161,7 +162,7 @@ TEST_F(Fields, OfCallsOnAGraphThatAreNullAreNamed) {
           "frame_index is 1, expected that of the frame recorded last, 0");
 }
 
-TEST_F(Fields, OfABudgetsTablesThatAreWrongChangeNothing) {
+TEST_F(Fields, OfABudget_WrongTablesChangeNothing) {
   ASSERT_EQ(host.make_graph(), DERMIS_OK) << dermis_last_error();
   const std::string broken = "{ \"dermis_errors\": 2, }";
   const dermis_source bad = source_of(broken, nullptr);
@@ -179,8 +180,8 @@ TEST_F(Fields, OfABudgetsTablesThatAreWrongChangeNothing) {
   }
 }
 
-// Each setting of a graph that has all types of them, given what it does not take.
-TEST_F(Fields, OfSettingsTakeTheirTypeAndRangeAlone) {
+// Gives each setting of a graph with all types of settings a value of a wrong type or range.
+TEST_F(Fields, OfSettings_OnlyTypeAndRangeAreAccepted) {
   const std::string text = R"({ "dermis": 2, "name": "settings",
     "settings": { "on": { "bool": true }, "count": { "int": 4, "min": 1, "max": 9 },
                   "share": { "real": 0.5, "min": 0, "max": 1 },
@@ -194,7 +195,7 @@ TEST_F(Fields, OfSettingsTakeTheirTypeAndRangeAlone) {
       << dermis_report_text(report);
   dermis_report_destroy(report);
   struct Case {
-    const char *name, *json, *said; // said: null where it is taken
+    const char *name, *json, *said; // `said` is null if the value is accepted.
   };
   const Case cases[] = {
       {"on", "false", nullptr},

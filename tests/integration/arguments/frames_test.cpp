@@ -1,5 +1,5 @@
-// Frames that cannot be recorded: the message names the field, the graph is as it was, and the frame can be
-// recorded again once it is right.
+// Tests frames that cannot be recorded: the message names the field, the graph is unchanged, and
+// the corrected frame can be recorded.
 
 #include "tests/integration/abi/sources.hpp"
 #include "tests/integration/embedding/recorded_frame.hpp"
@@ -24,7 +24,7 @@ struct Frames : RecordedFrame {};
 using Bindings = std::vector<dermis_image_binding>;
 using Change = std::function<void(dermis_frame&, Bindings&)>;
 
-TEST_F(Frames, WithAWrongFieldAreRefusedByItsName) {
+TEST_F(Frames, WrongField_IsNamed) {
   const std::pair<const char*, Change> changes[] = {
       {"command_buffer is NULL", [](auto& f, auto&) { f.command_buffer = nullptr; }},
       {"flags is 0x8", [](auto& f, auto&) { f.flags = 8; }},
@@ -85,7 +85,7 @@ TEST_F(Frames, WithAWrongFieldAreRefusedByItsName) {
   EXPECT_EQ(host.record(), DERMIS_OK) << dermis_last_error();
 }
 
-TEST_F(Frames, WithAMatrixThatIsStoredByColumnsAreToldSo) {
+TEST_F(Frames, ColumnMajorMatrix_IsReported) {
   dermis_frame frame = host.frame_at(2);
   const float by_rows[16] = {2, 0, 0, 0, 0, -2, 0, 0, 0, 0, -1, -0.1f, 0, 0, -1, 0};
   for (size_t i = 0; i < 16; ++i)
@@ -93,14 +93,14 @@ TEST_F(Frames, WithAMatrixThatIsStoredByColumnsAreToldSo) {
   EXPECT_EQ(dermis_graph_record(host.graph, &frame), DERMIS_ERROR_ARGUMENT);
   EXPECT_THAT(dermis_last_error(), HasSubstr("it is stored column by column"));
   std::copy(by_rows, by_rows + 16, frame.clip_from_view);
-  frame.clip_from_view[1] = 1; // also wrong, in another way
+  frame.clip_from_view[1] = 1; // Wrong in another way, too.
   EXPECT_EQ(dermis_graph_record(host.graph, &frame), DERMIS_ERROR_ARGUMENT);
   EXPECT_THAT(dermis_last_error(), Not(HasSubstr("column by column")));
   std::copy(by_rows, by_rows + 16, frame.clip_from_view);
   EXPECT_EQ(dermis_graph_record(host.graph, &frame), DERMIS_OK) << dermis_last_error();
 }
 
-TEST_F(Frames, WithContradictingHandednessAreRefused) {
+TEST_F(Frames, ContradictingHandedness_IsRefused) {
   const float perspective[16] = {2, 0, 0, 0, 0, -2, 0, 0, 0, 0, -1, -0.1f, 0, 0, -1, 0};
   const float orthographic[16] = {2, 0, 0, 0, 0, -2, 0, 0, 0, 0, -1, 0, 0, 0, 0, 1};
   using Matrix = const float(&)[16];
@@ -139,7 +139,7 @@ TEST_F(Frames, WithContradictingHandednessAreRefused) {
   }
 }
 
-TEST_F(Frames, AreTakenBackOnceAndNotAcrossAReload) {
+TEST_F(Frames, Discard_WorksOnceAndNotAcrossAReload) {
   const auto refused = [&](uint64_t index, const char* said) {
     EXPECT_EQ(dermis_frame_discard(host.graph, index), DERMIS_ERROR_ARGUMENT) << said;
     EXPECT_THAT(dermis_last_error(), HasSubstr(said));
@@ -157,14 +157,14 @@ TEST_F(Frames, AreTakenBackOnceAndNotAcrossAReload) {
   EXPECT_EQ(host.record(), DERMIS_OK) << dermis_last_error();
 }
 
-// ---- what hosts in C++ throw, and what they deliver
+// ---- Exceptions of C++ hosts, and the files that hosts open
 
 VkResult DERMIS_CALL take_and_throw(void*, const dermis_memory_request*, dermis_memory_block*) {
   throw 1;
 }
 void DERMIS_CALL give_back_nothing(void*, const dermis_memory_block*) {}
 
-TEST(ThrowingHosts, AreToldByTheResultOfTheCall) {
+TEST(ThrowingHosts, ExceptionsBecomeResultCodes) {
   dermis_device_allocator allocator = DERMIS_DEVICE_ALLOCATOR_INIT;
   allocator.take = take_and_throw;
   allocator.give_back = give_back_nothing;
@@ -188,7 +188,7 @@ uint32_t DERMIS_CALL deliver(void* user, const char*, dermis_source* source) {
   return 1;
 }
 
-TEST(IncludedFiles, ThatCannotBeReadAreErrorsOfTheGraph) {
+TEST(IncludedFiles, Unreadable_AreErrorsOfTheGraph) {
   NullHost host;
   ASSERT_EQ(host.make_context(host.context_desc()), DERMIS_OK) << dermis_last_error();
   const std::string text =
@@ -208,9 +208,9 @@ TEST(IncludedFiles, ThatCannotBeReadAreErrorsOfTheGraph) {
   }
 }
 
-// ---- kinds of passes of the host
+// ---- Pass types of the host
 
-TEST(HostsPassTypes, BeyondWhatAContextHoldsAreRefused) {
+TEST(HostsPassTypes, TooManyPassTypes_AreRefused) {
   NullHost host;
   ASSERT_EQ(host.make_context(host.context_desc()), DERMIS_OK) << dermis_last_error();
   dermis_port port = DERMIS_PORT_INIT;

@@ -1,4 +1,5 @@
-// Queue families of states: zeroed memory transfers nothing, special families have names.
+// Tests queue families of states: zeroed memory causes no transfer, and special families have
+// names.
 
 #include "tests/integration/embedding/null_host.hpp"
 
@@ -14,7 +15,8 @@ namespace {
 using testing::HasSubstr;
 
 constexpr uint32_t own_family = 1, family_count = 3;
-bool foreign_queues = false; // Vulkan's functions have no user pointer; tests of this file run one by one
+// Vulkan functions have no user pointer; tests of this file run sequentially.
+bool foreign_queues = false;
 
 VKAPI_ATTR void VKAPI_CALL three_families(VkPhysicalDevice, uint32_t* count, VkQueueFamilyProperties* out) {
   for (uint32_t i = 0; out != nullptr && i < *count; ++i)
@@ -54,7 +56,7 @@ struct QueueFamilies : ::testing::Test {
     frame.bindings = bindings.data();
   }
 
-  // Source and destination family of each barrier that names two, in order.
+  // Returns the source and destination families of each ownership transfer, in order.
   std::vector<std::pair<uint32_t, uint32_t>> transfers() {
     std::vector<std::pair<uint32_t, uint32_t>> found;
     uint32_t count = 0;
@@ -100,7 +102,7 @@ TEST_F(QueueFamilies, TransfersReachFamilyZeroAndSpecialFamilies) {
   EXPECT_TRUE(transfers().empty()) << "a family keeps what it owns";
 }
 
-TEST_F(QueueFamilies, ThatFitNothingAreRefusedByName) {
+TEST_F(QueueFamilies, InvalidFamilies_AreRefusedByName) {
   make(false);
   const std::tuple<const char*, uint32_t, uint32_t> wrong[] = {
       {"bindings[0].after ('lighting'): queue_family is 2 and transfer 0; set transfer to 1", 2, 0},

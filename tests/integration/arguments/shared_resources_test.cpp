@@ -1,4 +1,4 @@
-// One image or buffer of the host in two slots of a frame.
+// Tests one image or buffer of the host in two slots of a frame.
 
 #include "tests/integration/embedding/recorded_frame.hpp"
 
@@ -42,14 +42,14 @@ struct SharedImages : RecordedFrame {
   }
 };
 
-TEST_F(SharedImages, AreRefusedWithBothSlotsWhereTheyAreMoved) {
+TEST_F(SharedImages, LayoutChange_IsRefusedNamingBothSlots) {
   slot("albedo").image = slot("scatter_scale").image;
-  refused("'albedo'", "'scatter_scale'"); // read in another layout than the states'
+  refused("'albedo'", "'scatter_scale'"); // Read in another layout than that of the states.
   slot("albedo").image = slot("lighting").image;
   refused("'albedo'", "'lighting'");
 }
 
-TEST_F(SharedImages, ThatRestWhereTheyAreReadAreAccepted) {
+TEST_F(SharedImages, UnchangedLayout_IsAccepted) {
   for (const char* name : {"albedo", "scatter_scale"})
     slot(name).before.layout = slot(name).after.layout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
   slot("albedo").image = slot("scatter_scale").image;
@@ -58,11 +58,11 @@ TEST_F(SharedImages, ThatRestWhereTheyAreReadAreAccepted) {
   refused("'albedo'", "'scatter_scale'");
 }
 
-TEST_F(SharedImages, WithOtherLayersOrAnotherAspectAreOthers) {
+TEST_F(SharedImages, OtherLayersOrAspect_AreDistinct) {
   slot("albedo").image = slot("lighting").image;
   slot("albedo").layer = 1;
   slot("albedo").layer_count = 1;
-  refused("'albedo'", "'lighting'"); // all layers of lighting
+  refused("'albedo'", "'lighting'"); // All layers of lighting.
   slot("lighting").layer_count = 1;
   recorded();
   slot("lighting").layer_count = 2;

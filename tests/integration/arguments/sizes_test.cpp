@@ -1,5 +1,5 @@
-// The promises of the header's STRUCTS paragraph, for every struct that crosses the border: what a caller may
-// state as its size, and what the library makes of the part that only one side knows.
+// Tests the STRUCTS paragraph of the header for every struct of the interface: the sizes that a
+// caller may state, and the treatment of fields that only one side knows.
 
 #include "integration/abi/sized_struct.hpp"
 #include "tests/integration/abi/sources.hpp"
@@ -17,9 +17,9 @@ namespace {
 using testing::HasSubstr;
 
 constexpr size_t slot_bytes = 2 * abi::largest_struct_size;
-constexpr size_t newer_by = 16; // bytes of fields that a later header might add
+constexpr size_t newer_by = 16; // Bytes of fields that a later header might add.
 
-// A struct with room behind it, as a caller with a newer header has.
+// A struct followed by more bytes, as in a caller with a newer header.
 template <class T> class Sized {
 public:
   explicit Sized(const T& value) {
@@ -47,7 +47,7 @@ template <class T> void expect_wrong_sizes_rejected(Sized<T>& given, const Call<
   }
 }
 
-// A struct that the library reads.
+// Checks a struct that the library reads.
 template <class T> void expect_input_property(const T& value, const Call<T>& call) {
   Sized<T> given(value);
   expect_wrong_sizes_rejected(given, call);
@@ -60,7 +60,7 @@ template <class T> void expect_input_property(const T& value, const Call<T>& cal
   EXPECT_EQ(call(given.get()), DERMIS_OK) << "of the first header: " << dermis_last_error();
 }
 
-// A struct that the library fills.
+// Checks a struct that the library fills.
 template <class T> void expect_output_property(const T& value, const Call<T>& call) {
   Sized<T> given(value);
   expect_wrong_sizes_rejected(given, call);
@@ -83,7 +83,7 @@ void* DERMIS_CALL take_nothing(void*, size_t, size_t) {
 }
 void DERMIS_CALL release_nothing(void*, void*, size_t, size_t) {}
 
-TEST_F(StructSizes, OfAContextFollowTheLaw) {
+TEST_F(StructSizes, Context_FollowsTheHeader) {
   expect_input_property<dermis_context_desc>(host.context_desc(), [](const dermis_context_desc* desc) {
     dermis_context made = nullptr;
     const dermis_result result = dermis_context_create(desc, &made);
@@ -92,7 +92,7 @@ TEST_F(StructSizes, OfAContextFollowTheLaw) {
   });
 }
 
-TEST_F(StructSizes, OfAGraphAViewAndABudgetFollowTheLaw) {
+TEST_F(StructSizes, GraphViewAndBudget_FollowTheHeader) {
   const std::string text = read_text("configs/graphs/burley.json");
   dermis_graph_desc desc = DERMIS_GRAPH_DESC_INIT;
   desc.source = source_of(text, "burley.json");
@@ -114,8 +114,8 @@ TEST_F(StructSizes, OfAGraphAViewAndABudgetFollowTheLaw) {
   });
 }
 
-TEST_F(StructSizes, OfAKindItsPortsAndItsSettingsFollowTheLaw) {
-  uint32_t number = 0; // names are taken once
+TEST_F(StructSizes, PassTypePortsAndSettings_FollowTheHeader) {
+  uint32_t number = 0; // Names can be registered only once.
   dermis_port port = DERMIS_PORT_INIT;
   port.name = "picture";
   port.usage = DERMIS_PORT_STORAGE_IMAGE_UPDATE;
@@ -147,7 +147,7 @@ TEST_F(StructSizes, OfAKindItsPortsAndItsSettingsFollowTheLaw) {
   });
 }
 
-TEST_F(StructSizes, OfAllocatorsFollowTheLaw) {
+TEST_F(StructSizes, Allocators_FollowTheHeader) {
   dermis_context_desc desc = host.context_desc();
   const auto create = [&] {
     dermis_context made = nullptr;
@@ -166,7 +166,8 @@ TEST_F(StructSizes, OfAllocatorsFollowTheLaw) {
   dermis_allocator memory = DERMIS_ALLOCATOR_INIT;
   memory.allocate = take_nothing;
   memory.release = release_nothing;
-  Sized<dermis_allocator> given(memory); // with which nothing can be made: its own law stops at the refusals
+  // The allocator cannot allocate, so the check stops at refused sizes.
+  Sized<dermis_allocator> given(memory);
   desc.allocator = given.get();
   expect_wrong_sizes_rejected<dermis_allocator>(given, [&](const dermis_allocator*) { return create(); });
   given.state(sizeof(dermis_allocator) + newer_by);
@@ -174,7 +175,7 @@ TEST_F(StructSizes, OfAllocatorsFollowTheLaw) {
   EXPECT_EQ(create(), DERMIS_ERROR_VERSION);
 }
 
-TEST_F(StructSizes, OfAFrameAndItsBindingsFollowTheLaw) {
+TEST_F(StructSizes, FrameAndBindings_FollowTheHeader) {
   uint64_t frame_index = host.last_frame;
   expect_input_property<dermis_frame>(host.frame_at(1), [&](dermis_frame* frame) {
     frame->frame_index = frame_index + 1;
@@ -183,7 +184,8 @@ TEST_F(StructSizes, OfAFrameAndItsBindingsFollowTheLaw) {
     if (result == DERMIS_OK) ++frame_index;
     return result;
   });
-  // One binding in front of as many wrong ones as the graph has slots: a size that is right gets further.
+  // One binding followed by as many wrong bindings as the graph has slots: with the right size, the
+  // call gets further.
   dermis_frame frame = host.frame_at(frame_index + 1);
   dermis_image_binding binding = frame.bindings[0];
   binding.slot = 1000;
@@ -199,7 +201,7 @@ TEST_F(StructSizes, OfAFrameAndItsBindingsFollowTheLaw) {
   EXPECT_EQ(dermis_graph_record(host.graph, &frame), DERMIS_ERROR_VERSION);
 }
 
-TEST_F(StructSizes, OfSourcesProfilesAndFormatsAreThoseOfTheHeader) {
+TEST_F(StructSizes, SourcesProfilesAndFormats_FollowTheHeader) {
   const std::string text = read_text("configs/graphs/burley.json"),
                     skin = read_text("configs/profiles/skin.json");
   dermis_graph_desc desc = DERMIS_GRAPH_DESC_INIT;
@@ -233,9 +235,9 @@ TEST_F(StructSizes, OfSourcesProfilesAndFormatsAreThoseOfTheHeader) {
       desc.source, [](const dermis_source* given) { return dermis_validate(given, nullptr); });
 }
 
-// A source that is a member of another struct, or that a member points to, never grows: a larger one is
-// refused wherever it stands, also where all that lies beyond is zero.
-TEST_F(StructSizes, OfNestedSourcesAreExact) {
+// A source that is a member of another struct, or that a member points to, never grows. A larger
+// size is always refused, even if all additional bytes are zero.
+TEST_F(StructSizes, NestedSources_AreExact) {
   const std::string text = read_text("configs/graphs/burley.json"),
                     skin = read_text("configs/profiles/skin.json");
   dermis_profile profile = DERMIS_PROFILE_INIT;
@@ -294,7 +296,7 @@ TEST_F(StructSizes, OfNestedSourcesAreExact) {
     }
 }
 
-TEST_F(StructSizes, OfWhatIsToldFollowTheLaw) {
+TEST_F(StructSizes, OutputStructs_FollowTheHeader) {
   expect_output_property<dermis_memory>(
       DERMIS_MEMORY_INIT, [&](dermis_memory* out) { return dermis_graph_memory(host.graph, out); });
   expect_output_property<dermis_choice>(

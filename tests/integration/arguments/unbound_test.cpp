@@ -1,4 +1,4 @@
-// Names in dermis_graph_desc.unbound and .formats that the graph has no slot for.
+// Tests names in dermis_graph_desc.unbound and .formats without a slot in the graph.
 
 #include "tests/integration/abi/sources.hpp"
 #include "tests/integration/embedding/null_host.hpp"
@@ -23,7 +23,7 @@ struct Message {
   std::string name, text;
 };
 
-// A device that also traces rays, so that every shipped graph compiles.
+// A device with ray tracing, so that every shipped graph compiles.
 VKAPI_ATTR void VKAPI_CALL all_features(VkPhysicalDevice device, VkPhysicalDeviceFeatures2* out) {
   reinterpret_cast<PFN_vkGetPhysicalDeviceFeatures2>(
       NullDevice::loader()(nullptr, "vkGetPhysicalDeviceFeatures2"))(device, out);

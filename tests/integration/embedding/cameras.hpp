@@ -1,6 +1,6 @@
 #pragma once
-// Cameras of one graph, each with images and a light of its own, on a graph that keeps light over frames: a
-// frame of a camera hangs on all the frames that it saw before.
+// Several cameras of one graph, each with separate images and light. The graph accumulates light
+// over frames, so a frame depends on all earlier frames of its camera.
 
 #include "tests/integration/abi/in_flight.hpp"
 
@@ -12,14 +12,15 @@ struct Camera {
 };
 
 struct CameraTest : InFlightTest {
-  static constexpr uint32_t side = 48; // pixels
+  static constexpr uint32_t side = 48; // Pixels.
 
-  GraphOptions accumulating() const; // its light over frames, without clipping
+  GraphOptions accumulating() const; // Accumulates light without clipping.
   dermis_graph make_accumulating();
-  Camera make_camera(dermis_graph graph, uint32_t seed); // light of its own pattern
-  // A resting camera; `index` as dermis_frame.frame_index.
+  // Each seed gives a different pattern of light.
+  Camera make_camera(dermis_graph graph, uint32_t seed);
+  // Returns a frame of a camera at rest; `index` is dermis_frame.frame_index.
   dermis_frame frame_of(const Camera& camera, uint64_t index) const;
-  std::vector<float> light_of(const Camera& camera) const; // waits for the device first
+  std::vector<float> light_of(const Camera& camera) const; // Waits for the device first.
 };
 
 } // namespace dermis::abi_test

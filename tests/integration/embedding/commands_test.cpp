@@ -1,4 +1,4 @@
-// A host that records all commands itself gets the same pictures from a frame as data.
+// A host that records all commands itself gets equal pictures from a frame as data.
 
 #include "tests/integration/embedding/cameras.hpp"
 
@@ -78,8 +78,8 @@ struct Commands : CameraTest {
     }
   }
 
-  // Two views of `options`, eight frames with a reload, a resize and choices that change; both lights
-  // afterwards.
+  // Runs two views of `options` for eight frames with a reload, a resize and changing choices;
+  // returns the light of both.
   std::vector<std::vector<float>> run(const GraphOptions& options) {
     const dermis_graph graph = make_graph(options);
     if (graph == nullptr) return {};
@@ -98,7 +98,7 @@ struct Commands : CameraTest {
       }
       dermis_budget budget = DERMIS_BUDGET_INIT;
       budget.flags = DERMIS_BUDGET_DETERMINISTIC;
-      budget.milliseconds = index >= 7 ? 0.001f : 0; // the cheapest
+      budget.milliseconds = index >= 7 ? 0.001f : 0; // The cheapest configuration.
       EXPECT_EQ(dermis_graph_set_budget(graph, &budget, nullptr), DERMIS_OK);
       submit(++submitted, [&](VkCommandBuffer into) {
         record(graph, nullptr, frame_of(first, index), into);
@@ -118,7 +118,7 @@ struct Commands : CameraTest {
   }
 };
 
-TEST_F(Commands, OfAGraphWithHistoryGiveTheSamePictures) {
+TEST_F(Commands, GraphWithHistory_GivesEqualPictures) {
   expect_the_same(accumulating());
   EXPECT_TRUE(passes.contains("accumulate"));
   EXPECT_TRUE(passes.contains("")) << "what stands between the passes";
@@ -129,13 +129,13 @@ TEST_F(Commands, OfAGraphWithHistoryGiveTheSamePictures) {
     EXPECT_TRUE(seen.contains(type)) << type;
 }
 
-TEST_F(Commands, OfPlansThatTakeTurnsGiveTheSamePictures) {
+TEST_F(Commands, AlternatingPlans_GiveEqualPictures) {
   GraphOptions options = accumulating();
   options.text = read_text("configs/graphs/skin.json");
   expect_the_same(options);
 }
 
-TEST_F(Commands, AreAFrameThatCanBeTakenBack) {
+TEST_F(Commands, CanBeDiscardedLikeAFrame) {
   const dermis_graph graph = make_accumulating();
   const Camera camera = make_camera(graph, 1);
   const dermis_frame frame = frame_of(camera, 1);
@@ -155,7 +155,7 @@ void DERMIS_CALL never(void*, const dermis_pass_call*) {
   ADD_FAILURE() << "the host records its passes itself";
 }
 
-TEST_F(Commands, NameThePassesOfTheHostAndLeaveThemToIt) {
+TEST_F(Commands, NameTheHostPassesToRecord) {
   dermis_port ports[2] = {DERMIS_PORT_INIT, DERMIS_PORT_INIT};
   ports[0].name = "light";
   ports[1].name = "out";

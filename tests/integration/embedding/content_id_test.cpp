@@ -1,4 +1,5 @@
-// Images that come without a view: the library keeps one for each content_id, and handles may be used again.
+// Tests images without a view: the library keeps one view per content_id, and handles may be
+// reused.
 
 #include "tests/integration/embedding/cameras.hpp"
 #include "tests/integration/embedding/null_host.hpp"
@@ -37,13 +38,14 @@ TEST_F(ContentId, ReplacesTheHostsViews) {
   EXPECT_TRUE(light[0] == light[1]);
 }
 
-// The validation layer tells when a view of a destroyed image is used.
-TEST_F(ContentId, TellsImagesApartThatHadTheSameHandle) {
+// The validation layer reports the use of a view of a destroyed image.
+TEST_F(ContentId, DistinguishesImagesWithEqualHandles) {
   const dermis_graph graph = make_accumulating();
   uint64_t id = 1, index = 0;
   std::vector<float> expected;
   for (uint32_t seed = 1; seed <= 4; ++seed) {
-    Camera camera = make_camera(graph, seed); // the images of the one before are gone, their handles are free
+    // The images of the previous camera are destroyed, so their handles are free.
+    Camera camera = make_camera(graph, seed);
     give_up_views(camera, id);
     id += camera.bound.size();
     const std::vector<float> before = light_of(camera);
@@ -57,17 +59,18 @@ TEST_F(ContentId, TellsImagesApartThatHadTheSameHandle) {
   }
 }
 
-TEST_F(ContentId, OfMoreImagesThanThereIsRoomForIsRefusedOnlyWhileTheyAreInUse) {
+TEST_F(ContentId, TooManyImages_AreRefusedOnlyWhileInUse) {
   const dermis_graph graph = make_accumulating();
   Camera camera = make_camera(graph, 1);
-  for (uint64_t index = 1; index <= 40; ++index) { // each frame another one, three in flight
+  // A new image in each frame, three frames in flight.
+  for (uint64_t index = 1; index <= 40; ++index) {
     give_up_views(camera, index * 100);
     run(graph, camera, index);
   }
   wait();
 }
 
-TEST(ContentIdOnTheNullDevice, MakesAViewOnceAndGivesItBack) {
+TEST(ContentIdOnTheNullDevice, CreatesAViewOnceAndDestroysIt) {
   NullHost host;
   ASSERT_EQ(host.make_context(host.context_desc()), DERMIS_OK);
   ASSERT_EQ(host.make_graph(), DERMIS_OK);

@@ -1,4 +1,4 @@
-// Device memory from a host with heaps of its own, and a device that refuses or is lost at any call.
+// Tests device memory from a host's heaps, and a device that fails or is lost at any call.
 
 #include "tests/integration/embedding/cameras.hpp"
 #include "tests/integration/embedding/null_host.hpp"
@@ -6,7 +6,7 @@
 namespace dermis::abi_test {
 namespace {
 
-// One block of memory a type, from which parts are handed out at odd places and never again.
+// One block of memory per type, from which parts are allocated at odd offsets and never reused.
 struct Arena {
   static constexpr uint64_t bytes = 64u << 20, first_offset = 256 * 7;
   struct Block {
@@ -15,11 +15,12 @@ struct Arena {
     std::byte* mapped = nullptr;
   };
   demo::VulkanHost& host;
-  std::map<uint32_t, Block> blocks; // by type
+  std::map<uint32_t, Block> blocks; // By type.
   uint64_t alive = 0, taken = 0;
   std::map<dermis_memory_purpose, uint64_t> alive_bytes;
-  uint64_t refused = 0; // number of the call, from 1; 0: none
-  // Transient heaps of one view: those of further views lie over them. 0: each has its own.
+  uint64_t refused = 0; // Number of the call, from 1; 0: none.
+  // Number of transient heaps of one view that heaps of further views overlap; 0: each view has
+  // separate heaps.
   size_t overlaid = 0, transients = 0;
   std::vector<dermis_memory_block> first_view = {};
 
@@ -62,7 +63,7 @@ struct Arena {
       if (const VkResult result =
               arena.host.vk.vkAllocateMemory(arena.host.device, &info, nullptr, &block.memory))
         return result;
-      void* mapped = nullptr; // every type of the software driver can be mapped
+      void* mapped = nullptr; // Every memory type of the software driver can be mapped.
       if (const VkResult result =
               arena.host.vk.vkMapMemory(arena.host.device, block.memory, 0, VK_WHOLE_SIZE, 0, &mapped))
         return result;
@@ -134,7 +135,7 @@ struct DeviceMemory : CameraTest {
   uint64_t submitted = 0;
 };
 
-TEST_F(DeviceMemory, FromTheHostsHeapsGivesTheSamePictures) {
+TEST_F(DeviceMemory, HostHeaps_GiveEqualPictures) {
   const std::vector<float> own = light_after_five_frames();
   drop_graphs();
   use_arena();
@@ -147,8 +148,8 @@ TEST_F(DeviceMemory, FromTheHostsHeapsGivesTheSamePictures) {
   EXPECT_GE(arena->alive_bytes[DERMIS_MEMORY_CONSTANTS], memory.constant_bytes);
 }
 
-// One view's scratch is nothing to the next one, if a barrier stands between them.
-TEST_F(DeviceMemory, OfTheTransientsOfManyViewsMayBeTheSame) {
+// Views do not depend on each other's transients if a barrier separates the views.
+TEST_F(DeviceMemory, ViewsCanShareTransientMemory) {
   constexpr uint64_t last = 6;
   constexpr size_t cameras = 3;
   const auto barrier = [&](VkCommandBuffer into) {
@@ -201,7 +202,7 @@ TEST_F(DeviceMemory, OfTheTransientsOfManyViewsMayBeTheSame) {
   EXPECT_EQ(arena->alive_bytes[DERMIS_MEMORY_TRANSIENT] * (1 + cameras), memory.transient_bytes);
 }
 
-TEST_F(DeviceMemory, OfTransientsAndHistoriesIsToldBlockByBlock) {
+TEST_F(DeviceMemory, TransientsAndHistories_AreReportedPerBlock) {
   const dermis_graph graph = make_accumulating();
   uint32_t count = 0;
   ASSERT_EQ(dermis_graph_heaps(graph, &count, nullptr), DERMIS_OK);
@@ -225,7 +226,7 @@ TEST_F(DeviceMemory, OfTransientsAndHistoriesIsToldBlockByBlock) {
   EXPECT_EQ(dermis_graph_heaps(nullptr, &count, nullptr), DERMIS_ERROR_ARGUMENT);
 }
 
-TEST_F(DeviceMemory, ThatTheHostRefusesIsToldAndNothingIsKept) {
+TEST_F(DeviceMemory, HostRefuses_IsReportedAndNothingLeaks) {
   use_arena();
   dermis_graph graph = nullptr;
   uint64_t refusals = 0;
@@ -243,7 +244,7 @@ TEST_F(DeviceMemory, ThatTheHostRefusesIsToldAndNothingIsKept) {
   dermis_graph_destroy(graph);
 }
 
-// ---- a device that refuses
+// ---- A device that refuses
 
 enum class Change { reload, resize, view };
 
@@ -274,7 +275,7 @@ struct FailingNull : ::testing::TestWithParam<Change> {
   }
 };
 
-TEST_P(FailingNull, EachRefusedCallIsToldAndTheGraphRunsOn) {
+TEST_P(FailingNull, EachFailingCallIsReported_TheGraphRunsOn) {
   uint64_t refusals = 0;
   for (;; ++refusals) {
     const uint64_t alive = host.device.alive(), bytes = host.device.memory_bytes();
@@ -290,7 +291,7 @@ TEST_P(FailingNull, EachRefusedCallIsToldAndTheGraphRunsOn) {
   EXPECT_GT(refusals, 10u);
 }
 
-TEST_P(FailingNull, ADeviceLostAtAnyCallIsRememberedAndAllIsTakenDown) {
+TEST_P(FailingNull, DeviceLostAtAnyCall_IsKeptAndAllIsFreed) {
   uint64_t losses = 0;
   for (;; ++losses) {
     host.device.fail_creation(losses + 1, VK_ERROR_DEVICE_LOST);
@@ -324,7 +325,7 @@ INSTANTIATE_TEST_SUITE_P(Changes, FailingNull, testing::Values(Change::reload, C
                                                                             : "View");
                          });
 
-TEST(LostDevice, ThatShowsInTimestampsEndsTheContext) {
+TEST(LostDevice, LossInTimestamps_EndsTheContext) {
   for (const bool by_timings : {true, false}) {
     NullHost host;
     ASSERT_EQ(host.make_context(host.context_desc()), DERMIS_OK);
@@ -344,7 +345,7 @@ TEST(LostDevice, ThatShowsInTimestampsEndsTheContext) {
   }
 }
 
-TEST(TwoContexts, OnTwoDevicesKnowNothingOfEachOther) {
+TEST(TwoContexts, TwoDevices_AreIndependent) {
   NullHost first, second;
   for (NullHost* host : {&first, &second}) {
     ASSERT_EQ(host->make_context(host->context_desc()), DERMIS_OK);
@@ -362,9 +363,9 @@ TEST(TwoContexts, OnTwoDevicesKnowNothingOfEachOther) {
   EXPECT_EQ(second.record(), DERMIS_OK) << "the other's loss is not this one's";
 }
 
-// ---- reloads do not pile up
+// ---- Reloads do not accumulate memory
 
-TEST(ManyReloads, LeaveAsManyObjectsAndBytesAsThereWere) {
+TEST(ManyReloads, ObjectsAndBytesStayConstant) {
   NullHost host;
   ASSERT_EQ(host.make_context(host.context_desc()), DERMIS_OK);
   ASSERT_EQ(host.make_graph(), DERMIS_OK);

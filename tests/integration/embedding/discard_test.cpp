@@ -1,5 +1,4 @@
-// Frames that are recorded, never submitted and discarded: everything that follows is as if they had not been
-// recorded.
+// Frames that are recorded, never submitted and discarded do not affect anything that follows.
 
 #include "tests/integration/abi/dermis_fixture.hpp"
 #include "tests/integration/abi/invented_times.hpp"
@@ -14,7 +13,7 @@ using ::testing::HasSubstr;
 
 // One frame as a host describes it.
 struct Shot {
-  std::array<uint32_t, 4> rectangle{}; // x, y, width, height; zeros: all of the images
+  std::array<uint32_t, 4> rectangle{}; // x, y, width, height; zeros: all of the images.
   std::array<float, 2> jitter{};
   float light = 1, budget_ms = 0, seconds = 1.0f / 60;
   uint32_t flags = 0;
@@ -85,7 +84,7 @@ struct Discard : DermisTest {
     one.jitter_y = shot.jitter[1];
     one.delta_seconds = shot.seconds;
     one.flags = shot.flags;
-    for (size_t i = 0; i < 16; ++i) // the camera rests
+    for (size_t i = 0; i < 16; ++i) // The camera is at rest.
       one.view_from_world[i] = one.previous_view_from_world[i] = i % 5 == 0 ? 1.0f : 0.0f;
     std::copy(std::begin(one.clip_from_view), std::end(one.clip_from_view),
               std::begin(one.previous_clip_from_view));
@@ -120,9 +119,10 @@ struct Discard : DermisTest {
 
 constexpr std::array<uint32_t, 4> small_rectangle = {9, 5, 30, 41}, other_rectangle = {16, 0, 44, 29};
 
-// Rectangles, jitter, cuts, budgets and times between frames all change, in the frames that stay and in those
-// that do not; the first frame of the graph, of a plan and of a reloaded and a resized graph are among them.
-TEST_F(Discard, LeavesNoTraceInAnythingAHostSees) {
+// Rectangles, jitter, cuts, budgets and times between frames all change, in kept and in discarded
+// frames. The discarded frames include the first frame of the graph, of a plan, and of a reloaded
+// and a resized graph.
+TEST_F(Discard, LeavesNoVisibleTrace) {
   const std::string text = read_text("configs/graphs/skin.json");
   constexpr uint32_t frames = 24;
   const auto shot_of = [](uint32_t i) {
@@ -167,7 +167,7 @@ TEST_F(Discard, LeavesNoTraceInAnythingAHostSees) {
   }
 }
 
-TEST_F(Discard, GivesBackTheRectangleOfTheFrameBefore) {
+TEST_F(Discard, RestoresThePreviousRectangle) {
   const auto run = [&](bool lossy) {
     make("configs/graphs/burley.json");
     submit({.rectangle = small_rectangle, .light = 0.25f});
@@ -178,8 +178,9 @@ TEST_F(Discard, GivesBackTheRectangleOfTheFrameBefore) {
   EXPECT_TRUE(run(true).lighting == expected.lighting) << "history lies where the frame before left it";
 }
 
-// The first switch starts a second in which no other follows; a frame that was discarded is not in it.
-TEST_F(Discard, GivesBackTheLastDecision) {
+// The first switch blocks other switches for a second; a discarded frame must not start this
+// second.
+TEST_F(Discard, RestoresTheLastDecision) {
   const auto run = [&](const std::vector<Shot>& lost) {
     make();
     std::vector<std::string> choices;
@@ -204,7 +205,7 @@ TEST_F(Discard, LeavesNoTimes) {
   make("configs/graphs/burley.json");
   for (int i = 0; i < 4; ++i)
     submit({});
-  discard({}); // frame 5, in the place that the times of frame 3 had
+  discard({}); // Frame 5 uses the queries of frame 3.
   const auto bound = bindings(graph);
   dermis_frame next = frame_of({}, bound);
   next.frame_index = 6;
@@ -221,9 +222,9 @@ TEST_F(Discard, LeavesNoTimes) {
   EXPECT_EQ(times[0].frame_index, 6u);
 }
 
-// Times of the first frame of a plan, which a driver may spend on its pipelines, teach nothing. A device that
-// runs nothing reports 0 for each pass: what was learned is seen at once.
-TEST(DiscardOnANullDevice, LeavesTheFirstFrameOfAPlanTheFirst) {
+// Times of a plan's first frame are not learned, because a driver may create pipelines in it. The
+// null device reports 0 for each pass, so learned times show at once.
+TEST(DiscardOnANullDevice, NextFrameIsStillThePlansFirst) {
   const auto learned = [](bool lossy) {
     NullHost host;
     EXPECT_EQ(host.make_context(host.context_desc()), DERMIS_OK) << dermis_last_error();

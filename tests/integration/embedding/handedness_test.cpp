@@ -1,4 +1,4 @@
-// One scene in a right-handed and in a left-handed view space: the pictures are equal.
+// Tests one scene in a right-handed and in a left-handed view space: the pictures are equal.
 
 #include "tests/integration/abi/dermis_fixture.hpp"
 
@@ -7,9 +7,9 @@
 namespace dermis::abi_test {
 namespace {
 
-constexpr float near_plane_m = 0.25f, far_plane_m = 4.0f; // of the projections
-constexpr float half_height = 0.032f;                     // half the picture's height at 1 m
-constexpr float wall_m = 0.5f;                            // to the wall, in its middle
+constexpr float near_plane_m = 0.25f, far_plane_m = 4.0f; // Planes of the projections.
+constexpr float half_height = 0.032f;                     // Half of the picture's height at 1 m.
+constexpr float wall_m = 0.5f;                            // Distance to the middle of the wall.
 
 enum class Lens : uint8_t { perspective, orthographic };
 enum class Range : uint8_t { forward, reversed, reversed_infinite };
@@ -18,12 +18,12 @@ struct View {
   Lens lens = Lens::perspective;
   Range range = Range::forward;
   dermis_depth_kind depth = DERMIS_DEPTH_DEVICE;
-  bool left = false;       // of view space
-  bool left_world = false; // and of the world
-  float past_error = 0;    // of the place that the previous matrices state, metres
+  bool left = false;       // Whether view space is left-handed.
+  bool left_world = false; // Whether world space is left-handed.
+  float past_error = 0;    // Error of the position in the previous matrices, in metres.
 };
 
-// The row of depth and the row of w, for view positions with z = -distance.
+// Fills the rows of depth and w, for view positions with z = -distance.
 void project(float (&m)[16], const View& view, float jitter_x) {
   std::fill(std::begin(m), std::end(m), 0.0f);
   const float range = far_plane_m - near_plane_m;
@@ -58,7 +58,7 @@ float stored(const View& view, float distance) {
   return (m[10] * z + m[11]) / (m[14] * z + m[15]);
 }
 
-// A camera at `x` that is turned by `angle` about the y axis.
+// Fills the matrix of a camera at `x`, turned by `angle` about the y axis.
 void place(float (&m)[16], const View& view, float x, float angle) {
   const float c = std::cos(angle), s = std::sin(angle);
   const float rows[16] = {c, 0, -s, -c * x, 0, 1, 0, 0, s, 0, c, -s * x, 0, 0, 0, 1};
@@ -70,11 +70,13 @@ void place(float (&m)[16], const View& view, float x, float angle) {
 }
 
 struct Handedness : DermisTest {
-  // Light of the last of some frames of a camera that moves and turns, jittered, before a slanted wall.
+  // Returns the light of the last frame of a moving, turning, jittered camera in front of a slanted
+  // wall.
   std::vector<float> picture(const View& view) {
     GraphOptions options;
     options.text =
-        read_text("configs/graphs/papers/sap_residual.json"); // keeps light, depth and ids over frames
+        // Keeps light, depth and ids over frames.
+        read_text("configs/graphs/papers/sap_residual.json");
     for (const char* unbound : {"velocity", "thickness", "back_lighting"})
       options.unbound.emplace_back(unbound);
     const dermis_graph graph = make_graph(options);

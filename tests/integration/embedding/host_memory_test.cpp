@@ -1,5 +1,5 @@
-// Memory from the host: all of it comes from there and goes back there, and running out of it at any
-// allocation is told and leaves nothing behind.
+// Tests host memory: every allocation comes from the host and is freed there. A failure of any
+// allocation is reported and leaks nothing.
 
 #include "tests/framegraph/test_scale.hpp"
 #include "tests/integration/abi/sources.hpp"
@@ -14,11 +14,11 @@
 namespace dermis::abi_test {
 namespace {
 
-// Counts, and refuses the allocation that is asked for.
+// Counts allocations, and refuses the requested one.
 struct Heap {
-  uint64_t blocks = 0, bytes = 0; // alive
+  uint64_t blocks = 0, bytes = 0; // Alive.
   uint64_t calls = 0;
-  uint64_t refused = 0; // number of the call, from 1; 0: none
+  uint64_t refused = 0; // Number of the call, from 1; 0: none.
   bool misaligned = false;
 
   static void* DERMIS_CALL allocate(void* user, size_t size, size_t alignment) {
@@ -73,8 +73,8 @@ struct HostMemory : ::testing::Test {
     ASSERT_EQ(host.record(), DERMIS_OK) << dermis_last_error();
   }
 
-  // Calls `change` with its first allocation refused, then its second, until it succeeds: every one of the
-  // first 300, then every `step`-th.
+  // Calls `change` with its first allocation refused, then its second, until it succeeds: every one
+  // of the first 300, then every `step`-th.
   void reject_each(uint64_t step, const std::function<dermis_result()>& change,
                    const std::function<void()>& after) {
     constexpr uint64_t each_until = 300;
@@ -104,7 +104,7 @@ struct HostMemory : ::testing::Test {
   static uint64_t step() { return dermis::testing::seeds_to_try(61, 1); }
 };
 
-TEST_F(HostMemory, AllOfItGoesBack) {
+TEST_F(HostMemory, AllOfItIsFreed) {
   make_graph();
   const uint64_t running = heap.blocks;
   EXPECT_GT(running, 100u) << "the graph lives in the host's memory";
@@ -126,7 +126,7 @@ TEST_F(HostMemory, AllOfItGoesBack) {
   EXPECT_EQ(heap.bytes, 0u);
 }
 
-TEST_F(HostMemory, AContextThatCannotBeMadeLeavesNothing) {
+TEST_F(HostMemory, FailedContext_LeaksNothing) {
   host.destroy();
   reject_each(
       1,
@@ -138,18 +138,18 @@ TEST_F(HostMemory, AContextThatCannotBeMadeLeavesNothing) {
       [] {});
 }
 
-TEST_F(HostMemory, AGraphThatCannotBeMadeLeavesNothing) {
+TEST_F(HostMemory, FailedGraph_LeaksNothing) {
   reject_each(
       step(), [&] { return host.make_graph(); }, [&] { EXPECT_EQ(host.graph, nullptr); });
 }
 
-TEST_F(HostMemory, ARefusedReloadLeavesTheGraphAsItWas) {
+TEST_F(HostMemory, FailedReload_KeepsTheGraph) {
   make_graph();
   reject_each(
       step(), [&] { return host.reload(); }, [&] { still_records(); });
 }
 
-TEST_F(HostMemory, ARefusedReloadOfShadersLeavesTheGraphAsItWas) {
+TEST_F(HostMemory, FailedShaderReload_KeepsTheGraph) {
   make_graph();
   uint32_t requested = 0;
   if (dermis_graph_reload_shaders(host.graph, open_kernel, &requested, nullptr) == DERMIS_ERROR_UNSUPPORTED)
@@ -162,7 +162,7 @@ TEST_F(HostMemory, ARefusedReloadOfShadersLeavesTheGraphAsItWas) {
   EXPECT_GT(requested, 0u);
 }
 
-TEST_F(HostMemory, ARefusedResizeLeavesTheGraphAsItWas) {
+TEST_F(HostMemory, FailedResize_KeepsTheGraph) {
   make_graph();
   uint32_t calls = 0;
   reject_each(
@@ -170,14 +170,14 @@ TEST_F(HostMemory, ARefusedResizeLeavesTheGraphAsItWas) {
       [&] { still_records(); });
 }
 
-TEST_F(HostMemory, ARefusedSettingLeavesTheGraphAsItWas) {
+TEST_F(HostMemory, FailedSetting_KeepsTheGraph) {
   make_graph();
   reject_each(
       1, [&] { return dermis_graph_set_setting(host.graph, "accumulate_clip", "2", nullptr); },
       [&] { still_records(); });
 }
 
-TEST_F(HostMemory, ARefusedProfileLeavesTheGraphAsItWas) {
+TEST_F(HostMemory, FailedProfile_KeepsTheGraph) {
   make_graph();
   const std::string marble = read_text("configs/profiles/marble.json");
   reject_each(
@@ -188,7 +188,7 @@ TEST_F(HostMemory, ARefusedProfileLeavesTheGraphAsItWas) {
   EXPECT_EQ(heap.calls, 0u) << "the new tables take over without memory";
 }
 
-TEST_F(HostMemory, ARefusedSettingOfAViewLeavesItAsItWas) {
+TEST_F(HostMemory, FailedViewSetting_KeepsTheView) {
   make_graph();
   dermis_view view = nullptr;
   ASSERT_EQ(dermis_view_create(host.graph, nullptr, &view, nullptr), DERMIS_OK) << dermis_last_error();
@@ -198,7 +198,7 @@ TEST_F(HostMemory, ARefusedSettingOfAViewLeavesItAsItWas) {
       [&] { ASSERT_EQ(host.record(view, ++index), DERMIS_OK) << dermis_last_error(); });
 }
 
-TEST_F(HostMemory, ARefusedBudgetLeavesTheGraphAsItWas) {
+TEST_F(HostMemory, FailedBudget_KeepsTheGraph) {
   make_graph();
   size_t size = 0;
   ASSERT_EQ(dermis_graph_calibration(host.graph, &size, nullptr), DERMIS_OK);
@@ -215,7 +215,7 @@ TEST_F(HostMemory, ARefusedBudgetLeavesTheGraphAsItWas) {
       [&] { still_records(); });
 }
 
-TEST_F(HostMemory, AViewThatCannotBeMadeLeavesNothing) {
+TEST_F(HostMemory, FailedView_LeaksNothing) {
   make_graph();
   dermis_view view = nullptr;
   reject_each(
@@ -227,8 +227,8 @@ TEST_F(HostMemory, AViewThatCannotBeMadeLeavesNothing) {
   EXPECT_EQ(host.record(view, 1), DERMIS_OK) << dermis_last_error();
 }
 
-// A view of its own each time: what a list once took it keeps.
-TEST_F(HostMemory, ARefusedListOfCommandsIsAFrameThatNeverWas) {
+// A new view each time, because a list keeps its capacity.
+TEST_F(HostMemory, FailedCommandList_LeavesNoFrame) {
   make_graph();
   const dermis_frame frame = host.frame_at(1);
   for (uint64_t number = 1;; ++number) {
@@ -255,8 +255,8 @@ TEST_F(HostMemory, ARefusedListOfCommandsIsAFrameThatNeverWas) {
   }
 }
 
-// What asks and changes nothing: refused, it can be asked again.
-TEST_F(HostMemory, ARefusedQuestionCanBeAskedAgain) {
+// Queries change nothing; a refused query can be repeated.
+TEST_F(HostMemory, FailedQuery_CanBeRepeated) {
   make_graph();
   uint32_t count = 0;
   size_t size = 0;
@@ -289,7 +289,7 @@ TEST_F(HostMemory, ARefusedQuestionCanBeAskedAgain) {
   still_records();
 }
 
-TEST_F(HostMemory, ARecordedFrameNeedsNone) {
+TEST_F(HostMemory, RecordingAFrame_AllocatesNothing) {
   make_graph();
   heap.calls = 0;
   heap.refused = 1;

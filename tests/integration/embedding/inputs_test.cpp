@@ -1,5 +1,5 @@
-// What engines hand over differs in form, not in meaning: depth in any format and either direction, light
-// that is exposed already.
+// Engines use different input formats with equal meaning: depth in any format and direction, and
+// pre-exposed light.
 
 #include "tests/integration/abi/dermis_fixture.hpp"
 #include "tests/support/shipped_graphs.hpp"
@@ -10,15 +10,16 @@
 namespace dermis::abi_test {
 namespace {
 
-constexpr float near_m = 0.1f, far_m = 10.0f; // of the projections
-constexpr float slope = 0.032f;               // half the picture's height at 1 m: 64 pixels of 1 mm there
+constexpr float near_m = 0.1f, far_m = 10.0f; // Planes of the projections.
+// Half of the picture's height at 1 m: 64 pixels of 1 mm there.
+constexpr float slope = 0.032f;
 const demo::ImageState resting{VK_IMAGE_LAYOUT_GENERAL, VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT,
                                VK_ACCESS_2_TRANSFER_READ_BIT | VK_ACCESS_2_TRANSFER_WRITE_BIT};
 
 enum class Direction : uint8_t { forward, reversed_infinite };
 
 struct Inputs : DermisTest {
-  // A perspective camera that looks at a wall.
+  // Returns a frame of a perspective camera that looks at a wall.
   dermis_frame wall_frame(const std::vector<dermis_image_binding>& bound, Direction direction) {
     dermis_frame one = frame(bound);
     std::ranges::fill(one.clip_from_view, 0.0f);
@@ -39,7 +40,7 @@ struct Inputs : DermisTest {
     vkGetPhysicalDeviceFormatProperties(host->physical_device, format, &properties);
     return (properties.optimalTilingFeatures & VK_FORMAT_FEATURE_SAMPLED_IMAGE_BIT) != 0;
   }
-  // A depth buffer that holds one value, as a cleared one does; the view is of the depth alone.
+  // Makes a depth buffer with one value, like a cleared one; the view has only the depth aspect.
   demo::Image depth_buffer(VkFormat format, VkImageUsageFlags usage, float value) {
     const bool stencil = format == VK_FORMAT_D24_UNORM_S8_UINT || format == VK_FORMAT_D32_SFLOAT_S8_UINT;
     demo::Image image;
@@ -82,10 +83,11 @@ struct Inputs : DermisTest {
     EXPECT_TRUE(cleared) << cleared.error().text;
     return image;
   }
-  // The light on a wall `metres` away whose depth is stored like this.
+  // Returns the light on a wall `metres` away with this depth format and direction.
   std::vector<float> wall(VkFormat format, Direction direction, float metres) {
     GraphOptions options;
-    options.text = read_text("configs/graphs/separable.json"); // without samples: pictures can be compared
+    // Without samples, so that pictures can be compared.
+    options.text = read_text("configs/graphs/separable.json");
     options.formats = {{"depth", format}};
     const dermis_graph graph = make_graph(options);
     if (graph == nullptr) return {};
@@ -100,7 +102,7 @@ struct Inputs : DermisTest {
     EXPECT_EQ(record(graph, one), DERMIS_OK) << dermis_last_error();
     return texels("lighting");
   }
-  // The same from view distances in a float image.
+  // Returns the same light with view distances in a float image.
   std::vector<float> wall_in_units(float metres) {
     GraphOptions options;
     options.text = read_text("configs/graphs/separable.json");
@@ -122,7 +124,7 @@ double largest_difference(const std::vector<float>& a, const std::vector<float>&
   return largest;
 }
 
-TEST_F(Inputs, DepthMeansTheSameInEachFormatAndDirection) {
+TEST_F(Inputs, DepthFormatsAndDirections_GiveEqualLight) {
   constexpr float metres = 0.5f;
   const auto expected = wall_in_units(metres);
   EXPECT_GT(largest_difference(expected, wall_in_units(2 * metres)), 0.02) << "the distance matters";
@@ -132,19 +134,19 @@ TEST_F(Inputs, DepthMeansTheSameInEachFormatAndDirection) {
     if (!can_be(format)) continue;
     ++tried;
     for (const Direction direction : {Direction::forward, Direction::reversed_infinite})
-      // A step of d16 is 2^-16 of near * far / (far - near) / metres^2 = .4 a metre: 4e-5 m, 8e-5 of the
-      // distance and of a kernel's width; light changes by less. What is left is one rounding to half floats
-      // after each of three passes, 2^-12 each where light is 1.
+      // A step of d16 is 2^-16 of near * far / (far - near) / metres^2 = 0.4 per metre: 4e-5 m,
+      // 8e-5 of the distance and of a kernel's width; light changes by less. The rest is one
+      // rounding to half floats after each of three passes, 2^-12 each where light is 1.
       EXPECT_LT(largest_difference(wall(format, direction, metres), expected), 8e-5 + 3.0 / 4096)
           << "VkFormat " << format << (direction == Direction::forward ? ", forward" : ", reversed");
   }
   EXPECT_GE(tried, 3u) << "the software driver has at least d32f, d24 and d16";
 }
 
-// Whether the host multiplies light with its exposure before or after scattering, the picture is the same,
-// also where samples follow what earlier frames looked like.
-TEST_F(Inputs, LightThatIsExposedAlreadyScattersAlike) {
-  constexpr float factor = 8; // a power of two: nothing rounds otherwise
+// The picture does not depend on whether the host applies exposure before or after scattering, even
+// if samples follow earlier frames.
+TEST_F(Inputs, PreExposedLight_ScattersEqually) {
+  constexpr float factor = 8; // A power of two keeps rounding equal.
   uint32_t told_apart = 0;
   for (const char* name : {"separable", "sap_residual", "afis_guided"}) {
     const auto frames = [&](float light, float exposure) {
@@ -158,14 +160,14 @@ TEST_F(Inputs, LightThatIsExposedAlreadyScattersAlike) {
       make_images(graph);
       last_frame = 0;
       for (int i = 0; i < 4; ++i) {
-        // Dim enough that no sample nor sum is clamped, bright enough that half floats stay normal.
+        // Dim enough that no sample or sum is clamped, bright enough that half floats stay normal.
         fill("lighting", [&](uint32_t x, uint32_t y) {
           return light * (0.125f + 0.25f * float((x / 8 + y / 8 + uint32_t(i)) % 2));
         });
         const auto bound = bindings(graph);
         dermis_frame one = frame(bound);
         one.exposure = exposure;
-        for (const int diagonal : {0, 5, 10, 15}) // it rests: histories find what they saw
+        for (const int diagonal : {0, 5, 10, 15}) // At rest: histories find their surfaces.
           one.view_from_world[diagonal] = 1;
         std::ranges::copy(one.clip_from_view, one.previous_clip_from_view);
         std::ranges::copy(one.view_from_world, one.previous_view_from_world);
@@ -180,8 +182,8 @@ TEST_F(Inputs, LightThatIsExposedAlreadyScattersAlike) {
     double largest = 0;
     for (size_t i = 0; i < after.size(); ++i)
       if (i % 4 != 3) largest = std::max(largest, std::abs(double(before[i]) / factor - double(after[i])));
-    // The ratio compares logarithms of light, which round another way at another level: a step of a half
-    // float between .25 and .5, no more.
+    // The ratio compares logarithms of light, which round differently at another level: at most one
+    // step of a half float between 0.25 and 0.5.
     EXPECT_LE(largest, std::string_view(name) == "sap_residual" ? 1.0 / 4096 : 0) << name;
     told_apart += frames(factor, 1) != before ? 1 : 0;
   }

@@ -1,14 +1,14 @@
-// Graphs of a context share their kernels, those that come after others as well.
+// Graphs of a context share their kernels, including graphs that are created later.
 #include "tests/integration/embedding/null_host.hpp"
 
 #include <gtest/gtest.h>
 
 namespace {
 
-constexpr uint64_t objects_of_kernel = 3; // pipeline, its layout, that of its sets
-constexpr uint64_t made_of_kernel = 4;    // and a shader module, until the pipeline is there
+constexpr uint64_t objects_of_kernel = 3; // Pipeline, pipeline layout, descriptor set layout.
+constexpr uint64_t made_of_kernel = 4;    // Includes a shader module until the pipeline exists.
 
-TEST(SharedKernels, AGraphMadeAfterAnotherCompilesNoneOfItsKernels) {
+TEST(SharedKernels, LaterGraph_CompilesNoSharedKernel) {
   dermis::abi_test::NullHost host;
   const dermis_context_desc desc = host.context_desc();
   ASSERT_EQ(host.make_context(desc), DERMIS_OK);
@@ -29,7 +29,7 @@ TEST(SharedKernels, AGraphMadeAfterAnotherCompilesNoneOfItsKernels) {
   EXPECT_EQ(host.device.alive(), 0u);
 }
 
-TEST(SharedKernels, OfAGraphThatIsNotMadeAreNotKept) {
+TEST(SharedKernels, FailedGraph_KeepsNoKernels) {
   dermis::abi_test::NullHost host;
   const dermis_context_desc desc = host.context_desc();
   ASSERT_EQ(host.make_context(desc), DERMIS_OK);
@@ -51,7 +51,7 @@ TEST(SharedKernels, OfAGraphThatIsNotMadeAreNotKept) {
   EXPECT_EQ(other.device.alive(), kept);
 }
 
-TEST(SharedKernels, OfTheHostsShadersGoWithTheLastGraphThatRunsThem) {
+TEST(SharedKernels, HostShaders_AreFreedWithTheLastGraph) {
   dermis::abi_test::NullHost host;
   const dermis_context_desc desc = host.context_desc();
   ASSERT_EQ(host.make_context(desc), DERMIS_OK);

@@ -5,7 +5,7 @@
 namespace dermis::abi_test {
 namespace {
 
-const std::string& own_graph() { // read when the first graph is made
+const std::string& own_graph() { // Read when the first graph is made.
   static const std::string text = read_text("configs/graphs/burley.json");
   return text;
 }
@@ -78,7 +78,8 @@ void NullHost::give_up_views() {
   }
 }
 
-dermis_result NullHost::reload(const std::string& text) const { // allocates nothing itself: tests count
+// Allocates nothing itself, because tests count allocations.
+dermis_result NullHost::reload(const std::string& text) const {
   const dermis_source source = source_of(text.empty() ? own_graph() : text, "burley.json");
   return reload_text(graph, source);
 }

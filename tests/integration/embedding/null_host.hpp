@@ -1,5 +1,5 @@
 #pragma once
-// A host on a device that runs nothing: the whole interface where failures can be asked for and counted.
+// A host on a null device: the whole interface, with failures that tests can request and count.
 
 #include "integration/tools/null_device/null_device.hpp"
 
@@ -10,7 +10,7 @@
 
 namespace dermis::abi_test {
 
-// One thread at a time for each.
+// Thread: one at a time for each object.
 class NullHost {
 public:
   NullHost() = default;
@@ -18,30 +18,31 @@ public:
   NullHost(const NullHost&) = delete;
   NullHost& operator=(const NullHost&) = delete;
 
-  dermis_context_desc context_desc(); // of `device`, with times
+  dermis_context_desc context_desc(); // Describes `device`, with timing enabled.
   dermis_result make_context(const dermis_context_desc& desc);
-  dermis_result make_graph(uint32_t side = 64);             // burley.json with light over frames and a skin
-  void make_bindings();                                     // images for every slot
-  void give_up_views();                                     // content_ids instead
-  dermis_result reload(const std::string& text = "") const; // ""; the graph's own
-  dermis_result set_profile(const std::string& text) const; // number 1
-  // The next frame of the graph, or of a view of it.
+  // burley.json with accumulated light and one skin profile.
+  dermis_result make_graph(uint32_t side = 64);
+  void make_bindings();                                     // Makes images for every slot.
+  void give_up_views();                                     // Uses content_ids instead of views.
+  dermis_result reload(const std::string& text = "") const; // "" means the graph's own text.
+  dermis_result set_profile(const std::string& text) const; // Sets profile 1.
+  // Records the next frame of the graph or of one of its views.
   dermis_result record();
   dermis_result record(dermis_view view, uint64_t index) const;
-  dermis_frame frame_at(uint64_t index) const; // with the images of make_bindings
-  void destroy();                              // graph, then context
+  dermis_frame frame_at(uint64_t index) const; // Uses the images of make_bindings.
+  void destroy();                              // Destroys the graph, then the context.
 
   NullDevice device;
   dermis_context context = nullptr;
   dermis_graph graph = nullptr;
-  uint64_t last_frame = 0; // recorded last
+  uint64_t last_frame = 0; // The last recorded frame.
 
 private:
   std::vector<dermis_image_binding> bindings_;
 };
 
-// For dermis_graph_reload_shaders: one kernel of the graph, which does nothing. `user`: a uint32_t that
-// counts how often it was asked for.
+// Callback for dermis_graph_reload_shaders: returns one kernel of the graph that does nothing.
+// `user` points to a uint32_t that counts the calls.
 uint32_t DERMIS_CALL open_kernel(void* user, const char* name, dermis_source* source);
 
 } // namespace dermis::abi_test

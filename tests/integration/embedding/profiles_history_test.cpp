@@ -1,5 +1,5 @@
-// Histories belong to a profile: a surface never takes over what one of another profile left at the same
-// place and depth.
+// Histories belong to a profile: a surface never reads the history of another profile at an equal
+// position and depth.
 
 #include "tests/integration/embedding/two_views.hpp"
 #include "tests/support/shipped_graphs.hpp"
@@ -7,7 +7,7 @@
 namespace dermis::abi_test {
 namespace {
 
-// Two profiles in a chequered pattern, all at one depth, as in a frame in which they change places.
+// Two profiles in a chequered pattern at one depth; `swapped` exchanges them.
 float profile_at(uint32_t x, uint32_t y, bool swapped) {
   return (x / 6 + y / 6) % 2 == (swapped ? 1 : 0) ? 1.0f : 2.0f;
 }
@@ -33,7 +33,7 @@ struct ProfilesOfHistories : TwoViewsTest, ::testing::WithParamInterface<History
   }
 };
 
-TEST_P(ProfilesOfHistories, ThatChangePlacesBeginAnew) {
+TEST_P(ProfilesOfHistories, SwappedProfiles_StartAnew) {
   std::vector<std::string> overlays;
   if (GetParam().accumulated) overlays.push_back(read_text("configs/overlays/accumulate.json"));
   make(read_text(dermis::shipped::graph_file(GetParam().graph)), overlays, side, "", 2);
@@ -43,7 +43,7 @@ TEST_P(ProfilesOfHistories, ThatChangePlacesBeginAnew) {
   const std::vector<float> swapped = run_frame(nullptr, 4, true, 0);
   const std::vector<float> cut = run_frame(other, 4, true, DERMIS_FRAME_RESET_HISTORY);
   EXPECT_TRUE(swapped == cut) << "bit by bit";
-  // Where they stay, history counts, and the picture shows whether there is one.
+  // Unchanged pixels use their history, and the picture shows whether a history exists.
   std::vector<float> stayed, cut_again;
   for (uint64_t index = 5; index <= 8; ++index) {
     stayed = run_frame(nullptr, index, true, 0);

@@ -25,7 +25,7 @@ struct Profiles : ::testing::Test {
   }
 };
 
-TEST_F(Profiles, ThatAreReplacedAreGoneOnceTheirFramesAreDone) {
+TEST_F(Profiles, Replaced_AreFreedAfterTheirFrames) {
   record(frames_in_flight);
   const uint64_t alive = host.device.alive(), bytes = host.device.memory_bytes();
   for (int round = 0; round < 4; ++round) {
@@ -35,14 +35,14 @@ TEST_F(Profiles, ThatAreReplacedAreGoneOnceTheirFramesAreDone) {
     EXPECT_EQ(host.device.alive(), alive);
     EXPECT_EQ(host.device.memory_bytes(), bytes);
   }
-  for (int round = 0; round < 4; ++round) { // faster than frames
+  for (int round = 0; round < 4; ++round) { // Faster than the frames.
     ASSERT_EQ(host.set_profile(marble), DERMIS_OK) << dermis_last_error();
   }
   record(frames_in_flight);
   EXPECT_EQ(host.device.alive(), alive);
 }
 
-TEST_F(Profiles, OfAllViewsAreOneBuffer) {
+TEST_F(Profiles, ViewsShareOneBuffer) {
   dermis_memory one = DERMIS_MEMORY_INIT, two = DERMIS_MEMORY_INIT;
   ASSERT_EQ(dermis_graph_memory(host.graph, &one), DERMIS_OK);
   dermis_view view = nullptr;
@@ -51,7 +51,7 @@ TEST_F(Profiles, OfAllViewsAreOneBuffer) {
   EXPECT_LT(two.constant_bytes - one.constant_bytes, 256u * 48u) << "less than a table of profiles";
 }
 
-TEST_F(Profiles, ThatTheDeviceHasNoMemoryForLeaveTheOldOnes) {
+TEST_F(Profiles, OutOfMemory_KeepsTheOldOnes) {
   record(1);
   uint64_t failures = 0;
   for (uint64_t nth = 1;; ++nth) {

@@ -1,5 +1,5 @@
 #pragma once
-// A graph on a device that runs nothing, one frame of it recorded.
+// A graph on a null device with one recorded frame.
 
 #include "tests/integration/embedding/null_host.hpp"
 

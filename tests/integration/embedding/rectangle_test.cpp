@@ -1,5 +1,5 @@
-// Rectangles inside larger images: nothing outside of one is read or written, whatever its size is beside the
-// tiles of 8x8 pixels.
+// Tests rectangles inside larger images: nothing outside is read or written, even if the size is
+// not a multiple of the 8x8 tiles.
 
 #include "tests/integration/embedding/two_views.hpp"
 #include "tests/support/shipped_graphs.hpp"
@@ -16,9 +16,10 @@ struct RenderedPart {
 
 struct Rectangles : TwoViewsTest, ::testing::WithParamInterface<const char*> {
   static constexpr uint32_t side = 48;
-  static constexpr float glare = 49152; // a half float holds it exactly
+  static constexpr float glare = 49152; // Exact in a half float.
 
-  // A slope of light over a bent surface; outside of the rectangle the same, or what must not be seen.
+  // Fills a slope of light over a bent surface. Outside of the rectangle the contents continue, or
+  // contain values that must not be read.
   void fill_around(const RenderedPart& rectangle, bool hostile) {
     const auto put = [&](const std::string& slot, float outside, auto inside) {
       fill(slot,
@@ -28,7 +29,7 @@ struct Rectangles : TwoViewsTest, ::testing::WithParamInterface<const char*> {
     put("depth", 0.4990234375f, [](uint32_t x, uint32_t y) { return 0.5f + float(x % 5 + y % 3) / 8192; });
     put("material", 1, [](uint32_t x, uint32_t y) { return x % 13 == 0 && y % 11 == 0 ? 0.0f : 1.0f; });
   }
-  // Two frames, of which the second has a history; the light after them.
+  // Runs two frames, of which the second has a history, and returns the light.
   std::vector<float> run(dermis_view view, const RenderedPart& rectangle, bool hostile, uint64_t first) {
     for (uint64_t i = 0; i < 2; ++i) {
       fill_around(rectangle, hostile);
@@ -46,7 +47,7 @@ struct Rectangles : TwoViewsTest, ::testing::WithParamInterface<const char*> {
   }
 };
 
-TEST_P(Rectangles, AreAllThatIsReadAndWritten) {
+TEST_P(Rectangles, NothingOutsideIsReadOrWritten) {
   make(read_text(dermis::shipped::graph_file(GetParam())), {}, side);
   uint64_t index = 1;
   for (uint32_t rest_of_tile = 0; rest_of_tile < 8; ++rest_of_tile) {

@@ -1,4 +1,5 @@
-// Graphs are edited while they run, and mostly they are broken then. Pictures must not show it.
+// Tests frequent reloads while a graph runs, half of them with broken text. The pictures must not
+// show them.
 
 #include "integration/examples/demo_engine/engine.hpp"
 #include "tests/integration/embedding/cameras.hpp"
@@ -6,8 +7,8 @@
 namespace dermis::abi_test {
 namespace {
 
-constexpr uint32_t storm_frames = 50, reloads_a_frame = 10; // 500 reloads, half of them broken
-constexpr uint32_t storm_width = 96, storm_height = 64;     // pixels
+constexpr uint32_t storm_frames = 50, reloads_a_frame = 10; // 500 reloads, half of them broken.
+constexpr uint32_t storm_width = 96, storm_height = 64;     // Pixels.
 
 std::string replaced(std::string text, std::string_view what, std::string_view with) {
   const size_t at = text.find(what);
@@ -15,11 +16,11 @@ std::string replaced(std::string text, std::string_view what, std::string_view w
   return text.replace(at, what.size(), with);
 }
 
-// What an author's editor may save half way.
+// Returns a text as an editor may save it halfway.
 std::string broken(const std::string& text, uint32_t number) {
   switch (number % 5) {
   case 0:
-    return text.substr(0, text.size() * (1 + number % 89) / 100); // the file was cut
+    return text.substr(0, text.size() * (1 + number % 89) / 100); // A truncated file.
   case 1:
     return replaced(text, "\"type\": \"subsurface.classify\"", "\"type\": \"subsurface.clasify\"");
   case 2:
@@ -32,7 +33,7 @@ std::string broken(const std::string& text, uint32_t number) {
 }
 
 struct Storm {
-  std::vector<std::vector<float>> colors; // by frame
+  std::vector<std::vector<float>> colors; // By frame.
   demo::RenderSummary summary;
 };
 
@@ -58,7 +59,7 @@ Storm rendered(const std::function<std::vector<std::string>(uint32_t)>& reloads)
   return storm;
 }
 
-TEST(ReloadStorm, BrokenGraphsLeaveNoTraceInThePicturesAndGoodOnesKeepTheirHistory) {
+TEST(ReloadStorm, BrokenReloadsChangeNothing) {
   const std::string text = read_text("configs/graphs/papers/sap_residual.json");
   const Storm calm = rendered({});
   const Storm refused = rendered([&](uint32_t frame) {
@@ -84,7 +85,7 @@ TEST(ReloadStorm, BrokenGraphsLeaveNoTraceInThePicturesAndGoodOnesKeepTheirHisto
 
 struct Sizes : CameraTest {};
 
-TEST_F(Sizes, MayChangeEachFrameWithThreeInFlight) {
+TEST_F(Sizes, CanChangeEachFrameWithThreeInFlight) {
   constexpr uint32_t count = 200, largest = 97;
   GraphOptions options = accumulating();
   options.width = options.height = largest;
@@ -104,7 +105,7 @@ TEST_F(Sizes, MayChangeEachFrameWithThreeInFlight) {
       dermis_frame first = frame_of(camera, index), second = frame_of(other, index);
       first.command_buffer = second.command_buffer = into;
       ASSERT_EQ(dermis_graph_record(graph, &first), DERMIS_OK) << dermis_last_error();
-      if (index % 3 == 0) { // that many sizes are skipped by this one
+      if (index % 3 == 0) { // The second view skips the sizes in between.
         ASSERT_EQ(dermis_view_record(view, &second), DERMIS_OK) << dermis_last_error();
       }
     });

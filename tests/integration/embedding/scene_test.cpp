@@ -1,5 +1,5 @@
-// Buffers and acceleration structures that a host binds: what is recorded for them, and what wrong bindings
-// get.
+// Tests buffers and acceleration structures that a host binds: the recorded commands, and the
+// errors for wrong bindings.
 
 #include "tests/integration/abi/sources.hpp"
 #include "tests/integration/embedding/null_host.hpp"
@@ -25,7 +25,7 @@ constexpr const char* traced = R"({ "dermis": 2, "name": "traced",
                 "read": { "scene": "scene", "vertices": "vertices", "light": "light" }, "write": { "out": "out" } } ],
   "exports": ["out"] })";
 
-template <class Handle> Handle handle(uint64_t number) { // the null device asks nothing of it
+template <class Handle> Handle handle(uint64_t number) { // The null device never reads the handle.
   Handle out = VK_NULL_HANDLE;
   static_assert(sizeof out == sizeof number);
   std::memcpy(&out, &number, sizeof out);
@@ -69,7 +69,8 @@ struct SceneBindings : ::testing::Test {
     const std::string text = traced;
     desc.source = source_of(text, "traced.json");
     desc.width = desc.height = 64;
-    const std::string skin = read_text("configs/profiles/skin.json"); // without one nothing is scattered
+    // Without a profile nothing is scattered.
+    const std::string skin = read_text("configs/profiles/skin.json");
     dermis_profile profile = DERMIS_PROFILE_INIT;
     profile.id = 1;
     profile.source = source_of(skin, "skin.json");
@@ -108,7 +109,7 @@ struct SceneBindings : ::testing::Test {
     dermis_frame next = DERMIS_FRAME_INIT;
     next.command_buffer = host.device.command_buffer();
     next.frame_index = 1;
-    next.clip_from_view[0] = next.clip_from_view[15] = 1.0f; // orthographic
+    next.clip_from_view[0] = next.clip_from_view[15] = 1.0f; // Orthographic.
     next.clip_from_view[5] = next.clip_from_view[10] = -1.0f;
     next.bindings = images.data();
     next.binding_count = static_cast<uint32_t>(images.size());
@@ -120,7 +121,7 @@ struct SceneBindings : ::testing::Test {
   }
 };
 
-TEST_F(SceneBindings, SlotsTellTheirTypeStrideAndLeastBytes) {
+TEST_F(SceneBindings, SlotsReportTypeStrideAndMinimumBytes) {
   const std::vector<dermis_slot> slots = slots_of(host.graph);
   ASSERT_EQ(slots.size(), 4u);
   EXPECT_EQ(slots[0].type, DERMIS_SLOT_ACCELERATION_STRUCTURE);
@@ -131,7 +132,7 @@ TEST_F(SceneBindings, SlotsTellTheirTypeStrideAndLeastBytes) {
   EXPECT_EQ(slots[2].type, DERMIS_SLOT_IMAGE);
 }
 
-TEST_F(SceneBindings, ReachThePassBehindBarriersFromAndToTheHost) {
+TEST_F(SceneBindings, AreAcquiredAndReleasedByBarriers) {
   const dermis_frame next = frame();
   uint32_t count = 0;
   const dermis_command* commands = nullptr;
@@ -145,13 +146,13 @@ TEST_F(SceneBindings, ReachThePassBehindBarriersFromAndToTheHost) {
     const VkDependencyInfo& one = *commands[i].dependency;
     std::copy_if(one.pMemoryBarriers, one.pMemoryBarriers + one.memoryBarrierCount,
                  std::back_inserter(memory),
-                 [](const VkMemoryBarrier2& barrier) { // not that of the counters
+                 [](const VkMemoryBarrier2& barrier) { // Excludes the buffer of the counters.
                    return barrier.dstStageMask != VK_PIPELINE_STAGE_2_HOST_BIT;
                  });
     buffers.insert(buffers.end(), one.pBufferMemoryBarriers,
                    one.pBufferMemoryBarriers + one.bufferMemoryBarrierCount);
   }
-  // Reads leave nothing to make available: back to the host is an order of stages alone.
+  // Reads make nothing available, so the release to the host only orders stages.
   ASSERT_EQ(memory.size(), 2u);
   EXPECT_EQ(memory[0].srcStageMask, VK_PIPELINE_STAGE_2_ACCELERATION_STRUCTURE_BUILD_BIT_KHR);
   EXPECT_EQ(memory[0].srcAccessMask, VK_ACCESS_2_ACCELERATION_STRUCTURE_WRITE_BIT_KHR);
@@ -175,7 +176,7 @@ TEST_F(SceneBindings, ReachThePassBehindBarriersFromAndToTheHost) {
   EXPECT_EQ(call->ports[2].structure, nullptr);
 }
 
-TEST_F(SceneBindings, ThatAreWrongAreRefusedByName) {
+TEST_F(SceneBindings, WrongBindings_AreRefusedByName) {
   struct Wrong {
     const char* says;
     std::function<void(SceneBindings&, dermis_frame&)> change;
@@ -227,7 +228,7 @@ TEST_F(SceneBindings, ThatAreWrongAreRefusedByName) {
       << "nothing has changed: " << dermis_last_error();
 }
 
-TEST_F(SceneBindings, TheFlagForRayQueriesNeedsADeviceThatHasThem) {
+TEST_F(SceneBindings, RayQueryFlag_NeedsADeviceWithRayQueries) {
   dermis_context_desc desc = host.context_desc();
   desc.flags |= DERMIS_CONTEXT_RAY_QUERY;
   dermis_context other = nullptr;

@@ -1,4 +1,4 @@
-// Settings as a host sees them: listed with types, ranges and values, and read back.
+// Tests settings of a host: listed with types, ranges and values, and read back.
 
 #include "tests/integration/abi/sources.hpp"
 #include "tests/integration/embedding/null_host.hpp"
@@ -15,13 +15,13 @@ namespace {
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-// Keeps the settings of the call's pass, by its name.
+// Stores the settings of the call's pass under its name.
 using Calls = std::map<std::string, std::vector<double>>;
 void DERMIS_CALL keep(void* user, const dermis_pass_call* call) {
   (*static_cast<Calls*>(user))[call->pass].assign(call->settings, call->settings + call->setting_count);
 }
 
-// Two kinds of the host: "weight" of studio.mix may differ from frame to frame, all else may not.
+// Registers two pass types of the host. Only "weight" of studio.mix can change per frame.
 dermis_result register_pass_types(dermis_context context, Calls& calls) {
   dermis_port port = DERMIS_PORT_INIT;
   port.name = "picture";
@@ -159,7 +159,7 @@ TEST_F(Settings, AreListedWithTypeRangeUnitAndOptions) {
   EXPECT_STREQ(weight.note, "");
 }
 
-TEST_F(Settings, AreReadBackAsTheyWereSet) {
+TEST_F(Settings, ReadBackAsSet) {
   make(graph_text);
   set("on", "false");
   set("count", "7");
@@ -177,7 +177,7 @@ TEST_F(Settings, AreReadBackAsTheyWereSet) {
   EXPECT_EQ(named(all, "radius").set, 0u);
 }
 
-TEST_F(Settings, OfFramesAreThoseThatOnlyFrameSettingsFollow) {
+TEST_F(Settings, PerFrame_OnlyIfAllUsesArePerFrame) {
   make(graph_text);
   std::vector<std::string> per_frame;
   for (const dermis_setting& one : settings_of(host.graph))
@@ -186,7 +186,7 @@ TEST_F(Settings, OfFramesAreThoseThatOnlyFrameSettingsFollow) {
       << "radius and both are of the plan, threshold decides which passes run, nothing follows the others";
 }
 
-TEST_F(Settings, OfAShippedGraphSayWhatViewsMayChange) {
+TEST_F(Settings, ShippedGraph_ReportsViewSettings) {
   ASSERT_EQ(host.make_graph(), DERMIS_OK) << dermis_last_error();
   const auto all = settings_of(host.graph);
   EXPECT_EQ(named(all, "accumulate_weight").per_frame, 1u);
@@ -195,7 +195,7 @@ TEST_F(Settings, OfAShippedGraphSayWhatViewsMayChange) {
   EXPECT_EQ(named(all, "texturing").per_frame, 0u);
 }
 
-TEST_F(Settings, ThatTheLibraryChoosesSaySoUntilTheyAreSet) {
+TEST_F(Settings, Chosen_AreReportedUntilTheHostSetsThem) {
   const std::string text = read_text("configs/graphs/skin.json");
   make(text);
   EXPECT_EQ(named(settings_of(host.graph), "technique").chosen, 1u);
@@ -206,7 +206,7 @@ TEST_F(Settings, ThatTheLibraryChoosesSaySoUntilTheyAreSet) {
   EXPECT_STREQ(technique.options[static_cast<size_t>(technique.value)], "separable");
 }
 
-TEST_F(Settings, OfAViewAreItsOwnWhereTheyArePerFrame) {
+TEST_F(Settings, PerFrame_ViewsHaveSeparateValues) {
   make_with_view();
   set_for_view("weight", "0.75");
   EXPECT_EQ(weight_of_view("one"), 0.75);
@@ -223,12 +223,12 @@ TEST_F(Settings, OfAViewAreItsOwnWhereTheyArePerFrame) {
   EXPECT_EQ(named(settings_of(view), "weight").set, 1u);
 }
 
-TEST_F(Settings, OfAViewGoOnOverAReloadThatAcceptsThem) {
+TEST_F(Settings, ViewSettings_SurviveAReloadThatAcceptsThem) {
   make_with_view();
   set_for_view("weight", "0.75");
   ASSERT_EQ(host.reload(graph_text), DERMIS_OK) << dermis_last_error();
   EXPECT_EQ(weight_of_view("one"), 0.75);
-  set("threshold", "0.05"); // turns a pass off: the graph is built anew
+  set("threshold", "0.05"); // Turns a pass off, so the graph is rebuilt.
   EXPECT_EQ(weight_of_view("one"), 0.75);
   std::string lower = graph_text;
   const std::string range = R"("weight": { "real": 0.5, "min": 0, "max": 1 })";
@@ -241,7 +241,7 @@ TEST_F(Settings, OfAViewGoOnOverAReloadThatAcceptsThem) {
   EXPECT_EQ(weight_of_view("one"), 0.5);
 }
 
-TEST_F(Settings, OfTheGraphAreRefusedForAView) {
+TEST_F(Settings, GraphSetting_IsRefusedForAView) {
   make_with_view();
   for (const char* name : {"on", "count", "how", "radius", "both", "threshold"}) {
     EXPECT_EQ(dermis_view_set_setting(view, name, "1", nullptr), DERMIS_ERROR_ARGUMENT) << name;

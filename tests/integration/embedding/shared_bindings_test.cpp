@@ -1,5 +1,5 @@
-// One buffer, acceleration structure or image of the host at two slots of a frame: ranges, aspects and
-// states.
+// Tests one buffer, acceleration structure or image of the host at two slots of a frame: ranges,
+// aspects and states.
 
 #include "tests/integration/abi/sources.hpp"
 #include "tests/integration/embedding/null_host.hpp"
@@ -44,7 +44,7 @@ struct SharedBindings : ::testing::Test {
   std::vector<dermis_image_binding> images;
   std::vector<dermis_buffer_binding> buffers;
   std::vector<dermis_acceleration_structure_binding> structures;
-  std::map<std::string, size_t> place; // in one of the three lists
+  std::map<std::string, size_t> place; // Index in one of the three lists.
   uint64_t frame_index = 0;
 
   void add_pass_type() {
@@ -149,23 +149,23 @@ struct SharedBindings : ::testing::Test {
   dermis_image_binding& image(const char* name) { return images[place.at(name)]; }
 };
 
-TEST_F(SharedBindings, ABufferThatIsOnlyReadMayHaveTwoSlots) {
+TEST_F(SharedBindings, ReadOnlyBuffer_MayHaveTwoSlots) {
   buffer("second").buffer = buffer("first").buffer;
   recorded();
   buffer("second").before.stages = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
   refused("'first'", "'second'");
 }
 
-TEST_F(SharedBindings, ABufferThatIsWrittenHasOneSlotPerRange) {
+TEST_F(SharedBindings, WrittenBuffer_HasOneSlotPerRange) {
   buffer("changed").buffer = buffer("first").buffer;
   refused("'first'", "'changed'");
-  buffer("changed").offset = 256; // after the 64 bytes of `first`
+  buffer("changed").offset = 256; // After the 64 bytes of `first`.
   recorded();
   buffer("first").bytes = 320;
   refused("'first'", "'changed'");
 }
 
-TEST_F(SharedBindings, AStructureMayHaveTwoSlotsInEqualStates) {
+TEST_F(SharedBindings, AccelerationStructure_EqualStates_MayHaveTwoSlots) {
   structure("shadows").structure = structure("scene").structure;
   recorded();
   structure("shadows").after.access = VK_ACCESS_2_ACCELERATION_STRUCTURE_READ_BIT_KHR;

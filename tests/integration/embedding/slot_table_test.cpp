@@ -1,4 +1,5 @@
-// docs/integration.md: a host that binds what the table of slots says runs every shipped graph.
+// Checks the table of slots in docs/integration.md: a host that binds the table's slots runs every
+// shipped graph.
 
 #include "tests/integration/abi/sources.hpp"
 #include "tests/integration/embedding/null_host.hpp"
@@ -23,13 +24,13 @@ std::vector<std::string> cells_of(const std::string& line) {
   for (size_t at = line.find('|'); at != std::string::npos;) {
     const size_t end = line.find('|', at + 1);
     if (end == std::string::npos) break;
-    cells.push_back(line.substr(at + 2, end - at - 3)); // a blank at both ends
+    cells.push_back(line.substr(at + 2, end - at - 3)); // Cells have a blank at both ends.
     at = end;
   }
   return cells;
 }
 
-// The words between back quotes.
+// Returns the words between backquotes.
 std::vector<std::string> names_in(const std::string& text) {
   std::vector<std::string> words;
   for (size_t at = text.find('`'); at != std::string::npos;) {
@@ -53,7 +54,7 @@ std::vector<TableRow> slot_table() {
   return rows;
 }
 
-// "required", "optional", or "" where the graph has no such slot.
+// Returns "required", "optional", or "" if the graph has no such slot.
 std::string need_in(const TableRow& row, const std::string& graph) {
   std::stringstream parts(row.needed);
   for (std::string part; std::getline(parts, part, ';');) {
@@ -89,7 +90,8 @@ VkFormat format_named(const std::string& name) {
   return found == formats.end() ? VK_FORMAT_UNDEFINED : found->second;
 }
 
-template <class Handle> Handle invented(uint64_t number) { // the null device asks nothing of it
+// The null device never reads the handle.
+template <class Handle> Handle invented(uint64_t number) {
   Handle out = VK_NULL_HANDLE;
   std::memcpy(&out, &number, sizeof out);
   return out;
@@ -100,8 +102,8 @@ constexpr dermis_image_state anywhere{VK_IMAGE_LAYOUT_GENERAL, 0, VK_PIPELINE_ST
 constexpr dermis_image_state no_image{VK_IMAGE_LAYOUT_UNDEFINED, 0, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
                                       VK_ACCESS_2_MEMORY_WRITE_BIT, 0};
 
-// Runs one frame of configs/graphs/<name>.json with what the table says: each required slot, and the optional
-// ones where `with_optional`; `choice` counts through the formats of each slot.
+// Runs one frame of configs/graphs/<name>.json with the table's bindings: each required slot, and
+// with `with_optional` the optional slots. `choice` counts through the formats of each slot.
 void follow(const std::vector<TableRow>& table, const std::string& name, bool with_optional, size_t choice) {
   SCOPED_TRACE(name + (with_optional ? ", all slots" : ", required slots") + ", format " +
                std::to_string(choice));
@@ -109,7 +111,7 @@ void follow(const std::vector<TableRow>& table, const std::string& name, bool wi
   ASSERT_EQ(host.make_context(host.context_desc()), DERMIS_OK) << dermis_last_error();
   std::vector<dermis_slot_format> formats;
   std::vector<const char*> unbound;
-  std::map<std::string, std::string> bind; // slot -> type
+  std::map<std::string, std::string> bind; // Maps slots to types.
   for (const TableRow& row : table) {
     const std::string need = need_in(row, name);
     if (need.empty()) continue;
@@ -204,7 +206,7 @@ TEST(SlotTable, FollowingItBindsEveryShippedGraph) {
     ++graphs;
     const std::string name = std::filesystem::path(file).stem().string();
     follow(table, name, false, 0);
-    for (size_t choice = 0; choice < 6; ++choice) // depth has the most formats
+    for (size_t choice = 0; choice < 6; ++choice) // Depth has the most formats.
       follow(table, name, true, choice);
   }
   EXPECT_EQ(graphs, 16u);

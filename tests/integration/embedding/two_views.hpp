@@ -1,6 +1,6 @@
 #pragma once
-// Two views of one graph that are given frames of the same numbers, so that whatever their pictures differ by
-// comes from what they were given.
+// Two views of one graph with frames of equal numbers, so that their pictures only differ because
+// of their inputs.
 
 #include "tests/integration/abi/dermis_fixture.hpp"
 
@@ -8,14 +8,14 @@ namespace dermis::abi_test {
 
 struct TwoViewsTest : DermisTest {
   dermis_graph graph = nullptr;
-  dermis_view other = nullptr; // the second; the first is the graph's own
+  dermis_view other = nullptr; // The second view; the first view is the graph's own.
 
   void TearDown() override {
     dermis_view_destroy(other);
     DermisTest::TearDown();
   }
 
-  // Square, with nothing bound that is optional, except `bound`; `profiles` that are the same skin.
+  // Makes a square view. Of the optional slots only `bound` is bound; all `profiles` are one skin.
   void make(const std::string& text, const std::vector<std::string>& overlays, uint32_t side,
             const std::string& bound = "", uint32_t profiles = 1) {
     GraphOptions options;
@@ -35,7 +35,7 @@ struct TwoViewsTest : DermisTest {
     make_images(graph);
   }
 
-  // The camera rests.
+  // Sets matrices of a camera at rest.
   static void rest(dermis_frame& frame) {
     for (size_t i = 0; i < 16; ++i)
       frame.view_from_world[i] = frame.previous_view_from_world[i] = i % 5 == 0 ? 1.0f : 0.0f;
@@ -43,7 +43,8 @@ struct TwoViewsTest : DermisTest {
               std::begin(frame.previous_clip_from_view));
   }
 
-  // Frame `index` of the second view, or of the graph's own if `view` is null; submits and waits.
+  // Records frame `index` of a view, or of the graph's own view if `view` is null; submits and
+  // waits.
   void record_in(dermis_view view, dermis_frame& frame, uint64_t index) {
     frame.frame_index = index;
     frame.completed_frame_index = index - 1;

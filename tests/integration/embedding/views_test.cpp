@@ -1,5 +1,5 @@
-// Several views of one graph: each looks as if it were the only one, whatever happens to the graph and to the
-// others.
+// Tests several views of one graph: each gives the pictures of a graph with one view, whatever
+// happens to the graph and to the other views.
 
 #include "tests/integration/embedding/cameras.hpp"
 
@@ -15,7 +15,7 @@ Recorder recorder_of(dermis_view view) {
   return [view](const dermis_frame* frame) { return dermis_view_record(view, frame); };
 }
 
-// Some cameras sit out some frames; the first sees all.
+// Some cameras skip some frames; the first camera has all frames.
 bool takes_part(size_t camera, uint64_t index) {
   return camera == 0 || (index * 5 + camera) % 4 != 0;
 }
@@ -27,7 +27,7 @@ struct Views : CameraTest {
     return view;
   }
 
-  // What happens to a graph between frames.
+  // A change of the graph between frames.
   using Change = std::function<void(dermis_graph, uint64_t)>;
   static void nothing(dermis_graph, uint64_t) {}
 
@@ -49,7 +49,7 @@ struct Views : CameraTest {
     wait();
   }
 
-  // The light of `count` cameras after `last` frames, all of them views of one graph.
+  // Returns the light of `count` cameras after `last` frames, as views of one graph.
   std::vector<std::vector<float>> together(size_t count, uint64_t last, const Change& change) {
     const dermis_graph graph = make_accumulating();
     std::vector<Recorder> recorders{recorder_of(graph)};
@@ -67,7 +67,7 @@ struct Views : CameraTest {
     return light;
   }
 
-  // The same camera with a graph to itself.
+  // Returns the light of one camera with a separate graph.
   std::vector<float> alone(size_t number, uint64_t last, const Change& change) {
     const dermis_graph graph = make_accumulating();
     std::vector<Camera> cameras;
@@ -76,7 +76,7 @@ struct Views : CameraTest {
     return light_of(cameras.front());
   }
 
-  // Several runs with the same fences.
+  // Several runs use the same fences.
   void submit_again(uint64_t index, const std::function<void(VkCommandBuffer)>& record) {
     submit(submitted + 1, record);
     ++submitted;
@@ -85,7 +85,7 @@ struct Views : CameraTest {
   uint64_t submitted = 0;
 };
 
-TEST_F(Views, EachOfEightLooksAsIfItWereAloneWithThreeFramesInFlight) {
+TEST_F(Views, EachOfEightMatchesASingleView) {
   constexpr uint64_t last = 9;
   const auto light = together(8, last, nothing);
   for (size_t c = 0; c < light.size(); ++c)
@@ -94,7 +94,7 @@ TEST_F(Views, EachOfEightLooksAsIfItWereAloneWithThreeFramesInFlight) {
   EXPECT_FALSE(light[0] == alone(0, last - 1, nothing)) << "each frame changes the light";
 }
 
-TEST_F(Views, AReloadKeepsTheHistoryOfEach) {
+TEST_F(Views, Reload_KeepsTheHistoryOfEach) {
   constexpr uint64_t last = 7;
   const std::string text = read_text("configs/graphs/burley.json");
   const Change reload = [&](dermis_graph graph, uint64_t index) {
@@ -108,7 +108,7 @@ TEST_F(Views, AReloadKeepsTheHistoryOfEach) {
     EXPECT_TRUE(light[c] == alone(c, last, nothing)) << "camera " << c << " notices the reload";
 }
 
-TEST_F(Views, AResizeIsOneForAll) {
+TEST_F(Views, Resize_AppliesToAll) {
   constexpr uint64_t last = 7;
   const Change resize = [](dermis_graph graph, uint64_t index) {
     if (index == 4) {
@@ -120,7 +120,7 @@ TEST_F(Views, AResizeIsOneForAll) {
     EXPECT_TRUE(light[c] == alone(c, last, resize)) << "camera " << c;
 }
 
-TEST_F(Views, ASettingThatChangesThePassesIsOneForAll) {
+TEST_F(Views, GraphSetting_AppliesToAll) {
   constexpr uint64_t last = 6;
   const Change set = [](dermis_graph graph, uint64_t index) {
     if (index == 3) {
@@ -132,7 +132,7 @@ TEST_F(Views, ASettingThatChangesThePassesIsOneForAll) {
   EXPECT_FALSE(light[1] == alone(1, last, nothing)) << "the setting counts";
 }
 
-TEST_F(Views, AFrameThatOneTakesBackChangesNeitherItNorTheOthers) {
+TEST_F(Views, DiscardedFrame_ChangesNoView) {
   const dermis_graph graph = make_accumulating();
   const dermis_view view = make_view(graph);
   std::vector<Camera> cameras;
@@ -140,7 +140,7 @@ TEST_F(Views, AFrameThatOneTakesBackChangesNeitherItNorTheOthers) {
     cameras.push_back(make_camera(graph, seed));
   for (uint64_t index = 1; index <= 6; ++index) {
     dermis_frame first = frame_of(cameras[0], index), second = frame_of(cameras[1], index);
-    if (index == 4) { // recorded, and thrown away
+    if (index == 4) { // Recorded and thrown away.
       const auto begin =
           demo::vulkan_struct<VkCommandBufferBeginInfo>(VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO);
       VkCommandBuffer thrown = commands[index % frames];
@@ -165,7 +165,7 @@ TEST_F(Views, AFrameThatOneTakesBackChangesNeitherItNorTheOthers) {
   EXPECT_TRUE(light_of(cameras[1]) == alone(1, 6, nothing));
 }
 
-TEST_F(Views, OneMayComeAndGoWhileOthersRun) {
+TEST_F(Views, CanBeCreatedAndDestroyedWhileOthersRun) {
   const dermis_graph graph = make_accumulating();
   std::vector<Camera> cameras;
   for (uint32_t seed : {1u, 2u})
@@ -194,7 +194,7 @@ TEST_F(Views, OneMayComeAndGoWhileOthersRun) {
   dermis_view_destroy(nullptr);
 }
 
-TEST_F(Views, ShareOneImageALayerEach) {
+TEST_F(Views, CanUseLayersOfOneImage) {
   constexpr uint64_t last = 4;
   const dermis_graph graph = make_accumulating();
   const dermis_view right = make_view(graph);
@@ -209,7 +209,8 @@ TEST_F(Views, ShareOneImageALayerEach) {
   auto made = demo::create_image(*host, desc);
   ASSERT_TRUE(made) << made.error().text;
   demo::Image both = made.take();
-  // Layer 0 gets the camera's light. Layer 1 waits in a layout of its own: whoever touched it would be told.
+  // Layer 0 gets the camera's light. Layer 1 stays in another layout, so that validation would
+  // report any access.
   std::vector<float> light = light_of(camera);
   const dermis_image_state rests = camera.bound.front().before;
   const demo::ImageState state{rests.layout, rests.stages, rests.access};
@@ -242,7 +243,7 @@ TEST_F(Views, ShareOneImageALayerEach) {
     });
   submitted = last;
   wait();
-  // read_image() wants all layers in one layout.
+  // read_image() needs all layers in one layout.
   const auto settled = demo::run_commands(*host, [&](VkCommandBuffer into) -> demo::Result<> {
     auto barrier = demo::vulkan_struct<VkImageMemoryBarrier2>(VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2);
     barrier.srcStageMask = barrier.dstStageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
@@ -263,12 +264,11 @@ TEST_F(Views, ShareOneImageALayerEach) {
              right_light = demo::read_image(*host, both, state, 1);
   ASSERT_TRUE(left_light && right_light);
   EXPECT_TRUE(*left_light == alone(0, last, nothing));
-  // Both layers were uploaded with the left eye's light, or the right one's is what scattering makes of
-  // nothing known.
+  // Equal layers would mean that the library wrote one eye's light into both.
   EXPECT_FALSE(*left_light == *right_light);
 }
 
-TEST_F(Views, MakeTheMemoryOfAGraphGrowByTheSameAmountEach) {
+TEST_F(Views, EachAddsAnEqualAmountOfMemory) {
   const dermis_graph graph = make_accumulating();
   const auto memory = [&] {
     dermis_memory bytes = DERMIS_MEMORY_INIT;
@@ -284,7 +284,7 @@ TEST_F(Views, MakeTheMemoryOfAGraphGrowByTheSameAmountEach) {
   EXPECT_EQ(memory().history_bytes, one.history_bytes);
 }
 
-TEST_F(Views, EachTellsItsOwnTimesAndChoices) {
+TEST_F(Views, ReportSeparateTimesAndChoices) {
   const dermis_graph graph = make_accumulating();
   const dermis_view view = make_view(graph);
   const Camera camera = make_camera(graph, 1);

@@ -1,4 +1,4 @@
-// Engines that are not on Vulkan 1.3 yet: a device of 1.2 with two extensions gives the same pictures.
+// A Vulkan 1.2 device with two extensions gives equal pictures.
 
 #include "tests/integration/embedding/cameras.hpp"
 
@@ -6,7 +6,7 @@ namespace dermis::abi_test {
 namespace {
 
 struct Vulkan12 : CameraTest {
-  static void SetUpTestSuite() {} // a host for each device, one after the other
+  static void SetUpTestSuite() {} // A new host for each device, one after the other.
   static void TearDownTestSuite() {}
   void SetUp() override {}
   void TearDown() override {}
@@ -35,7 +35,7 @@ struct Vulkan12 : CameraTest {
       }
       out = light_of(camera);
     }
-    InFlightTest::TearDown(); // no message of the validation layer
+    InFlightTest::TearDown(); // No message of the validation layer.
     graphs.clear();
     context = nullptr;
     host.reset();
@@ -43,7 +43,7 @@ struct Vulkan12 : CameraTest {
   }
 };
 
-TEST_F(Vulkan12, WithItsExtensionsGivesThePicturesOf13) {
+TEST_F(Vulkan12, WithExtensions_MatchesVulkan13) {
   const std::vector<float> with_13 = light(false), with_12 = light(true);
   ASSERT_FALSE(with_13.empty());
   EXPECT_TRUE(with_13 == with_12);

@@ -138,7 +138,7 @@ struct Draft {
     for (Json& pass : part["passes"]) {
       const std::string type = pass["type"];
       if (type == "subsurface.combine" && !puts_back) continue;
-      // Where the part writes light back, light is the host's image.
+      // If the part writes light back, light is the host's image.
       rename_pass(pass, prefix, type == "subsurface.combine" ? resources : redirected, settings);
       if (!graph["passes"].empty() && chance(10)) {
         const Json& earlier = graph["passes"][random.below(graph["passes"].size())];
