@@ -18,7 +18,7 @@ inline constexpr double reproject_snap_px = 1.0 / 1024;
 inline constexpr double reproject_largest_velocity = 65536;
 // Two depths are on one surface within this fraction of the depth, or within this many pixels of
 // its slope. A surface was not visible if the sum of valid bilinear weights is below
-// reproject_min_weight. Source: issue 5 of the project's list, "Temporal".
+// reproject_min_weight.
 inline constexpr double reproject_depth_fraction = 0.02;
 inline constexpr double reproject_slope_pixels = 2;
 inline constexpr double reproject_min_weight = 0.25;
