@@ -133,7 +133,7 @@ double expect_the_reference_in_the_mean(const std::string& graph, const Settings
   double z_square = 0;
   for (size_t i = 0; i < reference.size(); ++i) {
     const double z = (sum[i] - reference[i]) / std::sqrt((square[i] - sum[i] * sum[i]) / (n - 1));
-    EXPECT_LT(std::abs(z), 4) << "value " << i; // Of 432 values, 0.03 are expected beyond 4 sigma.
+    EXPECT_LT(std::abs(z), 4) << "value " << i; // 0.03 of 432 values are expected beyond 4 sigma.
     z_square += z * z / double(reference.size());
   }
   return z_square; // 144 independent pixels with three equal channels: sd 0.12.

@@ -16,7 +16,7 @@ namespace dermis::testing {
 
 struct TestImage {
   VkImage image = VK_NULL_HANDLE;
-  VkImageView view = VK_NULL_HANDLE; // Of mip 0; of the depth aspect for depth formats.
+  VkImageView view = VK_NULL_HANDLE; // View of mip 0; of the depth aspect for depth formats.
   VkDeviceMemory memory = VK_NULL_HANDLE;
   VkFormat format = VK_FORMAT_UNDEFINED;
   uint32_t width = 0, height = 0;

@@ -1,5 +1,6 @@
-/* What a host may rely on whatever it calls: the library prints nothing, makes no thread, leaves locale, folder, rounding and
- * signal handlers as they are, and can be unloaded and loaded again. usage: behaves LIBRARY GRAPH */
+/* Checks that every call of the library leaves its process unchanged: no output, no threads, equal
+ * locale, folder, rounding and signal handlers, and the library can be unloaded and loaded again.
+ * usage: behaves LIBRARY GRAPH */
 #define _GNU_SOURCE
 #include <dermis/dermis.h>
 #include <dirent.h>

@@ -1,4 +1,5 @@
-/* An engine for bindings_run.py: device, command buffer and images, in C. Everything of Dermis is called from there. */
+/* An engine for bindings_run.py with device, command buffer and images, in C. bindings_run.py makes
+ * all calls of Dermis. */
 #include "headless.h"
 
 #define ENGINE_API __attribute__((visibility("default")))
@@ -26,7 +27,8 @@ ENGINE_API void* engine_loader(void) {
   memcpy(&address, &loader, sizeof address);
   return address;
 }
-/* An image that is `value` in every channel; `whole`: an integer format. Handles as numbers. */
+/* Makes an image with `value` in every channel; `whole` selects an integer format. Returns the
+ * handles as numbers. */
 ENGINE_API void engine_image(int format, uint32_t side, uint32_t usage, float value, int whole, uint64_t handles[2]) {
   VkClearColorValue color;
   VkImageView view;

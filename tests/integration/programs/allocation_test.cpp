@@ -1,5 +1,5 @@
-// Host memory where operator new is the program's: recording takes none, and running out of it is told and
-// leaves nothing behind.
+// Tests host memory if operator new is the program's: recording allocates nothing, and failed
+// allocations are reported and leak nothing.
 
 #include "tests/framegraph/test_scale.hpp"
 #include "tests/integration/embedding/recorded_frame.hpp"
@@ -14,11 +14,11 @@
 
 namespace {
 
-// What operator new does on this thread.
+// The state of operator new on this thread.
 struct Allocations {
   bool counting = false;
   uint64_t count = 0;
-  uint64_t fail_at = 0; // the allocation that fails, from 1; 0: none
+  uint64_t fail_at = 0; // The allocation that fails, from 1; 0: none.
 };
 constinit thread_local Allocations allocations;
 
@@ -33,14 +33,15 @@ void* allocate(size_t size, size_t alignment) {
 
 } // namespace
 
-// All other forms of new and delete call these. Inlined next to its uses, a delete looks mismatched to gcc.
+// All other forms of new and delete call these. If a delete were inlined next to its uses, gcc
+// would report a mismatch.
 void* operator new(size_t size) {
   return allocate(size, 0);
 }
 void* operator new(size_t size, std::align_val_t alignment) {
   return allocate(size, static_cast<size_t>(alignment));
 }
-// std::stable_sort asks for its buffer so.
+// std::stable_sort allocates its buffer with this form.
 void* operator new(size_t size, const std::nothrow_t&) noexcept {
   try {
     return allocate(size, 0);
@@ -74,8 +75,8 @@ std::string shipped_graph() {
   return text.str();
 }
 
-// Calls `change` with its first allocation failing, then its second, until it succeeds; every one of the
-// first 300, then some.
+// Calls `change` with its first allocation failing, then its second, until it succeeds: every one
+// of the first 300, then some.
 void fail_each(const std::function<dermis_result()>& change, const std::function<void(uint64_t)>& after) {
   constexpr uint64_t each_until = 300;
   const uint64_t step = dermis::testing::seeds_to_try(61, 1);
@@ -94,10 +95,10 @@ void fail_each(const std::function<dermis_result()>& change, const std::function
 
 struct Allocation : RecordedFrame {};
 
-TEST_F(Allocation, RecordingTakesNoHostMemory) {
+TEST_F(Allocation, RecordingAllocatesNothing) {
   for (int i = 0; i < 4; ++i) {
     if (i == 2) {
-      ASSERT_EQ(host.reload(), DERMIS_OK); // and none to take over
+      ASSERT_EQ(host.reload(), DERMIS_OK); // No history to copy remains.
     }
     allocations = {true, 0, 0};
     const dermis_result result = host.record();
@@ -107,7 +108,7 @@ TEST_F(Allocation, RecordingTakesNoHostMemory) {
   }
 }
 
-TEST_F(Allocation, ARefusedFrameTakesNoHostMemoryEither) {
+TEST_F(Allocation, RefusedFrameAllocatesNothing) {
   dermis_frame frame = DERMIS_FRAME_INIT;
   frame.command_buffer = host.device.command_buffer();
   frame.frame_index = host.last_frame + 1;
@@ -119,14 +120,13 @@ TEST_F(Allocation, ARefusedFrameTakesNoHostMemoryEither) {
   EXPECT_EQ(allocations.count, 0u);
 }
 
-// The device that runs nothing takes its memory from the same place: objects that are left are counted in
-// HostMemory.
-TEST_F(Allocation, EachThatFailsInAReloadIsToldAndTheGraphRunsOn) {
+// The null device allocates from the same heap; HostMemory counts leaked objects.
+TEST_F(Allocation, EachFailureInAReloadIsReported) {
   fail_each([&] { return host.reload(); },
             [&](uint64_t number) { ASSERT_EQ(host.record(), DERMIS_OK) << "allocation " << number; });
 }
 
-TEST_F(Allocation, AnAllocatorOfTheHostIsRefused) {
+TEST_F(Allocation, HostAllocatorIsRefused) {
   dermis_allocator allocator = DERMIS_ALLOCATOR_INIT;
   allocator.allocate = [](void*, size_t, size_t) -> void* { return nullptr; };
   allocator.release = [](void*, void*, size_t, size_t) {};
@@ -137,7 +137,7 @@ TEST_F(Allocation, AnAllocatorOfTheHostIsRefused) {
   EXPECT_EQ(context, nullptr);
 }
 
-TEST(AllocationFailure, EachFailedAllocationOfAValidationIsToldAndTheNextCallWorks) {
+TEST(AllocationFailure, EachFailureInAValidationIsReported) {
   const std::string text = shipped_graph();
   dermis_source source = DERMIS_SOURCE_INIT;
   source.name = "burley.json";

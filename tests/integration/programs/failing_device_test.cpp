@@ -1,5 +1,5 @@
-// A device that refuses: whichever object or allocation it is, the call says so, what ran before runs on and
-// nothing is left behind.
+// Tests a device that refuses any object or allocation: the call reports the failure, running
+// graphs continue, and nothing leaks.
 
 #include "integration/tools/command/bench/record/counted_host.hpp"
 #include "tests/framegraph/test_scale.hpp"
@@ -15,7 +15,8 @@
 namespace dermis::test {
 namespace {
 
-constexpr uint64_t max_creations = 2000; // of one call; a graph of twenty passes makes about 200
+// Limit for one call; a graph of twenty passes creates about 200 objects.
+constexpr uint64_t max_creations = 2000;
 constexpr uint32_t frames_in_flight = 2;
 
 std::string text_of(const std::string& path) {
@@ -31,7 +32,7 @@ struct FailingDevice : ::testing::TestWithParam<const char*> {
     const std::string profile = "configs/profiles/skin.json";
     return {graph, text_of(graph), profile, text_of(profile), width, height};
   }
-  // From one failing creation to the next: a graph that is made anew fits its kernel tables at each try.
+  // Step between failing creations, because a new graph fits its kernel tables at each try.
   static uint64_t step() {
     return std::string_view(GetParam()) == "burley" ? 1 : dermis::testing::seeds_to_try(16, 1);
   }
@@ -56,7 +57,7 @@ void fail_each_creation(tools::CountedHost& host, const std::function<dermis_res
   EXPECT_LT(failures, max_creations - 2);
 }
 
-TEST_P(FailingDevice, AGraphThatCannotBeMadeLeavesNothing) {
+TEST_P(FailingDevice, FailedGraph_LeaksNothing) {
   uint64_t nth = 1;
   for (; nth < max_creations; nth += step()) {
     tools::CountedHost host;
@@ -71,15 +72,15 @@ TEST_P(FailingDevice, AGraphThatCannotBeMadeLeavesNothing) {
   EXPECT_LT(nth, max_creations);
 }
 
-TEST_P(FailingDevice, AFailedResizeLeavesTheGraphAsItWas) {
+TEST_P(FailingDevice, FailedResize_KeepsTheGraph) {
   tools::CountedHost host;
   ASSERT_EQ(host.open(input(64, 48)), "");
   ASSERT_EQ(host.record_frame(), DERMIS_OK);
-  uint32_t calls = 0; // the size changes each time: a resize to the same size does nothing
+  uint32_t calls = 0; // The size changes each time, because a resize to the same size does nothing.
   fail_each_creation(host, [&] { return dermis_graph_resize(host.graph(), 48 + ++calls % 2, 48, nullptr); });
 }
 
-TEST_P(FailingDevice, AFailedReloadLeavesTheGraphAsItWas) {
+TEST_P(FailingDevice, FailedReload_KeepsTheGraph) {
   tools::CountedHost host;
   const tools::CountedInput given = input(64, 48);
   ASSERT_EQ(host.open(given), "");
@@ -91,7 +92,7 @@ TEST_P(FailingDevice, AFailedReloadLeavesTheGraphAsItWas) {
   fail_each_creation(host, [&] { return abi_test::reload_text(host.graph(), source); });
 }
 
-TEST_P(FailingDevice, WhatAReloadReplacesIsGoneOnceItsFramesAreDone) {
+TEST_P(FailingDevice, ReplacedObjects_AreFreedAfterTheirFrames) {
   tools::CountedHost host;
   const tools::CountedInput given = input(64, 48);
   ASSERT_EQ(host.open(given), "");

@@ -1,5 +1,5 @@
-// Kernels from text while a graph runs: what is as it was stays as it was, what changed is seen, what is
-// broken is told with its place and changes nothing.
+// Tests kernels from text while a graph runs: unchanged kernels stay, changed kernels take effect,
+// and broken kernels are reported with their place and change nothing.
 
 #include "integration/abi/shaders/compiler.hpp"
 #include "passes/common/kernels.hpp"
@@ -19,15 +19,15 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Not;
 
-constexpr const char* combine = "common/subsurface_combine.comp"; // of burley.json
+constexpr const char* combine = "common/subsurface_combine.comp"; // A kernel of burley.json.
 constexpr const char* store = "vec4(round_to_half(color), 1.0)";
 
 // The files of shaders/, some with another text.
 struct Folder {
   std::map<std::string, std::string> changed;
-  bool rest = true; // false: there is nothing but `changed`
+  bool rest = true; // False: only `changed` exists.
   std::set<std::string> requested;
-  std::map<std::string, std::string> delivered; // as long as the call lasts
+  std::map<std::string, std::string> delivered; // Kept for the duration of the call.
 
   std::string change(const std::string& name, const std::string& from, const std::string& to) {
     std::string text = read_text("shaders/" + name);
@@ -51,7 +51,8 @@ uint32_t DERMIS_CALL open_in(void* user, const char* name, dermis_source* source
   return 1;
 }
 
-std::pair<uint32_t, uint32_t> place_in(const std::string& text, const std::string& what) { // line, column
+// Line, column.
+std::pair<uint32_t, uint32_t> place_in(const std::string& text, const std::string& what) {
   const size_t at = text.find(what);
   return {
       static_cast<uint32_t>(std::count(text.begin(), text.begin() + static_cast<ptrdiff_t>(at), '\n') + 1),
@@ -70,7 +71,7 @@ struct Shaders : DermisTest {
     make_images(graph);
     return graph;
   }
-  // One more frame of the first frame's light.
+  // Runs one more frame in the first frame's light.
   std::vector<float> light(dermis_graph graph) {
     fill("lighting", [](uint32_t x, uint32_t) { return x < 32 ? 1.0f : 0.0f; });
     const auto bound = bindings(graph);
@@ -87,7 +88,8 @@ struct Shaders : DermisTest {
       dermis_report_destroy(report);
     return result;
   }
-  // The samples of a frame hang on its number: what follows is compared with a graph that was left alone.
+  // The samples of a frame depend on its number, so later frames are compared with an unchanged
+  // graph.
   void expect_as_ever(dermis_graph graph) {
     const uint64_t before = last_frame;
     const auto now = light(graph);
@@ -97,7 +99,7 @@ struct Shaders : DermisTest {
   }
 };
 
-TEST(ShaderCompiler, MakesOfUnchangedTextTheWordsOfTheBuild) {
+TEST(ShaderCompiler, UnchangedText_GivesTheBuildsWords) {
   if (abi::shader_compiler().empty()) GTEST_SKIP() << "built without glslang (package glslang-dev)";
   std::vector<std::string> names;
   for (const Kernel& kernel : embedded_kernels())
@@ -114,7 +116,7 @@ TEST(ShaderCompiler, MakesOfUnchangedTextTheWordsOfTheBuild) {
     EXPECT_TRUE(std::ranges::equal(spirv[i], find_kernel(names[i]))) << names[i];
 }
 
-TEST_F(Shaders, OfUnchangedTextGiveTheSameLight) {
+TEST_F(Shaders, UnchangedText_GivesEqualLight) {
   const dermis_graph graph = make();
   light(graph);
   ASSERT_EQ(reload(graph), DERMIS_OK) << dermis_last_error();
@@ -123,7 +125,7 @@ TEST_F(Shaders, OfUnchangedTextGiveTheSameLight) {
   expect_as_ever(graph);
 }
 
-TEST_F(Shaders, ThatChangedAreSeenInTheNextFrameAndUntilTheLibrarysAreAskedBack) {
+TEST_F(Shaders, ChangedText_IsUsedUntilReset) {
   const dermis_graph graph = make();
   const auto whole = light(graph);
   folder.change(combine, store, "vec4(round_to_half(color * 0.5), 1.0)");
@@ -152,7 +154,7 @@ TEST_F(Shaders, ThatChangedAreSeenInTheNextFrameAndUntilTheLibrarysAreAskedBack)
   expect_as_ever(graph);
 }
 
-TEST_F(Shaders, OfTwoGraphsOfAContextAreEachItsOwn) {
+TEST_F(Shaders, TwoGraphs_HaveSeparateShaders) {
   const dermis_graph one = make(), other = make_graph();
   folder.change(combine, store, "vec4(round_to_half(color * 0.5), 1.0)");
   ASSERT_EQ(reload(one), DERMIS_OK) << dermis_last_error();
@@ -165,13 +167,14 @@ TEST_F(Shaders, OfTwoGraphsOfAContextAreEachItsOwn) {
   double sum = 0;
   for (size_t i = 0; i < halved.size(); ++i) {
     if (i % 4 == 3) continue;
-    EXPECT_NEAR(quartered[i], halved[i] / 2, 6e-8) << i; // exact but for the smallest half floats
+    // Exact except for the smallest half floats.
+    EXPECT_NEAR(quartered[i], halved[i] / 2, 6e-8) << i;
     sum += halved[i];
   }
   EXPECT_GT(sum, 0);
 }
 
-TEST_F(Shaders, ThatAreBrokenAreToldWithTheirPlaceAndNothingChanges) {
+TEST_F(Shaders, BrokenText_IsReportedAndChangesNothing) {
   const dermis_graph graph = make();
   light(graph);
   const std::string text = folder.change(combine, store, "vec4(round_to_half(colour), 1.0)");
@@ -182,11 +185,11 @@ TEST_F(Shaders, ThatAreBrokenAreToldWithTheirPlaceAndNothingChanges) {
   EXPECT_THAT(said.all, AllOf(HasSubstr(std::string(combine) + ":"), HasSubstr("'colour'"), HasSubstr("^")));
   EXPECT_THAT(dermis_last_error(), HasSubstr(combine));
   expect_as_ever(graph);
-  folder.changed.clear(); // the next good text is taken
+  folder.changed.clear(); // The next good text is accepted.
   EXPECT_EQ(reload(graph), DERMIS_OK);
 }
 
-TEST_F(Shaders, TellAnErrorOfAnIncludedFileOnceAndErrorsOfAllKernels) {
+TEST_F(Shaders, ErrorsAreReportedOncePerFile) {
   const dermis_graph graph = make();
   const std::string text = folder.change("common/half.glsl", "\nfloat ", "\nflote ");
   folder.change("common/subsurface_tile_list.comp", "void main() {", "void main() { nothing;");
@@ -199,7 +202,7 @@ TEST_F(Shaders, TellAnErrorOfAnIncludedFileOnceAndErrorsOfAllKernels) {
   expect_as_ever(graph);
 }
 
-TEST_F(Shaders, OpenNothingOutsideOfTheirFolder) {
+TEST_F(Shaders, OpenOnlyFilesOfTheirFolder) {
   const dermis_graph graph = make();
   for (const char* include : {"\"../secret.glsl\"", "\"/etc/passwd\"", "\"a/../../b.glsl\"",
                               "\"C:\\\\b.glsl\"", "\"./half.glsl\"", "<half.glsl>", "\"not_there.glsl\""}) {
@@ -221,7 +224,7 @@ TEST_F(Shaders, OpenNothingOutsideOfTheirFolder) {
   expect_as_ever(graph);
 }
 
-TEST_F(Shaders, ThatIncludeThemselvesWithoutEndAreRefused) {
+TEST_F(Shaders, RecursiveInclude_IsRefused) {
   const dermis_graph graph = make();
   folder.changed["common/half.glsl"] = "#include \"common/half.glsl\"\n";
   Said said;
@@ -236,7 +239,7 @@ TEST_F(Shaders, ThatIncludeThemselvesWithoutEndAreRefused) {
   expect_as_ever(graph);
 }
 
-TEST_F(Shaders, ThatDoNotFitTheSignatureOfTheirKindAreRefused) {
+TEST_F(Shaders, SignatureMismatch_IsRefused) {
   const dermis_graph graph = make();
   folder.change(combine, "void main() {",
                 "layout(set = 0, binding = 30) buffer stranger { float data[]; } other;\n"
@@ -247,13 +250,13 @@ TEST_F(Shaders, ThatDoNotFitTheSignatureOfTheirKindAreRefused) {
   expect_as_ever(graph);
 }
 
-TEST_F(Shaders, OfWhichNoneIsThereAreAMistakeAndOthersStayTheLibrarys) {
+TEST_F(Shaders, NoFileFound_IsAnError_OthersStayBuiltIn) {
   const dermis_graph graph = make();
   folder.rest = false;
   Said said;
   EXPECT_EQ(reload(graph, &said), DERMIS_ERROR_SHADER);
   EXPECT_THAT(said.all, HasSubstr("none of the graph's kernels")) << said.all;
-  // A kernel that needs no file of the folder, alone: a kernel without effect.
+  // A kernel without effect that needs no file of the folder.
   folder.changed[combine] = "#version 460\n#extension GL_GOOGLE_include_directive : require\n"
                             "#include \"common/subsurface_combine.bindings.glsl\"\n"
                             "layout(local_size_x = 8, local_size_y = 8) in;\nvoid main() {}\n";

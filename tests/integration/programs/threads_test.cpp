@@ -1,4 +1,5 @@
-// The thread contract of dermis.h. The laws here are the thread sanitizer's: the preset `tsan` runs them.
+// Tests the thread contract of dermis.h. The thread sanitizer checks these tests with the preset
+// `tsan`.
 
 #include "tests/integration/abi/sources.hpp"
 #include "tests/integration/embedding/null_host.hpp"
@@ -24,7 +25,7 @@ struct Threads : ::testing::Test {
     ASSERT_EQ(host.make_graph(), DERMIS_OK) << dermis_last_error();
     host.make_bindings();
   }
-  // All at the same time.
+  // Runs all jobs concurrently.
   static void run(const std::vector<std::function<void()>>& jobs) {
     std::vector<std::thread> threads;
     for (const auto& job : jobs)
@@ -78,8 +79,8 @@ struct Threads : ::testing::Test {
   }
 };
 
-TEST_F(Threads, TwoMayRecordTwoGraphsOfOneContext) {
-  NullHost other; // borrows the context
+TEST_F(Threads, TwoGraphsOfOneContext_RecordConcurrently) {
+  NullHost other; // Uses the context of the first host.
   other.context = host.context;
   ASSERT_EQ(other.make_graph(48), DERMIS_OK) << dermis_last_error();
   other.make_bindings();
@@ -93,7 +94,7 @@ TEST_F(Threads, TwoMayRecordTwoGraphsOfOneContext) {
   other.context = nullptr;
 }
 
-TEST_F(Threads, OneMayChangeAGraphWhileAnotherRecordsIt) {
+TEST_F(Threads, GraphChangesWhileAnotherThreadRecords) {
   std::atomic<bool> changing = true;
   run({[&] {
          uint64_t recorded = 0;
@@ -110,7 +111,7 @@ TEST_F(Threads, OneMayChangeAGraphWhileAnotherRecordsIt) {
   EXPECT_EQ(host.record(), DERMIS_OK);
 }
 
-TEST_F(Threads, ViewsMayBeRecordedEachByItsThreadWhileTwoChangeTheGraph) {
+TEST_F(Threads, ViewsRecordInThreadsWhileTheGraphChanges) {
   dermis_view views[2] = {nullptr, nullptr};
   for (dermis_view& view : views)
     ASSERT_EQ(dermis_view_create(host.graph, nullptr, &view, nullptr), DERMIS_OK) << dermis_last_error();
@@ -132,10 +133,10 @@ TEST_F(Threads, ViewsMayBeRecordedEachByItsThreadWhileTwoChangeTheGraph) {
       change(i);
   };
   run({[&] { record(views[0]); }, [&] { record(views[1]); }, change_some, change_some});
-  dermis_view_destroy(views[0]); // the other goes with its graph
+  dermis_view_destroy(views[0]); // The other view is destroyed with its graph.
 }
 
-TEST_F(Threads, GraphsMayComeAndGoOnAllOfThem) {
+TEST_F(Threads, GraphsAreCreatedAndDestroyedOnAllThreads) {
   const auto live = [&] {
     for (int i = 0; i < 4; ++i) {
       NullHost other;
@@ -149,7 +150,8 @@ TEST_F(Threads, GraphsMayComeAndGoOnAllOfThem) {
     }
   };
   run({live, live, live});
-  host.destroy(); // a context that has no kernel yet: several make the same at once
+  // A new context without kernels: several threads create equal kernels concurrently.
+  host.destroy();
   const dermis_context_desc desc = host.context_desc();
   ASSERT_EQ(host.make_context(desc), DERMIS_OK);
   run({live, live, live});

@@ -6,7 +6,8 @@
 #include <fstream>
 #include <string>
 #include <unistd.h>
-#ifdef __SANITIZE_ADDRESS__ // of its run time; Debian's gcc comes without a header that declares it
+// A function of the sanitizer's runtime; Debian's gcc has no header that declares it.
+#ifdef __SANITIZE_ADDRESS__
 extern "C" size_t __sanitizer_get_current_allocated_bytes(void);
 #elif defined(__GLIBC__)
 #include <malloc.h>
@@ -90,8 +91,8 @@ ProcessMemory process_memory() {
   const struct mallinfo2 reported = mallinfo2();
   out.heap = static_cast<int64_t>(reported.uordblks + reported.hblkhd);
 #endif
-#ifndef __SANITIZE_ADDRESS__ // which keeps up to 256 MiB of blocks aside that were given back, to see them
-                             // used
+// The sanitizer keeps up to 256 MiB of freed blocks, to detect their use.
+#ifndef __SANITIZE_ADDRESS__
   int64_t pages = 0, resident = 0;
   std::ifstream("/proc/self/statm") >> pages >> resident;
   out.resident = resident * static_cast<int64_t>(sysconf(_SC_PAGESIZE));

@@ -1,5 +1,5 @@
 #pragma once
-// Allocators of a host that count what they have handed out.
+// Host allocators that count their live blocks.
 
 #include "integration/examples/demo_engine/vulkan_host.hpp"
 
@@ -21,10 +21,11 @@ struct CountedDeviceMemory {
   dermis_device_allocator allocator();
 };
 
-// Of this process, once what is free is given back to the system; 0 where it cannot be told.
+// Memory of this process after free memory was returned to the system; 0 if unknown.
 struct ProcessMemory {
-  int64_t resident = 0, heap = 0; // bytes; of the heap those in use
-  int64_t compiled = 0;           // bytes of executable mappings of no file: kernels that drivers compiled
+  int64_t resident = 0, heap = 0; // Bytes; `heap` counts blocks in use.
+  // Bytes of executable mappings without a file: kernels that drivers compiled.
+  int64_t compiled = 0;
 };
 ProcessMemory process_memory();
 

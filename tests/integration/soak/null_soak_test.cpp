@@ -1,4 +1,4 @@
-// The same without a driver and without the validation layer: what the process takes is the library's alone.
+// The soak test without driver and validation layer, so that only the library's memory is measured.
 
 #include "tests/integration/abi/sources.hpp"
 #include "tests/integration/embedding/null_host.hpp"
@@ -9,7 +9,7 @@
 namespace dermis::abi_test {
 namespace {
 
-// A graph that comes, runs, is edited, resized, seen from elsewhere, and goes.
+// Creates, runs, reloads, resizes and destroys a graph and its views.
 void live_once(NullHost& host) {
   constexpr uint32_t frames = 100, reload_every = 10, resize_every = 25, side = 64;
   ASSERT_EQ(host.make_graph(side), DERMIS_OK) << dermis_last_error();
@@ -21,7 +21,7 @@ void live_once(NullHost& host) {
       ASSERT_EQ(host.reload(), DERMIS_OK) << dermis_last_error();
       ASSERT_EQ(host.reload("{ \"dermis\": 2 }"), DERMIS_ERROR_CONFIG);
     }
-    if (i % resize_every == 0) { // and back: the images of the host keep their size
+    if (i % resize_every == 0) { // Resizes back, too, because the host's images keep their size.
       ASSERT_EQ(dermis_graph_resize(host.graph, side / 2, side / 4, nullptr), DERMIS_OK);
       ASSERT_EQ(dermis_graph_resize(host.graph, side, side, nullptr), DERMIS_OK);
     }
@@ -33,15 +33,17 @@ void live_once(NullHost& host) {
   host.graph = nullptr;
 }
 
-// 20,000 frames after 2,000 that warm up. A block of a byte leaked once in a hundred frames would be 6 KiB of
-// heap.
-TEST(NullSoak, WithoutADriverTheProcessTakesNoMoreAfterManyFramesThanAfterFew) {
+// 20,000 frames after 2,000 frames of warm-up. A leak of one byte per hundred frames would be 6 KiB
+// of heap.
+TEST(NullSoak, MemoryDoesNotGrowOverManyFrames) {
   constexpr int warm_up = 10, lives = 100;
-  constexpr int64_t heap_slack = 16 << 10, resident_slack = 1 << 20; // bytes; 3 KiB and 100 KiB were measured
+  // Bytes; 3 KiB and 100 KiB were measured.
+  constexpr int64_t heap_slack = 16 << 10, resident_slack = 1 << 20;
   NullHost host;
   ASSERT_EQ(host.make_context(host.context_desc()), DERMIS_OK) << dermis_last_error();
   ASSERT_EQ(host.make_graph(), DERMIS_OK) << dermis_last_error();
-  host.make_bindings(); // images of the null device die with it alone: made once
+  // Images of the null device live as long as the device, so they are created once.
+  host.make_bindings();
   dermis_graph_destroy(host.graph);
   host.graph = nullptr;
   ProcessMemory warm;

@@ -37,7 +37,7 @@ template <Kind kind, auto member> struct Counted;
 template <Kind kind, class Info, class Handle,
           VkResult (VKAPI_PTR* VolkDeviceTable::*member)(VkDevice, const Info*, const VkAllocationCallbacks*,
                                                          Handle*)>
-struct Counted<kind, member> { // makes one
+struct Counted<kind, member> { // Creates an object.
   static VKAPI_ATTR VkResult VKAPI_CALL call(VkDevice device, const Info* info,
                                              const VkAllocationCallbacks* allocator, Handle* out) {
     const VkResult result = (driver->*member)(device, info, allocator, out);
@@ -47,7 +47,7 @@ struct Counted<kind, member> { // makes one
 };
 template <Kind kind, class Handle,
           void (VKAPI_PTR* VolkDeviceTable::*member)(VkDevice, Handle, const VkAllocationCallbacks*)>
-struct Counted<kind, member> { // destroys one
+struct Counted<kind, member> { // Destroys an object.
   static VKAPI_ATTR void VKAPI_CALL call(VkDevice device, Handle handle,
                                          const VkAllocationCallbacks* allocator) {
     gone[kind] += handle != VK_NULL_HANDLE;

@@ -1,5 +1,6 @@
 #pragma once
-// What the library has made of a device and not given back: a loader that counts, in front of the real one.
+// Counts the device objects that the library has created and not destroyed, by a loader in front of
+// the real one.
 
 #include "integration/examples/demo_engine/vulkan_host.hpp"
 
@@ -9,12 +10,13 @@
 namespace dermis::abi_test {
 
 struct ObjectCounts {
-  uint64_t made = 0, alive = 0; // of all kinds
-  uint64_t pipelines = 0;       // made
-  std::string text;             // "3 images, 2 pipelines" of those that live; "none"
+  uint64_t made = 0, alive = 0; // Counts of all types.
+  uint64_t pipelines = 0;       // Number of creations.
+  std::string text;             // "3 images, 2 pipelines" for live objects; "none".
 };
 
-// To be given to contexts of `host`, whose calls are counted from now on; one host at a time, any thread.
+// Returns a loader for contexts of `host`, whose calls are counted from now on. One host at a time;
+// any thread.
 PFN_vkGetInstanceProcAddr counting_loader(const demo::VulkanHost& host);
 
 ObjectCounts object_counts();

@@ -33,31 +33,31 @@ Surface draw_surface(SplitMix64& random) {
       const double inside = 0.2 - dx * dx - dy * dy;
       surface.velocity[2 * i] = pan;
       switch (shape) {
-      case 0: // one plane
+      case 0: // One plane.
         break;
-      case 1: // a step of two centimetres
+      case 1: // A step of 2 cm.
         surface.depth[i] = x < at ? plane_m : plane_m + 0.02f;
         break;
-      case 2: // a ball before nothing
+      case 2: // A ball in front of nothing.
         surface.depth[i] = inside > 0 ? static_cast<float>(plane_m - 0.02 * std::sqrt(inside)) : 0.0f;
         surface.material[i] = inside > 0 ? 1.0f : 0.0f;
         break;
-      case 3: // hairs
+      case 3: // Hairs.
         surface.material[i] = x % 7 == 3 ? 1.0f : 0.0f;
         break;
-      case 4: // pixels that stand alone
+      case 4: // Isolated pixels.
         surface.material[i] = x % 5 == 2 && y % 5 == 2 ? 2.0f : 0.0f;
         break;
-      case 5: // two profiles in cells
+      case 5: // Two profiles in cells.
         surface.material[i] = (x / 6 + y / 6) % 2 == 0 ? 1.0f : 2.0f;
         break;
-      case 6: // nothing
+      case 6: // Nothing.
         surface.material[i] = 0.0f;
         break;
-      case 7: // a plane that turns away
+      case 7: // A plane at a grazing angle.
         surface.depth[i] = static_cast<float>(plane_m + 0.05 * dx);
         break;
-      default: // depth of no use on one side
+      default: // Invalid depth on one side.
         surface.depth[i] = x < at ? plane_m : (at % 2 == 0 ? -1.0f : std::numeric_limits<float>::infinity());
         break;
       }
@@ -74,7 +74,7 @@ Light draw_light(SplitMix64& random, bool damaged) {
                  at = static_cast<uint32_t>(random.below(soak_side));
   for (uint32_t y = 0; y < soak_side; ++y)
     for (uint32_t x = 0; x < soak_side; ++x) {
-      double fraction = 1.0; // even
+      double fraction = 1.0; // Even light.
       if (pattern == 1) fraction = x < at ? 1.0 : 0.0;
       if (pattern == 2) fraction = (x + y) % 2 == 0 ? 1.0 : 0.25;
       if (pattern == 3) fraction = unit(random);

@@ -1,5 +1,5 @@
 #pragma once
-// What a frame of the soak shows: surfaces and light drawn at random, damaged as hosts damage them.
+// Random surfaces and light for a frame of the soak, with damage that hosts can cause.
 
 #include "framegraph/model/splitmix.hpp"
 
@@ -8,25 +8,28 @@
 
 namespace dermis::abi_test {
 
-inline constexpr uint32_t soak_side = 48; // pixels, the largest view: six tiles
+inline constexpr uint32_t soak_side = 48; // Pixels of the largest view: six tiles.
 
-// A number from 0 to 1.
+// Returns a number from 0 to 1.
 double unit(SplitMix64& random);
 
 struct Surface {
-  std::vector<float> depth;    // metres, 0: nothing there
-  std::vector<float> material; // profile id
-  std::vector<float> velocity; // 2 a pixel, pixels
+  std::vector<float> depth;    // Metres; 0: no surface.
+  std::vector<float> material; // Profile id.
+  std::vector<float> velocity; // 2 values per pixel, in pixels.
 };
-// Planes, steps, balls before nothing, hairs, single pixels, two profiles in cells, nothing at all.
+// Returns planes, steps, balls in front of nothing, hairs, single pixels, two profiles in cells, or
+// nothing.
 Surface draw_surface(SplitMix64& random);
 
 struct Light {
-  std::vector<float> texels; // 4 a pixel
-  double brightest = 0;      // that counts: what is not finite or negative is repaired
-  bool even = false;         // the same everywhere, without damage
+  std::vector<float> texels; // 4 values per pixel.
+  // The brightest valid value; values that are not finite or negative are repaired.
+  double brightest = 0;
+  bool even = false; // Equal everywhere, without damage.
 };
-// Even, edges, spots and noise at levels from 1e-4 to 6e4, some of it NaN, infinite or negative.
+// Returns even light, edges, spots and noise at levels from 1e-4 to 6e4. With `damaged`, some of it
+// is NaN, infinite or negative.
 Light draw_light(SplitMix64& random, bool damaged);
 
 } // namespace dermis::abi_test

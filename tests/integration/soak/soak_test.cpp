@@ -1,8 +1,8 @@
-// Frames without end: graphs, views, sizes, settings, budgets, light and surfaces change at random, and
-// nothing adds up: no message, no value that is not finite, no light that was not there, no memory.
-//
-// DERMIS_SOAK_FRAMES: how many frames (300; ./test.sh --full: 20 times 5,000); DERMIS_SOAK_SEED: which;
-// DERMIS_SOAK_VALIDATION=0: without the validation layer.
+// Runs many frames in which graphs, views, sizes, settings, budgets, light and surfaces change at
+// random. Expects no message, no value that is not finite, no light from nowhere, and no growth of
+// memory.
+// DERMIS_SOAK_FRAMES: number of frames (300; ./test.sh --full: 20 times 5,000). DERMIS_SOAK_SEED:
+// seed. DERMIS_SOAK_VALIDATION=0: without the validation layer.
 
 #include "tests/integration/abi/sources.hpp"
 #include "tests/integration/soak/memory_counts.hpp"
@@ -47,9 +47,9 @@ struct Soak : DermisTest {
   SplitMix64 random{from_environment("DERMIS_SOAK_SEED", 1)};
   SoakTotals totals;
   std::vector<Stage> stages;
-  std::vector<std::pair<uint32_t, uint32_t>> sizes; // that graphs get in this round, pixels
+  std::vector<std::pair<uint32_t, uint32_t>> sizes; // Sizes of graphs in this round, in pixels.
 
-  static void SetUpTestSuite() { // hides the fixture's, which always validates
+  static void SetUpTestSuite() { // Hides the function of the fixture, which always validates.
     const bool validation = from_environment("DERMIS_SOAK_VALIDATION", 1) != 0;
     auto made = demo::create_vulkan_host({.validation = validation, .device = ""});
     if (made) host = made.take();
@@ -67,7 +67,7 @@ struct Soak : DermisTest {
     desc.allocator = &host_allocator;
     desc.get_instance_proc_addr = counting_loader(*host);
     dermis_result made = dermis_context_create(&desc, &context);
-    if (made == DERMIS_ERROR_UNSUPPORTED) { // with sanitizers, which count leaks themselves
+    if (made == DERMIS_ERROR_UNSUPPORTED) { // With sanitizers, which count leaks themselves.
       counts_heap = false;
       desc.allocator = nullptr;
       made = dermis_context_create(&desc, &context);
@@ -82,7 +82,7 @@ struct Soak : DermisTest {
     EXPECT_EQ(heap.blocks, 0) << heap.bytes << " bytes";
     EXPECT_EQ(object_counts().text, "none");
   }
-  // Mesa's software driver destroys pipelines when something else is submitted, on a thread of its own.
+  // Mesa's software driver destroys pipelines on a separate thread when other work is submitted.
   void let_the_driver_clean_up() {
     for (int i = 0; i < 3; ++i) {
       const auto ran =
@@ -100,7 +100,7 @@ struct Soak : DermisTest {
   bool chance(double fraction) { return unit(random) < fraction; }
   template <class List> const auto& any(const List& list) { return list[random.below(list.size())]; }
 
-  // Few at a time: a driver may compile kernels anew for each.
+  // Few sizes per round, because a driver may recompile kernels for each.
   void draw_sizes() {
     constexpr size_t sizes_a_round = 6;
     sizes = {{soak_side, soak_side}, {1, 1}};
@@ -148,7 +148,7 @@ struct Soak : DermisTest {
     ++totals.graphs;
   }
 
-  // Its images have room for every size that the graph may get.
+  // The view's images have the largest size that the graph may get.
   void add_view(Stage& stage, dermis_view view) {
     SoakView added;
     added.view = view;
@@ -176,7 +176,7 @@ struct Soak : DermisTest {
     const auto done = demo::upload_image(*host, image->second, texels, channels, between);
     ASSERT_TRUE(done) << done.error().text;
   }
-  // Another surface.
+  // Shows another surface.
   void show(SoakView& view) {
     view.surface = draw_surface(random);
     put(view, "depth", view.surface.depth, 1);
@@ -184,8 +184,8 @@ struct Soak : DermisTest {
     put(view, "velocity", view.surface.velocity, 2);
   }
 
-  // A value of its own for another view than the graph's, or the graph's value again. Settings of the graph
-  // are refused.
+  // Gives a view another value of a setting, or the graph's value again. Settings of the graph are
+  // refused.
   void set_for_a_view(Stage& stage) {
     const dermis_view view = stage.views.back().view;
     if (view == nullptr) return;
@@ -206,7 +206,7 @@ struct Soak : DermisTest {
   }
 
   void change(Stage& stage) {
-    if (chance(0.02)) { // half of them broken
+    if (chance(0.02)) { // Half of the texts are broken.
       std::string text = text_of(stage.desc);
       const bool broken = chance(0.5);
       if (broken) text.resize(text.size() * (1 + random.below(98)) / 100);
@@ -280,7 +280,7 @@ struct Soak : DermisTest {
       view.calm = view.light.even;
       ++totals.cuts;
     }
-    if (chance(0.01)) out.flags |= DERMIS_FRAME_BOUNDS; // empty
+    if (chance(0.01)) out.flags |= DERMIS_FRAME_BOUNDS; // Empty bounds.
     out.exposure = chance(0.1) ? 4.0f : 0.0f;
     return out;
   }
@@ -292,7 +292,7 @@ struct Soak : DermisTest {
     return view != nullptr ? dermis_view_record(view, &frame) : dermis_graph_record(one.stage->graph, &frame);
   }
 
-  // A frame that will not be submitted.
+  // Records a frame that is not submitted.
   void record_in_vain(const Recorded& one) {
     auto allocate =
         demo::vulkan_struct<VkCommandBufferAllocateInfo>(VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO);
@@ -328,7 +328,7 @@ struct Soak : DermisTest {
 
   void judge(const Recorded& one) {
     if ((one.frame.flags & DERMIS_FRAME_BOUNDS) != 0)
-      return; // nothing ran: light is as it was, damaged or not
+      return; // Nothing ran: the light is unchanged, damaged or not.
     Stage& stage = *one.stage;
     SoakView& view = stage.views[one.view];
     auto read = demo::read_image(*host, view.images.at("lighting"), between);
@@ -342,7 +342,7 @@ struct Soak : DermisTest {
     for (uint32_t y = one.frame.rect_y; y < one.frame.rect_y + height; ++y)
       for (uint32_t x = one.frame.rect_x; x < one.frame.rect_x + width; ++x) {
         const size_t i = size_t{y} * soak_side + x;
-        if (view.surface.material[i] == 0.0f) continue; // keeps its light, whatever that is
+        if (view.surface.material[i] == 0.0f) continue; // A pixel without profile keeps its light.
         for (size_t c = 0; c < 3; ++c) {
           const double value = out[4 * i + c];
           if (!std::isfinite(value) || value < 0) {
@@ -393,25 +393,28 @@ struct Soak : DermisTest {
   }
 };
 
-// Of what is there when the graphs of a round are gone: the context, and the kernels that it keeps.
+// The memory left when all graphs of a round are destroyed: the context, and the kernels that it
+// keeps.
 struct Rest {
   int64_t heap_blocks = 0, heap_bytes = 0, device_blocks = 0;
   ObjectCounts objects;
-  uint64_t kernels() const { return objects.alive / 3; } // each a pipeline, its layout, that of its set
-  ProcessMemory process; // told, not judged: drivers keep some of each kernel that they compile
-                         // (null_soak_test.cpp judges)
+  // Each kernel has a pipeline, a pipeline layout and a set layout.
+  uint64_t kernels() const { return objects.alive / 3; }
+  // Only reported: drivers keep memory of each compiled kernel (null_soak_test.cpp checks process
+  // memory).
+  ProcessMemory process;
 };
 
-constexpr uint64_t max_kernels = 64; // the library has not as many
+constexpr uint64_t max_kernels = 64; // More than the library has.
 
-TEST_F(Soak, FramesWithoutEndAddNothingUp) {
+TEST_F(Soak, ManyFrames_NothingAccumulates) {
   const uint64_t frames = from_environment("DERMIS_SOAK_FRAMES", 300);
   constexpr uint64_t frames_a_round = 1000;
   const uint64_t rounds = std::max<uint64_t>(2, frames / frames_a_round);
   const std::vector<StageDesc> descs = soak_stages();
   std::vector<Rest> rests;
-  uint32_t rounds_alike = 0;          // in which no kernel came along: what they leave is compared
-  constexpr uint64_t more_rounds = 4; // until there is one
+  uint32_t rounds_alike = 0;          // Rounds without a new kernel, whose memory is compared.
+  constexpr uint64_t more_rounds = 4; // Additional rounds until one has no new kernel.
   for (uint64_t round = 0; round < rounds + (rounds_alike == 0 ? more_rounds : 0) && !HasFailure(); ++round) {
     draw_sizes();
     for (const StageDesc& desc : descs)

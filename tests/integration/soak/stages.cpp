@@ -8,9 +8,9 @@ constexpr double largest_ratio = 4.0; // papers/subsurface_residual.comp
 
 } // namespace
 
-// `afis_guided` weighs the control of frames before against samples, and `accumulate` takes light before with
-// the factor by which its tile became brighter: neither is a mean of what fell on the surface. Their bounds
-// are wide: they tell light that runs away.
+// `afis_guided` weights the control of earlier frames against samples, and `accumulate` scales
+// earlier light by the factor by which its tile became brighter, so neither is a mean of the
+// surface's light. Their wide bounds only detect diverging light.
 std::vector<StageDesc> soak_stages() {
   const std::vector<std::string> samples = {"2", "8", "16"};
   return {

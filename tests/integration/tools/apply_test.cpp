@@ -1,4 +1,5 @@
-// apply and reference on captures made by hand: what comes out, and what is said of wrong ones.
+// Tests apply and reference on captures made by hand: the output, and the messages for wrong
+// captures.
 
 #include "tests/integration/tools/capture_builder.hpp"
 #include "tests/integration/tools/command_fixture.hpp"
@@ -29,7 +30,7 @@ protected:
     words.insert(words.end(), more.begin(), more.end());
     return run(words);
   }
-  // The only file of that name below `out`.
+  // Returns the only file with that name below `out`.
   tools::Image picture(const std::string& name) const {
     for (const std::string& file : files("out")) {
       if (std::filesystem::path(file).filename() != name) continue;
@@ -44,23 +45,23 @@ protected:
   }
 };
 
-TEST_F(Captures, EvenLightStaysAsItIs) {
+TEST_F(Captures, EvenLightIsUnchanged) {
   write_plane(path("capture"));
   const Outcome outcome = apply();
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_THAT(outcome.out, AllOf(HasSubstr("scatter"), HasSubstr("ms")));
-  // 0.5 is exact in fp16 and so is its mean with any weights; what remains is the division of two sums in
-  // fp32.
+  // 0.5 and its mean with any weights are exact in fp16; the remaining error is the division of two
+  // sums in fp32.
   for (const float value : picture("scattered.exr").values)
     EXPECT_NEAR(value, 0.5f, 1e-3f);
   for (const float value : picture("combined.exr").values)
     EXPECT_NEAR(value, 0.5f, 1e-3f);
 }
 
-TEST_F(Captures, TheValidationLayerHasNothingToSay) {
+TEST_F(Captures, NoValidationMessages) {
   write_plane(path("capture/frame_0000"));
   Plane other;
-  other.width = 48; // another size: the graph is resized, its histories with it
+  other.width = 48; // Another size: the graph is resized with its histories.
   write_plane(path("capture/frame_0001"), other);
   RunOptions options;
   options.environment = validation_environment();
@@ -71,11 +72,12 @@ TEST_F(Captures, TheValidationLayerHasNothingToSay) {
                                  "--json", "--repeat", "3"},
                                 options);
     EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
-    EXPECT_TRUE(is_json(outcome.out)) << outcome.out; // a message of the layer would stand beside it
+    // A message of the layer would appear in the output.
+    EXPECT_TRUE(is_json(outcome.out)) << outcome.out;
   }
 }
 
-TEST_F(Captures, WithoutScatteringTheLightComesBackBitForBit) {
+TEST_F(Captures, NoScattering_ReturnsTheLightBitForBit) {
   Plane plane;
   plane.profiles = R"([{ "id": 1, "dmfp_mm": [0, 0, 0], "albedo": [1, 1, 1] }])";
   plane.light = tools::Image::sized(plane.width, plane.height, 3);
@@ -85,13 +87,13 @@ TEST_F(Captures, WithoutScatteringTheLightComesBackBitForBit) {
   const Outcome outcome = apply();
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_EQ(picture("scattered.exr").values, plane.light.values);
-  // Colour goes back to the host through half floats: 11 significant bits, rounded to nearest.
+  // The colour is returned in half floats: 11 significant bits, rounded to nearest.
   const tools::Image combined = picture("combined.exr");
   for (size_t i = 0; i < combined.values.size(); ++i)
     EXPECT_NEAR(combined.values[i], plane.light.values[i], plane.light.values[i] * 0x1p-11f);
 }
 
-TEST_F(Captures, TheReferenceOfEvenLightIsThatLight) {
+TEST_F(Captures, EvenLight_EqualsItsReference) {
   write_plane(path("capture"));
   const Outcome outcome = reference();
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
@@ -99,10 +101,10 @@ TEST_F(Captures, TheReferenceOfEvenLightIsThatLight) {
     EXPECT_NEAR(value, 0.5f, 1e-6f);
 }
 
-TEST_F(Captures, WhatWasAppliedIsComparedWithItsReferenceFrameByFrame) {
+TEST_F(Captures, FramesAreComparedWithTheirReferences) {
   Plane plane;
   plane.light = filled(plane.width, plane.height, 3, 0.25f);
-  for (uint32_t y = 0; y < plane.height; ++y) // an edge, which scatters
+  for (uint32_t y = 0; y < plane.height; ++y) // An edge that scatters.
     for (uint32_t x = 0; x < plane.width / 2; ++x)
       plane.light.at(x, y, 0) = plane.light.at(x, y, 1) = plane.light.at(x, y, 2) = 1.0f;
   write_plane(path("capture/frame_0000"), plane);
@@ -122,7 +124,7 @@ TEST_F(Captures, WhatWasAppliedIsComparedWithItsReferenceFrameByFrame) {
   EXPECT_THAT(run({"compare", path("out"), path("truth0")}).err, HasSubstr("frame_0001"));
 }
 
-TEST_F(Captures, ASubsetComesWithAMaskOfItsPixels) {
+TEST_F(Captures, SubsetHasAMaskOfItsPixels) {
   write_plane(path("capture"));
   const Outcome outcome = reference({"--subset", "100"});
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
@@ -130,7 +132,7 @@ TEST_F(Captures, ASubsetComesWithAMaskOfItsPixels) {
   EXPECT_EQ(std::count(mask.values.begin(), mask.values.end(), 1.0f), 100);
 }
 
-TEST_F(Captures, ValuesThatAreNotFiniteAreTakenAsZeroCountedAndReported) {
+TEST_F(Captures, NonFiniteValues_AreZeroCountedAndReported) {
   Plane plane;
   plane.light = filled(plane.width, plane.height, 3, 0.5f);
   plane.light.values[7] = std::numeric_limits<float>::quiet_NaN();
@@ -144,7 +146,7 @@ TEST_F(Captures, ValuesThatAreNotFiniteAreTakenAsZeroCountedAndReported) {
   EXPECT_THAT(apply({"--json"}).out, HasSubstr("\"sanitised_values\": 2"));
 }
 
-TEST_F(Captures, WhatIsTooBrightWithoutAProfileEndsAtTheBrightestFloat) {
+TEST_F(Captures, TooBrightWithoutProfile_IsClampedToTheLargestFloat) {
   constexpr float maximum = std::numeric_limits<float>::max();
   Plane plane;
   plane.light = filled(plane.width, plane.height, 3, maximum);
@@ -158,8 +160,8 @@ TEST_F(Captures, WhatIsTooBrightWithoutAProfileEndsAtTheBrightestFloat) {
     EXPECT_EQ(value, maximum);
 }
 
-// What is not rendered is not written by any pass: whatever the device's memory held must not come out.
-TEST_F(Captures, OutsideOfTheRenderRectangleLightIsAsItCame) {
+// No pass writes pixels outside of the rectangle; the device's old memory must not appear.
+TEST_F(Captures, OutsideOfTheRectangle_LightIsUnchanged) {
   Plane plane;
   plane.light = filled(plane.width, plane.height, 3, 0.25f);
   write_plane(path("capture"), plane);
@@ -176,7 +178,7 @@ TEST_F(Captures, OutsideOfTheRenderRectangleLightIsAsItCame) {
     EXPECT_NEAR(value, 0.125f, 1e-3f);
 }
 
-TEST_F(Captures, AnImageOfAnotherSizeIsNamedAndNothingIsWritten) {
+TEST_F(Captures, ImageOfAnotherSize_IsNamed) {
   write_plane(path("capture"));
   write_channel(path("capture"), "depth", filled(31, 32, 1, 1.0f));
   const Outcome outcome = apply();
@@ -185,7 +187,7 @@ TEST_F(Captures, AnImageOfAnotherSizeIsNamedAndNothingIsWritten) {
   EXPECT_THAT(files("out"), IsEmpty());
 }
 
-TEST_F(Captures, AProfileThatIsNotThereIsNamed) {
+TEST_F(Captures, MissingProfileIsNamed) {
   Plane plane;
   plane.profiles = R"([{ "id": 1, "file": "skinn" }])";
   write_plane(path("capture"), plane);
@@ -203,7 +205,7 @@ TEST_F(Captures, AFolderWithoutFramesIsRefused) {
   EXPECT_THAT(outcome.err, HasSubstr("capture"));
 }
 
-TEST_F(Captures, AnOutputFolderThatCannotBeMadeIsAnEnvironmentError) {
+TEST_F(Captures, UnwritableFolder_IsAnEnvironmentError) {
   write_plane(path("capture"));
   write("out", "a file, not a folder");
   for (const Outcome& outcome : {apply(), reference()}) {
@@ -212,7 +214,7 @@ TEST_F(Captures, AnOutputFolderThatCannotBeMadeIsAnEnvironmentError) {
   }
 }
 
-TEST_F(Captures, WithoutAVulkanDriverTheEnvironmentIsToBlameAndNothingIsWritten) {
+TEST_F(Captures, NoVulkanDriver_IsAnEnvironmentError) {
   write_plane(path("capture"));
   RunOptions options;
   options.environment = {"VK_ICD_FILENAMES=/nonexistent.json", "VK_DRIVER_FILES=/nonexistent.json"};
@@ -222,7 +224,7 @@ TEST_F(Captures, WithoutAVulkanDriverTheEnvironmentIsToBlameAndNothingIsWritten)
   EXPECT_THAT(files("out"), IsEmpty());
 }
 
-TEST_F(Captures, TheAnswerForProgramsIsOneJsonDocument) {
+TEST_F(Captures, JsonOutputIsOneDocument) {
   write_plane(path("capture"));
   const Outcome good = apply({"--json", "--repeat", "2"});
   EXPECT_EQ(good.exit_code, 0);

@@ -1,4 +1,4 @@
-// dermis bench all: an index of suites, and a run that goes on where another one stopped.
+// Tests `dermis bench all`: an index of suites, and runs that continue after an interruption.
 #include "tests/integration/tools/command_fixture.hpp"
 
 #include <nlohmann/json.hpp>
@@ -15,7 +15,7 @@ using ::testing::Not;
 
 class BenchAll : public CommandTest {};
 
-TEST_F(BenchAll, WritesAPageForEachSuiteAnIndexAndMeasuresNothingTwice) {
+TEST_F(BenchAll, WritesPagesAndAnIndex_MeasuresNothingTwice) {
   const std::vector<std::string> arguments = {"bench", "all", "--out", path("out"), "--suites", "record"};
   const Outcome first = run(arguments);
   ASSERT_EQ(first.exit_code, 0) << first.err;
@@ -23,7 +23,7 @@ TEST_F(BenchAll, WritesAPageForEachSuiteAnIndexAndMeasuresNothingTwice) {
   const std::string index = read("out/index.html");
   EXPECT_THAT(index, HasSubstr("<a href='record.html'>"));
   EXPECT_THAT(index, HasSubstr("dermis bench record --json record.json --html record.html"));
-  EXPECT_THAT(index, HasSubstr("not measured")); // the other suites
+  EXPECT_THAT(index, HasSubstr("not measured")); // The other suites.
   EXPECT_THAT(index, HasSubstr("<dt>processor"));
   EXPECT_THAT(read("out/record.html"), HasSubstr("chain of 100"));
 
@@ -33,7 +33,7 @@ TEST_F(BenchAll, WritesAPageForEachSuiteAnIndexAndMeasuresNothingTwice) {
   EXPECT_THAT(second.out, HasSubstr("record is there from an earlier run"));
   EXPECT_EQ(std::filesystem::last_write_time(path("out/record.json")), written);
 
-  // A suite whose page is gone is measured again, and so is one that was made by another line.
+  // A suite is measured again if its page is missing or was made by another command line.
   std::filesystem::remove(path("out/record.html"));
   EXPECT_THAT(run(arguments).out, Not(HasSubstr("is there from an earlier run")));
   nlohmann::json state = nlohmann::json::parse(read("out/index.json"));
@@ -42,24 +42,24 @@ TEST_F(BenchAll, WritesAPageForEachSuiteAnIndexAndMeasuresNothingTwice) {
   EXPECT_THAT(run(arguments).out, Not(HasSubstr("is there from an earlier run")));
 }
 
-TEST_F(BenchAll, ASuiteThatFailsIsToldFromOneWhoseRowsMissAndLeavesNoOldPage) {
+TEST_F(BenchAll, FailedSuite_LeavesNoOldPage) {
   const std::vector<std::string> arguments = {"bench",    "all",    "--out",  path("out"),
                                               "--suites", "record", "--again"};
   ASSERT_EQ(run(arguments).exit_code, 0);
   std::filesystem::remove(path("out/record.html"));
-  write("out/record.html/x", ""); // a folder has its name: the page cannot be written
+  write("out/record.html/x", ""); // A folder has the page's name, so the page cannot be written.
   const Outcome outcome = run(arguments);
   EXPECT_EQ(outcome.exit_code, 3);
   EXPECT_THAT(outcome.out, HasSubstr("failed"));
   EXPECT_THAT(read("out/index.html"), HasSubstr("<td class=t>failed"));
 }
 
-TEST_F(BenchAll, ARunThatWasStoppedGoesOnAndAQuickOneIsNotTakenForAWholeOne) {
+TEST_F(BenchAll, StoppedRun_ContinuesInItsMode) {
   std::vector<std::string> arguments = {"bench",          "all",       "--quick",
                                         "--out",          path("out"), "--suites",
                                         "record,compile", "--cache",   path("cache")};
   RunOptions stopped;
-  stopped.interrupt_after = path("out/index.html"); // which is there after the first suite
+  stopped.interrupt_after = path("out/index.html"); // The index exists after the first suite.
   EXPECT_EQ(run(arguments, stopped).exit_code, 130);
   EXPECT_THAT(files("out"), ::testing::ElementsAre("index.html", "index.json", "record.html", "record.json"));
 
@@ -68,7 +68,7 @@ TEST_F(BenchAll, ARunThatWasStoppedGoesOnAndAQuickOneIsNotTakenForAWholeOne) {
   EXPECT_THAT(outcome.out, HasSubstr("1 of 2: record is there from an earlier run"));
   EXPECT_THAT(read("out/index.html"), HasSubstr("dermis bench compile --quick --json"));
   EXPECT_THAT(read("out/compile.html"), HasSubstr("the figures say nothing"));
-  // Every row that the whole suite has, to graphs of 10,000 passes.
+  // Every row of the whole suite, up to graphs of 10,000 passes.
   const nlohmann::json rows = nlohmann::json::parse(read("out/compile.json"))["rows"];
   EXPECT_EQ(rows.size(), 50u);
   EXPECT_EQ(std::count_if(rows.begin(), rows.end(), [](const auto& row) { return row["passes"] == 10000; }),
@@ -78,19 +78,20 @@ TEST_F(BenchAll, ARunThatWasStoppedGoesOnAndAQuickOneIsNotTakenForAWholeOne) {
   ASSERT_EQ(state["suites"][1]["line"],
             "dermis bench compile --quick --json compile.json --html compile.html");
   state["suites"][1]["line"] =
-      "dermis bench compile --json compile.json --html compile.html"; // of a whole run
+      // The command line of a whole run.
+      "dermis bench compile --json compile.json --html compile.html";
   std::ofstream(path("out/index.json")) << state;
   EXPECT_THAT(run(arguments).out, Not(HasSubstr("compile is there")));
 }
 
-TEST_F(BenchAll, ASuiteThatIsNotThereIsAUsageErrorWithASuggestion) {
+TEST_F(BenchAll, UnknownSuite_IsAUsageError) {
   const Outcome outcome = run({"bench", "all", "--out", path("out"), "--suites", "recrod"});
   EXPECT_EQ(outcome.exit_code, 2);
   EXPECT_THAT(outcome.err, HasSubstr("did you mean 'record'?"));
   EXPECT_THAT(files(), ::testing::IsEmpty());
 }
 
-TEST_F(BenchAll, AnIndexThatIsNoneOfOursIsNotBelieved) {
+TEST_F(BenchAll, ForeignIndex_IsIgnored) {
   write("out/index.json",
         R"({ "suites": [ { "suite": 1, "line": [], "exit_code": "x", "seconds": null } ] })");
   EXPECT_EQ(run({"bench", "all", "--out", path("out"), "--suites", "record"}).exit_code, 0);

@@ -1,4 +1,4 @@
-// What `dermis bench dynamic` measures with, and that its shipped file can be read.
+// Tests the measures of `dermis bench dynamic`, and that its shipped file is valid.
 #include "integration/tools/command/bench/dynamic/accumulation.hpp"
 #include "integration/tools/command/bench/dynamic/combined_reference.hpp"
 #include "integration/tools/command/bench/dynamic/dynamic_file.hpp"
@@ -16,7 +16,7 @@ namespace {
 
 const std::string root = DERMIS_SOURCE_DIR;
 
-TEST(BenchDynamic, TheShippedFileIsReadableAndNamesFilesThatAreThere) {
+TEST(BenchDynamic, ShippedFileIsValidAndNamesExistingFiles) {
   Diagnostics diagnostics;
   const auto file = read_dynamic(root + "/tests/benchmark/dynamic.json", diagnostics);
   ASSERT_TRUE(file.has_value());
@@ -36,7 +36,7 @@ TEST(BenchDynamic, TheShippedFileIsReadableAndNamesFilesThatAreThere) {
     EXPECT_TRUE(guidance.contains(one)) << one;
 }
 
-TEST(BenchDynamic, TheFileOfDistancesIsReadableAndEachHasACamera) {
+TEST(BenchDynamic, DistancesFileIsValidAndHasCameras) {
   Diagnostics diagnostics;
   const auto file = read_dynamic(root + "/tests/benchmark/distances.json", diagnostics);
   ASSERT_TRUE(file.has_value());
@@ -44,43 +44,44 @@ TEST(BenchDynamic, TheFileOfDistancesIsReadableAndEachHasACamera) {
     EXPECT_TRUE(scene.camera.has_value()) << scene.framing;
 }
 
-TEST(BenchDynamic, AFileWithWhatIsNotKnownIsRefusedWithThePlace) {
+TEST(BenchDynamic, UnknownEntry_IsRefusedWithThePlace) {
   Diagnostics diagnostics;
   EXPECT_FALSE(read_dynamic(root + "/tests/benchmark/shapes.json", diagnostics));
   EXPECT_TRUE(diagnostics.has_errors());
 }
 
-// Two grey pixels a frame.
+// Two grey pixels per frame.
 FrameLight grey(double found_a, double found_b, double reference_a, double reference_b) {
   return {{found_a, found_a, found_a, found_b, found_b, found_b},
           {reference_a, reference_a, reference_a, reference_b, reference_b, reference_b}};
 }
 
-TEST(BenchDynamic, AnErrorThatStaysIsNoFlickerAndAccumulatesToItself) {
+TEST(BenchDynamic, ConstantError_IsNoFlicker) {
   const std::vector<FrameLight> frames(10, grey(0.5, 0.6, 0.4, 0.5));
   const SequenceFigures figures = sequence_figures(frames, 2, true, 1);
-  EXPECT_NEAR(figures.psnr_db_frame, 20, 1e-9); // .1 of 1
+  EXPECT_NEAR(figures.psnr_db_frame, 20, 1e-9); // 0.1 of 1
   EXPECT_NEAR(figures.psnr_db_accumulated, 20, 1e-9);
   EXPECT_EQ(figures.flicker, 0);
   EXPECT_EQ(figures.psnr_db.size(), 10u);
-  EXPECT_NEAR(sequence_figures(frames, 2, true, 2).psnr_db_frame, 20 - 20 * std::log10(2), 1e-9); // exposed
+  // Exposed.
+  EXPECT_NEAR(sequence_figures(frames, 2, true, 2).psnr_db_frame, 20 - 20 * std::log10(2), 1e-9);
 }
 
-TEST(BenchDynamic, AnErrorThatSwingsFlickersByTwiceItsSizeAndAccumulatesToLess) {
+TEST(BenchDynamic, AlternatingError_FlickersByTwiceItsSize) {
   std::vector<FrameLight> frames;
   for (int t = 0; t < 200; ++t)
     frames.push_back(grey(0.5 + (t % 2 == 0 ? 0.01 : -0.01), 0.5, 0.5, 0.5));
   const SequenceFigures figures = sequence_figures(frames, 100, true, 1);
-  EXPECT_NEAR(figures.flicker, 0.02 / std::sqrt(2), 1e-9); // one of two pixels
+  EXPECT_NEAR(figures.flicker, 0.02 / std::sqrt(2), 1e-9); // One of two pixels.
   EXPECT_GT(figures.psnr_db_accumulated, figures.psnr_db_frame + 20);
 }
 
-TEST(BenchDynamic, WhatWasAccumulatedAlongSurfacesIsComparedWithTheFramesTruth) {
+TEST(BenchDynamic, AccumulatedLight_IsComparedWithTheReference) {
   std::vector<FrameLight> frames(4, grey(0.5, 0.5, 0.4, 0.4));
   for (FrameLight& frame : frames)
     frame.accumulated = grey(0.41, 0.41, 0, 0).found;
   const SequenceFigures figures = sequence_figures(frames, 1, false, 1);
-  EXPECT_NEAR(figures.psnr_db_accumulated, 40, 1e-9); // .01 of 1
+  EXPECT_NEAR(figures.psnr_db_accumulated, 40, 1e-9); // 0.01 of 1
   EXPECT_NEAR(figures.psnr_db_frame, 20, 1e-9);
   EXPECT_EQ(figures.flicker, 0);
 }
@@ -91,7 +92,7 @@ CapturedFrame square_of_light() {
   frame.description.width = frame.description.height = side;
   frame.description.render = {0, 0, side, side};
   frame.description.perspective = false;
-  auto& m = frame.description.clip_from_view; // .1 m from side to side
+  auto& m = frame.description.clip_from_view; // 0.1 m from side to side.
   m = {20, 0, 0, 0, 0, -20, 0, 0, 0, 0, -0.1, 0, 0, 0, 0, 1};
   frame.description.previous_clip_from_view = m;
   frame.description.view_from_world =
@@ -103,31 +104,31 @@ CapturedFrame square_of_light() {
   return frame;
 }
 
-TEST(BenchDynamic, LightIsAccumulatedAlongSurfacesThatMove) {
+TEST(BenchDynamic, LightIsAccumulatedAlongMovingSurfaces) {
   constexpr uint32_t side = 16;
   CapturedFrame frame = square_of_light();
   for (size_t i = 0; i < frame.velocity.values.size(); i += 2)
-    frame.velocity.values[i] = 1; // a pixel to the right in each frame
+    frame.velocity.values[i] = 1; // One pixel to the right in each frame.
   Accumulation accumulation;
   for (uint32_t t = 0; t < 6; ++t) {
     std::vector<float> light(size_t{3} * side * side);
     for (uint32_t y = 0; y < side; ++y)
       for (uint32_t x = 0; x < side; ++x)
         for (uint32_t c = 0; c < 3; ++c)
-          light[3 * (size_t{y} * side + x) + c] =
-              static_cast<float>(x + 100 - t); // what rests on the surface
+          // Fixed to the surface.
+          light[3 * (size_t{y} * side + x) + c] = static_cast<float>(x + 100 - t);
     const auto& mean = accumulation.add(frame, light, t > 0);
     for (uint32_t x = 0; x < side; ++x) {
       EXPECT_NEAR(mean[5 * side + x].light[0], x + 100 - t, 1e-9) << x << " in frame " << t;
       EXPECT_NEAR(mean[5 * side + x].count, std::min(x, t) + 1, 1e-9) << x << " in frame " << t;
     }
   }
-  // A frame that does not follow has no past.
+  // A frame without a predecessor has no history.
   const std::vector<float> dark(size_t{3} * side * side, 0.0f);
   EXPECT_EQ(accumulation.add(frame, dark, false)[5 * side + 8].light[0], 0);
 }
 
-TEST(BenchDynamic, TruthsOfLightThatIsASumOfOthersAreTheSumOfTheirs) {
+TEST(BenchDynamic, SumOfLights_ReferenceIsTheSum) {
   Session quiet;
   quiet.quiet = true;
   CapturedFrame frame = square_of_light();
@@ -151,17 +152,17 @@ TEST(BenchDynamic, TruthsOfLightThatIsASumOfOthersAreTheSumOfTheirs) {
   const auto combined = make_reference_of_still(quiet, frame, "truth", 64, "", known);
   const auto computed = make_reference(quiet, frame, "truth", 64, "");
   ASSERT_TRUE(combined && computed);
-  EXPECT_EQ(known.known.size(), 2u); // nothing new was learned
+  EXPECT_EQ(known.known.size(), 2u); // No new reference was computed.
   ASSERT_EQ(combined->pixels, computed->pixels);
   for (size_t i = 0; i < computed->light.size(); ++i)
-    EXPECT_NEAR(combined->light[i], computed->light[i], 1e-5 * 20); // floats, of light up to 20
-  // A pixel that no sum explains has a truth of its own.
+    EXPECT_NEAR(combined->light[i], computed->light[i], 1e-5 * 20); // Floats, for light up to 20.
+  // A pixel that is no sum of known light needs a new reference.
   frame.lighting.values[300] += 1;
   ASSERT_TRUE(make_reference_of_still(quiet, frame, "truth", 64, "", known));
   EXPECT_EQ(known.known.size(), 3u);
 }
 
-TEST(BenchDynamic, LightThatChangesWithTheTruthIsNoFlicker) {
+TEST(BenchDynamic, ChangingReference_IsNoFlicker) {
   std::vector<FrameLight> frames;
   for (int t = 0; t < 40; ++t) {
     const double light = 0.5 + 0.4 * std::sin(0.5 * t);
@@ -172,10 +173,11 @@ TEST(BenchDynamic, LightThatChangesWithTheTruthIsNoFlicker) {
   EXPECT_EQ(figures.psnr_db_frame, 100);
 }
 
-TEST(BenchSupplement, EqualSeedsGiveEqualRunsAndTheBestWeightIsThatOfTheClosedForm) {
+TEST(BenchSupplement, BestWeightMatchesTheClosedForm) {
   EXPECT_EQ(run_supplement(true, 7), run_supplement(true, 7));
   EXPECT_NE(run_supplement(true, 7), run_supplement(true, 8));
-  // Standard error at 100,000 samples .00033 (numerics of the project's notes, section A); three of them.
+  // The standard error at 100,000 samples is 0.00033 (numerics of the project's notes, section A);
+  // the bound is three of them.
   EXPECT_NEAR(sampled_control_weight(false, 100000, 3), best_control_weight(false), 1e-3);
 }
 

@@ -1,4 +1,4 @@
-// dermis bench error-time: rows, files and messages, on scenes small enough for tests.
+// Tests `dermis bench error-time`: rows, files and messages, on small scenes.
 #include "tests/integration/tools/command_fixture.hpp"
 
 #include <algorithm>
@@ -40,7 +40,7 @@ protected:
   }
 };
 
-TEST_F(BenchErrorTime, WritesARowForEachSceneAndTechniqueInAllFormats) {
+TEST_F(BenchErrorTime, WritesARowPerSceneAndTechnique) {
   const std::string missing =
       R"({ "technique": "unheard_of", "setting": "", "graph": "configs/graphs/none.json" },)";
   const Outcome outcome = run(arguments(bench_file(missing)));
@@ -59,8 +59,8 @@ TEST_F(BenchErrorTime, WritesARowForEachSceneAndTechniqueInAllFormats) {
   EXPECT_THAT(files("cache"), ::testing::SizeIs(3));
 }
 
-TEST_F(BenchErrorTime, FindsTheSameErrorsAgainFromTheCacheAndWithoutIt) {
-  const auto errors = [&] { // everything but times
+TEST_F(BenchErrorTime, ErrorsAreEqualWithAndWithoutTheCache) {
+  const auto errors = [&] { // Everything except times.
     std::istringstream rows(read(path("out.csv")));
     std::string all;
     for (std::string row; std::getline(rows, row);) {
@@ -82,7 +82,7 @@ TEST_F(BenchErrorTime, FindsTheSameErrorsAgainFromTheCacheAndWithoutIt) {
   EXPECT_EQ(errors(), first);
 }
 
-TEST_F(BenchErrorTime, SaysWhatIsWrongWithItsFile) {
+TEST_F(BenchErrorTime, InvalidFile_IsReported) {
   const std::string file = write("bad.json", R"({ "dermis_benchmark": 1, "repetitions": 0,
   "scenes": [ { "scene": "nowhere", "framing": "close", "d_px": [1] } ] })");
   const Outcome outcome = run({"bench", "error-time", "--file", file});
@@ -92,21 +92,21 @@ TEST_F(BenchErrorTime, SaysWhatIsWrongWithItsFile) {
   EXPECT_THAT(outcome.err, HasSubstr("repetitions"));
 }
 
-TEST_F(BenchErrorTime, SaysThatNothingIsLeftToMeasure) {
+TEST_F(BenchErrorTime, NothingToMeasure_IsReported) {
   const std::string file = bench_file("");
   EXPECT_EQ(run({"bench", "error-time", "--file", file, "--scenes", "nowhere"}).exit_code, 2);
   EXPECT_EQ(run({"bench", "error-time", "--file", file, "--techniques", "none"}).exit_code, 2);
   EXPECT_EQ(run({"bench", "error-time", "--size", "0x3"}).exit_code, 2);
 }
 
-TEST_F(BenchErrorTime, TheShippedFileIsReadable) {
+TEST_F(BenchErrorTime, ShippedFileIsValid) {
   const Outcome outcome = run({"bench", "error-time", "--scenes", "edge", "--techniques", "burley", "--size",
                                "16x16", "--csv", "-", "--cache", "", "--study"});
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_THAT(outcome.out, ::testing::StartsWith("scene,d_px,framing"));
 }
 
-TEST_F(BenchErrorTime, AGraphOrSettingThatCannotBeUsedEndsItWithAReason) {
+TEST_F(BenchErrorTime, UnusableGraphOrSetting_IsReported) {
   const std::string wrong = R"({ "technique": "wrong", "setting": "", "graph": "configs/graphs/burley.json",
                                  "set": { "sample": 8 } },)";
   const Outcome outcome = run({"bench", "error-time", "--file", bench_file(wrong), "--size", "32x32"});

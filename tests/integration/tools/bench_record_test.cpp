@@ -1,4 +1,4 @@
-// dermis bench record: what recording costs, as a table and as rows.
+// Tests `dermis bench record`: the cost of recording, as a table and as rows.
 
 #include "tests/integration/tools/command_fixture.hpp"
 
@@ -12,7 +12,7 @@ using ::testing::HasSubstr;
 
 struct BenchRecord : CommandTest {};
 
-TEST_F(BenchRecord, AShippedGraphAndAHundredPassesAreRecordedWithoutAllocating) {
+TEST_F(BenchRecord, RecordingAllocatesNothing) {
   const Outcome outcome = run({"bench", "record", "--json", path("rows.json")});
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_THAT(outcome.out, HasSubstr("chain of 100"));

@@ -1,5 +1,5 @@
-// dermis bench restir: what it measures with, and its rows. Rays need the driver of
-// tests/scripts/fetch_driver.sh; without it those tests skip.
+// Tests `dermis bench restir`: its measures and rows. Rays need the driver of
+// tests/scripts/fetch_driver.sh; without the driver those tests are skipped.
 #include "integration/tools/command/bench/restir/claims.hpp"
 #include "integration/tools/command/bench/restir/regions.hpp"
 #include "integration/tools/command/bench/restir/restir_file.hpp"
@@ -20,7 +20,7 @@ using ::testing::HasSubstr;
 
 const std::string sources = DERMIS_SOURCE_DIR;
 
-TEST(BenchRestirFile, TheShippedOneIsReadableAndNamesFilesThatAreThere) {
+TEST(BenchRestirFile, ShippedFileIsValidAndNamesExistingFiles) {
   Diagnostics diagnostics;
   const auto file = read_restir(sources + "/tests/benchmark/restir.json", diagnostics);
   ASSERT_TRUE(file.has_value());
@@ -38,7 +38,7 @@ TEST(BenchRestirFile, TheShippedOneIsReadableAndNamesFilesThatAreThere) {
   EXPECT_TRUE(beside.contains("sap"));
 }
 
-TEST(BenchRestirFile, WhatIsNotKnownIsRefusedWithThePlace) {
+TEST(BenchRestirFile, UnknownEntry_IsRefusedWithThePlace) {
   Diagnostics diagnostics;
   EXPECT_FALSE(read_restir(sources + "/tests/benchmark/dynamic.json", diagnostics));
   EXPECT_TRUE(diagnostics.has_errors());
@@ -52,7 +52,7 @@ SettingDeclaration enumeration(const std::string& name, const std::vector<std::s
   return setting;
 }
 
-TEST(RestirVariants, AreNoneAndEveryReuseWithEveryShiftThatTheGraphLists) {
+TEST(RestirVariants, CoverEveryReuseWithEveryShift) {
   Graph graph;
   EXPECT_EQ(variants_of(graph).size(), 1u);
   graph.settings.push_back(enumeration("reuse", {"none", "spatial", "temporal"}));
@@ -65,13 +65,14 @@ TEST(RestirVariants, AreNoneAndEveryReuseWithEveryShiftThatTheGraphLists) {
                                      "temporal reconnection with history", "temporal delayed with history"));
 }
 
-TEST(RestirVariants, MorePathsInMoreTimeAreNoBetterAtEqualTime) {
+TEST(RestirVariants, MorePathsInMoreTime_AreNotBetter) {
   EXPECT_DOUBLE_EQ(ratio_at_equal_time(0.25, 4, 1, 1), 1);
   EXPECT_DOUBLE_EQ(ratio_at_equal_time(0.25, 2, 1, 1), 0.5);
 }
 
-// Three pixels: light comes through the first, the second is lit in front, the third is too thick.
-TEST(RestirRegions, TellWhereLightComesThroughAndHowMuchOfItIsThere) {
+// Three pixels: the first has transmitted light, the second is lit from the front, the third is too
+// thick.
+TEST(RestirRegions, FindTransmittedLight) {
   CapturedFrame frame;
   frame.lighting = Image::sized(3, 1, 3);
   frame.back_lighting = Image::sized(3, 1, 3);
@@ -103,7 +104,7 @@ RestirRow row_of(const std::string& reuse, const std::string& shift, double mse)
   return row;
 }
 
-TEST(RestirClaims, NeighboursDoNotCostHistoryHalvesAndASequenceIsNoWorseThanItsParts) {
+TEST(RestirClaims, ExpectationsOfReuseAreChecked) {
   std::vector<RestirRow> rows = {row_of("none", "", 1),
                                  row_of("spatial", "reconnection", 1.2),
                                  row_of("spatial", "delayed", 0.5),
@@ -117,11 +118,11 @@ TEST(RestirClaims, NeighboursDoNotCostHistoryHalvesAndASequenceIsNoWorseThanItsP
   for (size_t i = 0; i < at_most.size(); ++i)
     EXPECT_NEAR(rows[i + 1].mse_at_most.value_or(0), at_most[i], 1e-12) << i;
   std::vector<RestirRow> alone = {row_of("none", "", 1), row_of("spatial", "sequential", 2)};
-  expect_of_reuse(alone); // of a sequence whose parts were not measured nothing is expected
+  expect_of_reuse(alone); // A sequence whose parts were not measured has no expectation.
   EXPECT_FALSE(alone[1].mse_at_most);
 }
 
-TEST(RestirClaims, RowsThatErrMoreAreCounted) {
+TEST(RestirClaims, RowsWithLargerErrorsAreCounted) {
   ReportTable table;
   table.columns = {{"holds", "holds"}};
   table.rows = {{true}, {false}, {ReportValue()}, {false}};
@@ -143,7 +144,7 @@ struct BenchRestirWithRayQueries : BenchRestir {
   }
 };
 
-TEST_F(BenchRestir, WithoutRayQueriesSaysWhatBringsThemAndIsNoFailureOfAllSuites) {
+TEST_F(BenchRestir, NoRayQueries_NamesTheDriverAndIsNoFailure) {
   const Outcome alone = run({"bench", "restir", "--quick", "--cache", path("cache")});
   if (alone.exit_code == 0) GTEST_SKIP() << "this device has ray queries";
   EXPECT_EQ(alone.exit_code, 3);
@@ -156,7 +157,7 @@ TEST_F(BenchRestir, WithoutRayQueriesSaysWhatBringsThemAndIsNoFailureOfAllSuites
   EXPECT_THAT(files("out"), ::testing::ElementsAre("index.html", "index.json"));
 }
 
-TEST_F(BenchRestirWithRayQueries, ARenderingByRaysIsNotMeasuredInScreenSpace) {
+TEST_F(BenchRestirWithRayQueries, RayRenderingIsNotMeasuredInScreenSpace) {
   const Outcome outcome =
       run({"render", "configs/scenes/bust.json", "--graph", "configs/graphs/papers/restir.json", "--out",
            path("out"), "--size", "32x24", "--frames", "1"},
@@ -165,7 +166,7 @@ TEST_F(BenchRestirWithRayQueries, ARenderingByRaysIsNotMeasuredInScreenSpace) {
   EXPECT_THAT(outcome.out, HasSubstr("not measured, the technique traces rays"));
 }
 
-TEST_F(BenchRestirWithRayQueries, WritesARowForEachReuseAndTechniqueAndKeepsTheReference) {
+TEST_F(BenchRestirWithRayQueries, WritesARowPerReuseAndTechnique) {
   const std::vector<std::string> arguments = {"bench",           "restir",   "--quick",         "--scenes",
                                               "back_lit",        "--shifts", "reconnection",    "--json",
                                               path("rows.json"), "--html",   path("page.html"), "--csv",
@@ -183,7 +184,7 @@ TEST_F(BenchRestirWithRayQueries, WritesARowForEachReuseAndTechniqueAndKeepsTheR
     EXPECT_GT(row["mse"].get<double>(), row["mse_of_reference"].get<double>()) << row;
     const double light = row["light_through"].get<double>();
     if (row["technique"] == "restir") {
-      EXPECT_NEAR(light, 1, 0.5) << row; // of some frames with a path a pixel
+      EXPECT_NEAR(light, 1, 0.5) << row; // The mean of some frames with one path per pixel.
     } else if (row["setting"] == "smooth") {
       EXPECT_LT(light, 0.5) << "screen space sees no light behind the sheet";
     }
@@ -198,7 +199,7 @@ TEST_F(BenchRestirWithRayQueries, WritesARowForEachReuseAndTechniqueAndKeepsTheR
     EXPECT_EQ(again[i]["mse"], found[i]["mse"]) << i;
 }
 
-TEST_F(BenchRestirWithRayQueries, ASceneThatIsNotThereLeavesNothingToMeasure) {
+TEST_F(BenchRestirWithRayQueries, MissingScene_LeavesNothingToMeasure) {
   const Outcome outcome = run({"bench", "restir", "--quick", "--scenes", "none"}, with_rays());
   EXPECT_EQ(outcome.exit_code, 2);
   EXPECT_THAT(outcome.err, HasSubstr("no scene is left to measure"));

@@ -1,4 +1,4 @@
-// dermis bench stability: rows, exit code, and that it sees what is broken.
+// Tests `dermis bench stability`: rows, exit code, and that the bench detects broken results.
 #include "tests/integration/tools/command_fixture.hpp"
 
 #include <nlohmann/json.hpp>
@@ -21,8 +21,8 @@ TEST_F(BenchStability, GivesARowForEachCaseAndTechnique) {
                                "--updates", "20000", "--json", rows, "--html", page});
   EXPECT_EQ(outcome.exit_code, 0) << outcome.out << outcome.err;
   const nlohmann::json document = nlohmann::json::parse(std::ifstream(rows));
-  // Four cases of two settings of sap and two of burley, and a fifth of the one that keeps a history; two
-  // formulas.
+  // Four cases of two settings of sap and two of burley, and a fifth case for the one with a
+  // history; two formulas.
   EXPECT_EQ(document["rows"].size(), 4u * 4u + 1u + 2u);
   for (const auto& row : document["rows"]) {
     EXPECT_TRUE(row["holds"]) << row;
@@ -34,7 +34,7 @@ TEST_F(BenchStability, GivesARowForEachCaseAndTechnique) {
   EXPECT_THAT(outcome.out, HasSubstr("0 of 19 rows do not hold"));
 }
 
-TEST_F(BenchStability, LeadsHistoryAstrayWhereARatioIsNotOne) {
+TEST_F(BenchStability, UnevenRatio_DisturbsTheHistory) {
   const std::string rows = path("rows.json");
   const Outcome outcome = run({"bench", "stability", "--techniques", "sap_residual", "--cases",
                                "red_comes,velocity_in_stripes,velocity_of_depth_in_stripes", "--updates",
@@ -50,8 +50,8 @@ TEST_F(BenchStability, LeadsHistoryAstrayWhereARatioIsNotOne) {
   }
 }
 
-// Light over frames has a history by its overlay alone; only guided samples are asked how many they are.
-TEST_F(BenchStability, AsksATechniqueWhatItHas) {
+// Only the overlay gives accumulated light a history; only guided samples have a sample count.
+TEST_F(BenchStability, TestsOnlyTheOutputsOfATechnique) {
   const std::string techniques = write("techniques.json", R"({ "dermis_benchmark": 1, "techniques": [
     { "technique": "burley", "setting": "alone", "graph": "configs/graphs/burley.json" },
     { "technique": "burley", "setting": "accumulated", "graph": "configs/graphs/burley.json",
@@ -80,7 +80,7 @@ TEST_F(BenchStability, AsksATechniqueWhatItHas) {
   EXPECT_EQ(requested["afis_guided ccv"], of_all);
 }
 
-TEST_F(BenchStability, RefusesNamesThatNothingHas) {
+TEST_F(BenchStability, UnknownNames_AreRefused) {
   const Outcome outcome =
       run({"bench", "stability", "--techniques", "none", "--cases", "none", "--updates", "1000"});
   EXPECT_EQ(outcome.exit_code, 2);

@@ -1,4 +1,4 @@
-// dermis bench truth: rows, exit codes and messages.
+// Tests `dermis bench truth`: rows, exit codes and messages.
 #include "tests/framegraph/test_scale.hpp"
 #include "tests/integration/tools/command_fixture.hpp"
 
@@ -18,10 +18,10 @@ protected:
   }
 };
 
-TEST_F(BenchReference, PrintsExpectedBesideMeasuredAndALawThatDoesNotHoldIsAProblem) {
+TEST_F(BenchReference, PrintsExpectedAndMeasured_FailureIsAProblem) {
   const Outcome outcome =
       run({"bench", "truth", "--file", property_file(R"({ "white_furnace": 0.001, "edge": 1e-9 })"), "--json",
-           path("out.json")}); // no fp16 picture is so exact
+           path("out.json")}); // No fp16 picture is that exact.
   EXPECT_EQ(outcome.exit_code, 1);
   EXPECT_THAT(outcome.out, ::testing::Not(HasSubstr("\n0 of ")));
   EXPECT_THAT(outcome.out, HasSubstr("there is no graph 'configs/graphs/none.json'"));
@@ -33,7 +33,7 @@ TEST_F(BenchReference, PrintsExpectedBesideMeasuredAndALawThatDoesNotHoldIsAProb
   EXPECT_THAT(read("out.json"), HasSubstr(R"("holds": false)"));
 }
 
-TEST_F(BenchReference, EndsWellWhenAllHolds) {
+TEST_F(BenchReference, SucceedsIfAllPropertiesHold) {
   DERMIS_FULL_TESTS_ONLY();
   const Outcome outcome =
       run({"bench", "truth", "--file", property_file(R"({ "white_furnace": 0.001 })"), "--json", "-"});
@@ -42,7 +42,7 @@ TEST_F(BenchReference, EndsWellWhenAllHolds) {
   EXPECT_THAT(outcome.out, ::testing::Not(HasSubstr(R"("holds": false)")));
 }
 
-TEST_F(BenchReference, AMisspeltLawIsAnsweredWithTheNearestOne) {
+TEST_F(BenchReference, MisspeltProperty_SuggestsTheNearest) {
   const Outcome outcome = run({"bench", "truth", "--file", property_file(R"({ "white_furnaces": 1 })")});
   EXPECT_EQ(outcome.exit_code, 1);
   EXPECT_THAT(outcome.err, HasSubstr("white_furnace"));

@@ -1,4 +1,4 @@
-// How dermis bench budget judges runs, on runs made up.
+// Tests how `dermis bench budget` evaluates runs, on invented runs.
 
 #include "integration/tools/command/bench/choice/budget_judge.hpp"
 
@@ -12,7 +12,7 @@ namespace {
 
 constexpr double budget_ms = 10;
 
-// Unjudged frames that take a second each, then frames that take `ms`.
+// Returns uncounted frames of one second each, followed by frames that take `ms`.
 SceneRun run_of(const std::vector<double>& ms) {
   SceneRun run;
   for (uint32_t i = 0; i < unjudged_frames + ms.size(); ++i) {
@@ -27,14 +27,14 @@ Single single(double metered_ms, double rmse) {
   return {{}, {metered_ms}, rmse};
 }
 
-TEST(BudgetJudge, CountsFramesBeyondTheToleranceAndNoneOfTheFirst) {
+TEST(BudgetJudge, CountsFramesOverTheToleranceExceptTheFirst) {
   const SceneRun run = run_of({10, 11, 11.4, 11.6});
   EXPECT_DOUBLE_EQ(judge_times(run, budget_ms).over, 0.25);
   EXPECT_DOUBLE_EQ(judge_times(run, budget_ms).mean_ms, 11);
-  EXPECT_DOUBLE_EQ(fraction_over_model(run, budget_ms), 0.75); // the meter has 5 % only
+  EXPECT_DOUBLE_EQ(fraction_over_model(run, budget_ms), 0.75); // The cost model has only 5 %.
 }
 
-TEST(BudgetJudge, ARunThatTheMachineSlowedDownIsNotTheMedian) {
+TEST(BudgetJudge, SlowRun_IsNotTheMedian) {
   const TimedFigures even = judge_times(run_of({8, 8}), budget_ms),
                      slow = judge_times(run_of({16, 16}), budget_ms);
   EXPECT_DOUBLE_EQ(slow.over, 1);
@@ -44,25 +44,25 @@ TEST(BudgetJudge, ARunThatTheMachineSlowedDownIsNotTheMedian) {
   EXPECT_DOUBLE_EQ(median_of({slow, even, slow}).over, 1);
 }
 
-TEST(BudgetJudge, PoolsSquaresOfTheJudgedFramesThatWereCompared) {
+TEST(BudgetJudge, PoolsSquaresOfTheComparedFrames) {
   SceneRun run = run_of({8, 8, 8});
   run.frames[unjudged_frames].rmse = 3.0;
   run.frames[unjudged_frames + 2].rmse = 1.0;
   EXPECT_DOUBLE_EQ(pooled_rmse(run), std::sqrt(5.0));
 }
 
-TEST(BudgetJudge, TheBestSingleKeepsToTheBudgetByItsMeterInAllButAHundredthOfTheFrames) {
+TEST(BudgetJudge, BestSingle_MayMissTheBudgetInOnePercent) {
   std::vector<Single> singles = {single(8, 0.3), single(10.4, 0.2), single(10.6, 0.1)};
   EXPECT_EQ(best_within(singles, budget_ms), &singles[1]);
   EXPECT_EQ(best_within(singles, 7), nullptr);
   singles[2].metered_ms.assign(100, 8);
-  singles[2].metered_ms[50] = 20; // one of a hundred
+  singles[2].metered_ms[50] = 20; // One frame of a hundred.
   EXPECT_EQ(best_within(singles, budget_ms), &singles[2]);
   singles[2].metered_ms[51] = 20;
   EXPECT_EQ(best_within(singles, budget_ms), &singles[1]);
 }
 
-TEST(BudgetJudge, BudgetsLieBetweenTheCheapestOutcomeAndTheBest) {
+TEST(BudgetJudge, BudgetsLieBetweenCheapestAndBest) {
   const std::vector<Single> singles = {single(8, 0.3), single(4, 0.5), single(20, 0.1), single(40, 0.2)};
   EXPECT_DOUBLE_EQ(budget_at(singles, 0.25), 8);
   EXPECT_DOUBLE_EQ(budget_at(singles, 1), 20);

@@ -1,4 +1,4 @@
-// Choices by budget on the command line: render, calibrate, bench budget.
+// Tests choices by budget on the command line: render, calibrate, bench budget.
 #include "tests/framegraph/test_scale.hpp"
 #include "tests/integration/tools/command_fixture.hpp"
 
@@ -15,7 +15,7 @@ constexpr const char* scene = "configs/scenes/bust.json";
 
 struct Choice : CommandTest {};
 
-TEST_F(Choice, OfEachFrameIsToldWithWhatWasExpectedAndMeasured) {
+TEST_F(Choice, FramesReportExpectedAndMeasured) {
   const Outcome outcome =
       run({"render", scene, "--graph", graph, "--size", "64x36", "--frames", "4", "--subset", "0", "--budget",
            "1000", "--deterministic", "--out", path("out"), "--json"});
@@ -23,8 +23,8 @@ TEST_F(Choice, OfEachFrameIsToldWithWhatWasExpectedAndMeasured) {
   const json answer = json::parse(outcome.out);
   ASSERT_EQ(answer["choices"].size(), 4u);
   for (const json& frame : answer["choices"]) {
-    // A second is enough for the least error: samples for all, until tiles were counted and none was in
-    // doubt.
+    // A second is enough for the smallest error: samples for all tiles, until tiles were counted
+    // and none requested samples.
     EXPECT_THAT(frame["technique"].get<std::string>(), ::testing::AnyOf("hybrid smooth", "sap base"));
     EXPECT_EQ(frame["budget_ms"], 1000);
     EXPECT_GT(frame["measured_ms"], 0);
@@ -34,7 +34,7 @@ TEST_F(Choice, OfEachFrameIsToldWithWhatWasExpectedAndMeasured) {
   }
 }
 
-TEST_F(Choice, IsASentenceForPeople) {
+TEST_F(Choice, TextOutputIsASentence) {
   const Outcome outcome =
       run({"render", scene, "--graph", graph, "--size", "64x36", "--frames", "2", "--subset", "0", "--budget",
            "0.001", "--deterministic", "--out", path("out")});
@@ -44,7 +44,7 @@ TEST_F(Choice, IsASentenceForPeople) {
   EXPECT_THAT(outcome.out, HasSubstr("(nothing fits: the fastest); next better technique="));
 }
 
-TEST_F(Choice, CalibrateWritesWhatValidateAcceptsAndRenderTakes) {
+TEST_F(Choice, CalibrateWritesAFileForValidateAndRender) {
   const std::string file = path("calibration.json");
   const std::string overlay = write("few.json", techniques_alone);
   const Outcome made =
@@ -59,7 +59,7 @@ TEST_F(Choice, CalibrateWritesWhatValidateAcceptsAndRenderTakes) {
   EXPECT_EQ(used.exit_code, 0) << used.err;
 }
 
-TEST_F(Choice, ACalibrationThatIsNoneIsRefusedWithItsPlace) {
+TEST_F(Choice, InvalidCalibration_IsRefusedWithItsPlace) {
   const std::string file =
       write("calibration.json", "{ \"dermis_calibration\": 2,\n \"devise\": \"d\", \"costs\": [] }");
   const Outcome outcome = run({"render", scene, "--graph", graph, "--size", "64x36", "--frames", "1",
@@ -69,17 +69,18 @@ TEST_F(Choice, ACalibrationThatIsNoneIsRefusedWithItsPlace) {
   EXPECT_THAT(outcome.err, HasSubstr("did you mean 'device'?"));
 }
 
-TEST_F(Choice, ExplainTellsOfAFrame) {
+TEST_F(Choice, ExplainDescribesAFrame) {
   const Outcome outcome = run({"explain", "configs/graphs/papers/hybrid.json", "--frame", "--size", "64x36",
                                "--budget", "1000", "--deterministic"});
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_THAT(outcome.out, HasSubstr("frame 5: "));
-  EXPECT_THAT(outcome.out, HasSubstr("ms predicted")); // d is .2 px: no tile is in doubt at this size
+  // d is 0.2 px: no tile requests samples at this size.
+  EXPECT_THAT(outcome.out, HasSubstr("ms predicted"));
   EXPECT_THAT(outcome.out, HasSubstr("budget 1000.00"));
-  EXPECT_EQ(run({"explain", graph, "--budget", "2"}).exit_code, 2); // of which frame?
+  EXPECT_EQ(run({"explain", graph, "--budget", "2"}).exit_code, 2); // The frame is missing.
 }
 
-TEST_F(Choice, HistoriesAreToldWithAgeAndWhyTheyHeldNothing) {
+TEST_F(Choice, HistoriesAreReportedWithAgeAndReason) {
   constexpr const char* residual = "configs/graphs/papers/sap_residual.json";
   const Outcome text = run({"explain", residual, "--frame", "--size", "64x36"});
   ASSERT_EQ(text.exit_code, 0) << text.err;
@@ -104,7 +105,7 @@ TEST_F(Choice, HistoriesAreToldWithAgeAndWhyTheyHeldNothing) {
   EXPECT_THAT(without.out, ::testing::Not(HasSubstr("valid since")));
 }
 
-TEST_F(Choice, ExplainCountsWhatTilesOfEachClassRead) {
+TEST_F(Choice, ExplainCountsReadsByTileClass) {
   const Outcome outcome = run({"explain", "configs/graphs/papers/hybrid_afis_separable.json", "--frame",
                                "--size", "64x36", "--set", "taps=11", "--json"});
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
@@ -120,7 +121,7 @@ TEST_F(Choice, ExplainCountsWhatTilesOfEachClassRead) {
   EXPECT_NEAR(frame["reads"].get<double>(), sum, 1e-6 * sum); // T'(n) = sum of w S(m) + O(n)
   EXPECT_EQ(tiles, frame["scattering_tiles"].get<uint64_t>());
   const double each = frame["reads_per_sample"];
-  for (size_t k = 2; k < 4; ++k) { // S(m) grows by M(d) a sample
+  for (size_t k = 2; k < 4; ++k) { // S(m) grows by M(d) per sample.
     const double more =
         classes[k]["reads_per_pixel"].get<double>() - classes[k - 1]["reads_per_pixel"].get<double>();
     EXPECT_NEAR(more, each * (classes[k]["samples"].get<double>() - classes[k - 1]["samples"].get<double>()),
@@ -130,22 +131,22 @@ TEST_F(Choice, ExplainCountsWhatTilesOfEachClassRead) {
 }
 
 TEST_F(Choice, BenchSkipGivesARowForEachCase) {
-  DERMIS_FULL_TESTS_ONLY(); // BenchAll runs it, too
+  DERMIS_FULL_TESTS_ONLY(); // BenchAll runs it, too.
   const std::string file = path("skip.json");
   const Outcome outcome = run({"bench", "skip", "--size", "48x27", "--repetitions", "1", "--json", file});
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_THAT(outcome.out, HasSubstr("no_material"));
 }
 
-TEST_F(Choice, BenchBudgetGivesARowForEachSceneAndShare) {
-  DERMIS_FULL_TESTS_ONLY(); // BudgetJudge judges without a device
+TEST_F(Choice, BenchBudgetGivesARowForEachSceneAndBudget) {
+  DERMIS_FULL_TESTS_ONLY(); // BudgetJudge tests the evaluation without a device.
   const std::string file = path("budget.json");
   const Outcome outcome = run({"bench", "budget", "--size", "48x27", "--frames", "4", "--scenes", "flashing",
                                "--repetitions", "1", "--cache", "", "--json", file});
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
 }
 
-TEST_F(Choice, BenchBudgetNamesScenesItCannotMeasureBeforeItMeasuresOthers) {
+TEST_F(Choice, BenchBudgetChecksAllScenesFirst) {
   const Outcome missing = run({"bench", "budget", "--scenes", "flashing,no_such_scene"});
   EXPECT_EQ(missing.exit_code, 2);
   EXPECT_THAT(missing.err, HasSubstr("there is no scene 'no_such_scene'"));

@@ -1,5 +1,5 @@
 #pragma once
-// Runs the built command in a folder of its own, as a shell would, and keeps what it said.
+// Runs the built command in a temporary folder, as a shell would, and stores its output.
 
 #include "tests/support/test_folder.hpp"
 
@@ -13,14 +13,14 @@
 namespace dermis::test {
 
 struct Outcome {
-  int exit_code = -1; // 128 + signal if one ended it
+  int exit_code = -1; // 128 + signal if a signal ended the command.
   std::string out, err;
 };
 
 struct RunOptions {
-  std::vector<std::string> environment; // "NAME=value", added
-  std::string input;                    // standard input
-  std::string interrupt_after;          // sends SIGINT as soon as this path exists; "": never
+  std::vector<std::string> environment; // Additional variables, "NAME=value".
+  std::string input;                    // Standard input.
+  std::string interrupt_after;          // Sends SIGINT as soon as this path exists; "": never.
 };
 
 class CommandTest : public ::testing::Test {
@@ -29,9 +29,12 @@ protected:
   static Outcome run(const std::vector<std::string>& arguments, const RunOptions& options = {});
 
   std::string path(const std::string& name) const { return (folder_ / name).string(); }
-  std::string write(const std::string& name, const std::string& text) const; // returns its path
-  std::string read(const std::string& name) const; // all of it; "" where there is no such file
-  // Files and folders inside, relative, sorted; also what is hidden or temporary.
+  // Returns the file's path.
+  std::string write(const std::string& name, const std::string& text) const;
+  // Returns the whole file, or "" if it does not exist.
+  std::string read(const std::string& name) const;
+  // Returns the files and folders inside, relative and sorted, including hidden and temporary
+  // files.
   std::vector<std::string> files(const std::string& below = "") const;
 
 private:
@@ -40,22 +43,23 @@ private:
 
 inline constexpr const char* burley = "configs/graphs/burley.json";
 
-// An overlay on configs/graphs/skin.json whose budget chooses among its four techniques and no steps of
-// theirs, which makes calibrating it short.
+// An overlay on configs/graphs/skin.json whose budget only chooses among its four techniques,
+// without their steps, which keeps calibration short.
 inline constexpr const char* techniques_alone = R"({ "dermis_overlay": 2, "edits": [
   { "set": "/settings/variant", "to": { "choice": ["base", "smooth", "half"], "default": "smooth" } },
   { "set": "/settings/taps", "to": { "choice": ["11", "17", "25"], "default": "25" } } ] })";
 
-std::string text_of(const std::filesystem::path& file); // all of it; "" where there is no such file
+// Returns the whole file, or "" if it does not exist.
+std::string text_of(const std::filesystem::path& file);
 
-// Variables under which the Khronos layer checks everything that the command asks of the driver,
-// synchronization included; what it finds goes to standard output.
+// Returns variables that make the Khronos layer check all driver calls of the command, including
+// synchronization. Messages go to standard output.
 std::vector<std::string> validation_environment();
 
-// The verbs that a help text lists: what stands between "Subcommands:" and the next empty line.
+// Returns the verbs of a help text: the lines between "Subcommands:" and the next empty line.
 std::vector<std::string> verbs_of_help(const std::string& help);
 
-// True if `text` is one JSON document and nothing else.
+// Whether `text` is exactly one JSON document.
 bool is_json(const std::string& text);
 
 } // namespace dermis::test

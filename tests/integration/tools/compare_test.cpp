@@ -1,4 +1,4 @@
-// dermis compare: figures that can be worked out by hand, and what it refuses.
+// Tests `dermis compare`: numbers computed by hand, and refused input.
 #include "integration/tools/files/exr.hpp"
 #include "integration/tools/files/png.hpp"
 #include "tests/integration/tools/command_fixture.hpp"
@@ -32,7 +32,7 @@ protected:
   }
 };
 
-TEST_F(Compare, GivesTheFiguresOfPicturesThatDifferInOneKnownPlace) {
+TEST_F(Compare, OneDifferentPixel_GivesTheKnownNumbers) {
   const std::string a = png("a.png", 100, 151), b = png("b.png", 100, 100);
   const Outcome outcome = run({"compare", a, b, "--region", "8,8,4x4", "--json", "--heat", path("heat.png")});
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
@@ -53,13 +53,13 @@ TEST_F(Compare, GivesTheFiguresOfPicturesThatDifferInOneKnownPlace) {
 }
 
 TEST_F(Compare, ExposesLinearLightBeforeItCompares) {
-  // 2.2 against 2: the exposure of the second is one half.
+  // 2.2 against 2: the exposure of the second is 0.5.
   const Outcome outcome = run({"compare", exr("a.exr", 2.2f), exr("b.exr", 2.0f), "--json"});
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_NEAR(nlohmann::json::parse(outcome.out)["rows"][0]["rmse"], 0.1, 1e-5);
 }
 
-TEST_F(Compare, FailsBelowTheAskedFor) {
+TEST_F(Compare, FailsBelowTheRequestedPsnr) {
   const std::string a = png("a.png", 100, 151), b = png("b.png", 100, 100);
   const Outcome outcome = run({"compare", a, b, "--least-psnr", "60"});
   EXPECT_EQ(outcome.exit_code, 1);
@@ -71,7 +71,7 @@ TEST_F(Compare, FailsBelowTheAskedFor) {
   EXPECT_THAT(damaged.err, HasSubstr("not finite"));
 }
 
-TEST_F(Compare, GoesThroughFoldersAndNamesWhatIsInOneAlone) {
+TEST_F(Compare, Folders_FilesInOnlyOneAreNamed) {
   std::filesystem::create_directories(path("a/deep"));
   std::filesystem::create_directories(path("b/deep"));
   png("a/one.png", 10, 10);
@@ -87,8 +87,8 @@ TEST_F(Compare, GoesThroughFoldersAndNamesWhatIsInOneAlone) {
   EXPECT_THAT(alone.err, HasSubstr("three.png"));
 }
 
-TEST_F(Compare, ComparesOnlyWhatTheMaskBesideAReferenceSaysWasComputed) {
-  // A quarter was computed and is right; the rest is the light as it came, and says nothing.
+TEST_F(Compare, ComparesOnlyPixelsOfTheReferencesMask) {
+  // A quarter was computed and is right; the rest is the input light and must be ignored.
   std::filesystem::create_directories(path("truth"));
   std::filesystem::create_directories(path("ours"));
   const tools::Image ours = [] {
@@ -116,14 +116,14 @@ TEST_F(Compare, ComparesOnlyWhatTheMaskBesideAReferenceSaysWasComputed) {
     ASSERT_EQ(rows.size(), 2u);
     EXPECT_EQ(rows[0]["rmse"], 0);
     EXPECT_EQ(rows[0]["pixels"], 64);
-    EXPECT_FALSE(rows[0].contains("ssim")); // its windows would reach over pixels that say nothing
+    EXPECT_FALSE(rows[0].contains("ssim")); // Its windows would include ignored pixels.
     EXPECT_EQ(rows[1]["pixels"], 4);
   }
   EXPECT_THAT(run({"compare", path("ours"), path("truth"), "--flip"}).err, HasSubstr("--subset"));
   EXPECT_EQ(run({"compare", path("ours"), path("truth"), "--heat", path("heat.png")}).exit_code, 0);
 }
 
-TEST_F(Compare, SumsAFolderUpAndSaysWhatAMapShows) {
+TEST_F(Compare, SummarisesAFolderAndDescribesTheMap) {
   png("a/one.png", 10, 10);
   png("b/one.png", 10, 61);
   png("a/two.png", 10, 10);
@@ -131,14 +131,15 @@ TEST_F(Compare, SumsAFolderUpAndSaysWhatAMapShows) {
   const Outcome outcome = run({"compare", path("a"), path("b"), "--json"});
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   const nlohmann::json answer = nlohmann::json::parse(outcome.out);
-  EXPECT_NEAR(answer["all"]["rmse"], 0.2 / std::sqrt(1024.0), 1e-6); // one of 1,024 pixels by 51/255
+  // One of 1,024 pixels differs by 51/255.
+  EXPECT_NEAR(answer["all"]["rmse"], 0.2 / std::sqrt(1024.0), 1e-6);
   EXPECT_EQ(answer["all"]["pixels"], 1024);
   EXPECT_THAT(run({"compare", path("a"), path("b")}).out, HasSubstr("\nall "));
   const Outcome drawn = run({"compare", path("a/one.png"), path("b/one.png"), "--heat", path("heat.png")});
   EXPECT_THAT(drawn.out, ::testing::AllOf(HasSubstr(path("heat.png")), HasSubstr("1e-4")));
 }
 
-TEST_F(Compare, RefusesWhatCannotBeCompared) {
+TEST_F(Compare, RefusesIncomparablePictures) {
   const std::string a = png("a.png", 100, 100), light = exr("light.exr", 1);
   EXPECT_THAT(run({"compare", a, light}).err, HasSubstr("16x16"));
   EXPECT_EQ(run({"compare", a, path("none.png")}).exit_code, 1);
@@ -148,7 +149,7 @@ TEST_F(Compare, RefusesWhatCannotBeCompared) {
   EXPECT_EQ(run({"compare", a}).exit_code, 2);
 }
 
-TEST_F(Compare, FlipOfAPairAndOfFoldersIsThereWhenAskedFor) {
+TEST_F(Compare, FlipIsReportedOnRequest) {
   const std::string a = png("one/a.png", 0, 0), b = png("two/a.png", 255, 255);
   png("one/b.png", 90, 90);
   png("two/b.png", 90, 90);
@@ -157,7 +158,7 @@ TEST_F(Compare, FlipOfAPairAndOfFoldersIsThereWhenAskedFor) {
   const nlohmann::json rows = nlohmann::json::parse(outcome.out)["rows"];
   ASSERT_EQ(rows.size(), 2u);
   EXPECT_NEAR(rows[0]["flip"], 0.96738,
-              1e-5); // black against white: tests/integration/tools/files/flip_test.cpp
+              1e-5); // Black against white: tests/integration/tools/files/flip_test.cpp.
   EXPECT_EQ(rows[1]["flip"], 0.0);
   EXPECT_FALSE(nlohmann::json::parse(run({"compare", a, b, "--json"}).out)["rows"][0].contains("flip"));
   EXPECT_EQ(run({"compare", path("one"), path("two"), "--flip", "--most-flip", "0.9"}).exit_code, 1);
@@ -165,7 +166,7 @@ TEST_F(Compare, FlipOfAPairAndOfFoldersIsThereWhenAskedFor) {
             0);
 }
 
-TEST_F(Compare, FlipOfLinearLightDoesNotCareForItsUnit) {
+TEST_F(Compare, FlipOfLinearLightIgnoresTheUnit) {
   const auto flip_of = [&](float a, float b) {
     const Outcome outcome = run({"compare", exr("a.exr", a), exr("b.exr", b), "--flip", "--json"});
     return nlohmann::json::parse(outcome.out)["rows"][0]["flip"].get<double>();
@@ -174,14 +175,15 @@ TEST_F(Compare, FlipOfLinearLightDoesNotCareForItsUnit) {
   EXPECT_GT(flip_of(2.5f, 2.0f), 0.01);
 }
 
-TEST_F(Compare, APictureOfFlipIsBrighterWhereMoreIsSeen) {
+TEST_F(Compare, FlipMapIsBrighterAtLargerDifferences) {
   const std::string a = png("a.png", 100, 255), b = png("b.png", 100, 100);
   ASSERT_EQ(run({"compare", a, b, "--flip", "--flip-map", path("map.png")}).exit_code, 0);
   std::string error;
   const auto map = tools::read_png(path("map.png"), error);
   ASSERT_TRUE(map) << error;
   EXPECT_GT(map->at(0, 0, 0), map->at(31, 15, 0));
-  EXPECT_EQ(run({"compare", a, b, "--flip-map", path("map.png")}).exit_code, 2); // needs --flip
+  // The option needs --flip.
+  EXPECT_EQ(run({"compare", a, b, "--flip-map", path("map.png")}).exit_code, 2);
 }
 
 } // namespace

@@ -1,5 +1,5 @@
-// `dermis validate FRAMES --diagnose` names each mistake of an engine's first frame that a capture can
-// show: the rows of "Mistakes of the first hour" in docs/integration.md.
+// Tests that `dermis validate FRAMES --diagnose` names each error of an engine's first frame that a
+// capture can show: the rows of "Mistakes of the first hour" in docs/integration.md.
 
 #include "tests/integration/tools/capture_builder.hpp"
 #include "tests/integration/tools/command_fixture.hpp"
@@ -20,17 +20,20 @@ using ::testing::HasSubstr;
 using ::testing::Not;
 
 constexpr uint32_t side = 64;
-constexpr double radius = 0.1, distance = 0.5, near_plane = 0.1, tangent = 0.25; // metres; of half the view
+// Metres; `tangent` is that of half the view.
+constexpr double radius = 0.1, distance = 0.5, near_plane = 0.1, tangent = 0.25;
 
-// A sphere of skin in front of nothing, seen by a perspective camera with infinite depth, correct in every
-// respect; a test spoils one thing.
+// A sphere of skin in front of nothing, seen by a perspective camera with infinite depth. The frame
+// is correct; each test breaks one property.
 struct Mistake {
   std::string projection =
       fmt::format("[{0}, 0, 0, 0,  0, -{0}, 0, 0,  0, 0, -1, -{1},  0, 0, -1, 0]", 1 / tangent, near_plane);
   std::string view = "[1, 0, 0, 0.5,  0, 1, 0, 0,  0, 0, 1, 0,  0, 0, 0, 1]";
-  std::string more;                                                 // members of frame.json
-  std::function<double(double)> depth = [](double d) { return d; }; // of metres; 0: nothing there
-  std::function<double(double, double)> light = [](double shade, double) { return shade; }; // shade, albedo
+  std::string more; // More members of frame.json.
+  // Depth value of a distance in metres; 0: no surface.
+  std::function<double(double)> depth = [](double d) { return d; };
+  // Light of shade and albedo.
+  std::function<double(double, double)> light = [](double shade, double) { return shade; };
   float id = 1;
   bool albedo = true;
 };
@@ -95,7 +98,7 @@ TEST_F(DiagnoseTest, NothingScatters_UnknownId) {
   expect_finding(mistake, "D0506", "have profile 7");
 }
 
-TEST_F(DiagnoseTest, NothingScatters_BelowAPixel) { // a distant surface: a note
+TEST_F(DiagnoseTest, NothingScatters_BelowAPixel) { // A distant surface: a note.
   Mistake mistake;
   mistake.projection =
       fmt::format("[{0}, 0, 0, 0,  0, -{0}, 0, 0,  0, 0, -1, -{1},  0, 0, -1, 0]", 1 / tangent, near_plane);
@@ -130,7 +133,7 @@ TEST_F(DiagnoseTest, WashedOut_LightingContainsAlbedo) {
   expect_finding(mistake, "D0521", "already contains albedo");
 }
 
-TEST_F(DiagnoseTest, TooBright_AlbedoIsNotBound) { // a note: hosts may multiply later
+TEST_F(DiagnoseTest, TooBright_AlbedoIsNotBound) { // A note: hosts may multiply later.
   Mistake mistake;
   mistake.albedo = false;
   const Outcome outcome = diagnose(mistake);
@@ -151,7 +154,8 @@ TEST_F(DiagnoseTest, Stretched_ViewStoredByColumns) {
   expect_finding(mistake, "D0524", "column by column");
 }
 
-TEST_F(DiagnoseTest, Stretched_ProjectionOfTheAllocatedSize) { // 128 x 64 allocated, 64 x 64 rendered
+// 128 x 64 allocated, 64 x 64 rendered.
+TEST_F(DiagnoseTest, Stretched_ProjectionOfTheAllocatedSize) {
   Mistake mistake;
   mistake.projection = fmt::format("[{0}, 0, 0, 0,  0, -{1}, 0, 0,  0, 0, -1, -{2},  0, 0, -1, 0]",
                                    0.5 / tangent, 1 / tangent, near_plane);
@@ -191,8 +195,8 @@ TEST_F(DiagnoseTest, NotANumberInLighting) {
 }
 
 #ifdef DERMIS_EXAMPLES
-// integration/examples/write_capture.c, as C and as C++, under the validation layer: a wall that faces the
-// camera, which is the one finding.
+// Runs integration/examples/write_capture.c, as C and as C++, under the validation layer. The wall
+// faces the camera, which is the only finding.
 TEST_F(DiagnoseTest, ReadsWhatTheExampleWrites) {
   std::string variables;
   for (const std::string& one : validation_environment())

@@ -1,4 +1,4 @@
-// dermis docs: the generated pages of docs/ are those that the declarations give.
+// Tests `dermis docs`: the generated pages of docs/ match the declarations.
 #include "tests/integration/tools/command_fixture.hpp"
 
 #include <fstream>
@@ -15,12 +15,12 @@ using ::testing::StartsWith;
 
 class Docs : public CommandTest {};
 
-TEST_F(Docs, ThePagesInTheRepositoryAreUpToDate) {
+TEST_F(Docs, PagesInTheRepositoryAreUpToDate) {
   const Outcome outcome = run({"docs", "--check"});
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
 }
 
-TEST_F(Docs, APageThatIsOldOrNotThereIsNamed) {
+TEST_F(Docs, OldOrMissingPageIsNamed) {
   EXPECT_EQ(run({"docs", "--check", "--out", path("pages")}).exit_code, 1);
   ASSERT_EQ(run({"docs", "--out", path("pages")}).exit_code, 0);
   EXPECT_EQ(run({"docs", "--check", "--out", path("pages")}).exit_code, 0);
@@ -31,7 +31,7 @@ TEST_F(Docs, APageThatIsOldOrNotThereIsNamed) {
   EXPECT_THAT(outcome.err, HasSubstr("pass_types.md"));
 }
 
-TEST_F(Docs, TheTableOfSlotsIsABlockOfThePageForHosts) {
+TEST_F(Docs, SlotTableIsABlockOfTheHostsPage) {
   write("pages/integration.md", "before\n<!-- slots: `dermis docs` writes what follows -->\nold\n"
                                 "<!-- end of slots -->\nafter\n");
   EXPECT_EQ(run({"docs", "--check", "--out", path("pages")}).exit_code, 1);
@@ -48,7 +48,7 @@ TEST_F(Docs, TheTableOfSlotsIsABlockOfThePageForHosts) {
   EXPECT_THAT(outcome.err, HasSubstr("integration.md has no block 'slots'"));
 }
 
-TEST_F(Docs, EveryLinkInsideOfThePageHasItsHeading) {
+TEST_F(Docs, EveryLinkWithinAPageHasAHeading) {
   ASSERT_EQ(run({"docs", "--out", path("pages")}).exit_code, 0);
   std::ifstream file(path("pages/format_reference.md"));
   std::ostringstream whole;

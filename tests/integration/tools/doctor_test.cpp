@@ -1,4 +1,4 @@
-// dermis doctor: what a newcomer runs first when nothing works.
+// Tests `dermis doctor`, which a new user runs first if nothing works.
 #include "tests/integration/tools/command_fixture.hpp"
 
 #include <nlohmann/json.hpp>
@@ -11,7 +11,7 @@ namespace {
 using ::testing::HasSubstr;
 class DoctorVerb : public CommandTest {};
 
-TEST_F(DoctorVerb, NamesTheDeviceAndEverythingThatIsAskedOfIt) {
+TEST_F(DoctorVerb, NamesTheDeviceAndAllRequirements) {
   const Outcome text = run({"doctor"});
   EXPECT_EQ(text.exit_code, 0) << text.err;
   for (const char* what : {"Vulkan loader", "shaders at run time", "synchronization2", "maintenance4",
@@ -20,7 +20,7 @@ TEST_F(DoctorVerb, NamesTheDeviceAndEverythingThatIsAskedOfIt) {
   EXPECT_LE(std::count(text.out.begin(), text.out.end(), '\n'), 40) << "one screen, also with two devices";
 }
 
-TEST_F(DoctorVerb, AnswersPrograms) {
+TEST_F(DoctorVerb, JsonOutput) {
   const Outcome answer = run({"doctor", "--json"});
   ASSERT_EQ(answer.exit_code, 0) << answer.err;
   const nlohmann::json document = nlohmann::json::parse(answer.out);
@@ -34,7 +34,7 @@ TEST_F(DoctorVerb, AnswersPrograms) {
   EXPECT_EQ(used, 1u);
 }
 
-TEST_F(DoctorVerb, SaysWhatToInstallWhereThereIsNoDriver) {
+TEST_F(DoctorVerb, NoDriver_SaysWhatToInstall) {
   RunOptions without;
   without.environment = {"VK_DRIVER_FILES=/nowhere.json", "VK_ICD_FILENAMES=/nowhere.json"};
   const Outcome text = run({"doctor"}, without);

@@ -1,4 +1,4 @@
-// The example that each verb's --help shows is run as it stands, on a small picture, in a copy of what it
+// Runs the example of each verb's --help unchanged, on a small picture, with copies of the files it
 // names.
 #include "tests/integration/tools/command_fixture.hpp"
 
@@ -13,12 +13,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Suites that measure for minutes; their own tests run them small: bench_*_test.cpp, choice_test.cpp.
+// Suites that take minutes; their own tests run them small: bench_*_test.cpp, choice_test.cpp.
 const std::vector<std::string> too_long = {
     "bench all",     "bench error-time", "bench budget",  "bench stability", "bench skip",  "bench truth",
     "bench dynamic", "bench supplement", "bench compile", "bench record",    "bench restir"};
 
-// What makes an example short, or end at all.
+// Options that shorten an example, or let it end.
 const std::map<std::string, std::string> shortened = {
     {"", "--subset 16"},
     {"render", "--subset 16"},
@@ -39,7 +39,7 @@ protected:
     }
   }
 
-  // A line of a shell, in this test's folder, where `dermis` is the built command.
+  // Runs a shell line in the test's folder, where `dermis` is the built command.
   int shell(const std::string& line) const {
     const std::string script = write("line.sh", "set -e -o pipefail\n" + line + "\n");
     const std::string words = "cd '" + path("") + "' && PATH='" +
@@ -48,7 +48,7 @@ protected:
     return std::system(words.c_str());
   }
 
-  // The lines of a help text that are its example.
+  // Returns the example lines of a help text.
   static std::vector<std::string> example_in(const std::string& help) {
     std::vector<std::string> found;
     const size_t from = help.find("Example:\n");
@@ -64,7 +64,7 @@ protected:
     return {std::istream_iterator<std::string>(in), {}};
   }
 
-  // As short as it can be, without programs that need not be installed.
+  // Returns a shortened line, without programs that may not be installed.
   static std::string small(const std::string& verb, std::string line, const std::string& help) {
     for (const char* other : {" | dot", " && man "})
       line = line.substr(0, line.find(other));
@@ -78,8 +78,8 @@ protected:
   }
 };
 
-TEST_F(Examples, OfEveryVerbRunAsTheyStand) {
-  // What they take as there.
+TEST_F(Examples, OfEveryVerbRunUnchanged) {
+  // Files that the examples expect.
   write("few.json", techniques_alone);
   ASSERT_EQ(
       shell("dermis capture configs/scenes/bust.json --out capture --size 64x36 --frames 2\n"
@@ -96,7 +96,7 @@ TEST_F(Examples, OfEveryVerbRunAsTheyStand) {
       verbs.push_back(verb + " " + inner);
   }
   EXPECT_GE(verbs.size(), 32u);
-  verbs.emplace_back(""); // the command itself
+  verbs.emplace_back(""); // The command itself.
   size_t ran = 0;
   for (const std::string& verb : verbs) {
     if (std::find(too_long.begin(), too_long.end(), verb) != too_long.end()) continue;

@@ -1,4 +1,5 @@
-// dermis test: graphs are held to their expectation files; what changed is shown, and restated when asked.
+// Tests `dermis test`: graphs are compared with their expectation files; changes are shown, and
+// written on request.
 
 #include "tests/integration/tools/command_fixture.hpp"
 
@@ -17,7 +18,7 @@ using ::testing::Not;
 using ::testing::StartsWith;
 
 struct Expectations : CommandTest {
-  // burley.json as shipped, in this test's folder, with these expectations beside it.
+  // Writes the shipped burley.json into the test's folder, with these expectations next to it.
   std::string beside_burley(const std::string& expectations) const {
     write("burley.json", text_of(DERMIS_SOURCE_DIR "/configs/graphs/burley.json"));
     return write("burley.expect.json", expectations);
@@ -30,7 +31,7 @@ constexpr const char* two_infos = R"({ "dermis_expect": 1, "cases": [
     "expect": { "passes": ["classify", "list", "setup", "scatter", "combine"], "history_bytes": 0 } } ] }
 )";
 
-TEST_F(Expectations, EveryShippedGraphHasSomeAndMeetsThem) {
+TEST_F(Expectations, EveryShippedGraphMeetsItsExpectations) {
   size_t graphs = 0;
   for (const auto& entry :
        std::filesystem::recursive_directory_iterator(DERMIS_SOURCE_DIR "/configs/graphs")) {
@@ -47,14 +48,14 @@ TEST_F(Expectations, EveryShippedGraphHasSomeAndMeetsThem) {
   EXPECT_EQ(graphs_alone.exit_code, 0) << "overlays stand beside the folder of graphs\n" << graphs_alone.err;
 }
 
-TEST_F(Expectations, OnlyWhatIsStatedIsHeld) {
+TEST_F(Expectations, OnlyStatedFactsAreCompared) {
   beside_burley(two_infos);
   const Outcome outcome = run({"test", path("")});
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_THAT(outcome.out, HasSubstr("burley.expect.json: 1 case as expected"));
 }
 
-TEST_F(Expectations, ADifferenceIsShownLineByLine) {
+TEST_F(Expectations, DifferencesAreShownLineByLine) {
   std::string wrong = two_infos;
   wrong.replace(wrong.find("\"scatter\", "), 11, "\"sharpen\", ");
   const std::string file = beside_burley(wrong);
@@ -67,7 +68,7 @@ TEST_F(Expectations, ADifferenceIsShownLineByLine) {
   EXPECT_EQ(text_of(file), wrong);
 }
 
-TEST_F(Expectations, UpdateChangesTheFactsAndNothingElse) {
+TEST_F(Expectations, UpdateChangesOnlyTheFacts) {
   std::string wrong = two_infos;
   wrong.replace(wrong.find("\"history_bytes\": 0"), 18, "\"history_bytes\": 5");
   const std::string file = beside_burley(wrong);
@@ -80,7 +81,7 @@ TEST_F(Expectations, UpdateChangesTheFactsAndNothingElse) {
   EXPECT_EQ(text_of(file), after);
 }
 
-TEST_F(Expectations, UpdateStatesEverythingOfACaseThatStatesNothing) {
+TEST_F(Expectations, UpdateOfAnEmptyCaseStatesEverything) {
   const std::string file = beside_burley(R"({ "dermis_expect": 1, "cases": [
   { "case": "new" },
   { "case": "too_large", "device": { "max_image_dimension": 16 } } ] })");
@@ -93,7 +94,7 @@ TEST_F(Expectations, UpdateStatesEverythingOfACaseThatStatesNothing) {
   EXPECT_EQ(run({"test", file}).exit_code, 0) << text_of(file);
 }
 
-TEST_F(Expectations, MessagesThatNobodyStatedAreShown) {
+TEST_F(Expectations, UnstatedMessagesAreShown) {
   const std::string file = beside_burley(R"({ "dermis_expect": 1, "cases": [
   { "case": "small", "device": { "max_image_dimension": 16 }, "expect": {} } ] })");
   const Outcome outcome = run({"test", file});
@@ -101,14 +102,14 @@ TEST_F(Expectations, MessagesThatNobodyStatedAreShown) {
   EXPECT_THAT(outcome.err, AllOf(HasSubstr("+   \"diagnostics\": ["), HasSubstr("error[D03")));
 }
 
-TEST_F(Expectations, AGraphThatCannotBeReadHasMessagesOnly) {
+TEST_F(Expectations, UnreadableGraph_HasOnlyMessages) {
   const std::string file = write("bad.expect.json", R"({ "dermis_expect": 1, "cases": [
   { "case": "syntax", "expect": { "diagnostics": ["D0101"] } } ] })");
   write("bad.json", "{ \"dermis\": 2,\n \"name\": }");
   EXPECT_EQ(run({"test", file}).exit_code, 0);
 }
 
-TEST_F(Expectations, WhatTheGraphDoesNotHaveIsNamed) {
+TEST_F(Expectations, UnknownNamesAreReported) {
   const auto says = [&](const std::string& inputs, const std::string& message) {
     const std::string file = beside_burley("{ \"dermis_expect\": 1, \"cases\": [ { \"case\": \"a\", " +
                                            inputs + ", \"expect\": {} } ] }");
@@ -145,7 +146,7 @@ TEST_F(Expectations, ErrorsInTheFileAreLocated) {
   says(R"({ "dermis_expect": 1, "cases": [ { "case": "a", "expect": { "passes": [1] } } ] })", "D0104");
 }
 
-TEST_F(Expectations, NothingToCompareIsNoSuccess) {
+TEST_F(Expectations, NothingToCompare_IsAFailure) {
   EXPECT_EQ(run({"test", path("")}).exit_code, 1);
   EXPECT_EQ(run({"test", path("none.expect.json")}).exit_code, 1);
   EXPECT_EQ(run({"test", "configs/graphs/burley.json"}).exit_code, 1);
@@ -157,7 +158,7 @@ TEST_F(Expectations, NothingToCompareIsNoSuccess) {
   EXPECT_THAT(outcome.err, HasSubstr("there is no graph"));
 }
 
-TEST_F(Expectations, ResultsAreWrittenForBuildServersAndPrograms) {
+TEST_F(Expectations, ResultsAreWrittenAsJUnitAndJson) {
   std::string wrong = two_infos;
   wrong.replace(wrong.find("\"least\""), 7, "\"a<b & c\"");
   wrong.replace(wrong.find("\"history_bytes\": 0"), 18, "\"history_bytes\": 5");
@@ -174,7 +175,7 @@ TEST_F(Expectations, ResultsAreWrittenForBuildServersAndPrograms) {
   EXPECT_EQ(unwritable.exit_code, 3);
 }
 
-TEST_F(Expectations, OverlaysOfACaseComeFromDeclaredFoldersOnly) {
+TEST_F(Expectations, OverlaysComeOnlyFromDeclaredFolders) {
   const std::string file = beside_burley(R"({ "dermis_expect": 1, "cases": [
   { "case": "changed", "overlays": ["changes/less.json"], "unbound": ["scattered_light"],
     "expect": { "passes": ["classify", "list", "setup", "scatter"] } } ] })");

@@ -1,4 +1,5 @@
-// validate, explain and graph: good files answer well; each wrong one says where, what and what to do.
+// Tests validate, explain and graph: good files succeed; messages about wrong files say where, what
+// and what to do.
 
 #include "tests/integration/tools/capture_builder.hpp"
 #include "tests/integration/tools/command_fixture.hpp"
@@ -18,7 +19,7 @@ using ::testing::StartsWith;
 
 using GraphFiles = CommandTest;
 
-// The shipped graph with one piece of its text replaced.
+// Returns the shipped graph with one part of its text replaced.
 std::string burley_with(const std::string& from, const std::string& to) {
   std::ifstream stream(std::string(DERMIS_SOURCE_DIR "/") + burley);
   std::ostringstream text;
@@ -51,14 +52,14 @@ TEST_F(GraphFiles, MalformedJsonIsNamedWithFileLineAndColumn) {
   EXPECT_THAT(outcome.out, IsEmpty());
 }
 
-TEST_F(GraphFiles, AnUnknownKeyIsAnsweredWithTheNearestOne) {
+TEST_F(GraphFiles, UnknownKey_SuggestsTheNearest) {
   const std::string bad = write("bad.json", burley_with("\"imports\"", "\"import\""));
   const Outcome outcome = run({"validate", bad});
   EXPECT_EQ(outcome.exit_code, 1);
   EXPECT_THAT(outcome.err, AllOf(HasSubstr("D0103"), HasSubstr("did you mean 'imports'?")));
 }
 
-TEST_F(GraphFiles, AMissingImportIsNamedWithThePassThatReadsIt) {
+TEST_F(GraphFiles, MissingImportIsNamedWithItsReader) {
   const std::string bad =
       write("bad.json", burley_with("\"depth\": { \"format\"", "\"other\": { \"format\""));
   const Outcome outcome = run({"validate", bad});
@@ -66,8 +67,8 @@ TEST_F(GraphFiles, AMissingImportIsNamedWithThePassThatReadsIt) {
   EXPECT_THAT(outcome.err, AllOf(HasSubstr(bad + ":"), HasSubstr("'depth'"), HasSubstr("'classify'")));
 }
 
-TEST_F(GraphFiles, ACycleNamesThePassesOnIt) {
-  // `setup` wants what `scatter` makes, and the other way round.
+TEST_F(GraphFiles, CycleNamesItsPasses) {
+  // `setup` reads the output of `scatter`, and `scatter` reads the output of `setup`.
   const std::string bad =
       write("bad.json", burley_with("\"read\": { \"lighting\": \"lighting\", \"material\": \"material\", "
                                     "\"depth\": \"depth\", \"albedo\": \"albedo\",",
@@ -79,7 +80,7 @@ TEST_F(GraphFiles, ACycleNamesThePassesOnIt) {
               AllOf(HasSubstr(bad + ":"), HasSubstr("cycle"), HasSubstr("'setup'"), HasSubstr("'scatter'")));
 }
 
-TEST_F(GraphFiles, AFormatThatNoPortCanUseIsNamedWithBothSides) {
+TEST_F(GraphFiles, UnusableFormatIsNamedWithBothSides) {
   const std::string bad = write(
       "bad.json", burley_with(R"("format": ["r8_uint", "r16_uint", "r32_uint"])", R"("format": "rgba16f")"));
   const Outcome outcome = run({"validate", bad});
@@ -87,13 +88,13 @@ TEST_F(GraphFiles, AFormatThatNoPortCanUseIsNamedWithBothSides) {
   EXPECT_THAT(outcome.err, AllOf(HasSubstr(bad + ":"), HasSubstr("'material'"), HasSubstr("rgba16f")));
 }
 
-TEST_F(GraphFiles, AFileThatIsNotThereIsNamed) {
+TEST_F(GraphFiles, MissingFileIsNamed) {
   const Outcome outcome = run({"validate", path("none.json")});
   EXPECT_EQ(outcome.exit_code, 1);
   EXPECT_THAT(outcome.err, HasSubstr("none.json"));
 }
 
-TEST_F(GraphFiles, AllFilesAreCheckedEvenAfterABadOne) {
+TEST_F(GraphFiles, AllFilesAreCheckedAfterABadOne) {
   const std::string bad = write("bad.json", "[");
   const Outcome outcome = run({"validate", bad, burley, "--json"});
   EXPECT_EQ(outcome.exit_code, 1);
@@ -120,11 +121,12 @@ TEST_F(GraphFiles, ExplainShowsEachPassOfThePlan) {
   EXPECT_TRUE(is_json(json.out));
 }
 
-TEST_F(GraphFiles, ExplainSaysWhatACodeMeans) {
+TEST_F(GraphFiles, ExplainDescribesADiagnosticCode) {
   const Outcome outcome = run({"explain", "D0103"});
   EXPECT_EQ(outcome.exit_code, 0);
   EXPECT_THAT(outcome.out, StartsWith("D0103 unknown_key (error)\n"));
-  EXPECT_THAT(outcome.out, HasSubstr("The nearest known key is suggested")); // of docs/diagnostics.md
+  // From docs/diagnostics.md.
+  EXPECT_THAT(outcome.out, HasSubstr("The nearest known key is suggested"));
   for (const char* code : {"d0103", "103", "0103"})
     EXPECT_EQ(run({"explain", code}).out, outcome.out) << code;
   const Outcome unknown = run({"explain", "D0999"});
@@ -142,14 +144,14 @@ TEST_F(GraphFiles, GraphWritesDotAndJson) {
   EXPECT_THAT(files(), ::testing::ElementsAre("plan.json"));
 }
 
-TEST_F(GraphFiles, AnOutputThatCannotBeWrittenIsAnEnvironmentErrorAndLeavesNothing) {
+TEST_F(GraphFiles, UnwritableOutput_IsAnEnvironmentError) {
   const Outcome outcome = run({"graph", burley, "--out", path("no/such/folder.dot")});
   EXPECT_EQ(outcome.exit_code, 3);
   EXPECT_THAT(outcome.err, HasSubstr("no/such/folder.dot"));
   EXPECT_THAT(files(), IsEmpty());
 }
 
-TEST_F(GraphFiles, MessagesGoIntoASarifFile) {
+TEST_F(GraphFiles, MessagesAreWrittenAsSarif) {
   const std::string bad = write("bad.json", burley_with("\"imports\"", "\"import\""));
   const Outcome outcome = run({"validate", bad, "--sarif", path("out.sarif")});
   EXPECT_EQ(outcome.exit_code, 1);
@@ -169,7 +171,7 @@ TEST_F(GraphFiles, MessagesGoIntoASarifFile) {
   EXPECT_EQ(run({"validate", burley, "--sarif", path("no/such.sarif")}).exit_code, 3);
 }
 
-TEST_F(GraphFiles, ACaptureIsCheckedWithItsPicturesAsAFileOrAsAFolder) {
+TEST_F(GraphFiles, CaptureIsCheckedAsAFileOrFolder) {
   write_plane(path("capture"));
   for (const std::string& one : {path("capture"), path("capture/frame.json")}) {
     const Outcome outcome = run({"validate", one});
@@ -192,7 +194,7 @@ TEST_F(GraphFiles, ACaptureIsCheckedWithItsPicturesAsAFileOrAsAFolder) {
   EXPECT_THAT(empty.err, HasSubstr("holds no frame"));
 }
 
-TEST_F(GraphFiles, UpgradeHasNothingToDoForTheNewestVersionAndRefusesUnknownOnes) {
+TEST_F(GraphFiles, Upgrade_NewestAndUnknownVersions) {
   const std::string text = burley_with("\"burley\"", "\"mine\"");
   const std::string mine = write("mine.json", text);
   for (const std::vector<std::string>& words :
@@ -210,7 +212,7 @@ TEST_F(GraphFiles, UpgradeHasNothingToDoForTheNewestVersionAndRefusesUnknownOnes
                                  HasSubstr("\"kind\": \"graph\", \"version\": 2, \"changed\": false")));
 }
 
-TEST_F(GraphFiles, OverlaysApplyInOrderAndExplainTellsWhoSetWhat) {
+TEST_F(GraphFiles, OverlaysApplyInOrder_ExplainNamesTheirFiles) {
   const std::string first = write("first.json", R"({ "dermis_overlay": 2, "edits": [
     { "set": "/settings/samples/int", "to": 8 }, { "remove": "/passes/export_scattered" },
     { "remove": "/exports/scattered_light" }, { "remove": "/resources/scattered_light" } ] })");
@@ -231,7 +233,7 @@ TEST_F(GraphFiles, OverlaysApplyInOrderAndExplainTellsWhoSetWhat) {
                               "\", \"line\": 2, \"column\": 14 }")));
 }
 
-TEST_F(GraphFiles, AMistakeOfAnOverlayIsToldInTheOverlay) {
+TEST_F(GraphFiles, OverlayError_IsReportedInTheOverlay) {
   const std::string wrong = write("wrong.json", R"({ "dermis_overlay": 2,
   "edits": [ { "set": "/settings/samples/int", "to": 1 } ] })");
   for (const char* verb : {"validate", "explain", "graph"}) {
@@ -246,7 +248,7 @@ TEST_F(GraphFiles, AMistakeOfAnOverlayIsToldInTheOverlay) {
   EXPECT_THAT(none.err, HasSubstr("none.json"));
 }
 
-TEST_F(GraphFiles, IncludedFilesAreReadBelowTheGraphsFolderAndDeclaredRoots) {
+TEST_F(GraphFiles, IncludesAreReadBelowFolderAndRoots) {
   const std::string classify = R"({ "pass": "classify", "type": "subsurface.classify",
       "read": { "material": "material", "depth": "depth", "scatter_scale": "scatter_scale" },
       "write": { "classes": "classes" } })";
@@ -263,7 +265,7 @@ TEST_F(GraphFiles, IncludedFilesAreReadBelowTheGraphsFolderAndDeclaredRoots) {
   EXPECT_THAT(alone.err, HasSubstr("classify.json:2:29: error[D0203"));
 }
 
-TEST_F(GraphFiles, AScenesProfilesAreReadInItsFolderAndDeclaredRoots) {
+TEST_F(GraphFiles, SceneProfilesAreReadInFolderAndRoots) {
   write("elsewhere/secret.json", "{ \"dermis_profile\": 1 }");
   const std::string scene = write("here/scene.json", R"({ "dermis_scene": 1, "name": "s",
   "profiles": [ { "name": "skin", "file": "../elsewhere/secret.json" } ],

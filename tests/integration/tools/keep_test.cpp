@@ -1,4 +1,4 @@
-// capture, report-bug and render --trace: what they write is what other verbs and programs take.
+// Tests capture, report-bug and render --trace: other verbs and programs accept their output.
 #include "tests/integration/tools/command_fixture.hpp"
 
 #include <nlohmann/json.hpp>
@@ -16,7 +16,7 @@ using ::testing::HasSubstr;
 
 class Keep : public CommandTest {};
 
-TEST_F(Keep, ACapturedSceneIsValidAndCanBeApplied) {
+TEST_F(Keep, CapturedSceneIsValidAndCanBeApplied) {
   const Outcome outcome = run({"capture", "configs/scenes/bust.json", "--out", path("capture"), "--size",
                                "48x27", "--frames", "2", "--first", "3"});
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
@@ -27,7 +27,7 @@ TEST_F(Keep, ACapturedSceneIsValidAndCanBeApplied) {
   EXPECT_THAT(files("out"), Contains("frame_0001/scattered.exr"));
 }
 
-TEST_F(Keep, ACaptureIsWhatRenderingWithAGraphCaptures) {
+TEST_F(Keep, CaptureMatchesTheCaptureOfARendering) {
   ASSERT_EQ(
       run({"capture", "configs/scenes/bust.json", "--out", path("a"), "--size", "48x27", "--frames", "1"})
           .exit_code,
@@ -38,10 +38,10 @@ TEST_F(Keep, ACaptureIsWhatRenderingWithAGraphCaptures) {
             0);
   ASSERT_EQ(files("a"), files("b"));
   for (const std::string& file : files("a"))
-    EXPECT_EQ(read("a/" + file), read("b/" + file)) << file; // folders read as nothing
+    EXPECT_EQ(read("a/" + file), read("b/" + file)) << file; // Folders read as "".
 }
 
-TEST_F(Keep, ABugReportIsCompleteAndItsLineShowsTheSame) {
+TEST_F(Keep, BugReportIsCompleteAndReproducible) {
   const Outcome outcome =
       run({"report-bug", "configs/graphs/burley.json", "--overlay", "configs/overlays/full_precision.json",
            "--set", "samples=8", "--size", "48x27", "--count", "1", "--out", path("bug"), "--json"});
@@ -58,7 +58,7 @@ TEST_F(Keep, ABugReportIsCompleteAndItsLineShowsTheSame) {
   EXPECT_EQ(replay, "dermis apply --graph burley.json --frames capture --out replay --overlay "
                     "overlays/0_full_precision.json --set samples=8");
   EXPECT_THAT(read("bug/README.txt"), HasSubstr(replay));
-  // The same line, from where the tests run.
+  // The line of the report, run from the test's working folder.
   const Outcome again =
       run({"apply", "--graph", path("bug/burley.json"), "--frames", path("bug/capture"), "--out",
            path("replay"), "--overlay", path("bug/overlays/0_full_precision.json"), "--set", "samples=8"});
@@ -66,7 +66,7 @@ TEST_F(Keep, ABugReportIsCompleteAndItsLineShowsTheSame) {
   EXPECT_THAT(files("replay"), Contains("frame_0000/combined.exr"));
 }
 
-TEST_F(Keep, ABugReportTakesTheLastFrameOfAnEnginesCaptureAndFilesThatAGraphIncludes) {
+TEST_F(Keep, BugReport_HasTheLastFrameAndIncludedFiles) {
   ASSERT_EQ(run({"capture", "configs/scenes/bust.json", "--out", path("capture"), "--size", "32x18",
                  "--frames", "2"})
                 .exit_code,
@@ -95,7 +95,7 @@ TEST_F(Keep, ABugReportTakesTheLastFrameOfAnEnginesCaptureAndFilesThatAGraphIncl
   EXPECT_EQ(run({"validate", path("bug/main.json"), path("bug/capture")}).exit_code, 0);
 }
 
-TEST_F(Keep, ABugReportMayBeOneArchive) {
+TEST_F(Keep, BugReportCanBeAnArchive) {
   const Outcome outcome = run({"report-bug", "configs/graphs/burley.json", "--size", "32x18", "--count", "1",
                                "--out", path("bug.tar.gz")});
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
@@ -112,7 +112,7 @@ TEST_F(Keep, ABugReportMayBeOneArchive) {
   EXPECT_EQ(again.exit_code, 0) << again.err;
 }
 
-TEST_F(Keep, ABugReportNeitherWritesOverAFolderNorLeavesHalfOfOne) {
+TEST_F(Keep, BugReport_IsWrittenCompletelyToANewFolder) {
   write("full/file", "x");
   EXPECT_EQ(run({"report-bug", "configs/graphs/burley.json", "--out", path("full")}).exit_code, 3);
   EXPECT_EQ(
@@ -122,7 +122,7 @@ TEST_F(Keep, ABugReportNeitherWritesOverAFolderNorLeavesHalfOfOne) {
   EXPECT_THAT(files(), ::testing::ElementsAre("full", "full/file"));
 }
 
-TEST_F(Keep, ATraceHasEveryPassOfEveryFrameAndNestsPerfectly) {
+TEST_F(Keep, TraceHasEveryPassAndNestsPerfectly) {
   const Outcome outcome = run({"render", "configs/scenes/bust.json", "--graph", "configs/graphs/skin.json",
                                "--size", "48x27", "--frames", "3", "--subset", "0", "--budget", "1000",
                                "--out", path("out"), "--trace", path("trace.json"), "--json"});
@@ -149,7 +149,8 @@ TEST_F(Keep, ATraceHasEveryPassOfEveryFrameAndNestsPerfectly) {
   EXPECT_EQ(seen["frame 2"], 1);
   EXPECT_EQ(counters, 6);
   EXPECT_GE(choices, 1);
-  // Each span of a track ends before the next begins, or holds it whole: microseconds, to rounding.
+  // Each span of a track ends before the next begins, or contains it entirely, in microseconds
+  // within rounding.
   for (auto& [track, spans] : tracks) {
     std::vector<double> ends;
     for (const auto& [begin, duration] : spans) {

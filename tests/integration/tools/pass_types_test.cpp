@@ -1,4 +1,5 @@
-// Pass kinds of a host, known to the verbs that look at graphs through the file that the host exported.
+// Tests pass types of a host: verbs that read graphs know them from the file that the host
+// exported.
 #include "tests/integration/tools/command_fixture.hpp"
 
 namespace dermis::test {
@@ -20,7 +21,7 @@ constexpr const char* tone = R"({ "dermis": 2, "name": "tone",
 
 class PassTypes : public CommandTest {};
 
-TEST_F(PassTypes, OfAHostLetItsGraphsBeCheckedWithoutIt) {
+TEST_F(PassTypes, ExportedFile_LetsGraphsBeChecked) {
   const std::string kind_file = write("pass_types.json", pass_types), graph_file = write("tone.json", tone);
   const Outcome without = run({"validate", graph_file});
   EXPECT_EQ(without.exit_code, 1);
@@ -32,7 +33,7 @@ TEST_F(PassTypes, OfAHostLetItsGraphsBeCheckedWithoutIt) {
   EXPECT_THAT(explained.out, HasSubstr("tone"));
 }
 
-TEST_F(PassTypes, AreCheckedThemselves) {
+TEST_F(PassTypes, FileIsChecked) {
   EXPECT_EQ(run({"validate", write("pass_types.json", pass_types)}).exit_code, 0);
   std::string range = pass_types, own = pass_types;
   range.replace(range.find("\"default\": 1"), 12, "\"default\": 9");
@@ -49,7 +50,7 @@ TEST_F(PassTypes, AreCheckedThemselves) {
   EXPECT_THAT(twice.err, HasSubstr("there is a pass type 'studio.tone' already"));
 }
 
-// burley with a pass of the host after it, which a setting turns on.
+// burley with a host pass after it, which a setting turns on.
 constexpr const char* toned = R"({ "dermis_overlay": 2, "edits": [
   { "set": "/settings/toned", "to": { "bool": false } },
   { "set": "/resources/toned_light", "to": { "format": "rgba16f", "size": "view", "optional": true } },
@@ -57,7 +58,7 @@ constexpr const char* toned = R"({ "dermis_overlay": 2, "edits": [
   { "insert_after": "combine", "passes": [ { "pass": "tone", "type": "studio.tone", "when": "toned",
     "read": { "light": "lighting" }, "write": { "toned": "toned_light" } } ] } ] })";
 
-TEST_F(PassTypes, AnOptionThatRepeatsDoesNotSwallowTheGraph) {
+TEST_F(PassTypes, RepeatedOption_KeepsTheGraphArgument) {
   const std::string kind_file = write("pass_types.json", pass_types), graph_file = write("tone.json", tone);
   const std::vector<std::vector<std::string>> lines{
       {"explain", "--pass-types", kind_file, graph_file, "--size", "64x64"},
@@ -73,7 +74,7 @@ TEST_F(PassTypes, AnOptionThatRepeatsDoesNotSwallowTheGraph) {
   }
 }
 
-TEST_F(PassTypes, AreKnownToExpectations) {
+TEST_F(PassTypes, ExpectationsKnowThem) {
   const std::string kind_file = write("pass_types.json", pass_types);
   write("tone.json", tone);
   const std::string expectations = write("tone.expect.json", R"({ "dermis_expect": 1, "cases": [
@@ -84,7 +85,7 @@ TEST_F(PassTypes, AreKnownToExpectations) {
   EXPECT_EQ(run({"test", expectations}).exit_code, 1);
 }
 
-TEST_F(PassTypes, OfPassesThatAreOffDoNotStopARendering) {
+TEST_F(PassTypes, DisabledPass_DoesNotPreventRendering) {
   const std::string kind_file = write("pass_types.json", pass_types), overlay = write("toned.json", toned);
   const std::vector<std::string> line{"render",       "configs/scenes/bust.json",
                                       "--graph",      burley,
@@ -98,7 +99,7 @@ TEST_F(PassTypes, OfPassesThatAreOffDoNotStopARendering) {
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
 }
 
-TEST_F(PassTypes, APassThatWouldRunIsRefusedByItsName) {
+TEST_F(PassTypes, EnabledPass_IsRefusedByName) {
   const std::string side_effects = write("effects.json", R"({ "dermis_pass_types": 2, "pass_types": [
   { "name": "studio.look", "side_effects": true, "ports": [ { "name": "light", "usage": "sampled_image" } ] } ] })");
   const std::string look = write("look.json", R"({ "dermis_overlay": 2, "edits": [
@@ -127,7 +128,7 @@ TEST_F(PassTypes, APassThatWouldRunIsRefusedByItsName) {
   EXPECT_THAT(applied.err, HasSubstr("pass 'look' (studio.look) has no kernel here"));
 }
 
-TEST_F(PassTypes, ABugReportNamesThemInItsLine) {
+TEST_F(PassTypes, BugReportNamesThemInItsLine) {
   const std::string kind_file = write("pass_types.json", pass_types), overlay = write("toned.json", toned);
   const Outcome outcome = run({"report-bug", burley, "--overlay", overlay, "--pass-types", kind_file,
                                "--size", "32x18", "--count", "1", "--out", path("bug")});
@@ -141,7 +142,7 @@ TEST_F(PassTypes, ABugReportNamesThemInItsLine) {
   EXPECT_EQ(again.exit_code, 0) << again.err;
 }
 
-TEST_F(PassTypes, APageMakesItsFolder) {
+TEST_F(PassTypes, PageCreatesItsFolder) {
   const std::string page = path("pages/new/tone.html");
   const Outcome outcome = run({"graph", "--pass-types", write("pass_types.json", pass_types),
                                write("tone.json", tone), "--html", page});

@@ -1,4 +1,5 @@
-// dermis plan: what is saved can be verified alone and compared with what the graph gives now.
+// Tests `dermis plan`: a saved plan can be verified on its own and compared with the graph's
+// present plan.
 
 #include "framegraph/serial/plan_file.hpp"
 #include "tests/integration/tools/command_fixture.hpp"
@@ -29,7 +30,7 @@ TEST_F(PlanFiles, HelpOfEveryVerbShowsAnExample) {
   EXPECT_EQ(run({"plan"}).exit_code, 2);
 }
 
-TEST_F(PlanFiles, TheSameGraphIsSavedAsTheSameBytesAndVerifiesAlone) {
+TEST_F(PlanFiles, EqualGraphs_GiveEqualBytesThatVerify) {
   for (const char* file : {"a.plan", "b.plan"}) {
     const Outcome outcome = run({"plan", "save", burley, "--size", "640x360", "--out", path(file)});
     EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
@@ -48,7 +49,7 @@ TEST_F(PlanFiles, TheSameGraphIsSavedAsTheSameBytesAndVerifiesAlone) {
   EXPECT_EQ(run({"plan", "save", burley, "--out", path("no/such/folder/a.plan")}).exit_code, 3);
 }
 
-TEST_F(PlanFiles, PassesDeclaredAsyncGetAQueueWhereItIsAskedFor) {
+TEST_F(PlanFiles, AsyncPasses_GetAQueueOnRequest) {
   const std::string graph = write("two.json", R"({ "dermis": 2, "name": "two",
   "imports": { "light": { "format": "rgba16f", "size": "view" } },
   "resources": { "a": { "format": "rgba16f", "size": "view" }, "b": { "format": "rgba16f", "size": "view/2" },
@@ -83,11 +84,11 @@ TEST_F(PlanFiles, ADamagedPlanIsRefusedWithTheByte) {
   EXPECT_TRUE(is_json(run({"plan", "verify", cut, "--json"}).out));
 }
 
-// The stages that the first barrier waits for are set to none: its bytes are found by what differs.
-TEST_F(PlanFiles, APlanWithAHazardIsRefusedWithTheNamesOfPassAndResource) {
+// Clears the stages that the first barrier waits for; their bytes are found by comparison.
+TEST_F(PlanFiles, PlanWithAHazard_NamesPassAndResource) {
   ASSERT_EQ(run({"plan", "save", burley, "--out", path("a.plan")}).exit_code, 0);
   const std::string whole = contents(path("a.plan"));
-  // Every barrier from compute to compute has these 16 bytes: source and destination stages.
+  // Every barrier from compute to compute contains these 16 bytes: source and destination stages.
   const std::string stages("\0\x08\0\0\0\0\0\0\0\x08\0\0\0\0\0\0", 16);
   const size_t at = whole.find(stages);
   ASSERT_NE(at, std::string::npos);
@@ -98,8 +99,8 @@ TEST_F(PlanFiles, APlanWithAHazardIsRefusedWithTheNamesOfPassAndResource) {
   EXPECT_THAT(outcome.err, AllOf(HasSubstr("D0322 plan_rejected"), HasSubstr("is '")));
 }
 
-// Seventeen images of a million parts together, which no graph can have.
-TEST_F(PlanFiles, APlanThatTakesTooLongIsNotVerified) {
+// Seventeen images with a million subresources together, which no graph can have.
+TEST_F(PlanFiles, TooLargePlan_IsNotVerified) {
   ASSERT_EQ(run({"plan", "save", burley, "--out", path("a.plan")}).exit_code, 0);
   Diagnostics diagnostics;
   std::optional<SavedPlan> saved = read_plan("a.plan", contents(path("a.plan")), diagnostics);
@@ -130,14 +131,14 @@ TEST_F(PlanFiles, APlanThatTakesTooLongIsNotVerified) {
   EXPECT_THAT(outcome.out, IsEmpty());
 }
 
-TEST_F(PlanFiles, AGraphDoesNotDifferFromItsSavedPlan) {
+TEST_F(PlanFiles, GraphEqualsItsSavedPlan) {
   ASSERT_EQ(run({"plan", "save", burley, "--out", path("a.plan")}).exit_code, 0);
   const Outcome same = run({"plan", "diff", path("a.plan"), burley, "--exit-code"});
   EXPECT_EQ(same.exit_code, 0) << same.out;
   EXPECT_THAT(same.out, AllOf(HasSubstr("the plans are the same"), Not(HasSubstr("barriers\n"))));
 }
 
-TEST_F(PlanFiles, TwoGraphsDifferByThePassesThatEachHasAlone) {
+TEST_F(PlanFiles, GraphsDifferByTheirOwnPasses) {
   const Outcome diff = run({"plan", "diff", burley, "configs/graphs/separable.json"});
   EXPECT_EQ(diff.exit_code, 0) << "differences are no failure unless asked for";
   EXPECT_THAT(diff.out, AllOf(HasSubstr("the plans differ"), HasSubstr("- scatter: subsurface.burley"),
@@ -149,7 +150,7 @@ TEST_F(PlanFiles, TwoGraphsDifferByThePassesThatEachHasAlone) {
   EXPECT_THAT(json.err, IsEmpty());
 }
 
-TEST_F(PlanFiles, OneGraphIsComparedUnderTwoSetsOfOptions) {
+TEST_F(PlanFiles, OneGraphWithTwoSetsOfOptions) {
   const Outcome size = run({"plan", "diff", burley, "--b-size", "960x540"});
   EXPECT_EQ(size.exit_code, 0) << size.err;
   EXPECT_THAT(size.out, AllOf(HasSubstr("~ view: 1920x1080 -> 960x540"), HasSubstr("transients ")));
@@ -164,7 +165,7 @@ TEST_F(PlanFiles, OneGraphIsComparedUnderTwoSetsOfOptions) {
   EXPECT_THAT(slot.out, HasSubstr("unbound slots: none -> scatter_scale"));
 }
 
-TEST_F(PlanFiles, WhatCannotBeComparedIsAUsageError) {
+TEST_F(PlanFiles, IncomparableFilesAreAUsageError) {
   EXPECT_THAT(run({"plan", "diff", burley}).err, HasSubstr("name two plans"));
   ASSERT_EQ(run({"plan", "save", burley, "--out", path("a.plan")}).exit_code, 0);
   const Outcome saved = run({"plan", "diff", burley, path("a.plan"), "--b-set", "samples=8"});

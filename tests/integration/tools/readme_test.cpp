@@ -1,4 +1,4 @@
-// README.md and docs: what they show is run, compiled, and there.
+// Runs and compiles the examples of README.md and docs, and checks their links.
 #include "tests/integration/tools/command_fixture.hpp"
 
 #include <cstdlib>
@@ -15,7 +15,7 @@ namespace fs = std::filesystem;
 
 const fs::path repository = DERMIS_SOURCE_DIR;
 
-// What stands between ```language and ```, in order.
+// Returns the code blocks of a language, in order.
 std::vector<std::string> blocks(const std::string& text, const std::string& language) {
   std::vector<std::string> found;
   const std::string opening = "```" + language + "\n";
@@ -40,11 +40,11 @@ class Readme : public CommandTest {
 protected:
   const std::string text = text_of(repository / "README.md");
 
-  // A line that a reader would type, on a small picture and into this test's folder.
+  // Runs a command line of the text on a small picture, with output in the test's folder.
   void expect_runs(const std::string& line) {
     std::vector<std::string> arguments = words(line.substr(0, line.find(" #")));
     ASSERT_GT(arguments.size(), 1u) << line;
-    arguments.erase(arguments.begin()); // the program
+    arguments.erase(arguments.begin()); // The program.
     for (size_t i = 0; i + 1 < arguments.size(); ++i) {
       if (arguments[i] == "--size") arguments[i + 1] = "64x36";
       if (arguments[i] == "--frames") arguments[i + 1] = "1";
@@ -55,7 +55,7 @@ protected:
   }
 };
 
-TEST_F(Readme, TheGraphInFiveMinutesRuns) {
+TEST_F(Readme, GraphInFiveMinutesRuns) {
   const auto shown = blocks(text, "jsonc");
   ASSERT_EQ(shown.size(), 1u);
   const std::string graph = write("shown.json", shown[0]);
@@ -67,7 +67,7 @@ TEST_F(Readme, TheGraphInFiveMinutesRuns) {
   EXPECT_THAT(shown[0], ::testing::HasSubstr("\"albedo\": \"albedo\"")) << "it would render white plaster";
 }
 
-TEST_F(Readme, EveryLineForTheShellRuns) {
+TEST_F(Readme, EveryShellLineRuns) {
   size_t lines = 0;
   for (const std::string& block : blocks(text, "sh")) {
     std::istringstream in(block);
@@ -84,19 +84,19 @@ TEST_F(Readme, EveryLineForTheShellRuns) {
   EXPECT_GE(lines, 2u);
 }
 
-TEST_F(Readme, EveryCommandInsideOfALineRuns) {
+TEST_F(Readme, EveryInlineCommandRuns) {
   const std::regex command("`(dermis [a-z][^`]* --[^`]*)`");
   size_t commands = 0;
   for (std::sregex_iterator at(text.begin(), text.end(), command), end; at != end; ++at) {
     const std::string line = (*at)[1];
-    if (line.find("...") != std::string::npos) continue; // shortened
+    if (line.find("...") != std::string::npos) continue; // Shortened in the text.
     expect_runs(line);
     ++commands;
   }
   EXPECT_GE(commands, 2u);
 }
 
-TEST_F(Readme, TheToolsPageKnowsEveryVerb) {
+TEST_F(Readme, ToolsPageListsEveryVerb) {
   const std::string tools = text_of(repository / "docs/tools.md");
   const std::string help = run({"--help"}).out;
   const std::regex verb("\n  ([a-z][a-z-]+) ");
@@ -109,7 +109,7 @@ TEST_F(Readme, TheToolsPageKnowsEveryVerb) {
   EXPECT_GE(verbs, 18u) << help;
 }
 
-TEST_F(Readme, TheShortLinesInCCompile) {
+TEST_F(Readme, ShortCExamplesCompile) {
   auto shown = blocks(text, "c");
   ASSERT_EQ(shown.size(), 2u);
   std::string source =
@@ -124,7 +124,7 @@ TEST_F(Readme, TheShortLinesInCCompile) {
   EXPECT_EQ(std::system(line.c_str()), 0) << source;
 }
 
-// Links to files of the repository, out of README.md and every page of docs.
+// Links to files of the repository, in README.md and every page of docs.
 TEST_F(Readme, EveryLinkLeadsToAFile) {
   std::vector<fs::path> pages = {repository / "README.md", repository / "CHANGELOG.md",
                                  repository / "CONTRIBUTING.md"};

@@ -1,4 +1,4 @@
-// render: pictures, figures, and what is said of wrong scenes, models, graphs and folders.
+// Tests render: pictures, numbers, and the messages for wrong scenes, models, graphs and folders.
 
 #include "tests/integration/tools/command_fixture.hpp"
 #include "tests/support/shipped_graphs.hpp"
@@ -28,7 +28,7 @@ protected:
   }
 };
 
-TEST_F(Render, PicturesTimesAndErrorComeOut) {
+TEST_F(Render, WritesPicturesTimesAndErrors) {
   const Outcome outcome = render(bust, burley, {"--frames", "2", "--subset", "64"});
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_THAT(files("out"),
@@ -38,7 +38,7 @@ TEST_F(Render, PicturesTimesAndErrorComeOut) {
                                  HasSubstr("RMSE"), HasSubstr(path("out"))));
 }
 
-TEST_F(Render, TheAnswerForProgramsIsOneJsonDocumentAndNothingElse) {
+TEST_F(Render, JsonOutputIsOneDocument) {
   const Outcome outcome = render(bust, burley, {"--frames", "2", "--subset", "64", "--json"});
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_TRUE(is_json(outcome.out)) << outcome.out;
@@ -47,15 +47,16 @@ TEST_F(Render, TheAnswerForProgramsIsOneJsonDocumentAndNothingElse) {
   EXPECT_THAT(outcome.err, IsEmpty());
 }
 
-TEST_F(Render, TheValidationLayerHasNothingToSay) {
+TEST_F(Render, NoValidationMessages) {
   RunOptions options;
   options.environment = validation_environment();
   const Outcome outcome = render(bust, burley, {"--frames", "3", "--subset", "0", "--json"}, options);
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
-  EXPECT_TRUE(is_json(outcome.out)) << outcome.out; // a message of the layer would stand beside it
+  // A message of the layer would appear in the output.
+  EXPECT_TRUE(is_json(outcome.out)) << outcome.out;
 }
 
-TEST_F(Render, DebugPicturesShowWhatWasSkippedOnTopOfAnyGraph) {
+TEST_F(Render, DebugPicturesShowSkippedTiles) {
   for (const char* graph : {burley, "configs/graphs/skin.json"}) {
     const Outcome outcome = render(bust, graph, {"--frames", "1", "--subset", "0", "--debug", "skips"});
     ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
@@ -63,7 +64,7 @@ TEST_F(Render, DebugPicturesShowWhatWasSkippedOnTopOfAnyGraph) {
   }
 }
 
-TEST_F(Render, DebugPicturesOfSamplesAreRefusedOfAGraphThatDoesNotHandThemOut) {
+TEST_F(Render, DebugSamples_NotExported_IsRefused) {
   const Outcome outcome = render(bust, burley, {"--frames", "1", "--debug", "samples"});
   EXPECT_EQ(outcome.exit_code, 2);
   EXPECT_THAT(outcome.err, HasSubstr("afis_guided.json, sap_blend.json and sap_residual.json do"));
@@ -76,28 +77,28 @@ TEST_F(Render, DebugPicturesOfSamplesAreRefusedOfAGraphThatDoesNotHandThemOut) {
   }
 }
 
-TEST_F(Render, TheOverlayOfSkipsIsTakenOnce) {
+TEST_F(Render, SkipOverlayIsAppliedOnce) {
   const Outcome outcome = render(
       bust, burley,
       {"--frames", "1", "--subset", "0", "--debug", "skips", "--overlay", "configs/overlays/skips.json"});
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
 }
 
-TEST_F(Render, OneFrameIsSaidToBeTheFirstAndNoErrorIsExpectedWithoutABudget) {
+TEST_F(Render, SingleFrame_NoExpectedErrorWithoutBudget) {
   const Outcome outcome = render(bust, burley, {"--frames", "1", "--subset", "0"});
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_THAT(outcome.out, AllOf(HasSubstr("(first frame, cold)"), HasSubstr("\n1 frame is in "),
                                  Not(HasSubstr("expected"))));
 }
 
-TEST_F(Render, ADebugPictureThatIsNotKnownIsAUsageError) {
+TEST_F(Render, UnknownDebugPicture_IsAUsageError) {
   const Outcome outcome = render(bust, burley, {"--debug", "colours"});
   EXPECT_EQ(outcome.exit_code, 2);
   EXPECT_THAT(outcome.err, AllOf(HasSubstr("--debug"), HasSubstr("skips")));
   EXPECT_THAT(files("out"), IsEmpty());
 }
 
-TEST_F(Render, WhatTheGraphSawCanBeAppliedAgain) {
+TEST_F(Render, CapturedInputsCanBeAppliedAgain) {
   const Outcome captured =
       render(bust, burley, {"--frames", "2", "--subset", "0", "--capture", path("capture")});
   ASSERT_EQ(captured.exit_code, 0) << captured.err;
@@ -107,7 +108,7 @@ TEST_F(Render, WhatTheGraphSawCanBeAppliedAgain) {
   EXPECT_THAT(files("again"), Contains(HasSubstr("scattered.exr")));
 }
 
-TEST_F(Render, WithoutAGraphThePictureIsTheEnginesOwn) {
+TEST_F(Render, NoGraph_ShowsTheEnginesPicture) {
   const Outcome outcome = render(bust, "none", {"--frames", "1"});
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_THAT(files("out"), ::testing::ElementsAre("color_0000.exr", "frame_0000.png"));
@@ -115,14 +116,14 @@ TEST_F(Render, WithoutAGraphThePictureIsTheEnginesOwn) {
   EXPECT_EQ(render(bust, "none", {"--set", "samples=8"}).exit_code, 2);
 }
 
-TEST_F(Render, ASceneThatIsNotThereIsNamedAndNothingIsWritten) {
+TEST_F(Render, MissingScene_IsNamed) {
   const Outcome outcome = render("configs/scenes/none.json", burley);
   EXPECT_EQ(outcome.exit_code, 1);
   EXPECT_THAT(outcome.err, HasSubstr("configs/scenes/none.json"));
   EXPECT_THAT(files(), IsEmpty());
 }
 
-TEST_F(Render, AGraphWithErrorsIsRefusedBeforeAnythingIsWritten) {
+TEST_F(Render, GraphWithErrors_WritesNothing) {
   const std::string bad = write("bad.json", "{ \"dermis\": 2, \"name\": \"x\" ");
   const Outcome outcome = render(bust, bad);
   EXPECT_EQ(outcome.exit_code, 1);
@@ -130,7 +131,7 @@ TEST_F(Render, AGraphWithErrorsIsRefusedBeforeAnythingIsWritten) {
   EXPECT_THAT(files("out"), IsEmpty());
 }
 
-TEST_F(Render, AModelThatIsNoGltfIsNamedAndNothingIsWritten) {
+TEST_F(Render, ModelThatIsNotGltf_IsNamed) {
   const std::string model = write("model.glb", "this is no model");
   const Outcome outcome = render("configs/scenes/head.json", burley, {"--model", model});
   EXPECT_EQ(outcome.exit_code, 1);
@@ -138,7 +139,7 @@ TEST_F(Render, AModelThatIsNoGltfIsNamedAndNothingIsWritten) {
   EXPECT_THAT(files("out"), IsEmpty());
 }
 
-TEST_F(Render, AnOutputFolderThatCannotBeMadeIsAnEnvironmentError) {
+TEST_F(Render, UnwritableFolder_IsAnEnvironmentError) {
   const std::string file = write("file", "");
   const Outcome outcome =
       run({"render", bust, "--graph", burley, "--size", "64x36", "--frames", "1", "--out", file + "/out"});
@@ -146,7 +147,7 @@ TEST_F(Render, AnOutputFolderThatCannotBeMadeIsAnEnvironmentError) {
   EXPECT_THAT(outcome.err, AllOf(HasSubstr("output folder"), HasSubstr(file + "/out")));
 }
 
-TEST_F(Render, WithoutAVulkanDriverTheEnvironmentIsToBlameAndNothingIsWritten) {
+TEST_F(Render, NoVulkanDriver_IsAnEnvironmentError) {
   RunOptions options;
   options.environment = {"VK_ICD_FILENAMES=/nonexistent.json", "VK_DRIVER_FILES=/nonexistent.json"};
   const Outcome outcome = render(bust, burley, {}, options);
@@ -155,7 +156,7 @@ TEST_F(Render, WithoutAVulkanDriverTheEnvironmentIsToBlameAndNothingIsWritten) {
   EXPECT_THAT(files(), IsEmpty());
 }
 
-TEST_F(Render, CtrlCStopsAtTheNextFrameAndLeavesWholeFilesOnly) {
+TEST_F(Render, CtrlC_StopsAtTheNextFrameWithCompleteFiles) {
   RunOptions options;
   options.interrupt_after = path("out/frame_0000.png");
   const Outcome outcome = render(bust, burley, {"--frames", "10000"}, options);

@@ -1,4 +1,4 @@
-// Reports of benches: what every format keeps, and the figures in them.
+// Tests reports of benches: the contents of every format, and their numbers.
 #include "integration/tools/command/bench/report/html.hpp"
 #include "integration/tools/command/bench/report/pareto.hpp"
 #include "integration/tools/command/bench/report/report.hpp"
@@ -30,14 +30,14 @@ Report small_report() {
   return report;
 }
 
-TEST(ReportFiles, JsonIsOneDocumentWithNullForWhatWasNotMeasured) {
+TEST(ReportFiles, JsonIsOneDocumentWithNullForUnmeasured) {
   const std::string text = report_as_json(small_report());
   EXPECT_TRUE(test::is_json(text));
   EXPECT_THAT(text, HasSubstr(R"({ "name": "a,b \"c\"", "value": 0.1, "best": true })"));
   EXPECT_THAT(text, HasSubstr(R"("value": null)"));
 }
 
-TEST(ReportFiles, CsvQuotesWhatWouldBreakIt) {
+TEST(ReportFiles, CsvQuotesSpecialCharacters) {
   EXPECT_EQ(report_as_csv(small_report()),
             "name,value,best\r\n\"a,b \"\"c\"\"\",0.1,true\r\nplain,,false\r\n");
 }
@@ -63,7 +63,7 @@ TEST(ReportFiles, BaselinesAreGreyAndOwnTechniquesAreNot) {
   EXPECT_THAT(report_as_html(report), HasSubstr("<g class='s0 base b0'>"));
 }
 
-TEST(ReportFiles, PlotsHaveTheTitleOfTheBenchOrThatOfTimeAgainstError) {
+TEST(ReportFiles, PlotsHaveTheTitleOfTheBench) {
   Report report = small_report();
   EXPECT_THAT(report_as_html(report), HasSubstr("<h2>Time against error</h2><p>Filled points"));
   report.plots_title = "Over passes";
@@ -71,7 +71,7 @@ TEST(ReportFiles, PlotsHaveTheTitleOfTheBenchOrThatOfTimeAgainstError) {
   EXPECT_THAT(report_as_html(report), HasSubstr("<h2>Over passes</h2><p>Point at a graph.</p>"));
 }
 
-TEST(ReportFiles, Base64IsThatOfTheStandard) { // RFC 4648, section 10
+TEST(ReportFiles, Base64MatchesTheStandard) { // RFC 4648, section 10.
   const auto coded = [](std::string_view text) {
     return base64({reinterpret_cast<const uint8_t*>(text.data()), text.size()});
   };
@@ -82,9 +82,10 @@ TEST(ReportFiles, Base64IsThatOfTheStandard) { // RFC 4648, section 10
   EXPECT_EQ(coded("foobar"), "Zm9vYmFy");
 }
 
-TEST(Pareto, WhatIsBeatenInBothIsNotOnTheFront) {
+TEST(Pareto, DominatedEntriesAreNotOnTheFront) {
   const std::vector<bool> front = pareto_front({{1, 5}, {2, 3}, {2, 4}, {3, 3}, {4, 1}, {4, 1}});
-  EXPECT_EQ(front, (std::vector<bool>{true, true, false, false, true, true})); // equals stand side by side
+  // Equal entries are both on the front.
+  EXPECT_EQ(front, (std::vector<bool>{true, true, false, false, true, true}));
 }
 
 subsurface::Profile skin() {
@@ -96,7 +97,7 @@ subsurface::Profile skin() {
   return profile;
 }
 
-TEST(GeneratedScenes, ShowTheWidestChannelAtTheAskedD) {
+TEST(GeneratedScenes, WidestChannelHasTheRequestedD) {
   for (const char* scene : {"edge", "disc", "bumps", "sphere", "depth_step", "texture_plane"}) {
     ASSERT_TRUE(is_generated(scene));
     for (const double d_px : {1.0, 4.0}) {

@@ -1,4 +1,4 @@
-// The texts that reports are made of: differences by line, and XML that any content survives.
+// Tests the texts of reports: differences by line, and XML with any content.
 
 #include "integration/tools/command/expect/junit.hpp"
 #include "integration/tools/command/expect/text_diff.hpp"
@@ -12,7 +12,7 @@ namespace {
 
 using tools::diff_lines;
 
-// One side of a difference: its own lines and the common ones, without their marks.
+// Returns one side of a difference: its own lines and the common lines, without marks.
 std::string side(const std::string& difference, char own) {
   std::string out;
   for (size_t at = 0; at < difference.size();) {
@@ -30,7 +30,7 @@ size_t marked(const std::string& difference) {
   return count;
 }
 
-// All texts of up to five lines, each "a" or "b".
+// Returns text `number` of `lines` lines, each "a" or "b".
 std::string short_text(uint32_t number, uint32_t lines) {
   std::string out;
   for (uint32_t i = 0; i < lines; ++i)
@@ -38,7 +38,7 @@ std::string short_text(uint32_t number, uint32_t lines) {
   return out;
 }
 
-TEST(Difference, HoldsBothTextsWhole) {
+TEST(Difference, ContainsBothTexts) {
   for (uint32_t a = 0; a < 32; ++a)
     for (uint32_t b = 0; b < 32; ++b)
       for (uint32_t lines = 0; lines <= 5; ++lines) {
@@ -49,14 +49,14 @@ TEST(Difference, HoldsBothTextsWhole) {
       }
 }
 
-TEST(Difference, MarksNoMoreThanItMust) {
+TEST(Difference, MarksTheFewestLines) {
   EXPECT_EQ(diff_lines("a\nb\n", "a\nb\n"), "  a\n  b\n");
   EXPECT_EQ(diff_lines("", "a\n"), "+ a\n");
   EXPECT_EQ(diff_lines("x\na\nb\nc\ny\n", "x\na\nc\nd\ny\n"), "  x\n  a\n- b\n  c\n+ d\n  y\n");
   EXPECT_EQ(marked(diff_lines("a\nb\na\nb\n", "b\na\nb\na\n")), 2u);
 }
 
-TEST(Difference, OfVeryLongTextsIsStillWhole) {
+TEST(Difference, LongTexts_AreContained) {
   std::string before, after;
   for (int i = 0; i < 5000; ++i) {
     before.append("b").append(std::to_string(i)).append("\n");
@@ -67,7 +67,7 @@ TEST(Difference, OfVeryLongTextsIsStillWhole) {
   EXPECT_EQ(side(difference, '+'), after);
 }
 
-TEST(JUnit, CarriesAnyContent) {
+TEST(JUnit, EscapesAnyContent) {
   EXPECT_EQ(tools::xml_text("<a b=\"&\">\n\x01\x7f"), "&lt;a b=&quot;&amp;&quot;&gt;\n??");
   EXPECT_EQ(tools::junit_xml({{"f", {{"good", true, "", ""}, {"bad", false, "why", "more\n"}}}}),
             "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"

@@ -1,4 +1,4 @@
-// sheet: one picture of techniques times materials.
+// Tests sheet: one picture of techniques times materials.
 
 #include "integration/tools/files/png.hpp"
 #include "tests/integration/tools/command_fixture.hpp"
@@ -21,7 +21,7 @@ protected:
   }
 };
 
-TEST_F(Sheet, HasARowWithoutAGraphAndOneForEachAndAColumnForEachMaterial) {
+TEST_F(Sheet, HasARowPerGraphAndAColumnPerMaterial) {
   const Outcome outcome =
       sheet({"--graphs", "configs/graphs/sap.json", "--profiles", "skin,configs/profiles/milk.json"});
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
@@ -38,12 +38,12 @@ TEST_F(Sheet, HasARowWithoutAGraphAndOneForEachAndAColumnForEachMaterial) {
         values.push_back(picture->values[3 * (size_t{row * 31 + y} * picture->width + column * 52) + x]);
     return values;
   };
-  EXPECT_EQ(tile(0, 0), tile(0, 1)); // without a graph, the material does not matter
+  EXPECT_EQ(tile(0, 0), tile(0, 1)); // Without a graph the material has no effect.
   EXPECT_NE(tile(1, 0), tile(0, 0));
   EXPECT_NE(tile(1, 0), tile(1, 1));
 }
 
-TEST_F(Sheet, TheAnswerForProgramsIsOneJsonDocument) {
+TEST_F(Sheet, JsonOutputIsOneDocument) {
   const Outcome outcome =
       sheet({"--graphs", "configs/graphs/sap.json", "--profiles", "configs/profiles/skin.json", "--json"});
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
@@ -57,7 +57,7 @@ TEST_F(Sheet, AMissingProfileIsNamed) {
   EXPECT_THAT(outcome.err, HasSubstr("nowhere.json"));
 }
 
-TEST_F(Sheet, TooManyPixelsAreAMistakeOfUsage) {
+TEST_F(Sheet, TooManyPixels_AreAUsageError) {
   const Outcome outcome = run({"sheet", "--out", path("sheet.png"), "--size", "8192x16"});
   EXPECT_EQ(outcome.exit_code, 2);
   EXPECT_THAT(outcome.err, HasSubstr("--size"));

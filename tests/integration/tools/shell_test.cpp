@@ -1,4 +1,4 @@
-// dermis completion and dermis man: they know what the command line declares, and shells take them.
+// Tests dermis completion and dermis man: they match the command line, and shells accept them.
 #include "tests/integration/tools/command_fixture.hpp"
 
 #include <cstdlib>
@@ -13,7 +13,7 @@ using ::testing::Not;
 
 class Shell : public CommandTest {
 protected:
-  // What a shell's line prints; `code` is its exit status.
+  // Returns the output of a shell line; `code` is its exit status.
   std::string shell(const std::string& line, int& code) const {
     code = std::system((line + " > '" + path("said") + "' 2>&1").c_str());
     std::ifstream file(path("said"));
@@ -24,7 +24,7 @@ protected:
   static bool has(const char* program) {
     return std::system((std::string("command -v ") + program + " > /dev/null 2>&1").c_str()) == 0;
   }
-  // What bash offers behind these words.
+  // Returns bash's completions of these words.
   std::string offered(const std::string& words, int last) const {
     int code = 0;
     return shell("bash -c 'source \"$0\"; COMP_WORDS=(" + words + "); COMP_CWORD=" + std::to_string(last) +
@@ -52,7 +52,7 @@ TEST_F(Shell, BashCompletesVerbsOptionsAndValues) {
               HasSubstr("configs/graphs/sap.json"));
 }
 
-TEST_F(Shell, OtherShellsReadTheirScripts) {
+TEST_F(Shell, OtherShellsAcceptTheirScripts) {
   bool tried = false;
   for (const char* name : {"zsh", "fish"}) {
     ASSERT_EQ(run({"completion", name, "--out", path(name)}).exit_code, 0);
@@ -65,7 +65,7 @@ TEST_F(Shell, OtherShellsReadTheirScripts) {
   if (!tried) GTEST_SKIP() << "neither zsh nor fish is installed";
 }
 
-TEST_F(Shell, OtherShellsOfferNamesOfSchemasAndCodesOfMessages) {
+TEST_F(Shell, OtherShellsCompleteSchemasAndCodes) {
   const std::string zsh = run({"completion", "zsh"}).out;
   EXPECT_THAT(zsh, HasSubstr("'*:argument:(graph fragment "));
   EXPECT_THAT(zsh, HasSubstr("'*:argument:_alternative \"files:file:_files\" \"words:word:(D0101 "));
@@ -86,7 +86,7 @@ TEST_F(Shell, ScriptsAndManualNameEveryVerbOfTheHelp) {
   for (const std::string& verb : verbs) {
     EXPECT_THAT(fish, HasSubstr(" -a " + verb + " ")) << verb;
     EXPECT_THAT(zsh, HasSubstr("        '" + verb + ":")) << verb;
-    std::string escaped; // roff's hyphens
+    std::string escaped; // roff escapes hyphens.
     for (const char c : verb)
       escaped += c == '-' ? std::string("\\-") : std::string(1, c);
     EXPECT_NE(manual.find(".SS \"" + escaped), std::string::npos) << verb;
@@ -96,7 +96,7 @@ TEST_F(Shell, ScriptsAndManualNameEveryVerbOfTheHelp) {
   EXPECT_THAT(manual, HasSubstr("dermis bench all \\-\\-out build/bench"));
 }
 
-TEST_F(Shell, TheManualIsFormattedWithoutAWarning) {
+TEST_F(Shell, ManualIsFormattedWithoutWarnings) {
   ASSERT_EQ(run({"man", "--out", path("dermis.1")}).exit_code, 0);
   if (!has("groff")) GTEST_SKIP() << "groff is not installed";
   int code = 0;
@@ -104,7 +104,7 @@ TEST_F(Shell, TheManualIsFormattedWithoutAWarning) {
   EXPECT_EQ(code, 0);
 }
 
-TEST_F(Shell, AnotherShellIsAUsageError) {
+TEST_F(Shell, UnknownShell_IsAUsageError) {
   EXPECT_EQ(run({"completion", "csh"}).exit_code, 2);
 }
 

@@ -1,4 +1,4 @@
-// What the stability bench sees of a wrong frame, and what not.
+// Tests which wrong frames the stability bench detects.
 #include "integration/tools/command/bench/stability/judge.hpp"
 
 #include <gtest/gtest.h>
@@ -17,7 +17,7 @@ StabilityCase white(Judged judged) {
   return made;
 }
 
-// White light and as many samples in each pixel.
+// Returns white light with equal sample counts in each pixel.
 StabilityAnswer white_answer(float samples = 8) {
   const size_t values = size_t{3} * stability_side * stability_side;
   return {std::vector<float>(values, 1.0f), std::vector<float>(values, samples)};
@@ -27,7 +27,7 @@ size_t index(uint32_t x, uint32_t y, uint32_t channel = 0) {
   return 3 * (size_t{y} * stability_side + x) + channel;
 }
 
-TEST(StabilityJudge, SeesASinglePixelAndWhatIsNotFinite) {
+TEST(StabilityJudge, DetectsSinglePixelsAndNonFiniteValues) {
   const StabilityCase requested = white(Judged::light);
   StabilityAnswer found = white_answer();
   EXPECT_EQ(judge(requested, 0, found, nullptr).error, 0);
@@ -38,8 +38,8 @@ TEST(StabilityJudge, SeesASinglePixelAndWhatIsNotFinite) {
   EXPECT_EQ(judgement.nonfinite, 1u);
 }
 
-// An error may lie within its bound and light be less than none.
-TEST(StabilityJudge, CountsPixelsBelowZeroWhereverTheyAre) {
+// An error may be within its bound although light is negative.
+TEST(StabilityJudge, CountsNegativePixels) {
   StabilityCase requested = white(Judged::light);
   requested.margin = 4;
   requested.finite_only = true;
@@ -53,7 +53,7 @@ TEST(StabilityJudge, CountsPixelsBelowZeroWhereverTheyAre) {
   EXPECT_EQ(judgement.nonfinite, 1u);
 }
 
-TEST(StabilityJudge, LightMayBeAnythingUpToTheBrightest) {
+TEST(StabilityJudge, LightUpToTheBrightestIsAccepted) {
   StabilityCase requested = white(Judged::light_beyond);
   requested.scale = 2;
   StabilityAnswer found = white_answer();
@@ -66,7 +66,7 @@ TEST(StabilityJudge, LightMayBeAnythingUpToTheBrightest) {
   EXPECT_DOUBLE_EQ(judge(requested, 0, found, nullptr).error, 0.5);
 }
 
-TEST(StabilityJudge, LooksAtItsChannelsAndInsideOfItsMarginAlone) {
+TEST(StabilityJudge, ChecksOnlyItsChannelsInsideTheMargin) {
   StabilityCase requested = white(Judged::light);
   requested.first_channel = 2;
   requested.margin = 4;
@@ -77,7 +77,7 @@ TEST(StabilityJudge, LooksAtItsChannelsAndInsideOfItsMarginAlone) {
   EXPECT_EQ(judge(requested, 0, found, nullptr).error, 1);
 }
 
-TEST(StabilityJudge, WithoutAnythingWantedTheLightStays) {
+TEST(StabilityJudge, NoExpectation_TheLightMustStay) {
   StabilityCase requested = white(Judged::light);
   requested.wanted = nullptr;
   requested.given = [](uint32_t) { return textured_frame(); };
@@ -87,7 +87,7 @@ TEST(StabilityJudge, WithoutAnythingWantedTheLightStays) {
   EXPECT_NEAR(judge(requested, 0, found, nullptr).error, 0.125, 1e-6);
 }
 
-TEST(StabilityJudge, AnEdgeOfEveryTileIsASeamAndAPixelOrAllOfThePictureIsNone) {
+TEST(StabilityJudge, SeamsAreEdgesOfAllTiles) {
   const StabilityCase requested = white(Judged::tile_edges);
   StabilityAnswer all = white_answer(), pixel = white_answer(), columns = white_answer(),
                   rows = white_answer();
@@ -100,12 +100,13 @@ TEST(StabilityJudge, AnEdgeOfEveryTileIsASeamAndAPixelOrAllOfThePictureIsNone) {
       }
   pixel.light[index(9, 9)] = 0.5f;
   EXPECT_NEAR(judge(requested, 0, all, nullptr).error, 0, 1e-12);
-  EXPECT_LT(judge(requested, 0, pixel, nullptr).error, 0.002); // .5 of one of 432 values of a line
+  // 0.5 of one of 432 values of a line.
+  EXPECT_LT(judge(requested, 0, pixel, nullptr).error, 0.002);
   EXPECT_NEAR(judge(requested, 0, columns, nullptr).error, 0.125 * 7 / 8, 1e-6);
   EXPECT_NEAR(judge(requested, 0, rows, nullptr).error, 0.125 * 15 / 16, 1e-6);
 }
 
-TEST(StabilityJudge, SamplesAreComparedByTheirMeanBesideTheEdgeAndInTheirTile) {
+TEST(StabilityJudge, SamplesAreComparedByTheirMeans) {
   EXPECT_DOUBLE_EQ(judge(white(Judged::samples_at_edge), 0, white_answer(32), nullptr).error, 0.25);
   EXPECT_DOUBLE_EQ(judge(white(Judged::samples_at_edge), 0, white_answer(8), nullptr).error, 1);
   const StabilityAnswer sound = white_answer(20);
@@ -117,7 +118,7 @@ TEST(StabilityJudge, SamplesAreComparedByTheirMeanBesideTheEdgeAndInTheirTile) {
   EXPECT_DOUBLE_EQ(judge(white(Judged::samples_in_tile), 0, uneven, nullptr).error, 64 / (8 + 56.0 / 64));
 }
 
-TEST(StabilityJudge, SamplesThatNobodyHandedOutOrTookNeverHold) {
+TEST(StabilityJudge, MissingSamples_Fail) {
   StabilityAnswer none = white_answer();
   none.samples.clear();
   const StabilityAnswer zero = white_answer(0);

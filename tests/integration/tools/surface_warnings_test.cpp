@@ -1,4 +1,4 @@
-// Warnings of frames whose pixels are not square or whose surfaces are dithered.
+// Tests the warnings about frames whose pixels are not square or whose surfaces are dithered.
 #include "integration/tools/command/run/surface_warnings.hpp"
 
 #include "integration/tools/command/bench/dynamic/sequence.hpp"
@@ -54,14 +54,14 @@ TEST(SurfaceWarnings, PixelsThatAreNotSquareAreNamed) {
     EXPECT_EQ(warnings(frame), expected) << aspect;
     EXPECT_NEAR(pixel_aspect(frame.rays), std::max(aspect, 1 / aspect), 1e-12);
   }
-  for (const double aspect : {1.0, 1.001, 0.98}) { // 1366x768 is no exact 16:9
+  for (const double aspect : {1.0, 1.001, 0.98}) { // 1366x768 is not exactly 16:9.
     CapturedFrame frame = seen(plane);
     frame.rays.scale_x *= aspect;
     EXPECT_TRUE(warnings(frame).empty()) << aspect;
   }
 }
 
-TEST(SurfaceWarnings, DitheredSurfacesAreNamedWhateverThePattern) {
+TEST(SurfaceWarnings, DitheredSurfacesAreNamedForAnyPattern) {
   const std::vector<DiagnosticId> expected = {DiagnosticId::surface_dithered};
   const std::vector<std::pair<const char*, std::function<bool(uint32_t, uint32_t)>>> patterns = {
       {"a quarter", [](uint32_t x, uint32_t y) { return x % 2 == 0 && y % 2 == 0; }},
@@ -86,7 +86,7 @@ TEST(SurfaceWarnings, SlopesStepsAndGapsAreNotDithered) {
   EXPECT_TRUE(warnings(seen([](uint32_t x, uint32_t) { return x < 32 ? 0.5 : 0.45; })).empty()) << "step";
   EXPECT_TRUE(warnings(seen([](uint32_t x, uint32_t y) { return 0.5 + 1e-4 * is_random(x, y); })).empty())
       << "roughness";
-  CapturedFrame holes = seen(plane); // two profiles in a checkerboard: ids keep their light apart
+  CapturedFrame holes = seen(plane); // Two profiles in a checkerboard: ids separate their light.
   for (size_t i = 0; i < holes.profile.size(); ++i)
     if ((i + i / width) % 2 == 0) {
       holes.profile[i] = 2;
@@ -95,7 +95,7 @@ TEST(SurfaceWarnings, SlopesStepsAndGapsAreNotDithered) {
   EXPECT_TRUE(warnings(holes).empty());
 }
 
-TEST(SurfaceWarnings, ASequenceIsWarnedOfOnce) {
+TEST(SurfaceWarnings, SequenceIsWarnedAboutOnce) {
   CapturedFrame frame = seen([](uint32_t x, uint32_t y) { return (x + y) % 2 == 0 ? 0.45 : 0.5; });
   frame.rays.scale_x *= 2;
   Diagnostics diagnostics;

@@ -1,5 +1,5 @@
-// `dermis upgrade` on files of version 1. version_1.tar.xz holds the graphs, overlays, tables and pass
-// type files that were shipped with version 1, and further graphs (folder cases).
+// Tests `dermis upgrade` on files of version 1. version_1.tar.xz has the graphs, overlays, tables
+// and pass type files that were shipped with version 1, and further graphs in the folder `cases`.
 
 #include "tests/integration/tools/command_fixture.hpp"
 
@@ -15,7 +15,7 @@ using ::testing::HasSubstr;
 using ::testing::Not;
 
 struct Upgrade : CommandTest {
-  // Paths of the old files, unpacked into the test's folder.
+  // Unpacks the old files into the test's folder and returns their paths.
   std::vector<std::string> unpack() const {
     const std::string archive = DERMIS_SOURCE_DIR "/tests/integration/tools/version_1.tar.xz";
     const std::string line = "tar -xJf '" + archive + "' -C '" + path("") + "'";
@@ -88,7 +88,7 @@ TEST_F(Upgrade, OldShippedFiles_Upgrade_Compile) {
             0);
 }
 
-// The graphs in cases/ whose version 1 was valid stay valid, the other ones stay invalid.
+// The graphs in cases/ that were valid in version 1 stay valid, the others stay invalid.
 TEST_F(Upgrade, OldCases_Upgrade_StayAsValidAsBefore) {
   const std::vector<std::string> invalid = {
       "bloom_otherwise2.json",    "bloom_readself.json", "chain_half_written.json",

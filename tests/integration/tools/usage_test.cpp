@@ -1,4 +1,4 @@
-// How the command answers bad options: exit code 2, what was wrong, and the nearest right word.
+// Tests the replies to bad options: exit code 2, the error, and the nearest correct word.
 
 #include "tests/integration/tools/command_fixture.hpp"
 
@@ -33,7 +33,7 @@ TEST_F(Usage, NoVerbIsAUsageError) {
   EXPECT_EQ(run({}).exit_code, 2);
 }
 
-TEST_F(Usage, AMisspeltVerbIsAnsweredWithTheNearestOne) {
+TEST_F(Usage, MisspeltVerb_SuggestsTheNearest) {
   const Outcome outcome = run({"rendr"});
   EXPECT_EQ(outcome.exit_code, 2);
   EXPECT_THAT(outcome.err, HasSubstr("no verb 'rendr'; did you mean 'render'?"));
@@ -42,7 +42,7 @@ TEST_F(Usage, AMisspeltVerbIsAnsweredWithTheNearestOne) {
   EXPECT_THAT(suite.err, HasSubstr("no verb of 'bench' 'stabilty'; did you mean 'stability'?"));
 }
 
-TEST_F(Usage, AMisspeltOptionIsAnsweredWithTheNearestOneBeforeAnythingElseIsMissing) {
+TEST_F(Usage, MisspeltOption_SuggestsTheNearestFirst) {
   const Outcome outcome = run({"apply", "--grph", burley});
   EXPECT_EQ(outcome.exit_code, 2);
   EXPECT_THAT(outcome.err, HasSubstr("'apply' has no option '--grph'; did you mean '--graph'?"));
@@ -54,7 +54,7 @@ TEST_F(Usage, AMissingRequiredOptionIsNamed) {
   EXPECT_THAT(outcome.err, HasSubstr("--out"));
 }
 
-TEST_F(Usage, ASizeThatIsNoSizeIsRefusedAndNothingIsWritten) {
+TEST_F(Usage, InvalidSize_WritesNothing) {
   for (const std::string size :
        {"0x0", "0x360", "640", "640x", "x360", "640x360x3", "-1x5", "16385x10", "1e3x10"}) {
     const Outcome outcome =
@@ -65,13 +65,13 @@ TEST_F(Usage, ASizeThatIsNoSizeIsRefusedAndNothingIsWritten) {
   }
 }
 
-TEST_F(Usage, AnUnknownSettingIsAnsweredWithTheNearestOne) {
+TEST_F(Usage, UnknownSetting_SuggestsTheNearest) {
   const Outcome outcome = run({"explain", burley, "--set", "sample=16"});
   EXPECT_EQ(outcome.exit_code, 2);
   EXPECT_THAT(outcome.err, HasSubstr("no setting 'sample'; did you mean 'samples'?"));
 }
 
-TEST_F(Usage, ASettingOutsideItsRangeOrOfTheWrongTypeIsRefused) {
+TEST_F(Usage, SettingOutOfRangeOrOfWrongType_IsRefused) {
   const Outcome range = run({"explain", burley, "--set", "samples=1"});
   EXPECT_EQ(range.exit_code, 2);
   EXPECT_THAT(range.err, HasSubstr("setting 'samples': 1 is outside 4 .. 4096"));
@@ -83,13 +83,13 @@ TEST_F(Usage, ASettingOutsideItsRangeOrOfTheWrongTypeIsRefused) {
   EXPECT_THAT(word.err, HasSubstr("'post', 'pre_post', 'pre' or 'demodulate'"));
 }
 
-TEST_F(Usage, ASlotThatIsNotOptionalCannotBeLeftUnbound) {
+TEST_F(Usage, RequiredSlotCannotBeUnbound) {
   const Outcome outcome = run({"explain", burley, "--unbound", "depth"});
   EXPECT_EQ(outcome.exit_code, 2);
   EXPECT_THAT(outcome.err, HasSubstr("'depth' is not optional"));
 }
 
-TEST_F(Usage, AUsageErrorIsOneJsonDocumentForPrograms) {
+TEST_F(Usage, UsageErrorIsOneJsonDocument) {
   for (const std::vector<std::string>& words :
        {std::vector<std::string>{"rendr", "--json"}, {"explain", burley, "--json", "--set", "sample=1"}}) {
     const Outcome outcome = run(words);
@@ -100,7 +100,7 @@ TEST_F(Usage, AUsageErrorIsOneJsonDocumentForPrograms) {
   }
 }
 
-TEST_F(Usage, ColourIsUsedWhenAskedForAndNeverOnAFile) {
+TEST_F(Usage, ColourIsUsedOnRequestAndNeverInFiles) {
   const std::string bad = write("bad.json", "{ \"dermis\": 2, }");
   EXPECT_THAT(run({"validate", bad, "--color", "always"}).err, HasSubstr("\x1b["));
   EXPECT_THAT(run({"validate", bad}).err, Not(HasSubstr("\x1b[")));

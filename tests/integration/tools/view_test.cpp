@@ -1,4 +1,4 @@
-// dermis graph --html, as far as it needs no browser; tests/integration/tools/viewer opens the page.
+// Tests dermis graph --html without a browser; tests/integration/tools/viewer opens the page.
 #include "tests/integration/tools/command_fixture.hpp"
 
 #include <filesystem>
@@ -12,7 +12,7 @@ using ::testing::HasSubstr;
 
 class View : public CommandTest {
 protected:
-  // Skips where the command says that it was built without the page.
+  // Skips if the command was built without the page.
   void SetUp() override {
     const Outcome outcome =
         run({"graph", "configs/graphs/burley.json", "--html", path("view.html"), "--quiet"});
@@ -30,7 +30,7 @@ size_t count(const std::string& text, std::string_view what) {
   return found;
 }
 
-TEST_F(View, NothingThatAFileSaysEndsAnElement) {
+TEST_F(View, FileContentsCannotEndAnElement) {
   const std::string plain = run({"graph", "configs/graphs/burley.json", "--html", "-"}).out;
   const std::string graph =
       write("hostile.json",
@@ -42,7 +42,7 @@ TEST_F(View, NothingThatAFileSaysEndsAnElement) {
   EXPECT_EQ(count(hostile.out, "hurt_the_reader"), 0u);
 }
 
-TEST_F(View, AReportThatIsNoneIsRefusedWithItsPlaceAndNoPageIsWritten) {
+TEST_F(View, InvalidReport_IsRefusedWithItsPlace) {
   const std::string report = write("report.json", "{\n  \"passes\": [ { \"pass\": \"classify\" } ] }");
   const Outcome outcome =
       run({"graph", "configs/graphs/burley.json", "--html", path("view.html"), "--frame", report});
@@ -51,13 +51,13 @@ TEST_F(View, AReportThatIsNoneIsRefusedWithItsPlaceAndNoPageIsWritten) {
   EXPECT_THAT(files(), ::testing::ElementsAre("report.json"));
 }
 
-TEST_F(View, AGraphWithErrorsHasNoPage) {
+TEST_F(View, GraphWithErrors_HasNoPage) {
   const std::string graph = write("broken.json", R"({ "dermis": 2, "name": "broken", "passes": 3 })");
   EXPECT_EQ(run({"graph", graph, "--html", path("view.html")}).exit_code, 1);
   EXPECT_THAT(files(), ::testing::ElementsAre("broken.json"));
 }
 
-TEST_F(View, AFrameWithoutAPageIsAUsageError) {
+TEST_F(View, FrameWithoutPage_IsAUsageError) {
   EXPECT_EQ(run({"graph", "configs/graphs/burley.json", "--frame", "report.json"}).exit_code, 2);
   EXPECT_EQ(run({"graph", "configs/graphs/burley.json", "--html", "a.html", "--json"}).exit_code, 2);
 }

@@ -1,4 +1,4 @@
-// dermis watch: a change of a file is answered with what it did to plan and error.
+// Tests `dermis watch`: after a file changes, it reports the change of plan and error.
 #include "tests/integration/tools/command_fixture.hpp"
 
 #include <chrono>
@@ -30,29 +30,29 @@ protected:
             "--rounds", rounds,
             "--out",    path("out")};
   }
-  // Does `work` once the first rendering is there.
+  // Runs `work` once the first rendering exists.
   std::thread after_the_first(std::function<void()> work) const {
     return std::thread([picture = path("out/color_0000.exr"), work = std::move(work)] {
       for (int i = 0; i < 600 && !std::filesystem::exists(picture); ++i)
         std::this_thread::sleep_for(100ms);
-      std::this_thread::sleep_for(500ms); // files' times tell changes apart
+      std::this_thread::sleep_for(500ms); // Changes are detected by file times.
       work();
     });
   }
 };
 
-TEST_F(Watch, SaysWhatAChangedGraphDoesToThePlanAndTheError) {
+TEST_F(Watch, ChangedGraph_ReportsPlanAndError) {
   const std::string graph = copy("configs/graphs/burley.json", "graph.json");
   std::thread editor = after_the_first([&] { copy("configs/graphs/separable.json", "graph.json"); });
   const Outcome outcome = run(arguments(graph, "2"));
   editor.join();
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_THAT(outcome.out, HasSubstr("graph.json changed"));
-  EXPECT_THAT(outcome.out, HasSubstr("horizontal")); // a pass that burley does not have
+  EXPECT_THAT(outcome.out, HasSubstr("horizontal")); // A pass that burley does not have.
   EXPECT_THAT(outcome.out, ::testing::ContainsRegex("PSNR [0-9.]+ dB \\([+-][0-9.]+\\)"));
 }
 
-TEST_F(Watch, GoesOnBehindAFileWithErrors) {
+TEST_F(Watch, FileWithErrors_WatchingContinues) {
   const std::string graph = copy("configs/graphs/burley.json", "graph.json");
   std::thread editor = after_the_first([&] {
     write("graph.json", "{ \"dermis\": 2, ");
@@ -66,12 +66,12 @@ TEST_F(Watch, GoesOnBehindAFileWithErrors) {
   EXPECT_THAT(outcome.out, HasSubstr("plan: the same"));
 }
 
-TEST_F(Watch, TellsByItsExitCodeWhetherTheLastRoundRendered) {
+TEST_F(Watch, ExitCodeIsThatOfTheLastRound) {
   write("graph.json", "{ \"dermis\": 2, ");
   EXPECT_EQ(run(arguments(path("graph.json"), "1")).exit_code, 1);
 }
 
-TEST_F(Watch, AShaderThatChangesIsBuiltByTheGivenLine) {
+TEST_F(Watch, ChangedShader_RunsTheBuildCommand) {
   write("shaders/kernel.comp", "before");
   std::thread editor = after_the_first([&] { write("shaders/kernel.comp", "behind it"); });
   std::vector<std::string> words = arguments("configs/graphs/burley.json", "2");
@@ -84,8 +84,9 @@ TEST_F(Watch, AShaderThatChangesIsBuiltByTheGivenLine) {
   EXPECT_THAT(outcome.out, HasSubstr("kernel.comp changed"));
 }
 
-// Rendered anew with the text of the folder: a broken one is told with its place, a good one is seen.
-TEST_F(Watch, AShaderThatChangesIsRenderedWith) {
+// Renders again with the folder's text: a broken text is reported with its place, a good text takes
+// effect.
+TEST_F(Watch, ChangedShader_IsRendered) {
   const Outcome has = run({"doctor", "--json"});
   if (has.out.find("\"shader_compiler\": \"\"") != std::string::npos)
     GTEST_SKIP() << "built without glslang (package glslang-dev)";
@@ -116,7 +117,7 @@ TEST_F(Watch, AShaderThatChangesIsRenderedWith) {
   EXPECT_THAT(outcome.out, ::testing::ContainsRegex("PSNR [0-9.]+ dB \\([+-][0-9.]+\\)"));
 }
 
-TEST_F(Watch, CtrlCEndsIt) {
+TEST_F(Watch, CtrlC_EndsIt) {
   RunOptions options;
   options.interrupt_after = path("out/color_0000.exr");
   EXPECT_EQ(run(arguments("configs/graphs/burley.json", "0"), options).exit_code, 130);

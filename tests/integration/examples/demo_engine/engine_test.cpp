@@ -18,7 +18,7 @@ using testing::HasSubstr;
 
 const std::string shipped = DERMIS_SOURCE_DIR "/configs/";
 
-// Memory that holds code and is of no file.
+// Returns the size of anonymous executable mappings.
 uint64_t generated_code_bytes() {
   std::ifstream maps("/proc/self/maps");
   uint64_t bytes = 0;
@@ -34,7 +34,7 @@ uint64_t generated_code_bytes() {
   return bytes;
 }
 
-// A ball before a wall, in a folder of its own, seen by `camera`.
+// Renders a ball in front of a wall from `camera`, in a temporary folder.
 struct Engine : ::testing::Test {
   RenderOptions
   small(const std::string& camera = R"({ "position": [0, 0, 1], "target": [0, 0, 0], "vertical_fov": 20 })",
@@ -52,7 +52,7 @@ struct Engine : ::testing::Test {
     RenderOptions options;
     options.scene = path;
     options.roots = {shipped};
-    options.width = 70; // no multiple of a tile
+    options.width = 70; // Not a multiple of the tile side.
     options.height = 45;
     options.validation = true;
     return options;
@@ -77,16 +77,17 @@ size_t center_of(const FloatImage& image) {
   return (size_t{image.height} / 2 * image.width + image.width / 2) * image.channels;
 }
 
-TEST_F(Engine, HandsOutWhatTheGraphSees) {
+TEST_F(Engine, ExportsTheGraphsInputs) {
   const auto frames = frames_of(small());
   ASSERT_EQ(frames.size(), 1u);
   const GraphInputs& in = frames[0].inputs;
   const size_t pixel = center_of(in.depth);
-  // The ball of radius 0.1 m stands 1 m before the camera; its middle pixel is off the axis by half a pixel.
+  // The ball of radius 0.1 m is 1 m in front of the camera; its middle pixel is off the axis by
+  // half a pixel.
   EXPECT_NEAR(in.depth.texels[pixel], 0.9f, 1e-3f);
   EXPECT_EQ(in.profile.texels[pixel], 1.0f);
   EXPECT_NEAR(in.normal.texels[3 * pixel + 2], 1.0f, 1e-2f);
-  EXPECT_NEAR(in.depth.texels[0], 1.3f, 1e-3f); // the wall
+  EXPECT_NEAR(in.depth.texels[0], 1.3f, 1e-3f); // The wall.
   EXPECT_EQ(in.profile.texels[0], 0.0f);
   for (const float value : in.lighting.texels)
     ASSERT_TRUE(std::isfinite(value) && value >= 0.0f);
@@ -105,13 +106,13 @@ TEST_F(Engine, ReversedDepthShowsTheSameScene) {
   const FloatImage &a = forward[0].inputs.depth, &b = reversed[0].inputs.depth;
   size_t different = 0;
   for (size_t i = 0; i < a.texels.size(); ++i)
-    // fp32 depth near 1: a step of 6e-8 is z^2 / near times that, 2e-6 m at 1.3 m; ten of them for the
-    // arithmetic.
+    // fp32 depth near 1: a step of 6e-8 becomes z^2 / near times that, 2e-6 m at 1.3 m; ten of them
+    // for the arithmetic.
     if (std::abs(a.texels[i] - b.texels[i]) > 2e-5f) ++different;
-  EXPECT_LE(different, 3u); // a pixel centre that lies on an edge may fall to either side
+  EXPECT_LE(different, 3u); // A pixel centre on an edge may fall to either side.
 }
 
-TEST_F(Engine, AnOrthographicPanMovesPixelsByItsOwnLength) {
+TEST_F(Engine, OrthographicPan_MovesPixelsByItsLength) {
   RenderOptions options = small(R"({ "projection": "orthographic", "height": 0.45, "target":
       { "keys": [[0, 0, 0, 0], [1, 0.25, 0.125, 0]] },
       "position": { "keys": [[0, 0, 0, 1], [1, 0.25, 0.125, 1]] } })");
@@ -119,15 +120,17 @@ TEST_F(Engine, AnOrthographicPanMovesPixelsByItsOwnLength) {
   const auto frames = frames_of(options);
   ASSERT_EQ(frames.size(), 1u);
   EXPECT_TRUE(frames[0].camera.orthographic);
-  // 0.01 m right and 0.005 m up a frame at 0.01 m a pixel: things move 1 pixel left and half a pixel down.
+  // 0.01 m right and 0.005 m up per frame at 0.01 m per pixel: objects move 1 pixel left and half a
+  // pixel down.
   const FloatImage& velocity = frames[0].inputs.velocity;
   for (size_t i = 0; i < velocity.texels.size(); i += 2) {
-    ASSERT_NEAR(velocity.texels[i], -1.0f, 2e-3f); // binary16 near 1, and fp32 differences of clip positions
+    // binary16 near 1, and fp32 differences of clip positions.
+    ASSERT_NEAR(velocity.texels[i], -1.0f, 2e-3f);
     ASSERT_NEAR(velocity.texels[i + 1], 0.5f, 2e-3f);
   }
 }
 
-TEST_F(Engine, JitterLeavesVelocityAlone) {
+TEST_F(Engine, JitterDoesNotChangeVelocity) {
   RenderOptions options = small();
   options.jitter = true;
   options.frames = 2;
@@ -138,7 +141,7 @@ TEST_F(Engine, JitterLeavesVelocityAlone) {
     ASSERT_EQ(value, 0.0f);
 }
 
-TEST_F(Engine, EveryShippedGraphRunsAndScattersWithoutLosingLight) {
+TEST_F(Engine, EveryShippedGraphRunsAndConservesLight) {
   for (const char* graph : {"burley", "separable"}) {
     RenderOptions options = small();
     options.graph = shipped + "graphs/" + graph + ".json";
@@ -153,7 +156,7 @@ TEST_F(Engine, EveryShippedGraphRunsAndScattersWithoutLosingLight) {
       before += frame.inputs.lighting.texels[3 * i];
       after += frame.scattered.texels[3 * i];
     }
-    // Scattering moves light about; area weights near the silhouette change the pixel sum a little.
+    // Scattering moves light; area weights near the silhouette change the pixel sum a little.
     EXPECT_NEAR(after / before, 1.0, 0.1) << graph;
     EXPECT_FALSE(frame.dermis_times.empty()) << graph;
   }
@@ -179,7 +182,7 @@ TEST_F(Engine, GraphsOnlyChangePixelsThatScatter) {
   EXPECT_GT(changed, 300u);
 }
 
-TEST_F(Engine, MistakesAreOfTheRightKindAndNameTheirThing) {
+TEST_F(Engine, ErrorsHaveTheRightKindAndNameTheirSubject) {
   RenderOptions options = small();
   options.width = 0;
   EXPECT_EQ(refused(options).kind, ErrorKind::usage);
@@ -211,7 +214,7 @@ TEST_F(Engine, MistakesAreOfTheRightKindAndNameTheirThing) {
   EXPECT_THAT(refused(options).text, HasSubstr("--model"));
 }
 
-TEST_F(Engine, AGraphThatWantsWhatTheEngineLacksIsNamed) {
+TEST_F(Engine, GraphWithUnsupportedInput_IsNamed) {
   const std::string path = (folder / "graph.json").string();
   std::ifstream shipped_graph(shipped + "graphs/burley.json");
   std::string text((std::istreambuf_iterator<char>(shipped_graph)), {});
@@ -225,8 +228,8 @@ TEST_F(Engine, AGraphThatWantsWhatTheEngineLacksIsNamed) {
   EXPECT_THAT(refused(options).text, HasSubstr("scatter_scale"));
 }
 
-// Mesa's software driver compiles a kernel again at each bind where a branch hangs on uniform values alone,
-// and keeps the code: frames take milliseconds and memory that are not theirs.
+// Mesa's software driver recompiles a kernel at each bind if a branch depends only on uniform
+// values, and keeps the code. Later frames would pay for it in time and memory.
 TEST_F(Engine, KernelsAreCompiledInTheFirstFrames) {
   for (const char* graph : {"afis_guided", "hybrid", "sap_blend", "sap_residual", "skin"}) {
     SCOPED_TRACE(graph);
@@ -253,7 +256,7 @@ TEST_F(Engine, KernelsAreCompiledInTheFirstFrames) {
   }
 }
 
-TEST_F(Engine, FramesWithoutPicturesRunAllTheSame) {
+TEST_F(Engine, FramesWithoutPicturesRunToo) {
   RenderOptions options = small();
   options.graph = shipped + "graphs/skin.json";
   options.frames = 3;
@@ -274,19 +277,20 @@ TEST_F(Engine, FramesWithoutPicturesRunAllTheSame) {
   EXPECT_EQ(last[2].color.texels, all[2].color.texels);
 }
 
-TEST_F(Engine, ASettingOfTheGraphIsSetByName) {
+TEST_F(Engine, GraphSettingIsSetByName) {
   RenderOptions options = small();
   options.graph = shipped + "graphs/burley.json";
   options.settings = {{"samples", "8"}};
   EXPECT_EQ(frames_of(options).size(), 1u);
-  for (const char* name : {"sample", "samples"}) { // the first has another name, the second no number
+  // The first has another name, the second is not a number.
+  for (const char* name : {"sample", "samples"}) {
     options.settings = {{name, "\"many\""}};
     EXPECT_EQ(refused(options).kind, ErrorKind::usage);
     EXPECT_THAT(refused(options).text, HasSubstr(name));
   }
 }
 
-TEST_F(Engine, AnErrorOfTheCallerEndsTheRendering) {
+TEST_F(Engine, ErrorOfTheCallback_EndsTheRendering) {
   RenderOptions options = small();
   options.frames = 3;
   uint32_t seen = 0;

@@ -10,7 +10,7 @@
 namespace demo {
 namespace {
 
-// Share of triangles whose winding agrees with their vertices' normals.
+// Returns the fraction of triangles whose winding agrees with their vertices' normals.
 double agreeing_triangles(const Mesh& mesh) {
   size_t agreeing = 0;
   for (size_t i = 0; i < mesh.indices.size(); i += 3) {
@@ -18,14 +18,15 @@ double agreeing_triangles(const Mesh& mesh) {
     const Vertex& b = mesh.vertices[mesh.indices[i + 1]];
     const Vertex& c = mesh.vertices[mesh.indices[i + 2]];
     const glm::vec3 face = glm::cross(b.position - a.position, c.position - a.position);
-    // Triangles at a pole have no area but the rounding of sin(pi) in fp32, some 1e-7 of the radius.
+    // Triangles at a pole have no area except the rounding of sin(pi) in fp32, about 1e-7 of the
+    // radius.
     constexpr float rounding = 1e-8f;
     if (glm::dot(face, a.normal + b.normal + c.normal) >= -rounding) ++agreeing;
   }
   return static_cast<double>(agreeing) / static_cast<double>(mesh.indices.size() / 3);
 }
 
-// Edges that do not have exactly one partner in the other direction.
+// Counts the edges that do not have exactly one partner in the other direction.
 size_t open_edges(const Mesh& mesh) {
   std::map<std::pair<uint32_t, uint32_t>, int> balance;
   for (size_t i = 0; i < mesh.indices.size(); i += 3) {
@@ -40,7 +41,7 @@ size_t open_edges(const Mesh& mesh) {
   return open;
 }
 
-TEST(SurfaceNets, AMeshedBallIsClosedAndLiesOnTheBall) {
+TEST(SurfaceNets, MeshedBallIsClosedAndOnTheSurface) {
   const auto ball = [](const glm::vec3& p) { return sphere(p, glm::vec3(0.1f, -0.2f, 0.05f), 1.0f); };
   GridPlanes planes;
   planes.x = place_planes(-1.5f, 1.5f, [](float) { return 0.11f; });
@@ -51,26 +52,28 @@ TEST(SurfaceNets, AMeshedBallIsClosedAndLiesOnTheBall) {
   EXPECT_EQ(open_edges(mesh), 0u);
   EXPECT_EQ(agreeing_triangles(mesh), 1.0);
   for (const Vertex& vertex : mesh.vertices) {
-    // A distance field's Newton step is exact; what is left is the gradient's difference quotient in fp32.
+    // A distance field's Newton step is exact; the remaining error is the gradient's difference
+    // quotient in fp32.
     EXPECT_NEAR(ball(vertex.position), 0.0f, 1e-4f);
-    EXPECT_GT(vertex.openness, 0.99f); // nothing is near a convex body
+    EXPECT_GT(vertex.openness, 0.99f); // Nothing is near a convex body.
   }
 }
 
-TEST(Bust, IsClosedOutwardAndOfHumanSize) {
+TEST(Bust, IsClosedFacesOutwardAndHasHumanSize) {
   const Mesh mesh = make_bust(2.0f);
   EXPECT_EQ(open_edges(mesh), 0u);
-  // At slits thinner than a cell vertices of one cell serve both lips; few enough not to be seen.
+  // At slits thinner than a cell, vertices of one cell belong to both lips; few triangles are
+  // affected.
   EXPECT_GT(agreeing_triangles(mesh), 0.99);
   const Bounds bounds = bounds_of(mesh);
-  EXPECT_NEAR(bounds.high.y, 0.115, 0.01);               // crown above the eyes
-  EXPECT_NEAR(bounds.high.x - bounds.low.x, 0.36, 0.03); // shoulders, metres
+  EXPECT_NEAR(bounds.high.y, 0.115, 0.01);               // Crown above the eyes.
+  EXPECT_NEAR(bounds.high.x - bounds.low.x, 0.36, 0.03); // Shoulders, in metres.
   EXPECT_LT(bust_distance(glm::vec3(0, 0, 0)), 0.0f);
   EXPECT_GT(bust_distance(glm::vec3(0, 0, 14)), 0.0f);
 }
 
-TEST(Bust, HasATipOfTheNoseThatCastsAShadowAndThinEars) {
-  // Along the middle of the face the nose stands out at least 15 mm before the upper lip and the brow.
+TEST(Bust, HasAProtrudingNoseAndThinEars) {
+  // Along the middle of the face the nose extends at least 15 mm before the upper lip and the brow.
   const auto front_at = [](float y) {
     float z = 15.0f;
     while (z > 0.0f && bust_distance(glm::vec3(0.0f, y, z)) > 0.0f)
@@ -79,7 +82,7 @@ TEST(Bust, HasATipOfTheNoseThatCastsAShadowAndThinEars) {
   };
   EXPECT_GT(front_at(-4.0f), front_at(-6.0f) + 1.5f);
   EXPECT_GT(front_at(-4.0f), front_at(2.0f) + 1.5f);
-  // The thinnest chord through the ear's upper rim, sideways, is a few millimetres.
+  // The thinnest sideways chord through the ear's upper rim is a few millimetres.
   float thinnest = 100.0f;
   for (float z = -4.0f; z < 0.0f; z += 0.1f) {
     float thickness = 0.0f;
@@ -90,13 +93,13 @@ TEST(Bust, HasATipOfTheNoseThatCastsAShadowAndThinEars) {
   EXPECT_LT(thinnest, 0.8f);
 }
 
-TEST(Ear, IsClosedOutwardAndThinEnoughForLightToComeThrough) {
+TEST(Ear, IsClosedFacesOutwardAndIsThin) {
   const Mesh mesh = make_ear();
   EXPECT_EQ(open_edges(mesh), 0u);
   EXPECT_GT(agreeing_triangles(mesh), 0.995);
   const Bounds bounds = bounds_of(mesh);
-  EXPECT_NEAR(bounds.high.y - bounds.low.y, 0.064, 0.004); // metres
-  // Along the view of its scenes the sheet is 2 to 5 mm thick but at rim and lobe.
+  EXPECT_NEAR(bounds.high.y - bounds.low.y, 0.064, 0.004); // Metres.
+  // Along the view of its scenes the sheet is 2 to 5 mm thick, except at rim and lobe.
   size_t inside = 0, thin = 0;
   for (float x = -1.6f; x < 1.6f; x += 0.1f)
     for (float y = -2.9f; y < 2.9f; y += 0.1f) {
@@ -110,7 +113,7 @@ TEST(Ear, IsClosedOutwardAndThinEnoughForLightToComeThrough) {
   EXPECT_GT(static_cast<double>(thin) / static_cast<double>(inside), 0.6);
 }
 
-TEST(Shapes, FaceOutwardAndStandOnTheirFoot) {
+TEST(Shapes, FaceOutwardAndStartAtTheirBase) {
   for (const Mesh& mesh : {make_sphere(), make_plane(), make_box(), make_knot(), make_candle()}) {
     ASSERT_FALSE(mesh.indices.empty());
     EXPECT_GT(agreeing_triangles(mesh), 0.995);
@@ -126,9 +129,9 @@ TEST(Mesh, TangentsFollowTheTexture) {
   Mesh mesh = make_plane();
   compute_tangents(mesh);
   for (const Vertex& vertex : mesh.vertices) {
-    EXPECT_NEAR(vertex.tangent.x, 1.0f, 1e-6f); // u runs along x
+    EXPECT_NEAR(vertex.tangent.x, 1.0f, 1e-6f); // u runs along x.
     const glm::vec3 across = glm::cross(vertex.normal, glm::vec3(vertex.tangent)) * vertex.tangent.w;
-    EXPECT_LT(across.z, 0.0f); // v runs along z; the bitangent is against it, as in glTF
+    EXPECT_LT(across.z, 0.0f); // v runs along z; the bitangent points against v, as in glTF.
   }
 }
 

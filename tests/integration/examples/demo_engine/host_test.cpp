@@ -10,7 +10,7 @@
 namespace demo {
 namespace {
 
-TEST(PixelFormat, EveryFiniteHalfSurvivesTheWayThroughFloat) {
+TEST(PixelFormat, EveryFiniteHalfRoundTripsThroughFloat) {
   for (uint32_t bits = 0; bits < 0x10000u; ++bits) {
     const auto half = static_cast<uint16_t>(bits);
     if ((half & 0x7c00u) == 0x7c00u && (half & 0x3ffu) != 0) continue; // NaN
@@ -19,18 +19,23 @@ TEST(PixelFormat, EveryFiniteHalfSurvivesTheWayThroughFloat) {
 }
 
 TEST(PixelFormat, HalvesAreRoundedToNearestAndTiesToEven) {
-  EXPECT_EQ(half_from_float(1.0f + 0x1p-11f), 0x3c00u);            // tie, even below
-  EXPECT_EQ(half_from_float(1.0f + 3 * 0x1p-11f), 0x3c02u);        // tie, even above
-  EXPECT_EQ(half_from_float(1.0f + 0x1p-11f + 0x1p-20f), 0x3c01u); // just above the tie
-  EXPECT_EQ(half_from_float(65519.0f), 0x7bffu);                   // largest that rounds down
-  EXPECT_EQ(half_from_float(65520.0f), 0x7c00u);                   // overflows to infinity
-  EXPECT_EQ(half_from_float(0x1p-25f), 0u);                        // half of the smallest: tie to even
+  // A tie; the lower value is even.
+  EXPECT_EQ(half_from_float(1.0f + 0x1p-11f), 0x3c00u);
+  // A tie; the upper value is even.
+  EXPECT_EQ(half_from_float(1.0f + 3 * 0x1p-11f), 0x3c02u);
+  EXPECT_EQ(half_from_float(1.0f + 0x1p-11f + 0x1p-20f), 0x3c01u); // Just above the tie.
+  // The largest value that rounds down.
+  EXPECT_EQ(half_from_float(65519.0f), 0x7bffu);
+  EXPECT_EQ(half_from_float(65520.0f), 0x7c00u); // Overflows to infinity.
+  // Half of the smallest value: tie to even.
+  EXPECT_EQ(half_from_float(0x1p-25f), 0u);
   EXPECT_EQ(half_from_float(0x1.8p-25f), 1u);
   EXPECT_EQ(half_from_float(std::numeric_limits<float>::quiet_NaN()) & 0x7e00u, 0x7e00u);
 }
 
-TEST(PixelFormat, SrgbThereAndBackIsTheSame) {
-  // The curve's published constants leave a step of about 1e-7 between its two parts; fp32 pow adds some ulp.
+TEST(PixelFormat, SrgbRoundTripIsTheIdentity) {
+  // The curve's published constants leave a step of about 1e-7 between its two parts; fp32 pow adds
+  // some ulp.
   for (int i = 0; i <= 1000; ++i) {
     const float x = static_cast<float>(i) / 1000.0f;
     EXPECT_NEAR(linear_from_srgb(srgb_from_linear(x)), x, 2e-6f);
@@ -51,7 +56,7 @@ struct Host : ::testing::Test {
   std::unique_ptr<VulkanHost> host;
 };
 
-TEST_F(Host, FloatsComeBackFromEveryFormatAsTheFormatHoldsThem) {
+TEST_F(Host, FloatsRoundTripThroughEveryFormat) {
   constexpr uint32_t width = 5, height = 3;
   for (const VkFormat format :
        {VK_FORMAT_R8_UINT, VK_FORMAT_R8_UNORM, VK_FORMAT_R8G8B8A8_UNORM, VK_FORMAT_R8G8B8A8_SRGB,
@@ -76,7 +81,7 @@ TEST_F(Host, FloatsComeBackFromEveryFormatAsTheFormatHoldsThem) {
   }
 }
 
-TEST_F(Host, ImagesOutsideOfTheDevicesLimitsAreRefusedByName) {
+TEST_F(Host, ImagesBeyondDeviceLimitsAreRefusedByName) {
   auto none = create_image(
       *host,
       {.format = VK_FORMAT_R8_UINT, .width = 0, .height = 4, .usage = VK_IMAGE_USAGE_TRANSFER_DST_BIT});
@@ -85,7 +90,7 @@ TEST_F(Host, ImagesOutsideOfTheDevicesLimitsAreRefusedByName) {
   EXPECT_THAT(none.error().text, testing::HasSubstr("0x4"));
 }
 
-TEST(VulkanHost, AnUnknownDeviceNameIsAnEnvironmentErrorThatListsTheDevices) {
+TEST(VulkanHost, UnknownDeviceName_ListsTheDevices) {
   auto made = create_vulkan_host({.validation = false, .device = "no such device"});
   ASSERT_FALSE(made);
   EXPECT_EQ(made.error().kind, ErrorKind::environment);

@@ -89,7 +89,7 @@ TEST_F(ModelExtensions, TextureTransformsMoveCoordinates) {
   EXPECT_NEAR(turned.x, 0.0f, 1e-6f);
   EXPECT_NEAR(turned.y, -2.0f, 1e-6f);
   EXPECT_EQ(uv(R"({ "texCoord": 1 })").first, glm::vec2(0.5f, 0.5f));
-  // The picture itself is not there; a normal map that lies elsewhere is one more warning.
+  // The picture does not exist; a normal map with another transform adds one warning.
   EXPECT_EQ(uv("{}").second, 1u);
   EXPECT_EQ(uv(R"({ "scale": [2, 2] })", R"(, "normalTexture": { "index": 0 })").second, 2u);
 }
@@ -128,7 +128,7 @@ TEST_F(ModelExtensions, MeshoptBuffersAreDecoded) {
   ASSERT_TRUE(model) << model.error().text;
   EXPECT_EQ(model->mesh.indices.size(), 6u);
   EXPECT_EQ(bounds_of(model->mesh).high, glm::vec3(0.5f, 0.5f, 0.0f));
-  for (size_t at = 0; at < bytes.size(); ++at) { // the indices that damaged bytes give are checked as well
+  for (size_t at = 0; at < bytes.size(); ++at) { // The indices in damaged bytes are checked, too.
     std::string damaged = bytes;
     damaged[at] = static_cast<char>(damaged[at] ^ 0x5a);
     const auto read = load(damaged, "4");

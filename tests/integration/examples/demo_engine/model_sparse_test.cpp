@@ -13,8 +13,8 @@
 namespace demo {
 namespace {
 
-// A buffer of four positions, four indices 0, 1, 2, 1 of each of three types, and two values to replace
-// positions 1 and 3.
+// A buffer of four positions, of four indices 0, 1, 2, 1 in each of three types, and of two values
+// that replace positions 1 and 3.
 struct ModelSparse : ::testing::Test {
   static constexpr const char* sound =
       R"({ "count": 2, "indices": { "bufferView": 1, "byteOffset": 0, "componentType": 5121 },
@@ -23,7 +23,8 @@ struct ModelSparse : ::testing::Test {
   Result<Model> load(const std::string& sparse, const std::string& base = R"("bufferView": 0, )",
                      const std::string& index_sparse = "") const {
     const float positions[] = {0, 0, 0, 9, 9, 9, 0, 1, 0, 8, 8, 8};
-    const uint8_t bytes[] = {1, 3, 3, 1, 1, 0, 3, 0, 1, 0, 0, 0, 3, 0, 0, 0}; // as bytes, shorts, integers
+    // Bytes, shorts, integers.
+    const uint8_t bytes[] = {1, 3, 3, 1, 1, 0, 3, 0, 1, 0, 0, 0, 3, 0, 0, 0};
     const float values[] = {1, 0, 0, 1, 1, 0};
     const uint8_t faces[] = {0, 1, 2, 2, 1, 0, 0, 3};
     std::string buffer(reinterpret_cast<const char*>(positions), sizeof positions);
@@ -66,7 +67,7 @@ TEST_F(ModelSparse, ElementsAreReplaced) {
   }
 }
 
-TEST_F(ModelSparse, WithoutABufferViewTheOthersAreZero) {
+TEST_F(ModelSparse, NoBufferView_OtherElementsAreZero) {
   const auto model = load(sound, "");
   ASSERT_TRUE(model) << model.error().text;
   const glm::vec3 first = model->mesh.vertices[0].position;
@@ -76,7 +77,7 @@ TEST_F(ModelSparse, WithoutABufferViewTheOthersAreZero) {
 }
 
 TEST_F(ModelSparse, IndicesAreReplaced) {
-  // Elements 1 and 3 of 0, 1, 2, 2, 1, 0 become 3 and 1, bytes 3 and 1 of the second view.
+  // Elements 1 and 3 of 0, 1, 2, 2, 1, 0 become 3 and 1: bytes 3 and 1 of the second view.
   const auto model = load(sound, R"("bufferView": 0, )", R"(, "sparse": { "count": 2,
     "indices": { "bufferView": 1, "componentType": 5121 }, "values": { "bufferView": 1, "byteOffset": 2 } })");
   ASSERT_TRUE(model) << model.error().text;
@@ -87,16 +88,18 @@ TEST_F(ModelSparse, IndicesAreReplaced) {
   EXPECT_THAT(beyond.error().text, ::testing::HasSubstr("there are 4 vertices"));
 }
 
-TEST_F(ModelSparse, WrongOnesAreRefused) {
+TEST_F(ModelSparse, InvalidSparseAccessorsAreRefused) {
   const struct {
     const char *from, *to, *says;
   } cases[] = {
       {R"("count": 2)", R"("count": 0)", "replaces 0 elements"},
       {R"("count": 2)", R"("count": -1)", "replaces -1 elements"},
       {R"("count": 2)", R"("count": 5)", "replaces 5 elements; expected 1 to 4"},
-      {R"("count": 2)", R"("count": 3)", "beyond the end"}, // of the values
-      {R"("bufferView": 1, "byteOffset": 0)", R"("bufferView": 1, "byteOffset": 1)", "ascending"}, // 3, 3
-      {R"("bufferView": 1, "byteOffset": 0)", R"("bufferView": 1, "byteOffset": 2)", "ascending"}, // 3, 1
+      {R"("count": 2)", R"("count": 3)", "beyond the end"}, // Count of the values.
+      // Indices 3, 3.
+      {R"("bufferView": 1, "byteOffset": 0)", R"("bufferView": 1, "byteOffset": 1)", "ascending"},
+      // Indices 3, 1.
+      {R"("bufferView": 1, "byteOffset": 0)", R"("bufferView": 1, "byteOffset": 2)", "ascending"},
       {R"("bufferView": 1, "byteOffset": 0)", R"("bufferView": 2, "byteOffset": 2)", "replaces element 128"},
       {R"("bufferView": 1, "byteOffset": 0)", R"("bufferView": 1, "byteOffset": 15)", "beyond the end"},
       {R"("bufferView": 1, "byteOffset": 0)", R"("bufferView": 1, "byteOffset": 2147483647)",

@@ -23,7 +23,7 @@ struct ModelFile : ::testing::Test {
     std::ofstream(path, std::ios::binary) << bytes;
     return path;
   }
-  // One triangle; `indices` and `accessor` exchange pieces of the file.
+  // Returns a file with one triangle; `indices` and `accessor` replace parts of the file.
   std::string triangle(const std::string& indices = "[0, 1, 2]", const std::string& accessor = "",
                        const std::string& nodes = R"([{ "mesh": 0 }])") const {
     const float positions[] = {0, 0, 0, 1, 0, 0, 0, 2, 0};
@@ -59,7 +59,7 @@ struct ModelFile : ::testing::Test {
   const dermis::test::TestFolder folder;
 };
 
-TEST_F(ModelFile, ATriangleIsScaledToItsHeightAroundItsMiddle) {
+TEST_F(ModelFile, TriangleIsScaledAndCentred) {
   ModelOptions options = only(triangle());
   options.height_metres = 0.5;
   const auto model = load_model(options);
@@ -68,11 +68,12 @@ TEST_F(ModelFile, ATriangleIsScaledToItsHeightAroundItsMiddle) {
   EXPECT_NEAR(bounds.high.y, 0.25f, 1e-6f);
   EXPECT_NEAR(bounds.low.y, -0.25f, 1e-6f);
   EXPECT_NEAR(bounds.high.x, 0.125f, 1e-6f);
-  EXPECT_NEAR(model->mesh.vertices[0].normal.z, 1.0f, 1e-6f); // made where the file has none
+  // Generated if the file has no normals.
+  EXPECT_NEAR(model->mesh.vertices[0].normal.z, 1.0f, 1e-6f);
   EXPECT_THAT(model->credits, testing::ElementsAre("by nobody"));
 }
 
-TEST_F(ModelFile, WhatIsNoGltfIsCalledSo) {
+TEST_F(ModelFile, NotAGltf_IsReported) {
   const Error error = refused(only(write("cat.glb", "\x89PNG and so on")));
   EXPECT_EQ(error.kind, ErrorKind::input);
   EXPECT_THAT(error.text, HasSubstr("cat.glb"));
@@ -124,8 +125,8 @@ TEST_F(ModelFile, RequiredExtensionsAreRefusedByName) {
   EXPECT_TRUE(load_model(with(R"("extensionsUsed": ["ACME_spheres"])")));
 }
 
-// A model out of floats and the text after its buffers, accessors of which take three floats an element one
-// after another; the first is of positions.
+// Builds a model of floats and of the text after its buffers. Accessors take three floats per
+// element, one accessor after another; the first has the positions.
 struct Pieces {
   std::vector<float> floats;
   uint32_t vertices = 4;
@@ -167,7 +168,7 @@ TEST_F(ModelFile, StripsAndFansAreTriangles) {
     EXPECT_NEAR(vertex.normal.z, 1.0f, 1e-6f);
 }
 
-// How far the faces look where the normals do, at worst: 1 for a flat mesh.
+// Returns the smallest cosine between face normals and vertex normals: 1 for a flat mesh.
 float facing(const Mesh& mesh) {
   float worst = 1.0f;
   for (size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
@@ -180,7 +181,7 @@ float facing(const Mesh& mesh) {
   return worst;
 }
 
-TEST_F(ModelFile, MirroredNodesFaceWhereTheyDidBefore) {
+TEST_F(ModelFile, MirroredNodesKeepTheirFacing) {
   Pieces pieces;
   pieces.floats = {0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0, 0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1};
   for (const char* attributes : {R"("POSITION": 0)", R"("POSITION": 0, "NORMAL": 1)"})
@@ -191,7 +192,7 @@ TEST_F(ModelFile, MirroredNodesFaceWhereTheyDidBefore) {
       EXPECT_GT(facing(mesh), 0.99f) << attributes << scale;
       EXPECT_NEAR(mesh.vertices[0].normal.z, 1.0f, 1e-6f) << attributes << scale;
     }
-  // A mirror in the parent and one in the child are none.
+  // A mirror in the parent and a mirror in the child cancel.
   pieces.nodes = R"([{ "children": [1], "scale": [-1, 1, 1] }, { "mesh": 0, "scale": [-1, 1, 1] }])";
   EXPECT_GT(facing(mesh_of(*this, pieces)), 0.99f);
 }
@@ -219,9 +220,9 @@ TEST_F(ModelFile, MirroredTangentsKeepTheirBitangent) {
   }
 }
 
-TEST_F(ModelFile, OnePrimitiveWithoutNormalsChangesNoOther) {
+TEST_F(ModelFile, PrimitiveWithoutNormals_ChangesNoOther) {
   Pieces pieces;
-  const float s = 0.6f, c = 0.8f; // normals that no face has
+  const float s = 0.6f, c = 0.8f; // Normals that differ from every face normal.
   pieces.floats = {0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0, s, 0, c, s, 0, c, s, 0, c, s, 0, c};
   pieces.primitives = R"([{ "mode": 5, "attributes": { "POSITION": 0, "NORMAL": 1 } },
                           { "mode": 5, "attributes": { "POSITION": 0 } }])";
@@ -252,7 +253,7 @@ TEST_F(ModelFile, AccessorsBeyondTheirBufferAreRefused) {
               ErrorKind::input);
 }
 
-TEST_F(ModelFile, NodesInACircleAreRefused) {
+TEST_F(ModelFile, NodeCyclesAreRefused) {
   EXPECT_THAT(refused(only(triangle("[0, 1, 2]", "", R"([{ "children": [1] }, { "children": [0] }])"))).text,
               HasSubstr("circle"));
 }
@@ -262,13 +263,13 @@ TEST_F(ModelFile, ASceneWithoutTrianglesIsRefused) {
               HasSubstr("no triangles"));
 }
 
-TEST_F(ModelFile, MapsThatAreNoImagesAreNamed) {
+TEST_F(ModelFile, MapsThatAreNotImagesAreNamed) {
   ModelOptions options = only(triangle());
   options.albedo = write("albedo.png", "no image at all");
   EXPECT_THAT(refused(options).text, HasSubstr("albedo.png"));
 }
 
-TEST_F(ModelFile, AHeightIsAPositiveLength) {
+TEST_F(ModelFile, HeightMustBePositive) {
   ModelOptions options = only(triangle());
   for (const double height : {-1.0, std::nan(""), 1e9}) {
     options.height_metres = height;
@@ -276,13 +277,13 @@ TEST_F(ModelFile, AHeightIsAPositiveLength) {
   }
 }
 
-// A triangle whose buffer is called otherwise, in a folder with a secret beside it.
+// Returns a triangle with another buffer name, in a folder next to a secret file.
 std::string with_buffer(std::string text, const std::string& uri) {
   const size_t at = text.find("triangle.bin");
   return text.replace(at, 12, uri);
 }
 
-TEST_F(ModelFile, WhatAFileNamesIsReadInItsFolderAlone) {
+TEST_F(ModelFile, FilesAreOnlyReadInTheModelsFolder) {
   const std::string path = triangle();
   std::ifstream stream(path, std::ios::binary);
   const std::string whole((std::istreambuf_iterator<char>(stream)), {});
@@ -311,7 +312,7 @@ TEST_F(ModelFile, WhatAFileNamesIsReadInItsFolderAlone) {
               HasSubstr("too long"));
 }
 
-TEST_F(ModelFile, NamesAreReadAsTheyAreWritten) {
+TEST_F(ModelFile, FileNamesAreReadLiterally) {
   const std::string whole = text_of(triangle());
   const std::string buffer = text_of((folder / "triangle.bin").string());
   for (const auto& [uri, name] : {std::pair<std::string, std::string>{"a%20b.bin", "a b.bin"},
@@ -324,11 +325,11 @@ TEST_F(ModelFile, NamesAreReadAsTheyAreWritten) {
     write(name, buffer);
     const auto model = load_model(only(write("names.gltf", with_buffer(whole, uri))));
     EXPECT_TRUE(model) << uri << ": " << model.error().text;
-    std::filesystem::remove(folder / name); // so that no other name finds it
+    std::filesystem::remove(folder / name); // So that no other name finds the file.
   }
 }
 
-// A binary glTF of this JSON and chunk; `more`: what the chunk says it has beyond.
+// Returns a binary glTF of this JSON and chunk; the chunk claims to be `more` bytes longer.
 std::string binary(std::string json, const std::string& chunk, uint32_t more = 0) {
   json.resize((json.size() + 3) / 4 * 4, ' ');
   const auto word = [](uint64_t value) {
@@ -339,7 +340,7 @@ std::string binary(std::string json, const std::string& chunk, uint32_t more = 0
          word(chunk.size() + more) + std::string("BIN\0", 4) + chunk;
 }
 
-TEST_F(ModelFile, PicturesBeyondTheEndOfTheirBufferAreNotRead) {
+TEST_F(ModelFile, PicturesBeyondTheirBufferAreNotRead) {
   const std::string begin = R"({ "asset": { "version": "2.0" }, "buffers": [{ "byteLength": 48 }],
       "bufferViews": [{ "buffer": 0, "byteLength": 36 }, { "buffer": 0, "byteOffset": )";
   const std::string end =
@@ -353,7 +354,7 @@ TEST_F(ModelFile, PicturesBeyondTheEndOfTheirBufferAreNotRead) {
   for (const char* view : {R"(36, "byteLength": 100000)", R"(100000, "byteLength": 12)",
                            R"(36, "byteLength": 18446744073709551615)", R"(36, "byteLength": 4294967295)"}) {
     const auto model = load_model(only(write("view.glb", binary(begin + view + end, chunk))));
-    if (!model) continue; // refused is well, too
+    if (!model) continue; // Refusal is accepted, too.
     ASSERT_EQ(model->warnings.size(), 1u) << view;
     EXPECT_THAT(model->warnings[0], HasSubstr("not an image"));
   }
@@ -386,14 +387,14 @@ TEST_F(ModelFile, ChunksBeyondTheEndOfTheFileAreRefused) {
               HasSubstr("second chunk reaches beyond its end"));
 }
 
-TEST_F(ModelFile, DeepNestingIsRefusedBeforeItIsFollowed) {
+TEST_F(ModelFile, DeepNestingIsRefused) {
   const std::string deep = std::string(1000000, '[') + std::string(1000000, ']');
   EXPECT_THAT(
       refused(only(write("deep.gltf", R"({ "asset": { "version": "2.0" }, "extras": )" + deep + "}"))).text,
       HasSubstr("nested deeper than 64"));
 }
 
-TEST_F(ModelFile, WhateverIsDamagedIsRefusedOrRead) {
+TEST_F(ModelFile, DamagedFilesAreRefusedOrRead) {
   std::ifstream stream(triangle(), std::ios::binary);
   const std::string text((std::istreambuf_iterator<char>(stream)), {});
   const float positions[9] = {0, 0, 0, 1, 0, 0, 0, 2, 0};
@@ -404,7 +405,7 @@ TEST_F(ModelFile, WhateverIsDamagedIsRefusedOrRead) {
   ASSERT_TRUE(load_model(only(write("whole.glb", glb))));
   std::mt19937 random(20);
   uint32_t read = 0;
-  constexpr int tries = 4000; // of each; 7 s with the address sanitizer
+  constexpr int tries = 4000; // Tries of each kind; 7 s with the address sanitizer.
   for (const std::string& whole : {text, glb})
     for (int i = 0; i < tries; ++i) {
       std::string damaged = whole;
@@ -424,10 +425,10 @@ TEST_F(ModelFile, WhateverIsDamagedIsRefusedOrRead) {
       else
         EXPECT_EQ(model.error().kind, ErrorKind::input);
     }
-  EXPECT_GT(read, 100u); // else the law says little
+  EXPECT_GT(read, 100u); // Enough damaged files have to be readable.
 }
 
-TEST(Texture, FormatsThatAreNotAskedForAreNotParsed) {
+TEST(Texture, OtherFormatsAreNotParsed) {
   for (const char* other : {"GIF89a\1\1", "8BPS", "P6 1 1 255\n123", "#?RADIANCE\n"}) {
     const std::string_view bytes(other);
     const auto texture = decode_texture("a", std::as_bytes(std::span(bytes)));
@@ -448,7 +449,7 @@ TEST_F(ModelFile, EveryTruncationOfAFileIsRefusedOrRead) {
   }
 }
 
-TEST(Texture, RowsAreTurnedUpsideDown) {
+TEST(Texture, RowsAreFlipped) {
   Texture texture{1, 3, std::vector<std::byte>(12)};
   for (int i = 0; i < 12; ++i)
     texture.texels[static_cast<size_t>(i)] = std::byte(i);

@@ -8,7 +8,7 @@ namespace {
 
 constexpr double frames_per_second = 25;
 
-// One key a frame: the value that the frame shows.
+// Returns one key per frame with the value of the frame.
 template <class Values> std::string keys(const Motion& motion, uint32_t frames, const Values& values) {
   std::string text = R"({ "keys": [)";
   for (uint32_t f = 0; f < frames; ++f)

@@ -1,6 +1,6 @@
 #pragma once
-// Renderings on a driver that has ray queries: tests/scripts/fetch_driver.sh leaves one in build/drivers.
-// Without it these tests skip.
+// Renderings on a driver with ray queries, which tests/scripts/fetch_driver.sh stores in
+// build/drivers. Without the driver these tests are skipped.
 
 #include "tests/integration/examples/demo_engine/rendering.hpp"
 #include "tests/support/fetched_driver.hpp"
@@ -14,7 +14,7 @@ namespace demo {
 
 inline const std::string source = DERMIS_SOURCE_DIR;
 
-// The loader reads the variable each time an instance is made.
+// The loader reads the variable whenever an instance is created.
 struct WithRayQueries : ::testing::Test {
   void SetUp() override {
     if (const char* own = std::getenv("VK_DRIVER_FILES")) before = own;
@@ -29,7 +29,7 @@ struct WithRayQueries : ::testing::Test {
       unsetenv("VK_DRIVER_FILES");
   }
 
-  std::optional<std::string> before; // of the driver that the suite runs on
+  std::optional<std::string> before; // The variable's value for the suite's own driver.
 };
 
 inline RenderOptions by_rays(const std::string& scene, uint32_t side, uint32_t frames,

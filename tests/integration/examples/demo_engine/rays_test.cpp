@@ -1,5 +1,5 @@
-// Scattering by rays. The reference draws its points by area over the triangles: it shares no sampler with
-// the graph.
+// Tests scattering by rays. The reference samples points by area over the triangles, so it shares
+// no sampler with the graph.
 #include "integration/examples/demo_engine/geometry/shapes.hpp"
 #include "passes/common/profiles/profile.hpp"
 #include "tests/integration/examples/demo_engine/ray_queries.hpp"
@@ -34,7 +34,7 @@ bool withheld(const Rendering& rendering) {
   });
 }
 
-TEST(WithoutRayQueries, TheGraphFallsBackToThePyramidAndSaysSo) {
+TEST(WithoutRayQueries, FallsBackToThePyramidAndReportsIt) {
   const Rendering rendering = rendered(back_lit("restir", 1, 1));
   ASSERT_EQ(rendering.frames.size(), 1u);
   if (!withheld(rendering)) GTEST_SKIP() << "this device has ray queries";
@@ -46,7 +46,7 @@ restir::Vector3 vector_of(const glm::dvec3& v) {
   return {v.x, v.y, v.z};
 }
 
-// back_lit.json in millimetres.
+// Returns back_lit.json in millimetres.
 restir::testing::TriangleScene triangles_of_scene(const restir::Vector3& d_mm) {
   restir::testing::TriangleScene scene;
   scene.d = {{}, d_mm};
@@ -74,12 +74,12 @@ restir::testing::TriangleScene triangles_of_scene(const restir::Vector3& d_mm) {
   return scene;
 }
 
-// What the graph saw, as the reference wants it.
+// Returns the graph's input pixels for the reference.
 std::vector<restir::testing::Pixel> pixels_of(const FrameOutputs& frame, const restir::Vector3& d_mm) {
   std::vector<restir::testing::Pixel> pixels(frame.inputs.depth.texels.size());
   const auto& clip = frame.camera.clip_from_view;
   const auto& view = frame.camera.view_from_world;
-  const auto to_world = [&](const glm::dvec3& v) { // the rotation's transpose
+  const auto to_world = [&](const glm::dvec3& v) { // The transpose of the rotation.
     return glm::dvec3(view[0] * v.x + view[4] * v.y + view[8] * v.z,
                       view[1] * v.x + view[5] * v.y + view[9] * v.z,
                       view[2] * v.x + view[6] * v.y + view[10] * v.z);
@@ -112,7 +112,7 @@ restir::Vector3 skin_d() {
   return profile ? restir::Vector3{profile->d_mm[0], profile->d_mm[1], profile->d_mm[2]} : restir::Vector3{};
 }
 
-TEST_F(WithRayQueries, LightComesThroughAThinSheetAsMuchAsTheReferenceSays) {
+TEST_F(WithRayQueries, TransmissionMatchesTheReference) {
   constexpr uint32_t frames = 16, samples = 64;
   const Rendering rays = rendered(back_lit("restir", samples, frames));
   ASSERT_EQ(rays.frames.size(), frames);
@@ -124,7 +124,8 @@ TEST_F(WithRayQueries, LightComesThroughAThinSheetAsMuchAsTheReferenceSays) {
   const restir::Vector3 d = skin_d();
   const auto scene = triangles_of_scene(d);
   const auto pixels = pixels_of(rays.frames[0], d);
-  restir::testing::Regions regions; // the sheet's light comes through it, the lobe's from its own side
+  // Light passes through the sheet; the lobe is lit on its own side.
+  restir::testing::Regions regions;
   regions.pixels.resize(2);
   const uint32_t width = rays.frames[0].inputs.depth.width;
   for (uint32_t i = 0; i < pixels.size(); ++i)
@@ -151,14 +152,16 @@ TEST_F(WithRayQueries, LightComesThroughAThinSheetAsMuchAsTheReferenceSays) {
     RecordProperty("region_" + std::to_string(r), std::to_string(drawn.mean) + " of " +
                                                       std::to_string(wanted.mean) + ", sap " +
                                                       std::to_string(flat));
-    // Three standard errors of both, and 2 %: the reference's facets are shaded flat, the graph's smoothly.
+    // Three standard errors of both, and 2 %: the reference's facets are shaded flat, the graph's
+    // smoothly.
     const double noise = 3 * std::hypot(drawn.sigma, wanted.sigma);
     EXPECT_NEAR(drawn.mean, wanted.mean, noise + 0.02 * wanted.mean) << "region " << r << ", sap " << flat;
     EXPECT_TRUE(r != 0 || flat < 0.5 * drawn.mean) << "screen space sees no light behind the sheet";
   }
 }
 
-// Of a profile in which red alone scatters: the other channels are the pixel's own light, whoever scatters.
+// Only red scatters in this profile; the other channels keep the pixel's own light with any
+// technique.
 TEST_F(WithRayQueries, ChannelsThatDoNotScatterKeepTheirLight) {
   const std::string profile =
       std::filesystem::temp_directory_path() / ("dermis_red_" + std::to_string(getpid()) + ".json");
@@ -171,7 +174,7 @@ TEST_F(WithRayQueries, ChannelsThatDoNotScatterKeepTheirLight) {
   ASSERT_EQ(by_rays.frames.size(), 1u);
   ASSERT_EQ(by_pyramid.frames.size(), 1u);
   EXPECT_TRUE(ran(by_rays.frames[0], "resolve"));
-  const FloatImage& found = by_rays.frames[0].color; // what combine wrote, times albedo
+  const FloatImage& found = by_rays.frames[0].color; // The output of combine, times albedo.
   const FloatImage& wanted = by_pyramid.frames[0].color;
   size_t lit = 0, red_differs = 0;
   for (size_t i = 0; i < found.texels.size(); i += 3) {

@@ -1,5 +1,5 @@
 #pragma once
-// What a rendering hands over, of renderings that must succeed without a word from the validation layer.
+// Runs renderings that must succeed without messages of the validation layer.
 #include "integration/examples/demo_engine/engine.hpp"
 
 #include <gmock/gmock.h>
@@ -11,7 +11,7 @@
 namespace demo {
 
 struct Rendering {
-  std::vector<FrameOutputs> frames; // empty: the test has failed
+  std::vector<FrameOutputs> frames; // Empty: the test has failed.
   std::vector<std::string> warnings;
 };
 

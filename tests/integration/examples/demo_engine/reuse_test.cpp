@@ -1,6 +1,7 @@
-// Paths that frames and pixels share, on a device: without bias, without ghosts, without what was before a
-// cut. Periods of a sequence are restarts: each has a history and random numbers of its own. The truth is the
-// graph's own paths without reuse, many of them, which rays_test.cpp holds against a sampler of another kind.
+// Tests paths that frames and pixels share, on a device: no bias, no ghosts, and nothing from
+// before a cut. The periods of a sequence are independent restarts with separate histories and
+// random numbers. The reference is the mean of many of the graph's own paths without reuse;
+// rays_test.cpp compares these with another sampler.
 #include "tests/framegraph/test_scale.hpp"
 #include "tests/integration/examples/demo_engine/moving_sheet.hpp"
 #include "tests/integration/examples/demo_engine/ray_queries.hpp"
@@ -19,21 +20,21 @@ namespace {
 using dermis::restir::testing::Mean;
 using dermis::restir::testing::mean_of;
 
-constexpr size_t min_pixels = 20; // of a region
+constexpr size_t min_pixels = 20; // Per region.
 constexpr double confidence_cap = 20;
 
 uint32_t quality(uint32_t quick, uint32_t full) {
   return static_cast<uint32_t>(dermis::testing::seeds_to_try(quick, full));
 }
 
-const uint32_t side = quality(32, 64); // pixels of a picture
+const uint32_t side = quality(32, 64); // Pixels of a picture.
 
-std::vector<std::string> shifts() { // of tests that judge a frame after something changed
+std::vector<std::string> shifts() { // Shifts of the tests that check a frame after a change.
   if (quality(0, 1) != 0) return {"delayed", "reconnection", "hybrid", "sequential"};
-  return {"reconnection"}; // whose paths keep the light that they had, but for what restir.temporal does
+  return {"reconnection"}; // Its paths keep their light, except for the update by restir.temporal.
 }
 
-struct Way { // that paths are reused
+struct Way { // A way to reuse paths.
   std::string reuse, shift;
 };
 
@@ -58,7 +59,7 @@ struct ReuseWithRayQueries : WithRayQueries {
   const dermis::test::TestFolder folder;
 };
 
-// Of a frame's pixels with subsurface: all, and those of each quarter of the picture.
+// Returns the pixels with subsurface of a frame: all, and those of each quarter of the picture.
 std::vector<std::vector<size_t>> regions_of(const FrameOutputs& frame) {
   std::vector<std::vector<size_t>> regions(5);
   for (size_t i = 0; i < frame.inputs.profile.texels.size(); ++i) {
@@ -76,14 +77,14 @@ double mean_over(const FloatImage& light, const std::vector<size_t>& pixels) {
   return pixels.empty() ? 0 : sum / double(pixels.size());
 }
 
-// Light of each region in the judged frames of a period, by period.
+// Returns the light of each region in the checked frames, by period.
 std::vector<std::vector<double>> lights_of(const std::vector<FrameOutputs>& frames, const Motion& motion,
                                            uint32_t judged_from, uint32_t judged_to) {
   std::vector<std::vector<double>> values(5);
   for (size_t first = 0; first < frames.size(); first += motion.period) {
     std::vector<double> sums(5);
     for (uint32_t phase = judged_from; phase < judged_to; ++phase) {
-      const auto regions = regions_of(frames[phase]); // the same in each period
+      const auto regions = regions_of(frames[phase]); // Equal in each period.
       for (size_t r = 0; r < 5; ++r)
         if (regions[r].size() >= min_pixels)
           sums[r] += mean_over(frames[first + phase].scattered, regions[r]);
@@ -95,7 +96,8 @@ std::vector<std::vector<double>> lights_of(const std::vector<FrameOutputs>& fram
 }
 
 struct Judged {
-  double worst = 0, largest = 0, spread = 0; // in sigma; relative; relative sigma of the whole picture
+  // In sigma; relative; relative sigma of the whole picture.
+  double worst = 0, largest = 0, spread = 0;
 };
 Judged judge(const std::vector<std::vector<double>>& found,
              const std::vector<std::vector<double>>& reference) {
@@ -126,7 +128,7 @@ Motion walking_camera() {
 constexpr uint32_t reference_periods = 10, reference_samples = 64;
 const Way alone = {"none", "reconnection"};
 
-// 3 sigma over all tests, and sigma small enough to see something.
+// Expects deviations below 3 sigma over all tests, and a sigma small enough to detect a bias.
 void expect_no_bias(const std::vector<std::vector<double>>& found,
                     const std::vector<std::vector<double>>& reference, int tests, const std::string& name) {
   const Judged judged = judge(found, reference);
@@ -138,12 +140,12 @@ void expect_no_bias(const std::vector<std::vector<double>>& found,
   EXPECT_LT(judged.spread, 0.06) << name;
 }
 
-TEST_F(ReuseWithRayQueries, HasNoBiasWithAnyShiftUnderAMovingCamera) {
+TEST_F(ReuseWithRayQueries, MovingCamera_NoBiasWithAnyShift) {
   const Motion motion = walking_camera();
   const auto reference_frames = frames_of(motion, alone, reference_periods, reference_samples);
   ASSERT_EQ(reference_frames.size(), reference_periods * motion.period);
   const auto reference = lights_of(reference_frames, motion, 0, motion.period);
-  std::vector<double> last(size_t{side} * side); // the truth of the last frame of a period
+  std::vector<double> last(size_t{side} * side); // The reference of the last frame of a period.
   for (size_t first = 0; first < reference_frames.size(); first += motion.period)
     for (size_t i = 0; i < last.size(); ++i)
       last[i] += luminance(reference_frames[first + motion.period - 1].scattered, i) / reference_periods;
@@ -169,8 +171,8 @@ TEST_F(ReuseWithRayQueries, HasNoBiasWithAnyShiftUnderAMovingCamera) {
   }
 }
 
-// The random numbers are those of the frame: with nothing behind it a frame is the one without a history.
-TEST_F(ReuseWithRayQueries, BeginsAnewAfterACutBitForBit) {
+// Random numbers belong to the frame, so a frame after a cut equals a frame without history.
+TEST_F(ReuseWithRayQueries, Cut_RestartsBitForBit) {
   Motion motion = walking_camera();
   motion.period = 4;
   for (const std::string& shift : shifts()) {
@@ -186,7 +188,7 @@ TEST_F(ReuseWithRayQueries, BeginsAnewAfterACutBitForBit) {
   }
 }
 
-TEST_F(ReuseWithRayQueries, ShowsNothingOfLightsThatWentOut) {
+TEST_F(ReuseWithRayQueries, LightsSwitchedOff_LeaveNoGhost) {
   Motion motion;
   motion.period = 8;
   motion.intensity = [](uint32_t phase) { return phase < 6 ? 0.03 : 0.0; };
@@ -200,7 +202,7 @@ TEST_F(ReuseWithRayQueries, ShowsNothingOfLightsThatWentOut) {
   }
 }
 
-TEST_F(ReuseWithRayQueries, FollowsALightThatJumpsInTheFirstFrame) {
+TEST_F(ReuseWithRayQueries, MovedLight_IsFollowedAtOnce) {
   Motion motion;
   motion.light = [](uint32_t phase) {
     return phase < 5 ? glm::dvec3(0.02, 0.03, -0.15) : glm::dvec3(-0.06, -0.05, -0.09);
@@ -212,7 +214,7 @@ TEST_F(ReuseWithRayQueries, FollowsALightThatJumpsInTheFirstFrame) {
                    reference, 20, "light jumps, " + shift);
 }
 
-TEST_F(ReuseWithRayQueries, HasNoBiasWhereAnObjectMoves) {
+TEST_F(ReuseWithRayQueries, MovingObject_NoBias) {
   Motion motion;
   motion.lobe = [](uint32_t phase) { return glm::dvec3(-0.022 + 0.003 * phase, -0.012, 0.012); };
   const auto reference =
@@ -223,9 +225,9 @@ TEST_F(ReuseWithRayQueries, HasNoBiasWhereAnObjectMoves) {
         reference, 20, "object moves, " + shift);
 }
 
-// What stood before the light is seen to be gone by new paths alone; history, which knew none, counts for at
-// most confidence_cap of them, and fewer with each frame.
-TEST_F(ReuseWithRayQueries, ForgetsAShadowAsFastAsTheCapAllows) {
+// Only new paths see that the shield is gone. The history has no such paths, counts for at most
+// confidence_cap new paths, and fades with each frame.
+TEST_F(ReuseWithRayQueries, RemovedShadow_FadesAsTheCapAllows) {
   constexpr uint32_t shaded = 30, lit = 50;
   Motion motion;
   motion.period = shaded + lit;
@@ -236,14 +238,14 @@ TEST_F(ReuseWithRayQueries, ForgetsAShadowAsFastAsTheCapAllows) {
   for (const std::string& shift : shifts()) {
     const auto frames = frames_of(motion, {"temporal", shift}, 1);
     ASSERT_EQ(frames.size(), shaded + lit);
-    const auto region = regions_of(frames[0])[2]; // right of the lobe
+    const auto region = regions_of(frames[0])[2]; // Right of the lobe.
     std::vector<double> lights;
     for (const FrameOutputs& frame : reference)
       lights.push_back(mean_over(frame.scattered, region));
     const double whole = mean_of(lights).mean;
     EXPECT_LT(mean_over(frames[shaded - 1].scattered, region), 0.2 * whole) << "it is shaded";
     double sum = 0;
-    constexpr uint32_t last = 10; // frames that are averaged, against the noise
+    constexpr uint32_t last = 10; // Frames that are averaged to reduce the noise.
     for (uint32_t f = lit - last; f < lit; ++f)
       sum += mean_over(frames[shaded + f].scattered, region) / last;
     const double left = std::pow(confidence_cap / (confidence_cap + 1), lit - last);

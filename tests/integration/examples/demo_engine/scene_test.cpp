@@ -14,7 +14,7 @@ namespace {
 
 using testing::HasSubstr;
 
-// A whole scene with one piece exchanged.
+// Returns a complete scene with one part replaced.
 std::string scene_with(const std::string& camera, const std::string& more = "") {
   return R"({ "dermis_scene": 1, "name": "s",
   "profiles": [ { "name": "skin", "file": "../profiles/skin.json" } ],
@@ -35,7 +35,7 @@ void expect_rejected(const std::string& text, dermis::DiagnosticId id, uint32_t 
   EXPECT_THAT(diagnostics.list[0].text, HasSubstr(words));
 }
 
-TEST(SceneFile, ShippedScenesAreWithoutFault) {
+TEST(SceneFile, ShippedScenesAreValid) {
   for (const char* name : {"bust", "head"}) {
     dermis::Diagnostics diagnostics;
     const std::string path = std::string(DERMIS_SOURCE_DIR "/configs/scenes/") + name + ".json";
@@ -46,7 +46,7 @@ TEST(SceneFile, ShippedScenesAreWithoutFault) {
   }
 }
 
-TEST(SceneFile, ProfilesAreFoundBesideTheScene) {
+TEST(SceneFile, ProfilesAreFoundNextToTheScene) {
   dermis::Diagnostics diagnostics;
   const auto scene = parse_scene("a/scenes/s.json", scene_with(plain_camera), diagnostics);
   ASSERT_TRUE(scene) << dermis::format_as_json(diagnostics);
@@ -54,7 +54,7 @@ TEST(SceneFile, ProfilesAreFoundBesideTheScene) {
   EXPECT_EQ(scene->objects[0].profile, 1u);
 }
 
-// Folders with a secret beside them, gone afterwards.
+// Folders next to a secret file, removed afterwards.
 struct SceneFolders : ::testing::Test {
   std::filesystem::path top =
       std::filesystem::path(testing::TempDir()) / ("dermis_scene_roots_" + std::to_string(getpid()));
@@ -67,7 +67,7 @@ struct SceneFolders : ::testing::Test {
     std::filesystem::create_symlink(top / "project/profiles", top / "project/scenes/near");
   }
   void TearDown() override { std::filesystem::remove_all(top); }
-  // The profile `file` of a scene in `folder`.
+  // Returns a scene in `folder` with the profile `file`.
   static std::string scene_of(const std::string& file) {
     std::string text = scene_with(plain_camera);
     return text.replace(text.find("../profiles/skin.json"), 21, file);
@@ -80,7 +80,7 @@ struct SceneFolders : ::testing::Test {
   dermis::Diagnostics diagnostics;
 };
 
-TEST_F(SceneFolders, ASceneReadsInsideOfItsProjectAlone) {
+TEST_F(SceneFolders, SceneReadsOnlyInsideItsProject) {
   for (const char* inside :
        {"../profiles/skin.json", "own.json", "near/skin.json", "a/../../profiles/skin.json"})
     EXPECT_TRUE(read("project/scenes", inside)) << inside << dermis::format_as_json(diagnostics);
@@ -103,7 +103,7 @@ TEST_F(SceneFolders, ASceneReadsInsideOfItsProjectAlone) {
   }
 }
 
-TEST_F(SceneFolders, ASceneThatIsInNoProjectReadsInItsFolder) {
+TEST_F(SceneFolders, SceneWithoutProject_ReadsInItsFolder) {
   EXPECT_TRUE(read("elsewhere", "secret.json"));
   EXPECT_FALSE(read("elsewhere", "../project/profiles/skin.json"));
   ASSERT_FALSE(diagnostics.list.empty());
@@ -111,7 +111,7 @@ TEST_F(SceneFolders, ASceneThatIsInNoProjectReadsInItsFolder) {
   EXPECT_TRUE(read("elsewhere", "../project/profiles/skin.json", {(top / "project").string() + "/"}));
 }
 
-TEST_F(SceneFolders, NamesThatNoSystemTakesAreRefused) {
+TEST_F(SceneFolders, NonPortableNamesAreRefused) {
   EXPECT_FALSE(read("project/scenes", ""));
   ASSERT_FALSE(diagnostics.list.empty());
   EXPECT_EQ(diagnostics.list[0].id, dermis::DiagnosticId::outside_root);
@@ -123,7 +123,7 @@ TEST_F(SceneFolders, NamesThatNoSystemTakesAreRefused) {
   EXPECT_EQ(diagnostics.list[0].id, dermis::DiagnosticId::syntax);
 }
 
-TEST(SceneFile, MistakesAreNamedWithTheirPlace) {
+TEST(SceneFile, ErrorsAreReportedWithTheirPlace) {
   using dermis::DiagnosticId;
   expect_rejected("{", DiagnosticId::syntax, 1, "");
   expect_rejected(R"({ "name": "s" })", DiagnosticId::missing_key, 1, "dermis_scene");
@@ -166,7 +166,7 @@ TEST(SceneFile, KeyframesAscendAndASineStaysInRange) {
                   4, "swings");
 }
 
-TEST(SceneFile, MoreShadowMapsThanThereIsRoomForAreRefused) {
+TEST(SceneFile, TooManyShadowMapsAreRefused) {
   std::string lights;
   for (int i = 0; i < 5; ++i)
     lights += std::string(i ? "," : "") + R"({ "type": "point", "position": [0, 1, 0], "intensity": 1 })";
@@ -184,7 +184,7 @@ Scene scene_seen_by(bool orthographic) {
   return scene;
 }
 
-TEST(SceneState, DepthComesBackAsMetresForEveryProjection) {
+TEST(SceneState, DepthConvertsToMetresForEveryProjection) {
   for (const bool orthographic : {false, true}) {
     for (const bool reversed : {false, true}) {
       const Scene scene = scene_seen_by(orthographic);
@@ -200,7 +200,7 @@ TEST(SceneState, DepthComesBackAsMetresForEveryProjection) {
   }
 }
 
-TEST(SceneState, UpIsUpOnTheScreenAndJitterIsInPixelsRightAndDown) {
+TEST(SceneState, YPointsUpAndJitterIsInPixels) {
   for (const bool orthographic : {false, true}) {
     const Scene scene = scene_seen_by(orthographic);
     const SceneState state = state_at(scene, 3, {320, 180, false, true});
@@ -225,7 +225,8 @@ TEST(SceneState, TheFirstFrameHasNoMotion) {
   const SceneState first = state_at(scene, 0, {320, 180});
   EXPECT_EQ(first.world, first.previous_world);
   const SceneState second = state_at(scene, 5, {320, 180});
-  EXPECT_NEAR(second.world[0][3][0] - second.previous_world[0][3][0], 0.04, 1e-12); // 25 frames a second
+  // 25 frames per second.
+  EXPECT_NEAR(second.world[0][3][0] - second.previous_world[0][3][0], 0.04, 1e-12);
 }
 
 } // namespace

@@ -1,4 +1,4 @@
-// Frames that a stage keeps are those that are rendered without one, bit for bit.
+// Frames of a kept stage equal frames that are rendered without one, bit for bit.
 #include "tests/integration/examples/demo_engine/rendering.hpp"
 #include "tests/support/shipped_graphs.hpp"
 #include "tests/support/test_folder.hpp"
@@ -10,7 +10,7 @@
 namespace demo {
 namespace {
 
-// A ball of skin before a wall: a camera and a shadow that move, and a cut within five frames.
+// A ball of skin in front of a wall, with a moving camera and shadow, and a cut within five frames.
 struct KeptStage : ::testing::Test {
   RenderOptions moving(const std::string& graph, const std::string& intensity = "0.8") const {
     RenderOptions options;
@@ -57,7 +57,7 @@ size_t drawn(const std::vector<FrameOutputs>& frames) {
       frames.begin(), frames.end(), [](const FrameOutputs& frame) { return !frame.host_times.empty(); }));
 }
 
-TEST_F(KeptStage, BringsBackFramesBitForBit) {
+TEST_F(KeptStage, ReproducesFramesBitForBit) {
   const RenderOptions options = moving("sap");
   const StageHandle stage = make_stage();
   const auto alone = rendered(options).frames;
@@ -70,14 +70,14 @@ TEST_F(KeptStage, BringsBackFramesBitForBit) {
   expect_same(alone, second);
 }
 
-TEST_F(KeptStage, TakesAnotherGraphForFramesThatItKeeps) {
+TEST_F(KeptStage, OtherGraph_UsesTheKeptFrames) {
   const StageHandle stage = make_stage();
   ASSERT_EQ(rendered(moving("sap"), stage.get()).frames.size(), 5u);
   const RenderOptions options = moving("burley");
   expect_same(rendered(options).frames, rendered(options, stage.get()).frames);
 }
 
-TEST_F(KeptStage, IsMadeAnewForAnotherPictureOrScene) {
+TEST_F(KeptStage, OtherPictureOrScene_IsRebuilt) {
   const StageHandle stage = make_stage();
   RenderOptions options = moving("sap");
   ASSERT_EQ(rendered(options, stage.get()).frames.size(), 5u);
@@ -89,7 +89,7 @@ TEST_F(KeptStage, IsMadeAnewForAnotherPictureOrScene) {
   expect_same(rendered(options).frames, frames);
 }
 
-TEST_F(KeptStage, AfterAMistakeItServesTheNextCall) {
+TEST_F(KeptStage, AfterAnError_TheNextCallWorks) {
   const StageHandle stage = make_stage();
   RenderOptions options = moving("sap");
   options.scene = "no/such/scene.json";
@@ -99,7 +99,7 @@ TEST_F(KeptStage, AfterAMistakeItServesTheNextCall) {
   EXPECT_EQ(rendered(moving("sap"), stage.get()).frames.size(), 5u);
 }
 
-TEST_F(KeptStage, FramesWhosePicturesNobodyWantsComeWithoutThem) {
+TEST_F(KeptStage, UnrequestedPicturesAreEmpty) {
   RenderOptions options = moving("sap");
   options.pictures_of = [](uint32_t frame) { return frame == 3; };
   options.inputs_of = [](uint32_t frame) { return frame == 1; };

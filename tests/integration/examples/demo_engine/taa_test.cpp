@@ -1,5 +1,5 @@
-// The engine's temporal anti-aliasing: more exact edges where things rest, nothing of what was before after a
-// cut.
+// Tests the engine's temporal anti-aliasing: more accurate edges in static scenes, and no ghosts
+// after a cut.
 #include "integration/examples/demo_engine/engine.hpp"
 #include "tests/support/test_folder.hpp"
 
@@ -13,7 +13,8 @@ namespace demo {
 namespace {
 
 struct TemporalAntiAliasing : ::testing::Test {
-  // A bright ball before a dark wall; the camera goes from left to right within a second and jumps at .5.
+  // A bright ball in front of a dark wall. The camera moves from left to right within a second and
+  // jumps at 0.5 s.
   RenderOptions options(const std::string& camera, uint32_t width, uint32_t height) const {
     const std::string path = (folder / "scene.json").string();
     std::ofstream(path) << R"({ "dermis_scene": 1, "name": "small", "sky": [0.1, 0.1, 0.1], "cuts": [0.5],
@@ -53,7 +54,7 @@ const std::string resting_camera = R"({ "position": [0, 0, 1], "target": [0, 0, 
 const std::string going_camera =
     R"({ "position": { "keys": [[0, -0.1, 0, 1], [1, 0.1, 0, 1]] }, "target": [0, 0, 0], "vertical_fov": 20 })";
 
-// Means of squares of `side` x `side` pixels.
+// Returns means of squares of `side` x `side` pixels.
 FloatImage smaller(const FloatImage& large, uint32_t side) {
   FloatImage small{large.width / side, large.height / side, 3, {}};
   for (uint32_t y = 0; y < small.height; ++y)
@@ -75,27 +76,27 @@ double rmse(const FloatImage& a, const FloatImage& b) {
   return std::sqrt(sum / double(a.texels.size()));
 }
 
-TEST_F(TemporalAntiAliasing, APictureThatRestsComesCloserToOneOfManySamplesAPixel) {
+TEST_F(TemporalAntiAliasing, StaticPicture_ApproachesSupersampling) {
   constexpr uint32_t width = 70, height = 45, side = 8;
   const FloatImage reference =
       smaller(colors_of(options(resting_camera, width * side, height * side)).front(), side);
   RenderOptions resting = options(resting_camera, width, height);
   const FloatImage single = colors_of(resting).front();
   resting.taa = true;
-  resting.frames = 9; // before the cut
+  resting.frames = 9; // Before the cut.
   resting.first_frame = 0;
   const FloatImage resolved = colors_of(resting).back();
   RecordProperty("single", std::to_string(rmse(single, reference)));
   RecordProperty("resolved", std::to_string(rmse(resolved, reference)));
-  // Regression bound: it follows the product.
+  // Regression bound of the present implementation.
   EXPECT_LT(rmse(resolved, reference), 0.6 * rmse(single, reference));
 }
 
-TEST_F(TemporalAntiAliasing, TheFirstFrameAfterACutShowsNothingOfWhatWasBefore) {
+TEST_F(TemporalAntiAliasing, FirstFrameAfterACut_HasNoGhosts) {
   RenderOptions going = options(going_camera, 70, 45);
   going.taa = true;
   going.first_frame = 6;
-  going.frames = 5; // the cut is at frame 10
+  going.frames = 5; // The cut is at frame 10.
   const std::vector<FloatImage> through = colors_of(going);
   going.first_frame = 10;
   going.frames = 1;

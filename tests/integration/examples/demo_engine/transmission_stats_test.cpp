@@ -1,5 +1,5 @@
-// What a budget buys where light comes through thin parts: rays, where the device has them, and the reason
-// told.
+// Tests what a budget chooses if light passes through thin parts: rays, if the device has them,
+// with the reason in the report.
 #include "tests/integration/examples/demo_engine/ray_queries.hpp"
 #include "tests/support/test_folder.hpp"
 
@@ -23,8 +23,8 @@ void replace(std::string& text, const std::string& old, const std::string& with)
   text.replace(at, old.size(), with);
 }
 
-// The ear of configs/scenes/back_lit_ear.json, its light behind it or in front. Frames are seconds apart: no
-// switch has to wait.
+// The ear of configs/scenes/back_lit_ear.json, lit from behind or from the front. Frames are
+// seconds apart, so no switch has to wait.
 RenderOptions ear(const TestFolder& folder, LightFrom from, double budget_ms) {
   std::ifstream file(source + "/configs/scenes/back_lit_ear.json");
   std::stringstream text;
@@ -42,13 +42,13 @@ RenderOptions ear(const TestFolder& folder, LightFrom from, double budget_ms) {
   return options;
 }
 
-constexpr double plenty_ms = 60000; // of a software driver, whatever else runs beside it
+constexpr double plenty_ms = 60000; // Enough for a software driver on a busy machine.
 
-TEST(WithoutRayQueries, TheBudgetHasNoRaysToBuyAndTheReportSaysWhy) {
+TEST(WithoutRayQueries, BudgetHasNoRays_TheReportSaysWhy) {
   const TestFolder folder;
   const Rendering rendering = rendered(ear(folder, LightFrom::behind, plenty_ms));
   ASSERT_EQ(rendering.frames.size(), 5u);
-  // The first frame's choice is made before anything was counted; one of the others takes them.
+  // The first frame is chosen before anything was counted; one of the other frames uses rays.
   if (std::any_of(rendering.frames.begin(), rendering.frames.end(),
                   [](const FrameOutputs& frame) { return ran(frame, "draw"); }))
     GTEST_SKIP() << "this device has ray queries";
@@ -61,7 +61,7 @@ TEST(WithoutRayQueries, TheBudgetHasNoRaysToBuyAndTheReportSaysWhy) {
   EXPECT_GT(choice.predicted_rmse, 0.5 * choice.transmitted_rms) << "and told as an error";
 }
 
-TEST_F(WithRayQueries, ABudgetBuysThemWhereLightComesThroughAThinPart) {
+TEST_F(WithRayQueries, BackLight_TheBudgetBuysRays) {
   const TestFolder folder;
   const Rendering rendering = rendered(ear(folder, LightFrom::behind, plenty_ms));
   ASSERT_EQ(rendering.frames.size(), 5u);
@@ -75,7 +75,7 @@ TEST_F(WithRayQueries, ABudgetBuysThemWhereLightComesThroughAThinPart) {
       << "before anything was counted nothing comes through";
 }
 
-TEST_F(WithRayQueries, ABudgetBuysNoneWhereLightComesFromTheFront) {
+TEST_F(WithRayQueries, FrontLight_TheBudgetBuysNoRays) {
   const TestFolder folder;
   const Rendering rendering = rendered(ear(folder, LightFrom::front, plenty_ms));
   ASSERT_EQ(rendering.frames.size(), 5u);
@@ -86,10 +86,10 @@ TEST_F(WithRayQueries, ABudgetBuysNoneWhereLightComesFromTheFront) {
   EXPECT_LT(choice.transmitted_rms, 0.05);
 }
 
-TEST_F(WithRayQueries, ABudgetThatDoesNotPayForThemSaysWhatIsMissing) {
+TEST_F(WithRayQueries, TooSmallBudget_ReportsTheMissingTime) {
   const TestFolder folder;
   RenderOptions options = ear(folder, LightFrom::behind, 0);
-  options.deterministic = true; // the same on every machine
+  options.deterministic = true; // Equal on every machine.
   options.budget_ms = 20;
   const Rendering rendering = rendered(options);
   ASSERT_EQ(rendering.frames.size(), 5u);

@@ -29,7 +29,7 @@ struct Captures : ::testing::Test {
   }
   void TearDown() override { fs::remove_all(root); }
 
-  // 6 x 4 pixels, profile 1 on the left half, every picture there.
+  // Returns 6 x 4 pixels with profile 1 on the left half and every picture.
   static CapturedFrame sample() {
     CapturedFrame frame;
     FrameDescription& d = frame.description;
@@ -96,7 +96,7 @@ struct Captures : ::testing::Test {
       all += format_for_people(diagnostics, one) + "\n";
     return all;
   }
-  // Reading must fail with this diagnostic at this JSON pointer, and say this.
+  // Expects that reading fails with this diagnostic and text at this JSON pointer.
   void expect_rejected(const fs::path& frame, DiagnosticId id, const std::string& pointer,
                        const std::string& text) {
     EXPECT_FALSE(read_frame(frame, shipped, diagnostics));
@@ -109,7 +109,7 @@ struct Captures : ::testing::Test {
   }
 };
 
-TEST_F(Captures, ReturnWhatWasWrittenBitForBit) {
+TEST_F(Captures, RoundTripIsBitForBit) {
   const CapturedFrame frame = sample();
   write(frame);
   const auto frames = find_frames(root / "capture", diagnostics);
@@ -138,14 +138,14 @@ TEST_F(Captures, ReturnWhatWasWrittenBitForBit) {
     EXPECT_EQ(((*back).*image).values, (frame.*image).values);
 }
 
-TEST_F(Captures, ThicknessAndTheLightBehindComeTogether) {
+TEST_F(Captures, ThicknessAndBackLightingComeTogether) {
   const fs::path frame = write(sample());
   fs::remove(frame / "back_lighting.exr");
   expect_rejected(frame, DiagnosticId::capture_picture, "", "'thickness.exr' and 'back_lighting.exr'");
   EXPECT_EQ(diagnostics.count(Severity::error), 1u);
 }
 
-TEST_F(Captures, TransmissionAddsWhatComesThroughToTheTruthsLight) {
+TEST_F(Captures, TransmissionAddsToTheReferencesLight) {
   CapturedFrame frame = sample();
   frame.scatter_scale = {};
   const ReferenceFrame without = make_reference_frame(frame);
@@ -167,7 +167,8 @@ TEST_F(Captures, TransmissionAddsWhatComesThroughToTheTruthsLight) {
       const double expected =
           dermis::subsurface::shape_survival(shape[c], double(frame.thickness.values[at])) *
           double(frame.back_lighting.values[3 * at + c]);
-      EXPECT_NEAR(added, expected, 1e-6 + 1e-7 * double(without.light[3 * i + c])) << i; // fp32 sums
+      // fp32 sums.
+      EXPECT_NEAR(added, expected, 1e-6 + 1e-7 * double(without.light[3 * i + c])) << i;
     }
   EXPECT_TRUE(some);
 }
@@ -187,7 +188,7 @@ TEST_F(Captures, HandMadeOrthographicFramesAreExact) {
   EXPECT_NEAR(back->rays.offset_y, 1.5e-3, 1e-18);
 }
 
-TEST_F(Captures, OptionalPicturesMayBeAbsentAndRequiredOnesMayNot) {
+TEST_F(Captures, OnlyOptionalPicturesMayBeAbsent) {
   CapturedFrame frame = sample();
   frame.albedo = frame.normal = frame.velocity = frame.scatter_scale = frame.specular = {};
   frame.thickness = frame.back_lighting = {};
@@ -203,12 +204,12 @@ TEST_F(Captures, OptionalPicturesMayBeAbsentAndRequiredOnesMayNot) {
   }
 }
 
-TEST_F(Captures, AFrameInTheFolderItselfIsOneFrame) {
+TEST_F(Captures, FrameInTheFolderItselfIsOneFrame) {
   const fs::path folder = write(sample());
   EXPECT_EQ(find_frames(folder, diagnostics), std::vector<fs::path>{folder});
 }
 
-TEST_F(Captures, FramesComeInOrderOfTheirNames) {
+TEST_F(Captures, FramesAreOrderedByName) {
   CaptureWriter writer;
   ASSERT_TRUE(writer.begin(root / "many", error));
   for (uint64_t i = 0; i < 12; ++i) {
@@ -216,7 +217,7 @@ TEST_F(Captures, FramesComeInOrderOfTheirNames) {
     frame.description.frame_index = i;
     ASSERT_TRUE(writer.add(frame, error)) << error;
   }
-  EXPECT_FALSE(fs::exists(root / "many")); // not before it is whole
+  EXPECT_FALSE(fs::exists(root / "many")); // Not before the capture is complete.
   ASSERT_TRUE(writer.finish(error)) << error;
   const auto frames = find_frames(root / "many", diagnostics);
   ASSERT_EQ(frames.size(), 12u);
@@ -232,7 +233,7 @@ TEST_F(Captures, EmptyOrMissingFoldersAreRefused) {
   EXPECT_THAT(messages(), HasSubstr("none"));
 }
 
-TEST_F(Captures, AnUnfinishedCaptureLeavesNothing) {
+TEST_F(Captures, UnfinishedCaptureLeavesNothing) {
   {
     CaptureWriter writer;
     ASSERT_TRUE(writer.begin(root / "a", error));
@@ -255,14 +256,14 @@ TEST_F(Captures, OnlyACaptureIsReplaced) {
   EXPECT_TRUE(fs::exists(root / "thesis" / "chapter.txt"));
 }
 
-TEST_F(Captures, DamagedValuesAreMendedCountedAndReported) {
+TEST_F(Captures, DamagedValuesAreRepairedAndReported) {
   CapturedFrame frame = sample();
   frame.lighting.values[0] = NAN;
   frame.lighting.values[1] = INFINITY;
   frame.lighting.values[2] = -1;
-  frame.lighting.values[3 * 4] = NAN; // no profile there: nobody's loss
+  frame.lighting.values[3 * 4] = NAN; // No profile there: the pixel does not count.
   frame.depth.values[1] = -3;
-  frame.normal.values[0] = -1; // normals may point anywhere
+  frame.normal.values[0] = -1; // Normals may point in any direction.
   const auto back = read_frame(write(frame), shipped, diagnostics);
   ASSERT_TRUE(back) << messages();
   EXPECT_EQ(back->sanitised.not_finite, 2u);
@@ -279,10 +280,10 @@ TEST_F(Captures, DamagedValuesAreMendedCountedAndReported) {
 TEST_F(Captures, LightThatGraphsClampIsReported) {
   CapturedFrame frame = sample();
   frame.lighting.values[0] = 70000;
-  frame.lighting.values[1] = 2e5f;          // the same pixel
-  frame.back_lighting.values[3 * 2] = 1e5f; // another one
-  frame.lighting.values[3 * 1] = 65504;     // fits
-  frame.lighting.values[3 * 4] = 1e6f;      // no profile there
+  frame.lighting.values[1] = 2e5f;          // The same pixel.
+  frame.back_lighting.values[3 * 2] = 1e5f; // Another pixel.
+  frame.lighting.values[3 * 1] = 65504;     // Within the limit.
+  frame.lighting.values[3 * 4] = 1e6f;      // No profile there.
   const auto back = read_frame(write(frame), shipped, diagnostics);
   ASSERT_TRUE(back) << messages();
   EXPECT_EQ(back->lighting.values, frame.lighting.values);
@@ -306,7 +307,7 @@ TEST_F(Captures, PicturesWithOtherChannelsAreRefused) {
   expect_rejected(folder, DiagnosticId::capture_picture, "", "R,G,B");
 }
 
-TEST_F(Captures, ProfilesOfThePictureMustBeListed) {
+TEST_F(Captures, ProfileIdsOfThePictureMustBeListed) {
   const fs::path folder = write(sample());
   change(folder, "\"id\": 3", "\"id\": 4");
   expect_rejected(folder, DiagnosticId::capture_profile, "/profiles",
@@ -321,7 +322,7 @@ TEST_F(Captures, ProfileIdsAreWholeNumbers) {
   expect_rejected(folder, DiagnosticId::capture_profile, "/profiles", "0.5 at pixel (1, 1)");
 }
 
-TEST_F(Captures, ProfilesComeFromFilesToo) {
+TEST_F(Captures, ProfilesCanBeFiles) {
   const fs::path folder = write(sample());
   const std::string inline_profile = "\"dmfp_mm\": [3.67, 1.37, 0.68], \"albedo\": [0.44, 0.22, 0.13]";
   change(folder, inline_profile, "\"file\": \"skin\"");
@@ -337,7 +338,7 @@ TEST_F(Captures, ProfilesComeFromFilesToo) {
   EXPECT_EQ(frame->description.profiles[0].profile.name, "wax");
 }
 
-TEST_F(Captures, NothingIsReadOutsideOfTheirFolder) {
+TEST_F(Captures, NothingOutsideTheirFolderIsRead) {
   const fs::path folder = write(sample());
   const std::string inline_profile = "\"dmfp_mm\": [3.67, 1.37, 0.68], \"albedo\": [0.44, 0.22, 0.13]";
   fs::copy_file(shipped / "wax.json", root / "wax.json");
@@ -354,7 +355,7 @@ TEST_F(Captures, NothingIsReadOutsideOfTheirFolder) {
   }
 }
 
-TEST_F(Captures, PicturesAndFramesThatAreLinksOutAreRefused) {
+TEST_F(Captures, LinksOutOfTheFolderAreRefused) {
   const fs::path folder = write(sample()), other = write(sample(), "other");
   fs::remove(folder / "lighting.exr");
   fs::create_symlink(other / "lighting.exr", folder / "lighting.exr");
@@ -362,7 +363,7 @@ TEST_F(Captures, PicturesAndFramesThatAreLinksOutAreRefused) {
   diagnostics = {};
   EXPECT_TRUE(read_frame(folder, shipped, diagnostics, std::vector{(root / "other").string()})) << messages();
   fs::rename(folder / "albedo.exr", folder / "here.exr");
-  fs::create_symlink("here.exr", folder / "albedo.exr"); // inside: what it leads to counts
+  fs::create_symlink("here.exr", folder / "albedo.exr"); // The link's target is inside.
   fs::remove(folder / "lighting.exr");
   fs::copy_file(other / "lighting.exr", folder / "lighting.exr");
   diagnostics = {};
@@ -376,25 +377,26 @@ TEST_F(Captures, PicturesAndFramesThatAreLinksOutAreRefused) {
   EXPECT_EQ(find_frames(root / "capture", diagnostics, std::vector{(root / "other").string()}).size(), 2u);
 }
 
-TEST_F(Captures, AProfileIdIsGivenOnce) {
+TEST_F(Captures, DuplicateProfileIdIsRefused) {
   const fs::path folder = write(sample());
   change(folder, "\"profiles\": [", "\"profiles\": [ { \"id\": 3, \"file\": \"skin\" },");
   expect_rejected(folder, DiagnosticId::capture_profile, "/profiles/1/id", "given twice");
 }
 
-TEST_F(Captures, WhatIsNoProjectionIsRefused) {
+TEST_F(Captures, NotAProjectionIsRefused) {
   const fs::path folder = write(sample());
   change(folder, "[1.1, 0, 0, 0", "[1.1, 0.5, 0, 0");
   expect_rejected(folder, DiagnosticId::capture_projection, "/clip_from_view", "axis-aligned perspective");
 }
 
-TEST_F(Captures, TheKindOfProjectionMustAgreeWithTheMatrix) {
+TEST_F(Captures, ProjectionTypeMustMatchTheMatrix) {
   const fs::path folder = write(sample());
   change(folder, "\"perspective\"", "\"orthographic\"");
   expect_rejected(folder, DiagnosticId::capture_projection, "/clip_from_view", "axis-aligned orthographic");
 }
 
-// The same frame in a left-handed view space: z of every view position and normal has the other sign.
+// Returns the frame in a left-handed view space: z of every view position and normal has the other
+// sign.
 CapturedFrame left_handed(CapturedFrame frame) {
   FrameDescription& d = frame.description;
   for (subsurface::Matrix4* clip : {&d.clip_from_view, &d.previous_clip_from_view})
@@ -420,7 +422,7 @@ void expect_read_as(const std::optional<CapturedFrame>& read, const CapturedFram
   EXPECT_EQ(read->normal.values, right.normal.values);
 }
 
-TEST_F(Captures, LeftHandedFramesReadAsTheirMirrors) {
+TEST_F(Captures, LeftHandedFramesAreMirrored) {
   CapturedFrame right = sample();
   const fs::path seen = write(left_handed(right), "perspective");
   expect_read_as(read_frame(seen, shipped, diagnostics), right);
@@ -435,7 +437,7 @@ TEST_F(Captures, LeftHandedFramesReadAsTheirMirrors) {
   change(flat, "\"orthographic\"", "\"orthographic\", \"view_space\": \"left_handed\"");
   expect_read_as(read_frame(flat, shipped, diagnostics), right);
 
-  // A pixel pitch has no handedness; the other matrices have that of the file.
+  // A pixel pitch has no handedness; the other matrices have the handedness of the file.
   right.description.pixel_pitch_m = 1e-3;
   complete_projection(right.description, right.rays);
   right.description.previous_clip_from_view = right.description.clip_from_view;
@@ -499,7 +501,7 @@ TEST_F(Captures, TheVersionAndTheSizeAreRequired) {
   expect_rejected(folder, DiagnosticId::out_of_range, "/width", "width");
 }
 
-TEST_F(Captures, TheTruthSeesTheRenderedPartAlone) {
+TEST_F(Captures, ReferenceUsesOnlyTheRenderedPart) {
   const CapturedFrame frame = sample();
   const ReferenceFrame reference = make_reference_frame(frame);
   EXPECT_EQ(reference.width, 5u);

@@ -23,7 +23,7 @@ using ::testing::HasSubstr;
 
 const std::vector<ChannelNames> single = {{"*"}};
 
-// The value of a pixel of every written picture; never 0, and a half can hold it.
+// Returns the value of a pixel of every written picture; never 0, and exact in a half float.
 float value_at(int x, int y) {
   return 1 + static_cast<float>((x + 16) & 31) / 4 + static_cast<float>((y + 16) & 31) / 128;
 }
@@ -103,7 +103,7 @@ TEST_F(Exr, EveryCompressionIsRead) {
         read_exr(write(header_of(small, small, static_cast<Imf::Compression>(c))), single, error);
     ASSERT_TRUE(image) << error;
     const std::vector<float> expected = values_of(small);
-    // PXR24 keeps 16 bits of the fraction, B44 leaves floats alone; DWA keeps what is seen.
+    // PXR24 keeps 16 bits of the fraction, B44 does not change floats, and DWA is lossy.
     const bool lossy = c == Imf::DWAA_COMPRESSION || c == Imf::DWAB_COMPRESSION;
     for (size_t i = 0; i < expected.size(); ++i)
       ASSERT_NEAR(image->values[i], expected[i], lossy ? 0.05f * expected[i] : 0.0f) << i;
@@ -125,10 +125,10 @@ TEST_F(Exr, TilesOfEveryKindOfLevelsAreRead) {
 TEST_F(Exr, DataWindowsArePlacedInDisplayWindows) {
   const Box2i displays[] = {Box2i(V2i(0, 0), V2i(31, 23)), Box2i(V2i(-5, -3), V2i(26, 20))};
   const Box2i windows[] = {
-      Box2i(V2i(10, 5), V2i(41, 28)),    // moved to the lower right
-      Box2i(V2i(-10, -5), V2i(21, 18)),  // to the upper left
-      Box2i(V2i(4, 6), V2i(7, 8)),       // a part
-      Box2i(V2i(-20, -20), V2i(50, 40)), // more than is shown
+      Box2i(V2i(10, 5), V2i(41, 28)),    // Moved to the lower right.
+      Box2i(V2i(-10, -5), V2i(21, 18)),  // Moved to the upper left.
+      Box2i(V2i(4, 6), V2i(7, 8)),       // A part.
+      Box2i(V2i(-20, -20), V2i(50, 40)), // Larger than the display window.
   };
   for (const Box2i& display : displays)
     for (const Box2i& data : windows)
@@ -151,12 +151,12 @@ TEST_F(Exr, DataWindowsArePlacedInDisplayWindows) {
         }
 }
 
-TEST_F(Exr, WindowsThatDoNotMeetAreRefused) {
+TEST_F(Exr, DisjointWindowsAreRefused) {
   const Box2i far_away(V2i(100, 0), V2i(131, 23));
   expect_rejected(write(header_of(small, far_away, Imf::ZIP_COMPRESSION)), "outside of its display window");
 }
 
-TEST_F(Exr, CompressionsThatAreNotReadAreNamed) {
+TEST_F(Exr, UnsupportedCompressionsAreNamed) {
   const fs::path path = write(header_of(small, small, Imf::ZIP_COMPRESSION));
   const std::string key("compression\0compression\0", 24);
   expect_rejected(change(path, key, 4, {10}), "its compression HTJ2K256 is not read; save it with ZIP");
@@ -219,7 +219,7 @@ TEST_F(Exr, HeadersWithoutWindowsAreRefused) {
   expect_rejected(change(path, "displayWind", 0, {'o', 'x'}), "its header has no 'displayWindow'");
 }
 
-TEST_F(Exr, PicturesOfEveryCompressionMayBeDamaged) {
+TEST_F(Exr, DamagedPicturesNeverCrash) {
   for (int c = 0; c < Imf::NUM_COMPRESSION_METHODS; ++c)
     for (const bool tiled : {false, true}) {
       Imf::Header header = header_of(small, small, static_cast<Imf::Compression>(c));

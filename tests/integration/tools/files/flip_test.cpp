@@ -1,4 +1,4 @@
-// FLIP: what must hold for any pictures, and values that follow from the papers' equations by hand.
+// Tests FLIP: properties for any pictures, and values computed by hand from the papers' equations.
 #include "integration/tools/files/flip.hpp"
 
 #include <gtest/gtest.h>
@@ -24,7 +24,8 @@ Image even(float r, float g, float b, uint32_t side = 32) {
 Image noise(uint32_t seed, float maximum = 1) {
   Image image = Image::sized(40, 24, 3);
   std::mt19937 generator(seed);
-  for (float& value : image.values) // bits of the generator itself: distributions differ between libraries
+  // Bits of the generator itself, because distributions differ between libraries.
+  for (float& value : image.values)
     value = maximum * static_cast<float>(generator() >> 8) / float(1u << 24);
   return image;
 }
@@ -36,7 +37,7 @@ double mean(const std::vector<float>& values) {
   return sum / double(values.size());
 }
 
-TEST(Flip, IsNothingWhereNothingDiffers) {
+TEST(Flip, EqualPictures_AreZero) {
   for (const bool high : {false, true}) {
     const Image image = noise(1, high ? 20.0f : 1.0f);
     for (const float value : flip(image, image, high))
@@ -44,7 +45,7 @@ TEST(Flip, IsNothingWhereNothingDiffers) {
   }
 }
 
-TEST(Flip, LiesBetweenNothingAndOne) {
+TEST(Flip, IsBetweenZeroAndOne) {
   for (uint32_t seed = 0; seed < 8; ++seed)
     for (const float value : flip(noise(2 * seed), noise(2 * seed + 1), false)) {
       EXPECT_GE(value, 0.0f);
@@ -52,22 +53,22 @@ TEST(Flip, LiesBetweenNothingAndOne) {
     }
 }
 
-TEST(Flip, IsTheSameBothWaysWhereNoReferenceDecidesTheExposure) {
+TEST(Flip, IsSymmetricForScreenColours) {
   const Image a = noise(5), b = noise(6);
   EXPECT_EQ(flip(a, b, false), flip(b, a, false));
 }
 
-// Filters leave an even picture as it is, and it has no features: what is left is the difference of two
+// Filters keep an even picture unchanged, and it has no features. The rest is the difference of two
 // colours, which is mapped so that green against blue is 1 (2020, section 4.1.3).
 TEST(Flip, GreenAgainstBlueIsOne) {
   for (const float value : flip(even(0, 1, 0), even(0, 0, 1), false))
     EXPECT_NEAR(value, 1.0, 1e-5);
 }
 
-// 100 in lightness and no colour: 100^.7 = 25.119. Green and blue are 203.02^.7 = 41.25 apart, so the knee is
-// at 16.50 and the rest of the way is (25.119 - 16.50) / (41.25 - 16.50) of .05. The four digits leave the
-// white point's last one open.
-TEST(Flip, BlackAgainstWhiteIsWhatTheEquationsSay) {
+// 100 in lightness and no colour: 100^0.7 = 25.119. Green and blue are 203.02^0.7 = 41.25 apart, so
+// the knee is at 16.50, and the result above the knee is (25.119 - 16.50) / (41.25 - 16.50) of
+// 0.05. The four digits leave the white point's last digit open.
+TEST(Flip, BlackAgainstWhiteMatchesTheEquations) {
   for (const float value : flip(even(0, 0, 0), even(1, 1, 1), false))
     EXPECT_NEAR(value, 0.96738, 1e-5);
 }
@@ -81,8 +82,9 @@ TEST(Flip, GrowsWithTheDifference) {
   }
 }
 
-// The same pixels a tenth as far away: an eye sees a checkerboard as its mean, until it comes near.
-TEST(Flip, WhatTheEyeDoesNotResolveCountsLess) {
+// With the same pixels a tenth as far away: an eye averages a distant checkerboard and resolves a
+// near one.
+TEST(Flip, UnresolvedDetailCountsLess) {
   Image board = even(0, 0, 0);
   for (uint32_t y = 0; y < board.height; ++y)
     for (uint32_t x = 0; x < board.width; ++x)
@@ -93,7 +95,7 @@ TEST(Flip, WhatTheEyeDoesNotResolveCountsLess) {
   EXPECT_LT(mean(flip(grey, board, false, 200)), 0.25 * mean(flip(grey, board, false, 10)));
 }
 
-TEST(Flip, AnEdgeCountsMoreThanItsColourAlone) {
+TEST(Flip, EdgeCountsMoreThanItsColour) {
   const Image grey = even(0.3f, 0.3f, 0.3f, 64);
   Image line = grey;
   for (uint32_t y = 0; y < 64; ++y)
@@ -101,14 +103,14 @@ TEST(Flip, AnEdgeCountsMoreThanItsColourAlone) {
       line.at(32, y, c) = 0.8f;
   const std::vector<float> seen = flip(grey, line, false);
   EXPECT_GT(seen[32 * 64 + 32], 0.3f);
-  EXPECT_NEAR(seen[32 * 64 + 2], 0.0f, 1e-6); // far beyond the filters' reach
+  EXPECT_NEAR(seen[32 * 64 + 2], 0.0f, 1e-6); // Far beyond the filters' reach.
 }
 
-TEST(Flip, OfHighRangeDoesNotCareForTheUnitOfLight) {
+TEST(Flip, HighRange_IgnoresTheUnitOfLight) {
   const Image a = noise(8), b = noise(9);
   Image bright_a = a, bright_b = b;
   for (size_t i = 0; i < a.values.size(); ++i) {
-    bright_a.values[i] *= 1024; // a power of two: exact
+    bright_a.values[i] *= 1024; // A power of two: exact.
     bright_b.values[i] *= 1024;
   }
   const auto one = flip(a, b, true), other = flip(bright_a, bright_b, true);
@@ -116,7 +118,7 @@ TEST(Flip, OfHighRangeDoesNotCareForTheUnitOfLight) {
     EXPECT_NEAR(one[i], other[i], 1e-5);
 }
 
-TEST(Flip, OfHighRangeSeesWhatIsBrighterThanAScreen) {
+TEST(Flip, HighRange_SeesBrightDifferences) {
   Image a = even(0.5f, 0.5f, 0.5f), b = a;
   for (uint32_t c = 0; c < 3; ++c) {
     a.at(16, 16, c) = 50;
@@ -126,7 +128,7 @@ TEST(Flip, OfHighRangeSeesWhatIsBrighterThanAScreen) {
   EXPECT_GT(flip(a, b, true)[16 * 32 + 16], 0.05f);
 }
 
-TEST(Flip, SurvivesValuesThatAreNone) {
+TEST(Flip, NonFiniteValues_AreAccepted) {
   Image a = noise(3);
   a.values[7] = std::numeric_limits<float>::quiet_NaN();
   a.values[8] = -std::numeric_limits<float>::infinity();

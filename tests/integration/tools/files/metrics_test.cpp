@@ -8,7 +8,7 @@
 namespace dermis::tools {
 namespace {
 
-TEST(Metrics, AConstantErrorIsItsOwnRmse) {
+TEST(Metrics, ConstantErrorIsItsRmse) {
   const std::vector<float> image(3 * 100, 1.5f);
   const std::vector<double> reference(3 * 100, 1.4);
   std::vector<uint32_t> pixels(100);
@@ -47,7 +47,7 @@ TEST(Metrics, P99IsTheNearestRank) {
     image[3 * i] = image[3 * i + 1] = image[3 * i + 2] = float(i);
   }
   const ErrorFigures figures = measure_error(image, std::vector<double>(600), pixels, 1, 200);
-  EXPECT_NEAR(figures.p99_error, 197, 1e-9); // the 198th of 200
+  EXPECT_NEAR(figures.p99_error, 197, 1e-9); // The 198th of 200.
   EXPECT_NEAR(figures.max_error, 199, 1e-9);
 }
 
@@ -61,9 +61,9 @@ TEST(Metrics, NonFiniteResultsAreInfiniteErrors) {
   EXPECT_LT(figures.psnr_db, 0);
 }
 
-TEST(Metrics, ConfidenceIntervalHoldsTheValueOfAllPixels) {
-  // 400 subsets of 100 out of 10000: 95 % of the intervals must hold the truth; binomial sd 1.1 %, and
-  // squares of a uniform error are near enough to normal in the mean of 100.
+TEST(Metrics, ConfidenceIntervalContainsTheFullValue) {
+  // 400 subsets of 100 out of 10000: 95 % of the intervals must contain the reference. The binomial
+  // sd is 1.1 %, and the mean of 100 squares of a uniform error is close to normal.
   std::vector<float> image(30000);
   uint32_t state = 1;
   auto random = [&] { return state = state * 1664525u + 1013904223u, state >> 8; };
@@ -84,16 +84,16 @@ TEST(Metrics, ConfidenceIntervalHoldsTheValueOfAllPixels) {
   EXPECT_LE(held, 396);
 }
 
-TEST(Metrics, ExposurePutsTheBrightEndAtOne) {
+TEST(Metrics, ExposureMapsTheBrightEndToOne) {
   ExposureMeter meter;
   std::vector<float> light(3 * 1000);
   std::vector<uint8_t> profile(1000, 1);
   for (size_t i = 0; i < 1000; ++i)
     light[3 * i] = light[3 * i + 1] = light[3 * i + 2] = float(i + 1);
-  profile[998] = 0; // 999 is left out, so that 998 is among the brightest
+  profile[998] = 0; // 999 is left out, so 998 is among the brightest values.
   light[3 * 997] = NAN;
   meter.add(light, profile);
-  EXPECT_NEAR(meter.result(), 1.0 / 1000, 1e-9); // rank ceil(.999 * 998) = 998 of 998 values
+  EXPECT_NEAR(meter.result(), 1.0 / 1000, 1e-9); // Rank ceil(0.999 * 998) = 998 of 998 values.
   EXPECT_EQ(ExposureMeter{}.result(), 1);
 }
 

@@ -43,7 +43,7 @@ Image sample(uint32_t width, uint32_t height, uint32_t channels) {
   return image;
 }
 
-TEST_F(Pictures, ExrReturnsWhatWasWrittenBitForBit) {
+TEST_F(Pictures, ExrRoundTripIsBitForBit) {
   Image image = sample(37, 21, 3);
   image.values[5] = std::numeric_limits<float>::infinity();
   image.values[6] = 1e-42f;
@@ -53,7 +53,7 @@ TEST_F(Pictures, ExrReturnsWhatWasWrittenBitForBit) {
   EXPECT_EQ(back->width, 37u);
   EXPECT_EQ(back->height, 21u);
   EXPECT_EQ(back->values, image.values);
-  EXPECT_EQ(files(), 1u); // no temporary file stays
+  EXPECT_EQ(files(), 1u); // No temporary file remains.
 }
 
 TEST_F(Pictures, ExrChannelsAreFoundByName) {
@@ -65,7 +65,7 @@ TEST_F(Pictures, ExrChannelsAreFoundByName) {
   EXPECT_EQ(back->values[1], sample(4, 4, 2).values[3]);
 }
 
-TEST_F(Pictures, AnySingleChannelIsTakenOnlyIfItIsTheOnlyOne) {
+TEST_F(Pictures, OnlyChannelIsAcceptedUnderAnyName) {
   const std::vector<ChannelNames> any = {{"*"}};
   ASSERT_TRUE(write_exr(folder / "one.exr", sample(4, 4, 1), {"whatever"}, error));
   EXPECT_TRUE(read_exr(folder / "one.exr", any, error));
@@ -107,7 +107,8 @@ TEST_F(Pictures, DamagedExrsNeverCrash) {
     std::vector<uint8_t> damaged = whole;
     damaged[at] ^= static_cast<uint8_t>(1u << (at % 8));
     ASSERT_TRUE(write_bytes(folder / "b.exr", damaged, error));
-    read_exr(folder / "b.exr", rgb, error); // refused or read: either, but it returns
+    // Reading returns, whether it refuses or reads the file.
+    read_exr(folder / "b.exr", rgb, error);
   }
 }
 
@@ -123,7 +124,8 @@ TEST_F(Pictures, ExrsOfHugeSizeAreRefusedBeforeDecoding) {
   EXPECT_FALSE(read_exr(folder / "b.exr", rgb, error));
 }
 
-// A file of one 4 x 2 picture without compression or with RLE, byte by byte: half "H", uint "U".
+// Returns a file of one 4 x 2 picture without compression or with RLE, byte by byte: half "H", uint
+// "U".
 std::vector<uint8_t> hand_made(uint8_t compression, const std::vector<std::vector<uint8_t>>& lines) {
   std::vector<uint8_t> out;
   auto u32 = [&](uint32_t v) {
@@ -138,7 +140,7 @@ std::vector<uint8_t> hand_made(uint8_t compression, const std::vector<std::vecto
   text("U"), u32(0), u32(0), u32(1), u32(1);
   out.push_back(0);
   text("compression"), text("compression"), u32(1), out.push_back(compression);
-  for (const char* window : {"dataWindow", "displayWindow"}) // do not start at 0
+  for (const char* window : {"dataWindow", "displayWindow"}) // Windows that do not start at 0.
     text(window), text("box2i"), u32(16), u32(5), u32(7), u32(8), u32(8);
   out.push_back(0);
   const size_t table = out.size();
@@ -154,7 +156,7 @@ std::vector<uint8_t> hand_made(uint8_t compression, const std::vector<std::vecto
   return out;
 }
 
-// 4 halves (1, -2, smallest subnormal, infinity), then 4 uints.
+// 4 half floats (1, -2, smallest subnormal, infinity), then 4 uints.
 const std::vector<uint8_t> plain_line = {0x00, 0x3c, 0x00, 0xc0, 1, 0, 0x00, 0x7c, 1,    0, 0, 0,
                                          2,    0,    0,    0,    3, 0, 0,    0,    0xff, 0, 0, 0};
 
@@ -167,8 +169,8 @@ TEST_F(Pictures, HalvesAndUintsBecomeFloats) {
   EXPECT_EQ(std::vector<float>(image->values.begin() + 8, image->values.end()), row);
 }
 
-TEST_F(Pictures, RunLengthsAreUnpackedAndBounded) {
-  // 24 equal prepared bytes of 128 (no difference) after a first 0: the line is all zeros.
+TEST_F(Pictures, RunLengthsAreDecodedAndBounded) {
+  // After a first 0, 24 equal prepared bytes of 128 (no difference): the line is all zeros.
   const std::vector<uint8_t> zeros = {0xff, 0, 22, 128};
   ASSERT_TRUE(write_bytes(folder / "a.exr", hand_made(1, {zeros, zeros}), error));
   const std::vector<ChannelNames> u = {{"U"}};
@@ -183,12 +185,12 @@ TEST_F(Pictures, RunLengthsAreUnpackedAndBounded) {
   }
 }
 
-TEST_F(Pictures, AFailedWriteLeavesTheOldFileAndNothingElse) {
+TEST_F(Pictures, FailedWriteKeepsTheOldFile) {
   EXPECT_FALSE(write_exr(folder / "none" / "a.exr", sample(2, 2, 1), {"Y"}, error));
   EXPECT_THAT(error, HasSubstr("cannot be written"));
   EXPECT_FALSE(write_exr(folder / "a.exr", sample(2, 2, 1), {"X", "Y"}, error));
   fs::create_directories(folder / "taken" / "full");
-  EXPECT_FALSE(write_text(folder / "taken", "text", error)); // a folder stands there
+  EXPECT_FALSE(write_text(folder / "taken", "text", error)); // A folder has this name.
   EXPECT_EQ(files(), 1u);
 }
 
@@ -202,7 +204,7 @@ TEST_F(Pictures, PngReturnsItsBytes) {
   EXPECT_EQ(encode_srgb8(*back), pixels);
 }
 
-// A PNG of one row and 16 bits a channel, with stored blocks.
+// Returns a PNG of one row with 16 bits per channel, in stored blocks.
 std::vector<uint8_t> png_of_16_bits(const std::vector<uint16_t>& pixels) {
   std::vector<uint8_t> file = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
   const auto word = [](std::vector<uint8_t>& out, size_t value) {
@@ -213,7 +215,7 @@ std::vector<uint8_t> png_of_16_bits(const std::vector<uint16_t>& pixels) {
     word(file, data.size());
     file.insert(file.end(), name.begin(), name.end());
     file.insert(file.end(), data.begin(), data.end());
-    word(file, 0); // no checksum: the reader does not look at it
+    word(file, 0); // No checksum, because the reader ignores it.
   };
   std::vector<uint8_t> header;
   word(header, pixels.size() / 3);
@@ -221,10 +223,10 @@ std::vector<uint8_t> png_of_16_bits(const std::vector<uint16_t>& pixels) {
   header.insert(header.end(), {16, 2, 0, 0, 0});
   chunk("IHDR", header);
   const size_t size = 1 + 2 * pixels.size();
-  std::vector<uint8_t> packed = {0x78, 0x01, 1}; // zlib, one last block, stored
+  std::vector<uint8_t> packed = {0x78, 0x01, 1}; // zlib, one last block, stored.
   for (const size_t length : {size, ~size})
     packed.insert(packed.end(), {static_cast<uint8_t>(length), static_cast<uint8_t>(length >> 8)});
-  packed.push_back(0); // no filter
+  packed.push_back(0); // No filter.
   for (const uint16_t value : pixels)
     packed.insert(packed.end(), {static_cast<uint8_t>(value >> 8), static_cast<uint8_t>(value)});
   word(packed, 0);
@@ -238,7 +240,7 @@ TEST_F(Pictures, PngsOf16BitsKeepThem) {
   ASSERT_TRUE(write_bytes(folder / "a.png", png_of_16_bits(values), error));
   const auto image = read_png(folder / "a.png", error);
   ASSERT_TRUE(image) << error;
-  for (size_t i = 0; i < values.size(); ++i) // half a step of 16 bits
+  for (size_t i = 0; i < values.size(); ++i) // Half a step of 16 bits.
     EXPECT_NEAR(srgb_encode(image->values[i]), float(values[i]) / 65535.0f, 0.5f / 65535) << i;
 }
 
@@ -250,7 +252,8 @@ TEST_F(Pictures, BadPngsAreRefused) {
   std::vector<uint8_t> pixels(8 * 8 * 3, 9);
   ASSERT_TRUE(write_png(folder / "c.png", 8, 8, pixels, error));
   std::vector<uint8_t> bytes = bytes_of(folder / "c.png");
-  for (size_t length = 0; length < bytes.size() - 12; ++length) { // the last 12 bytes are an empty end mark
+  // The last 12 bytes are an empty end mark.
+  for (size_t length = 0; length < bytes.size() - 12; ++length) {
     ASSERT_TRUE(write_bytes(folder / "d.png", std::span(bytes).first(length), error));
     read_png(folder / "d.png", error);
   }

@@ -28,15 +28,15 @@ TEST(Analytic, TransferFunctionHasItsTabulatedValues) {
     EXPECT_NEAR(burley_mtf(k[i] / 7, 7), expected[i], 6e-7);
 }
 
-TEST(Analytic, DiscIsTheCdfAtItsCentreAndContinuousAtItsRim) {
+TEST(Analytic, DiscIsTheCdfAtTheCentreAndContinuous) {
   EXPECT_NEAR(burley_disc(0, 2.5, 1.3), burley_cdf(2.5, 1.3), 1e-12);
   EXPECT_EQ(burley_disc_centre(2.5, 1.3), burley_cdf(2.5, 1.3));
   EXPECT_NEAR(burley_disc(2.5 - 1e-7, 2.5, 1.3), burley_disc(2.5 + 1e-7, 2.5, 1.3), 1e-4);
   EXPECT_LT(burley_disc(3, 2.5, 1.3), burley_disc(2, 2.5, 1.3));
 }
 
-TEST(Analytic, AHugeDiscsRimIsAnEdge) {
-  // Curvature of radius 1e4 d moves the edge by about x^2 / 2e4.
+TEST(Analytic, RimOfAHugeDiscIsAnEdge) {
+  // A curvature of radius 1e4 d moves the edge by about x^2 / 2e4.
   EXPECT_NEAR(burley_disc(1e4 - 1, 1e4, 1), burley_edge(1, 1), 5e-4);
   EXPECT_NEAR(burley_disc(1e4 + 1, 1e4, 1), burley_edge(-1, 1), 5e-4);
 }
@@ -44,7 +44,7 @@ TEST(Analytic, AHugeDiscsRimIsAnEdge) {
 TEST(Analytic, GaussianLightHasItsTabulatedValues) {
   EXPECT_NEAR(burley_gaussian_centre(.5, 1), .247374, 6e-7);
   EXPECT_NEAR(burley_gaussian_centre(2, 1), .605886, 6e-7);
-  EXPECT_NEAR(burley_gaussian_centre(1e4, 1), 1, 1e-6); // wide light: the furnace
+  EXPECT_NEAR(burley_gaussian_centre(1e4, 1), 1, 1e-6); // Wide light: the furnace.
 }
 
 } // namespace

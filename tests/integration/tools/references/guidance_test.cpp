@@ -1,4 +1,4 @@
-// Moving moments and what is made of them, against what they are defined to be.
+// Tests moving moments and values derived from them against their definitions.
 #include "integration/tools/references/guidance.hpp"
 
 #include <gtest/gtest.h>
@@ -25,8 +25,8 @@ Pairs drawn(size_t count) {
   return pairs;
 }
 
-// Weights (1 - eta)^n for the first value and eta (1 - eta)^(n - i) for the others, about the mean of the
-// same weights.
+// Weights are (1 - eta)^n for the first value and eta (1 - eta)^(n - i) for the others, about the
+// mean with equal weights.
 double weighted_covariance(const Pairs& pairs, size_t count, double eta) {
   std::vector<double> weight(count);
   for (size_t i = 0; i < count; ++i)
@@ -41,7 +41,7 @@ double weighted_covariance(const Pairs& pairs, size_t count, double eta) {
   return covariance;
 }
 
-TEST(MovingMoments, TheMovingCovarianceIsTheExplicitlyWeightedOne) {
+TEST(MovingMoments, CovarianceMatchesTheWeightedOne) {
   const Pairs pairs = drawn(600);
   for (const double eta : {0.5, 0.2, 0.05, 0.005, 1e-6}) {
     MovingCovariance moments;
@@ -54,7 +54,7 @@ TEST(MovingMoments, TheMovingCovarianceIsTheExplicitlyWeightedOne) {
   }
 }
 
-TEST(MovingMoments, TheOtherFormIsTheSameTimesAConstantInEveryFrame) {
+TEST(MovingMoments, OtherFormDiffersByAConstantFactor) {
   const Pairs pairs = drawn(400);
   for (const double eta : {0.5, 0.2, 0.05}) {
     MovingCovariance emc;
@@ -68,7 +68,7 @@ TEST(MovingMoments, TheOtherFormIsTheSameTimesAConstantInEveryFrame) {
   }
 }
 
-TEST(MovingMoments, TheMovingVarianceOfIndependentValuesReadsLowByAKnownShare) {
+TEST(MovingMoments, IndependentValues_VarianceIsLowByAKnownFactor) {
   std::mt19937_64 random(3);
   std::normal_distribution<double> normal(5, 2);
   constexpr int frames = 2000000, warm = 1000;
@@ -80,12 +80,13 @@ TEST(MovingMoments, TheMovingVarianceOfIndependentValuesReadsLowByAKnownShare) {
       ASSERT_GE(moving.variance, 0);
       if (i >= warm) sum += moving.variance / frames;
     }
-    // 4 sigma: sd of one value .48 of the mean (eta .2), correlated over about 2 / eta frames.
+    // 4 sigma: the sd of one value is 0.48 of the mean (eta 0.2), correlated over about 2 / eta
+    // frames.
     EXPECT_NEAR(sum / 4, 2 * (1 - eta) / (2 - eta), 0.003) << eta;
   }
 }
 
-TEST(MovingMoments, AConstantHasNoVarianceHoweverBright) {
+TEST(MovingMoments, ConstantHasNoVariance) {
   for (const double value : {1e-6, 1.0, 1000.0}) {
     MovingVariance moving;
     for (int i = 0; i < 100; ++i)
@@ -94,13 +95,13 @@ TEST(MovingMoments, AConstantHasNoVarianceHoweverBright) {
   }
 }
 
-TEST(Guidance, AVarianceOnTargetKeepsTheNumberOfSamples) {
+TEST(Guidance, VarianceOnTarget_KeepsTheSampleCount) {
   for (const double count : {8.0, 17.0, 64.0})
     for (const double kappa : {0.0, 0.2, 1.0})
       EXPECT_NEAR(wanted_samples(1e-4, count, {.kappa = kappa}), count, 1e-9);
 }
 
-TEST(Guidance, WithKappaOneItIsTheFormOfTheSlides) {
+TEST(Guidance, KappaOne_IsTheFormOfTheSlides) {
   const GuidanceSettings settings{.kappa = 1};
   for (const double variance : {2e-5, 1e-4, 3e-4}) {
     const double slides = 20 * (1 + (variance / 1e-4 - 1) * (2 / settings.eta - 1));
@@ -108,14 +109,14 @@ TEST(Guidance, WithKappaOneItIsTheFormOfTheSlides) {
   }
 }
 
-TEST(Guidance, TheNumberOfSamplesIsAWholeOneInItsRange) {
+TEST(Guidance, SampleCountIsAnIntegerInItsRange) {
   const GuidanceSettings settings;
   EXPECT_EQ(clamped_samples(-1e9, settings), 8);
   EXPECT_EQ(clamped_samples(1e9, settings), 64);
   EXPECT_EQ(clamped_samples(20.4, settings), 20);
 }
 
-TEST(Guidance, TheControlsWeightIsBoundedAndOneWhereAllIsDark) {
+TEST(Guidance, ControlWeightIsBoundedAndOneInTheDark) {
   EXPECT_EQ(control_weight({}, 1e-6), 1);
   MovingCovariance moments{.mean_f = 0.2, .mean_g = 0.1, .covariance = 1, .variance_g = 1e-9, .begun = true};
   EXPECT_NEAR(control_weight(moments, 1e-6), 3, 1e-12);

@@ -1,4 +1,4 @@
-// A headless Chromium that takes pages of the command one by one, and laws that are asked of them.
+// Opens pages of the command one by one in a headless Chromium, and runs checks on them.
 import { mkdirSync, rmSync } from 'node:fs';
 import { createRequire } from 'node:module';
 import { join, resolve } from 'node:path';
@@ -12,11 +12,11 @@ mkdirSync(out, { recursive: true });
 
 const browser = await chromium.launch({ executablePath, args: ['--no-sandbox', '--disable-gpu'] });
 
-// A page whose every error counts, offline; `ready` is there once it is whole.
+// Opens a page offline and collects all errors; `ready` exists once the page is complete.
 export async function open(url, scheme = 'light', ready = 'body') {
   const context = await browser.newContext({ viewport: { width: 1440, height: 900 }, colorScheme: scheme, offline: true });
   const page = await context.newPage();
-  page.setDefaultTimeout(60000); // machines that do much else take their time
+  page.setDefaultTimeout(60000); // Busy machines need more time.
   const problems = [];
   page.on('pageerror', (error) => problems.push(String(error)));
   page.on('console', (message) => { if (['error', 'warning'].includes(message.type())) problems.push(message.text()); });
@@ -24,20 +24,21 @@ export async function open(url, scheme = 'light', ready = 'body') {
   const before = performance.now();
   await page.goto(url);
   await page.waitForSelector(ready);
-  await page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))); // it is drawn
+  // The page is painted.
+  await page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
   return { page, problems, seconds: (performance.now() - before) / 1000, close: () => context.close() };
 }
 
 export const shot = (page, name, options = {}) => page.screenshot({ path: join(out, `${name}.png`), ...options });
 
-// Sum of the channels of the background, 0 to 765.
+// Returns the sum of the channels of the background, 0 to 765.
 export const shade = (page, element) =>
   page.evaluate((one) => getComputedStyle(document.querySelector(one)).backgroundColor.match(/\d+/g).map(Number).reduce((a, b) => a + b, 0), element);
 
 const laws = [];
 export const law = (name, work) => laws.push([name, work]);
 
-// Asks all laws and ends the program.
+// Runs all checks and ends the program.
 export async function finish() {
   let failed = 0;
   for (const [name, work] of laws) {

@@ -1,4 +1,5 @@
-// Pages of `dermis bench --html` in a headless Chromium: laws of what a reader sees and can do. Screenshots land in OUT.
+// Checks pages of `dermis bench --html` in a headless Chromium for what a reader sees and can do.
+// Screenshots are written to OUT.
 // node report_test.mjs NODE_MODULES CHROMIUM DERMIS OUT
 import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
@@ -24,7 +25,7 @@ execFileSync(dermis, ['bench', 'all', '--quick', '--suites', 'record,skip', '--o
 const index = url_of('all/index'), skip = url_of('all/skip'), record = url_of('all/record');
 const pages = { record, error_time, dynamic, index, skip };
 
-// Of what stands in the page: relative luminance and contrast after WCAG 2.2.
+// Returns relative luminance and contrast of page elements after WCAG 2.2.
 const contrasts = (page, selector, property) => page.evaluate(([selector, property]) => {
   const channels = (color) => color.match(/[\d.]+/g).map(Number);
   const luminance = (color) => channels(color).slice(0, 3).map((c) => c / 255).map((c) => (c <= 0.04045 ? c / 12.92 : ((c + 0.055) / 1.055) ** 2.4))
@@ -36,7 +37,7 @@ const contrasts = (page, selector, property) => page.evaluate(([selector, proper
   });
 }, [selector, property]);
 
-// Colours of a screenshot: a page that is not drawn has a handful.
+// Counts the colours of a screenshot: an unpainted page has only a few.
 const colours = async (page, png) => page.evaluate(async (data) => {
   const picture = await createImageBitmap(new Blob([Uint8Array.from(atob(data), (c) => c.charCodeAt(0))], { type: 'image/png' }));
   const canvas = new OffscreenCanvas(picture.width, picture.height), context = canvas.getContext('2d');
@@ -65,7 +66,7 @@ law('a click on a title sorts the rows by number or by word, a second one turns 
   };
   const title = (text) => page.locator('thead th').filter({ hasText: new RegExp(`^${text}$`) });
   const sorted = (values, down) => values.every((one, i) => i === 0 || (down ? values[i - 1] >= one : values[i - 1] <= one));
-  assert.equal(sorted((await column('RMSE')).map(Number), false), false); // as it was written
+  assert.equal(sorted((await column('RMSE')).map(Number), false), false); // In written order.
   await title('RMSE').click();
   assert.ok(sorted((await column('RMSE')).map(Number), false));
   assert.equal(await title('RMSE').getAttribute('aria-sort'), 'ascending');
@@ -82,7 +83,7 @@ law('a click on a title sorts the rows by number or by word, a second one turns 
 
 law('what was not measured stands behind what was, whichever way rows are sorted', async () => {
   const { page, close } = await open(skip);
-  const title = page.locator('thead th').last(); // largest difference: not of every case
+  const title = page.locator('thead th').last(); // Largest difference: not every case has one.
   for (let i = 0; i < 2; ++i) {
     await title.click();
     const last = await page.locator('tbody tr').evaluateAll((rows) => rows.map((row) => row.cells[row.cells.length - 1].textContent.includes('–')));
@@ -100,7 +101,8 @@ law('plots show a point for each row, a legend names their colours, and no label
     if (of_rows) assert.equal(await page.locator('.plots circle').count(), await page.locator('tbody tr').count());
     const covered = await page.locator('.plots svg').evaluateAll((all) => all.flatMap((svg) => {
       const boxes = [...svg.querySelectorAll('text')].map((one) => [one.textContent, one.getBoundingClientRect()]);
-      const meet = (a, b) => a.left < b.right && b.left < a.right && a.top < b.bottom - 2 && b.top < a.bottom - 2; // ascent and descent are in the box
+      // Ascent and descent are in the box.
+      const meet = (a, b) => a.left < b.right && b.left < a.right && a.top < b.bottom - 2 && b.top < a.bottom - 2;
       return boxes.flatMap(([text, a], i) => boxes.slice(i + 1).filter(([, b]) => meet(a, b)).map(([other]) => `${text} and ${other}`));
     }));
     assert.deepEqual(covered, []);
@@ -137,7 +139,8 @@ law('pictures are drawn, and rows say what their marks mean', async () => {
   const widths = await page.locator('img').evaluateAll((all) => Promise.all(all.map((one) => one.decode().then(() => one.naturalWidth))));
   assert.ok(widths.length > 5 && widths.every((one) => one > 0));
   assert.match(await page.locator('p', { hasText: 'Click a title' }).textContent(), /Marked rows are on the front\.$/);
-  const on_front = JSON.parse(readFileSync(join(out, 'error-time.json'))).rows.filter((row) => row.on_pareto_front).length; // how many depends on times
+  // The number depends on times.
+  const on_front = JSON.parse(readFileSync(join(out, 'error-time.json'))).rows.filter((row) => row.on_pareto_front).length;
   assert.ok(on_front > 0);
   assert.equal(await page.locator('tr.best').count(), on_front);
   await close();

@@ -1,4 +1,5 @@
-// The viewer's page in a headless Chromium: laws of what a reader can do with it. Screenshots land in OUT.
+// Checks the viewer's page in a headless Chromium for what a reader can do with it. Screenshots are
+// written to OUT.
 // node viewer_test.mjs NODE_MODULES CHROMIUM DERMIS OUT
 import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
@@ -7,7 +8,7 @@ import { join } from 'node:path';
 import { pathToFileURL } from 'node:url';
 import { dermis, finish, law, open as open_page, out, shade, shot } from './browser.mjs';
 
-const most_bytes = 1.5 * 1024 * 1024; // of a page
+const most_bytes = 1.5 * 1024 * 1024; // Per page.
 const passes_of_large = 1000;
 const hostile = '</script><img src=x onerror="window.hurt=1"><!--';
 
@@ -17,7 +18,7 @@ function make_page(name, ...options) {
   return { file, url: pathToFileURL(file).href, bytes: statSync(file).size };
 }
 
-// A chain of sums with readers of earlier passes among them, of a pass type of the host.
+// Writes a chain of sums that also read earlier passes, of a pass type of the host.
 function write_large_graph() {
   const kinds = join(out, 'kinds.json'), graph = join(out, 'large.json');
   writeFileSync(kinds, JSON.stringify({ dermis_pass_types: 2, pass_types: [{ name: 'test.sum', ports: [
