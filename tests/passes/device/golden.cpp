@@ -72,9 +72,10 @@ void keep_golden_hash(const std::string& driver, const std::string& graph, const
   Table all = read_table();
   all[driver][graph] = hash;
   std::ofstream file(table);
-  file << "# SHA-256 of golden frames (golden_show) by driver and graph. DERMIS_GOLDEN_UPDATE=1\n"
-          "# build/release/tests/test_passes_device --gtest_filter='Graphs/Golden.FramesAreThose*'\n"
-          "# adds or replaces those of the driver it runs on.\n";
+  file
+      << "# SHA-256 of golden frames (golden_show) by driver and graph. DERMIS_GOLDEN_UPDATE=1\n"
+         "# build/release/tests/test_passes_device --gtest_filter='Graphs/Golden.FramesMatchTheStoredHash*'\n"
+         "# adds or replaces those of the driver it runs on.\n";
   for (const auto& [name, of_graphs] : all)
     for (const auto& [one, of_frames] : of_graphs)
       file << name << '\t' << one << '\t' << of_frames << '\n';

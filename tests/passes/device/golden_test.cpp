@@ -58,11 +58,12 @@ TEST_P(Golden, EveryRunAndOrder_GivesEqualBits) {
 
 // Runs in a separate process, because lavapipe reads its thread count only once.
 TEST_P(Golden, AnyThreadCount_GivesEqualBits) {
-  if (!driver().starts_with("llvmpipe")) GTEST_SKIP() << "of lavapipe alone is known how to set its threads";
+  if (!driver().starts_with("llvmpipe"))
+    GTEST_SKIP() << "only lavapipe has a known way to set its thread count";
   const std::string expected = line(hash_of(frames()));
   for (const int threads : {1, 2}) {
     const std::string command = fmt::format(
-        "LP_NUM_THREADS={} /proc/{}/exe --gtest_filter=Graphs/Golden.FramesAreThoseThatAreKept*/{}", threads,
+        "LP_NUM_THREADS={} /proc/{}/exe --gtest_filter=Graphs/Golden.FramesMatchTheStoredHash*/{}", threads,
         getpid(), GetParam());
     FILE* const child = popen(command.c_str(), "r");
     ASSERT_NE(child, nullptr);
