@@ -137,9 +137,9 @@ TEST(HistoryAliasing, RandomGraphs_SaveMemoryWithEqualPixels) {
     for (uint64_t order = 0; order < 3; ++order)
       ASSERT_TRUE(agrees(interpret(plan, {frames, seed, order + 1, order, 0}), reference)) << "seed " << seed;
   }
-  RecordProperty("borrowers", std::to_string(aliased_resources));
+  RecordProperty("aliased_resources", std::to_string(aliased_resources));
   RecordProperty("transient_bytes", std::to_string(with));
-  RecordProperty("transient_bytes_without_loans", std::to_string(without));
+  RecordProperty("transient_bytes_without_aliasing", std::to_string(without));
   EXPECT_GT(aliased_resources, 100u);
   EXPECT_LT(with, without);
 }

@@ -191,7 +191,7 @@ TEST(Subresources, ReadOfUnwrittenPart_IsRefused) {
   EXPECT_EQ(errors[0].id, DiagnosticId::read_before_write);
   EXPECT_THAT(errors[0].text, HasSubstr("'chain'"));
   EXPECT_EQ(errors[0].where.line, b.graph.place_of(b.read(3, 0)).line);
-  EXPECT_EQ(errors[0].related.size(), 1u) << "the declaration: nobody writes mip 3";
+  EXPECT_EQ(errors[0].related.size(), 1u) << "the declaration: no pass writes mip 3";
 }
 
 TEST(Subresources, OnlyWritersOfTheMissingMipAreListed) {

@@ -65,7 +65,7 @@ TEST(Expression, EvaluatesWithTheStatedPrecedence) {
     EXPECT_EQ(evaluate(fixture.graph, id, fixture.values), one.value) << one.text;
     for (uint32_t i = 0; i < fixture.graph.expressions.size(); ++i) {
       const Expression& node = fixture.graph.expressions[i];
-      EXPECT_TRUE(!node.left.valid() || node.left.value < i) << "children stand before parents";
+      EXPECT_TRUE(!node.left.valid() || node.left.value < i) << "children are stored before parents";
       EXPECT_TRUE(!node.right.valid() || node.right.value < i);
     }
   }
@@ -128,7 +128,7 @@ TEST(Expression, ErrorsPointIntoTheString) {
     EXPECT_FALSE(fixture.parse(one.text).valid()) << one.text;
     // The expression starts on line 2, after the opening quote in column 1.
     expect_only(fixture.diagnostics, one.id, 2, one.at + 2, {one.word});
-    EXPECT_TRUE(fixture.graph.expressions.empty()) << "nothing is left behind";
+    EXPECT_TRUE(fixture.graph.expressions.empty()) << "no partial expression remains";
   }
 }
 

@@ -66,7 +66,7 @@ TEST(Graph, EveryDeclarationIsReadAndResolved) {
   EXPECT_EQ(blur.type, (PassTypeId{0}));
   ASSERT_TRUE(blur.when.valid());
   ASSERT_EQ(graph.reads(blur).size(), 4u);
-  EXPECT_EQ(graph.reads(blur)[3].port, 3u) << "the reading one of the two ports called history";
+  EXPECT_EQ(graph.reads(blur)[3].port, 3u) << "the reading port of the two ports named history";
   EXPECT_EQ(graph.reads(blur)[3].frames_back, 2u);
   ASSERT_EQ(graph.writes(blur).size(), 2u);
   EXPECT_EQ(graph.writes(blur)[1].port, 5u);

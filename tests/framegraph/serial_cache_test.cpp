@@ -72,8 +72,8 @@ TEST(PlanCache, Full_EvictsTheLeastRecentlyUsedPlan) {
   };
   for (size_t i = 0; i < plan_cache_capacity; ++i)
     EXPECT_FALSE(use(64 + i));
-  EXPECT_TRUE(use(64)) << "now the one used last";
-  EXPECT_FALSE(use(200)) << "takes the place of 65";
+  EXPECT_TRUE(use(64)) << "now the most recently used plan";
+  EXPECT_FALSE(use(200)) << "evicts 65";
   EXPECT_EQ(cache.entries.size(), plan_cache_capacity);
   EXPECT_TRUE(use(64));
   EXPECT_FALSE(use(65));

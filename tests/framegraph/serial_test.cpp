@@ -172,7 +172,7 @@ TEST(PlanKey, DiffersIfThePlanCanDiffer) {
   builder.graph.resources[0].where.line = 99;
   EXPECT_FALSE(is_new([](CompileInput&) {})) << "notes and places in the file are not";
   EXPECT_FALSE(is_new([](CompileInput& input) { input.reasons = false; }));
-  EXPECT_FALSE(is_new([](CompileInput& input) { input.order_seed = 4; })) << "nothing is drawn";
+  EXPECT_FALSE(is_new([](CompileInput& input) { input.order_seed = 4; })) << "no random number is used";
 }
 
 TEST(PlanKey, FillsInDefaults) {

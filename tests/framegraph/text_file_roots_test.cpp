@@ -42,7 +42,7 @@ TEST_F(FileRoots, PathBelowARoot_IsAccepted) {
   EXPECT_EQ(problem(root, (root / "in/file").string(), root), "");
   EXPECT_EQ(problem(top / "entrance", "in/file", root), "") << "a root that is reached through a link";
   EXPECT_EQ(problem(root, "in/file", top / "entrance"), "");
-  EXPECT_EQ(problem(root, "in/file", (root / "").string()), "") << "with a slash behind it";
+  EXPECT_EQ(problem(root, "in/file", (root / "").string()), "") << "with a trailing slash";
   EXPECT_EQ(place_file(root, "inner/file", std::vector<fs::path>{root}).real, root / "in/file");
 }
 

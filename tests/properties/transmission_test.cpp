@@ -30,7 +30,7 @@ TEST_F(Transmission, Slab_MatchesTheTwoExponentials) {
       // fp16 storage at 1.
       EXPECT_NEAR(picture.at(20, 20, c), expected, 2e-3) << t << " d, channel " << c;
     }
-    EXPECT_NEAR(picture.at(20, 20, 2), 0.25, 1e-3) << "nothing scatters, nothing comes through";
+    EXPECT_NEAR(picture.at(20, 20, 2), 0.25, 1e-3) << "without scattering nothing is transmitted";
   }
 }
 

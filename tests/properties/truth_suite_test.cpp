@@ -147,7 +147,7 @@ TEST_F(ReferenceSuite, PublishedSeparable_IsWithinItsDocumentedError) {
     const double fitted = error_of(reference, scatter(frame, "separable", {{"taps", "25"}})).rmse;
     // Regression bounds of the present implementation.
     EXPECT_LE(published, 0.0174 * 1.2) << d_px;
-    EXPECT_GT(published, 1.2 * fitted) << d_px << " px: what the fit is for";
+    EXPECT_GT(published, 1.2 * fitted) << d_px << " px: the fit has to be better";
   }
 }
 

@@ -86,7 +86,7 @@ TEST_F(DeviceTest, EveryMissingFunctionIsNamedAtOnce) {
   EXPECT_THAT(error.text, HasSubstr("3 needed functions"));
   for (const char* name : {"vkCmdDispatch", "vkCmdPipelineBarrier2", "vkGetPhysicalDeviceFormatProperties2"})
     EXPECT_THAT(error.text, HasSubstr(name));
-  EXPECT_THAT(error.text, Not(HasSubstr("vkSetDebugUtilsObjectNameEXT"))) << "labels were not asked for";
+  EXPECT_THAT(error.text, Not(HasSubstr("vkSetDebugUtilsObjectNameEXT"))) << "labels were not requested";
 }
 
 TEST_F(DeviceTest, NullHandlesAndUnknownQueueFamiliesAreRefused) {

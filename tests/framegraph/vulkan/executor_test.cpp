@@ -46,7 +46,7 @@ TEST_F(ExecutorTest, TransientsThatShareMemoryDoNotDisturbEachOther) {
       sharing += plan.placements[i].heap == plan.placements[k].heap &&
                  plan.placements[i].offset < plan.placements[k].offset + plan.placements[k].size &&
                  plan.placements[k].offset < plan.placements[i].offset + plan.placements[i].size;
-  EXPECT_GT(sharing, 0u) << "the plan shares no memory, so this test says nothing";
+  EXPECT_GT(sharing, 0u) << "the plan shares no memory, so this test proves nothing";
   const TestImage result = bind(g, "result", {});
   for (int i = 0; i < 4; ++i)
     ASSERT_FALSE(frame());
@@ -231,7 +231,7 @@ TEST_F(ExecutorTest, EveryPassHasATimeOfACompletedFrame) {
     ASSERT_FALSE(frame());
   wait();
   ASSERT_TRUE(executor->read_timings(2, timed, timings));
-  EXPECT_EQ(timed, 2u) << "frame 3 is not said to be complete";
+  EXPECT_EQ(timed, 2u) << "frame 3 is not reported as complete";
   ASSERT_TRUE(executor->read_timings(3, timed, timings));
   EXPECT_EQ(timed, 3u);
   EXPECT_EQ(timings[0].pass, "fill");

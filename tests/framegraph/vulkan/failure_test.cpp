@@ -78,7 +78,7 @@ TEST_F(FailureTest, EveryFailingCallIsNamed_NothingLeaks) {
     EXPECT_EQ(error.result, VK_ERROR_OUT_OF_DEVICE_MEMORY);
     EXPECT_THAT(error.text, HasSubstr("failed (VK_ERROR_OUT_OF_DEVICE_MEMORY, -2): "));
   }
-  EXPECT_GT(failures, 20u) << "images, memory, pipelines, sets: there are that many calls";
+  EXPECT_GT(failures, 20u) << "images, memory, pipelines, sets need at least that many calls";
   EXPECT_LT(faults.fail_at, more_than_enough);
   // Validation reports leaked objects when the fixture destroys the device.
 }
@@ -97,7 +97,7 @@ TEST_F(FailureTest, AMissingKernelIsNamed) {
   EXPECT_THAT(error.text, HasSubstr("kernel 'test_add' of type 'test.add' is not among the 0 given"));
   input.kernels = small_kernels();
   error = vulkan::Executor::create(input, made);
-  EXPECT_EQ(error.kind, vulkan::ErrorKind::shader) << "the kernels read an environment that is not there";
+  EXPECT_EQ(error.kind, vulkan::ErrorKind::shader) << "the kernels read a missing environment";
   EXPECT_THAT(error.text, HasSubstr("set 1 binding 0, the environment has 0 bindings"));
 }
 

@@ -116,7 +116,7 @@ TEST_F(HistoryTest, AgeGrowsEachFrame_CutGivesItsReason) {
   state = executor->history_state(0, true);
   EXPECT_FALSE(state.valid);
   EXPECT_EQ(state.reason, vulkan::HistoryReason::cut);
-  EXPECT_TRUE(executor->history_state(0).valid) << "asking changes nothing";
+  EXPECT_TRUE(executor->history_state(0).valid) << "the query changes nothing";
   ASSERT_FALSE(frame(0.0f, {}, true));
   EXPECT_THAT(read(result), Each(FloatEq(1.0f))) << "a cut starts from zero";
   EXPECT_EQ(executor->history_state(0).age, 1u);
@@ -287,7 +287,7 @@ TEST_F(ReplacedHistory, OtherPassType_StartsAnew) {
 
 class DiscardedFrame : public HistoryTest {
 protected:
-  void record_in_vain(bool reset_history = false) {
+  void record_unsubmitted(bool reset_history = false) {
     vulkan::FrameInput lost;
     lost.command_buffer = begin_commands(); // Never submitted.
     lost.images = images;
@@ -304,7 +304,7 @@ TEST_F(DiscardedFrame, LeavesNoEffect) {
   const float expected[] = {1, 1, 2, 2, 3, 3};
   for (size_t i = 0; i < std::size(expected); ++i) {
     const vulkan::HistoryState before = executor->history_state(0);
-    record_in_vain(i % 2 == 1); // Also tests a frame that resets all histories.
+    record_unsubmitted(i % 2 == 1); // Also tests a frame that resets all histories.
     ASSERT_TRUE(executor->discard_frame(frame_index + 1));
     const vulkan::HistoryState after = executor->history_state(0);
     EXPECT_EQ(after.age, i);
@@ -326,10 +326,10 @@ TEST_F(DiscardedFrame, OnlyTheLastFrameOnce) {
   ASSERT_FALSE(frame());
   wait();
   EXPECT_FALSE(executor->discard_frame(1));
-  record_in_vain();
+  record_unsubmitted();
   EXPECT_TRUE(executor->discard_frame(3));
   EXPECT_FALSE(executor->discard_frame(3));
-  EXPECT_FALSE(executor->discard_frame(2)) << "only one is remembered";
+  EXPECT_FALSE(executor->discard_frame(2)) << "only the last frame can be discarded";
 }
 
 TEST_F(DiscardedFrame, LeavesNoCounters) {
@@ -342,7 +342,7 @@ TEST_F(DiscardedFrame, LeavesNoCounters) {
   wait();
   uint32_t words[1];
   EXPECT_TRUE(executor->read_counters(1, words));
-  record_in_vain(); // Frame 3 uses the slot of frame 1.
+  record_unsubmitted(); // Frame 3 uses the slot of frame 1.
   ASSERT_TRUE(executor->discard_frame(3));
   EXPECT_FALSE(executor->read_counters(3, words));
   EXPECT_FALSE(executor->read_counters(1, words)) << "frame 3 cleared them";

@@ -49,7 +49,7 @@ PassType type(const char* name) {
 
 TEST(Reflection, ReadsBindingsPushConstantsAndLocalSize) {
   const Reflection add = reflected("test_add");
-  ASSERT_EQ(add.bindings.size(), 9u) << "six ports and three of the environment, used or not";
+  ASSERT_EQ(add.bindings.size(), 9u) << "six ports and three environment bindings, used or not";
   EXPECT_EQ(add.bindings[0].type, BindingType::sampled_image);
   EXPECT_EQ(add.bindings[0].numeric, Numeric::real);
   EXPECT_EQ(add.bindings[2].numeric, Numeric::unsigned_integer);

@@ -320,10 +320,10 @@ TEST_F(TransmissionStats, MatchTheTransmittedLight) {
   // Tolerance: a step of the counter, which is rounded per tile, and the formats of thickness and
   // light.
   EXPECT_NEAR(found * found, square, 2e-3 * square + 1.0 / subsurface::through_square_steps);
-  EXPECT_EQ(counted(0.8e-3f, 0), 0) << "no light behind";
+  EXPECT_EQ(counted(0.8e-3f, 0), 0) << "no light from behind";
   EXPECT_EQ(counted(0.1f, 0.5f), 0) << "a decimetre";
-  EXPECT_EQ(counted(std::numeric_limits<float>::quiet_NaN(), 0.5f), 0) << "a way that is not known";
-  EXPECT_LE(counted(0, 6e4f, 1e4f), 1) << "no more than the brightest light";
+  EXPECT_EQ(counted(std::numeric_limits<float>::quiet_NaN(), 0.5f), 0) << "an unknown thickness";
+  EXPECT_LE(counted(0, 6e4f, 1e4f), 1) << "at most the brightest light";
 }
 
 TEST_F(TransmissionStats, NoThicknessBound_AreUnknown) {

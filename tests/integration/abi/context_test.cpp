@@ -32,7 +32,7 @@ TEST_F(Context, RequirementsAreListedWithTheirReasonAndPresence) {
                                       items.data()),
             DERMIS_INCOMPLETE);
   EXPECT_EQ(capacity, count);
-  EXPECT_EQ(items.back().name, nullptr) << "no element beyond the room is written";
+  EXPECT_EQ(items.back().name, nullptr) << "no element beyond the capacity is written";
 }
 
 // A loader that hides two functions, as by a host's mistake or an old driver.

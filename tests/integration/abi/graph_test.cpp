@@ -90,7 +90,7 @@ TEST_F(GraphLife, SlotsDescribeTheBindings) {
   EXPECT_EQ(slots["lighting"].format, VK_FORMAT_R16G16B16A16_SFLOAT);
   EXPECT_EQ(slots["lighting"].usage, VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_STORAGE_BIT);
   EXPECT_EQ(slots["lighting"].read + slots["lighting"].written + slots["lighting"].required, 3u);
-  EXPECT_EQ(slots["depth"].format, VK_FORMAT_R32_SFLOAT) << "as the host said";
+  EXPECT_EQ(slots["depth"].format, VK_FORMAT_R32_SFLOAT) << "in the format of the host";
   EXPECT_EQ(slots["depth"].written, 0u);
   EXPECT_EQ(slots["depth"].best_layout, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
   EXPECT_EQ(slots["material"].width, 64u);
@@ -131,7 +131,8 @@ TEST_F(GraphLife, WrongSlotsOfTheHostAreReported) {
   options = {};
   options.unbound.push_back("velocity");
   EXPECT_EQ(create_graph(options, &graph, &report), DERMIS_OK);
-  EXPECT_THAT(take(report).names, Contains("host_names_other_slots")) << "hosts list what they have";
+  EXPECT_THAT(take(report).names, Contains("host_names_other_slots"))
+      << "hosts may list names that this graph does not have";
   graphs.push_back(graph);
 }
 
@@ -237,7 +238,7 @@ TEST_F(GraphLife, IncludedFilesAreOpenedOncePerCreationAndReload) {
   ASSERT_NE(graph, nullptr);
   EXPECT_EQ(delivery.calls, 1u);
   EXPECT_EQ(dermis_graph_resize(graph, 32, 32, nullptr), DERMIS_OK);
-  EXPECT_EQ(delivery.calls, 1u) << "not asked again";
+  EXPECT_EQ(delivery.calls, 1u) << "no file is opened again";
   const dermis_source source = source_of(including, "graph.json");
   EXPECT_EQ(reload_text(graph, source), DERMIS_OK);
   EXPECT_EQ(delivery.calls, 2u);
@@ -315,7 +316,7 @@ TEST_F(GraphLife, NoShaderCompiler_IsReported) {
   ASSERT_NE(graph, nullptr);
   dermis_report report = nullptr;
   const dermis_include_fn never = [](void*, const char*, dermis_source*) -> uint32_t {
-    ADD_FAILURE() << "there is nothing to ask for";
+    ADD_FAILURE() << "a library without a shader compiler opens no file";
     return 0;
   };
   EXPECT_EQ(dermis_graph_reload_shaders(graph, never, nullptr, &report), DERMIS_ERROR_UNSUPPORTED);
@@ -323,7 +324,7 @@ TEST_F(GraphLife, NoShaderCompiler_IsReported) {
   EXPECT_THAT(said.names, testing::ElementsAre("no_shader_compiler"));
   EXPECT_THAT(said.all, HasSubstr("DERMIS_RUNTIME_SHADERS"));
   EXPECT_EQ(dermis_graph_reload_shaders(graph, nullptr, nullptr, nullptr), DERMIS_OK)
-      << "its own it always has";
+      << "the library's own kernels always exist";
   make_images(graph);
   const auto bound = bindings(graph);
   dermis_frame one = frame(bound);
@@ -386,13 +387,13 @@ TEST_F(GraphLife, SettingFlippedBack_ReusesItsPlan) {
   for (uint32_t i = 0; i < flips; ++i) {
     ASSERT_EQ(dermis_graph_set_setting(graph, "combined", i % 2 == 0 ? "false" : "true", nullptr), DERMIS_OK)
         << dermis_last_error();
-    EXPECT_EQ(plans.misses, 2u) << "one for each side, whatever the number of flips";
+    EXPECT_EQ(plans.misses, 2u) << "one plan per value, for any number of flips";
     EXPECT_EQ(plans.hits, i);
     dermis_frame one = frame(bound);
     EXPECT_EQ(record(graph, one), DERMIS_OK) << dermis_last_error();
   }
   ASSERT_EQ(dermis_graph_set_setting(graph, "samples", "64", nullptr), DERMIS_OK);
-  EXPECT_EQ(plans.hits + plans.misses, 1u + flips) << "a setting that no `when` asks about needs no plan";
+  EXPECT_EQ(plans.hits + plans.misses, 1u + flips) << "a setting without a `when` needs no new plan";
 }
 
 TEST_F(GraphLife, SettingIsInEffectAtTheNextRecord) {

@@ -72,7 +72,7 @@ void expect_tests_exist(const std::string& page, const std::string& heading, uin
       return begins ? test.starts_with(name) : test == name;
     })) << name;
   }
-  EXPECT_GE(count, minimum) << "the table names that many";
+  EXPECT_GE(count, minimum) << "the page names at least that many";
 }
 
 TEST(InterfacePlan, NamesTestsThatExist) {

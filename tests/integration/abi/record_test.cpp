@@ -36,7 +36,7 @@ TEST_F(Record, LightCrossesAnEdgeAndIsConserved) {
   };
   for (const float value : after)
     ASSERT_TRUE(std::isfinite(value));
-  EXPECT_GT(column(32), 0.05) << "red light arrives in the dark half";
+  EXPECT_GT(column(32), 0.05) << "red light reaches the dark half";
   EXPECT_LT(column(31), 0.95) << "and is missing in the bright half";
   EXPECT_GT(column(31), column(32));
   EXPECT_GT(column(32), column(36));

@@ -57,7 +57,7 @@ TEST_F(Reload, ChangesProfilesAndOverlays_MatchesANewGraph) {
   ASSERT_EQ(reload_graph(graph, none), DERMIS_OK) << dermis_last_error();
   EXPECT_EQ(picture(graph, 3), picture(make_graph(none), 3));
   ASSERT_EQ(reload_graph(graph, GraphOptions{}), DERMIS_OK) << dermis_last_error();
-  EXPECT_EQ(slots_of(graph).size(), slots_of(make_graph()).size()) << "the overlay is gone, and its slots";
+  EXPECT_EQ(slots_of(graph).size(), slots_of(make_graph()).size()) << "the overlay and its slots are removed";
   EXPECT_EQ(picture(graph, 4), picture(make_graph(), 4));
 }
 

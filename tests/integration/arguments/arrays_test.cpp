@@ -55,7 +55,7 @@ template <class T> void expect_array_property(const std::function<dermis_result(
       if (i < space && i < all) {
         EXPECT_EQ(items[i].struct_size, sizeof(T)) << i;
       } else if (i > 0) {
-        EXPECT_THAT(bytes_of(items[i]), Each(std::byte{untouched})) << i << ": there is room for " << space;
+        EXPECT_THAT(bytes_of(items[i]), Each(std::byte{untouched})) << i << ": the capacity is " << space;
       }
     }
   }
@@ -105,7 +105,7 @@ void expect_text_property(const std::function<dermis_result(size_t*, char*)>& as
     size = space;
     EXPECT_EQ(ask(&size, text.data()), DERMIS_INCOMPLETE) << space;
     EXPECT_EQ(size, all);
-    EXPECT_EQ(text, std::string(all, static_cast<char>(untouched))) << "nothing is cut";
+    EXPECT_EQ(text, std::string(all, static_cast<char>(untouched))) << "the text is not truncated";
   }
   std::string text(all + 1, static_cast<char>(untouched));
   size = all + 1;

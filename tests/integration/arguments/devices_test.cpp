@@ -136,7 +136,7 @@ TEST_F(PoorDevice, Vulkan12_NeedsTwoExtensions) {
   EXPECT_THAT(dermis_last_error(), AllOf(HasSubstr(VK_KHR_MAINTENANCE_4_EXTENSION_NAME),
                                          Not(HasSubstr(VK_KHR_SYNCHRONIZATION_2_EXTENSION_NAME))));
   lack.enumeration = VK_ERROR_OUT_OF_HOST_MEMORY;
-  EXPECT_EQ(create(), DERMIS_ERROR_UNSUPPORTED) << "what cannot be asked for is not there";
+  EXPECT_EQ(create(), DERMIS_ERROR_UNSUPPORTED) << "unqueryable features count as missing";
   lack.enumeration = VK_SUCCESS;
   lack.extensions.push_back(VK_KHR_MAINTENANCE_4_EXTENSION_NAME);
   for (const dermis_requirement& item : requirements())
@@ -309,7 +309,7 @@ TEST(VulkanResults, FailedViewCreation_FrameCanBeRecordedAgain) {
   lost.give_up_views();
   lost.device.fail_creation(1, VK_ERROR_DEVICE_LOST);
   EXPECT_EQ(lost.record(), DERMIS_ERROR_DEVICE_LOST);
-  EXPECT_EQ(lost.record(), DERMIS_ERROR_DEVICE_LOST) << "it is remembered";
+  EXPECT_EQ(lost.record(), DERMIS_ERROR_DEVICE_LOST) << "the loss is kept";
 }
 
 // ---- Memory of the host

@@ -99,7 +99,7 @@ TEST_F(QueueFamilies, TransfersReachFamilyZeroAndSpecialFamilies) {
                 testing::ElementsAre(std::pair{family, own_family}, std::pair{own_family, family}));
   }
   bindings[0].before.queue_family = bindings[0].after.queue_family = own_family;
-  EXPECT_TRUE(transfers().empty()) << "a family keeps what it owns";
+  EXPECT_TRUE(transfers().empty()) << "no transfer within one family";
 }
 
 TEST_F(QueueFamilies, InvalidFamilies_AreRefusedByName) {

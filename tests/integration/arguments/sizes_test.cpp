@@ -67,12 +67,12 @@ template <class T> void expect_output_property(const T& value, const Call<T>& ca
   given.state(sizeof(T) + newer_by);
   given.tail(0xff);
   EXPECT_EQ(call(given.get()), DERMIS_OK) << dermis_last_error();
-  EXPECT_THAT(given.read_tail(), testing::Each(std::byte{0})) << "what the library does not know is zero";
+  EXPECT_THAT(given.read_tail(), testing::Each(std::byte{0})) << "fields unknown to the library are zero";
   given.state(abi::first_version_size<T>);
   given.tail(0xff);
   EXPECT_EQ(call(given.get()), DERMIS_OK) << dermis_last_error();
   EXPECT_THAT(given.read_tail(), testing::Each(std::byte{0xff}))
-      << "nothing is written behind the stated size";
+      << "nothing is written after the stated size";
 }
 
 struct StructSizes : RecordedFrame {};

@@ -121,7 +121,7 @@ struct Commands : CameraTest {
 TEST_F(Commands, GraphWithHistory_GivesEqualPictures) {
   expect_the_same(accumulating());
   EXPECT_TRUE(passes.contains("accumulate"));
-  EXPECT_TRUE(passes.contains("")) << "what stands between the passes";
+  EXPECT_TRUE(passes.contains("")) << "barriers between the passes";
   for (const dermis_command_type type :
        {DERMIS_COMMAND_BARRIER, DERMIS_COMMAND_DISPATCH, DERMIS_COMMAND_DISPATCH_INDIRECT,
         DERMIS_COMMAND_FILL_BUFFER, DERMIS_COMMAND_CLEAR_IMAGE, DERMIS_COMMAND_COPY_IMAGE,
@@ -143,7 +143,7 @@ TEST_F(Commands, CanBeDiscardedLikeAFrame) {
   const dermis_command* list = nullptr;
   ASSERT_EQ(dermis_graph_commands(graph, &frame, &count, &list), DERMIS_OK) << dermis_last_error();
   EXPECT_EQ(dermis_graph_commands(graph, &frame, &count, &list), DERMIS_ERROR_ARGUMENT)
-      << "it counts as recorded";
+      << "the frame counts as recorded";
   EXPECT_EQ(count, 0u);
   EXPECT_EQ(list, nullptr);
   ASSERT_EQ(dermis_frame_discard(graph, 1), DERMIS_OK) << dermis_last_error();

@@ -55,7 +55,7 @@ TEST_F(ContentId, DistinguishesImagesWithEqualHandles) {
       frame.command_buffer = into;
       ASSERT_EQ(dermis_graph_record(graph, &frame), DERMIS_OK) << dermis_last_error();
     });
-    EXPECT_FALSE(before == light_of(camera)) << "it is this image that the graph wrote";
+    EXPECT_FALSE(before == light_of(camera)) << "the graph wrote this image";
   }
 }
 

@@ -50,7 +50,7 @@ struct Arena {
     const size_t number = fractions ? arena.transients++ : 0;
     if (fractions && number >= arena.overlaid) {
       *out = arena.first_view[number % arena.overlaid];
-      EXPECT_EQ(reinterpret_cast<uintptr_t>(out->user), request->bytes) << "views ask for the same";
+      EXPECT_EQ(reinterpret_cast<uintptr_t>(out->user), request->bytes) << "all views request equal memory";
       ++arena.alive;
       return VK_SUCCESS;
     }
@@ -83,7 +83,7 @@ struct Arena {
   static void DERMIS_CALL give_back(void* user, const dermis_memory_block* block) {
     Arena& arena = *static_cast<Arena*>(user);
     --arena.alive;
-    EXPECT_NE(block->user, nullptr) << "the host's own pointer comes back";
+    EXPECT_NE(block->user, nullptr) << "the host's pointer is passed back";
   }
   dermis_device_allocator allocator() {
     dermis_device_allocator out = DERMIS_DEVICE_ALLOCATOR_INIT;
@@ -198,7 +198,7 @@ TEST_F(DeviceMemory, ViewsCanShareTransientMemory) {
     arena->overlaid += heap.purpose == DERMIS_MEMORY_TRANSIENT ? 1 : 0;
   ASSERT_GT(arena->overlaid, 0u);
   EXPECT_TRUE(apart == lights());
-  EXPECT_EQ(arena->transients, (1 + cameras) * arena->overlaid) << "the graph's own view has some, too";
+  EXPECT_EQ(arena->transients, (1 + cameras) * arena->overlaid) << "the graph's own view has memory, too";
   EXPECT_EQ(arena->alive_bytes[DERMIS_MEMORY_TRANSIENT] * (1 + cameras), memory.transient_bytes);
 }
 
@@ -360,7 +360,7 @@ TEST(TwoContexts, TwoDevices_AreIndependent) {
   first.destroy();
   EXPECT_EQ(second.device.alive(), alive);
   EXPECT_EQ(second.device.commands(), commands);
-  EXPECT_EQ(second.record(), DERMIS_OK) << "the other's loss is not this one's";
+  EXPECT_EQ(second.record(), DERMIS_OK) << "the loss of one device does not affect the other";
 }
 
 // ---- Reloads do not accumulate memory

@@ -175,7 +175,7 @@ TEST_F(Discard, RestoresThePreviousRectangle) {
     return submit({.rectangle = small_rectangle, .light = 1});
   };
   const Seen expected = run(false);
-  EXPECT_TRUE(run(true).lighting == expected.lighting) << "history lies where the frame before left it";
+  EXPECT_TRUE(run(true).lighting == expected.lighting) << "the history keeps the previous frame's rectangle";
 }
 
 // The first switch blocks other switches for a second; a discarded frame must not start this
@@ -195,10 +195,10 @@ TEST_F(Discard, RestoresTheLastDecision) {
   const std::vector<std::string> expected = run({});
   EXPECT_THAT(expected[4], HasSubstr("kept, to switch less often"));
   EXPECT_THAT(expected.back(), Not(HasSubstr("kept, to switch less often")));
-  EXPECT_EQ(run({{.budget_ms = 30, .seconds = 5}}), expected) << "time that passed in it";
+  EXPECT_EQ(run({{.budget_ms = 30, .seconds = 5}}), expected) << "the time of the discarded frame";
   EXPECT_EQ(run({{.budget_ms = 30, .seconds = 5}, {.budget_ms = 30, .seconds = 5}}), expected)
-      << "two in a row";
-  EXPECT_EQ(run({{.budget_ms = 0.4f, .seconds = 0.1f}}), expected) << "what it chose";
+      << "two consecutive frames";
+  EXPECT_EQ(run({{.budget_ms = 0.4f, .seconds = 0.1f}}), expected) << "the choice of the discarded frame";
 }
 
 TEST_F(Discard, LeavesNoTimes) {

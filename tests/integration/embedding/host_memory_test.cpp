@@ -64,7 +64,7 @@ struct HostMemory : ::testing::Test {
   }
   void TearDown() override {
     host.destroy();
-    EXPECT_EQ(heap.blocks, 0u) << "what was kept in caches goes with them";
+    EXPECT_EQ(heap.blocks, 0u) << "destruction frees cached memory, too";
     EXPECT_EQ(heap.bytes, 0u);
   }
   void make_graph() {
@@ -90,7 +90,7 @@ struct HostMemory : ::testing::Test {
       ++refusals;
       ASSERT_EQ(result, DERMIS_ERROR_MEMORY) << "allocation " << number << ": " << dermis_last_error();
       ASSERT_GE(heap.blocks, blocks) << "allocation " << number
-                                     << ": more may be kept in caches, nothing may be gone";
+                                     << ": caches may grow, but nothing may be freed";
       ASSERT_GE(heap.bytes, bytes) << "allocation " << number;
       ASSERT_EQ(host.device.alive(), alive) << "allocation " << number;
       ASSERT_EQ(host.device.memory_bytes(), device_bytes) << "allocation " << number;
@@ -107,11 +107,11 @@ struct HostMemory : ::testing::Test {
 TEST_F(HostMemory, AllOfItIsFreed) {
   make_graph();
   const uint64_t running = heap.blocks;
-  EXPECT_GT(running, 100u) << "the graph lives in the host's memory";
+  EXPECT_GT(running, 100u) << "the graph uses the host's memory";
   const uint64_t calls = heap.calls;
   for (int i = 0; i < 4; ++i)
     ASSERT_EQ(host.record(), DERMIS_OK);
-  EXPECT_EQ(heap.calls, calls) << "recording takes none";
+  EXPECT_EQ(heap.calls, calls) << "recording allocates nothing";
   dermis_report report = nullptr;
   const std::string wrong = "{";
   dermis_source source = DERMIS_SOURCE_INIT;
@@ -119,7 +119,7 @@ TEST_F(HostMemory, AllOfItIsFreed) {
   source.length = wrong.size();
   EXPECT_EQ(reload_text(host.graph, source, &report), DERMIS_ERROR_CONFIG);
   host.destroy();
-  EXPECT_GT(heap.blocks, 0u) << "the report is still there";
+  EXPECT_GT(heap.blocks, 0u) << "the report stays allocated";
   EXPECT_NE(std::string(dermis_report_text(report)), "");
   dermis_report_destroy(report);
   EXPECT_EQ(heap.blocks, 0u);
@@ -185,7 +185,7 @@ TEST_F(HostMemory, FailedProfile_KeepsTheGraph) {
   heap.calls = 0;
   for (int i = 0; i < 4; ++i)
     ASSERT_EQ(host.record(), DERMIS_OK) << dermis_last_error();
-  EXPECT_EQ(heap.calls, 0u) << "the new tables take over without memory";
+  EXPECT_EQ(heap.calls, 0u) << "switching to the new tables allocates nothing";
 }
 
 TEST_F(HostMemory, FailedViewSetting_KeepsTheView) {
@@ -249,7 +249,7 @@ TEST_F(HostMemory, FailedCommandList_LeavesNoFrame) {
     EXPECT_GT(count, 10u);
     dermis_view_destroy(view);
     if (result == DERMIS_OK) {
-      EXPECT_GT(number, 5u) << "a list takes some";
+      EXPECT_GT(number, 5u) << "a command list allocates memory";
       break;
     }
   }
@@ -299,7 +299,7 @@ TEST_F(HostMemory, RecordingAFrame_AllocatesNothing) {
   heap.refused = 0;
   ASSERT_EQ(host.reload(), DERMIS_OK);
   heap.calls = 0;
-  EXPECT_EQ(host.record(), DERMIS_OK) << "a program takes over without memory";
+  EXPECT_EQ(host.record(), DERMIS_OK) << "switching plans allocates nothing";
   EXPECT_EQ(heap.calls, 0u);
 }
 

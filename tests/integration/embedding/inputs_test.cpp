@@ -187,7 +187,7 @@ TEST_F(Inputs, PreExposedLight_ScattersEqually) {
     EXPECT_LE(largest, std::string_view(name) == "sap_residual" ? 1.0 / 4096 : 0) << name;
     told_apart += frames(factor, 1) != before ? 1 : 0;
   }
-  EXPECT_GT(told_apart, 0u) << "no graph looks at exposure: this test says nothing";
+  EXPECT_GT(told_apart, 0u) << "no graph reads the exposure, so this test proves nothing";
 }
 
 } // namespace

@@ -71,8 +71,8 @@ TEST_P(Rectangles, NothingOutsideIsReadOrWritten) {
           if (wrong && first.empty()) first = where + std::to_string(x) + " " + std::to_string(y);
           (inside ? read : written) += wrong ? 1 : 0;
         }
-    EXPECT_EQ(read, 0u) << "what lies outside is seen: " << first_read;
-    EXPECT_EQ(written, 0u) << "what lies outside is changed: " << first_written;
+    EXPECT_EQ(read, 0u) << "pixels outside are read: " << first_read;
+    EXPECT_EQ(written, 0u) << "pixels outside are changed: " << first_written;
   }
 }
 

@@ -172,7 +172,7 @@ TEST_F(Settings, ReadBackAsSet) {
   EXPECT_EQ(named(all, "count").default_value, 4.0);
   EXPECT_EQ(named(all, "how").value, 2.0);
   EXPECT_EQ(named(all, "weight").value, 0.125);
-  EXPECT_EQ(named(all, "radius").value, 0.25) << "a refused value is not there";
+  EXPECT_EQ(named(all, "radius").value, 0.25) << "a refused value is not stored";
   EXPECT_EQ(named(all, "weight").set, 1u);
   EXPECT_EQ(named(all, "radius").set, 0u);
 }
@@ -183,7 +183,7 @@ TEST_F(Settings, PerFrame_OnlyIfAllUsesArePerFrame) {
   for (const dermis_setting& one : settings_of(host.graph))
     if (one.per_frame != 0) per_frame.emplace_back(one.name);
   EXPECT_THAT(per_frame, ElementsAre("weight"))
-      << "radius and both are of the plan, threshold decides which passes run, nothing follows the others";
+      << "radius and both change the plan, threshold enables passes, the others have no effect";
 }
 
 TEST_F(Settings, ShippedGraph_ReportsViewSettings) {

@@ -181,7 +181,7 @@ void follow(const std::vector<TableRow>& table, const std::string& name, bool wi
       one.before = one.after = anywhere;
     }
   }
-  EXPECT_EQ(bound, bind.size()) << "the table has slots that the graph has not";
+  EXPECT_EQ(bound, bind.size()) << "the table has slots that the graph does not have";
   dermis_frame frame = host.frame_at(1);
   frame.bindings = images.data();
   frame.binding_count = static_cast<uint32_t>(images.size());

@@ -90,7 +90,7 @@ TEST_F(Views, EachOfEightMatchesASingleView) {
   const auto light = together(8, last, nothing);
   for (size_t c = 0; c < light.size(); ++c)
     EXPECT_TRUE(light[c] == alone(c, last, nothing)) << "camera " << c;
-  EXPECT_FALSE(light[0] == light[4]) << "they see different things";
+  EXPECT_FALSE(light[0] == light[4]) << "the views differ";
   EXPECT_FALSE(light[0] == alone(0, last - 1, nothing)) << "each frame changes the light";
 }
 
@@ -129,7 +129,7 @@ TEST_F(Views, GraphSetting_AppliesToAll) {
   };
   const auto light = together(2, last, set);
   EXPECT_TRUE(light[1] == alone(1, last, set));
-  EXPECT_FALSE(light[1] == alone(1, last, nothing)) << "the setting counts";
+  EXPECT_FALSE(light[1] == alone(1, last, nothing)) << "the setting changes the picture";
 }
 
 TEST_F(Views, DiscardedFrame_ChangesNoView) {
@@ -149,7 +149,8 @@ TEST_F(Views, DiscardedFrame_ChangesNoView) {
       second.command_buffer = thrown;
       ASSERT_EQ(dermis_view_record(view, &second), DERMIS_OK) << dermis_last_error();
       ASSERT_EQ(host->vk.vkEndCommandBuffer(thrown), VK_SUCCESS);
-      EXPECT_EQ(dermis_frame_discard(graph, index), DERMIS_ERROR_ARGUMENT) << "that is another view";
+      EXPECT_EQ(dermis_frame_discard(graph, index), DERMIS_ERROR_ARGUMENT)
+          << "the frame belongs to another view";
       ASSERT_EQ(dermis_view_discard(view, index), DERMIS_OK) << dermis_last_error();
     }
     submit(index, [&](VkCommandBuffer into) {

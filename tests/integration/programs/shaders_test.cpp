@@ -90,7 +90,7 @@ struct Shaders : DermisTest {
   }
   // The samples of a frame depend on its number, so later frames are compared with an unchanged
   // graph.
-  void expect_as_ever(dermis_graph graph) {
+  void expect_unchanged_picture(dermis_graph graph) {
     const uint64_t before = last_frame;
     const auto now = light(graph);
     last_frame = before;
@@ -121,8 +121,9 @@ TEST_F(Shaders, UnchangedText_GivesEqualLight) {
   light(graph);
   ASSERT_EQ(reload(graph), DERMIS_OK) << dermis_last_error();
   EXPECT_THAT(folder.requested, AllOf(Contains(combine), Contains("common/environment.glsl")));
-  EXPECT_THAT(folder.requested, Each(Not(HasSubstr("bindings")))) << "those are the library's";
-  expect_as_ever(graph);
+  EXPECT_THAT(folder.requested, Each(Not(HasSubstr("bindings"))))
+      << "the library provides the bindings files";
+  expect_unchanged_picture(graph);
 }
 
 TEST_F(Shaders, ChangedText_IsUsedUntilReset) {
@@ -149,9 +150,9 @@ TEST_F(Shaders, ChangedText_IsUsedUntilReset) {
     sum_expected += expected[i];
   }
   EXPECT_NEAR(sum / sum_expected, 0.5, 1e-4);
-  EXPECT_NEAR(sum_resized / sum_expected, 0.5, 0.01) << "also in a program that was built after it";
+  EXPECT_NEAR(sum_resized / sum_expected, 0.5, 0.01) << "also in a plan that was built later";
   last_frame = number + 2;
-  expect_as_ever(graph);
+  expect_unchanged_picture(graph);
 }
 
 TEST_F(Shaders, TwoGraphs_HaveSeparateShaders) {
@@ -184,7 +185,7 @@ TEST_F(Shaders, BrokenText_IsReportedAndChangesNothing) {
   EXPECT_THAT(said.places, ElementsAre(place_in(text, "colour")));
   EXPECT_THAT(said.all, AllOf(HasSubstr(std::string(combine) + ":"), HasSubstr("'colour'"), HasSubstr("^")));
   EXPECT_THAT(dermis_last_error(), HasSubstr(combine));
-  expect_as_ever(graph);
+  expect_unchanged_picture(graph);
   folder.changed.clear(); // The next good text is accepted.
   EXPECT_EQ(reload(graph), DERMIS_OK);
 }
@@ -199,7 +200,7 @@ TEST_F(Shaders, ErrorsAreReportedOncePerFile) {
   EXPECT_THAT(said.places, Contains(place_in(text, "flote "))) << said.all;
   EXPECT_THAT(said.all,
               AllOf(HasSubstr("common/half.glsl:"), HasSubstr("common/subsurface_tile_list.comp:")));
-  expect_as_ever(graph);
+  expect_unchanged_picture(graph);
 }
 
 TEST_F(Shaders, OpenOnlyFilesOfTheirFolder) {
@@ -221,7 +222,7 @@ TEST_F(Shaders, OpenOnlyFilesOfTheirFolder) {
     EXPECT_EQ(folder.requested.contains("not_there.glsl"), named);
     EXPECT_FALSE(folder.requested.contains("./half.glsl"));
   }
-  expect_as_ever(graph);
+  expect_unchanged_picture(graph);
 }
 
 TEST_F(Shaders, RecursiveInclude_IsRefused) {
@@ -236,7 +237,7 @@ TEST_F(Shaders, RecursiveInclude_IsRefused) {
   folder.changed["empty.glsl"] = "\n";
   EXPECT_EQ(reload(graph, &said), DERMIS_ERROR_SHADER);
   EXPECT_THAT(said.all, HasSubstr("more than 256 files are included"));
-  expect_as_ever(graph);
+  expect_unchanged_picture(graph);
 }
 
 TEST_F(Shaders, SignatureMismatch_IsRefused) {
@@ -247,7 +248,7 @@ TEST_F(Shaders, SignatureMismatch_IsRefused) {
   Said said;
   EXPECT_EQ(reload(graph, &said), DERMIS_ERROR_SHADER);
   EXPECT_THAT(said.names, Contains("kernel_mismatch")) << said.all;
-  expect_as_ever(graph);
+  expect_unchanged_picture(graph);
 }
 
 TEST_F(Shaders, NoFileFound_IsAnError_OthersStayBuiltIn) {

@@ -293,7 +293,7 @@ struct Soak : DermisTest {
   }
 
   // Records a frame that is not submitted.
-  void record_in_vain(const Recorded& one) {
+  void record_unsubmitted(const Recorded& one) {
     auto allocate =
         demo::vulkan_struct<VkCommandBufferAllocateInfo>(VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO);
     allocate.commandPool = host->pool;
@@ -376,7 +376,7 @@ struct Soak : DermisTest {
       SoakView& view = stage.views[v];
       light_up(view);
       const Recorded one{&stage, v, frame_for(stage, view)};
-      if (chance(0.02)) record_in_vain(one);
+      if (chance(0.02)) record_unsubmitted(one);
       all.push_back(one);
     }
     const auto ran = demo::run_commands(*host, [&](VkCommandBuffer commands) -> demo::Result<> {

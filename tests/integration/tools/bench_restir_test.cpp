@@ -186,7 +186,7 @@ TEST_F(BenchRestirWithRayQueries, WritesARowPerReuseAndTechnique) {
     if (row["technique"] == "restir") {
       EXPECT_NEAR(light, 1, 0.5) << row; // The mean of some frames with one path per pixel.
     } else if (row["setting"] == "smooth") {
-      EXPECT_LT(light, 0.5) << "screen space sees no light behind the sheet";
+      EXPECT_LT(light, 0.5) << "screen space has no light from behind the sheet";
     }
   }
   EXPECT_THAT(read("page.html"), HasSubstr("back_lit, reference"));

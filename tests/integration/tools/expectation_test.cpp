@@ -45,7 +45,8 @@ TEST_F(Expectations, EveryShippedGraphMeetsItsExpectations) {
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_THAT(outcome.out, HasSubstr("configs/graphs/burley.expect.json: 6 cases as expected"));
   const Outcome graphs_alone = run({"test", "configs/graphs"});
-  EXPECT_EQ(graphs_alone.exit_code, 0) << "overlays stand beside the folder of graphs\n" << graphs_alone.err;
+  EXPECT_EQ(graphs_alone.exit_code, 0) << "overlays are located next to the folder of graphs\n"
+                                       << graphs_alone.err;
 }
 
 TEST_F(Expectations, OnlyStatedFactsAreCompared) {

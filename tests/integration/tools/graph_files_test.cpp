@@ -241,7 +241,7 @@ TEST_F(GraphFiles, OverlayError_IsReportedInTheOverlay) {
     EXPECT_EQ(outcome.exit_code, 1);
     EXPECT_THAT(outcome.err, AllOf(HasSubstr(wrong + ":2:54: error[D0223"), HasSubstr("burley.json:")));
   }
-  EXPECT_EQ(run({"validate", wrong}).exit_code, 0) << "by itself it is an overlay";
+  EXPECT_EQ(run({"validate", wrong}).exit_code, 0) << "without a graph the file is an overlay";
   EXPECT_EQ(run({"validate", wrong, "--overlay", wrong}).exit_code, 2) << "there is no graph";
   const Outcome none = run({"explain", burley, "--overlay", path("none.json")});
   EXPECT_EQ(none.exit_code, 1);
@@ -261,7 +261,7 @@ TEST_F(GraphFiles, IncludesAreReadBelowFolderAndRoots) {
   const Outcome good = run({"validate", graph, "--root", path("shared")});
   EXPECT_EQ(good.exit_code, 0) << good.err;
   const Outcome alone = run({"validate", path("shared/parts/classify.json")});
-  EXPECT_EQ(alone.exit_code, 1) << "it does not declare what it uses";
+  EXPECT_EQ(alone.exit_code, 1) << "the file does not declare its resources";
   EXPECT_THAT(alone.err, HasSubstr("classify.json:2:29: error[D0203"));
 }
 

@@ -140,7 +140,7 @@ TEST_F(PlanFiles, GraphEqualsItsSavedPlan) {
 
 TEST_F(PlanFiles, GraphsDifferByTheirOwnPasses) {
   const Outcome diff = run({"plan", "diff", burley, "configs/graphs/separable.json"});
-  EXPECT_EQ(diff.exit_code, 0) << "differences are no failure unless asked for";
+  EXPECT_EQ(diff.exit_code, 0) << "differences are no failure unless requested";
   EXPECT_THAT(diff.out, AllOf(HasSubstr("the plans differ"), HasSubstr("- scatter: subsurface.burley"),
                               HasSubstr("+ "), HasSubstr("subsurface.separable"), HasSubstr("totals")));
   EXPECT_EQ(run({"plan", "diff", burley, "configs/graphs/separable.json", "--exit-code"}).exit_code, 1);

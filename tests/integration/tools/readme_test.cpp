@@ -64,7 +64,8 @@ TEST_F(Readme, GraphInFiveMinutesRuns) {
   const Outcome rendered = run({"render", "configs/scenes/bust.json", "--graph", graph, "--size", "64x36",
                                 "--frames", "1", "--out", path("out")});
   EXPECT_EQ(rendered.exit_code, 0) << rendered.err;
-  EXPECT_THAT(shown[0], ::testing::HasSubstr("\"albedo\": \"albedo\"")) << "it would render white plaster";
+  EXPECT_THAT(shown[0], ::testing::HasSubstr("\"albedo\": \"albedo\""))
+      << "the line would render white plaster";
 }
 
 TEST_F(Readme, EveryShellLineRuns) {

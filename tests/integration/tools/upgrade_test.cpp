@@ -67,7 +67,7 @@ TEST_F(Upgrade, OldFiles_Upgrade_CommentsAndLinesStay) {
     const std::string after = text_of(file);
     EXPECT_EQ(lines_of(after).size(), lines_of(before).size()) << file;
     EXPECT_EQ(comments_of(after), comments_of(before)) << file;
-    EXPECT_EQ(run({"upgrade", "--check", file}).exit_code, 0) << "a second time changes nothing";
+    EXPECT_EQ(run({"upgrade", "--check", file}).exit_code, 0) << "a second upgrade changes nothing";
     EXPECT_EQ(run({"upgrade", file}).exit_code, 0);
     EXPECT_EQ(text_of(file), after);
   }
@@ -134,7 +134,7 @@ TEST_F(Upgrade, Overlay_Upgrade_RenamesTargetsAndPaths) {
   { "set": "/settings/kind", "to": 1 }, { "remove": "/passes/refine_tiles/set/sample_weight" } ] })");
 }
 
-TEST_F(Upgrade, FileThatCannotBeWritten_Upgrade_FailsAndKeepsTheFile) {
+TEST_F(Upgrade, UnwritableFile_Upgrade_FailsAndKeepsTheFile) {
   const std::string good = write("good.json", R"({ "dermis": 1, "name": "g", "passes": [], "exports": [] })");
   const std::string missing = path("none.json");
   const Outcome outcome = run({"upgrade", missing, good});

@@ -173,7 +173,7 @@ TEST(Units, LeaveTwoDeviationsOfTheBudgetFree) {
   FrameLoad load;
   load.sample_units = units_within(outcome, costs, load, budget_ms, false);
   const Estimate filled = estimate(outcome, costs, load);
-  EXPECT_NEAR(filled.ms + 2 * filled.spread_ms, budget_ms, 0.002) << "to a unit: as many as fit";
+  EXPECT_NEAR(filled.ms + 2 * filled.spread_ms, budget_ms, 0.002) << "as many units as fit";
   EXPECT_NEAR(static_cast<double>(load.sample_units), 8000, 2);
   // In deterministic mode the deviation is zero.
   EXPECT_NEAR(units_within(outcome, costs, {}, budget_ms, true), 10000, 2);

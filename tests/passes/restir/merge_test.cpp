@@ -14,7 +14,7 @@ struct Merge : ::testing::Test {
   Random random{23, 0, 0};
 
   // Returns a sample of the pixel whose estimate is `light`, with any confidence.
-  Reservoir that_says(const Domain& domain, double light) {
+  Reservoir sample_with_estimate(const Domain& domain, double light) {
     while (true) {
       Reservoir r = draw_initial(scene, domain, random);
       if (!has_sample(r)) continue;
@@ -34,13 +34,14 @@ TEST_F(Merge, EqualEstimates_AreKept) {
     if (domain.medium == 0) continue;
     for (const Shift shift : {Shift::reconnection, Shift::delayed, Shift::hybrid}) {
       const ReuseSettings settings{shift, Index::traced, confidence_cap};
-      const Reservoir own = that_says(domain, light), history = that_says(domain, light);
+      const Reservoir own = sample_with_estimate(domain, light),
+                      history = sample_with_estimate(domain, light);
       const Reservoir merged = merge_temporal(scene, settings, domain, own, domain, history, random);
       EXPECT_NEAR(luminance(resolve(scene, domain, merged)), light, 1e-6);
       EXPECT_NEAR(merged.confidence, own.confidence + history.confidence, 1e-9);
 
-      const Reservoir others[] = {that_says(domain, light), that_says(domain, light),
-                                  that_says(domain, light)};
+      const Reservoir others[] = {sample_with_estimate(domain, light), sample_with_estimate(domain, light),
+                                  sample_with_estimate(domain, light)};
       double confidences = 0;
       for (const Reservoir& other : others)
         confidences += other.confidence;
@@ -66,7 +67,7 @@ TEST_F(Merge, CountsEachPathOnce) {
     if (domain.medium == 0 || beside.medium != domain.medium) continue;
     for (const Shift shift : {Shift::reconnection, Shift::delayed, Shift::hybrid}) {
       ReuseSettings settings{shift, Index::traced, confidence_cap};
-      Reservoir own = that_says(domain, 1);
+      Reservoir own = sample_with_estimate(domain, 1);
       own.weight = 1;
       own.confidence = 3;
       const double target = target_of(scene, domain, own);
@@ -102,7 +103,7 @@ TEST_F(Merge, CountsEachPathOnce) {
 TEST_F(Merge, WithNothingKeepsTheOwnSample) {
   for (const testing::Pixel& pixel : pixels) {
     if (pixel.domain.medium == 0) continue;
-    const Reservoir own = that_says(pixel.domain, 3);
+    const Reservoir own = sample_with_estimate(pixel.domain, 3);
     const ReuseSettings settings;
     const Reservoir merged = merge_temporal(scene, settings, pixel.domain, own, pixel.domain, {}, random);
     EXPECT_NEAR(luminance(resolve(scene, pixel.domain, merged)), 3, 1e-9);
@@ -115,7 +116,7 @@ TEST_F(Merge, WithNothingKeepsTheOwnSample) {
 TEST_F(Merge, CapsTheConfidenceOfHistory) {
   for (const testing::Pixel& pixel : pixels) {
     if (pixel.domain.medium == 0) continue;
-    Reservoir own = that_says(pixel.domain, 3), history = that_says(pixel.domain, 3);
+    Reservoir own = sample_with_estimate(pixel.domain, 3), history = sample_with_estimate(pixel.domain, 3);
     own.confidence = 2;
     for (const double huge : {41.0, 1e6, 1e300, std::numeric_limits<double>::infinity()}) {
       history.confidence = huge;

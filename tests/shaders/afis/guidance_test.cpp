@@ -100,7 +100,7 @@ TEST_F(GuidanceKernel, SampleNumbersEqualTheReference) {
         << i << ": " << wanted;
     whole += low == high ? 1 : 0;
   }
-  EXPECT_GT(whole, cases * 95 / 100) << "decisions that were compared";
+  EXPECT_GT(whole, cases * 95 / 100) << "number of compared decisions";
 }
 
 TEST_F(GuidanceKernel, ControlWeightsEqualTheReference) {
@@ -112,7 +112,7 @@ TEST_F(GuidanceKernel, ControlWeightsEqualTheReference) {
     if (one.mean_g > 0) magnitude += (double(one.mean_f) + one.mean_g) / one.mean_g;
     EXPECT_NEAR(at(i, 0, 3), control_weight(one.moments(), eps), (2 + 2.5) * ulp * magnitude) << i;
   }
-  EXPECT_EQ(at(0, 0, 3), 1) << "where all is dark";
+  EXPECT_EQ(at(0, 0, 3), 1) << "if all is dark";
 }
 
 TEST_F(GuidanceKernel, MovingMomentsEqualTheReference) {

@@ -260,7 +260,7 @@ TEST_F(ReprojectKernel, PlacesEqualTheReference) {
     }
   }
   for (const size_t seen : {found, behind, snapped, too_fast})
-    EXPECT_GE(seen, 32u) << "each kind of case is among those that were asked";
+    EXPECT_GE(seen, 32u) << "the cases have to contain each kind";
 }
 
 TEST_F(ReprojectKernel, TapsEqualTheReference) {
@@ -283,7 +283,7 @@ TEST_F(ReprojectKernel, TapsEqualTheReference) {
     (used == 0 ? none : used == 4 ? all : some) += 1;
   }
   for (const size_t seen : {none, some, all})
-    EXPECT_GT(seen, cases / 20) << "each kind of case is among those that were asked";
+    EXPECT_GT(seen, cases / 20) << "the cases have to contain each kind";
 }
 
 } // namespace

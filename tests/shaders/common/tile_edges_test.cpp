@@ -100,7 +100,7 @@ TEST_F(TileEdgesKernel, TilesThatBlendNothingCountAsSampled) {
         EXPECT_EQ(at(a, side * x, side * y, 2), arrangement(a).has_samples(x, y) ? 1 : 0)
             << a << " " << x << " " << y;
         EXPECT_EQ(at(a, side * x, side * y, 3), arrangement(a).has_samples(x - 2, y - 2) ? 1 : 0)
-            << "beyond the picture the tile at its edge counts: " << a << " " << x << " " << y;
+            << "beyond the picture the edge tile is used: " << a << " " << x << " " << y;
       }
 }
 

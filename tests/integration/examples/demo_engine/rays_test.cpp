@@ -156,7 +156,7 @@ TEST_F(WithRayQueries, TransmissionMatchesTheReference) {
     // smoothly.
     const double noise = 3 * std::hypot(drawn.sigma, wanted.sigma);
     EXPECT_NEAR(drawn.mean, wanted.mean, noise + 0.02 * wanted.mean) << "region " << r << ", sap " << flat;
-    EXPECT_TRUE(r != 0 || flat < 0.5 * drawn.mean) << "screen space sees no light behind the sheet";
+    EXPECT_TRUE(r != 0 || flat < 0.5 * drawn.mean) << "screen space has no light from behind the sheet";
   }
 }
 

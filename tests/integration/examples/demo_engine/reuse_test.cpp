@@ -243,7 +243,7 @@ TEST_F(ReuseWithRayQueries, RemovedShadow_FadesAsTheCapAllows) {
     for (const FrameOutputs& frame : reference)
       lights.push_back(mean_over(frame.scattered, region));
     const double whole = mean_of(lights).mean;
-    EXPECT_LT(mean_over(frames[shaded - 1].scattered, region), 0.2 * whole) << "it is shaded";
+    EXPECT_LT(mean_over(frames[shaded - 1].scattered, region), 0.2 * whole) << "the region is shaded";
     double sum = 0;
     constexpr uint32_t last = 10; // Frames that are averaged to reduce the noise.
     for (uint32_t f = lit - last; f < lit; ++f)

@@ -57,8 +57,8 @@ TEST(WithoutRayQueries, BudgetHasNoRays_TheReportSaysWhy) {
   const FrameChoice& choice = rendering.frames.back().choice.value();
   EXPECT_EQ(choice.outcomes, 1u);
   EXPECT_EQ(choice.technique, "sap smooth");
-  EXPECT_GT(choice.transmitted_rms, 0.05) << "it is counted all the same";
-  EXPECT_GT(choice.predicted_rmse, 0.5 * choice.transmitted_rms) << "and told as an error";
+  EXPECT_GT(choice.transmitted_rms, 0.05) << "transmission is counted anyway";
+  EXPECT_GT(choice.predicted_rmse, 0.5 * choice.transmitted_rms) << "and reported as an error";
 }
 
 TEST_F(WithRayQueries, BackLight_TheBudgetBuysRays) {
@@ -72,7 +72,7 @@ TEST_F(WithRayQueries, BackLight_TheBudgetBuysRays) {
   EXPECT_TRUE(ran(rendering.frames.back(), "draw"));
   EXPECT_FALSE(ran(rendering.frames.back(), "gather"));
   EXPECT_NE(rendering.frames[0].choice->outcome, choice.outcome)
-      << "before anything was counted nothing comes through";
+      << "no transmission is known before the first count";
 }
 
 TEST_F(WithRayQueries, FrontLight_TheBudgetBuysNoRays) {

@@ -35,13 +35,13 @@ export const shot = (page, name, options = {}) => page.screenshot({ path: join(o
 export const shade = (page, element) =>
   page.evaluate((one) => getComputedStyle(document.querySelector(one)).backgroundColor.match(/\d+/g).map(Number).reduce((a, b) => a + b, 0), element);
 
-const laws = [];
-export const law = (name, work) => laws.push([name, work]);
+const checks = [];
+export const check = (name, work) => checks.push([name, work]);
 
 // Runs all checks and ends the program.
 export async function finish() {
   let failed = 0;
-  for (const [name, work] of laws) {
+  for (const [name, work] of checks) {
     const before = performance.now();
     try {
       await work();

@@ -6,7 +6,7 @@ import { execFileSync } from 'node:child_process';
 import { readFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { pathToFileURL } from 'node:url';
-import { dermis, finish, law, open, out, shade, shot } from './browser.mjs';
+import { dermis, finish, check, open, out, shade, shot } from './browser.mjs';
 
 const text_contrast = 4.5, mark_contrast = 3; // WCAG 2.2, 1.4.3 and 1.4.11
 const schemes = ['light', 'dark'];
@@ -47,7 +47,7 @@ const colours = async (page, png) => page.evaluate(async (data) => {
   return seen.size;
 }, png.toString('base64'));
 
-law('every page opens without an error and asks nobody for anything', async () => {
+check('every page opens without an error and sends no request', async () => {
   for (const [name, url] of Object.entries(pages)) {
     const view = await open(url);
     assert.deepEqual(view.problems, [], name);
@@ -58,7 +58,7 @@ law('every page opens without an error and asks nobody for anything', async () =
   }
 });
 
-law('a click on a title sorts the rows by number or by word, a second one turns them round, and keys do the same', async () => {
+check('a click on a title sorts the rows by number or word, a second click reverses them, and so do keys', async () => {
   const { page, problems, close } = await open(error_time);
   const column = async (title) => {
     const at = await page.locator('thead th').evaluateAll((all, title) => all.findIndex((one) => one.textContent === title), title);
@@ -81,7 +81,7 @@ law('a click on a title sorts the rows by number or by word, a second one turns 
   await close();
 });
 
-law('what was not measured stands behind what was, whichever way rows are sorted', async () => {
+check('rows without a measurement come last in both sort orders', async () => {
   const { page, close } = await open(skip);
   const title = page.locator('thead th').last(); // Largest difference: not every case has one.
   for (let i = 0; i < 2; ++i) {
@@ -93,7 +93,7 @@ law('what was not measured stands behind what was, whichever way rows are sorted
   await close();
 });
 
-law('plots show a point for each row, a legend names their colours, and no label covers another', async () => {
+check('plots show a point for each row, a legend names the colours, and labels do not overlap', async () => {
   for (const [url, of_rows] of [[error_time, true], [dynamic, false], [record, false]]) {
     const { page, close } = await open(url);
     const plots = await page.locator('.plots svg').count();
@@ -124,7 +124,7 @@ law('plots show a point for each row, a legend names their colours, and no label
   await close();
 });
 
-law('lines of baselines can be told apart, and each frame is on the axis', async () => {
+check('lines of baselines are distinguishable, and each frame is on the axis', async () => {
   const { page, close } = await open(dynamic);
   const lines = await page.locator('.legend .base .line').evaluateAll((all) => all.map((one) => getComputedStyle(one).strokeDasharray));
   assert.ok(lines.length >= 5);
@@ -134,7 +134,7 @@ law('lines of baselines can be told apart, and each frame is on the axis', async
   await close();
 });
 
-law('pictures are drawn, and rows say what their marks mean', async () => {
+check('pictures are rendered, and rows explain their marks', async () => {
   const { page, close } = await open(error_time);
   const widths = await page.locator('img').evaluateAll((all) => Promise.all(all.map((one) => one.decode().then(() => one.naturalWidth))));
   assert.ok(widths.length > 5 && widths.every((one) => one > 0));
@@ -151,7 +151,7 @@ law('pictures are drawn, and rows say what their marks mean', async () => {
   await laws.close();
 });
 
-law('light and dark can be read, are as wide as the window and are drawn', async () => {
+check('light and dark themes are readable, as wide as the window, and rendered', async () => {
   for (const scheme of schemes)
     for (const [name, url] of Object.entries(pages)) {
       const { page, problems, close } = await open(url, scheme);
@@ -173,7 +173,7 @@ law('light and dark can be read, are as wide as the window and are drawn', async
     }
 });
 
-law('the index leads to the page of each suite and back to nothing that is missing', async () => {
+check('the index links to the page of each suite, and no link is broken', async () => {
   const { page, problems, close } = await open(index);
   assert.deepEqual(await page.locator('tbody tr td:first-child').allTextContents(),
     ['record', 'skip', 'truth', 'supplement', 'compile', 'stability', 'budget', 'error-time', 'dynamic', 'restir']);

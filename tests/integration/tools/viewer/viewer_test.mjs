@@ -6,7 +6,7 @@ import { execFileSync } from 'node:child_process';
 import { statSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { pathToFileURL } from 'node:url';
-import { dermis, finish, law, open as open_page, out, shade, shot } from './browser.mjs';
+import { dermis, finish, check, open as open_page, out, shade, shot } from './browser.mjs';
 
 const most_bytes = 1.5 * 1024 * 1024; // Per page.
 const passes_of_large = 1000;
@@ -54,7 +54,7 @@ function write_frame_report() {
 const open = (page_file, scheme = 'light') => open_page(page_file.url, scheme, 'body[data-ready=true]');
 const skin = () => ['configs/graphs/skin.json'];
 
-law('the page is small, opens without an error and asks nobody for anything', async () => {
+check('the page is small, opens without an error and sends no request', async () => {
   for (const graph of ['skin', 'hybrid', 'sap_residual']) {
     const made = make_page(graph, `configs/graphs/${graph === 'skin' ? '' : 'papers/'}${graph}.json`);
     assert.ok(made.bytes <= most_bytes, `${graph}: ${made.bytes} bytes`);
@@ -67,7 +67,7 @@ law('the page is small, opens without an error and asks nobody for anything', as
   }
 });
 
-law('selecting a pass in the graph tells of it and leads to its line of JSON', async () => {
+check('selecting a pass in the graph describes it and links to its line of JSON', async () => {
   const view = await open(make_page('select', ...skin()));
   const { page } = view;
   const box = await page.locator('#graph').boundingBox();
@@ -84,7 +84,7 @@ law('selecting a pass in the graph tells of it and leads to its line of JSON', a
   await view.close();
 });
 
-law('switching a choice shows the plan that it leads to, and what changed', async () => {
+check('switching a choice shows the new plan and the differences', async () => {
   const view = await open(make_page('switch', ...skin()));
   const { page } = view;
   const before = await page.locator('#change').textContent();
@@ -100,7 +100,7 @@ law('switching a choice shows the plan that it leads to, and what changed', asyn
   await view.close();
 });
 
-law('every tab shows what it promises', async () => {
+check('every tab shows its contents', async () => {
   const view = await open(make_page('tabs', 'configs/graphs/papers/sap_residual.json'));
   const { page } = view;
   assert.ok(await page.locator('#panel-memory rect.block').count() > 20);
@@ -116,7 +116,7 @@ law('every tab shows what it promises', async () => {
   await view.close();
 });
 
-law('everything can be reached by the keyboard alone', async () => {
+check('everything can be reached with the keyboard', async () => {
   const view = await open(make_page('keys', ...skin()));
   const { page } = view;
   await page.keyboard.press('/');
@@ -145,7 +145,7 @@ law('everything can be reached by the keyboard alone', async () => {
   await view.close();
 });
 
-law('measured times and tiles of a report are in the page', async () => {
+check('measured times and tiles of a report are in the page', async () => {
   const view = await open(make_page('frame', ...skin(), '--frame', write_frame_report()));
   const { page } = view;
   await page.locator('#tab-frames').click();
@@ -158,7 +158,7 @@ law('measured times and tiles of a report are in the page', async () => {
   await view.close();
 });
 
-law('what a file says never becomes markup', async () => {
+check('text of a file never becomes markup', async () => {
   const made = make_page('hostile', ...write_hostile_graph());
   const view = await open(made);
   await view.page.locator('#list button[data-name=light]').click();
@@ -170,7 +170,7 @@ law('what a file says never becomes markup', async () => {
   await view.close();
 });
 
-law('a graph of 1,000 passes is drawn, and how long that takes is told', async () => {
+check('a graph of 1,000 passes is rendered, and the time is reported', async () => {
   const made = make_page('large', ...write_large_graph());
   const times = [];
   for (let i = 0; i < (process.env.DERMIS_TESTS_FULL ? 3 : 1); ++i) {
@@ -185,7 +185,7 @@ law('a graph of 1,000 passes is drawn, and how long that takes is told', async (
   console.log(`  ${made.bytes} bytes, drawn after ${times.map((one) => one.toFixed(2)).join(', ')} s`);
 });
 
-law('light and dark are both drawn', async () => {
+check('light and dark themes are both rendered', async () => {
   for (const scheme of ['light', 'dark']) {
     const view = await open(make_page(`shown_${scheme}`, ...skin()), scheme);
     const { page } = view;
