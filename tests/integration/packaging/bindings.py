@@ -14,7 +14,7 @@ code = re.sub(r"/\*.*?\*/", "", header, flags=re.S)
 plain = {
     "size_t": ctypes.c_size_t, "uint32_t": ctypes.c_uint32, "uint64_t": ctypes.c_uint64, "int32_t": ctypes.c_int32,
     "float": ctypes.c_float, "double": ctypes.c_double, "char": ctypes.c_char,
-    # Of Vulkan: 32-bit enumerations and flags, 64-bit flags, and handles, which are as wide as pointers here.
+    # Vulkan types: 32-bit enumerations and flags, 64-bit flags, and handles as wide as pointers.
     "VkFormat": ctypes.c_int32, "VkImageLayout": ctypes.c_int32, "VkImageUsageFlags": ctypes.c_uint32,
     "VkPipelineStageFlags2": ctypes.c_uint64, "VkAccessFlags2": ctypes.c_uint64,
     "VkMemoryPropertyFlags": ctypes.c_uint32, "VkFilter": ctypes.c_int32, "VkClearColorValue": ctypes.c_uint32 * 4,
@@ -49,7 +49,7 @@ for name, body in re.findall(r"typedef struct (\w+) \{(.*?)\} \1;", code, flags=
 library = ctypes.CDLL(library_path)
 functions = re.findall(r"DERMIS_API (.+?)\s*DERMIS_CALL (\w+)\((.*?)\);", code, flags=re.S)
 for result, name, arguments in functions:
-    function = getattr(library, name)  # every declared function is there
+    function = getattr(library, name)  # Fails if a declared function is missing.
     function.restype = None if result.strip() == "void" else type_of(result)
     function.argtypes = [ctypes.c_void_p if "*" in one else type_of(re.sub(r"\w+$", "", one.strip()))
                          for one in arguments.split(",") if one.strip() != "void"]
@@ -90,7 +90,7 @@ expect(any(code == "unknown_key" and line == 4 for code, line, _ in said), f"the
 print(f"{len(functions)} functions and {sum(1 for t in types.values() if isinstance(t, type(ctypes.Structure)))} structs bound")
 
 
-kept = []  # an address keeps nothing alive
+kept = []  # Keeps objects alive whose addresses are stored in structs.
 
 
 def filled(struct, /, **fields):
