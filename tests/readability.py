@@ -30,7 +30,7 @@ def text_of(root, name):
     try:
         return (root / name).read_text(encoding="utf-8")
     except UnicodeDecodeError:
-        return None  # a binary file has no lines
+        return None  # A binary file has no lines.
 
 
 def wide_markdown(text):
@@ -68,7 +68,7 @@ def comments(name, text):
 
 
 def largest_struct(root, names):
-    """The struct or class below a folder `compile` with the most data members: (members, name, file)."""
+    """Returns (members, name, file) of the struct or class below a folder `compile` with most members."""
     best = (0, "none", "")
     for name in names:
         if "/compile/" not in name or not name.endswith((".hpp", ".cpp")):
@@ -84,7 +84,7 @@ def largest_struct(root, names):
                     if depth == 0:
                         break
                     if depth == 1 and re.search(r"\)\s*(const)?\s*(noexcept)?\s*(:.*)?$", statement, re.S):
-                        statement = ""  # the body of a function ends without a semicolon
+                        statement = ""  # The body of a function ends without a semicolon.
                 elif depth == 1:
                     if char == ";":
                         is_member = statement.strip() and not re.search(

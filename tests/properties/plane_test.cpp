@@ -1,5 +1,5 @@
 // Properties of every technique on a plane that faces the viewer (closed forms of
-// truth/analytic.hpp).
+// integration/tools/references/analytic.hpp).
 #include "tests/framegraph/test_scale.hpp"
 #include "tests/properties/plane.hpp"
 

@@ -20,7 +20,7 @@ public:
 
   dermis_context_desc context_desc(); // Describes `device`, with timing enabled.
   dermis_result make_context(const dermis_context_desc& desc);
-  // burley.json with accumulated light and one skin profile.
+  // Makes a graph of burley.json with accumulated light and one skin profile.
   dermis_result make_graph(uint32_t side = 64);
   void make_bindings();                                     // Makes images for every slot.
   void give_up_views();                                     // Uses content_ids instead of views.

@@ -1,7 +1,10 @@
-"""Bindings made from the header alone, as an author for another language would: structs, enumerations and functions are
-read from dermis.h, and the library is called through them.
-With an engine (bindings_engine.c as a library) they also run a frame of a graph.
-usage: bindings.py LIBRARY SOURCE_DIR [ENGINE]"""
+"""Makes bindings from dermis.h only, like an author of bindings for another language.
+
+Reads structs, enumerations and functions from the header and calls the library through them. With an
+engine (bindings_engine.c as a library) the bindings also run a frame of a graph.
+
+usage: bindings.py LIBRARY SOURCE_DIR [ENGINE]
+"""
 import ctypes
 import re
 import sys
@@ -26,7 +29,7 @@ enumerators = {name: int(value, 0) for name, value in re.findall(r"\b(DERMIS_\w+
 
 
 def type_of(text):
-    """The ctypes type of a declaration's type; whatever is not plain and no struct by value is a pointer or handle."""
+    """Returns the ctypes type of a declared type; all but plain types and structs by value are pointers."""
     text = text.replace("const", " ").replace("struct", " ").strip()
     if text.endswith("*"):
         return ctypes.c_char_p if text.replace(" ", "") == "char*" else ctypes.c_void_p
@@ -66,7 +69,7 @@ expect(library.dermis_result_name(enumerators["DERMIS_ERROR_CONFIG"]) == b"DERMI
 
 
 def validate(text):
-    """Result and messages (code name, line, text) of a graph."""
+    """Returns the result and the messages (code name, line, text) of a graph."""
     given = types["dermis_source"]()
     given.struct_size = ctypes.sizeof(given)
     given.name, given.text, given.length = b"bound.json", text, len(text)
@@ -94,7 +97,7 @@ kept = []  # Keeps objects alive whose addresses are stored in structs.
 
 
 def filled(struct, /, **fields):
-    """A struct of the interface, zero but for its size and `fields`."""
+    """Returns a struct of the interface, zero except for its size and `fields`."""
     made = types[struct]()
     kept.append(made)
     if hasattr(made, "struct_size"):
@@ -114,7 +117,7 @@ def source_of(name, text):
 
 
 def run(engine, side=64):
-    """One frame of a lit wall of skin, as minimal.c has it; the names of the passes and their times in ns."""
+    """Runs a frame of a lit wall of skin as in minimal.c; returns pass names and times in ns."""
     for name in ("instance", "gpu", "device", "commands", "loader"):
         getattr(engine, f"engine_{name}").restype = ctypes.c_void_p
     engine.engine_image.argtypes = [ctypes.c_int32, ctypes.c_uint32, ctypes.c_uint32, ctypes.c_float, ctypes.c_int32,

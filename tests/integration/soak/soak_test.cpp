@@ -62,7 +62,7 @@ struct Soak : DermisTest {
     host_allocator = heap.allocator();
     device_allocator = memory->allocator();
     dermis_context_desc desc = context_desc();
-    desc.log = nullptr; // refused reloads are wanted
+    desc.log = nullptr; // The test provokes refused reloads.
     desc.device_allocator = &device_allocator;
     desc.allocator = &host_allocator;
     desc.get_instance_proc_addr = counting_loader(*host);
