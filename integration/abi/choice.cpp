@@ -86,8 +86,8 @@ dermis_result set_budget(dermis_graph_t& graph, const dermis_budget* given, derm
   dermis_budget budget = DERMIS_BUDGET_INIT;
   if (const SizedRead read = read_sized(given, budget); read != SizedRead::ok)
     return rejected_size(log, read, "dermis_graph_set_budget: budget", stated_size(given),
-                         first_version_size<dermis_budget>);
-  // NaN is refused, too
+                         sizeof(dermis_budget));
+  // The comparison also rejects NaN.
   if (!(budget.milliseconds >= 0 && budget.milliseconds <= largest_budget_ms))
     return bad_argument(log, "dermis_graph_set_budget: milliseconds is {}, expected 0..{}",
                         budget.milliseconds, largest_budget_ms);
@@ -145,39 +145,46 @@ const char* miss_of(const FrameChoice& frame) {
                                                                           : "the times were not as learned";
 }
 
-dermis_choice describe_choice(const Chooser& chooser, const Program& program) {
+dermis_frame_report make_report(const Chooser& chooser, const Program& program) {
+  const FrameChoice& frame = chooser.newest;
+  dermis_frame_report out = DERMIS_FRAME_REPORT_INIT;
+  out.frame_index = frame.frame_index;
+  out.configuration = program.outcomes[frame.outcome].name.c_str();
+  out.reason = choice::why_text(frame.decision);
+  out.miss = miss_of(frame);
+  out.budget_ms = static_cast<float>(frame.budget_ms);
+  out.predicted_ms = static_cast<float>(frame.forecast.ms);
+  out.measured_ms = frame.timed ? static_cast<float>(frame.measured_ms) : -1.0f;
+  out.predicted_rmse = static_cast<float>(frame.forecast.rmse);
+  out.skips = skips_of(frame, program);
+  return out;
+}
+
+dermis_frame_statistics make_statistics(const Chooser& chooser, const Program& program) {
   const FrameChoice& frame = chooser.newest;
   const choice::Outcome& outcome = program.outcomes[frame.outcome];
   const bool better = frame.decision.next_better < program.outcomes.size();
-  dermis_choice out = DERMIS_CHOICE_INIT;
+  dermis_frame_statistics out = DERMIS_FRAME_STATISTICS_INIT;
   out.frame_index = frame.frame_index;
-  out.outcome = outcome.name.c_str();
   out.technique = outcome.technique < 0
                       ? ""
                       : chooser.errors.techniques[static_cast<size_t>(outcome.technique)].name.c_str();
-  out.why = choice::why_text(frame.decision);
   out.next_better = better ? program.outcomes[frame.decision.next_better].name.c_str() : "";
   out.next_better_missing_ms = static_cast<float>(frame.decision.missing_ms);
-  out.budget_ms = static_cast<float>(frame.budget_ms);
-  out.predicted_ms = static_cast<float>(frame.forecast.ms);
   out.predicted_spread_ms = static_cast<float>(frame.forecast.spread_ms);
-  out.measured_ms = frame.timed ? static_cast<float>(frame.measured_ms) : -1.0f;
-  out.metered_ms = static_cast<float>(frame.metered_ms);
-  out.predicted_rmse = static_cast<float>(frame.forecast.rmse);
-  out.mean_d_px = static_cast<float>(subsurface::mean_d_px(frame.counters));
-  out.outcome_count = static_cast<uint32_t>(program.outcomes.size());
+  out.calibrated_ms = static_cast<float>(frame.metered_ms);
+  out.configuration_count = static_cast<uint32_t>(program.outcomes.size());
+  out.switches = frame.switches;
+  out.dispatches = frame.dispatches;
+  out.groups = frame.groups;
   out.view_tiles = static_cast<uint32_t>(frame.view_tiles);
   out.scattering_tiles = frame.counters.scattering_tiles;
   out.copied_tiles = frame.counters.copied_tiles;
-  out.switches = frame.switches;
   out.uniform_tiles = frame.counters.uniform_tiles;
-  out.skips = skips_of(frame, program);
-  out.dispatches = frame.dispatches;
-  out.groups = frame.groups;
   std::copy(frame.counters.sampled_tiles.begin(), frame.counters.sampled_tiles.end(), out.sampled_tiles);
   out.sample_units = frame.counters.sample_units;
   out.sample_demand = frame.counters.sample_demand;
-  out.miss = miss_of(frame);
+  out.mean_d_px = static_cast<float>(subsurface::mean_d_px(frame.counters));
   const subsurface::ProbedError probed = subsurface::probed_error(frame.counters);
   out.probed_tiles = probed.tiles;
   out.probed_rmse = static_cast<float>(probed.rmse);
@@ -187,14 +194,15 @@ dermis_choice describe_choice(const Chooser& chooser, const Program& program) {
   return out;
 }
 
-} // namespace
-
-dermis_result get_choice(dermis_view_t& view, const char* function, uint64_t completed, dermis_choice* out) {
+// Writes make(chooser, program) of the newest frame whose counters are available to *out.
+template <class T, class Make>
+dermis_result write_newest(dermis_view_t& view, const char* function, const char* name, uint64_t completed,
+                           T* out, Make make) {
   const Log& log = view.context->log;
-  if (out == nullptr) return bad_argument(log, "{}: choice is NULL", function);
+  if (out == nullptr) return bad_argument(log, "{}: {} is NULL", function, name);
   const size_t size = stated_size(out);
-  if (const SizedRead read = check_size<dermis_choice>(size); read != SizedRead::ok)
-    return rejected_size(log, read, function, "choice", size, first_version_size<dermis_choice>);
+  if (const SizedRead read = check_size<T>(size); read != SizedRead::ok)
+    return rejected_size(log, read, function, name, size, sizeof(T));
   const std::lock_guard lock(view.mutex);
   if (completed > view.last_frame)
     return bad_argument(log, "{}: completed_frame_index is {}, the newest recorded frame is {}", function,
@@ -204,8 +212,18 @@ dermis_result get_choice(dermis_view_t& view, const char* function, uint64_t com
   if (const dermis_result loss = check_loss(view, function); loss != DERMIS_OK) return loss;
   if (view.chooser.newest.frame_index == 0 || view.chooser.newest.program != view.running->serial)
     return DERMIS_NOT_READY;
-  write_sized(out, size, describe_choice(view.chooser, *view.running));
+  write_sized(out, size, make(view.chooser, *view.running));
   return DERMIS_OK;
+}
+
+} // namespace
+
+dermis_result get_report(dermis_view_t& view, uint64_t completed, dermis_frame_report* out) {
+  return write_newest(view, "dermis_view_report", "report", completed, out, make_report);
+}
+
+dermis_result get_statistics(dermis_view_t& view, uint64_t completed, dermis_frame_statistics* out) {
+  return write_newest(view, "dermis_view_statistics", "statistics", completed, out, make_statistics);
 }
 
 } // namespace dermis::abi
@@ -220,15 +238,6 @@ extern "C" dermis_result DERMIS_CALL dermis_graph_set_budget(dermis_graph graph,
   return guarded(log, "dermis_graph_set_budget", [&] {
     if (budget == nullptr) return bad_argument(log, "dermis_graph_set_budget: budget is NULL");
     return set_budget(*graph, budget, report);
-  });
-}
-
-extern "C" dermis_result DERMIS_CALL dermis_graph_choice(dermis_graph graph, uint64_t completed_frame_index,
-                                                         dermis_choice* choice) {
-  if (graph == nullptr) return bad_argument({}, "dermis_graph_choice: graph is NULL");
-  const Log& log = graph->context->log;
-  return guarded(log, "dermis_graph_choice", [&] {
-    return get_choice(graph->own, "dermis_graph_choice", completed_frame_index, choice);
   });
 }
 

@@ -117,26 +117,26 @@ dermis_result read_allocators(const dermis_context_desc& desc, const Log& log, H
     dermis_allocator given = DERMIS_ALLOCATOR_INIT;
     if (const SizedRead read = read_sized(desc.allocator, given); read != SizedRead::ok)
       return rejected_size(log, read, function, "desc.allocator", stated_size(desc.allocator),
-                           first_version_size<dermis_allocator>);
-    if (given.allocate == nullptr || given.release == nullptr)
+                           sizeof(dermis_allocator));
+    if (given.allocate == nullptr || given.free == nullptr)
       return bad_argument(log, "{}: desc.allocator.{} is NULL", function,
-                          given.allocate == nullptr ? "allocate" : "release");
+                          given.allocate == nullptr ? "allocate" : "free");
     if (!serves_host_allocator())
       return fail(
           log, DERMIS_ERROR_UNSUPPORTED, DiagnosticId::device_unsupported,
           "{}: desc.allocator is served by the shared library alone; here operator new is the program's",
           function);
-    host = {given.allocate, given.release, given.user};
+    host = {given.allocate, given.free, given.user};
   }
   if (desc.device_allocator != nullptr) {
     dermis_device_allocator given = DERMIS_DEVICE_ALLOCATOR_INIT;
     if (const SizedRead read = read_sized(desc.device_allocator, given); read != SizedRead::ok)
       return rejected_size(log, read, function, "desc.device_allocator", stated_size(desc.device_allocator),
-                           first_version_size<dermis_device_allocator>);
-    if (given.take == nullptr || given.give_back == nullptr)
+                           sizeof(dermis_device_allocator));
+    if (given.allocate == nullptr || given.free == nullptr)
       return bad_argument(log, "{}: desc.device_allocator.{} is NULL", function,
-                          given.take == nullptr ? "take" : "give_back");
-    device = {given.take, given.give_back, given.user};
+                          given.allocate == nullptr ? "allocate" : "free");
+    device = {given.allocate, given.free, given.user};
   }
   return DERMIS_OK;
 }
@@ -148,7 +148,7 @@ dermis_result create(const dermis_context_desc* given, dermis_context* out) {
   dermis_context_desc desc = DERMIS_CONTEXT_DESC_INIT;
   if (const SizedRead read = read_sized(given, desc); read != SizedRead::ok)
     return rejected_size({}, read, "dermis_context_create: desc", stated_size(given),
-                         first_version_size<dermis_context_desc>);
+                         sizeof(dermis_context_desc));
   Log log{desc.log, desc.log_user};
   if (const dermis_result result = check_desc(desc, log); result != DERMIS_OK) return result;
   if (const dermis_result result = check_requirements(desc, log); result != DERMIS_OK) return result;

@@ -16,7 +16,7 @@ constexpr uint32_t known_frame_flags =
 
 dermis_result check_numbers(const dermis_view_t& view, const dermis_frame& frame) {
   const Log& log = view.context->log;
-  const char* const function = record_function(view);
+  const char* const function = "dermis_view_record";
   const uint32_t in_flight = view.context->frames_in_flight;
   if (frame.command_buffer == VK_NULL_HANDLE)
     return bad_argument(log, "{}: command_buffer is NULL", function);
@@ -105,7 +105,7 @@ std::string_view format_name(VkFormat format) {
 dermis_result check_state(const dermis_view_t& view, uint32_t index, const Slot& slot, const char* which,
                           const dermis_image_state& state) {
   const Log& log = view.context->log;
-  const char* const function = record_function(view);
+  const char* const function = "dermis_view_record";
   if (state.access != 0 && state.stages == 0)
     return bad_argument(log, "{}: bindings[{}].{} ('{}') has access {:#x} but no stages", function, index,
                         which, slot.name, state.access);
@@ -122,7 +122,7 @@ dermis_result check_state(const dermis_view_t& view, uint32_t index, const Slot&
 dermis_result check_binding(const dermis_view_t& view, uint32_t index, const Slot& slot,
                             const dermis_image_binding& binding) {
   const Log& log = view.context->log;
-  const char* const function = record_function(view);
+  const char* const function = "dermis_view_record";
   if (binding.image == VK_NULL_HANDLE || (binding.view == VK_NULL_HANDLE && binding.content_id == 0))
     return bad_argument(log, "{}: bindings[{}].{} ('{}') is null", function, index,
                         binding.image == VK_NULL_HANDLE ? "image" : "view", slot.name);
@@ -159,7 +159,7 @@ dermis_result make_view(dermis_view_t& view, uint32_t index, const Slot& slot, c
                         dermis_image_binding& binding) {
   if (binding.view != VK_NULL_HANDLE) return DERMIS_OK;
   const Log& log = view.context->log;
-  const char* const function = record_function(view);
+  const char* const function = "dermis_view_record";
   const ImageViewKey key{binding.slot,
                          binding.image,
                          binding.content_id,
@@ -210,7 +210,7 @@ dermis_result check_complete(const Log& log, const char* function, const Program
 
 dermis_result check_bindings(dermis_view_t& view, Program& program, const dermis_frame& frame) {
   const Log& log = view.context->log;
-  const char* const function = record_function(view);
+  const char* const function = "dermis_view_record";
   if (frame.binding_count > 0 && frame.bindings == nullptr)
     return bad_argument(log, "{}: bindings is NULL and binding_count is {}", function, frame.binding_count);
   std::fill(program.images.begin(), program.images.end(), vulkan::HostImage{});
@@ -229,7 +229,7 @@ dermis_result check_bindings(dermis_view_t& view, Program& program, const dermis
           log,
           "{}: bindings[{}].struct_size is {}, expected {} as in bindings[0], at least {}: use "
           "DERMIS_IMAGE_BINDING_INIT",
-          function, i, stated_size(from), step, first_version_size<dermis_image_binding>);
+          function, i, stated_size(from), step, sizeof(dermis_image_binding));
     if (binding.slot >= program.slots.size())
       return bad_argument(log, "{}: bindings[{}].slot is {}, the graph has slots 0..{}", function, i,
                           binding.slot, static_cast<int64_t>(program.slots.size()) - 1);
@@ -316,7 +316,7 @@ std::string_view hint_of(subsurface::CameraFault fault) {
 dermis_result check_frame(dermis_view_t& view, Program& program, const dermis_frame& frame,
                           CheckedFrame& checked) {
   const Log& log = view.context->log;
-  const char* const function = record_function(view);
+  const char* const function = "dermis_view_record";
   if (const dermis_result result = check_numbers(view, frame); result != DERMIS_OK) return result;
   if (const dermis_result result = check_rectangle(log, function, program.variants.front().compiled->plan,
                                                    frame, checked.input.rectangle);
@@ -332,7 +332,7 @@ dermis_result check_frame(dermis_view_t& view, Program& program, const dermis_fr
 dermis_result fill_frame(const dermis_view_t& view, const Program& program, const Chosen& chosen,
                          const dermis_frame& frame, CheckedFrame& checked) {
   const Log& log = view.context->log;
-  const char* const function = record_function(view);
+  const char* const function = "dermis_view_record";
   const Variant& variant = program.variants[chosen.variant];
   const vulkan::Executor& executor = *variant.executor;
   const vulkan::Executor* const before = chosen.before;

@@ -96,7 +96,7 @@ dermis_result create(dermis_context context, const dermis_graph_desc* given, der
   dermis_graph_desc desc = DERMIS_GRAPH_DESC_INIT;
   if (const SizedRead read = read_sized(given, desc); read != SizedRead::ok)
     return rejected_size(log, read, "dermis_graph_create: desc", stated_size(given),
-                         first_version_size<dermis_graph_desc>);
+                         sizeof(dermis_graph_desc));
   if (desc.keep != 0)
     return bad_argument(log, "dermis_graph_create: desc.keep is {:#x}, expected 0: only a reload can keep",
                         desc.keep);
@@ -125,7 +125,7 @@ dermis_result reload(dermis_graph_t& graph, const dermis_graph_desc* given, derm
   dermis_graph_desc desc = DERMIS_GRAPH_DESC_INIT;
   if (const SizedRead read = read_sized(given, desc); read != SizedRead::ok)
     return rejected_size(log, read, "dermis_graph_reload: desc", stated_size(given),
-                         first_version_size<dermis_graph_desc>);
+                         sizeof(dermis_graph_desc));
   const std::lock_guard changing(graph.changing);
   ProgramInput input = graph.input;
   input.included.clear(); // files may have changed

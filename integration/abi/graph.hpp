@@ -59,7 +59,7 @@ struct dermis_graph_t {
   std::mutex changing;
   dermis::abi::ProgramInput input; // of the newest program
   dermis::PlanCache plans;         // of programs built before: what a setting flips back to
-  dermis_view_t own;               // that dermis_graph_record records
+  dermis_view_t own;               // returned by dermis_graph_view
   std::vector<std::unique_ptr<dermis_view_t>> others;
 };
 
@@ -74,9 +74,6 @@ inline Program& newest(dermis_view_t& view) {
 inline std::shared_ptr<Program> keep_newest(const dermis_view_t& view) {
   const std::lock_guard lock(view.mutex);
   return view.next ? view.next : view.running;
-}
-inline const char* record_function(const dermis_view_t& view) {
-  return &view == &view.graph->own ? "dermis_graph_record" : "dermis_view_record";
 }
 
 // Returns DEVICE_LOST if reading timings of the running program reported a lost device; the whole
@@ -104,12 +101,13 @@ dermis_result replace_programs(dermis_graph_t& graph, ProgramInput&& input, vulk
 // fit.
 void apply_own_settings(const dermis_view_t& view, Program& program, Diagnostics& diagnostics);
 
-// What both the functions of a graph and of a view do; `function` names the one that was called.
+// The functions of a view; `function` names the one that was called.
 dermis_result record_frame(dermis_view_t& view, const dermis_frame* frame);
 dermis_result capture_frame(dermis_view_t& view, const char* function, const dermis_frame* frame,
                             uint32_t* count, const dermis_command** commands);
 dermis_result discard_frame(dermis_view_t& view, const char* function, uint64_t frame_index);
-dermis_result get_choice(dermis_view_t& view, const char* function, uint64_t completed, dermis_choice* out);
+dermis_result get_report(dermis_view_t& view, uint64_t completed, dermis_frame_report* out);
+dermis_result get_statistics(dermis_view_t& view, uint64_t completed, dermis_frame_statistics* out);
 dermis_result get_timings(dermis_view_t& view, const char* function, uint64_t completed, uint32_t* count,
                           dermis_pass_timing* out);
 dermis_result get_histories(const dermis_view_t& view, const char* function, uint32_t* count,

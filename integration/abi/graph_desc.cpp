@@ -24,7 +24,7 @@ dermis_result for_each(const Log& log, const char* function, const char* field, 
     const SizedRead read = stated_size(from) == step ? read_sized(from, item) : SizedRead::too_small;
     if (read != SizedRead::ok)
       return rejected_size(log, read, fmt::format("{}: desc.{}[{}]", function, field, i), stated_size(from),
-                           std::max(i == 0 ? 0 : step, first_version_size<T>));
+                           std::max(i == 0 ? 0 : step, sizeof(T)));
     if (const dermis_result result = use(i, item); result != DERMIS_OK) return result;
   }
   return DERMIS_OK;
@@ -38,8 +38,6 @@ dermis_result read_profiles(const Log& log, const char* function, const dermis_g
         const std::string field = fmt::format("{}: desc.profiles[{}]", function, i);
         if (profile.id == 0 || profile.id > largest_profile_id)
           return bad_argument(log, "{}.id is {}, expected 1..{}", field, profile.id, largest_profile_id);
-        if (profile.reserved != 0)
-          return bad_argument(log, "{}.reserved is {}, expected 0", field, profile.reserved);
         for (const auto& other : input.profiles)
           if (other.id == profile.id)
             return bad_argument(log, "{}.id is {}, which an earlier entry has already", field, profile.id);
@@ -62,8 +60,6 @@ dermis_result read_unbound(const Log& log, const char* function, const dermis_gr
 
 dermis_result read_overlays(const Log& log, const char* function, const dermis_graph_desc& desc,
                             ProgramInput& input) {
-  if (desc.reserved_too != 0)
-    return bad_argument(log, "{}: desc.reserved_too is {}, expected 0", function, desc.reserved_too);
   return for_each<dermis_source>(log, function, "overlays", desc.overlays, desc.overlay_count,
                                  DERMIS_SOURCE_INIT, [&](uint32_t i, const dermis_source& source) {
                                    SourceText overlay;
@@ -82,9 +78,6 @@ dermis_result read_formats(const Log& log, const char* function, const dermis_gr
       log, function, "formats", desc.formats, desc.format_count, DERMIS_SLOT_FORMAT_INIT,
       [&](uint32_t i, const dermis_slot_format& given) {
         if (given.name == nullptr) return bad_argument(log, "{}: desc.formats[{}].name is NULL", function, i);
-        if (given.reserved != 0)
-          return bad_argument(log, "{}: desc.formats[{}].reserved is {}, expected 0", function, i,
-                              given.reserved);
         const auto format = format_from_vulkan(static_cast<uint32_t>(given.format));
         if (!format || *format == Format::undefined)
           return bad_argument(

@@ -85,13 +85,3 @@ dermis_result get_histories(const dermis_view_t& view, const char* function, uin
 }
 
 } // namespace dermis::abi
-
-using namespace dermis::abi;
-
-extern "C" dermis_result DERMIS_CALL dermis_graph_histories(dermis_graph graph, uint32_t* count,
-                                                            dermis_history* histories) {
-  constexpr const char* function = "dermis_graph_histories";
-  if (graph == nullptr) return bad_argument({}, "{}: graph is NULL", function);
-  return guarded(graph->context->log, function,
-                 [&] { return get_histories(graph->own, function, count, histories); });
-}

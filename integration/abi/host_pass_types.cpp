@@ -34,7 +34,7 @@ dermis_result read_ports(const Log& log, const dermis_pass_type& given, HostPass
     dermis_port port = DERMIS_PORT_INIT;
     if (const SizedRead read = read_sized(element(given.ports, i), port); read != SizedRead::ok)
       return rejected_size(log, read, "dermis_register_pass_type: kind.ports", stated_size(given.ports),
-                           first_version_size<dermis_port>);
+                           sizeof(dermis_port));
     const auto usage = static_cast<size_t>(port.usage);
     if (usage >= usages.size())
       return bad_argument(log, "{}: kind.ports[{}].usage is {}, expected 0..{}", registering, i,
@@ -53,7 +53,7 @@ dermis_result read_settings(const Log& log, const dermis_pass_type& given, HostP
     dermis_pass_setting setting = DERMIS_PASS_SETTING_INIT;
     if (const SizedRead read = read_sized(element(given.settings, i), setting); read != SizedRead::ok)
       return rejected_size(log, read, "dermis_register_pass_type: kind.settings", stated_size(given.settings),
-                           first_version_size<dermis_pass_setting>);
+                           sizeof(dermis_pass_setting));
     const auto value_type = static_cast<size_t>(setting.type);
     if (value_type >= setting_types.size())
       return bad_argument(log, "{}: kind.settings[{}].type is {}, expected 0..{}", registering, i,
@@ -70,7 +70,7 @@ dermis_result add(dermis_context_t& context, const dermis_pass_type* given) {
   dermis_pass_type desc = DERMIS_PASS_TYPE_INIT;
   if (const SizedRead read = read_sized(given, desc); read != SizedRead::ok)
     return rejected_size(log, read, "dermis_register_pass_type: kind", stated_size(given),
-                         first_version_size<dermis_pass_type>);
+                         sizeof(dermis_pass_type));
   if (desc.record == nullptr) return bad_argument(log, "{}: kind.record is NULL", registering);
   if (desc.port_count > limits::host_pass_type_ports || desc.setting_count > limits::host_pass_type_settings)
     return bad_argument(log, "{}: kind.port_count is {} and setting_count {}, at most {} and {} are possible",

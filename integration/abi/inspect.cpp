@@ -180,7 +180,7 @@ extern "C" dermis_result DERMIS_CALL dermis_graph_memory(dermis_graph graph, der
     if (memory == nullptr) return bad_argument(log, "dermis_graph_memory: memory is NULL");
     const size_t size = stated_size(memory);
     if (const SizedRead read = check_size<dermis_memory>(size); read != SizedRead::ok)
-      return rejected_size(log, read, "dermis_graph_memory: memory", size, first_version_size<dermis_memory>);
+      return rejected_size(log, read, "dermis_graph_memory: memory", size, sizeof(dermis_memory));
     const std::lock_guard changing(graph->changing);
     write_sized(memory, size, describe_memory(*graph));
     return DERMIS_OK;
@@ -197,12 +197,4 @@ extern "C" dermis_result DERMIS_CALL dermis_graph_heaps(dermis_graph graph, uint
     return fill_array(log, function, count, heaps, static_cast<uint32_t>(all.size()),
                       [&](uint32_t i) { return request_of(all[i]); });
   });
-}
-
-extern "C" dermis_result DERMIS_CALL dermis_graph_timings(dermis_graph graph, uint64_t completed_frame_index,
-                                                          uint32_t* count, dermis_pass_timing* timings) {
-  if (graph == nullptr) return bad_argument({}, "dermis_graph_timings: graph is NULL");
-  constexpr const char* function = "dermis_graph_timings";
-  return guarded(graph->context->log, function,
-                 [&] { return get_timings(graph->own, function, completed_frame_index, count, timings); });
 }

@@ -34,13 +34,11 @@ dermis_result check_state(const dermis_view_t& view, const Place& place, const S
 }
 
 // Returns the bound slot; null after an error in `result`, or if the plan does not bind the slot.
-const Slot* find_slot(const Place& place, const Program& program, uint32_t number, uint32_t reserved,
-                      ResourceType type, bool bound_before, dermis_result& result) {
+const Slot* find_slot(const Place& place, const Program& program, uint32_t number, ResourceType type,
+                      bool bound_before, dermis_result& result) {
   result = DERMIS_OK;
   const Slot& slot = program.slots[number];
-  if (reserved != 0)
-    result = refuse(place, ".reserved is {}, expected 0", reserved);
-  else if (slot.type != type)
+  if (slot.type != type)
     result = refuse(place, " binds {} to slot {} ('{}'), which takes {}", type_phrase(type), number,
                     slot.name, type_phrase(slot.type));
   else if (slot.bound && bound_before)
@@ -69,7 +67,7 @@ dermis_result for_each(const Place& array, const Program& program, const T* item
                   array.array, i);
     if (read != SizedRead::ok)
       return refuse(place, ".struct_size is {}, expected {} as in the first, at least {}: use its INIT",
-                    stated_size(from), step, first_version_size<T>);
+                    stated_size(from), step, sizeof(T));
     if (item.slot >= program.slots.size())
       return refuse(place, ".slot is {}, the graph has slots 0..{}", item.slot,
                     static_cast<int64_t>(program.slots.size()) - 1);
@@ -158,15 +156,15 @@ std::string_view family_problem(const dermis_context_t& context, ResourceType ty
 
 dermis_result check_memory_bindings(dermis_view_t& view, Program& program, const dermis_frame& frame) {
   const Log& log = view.context->log;
-  const char* const function = record_function(view);
+  const char* const function = "dermis_view_record";
   std::fill(program.buffers.begin(), program.buffers.end(), vulkan::HostBuffer{});
   std::fill(program.structures.begin(), program.structures.end(), vulkan::HostStructure{});
   const dermis_buffer_binding no_buffer = DERMIS_BUFFER_BINDING_INIT;
   const auto bind_buffer = [&](const Place& place, const dermis_buffer_binding& binding) {
     vulkan::HostBuffer& bound = program.buffers[binding.slot];
     dermis_result result = DERMIS_OK;
-    const Slot* slot = find_slot(place, program, binding.slot, binding.reserved, ResourceType::buffer,
-                                 bound.buffer != VK_NULL_HANDLE, result);
+    const Slot* slot =
+        find_slot(place, program, binding.slot, ResourceType::buffer, bound.buffer != VK_NULL_HANDLE, result);
     if (slot == nullptr) return result;
     result = check_buffer(view, place, *slot, binding);
     if (result == DERMIS_OK) result = check_states(view, place, *slot, binding.before, binding.after);
@@ -181,9 +179,8 @@ dermis_result check_memory_bindings(dermis_view_t& view, Program& program, const
   const auto bind_structure = [&](const Place& place, const dermis_acceleration_structure_binding& binding) {
     vulkan::HostStructure& bound = program.structures[binding.slot];
     dermis_result checked = DERMIS_OK;
-    const Slot* slot =
-        find_slot(place, program, binding.slot, binding.reserved, ResourceType::acceleration_structure,
-                  bound.structure != VK_NULL_HANDLE, checked);
+    const Slot* slot = find_slot(place, program, binding.slot, ResourceType::acceleration_structure,
+                                 bound.structure != VK_NULL_HANDLE, checked);
     if (slot == nullptr) return checked;
     if (binding.structure == VK_NULL_HANDLE) return refuse(place, ".structure ('{}') is null", slot->name);
     bound = {binding.structure, host_state(binding.before), host_state(binding.after)};

@@ -87,11 +87,11 @@ uint64_t squares_of(const vulkan::Rectangle& rectangle, uint64_t side) {
 // `capture` receives the commands instead of the frame's command buffer; may be null.
 dermis_result record(dermis_view_t& view, const dermis_frame* given, Capture* capture) {
   const Log& log = view.context->log;
-  const char* const function = record_function(view);
+  const char* const function = "dermis_view_record";
   if (const dermis_result alive = check_alive(*view.context, function); alive != DERMIS_OK) return alive;
   dermis_frame frame = DERMIS_FRAME_INIT;
   if (const SizedRead read = read_sized(given, frame); read != SizedRead::ok)
-    return rejected_size(log, read, function, "frame", stated_size(given), first_version_size<dermis_frame>);
+    return rejected_size(log, read, function, "frame", stated_size(given), sizeof(dermis_frame));
   if (capture != nullptr) frame.command_buffer = handle_of(*capture);
   Program& program = newest(view);
   CheckedFrame checked;
@@ -180,7 +180,7 @@ dermis_result check_loss(const dermis_view_t& view, const char* function) {
 }
 
 dermis_result record_frame(dermis_view_t& view, const dermis_frame* frame) {
-  if (frame == nullptr) return bad_argument(view.context->log, "{}: frame is NULL", record_function(view));
+  if (frame == nullptr) return bad_argument(view.context->log, "{}: frame is NULL", "dermis_view_record");
   const std::lock_guard lock(view.mutex);
   return record(view, frame, nullptr);
 }
@@ -208,25 +208,3 @@ dermis_result discard_frame(dermis_view_t& view, const char* function, uint64_t 
 }
 
 } // namespace dermis::abi
-
-using namespace dermis::abi;
-
-extern "C" dermis_result DERMIS_CALL dermis_graph_record(dermis_graph graph, const dermis_frame* frame) {
-  if (graph == nullptr) return bad_argument({}, "dermis_graph_record: graph is NULL");
-  return guarded(graph->context->log, "dermis_graph_record", [&] { return record_frame(graph->own, frame); });
-}
-
-extern "C" dermis_result DERMIS_CALL dermis_graph_commands(dermis_graph graph, const dermis_frame* frame,
-                                                           uint32_t* count, const dermis_command** commands) {
-  constexpr const char* function = "dermis_graph_commands";
-  if (graph == nullptr) return bad_argument({}, "{}: graph is NULL", function);
-  return guarded(graph->context->log, function,
-                 [&] { return capture_frame(graph->own, function, frame, count, commands); });
-}
-
-extern "C" dermis_result DERMIS_CALL dermis_frame_discard(dermis_graph graph, uint64_t frame_index) {
-  constexpr const char* function = "dermis_frame_discard";
-  if (graph == nullptr) return bad_argument({}, "{}: graph is NULL", function);
-  return guarded(graph->context->log, function,
-                 [&] { return discard_frame(graph->own, function, frame_index); });
-}

@@ -76,8 +76,7 @@ extern "C" dermis_result DERMIS_CALL dermis_report_message(dermis_report report,
       return bad_argument({}, "dermis_report_message: index is {}, the report has {} messages", index, count);
     const size_t size = stated_size(message);
     if (const SizedRead read = check_size<dermis_message>(size); read != SizedRead::ok)
-      return rejected_size({}, read, "dermis_report_message: message", size,
-                           first_version_size<dermis_message>);
+      return rejected_size({}, read, "dermis_report_message: message", size, sizeof(dermis_message));
     write_sized(message, size, message_at(*report, index));
     return DERMIS_OK;
   });

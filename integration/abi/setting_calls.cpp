@@ -226,14 +226,6 @@ void apply_own_settings(const dermis_view_t& view, Program& program, Diagnostics
 
 using namespace dermis::abi;
 
-extern "C" dermis_result DERMIS_CALL dermis_graph_settings(dermis_graph graph, uint32_t* count,
-                                                           dermis_setting* settings) {
-  constexpr const char* function = "dermis_graph_settings";
-  if (graph == nullptr) return bad_argument({}, "{}: graph is NULL", function);
-  return guarded(graph->context->log, function,
-                 [&] { return get_settings(graph->own, function, count, settings); });
-}
-
 extern "C" dermis_result DERMIS_CALL dermis_graph_set_setting(dermis_graph graph, const char* name,
                                                               const char* json, dermis_report* report) {
   if (report != nullptr) *report = nullptr;

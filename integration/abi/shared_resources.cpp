@@ -48,7 +48,7 @@ dermis_result check_pair(const dermis_view_t& view, const Program& program, size
   const Slot &a = program.slots[i], &b = program.slots[j];
   const auto refuse = [&](const char* what, const char* rule) {
     return bad_argument(view.context->log, "{}: slots '{}' and '{}' are bound to the same {}; {}",
-                        record_function(view), a.name, b.name, what, rule);
+                        "dermis_view_record", a.name, b.name, what, rule);
   };
   const vulkan::HostImage &image = program.images[i], &other_image = program.images[j];
   if (image.image != VK_NULL_HANDLE && overlap(a, image, b, other_image) &&

@@ -14,8 +14,7 @@ dermis_result create(dermis_graph_t& graph, const dermis_view_desc* given, dermi
   dermis_view_desc desc = DERMIS_VIEW_DESC_INIT;
   const SizedRead read = given == nullptr ? SizedRead::ok : read_sized(given, desc);
   if (read != SizedRead::ok)
-    return rejected_size(log, read, "dermis_view_create: desc", stated_size(given),
-                         first_version_size<dermis_view_desc>);
+    return rejected_size(log, read, "dermis_view_create: desc", stated_size(given), sizeof(dermis_view_desc));
   const std::lock_guard changing(graph.changing);
   auto view = std::make_unique<dermis_view_t>(graph.context, &graph, desc.user);
   {
@@ -61,6 +60,10 @@ extern "C" dermis_result DERMIS_CALL dermis_view_create(dermis_graph graph, cons
   });
 }
 
+extern "C" dermis_view DERMIS_CALL dermis_graph_view(dermis_graph graph) {
+  return graph == nullptr ? nullptr : &graph->own;
+}
+
 extern "C" void DERMIS_CALL dermis_view_destroy(dermis_view view) {
   if (view == nullptr) return;
   dermis_graph_t& graph = *view->graph;
@@ -88,12 +91,20 @@ extern "C" dermis_result DERMIS_CALL dermis_view_discard(dermis_view view, uint6
   return guarded(view->context->log, function, [&] { return discard_frame(*view, function, frame_index); });
 }
 
-extern "C" dermis_result DERMIS_CALL dermis_view_choice(dermis_view view, uint64_t completed_frame_index,
-                                                        dermis_choice* choice) {
-  constexpr const char* function = "dermis_view_choice";
+extern "C" dermis_result DERMIS_CALL dermis_view_report(dermis_view view, uint64_t completed_frame_index,
+                                                        dermis_frame_report* report) {
+  constexpr const char* function = "dermis_view_report";
   if (view == nullptr) return bad_argument({}, "{}: view is NULL", function);
   return guarded(view->context->log, function,
-                 [&] { return get_choice(*view, function, completed_frame_index, choice); });
+                 [&] { return get_report(*view, completed_frame_index, report); });
+}
+
+extern "C" dermis_result DERMIS_CALL dermis_view_statistics(dermis_view view, uint64_t completed_frame_index,
+                                                            dermis_frame_statistics* statistics) {
+  constexpr const char* function = "dermis_view_statistics";
+  if (view == nullptr) return bad_argument({}, "{}: view is NULL", function);
+  return guarded(view->context->log, function,
+                 [&] { return get_statistics(*view, completed_frame_index, statistics); });
 }
 
 extern "C" dermis_result DERMIS_CALL dermis_view_timings(dermis_view view, uint64_t completed_frame_index,

@@ -87,8 +87,7 @@ static void free_tone(tone* pass) {
   vkDestroyDescriptorSetLayout(pass->device, pass->set_layout, NULL);
 }
 
-/* Called by dermis_graph_record. The ports are in the order of the pass type's
- * declaration. */
+/* Called by dermis_view_record. The ports come in the order in which the pass type declares them. */
 static void DERMIS_CALL record_tone(void* user, const dermis_pass_call* call) {
   const tone* pass = (const tone*)user;
   const float level = (float)call->settings[0];
@@ -224,7 +223,7 @@ int main(int argc, char** argv) {
   frame.clip_from_view[5] = -2.0f;
   frame.clip_from_view[10] = frame.clip_from_view[14] = -1.0f;
   frame.clip_from_view[11] = -0.1f;
-  check(dermis_graph_record(graph, &frame), "dermis_graph_record");
+  check(dermis_view_record(dermis_graph_view(graph), &frame), "dermis_view_record");
   headless_submit_and_wait(&host);
   dermis_graph_destroy(graph);
   dermis_context_destroy(context);

@@ -286,7 +286,7 @@ int main(int argc, char** argv) {
   frame.clip_from_view[5] = -62.5f;
   frame.clip_from_view[10] = -1.0f;
   frame.clip_from_view[15] = 1.0f;
-  check(dermis_graph_record(graph, &frame), "dermis_graph_record");
+  check(dermis_view_record(dermis_graph_view(graph), &frame), "dermis_view_record");
   check_vk(vkEndCommandBuffer(commands), "vkEndCommandBuffer");
   submit(device, commands, images);
 

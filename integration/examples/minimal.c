@@ -88,9 +88,9 @@ int main(int argc, char** argv) {
   frame.clip_from_view[5] = -2.0f;
   frame.clip_from_view[10] = frame.clip_from_view[14] = -1.0f;
   frame.clip_from_view[11] = -0.1f;
-  check(dermis_graph_record(graph, &frame));
+  check(dermis_view_record(dermis_graph_view(graph), &frame));
   headless_submit_and_wait(&host);
-  check(dermis_graph_timings(graph, 1, &pass_count, timings));
+  check(dermis_view_timings(dermis_graph_view(graph), 1, &pass_count, timings));
   for (i = 0; i < pass_count && timings[i].pass != NULL; ++i)
     printf("%-12s %8.3f ms\n", timings[i].pass, (double)timings[i].nanoseconds * 1e-6);
   dermis_graph_destroy(graph);

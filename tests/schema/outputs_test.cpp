@@ -26,8 +26,8 @@ json sarif_of(const std::string& name, const std::string& text) {
   return json::parse(format_as_sarif(diagnostics, "1.2.3"));
 }
 
-TEST(Outputs, SarifFollowsTheStandard) {
-  const SchemaFile schema("tests/schema/sarif.schema.json");
+TEST(Outputs, SarifIsWhatTheStandardAsksFor) {
+  const SchemaFile schema = schema_in("tests/schema/sarif.schema.json");
   const std::pair<const char*, const char*> cases[] = {
       {"good.json", R"({ "dermis": 2, "name": "good", "passes": [], "exports": [] })"},
       {"broken.json", "{ \"dermis\": 2,"},
@@ -47,8 +47,8 @@ TEST(Outputs, SarifFollowsTheStandard) {
   EXPECT_GE(sarif_of(cases[4].first, cases[4].second)["runs"][0]["results"].size(), 3u);
 }
 
-TEST(Outputs, SarifSchemaRefusesInvalidFiles) {
-  const SchemaFile schema("tests/schema/sarif.schema.json");
+TEST(Outputs, TheSarifSchemaRefusesWhatIsNone) {
+  const SchemaFile schema = schema_in("tests/schema/sarif.schema.json");
   json log = sarif_of("broken.json", "{");
   ASSERT_TRUE(schema.accepts(log));
   json damaged = log;

@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 
 struct PlanSchema : ::testing::Test {
-  SchemaFile schema{"configs/schema/plan.schema.json"};
+  SchemaFile schema = schema_in("configs/schema/plan.schema.json");
   PassTypeRegistry pass_types = subsurface::make_pass_types();
   DeviceProfile device = generic_profile();
 

@@ -15,14 +15,17 @@ struct SchemaFile::Parsed {
   valijson::Schema schema;
 };
 
-SchemaFile::SchemaFile(const std::string& path) : parsed_(std::make_unique<Parsed>()) {
-  std::ifstream stream(std::string(DERMIS_SOURCE_DIR) + "/" + path);
-  const nlohmann::json text = nlohmann::json::parse(stream);
+SchemaFile::SchemaFile(const nlohmann::json& text) : parsed_(std::make_unique<Parsed>()) {
   valijson::SchemaParser parser(valijson::SchemaParser::kDraft7);
   parser.populateSchema(Adapter(text), parsed_->schema);
 }
 
 SchemaFile::~SchemaFile() = default;
+
+SchemaFile schema_in(const std::string& path) {
+  std::ifstream stream(std::string(DERMIS_SOURCE_DIR) + "/" + path);
+  return SchemaFile(nlohmann::json::parse(stream));
+}
 
 bool SchemaFile::accepts(const nlohmann::json& document) const {
   return valijson::Validator(valijson::Validator::kStrongTypes)

@@ -9,7 +9,7 @@ namespace dermis::testing {
 
 class SchemaFile {
 public:
-  explicit SchemaFile(const std::string& path); // Path from the repository's root.
+  explicit SchemaFile(const nlohmann::json& text);
   ~SchemaFile();
   bool accepts(const nlohmann::json& document) const;
   // Returns "" if the schema accepts the document.
@@ -19,5 +19,8 @@ private:
   struct Parsed;
   std::unique_ptr<Parsed> parsed_;
 };
+
+// Reads a schema; `path` is relative to the root of the sources.
+SchemaFile schema_in(const std::string& path);
 
 } // namespace dermis::testing

@@ -3,12 +3,12 @@
 namespace dermis::abi {
 namespace {
 
-VkResult take(void* allocator, const vulkan::MemoryRequest& request, vulkan::MemoryBlock& block) {
+VkResult allocate_block(void* allocator, const vulkan::MemoryRequest& request, vulkan::MemoryBlock& block) {
   const auto& host = *static_cast<const DeviceAllocator*>(allocator);
   const dermis_memory_request wanted = request_of(request);
   dermis_memory_block given = DERMIS_MEMORY_BLOCK_INIT;
   try {
-    const VkResult result = host.take(host.user, &wanted, &given);
+    const VkResult result = host.allocate(host.user, &wanted, &given);
     if (result != VK_SUCCESS) return result;
   } catch (...) { // exceptions of a C++ host
     return VK_ERROR_UNKNOWN;
@@ -17,7 +17,7 @@ VkResult take(void* allocator, const vulkan::MemoryRequest& request, vulkan::Mem
   return VK_SUCCESS;
 }
 
-void give_back(void* allocator, const vulkan::MemoryBlock& block) {
+void free_block(void* allocator, const vulkan::MemoryBlock& block) {
   const auto& host = *static_cast<const DeviceAllocator*>(allocator);
   dermis_memory_block given = DERMIS_MEMORY_BLOCK_INIT;
   given.memory = block.memory;
@@ -25,7 +25,7 @@ void give_back(void* allocator, const vulkan::MemoryBlock& block) {
   given.mapped = block.mapped;
   given.user = block.user;
   try {
-    host.give_back(host.user, &given);
+    host.free(host.user, &given);
   } catch (...) { // nothing is left to be done about it
     return;
   }
@@ -34,8 +34,8 @@ void give_back(void* allocator, const vulkan::MemoryBlock& block) {
 } // namespace
 
 vulkan::HostMemory host_memory_of(DeviceAllocator& allocator) {
-  if (allocator.take == nullptr) return {};
-  return {take, give_back, &allocator};
+  if (allocator.allocate == nullptr) return {};
+  return {allocate_block, free_block, &allocator};
 }
 
 dermis_memory_request request_of(const vulkan::MemoryRequest& request) {

@@ -6,9 +6,9 @@
 
 namespace dermis::abi {
 
-struct DeviceAllocator {                // copied from dermis_device_allocator
-  dermis_take_memory_fn take = nullptr; // null: the library's own
-  dermis_give_back_memory_fn give_back = nullptr;
+struct DeviceAllocator {                        // copied from dermis_device_allocator
+  dermis_allocate_memory_fn allocate = nullptr; // null: the library's own
+  dermis_free_memory_fn free = nullptr;
   void* user = nullptr;
 };
 

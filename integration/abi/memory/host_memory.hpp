@@ -9,7 +9,7 @@ namespace dermis::abi {
 
 struct HostAllocator {                   // copied from dermis_allocator
   dermis_allocate_fn allocate = nullptr; // null: the C library
-  dermis_release_fn release = nullptr;
+  dermis_free_fn free = nullptr;
   void* user = nullptr;
 };
 

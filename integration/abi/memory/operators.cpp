@@ -17,7 +17,7 @@ namespace {
 
 // Precedes each allocation and stores how to free it, in any scope and at any time.
 struct Header {
-  dermis_release_fn release;
+  dermis_free_fn free;
   void* user;
   size_t size, alignment; // as requested from the allocator
 };
@@ -43,7 +43,7 @@ void to_c_library(void* memory) {
 }
 #endif
 
-void* take(size_t size, size_t wanted) noexcept {
+void* allocate_bytes(size_t size, size_t wanted) noexcept {
   const size_t alignment = std::max(wanted, min_alignment), front = header_space(alignment);
   // aligned_alloc requires a multiple of the alignment
   const size_t total = (front + size + alignment - 1) / alignment * alignment;
@@ -53,24 +53,24 @@ void* take(size_t size, size_t wanted) noexcept {
                                           : host.allocate(host.user, total, alignment);
   if (memory == nullptr) return nullptr;
   std::byte* given = static_cast<std::byte*>(memory) + front;
-  const Header header{host.allocate == nullptr ? nullptr : host.release, host.user, total, alignment};
+  const Header header{host.allocate == nullptr ? nullptr : host.free, host.user, total, alignment};
   std::memcpy(given - sizeof header, &header, sizeof header);
   return given;
 }
 
-void give_back(void* given) noexcept {
+void free_bytes(void* given) noexcept {
   if (given == nullptr) return;
   Header header;
   std::memcpy(&header, static_cast<std::byte*>(given) - sizeof header, sizeof header);
   void* memory = static_cast<std::byte*>(given) - header_space(header.alignment);
-  if (header.release == nullptr)
+  if (header.free == nullptr)
     to_c_library(memory);
   else
-    header.release(header.user, memory, header.size, header.alignment);
+    header.free(header.user, memory, header.size, header.alignment);
 }
 
-void* take_or_throw(size_t size, size_t alignment) {
-  if (void* given = take(size, alignment)) return given;
+void* allocate_or_throw(size_t size, size_t alignment) {
+  if (void* given = allocate_bytes(size, alignment)) return given;
   throw std::bad_alloc();
 }
 
@@ -82,38 +82,38 @@ bool serves_host_allocator() noexcept {
 
 } // namespace dermis::abi
 
-using dermis::abi::give_back;
-using dermis::abi::take;
-using dermis::abi::take_or_throw;
+using dermis::abi::allocate_bytes;
+using dermis::abi::allocate_or_throw;
+using dermis::abi::free_bytes;
 
 // The array forms call these.
 void* operator new(size_t size) {
-  return take_or_throw(size, 1);
+  return allocate_or_throw(size, 1);
 }
 void* operator new(size_t size, std::align_val_t alignment) {
-  return take_or_throw(size, static_cast<size_t>(alignment));
+  return allocate_or_throw(size, static_cast<size_t>(alignment));
 }
 void* operator new(size_t size, const std::nothrow_t&) noexcept {
-  return take(size, 1);
+  return allocate_bytes(size, 1);
 }
 void* operator new(size_t size, std::align_val_t alignment, const std::nothrow_t&) noexcept {
-  return take(size, static_cast<size_t>(alignment));
+  return allocate_bytes(size, static_cast<size_t>(alignment));
 }
 void operator delete(void* memory) noexcept {
-  give_back(memory);
+  free_bytes(memory);
 }
 void operator delete(void* memory, size_t) noexcept {
-  give_back(memory);
+  free_bytes(memory);
 }
 void operator delete(void* memory, std::align_val_t) noexcept {
-  give_back(memory);
+  free_bytes(memory);
 }
 void operator delete(void* memory, size_t, std::align_val_t) noexcept {
-  give_back(memory);
+  free_bytes(memory);
 }
 void operator delete(void* memory, const std::nothrow_t&) noexcept {
-  give_back(memory);
+  free_bytes(memory);
 }
 void operator delete(void* memory, std::align_val_t, const std::nothrow_t&) noexcept {
-  give_back(memory);
+  free_bytes(memory);
 }

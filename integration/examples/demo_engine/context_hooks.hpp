@@ -12,7 +12,7 @@ namespace demo {
 struct ContextHooks {
   // Called once with the new context, before its first graph. May be empty.
   std::function<Result<>(dermis_context_t* context)> prepare = {};
-  // Called after each dermis_graph_record; an error drops the frame. May be empty.
+  // Called after each dermis_view_record; an error drops the frame. May be empty.
   std::function<Result<>()> recorded = {};
 };
 

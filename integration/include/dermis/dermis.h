@@ -15,14 +15,13 @@
  *   1. dermis_context_create       once per device, with the device's functions
  *   2. dermis_graph_create         a JSON graph at a size; errors are in a report
  *   3. dermis_graph_slots          the images that the graph needs, by name and number
- *   4. each frame: fill a dermis_frame (bindings, camera, frame numbers), call dermis_graph_record,
+ *   4. each frame: fill a dermis_frame (bindings, camera, frame numbers), call dermis_view_record,
  *      submit yourself
  *   5. dermis_graph_destroy, dermis_context_destroy, after the device has finished the frames
- *   More cameras (stereo, split screen): dermis_view_create once each, dermis_view_record each
- *   frame.
+ *   More cameras (stereo, split screen): dermis_view_create once each.
  *
  * BARRIER CONTRACT
- *   Before dermis_graph_record each bound image is in `before.layout`, and its last access is
+ *   Before dermis_view_record each bound image is in `before.layout`, and its last access is
  *   `before.stages` and `before.access`. At the end of the recorded commands the image is in
  *   `after.layout`, visible to `after.stages` and `after.access`. If `after` equals `before`, you
  *   get the image back in the state in which you passed it. Buffers and acceleration structures
@@ -48,8 +47,7 @@
  *   Each function states its threads:
  *   - "Any": from any thread, at any time.
  *   - "One per view": no two calls with the same view at the same time. Different views are
- *     independent, and so are graphs. A graph has a view of its own, which dermis_graph_record and
- *     dermis_frame_discard use.
+ *     independent, and so are graphs.
  *   - "Beside": from any thread, also while other threads record views of the graph. These continue
  *     with the state they have; changes of one graph wait for each other.
  *   Create and destroy come first and last: no other thread uses the object then.
@@ -181,8 +179,7 @@ DERMIS_API dermis_result DERMIS_CALL dermis_query_requirements(
  * DERMIS_ERROR_MEMORY. Called from any thread that is inside a Dermis call. Must not call Dermis
  * or throw. */
 typedef void*(DERMIS_CALL* dermis_allocate_fn)(void* user, size_t size, size_t alignment);
-typedef void(DERMIS_CALL* dermis_release_fn)(void* user, void* memory, size_t size,
-                                             size_t alignment);
+typedef void(DERMIS_CALL* dermis_free_fn)(void* user, void* memory, size_t size, size_t alignment);
 
 /* Both functions must be callable until the last object and report that use them are destroyed.
  * They do not serve dermis_validate, which has no context, and the few bytes that the C++ run
@@ -191,7 +188,7 @@ typedef void(DERMIS_CALL* dermis_release_fn)(void* user, void* memory, size_t si
 typedef struct dermis_allocator {
   size_t struct_size;
   dermis_allocate_fn allocate;
-  dermis_release_fn release;
+  dermis_free_fn free;
   void* user;
 } dermis_allocator;
 #define DERMIS_ALLOCATOR_INIT {sizeof(dermis_allocator), NULL, NULL, NULL}
@@ -221,25 +218,25 @@ typedef struct dermis_memory_block {
   uint64_t offset; /* bytes */
   /* Host address of the block while the library uses it; required for HOST_VISIBLE memory. */
   void* mapped;
-  void* user;      /* returned with the block */
+  void* user;      /* passed on to free with the block */
 } dermis_memory_block;
 #define DERMIS_MEMORY_BLOCK_INIT {sizeof(dermis_memory_block), VK_NULL_HANDLE, 0, NULL, NULL}
 
 /* Fills *block and returns VK_SUCCESS, or returns the error that vkAllocateMemory would return.
  * A block may be a part of larger memory. Commands of the host may use a transient block before
  * and after a recorded frame if a barrier over ALL_COMMANDS and MEMORY_WRITE | MEMORY_READ
- * orders them with the frame; the block's contents are then undefined. Blocks are returned one
+ * orders them with the frame; the block's contents are then undefined. Blocks are freed one
  * by one when no frame can use them any more. Called inside create, reload, resize, set_setting,
  * set_profile, record and destroy, by their threads. Must not call Dermis. */
-typedef VkResult(DERMIS_CALL* dermis_take_memory_fn)(void* user,
+typedef VkResult(DERMIS_CALL* dermis_allocate_memory_fn)(void* user,
                                                      const dermis_memory_request* request,
                                                      dermis_memory_block* block);
-typedef void(DERMIS_CALL* dermis_give_back_memory_fn)(void* user, const dermis_memory_block* block);
+typedef void(DERMIS_CALL* dermis_free_memory_fn)(void* user, const dermis_memory_block* block);
 
 typedef struct dermis_device_allocator {
   size_t struct_size;
-  dermis_take_memory_fn take;
-  dermis_give_back_memory_fn give_back;
+  dermis_allocate_memory_fn allocate;
+  dermis_free_memory_fn free;
   void* user;
 } dermis_device_allocator;
 #define DERMIS_DEVICE_ALLOCATOR_INIT {sizeof(dermis_device_allocator), NULL, NULL, NULL}
@@ -324,19 +321,17 @@ typedef struct dermis_source {
 typedef struct dermis_profile {
   size_t struct_size;
   uint32_t id;
-  uint32_t reserved;    /* 0 */
   dermis_source source; /* a profile file */
 } dermis_profile;
-#define DERMIS_PROFILE_INIT {sizeof(dermis_profile), 0, 0, DERMIS_SOURCE_INIT}
+#define DERMIS_PROFILE_INIT {sizeof(dermis_profile), 0, DERMIS_SOURCE_INIT}
 
 /* The format of the image that will be bound to a slot. */
 typedef struct dermis_slot_format {
   size_t struct_size;
   const char* name; /* of the slot */
   VkFormat format;
-  uint32_t reserved; /* 0 */
 } dermis_slot_format;
-#define DERMIS_SLOT_FORMAT_INIT {sizeof(dermis_slot_format), NULL, VK_FORMAT_UNDEFINED, 0}
+#define DERMIS_SLOT_FORMAT_INIT {sizeof(dermis_slot_format), NULL, VK_FORMAT_UNDEFINED}
 
 /* Provides a file that a graph, a fragment or an overlay includes: fills *source and returns 1,
  * or returns 0 if there is none. `name` is relative, with '/' between folders and without "..".
@@ -373,13 +368,12 @@ typedef struct dermis_graph_desc {
   uint32_t keep;
   const dermis_source* overlays; /* applied to the graph one after the other */
   uint32_t overlay_count;
-  uint32_t reserved_too;         /* 0 */
   /* NULL: nothing can be included. Otherwise callable as long as the graph lives. */
   dermis_include_fn include;
   void* include_user;
 } dermis_graph_desc;
 #define DERMIS_GRAPH_DESC_INIT \
-  {sizeof(dermis_graph_desc), DERMIS_SOURCE_INIT, 0, 0, NULL, 0, 0, NULL, NULL, 0, 0, NULL, 0, 0, \
+  {sizeof(dermis_graph_desc), DERMIS_SOURCE_INIT, 0, 0, NULL, 0, 0, NULL, NULL, 0, 0, NULL, 0, \
    NULL, NULL}
 
 /* Checks a graph without a device. The graph must not include other files. *report (may be NULL)
@@ -498,13 +492,6 @@ typedef struct dermis_pass_timing {
 } dermis_pass_timing;
 #define DERMIS_PASS_TIMING_INIT {sizeof(dermis_pass_timing), NULL, 0, 0}
 
-/* Returns the device times of the newest completed frame of the graph's own view, in plan order.
- * Needs DERMIS_CONTEXT_TIMINGS. `completed_frame_index` as in dermis_frame. Two-call array.
- * Thread: one per view. Errors: ARGUMENT, INCOMPLETE, NOT_READY, DEVICE_LOST. */
-DERMIS_API dermis_result DERMIS_CALL dermis_graph_timings(dermis_graph graph,
-                                                          uint64_t completed_frame_index,
-                                                          uint32_t* count,
-                                                          dermis_pass_timing* timings);
 
 /* Why a history is not valid. */
 typedef enum dermis_history_reason {
@@ -513,7 +500,7 @@ typedef enum dermis_history_reason {
   DERMIS_HISTORY_RESIZED = 2,       /* and it is not declared "on_resize": "rescale" */
   DERMIS_HISTORY_RELOADED = 3,      /* the graph before the reload has no matching history */
   DERMIS_HISTORY_OTHER_PLAN = 4,    /* the plan of the frame before has no matching history */
-  /* The frame before had nothing to scatter (dermis_choice.skips). */
+  /* The frame before had nothing to scatter (dermis_frame_report.skips). */
   DERMIS_HISTORY_LEFT_OUT = 5,
   DERMIS_HISTORY_REASON_FORCE_32BIT = 0x7fffffff
 } dermis_history_reason;
@@ -534,11 +521,6 @@ typedef struct dermis_history {
 #define DERMIS_HISTORY_INIT \
   {sizeof(dermis_history), NULL, 0, 0, DERMIS_HISTORY_NEVER_WRITTEN, 0, NULL}
 
-/* Returns each history of the graph, including those of plans that do not run now, as the plan
- * that ran last would find it. Discarded frames do not count. For the graph's own view. Two-call
- * array. Thread: one per view. Errors: ARGUMENT, INCOMPLETE. */
-DERMIS_API dermis_result DERMIS_CALL dermis_graph_histories(dermis_graph graph, uint32_t* count,
-                                                            dermis_history* histories);
 
 /* Replaces profile `id` (1..255) by *source, adds it, or removes it if source is NULL. No graph
  * is built again and no history is lost; only the first profile of a graph and the removal of
@@ -582,10 +564,6 @@ typedef struct dermis_setting {
 #define DERMIS_SETTING_INIT \
   {sizeof(dermis_setting), NULL, DERMIS_SETTING_BOOL, 0, NULL, NULL, 0, 0, 0, 0, 0, 0, NULL, 0}
 
-/* Returns the settings of the graph in the order of the file, with the values of the graph's own
- * view. Two-call array. Thread: beside. Errors: ARGUMENT, INCOMPLETE, MEMORY. */
-DERMIS_API dermis_result DERMIS_CALL dermis_graph_settings(dermis_graph graph, uint32_t* count,
-                                                           dermis_setting* settings);
 
 /* Sets a setting for all views from JSON text ("16", "true", "\"post\""), effective at the next
  * record. A value that changes which passes run compiles a plan, creates pipelines and allocates
@@ -622,7 +600,7 @@ DERMIS_API dermis_result DERMIS_CALL dermis_graph_set_budget(dermis_graph graph,
                                                              const dermis_budget* budget,
                                                              dermis_report* report);
 
-/* Work that a frame did not need (dermis_choice.skips). */
+/* Work that a frame did not need (dermis_frame_report.skips). */
 #define DERMIS_SKIP_NO_MATERIAL 0x1u  /* no profile: passes that scatter are not in the plan */
 #define DERMIS_SKIP_NO_BOUNDS 0x2u    /* empty bounds: no kernel that scatters ran */
 #define DERMIS_SKIP_NOTHING_SEEN 0x4u /* no pixel with subsurface: 0 groups are dispatched */
@@ -630,61 +608,74 @@ DERMIS_API dermis_result DERMIS_CALL dermis_graph_set_budget(dermis_graph graph,
 #define DERMIS_SKIP_UNIFORM_LIGHT 0x10u  /* tiles in uniform light were copied */
 #define DERMIS_SKIP_HISTORY 0x20u     /* history was invalid, so it was not read */
 
-/* The configuration chosen for a frame, and the result. Strings live until the next reload, resize,
- * set_setting or destroy. */
-typedef struct dermis_choice {
+/* The choice for one frame and its result, for a host to show or log. Strings live until the next
+ * reload, resize, set_setting or destroy. */
+typedef struct dermis_frame_report {
   size_t struct_size;
-  uint64_t frame_index;         /* of the frame described here */
-  const char* outcome;          /* the configuration: "technique=sap" */
-  const char* technique;        /* name in the error table; "" if none runs */
-  const char* why;              /* static string */
-  const char* next_better;      /* the next more accurate configuration; "" for none */
-  float budget_ms;              /* 0: none */
+  uint64_t frame_index;      /* of the frame described here */
+  const char* configuration; /* for example "technique=sap" */
+  const char* reason;        /* why this configuration was chosen; static string */
+  const char* miss;          /* why times deviate from the prediction, or ""; static string */
+  float budget_ms;           /* 0: none */
   float predicted_ms;
-  float predicted_spread_ms;    /* typical deviation of one frame */
-  float measured_ms;            /* -1: not timed */
-  float metered_ms;             /* time by the calibration for the tiles that were counted */
-  float predicted_rmse;         /* of linear luminance; the light's 99.9th percentile is 1 */
+  float measured_ms;         /* -1: not timed */
+  float predicted_rmse;      /* of linear luminance; the light's 99.9th percentile is 1 */
+  uint32_t skips;            /* DERMIS_SKIP_... */
+} dermis_frame_report;
+#define DERMIS_FRAME_REPORT_INIT \
+  {sizeof(dermis_frame_report), 0, NULL, NULL, NULL, 0, 0, 0, 0, 0}
+
+/* Describes the newest frame whose counters are available, among those up to
+ * `completed_frame_index`, as in dermis_frame. Creates no pipelines, allocates no memory, takes
+ * less than 1 ms. Thread: one per view. Errors: ARGUMENT, NOT_READY, DEVICE_LOST. */
+DERMIS_API dermis_result DERMIS_CALL dermis_view_report(dermis_view view,
+                                                        uint64_t completed_frame_index,
+                                                        dermis_frame_report* report);
+
+/* Details of the same frame as dermis_frame_report, for tools. Strings live as long as there. */
+typedef struct dermis_frame_statistics {
+  size_t struct_size;
+  uint64_t frame_index;
+  /* The choice. */
+  const char* technique;        /* name in the error table; "" if none runs */
+  const char* next_better;      /* the next more accurate configuration; "" for none */
   float next_better_missing_ms; /* time by which next_better exceeds the budget */
-  float mean_d_px;              /* geometric mean over scattering tiles of the widest d; 0: none */
-  uint32_t outcome_count;
-  uint32_t view_tiles;          /* 8x8 tiles of the render rectangle */
-  uint32_t scattering_tiles;    /* tiles that ran the technique */
-  uint32_t copied_tiles;        /* tiles that scatter less than a pixel */
+  float predicted_spread_ms;    /* typical deviation of one frame */
+  float calibrated_ms;          /* time by the calibration for the tiles that were counted */
+  uint32_t configuration_count;
   uint32_t switches;            /* since the graph was created */
-  uint32_t reserved;            /* 0 */
-  uint32_t uniform_tiles;          /* tiles in uniform light */
-  uint32_t skips;               /* DERMIS_SKIP_... */
-  uint32_t dispatches;          /* recorded */
-  uint32_t reserved_too;        /* 0 */
+  /* Recorded work. */
+  uint32_t dispatches;
   uint64_t groups;              /* workgroups of all dispatches */
+  /* 8x8 tiles. */
+  uint32_t view_tiles;          /* of the render rectangle */
+  uint32_t scattering_tiles;    /* that ran the technique */
+  uint32_t copied_tiles;        /* that scatter less than a pixel */
+  uint32_t uniform_tiles;       /* in uniform light */
   uint32_t sampled_tiles[3];    /* scattering tiles with 8, 16 and 32 samples per pixel */
   uint32_t sample_units;        /* samples taken, in units of 8 samples per pixel of a tile */
-  uint32_t sample_demand;        /* the same without a budget */
-  uint32_t reserved_three;      /* 0 */
-  /* Static string: why times deviate from the prediction; "" if they do not. */
-  const char* miss;
-  /* By subsurface.probe (configs/overlays/probe.json); 0: error unknown. */
-  uint32_t probed_tiles;
+  uint32_t sample_demand;       /* the same without a budget */
+  float mean_d_px;              /* geometric mean over scattering tiles of the widest d; 0: none */
+  /* Measured error, by subsurface.probe (configs/overlays/probe.json). */
+  uint32_t probed_tiles;        /* 0: error unknown */
   float probed_rmse;            /* of this frame: linear luminance times dermis_frame.exposure */
   float probed_rmse_low;        /* lower end of the 95 % confidence interval */
   float probed_rmse_high;       /* upper end; infinity if one tile was probed */
   /* Light through thin parts, by subsurface.transmission_stats: root mean square over tiles with
    * subsurface, linear luminance times dermis_frame.exposure. 0: none, or not counted. */
   float transmitted_rms;
-  uint32_t reserved_four;       /* 0 */
-} dermis_choice;
-#define DERMIS_CHOICE_INIT \
-  {sizeof(dermis_choice), 0, NULL, NULL, NULL, NULL, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, \
-   0, 0, 0, 0, {0, 0, 0}, 0, 0, 0, NULL, 0, 0, 0, 0, 0, 0}
+} dermis_frame_statistics;
+#define DERMIS_FRAME_STATISTICS_INIT \
+  {sizeof(dermis_frame_statistics), 0, NULL, NULL, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, {0, 0, 0}, 0, \
+   0, 0, 0, 0, 0, 0, 0}
 
-/* Returns the choice of the newest frame whose counters are available, for the graph's own view:
- * considers frames up to `completed_frame_index`, as in dermis_frame. Thread: one per view. Errors:
- * ARGUMENT, NOT_READY, DEVICE_LOST. */
-DERMIS_API dermis_result DERMIS_CALL dermis_graph_choice(dermis_graph graph,
-                                                         uint64_t completed_frame_index,
-                                                         dermis_choice* choice);
-/* Returns the times measured on this device by the graph's own view, as JSON for
+/* Returns the statistics of the frame that dermis_view_report describes. Costs, thread and errors
+ * as there. */
+DERMIS_API dermis_result DERMIS_CALL dermis_view_statistics(dermis_view view,
+                                                            uint64_t completed_frame_index,
+                                                            dermis_frame_statistics* statistics);
+
+/* Returns the times measured on this device by the graph's view, as JSON for
  * dermis_budget.calibration at the next start. *size in: capacity of `text`; out: bytes needed
  * with the final 0. text may be NULL. Thread: beside. Errors: ARGUMENT, INCOMPLETE. */
 DERMIS_API dermis_result DERMIS_CALL dermis_graph_calibration(dermis_graph graph, size_t* size,
@@ -774,7 +765,7 @@ typedef struct dermis_pass_call {
 #define DERMIS_PASS_CALL_INIT \
   {sizeof(dermis_pass_call), NULL, NULL, NULL, NULL, 0, 0, 0, 0, 0, 0, 0, NULL}
 
-/* Records the pass into the command buffer. Called inside dermis_graph_record, by its thread.
+/* Records the pass into the command buffer. Called inside dermis_view_record, by its thread.
  * The library records the barriers before and after the pass, as the ports declare: access only
  * the ports, and record no barrier around the pass. May bind any pipeline and descriptor sets.
  * Must not call Dermis or throw. */
@@ -860,14 +851,13 @@ typedef struct dermis_image_binding {
 typedef struct dermis_buffer_binding {
   size_t struct_size;
   uint32_t slot;     /* dermis_slot.id */
-  uint32_t reserved; /* 0 */
   VkBuffer buffer;   /* created with dermis_slot.usage */
   uint64_t offset;   /* a multiple of minStorageBufferOffsetAlignment */
   uint64_t bytes;    /* a multiple of dermis_slot.stride, at least dermis_slot.bytes */
   dermis_image_state before, after;
 } dermis_buffer_binding;
 #define DERMIS_BUFFER_BINDING_INIT \
-  {sizeof(dermis_buffer_binding), 0, 0, VK_NULL_HANDLE, 0, 0, \
+  {sizeof(dermis_buffer_binding), 0, VK_NULL_HANDLE, 0, 0, \
    {VK_IMAGE_LAYOUT_UNDEFINED, 0, 0, 0, 0}, {VK_IMAGE_LAYOUT_UNDEFINED, 0, 0, 0, 0}}
 
 /* A top-level acceleration structure at a slot of type ACCELERATION_STRUCTURE. `before` also
@@ -876,12 +866,11 @@ typedef struct dermis_buffer_binding {
 typedef struct dermis_acceleration_structure_binding {
   size_t struct_size;
   uint32_t slot;     /* dermis_slot.id */
-  uint32_t reserved; /* 0 */
   VkAccelerationStructureKHR structure;
   dermis_image_state before, after;
 } dermis_acceleration_structure_binding;
 #define DERMIS_ACCELERATION_STRUCTURE_BINDING_INIT \
-  {sizeof(dermis_acceleration_structure_binding), 0, 0, VK_NULL_HANDLE, \
+  {sizeof(dermis_acceleration_structure_binding), 0, VK_NULL_HANDLE, \
    {VK_IMAGE_LAYOUT_UNDEFINED, 0, 0, 0, 0}, {VK_IMAGE_LAYOUT_UNDEFINED, 0, 0, 0, 0}}
 
 typedef enum dermis_depth_kind {
@@ -941,17 +930,6 @@ typedef struct dermis_frame {
   {sizeof(dermis_frame), NULL, NULL, 0, 0, 0, 0, 0, 0, 0, 0, {0}, {0}, {0}, {0}, 0, 0, 0, 0, 0, \
    DERMIS_DEPTH_DEVICE, 0, 0, 0, 0, NULL, NULL, 0, 0}
 
-/* Records the plan for the graph's own view. Never submits, waits for the device, prints,
- * creates pipelines or allocates host or device memory, except image views for bindings without
- * one. On an error nothing was recorded. Thread: one per view. Errors: ARGUMENT, VERSION,
- * VULKAN, DEVICE_LOST, DEVICE_MEMORY. */
-DERMIS_API dermis_result DERMIS_CALL dermis_graph_record(dermis_graph graph,
-                                                         const dermis_frame* frame);
-/* Discards the frame recorded last, which will never be submitted: the graph is as before that
- * record, including histories, and frame_index may be used again. At most one frame, before the
- * next dermis_graph_record, dermis_graph_reload or dermis_graph_resize. The command buffer must
- * not run. Thread: one per view. Errors: ARGUMENT. */
-DERMIS_API dermis_result DERMIS_CALL dermis_frame_discard(dermis_graph graph, uint64_t frame_index);
 
 /* ---- a frame as data ------------------------------------------------------------------------- */
 
@@ -1006,21 +984,11 @@ typedef struct dermis_command {
    VK_NULL_HANDLE, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_UNDEFINED, {{0, 0, 0, 0}}, NULL, \
    NULL, NULL, 0, VK_NULL_HANDLE, 0, NULL}
 
-/* Like dermis_graph_record, but returns the commands and ignores frame.command_buffer. They
- * count as a recorded frame: record all of them once, in order, outside a render pass, on a
- * queue of the context's family, or discard the frame with dermis_frame_discard. The stride of
- * *commands is its first struct_size; the array lives until the next call that records this
- * view, or its end. Allocates host memory until the list has its final length. Thread: one per
- * view. Errors: as dermis_graph_record, and MEMORY. */
-DERMIS_API dermis_result DERMIS_CALL dermis_graph_commands(dermis_graph graph,
-                                                           const dermis_frame* frame,
-                                                           uint32_t* count,
-                                                           const dermis_command** commands);
 
-/* ---- more views ------------------------------------------------------------------------------ */
+/* ---- views ----------------------------------------------------------------------------------- */
 
-/* A camera of a graph in addition to the graph's own view: an eye, a player of a split screen, a
- * mirror. Views share the plan, pipelines, settings and budget. Each view has its own histories,
+/* A view is a camera of a graph: an eye, a player of a split screen, a mirror. Each graph has one
+ * (dermis_graph_view); dermis_view_create adds more. Views share the plan, pipelines, settings and budget. Each view has its own histories,
  * transient memory, frame numbers, measured times, and values set by dermis_view_set_setting.
  * All views have the graph's allocated size and slots; each frame renders its own rectangle into
  * its own images. */
@@ -1030,6 +998,9 @@ typedef struct dermis_view_desc {
 } dermis_view_desc;
 #define DERMIS_VIEW_DESC_INIT {sizeof(dermis_view_desc), NULL}
 
+/* Returns the view that every graph has. Lives as long as the graph; dermis_view_destroy ignores it.
+ * NULL for NULL. Creates and allocates nothing. Thread: any. Errors: none. */
+DERMIS_API dermis_view DERMIS_CALL dermis_graph_view(dermis_graph graph);
 /* Allocates what a view needs; compiles nothing and creates no pipelines. desc may be NULL.
  * *view is NULL on failure. *report (may be NULL) gets the messages. Thread: beside. Errors:
  * ARGUMENT, VERSION, MEMORY, DEVICE_MEMORY, VULKAN, DEVICE_LOST. */
@@ -1040,33 +1011,41 @@ DERMIS_API dermis_result DERMIS_CALL dermis_view_create(dermis_graph graph,
  * Do not call after dermis_graph_destroy, which destroys all views. Thread: beside, while no
  * other thread uses this view. Errors: none. */
 DERMIS_API void DERMIS_CALL dermis_view_destroy(dermis_view view);
-/* dermis_graph_record for this view, with frame numbers of the view. Thread: one per view.
- * Errors: as dermis_graph_record. */
+/* Records the plan. Never submits, waits for the device, prints, creates pipelines or allocates host
+ * or device memory, except image views for bindings without one. On an error nothing was recorded.
+ * Takes less than 1 ms for the shipped graphs. Thread: one per view. Errors: ARGUMENT, VERSION,
+ * VULKAN, DEVICE_LOST, DEVICE_MEMORY. */
 DERMIS_API dermis_result DERMIS_CALL dermis_view_record(dermis_view view,
                                                         const dermis_frame* frame);
-/* dermis_graph_commands for this view. Thread: one per view. Errors: as dermis_graph_commands. */
+/* Like dermis_view_record, but returns the commands and ignores frame.command_buffer. They count as a
+ * recorded frame: record all of them once, in order, outside a render pass, on a queue of the
+ * context's family, or discard the frame with dermis_view_discard. The stride of *commands is its
+ * first struct_size; the array lives until the next call that records this view, or its end.
+ * Allocates host memory until the list has its final length. Thread: one per view. Errors: as
+ * dermis_view_record, and MEMORY. */
 DERMIS_API dermis_result DERMIS_CALL dermis_view_commands(dermis_view view,
                                                           const dermis_frame* frame,
                                                           uint32_t* count,
                                                           const dermis_command** commands);
-/* dermis_frame_discard for this view. Thread: one per view. Errors: ARGUMENT. */
+/* Discards the frame recorded last, which will never be submitted: the view is as before that record,
+ * including histories, and frame_index may be used again. At most one frame, before the next record,
+ * dermis_graph_reload or dermis_graph_resize. The command buffer must not run. Takes less than 1 ms.
+ * Thread: one per view. Errors: ARGUMENT. */
 DERMIS_API dermis_result DERMIS_CALL dermis_view_discard(dermis_view view, uint64_t frame_index);
-/* dermis_graph_choice for this view. Thread: one per view. Errors: ARGUMENT, NOT_READY,
- * DEVICE_LOST. */
-DERMIS_API dermis_result DERMIS_CALL dermis_view_choice(dermis_view view,
-                                                        uint64_t completed_frame_index,
-                                                        dermis_choice* choice);
-/* dermis_graph_timings for this view. Thread: one per view. Errors: ARGUMENT, INCOMPLETE,
- * NOT_READY, DEVICE_LOST. */
+/* Returns the device times of the newest completed frame, in plan order. Needs
+ * DERMIS_CONTEXT_TIMINGS. `completed_frame_index` as in dermis_frame. Two-call array. Takes less than
+ * 1 ms. Thread: one per view. Errors: ARGUMENT, INCOMPLETE, NOT_READY, DEVICE_LOST. */
 DERMIS_API dermis_result DERMIS_CALL dermis_view_timings(dermis_view view,
                                                          uint64_t completed_frame_index,
                                                          uint32_t* count,
                                                          dermis_pass_timing* timings);
-/* dermis_graph_histories for this view. Thread: one per view. Errors: ARGUMENT, INCOMPLETE. */
+/* Returns each history of the graph, including those of plans that do not run now, as the plan that
+ * ran last would find it. Discarded frames do not count. Two-call array. Takes less than 1 ms.
+ * Thread: one per view. Errors: ARGUMENT, INCOMPLETE. */
 DERMIS_API dermis_result DERMIS_CALL dermis_view_histories(dermis_view view, uint32_t* count,
                                                            dermis_history* histories);
-/* dermis_graph_settings with the values of this view. Thread: beside. Errors: ARGUMENT, INCOMPLETE,
- * MEMORY. */
+/* Returns the settings of the graph in the order of the file, with the values of this view. Two-call
+ * array. Takes less than 1 ms. Thread: beside. Errors: ARGUMENT, INCOMPLETE, MEMORY. */
 DERMIS_API dermis_result DERMIS_CALL dermis_view_settings(dermis_view view, uint32_t* count,
                                                           dermis_setting* settings);
 /* Gives this view its own value of a setting with per_frame 1, effective at its next record;

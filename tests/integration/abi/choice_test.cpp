@@ -1,6 +1,7 @@
 // Tests budgets: the chosen configuration, its effect on the picture, and the report.
 
 #include "framegraph/text/document.hpp"
+#include "integration/examples/demo_engine/render/reported_frame.hpp"
 #include "passes/common/environment.hpp"
 #include "passes/common/profiles/profile.hpp"
 #include "tests/integration/abi/dermis_fixture.hpp"
@@ -39,18 +40,17 @@ struct Choice : DermisTest {
     dermis_report_destroy(report);
   }
 
-  dermis_choice run_frame() { return DermisTest::run_frame(graph); }
+  demo::ReportedFrame run_frame() { return DermisTest::run_frame(graph); }
 };
 
 TEST_F(Choice, WithoutABudgetTheDefaultsRun) {
   make();
-  const dermis_choice choice = run_frame();
-  EXPECT_STREQ(choice.outcome, "technique=sap, variant=smooth");
+  const demo::ReportedFrame choice = run_frame();
+  EXPECT_STREQ(choice.configuration, "technique=sap, variant=smooth");
   EXPECT_STREQ(choice.technique, "sap smooth");
   EXPECT_EQ(choice.budget_ms, 0);
-  EXPECT_EQ(choice.outcome_count,
-            // sap with three variants, hybrid with two, separable with three numbers of taps, off.
-            9u);
+  EXPECT_EQ(choice.configuration_count,
+            9u); // sap with three variants, hybrid with two, separable with three numbers of taps, off
 }
 
 TEST_F(Choice, EachBudgetGetsTheSmallestErrorThatFits) {
@@ -58,12 +58,12 @@ TEST_F(Choice, EachBudgetGetsTheSmallestErrorThatFits) {
   std::string before;
   for (const float budget : {30.0f, 5.0f, 0.5f}) {
     set_budget(budget);
-    const dermis_choice choice = run_frame();
+    const demo::ReportedFrame choice = run_frame();
     if (budget > 1) {
       EXPECT_LE(choice.predicted_ms, budget);
     }
-    EXPECT_NE(choice.outcome, before) << budget; // A smaller budget gives another choice.
-    before = choice.outcome;
+    EXPECT_NE(choice.configuration, before) << budget; // a smaller budget leads elsewhere
+    before = choice.configuration;
     EXPECT_EQ(choice.budget_ms, budget);
   }
   EXPECT_THAT(before, HasSubstr("technique=off")); // Nothing fits 0.5 ms: the fastest runs.
@@ -75,9 +75,9 @@ TEST_F(Choice, SettingsOfTheHostAreNotChosen) {
   make_images(graph);
   for (const float budget : {30.0f, 0.5f}) {
     set_budget(budget);
-    const dermis_choice choice = run_frame();
-    EXPECT_THAT(choice.outcome, HasSubstr("technique=separable")) << budget;
-    EXPECT_EQ(choice.outcome_count, 3u); // The library still chooses the taps.
+    const demo::ReportedFrame choice = run_frame();
+    EXPECT_THAT(choice.configuration, HasSubstr("technique=separable")) << budget;
+    EXPECT_EQ(choice.configuration_count, 3u); // the taps are still open
   }
 }
 
@@ -127,10 +127,10 @@ struct KeptHistory : Choice {
     ASSERT_EQ(dermis_graph_set_setting(graph, "accumulate_clip", "0", nullptr), DERMIS_OK);
     make_images(graph);
   }
-  // Runs one frame lit from one side, because even light is copied. Two pixels in the middle are
-  // brighter by `spot`; scattering blurs them and copying does not, so the history shows which
-  // technique ran.
-  dermis_choice lit_frame(float spot, uint32_t flags = 0) {
+  // One frame lit from one side, because light that is the same everywhere is copied. Two pixels in the
+  // middle are brighter by `spot`, which scattering blurs and copying leaves: what history keeps shows which
+  // ran.
+  demo::ReportedFrame lit_frame(float spot, uint32_t flags = 0) {
     fill("lighting", [&](uint32_t x, uint32_t y) {
       return 0.75f + 0.5f * (float(x) + 0.5f) / 64 + (y == 32 && (x == 31 || x == 32) ? spot : 0.0f);
     });
@@ -142,8 +142,9 @@ struct KeptHistory : Choice {
     std::copy(std::begin(one.clip_from_view), std::end(one.clip_from_view),
               std::begin(one.previous_clip_from_view));
     EXPECT_EQ(record(graph, one), DERMIS_OK) << dermis_last_error();
-    dermis_choice choice = DERMIS_CHOICE_INIT;
-    EXPECT_EQ(dermis_graph_choice(graph, last_frame, &choice), DERMIS_OK) << dermis_last_error();
+    demo::ReportedFrame choice;
+    EXPECT_EQ(demo::read_reported(dermis_graph_view(graph), last_frame, choice), DERMIS_OK)
+        << dermis_last_error();
     return choice;
   }
   // Records a frame in the previous frame's light and discards it without submission.
@@ -153,12 +154,14 @@ struct KeptHistory : Choice {
     one.flags |= flags;
     const auto ran = demo::run_commands(*host, [&](VkCommandBuffer commands) -> demo::Result<> {
       one.command_buffer = commands;
-      EXPECT_EQ(dermis_graph_record(graph, &one), DERMIS_OK) << dermis_last_error();
+      EXPECT_EQ(dermis_view_record(dermis_graph_view(graph), &one), DERMIS_OK) << dermis_last_error();
       return demo::Error{demo::ErrorKind::internal, "not to be submitted"};
     });
     EXPECT_FALSE(ran);
-    EXPECT_EQ(dermis_frame_discard(graph, one.frame_index), DERMIS_OK) << dermis_last_error();
-    EXPECT_EQ(dermis_frame_discard(graph, one.frame_index), DERMIS_ERROR_ARGUMENT) << "once";
+    EXPECT_EQ(dermis_view_discard(dermis_graph_view(graph), one.frame_index), DERMIS_OK)
+        << dermis_last_error();
+    EXPECT_EQ(dermis_view_discard(dermis_graph_view(graph), one.frame_index), DERMIS_ERROR_ARGUMENT)
+        << "once";
   }
   float middle() {
     const auto light = texels("lighting");
@@ -186,14 +189,14 @@ TEST_F(KeptHistory, NextPlan_ReadsTheHistoryOfTheOther) {
   for (int i = 0; i < 3; ++i)
     lit_frame(1);
   EXPECT_NEAR(middle(), scattered, 2e-3);
-  set_budget(0.5f); // Too little for the pyramid.
-  const dermis_choice switched = lit_frame(1);
-  EXPECT_THAT(switched.outcome, HasSubstr("technique=off"));
+  set_budget(0.5f); // too little for the pyramid
+  const demo::ReportedFrame switched = lit_frame(1);
+  EXPECT_THAT(switched.configuration, HasSubstr("technique=off"));
   EXPECT_EQ(switched.skips & DERMIS_SKIP_HISTORY, 0u);
   EXPECT_NEAR(middle(), (4 * scattered + copied) / 5, tolerance); // The mean of five frames.
   set_budget(0);
-  const dermis_choice back = lit_frame(1);
-  EXPECT_THAT(back.outcome, HasSubstr("technique=sap"));
+  const demo::ReportedFrame back = lit_frame(1);
+  EXPECT_THAT(back.configuration, HasSubstr("technique=sap"));
   EXPECT_EQ(back.skips & DERMIS_SKIP_HISTORY, 0u);
   EXPECT_NEAR(middle(), (5 * scattered + copied) / 6,
               tolerance); // This differs from what this plan stored four frames ago.
@@ -206,7 +209,7 @@ TEST_F(KeptHistory, CutInTheSwitchingFrame_ResetsIt) {
   for (int i = 0; i < 4; ++i)
     lit_frame(1);
   set_budget(0.5f);
-  const dermis_choice switched = lit_frame(1, DERMIS_FRAME_RESET_HISTORY);
+  const demo::ReportedFrame switched = lit_frame(1, DERMIS_FRAME_RESET_HISTORY);
   EXPECT_NE(switched.skips & DERMIS_SKIP_HISTORY, 0u);
   EXPECT_NEAR(middle(), copied, 2e-3);
 }
@@ -266,8 +269,8 @@ TEST_F(KeptHistory, SwitchingEveryFrameKeepsAllFrames) {
 
 TEST_F(Choice, ReportsTilesAndScatteringDistance) {
   make();
-  const dermis_choice choice = run_frame();
-  EXPECT_EQ(choice.view_tiles, 64u); // 64x64 pixels.
+  const demo::ReportedFrame choice = run_frame();
+  EXPECT_EQ(choice.view_tiles, 64u); // 64x64 pixels
   EXPECT_EQ(choice.scattering_tiles, 64u);
   EXPECT_EQ(choice.copied_tiles, 0u);
   // Skin's widest d is 1.04 mm and a pixel is 0.5 mm; a step of the counter is 1/16 of an octave.
@@ -296,8 +299,9 @@ struct TransmissionStats : Choice {
     dermis_frame one = frame(bound);
     one.exposure = exposure;
     EXPECT_EQ(record(graph, one), DERMIS_OK) << dermis_last_error();
-    dermis_choice choice = DERMIS_CHOICE_INIT;
-    EXPECT_EQ(dermis_graph_choice(graph, last_frame, &choice), DERMIS_OK) << dermis_last_error();
+    demo::ReportedFrame choice;
+    EXPECT_EQ(demo::read_reported(dermis_graph_view(graph), last_frame, choice), DERMIS_OK)
+        << dermis_last_error();
     return double(choice.transmitted_rms);
   }
 };
@@ -390,9 +394,9 @@ TEST_F(Choice, ConfigurationsShareTheLargestMemory) {
 
 TEST_F(Choice, UnfinishedFrame_IsNotReady) {
   make();
-  dermis_choice choice = DERMIS_CHOICE_INIT;
-  EXPECT_EQ(dermis_graph_choice(graph, 0, &choice), DERMIS_NOT_READY);
-  EXPECT_EQ(dermis_graph_choice(graph, 5, &choice), DERMIS_ERROR_ARGUMENT);
+  demo::ReportedFrame choice;
+  EXPECT_EQ(demo::read_reported(dermis_graph_view(graph), 0, choice), DERMIS_NOT_READY);
+  EXPECT_EQ(demo::read_reported(dermis_graph_view(graph), 5, choice), DERMIS_ERROR_ARGUMENT);
   EXPECT_THAT(dermis_last_error(), HasSubstr("completed_frame_index"));
 }
 

@@ -1,4 +1,5 @@
 #include "tests/integration/abi/dermis_fixture.hpp"
+#include "integration/examples/demo_engine/render/reported_frame.hpp"
 
 namespace dermis::abi_test {
 namespace {
@@ -218,7 +219,7 @@ dermis_result DermisTest::record(dermis_graph graph, dermis_frame& frame) {
   dermis_result result = DERMIS_ERROR_INTERNAL;
   const auto ran = demo::run_commands(*host, [&](VkCommandBuffer commands) -> demo::Result<> {
     frame.command_buffer = commands;
-    result = dermis_graph_record(graph, &frame);
+    result = dermis_view_record(dermis_graph_view(graph), &frame);
     return demo::success();
   });
   EXPECT_TRUE(ran) << ran.error().text;
@@ -226,12 +227,13 @@ dermis_result DermisTest::record(dermis_graph graph, dermis_frame& frame) {
   return result;
 }
 
-dermis_choice DermisTest::run_frame(dermis_graph graph) {
+demo::ReportedFrame DermisTest::run_frame(dermis_graph graph) {
   const auto bound = bindings(graph);
   dermis_frame one = frame(bound);
   EXPECT_EQ(record(graph, one), DERMIS_OK) << dermis_last_error();
-  dermis_choice choice = DERMIS_CHOICE_INIT;
-  EXPECT_EQ(dermis_graph_choice(graph, last_frame, &choice), DERMIS_OK) << dermis_last_error();
+  demo::ReportedFrame choice;
+  EXPECT_EQ(demo::read_reported(dermis_graph_view(graph), last_frame, choice), DERMIS_OK)
+      << dermis_last_error();
   return choice;
 }
 

@@ -2,6 +2,7 @@
 // A device under validation, a context and small G-buffers for tests of the C interface. Every
 // message of the validation layer fails the test.
 
+#include "integration/examples/demo_engine/render/reported_frame.hpp"
 #include "integration/examples/demo_engine/vulkan_image.hpp"
 #include "tests/integration/abi/sources.hpp"
 
@@ -62,9 +63,8 @@ struct DermisTest : ::testing::Test {
   // the last frame's.
   dermis_frame frame(const std::vector<dermis_image_binding>& bound, uint32_t width = 64,
                      uint32_t height = 64);
-  dermis_result record(dermis_graph graph, dermis_frame& frame); // Records, submits and waits.
-  // Runs one frame with the bound images, and returns its choice.
-  dermis_choice run_frame(dermis_graph graph);
+  dermis_result record(dermis_graph graph, dermis_frame& frame); // records, submits and waits
+  demo::ReportedFrame run_frame(dermis_graph graph); // one frame of what is bound, and what was chosen for it
   // Gives an image new contents: `value(x, y)` in every channel.
   void upload(const std::string& slot, const std::vector<float>& values); // Channel by channel.
   void fill(const std::string& slot, const std::function<float(uint32_t, uint32_t)>& value);

@@ -25,7 +25,7 @@ size_t use(void) {
   dermis_pass_timing timing = DERMIS_PASS_TIMING_INIT;
   dermis_frame frame = DERMIS_FRAME_INIT;
   dermis_budget budget = DERMIS_BUDGET_INIT;
-  dermis_choice choice = DERMIS_CHOICE_INIT;
+  demo::FrameChoice choice;
   dermis_port port = DERMIS_PORT_INIT;
   dermis_pass_setting setting = DERMIS_PASS_SETTING_INIT;
   dermis_pass_port pass_port = DERMIS_PASS_PORT_INIT;

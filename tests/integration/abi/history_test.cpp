@@ -47,9 +47,11 @@ struct Histories : DermisTest {
   }
   static std::vector<dermis_history> reported(dermis_graph graph) {
     uint32_t count = 0;
-    EXPECT_EQ(dermis_graph_histories(graph, &count, nullptr), DERMIS_OK) << dermis_last_error();
+    EXPECT_EQ(dermis_view_histories(dermis_graph_view(graph), &count, nullptr), DERMIS_OK)
+        << dermis_last_error();
     std::vector<dermis_history> all(count, dermis_history DERMIS_HISTORY_INIT);
-    EXPECT_EQ(dermis_graph_histories(graph, &count, all.data()), DERMIS_OK) << dermis_last_error();
+    EXPECT_EQ(dermis_view_histories(dermis_graph_view(graph), &count, all.data()), DERMIS_OK)
+        << dermis_last_error();
     return all;
   }
   static dermis_history named(const std::vector<dermis_history>& all, const char* name) {
@@ -269,12 +271,12 @@ TEST_F(Histories, DiscardedFrame_HasNoEffect) {
   one.flags = DERMIS_FRAME_RESET_HISTORY;
   const auto ran = demo::run_commands(*host, [&](VkCommandBuffer commands) -> demo::Result<> {
     one.command_buffer = commands;
-    EXPECT_EQ(dermis_graph_record(graph, &one), DERMIS_OK) << dermis_last_error();
+    EXPECT_EQ(dermis_view_record(dermis_graph_view(graph), &one), DERMIS_OK) << dermis_last_error();
     return demo::Error{demo::ErrorKind::internal, "not to be submitted"};
   });
   EXPECT_FALSE(ran);
   expect(1, DERMIS_HISTORY_CUT, "camera cut");
-  ASSERT_EQ(dermis_frame_discard(graph, one.frame_index), DERMIS_OK) << dermis_last_error();
+  ASSERT_EQ(dermis_view_discard(dermis_graph_view(graph), one.frame_index), DERMIS_OK) << dermis_last_error();
   expect(2, DERMIS_HISTORY_NEVER_WRITTEN, "valid since its first frame");
 }
 
@@ -304,15 +306,15 @@ TEST_F(Histories, WrongArgumentsAreNamed) {
     EXPECT_EQ(result, DERMIS_ERROR_ARGUMENT);
     EXPECT_THAT(dermis_last_error(), HasSubstr(named));
   };
-  refused(dermis_graph_histories(nullptr, &count, nullptr), "graph is NULL");
-  refused(dermis_graph_histories(graph, nullptr, nullptr), "count is NULL");
+  refused(dermis_view_histories(dermis_graph_view(nullptr), &count, nullptr), "graph is NULL");
+  refused(dermis_view_histories(dermis_graph_view(graph), nullptr, nullptr), "count is NULL");
   refused(dermis_view_histories(nullptr, &count, nullptr), "view is NULL");
   // Every size below that of the first version is refused; bytes beyond the known size are filled
   // with zeros.
   for (size_t size = 0; size < sizeof(dermis_history); ++size) {
     dermis_history small = DERMIS_HISTORY_INIT;
     small.struct_size = size;
-    refused(dermis_graph_histories(graph, &count, &small), "struct_size");
+    refused(dermis_view_histories(dermis_graph_view(graph), &count, &small), "struct_size");
   }
   struct Newer {
     dermis_history known;
@@ -321,7 +323,8 @@ TEST_F(Histories, WrongArgumentsAreNamed) {
   std::memset(newer, 0xff, sizeof newer);
   newer[0].known.struct_size = sizeof(Newer);
   count = 2;
-  ASSERT_EQ(dermis_graph_histories(graph, &count, &newer[0].known), DERMIS_OK) << dermis_last_error();
+  ASSERT_EQ(dermis_view_histories(dermis_graph_view(graph), &count, &newer[0].known), DERMIS_OK)
+      << dermis_last_error();
   for (const Newer& one : newer) {
     EXPECT_EQ(one.known.struct_size, sizeof(Newer));
     EXPECT_GE(one.known.settles_after, 1u);

@@ -238,7 +238,8 @@ TEST_F(HostPassSkips, DiscardedFrame_IsRevertedInBothPlans) {
   const auto age = [&] {
     uint32_t count = 1;
     dermis_history history = DERMIS_HISTORY_INIT;
-    EXPECT_EQ(dermis_graph_histories(graph, &count, &history), DERMIS_OK) << dermis_last_error();
+    EXPECT_EQ(dermis_view_histories(dermis_graph_view(graph), &count, &history), DERMIS_OK)
+        << dermis_last_error();
     return history.age;
   };
   ASSERT_EQ(age(), 1u);
@@ -247,9 +248,11 @@ TEST_F(HostPassSkips, DiscardedFrame_IsRevertedInBothPlans) {
   empty.flags = DERMIS_FRAME_BOUNDS;
   uint32_t count = 0;
   const dermis_command* commands = nullptr;
-  ASSERT_EQ(dermis_graph_commands(graph, &empty, &count, &commands), DERMIS_OK) << dermis_last_error();
+  ASSERT_EQ(dermis_view_commands(dermis_graph_view(graph), &empty, &count, &commands), DERMIS_OK)
+      << dermis_last_error();
   EXPECT_EQ(age(), 2u);
-  ASSERT_EQ(dermis_frame_discard(graph, empty.frame_index), DERMIS_OK) << dermis_last_error();
+  ASSERT_EQ(dermis_view_discard(dermis_graph_view(graph), empty.frame_index), DERMIS_OK)
+      << dermis_last_error();
   EXPECT_EQ(age(), 1u);
   again(0);
   EXPECT_THAT(calls, ElementsAre("scatter", "remember", "tone"));
@@ -270,12 +273,13 @@ TEST_F(HostPassSkips, AlternatingPlans_KeepTheHostsHistory) {
   }
   uint32_t count = 1;
   dermis_history history = DERMIS_HISTORY_INIT;
-  ASSERT_EQ(dermis_graph_histories(graph, &count, &history), DERMIS_OK) << dermis_last_error();
+  ASSERT_EQ(dermis_view_histories(dermis_graph_view(graph), &count, &history), DERMIS_OK)
+      << dermis_last_error();
   EXPECT_STREQ(history.name, "kept");
   EXPECT_EQ(history.age, 6u) << history.text;
   std::vector<dermis_pass_timing> timings(3, dermis_pass_timing DERMIS_PASS_TIMING_INIT);
   uint32_t timed = 3;
-  EXPECT_EQ(dermis_graph_timings(graph, last_frame, &timed, timings.data()), DERMIS_OK);
+  EXPECT_EQ(dermis_view_timings(dermis_graph_view(graph), last_frame, &timed, timings.data()), DERMIS_OK);
   EXPECT_EQ(timed, 3u);
 }
 

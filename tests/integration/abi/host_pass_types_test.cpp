@@ -164,7 +164,8 @@ TEST_F(HostPassTypes, AreTimedLikeAllPasses) {
   std::array<dermis_pass_timing, 4> timings;
   timings.fill(DERMIS_PASS_TIMING_INIT);
   uint32_t count = 4;
-  ASSERT_EQ(dermis_graph_timings(graph, one.frame_index, &count, timings.data()), DERMIS_OK);
+  ASSERT_EQ(dermis_view_timings(dermis_graph_view(graph), one.frame_index, &count, timings.data()),
+            DERMIS_OK);
   ASSERT_EQ(count, 2u);
   EXPECT_STREQ(timings[1].pass, "add");
 }

@@ -1,6 +1,7 @@
 // Tests samples per tile: the device allocates them like the rule on the CPU, and follows the
 // host's importance.
 
+#include "integration/examples/demo_engine/render/reported_frame.hpp"
 #include "passes/choice/controller.hpp"
 #include "passes/choice/sample_allocation.hpp"
 #include "tests/integration/abi/dermis_fixture.hpp"
@@ -43,7 +44,7 @@ constexpr const char* painted = R"({ "dermis_overlay": 2, "edits": [
 struct Hybrid : DermisTest {
   dermis_graph graph = nullptr;
 
-  dermis_choice run_frame() { return DermisTest::run_frame(graph); }
+  demo::ReportedFrame run_frame() { return DermisTest::run_frame(graph); }
 
   void set_units(uint32_t units) {
     const dermis_source calibration = source_of(times, "invented");
@@ -88,7 +89,7 @@ struct Hybrid : DermisTest {
     }
     return texels("lighting");
   }
-  dermis_choice reported = DERMIS_CHOICE_INIT;
+  demo::ReportedFrame reported;
 };
 
 TEST_F(Hybrid, DeviceAllocatesSamplesLikeTheCpu) {
@@ -119,7 +120,7 @@ TEST_F(Hybrid, DeviceAllocatesSamplesLikeTheCpu) {
   for (const uint32_t units : {wanted, wanted / 2, wanted / 3, 7u, 1u, 0u}) {
     fill("lighting", [](uint32_t x, uint32_t) { return x % 2 == 0 ? 0.25f : 0.5f; }); // Not flat.
     set_units(units);
-    const dermis_choice choice = run_frame();
+    const demo::ReportedFrame choice = run_frame();
     const choice::SampleAllocation expected = choice::allocate_samples(tile_errors, before, units);
     EXPECT_EQ(choice.sample_demand, wanted);
     EXPECT_EQ(choice.sample_units, expected.units);
@@ -169,7 +170,7 @@ double rms(const std::vector<float>& a, const std::vector<float>& b, uint32_t fi
 TEST_F(Hybrid, HalfBudget_ImportantTilesKeepTheirSamples) {
   const auto none = picture(0);
   const auto all = picture(100000);
-  const dermis_choice choice = reported;
+  const demo::ReportedFrame choice = reported;
   ASSERT_GT(choice.sample_demand, 0u);
   // The remaining tiles request less than half of all samples.
   constexpr uint32_t matters = 3 * side / 8;
@@ -189,7 +190,7 @@ TEST_F(Hybrid, TilesUnchangedByScattering_GetNoSamples) {
       return float((x * 37 + y * 61) % 97) / 64.0f;
     });
     set_units(100000);
-    const dermis_choice choice = run_frame();
+    const demo::ReportedFrame choice = run_frame();
     return choice.sampled_tiles[0] + choice.sampled_tiles[1] + choice.sampled_tiles[2];
   };
   const uint32_t some = sampled();
@@ -234,7 +235,7 @@ void expect_no_seams(const std::vector<float>& none, const std::vector<float>& a
 
 TEST_F(Hybrid, TilesLeaveNoSeams) {
   const auto none = picture(0), all = picture(100000);
-  const dermis_choice choice = reported;
+  const demo::ReportedFrame choice = reported;
   expect_no_seams(none, all, picture(choice.sample_demand / 3));
 }
 
@@ -244,13 +245,13 @@ TEST_F(Hybrid, PartialBudget_BuysSamplesAndReportsTheError) {
     picture(units);
     return reported;
   };
-  const dermis_choice all = run(100000);
-  EXPECT_THAT(all.outcome, testing::HasSubstr("technique=hybrid"));
+  const demo::ReportedFrame all = run(100000);
+  EXPECT_THAT(all.configuration, testing::HasSubstr("technique=hybrid"));
   ASSERT_GT(all.sample_demand, 100u);
-  const dermis_choice some = run(all.sample_demand / 2);
-  EXPECT_THAT(some.outcome, testing::HasSubstr("technique=hybrid"));
+  const demo::ReportedFrame some = run(all.sample_demand / 2);
+  EXPECT_THAT(some.configuration, testing::HasSubstr("technique=hybrid"));
   EXPECT_EQ(some.sample_units, all.sample_demand / 2);
-  const dermis_choice few = run(all.sample_demand / 8);
+  const demo::ReportedFrame few = run(all.sample_demand / 8);
   EXPECT_GT(few.predicted_rmse, some.predicted_rmse);
   EXPECT_GT(some.predicted_rmse, all.predicted_rmse);
 }
@@ -305,15 +306,15 @@ TEST_F(Pair, TilesWithEvenLightGetNoSamples) {
   make_hybrid();
   fill("lighting",
        [](uint32_t x, uint32_t y) { return x < 32 ? 0.5f : float((x * 37 + y * 61) % 97) / 64.0f; });
-  const dermis_choice choice = run_frame();
+  const demo::ReportedFrame choice = run_frame();
   EXPECT_EQ(choice.sampled_tiles[0] + choice.sampled_tiles[1] + choice.sampled_tiles[2], 32u);
   EXPECT_EQ(choice.sample_demand, 4 * 32u);
 }
 
 TEST_F(UnevenPair, TilesLeaveNoSeams) {
   const auto none = picture(0), all = picture(100000);
-  const dermis_choice choice = reported;
-  const auto some = picture(choice.sample_demand / 6); // Enough for two thirds of the tiles.
+  const demo::ReportedFrame choice = reported;
+  const auto some = picture(choice.sample_demand / 6); // enough for two thirds of the tiles
   ASSERT_GT(reported.sampled_tiles[0], 16u);
   ASSERT_LT(reported.sampled_tiles[0] + reported.sampled_tiles[1] + reported.sampled_tiles[2], 60u);
   expect_no_seams(none, all, some);

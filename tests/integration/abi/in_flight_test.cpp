@@ -1,5 +1,6 @@
 // Tests frames in flight: replaced objects live until the device has finished with them.
 
+#include "integration/examples/demo_engine/render/reported_frame.hpp"
 #include "tests/integration/abi/in_flight.hpp"
 
 namespace dermis::abi_test {
@@ -12,7 +13,7 @@ struct InFlight : InFlightTest {
     one.completed_frame_index = completed_before(index);
     submit(index, [&](VkCommandBuffer into) {
       one.command_buffer = into;
-      ASSERT_EQ(dermis_graph_record(graph, &one), DERMIS_OK) << dermis_last_error();
+      ASSERT_EQ(dermis_view_record(dermis_graph_view(graph), &one), DERMIS_OK) << dermis_last_error();
     });
     last_frame = index;
   }
@@ -35,9 +36,9 @@ TEST_F(InFlight, AlternatingPlans_WaitForTheSharedMemory) {
     run(graph, bound, index);
   }
   host->vk.vkDeviceWaitIdle(host->device);
-  dermis_choice choice = DERMIS_CHOICE_INIT;
-  ASSERT_EQ(dermis_graph_choice(graph, 9, &choice), DERMIS_OK) << dermis_last_error();
-  EXPECT_STREQ(choice.outcome, "technique=sap, variant=smooth");
+  demo::ReportedFrame choice;
+  ASSERT_EQ(demo::read_reported(dermis_graph_view(graph), 9, choice), DERMIS_OK) << dermis_last_error();
+  EXPECT_STREQ(choice.configuration, "technique=sap, variant=smooth");
   ASSERT_EQ(choice.frame_index, 9u);
 }
 
@@ -68,7 +69,7 @@ TEST_F(InFlight, TimesSurviveTheReuseOfTheirQueries) {
     const uint64_t completed = completed_before(index);
     if (completed == 0) continue;
     uint32_t count = 16;
-    ASSERT_EQ(dermis_graph_timings(graph, completed, &count, times.data()), DERMIS_OK);
+    ASSERT_EQ(dermis_view_timings(dermis_graph_view(graph), completed, &count, times.data()), DERMIS_OK);
     EXPECT_EQ(times[0].frame_index, completed);
     EXPECT_GT(times[0].nanoseconds, 0u);
   }
@@ -85,9 +86,11 @@ TEST_F(InFlight, FramesFollowEachOtherWithoutWaiting) {
   std::array<dermis_pass_timing, 16> times{};
   times[0].struct_size = sizeof times[0];
   uint32_t count = 16;
-  ASSERT_EQ(dermis_graph_timings(graph, 6, &count, times.data()), DERMIS_OK) << dermis_last_error();
+  ASSERT_EQ(dermis_view_timings(dermis_graph_view(graph), 6, &count, times.data()), DERMIS_OK)
+      << dermis_last_error();
   EXPECT_EQ(times[0].frame_index, 6u);
-  ASSERT_EQ(dermis_graph_timings(graph, 5, &count, times.data()), DERMIS_OK) << dermis_last_error();
+  ASSERT_EQ(dermis_view_timings(dermis_graph_view(graph), 5, &count, times.data()), DERMIS_OK)
+      << dermis_last_error();
   EXPECT_EQ(times[0].frame_index, 5u);
 }
 

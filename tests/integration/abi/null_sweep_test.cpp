@@ -69,14 +69,14 @@ TEST(NullArguments, AreNamedByGraphFunctions) {
   dermis_memory memory = DERMIS_MEMORY_INIT;
   dermis_frame frame = DERMIS_FRAME_INIT;
   expect_argument_error(dermis_graph_slots(nullptr, &count, nullptr), "graph");
-  expect_argument_error(dermis_graph_settings(nullptr, &count, nullptr), "graph");
+  expect_argument_error(dermis_view_settings(dermis_graph_view(nullptr), &count, nullptr), "graph");
   expect_argument_error(dermis_graph_describe(nullptr, DERMIS_DESCRIBE_JSON, &size, nullptr), "graph");
   expect_argument_error(dermis_graph_memory(nullptr, &memory), "graph");
-  expect_argument_error(dermis_graph_timings(nullptr, 0, &count, nullptr), "graph");
-  expect_argument_error(dermis_graph_histories(nullptr, &count, nullptr), "graph");
+  expect_argument_error(dermis_view_timings(dermis_graph_view(nullptr), 0, &count, nullptr), "graph");
+  expect_argument_error(dermis_view_histories(dermis_graph_view(nullptr), &count, nullptr), "graph");
   expect_argument_error(dermis_view_histories(nullptr, &count, nullptr), "view");
-  expect_argument_error(dermis_graph_record(nullptr, &frame), "graph");
-  expect_argument_error(dermis_frame_discard(nullptr, 1), "graph");
+  expect_argument_error(dermis_view_record(dermis_graph_view(nullptr), &frame), "graph");
+  expect_argument_error(dermis_view_discard(dermis_graph_view(nullptr), 1), "graph");
 }
 
 TEST(NullArguments, AreHarmlessToReportsAndDestruction) {

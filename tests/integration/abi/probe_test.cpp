@@ -1,6 +1,7 @@
 // The error probe measures the error that the exact reference gives.
 
 #include "framegraph/text/document.hpp"
+#include "integration/examples/demo_engine/render/reported_frame.hpp"
 #include "passes/common/profiles/profile.hpp"
 #include "passes/common/reference/reference.hpp"
 #include "tests/integration/abi/dermis_fixture.hpp"
@@ -27,7 +28,7 @@ struct Probe : DermisTest {
     make_images(graph);
   }
 
-  dermis_choice run_frame(Light light) {
+  demo::ReportedFrame run_frame(Light light) {
     fill("lighting", light);
     return DermisTest::run_frame(graph);
   }
@@ -75,7 +76,7 @@ float spread(uint32_t x, uint32_t y) {
 
 TEST_F(Probe, WithoutProbe_TheErrorIsUnknown) {
   make("\"sap\"", false);
-  const dermis_choice choice = run_frame(spread);
+  const demo::ReportedFrame choice = run_frame(spread);
   EXPECT_EQ(choice.probed_tiles, 0u);
   EXPECT_EQ(choice.probed_rmse, 0);
 }
@@ -87,7 +88,7 @@ TEST_F(Probe, MatchesTheExactReference) {
   constexpr int frames = 16;
   double mean = 0;
   for (int i = 0; i < frames; ++i) {
-    const dermis_choice choice = run_frame(checks);
+    const demo::ReportedFrame choice = run_frame(checks);
     EXPECT_EQ(choice.probed_tiles, 1u);
     mean += std::pow(double(choice.probed_rmse), 2) / frames;
     EXPECT_EQ(choice.probed_rmse_low, 0); // One tile gives no bound for the others.
@@ -117,7 +118,7 @@ TEST_F(Probe, MeasuredErrorCorrectsTheExpectedError) {
   run_frame(checks);
   const float before = run_frame(checks).predicted_rmse; // From the table, once tiles were counted.
   make("\"off\"");
-  dermis_choice choice = DERMIS_CHOICE_INIT;
+  demo::ReportedFrame choice;
   for (int i = 0; i < 60; ++i)
     choice = run_frame(checks);
   EXPECT_GT(std::abs(before - choice.probed_rmse),

@@ -47,9 +47,9 @@ struct SetProfile : DermisTest {
   }
   static uint32_t settles_after(dermis_graph graph, std::string_view history) {
     uint32_t count = 0;
-    EXPECT_EQ(dermis_graph_histories(graph, &count, nullptr), DERMIS_OK);
+    EXPECT_EQ(dermis_view_histories(dermis_graph_view(graph), &count, nullptr), DERMIS_OK);
     std::vector<dermis_history> all(count, dermis_history DERMIS_HISTORY_INIT);
-    EXPECT_EQ(dermis_graph_histories(graph, &count, all.data()), DERMIS_OK);
+    EXPECT_EQ(dermis_view_histories(dermis_graph_view(graph), &count, all.data()), DERMIS_OK);
     for (const dermis_history& one : all)
       if (one.name == history) return one.settles_after;
     return 0;
@@ -89,7 +89,7 @@ TEST_F(SetProfile, RecordedFramesKeepTheirProfile) {
   dermis_frame one = frame(bound);
   const auto ran = demo::run_commands(*host, [&](VkCommandBuffer commands) -> demo::Result<> {
     one.command_buffer = commands;
-    EXPECT_EQ(dermis_graph_record(graph, &one), DERMIS_OK) << dermis_last_error();
+    EXPECT_EQ(dermis_view_record(dermis_graph_view(graph), &one), DERMIS_OK) << dermis_last_error();
     EXPECT_EQ(set_profile(graph, profile_text("marble")), DERMIS_OK) << dermis_last_error();
     return demo::success(); // Submitted after the profile has changed.
   });
@@ -106,12 +106,12 @@ TEST_F(SetProfile, TakesEffectAfterADiscardedFrame) {
   dermis_frame one = frame(bound);
   const auto ran = demo::run_commands(*host, [&](VkCommandBuffer commands) -> demo::Result<> {
     one.command_buffer = commands;
-    EXPECT_EQ(dermis_graph_record(graph, &one), DERMIS_OK) << dermis_last_error();
+    EXPECT_EQ(dermis_view_record(dermis_graph_view(graph), &one), DERMIS_OK) << dermis_last_error();
     return demo::Error{demo::ErrorKind::internal, "not to be submitted"};
   });
   EXPECT_FALSE(ran);
   ASSERT_EQ(set_profile(graph, profile_text("marble")), DERMIS_OK) << dermis_last_error();
-  ASSERT_EQ(dermis_frame_discard(graph, 1), DERMIS_OK) << dermis_last_error();
+  ASSERT_EQ(dermis_view_discard(dermis_graph_view(graph), 1), DERMIS_OK) << dermis_last_error();
   EXPECT_EQ(picture(graph, 1), picture(marble, 1));
 }
 

@@ -122,12 +122,13 @@ TEST_F(Record, TimesOfTheNewestCompletedFrameComeInPlanOrder) {
   std::array<dermis_pass_timing, 16> times{};
   times[0].struct_size = sizeof times[0];
   uint32_t count = 16;
-  EXPECT_EQ(dermis_graph_timings(graph, 0, &count, times.data()), DERMIS_NOT_READY);
+  EXPECT_EQ(dermis_view_timings(dermis_graph_view(graph), 0, &count, times.data()), DERMIS_NOT_READY);
   for (int i = 0; i < 3; ++i) {
     dermis_frame one = frame(bound);
     ASSERT_EQ(record(graph, one), DERMIS_OK) << dermis_last_error();
   }
-  ASSERT_EQ(dermis_graph_timings(graph, last_frame, &count, times.data()), DERMIS_OK) << dermis_last_error();
+  ASSERT_EQ(dermis_view_timings(dermis_graph_view(graph), last_frame, &count, times.data()), DERMIS_OK)
+      << dermis_last_error();
   ASSERT_EQ(count, 5u);
   EXPECT_STREQ(times[0].pass, "classify");
   EXPECT_STREQ(times[4].pass, "combine");
@@ -136,7 +137,8 @@ TEST_F(Record, TimesOfTheNewestCompletedFrameComeInPlanOrder) {
     EXPECT_GT(times[i].nanoseconds, 0u);
     EXPECT_LT(times[i].nanoseconds, 10'000'000'000u);
   }
-  EXPECT_EQ(dermis_graph_timings(graph, last_frame + 1, &count, times.data()), DERMIS_ERROR_ARGUMENT);
+  EXPECT_EQ(dermis_view_timings(dermis_graph_view(graph), last_frame + 1, &count, times.data()),
+            DERMIS_ERROR_ARGUMENT);
 }
 
 TEST_F(Record, EveryMissingSlotIsNamedAtOnce) {
@@ -221,9 +223,9 @@ TEST_F(Record, EveryWrongFieldIsNamedAndNothingIsRecorded) {
     EXPECT_EQ(logged.back(), dermis_last_error());
   }
   dermis_frame no_commands = frame(good);
-  EXPECT_EQ(dermis_graph_record(graph, &no_commands), DERMIS_ERROR_ARGUMENT);
+  EXPECT_EQ(dermis_view_record(dermis_graph_view(graph), &no_commands), DERMIS_ERROR_ARGUMENT);
   EXPECT_THAT(dermis_last_error(), HasSubstr("command_buffer"));
-  EXPECT_EQ(dermis_graph_record(graph, nullptr), DERMIS_ERROR_ARGUMENT);
+  EXPECT_EQ(dermis_view_record(dermis_graph_view(graph), nullptr), DERMIS_ERROR_ARGUMENT);
   EXPECT_EQ(texels("lighting"), light);
   dermis_frame next = frame(good);
   EXPECT_EQ(record(graph, next), DERMIS_OK) << "the graph runs on";

@@ -11,16 +11,13 @@
 
 namespace {
 
-struct Grown { // Version 1 had only `first`.
+struct Grown {
   size_t struct_size;
   uint64_t first;
   uint64_t second;
 };
 
 } // namespace
-
-template <>
-inline constexpr size_t dermis::abi::first_version_size<Grown> = offsetof(Grown, first) + sizeof(uint64_t);
 
 namespace dermis::abi {
 namespace {
@@ -35,21 +32,14 @@ std::unique_ptr<std::byte[]> structure(size_t allocated, size_t stated, std::byt
   return bytes;
 }
 
-TEST(SizedStruct, SizeBelowTheFirstVersion_IsRefused) {
-  for (size_t size = 0; size < first_version_size<Grown>; ++size) {
+TEST(SizedStruct, SmallerThanTheStruct_Read_IsRejected) {
+  for (size_t size = 0; size < sizeof(Grown); ++size) {
     Grown read{};
     EXPECT_EQ(read_sized(structure(size, size).get(), read), SizedRead::too_small) << size;
   }
 }
 
-TEST(SizedStruct, OlderCaller_NewFieldsKeepTheirDefaults) {
-  Grown read{sizeof(Grown), 7, 9};
-  ASSERT_EQ(read_sized(structure(16, 16).get(), read), SizedRead::ok);
-  EXPECT_EQ(read.first, 0x0101010101010101u);
-  EXPECT_EQ(read.second, 9u);
-}
-
-TEST(SizedStruct, NewerCaller_TailMustBeZero) {
+TEST(SizedStruct, ANewerCallersTailIsAcceptedWhenItIsZeroAndRefusedWhenItIsNot) {
   for (size_t size = sizeof(Grown); size <= sizeof(Grown) + 64; ++size) {
     Grown read{};
     EXPECT_EQ(read_sized(structure(size, size).get(), read), SizedRead::ok) << size;
@@ -67,10 +57,7 @@ TEST(SizedStruct, UninitialisedSize_IsRefusedBeforeReadingTheTail) {
   EXPECT_EQ(read_sized(structure(sizeof(Grown), ~size_t{0}).get(), read), SizedRead::too_large);
 }
 
-TEST(SizedStruct, Writing_FillsKnownFieldsAndZeroesTheRest) {
-  auto old_caller = structure(16, 16);
-  write_sized(old_caller.get(), 16, Grown{0, 3, 4});
-  EXPECT_EQ(stated_size(old_caller.get()), 16u);
+TEST(SizedStruct, LargerThanTheStruct_Write_ZeroesTheRest) {
   auto new_caller = structure(40, 40, std::byte{0xff});
   write_sized(new_caller.get(), 40, Grown{0, 3, 4});
   EXPECT_EQ(stated_size(new_caller.get()), 40u);

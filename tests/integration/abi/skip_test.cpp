@@ -1,5 +1,6 @@
 // Tests that unneeded work of a frame is skipped without changing the picture.
 
+#include "integration/examples/demo_engine/render/reported_frame.hpp"
 #include "passes/common/uniform_light.hpp"
 #include "tests/integration/abi/dermis_fixture.hpp"
 
@@ -29,15 +30,16 @@ struct Skip : DermisTest {
     fill("lighting", [](uint32_t x, uint32_t y) { return float((x * 37 + y * 61) % 97) / 64.0f; });
   }
 
-  dermis_choice run_frame(uint32_t flags = 0, std::array<uint32_t, 4> bounds = {}) {
+  demo::ReportedFrame run_frame(uint32_t flags = 0, std::array<uint32_t, 4> bounds = {}) {
     const auto bound = bindings(graph);
     dermis_frame one = frame(bound);
     one.flags = flags;
     one.bounds_x = bounds[0], one.bounds_y = bounds[1];
     one.bounds_width = bounds[2], one.bounds_height = bounds[3];
     EXPECT_EQ(record(graph, one), DERMIS_OK) << dermis_last_error();
-    dermis_choice choice = DERMIS_CHOICE_INIT;
-    EXPECT_EQ(dermis_graph_choice(graph, last_frame, &choice), DERMIS_OK) << dermis_last_error();
+    demo::ReportedFrame choice;
+    EXPECT_EQ(demo::read_reported(dermis_graph_view(graph), last_frame, choice), DERMIS_OK)
+        << dermis_last_error();
     return choice;
   }
 
@@ -50,7 +52,7 @@ TEST_F(Skip, NoProfile_EmptyPlanAndUnchangedLight) {
   make(false);
   no_subsurface();
   const auto before = texels("lighting");
-  const dermis_choice choice = run_frame();
+  const demo::ReportedFrame choice = run_frame();
   EXPECT_EQ(choice.skips, DERMIS_SKIP_NO_MATERIAL);
   EXPECT_EQ(choice.dispatches, 0u);
   EXPECT_EQ(choice.groups, 0u);
@@ -77,7 +79,7 @@ TEST_F(Skip, NoProfile_LightIsStillExported) {
 TEST_F(Skip, EmptyBounds_LaunchNothing) {
   make();
   const auto before = texels("lighting");
-  const dermis_choice choice = run_frame(DERMIS_FRAME_BOUNDS);
+  const demo::ReportedFrame choice = run_frame(DERMIS_FRAME_BOUNDS);
   EXPECT_EQ(choice.skips, DERMIS_SKIP_NO_BOUNDS);
   EXPECT_EQ(choice.dispatches, 0u);
   EXPECT_EQ(choice.groups, 0u);
@@ -115,11 +117,11 @@ TEST_F(Skip, BoundsAroundAllSubsurfaceChangeNothing) {
     return x >= 20 && x < 40 && y >= 12 && y < 30 ? 1.0f : 0.0f;
   };
   fill("material", patch);
-  const dermis_choice whole = run_frame();
+  const demo::ReportedFrame whole = run_frame();
   const auto picture = texels("lighting");
   make();
   fill("material", patch);
-  const dermis_choice bounded = run_frame(DERMIS_FRAME_BOUNDS, {20, 12, 20, 18});
+  const demo::ReportedFrame bounded = run_frame(DERMIS_FRAME_BOUNDS, {20, 12, 20, 18});
   EXPECT_EQ(bounded.scattering_tiles, whole.scattering_tiles);
   EXPECT_EQ(texels("lighting"), picture);
 }
@@ -137,7 +139,7 @@ TEST_F(Skip, NothingOnScreen_OnlyClassifiesTiles) {
   make();
   no_subsurface();
   const auto before = texels("lighting");
-  const dermis_choice choice = run_frame();
+  const demo::ReportedFrame choice = run_frame();
   EXPECT_EQ(choice.skips, DERMIS_SKIP_NOTHING_SEEN);
   EXPECT_EQ(choice.groups, 4u + 1 + 1); // Classes by 4x4 tiles, flat light by 64 tiles, the list.
   EXPECT_EQ(texels("lighting"), before);
@@ -153,7 +155,7 @@ TEST_F(Skip, FlatLight_IsCopiedWithinTheTolerance) {
   const auto unskipped = texels("lighting");
   make();
   fill("lighting", light);
-  const dermis_choice choice = run_frame();
+  const demo::ReportedFrame choice = run_frame();
   EXPECT_EQ(choice.uniform_tiles, 64u);
   EXPECT_EQ(choice.scattering_tiles, 0u);
   EXPECT_EQ(choice.skips, DERMIS_SKIP_UNIFORM_LIGHT);
@@ -206,7 +208,7 @@ TEST_F(Skip, CopiedLight_IsEqualForEveryTexturing) {
 TEST_F(Skip, OneDifferentTile_IsSeenWithinTheReach) {
   make();
   fill("lighting", [](uint32_t x, uint32_t y) { return x < 8 && y < 8 ? 1.0f : 0.5f; });
-  const dermis_choice choice = run_frame();
+  const demo::ReportedFrame choice = run_frame();
   // Skin's d is two pixels here: 20 d are five tiles, and the picture has eight.
   EXPECT_EQ(choice.uniform_tiles + choice.scattering_tiles, 64u);
   const auto reach = static_cast<uint32_t>(std::ceil(subsurface::flat_reach_d * 3.67 / 3.5 / 0.5 / 8));
@@ -220,7 +222,7 @@ TEST_F(Skip, DifferenceInACell_IsSeenExactlyWithinTheReach) {
   for (const uint32_t column : {0u, 1u, 2u, 3u}) {
     make();
     fill("lighting", [&](uint32_t x, uint32_t) { return x / 8 == column ? 1.0f : 0.5f; });
-    const dermis_choice choice = run_frame();
+    const demo::ReportedFrame choice = run_frame();
     const uint32_t scattering = std::min(column + reach, 7u) - (column > reach ? column - reach : 0u) + 1;
     EXPECT_EQ(choice.scattering_tiles, 8 * scattering) << column;
     EXPECT_EQ(choice.uniform_tiles, 64 - 8 * scattering) << column;
@@ -236,7 +238,7 @@ TEST_F(Skip, SubpixelScattering_LightIsNotTested) {
   make_images(graph);
   fill("lighting", [](uint32_t, uint32_t) { return 0.5f; });
   fill("scatter_scale", [](uint32_t x, uint32_t y) { return x < 8 && y < 8 ? 0.0f : 1.0f; });
-  const dermis_choice choice = run_frame();
+  const demo::ReportedFrame choice = run_frame();
   const auto reach = static_cast<uint32_t>(std::ceil(subsurface::flat_reach_d * 3.67 / 3.5 / 0.5 / 8));
   EXPECT_EQ(choice.copied_tiles, 1u);
   EXPECT_EQ(choice.scattering_tiles, (reach + 1) * (reach + 1) - 1); // Its light is not tested.
@@ -247,7 +249,7 @@ TEST_F(Skip, BoundsCanCutTiles) {
   for (const std::array<uint32_t, 4> bounds :
        {std::array<uint32_t, 4>{3, 5, 1, 1}, {7, 7, 2, 2}, {0, 0, 64, 1}, {33, 0, 30, 64}, {8, 8, 8, 8}}) {
     make();
-    const dermis_choice choice = run_frame(DERMIS_FRAME_BOUNDS, bounds);
+    const demo::ReportedFrame choice = run_frame(DERMIS_FRAME_BOUNDS, bounds);
     const auto tiles = [](uint32_t first, uint32_t count) { return (first + count - 1) / 8 - first / 8 + 1; };
     EXPECT_EQ(choice.scattering_tiles + choice.uniform_tiles,
               tiles(bounds[0], bounds[2]) * tiles(bounds[1], bounds[3]));
@@ -263,7 +265,7 @@ TEST_F(Skip, ToolsGetTheClassOfEachTile) {
   make_images(graph);
   fill("material", [](uint32_t x, uint32_t) { return x < 32 ? 1.0f : 0.0f; });
   fill("lighting", [](uint32_t, uint32_t) { return 0.5f; });
-  const dermis_choice choice = run_frame();
+  const demo::ReportedFrame choice = run_frame();
   EXPECT_EQ(choice.uniform_tiles, 32u);
   const auto shown = texels("skips");
   for (uint32_t y = 0; y < 64; ++y)
@@ -280,8 +282,8 @@ TEST_F(Skip, ScatteringBelowAPixelIsCopiedExactly) {
   dermis_frame one = frame(bound);
   one.metres_per_unit = 100; // A pixel is 5 cm.
   ASSERT_EQ(record(graph, one), DERMIS_OK);
-  dermis_choice choice = DERMIS_CHOICE_INIT;
-  ASSERT_EQ(dermis_graph_choice(graph, last_frame, &choice), DERMIS_OK);
+  demo::ReportedFrame choice;
+  ASSERT_EQ(demo::read_reported(dermis_graph_view(graph), last_frame, choice), DERMIS_OK);
   EXPECT_EQ(choice.copied_tiles, 64u);
   EXPECT_EQ(choice.skips, DERMIS_SKIP_SUBPIXEL);
   // Classes, flat light, the list, and once over the listed tiles.

@@ -1,6 +1,7 @@
 // Tests two-call queries: the first call returns the count, the second all elements or as many as
 // fit.
 
+#include "integration/examples/demo_engine/render/reported_frame.hpp"
 #include "tests/integration/abi/sources.hpp"
 #include "tests/integration/embedding/null_host.hpp"
 
@@ -74,7 +75,7 @@ TEST_F(TwoCalls, FillAtMostTheCapacity) {
   expect_array_property<dermis_slot>(
       [&](uint32_t* count, dermis_slot* items) { return dermis_graph_slots(host.graph, count, items); });
   expect_array_property<dermis_setting>([&](uint32_t* count, dermis_setting* items) {
-    return dermis_graph_settings(host.graph, count, items);
+    return dermis_view_settings(dermis_graph_view(host.graph), count, items);
   });
   expect_array_property<dermis_setting>(
       [&](uint32_t* count, dermis_setting* items) { return dermis_view_settings(view, count, items); });
@@ -82,12 +83,12 @@ TEST_F(TwoCalls, FillAtMostTheCapacity) {
     return dermis_graph_heaps(host.graph, count, items);
   });
   expect_array_property<dermis_pass_timing>([&](uint32_t* count, dermis_pass_timing* items) {
-    return dermis_graph_timings(host.graph, 1, count, items);
+    return dermis_view_timings(dermis_graph_view(host.graph), 1, count, items);
   });
   expect_array_property<dermis_pass_timing>(
       [&](uint32_t* count, dermis_pass_timing* items) { return dermis_view_timings(view, 1, count, items); });
   expect_array_property<dermis_history>([&](uint32_t* count, dermis_history* items) {
-    return dermis_graph_histories(host.graph, count, items);
+    return dermis_view_histories(dermis_graph_view(host.graph), count, items);
   });
   expect_array_property<dermis_history>(
       [&](uint32_t* count, dermis_history* items) { return dermis_view_histories(view, count, items); });
@@ -127,14 +128,15 @@ TEST_F(TwoCalls, TextIsWrittenCompletelyOrNotAtAll) {
 
 TEST_F(TwoCalls, OnlyRecordedFramesCanBeQueried) {
   uint32_t count = 0;
-  dermis_choice choice = DERMIS_CHOICE_INIT;
+  demo::ReportedFrame choice;
   for (const uint64_t later : {uint64_t{2}, ~uint64_t{0}}) {
-    EXPECT_EQ(dermis_graph_timings(host.graph, later, &count, nullptr), DERMIS_ERROR_ARGUMENT);
+    EXPECT_EQ(dermis_view_timings(dermis_graph_view(host.graph), later, &count, nullptr),
+              DERMIS_ERROR_ARGUMENT);
     EXPECT_THAT(dermis_last_error(), HasSubstr("the newest recorded frame is 1"));
     EXPECT_EQ(dermis_view_timings(view, later, &count, nullptr), DERMIS_ERROR_ARGUMENT);
-    EXPECT_EQ(dermis_graph_choice(host.graph, later, &choice), DERMIS_ERROR_ARGUMENT);
+    EXPECT_EQ(demo::read_reported(dermis_graph_view(host.graph), later, choice), DERMIS_ERROR_ARGUMENT);
     EXPECT_THAT(dermis_last_error(), HasSubstr("the newest recorded frame is 1"));
-    EXPECT_EQ(dermis_view_choice(view, later, &choice), DERMIS_ERROR_ARGUMENT);
+    EXPECT_EQ(demo::read_reported(view, later, choice), DERMIS_ERROR_ARGUMENT);
   }
 }
 

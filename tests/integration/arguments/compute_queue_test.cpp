@@ -37,7 +37,8 @@ protected:
     const dermis_frame frame = host.frame_at(index);
     uint32_t count = 0;
     const dermis_command* commands = nullptr;
-    EXPECT_EQ(dermis_graph_commands(host.graph, &frame, &count, &commands), DERMIS_OK) << dermis_last_error();
+    EXPECT_EQ(dermis_view_commands(dermis_graph_view(host.graph), &frame, &count, &commands), DERMIS_OK)
+        << dermis_last_error();
     FrameCommands found;
     for (uint32_t i = 0; i < count; ++i) {
       found.dispatches += commands[i].type == DERMIS_COMMAND_DISPATCH ? 1 : 0;

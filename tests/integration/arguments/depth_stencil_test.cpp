@@ -53,7 +53,8 @@ std::vector<VkImageAspectFlags> aspects(uint32_t flags, VkFormat depth_format, c
   frame.bindings = bindings.data();
   uint32_t count = 0;
   const dermis_command* commands = nullptr;
-  EXPECT_EQ(dermis_graph_commands(host.graph, &frame, &count, &commands), DERMIS_OK) << dermis_last_error();
+  EXPECT_EQ(dermis_view_commands(dermis_graph_view(host.graph), &frame, &count, &commands), DERMIS_OK)
+      << dermis_last_error();
   std::vector<VkImageAspectFlags> found;
   for (uint32_t i = 0; i < count; ++i)
     for (uint32_t b = 0;

@@ -349,8 +349,8 @@ TEST(HostsDeviceMemory, UnusableBlock_IsRefusedAndFreed) {
       blocks.fault = fault;
       blocks.bad_at = nth;
       dermis_device_allocator allocator = DERMIS_DEVICE_ALLOCATOR_INIT;
-      allocator.take = BadBlocks::take;
-      allocator.give_back = BadBlocks::give_back;
+      allocator.allocate = BadBlocks::take;
+      allocator.free = BadBlocks::give_back;
       allocator.user = &blocks;
       NullHost host;
       dermis_context_desc desc = host.context_desc();
@@ -380,7 +380,7 @@ TEST(HostsDeviceMemory, HalfAnAllocatorIsRefused) {
   desc.device_allocator = &allocator;
   EXPECT_EQ(host.make_context(desc), DERMIS_ERROR_ARGUMENT);
   EXPECT_THAT(dermis_last_error(), HasSubstr("desc.device_allocator.take is NULL"));
-  allocator.take = BadBlocks::take;
+  allocator.allocate = BadBlocks::take;
   EXPECT_EQ(host.make_context(desc), DERMIS_ERROR_ARGUMENT);
   EXPECT_THAT(dermis_last_error(), HasSubstr("desc.device_allocator.give_back is NULL"));
 }

@@ -2,6 +2,7 @@
 // created.
 
 #include "framegraph/text/limits.hpp"
+#include "integration/examples/demo_engine/render/reported_frame.hpp"
 #include "tests/integration/abi/sources.hpp"
 #include "tests/integration/embedding/null_host.hpp"
 
@@ -60,7 +61,6 @@ TEST_F(Fields, OfAGraph_WrongOnesAreNamed) {
   using Change = std::function<void(Description&)>;
   const std::pair<const char*, Change> changes[] = {
       {"desc.keep is 0x1, expected 0", [](auto& d) { d.desc.keep = DERMIS_KEEP_SOURCE; }},
-      {"desc.reserved_too is 1", [](auto& d) { d.desc.reserved_too = 1; }},
       {"desc.source.text is NULL", [](auto& d) { d.desc.source.text = nullptr; }},
       {"desc.source.length is 0", [](auto& d) { d.desc.source.length = 0; }},
       {"at most", [](auto& d) { d.desc.source.length = limits::file_bytes + 1; }},
@@ -70,14 +70,12 @@ TEST_F(Fields, OfAGraph_WrongOnesAreNamed) {
       {"desc.profiles[1].id is 0", [](auto& d) { d.profiles[1].id = 0; }},
       {"desc.profiles[1].id is 256", [](auto& d) { d.profiles[1].id = 256; }},
       {"desc.profiles[1].id is 1, which an earlier entry has", [](auto& d) { d.profiles[1].id = 1; }},
-      {"desc.profiles[0].reserved is 2", [](auto& d) { d.profiles[0].reserved = 2; }},
       {"desc.profiles[0].source.text is NULL", [](auto& d) { d.profiles[0].source.text = nullptr; }},
       {"desc.profiles[1].struct_size", [](auto& d) { d.profiles[1].struct_size += 8; }},
       {"desc.unbound is NULL and its count is 2", [](auto& d) { d.desc.unbound = nullptr; }},
       {"desc.unbound[1] is NULL", [](auto& d) { d.unbound[1] = nullptr; }},
       {"desc.formats is NULL and its count is 1", [](auto& d) { d.desc.formats = nullptr; }},
       {"desc.formats[0].name is NULL", [](auto& d) { d.formats[0].name = nullptr; }},
-      {"desc.formats[0].reserved is 3", [](auto& d) { d.formats[0].reserved = 3; }},
       {"which no graph can declare (slot 'depth')",
        [](auto& d) { d.formats[0].format = VK_FORMAT_UNDEFINED; }},
       {"which no graph can declare", [](auto& d) { d.formats[0].format = VK_FORMAT_ASTC_4x4_SRGB_BLOCK; }},
@@ -145,8 +143,10 @@ TEST_F(Fields, OfCallsOnAGraph_NullOnesAreNamed) {
   refused(dermis_graph_set_budget(host.graph, nullptr, nullptr), "budget is NULL");
   refused(dermis_graph_set_budget(nullptr, nullptr, nullptr), "graph is NULL");
   refused(dermis_graph_memory(host.graph, nullptr), "memory is NULL");
-  refused(dermis_graph_choice(host.graph, 0, nullptr), "choice is NULL");
-  refused(dermis_graph_choice(nullptr, 0, nullptr), "graph is NULL");
+  const dermis_view view = dermis_graph_view(host.graph);
+  refused(dermis_view_report(view, 0, nullptr), "report is NULL");
+  refused(dermis_view_statistics(view, 0, nullptr), "statistics is NULL");
+  EXPECT_EQ(dermis_graph_view(nullptr), nullptr);
   refused(dermis_graph_calibration(nullptr, nullptr, nullptr), "graph is NULL");
   refused(dermis_graph_heaps(nullptr, nullptr, nullptr), "graph is NULL");
   refused(dermis_register_pass_type(host.context, nullptr), "kind is NULL");
@@ -156,9 +156,10 @@ TEST_F(Fields, OfCallsOnAGraph_NullOnesAreNamed) {
   dermis_message message = DERMIS_MESSAGE_INIT;
   refused(dermis_report_message(report, dermis_report_count(report), &message), "index is 1");
   dermis_report_destroy(report);
-  dermis_choice choice = DERMIS_CHOICE_INIT;
-  EXPECT_EQ(dermis_graph_choice(host.graph, 0, &choice), DERMIS_NOT_READY) << "no frame was recorded";
-  refused(dermis_frame_discard(host.graph, 1),
+  demo::ReportedFrame choice;
+  EXPECT_EQ(demo::read_reported(dermis_graph_view(host.graph), 0, choice), DERMIS_NOT_READY)
+      << "no frame was recorded";
+  refused(dermis_view_discard(dermis_graph_view(host.graph), 1),
           "frame_index is 1, expected that of the frame recorded last, 0");
 }
 

@@ -78,7 +78,7 @@ TEST_F(Frames, WrongField_IsNamed) {
     Bindings bound(good.bindings, good.bindings + good.binding_count);
     change(frame, bound);
     frame.bindings = bound.data();
-    EXPECT_EQ(dermis_graph_record(host.graph, &frame), DERMIS_ERROR_ARGUMENT) << said;
+    EXPECT_EQ(dermis_view_record(dermis_graph_view(host.graph), &frame), DERMIS_ERROR_ARGUMENT) << said;
     EXPECT_THAT(dermis_last_error(), HasSubstr(said));
   }
   EXPECT_EQ(host.device.commands(), commands) << "nothing was recorded";
@@ -90,14 +90,14 @@ TEST_F(Frames, ColumnMajorMatrix_IsReported) {
   const float by_rows[16] = {2, 0, 0, 0, 0, -2, 0, 0, 0, 0, -1, -0.1f, 0, 0, -1, 0};
   for (size_t i = 0; i < 16; ++i)
     frame.clip_from_view[i % 4 * 4 + i / 4] = by_rows[i];
-  EXPECT_EQ(dermis_graph_record(host.graph, &frame), DERMIS_ERROR_ARGUMENT);
+  EXPECT_EQ(dermis_view_record(dermis_graph_view(host.graph), &frame), DERMIS_ERROR_ARGUMENT);
   EXPECT_THAT(dermis_last_error(), HasSubstr("it is stored column by column"));
   std::copy(by_rows, by_rows + 16, frame.clip_from_view);
-  frame.clip_from_view[1] = 1; // Wrong in another way, too.
-  EXPECT_EQ(dermis_graph_record(host.graph, &frame), DERMIS_ERROR_ARGUMENT);
+  frame.clip_from_view[1] = 1; // also wrong, in another way
+  EXPECT_EQ(dermis_view_record(dermis_graph_view(host.graph), &frame), DERMIS_ERROR_ARGUMENT);
   EXPECT_THAT(dermis_last_error(), Not(HasSubstr("column by column")));
   std::copy(by_rows, by_rows + 16, frame.clip_from_view);
-  EXPECT_EQ(dermis_graph_record(host.graph, &frame), DERMIS_OK) << dermis_last_error();
+  EXPECT_EQ(dermis_view_record(dermis_graph_view(host.graph), &frame), DERMIS_OK) << dermis_last_error();
 }
 
 TEST_F(Frames, ContradictingHandedness_IsRefused) {
@@ -114,7 +114,7 @@ TEST_F(Frames, ContradictingHandedness_IsRefused) {
     return frame;
   };
   const auto refused = [&](const dermis_frame& frame, const char* said) {
-    EXPECT_EQ(dermis_graph_record(host.graph, &frame), DERMIS_ERROR_ARGUMENT) << said;
+    EXPECT_EQ(dermis_view_record(dermis_graph_view(host.graph), &frame), DERMIS_ERROR_ARGUMENT) << said;
     EXPECT_THAT(dermis_last_error(), HasSubstr(said));
     EXPECT_THAT(dermis_last_error(), HasSubstr("DERMIS_FRAME_LEFT_HANDED"));
   };
@@ -134,19 +134,19 @@ TEST_F(Frames, ContradictingHandedness_IsRefused) {
       frame_of(orthographic, true, perspective, true, DERMIS_FRAME_LEFT_HANDED),
   };
   for (const dermis_frame& frame : accepted) {
-    EXPECT_EQ(dermis_graph_record(host.graph, &frame), DERMIS_OK) << dermis_last_error();
-    EXPECT_EQ(dermis_frame_discard(host.graph, 2), DERMIS_OK);
+    EXPECT_EQ(dermis_view_record(dermis_graph_view(host.graph), &frame), DERMIS_OK) << dermis_last_error();
+    EXPECT_EQ(dermis_view_discard(dermis_graph_view(host.graph), 2), DERMIS_OK);
   }
 }
 
 TEST_F(Frames, Discard_WorksOnceAndNotAcrossAReload) {
   const auto refused = [&](uint64_t index, const char* said) {
-    EXPECT_EQ(dermis_frame_discard(host.graph, index), DERMIS_ERROR_ARGUMENT) << said;
+    EXPECT_EQ(dermis_view_discard(dermis_graph_view(host.graph), index), DERMIS_ERROR_ARGUMENT) << said;
     EXPECT_THAT(dermis_last_error(), HasSubstr(said));
   };
   ASSERT_EQ(host.record(), DERMIS_OK);
   refused(1, "expected that of the frame recorded last, 2");
-  EXPECT_EQ(dermis_frame_discard(host.graph, 2), DERMIS_OK);
+  EXPECT_EQ(dermis_view_discard(dermis_graph_view(host.graph), 2), DERMIS_OK);
   refused(1, "which can be taken back once and alone");
   // The first frame of a reloaded graph, after the next reload.
   ASSERT_EQ(host.reload(), DERMIS_OK);
@@ -166,8 +166,8 @@ void DERMIS_CALL give_back_nothing(void*, const dermis_memory_block*) {}
 
 TEST(ThrowingHosts, ExceptionsBecomeResultCodes) {
   dermis_device_allocator allocator = DERMIS_DEVICE_ALLOCATOR_INIT;
-  allocator.take = take_and_throw;
-  allocator.give_back = give_back_nothing;
+  allocator.allocate = take_and_throw;
+  allocator.free = give_back_nothing;
   NullHost host;
   dermis_context_desc desc = host.context_desc();
   desc.device_allocator = &allocator;
@@ -262,7 +262,7 @@ TEST_F(Frames, MissingBindings_NameOptionalSlotsAndCure) {
     });
     frame.bindings = bindings.data();
     frame.binding_count = static_cast<uint32_t>(bindings.size());
-    EXPECT_EQ(dermis_graph_record(host.graph, &frame), DERMIS_ERROR_ARGUMENT);
+    EXPECT_EQ(dermis_view_record(dermis_graph_view(host.graph), &frame), DERMIS_ERROR_ARGUMENT);
     return dermis_last_error();
   };
   const std::string required = rejected_without({"depth"});

@@ -61,7 +61,8 @@ struct QueueFamilies : ::testing::Test {
     std::vector<std::pair<uint32_t, uint32_t>> found;
     uint32_t count = 0;
     const dermis_command* commands = nullptr;
-    EXPECT_EQ(dermis_graph_commands(host.graph, &frame, &count, &commands), DERMIS_OK) << dermis_last_error();
+    EXPECT_EQ(dermis_view_commands(dermis_graph_view(host.graph), &frame, &count, &commands), DERMIS_OK)
+        << dermis_last_error();
     for (uint32_t i = 0; i < count; ++i) {
       if (commands[i].type != DERMIS_COMMAND_BARRIER) continue;
       const VkDependencyInfo& info = *commands[i].dependency;
@@ -116,7 +117,7 @@ TEST_F(QueueFamilies, InvalidFamilies_AreRefusedByName) {
   for (const auto& [text, family, transfer] : wrong) {
     bindings[0].after.queue_family = family;
     bindings[0].after.transfer = transfer;
-    EXPECT_EQ(dermis_graph_record(host.graph, &frame), DERMIS_ERROR_ARGUMENT) << text;
+    EXPECT_EQ(dermis_view_record(dermis_graph_view(host.graph), &frame), DERMIS_ERROR_ARGUMENT) << text;
     EXPECT_THAT(dermis_last_error(), HasSubstr(text));
   }
 }

@@ -32,11 +32,11 @@ struct SharedImages : RecordedFrame {
     return bindings.front();
   }
   void refused(const char* a, const char* b) {
-    EXPECT_EQ(dermis_graph_record(host.graph, &frame), DERMIS_ERROR_ARGUMENT);
+    EXPECT_EQ(dermis_view_record(dermis_graph_view(host.graph), &frame), DERMIS_ERROR_ARGUMENT);
     EXPECT_THAT(dermis_last_error(), AllOf(HasSubstr(a), HasSubstr(b), HasSubstr("bound to the same")));
   }
   void recorded() {
-    EXPECT_EQ(dermis_graph_record(host.graph, &frame), DERMIS_OK) << dermis_last_error();
+    EXPECT_EQ(dermis_view_record(dermis_graph_view(host.graph), &frame), DERMIS_OK) << dermis_last_error();
     ++frame.frame_index;
     ++frame.completed_frame_index;
   }

@@ -59,15 +59,16 @@ struct Commands : CameraTest {
   void record(dermis_graph graph, dermis_view view, dermis_frame frame, VkCommandBuffer into) {
     if (!as_data) {
       frame.command_buffer = into;
-      const dermis_result result =
-          view != nullptr ? dermis_view_record(view, &frame) : dermis_graph_record(graph, &frame);
+      const dermis_result result = view != nullptr ? dermis_view_record(view, &frame)
+                                                   : dermis_view_record(dermis_graph_view(graph), &frame);
       ASSERT_EQ(result, DERMIS_OK) << dermis_last_error();
       return;
     }
     uint32_t count = 0;
     const dermis_command* list = nullptr;
-    const dermis_result result = view != nullptr ? dermis_view_commands(view, &frame, &count, &list)
-                                                 : dermis_graph_commands(graph, &frame, &count, &list);
+    const dermis_result result = view != nullptr
+                                     ? dermis_view_commands(view, &frame, &count, &list)
+                                     : dermis_view_commands(dermis_graph_view(graph), &frame, &count, &list);
     ASSERT_EQ(result, DERMIS_OK) << dermis_last_error();
     ASSERT_GT(count, 0u);
     for (uint32_t i = 0; i < count; ++i) {
@@ -141,14 +142,16 @@ TEST_F(Commands, CanBeDiscardedLikeAFrame) {
   const dermis_frame frame = frame_of(camera, 1);
   uint32_t count = 0;
   const dermis_command* list = nullptr;
-  ASSERT_EQ(dermis_graph_commands(graph, &frame, &count, &list), DERMIS_OK) << dermis_last_error();
-  EXPECT_EQ(dermis_graph_commands(graph, &frame, &count, &list), DERMIS_ERROR_ARGUMENT)
-      << "the frame counts as recorded";
+  ASSERT_EQ(dermis_view_commands(dermis_graph_view(graph), &frame, &count, &list), DERMIS_OK)
+      << dermis_last_error();
+  EXPECT_EQ(dermis_view_commands(dermis_graph_view(graph), &frame, &count, &list), DERMIS_ERROR_ARGUMENT)
+      << "it counts as recorded";
   EXPECT_EQ(count, 0u);
   EXPECT_EQ(list, nullptr);
-  ASSERT_EQ(dermis_frame_discard(graph, 1), DERMIS_OK) << dermis_last_error();
-  ASSERT_EQ(dermis_graph_commands(graph, &frame, &count, &list), DERMIS_OK) << dermis_last_error();
-  ASSERT_EQ(dermis_frame_discard(graph, 1), DERMIS_OK);
+  ASSERT_EQ(dermis_view_discard(dermis_graph_view(graph), 1), DERMIS_OK) << dermis_last_error();
+  ASSERT_EQ(dermis_view_commands(dermis_graph_view(graph), &frame, &count, &list), DERMIS_OK)
+      << dermis_last_error();
+  ASSERT_EQ(dermis_view_discard(dermis_graph_view(graph), 1), DERMIS_OK);
 }
 
 void DERMIS_CALL never(void*, const dermis_pass_call*) {
@@ -189,7 +192,8 @@ TEST_F(Commands, NameTheHostPassesToRecord) {
   dermis_frame frame = this->frame(bound, side, side);
   uint32_t count = 0;
   const dermis_command* list = nullptr;
-  ASSERT_EQ(dermis_graph_commands(graph, &frame, &count, &list), DERMIS_OK) << dermis_last_error();
+  ASSERT_EQ(dermis_view_commands(dermis_graph_view(graph), &frame, &count, &list), DERMIS_OK)
+      << dermis_last_error();
   uint32_t calls = 0;
   for (uint32_t i = 0; i < count; ++i)
     if (list[i].type == DERMIS_COMMAND_HOST_PASS) {
@@ -206,7 +210,7 @@ TEST_F(Commands, NameTheHostPassesToRecord) {
       EXPECT_EQ(call.frame_index, frame.frame_index);
     }
   EXPECT_EQ(calls, 1u);
-  ASSERT_EQ(dermis_frame_discard(graph, frame.frame_index), DERMIS_OK);
+  ASSERT_EQ(dermis_view_discard(dermis_graph_view(graph), frame.frame_index), DERMIS_OK);
 }
 
 TEST_F(Commands, WrongArgumentsAreNamed) {
@@ -219,10 +223,10 @@ TEST_F(Commands, WrongArgumentsAreNamed) {
     EXPECT_EQ(result, DERMIS_ERROR_ARGUMENT);
     EXPECT_THAT(dermis_last_error(), testing::HasSubstr(named));
   };
-  expect(dermis_graph_commands(nullptr, &frame, &count, &list), "graph is NULL");
-  expect(dermis_graph_commands(graph, nullptr, &count, &list), "frame is NULL");
-  expect(dermis_graph_commands(graph, &frame, nullptr, &list), "count is NULL");
-  expect(dermis_graph_commands(graph, &frame, &count, nullptr), "commands is NULL");
+  expect(dermis_view_commands(dermis_graph_view(nullptr), &frame, &count, &list), "graph is NULL");
+  expect(dermis_view_commands(dermis_graph_view(graph), nullptr, &count, &list), "frame is NULL");
+  expect(dermis_view_commands(dermis_graph_view(graph), &frame, nullptr, &list), "count is NULL");
+  expect(dermis_view_commands(dermis_graph_view(graph), &frame, &count, nullptr), "commands is NULL");
   expect(dermis_view_commands(nullptr, &frame, &count, &list), "view is NULL");
 }
 

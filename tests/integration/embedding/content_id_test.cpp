@@ -13,7 +13,7 @@ struct ContentId : CameraTest {
     submit(++submitted, [&](VkCommandBuffer into) {
       dermis_frame frame = frame_of(camera, index);
       frame.command_buffer = into;
-      ASSERT_EQ(dermis_graph_record(graph, &frame), DERMIS_OK) << dermis_last_error();
+      ASSERT_EQ(dermis_view_record(dermis_graph_view(graph), &frame), DERMIS_OK) << dermis_last_error();
     });
   }
   static void give_up_views(Camera& camera, uint64_t first_id) {
@@ -53,7 +53,7 @@ TEST_F(ContentId, DistinguishesImagesWithEqualHandles) {
     frame.flags |= DERMIS_FRAME_RESET_HISTORY;
     submit(++submitted, [&](VkCommandBuffer into) {
       frame.command_buffer = into;
-      ASSERT_EQ(dermis_graph_record(graph, &frame), DERMIS_OK) << dermis_last_error();
+      ASSERT_EQ(dermis_view_record(dermis_graph_view(graph), &frame), DERMIS_OK) << dermis_last_error();
     });
     EXPECT_FALSE(before == light_of(camera)) << "the graph wrote this image";
   }

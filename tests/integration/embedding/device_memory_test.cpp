@@ -1,5 +1,6 @@
 // Tests device memory from a host's heaps, and a device that fails or is lost at any call.
 
+#include "integration/examples/demo_engine/render/reported_frame.hpp"
 #include "tests/integration/embedding/cameras.hpp"
 #include "tests/integration/embedding/null_host.hpp"
 
@@ -87,8 +88,8 @@ struct Arena {
   }
   dermis_device_allocator allocator() {
     dermis_device_allocator out = DERMIS_DEVICE_ALLOCATOR_INIT;
-    out.take = take;
-    out.give_back = give_back;
+    out.allocate = take;
+    out.free = give_back;
     out.user = this;
     return out;
   }
@@ -128,7 +129,7 @@ struct DeviceMemory : CameraTest {
       submit(++submitted, [&](VkCommandBuffer into) {
         dermis_frame frame = frame_of(camera, index);
         frame.command_buffer = into;
-        ASSERT_EQ(dermis_graph_record(graph, &frame), DERMIS_OK) << dermis_last_error();
+        ASSERT_EQ(dermis_view_record(dermis_graph_view(graph), &frame), DERMIS_OK) << dermis_last_error();
       });
     return light_of(camera);
   }
@@ -335,11 +336,12 @@ TEST(LostDevice, LossInTimestamps_EndsTheContext) {
     host.device.fail_queries(VK_ERROR_DEVICE_LOST);
     uint32_t count = 64;
     std::vector<dermis_pass_timing> times(count, dermis_pass_timing DERMIS_PASS_TIMING_INIT);
-    dermis_choice choice = DERMIS_CHOICE_INIT;
+    demo::ReportedFrame choice;
     if (by_timings) {
-      EXPECT_EQ(dermis_graph_timings(host.graph, 1, &count, times.data()), DERMIS_ERROR_DEVICE_LOST);
+      EXPECT_EQ(dermis_view_timings(dermis_graph_view(host.graph), 1, &count, times.data()),
+                DERMIS_ERROR_DEVICE_LOST);
     } else {
-      EXPECT_EQ(dermis_graph_choice(host.graph, 1, &choice), DERMIS_ERROR_DEVICE_LOST);
+      EXPECT_EQ(demo::read_reported(dermis_graph_view(host.graph), 1, choice), DERMIS_ERROR_DEVICE_LOST);
     }
     EXPECT_EQ(host.record(), DERMIS_ERROR_DEVICE_LOST);
   }

@@ -1,5 +1,6 @@
 // Frames that are recorded, never submitted and discarded do not affect anything that follows.
 
+#include "integration/examples/demo_engine/render/reported_frame.hpp"
 #include "tests/integration/abi/dermis_fixture.hpp"
 #include "tests/integration/abi/invented_times.hpp"
 #include "tests/integration/embedding/null_host.hpp"
@@ -26,21 +27,21 @@ struct Seen {
   bool operator==(const Seen&) const = default;
 };
 
-std::string text_of(const dermis_choice& choice) {
+std::string text_of(const demo::ReportedFrame& choice) {
   std::ostringstream text;
-  text << choice.frame_index << ": " << choice.outcome << "; " << choice.why << "; " << choice.switches
-       << " switches, " << choice.budget_ms << " ms, predicted " << choice.predicted_ms << ", deterministic "
-       << choice.metered_ms << ", rmse " << choice.predicted_rmse << ", skips " << choice.skips << ", tiles "
-       << choice.scattering_tiles << " of " << choice.view_tiles << ", groups " << choice.groups << ", units "
-       << choice.sample_units;
+  text << choice.frame_index << ": " << choice.configuration << "; " << choice.reason << "; "
+       << choice.switches << " switches, " << choice.budget_ms << " ms, predicted " << choice.predicted_ms
+       << ", deterministic " << choice.calibrated_ms << ", rmse " << choice.predicted_rmse << ", skips "
+       << choice.skips << ", tiles " << choice.scattering_tiles << " of " << choice.view_tiles << ", groups "
+       << choice.groups << ", units " << choice.sample_units;
   return text.str();
 }
 
 std::string histories_of(dermis_graph graph) {
   uint32_t count = 0;
-  EXPECT_EQ(dermis_graph_histories(graph, &count, nullptr), DERMIS_OK);
+  EXPECT_EQ(dermis_view_histories(dermis_graph_view(graph), &count, nullptr), DERMIS_OK);
   std::vector<dermis_history> histories(count, dermis_history DERMIS_HISTORY_INIT);
-  EXPECT_EQ(dermis_graph_histories(graph, &count, histories.data()), DERMIS_OK);
+  EXPECT_EQ(dermis_view_histories(dermis_graph_view(graph), &count, histories.data()), DERMIS_OK);
   std::ostringstream text;
   for (const dermis_history& one : histories)
     text << one.name << " valid " << one.valid << ", age " << one.age << ", reason " << one.reason << " ("
@@ -98,8 +99,9 @@ struct Discard : DermisTest {
     const auto bound = bindings(graph);
     dermis_frame one = frame_of(shot, bound);
     EXPECT_EQ(record(graph, one), DERMIS_OK) << dermis_last_error();
-    dermis_choice choice = DERMIS_CHOICE_INIT;
-    EXPECT_EQ(dermis_graph_choice(graph, last_frame, &choice), DERMIS_OK) << dermis_last_error();
+    demo::ReportedFrame choice;
+    EXPECT_EQ(demo::read_reported(dermis_graph_view(graph), last_frame, choice), DERMIS_OK)
+        << dermis_last_error();
     return {texels("lighting"), text_of(choice), histories_of(graph)};
   }
 
@@ -109,11 +111,12 @@ struct Discard : DermisTest {
     dermis_frame one = frame_of(shot, bound);
     const auto ran = demo::run_commands(*host, [&](VkCommandBuffer commands) -> demo::Result<> {
       one.command_buffer = commands;
-      EXPECT_EQ(dermis_graph_record(graph, &one), DERMIS_OK) << dermis_last_error();
+      EXPECT_EQ(dermis_view_record(dermis_graph_view(graph), &one), DERMIS_OK) << dermis_last_error();
       return demo::Error{demo::ErrorKind::internal, "not to be submitted"};
     });
     EXPECT_FALSE(ran);
-    EXPECT_EQ(dermis_frame_discard(graph, one.frame_index), DERMIS_OK) << dermis_last_error();
+    EXPECT_EQ(dermis_view_discard(dermis_graph_view(graph), one.frame_index), DERMIS_OK)
+        << dermis_last_error();
   }
 };
 
@@ -212,13 +215,14 @@ TEST_F(Discard, LeavesNoTimes) {
   ASSERT_EQ(record(graph, next), DERMIS_OK) << dermis_last_error();
   std::vector<dermis_pass_timing> times(64, dermis_pass_timing DERMIS_PASS_TIMING_INIT);
   auto count = static_cast<uint32_t>(times.size());
-  const dermis_result result = dermis_graph_timings(graph, 5, &count, times.data());
+  const dermis_result result = dermis_view_timings(dermis_graph_view(graph), 5, &count, times.data());
   EXPECT_TRUE(result == DERMIS_NOT_READY || (result == DERMIS_OK && times[0].frame_index <= 4))
       << result << ": times of frame " << times[0].frame_index << ", which never ran";
-  dermis_choice choice = DERMIS_CHOICE_INIT;
-  ASSERT_EQ(dermis_graph_choice(graph, 5, &choice), DERMIS_OK) << dermis_last_error();
+  demo::ReportedFrame choice;
+  ASSERT_EQ(demo::read_reported(dermis_graph_view(graph), 5, choice), DERMIS_OK) << dermis_last_error();
   EXPECT_EQ(choice.frame_index, 4u);
-  ASSERT_EQ(dermis_graph_timings(graph, 6, &count, times.data()), DERMIS_OK) << dermis_last_error();
+  ASSERT_EQ(dermis_view_timings(dermis_graph_view(graph), 6, &count, times.data()), DERMIS_OK)
+      << dermis_last_error();
   EXPECT_EQ(times[0].frame_index, 6u);
 }
 
@@ -232,12 +236,14 @@ TEST(DiscardOnANullDevice, NextFrameIsStillThePlansFirst) {
     host.make_bindings();
     if (lossy) {
       EXPECT_EQ(host.record(), DERMIS_OK) << dermis_last_error();
-      EXPECT_EQ(dermis_frame_discard(host.graph, host.last_frame), DERMIS_OK) << dermis_last_error();
+      EXPECT_EQ(dermis_view_discard(dermis_graph_view(host.graph), host.last_frame), DERMIS_OK)
+          << dermis_last_error();
       --host.last_frame;
     }
     EXPECT_EQ(host.record(), DERMIS_OK) << dermis_last_error();
-    dermis_choice choice = DERMIS_CHOICE_INIT;
-    EXPECT_EQ(dermis_graph_choice(host.graph, host.last_frame, &choice), DERMIS_OK) << dermis_last_error();
+    demo::ReportedFrame choice;
+    EXPECT_EQ(demo::read_reported(dermis_graph_view(host.graph), host.last_frame, choice), DERMIS_OK)
+        << dermis_last_error();
     std::string text(1 << 16, ' ');
     size_t size = text.size();
     EXPECT_EQ(dermis_graph_calibration(host.graph, &size, text.data()), DERMIS_OK) << dermis_last_error();

@@ -38,7 +38,7 @@ struct Heap {
   dermis_allocator allocator() {
     dermis_allocator out = DERMIS_ALLOCATOR_INIT;
     out.allocate = allocate;
-    out.release = release;
+    out.free = release;
     out.user = this;
     return out;
   }
@@ -269,8 +269,8 @@ TEST_F(HostMemory, FailedQuery_CanBeRepeated) {
       [&] { return dermis_graph_memory(host.graph, &memory); },
       [&] { return dermis_graph_heaps(host.graph, &count, nullptr); },
       [&] { return dermis_graph_slots(host.graph, &count, nullptr); },
-      [&] { return dermis_graph_settings(host.graph, &count, nullptr); },
-      [&] { return dermis_graph_histories(host.graph, &count, nullptr); },
+      [&] { return dermis_view_settings(dermis_graph_view(host.graph), &count, nullptr); },
+      [&] { return dermis_view_histories(dermis_graph_view(host.graph), &count, nullptr); },
   };
   uint64_t refusals = 0;
   for (const auto& ask : questions)
@@ -305,7 +305,7 @@ TEST_F(HostMemory, RecordingAFrame_AllocatesNothing) {
 
 TEST_F(HostMemory, HalfAnAllocatorIsRefused) {
   host.destroy();
-  allocator.release = nullptr;
+  allocator.free = nullptr;
   EXPECT_EQ(host.make_context(with_heap()), DERMIS_ERROR_ARGUMENT);
   EXPECT_THAT(dermis_last_error(), ::testing::HasSubstr("desc.allocator.release is NULL"));
   allocator = heap.allocator();

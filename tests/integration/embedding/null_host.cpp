@@ -104,7 +104,7 @@ dermis_frame NullHost::frame_at(uint64_t index) const {
 
 dermis_result NullHost::record() {
   const dermis_frame next = frame_at(last_frame + 1);
-  const dermis_result result = dermis_graph_record(graph, &next);
+  const dermis_result result = dermis_view_record(dermis_graph_view(graph), &next);
   if (result == DERMIS_OK) ++last_frame;
   return result;
 }

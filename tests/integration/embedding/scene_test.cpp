@@ -136,7 +136,8 @@ TEST_F(SceneBindings, AreAcquiredAndReleasedByBarriers) {
   const dermis_frame next = frame();
   uint32_t count = 0;
   const dermis_command* commands = nullptr;
-  ASSERT_EQ(dermis_graph_commands(host.graph, &next, &count, &commands), DERMIS_OK) << dermis_last_error();
+  ASSERT_EQ(dermis_view_commands(dermis_graph_view(host.graph), &next, &count, &commands), DERMIS_OK)
+      << dermis_last_error();
   std::vector<VkMemoryBarrier2> memory;
   std::vector<VkBufferMemoryBarrier2> buffers;
   const dermis_pass_call* call = nullptr;
@@ -208,7 +209,6 @@ TEST_F(SceneBindings, WrongBindings_AreRefusedByName) {
        [](auto& t, auto&) { t.vertices.before.queue_family = 7; }},
       {"buffers[0].before ('vertices') has access 0x1000 but no stages",
        [](auto& t, auto&) { t.vertices.before.stages = 0; }},
-      {"buffers[0].reserved is 1, expected 0", [](auto& t, auto&) { t.vertices.reserved = 1; }},
       {"buffers[0].struct_size is 12", [](auto& t, auto&) { t.vertices.struct_size = 12; }},
   };
   for (const Wrong& wrong : all) {
@@ -217,14 +217,14 @@ TEST_F(SceneBindings, WrongBindings_AreRefusedByName) {
     const auto kept_scene = scene;
     dermis_frame next = frame();
     wrong.change(*this, next);
-    EXPECT_EQ(dermis_graph_record(host.graph, &next), DERMIS_ERROR_ARGUMENT) << wrong.says;
+    EXPECT_EQ(dermis_view_record(dermis_graph_view(host.graph), &next), DERMIS_ERROR_ARGUMENT) << wrong.says;
     EXPECT_THAT(dermis_last_error(), HasSubstr(wrong.says));
     images = kept_images;
     vertices = kept_vertices;
     scene = kept_scene;
   }
   const dermis_frame next = frame();
-  EXPECT_EQ(dermis_graph_record(host.graph, &next), DERMIS_OK)
+  EXPECT_EQ(dermis_view_record(dermis_graph_view(host.graph), &next), DERMIS_OK)
       << "nothing has changed: " << dermis_last_error();
 }
 

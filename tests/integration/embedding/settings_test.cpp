@@ -73,9 +73,11 @@ std::vector<dermis_setting> settings_of(dermis_view view) {
 }
 std::vector<dermis_setting> settings_of(dermis_graph graph) {
   uint32_t count = 0;
-  EXPECT_EQ(dermis_graph_settings(graph, &count, nullptr), DERMIS_OK) << dermis_last_error();
+  EXPECT_EQ(dermis_view_settings(dermis_graph_view(graph), &count, nullptr), DERMIS_OK)
+      << dermis_last_error();
   std::vector<dermis_setting> all(count, dermis_setting DERMIS_SETTING_INIT);
-  EXPECT_EQ(dermis_graph_settings(graph, &count, all.data()), DERMIS_OK) << dermis_last_error();
+  EXPECT_EQ(dermis_view_settings(dermis_graph_view(graph), &count, all.data()), DERMIS_OK)
+      << dermis_last_error();
   return all;
 }
 
@@ -260,9 +262,9 @@ TEST_F(Settings, GraphSetting_IsRefusedForAView) {
 TEST_F(Settings, WrongArgumentsAreNamed) {
   make(graph_text);
   uint32_t count = 0;
-  EXPECT_EQ(dermis_graph_settings(nullptr, &count, nullptr), DERMIS_ERROR_ARGUMENT);
-  EXPECT_THAT(dermis_last_error(), HasSubstr("dermis_graph_settings: graph is NULL"));
-  EXPECT_EQ(dermis_graph_settings(host.graph, nullptr, nullptr), DERMIS_ERROR_ARGUMENT);
+  EXPECT_EQ(dermis_view_settings(dermis_graph_view(nullptr), &count, nullptr), DERMIS_ERROR_ARGUMENT);
+  EXPECT_THAT(dermis_last_error(), HasSubstr("dermis_view_settings: graph is NULL"));
+  EXPECT_EQ(dermis_view_settings(dermis_graph_view(host.graph), nullptr, nullptr), DERMIS_ERROR_ARGUMENT);
   EXPECT_THAT(dermis_last_error(), HasSubstr("count is NULL"));
 }
 

@@ -135,7 +135,7 @@ struct SharedBindings : ::testing::Test {
     next.buffer_count = static_cast<uint32_t>(buffers.size());
     next.structures = structures.data();
     next.structure_count = static_cast<uint32_t>(structures.size());
-    const dermis_result result = dermis_graph_record(host.graph, &next);
+    const dermis_result result = dermis_view_record(dermis_graph_view(host.graph), &next);
     if (result == DERMIS_OK) ++frame_index;
     return result;
   }

@@ -50,7 +50,8 @@ struct TwoViewsTest : DermisTest {
     frame.completed_frame_index = index - 1;
     const auto ran = demo::run_commands(*host, [&](VkCommandBuffer commands) -> demo::Result<> {
       frame.command_buffer = commands;
-      EXPECT_EQ(view == nullptr ? dermis_graph_record(graph, &frame) : dermis_view_record(view, &frame),
+      EXPECT_EQ(view == nullptr ? dermis_view_record(dermis_graph_view(graph), &frame)
+                                : dermis_view_record(view, &frame),
                 DERMIS_OK)
           << dermis_last_error();
       return demo::success();

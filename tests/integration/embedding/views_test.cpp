@@ -1,6 +1,7 @@
 // Tests several views of one graph: each gives the pictures of a graph with one view, whatever
 // happens to the graph and to the other views.
 
+#include "integration/examples/demo_engine/render/reported_frame.hpp"
 #include "tests/integration/embedding/cameras.hpp"
 
 namespace dermis::abi_test {
@@ -9,7 +10,7 @@ namespace {
 using Recorder = std::function<dermis_result(const dermis_frame*)>;
 
 Recorder recorder_of(dermis_graph graph) {
-  return [graph](const dermis_frame* frame) { return dermis_graph_record(graph, frame); };
+  return [graph](const dermis_frame* frame) { return dermis_view_record(dermis_graph_view(graph), frame); };
 }
 Recorder recorder_of(dermis_view view) {
   return [view](const dermis_frame* frame) { return dermis_view_record(view, frame); };
@@ -149,13 +150,13 @@ TEST_F(Views, DiscardedFrame_ChangesNoView) {
       second.command_buffer = thrown;
       ASSERT_EQ(dermis_view_record(view, &second), DERMIS_OK) << dermis_last_error();
       ASSERT_EQ(host->vk.vkEndCommandBuffer(thrown), VK_SUCCESS);
-      EXPECT_EQ(dermis_frame_discard(graph, index), DERMIS_ERROR_ARGUMENT)
-          << "the frame belongs to another view";
+      EXPECT_EQ(dermis_view_discard(dermis_graph_view(graph), index), DERMIS_ERROR_ARGUMENT)
+          << "that is another view";
       ASSERT_EQ(dermis_view_discard(view, index), DERMIS_OK) << dermis_last_error();
     }
     submit(index, [&](VkCommandBuffer into) {
       first.command_buffer = second.command_buffer = into;
-      ASSERT_EQ(dermis_graph_record(graph, &first), DERMIS_OK) << dermis_last_error();
+      ASSERT_EQ(dermis_view_record(dermis_graph_view(graph), &first), DERMIS_OK) << dermis_last_error();
       if (takes_part(1, index)) {
         ASSERT_EQ(dermis_view_record(view, &second), DERMIS_OK) << dermis_last_error();
       }
@@ -185,7 +186,7 @@ TEST_F(Views, CanBeCreatedAndDestroyedWhileOthersRun) {
         frame.command_buffer = into;
         if (c == 1 && view == nullptr) continue;
         const dermis_result result =
-            c == 0 ? dermis_graph_record(graph, &frame) : dermis_view_record(view, &frame);
+            c == 0 ? dermis_view_record(dermis_graph_view(graph), &frame) : dermis_view_record(view, &frame);
         ASSERT_EQ(result, DERMIS_OK) << dermis_last_error();
       }
     });
@@ -236,7 +237,7 @@ TEST_F(Views, CanUseLayersOfOneImage) {
       dermis_frame frame = frame_of(camera, index);
       frame.command_buffer = into;
       frame.bindings = left_bound.data();
-      ASSERT_EQ(dermis_graph_record(graph, &frame), DERMIS_OK) << dermis_last_error();
+      ASSERT_EQ(dermis_view_record(dermis_graph_view(graph), &frame), DERMIS_OK) << dermis_last_error();
       frame.bindings = right_bound.data();
       ASSERT_EQ(dermis_view_record(right, &frame), DERMIS_OK) << dermis_last_error();
       for (dermis_image_binding& binding : right_bound)
@@ -295,16 +296,17 @@ TEST_F(Views, ReportSeparateTimesAndChoices) {
     ASSERT_EQ(dermis_view_record(view, &frame), DERMIS_OK) << dermis_last_error();
   });
   wait();
-  dermis_choice choice = DERMIS_CHOICE_INIT;
-  EXPECT_EQ(dermis_graph_choice(graph, 0, &choice), DERMIS_NOT_READY) << "the graph's own view ran no frame";
-  EXPECT_EQ(dermis_view_choice(view, 1, &choice), DERMIS_OK) << dermis_last_error();
+  demo::ReportedFrame choice;
+  EXPECT_EQ(demo::read_reported(dermis_graph_view(graph), 0, choice), DERMIS_NOT_READY)
+      << "the graph's own view ran no frame";
+  EXPECT_EQ(demo::read_reported(view, 1, choice), DERMIS_OK) << dermis_last_error();
   EXPECT_EQ(choice.frame_index, 1u);
   uint32_t count = 0;
   ASSERT_EQ(dermis_view_timings(view, 1, &count, nullptr), DERMIS_OK);
   std::vector<dermis_pass_timing> times(count, dermis_pass_timing DERMIS_PASS_TIMING_INIT);
   ASSERT_EQ(dermis_view_timings(view, 1, &count, times.data()), DERMIS_OK) << dermis_last_error();
   EXPECT_EQ(times[0].frame_index, 1u);
-  EXPECT_EQ(dermis_graph_timings(graph, 0, &count, times.data()), DERMIS_NOT_READY);
+  EXPECT_EQ(dermis_view_timings(dermis_graph_view(graph), 0, &count, times.data()), DERMIS_NOT_READY);
 }
 
 TEST_F(Views, WrongArgumentsAreNamed) {
@@ -315,13 +317,13 @@ TEST_F(Views, WrongArgumentsAreNamed) {
   };
   dermis_view view = nullptr;
   dermis_frame frame = DERMIS_FRAME_INIT;
-  dermis_choice choice = DERMIS_CHOICE_INIT;
+  demo::ReportedFrame choice;
   uint32_t count = 0;
   expect(dermis_view_create(nullptr, nullptr, &view, nullptr), "graph is NULL");
   expect(dermis_view_create(graph, nullptr, nullptr, nullptr), "view is NULL");
   expect(dermis_view_record(nullptr, &frame), "view is NULL");
   expect(dermis_view_discard(nullptr, 1), "view is NULL");
-  expect(dermis_view_choice(nullptr, 0, &choice), "view is NULL");
+  expect(demo::read_reported(nullptr, 0, choice), "view is NULL");
   expect(dermis_view_timings(nullptr, 0, &count, nullptr), "view is NULL");
   expect(dermis_view_histories(nullptr, &count, nullptr), "view is NULL");
   dermis_view_desc desc = DERMIS_VIEW_DESC_INIT;
@@ -329,7 +331,9 @@ TEST_F(Views, WrongArgumentsAreNamed) {
   expect(dermis_view_create(graph, &desc, &view, nullptr), "struct_size");
   view = make_view(graph);
   expect(dermis_view_record(view, nullptr), "dermis_view_record: frame is NULL");
-  expect(dermis_view_choice(view, 0, nullptr), "choice is NULL");
+  expect(dermis_view_report(view, 0, nullptr), "report is NULL");
+  expect(dermis_view_statistics(view, 0, nullptr), "statistics is NULL");
+  expect(dermis_view_statistics(nullptr, 0, nullptr), "view is NULL");
   expect(dermis_view_timings(view, 0, nullptr, nullptr), "count is NULL");
   Camera camera = make_camera(graph, 1);
   camera.bound[0].layer = 1;

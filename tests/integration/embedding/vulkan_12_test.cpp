@@ -30,7 +30,7 @@ struct Vulkan12 : CameraTest {
         submit(index, [&](VkCommandBuffer into) {
           dermis_frame frame = frame_of(camera, index);
           frame.command_buffer = into;
-          ASSERT_EQ(dermis_graph_record(graph, &frame), DERMIS_OK) << dermis_last_error();
+          ASSERT_EQ(dermis_view_record(dermis_graph_view(graph), &frame), DERMIS_OK) << dermis_last_error();
         });
       }
       out = light_of(camera);

@@ -114,7 +114,7 @@ TEST_F(Allocation, RefusedFrameAllocatesNothing) {
   frame.frame_index = host.last_frame + 1;
   frame.completed_frame_index = host.last_frame;
   allocations = {true, 0, 0};
-  const dermis_result result = dermis_graph_record(host.graph, &frame);
+  const dermis_result result = dermis_view_record(dermis_graph_view(host.graph), &frame);
   allocations.counting = false;
   EXPECT_EQ(result, DERMIS_ERROR_ARGUMENT) << "no image is bound";
   EXPECT_EQ(allocations.count, 0u);
@@ -129,7 +129,7 @@ TEST_F(Allocation, EachFailureInAReloadIsReported) {
 TEST_F(Allocation, HostAllocatorIsRefused) {
   dermis_allocator allocator = DERMIS_ALLOCATOR_INIT;
   allocator.allocate = [](void*, size_t, size_t) -> void* { return nullptr; };
-  allocator.release = [](void*, void*, size_t, size_t) {};
+  allocator.free = [](void*, void*, size_t, size_t) {};
   dermis_context_desc desc = host.context_desc();
   desc.allocator = &allocator;
   dermis_context context = nullptr;

@@ -1,6 +1,7 @@
 // Tests the thread contract of dermis.h. The thread sanitizer checks these tests with the preset
 // `tsan`.
 
+#include "integration/examples/demo_engine/render/reported_frame.hpp"
 #include "tests/integration/abi/sources.hpp"
 #include "tests/integration/embedding/null_host.hpp"
 
@@ -68,7 +69,7 @@ struct Threads : ::testing::Test {
       EXPECT_EQ(dermis_graph_memory(host.graph, &memory), DERMIS_OK);
       uint32_t count = 0;
       EXPECT_EQ(dermis_graph_slots(host.graph, &count, nullptr), DERMIS_OK);
-      EXPECT_EQ(dermis_graph_settings(host.graph, &count, nullptr), DERMIS_OK);
+      EXPECT_EQ(dermis_view_settings(dermis_graph_view(host.graph), &count, nullptr), DERMIS_OK);
       EXPECT_EQ(dermis_graph_heaps(host.graph, &count, nullptr), DERMIS_OK);
       size_t size = 0;
       EXPECT_EQ(dermis_graph_describe(host.graph, DERMIS_DESCRIBE_TEXT, &size, nullptr), DERMIS_OK);
@@ -124,8 +125,8 @@ TEST_F(Threads, ViewsRecordInThreadsWhileTheGraphChanges) {
             DERMIS_OK)
             << dermis_last_error();
       }
-      dermis_choice choice = DERMIS_CHOICE_INIT;
-      ASSERT_GE(dermis_view_choice(view, index - 1, &choice), DERMIS_OK) << dermis_last_error();
+      demo::ReportedFrame choice;
+      ASSERT_GE(demo::read_reported(view, index - 1, choice), DERMIS_OK) << dermis_last_error();
     }
   };
   const auto change_some = [&] {

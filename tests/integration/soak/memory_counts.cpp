@@ -69,15 +69,15 @@ void DERMIS_CALL give_back(void* user, const dermis_memory_block* block) {
 dermis_allocator CountedHeap::allocator() {
   dermis_allocator out = DERMIS_ALLOCATOR_INIT;
   out.allocate = allocate;
-  out.release = release;
+  out.free = release;
   out.user = this;
   return out;
 }
 
 dermis_device_allocator CountedDeviceMemory::allocator() {
   dermis_device_allocator out = DERMIS_DEVICE_ALLOCATOR_INIT;
-  out.take = take;
-  out.give_back = give_back;
+  out.allocate = take;
+  out.free = give_back;
   out.user = this;
   return out;
 }

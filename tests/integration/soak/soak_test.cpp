@@ -289,7 +289,8 @@ struct Soak : DermisTest {
     dermis_frame frame = one.frame;
     frame.command_buffer = commands;
     const dermis_view view = one.stage->views[one.view].view;
-    return view != nullptr ? dermis_view_record(view, &frame) : dermis_graph_record(one.stage->graph, &frame);
+    return view != nullptr ? dermis_view_record(view, &frame)
+                           : dermis_view_record(dermis_graph_view(one.stage->graph), &frame);
   }
 
   // Records a frame that is not submitted.
@@ -306,8 +307,9 @@ struct Soak : DermisTest {
     EXPECT_EQ(record(one, commands), DERMIS_OK) << dermis_last_error();
     host->vk.vkEndCommandBuffer(commands);
     const dermis_view view = one.stage->views[one.view].view;
-    EXPECT_EQ(view != nullptr ? dermis_view_discard(view, one.frame.frame_index)
-                              : dermis_frame_discard(one.stage->graph, one.frame.frame_index),
+    EXPECT_EQ(view != nullptr
+                  ? dermis_view_discard(view, one.frame.frame_index)
+                  : dermis_view_discard(dermis_graph_view(one.stage->graph), one.frame.frame_index),
               DERMIS_OK)
         << dermis_last_error();
     host->vk.vkFreeCommandBuffers(host->device, host->pool, 1, &commands);

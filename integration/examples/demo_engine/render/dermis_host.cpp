@@ -1,4 +1,5 @@
 #include "integration/examples/demo_engine/render/dermis_host.hpp"
+#include "integration/examples/demo_engine/render/reported_frame.hpp"
 
 #include "integration/examples/demo_engine/dermis_calls.hpp"
 #include "integration/examples/demo_engine/files.hpp"
@@ -382,16 +383,19 @@ Result<> record_graph(DermisHost& host, const Renderer& renderer, const SceneSta
   frame.exposure = static_cast<float>(renderer.scene->exposure);
   frame.delta_seconds = static_cast<float>(1.0 / renderer.scene->frames_per_second);
   frame.depth_kind = DERMIS_DEPTH_DEVICE;
-  const dermis_result result = dermis_graph_record(host.graph, &frame);
-  if (result != DERMIS_OK) return dermis_error("dermis_graph_record", result);
+  const dermis_result result = dermis_view_record(dermis_graph_view(host.graph), &frame);
+  if (result != DERMIS_OK) return dermis_error("dermis_view_record", result);
   return host.recorded ? host.recorded() : success();
 }
 
 std::vector<PassTime> graph_times(DermisHost& host, uint64_t frame_index) {
   uint32_t count = 0;
-  if (dermis_graph_timings(host.graph, frame_index, &count, nullptr) != DERMIS_OK || count == 0) return {};
+  if (dermis_view_timings(dermis_graph_view(host.graph), frame_index, &count, nullptr) != DERMIS_OK ||
+      count == 0)
+    return {};
   std::vector<dermis_pass_timing> timings(count, dermis_pass_timing DERMIS_PASS_TIMING_INIT);
-  if (dermis_graph_timings(host.graph, frame_index, &count, timings.data()) != DERMIS_OK) return {};
+  if (dermis_view_timings(dermis_graph_view(host.graph), frame_index, &count, timings.data()) != DERMIS_OK)
+    return {};
   std::vector<PassTime> times;
   for (const dermis_pass_timing& one : timings)
     times.push_back({one.pass, static_cast<double>(one.nanoseconds) * 1e-6});
@@ -399,23 +403,23 @@ std::vector<PassTime> graph_times(DermisHost& host, uint64_t frame_index) {
 }
 
 Result<FrameChoice> graph_choice(DermisHost& host, uint64_t frame_index) {
-  dermis_choice choice = DERMIS_CHOICE_INIT;
-  const dermis_result result = dermis_graph_choice(host.graph, frame_index, &choice);
-  if (result != DERMIS_OK) return dermis_error("dermis_graph_choice", result);
+  ReportedFrame choice;
+  const dermis_result result = read_reported(dermis_graph_view(host.graph), frame_index, choice);
+  if (result != DERMIS_OK) return dermis_error("dermis_view_report", result);
   FrameChoice out;
-  out.outcome = choice.outcome;
+  out.outcome = choice.configuration;
   out.technique = choice.technique;
-  out.why = choice.why;
+  out.why = choice.reason;
   out.next_better = choice.next_better;
   out.budget_ms = choice.budget_ms;
   out.predicted_ms = choice.predicted_ms;
   out.predicted_spread_ms = choice.predicted_spread_ms;
   out.measured_ms = choice.measured_ms;
-  out.metered_ms = choice.metered_ms;
+  out.metered_ms = choice.calibrated_ms;
   out.predicted_rmse = choice.predicted_rmse;
   out.next_better_missing_ms = choice.next_better_missing_ms;
   out.mean_d_px = choice.mean_d_px;
-  out.outcomes = choice.outcome_count;
+  out.outcomes = choice.configuration_count;
   out.view_tiles = choice.view_tiles;
   out.scattering_tiles = choice.scattering_tiles;
   out.copied_tiles = choice.copied_tiles;
@@ -437,13 +441,13 @@ Result<FrameChoice> graph_choice(DermisHost& host, uint64_t frame_index) {
 
 Result<std::vector<FrameHistory>> graph_histories(DermisHost& host) {
   uint32_t count = 0;
-  dermis_result result = dermis_graph_histories(host.graph, &count, nullptr);
-  if (result != DERMIS_OK) return dermis_error("dermis_graph_histories", result);
+  dermis_result result = dermis_view_histories(dermis_graph_view(host.graph), &count, nullptr);
+  if (result != DERMIS_OK) return dermis_error("dermis_view_histories", result);
   std::vector<FrameHistory> out;
   if (count == 0) return out;
   std::vector<dermis_history> all(count, dermis_history DERMIS_HISTORY_INIT);
-  result = dermis_graph_histories(host.graph, &count, all.data());
-  if (result != DERMIS_OK) return dermis_error("dermis_graph_histories", result);
+  result = dermis_view_histories(dermis_graph_view(host.graph), &count, all.data());
+  if (result != DERMIS_OK) return dermis_error("dermis_view_histories", result);
   for (const dermis_history& one : all)
     out.push_back({one.name, one.valid != 0, one.age, one.text});
   return out;

@@ -173,7 +173,7 @@ void add_plan_verbs(CLI::App& app, Invocation& invocation) {
 void add_schema_verb(CLI::App& app, Invocation& invocation) {
   add_verb<SchemaOptions>(
       app, invocation, "schema", "Write the JSON Schemas of the file formats, for editors",
-      "dermis schema graph\n  dermis schema --out configs/schema", schema,
+      "dermis schema graph\n  dermis schema --out build/docs/schema", schema,
       [&invocation](CLI::App& verb, SchemaOptions& options) {
         const CLI::Option* name =
             verb.add_option("name", options.name,
@@ -189,12 +189,10 @@ void add_schema_verb(CLI::App& app, Invocation& invocation) {
 void add_docs_verb(CLI::App& app, Invocation& invocation) {
   add_verb<DocsOptions>(
       app, invocation, "docs", "Write the documentation that follows from schemas, pass types and graphs",
-      "dermis docs --out docs\n  dermis docs --check", docs, [](CLI::App& verb, DocsOptions& options) {
-        verb.add_option("--out,-o", options.out, "Folder of the pages [docs]")->type_name("DIR");
+      "dermis docs --out build/docs", docs, [](CLI::App& verb, DocsOptions& options) {
+        verb.add_option("--out,-o", options.out, "Folder of the pages [build/docs]")->type_name("DIR");
         verb.add_option("--graphs", options.graphs, "Folder of graph files [configs/graphs]")
             ->type_name("DIR");
-        verb.add_flag("--check", options.check,
-                      "Write nothing, fail where a page is not as it would be written");
       });
 }
 

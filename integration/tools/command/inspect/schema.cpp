@@ -2,7 +2,6 @@
 
 #include "framegraph/schema/graph_schema.hpp"
 #include "framegraph/text/json_writer.hpp"
-#include "framegraph/text/limits.hpp"
 #include "framegraph/text/suggest.hpp"
 #include "integration/tools/command/graph_input.hpp"
 #include "integration/tools/command/inspect/reference_pages/pages.hpp"
@@ -10,7 +9,6 @@
 #include "integration/tools/command/output.hpp"
 #include "integration/tools/command/shipped.hpp"
 #include "integration/tools/command/verbs.hpp"
-#include "integration/tools/files/bytes.hpp"
 #include "passes/common/pass_types.hpp"
 
 #include <fmt/format.h>
@@ -46,14 +44,7 @@ ExitCode write_all(const Session& session, const std::string& path) {
   return ExitCode::ok;
 }
 
-// Returns the whole file, or nullopt and sets `problem`.
-std::optional<std::string> text_of(const std::string& file, std::string& problem) {
-  const auto bytes = read_bytes(file, limits::file_bytes, problem);
-  if (!bytes) return std::nullopt;
-  return std::string(reinterpret_cast<const char*>(bytes->data()), bytes->size());
-}
-
-// Returns all graphs below a folder, sorted by file name, or nullopt with errors in `diagnostics`.
+// All graphs below a folder, by name; nullopt with errors in `diagnostics`.
 std::optional<std::vector<NamedGraph>> graphs_in(const std::string& folder, Diagnostics& diagnostics) {
   std::vector<std::filesystem::path> files;
   std::error_code ignored;
@@ -110,33 +101,14 @@ ExitCode docs(const Session& session, const DocsOptions& options) {
   if (!graphs) return fail_graph(session, options.graphs, diagnostics);
   if (graphs->empty())
     return fail(session, ExitCode::environment, fmt::format("{} holds no graphs", options.graphs));
-  std::vector<std::pair<std::string, std::string>> pages = {
+  const std::pair<std::string, std::string> pages[] = {
       {"format_reference.md", format_page(all_schemas())},
-      {"pass_types.md", pass_types_page(subsurface::make_pass_types())}};
-  // Only a block of this page is generated. A folder without the page is not the user
-  // documentation.
-  const std::string hosts = folder.path_of("integration.md");
-  if (std::error_code ignored; std::filesystem::exists(hosts, ignored)) {
-    std::string problem;
-    const std::optional<std::string> page = text_of(hosts, problem);
-    if (!page) return fail(session, ExitCode::environment, problem);
-    pages.emplace_back("integration.md", replace_block(*page, "slots", slot_table(*graphs)));
-    if (pages.back().second.empty())
-      return fail(session, ExitCode::problems,
-                  fmt::format("{} has no block 'slots' between its two comments", hosts));
-  }
+      {"pass_types.md", pass_types_page(subsurface::make_pass_types())},
+      {"slots.md", slots_page(*graphs)}};
   for (const auto& [name, text] : pages) {
     const std::string file = folder.path_of(name);
-    std::string problem;
-    if (options.check) {
-      if (text_of(file, problem) != text)
-        return fail(session, ExitCode::problems,
-                    fmt::format("{} is not what the declarations say now; dermis docs --out {} writes it",
-                                file, options.out));
-      continue;
-    }
-    problem = deliver_text(file, text);
-    if (!problem.empty()) return fail(session, ExitCode::environment, problem);
+    if (const std::string problem = deliver_text(file, text); !problem.empty())
+      return fail(session, ExitCode::environment, problem);
     say(session, fmt::format("{}\n", file));
   }
   if (session.json) {

@@ -19,12 +19,11 @@ struct NamedSchema {
 std::span<const NamedSchema> written_schemas();
 
 struct DocsOptions {
-  std::string out = "docs";              // folder
+  std::string out = "build/docs";        // folder
   std::string graphs = "configs/graphs"; // folder of the graphs whose slots are listed
-  bool check = false;                    // write nothing; fail if a page is out of date
 };
-// Writes the documentation pages generated from schemas and signatures, and the table of slots into
-// integration.md if the folder has that page.
+// Writes the pages that follow from the declarations: the file formats, the pass types, and the slots of
+// all graphs.
 ExitCode docs(const Session& session, const DocsOptions& options);
 
 // "graph", "fragment", ...

@@ -1,4 +1,5 @@
 #include "integration/tools/command/run/device_graph.hpp"
+#include "integration/examples/demo_engine/render/reported_frame.hpp"
 
 #include "integration/examples/demo_engine/dermis_calls.hpp"
 
@@ -200,26 +201,29 @@ demo::Result<> DeviceGraph::run(dermis_frame frame) {
   frame.frame_index = ++frame_index_;
   return demo::run_commands(host_, [&](VkCommandBuffer commands) -> demo::Result<> {
     frame.command_buffer = commands;
-    const dermis_result result = dermis_graph_record(graph_, &frame);
-    if (result != DERMIS_OK) return demo::dermis_error("dermis_graph_record", result);
+    const dermis_result result = dermis_view_record(dermis_graph_view(graph_), &frame);
+    if (result != DERMIS_OK) return demo::dermis_error("dermis_view_record", result);
     return recorded_ ? recorded_() : demo::success();
   });
 }
 
 std::vector<DeviceGraph::PassTime> DeviceGraph::times() {
   uint32_t count = 0;
-  if (dermis_graph_timings(graph_, frame_index_, &count, nullptr) != DERMIS_OK || count == 0) return {};
+  if (dermis_view_timings(dermis_graph_view(graph_), frame_index_, &count, nullptr) != DERMIS_OK ||
+      count == 0)
+    return {};
   std::vector<dermis_pass_timing> timings(count, dermis_pass_timing DERMIS_PASS_TIMING_INIT);
-  if (dermis_graph_timings(graph_, frame_index_, &count, timings.data()) != DERMIS_OK) return {};
+  if (dermis_view_timings(dermis_graph_view(graph_), frame_index_, &count, timings.data()) != DERMIS_OK)
+    return {};
   std::vector<PassTime> times;
   for (const dermis_pass_timing& timing : timings)
     times.push_back({timing.pass, static_cast<double>(timing.nanoseconds) * 1e-6});
   return times;
 }
 
-std::optional<dermis_choice> DeviceGraph::choice() {
-  dermis_choice choice = DERMIS_CHOICE_INIT;
-  if (dermis_graph_choice(graph_, frame_index_, &choice) != DERMIS_OK) return std::nullopt;
+std::optional<demo::ReportedFrame> DeviceGraph::choice() {
+  demo::ReportedFrame choice;
+  if (demo::read_reported(dermis_graph_view(graph_), frame_index_, choice) != DERMIS_OK) return std::nullopt;
   return choice;
 }
 

@@ -4,6 +4,7 @@
 
 #include "framegraph/compose/compose.hpp"
 #include "integration/examples/demo_engine/context_hooks.hpp"
+#include "integration/examples/demo_engine/render/reported_frame.hpp"
 #include "integration/examples/demo_engine/vulkan_image.hpp"
 
 #include <dermis/dermis.h>
@@ -73,9 +74,8 @@ public:
   // Returns the times of the last frame in plan order. Empty if the device has no timestamps.
   std::vector<PassTime> times();
   dermis_memory memory();
-  // Returns the choice of the last frame; its strings live as long as the graph. Returns nullopt if
-  // nothing was counted.
-  std::optional<dermis_choice> choice();
+  // Of the last frame; its strings live as long as the graph. nullopt: nothing was counted.
+  std::optional<demo::ReportedFrame> choice();
 
 private:
   struct Slot {

@@ -2,6 +2,7 @@
 // does.
 
 #include "framegraph/text/document.hpp"
+#include "integration/examples/demo_engine/render/reported_frame.hpp"
 #include "integration/tools/command/bench/choice/skip_cases.hpp"
 #include "integration/tools/command/bench/quick.hpp"
 #include "integration/tools/command/bench/report/report.hpp"
@@ -39,7 +40,7 @@ struct Case {
   SlotChoice slots;
   std::vector<double> device_ms;
   std::vector<float> picture;
-  dermis_choice choice = DERMIS_CHOICE_INIT;
+  demo::ReportedFrame choice;
 };
 
 struct SkipBench {

@@ -110,12 +110,15 @@ dermis_result CountedHost::record_frame() {
   const std::vector<dermis_image_binding>& set = bindings_[frame_.frame_index % image_sets];
   frame_.bindings = set.data();
   frame_.binding_count = static_cast<uint32_t>(set.size());
-  return dermis_graph_record(graph_, &frame_);
+  return dermis_view_record(dermis_graph_view(graph_), &frame_);
 }
 
 uint32_t CountedHost::passes() const {
   uint32_t count = 0;
-  return dermis_graph_timings(graph_, frame_.completed_frame_index, &count, nullptr) == DERMIS_OK ? count : 0;
+  return dermis_view_timings(dermis_graph_view(graph_), frame_.completed_frame_index, &count, nullptr) ==
+                 DERMIS_OK
+             ? count
+             : 0;
 }
 
 } // namespace dermis::tools

@@ -29,13 +29,8 @@ struct NamedGraph {
   std::string name; // file name without its extension
   Graph graph;
 };
-// Returns a table of all slots of `graphs`: direction, formats, the graphs in which a slot is
-// required or optional, and the note of its declaration. If graphs differ, a cell names the graphs
-// of each text.
-std::string slot_table(std::span<const NamedGraph> graphs);
-
-// Returns `page` with the text between the two comments of block `name` replaced, or "" if the
-// comments are missing.
-std::string replace_block(std::string_view page, std::string_view name, std::string_view block);
+// A table of all slots of `graphs`: direction, formats, which graphs require the slot, and the note of its
+// declaration. A cell names the graphs of each text if the graphs differ.
+std::string slots_page(std::span<const NamedGraph> graphs);
 
 } // namespace dermis::tools

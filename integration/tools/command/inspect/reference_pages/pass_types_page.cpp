@@ -70,12 +70,9 @@ std::string need_text(const PassType& type, const Port& port) {
 
 std::string pass_types_page(const PassTypeRegistry& pass_types) {
   std::string out =
-      "# pass types\n\nMade by `dermis docs` from the signatures in `passes/`. `read` and `write` name the "
-      "side of a pass on which a port stands; what it does with the\nresource decides stages, accesses and "
-      "layouts. How large the resource has to be at least stands behind it (D0229). Each invocation reads "
-      "of *own texels* only what it writes itself: the pass may write the same resource. "
-      "A setting that is marked \"per frame\" may differ between the views of a graph. "
-      "[techniques.md](techniques.md) tells what the pass types are for.\n";
+      "# Pass types\n\nPorts: `read` or `write`, then the usage, which decides stages, accesses and layouts, "
+      "then the smallest size (D0229).\n*Own texels*: each invocation reads only what it writes, so that the "
+      "pass may write the same resource.\n*Per frame*: the setting may differ between views of a graph.\n";
   for (uint32_t k = 0; k < pass_types.size(); ++k) {
     const PassType& type = pass_types[PassTypeId{k}];
     out += fmt::format("\n## {}\n\n{} Runs {}{}.\n", type.name, type.doc, dispatch_text(type.dispatch),

@@ -65,7 +65,7 @@ struct SlotRow {
 
 } // namespace
 
-std::string slot_table(std::span<const NamedGraph> graphs) {
+std::string slots_page(std::span<const NamedGraph> graphs) {
   std::vector<SlotRow> rows;
   for (const NamedGraph& one : graphs)
     for (const ResourceDeclaration& slot : one.graph.resources) {
@@ -81,20 +81,12 @@ std::string slot_table(std::span<const NamedGraph> graphs) {
       row->need.add(one.name, slot.optional ? "optional" : "required");
       row->meaning.add(one.name, slot.note);
     }
-  std::string out = "| slot | | type or formats | needed | is |\n|---|---|---|---|---|\n";
+  std::string out =
+      "# Slots of the shipped graphs\n\n| slot | | type or formats | needed | is |\n|---|---|---|---|---|\n";
   for (const SlotRow& row : rows)
     out += fmt::format("| `{}` | {} | {} | {} | {} |\n", row.name, row.direction.say(), row.type.say(),
                        row.need.say_in(graphs.size()), cell(row.meaning.say()));
   return out;
-}
-
-std::string replace_block(std::string_view page, std::string_view name, std::string_view block) {
-  const std::string begin = fmt::format("<!-- {}: `dermis docs` writes what follows -->\n", name);
-  const std::string end = fmt::format("<!-- end of {} -->\n", name);
-  const size_t first = page.find(begin);
-  const size_t last = first == std::string_view::npos ? first : page.find(end, first);
-  if (last == std::string_view::npos) return "";
-  return fmt::format("{}{}{}", page.substr(0, first + begin.size()), block, page.substr(last));
 }
 
 } // namespace dermis::tools
