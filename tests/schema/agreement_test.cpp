@@ -364,7 +364,7 @@ TEST(Schema, OfPassTypesAgreesWithTheParserOnMutatedFiles) {
   expect_agreement(schema_in("configs/schema/pass_types.schema.json"), read_pass_types_text, files, 3000);
 }
 
-TEST(Schema, NoneHasAPattern) {
+TEST(Schema, NoSchemaHasAPattern) {
   std::map<std::string, std::string> schemas = {{"graph", graph_schema(subsurface::make_pass_types())},
                                                 {"fragment", fragment_schema(subsurface::make_pass_types())}};
   for (const fs::path& path : files_in("configs/schema"))

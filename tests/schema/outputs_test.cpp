@@ -26,7 +26,7 @@ json sarif_of(const std::string& name, const std::string& text) {
   return json::parse(format_as_sarif(diagnostics, "1.2.3"));
 }
 
-TEST(Outputs, SarifIsWhatTheStandardAsksFor) {
+TEST(Outputs, SarifFollowsTheStandard) {
   const SchemaFile schema = schema_in("tests/schema/sarif.schema.json");
   const std::pair<const char*, const char*> cases[] = {
       {"good.json", R"({ "dermis": 2, "name": "good", "passes": [], "exports": [] })"},
@@ -47,7 +47,7 @@ TEST(Outputs, SarifIsWhatTheStandardAsksFor) {
   EXPECT_GE(sarif_of(cases[4].first, cases[4].second)["runs"][0]["results"].size(), 3u);
 }
 
-TEST(Outputs, TheSarifSchemaRefusesWhatIsNone) {
+TEST(Outputs, SarifSchemaRefusesInvalidFiles) {
   const SchemaFile schema = schema_in("tests/schema/sarif.schema.json");
   json log = sarif_of("broken.json", "{");
   ASSERT_TRUE(schema.accepts(log));

@@ -32,8 +32,9 @@
  *
  * STRUCTS
  *   Every struct starts with `struct_size`; use its DERMIS_..._INIT. Zero means default. A struct
- *   of a newer header is accepted if the part unknown to the library is zero; otherwise the call
- *   returns DERMIS_ERROR_VERSION. The struct_size of the first element is the stride of an array,
+ *   smaller than the library's returns DERMIS_ERROR_ARGUMENT. A struct of a newer header is
+ *   accepted if the part unknown to the library is zero; otherwise the call returns
+ *   DERMIS_ERROR_VERSION. The struct_size of the first element is the stride of an array,
  *   and the library writes no more than that per element. Structs that are members of others
  *   (dermis_source, dermis_image_state) never grow.
  *
@@ -796,10 +797,9 @@ typedef struct dermis_pass_type {
  * that exists, or if there are graphs), VERSION, MEMORY. */
 DERMIS_API dermis_result DERMIS_CALL dermis_register_pass_type(dermis_context context,
                                                                const dermis_pass_type* type);
-/* Returns the registered pass types as a JSON file for `dermis validate --pass-types FILE`, so that graphs
- * with them can be checked without the host. *size in: capacity of `text`; out: bytes needed
- * with the final
- * 0. text may be NULL. Thread: any. Errors: ARGUMENT, INCOMPLETE, MEMORY. */
+/* Returns the registered pass types as a JSON file for `dermis validate --pass-types FILE`, so
+ * that graphs with them can be checked without the host. *size in: capacity of `text`; out: bytes
+ * needed with the final 0. text may be NULL. Thread: any. Errors: ARGUMENT, INCOMPLETE, MEMORY. */
 DERMIS_API dermis_result DERMIS_CALL dermis_export_pass_types(dermis_context context, size_t* size,
                                                               char* text);
 
@@ -988,18 +988,18 @@ typedef struct dermis_command {
 /* ---- views ----------------------------------------------------------------------------------- */
 
 /* A view is a camera of a graph: an eye, a player of a split screen, a mirror. Each graph has one
- * (dermis_graph_view); dermis_view_create adds more. Views share the plan, pipelines, settings and budget. Each view has its own histories,
- * transient memory, frame numbers, measured times, and values set by dermis_view_set_setting.
- * All views have the graph's allocated size and slots; each frame renders its own rectangle into
- * its own images. */
+ * (dermis_graph_view); dermis_view_create adds more. Views share the plan, pipelines, settings and
+ * budget. Each view has its own histories, transient memory, frame numbers, measured times, and
+ * values set by dermis_view_set_setting. All views have the graph's allocated size and slots; each
+ * frame renders its own rectangle into its own images. */
 typedef struct dermis_view_desc {
   size_t struct_size;
   void* user; /* dermis_pass_call.view_user */
 } dermis_view_desc;
 #define DERMIS_VIEW_DESC_INIT {sizeof(dermis_view_desc), NULL}
 
-/* Returns the view that every graph has. Lives as long as the graph; dermis_view_destroy ignores it.
- * NULL for NULL. Creates and allocates nothing. Thread: any. Errors: none. */
+/* Returns the view that every graph has. Lives as long as the graph; dermis_view_destroy ignores
+ * it. NULL for NULL. Creates and allocates nothing. Thread: any. Errors: none. */
 DERMIS_API dermis_view DERMIS_CALL dermis_graph_view(dermis_graph graph);
 /* Allocates what a view needs; compiles nothing and creates no pipelines. desc may be NULL.
  * *view is NULL on failure. *report (may be NULL) gets the messages. Thread: beside. Errors:
@@ -1011,14 +1011,14 @@ DERMIS_API dermis_result DERMIS_CALL dermis_view_create(dermis_graph graph,
  * Do not call after dermis_graph_destroy, which destroys all views. Thread: beside, while no
  * other thread uses this view. Errors: none. */
 DERMIS_API void DERMIS_CALL dermis_view_destroy(dermis_view view);
-/* Records the plan. Never submits, waits for the device, prints, creates pipelines or allocates host
- * or device memory, except image views for bindings without one. On an error nothing was recorded.
- * Takes less than 1 ms for the shipped graphs. Thread: one per view. Errors: ARGUMENT, VERSION,
- * VULKAN, DEVICE_LOST, DEVICE_MEMORY. */
+/* Records the plan. Never submits, waits for the device, prints, creates pipelines or allocates
+ * host or device memory, except image views for bindings without one. On an error nothing was
+ * recorded. Takes less than 1 ms for the shipped graphs. Thread: one per view. Errors: ARGUMENT,
+ * VERSION, VULKAN, DEVICE_LOST, DEVICE_MEMORY. */
 DERMIS_API dermis_result DERMIS_CALL dermis_view_record(dermis_view view,
                                                         const dermis_frame* frame);
-/* Like dermis_view_record, but returns the commands and ignores frame.command_buffer. They count as a
- * recorded frame: record all of them once, in order, outside a render pass, on a queue of the
+/* Like dermis_view_record, but returns the commands and ignores frame.command_buffer. They count
+ * as a recorded frame: record all of them once, in order, outside a render pass, on a queue of the
  * context's family, or discard the frame with dermis_view_discard. The stride of *commands is its
  * first struct_size; the array lives until the next call that records this view, or its end.
  * Allocates host memory until the list has its final length. Thread: one per view. Errors: as
@@ -1027,14 +1027,14 @@ DERMIS_API dermis_result DERMIS_CALL dermis_view_commands(dermis_view view,
                                                           const dermis_frame* frame,
                                                           uint32_t* count,
                                                           const dermis_command** commands);
-/* Discards the frame recorded last, which will never be submitted: the view is as before that record,
- * including histories, and frame_index may be used again. At most one frame, before the next record,
- * dermis_graph_reload or dermis_graph_resize. The command buffer must not run. Takes less than 1 ms.
- * Thread: one per view. Errors: ARGUMENT. */
+/* Discards the frame recorded last, which will never be submitted: the view is as before that
+ * record, including histories, and frame_index may be used again. At most one frame, before the
+ * next record, dermis_graph_reload or dermis_graph_resize. The command buffer must not run. Takes
+ * less than 1 ms. Thread: one per view. Errors: ARGUMENT. */
 DERMIS_API dermis_result DERMIS_CALL dermis_view_discard(dermis_view view, uint64_t frame_index);
 /* Returns the device times of the newest completed frame, in plan order. Needs
- * DERMIS_CONTEXT_TIMINGS. `completed_frame_index` as in dermis_frame. Two-call array. Takes less than
- * 1 ms. Thread: one per view. Errors: ARGUMENT, INCOMPLETE, NOT_READY, DEVICE_LOST. */
+ * DERMIS_CONTEXT_TIMINGS. `completed_frame_index` as in dermis_frame. Two-call array. Takes less
+ * than 1 ms. Thread: one per view. Errors: ARGUMENT, INCOMPLETE, NOT_READY, DEVICE_LOST. */
 DERMIS_API dermis_result DERMIS_CALL dermis_view_timings(dermis_view view,
                                                          uint64_t completed_frame_index,
                                                          uint32_t* count,
@@ -1044,8 +1044,8 @@ DERMIS_API dermis_result DERMIS_CALL dermis_view_timings(dermis_view view,
  * Thread: one per view. Errors: ARGUMENT, INCOMPLETE. */
 DERMIS_API dermis_result DERMIS_CALL dermis_view_histories(dermis_view view, uint32_t* count,
                                                            dermis_history* histories);
-/* Returns the settings of the graph in the order of the file, with the values of this view. Two-call
- * array. Takes less than 1 ms. Thread: beside. Errors: ARGUMENT, INCOMPLETE, MEMORY. */
+/* Returns the settings of the graph in the order of the file, with the values of this view. Two-
+ * call array. Takes less than 1 ms. Thread: beside. Errors: ARGUMENT, INCOMPLETE, MEMORY. */
 DERMIS_API dermis_result DERMIS_CALL dermis_view_settings(dermis_view view, uint32_t* count,
                                                           dermis_setting* settings);
 /* Gives this view its own value of a setting with per_frame 1, effective at its next record;

@@ -1,5 +1,4 @@
 // README.md and docs: what they show is run, compiled, and there.
-#include "integration/examples/demo_engine/render/reported_frame.hpp"
 #include "tests/integration/tools/command_fixture.hpp"
 
 #include <cstdlib>
@@ -116,7 +115,7 @@ TEST_F(Readme, ShortCExamplesCompile) {
   ASSERT_EQ(shown.size(), 2u);
   std::string source =
       "#include <dermis/dermis.h>\n"
-      "dermis_context context; dermis_graph graph; dermis_report report; demo::ReportedFrame choice;\n"
+      "dermis_context context; dermis_graph graph; dermis_report report;\n"
       "dermis_slot slots[8]; uint32_t count; uint64_t completed_frame_index;\n"
       "void create(void); void choose(void);\n";
   source += "void create(void) {\n" + shown[0] + "}\nvoid choose(void) {\n" + shown[1] + "}\n";
