@@ -51,10 +51,10 @@ struct ViewTables {
   choice::Calibration calibration;
   choice::CostModel costs;
   struct Described {
-    std::shared_ptr<Program> program; // may be null
-    std::vector<choice::Outcome> outcomes;
+    std::shared_ptr<CompiledGraph> compiled_graph; // may be null
+    std::vector<choice::Configuration> configurations;
   };
-  std::array<Described, 2> programs;
+  std::array<Described, 2> compiled_graphs;
 };
 
 ViewTables tables_of(const dermis_view_t& view, const Tables& given) {
@@ -64,11 +64,12 @@ ViewTables tables_of(const dermis_view_t& view, const Tables& given) {
   out.found = given.errors ? choice::make_error_correction(out.errors.techniques.size()) : now.found;
   out.calibration = given.calibration ? *given.calibration : now.calibration;
   out.costs = given.calibration ? choice::CostModel(out.calibration.costs) : now.costs;
-  out.programs[0].program = view.running;
-  out.programs[1].program = view.next;
-  for (auto& [program, outcomes] : out.programs)
-    if (program)
-      outcomes = described(view.context->pass_types, *program, out.errors, out.costs, program->outcomes);
+  out.compiled_graphs[0].compiled_graph = view.running;
+  out.compiled_graphs[1].compiled_graph = view.next;
+  for (auto& [compiled_graph, configurations] : out.compiled_graphs)
+    if (compiled_graph)
+      configurations = described(view.context->pass_types, *compiled_graph, out.errors, out.costs,
+                                 compiled_graph->configurations);
   return out;
 }
 
@@ -77,8 +78,8 @@ void take_over(dermis_view_t& view, ViewTables& tables) noexcept {
   std::swap(view.chooser.found, tables.found);
   std::swap(view.chooser.calibration, tables.calibration);
   std::swap(view.chooser.costs, tables.costs);
-  for (auto& [program, outcomes] : tables.programs)
-    if (program) program->outcomes.swap(outcomes);
+  for (auto& [compiled_graph, configurations] : tables.compiled_graphs)
+    if (compiled_graph) compiled_graph->configurations.swap(configurations);
 }
 
 dermis_result set_budget(dermis_graph_t& graph, const dermis_budget* given, dermis_report* report) {
@@ -120,9 +121,9 @@ dermis_result set_budget(dermis_graph_t& graph, const dermis_budget* given, derm
   return DERMIS_OK;
 }
 
-uint32_t skips_of(const FrameChoice& frame, const Program& program) {
+uint32_t skips_of(const FrameChoice& frame, const CompiledGraph& compiled_graph) {
   const subsurface::FrameCounters& seen = frame.counters;
-  if (program.without_material) return DERMIS_SKIP_NO_MATERIAL;
+  if (compiled_graph.without_material) return DERMIS_SKIP_NO_MATERIAL;
   if (frame.left_out) return DERMIS_SKIP_NO_BOUNDS;
   uint32_t skips = 0;
   if (seen.scattering_tiles + seen.copied_tiles + seen.uniform_tiles == 0) skips |= DERMIS_SKIP_NOTHING_SEEN;
@@ -145,35 +146,35 @@ const char* miss_of(const FrameChoice& frame) {
                                                                           : "the times were not as learned";
 }
 
-dermis_frame_report make_report(const Chooser& chooser, const Program& program) {
+dermis_frame_report make_report(const Chooser& chooser, const CompiledGraph& compiled_graph) {
   const FrameChoice& frame = chooser.newest;
   dermis_frame_report out = DERMIS_FRAME_REPORT_INIT;
   out.frame_index = frame.frame_index;
-  out.configuration = program.outcomes[frame.outcome].name.c_str();
+  out.configuration = compiled_graph.configurations[frame.configuration].name.c_str();
   out.reason = choice::why_text(frame.decision);
   out.miss = miss_of(frame);
   out.budget_ms = static_cast<float>(frame.budget_ms);
   out.predicted_ms = static_cast<float>(frame.forecast.ms);
   out.measured_ms = frame.timed ? static_cast<float>(frame.measured_ms) : -1.0f;
   out.predicted_rmse = static_cast<float>(frame.forecast.rmse);
-  out.skips = skips_of(frame, program);
+  out.skips = skips_of(frame, compiled_graph);
   return out;
 }
 
-dermis_frame_statistics make_statistics(const Chooser& chooser, const Program& program) {
+dermis_frame_statistics make_statistics(const Chooser& chooser, const CompiledGraph& compiled_graph) {
   const FrameChoice& frame = chooser.newest;
-  const choice::Outcome& outcome = program.outcomes[frame.outcome];
-  const bool better = frame.decision.next_better < program.outcomes.size();
+  const choice::Configuration& configuration = compiled_graph.configurations[frame.configuration];
+  const bool better = frame.decision.next_better < compiled_graph.configurations.size();
   dermis_frame_statistics out = DERMIS_FRAME_STATISTICS_INIT;
   out.frame_index = frame.frame_index;
-  out.technique = outcome.technique < 0
+  out.technique = configuration.technique < 0
                       ? ""
-                      : chooser.errors.techniques[static_cast<size_t>(outcome.technique)].name.c_str();
-  out.next_better = better ? program.outcomes[frame.decision.next_better].name.c_str() : "";
+                      : chooser.errors.techniques[static_cast<size_t>(configuration.technique)].name.c_str();
+  out.next_better = better ? compiled_graph.configurations[frame.decision.next_better].name.c_str() : "";
   out.next_better_missing_ms = static_cast<float>(frame.decision.missing_ms);
   out.predicted_spread_ms = static_cast<float>(frame.forecast.spread_ms);
   out.calibrated_ms = static_cast<float>(frame.metered_ms);
-  out.configuration_count = static_cast<uint32_t>(program.outcomes.size());
+  out.configuration_count = static_cast<uint32_t>(compiled_graph.configurations.size());
   out.switches = frame.switches;
   out.dispatches = frame.dispatches;
   out.groups = frame.groups;
@@ -210,7 +211,7 @@ dermis_result write_newest(dermis_view_t& view, const char* function, const char
   if (!view.running) return DERMIS_NOT_READY;
   observe(view.chooser, *view.running, completed);
   if (const dermis_result loss = check_loss(view, function); loss != DERMIS_OK) return loss;
-  if (view.chooser.newest.frame_index == 0 || view.chooser.newest.program != view.running->serial)
+  if (view.chooser.newest.frame_index == 0 || view.chooser.newest.compiled_graph != view.running->serial)
     return DERMIS_NOT_READY;
   write_sized(out, size, make(view.chooser, *view.running));
   return DERMIS_OK;

@@ -1,7 +1,7 @@
 #include "integration/abi/chooser.hpp"
 
 #include "framegraph/text/document.hpp"
-#include "integration/abi/program.hpp"
+#include "integration/abi/compiled_graph.hpp"
 #include "passes/choice/defaults.hpp"
 #include "passes/common/probe.hpp"
 
@@ -74,28 +74,29 @@ void learn(Chooser& chooser, std::span<const choice::PassLoad> passes, FrameChoi
 }
 
 // Learns the ratio of the error that the probe measured to the error that the table predicts.
-void learn_error(Chooser& chooser, const choice::Outcome& outcome,
+void learn_error(Chooser& chooser, const choice::Configuration& configuration,
                  const subsurface::FrameCounters& counters) {
   const subsurface::ProbedError probed = subsurface::probed_error(counters);
   if (probed.tiles == 0 || counters.scattering_tiles == 0) return;
   // The probe's reference only sees the screen, so light that rays find beyond it is no error.
-  if (outcome.technique >= 0 && chooser.errors.techniques[static_cast<size_t>(outcome.technique)].by_rays)
+  if (configuration.technique >= 0 &&
+      chooser.errors.techniques[static_cast<size_t>(configuration.technique)].by_rays)
     return;
-  const double expected = expected_rmse(chooser.errors, outcome, mean_d_px(counters), counters.sample_units,
-                                        counters.sample_demand);
-  observe_error(chooser.found, outcome.technique, probed.rmse, expected);
+  const double expected = expected_rmse(chooser.errors, configuration, mean_d_px(counters),
+                                        counters.sample_units, counters.sample_demand);
+  observe_error(chooser.found, configuration.technique, probed.rmse, expected);
 }
 
 uint64_t listed_tiles(const subsurface::FrameCounters& counters) {
   return uint64_t{counters.scattering_tiles} + counters.copied_tiles + counters.uniform_tiles;
 }
 
-void observe_frame(Chooser& chooser, Program& program, FrameChoice& frame) {
-  const choice::Outcome& outcome = program.outcomes[frame.outcome];
-  const Variant& variant = program.variants[frame.variant];
+void observe_frame(Chooser& chooser, CompiledGraph& compiled_graph, FrameChoice& frame) {
+  const choice::Configuration& configuration = compiled_graph.configurations[frame.configuration];
+  const RunnablePlan& plan = compiled_graph.plans[frame.plan];
   const std::span<const choice::PassLoad> passes =
-      frame.variant == outcome.plan ? outcome.passes : variant.loads;
-  vulkan::Executor& executor = *variant.executor;
+      frame.plan == configuration.plan ? configuration.passes : plan.loads;
+  vulkan::Executor& executor = *plan.executor;
   std::array<uint32_t, sizeof(subsurface::FrameCounters) / sizeof(uint32_t)> words{};
   const bool counted = executor.read_counters(frame.frame_index, words);
   if (counted) frame.counters = std::bit_cast<subsurface::FrameCounters>(words);
@@ -103,18 +104,18 @@ void observe_frame(Chooser& chooser, Program& program, FrameChoice& frame) {
   const std::span times(chooser.times.data(), passes.size());
   frame.timed =
       executor.read_timings(frame.frame_index, timed_frame, times) && timed_frame == frame.frame_index;
-  count_groups(passes, variant.left_out, frame);
+  count_groups(passes, plan.left_out, frame);
   if (!frame.left_out)
-    frame.metered_ms = calibrated_estimate(outcome, chooser.costs,
+    frame.metered_ms = calibrated_estimate(configuration, chooser.costs,
                                            load_of(frame.counters, frame.view_tiles, frame.view_blocks))
                            .ms;
   if (counted && frame.timed) learn(chooser, passes, frame);
-  if (counted) learn_error(chooser, outcome, frame.counters);
+  if (counted) learn_error(chooser, configuration, frame.counters);
   frame.observed = true;
   if (frame.frame_index <= chooser.newest.frame_index) return;
   chooser.newest = frame;
   if (!counted || frame.left_out) return; // no tile was classified
-  if (outcome.takes_samples && frame.counters.scattering_tiles > 0)
+  if (configuration.takes_samples && frame.counters.scattering_tiles > 0)
     found_units(chooser.wanted, subsurface::mean_d_px(frame.counters),
                 double(frame.counters.sample_demand) / frame.counters.scattering_tiles);
   follow(chooser.trend, frame.frame_index, listed_tiles(frame.counters));
@@ -133,33 +134,33 @@ Chooser make_chooser() {
   return chooser;
 }
 
-void adopt(Chooser& chooser, const PassTypeRegistry& pass_types, Program& program) {
-  program.outcomes =
-      described(pass_types, program, chooser.errors, chooser.costs, std::move(program.outcomes));
-  for (choice::Outcome empty : program.outcomes) {
-    empty.plan = program.variants[empty.plan].without_bounds;
-    if (empty.plan == no_variant) continue;
-    program.variants[empty.plan].loads =
-        described(pass_types, program, chooser.errors, chooser.costs, {empty}).front().passes;
+void adopt(Chooser& chooser, const PassTypeRegistry& pass_types, CompiledGraph& compiled_graph) {
+  compiled_graph.configurations = described(pass_types, compiled_graph, chooser.errors, chooser.costs,
+                                            std::move(compiled_graph.configurations));
+  for (choice::Configuration empty : compiled_graph.configurations) {
+    empty.plan = compiled_graph.plans[empty.plan].without_bounds;
+    if (empty.plan == no_plan) continue;
+    compiled_graph.plans[empty.plan].loads =
+        described(pass_types, compiled_graph, chooser.errors, chooser.costs, {empty}).front().passes;
   }
   size_t passes = chooser.times.size();
-  for (const Variant& variant : program.variants)
-    passes = std::max(passes, variant.compiled->plan.passes.size());
+  for (const RunnablePlan& plan : compiled_graph.plans)
+    passes = std::max(passes, plan.compiled->plan.passes.size());
   chooser.times.resize(passes);
-  chooser.forecasts.resize(std::max(chooser.forecasts.size(), program.outcomes.size()));
-  program.serial = ++chooser.programs;
+  chooser.forecasts.resize(std::max(chooser.forecasts.size(), compiled_graph.configurations.size()));
+  compiled_graph.serial = ++chooser.compiled_graphs;
 }
 
-void observe(Chooser& chooser, Program& program, uint64_t completed_frame_index) noexcept {
+void observe(Chooser& chooser, CompiledGraph& compiled_graph, uint64_t completed_frame_index) noexcept {
   for (FrameChoice& frame : chooser.frames)
     if (frame.frame_index != 0 && !frame.observed && frame.frame_index <= completed_frame_index &&
-        frame.program == program.serial)
-      observe_frame(chooser, program, frame);
+        frame.compiled_graph == compiled_graph.serial)
+      observe_frame(chooser, compiled_graph, frame);
 }
 
-FrameChoice choose(const Chooser& chooser, const Program& program, uint64_t frame_index, double delta_seconds,
-                   uint64_t view_tiles, uint64_t view_blocks, std::span<choice::Forecast> forecasts,
-                   choice::DecisionState& state) noexcept {
+FrameChoice choose(const Chooser& chooser, const CompiledGraph& compiled_graph, uint64_t frame_index,
+                   double delta_seconds, uint64_t view_tiles, uint64_t view_blocks,
+                   std::span<choice::Forecast> forecasts, choice::DecisionState& state) noexcept {
   // Before any frame is counted, the whole view may scatter.
   choice::FrameLoad load{view_tiles, view_tiles, 0, 0, view_blocks};
   double d_px = assumed_d_px, through = 0;
@@ -178,46 +179,47 @@ FrameChoice choose(const Chooser& chooser, const Program& program, uint64_t fram
   }
   const auto wanted = static_cast<uint32_t>(expected_units(chooser.wanted, d_px) * double(scattering));
   const double filled_ms = chooser.budget_ms / choice::entry_margin;
-  for (size_t i = 0; i < program.outcomes.size(); ++i) {
-    const choice::Outcome& outcome = program.outcomes[i];
+  for (size_t i = 0; i < compiled_graph.configurations.size(); ++i) {
+    const choice::Configuration& configuration = compiled_graph.configurations[i];
     load.sample_units = 0;
-    if (outcome.takes_samples)
-      load.sample_units =
-          chooser.budget_ms > 0
-              ? std::min(wanted, units_within(outcome, chooser.costs, load, filled_ms, chooser.deterministic))
-              : wanted;
-    const choice::Estimate cost = chooser.deterministic ? calibrated_estimate(outcome, chooser.costs, load)
-                                                        : estimate(outcome, chooser.costs, load);
+    if (configuration.takes_samples)
+      load.sample_units = chooser.budget_ms > 0
+                              ? std::min(wanted, units_within(configuration, chooser.costs, load, filled_ms,
+                                                              chooser.deterministic))
+                              : wanted;
+    const choice::Estimate cost = chooser.deterministic
+                                      ? calibrated_estimate(configuration, chooser.costs, load)
+                                      : estimate(configuration, chooser.costs, load);
     const double rmse =
-        expected_rmse(chooser.errors, outcome, d_px, static_cast<uint32_t>(load.sample_units), wanted);
-    const double seen = rmse * error_factor(chooser.found, outcome.technique);
-    const double missed = missed_rmse(chooser.errors, outcome.technique, through);
+        expected_rmse(chooser.errors, configuration, d_px, static_cast<uint32_t>(load.sample_units), wanted);
+    const double seen = rmse * error_factor(chooser.found, configuration.technique);
+    const double missed = missed_rmse(chooser.errors, configuration.technique, through);
     forecasts[i] = {cost.ms, cost.spread_ms, std::hypot(seen, missed), missed};
   }
   FrameChoice frame;
-  frame.program = program.serial;
+  frame.compiled_graph = compiled_graph.serial;
   frame.view_tiles = view_tiles;
   frame.view_blocks = view_blocks;
   frame.expected_tiles = load.listed_tiles;
   frame.budget_ms = chooser.budget_ms;
   if (chooser.budget_ms > 0)
-    frame.decision =
-        decide(forecasts.first(program.outcomes.size()), chooser.budget_ms, delta_seconds, state);
+    frame.decision = decide(forecasts.first(compiled_graph.configurations.size()), chooser.budget_ms,
+                            delta_seconds, state);
   else
     frame.decision = {0, choice::ReasonKind::no_budget};
-  frame.outcome = frame.decision.outcome;
+  frame.configuration = frame.decision.configuration;
   if (chooser.budget_ms > 0)
-    frame.sample_units =
-        units_within(program.outcomes[frame.outcome], chooser.costs, load, filled_ms, chooser.deterministic);
+    frame.sample_units = units_within(compiled_graph.configurations[frame.configuration], chooser.costs, load,
+                                      filled_ms, chooser.deterministic);
   frame.switches = state.switches;
-  frame.forecast = forecasts[frame.outcome];
+  frame.forecast = forecasts[frame.configuration];
   return frame;
 }
 
 void remember(Chooser& chooser, const FrameChoice& frame, const choice::DecisionState& state) noexcept {
   place_of(chooser, frame.frame_index) = frame;
   chooser.state = state;
-  chooser.decided_for = frame.program;
+  chooser.decided_for = frame.compiled_graph;
 }
 
 void forget(Chooser& chooser, uint64_t frame_index) noexcept {

@@ -1,6 +1,6 @@
 #pragma once
 // Holds the library's choice for one view of a graph: cost and error models, decisions for recent
-// frames, and their measured outcomes.
+// frames, and their measured configurations.
 
 #include "framegraph/vulkan/executor.hpp"
 #include "integration/include/dermis/dermis.h"
@@ -19,15 +19,15 @@
 
 namespace dermis::abi {
 
-struct Program;
+struct CompiledGraph;
 
 // A recorded frame: its forecast and, once the device has finished the frame, its measurements.
 struct FrameChoice {
-  uint64_t frame_index = 0; // 0: none
-  uint64_t program = 0;     // Program::serial
-  uint32_t outcome = 0;     // into Program::outcomes
-  // into Program::variants: the outcome's plan, or its replacement for empty bounds
-  uint32_t variant = 0;
+  uint64_t frame_index = 0;    // 0: none
+  uint64_t compiled_graph = 0; // CompiledGraph::serial
+  uint32_t configuration = 0;  // into CompiledGraph::configurations
+  // into CompiledGraph::variants: the configuration's plan, or its replacement for empty bounds
+  uint32_t plan = 0;
   choice::Decision decision;
   uint32_t switches = 0; // since the graph was created
   double budget_ms = 0;  // 0: no budget
@@ -56,7 +56,7 @@ struct Chooser {
   double budget_ms = 0;          // 0: choices keep their defaults
   bool deterministic = false;    // DERMIS_BUDGET_DETERMINISTIC
   choice::DecisionState state;
-  uint64_t decided_for = 0;           // Program::serial that `state` belongs to
+  uint64_t decided_for = 0;           // CompiledGraph::serial that `state` belongs to
   subsurface::FrameCounters counters; // of the newest observed frame
   bool counted = false;
   choice::TileGrowth trend; // of tiles with subsurface
@@ -65,7 +65,7 @@ struct Chooser {
   std::array<FrameChoice, vulkan::max_frames_in_flight + 2> frames; // by frame_index
   FrameChoice newest;                                               // the newest observed frame
   // number of programs adopted so far
-  uint64_t programs = 0;
+  uint64_t compiled_graphs = 0;
   // Preallocated by adopt(), so that recording allocates nothing.
   std::vector<choice::Forecast> forecasts;
   std::vector<vulkan::PassTiming> times;
@@ -76,18 +76,18 @@ Chooser make_chooser();
 
 // Prepares a program for this chooser: allocates everything that deciding and observing need. Must
 // be called before the program's first record.
-void adopt(Chooser& chooser, const PassTypeRegistry& pass_types, Program& program);
+void adopt(Chooser& chooser, const PassTypeRegistry& pass_types, CompiledGraph& compiled_graph);
 
-// Learns from frames of `program` that the device has finished. Allocates nothing.
-void observe(Chooser& chooser, Program& program, uint64_t completed_frame_index) noexcept;
+// Learns from frames of `compiled_graph` that the device has finished. Allocates nothing.
+void observe(Chooser& chooser, CompiledGraph& compiled_graph, uint64_t completed_frame_index) noexcept;
 
 // Returns the choice and forecast for frame `frame_index`. The render rectangle has `view_tiles`
 // tiles and `view_blocks` blocks of 4x4 tiles. `delta_seconds` is the time since the previous
 // frame; 0: unknown. Call remember() once the frame is recorded. Allocates nothing and does not
 // change `chooser`.
-FrameChoice choose(const Chooser& chooser, const Program& program, uint64_t frame_index, double delta_seconds,
-                   uint64_t view_tiles, uint64_t view_blocks, std::span<choice::Forecast> forecasts,
-                   choice::DecisionState& state) noexcept;
+FrameChoice choose(const Chooser& chooser, const CompiledGraph& compiled_graph, uint64_t frame_index,
+                   double delta_seconds, uint64_t view_tiles, uint64_t view_blocks,
+                   std::span<choice::Forecast> forecasts, choice::DecisionState& state) noexcept;
 void remember(Chooser& chooser, const FrameChoice& frame, const choice::DecisionState& state) noexcept;
 // Forgets a frame that was never submitted, so that nothing is learned from it.
 void forget(Chooser& chooser, uint64_t frame_index) noexcept;

@@ -184,16 +184,16 @@ dermis_result make_view(dermis_view_t& view, uint32_t index, const Slot& slot, c
 }
 
 // Reports all slots without a binding in one message.
-dermis_result check_complete(const Log& log, const char* function, const Program& program) {
+dermis_result check_complete(const Log& log, const char* function, const CompiledGraph& compiled_graph) {
   constexpr size_t rest_of_message = 256; // reserves space for the advice after a long list
   std::array<char, failure_text_size - rest_of_message> names;
   size_t used = 0;
   bool optional = false;
-  for (size_t i = 0; i < program.slots.size(); ++i) {
-    const bool given = program.images[i].image != VK_NULL_HANDLE ||
-                       program.buffers[i].buffer != VK_NULL_HANDLE ||
-                       program.structures[i].structure != VK_NULL_HANDLE;
-    const Slot& slot = program.slots[i];
+  for (size_t i = 0; i < compiled_graph.slots.size(); ++i) {
+    const bool given = compiled_graph.images[i].image != VK_NULL_HANDLE ||
+                       compiled_graph.buffers[i].buffer != VK_NULL_HANDLE ||
+                       compiled_graph.structures[i].structure != VK_NULL_HANDLE;
+    const Slot& slot = compiled_graph.slots[i];
     if (!slot.bound || given) continue;
     optional = optional || !slot.required;
     const auto written =
@@ -208,12 +208,12 @@ dermis_result check_complete(const Log& log, const char* function, const Program
                                : "");
 }
 
-dermis_result check_bindings(dermis_view_t& view, Program& program, const dermis_frame& frame) {
+dermis_result check_bindings(dermis_view_t& view, CompiledGraph& compiled_graph, const dermis_frame& frame) {
   const Log& log = view.context->log;
   const char* const function = "dermis_view_record";
   if (frame.binding_count > 0 && frame.bindings == nullptr)
     return bad_argument(log, "{}: bindings is NULL and binding_count is {}", function, frame.binding_count);
-  std::fill(program.images.begin(), program.images.end(), vulkan::HostImage{});
+  std::fill(compiled_graph.images.begin(), compiled_graph.images.end(), vulkan::HostImage{});
   const auto* at = reinterpret_cast<const std::byte*>(frame.bindings);
   const size_t step = frame.binding_count > 0 ? stated_size(at) : 0;
   for (uint32_t i = 0; i < frame.binding_count; ++i) {
@@ -230,15 +230,15 @@ dermis_result check_bindings(dermis_view_t& view, Program& program, const dermis
           "{}: bindings[{}].struct_size is {}, expected {} as in bindings[0], at least {}: use "
           "DERMIS_IMAGE_BINDING_INIT",
           function, i, stated_size(from), step, sizeof(dermis_image_binding));
-    if (binding.slot >= program.slots.size())
+    if (binding.slot >= compiled_graph.slots.size())
       return bad_argument(log, "{}: bindings[{}].slot is {}, the graph has slots 0..{}", function, i,
-                          binding.slot, static_cast<int64_t>(program.slots.size()) - 1);
-    const Slot& slot = program.slots[binding.slot];
+                          binding.slot, static_cast<int64_t>(compiled_graph.slots.size()) - 1);
+    const Slot& slot = compiled_graph.slots[binding.slot];
     if (slot.type != ResourceType::image)
       return bad_argument(log, "{}: bindings[{}] binds an image to slot {} ('{}'), which takes {}", function,
                           i, binding.slot, slot.name, type_phrase(slot.type));
     if (!slot.bound) continue;
-    vulkan::HostImage& image = program.images[binding.slot];
+    vulkan::HostImage& image = compiled_graph.images[binding.slot];
     if (image.image != VK_NULL_HANDLE)
       return bad_argument(log, "{}: bindings[{}] binds slot {} ('{}') a second time", function, i,
                           binding.slot, slot.name);
@@ -249,10 +249,11 @@ dermis_result check_bindings(dermis_view_t& view, Program& program, const dermis
     image = {binding.image, binding.view,       host_state(binding.before), host_state(binding.after),
              binding.layer, binding.layer_count};
   }
-  if (const dermis_result result = check_memory_bindings(view, program, frame); result != DERMIS_OK)
+  if (const dermis_result result = check_memory_bindings(view, compiled_graph, frame); result != DERMIS_OK)
     return result;
-  if (const dermis_result result = check_complete(log, function, program); result != DERMIS_OK) return result;
-  return check_shared_resources(view, program);
+  if (const dermis_result result = check_complete(log, function, compiled_graph); result != DERMIS_OK)
+    return result;
+  return check_shared_resources(view, compiled_graph);
 }
 
 // Removes the jitter: shifting the picture by `pixels` of `extent` shifts clip space by 2 * pixels
@@ -268,7 +269,7 @@ subsurface::Matrix4 matrix_of(const float (&elements)[16]) {
   return matrix;
 }
 
-subsurface::CameraFault fill_constants(const dermis_frame& frame, const Program& program,
+subsurface::CameraFault fill_constants(const dermis_frame& frame, const CompiledGraph& compiled_graph,
                                        const vulkan::Rectangle& previous, const vulkan::Rectangle& rectangle,
                                        const std::array<int32_t, 4>& bounds, bool history_invalid,
                                        subsurface::FrameConstants& constants) {
@@ -297,7 +298,7 @@ subsurface::CameraFault fill_constants(const dermis_frame& frame, const Program&
   input.previous_y = previous.y;
   input.previous_width = previous.width;
   input.previous_height = previous.height;
-  input.previous_jitter_px = program.last_jitter_px;
+  input.previous_jitter_px = compiled_graph.last_jitter_px;
   return subsurface::fill_frame_constants(input, constants) ? subsurface::CameraFault::none
                                                             : subsurface::CameraFault::no_projection;
 }
@@ -313,12 +314,12 @@ std::string_view hint_of(subsurface::CameraFault fault) {
 
 } // namespace
 
-dermis_result check_frame(dermis_view_t& view, Program& program, const dermis_frame& frame,
+dermis_result check_frame(dermis_view_t& view, CompiledGraph& compiled_graph, const dermis_frame& frame,
                           CheckedFrame& checked) {
   const Log& log = view.context->log;
   const char* const function = "dermis_view_record";
   if (const dermis_result result = check_numbers(view, frame); result != DERMIS_OK) return result;
-  if (const dermis_result result = check_rectangle(log, function, program.variants.front().compiled->plan,
+  if (const dermis_result result = check_rectangle(log, function, compiled_graph.plans.front().compiled->plan,
                                                    frame, checked.input.rectangle);
       result != DERMIS_OK)
     return result;
@@ -326,39 +327,39 @@ dermis_result check_frame(dermis_view_t& view, Program& program, const dermis_fr
           check_bounds(log, function, frame, checked.input.rectangle, checked.bounds);
       result != DERMIS_OK)
     return result;
-  return check_bindings(view, program, frame);
+  return check_bindings(view, compiled_graph, frame);
 }
 
-dermis_result fill_frame(const dermis_view_t& view, const Program& program, const Chosen& chosen,
+dermis_result fill_frame(const dermis_view_t& view, const CompiledGraph& compiled_graph, const Chosen& chosen,
                          const dermis_frame& frame, CheckedFrame& checked) {
   const Log& log = view.context->log;
   const char* const function = "dermis_view_record";
-  const Variant& variant = program.variants[chosen.variant];
-  const vulkan::Executor& executor = *variant.executor;
+  const RunnablePlan& plan = compiled_graph.plans[chosen.plan];
+  const vulkan::Executor& executor = *plan.executor;
   const vulkan::Executor* const before = chosen.before;
   const bool reset = (frame.flags & DERMIS_FRAME_RESET_HISTORY) != 0;
   bool history_invalid = false;
   for (uint32_t i = 0; i < executor.history_count(); ++i)
     history_invalid = history_invalid || !executor.history_state(i, reset, before).valid;
   if (const subsurface::CameraFault fault =
-          fill_constants(frame, program, executor.previous_rectangle(before), checked.input.rectangle,
+          fill_constants(frame, compiled_graph, executor.previous_rectangle(before), checked.input.rectangle,
                          checked.bounds, history_invalid, checked.constants);
       fault != subsurface::CameraFault::none)
     return bad_argument(log, "{}: {}{}", function, subsurface::text_of(fault), hint_of(fault));
   checked.constants.sample_units = chosen.sample_units;
   checked.input.command_buffer = frame.command_buffer;
-  checked.input.images = program.images;
-  checked.input.buffers = program.buffers;
-  checked.input.structures = program.structures;
+  checked.input.images = compiled_graph.images;
+  checked.input.buffers = compiled_graph.buffers;
+  checked.input.structures = compiled_graph.structures;
   checked.input.frame_constants = std::as_bytes(std::span(&checked.constants, 1));
-  checked.input.settings = program.outcomes[chosen.outcome].settings;
+  checked.input.settings = compiled_graph.configurations[chosen.configuration].settings;
   checked.input.frame_index = frame.frame_index;
   checked.input.reset_history = reset;
-  checked.input.taken_over = before != nullptr && program.last_frame > 0; // of the memory pool
+  checked.input.taken_over = before != nullptr && compiled_graph.last_frame > 0; // of the memory pool
   checked.input.before = before;
   checked.input.view_user = view.user;
   checked.history_invalid = history_invalid;
-  if (checked.empty_bounds()) checked.input.left_out = variant.left_out;
+  if (checked.empty_bounds()) checked.input.left_out = plan.left_out;
   return DERMIS_OK;
 }
 

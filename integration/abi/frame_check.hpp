@@ -17,18 +17,18 @@ struct CheckedFrame {
 };
 
 // Checks every field, and fills program.images and the parts of `checked` that do not depend on the
-// chosen outcome. Returns ARGUMENT or VERSION with a message that names the field.
-dermis_result check_frame(dermis_view_t& view, Program& program, const dermis_frame& frame,
+// chosen configuration. Returns ARGUMENT or VERSION with a message that names the field.
+dermis_result check_frame(dermis_view_t& view, CompiledGraph& compiled_graph, const dermis_frame& frame,
                           CheckedFrame& checked);
 // The plan that records the frame.
 struct Chosen {
-  uint32_t outcome = 0, variant = 0; // into the program
+  uint32_t configuration = 0, plan = 0; // into the program
   // executor of the last frame, if it differs from the variant's
   const vulkan::Executor* before = nullptr;
   uint32_t sample_units = 0; // see FrameConstants
 };
 // Fills the rest of `checked`.
-dermis_result fill_frame(const dermis_view_t& view, const Program& program, const Chosen& chosen,
+dermis_result fill_frame(const dermis_view_t& view, const CompiledGraph& compiled_graph, const Chosen& chosen,
                          const dermis_frame& frame, CheckedFrame& checked);
 
 } // namespace dermis::abi

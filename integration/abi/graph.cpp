@@ -18,20 +18,20 @@ dermis_graph_t::~dermis_graph_t() {
 namespace dermis::abi {
 namespace {
 
-using Candidates = std::vector<std::shared_ptr<Program>>; // by view, the graph's own view first
+using Candidates = std::vector<std::shared_ptr<CompiledGraph>>; // by view, the graph's own view first
 
-// Reports each history of `program` that cannot continue from the view's last frame. Requires the
+// Reports each history of `compiled_graph` that cannot continue from the view's last frame. Requires the
 // view's mutex.
-void report_lost_histories(const dermis_view_t& view, const Program& program, vulkan::HistoryReason reason,
-                           Diagnostics& diagnostics) {
-  const Program& last = *view.running;
+void report_lost_histories(const dermis_view_t& view, const CompiledGraph& compiled_graph,
+                           vulkan::HistoryReason reason, Diagnostics& diagnostics) {
+  const CompiledGraph& last = *view.running;
   const vulkan::Executor& before = *last.recorded().executor;
-  const vulkan::Executor& executor = *program.current().executor;
-  const Plan& plan = program.current().compiled->plan;
+  const vulkan::Executor& executor = *compiled_graph.current().executor;
+  const Plan& plan = compiled_graph.current().compiled->plan;
   for (uint32_t h = 0; h < plan.histories.size(); ++h) {
     if (executor.history_state(h, false, &before).valid) continue;
     const ResourceDeclaration& declared =
-        program.graph.resources[plan.resources[plan.histories[h].resource].declared.value];
+        compiled_graph.graph.resources[plan.resources[plan.histories[h].resource].declared.value];
     diagnostics.add(
         DiagnosticId::history_restarts, declared.where,
         fmt::format("history '{}' starts anew: {}", declared.name, vulkan::history_reason_text(reason)));
@@ -39,7 +39,7 @@ void report_lost_histories(const dermis_view_t& view, const Program& program, vu
 }
 
 // Builds a program for every view next to the running one. Changes nothing visible to the views.
-dermis_result build_candidates(dermis_graph_t& graph, ProgramInput& input, vulkan::HistoryReason reason,
+dermis_result build_candidates(dermis_graph_t& graph, CompiledGraphInput& input, vulkan::HistoryReason reason,
                                Diagnostics& diagnostics, Candidates& candidates) {
   dermis_context_t& context = *graph.context;
   bool recorded = false;
@@ -57,9 +57,9 @@ dermis_result build_candidates(dermis_graph_t& graph, ProgramInput& input, vulka
   }
   candidates.resize(1 + graph.others.size());
   dermis_result result =
-      build_program(context, input, history, graph.plans, errors, costs, diagnostics, candidates[0]);
+      build_compiled_graph(context, input, history, graph.plans, errors, costs, diagnostics, candidates[0]);
   for (size_t v = 1; v < candidates.size() && result == DERMIS_OK; ++v)
-    result = copy_program(context, input, *candidates[0], history, diagnostics, candidates[v]);
+    result = copy_compiled_graph(context, input, *candidates[0], history, diagnostics, candidates[v]);
   for (size_t v = 1; v < candidates.size() && result == DERMIS_OK; ++v)
     apply_own_settings(*graph.others[v - 1], *candidates[v], diagnostics);
   // the caller handles errors of profiles
@@ -81,7 +81,7 @@ dermis_result build_candidates(dermis_graph_t& graph, ProgramInput& input, vulka
 // Makes the candidates take over at the next record of each view. A program that was still waiting
 // was never recorded.
 void hand_over(dermis_graph_t& graph, Candidates& candidates) noexcept {
-  for (const std::shared_ptr<Program>& candidate : candidates)
+  for (const std::shared_ptr<CompiledGraph>& candidate : candidates)
     share_kernels(*candidate); // before any view is locked, so that recording does not wait
   size_t v = 0;
   for_each_view(graph, [&](dermis_view_t& view) {
@@ -127,22 +127,23 @@ dermis_result reload(dermis_graph_t& graph, const dermis_graph_desc* given, derm
     return rejected_size(log, read, "dermis_graph_reload: desc", stated_size(given),
                          sizeof(dermis_graph_desc));
   const std::lock_guard changing(graph.changing);
-  ProgramInput input = graph.input;
+  CompiledGraphInput input = graph.input;
   input.included.clear(); // files may have changed
   Diagnostics diagnostics;
   if (const dermis_result result = read_graph_desc(log, function, desc, input, diagnostics);
       result != DERMIS_OK)
     return result;
   const bool resized = input.width != graph.input.width || input.height != graph.input.height;
-  return replace_programs(graph, std::move(input),
-                          resized ? vulkan::HistoryReason::resized : vulkan::HistoryReason::reloaded, report,
-                          std::move(diagnostics));
+  return replace_compiled_graphs(graph, std::move(input),
+                                 resized ? vulkan::HistoryReason::resized : vulkan::HistoryReason::reloaded,
+                                 report, std::move(diagnostics));
 }
 
 } // namespace
 
-dermis_result replace_programs(dermis_graph_t& graph, ProgramInput&& input, vulkan::HistoryReason reason,
-                               dermis_report* report, Diagnostics&& diagnostics) {
+dermis_result replace_compiled_graphs(dermis_graph_t& graph, CompiledGraphInput&& input,
+                                      vulkan::HistoryReason reason, dermis_report* report,
+                                      Diagnostics&& diagnostics) {
   Candidates candidates;
   const dermis_result built = build_candidates(graph, input, reason, diagnostics, candidates);
   const dermis_result result = conclude(graph.context->log, built, std::move(diagnostics), report);
@@ -196,10 +197,10 @@ extern "C" dermis_result DERMIS_CALL dermis_graph_resize(dermis_graph graph, uin
     if (const dermis_result alive = check_alive(*graph->context, "dermis_graph_resize"); alive != DERMIS_OK)
       return alive;
     const std::lock_guard changing(graph->changing);
-    ProgramInput input = graph->input;
+    CompiledGraphInput input = graph->input;
     input.width = width;
     input.height = height;
-    return replace_programs(*graph, std::move(input), dermis::vulkan::HistoryReason::resized, report);
+    return replace_compiled_graphs(*graph, std::move(input), dermis::vulkan::HistoryReason::resized, report);
   });
 }
 

@@ -4,8 +4,8 @@
 
 #include "integration/abi/chooser.hpp"
 #include "integration/abi/commands/capture.hpp"
+#include "integration/abi/compiled_graph.hpp"
 #include "integration/abi/image_views.hpp"
-#include "integration/abi/program.hpp"
 
 #include <array>
 #include <mutex>
@@ -22,12 +22,12 @@ struct dermis_view_t {
   void* user = nullptr; // passed to host-recorded passes
   // the view's own values; guarded by graph->changing
   std::vector<dermis::abi::HostSetting> settings;
-  mutable std::mutex mutex;                      // guards all following members
-  std::shared_ptr<dermis::abi::Program> running; // recorded last; null before the first record
-  std::shared_ptr<dermis::abi::Program> next;    // takes over at the next record; null: none
+  mutable std::mutex mutex;                            // guards all following members
+  std::shared_ptr<dermis::abi::CompiledGraph> running; // recorded last; null before the first record
+  std::shared_ptr<dermis::abi::CompiledGraph> next;    // takes over at the next record; null: none
   // Replaced programs, until their last recorded frame has completed. Each was replaced at a
   // different frame, and at most frames_in_flight frames are incomplete.
-  std::array<std::shared_ptr<dermis::abi::Program>, dermis::vulkan::max_frames_in_flight + 1> retired;
+  std::array<std::shared_ptr<dermis::abi::CompiledGraph>, dermis::vulkan::max_frames_in_flight + 1> retired;
   uint64_t last_frame = 0;
   // State before the last record, until that is discarded or another frame is recorded.
   struct Recorded {
@@ -36,10 +36,10 @@ struct dermis_view_t {
     bool took_over = false;  // a new program, formerly `next`, took over
     // index of the previous program in `retired`; retired.size(): not stored
     size_t retired = 0;
-    uint64_t program_last_frame = 0;
+    uint64_t compiled_graph_last_frame = 0;
     std::array<double, 2> last_jitter_px{};
-    uint32_t outcome = 0, variant = 0, program_variant = 0;
-    bool variant_recorded = false;
+    uint32_t configuration = 0, plan = 0, compiled_graph_plan = 0;
+    bool plan_recorded = false;
     dermis::choice::DecisionState decision;
     uint64_t decided_for = 0; // see Chooser
   } recorded;
@@ -57,21 +57,21 @@ struct dermis_graph_t {
   dermis_context context = nullptr;
   // Serialises changes of the graph and guards the rest. Locked before the mutex of a view.
   std::mutex changing;
-  dermis::abi::ProgramInput input; // of the newest program
-  dermis::PlanCache plans;         // of programs built before: what a setting flips back to
-  dermis_view_t own;               // returned by dermis_graph_view
+  dermis::abi::CompiledGraphInput input; // of the newest program
+  dermis::PlanCache plans;               // of programs built before: what a setting flips back to
+  dermis_view_t own;                     // returned by dermis_graph_view
   std::vector<std::unique_ptr<dermis_view_t>> others;
 };
 
 namespace dermis::abi {
 
 // Returns the program that the next record will use. Requires the view's mutex.
-inline Program& newest(dermis_view_t& view) {
+inline CompiledGraph& newest(dermis_view_t& view) {
   return view.next ? *view.next : *view.running;
 }
 // Returns the program that the next record will use, and keeps it alive while another thread
 // records.
-inline std::shared_ptr<Program> keep_newest(const dermis_view_t& view) {
+inline std::shared_ptr<CompiledGraph> keep_newest(const dermis_view_t& view) {
   const std::lock_guard lock(view.mutex);
   return view.next ? view.next : view.running;
 }
@@ -87,19 +87,21 @@ template <class Use> void for_each_view(dermis_graph_t& graph, Use use) {
     use(*view);
 }
 
-// Returns the executor of the previous frame if it is not that of `variant`: another plan of this
+// Returns the executor of the previous frame if it is not that of `plan`: another plan of this
 // program, or of the program that it replaces. Requires the view's mutex.
-const vulkan::Executor* recorded_before(const dermis_view_t& view, const Program& program, uint32_t variant);
+const vulkan::Executor* recorded_before(const dermis_view_t& view, const CompiledGraph& compiled_graph,
+                                        uint32_t plan);
 
 // Builds programs for all views from `input`; they take over at the next record. On failure nothing
 // has changed. Requires graph.changing. `diagnostics` holds findings of reading `input`; an error
 // in it fails the call.
-dermis_result replace_programs(dermis_graph_t& graph, ProgramInput&& input, vulkan::HistoryReason reason,
-                               dermis_report* report, Diagnostics&& diagnostics = {});
+dermis_result replace_compiled_graphs(dermis_graph_t& graph, CompiledGraphInput&& input,
+                                      vulkan::HistoryReason reason, dermis_report* report,
+                                      Diagnostics&& diagnostics = {});
 
 // Applies the view's own settings to a program that it will record. Reports settings that no longer
 // fit.
-void apply_own_settings(const dermis_view_t& view, Program& program, Diagnostics& diagnostics);
+void apply_own_settings(const dermis_view_t& view, CompiledGraph& compiled_graph, Diagnostics& diagnostics);
 
 // The functions of a view; `function` names the one that was called.
 dermis_result record_frame(dermis_view_t& view, const dermis_frame* frame);

@@ -31,7 +31,7 @@ dermis_result for_each(const Log& log, const char* function, const char* field, 
 }
 
 dermis_result read_profiles(const Log& log, const char* function, const dermis_graph_desc& desc,
-                            ProgramInput& input, Diagnostics& diagnostics) {
+                            CompiledGraphInput& input, Diagnostics& diagnostics) {
   return for_each<dermis_profile>(
       log, function, "profiles", desc.profiles, desc.profile_count, DERMIS_PROFILE_INIT,
       [&](uint32_t i, const dermis_profile& profile) {
@@ -48,7 +48,7 @@ dermis_result read_profiles(const Log& log, const char* function, const dermis_g
 }
 
 dermis_result read_unbound(const Log& log, const char* function, const dermis_graph_desc& desc,
-                           ProgramInput& input) {
+                           CompiledGraphInput& input) {
   if (desc.unbound_count > 0 && desc.unbound == nullptr)
     return bad_argument(log, "{}: desc.unbound is NULL and its count is {}", function, desc.unbound_count);
   for (uint32_t i = 0; i < desc.unbound_count; ++i) {
@@ -59,7 +59,7 @@ dermis_result read_unbound(const Log& log, const char* function, const dermis_gr
 }
 
 dermis_result read_overlays(const Log& log, const char* function, const dermis_graph_desc& desc,
-                            ProgramInput& input) {
+                            CompiledGraphInput& input) {
   return for_each<dermis_source>(log, function, "overlays", desc.overlays, desc.overlay_count,
                                  DERMIS_SOURCE_INIT, [&](uint32_t i, const dermis_source& source) {
                                    SourceText overlay;
@@ -73,7 +73,7 @@ dermis_result read_overlays(const Log& log, const char* function, const dermis_g
 }
 
 dermis_result read_formats(const Log& log, const char* function, const dermis_graph_desc& desc,
-                           ProgramInput& input) {
+                           CompiledGraphInput& input) {
   return for_each<dermis_slot_format>(
       log, function, "formats", desc.formats, desc.format_count, DERMIS_SLOT_FORMAT_INIT,
       [&](uint32_t i, const dermis_slot_format& given) {
@@ -124,7 +124,7 @@ dermis_result check_view_size(const Log& log, const char* of, uint32_t width, ui
 }
 
 dermis_result read_graph_desc(const Log& log, const char* function, const dermis_graph_desc& desc,
-                              ProgramInput& input, Diagnostics& diagnostics) {
+                              CompiledGraphInput& input, Diagnostics& diagnostics) {
   if ((desc.keep & ~DERMIS_KEEP_ALL) != 0)
     return bad_argument(log, "{}: desc.keep is {:#x}, known bits are {:#x}", function, desc.keep,
                         DERMIS_KEEP_ALL);

@@ -1,7 +1,7 @@
 #pragma once
 // Checks and copies the host's graph description. Keeps no pointers to host memory.
 
-#include "integration/abi/program.hpp"
+#include "integration/abi/compiled_graph.hpp"
 
 namespace dermis::abi {
 
@@ -20,6 +20,6 @@ dermis_result check_view_size(const Log& log, const char* function, uint32_t wid
 // Replaces the parts of `input` that are not in desc.keep. Errors in profile texts go to
 // `diagnostics`. `function` is named in messages.
 dermis_result read_graph_desc(const Log& log, const char* function, const dermis_graph_desc& desc,
-                              ProgramInput& input, Diagnostics& diagnostics);
+                              CompiledGraphInput& input, Diagnostics& diagnostics);
 
 } // namespace dermis::abi

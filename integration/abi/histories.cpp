@@ -36,30 +36,32 @@ struct KnownHistory {
 };
 
 // Adds the histories of a plan that are not yet in `all`, as its next frame will find them.
-void add_histories(const PassTypeRegistry& pass_types, const Program& program, const Variant& variant,
-                   const vulkan::Executor* before, std::vector<KnownHistory>& all) {
-  for (uint32_t i = 0; i < variant.executor->history_count(); ++i) {
-    vulkan::HistoryState state = variant.executor->history_state(i, false, before);
+void add_histories(const PassTypeRegistry& pass_types, const CompiledGraph& compiled_graph,
+                   const RunnablePlan& plan, const vulkan::Executor* before, std::vector<KnownHistory>& all) {
+  for (uint32_t i = 0; i < plan.executor->history_count(); ++i) {
+    vulkan::HistoryState state = plan.executor->history_state(i, false, before);
     const auto same = [&](const KnownHistory& one) { return one.state.resource == state.resource; };
     if (std::any_of(all.begin(), all.end(), same)) continue;
-    const vulkan::HistoryState own = variant.executor->history_state(i);
-    if (!state.valid && !variant.recorded && own.lost == vulkan::HistoryReason::first_frame)
+    const vulkan::HistoryState own = plan.executor->history_state(i);
+    if (!state.valid && !plan.recorded && own.lost == vulkan::HistoryReason::first_frame)
       state.lost = own.lost; // the plan never ran, so no other plan ran in between
-    all.push_back({state, settling_frames(pass_types, variant.compiled->plan, i,
-                                          program.outcomes[program.outcome].settings)});
+    all.push_back(
+        {state, settling_frames(pass_types, plan.compiled->plan, i,
+                                compiled_graph.configurations[compiled_graph.configuration].settings)});
   }
 }
 
 // Lists the plan that ran last, or will run first, before the others.
-std::vector<KnownHistory> histories_of(const dermis_view_t& view, const Program& program) {
+std::vector<KnownHistory> histories_of(const dermis_view_t& view, const CompiledGraph& compiled_graph) {
   const PassTypeRegistry& pass_types = view.context->pass_types;
   std::vector<KnownHistory> all;
-  const uint32_t last = program.variant;
-  const vulkan::Executor* const before = recorded_before(view, program, last);
-  add_histories(pass_types, program, program.variants[last], before, all);
-  for (uint32_t v = 0; v < program.variants.size(); ++v)
+  const uint32_t last = compiled_graph.plan;
+  const vulkan::Executor* const before = recorded_before(view, compiled_graph, last);
+  add_histories(pass_types, compiled_graph, compiled_graph.plans[last], before, all);
+  for (uint32_t v = 0; v < compiled_graph.plans.size(); ++v)
     if (v != last)
-      add_histories(pass_types, program, program.variants[v], recorded_before(view, program, v), all);
+      add_histories(pass_types, compiled_graph, compiled_graph.plans[v],
+                    recorded_before(view, compiled_graph, v), all);
   return all;
 }
 

@@ -45,20 +45,20 @@ BytesByTypes unaliased_bytes(const Plan& plan) {
   return sums;
 }
 
-dermis_memory describe_view_memory(const Program& program) {
+dermis_memory describe_view_memory(const CompiledGraph& compiled_graph) {
   dermis_memory out = DERMIS_MEMORY_INIT;
-  BytesByTypes maximum; // over the variants, because only one runs per frame
-  for (const Variant& variant : program.variants) {
-    const Plan& plan = variant.compiled->plan;
+  BytesByTypes maximum; // over the plans, because only one runs per frame
+  for (const RunnablePlan& runnable : compiled_graph.plans) {
+    const Plan& plan = runnable.compiled->plan;
     for (const auto& [types, bytes] : unaliased_bytes(plan))
       maximum[types] = std::max(maximum[types], bytes);
     out.transient_bytes = std::max(out.transient_bytes, plan.transient_bytes);
     out.history_bytes += plan.history_bytes;
-    out.constant_bytes += variant.executor->constant_bytes();
+    out.constant_bytes += runnable.executor->constant_bytes();
   }
   for (const auto& [types, bytes] : maximum)
     out.transient_unaliased_bytes += bytes;
-  if (program.heap_pool) out.transient_bytes = program.heap_pool->bytes();
+  if (compiled_graph.heap_pool) out.transient_bytes = compiled_graph.heap_pool->bytes();
   return out;
 }
 
@@ -76,14 +76,14 @@ dermis_memory describe_memory(dermis_graph_t& graph) {
 }
 
 // Returns the heaps of one view in a stable order: shared transients, then plan by plan.
-std::vector<vulkan::MemoryRequest> heaps_of(const Program& program) {
+std::vector<vulkan::MemoryRequest> heaps_of(const CompiledGraph& compiled_graph) {
   std::vector<vulkan::MemoryRequest> heaps;
-  if (program.heap_pool)
-    for (const vulkan::HeapPool::Block& block : program.heap_pool->blocks())
+  if (compiled_graph.heap_pool)
+    for (const vulkan::HeapPool::Block& block : compiled_graph.heap_pool->blocks())
       heaps.push_back(block.request);
-  for (const Variant& variant : program.variants)
-    for (uint32_t h = 0; h < variant.compiled->plan.heaps.size(); ++h)
-      if (const vulkan::MemoryRequest request = variant.executor->heap_request(h); request.bytes > 0)
+  for (const RunnablePlan& plan : compiled_graph.plans)
+    for (uint32_t h = 0; h < plan.compiled->plan.heaps.size(); ++h)
+      if (const vulkan::MemoryRequest request = plan.executor->heap_request(h); request.bytes > 0)
         heaps.push_back(request);
   return heaps;
 }
@@ -98,23 +98,23 @@ dermis_result get_timings(dermis_view_t& view, const char* function, uint64_t co
   if (completed > view.last_frame)
     return bad_argument(log, "{}: completed_frame_index is {}, the newest recorded frame is {}", function,
                         completed, view.last_frame);
-  Program& program = view.running ? *view.running : newest(view);
-  const Variant& variant = program.recorded();
-  const auto passes = static_cast<uint32_t>(variant.compiled->plan.passes.size());
+  CompiledGraph& compiled_graph = view.running ? *view.running : newest(view);
+  const RunnablePlan& plan = compiled_graph.recorded();
+  const auto passes = static_cast<uint32_t>(plan.compiled->plan.passes.size());
   if (out == nullptr) {
     *count = passes;
     return DERMIS_OK;
   }
   std::vector<vulkan::PassTiming> times(passes);
   uint64_t frame_index = 0;
-  if (!variant.executor->read_timings(completed, frame_index, times)) {
+  if (!plan.executor->read_timings(completed, frame_index, times)) {
     const dermis_result loss = check_loss(view, function);
     return loss != DERMIS_OK ? loss : DERMIS_NOT_READY;
   }
   return fill_array(log, function, count, out, passes, [&](uint32_t i) {
     dermis_pass_timing timing = DERMIS_PASS_TIMING_INIT;
-    const PassId declared = variant.compiled->plan.passes[i].declared;
-    timing.pass = program.graph.passes[declared.value].name.c_str();
+    const PassId declared = plan.compiled->plan.passes[i].declared;
+    timing.pass = compiled_graph.graph.passes[declared.value].name.c_str();
     timing.frame_index = frame_index;
     timing.nanoseconds = times[i].nanoseconds;
     return timing;
@@ -130,8 +130,8 @@ extern "C" dermis_result DERMIS_CALL dermis_graph_slots(dermis_graph graph, uint
   if (graph == nullptr) return bad_argument({}, "dermis_graph_slots: graph is NULL");
   const Log& log = graph->context->log;
   return guarded(log, "dermis_graph_slots", [&] {
-    const std::shared_ptr<Program> program = keep_newest(graph->own);
-    const auto& all = program->slots;
+    const std::shared_ptr<CompiledGraph> compiled_graph = keep_newest(graph->own);
+    const auto& all = compiled_graph->slots;
     return fill_array(log, "dermis_graph_slots", count, slots, static_cast<uint32_t>(all.size()),
                       [&](uint32_t i) { return describe_slot(all[i], i); });
   });
@@ -144,26 +144,28 @@ extern "C" dermis_result DERMIS_CALL dermis_graph_describe(dermis_graph graph, d
   return guarded(log, "dermis_graph_describe", [&] {
     if (size == nullptr) return bad_argument(log, "dermis_graph_describe: size is NULL");
     const std::lock_guard changing(graph->changing);
-    std::shared_ptr<const Program> kept;
+    std::shared_ptr<const CompiledGraph> kept;
     std::shared_ptr<const dermis::CompiledPlan> plan;
     {
-      const std::lock_guard lock(graph->own.mutex); // the newest outcome changes with each frame
+      const std::lock_guard lock(graph->own.mutex); // the newest configuration changes with each frame
       kept = graph->own.next ? graph->own.next : graph->own.running;
       plan = kept->current().compiled;
     }
-    const Program& program = *kept;
+    const CompiledGraph& compiled_graph = *kept;
     const dermis::PassTypeRegistry& pass_types = graph->context->pass_types;
     const dermis::CompiledPlan& compiled = *plan;
     std::string description;
     switch (static_cast<int>(format)) {
     case DERMIS_DESCRIBE_JSON:
-      description = dermis::plan_json(program.graph, pass_types, compiled, {program.changes, program.files});
+      description = dermis::plan_json(compiled_graph.graph, pass_types, compiled,
+                                      {compiled_graph.changes, compiled_graph.files});
       break;
     case DERMIS_DESCRIBE_DOT:
-      description = dermis::plan_dot(program.graph, pass_types, compiled);
+      description = dermis::plan_dot(compiled_graph.graph, pass_types, compiled);
       break;
     case DERMIS_DESCRIBE_TEXT:
-      description = dermis::plan_text(program.graph, pass_types, compiled, {program.changes, program.files});
+      description = dermis::plan_text(compiled_graph.graph, pass_types, compiled,
+                                      {compiled_graph.changes, compiled_graph.files});
       break;
     default:
       return bad_argument(log, "dermis_graph_describe: format is {}, expected 0..2",

@@ -34,10 +34,10 @@ dermis_result check_state(const dermis_view_t& view, const Place& place, const S
 }
 
 // Returns the bound slot; null after an error in `result`, or if the plan does not bind the slot.
-const Slot* find_slot(const Place& place, const Program& program, uint32_t number, ResourceType type,
-                      bool bound_before, dermis_result& result) {
+const Slot* find_slot(const Place& place, const CompiledGraph& compiled_graph, uint32_t number,
+                      ResourceType type, bool bound_before, dermis_result& result) {
   result = DERMIS_OK;
-  const Slot& slot = program.slots[number];
+  const Slot& slot = compiled_graph.slots[number];
   if (slot.type != type)
     result = refuse(place, " binds {} to slot {} ('{}'), which takes {}", type_phrase(type), number,
                     slot.name, type_phrase(slot.type));
@@ -49,8 +49,8 @@ const Slot* find_slot(const Place& place, const Program& program, uint32_t numbe
 // Calls `use(place, binding)` for each element of a caller's array, whose stride is the first
 // element's struct_size.
 template <class T, class Use>
-dermis_result for_each(const Place& array, const Program& program, const T* items, uint32_t count,
-                       const T& defaults, Use use) {
+dermis_result for_each(const Place& array, const CompiledGraph& compiled_graph, const T* items,
+                       uint32_t count, const T& defaults, Use use) {
   if (count == 0) return DERMIS_OK;
   if (items == nullptr)
     return bad_argument(array.log, "{}: {} is NULL and its count is {}", array.function, array.array, count);
@@ -68,9 +68,9 @@ dermis_result for_each(const Place& array, const Program& program, const T* item
     if (read != SizedRead::ok)
       return refuse(place, ".struct_size is {}, expected {} as in the first, at least {}: use its INIT",
                     stated_size(from), step, sizeof(T));
-    if (item.slot >= program.slots.size())
+    if (item.slot >= compiled_graph.slots.size())
       return refuse(place, ".slot is {}, the graph has slots 0..{}", item.slot,
-                    static_cast<int64_t>(program.slots.size()) - 1);
+                    static_cast<int64_t>(compiled_graph.slots.size()) - 1);
     if (const dermis_result result = use(place, item); result != DERMIS_OK) return result;
   }
   return DERMIS_OK;
@@ -154,17 +154,18 @@ std::string_view family_problem(const dermis_context_t& context, ResourceType ty
   }
 }
 
-dermis_result check_memory_bindings(dermis_view_t& view, Program& program, const dermis_frame& frame) {
+dermis_result check_memory_bindings(dermis_view_t& view, CompiledGraph& compiled_graph,
+                                    const dermis_frame& frame) {
   const Log& log = view.context->log;
   const char* const function = "dermis_view_record";
-  std::fill(program.buffers.begin(), program.buffers.end(), vulkan::HostBuffer{});
-  std::fill(program.structures.begin(), program.structures.end(), vulkan::HostStructure{});
+  std::fill(compiled_graph.buffers.begin(), compiled_graph.buffers.end(), vulkan::HostBuffer{});
+  std::fill(compiled_graph.structures.begin(), compiled_graph.structures.end(), vulkan::HostStructure{});
   const dermis_buffer_binding no_buffer = DERMIS_BUFFER_BINDING_INIT;
   const auto bind_buffer = [&](const Place& place, const dermis_buffer_binding& binding) {
-    vulkan::HostBuffer& bound = program.buffers[binding.slot];
+    vulkan::HostBuffer& bound = compiled_graph.buffers[binding.slot];
     dermis_result result = DERMIS_OK;
-    const Slot* slot =
-        find_slot(place, program, binding.slot, ResourceType::buffer, bound.buffer != VK_NULL_HANDLE, result);
+    const Slot* slot = find_slot(place, compiled_graph, binding.slot, ResourceType::buffer,
+                                 bound.buffer != VK_NULL_HANDLE, result);
     if (slot == nullptr) return result;
     result = check_buffer(view, place, *slot, binding);
     if (result == DERMIS_OK) result = check_states(view, place, *slot, binding.before, binding.after);
@@ -172,21 +173,21 @@ dermis_result check_memory_bindings(dermis_view_t& view, Program& program, const
              host_state(binding.after)};
     return result;
   };
-  const dermis_result result = for_each({log, function, "buffers", 0}, program, frame.buffers,
+  const dermis_result result = for_each({log, function, "buffers", 0}, compiled_graph, frame.buffers,
                                         frame.buffer_count, no_buffer, bind_buffer);
   if (result != DERMIS_OK) return result;
   const dermis_acceleration_structure_binding no_structure = DERMIS_ACCELERATION_STRUCTURE_BINDING_INIT;
   const auto bind_structure = [&](const Place& place, const dermis_acceleration_structure_binding& binding) {
-    vulkan::HostStructure& bound = program.structures[binding.slot];
+    vulkan::HostStructure& bound = compiled_graph.structures[binding.slot];
     dermis_result checked = DERMIS_OK;
-    const Slot* slot = find_slot(place, program, binding.slot, ResourceType::acceleration_structure,
+    const Slot* slot = find_slot(place, compiled_graph, binding.slot, ResourceType::acceleration_structure,
                                  bound.structure != VK_NULL_HANDLE, checked);
     if (slot == nullptr) return checked;
     if (binding.structure == VK_NULL_HANDLE) return refuse(place, ".structure ('{}') is null", slot->name);
     bound = {binding.structure, host_state(binding.before), host_state(binding.after)};
     return check_states(view, place, *slot, binding.before, binding.after);
   };
-  return for_each({log, function, "structures", 0}, program, frame.structures, frame.structure_count,
+  return for_each({log, function, "structures", 0}, compiled_graph, frame.structures, frame.structure_count,
                   no_structure, bind_structure);
 }
 

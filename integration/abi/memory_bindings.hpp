@@ -19,6 +19,7 @@ std::string_view family_problem(const dermis_context_t& context, ResourceType ty
 
 // Checks every field and fills program.buffers and program.structures. Returns ARGUMENT or VERSION
 // with a message that names the field. Allocates nothing.
-dermis_result check_memory_bindings(dermis_view_t& view, Program& program, const dermis_frame& frame);
+dermis_result check_memory_bindings(dermis_view_t& view, CompiledGraph& compiled_graph,
+                                    const dermis_frame& frame);
 
 } // namespace dermis::abi

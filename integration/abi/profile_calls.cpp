@@ -12,17 +12,18 @@ namespace {
 constexpr const char* function = "dermis_graph_set_profile";
 
 // Reports how long the histories of the graph's own view show the replaced profile.
-void add_settling(const PassTypeRegistry& pass_types, const Program& program, uint32_t outcome, uint32_t id,
-                  Diagnostics& diagnostics) {
+void add_settling(const PassTypeRegistry& pass_types, const CompiledGraph& compiled_graph,
+                  uint32_t configuration, uint32_t id, Diagnostics& diagnostics) {
   std::vector<ResourceId> known;
-  for (const Variant& variant : program.variants) {
-    const Plan& plan = variant.compiled->plan;
+  for (const RunnablePlan& runnable : compiled_graph.plans) {
+    const Plan& plan = runnable.compiled->plan;
     for (uint32_t h = 0; h < plan.histories.size(); ++h) {
       const ResourceId declared = plan.resources[plan.histories[h].resource].declared;
-      const uint32_t frames = settling_frames(pass_types, plan, h, program.outcomes[outcome].settings);
+      const uint32_t frames =
+          settling_frames(pass_types, plan, h, compiled_graph.configurations[configuration].settings);
       if (frames <= 1 || std::find(known.begin(), known.end(), declared) != known.end()) continue;
       known.push_back(declared);
-      const ResourceDeclaration& resource = program.graph.resources[declared.value];
+      const ResourceDeclaration& resource = compiled_graph.graph.resources[declared.value];
       diagnostics.add(
           DiagnosticId::profile_settles, resource.where,
           fmt::format("profile {}: after {} frames at most 1 % of history '{}' is from before the "
@@ -33,7 +34,7 @@ void add_settling(const PassTypeRegistry& pass_types, const Program& program, ui
 }
 
 // Replaces the tables after `input.profiles` has changed. Passes and plans stay unchanged.
-dermis_result replace_tables(dermis_graph_t& graph, ProgramInput&& input, uint32_t id,
+dermis_result replace_tables(dermis_graph_t& graph, CompiledGraphInput&& input, uint32_t id,
                              dermis_report* report) {
   dermis_context_t& context = *graph.context;
   Diagnostics diagnostics;
@@ -42,18 +43,19 @@ dermis_result replace_tables(dermis_graph_t& graph, ProgramInput&& input, uint32
     return conclude(context.log, result, std::move(diagnostics), report);
   }
   {
-    const std::shared_ptr<Program> kept = keep_newest(graph.own);
-    const std::lock_guard lock(graph.own.mutex); // recording chooses an outcome
-    add_settling(context.pass_types, *kept, kept->outcome, id, diagnostics);
+    const std::shared_ptr<CompiledGraph> kept = keep_newest(graph.own);
+    const std::lock_guard lock(graph.own.mutex); // recording chooses an configuration
+    add_settling(context.pass_types, *kept, kept->configuration, id, diagnostics);
   }
   const dermis_result result = conclude(context.log, DERMIS_OK, std::move(diagnostics), report);
   if (result != DERMIS_OK) return result;
   for_each_view(graph, [&](dermis_view_t& view) { // nothing fails from here on
     const std::lock_guard lock(view.mutex);
-    for (const std::shared_ptr<Program>& program : {std::cref(view.running), std::cref(view.next)})
-      if (program)
-        for (const Variant& variant : program->variants)
-          variant.executor->set_tables(input.device_tables);
+    for (const std::shared_ptr<CompiledGraph>& compiled_graph :
+         {std::cref(view.running), std::cref(view.next)})
+      if (compiled_graph)
+        for (const RunnablePlan& plan : compiled_graph->plans)
+          plan.executor->set_tables(input.device_tables);
   });
   graph.input = std::move(input);
   return result;
@@ -73,7 +75,7 @@ dermis_result set_profile(dermis_graph_t& graph, uint32_t id, const dermis_sourc
       return result;
   if (diagnostics.has_errors()) return conclude(log, DERMIS_ERROR_CONFIG, std::move(diagnostics), report);
   const std::lock_guard changing(graph.changing);
-  ProgramInput input = graph.input;
+  CompiledGraphInput input = graph.input;
   const auto at = std::find_if(input.profiles.begin(), input.profiles.end(),
                                [&](const subsurface::NumberedProfile& one) { return one.id == id; });
   if (source == nullptr) {
@@ -89,7 +91,7 @@ dermis_result set_profile(dermis_graph_t& graph, uint32_t id, const dermis_sourc
   if (input.profiles.empty() == graph.input.profiles.empty())
     return replace_tables(graph, std::move(input), id, report);
   input.tables.reset(); // the plan gains or loses passes that serve scattering
-  return replace_programs(graph, std::move(input), vulkan::HistoryReason::reloaded, report);
+  return replace_compiled_graphs(graph, std::move(input), vulkan::HistoryReason::reloaded, report);
 }
 
 } // namespace

@@ -11,8 +11,8 @@ void collect(dermis_view_t& view, uint64_t completed) {
   for (auto& old : view.retired)
     if (old && old->last_frame <= completed) old.reset();
   if (view.running)
-    for (const Variant& variant : view.running->variants)
-      variant.executor->release_tables(completed);
+    for (const RunnablePlan& plan : view.running->plans)
+      plan.executor->release_tables(completed);
 }
 
 void take_over(dermis_view_t& view) {
@@ -43,14 +43,14 @@ dermis_result discard(dermis_view_t& view, const char* function, uint64_t frame_
                         "graph before that: it "
                         "cannot be taken back any more",
                         function, frame_index);
-  Program& program = *view.running;
-  if (!program.variants[recorded.variant].executor->discard_frame(frame_index))
+  CompiledGraph& compiled_graph = *view.running;
+  if (!compiled_graph.plans[recorded.plan].executor->discard_frame(frame_index))
     return bad_argument(log, "{}: frame {} was not recorded", function, frame_index);
-  program.variants[recorded.variant].recorded = recorded.variant_recorded;
-  program.last_frame = recorded.program_last_frame;
-  program.last_jitter_px = recorded.last_jitter_px;
-  program.outcome = recorded.outcome;
-  program.variant = recorded.program_variant;
+  compiled_graph.plans[recorded.plan].recorded = recorded.plan_recorded;
+  compiled_graph.last_frame = recorded.compiled_graph_last_frame;
+  compiled_graph.last_jitter_px = recorded.last_jitter_px;
+  compiled_graph.configuration = recorded.configuration;
+  compiled_graph.plan = recorded.compiled_graph_plan;
   forget(view.chooser, frame_index);
   view.chooser.state = recorded.decision;
   view.chooser.decided_for = recorded.decided_for;
@@ -71,10 +71,10 @@ std::array<double, 2> rescaled_jitter(const dermis_view_t& view, const vulkan::E
   return {jitter[0] * is.width / std::max(was.width, 1u), jitter[1] * is.height / std::max(was.height, 1u)};
 }
 
-uint32_t variant_of(const Program& program, uint32_t outcome, bool empty_bounds) {
-  const uint32_t plan = program.outcomes[outcome].plan;
-  const uint32_t instead = program.variants[plan].without_bounds;
-  return empty_bounds && instead != no_variant ? instead : plan;
+uint32_t plan_of(const CompiledGraph& compiled_graph, uint32_t configuration, bool empty_bounds) {
+  const uint32_t plan = compiled_graph.configurations[configuration].plan;
+  const uint32_t instead = compiled_graph.plans[plan].without_bounds;
+  return empty_bounds && instead != no_plan ? instead : plan;
 }
 
 constexpr uint64_t tile_side = 8, block_side = 32; // pixels
@@ -93,31 +93,32 @@ dermis_result record(dermis_view_t& view, const dermis_frame* given, Capture* ca
   if (const SizedRead read = read_sized(given, frame); read != SizedRead::ok)
     return rejected_size(log, read, function, "frame", stated_size(given), sizeof(dermis_frame));
   if (capture != nullptr) frame.command_buffer = handle_of(*capture);
-  Program& program = newest(view);
+  CompiledGraph& compiled_graph = newest(view);
   CheckedFrame checked;
-  if (const dermis_result result = check_frame(view, program, frame, checked); result != DERMIS_OK)
+  if (const dermis_result result = check_frame(view, compiled_graph, frame, checked); result != DERMIS_OK)
     return result;
   Chooser& chooser = view.chooser;
   if (view.running) observe(chooser, *view.running, frame.completed_frame_index);
   if (const dermis_result loss = check_loss(view, function); loss != DERMIS_OK) return loss;
   choice::DecisionState state =
-      program.serial == chooser.decided_for ? chooser.state : choice::DecisionState{};
+      compiled_graph.serial == chooser.decided_for ? chooser.state : choice::DecisionState{};
   const vulkan::Rectangle& seen = checked.input.rectangle;
   FrameChoice chosen =
-      choose(chooser, program, frame.frame_index, double(frame.delta_seconds), squares_of(seen, tile_side),
-             squares_of(seen, block_side), chooser.forecasts, state);
+      choose(chooser, compiled_graph, frame.frame_index, double(frame.delta_seconds),
+             squares_of(seen, tile_side), squares_of(seen, block_side), chooser.forecasts, state);
   // decided for a view full of subsurface, so hysteresis must not keep it
   if (!chooser.counted) state = {};
   chosen.frame_index = frame.frame_index;
-  const uint32_t variant = variant_of(program, chosen.outcome, checked.empty_bounds());
-  chosen.variant = variant;
-  chosen.first_of_plan = !program.variants[variant].recorded;
-  const vulkan::Executor* before = recorded_before(view, program, variant);
-  const std::array<double, 2> jitter_before = program.last_jitter_px;
-  const bool replaces = program.last_frame == 0 && before != nullptr;
-  if (replaces) program.last_jitter_px = rescaled_jitter(view, *program.variants[variant].executor, *before);
-  if (const dermis_result result =
-          fill_frame(view, program, {chosen.outcome, variant, before, chosen.sample_units}, frame, checked);
+  const uint32_t plan = plan_of(compiled_graph, chosen.configuration, checked.empty_bounds());
+  chosen.plan = plan;
+  chosen.first_of_plan = !compiled_graph.plans[plan].recorded;
+  const vulkan::Executor* before = recorded_before(view, compiled_graph, plan);
+  const std::array<double, 2> jitter_before = compiled_graph.last_jitter_px;
+  const bool replaces = compiled_graph.last_frame == 0 && before != nullptr;
+  if (replaces)
+    compiled_graph.last_jitter_px = rescaled_jitter(view, *compiled_graph.plans[plan].executor, *before);
+  if (const dermis_result result = fill_frame(
+          view, compiled_graph, {chosen.configuration, plan, before, chosen.sample_units}, frame, checked);
       result != DERMIS_OK)
     return result;
   chosen.left_out = checked.empty_bounds();
@@ -125,36 +126,37 @@ dermis_result record(dermis_view_t& view, const dermis_frame* given, Capture* ca
   if (chosen.left_out) chosen.forecast.ms = chosen.forecast.spread_ms = 0;
   collect(view, frame.completed_frame_index);
   if (capture != nullptr) capture_into(*capture, checked.input);
-  if (const vulkan::RecordResult error = program.variants[variant].executor->record(checked.input)) {
+  if (const vulkan::RecordResult error = compiled_graph.plans[plan].executor->record(checked.input)) {
     if (error.kind == vulkan::ErrorKind::device_lost) view.context->lost = true;
-    const bool has_slot = error.slot >= 0 && static_cast<size_t>(error.slot) < program.slots.size();
+    const bool has_slot = error.slot >= 0 && static_cast<size_t>(error.slot) < compiled_graph.slots.size();
     return fail(log, result_of(error.kind), diagnostic_of(error.kind), "{}: {}{}{}{}", function, error.text,
                 has_slot ? " (slot '" : "",
-                has_slot ? program.slots[static_cast<size_t>(error.slot)].name : "", has_slot ? "')" : "");
+                has_slot ? compiled_graph.slots[static_cast<size_t>(error.slot)].name : "",
+                has_slot ? "')" : "");
   }
   if (capture != nullptr && capture->failed) {
-    program.variants[variant].executor->discard_frame(frame.frame_index);
-    program.last_jitter_px = jitter_before;
+    compiled_graph.plans[plan].executor->discard_frame(frame.frame_index);
+    compiled_graph.last_jitter_px = jitter_before;
     return fail(log, DERMIS_ERROR_MEMORY, DiagnosticId::host_memory, "{}: out of host memory", function);
   }
   view.recorded = {};
   view.recorded.known = true;
   view.recorded.last_frame = view.last_frame;
-  view.recorded.program_last_frame = program.last_frame;
+  view.recorded.compiled_graph_last_frame = compiled_graph.last_frame;
   view.recorded.last_jitter_px = jitter_before;
-  view.recorded.outcome = program.outcome;
-  view.recorded.program_variant = program.variant;
-  view.recorded.variant = variant;
-  view.recorded.variant_recorded = program.variants[variant].recorded;
+  view.recorded.configuration = compiled_graph.configuration;
+  view.recorded.compiled_graph_plan = compiled_graph.plan;
+  view.recorded.plan = plan;
+  view.recorded.plan_recorded = compiled_graph.plans[plan].recorded;
   view.recorded.decision = chooser.state;
   view.recorded.decided_for = chooser.decided_for;
   // its histories are copied by this frame
   if (replaces) view.running->last_frame = frame.frame_index;
-  program.last_frame = frame.frame_index;
-  program.last_jitter_px = {frame.jitter_x, frame.jitter_y};
-  program.outcome = chosen.outcome;
-  program.variant = variant;
-  program.variants[variant].recorded = true;
+  compiled_graph.last_frame = frame.frame_index;
+  compiled_graph.last_jitter_px = {frame.jitter_x, frame.jitter_y};
+  compiled_graph.configuration = chosen.configuration;
+  compiled_graph.plan = plan;
+  compiled_graph.plans[plan].recorded = true;
   remember(chooser, chosen, state);
   view.last_frame = frame.frame_index;
   take_over(view);
@@ -163,19 +165,20 @@ dermis_result record(dermis_view_t& view, const dermis_frame* given, Capture* ca
 
 } // namespace
 
-const vulkan::Executor* recorded_before(const dermis_view_t& view, const Program& program, uint32_t variant) {
-  const bool first = program.last_frame == 0;
+const vulkan::Executor* recorded_before(const dermis_view_t& view, const CompiledGraph& compiled_graph,
+                                        uint32_t plan) {
+  const bool first = compiled_graph.last_frame == 0;
   if (first && (!view.next || !view.running)) return nullptr;
-  const Program& other = first ? *view.running : program;
-  const uint32_t last = other.variant;
-  if (other.last_frame == 0 || (!first && last == variant)) return nullptr;
-  return other.variants[last].executor.get();
+  const CompiledGraph& other = first ? *view.running : compiled_graph;
+  const uint32_t last = other.plan;
+  if (other.last_frame == 0 || (!first && last == plan)) return nullptr;
+  return other.plans[last].executor.get();
 }
 
 dermis_result check_loss(const dermis_view_t& view, const char* function) {
   if (view.running)
-    for (const Variant& variant : view.running->variants)
-      if (variant.executor->saw_lost_device()) view.context->lost = true;
+    for (const RunnablePlan& plan : view.running->plans)
+      if (plan.executor->saw_lost_device()) view.context->lost = true;
   return check_alive(*view.context, function);
 }
 

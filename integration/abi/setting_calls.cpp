@@ -34,12 +34,12 @@ bool is_set(const std::vector<HostSetting>& given, const std::string& name) {
 dermis_result get_settings(dermis_view_t& view, const char* function, uint32_t* count, dermis_setting* out) {
   const Log& log = view.context->log;
   const std::lock_guard changing(view.graph->changing);
-  const std::shared_ptr<Program> kept = keep_newest(view);
+  const std::shared_ptr<CompiledGraph> kept = keep_newest(view);
   const Graph& graph = kept->graph;
   std::vector<SettingValue> values;
   {
-    const std::lock_guard lock(view.mutex); // recording chooses an outcome
-    values = kept->outcomes[kept->outcome].settings;
+    const std::lock_guard lock(view.mutex); // recording chooses an configuration
+    values = kept->configurations[kept->configuration].settings;
   }
   const std::vector<uint8_t> per_frame = frame_settings(graph, view.context->pass_types);
   return fill_array(log, function, count, out, static_cast<uint32_t>(values.size()), [&](uint32_t i) {
@@ -92,10 +92,10 @@ void set_in(std::vector<HostSetting>& given, const std::string& name, const std:
 }
 
 // Returns whether the new values change which passes run.
-bool changes_passes(const Program& program, const std::vector<SettingValue>& values) {
-  for (const PassDeclaration& pass : program.graph.passes)
-    if (pass.when.valid() &&
-        evaluate(program.graph, pass.when, program.settings) != evaluate(program.graph, pass.when, values))
+bool changes_passes(const CompiledGraph& compiled_graph, const std::vector<SettingValue>& values) {
+  for (const PassDeclaration& pass : compiled_graph.graph.passes)
+    if (pass.when.valid() && evaluate(compiled_graph.graph, pass.when, compiled_graph.settings) !=
+                                 evaluate(compiled_graph.graph, pass.when, values))
       return true;
   return false;
 }
@@ -103,31 +103,31 @@ bool changes_passes(const Program& program, const std::vector<SettingValue>& val
 dermis_result set_setting(dermis_graph_t& graph, const std::string& name, const std::string& json,
                           dermis_report* report) {
   const Log& log = graph.context->log;
-  const std::shared_ptr<Program> kept = keep_newest(graph.own);
-  const Program& program = *kept;
-  const auto& declared = program.graph.settings;
+  const std::shared_ptr<CompiledGraph> kept = keep_newest(graph.own);
+  const CompiledGraph& compiled_graph = *kept;
+  const auto& declared = compiled_graph.graph.settings;
   Diagnostics diagnostics;
-  const auto at = find_declared(program.graph, name);
+  const auto at = find_declared(compiled_graph.graph, name);
   if (at == declared.end()) {
-    add_unknown("dermis_graph_set_setting", program.graph, name, diagnostics);
+    add_unknown("dermis_graph_set_setting", compiled_graph.graph, name, diagnostics);
     return conclude(log, DERMIS_ERROR_ARGUMENT, std::move(diagnostics), report);
   }
   const auto value = read_setting(*at, json, diagnostics);
   if (!value) return conclude(log, DERMIS_ERROR_CONFIG, std::move(diagnostics), report);
 
-  std::vector<SettingValue> values = program.settings;
+  std::vector<SettingValue> values = compiled_graph.settings;
   values[static_cast<size_t>(at - declared.begin())] = *value;
-  ProgramInput input = graph.input;
+  CompiledGraphInput input = graph.input;
   set_in(input.settings, name, json);
   const auto index = static_cast<uint32_t>(at - declared.begin());
-  if (at->by_budget || changes_passes(program, values))
-    return replace_programs(graph, std::move(input), vulkan::HistoryReason::reloaded, report);
-  std::vector<std::vector<choice::Outcome>> outcomes; // by view without its own value
+  if (at->by_budget || changes_passes(compiled_graph, values))
+    return replace_compiled_graphs(graph, std::move(input), vulkan::HistoryReason::reloaded, report);
+  std::vector<std::vector<choice::Configuration>> configurations; // by view without its own value
   for_each_view(graph, [&](dermis_view_t& view) {
     if (is_set(view.settings, name)) return;
     const std::lock_guard lock(view.mutex);
-    outcomes.push_back(outcomes_with(newest(view), graph.context->pass_types, view.chooser.errors,
-                                     view.chooser.costs, index, *value));
+    configurations.push_back(configurations_with(newest(view), graph.context->pass_types, view.chooser.errors,
+                                                 view.chooser.costs, index, *value));
   });
   const dermis_result result = conclude(log, DERMIS_OK, std::move(diagnostics), report);
   if (result != DERMIS_OK) return result;
@@ -135,9 +135,9 @@ dermis_result set_setting(dermis_graph_t& graph, const std::string& name, const 
   for_each_view(graph, [&](dermis_view_t& view) {
     if (is_set(view.settings, name)) return;
     const std::lock_guard lock(view.mutex);
-    Program& changed = newest(view);
+    CompiledGraph& changed = newest(view);
     changed.settings[index] = *value;
-    changed.outcomes.swap(outcomes[v++]);
+    changed.configurations.swap(configurations[v++]);
   });
   graph.input = std::move(input);
   return result;
@@ -149,7 +149,7 @@ dermis_result set_view_setting(dermis_view_t& view, const std::string& name, con
   constexpr const char* function = "dermis_view_set_setting";
   const Log& log = view.context->log;
   const std::lock_guard changing(view.graph->changing);
-  const std::shared_ptr<Program> kept = keep_newest(view);
+  const std::shared_ptr<CompiledGraph> kept = keep_newest(view);
   const Graph& graph = kept->graph;
   Diagnostics diagnostics;
   const auto at = find_declared(graph, name);
@@ -180,27 +180,27 @@ dermis_result set_view_setting(dermis_view_t& view, const std::string& name, con
     std::erase_if(settings, [&](const HostSetting& setting) { return setting.name == name; });
     value = keep_newest(view.graph->own)->settings[index];
   }
-  std::vector<choice::Outcome> outcomes;
+  std::vector<choice::Configuration> configurations;
   {
     const std::lock_guard lock(view.mutex);
-    outcomes = outcomes_with(newest(view), view.context->pass_types, view.chooser.errors, view.chooser.costs,
-                             index, *value);
+    configurations = configurations_with(newest(view), view.context->pass_types, view.chooser.errors,
+                                         view.chooser.costs, index, *value);
   }
   const dermis_result result = conclude(log, DERMIS_OK, std::move(diagnostics), report);
   if (result != DERMIS_OK) return result;
   const std::lock_guard lock(view.mutex); // nothing fails from here on
-  Program& changed = newest(view);
+  CompiledGraph& changed = newest(view);
   changed.settings[index] = *value;
-  changed.outcomes.swap(outcomes);
+  changed.configurations.swap(configurations);
   view.settings.swap(settings);
   return result;
 }
 
 } // namespace
 
-void apply_own_settings(const dermis_view_t& view, Program& program, Diagnostics& diagnostics) {
+void apply_own_settings(const dermis_view_t& view, CompiledGraph& compiled_graph, Diagnostics& diagnostics) {
   if (view.settings.empty()) return;
-  const Graph& graph = program.graph;
+  const Graph& graph = compiled_graph.graph;
   const std::vector<uint8_t> per_frame = frame_settings(graph, view.context->pass_types);
   for (const HostSetting& own : view.settings) {
     const auto at = find_declared(graph, own.name);
@@ -216,9 +216,9 @@ void apply_own_settings(const dermis_view_t& view, Program& program, Diagnostics
                       own.name, own.json));
       continue;
     }
-    program.settings[index] = *value;
-    for (choice::Outcome& outcome : program.outcomes)
-      outcome.settings[index] = *value;
+    compiled_graph.settings[index] = *value;
+    for (choice::Configuration& configuration : compiled_graph.configurations)
+      configuration.settings[index] = *value;
   }
 }
 

@@ -1,5 +1,5 @@
 #include "framegraph/text/document.hpp"
-#include "integration/abi/program.hpp"
+#include "integration/abi/compiled_graph.hpp"
 
 #include <fmt/format.h>
 

@@ -44,24 +44,25 @@ bool overlap(const vulkan::HostBuffer& x, const vulkan::HostBuffer& y) {
   return x.buffer == y.buffer && x.offset < y.offset + y.bytes && y.offset < x.offset + x.bytes;
 }
 
-dermis_result check_pair(const dermis_view_t& view, const Program& program, size_t i, size_t j) {
-  const Slot &a = program.slots[i], &b = program.slots[j];
+dermis_result check_pair(const dermis_view_t& view, const CompiledGraph& compiled_graph, size_t i, size_t j) {
+  const Slot &a = compiled_graph.slots[i], &b = compiled_graph.slots[j];
   const auto refuse = [&](const char* what, const char* rule) {
     return bad_argument(view.context->log, "{}: slots '{}' and '{}' are bound to the same {}; {}",
                         "dermis_view_record", a.name, b.name, what, rule);
   };
-  const vulkan::HostImage &image = program.images[i], &other_image = program.images[j];
+  const vulkan::HostImage &image = compiled_graph.images[i], &other_image = compiled_graph.images[j];
   if (image.image != VK_NULL_HANDLE && overlap(a, image, b, other_image) &&
       !may_share(a, image, b, other_image))
     return refuse("aspect and layers of an image",
                   "two slots share them only if the graph writes neither, their states are equal without a "
                   "queue family transfer, and both layouts are dermis_slot.best_layout");
-  const vulkan::HostBuffer &buffer = program.buffers[i], &other_buffer = program.buffers[j];
+  const vulkan::HostBuffer &buffer = compiled_graph.buffers[i], &other_buffer = compiled_graph.buffers[j];
   if (buffer.buffer != VK_NULL_HANDLE && overlap(buffer, other_buffer) &&
       !only_read(a, buffer, b, other_buffer))
     return refuse("bytes of a buffer", "two slots share them only if the graph writes neither and their "
                                        "states are equal without a queue family transfer");
-  const vulkan::HostStructure &structure = program.structures[i], &other = program.structures[j];
+  const vulkan::HostStructure &structure = compiled_graph.structures[i],
+                              &other = compiled_graph.structures[j];
   if (structure.structure != VK_NULL_HANDLE && structure.structure == other.structure &&
       !only_read(a, structure, b, other))
     return refuse("acceleration structure", "two slots share it only if their states are equal");
@@ -70,10 +71,11 @@ dermis_result check_pair(const dermis_view_t& view, const Program& program, size
 
 } // namespace
 
-dermis_result check_shared_resources(const dermis_view_t& view, const Program& program) {
-  for (size_t i = 0; i < program.slots.size(); ++i)
-    for (size_t j = i + 1; j < program.slots.size(); ++j)
-      if (const dermis_result result = check_pair(view, program, i, j); result != DERMIS_OK) return result;
+dermis_result check_shared_resources(const dermis_view_t& view, const CompiledGraph& compiled_graph) {
+  for (size_t i = 0; i < compiled_graph.slots.size(); ++i)
+    for (size_t j = i + 1; j < compiled_graph.slots.size(); ++j)
+      if (const dermis_result result = check_pair(view, compiled_graph, i, j); result != DERMIS_OK)
+        return result;
   return DERMIS_OK;
 }
 

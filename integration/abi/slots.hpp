@@ -2,7 +2,7 @@
 // Describes the slots of a graph: its imports and exports in file order, with the compiled plan's
 // use of them.
 
-#include "integration/abi/program.hpp"
+#include "integration/abi/compiled_graph.hpp"
 
 #include <span>
 

@@ -27,16 +27,17 @@ dermis_result create(dermis_graph_t& graph, const dermis_view_desc* given, dermi
     view->chooser.deterministic = from.deterministic;
   }
   Diagnostics diagnostics;
-  std::shared_ptr<Program> program;
-  const dermis_result made = copy_program(*graph.context, graph.input, *keep_newest(graph.own),
-                                          vulkan::HistoryReason::first_frame, diagnostics, program);
+  std::shared_ptr<CompiledGraph> compiled_graph;
+  const dermis_result made =
+      copy_compiled_graph(*graph.context, graph.input, *keep_newest(graph.own),
+                          vulkan::HistoryReason::first_frame, diagnostics, compiled_graph);
   const dermis_result result = conclude(log, made, std::move(diagnostics), report);
   if (result != DERMIS_OK) return result;
-  reserve(view->image_views, program->slots.size());
-  adopt(view->chooser, graph.context->pass_types, *program);
-  view->next = program;
+  reserve(view->image_views, compiled_graph->slots.size());
+  adopt(view->chooser, graph.context->pass_types, *compiled_graph);
+  view->next = compiled_graph;
   graph.others.push_back(std::move(view));
-  share_kernels(*program);
+  share_kernels(*compiled_graph);
   *out = graph.others.back().get();
   return DERMIS_OK;
 }

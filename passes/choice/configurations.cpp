@@ -31,7 +31,7 @@ std::string value_text(const PassTypeSetting& setting, const SettingValue& value
 }
 
 // Returns the values that a pass runs with; values that follow a setting of the graph come from the
-// outcome.
+// configuration.
 std::vector<SettingValue> values_of(const Plan& plan, const PlanPass& pass, const PassType& type,
                                     const std::vector<SettingValue>& settings) {
   std::vector<SettingValue> out;
@@ -109,27 +109,27 @@ RunningPass running(const PassType& type, const std::vector<SettingValue>& value
 }
 
 void describe(const PassTypeRegistry& pass_types, const Plan& plan, const ErrorModel& errors,
-              CostModel& costs, Outcome& outcome) {
+              CostModel& costs, Configuration& configuration) {
   std::vector<RunningPass> passes, without_samples;
-  outcome.passes.clear();
-  outcome.takes_samples = false;
+  configuration.passes.clear();
+  configuration.takes_samples = false;
   for (const PlanPass& pass : plan.passes) {
     const PassType& type = pass_types[pass.type];
-    const std::vector<SettingValue> values = values_of(plan, pass, type, outcome.settings);
+    const std::vector<SettingValue> values = values_of(plan, pass, type, configuration.settings);
     PassLoad load = load_of(plan, pass, type);
     load.cost = costs.add(work_name(type, values));
     load.level = level_of(type, values);
-    outcome.passes.push_back(load);
+    configuration.passes.push_back(load);
     passes.push_back(running(type, values));
     const bool samples = load.groups == PassLoad::Groups::sample_units;
-    outcome.takes_samples = outcome.takes_samples || samples;
+    configuration.takes_samples = configuration.takes_samples || samples;
     if (!samples) without_samples.push_back(passes.back());
   }
-  outcome.technique = find_technique(errors, passes);
-  outcome.without_samples = find_technique(errors, without_samples);
+  configuration.technique = find_technique(errors, passes);
+  configuration.without_samples = find_technique(errors, without_samples);
 }
 
-bool same_work(const Outcome& a, const Outcome& b) {
+bool same_work(const Configuration& a, const Configuration& b) {
   return a.plan == b.plan &&
          std::equal(a.passes.begin(), a.passes.end(), b.passes.begin(), b.passes.end(),
                     [](const PassLoad& x, const PassLoad& y) { return x.cost.value == y.cost.value; });
@@ -197,9 +197,8 @@ std::string work_name(const PassType& type, std::span<const SettingValue> values
   return name;
 }
 
-std::optional<OutcomePlans> make_outcomes(const CompileInput& input, const ErrorModel& errors,
-                                          CostModel& costs, const CompileOne& compile,
-                                          Diagnostics& diagnostics, const std::vector<bool>& pinned) {
+std::optional<Combinations> enumerate_combinations(const CompileInput& input, Diagnostics& diagnostics,
+                                                   const std::vector<bool>& pinned) {
   const Graph& graph = *input.graph;
   std::vector<SettingValue> base = input.settings;
   if (base.empty())
@@ -207,63 +206,70 @@ std::optional<OutcomePlans> make_outcomes(const CompileInput& input, const Error
       base.push_back(setting.default_value);
   for (uint32_t i = 0; i < graph.settings.size(); ++i)
     base[i] = available_option(graph.settings[i], base[i], input.device->features, input.bound);
-  const std::vector<uint32_t> choices = choices_of(graph);
-  std::vector<uint32_t> open = choices;
+  std::vector<uint32_t> open = choices_of(graph);
   std::erase_if(open, [&](uint32_t choice) { return choice < pinned.size() && pinned[choice]; });
-  size_t combinations = 1;
+  size_t count = 1;
   for (const uint32_t choice : open) {
-    combinations *= graph.settings[choice].options.size();
-    if (combinations <= max_outcomes) continue;
-    diagnostics.add(
-        DiagnosticId::too_many_outcomes, graph.settings[choice].where,
-        fmt::format("the options of the settings \"by\": \"budget\" combine to more than {} outcomes",
-                    max_outcomes));
+    count *= graph.settings[choice].options.size();
+    if (count <= max_configurations) continue;
+    diagnostics.add(DiagnosticId::too_many_configurations, graph.settings[choice].where,
+                    fmt::format("the options of the settings \"by\": \"budget\" combine to more than {} "
+                                "configurations",
+                                max_configurations));
     return std::nullopt;
   }
 
-  OutcomePlans out;
+  Combinations out;
   std::vector<std::vector<bool>> on_of_plan;
-  const auto add = [&](const std::vector<SettingValue>& values) {
-    Outcome outcome;
-    outcome.settings = values;
+  const auto add = [&](std::vector<SettingValue> values) {
     std::vector<bool> on = passes_on(graph, values);
     const auto known = std::find(on_of_plan.begin(), on_of_plan.end(), on);
-    outcome.plan = static_cast<uint32_t>(known - on_of_plan.begin());
+    out.plans.push_back(static_cast<uint32_t>(known - on_of_plan.begin()));
     if (known == on_of_plan.end()) {
-      CompileInput one = input;
-      one.settings = values;
-      auto compiled = compile(one, diagnostics);
-      if (!compiled) return false;
-      out.plans.push_back(std::move(*compiled));
+      out.first.push_back(static_cast<uint32_t>(out.settings.size()));
       on_of_plan.push_back(std::move(on));
     }
-    outcome.name = name_of(graph, out.plans[outcome.plan].plan, choices, values);
-    describe(*input.pass_types, out.plans[outcome.plan].plan, errors, costs, outcome);
-    const bool twice = std::any_of(out.outcomes.begin(), out.outcomes.end(),
-                                   [&](const Outcome& other) { return same_work(other, outcome); });
-    if (!twice) out.outcomes.push_back(std::move(outcome));
-    return true;
+    out.settings.push_back(std::move(values));
   };
-  if (!add(base)) return std::nullopt;
+  add(base);
   std::vector<size_t> digits(open.size(), 0);
   do {
     std::vector<SettingValue> values = base;
-    bool offered = true;
+    bool available = true;
     for (size_t i = 0; i < open.size(); ++i) {
       values[open[i]].integer = static_cast<int64_t>(digits[i]);
-      offered = offered && !missing_requirements(graph.settings[open[i]], values[open[i]].integer,
-                                                 input.device->features, input.bound)
-                                .any();
+      available = available && !missing_requirements(graph.settings[open[i]], values[open[i]].integer,
+                                                     input.device->features, input.bound)
+                                    .any();
     }
-    if (offered && !add(values)) return std::nullopt;
+    if (available) add(std::move(values));
   } while (count_up(graph, open, digits));
   return out;
 }
 
-void describe_outcomes(const PassTypeRegistry& pass_types, std::span<const Plan* const> plans,
-                       const ErrorModel& errors, CostModel& costs, std::span<Outcome> outcomes) {
-  for (Outcome& outcome : outcomes)
-    describe(pass_types, *plans[outcome.plan], errors, costs, outcome);
+std::vector<Configuration> make_configurations(const CompileInput& input, const Combinations& combinations,
+                                               std::span<const Plan* const> plans, const ErrorModel& errors,
+                                               CostModel& costs) {
+  const std::vector<uint32_t> choices = choices_of(*input.graph);
+  std::vector<Configuration> out;
+  for (size_t i = 0; i < combinations.settings.size(); ++i) {
+    Configuration made;
+    made.settings = combinations.settings[i];
+    made.plan = combinations.plans[i];
+    made.name = name_of(*input.graph, *plans[made.plan], choices, made.settings);
+    describe(*input.pass_types, *plans[made.plan], errors, costs, made);
+    const bool twice = std::any_of(out.begin(), out.end(),
+                                   [&](const Configuration& other) { return same_work(other, made); });
+    if (!twice) out.push_back(std::move(made));
+  }
+  return out;
+}
+
+void describe_configurations(const PassTypeRegistry& pass_types, std::span<const Plan* const> plans,
+                             const ErrorModel& errors, CostModel& costs,
+                             std::span<Configuration> configurations) {
+  for (Configuration& configuration : configurations)
+    describe(pass_types, *plans[configuration.plan], errors, costs, configuration);
 }
 
 uint64_t groups_of(const PassLoad& pass, const FrameLoad& load) {
@@ -289,17 +295,18 @@ uint64_t groups_of(const PassLoad& pass, const FrameLoad& load) {
   return pass.count;
 }
 
-Estimate calibrated_estimate(const Outcome& outcome, const CostModel& costs, const FrameLoad& load) {
+Estimate calibrated_estimate(const Configuration& configuration, const CostModel& costs,
+                             const FrameLoad& load) {
   Estimate sum;
-  for (const PassLoad& pass : outcome.passes)
+  for (const PassLoad& pass : configuration.passes)
     sum.ms += costs.metered_ms(pass.cost, groups_of(pass, load));
   return sum;
 }
 
-Estimate estimate(const Outcome& outcome, const CostModel& costs, const FrameLoad& load) {
+Estimate estimate(const Configuration& configuration, const CostModel& costs, const FrameLoad& load) {
   Estimate sum{0, 0, true};
   double variance = 0;
-  for (const PassLoad& pass : outcome.passes) {
+  for (const PassLoad& pass : configuration.passes) {
     const Estimate one = costs.estimate(pass.cost, groups_of(pass, load));
     sum.ms += one.ms;
     variance += one.spread_ms * one.spread_ms;
@@ -309,14 +316,15 @@ Estimate estimate(const Outcome& outcome, const CostModel& costs, const FrameLoa
   return sum;
 }
 
-uint32_t units_within(const Outcome& outcome, const CostModel& costs, FrameLoad load, double budget_ms,
-                      bool deterministic) {
+uint32_t units_within(const Configuration& configuration, const CostModel& costs, FrameLoad load,
+                      double budget_ms, bool deterministic) {
   // large, so that rounding errors of the difference do not matter
   constexpr uint64_t many = 1u << 16;
-  if (!outcome.takes_samples) return UINT32_MAX;
+  if (!configuration.takes_samples) return UINT32_MAX;
   const auto expected = [&](uint64_t units) {
     load.sample_units = units;
-    return deterministic ? calibrated_estimate(outcome, costs, load) : estimate(outcome, costs, load);
+    return deterministic ? calibrated_estimate(configuration, costs, load)
+                         : estimate(configuration, costs, load);
   };
   const Estimate without = expected(0);
   const double unit_ms = (expected(many).ms - without.ms) / double(many);
@@ -329,11 +337,11 @@ uint32_t units_within(const Outcome& outcome, const CostModel& costs, FrameLoad 
   return units_beside(expected(std::min<uint64_t>(units_beside(without.spread_ms), many)).spread_ms);
 }
 
-double expected_rmse(const ErrorModel& errors, const Outcome& outcome, double d_px, uint32_t given,
-                     uint32_t wanted) {
-  const double all = expected_rmse(errors, outcome.technique, d_px);
-  if (!outcome.takes_samples) return all;
-  const double none = expected_rmse(errors, outcome.without_samples, d_px);
+double expected_rmse(const ErrorModel& errors, const Configuration& configuration, double d_px,
+                     uint32_t given, uint32_t wanted) {
+  const double all = expected_rmse(errors, configuration.technique, d_px);
+  if (!configuration.takes_samples) return all;
+  const double none = expected_rmse(errors, configuration.without_samples, d_px);
   const double fraction = wanted > 0 ? std::min(1.0, double(given) / double(wanted)) : 0.0;
   return std::sqrt(none * none + fraction * (all * all - none * none));
 }

@@ -6,7 +6,6 @@
 #include "passes/choice/cost_model.hpp"
 #include "passes/choice/error_model.hpp"
 
-#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -15,7 +14,7 @@
 namespace dermis::choice {
 
 // maximum per graph: the product of the options of its choices
-inline constexpr size_t max_outcomes = 64;
+inline constexpr size_t max_configurations = 64;
 
 // Number of workgroups that a pass launches.
 struct PassLoad {
@@ -35,43 +34,45 @@ struct PassLoad {
   int32_t level = -1;
 };
 
-struct Outcome {
+struct Configuration {
   std::string name; // "technique=separable, taps=25": the choices that affect the running passes
   std::vector<SettingValue> settings; // one per Graph::settings
-  uint32_t plan = 0;                  // index into OutcomePlans::plans
+  uint32_t plan = 0;                  // index into Combinations::first
   int32_t technique = -1;             // index into ErrorModel::techniques; -1: none runs
-  // Technique if no tile has samples; equal to `technique` if the outcome takes no samples by tile.
+  // Technique if no tile has samples; equal to `technique` if the configuration takes no samples by tile.
   int32_t without_samples = -1;
   bool takes_samples = false;   // takes samples by tile, as many as the budget allows
   std::vector<PassLoad> passes; // in plan order
 };
 
-// Compiles one combination: dermis::compile, or a cache.
-using CompileOne = std::function<std::optional<CompiledPlan>(const CompileInput&, Diagnostics&)>;
-
-struct OutcomePlans {
-  std::vector<Outcome> outcomes; // at least one; the first has the default values
-  // Distinct plans: outcomes whose settings turn no pass on or off share a plan.
-  std::vector<CompiledPlan> plans;
+// The combinations of all choices by budget that the device and the bound slots offer.
+struct Combinations {
+  std::vector<std::vector<SettingValue>> settings; // at least one; the first has the default values
+  std::vector<uint32_t> plans; // by combination: number of its plan. Equal passes share a plan.
+  std::vector<uint32_t> first; // by plan: the first combination that needs the plan
 };
 
 // Returns the name of a work, such as "subsurface.separable axis=vertical taps=25". `values`: one
 // per setting of the pass type.
 std::string work_name(const PassType& type, std::span<const SettingValue> values);
 
-// Enumerates the combinations of all choices by budget and compiles them. Other settings have the
-// values in `input` (empty: the defaults). So have choices that the host made itself, `pinned` (one
-// per setting; empty: none). Combinations that run the same passes with the same values are merged.
-// Adds costs to `costs`. Returns nullopt with errors in `diagnostics`: those of compile(), and more
-// than max_outcomes.
-std::optional<OutcomePlans> make_outcomes(const CompileInput& input, const ErrorModel& errors,
-                                          CostModel& costs, const CompileOne& compile,
-                                          Diagnostics& diagnostics, const std::vector<bool>& pinned = {});
+// Enumerates the combinations. Other settings have the values in `input` (empty: the defaults). So
+// have choices that the host made itself, `pinned` (one per setting; empty: none). Returns nullopt
+// with an error in `diagnostics` if there are more than max_configurations.
+std::optional<Combinations> enumerate_combinations(const CompileInput& input, Diagnostics& diagnostics,
+                                                   const std::vector<bool>& pinned = {});
 
-// Updates the passes and the technique of each outcome, after a change of a setting that turns no
-// pass on or off, or with other models. `plans` is indexed by Outcome::plan.
-void describe_outcomes(const PassTypeRegistry& pass_types, std::span<const Plan* const> plans,
-                       const ErrorModel& errors, CostModel& costs, std::span<Outcome> outcomes);
+// Returns the configurations of compiled combinations. `plans`: one per Combinations::first.
+// Combinations that run the same passes with the same values are merged. Adds costs to `costs`.
+std::vector<Configuration> make_configurations(const CompileInput& input, const Combinations& combinations,
+                                               std::span<const Plan* const> plans, const ErrorModel& errors,
+                                               CostModel& costs);
+
+// Updates the passes and the technique of each configuration, after a change of a setting that turns no
+// pass on or off, or with other models. `plans` is indexed by Configuration::plan.
+void describe_configurations(const PassTypeRegistry& pass_types, std::span<const Plan* const> plans,
+                             const ErrorModel& errors, CostModel& costs,
+                             std::span<Configuration> configurations);
 
 // Properties of a frame that affect costs.
 struct FrameLoad {
@@ -83,21 +84,22 @@ struct FrameLoad {
 };
 uint64_t groups_of(const PassLoad& pass, const FrameLoad& load);
 // Returns the time by the calibration only, which is equal on all machines; no spread.
-Estimate calibrated_estimate(const Outcome& outcome, const CostModel& costs, const FrameLoad& load);
-Estimate estimate(const Outcome& outcome, const CostModel& costs, const FrameLoad& load);
+Estimate calibrated_estimate(const Configuration& configuration, const CostModel& costs,
+                             const FrameLoad& load);
+Estimate estimate(const Configuration& configuration, const CostModel& costs, const FrameLoad& load);
 // Typical deviations of a budget that samples leave free when they fill it. One of twenty frames is
 // late by more than two (a mean deviation is 0.8 of a standard deviation). Work that runs in any
 // case needs one.
 inline constexpr double given_deviations = 2.0;
 // Returns the units of samples that fit into `budget_ms` in addition to all other work, with the
-// deviations of both. Returns UINT32_MAX if the outcome takes no samples by tile, or if a unit
+// deviations of both. Returns UINT32_MAX if the configuration takes no samples by tile, or if a unit
 // costs nothing.
-uint32_t units_within(const Outcome& outcome, const CostModel& costs, FrameLoad load, double budget_ms,
-                      bool deterministic);
+uint32_t units_within(const Configuration& configuration, const CostModel& costs, FrameLoad load,
+                      double budget_ms, bool deterministic);
 // Returns the expected RMSE if `given` of the `wanted` units are taken: interpolates linearly
 // between the mean squares without samples and with all samples. Units with the largest benefit
 // come first, so the result is an upper bound of the measured error.
-double expected_rmse(const ErrorModel& errors, const Outcome& outcome, double d_px, uint32_t given,
-                     uint32_t wanted);
+double expected_rmse(const ErrorModel& errors, const Configuration& configuration, double d_px,
+                     uint32_t given, uint32_t wanted);
 
 } // namespace dermis::choice

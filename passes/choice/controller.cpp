@@ -7,9 +7,9 @@ namespace dermis::choice {
 namespace {
 
 constexpr double margin = 1.0; // typical deviations that must fit in addition to the prediction
-// factor on the budget within which the running outcome stays
+// factor on the budget within which the running configuration stays
 constexpr double stay_tolerance = 1.03;
-// a switch needs an error below this fraction of the running outcome's
+// a switch needs an error below this fraction of the running configuration's
 constexpr double worth_a_switch = 0.97;
 // seconds between switches that no budget forces; with the switches back, 2 per second
 constexpr double cool_down = 1;
@@ -23,7 +23,7 @@ bool less_error(const Forecast& a, const Forecast& b) {
   return a.rmse != b.rmse ? a.rmse < b.rmse : a.ms < b.ms;
 }
 
-// Returns the outcome with the smallest time; the first of equal ones.
+// Returns the configuration with the smallest time; the first of equal ones.
 uint32_t fastest(std::span<const Forecast> forecasts) {
   uint32_t best = 0;
   for (uint32_t i = 1; i < forecasts.size(); ++i)
@@ -31,7 +31,7 @@ uint32_t fastest(std::span<const Forecast> forecasts) {
   return best;
 }
 
-// Returns the outcome with the least error among those for which `factor` times the bound fits the
+// Returns the configuration with the least error among those for which `factor` times the bound fits the
 // budget. UINT32_MAX: none.
 uint32_t best_within(std::span<const Forecast> forecasts, double budget_ms, double factor) {
   uint32_t best = UINT32_MAX;
@@ -45,7 +45,7 @@ uint32_t best_within(std::span<const Forecast> forecasts, double budget_ms, doub
 void find_next_better(std::span<const Forecast> forecasts, double budget_ms, Decision& decision) {
   for (uint32_t i = 0; i < forecasts.size(); ++i) {
     const double unmet = bound_ms(forecasts[i]) - budget_ms;
-    if (forecasts[i].rmse >= forecasts[decision.outcome].rmse || unmet <= 0) continue;
+    if (forecasts[i].rmse >= forecasts[decision.configuration].rmse || unmet <= 0) continue;
     if (decision.next_better != UINT32_MAX && unmet >= decision.missing_ms) continue;
     decision.next_better = i;
     decision.missing_ms = unmet;
@@ -56,8 +56,8 @@ double seen_square(const Forecast& forecast) {
   return forecast.rmse * forecast.rmse - forecast.missed_rmse * forecast.missed_rmse;
 }
 
-bool decided_by_transmission(std::span<const Forecast> forecasts, double budget_ms, uint32_t outcome) {
-  const Forecast& now = forecasts[outcome];
+bool decided_by_transmission(std::span<const Forecast> forecasts, double budget_ms, uint32_t configuration) {
+  const Forecast& now = forecasts[configuration];
   return std::any_of(forecasts.begin(), forecasts.end(), [&](const Forecast& other) {
     return bound_ms(other) <= budget_ms && seen_square(other) < seen_square(now) && other.rmse > now.rmse;
   });
@@ -66,8 +66,8 @@ bool decided_by_transmission(std::span<const Forecast> forecasts, double budget_
 Decision choose(std::span<const Forecast> forecasts, double budget_ms, const DecisionState& state) {
   const uint32_t best = best_within(forecasts, budget_ms, 1.0);
   if (best == UINT32_MAX) return {fastest(forecasts), ReasonKind::nothing_fits};
-  if (state.outcome >= forecasts.size()) return {best, ReasonKind::first_frame};
-  const uint32_t now = state.outcome;
+  if (state.configuration >= forecasts.size()) return {best, ReasonKind::first_frame};
+  const uint32_t now = state.configuration;
   if (bound_ms(forecasts[now]) > stay_tolerance * budget_ms) return {best, ReasonKind::over_budget};
   const uint32_t better = best_within(forecasts, budget_ms, entry_margin);
   if (better == UINT32_MAX || better == now || !less_error(forecasts[better], forecasts[now]))
@@ -120,13 +120,13 @@ const char* why_text(const Decision& decision) {
 Decision decide(std::span<const Forecast> forecasts, double budget_ms, double seconds, DecisionState& state) {
   Decision decision = choose(forecasts, budget_ms, state);
   find_next_better(forecasts, budget_ms, decision);
-  decision.transmission_stats = decided_by_transmission(forecasts, budget_ms, decision.outcome);
-  const bool first = state.outcome == UINT32_MAX;
-  const bool switched = !first && decision.outcome != state.outcome;
+  decision.transmission_stats = decided_by_transmission(forecasts, budget_ms, decision.configuration);
+  const bool first = state.configuration == UINT32_MAX;
+  const bool switched = !first && decision.configuration != state.configuration;
   const double passed = seconds > 0 ? seconds : usual_frame;
   state.seconds_since_switch = switched || first ? 0 : state.seconds_since_switch + passed;
   state.switches += switched ? 1 : 0;
-  state.outcome = decision.outcome;
+  state.configuration = decision.configuration;
   return decision;
 }
 

@@ -19,8 +19,8 @@ extern "C" dermis_result DERMIS_CALL dermis_graph_reload_shaders(dermis_graph gr
       return conclude(log, DERMIS_ERROR_UNSUPPORTED, std::move(diagnostics), report);
     }
     const std::lock_guard changing(graph->changing);
-    ProgramInput input = graph->input;
+    CompiledGraphInput input = graph->input;
     use_shaders(input.shaders, open, user);
-    return replace_programs(*graph, std::move(input), dermis::vulkan::HistoryReason::reloaded, report);
+    return replace_compiled_graphs(*graph, std::move(input), dermis::vulkan::HistoryReason::reloaded, report);
   });
 }

@@ -129,12 +129,12 @@ struct GraphInputs {
 
 // The library's choice for the frame and its expectations.
 struct FrameChoice {
-  // next_better: the more accurate outcome that exceeds the budget by least time; "": none.
-  std::string outcome, technique, why, next_better;
+  // next_better: the more accurate configuration that exceeds the budget by least time; "": none.
+  std::string configuration, technique, why, next_better;
   double budget_ms = 0, predicted_ms = 0, predicted_spread_ms = 0, measured_ms = -1, metered_ms = 0,
          predicted_rmse = 0;
   double next_better_missing_ms = 0, mean_d_px = 0;
-  uint32_t outcomes = 1, view_tiles = 0, scattering_tiles = 0, copied_tiles = 0, switches = 0;
+  uint32_t configurations = 1, view_tiles = 0, scattering_tiles = 0, copied_tiles = 0, switches = 0;
   uint32_t uniform_tiles = 0, dispatches = 0;
   uint64_t groups = 0;
   std::array<uint32_t, 3> sampled_tiles{};      // tiles with 8, 16, 32 samples per pixel

@@ -19,7 +19,12 @@ constexpr const char* errors_text = R"({ "dermis_errors": 2, "scenes": "invented
  { "name": "separable 11", "pass_types": [{ "type": "subsurface.separable", "set": { "taps": "11" } }], "rmse": [[1, 0.005]],
    "through": 0.5, "by_rays": true }] })";
 
-struct Outcomes : ::testing::Test {
+struct Compiled {
+  std::vector<Configuration> configurations;
+  std::vector<CompiledPlan> plans;
+};
+
+struct Configurations : ::testing::Test {
   PassTypeRegistry pass_types = subsurface::make_pass_types();
   DeviceProfile device = generic_profile();
   Diagnostics diagnostics;
@@ -35,7 +40,7 @@ struct Outcomes : ::testing::Test {
     errors = std::move(*model);
   }
 
-  std::optional<OutcomePlans> outcomes_of(const std::string& settings, const std::string& extra_set = "") {
+  std::optional<Compiled> configurations_of(const std::string& settings, const std::string& extra_set = "") {
     const std::string common = R"("read": { "light": "light", "material": "material", "depth": "depth",
       "tiles": "tiles", "arguments": "arguments")";
     const std::string text = R"({ "dermis": 2, "name": "g", "settings": {)" + settings + R"(},
@@ -74,43 +79,55 @@ struct Outcomes : ::testing::Test {
     input.device = &device;
     input.view_width = 640;
     input.view_height = 360;
-    return make_outcomes(
-        input, errors, costs,
-        [](const CompileInput& one, Diagnostics& reported) { return compile(one, reported); }, diagnostics);
+    const auto combinations = enumerate_combinations(input, diagnostics);
+    if (!combinations) return std::nullopt;
+    Compiled out;
+    std::vector<const Plan*> made;
+    out.plans.reserve(combinations->first.size());
+    for (const uint32_t first : combinations->first) {
+      CompileInput one = input;
+      one.settings = combinations->settings[first];
+      auto compiled = compile(one, diagnostics);
+      if (!compiled) return std::nullopt;
+      made.push_back(&out.plans.emplace_back(std::move(*compiled)).plan);
+    }
+    out.configurations = make_configurations(input, *combinations, made, errors, costs);
+    return out;
   }
 };
 
-TEST_F(Outcomes, GraphWithoutChoices_HasOneConfiguration) {
-  const auto all = outcomes_of(R"("technique": { "enum": ["separable", "off"], "default": "separable" })");
+TEST_F(Configurations, GraphWithoutChoices_HasOneConfiguration) {
+  const auto all =
+      configurations_of(R"("technique": { "enum": ["separable", "off"], "default": "separable" })");
   ASSERT_TRUE(all) << format_as_json(diagnostics);
-  ASSERT_EQ(all->outcomes.size(), 1u);
+  ASSERT_EQ(all->configurations.size(), 1u);
   EXPECT_EQ(all->plans.size(), 1u);
 }
 
-TEST_F(Outcomes, EqualWork_IsOneConfiguration) {
-  const auto all =
-      outcomes_of(R"("technique": { "choice": ["separable", "off"], "by": "budget", "default": "separable" },
+TEST_F(Configurations, EqualWork_IsOneConfiguration) {
+  const auto all = configurations_of(
+      R"("technique": { "choice": ["separable", "off"], "by": "budget", "default": "separable" },
     "taps": { "choice": ["11", "17", "25"], "by": "budget", "default": "25" })",
-                  R"(, "taps": "$taps")");
+      R"(, "taps": "$taps")");
   ASSERT_TRUE(all) << format_as_json(diagnostics);
   // Three configurations have taps; without the technique, taps have no effect.
-  ASSERT_EQ(all->outcomes.size(), 4u);
+  ASSERT_EQ(all->configurations.size(), 4u);
   EXPECT_EQ(all->plans.size(), 2u);
-  EXPECT_EQ(all->outcomes[0].name, "technique=separable, taps=25");
-  EXPECT_EQ(all->outcomes[0].technique, 1); // This row holds for any number of taps.
-  EXPECT_EQ(all->outcomes[1].technique, 2); // The row for 11 taps is more specific.
-  EXPECT_EQ(all->outcomes.back().technique, -1);
-  EXPECT_EQ(all->outcomes.back().name, "technique=off"); // No pass that runs has taps.
+  EXPECT_EQ(all->configurations[0].name, "technique=separable, taps=25");
+  EXPECT_EQ(all->configurations[0].technique, 1); // This row holds for any number of taps.
+  EXPECT_EQ(all->configurations[1].technique, 2); // The row for 11 taps is more specific.
+  EXPECT_EQ(all->configurations.back().technique, -1);
+  EXPECT_EQ(all->configurations.back().name, "technique=off"); // No pass that runs has taps.
 }
 
-TEST_F(Outcomes, ErrorsAreLinearOnLogarithmicAxes) {
+TEST_F(Configurations, ErrorsAreLinearOnLogarithmicAxes) {
   EXPECT_NEAR(expected_rmse(errors, 0, 4), 0.008, 1e-12);
   EXPECT_NEAR(expected_rmse(errors, 0, 0.1), 0.004, 1e-12);
   EXPECT_NEAR(expected_rmse(errors, 0, 100), 0.016, 1e-12);
   EXPECT_NEAR(expected_rmse(errors, -1, 2), std::sqrt(0.02 * 0.04), 1e-12);
 }
 
-TEST_F(Outcomes, MissedTransmission_MatchesTheTable) {
+TEST_F(Configurations, MissedTransmission_MatchesTheTable) {
   EXPECT_NEAR(missed_rmse(errors, 2, 0.3), 0.15, 1e-12);
   EXPECT_NEAR(missed_rmse(errors, -1, 0.3), 0.45, 1e-12);
   EXPECT_EQ(missed_rmse(errors, 0, 0.3), 0); // The table has no number for this case.
@@ -118,42 +135,44 @@ TEST_F(Outcomes, MissedTransmission_MatchesTheTable) {
   EXPECT_FALSE(errors.techniques[0].by_rays);
 }
 
-TEST_F(Outcomes, PartialSamples_InterpolateTheSquaredError) {
-  Outcome outcome;
-  outcome.technique = 0;
-  outcome.without_samples = -1;
-  outcome.takes_samples = true;
+TEST_F(Configurations, PartialSamples_InterpolateTheSquaredError) {
+  Configuration configuration;
+  configuration.technique = 0;
+  configuration.without_samples = -1;
+  configuration.takes_samples = true;
   const double all = expected_rmse(errors, 0, 4), none = expected_rmse(errors, -1, 4);
-  EXPECT_NEAR(expected_rmse(errors, outcome, 4, 0, 100), none, 1e-12);
-  EXPECT_NEAR(expected_rmse(errors, outcome, 4, 100, 100), all, 1e-12);
-  EXPECT_NEAR(expected_rmse(errors, outcome, 4, 25, 100), std::sqrt(0.75 * none * none + 0.25 * all * all),
-              1e-12);
+  EXPECT_NEAR(expected_rmse(errors, configuration, 4, 0, 100), none, 1e-12);
+  EXPECT_NEAR(expected_rmse(errors, configuration, 4, 100, 100), all, 1e-12);
+  EXPECT_NEAR(expected_rmse(errors, configuration, 4, 25, 100),
+              std::sqrt(0.75 * none * none + 0.25 * all * all), 1e-12);
   // More samples than requested have no effect.
-  EXPECT_NEAR(expected_rmse(errors, outcome, 4, 200, 100), all, 1e-12);
-  EXPECT_NEAR(expected_rmse(errors, outcome, 4, 5, 0), none, 1e-12); // No tile requests samples.
-  outcome.takes_samples = false;
-  EXPECT_NEAR(expected_rmse(errors, outcome, 4, 0, 100), all, 1e-12);
+  EXPECT_NEAR(expected_rmse(errors, configuration, 4, 200, 100), all, 1e-12);
+  EXPECT_NEAR(expected_rmse(errors, configuration, 4, 5, 0), none, 1e-12); // No tile requests samples.
+  configuration.takes_samples = false;
+  EXPECT_NEAR(expected_rmse(errors, configuration, 4, 0, 100), all, 1e-12);
 }
 
-TEST_F(Outcomes, CostsGrowWithTheListedTiles) {
-  const auto all = outcomes_of(R"("technique": { "enum": ["separable", "off"], "default": "separable" })");
+TEST_F(Configurations, CostsGrowWithTheListedTiles) {
+  const auto all =
+      configurations_of(R"("technique": { "enum": ["separable", "off"], "default": "separable" })");
   ASSERT_TRUE(all);
   for (uint64_t groups = 200; groups <= 3600; groups += 200)
-    for (const PassLoad& pass : all->outcomes[0].passes)
+    for (const PassLoad& pass : all->configurations[0].passes)
       costs.observe(pass.cost, groups, 0.01 + 1e-4 * static_cast<double>(groups));
-  const double few = estimate(all->outcomes[0], costs, {3600, 100}).ms;
-  const double many = estimate(all->outcomes[0], costs, {3600, 3600}).ms;
+  const double few = estimate(all->configurations[0], costs, {3600, 100}).ms;
+  const double many = estimate(all->configurations[0], costs, {3600, 3600}).ms;
   EXPECT_GT(many, few + 4 * 1e-4 * 3400); // Setup, two passes and combine run over listed tiles.
 }
 
-TEST_F(Outcomes, TooManyConfigurations_AreRefusedAtTheChoice) {
-  EXPECT_FALSE(outcomes_of("\"technique\": { \"choice\": [\"separable\", \"b\", \"c\", \"d\", \"e\", \"f\", "
-                           "\"g\", \"h\"], \"by\": \"budget\", "
-                           "\"default\": \"b\" },\n"
-                           "\"two\": { \"choice\": [\"a\", \"b\", \"c\", \"d\", \"e\", \"f\", \"g\", \"h\", "
-                           "\"i\"], \"by\": \"budget\", \"default\": \"a\" }"));
+TEST_F(Configurations, TooManyConfigurations_AreRefusedAtTheChoice) {
+  EXPECT_FALSE(
+      configurations_of("\"technique\": { \"choice\": [\"separable\", \"b\", \"c\", \"d\", \"e\", \"f\", "
+                        "\"g\", \"h\"], \"by\": \"budget\", "
+                        "\"default\": \"b\" },\n"
+                        "\"two\": { \"choice\": [\"a\", \"b\", \"c\", \"d\", \"e\", \"f\", \"g\", \"h\", "
+                        "\"i\"], \"by\": \"budget\", \"default\": \"a\" }"));
   ASSERT_EQ(diagnostics.count(Severity::error), 1u) << format_as_json(diagnostics);
-  EXPECT_EQ(diagnostics.list.back().id, DiagnosticId::too_many_outcomes);
+  EXPECT_EQ(diagnostics.list.back().id, DiagnosticId::too_many_configurations);
   EXPECT_EQ(diagnostics.list.back().where.line, 2u);
 }
 
@@ -161,29 +180,29 @@ TEST_F(Outcomes, TooManyConfigurations_AreRefusedAtTheChoice) {
 // without deviation.
 TEST(Units, LeaveTwoDeviationsOfTheBudgetFree) {
   CostModel costs({{"fixed work", 10000, 0, 0.1}, {"samples", 0, 1, 0}});
-  Outcome outcome;
-  outcome.takes_samples = true;
+  Configuration configuration;
+  configuration.takes_samples = true;
   PassLoad work, samples;
   work.cost = costs.add("fixed work");
   samples.cost = costs.add("samples");
   samples.groups = PassLoad::Groups::sample_units;
-  outcome.passes = {work, samples};
+  configuration.passes = {work, samples};
 
   const double budget_ms = 20;
   FrameLoad load;
-  load.sample_units = units_within(outcome, costs, load, budget_ms, false);
-  const Estimate filled = estimate(outcome, costs, load);
-  EXPECT_NEAR(filled.ms + 2 * filled.spread_ms, budget_ms, 0.002) << "as many units as fit";
+  load.sample_units = units_within(configuration, costs, load, budget_ms, false);
+  const Estimate filled = estimate(configuration, costs, load);
+  EXPECT_NEAR(filled.ms + 2 * filled.spread_ms, budget_ms, 0.002) << "to a unit: as many as fit";
   EXPECT_NEAR(static_cast<double>(load.sample_units), 8000, 2);
   // In deterministic mode the deviation is zero.
-  EXPECT_NEAR(units_within(outcome, costs, {}, budget_ms, true), 10000, 2);
+  EXPECT_NEAR(units_within(configuration, costs, {}, budget_ms, true), 10000, 2);
   // No samples fit if the other work takes the whole budget.
-  EXPECT_EQ(units_within(outcome, costs, {}, 11.9, false), 0u);
-  outcome.takes_samples = false;
-  EXPECT_EQ(units_within(outcome, costs, {}, budget_ms, false), UINT32_MAX);
+  EXPECT_EQ(units_within(configuration, costs, {}, 11.9, false), 0u);
+  configuration.takes_samples = false;
+  EXPECT_EQ(units_within(configuration, costs, {}, budget_ms, false), UINT32_MAX);
 }
 
-TEST_F(Outcomes, CurvesThatDoNotIncreaseAreRefused) {
+TEST_F(Configurations, CurvesThatDoNotIncreaseAreRefused) {
   Diagnostics other;
   const auto document = parse_document("errors.json",
                                        "{ \"dermis_errors\": 2, \"scenes\": \"s\", \"techniques\": "

@@ -407,7 +407,7 @@ Result<FrameChoice> graph_choice(DermisHost& host, uint64_t frame_index) {
   const dermis_result result = read_reported(dermis_graph_view(host.graph), frame_index, choice);
   if (result != DERMIS_OK) return dermis_error("dermis_view_report", result);
   FrameChoice out;
-  out.outcome = choice.configuration;
+  out.configuration = choice.configuration;
   out.technique = choice.technique;
   out.why = choice.reason;
   out.next_better = choice.next_better;
@@ -419,7 +419,7 @@ Result<FrameChoice> graph_choice(DermisHost& host, uint64_t frame_index) {
   out.predicted_rmse = choice.predicted_rmse;
   out.next_better_missing_ms = choice.next_better_missing_ms;
   out.mean_d_px = choice.mean_d_px;
-  out.outcomes = choice.configuration_count;
+  out.configurations = choice.configuration_count;
   out.view_tiles = choice.view_tiles;
   out.scattering_tiles = choice.scattering_tiles;
   out.copied_tiles = choice.copied_tiles;

@@ -16,7 +16,7 @@ void ChoiceReport::add(uint32_t frame, const demo::FrameChoice& choice,
 
 std::string describe_choice(const demo::FrameChoice& choice) {
   const uint32_t listed = choice.scattering_tiles + choice.copied_tiles + choice.uniform_tiles;
-  std::string text = fmt::format("{}: {} tiles", choice.outcome, choice.scattering_tiles);
+  std::string text = fmt::format("{}: {} tiles", choice.configuration, choice.scattering_tiles);
   if (choice.mean_d_px > 0) text += fmt::format(" (d {:.1f} px)", choice.mean_d_px);
   for (size_t k = 0; k < choice.sampled_tiles.size(); ++k)
     if (choice.sampled_tiles[k] > 0)
@@ -49,15 +49,15 @@ std::string ChoiceReport::text() const {
   if (frames_.empty()) return "";
   const demo::FrameChoice& newest = frames_.back().choice;
   std::string text;
-  if (newest.outcomes > 1 && frames_.size() > 1) {
+  if (newest.configurations > 1 && frames_.size() > 1) {
     std::vector<std::string> seen;
     for (const Frame& frame : frames_)
-      if (std::find(seen.begin(), seen.end(), frame.choice.outcome) == seen.end())
-        seen.push_back(frame.choice.outcome);
-    for (const std::string& outcome : seen) {
+      if (std::find(seen.begin(), seen.end(), frame.choice.configuration) == seen.end())
+        seen.push_back(frame.choice.configuration);
+    for (const std::string& configuration : seen) {
       const auto count = std::count_if(frames_.begin(), frames_.end(),
-                                       [&](const Frame& frame) { return frame.choice.outcome == outcome; });
-      text += fmt::format("{} of {} frames ran {}\n", count, frames_.size(), outcome);
+                                       [&](const Frame& frame) { return frame.choice.configuration == configuration; });
+      text += fmt::format("{} of {} frames ran {}\n", count, frames_.size(), configuration);
     }
   }
   return text + fmt::format("frame {}: {}\n", frames_.back().frame, describe_choice(newest)) +
@@ -68,7 +68,7 @@ void ChoiceReport::write(JsonWriter& writer) const {
   writer.open_array();
   for (const Frame& frame : frames_) {
     const demo::FrameChoice& choice = frame.choice;
-    writer.open_object(true).member("frame", frame.frame).member("outcome", std::string_view(choice.outcome));
+    writer.open_object(true).member("frame", frame.frame).member("outcome", std::string_view(choice.configuration));
     writer.member("technique", std::string_view(choice.technique))
         .member("why", std::string_view(choice.why));
     writer.member("budget_ms", choice.budget_ms).member("predicted_ms", choice.predicted_ms);

@@ -22,7 +22,7 @@ public:
   // histories: "technique=sap: 412 tiles, copied 3, skipped 3,185: 2.10 ms predicted, 2.20
   // measured, budget 2.50; ...".
   std::string text() const;
-  // [{"frame": .., "outcome": .., ..}, ..]
+  // [{"frame": .., "configuration": .., ..}, ..]
   void write(JsonWriter& writer) const;
 
 private:

@@ -10,20 +10,31 @@ std::vector<std::vector<NamedValue>> choice_sets(const LoadedGraph& loaded, cons
                                                  Diagnostics& diagnostics) {
   const DeviceProfile device = generic_profile();
   const CompileChoices choices = read_choices(loaded.graph);
-  choice::CostModel costs;
-  const auto made = choice::make_outcomes(
-      compile_input(loaded, device, size, choices), {"", {{1, 1}}, {}}, costs,
-      [](const CompileInput& one, Diagnostics& reported) { return compile(one, reported); }, diagnostics);
+  const CompileInput input = compile_input(loaded, device, size, choices);
   std::vector<std::vector<NamedValue>> sets;
-  if (!made) return sets;
-  for (const choice::Outcome& outcome : made->outcomes) {
+  const auto combinations = choice::enumerate_combinations(input, diagnostics);
+  if (!combinations) return sets;
+  std::vector<CompiledPlan> compiled;
+  for (const uint32_t first : combinations->first) {
+    CompileInput one = input;
+    one.settings = combinations->settings[first];
+    auto plan = compile(one, diagnostics);
+    if (!plan) return sets;
+    compiled.push_back(std::move(*plan));
+  }
+  std::vector<const Plan*> plans;
+  for (const CompiledPlan& one : compiled)
+    plans.push_back(&one.plan);
+  choice::CostModel costs;
+  for (const choice::Configuration& configuration :
+       choice::make_configurations(input, *combinations, plans, {"", {{1, 1}}, {}}, costs)) {
     std::vector<NamedValue>& set = sets.emplace_back();
     for (size_t i = 0; i < loaded.graph.settings.size(); ++i) {
       const SettingDeclaration& setting = loaded.graph.settings[i];
       if (setting.by_budget)
         set.emplace_back(
             setting.name,
-            fmt::format("\"{}\"", setting.options[static_cast<size_t>(outcome.settings[i].integer)]));
+            fmt::format("\"{}\"", setting.options[static_cast<size_t>(configuration.settings[i].integer)]));
     }
   }
   return sets;

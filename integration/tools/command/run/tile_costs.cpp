@@ -16,16 +16,16 @@ namespace {
 constexpr double tile_pixels = 64;
 
 // Splits "technique=hybrid, variant=smooth" into settings.
-void add_outcome(const Graph& graph, std::string_view outcome, std::vector<NamedValue>& settings) {
-  while (!outcome.empty()) {
-    const size_t end = std::min(outcome.find(", "), outcome.size()), equals = outcome.find('=');
+void add_outcome(const Graph& graph, std::string_view configuration, std::vector<NamedValue>& settings) {
+  while (!configuration.empty()) {
+    const size_t end = std::min(configuration.find(", "), configuration.size()), equals = configuration.find('=');
     if (equals < end) {
-      const std::string name(outcome.substr(0, equals));
+      const std::string name(configuration.substr(0, equals));
       if (std::any_of(graph.settings.begin(), graph.settings.end(),
                       [&](const SettingDeclaration& one) { return one.name == name; }))
-        settings.emplace_back(name, std::string(outcome.substr(equals + 1, end - equals - 1)));
+        settings.emplace_back(name, std::string(configuration.substr(equals + 1, end - equals - 1)));
     }
-    outcome.remove_prefix(std::min(end + 2, outcome.size()));
+    configuration.remove_prefix(std::min(end + 2, configuration.size()));
   }
 }
 
@@ -55,7 +55,7 @@ double TileCosts::total() const {
 TileCosts tile_costs(const LoadedGraph& loaded, const Size& size, std::span<const NamedValue> settings,
                      const demo::FrameChoice& choice) {
   std::vector<NamedValue> values(settings.begin(), settings.end());
-  add_outcome(loaded.graph, choice.outcome, values);
+  add_outcome(loaded.graph, choice.configuration, values);
   Diagnostics scratch; // not reported: the frame ran, so the graph compiles
   const auto compiled = compile_generic(loaded, size, read_choices(loaded.graph, values), scratch);
   TileCosts out;

@@ -27,7 +27,7 @@ struct TileCosts {
   double total() const;        // T'(n), texels
 };
 
-// Returns the costs of a frame that ran `choice.outcome` of the graph. `settings` are those of
+// Returns the costs of a frame that ran `choice.configuration` of the graph. `settings` are those of
 // --set. Reads are counted from the kernels' source (image_reads.hpp), not measured.
 TileCosts tile_costs(const LoadedGraph& loaded, const Size& size, std::span<const NamedValue> settings,
                      const demo::FrameChoice& choice);

@@ -79,13 +79,13 @@ std::string Trace::json(const std::string& command, const std::string& device) c
     begin_event(out, "tiles", "C", one.at_ms);
     out.key("args").open_object().member("scatter", choice.scattering_tiles);
     out.member("flat", choice.uniform_tiles).member("copied", choice.copied_tiles).close().close();
-    if (choice.outcome != before) {
-      begin_event(out, choice.outcome, "i", one.at_ms);
+    if (choice.configuration != before) {
+      begin_event(out, choice.configuration, "i", one.at_ms);
       out.member("s", "p").member("cat", "choice").member("tid", host_track);
       out.key("args").open_object().member("frame", one.frame).member("why", choice.why);
       out.member("predicted_rmse", choice.predicted_rmse).close().close();
     }
-    before = choice.outcome;
+    before = choice.configuration;
   }
   out.close().member("displayTimeUnit", "ms").key("otherData").open_object();
   out.member("command", command).member("device", device).close().close();

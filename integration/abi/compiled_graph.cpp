@@ -1,4 +1,4 @@
-#include "integration/abi/program.hpp"
+#include "integration/abi/compiled_graph.hpp"
 
 #include "framegraph/compile/availability.hpp"
 
@@ -53,7 +53,7 @@ std::vector<bool> pinned_settings(const Graph& graph, const std::vector<HostSett
 }
 
 // Asks the host only once for each name.
-FileText open_file(ProgramInput& input, std::string_view name) {
+FileText open_file(CompiledGraphInput& input, std::string_view name) {
   const auto known = input.included.find(name);
   if (known != input.included.end()) return {known->second.name, known->second.text, ""};
   FileText file = ask_host(input.include, input.include_user, name);
@@ -61,7 +61,7 @@ FileText open_file(ProgramInput& input, std::string_view name) {
   return file;
 }
 
-std::optional<Composition> compose_sources(ProgramInput& input, Diagnostics& diagnostics) {
+std::optional<Composition> compose_sources(CompiledGraphInput& input, Diagnostics& diagnostics) {
   auto graph = parse_document(input.source_name, input.source_text, diagnostics);
   std::vector<Document> overlays;
   for (const SourceText& overlay : input.overlays)
@@ -93,16 +93,17 @@ Environment environment_of(const subsurface::KernelTables& tables) { // refers t
 }
 
 // Creates one executor per plan. If there are several plans, their transients share memory.
-vulkan::Error make_executors(dermis_context_t& context, ProgramInput& input, vulkan::HistoryReason history,
-                             vulkan::KernelStore& kernels, Program& program) {
+vulkan::Error make_executors(dermis_context_t& context, CompiledGraphInput& input,
+                             vulkan::HistoryReason history, vulkan::KernelStore& kernels,
+                             CompiledGraph& compiled_graph) {
   const std::vector<vulkan::KernelCode> codes = kernel_codes(input.shaders);
-  const subsurface::TableUse use = subsurface::table_use(program.graph, context.pass_types);
+  const subsurface::TableUse use = subsurface::table_use(compiled_graph.graph, context.pass_types);
   if (!input.tables || input.tables->use != use)
     if (vulkan::Error error = make_tables(context, use, input)) return error;
   const Environment environment = environment_of(*input.tables);
   vulkan::ExecutorInput executor;
   executor.device = &context.device;
-  executor.graph = &program.graph;
+  executor.graph = &compiled_graph.graph;
   executor.pass_types = &context.pass_types;
   executor.kernels = codes;
   executor.environment = environment;
@@ -113,41 +114,41 @@ vulkan::Error make_executors(dermis_context_t& context, ProgramInput& input, vul
   executor.history = history;
   executor.host_pass = record_host_pass;
   executor.host_pass_user = &context.host_passes;
-  if (program.variants.size() > 1) {
+  if (compiled_graph.plans.size() > 1) {
     std::vector<const Plan*> plans;
-    for (const Variant& variant : program.variants)
-      plans.push_back(&variant.compiled->plan);
-    if (vulkan::Error error = vulkan::HeapPool::create(context.device, plans, program.heap_pool))
+    for (const RunnablePlan& plan : compiled_graph.plans)
+      plans.push_back(&plan.compiled->plan);
+    if (vulkan::Error error = vulkan::HeapPool::create(context.device, plans, compiled_graph.heap_pool))
       return error;
   }
-  executor.heap_pool = program.heap_pool.get();
-  for (Variant& variant : program.variants) {
-    executor.plan = &variant.compiled->plan;
-    executor.kept_plan = {variant.compiled, executor.plan};
-    if (vulkan::Error error = vulkan::Executor::create(executor, variant.executor)) return error;
+  executor.heap_pool = compiled_graph.heap_pool.get();
+  for (RunnablePlan& plan : compiled_graph.plans) {
+    executor.plan = &plan.compiled->plan;
+    executor.kept_plan = {plan.compiled, executor.plan};
+    if (vulkan::Error error = vulkan::Executor::create(executor, plan.executor)) return error;
   }
   return {};
 }
 
-void reserve_bindings(Program& program) {
-  program.images.resize(program.slots.size());
-  program.buffers.resize(program.slots.size());
-  program.structures.resize(program.slots.size());
+void reserve_bindings(CompiledGraph& compiled_graph) {
+  compiled_graph.images.resize(compiled_graph.slots.size());
+  compiled_graph.buffers.resize(compiled_graph.slots.size());
+  compiled_graph.structures.resize(compiled_graph.slots.size());
 }
 
-void name_options(Program& program) {
-  for (const SettingDeclaration& declared : program.graph.settings) {
-    std::vector<const char*>& names = program.option_names.emplace_back();
+void name_options(CompiledGraph& compiled_graph) {
+  for (const SettingDeclaration& declared : compiled_graph.graph.settings) {
+    std::vector<const char*>& names = compiled_graph.option_names.emplace_back();
     for (const std::string& option : declared.options)
       names.push_back(option.c_str());
   }
 }
 
 // Merges the plans' requirements on images that the host must provide.
-std::vector<Slot> slots_of(const Program& program) {
-  std::vector<Slot> slots = make_slots(program.graph, program.variants.front().compiled->plan);
-  for (const Variant& variant : program.variants) {
-    const std::vector<Slot> others = make_slots(program.graph, variant.compiled->plan);
+std::vector<Slot> slots_of(const CompiledGraph& compiled_graph) {
+  std::vector<Slot> slots = make_slots(compiled_graph.graph, compiled_graph.plans.front().compiled->plan);
+  for (const RunnablePlan& plan : compiled_graph.plans) {
+    const std::vector<Slot> others = make_slots(compiled_graph.graph, plan.compiled->plan);
     for (size_t i = 0; i < slots.size(); ++i) {
       slots[i].vk_usage |= others[i].vk_usage;
       slots[i].read = slots[i].read || others[i].read;
@@ -161,8 +162,8 @@ std::vector<Slot> slots_of(const Program& program) {
 // Compiles the plan for frames with empty bounds that replaces plan `number`. Adds a reason for
 // each pass of `instead_of` that the new plan turns off.
 std::optional<CompiledPlan> compile_without_bounds(const CompileInput& input,
-                                                   const std::vector<choice::Outcome>& outcomes,
-                                                   uint32_t number, PlanCache& plans,
+                                                   const std::vector<choice::Configuration>& configurations,
+                                                   uint32_t number, PlanCache& cache,
                                                    CompiledPlan& instead_of, Diagnostics& diagnostics) {
   Graph graph = *input.graph;
   turn_scattering_off(graph, *input.pass_types);
@@ -172,10 +173,10 @@ std::optional<CompiledPlan> compile_without_bounds(const CompileInput& input,
     if (resource.exported && resource.origin != Origin::imported) resource.optional = true;
   CompileInput one = input;
   one.graph = &graph;
-  const auto runs = [&](const choice::Outcome& outcome) { return outcome.plan == number; };
-  one.settings = std::find_if(outcomes.begin(), outcomes.end(), runs)->settings;
+  const auto runs = [&](const choice::Configuration& configuration) { return configuration.plan == number; };
+  one.settings = std::find_if(configurations.begin(), configurations.end(), runs)->settings;
   Diagnostics reported; // warnings repeat those of the graph's own plans
-  auto compiled = compile(one, plans, reported);
+  auto compiled = compile(one, cache, reported);
   for (Diagnostic& message : reported.list) {
     if (compiled) break;
     message.text += ", in frames with empty bounds";
@@ -193,7 +194,8 @@ dermis_result refused(dermis_context_t& context, const vulkan::Error& error, Dia
   return error.kind == vulkan::ErrorKind::argument ? DERMIS_ERROR_INTERNAL : result_of(error.kind);
 }
 
-vulkan::Error make_tables(dermis_context_t& context, const subsurface::TableUse& use, ProgramInput& input) {
+vulkan::Error make_tables(dermis_context_t& context, const subsurface::TableUse& use,
+                          CompiledGraphInput& input) {
   auto tables =
       std::make_shared<const subsurface::KernelTables>(subsurface::make_kernel_tables(use, input.profiles));
   if (vulkan::Error error =
@@ -203,33 +205,37 @@ vulkan::Error make_tables(dermis_context_t& context, const subsurface::TableUse&
   return {};
 }
 
-std::vector<choice::Outcome> described(const PassTypeRegistry& pass_types, const Program& program,
-                                       const choice::ErrorModel& errors, choice::CostModel& costs,
-                                       std::vector<choice::Outcome> outcomes) {
+std::vector<choice::Configuration> described(const PassTypeRegistry& pass_types,
+                                             const CompiledGraph& compiled_graph,
+                                             const choice::ErrorModel& errors, choice::CostModel& costs,
+                                             std::vector<choice::Configuration> configurations) {
   std::vector<const Plan*> plans;
-  for (const Variant& variant : program.variants)
-    plans.push_back(&variant.compiled->plan);
-  describe_outcomes(pass_types, plans, errors, costs, outcomes);
-  return outcomes;
+  for (const RunnablePlan& plan : compiled_graph.plans)
+    plans.push_back(&plan.compiled->plan);
+  describe_configurations(pass_types, plans, errors, costs, configurations);
+  return configurations;
 }
 
-std::vector<choice::Outcome> outcomes_with(const Program& program, const PassTypeRegistry& pass_types,
-                                           const choice::ErrorModel& errors, choice::CostModel& costs,
-                                           uint32_t setting, const SettingValue& value) {
-  std::vector<choice::Outcome> outcomes = program.outcomes;
-  for (choice::Outcome& outcome : outcomes)
-    outcome.settings[setting] = value;
-  return described(pass_types, program, errors, costs, std::move(outcomes));
+std::vector<choice::Configuration> configurations_with(const CompiledGraph& compiled_graph,
+                                                       const PassTypeRegistry& pass_types,
+                                                       const choice::ErrorModel& errors,
+                                                       choice::CostModel& costs, uint32_t setting,
+                                                       const SettingValue& value) {
+  std::vector<choice::Configuration> configurations = compiled_graph.configurations;
+  for (choice::Configuration& configuration : configurations)
+    configuration.settings[setting] = value;
+  return described(pass_types, compiled_graph, errors, costs, std::move(configurations));
 }
 
-dermis_result build_program(dermis_context_t& context, ProgramInput& input, vulkan::HistoryReason history,
-                            PlanCache& plans, const choice::ErrorModel& errors, choice::CostModel& costs,
-                            Diagnostics& diagnostics, std::shared_ptr<Program>& program) {
+dermis_result build_compiled_graph(dermis_context_t& context, CompiledGraphInput& input,
+                                   vulkan::HistoryReason history, PlanCache& cache,
+                                   const choice::ErrorModel& errors, choice::CostModel& costs,
+                                   Diagnostics& diagnostics, std::shared_ptr<CompiledGraph>& compiled_graph) {
   auto composition = compose_sources(input, diagnostics);
   if (!composition) return DERMIS_ERROR_CONFIG;
   auto graph = read_graph(composition->document, context.pass_types, diagnostics);
   if (!graph) return DERMIS_ERROR_CONFIG;
-  auto candidate = std::make_shared<Program>();
+  auto candidate = std::make_shared<CompiledGraph>();
   candidate->graph = std::move(*graph);
   candidate->changes = std::move(composition->changes);
   for (const SourceFile& file : diagnostics.files)
@@ -253,34 +259,44 @@ dermis_result build_program(dermis_context_t& context, ProgramInput& input, vulk
     candidate->settings[i] = available_option(candidate->graph.settings[i], candidate->settings[i],
                                               context.profile.features, compile_input.bound);
   compile_input.settings = candidate->settings;
-  auto made = choice::make_outcomes(
-      compile_input, errors, costs,
-      [&](const CompileInput& one, Diagnostics& reported) { return compile(one, plans, reported); },
-      diagnostics, pinned_settings(candidate->graph, input.settings));
-  // including errors of profiles and slots
-  if (!made || diagnostics.has_errors()) return DERMIS_ERROR_CONFIG;
-  candidate->outcomes = std::move(made->outcomes);
+  const auto combinations = choice::enumerate_combinations(compile_input, diagnostics,
+                                                           pinned_settings(candidate->graph, input.settings));
+  if (!combinations) return DERMIS_ERROR_CONFIG;
+  std::vector<CompiledPlan> made;
+  for (const uint32_t first : combinations->first) {
+    CompileInput one = compile_input;
+    one.settings = combinations->settings[first];
+    auto compiled = compile(one, cache, diagnostics);
+    if (!compiled) return DERMIS_ERROR_CONFIG;
+    made.push_back(std::move(*compiled));
+  }
+  if (diagnostics.has_errors()) return DERMIS_ERROR_CONFIG; // including errors of profiles and slots
+  std::vector<const Plan*> made_plans;
+  for (const CompiledPlan& one : made)
+    made_plans.push_back(&one.plan);
+  candidate->configurations =
+      choice::make_configurations(compile_input, *combinations, made_plans, errors, costs);
   std::vector<CompiledPlan> empty_plans;
-  for (uint32_t p = 0; p < made->plans.size(); ++p) {
-    CompiledPlan& compiled = made->plans[p];
-    Variant variant;
-    variant.left_out = left_out_without_bounds(context.pass_types, compiled.plan);
+  for (uint32_t p = 0; p < made.size(); ++p) {
+    CompiledPlan& compiled = made[p];
+    RunnablePlan plan;
+    plan.left_out = left_out_without_bounds(context.pass_types, compiled.plan);
     if (!candidate->without_material && reads_what_is_left_out(context.pass_types, compiled.plan)) {
       auto empty =
-          compile_without_bounds(compile_input, candidate->outcomes, p, plans, compiled, diagnostics);
+          compile_without_bounds(compile_input, candidate->configurations, p, cache, compiled, diagnostics);
       if (!empty) return DERMIS_ERROR_CONFIG;
-      variant.without_bounds = static_cast<uint32_t>(made->plans.size() + empty_plans.size());
+      plan.without_bounds = static_cast<uint32_t>(made.size() + empty_plans.size());
       empty_plans.push_back(std::move(*empty));
     }
-    variant.compiled = std::make_shared<const CompiledPlan>(std::move(compiled));
-    candidate->variants.push_back(std::move(variant));
+    plan.compiled = std::make_shared<const CompiledPlan>(std::move(compiled));
+    candidate->plans.push_back(std::move(plan));
   }
   for (CompiledPlan& compiled : empty_plans) {
-    Variant& variant = candidate->variants.emplace_back();
-    variant.left_out.assign(compiled.plan.passes.size(), 0);
-    variant.compiled = std::make_shared<const CompiledPlan>(std::move(compiled));
+    RunnablePlan& plan = candidate->plans.emplace_back();
+    plan.left_out.assign(compiled.plan.passes.size(), 0);
+    plan.compiled = std::make_shared<const CompiledPlan>(std::move(compiled));
   }
-  candidate->variant = candidate->outcomes[candidate->outcome].plan;
+  candidate->plan = candidate->configurations[candidate->configuration].plan;
   candidate->slots = slots_of(*candidate);
   reserve_bindings(*candidate);
   name_options(*candidate);
@@ -290,29 +306,28 @@ dermis_result build_program(dermis_context_t& context, ProgramInput& input, vulk
     return DERMIS_ERROR_SHADER;
   if (const vulkan::Error error = make_executors(context, input, history, *candidate->kernels, *candidate))
     return refused(context, error, diagnostics);
-  program = std::move(candidate);
+  compiled_graph = std::move(candidate);
   return DERMIS_OK;
 }
 
-void share_kernels(Program& program) noexcept {
-  if (program.kernels == nullptr) return;
-  program.kernels->hand_over();
-  program.kernels.reset();
+void share_kernels(CompiledGraph& compiled_graph) noexcept {
+  if (compiled_graph.kernels == nullptr) return;
+  compiled_graph.kernels->hand_over();
+  compiled_graph.kernels.reset();
 }
 
-dermis_result copy_program(dermis_context_t& context, ProgramInput& input, const Program& of,
-                           vulkan::HistoryReason history, Diagnostics& diagnostics,
-                           std::shared_ptr<Program>& program) {
-  auto candidate = std::make_shared<Program>();
+dermis_result copy_compiled_graph(dermis_context_t& context, CompiledGraphInput& input,
+                                  const CompiledGraph& of, vulkan::HistoryReason history,
+                                  Diagnostics& diagnostics, std::shared_ptr<CompiledGraph>& compiled_graph) {
+  auto candidate = std::make_shared<CompiledGraph>();
   candidate->without_material = of.without_material;
   candidate->graph = of.graph;
   candidate->changes = of.changes;
   candidate->files = of.files;
-  candidate->outcomes = of.outcomes;
-  for (const Variant& variant : of.variants)
-    candidate->variants.push_back(
-        {variant.compiled, nullptr, false, variant.without_bounds, variant.left_out});
-  candidate->variant = candidate->outcomes[candidate->outcome].plan;
+  candidate->configurations = of.configurations;
+  for (const RunnablePlan& plan : of.plans)
+    candidate->plans.push_back({plan.compiled, nullptr, false, plan.without_bounds, plan.left_out});
+  candidate->plan = candidate->configurations[candidate->configuration].plan;
   candidate->settings = of.settings;
   candidate->slots = of.slots;
   reserve_bindings(*candidate);
@@ -321,7 +336,7 @@ dermis_result copy_program(dermis_context_t& context, ProgramInput& input, const
   vulkan::KernelStore& kernels = of.kernels != nullptr ? *of.kernels : *candidate->kernels;
   if (const vulkan::Error error = make_executors(context, input, history, kernels, *candidate))
     return refused(context, error, diagnostics);
-  program = std::move(candidate);
+  compiled_graph = std::move(candidate);
   return DERMIS_OK;
 }
 

@@ -35,7 +35,7 @@ struct SourceText {
 };
 
 // Input of a program; copied from the host and kept for reload and resize.
-struct ProgramInput {
+struct CompiledGraphInput {
   std::string source_name, source_text;
   std::vector<SourceText> overlays;
   dermis_include_fn include = nullptr;
@@ -54,7 +54,7 @@ struct ProgramInput {
   std::shared_ptr<const vulkan::EnvironmentTables> device_tables;
 };
 
-// An import or export as the host sees it; `id` is its position in Program::slots.
+// An import or export as the host sees it; `id` is its position in CompiledGraph::slots.
 struct Slot {
   std::string name;
   ResourceId resource;
@@ -69,38 +69,38 @@ struct Slot {
   uint32_t width = 0, height = 0;
 };
 
-inline constexpr uint32_t no_variant = 0xffffffffu;
+inline constexpr uint32_t no_plan = 0xffffffffu;
 
 // One plan of the graph and its executor.
-struct Variant {
+struct RunnablePlan {
   std::shared_ptr<const CompiledPlan> compiled; // shared by all views
   std::unique_ptr<vulkan::Executor> executor;
   bool recorded = false; // at least once
-  // For frames with empty bounds: the plan that runs instead, as an index into Program::variants,
-  // or no_variant; and by plan pass whether the pass of this plan is left out.
-  uint32_t without_bounds = no_variant;
+  // For frames with empty bounds: the plan that runs instead, as an index into CompiledGraph::plans,
+  // or no_plan; and by plan pass whether the pass of this plan is left out.
+  uint32_t without_bounds = no_plan;
   std::vector<uint8_t> left_out{};
-  // by plan pass; only for plans of frames with empty bounds, others use Outcome::passes
+  // by plan pass; only for plans of frames with empty bounds, others use Configuration::passes
   std::vector<choice::PassLoad> loads{};
 };
 
 // The program of one view. Views of one graph share compiled plans and pipelines; everything else
 // is per view.
-struct Program {
+struct CompiledGraph {
   bool without_material = false; // no profile: passes that serve scattering are off
   uint64_t serial = 0;           // unique among the programs of a graph
   Graph graph;
   std::vector<Change> changes;   // changes made by overlays and included files
   std::vector<SourceFile> files; // files of the changes, without their texts
   // configurations of the choices by budget; first: the defaults
-  std::vector<choice::Outcome> outcomes;
+  std::vector<choice::Configuration> configurations;
   // for the transients of all variants; null if there is only one
   std::unique_ptr<vulkan::HeapPool> heap_pool;
   // new kernels, until the context has them; then null
   std::unique_ptr<vulkan::KernelStore> kernels;
-  std::vector<Variant> variants;      // by Outcome::plan, then those of Variant::without_bounds
-  uint32_t outcome = 0;               // recorded last, or to be recorded first
-  uint32_t variant = 0;               // recorded last, or to be recorded first
+  std::vector<RunnablePlan> plans;    // by Configuration::plan, then those of RunnablePlan::without_bounds
+  uint32_t configuration = 0;         // recorded last, or to be recorded first
+  uint32_t plan = 0;                  // recorded last, or to be recorded first
   std::vector<SettingValue> settings; // by Graph::settings: choices by budget at their defaults
   std::vector<std::vector<const char*>> option_names; // by Graph::settings, into `graph`
   std::vector<Slot> slots;
@@ -112,43 +112,50 @@ struct Program {
   uint64_t last_frame = 0;
   std::array<double, 2> last_jitter_px{}; // of that frame
 
-  const Variant& current() const { return variants[outcomes[outcome].plan]; } // of the outcome
-  const Variant& recorded() const { return variants[variant]; }
+  const RunnablePlan& current() const {
+    return plans[configurations[configuration].plan];
+  } // of the configuration
+  const RunnablePlan& recorded() const { return plans[plan]; }
 };
 
-// Parses, compiles and allocates. Plans come from the cache `plans` if it has them, and are added
-// otherwise. On failure `diagnostics` says why and `program` is unchanged. Stores files that the
+// Parses, compiles and allocates. Plans come from `cache` if it has them, and are added
+// otherwise. On failure `diagnostics` says why and `compiled_graph` is unchanged. Stores files that the
 // host delivers and fitted tables in `input`, and adds new entries to `costs`. Call adopt() before
 // the first record. Thread: any.
-dermis_result build_program(dermis_context_t& context, ProgramInput& input, vulkan::HistoryReason history,
-                            PlanCache& plans, const choice::ErrorModel& errors, choice::CostModel& costs,
-                            Diagnostics& diagnostics, std::shared_ptr<Program>& program);
+dermis_result build_compiled_graph(dermis_context_t& context, CompiledGraphInput& input,
+                                   vulkan::HistoryReason history, PlanCache& cache,
+                                   const choice::ErrorModel& errors, choice::CostModel& costs,
+                                   Diagnostics& diagnostics, std::shared_ptr<CompiledGraph>& compiled_graph);
 
 // Adds the error to `diagnostics` and returns its result.
 dermis_result refused(dermis_context_t& context, const vulkan::Error& error, Diagnostics& diagnostics);
 
 // Fits the tables of input.profiles that passes `use`, and copies them to the device.
-vulkan::Error make_tables(dermis_context_t& context, const subsurface::TableUse& use, ProgramInput& input);
+vulkan::Error make_tables(dermis_context_t& context, const subsurface::TableUse& use,
+                          CompiledGraphInput& input);
 
 // Shares the program's new kernels with all graphs of the context. Call it once nothing can fail
 // any more.
-void share_kernels(Program& program) noexcept;
+void share_kernels(CompiledGraph& compiled_graph) noexcept;
 
 // Copies the program for another view. `input` must be the input that `of` was built from.
-dermis_result copy_program(dermis_context_t& context, ProgramInput& input, const Program& of,
-                           vulkan::HistoryReason history, Diagnostics& diagnostics,
-                           std::shared_ptr<Program>& program);
+dermis_result copy_compiled_graph(dermis_context_t& context, CompiledGraphInput& input,
+                                  const CompiledGraph& of, vulkan::HistoryReason history,
+                                  Diagnostics& diagnostics, std::shared_ptr<CompiledGraph>& compiled_graph);
 
-// Returns `outcomes` with the costs of their passes and their technique, according to the given
+// Returns `configurations` with the costs of their passes and their technique, according to the given
 // tables. Adds new entries to `costs`. Needed after a setting or a table changed.
-std::vector<choice::Outcome> described(const PassTypeRegistry& pass_types, const Program& program,
-                                       const choice::ErrorModel& errors, choice::CostModel& costs,
-                                       std::vector<choice::Outcome> outcomes);
+std::vector<choice::Configuration> described(const PassTypeRegistry& pass_types,
+                                             const CompiledGraph& compiled_graph,
+                                             const choice::ErrorModel& errors, choice::CostModel& costs,
+                                             std::vector<choice::Configuration> configurations);
 
-// Returns the described outcomes with a new value of a setting that turns no pass on or off.
-std::vector<choice::Outcome> outcomes_with(const Program& program, const PassTypeRegistry& pass_types,
-                                           const choice::ErrorModel& errors, choice::CostModel& costs,
-                                           uint32_t setting, const SettingValue& value);
+// Returns the described configurations with a new value of a setting that turns no pass on or off.
+std::vector<choice::Configuration> configurations_with(const CompiledGraph& compiled_graph,
+                                                       const PassTypeRegistry& pass_types,
+                                                       const choice::ErrorModel& errors,
+                                                       choice::CostModel& costs, uint32_t setting,
+                                                       const SettingValue& value);
 
 // Returns the value that `json` gives to a declared setting; nullopt with errors in `diagnostics`.
 std::optional<SettingValue> read_setting(const SettingDeclaration& declared, const std::string& json,
