@@ -49,9 +49,13 @@
  *   - "Any": from any thread, at any time.
  *   - "One per view": no two calls with the same view at the same time. Different views are
  *     independent, and so are graphs.
- *   - "Beside": from any thread, also while other threads record views of the graph. These continue
- *     with the state they have; changes of one graph wait for each other.
+ *   - "Concurrent": from any thread, also while other threads record views of the graph. These
+ *     continue with the state they have; changes of one graph wait for each other.
  *   Create and destroy come first and last: no other thread uses the object then.
+ *
+ * COSTS
+ *   Each function states whether it may create pipelines, allocate device memory or take more than
+ *   1 ms. "Costs: none": none of the three.
  *
  * TWO-CALL ARRAYS
  *   Call with the array NULL to get the count. Then call with an array whose first element has
@@ -140,9 +144,10 @@ typedef void(DERMIS_CALL* dermis_log_fn)(void* user, const dermis_message* messa
 
 /* ---- version --------------------------------------------------------------------------------- */
 
-/* Returns major << 22 | minor << 12 | patch. Thread: any. Errors: none. */
+/* Returns major << 22 | minor << 12 | patch. Costs: none. Thread: any. Errors: none. */
 DERMIS_API uint32_t DERMIS_CALL dermis_version(void);
-/* Returns a static string, never NULL, also for unknown values. Thread: any. Errors: none. */
+/* Returns a static string, never NULL, also for unknown values. Costs: none. Thread: any. Errors:
+ * none. */
 DERMIS_API const char* DERMIS_CALL dermis_result_name(dermis_result result);
 
 /* ---- before the device exists ---------------------------------------------------------------- */
@@ -168,7 +173,8 @@ typedef struct dermis_requirement {
 
 /* Lists the requirements on a device. Create the instance with VkApplicationInfo.apiVersion
  * VK_API_VERSION_1_3: older instances answer that features are absent which the device has.
- * Two-call array. Thread: any. Errors: ARGUMENT, INCOMPLETE. */
+ * Two-call array. Costs: driver queries, may take more than 1 ms. Thread: any. Errors: ARGUMENT,
+ * INCOMPLETE. */
 DERMIS_API dermis_result DERMIS_CALL dermis_query_requirements(
     PFN_vkGetInstanceProcAddr get_instance_proc_addr, VkInstance instance,
     VkPhysicalDevice physical_device, uint32_t* count, dermis_requirement* items);
@@ -277,34 +283,36 @@ typedef struct dermis_context_desc {
    VK_NULL_HANDLE, NULL, NULL, NULL, NULL, NULL}
 
 /* Resolves every Vulkan function by name and reports all that are missing. *context is NULL on
- * failure. Creates no pipelines. Thread: any. Errors: ARGUMENT,
- * VERSION, UNSUPPORTED, MEMORY, DEVICE_MEMORY, VULKAN, DEVICE_LOST. */
+ * failure. Creates no pipelines. Costs: allocates device memory, may take more than 1 ms. Thread:
+ * any. Errors: ARGUMENT, VERSION, UNSUPPORTED, MEMORY, DEVICE_MEMORY, VULKAN, DEVICE_LOST. */
 DERMIS_API dermis_result DERMIS_CALL dermis_context_create(const dermis_context_desc* desc,
                                                            dermis_context* context);
-/* Destroys the context and the pipelines of its graphs. The device must have finished every
- * frame recorded through the context, and must still exist. Graphs that still exist are
- * destroyed and logged. NULL is ignored. Thread: any, while no other thread uses the context.
- * Errors: none. */
+/* Destroys the context and the pipelines of its graphs. The device must have finished every frame
+ * recorded through the context, and must still exist. Graphs that still exist are destroyed and
+ * logged. NULL is ignored. Costs: frees device memory, may take more than 1 ms. Thread: any, while
+ * no other thread uses the context. Errors: none. */
 DERMIS_API void DERMIS_CALL dermis_context_destroy(dermis_context context);
-/* Returns the last failure on this thread; NULL if there was none. A call that succeeds keeps
- * it. The text lives until the next Dermis call on this thread. Thread: any. Errors: none. */
+/* Returns the last failure on this thread; NULL if there was none. A call that succeeds keeps it.
+ * The text lives until the next Dermis call on this thread. Costs: none. Thread: any. Errors:
+ * none. */
 DERMIS_API const char* DERMIS_CALL dermis_last_error(void);
 
 /* ---- reports --------------------------------------------------------------------------------- */
 
-/* Returns the number of messages; 0 for NULL. Thread: any. Errors: none. */
+/* Returns the number of messages; 0 for NULL. Costs: none. Thread: any. Errors: none. */
 DERMIS_API uint32_t DERMIS_CALL dermis_report_count(dermis_report report);
-/* Returns message `index`, in order of discovery. Strings live as long as the report. Thread: any.
- * Errors: ARGUMENT. */
+/* Returns message `index`, in order of discovery. Strings live as long as the report. Costs: none.
+ * Thread: any. Errors: ARGUMENT. */
 DERMIS_API dermis_result DERMIS_CALL dermis_report_message(dermis_report report, uint32_t index,
                                                            dermis_message* message);
 /* Returns all messages as text with excerpts of the sources; "" for NULL. Lives as long as the
- * report. Thread: any. Errors: none. */
+ * report. Costs: may take more than 1 ms for long reports. Thread: any. Errors: none. */
 DERMIS_API const char* DERMIS_CALL dermis_report_text(dermis_report report);
-/* Returns all messages as a JSON array; "[]" for NULL. Lives as long as the report. Thread: any.
- * Errors: none. */
+/* Returns all messages as a JSON array; "[]" for NULL. Lives as long as the report. Costs: may
+ * take more than 1 ms for long reports. Thread: any. Errors: none. */
 DERMIS_API const char* DERMIS_CALL dermis_report_json(dermis_report report);
-/* NULL is ignored. Thread: any, while no other thread uses the report. Errors: none. */
+/* NULL is ignored. Costs: none. Thread: any, while no other thread uses the report. Errors: none.
+ */
 DERMIS_API void DERMIS_CALL dermis_report_destroy(dermis_report report);
 
 /* ---- graphs ---------------------------------------------------------------------------------- */
@@ -378,7 +386,8 @@ typedef struct dermis_graph_desc {
    NULL, NULL}
 
 /* Checks a graph without a device. The graph must not include other files. *report (may be NULL)
- * gets the messages. Thread: any. Errors: ARGUMENT, VERSION, CONFIG, MEMORY. */
+ * gets the messages. Costs: may take more than 1 ms; no device. Thread: any. Errors: ARGUMENT,
+ * VERSION, CONFIG, MEMORY. */
 DERMIS_API dermis_result DERMIS_CALL dermis_validate(const dermis_source* source,
                                                      dermis_report* report);
 /* Parses, checks and compiles a graph, creates its pipelines and allocates device memory. Takes
@@ -386,8 +395,9 @@ DERMIS_API dermis_result DERMIS_CALL dermis_validate(const dermis_source* source
  * *report (may be NULL) gets the messages; destroy it also on success. Graphs of a context share
  * pipelines: a graph compiles only kernels that no other graph had. Pipelines of the library's
  * kernels exist until the context is destroyed, those of your shaders as long as a graph uses
- * them. Thread: any. Errors: ARGUMENT, VERSION, CONFIG, SHADER, UNSUPPORTED, MEMORY,
- * DEVICE_MEMORY, VULKAN, DEVICE_LOST. */
+ * them. Costs: creates pipelines, allocates device memory, takes more than 1 ms. Thread: any.
+ * Errors: ARGUMENT, VERSION, CONFIG, SHADER, UNSUPPORTED, MEMORY, DEVICE_MEMORY, VULKAN,
+ * DEVICE_LOST. */
 DERMIS_API dermis_result DERMIS_CALL dermis_graph_create(dermis_context context,
                                                          const dermis_graph_desc* desc,
                                                          dermis_graph* graph,
@@ -395,30 +405,31 @@ DERMIS_API dermis_result DERMIS_CALL dermis_graph_create(dermis_context context,
 /* Builds what dermis_graph_create would build from desc, next to the running graph, and replaces
  * it at the next record of each view. `desc.keep` names the parts that stay: DERMIS_KEEP_ALL &
  * ~DERMIS_KEEP_SOURCE replaces only the text of the graph, DERMIS_KEEP_ALL reads included files
- * again. Histories and settings with equal names continue; the report lists the others. A new
- * size acts like dermis_graph_resize. On failure nothing changes. Costs as dermis_graph_create.
- * Thread: beside. Errors: as dermis_graph_create. */
+ * again. Histories and settings with equal names continue; the report lists the others. A new size
+ * acts like dermis_graph_resize. On failure nothing changes. Costs: as dermis_graph_create.
+ * Thread: concurrent. Errors: as dermis_graph_create. */
 DERMIS_API dermis_result DERMIS_CALL dermis_graph_reload(dermis_graph graph,
                                                          const dermis_graph_desc* desc,
                                                          dermis_report* report);
 /* Replaces kernels by GLSL of the host, so that shaders can be edited while the program runs.
  * `open` provides "common/subsurface_combine.comp" and the files it includes, such as
  * "common/tiles.glsl"; the library provides bindings and constants. Kernels for which `open`
- * returns 0 stay; NULL restores all. `open` must be callable until it is replaced or the graph
- * is destroyed. Otherwise like a reload: errors have file and line, on failure nothing changes,
- * histories and settings continue. The compiler uses the C library's memory. Takes seconds.
- * Thread: beside. Errors: as dermis_graph_create; UNSUPPORTED also if the library was built
- * without DERMIS_RUNTIME_SHADERS. */
+ * returns 0 stay; NULL restores all. `open` must be callable until it is replaced or the graph is
+ * destroyed. Otherwise like a reload: errors have file and line, on failure nothing changes,
+ * histories and settings continue. The compiler uses the C library's memory. Takes seconds. Costs:
+ * as dermis_graph_create. Thread: concurrent. Errors: as dermis_graph_create; UNSUPPORTED also if
+ * the library was built without DERMIS_RUNTIME_SHADERS. */
 DERMIS_API dermis_result DERMIS_CALL dermis_graph_reload_shaders(dermis_graph graph,
                                                                  dermis_include_fn open, void* user,
                                                                  dermis_report* report);
 /* Changes the allocated size of all views. Histories become invalid, except images declared
- * "on_resize": "rescale". Allocates device memory; creates no pipelines of known kernels. Thread:
- * beside. Errors: as dermis_graph_create. */
+ * "on_resize": "rescale". Creates no pipelines of known kernels. Costs: allocates device memory,
+ * takes more than 1 ms. Thread: concurrent. Errors: as dermis_graph_create. */
 DERMIS_API dermis_result DERMIS_CALL dermis_graph_resize(dermis_graph graph, uint32_t width,
                                                          uint32_t height, dermis_report* report);
-/* Destroys the graph and its views. The device must have finished every frame recorded with
- * them. NULL is ignored. Thread: any, while no other thread uses this graph. Errors: none. */
+/* Destroys the graph and its views. The device must have finished every frame recorded with them.
+ * NULL is ignored. Costs: frees device memory, may take more than 1 ms. Thread: any, while no
+ * other thread uses this graph. Errors: none. */
 DERMIS_API void DERMIS_CALL dermis_graph_destroy(dermis_graph graph);
 
 typedef enum dermis_slot_type {
@@ -450,7 +461,7 @@ typedef struct dermis_slot {
    0, DERMIS_SLOT_IMAGE, 0, 0}
 
 /* Returns the slots that the next record expects. Call again after a reload. Equal for all views.
- * Two-call array. Thread: beside. Errors: ARGUMENT, INCOMPLETE. */
+ * Two-call array. Costs: none. Thread: concurrent. Errors: ARGUMENT, INCOMPLETE. */
 DERMIS_API dermis_result DERMIS_CALL dermis_graph_slots(dermis_graph graph, uint32_t* count,
                                                         dermis_slot* slots);
 
@@ -461,8 +472,8 @@ typedef enum dermis_describe_format {
   DERMIS_DESCRIBE_FORMAT_FORCE_32BIT = 0x7fffffff
 } dermis_describe_format;
 
-/* Describes the plan. *size in: capacity of `text`; out: bytes needed with the final 0. text may be
- * NULL. Thread: beside. Errors: ARGUMENT, INCOMPLETE. */
+/* Describes the plan. *size in: capacity of `text`; out: bytes needed with the final 0. text may
+ * be NULL. Costs: may take more than 1 ms. Thread: concurrent. Errors: ARGUMENT, INCOMPLETE. */
 DERMIS_API dermis_result DERMIS_CALL dermis_graph_describe(dermis_graph graph,
                                                            dermis_describe_format format,
                                                            size_t* size, char* text);
@@ -476,12 +487,13 @@ typedef struct dermis_memory {
 } dermis_memory;
 #define DERMIS_MEMORY_INIT {sizeof(dermis_memory), 0, 0, 0, 0}
 
-/* Returns the device memory of all views together. Thread: beside. Errors: ARGUMENT. */
+/* Returns the device memory of all views together. Costs: none. Thread: concurrent. Errors:
+ * ARGUMENT. */
 DERMIS_API dermis_result DERMIS_CALL dermis_graph_memory(dermis_graph graph, dermis_memory* memory);
 
-/* Returns the memory blocks that one view of the graph needs for transients and histories, so
- * that a host can reserve them before it creates more views. Two-call array. Thread: beside.
- * Errors: ARGUMENT, INCOMPLETE. */
+/* Returns the memory blocks that one view of the graph needs for transients and histories, so that
+ * a host can reserve them before it creates more views. Two-call array. Costs: none. Thread:
+ * concurrent. Errors: ARGUMENT, INCOMPLETE. */
 DERMIS_API dermis_result DERMIS_CALL dermis_graph_heaps(dermis_graph graph, uint32_t* count,
                                                         dermis_memory_request* heaps);
 
@@ -523,13 +535,14 @@ typedef struct dermis_history {
   {sizeof(dermis_history), NULL, 0, 0, DERMIS_HISTORY_NEVER_WRITTEN, 0, NULL}
 
 
-/* Replaces profile `id` (1..255) by *source, adds it, or removes it if source is NULL. No graph
- * is built again and no history is lost; only the first profile of a graph and the removal of
- * the last one act like a reload. Frames in flight keep the old profile; each view uses the new
- * one from its next record on. Light accumulated over frames still shows the old profile for
- * dermis_history.settles_after frames; the report contains the number (D0625). Takes up to 0.3
- * s, next to recording. Kept over reloads with DERMIS_KEEP_PROFILES and over resizes. Thread:
- * beside. Errors: as dermis_graph_create. */
+/* Replaces profile `id` (1..255) by *source, adds it, or removes it if source is NULL. No graph is
+ * built again and no history is lost; only the first profile of a graph and the removal of the
+ * last one act like a reload. Frames in flight keep the old profile; each view uses the new one
+ * from its next record on. Light accumulated over frames still shows the old profile for
+ * dermis_history.settles_after frames; the report contains the number (D0625). Takes up to 0.3 s,
+ * next to recording. Kept over reloads with DERMIS_KEEP_PROFILES and over resizes. Costs:
+ * allocates device memory, takes more than 1 ms. Thread: concurrent. Errors: as
+ * dermis_graph_create. */
 DERMIS_API dermis_result DERMIS_CALL dermis_graph_set_profile(dermis_graph graph, uint32_t id,
                                                               const dermis_source* source,
                                                               dermis_report* report);
@@ -568,8 +581,8 @@ typedef struct dermis_setting {
 
 /* Sets a setting for all views from JSON text ("16", "true", "\"post\""), effective at the next
  * record. A value that changes which passes run compiles a plan, creates pipelines and allocates
- * device memory here. Thread: beside. Errors: ARGUMENT, CONFIG, and those of
- * dermis_graph_create. */
+ * device memory here. Costs: may create pipelines and allocate device memory; then more than 1 ms.
+ * Thread: concurrent. Errors: ARGUMENT, CONFIG, and those of dermis_graph_create. */
 DERMIS_API dermis_result DERMIS_CALL dermis_graph_set_setting(dermis_graph graph, const char* name,
                                                               const char* json,
                                                               dermis_report* report);
@@ -595,8 +608,9 @@ typedef struct dermis_budget {
 } dermis_budget;
 #define DERMIS_BUDGET_INIT {sizeof(dermis_budget), 0, 0, NULL, NULL}
 
-/* Sets the budget for all views, effective at the next record; kept over reload and resize. Thread:
- * beside. Errors: ARGUMENT, VERSION, CONFIG, MEMORY. */
+/* Sets the budget for all views, effective at the next record; kept over reload and resize. Costs:
+ * parses the two texts, may take more than 1 ms. Thread: concurrent. Errors: ARGUMENT, VERSION,
+ * CONFIG, MEMORY. */
 DERMIS_API dermis_result DERMIS_CALL dermis_graph_set_budget(dermis_graph graph,
                                                              const dermis_budget* budget,
                                                              dermis_report* report);
@@ -627,8 +641,8 @@ typedef struct dermis_frame_report {
   {sizeof(dermis_frame_report), 0, NULL, NULL, NULL, 0, 0, 0, 0, 0}
 
 /* Describes the newest frame whose counters are available, among those up to
- * `completed_frame_index`, as in dermis_frame. Creates no pipelines, allocates no memory, takes
- * less than 1 ms. Thread: one per view. Errors: ARGUMENT, NOT_READY, DEVICE_LOST. */
+ * `completed_frame_index`, as in dermis_frame. Costs: none. Thread: one per view. Errors:
+ * ARGUMENT, NOT_READY, DEVICE_LOST. */
 DERMIS_API dermis_result DERMIS_CALL dermis_view_report(dermis_view view,
                                                         uint64_t completed_frame_index,
                                                         dermis_frame_report* report);
@@ -670,15 +684,16 @@ typedef struct dermis_frame_statistics {
   {sizeof(dermis_frame_statistics), 0, NULL, NULL, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, {0, 0, 0}, 0, \
    0, 0, 0, 0, 0, 0, 0}
 
-/* Returns the statistics of the frame that dermis_view_report describes. Costs, thread and errors
- * as there. */
+/* Returns the statistics of the frame that dermis_view_report describes. Costs: none. Thread: one
+ * per view. Errors: as there. */
 DERMIS_API dermis_result DERMIS_CALL dermis_view_statistics(dermis_view view,
                                                             uint64_t completed_frame_index,
                                                             dermis_frame_statistics* statistics);
 
 /* Returns the times measured on this device by the graph's view, as JSON for
  * dermis_budget.calibration at the next start. *size in: capacity of `text`; out: bytes needed
- * with the final 0. text may be NULL. Thread: beside. Errors: ARGUMENT, INCOMPLETE. */
+ * with the final 0. text may be NULL. Costs: may take more than 1 ms. Thread: concurrent. Errors:
+ * ARGUMENT, INCOMPLETE. */
 DERMIS_API dermis_result DERMIS_CALL dermis_graph_calibration(dermis_graph graph, size_t* size,
                                                               char* text);
 
@@ -790,16 +805,17 @@ typedef struct dermis_pass_type {
 #define DERMIS_PASS_TYPE_INIT \
   {sizeof(dermis_pass_type), NULL, NULL, NULL, NULL, 0, 0, 0, 0, NULL, NULL}
 
-/* Registers a kind of pass for the graphs of a context, so that the host's own passes are part
- * of the graph, with the same barriers, aliased memory and history. Copied, except `record` and
+/* Registers a kind of pass for the graphs of a context, so that the host's own passes are part of
+ * the graph, with the same barriers, aliased memory and history. Copied, except `record` and
  * `user`, which are used as long as the context lives. Call before the context creates its first
- * graph. Thread: any, while no other thread uses the context. Errors: ARGUMENT (also for a name
- * that exists, or if there are graphs), VERSION, MEMORY. */
+ * graph. Costs: none. Thread: any, while no other thread uses the context. Errors: ARGUMENT (also
+ * for a name that exists, or if there are graphs), VERSION, MEMORY. */
 DERMIS_API dermis_result DERMIS_CALL dermis_register_pass_type(dermis_context context,
                                                                const dermis_pass_type* type);
 /* Returns the registered pass types as a JSON file for `dermis validate --pass-types FILE`, so
  * that graphs with them can be checked without the host. *size in: capacity of `text`; out: bytes
- * needed with the final 0. text may be NULL. Thread: any. Errors: ARGUMENT, INCOMPLETE, MEMORY. */
+ * needed with the final 0. text may be NULL. Costs: may take more than 1 ms. Thread: any. Errors:
+ * ARGUMENT, INCOMPLETE, MEMORY. */
 DERMIS_API dermis_result DERMIS_CALL dermis_export_pass_types(dermis_context context, size_t* size,
                                                               char* text);
 
@@ -999,58 +1015,59 @@ typedef struct dermis_view_desc {
 #define DERMIS_VIEW_DESC_INIT {sizeof(dermis_view_desc), NULL}
 
 /* Returns the view that every graph has. Lives as long as the graph; dermis_view_destroy ignores
- * it. NULL for NULL. Creates and allocates nothing. Thread: any. Errors: none. */
+ * it. NULL for NULL. Costs: none. Thread: any. Errors: none. */
 DERMIS_API dermis_view DERMIS_CALL dermis_graph_view(dermis_graph graph);
-/* Allocates what a view needs; compiles nothing and creates no pipelines. desc may be NULL.
- * *view is NULL on failure. *report (may be NULL) gets the messages. Thread: beside. Errors:
- * ARGUMENT, VERSION, MEMORY, DEVICE_MEMORY, VULKAN, DEVICE_LOST. */
+/* Allocates what a view needs; compiles nothing and creates no pipelines. desc may be NULL. *view
+ * is NULL on failure. *report (may be NULL) gets the messages. Costs: allocates device memory, may
+ * take more than 1 ms. Thread: concurrent. Errors: ARGUMENT, VERSION, MEMORY, DEVICE_MEMORY,
+ * VULKAN, DEVICE_LOST. */
 DERMIS_API dermis_result DERMIS_CALL dermis_view_create(dermis_graph graph,
                                                         const dermis_view_desc* desc,
                                                         dermis_view* view, dermis_report* report);
-/* Destroys a view. The device must have finished every frame recorded with it. NULL is ignored.
- * Do not call after dermis_graph_destroy, which destroys all views. Thread: beside, while no
- * other thread uses this view. Errors: none. */
+/* Destroys a view. The device must have finished every frame recorded with it. NULL is ignored. Do
+ * not call after dermis_graph_destroy, which destroys all views. Costs: frees device memory, may
+ * take more than 1 ms. Thread: concurrent, while no other thread uses this view. Errors: none. */
 DERMIS_API void DERMIS_CALL dermis_view_destroy(dermis_view view);
 /* Records the plan. Never submits, waits for the device, prints, creates pipelines or allocates
  * host or device memory, except image views for bindings without one. On an error nothing was
- * recorded. Takes less than 1 ms for the shipped graphs. Thread: one per view. Errors: ARGUMENT,
- * VERSION, VULKAN, DEVICE_LOST, DEVICE_MEMORY. */
+ * recorded. Costs: none, except the image views. Thread: one per view. Errors: ARGUMENT, VERSION,
+ * VULKAN, DEVICE_LOST, DEVICE_MEMORY. */
 DERMIS_API dermis_result DERMIS_CALL dermis_view_record(dermis_view view,
                                                         const dermis_frame* frame);
 /* Like dermis_view_record, but returns the commands and ignores frame.command_buffer. They count
  * as a recorded frame: record all of them once, in order, outside a render pass, on a queue of the
  * context's family, or discard the frame with dermis_view_discard. The stride of *commands is its
  * first struct_size; the array lives until the next call that records this view, or its end.
- * Allocates host memory until the list has its final length. Thread: one per view. Errors: as
- * dermis_view_record, and MEMORY. */
+ * Allocates host memory until the list has its final length. Costs: host memory, as above. Thread:
+ * one per view. Errors: as dermis_view_record, and MEMORY. */
 DERMIS_API dermis_result DERMIS_CALL dermis_view_commands(dermis_view view,
                                                           const dermis_frame* frame,
                                                           uint32_t* count,
                                                           const dermis_command** commands);
 /* Discards the frame recorded last, which will never be submitted: the view is as before that
  * record, including histories, and frame_index may be used again. At most one frame, before the
- * next record, dermis_graph_reload or dermis_graph_resize. The command buffer must not run. Takes
- * less than 1 ms. Thread: one per view. Errors: ARGUMENT. */
+ * next record, dermis_graph_reload or dermis_graph_resize. The command buffer must not run. Costs:
+ * none. Thread: one per view. Errors: ARGUMENT. */
 DERMIS_API dermis_result DERMIS_CALL dermis_view_discard(dermis_view view, uint64_t frame_index);
 /* Returns the device times of the newest completed frame, in plan order. Needs
- * DERMIS_CONTEXT_TIMINGS. `completed_frame_index` as in dermis_frame. Two-call array. Takes less
- * than 1 ms. Thread: one per view. Errors: ARGUMENT, INCOMPLETE, NOT_READY, DEVICE_LOST. */
+ * DERMIS_CONTEXT_TIMINGS. `completed_frame_index` as in dermis_frame. Two-call array. Costs: none.
+ * Thread: one per view. Errors: ARGUMENT, INCOMPLETE, NOT_READY, DEVICE_LOST. */
 DERMIS_API dermis_result DERMIS_CALL dermis_view_timings(dermis_view view,
                                                          uint64_t completed_frame_index,
                                                          uint32_t* count,
                                                          dermis_pass_timing* timings);
-/* Returns each history of the graph, including those of plans that do not run now, as the plan that
- * ran last would find it. Discarded frames do not count. Two-call array. Takes less than 1 ms.
- * Thread: one per view. Errors: ARGUMENT, INCOMPLETE. */
+/* Returns each history of the graph, including those of plans that do not run now, as the plan
+ * that ran last would find it. Discarded frames do not count. Two-call array. Costs: none. Thread:
+ * one per view. Errors: ARGUMENT, INCOMPLETE. */
 DERMIS_API dermis_result DERMIS_CALL dermis_view_histories(dermis_view view, uint32_t* count,
                                                            dermis_history* histories);
 /* Returns the settings of the graph in the order of the file, with the values of this view. Two-
- * call array. Takes less than 1 ms. Thread: beside. Errors: ARGUMENT, INCOMPLETE, MEMORY. */
+ * call array. Costs: none. Thread: concurrent. Errors: ARGUMENT, INCOMPLETE, MEMORY. */
 DERMIS_API dermis_result DERMIS_CALL dermis_view_settings(dermis_view view, uint32_t* count,
                                                           dermis_setting* settings);
-/* Gives this view its own value of a setting with per_frame 1, effective at its next record;
- * json NULL restores the graph's value. Settings with per_frame 0 are refused. Kept over reload
- * and resize. Thread: beside. Errors: ARGUMENT, CONFIG, MEMORY. */
+/* Gives this view its own value of a setting with per_frame 1, effective at its next record; json
+ * NULL restores the graph's value. Settings with per_frame 0 are refused. Kept over reload and
+ * resize. Costs: none. Thread: concurrent. Errors: ARGUMENT, CONFIG, MEMORY. */
 DERMIS_API dermis_result DERMIS_CALL dermis_view_set_setting(dermis_view view, const char* name,
                                                              const char* json,
                                                              dermis_report* report);
