@@ -3,6 +3,7 @@
 // earlier results.
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
+#include "common/constants_math.glsl"
 #include "afis/subsurface_guided.bindings.glsl"
 #include "common/environment.glsl"
 #include "common/tiles.glsl"
@@ -12,8 +13,6 @@
 vec2 surface_before(ivec2 pixel);
 #include "common/reproject.glsl"
 
-const float mm_per_metre = 1000.0;
-const vec3 rec709 = vec3(0.2126, 0.7152, 0.0722);
 const float first_count = 16.0;  // samples of a pixel without history
 // offset in the sequence from frame to frame, whatever number of points a pixel uses
 const uint frame_stride = 61u;
@@ -64,7 +63,7 @@ guide_state state_before(ivec2 pixel, float depth, uint id, float rise) {
                      false);
 }
 
-float exposed(vec3 light) { return min(dot(light, rec709) * frame.exposure, 1e4); }
+float exposed(vec3 light) { return min(dot(light, luminance_weights) * frame.exposure, 1e4); }
 
 // By pixel of the tile. x: squared half difference of the pixel's two halves, times the number of
 // samples. y: profile, 0 if nothing was sampled.

@@ -5,11 +5,11 @@
 #ifndef DERMIS_SLAB_GLSL
 #define DERMIS_SLAB_GLSL
 
+#include "common/constants_math.glsl"
 #include "common/profile.glsl"
 #include "common/radius.glsl"
 #include "common/sanitise.glsl"
 
-const float mm_per_metre = 1000.0;
 
 // Returns the transmitted light; 0 if nothing scatters or the thickness is unknown.
 vec3 light_through_slab(ivec2 texel, uint id) {

@@ -4,6 +4,7 @@
 // to the brightness around. Noise is averaged; each frame's own sharp light is shown unchanged.
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
+#include "common/constants_math.glsl"
 #include "common/subsurface_accumulate.bindings.glsl"
 #include "common/environment.glsl"
 #include "common/tiles.glsl"
@@ -14,7 +15,6 @@
 vec2 surface_before(ivec2 pixel);
 #include "common/reproject.glsl"
 
-const float mm_per_metre = 1000.0;
 
 accumulated_light past_at(ivec2 pixel) {
   vec4 kept = texelFetch(past_image, previous_texel(pixel), 0);

@@ -7,6 +7,7 @@
 //   L_c(p) = sum_q K_c a_q B_c(q) / sum_q K_c a_q
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
+#include "common/constants_math.glsl"
 #include "common/subsurface_probe.bindings.glsl"
 #include "common/environment.glsl"
 #include "constants.glsl"
@@ -30,7 +31,6 @@ const int near_px = 4, near_points = 8;
 // this factor times h of the integral. The factor is the regularised sum over (i + 1/2, j + 1/2) of
 // 1/r: -4 (sqrt 2 - 1) zeta(1/2) beta(1/2).
 const float pole_lack = 1.6155;
-const vec3 luminance = vec3(0.2126, 0.7152, 0.0722); // Rec. 709
 
 shared uint listed[lanes];   // tiles of the run with subsurface, in order
 shared uint listed_count;
@@ -122,7 +122,7 @@ float squared_error(ivec2 pixel, uint lane, bool copied) {
   vec3 reference = mix(sums[0] / max(weights[0], vec3(1e-30)), own, direct);
   reference = mix(own, reference, vec3(greaterThan(profile.d.rgb, vec3(0.0))));
   vec3 shown = has_scattered() && !copied ? texelFetch(scattered_image, texel, 0).rgb : own;
-  float off = dot(shown - reference, luminance) * frame.exposure;
+  float off = dot(shown - reference, luminance_weights) * frame.exposure;
   return off * off;
 }
 

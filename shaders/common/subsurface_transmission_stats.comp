@@ -5,6 +5,7 @@
 // result on the host.
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
+#include "common/constants_math.glsl"
 #include "common/subsurface_transmission_stats.bindings.glsl"
 #include "common/environment.glsl"
 #include "constants.glsl"
@@ -12,7 +13,6 @@
 #include "common/slab.glsl"
 #include "common/tiles.glsl"
 
-const vec3 luminance = vec3(0.2126, 0.7152, 0.0722); // Rec. 709
 // steps per squared exposed luminance of 1; 64 pixels fit 32 bits
 const float pixel_steps = 65536.0;
 
@@ -30,7 +30,7 @@ void main() {
     ivec2 texel = texel_of(pixel);
     uint id = texelFetch(material_image, texel, 0).r;
     if (id != 0u) {
-      float exposed = min(frame.exposure * dot(luminance, light_through_slab(texel, id)), 1.0);
+      float exposed = min(frame.exposure * dot(luminance_weights, light_through_slab(texel, id)), 1.0);
       atomicAdd(squares, uint(exposed * exposed * pixel_steps));
       atomicAdd(pixels, 1u);
     }

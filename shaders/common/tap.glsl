@@ -3,11 +3,10 @@
 #ifndef DERMIS_TAP_GLSL
 #define DERMIS_TAP_GLSL
 
+#include "common/constants_math.glsl"
 #include "common/environment.glsl"
 #include "common/profile.glsl"
 
-const float golden_angle = 2.39996322972865332; // pi (3 - sqrt 5)
-const float two_pi = 6.28318530717958648;
 
 struct scatter_point {
   ivec2 pixel;

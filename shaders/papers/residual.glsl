@@ -5,8 +5,9 @@
 #ifndef DERMIS_RESIDUAL_GLSL
 #define DERMIS_RESIDUAL_GLSL
 
+#include "common/constants_math.glsl"
+
 // Halves hold a depth within 0.05 % from 0.1 mm to 65 km.
-const float mm_per_metre = 1000.0;
 const float min_light = 1e-6;    // light of the pyramid below which a ratio is meaningless
 const float never_lit = -128.0;    // stored instead of a pattern
 // Width of the deviation in units of its root mean square: 95 % of a normal distribution.
@@ -16,7 +17,7 @@ const float sqrt_pi = 1.7724539;
 vec2 residual_surface_before(vec4 kept) { return vec2(kept.r * mm_per_metre, kept.g); }
 
 // Rec. 709
-float residual_luminance(vec3 light) { return dot(light, vec3(0.2126, 0.7152, 0.0722)); }
+float residual_luminance(vec3 light) { return dot(light, luminance_weights); }
 bool is_lit(vec3 light) { return residual_luminance(light) > min_light; }
 float brightness(vec3 light) { return log(max(residual_luminance(light), min_light)); }
 

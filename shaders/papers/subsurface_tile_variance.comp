@@ -3,13 +3,13 @@
 // times the host's importance. Integer sums do not depend on the order.
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
+#include "common/constants_math.glsl"
 #include "papers/subsurface_tile_variance.bindings.glsl"
 #include "common/environment.glsl"
 #include "common/tiles.glsl"
 
 // Steps for one pixel under exposed light of 1, as in subsurface.tile_error_estimate.
 const float contrast_steps = 1024.0;
-const vec3 luminance = vec3(0.2126, 0.7152, 0.0722); // Rec. 709
 
 shared uint light_sum, pixel_count, contrast_sum;
 
@@ -24,7 +24,7 @@ void main() {
   bool counts = listed && !copy_only && texelFetch(material_image, texel, 0).r != 0u;
   uint seen = 0u;
   if (counts) {
-    float exposed = dot(texelFetch(light_image, texel, 0).rgb, luminance) * frame.exposure;
+    float exposed = dot(texelFetch(light_image, texel, 0).rgb, luminance_weights) * frame.exposure;
     seen = uint(clamp(exposed, 0.0, 4.0) * contrast_steps + 0.5);
     atomicAdd(light_sum, seen);
     atomicAdd(pixel_count, 1u);

@@ -4,6 +4,7 @@
 #ifndef DERMIS_RESTIR_DOMAIN_GLSL
 #define DERMIS_RESTIR_DOMAIN_GLSL
 
+#include "common/constants_math.glsl"
 #include "common/burley.glsl"
 
 struct scatter_domain {
@@ -92,6 +93,6 @@ scatter_domain unpack_domain(packed_domain packed) {
                         uintBitsToFloat(packed.words[1].xyz), packed.words[0].w);
 }
 
-float luminance(vec3 rgb) { return dot(rgb, vec3(0.2126, 0.7152, 0.0722)); }
+float luminance(vec3 rgb) { return dot(rgb, luminance_weights); }
 
 #endif

@@ -1,8 +1,8 @@
 // The rule that allocates samples to tiles. passes/choice/sample_allocation.cpp mirrors it function
 // by function. A tile takes steps 0 -> 1 -> 2 -> 3. Each step costs units and reduces the tile's
 // error; steps with the largest reduction per cost come first.
-#ifndef DERMIS_ALLOTMENT_GLSL
-#define DERMIS_ALLOTMENT_GLSL
+#ifndef DERMIS_SAMPLE_ALLOCATION_GLSL
+#define DERMIS_SAMPLE_ALLOCATION_GLSL
 
 #include "constants.glsl"
 

@@ -5,12 +5,11 @@
 #ifndef DERMIS_SAP_SAMPLES_GLSL
 #define DERMIS_SAP_SAMPLES_GLSL
 
+#include "common/constants_math.glsl"
 #include "common/profile.glsl"
 #include "sap/sap.glsl"
 #include "common/sequence.glsl"
 
-const float golden_angle = 2.39996322972865332; // pi (3 - sqrt 5)
-const float two_pi = 6.28318530717958648;
 // 16 samples at a d of 20 px reach this level within 3 d.
 const int last_sample_level = 5;
 // Maximum distance of a texel from the sample's tangent plane, in sigmas of the level.

@@ -4,12 +4,12 @@
 // `light`, the luminance itself replaces the change. Integer sums do not depend on the order.
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
+#include "common/constants_math.glsl"
 #include "sap/subsurface_tile_error_estimate.bindings.glsl"
 #include "common/environment.glsl"
 #include "common/tiles.glsl"
 
 const float doubt_steps = 1024.0; // steps for the error of one pixel under exposed light of 1
-const vec3 luminance = vec3(0.2126, 0.7152, 0.0722); // Rec. 709
 
 shared uint sum;
 
@@ -25,9 +25,9 @@ void main() {
     if (texelFetch(material_image, texel, 0).r != 0u) {
       vec4 light = texelFetch(scattered_image, texel, 0);
       float unmet = clamp((settings.below - light.a) / max(settings.below, 1e-6), 0.0, 1.0);
-      float stake = dot(light.rgb, luminance);
+      float stake = dot(light.rgb, luminance_weights);
       if (has_light())
-        stake = abs(stake - dot(texelFetch(light_image, texel, 0).rgb, luminance));
+        stake = abs(stake - dot(texelFetch(light_image, texel, 0).rgb, luminance_weights));
       float seen = clamp(stake * frame.exposure, 0.0, 4.0);
       float matters = has_importance() ? clamp(texelFetch(importance_image, texel, 0).r, 0.0, 1.0) : 1.0;
       atomicAdd(sum, uint(unmet * seen * matters * doubt_steps + 0.5));
