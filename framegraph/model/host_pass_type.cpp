@@ -216,9 +216,9 @@ std::string write_host_pass_types(const HostPassTypes& pass_types) {
     }
     json.close().key("settings").open_array();
     for (const HostPassTypeSetting& setting : type.settings) {
-      const auto type =
+      const auto word =
           static_cast<size_t>(std::find(types.begin(), types.end(), setting.type) - types.begin());
-      json.open_object(true).member("name", setting.name).member("type", type_words[type]);
+      json.open_object(true).member("name", setting.name).member("type", type_words[word]);
       json.member("default", setting.default_value);
       if (setting.type != SettingType::boolean)
         json.member("min", setting.minimum).member("max", setting.maximum);
