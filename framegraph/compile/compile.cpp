@@ -1,35 +1,31 @@
 #include "framegraph/compile/compile.hpp"
 
-#include "framegraph/compile/phases.hpp"
+#include "framegraph/compile/scratch.hpp"
 
 #include <fmt/format.h>
 
 namespace dermis {
 namespace {
 
-// One entry for each thing asked about, or none at all; and a view that the device can hold.
+// Whether each list of the input is empty or has one entry per declaration, and the device supports the view.
 bool acceptable(const CompileInput& input, Diagnostics& diagnostics) {
   const uint32_t errors = diagnostics.count(Severity::error);
-  const auto refuse = [&](std::string text) {
+  const auto report_input = [&](std::string text) {
     diagnostics.add(DiagnosticId::compile_input, {}, std::move(text));
   };
-  const auto check_length = [&](const char* what, size_t given, size_t wanted) {
-    if (given != 0 && given != wanted)
-      refuse(fmt::format("{} {} given, the graph has {}", given, what, wanted));
+  const auto check_length = [&](const char* what, size_t given, size_t expected) {
+    if (given != 0 && given != expected)
+      report_input(fmt::format("{} {} given, the graph has {}", given, what, expected));
   };
   const uint32_t limit = input.device->max_image_dimension;
   if (input.view_width < 1 || input.view_height < 1 || input.view_width > limit || input.view_height > limit)
-    refuse(fmt::format("the view is {}x{}; each side must be within 1 .. {}", input.view_width,
-                       input.view_height, limit));
+    report_input(fmt::format("the view is {}x{}; each side must be within 1 .. {}", input.view_width,
+                             input.view_height, limit));
   check_length("setting values", input.settings.size(), input.graph->settings.size());
   check_length("bound flags", input.bound.size(), input.graph->resources.size());
   check_length("host formats", input.host_formats.size(), input.graph->resources.size());
   return diagnostics.count(Severity::error) == errors;
 }
-
-} // namespace
-
-namespace {
 
 void clear(CompiledPlan& out) {
   Plan& plan = out.plan;
@@ -51,51 +47,79 @@ void clear(CompiledPlan& out) {
   out.reasons.clear();
 }
 
-} // namespace
+// Compilation from top to bottom. Each phase returns a value that later phases read; it stays valid until the
+// next compilation. Stops after a phase that reported errors.
+bool run_phases(const CompileInput& in, Report& report, Plan& plan, CompileScratch& scratch) {
+  // How large is each resource, and which slots does the host bind?
+  const Sizes& sizes = resolve_sizes(in, report, scratch.sizes);
+  if (report.failed()) return false;
 
-void CompileContext::add_reason(const Reason& reason) {
-  out->reasons.push_back(reason);
+  // What are the settings, and which passes are on?
+  const Activation& active = evaluate_conditions(in, report, scratch.activation);
+  if (report.failed()) return false;
+
+  // Into which subresource ranges do ports divide images?
+  const Subresources& subresources = split_subresources(in, sizes, active, report, scratch.subresources);
+  if (report.failed()) return false;
+
+  // Which version of which resource does each port access? Does a pass read what it writes?
+  const Versions& versions = resolve_versions(in, sizes, active, subresources, report, scratch.versions);
+  if (report.failed()) return false;
+  report_races(in, active, versions, report);
+  if (report.failed()) return false;
+
+  // Which passes does a bound export need, and which of them run on the second queue?
+  const LiveSet& live = cull(in, sizes, active, subresources, versions, report, scratch.cull);
+  if (report.failed()) return false;
+  const QueueAssignment& queues =
+      assign_queues(in, sizes, subresources, versions, live, report, scratch.queues);
+
+  // How is each resource used, in which format, and how much memory does it need?
+  const Usages& usages = gather_usages(in, sizes, active, versions, live, report, scratch.usages);
+  const ResourceMemory& memory =
+      resolve_formats(in, sizes, active, versions, usages, report, plan.resources, scratch.formats);
+  if (report.failed()) return false;
+
+  // In which order do the passes run, and with which settings?
+  const Schedule& schedule = schedule_passes(in, active, versions, live, memory, report, scratch.schedule);
+  if (report.failed()) return false;
+  plan_passes(in, active, queues, schedule, report, plan, scratch.passes);
+  if (report.failed()) return false;
+
+  // Where in memory is each resource located? Transients and idle histories alias.
+  const Histories& histories =
+      analyze_histories(in, active, versions, usages, schedule, report, plan.resources, scratch.histories);
+  const Placements& placements = place_resources(in, sizes, subresources, queues, memory, schedule, histories,
+                                                 report, plan, scratch.placements);
+
+  // What waits for what?
+  emit_barriers(in, active, subresources, versions, queues, memory, histories, placements, report, plan,
+                scratch.barriers);
+
+  plan.graph = in.graph->name;
+  plan.view_width = in.view_width;
+  plan.view_height = in.view_height;
+  plan.device_profile = in.device->name;
+  plan.setting_values = active.settings;
+  return true;
 }
 
-Compiler::Compiler() : context_(std::make_unique<CompileContext>()) {}
+} // namespace
+
+void Report::add_reason(const Reason& reason) {
+  reasons.push_back(reason);
+}
+
+Compiler::Compiler() : scratch_(std::make_unique<CompileScratch>()) {}
 Compiler::~Compiler() = default;
 
 bool Compiler::compile(const CompileInput& input, Diagnostics& diagnostics, CompiledPlan& out) {
   clear(out);
   if (!acceptable(input, diagnostics)) return false;
-  CompileContext& context = *context_;
-  context.input = &input;
-  context.graph = input.graph;
-  context.pass_types = input.pass_types;
-  context.device = input.device;
-  context.diagnostics = &diagnostics;
-  context.out = &out;
-  const uint32_t errors_before = diagnostics.count(Severity::error);
-  for (auto* phase : {
-           resolve_sizes,      // how large is each resource, and which slots does the host bind?
-           choose,             // what are the settings, and which passes are on?
-           split_subresources, // into which parts do ports divide images?
-           resolve_versions,   // which version of which resource does each port see?
-           report_races,       // does a pass read what it writes?
-           cull,               // which passes does something bound need?
-           choose_queues,      // which of them run beside the others?
-           gather_usage,       // how do they use each resource?
-           resolve_formats,    // which format does each resource get, and how much memory?
-           order,              // in which order do they run?
-           lifetimes,          // from which pass to which is each resource alive?
-           pack,               // where in memory does each one lie?
-           synchronize,        // what must wait for what?
-       }) {
-    phase(context);
-    if (diagnostics.count(Severity::error) == errors_before) continue;
-    clear(out);
-    return false;
-  }
-  out.plan.graph = input.graph->name;
-  out.plan.view_width = input.view_width;
-  out.plan.view_height = input.view_height;
-  out.plan.device_profile = input.device->name;
-  return true;
+  Report report{diagnostics, out.reasons, input.reasons, diagnostics.count(Severity::error)};
+  if (run_phases(input, report, out.plan, *scratch_)) return true;
+  clear(out);
+  return false;
 }
 
 std::optional<CompiledPlan> compile(const CompileInput& input, Diagnostics& diagnostics) {

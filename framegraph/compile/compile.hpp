@@ -59,7 +59,7 @@ public:
   bool compile(const CompileInput& input, Diagnostics& diagnostics, CompiledPlan& out);
 
 private:
-  std::unique_ptr<struct CompileContext> context_;
+  std::unique_ptr<struct CompileScratch> scratch_;
 };
 
 // "'hybrid'", "8": the value as a graph file would write it.

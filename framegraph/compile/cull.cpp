@@ -1,5 +1,7 @@
-// Which passes run: those with side effects, those that write a bound export, and whatever these read.
+// Finds the passes that run: passes with side effects, passes that write a bound export, and the producers of
+// everything that live passes read.
 
+#include "framegraph/compile/hardware.hpp"
 #include "framegraph/compile/phases.hpp"
 #include "framegraph/model/image_part.hpp"
 #include "framegraph/text/suggest.hpp"
@@ -13,219 +15,228 @@ namespace dermis {
 namespace {
 
 struct Culler {
-  CompileContext& c;
+  const CompileInput& in;
+  const Graph& graph;
+  const Sizes& sizes;
+  const Activation& active;
+  const Subresources& subresources;
+  const Versions& versions;
+  Report& report;
+  CullScratch& scratch;
+  LiveSet& live = scratch.result;
+  std::vector<uint64_t>& unvisited = scratch.unvisited;
 
-  PassId following{};                         // whose reads are looked at
-  std::vector<uint64_t>& waiting = c.waiting; // bit set of passes that are needed and not yet followed
-
-  void need(PassId pass, Reason::ReasonKind why, uint32_t a = 0, uint32_t b = 0) {
-    if (c.input->reasons && !c.live[pass.value]) c.record_reason(Reason::About::pass, pass.value, why, a, b);
-    waiting[pass.value / 64] |= uint64_t{c.live[pass.value] == 0} << pass.value % 64;
-    c.live[pass.value] = 1;
+  void mark_live(PassId pass, Reason::ReasonKind why, uint32_t a = 0, uint32_t b = 0) {
+    if (report.reasons_requested && !live.contains(pass))
+      report.record_reason(Reason::About::pass, pass.value, why, a, b);
+    unvisited[pass.value / 64] |= uint64_t{!live.contains(pass)} << pass.value % 64;
+    live.passes[pass.value] = 1;
   }
 
-  void need_value(uint32_t value, Reason::ReasonKind why, uint32_t a, uint32_t b = 0) {
-    if (value != no_value && c.values[value].producer.valid()) need(c.values[value].producer, why, a, b);
+  void mark_producer(uint32_t version, Reason::ReasonKind why, uint32_t a, uint32_t b = 0) {
+    if (version != invalid_index && versions[version].producer.valid())
+      mark_live(versions[version].producer, why, a, b);
   }
 
-  // Likewise, for the pass that is followed: it stands in for a producer that there is not, since it runs
-  // anyway.
-  void need_producer(uint32_t value, Reason::ReasonKind why, uint32_t a, uint32_t b) {
-    if (c.values.empty()) return;
-    const PassId producer = c.values[pick(value != no_value, value, 0u)].producer;
-    const bool exists = (int{value != no_value} & int{producer.valid()}) != 0;
-    need(PassId{pick(exists, producer.value, following.value)}, why, a, b);
+  // Same as mark_producer, for the hot loop. Marks `reader`, which is live already, if there is no producer:
+  // that avoids a branch.
+  void mark_producer_of_read(uint32_t version, PassId reader, uint32_t resource) {
+    if (versions.list.empty()) return;
+    const PassId producer = versions[select(version != invalid_index, version, 0u)].producer;
+    const bool exists = (int{version != invalid_index} & int{producer.valid()}) != 0;
+    mark_live(PassId{select(exists, producer.value, reader.value)}, Reason::ReasonKind::read_by, reader.value,
+              resource);
   }
 
-  void follow(PassId pass) {
-    for (uint32_t u = c.first_use[pass.value]; u < c.first_use[pass.value + 1]; ++u) {
-      const Use& use = c.uses[u];
+  void visit(PassId pass) {
+    for (const Use& use : versions.uses_of(pass)) {
       if (use.bind_error != Use::BindError::none) {
-        examine(use);
+        examine_bind_error(use);
         continue;
       }
       const uint32_t resource = use.resource.value;
       if (use.frames_back > 0)
-        need_value(c.final_value[use.part], Reason::ReasonKind::read_later_by, pass.value, resource);
-      need_producer(use.read_value, Reason::ReasonKind::read_by, pass.value, resource);
-      // What is written in place may keep texels of the version before.
-      if (c.overwrites && use.write_value != no_value)
-        need_value(c.values[use.write_value].previous, Reason::ReasonKind::written_over_by, pass.value,
-                   resource);
+        mark_producer(versions.final_version[use.subresource], Reason::ReasonKind::read_later_by, pass.value,
+                      resource);
+      mark_producer_of_read(use.read_version, pass, resource);
+      // A pass that writes in place may keep texels of the version before.
+      if (versions.overwrites && use.write_version != invalid_index)
+        mark_producer(versions[use.write_version].previous, Reason::ReasonKind::written_over_by, pass.value,
+                      resource);
     }
   }
 
-  // Most passes stand behind those that they need: the last one first, once.
-  void follow_all() {
+  // Visits the last pass first: most passes are located after their producers, so one sweep usually suffices.
+  void visit_all() {
     for (bool any = true; any;) {
       any = false;
-      for (size_t word = waiting.size(); word-- > 0;) {
-        uint64_t below = ~uint64_t{0}; // passes of this word that come before the one followed last
-        while (const uint64_t left = waiting[word] & below) {
+      for (size_t word = unvisited.size(); word-- > 0;) {
+        uint64_t below = ~uint64_t{0}; // passes of this word before the one visited last
+        while (const uint64_t left = unvisited[word] & below) {
           const auto bit = static_cast<uint32_t>(std::bit_width(left) - 1);
           below = (uint64_t{1} << bit) - 1;
-          waiting[word] &= ~(uint64_t{1} << bit);
+          unvisited[word] &= ~(uint64_t{1} << bit);
           any = true;
-          following = PassId{static_cast<uint32_t>(word * 64 + bit)};
-          follow(following);
+          visit(PassId{static_cast<uint32_t>(word * 64 + bit)});
         }
       }
     }
   }
 
-  // Without culling: every pass that has all it needs, and whatever these read.
+  // Without culling: keeps every pass whose inputs exist, and their producers.
   void keep_runnable() {
-    std::vector<uint8_t> unmet(c.live.size(), 0);
-    for (const Use& use : c.uses)
-      if (use.bind_error != Use::BindError::none) unmet[use.pass.value] = 1;
-    for (uint32_t i = 0; i < c.live.size(); ++i)
-      if (c.on[i] && !unmet[i]) need(PassId{i}, Reason::ReasonKind::culling_off);
-    for (bool again = true; again;) { // a pass needs all its producers to have what they need
+    std::vector<uint8_t> lacks_input(live.passes.size(), 0);
+    for (const Use& use : versions.uses)
+      if (use.bind_error != Use::BindError::none) lacks_input[use.pass.value] = 1;
+    for (uint32_t i = 0; i < live.passes.size(); ++i)
+      if (active.on[i] && !lacks_input[i]) mark_live(PassId{i}, Reason::ReasonKind::culling_off);
+    for (bool again = true; again;) { // until all producers of each live pass are live
       again = false;
-      for (const Use& use : c.uses) {
-        if (!c.live[use.pass.value] || use.read_value == no_value) continue;
-        const PassId producer = c.values[use.read_value].producer;
-        if (!producer.valid() || c.live[producer.value]) continue;
-        c.live[use.pass.value] = 0;
+      for (const Use& use : versions.uses) {
+        if (!live.passes[use.pass.value] || use.read_version == invalid_index) continue;
+        const PassId producer = versions[use.read_version].producer;
+        if (!producer.valid() || live.passes[producer.value]) continue;
+        live.passes[use.pass.value] = 0;
         again = true;
       }
     }
   }
 
-  // A history that nobody writes is never valid: where the port says what it reads then, it always reads
-  // that.
+  // Whether the port reads its placeholder in every frame, because no pass writes the history.
   bool has_placeholder(const Use& use) const {
     if (use.when != ReadWhen::history_valid || use.bind_error != Use::BindError::history_unwritten)
       return false;
-    const Use* next = &use + 1; // the stand-in stands behind it, at the same port
-    const bool last = next == c.uses.data() + c.first_use[use.pass.value + 1];
+    const Use* next = &use + 1; // the placeholder follows the history at the same port
+    const bool last = next == end_of_pass(use);
     return !last && next->when == ReadWhen::history_invalid && next->port == use.port &&
            next->bind_error == Use::BindError::none;
   }
 
-  // Whether the pass has no other port to go on with. Of several such ports the first is told.
-  bool needs_it(const Use& use) const {
-    const PassType& type = c.type(use.pass);
+  // Whether the pass cannot run without the port. Of several alternative ports the first is reported.
+  bool is_required(const Use& use) const {
+    const PassType& type = active.type(use.pass);
     if (!type.ports[use.port].optional) return true;
     if (!is_one_of(type, use.port)) return false;
-    for (uint32_t u = c.first_use[use.pass.value]; u < c.first_use[use.pass.value + 1]; ++u) {
-      const Use& other = c.uses[u];
+    for (const Use& other : versions.uses_of(use.pass)) {
       if (!is_one_of(type, other.port)) continue;
       if (other.bind_error == Use::BindError::none || &other < &use) return false;
     }
     return true;
   }
 
-  // A port of a pass that runs has nothing behind it: fine for an optional port, except for ambiguity.
-  void examine(const Use& use) {
-    const Port& port = c.type(use.pass).ports[use.port];
+  // A live pass has a port without a version: an error unless the port is optional, or if it is ambiguous.
+  void examine_bind_error(const Use& use) {
+    const Port& port = active.type(use.pass).ports[use.port];
     const bool missing = use.bind_error == Use::BindError::unbound ||
                          use.bind_error == Use::BindError::unwritten ||
                          use.bind_error == Use::BindError::history_unwritten;
     if (has_placeholder(use)) {
-      c.record_reason(Reason::About::pass, use.pass.value, Reason::ReasonKind::always_otherwise, use.port,
-                      use.requested.value);
+      report.record_reason(Reason::About::pass, use.pass.value, Reason::ReasonKind::always_otherwise,
+                           use.port, use.requested.value);
       return;
     }
-    if (missing && !needs_it(use)) {
+    if (missing && !is_required(use)) {
       if (first_of_binding(use))
-        c.record_reason(Reason::About::pass, use.pass.value, Reason::ReasonKind::port_unbound, use.port,
-                        use.requested.value);
+        report.record_reason(Reason::About::pass, use.pass.value, Reason::ReasonKind::port_unbound, use.port,
+                             use.requested.value);
       return;
     }
-    if (c.reported[use.requested.value]) return;
-    c.reported[use.requested.value] = 1;
-    const auto refuse = [&](DiagnosticId id, std::string text) {
-      auto& diagnostic = c.diagnostics->add(id, c.place_of(use), std::move(text));
-      diagnostic.related.emplace_back(c.graph->resources[use.requested.value].where,
-                                      fmt::format("'{}' is declared here", c.name(use.requested)));
+    if (scratch.reported[use.requested.value]) return;
+    scratch.reported[use.requested.value] = 1;
+    const auto report_error = [&](DiagnosticId id, std::string text) {
+      auto& diagnostic = report.diagnostics.add(id, location_of(graph, use), std::move(text));
+      diagnostic.related.emplace_back(graph.resources[use.requested.value].where,
+                                      fmt::format("'{}' is declared here", name_of(graph, use.requested)));
       relate_producers(diagnostic, use);
     };
-    const std::string reader = fmt::format("pass '{}', port '{}'", c.name(use.pass), port.name);
-    const std::string& resource = c.name(use.requested);
+    const std::string reader = fmt::format("pass '{}', port '{}'", name_of(graph, use.pass), port.name);
+    const std::string& resource = name_of(graph, use.requested);
     switch (use.bind_error) {
     case Use::BindError::none:
       break;
     case Use::BindError::unbound:
-      return refuse(DiagnosticId::unbound_import,
-                    fmt::format("{} needs '{}', which the host leaves unbound", reader, resource));
+      return report_error(DiagnosticId::unbound_import,
+                          fmt::format("{} needs '{}', which the host leaves unbound", reader, resource));
     case Use::BindError::unwritten:
-      return refuse(
+      return report_error(
           DiagnosticId::read_before_write,
           fmt::format("{} reads '{}', which no pass that is on writes before it", reader, seen_text(use)));
     case Use::BindError::ambiguous:
-      return refuse(DiagnosticId::ambiguous_version,
-                    fmt::format("{} reads '{}' before any pass wrote it, and several write it later", reader,
-                                resource));
+      return report_error(DiagnosticId::ambiguous_version,
+                          fmt::format("{} reads '{}' before any pass wrote it, and several write it later",
+                                      reader, resource));
     case Use::BindError::replaced:
-      return refuse(
+      return report_error(
           DiagnosticId::replaced_update,
           fmt::format("{} updates '{}' in place, but it stands for '{}' because its producer is off", reader,
-                      resource, c.name(use.resource)));
+                      resource, name_of(graph, use.resource)));
     case Use::BindError::history_unwritten:
-      return refuse(DiagnosticId::history_unwritten,
-                    fmt::format("{0} reads '{1}@-{2}', but no pass that is on writes '{1}'", reader,
-                                seen_text(use), use.frames_back));
+      return report_error(DiagnosticId::history_unwritten,
+                          fmt::format("{0} reads '{1}@-{2}', but no pass that is on writes '{1}'", reader,
+                                      seen_text(use), use.frames_back));
     case Use::BindError::partly_unwritten:
       return use.frames_back > 0
-                 ? refuse(DiagnosticId::history_unwritten,
-                          fmt::format("{} reads '{}@-{}', but no pass that is on writes {}", reader,
-                                      seen_text(use), use.frames_back, unwritten_parts(use)))
-                 : refuse(DiagnosticId::read_before_write,
-                          fmt::format("{} reads '{}', but no pass that is on writes {} before it", reader,
-                                      seen_text(use), unwritten_parts(use)));
+                 ? report_error(DiagnosticId::history_unwritten,
+                                fmt::format("{} reads '{}@-{}', but no pass that is on writes {}", reader,
+                                            seen_text(use), use.frames_back, unwritten_parts(use)))
+                 : report_error(DiagnosticId::read_before_write,
+                                fmt::format("{} reads '{}', but no pass that is on writes {} before it",
+                                            reader, seen_text(use), unwritten_parts(use)));
     }
   }
 
   const char* state_of(PassId pass) const {
-    if (c.on[pass.value]) return "on";
-    const bool by_settings = c.graph->passes[pass.value].absence == PassDeclaration::Absence::none;
+    if (active.on[pass.value]) return "on";
+    const bool by_settings = graph.passes[pass.value].absence == PassDeclaration::Absence::none;
     return by_settings ? "off with these settings" : "off: the graph has no profile";
   }
 
+  const Use* end_of_pass(const Use& use) const {
+    return versions.uses.data() + versions.first_use[use.pass.value + 1];
+  }
+
   bool first_of_binding(const Use& use) const {
-    const Use* before = &use - 1;
-    return c.first_use[use.pass.value] == static_cast<uint32_t>(&use - c.uses.data()) ||
-           before->binding != use.binding;
+    return &use == versions.uses_of(use.pass).data() || (&use - 1)->binding != use.binding;
   }
 
-  // Names the part that the port sees as the file does, without the frame.
+  // Names the range as the file does, without the frame.
   std::string seen_text(const Use& use) const {
-    const PortBinding& binding = c.graph->bindings_of(c.graph->passes[use.pass.value])[use.binding];
-    return c.name(use.requested) + part_text(binding.part);
+    const PortBinding& binding = graph.bindings_of(graph.passes[use.pass.value])[use.binding];
+    return name_of(graph, use.requested) + part_text(binding.part);
   }
 
-  // Without the numbers that the part has all of.
+  // Omits mips and layers that the range covers completely.
   ImagePart part_of(const Use& use) const {
-    const SubresourceRange& range = c.parts[use.part];
+    const SubresourceRange& range = subresources.ranges[use.subresource];
     ImagePart part;
-    if (range.mips != c.extents[use.requested.value].mips) {
+    if (range.mips != sizes.extents[use.requested.value].mips) {
       part.first_mip = static_cast<uint8_t>(range.first_mip);
       part.mips = static_cast<uint8_t>(range.mips);
     }
-    if (range.layers != c.info[use.requested.value].layers) {
+    if (range.layers != sizes.info[use.requested.value].layers) {
       part.first_layer = range.first_layer;
       part.layers = range.layers;
     }
     return part;
   }
 
-  // The parts of the binding that nobody writes: "'chain#1' or 'chain#4..5'".
+  // Lists the ranges of the binding that no pass writes: "'chain#1' or 'chain#4..5'".
   std::string unwritten_parts(const Use& use) const {
     std::vector<std::string> names;
-    for (const Use* at = &use; at != c.uses.data() + c.first_use[use.pass.value + 1]; ++at) {
-      if (at->binding != use.binding || c.is_written(*at)) continue;
-      names.push_back(c.name(use.requested) + part_text(part_of(*at)));
+    for (const Use* at = &use; at != end_of_pass(use); ++at) {
+      if (at->binding != use.binding || versions.is_written(*at)) continue;
+      names.push_back(name_of(graph, use.requested) + part_text(part_of(*at)));
     }
     return list_words(std::vector<std::string_view>(names.begin(), names.end()));
   }
 
-  // Locates the passes that would write the missing parts, on or off: the likely cause.
+  // Adds the passes that would write the missing ranges, on or off: the likely cause.
   void relate_producers(Diagnostic& diagnostic, const Use& use) {
     relate_producers(diagnostic, use.requested, [&](const PortBinding& written) {
-      if (!c.split(use.requested)) return true;
-      for (const Use* at = &use; at != c.uses.data() + c.first_use[use.pass.value + 1]; ++at)
-        if (at->binding == use.binding && !c.is_written(*at) && meets(written.part, c.parts[at->part]))
+      if (!subresources.divided(use.requested)) return true;
+      for (const Use* at = &use; at != end_of_pass(use); ++at)
+        if (at->binding == use.binding && !versions.is_written(*at) &&
+            overlaps(written.part, subresources.ranges[at->subresource]))
           return true;
       return false;
     });
@@ -236,43 +247,55 @@ struct Culler {
   }
 
   void relate_producers(Diagnostic& diagnostic, ResourceId resource, const auto& counts) {
-    for (uint32_t i = 0; i < c.graph->passes.size(); ++i)
-      for (const PortBinding& binding : c.graph->writes(c.graph->passes[i]))
+    for (uint32_t i = 0; i < graph.passes.size(); ++i)
+      for (const PortBinding& binding : graph.writes(graph.passes[i]))
         if (binding.resource == resource && counts(binding))
           diagnostic.related.emplace_back(
-              c.graph->place_of(binding),
-              fmt::format("'{}' writes it and is {}", c.name(PassId{i}), state_of(PassId{i})));
+              graph.place_of(binding),
+              fmt::format("'{}' writes it and is {}", name_of(graph, PassId{i}), state_of(PassId{i})));
+  }
+
+  // Marks the producers of all bound exports.
+  void visit_exports() {
+    for (uint32_t i = 0; i < graph.resources.size(); ++i) {
+      if (!sizes.info[i].exported || !sizes.info[i].bound) continue;
+      if (versions.final_version[i] != invalid_index) {
+        mark_producer(versions.final_version[i], Reason::ReasonKind::writes_export, i);
+      } else if (sizes.info[i].optional) {
+        report.record_reason(Reason::About::resource, i, Reason::ReasonKind::unwritten_export);
+      } else {
+        const ResourceDeclaration& declared = graph.resources[i];
+        auto& diagnostic =
+            report.diagnostics.add(DiagnosticId::export_unwritten, declared.where,
+                                   fmt::format("no pass that is on writes the export '{}'", declared.name));
+        relate_producers(diagnostic, ResourceId{i});
+      }
+    }
   }
 };
 
 } // namespace
 
-void cull(CompileContext& c) {
-  const auto passes = static_cast<uint32_t>(c.graph->passes.size());
-  c.live.assign(passes, 0);
-  c.waiting.assign((passes + 63) / 64, 0);
-  c.reported.assign(c.graph->resources.size(), 0);
-  Culler culler{c};
-  for (uint32_t i = 0; i < c.graph->resources.size(); ++i) {
-    if (!c.info[i].exported || !c.bound[i]) continue;
-    if (c.final_value[i] != no_value) {
-      culler.need_value(c.final_value[i], Reason::ReasonKind::writes_export, i);
-    } else if (c.info[i].optional) {
-      c.record_reason(Reason::About::resource, i, Reason::ReasonKind::unwritten_export);
-    } else {
-      const ResourceDeclaration& declared = c.graph->resources[i];
-      auto& diagnostic =
-          c.diagnostics->add(DiagnosticId::export_unwritten, declared.where,
-                             fmt::format("no pass that is on writes the export '{}'", declared.name));
-      culler.relate_producers(diagnostic, ResourceId{i});
-    }
-  }
+const LiveSet& cull(const CompileInput& in, const Sizes& sizes, const Activation& active,
+                    const Subresources& subresources, const Versions& versions, Report& report,
+                    CullScratch& scratch) {
+  const Graph& graph = *in.graph;
+  LiveSet& live = scratch.result;
+  const auto passes = static_cast<uint32_t>(graph.passes.size());
+  live.passes.assign(passes, 0);
+  scratch.unvisited.assign((passes + 63) / 64, 0);
+  scratch.reported.assign(graph.resources.size(), 0);
+  Culler culler{in, graph, sizes, active, subresources, versions, report, scratch};
+  culler.visit_exports();
   for (uint32_t i = 0; i < passes; ++i)
-    if (c.on[i] && c.type(PassId{i}).side_effects) culler.need(PassId{i}, Reason::ReasonKind::side_effects);
-  culler.follow_all();
-  if (!c.input->cull) culler.keep_runnable();
+    if (active.on[i] && active.type(PassId{i}).side_effects)
+      culler.mark_live(PassId{i}, Reason::ReasonKind::side_effects);
+  culler.visit_all();
+  if (!in.cull) culler.keep_runnable();
   for (uint32_t i = 0; i < passes; ++i)
-    if (c.on[i] && !c.live[i]) c.record_reason(Reason::About::pass, i, Reason::ReasonKind::not_needed);
+    if (active.on[i] && !live.passes[i])
+      report.record_reason(Reason::About::pass, i, Reason::ReasonKind::not_needed);
+  return live;
 }
 
 } // namespace dermis

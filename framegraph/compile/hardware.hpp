@@ -1,6 +1,6 @@
 #pragma once
-// What the phases of compile() tell the processor: what it will need, and where it should not guess. Internal
-// to compile/.
+// Prefetching, branch-free selection and SIMD for the loops that `dermis bench compile` shows to need them.
+// Internal to compile/.
 
 #include <concepts>
 #include <cstdint>
@@ -12,8 +12,8 @@
 
 namespace dermis {
 
-// Asks for memory that is needed soon.
-inline void fetch(const void* address) {
+// Loads a cache line that is needed soon.
+inline void prefetch(const void* address) {
 #if defined(__GNUC__)
   __builtin_prefetch(address);
 #else
@@ -21,15 +21,17 @@ inline void fetch(const void* address) {
 #endif
 }
 
-// `a` if `first`, else `b`, without a branch: for what is as good as random, where compilers branch on `?`.
-template <std::unsigned_integral T> constexpr T pick(bool first, T a, T b) {
+// Returns `a` if `first`, else `b`, without a branch. For unpredictable conditions where compilers branch on
+// `?`.
+template <std::unsigned_integral T> constexpr T select(bool first, T a, T b) {
   return static_cast<T>(b ^ ((a ^ b) & static_cast<T>(-static_cast<T>(first))));
 }
 
-// Which of the next `numbers_at_once` numbers have a bit in common with `mask`: bit i for numbers[i].
+// Number of masks that one call of any_common_bits tests.
 inline constexpr uint32_t numbers_at_once = 32;
 
-inline uint32_t sharing_bits_anywhere(const uint32_t* numbers, uint32_t mask) { // on any processor
+// any_common_bits without SIMD.
+inline uint32_t any_common_bits_portable(const uint32_t* numbers, uint32_t mask) {
   uint8_t hit[numbers_at_once];
   for (uint32_t i = 0; i < numbers_at_once; ++i)
     hit[i] = (numbers[i] & mask) != 0 ? 1 : 0;
@@ -42,12 +44,13 @@ inline uint32_t sharing_bits_anywhere(const uint32_t* numbers, uint32_t mask) { 
   return bits;
 }
 
+// Returns a bit i for each numbers[i] that has a bit in common with `mask`.
 inline uint32_t any_common_bits(const uint32_t* numbers, uint32_t mask) {
 #if defined(__SSE2__)
   const __m128i wanted = _mm_set1_epi32(static_cast<int>(mask)), none = _mm_setzero_si128();
   uint32_t missed = 0;
   for (uint32_t half = 0; half < 2; ++half) {
-    const auto missing = [&](uint32_t quarter) { // all bits of each of four numbers that have none of them
+    const auto missing = [&](uint32_t quarter) { // all bits set for each of four numbers without a common bit
       const uint32_t* at = numbers + half * 16 + quarter * 4;
       return _mm_cmpeq_epi32(_mm_and_si128(_mm_loadu_si128(reinterpret_cast<const __m128i*>(at)), wanted),
                              none);
@@ -58,7 +61,7 @@ inline uint32_t any_common_bits(const uint32_t* numbers, uint32_t mask) {
   }
   return ~missed;
 #else
-  return sharing_bits_anywhere(numbers, mask);
+  return any_common_bits_portable(numbers, mask);
 #endif
 }
 

@@ -1,7 +1,7 @@
 // Dynamic storage allocation: intervals in time get places in one range of bytes.
 
+#include "framegraph/compile/packer.hpp"
 #include "framegraph/compile/hardware.hpp"
-#include "framegraph/compile/pack.hpp"
 #include "framegraph/model/splitmix.hpp"
 
 #include <algorithm>
@@ -120,12 +120,12 @@ struct GapFinder {
     const uint64_t start = align_to_power_of_two(free_from, alignment);
     const uint64_t slack = begin - start - size;
     const bool better = slack < best_slack;
-    best = pick(better, start, best);
-    best_slack = pick(better, slack & keep, best_slack);
+    best = select(better, start, best);
+    best_slack = select(better, slack & keep, best_slack);
     free_from = std::max(free_from, end);
   }
   uint64_t place() const {
-    return pick(best_slack < no_gap, best, align_to_power_of_two(free_from, alignment));
+    return select(best_slack < no_gap, best, align_to_power_of_two(free_from, alignment));
   }
 };
 
@@ -203,7 +203,7 @@ uint64_t Packer::find_place(const PackItem& item, uint32_t first, uint32_t last,
   b[count_b] = end_of_list;
   for (size_t left = count_a + count_b; left > 0; --left) {
     const bool from_b = b->begin < a->begin;
-    gaps.pass(pick(from_b, b->begin, a->begin), pick(from_b, b->end, a->end));
+    gaps.pass(select(from_b, b->begin, a->begin), select(from_b, b->end, a->end));
     b += static_cast<size_t>(from_b);
     a += size_t{1} - static_cast<size_t>(from_b);
   }
@@ -250,7 +250,7 @@ void Packer::sort_by_size(const std::vector<uint32_t>& given, std::vector<uint32
     const auto known = static_cast<uint32_t>(sizes_.size());
     uint32_t same = known;
     for (uint32_t k = 0; k < known; ++k) // to the end: where it is found is as good as random
-      same = pick(sizes_[k] == size, k, same);
+      same = select(sizes_[k] == size, k, same);
     if (same == known) {
       if (known == few_sizes) break;
       sizes_.push_back(size);

@@ -1,5 +1,5 @@
-// Which version of which resource each port sees. Versions follow the order of the file; a pass that is off
-// makes the names it would have written stand for their `otherwise`.
+// Resolves which version of which resource each port accesses. Versions follow the order of the file. If a
+// pass is off, the names that it would have written refer to their `otherwise` instead.
 
 #include "framegraph/compile/phases.hpp"
 #include "framegraph/text/limits.hpp"
@@ -13,73 +13,85 @@
 namespace dermis {
 namespace {
 
-struct VersionScan {
-  CompileContext& c;
-  uint64_t part_uses = 0;
-  std::pair<PassId, uint16_t> refused{};
+struct VersionResolver {
+  const CompileInput& in;
+  const Graph& graph;
+  const Sizes& sizes;
+  const Activation& active;
+  const Subresources& subresources;
+  Report& report;
+  VersionScratch& scratch;
+  Versions& versions = scratch.result;
+  uint64_t divided_uses = 0;                          // uses of divided images, for limits::part_uses
+  std::pair<PassId, uint16_t> last_second_producer{}; // pass and port reported last
 
   void begin() {
-    const size_t resources = c.graph->resources.size();
-    const size_t parts = std::max(resources, c.parts.size());
-    c.values.clear();
-    c.uses.clear();
-    c.first_use.clear();
-    c.forward.clear();
-    c.overwrites = false;
-    c.current.assign(parts, {});
-    c.last_version.assign(parts, no_value);
-    c.definitions.assign(parts, {});
+    const size_t resources = graph.resources.size();
+    const size_t count = std::max(resources, subresources.ranges.size());
+    versions.list.clear();
+    versions.uses.clear();
+    versions.first_use.clear();
+    scratch.forward_references.clear();
+    versions.overwrites = false;
+    scratch.current.assign(count, {});
+    scratch.last_version.assign(count, invalid_index);
+    scratch.definitions.assign(count, {});
     for (uint32_t i = 0; i < resources; ++i) {
-      if (!c.info[i].imported || !c.bound[i]) continue;
-      c.current[i].value = add_value({ResourceId{i}, 0, PassId{}, no_value});
-      c.last_version[i] = c.current[i].value;
+      if (!sizes.info[i].imported || !sizes.info[i].bound) continue;
+      scratch.current[i].version = add_version({ResourceId{i}, 0, PassId{}, invalid_index});
+      scratch.last_version[i] = scratch.current[i].version;
     }
   }
 
-  uint32_t add_value(Value value) {
-    c.values.push_back(value);
-    return static_cast<uint32_t>(c.values.size() - 1);
+  uint32_t add_version(Version version) {
+    versions.list.push_back(version);
+    return static_cast<uint32_t>(versions.list.size() - 1);
   }
 
-  bool unbound_import(ResourceId id) const { return c.info[id.value].imported && !c.bound[id.value]; }
+  bool unbound_import(ResourceId id) const {
+    return sizes.info[id.value].imported && !sizes.info[id.value].bound;
+  }
 
-  // One use for each part that the port sees.
-  void add_parts(Use use, const ImagePart& seen) {
-    for (uint32_t i = 0; i < c.info[use.requested.value].parts; ++i) {
-      use.part = c.part_number(use.requested, i);
-      if (meets(seen, c.parts[use.part])) c.uses.push_back(use);
+  // Adds one use for each subresource range that the port accesses.
+  void add_divided(Use use, const ImagePart& seen) {
+    for (uint32_t i = 0; i < subresources.counts[use.requested.value]; ++i) {
+      use.subresource = subresources.number(use.requested, i);
+      if (overlaps(seen, subresources.ranges[use.subresource])) versions.uses.push_back(use);
     }
-    part_uses += c.info[use.requested.value].parts;
+    divided_uses += subresources.counts[use.requested.value];
   }
 
-  // A port of which no part can be read is not bound; one of which some parts can is refused, unless the
-  // others wait for a profile and the port is optional.
-  void spread_trouble() {
-    for (size_t first = 0; first < c.uses.size();) {
-      const Use& one = c.uses[first];
+  // Gives all uses of one binding the same bind error. A port whose ranges all lack a writer is unbound. A
+  // port with some written ranges is an error, unless the port is optional and the others lack only a
+  // profile.
+  void spread_bind_errors() {
+    for (size_t first = 0; first < versions.uses.size();) {
+      const Use& one = versions.uses[first];
       size_t end = first + 1;
-      while (end < c.uses.size() && c.uses[end].pass == one.pass && c.uses[end].port == one.port &&
-             c.uses[end].binding == one.binding)
+      while (end < versions.uses.size() && versions.uses[end].pass == one.pass &&
+             versions.uses[end].port == one.port && versions.uses[end].binding == one.binding)
         ++end;
-      spread_trouble(std::span(c.uses).subspan(first, end - first));
+      spread_bind_errors(std::span(versions.uses).subspan(first, end - first));
       first = end;
     }
   }
 
-  // Whether all passes that would write what the use reads are off for want of a profile.
+  // Whether all passes that would write what the use reads are off because the graph has no profile.
   bool lacks_profile(const Use& use) const {
     bool unmet = false;
-    for (const PassDeclaration& pass : c.graph->passes)
-      for (const PortBinding& written : c.graph->writes(pass)) {
-        if (written.resource != use.requested || !meets(written.part, c.parts[use.part])) continue;
+    for (const PassDeclaration& pass : graph.passes)
+      for (const PortBinding& written : graph.writes(pass)) {
+        if (written.resource != use.requested ||
+            !overlaps(written.part, subresources.ranges[use.subresource]))
+          continue;
         if (pass.absence == PassDeclaration::Absence::none) return false;
         unmet = true;
       }
     return unmet;
   }
 
-  // `uses` are the parts of one binding.
-  void spread_trouble(std::span<Use> uses) const {
+  // `uses` belong to one binding.
+  void spread_bind_errors(std::span<Use> uses) const {
     using BindError = Use::BindError;
     const auto has = [](BindError bind_error) {
       return [bind_error](const Use& use) { return use.bind_error == bind_error; };
@@ -92,7 +104,7 @@ struct VersionScan {
       return use.bind_error == BindError::none || lacks_profile(use);
     };
     const bool some = missing && std::any_of(uses.begin(), uses.end(), has(BindError::none));
-    const bool partly = some && !(c.type(bad->pass).ports[bad->port].optional &&
+    const bool partly = some && !(active.type(bad->pass).ports[bad->port].optional &&
                                   std::all_of(uses.begin(), uses.end(), may_be_missing));
     const BindError all = partly ? BindError::partly_unwritten : bad->bind_error;
     for (Use& use : uses)
@@ -100,17 +112,17 @@ struct VersionScan {
   }
 
   void scan_uses(PassId pass) {
-    const PassDeclaration& declared = c.graph->passes[pass.value];
-    const PassType& type = (*c.pass_types)[declared.type];
-    const auto first = static_cast<uint32_t>(c.uses.size());
-    c.first_use.push_back(first);
+    const PassDeclaration& declared = graph.passes[pass.value];
+    const PassType& type = (*in.pass_types)[declared.type];
+    const auto first = static_cast<uint32_t>(versions.uses.size());
+    versions.first_use.push_back(first);
     uint16_t number = 0;
     uint32_t port_before = 0;
     bool sorted = true;
-    for (const PortBinding& binding : c.graph->bindings_of(declared)) {
+    for (const PortBinding& binding : graph.bindings_of(declared)) {
       sorted &= port_before <= binding.port;
       port_before = binding.port;
-      Use& use = c.uses.emplace_back();
+      Use& use = versions.uses.emplace_back();
       use.pass = pass;
       use.port = static_cast<uint16_t>(binding.port);
       use.usage = type.ports[binding.port].usage;
@@ -120,182 +132,196 @@ struct VersionScan {
       use.resource = use.requested = binding.resource;
       use.frames_back = binding.frames_back;
       use.when = binding.when;
-      use.part = use.requested.value;
+      use.subresource = use.requested.value;
       use.binding = number++;
-      if (c.split(use.requested)) {
+      if (subresources.divided(use.requested)) {
         const Use whole = use;
-        c.uses.pop_back();
-        add_parts(whole, binding.part);
+        versions.uses.pop_back();
+        add_divided(whole, binding.part);
       }
     }
     if (!sorted)
-      std::stable_sort(c.uses.begin() + first, c.uses.end(),
+      std::stable_sort(versions.uses.begin() + first, versions.uses.end(),
                        [](const Use& a, const Use& b) { return a.port < b.port; });
-    const auto end = static_cast<uint32_t>(c.uses.size());
+    const auto end = static_cast<uint32_t>(versions.uses.size());
     for (uint32_t u = first; u < end; ++u)
-      read(c.uses[u], u);
+      bind_read(versions.uses[u], u);
     for (uint32_t u = first; u < end; ++u)
-      write(c.uses[u]);
+      bind_write(versions.uses[u]);
   }
 
-  void read(Use& use, uint32_t index) {
+  void bind_read(Use& use, uint32_t index) {
     if (!use.reads || use.frames_back > 0) return;
-    const Binding& meaning = c.current[use.part];
+    const VersionScratch::Binding& binding = scratch.current[use.subresource];
     if (unbound_import(use.requested))
       use.bind_error = Use::BindError::unbound;
-    else if (meaning.value != no_value)
-      see(use, meaning.value);
+    else if (binding.version != invalid_index)
+      bind_version(use, binding.version);
     else
-      c.forward.emplace_back(index, meaning.later.valid() ? meaning.later.value : use.part);
+      scratch.forward_references.push_back(
+          {index, binding.later.valid() ? binding.later.value : use.subresource});
   }
 
-  void see(Use& use, uint32_t value) {
-    use.read_value = value;
-    use.resource = c.values[value].resource;
+  void bind_version(Use& use, uint32_t version) {
+    use.read_version = version;
+    use.resource = versions[version].resource;
     if (use.writes && use.resource != use.requested) use.bind_error = Use::BindError::replaced;
   }
 
-  bool reads_too(PassId pass, uint32_t part) const {
-    for (uint32_t u = c.first_use[pass.value]; u < c.uses.size(); ++u) {
-      const Use& use = c.uses[u];
-      if (use.part == part && use.frames_back == 0 && use.reads) return true;
+  bool reads_too(PassId pass, uint32_t subresource) const {
+    for (uint32_t u = versions.first_use[pass.value]; u < versions.uses.size(); ++u) {
+      const Use& use = versions.uses[u];
+      if (use.subresource == subresource && use.frames_back == 0 && use.reads) return true;
     }
     return false;
   }
 
-  void write(Use& use) {
+  void bind_write(Use& use) {
     if (!use.writes) return;
     if (unbound_import(use.requested)) {
       use.bind_error = Use::BindError::unbound;
       return;
     }
     const uint32_t id = use.requested.value;
-    const uint32_t before = c.current[use.part].value;
-    const PassId producer = before == no_value ? PassId{} : c.values[before].producer;
-    const bool own = before != no_value && c.values[before].resource == use.requested;
-    const bool second = own && (producer == use.pass ||
-                                (!c.info[id].imported && producer.valid() && !reads_too(use.pass, use.part)));
+    const uint32_t before = scratch.current[use.subresource].version;
+    const PassId producer = before == invalid_index ? PassId{} : versions[before].producer;
+    const bool own = before != invalid_index && versions[before].resource == use.requested;
+    const bool second = own && (producer == use.pass || (!sizes.info[id].imported && producer.valid() &&
+                                                         !reads_too(use.pass, use.subresource)));
     if (second) return report_second(use, producer);
-    const uint32_t previous = c.last_version[use.part];
-    const uint32_t version = previous == no_value ? 1 : c.values[previous].version + 1;
-    c.overwrites |= previous != no_value;
-    use.write_value = add_value({use.requested, version, use.pass, previous});
-    c.last_version[use.part] = use.write_value;
-    c.current[use.part] = {use.write_value, {}};
-    ResourceDef& definition = c.definitions[use.part];
-    if (++definition.producers == 1) definition.first_value = use.write_value;
+    const uint32_t previous = scratch.last_version[use.subresource];
+    const uint32_t number = previous == invalid_index ? 1 : versions[previous].number + 1;
+    versions.overwrites |= previous != invalid_index;
+    use.write_version = add_version({use.requested, number, use.pass, previous});
+    scratch.last_version[use.subresource] = use.write_version;
+    scratch.current[use.subresource] = {use.write_version, {}};
+    VersionScratch::ResourceDef& definition = scratch.definitions[use.subresource];
+    if (++definition.producers == 1) definition.first_version = use.write_version;
   }
 
   void report_second(const Use& use, PassId producer) {
     const std::pair port{use.pass, use.port};
-    if (std::exchange(refused, port) == port) return; // another part of what it writes
-    auto& diagnostic = c.diagnostics->add(
-        DiagnosticId::second_producer, c.place_of(use),
+    if (std::exchange(last_second_producer, port) == port) return; // another range of the binding
+    auto& diagnostic = report.diagnostics.add(
+        DiagnosticId::second_producer, location_of(graph, use),
         producer == use.pass
-            ? fmt::format("pass '{}' writes '{}' through two ports", c.name(use.pass), c.name(use.requested))
+            ? fmt::format("pass '{}' writes '{}' through two ports", name_of(graph, use.pass),
+                          name_of(graph, use.requested))
             : fmt::format("passes '{}' and '{}' both write '{}', and '{}' does not read what '{}' wrote",
-                          c.name(producer), c.name(use.pass), c.name(use.requested), c.name(use.pass),
-                          c.name(producer)));
-    diagnostic.related.emplace_back(c.graph->passes[producer.value].where,
-                                    fmt::format("'{}' is declared here", c.name(producer)));
+                          name_of(graph, producer), name_of(graph, use.pass), name_of(graph, use.requested),
+                          name_of(graph, use.pass), name_of(graph, producer)));
+    diagnostic.related.emplace_back(graph.passes[producer.value].where,
+                                    fmt::format("'{}' is declared here", name_of(graph, producer)));
   }
 
   void scan_otherwise(PassId pass) {
-    c.first_use.push_back(static_cast<uint32_t>(c.uses.size()));
-    std::vector<std::pair<ResourceId, Binding>> replaced; // all look at the state before the pass
-    for (const PassThrough& through : c.graph->passes[pass.value].otherwise) {
-      if (c.graph->resources[through.output.value].type != c.graph->resources[through.instead.value].type) {
-        c.diagnostics->add(DiagnosticId::otherwise_mismatch, through.where,
-                           fmt::format("'{}' cannot stand in for '{}': one is {}, the other {}",
-                                       c.name(through.instead), c.name(through.output),
-                                       type_phrase(c.graph->resources[through.instead.value].type),
-                                       type_phrase(c.graph->resources[through.output.value].type)));
+    versions.first_use.push_back(static_cast<uint32_t>(versions.uses.size()));
+    std::vector<std::pair<ResourceId, VersionScratch::Binding>> replaced; // bindings from before the pass
+    for (const PassThrough& through : graph.passes[pass.value].otherwise) {
+      if (graph.resources[through.output.value].type != graph.resources[through.instead.value].type) {
+        report.diagnostics.add(DiagnosticId::otherwise_mismatch, through.where,
+                               fmt::format("'{}' cannot stand in for '{}': one is {}, the other {}",
+                                           name_of(graph, through.instead), name_of(graph, through.output),
+                                           type_phrase(graph.resources[through.instead.value].type),
+                                           type_phrase(graph.resources[through.output.value].type)));
         continue;
       }
-      if (c.split(through.output) || c.split(through.instead)) {
-        c.diagnostics->add(DiagnosticId::otherwise_mismatch, through.where,
-                           fmt::format("'{}' cannot stand in for '{}': ports name parts of '{}'",
-                                       c.name(through.instead), c.name(through.output),
-                                       c.name(c.split(through.output) ? through.output : through.instead)));
+      if (subresources.divided(through.output) || subresources.divided(through.instead)) {
+        report.diagnostics.add(
+            DiagnosticId::otherwise_mismatch, through.where,
+            fmt::format(
+                "'{}' cannot stand in for '{}': ports name parts of '{}'", name_of(graph, through.instead),
+                name_of(graph, through.output),
+                name_of(graph, subresources.divided(through.output) ? through.output : through.instead)));
         continue;
       }
-      Binding meaning = c.current[through.instead.value];
-      if (meaning.value == no_value && !meaning.later.valid()) meaning.later = through.instead;
-      replaced.emplace_back(through.output, meaning);
-      c.record_reason(Reason::About::resource, through.output.value, Reason::ReasonKind::stands_for,
-                      through.instead.value, pass.value);
+      VersionScratch::Binding binding = scratch.current[through.instead.value];
+      if (binding.version == invalid_index && !binding.later.valid()) binding.later = through.instead;
+      replaced.emplace_back(through.output, binding);
+      report.record_reason(Reason::About::resource, through.output.value, Reason::ReasonKind::stands_for,
+                           through.instead.value, pass.value);
     }
-    for (const auto& [output, meaning] : replaced) {
-      ResourceDef& definition = c.definitions[output.value];
+    for (const auto& [output, binding] : replaced) {
+      VersionScratch::ResourceDef& definition = scratch.definitions[output.value];
       if (!definition.replaced) {
         definition.replaced = true;
-        definition.instead = meaning;
+        definition.placeholder = binding;
       }
-      c.current[output.value] = meaning;
+      scratch.current[output.value] = binding;
     }
   }
 
-  // A reader before all writers sees the only producer's version. Follows `otherwise` at most once per
-  // resource.
-  void look_ahead(uint32_t index, uint32_t part) {
-    Use& use = c.uses[index];
-    for (size_t step = 0; step <= c.definitions.size(); ++step) {
-      const ResourceDef& definition = c.definitions[part];
-      const bool writes_it = definition.first_value != no_value && writes(use.pass, part);
-      if (part < c.graph->resources.size() && unbound_import(ResourceId{part})) {
+  // A use before all writers in file order reads the version of the only producer. Follows `otherwise` at
+  // most once per resource.
+  void resolve_forward_reference(uint32_t index, uint32_t subresource) {
+    Use& use = versions.uses[index];
+    for (size_t step = 0; step <= scratch.definitions.size(); ++step) {
+      const VersionScratch::ResourceDef& definition = scratch.definitions[subresource];
+      const bool writes_it = definition.first_version != invalid_index && writes(use.pass, subresource);
+      if (subresource < graph.resources.size() && unbound_import(ResourceId{subresource})) {
         use.bind_error = Use::BindError::unbound;
         return;
       }
-      if (definition.producers == 1 && !writes_it) return see(use, definition.first_value);
+      if (definition.producers == 1 && !writes_it) return bind_version(use, definition.first_version);
       if (definition.producers > 0) {
         use.bind_error = writes_it ? Use::BindError::unwritten : Use::BindError::ambiguous;
         return;
       }
       if (!definition.replaced) break;
-      if (definition.instead.value != no_value) return see(use, definition.instead.value);
-      part = definition.instead.later.value;
+      if (definition.placeholder.version != invalid_index)
+        return bind_version(use, definition.placeholder.version);
+      subresource = definition.placeholder.later.value;
     }
     use.bind_error = Use::BindError::unwritten;
   }
 
-  bool writes(PassId pass, uint32_t part) const {
-    for (uint32_t u = c.first_use[pass.value]; u < c.first_use[pass.value + 1]; ++u)
-      if (c.uses[u].part == part && c.uses[u].write_value != no_value) return true;
+  bool writes(PassId pass, uint32_t subresource) const {
+    for (uint32_t u = versions.first_use[pass.value]; u < versions.first_use[pass.value + 1]; ++u)
+      if (versions.uses[u].subresource == subresource && versions.uses[u].write_version != invalid_index)
+        return true;
     return false;
+  }
+
+  void find_final_versions() {
+    versions.final_version.assign(scratch.current.size(), invalid_index);
+    const size_t resources = graph.resources.size();
+    for (uint32_t i = 0; i < versions.final_version.size(); ++i) {
+      const uint32_t last = scratch.current[i].version;
+      if (last == invalid_index) continue;
+      // A divided image has no `otherwise`, so ranges numbered after all resources are their own.
+      if (i >= resources || versions[last].resource == ResourceId{i}) versions.final_version[i] = last;
+    }
   }
 };
 
 } // namespace
 
-void resolve_versions(CompileContext& c) {
-  VersionScan scan{c};
-  scan.begin();
-  const auto passes = static_cast<uint32_t>(c.graph->passes.size());
+const Versions& resolve_versions(const CompileInput& in, const Sizes& sizes, const Activation& active,
+                                 const Subresources& subresources, Report& report, VersionScratch& scratch) {
+  const Graph& graph = *in.graph;
+  Versions& versions = scratch.result;
+  VersionResolver resolver{in, graph, sizes, active, subresources, report, scratch};
+  resolver.begin();
+  const auto passes = static_cast<uint32_t>(graph.passes.size());
   for (uint32_t i = 0; i < passes; ++i) {
-    if (c.on[i])
-      scan.scan_uses(PassId{i});
+    if (active.on[i])
+      resolver.scan_uses(PassId{i});
     else
-      scan.scan_otherwise(PassId{i});
-    if (scan.part_uses <= limits::part_uses) continue;
-    c.diagnostics->add(DiagnosticId::limit_exceeded, c.graph->passes[i].where,
-                       fmt::format("ports see more than {} parts of images", limits::part_uses));
-    return;
+      resolver.scan_otherwise(PassId{i});
+    if (resolver.divided_uses <= limits::part_uses) continue;
+    report.diagnostics.add(DiagnosticId::limit_exceeded, graph.passes[i].where,
+                           fmt::format("ports see more than {} parts of images", limits::part_uses));
+    return versions;
   }
-  c.first_use.push_back(static_cast<uint32_t>(c.uses.size()));
-  for (const auto& [use, part] : c.forward)
-    scan.look_ahead(use, part);
-
-  c.final_value.assign(c.current.size(), no_value);
-  const size_t resources = c.graph->resources.size(), parts = c.final_value.size();
-  for (uint32_t i = 0; i < parts; ++i) {
-    const uint32_t last = c.current[i].value; // parts have no stand-ins
-    const bool further = i >= resources;
-    if (last != no_value && (further || c.values[last].resource == ResourceId{i})) c.final_value[i] = last;
-  }
-  for (Use& use : c.uses)
-    if (use.frames_back > 0 && c.final_value[use.part] == no_value)
+  versions.first_use.push_back(static_cast<uint32_t>(versions.uses.size()));
+  for (const auto& [use, subresource] : scratch.forward_references)
+    resolver.resolve_forward_reference(use, subresource);
+  resolver.find_final_versions();
+  for (Use& use : versions.uses)
+    if (use.frames_back > 0 && versions.final_version[use.subresource] == invalid_index)
       use.bind_error = Use::BindError::history_unwritten;
-  if (c.graph->parts) scan.spread_trouble();
+  if (subresources.any()) resolver.spread_bind_errors();
+  return versions;
 }
 
 } // namespace dermis

@@ -5,7 +5,7 @@
 #include "tests/framegraph/second_opinion.hpp"
 #include "tests/framegraph/test_scale.hpp"
 
-#include "framegraph/compile/pack.hpp"
+#include "framegraph/compile/packer.hpp"
 #include "framegraph/verify/verify.hpp"
 
 #include <gmock/gmock.h>

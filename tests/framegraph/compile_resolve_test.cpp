@@ -1,7 +1,7 @@
 // Tests how the compiler resolves sizes, formats, device limits and memory.
 
 #include "framegraph/compile/hardware.hpp"
-#include "framegraph/compile/pack.hpp"
+#include "framegraph/compile/packer.hpp"
 #include "framegraph/model/splitmix.hpp"
 #include "tests/framegraph/graph_builder.hpp"
 
@@ -289,7 +289,7 @@ TEST(Packing, CommonBitsAreFoundOnEveryProcessor) {
     for (uint32_t i = 0; i < numbers_at_once; ++i)
       expected |= static_cast<uint32_t>((numbers[i] & mask) != 0) << i;
     ASSERT_EQ(any_common_bits(numbers.data(), mask), expected);
-    ASSERT_EQ(sharing_bits_anywhere(numbers.data(), mask), expected);
+    ASSERT_EQ(any_common_bits_portable(numbers.data(), mask), expected);
   }
 }
 

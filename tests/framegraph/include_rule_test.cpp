@@ -138,8 +138,8 @@ TEST(IncludeRule, ForbiddenIncludesAreFound) {
   EXPECT_EQ(included("  # include \"framegraph/text/document.hpp\" // x"), "framegraph/text/document.hpp");
   EXPECT_EQ(included("#include <vulkan/vulkan.h>"), "vulkan/vulkan.h");
   EXPECT_EQ(included("// #include \"passes/x.hpp\""), "");
-  EXPECT_NE(violation("framegraph/compile/pack.cpp", "passes/x.hpp"), "");
-  EXPECT_NE(violation("framegraph/compile/pack.cpp", "framegraph/vulkan/device.hpp"), "");
+  EXPECT_NE(violation("framegraph/compile/packer.cpp", "passes/x.hpp"), "");
+  EXPECT_NE(violation("framegraph/compile/packer.cpp", "framegraph/vulkan/device.hpp"), "");
   EXPECT_NE(violation("framegraph/model/graph.hpp", "vulkan/vulkan.h"), "");
   EXPECT_NE(violation("framegraph/vulkan/device.hpp", "integration/abi/x.hpp"), "");
   EXPECT_NE(violation("passes/common/x.cpp", "integration/tools/files/exr.hpp"), "");

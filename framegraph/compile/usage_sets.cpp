@@ -1,4 +1,4 @@
-#include "framegraph/compile/barriers/steps.hpp"
+#include "framegraph/compile/usage_sets.hpp"
 
 namespace dermis {
 namespace {
