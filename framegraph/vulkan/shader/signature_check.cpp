@@ -34,13 +34,13 @@ struct Checker {
                       binding.binding, type.ports.size());
     const Port& port = type.ports[binding.binding];
     const std::string place = fmt::format("port '{}' (set 0 binding {})", port.name, binding.binding);
-    const auto type = descriptor_type(port.usage);
-    if (!type)
+    const auto descriptor = descriptor_type(port.usage);
+    if (!descriptor)
       return mismatch("{} has usage {} and so no descriptor, the shader binds '{}' there", place,
                       usage_info(port.usage).name, binding.name);
-    const BindingType wanted = *type == VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE   ? BindingType::sampled_image
-                               : *type == VK_DESCRIPTOR_TYPE_STORAGE_IMAGE ? BindingType::storage_image
-                               : *type == VK_DESCRIPTOR_TYPE_ACCELERATION_STRUCTURE_KHR
+    const BindingType wanted = *descriptor == VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE   ? BindingType::sampled_image
+                               : *descriptor == VK_DESCRIPTOR_TYPE_STORAGE_IMAGE ? BindingType::storage_image
+                               : *descriptor == VK_DESCRIPTOR_TYPE_ACCELERATION_STRUCTURE_KHR
                                    ? BindingType::acceleration_structure
                                    : BindingType::storage_buffer;
     check_type(binding, place, wanted);
