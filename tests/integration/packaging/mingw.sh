@@ -45,7 +45,9 @@ dll=$(find "$work/build" -name 'libdermis*.dll' | head -1)
 $triple-objdump -p "$dll" > "$work/headers.txt"
 awk '/^\[Ordinal\/Name Pointer\] Table/ { on = 1; next } on && NF == 0 { exit } on { print $NF }' "$work/headers.txt" |
   LC_ALL=C sort > "$work/exported.txt"
-diff "$source/integration/abi/symbols.txt" "$work/exported.txt" || { echo "symbols.txt (<) and the DLL (>) differ"; exit 1; }
+grep -o 'DERMIS_CALL dermis_[a-z_]*(' "$source/integration/include/dermis/dermis.h" | sed 's/.* //; s/($//' |
+  LC_ALL=C sort > "$work/declared.txt"
+diff "$work/declared.txt" "$work/exported.txt" || { echo "the header (<) and the DLL (>) differ"; exit 1; }
 others=$(sed -n 's/.*DLL Name: //p' "$work/headers.txt" | grep -viE '^(kernel32|msvcrt|ucrtbase|api-ms-win-.*)\.dll$' || true)
 [[ -z $others ]] || { echo "the DLL needs more than the system's libraries:"; echo "$others"; exit 1; }
 import=$(find "$work/build" -name 'libdermis*.dll.a' | head -1)
