@@ -55,7 +55,7 @@ TEST(WithoutRayQueries, BudgetHasNoRays_TheReportSaysWhy) {
   EXPECT_THAT(rendering.warnings,
               testing::Contains(HasSubstr("does not offer 'restir': the device lacks ray_query")));
   const FrameChoice& choice = rendering.frames.back().choice.value();
-  EXPECT_EQ(choice.outcomes, 1u);
+  EXPECT_EQ(choice.configurations, 1u);
   EXPECT_EQ(choice.technique, "sap smooth");
   EXPECT_GT(choice.transmitted_rms, 0.05) << "transmission is counted anyway";
   EXPECT_GT(choice.predicted_rmse, 0.5 * choice.transmitted_rms) << "and reported as an error";
@@ -66,12 +66,12 @@ TEST_F(WithRayQueries, BackLight_TheBudgetBuysRays) {
   const Rendering rendering = rendered(ear(folder, LightFrom::behind, plenty_ms));
   ASSERT_EQ(rendering.frames.size(), 5u);
   const FrameChoice& choice = rendering.frames.back().choice.value();
-  EXPECT_EQ(choice.outcome, "technique=restir");
+  EXPECT_EQ(choice.configuration, "technique=restir");
   EXPECT_THAT(choice.why, HasSubstr("for light through thin parts"));
   EXPECT_GT(choice.transmitted_rms, 0.05);
   EXPECT_TRUE(ran(rendering.frames.back(), "draw"));
   EXPECT_FALSE(ran(rendering.frames.back(), "gather"));
-  EXPECT_NE(rendering.frames[0].choice->outcome, choice.outcome)
+  EXPECT_NE(rendering.frames[0].choice->configuration, choice.configuration)
       << "no transmission is known before the first count";
 }
 
@@ -80,8 +80,8 @@ TEST_F(WithRayQueries, FrontLight_TheBudgetBuysNoRays) {
   const Rendering rendering = rendered(ear(folder, LightFrom::front, plenty_ms));
   ASSERT_EQ(rendering.frames.size(), 5u);
   const FrameChoice& choice = rendering.frames.back().choice.value();
-  EXPECT_EQ(choice.outcomes, 2u);
-  EXPECT_EQ(choice.outcome, "technique=sap");
+  EXPECT_EQ(choice.configurations, 2u);
+  EXPECT_EQ(choice.configuration, "technique=sap");
   EXPECT_THAT(choice.why, AllOf(HasSubstr("least error that fits"), Not(HasSubstr("thin parts"))));
   EXPECT_LT(choice.transmitted_rms, 0.05);
 }
@@ -94,7 +94,7 @@ TEST_F(WithRayQueries, TooSmallBudget_ReportsTheMissingTime) {
   const Rendering rendering = rendered(options);
   ASSERT_EQ(rendering.frames.size(), 5u);
   const FrameChoice& choice = rendering.frames.back().choice.value();
-  EXPECT_EQ(choice.outcome, "technique=sap");
+  EXPECT_EQ(choice.configuration, "technique=sap");
   EXPECT_EQ(choice.next_better, "technique=restir");
   EXPECT_GT(choice.next_better_missing_ms, 0);
 }
