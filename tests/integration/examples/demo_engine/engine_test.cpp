@@ -269,7 +269,7 @@ TEST_F(Engine, FramesWithoutPicturesRunToo) {
     EXPECT_TRUE(last[i].inputs.lighting.texels.empty());
     EXPECT_TRUE(last[i].scattered.texels.empty());
     EXPECT_TRUE(last[i].color.texels.empty());
-    EXPECT_EQ(last[i].choice->outcome, all[i].choice->outcome);
+    EXPECT_EQ(last[i].choice->configuration, all[i].choice->configuration);
     EXPECT_EQ(last[i].dermis_times.size(), all[i].dermis_times.size());
   }
   EXPECT_EQ(last[2].inputs.lighting.texels, all[2].inputs.lighting.texels);
