@@ -5,6 +5,7 @@
 #include "framegraph/compile/hardware.hpp"
 
 #include <algorithm>
+#include <span>
 
 namespace dermis {
 namespace {
@@ -83,6 +84,57 @@ void BarrierWalk::locate_resources() {
   }
 }
 
+inline uint32_t BarrierWalk::wait_for_occupant(const HeapRange& occupant, uint32_t resource, uint32_t barrier,
+                                               bool frame_before) {
+  const ResourceSyncInfo& of = info(occupant.resource);
+  const ObjectState* state = objects.states.data() + of.first_object + occupant.frames_back * of.ranges;
+  PlanBarrier& draft = drafts.barriers[barrier];
+  uint32_t end_of_last = 0;
+  if (of.ranges == 1 && !queues.two_queues) { // the common case in the hottest loop of the phase
+    add_scope(draft, scope_of(*state));
+    end_of_last = state->accessed ? state->last_pass + 1 : 0;
+  } else {
+    end_of_last = wait_for_ranges(of, state, barrier, frame_before);
+  }
+  const bool own = occupant.resource == resource;
+  if (!own && info(resource).frames == 1) draft.why = PlanBarrier::ReasonKind::alias;
+  record_reason(barrier, own ? Reason::ReasonKind::behind_last_use : Reason::ReasonKind::takes_memory,
+                occupant.resource, frame_before ? 1 : 0);
+  return end_of_last;
+}
+
+uint32_t BarrierWalk::wait_for_ranges(const ResourceSyncInfo& occupant, const ObjectState* first,
+                                      uint32_t barrier, bool frame_before) {
+  uint32_t end_of_last = 0;
+  for (const ObjectState& state : std::span(first, occupant.ranges)) {
+    wait_for_state(state, barrier, frame_before);
+    if (state.accessed) end_of_last = std::max(end_of_last, state.last_pass + 1);
+  }
+  return end_of_last;
+}
+
+uint32_t BarrierWalk::acquire_memory(uint32_t resource, uint32_t barrier) {
+  const MemoryLocation& own = memory.location[resource];
+  std::vector<HeapRange>& ranges = memory.ranges[own.memory];
+  if (info(resource).frames == 1) { // begin_lifetime records the reason of histories
+    record_reason(barrier, Reason::ReasonKind::first_use, resource);
+    memory.first_barrier[resource] = barrier;
+  }
+  const size_t first = first_ending_after(ranges, own.begin);
+  size_t last = first;
+  uint32_t end_of_predecessor = 0; // position + 1
+  for (; last < ranges.size() && ranges[last].begin < own.end; ++last) {
+    const HeapRange& before = ranges[last];
+    if (before.resource == invalid_index)
+      memory.first_uses.push_back(
+          {std::max(own.begin, before.begin), std::min(own.end, before.end), own.memory, barrier, resource});
+    else
+      end_of_predecessor = std::max(end_of_predecessor, wait_for_occupant(before, resource, barrier, false));
+  }
+  replace(ranges, first, last, {own.begin, own.end, resource, 0});
+  return end_of_predecessor - 1; // invalid_index if there was none
+}
+
 void BarrierWalk::begin_lifetime(const PassAccess& access, const UsageSet& set, uint32_t position) {
   const uint32_t draft = drafts.add(), resource = access.resource;
   const ResourceSyncInfo& of = info(resource);
@@ -125,44 +177,6 @@ void BarrierWalk::begin_lifetime(const PassAccess& access, const UsageSet& set, 
     }
   }
   place(draft, predecessor, position);
-}
-
-uint32_t BarrierWalk::acquire_memory(uint32_t resource, uint32_t barrier) {
-  const MemoryLocation& own = memory.location[resource];
-  std::vector<HeapRange>& ranges = memory.ranges[own.memory];
-  if (info(resource).frames == 1) { // begin_lifetime records the reason of histories
-    record_reason(barrier, Reason::ReasonKind::first_use, resource);
-    memory.first_barrier[resource] = barrier;
-  }
-  const size_t first = first_ending_after(ranges, own.begin);
-  size_t last = first;
-  uint32_t end_of_predecessor = 0; // position + 1
-  for (; last < ranges.size() && ranges[last].begin < own.end; ++last) {
-    const HeapRange& before = ranges[last];
-    if (before.resource == invalid_index)
-      memory.first_uses.push_back(
-          {std::max(own.begin, before.begin), std::min(own.end, before.end), own.memory, barrier, resource});
-    else
-      end_of_predecessor = std::max(end_of_predecessor, wait_for_occupant(before, resource, barrier, false));
-  }
-  replace(ranges, first, last, {own.begin, own.end, resource, 0});
-  return end_of_predecessor - 1; // invalid_index if there was none
-}
-
-uint32_t BarrierWalk::wait_for_occupant(const HeapRange& occupant, uint32_t resource, uint32_t barrier,
-                                        bool frame_before) {
-  const ResourceSyncInfo& of = info(occupant.resource);
-  const ObjectState* state = objects.states.data() + of.first_object + occupant.frames_back * of.ranges;
-  uint32_t end_of_last = 0;
-  for (uint32_t range = 0; range < of.ranges; ++range, ++state) {
-    wait_for_state(*state, barrier, frame_before);
-    if (state->accessed) end_of_last = std::max(end_of_last, state->last_pass + 1);
-  }
-  const bool own = occupant.resource == resource;
-  if (!own && info(resource).frames == 1) drafts.barriers[barrier].why = PlanBarrier::ReasonKind::alias;
-  record_reason(barrier, own ? Reason::ReasonKind::behind_last_use : Reason::ReasonKind::takes_memory,
-                occupant.resource, frame_before ? 1 : 0);
-  return end_of_last;
 }
 
 void BarrierWalk::wait_for_state(const ObjectState& state, uint32_t barrier, bool frame_before) {

@@ -52,7 +52,12 @@ struct BarrierWalk {
   void apply_access(const PassAccess& access, uint32_t position);
 
   // Places the barrier, or defers it if the image is divided.
-  void place(uint32_t draft, uint32_t predecessor, uint32_t position);
+  void place(uint32_t draft, uint32_t predecessor, uint32_t position) {
+    if (info(drafts.barriers[draft].resource).ranges > 1)
+      drafts.deferred.push_back({draft, predecessor});
+    else
+      drafts.place(draft, predecessor, position);
+  }
 
   // Fills in the barrier that an access needs after the accesses in `state`.
   void fill_dependency(const ObjectState& state, const UsageSet& set, Layout layout, bool must_see,
@@ -94,6 +99,8 @@ struct BarrierWalk {
   // Returns the position after the last pass that accessed the occupant.
   uint32_t wait_for_occupant(const HeapRange& occupant, uint32_t resource, uint32_t barrier,
                              bool frame_before);
+  uint32_t wait_for_ranges(const ResourceSyncInfo& occupant, const ObjectState* first, uint32_t barrier,
+                           bool frame_before);
   void wait_for_state(const ObjectState& state, uint32_t barrier, bool frame_before);
 
   // Completes the first barriers with the occupants of the frame before, whose last accesses are known when

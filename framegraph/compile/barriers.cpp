@@ -47,59 +47,32 @@ void SyncObjects::number(const Subresources& subresources, const Histories& hist
   states.assign(count, {});
 }
 
-void BarrierWalk::begin_frame() {
-  for (const ResourceSyncInfo& resource : objects.resources) {
-    for (uint32_t i = resource.objects(); i-- > 0;) {
-      const uint32_t back = i / resource.ranges, range = i % resource.ranges;
-      const uint32_t object = resource.first_object + i;
-      const uint32_t younger = back == 0 ? 0 : resource.object(back - 1, range);
-      objects.states[object] = back == 0 ? ObjectState{} : objects.states_at_frame_end[younger];
-      objects.states[object].carried = back != 0;
-      if (!queues.two_queues) continue;
-      LastAccess& last = queues.last_access[object];
-      last = back == 0 ? LastAccess{} : queues.last_access_at_frame_end[younger];
-      ++last.any.frames_back;
-      ++last.write.frames_back;
-    }
+inline void BarrierWalk::fill_dependency(const ObjectState& state, const UsageSet& set, Layout layout,
+                                         bool must_see, PlanBarrier& barrier) const {
+  const bool pending_write = state.source_access != 0;
+  const SyncScope everything = scope_of(state);
+  barrier.source_stages = everything.stages;
+  barrier.source_access = everything.access;
+  barrier.destination_stages = set.stages;
+  barrier.destination_access = set.access;
+  barrier.old_layout = state.layout;
+  barrier.new_layout = layout;
+  if (layout != state.layout) {
+    barrier.why = !pending_write ? PlanBarrier::ReasonKind::layout
+                  : set.reads    ? PlanBarrier::ReasonKind::read_after_write
+                                 : PlanBarrier::ReasonKind::write_after_write;
+  } else if (must_see) {
+    barrier.why = PlanBarrier::ReasonKind::read_after_write;
+    barrier.source_stages = set.writes ? everything.stages | state.source_stages : state.source_stages;
+  } else {
+    barrier.why = pending_write ? PlanBarrier::ReasonKind::write_after_write
+                                : PlanBarrier::ReasonKind::write_after_read;
+    // The readers only have to be complete: nothing has to be made visible.
+    if (!pending_write && state.always_read) barrier.destination_access = 0;
   }
 }
 
-void BarrierWalk::find_states_at_frame_end() {
-  objects.states_at_frame_end.assign(objects.states.size(), {});
-  queues.last_access_at_frame_end = queues.last_access;
-  uint32_t frames = 1;
-  for (const ResourceSyncInfo& resource : objects.resources)
-    frames = std::max(frames, resource.frames);
-  for (uint32_t frame = 0; frame < frames; ++frame) {
-    begin_frame();
-    for (uint32_t position = 0; position < plan.passes.size(); ++position)
-      run_pass(position);
-    objects.states_at_frame_end = objects.states;
-    queues.last_access_at_frame_end = queues.last_access;
-  }
-  begin_frame();
-}
-
-void BarrierWalk::run_pass(uint32_t position) {
-  PlanPass& pass = plan.passes[position];
-  const std::span<const Use> uses = in.versions.uses_of(pass.declared);
-  gather_accesses(uses);
-  current = position;
-  if (emit) add_accesses(pass, uses);
-  drafts.deferred.clear();
-  for (uint32_t i = 0; i < accesses.count; ++i)
-    apply_access(accesses.list[i], position);
-  drafts.place_deferred(position);
-}
-
-void BarrierWalk::place(uint32_t draft, uint32_t predecessor, uint32_t position) {
-  if (info(drafts.barriers[draft].resource).ranges > 1)
-    drafts.deferred.push_back({draft, predecessor});
-  else
-    drafts.place(draft, predecessor, position);
-}
-
-void BarrierWalk::apply_access(const PassAccess& access, uint32_t position) {
+inline void BarrierWalk::apply_access(const PassAccess& access, uint32_t position) {
   ObjectState& state = objects.states[access.object];
   const UsageSet& set = sets[access.usages];
   const Layout layout = access.layout;
@@ -159,29 +132,49 @@ void BarrierWalk::apply_access(const PassAccess& access, uint32_t position) {
   state.last_pass = position;
 }
 
-void BarrierWalk::fill_dependency(const ObjectState& state, const UsageSet& set, Layout layout, bool must_see,
-                                  PlanBarrier& barrier) const {
-  const bool pending_write = state.source_access != 0;
-  const SyncScope everything = scope_of(state);
-  barrier.source_stages = everything.stages;
-  barrier.source_access = everything.access;
-  barrier.destination_stages = set.stages;
-  barrier.destination_access = set.access;
-  barrier.old_layout = state.layout;
-  barrier.new_layout = layout;
-  if (layout != state.layout) {
-    barrier.why = !pending_write ? PlanBarrier::ReasonKind::layout
-                  : set.reads    ? PlanBarrier::ReasonKind::read_after_write
-                                 : PlanBarrier::ReasonKind::write_after_write;
-  } else if (must_see) {
-    barrier.why = PlanBarrier::ReasonKind::read_after_write;
-    barrier.source_stages = set.writes ? everything.stages | state.source_stages : state.source_stages;
-  } else {
-    barrier.why = pending_write ? PlanBarrier::ReasonKind::write_after_write
-                                : PlanBarrier::ReasonKind::write_after_read;
-    // The readers only have to be complete: nothing has to be made visible.
-    if (!pending_write && state.always_read) barrier.destination_access = 0;
+void BarrierWalk::run_pass(uint32_t position) {
+  PlanPass& pass = plan.passes[position];
+  const std::span<const Use> uses = in.versions.uses_of(pass.declared);
+  gather_accesses(uses);
+  current = position;
+  if (emit) add_accesses(pass, uses);
+  drafts.deferred.clear();
+  for (uint32_t i = 0; i < accesses.count; ++i)
+    apply_access(accesses.list[i], position);
+  if (!drafts.deferred.empty()) drafts.place_deferred(position);
+}
+
+void BarrierWalk::begin_frame() {
+  for (const ResourceSyncInfo& resource : objects.resources) {
+    for (uint32_t i = resource.objects(); i-- > 0;) {
+      const uint32_t back = i / resource.ranges, range = i % resource.ranges;
+      const uint32_t object = resource.first_object + i;
+      const uint32_t younger = back == 0 ? 0 : resource.object(back - 1, range);
+      objects.states[object] = back == 0 ? ObjectState{} : objects.states_at_frame_end[younger];
+      objects.states[object].carried = back != 0;
+      if (!queues.two_queues) continue;
+      LastAccess& last = queues.last_access[object];
+      last = back == 0 ? LastAccess{} : queues.last_access_at_frame_end[younger];
+      ++last.any.frames_back;
+      ++last.write.frames_back;
+    }
   }
+}
+
+void BarrierWalk::find_states_at_frame_end() {
+  objects.states_at_frame_end.assign(objects.states.size(), {});
+  queues.last_access_at_frame_end = queues.last_access;
+  uint32_t frames = 1;
+  for (const ResourceSyncInfo& resource : objects.resources)
+    frames = std::max(frames, resource.frames);
+  for (uint32_t frame = 0; frame < frames; ++frame) {
+    begin_frame();
+    for (uint32_t position = 0; position < plan.passes.size(); ++position)
+      run_pass(position);
+    objects.states_at_frame_end = objects.states;
+    queues.last_access_at_frame_end = queues.last_access;
+  }
+  begin_frame();
 }
 
 void BarrierWalk::transfer_ownership(const PassAccess& access, const ObjectState& state, const UsageSet& set,

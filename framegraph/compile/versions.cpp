@@ -22,6 +22,7 @@ struct VersionResolver {
   Report& report;
   VersionScratch& scratch;
   Versions& versions = scratch.result;
+  const bool any_divided = subresources.any();
   uint64_t divided_uses = 0;                          // uses of divided images, for limits::part_uses
   std::pair<PassId, uint16_t> last_second_producer{}; // pass and port reported last
 
@@ -134,7 +135,7 @@ struct VersionResolver {
       use.when = binding.when;
       use.subresource = use.requested.value;
       use.binding = number++;
-      if (subresources.divided(use.requested)) {
+      if (any_divided && subresources.divided(use.requested)) {
         const Use whole = use;
         versions.uses.pop_back();
         add_divided(whole, binding.part);
