@@ -17,13 +17,13 @@ MissingRequirements missing_requirements(const SettingDeclaration& setting, int6
 
 SettingValue available_option(const SettingDeclaration& setting, const SettingValue& value, Features features,
                               const std::vector<bool>& bound) {
-  const auto offered = [&](int64_t option) {
+  const auto available = [&](int64_t option) {
     return !missing_requirements(setting, option, features, bound).any();
   };
-  if (setting.needs.empty() || offered(value.integer)) return value;
-  if (offered(setting.default_value.integer)) return setting.default_value;
+  if (setting.needs.empty() || available(value.integer)) return value;
+  if (available(setting.default_value.integer)) return setting.default_value;
   SettingValue instead = value;
-  for (instead.integer = 0; !offered(instead.integer);) // read_graph sees to it that one needs nothing
+  for (instead.integer = 0; !available(instead.integer);) // read_graph requires one option without needs
     ++instead.integer;
   return instead;
 }

@@ -73,7 +73,7 @@ struct BarrierScratch {
   QueueSync queues;
   MemoryOccupancy memory;
 };
-// What waits for what? Fills accesses, barriers, waits and histories of the plan.
+// Fills accesses, barriers, waits between queues, and histories of the plan.
 void emit_barriers(const CompileInput& in, const Activation& active, const Subresources& subresources,
                    const Versions& versions, const QueueAssignment& queues, const ResourceMemory& memory,
                    const Histories& histories, const Placements& placements, Report& report, Plan& plan,

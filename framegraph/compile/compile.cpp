@@ -50,49 +50,49 @@ void clear(CompiledPlan& out) {
 // Compilation from top to bottom. Each phase returns a value that later phases read; it stays valid until the
 // next compilation. Stops after a phase that reported errors.
 bool run_phases(const CompileInput& in, Report& report, Plan& plan, CompileScratch& scratch) {
-  // How large is each resource, and which slots does the host bind?
+  // Computes the size of each resource, and which slots the host binds.
   const Sizes& sizes = resolve_sizes(in, report, scratch.sizes);
   if (report.failed()) return false;
 
-  // What are the settings, and which passes are on?
+  // Resolves settings, and which passes are on.
   const Activation& active = evaluate_conditions(in, report, scratch.activation);
   if (report.failed()) return false;
 
-  // Into which subresource ranges do ports divide images?
+  // Divides images into the subresource ranges that ports name.
   const Subresources& subresources = split_subresources(in, sizes, active, report, scratch.subresources);
   if (report.failed()) return false;
 
-  // Which version of which resource does each port access? Does a pass read what it writes?
+  // Resolves which version of which resource each port accesses. No pass may read what it writes.
   const Versions& versions = resolve_versions(in, sizes, active, subresources, report, scratch.versions);
   if (report.failed()) return false;
   report_races(in, active, versions, report);
   if (report.failed()) return false;
 
-  // Which passes does a bound export need, and which of them run on the second queue?
+  // Keeps the passes that a bound export needs, and assigns them to queues.
   const LiveSet& live = cull(in, sizes, active, subresources, versions, report, scratch.cull);
   if (report.failed()) return false;
   const QueueAssignment& queues =
       assign_queues(in, sizes, subresources, versions, live, report, scratch.queues);
 
-  // How is each resource used, in which format, and how much memory does it need?
+  // Gathers usages of each resource, and chooses its format and memory needs.
   const Usages& usages = gather_usages(in, sizes, active, versions, live, report, scratch.usages);
   const ResourceMemory& memory =
       resolve_formats(in, sizes, active, versions, usages, report, plan.resources, scratch.formats);
   if (report.failed()) return false;
 
-  // In which order do the passes run, and with which settings?
+  // Orders the passes, and lists them with their settings.
   const Schedule& schedule = schedule_passes(in, active, versions, live, memory, report, scratch.schedule);
   if (report.failed()) return false;
   plan_passes(in, active, queues, schedule, report, plan, scratch.passes);
   if (report.failed()) return false;
 
-  // Where in memory is each resource located? Transients and idle histories alias.
+  // Locates each resource in memory; transients and idle histories alias.
   const Histories& histories =
       analyze_histories(in, active, versions, usages, schedule, report, plan.resources, scratch.histories);
   const Placements& placements = place_resources(in, sizes, subresources, queues, memory, schedule, histories,
                                                  report, plan, scratch.placements);
 
-  // What waits for what?
+  // Emits accesses, barriers and waits between queues.
   emit_barriers(in, active, subresources, versions, queues, memory, histories, placements, report, plan,
                 scratch.barriers);
 

@@ -1,6 +1,6 @@
 #pragma once
-// What compiling must know of a device, as a value. `generic_profile()` serves everything that runs without a
-// device; framegraph/vulkan/ fills one from a real device.
+// The properties of a device that compilation needs, as a value. `generic_profile()` is for tools and tests
+// without a device; framegraph/vulkan/ fills a profile from a real device.
 
 #include "framegraph/model/vocabulary.hpp"
 
@@ -30,22 +30,22 @@ struct DeviceProfile {
   std::string name = "generic";
   uint64_t buffer_image_granularity = 1;
   uint32_t max_image_dimension = 16384;
-  uint32_t max_image_layers = 256; // maxImageArrayLayers; the default is the least Vulkan allows
-  uint64_t max_storage_buffer_bytes = 1ull
-                                      << 27; // maxStorageBufferRange; the default is the least Vulkan allows
-  uint32_t device_local_type_bits =
-      0xffffffffu;                      // memory types a heap must keep one of where its occupants can
-  uint32_t max_workgroup_count = 65535; // smallest of the three dimensions
+  // maxImageArrayLayers and maxStorageBufferRange; the defaults are the minima that Vulkan guarantees.
+  uint32_t max_image_layers = 256;
+  uint64_t max_storage_buffer_bytes = 1ull << 27;
+  // Memory types that are device-local: each heap keeps one of them if its occupants allow that.
+  uint32_t device_local_type_bits = 0xffffffffu;
+  uint32_t max_workgroup_count = 65535; // minimum of the three dimensions
   uint32_t max_push_constants_bytes = 128;
-  Features features = 0; // that it has, enabled
-  // May the format be used so? vk_usage are VkImageUsageFlags.
+  Features features = 0; // supported and enabled
+  // Whether the device supports the format with these VkImageUsageFlags.
   std::function<bool(Format, uint32_t vk_usage)> supports;
   std::function<MemoryNeeds(const ImageDescription&)> image_needs;
   std::function<MemoryNeeds(const BufferDescription&)> buffer_needs;
 };
 
-// Texels times packed size and bytes, rounded to 64 KiB; one memory type; what common devices support; every
-// feature, so that all of a graph is checked.
+// Returns a profile with memory needs rounded up to 64 KiB, one memory type, the formats that common devices
+// support, and every feature, so that all of a graph is checked.
 DeviceProfile generic_profile();
 
 } // namespace dermis

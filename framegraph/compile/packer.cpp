@@ -1,4 +1,4 @@
-// Dynamic storage allocation: intervals in time get places in one range of bytes.
+// Dynamic storage allocation by first fit and tightest fit in several orders, with a local search.
 
 #include "framegraph/compile/packer.hpp"
 #include "framegraph/compile/hardware.hpp"
@@ -12,12 +12,12 @@
 namespace dermis {
 namespace {
 
-// Comparisons of two items the searches may make; one takes about a nanosecond, several in large graphs,
-// which the caches do not hold.
+// Limits of comparisons of two items. A comparison takes about 1 ns, several in graphs larger than the
+// caches.
 constexpr uint64_t tight_steps_per_item = 10'000;
 constexpr uint64_t max_tight_steps = 25'000'000;
 constexpr uint64_t optimize_steps = 1'000'000'000;
-constexpr uint32_t block_passes = 24; // positions that share one list of what is alive in them: below 32
+constexpr uint32_t block_passes = 24; // positions that share one list of live items: below 32
 constexpr uint32_t began_before = 0x80000000;
 constexpr uint64_t unlimited = UINT64_MAX;
 
@@ -25,7 +25,7 @@ uint64_t align_to_power_of_two(uint64_t value, uint64_t alignment) {
   return (value + alignment - 1) & ~(alignment - 1);
 }
 
-// Indices of `count` items in the order of key(i), equal ones in their own order.
+// Sorts the indices of `count` items stably by key(i).
 template <class Key>
 void counting_sort(uint32_t count, uint32_t keys, std::vector<uint32_t>& starts,
                    std::vector<uint32_t>& sorted, Key key) {
@@ -56,7 +56,7 @@ void Packer::find_bound(Packing& out) {
   out.lower_bound = static_cast<uint64_t>(maximum);
 }
 
-// In the order of time: what is over makes room, what begins takes the tightest gap.
+// Places items in the order of time: ended items free their bytes, new items take the tightest gap.
 void Packer::place_by_time(Packing& out) {
   const auto count = static_cast<uint32_t>(items_.size());
   const auto positions = static_cast<uint32_t>(change_.size());
@@ -70,7 +70,7 @@ void Packer::place_by_time(Packing& out) {
     uint32_t end = begin;
     while (end < count && items_[by_first_[end]].first == now)
       ++end;
-    for (uint32_t i = begin + 1; i < end; ++i) // few begin together: the largest of them first
+    for (uint32_t i = begin + 1; i < end; ++i) // few begin together: insertion sort, the largest first
       for (uint32_t at = i; at > begin && items_[by_first_[at]].size > items_[by_first_[at - 1]].size; --at)
         std::swap(by_first_[at], by_first_[at - 1]);
     for (; over < count && items_[by_last_[over]].last < now; ++over) {
@@ -107,8 +107,8 @@ void Packer::place_by_time(Packing& out) {
 
 namespace {
 
-// The gap for one item among what is placed and alive with it, handed in by rising begin. Nothing here
-// branches on what it finds: which gap fits is as good as random.
+// Finds the gap for one item among the ranges that overlap its lifetime, which are passed in ascending order.
+// Free of branches, because which gap fits is unpredictable.
 struct GapFinder {
   static constexpr uint64_t no_gap =
       UINT64_MAX / 2; // sizes stay far below: a gap too small wraps to beyond it
@@ -129,9 +129,10 @@ struct GapFinder {
   }
 };
 
-constexpr uint32_t chunk = numbers_at_once; // placed items that are looked at together
+constexpr uint32_t chunk = numbers_at_once; // placed items that are tested together
 
-// Positions of a block in which an item is alive, as bits; the highest says that it began before the block.
+// Returns the positions of a block in which an item is live, as bits; began_before: it began before the
+// block.
 uint32_t positions_in(uint32_t block, const PackItem& item) {
   const uint32_t begin = block * block_passes;
   const uint32_t first = std::max(item.first, begin) - begin;
@@ -161,8 +162,8 @@ void Packer::Block::insert(const Range& range, uint32_t positions) {
   when[at] = positions;
 }
 
-// Appends to `to` what is alive in `positions` of the block and did not begin before it if `began`; `to` has
-// room for all.
+// Appends the ranges that are live in `positions` of the block to `to`, which has room for all; if `began`,
+// only ranges that begin in the block. Returns their number.
 size_t Packer::gather(const Block& block, uint32_t positions, bool began, Range* to) {
   steps_ += block.count;
   size_t count = 0;
@@ -175,7 +176,7 @@ size_t Packer::gather(const Block& block, uint32_t positions, bool began, Range*
   return count;
 }
 
-// Where `item` lies best among what is placed in its blocks.
+// Returns the best offset for `item` among the ranges placed in its blocks.
 uint64_t Packer::find_place(const PackItem& item, uint32_t first, uint32_t last, Fit fit) {
   constexpr Range end_of_list = {unlimited, unlimited};
   GapFinder gaps{item.size, item.alignment, fit == Fit::first ? 0 : ~uint64_t{0}};
@@ -194,7 +195,7 @@ uint64_t Packer::find_place(const PackItem& item, uint32_t first, uint32_t last,
   Range* a = gathered_.data();
   const size_t count_a = gather(blocks_[first], positions_in(first, item), false, a);
   a[count_a] = end_of_list;
-  Range* b = a + count_a + 1; // each where it is met first
+  Range* b = a + count_a + 1; // each range in the block where it begins
   size_t count_b = 0;
   for (uint32_t block = first + 1; block <= last; ++block)
     count_b += gather(blocks_[block], positions_in(block, item), true, b + count_b);
@@ -210,8 +211,8 @@ uint64_t Packer::find_place(const PackItem& item, uint32_t first, uint32_t last,
   return gaps.place();
 }
 
-// Places items one by one among all those placed before that are alive with them; fills offsets_. Returns the
-// size, or `limit` as soon as it is reached.
+// Places items one by one in the given order and fills offsets_. Returns the size, or `limit` as soon as it
+// is reached.
 uint64_t Packer::place_in_order(std::span<const uint32_t> order, Fit fit, uint64_t limit) {
   const size_t blocks = change_.size() / block_passes + 1;
   for (size_t b = 0; b < blocks; ++b)
@@ -230,7 +231,7 @@ uint64_t Packer::place_in_order(std::span<const uint32_t> order, Fit fit, uint64
   return size;
 }
 
-// Keeps the result if it is smaller than the best so far.
+// Keeps the result if it is the smallest so far.
 bool Packer::try_order(std::span<const uint32_t> order, Fit fit, Packing& out) {
   const uint64_t size = place_in_order(order, fit, out.size);
   if (size >= out.size) return false;
@@ -239,8 +240,7 @@ bool Packer::try_order(std::span<const uint32_t> order, Fit fit, Packing& out) {
   return true;
 }
 
-// Largest first, equal ones as in `given`. Graphs have few different sizes: those are counted instead of
-// sorted.
+// Sorts by descending size, stably. Graphs have few different sizes, so a counting sort suffices.
 void Packer::sort_by_size(const std::vector<uint32_t>& given, std::vector<uint32_t>& sorted) {
   constexpr uint32_t few_sizes = 32;
   sizes_.clear();
@@ -249,7 +249,7 @@ void Packer::sort_by_size(const std::vector<uint32_t>& given, std::vector<uint32
     const uint64_t size = items_[i].size;
     const auto known = static_cast<uint32_t>(sizes_.size());
     uint32_t same = known;
-    for (uint32_t k = 0; k < known; ++k) // to the end: where it is found is as good as random
+    for (uint32_t k = 0; k < known; ++k) // no early exit: the position is unpredictable
       same = select(sizes_[k] == size, k, same);
     if (same == known) {
       if (known == few_sizes) break;
@@ -300,10 +300,10 @@ void Packer::try_orders(Packing& out) {
   try_sorted([&](uint32_t i) { return ~uint64_t{items_[i].first}; });
 }
 
-// Moves an item that reaches highest, or any, to an earlier turn; keeps what is not worse, and starts again
-// from the best when that leads nowhere.
+// Local search: moves an item, preferably one at the top of the heap, to another turn, and keeps orders that
+// are not worse. Restarts from a perturbed best order after `patience` moves without a gain.
 void Packer::search(uint64_t steps, Packing& out) {
-  constexpr uint32_t patience = 200; // moves without a smaller result
+  constexpr uint32_t patience = 200; // moves
   SplitMix64 random{items_.size()};
   const uint64_t end = steps_ + steps;
   std::vector<uint32_t>& current = order_;
@@ -332,7 +332,7 @@ void Packer::search(uint64_t steps, Packing& out) {
     const uint64_t size = place_in_order(current, fit, current_size + 1);
     if (size > current_size) {
       move(to, from);
-      place_in_order(current, fit, unlimited); // offsets of what is kept
+      place_in_order(current, fit, unlimited); // restores the offsets
       ++idle;
     } else {
       idle = size < current_size ? 0 : idle + 1;
@@ -354,11 +354,11 @@ void Packer::search(uint64_t steps, Packing& out) {
   }
 }
 
-// Where the first placement left much to gain: what ends last goes first among equals; then by size and
-// time together, where now the one and now the other counts more.
+// Tries other orders if the first placement is far from the bound: among equal sizes the last end first, then
+// products of powers of size and time.
 void Packer::try_again(Packing& out) {
-  // A part in this many of the bound: less would not pay for the time. In large graphs more is left to gain,
-  // but not by what helps small ones.
+  // Worth a try if more than this fraction of the bound is wasted. Large graphs have a lower threshold, and
+  // profit from fewer orders.
   constexpr size_t many_items = 4096;
   const bool large = items_.size() >= many_items;
   const uint64_t much = large ? 16 : 11;
@@ -372,8 +372,8 @@ void Packer::try_again(Packing& out) {
     sort_by_size(by_last_, order_);
     try_order(order_, Fit::tightest, out);
   }
-  // Of means by powers of the two, those that did best on drawn fans and random graphs of 100 to 10,000
-  // passes (`dermis bench compile`).
+  // The powers with the best results on randomly generated fans and graphs of 100 to 10,000 passes
+  // (`dermis bench compile`).
   struct Powers {
     uint32_t size, time;
   };
@@ -385,9 +385,9 @@ void Packer::try_again(Packing& out) {
   }
 }
 
-// Sorted by size^a * time^b, the largest first, equal ones in the order of by_size_.
+// Sorts stably by descending size^a * time^b, starting from by_size_.
 void Packer::by_weight(uint32_t a, uint32_t b, std::vector<uint32_t>& sorted) {
-  // Sizes in pages of 64 KiB, times in passes. Products of doubles are the same on every compiler.
+  // Sizes in pages of 64 KiB, times in passes. Products of doubles are the same with every compiler.
   constexpr uint32_t page_bits = 16;
   weights_.clear();
   for (const PackItem& item : items_) {
@@ -414,7 +414,7 @@ void Packer::pack(std::span<const PackItem> items, PackingLevel level, Packing& 
   if (items.empty()) return;
   if (blocks_.size() < change_.size() / block_passes + 1) blocks_.resize(change_.size() / block_passes + 1);
   offsets_.resize(items.size());
-  if (gathered_.size() < items.size() + 3) gathered_.resize(items.size() + 3); // and what ends two lists
+  if (gathered_.size() < items.size() + 3) gathered_.resize(items.size() + 3); // and the ends of two lists
   counting_sort(static_cast<uint32_t>(items.size()), static_cast<uint32_t>(change_.size()), first_at_,
                 by_first_, [&](uint32_t i) { return items_[i].first; });
   sort_by_size(by_first_, by_size_);

@@ -1,6 +1,5 @@
 #pragma once
-// Where in memory each instance lies. Pure data in, pure data out: intervals in time become intervals in
-// bytes.
+// Packs items with lifetimes into one range of bytes (dynamic storage allocation). Knows nothing of graphs.
 
 #include "framegraph/compile/compile.hpp"
 
@@ -12,20 +11,21 @@ namespace dermis {
 
 struct PackItem {
   uint64_t size = 0, alignment = 1; // bytes; alignment a power of two
-  uint32_t first = 0, last = 0;     // inclusive interval of pass positions in which the contents matter
+  uint32_t first = 0, last = 0;     // inclusive interval of pass positions in which the item is live
 };
 
 struct Packing {
   std::vector<uint64_t> offsets; // one per item
   uint64_t size = 0;             // bytes of the heap
-  uint64_t lower_bound = 0;      // most bytes alive at once: no packing is smaller
+  uint64_t lower_bound = 0;      // maximum of bytes live at once: no packing is smaller
 };
 
-// Items whose intervals meet never share a byte. Every level stops where the lower bound is met. Equal items
-// keep their order and effort is counted in steps, so that the result is the same on every machine.
-//  fast      the tightest gap, largest first, up to four times more in other orders: O(n log n + n live)
-//  tight     besides, the order of time, several orders with first and tightest gap, and a short search among
-//  orders optimize  a longer search
+// Items whose lifetimes overlap never share a byte. Every level stops if the lower bound is met. Equal items
+// keep their order and effort is counted in steps, so the result is the same on every machine.
+//
+// fast: tightest gap, largest first; up to four other orders if much is left to gain. O(n log n + n live).
+// tight: also the order of time, several orders with first and tightest gap, and a short search.
+// optimize: as tight, with a longer search.
 class Packer {
 public:
   // Reuses the memory of `out` and of earlier calls.
@@ -39,9 +39,9 @@ private:
   struct Range {
     uint64_t begin = 0, end = 0;
   };
-  struct Block { // what is placed and alive in some consecutive positions, by begin
+  struct Block { // items that are placed and live in block_passes consecutive positions, by begin
     std::vector<Range> ranges;
-    std::vector<uint32_t> when; // in which of them, as bits; as many as ranges, 0 from `count` on
+    std::vector<uint32_t> when; // positions of the block, as bits; same size as ranges, 0 from `count` on
     size_t count = 0;
 
     void clear();
@@ -62,7 +62,7 @@ private:
   void search(uint64_t steps, Packing& out);
 
   std::span<const PackItem> items_;
-  std::vector<int64_t> change_; // by position: bytes that come alive less those that die
+  std::vector<int64_t> change_; // by position: bytes that become live less those that end
   std::vector<uint32_t> first_at_, last_at_, by_first_, by_last_;
   std::vector<Span> spans_;
   std::vector<Block> blocks_; // by position / block_passes

@@ -11,7 +11,7 @@
 
 namespace dermis {
 
-// ---- How large is each resource, and which slots does the host bind? ----
+// ---- sizes.cpp ----
 
 struct SizeScratch {
   enum class Mark : uint8_t { unvisited, open, done, failed };
@@ -22,26 +22,29 @@ struct SizeScratch {
   std::array<uint32_t, 32> last_shape_of{}; // by remainder of a hash: the shape found last
   std::vector<ResourceId> chain;            // resources whose sizes follow each other
 };
+// Computes the size of each resource, and which slots the host binds.
 const Sizes& resolve_sizes(const CompileInput& in, Report& report, SizeScratch& scratch);
 
-// ---- What are the settings, and which passes are on? ----
+// ---- activation.cpp ----
 
 struct ActivationScratch {
   Activation result;
 };
+// Resolves the settings, and evaluates which passes are on.
 const Activation& evaluate_conditions(const CompileInput& in, Report& report, ActivationScratch& scratch);
 
-// ---- Into which subresource ranges do ports divide images? ----
+// ---- subresources.cpp ----
 
 struct SubresourceScratch {
   Subresources result;
   // By resource, for mips and for layers: the numbers at which ranges begin.
   std::vector<std::array<std::vector<uint16_t>, 2>> cuts;
 };
+// Divides images into the subresource ranges that ports name.
 const Subresources& split_subresources(const CompileInput& in, const Sizes& sizes, const Activation& active,
                                        Report& report, SubresourceScratch& scratch);
 
-// ---- Which version of which resource does each port access? ----
+// ---- versions.cpp, races.cpp ----
 
 struct VersionScratch {
   // How a subresource's name is understood at one point of the file.
@@ -65,42 +68,46 @@ struct VersionScratch {
   std::vector<ResourceDef> definitions; // by subresource
   std::vector<ForwardReference> forward_references;
 };
+// Resolves which version of which resource each port accesses, and applies `otherwise`.
 const Versions& resolve_versions(const CompileInput& in, const Sizes& sizes, const Activation& active,
                                  const Subresources& subresources, Report& report, VersionScratch& scratch);
 
 // Reports passes that read what they write, with these settings.
 void report_races(const CompileInput& in, const Activation& active, const Versions& versions, Report& report);
 
-// ---- Which passes does a bound export need? ----
+// ---- cull.cpp ----
 
 struct CullScratch {
   LiveSet result;
   std::vector<uint64_t> unvisited; // bit set of live passes whose reads were not followed yet
   std::vector<uint8_t> reported;   // by resource: one root cause gives one diagnostic
 };
+// Finds the passes that a bound export or a side effect needs.
 const LiveSet& cull(const CompileInput& in, const Sizes& sizes, const Activation& active,
                     const Subresources& subresources, const Versions& versions, Report& report,
                     CullScratch& scratch);
 
-// ---- Which passes run on the second queue? ----
+// ---- queues.cpp ----
 
 struct QueueScratch {
   QueueAssignment result;
 };
+// Assigns live passes to the main queue or the async queue.
 const QueueAssignment& assign_queues(const CompileInput& in, const Sizes& sizes,
                                      const Subresources& subresources, const Versions& versions,
                                      const LiveSet& live, Report& report, QueueScratch& scratch);
 
-// ---- How do the live passes use each resource? ----
+// ---- usages.cpp ----
 
 struct UsageScratch {
   Usages result;
 };
+// Gathers how the live passes use each resource.
 const Usages& gather_usages(const CompileInput& in, const Sizes& sizes, const Activation& active,
                             const Versions& versions, const LiveSet& live, Report& report,
                             UsageScratch& scratch);
 
-// ---- Which format does each resource get, and how much memory? ----
+// ---- formats.cpp ----
 
 struct FormatScratch {
   struct DeviceAnswer { // the memory that the device needs for one description
@@ -119,12 +126,12 @@ struct FormatScratch {
   std::vector<ShapeFormat> shapes;        // by shape
   std::array<DeviceAnswer, 32> answers{}; // at most one for each remainder of a hash
 };
-// Also fills `resources`, which is Plan::resources.
+// Chooses formats and memory needs. Fills `resources`, which is Plan::resources.
 const ResourceMemory& resolve_formats(const CompileInput& in, const Sizes& sizes, const Activation& active,
                                       const Versions& versions, const Usages& usages, Report& report,
                                       std::vector<PlanResource>& resources, FormatScratch& scratch);
 
-// ---- In which order do the passes run? ----
+// ---- schedule.cpp, schedule_backward.cpp ----
 
 struct ScheduleScratch {
   Schedule result;
@@ -138,6 +145,7 @@ struct ScheduleScratch {
   std::vector<Interval> lifetimes; // in the depth-first order
   std::vector<int64_t> changes;    // by position: bytes that become live less those that end
 };
+// Orders the live passes, and computes the lifetime of each resource. Reports cycles.
 const Schedule& schedule_passes(const CompileInput& in, const Activation& active, const Versions& versions,
                                 const LiveSet& live, const ResourceMemory& memory, Report& report,
                                 ScheduleScratch& scratch);
@@ -148,22 +156,23 @@ const Schedule& schedule_passes(const CompileInput& in, const Activation& active
 std::vector<PassId> sort_backward_graph(const Graph& graph, const Activation& active,
                                         const Versions& versions, const LiveSet& live, Report& report);
 
-// ---- Which settings does each pass get, and does it keep the device's limits? ----
+// ---- passes.cpp ----
 
 struct PassScratch {
   enum class Fit : uint8_t { unknown, yes, no };
   std::vector<Fit> fits; // by pass type: within the device's limits
 };
-// Fills Plan::passes and Plan::settings.
+// Fills Plan::passes and Plan::settings, and checks the device's limits.
 void plan_passes(const CompileInput& in, const Activation& active, const QueueAssignment& queues,
                  const Schedule& schedule, Report& report, Plan& plan, PassScratch& scratch);
 
-// ---- When is the memory of a history's oldest frame idle, and is it overwritten in place? ----
+// ---- histories.cpp ----
 
 struct HistoryScratch {
   Histories result;
 };
-// Also sets PlanResource::instance_count of histories.
+// Finds when a history's oldest frame is last read, and whether it is overwritten in place. Sets
+// PlanResource::instance_count of histories.
 const Histories& analyze_histories(const CompileInput& in, const Activation& active, const Versions& versions,
                                    const Usages& usages, const Schedule& schedule, Report& report,
                                    std::vector<PlanResource>& resources, HistoryScratch& scratch);

@@ -22,7 +22,7 @@ struct PlacementScratch {
   Packer packer;
   Packing packing;
 };
-// Where in memory is each resource located? Fills Plan::heaps and Plan::placements.
+// Gives every resource a location in memory: fills Plan::heaps and Plan::placements.
 const Placements& place_resources(const CompileInput& in, const Sizes& sizes,
                                   const Subresources& subresources, const QueueAssignment& queues,
                                   const ResourceMemory& memory, const Schedule& schedule,

@@ -1,6 +1,6 @@
 #pragma once
-// What will run: ordered passes with resolved accesses, batched barriers, heaps with placements, history
-// slots. Flat arrays, no pointers; the same inputs give the same bytes. Reasons are a side table.
+// The plan: ordered passes with resolved accesses, batched barriers, heaps with placements, histories. Flat
+// arrays without pointers; the same inputs give the same bytes. Reasons are a side table.
 
 #include "framegraph/model/graph.hpp"
 
@@ -21,29 +21,29 @@ struct SubresourceRange {
   constexpr bool operator==(const SubresourceRange&) const = default;
 };
 
-// A physical image or buffer, or the host's acceleration structure. Transients have one instance, or one in
-// each instance of a history whose memory they use while it holds nothing; a history resource of which N
-// earlier frames are read has N+1, or N where a frame may be written into the memory of the oldest. In frame
-// f (counted per view from 0), `frames_back` b of resource r lives in instance first_instance + (f - b) mod
-// instance_count.
+// A physical image or buffer, or the host's acceleration structure. Number of instances:
+// - a transient: 1, or that of the history whose idle memory it aliases;
+// - a history of which N earlier frames are read: N + 1, or N if a frame is written over the oldest one.
+// In frame f (counted per view from 0), `frames_back` b of a resource is located in instance
+// first_instance + (f - b) mod instance_count.
 struct PlanResource {
   ResourceId declared;
   ResourceType type = ResourceType::image;
   Origin origin = Origin::transient;
-  bool exported =
-      false; // bound by the host: the host owns the memory; an unbound export is an ordinary transient
+  // The host binds the export and owns the memory. An unbound export is an ordinary transient.
+  bool exported = false;
   Format format = Format::undefined;
   uint32_t width = 1, height = 1, mips = 1, layers = 1; // images, at the allocated view size
-  uint64_t bytes = 0;                                   // buffers: size asked for; the host's: the least
-  uint32_t vk_usage = 0;                                // of all its ports; histories: and of a clear
+  uint64_t bytes = 0;    // buffers: requested size; of the host's buffers: minimum size
+  uint32_t vk_usage = 0; // of all ports; histories: also of a clear
   uint32_t instance_count = 1;
   uint32_t first_instance = no_instance; // into Plan::placements; no_instance: the host's memory
-  // Everything that the resource has.
+  // Imports and exports, bound or not: running number among them in the order of Graph::resources.
+  int32_t slot = -1;
+
   SubresourceRange whole() const {
     return {0, static_cast<uint16_t>(mips), 0, static_cast<uint16_t>(layers)};
   }
-  int32_t slot =
-      -1; // imports and exports, bound or not: running number among them in the order of Graph::resources
 };
 
 struct Placement {       // one physical instance in memory
@@ -55,18 +55,18 @@ struct Placement {       // one physical instance in memory
 };
 
 struct Heap {
-  uint32_t memory_type_bits = 0xffffffffu; // allowed memory types, all occupants agreed
+  uint32_t memory_type_bits = 0xffffffffu; // memory types that all occupants allow
   uint64_t size = 0, alignment = 1;
   uint64_t max_live_bytes = 0; // lower bound of any packing
-  bool persistent = false;     // holds histories, and transients that use their memory; else transients only
+  bool persistent = false;     // histories and transients that alias them; else only transients
 };
 
-// async: a second queue of another family, which runs beside the first.
+// async: a second queue of another family, which runs concurrently with the main queue.
 enum class Queue : uint8_t { main, async };
 
-// Points in time, one sequence for each queue: a pass waits until the other queue has reached one, and
-// reaches one of its own when it is done. They count from 1 in each frame; 0 is the last one of the frame
-// before. As values of a timeline semaphore: frame * (points of a frame) + point.
+// Timeline points, one sequence for each queue: a pass waits until the other queue has signalled a point, and
+// signals a point of its own queue when it is complete. Points count from 1 in each frame; 0 is the last
+// point of the frame before. Value of a timeline semaphore: frame * (points of a frame) + point.
 inline constexpr uint32_t no_point = 0xffffffffu;
 
 struct PlanAccess { // one bound port of one pass
@@ -77,18 +77,19 @@ struct PlanAccess { // one bound port of one pass
   Stage stages = 0;
   Access access = 0;
   Layout layout = Layout::undefined;
-  // A read of a resource that the pass writes, in this frame or over an earlier one: each invocation reads
-  // only what it writes itself. See Port::own_texels.
+  // A read of a resource that the pass writes, in this frame or over an earlier one, where each invocation
+  // reads only texels that it writes itself. See Port::own_texels.
   bool own_texels = false;
-  // Reads only: in frames in which the earlier frame that this access names is valid, or, behind such an
-  // access of the same port, in those in which that one's is not. Barriers are the same in every frame.
+  // Reads only. history_valid: in frames in which the history of this access is valid. history_invalid: in
+  // the other frames; the access follows the history's access of the same port. Barriers are the same in
+  // every frame.
   ReadWhen when = ReadWhen::always;
 };
 
 // One memory dependency on one resource: an image barrier over a range of mips and layers, or a buffer
-// barrier over all bytes (layouts undefined). Source masks name accesses of this frame and of the frames
-// before it on the same queue. Every slot the host binds has one barrier with to_host in the final batch; one
-// that no pass touches has from_host and to_host in it.
+// barrier over all bytes (layouts undefined). Source masks include accesses of this frame and of earlier
+// frames on the same queue. Every slot that the host binds has one barrier with to_host in the final batch.
+// If no pass accesses the slot, that barrier has from_host, too.
 struct PlanBarrier {
   uint32_t resource = 0;
   uint32_t frames_back = 0;
@@ -109,9 +110,9 @@ struct PlanBarrier {
   } why = ReasonKind::first_use;
   bool from_host = false; // source scope and old layout come from the binding's `before`
   bool to_host = false;   // destination scope and new layout come from the binding's `after`
-  // Between queues, in two halves with the same layouts: released behind a pass of one queue (no
-  // destination), acquired before a pass of the other (no source), which waits for a point behind the
-  // release.
+  // Queue family ownership transfer in two halves with the same layouts: a release after a pass of one queue
+  // (no destination), and an acquire before a pass of the other queue (no source), which waits for a point
+  // after the release.
   enum class Transfer : uint8_t { none, release, acquire } transfer = Transfer::none;
 };
 
@@ -127,26 +128,26 @@ struct PlanPass {
   uint32_t first_barrier = 0, barrier_count = 0; // into Plan::barriers: one batch before the pass
   uint32_t first_setting = 0;                    // into Plan::settings, one per PassTypeSetting
   Queue queue = Queue::main;
-  uint32_t wait = no_point;   // of the other queue, before the barriers
-  uint32_t release_count = 0; // barriers behind the pass, which follow those before it in Plan::barriers
-  uint32_t signal = 0;        // the point that this queue has reached behind the releases; 0: none
+  uint32_t wait = no_point;   // for a point of the other queue, before the barriers
+  uint32_t release_count = 0; // barriers after the pass; they follow its first batch in Plan::barriers
+  uint32_t signal = 0;        // point that this queue signals after the releases; 0: none
 };
 
-// An `after` of the graph whose two passes run: the later one is recorded behind the earlier one, and, where
-// they are on different queues, waits for a point behind it.
+// An `after` of the graph whose two passes run: the later pass is recorded after the earlier one. On
+// different queues, the later pass waits for a point after the earlier one.
 struct PlanOrdering { // positions in Plan::passes
   uint32_t earlier = 0, later = 0;
 
-  // By which they are sorted.
+  // Order of Plan::orderings.
   friend bool operator<(const PlanOrdering& a, const PlanOrdering& b) { return a.later < b.later; }
 };
 
-// History as the executor keeps it. New or invalidated instances must be brought (cleared, or transitioned
-// with their contents discarded) into their layout at the start before the first frame that reads them.
+// A history as the executor keeps it. New or invalidated instances must be cleared, or transitioned with
+// their contents discarded, into their layout at the start of a frame before the first frame that reads them.
 struct PlanHistory {
   uint32_t resource = 0;              // into Plan::resources
   uint32_t frames = 1;                // deepest `@-N` this plan reads
-  uint32_t first_part = 0, parts = 1; // into Plan::history_parts: those that ports tell apart, or the whole
+  uint32_t first_part = 0, parts = 1; // into Plan::history_parts: subresource ranges
   uint32_t first_layout = 0;          // into Plan::history_layouts, `parts` for each frames_back 0 .. frames
   HistoryDeclaration declaration;
 };
@@ -155,7 +156,7 @@ struct Plan {
   std::string graph;                        // name
   uint32_t view_width = 0, view_height = 0; // allocated size
   std::string device_profile;               // name
-  std::vector<SettingValue> setting_values; // one per Graph::settings: what `when` was folded with
+  std::vector<SettingValue> setting_values; // one per Graph::settings: used to evaluate `when`
   std::vector<PlanResource> resources;
   std::vector<Heap> heaps;
   std::vector<Placement> placements;
@@ -163,41 +164,42 @@ struct Plan {
   std::vector<PlanAccess> accesses;
   std::vector<PlanBarrier> barriers;
   std::vector<PlanSetting> settings;
-  std::vector<PlanOrdering> orderings; // by the later one
+  std::vector<PlanOrdering> orderings; // sorted by the later pass
   std::vector<PlanHistory> histories;
   std::vector<SubresourceRange> history_parts;
-  std::vector<Layout> history_layouts; // of an instance's parts when a frame starts; the newest's is
-                                       // undefined: its old contents are discarded
-  uint32_t first_final_barrier = 0,
-           final_barrier_count = 0; // batch after the last pass: to the host's `after`
-  uint32_t final_wait =
-      no_point; // point of the async queue that the main one waits for before the final batch
+  // Layouts of the ranges of an instance at the start of a frame; undefined for the newest instance, whose
+  // old contents are discarded.
+  std::vector<Layout> history_layouts;
+  // The batch after the last pass: to the host's `after` states.
+  uint32_t first_final_barrier = 0, final_barrier_count = 0;
+  // Point of the async queue that the main queue waits for before the final batch.
+  uint32_t final_wait = no_point;
   uint64_t transient_bytes = 0, history_bytes = 0; // heap bytes by kind
 };
 
-// Why something was decided, outside the canonical bytes: what the compiler knew, as indices. explain/ makes
-// sentences of it. Placements need none: the plan itself tells what lives beside them.
+// The reason for one decision, outside the canonical bytes. Indices only; explain/ turns them into sentences.
+// Placements have no reasons: the plan shows which resources share memory.
 struct Reason {
   enum class About : uint8_t { pass, resource, barrier, choice, order };
   enum class ReasonKind : uint8_t {
-    // of a pass; a, b: what needs it, as named here
-    off,              // its `when` is false
-    read_by,          // pass a reads its resource b
-    read_later_by,    // pass a reads its resource b in later frames
-    written_over_by,  // pass a writes over its resource b
-    writes_export,    // resource a
-    side_effects,     // of its pass type
-    culling_off,      // asked for by the caller
-    beside,           // declared async, and on the async queue
-    behind,           // pass a, which its `after` number b names
-    not_beside,       // declared async, but resource a is the host's, a history, or bound in parts
-    port_unbound,     // optional port a; nothing provides resource b
-    always_otherwise, // port a has no history b to read: its `otherwise` stands in for it in every frame
-    not_needed,       // culled
-    lacks_input_without_bounds, // in frames with empty bounds nobody writes its resource a
+    // of a pass; a, b: as stated here
+    off,                        // its `when` is false
+    read_by,                    // pass a reads its resource b
+    read_later_by,              // pass a reads its resource b in later frames
+    written_over_by,            // pass a overwrites its resource b
+    writes_export,              // resource a
+    side_effects,               // of its pass type
+    culling_off,                // requested by the caller
+    beside,                     // declared async, and on the async queue
+    behind,                     // runs after pass a, which its `after` number b names
+    not_beside,                 // declared async, but resource a is the host's, a history, or divided
+    port_unbound,               // optional port a; no pass or binding provides resource b
+    always_otherwise,           // port a has no history b: it reads its `otherwise` in every frame
+    not_needed,                 // culled
+    lacks_input_without_bounds, // in frames with empty bounds no pass writes its resource a
     // of a resource
-    unbound,            // the host leaves this optional slot alone
-    stands_for,         // a by another name, behind pass b, which is off
+    unbound,            // the host does not bind this optional slot
+    stands_for,         // readers get resource a, because pass b is off
     unwritten_export,   // optional, and no pass that is on writes it
     format,             // Format a; b: 0 first of the list, 1 first usable one, 2 bound by the host
     format_not_ported,  // not Format a: port c of pass b cannot work with it
@@ -205,31 +207,31 @@ struct Reason {
     history_unused,     // no pass that runs uses it
     history_unread,     // no pass that runs reads its earlier frames
     history_read,       // earlier frames are read, down to a
-    renewed_in_place,   // the oldest frame a has been read when this one is written; b: 1 by the same pass
-    aliases_history,    // of history a; b: 0 before that is written, 1 after its oldest frame was read
-    // of a barrier; b: 1 if that was in the frame before
-    from_host,       // the first access to resource a takes it over
-    oldest_instance, // of resource a becomes that of this frame
+    renewed_in_place,   // frame a is read before this frame is written over it; b: 1 by the same pass
+    aliases_history,    // of resource a; b: 0 before it is written, 1 after the last read of its oldest frame
+    // of a barrier; b: 1 if the earlier access was in the frame before
+    from_host,       // the first access to resource a, which the host passed in
+    oldest_instance, // of resource a becomes this frame's
     first_use,       // of resource a
-    behind_last_use, // its own
-    takes_memory,    // of resource a
-    dependency,      // pass at position c behind that at position a: see PlanBarrier::why
-    to_host,         // resource a is handed back; b: 1 if no pass touched it
+    behind_last_use, // after the last use of the same resource a
+    takes_memory,    // acquires memory of resource a
+    dependency,      // pass at position c after the pass at position a: see PlanBarrier::why
+    to_host,         // resource a is passed back; b: 1 if no pass accessed it
     // of a setting
     requested, // by the caller
     by_default,
     not_available, // option a: the device lacks features b, or the host leaves import c unbound (0: features)
-    // of the order; a, b: KiB of transients alive at once in it, and in the other one that was tried
+    // of the order; a, b: KiB of transients live at once in this order, and in the other order that was tried
     order_of_file,
     depth_first,
-    program_order, // asked for by the caller
-    random_order   // likewise
+    program_order, // requested by the caller
+    random_order   // requested by the caller
   };
   About about = About::pass;
   ReasonKind why = ReasonKind::off;
-  uint32_t index = 0; // pass: PassId in the graph; resource: ResourceId; choice: SettingId; barrier: index in
-                      // the plan; order: 0
-  uint32_t a = 0, b = 0, c = 0; // as said at each Why; resources and passes are ids in the graph
+  // pass: PassId in the graph; resource: ResourceId; choice: SettingId; barrier: index in the plan; order: 0.
+  uint32_t index = 0;
+  uint32_t a = 0, b = 0, c = 0; // as stated at each ReasonKind; resources and passes are ids in the graph
 };
 
 struct CompiledPlan {

@@ -1,8 +1,8 @@
 // Reports passes that read what they write, with these settings. read_graph checks all combinations of
 // settings; this phase covers graphs from other sources and graphs with too many combinations.
 
-#include "framegraph/model/in_place.hpp"
 #include "framegraph/compile/phases.hpp"
+#include "framegraph/model/in_place.hpp"
 
 namespace dermis {
 namespace {

@@ -11,7 +11,7 @@ namespace dermis {
 
 inline constexpr uint32_t invalid_index = 0xffffffffu;
 
-// Where phases report: diagnostics for the user, and the reason for each decision.
+// Receives what phases report: diagnostics for the user, and the reason for each decision.
 struct Report {
   Diagnostics& diagnostics;
   std::vector<Reason>& reasons;
