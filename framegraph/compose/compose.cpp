@@ -52,20 +52,21 @@ bool check_file_name(std::string_view name, std::string_view what, const SourceL
                      Diagnostics& diagnostics) {
   std::string problem;
   if (name.empty() || name.size() > limits::file_name_bytes)
-    problem = fmt::format("it has {} bytes, not 1 .. {}", name.size(), limits::file_name_bytes);
+    problem = fmt::format("the path has {} bytes; expected 1 .. {}", name.size(), limits::file_name_bytes);
   else if (name.front() == '/')
-    problem = "it is absolute";
+    problem = "the path is absolute";
   else if (name.find_first_of("\\:") != std::string_view::npos)
-    problem = "it holds '\\' or ':'";
+    problem = "the path contains '\\' or ':'";
   for (size_t begin = 0; problem.empty() && begin <= name.size();) {
     const size_t end = std::min(name.find('/', begin), name.size());
     const std::string_view step = name.substr(begin, end - begin);
-    if (step.empty() || step == "." || step == "..") problem = fmt::format("it has the step '{}'", step);
+    if (step.empty() || step == "." || step == "..")
+      problem = fmt::format("the path contains the step '{}'", step);
     begin = end + 1;
   }
   if (problem.empty()) return true;
   diagnostics.add(DiagnosticId::bad_file_name, where,
-                  fmt::format("{} is no name of a file to read: {}", what, problem));
+                  fmt::format("{} is not a valid file path: {}", what, problem));
   return false;
 }
 
@@ -81,7 +82,7 @@ bool add_document(Composer& composer, Document document, const SourceLocation& w
     limit = fmt::format("{} values", limits::nodes);
   if (!limit.empty()) {
     composer.error(DiagnosticId::limit_exceeded, where,
-                   fmt::format("the graph is put together from more than {}", limit));
+                   fmt::format("the graph, with its includes and overlays, has more than {}", limit));
     return false;
   }
   composer.tree.documents.push_back(std::move(document));
@@ -114,7 +115,7 @@ std::optional<Composition> compose_fragment(Document fragment, const OpenFile& o
   const uint64_t errors_before = errors();
   const SourceLocation where = fragment.where(fragment.root());
   auto graph =
-      parse_document("<a graph of the fragment alone>",
+      parse_document("<graph of only the fragment>",
                      R"({ "dermis": 2, "name": "fragment", "passes": [], "exports": [] })", diagnostics);
   Composer composer{open, diagnostics};
   if (!graph || !add_document(composer, std::move(*graph), where) ||

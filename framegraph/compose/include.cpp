@@ -26,8 +26,9 @@ std::string chain_text(const Composer& composer, std::string_view name) {
 std::optional<uint32_t> open_fragment(Composer& composer, const std::string& name,
                                       const SourceLocation& where) {
   if (!composer.open) {
-    composer.error(DiagnosticId::file_unreadable, where,
-                   fmt::format("'{}' cannot be included: nothing here opens files", name));
+    composer.error(
+        DiagnosticId::file_unreadable, where,
+        fmt::format("'{}' cannot be included: the caller provides no function that opens files", name));
     return std::nullopt;
   }
   FileText file = composer.open(name);
@@ -64,7 +65,7 @@ void join_section(Composer& composer, std::string_view section, uint32_t documen
     } else if (!same_value(tree, known, fresh)) {
       composer
           .error(DiagnosticId::duplicate_name, tree.where_key(fresh),
-                 fmt::format("'{}' of \"{}\" is declared in two files, and not alike", key, section))
+                 fmt::format("'{}' of \"{}\" is declared differently in two files", key, section))
           .related.emplace_back(tree.where_key(known), "first declared here");
     }
   }
@@ -101,7 +102,7 @@ void include(Composer& composer, uint32_t document, NodeId entry, std::vector<It
       open != composer.chain.end()) {
     composer
         .error(DiagnosticId::include_cycle, where,
-               fmt::format("files include each other: {}", chain_text(composer, name)))
+               fmt::format("the includes form a cycle: {}", chain_text(composer, name)))
         .related.emplace_back(open->where, fmt::format("'{}' is included here", name));
     return;
   }
@@ -109,7 +110,7 @@ void include(Composer& composer, uint32_t document, NodeId entry, std::vector<It
   if (std::any_of(composer.included.begin(), composer.included.end(), named)) return;
   if (composer.chain.size() >= limits::include_nesting) {
     composer.error(DiagnosticId::limit_exceeded, where,
-                   fmt::format("files include each other more than {} deep", limits::include_nesting));
+                   fmt::format("includes are nested more than {} deep", limits::include_nesting));
     return;
   }
   composer.included.push_back({name, where});

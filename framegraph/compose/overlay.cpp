@@ -56,7 +56,8 @@ struct Edit {
     const bool list = passes.valid() && tree().kind(passes) == NodeKind::array;
     const int at = list ? find_pass(tree(), passes, name) : -1;
     if (at < 0)
-      refuse(fmt::format("{} names the pass '{}', which the graph does not have here", what, shown(name)),
+      refuse(fmt::format("{} names the pass '{}', which does not exist when this edit is applied", what,
+                         shown(name)),
              list ? did_you_mean(name, steps_into(tree(), passes)) : std::string(),
              fmt::format("/passes/{}", name));
     return {passes, at};
@@ -82,7 +83,7 @@ struct Edit {
   ItemId parent_of(std::string_view path, const std::vector<std::string>& steps, uint32_t& depth,
                    bool make = false) const {
     if (steps.empty()) {
-      refuse(fmt::format("{} gives '{}'; a path begins with '/'", what, shown(path)), "", path);
+      refuse(fmt::format("{} is '{}'; a path must begin with '/'", what, shown(path)), "", path);
       return {};
     }
     ItemId at{0};
@@ -118,7 +119,8 @@ struct Edit {
   }
 
   void missing(ItemId parent, std::string_view path, std::string_view step) const {
-    refuse(fmt::format("{} names '{}', but there is no '{}' here", what, shown(path), shown(step)),
+    refuse(fmt::format("{} names '{}', but '{}' does not exist when this edit is applied", what, shown(path),
+                       shown(step)),
            did_you_mean(step, steps_into(tree(), parent)), path);
   }
 
@@ -151,7 +153,7 @@ struct Edit {
     }
     if (!array && steps.back().size() > limits::key_bytes) {
       composer.error(DiagnosticId::limit_exceeded, target_place(),
-                     fmt::format("{} gives a key of more than {} bytes", what, limits::key_bytes));
+                     fmt::format("{} contains a key of more than {} bytes", what, limits::key_bytes));
       return;
     }
     tree()[fresh].key = array ? std::string() : steps.back();
@@ -175,7 +177,7 @@ Verb verb_of(const Document& document, NodeId node) {
 void report_no_verb(const Document& document, NodeId node, const std::string& what,
                     Diagnostics& diagnostics) {
   const std::string text =
-      fmt::format("{} does nothing: it needs one of the keys {}", what, list_words(verbs));
+      fmt::format("{} has no effect: expected one of the keys {}", what, list_words(verbs));
   for (const std::string_view verb : verbs)
     if (const NodeId misspelt = find_misspelt(document, node, verb); misspelt.valid()) {
       diagnostics.add(DiagnosticId::unknown_key, document.where_key(misspelt), text).suggestion =

@@ -84,8 +84,8 @@ private:
     const bool taken_for_setting = id == DiagnosticId::unknown_setting && !foreign.instead.empty();
     if ((id == DiagnosticId::bad_expression && !foreign.text.empty()) || taken_for_setting) {
       id = DiagnosticId::bad_expression;
-      text = fmt::format("there is no operator '{}'; there are ==, !=, <, <=, >, >=, in, not, and, or",
-                         foreign.text);
+      text =
+          fmt::format("unknown operator '{}'; expected ==, !=, <, <=, >, >=, in, not, and, or", foreign.text);
       if (!foreign.instead.empty()) suggestion = fmt::format("did you mean '{}'?", foreign.instead);
     }
     diagnostics_
@@ -97,7 +97,7 @@ private:
   bool expect_boolean(const Operand& operand) {
     if (operand.type == Type::boolean) return true;
     fail(DiagnosticId::expression_type, operand.at,
-         fmt::format("{} stands where true or false is needed", type_name(operand.type)));
+         fmt::format("{} is used where a boolean is expected", type_name(operand.type)));
     return false;
   }
 
@@ -144,7 +144,7 @@ private:
     if (is_word("in")) return membership(*left, false);
     if (is_word("not")) {
       step();
-      if (!is_word("in")) return fail(DiagnosticId::bad_expression, token_.at, "expected 'in' behind 'not'");
+      if (!is_word("in")) return fail(DiagnosticId::bad_expression, token_.at, "expected 'in' after 'not'");
       return membership(*left, true);
     }
     const auto op = token_.sort == Token::Sort::symbol ? comparison_of(token_.text) : std::nullopt;
@@ -155,7 +155,7 @@ private:
     if (!right || !agree(*left, *right)) return std::nullopt;
     if (left->type != Type::number && *op != Op::equal && *op != Op::not_equal) {
       return fail(DiagnosticId::expression_type, at,
-                  fmt::format("{} has no order; use == or !=", type_name(left->type)));
+                  fmt::format("{} cannot be ordered; use == or !=", type_name(left->type)));
     }
     return append(*op, left->id, right->id, left->at);
   }
@@ -164,9 +164,9 @@ private:
     step();
     if (left.type == Type::text) {
       return fail(DiagnosticId::expression_type, left.at,
-                  "a quoted option can be looked for only through its setting");
+                  "a quoted option cannot be the left side of 'in'; write the setting there");
     }
-    if (!is_symbol("[")) return fail(DiagnosticId::bad_expression, token_.at, "expected '[' behind 'in'");
+    if (!is_symbol("[")) return fail(DiagnosticId::bad_expression, token_.at, "expected '[' after 'in'");
     Expression expression;
     expression.op = Op::in;
     expression.left = left.id;
@@ -218,7 +218,7 @@ private:
     }
     const std::vector<std::string_view> options(declared.options.begin(), declared.options.end());
     fail(DiagnosticId::expression_type, text.at,
-         fmt::format("'{}' is no option of the setting '{}', which has {}", text.text, declared.name,
+         fmt::format("'{}' is not an option of the setting '{}'; expected {}", text.text, declared.name,
                      list_words(options)),
          did_you_mean(text.text, options));
     return false;

@@ -47,7 +47,7 @@ PassTypeProblem problem_of(const HostPassTypeSetting& setting, size_t i) {
   if (setting.type == SettingType::boolean)
     return setting.default_value == 0.0 || setting.default_value == 1.0
                ? PassTypeProblem{}
-               : range(fmt::format("settings[{}].default_value is {}, a bool is 0 or 1", i,
+               : range(fmt::format("settings[{}].default_value is {}; expected 0 or 1 for a bool", i,
                                    setting.default_value));
   const double maximum = limits::host_pass_type_value;
   if (!(setting.minimum >= -maximum && setting.maximum <= maximum &&
@@ -57,7 +57,8 @@ PassTypeProblem problem_of(const HostPassTypeSetting& setting, size_t i) {
   const auto whole = [](double value) { return std::floor(value) == value; };
   const bool whole_range = whole(setting.minimum) && whole(setting.maximum) && whole(setting.default_value);
   if (setting.type == SettingType::integer && !whole_range)
-    return range(fmt::format("settings[{}] is an int, but not all of its values are whole", i));
+    return range(
+        fmt::format("settings[{}] is an int; its minimum, default_value and maximum must be integers", i));
   return {};
 }
 
@@ -142,11 +143,11 @@ PassTypeProblem problem_of(const HostPassTypeDeclaration& type) {
     return PassTypeProblem{DiagnosticId::out_of_range, std::move(text)};
   };
   if (!is_pass_type_name(type.name))
-    return name(fmt::format(
-        "name is '{}', expected two names with a dot between them, as in \"studio.bloom\"", type.name));
+    return name(fmt::format("name is '{}'; expected two names separated by a dot, as in \"studio.bloom\"",
+                            type.name));
   if (std::string_view(type.name).substr(0, own_prefix.size()) == own_prefix)
-    return name(
-        fmt::format("name is '{}'; names that begin with '{}' are the library's", type.name, own_prefix));
+    return name(fmt::format("name is '{}'; names that begin with '{}' are reserved for the library",
+                            type.name, own_prefix));
   if (type.ports.empty() || type.ports.size() > limits::host_pass_type_ports)
     return count(
         fmt::format("there are {} ports, expected 1..{}", type.ports.size(), limits::host_pass_type_ports));
@@ -248,7 +249,7 @@ std::optional<std::vector<HostPassTypeDeclaration>> read_host_pass_types(const D
       };
       if (std::find_if(pass_types.begin(), pass_types.end() - 1, same) != pass_types.end() - 1)
         diagnostics.add(DiagnosticId::duplicate_name, document.where(node),
-                        fmt::format("there are two pass types '{}'", pass_types.back().name));
+                        fmt::format("the pass type '{}' is declared twice", pass_types.back().name));
     }
   root.finish();
   if (diagnostics.count(Severity::error) != errors) return std::nullopt;

@@ -45,9 +45,9 @@ std::optional<SizeExpression> parse_text(const Document& document, NodeId node, 
   std::optional<int64_t> numerator = 1, denominator = 1;
   if (star < text.size())
     numerator = factor_of(text.substr(star + 1, std::min(slash, text.size()) - star - 1));
-  if (!numerator) return refuse(star + 1, range + " behind '*'");
+  if (!numerator) return refuse(star + 1, range + " after '*'");
   if (slash != std::string_view::npos) denominator = factor_of(text.substr(slash + 1));
-  if (!denominator) return refuse(slash + 1, range + " behind '/'");
+  if (!denominator) return refuse(slash + 1, range + " after '/'");
   const std::string_view base = trimmed(text.substr(0, base_end));
   if (base.empty()) return refuse(0, "expected 'view' or the name of a resource");
   SizeExpression out;
@@ -57,7 +57,7 @@ std::optional<SizeExpression> parse_text(const Document& document, NodeId node, 
   out.base = SizeExpression::Base::resource;
   out.resource = find(base);
   if (!out.resource.valid()) return std::nullopt;
-  if (out.resource == owner) return refuse(0, "a resource cannot be as large as itself");
+  if (out.resource == owner) return refuse(0, "the size of a resource cannot refer to the resource itself");
   return out;
 }
 

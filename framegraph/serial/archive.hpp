@@ -109,7 +109,7 @@ public:
     }
   }
   void expect_end() {
-    if (at_ != bytes_.size()) fail(fmt::format("{} bytes are left over", bytes_.size() - at_));
+    if (at_ != bytes_.size()) fail(fmt::format("{} bytes remain after the last field", bytes_.size() - at_));
   }
 
   const std::string& problem() const { return problem_; } // "byte 12: ..."; "": none
@@ -121,7 +121,7 @@ private:
   bool take(const char* what, size_t bytes) {
     if (!problem_.empty()) return false;
     if (bytes_.size() - at_ < bytes) {
-      fail(fmt::format("the file ends inside of '{}'", what));
+      fail(fmt::format("the file ends inside '{}'", what));
       return false;
     }
     at_ += bytes;
@@ -132,9 +132,9 @@ private:
     number(what, value);
     const size_t available = (bytes_.size() - at_) / bytes_each;
     if (value <= maximum && value <= available) return value;
-    fail(value > maximum
-             ? fmt::format("'{}' has {} entries, at most {} are accepted", what, value, maximum)
-             : fmt::format("'{}' has {} entries, the file has room for {}", what, value, available));
+    fail(value > maximum ? fmt::format("'{}' has {} entries, at most {} are accepted", what, value, maximum)
+                         : fmt::format("'{}' has {} entries, but the rest of the file can hold only {}", what,
+                                       value, available));
     return 0;
   }
 

@@ -60,16 +60,16 @@ std::string first_misfit(const SavedPlan& saved) {
       names.resources.size() != plan.resources.size() || names.ports.size() != plan.accesses.size() ||
       names.settings.size() != plan.setting_values.size() ||
       names.pass_settings.size() != plan.settings.size())
-    return "not everything in the plan has one name";
+    return "the numbers of names and of objects in the plan differ";
   if (saved.key.settings.size() != plan.setting_values.size())
-    return "key and plan differ in their number of settings";
+    return "key and plan have different numbers of settings";
   if (saved.key.view_width != plan.view_width || saved.key.view_height != plan.view_height ||
       saved.key.device_profile != plan.device_profile)
     return "key and plan were made for different views or devices";
   uint64_t accesses = 0, barriers = 0, settings = 0;
   for (const PlanPass& pass : plan.passes) {
     if (pass.first_access != accesses || pass.first_barrier != barriers || pass.first_setting < settings)
-      return "accesses, barriers and settings do not stand in the order of their passes";
+      return "accesses, barriers and settings are not in the order of their passes";
     if (pass.first_setting > plan.settings.size()) return "a pass refers to settings that do not exist";
     accesses += pass.access_count;
     barriers += uint64_t{pass.barrier_count} + pass.release_count;
@@ -117,15 +117,16 @@ std::optional<SavedPlan> read_plan(const std::string& name, std::string_view byt
     diagnostics.add(DiagnosticId::plan_file, where, why);
     return std::nullopt;
   };
-  if (!is_plan_file(bytes)) return refuse(fmt::format("a saved plan begins with {}", magic));
+  if (!is_plan_file(bytes)) return refuse(fmt::format("a saved plan must begin with {}", magic));
   if (bytes.size() > limits::file_bytes)
-    return refuse(fmt::format("{} bytes, at most {} are accepted", bytes.size(), limits::file_bytes));
+    return refuse(
+        fmt::format("the file has {} bytes; at most {} are accepted", bytes.size(), limits::file_bytes));
   serial::Reader reader(bytes.substr(magic.size()), magic.size());
   uint32_t version = 0;
   reader.number("version", version);
   if (reader.problem().empty() && version != plan_file_version)
     return refuse(
-        fmt::format("the plan has version {}, this program reads version {}", version, plan_file_version));
+        fmt::format("the plan has version {}; this library reads version {}", version, plan_file_version));
   SavedPlan saved;
   serial::fields(reader, saved.key);
   serial::fields(reader, saved.names);

@@ -11,7 +11,8 @@ namespace dermis {
 namespace {
 
 // The code is 'D' and a number of four digits; the literals in diagnostics.def have three.
-#define DERMIS_DIAGNOSTIC(id, name, severity, hint) {DiagnosticId::name, "D0" #id, #name, Severity::severity, hint},
+#define DERMIS_DIAGNOSTIC(id, name, severity, hint)                                                          \
+  {DiagnosticId::name, "D0" #id, #name, Severity::severity, hint},
 constexpr DiagnosticInfo infos[] = {
 #include "framegraph/text/diagnostics.def"
 };
@@ -46,7 +47,7 @@ Diagnostic& Diagnostics::add(DiagnosticId id, SourceLocation where, std::string 
   if (list.size() == limits::diagnostics) {
     Diagnostic& last = list.emplace_back();
     last.id = DiagnosticId::too_many_diagnostics;
-    last.text = fmt::format("{} diagnostics are listed; any further ones are not", limits::diagnostics);
+    last.text = fmt::format("only the first {} diagnostics are listed", limits::diagnostics);
   }
   Diagnostic& one = was_full ? dropped : list[index];
   one.id = id;

@@ -33,7 +33,7 @@ bool is_below(const fs::path& path, const fs::path& root) {
 PlacedFile place_file(const fs::path& folder, std::string_view name, std::span<const fs::path> roots) {
   PlacedFile placed;
   if (name.empty() || name.find('\0') != std::string_view::npos) {
-    placed.problem = "it is no name of a file";
+    placed.problem = "it is not a file name";
     return placed;
   }
   // exactly the path that will be opened
@@ -50,7 +50,7 @@ PlacedFile place_file(const fs::path& folder, std::string_view name, std::span<c
     if (!error && is_below(placed.real, real_root)) return placed;
     readable += fmt::format("{}'{}'", readable.empty() ? "" : ", ", or_working_folder(root).string());
   }
-  placed.problem = fmt::format("it leads out of what may be read: {}", readable);
+  placed.problem = fmt::format("it is outside the readable folders {}", readable);
   return placed;
 }
 

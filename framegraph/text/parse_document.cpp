@@ -251,11 +251,11 @@ bool NodeBuilder::parse_error(size_t position, const std::string&,
   const bool in_array = !open_.empty() && document_[open_.back().node].kind == NodeKind::array;
   if ((where_in_grammar == "object key" && reason.starts_with("unexpected '}'")) ||
       (where_in_grammar == "value" && in_array && reason.starts_with("unexpected ']'")))
-    reason += "; the comma before it is one too many";
+    reason += "; remove the comma before it";
   else if ((where_in_grammar == "object" && reason.starts_with("unexpected string literal")) ||
            (where_in_grammar == "array" && !reason.starts_with("unexpected '}'") &&
             !reason.starts_with("unexpected ':'") && !reason.starts_with("unexpected end of input")))
-    reason += "; a comma is missing before it";
+    reason += "; add a comma before it";
   const bool unexpected = reason.rfind("unexpected", 0) == 0;
   const size_t last = position == 0 ? 0 : position - 1;
   TextPosition place = locate(text_, last);
@@ -325,7 +325,7 @@ std::optional<Document> parse_document(std::string name, std::string text, Diagn
     throw; // not the text's fault; the caller reports it as out of memory
   } catch (const std::exception& exception) {
     diagnostics.add(DiagnosticId::syntax, {document.file, 0, 0, ""},
-                    fmt::format("the JSON parser gave up: {}", exception.what()));
+                    fmt::format("the JSON parser failed: {}", exception.what()));
   }
   report_early_end(cursor, document, diagnostics);
   if (!parsed || builder.failed() || cursor.early_end() != EarlyEnd::none || document.nodes.empty())

@@ -154,15 +154,16 @@ bool check_version(const Document& document, std::string_view key, int64_t suppo
                         "'dermis_kinds' is the key of version 1; `dermis upgrade FILE` converts the file");
         return false;
       }
-      diagnostics.add(DiagnosticId::other_kind_of_file, document.where_key(other),
-                      fmt::format("the file says '{}' where '{}' is expected", document.key(other), key));
+      diagnostics.add(
+          DiagnosticId::other_kind_of_file, document.where_key(other),
+          fmt::format("the file has the key '{}' where '{}' is expected", document.key(other), key));
       return false;
     }
     const NodeId misspelt = find_misspelt(document, document.root(), key);
     diagnostics
         .add(misspelt.valid() ? DiagnosticId::unknown_key : DiagnosticId::missing_key,
              misspelt.valid() ? document.where_key(misspelt) : document.where(document.root()),
-             fmt::format("the file needs its format version, \"{}\": {}", key, supported))
+             fmt::format("the file must state its format version, \"{}\": {}", key, supported))
         .suggestion = misspelt.valid() ? fmt::format("did you mean '{}'?", key) : std::string();
     return false;
   }

@@ -57,17 +57,18 @@ struct Checker {
       expect(resource.instance_count >= 1, "a resource has no instance", i);
       const bool host = resource.origin == Origin::imported || resource.exported;
       expect(host == (resource.first_instance == no_instance),
-             "memory must be the host's or in a heap, not both", i);
+             "memory must belong to the host or to a heap, not to both", i);
       expect(host || resource.type != ResourceType::acceleration_structure,
-             "an acceleration structure is not the host's", i);
-      expect(!host || resource.instance_count == 1, "the host's memory has one instance", i);
+             "an acceleration structure is not owned by the host", i);
+      expect(!host || resource.instance_count == 1, "a resource of the host must have exactly one instance",
+             i);
       if (host) continue;
       const bool inside = range_in(resource.first_instance, resource.instance_count, plan.placements.size());
       expect(inside, "a resource refers to placements that do not exist", i);
       for (uint32_t k = 0; inside && k < resource.instance_count; ++k) {
         const Placement& placement = plan.placements[resource.first_instance + k];
         expect(placement.resource == i, "a placement belongs to another resource", i);
-        expect(placement.persistent == (deepest[i] > 0), "only history outlives a frame", i);
+        expect(placement.persistent == (deepest[i] > 0), "only a history may be kept across frames", i);
       }
     }
   }
@@ -76,14 +77,14 @@ struct Checker {
     for (size_t i = 0; i < plan.placements.size(); ++i) {
       const Placement& placement = plan.placements[i];
       expect(placement.resource < plan.resources.size(), "a placement belongs to no resource", i);
-      expect(placement.heap < plan.heaps.size(), "a placement lies in no heap", i);
+      expect(placement.heap < plan.heaps.size(), "a placement is not in a heap", i);
       expect(placement.alignment > 0 && placement.offset % placement.alignment == 0,
              "a placement is misaligned", i);
       if (placement.heap < plan.heaps.size())
         expect(placement.size <= plan.heaps[placement.heap].size &&
                    placement.offset <= plan.heaps[placement.heap].size - placement.size,
-               "a placement reaches beyond its heap", i);
-      expect(placement.size > 0, "a placement holds no byte", i);
+               "a placement exceeds its heap", i);
+      expect(placement.size > 0, "a placement has no bytes", i);
       expect(placement.first_use <= placement.last_use &&
                  placement.last_use < std::max<size_t>(plan.passes.size(), 1),
              "a placement is alive outside of the frame", i);
@@ -133,7 +134,7 @@ struct Checker {
       const auto next = alive.lower_bound(own.offset);
       const auto refuses = [&](size_t other) {
         const bool fractions = share_memory(own, plan.placements[other]);
-        expect(!fractions, "placements alive at the same time share memory", std::max(i, other));
+        expect(!fractions, "placements that are alive at the same time overlap", std::max(i, other));
         return fractions;
       };
       if ((next != alive.end() && refuses(next->second)) ||
@@ -169,7 +170,8 @@ struct Checker {
       for (uint32_t a = 0; accesses && a < pass.access_count; ++a) {
         const PlanAccess& access = plan.accesses[pass.first_access + a];
         const bool exists = object_exists(access.resource, access.frames_back);
-        expect(condition_fits(pass, a), "a read depends on a validity that it does not name", p);
+        expect(condition_fits(pass, a),
+               "a conditional read does not name the history whose validity it depends on", p);
         expect(exists, "a pass accesses a resource or an earlier frame that does not exist", p);
         expect(!exists || has(access.resource, access.range),
                "a pass accesses mips or layers that do not exist", p);
@@ -190,16 +192,16 @@ struct Checker {
       const bool own = exists && plan.resources[barrier.resource].first_instance != no_instance &&
                        deepest[barrier.resource] == 0;
       expect(own || barrier.transfer == PlanBarrier::Transfer::none,
-             "only what one frame owns goes from queue to queue", b);
+             "only a resource of a single frame can change its queue", b);
     }
   }
 
   void orderings() {
     for (size_t o = 0; o < plan.orderings.size(); ++o)
       expect(plan.orderings[o].earlier < plan.passes.size() && plan.orderings[o].later < plan.passes.size(),
-             "an order names passes that do not exist", o);
-    expect(std::is_sorted(plan.orderings.begin(), plan.orderings.end()), "orders do not follow their passes",
-           0);
+             "an ordering names passes that do not exist", o);
+    expect(std::is_sorted(plan.orderings.begin(), plan.orderings.end()),
+           "orderings are not sorted by their passes", 0);
   }
 
   void histories() {
@@ -233,7 +235,8 @@ struct Checker {
     for (size_t r = 0; r < plan.resources.size(); ++r) {
       const uint32_t first = plan.resources[r].first_instance;
       const bool kept = first < plan.placements.size() && plan.placements[first].persistent;
-      expect(described[r] == (kept || deepest[r] > 0 ? 1u : 0u), "a history is not described once", r);
+      expect(described[r] == (kept || deepest[r] > 0 ? 1u : 0u), "a history is not described exactly once",
+             r);
     }
   }
 };

@@ -136,7 +136,7 @@ struct Machine {
     }
     for_each_kept([&](const PlanHistory& history, uint32_t back, Layout layout, uint32_t index) {
       if (memory.subresources[index].layout != layout)
-        object("is not in the layout the plan promises at the start of a frame", history.resource, back,
+        object("is not in the layout that the plan states for the start of a frame", history.resource, back,
                "start");
     });
   }
@@ -195,9 +195,9 @@ struct Machine {
     const size_t other = index_of(other_than(queue));
     const size_t wanted = points_before[other] + point;
     if (wanted > reached[other].size())
-      complain(
-          fmt::format("frame {}, {}: waits for point {} of the other queue, which is not reached before it",
-                      frame, where, point));
+      complain(fmt::format(
+          "frame {}, {}: waits for point {} of the other queue, which is not signalled before the wait",
+          frame, where, point));
     else if (wanted > 0) // 0: frames before the first, which need no wait
       waits[index_of(queue)].add(reached[other][wanted - 1], now);
   }
@@ -206,7 +206,7 @@ struct Machine {
     if (point == 0) return;
     std::vector<int64_t>& own = reached[index_of(queue)];
     if (point != own.size() - points_before[index_of(queue)] + 1)
-      complain(fmt::format("frame {}, {}: reaches point {} out of turn", frame, where, point));
+      complain(fmt::format("frame {}, {}: signals point {} out of order", frame, where, point));
     own.push_back(now);
   }
 
@@ -231,21 +231,21 @@ struct Machine {
         if (subresource.image) subresource.queue = queue;
         subresource.in_transfer = false;
       } else if (subresource.queue != queue || subresource.in_transfer) {
-        wrong("has a barrier on a queue that it does not belong to");
+        wrong("has a barrier on a queue that does not own it");
       }
       break;
     case PlanBarrier::Transfer::release:
       if (subresource.queue != queue || subresource.in_transfer)
-        wrong("is released by a queue that it does not belong to");
+        wrong("is released by a queue that does not own it");
       subresource.in_transfer = true;
       subresource.released_old = barrier.old_layout;
       subresource.released_new = barrier.new_layout;
       break;
     case PlanBarrier::Transfer::acquire:
       if (subresource.queue == queue || !subresource.in_transfer)
-        wrong("is acquired, but the other queue has not released it");
+        wrong("is acquired without a release by the other queue");
       if (subresource.released_old != barrier.old_layout || subresource.released_new != barrier.new_layout)
-        wrong("is acquired in other layouts than it was released in");
+        wrong("is acquired with different layouts than it was released with");
       subresource.queue = queue;
       subresource.in_transfer = false;
       break;
@@ -262,29 +262,30 @@ struct Machine {
     Subresource& subresource = memory.subresources[index];
     const auto wrong = [&](const char* what) { object(what, barrier.resource, barrier.frames_back, where); };
     if (barrier.to_host) {
-      if (subresource.placement != no_instance) wrong("is handed to the host, but is not the host's");
-      if (subresource.handed_back) wrong("is handed back to the host twice");
+      if (subresource.placement != no_instance) wrong("is returned to the host, which does not own it");
+      if (subresource.handed_back) wrong("is returned to the host twice");
       subresource.handed_back = true;
     }
     if ((barrier.from_host || barrier.to_host) && queue != Queue::main)
-      wrong("is the host's on the async queue");
+      wrong("is owned by the host, but used on the async queue");
     if (barrier.from_host) {
-      if (!subresource.with_host) wrong("is taken over from the host twice");
+      if (!subresource.with_host) wrong("is acquired from the host twice");
       subresource.with_host = barrier.to_host;
       subresource.layout = barrier.new_layout;
       memory.add_write(index, left_by(barrier));
       return;
     }
-    if (subresource.with_host) wrong("has a barrier while it is the host's");
+    if (subresource.with_host) wrong("has a barrier while the host owns it");
     change_queue(subresource, barrier, wrong);
     const bool release = barrier.transfer == PlanBarrier::Transfer::release;
     const bool transition = barrier.to_host || barrier.transfer != PlanBarrier::Transfer::none ||
                             (subresource.image && barrier.old_layout != barrier.new_layout);
     if (subresource.image && barrier.old_layout != Layout::undefined &&
         barrier.old_layout != subresource.layout)
-      wrong("has a barrier from a layout it is not in");
+      wrong("has a barrier whose old layout is not its layout");
     if (subresource.image && barrier.old_layout == Layout::undefined) {
-      if (!barrier.to_host && barrier.new_layout == Layout::undefined) wrong("is moved to no layout");
+      if (!barrier.to_host && barrier.new_layout == Layout::undefined)
+        wrong("has a barrier whose new layout is undefined");
       subresource.defined = false;
     }
     memory.isolate(index);
@@ -306,8 +307,9 @@ struct Machine {
   void run(const PlanBarrier* barriers, uint32_t count, bool releases, const std::string& where) {
     for (uint32_t b = 0; b < count; ++b) {
       if ((barriers[b].transfer == PlanBarrier::Transfer::release) != releases)
-        complain(fmt::format("frame {}, {}: a release stands behind a pass, everything else before it", frame,
-                             where));
+        complain(fmt::format(
+            "frame {}, {}: a release belongs after a pass, and all other barriers belong before it", frame,
+            where));
       run(barriers[b], where);
     }
   }
@@ -329,12 +331,12 @@ struct Machine {
     const auto wrong = [&](const char* what) { object(what, access.resource, access.frames_back, where); };
     const Access as_read = access.access & ~all_write_access, as_write = access.access & all_write_access;
     const bool reads = as_read != 0, writes = as_write != 0;
-    if (subresource.with_host) return wrong("is touched while it is the host's");
-    if (writes && access.frames_back > 0) wrong("is written, but it holds an earlier frame");
+    if (subresource.with_host) return wrong("is accessed while the host owns it");
+    if (writes && access.frames_back > 0) wrong("is written, although it holds an earlier frame");
     if (subresource.in_transfer || (subresource.queue != queue && (subresource.image || reads)))
-      wrong("is touched by a queue that it does not belong to");
+      wrong("is accessed by a queue that does not own it");
     if (subresource.image && subresource.layout != access.layout)
-      wrong("is not in the layout the access was planned with");
+      wrong("is not in the layout that the plan states for the access");
     if (reads && !subresource.defined) wrong("is read, but its contents are not defined");
     if (reads && subresource.defined && subresource.placement != no_instance &&
         plan.placements[subresource.placement].persistent &&
@@ -345,14 +347,14 @@ struct Machine {
       for (size_t e = there.events.size(); e-- > 0;) {
         const Event& event = there.events[e];
         const bool ordered = (access.stages & ~event.ordered[index_of(queue)]) == 0;
-        if ((event.is_write || writes) && !ordered) wrong("is touched before an earlier access is done");
+        if ((event.is_write || writes) && !ordered) wrong("is accessed before an earlier access is done");
         if (writes && event.is_write && !event.available)
           wrong("is written before an earlier write is available");
         if (reads && own && event.is_write && !visible(event, access.stages, as_read))
-          wrong("is read where the last write is not visible");
+          wrong("is read before the last write is visible");
         // If a read of every frame followed the write, waiting for that read is enough.
         if (writes && event.is_write && !followed && !visible(event, access.stages, as_write))
-          wrong("is written where the last write is not visible");
+          wrong("is written before the last write is visible");
         followed |= event.certain;
       }
     });
@@ -384,8 +386,8 @@ struct Machine {
       const bool known = plan.passes[at->earlier].queue == queue ||
                          waits[index_of(queue)].knows(frame_began + at->earlier + 1);
       if (at->earlier >= position || !known)
-        complain(
-            fmt::format("frame {}, {}: does not come after pass {}, as it is to", frame, where, at->earlier));
+        complain(fmt::format("frame {}, {}: does not run after pass {}, as the graph requires", frame, where,
+                             at->earlier));
     }
   }
 
@@ -422,7 +424,7 @@ struct Machine {
     for (uint32_t r = 0; r < plan.resources.size(); ++r)
       if (plan.resources[r].first_instance == no_instance &&
           !memory.subresources[memory.instances[first_instance[r]].first].handed_back)
-        object("is not handed back to the host", r, 0, "end");
+        object("is not returned to the host", r, 0, "end");
     for (size_t q = 0; q < queues; ++q)
       points_before[q] = reached[q].size();
     ++frame;
@@ -454,7 +456,7 @@ Verdict verify(const Plan& plan) {
     machine.run_frame();
   Verdict verdict{std::move(machine.violations), ""};
   if (machine.is_over())
-    verdict.not_verified = fmt::format("its accesses meet in memory more than {} times", max_looks);
+    verdict.not_verified = fmt::format("its accesses overlap in memory more than {} times", max_looks);
   return verdict;
 }
 

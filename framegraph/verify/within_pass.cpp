@@ -23,11 +23,11 @@ bool lie_in_same_memory(const Plan& plan, const PlanAccess& a, const PlanAccess&
 
 const char* race_of(const Plan& plan, const PlanAccess& write, const PlanAccess& other, uint32_t frame) {
   if (write.resource != other.resource || instance_of(plan, write, frame) != instance_of(plan, other, frame))
-    return lie_in_same_memory(plan, write, other, frame) ? "lies in memory that the same pass writes"
+    return lie_in_same_memory(plan, write, other, frame) ? "aliases memory that the same pass writes"
                                                          : nullptr;
   const bool own = (other.access & all_write_access) == 0 && other.own_texels;
   if (own || !meet(write.range, other.range)) return nullptr;
-  return "is touched by the pass that writes it, not texel by texel";
+  return "is read without own_texels by the pass that writes it";
 }
 
 } // namespace

@@ -17,7 +17,7 @@ Error check_handles(const DeviceInput& input) {
   require(input.physical != VK_NULL_HANDLE, "physical device");
   require(input.device != VK_NULL_HANDLE, "device");
   if (null.empty()) return {};
-  return {ErrorKind::argument, VK_SUCCESS, "null where a handle is needed: " + null};
+  return {ErrorKind::argument, VK_SUCCESS, "a required handle is null: " + null};
 }
 
 Error read_queue_family(const DeviceInput& input, Device& device) {
@@ -27,11 +27,11 @@ Error read_queue_family(const DeviceInput& input, Device& device) {
   device.vk.vkGetPhysicalDeviceQueueFamilyProperties(device.physical, &count, families.data());
   if (input.queue_family >= count)
     return {ErrorKind::argument, VK_SUCCESS,
-            fmt::format("queue family {} does not exist, the device has {}", input.queue_family, count)};
+            fmt::format("queue family {} does not exist; the device has {}", input.queue_family, count)};
   const VkQueueFamilyProperties& family = families[input.queue_family];
   if ((family.queueFlags & VK_QUEUE_COMPUTE_BIT) == 0)
     return {ErrorKind::argument, VK_SUCCESS,
-            fmt::format("queue family {} has no compute; give one with VK_QUEUE_COMPUTE_BIT",
+            fmt::format("queue family {} does not support compute; use a family with VK_QUEUE_COMPUTE_BIT",
                         input.queue_family)};
   device.queue_family = input.queue_family;
   device.timestamp_valid_bits = family.timestampValidBits;
@@ -57,7 +57,7 @@ Error make_device(const DeviceInput& input, Device& device) {
   const uint32_t version = device.properties.apiVersion;
   if (version < VK_API_VERSION_1_2)
     return {ErrorKind::unsupported, VK_SUCCESS,
-            fmt::format("the device {} speaks Vulkan {}.{}, 1.2 is needed", device.properties.deviceName,
+            fmt::format("the device {} supports Vulkan {}.{}; 1.2 is required", device.properties.deviceName,
                         VK_API_VERSION_MAJOR(version), VK_API_VERSION_MINOR(version))};
   if (std::string reason = explain_old_instance(device.vk.vkGetDeviceProcAddr, device.device, version);
       !reason.empty())

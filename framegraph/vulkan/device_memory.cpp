@@ -45,11 +45,11 @@ Error take_from_host(const Device& device, const MemoryRequest& request, const s
   }
   give_back_memory(device, given);
   return {ErrorKind::vulkan, VK_SUCCESS,
-          fmt::format("{}: the host's allocator gave {}", subresource,
+          fmt::format("{}: the host's allocator returned {}", subresource,
                       given.memory == VK_NULL_HANDLE ? std::string("no memory")
-                      : unmapped
-                          ? std::string("memory that is not mapped")
-                          : fmt::format("offset {}, no multiple of {}", given.offset, request.alignment))};
+                      : unmapped                     ? std::string("memory that is not mapped")
+                                 : fmt::format("offset {}, which is not a multiple of {}", given.offset,
+                                               request.alignment))};
 }
 
 } // namespace

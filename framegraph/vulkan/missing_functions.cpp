@@ -69,7 +69,7 @@ std::string explain_missing(std::span<const std::string> missing, uint32_t devic
                        of_extensions, extensions));
   if (!unexplained.empty())
     append(text, "; ",
-           fmt::format("the device does not give {} needed function{}: {}", unexplained.size(),
+           fmt::format("the device does not provide {} required function{}: {}", unexplained.size(),
                        unexplained.size() == 1 ? "" : "s", fmt::join(unexplained, ", ")));
   return text;
 }

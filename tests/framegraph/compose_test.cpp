@@ -139,7 +139,8 @@ TEST(Overlay, ArrayElements_ByNameIndexOrDash) {
 
 TEST(Overlay, WrongValueIsReportedInTheFileThatSetIt) {
   expect_one(put_together(whole_graph(), {overlay(R"({ "set": "/settings/samples/int", "to": 99 })")}),
-             Id::setting_range, "overlay0.json:2:41", {"99", "graph.json:4:", "the range ends here"});
+             Id::setting_range, "overlay0.json:2:41",
+             {"99", "graph.json:4:", "the maximum is declared here"});
   expect_one(
       put_together(whole_graph(), {overlay(R"({ "set": "/passes/blur/when", "to": "samples > qality" })")}),
       Id::unknown_setting, "overlay0.json:2:48", {"'qality'"});
@@ -154,7 +155,7 @@ TEST(Overlay, EditOfAMissingTarget_IsRefused) {
   expect_one(put_together(whole_graph(), {overlay(R"({ "set": "/resource/half/mips", "to": 1 })")}),
              Id::edit_target, "overlay0.json:2:10", {"'resource'", "did you mean 'resources'?"});
   expect_one(put_together(whole_graph(), {overlay(R"({ "set": "name", "to": "x" })")}), Id::edit_target,
-             "overlay0.json:2:10", {"a path begins with '/'"});
+             "overlay0.json:2:10", {"a path must begin with '/'"});
   expect_one(put_together(whole_graph(), {overlay(R"({ "set": "/exports/7", "to": "x" })")}), Id::edit_target,
              "overlay0.json:2:10", {"'7'"});
   expect_one(put_together(whole_graph(), {overlay(R"({ "set": "/name/of", "to": "x" })")}), Id::edit_target,
@@ -185,7 +186,7 @@ TEST(Overlay, EditOfARemovedTarget_NamesTheRemover) {
       put_together(whole_graph(), {overlay(R"({ "remove": "/passes/copy" })"),
                                    overlay(R"({ "set": "/passes/copy/set/radius", "to": 1 })")});
   expect_one(composed, Id::edit_target, "overlay1.json:2:10",
-             {"no 'copy' here", "overlay0.json:2:13", "'/passes/copy' is removed here"});
+             {"'copy' does not exist when", "overlay0.json:2:13", "'/passes/copy' is removed here"});
 }
 
 TEST(Overlay, EachOverlayErrorIsReportedOnce) {
@@ -262,7 +263,7 @@ TEST(Include, EqualDeclarationsMerge_DifferentAreRefused) {
   other.replace(other.find("r8_uint"), 7, "r16_uint");
   expect_one(put_together(including_graph(), {}, {{"parts/tiles.json", other}}), Id::duplicate_name,
              "parts/tiles.json:2:16",
-             {"'material' of \"imports\"", "not alike", "graph.json:", "first declared here"});
+             {"'material' of \"imports\"", "declared differently", "graph.json:", "first declared here"});
 }
 
 TEST(Include, OverlaysSeeIncludesAndCanInclude) {
@@ -283,7 +284,7 @@ TEST(Include, PathsOutsideTheRootsAreRefused) {
                            "C:/x.json", "a\\\\x.json"}) {
     Files files{{name, tiles_fragment}};
     expect_one(put_together(including_graph(fmt::format(R"({{ "include": "{}" }})", name)), {}, files),
-               Id::bad_file_name, "graph.json:18:18", {"no name of a file to read"});
+               Id::bad_file_name, "graph.json:18:18", {"is not a valid file path"});
   }
   expect_one(
       put_together(including_graph(fmt::format(R"({{ "include": "{}" }})", std::string(257, 'a'))), {}),

@@ -71,7 +71,7 @@ TEST(GraphErrors, UnknownPassType_IsReportedOnceWithAllPasses) {
   EXPECT_EQ(one.id, Id::unknown_pass_type);
   EXPECT_NE(one.text.find("pass 'extra' and "), std::string::npos) << one.text;
   ASSERT_FALSE(one.related.empty());
-  EXPECT_EQ(one.related[0].second, "pass 'blur' is of this type, too");
+  EXPECT_EQ(one.related[0].second, "pass 'blur' also has this type");
   EXPECT_NE(std::string(diagnostic_info(one.id).hint).find("--pass-types FILE"), std::string::npos);
 }
 

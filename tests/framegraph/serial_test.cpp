@@ -77,14 +77,14 @@ TEST(SavedPlan, TruncatedFile_IsRefused) {
   const std::string bytes = file_of(5);
   for (size_t size = 0; size < bytes.size(); ++size)
     EXPECT_NE(refusal(std::string_view(bytes).substr(0, size)), "") << size;
-  EXPECT_THAT(refusal(bytes + "x"), HasSubstr("1 bytes are left over"));
+  EXPECT_THAT(refusal(bytes + "x"), HasSubstr("1 bytes remain after the last field"));
 }
 
 TEST(SavedPlan, OtherVersion_IsRefused) {
   std::string bytes = file_of(5);
   bytes[8] = 9;
-  EXPECT_EQ(refusal(bytes), "the plan has version 9, this program reads version 6");
-  EXPECT_EQ(refusal("{}"), "a saved plan begins with DERMPLAN");
+  EXPECT_EQ(refusal(bytes), "the plan has version 9; this library reads version 6");
+  EXPECT_EQ(refusal("{}"), "a saved plan must begin with DERMPLAN");
 }
 
 TEST(SavedPlan, ExcessiveCount_IsRefusedBeforeAllocation) {
@@ -92,7 +92,9 @@ TEST(SavedPlan, ExcessiveCount_IsRefusedBeforeAllocation) {
   std::string bytes = write_plan(plan); // The last lists are empty, so 3 * 4 + 2 * 8 bytes follow.
   const size_t layouts = bytes.size() - 32;
   bytes.replace(layouts, 4, "\xff\xff\xff\xff");
-  EXPECT_THAT(refusal(bytes), HasSubstr("'history layouts' has 4294967295 entries, the file has room for 7"));
+  EXPECT_THAT(
+      refusal(bytes),
+      HasSubstr("'history layouts' has 4294967295 entries, but the rest of the file can hold only 7"));
 }
 
 TEST(SavedPlan, ChangedByte_IsRefusedOrAValidPlan) {
@@ -125,17 +127,17 @@ TEST(SavedPlan, IndexOutOfRange_IsRefused) {
     return refusal(write_plan(plan));
   };
   EXPECT_EQ(rejected_with([](SavedPlan& p) { p.names.passes.pop_back(); }),
-            "not everything in the plan has one name");
+            "the numbers of names and of objects in the plan differ");
   EXPECT_EQ(rejected_with([](SavedPlan& p) { p.key.view_width += 1; }),
             "key and plan were made for different views or devices");
   EXPECT_THAT(rejected_with([](SavedPlan& p) { p.plan.accesses[0].resource = 70000; }),
               HasSubstr("accesses a resource or an earlier frame that does not exist"));
   EXPECT_THAT(rejected_with([](SavedPlan& p) { p.plan.placements[0].heap = 77; }),
-              HasSubstr("lies in no heap"));
+              HasSubstr("is not in a heap"));
   EXPECT_THAT(rejected_with([](SavedPlan& p) { p.plan.placements[0].last_use = 0xffffffff; }),
               HasSubstr("alive outside of the frame"));
   EXPECT_THAT(rejected_with([](SavedPlan& p) { p.plan.passes[0].access_count += 1; }),
-              HasSubstr("do not stand in the order of their passes"));
+              HasSubstr("are not in the order of their passes"));
 }
 
 TEST(PlanKey, DiffersIfThePlanCanDiffer) {

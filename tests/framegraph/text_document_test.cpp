@@ -68,12 +68,12 @@ TEST(Document, ExtraAndMissingCommasAreNamed) {
   for (const char* text : {"{ \"a\": 1, }", "[1, ]", "[[1], ]"}) {
     const Parsed parsed = parse(text);
     ASSERT_EQ(parsed.diagnostics.list.size(), 1u) << text;
-    EXPECT_THAT(parsed.diagnostics.list[0].text, ::testing::HasSubstr("the comma before it is one too many"));
+    EXPECT_THAT(parsed.diagnostics.list[0].text, ::testing::HasSubstr("remove the comma before it"));
   }
   for (const char* text : {"{ \"a\": 1 \"b\": 2 }", "[1 2]", "[\"a\" \"b\"]", "[{} {}]"}) {
     const Parsed parsed = parse(text);
     ASSERT_EQ(parsed.diagnostics.list.size(), 1u) << text;
-    EXPECT_THAT(parsed.diagnostics.list[0].text, ::testing::HasSubstr("a comma is missing before it"));
+    EXPECT_THAT(parsed.diagnostics.list[0].text, ::testing::HasSubstr("add a comma before it"));
   }
   for (const char* text : {"{ \"a\": ] }", "{ \"a\" 1 }", "[1", "{", "[1}", "{ 1 }", "[}"}) {
     const Parsed parsed = parse(text);

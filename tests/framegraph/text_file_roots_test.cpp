@@ -52,16 +52,15 @@ TEST_F(FileRoots, PathOutsideTheRoots_IsRefused) {
        {std::string("../root_beside/file"), std::string("out/file"), std::string("out"),
         std::string("in/../../root_beside/absent"), std::string("/etc/passwd"),
         (top / "root_beside/file").string(), std::string("..")})
-    EXPECT_THAT(problem(root, name, root),
-                HasSubstr("leads out of what may be read: '" + root.string() + "'"))
+    EXPECT_THAT(problem(root, name, root), HasSubstr("outside the readable folders '" + root.string() + "'"))
         << name;
   EXPECT_THAT(problem("", "../x", ""), HasSubstr("'.'"));
 }
 
 TEST_F(FileRoots, NonPortableName_IsRefused) {
   const fs::path root = top / "root";
-  EXPECT_EQ(problem(root, "", root), "it is no name of a file");
-  EXPECT_EQ(problem(root, std::string("in/file\0.json", 13), root), "it is no name of a file");
+  EXPECT_EQ(problem(root, "", root), "it is not a file name");
+  EXPECT_EQ(problem(root, std::string("in/file\0.json", 13), root), "it is not a file name");
   EXPECT_NE(problem(root, std::string(300, 'n'), root), "");
   EXPECT_NE(problem(root, std::string(100000, '/') + std::string(5000, 'n'), root), "");
   EXPECT_NE(problem(root, "loop/file", root), "");

@@ -58,7 +58,7 @@ TEST(Verify, RefusesAliasedLiveMemory) {
         for (Placement& placement : plan.placements)
           placement.offset = 0;
       },
-      "alive at the same time share memory");
+      "alive at the same time overlap");
 }
 
 // Each placement is alive in only one pass, and all placements use the same bytes.
@@ -80,7 +80,7 @@ TEST(Verify, ThousandsOfPlacementsInTheSameBytes_GetAVerdict) {
   }
   EXPECT_TRUE(verify(plan).proven());
   plan.placements.back().first_use = plan.placements.back().last_use - 1;
-  EXPECT_THAT(verify(plan).violations, Contains(HasSubstr("alive at the same time share memory")));
+  EXPECT_THAT(verify(plan).violations, Contains(HasSubstr("alive at the same time overlap")));
 }
 
 // Builds the longest chain that a graph may have. All images use the same memory, one pass each.
@@ -174,7 +174,7 @@ TEST(Verify, TooManyAccesses_GivesUp) {
   last.access_count += more;
   const Verdict verdict = verify(plan);
   EXPECT_THAT(verdict.violations, IsEmpty());
-  EXPECT_THAT(verdict.not_verified, HasSubstr("accesses meet in memory"));
+  EXPECT_THAT(verdict.not_verified, HasSubstr("accesses overlap in memory"));
 }
 
 TEST(Verify, RefusesAWriteToAnEarlierFrame) {
@@ -183,11 +183,11 @@ TEST(Verify, RefusesAWriteToAnEarlierFrame) {
       if ((access.access & all_write_access) != 0 && plan.resources[access.resource].instance_count > 1)
         access.frames_back = 1;
   };
-  expect_rejected(redirect, "is written, but it holds an earlier frame");
+  expect_rejected(redirect, "is written, although it holds an earlier frame");
 }
 
 TEST(Verify, RefusesPlacementsOutsideTheirHeapOrMisaligned) {
-  expect_rejected([](Plan& plan) { plan.heaps[0].size = 1; }, "reaches beyond its heap");
+  expect_rejected([](Plan& plan) { plan.heaps[0].size = 1; }, "exceeds its heap");
   expect_rejected([](Plan& plan) { plan.placements[0].offset = 1; }, "misaligned");
 }
 
@@ -197,12 +197,12 @@ TEST(Verify, RefusesIndicesOutOfRange) {
   expect_rejected([](Plan& plan) { plan.barriers[0].resource = 1000; }, "does not exist");
   expect_rejected([](Plan& plan) { plan.passes[0].access_count = 1000; }, "do not exist");
   expect_rejected([](Plan& plan) { plan.passes[0].first_barrier = 0xffffffff; }, "do not exist");
-  expect_rejected([](Plan& plan) { plan.histories.clear(); }, "not described once");
+  expect_rejected([](Plan& plan) { plan.histories.clear(); }, "not described exactly once");
 }
 
 TEST(Verify, RefusesAWrongLayout) {
   expect_rejected([](Plan& plan) { plan.accesses.back().layout = Layout::transfer_source; },
-                  "not in the layout the access");
+                  "not in the layout that the plan states for the access");
   expect_rejected([](Plan& plan) { plan.history_layouts[1] = Layout::transfer_source; }, "layout");
 }
 
@@ -282,7 +282,7 @@ TEST(Verify, RefusesAConditionOnAWriteOrOnNoHistory) {
   };
   for (const bool writes : {false, true})
     for (const ReadWhen when : {ReadWhen::history_valid, ReadWhen::history_invalid})
-      expect_rejected(set_all(when, writes), "depends on a validity that it does not name");
+      expect_rejected(set_all(when, writes), "does not name the history whose validity it depends on");
 }
 
 } // namespace

@@ -49,7 +49,7 @@ public:
       if (bound_[i] || port.optional) continue;
       if (side_of(port) == PortSide::write) writes_known_ = false;
       reader_.error(DiagnosticId::missing_port, pass_.where,
-                    fmt::format("{} of type '{}' needs something at the port '{}' under \"{}\" ({})",
+                    fmt::format("{} of type '{}' needs a resource at the port '{}' under \"{}\" ({})",
                                 object_.what(), kind_->name, port.name,
                                 side_of(port) == PortSide::read ? "read" : "write", port.doc));
     }
@@ -65,7 +65,7 @@ private:
       if (bound_[i] && is_one_of(*kind_, i)) return;
     const Port& first = kind_->ports[static_cast<size_t>(find_port(*kind_, kind_->one_of.front()))];
     reader_.error(DiagnosticId::missing_port, pass_.where,
-                  fmt::format("{} of type '{}' needs something at one of its ports {} under \"{}\"",
+                  fmt::format("{} of type '{}' needs a resource at one of its ports {} under \"{}\"",
                               object_.what(), kind_->name, list_words(kind_->one_of),
                               side_of(first) == PortSide::read ? "read" : "write"));
   }
@@ -129,25 +129,29 @@ private:
       return false;
     };
     if (history.binding.frames_back == 0)
-      return refuse(history.where,
-                    fmt::format("{} requires '{}' to be valid, which is this frame's", what, resource.name));
+      return refuse(history.where, fmt::format("{} requires '{}' of the current frame to be valid; only "
+                                               "earlier frames (name@-1) can be required",
+                                               what, resource.name));
     if (instead.binding.frames_back > 0)
       return refuse(
           instead.where,
-          fmt::format("{} reads an earlier frame where '{}@-{}' is not valid, which may not be valid "
-                      "either",
+          fmt::format("{} reads an earlier frame if '{}@-{}' is invalid, and that frame may be invalid, too",
                       what, resource.name, history.binding.frames_back));
     if (history.binding.port == unknown_port) return true;
     const Port& port = kind_->ports[history.binding.port];
     if (port.usage == Usage::indirect_arguments)
-      return refuse(history.where,
-                    fmt::format("{} holds the size of the dispatch, which is read in every frame", what));
+      return refuse(
+          history.where,
+          fmt::format(
+              "{} provides the size of the dispatch, which every frame reads; the read cannot be conditional",
+              what));
     const bool says = instead.binding.resource.valid() || port.optional ||
                       resource.history.first == HistoryDeclaration::First::clear;
     if (says) return true;
-    return refuse(history.where,
-                  fmt::format("{} must be bound, and nothing says to what where '{}@-{}' is not valid", what,
-                              resource.name, history.binding.frames_back));
+    return refuse(
+        history.where,
+        fmt::format("{} must be bound, but nothing is declared for frames in which '{}@-{}' is invalid", what,
+                    resource.name, history.binding.frames_back));
   }
 
   int find(PortSide side, NodeId node) {
@@ -244,7 +248,7 @@ private:
     if (resource.type != ResourceType::image)
       problem = fmt::format("'{}' is {}", resource.name, type_phrase(resource.type));
     else if (resource.origin == Origin::imported || resource.exported)
-      problem = fmt::format("'{}' is bound by the host, as a whole", resource.name);
+      problem = fmt::format("'{}' is bound by the host and cannot be divided", resource.name);
     else if (resource.mips != 0 && last_mip >= resource.mips)
       problem = fmt::format("'{}' has {} mip{}", resource.name, resource.mips, resource.mips == 1 ? "" : "s");
     else if (last_layer >= resource.layers)
@@ -269,7 +273,7 @@ private:
     if (found.binding.part.mips == 1) return true;
     reader_
         .error(DiagnosticId::bad_part, found.where,
-               fmt::format("{} writes one mip, but '{}{}' are several", what, resource.name,
+               fmt::format("{} writes one mip, but '{}{}' names several", what, resource.name,
                            part_text(found.binding.part)))
         .related.emplace_back(resource.where, fmt::format("'{}' is declared here", resource.name));
     return false;
@@ -290,13 +294,13 @@ private:
                                   : usage.buffer ? ResourceType::buffer
                                                  : ResourceType::acceleration_structure;
       declared_here(reader_.error(DiagnosticId::usage_mismatch, found.where,
-                                  fmt::format("{} takes {}; '{}' is {}", what, type_phrase(wanted),
+                                  fmt::format("{} expects {}; '{}' is {}", what, type_phrase(wanted),
                                               resource.name, type_phrase(resource.type))));
       return;
     }
     if (!image || formats_fit(port, resource)) return;
     report_formats(reader_, found.binding.resource, found.where,
-                   fmt::format("{} works with {}", what, formats_taken(port)));
+                   fmt::format("{} supports {}", what, formats_taken(port)));
   }
 
   GraphReader& reader_;

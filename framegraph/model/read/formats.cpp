@@ -46,7 +46,7 @@ void report_formats(GraphReader& reader, ResourceId id, const SourceLocation& wh
   reader
       .error(DiagnosticId::format_mismatch, where,
              fmt::format("{}; '{}' declares {}{}", port, resource.name, format_list(resource.formats),
-                         each ? ", and the host may bind each of them" : ""))
+                         each ? ", any of which the host may bind" : ""))
       .related.emplace_back(resource.where, fmt::format("'{}' is declared here", resource.name));
 }
 

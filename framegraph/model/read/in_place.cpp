@@ -150,15 +150,14 @@ private:
 
   void report_misfit(ResourceId resource) {
     report_formats(reader_, resource, graph().place_of(*read_),
-                   fmt::format("port '{}' of pass '{}', for which it stands for '{}', works with {}",
-                               port_->name, graph().passes[pass_.value].name, name_of(*read_),
-                               formats_taken(*port_)));
+                   fmt::format("port '{}' of pass '{}' reads the replacement of '{}' and supports {}", port_->name,
+                               graph().passes[pass_.value].name, name_of(*read_), formats_taken(*port_)));
   }
 
   void relate_steps(Diagnostic& diagnostic) const {
     for (const Step& step : steps_)
       diagnostic.related.emplace_back(step.replaced->where,
-                                      fmt::format("'{}' stands for '{}' where '{}' is off",
+                                      fmt::format("'{}' replaces '{}' if '{}' is off",
                                                   graph().resources[step.replaced->instead.value].name,
                                                   graph().resources[step.of.value].name,
                                                   graph().passes[step.replaced->pass.value].name));

@@ -102,7 +102,7 @@ void check_needs(const GraphReader& reader) {
         reader.diagnostics
             .add(DiagnosticId::resource_too_small, graph.resources[r].where,
                  fmt::format("the port '{}' of pass '{}' needs {}", need->port, pass.name, missing))
-            .related.emplace_back(graph.place_of(binding), "it is bound here");
+            .related.emplace_back(graph.place_of(binding), "the port is bound here");
       }
     }
   }

@@ -30,11 +30,12 @@ std::string_view type_name(SettingType type) {
 std::string mismatch(const SettingDeclaration& from, const PassTypeSetting& to) {
   const SettingType type = from.type == SettingType::choice ? SettingType::enumeration : from.type;
   if (type != to.type)
-    return fmt::format("it is {}, the type's is {}", type_name(from.type), type_name(to.type));
+    return fmt::format("it is {}, but the pass type's setting is {}", type_name(from.type),
+                       type_name(to.type));
   if (type == SettingType::integer || type == SettingType::real) {
     if (from.minimum >= to.minimum && from.maximum <= to.maximum) return {};
-    return fmt::format("its range {} .. {} reaches beyond the type's {} .. {}", from.minimum, from.maximum,
-                       to.minimum, to.maximum);
+    return fmt::format("its range {} .. {} exceeds the pass type's range {} .. {}", from.minimum,
+                       from.maximum, to.minimum, to.maximum);
   }
   // Both hold the index of the option. A graph may omit the pass type's last options.
   const auto same = [](const std::string& a, std::string_view b) { return a == b; };
@@ -43,8 +44,9 @@ std::string mismatch(const SettingDeclaration& from, const PassTypeSetting& to) 
        std::equal(from.options.begin(), from.options.end(), to.options.begin(), same))) {
     return {};
   }
-  return fmt::format("its options are not the type's {}, in that order, or the first of them",
-                     list_words(to.options));
+  return fmt::format(
+      "its options must be the pass type's options {} in the same order, or the first of these",
+      list_words(to.options));
 }
 
 bool read_reference(GraphReader& reader, NodeId node, const std::string& what, const PassTypeSetting& setting,
@@ -137,8 +139,9 @@ void read_pass_settings(GraphReader& reader, ObjectReader& pass, PassDeclaration
       reader
           .error(DiagnosticId::unknown_pass_setting, reader.document.where_key(node),
                  fmt::format("{} is of type '{}', which has {}", pass.what(), type.name,
-                             names.empty() ? fmt::format("no settings, so none called '{}'", name)
-                                           : fmt::format("no setting '{}', but {}", name, list_words(names))))
+                             names.empty()
+                                 ? fmt::format("no settings; '{}' is unknown", name)
+                                 : fmt::format("no setting '{}'; expected {}", name, list_words(names))))
           .suggestion = did_you_mean(name, names);
       continue;
     }

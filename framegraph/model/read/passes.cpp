@@ -51,7 +51,7 @@ void read_pass_type(GraphReader& reader, ObjectReader& object, PassDeclaration& 
   one.suggestion = did_you_mean(*name, names);
   for (size_t i = 1; i < std::min(all.size(), max_related + 1); ++i)
     one.related.emplace_back(reader.document.where(reader.document.find(reader.pass_nodes[all[i]], "type")),
-                             fmt::format("{} is of this type, too", name_of_pass(reader, all[i])));
+                             fmt::format("{} also has this type", name_of_pass(reader, all[i])));
 }
 
 void read_queue(ObjectReader& object, PassDeclaration& pass) {
@@ -98,12 +98,12 @@ void read_otherwise(GraphReader& reader, ObjectReader& object, PassDeclaration& 
                    fmt::format("{} replaces '{}', which it does not write", what, from.name));
     } else if (output == instead) {
       reader.error(DiagnosticId::bad_otherwise, value,
-                   fmt::format("{} replaces '{}' by itself", what, from.name));
+                   fmt::format("{} replaces '{}' with itself", what, from.name));
     } else if (from.type != to.type) {
       reader
           .error(DiagnosticId::bad_otherwise, value,
-                 fmt::format("{} replaces '{}' by '{}': one is {}, the other {}", what, from.name, to.name,
-                             type_phrase(from.type), type_phrase(to.type)))
+                 fmt::format("{} replaces '{}' with '{}', but one is {} and the other is {}", what, from.name,
+                             to.name, type_phrase(from.type), type_phrase(to.type)))
           .related.emplace_back(to.where, fmt::format("'{}' is declared here", to.name));
     } else {
       pass.otherwise.push_back({output, instead, value});
@@ -123,8 +123,10 @@ void read_after(GraphReader& reader, ObjectReader& object, PassDeclaration& pass
     const SourceLocation where = reader.document.where(reader.document.find(node, "pass"));
     const auto found = reader.pass_names.find(*name);
     if (reason->empty()) {
-      reader.error(DiagnosticId::invalid_value, reader.document.where(reader.document.find(node, "reason")),
-                   fmt::format("{} gives no reason: an order that no data asks for needs one", entry.what()));
+      reader.error(
+          DiagnosticId::invalid_value, reader.document.where(reader.document.find(node, "reason")),
+          fmt::format("{} has an empty \"reason\"; an order that no data dependency requires needs a reason",
+                      entry.what()));
     } else if (found == reader.pass_names.end()) {
       reader
           .error(DiagnosticId::unknown_pass, where,
@@ -154,7 +156,7 @@ void declare_passes(GraphReader& reader, NodeId passes) {
       if (!added) {
         reader
             .error(DiagnosticId::duplicate_name, pass.where,
-                   fmt::format("two passes are called '{}'", pass.name))
+                   fmt::format("two passes have the name '{}'", pass.name))
             .related.emplace_back(reader.graph.passes[entry->second.value].where, "first declared here");
       }
     }

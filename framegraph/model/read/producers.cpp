@@ -85,7 +85,7 @@ void require_producer(GraphReader& reader, std::vector<Producers>& all, Resource
   reader
       .error(DiagnosticId::no_producer, where,
              fmt::format("{} '{}', which {}", who, resource.name,
-                         producers.any ? "passes only update: none of them gives it its first contents"
+                         producers.any ? "passes only update: no pass writes its first contents"
                                        : "no pass writes"))
       .related.emplace_back(resource.where, fmt::format("'{}' is declared here", resource.name));
   producers.fresh = true; // one error per resource

@@ -34,7 +34,7 @@ bool read_need(GraphReader& reader, NodeId node, const std::string& what, Option
       words.push_back(name);
     reader
         .error(DiagnosticId::bad_option_requires, where,
-               fmt::format("{} is '{}', which is no feature of devices and no import", what, *word))
+               fmt::format("{} is '{}', which is neither a device feature nor an import", what, *word))
         .suggestion = did_you_mean(*word, words);
     return false;
   }
@@ -45,7 +45,7 @@ bool read_need(GraphReader& reader, NodeId node, const std::string& what, Option
   }
   reader
       .error(DiagnosticId::bad_option_requires, where,
-             fmt::format("{} is '{}', which is no import that the host may leave unbound", what, *word))
+             fmt::format("{} is '{}', which is not an optional import", what, *word))
       .related.emplace_back(resource.where, fmt::format("'{}' is declared here", resource.name));
   return false;
 }
@@ -63,7 +63,7 @@ bool read_option_needs(GraphReader& reader, NodeId entry, SettingDeclaration& se
     const std::vector<std::string_view> words(setting.options.begin(), setting.options.end());
     reader
         .error(DiagnosticId::bad_option_requires, reader.document.where_key(entry),
-               fmt::format("'requires' of setting '{}' names '{}', which is none of its options {}",
+               fmt::format("'requires' of setting '{}' names '{}', which is not one of its options {}",
                            setting.name, key, list_words(words)))
         .suggestion = did_you_mean(key, words);
     return false;
@@ -87,10 +87,10 @@ void read_option_requirements(GraphReader& reader) {
       ok &= read_option_needs(reader, entry, setting);
     const auto free = [](const OptionNeeds& needs) { return needs.features == 0 && needs.imports.empty(); };
     if (!ok || std::any_of(setting.needs.begin(), setting.needs.end(), free)) continue;
-    reader.error(DiagnosticId::bad_option_requires, reader.document.where_key(node),
-                 fmt::format("every option of setting '{}' requires something: nothing is left for a device "
-                             "that lacks it",
-                             setting.name));
+    reader.error(
+        DiagnosticId::bad_option_requires, reader.document.where_key(node),
+        fmt::format("every option of setting '{}' has requirements; at least one option must require nothing",
+                    setting.name));
   }
 }
 

@@ -110,7 +110,7 @@ bool read_history(GraphReader& reader, ObjectReader& object, ResourceType type, 
   if (!history.finish()) return false;
   if (out.on_resize != HistoryDeclaration::OnResize::rescale || type == ResourceType::image) return true;
   reader.error(DiagnosticId::bad_history, reader.document.where(reader.document.find(node, "on_resize")),
-               fmt::format("{} is to be rescaled, which only images can be", history.what()));
+               fmt::format("{} declares \"rescale\", which only images support", history.what()));
   return false;
 }
 
@@ -161,7 +161,7 @@ bool read_acceleration_structure(GraphReader& reader, ObjectReader& object, cons
   const bool ok = object.word("acceleration_structure", levels).has_value();
   if (out.origin == Origin::imported) return ok;
   reader.error(DiagnosticId::not_imported, out.where,
-               fmt::format("'{}' is an acceleration structure, which no graph builds", out.name));
+               fmt::format("'{}' is an acceleration structure, which a graph cannot own", out.name));
   return false;
 }
 
@@ -196,7 +196,7 @@ ResourceId find_resource(GraphReader& reader, std::string_view name, std::string
   if (reader.unknown_resources) return {};
   reader
       .error(DiagnosticId::unknown_resource, where,
-             fmt::format("{} names '{}', which is declared nowhere", what, name))
+             fmt::format("{} names '{}', which is not declared", what, name))
       .suggestion = did_you_mean(name, names_of(reader.resource_names));
   return {};
 }
@@ -223,7 +223,7 @@ void declare_resources(GraphReader& reader, NodeId list, Origin origin) {
     if (declared.name == "view") {
       ok = false;
       reader.error(DiagnosticId::bad_name, declared.where,
-                   "'view' means the size of the view; no resource may bear the name");
+                   "'view' is reserved for the size of the view; a resource cannot have this name");
     }
     const auto [entry, added] = reader.resource_names.emplace(
         declared.name, ResourceId{static_cast<uint32_t>(reader.graph.resources.size())});
@@ -263,7 +263,7 @@ void read_exports(GraphReader& reader, NodeId exports) {
     } else if (resource.type != ResourceType::image) {
       reader
           .error(DiagnosticId::bad_export, where,
-                 fmt::format("'{}' is {}; hosts get back images only", *name, type_phrase(resource.type)))
+                 fmt::format("'{}' is {}; only images can be exported", *name, type_phrase(resource.type)))
           .related.emplace_back(resource.where, fmt::format("'{}' is declared here", *name));
     }
     resource.exported = true;
@@ -274,7 +274,7 @@ void read_exports(GraphReader& reader, NodeId exports) {
     if (!resource.optional || resource.exported || resource.origin == Origin::imported) continue;
     reader.error(DiagnosticId::bad_export,
                  reader.document.where(reader.document.find(reader.resource_nodes[i], "optional")),
-                 fmt::format("resource '{}' is optional, but the host never binds it: it is not exported",
+                 fmt::format("resource '{}' is optional, but not exported, so the host never binds it",
                              resource.name));
   }
 }

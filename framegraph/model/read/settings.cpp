@@ -32,8 +32,9 @@ bool check_range(GraphReader& reader, const ObjectReader& object, std::string_vi
   if (minimum > maximum) {
     reader
         .error(DiagnosticId::setting_range, where("max"),
-               fmt::format("{} ends at {}, before it begins at {}", object.what(), maximum, minimum))
-        .related.emplace_back(where("min"), "it begins here");
+               fmt::format("{} has the maximum {}, which is less than its minimum {}", object.what(), maximum,
+                           minimum))
+        .related.emplace_back(where("min"), "the minimum is declared here");
     return false;
   }
   if (value >= minimum && value <= maximum) return true;
@@ -41,8 +42,9 @@ bool check_range(GraphReader& reader, const ObjectReader& object, std::string_vi
       .error(DiagnosticId::setting_range, where(key),
              fmt::format("the default of {} is {}, outside its own range {} .. {}", object.what(), value,
                          minimum, maximum))
-      .related.emplace_back(where(value < minimum ? "min" : "max"),
-                            value < minimum ? "the range begins here" : "the range ends here");
+      .related.emplace_back(where(value < minimum ? "min" : "max"), value < minimum
+                                                                        ? "the minimum is declared here"
+                                                                        : "the maximum is declared here");
   return false;
 }
 
@@ -78,7 +80,7 @@ bool read_default(GraphReader& reader, ObjectReader& object, std::string_view ke
   const std::vector<std::string_view> words(out.options.begin(), out.options.end());
   Diagnostic& one = reader.error(DiagnosticId::setting_range,
                                  reader.document.where(reader.document.find(object.node(), "default")),
-                                 fmt::format("the default of {} is '{}', which is none of its options {}",
+                                 fmt::format("the default of {} is '{}', which is not one of its options {}",
                                              object.what(), *word, list_words(words)));
   one.suggestion = did_you_mean(*word, words);
   one.related.emplace_back(reader.document.where(reader.document.find(object.node(), key)),
@@ -120,8 +122,8 @@ void read_options(GraphReader& reader, ObjectReader& object, std::string_view ke
 // key.
 void report_untyped(GraphReader& reader, const ObjectReader& object) {
   constexpr std::string_view other_keys[] = {"min", "max", "default", "by", "unit", "note"};
-  const std::string text =
-      fmt::format("{} needs its type and value: one of the keys {}", object.what(), list_words(type_keys));
+  const std::string text = fmt::format("{} must state its type and value with one of the keys {}",
+                                       object.what(), list_words(type_keys));
   for (const NodeId child : children(reader.document, object.node())) {
     const std::string_view key = reader.document.key(child);
     const bool known = std::find(std::begin(other_keys), std::end(other_keys), key) != std::end(other_keys);
@@ -199,7 +201,7 @@ void read_settings(GraphReader& reader, NodeId settings) {
     if (ok && is_reserved_word(name)) {
       ok = false;
       reader.error(DiagnosticId::bad_name, declared.where,
-                   fmt::format("'{}' is a word of \"when\" expressions", name));
+                   fmt::format("'{}' is reserved for \"when\" expressions", name));
     }
     const SettingId id{static_cast<uint32_t>(reader.graph.settings.size())};
     ok &= read_setting(reader, node, id, declared);

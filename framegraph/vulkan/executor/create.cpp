@@ -14,21 +14,21 @@ Error argument(std::string text) {
 Error check_input(const ExecutorInput& input) {
   if (input.device == nullptr || input.graph == nullptr || input.pass_types == nullptr ||
       input.plan == nullptr)
-    return argument("device, graph, pass types and plan are needed");
+    return argument("device, graph, pass types and plan are required");
   if (input.frames_in_flight < 1 || input.frames_in_flight > max_frames_in_flight)
-    return argument(fmt::format("{} frames in flight, 1 to {} are possible", input.frames_in_flight,
-                                max_frames_in_flight));
+    return argument(
+        fmt::format("{} frames in flight; expected 1 to {}", input.frames_in_flight, max_frames_in_flight));
   for (const PlanPass& pass : input.plan->passes)
     if (pass.queue != Queue::main)
       return {ErrorKind::unsupported, VK_SUCCESS,
-              fmt::format("pass '{}' runs on a second queue; compile the plan for a single one",
+              fmt::format("pass '{}' runs on a second queue; compile the plan for a single queue",
                           input.graph->passes[pass.declared.value].name)};
   const auto fillable = [](const PlanResource& resource) { // the bit has the same value for buffers
     return resource.first_instance == no_instance ||
            (resource.vk_usage & VK_IMAGE_USAGE_TRANSFER_DST_BIT) != 0;
   };
   if (input.poison && !std::all_of(input.plan->resources.begin(), input.plan->resources.end(), fillable))
-    return argument("poison is asked for, but the plan is not compiled with it");
+    return argument("poison is requested, but the plan was compiled without it");
   return {};
 }
 
@@ -84,7 +84,7 @@ Error check_passes(State& state, const PassTypeRegistry& pass_types) {
     const PassType& type = pass_types[planned.type];
     constexpr size_t mask_bits = 32;
     if (type.ports.size() > mask_bits)
-      return argument(fmt::format("pass type '{}' has {} ports, the port mask holds {}", type.name,
+      return argument(fmt::format("pass type '{}' has {} ports; the port mask supports at most {}", type.name,
                                   type.ports.size(), mask_bits));
     if (pass.kernel != no_index) {
       const Kernel& kernel = *state.kernels[pass.kernel];
@@ -105,7 +105,7 @@ Error check_passes(State& state, const PassTypeRegistry& pass_types) {
       const PlanResource& resource = state.plan.resources[state.plan.accesses[a].resource];
       if (resource.type == ResourceType::image && format_info(resource.format).depth)
         return argument(fmt::format(
-            "pass '{}' clears an image with a depth format; only colour can be cleared", pass.name));
+            "pass '{}' clears an image with a depth format; only colour formats can be cleared", pass.name));
     }
   }
   return {};

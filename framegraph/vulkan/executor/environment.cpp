@@ -22,16 +22,17 @@ Error check_bindings(const Device& device, std::span<const EnvironmentBinding> b
                                                                              : limits.maxStorageBufferRange;
     const bool second = binding.type == EnvironmentType::counters && ++counters > 1;
     if (second || (binding.type == EnvironmentType::counters && binding.bytes % sizeof(uint32_t) != 0))
+      return {ErrorKind::argument, VK_SUCCESS,
+              fmt::format("environment binding {}: counters need a size that is a multiple of 4 bytes, and "
+                          "only one binding can hold counters",
+                          i)};
+    if (binding.bytes == 0 || binding.bytes > maximum)
       return {
           ErrorKind::argument, VK_SUCCESS,
-          fmt::format("environment binding {}: counters are 32-bit words, and one binding holds them", i)};
-    if (binding.bytes == 0 || binding.bytes > maximum)
-      return {ErrorKind::argument, VK_SUCCESS,
-              fmt::format("environment binding {} has {} bytes, 1 to {} are possible", i, binding.bytes,
-                          maximum)};
+          fmt::format("environment binding {} has {} bytes; expected 1 to {}", i, binding.bytes, maximum)};
     if (binding.contents.size() > binding.bytes)
       return {ErrorKind::argument, VK_SUCCESS,
-              fmt::format("environment binding {} has {} bytes, its contents {}", i, binding.bytes,
+              fmt::format("environment binding {} has {} bytes, but its contents have {}", i, binding.bytes,
                           binding.contents.size())};
   }
   return {};

@@ -67,7 +67,8 @@ Error check_host_passes(State& state, const ExecutorInput& input) {
     if (!pass.host.valid()) continue;
     if (input.host_pass == nullptr)
       return {ErrorKind::argument, VK_SUCCESS,
-              fmt::format("pass '{}' is recorded by the host, which gives no function for it", pass.name)};
+              fmt::format("pass '{}' is recorded by the host, but the host provides no function for it",
+                          pass.name)};
     const PassType& type = (*input.pass_types)[pass.host];
     pass.host_settings = static_cast<uint32_t>(type.settings.size());
     ports = std::max(ports, type.ports.size());

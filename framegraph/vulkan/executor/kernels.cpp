@@ -110,8 +110,8 @@ Error create_kernel(State& state, const ExecutorInput& input, PassTypeId id, Ker
   const auto code = find_code(input, type);
   if (code == input.kernels.end())
     return {ErrorKind::shader, VK_SUCCESS,
-            fmt::format("kernel '{}' of type '{}' is not among the {} given", type.shader, type.name,
-                        input.kernels.size())};
+            fmt::format("kernel '{}' of type '{}' is not among the {} provided kernels", type.shader,
+                        type.name, input.kernels.size())};
   std::string problem;
   const std::optional<Reflection> reflection = reflect(code->spirv, problem);
   if (!reflection)

@@ -19,7 +19,7 @@ Error create_heaps(State& state) {
     if (!heap.persistent && state.heap_pool != nullptr) {
       const HeapPool::Block* shared = state.heap_pool->find(heap.memory_type_bits);
       if (shared == nullptr)
-        return {ErrorKind::argument, VK_SUCCESS, "the heap pool was made without this plan"};
+        return {ErrorKind::argument, VK_SUCCESS, "the heap pool was not created for this plan"};
       memory.block = shared->memory;
       continue;
     }
@@ -47,7 +47,7 @@ Error check_needs(const State& state, const Placement& placement, const VkMemory
   return {
       ErrorKind::argument, VK_SUCCESS,
       fmt::format(
-          "'{}' needs {} bytes aligned to {} of memory types {:#x}; the plan gives {} bytes at {} of types "
+          "'{}' needs {} bytes aligned to {} of memory types {:#x}; the plan provides {} bytes at {} of types "
           "{:#x}: compile it with the profile of this device",
           name, needs.size, needs.alignment, needs.memoryTypeBits, placement.size, placement.offset,
           heap.memory_type_bits)};

@@ -23,17 +23,18 @@ Error create_image(const Device& device, StandIn& placeholder) {
   VkResult result = device.vk.vkCreateImage(device.device, &info, device.allocator, &placeholder.image);
   if (result != VK_SUCCESS) {
     placeholder.image = VK_NULL_HANDLE;
-    return call_error(result, "vkCreateImage", "stand-in of an unbound port");
+    return call_error(result, "vkCreateImage", "placeholder of an unbound port");
   }
-  name_object(device, VK_OBJECT_TYPE_IMAGE, reinterpret_cast<uint64_t>(placeholder.image), "stand-in image");
+  name_object(device, VK_OBJECT_TYPE_IMAGE, reinterpret_cast<uint64_t>(placeholder.image),
+              "placeholder image");
   VkMemoryRequirements needs{};
   device.vk.vkGetImageMemoryRequirements(device.device, placeholder.image, &needs);
-  if (Error error = take_memory(device, request_of(needs), "stand-in image", placeholder.memory))
+  if (Error error = take_memory(device, request_of(needs), "placeholder image", placeholder.memory))
     return error;
   const VkBindImageMemoryInfo bind{VK_STRUCTURE_TYPE_BIND_IMAGE_MEMORY_INFO, nullptr, placeholder.image,
                                    placeholder.memory.memory, placeholder.memory.offset};
   result = device.vk.vkBindImageMemory2(device.device, 1, &bind);
-  if (result != VK_SUCCESS) return call_error(result, "vkBindImageMemory2", "stand-in image");
+  if (result != VK_SUCCESS) return call_error(result, "vkBindImageMemory2", "placeholder image");
   VkImageViewCreateInfo view{};
   view.sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO;
   view.image = placeholder.image;
@@ -42,7 +43,7 @@ Error create_image(const Device& device, StandIn& placeholder) {
   view.subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
   result = device.vk.vkCreateImageView(device.device, &view, device.allocator, &placeholder.view);
   if (result != VK_SUCCESS) placeholder.view = VK_NULL_HANDLE;
-  return call_error(result, "vkCreateImageView", "stand-in image");
+  return call_error(result, "vkCreateImageView", "placeholder image");
 }
 
 Error create_buffer(const Device& device, StandIn& placeholder) {
@@ -51,16 +52,16 @@ Error create_buffer(const Device& device, StandIn& placeholder) {
   VkResult result = device.vk.vkCreateBuffer(device.device, &info, device.allocator, &placeholder.buffer);
   if (result != VK_SUCCESS) {
     placeholder.buffer = VK_NULL_HANDLE;
-    return call_error(result, "vkCreateBuffer", "stand-in of an unbound port");
+    return call_error(result, "vkCreateBuffer", "placeholder of an unbound port");
   }
   VkMemoryRequirements needs{};
   device.vk.vkGetBufferMemoryRequirements(device.device, placeholder.buffer, &needs);
-  if (Error error = take_memory(device, request_of(needs), "stand-in buffer", placeholder.memory))
+  if (Error error = take_memory(device, request_of(needs), "placeholder buffer", placeholder.memory))
     return error;
   const VkBindBufferMemoryInfo bind{VK_STRUCTURE_TYPE_BIND_BUFFER_MEMORY_INFO, nullptr, placeholder.buffer,
                                     placeholder.memory.memory, placeholder.memory.offset};
   result = device.vk.vkBindBufferMemory2(device.device, 1, &bind);
-  return call_error(result, "vkBindBufferMemory2", "stand-in buffer");
+  return call_error(result, "vkBindBufferMemory2", "placeholder buffer");
 }
 
 } // namespace

@@ -26,10 +26,10 @@ RecordResult check_buffer(const State& state, const FrameInput& frame, const Pla
   const HostBuffer& bound = frame.buffers[slot];
   const VkPhysicalDeviceLimits& limits = state.device->properties.limits;
   if (bound.bytes < resource.bytes || bound.bytes > limits.maxStorageBufferRange)
-    return refuse("the buffer has fewer bytes than the graph needs, or more than the device binds",
+    return refuse("the buffer has fewer bytes than the graph needs, or more than the device can bind",
                   resource.slot);
   if (bound.offset % std::max<VkDeviceSize>(limits.minStorageBufferOffsetAlignment, 1) != 0)
-    return refuse("the buffer's offset is no multiple of minStorageBufferOffsetAlignment", resource.slot);
+    return refuse("the buffer's offset is not a multiple of minStorageBufferOffsetAlignment", resource.slot);
   return {};
 }
 
@@ -52,14 +52,15 @@ RecordResult check_slots(const State& state, const FrameInput& frame) {
     if (frame.images[slot].view == VK_NULL_HANDLE) return refuse("the binding has no view", number);
     const VkImageLayout after = frame.images[slot].after.layout;
     if (after == VK_IMAGE_LAYOUT_UNDEFINED || after == VK_IMAGE_LAYOUT_PREINITIALIZED)
-      return refuse("after.layout must be a layout an image can be brought to", number);
+      return refuse("after.layout must be a layout to which an image can be transitioned", number);
   }
   return {};
 }
 
 RecordResult check_frame(const State& state, const FrameInput& frame, const Rectangle& rectangle) {
   if (frame.command_buffer == VK_NULL_HANDLE) return refuse("the command buffer is null");
-  if (frame.frame_index <= state.last_frame_index) return refuse("frame_index must grow from frame to frame");
+  if (frame.frame_index <= state.last_frame_index)
+    return refuse("frame_index must increase from frame to frame");
   const uint64_t right = uint64_t{rectangle.x} + rectangle.width,
                  bottom = uint64_t{rectangle.y} + rectangle.height;
   if (rectangle.width == 0 || rectangle.height == 0 || right > state.plan.view_width ||

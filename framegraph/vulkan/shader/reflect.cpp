@@ -73,14 +73,15 @@ public:
 
   bool read() {
     if (words_.size() < header_words || words_[0] != magic)
-      return fail("it is not SPIR-V of this machine's byte order");
+      return fail("it is not SPIR-V in this machine's byte order");
     const uint32_t bound = words_[3];
     if (bound == 0 || bound > max_id_bound)
       return fail(fmt::format("its id bound {} is out of range", bound));
     module.ids.resize(bound);
     for (size_t at = header_words; at < words_.size();) {
       const uint32_t count = words_[at] >> 16, op = words_[at] & 0xffff;
-      if (count == 0 || count > words_.size() - at) return fail(fmt::format("it is cut off at word {}", at));
+      if (count == 0 || count > words_.size() - at)
+        return fail(fmt::format("it is truncated at word {}", at));
       if (op == op_function) break; // declarations end here
       Operands operands{words_.subspan(at + 1, count - 1)};
       instruction(op, operands);

@@ -21,8 +21,8 @@ struct Checker {
 
   void check_type(const ShaderBinding& binding, const std::string& place, BindingType wanted) {
     if (binding.array)
-      mismatch("{} is an array of descriptors in the shader ('{}'), the signature binds one", place,
-               binding.name);
+      mismatch("{} is an array of descriptors in the shader ('{}'), but the signature binds one descriptor",
+               place, binding.name);
     else if (binding.type != wanted)
       mismatch("{} is a {} in the signature and a {} ('{}') in the shader", place, binding_type_name(wanted),
                binding_type_name(binding.type), binding.name);
@@ -30,13 +30,13 @@ struct Checker {
 
   void check_port(const ShaderBinding& binding) {
     if (binding.binding >= type.ports.size())
-      return mismatch("the shader has '{}' at set 0 binding {}, the signature has {} ports", binding.name,
-                      binding.binding, type.ports.size());
+      return mismatch("the shader has '{}' at set 0 binding {}, but the signature has only {} ports",
+                      binding.name, binding.binding, type.ports.size());
     const Port& port = type.ports[binding.binding];
     const std::string place = fmt::format("port '{}' (set 0 binding {})", port.name, binding.binding);
     const auto descriptor = descriptor_type(port.usage);
     if (!descriptor)
-      return mismatch("{} has usage {} and so no descriptor, the shader binds '{}' there", place,
+      return mismatch("{} has usage {} and therefore no descriptor, but the shader binds '{}' there", place,
                       usage_info(port.usage).name, binding.name);
     const BindingType wanted = *descriptor == VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE   ? BindingType::sampled_image
                                : *descriptor == VK_DESCRIPTOR_TYPE_STORAGE_IMAGE ? BindingType::storage_image
@@ -53,13 +53,13 @@ struct Checker {
                             : first == 'i'                        ? Numeric::signed_integer
                                                                   : Numeric::real;
     if (numeric != binding.numeric)
-      mismatch("{} reads as {} by its type {} and as {} in the shader", place, numeric_name(numeric),
+      mismatch("{} reads as {} because of its type {}, but as {} in the shader", place, numeric_name(numeric),
                port.glsl_type, numeric_name(binding.numeric));
   }
 
   void check_environment(const ShaderBinding& binding, std::span<const EnvironmentBinding> environment) {
     if (binding.binding >= environment.size())
-      return mismatch("the shader has '{}' at set 1 binding {}, the environment has {} bindings",
+      return mismatch("the shader has '{}' at set 1 binding {}, but the environment has only {} bindings",
                       binding.name, binding.binding, environment.size());
     const EnvironmentBinding& given = environment[binding.binding];
     const std::string place = fmt::format("environment binding {}", binding.binding);
@@ -68,7 +68,7 @@ struct Checker {
                : given.type == EnvironmentType::linear_sampler ? BindingType::sampler
                                                                : BindingType::storage_buffer);
     if (given.type != EnvironmentType::linear_sampler && binding.bytes > given.bytes)
-      mismatch("{} has {} bytes, '{}' in the shader needs {}", place, given.bytes, binding.name,
+      mismatch("{} has {} bytes, but '{}' in the shader needs {}", place, given.bytes, binding.name,
                binding.bytes);
   }
 
@@ -77,31 +77,31 @@ struct Checker {
     const size_t wanted = 1 + type.settings.size();
     if (!reflection.has_push_constants) {
       if (!type.settings.empty())
-        mismatch("the shader has no push constants, the signature has {} settings", type.settings.size());
+        mismatch("the shader has no push constants, but the signature has {} settings", type.settings.size());
       return;
     }
     if (members.size() != wanted)
-      return mismatch("the shader pushes {} members, the signature has the port mask and {} settings",
+      return mismatch("the shader has {} push constants, but the signature has the port mask and {} settings",
                       members.size(), type.settings.size());
     for (size_t i = 0; i < members.size(); ++i) {
       const std::string name = i == 0 ? "port mask" : fmt::format("setting '{}'", type.settings[i - 1].name);
       if (members[i].offset != 4 * i)
-        mismatch("{} lies at byte {} of the push constants, '{}' of the shader at {}", name, 4 * i,
+        mismatch("{} is at byte {} of the push constants, but '{}' of the shader is at byte {}", name, 4 * i,
                  members[i].name, members[i].offset);
       const bool real = i > 0 && type.settings[i - 1].type == SettingType::real;
       const bool fits = real ? members[i].numeric == Numeric::real
                              : members[i].numeric == Numeric::signed_integer ||
                                    members[i].numeric == Numeric::unsigned_integer;
       if (!fits)
-        mismatch("{} is {} in the signature, '{}' is {} in the shader", name, real ? "float" : "int or uint",
-                 members[i].name, numeric_name(members[i].numeric));
+        mismatch("{} is {} in the signature, but '{}' is {} in the shader", name,
+                 real ? "float" : "int or uint", members[i].name, numeric_name(members[i].numeric));
     }
   }
 
   void check_local_size(const std::array<uint32_t, 3>& size) {
     const uint64_t invocations = uint64_t{size[0]} * size[1] * size[2];
     const auto refuse = [&](const char* wanted) {
-      mismatch("its workgroup is {}x{}x{}, this dispatch needs {}", size[0], size[1], size[2], wanted);
+      mismatch("its workgroup is {}x{}x{}, but this dispatch needs {}", size[0], size[1], size[2], wanted);
     };
     switch (type.dispatch) {
     case DispatchShape::over_view:
@@ -167,7 +167,7 @@ std::vector<std::string> check_signature(const PassType& type,
     else if (binding.set == 1)
       checker.check_environment(binding, environment);
     else
-      checker.mismatch("the shader has '{}' at set {}, only sets 0 (ports) and 1 (environment) exist",
+      checker.mismatch("the shader has '{}' at set {}, but only sets 0 (ports) and 1 (environment) exist",
                        binding.name, binding.set);
   }
   checker.check_push_constants(reflection);

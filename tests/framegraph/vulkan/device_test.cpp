@@ -83,7 +83,7 @@ TEST_F(DeviceTest, EveryMissingFunctionIsNamedAtOnce) {
   vulkan::Device made;
   const vulkan::Error error = vulkan::make_device(in, made);
   EXPECT_EQ(error.kind, vulkan::ErrorKind::unsupported);
-  EXPECT_THAT(error.text, HasSubstr("3 needed functions"));
+  EXPECT_THAT(error.text, HasSubstr("3 required functions"));
   for (const char* name : {"vkCmdDispatch", "vkCmdPipelineBarrier2", "vkGetPhysicalDeviceFormatProperties2"})
     EXPECT_THAT(error.text, HasSubstr(name));
   EXPECT_THAT(error.text, Not(HasSubstr("vkSetDebugUtilsObjectNameEXT"))) << "labels were not requested";

@@ -62,8 +62,8 @@ TEST_F(RejectedFrames, ReasonIsGiven_ExecutorIsUnchanged) {
              out = static_cast<size_t>(graph.slot("result"));
   const std::pair<const char*, std::function<void(Frame&)>> changes[] = {
       {"command buffer is null", [](Frame& f) { f.input.command_buffer = VK_NULL_HANDLE; }},
-      {"frame_index must grow", [](Frame& f) { f.input.frame_index = 5; }},
-      {"frame_index must grow", [](Frame& f) { f.input.frame_index = 0; }},
+      {"frame_index must increase", [](Frame& f) { f.input.frame_index = 5; }},
+      {"frame_index must increase", [](Frame& f) { f.input.frame_index = 0; }},
       {"render rectangle",
        [](Frame& f) {
          f.input.rectangle = {0, 0, side, 0};
@@ -141,7 +141,7 @@ TEST_F(RejectedFrames, WrongHostBuffer_IsRefusedWithSizeAndPlace) {
   EXPECT_THAT(refused({}).text, HasSubstr("the slot is not bound"));
   EXPECT_THAT(refused({some_buffer, 0, bytes - 1, {}, {}}).text, HasSubstr("fewer bytes"));
   EXPECT_THAT(refused({some_buffer, 0, uint64_t{limits.maxStorageBufferRange} + 1, {}, {}}).text,
-              HasSubstr("more than the device binds"));
+              HasSubstr("more than the device can bind"));
   const vulkan::RecordResult aside = refused({some_buffer, 1, bytes, {}, {}});
   if (limits.minStorageBufferOffsetAlignment > 1) {
     EXPECT_THAT(aside.text, HasSubstr("minStorageBufferOffsetAlignment"));
@@ -160,10 +160,10 @@ TEST_F(ExecutorTest, EnvironmentsThatNoDeviceCanBindAreRefused) {
   using enum vulkan::EnvironmentType;
   const std::pair<const char*, std::vector<vulkan::EnvironmentBinding>> wrong[] = {
       {"binding 0 has 0 bytes", {{storage_buffer, 0, {}}}},
-      {"bytes, 1 to", {{uniform_buffer, too_many, {}}}},
+      {"bytes; expected 1 to", {{uniform_buffer, too_many, {}}}},
       {"binding 1: counters are 32-bit words", {{uniform_buffer, 16, {}}, {counters, 6, {}}}},
-      {"one binding holds them", {{counters, 4, {}}, {counters, 4, {}}}},
-      {"binding 0 has 4 bytes, its contents 8", {{storage_buffer, 4, table}}},
+      {"one binding can hold counters", {{counters, 4, {}}, {counters, 4, {}}}},
+      {"binding 0 has 4 bytes, but its contents have 8", {{storage_buffer, 4, table}}},
   };
   for (const auto& [said, environment] : wrong) {
     vulkan::ExecutorInput input;

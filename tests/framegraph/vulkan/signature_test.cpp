@@ -119,10 +119,11 @@ TEST(Signature, APortOfAnotherTypeIsNamedWithBothSides) {
   EXPECT_THAT(
       text, HasSubstr("kernel 'test_add' of type 'test.add': port 'b' (set 0 binding 1) is a buffer block in "
                       "the signature and a texture ('b') in the shader"));
-  EXPECT_THAT(text,
-              HasSubstr("port 'ids' (set 0 binding 2) reads as float by its type texture2D and as uint"));
-  EXPECT_THAT(text, HasSubstr("port 'second' (set 0 binding 4) has usage clear and so no descriptor"));
-  EXPECT_THAT(text, HasSubstr("'weights_block' at set 0 binding 5, the signature has 5 ports"));
+  EXPECT_THAT(
+      text,
+      HasSubstr("port 'ids' (set 0 binding 2) reads as float because of its type texture2D, but as uint"));
+  EXPECT_THAT(text, HasSubstr("port 'second' (set 0 binding 4) has usage clear and therefore no descriptor"));
+  EXPECT_THAT(text, HasSubstr("'weights_block' at set 0 binding 5, but the signature has only 5 ports"));
   EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 4) << text;
 }
 
@@ -132,13 +133,14 @@ TEST(Signature, PushConstantsMustFollowTheSettings) {
   std::swap(settings[0], settings[1]);
   changed.settings = settings;
   std::string text = problems(changed, reflected("test_fill"));
-  EXPECT_THAT(text,
-              HasSubstr("setting 'slope' is int or uint in the signature, 'value' is float in the shader"));
-  EXPECT_THAT(text, HasSubstr("setting 'value' is float in the signature, 'slope' is int in the shader"));
+  EXPECT_THAT(
+      text, HasSubstr("setting 'slope' is int or uint in the signature, but 'value' is float in the shader"));
+  EXPECT_THAT(text, HasSubstr("setting 'value' is float in the signature, but 'slope' is int in the shader"));
   settings.pop_back();
   changed.settings = settings;
   text = problems(changed, reflected("test_fill"));
-  EXPECT_THAT(text, HasSubstr("the shader pushes 3 members, the signature has the port mask and 1 settings"));
+  EXPECT_THAT(
+      text, HasSubstr("the shader has 3 push constants, but the signature has the port mask and 1 settings"));
 }
 
 TEST(Signature, EnvironmentMustHoldAllThatTheShaderReads) {
@@ -150,18 +152,19 @@ TEST(Signature, EnvironmentMustHoldAllThatTheShaderReads) {
   EXPECT_THAT(text, HasSubstr("environment binding 0 has 16 bytes, 'frame' in the shader needs 20"));
   EXPECT_THAT(text,
               HasSubstr("environment binding 1 is a uniform block in the signature and a buffer block"));
-  EXPECT_THAT(text, HasSubstr("'linear_sampler' at set 1 binding 2, the environment has 2 bindings"));
+  EXPECT_THAT(text,
+              HasSubstr("'linear_sampler' at set 1 binding 2, but the environment has only 2 bindings"));
 }
 
 TEST(Signature, TheWorkgroupMustFitTheDispatch) {
   PassType changed = type("test.classes");
   changed.dispatch = DispatchShape::over_view;
   EXPECT_THAT(problems(changed, reflected("test_classes")),
-              HasSubstr("its workgroup is 64x1x1, this dispatch needs 8x8x1"));
+              HasSubstr("its workgroup is 64x1x1, but this dispatch needs 8x8x1"));
   changed = type("test.list");
   changed.dispatch = DispatchShape::over_tile_grid;
   EXPECT_THAT(problems(changed, reflected("test_list")),
-              HasSubstr("its workgroup is 1x1x1, this dispatch needs 64"));
+              HasSubstr("its workgroup is 1x1x1, but this dispatch needs 64"));
 }
 
 } // namespace

@@ -198,7 +198,7 @@ TEST_F(HostPassTypes, WrongField_IsNamed) {
   wrong.name = nullptr;
   expect_rejected(wrong, "kind.name is ''");
   wrong.name = "subsurface.mine";
-  expect_rejected(wrong, "are the library's");
+  expect_rejected(wrong, "are reserved for the library");
   wrong = type("studio.add", add_ports);
   wrong.record = nullptr;
   expect_rejected(wrong, "kind.record is NULL");

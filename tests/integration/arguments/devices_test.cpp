@@ -170,7 +170,7 @@ TEST_F(PoorDevice, MissingFunction_IsNamed) {
   for (const char* name : device_functions) {
     lack.function = name;
     EXPECT_EQ(create(), DERMIS_ERROR_UNSUPPORTED) << name;
-    EXPECT_THAT(dermis_last_error(), AllOf(HasSubstr("1 needed function:"), HasSubstr(name)));
+    EXPECT_THAT(dermis_last_error(), AllOf(HasSubstr("1 required function:"), HasSubstr(name)));
     lack.function = "";
     lack.renamed = name;
     EXPECT_EQ(create(), DERMIS_OK) << name << " of an extension: " << dermis_last_error();
@@ -190,7 +190,7 @@ TEST_F(PoorDevice, OlderInstance_IsNamedAsTheCause) {
                         HasSubstr(VK_KHR_SYNCHRONIZATION_2_EXTENSION_NAME),
                         HasSubstr(VK_KHR_MAINTENANCE_4_EXTENSION_NAME)));
       EXPECT_THAT(dermis_last_error(), Not(HasSubstr("physical device lacks")));
-      EXPECT_THAT(dermis_last_error(), Not(HasSubstr("device does not give")));
+      EXPECT_THAT(dermis_last_error(), Not(HasSubstr("device does not provide")));
     }
 }
 
@@ -339,7 +339,7 @@ struct BadBlocks {
 TEST(HostsDeviceMemory, UnusableBlock_IsRefusedAndFreed) {
   const std::pair<BadBlocks::Fault, const char*> faults[] = {
       {BadBlocks::Fault::no_memory, "gave no memory"},
-      {BadBlocks::Fault::misaligned, "no multiple of"},
+      {BadBlocks::Fault::misaligned, "not a multiple of"},
       {BadBlocks::Fault::unmapped, "gave memory that is not mapped"},
   };
   for (const auto& [fault, said] : faults) {

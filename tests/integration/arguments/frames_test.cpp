@@ -125,9 +125,9 @@ TEST_F(Frames, ContradictingHandedness_IsRefused) {
   refused(frame_of(orthographic, false, perspective, true, 0), "the frame is right-handed");
   refused(frame_of(orthographic, true, perspective, false, DERMIS_FRAME_LEFT_HANDED),
           "the frame is left-handed");
-  refused(frame_of(orthographic, true, orthographic, true, 0), "only what is behind the camera");
+  refused(frame_of(orthographic, true, orthographic, true, 0), "only points behind the camera");
   refused(frame_of(orthographic, false, orthographic, false, DERMIS_FRAME_LEFT_HANDED),
-          "only what is behind the camera");
+          "only points behind the camera");
   const dermis_frame accepted[] = {
       frame_of(perspective, true, perspective, true, 0),
       frame_of(perspective, true, perspective, true, DERMIS_FRAME_LEFT_HANDED),

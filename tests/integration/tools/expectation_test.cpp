@@ -198,7 +198,7 @@ TEST_F(Expectations, OverlaysComeOnlyFromDeclaredFolders) {
                                   path("changes/less.json"));
   const Outcome outside = run({"test", file});
   EXPECT_EQ(outside.exit_code, 1);
-  EXPECT_THAT(outside.err, HasSubstr("leads out of"));
+  EXPECT_THAT(outside.err, HasSubstr("outside the readable folders"));
   const std::string escaping =
       beside_burley(R"({ "dermis_expect": 1, "cases": [ { "case": "a", "overlays": ["../x.json"] } ] })");
   EXPECT_THAT(run({"test", escaping}).err, AllOf(HasSubstr(escaping + ":1:"), HasSubstr("D0115")));

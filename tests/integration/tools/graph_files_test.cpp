@@ -277,7 +277,7 @@ TEST_F(GraphFiles, SceneProfilesAreReadInFolderAndRoots) {
     const Outcome outside = run(words);
     EXPECT_EQ(outside.exit_code, 1) << words[0];
     EXPECT_THAT(outside.err, AllOf(HasSubstr("scene.json:2:43: error[D0118"),
-                                   HasSubstr("leads out of what may be read"), HasSubstr("--root")))
+                                   HasSubstr("outside the readable folders"), HasSubstr("--root")))
         << words[0];
     EXPECT_FALSE(std::filesystem::exists(path("out"))) << words[0];
   }

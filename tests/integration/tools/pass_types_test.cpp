@@ -42,7 +42,7 @@ TEST_F(PassTypes, FileIsChecked) {
   EXPECT_THAT(refused.err, HasSubstr("range.json:2:3"));
   EXPECT_THAT(refused.err, HasSubstr("settings[0]"));
   own.replace(own.find("studio"), 6, "subsurface");
-  EXPECT_THAT(run({"validate", write("own.json", own)}).err, HasSubstr("are the library's"));
+  EXPECT_THAT(run({"validate", write("own.json", own)}).err, HasSubstr("are reserved for the library"));
   const std::string graph_file = write("tone.json", tone);
   const std::string kind_file = write("pass_types.json", pass_types);
   const Outcome twice = run({"validate", graph_file, "--pass-types", kind_file, "--pass-types", kind_file});

@@ -97,7 +97,7 @@ TEST_F(SceneFolders, SceneReadsOnlyInsideItsProject) {
     EXPECT_EQ(one.where.line, 2u);
     EXPECT_EQ(one.where.column, 43u);
     EXPECT_EQ(one.where.pointer, "/profiles/0/file");
-    EXPECT_THAT(one.text, HasSubstr("leads out of what may be read"));
+    EXPECT_THAT(one.text, HasSubstr("outside the readable folders"));
     EXPECT_THAT(one.text, HasSubstr((top / "project").string()));
     EXPECT_THAT(dermis::format_for_people(diagnostics, one), HasSubstr("--root"));
   }

@@ -349,7 +349,7 @@ TEST_F(Captures, NothingOutsideTheirFolderIsRead) {
     if (outside.starts_with("link")) fs::create_directory_symlink(root, folder / "link");
     change(folder, before, "\"file\": \"" + outside + "\"");
     before = "\"file\": \"" + outside + "\"";
-    expect_rejected(folder, DiagnosticId::outside_root, "/profiles/0/file", "leads out of what may be read");
+    expect_rejected(folder, DiagnosticId::outside_root, "/profiles/0/file", "outside the readable folders");
     diagnostics = {};
     EXPECT_TRUE(read_frame(folder, shipped, diagnostics, std::vector{root.string()})) << messages();
   }
@@ -470,7 +470,7 @@ TEST_F(Captures, ContradictingViewSpacesAreRefused) {
   frame.description.perspective = false;
   frame.description.clip_from_view = {1, 0, 0, 0, 0, -1, 0, 0, 0, 0, 0.1, -0.05, 0, 0, 0, 1};
   frame.description.previous_clip_from_view = frame.description.clip_from_view;
-  refused(write(frame, "behind"), "/clip_from_view", "only what is behind the camera");
+  refused(write(frame, "behind"), "/clip_from_view", "only points behind the camera");
 }
 
 TEST_F(Captures, PixelPitchAndMatrixExcludeEachOther) {
