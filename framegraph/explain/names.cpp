@@ -159,7 +159,7 @@ std::string_view read_when_text(ReadWhen when) {
   case ReadWhen::always:
     return "";
   case ReadWhen::history_valid:
-    return " where it is valid";
+    return " if valid";
   case ReadWhen::history_invalid:
     return " else";
   }

@@ -18,7 +18,7 @@ std::string_view why_name(PlanBarrier::ReasonKind why);
 std::string_view queue_name(Queue queue);
 std::string_view transfer_name(PlanBarrier::Transfer transfer);
 std::string_view read_when_name(ReadWhen when); // "history_valid"
-std::string_view read_when_text(ReadWhen when); // " where it is valid", appended to what is read
+std::string_view read_when_text(ReadWhen when); // " if valid", appended to what is read
 
 // Return the names joined by '|'; "none" for an empty mask.
 std::string stage_text(Stage stages);

@@ -179,7 +179,7 @@ Lines barriers(const SavedPlan& saved) {
     add_batch(saved, "before " + saved.names.passes[p], saved.plan.passes[p].first_barrier,
               saved.plan.passes[p].barrier_count, lines);
   for (size_t p = 0; p < saved.plan.passes.size(); ++p)
-    add_batch(saved, "behind " + saved.names.passes[p],
+    add_batch(saved, "after " + saved.names.passes[p],
               saved.plan.passes[p].first_barrier + saved.plan.passes[p].barrier_count,
               saved.plan.passes[p].release_count, lines);
   add_batch(saved, "at the end", saved.plan.first_final_barrier, saved.plan.final_barrier_count, lines);

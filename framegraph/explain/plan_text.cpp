@@ -61,7 +61,7 @@ struct TextExporter {
       if (plan.passes[p].queue == queue && plan.passes[p].signal != 0 &&
           (point == 0 || plan.passes[p].signal == point))
         found = p;
-    return found == plan.passes.size() ? std::string() : fmt::format(", behind '{}'", pass_name(found));
+    return found == plan.passes.size() ? std::string() : fmt::format(", after '{}'", pass_name(found));
   }
 
   // `position` is that of the pass that the barrier precedes.
@@ -79,8 +79,7 @@ struct TextExporter {
     const bool early = by != position && by < plan.passes.size() && !one.to_host &&
                        one.transfer != PlanBarrier::Transfer::release;
     line(fmt::format("     | {}{}", reason(Reason::About::barrier, index),
-                     early ? fmt::format(" (for '{}': in the batch that stands here already)", pass_name(by))
-                           : ""));
+                     early ? fmt::format(" (for '{}': merged into this earlier batch)", pass_name(by)) : ""));
     const std::string part = range_text(plan.resources[one.resource], one.range);
     const std::string half =
         one.transfer == PlanBarrier::Transfer::none ? "" : fmt::format("{}, ", transfer_name(one.transfer));
@@ -90,11 +89,11 @@ struct TextExporter {
 
   void waits(Queue for_queue, uint32_t point) {
     line(fmt::format("     | waits for point {} of the {} queue{}{}", point, queue_name(for_queue),
-                     behind(for_queue, point), point == 0 ? " of the frame before, the last one there" : ""));
+                     behind(for_queue, point), point == 0 ? " (the last point of the previous frame)" : ""));
   }
 
   void passes() {
-    line("\npasses, each behind its barriers");
+    line("\npasses, each after its barriers");
     if (const std::string why = reason(Reason::About::order, 0); !why.empty()) line("  " + why);
     for (uint32_t position = 0; position < plan.passes.size(); ++position) {
       const PlanPass& pass = plan.passes[position];
@@ -117,7 +116,7 @@ struct TextExporter {
       for (uint32_t b = 0; b < pass.release_count; ++b)
         barrier(pass.first_barrier + pass.barrier_count + b, position);
       if (pass.signal != 0)
-        line(fmt::format("     | the {} queue reaches point {}", queue_name(pass.queue), pass.signal));
+        line(fmt::format("     | the {} queue signals point {}", queue_name(pass.queue), pass.signal));
     }
     if (plan.final_barrier_count > 0) line("   at the end");
     if (plan.final_wait != no_point) waits(Queue::async, plan.final_wait);
@@ -149,7 +148,7 @@ struct TextExporter {
   }
 
   void changes(const Provenance& provenance) {
-    if (!provenance.changes.empty()) line("\nset by other files, in this order");
+    if (!provenance.changes.empty()) line("\nchanges by other files, in this order");
     for (const Change& change : provenance.changes)
       line(fmt::format("  {:<8} {}  ({})", change_name(change.what), change.at, provenance.place(change)));
   }

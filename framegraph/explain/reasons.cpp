@@ -25,7 +25,7 @@ struct ReasonFormatter {
     return pass_types[graph.passes[of_pass].type].ports[number].name;
   }
   std::string_view format() const { return format_info(static_cast<Format>(reason.a)).name; }
-  const char* when() const { return reason.b != 0 ? " in the frame before" : ""; }
+  const char* when() const { return reason.b != 0 ? " in the previous frame" : ""; }
 
   std::string needed(const char* verb) const {
     return fmt::format("runs: '{}' {} its '{}'", pass(reason.a), verb, resource(reason.b));
@@ -35,14 +35,14 @@ struct ReasonFormatter {
     std::string names;
     for (const PortBinding& binding : graph.writes(graph.passes[reason.index]))
       names += fmt::format("{}'{}'", names.empty() ? "" : ", ", resource(binding.resource.value));
-    return names.empty() ? "culled: it writes nothing" : "culled: nothing that is bound needs " + names;
+    return names.empty() ? "culled: it writes nothing" : "culled: no bound export needs " + names;
   }
 
   std::string not_available() const {
     const SettingDeclaration& declared = graph.settings[reason.index];
     MissingRequirements unmet{reason.b, {}};
     if (reason.b == 0) unmet.imports.push_back(ResourceId{reason.c});
-    return fmt::format("{} instead of '{}', which is not offered: {}",
+    return fmt::format("{} instead of '{}', which is not available: {}",
                        setting_text(declared, plan.setting_values[reason.index]), declared.options[reason.a],
                        missing_text(graph, unmet));
   }
@@ -51,9 +51,9 @@ struct ReasonFormatter {
   std::string off() const {
     const PassDeclaration& declared = graph.passes[reason.index];
     if (declared.absence == PassDeclaration::Absence::no_profile)
-      return "off: its pass type serves scattering, and the graph has no profile";
+      return "off: its pass type only serves scattering, and the graph has no profile";
     if (declared.absence == PassDeclaration::Absence::no_input)
-      return fmt::format("off: it reads '{}', which only passes that are off without a profile write",
+      return fmt::format("off: it reads '{}', whose producers are off because the graph has no profile",
                          resource(declared.missing.value));
     std::vector<uint32_t> requested;
     std::vector<ExpressionId> left{graph.passes[reason.index].when};
@@ -76,15 +76,15 @@ struct ReasonFormatter {
 
   std::string order(const char* chosen, const char* other) const {
     constexpr uint64_t kib = 1024;
-    return fmt::format("{}, which keeps {} of transients alive at once; {} {}", chosen,
+    return fmt::format("{}: at most {} of transients are alive at once; {} {}", chosen,
                        bytes_text(reason.a * kib), other, bytes_text(reason.b * kib));
   }
 
   std::string chosen_format() const {
     if (graph.resources[reason.index].formats.size() == 1 && reason.b != 2)
-      return fmt::format("format {}: the only one declared", format());
-    constexpr std::string_view how[] = {"first in the list", "first usable one in the list",
-                                        "the host binds it"};
+      return fmt::format("format {}: the only declared format", format());
+    constexpr std::string_view how[] = {"first declared format", "first declared format that is usable",
+                                        "bound by the host"};
     return fmt::format("format {}: {}", format(), how[reason.b]);
   }
 
@@ -104,13 +104,13 @@ struct ReasonFormatter {
     const std::string last = fmt::format("'{}'{}", pass_at(reason.a), when());
     switch (barrier.why) {
     case PlanBarrier::ReasonKind::write_after_read:
-      return fmt::format("'{}' writes over {} once {} has read it", later, what, last);
+      return fmt::format("'{}' overwrites {} after {} reads it", later, what, last);
     case PlanBarrier::ReasonKind::write_after_write:
       return fmt::format("'{}' writes {} after {}", later, what, last);
     case PlanBarrier::ReasonKind::layout:
-      return fmt::format("'{}' needs {} in another layout than {}", later, what, last);
+      return fmt::format("'{}' needs {} in a different layout than {}", later, what, last);
     default:
-      return fmt::format("'{}' reads {} as {} left it", later, what, last);
+      return fmt::format("'{}' reads {} after {} writes it", later, what, last);
     }
   }
 
@@ -123,89 +123,90 @@ struct ReasonFormatter {
     case Reason::ReasonKind::read_later_by:
       return needed("reads in later frames");
     case Reason::ReasonKind::written_over_by:
-      return needed("writes over");
+      return needed("overwrites");
     case Reason::ReasonKind::writes_export:
       return fmt::format("runs: it writes the export '{}'", resource(reason.a));
     case Reason::ReasonKind::side_effects:
       return "runs: its pass type has side effects";
     case Reason::ReasonKind::culling_off:
-      return "runs: culling is switched off";
+      return "runs: culling is disabled";
     case Reason::ReasonKind::port_unbound:
-      return fmt::format("optional port '{}' stays unbound: nothing provides '{}'",
-                         port(reason.index, reason.a), resource(reason.b));
+      return fmt::format("optional port '{}' is unbound: nothing provides '{}'", port(reason.index, reason.a),
+                         resource(reason.b));
     case Reason::ReasonKind::beside:
       return "runs on the async queue";
     case Reason::ReasonKind::behind:
       return fmt::format("runs after '{}': {}", pass(reason.a),
                          graph.passes[reason.index].after[reason.b].reason);
     case Reason::ReasonKind::not_beside:
-      return fmt::format("stays on the main queue: '{}' is the host's, kept across frames, or bound in parts",
-                         resource(reason.a));
+      return fmt::format(
+          "runs on the main queue: '{}' is owned by the host, kept across frames, or bound by mip or layer",
+          resource(reason.a));
     case Reason::ReasonKind::always_otherwise:
-      return fmt::format("port '{}' reads its 'otherwise' in every frame: no pass that is on writes '{}'",
+      return fmt::format("port '{}' reads its 'otherwise' in every frame: no enabled pass writes '{}'",
                          port(reason.index, reason.a), resource(reason.b));
     case Reason::ReasonKind::lacks_input_without_bounds:
-      return fmt::format("left out in frames with empty bounds: it reads '{}', which only passes that serve "
-                         "scattering write",
-                         resource(reason.a));
+      return fmt::format(
+          "skipped in frames with empty bounds: it reads '{}', which only scattering passes write",
+          resource(reason.a));
     case Reason::ReasonKind::not_needed:
       return not_needed();
     case Reason::ReasonKind::unbound:
-      return "the host leaves this optional slot unbound";
+      return "optional slot that the host does not bind";
     case Reason::ReasonKind::stands_for:
-      return fmt::format("stands for '{}' after pass '{}', which is off", resource(reason.a), pass(reason.b));
+      return fmt::format("replaces '{}' after pass '{}', which is off", resource(reason.a), pass(reason.b));
     case Reason::ReasonKind::unwritten_export:
-      return "left as the host bound it: no pass that is on writes this optional export";
+      return "unchanged: no enabled pass writes this optional export";
     case Reason::ReasonKind::format:
       return chosen_format();
     case Reason::ReasonKind::format_not_ported:
-      return fmt::format("not {}: port '{}' of pass '{}' cannot work with it", format(),
+      return fmt::format("not {}: port '{}' of pass '{}' does not support it", format(),
                          port(reason.b, reason.c), pass(reason.b));
     case Reason::ReasonKind::format_unsupported:
-      return fmt::format("not {}: the device '{}' does not support it used as {}", format(),
+      return fmt::format("not {}: the device '{}' does not support it with usage {}", format(),
                          plan.device_profile, usage_text(ResourceType::image, reason.b));
     case Reason::ReasonKind::history_unused:
-      return "no memory: no pass that runs uses it";
+      return "no memory: no running pass uses it";
     case Reason::ReasonKind::history_unread:
-      return "kept like a transient: no pass that runs reads its earlier frames";
+      return "placed like a transient: no running pass reads its earlier frames";
     case Reason::ReasonKind::history_read:
-      return fmt::format("earlier frames are read down to @-{}", reason.a);
+      return fmt::format("earlier frames are read back to @-{}", reason.a);
     case Reason::ReasonKind::renewed_in_place:
-      return fmt::format("each frame takes the memory of @-{}, which {}", reason.a,
-                         reason.b != 0 ? "its writer reads texel by texel" : "has been read by then");
+      return fmt::format("each frame reuses the memory of @-{}, which {}", reason.a,
+                         reason.b != 0 ? "its writer reads texel by texel" : "no later pass reads");
     case Reason::ReasonKind::aliases_history:
-      return fmt::format("lies in memory of the history '{}', {}", resource(reason.a),
-                         reason.b != 0 ? "whose oldest frame has been read by then"
-                                       : "which this frame has not written by then");
+      return fmt::format("aliases memory of the history '{}', {}", resource(reason.a),
+                         reason.b != 0 ? "after the last read of its oldest frame"
+                                       : "before this frame's first write to it");
     case Reason::ReasonKind::from_host:
-      return fmt::format("takes '{}' over from the host", resource(reason.a));
+      return fmt::format("acquires '{}' from the host", resource(reason.a));
     case Reason::ReasonKind::oldest_instance:
       return fmt::format("reuses the oldest instance of '{}' for this frame", resource(reason.a));
     case Reason::ReasonKind::first_use:
       return fmt::format("first use of '{}'", resource(reason.a));
     case Reason::ReasonKind::behind_last_use:
-      return fmt::format("behind its last use{}", when());
+      return fmt::format("after its last use{}", when());
     case Reason::ReasonKind::takes_memory:
-      return fmt::format("takes over memory of '{}'{}", resource(reason.a), when());
+      return fmt::format("reuses memory of '{}'{}", resource(reason.a), when());
     case Reason::ReasonKind::dependency:
       return dependency();
     case Reason::ReasonKind::to_host:
-      return fmt::format("hands '{}' back to the host{}", resource(reason.a),
-                         reason.b != 0 ? "; no pass touched it" : "");
+      return fmt::format("returns '{}' to the host{}", resource(reason.a),
+                         reason.b != 0 ? "; no pass uses it" : "");
     case Reason::ReasonKind::requested:
-      return setting("asked for by the caller");
+      return setting("requested by the caller");
     case Reason::ReasonKind::by_default:
-      return setting("its default");
+      return setting("the default");
     case Reason::ReasonKind::not_available:
       return not_available();
     case Reason::ReasonKind::order_of_file:
-      return order("in the order of the file", "depth first it would be");
+      return order("file order", "depth-first order would need");
     case Reason::ReasonKind::depth_first:
-      return order("depth first", "in the order of the file it would be");
+      return order("depth-first order", "file order would need");
     case Reason::ReasonKind::program_order:
-      return "in the order of the file: asked for by the caller";
+      return "file order: requested by the caller";
     case Reason::ReasonKind::random_order:
-      return "in an order drawn at random: asked for by the caller";
+      return "random order: requested by the caller";
     }
     return {};
   }
@@ -278,8 +279,8 @@ std::vector<std::string> placement_reasons(const Graph& graph, const Plan& plan)
           std::any_of(plan.placements.begin(), plan.placements.end(), [&](const Placement& other) {
             return !other.persistent && other.heap == own.heap && share_bytes(own, other);
           });
-      text = is_aliased ? "its contents outlive the frame; lends its memory while it holds nothing"
-                        : "shares no memory: its contents outlive the frame";
+      text = is_aliased ? "kept across frames; transients alias its memory while it holds no contents"
+                        : "not aliased: kept across frames";
       continue;
     }
     const size_t from = at > named_neighbours ? at - named_neighbours : 0;
@@ -296,9 +297,9 @@ std::vector<std::string> placement_reasons(const Graph& graph, const Plan& plan)
             fmt::format("{}'{}' [{}, {}]", apart.empty() ? "" : ", ", name, other.first_use, other.last_use);
     }
     text = fmt::format("alive in passes [{}, {}]", own.first_use, own.last_use);
-    if (!shared.empty()) text += "; shares memory with " + shared;
+    if (!shared.empty()) text += "; aliases " + shared;
     if (!apart.empty()) text += "; not with " + apart + ", which live at the same time";
-    if (from > 0 || to < by_first.size()) text += "; further ones are not listed";
+    if (from > 0 || to < by_first.size()) text += "; more neighbours are not listed";
   }
   return texts;
 }

@@ -141,7 +141,7 @@ TEST(Formats, FirstFormatUsableByPortsAndDeviceIsTaken) {
   whole = compiled(b);
   EXPECT_EQ(resource_of(b, whole.plan, "middle").format, Format::rgba16f);
   EXPECT_THAT(reasons(b, whole, Reason::About::resource, 1),
-              HasSubstr("port 'a' of pass 'second' cannot work with it"));
+              HasSubstr("port 'a' of pass 'second' does not support it"));
   b.middle().formats = {Format::r8_unorm};
   const auto errors = refused(b);
   ASSERT_THAT(errors, SizeIs(1));
@@ -157,7 +157,7 @@ TEST(Formats, ComponentTypeIsRespected) {
   const auto whole = compiled(b);
   EXPECT_EQ(resource_of(b, whole.plan, "ids").format, Format::r8_uint);
   EXPECT_THAT(reasons(b, whole, Reason::About::resource, 0),
-              HasSubstr("port 'ids' of pass 'use' cannot work with it"));
+              HasSubstr("port 'ids' of pass 'use' does not support it"));
 }
 
 TEST(Formats, HostFormatMustFitTheComponentType) {

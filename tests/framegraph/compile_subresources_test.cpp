@@ -170,7 +170,7 @@ TEST(Subresources, OptionalPort_NothingWritten_StaysUnbound) {
   b.pass("show", "test.need", {{"a", "second"}}, {{"out", "result"}});
   const auto plan = compiled(b);
   const std::string text = reasons(b, plan, Reason::About::pass, 3);
-  const std::string unbound = "optional port 'a' stays unbound";
+  const std::string unbound = "optional port 'a' is unbound";
   ASSERT_NE(text.find(unbound), std::string::npos) << text;
   EXPECT_EQ(text.find(unbound), text.rfind(unbound)) << text;
 }

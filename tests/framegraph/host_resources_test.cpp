@@ -116,19 +116,19 @@ INSTANTIATE_TEST_SUITE_P(
                               "\"acceleration_structure\": \"top_level\" } }",
                               Id::not_imported,
                               "\"own\"",
-                              {"'own'", "no graph builds"}},
+                              {"'own'", "a graph cannot own"}},
                       Mistake{"AnAccelerationStructureIsNoImage",
                               "{ \"light\": \"light\" }",
                               "{ \"light\": \"scene\" }",
                               Id::usage_mismatch,
                               "\"scene\" }, \"write\"",
-                              {"takes an image", "'scene' is an acceleration structure"}},
+                              {"expects an image", "'scene' is an acceleration structure"}},
                       Mistake{"ABufferIsNoAccelerationStructure",
                               "\"scene\": \"scene\"",
                               "\"scene\": \"vertices\"",
                               Id::usage_mismatch,
                               "\"vertices\", \"vertices\"",
-                              {"takes an acceleration structure", "'vertices' is a buffer"}},
+                              {"expects an acceleration structure", "'vertices' is a buffer"}},
                       Mistake{"AnImportedBufferHasAStride",
                               "\"stride\": 16",
                               "\"count\": 16",
@@ -152,7 +152,7 @@ INSTANTIATE_TEST_SUITE_P(
                               "\"light\"]",
                               Id::bad_option_requires,
                               "\"light\"]",
-                              {"may leave unbound"}},
+                              {"not an optional import"}},
                       Mistake{"OptionsThatRequireAreOptions",
                               "\"requires\": { \"trace\"",
                               "\"requires\": { \"trase\"",
@@ -264,7 +264,7 @@ TEST(Options, UnavailableOnDevice_FallBack) {
   EXPECT_EQ(only_pass(*loaded.graph, *result.plan), "copy");
   EXPECT_EQ(result.plan->plan.setting_values[0].integer, 1);
   const std::string text = plan_text(*loaded.graph, pass_types_of_host(), *result.plan, {});
-  EXPECT_NE(text.find("'copy' instead of 'trace', which is not offered: the device lacks ray_query"),
+  EXPECT_NE(text.find("'copy' instead of 'trace', which is not available: the device lacks ray_query"),
             std::string::npos)
       << text;
   report_unavailable(*loaded.graph, device, {}, result.diagnostics);
@@ -282,7 +282,7 @@ TEST(Options, UnboundImport_FallBack) {
   ASSERT_TRUE(result.plan) << all_messages(result.diagnostics);
   EXPECT_EQ(only_pass(*loaded.graph, *result.plan), "copy");
   const std::string text = plan_text(*loaded.graph, pass_types_of_host(), *result.plan, {});
-  EXPECT_NE(text.find("not offered: 'scene' is not bound"), std::string::npos) << text;
+  EXPECT_NE(text.find("not available: 'scene' is not bound"), std::string::npos) << text;
 }
 
 TEST(Features, RequiredByTheGraph_MustBeAvailable) {

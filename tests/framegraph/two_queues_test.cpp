@@ -94,7 +94,7 @@ TEST(TwoQueues, HostResourcesStayOnTheMainQueue) {
   b.graph.passes[0].async = true;
   const auto whole = compiled(b, two_queues(b));
   EXPECT_EQ(whole.plan.passes[0].queue, Queue::main);
-  EXPECT_THAT(reasons(b, whole, Reason::About::pass, 0), HasSubstr("stays on the main queue: 'light'"));
+  EXPECT_THAT(reasons(b, whole, Reason::About::pass, 0), HasSubstr("runs on the main queue: 'light'"));
 }
 
 TEST(TwoQueues, AfterIsAPointBetweenPassesOfTwoQueues) {
@@ -113,7 +113,7 @@ TEST(TwoQueues, AfterIsAPointBetweenPassesOfTwoQueues) {
       // Nothing of `aside` is needed before this pass.
       std::exchange(mutant.passes[2].wait, no_point);
   EXPECT_THAT(verify(mutant).violations.front(),
-              HasSubstr("pass 2: does not come after pass 1, as it is to"));
+              HasSubstr("pass 2: does not run after pass 1, as the graph requires"));
   EXPECT_NE(first_hazard(mutant), "");
 }
 
@@ -125,7 +125,7 @@ TEST(TwoQueues, AfterIsNoPointBetweenPassesOfOneQueue) {
   ASSERT_EQ(plan.orderings.size(), 1u);
   Plan mutant = plan;
   std::swap(mutant.orderings[0].earlier, mutant.orderings[0].later);
-  EXPECT_THAT(verify(mutant).violations.front(), HasSubstr("does not come after"));
+  EXPECT_THAT(verify(mutant).violations.front(), HasSubstr("does not run after"));
   EXPECT_NE(first_hazard(mutant), "");
 }
 

@@ -149,7 +149,8 @@ TEST_F(HostPassSkips, OtherwiseIsRead) {
         way.profiles, way.flags);
     EXPECT_THAT(calls, ElementsAre("tone")) << way.profiles;
     if (way.profiles) continue;
-    EXPECT_THAT(described(), HasSubstr("off: its pass type serves scattering, and the graph has no profile"));
+    EXPECT_THAT(described(),
+                HasSubstr("off: its pass type only serves scattering, and the graph has no profile"));
   }
 }
 

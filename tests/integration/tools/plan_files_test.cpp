@@ -63,7 +63,7 @@ TEST_F(PlanFiles, AsyncPasses_GetAQueueOnRequest) {
   EXPECT_EQ(two.exit_code, 0) << two.err;
   EXPECT_THAT(one.out, Not(HasSubstr("async queue")));
   EXPECT_THAT(two.out, AllOf(HasSubstr("aside (subsurface.pyramid_down) on the async queue"),
-                             HasSubstr("the main queue reaches point 1"),
+                             HasSubstr("the main queue signals point 1"),
                              HasSubstr("waits for point 1 of the async queue")));
   ASSERT_EQ(run({"plan", "save", graph, "--two-queues", "--out", path("two.plan")}).exit_code, 0);
   EXPECT_THAT(run({"plan", "verify", path("two.plan")}).out, HasSubstr("no hazard"));
@@ -77,9 +77,9 @@ TEST_F(PlanFiles, ADamagedPlanIsRefusedWithTheByte) {
   const Outcome outcome = run({"plan", "verify", cut});
   EXPECT_EQ(outcome.exit_code, 1);
   EXPECT_THAT(outcome.err, AllOf(HasSubstr("cut.plan"), HasSubstr("D0321 plan_file"), HasSubstr("byte "),
-                                 HasSubstr("the file ends inside of")));
+                                 HasSubstr("the file ends inside")));
   EXPECT_EQ(run({"plan", "diff", cut, burley}).exit_code, 1);
-  EXPECT_THAT(run({"plan", "verify", burley}).err, HasSubstr("a saved plan begins with DERMPLAN"));
+  EXPECT_THAT(run({"plan", "verify", burley}).err, HasSubstr("a saved plan must begin with DERMPLAN"));
   EXPECT_THAT(run({"plan", "verify", path("none.plan")}).err, HasSubstr("does not exist"));
   EXPECT_TRUE(is_json(run({"plan", "verify", cut, "--json"}).out));
 }
