@@ -8,8 +8,8 @@ namespace dermis::subsurface {
 namespace {
 
 constexpr Port afis_ports[] = {
-    {"light", Usage::sampled_image, false, "texture2D", "as subsurface.setup writes it", port::light_formats},
-    {"slope", Usage::sampled_image, false, "texture2D", "as subsurface.setup writes it", port::way_formats},
+    {"light", Usage::sampled_image, false, "texture2D", "output of subsurface.setup", port::light_formats},
+    {"slope", Usage::sampled_image, false, "texture2D", "output of subsurface.setup", port::way_formats},
     port::level_port("level_1"),
     port::level_port("level_2"),
     port::level_port("level_3"),
@@ -42,8 +42,8 @@ constexpr PassTypeSetting afis_settings[] = {
      .minimum = 1,
      .maximum = 4096,
      .options = {},
-     .unit = "samples a pixel",
-     .doc = "beyond the direct radius"},
+     .unit = "samples per pixel",
+     .doc = "number of samples beyond the direct radius"},
     {.name = "lod_bias",
      .type = SettingType::real,
      .default_value = {SettingType::real, 0, -1.0},
@@ -51,30 +51,33 @@ constexpr PassTypeSetting afis_settings[] = {
      .maximum = 4,
      .options = {},
      .unit = "levels",
-     .doc = "on the level whose texels have the area that a sample stands for"},
+     .doc = "offset of the mip level; at 0 a texel has the area that a sample represents"},
     setting::choice(
         "sequence", sequence_options,
-        "continued: R2 goes on from frame to frame; hashed: R2 begins anew in each; stratified: radii, "
-        "golden angle, both shifted by R2 from frame to frame"),
+        "sample sequence. continued: R2 continues from frame to frame; hashed: R2 restarts in each frame; "
+        "stratified: stratified radii and golden angle, both shifted by R2 per frame"),
+    setting::choice("channels", channels_options,
+                    "channels whose radii are sampled: widest: the widest channel; mixture: the mean of all "
+                    "channels, for Burley's profile"),
+    setting::choice("inverse", inverse_options,
+                    "inverse of the widest channel's distribution: polynomial (error below 0.5 %), exact, or "
+                    "approximate (c = 2.5715)",
+                    1),
     setting::choice(
-        "channels", channels_options,
-        "whose radii are drawn: the widest channel's or those of the mean of all, for Burley's profile"),
-    setting::choice(
-        "inverse", inverse_options,
-        "of the widest channel's distribution: polynomial, within .5 %; exact; approximate, c = 2.5715", 1),
-    setting::choice("weighting", weighting_options,
-                    "divide by the sampler's own density or by the profile's, as published"),
+        "weighting", weighting_options,
+        "density that divides a sample: sampler: the sampler's own; profile: the profile's, as published"),
     setting::choice(
         "surface", surface_options,
-        "patch: the profile at the distance in space times the area of the patch; distance: without the "
-        "area"),
+        "patch: profile at the 3-D distance times the area of the surface patch; distance: without the area"),
     setting::choice("direct", direct_options,
-                    "radius of the pixel's own light: inscribed in the pixel, circumscribed, none"),
-    setting::choice(
-        "estimator", estimator_options,
-        "self: by the sum of weights; centred: what the weights lack or have too much is own light; none"),
+                    "radius within which the pixel's own light is used: inscribed in the pixel, "
+                    "circumscribed about it, or none"),
+    setting::choice("estimator", estimator_options,
+                    "normalisation. self: divide by the sum of weights; centred: add the pixel's own light "
+                    "times (1 - sum of weights); none: no normalisation"),
     setting::choice("mips", mips_options,
-                    "levels between two, rounded to one, or the pixel under the sample alone"),
+                    "trilinear: interpolate between two levels; whole: round to one level; none: read only "
+                    "the pixel under the sample"),
 };
 
 constexpr Format replaced_formats[] = {Format::rgba16f}; // formats that a shader may load
@@ -97,21 +100,21 @@ constexpr Port afis_tiles_ports[] = {
     port::tiles,
     port::arguments,
     {"scattered", Usage::storage_image_update, false, "image2D",
-     "light of another technique, replaced in place", replaced_formats},
+     "scattered light of another technique; replaced in place", replaced_formats},
 };
 
 constexpr Format guide_formats[] = {Format::rgba16f};
 constexpr Format place_formats[] = {Format::r16f};
 constexpr std::string_view guide_doc =
-    "standard deviation of one frame's exposed luminance, mean number of samples, depth in metres with "
-    "split_half and else the moving mean of what is watched, profile id; 0 where nothing was written";
-constexpr std::string_view place_doc = "depth in metres; not with split_half";
-constexpr std::string_view control_doc =
-    "weight of the control, its standard deviation, means of light and control; with ocv";
+    "standard deviation of one frame's exposed luminance; mean number of samples; depth in metres with "
+    "split_half, otherwise moving mean of the monitored value; profile id. 0 where nothing was written";
+constexpr std::string_view place_doc = "depth in metres; unused with split_half";
+constexpr std::string_view control_doc = "weight of the control variate, its standard deviation, means of "
+                                         "light and control variate; only with ocv";
 
 constexpr Port guided_ports[] = {
-    {"light", Usage::sampled_image, false, "texture2D", "as subsurface.setup writes it", port::light_formats},
-    {"slope", Usage::sampled_image, false, "texture2D", "as subsurface.setup writes it", port::way_formats},
+    {"light", Usage::sampled_image, false, "texture2D", "output of subsurface.setup", port::light_formats},
+    {"slope", Usage::sampled_image, false, "texture2D", "output of subsurface.setup", port::way_formats},
     port::level_port("level_1"),
     port::level_port("level_2"),
     port::level_port("level_3"),
@@ -144,7 +147,7 @@ constexpr PassTypeSetting count_setting(std::string_view name, int64_t standard,
           .minimum = 2,
           .maximum = 4096,
           .options = {},
-          .unit = "samples a pixel",
+          .unit = "samples per pixel",
           .doc = doc};
 }
 
@@ -158,20 +161,21 @@ constexpr PassTypeSetting guided_settings[] = {
     afis_settings[7],
     afis_settings[8],
     afis_settings[9],
-    setting::choice(
-        "guidance", guidance_options,
-        "what is watched: the difference of two half sequences; luminance (spvg); less that of the "
-        "pixel's own light (ccv); less as much of it as follows best (ocv)"),
-    count_setting("min_samples", 8, "at least"),
-    count_setting("max_samples", 64, "at most"),
+    setting::choice("guidance", guidance_options,
+                    "value whose variance guides the number of samples. split_half: difference of two half "
+                    "sequences; spvg: luminance; ccv: luminance minus that of the pixel's own light; ocv: "
+                    "the same with an optimal weight"),
+    count_setting("min_samples", 8, "minimum number of samples"),
+    count_setting("max_samples", 64, "maximum number of samples"),
     setting::per_frame(setting::real("sigma2_target", 1e-4, 1e-12, 1e6, "",
-                                     "variance of a frame's exposed luminance that is aimed at")),
-    setting::per_frame(setting::real("kappa", 0.2, 0, 1, "", "how fast a change is followed")),
-    setting::per_frame(setting::real("eta", 0.2, 0.001, 1, "", "weight of a new frame in moving means")),
+                                     "target variance of one frame's exposed luminance")),
     setting::per_frame(
-        setting::real("eta_cv", 0.005, 1e-7, 1, "", "weight of a new frame in the control's covariance")),
+        setting::real("kappa", 0.2, 0, 1, "", "rate at which the number of samples follows a change")),
+    setting::per_frame(setting::real("eta", 0.2, 0.001, 1, "", "weight of a new frame in moving means")),
+    setting::per_frame(setting::real("eta_cv", 0.005, 1e-7, 1, "",
+                                     "weight of a new frame in the covariance with the control variate")),
     setting::per_frame(setting::real("eps_alpha", 1e-6, 1e-20, 1, "",
-                                     "prior of the control's weight, in exposed luminance squared")),
+                                     "prior of the control variate's weight [exposed luminance squared]")),
     {.name = "full_precision",
      .type = SettingType::boolean,
      .default_value = {SettingType::boolean, 0, 0.0},
@@ -179,7 +183,7 @@ constexpr PassTypeSetting guided_settings[] = {
      .maximum = 0,
      .options = {},
      .unit = "",
-     .doc = "control_out has 32 bits a channel"},
+     .doc = "control_out has 32 bits per channel"},
 };
 
 constexpr HistoryWeight guided_mixes[] = {{"guide_out", "eta"}, {"control_out", "eta_cv"}};
@@ -189,8 +193,8 @@ constexpr HistoryWeight guided_mixes[] = {{"guide_out", "eta"}, {"control_out", 
 const PassType afis_tiles_type{
     .name = "subsurface.afis_tiles",
     .shader = "afis/subsurface_afis_tiles",
-    .doc = "Filtered importance sampling where a tile was given samples: `samples` for its first step, twice "
-           "as many for each further one.",
+    .doc = "Filtered importance sampling in tiles that have samples: `samples` for the first step, twice as "
+           "many for each further step.",
     .ports = afis_tiles_ports,
     .settings = afis_settings,
     .dispatch = DispatchShape::over_tiles,
@@ -200,7 +204,8 @@ const PassType afis_tiles_type{
 const PassType guided_type{
     .name = "subsurface.guided",
     .shader = "afis/subsurface_guided",
-    .doc = "Filtered importance sampling with as many samples as the spread of earlier frames asks for.",
+    .doc =
+        "Filtered importance sampling whose number of samples follows from the variance of earlier frames.",
     .ports = guided_ports,
     .settings = guided_settings,
     .dispatch = DispatchShape::over_tiles,
@@ -211,7 +216,8 @@ const PassType guided_type{
 const PassType afis_type{
     .name = "subsurface.afis",
     .shader = "afis/subsurface_afis",
-    .doc = "Filtered importance sampling: samples read the level of a masked chain that fits their density.",
+    .doc = "Filtered importance sampling: each sample reads the level of a masked mip chain that matches the "
+           "sample density.",
     .ports = afis_ports,
     .settings = afis_settings,
     .dispatch = DispatchShape::over_tiles,

@@ -22,7 +22,7 @@ constexpr std::string_view profiles_options[] = {"merged", "apart"};
 constexpr PassTypeSetting setup_settings[] = {
     setting::texturing,
     setting::choice("profiles", profiles_options,
-                    "apart: for subsurface.afis; masks are scaled, and mark texels that mix profiles"),
+                    "apart: for subsurface.afis; masks are scaled and mark texels that mix profiles"),
 };
 
 constexpr Port down_ports[] = {
@@ -33,7 +33,7 @@ constexpr Port down_ports[] = {
 constexpr std::string_view halving_options[] = {"binomial", "box"};
 constexpr PassTypeSetting down_settings[] = {
     setting::choice("halving", halving_options,
-                    "binomial: [1 3 3 1], four filtered reads; box: the mean of 2x2, one"),
+                    "binomial: [1 3 3 1] with four filtered reads; box: mean of 2x2 texels with one read"),
 };
 
 } // namespace
@@ -41,7 +41,7 @@ constexpr PassTypeSetting down_settings[] = {
 const PassType pyramid_setup_type{
     .name = "subsurface.pyramid_setup",
     .shader = "afis/subsurface_pyramid_setup",
-    .doc = "Level 0 of the plain pyramid: light times mask of every pixel, a border of zeros around it.",
+    .doc = "Writes level 0 of the plain pyramid: light times mask of every pixel, with a border of zeros.",
     .ports = setup_ports,
     .settings = setup_settings,
     .dispatch = DispatchShape::over_written,
@@ -51,7 +51,7 @@ const PassType pyramid_setup_type{
 const PassType pyramid_down_type{
     .name = "subsurface.pyramid_down",
     .shader = "afis/subsurface_pyramid_down",
-    .doc = "Halves a level of the plain pyramid with [1 3 3 1] or a box.",
+    .doc = "Reduces a level of the plain pyramid to half its size, with a [1 3 3 1] or a box filter.",
     .ports = down_ports,
     .settings = down_settings,
     .dispatch = DispatchShape::over_written,

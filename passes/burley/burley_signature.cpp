@@ -14,8 +14,8 @@ constexpr PassTypeSetting burley_settings[] = {
      .minimum = 4,
      .maximum = 4096,
      .options = {},
-     .unit = "samples a pixel",
-     .doc = "stratified radii, golden angle; the error falls about as n^-0.7"},
+     .unit = "samples per pixel",
+     .doc = "number of samples, with stratified radii and golden angle; the error decreases about as n^-0.7"},
 };
 
 } // namespace
@@ -23,7 +23,7 @@ constexpr PassTypeSetting burley_settings[] = {
 const PassType burley_type{
     .name = "subsurface.burley",
     .shader = "burley/subsurface_burley",
-    .doc = "Importance sampling of the profile at stratified radii, weighted by 3-D distance and patch area.",
+    .doc = "Samples the profile by importance at stratified radii, weighted by 3-D distance and patch area.",
     .ports = burley_ports,
     .settings = burley_settings,
     .dispatch = DispatchShape::over_tiles,

@@ -213,7 +213,7 @@ std::optional<Combinations> enumerate_combinations(const CompileInput& input, Di
     count *= graph.settings[choice].options.size();
     if (count <= max_configurations) continue;
     diagnostics.add(DiagnosticId::too_many_configurations, graph.settings[choice].where,
-                    fmt::format("the options of the settings \"by\": \"budget\" combine to more than {} "
+                    fmt::format("the options of the choices with \"by\": \"budget\" combine to more than {} "
                                 "configurations",
                                 max_configurations));
     return std::nullopt;

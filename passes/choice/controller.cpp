@@ -82,15 +82,15 @@ const char* text_of(ReasonKind why) {
   case ReasonKind::no_budget:
     return "no budget is set";
   case ReasonKind::first_frame:
-    return "least error that fits; nothing ran before";
+    return "least error within the budget; first frame";
   case ReasonKind::fits_best:
-    return "least error that fits";
+    return "least error within the budget";
   case ReasonKind::better_fits:
-    return "less error than before fits now";
+    return "a configuration with less error now fits the budget";
   case ReasonKind::over_budget:
-    return "what ran before no longer fits";
+    return "the previous configuration exceeds the budget";
   case ReasonKind::nothing_fits:
-    return "nothing fits: the fastest";
+    return "no configuration fits the budget: the fastest runs";
   case ReasonKind::held:
     return "kept, to switch less often";
   }
@@ -103,11 +103,11 @@ const char* why_text(const Decision& decision) {
   if (!decision.transmission_stats) return text_of(decision.why);
   switch (decision.why) {
   case ReasonKind::first_frame:
-    return "least error that fits, for light through thin parts; nothing ran before";
+    return "least error within the budget, considering transmitted light; first frame";
   case ReasonKind::fits_best:
-    return "least error that fits, for light through thin parts";
+    return "least error within the budget, considering transmitted light";
   case ReasonKind::better_fits:
-    return "less error than before fits now, for light through thin parts";
+    return "a configuration with less error now fits the budget, considering transmitted light";
   case ReasonKind::no_budget:
   case ReasonKind::over_budget:
   case ReasonKind::nothing_fits:

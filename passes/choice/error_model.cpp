@@ -25,7 +25,7 @@ std::vector<ErrorPoint> read_curve(const Document& document, ObjectReader& owner
     const std::vector<NodeId> pair = children(document, node);
     if (pair.size() != 2) {
       diagnostics.add(DiagnosticId::out_of_range, document.where(node),
-                      fmt::format("{} has {} numbers, expected 2: d in pixels and RMSE", what, pair.size()));
+                      fmt::format("{} has {} values; expected 2: d in pixels and RMSE", what, pair.size()));
       continue;
     }
     const auto d_px = read_number(document, pair[0], "d of a " + what, min_d_px, largest_d_px, diagnostics);
@@ -34,7 +34,7 @@ std::vector<ErrorPoint> read_curve(const Document& document, ObjectReader& owner
     if (!d_px || !rmse) continue;
     if (!curve.empty() && *d_px <= curve.back().d_px)
       diagnostics.add(DiagnosticId::error_curve, document.where(node),
-                      fmt::format("{} is at d = {} after d = {}; d has to grow from point to point", what,
+                      fmt::format("{} has d = {} after d = {}; d must increase from point to point", what,
                                   *d_px, curve.back().d_px));
     curve.push_back({*d_px, *rmse});
   }
@@ -44,7 +44,7 @@ std::vector<ErrorPoint> read_curve(const Document& document, ObjectReader& owner
 PassTypeMatch read_pass_type(const Document& document, NodeId node, const std::string& of,
                              Diagnostics& diagnostics) {
   PassTypeMatch match;
-  ObjectReader object(document, node, fmt::format("kind of {}", of), diagnostics);
+  ObjectReader object(document, node, fmt::format("pass type of {}", of), diagnostics);
   match.type = object.string("type").value_or("");
   const NodeId set = object.object("set", Need::optional);
   if (set.valid())

@@ -104,11 +104,11 @@ std::string_view text_of(CameraFault fault) {
   case CameraFault::none:
     break;
   case CameraFault::no_projection:
-    return "clip_from_view (minus the jitter) is no axis-aligned perspective or orthographic projection with "
-           "finite elements";
+    return "clip_from_view (without the jitter) is not an axis-aligned perspective or orthographic "
+           "projection with finite elements";
   case CameraFault::stored_by_columns:
-    return "clip_from_view is no projection: it is stored column by column; element [r * 4 + c] is row r, "
-           "column c";
+    return "clip_from_view is not a projection because it is stored column by column; store row r, column c "
+           "in element [r * 4 + c]";
   case CameraFault::declared_left:
     return "view space is declared left-handed, but clip_from_view has w = -z, which is right-handed";
   case CameraFault::declared_right:
@@ -118,9 +118,9 @@ std::string_view text_of(CameraFault fault) {
   case CameraFault::previous_left:
     return "the frame is right-handed, but previous_clip_from_view has w = z, which is left-handed";
   case CameraFault::behind_camera:
-    return "clip_from_view maps only what is behind the camera to depth 0..1";
+    return "clip_from_view maps only points behind the camera to depth 0..1";
   case CameraFault::previous_behind_camera:
-    return "previous_clip_from_view maps only what is behind the camera to depth 0..1";
+    return "previous_clip_from_view maps only points behind the camera to depth 0..1";
   }
   return "";
 }

@@ -19,21 +19,21 @@ constexpr PassTypeSetting fixed_settings[] = {
      .minimum = 1,
      .maximum = 4096,
      .options = {},
-     .unit = "samples a pixel",
-     .doc = "points of the R2 sequence beyond the direct radius; the error falls about as n^-0.7"},
-    setting::choice(
-        "inverse", inverse_options,
-        "of Burley's distribution: polynomial, within .5 %; exact; approximate, c = 2.5715 (Golubev 2019). "
-        "Other profiles have a table"),
-    setting::choice(
-        "weighting", weighting_options,
-        "divide by the sampler's own density, which is unbiased, or by the profile's, as published"),
+     .unit = "samples per pixel",
+     .doc = "number of R2 points beyond the direct radius; the error decreases about as n^-0.7"},
+    setting::choice("inverse", inverse_options,
+                    "inverse of Burley's distribution: polynomial (error below 0.5 %), exact, or approximate "
+                    "(c = 2.5715, Golubev 2019). Other profiles use a table"),
+    setting::choice("weighting", weighting_options,
+                    "density that divides a sample: sampler: the sampler's own (unbiased); profile: the "
+                    "profile's, as published"),
     setting::choice("normalise", normalise_options,
-                    "self: by the sum of weights; none: unbiased, loses what falls outside of the surface"),
-    setting::choice(
-        "direct", direct_options,
-        "radius of the pixel's own light: inscribed in the pixel (unbiased), circumscribed (as published), "
-        "none"),
+                    "normalisation. self: divide by the sum of weights; none: unbiased, loses light of "
+                    "samples outside the surface"),
+    setting::choice("direct", direct_options,
+                    "radius within which the pixel's own light is used: inscribed in the pixel (unbiased), "
+                    "circumscribed (as published), "
+                    "none"),
 };
 
 } // namespace
@@ -41,9 +41,8 @@ constexpr PassTypeSetting fixed_settings[] = {
 const PassType fixed_type{
     .name = "subsurface.fixed",
     .shader = "papers/subsurface_fixed",
-    .doc = "Importance sampling of the widest channel at points of the R2 sequence, weighted by 3-D distance "
-           "and "
-           "patch area.",
+    .doc = "Samples the widest channel's profile by importance at points of the R2 sequence, weighted by 3-D "
+           "distance and patch area.",
     .ports = burley_ports,
     .settings = fixed_settings,
     .dispatch = DispatchShape::over_tiles,

@@ -20,9 +20,8 @@ constexpr Port gather_ports[] = {
 const PassType pyramid_gather_type{
     .name = "subsurface.pyramid_gather",
     .shader = "papers/subsurface_pyramid_gather",
-    .doc =
-        "Sums the plain pyramid's levels by each listed pixel's own weights. Knows neither depth nor other "
-        "profiles.",
+    .doc = "Sums the plain pyramid's levels with weights of each listed pixel. Ignores depth and other "
+           "profiles.",
     .ports = gather_ports,
     .settings = {},
     .dispatch = DispatchShape::over_tiles,

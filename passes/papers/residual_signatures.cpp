@@ -13,7 +13,7 @@ constexpr Port sure_light{"scattered",
                           Usage::sampled_image,
                           false,
                           "texture2D",
-                          "of the pyramid; rgb scattered light, a = confidence",
+                          "output of the pyramid. rgb: scattered light; a: confidence",
                           light_formats};
 constexpr Port own_sure_light{sure_light.name,
                               sure_light.usage,
@@ -22,8 +22,8 @@ constexpr Port own_sure_light{sure_light.name,
                               sure_light.doc,
                               sure_light.formats,
                               true};
-constexpr Port classes{"classes", Usage::storage_buffer_read,           false,
-                       "uint",    "as subsurface.classify writes them", {}};
+constexpr Port classes{"classes", Usage::storage_buffer_read,      false,
+                       "uint",    "output of subsurface.classify", {}};
 
 constexpr Port blend_ports[] = {
     port::level_light("light"),
@@ -42,7 +42,7 @@ constexpr Port blend_ports[] = {
     classes,
     port::tiles,
     port::arguments,
-    {"blended", Usage::storage_image_write, false, "image2D", "rgb scattered light, a = confidence",
+    {"blended", Usage::storage_image_write, false, "image2D", "rgb: scattered light; a: confidence",
      light_formats},
     port::sampling,
 };
@@ -50,15 +50,15 @@ constexpr Port blend_ports[] = {
 constexpr Format ratio_formats[] = {Format::rgba16f};
 constexpr Format place_formats[] = {Format::rgba16f};
 constexpr std::string_view ratio_doc =
-    "rgb running ratio of sampled light to the pyramid's, a = samples behind it";
-constexpr std::string_view place_doc = "view depth in metres, profile id, pattern of the light that the "
-                                       "ratio was learned in (a logarithm), mean "
-                                       "square of how far patterns stray; 0 where nothing was written";
+    "rgb: running ratio of sampled light to the pyramid's light; a: number of samples in the ratio";
+constexpr std::string_view place_doc =
+    "view depth in metres; profile id; logarithmic light pattern in which the ratio was learned; mean square "
+    "deviation of patterns. 0 where nothing was written";
 
 constexpr Format global_light_formats[] = {Format::rgba32f};
-constexpr std::string_view global_light_doc = "logarithm of how much brighter all that is seen is than what "
-                                              "was learned, odds that light of the learned "
-                                              "pattern is the learned light, tolerance of patterns";
+constexpr std::string_view global_light_doc =
+    "logarithm of the global change in brightness since the ratio was learned; odds that light with the "
+    "learned pattern is the learned light; tolerance of patterns";
 
 constexpr Port brightness_ports[] = {
     port::level_surface("surface"),
@@ -90,7 +90,7 @@ constexpr Port residual_ports[] = {
     {"place", Usage::sampled_image, false, "texture2D", place_doc, place_formats},
     port::tiles,
     port::arguments,
-    {"refined", Usage::storage_image_write, false, "image2D", "rgb scattered light, a = confidence",
+    {"refined", Usage::storage_image_write, false, "image2D", "rgb: scattered light; a: confidence",
      light_formats},
     {"ratio_out", Usage::storage_image_write, false, "image2D", ratio_doc, ratio_formats},
     {"place_out", Usage::storage_image_update, false, port::part_of_cleared, place_doc, place_formats},
@@ -103,32 +103,35 @@ constexpr PassTypeSetting samples{.name = "samples",
                                   .minimum = 1,
                                   .maximum = 4096,
                                   .options = {},
-                                  .unit = "samples a pixel",
-                                  .doc = "beyond the direct radius, where confidence is low"};
-constexpr PassTypeSetting lod_bias = setting::real(
-    "lod_bias", -1.5, -8, 4, "levels", "on the level whose texels have the area that a sample stands for");
+                                  .unit = "samples per pixel",
+                                  .doc =
+                                      "number of samples beyond the direct radius, where confidence is low"};
+constexpr PassTypeSetting lod_bias =
+    setting::real("lod_bias", -1.5, -8, 4, "levels",
+                  "offset of the mip level; at 0 a texel has the area that a sample represents");
 
 constexpr PassTypeSetting brightness_settings[] = {
-    setting::per_frame(setting::real(
-        "tolerance", 0.06, 0.001, 100, "",
-        "change of the logarithm of a surface's light, beside that of all light, that is none, at least")),
+    setting::per_frame(setting::real("tolerance", 0.06, 0.001, 100, "",
+                                     "minimum change of the logarithm of a surface's light, relative to the "
+                                     "global change, that counts as a change")),
 };
 
 constexpr PassTypeSetting blend_settings[] = {
     samples,
     lod_bias,
     setting::per_frame(setting::real("below", 0.8, 0, 2, "", "confidence below which a pixel is sampled")),
-    setting::per_frame(setting::real("sample_weight", 0.5, 0, 1, "", "of the samples in the result")),
+    setting::per_frame(setting::real("sample_weight", 0.5, 0, 1, "", "weight of the samples in the result")),
 };
 
 constexpr PassTypeSetting residual_settings[] = {
     samples,
     lod_bias,
     setting::per_frame(setting::real("below", 0.988, 0, 2, "", "confidence below which a pixel is sampled")),
-    setting::per_frame(setting::real("often_below", 0.85, 0, 2, "",
-                                     "confidence below which it is in one frame of four, not of sixteen")),
     setting::per_frame(
-        setting::real("alpha", 0.2, 0.01, 1, "", "weight of what is new in the running ratio, at least")),
+        setting::real("often_below", 0.85, 0, 2, "",
+                      "confidence below which a pixel is sampled in one of 4 frames instead of one of 16")),
+    setting::per_frame(
+        setting::real("alpha", 0.2, 0.01, 1, "", "minimum weight of new samples in the running ratio")),
     {.name = "eager",
      .type = SettingType::integer,
      .default_value = integer_value(6),
@@ -136,7 +139,7 @@ constexpr PassTypeSetting residual_settings[] = {
      .maximum = 64,
      .options = {},
      .unit = "times samples",
-     .doc = "a pixel with less history takes twice the samples in every frame"},
+     .doc = "history below which a pixel takes twice the samples in every frame"},
 };
 
 constexpr HistoryWeight residual_mixes[] = {{"ratio_out", "alpha", HistoryWeight::By::fraction, 16}};
@@ -146,7 +149,7 @@ constexpr HistoryWeight residual_mixes[] = {{"ratio_out", "alpha", HistoryWeight
 const PassType refine_type{
     .name = "subsurface.refine",
     .shader = "papers/subsurface_refine",
-    .doc = "Blends the pyramid's light with samples where its confidence is low. No history.",
+    .doc = "Blends the pyramid's light with samples where its confidence is low. Uses no history.",
     .ports = blend_ports,
     .settings = blend_settings,
     .dispatch = DispatchShape::over_tiles,
@@ -156,7 +159,7 @@ const PassType refine_type{
 const PassType global_light_change_type{
     .name = "subsurface.global_light_change",
     .shader = "papers/subsurface_global_light_change",
-    .doc = "Finds how bright all that is seen is, so that light that flashes can be told from another light.",
+    .doc = "Estimates the global change in brightness, to distinguish flashing light from a different light.",
     .ports = brightness_ports,
     .settings = brightness_settings,
     .dispatch = DispatchShape::single_group,
@@ -166,8 +169,8 @@ const PassType global_light_change_type{
 const PassType residual_type{
     .name = "subsurface.residual",
     .shader = "papers/subsurface_residual",
-    .doc =
-        "Multiplies the pyramid's light by the running ratio of samples to it, where its confidence is low.",
+    .doc = "Multiplies the pyramid's light by the running ratio of sampled light to it where its confidence "
+           "is low.",
     .ports = residual_ports,
     .settings = residual_settings,
     .dispatch = DispatchShape::over_tiles,

@@ -11,10 +11,10 @@ using port::light_formats;
 using port::tile_errors_doc;
 
 constexpr Port contrast_ports[] = {
-    {"light", Usage::sampled_image, false, "texture2D", "as subsurface.setup writes it", light_formats},
+    {"light", Usage::sampled_image, false, "texture2D", "output of subsurface.setup", light_formats},
     port::material,
     {"importance", Usage::sampled_image, true, "texture2D",
-     "how much an error matters to the host, 0 to 1; unbound: 1 everywhere", importance_formats},
+     "importance of errors to the host, 0 to 1; unbound: 1 everywhere", importance_formats},
     port::tiles,
     port::arguments,
     {"tile_errors", Usage::storage_buffer_write, false, "uint", tile_errors_doc, {}},
@@ -22,7 +22,7 @@ constexpr Port contrast_ports[] = {
 constexpr PassTypeSetting contrast_settings[] = {
     setting::per_frame(setting::real(
         "min_contrast", 0.01, 0, 4, "",
-        "mean distance from the tile's mean, of exposed luminance, below which light counts as even")),
+        "mean deviation of exposed luminance from the tile's mean, below which light counts as uniform")),
 };
 
 } // namespace
@@ -30,7 +30,7 @@ constexpr PassTypeSetting contrast_settings[] = {
 const PassType tile_variance_type{
     .name = "subsurface.tile_variance",
     .shader = "papers/subsurface_tile_variance",
-    .doc = "How much light varies inside each tile, times importance.",
+    .doc = "Computes the variation of light inside each tile, times importance.",
     .ports = contrast_ports,
     .settings = contrast_settings,
     .dispatch = DispatchShape::over_tiles,

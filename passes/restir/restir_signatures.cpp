@@ -7,10 +7,11 @@ namespace dermis::subsurface {
 namespace {
 
 constexpr std::string_view reservoirs_doc =
-    "four elements a pixel of the render rectangle, row by row: docs/restir.md";
-constexpr std::string_view domains_doc = "two elements a pixel of the render rectangle, row by row: what it "
-                                         "fixed of its paths; 0 where nothing was written";
-constexpr std::string_view kept_lights_doc = "as `lights`, as many as there is room for";
+    "four elements per pixel of the render rectangle, row by row; see docs/restir.md";
+constexpr std::string_view domains_doc =
+    "two elements per pixel of the render rectangle, row by row: the part of its paths that the pixel "
+    "determines; 0 where nothing was written";
+constexpr std::string_view kept_lights_doc = "copy of `lights`, as many as fit into the buffer";
 
 constexpr Port normal{"normal",
                       Usage::sampled_image,
@@ -18,16 +19,18 @@ constexpr Port normal{"normal",
                       "texture2D",
                       "geometric normal in view space, unit length",
                       port::light_formats};
-constexpr Port scene{"scene", Usage::acceleration_structure, false, "accelerationStructureEXT",
-                     "what rays meet; an instance's custom index is its element of `instances`"};
-constexpr Port vertices{"vertices", Usage::storage_buffer_read, false, "vec4",
-                        "two elements a vertex: position, normal of the object, fourth unused"};
-constexpr Port indices{"indices", Usage::storage_buffer_read, false, "uint", "three a triangle"};
+constexpr Port scene{
+    "scene", Usage::acceleration_structure, false, "accelerationStructureEXT",
+    "geometry that rays intersect; an instance's custom index is its element in `instances`"};
+constexpr Port vertices{
+    "vertices", Usage::storage_buffer_read, false, "vec4",
+    "two elements per vertex: position and normal in object space; the fourth component is unused"};
+constexpr Port indices{"indices", Usage::storage_buffer_read, false, "uint", "three elements per triangle"};
 constexpr Port instances{
     "instances", Usage::storage_buffer_read, false, "ray_instance",
-    "64 bytes: three rows of world from object, first vertex, first index, profile id, 0"};
+    "64 bytes each: three rows of the world-from-object matrix, first vertex, first index, profile id, 0"};
 constexpr Port lights{"lights", Usage::storage_buffer_read, false, "light_source",
-                      "64 bytes each, as shaders/restir/lights.glsl has them"};
+                      "64 bytes each, in the layout of shaders/restir/lights.glsl"};
 
 constexpr Port initial_ports[] = {
     port::material,  port::depth,
@@ -45,13 +48,13 @@ constexpr PassTypeSetting initial_settings[] = {
      .minimum = 1,
      .maximum = 1024,
      .options = {},
-     .unit = "paths a pixel",
-     .doc = "of which one is kept, drawn by its share of their light"},
+     .unit = "paths per pixel",
+     .doc = "number of candidate paths; one path is kept with a probability proportional to its light"},
 };
 
 constexpr std::string_view shift_options[] = {"reconnection", "delayed", "hybrid", "sequential"};
 constexpr PassTypeSetting shift =
-    setting::choice("shift", shift_options, "how a path of one pixel becomes one of another");
+    setting::choice("shift", shift_options, "mapping of a path of one pixel to a path of another pixel");
 
 constexpr Port temporal_ports[] = {
     port::material,
@@ -78,7 +81,7 @@ constexpr Port temporal_ports[] = {
 constexpr PassTypeSetting temporal_settings[] = {
     shift,
     setting::per_frame(
-        setting::real("cap", 20, 0, 1000, "times the frame", "that history counts for at most")),
+        setting::real("cap", 20, 0, 1000, "times the frame", "maximum confidence weight of the history")),
 };
 
 constexpr Port spatial_ports[] = {
@@ -107,7 +110,7 @@ constexpr PassTypeSetting spatial_settings[] = {
      .maximum = 1,
      .options = {},
      .unit = "",
-     .doc = "which of two: of shift `sequential` the first reconnects, the second replays"},
+     .doc = "index of the spatial pass; with the shift `sequential`, pass 0 reconnects and pass 1 replays"},
     {.name = "neighbours",
      .type = SettingType::integer,
      .default_value = integer_value(4),
@@ -115,12 +118,12 @@ constexpr PassTypeSetting spatial_settings[] = {
      .maximum = 8,
      .options = {},
      .unit = "pixels",
-     .doc = "that are looked at"},
+     .doc = "number of neighbouring pixels that are tested"},
 };
 
 constexpr Port resolve_ports[] = {
     {"lighting", Usage::sampled_image, false, "texture2D",
-     "diffuse irradiance before albedo, linear: where it does not scatter", port::color_formats},
+     "diffuse irradiance before albedo, linear; used where light does not scatter", port::color_formats},
     port::material,
     port::depth,
     normal,
@@ -144,7 +147,7 @@ constexpr HistoryWeight temporal_mixes[] = {{"merged", "cap", HistoryWeight::By:
 const PassType restir_initial_type{
     .name = "restir.initial",
     .shader = "restir/restir_initial",
-    .doc = "Draws paths from each pixel through the object to a light, by probe rays, and keeps one of them.",
+    .doc = "Samples paths from each pixel through the object to a light with probe rays, and keeps one path.",
     .ports = initial_ports,
     .settings = initial_settings,
     .dispatch = DispatchShape::over_tiles,
@@ -155,7 +158,7 @@ const PassType restir_initial_type{
 const PassType restir_temporal_type{
     .name = "restir.temporal",
     .shader = "restir/restir_temporal",
-    .doc = "Merges each pixel's path with the one that its surface had in the frame before.",
+    .doc = "Merges each pixel's path with the path of the same surface in the previous frame.",
     .ports = temporal_ports,
     .settings = temporal_settings,
     .dispatch = DispatchShape::over_tiles,
@@ -167,7 +170,7 @@ const PassType restir_temporal_type{
 const PassType restir_spatial_type{
     .name = "restir.spatial",
     .shader = "restir/restir_spatial",
-    .doc = "Merges each pixel's path with those of pixels around it that show the same profile.",
+    .doc = "Merges each pixel's path with paths of neighbouring pixels that show the same profile.",
     .ports = spatial_ports,
     .settings = spatial_settings,
     .dispatch = DispatchShape::over_tiles,
@@ -178,7 +181,8 @@ const PassType restir_spatial_type{
 const PassType restir_resolve_type{
     .name = "restir.resolve",
     .shader = "restir/restir_resolve",
-    .doc = "Light that the kept path of each pixel brings; its own in channels that do not scatter.",
+    .doc = "Computes the light of each pixel's kept path; channels that do not scatter keep the pixel's own "
+           "light.",
     .ports = resolve_ports,
     .settings = resolve_settings,
     .dispatch = DispatchShape::over_tiles,

@@ -16,13 +16,14 @@ constexpr PassTypeSetting below = setting::per_frame(
 
 constexpr Port doubt_ports[] = {
     {"scattered", Usage::sampled_image, false, "texture2D",
-     "of the pyramid; rgb scattered light, a = confidence", light_formats},
+     "output of the pyramid. rgb: scattered light; a: confidence", light_formats},
     {"light", Usage::sampled_image, true, "texture2D",
-     "before it scattered: what did not change by that counts less; unbound: all counts alike",
+     "light before scattering: light that scattering did not change counts less; unbound: all light counts "
+     "equally",
      light_formats},
     port::material,
     {"importance", Usage::sampled_image, true, "texture2D",
-     "how much an error matters to the host, 0 to 1; unbound: 1 everywhere", importance_formats},
+     "importance of errors to the host, 0 to 1; unbound: 1 everywhere", importance_formats},
     port::tiles,
     port::arguments,
     {"tile_errors", Usage::storage_buffer_write, false, "uint", tile_errors_doc, {}},
@@ -32,7 +33,7 @@ constexpr PassTypeSetting doubt_settings[] = {below};
 constexpr Port allot_ports[] = {
     port::classes,
     {"tile_errors", Usage::storage_buffer_read, false, "uint", tile_errors_doc, {}},
-    {"before", Usage::storage_buffer_read, true, "uint", "the shares of the frame before", {}},
+    {"before", Usage::storage_buffer_read, true, "uint", "samples_per_tile of the previous frame", {}},
     {"samples_per_tile", Usage::storage_buffer_write, false, "uint", port::samples_per_tile.doc, {}},
     {"tiles", Usage::storage_buffer_write, false, "uint", port::tiles.doc, {}},
     {"arguments", Usage::storage_buffer_write, false, "uint", port::arguments.doc, {}},
@@ -56,13 +57,13 @@ constexpr Port mend_ports[] = {
     port::tiles,
     port::arguments,
     {"scattered", Usage::storage_image_update, false, "image2D",
-     "rgb scattered light, a = confidence; refined in place", refined_formats},
+     "rgb: scattered light; a: confidence; refined in place", refined_formats},
 };
 constexpr PassTypeSetting mend_settings[] = {
     setting::real("lod_bias", -1.5, -8, 4, "levels",
-                  "on the level whose texels have the area that a sample stands for"),
+                  "offset of the mip level; at 0 a texel has the area that a sample represents"),
     below,
-    setting::per_frame(setting::real("sample_weight", 0.5, 0, 1, "", "of the samples in the result")),
+    setting::per_frame(setting::real("sample_weight", 0.5, 0, 1, "", "weight of the samples in the result")),
 };
 
 } // namespace
@@ -70,7 +71,7 @@ constexpr PassTypeSetting mend_settings[] = {
 const PassType tile_error_estimate_type{
     .name = "subsurface.tile_error_estimate",
     .shader = "sap/subsurface_tile_error_estimate",
-    .doc = "How far off each tile is expected to be: what the pyramid's confidence lacks, times light and "
+    .doc = "Estimates the error of each tile: the confidence that the pyramid lacks, times light and "
            "importance.",
     .ports = doubt_ports,
     .settings = doubt_settings,
@@ -81,7 +82,7 @@ const PassType tile_error_estimate_type{
 const PassType allocate_samples_type{
     .name = "subsurface.allocate_samples",
     .shader = "sap/subsurface_allocate_samples",
-    .doc = "Gives tiles samples, those first that gain most for what they cost, until the frame's budget is "
+    .doc = "Allocates samples to tiles in the order of error reduction per cost, until the frame's budget is "
            "spent.",
     .ports = allot_ports,
     .settings = {},
@@ -92,7 +93,7 @@ const PassType allocate_samples_type{
 const PassType tile_refine_type{
     .name = "subsurface.tile_refine",
     .shader = "sap/subsurface_tile_refine",
-    .doc = "Blends samples into the pyramid's light where a tile was given some.",
+    .doc = "Blends samples into the pyramid's light in tiles that have samples.",
     .ports = mend_ports,
     .settings = mend_settings,
     .dispatch = DispatchShape::over_tiles,

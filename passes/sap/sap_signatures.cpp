@@ -13,14 +13,14 @@ namespace {
 constexpr std::string_view variant_options[] = {"base", "smooth", "half"};
 
 constexpr std::string_view light_doc =
-    "rgb light, a = fourth root of the surface's area over its cross-section";
+    "rgb: light; a: fourth root of the surface's area divided by its cross-section";
 constexpr std::string_view surface_doc =
-    "depth in mm (bits of a float); slope x, y (halves); factor on d, share of the texel's kernel that met "
-    "its own surface (halves); profile id in bits 0-7, 0 = nothing here, bit 8 = there is a second layer";
-constexpr std::string_view scattered_doc = "scattered light of this level and coarser ones (3 halves), "
-                                           "confidence (half), share of the kernel that met the "
-                                           "surface (3 halves), 0; in full storage light (bits of 3 floats), "
-                                           "the share and confidence (a byte each)";
+    "depth in mm (bits of a float); slope x, y (halves); factor on d, fraction of the texel's kernel on its "
+    "own surface (halves); profile id in bits 0-7 (0: no surface), bit 8: a second layer exists";
+constexpr std::string_view scattered_doc =
+    "scattered light of this level and coarser levels (3 halves), confidence (half), fraction of the kernel "
+    "on the surface (3 halves), 0; in full storage: light (bits of 3 floats), the fraction and the "
+    "confidence (a byte each)";
 
 using port::light_formats;
 using port::surface_formats;
@@ -39,44 +39,42 @@ constexpr PassTypeSetting level_setting(double first, std::string_view doc,
 
 constexpr PassTypeSetting variant =
     setting::choice("variant", variant_options,
-                    "base: tent at levels 0 and 1; smooth: at every level, which hides the grid; half: at "
-                    "level 1, below subsurface.sap_gather_half",
+                    "tent filter. base: at levels 0 and 1; smooth: at every level, which hides the grid; "
+                    "half: at level 1, below subsurface.sap_gather_half",
                     1);
 
 // Two layers at level 1 need a full first level, so `half` is not available.
 constexpr PassTypeSetting layered_variant =
     setting::choice("variant", std::span(variant_options).first(2),
-                    "base: tent at levels 0 and 1; smooth: at every level, which hides the grid", 1);
+                    "tent filter. base: at levels 0 and 1; smooth: at every level, which hides the grid", 1);
 
 constexpr std::string_view storage_options[] = {"half", "full"};
 constexpr PassTypeSetting storage =
     setting::choice("storage", storage_options,
-                    "of light that is written: half floats, or floats, whose images then need 32 bits a "
-                    "channel; the same in all passes of a pyramid");
+                    "precision of written light. half: half floats; full: floats, whose images need 32 bits "
+                    "per channel. All passes of a pyramid must use the same value");
 
-constexpr Port level_tiles{
-    "level_tiles", Usage::storage_buffer_read, false, "uvec2", "as subsurface.sap_tiles writes them", {}};
+constexpr Port level_tiles{"level_tiles", Usage::storage_buffer_read,       false,
+                           "uvec2",       "output of subsurface.sap_tiles", {}};
 constexpr Port level_arguments{
-    "level_arguments", Usage::indirect_arguments, false, "uint", "as subsurface.sap_tiles writes them", {}};
+    "level_arguments", Usage::indirect_arguments, false, "uint", "output of subsurface.sap_tiles", {}};
 
 constexpr Port tiles_ports[] = {
-    {"classes", Usage::storage_buffer_read, false, "uint", "as subsurface.classify writes them", {}},
+    {"classes", Usage::storage_buffer_read, false, "uint", "output of subsurface.classify", {}},
     {"level_tiles",
      Usage::storage_buffer_write,
      false,
      "uvec2",
-     "for each level the index of its first entry and their number, then the entries: tile x in bits 0-14, y "
-     "in bits "
-     "15-29, bit 30 = all pixels have subsurface, bit 31 = copy only; which of 3x3 tiles can hold surface, "
-     "in bits 0-8 those of the finer level "
-     "that the "
-     "tile reduces, in bits 9-17 those around it",
+     "for each level, the index of its first entry and the number of entries; then the entries: tile x in "
+     "bits 0-14, y in bits 15-29, bit 30: all pixels have subsurface, bit 31: copy only; then a mask of the "
+     "3x3 tiles that can contain surface: bits 0-8 for the tiles of the finer level that the tile reduces, "
+     "bits 9-17 for the tiles around it",
      {}},
     {"level_arguments",
      Usage::storage_buffer_write,
      false,
      "uint",
-     "for each level the group counts x, y, z of an indirect dispatch over its tiles, and x times y",
+     "for each level, the group counts x, y, z of an indirect dispatch over its tiles, and x times y",
      {}},
     {"tiles", Usage::storage_buffer_write, false, "uint", port::tiles.doc, {}},
     {"arguments", Usage::storage_buffer_write, false, "uint", port::arguments.doc, {}},
@@ -84,9 +82,8 @@ constexpr Port tiles_ports[] = {
      Usage::storage_buffer_write,
      true,
      "uint",
-     "as arguments, of 0 groups where any tile scatters: then the pyramid copies the others, too. Bound, the "
-     "pyramid's "
-     "lists are empty where none does",
+     "like 'arguments', but 0 groups if any tile scatters, because the pyramid then also copies the other "
+     "tiles. If the port is bound, the pyramid's lists are empty when no tile scatters",
      {}},
 };
 
@@ -115,52 +112,52 @@ constexpr Port halve_ports[] = {
     {"coarse_light", Usage::storage_image_write, false, "image2D", light_doc, light_formats},
     {"coarse_surface", Usage::storage_image_write, false, "uimage2D", surface_doc, surface_formats},
 };
-constexpr PassTypeSetting halve_settings[] = {level_setting(1, "that is written", 1), setting::texturing,
-                                              storage};
+constexpr PassTypeSetting halve_settings[] = {level_setting(1, "level that the pass writes", 1),
+                                              setting::texturing, storage};
 
 constexpr Port down_ports[] = {
-    {"light", Usage::sampled_image, false, "texture2D", "of the finer level", light_formats},
-    {"surface", Usage::sampled_image, false, "utexture2D", "of the finer level", surface_formats},
+    {"light", Usage::sampled_image, false, "texture2D", "image of the finer level", light_formats},
+    {"surface", Usage::sampled_image, false, "utexture2D", "image of the finer level", surface_formats},
     level_tiles,
     level_arguments,
     {"coarse_light", Usage::storage_image_write, false, "image2D", light_doc, light_formats},
     {"coarse_surface", Usage::storage_image_write, false, "uimage2D", surface_doc, surface_formats},
 };
-constexpr PassTypeSetting down_settings[] = {level_setting(1, "that is written"), storage};
+constexpr PassTypeSetting down_settings[] = {level_setting(1, "level that the pass writes"), storage};
 
 // Ports of the second layer, for levels whose texels can have a second surface. Its images are
 // valid only at texels whose first surface has the flag.
-constexpr std::string_view second_doc =
-    "the same of the second layer, what lies off the first; nothing where a texel has one";
+constexpr std::string_view second_doc = "image of the second layer, which holds surfaces apart from the "
+                                        "first layer; undefined where a texel has only one layer";
 constexpr Port second_coarse_surface{
     "second_coarse_surface", Usage::sampled_image, true, "utexture2D", second_doc, surface_formats};
 constexpr Port second_coarse_scattered{
     "second_coarse_scattered", Usage::sampled_image, true, "utexture2D", second_doc, surface_formats};
 
 constexpr Port up_ports[] = {
-    {"light", Usage::sampled_image, false, "texture2D", "of this level", light_formats},
-    {"surface", Usage::sampled_image, false, "utexture2D", "of this level", surface_formats},
-    {"coarse_surface", Usage::sampled_image, true, "utexture2D", "of the coarser level; unbound at the last",
-     surface_formats},
+    {"light", Usage::sampled_image, false, "texture2D", "image of this level", light_formats},
+    {"surface", Usage::sampled_image, false, "utexture2D", "image of this level", surface_formats},
+    {"coarse_surface", Usage::sampled_image, true, "utexture2D",
+     "image of the coarser level; unbound at the last level", surface_formats},
     {"coarse_scattered", Usage::sampled_image, true, "utexture2D",
-     "of the coarser level; unbound at the last", surface_formats},
+     "image of the coarser level; unbound at the last level", surface_formats},
     second_coarse_surface,
     second_coarse_scattered,
     level_tiles,
     level_arguments,
     {"scattered", Usage::storage_image_write, false, "uimage2D", scattered_doc, surface_formats},
 };
-constexpr PassTypeSetting up_settings[] = {level_setting(1, "that is written"), variant, storage};
+constexpr PassTypeSetting up_settings[] = {level_setting(1, "level that the pass writes"), variant, storage};
 
 constexpr Port gather_ports[] = {
-    {"light", Usage::sampled_image, false, "texture2D", "of level 0", light_formats},
-    {"surface", Usage::sampled_image, false, "utexture2D", "of level 0", surface_formats},
-    {"coarse_surface", Usage::sampled_image, false, "utexture2D", "of level 1", surface_formats},
-    {"coarse_scattered", Usage::sampled_image, false, "utexture2D", "of level 1", surface_formats},
+    {"light", Usage::sampled_image, false, "texture2D", "image of level 0", light_formats},
+    {"surface", Usage::sampled_image, false, "utexture2D", "image of level 0", surface_formats},
+    {"coarse_surface", Usage::sampled_image, false, "utexture2D", "image of level 1", surface_formats},
+    {"coarse_scattered", Usage::sampled_image, false, "utexture2D", "image of level 1", surface_formats},
     level_tiles,
     level_arguments,
     {"scattered", Usage::storage_image_write, false, "image2D",
-     "rgb scattered light where there is subsurface, undefined elsewhere; a = confidence", light_formats},
+     "rgb: scattered light where there is subsurface, undefined elsewhere; a: confidence", light_formats},
 };
 constexpr PassTypeSetting gather_settings[] = {variant, storage};
 
@@ -175,9 +172,9 @@ constexpr Port layered_down_ports[] = {
     down_ports[0],
     down_ports[1],
     {"second_light", Usage::sampled_image, true, "texture2D",
-     "of the second layer; unbound where the finer level has one", light_formats},
+     "image of the second layer; unbound if the finer level has one layer", light_formats},
     {"second_surface", Usage::sampled_image, true, "utexture2D",
-     "of the second layer; unbound where the finer level has one", surface_formats},
+     "image of the second layer; unbound if the finer level has one layer", surface_formats},
     level_tiles,
     level_arguments,
     down_ports[4],
@@ -218,9 +215,8 @@ constexpr Port layered_gather_ports[] = {
 const PassType sap_tiles_type{
     .name = "subsurface.sap_tiles",
     .shader = "sap/subsurface_sap_tiles",
-    .doc =
-        "Lists the tiles of every level of the surface-aware pyramid that can hold surface, and the indirect "
-        "arguments for them, in one pass and in row order.",
+    .doc = "Lists the tiles of every level of the surface-aware pyramid that can contain surface, and writes "
+           "their indirect arguments, in one pass and in row order.",
     .ports = tiles_ports,
     .settings = {},
     .dispatch = DispatchShape::single_group,
@@ -230,7 +226,7 @@ const PassType sap_tiles_type{
 const PassType sap_setup_type{
     .name = "subsurface.sap_setup",
     .shader = "sap/subsurface_sap_setup",
-    .doc = "Level 0 of the surface-aware pyramid: light and surface of every pixel of listed tiles.",
+    .doc = "Writes level 0 of the surface-aware pyramid: light and surface of every pixel of listed tiles.",
     .ports = setup_ports,
     .settings = setup_settings,
     .dispatch = DispatchShape::over_tiles,
@@ -251,9 +247,8 @@ const PassType sap_down_type{
 const PassType sap_up_type{
     .name = "subsurface.sap_up",
     .shader = "sap/subsurface_sap_up",
-    .doc = "Blends one level of the pyramid with what comes from the coarser ones; of two layers there a "
-           "texel takes "
-           "the one nearer to it.",
+    .doc = "Blends one level of the pyramid with the coarser levels; if these have two layers, a texel reads "
+           "the layer nearer to its surface.",
     .ports = up_ports,
     .settings = up_settings,
     .dispatch = DispatchShape::over_tiles,
@@ -264,7 +259,7 @@ const PassType sap_up_type{
 const PassType sap_gather_type{
     .name = "subsurface.sap_gather",
     .shader = "sap/subsurface_sap_gather",
-    .doc = "Level 0 of the way up: the scattered light of every listed pixel.",
+    .doc = "Writes level 0 of the upward traversal: the scattered light of every listed pixel.",
     .ports = gather_ports,
     .settings = gather_settings,
     .dispatch = DispatchShape::over_tiles,
@@ -274,8 +269,8 @@ const PassType sap_gather_type{
 const PassType sap_setup_half_res_type{
     .name = "subsurface.sap_setup_half_res",
     .shader = "sap/subsurface_sap_setup_half_res",
-    .doc = "Level 1 of the surface-aware pyramid straight from the view: 2x2 pixels of one surface a texel. "
-           "Takes the place of subsurface.sap_setup and the first subsurface.sap_down.",
+    .doc = "Writes level 1 of the surface-aware pyramid directly from the view: 2x2 pixels of one surface "
+           "per texel. Replaces subsurface.sap_setup and the first subsurface.sap_down.",
     .ports = halve_ports,
     .settings = halve_settings,
     .dispatch = DispatchShape::over_tiles,
@@ -286,9 +281,8 @@ const PassType sap_setup_half_res_type{
 const PassType sap_gather_half_type{
     .name = "subsurface.sap_gather_half",
     .shader = "sap/subsurface_sap_gather_half",
-    .doc = "As subsurface.sap_gather, above subsurface.sap_setup_half_res: a pixel's own light at full "
-           "resolution, all "
-           "that comes from others at half of it.",
+    .doc = "Like subsurface.sap_gather, after subsurface.sap_setup_half_res: a pixel's own light at full "
+           "resolution, light from other pixels at half resolution.",
     .ports = half_gather_ports,
     .settings = setup_settings,
     .dispatch = DispatchShape::over_tiles,
@@ -298,7 +292,7 @@ const PassType sap_gather_half_type{
 const PassType sap_down_layered_type{
     .name = "subsurface.sap_down_layered",
     .shader = "sap/subsurface_sap_down_layered",
-    .doc = "As subsurface.sap_down, with a second surface a texel: what lies off the first.",
+    .doc = "Like subsurface.sap_down, with a second layer per texel for surfaces apart from the first layer.",
     .ports = layered_down_ports,
     .settings = down_settings,
     .dispatch = DispatchShape::over_tiles,
@@ -309,7 +303,7 @@ const PassType sap_down_layered_type{
 const PassType sap_up_layered_type{
     .name = "subsurface.sap_up_layered",
     .shader = "sap/subsurface_sap_up_layered",
-    .doc = "As subsurface.sap_up, of both layers: each takes of another texel the layer nearer to it.",
+    .doc = "Like subsurface.sap_up, for both layers: each layer reads the nearer layer of other texels.",
     .ports = layered_up_ports,
     .settings = up_settings,
     .dispatch = DispatchShape::over_tiles,
@@ -320,7 +314,7 @@ const PassType sap_up_layered_type{
 const PassType sap_gather_layered_type{
     .name = "subsurface.sap_gather_layered",
     .shader = "sap/subsurface_sap_gather_layered",
-    .doc = "As subsurface.sap_gather, from two layers at level 1.",
+    .doc = "Like subsurface.sap_gather, with two layers at level 1.",
     .ports = layered_gather_ports,
     .settings = layered_gather_settings,
     .dispatch = DispatchShape::over_tiles,

@@ -14,7 +14,7 @@ constexpr std::string_view kernel_options[] = {"fitted", "jimenez"};
 constexpr Port separable_ports[] = {
     light,
     {"blurred", Usage::sampled_image, true, "texture2D",
-     "the horizontal pass's result; bound for the vertical pass", port::color_formats},
+     "result of the horizontal pass; bound for the vertical pass", port::color_formats},
     port::material,
     port::depth,
     port::scatter_scale,
@@ -23,7 +23,8 @@ constexpr Port separable_ports[] = {
     port::scattered,
 };
 constexpr PassTypeSetting separable_settings[] = {
-    setting::choice("axis", axis_options, "of this pass; a graph runs horizontal, then vertical"),
+    setting::choice("axis", axis_options,
+                    "axis of this pass; a graph runs the horizontal pass, then the vertical pass"),
     {.name = "taps",
      .type = SettingType::enumeration,
      .default_value = option_value(1),
@@ -31,10 +32,10 @@ constexpr PassTypeSetting separable_settings[] = {
      .maximum = 0,
      .options = taps_options,
      .unit = "taps",
-     .doc = "reads along the axis"},
-    setting::choice(
-        "kernel", kernel_options,
-        "fitted to each profile for each projected d; jimenez: the published artist-friendly kernel"),
+     .doc = "number of reads along the axis"},
+    setting::choice("kernel", kernel_options,
+                    "fitted: kernel fitted to each profile for each projected d; jimenez: the published "
+                    "artist-friendly kernel"),
 };
 
 } // namespace
@@ -42,8 +43,8 @@ constexpr PassTypeSetting separable_settings[] = {
 const PassType separable_type{
     .name = "subsurface.separable",
     .shader = "separable/subsurface_separable",
-    .doc =
-        "One 1-D pass of a separable kernel: delta plus rank 1 fitted to the profile, or the published one.",
+    .doc = "Applies one 1-D pass of a separable kernel: delta plus rank 1, fitted to the profile, or the "
+           "published kernel.",
     .ports = separable_ports,
     .settings = separable_settings,
     .dispatch = DispatchShape::over_tiles,

@@ -50,11 +50,11 @@ void read_burley(const Document& document, ObjectReader& reader, Profile& profil
     reader.has("dmfp_mm");
     diagnostics
         .add(DiagnosticId::profile_keys, document.where(mfp),
-             "'dmfp_mm' and 'mfp_mm' both say how far light travels; give one")
-        .related.emplace_back(document.where(dmfp), "the other is here");
+             "'dmfp_mm' and 'mfp_mm' both define the distance that light travels; give only one")
+        .related.emplace_back(document.where(dmfp), "the other key is here");
   } else if (!inside && scaling_key.valid()) {
     diagnostics.add(DiagnosticId::profile_keys, document.where(scaling_key),
-                    "'scaling' says what 'mfp_mm' means; 'dmfp_mm' has one meaning only");
+                    "'scaling' is only allowed with 'mfp_mm', not with 'dmfp_mm'");
   }
   for (size_t c = 0; c < 3; ++c) {
     const double a = profile.albedo[c];
@@ -73,8 +73,8 @@ bool read_numbers_into(const Document& document, ObjectReader& reader, Profile& 
     if (known.model == profile.model || !node.valid()) continue;
     reader.has(known.key);
     diagnostics.add(DiagnosticId::profile_keys, document.where(node),
-                    fmt::format("'{}' belongs to the model \"{}\", this profile's model is \"{}\"", known.key,
-                                name_of(known.model), name_of(profile.model)));
+                    fmt::format("'{}' belongs to the model \"{}\", but this profile's model is \"{}\"",
+                                known.key, name_of(known.model), name_of(profile.model)));
   }
   switch (profile.model) {
   case ProfileModel::burley:

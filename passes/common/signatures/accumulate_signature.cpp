@@ -8,9 +8,8 @@ namespace {
 
 constexpr Format past_formats[] = {Format::rgba16f};
 constexpr Format place_formats[] = {Format::rg16f};
-constexpr std::string_view past_doc =
-    "scattered light less what the nearest pixels explain, over the brightness around; "
-    "number of frames behind it";
+constexpr std::string_view past_doc = "scattered light minus the part that the nearest pixels explain, "
+                                      "divided by the local brightness; number of accumulated frames";
 constexpr std::string_view place_doc = "view depth in metres, profile id; 0 where nothing was written";
 
 constexpr Port ports[] = {
@@ -27,17 +26,17 @@ constexpr Port ports[] = {
     {"place", Usage::sampled_image, false, "texture2D", place_doc, place_formats},
     port::tiles,
     port::arguments,
-    {"accumulated", Usage::storage_image_write, false, "image2D", "scattered light over frames",
+    {"accumulated", Usage::storage_image_write, false, "image2D", "scattered light, accumulated over frames",
      port::color_formats},
     {"past_out", Usage::storage_image_write, false, "image2D", past_doc, past_formats},
     {"place_out", Usage::storage_image_update, false, port::part_of_cleared, place_doc, place_formats},
 };
 
 constexpr PassTypeSetting settings[] = {
-    setting::per_frame(setting::real("weight", 0.1, 0.001, 1, "", "of a new frame, at least")),
-    setting::per_frame(setting::real(
-        "clip", 1.5, 0, 64, "standard deviations",
-        "of the 3x3 pixels around, that history may lie from their mean; 0: as far as it likes")),
+    setting::per_frame(setting::real("weight", 0.1, 0.001, 1, "", "minimum weight of a new frame")),
+    setting::per_frame(
+        setting::real("clip", 1.5, 0, 64, "standard deviations",
+                      "largest distance of the history from the mean of the 3x3 neighbourhood; 0: no limit")),
     setting::texturing,
 };
 
@@ -48,7 +47,7 @@ constexpr HistoryWeight accumulate_mixes[] = {{"past_out", "weight"}};
 const PassType accumulate_type{
     .name = "subsurface.accumulate",
     .shader = "common/subsurface_accumulate",
-    .doc = "Mixes scattered light with that of earlier frames, found again along surfaces.",
+    .doc = "Blends scattered light with that of earlier frames, reprojected along surfaces.",
     .ports = ports,
     .settings = settings,
     .dispatch = DispatchShape::over_tiles,

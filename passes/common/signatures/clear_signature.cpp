@@ -5,13 +5,13 @@
 namespace dermis::subsurface {
 
 namespace {
-constexpr Port ports[] = {{"target", Usage::clear, false, "", "an image or buffer, whole", {}}};
+constexpr Port ports[] = {{"target", Usage::clear, false, "", "an image or a buffer, as a whole", {}}};
 } // namespace
 
 const PassType clear_type{
     .name = "clear",
     .shader = "",
-    .doc = "Fills an image or buffer with zeros. No kernel.",
+    .doc = "Fills an image or a buffer with zeros. Runs no kernel.",
     .ports = ports,
     .settings = {},
     .dispatch = DispatchShape::none,

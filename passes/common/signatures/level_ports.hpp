@@ -6,7 +6,7 @@
 namespace dermis::subsurface::port {
 
 inline constexpr Format surface_formats[] = {Format::rgba32_uint};
-inline constexpr std::string_view level_image_doc = "as subsurface.sap_down writes it";
+inline constexpr std::string_view level_image_doc = "output of subsurface.sap_down";
 
 constexpr Port level_light(std::string_view name) {
   return {name, Usage::sampled_image, false, "texture2D", level_image_doc, light_formats};

@@ -17,37 +17,38 @@ constexpr Port setup_ports[] = {
     port::tiles,
     port::arguments,
     {"light", Usage::storage_image_write, false, "image2D",
-     "rgb scatterable light, a = area of the pixel's surface patch over its projected area; 0 outside",
+     "rgb: light that can scatter; a: area of the pixel's surface patch divided by its projected area; 0 "
+     "outside",
      port::light_formats},
     {"slope", Usage::storage_image_write, true, "image2D",
-     "change of depth from pixel to pixel over the pixel's size, x and y", port::way_formats},
+     "change of depth from pixel to pixel divided by the pixel's size, in x and y", port::way_formats},
 };
 constexpr PassTypeSetting setup_settings[] = {setting::texturing};
 
 constexpr std::string_view copied_options[] = {"unscattered", "scattered"};
 constexpr Port combine_ports[] = {
     {"scattered", Usage::sampled_image, true, "texture2D",
-     "scattered light; unbound: none scatters, all is as unscattered", port::color_formats, true},
+     "scattered light; unbound: no light scatters, and all light comes from 'unscattered'",
+     port::color_formats, true},
     {"unscattered", Usage::sampled_image, true, "texture2D",
-     "diffuse irradiance before albedo: what tiles show that are only copied. May be the image that is "
-     "written; one of both is bound",
+     "diffuse irradiance before albedo, which copied tiles show. May be the image bound to 'lighting'; "
+     "'scattered' or 'unscattered' must be bound",
      port::color_formats, true},
     port::material,
     port::albedo,
     port::tiles,
     port::arguments,
     {"lighting", Usage::storage_image_write, false, "image2D",
-     "written where there is subsurface, untouched elsewhere; alpha becomes 1 there", port::color_formats},
+     "written where there is subsurface, with alpha 1; unchanged elsewhere", port::color_formats},
 };
 constexpr std::string_view combined[] = {"scattered", "unscattered"};
 constexpr PassTypeSetting combine_settings[] = {
     setting::texturing,
-    setting::choice(
-        "result", result_options,
-        "color: scattered light times albedo; light: scattered light alone, for hosts that texture later"),
+    setting::choice("result", result_options,
+                    "color: scattered light times albedo; light: only scattered light, for hosts that apply "
+                    "albedo later"),
     setting::choice("copied", copied_options,
-                    "where the light of tiles comes from that are only copied: of unscattered, where it is "
-                    "bound, or of scattered"),
+                    "source of the light of copied tiles: unscattered (if bound) or scattered"),
 };
 
 constexpr Format scattered_formats[] = {Format::rgba16f}; // formats that a shader may load
@@ -58,14 +59,14 @@ constexpr Port copy_ports[] = {
     port::tiles,
     port::arguments,
     {"scattered", Usage::storage_image_update, false, "image2D",
-     "written where no tile scatters, else left as it is", scattered_formats},
+     "written if no tile scatters; otherwise unchanged", scattered_formats},
 };
 constexpr PassTypeSetting copy_settings[] = {setting::texturing};
 
 constexpr Port light_ports[] = {
     {"lighting", Usage::sampled_image, false, "texture2D", "diffuse irradiance before albedo, linear",
      port::color_formats, true},
-    {"scattered", Usage::sampled_image, true, "texture2D", "scattered light; unbound: nothing scatters",
+    {"scattered", Usage::sampled_image, true, "texture2D", "scattered light; unbound: no light scatters",
      port::color_formats, true},
     port::material,
     port::depth,
@@ -75,8 +76,8 @@ constexpr Port light_ports[] = {
      Usage::storage_buffer_read,
      true,
      "uint",
-     "as subsurface.classify writes them: tiles that do not scatter keep their light. Unbound: their light "
-     "is in scattered",
+     "output of subsurface.classify: tiles that do not scatter keep their light. Unbound: 'scattered' holds "
+     "the light of these tiles",
      {}},
     {"light", Usage::storage_image_write, false, "image2D",
      "scattered light before albedo; the input light where nothing scatters, in full precision",
@@ -89,11 +90,14 @@ constexpr Port back_lighting_port{
     Usage::sampled_image,
     false,
     "texture2D",
-    "irradiance on the far side, linear, of the light that thickness is measured along",
+    "irradiance on the far side, linear, from the light along whose direction thickness is measured",
     port::color_formats};
-constexpr Port thickness_port{
-    "thickness", Usage::sampled_image, false, "texture2D", "way of that light through the material, metres",
-    {}};
+constexpr Port thickness_port{"thickness",
+                              Usage::sampled_image,
+                              false,
+                              "texture2D",
+                              "path length of that light through the material [m]",
+                              {}};
 constexpr Port thin_parts_ports[] = {
     back_lighting_port, thickness_port, port::material, port::scatter_scale, port::tiles, port::arguments,
 };
@@ -104,7 +108,7 @@ constexpr Port transmission_ports[] = {
     thickness_port,
     port::material,
     port::scatter_scale,
-    {"lit", Usage::storage_image_write, false, "image2D", "lighting with what came through",
+    {"lit", Usage::storage_image_write, false, "image2D", "lighting plus transmitted light",
      port::color_formats},
 };
 
@@ -113,7 +117,7 @@ constexpr Port transmission_ports[] = {
 const PassType setup_type{
     .name = "subsurface.setup",
     .shader = "common/subsurface_setup",
-    .doc = "Takes the light that can scatter: sanitised, premultiplied by the subsurface mask, rounded to "
+    .doc = "Extracts the light that can scatter: sanitised, premultiplied by the subsurface mask, rounded to "
            "nearest even.",
     .ports = setup_ports,
     .settings = setup_settings,
@@ -124,9 +128,9 @@ const PassType setup_type{
 const PassType transmission_type{
     .name = "subsurface.transmission",
     .shader = "common/subsurface_transmission",
-    .doc =
-        "Adds light from the far side of thin parts: the share that the profile carries further than their "
-        "thickness.",
+    .doc = "Adds light from the far side of thin parts: the fraction that the profile carries farther than "
+           "their "
+           "thickness.",
     .ports = transmission_ports,
     .settings = {},
     .dispatch = DispatchShape::over_view,
@@ -136,8 +140,8 @@ const PassType transmission_type{
 const PassType transmission_stats_type{
     .name = "subsurface.transmission_stats",
     .shader = "common/subsurface_transmission_stats",
-    .doc = "Counts the light that comes through thin parts, so that the choice knows what screen space does "
-           "not see.",
+    .doc = "Measures the light transmitted through thin parts, which the choice uses to estimate the error "
+           "of screen-space techniques.",
     .ports = thin_parts_ports,
     .settings = {},
     .dispatch = DispatchShape::over_tiles,
@@ -147,7 +151,7 @@ const PassType transmission_stats_type{
 const PassType combine_type{
     .name = "subsurface.combine",
     .shader = "common/subsurface_combine",
-    .doc = "Puts scattered light back into the host's lighting. Specular stays with the host.",
+    .doc = "Writes scattered light into the host's lighting. The host adds specular light.",
     .ports = combine_ports,
     .settings = combine_settings,
     .dispatch = DispatchShape::over_tiles,
@@ -158,9 +162,8 @@ const PassType combine_type{
 const PassType copy_tiles_type{
     .name = "subsurface.copy_tiles",
     .shader = "common/subsurface_copy_tiles",
-    .doc =
-        "Passes light on as it is, where no tile of the screen scatters, for passes that want all tiles in "
-        "one picture.",
+    .doc = "Copies light unchanged if no tile of the screen scatters, for passes that need all tiles in one "
+           "image.",
     .ports = copy_ports,
     .settings = copy_settings,
     .dispatch = DispatchShape::over_tiles,
@@ -170,7 +173,8 @@ const PassType copy_tiles_type{
 const PassType export_scattered_type{
     .name = "subsurface.export_scattered",
     .shader = "common/subsurface_export_scattered",
-    .doc = "Hands out scattered light before albedo for every pixel, for tools and hosts that texture later.",
+    .doc = "Exports scattered light before albedo for every pixel, for tools and for hosts that apply albedo "
+           "later.",
     .ports = light_ports,
     .settings = light_settings,
     .dispatch = DispatchShape::over_view,

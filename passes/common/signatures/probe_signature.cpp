@@ -8,7 +8,8 @@ namespace {
 
 constexpr Port probe_ports[] = {
     {"scattered", Usage::sampled_image, true, "texture2D",
-     "scattered light that is judged; tiles that do not scatter show their own, and all do where it is "
+     "scattered light whose error is measured; tiles that do not scatter show their own light, as do all "
+     "tiles if the port is "
      "unbound",
      port::color_formats},
     {"lighting", Usage::sampled_image, false, "texture2D", "diffuse irradiance before albedo, linear",
@@ -17,7 +18,7 @@ constexpr Port probe_ports[] = {
     port::depth,
     port::scatter_scale,
     port::albedo,
-    {"classes", Usage::storage_buffer_read, false, "uint", "as subsurface.classify writes them", {}},
+    {"classes", Usage::storage_buffer_read, false, "uint", "output of subsurface.classify", {}},
 };
 constexpr PassTypeSetting probe_settings[] = {
     setting::texturing,
@@ -28,7 +29,7 @@ constexpr PassTypeSetting probe_settings[] = {
      .maximum = 32,
      .options = {},
      .unit = "tiles",
-     .doc = "a frame, in each of which the reference is computed at four pixels"},
+     .doc = "number of tiles per frame; the reference is computed at four pixels of each tile"},
 };
 
 } // namespace
@@ -36,9 +37,8 @@ constexpr PassTypeSetting probe_settings[] = {
 const PassType probe_type{
     .name = "subsurface.probe",
     .shader = "common/subsurface_probe",
-    .doc = "Computes the reference at pixels of a few tiles, drawn with known probabilities: the frame's "
-           "error and "
-           "how sure it is.",
+    .doc = "Computes the reference at pixels of a few tiles, sampled with known probabilities, to estimate "
+           "the frame's error and its uncertainty.",
     .ports = probe_ports,
     .settings = probe_settings,
     .dispatch = DispatchShape::over_tile_grid,

@@ -53,27 +53,27 @@ inline constexpr Format light_formats[] = {Format::rgba16f, Format::rgba32f};
 // Two channels, with negative values.
 inline constexpr Format way_formats[] = {Format::rg16f, Format::rg32f, Format::rgba16f, Format::rgba32f};
 inline constexpr Port material{
-    "material", Usage::sampled_image, false, "utexture2D", "profile id per pixel, 0 = no subsurface", {}};
+    "material", Usage::sampled_image, false, "utexture2D", "profile id per pixel; 0: no subsurface", {}};
 inline constexpr Port depth{"depth",
                             Usage::sampled_image,
                             false,
                             "texture2D",
-                            "device depth or view-space distance, as the frame says",
+                            "device depth or view-space distance, as stated in dermis_frame.depth_kind",
                             {}};
 inline constexpr Port scatter_scale{"scatter_scale",
                                     Usage::sampled_image,
                                     true,
                                     "texture2D",
-                                    "factor on d per pixel, 0 = diffuse; unbound = 1",
+                                    "factor on d per pixel; 0: diffuse; unbound: 1",
                                     {}};
 inline constexpr Port albedo{
-    "albedo", Usage::sampled_image, true, "texture2D", "diffuse albedo, linear; unbound = 1", color_formats};
+    "albedo", Usage::sampled_image, true, "texture2D", "diffuse albedo, linear; unbound: 1", color_formats};
 inline constexpr Port tiles{"tiles",
                             Usage::storage_buffer_read,
                             false,
                             "uint",
-                            "element 0 = number of tiles; then packed tiles: x in bits 0-14, y in bits "
-                            "15-29, bit 30 = all pixels have subsurface, bit 31 = copy only",
+                            "element 0: number of tiles; then packed tiles: x in bits 0-14, y in bits 15-29, "
+                            "bit 30: all pixels have subsurface, bit 31: copy only",
                             {}};
 inline constexpr Port arguments{"arguments",
                                 Usage::indirect_arguments,
@@ -85,10 +85,10 @@ inline constexpr Port scattered{"scattered",
                                 Usage::storage_image_write,
                                 false,
                                 "image2D",
-                                "scattered light where there is subsurface, undefined elsewhere",
+                                "scattered light where there is subsurface; undefined elsewhere",
                                 color_formats};
 inline constexpr std::string_view level_doc =
-    "rgb light times mask, a = mask: the share of the texel with subsurface";
+    "rgb: light times mask; a: mask, the fraction of the texel with subsurface";
 // Returns a port that reads a level of the plain pyramid.
 constexpr Port level_port(std::string_view name) {
   return {name, Usage::sampled_image, false, "texture2D", level_doc, light_formats};
@@ -98,18 +98,17 @@ inline constexpr Port velocity{
     Usage::sampled_image,
     true,
     "texture2D",
-    "now - before: pixels to the right and down, jitter taken out; in a third channel view depth that the "
-    "camera does not explain, world units. Unbound: what is seen stands still",
+    "current minus previous position in pixels (right, down), without jitter; optional third channel: change "
+    "of view depth that camera motion does not explain, in world units. Unbound: the scene is static",
     way_formats};
-inline constexpr Port classes{"classes", Usage::storage_buffer_read,           false,
-                              "uint",    "as subsurface.classify writes them", {}};
-inline constexpr Port samples_per_tile{
-    "samples_per_tile",
-    Usage::storage_buffer_read,
-    false,
-    "uint",
-    "by tile of the render rectangle: steps of samples it was given, 0 to 3",
-    {}};
+inline constexpr Port classes{"classes", Usage::storage_buffer_read,      false,
+                              "uint",    "output of subsurface.classify", {}};
+inline constexpr Port samples_per_tile{"samples_per_tile",
+                                       Usage::storage_buffer_read,
+                                       false,
+                                       "uint",
+                                       "per tile of the render rectangle: allocated sample steps, 0 to 3",
+                                       {}};
 // GLSL type of an image that is cleared in the same frame and written where there is subsurface:
 // texels that were not written read 0 in the next frame.
 inline constexpr std::string_view part_of_cleared = "writeonly image2D";
@@ -118,20 +117,20 @@ inline constexpr Port sampling{
     Usage::storage_image_write,
     true,
     "image2D",
-    "for tools: samples taken in this frame, samples that history stands for or their mean "
-    "number, confidence or spread, 1 where history was not of this surface",
+    "for tools: samples of this frame; samples in the history or their mean number; confidence or standard "
+    "deviation; 1 where the history belongs to another surface",
     light_formats};
-inline constexpr Port light{
-    "light", Usage::sampled_image, false, "texture2D", "as subsurface.setup writes it", port::light_formats};
-inline constexpr Port slope{
-    "slope", Usage::sampled_image, false, "texture2D", "as subsurface.setup writes it", port::way_formats};
+inline constexpr Port light{"light",     Usage::sampled_image,         false,
+                            "texture2D", "output of subsurface.setup", port::light_formats};
+inline constexpr Port slope{"slope",     Usage::sampled_image,         false,
+                            "texture2D", "output of subsurface.setup", port::way_formats};
 inline constexpr Port burley_ports[] = {
     light,       slope,           port::material,  port::depth, port::scatter_scale,
     port::tiles, port::arguments, port::scattered,
 };
 inline constexpr Format importance_formats[] = {Format::r8_unorm, Format::r16f, Format::r32f};
 inline constexpr std::string_view tile_errors_doc =
-    "by tile of the render rectangle: how far off it is expected to be, 0 = not at all";
+    "per tile of the render rectangle: expected error; 0: no error";
 } // namespace port
 
 constexpr SettingValue integer_value(int64_t value) {
@@ -177,9 +176,9 @@ constexpr PassTypeSetting per_frame(PassTypeSetting setting) {
 inline constexpr std::string_view texturing_options[] = {"post", "pre_post", "pre", "demodulate"};
 inline constexpr PassTypeSetting texturing =
     choice("texturing", texturing_options,
-           "where albedo is applied: after scattering (keeps texture detail), "
-           "its square root on both sides, or before; demodulate: lighting already contains albedo, which "
-           "is divided out before scattering and multiplied back after it");
+           "where albedo is applied. post: after scattering (keeps texture detail); pre_post: its square "
+           "root before and after; pre: before; demodulate: lighting already contains albedo, which is "
+           "divided out before scattering and multiplied back after it");
 } // namespace setting
 
 } // namespace dermis::subsurface

@@ -8,9 +8,9 @@ namespace dermis::subsurface {
 namespace {
 
 constexpr std::string_view light_range_doc =
-    "per tile: the least and the greatest light that can scatter, and the widest d (light_range.glsl)";
+    "per tile: minimum and maximum of the light that can scatter, and the widest d (light_range.glsl)";
 
-constexpr std::string_view light_cells_doc = "the same of each 4x4 tiles, row by row";
+constexpr std::string_view light_cells_doc = "light_range of each block of 4x4 tiles, row by row";
 
 constexpr Port classify_ports[] = {
     port::material,
@@ -23,8 +23,8 @@ constexpr Port classify_ports[] = {
      Usage::storage_buffer_write,
      false,
      "uint",
-     "per tile of the render rectangle, row by row: 0 = no subsurface, 1 = scatters, 2 = below a pixel "
-     "(copy), 3 = flat in light (copy); 4 more where all 64 pixels have subsurface",
+     "per tile of the render rectangle, row by row: 0: no subsurface; 1: scatters; 2: scattering below a "
+     "pixel (copy); 3: uniform light (copy); plus 4 if all 64 pixels have subsurface",
      {}},
     {"light_range", Usage::storage_buffer_write, true, "uvec4", light_range_doc, {}},
     {"light_cells", Usage::storage_buffer_write, true, "uvec4", light_cells_doc, {}},
@@ -34,11 +34,11 @@ constexpr PassTypeSetting classify_settings[] = {setting::texturing};
 constexpr Port flat_ports[] = {
     {"light_range", Usage::storage_buffer_read, false, "uvec4", light_range_doc, {}},
     {"light_cells", Usage::storage_buffer_read, false, "uvec4", light_cells_doc, {}},
-    {"classes", Usage::storage_buffer_update, false, "uint", "as subsurface.classify writes them", {}},
+    {"classes", Usage::storage_buffer_update, false, "uint", "output of subsurface.classify", {}},
 };
 
 constexpr Port tile_list_ports[] = {
-    {"classes", Usage::storage_buffer_read, false, "uint", "as subsurface.classify writes them", {}},
+    {"classes", Usage::storage_buffer_read, false, "uint", "output of subsurface.classify", {}},
     {"tiles", Usage::storage_buffer_write, false, "uint", port::tiles.doc, {}},
     {"arguments", Usage::storage_buffer_write, false, "uint", port::arguments.doc, {}},
 };
@@ -48,11 +48,11 @@ constexpr Port skips_ports[] = {
      Usage::storage_buffer_read,
      false,
      "uint",
-     "as subsurface.classify and subsurface.classify_uniform_light write them",
+     "output of subsurface.classify or subsurface.classify_uniform_light",
      {}},
     port::material,
     {"skips", Usage::storage_image_write, true, "image2D",
-     "for tools: class of the pixel's tile, its profile id, 0, 1", port::light_formats},
+     "for tools: class of the pixel's tile, profile id of the pixel, 0, 1", port::light_formats},
 };
 
 } // namespace
@@ -70,7 +70,7 @@ const PassType classify_type{
 const PassType classify_uniform_light_type{
     .name = "subsurface.classify_uniform_light",
     .shader = "common/subsurface_classify_uniform_light",
-    .doc = "Leaves tiles alone whose light is the same as far as light reaches.",
+    .doc = "Reclassifies tiles as copied if their light is uniform within the reach of scattering.",
     .ports = flat_ports,
     .settings = {},
     .dispatch = DispatchShape::over_tile_grid,
@@ -80,7 +80,7 @@ const PassType classify_uniform_light_type{
 const PassType debug_tile_class_type{
     .name = "subsurface.debug_tile_class",
     .shader = "common/subsurface_debug_tile_class",
-    .doc = "Shows tools what each tile was left out as.",
+    .doc = "Writes the class of each tile for tools.",
     .ports = skips_ports,
     .settings = {},
     .dispatch = DispatchShape::over_view,
@@ -90,9 +90,8 @@ const PassType debug_tile_class_type{
 const PassType tile_list_type{
     .name = "subsurface.tile_list",
     .shader = "common/subsurface_tile_list",
-    .doc = "Compacts tile classes into a list in row order and the indirect arguments for it (a scan without "
-           "atomics: "
-           "the same classes give the same list).",
+    .doc = "Compacts tile classes into a list in row order and its indirect arguments (a scan without "
+           "atomics, so that the list is deterministic).",
     .ports = tile_list_ports,
     .settings = {},
     .dispatch = DispatchShape::single_group,

@@ -41,7 +41,8 @@ TEST_F(Choice, TextOutputIsASentence) {
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_THAT(outcome.out, HasSubstr("frame 1: technique=off"));
   EXPECT_THAT(outcome.out, HasSubstr("budget 0.00; RMSE"));
-  EXPECT_THAT(outcome.out, HasSubstr("(nothing fits: the fastest); next better technique="));
+  EXPECT_THAT(outcome.out,
+              HasSubstr("(no configuration fits the budget: the fastest runs); next better technique="));
 }
 
 TEST_F(Choice, CalibrateWritesAFileForValidateAndRender) {

@@ -57,15 +57,16 @@ TEST(Decide, TransmissionIsTheReasonIfItDecides) {
   const Decision front = decide(lit_in_front, 5.0, frame_seconds, state);
   EXPECT_EQ(front.configuration, 0u);
   EXPECT_FALSE(front.transmission_stats);
-  EXPECT_STREQ(why_text(front), "least error that fits; nothing ran before");
+  EXPECT_STREQ(why_text(front), "least error within the budget; first frame");
   const Decision behind = decide(lit_behind, 5.0, 1.5, state);
   EXPECT_EQ(behind.why, ReasonKind::held); // A second has to pass before the next switch.
   const Decision later = decide(lit_behind, 5.0, 1.5, state);
   EXPECT_EQ(later.configuration, 1u);
   EXPECT_TRUE(later.transmission_stats);
-  EXPECT_STREQ(why_text(later), "less error than before fits now, for light through thin parts");
+  EXPECT_STREQ(why_text(later),
+               "a configuration with less error now fits the budget, considering transmitted light");
   const Decision again = decide(lit_behind, 5.0, 1.5, state);
-  EXPECT_STREQ(why_text(again), "least error that fits, for light through thin parts");
+  EXPECT_STREQ(why_text(again), "least error within the budget, considering transmitted light");
   // The rays do not fit, so transmission did not change the decision.
   const Decision dear = decide(lit_behind, 2.0, 1.5, state);
   EXPECT_EQ(dear.configuration, 0u);

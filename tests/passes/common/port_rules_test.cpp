@@ -73,7 +73,7 @@ TEST_F(PortRules, LightWithMissingChannelsIsRefused) {
   EXPECT_FALSE(graph);
   expect(Id::format_mismatch, R"("light", "slope": "slope" },
       "set")",
-         {"port 'light' of pass 'setup' works with 'rgba16f' or 'rgba32f'; 'light' declares 'r16f'",
+         {"port 'light' of pass 'setup' supports 'rgba16f' or 'rgba32f'; 'light' declares 'r16f'",
           "port 'light' of pass 'scatter'"});
 }
 
@@ -83,7 +83,7 @@ TEST_F(PortRules, SlopesHaveTwoChannels) {
   EXPECT_FALSE(graph);
   expect(Id::format_mismatch, R"("slope" },
       "set")",
-         {"port 'slope' of pass 'setup' works with 'rg16f'"});
+         {"port 'slope' of pass 'setup' supports 'rg16f'"});
 }
 
 // The first format of the list that fits every port is taken.
