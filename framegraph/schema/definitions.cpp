@@ -57,12 +57,13 @@ std::string filled(std::string_view text, std::string_view pass_types = {}) {
   return out;
 }
 
-constexpr std::string_view note = R"("note": { "type": "string", "description": "for people" })";
+constexpr std::string_view note =
+    R"("note": { "type": "string", "description": "for readers; has no effect" })";
 
 // A setting holds its default under the name of its type. If there are several, the first decides.
 std::string setting_definition() {
   const std::string common =
-      fmt::format(R"("unit": {{ "type": "string", "description": "for people" }}, {})", note);
+      fmt::format(R"("unit": {{ "type": "string", "description": "for readers; has no effect" }}, {})", note);
   const auto form = [&](std::string_view required, std::string_view properties) {
     return fmt::format(R"({{ "required": [{}], "additionalProperties": false,
         "properties": {{ {}, {} }} }})",
@@ -82,9 +83,9 @@ std::string setting_definition() {
       form(R"("enum", "default")", R"("enum": { )" + options + R"( }, "default": { "type": "string" })");
   const std::string choice =
       form(R"("choice", "default")", R"("choice": { )" + options + R"( }, "default": { "type": "string" },
-        "by": { "enum": ["host", "budget"], "description": "who picks it; budget: the library" },
-        "requires": { "type": "object", "description": "option: what it needs to be offered",
-          "additionalProperties": { "type": "array", "items": { "type": "string", "description": "feature of the device, or an optional import that the host binds" } } })");
+        "by": { "enum": ["host", "budget"], "description": "who selects the option; budget: the library" },
+        "requires": { "type": "object", "description": "requirements of each option; an option whose requirements are not met is not available",
+          "additionalProperties": { "type": "array", "items": { "type": "string", "description": "device feature, or optional import that the host binds" } } })");
   const auto branch = [](std::string_view key, const std::string& then, const std::string& otherwise) {
     return fmt::format(R"({{
       "if": {{ "required": ["{}"] }},
@@ -94,14 +95,14 @@ std::string setting_definition() {
   };
   const std::string rest = branch(
       "bool", boolean, branch("int", integer, branch("real", real, branch("enum", enumeration, choice))));
-  return R"({ "type": "object", "description": "A value that the host may change at run time.", "allOf": [)" +
+  return R"({ "type": "object", "description": "A value that the host can change at run time.", "allOf": [)" +
          rest + "] }";
 }
 
 std::string resource_definition() {
   const std::string history = R"("history": { "$ref": "#/definitions/history" })";
   const std::string optional =
-      R"("optional": { "type": "boolean", "description": "the host may leave it unbound" })";
+      R"("optional": { "type": "boolean", "description": "the host may leave the resource unbound" })";
   return fmt::format(R"({{ "type": "object",
       "if": {{ "required": ["buffer"] }},
       "then": {{ "additionalProperties": false, "properties": {{
@@ -120,29 +121,29 @@ constexpr std::string_view size_text =
         { "type": "array", "minItems": 2, "maxItems": 2, "items": { "type": "integer", "minimum": 1, "maximum": <side> } }] })";
 
 constexpr std::string_view count_text =
-    R"({ "description": "elements: width x height of a size, or one integer",
+    R"({ "description": "number of elements: width times height of a size, or an integer",
       "anyOf": [{ "$ref": "#/definitions/size" }, { "type": "integer", "minimum": 1, "maximum": <elements> }] })";
 
 constexpr std::string_view buffer_text =
     R"({ "type": "object", "required": ["stride", "count"], "additionalProperties": false, "properties": {
-        "stride": { "type": "integer", "minimum": 4, "maximum": <stride>, "multipleOf": 4, "description": "bytes of an element [bytes]" },
+        "stride": { "type": "integer", "minimum": 4, "maximum": <stride>, "multipleOf": 4, "description": "size of an element [bytes]" },
         "count": { "$ref": "#/definitions/count" },
-        "extra": { "type": "integer", "minimum": 0, "maximum": <elements>, "description": "elements beyond count" },
+        "extra": { "type": "integer", "minimum": 0, "maximum": <elements>, "description": "elements in addition to count" },
         "round": { "$ref": "#/definitions/round" }, "align": { "$ref": "#/definitions/align" }, <note> } })";
 
 constexpr std::string_view history_text =
     R"({ "type": "object", "required": ["frames"], "additionalProperties": false,
-      "description": "keeps the last contents for reading as name@-1, name@-2 ...", "properties": {
-        "frames": { "type": "integer", "minimum": 1, "maximum": <frames>, "description": "how many are kept [frames]" },
-        "first": { "enum": ["discard", "clear"], "description": "what the first frame finds" },
-        "on_cut": { "enum": ["invalidate", "keep"], "description": "when the camera jumps" },
-        "on_resize": { "enum": ["invalidate", "rescale"], "description": "when the view changes its size" }, <note> } })";
+      "description": "keeps the contents of earlier frames, which passes read as name@-1, name@-2 ...", "properties": {
+        "frames": { "type": "integer", "minimum": 1, "maximum": <frames>, "description": "number of earlier frames that are kept [frames]" },
+        "first": { "enum": ["discard", "clear"], "description": "contents before the first frame" },
+        "on_cut": { "enum": ["invalidate", "keep"], "description": "after a camera cut" },
+        "on_resize": { "enum": ["invalidate", "rescale"], "description": "after a change of the view's size" }, <note> } })";
 
 constexpr std::string_view host_buffer_text =
     R"({ "type": "object", "required": ["stride"], "additionalProperties": false, "properties": {
-        "stride": { "type": "integer", "minimum": 4, "maximum": <stride>, "multipleOf": 4, "description": "bytes of an element [bytes]" },
+        "stride": { "type": "integer", "minimum": 4, "maximum": <stride>, "multipleOf": 4, "description": "size of an element [bytes]" },
         "count": { "$ref": "#/definitions/count" },
-        "extra": { "type": "integer", "minimum": 0, "maximum": <elements>, "description": "elements beyond count" },
+        "extra": { "type": "integer", "minimum": 0, "maximum": <elements>, "description": "elements in addition to count" },
         "round": { "$ref": "#/definitions/round" }, "align": { "$ref": "#/definitions/align" }, <note> } })";
 
 constexpr std::string_view import_text =
@@ -150,26 +151,26 @@ constexpr std::string_view import_text =
       "if": { "required": ["buffer"] },
       "then": { "additionalProperties": false, "properties": {
         "buffer": { "$ref": "#/definitions/host_buffer" },
-        "optional": { "type": "boolean", "description": "the host may leave it unbound" }, <note> } },
+        "optional": { "type": "boolean", "description": "the host may leave the resource unbound" }, <note> } },
       "else": { "if": { "required": ["acceleration_structure"] },
       "then": { "additionalProperties": false, "properties": {
-        "acceleration_structure": { "enum": ["top_level"], "description": "that ray queries go through" },
-        "optional": { "type": "boolean", "description": "the host may leave it unbound" }, <note> } },
+        "acceleration_structure": { "enum": ["top_level"], "description": "traced by ray queries" },
+        "optional": { "type": "boolean", "description": "the host may leave the resource unbound" }, <note> } },
       "else": { "required": ["format", "size"], "additionalProperties": false, "properties": {
         "format": { "$ref": "#/definitions/formats" }, "size": { "$ref": "#/definitions/size" }, "border": { "$ref": "#/definitions/border" },
         "round": { "$ref": "#/definitions/round" }, "align": { "$ref": "#/definitions/align" },
-        "optional": { "type": "boolean", "description": "the host may leave it unbound" }, <note> } } } })";
+        "optional": { "type": "boolean", "description": "the host may leave the resource unbound" }, <note> } } } })";
 
 constexpr std::string_view pass_text =
     R"({ "type": "object", "required": ["pass", "type"], "additionalProperties": false, "properties": {
         "pass": { "$ref": "#/definitions/name" },
         "type": { "enum": [<pass types>] },
         "when": { "type": "string", "maxLength": <expression bytes>, "description": "the pass is off where this is false: quality in ['good', 'best'] and samples > 4" },
-        "queue": { "enum": ["main", "async"], "description": "async: may run beside the passes of the main queue, where there are two" },
-        "read": { "type": "object", "description": "port: resource, or resource#1[0] of a mip and a layer, or resource@-N of the frame N before, or an object that requires it to be valid" },
+        "queue": { "enum": ["main", "async"], "description": "async: may run concurrently with passes of the main queue if the device has two queues" },
+        "read": { "type": "object", "description": "port: resource, or resource#1[0] of a mip and a layer, or resource@-N of N frames earlier, or an object that requires this frame to be valid" },
         "write": { "type": "object", "description": "port: resource, or resource#1[0] of a mip and a layer" },
-        "set": { "type": "object", "description": "setting of the kind: value, or \"$name\" of the graph's settings" },
-        "otherwise": { "type": "object", "additionalProperties": { "type": "string" }, "description": "what readers of an output get when the pass is off" },
+        "set": { "type": "object", "description": "setting of the pass type: value, or \"$name\" of a setting of the graph" },
+        "otherwise": { "type": "object", "additionalProperties": { "type": "string" }, "description": "what readers of an output read when the pass is off" },
         "after": { "type": "array", "maxItems": <passes>, "items": { "type": "object", "required": ["pass", "reason"], "additionalProperties": false, "properties": {
           "pass": { "type": "string" }, "reason": { "type": "string", "minLength": 1 }, <note> } } }, <note> },
       "allOf": [{ "$ref": "#/definitions/pass_of_a_kind" }] })";
@@ -178,11 +179,11 @@ constexpr std::string_view source_text =
     R"({ "anyOf": [{ "type": "string" }, { "type": "object", "required": ["from", "requires"], "additionalProperties": false, "properties": {
         "from": { "type": "string", "description": "resource@-N" },
         "requires": { "enum": ["valid"], "description": "read only in frames in which N frames have been written since the history began or was cut" },
-        "otherwise": { "type": "string", "description": "resource that is read in all other frames; without it the port is then unbound, or reads zeros where the history says \"first\": \"clear\"" }, <note> } }] })";
+        "otherwise": { "type": "string", "description": "resource that is read in all other frames; without \"otherwise\" the port is unbound in these frames, or reads zeros if the history has \"first\": \"clear\"" }, <note> } }] })";
 
 constexpr std::string_view include_text =
     R"({ "type": "object", "required": ["include"], "additionalProperties": false, "properties": {
-        "include": { "type": "string", "description": "a fragment whose passes stand here and whose other members join the graph's; relative, without .." }, <note> } })";
+        "include": { "type": "string", "description": "path of a fragment, relative and without ..; its passes are inserted here, its other members are added to the graph" }, <note> } })";
 
 constexpr std::string_view passes_text =
     R"({ "type": "array", "maxItems": <passes>, "items": {
@@ -208,14 +209,14 @@ SchemaMembers graph_root_members() {
     "$schema": { "type": "string" },
     "dermis": { "type": "integer", "const": 2, "description": "version of the format" },
     "name": { "$ref": "#/definitions/name" },
-    "requires": { "type": "array", "maxItems": <options>, "items": { "enum": [<features>] }, "description": "features of the device without which the graph does not run" },
+    "requires": { "type": "array", "maxItems": <options>, "items": { "enum": [<features>] }, "description": "device features that the graph needs to run" },
     "settings": { "type": "object", "maxProperties": <settings>, "additionalProperties": { "$ref": "#/definitions/setting" } },
     "imports": { "type": "object", "maxProperties": <resources>, "additionalProperties": { "$ref": "#/definitions/import" },
       "description": "images, buffers and acceleration structures that the host owns and binds" },
     "resources": { "type": "object", "maxProperties": <resources>, "additionalProperties": { "$ref": "#/definitions/resource" },
       "description": "images and buffers that the graph owns" },
     "passes": { "$ref": "#/definitions/passes" },
-    "exports": { "type": "array", "maxItems": <resources>, "items": { "type": "string" }, "description": "what the host gets back" },
+    "exports": { "type": "array", "maxItems": <resources>, "items": { "type": "string" }, "description": "images that the graph returns to the host" },
     <note>
   })")},
   };
@@ -249,15 +250,15 @@ SchemaMembers graph_definitions(std::string_view pass_type_names) {
       {"format", with_note(R"({ "enum": [<formats>] })")},
       {"formats",
        with_note(
-           R"({ "description": "one, or several in order of preference", "anyOf": [{ "$ref": "#/definitions/format" },
+           R"({ "description": "one format, or several in order of preference", "anyOf": [{ "$ref": "#/definitions/format" },
       { "type": "array", "minItems": 1, "maxItems": <most formats>, "items": { "$ref": "#/definitions/format" } }] })")},
-      {"round", R"({ "enum": ["ceil", "floor"], "description": "of fractions of a size" })"},
+      {"round", R"({ "enum": ["ceil", "floor"], "description": "rounding of fractional sizes" })"},
       {"border",
        with_note(
            R"({ "type": "integer", "minimum": 0, "maximum": <border>, "description": "texels added on every side, after rounding and aligning [texels]" })")},
       {"align",
        with_note(
-           R"({ "type": "integer", "minimum": 1, "maximum": <side>, "description": "sizes are rounded up to a multiple" })")},
+           R"({ "type": "integer", "minimum": 1, "maximum": <side>, "description": "sizes are rounded up to a multiple of this number" })")},
       {"size", with_note(size_text)},
       {"count", with_note(count_text)},
       {"buffer", with_note(buffer_text)},

@@ -124,15 +124,16 @@ std::string write_schema(const PassTypeRegistry& pass_types, std::string_view ti
 
 std::string graph_schema(const PassTypeRegistry& pass_types) {
   return write_schema(pass_types, "Dermis graph",
-                      "What Dermis may run: settings, images and buffers, passes, and what is handed back. "
+                      "A graph: settings, images and buffers, passes, and the images returned to the host. "
                       "docs/format.md describes every key.",
                       graph_root_members());
 }
 
 std::string fragment_schema(const PassTypeRegistry& pass_types) {
-  return write_schema(pass_types, "Dermis fragment",
-                      "A part that several graphs include. docs/overlays.md describes every key.",
-                      fragment_root_members());
+  return write_schema(
+      pass_types, "Dermis fragment",
+      "A part of a graph that several graphs can include. docs/overlays.md describes every key.",
+      fragment_root_members());
 }
 
 } // namespace dermis
