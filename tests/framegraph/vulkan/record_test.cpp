@@ -161,7 +161,7 @@ TEST_F(ExecutorTest, EnvironmentsThatNoDeviceCanBindAreRefused) {
   const std::pair<const char*, std::vector<vulkan::EnvironmentBinding>> wrong[] = {
       {"binding 0 has 0 bytes", {{storage_buffer, 0, {}}}},
       {"bytes; expected 1 to", {{uniform_buffer, too_many, {}}}},
-      {"binding 1: counters are 32-bit words", {{uniform_buffer, 16, {}}, {counters, 6, {}}}},
+      {"binding 1: counters need a size", {{uniform_buffer, 16, {}}, {counters, 6, {}}}},
       {"one binding can hold counters", {{counters, 4, {}}, {counters, 4, {}}}},
       {"binding 0 has 4 bytes, but its contents have 8", {{storage_buffer, 4, table}}},
   };

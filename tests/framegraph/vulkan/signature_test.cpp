@@ -149,7 +149,7 @@ TEST(Signature, EnvironmentMustHoldAllThatTheShaderReads) {
       {EnvironmentType::uniform_buffer, 8, {}},
   };
   const std::string text = problems(type("test.fill"), reflected("test_fill"), small);
-  EXPECT_THAT(text, HasSubstr("environment binding 0 has 16 bytes, 'frame' in the shader needs 20"));
+  EXPECT_THAT(text, HasSubstr("environment binding 0 has 16 bytes, but 'frame' in the shader needs 20"));
   EXPECT_THAT(text,
               HasSubstr("environment binding 1 is a uniform block in the signature and a buffer block"));
   EXPECT_THAT(text,

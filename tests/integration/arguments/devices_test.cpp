@@ -235,7 +235,7 @@ TEST_F(PoorDevice, MissingLabels_AreAnErrorOnlyIfRequested) {
 TEST_F(PoorDevice, QueueWithoutCompute_IsRefused) {
   lack.queue_flags = VK_QUEUE_GRAPHICS_BIT;
   EXPECT_EQ(create(), DERMIS_ERROR_ARGUMENT);
-  EXPECT_THAT(dermis_last_error(), HasSubstr("queue family 0 has no compute"));
+  EXPECT_THAT(dermis_last_error(), HasSubstr("queue family 0 does not support compute"));
   EXPECT_EQ(host.context, nullptr);
 }
 
@@ -338,9 +338,9 @@ struct BadBlocks {
 
 TEST(HostsDeviceMemory, UnusableBlock_IsRefusedAndFreed) {
   const std::pair<BadBlocks::Fault, const char*> faults[] = {
-      {BadBlocks::Fault::no_memory, "gave no memory"},
+      {BadBlocks::Fault::no_memory, "returned no memory"},
       {BadBlocks::Fault::misaligned, "not a multiple of"},
-      {BadBlocks::Fault::unmapped, "gave memory that is not mapped"},
+      {BadBlocks::Fault::unmapped, "returned memory that is not mapped"},
   };
   for (const auto& [fault, said] : faults) {
     uint32_t refusals = 0;
