@@ -71,7 +71,7 @@ void check_profiles_known(const Document& document, const CapturedFrame& frame, 
     if (pixels[id] > 0)
       diagnostics.add(
           DiagnosticId::capture_profile, document.where(document.find(document.root(), "profiles")),
-          fmt::format("{} pixels have profile {}, first at ({}, {}), which 'profiles' does not list",
+          fmt::format("{} pixels have profile {}, which 'profiles' does not list; the first is at ({}, {})",
                       pixels[id], id, first[id] % frame.description.width,
                       first[id] / frame.description.width));
 }
@@ -147,8 +147,7 @@ void read_pictures(const fs::path& folder, const Document& document, CapturedFra
   if (thickness != fs::exists(folder / "back_lighting.exr", code))
     diagnostics.add(
         DiagnosticId::capture_picture, document.where(document.root()),
-        fmt::format("'thickness.exr' and 'back_lighting.exr' describe one light and come together; "
-                    "'{}' is missing",
+        fmt::format("'thickness.exr' and 'back_lighting.exr' are only valid together; '{}' is missing",
                     (folder / (thickness ? "back_lighting.exr" : "thickness.exr")).string()));
   count_too_bright(frame, frame.sanitised);
   const SanitisedCounts& counts = frame.sanitised;

@@ -102,11 +102,9 @@ void read_projection(const Document& document, ObjectReader& reader, CapturedFra
       captured.rays.perspective == frame.perspective)
     return;
   if (fault == subsurface::CameraFault::none || fault == subsurface::CameraFault::no_projection)
-    return refuse(
-        "clip_from_view",
-        fmt::format("'clip_from_view' is no axis-aligned {} projection (row-major, clip = M * view, "
-                    "Vulkan clip space)",
-                    frame.perspective ? "perspective" : "orthographic"));
+    return refuse("clip_from_view", fmt::format("'clip_from_view' is not an axis-aligned {} projection "
+                                                "(row-major, clip = M * view, Vulkan clip space)",
+                                                frame.perspective ? "perspective" : "orthographic"));
   const bool previous = fault == subsurface::CameraFault::previous_left ||
                         fault == subsurface::CameraFault::previous_right ||
                         fault == subsurface::CameraFault::previous_behind_camera;
@@ -139,7 +137,7 @@ std::optional<subsurface::Profile> read_profile_file(const Document& document, N
   std::error_code code;
   if (!fs::is_regular_file(path, code)) {
     diagnostics.add(DiagnosticId::capture_profile, document.where(key),
-                    fmt::format("profile '{}' is not there: no file '{}'", name.string(), path));
+                    fmt::format("profile '{}' does not exist: there is no file '{}'", name.string(), path));
     return std::nullopt;
   }
   const auto profile = read_document(path, diagnostics);
@@ -173,7 +171,7 @@ void read_profiles(const Document& document, ObjectReader& reader, const fs::pat
     if (first.valid()) {
       diagnostics
           .add(DiagnosticId::capture_profile, document.where(id_node),
-               fmt::format("id {} is given twice", *id))
+               fmt::format("id {} is declared twice", *id))
           .related.emplace_back(document.where(first), "first here");
     }
     first = id_node;

@@ -64,7 +64,7 @@ bool CaptureWriter::begin(const fs::path& folder, std::string& error) {
   target_ = fs::absolute(folder, code).lexically_normal();
   if (!target_.has_filename()) target_ = target_.parent_path(); // path ended with a slash
   if (!may_replace(target_)) {
-    error = fmt::format("'{}' is there and is no capture; choose another folder", folder.string());
+    error = fmt::format("'{}' exists and is not a capture; choose another folder", folder.string());
     return false;
   }
   part_ = temporary_beside(target_);

@@ -33,8 +33,8 @@ FileText open_file(const std::vector<fs::path>& roots, std::string_view name) {
     return out;
   }
   out.problem = looked_in.empty()
-                    ? std::string("no folder to read it from is declared; --root declares one")
-                    : fmt::format("there is no such file in {}; --root declares further folders", looked_in);
+                    ? std::string("no folder to read from is declared; add one with --root")
+                    : fmt::format("there is no such file in {}; add folders with --root", looked_in);
   return out;
 }
 

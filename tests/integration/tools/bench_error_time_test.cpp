@@ -45,8 +45,8 @@ TEST_F(BenchErrorTime, WritesARowPerSceneAndTechnique) {
       R"({ "technique": "unheard_of", "setting": "", "graph": "configs/graphs/none.json" },)";
   const Outcome outcome = run(arguments(bench_file(missing)));
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
-  EXPECT_THAT(outcome.out, HasSubstr("there is no graph 'configs/graphs/none.json'"));
-  EXPECT_THAT(outcome.out, HasSubstr("no model was given (--head FOLDER)"));
+  EXPECT_THAT(outcome.out, HasSubstr("graph 'configs/graphs/none.json' does not exist"));
+  EXPECT_THAT(outcome.out, HasSubstr("no model is given (--head FOLDER)"));
   const std::string json = read(path("out.json"));
   EXPECT_TRUE(is_json(json));
   for (const char* key : {"scene", "d_px", "framing", "technique", "setting", "device_ms", "sampling_ms",

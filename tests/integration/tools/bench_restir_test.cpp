@@ -202,7 +202,7 @@ TEST_F(BenchRestirWithRayQueries, WritesARowPerReuseAndTechnique) {
 TEST_F(BenchRestirWithRayQueries, MissingScene_LeavesNothingToMeasure) {
   const Outcome outcome = run({"bench", "restir", "--quick", "--scenes", "none"}, with_rays());
   EXPECT_EQ(outcome.exit_code, 2);
-  EXPECT_THAT(outcome.err, HasSubstr("no scene is left to measure"));
+  EXPECT_THAT(outcome.err, HasSubstr("no scene is selected"));
 }
 
 } // namespace

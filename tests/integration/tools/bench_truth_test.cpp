@@ -24,7 +24,7 @@ TEST_F(BenchReference, PrintsExpectedAndMeasured_FailureIsAProblem) {
            path("out.json")}); // No fp16 picture is that exact.
   EXPECT_EQ(outcome.exit_code, 1);
   EXPECT_THAT(outcome.out, ::testing::Not(HasSubstr("\n0 of ")));
-  EXPECT_THAT(outcome.out, HasSubstr("there is no graph 'configs/graphs/none.json'"));
+  EXPECT_THAT(outcome.out, HasSubstr("graph 'configs/graphs/none.json' does not exist"));
   for (const char* property :
        {"cdf(0.5 d)", "edge at 8 d", "E[w r^2]", "harmonic 4", "edge: mean of a column",
         "sinusoid_45: contrast", "disc: centre", "parabola", "tilted_edge_60"})

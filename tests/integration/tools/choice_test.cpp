@@ -51,7 +51,7 @@ TEST_F(Choice, CalibrateWritesAFileForValidateAndRender) {
   const Outcome made =
       run({"calibrate", graph, "--overlay", overlay, "--size", "64x36", "--frames", "2", "--out", file});
   ASSERT_EQ(made.exit_code, 0) << made.err;
-  EXPECT_THAT(made.out, HasSubstr("costs on"));
+  EXPECT_THAT(made.out, HasSubstr("holds the costs of"));
   const Outcome checked = run({"validate", file});
   EXPECT_EQ(checked.exit_code, 0) << checked.err;
   EXPECT_THAT(checked.out, HasSubstr("calibration, no problems"));
@@ -153,7 +153,7 @@ TEST_F(Choice, BenchBudgetChecksAllScenesFirst) {
   EXPECT_THAT(missing.err, HasSubstr("there is no scene 'no_such_scene'"));
   const Outcome head = run({"bench", "budget", "--scenes", "flashing,head"});
   EXPECT_EQ(head.exit_code, 2);
-  EXPECT_THAT(head.err, HasSubstr("scene head: no model was given (--head FOLDER)"));
+  EXPECT_THAT(head.err, HasSubstr("scene head: no model is given (--head FOLDER)"));
 }
 
 } // namespace

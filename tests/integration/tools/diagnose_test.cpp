@@ -111,20 +111,20 @@ TEST_F(DiagnoseTest, NothingScatters_BelowAPixel) { // A distant surface: a note
 TEST_F(DiagnoseTest, TooNarrow_CentimetresReadAsMetres) {
   Mistake mistake;
   mistake.depth = [](double d) { return d * 100; };
-  expect_finding(mistake, "D0522", "centimetres, read as metres");
+  expect_finding(mistake, "D0522", "centimetres, but are read as metres");
 }
 
 TEST_F(DiagnoseTest, TooNarrow_MillimetresReadAsMetres) {
   Mistake mistake;
   mistake.depth = [](double d) { return d * 5000; };
-  expect_finding(mistake, "D0522", "millimetres, read as metres");
+  expect_finding(mistake, "D0522", "millimetres, but are read as metres");
 }
 
 TEST_F(DiagnoseTest, TooWide_MetresReadAsMillimetres) {
   Mistake mistake;
   mistake.more = "\"metres_per_unit\": 0.001,";
   mistake.depth = [](double d) { return d * 0.001; };
-  expect_finding(mistake, "D0522", "look larger");
+  expect_finding(mistake, "D0522", "seem larger");
 }
 
 TEST_F(DiagnoseTest, WashedOut_LightingContainsAlbedo) {

@@ -20,7 +20,7 @@ TEST_F(Docs, EveryPageIsWritten) {
   EXPECT_THAT(
       read("pages/slots.md"),
       AllOf(HasSubstr("\n| `lighting` | in, out | `rgba16f`, "), HasSubstr(" | required in all | "),
-            HasSubstr("\n| `instances` | in | buffer, 64 bytes an element | optional in `restir` | ")));
+            HasSubstr("\n| `instances` | in | buffer, 64 bytes per element | optional in `restir` | ")));
   EXPECT_THAT(read("pages/pass_types.md"), HasSubstr("\n## subsurface.combine\n"));
 }
 

@@ -156,7 +156,7 @@ TEST_F(Expectations, NothingToCompare_IsAFailure) {
       write("lonely.expect.json", R"({ "dermis_expect": 1, "cases": [ { "case": "a" } ] })");
   const Outcome outcome = run({"test", lonely, "--update"});
   EXPECT_EQ(outcome.exit_code, 1);
-  EXPECT_THAT(outcome.err, HasSubstr("there is no graph"));
+  EXPECT_THAT(outcome.err, HasSubstr("next to the expectation file does not exist"));
 }
 
 TEST_F(Expectations, ResultsAreWrittenAsJUnitAndJson) {
@@ -187,7 +187,7 @@ TEST_F(Expectations, OverlaysComeOnlyFromDeclaredFolders) {
   const Outcome nowhere = run({"test", file});
   EXPECT_EQ(nowhere.exit_code, 1);
   EXPECT_THAT(nowhere.err, AllOf(HasSubstr("overlay 'changes/less.json': there is no such file in"),
-                                 HasSubstr("--root declares further folders")));
+                                 HasSubstr("add folders with --root")));
   const Outcome declared = run({"test", file, "--root", path("other")});
   EXPECT_THAT(declared.err, Not(HasSubstr("no such file")));
   std::filesystem::create_directories(path("changes"));

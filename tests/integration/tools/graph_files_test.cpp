@@ -184,7 +184,7 @@ TEST_F(GraphFiles, CaptureIsCheckedAsAFileOrFolder) {
   EXPECT_EQ(run({"validate", path("named")}).exit_code, 0);
   const Outcome elsewhere = run({"validate", path("named"), "--profiles", path("capture")});
   EXPECT_EQ(elsewhere.exit_code, 1);
-  EXPECT_THAT(elsewhere.err, HasSubstr("profile 'skin' is not there"));
+  EXPECT_THAT(elsewhere.err, HasSubstr("profile 'skin' does not exist"));
   write("capture/lighting.exr", "no picture");
   const Outcome broken = run({"validate", path("capture")});
   EXPECT_EQ(broken.exit_code, 1);

@@ -102,7 +102,7 @@ TEST_F(Keep, BugReportCanBeAnArchive) {
   EXPECT_THAT(files(), ::testing::ElementsAre("bug.tar.gz"));
   const Outcome there = run({"report-bug", "configs/graphs/burley.json", "--out", path("bug.tar.gz")});
   EXPECT_EQ(there.exit_code, 3);
-  EXPECT_THAT(there.err, HasSubstr("is there: choose another name"));
+  EXPECT_THAT(there.err, HasSubstr("exists: choose another name"));
   const Outcome zip = run({"report-bug", "configs/graphs/burley.json", "--out", path("bug.zip")});
   EXPECT_EQ(zip.exit_code, 2);
   EXPECT_THAT(zip.err, HasSubstr(".tar.gz or .tgz"));

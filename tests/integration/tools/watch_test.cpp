@@ -63,7 +63,7 @@ TEST_F(Watch, FileWithErrors_WatchingContinues) {
   editor.join();
   EXPECT_EQ(outcome.exit_code, 0);
   EXPECT_THAT(outcome.err, HasSubstr("graph.json:1:"));
-  EXPECT_THAT(outcome.out, HasSubstr("plan: the same"));
+  EXPECT_THAT(outcome.out, HasSubstr("plan: unchanged"));
 }
 
 TEST_F(Watch, ExitCodeIsThatOfTheLastRound) {

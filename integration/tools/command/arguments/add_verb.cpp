@@ -51,11 +51,11 @@ void add_root(CLI::App& verb, std::vector<std::string>& roots, const char* what)
 }
 
 void add_parts(CLI::App& verb, GraphParts& parts) {
-  repeat(
-      verb.add_option("--overlay", parts.overlays, "Overlay to apply to the graph; may be repeated, in order")
-          ->type_name("FILE"));
+  repeat(verb.add_option("--overlay", parts.overlays,
+                         "Overlay to apply to the graph; may be repeated, applied in order")
+             ->type_name("FILE"));
   add_root(verb, parts.roots,
-           "Folder that graph, scene, model or capture may read from, beside their own; may be repeated");
+           "Additional folder that graph, scene, model or capture may read from; may be repeated");
   add_pass_types(verb, parts.pass_types);
 }
 
@@ -70,8 +70,8 @@ void add_common(CLI::App& verb, Session& session, bool json_is_file) {
       {"auto", ColorMode::automatic}, {"always", ColorMode::always}, {"never", ColorMode::never}};
   const char* group = "Common options";
   if (!json_is_file)
-    verb.add_flag("--json", session.json, "One JSON document on standard output, for programs")->group(group);
-  verb.add_flag("--quiet,-q", session.quiet, "Errors only")->group(group);
+    verb.add_flag("--json", session.json, "Print one JSON document to standard output")->group(group);
+  verb.add_flag("--quiet,-q", session.quiet, "Print only errors")->group(group);
   add_choice(verb, "--color", session.color, modes, "Colour: auto, always or never [auto]")
       ->type_name("MODE")
       ->group(group);

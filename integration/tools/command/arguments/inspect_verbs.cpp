@@ -6,11 +6,11 @@ namespace dermis::tools {
 namespace {
 
 void add_two_queues(CLI::App& verb, bool& two_queues) {
-  verb.add_flag("--two-queues", two_queues, "Passes declared async get a queue of their own where they can");
+  verb.add_flag("--two-queues", two_queues, "Use a second queue for async passes where possible");
 }
 
 void add_unbound(CLI::App& verb, std::vector<std::string>& unbound, const char* name = "--unbound") {
-  repeat(verb.add_option(name, unbound, "Optional slots that the host leaves out")
+  repeat(verb.add_option(name, unbound, "Optional slots that the host does not bind")
              ->type_name("NAME")
              ->delimiter(','));
 }
@@ -22,26 +22,24 @@ void add_text_verbs(CLI::App& app, Invocation& invocation) {
       app, invocation, "validate", "Check graphs, profiles, scenes, expectations and captures",
       "dermis validate configs/graphs/burley.json\n  dermis validate capture/ --sarif results.sarif",
       validate, [](CLI::App& verb, ValidateOptions& options) {
-        verb.add_option("files", options.files,
-                        "Files to check; a folder stands for the captured frames in it")
+        verb.add_option("files", options.files, "Files to check; a folder means the captured frames in it")
             ->required()
             ->type_name("FILE");
-        verb.add_option("--profiles", options.profiles,
-                        "Folder of profiles that captures name [configs/profiles]")
+        verb.add_option("--profiles", options.profiles, "Folder of the captures' profiles [configs/profiles]")
             ->type_name("DIR");
         verb.add_flag("--diagnose", options.diagnose,
-                      "Name usual mistakes of integration in captured frames; fail where one is found");
+                      "Report usual integration mistakes in captured frames; fail if one is found");
         add_parts(verb, options.parts);
         verb.add_option("--sarif", options.sarif,
-                        "File for the messages as SARIF 2.1.0, - for standard output")
+                        "Write the messages as SARIF 2.1.0 to this file, - for standard output")
             ->type_name("FILE");
       });
   add_verb<UpgradeOptions>(
-      app, invocation, "upgrade", "Bring files to the newest version of their format",
+      app, invocation, "upgrade", "Convert files to the newest version of their format",
       "dermis upgrade configs/graphs/burley.json\n  dermis upgrade --check configs/graphs/*.json", upgrade,
       [](CLI::App& verb, UpgradeOptions& options) {
         verb.add_option("files", options.files, "Files to upgrade in place")->required()->type_name("FILE");
-        verb.add_flag("--check", options.check, "Write nothing; fail if a file is not of the newest version");
+        verb.add_flag("--check", options.check, "Write nothing; fail if a file needs an upgrade");
       });
   add_verb<ExplainOptions>(
       app, invocation, "explain", "Show the plan of a graph with the reason for each decision",
@@ -58,39 +56,37 @@ void add_text_verbs(CLI::App& app, Invocation& invocation) {
         add_unbound(verb, options.unbound);
         add_two_queues(verb, options.two_queues);
         add_parts(verb, options.parts);
-        CLI::Option* frame =
-            verb.add_flag("--frame", options.frame, "What the library chose for a frame, and why");
+        CLI::Option* frame = verb.add_flag("--frame", options.frame,
+                                           "Explain the library's choices for a frame instead of the plan");
         verb.add_option("--scene", options.scene, "Scene of the frame [configs/scenes/bust.json]")
             ->needs(frame)
             ->type_name("FILE");
-        verb.add_option("--budget", options.budget_ms, "Its milliseconds of device time")
+        verb.add_option("--budget", options.budget_ms, "Device time budget of the frame, ms")
             ->needs(frame)
             ->check(CLI::PositiveNumber)
             ->type_name("MS");
-        verb.add_flag("--deterministic", options.deterministic, "Judge its times by the calibration alone")
+        verb.add_flag("--deterministic", options.deterministic,
+                      "Judge the frame's times only by the calibration")
             ->needs(frame);
         verb.add_option("--out,-o", options.out, "File to write, - for standard output [-]")
             ->type_name("FILE");
       });
   add_verb<GraphOptions>(
-      app, invocation, "graph", "Write the graph and its plan as a page, as DOT, or as JSON with --json",
+      app, invocation, "graph", "Write the graph and its plan as an HTML page, DOT or JSON",
       "dermis graph configs/graphs/skin.json --html skin.html\n"
       "  dermis graph configs/graphs/burley.json | dot -Tsvg > burley.svg",
       graph, [](CLI::App& verb, GraphOptions& options) {
         verb.add_option("graph", options.graph, "Graph file")->required()->type_name("FILE");
         verb.add_flag_callback(
-                "--dot", [] {}, "DOT for Graphviz; the default")
+                "--dot", [] {}, "Write DOT for Graphviz (default)")
             ->excludes("--json");
-        CLI::Option* html =
-            verb.add_option(
-                    "--html", options.html,
-                    "One page to open in a browser, offline: graph, lifetimes, memory, barriers, and the "
-                    "plans of up to 64 combinations of choices")
-                ->excludes("--json")
-                ->excludes("--dot")
-                ->type_name("FILE");
-        verb.add_option("--frame", options.frame,
-                        "Answer of render --json: its times and tiles go into the page")
+        CLI::Option* html = verb.add_option("--html", options.html,
+                                            "Write a self-contained HTML page with graph, lifetimes, memory, "
+                                            "barriers and the plans of up to 64 combinations of choices")
+                                ->excludes("--json")
+                                ->excludes("--dot")
+                                ->type_name("FILE");
+        verb.add_option("--frame", options.frame, "Output of render --json; adds times and tiles to the page")
             ->needs(html)
             ->type_name("FILE");
         add_size(verb, options.size);
@@ -103,35 +99,34 @@ void add_text_verbs(CLI::App& app, Invocation& invocation) {
             ->type_name("FILE");
       });
   add_verb<TestOptions>(
-      app, invocation, "test", "Compare graphs with the expectations that stand beside them",
+      app, invocation, "test", "Compare graphs with the expectation files next to them",
       "dermis test configs/\n  dermis test configs/ --junit results.xml", test,
       [](CLI::App& verb, TestOptions& options) {
         verb.add_option("paths", options.paths, "Expectation files (NAME.expect.json), or folders of them")
             ->required()
             ->type_name("PATH");
         verb.add_flag("--update", options.update,
-                      "State what is found now, in the files; review the change before you commit it");
-        add_root(verb, options.roots,
-                 "Folder of included files and of overlays that cases name, beside the graph's own and the "
-                 "folders given; may be repeated");
+                      "Write the observed results to the files; review the changes before you commit them");
+        add_root(verb, options.roots, "Additional folder of included files and overlays; may be repeated");
         add_pass_types(verb, options.pass_types);
-        verb.add_option("--junit", options.junit, "File for the results as JUnit XML")->type_name("FILE");
+        verb.add_option("--junit", options.junit, "Write the results as JUnit XML to this file")
+            ->type_name("FILE");
       });
 }
 
 void add_plan_verbs(CLI::App& app, Invocation& invocation) {
-  CLI::App& plan = add_group(app, "plan", "Save plans, verify saved ones, compare two",
+  CLI::App& plan = add_group(app, "plan", "Save, verify and compare plans",
                              "dermis plan diff configs/graphs/burley.json configs/graphs/sap.json");
   add_verb<PlanDiffOptions>(
       plan, invocation, "diff",
-      "What differs between the plans of two graphs, of one graph, or two saved plans",
+      "Compare two plans: of two graphs, of one graph with different options, or saved plans",
       "dermis plan diff configs/graphs/burley.json configs/graphs/sap.json\n"
       "  dermis plan diff configs/graphs/burley.json --b-size 960x540 --b-unbound albedo\n"
       "  dermis plan diff before.plan configs/graphs/burley.json --exit-code",
       plan_diff, [](CLI::App& verb, PlanDiffOptions& options) {
         verb.add_option(
                 "files", options.files,
-                "Two graphs or saved plans, A and B; one graph stands for both, told apart by --b-...")
+                "Two graphs or saved plans, A and B; or one graph for both, with --b-... options for B")
             ->required()
             ->expected(1, 2)
             ->type_name("FILE");
@@ -139,8 +134,8 @@ void add_plan_verbs(CLI::App& app, Invocation& invocation) {
         add_size(verb, options.size);
         add_settings(verb, options.settings);
         add_unbound(verb, options.unbound);
-        verb.add_flag("--exit-code", options.exit_code, "Exit with 1 where the plans differ");
-        const char* group = "Of B alone, after what both have in common";
+        verb.add_flag("--exit-code", options.exit_code, "Exit with 1 if the plans differ");
+        const char* group = "Options of B, added to the common options";
         add_size(verb, options.b_size, "--b-size")->group(group);
         add_settings(verb, options.b_settings, "--b-set");
         verb.get_option("--b-set")->group(group);
@@ -164,7 +159,7 @@ void add_plan_verbs(CLI::App& app, Invocation& invocation) {
         verb.add_option("--out,-o", options.out, "File to write")->required()->type_name("FILE");
       });
   add_verb<PlanVerifyOptions>(
-      plan, invocation, "verify", "Prove saved plans free of hazards, from nothing but the file",
+      plan, invocation, "verify", "Verify that saved plans are free of hazards, without their graphs",
       "dermis plan verify burley.plan", plan_verify, [](CLI::App& verb, PlanVerifyOptions& options) {
         verb.add_option("files", options.files, "Saved plans")->required()->type_name("FILE");
       });
@@ -176,19 +171,18 @@ void add_schema_verb(CLI::App& app, Invocation& invocation) {
       "dermis schema graph\n  dermis schema --out build/docs/schema", schema,
       [&invocation](CLI::App& verb, SchemaOptions& options) {
         const CLI::Option* name =
-            verb.add_option("name", options.name,
-                            fmt::format("One of {}; without one: all", format_list(schema_names())))
+            verb.add_option("name", options.name, fmt::format("One of {} [all]", format_list(schema_names())))
                 ->type_name("NAME");
         invocation.offered[name] = schema_names();
         verb.add_option("--out,-o", options.out,
-                        "File to write, - for standard output [-]; a folder where all are written")
+                        "File to write, - for standard output [-]; a folder if all are written")
             ->type_name("PATH");
       });
 }
 
 void add_docs_verb(CLI::App& app, Invocation& invocation) {
   add_verb<DocsOptions>(
-      app, invocation, "docs", "Write the documentation that follows from schemas, pass types and graphs",
+      app, invocation, "docs", "Write the documentation generated from schemas, pass types and graphs",
       "dermis docs --out build/docs", docs, [](CLI::App& verb, DocsOptions& options) {
         verb.add_option("--out,-o", options.out, "Folder of the pages [build/docs]")->type_name("DIR");
         verb.add_option("--graphs", options.graphs, "Folder of graph files [configs/graphs]")
@@ -197,8 +191,7 @@ void add_docs_verb(CLI::App& app, Invocation& invocation) {
 }
 
 void add_doctor_verb(CLI::App& app, Invocation& invocation) {
-  add_verb<DoctorOptions>(app, invocation, "doctor",
-                          "Show what this machine has of what Dermis needs, and what is done without",
+  add_verb<DoctorOptions>(app, invocation, "doctor", "Check this machine against the requirements of Dermis",
                           "dermis doctor\n  dermis doctor --json", doctor, [](CLI::App&, DoctorOptions&) {});
 }
 

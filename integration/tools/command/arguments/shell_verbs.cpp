@@ -37,8 +37,7 @@ void add_text_verb(CLI::App& app, Invocation& invocation, const char* name, cons
 } // namespace
 
 void add_shell_verbs(CLI::App& app, Invocation& invocation) {
-  add_text_verb(app, invocation, "completion",
-                "Write a script by which a shell completes this command's lines",
+  add_text_verb(app, invocation, "completion", "Write a completion script for a shell",
                 "source <(dermis completion bash)", true, [&app, &invocation](const std::string& shell) {
                   return completion_script(declared_verbs(app, invocation.offered), shell);
                 });

@@ -44,17 +44,17 @@ template <class Options> Options with_files(const Files& files) {
 
 // From the shortest suite to the longest.
 constexpr Suite suites[] = {
-    {"record", "What recording a frame costs the host's thread", false, false, false, "",
+    {"record", "Cost of recording a frame on the host's thread", false, false, false, "",
      [](const Session& session, const BenchAllOptions&, const Files& files) {
        return bench_record(session, with_files<BenchRecordOptions>(files));
      }},
-    {"skip", "What frames cost that do not need all of a graph", false, false, true, "",
+    {"skip", "Cost of frames that do not need all of a graph", false, false, true, "",
      [](const Session& session, const BenchAllOptions& all, const Files& files) {
        auto options = with_files<BenchSkipOptions>(files);
        options.quick = all.quick;
        return bench_skip(session, options);
      }},
-    {"truth", "Laws with known answers, beside what every technique makes of them", true, false, true, "",
+    {"truth", "Known results compared with every technique", true, false, true, "",
      [](const Session& session, const BenchAllOptions& all, const Files& files) {
        auto options = with_files<BenchReferenceOptions>(files);
        options.quick = all.quick;
@@ -65,26 +65,26 @@ constexpr Suite suites[] = {
      [](const Session& session, const BenchAllOptions&, const Files& files) {
        return bench_supplement(session, with_files<BenchSupplementOptions>(files));
      }},
-    {"compile", "Time and memory of compiling drawn graphs", false, false, true, "",
+    {"compile", "Time and memory of compiling random graphs", false, false, true, "",
      [](const Session& session, const BenchAllOptions& all, const Files& files) {
        auto options = with_files<BenchCompileOptions>(files);
        options.quick = all.quick;
        return bench_compile(session, options);
      }},
-    {"stability", "Every technique under what is known to break such techniques", false, false, true, "",
+    {"stability", "Every technique with damaged and extreme inputs", false, false, true, "",
      [](const Session& session, const BenchAllOptions& all, const Files& files) {
        auto options = with_files<BenchStabilityOptions>(files);
        options.quick = all.quick;
        return bench_stability(session, options);
      }},
-    {"budget", "How well frames keep to a budget, and what error that costs", false, false, true, "",
+    {"budget", "How well frames keep a budget, and at what error", false, false, true, "",
      [](const Session& session, const BenchAllOptions& all, const Files& files) {
        auto options = with_files<BenchBudgetOptions>(files);
        options.cache = all.cache;
        options.quick = all.quick;
        return bench_budget(session, options);
      }},
-    {"error-time", "Run time against error of every technique at every still scene", true, true, true,
+    {"error-time", "Run time and error of every technique on every still scene", true, true, true,
      " --size 640x360",
      [](const Session& session, const BenchAllOptions& all, const Files& files) {
        auto options = with_files<BenchErrorTimeOptions>(files);
@@ -94,7 +94,8 @@ constexpr Suite suites[] = {
        options.quick = all.quick;
        return bench_error_time(session, options);
      }},
-    {"dynamic", "Samples, time, error and flicker while light, camera or things change", true, true, true, "",
+    {"dynamic", "Samples, time, error and flicker with changing light, camera or objects", true, true, true,
+     "",
      [](const Session& session, const BenchAllOptions& all, const Files& files) {
        auto options = with_files<BenchDynamicOptions>(files);
        options.csv = files.csv;
@@ -103,7 +104,7 @@ constexpr Suite suites[] = {
        options.quick = all.quick;
        return bench_dynamic(session, options);
      }},
-    {"restir", "Light by rays, reuse by reuse, and what screen space misses", true, true, true, "",
+    {"restir", "Ray-traced light with each kind of reuse, and screen-space techniques", true, true, true, "",
      [](const Session& session, const BenchAllOptions& all, const Files& files) {
        auto options = with_files<BenchRestirOptions>(files);
        options.csv = files.csv;
@@ -171,12 +172,12 @@ std::string index_json(const std::vector<Outcome>& outcomes) {
 
 std::string state_text(const Outcome& one) {
   if (!one.left_out.empty()) return "left out: " + one.left_out;
-  return !one.written ? "failed" : one.exit_code == 0 ? "done" : "done; rows miss what they should hold";
+  return !one.written ? "failed" : one.exit_code == 0 ? "done" : "done; some rows miss their limits";
 }
 
 std::string index_html(const Session& session, const std::vector<Outcome>& outcomes) {
   std::string body =
-      "<h1>Measurements of Dermis</h1><p>Each suite has a page, and its rows for programs.</p><dl>\n";
+      "<h1>Measurements of Dermis</h1><p>Each suite has a page, and its rows as JSON or CSV.</p><dl>\n";
   for (const auto& [name, text] : machine_info(session.command, ""))
     body += fmt::format("<dt>{}<dd>{}\n", html_text(name), html_text(text));
   body += "</dl><div class=wide><table><thead><tr><th class=t>suite<th class=t>what<th class=t>rows<th "

@@ -80,7 +80,7 @@ demo::Result<> add_subjects(ErrorTimeBench& bench) {
       bench.subjects.push_back(subject.take());
     }
   }
-  if (bench.subjects.empty()) return demo::Error{demo::ErrorKind::usage, "no scene is left to measure"};
+  if (bench.subjects.empty()) return demo::Error{demo::ErrorKind::usage, "no scene is selected"};
   for (Subject& subject : bench.subjects)
     adopt_profiles(bench, subject.frame);
   return demo::success();
@@ -92,7 +92,7 @@ demo::Result<> add_techniques(ErrorTimeBench& bench) {
     const std::string name = fmt::format("{} {}", request.technique, request.setting);
     if (!is_selected(bench.options.techniques, request.technique)) continue;
     if (!std::filesystem::exists(request.graph)) {
-      bench.notes.push_back(fmt::format("technique {}: there is no graph '{}'", name, request.graph));
+      bench.notes.push_back(fmt::format("technique {}: graph '{}' does not exist", name, request.graph));
       continue;
     }
     auto made = TechniqueRun::create(bench.host, request, bench.profiles, bench.sap_tables);
@@ -104,7 +104,7 @@ demo::Result<> add_techniques(ErrorTimeBench& bench) {
   for (const TechniqueRequest& request : bench.file.techniques)
     known.insert(request.technique);
   return demo::Error{demo::ErrorKind::usage,
-                     fmt::format("no technique is left to measure; there are {}", fmt::join(known, ", "))};
+                     fmt::format("no technique is selected; available: {}", fmt::join(known, ", "))};
 }
 
 // Median projected d of the frame per channel, and the fraction of its subsurface pixels that
@@ -175,8 +175,8 @@ void add_times(ErrorTimeRow& row, const TechniqueTimes& times, std::chrono::stea
 demo::Result<> measure(ErrorTimeBench& bench, size_t index, Progress& progress, uint64_t& done) {
   const Subject& subject = bench.subjects[index];
   const auto name = fmt::format("{} {} d {:.2f} px", subject.scene, subject.framing, subject.d_px);
-  const auto reference = make_reference(bench.session, subject.frame, "truth of " + name, bench.file.subset,
-                                        bench.options.cache);
+  const auto reference = make_reference(bench.session, subject.frame, "reference of " + name,
+                                        bench.file.subset, bench.options.cache);
   if (!reference) return stopped();
   const Scattering scattering = scattering_of(subject);
   const size_t first = bench.measured.size();
@@ -250,7 +250,7 @@ ExitCode bench_error_time(const Session& session, const BenchErrorTimeOptions& r
   auto host = demo::create_vulkan_host({});
   if (!host) return fail(session, static_cast<ExitCode>(host.error().kind), host.error().text);
   ErrorTimeBench bench{session, options, *file, **host};
-  bench.maps.title = "Where it errs";
+  bench.maps.title = "Error maps";
   bench.maps.explanation = heat_map_explanation();
   const auto run = [&]() -> demo::Result<> {
     if (auto ready = add_subjects(bench); !ready) return ready;
@@ -269,7 +269,7 @@ ExitCode bench_error_time(const Session& session, const BenchErrorTimeOptions& r
   for (const ErrorTimeRow& one : bench.measured)
     if (!one.counts.unknown_pass_type.empty()) {
       const std::string note =
-          fmt::format("reads_per_pixel of {}: nobody has counted those of '{}'",
+          fmt::format("reads_per_pixel of {}: the reads of '{}' are unknown",
                       bench.techniques[one.technique]->request().graph, one.counts.unknown_pass_type);
       if (std::find(bench.notes.begin(), bench.notes.end(), note) == bench.notes.end())
         bench.notes.push_back(note);

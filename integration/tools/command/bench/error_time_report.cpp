@@ -144,7 +144,7 @@ void fill_plots(const ErrorTimeBench& bench, Report& report) {
 
 std::string early_end(const ErrorTimeFile& file) {
   if (file.row_milliseconds == 0) return "";
-  return fmt::format("; a technique that took {} ms at a scene ends there, after {} at least",
+  return fmt::format("; a technique ends early on a scene after {} ms, but not before {}",
                      file.row_milliseconds, file.min_repetitions);
 }
 
@@ -153,7 +153,7 @@ std::string early_end(const ErrorTimeFile& file) {
 Report make_error_time_report(const ErrorTimeBench& bench, double seconds) {
   Report report;
   report.bench = "error-time";
-  report.title = "Run time against error";
+  report.title = "Run time and error";
   report.summary =
       "Error of the scattered light before albedo against the fp64 truth: linear Rec.709 luminance, the "
       "scene's 99.9th percentile of light at 1. Time is the sum of the device's timestamps over all passes "

@@ -23,9 +23,9 @@ demo::ModelOptions head_model(const std::string& folder) {
 }
 
 std::string why_no_head(const std::string& folder) {
-  if (folder.empty()) return "no model was given (--head FOLDER)";
+  if (folder.empty()) return "no model is given (--head FOLDER)";
   const std::string mesh = (std::filesystem::path(folder) / mesh_name).string();
-  return std::filesystem::exists(mesh) ? "" : fmt::format("there is no '{}'", mesh);
+  return std::filesystem::exists(mesh) ? "" : fmt::format("'{}' does not exist", mesh);
 }
 
 } // namespace dermis::tools

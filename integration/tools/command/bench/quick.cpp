@@ -101,8 +101,9 @@ void quicken(std::vector<TechniqueRequest>& techniques) {
 }
 
 std::pair<std::string, std::string> quick_fact() {
-  return {"quick", "small pictures and few repetitions, scenes or techniques, to see that it runs; the "
-                   "figures say nothing"};
+  return {
+      "quick",
+      "a smoke test with small images and few repetitions, scenes or techniques; figures are meaningless"};
 }
 
 } // namespace dermis::tools

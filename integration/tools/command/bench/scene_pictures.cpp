@@ -34,8 +34,7 @@ ReportPicture picture_of(const Subject& subject) {
 } // namespace
 
 ReportPictures scene_pictures(std::span<const Subject> subjects) {
-  ReportPictures group{
-      "What was measured", "Light before scattering and before albedo, exposed and tonemapped.", {}};
+  ReportPictures group{"Scenes", "Light before scattering and before albedo, exposed and tonemapped.", {}};
   for (const Subject& subject : subjects)
     if (subject.frame.lighting.width > 0 && subject.frame.lighting.height > 0)
       group.pictures.push_back(picture_of(subject));

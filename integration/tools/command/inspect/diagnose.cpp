@@ -178,11 +178,11 @@ private:
                                              f.extent_m, f.median_m, f.median_d_px);
     if (f.median_d_px < narrow_px && f.extent_m > large_m)
       add(DiagnosticId::first_frame_units,
-          fmt::format("{}: lengths look like {}, read as metres", measured,
+          fmt::format("{}: lengths seem to be {}, but are read as metres", measured,
                       f.extent_m > 10 * large_m ? "millimetres" : "centimetres"));
     else if (f.median_d_px > wide_px && f.extent_m < small_m)
       add(DiagnosticId::first_frame_units,
-          fmt::format("{}: lengths look larger than they are read", measured));
+          fmt::format("{}: lengths seem larger than the values read", measured));
     else if (f.median_d_px < subsurface::copy_below_d_px)
       add(DiagnosticId::first_frame_below_pixel,
           fmt::format("d is {:.3g} px (median): below {} px light is copied, and nothing is seen to scatter",
@@ -256,7 +256,7 @@ private:
     const double edge = quantile(outline, 0.5);
     if (edge < figures_.median_m - clear_fraction * relief)
       add(DiagnosticId::first_frame_depth,
-          fmt::format("outlines are nearer ({:.4g} m) than what lies inside of them ({:.4g} m): depth looks "
+          fmt::format("outlines are nearer ({:.4g} m) than their interior ({:.4g} m): depth seems to be "
                       "flipped (near and far exchanged)",
                       edge, figures_.median_m));
   }

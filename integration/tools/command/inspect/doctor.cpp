@@ -45,14 +45,14 @@ std::string screen(const demo::DeviceSurvey& survey) {
   table.rows.push_back({"ok", "Vulkan loader", version_text(survey.loader_version)});
   table.rows.push_back({survey.validation_layer ? "ok" : "degraded", "Khronos validation layer",
                         survey.validation_layer
-                            ? "every device test runs under it"
-                            : "not installed (Debian: vulkan-validationlayers): tests need it"});
+                            ? "used by every device test"
+                            : "not installed (Debian: vulkan-validationlayers); required by tests"});
   const std::string compiler = abi::shader_compiler();
-  table.rows.push_back({compiler.empty() ? "degraded" : "ok", "shaders at run time",
-                        compiler.empty()
-                            ? "built without glslang (Debian: glslang-dev): watch and render take no "
-                              "shaders of their own"
-                            : compiler + " compiles those of render --shaders and watch"});
+  table.rows.push_back(
+      {compiler.empty() ? "degraded" : "ok", "shaders at run time",
+       compiler.empty()
+           ? "built without glslang (Debian: glslang-dev); watch and render cannot compile shaders"
+           : compiler + " compiles shaders of render --shaders and watch"});
   for (const demo::SurveyedDevice& device : survey.devices)
     add_device(device, table);
   return format_table(table);
@@ -93,7 +93,7 @@ std::string survey_as_json(const demo::DeviceSurvey& survey) {
 
 // Returns the report for a machine without a loader or driver.
 std::string screen_without_devices() {
-  const char* why = "validate, explain, plan, test, graph and compare work without";
+  const char* why = "validate, explain, plan, test, graph and compare work without a device";
   return format_table(
       {{{""}, {"what"}, {"for"}}, {{"ok", "Dermis", library_version()}, {"missing", "Vulkan device", why}}});
 }
@@ -108,11 +108,10 @@ ExitCode doctor(const Session& session, const DoctorOptions&) {
   if (session.json) print(survey_as_json(*survey));
   say(session, screen(*survey));
   if (fits) return ExitCode::ok;
-  return session.json
-             ? ExitCode::environment
-             : fail(session, ExitCode::environment,
-                    "no device has all that is required; a newer driver may (Debian: mesa-vulkan-drivers has "
-                    "a software one)");
+  return session.json ? ExitCode::environment
+                      : fail(session, ExitCode::environment,
+                             "no device meets all requirements; install a newer driver (Debian: "
+                             "mesa-vulkan-drivers has a software driver)");
 }
 
 } // namespace dermis::tools

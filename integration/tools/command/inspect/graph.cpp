@@ -22,7 +22,7 @@ ExitCode write_view(const Session& session, const GraphOptions& options, const L
   if (!problem.empty()) return fail(session, ExitCode::environment, problem);
   if (options.html != "-")
     say(session,
-        fmt::format("{}: {}, to be opened in a browser\n", options.html, format_bytes(view.page.size())));
+        fmt::format("{}: {}; open the page in a browser\n", options.html, format_bytes(view.page.size())));
   return ExitCode::ok;
 }
 

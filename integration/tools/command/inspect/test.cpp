@@ -72,7 +72,7 @@ TestResult judge(const ExpectedCase& expected, const Observation& observed, bool
                  std::optional<MachineInfo>& fresh) {
   if (!observed.problem.empty()) return {expected.name, false, observed.problem, ""};
   if (!observed.violations.empty())
-    return {expected.name, false, "the verifier refuses the plan: this is a defect of the compiler",
+    return {expected.name, false, "the verifier rejects the plan: this is a defect of the compiler",
             joined(observed.violations)};
   const std::string note =
       observed.not_verified.empty() ? "" : fmt::format("the plan is not verified: {}", observed.not_verified);
@@ -91,7 +91,7 @@ TestResult judge(const ExpectedCase& expected, const Observation& observed, bool
     fresh = was_planned && observed.info.passes ? found : observed.info;
     return {expected.name, true, note, ""};
   }
-  return {expected.name, false, "what was compiled is not what is expected (-), but (+)",
+  return {expected.name, false, "the result (+) differs from the expectation (-)",
           diff_lines(info_json(*expected.info), info_json(found)) + joined(observed.messages)};
 }
 
@@ -135,7 +135,8 @@ TestRun run_file(const std::string& path, const TestOptions& options, const std:
   for (size_t i = 0; i < cases->size(); ++i) {
     Observation observed;
     if (!files::is_regular_file(graph_path, ignored))
-      observed.problem = fmt::format("there is no graph '{}' beside it", graph_path);
+      observed.problem =
+          fmt::format("the graph '{}' next to the expectation file does not exist", graph_path);
     else if (const auto loaded = load_case(graph_path, (*cases)[i], open, options.pass_types, observed))
       observed = observe(*loaded, (*cases)[i]);
     run.suite.results.push_back(judge((*cases)[i], observed, options.update, fresh[i]));
@@ -179,7 +180,7 @@ void tell(const Session& session, const TestRun& run) {
       fmt::print(stderr, "{}: case '{}': {}\n{}", run.suite.name, one.name, one.message, one.details);
   const size_t count = run.suite.results.size();
   if (run.updated > 0)
-    say(session, fmt::format("{}: {} of {} cases restated\n", run.suite.name, run.updated, count));
+    say(session, fmt::format("{}: {} of {} cases updated\n", run.suite.name, run.updated, count));
   else if (good(run))
     say(session, fmt::format("{}: {} case{} as expected\n", run.suite.name, count, count == 1 ? "" : "s"));
 }
@@ -221,9 +222,10 @@ ExitCode test(const Session& session, const TestOptions& options) {
     return bad == 0 ? ExitCode::ok : ExitCode::problems;
   }
   if (bad == 0) return ExitCode::ok;
-  return fail(session, ExitCode::problems,
-              fmt::format("{} of {} expectation files fail; if the change is meant, --update restates them",
-                          bad, runs.size()));
+  return fail(
+      session, ExitCode::problems,
+      fmt::format("{} of {} expectation files fail; if the change is intended, update them with --update",
+                  bad, runs.size()));
 }
 
 } // namespace dermis::tools

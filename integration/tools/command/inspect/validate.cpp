@@ -37,7 +37,7 @@ bool check_graph(const Document& document, const std::string& path, const GraphP
   const Verdict verdict = verify(compiled->plan);
   for (const std::string& violation : verdict.violations)
     diagnostics.add(DiagnosticId::internal_defect, document.where(document.root()),
-                    fmt::format("the verifier refuses the plan: {}", violation));
+                    fmt::format("the verifier rejects the plan: {}", violation));
   verified = verdict.not_verified.empty();
   if (!verified)
     diagnostics.add(DiagnosticId::plan_not_verified, document.where(document.root()),
@@ -140,7 +140,7 @@ std::vector<CheckedFile> check_path(const std::string& path, const ValidateOptio
 
 ExitCode validate(const Session& session, const ValidateOptions& options) {
   if (session.json && options.sarif == "-")
-    return fail(session, ExitCode::usage, "--json and --sarif - both want standard output; name a file");
+    return fail(session, ExitCode::usage, "--json and --sarif - both write to standard output; name a file");
   Diagnostics diagnostics;
   std::vector<CheckedFile> files;
   for (const std::string& path : options.files)

@@ -116,9 +116,9 @@ bool check_report(const Document& report, Diagnostics& diagnostics) {
               (report[time].kind == NodeKind::real || report[time].kind == NodeKind::integer);
     }
   if (!whole)
-    diagnostics.add(DiagnosticId::wrong_type, report.where(passes.valid() ? passes : report.root()),
-                    "expected the answer of 'dermis render --json': \"passes\", each with \"pass\" and "
-                    "\"milliseconds\"");
+    diagnostics.add(
+        DiagnosticId::wrong_type, report.where(passes.valid() ? passes : report.root()),
+        "expected the output of 'dermis render --json': \"passes\", each with \"pass\" and \"milliseconds\"");
   return whole;
 }
 
@@ -223,8 +223,8 @@ struct View {
 ViewAnswer make_view(const LoadedGraph& loaded, const ViewOptions& options, Diagnostics& diagnostics) {
   const ViewerPage page = viewer_page();
   if (!page.missing.empty())
-    return {"", fmt::format("this program has no viewer: {}; with nodejs and npm installed and a "
-                            "network, configure and build it again, or use --dot",
+    return {"", fmt::format("this program has no viewer: {}; configure and build it again with nodejs, npm "
+                            "and a network, or use --dot",
                             page.missing)};
 
   std::optional<Document> report;

@@ -167,14 +167,13 @@ std::string replay_line(const ReportBugOptions& options, const GraphFiles& files
 }
 
 std::string about(const Session& session, const std::string& replay) {
-  return fmt::format(
-      "Made by dermis {}.{}.{}: {}\n\nTo see the same, in this folder:\n\n  {}\n\n"
-      "settings.json  values that the plan was compiled with\n"
-      "plan.json      the plan with its reasons (dermis explain --json), for the generic device\n"
-      "graph.plan     the same for dermis plan verify and dermis plan diff\n"
-      "device.json    what the machine has (dermis doctor --json)\n"
-      "capture/       one frame as the graph sees it\n",
-      DERMIS_VERSION_MAJOR, DERMIS_VERSION_MINOR, DERMIS_VERSION_PATCH, session.command, replay);
+  return fmt::format("Made by dermis {}.{}.{}: {}\n\nTo reproduce the problem, run in this folder:\n\n  "
+                     "{}\n\nsettings.json  values that the plan was compiled with\nplan.json      the plan "
+                     "with its reasons (dermis explain --json), for the generic device\ngraph.plan     the "
+                     "plan for dermis plan verify and dermis plan diff\ndevice.json    properties of the "
+                     "machine (dermis doctor --json)\ncapture/       inputs of one frame\n",
+                     DERMIS_VERSION_MAJOR, DERMIS_VERSION_MINOR, DERMIS_VERSION_PATCH, session.command,
+                     replay);
 }
 
 } // namespace
@@ -193,7 +192,7 @@ ExitCode report_bug(const Session& session, const ReportBugOptions& options) {
                       options.out));
   if (fs::exists(named, error) && (!archived.empty() || !fs::is_empty(named, error)))
     return fail(session, ExitCode::environment,
-                fmt::format("'{}' is there{}: choose another name", options.out,
+                fmt::format("'{}' exists{}: choose another name", options.out,
                             archived.empty() ? " and not empty" : ""));
 
   Diagnostics diagnostics;
@@ -230,7 +229,8 @@ ExitCode report_bug(const Session& session, const ReportBugOptions& options) {
   if (!captured) return fail(session, static_cast<ExitCode>(captured.error().kind), captured.error().text);
   if (archived.empty()) fs::remove(named, error); // the target may be an empty folder
   if (!parcel.finish()) return fail(session, ExitCode::environment, parcel.problem);
-  say(session, fmt::format("{}: send it as it is; README.txt in it has the line that shows the same:\n  {}\n",
+  say(session, fmt::format("{}: attach this file to your report; its README.txt has the command that "
+                           "reproduces the problem:\n  {}\n",
                            options.out, replay_line(options, files)));
   if (session.json) {
     JsonWriter answer;

@@ -21,10 +21,9 @@ bool tells_sides_apart(const PlanDiffOptions& options) {
 
 ExitCode plan_diff(const Session& session, const PlanDiffOptions& options) {
   if (options.files.size() == 1 && !tells_sides_apart(options))
-    return fail(
-        session, ExitCode::usage,
-        "name two plans, or say with --b-set, --b-size, --b-unbound or --b-overlay how the second one "
-        "is to differ");
+    return fail(session, ExitCode::usage,
+                "name two plans, or set differences of the second plan with --b-set, --b-size, --b-unbound "
+                "or --b-overlay");
   const PlanSource a{options.files.front(), options.parts, options.size, options.settings, options.unbound};
   PlanSource b = a;
   b.file = options.files.back();

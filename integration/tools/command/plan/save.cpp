@@ -16,11 +16,11 @@ ExitCode plan_save(const Session& session, const PlanSaveOptions& options) {
       diagnostics, problem);
   if (!problem.empty()) return fail(session, ExitCode::usage, problem);
   if (!plan) return fail_graph(session, options.graph, diagnostics);
-  if (!plan->from_graph) return fail(session, ExitCode::usage, options.graph + ": is a saved plan already");
+  if (!plan->from_graph) return fail(session, ExitCode::usage, options.graph + ": is already a saved plan");
   print_diagnostics(session, diagnostics);
   const std::string bytes = write_plan(plan->saved);
   if (session.json && options.out == "-")
-    return fail(session, ExitCode::usage, "--json and --out - both claim standard output");
+    return fail(session, ExitCode::usage, "--json and --out - both write to standard output");
   if (const std::string error = deliver_text(options.out, bytes); !error.empty())
     return fail(session, ExitCode::environment, error);
   if (session.json) {

@@ -49,8 +49,8 @@ ExitCode calibrate(const Session& session, const CalibrateOptions& options) {
   if (const std::string problem = deliver_text(options.out, costs->calibration); !problem.empty())
     return fail(session, ExitCode::environment, problem);
   say(session, options.out == "-" ? ""
-                                  : fmt::format("{} holds what {} costs on {}\n", options.out, options.graph,
-                                                costs->device));
+                                  : fmt::format("{} holds the costs of {} on {}\n", options.out,
+                                                options.graph, costs->device));
   if (session.json && options.out != "-") {
     JsonWriter answer;
     answer.open_object()

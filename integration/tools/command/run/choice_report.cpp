@@ -39,7 +39,7 @@ std::string describe_choice(const demo::FrameChoice& choice) {
     text += fmt::format("; next better {} would need {:.2f} ms more", choice.next_better,
                         choice.next_better_missing_ms);
   if (choice.sample_units < choice.sample_demand)
-    text += fmt::format("; {} of {} wanted samples a tile pixel are paid", 8 * choice.sample_units,
+    text += fmt::format("; {} of {} requested samples per tile pixel fit the budget", 8 * choice.sample_units,
                         8 * choice.sample_demand);
   if (!choice.miss.empty()) text += fmt::format("; over the budget: {}", choice.miss);
   return text;

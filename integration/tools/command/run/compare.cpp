@@ -81,8 +81,8 @@ std::vector<Pair> pairs_of(const std::string& a, const std::string& b, std::stri
     }
   const bool folder = fs::is_directory(a, ignored);
   if (folder != fs::is_directory(b, ignored)) {
-    problem = fmt::format("'{}' is a folder, '{}' is a file: name two pictures, or two folders",
-                          folder ? a : b, folder ? b : a);
+    problem = fmt::format("'{}' is a folder, '{}' is a file: name two images or two folders", folder ? a : b,
+                          folder ? b : a);
     return {};
   }
   if (!folder) return {{fs::path(a).filename().string(), a, b}};
@@ -101,7 +101,7 @@ std::vector<Pair> pairs_of(const std::string& a, const std::string& b, std::stri
   std::set_symmetric_difference(in_a.begin(), in_a.end(), in_b.begin(), in_b.end(),
                                 std::back_inserter(alone));
   if (!alone.empty())
-    problem = fmt::format("'{}' is in one of the folders only{}", alone.front(),
+    problem = fmt::format("'{}' is only in one of the folders{}", alone.front(),
                           alone.size() > 1 ? fmt::format(", and {} more", alone.size() - 1) : "");
   if (in_a.empty() && in_b.empty()) problem = fmt::format("there are no .png or .exr files below '{}'", a);
   std::vector<Pair> pairs;
@@ -131,7 +131,7 @@ bool read_mask(const Pair& pair, const Image& like, std::optional<Image>& mask, 
     mask = read_exr(path, std::vector<ChannelNames>{{"Y"}, {"*"}}, problem);
     if (!mask) return false;
     if (mask->width == like.width && mask->height == like.height) return true;
-    problem = fmt::format("'{}' is {}x{}, the picture beside it {}x{}", path.string(), mask->width,
+    problem = fmt::format("'{}' is {}x{}, the image next to it {}x{}", path.string(), mask->width,
                           mask->height, like.width, like.height);
     return false;
   }
@@ -154,9 +154,9 @@ bool read_both(const Pair& pair, const CompareOptions& options, Loaded& loaded, 
   const bool is_png = pair.a.extension() == ".png";
   if (!read_mask(pair, *second, loaded.mask, problem)) return false;
   if (options.flip && loaded.mask) {
-    problem = fmt::format("FLIP looks at whole pictures, and the mask beside '{}' says that not all of its "
-                          "pixels were computed; run reference without --subset",
-                          pair.b.string());
+    problem = fmt::format(
+        "FLIP needs whole images, but the mask next to '{}' excludes pixels; run reference without --subset",
+        pair.b.string());
     return false;
   }
   if (options.flip) loaded.seen = flip(*second, *first, !is_png, options.pixels_per_degree);
@@ -306,7 +306,7 @@ ExitCode compare(const Session& session, const CompareOptions& options) {
   if (!problem.empty()) return fail(session, ExitCode::problems, problem);
   if ((!options.heat.empty() || !options.flip_map.empty()) && pairs.size() > 1)
     return fail(session, ExitCode::usage,
-                "--heat and --flip-map draw one picture; name two files instead of folders");
+                "--heat and --flip-map write one image; name two files instead of folders");
   Progress progress(progress_style(session.quiet, session.json), "compare", "picture", pairs.size());
   std::vector<Compared> rows;
   for (const Pair& pair : pairs) {
@@ -335,10 +335,9 @@ ExitCode compare(const Session& session, const CompareOptions& options) {
   });
   say(session, as_table(rows, pairs.size() > 1));
   if (!options.heat.empty())
-    say(session,
-        fmt::format("\n{}: error of a pixel, root mean square of its channels; dark blue 1e-4 or less, "
-                    "light yellow .1 or more, by its logarithm\n",
-                    options.heat));
+    say(session, fmt::format("\n{}: RMS error of a pixel's channels, logarithmic; dark blue 1e-4 or less, "
+                             "light yellow 0.1 or more\n",
+                             options.heat));
   if (!options.flip_map.empty())
     say(session, fmt::format("{}{}: FLIP of a pixel, dark blue 0, light yellow 1\n",
                              options.heat.empty() ? "\n" : "", options.flip_map));
@@ -350,8 +349,8 @@ ExitCode compare(const Session& session, const CompareOptions& options) {
   if (options.max_flip < 1)
     allowed += fmt::format("{}a FLIP of {}", allowed.empty() ? "" : " and ", options.max_flip);
   return fail(session, ExitCode::problems,
-              allowed.empty() ? "there are values that are not finite"
-                              : fmt::format("the pictures differ by more than {} allow", allowed));
+              allowed.empty() ? "some values are not finite"
+                              : fmt::format("the images differ by more than {} permit", allowed));
 }
 
 } // namespace dermis::tools

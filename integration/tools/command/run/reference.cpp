@@ -92,7 +92,7 @@ ExitCode reference(const Session& session, const ReferenceOptions& options) {
     pixels += made->pixels;
   }
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  say(session, fmt::format("{}, {} pixels in {}; the answer is in {}\n",
+  say(session, fmt::format("{}, {} pixels in {}; the reference is in {}\n",
                            format_count(sequence->folders.size(), "frame"), pixels, format_duration(seconds),
                            options.out));
   if (session.json) {

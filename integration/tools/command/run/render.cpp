@@ -195,9 +195,9 @@ std::string why_no_error(const RenderRun& run) {
   if (run.textured_before) return "the reference needs 'texturing' = 'post'";
   if (run.options.graph == no_graph) return "rendered without a graph";
   if (run.by_rays)
-    return "the technique traces rays, and the reference of screen space does not apply; "
-           "'dermis bench restir' has one that does";
-  if (run.options.subset == 0) return "not asked for (--subset 0)";
+    return "the technique traces rays, to which the screen-space reference does not apply; use 'dermis bench "
+           "restir'";
+  if (run.options.subset == 0) return "not requested (--subset 0)";
   if (run.last_scattered.empty()) return "the graph does not export 'scattered_light'";
   if (subsurface_pixels(run.last.profile) == 0) return "no pixel of the last frame has a profile";
   return "";
@@ -288,11 +288,10 @@ ExitCode render(const Session& session, const RenderOptions& options) {
     const CompileChoices choices = read_choices(loaded->graph, options.settings);
     if (!choices.problem.empty()) return fail(session, ExitCode::usage, choices.problem);
     if (engine.sampling && !hands_out_samples(loaded->graph))
-      return fail(
-          session, ExitCode::usage,
-          fmt::format("--debug samples: '{}' exports no 'sampling', which would say where it sampled; "
-                      "afis_guided.json, sap_blend.json and sap_residual.json do",
-                      options.graph));
+      return fail(session, ExitCode::usage,
+                  fmt::format("--debug samples: '{}' does not export 'sampling'; afis_guided.json, "
+                              "sap_blend.json and sap_residual.json do",
+                              options.graph));
     if (!compile_generic(*loaded, options.size, choices, diagnostics))
       return fail_graph(session, options.graph, diagnostics);
     engine.graph = options.graph;

@@ -76,8 +76,7 @@ ExitCode sheet(const Session& session, const SheetOptions& options) {
   if (columns * (options.size.width + gap) > longest_side ||
       rows * (options.size.height + gap) > longest_side)
     return fail(session, ExitCode::usage,
-                fmt::format("the sheet would have more than {} pixels along a side; use a smaller --size",
-                            longest_side));
+                fmt::format("the sheet exceeds {} pixels along a side; use a smaller --size", longest_side));
   Diagnostics diagnostics;
   const std::optional<LoadedGraph> known = load_pass_types(options.pass_types, diagnostics);
   if (!known) return fail(session, ExitCode::problems, "the pass types cannot be used", &diagnostics);

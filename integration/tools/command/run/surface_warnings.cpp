@@ -80,7 +80,7 @@ bool warn_of_surfaces(const CapturedFrame& frame, Diagnostics& diagnostics) {
       aspect > largest_square_aspect && !holds(diagnostics, DiagnosticId::pixels_not_square))
     diagnostics.add(
         DiagnosticId::pixels_not_square, {},
-        of_frame(fmt::format("a pixel is {:.2f} times as {} as the other way; techniques expect "
+        of_frame(fmt::format("pixels are {:.2f} times as {} as in the other direction; techniques expect "
                              "square pixels, and scatter too far along the longer side",
                              aspect,
                              std::abs(frame.rays.scale_x) > std::abs(frame.rays.scale_y) ? "wide" : "high")));

@@ -110,16 +110,16 @@ TileCosts tile_costs(const LoadedGraph& loaded, const Size& size, std::span<cons
 std::string describe_tile_costs(const TileCosts& costs) {
   if (costs.classes.empty()) return "";
   Table table;
-  table.columns = {{"samples a pixel, m", true},
+  table.columns = {{"samples per pixel, m", true},
                    {"tiles, w", true},
-                   {"S(m), reads a pixel", true},
+                   {"S(m), reads per pixel", true},
                    {"w S(m), M reads", true}};
   for (const TileClass& one : costs.classes)
     table.rows.push_back({fmt::format("{}", one.samples), fmt::format("{}", one.tiles),
                           fmt::format("{:.1f}", one.reads),
                           fmt::format("{:.3f}", tile_pixels * double(one.tiles) * one.reads * 1e-6)});
   return format_table(table) +
-         fmt::format("M(d) = {:.1f} reads a sample, O(n) = {:.3f} M reads, T'(n) = {:.3f} M reads\n",
+         fmt::format("M(d) = {:.1f} reads per sample, O(n) = {:.3f} M reads, T'(n) = {:.3f} M reads\n",
                      costs.reads_per_sample, costs.reads_beside * 1e-6, costs.total() * 1e-6);
 }
 

@@ -120,7 +120,7 @@ std::optional<Figures> figures_of(const std::string& answer) {
   Diagnostics ignored;
   const auto document = parse_document("answer", answer, ignored);
   if (!document) {
-    spdlog::error("the rendering ended without an answer");
+    spdlog::error("the rendering ended without output");
     return std::nullopt;
   }
   const NodeId problem = document->find(document->root(), "error");
@@ -155,7 +155,7 @@ bool render_once(Watch& watch) {
   if (!plan) return false;
   if (watch.plan) {
     const PlanDiff diff = diff_plans(*watch.plan, *plan);
-    say(watch.session, diff.same ? "plan: the same\n" : plan_diff_text(diff, "before", "now"));
+    say(watch.session, diff.same ? "plan: unchanged\n" : plan_diff_text(diff, "before", "now"));
   } else {
     say(watch.session,
         fmt::format("plan: {} passes, {} barriers\n", plan->plan.passes.size(), plan->plan.barriers.size()));

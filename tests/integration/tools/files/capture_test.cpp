@@ -311,7 +311,7 @@ TEST_F(Captures, ProfileIdsOfThePictureMustBeListed) {
   const fs::path folder = write(sample());
   change(folder, "\"id\": 3", "\"id\": 4");
   expect_rejected(folder, DiagnosticId::capture_profile, "/profiles",
-                  "12 pixels have profile 3, first at (0, 0)");
+                  "12 pixels have profile 3, which 'profiles' does not list; the first is at (0, 0)");
 }
 
 TEST_F(Captures, ProfileIdsAreWholeNumbers) {
@@ -380,7 +380,7 @@ TEST_F(Captures, LinksOutOfTheFolderAreRefused) {
 TEST_F(Captures, DuplicateProfileIdIsRefused) {
   const fs::path folder = write(sample());
   change(folder, "\"profiles\": [", "\"profiles\": [ { \"id\": 3, \"file\": \"skin\" },");
-  expect_rejected(folder, DiagnosticId::capture_profile, "/profiles/1/id", "given twice");
+  expect_rejected(folder, DiagnosticId::capture_profile, "/profiles/1/id", "declared twice");
 }
 
 TEST_F(Captures, NotAProjectionIsRefused) {

@@ -57,7 +57,7 @@ void add_budget_plots(Report& report) {
   }
   report.plots = {time, error};
   report.plots_title = "Over the budget";
-  report.plots_text = "Point at a budget to see what its frames took and how far they were from the truth.";
+  report.plots_text = "Point at a budget to see the time and error of its frames.";
 }
 
 std::string text_of_budget(const Report& report) {

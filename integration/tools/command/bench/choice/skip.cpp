@@ -182,16 +182,14 @@ Report make_report(const Session& session, SkipBench& bench) {
   Report report;
   report.bench = "skip";
   report.title = "Frames that do not need all of a graph";
-  report.summary = fmt::format("{}, {}x{}, d = {} px; medians of {}, all cases by turns", bench.options.graph,
-                               bench.options.size.width, bench.options.size.height, d_px,
+  report.summary = fmt::format("{}, {}x{}, d = {} px; medians of {}, all cases interleaved",
+                               bench.options.graph, bench.options.size.width, bench.options.size.height, d_px,
                                format_count(bench.options.repetitions, "frame"));
   report.info = machine_info(session.command, bench.host.properties.deviceName);
   if (bench.options.quick) report.info.push_back(quick_fact());
-  report.info.emplace_back("full",
-                           "all of the picture scatters, nothing is looked for that could be skipped");
-  report.info.emplace_back("reads",
-                           "texels that the groups fetch that ran, counted from the kernels' source as if "
-                           "everything around them scattered");
+  report.info.emplace_back("full", "the whole image scatters and nothing is skipped");
+  report.info.emplace_back("reads", "texels read by the groups that ran, counted from the kernels' source "
+                                    "for an environment that scatters");
   report.table.columns = {{"case", "case"},
                           {"dispatches", "dispatches"},
                           {"groups", "groups"},

@@ -209,8 +209,8 @@ void write_row(JsonWriter& out, const Row& row) {
 Report page_of(const Session& session, const std::vector<Row>& rows) {
   Report report;
   report.bench = "compile";
-  report.title = "What compiling a graph costs";
-  report.summary = "CPU time of the thread that compiles, and how tightly the heaps are packed.";
+  report.title = "Cost of compiling a graph";
+  report.summary = "CPU time of the compiling thread, and memory efficiency of the heaps.";
   report.info = machine_info(session.command, "");
   report.table.columns = {{"shape", "shape"},
                           {"passes", "passes"},
@@ -245,7 +245,7 @@ Report page_of(const Session& session, const std::vector<Row>& rows) {
   }
   if (!plot.series.empty()) report.plots = {plot};
   report.plots_title = "Time over size";
-  report.plots_text = "Point at a row to see what it is.";
+  report.plots_text = "Point at a row to see its name.";
   return report;
 }
 

@@ -189,7 +189,7 @@ demo::Result<> measure_scene(Bench& bench, const SequenceRequest& request) {
   for (size_t t = 0; t < sequence.frames.size(); ++t) {
     progress.update(t);
     const CapturedFrame& frame = sequence.frames[t].captured;
-    const std::string what = fmt::format("truth of {}, frame {}", name, t);
+    const std::string what = fmt::format("reference of {}, frame {}", name, t);
     const auto reference =
         request.still ? make_reference_of_still(bench.session, frame, what, bench.file.subset,
                                                 bench.options.cache, known)
@@ -266,7 +266,7 @@ ExitCode bench_dynamic(const Session& session, const BenchDynamicOptions& reques
   Bench bench{session, options, *file, **host};
   bench.sap_tables = subsurface::make_sap_tables({true, true}, {});
   bench.report.bench = "dynamic";
-  bench.report.title = "Light, cameras and things that change";
+  bench.report.title = "Changing light, cameras and objects";
   bench.report.summary = "Error of the scattered light before albedo against the fp64 truth of each frame: "
                          "linear Rec.709 luminance, the "
                          "sequence's 99.9th percentile of light at 1. Samples are counted on the device.";
@@ -278,7 +278,7 @@ ExitCode bench_dynamic(const Session& session, const BenchDynamicOptions& reques
     if (interrupted()) return fail(session, ExitCode::interrupted, "stopped");
     if (!done) return fail(session, static_cast<ExitCode>(done.error().kind), done.error().text);
   }
-  if (bench.report.table.rows.empty()) return fail(session, ExitCode::usage, "nothing is left to measure");
+  if (bench.report.table.rows.empty()) return fail(session, ExitCode::usage, "no scene is selected");
   bench.report.info = machine_info(session.command, (*host)->properties.deviceName);
   bench.report.info.emplace_back("size",
                                  fmt::format("{}x{} pixels", options.size.width, options.size.height));

@@ -142,8 +142,8 @@ std::string write_rows(const std::string& file, const std::vector<Row>& rows) {
 Report page_of(const Session& session, const std::vector<Row>& rows) {
   Report report;
   report.bench = "record";
-  report.title = "What recording costs the host's thread";
-  report.summary = "CPU time of the thread that records frames, on a device whose functions only count.";
+  report.title = "Cost of recording on the host's thread";
+  report.summary = "CPU time of the recording thread, on a device whose functions only count.";
   report.info = machine_info(session.command, "");
   report.info.emplace_back("repetitions", fmt::format("{} samples of {} frames", samples, frames_per_sample));
   report.table.columns = {{"graph", "graph"},
@@ -212,7 +212,7 @@ std::string read_sources(const BenchRecordOptions& options, std::vector<Source>&
     if (!read(path, graphs.back().text)) return error;
   }
   if (graphs.empty())
-    return fmt::format("{}: no graph files there; give a folder with --graphs", options.graphs);
+    return fmt::format("'{}' has no graph files; name a folder with --graphs", options.graphs);
   graphs.push_back({fmt::format("chain of {}", chain_passes), chain_graph()});
   return "";
 }

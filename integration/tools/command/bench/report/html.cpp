@@ -94,7 +94,7 @@ std::string marks_text(const ReportTable& table) {
                                   [&](const auto& row) { return std::holds_alternative<bool>(row[i]); });
     if (!flag) continue;
     if (table.columns[i].key == front_flag) return " Marked rows are on the front.";
-    return fmt::format(" Marked rows are not as they should be (column '{}').", table.columns[i].title);
+    return fmt::format(" Marked rows miss their limits (column '{}').", table.columns[i].title);
   }
   return "";
 }
@@ -126,11 +126,10 @@ void add_plots(std::string& page, const Report& report) {
   const std::string title = !report.plots_title.empty() ? report.plots_title
                             : frames                    ? "Frame by frame"
                                                         : "Time against error";
-  const std::string text =
-      !report.plots_text.empty() ? report.plots_text
-      : frames                   ? "Point at a frame to see its value. Baselines are grey."
-               : "Filled points are on the Pareto front: nothing else is both faster and more exact. "
-                 "Point at one to see what it is. Baselines are grey.";
+  const std::string text = !report.plots_text.empty() ? report.plots_text
+                           : frames ? "Point at a frame to see its value. Baselines are grey."
+                                    : "Filled points are on the Pareto front: no other point is both faster "
+                                      "and more exact. Point at a point to see its name. Baselines are grey.";
   page += fmt::format("<h2>{}</h2><p>{}</p><div class=legend>", html_text(title), html_text(text));
   for (size_t i = 0; i < names.size(); ++i)
     page +=

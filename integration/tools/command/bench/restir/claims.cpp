@@ -38,9 +38,9 @@ std::optional<double> limit_of(std::span<const RestirRow> rows, const RestirRow&
 } // namespace
 
 std::string expectation_text() {
-  return "by frames, not by time: spatial reuse no more error than none, 10 % for chance; reuse with history "
-         "half of it at most, and half of spatial reuse alone; a sequence no more than the worse of its "
-         "parts";
+  return "for equal numbers of frames: spatial reuse has at most the error of no reuse, plus 10 % for "
+         "chance; reuse with history at most half of that, and half of the error of only spatial reuse; a "
+         "sequential shift at most the larger error of its parts";
 }
 
 void expect_of_reuse(std::span<RestirRow> rows) {

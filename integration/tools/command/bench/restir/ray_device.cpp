@@ -10,11 +10,10 @@ namespace dermis::tools {
 
 std::string why_no_rays(const demo::VulkanHost& host) {
   if (host.ray_query) return "";
-  return fmt::format(
-      "'{}' has no ray queries (VK_KHR_ray_query, VK_KHR_acceleration_structure); where there "
-      "is no such device, tests/scripts/fetch_driver.sh brings a software driver with them and "
-      "prints its manifest: set VK_DRIVER_FILES to that",
-      host.properties.deviceName);
+  return fmt::format("'{}' has no ray queries (VK_KHR_ray_query, VK_KHR_acceleration_structure); without "
+                     "such a device, run tests/scripts/fetch_driver.sh, which fetches a software driver, and "
+                     "set VK_DRIVER_FILES to the manifest that it prints",
+                     host.properties.deviceName);
 }
 
 std::string why_no_restir() {

@@ -163,7 +163,7 @@ demo::Result<> measure(Bench& bench) {
     else
       bench.report.notes.push_back(fmt::format("scene {}: {}", scene.scene, reason));
   }
-  if (scenes.empty()) return demo::Error{demo::ErrorKind::usage, "no scene is left to measure"};
+  if (scenes.empty()) return demo::Error{demo::ErrorKind::usage, "no scene is selected"};
   uint64_t frames = 0;
   for (const RestirVariant& variant : bench.variants)
     frames += settle_of(bench.file, variant) + bench.file.frames;
@@ -225,7 +225,7 @@ ExitCode bench_restir(const Session& session, const BenchRestirOptions& requeste
   if (!problem.empty()) return fail(session, ExitCode::environment, problem);
   const size_t broken = rows_that_err_more(report.table);
   if (broken == 0) return ExitCode::ok;
-  return fail(session, ExitCode::problems, fmt::format("{} rows err more than reuse is expected to", broken));
+  return fail(session, ExitCode::problems, fmt::format("{} rows exceed the error expected of reuse", broken));
 }
 
 } // namespace dermis::tools

@@ -54,7 +54,7 @@ void add_pictures(Report& report, const RestirScene& scene) {
 Report start_restir_report(const RestirFile& file) {
   Report report;
   report.bench = "restir";
-  report.title = "Light by rays, and what screen space misses";
+  report.title = "Ray-traced light and screen-space techniques";
   report.summary =
       "Error of the scattered light before albedo against a reference by rays: linear Rec.709 luminance, the "
       "99.9th percentile of the reference's own light at 1 (what falls on the side that is seen says little "
@@ -68,7 +68,7 @@ Report start_restir_report(const RestirFile& file) {
   report.info.emplace_back(
       "frames", fmt::format("{} counted, after {} where there is history", file.frames, file.settle));
   report.info.emplace_back(
-      "through", fmt::format("pixels with more light behind than in front, and at most {} mm of way for it",
+      "through", fmt::format("pixels with more back light than front light, and a thickness of at most {} mm",
                              file.thin_mm));
   report.table.columns = {{"scene", "scene"},
                           {"d_px", "d, px"},
@@ -92,7 +92,7 @@ Report start_restir_report(const RestirFile& file) {
                           {"slab_rms", "light that slabs let through, RMS"},
                           {"rmse_of_slab", "RMSE / light that slabs let through"}};
   report.pictures = {{"Light", "Scattered light before albedo, exposed and tonemapped.", {}},
-                     {"Where it errs", heat_map_explanation(), {}}};
+                     {"Error maps", heat_map_explanation(), {}}};
   return report;
 }
 

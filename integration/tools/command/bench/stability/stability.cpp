@@ -50,8 +50,7 @@ Report make_report(const Session& session, const std::vector<StabilityRow>& rows
   report.bench = "stability";
   report.title = "Numerical stability";
   report.summary = "Damaged light, depth, masks, velocities and histories; sizes, radii, slopes and frame "
-                   "numbers at their "
-                   "limits. Errors are in units of the brightest light of a case.";
+                   "numbers at their limits. Errors are relative to the brightest light of a case.";
   report.info = machine_info(session.command, device);
   report.notes = notes;
   report.table.columns = {{"case", "case"},
@@ -142,7 +141,7 @@ ExitCode bench_stability(const Session& session, const BenchStabilityOptions& re
       if (interrupted()) return fail(session, ExitCode::interrupted, "stopped");
       auto row = run_case(**run, one, name);
       if (!row && one.may_be_rejected && row.error().kind == demo::ErrorKind::input) {
-        notes.push_back(fmt::format("{} with {}: refused, which is allowed there", one.name, name));
+        notes.push_back(fmt::format("{} with {}: rejected, as the case permits", one.name, name));
         continue;
       }
       if (!row) return fail(session, static_cast<ExitCode>(row.error().kind), row.error().text);

@@ -83,10 +83,10 @@ void add_centre(Rows& rows) {
   constexpr double d = 3;
   const double exact = subsurface::planar_weight(1, 1, 0, 0, {d, d, d})[0];
   // polar quadrature, 1e5 steps
-  rows.add("a pixel's own share, d = 3 px", 0.0879216, exact, six_digits / 10);
-  rows.add("that of the disc of equal area, over it", 1, subsurface::burley_cdf(std::sqrt(1 / pi), d) / exact,
+  rows.add("fraction that stays in a pixel, d = 3 px", 0.0879216, exact, six_digits / 10);
+  rows.add("disc of equal area, relative to that", 1, subsurface::burley_cdf(std::sqrt(1 / pi), d) / exact,
            0.006);
-  rows.add("that of half the diagonal as radius, over it", 1.24,
+  rows.add("disc with half the diagonal as radius, relative to that", 1.24,
            subsurface::burley_cdf(std::sqrt(0.5), d) / exact, 0.006);
 }
 

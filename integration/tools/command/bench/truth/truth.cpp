@@ -40,10 +40,9 @@ Report make_report(const Session& session, const std::vector<PropertyRow>& rows,
                    const std::vector<std::string>& notes, const std::string& device) {
   Report report;
   report.bench = "truth";
-  report.title = "Laws with known answers";
-  report.summary = "What must come out of planes, edges, discs and steps, and what comes out. Without a "
-                   "tolerance a row is "
-                   "reported and not gated.";
+  report.title = "Known results";
+  report.summary = "Required and measured results of planes, edges, discs and steps. Rows without a "
+                   "tolerance are only reported.";
   report.info = machine_info(session.command, device);
   report.notes = notes;
   report.table.columns = {{"law", "law"},
@@ -85,8 +84,8 @@ ExitCode bench_reference(const Session& session, const BenchReferenceOptions& op
   Diagnostics diagnostics;
   std::optional<PropertyFile> file = read_property_file(options.file, diagnostics);
   if (!file)
-    return fail(session, ExitCode::problems,
-                fmt::format("the file of laws '{}' cannot be used", options.file), &diagnostics);
+    return fail(session, ExitCode::problems, fmt::format("the bench file '{}' cannot be used", options.file),
+                &diagnostics);
   if (options.quick) quicken(*file);
   auto host = demo::create_vulkan_host({});
   if (!host) return fail(session, static_cast<ExitCode>(host.error().kind), host.error().text);
@@ -115,7 +114,7 @@ ExitCode bench_reference(const Session& session, const BenchReferenceOptions& op
     progress.update(done++);
     const std::string name = fmt::format("{} {}", technique.request.technique, technique.request.setting);
     if (!std::filesystem::exists(technique.request.graph)) {
-      notes.push_back(fmt::format("technique {}: there is no graph '{}'", name, technique.request.graph));
+      notes.push_back(fmt::format("technique {}: graph '{}' does not exist", name, technique.request.graph));
       continue;
     }
     auto run = TechniqueRun::create(**host, technique.request, profiles, {});

@@ -21,7 +21,7 @@ Tolerances read_tolerances(const Document& document, NodeId list, const std::str
     if (std::find(properties.begin(), properties.end(), property) == properties.end()) {
       diagnostics
           .add(DiagnosticId::unknown_key, document.where_key(one),
-               fmt::format("there is no law '{}'", property))
+               fmt::format("there is no property '{}'", property))
           .suggestion = did_you_mean(property, properties);
       continue;
     }
@@ -38,10 +38,10 @@ std::optional<PropertyFile> read_property_file(const std::string& path, Diagnost
   const auto document = read_document(path, diagnostics);
   if (!document || !check_version(*document, "dermis_benchmark", 1, diagnostics)) return std::nullopt;
   PropertyFile file;
-  ObjectReader root(*document, document->root(), "the file of laws", diagnostics);
+  ObjectReader root(*document, document->root(), "the bench file", diagnostics);
   root.integer("dermis_benchmark", 1, 1);
   if (const NodeId node = root.object("truth"); node.valid())
-    file.reference = read_tolerances(*document, node, "the truth", diagnostics);
+    file.reference = read_tolerances(*document, node, "the reference", diagnostics);
   if (const NodeId list = root.array("techniques", 1, max_techniques); list.valid())
     for (const NodeId node : children(*document, list)) {
       ObjectReader object(*document, node, fmt::format("technique {}", file.techniques.size()), diagnostics);

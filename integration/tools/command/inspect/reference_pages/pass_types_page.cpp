@@ -10,15 +10,15 @@ namespace {
 std::string_view dispatch_text(DispatchShape shape) {
   switch (shape) {
   case DispatchShape::over_view:
-    return "a group for each 8x8 pixels of the render rectangle";
+    return "one group per 8x8 pixels of the render rectangle";
   case DispatchShape::over_tiles:
-    return "a group for each listed tile, by indirect arguments";
+    return "one group per listed tile, by indirect arguments";
   case DispatchShape::over_tile_grid:
-    return "a group for each 64 tiles of the render rectangle";
+    return "one group per 64 tiles of the render rectangle";
   case DispatchShape::over_tile_blocks:
-    return "a group for each 4x4 tiles of the render rectangle";
+    return "one group per 4x4 tiles of the render rectangle";
   case DispatchShape::over_written:
-    return "a group for each 8x8 texels of the first image that it writes";
+    return "one group per 8x8 texels of the first image that it writes";
   case DispatchShape::single_group:
     return "one group";
   case DispatchShape::none:
@@ -56,12 +56,11 @@ std::string range_text(const PassTypeSetting& setting) {
 std::string need_text(const PassType& type, const Port& port) {
   for (const PortNeed& need : type.needs) {
     if (need.port != port.name) continue;
-    const std::string square =
-        need.square == 1 ? "each pixel" : fmt::format("each {0}x{0} pixels", need.square);
-    if (need.bytes == 0 && need.more == 0) return fmt::format("; a texel for {}", square);
+    const std::string square = need.square == 1 ? "pixel" : fmt::format("{0}x{0} pixels", need.square);
+    if (need.bytes == 0 && need.more == 0) return fmt::format("; one texel per {}", square);
     if (need.square == 0) return fmt::format("; {} bytes", need.more);
-    return fmt::format("; {} bytes for {}{}", need.bytes, square,
-                       need.more > 0 ? fmt::format(" and {} more", need.more) : "");
+    return fmt::format("; {} bytes per {}{}", need.bytes, square,
+                       need.more > 0 ? fmt::format(" plus {}", need.more) : "");
   }
   return "";
 }
@@ -76,9 +75,11 @@ std::string pass_types_page(const PassTypeRegistry& pass_types) {
   for (uint32_t k = 0; k < pass_types.size(); ++k) {
     const PassType& type = pass_types[PassTypeId{k}];
     out += fmt::format("\n## {}\n\n{} Runs {}{}.\n", type.name, type.doc, dispatch_text(type.dispatch),
-                       type.side_effects ? "; never left out" : "");
+                       type.side_effects ? "; never culled" : "");
     for (const std::string_view port : type.one_of)
-      out += fmt::format("{}`{}`", port == type.one_of.front() ? "\nBound is at least one of " : ", ", port);
+      out += fmt::format("{}`{}`",
+                         port == type.one_of.front() ? "\nAt least one of these ports must be bound: " : ", ",
+                         port);
     if (!type.one_of.empty()) out += ".\n";
     out += "\n| port | | | |\n|---|---|---|---|\n";
     for (const Port& port : type.ports) {

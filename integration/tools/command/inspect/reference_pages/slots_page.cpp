@@ -11,7 +11,7 @@ namespace {
 
 std::string type_text(const ResourceDeclaration& slot) {
   if (slot.type == ResourceType::acceleration_structure) return "acceleration structure";
-  if (slot.type == ResourceType::buffer) return fmt::format("buffer, {} bytes an element", slot.stride);
+  if (slot.type == ResourceType::buffer) return fmt::format("buffer, {} bytes per element", slot.stride);
   std::string formats;
   for (const Format format : slot.formats)
     formats += fmt::format("{}`{}`", formats.empty() ? "" : ", ", format_info(format).name);
