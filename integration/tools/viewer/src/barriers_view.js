@@ -6,7 +6,7 @@ export function all_barriers(plan) {
   const all = [];
   for (const pass of plan.passes) {
     for (const barrier of pass.barriers) all.push({ barrier, where: `before ${pass.name}`, pass: pass.name });
-    for (const barrier of pass.releases) all.push({ barrier, where: `behind ${pass.name}`, pass: pass.name });
+    for (const barrier of pass.releases) all.push({ barrier, where: `after ${pass.name}`, pass: pass.name });
   }
   for (const barrier of plan.final_barriers) all.push({ barrier, where: 'end of the frame', pass: null });
   return all;
@@ -28,8 +28,8 @@ export function show_barriers(panel, plan, selection, choose) {
       pass === null ? where : h('button', { class: 'link', click: () => choose('pass', pass) }, where),
       h('button', { class: 'link', click: () => choose('resource', barrier.name) }, barrier.name + (barrier.frames_back > 0 ? `@-${barrier.frames_back}` : '')),
       barrier.why.replaceAll('_', ' '),
-      barrier.from_host ? 'what the host bound' : `${joined(barrier.source_stages)}: ${joined(barrier.source_access)}`,
-      barrier.to_host ? 'what the host asked for' : `${joined(barrier.destination_stages)}: ${joined(barrier.destination_access)}`,
+      barrier.from_host ? 'state bound by the host' : `${joined(barrier.source_stages)}: ${joined(barrier.source_access)}`,
+      barrier.to_host ? 'state requested by the host' : `${joined(barrier.destination_stages)}: ${joined(barrier.destination_access)}`,
       barrier.old_layout.name === barrier.new_layout.name ? barrier.new_layout.name : `${barrier.old_layout.name} → ${barrier.new_layout.name}`,
       reasons.get(barrier.index) ?? '',
     ] }))));

@@ -18,7 +18,7 @@ export function show_choices(panel, settings, chosen, choose) {
       return h('div', { class: 'choice' },
         h('label', { for: id, title: setting.note || null }, setting.name, setting.by_budget && h('small', null, ' by budget')), select);
     }),
-    fixed.length > 0 && h('details', null, h('summary', null, `${fixed.length} not switched here`),
+    fixed.length > 0 && h('details', null, h('summary', null, `${fixed.length} fixed in this page`),
       fixed.map((setting) => h('div', { class: 'choice', title: setting.note || null }, h('span', null, setting.name), h('code', null, setting.value)))),
     settings.length === 0 && h('p', { class: 'quiet' }, 'The graph has no settings.')].filter((part) => part));
 }

@@ -26,8 +26,8 @@ function one_history(plan, history, choose) {
       const lines = [];
       for (let back = 1; back <= history.frames; ++back)
         if ((((frame - back) % count) + count) % count === instance)
-          lines.push(h('div', { class: frame < back ? 'void' : 'read' }, frame < back ? `@-${back}: not valid yet` : `@-${back} → ${(readers.get(back) ?? ['nobody']).join(', ')}`));
-      if (frame % count === instance) lines.push(h('div', { class: 'written' }, `written by ${writers.join(', ') || 'nobody'}`));
+          lines.push(h('div', { class: frame < back ? 'void' : 'read' }, frame < back ? `@-${back}: not valid yet` : `@-${back} → ${(readers.get(back) ?? ['no pass']).join(', ')}`));
+      if (frame % count === instance) lines.push(h('div', { class: 'written' }, `written by ${writers.join(', ') || 'no pass'}`));
       cells.push(h('div', null, lines.length > 0 ? lines : '·'));
     }
     rows.push({ cells });
