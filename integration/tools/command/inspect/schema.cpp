@@ -44,7 +44,7 @@ ExitCode write_all(const Session& session, const std::string& path) {
   return ExitCode::ok;
 }
 
-// All graphs below a folder, by name; nullopt with errors in `diagnostics`.
+// Returns all graphs below a folder, sorted by file name, or nullopt with errors in `diagnostics`.
 std::optional<std::vector<NamedGraph>> graphs_in(const std::string& folder, Diagnostics& diagnostics) {
   std::vector<std::filesystem::path> files;
   std::error_code ignored;

@@ -22,7 +22,7 @@ struct DocsOptions {
   std::string out = "build/docs";        // folder
   std::string graphs = "configs/graphs"; // folder of the graphs whose slots are listed
 };
-// Writes the pages that follow from the declarations: the file formats, the pass types, and the slots of
+// Writes the pages generated from declarations: the file formats, the pass types, and the slots of
 // all graphs.
 ExitCode docs(const Session& session, const DocsOptions& options);
 

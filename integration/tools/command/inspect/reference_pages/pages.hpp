@@ -29,8 +29,8 @@ struct NamedGraph {
   std::string name; // file name without its extension
   Graph graph;
 };
-// A table of all slots of `graphs`: direction, formats, which graphs require the slot, and the note of its
-// declaration. A cell names the graphs of each text if the graphs differ.
+// Returns a table of all slots of `graphs`: direction, formats, the graphs that require the slot,
+// and the note of its declaration. If graphs differ, a cell names the graphs of each text.
 std::string slots_page(std::span<const NamedGraph> graphs);
 
 } // namespace dermis::tools
