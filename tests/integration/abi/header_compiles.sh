@@ -25,7 +25,8 @@ size_t use(void) {
   dermis_pass_timing timing = DERMIS_PASS_TIMING_INIT;
   dermis_frame frame = DERMIS_FRAME_INIT;
   dermis_budget budget = DERMIS_BUDGET_INIT;
-  demo::FrameChoice choice;
+  dermis_frame_report report = DERMIS_FRAME_REPORT_INIT;
+  dermis_frame_statistics statistics = DERMIS_FRAME_STATISTICS_INIT;
   dermis_port port = DERMIS_PORT_INIT;
   dermis_pass_setting setting = DERMIS_PASS_SETTING_INIT;
   dermis_pass_port pass_port = DERMIS_PASS_PORT_INIT;
@@ -34,7 +35,7 @@ size_t use(void) {
   return context_desc.struct_size + graph_desc.struct_size + binding.struct_size + source.struct_size +
          profile.struct_size + slot_format.struct_size + message.struct_size + requirement.struct_size +
          slot.struct_size + memory.struct_size + timing.struct_size + frame.struct_size + budget.struct_size +
-         choice.struct_size + port.struct_size + setting.struct_size + pass_port.struct_size + call.struct_size +
+         report.struct_size + statistics.struct_size + port.struct_size + setting.struct_size + pass_port.struct_size + call.struct_size +
          kind.struct_size;
 }
 EOF

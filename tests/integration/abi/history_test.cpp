@@ -306,7 +306,7 @@ TEST_F(Histories, WrongArgumentsAreNamed) {
     EXPECT_EQ(result, DERMIS_ERROR_ARGUMENT);
     EXPECT_THAT(dermis_last_error(), HasSubstr(named));
   };
-  refused(dermis_view_histories(dermis_graph_view(nullptr), &count, nullptr), "graph is NULL");
+  refused(dermis_view_histories(dermis_graph_view(nullptr), &count, nullptr), "view is NULL");
   refused(dermis_view_histories(dermis_graph_view(graph), nullptr, nullptr), "count is NULL");
   refused(dermis_view_histories(nullptr, &count, nullptr), "view is NULL");
   // Every size below that of the first version is refused; bytes beyond the known size are filled

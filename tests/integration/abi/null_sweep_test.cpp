@@ -69,14 +69,14 @@ TEST(NullArguments, AreNamedByGraphFunctions) {
   dermis_memory memory = DERMIS_MEMORY_INIT;
   dermis_frame frame = DERMIS_FRAME_INIT;
   expect_argument_error(dermis_graph_slots(nullptr, &count, nullptr), "graph");
-  expect_argument_error(dermis_view_settings(dermis_graph_view(nullptr), &count, nullptr), "graph");
+  expect_argument_error(dermis_view_settings(dermis_graph_view(nullptr), &count, nullptr), "view");
   expect_argument_error(dermis_graph_describe(nullptr, DERMIS_DESCRIBE_JSON, &size, nullptr), "graph");
   expect_argument_error(dermis_graph_memory(nullptr, &memory), "graph");
-  expect_argument_error(dermis_view_timings(dermis_graph_view(nullptr), 0, &count, nullptr), "graph");
-  expect_argument_error(dermis_view_histories(dermis_graph_view(nullptr), &count, nullptr), "graph");
+  expect_argument_error(dermis_view_timings(dermis_graph_view(nullptr), 0, &count, nullptr), "view");
+  expect_argument_error(dermis_view_histories(dermis_graph_view(nullptr), &count, nullptr), "view");
   expect_argument_error(dermis_view_histories(nullptr, &count, nullptr), "view");
-  expect_argument_error(dermis_view_record(dermis_graph_view(nullptr), &frame), "graph");
-  expect_argument_error(dermis_view_discard(dermis_graph_view(nullptr), 1), "graph");
+  expect_argument_error(dermis_view_record(dermis_graph_view(nullptr), &frame), "view");
+  expect_argument_error(dermis_view_discard(dermis_graph_view(nullptr), 1), "view");
 }
 
 TEST(NullArguments, AreHarmlessToReportsAndDestruction) {

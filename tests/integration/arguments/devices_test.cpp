@@ -379,10 +379,10 @@ TEST(HostsDeviceMemory, HalfAnAllocatorIsRefused) {
   dermis_device_allocator allocator = DERMIS_DEVICE_ALLOCATOR_INIT;
   desc.device_allocator = &allocator;
   EXPECT_EQ(host.make_context(desc), DERMIS_ERROR_ARGUMENT);
-  EXPECT_THAT(dermis_last_error(), HasSubstr("desc.device_allocator.take is NULL"));
+  EXPECT_THAT(dermis_last_error(), HasSubstr("desc.device_allocator.allocate is NULL"));
   allocator.allocate = BadBlocks::take;
   EXPECT_EQ(host.make_context(desc), DERMIS_ERROR_ARGUMENT);
-  EXPECT_THAT(dermis_last_error(), HasSubstr("desc.device_allocator.give_back is NULL"));
+  EXPECT_THAT(dermis_last_error(), HasSubstr("desc.device_allocator.free is NULL"));
 }
 
 } // namespace

@@ -223,7 +223,7 @@ TEST_F(Commands, WrongArgumentsAreNamed) {
     EXPECT_EQ(result, DERMIS_ERROR_ARGUMENT);
     EXPECT_THAT(dermis_last_error(), testing::HasSubstr(named));
   };
-  expect(dermis_view_commands(dermis_graph_view(nullptr), &frame, &count, &list), "graph is NULL");
+  expect(dermis_view_commands(dermis_graph_view(nullptr), &frame, &count, &list), "view is NULL");
   expect(dermis_view_commands(dermis_graph_view(graph), nullptr, &count, &list), "frame is NULL");
   expect(dermis_view_commands(dermis_graph_view(graph), &frame, nullptr, &list), "count is NULL");
   expect(dermis_view_commands(dermis_graph_view(graph), &frame, &count, nullptr), "commands is NULL");

@@ -307,7 +307,7 @@ TEST_F(HostMemory, HalfAnAllocatorIsRefused) {
   host.destroy();
   allocator.free = nullptr;
   EXPECT_EQ(host.make_context(with_heap()), DERMIS_ERROR_ARGUMENT);
-  EXPECT_THAT(dermis_last_error(), ::testing::HasSubstr("desc.allocator.release is NULL"));
+  EXPECT_THAT(dermis_last_error(), ::testing::HasSubstr("desc.allocator.free is NULL"));
   allocator = heap.allocator();
   allocator.struct_size = 3;
   EXPECT_EQ(host.make_context(with_heap()), DERMIS_ERROR_ARGUMENT);

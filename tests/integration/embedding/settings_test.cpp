@@ -263,7 +263,7 @@ TEST_F(Settings, WrongArgumentsAreNamed) {
   make(graph_text);
   uint32_t count = 0;
   EXPECT_EQ(dermis_view_settings(dermis_graph_view(nullptr), &count, nullptr), DERMIS_ERROR_ARGUMENT);
-  EXPECT_THAT(dermis_last_error(), HasSubstr("dermis_view_settings: graph is NULL"));
+  EXPECT_THAT(dermis_last_error(), HasSubstr("dermis_view_settings: view is NULL"));
   EXPECT_EQ(dermis_view_settings(dermis_graph_view(host.graph), nullptr, nullptr), DERMIS_ERROR_ARGUMENT);
   EXPECT_THAT(dermis_last_error(), HasSubstr("count is NULL"));
 }

@@ -154,11 +154,12 @@ def run(engine, side=64):
                    binding_count=len(bindings), frame_index=1, depth_kind=enumerators["DERMIS_DEPTH_VIEW_UNITS"])
     for index, value in {0: 2.0, 5: -2.0, 10: -1.0, 11: -0.1, 14: -1.0}.items():
         frame.clip_from_view[index] = value
-    called("dermis_view_record", made, ctypes.addressof(frame))
+    view = library.dermis_graph_view(made)
+    called("dermis_view_record", view, ctypes.addressof(frame))
     engine.engine_submit_and_wait()
     times = (types["dermis_pass_timing"] * 16)(filled("dermis_pass_timing"))
     count.value = 16
-    called("dermis_view_timings", made, 1, ctypes.addressof(count), ctypes.addressof(times))
+    called("dermis_view_timings", view, 1, ctypes.addressof(count), ctypes.addressof(times))
     out = {getattr(one, "pass").decode(): one.nanoseconds for one in list(times)[:count.value]}
     library.dermis_graph_destroy(made)
     library.dermis_context_destroy(context)

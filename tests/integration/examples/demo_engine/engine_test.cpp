@@ -218,9 +218,9 @@ TEST_F(Engine, GraphWithUnsupportedInput_IsNamed) {
   const std::string path = (folder / "graph.json").string();
   std::ifstream shipped_graph(shipped + "graphs/burley.json");
   std::string text((std::istreambuf_iterator<char>(shipped_graph)), {});
-  const std::string optional = "\"size\": \"view\", \"optional\": true, \"note\": \"factor";
+  const std::string optional = "\"size\": \"view\", \"optional\": true, \"note\": \"factor on the scattering";
   ASSERT_NE(text.find(optional), std::string::npos);
-  text.replace(text.find(optional), optional.size(), "\"size\": \"view\", \"note\": \"factor");
+  text.replace(text.find(optional), optional.size(), "\"size\": \"view\", \"note\": \"factor on the scattering");
   std::ofstream(path) << text;
   RenderOptions options = small();
   options.graph = path;
