@@ -520,7 +520,7 @@ typedef enum dermis_history_reason {
 
 typedef struct dermis_history {
   size_t struct_size;
-  /* Of the resource; lives until the next reload, resize, set_setting or destroy. */
+  /* Name of the resource; lives until the next reload, resize, set_setting or destroy. */
   const char* name;
   /* 1: the next frame, unless it is a cut, reads the contents of the frame before. */
   uint32_t valid;
