@@ -39,10 +39,11 @@
  *   (dermis_source, dermis_image_state) never grow.
  *
  * ERRORS
- *   The result (for logic), the report (all messages), the log callback (as they occur) and
- *   dermis_last_error have the same content. A failed call changes nothing. NULL for a required
- *   pointer and a null handle return DERMIS_ERROR_ARGUMENT; destroy functions ignore NULL. After
- *   DERMIS_ERROR_DEVICE_LOST only destroy.
+ *   A function whose comment has no "Errors:" cannot fail. The result (for logic), the report (all
+ *   messages), the log callback (as they occur) and dermis_last_error have the same content. A
+ *   failed call changes nothing. NULL for a required pointer and a null handle return
+ *   DERMIS_ERROR_ARGUMENT; destroy functions ignore NULL. After DERMIS_ERROR_DEVICE_LOST only
+ *   destroy.
  *
  * THREADS
  *   Each function states its threads:
@@ -51,11 +52,11 @@
  *     independent, and so are graphs.
  *   - "Concurrent": from any thread, also while other threads record views of the graph. These
  *     continue with the state they have; changes of one graph wait for each other.
- *   Create and destroy come first and last: no other thread uses the object then.
+ *   - "Exclusive": from any thread, while no other thread uses the object.
  *
  * COSTS
- *   Each function states whether it may create pipelines, allocate device memory or take more than
- *   1 ms. "Costs: none": none of the three.
+ *   Each function states what it may cost: "pipelines": it creates some; "memory": it allocates
+ *   device memory; "time": it may take more than 1 ms; "none".
  *
  * TWO-CALL ARRAYS
  *   Call with the array NULL to get the count. Then call with an array whose first element has
@@ -81,7 +82,6 @@
 #define DERMIS_CALL
 #define DERMIS_API __attribute__((visibility("default")))
 #endif
-
 #ifdef __cplusplus
 extern "C" {
 #endif
@@ -94,20 +94,18 @@ extern "C" {
 
 typedef enum dermis_result {
   DERMIS_OK = 0,
-  DERMIS_ERROR_ARGUMENT = -1,      /* a pointer, size or range is wrong; nothing changed */
-  DERMIS_ERROR_VERSION = -2,       /* the header is newer than the library and uses new fields */
-  /* Errors in a graph or profile, see the report; nothing changed. */
-  DERMIS_ERROR_CONFIG = -3,
-  /* A kernel does not match its signature, or the device refused it. */
-  DERMIS_ERROR_SHADER = -4,
-  DERMIS_ERROR_UNSUPPORTED = -5,   /* the device lacks something; the report lists all of it */
-  DERMIS_ERROR_MEMORY = -6,        /* out of host memory; nothing changed */
+  DERMIS_ERROR_ARGUMENT = -1,  /* a pointer, size or range is wrong; nothing changed */
+  DERMIS_ERROR_VERSION = -2,   /* the header is newer than the library and uses new fields */
+  DERMIS_ERROR_CONFIG = -3,    /* errors in a graph or profile, see the report; nothing changed */
+  DERMIS_ERROR_SHADER = -4,    /* a kernel does not match its signature, or the device refused it */
+  DERMIS_ERROR_UNSUPPORTED = -5, /* the device lacks something; the report lists all of it */
+  DERMIS_ERROR_MEMORY = -6,    /* out of host memory; nothing changed */
   DERMIS_ERROR_DEVICE_MEMORY = -7, /* out of device memory; nothing changed */
-  DERMIS_ERROR_VULKAN = -8,        /* a Vulkan call failed; the message names call and result */
-  DERMIS_ERROR_DEVICE_LOST = -9,   /* destroy everything */
-  DERMIS_ERROR_INTERNAL = -10,     /* a defect of the library; please report it with the message */
-  DERMIS_INCOMPLETE = 1,           /* the array was too short; count holds the required size */
-  DERMIS_NOT_READY = 2,            /* no completed frame yet */
+  DERMIS_ERROR_VULKAN = -8,    /* a Vulkan call failed; the message names call and result */
+  DERMIS_ERROR_DEVICE_LOST = -9, /* destroy everything */
+  DERMIS_ERROR_INTERNAL = -10, /* a defect of the library; please report it with the message */
+  DERMIS_INCOMPLETE = 1,       /* the array was too short; count holds the required size */
+  DERMIS_NOT_READY = 2,        /* no completed frame yet */
   DERMIS_RESULT_FORCE_32BIT = 0x7fffffff
 } dermis_result;
 
@@ -138,23 +136,21 @@ typedef struct dermis_message {
 } dermis_message;
 #define DERMIS_MESSAGE_INIT \
   {sizeof(dermis_message), DERMIS_SEVERITY_NOTE, 0, NULL, NULL, 0, 0, NULL, NULL, NULL}
-
 /* Called only from threads that are inside a Dermis call. Must not call Dermis. */
 typedef void(DERMIS_CALL* dermis_log_fn)(void* user, const dermis_message* message);
 
 /* ---- version --------------------------------------------------------------------------------- */
 
-/* Returns major << 22 | minor << 12 | patch. Costs: none. Thread: any. Errors: none. */
+/* Returns major << 22 | minor << 12 | patch. Costs: none. Thread: any. */
 DERMIS_API uint32_t DERMIS_CALL dermis_version(void);
-/* Returns a static string, never NULL, also for unknown values. Costs: none. Thread: any. Errors:
- * none. */
+/* Returns a static string, never NULL, also for unknown values. Costs: none. Thread: any. */
 DERMIS_API const char* DERMIS_CALL dermis_result_name(dermis_result result);
 
 /* ---- before the device exists ---------------------------------------------------------------- */
 
 typedef enum dermis_requirement_type {
-  DERMIS_REQUIREMENT_API_VERSION = 0,      /* `version` holds VK_API_VERSION_1_2 */
-  DERMIS_REQUIREMENT_FEATURE = 1,          /* a VkBool32 in a VkPhysicalDevice...Features struct */
+  DERMIS_REQUIREMENT_API_VERSION = 0, /* `version` holds VK_API_VERSION_1_2 */
+  DERMIS_REQUIREMENT_FEATURE = 1,     /* a VkBool32 in a VkPhysicalDevice...Features struct */
   DERMIS_REQUIREMENT_DEVICE_EXTENSION = 2,
   DERMIS_REQUIREMENT_TYPE_FORCE_32BIT = 0x7fffffff
 } dermis_requirement_type;
@@ -170,11 +166,9 @@ typedef struct dermis_requirement {
 } dermis_requirement;
 #define DERMIS_REQUIREMENT_INIT \
   {sizeof(dermis_requirement), DERMIS_REQUIREMENT_API_VERSION, 0, NULL, 0, 0, NULL}
-
 /* Lists the requirements on a device. Create the instance with VkApplicationInfo.apiVersion
  * VK_API_VERSION_1_3: older instances answer that features are absent which the device has.
- * Two-call array. Costs: driver queries, may take more than 1 ms. Thread: any. Errors: ARGUMENT,
- * INCOMPLETE. */
+ * Two-call array. Costs: time. Thread: any. Errors: ARGUMENT, INCOMPLETE. */
 DERMIS_API dermis_result DERMIS_CALL dermis_query_requirements(
     PFN_vkGetInstanceProcAddr get_instance_proc_addr, VkInstance instance,
     VkPhysicalDevice physical_device, uint32_t* count, dermis_requirement* items);
@@ -183,15 +177,15 @@ DERMIS_API dermis_result DERMIS_CALL dermis_query_requirements(
 
 /* Allocates host memory for calls with a context, a graph, a view or one of their reports.
  * `alignment` is a power of two, at least 16. Return NULL on failure; the call then fails with
- * DERMIS_ERROR_MEMORY. Called from any thread that is inside a Dermis call. Must not call Dermis
- * or throw. */
+ * DERMIS_ERROR_MEMORY. Called from any thread that is inside a Dermis call. Must not call Dermis or
+ * throw. */
 typedef void*(DERMIS_CALL* dermis_allocate_fn)(void* user, size_t size, size_t alignment);
 typedef void(DERMIS_CALL* dermis_free_fn)(void* user, void* memory, size_t size, size_t alignment);
 
 /* Both functions must be callable until the last object and report that use them are destroyed.
- * They do not serve dermis_validate, which has no context, and the few bytes that the C++ run
- * time needs to throw std::bad_alloc. The static library and builds with sanitizers leave memory
- * to the program and return UNSUPPORTED. */
+ * They do not serve dermis_validate, which has no context, and the few bytes that the C++ run time
+ * needs to throw std::bad_alloc. The static library and builds with sanitizers leave memory to the
+ * program and return UNSUPPORTED. */
 typedef struct dermis_allocator {
   size_t struct_size;
   dermis_allocate_fn allocate;
@@ -203,8 +197,7 @@ typedef struct dermis_allocator {
 typedef enum dermis_memory_purpose {
   DERMIS_MEMORY_TRANSIENT = 0, /* contents matter only within the commands of one recorded frame */
   DERMIS_MEMORY_HISTORY = 1,   /* contents last from frame to frame */
-  /* Frame constants, tables, counters, placeholders of unbound ports. */
-  DERMIS_MEMORY_CONSTANTS = 2,
+  DERMIS_MEMORY_CONSTANTS = 2, /* frame constants, tables, counters, placeholders */
   DERMIS_MEMORY_PURPOSE_FORCE_32BIT = 0x7fffffff
 } dermis_memory_purpose;
 
@@ -213,7 +206,7 @@ typedef struct dermis_memory_request {
   dermis_memory_purpose purpose;
   uint32_t memory_types; /* bit i: memory type i of the device is acceptable */
   uint64_t bytes;
-  uint64_t alignment;    /* of dermis_memory_block.offset; a power of two */
+  uint64_t alignment; /* of dermis_memory_block.offset; a power of two */
   VkMemoryPropertyFlags required, preferred;
 } dermis_memory_request;
 #define DERMIS_MEMORY_REQUEST_INIT \
@@ -223,21 +216,19 @@ typedef struct dermis_memory_block {
   size_t struct_size;
   VkDeviceMemory memory;
   uint64_t offset; /* bytes */
-  /* Host address of the block while the library uses it; required for HOST_VISIBLE memory. */
-  void* mapped;
+  void* mapped;    /* host address while the library uses the block; needed if HOST_VISIBLE */
   void* user;      /* passed on to free with the block */
 } dermis_memory_block;
 #define DERMIS_MEMORY_BLOCK_INIT {sizeof(dermis_memory_block), VK_NULL_HANDLE, 0, NULL, NULL}
 
-/* Fills *block and returns VK_SUCCESS, or returns the error that vkAllocateMemory would return.
- * A block may be a part of larger memory. Commands of the host may use a transient block before
- * and after a recorded frame if a barrier over ALL_COMMANDS and MEMORY_WRITE | MEMORY_READ
- * orders them with the frame; the block's contents are then undefined. Blocks are freed one
- * by one when no frame can use them any more. Called inside create, reload, resize, set_setting,
- * set_profile, record and destroy, by their threads. Must not call Dermis. */
-typedef VkResult(DERMIS_CALL* dermis_allocate_memory_fn)(void* user,
-                                                     const dermis_memory_request* request,
-                                                     dermis_memory_block* block);
+/* Fills *block and returns VK_SUCCESS, or returns the error that vkAllocateMemory would return. A
+ * block may be a part of larger memory. Commands of the host may use a transient block before and
+ * after a recorded frame if a barrier over ALL_COMMANDS and MEMORY_WRITE | MEMORY_READ orders them
+ * with the frame; the block's contents are then undefined. Blocks are freed one by one when no
+ * frame can use them any more. Called inside create, reload, resize, set_setting, set_profile,
+ * record and destroy, by their threads. Must not call Dermis. */
+typedef VkResult(DERMIS_CALL* dermis_allocate_memory_fn)(
+    void* user, const dermis_memory_request* request, dermis_memory_block* block);
 typedef void(DERMIS_CALL* dermis_free_memory_fn)(void* user, const dermis_memory_block* block);
 
 typedef struct dermis_device_allocator {
@@ -264,16 +255,16 @@ typedef struct dermis_device_allocator {
 typedef struct dermis_context_desc {
   size_t struct_size;
   uint32_t abi_version;      /* DERMIS_ABI_VERSION */
-  uint32_t flags;            /* DERMIS_CONTEXT_... */
+  uint32_t flags;            /* DERMIS_CONTEXT_.. */
   uint32_t frames_in_flight; /* 1..8; 0 = 2 */
   uint32_t queue_family;     /* of your command buffers; needs compute, not graphics */
   VkInstance instance;
   VkPhysicalDevice physical_device;
   VkDevice device;
   PFN_vkGetInstanceProcAddr get_instance_proc_addr;
-  VkPipelineCache pipeline_cache;                  /* may be null */
-  const VkAllocationCallbacks* vk_allocator;       /* may be NULL; must outlive the context */
-  dermis_log_fn log;                               /* may be NULL */
+  VkPipelineCache pipeline_cache;            /* may be null */
+  const VkAllocationCallbacks* vk_allocator; /* may be NULL; must outlive the context */
+  dermis_log_fn log;                         /* may be NULL */
   void* log_user;
   const dermis_allocator* allocator;               /* host memory; NULL: the C library's */
   const dermis_device_allocator* device_allocator; /* device memory; NULL: vkAllocateMemory */
@@ -281,38 +272,34 @@ typedef struct dermis_context_desc {
 #define DERMIS_CONTEXT_DESC_INIT \
   {sizeof(dermis_context_desc), DERMIS_ABI_VERSION, 0, 0, 0, NULL, NULL, NULL, NULL, \
    VK_NULL_HANDLE, NULL, NULL, NULL, NULL, NULL}
-
 /* Resolves every Vulkan function by name and reports all that are missing. *context is NULL on
- * failure. Creates no pipelines. Costs: allocates device memory, may take more than 1 ms. Thread:
- * any. Errors: ARGUMENT, VERSION, UNSUPPORTED, MEMORY, DEVICE_MEMORY, VULKAN, DEVICE_LOST. */
-DERMIS_API dermis_result DERMIS_CALL dermis_context_create(const dermis_context_desc* desc,
-                                                           dermis_context* context);
+ * failure. Creates no pipelines. Costs: memory, time. Thread: any. Errors: ARGUMENT, VERSION,
+ * UNSUPPORTED, MEMORY, DEVICE_MEMORY, VULKAN, DEVICE_LOST. */
+DERMIS_API dermis_result DERMIS_CALL dermis_context_create(
+    const dermis_context_desc* desc, dermis_context* context);
 /* Destroys the context and the pipelines of its graphs. The device must have finished every frame
  * recorded through the context, and must still exist. Graphs that still exist are destroyed and
- * logged. NULL is ignored. Costs: frees device memory, may take more than 1 ms. Thread: any, while
- * no other thread uses the context. Errors: none. */
+ * logged. NULL is ignored. Costs: time. Thread: exclusive. */
 DERMIS_API void DERMIS_CALL dermis_context_destroy(dermis_context context);
 /* Returns the last failure on this thread; NULL if there was none. A call that succeeds keeps it.
- * The text lives until the next Dermis call on this thread. Costs: none. Thread: any. Errors:
- * none. */
+ * The text lives until the next Dermis call on this thread. Costs: none. Thread: any. */
 DERMIS_API const char* DERMIS_CALL dermis_last_error(void);
 
 /* ---- reports --------------------------------------------------------------------------------- */
 
-/* Returns the number of messages; 0 for NULL. Costs: none. Thread: any. Errors: none. */
+/* Returns the number of messages; 0 for NULL. Costs: none. Thread: any. */
 DERMIS_API uint32_t DERMIS_CALL dermis_report_count(dermis_report report);
 /* Returns message `index`, in order of discovery. Strings live as long as the report. Costs: none.
  * Thread: any. Errors: ARGUMENT. */
-DERMIS_API dermis_result DERMIS_CALL dermis_report_message(dermis_report report, uint32_t index,
-                                                           dermis_message* message);
+DERMIS_API dermis_result DERMIS_CALL dermis_report_message(
+    dermis_report report, uint32_t index, dermis_message* message);
 /* Returns all messages as text with excerpts of the sources; "" for NULL. Lives as long as the
- * report. Costs: may take more than 1 ms for long reports. Thread: any. Errors: none. */
+ * report. Costs: time. Thread: any. */
 DERMIS_API const char* DERMIS_CALL dermis_report_text(dermis_report report);
-/* Returns all messages as a JSON array; "[]" for NULL. Lives as long as the report. Costs: may
- * take more than 1 ms for long reports. Thread: any. Errors: none. */
+/* Returns all messages as a JSON array; "[]" for NULL. Lives as long as the report. Costs: time.
+ * Thread: any. */
 DERMIS_API const char* DERMIS_CALL dermis_report_json(dermis_report report);
-/* NULL is ignored. Costs: none. Thread: any, while no other thread uses the report. Errors: none.
- */
+/* NULL is ignored. Costs: none. Thread: exclusive. */
 DERMIS_API void DERMIS_CALL dermis_report_destroy(dermis_report report);
 
 /* ---- graphs ---------------------------------------------------------------------------------- */
@@ -342,12 +329,12 @@ typedef struct dermis_slot_format {
 } dermis_slot_format;
 #define DERMIS_SLOT_FORMAT_INIT {sizeof(dermis_slot_format), NULL, VK_FORMAT_UNDEFINED}
 
-/* Provides a file that a graph, a fragment or an overlay includes: fills *source and returns 1,
- * or returns 0 if there is none. `name` is relative, with '/' between folders and without "..".
- * The memory of *source must last until the Dermis call ends. Must not call Dermis. Called only
- * during dermis_graph_create and the functions that reload. */
-typedef uint32_t(DERMIS_CALL* dermis_include_fn)(void* user, const char* name,
-                                                 dermis_source* source);
+/* Provides a file that a graph, a fragment or an overlay includes: fills *source and returns 1, or
+ * returns 0 if there is none. `name` is relative, with '/' between folders and without "..". The
+ * memory of *source must last until the Dermis call ends. Must not call Dermis. Called only during
+ * dermis_graph_create and the functions that reload. */
+typedef uint32_t(DERMIS_CALL* dermis_include_fn)(
+    void* user, const char* name, dermis_source* source);
 
 /* Parts that dermis_graph_reload keeps (dermis_graph_desc.keep). The matching fields are not
  * read. */
@@ -363,54 +350,44 @@ typedef uint32_t(DERMIS_CALL* dermis_include_fn)(void* user, const char* name,
 typedef struct dermis_graph_desc {
   size_t struct_size;
   dermis_source source;
-  /* Allocated view size in pixels, 1..16384. Frames render a rectangle inside. */
-  uint32_t width, height;
-  /* Without profiles nothing scatters: no pass that serves scattering is in the plan. */
-  const dermis_profile* profiles;
+  uint32_t width, height;         /* allocated size in pixels, 1..16384; frames render a part */
+  const dermis_profile* profiles; /* NULL: no pass that serves scattering is in the plan */
   uint32_t profile_count;
   uint32_t unbound_count;
-  const char* const* unbound; /* names of optional slots that will not be bound */
-  /* Formats of the images that will be bound; other slots use the first format declared. */
-  const dermis_slot_format* formats;
+  const char* const* unbound;        /* names of optional slots that will not be bound */
+  const dermis_slot_format* formats; /* of bound images; default: the first one declared */
   uint32_t format_count;
-  /* DERMIS_KEEP_... for dermis_graph_reload; 0 in dermis_graph_create. */
-  uint32_t keep;
+  uint32_t keep;            /* DERMIS_KEEP_... for dermis_graph_reload; 0 in dermis_graph_create. */
   const dermis_source* overlays; /* applied to the graph one after the other */
   uint32_t overlay_count;
-  /* NULL: nothing can be included. Otherwise callable as long as the graph lives. */
-  dermis_include_fn include;
+  dermis_include_fn include; /* NULL: no includes; else callable as long as the graph lives */
   void* include_user;
 } dermis_graph_desc;
 #define DERMIS_GRAPH_DESC_INIT \
   {sizeof(dermis_graph_desc), DERMIS_SOURCE_INIT, 0, 0, NULL, 0, 0, NULL, NULL, 0, 0, NULL, 0, \
    NULL, NULL}
-
 /* Checks a graph without a device. The graph must not include other files. *report (may be NULL)
- * gets the messages. Costs: may take more than 1 ms; no device. Thread: any. Errors: ARGUMENT,
- * VERSION, CONFIG, MEMORY. */
-DERMIS_API dermis_result DERMIS_CALL dermis_validate(const dermis_source* source,
-                                                     dermis_report* report);
+ * gets the messages. Costs: time. Thread: any. Errors: ARGUMENT, VERSION, CONFIG, MEMORY. */
+DERMIS_API dermis_result DERMIS_CALL dermis_validate(
+    const dermis_source* source, dermis_report* report);
 /* Parses, checks and compiles a graph, creates its pipelines and allocates device memory. Takes
- * tens of milliseconds, or seconds if the driver compiles kernels. *graph is NULL on failure.
- * *report (may be NULL) gets the messages; destroy it also on success. Graphs of a context share
- * pipelines: a graph compiles only kernels that no other graph had. Pipelines of the library's
- * kernels exist until the context is destroyed, those of your shaders as long as a graph uses
- * them. Costs: creates pipelines, allocates device memory, takes more than 1 ms. Thread: any.
- * Errors: ARGUMENT, VERSION, CONFIG, SHADER, UNSUPPORTED, MEMORY, DEVICE_MEMORY, VULKAN,
- * DEVICE_LOST. */
-DERMIS_API dermis_result DERMIS_CALL dermis_graph_create(dermis_context context,
-                                                         const dermis_graph_desc* desc,
-                                                         dermis_graph* graph,
-                                                         dermis_report* report);
-/* Builds what dermis_graph_create would build from desc, next to the running graph, and replaces
- * it at the next record of each view. `desc.keep` names the parts that stay: DERMIS_KEEP_ALL &
+ * tens of milliseconds; seconds if kernels are compiled. *graph is NULL on failure. *report (may be
+ * NULL) gets the messages; destroy it also on success. Graphs of a context share pipelines: a graph
+ * compiles only kernels that no other graph had. Pipelines of the library's kernels exist until the
+ * context is destroyed, those of your shaders as long as a graph uses them. Costs: pipelines,
+ * memory, time. Thread: any. Errors: ARGUMENT, VERSION, CONFIG, SHADER, UNSUPPORTED, MEMORY,
+ * DEVICE_MEMORY, VULKAN, DEVICE_LOST. */
+DERMIS_API dermis_result DERMIS_CALL dermis_graph_create(
+    dermis_context context, const dermis_graph_desc* desc, dermis_graph* graph,
+    dermis_report* report);
+/* Builds what dermis_graph_create would build from desc, next to the running graph, and replaces it
+ * at the next record of each view. `desc.keep` names the parts that stay: DERMIS_KEEP_ALL &
  * ~DERMIS_KEEP_SOURCE replaces only the text of the graph, DERMIS_KEEP_ALL reads included files
  * again. Histories and settings with equal names continue; the report lists the others. A new size
- * acts like dermis_graph_resize. On failure nothing changes. Costs: as dermis_graph_create.
- * Thread: concurrent. Errors: as dermis_graph_create. */
-DERMIS_API dermis_result DERMIS_CALL dermis_graph_reload(dermis_graph graph,
-                                                         const dermis_graph_desc* desc,
-                                                         dermis_report* report);
+ * acts like dermis_graph_resize. On failure nothing changes. Costs: as dermis_graph_create. Thread:
+ * concurrent. Errors: as dermis_graph_create. */
+DERMIS_API dermis_result DERMIS_CALL dermis_graph_reload(
+    dermis_graph graph, const dermis_graph_desc* desc, dermis_report* report);
 /* Replaces kernels by GLSL of the host, so that shaders can be edited while the program runs.
  * `open` provides "common/subsurface_combine.comp" and the files it includes, such as
  * "common/tiles.glsl"; the library provides bindings and constants. Kernels for which `open`
@@ -419,17 +396,15 @@ DERMIS_API dermis_result DERMIS_CALL dermis_graph_reload(dermis_graph graph,
  * histories and settings continue. The compiler uses the C library's memory. Takes seconds. Costs:
  * as dermis_graph_create. Thread: concurrent. Errors: as dermis_graph_create; UNSUPPORTED also if
  * the library was built without DERMIS_RUNTIME_SHADERS. */
-DERMIS_API dermis_result DERMIS_CALL dermis_graph_reload_shaders(dermis_graph graph,
-                                                                 dermis_include_fn open, void* user,
-                                                                 dermis_report* report);
+DERMIS_API dermis_result DERMIS_CALL dermis_graph_reload_shaders(
+    dermis_graph graph, dermis_include_fn open, void* user, dermis_report* report);
 /* Changes the allocated size of all views. Histories become invalid, except images declared
- * "on_resize": "rescale". Creates no pipelines of known kernels. Costs: allocates device memory,
- * takes more than 1 ms. Thread: concurrent. Errors: as dermis_graph_create. */
-DERMIS_API dermis_result DERMIS_CALL dermis_graph_resize(dermis_graph graph, uint32_t width,
-                                                         uint32_t height, dermis_report* report);
+ * "on_resize": "rescale". Creates no pipelines of known kernels. Costs: memory, time. Thread:
+ * concurrent. Errors: as dermis_graph_create. */
+DERMIS_API dermis_result DERMIS_CALL dermis_graph_resize(
+    dermis_graph graph, uint32_t width, uint32_t height, dermis_report* report);
 /* Destroys the graph and its views. The device must have finished every frame recorded with them.
- * NULL is ignored. Costs: frees device memory, may take more than 1 ms. Thread: any, while no
- * other thread uses this graph. Errors: none. */
+ * NULL is ignored. Costs: time. Thread: exclusive. */
 DERMIS_API void DERMIS_CALL dermis_graph_destroy(dermis_graph graph);
 
 typedef enum dermis_slot_type {
@@ -441,29 +416,27 @@ typedef enum dermis_slot_type {
 
 typedef struct dermis_slot {
   size_t struct_size;
-  uint32_t id;       /* for the binding */
-  uint32_t required; /* 0: may stay unbound if named so at creation */
-  const char* name;  /* lives until the next reload, resize, set_setting or destroy */
-  uint32_t written;  /* 1: the graph writes it */
-  uint32_t read;     /* 1: the graph reads its contents */
-  VkFormat format;   /* that the plan was compiled for */
-  /* The image must be created with this usage; for buffers VkBufferUsageFlags. */
-  VkImageUsageFlags usage;
+  uint32_t id;               /* for the binding */
+  uint32_t required;         /* 0: may stay unbound if named so at creation */
+  const char* name;          /* lives until the next reload, resize, set_setting or destroy */
+  uint32_t written;          /* 1: the graph writes it */
+  uint32_t read;             /* 1: the graph reads its contents */
+  VkFormat format;           /* that the plan was compiled for */
+  VkImageUsageFlags usage;   /* needed at creation; for buffers VkBufferUsageFlags */
   VkImageLayout best_layout; /* of the first use: an image in this layout needs no transition */
   uint32_t width, height;    /* smallest extent of the image */
   uint32_t bound;            /* 1: every frame must bind it; 0: a binding is ignored */
   dermis_slot_type type;
-  uint32_t stride;           /* buffers: bytes per element */
-  uint64_t bytes;            /* buffers: smallest size that a frame binds */
+  uint32_t stride; /* buffers: bytes per element */
+  uint64_t bytes;  /* buffers: smallest size that a frame binds */
 } dermis_slot;
 #define DERMIS_SLOT_INIT \
-  {sizeof(dermis_slot), 0, 0, NULL, 0, 0, VK_FORMAT_UNDEFINED, 0, VK_IMAGE_LAYOUT_UNDEFINED, 0, 0, \
-   0, DERMIS_SLOT_IMAGE, 0, 0}
-
+  {sizeof(dermis_slot), 0, 0, NULL, 0, 0, VK_FORMAT_UNDEFINED, 0, VK_IMAGE_LAYOUT_UNDEFINED, 0, \
+   0, 0, DERMIS_SLOT_IMAGE, 0, 0}
 /* Returns the slots that the next record expects. Call again after a reload. Equal for all views.
  * Two-call array. Costs: none. Thread: concurrent. Errors: ARGUMENT, INCOMPLETE. */
-DERMIS_API dermis_result DERMIS_CALL dermis_graph_slots(dermis_graph graph, uint32_t* count,
-                                                        dermis_slot* slots);
+DERMIS_API dermis_result DERMIS_CALL dermis_graph_slots(
+    dermis_graph graph, uint32_t* count, dermis_slot* slots);
 
 typedef enum dermis_describe_format {
   DERMIS_DESCRIBE_JSON = 0, /* the whole plan with reasons */
@@ -471,31 +444,27 @@ typedef enum dermis_describe_format {
   DERMIS_DESCRIBE_TEXT = 2,
   DERMIS_DESCRIBE_FORMAT_FORCE_32BIT = 0x7fffffff
 } dermis_describe_format;
-
-/* Describes the plan. *size in: capacity of `text`; out: bytes needed with the final 0. text may
- * be NULL. Costs: may take more than 1 ms. Thread: concurrent. Errors: ARGUMENT, INCOMPLETE. */
-DERMIS_API dermis_result DERMIS_CALL dermis_graph_describe(dermis_graph graph,
-                                                           dermis_describe_format format,
-                                                           size_t* size, char* text);
+/* Describes the plan. *size in: capacity of `text`; out: bytes needed with the final 0. text may be
+ * NULL. Costs: time. Thread: concurrent. Errors: ARGUMENT, INCOMPLETE. */
+DERMIS_API dermis_result DERMIS_CALL dermis_graph_describe(
+    dermis_graph graph, dermis_describe_format format, size_t* size, char* text);
 
 typedef struct dermis_memory {
   size_t struct_size;
   uint64_t transient_bytes;           /* heaps of images and buffers that live within a frame */
   uint64_t transient_unaliased_bytes; /* the same without aliasing: never less */
   uint64_t history_bytes;
-  uint64_t constant_bytes;            /* frame constants, profile and kernel tables */
+  uint64_t constant_bytes; /* frame constants, profile and kernel tables */
 } dermis_memory;
 #define DERMIS_MEMORY_INIT {sizeof(dermis_memory), 0, 0, 0, 0}
-
 /* Returns the device memory of all views together. Costs: none. Thread: concurrent. Errors:
  * ARGUMENT. */
 DERMIS_API dermis_result DERMIS_CALL dermis_graph_memory(dermis_graph graph, dermis_memory* memory);
-
 /* Returns the memory blocks that one view of the graph needs for transients and histories, so that
  * a host can reserve them before it creates more views. Two-call array. Costs: none. Thread:
  * concurrent. Errors: ARGUMENT, INCOMPLETE. */
-DERMIS_API dermis_result DERMIS_CALL dermis_graph_heaps(dermis_graph graph, uint32_t* count,
-                                                        dermis_memory_request* heaps);
+DERMIS_API dermis_result DERMIS_CALL dermis_graph_heaps(
+    dermis_graph graph, uint32_t* count, dermis_memory_request* heaps);
 
 typedef struct dermis_pass_timing {
   size_t struct_size;
@@ -505,7 +474,6 @@ typedef struct dermis_pass_timing {
 } dermis_pass_timing;
 #define DERMIS_PASS_TIMING_INIT {sizeof(dermis_pass_timing), NULL, 0, 0}
 
-
 /* Why a history is not valid. */
 typedef enum dermis_history_reason {
   DERMIS_HISTORY_NEVER_WRITTEN = 0, /* no recorded frame has written it */
@@ -513,39 +481,32 @@ typedef enum dermis_history_reason {
   DERMIS_HISTORY_RESIZED = 2,       /* and it is not declared "on_resize": "rescale" */
   DERMIS_HISTORY_RELOADED = 3,      /* the graph before the reload has no matching history */
   DERMIS_HISTORY_OTHER_PLAN = 4,    /* the plan of the frame before has no matching history */
-  /* The frame before had nothing to scatter (dermis_frame_report.skips). */
-  DERMIS_HISTORY_LEFT_OUT = 5,
+  DERMIS_HISTORY_LEFT_OUT = 5,      /* the frame before had nothing to scatter */
   DERMIS_HISTORY_REASON_FORCE_32BIT = 0x7fffffff
 } dermis_history_reason;
 
 typedef struct dermis_history {
   size_t struct_size;
-  /* Name of the resource; lives until the next reload, resize, set_setting or destroy. */
-  const char* name;
-  /* 1: the next frame, unless it is a cut, reads the contents of the frame before. */
-  uint32_t valid;
-  uint32_t age;       /* number of consecutive frames in it; 0 if it is not valid */
+  const char* name;             /* lives until the next reload, resize, set_setting or destroy */
+  uint32_t valid;               /* 1: the next frame reads the contents, unless it is a cut */
+  uint32_t age;                 /* number of consecutive frames in it; 0 if it is not valid */
   dermis_history_reason reason; /* why it is not valid, or why it last was not */
-  /* Frames after a change of a profile or of light until at most 1 % of the history is from
-   * before the change, by the current weights. 1: the last frame only. */
+  /* Frames after a change of a profile or of light until at most 1 % of the history is from before
+   * the change, by the current weights. 1: the last frame only. */
   uint32_t settles_after;
-  const char* text;   /* the reason as a sentence, or "valid since ..."; static string */
+  const char* text; /* the reason as a sentence, or "valid since ..."; static string */
 } dermis_history;
 #define DERMIS_HISTORY_INIT \
   {sizeof(dermis_history), NULL, 0, 0, DERMIS_HISTORY_NEVER_WRITTEN, 0, NULL}
-
-
 /* Replaces profile `id` (1..255) by *source, adds it, or removes it if source is NULL. No graph is
- * built again and no history is lost; only the first profile of a graph and the removal of the
- * last one act like a reload. Frames in flight keep the old profile; each view uses the new one
- * from its next record on. Light accumulated over frames still shows the old profile for
+ * built again and no history is lost; only the first profile of a graph and the removal of the last
+ * one act like a reload. Frames in flight keep the old profile; each view uses the new one from its
+ * next record on. Light accumulated over frames still shows the old profile for
  * dermis_history.settles_after frames; the report contains the number (D0625). Takes up to 0.3 s,
- * next to recording. Kept over reloads with DERMIS_KEEP_PROFILES and over resizes. Costs:
- * allocates device memory, takes more than 1 ms. Thread: concurrent. Errors: as
- * dermis_graph_create. */
-DERMIS_API dermis_result DERMIS_CALL dermis_graph_set_profile(dermis_graph graph, uint32_t id,
-                                                              const dermis_source* source,
-                                                              dermis_report* report);
+ * next to recording. Kept over reloads with DERMIS_KEEP_PROFILES and over resizes. Costs: memory,
+ * time. Thread: concurrent. Errors: as dermis_graph_create. */
+DERMIS_API dermis_result DERMIS_CALL dermis_graph_set_profile(
+    dermis_graph graph, uint32_t id, const dermis_source* source, dermis_report* report);
 
 typedef enum dermis_setting_type {
   DERMIS_SETTING_BOOL = 0,
@@ -561,31 +522,24 @@ typedef struct dermis_setting {
   size_t struct_size;
   const char* name;
   dermis_setting_type type;
-  /* 1: a weight or threshold; a view may have its own value (dermis_view_set_setting). 0: the
-   * graph has one value. */
-  uint32_t per_frame;
-  const char* unit;           /* "px"; "" for none */
-  const char* note;           /* the graph's description; "" for none */
-  double minimum, maximum;    /* inclusive */
-  double default_value;       /* bool: 0 or 1; option: index into options */
-  double value;               /* of the next frame; of a chosen setting: of the last frame */
-  /* 1: set by dermis_graph_set_setting; 2: by dermis_view_set_setting. */
-  uint32_t set;
-  uint32_t chosen;            /* 1: chosen by the budget in each frame, until the host sets it */
+  uint32_t per_frame;        /* 1: a view may have its own value (dermis_view_set_setting) */
+  const char* unit;          /* "px"; "" for none */
+  const char* note;          /* the graph's description; "" for none */
+  double minimum, maximum;   /* inclusive */
+  double default_value;      /* bool: 0 or 1; option: index into options */
+  double value;              /* of the next frame; of a chosen setting: of the last frame */
+  uint32_t set;              /* 1: set by dermis_graph_set_setting; 2: by dermis_view_set_setting */
+  uint32_t chosen;           /* 1: chosen by the budget in each frame, until the host sets it */
   const char* const* options; /* names; NULL if the type is not OPTION */
   uint32_t option_count;
 } dermis_setting;
 #define DERMIS_SETTING_INIT \
   {sizeof(dermis_setting), NULL, DERMIS_SETTING_BOOL, 0, NULL, NULL, 0, 0, 0, 0, 0, 0, NULL, 0}
-
-
 /* Sets a setting for all views from JSON text ("16", "true", "\"post\""), effective at the next
- * record. A value that changes which passes run compiles a plan, creates pipelines and allocates
- * device memory here. Costs: may create pipelines and allocate device memory; then more than 1 ms.
- * Thread: concurrent. Errors: ARGUMENT, CONFIG, and those of dermis_graph_create. */
-DERMIS_API dermis_result DERMIS_CALL dermis_graph_set_setting(dermis_graph graph, const char* name,
-                                                              const char* json,
-                                                              dermis_report* report);
+ * record. A value that changes which passes run compiles a plan here. Costs: pipelines, memory,
+ * time. Thread: concurrent. Errors: ARGUMENT, CONFIG, and those of dermis_graph_create. */
+DERMIS_API dermis_result DERMIS_CALL dermis_graph_set_setting(
+    dermis_graph graph, const char* name, const char* json, dermis_report* report);
 
 /* ---- the choice ------------------------------------------------------------------------------ */
 
@@ -594,26 +548,21 @@ DERMIS_API dermis_result DERMIS_CALL dermis_graph_set_setting(dermis_graph graph
 #define DERMIS_BUDGET_DETERMINISTIC 0x1u
 
 /* Device time that a frame of one view may take. Each record then chooses the settings declared
- * with "by": "budget": the least expected error whose expected time fits. All plans that this
- * can select exist from creation on, so changing between them allocates nothing. Times are
- * measured with DERMIS_CONTEXT_TIMINGS; otherwise they come from the calibration. */
+ * with "by": "budget": the least expected error whose expected time fits. All plans that this can
+ * select exist from creation on, so changing between them allocates nothing. Times are measured
+ * with DERMIS_CONTEXT_TIMINGS; otherwise they come from the calibration. */
 typedef struct dermis_budget {
   size_t struct_size;
-  float milliseconds;               /* per frame, > 0; 0: no budget, choices take their defaults */
-  uint32_t flags;                   /* DERMIS_BUDGET_... */
-  /* Error table (docs/choice.md); NULL: unchanged, initially built in. */
-  const dermis_source* errors;
-  /* Text of dermis_graph_calibration; measured times are dropped. NULL: unchanged. */
-  const dermis_source* calibration;
+  float milliseconds; /* per frame, > 0; 0: no budget, choices take their defaults */
+  uint32_t flags;     /* DERMIS_BUDGET_.. */
+  const dermis_source* errors;      /* error table (docs/choice.md); NULL: unchanged */
+  const dermis_source* calibration; /* drops measured times; NULL: unchanged */
 } dermis_budget;
 #define DERMIS_BUDGET_INIT {sizeof(dermis_budget), 0, 0, NULL, NULL}
-
 /* Sets the budget for all views, effective at the next record; kept over reload and resize. Costs:
- * parses the two texts, may take more than 1 ms. Thread: concurrent. Errors: ARGUMENT, VERSION,
- * CONFIG, MEMORY. */
-DERMIS_API dermis_result DERMIS_CALL dermis_graph_set_budget(dermis_graph graph,
-                                                             const dermis_budget* budget,
-                                                             dermis_report* report);
+ * time. Thread: concurrent. Errors: ARGUMENT, VERSION, CONFIG, MEMORY. */
+DERMIS_API dermis_result DERMIS_CALL dermis_graph_set_budget(
+    dermis_graph graph, const dermis_budget* budget, dermis_report* report);
 
 /* Work that a frame did not need (dermis_frame_report.skips). */
 #define DERMIS_SKIP_NO_MATERIAL 0x1u  /* no profile: passes that scatter are not in the plan */
@@ -633,19 +582,16 @@ typedef struct dermis_frame_report {
   const char* miss;          /* why times deviate from the prediction, or ""; static string */
   float budget_ms;           /* 0: none */
   float predicted_ms;
-  float measured_ms;         /* -1: not timed */
-  float predicted_rmse;      /* of linear luminance; the light's 99.9th percentile is 1 */
-  uint32_t skips;            /* DERMIS_SKIP_... */
+  float measured_ms;    /* -1: not timed */
+  float predicted_rmse; /* of linear luminance; the light's 99.9th percentile is 1 */
+  uint32_t skips;       /* DERMIS_SKIP_.. */
 } dermis_frame_report;
-#define DERMIS_FRAME_REPORT_INIT \
-  {sizeof(dermis_frame_report), 0, NULL, NULL, NULL, 0, 0, 0, 0, 0}
-
+#define DERMIS_FRAME_REPORT_INIT {sizeof(dermis_frame_report), 0, NULL, NULL, NULL, 0, 0, 0, 0, 0}
 /* Describes the newest frame whose counters are available, among those up to
- * `completed_frame_index`, as in dermis_frame. Costs: none. Thread: one per view. Errors:
- * ARGUMENT, NOT_READY, DEVICE_LOST. */
-DERMIS_API dermis_result DERMIS_CALL dermis_view_report(dermis_view view,
-                                                        uint64_t completed_frame_index,
-                                                        dermis_frame_report* report);
+ * `completed_frame_index`, as in dermis_frame. Costs: none. Thread: one per view. Errors: ARGUMENT,
+ * NOT_READY, DEVICE_LOST. */
+DERMIS_API dermis_result DERMIS_CALL dermis_view_report(
+    dermis_view view, uint64_t completed_frame_index, dermis_frame_report* report);
 
 /* Details of the same frame as dermis_frame_report, for tools. Strings live as long as there. */
 typedef struct dermis_frame_statistics {
@@ -658,24 +604,23 @@ typedef struct dermis_frame_statistics {
   float predicted_spread_ms;    /* typical deviation of one frame */
   float calibrated_ms;          /* time by the calibration for the tiles that were counted */
   uint32_t configuration_count;
-  uint32_t switches;            /* since the graph was created */
-  /* Recorded work. */
-  uint32_t dispatches;
-  uint64_t groups;              /* workgroups of all dispatches */
+  uint32_t switches;   /* since the graph was created */
+  uint32_t dispatches; /* recorded work */
+  uint64_t groups;     /* workgroups of all dispatches */
   /* 8x8 tiles. */
-  uint32_t view_tiles;          /* of the render rectangle */
-  uint32_t scattering_tiles;    /* that ran the technique */
-  uint32_t copied_tiles;        /* that scatter less than a pixel */
-  uint32_t uniform_tiles;       /* in uniform light */
-  uint32_t sampled_tiles[3];    /* scattering tiles with 8, 16 and 32 samples per pixel */
-  uint32_t sample_units;        /* samples taken, in units of 8 samples per pixel of a tile */
-  uint32_t sample_demand;       /* the same without a budget */
-  float mean_d_px;              /* geometric mean over scattering tiles of the widest d; 0: none */
+  uint32_t view_tiles;       /* of the render rectangle */
+  uint32_t scattering_tiles; /* that ran the technique */
+  uint32_t copied_tiles;     /* that scatter less than a pixel */
+  uint32_t uniform_tiles;    /* in uniform light */
+  uint32_t sampled_tiles[3]; /* scattering tiles with 8, 16 and 32 samples per pixel */
+  uint32_t sample_units;     /* samples taken, in units of 8 samples per pixel of a tile */
+  uint32_t sample_demand;    /* the same without a budget */
+  float mean_d_px;           /* geometric mean over scattering tiles of the widest d; 0: none */
   /* Measured error, by subsurface.probe (configs/overlays/probe.json). */
-  uint32_t probed_tiles;        /* 0: error unknown */
-  float probed_rmse;            /* of this frame: linear luminance times dermis_frame.exposure */
-  float probed_rmse_low;        /* lower end of the 95 % confidence interval */
-  float probed_rmse_high;       /* upper end; infinity if one tile was probed */
+  uint32_t probed_tiles;  /* 0: error unknown */
+  float probed_rmse;      /* of this frame: linear luminance times dermis_frame.exposure */
+  float probed_rmse_low;  /* lower end of the 95 % confidence interval */
+  float probed_rmse_high; /* upper end; infinity if one tile was probed */
   /* Light through thin parts, by subsurface.transmission_stats: root mean square over tiles with
    * subsurface, linear luminance times dermis_frame.exposure. 0: none, or not counted. */
   float transmitted_rms;
@@ -683,29 +628,24 @@ typedef struct dermis_frame_statistics {
 #define DERMIS_FRAME_STATISTICS_INIT \
   {sizeof(dermis_frame_statistics), 0, NULL, NULL, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, {0, 0, 0}, 0, \
    0, 0, 0, 0, 0, 0, 0}
-
 /* Returns the statistics of the frame that dermis_view_report describes. Costs: none. Thread: one
  * per view. Errors: as there. */
-DERMIS_API dermis_result DERMIS_CALL dermis_view_statistics(dermis_view view,
-                                                            uint64_t completed_frame_index,
-                                                            dermis_frame_statistics* statistics);
-
+DERMIS_API dermis_result DERMIS_CALL dermis_view_statistics(
+    dermis_view view, uint64_t completed_frame_index, dermis_frame_statistics* statistics);
 /* Returns the times measured on this device by the graph's view, as JSON for
- * dermis_budget.calibration at the next start. *size in: capacity of `text`; out: bytes needed
- * with the final 0. text may be NULL. Costs: may take more than 1 ms. Thread: concurrent. Errors:
- * ARGUMENT, INCOMPLETE. */
-DERMIS_API dermis_result DERMIS_CALL dermis_graph_calibration(dermis_graph graph, size_t* size,
-                                                              char* text);
+ * dermis_budget.calibration at the next start. *size in: capacity of `text`; out: bytes needed with
+ * the final 0. text may be NULL. Costs: time. Thread: concurrent. Errors: ARGUMENT, INCOMPLETE. */
+DERMIS_API dermis_result DERMIS_CALL dermis_graph_calibration(
+    dermis_graph graph, size_t* size, char* text);
 
 /* ---- passes of the host ---------------------------------------------------------------------- */
 
 /* How a pass of the host uses what a graph binds to a port, always in compute shaders: the graph's
  * barriers wait for, and make visible to, VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT. */
 typedef enum dermis_port_usage {
-  /* Read in SHADER_READ_ONLY_OPTIMAL or GENERAL; dermis_pass_port.layout states which. */
-  DERMIS_PORT_SAMPLED_IMAGE = 0,
-  DERMIS_PORT_STORAGE_IMAGE_WRITE = 1,    /* written, GENERAL */
-  DERMIS_PORT_STORAGE_IMAGE_UPDATE = 2,   /* read and written, GENERAL */
+  DERMIS_PORT_SAMPLED_IMAGE = 0,        /* read in dermis_pass_port.layout */
+  DERMIS_PORT_STORAGE_IMAGE_WRITE = 1,  /* written, GENERAL */
+  DERMIS_PORT_STORAGE_IMAGE_UPDATE = 2, /* read and written, GENERAL */
   DERMIS_PORT_STORAGE_BUFFER_READ = 3,
   DERMIS_PORT_STORAGE_BUFFER_WRITE = 4,
   DERMIS_PORT_STORAGE_BUFFER_UPDATE = 5,
@@ -715,8 +655,8 @@ typedef enum dermis_port_usage {
 
 typedef struct dermis_port {
   size_t struct_size;
-  const char* name;  /* key in "read" or "write" of a pass: a-z, 0-9, '_' */
-  const char* doc;   /* for schemas and messages; may be NULL */
+  const char* name; /* key in "read" or "write" of a pass: a-z, 0-9, '_' */
+  const char* doc;  /* for schemas and messages; may be NULL */
   dermis_port_usage usage;
   uint32_t optional; /* 1: a graph may omit it */
   /* 1: each invocation reads only the texel or element that it alone writes, before it writes it.
@@ -735,9 +675,9 @@ typedef enum dermis_pass_setting_type {
 
 typedef struct dermis_pass_setting {
   size_t struct_size;
-  const char* name;        /* key in "set" of a pass */
-  const char* unit;        /* "px"; NULL or "": none */
-  const char* doc;         /* may be NULL */
+  const char* name; /* key in "set" of a pass */
+  const char* unit; /* "px"; NULL or "": none */
+  const char* doc;  /* may be NULL */
   dermis_pass_setting_type type;
   uint32_t per_frame;      /* 1: may differ between frames and views; 0: one value per graph */
   double default_value;    /* bool: 0 or 1 */
@@ -746,61 +686,61 @@ typedef struct dermis_pass_setting {
 #define DERMIS_PASS_SETTING_INIT \
   {sizeof(dermis_pass_setting), NULL, NULL, NULL, DERMIS_PASS_SETTING_BOOL, 0, 0, 0, 0}
 
-/* The image, buffer or acceleration structure at a port while a pass of the host is recorded;
- * all null if the port is unbound. */
+/* The image, buffer or acceleration structure at a port while a pass of the host is recorded; all
+ * null if the port is unbound. */
 typedef struct dermis_pass_port {
   size_t struct_size;
   VkImage image;
-  VkImageView view;       /* of the subresource that the graph names; storage images: of one mip */
+  VkImageView view; /* of the subresource that the graph names; storage images: of one mip */
   VkFormat format;
   VkImageLayout layout;   /* current layout; must be restored when the function returns */
   uint32_t width, height; /* of the view's first mip, in texels: the allocated size */
   VkBuffer buffer;
-  uint64_t bytes;         /* of the buffer */
-  uint64_t offset;        /* first byte; not 0 only in buffers that you bind */
+  uint64_t bytes;  /* of the buffer */
+  uint64_t offset; /* first byte; not 0 only in buffers that you bind */
   VkAccelerationStructureKHR structure;
 } dermis_pass_port;
 #define DERMIS_PASS_PORT_INIT \
   {sizeof(dermis_pass_port), VK_NULL_HANDLE, VK_NULL_HANDLE, VK_FORMAT_UNDEFINED, \
    VK_IMAGE_LAYOUT_UNDEFINED, 0, 0, VK_NULL_HANDLE, 0, 0, VK_NULL_HANDLE}
 
-/* Valid until the function returns. The images and views of a dermis_view stay the same from
- * frame to frame until it is reloaded, resized or given a setting that changes its passes.
- * Histories alternate between images. */
+/* Valid until the function returns. The images and views of a dermis_view stay the same from frame
+ * to frame until it is reloaded, resized or given a setting that changes its passes. Histories
+ * alternate between images. */
 typedef struct dermis_pass_call {
   size_t struct_size;
-  const char* pass;              /* name of the pass in the graph */
+  const char* pass; /* name of the pass in the graph */
   VkCommandBuffer command_buffer;
   const dermis_pass_port* ports; /* in declared order; the stride is ports[0].struct_size */
   const double* settings;        /* in declared order */
   uint32_t port_count, setting_count;
   uint32_t rect_x, rect_y, rect_width, rect_height; /* rendered part of the view in pixels */
   uint64_t frame_index;
-  void* view_user;               /* dermis_view_desc.user; NULL: the graph's own view */
+  void* view_user; /* dermis_view_desc.user; NULL: the graph's own view */
 } dermis_pass_call;
 #define DERMIS_PASS_CALL_INIT \
   {sizeof(dermis_pass_call), NULL, NULL, NULL, NULL, 0, 0, 0, 0, 0, 0, 0, NULL}
 
-/* Records the pass into the command buffer. Called inside dermis_view_record, by its thread.
- * The library records the barriers before and after the pass, as the ports declare: access only
- * the ports, and record no barrier around the pass. May bind any pipeline and descriptor sets.
- * Must not call Dermis or throw. */
+/* Records the pass into the command buffer. Called inside dermis_view_record, by its thread. The
+ * library records the barriers before and after the pass, as the ports declare: access only the
+ * ports, and record no barrier around the pass. May bind any pipeline and descriptor sets. Must not
+ * call Dermis or throw. */
 typedef void(DERMIS_CALL* dermis_pass_fn)(void* user, const dermis_pass_call* call);
 
 typedef struct dermis_pass_type {
   size_t struct_size;
-  const char* name;       /* "studio.bloom": contains a dot, does not begin with "subsurface." */
-  const char* doc;        /* may be NULL */
+  const char* name; /* "studio.bloom": contains a dot, does not begin with "subsurface." */
+  const char* doc;  /* may be NULL */
   const dermis_port* ports;
   const dermis_pass_setting* settings;
   uint32_t port_count;    /* 1..32 */
   uint32_t setting_count; /* 0..32 */
   uint32_t side_effects;  /* 1: passes of this pass type run even if nothing reads their output */
-  /* 1: left out where nothing scatters: without profiles, and in frames with empty bounds. 0:
-   * also runs there, unless a required input is written only by passes that are left out. */
+  /* 1: left out where nothing scatters: without profiles, and in frames with empty bounds. 0: also
+   * runs there, unless a required input is written only by passes that are left out. */
   uint32_t serves_scattering;
   dermis_pass_fn record;
-  void* user;             /* passed to `record` */
+  void* user; /* passed to `record` */
 } dermis_pass_type;
 #define DERMIS_PASS_TYPE_INIT \
   {sizeof(dermis_pass_type), NULL, NULL, NULL, NULL, 0, 0, 0, 0, NULL, NULL}
@@ -808,55 +748,54 @@ typedef struct dermis_pass_type {
 /* Registers a kind of pass for the graphs of a context, so that the host's own passes are part of
  * the graph, with the same barriers, aliased memory and history. Copied, except `record` and
  * `user`, which are used as long as the context lives. Call before the context creates its first
- * graph. Costs: none. Thread: any, while no other thread uses the context. Errors: ARGUMENT (also
- * for a name that exists, or if there are graphs), VERSION, MEMORY. */
-DERMIS_API dermis_result DERMIS_CALL dermis_register_pass_type(dermis_context context,
-                                                               const dermis_pass_type* type);
-/* Returns the registered pass types as a JSON file for `dermis validate --pass-types FILE`, so
- * that graphs with them can be checked without the host. *size in: capacity of `text`; out: bytes
- * needed with the final 0. text may be NULL. Costs: may take more than 1 ms. Thread: any. Errors:
- * ARGUMENT, INCOMPLETE, MEMORY. */
-DERMIS_API dermis_result DERMIS_CALL dermis_export_pass_types(dermis_context context, size_t* size,
-                                                              char* text);
+ * graph. Costs: none. Thread: exclusive. Errors: ARGUMENT (also for a name that exists, or if there
+ * are graphs), VERSION, MEMORY. */
+DERMIS_API dermis_result DERMIS_CALL dermis_register_pass_type(
+    dermis_context context, const dermis_pass_type* type);
+/* Returns the registered pass types as a JSON file for `dermis validate --pass-types FILE`, so that
+ * graphs with them can be checked without the host. *size in: capacity of `text`; out: bytes needed
+ * with the final 0. text may be NULL. Costs: time. Thread: any. Errors: ARGUMENT, INCOMPLETE,
+ * MEMORY. */
+DERMIS_API dermis_result DERMIS_CALL dermis_export_pass_types(
+    dermis_context context, size_t* size, char* text);
 
 /* ---- each frame ------------------------------------------------------------------------------ */
 
-/* The state of an image, a buffer or an acceleration structure outside the recorded commands.
- * With `transfer` 1 the commands acquire it from `queue_family` (in `before`) or release it to
- * that family (in `after`). The host records the other half, with old and new layout both
- * `layout`. Acceleration structures are not transferred. */
+/* The state of an image, a buffer or an acceleration structure outside the recorded commands. With
+ * `transfer` 1 the commands acquire it from `queue_family` (in `before`) or release it to that
+ * family (in `after`). The host records the other half, with old and new layout both `layout`.
+ * Acceleration structures are not transferred. */
 typedef struct dermis_image_state {
   VkImageLayout layout;
-  /* With transfer 1: index of a family, VK_QUEUE_FAMILY_EXTERNAL, or VK_QUEUE_FAMILY_FOREIGN_EXT
-   * if the device was created with VK_EXT_queue_family_foreign. Otherwise 0 or
+  /* With transfer 1: index of a family, VK_QUEUE_FAMILY_EXTERNAL, or VK_QUEUE_FAMILY_FOREIGN_EXT if
+   * the device was created with VK_EXT_queue_family_foreign. Otherwise 0 or
    * VK_QUEUE_FAMILY_IGNORED. */
   uint32_t queue_family;
   VkPipelineStageFlags2 stages;
   VkAccessFlags2 access;
-  /* 1: ownership transfer between queue_family and the context's family; 0: none. */
-  uint32_t transfer;
+  uint32_t transfer; /* 1: ownership transfer between queue_family and the context's family */
 } dermis_image_state;
 
-/* Two slots of a frame may be bound to the same aspect and layers of an image, the same bytes of
- * a buffer, or the same acceleration structure only if the graph writes neither slot
+/* Two slots of a frame may be bound to the same aspect and layers of an image, the same bytes of a
+ * buffer, or the same acceleration structure only if the graph writes neither slot
  * (dermis_slot.written), their states are equal and transfer nothing, and, for images,
- * `before.layout` and `after.layout` are dermis_slot.best_layout. Depth and stencil are
- * different aspects. */
+ * `before.layout` and `after.layout` are dermis_slot.best_layout. Depth and stencil are different
+ * aspects. */
 typedef struct dermis_image_binding {
   size_t struct_size;
-  uint32_t slot;          /* dermis_slot.id */
+  uint32_t slot; /* dermis_slot.id */
   VkFormat format;
-  VkImage image;          /* 2-D, one sample, created with dermis_slot.usage */
+  VkImage image; /* 2-D, one sample, created with dermis_slot.usage */
   /* View of mip 0 and one layer; for depth formats of the depth aspect. May be null with a
    * content_id: then the library creates a view and keeps it while the same image returns. */
   VkImageView view;
   uint32_t width, height; /* extent of mip 0 */
   dermis_image_state before, after;
-  uint32_t layer;         /* first layer that is bound; 0 if layer_count is 0 */
-  uint32_t layer_count;   /* layers in these states; others are not accessed. 0: all layers */
-  /* Your unique number of this image, never reused: Vulkan may give the handle of a destroyed
-   * image to a new one. 0: none; then nothing is kept from frame to frame. At most 8 images may
-   * alternate in a slot within the frames in flight. */
+  uint32_t layer;       /* first layer that is bound; 0 if layer_count is 0 */
+  uint32_t layer_count; /* layers in these states; others are not accessed. 0: all layers */
+  /* Your unique number of this image, never reused: Vulkan may give the handle of a destroyed image
+   * to a new one. 0: none; then nothing is kept from frame to frame. At most 8 images may alternate
+   * in a slot within the frames in flight. */
   uint64_t content_id;
 } dermis_image_binding;
 #define DERMIS_IMAGE_BINDING_INIT \
@@ -866,34 +805,32 @@ typedef struct dermis_image_binding {
 /* A buffer at a slot of type BUFFER. Layouts of the states are VK_IMAGE_LAYOUT_UNDEFINED. */
 typedef struct dermis_buffer_binding {
   size_t struct_size;
-  uint32_t slot;     /* dermis_slot.id */
-  VkBuffer buffer;   /* created with dermis_slot.usage */
-  uint64_t offset;   /* a multiple of minStorageBufferOffsetAlignment */
-  uint64_t bytes;    /* a multiple of dermis_slot.stride, at least dermis_slot.bytes */
+  uint32_t slot;   /* dermis_slot.id */
+  VkBuffer buffer; /* created with dermis_slot.usage */
+  uint64_t offset; /* a multiple of minStorageBufferOffsetAlignment */
+  uint64_t bytes;  /* a multiple of dermis_slot.stride, at least dermis_slot.bytes */
   dermis_image_state before, after;
 } dermis_buffer_binding;
 #define DERMIS_BUFFER_BINDING_INIT \
-  {sizeof(dermis_buffer_binding), 0, VK_NULL_HANDLE, 0, 0, \
-   {VK_IMAGE_LAYOUT_UNDEFINED, 0, 0, 0, 0}, {VK_IMAGE_LAYOUT_UNDEFINED, 0, 0, 0, 0}}
+  {sizeof(dermis_buffer_binding), 0, VK_NULL_HANDLE, 0, 0, {VK_IMAGE_LAYOUT_UNDEFINED, 0, 0, 0, \
+   0}, {VK_IMAGE_LAYOUT_UNDEFINED, 0, 0, 0, 0}}
 
-/* A top-level acceleration structure at a slot of type ACCELERATION_STRUCTURE. `before` also
- * covers the builds of everything below it. Layouts of the states are VK_IMAGE_LAYOUT_UNDEFINED,
+/* A top-level acceleration structure at a slot of type ACCELERATION_STRUCTURE. `before` also covers
+ * the builds of everything below it. Layouts of the states are VK_IMAGE_LAYOUT_UNDEFINED,
  * `transfer` is 0. */
 typedef struct dermis_acceleration_structure_binding {
   size_t struct_size;
-  uint32_t slot;     /* dermis_slot.id */
+  uint32_t slot; /* dermis_slot.id */
   VkAccelerationStructureKHR structure;
   dermis_image_state before, after;
 } dermis_acceleration_structure_binding;
 #define DERMIS_ACCELERATION_STRUCTURE_BINDING_INIT \
-  {sizeof(dermis_acceleration_structure_binding), 0, VK_NULL_HANDLE, \
-   {VK_IMAGE_LAYOUT_UNDEFINED, 0, 0, 0, 0}, {VK_IMAGE_LAYOUT_UNDEFINED, 0, 0, 0, 0}}
+  {sizeof(dermis_acceleration_structure_binding), 0, VK_NULL_HANDLE, {VK_IMAGE_LAYOUT_UNDEFINED, \
+   0, 0, 0, 0}, {VK_IMAGE_LAYOUT_UNDEFINED, 0, 0, 0, 0}}
 
 typedef enum dermis_depth_kind {
-  /* Output of the depth test for clip_from_view; may be reversed, infinite. */
-  DERMIS_DEPTH_DEVICE = 0,
-  /* Positive distance along the view axis in world units; 0: no surface. */
-  DERMIS_DEPTH_VIEW_UNITS = 1,
+  DERMIS_DEPTH_DEVICE = 0,     /* depth test of clip_from_view; may be reversed, infinite */
+  DERMIS_DEPTH_VIEW_UNITS = 1, /* distance along the view axis, world units; 0: no surface */
   DERMIS_DEPTH_KIND_FORCE_32BIT = 0x7fffffff
 } dermis_depth_kind;
 
@@ -904,39 +841,35 @@ typedef enum dermis_depth_kind {
 /* One frame. Matrices act on column vectors (clip = clip_from_view * view) and are stored row by
  * row: element [r * 4 + c]. Clip space is Vulkan's: y down, depth 0..1. View space is x right, y
  * up. In a right-handed view space the camera looks down -z, in a left-handed one (Unreal,
- * DirectXMath ...LH) along +z. A perspective projection states this by its last row: w = -z or w
- * = z; the flag is not needed. An orthographic projection cannot: set DERMIS_FRAME_LEFT_HANDED
- * if its view space is left-handed. All matrices of a frame and normal images use the same view
- * space. Matrices that contradict the flag, each other or the depth range (all of it behind the
- * camera) return DERMIS_ERROR_ARGUMENT. clip_from_view is the matrix that the picture was
- * rendered with; jitter_x and jitter_y state its sub-pixel shift. The previous matrices are
- * those of the frame before; if they are no projection (all 0), histories that follow surfaces
- * start anew in each frame. */
+ * DirectXMath ...LH) along +z. A perspective projection states this by its last row: w = -z or w =
+ * z; the flag is not needed. An orthographic projection cannot: set DERMIS_FRAME_LEFT_HANDED if its
+ * view space is left-handed. All matrices of a frame and normal images use the same view space.
+ * Matrices that contradict the flag, each other or the depth range (all of it behind the camera)
+ * return DERMIS_ERROR_ARGUMENT. clip_from_view is the matrix that the picture was rendered with;
+ * jitter_x and jitter_y state its sub-pixel shift. The previous matrices are those of the frame
+ * before; if they are no projection (all 0), histories that follow surfaces start anew in each
+ * frame. */
 typedef struct dermis_frame {
   size_t struct_size;
-  /* Recording, outside a render pass, of the context's queue family. */
-  VkCommandBuffer command_buffer;
+  VkCommandBuffer command_buffer; /* recording, outside a render pass, of the context's family */
   const dermis_image_binding* bindings;
   uint32_t binding_count;
-  uint32_t flags;                 /* DERMIS_FRAME_... */
-  uint64_t frame_index;           /* from 1; increases with every frame */
-  /* Newest frame that the device has finished: less than frame_index, and frame_index -
-   * completed_frame_index <= frames_in_flight. 0 before the first. */
+  uint32_t flags;       /* DERMIS_FRAME_.. */
+  uint64_t frame_index; /* from 1; increases with every frame */
+  /* Newest frame that the device has finished, at most frames_in_flight before; 0: none. */
   uint64_t completed_frame_index;
-  /* Rendered part in pixels; width 0: allocated size. */
-  uint32_t rect_x, rect_y, rect_width, rect_height;
+  uint32_t rect_x, rect_y, rect_width, rect_height; /* pixels; width 0: allocated size */
   float clip_from_view[16];
   float view_from_world[16];
   float previous_clip_from_view[16];
   float previous_view_from_world[16];
-  /* Pixels, +x right, +y down: shift of the picture in clip_from_view. */
-  float jitter_x, jitter_y;
-  float metres_per_unit;          /* 0 = 1 */
-  float exposure;                 /* linear factor that the host applies later; 0 = 1 */
+  float jitter_x, jitter_y; /* pixels, +x right, +y down: shift of the picture in clip_from_view */
+  float metres_per_unit;    /* 0 = 1 */
+  float exposure;           /* linear factor that the host applies later; 0 = 1 */
   float delta_seconds;
   dermis_depth_kind depth_kind;
-  /* With DERMIS_FRAME_BOUNDS: the area that may show subsurface, in pixels of the images,
-   * clipped to the rendered part. Empty: only passes that do not serve scattering run. */
+  /* With DERMIS_FRAME_BOUNDS: the area that may show subsurface, in pixels of the images, clipped
+   * to the rendered part. Empty: only passes that do not serve scattering run. */
   uint32_t bounds_x, bounds_y, bounds_width, bounds_height;
   const dermis_buffer_binding* buffers; /* the stride is buffers[0].struct_size */
   const dermis_acceleration_structure_binding* structures;
@@ -946,24 +879,21 @@ typedef struct dermis_frame {
   {sizeof(dermis_frame), NULL, NULL, 0, 0, 0, 0, 0, 0, 0, 0, {0}, {0}, {0}, {0}, 0, 0, 0, 0, 0, \
    DERMIS_DEPTH_DEVICE, 0, 0, 0, 0, NULL, NULL, 0, 0}
 
-
 /* ---- a frame as data ------------------------------------------------------------------------- */
 
-/* For a host that records all commands itself. Each command stands for the Vulkan function of
- * its name with these arguments. */
+/* For a host that records all commands itself. Each command stands for the Vulkan function of its
+ * name with these arguments. */
 typedef enum dermis_command_type {
-  DERMIS_COMMAND_BARRIER = 0,           /* vkCmdPipelineBarrier2: dependency */
-  /* Bind pipeline and `sets` from set 0, push constants, dispatch. */
-  DERMIS_COMMAND_DISPATCH = 1,
+  DERMIS_COMMAND_BARRIER = 0,    /* vkCmdPipelineBarrier2: dependency */
+  DERMIS_COMMAND_DISPATCH = 1,   /* bind pipeline and `sets` from set 0, push constants, dispatch */
   DERMIS_COMMAND_DISPATCH_INDIRECT = 2, /* the same with the groups from buffer and offset */
-  DERMIS_COMMAND_FILL_BUFFER = 3,       /* buffer, offset, bytes, value */
-  /* VkCmdClearColorImage: image, image_layout, color, ranges. */
-  DERMIS_COMMAND_CLEAR_IMAGE = 4,
-  DERMIS_COMMAND_COPY_BUFFER = 5,       /* buffer, to_buffer, buffer_copies */
-  DERMIS_COMMAND_COPY_IMAGE = 6,        /* image, image_layout, to_image, to_layout, image_copies */
-  DERMIS_COMMAND_RESET_QUERIES = 7,     /* query_pool, query, count */
-  DERMIS_COMMAND_WRITE_TIMESTAMP = 8,   /* vkCmdWriteTimestamp2: stages, query_pool, query */
-  DERMIS_COMMAND_HOST_PASS = 9,         /* your pass: `call` with command_buffer NULL; not called */
+  DERMIS_COMMAND_FILL_BUFFER = 3, /* buffer, offset, bytes, value */
+  DERMIS_COMMAND_CLEAR_IMAGE = 4, /* vkCmdClearColorImage: image, image_layout, color, ranges */
+  DERMIS_COMMAND_COPY_BUFFER = 5, /* buffer, to_buffer, buffer_copies */
+  DERMIS_COMMAND_COPY_IMAGE = 6, /* image, image_layout, to_image, to_layout, image_copies */
+  DERMIS_COMMAND_RESET_QUERIES = 7, /* query_pool, query, count */
+  DERMIS_COMMAND_WRITE_TIMESTAMP = 8, /* vkCmdWriteTimestamp2: stages, query_pool, query */
+  DERMIS_COMMAND_HOST_PASS = 9,  /* your pass: `call` with command_buffer NULL; not called */
   DERMIS_COMMAND_TYPE_FORCE_32BIT = 0x7fffffff
 } dermis_command_type;
 
@@ -971,10 +901,10 @@ typedef enum dermis_command_type {
 typedef struct dermis_command {
   size_t struct_size;
   dermis_command_type type;
-  uint32_t count;             /* of ranges, regions or queries */
-  const char* pass;           /* name of the pass; "" for commands outside passes */
+  uint32_t count;   /* of ranges, regions or queries */
+  const char* pass; /* name of the pass; "" for commands outside passes */
   const VkDependencyInfo* dependency;
-  VkPipeline pipeline;        /* VK_PIPELINE_BIND_POINT_COMPUTE */
+  VkPipeline pipeline; /* VK_PIPELINE_BIND_POINT_COMPUTE */
   VkPipelineLayout layout;
   const VkDescriptorSet* sets;
   const void* push_constants; /* VK_SHADER_STAGE_COMPUTE_BIT, from offset 0 */
@@ -1000,7 +930,6 @@ typedef struct dermis_command {
    VK_NULL_HANDLE, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_UNDEFINED, {{0, 0, 0, 0}}, NULL, \
    NULL, NULL, 0, VK_NULL_HANDLE, 0, NULL}
 
-
 /* ---- views ----------------------------------------------------------------------------------- */
 
 /* A view is a camera of a graph: an eye, a player of a split screen, a mirror. Each graph has one
@@ -1013,37 +942,31 @@ typedef struct dermis_view_desc {
   void* user; /* dermis_pass_call.view_user */
 } dermis_view_desc;
 #define DERMIS_VIEW_DESC_INIT {sizeof(dermis_view_desc), NULL}
-
 /* Returns the view that every graph has. Lives as long as the graph; dermis_view_destroy ignores
- * it. NULL for NULL. Costs: none. Thread: any. Errors: none. */
+ * it. NULL for NULL. Costs: none. Thread: any. */
 DERMIS_API dermis_view DERMIS_CALL dermis_graph_view(dermis_graph graph);
 /* Allocates what a view needs; compiles nothing and creates no pipelines. desc may be NULL. *view
- * is NULL on failure. *report (may be NULL) gets the messages. Costs: allocates device memory, may
- * take more than 1 ms. Thread: concurrent. Errors: ARGUMENT, VERSION, MEMORY, DEVICE_MEMORY,
- * VULKAN, DEVICE_LOST. */
-DERMIS_API dermis_result DERMIS_CALL dermis_view_create(dermis_graph graph,
-                                                        const dermis_view_desc* desc,
-                                                        dermis_view* view, dermis_report* report);
+ * is NULL on failure. *report (may be NULL) gets the messages. Costs: memory, time. Thread:
+ * concurrent. Errors: ARGUMENT, VERSION, MEMORY, DEVICE_MEMORY, VULKAN, DEVICE_LOST. */
+DERMIS_API dermis_result DERMIS_CALL dermis_view_create(
+    dermis_graph graph, const dermis_view_desc* desc, dermis_view* view, dermis_report* report);
 /* Destroys a view. The device must have finished every frame recorded with it. NULL is ignored. Do
- * not call after dermis_graph_destroy, which destroys all views. Costs: frees device memory, may
- * take more than 1 ms. Thread: concurrent, while no other thread uses this view. Errors: none. */
+ * not call after dermis_graph_destroy, which destroys all views. Costs: time. Thread: exclusive. */
 DERMIS_API void DERMIS_CALL dermis_view_destroy(dermis_view view);
 /* Records the plan. Never submits, waits for the device, prints, creates pipelines or allocates
  * host or device memory, except image views for bindings without one. On an error nothing was
  * recorded. Costs: none, except the image views. Thread: one per view. Errors: ARGUMENT, VERSION,
  * VULKAN, DEVICE_LOST, DEVICE_MEMORY. */
-DERMIS_API dermis_result DERMIS_CALL dermis_view_record(dermis_view view,
-                                                        const dermis_frame* frame);
-/* Like dermis_view_record, but returns the commands and ignores frame.command_buffer. They count
- * as a recorded frame: record all of them once, in order, outside a render pass, on a queue of the
+DERMIS_API dermis_result DERMIS_CALL dermis_view_record(
+    dermis_view view, const dermis_frame* frame);
+/* Like dermis_view_record, but returns the commands and ignores frame.command_buffer. They count as
+ * a recorded frame: record all of them once, in order, outside a render pass, on a queue of the
  * context's family, or discard the frame with dermis_view_discard. The stride of *commands is its
  * first struct_size; the array lives until the next call that records this view, or its end.
- * Allocates host memory until the list has its final length. Costs: host memory, as above. Thread:
- * one per view. Errors: as dermis_view_record, and MEMORY. */
-DERMIS_API dermis_result DERMIS_CALL dermis_view_commands(dermis_view view,
-                                                          const dermis_frame* frame,
-                                                          uint32_t* count,
-                                                          const dermis_command** commands);
+ * Allocates host memory until the list has its final length. Costs: none. Thread: one per view.
+ * Errors: as dermis_view_record, and MEMORY. */
+DERMIS_API dermis_result DERMIS_CALL dermis_view_commands(
+    dermis_view view, const dermis_frame* frame, uint32_t* count, const dermis_command** commands);
 /* Discards the frame recorded last, which will never be submitted: the view is as before that
  * record, including histories, and frame_index may be used again. At most one frame, before the
  * next record, dermis_graph_reload or dermis_graph_resize. The command buffer must not run. Costs:
@@ -1052,25 +975,22 @@ DERMIS_API dermis_result DERMIS_CALL dermis_view_discard(dermis_view view, uint6
 /* Returns the device times of the newest completed frame, in plan order. Needs
  * DERMIS_CONTEXT_TIMINGS. `completed_frame_index` as in dermis_frame. Two-call array. Costs: none.
  * Thread: one per view. Errors: ARGUMENT, INCOMPLETE, NOT_READY, DEVICE_LOST. */
-DERMIS_API dermis_result DERMIS_CALL dermis_view_timings(dermis_view view,
-                                                         uint64_t completed_frame_index,
-                                                         uint32_t* count,
-                                                         dermis_pass_timing* timings);
-/* Returns each history of the graph, including those of plans that do not run now, as the plan
- * that ran last would find it. Discarded frames do not count. Two-call array. Costs: none. Thread:
- * one per view. Errors: ARGUMENT, INCOMPLETE. */
-DERMIS_API dermis_result DERMIS_CALL dermis_view_histories(dermis_view view, uint32_t* count,
-                                                           dermis_history* histories);
+DERMIS_API dermis_result DERMIS_CALL dermis_view_timings(
+    dermis_view view, uint64_t completed_frame_index, uint32_t* count, dermis_pass_timing* timings);
+/* Returns each history of the graph, including those of plans that do not run now, as the plan that
+ * ran last would find it. Discarded frames do not count. Two-call array. Costs: none. Thread: one
+ * per view. Errors: ARGUMENT, INCOMPLETE. */
+DERMIS_API dermis_result DERMIS_CALL dermis_view_histories(
+    dermis_view view, uint32_t* count, dermis_history* histories);
 /* Returns the settings of the graph in the order of the file, with the values of this view. Two-
  * call array. Costs: none. Thread: concurrent. Errors: ARGUMENT, INCOMPLETE, MEMORY. */
-DERMIS_API dermis_result DERMIS_CALL dermis_view_settings(dermis_view view, uint32_t* count,
-                                                          dermis_setting* settings);
+DERMIS_API dermis_result DERMIS_CALL dermis_view_settings(
+    dermis_view view, uint32_t* count, dermis_setting* settings);
 /* Gives this view its own value of a setting with per_frame 1, effective at its next record; json
  * NULL restores the graph's value. Settings with per_frame 0 are refused. Kept over reload and
  * resize. Costs: none. Thread: concurrent. Errors: ARGUMENT, CONFIG, MEMORY. */
-DERMIS_API dermis_result DERMIS_CALL dermis_view_set_setting(dermis_view view, const char* name,
-                                                             const char* json,
-                                                             dermis_report* report);
+DERMIS_API dermis_result DERMIS_CALL dermis_view_set_setting(
+    dermis_view view, const char* name, const char* json, dermis_report* report);
 
 #ifdef __cplusplus
 }
