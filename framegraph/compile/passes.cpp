@@ -10,9 +10,6 @@
 namespace dermis {
 namespace {
 
-constexpr uint32_t threads_per_side = 8;    // kernels run 8x8 groups, one per tile
-constexpr uint32_t tiles_per_group = 64;    // DispatchShape::over_tile_grid
-constexpr uint32_t block_side = 4;          // tiles; DispatchShape::over_tile_blocks
 constexpr uint32_t push_constant_bytes = 4; // the port mask, and each setting
 
 void add_settings(const Graph& graph, const Activation& active, PassId pass, PlanPass& planned, Plan& plan) {
@@ -49,14 +46,8 @@ bool check_limits(const CompileInput& in, const PassType& type, PassId pass, Rep
   if (push_bytes > in.device->max_push_constants_bytes)
     report_limit(fmt::format("needs {} bytes of push constants; the limit is {}", push_bytes,
                              in.device->max_push_constants_bytes));
-  const auto tiles = [](uint32_t side) { return (uint64_t{side} + threads_per_side - 1) / threads_per_side; };
-  const uint64_t across = tiles(in.view_width), down = tiles(in.view_height);
-  uint64_t groups = 1;
-  if (type.dispatch == DispatchShape::over_tile_blocks)
-    groups = (std::max(across, down) + block_side - 1) / block_side;
-  if (type.dispatch == DispatchShape::over_view) groups = std::max(across, down);
-  if (type.dispatch == DispatchShape::over_tile_grid)
-    groups = (across * down + tiles_per_group - 1) / tiles_per_group;
+  const GroupCount count = group_count(type.dispatch, in.view_width, in.view_height);
+  const uint64_t groups = std::max(count.x, count.y);
   if (groups > in.device->max_workgroup_count)
     report_limit(fmt::format("dispatches {} groups in one dimension; the limit is {}", groups,
                              in.device->max_workgroup_count));

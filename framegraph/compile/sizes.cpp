@@ -2,6 +2,7 @@
 
 #include "framegraph/compile/hardware.hpp"
 #include "framegraph/compile/phases.hpp"
+#include "framegraph/model/scaled_side.hpp"
 
 #include <fmt/format.h>
 
@@ -10,28 +11,6 @@
 
 namespace dermis {
 namespace {
-
-constexpr uint64_t largest_side = 0xffffffffull;
-
-// Returns align_up(round(base * factor), align), at least 1, plus the border on both sides; nullopt beyond 32
-// bits.
-std::optional<uint32_t> scaled(uint64_t base, Rational factor, const SizeExpression& size) {
-  if (factor.numerator < 0 || factor.denominator <= 0) return std::nullopt;
-  const auto numerator = static_cast<uint64_t>(factor.numerator);
-  const auto denominator = static_cast<uint64_t>(factor.denominator);
-  const bool wide = ((base | numerator) >> 32) != 0;
-  if (wide && numerator != 0 && base > UINT64_MAX / numerator) return std::nullopt;
-  const uint64_t product = base * numerator;
-  const uint64_t whole = product / denominator;
-  const bool up = (size.rounding == Rounding::ceil) & (whole * denominator != product);
-  const uint64_t value = std::max<uint64_t>(whole + (up ? 1 : 0), 1);
-  if (value > largest_side) return std::nullopt;
-  const uint64_t step = std::max<uint32_t>(size.align, 1);
-  const uint64_t aligned = step == 1 ? value : (value + step - 1) / step * step;
-  const uint64_t side = aligned + 2 * uint64_t{size.border};
-  if (side > largest_side) return std::nullopt;
-  return static_cast<uint32_t>(side);
-}
 
 uint32_t full_chain(uint32_t width, uint32_t height) {
   return static_cast<uint32_t>(std::bit_width(std::max({width, height, 1u})));
@@ -100,8 +79,8 @@ struct SizeResolver {
       base_x = sizes.extents[size.resource.value].width;
       base_y = sizes.extents[size.resource.value].height;
     }
-    const auto width = scaled(base_x, size.x, size);
-    const auto height = scaled(base_y, size.y, size);
+    const auto width = scaled_side(base_x, size.x, size);
+    const auto height = scaled_side(base_y, size.y, size);
     if (!width || !height) {
       report_too_large(declared, "has a size beyond 32 bits");
       return false;

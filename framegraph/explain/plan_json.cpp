@@ -13,9 +13,6 @@ namespace {
 
 // Indexed by the value of the enumeration.
 constexpr std::string_view setting_types[] = {"bool", "int", "real", "enum", "choice"};
-constexpr std::string_view dispatch_shapes[] = {
-    "over_view",    "over_tiles",   "over_tile_grid", "over_tile_blocks",
-    "over_written", "single_group", "none",           "host"};
 constexpr std::string_view subjects[] = {"pass", "resource", "barrier", "setting", "order"};
 constexpr std::string_view history_first[] = {"discard", "clear"};
 constexpr std::string_view history_on_cut[] = {"invalidate", "keep"};
@@ -177,7 +174,7 @@ struct Exporter {
     const PassType& type = pass_types[pass.type];
     out.open_object();
     out.member("name", graph.passes[pass.declared.value].name).member("kind", type.name);
-    out.member("dispatch", name_in(dispatch_shapes, type.dispatch));
+    out.member("dispatch", type.dispatch.name);
     out.member("queue", queue_name(pass.queue));
     point("wait", pass.wait == no_point, pass.wait);
     out.key("after").open_array(true);

@@ -192,7 +192,7 @@ PassTypeId HostPassTypes::add(HostPassTypeDeclaration type, PassTypeRegistry& re
   made.doc = kept.declared.doc;
   made.ports = kept.ports;
   made.settings = kept.settings;
-  made.dispatch = DispatchShape::host;
+  made.dispatch = {.name = "host", .domain = DispatchRule::Domain::host};
   made.side_effects = kept.declared.side_effects;
   made.serves_scattering = kept.declared.serves_scattering;
   return registry.add(made);

@@ -3,6 +3,7 @@
 // only source of descriptor layouts, push constants, GLSL binding headers, schema and
 // documentation.
 
+#include "framegraph/model/dispatch_rule.hpp"
 #include "framegraph/model/ids.hpp"
 #include "framegraph/model/vocabulary.hpp"
 
@@ -55,18 +56,6 @@ struct PassTypeSetting {
   bool per_frame = false;
 };
 
-enum class DispatchShape : uint8_t {
-  over_view, // one 8x8 group per tile of the render rectangle
-  // indirect: one group per listed tile, from the port with usage indirect_arguments
-  over_tiles,
-  over_tile_grid,   // one 64-invocation group per 64 tiles of the render rectangle
-  over_tile_blocks, // one 64-invocation group per 4x4 tiles of the render rectangle
-  over_written,     // one 8x8 group per 8x8 texels of the first image that the pass type writes
-  single_group,     // one group
-  none,             // not a dispatch (clear)
-  host              // the host records the pass
-};
-
 // Minimum size of the resource at one port, independent of the number of passes. Image: one texel
 // per square of `square` x `square` pixels of the view. Buffer: `bytes` per such square, plus
 // `more` bytes.
@@ -95,10 +84,10 @@ struct PassType {
   std::span<const Port> ports; // in binding order: port i is binding i of set 0
   // push constants: uint port_mask, then 4 bytes per setting in this order
   std::span<const PassTypeSetting> settings;
-  DispatchShape dispatch = DispatchShape::over_view;
+  DispatchRule dispatch = {};
   bool side_effects = false;      // never culled
   bool serves_scattering = false; // removed if nothing scatters
-  // For over_tiles: name of the integer setting that selects the 16-byte entry of the arguments;
+  // For an indirect dispatch: name of the integer setting that selects the 16-byte entry of the arguments;
   // "": entry 0.
   std::string_view arguments_entry = "";
   // may name ports that the pass type lacks; a port without an entry accepts any size

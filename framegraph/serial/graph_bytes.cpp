@@ -35,6 +35,14 @@ struct GraphWriter {
     number(size.border);
   }
 
+  void dispatch(const DispatchRule& rule) {
+    text(rule.name);
+    word(rule.domain);
+    number(rule.cell_side);
+    number(rule.cells_per_group);
+    number(rule.invocations);
+  }
+
   void setting(const SettingDeclaration& setting) {
     text(setting.name);
     word(setting.type);
@@ -100,7 +108,7 @@ struct GraphWriter {
       value(setting.default_value);
       all(setting.options, [&](std::string_view option) { text(option); });
     });
-    word(type.dispatch);
+    dispatch(type.dispatch);
     number(type.side_effects);
     number(type.features);
   }

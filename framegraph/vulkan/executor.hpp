@@ -115,7 +115,7 @@ struct HostPass {
   void* view_user = nullptr; // FrameInput::view_user
 };
 
-// Records passes whose type has DispatchShape::host, between the plan's barriers. Must not throw.
+// Records passes of the host, between the plan's barriers. Must not throw.
 using HostPassFunction = void (*)(void* user, const HostPass& call);
 
 // Input of Executor::create. `device` and `heap_pool` must outlive the executor. Shared pointers

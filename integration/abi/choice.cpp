@@ -178,7 +178,7 @@ dermis_frame_statistics make_statistics(const Chooser& chooser, const CompiledGr
   out.switches = frame.switches;
   out.dispatches = frame.dispatches;
   out.groups = frame.groups;
-  out.view_tiles = static_cast<uint32_t>(frame.view_tiles);
+  out.view_tiles = static_cast<uint32_t>(tiles_of(frame.rectangle));
   out.scattering_tiles = frame.counters.scattering_tiles;
   out.copied_tiles = frame.counters.copied_tiles;
   out.uniform_tiles = frame.counters.uniform_tiles;

@@ -31,12 +31,12 @@ choice::Calibration default_calibration() {
   return read ? std::move(*read) : choice::Calibration{};
 }
 
-choice::FrameLoad load_of(const subsurface::FrameCounters& counters, uint64_t view_tiles,
-                          uint64_t view_blocks) {
-  const uint64_t listed = std::min<uint64_t>(view_tiles, uint64_t{counters.scattering_tiles} +
-                                                             counters.copied_tiles + counters.uniform_tiles);
-  return {view_tiles, listed, counters.scattering_tiles == 0 ? listed : 0, counters.sample_units,
-          view_blocks};
+choice::FrameLoad load_of(const subsurface::FrameCounters& counters, const vulkan::Rectangle& rectangle) {
+  const uint64_t listed =
+      std::min<uint64_t>(tiles_of(rectangle), uint64_t{counters.scattering_tiles} + counters.copied_tiles +
+                                                  counters.uniform_tiles);
+  return {rectangle.width, rectangle.height, listed, counters.scattering_tiles == 0 ? listed : 0,
+          counters.sample_units};
 }
 
 uint64_t launched(const choice::PassLoad& pass, const choice::FrameLoad& load,
@@ -50,7 +50,7 @@ uint64_t launched(const choice::PassLoad& pass, const choice::FrameLoad& load,
 
 void count_groups(std::span<const choice::PassLoad> passes, std::span<const uint8_t> without_bounds,
                   FrameChoice& frame) {
-  const choice::FrameLoad load = load_of(frame.counters, frame.view_tiles, frame.view_blocks);
+  const choice::FrameLoad load = load_of(frame.counters, frame.rectangle);
   for (size_t p = 0; p < passes.size(); ++p) {
     if (!passes[p].launches || (frame.left_out && without_bounds[p] != 0)) continue;
     ++frame.dispatches;
@@ -63,7 +63,7 @@ FrameChoice& place_of(Chooser& chooser, uint64_t frame_index) {
 }
 
 void learn(Chooser& chooser, std::span<const choice::PassLoad> passes, FrameChoice& frame) {
-  const choice::FrameLoad load = load_of(frame.counters, frame.view_tiles, frame.view_blocks);
+  const choice::FrameLoad load = load_of(frame.counters, frame.rectangle);
   frame.measured_ms = 0;
   for (size_t p = 0; p < passes.size(); ++p) {
     const double ms = static_cast<double>(chooser.times[p].nanoseconds) / ns_per_ms;
@@ -106,9 +106,8 @@ void observe_frame(Chooser& chooser, CompiledGraph& compiled_graph, FrameChoice&
       executor.read_timings(frame.frame_index, timed_frame, times) && timed_frame == frame.frame_index;
   count_groups(passes, plan.left_out, frame);
   if (!frame.left_out)
-    frame.metered_ms = calibrated_estimate(configuration, chooser.costs,
-                                           load_of(frame.counters, frame.view_tiles, frame.view_blocks))
-                           .ms;
+    frame.metered_ms =
+        calibrated_estimate(configuration, chooser.costs, load_of(frame.counters, frame.rectangle)).ms;
   if (counted && frame.timed) learn(chooser, passes, frame);
   if (counted) learn_error(chooser, configuration, frame.counters);
   frame.observed = true;
@@ -159,14 +158,15 @@ void observe(Chooser& chooser, CompiledGraph& compiled_graph, uint64_t completed
 }
 
 FrameChoice choose(const Chooser& chooser, const CompiledGraph& compiled_graph, uint64_t frame_index,
-                   double delta_seconds, uint64_t view_tiles, uint64_t view_blocks,
+                   double delta_seconds, const vulkan::Rectangle& rectangle,
                    std::span<choice::Forecast> forecasts, choice::DecisionState& state) noexcept {
   // Before any frame is counted, the whole view may scatter.
-  choice::FrameLoad load{view_tiles, view_tiles, 0, 0, view_blocks};
+  const uint64_t view_tiles = tiles_of(rectangle);
+  choice::FrameLoad load{rectangle.width, rectangle.height, view_tiles, 0, 0};
   double d_px = assumed_d_px, through = 0;
   uint64_t scattering = view_tiles;
   if (chooser.counted) {
-    load = load_of(chooser.counters, view_tiles, view_blocks);
+    load = load_of(chooser.counters, rectangle);
     const double growth = growth_until(chooser.trend, frame_index);
     const auto grown = [&](uint64_t tiles) {
       return std::min(view_tiles, static_cast<uint64_t>(std::lround(growth * double(tiles))));
@@ -198,8 +198,7 @@ FrameChoice choose(const Chooser& chooser, const CompiledGraph& compiled_graph, 
   }
   FrameChoice frame;
   frame.compiled_graph = compiled_graph.serial;
-  frame.view_tiles = view_tiles;
-  frame.view_blocks = view_blocks;
+  frame.rectangle = rectangle;
   frame.expected_tiles = load.listed_tiles;
   frame.budget_ms = chooser.budget_ms;
   if (chooser.budget_ms > 0)

@@ -11,6 +11,7 @@
 #include "passes/choice/sample_allocation.hpp"
 #include "passes/choice/sample_demand.hpp"
 #include "passes/choice/tile_growth.hpp"
+#include "passes/common/dispatch.hpp"
 #include "passes/common/environment.hpp"
 
 #include <array>
@@ -20,6 +21,10 @@
 namespace dermis::abi {
 
 struct CompiledGraph;
+
+inline uint64_t tiles_of(const vulkan::Rectangle& rectangle) {
+  return subsurface::tile_count(rectangle.width, rectangle.height);
+}
 
 // A recorded frame: its forecast and, once the device has finished the frame, its measurements.
 struct FrameChoice {
@@ -32,7 +37,7 @@ struct FrameChoice {
   uint32_t switches = 0; // since the graph was created
   double budget_ms = 0;  // 0: no budget
   choice::Forecast forecast;
-  uint64_t view_tiles = 0, view_blocks = 0;
+  vulkan::Rectangle rectangle;
   // drivers finish kernels at their first run, so such a frame is not learned from
   bool first_of_plan = false;
   bool left_out = false; // empty bounds: passes that serve scattering did not run
@@ -81,12 +86,11 @@ void adopt(Chooser& chooser, const PassTypeRegistry& pass_types, CompiledGraph& 
 // Learns from frames of `compiled_graph` that the device has finished. Allocates nothing.
 void observe(Chooser& chooser, CompiledGraph& compiled_graph, uint64_t completed_frame_index) noexcept;
 
-// Returns the choice and forecast for frame `frame_index`. The render rectangle has `view_tiles`
-// tiles and `view_blocks` blocks of 4x4 tiles. `delta_seconds` is the time since the previous
-// frame; 0: unknown. Call remember() once the frame is recorded. Allocates nothing and does not
-// change `chooser`.
+// Returns the choice and forecast for frame `frame_index`, which renders `rectangle`.
+// `delta_seconds` is the time since the previous frame; 0: unknown. Call remember() once the frame
+// is recorded. Allocates nothing and does not change `chooser`.
 FrameChoice choose(const Chooser& chooser, const CompiledGraph& compiled_graph, uint64_t frame_index,
-                   double delta_seconds, uint64_t view_tiles, uint64_t view_blocks,
+                   double delta_seconds, const vulkan::Rectangle& rectangle,
                    std::span<choice::Forecast> forecasts, choice::DecisionState& state) noexcept;
 void remember(Chooser& chooser, const FrameChoice& frame, const choice::DecisionState& state) noexcept;
 // Forgets a frame that was never submitted, so that nothing is learned from it.

@@ -77,13 +77,6 @@ uint32_t plan_of(const CompiledGraph& compiled_graph, uint32_t configuration, bo
   return empty_bounds && instead != no_plan ? instead : plan;
 }
 
-constexpr uint64_t tile_side = 8, block_side = 32; // pixels
-
-// Returns the number of squares with `side` pixels that cover the rectangle.
-uint64_t squares_of(const vulkan::Rectangle& rectangle, uint64_t side) {
-  return (rectangle.width + side - 1) / side * ((rectangle.height + side - 1) / side);
-}
-
 // `capture` receives the commands instead of the frame's command buffer; may be null.
 dermis_result record(dermis_view_t& view, const dermis_frame* given, Capture* capture) {
   const Log& log = view.context->log;
@@ -102,10 +95,8 @@ dermis_result record(dermis_view_t& view, const dermis_frame* given, Capture* ca
   if (const dermis_result loss = check_loss(view, function); loss != DERMIS_OK) return loss;
   choice::DecisionState state =
       compiled_graph.serial == chooser.decided_for ? chooser.state : choice::DecisionState{};
-  const vulkan::Rectangle& seen = checked.input.rectangle;
-  FrameChoice chosen =
-      choose(chooser, compiled_graph, frame.frame_index, double(frame.delta_seconds),
-             squares_of(seen, tile_side), squares_of(seen, block_side), chooser.forecasts, state);
+  FrameChoice chosen = choose(chooser, compiled_graph, frame.frame_index, double(frame.delta_seconds),
+                              checked.input.rectangle, chooser.forecasts, state);
   // decided for a view full of subsurface, so hysteresis must not keep it
   if (!chooser.counted) state = {};
   chosen.frame_index = frame.frame_index;

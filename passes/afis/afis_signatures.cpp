@@ -1,6 +1,7 @@
 // Filtered importance sampling. Its levels come from a pyramid_setup that keeps profiles apart
 // (`profiles`).
 
+#include "passes/common/dispatch.hpp"
 #include "passes/common/signatures/signatures.hpp"
 
 namespace dermis::subsurface {
@@ -197,7 +198,7 @@ const PassType afis_tiles_type{
            "many for each further step.",
     .ports = afis_tiles_ports,
     .settings = afis_settings,
-    .dispatch = DispatchShape::over_tiles,
+    .dispatch = over_tiles,
     .side_effects = false,
 };
 
@@ -208,7 +209,7 @@ const PassType guided_type{
         "Filtered importance sampling whose number of samples follows from the variance of earlier frames.",
     .ports = guided_ports,
     .settings = guided_settings,
-    .dispatch = DispatchShape::over_tiles,
+    .dispatch = over_tiles,
     .side_effects = false,
     .mixes = guided_mixes,
 };
@@ -220,7 +221,7 @@ const PassType afis_type{
            "sample density.",
     .ports = afis_ports,
     .settings = afis_settings,
-    .dispatch = DispatchShape::over_tiles,
+    .dispatch = over_tiles,
     .side_effects = false,
 };
 

@@ -1,6 +1,7 @@
 // The plain pyramid: light times mask, halved level by level. Every image has a border of two
 // texels whose outer ring is always 0, so that filtered reads return 0 outside.
 
+#include "passes/common/dispatch.hpp"
 #include "passes/common/signatures/signatures.hpp"
 
 namespace dermis::subsurface {
@@ -44,7 +45,7 @@ const PassType pyramid_setup_type{
     .doc = "Writes level 0 of the plain pyramid: light times mask of every pixel, with a border of zeros.",
     .ports = setup_ports,
     .settings = setup_settings,
-    .dispatch = DispatchShape::over_written,
+    .dispatch = over_written,
     .side_effects = false,
 };
 
@@ -54,7 +55,7 @@ const PassType pyramid_down_type{
     .doc = "Reduces a level of the plain pyramid to half its size, with a [1 3 3 1] or a box filter.",
     .ports = down_ports,
     .settings = down_settings,
-    .dispatch = DispatchShape::over_written,
+    .dispatch = over_written,
     .side_effects = false,
 };
 

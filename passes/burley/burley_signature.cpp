@@ -1,5 +1,6 @@
 // Importance sampling of Burley's profile.
 
+#include "passes/common/dispatch.hpp"
 #include "passes/common/signatures/signatures.hpp"
 
 namespace dermis::subsurface {
@@ -26,7 +27,7 @@ const PassType burley_type{
     .doc = "Samples the profile by importance at stratified radii, weighted by 3-D distance and patch area.",
     .ports = burley_ports,
     .settings = burley_settings,
-    .dispatch = DispatchShape::over_tiles,
+    .dispatch = over_tiles,
     .side_effects = false,
 };
 

@@ -1,6 +1,7 @@
 #include "passes/choice/configurations.hpp"
 
 #include "framegraph/compile/availability.hpp"
+#include "framegraph/compile/written_size.hpp"
 #include "framegraph/model/expression.hpp"
 
 #include <fmt/format.h>
@@ -10,8 +11,6 @@
 
 namespace dermis::choice {
 namespace {
-
-constexpr uint64_t tile_side = 8;
 
 std::string value_text(const PassTypeSetting& setting, const SettingValue& value) {
   switch (setting.type) {
@@ -42,23 +41,6 @@ std::vector<SettingValue> values_of(const Plan& plan, const PlanPass& pass, cons
   return out;
 }
 
-// Returns the image that gives the size of an over_written dispatch.
-const PlanResource* first_written_image(const Plan& plan, const PlanPass& pass, const PassType& type) {
-  for (uint32_t port = 0; port < type.ports.size(); ++port)
-    for (uint32_t a = pass.first_access; a < pass.first_access + pass.access_count; ++a) {
-      const PlanAccess& access = plan.accesses[a];
-      const PlanResource& resource = plan.resources[access.resource];
-      if (access.port == port && (access.access & access::shader_storage_write) != 0 &&
-          resource.type == ResourceType::image)
-        return &resource;
-    }
-  return nullptr;
-}
-
-uint64_t tiles_along(uint64_t pixels) {
-  return (pixels + tile_side - 1) / tile_side;
-}
-
 // Returns whether the pass runs over the tiles that subsurface.allocate_samples lists.
 bool samples_by_tile(const PassType& type) {
   return type.name == "subsurface.tile_refine" || type.name == "subsurface.afis_tiles";
@@ -66,29 +48,24 @@ bool samples_by_tile(const PassType& type) {
 
 PassLoad load_of(const Plan& plan, const PlanPass& pass, const PassType& type) {
   PassLoad load;
-  switch (type.dispatch) {
-  case DispatchShape::over_view:
-    load.groups = PassLoad::Groups::view_tiles;
+  const TexelSize written = first_written_size(plan, pass, type);
+  switch (type.dispatch.domain) {
+  case DispatchRule::Domain::rectangle:
+    load.groups = PassLoad::Groups::rectangle;
+    load.rule = type.dispatch;
     break;
-  case DispatchShape::over_tiles:
+  case DispatchRule::Domain::indirect:
     load.groups = samples_by_tile(type)                  ? PassLoad::Groups::sample_units
                   : type.name == "subsurface.copy_tiles" ? PassLoad::Groups::copied_tiles
                                                          : PassLoad::Groups::listed_tiles;
     break;
-  case DispatchShape::over_tile_grid:
-    load.groups = PassLoad::Groups::tile_grid;
+  case DispatchRule::Domain::written_image:
+    load.count = std::max<uint64_t>(group_count(type.dispatch, written.width, written.height).total(), 1);
     break;
-  case DispatchShape::over_tile_blocks:
-    load.groups = PassLoad::Groups::tile_blocks;
+  case DispatchRule::Domain::one:
+  case DispatchRule::Domain::host:
     break;
-  case DispatchShape::over_written:
-    if (const PlanResource* image = first_written_image(plan, pass, type))
-      load.count = tiles_along(image->width) * tiles_along(image->height);
-    break;
-  case DispatchShape::single_group:
-  case DispatchShape::host:
-    break;
-  case DispatchShape::none:
+  case DispatchRule::Domain::none:
     load.launches = false;
     break;
   }
@@ -273,14 +250,9 @@ void describe_configurations(const PassTypeRegistry& pass_types, std::span<const
 }
 
 uint64_t groups_of(const PassLoad& pass, const FrameLoad& load) {
-  constexpr uint64_t tiles_per_group = 64; // DispatchShape::over_tile_grid
   switch (pass.groups) {
-  case PassLoad::Groups::view_tiles:
-    return load.view_tiles;
-  case PassLoad::Groups::tile_blocks:
-    return load.view_blocks;
-  case PassLoad::Groups::tile_grid:
-    return (load.view_tiles + tiles_per_group - 1) / tiles_per_group;
+  case PassLoad::Groups::rectangle:
+    return group_count(pass.rule, load.width, load.height).total();
   case PassLoad::Groups::listed_tiles:
     // The pyramid is not built if light is copied.
     return pass.level < 0 ? load.listed_tiles

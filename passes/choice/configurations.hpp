@@ -21,14 +21,13 @@ struct PassLoad {
   CostId cost;
   enum class Groups : uint8_t {
     fixed,
-    view_tiles,
-    tile_grid,
-    tile_blocks,
+    rectangle,
     listed_tiles,
     copied_tiles,
     sample_units
   } groups = Groups::fixed;
   uint64_t count = 1;   // for Groups::fixed
+  DispatchRule rule;    // for Groups::rectangle
   bool launches = true; // launches a kernel; clears do not
   // level of the surface-aware pyramid whose tile list the pass runs over; -1: none
   int32_t level = -1;
@@ -76,11 +75,10 @@ void describe_configurations(const PassTypeRegistry& pass_types, std::span<const
 
 // Properties of a frame that affect costs.
 struct FrameLoad {
-  uint64_t view_tiles = 0;   // 8x8 tiles of the render rectangle
-  uint64_t listed_tiles = 0; // tiles with subsurface
-  uint64_t copied_tiles = 0; // all tiles with subsurface if none scatters, else 0
-  uint64_t sample_units = 0; // units that subsurface.allocate_samples spends
-  uint64_t view_blocks = 0;  // 4x4 tiles of the render rectangle
+  uint64_t width = 0, height = 0; // of the render rectangle, in pixels
+  uint64_t listed_tiles = 0;      // tiles with subsurface
+  uint64_t copied_tiles = 0;      // all tiles with subsurface if none scatters, else 0
+  uint64_t sample_units = 0;      // units that subsurface.allocate_samples spends
 };
 uint64_t groups_of(const PassLoad& pass, const FrameLoad& load);
 // Returns the time by the calibration only, which is equal on all machines; no spread.

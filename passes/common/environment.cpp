@@ -1,5 +1,6 @@
 #include "passes/common/environment.hpp"
 
+#include "passes/common/dispatch.hpp"
 #include "passes/papers/jimenez_kernel.hpp"
 #include "passes/sap/sap_weights.hpp"
 
@@ -10,10 +11,9 @@ namespace dermis::subsurface {
 
 namespace {
 constexpr double mm_per_metre = 1000.0;
-constexpr uint32_t tile_pixels = 8;
 
 int32_t tiles_of(uint32_t pixels) {
-  return static_cast<int32_t>((pixels + tile_pixels - 1) / tile_pixels);
+  return static_cast<int32_t>(ceil_div(pixels, tile_side));
 }
 // Burley's profile has closed forms and shared tables; all other profiles have their own.
 bool has_own_tables(const NumberedProfile& numbered) {

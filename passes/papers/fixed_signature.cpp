@@ -1,5 +1,6 @@
 // Baseline: a fixed number of samples without mips.
 
+#include "passes/common/dispatch.hpp"
 #include "passes/common/signatures/signatures.hpp"
 
 namespace dermis::subsurface {
@@ -45,7 +46,7 @@ const PassType fixed_type{
            "distance and patch area.",
     .ports = burley_ports,
     .settings = fixed_settings,
-    .dispatch = DispatchShape::over_tiles,
+    .dispatch = over_tiles,
     .side_effects = false,
 };
 

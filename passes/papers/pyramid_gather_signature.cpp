@@ -1,5 +1,6 @@
 // Baseline: the plain pyramid read through cubic B-splines.
 
+#include "passes/common/dispatch.hpp"
 #include "passes/common/signatures/signatures.hpp"
 
 namespace dermis::subsurface {
@@ -24,7 +25,7 @@ const PassType pyramid_gather_type{
            "profiles.",
     .ports = gather_ports,
     .settings = {},
-    .dispatch = DispatchShape::over_tiles,
+    .dispatch = over_tiles,
     .side_effects = false,
 };
 

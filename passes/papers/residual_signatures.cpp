@@ -1,6 +1,7 @@
 // Refinement of the surface-aware pyramid where confidence is low, by samples of the surface
 // around, read from the pyramid's own levels.
 
+#include "passes/common/dispatch.hpp"
 #include "passes/common/signatures/level_ports.hpp"
 
 namespace dermis::subsurface {
@@ -152,7 +153,7 @@ const PassType refine_type{
     .doc = "Blends the pyramid's light with samples where its confidence is low. Uses no history.",
     .ports = blend_ports,
     .settings = blend_settings,
-    .dispatch = DispatchShape::over_tiles,
+    .dispatch = over_tiles,
     .side_effects = false,
 };
 
@@ -162,7 +163,7 @@ const PassType global_light_change_type{
     .doc = "Estimates the global change in brightness, to distinguish flashing light from a different light.",
     .ports = brightness_ports,
     .settings = brightness_settings,
-    .dispatch = DispatchShape::single_group,
+    .dispatch = single_group,
     .side_effects = false,
 };
 
@@ -173,7 +174,7 @@ const PassType residual_type{
            "is low.",
     .ports = residual_ports,
     .settings = residual_settings,
-    .dispatch = DispatchShape::over_tiles,
+    .dispatch = over_tiles,
     .side_effects = false,
     .mixes = residual_mixes,
 };

@@ -1,5 +1,6 @@
 // Variance of the light of each tile: an alternative to the tile error estimate.
 
+#include "passes/common/dispatch.hpp"
 #include "passes/common/signatures/level_ports.hpp"
 
 namespace dermis::subsurface {
@@ -33,7 +34,7 @@ const PassType tile_variance_type{
     .doc = "Computes the variation of light inside each tile, times importance.",
     .ports = contrast_ports,
     .settings = contrast_settings,
-    .dispatch = DispatchShape::over_tiles,
+    .dispatch = over_tiles,
     .side_effects = false,
 };
 

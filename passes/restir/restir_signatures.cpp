@@ -1,5 +1,6 @@
 // Scattering by rays: light that enters wherever the host's scene has surfaces of the same profile.
 
+#include "passes/common/dispatch.hpp"
 #include "passes/common/signatures/signatures.hpp"
 
 namespace dermis::subsurface {
@@ -150,7 +151,7 @@ const PassType restir_initial_type{
     .doc = "Samples paths from each pixel through the object to a light with probe rays, and keeps one path.",
     .ports = initial_ports,
     .settings = initial_settings,
-    .dispatch = DispatchShape::over_tiles,
+    .dispatch = over_tiles,
     .side_effects = false,
     .features = bit_of(Feature::ray_query),
 };
@@ -161,7 +162,7 @@ const PassType restir_temporal_type{
     .doc = "Merges each pixel's path with the path of the same surface in the previous frame.",
     .ports = temporal_ports,
     .settings = temporal_settings,
-    .dispatch = DispatchShape::over_tiles,
+    .dispatch = over_tiles,
     .side_effects = false,
     .features = bit_of(Feature::ray_query),
     .mixes = temporal_mixes,
@@ -173,7 +174,7 @@ const PassType restir_spatial_type{
     .doc = "Merges each pixel's path with paths of neighbouring pixels that show the same profile.",
     .ports = spatial_ports,
     .settings = spatial_settings,
-    .dispatch = DispatchShape::over_tiles,
+    .dispatch = over_tiles,
     .side_effects = false,
     .features = bit_of(Feature::ray_query),
 };
@@ -185,7 +186,7 @@ const PassType restir_resolve_type{
            "light.",
     .ports = resolve_ports,
     .settings = resolve_settings,
-    .dispatch = DispatchShape::over_tiles,
+    .dispatch = over_tiles,
     .side_effects = false,
 };
 

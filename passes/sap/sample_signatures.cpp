@@ -1,5 +1,6 @@
 // Samples by tile: error estimate of each tile, allocation of samples, and refinement by samples.
 
+#include "passes/common/dispatch.hpp"
 #include "passes/common/signatures/level_ports.hpp"
 
 namespace dermis::subsurface {
@@ -75,7 +76,7 @@ const PassType tile_error_estimate_type{
            "importance.",
     .ports = doubt_ports,
     .settings = doubt_settings,
-    .dispatch = DispatchShape::over_tiles,
+    .dispatch = over_tiles,
     .side_effects = false,
 };
 
@@ -86,7 +87,7 @@ const PassType allocate_samples_type{
            "spent.",
     .ports = allot_ports,
     .settings = {},
-    .dispatch = DispatchShape::single_group,
+    .dispatch = single_group,
     .side_effects = false,
 };
 
@@ -96,7 +97,7 @@ const PassType tile_refine_type{
     .doc = "Blends samples into the pyramid's light in tiles that have samples.",
     .ports = mend_ports,
     .settings = mend_settings,
-    .dispatch = DispatchShape::over_tiles,
+    .dispatch = over_tiles,
     .side_effects = false,
 };
 

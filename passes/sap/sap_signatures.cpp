@@ -2,6 +2,7 @@
 // l has a texel every 2^l pixels and a border of one texel, which covers what lies beyond the last
 // pixels.
 
+#include "passes/common/dispatch.hpp"
 #include "passes/common/signatures/level_ports.hpp"
 #include "passes/sap/sap_weights.hpp"
 
@@ -219,7 +220,7 @@ const PassType sap_tiles_type{
            "their indirect arguments, in one pass and in row order.",
     .ports = tiles_ports,
     .settings = {},
-    .dispatch = DispatchShape::single_group,
+    .dispatch = single_group,
     .side_effects = false,
 };
 
@@ -229,7 +230,7 @@ const PassType sap_setup_type{
     .doc = "Writes level 0 of the surface-aware pyramid: light and surface of every pixel of listed tiles.",
     .ports = setup_ports,
     .settings = setup_settings,
-    .dispatch = DispatchShape::over_tiles,
+    .dispatch = over_tiles,
     .side_effects = false,
 };
 
@@ -239,7 +240,7 @@ const PassType sap_down_type{
     .doc = "Reduces one level of the pyramid along the surface; stops at depth steps and other profiles.",
     .ports = down_ports,
     .settings = down_settings,
-    .dispatch = DispatchShape::over_tiles,
+    .dispatch = over_tiles,
     .side_effects = false,
     .arguments_entry = "level",
 };
@@ -251,7 +252,7 @@ const PassType sap_up_type{
            "the layer nearer to its surface.",
     .ports = up_ports,
     .settings = up_settings,
-    .dispatch = DispatchShape::over_tiles,
+    .dispatch = over_tiles,
     .side_effects = false,
     .arguments_entry = "level",
 };
@@ -262,7 +263,7 @@ const PassType sap_gather_type{
     .doc = "Writes level 0 of the upward traversal: the scattered light of every listed pixel.",
     .ports = gather_ports,
     .settings = gather_settings,
-    .dispatch = DispatchShape::over_tiles,
+    .dispatch = over_tiles,
     .side_effects = false,
 };
 
@@ -273,7 +274,7 @@ const PassType sap_setup_half_res_type{
            "per texel. Replaces subsurface.sap_setup and the first subsurface.sap_down.",
     .ports = halve_ports,
     .settings = halve_settings,
-    .dispatch = DispatchShape::over_tiles,
+    .dispatch = over_tiles,
     .side_effects = false,
     .arguments_entry = "level",
 };
@@ -285,7 +286,7 @@ const PassType sap_gather_half_type{
            "resolution, light from other pixels at half resolution.",
     .ports = half_gather_ports,
     .settings = setup_settings,
-    .dispatch = DispatchShape::over_tiles,
+    .dispatch = over_tiles,
     .side_effects = false,
 };
 
@@ -295,7 +296,7 @@ const PassType sap_down_layered_type{
     .doc = "Like subsurface.sap_down, with a second layer per texel for surfaces apart from the first layer.",
     .ports = layered_down_ports,
     .settings = down_settings,
-    .dispatch = DispatchShape::over_tiles,
+    .dispatch = over_tiles,
     .side_effects = false,
     .arguments_entry = "level",
 };
@@ -306,7 +307,7 @@ const PassType sap_up_layered_type{
     .doc = "Like subsurface.sap_up, for both layers: each layer reads the nearer layer of other texels.",
     .ports = layered_up_ports,
     .settings = up_settings,
-    .dispatch = DispatchShape::over_tiles,
+    .dispatch = over_tiles,
     .side_effects = false,
     .arguments_entry = "level",
 };
@@ -317,7 +318,7 @@ const PassType sap_gather_layered_type{
     .doc = "Like subsurface.sap_gather, with two layers at level 1.",
     .ports = layered_gather_ports,
     .settings = layered_gather_settings,
-    .dispatch = DispatchShape::over_tiles,
+    .dispatch = over_tiles,
     .side_effects = false,
 };
 

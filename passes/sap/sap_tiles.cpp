@@ -1,12 +1,12 @@
 #include "passes/sap/sap_tiles.hpp"
 
+#include "passes/common/dispatch.hpp"
+
 #include <algorithm>
 
 namespace dermis::subsurface {
 
 namespace {
-
-constexpr uint32_t tile_side = 8;
 
 struct Flags {
   uint32_t across = 0, down = 0;
@@ -26,7 +26,7 @@ struct Flags {
 
 uint32_t tiles_along(uint32_t pixels, uint32_t level) {
   const uint32_t texels = ((pixels + (1u << level) - 1) >> level) + (level > 0 ? 2 : 0);
-  return (texels + tile_side - 1) / tile_side;
+  return static_cast<uint32_t>(ceil_div(texels, tile_side));
 }
 
 } // namespace

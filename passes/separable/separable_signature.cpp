@@ -1,5 +1,6 @@
 // The separable kernel: one pass per axis.
 
+#include "passes/common/dispatch.hpp"
 #include "passes/common/signatures/signatures.hpp"
 
 namespace dermis::subsurface {
@@ -47,7 +48,7 @@ const PassType separable_type{
            "published kernel.",
     .ports = separable_ports,
     .settings = separable_settings,
-    .dispatch = DispatchShape::over_tiles,
+    .dispatch = over_tiles,
     .side_effects = false,
 };
 

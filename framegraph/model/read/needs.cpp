@@ -2,6 +2,7 @@
 // so several views are tried.
 
 #include "framegraph/model/read/graph_reader.hpp"
+#include "framegraph/model/scaled_side.hpp"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -17,18 +18,9 @@ struct Size {
 constexpr uint64_t largest = uint64_t{1} << 32; // the compiler rejects larger sizes
 constexpr Size tried_views[] = {{1, 1}, {127, 65}, {1919, 1079}, {3840, 2160}};
 
-uint64_t ceil_div(uint64_t value, uint64_t by) {
-  return (value + by - 1) / by;
-}
-
 uint64_t side_of(uint64_t base, const Rational& factor, const SizeExpression& size) {
-  const uint64_t product = base * static_cast<uint64_t>(std::max<int64_t>(factor.numerator, 0));
-  const auto denominator = static_cast<uint64_t>(std::max<int64_t>(factor.denominator, 1));
-  const uint64_t rounded =
-      size.rounding == Rounding::ceil ? ceil_div(product, denominator) : product / denominator;
-  const uint64_t step = std::max<uint32_t>(size.align, 1);
-  const uint64_t aligned = ceil_div(std::max<uint64_t>(rounded, 1), step) * step;
-  return std::min(aligned + 2 * uint64_t{size.border}, largest);
+  const auto side = scaled_side(base, factor, size);
+  return side ? *side : largest;
 }
 
 // Returns the sizes of all resources for one view. Sizes that depend on each other in a cycle stay

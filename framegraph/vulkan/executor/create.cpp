@@ -68,7 +68,8 @@ void make_passes(State& state, const ExecutorInput& input) {
     const PassType& type = (*input.pass_types)[planned.type];
     Pass& pass = state.passes[p];
     pass.name = input.graph->passes[planned.declared.value].name;
-    if (type.dispatch == DispatchShape::host) pass.host = planned.type;
+    if (type.dispatch.domain == DispatchRule::Domain::host) pass.host = planned.type;
+    pass.written = first_written_size(state.plan, planned, type);
     pass.ports.resize(type.ports.size());
     for (uint32_t a = planned.first_access; a < planned.first_access + planned.access_count; ++a)
       bind_port(state.plan, pass, a);
@@ -88,10 +89,11 @@ Error check_passes(State& state, const PassTypeRegistry& pass_types) {
                                   type.ports.size(), mask_bits));
     if (pass.kernel != no_index) {
       const Kernel& kernel = *state.kernels[pass.kernel];
-      if (kernel.dispatch == DispatchShape::over_tiles && pass.ports[kernel.indirect_port].access == no_index)
-        return argument(fmt::format("pass '{}' dispatches over tiles, but its port '{}' is not bound",
+      if (kernel.dispatch.domain == DispatchRule::Domain::indirect &&
+          pass.ports[kernel.indirect_port].access == no_index)
+        return argument(fmt::format("pass '{}' dispatches indirectly, but its port '{}' is not bound",
                                     pass.name, type.ports[kernel.indirect_port].name));
-      if (kernel.dispatch == DispatchShape::over_tiles) {
+      if (kernel.dispatch.domain == DispatchRule::Domain::indirect) {
         const PlanAccess& access = state.plan.accesses[pass.ports[kernel.indirect_port].access];
         pass.indirect_entries = state.plan.resources[access.resource].bytes / indirect_entry_bytes;
         if (pass.indirect_entries == 0)

@@ -15,7 +15,7 @@
 namespace dermis::vulkan {
 namespace {
 
-constexpr uint32_t rescale_group_side = 8;
+constexpr DispatchRule rescale_dispatch{.domain = DispatchRule::Domain::written_image};
 
 struct RescalePush {
   std::array<uint32_t, 2> source_size, target_size;
@@ -165,10 +165,6 @@ std::array<uint32_t, 2> mip_size(const PlanResource& resource, uint32_t mip) {
   return {std::max(resource.width >> mip, 1u), std::max(resource.height >> mip, 1u)};
 }
 
-uint32_t rescale_groups(uint32_t texels) {
-  return (texels + rescale_group_side - 1) / rescale_group_side;
-}
-
 } // namespace
 
 bool can_rescale(const Device& device, const PlanResource& resource,
@@ -227,7 +223,8 @@ void record_rescaling(State& to, const State& from, VkCommandBuffer commands,
     vk.vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, kernel.layout, 0, 1, &set, 0,
                                nullptr);
     vk.vkCmdPushConstants(commands, kernel.layout, VK_SHADER_STAGE_COMPUTE_BIT, 0, sizeof push, &push);
-    vk.vkCmdDispatch(commands, rescale_groups(push.target_size[0]), rescale_groups(push.target_size[1]),
+    const GroupCount groups = group_count(rescale_dispatch, push.target_size[0], push.target_size[1]);
+    vk.vkCmdDispatch(commands, static_cast<uint32_t>(groups.x), static_cast<uint32_t>(groups.y),
                      new_size.layers);
   }
 }

@@ -135,9 +135,9 @@ Error create_kernel(State& state, const ExecutorInput& input, PassTypeId id, Ker
     if (kernel.ports[p].placeholder == VK_FORMAT_UNDEFINED)
       kernel.ports[p].placeholder = VK_FORMAT_R16G16B16A16_SFLOAT;
   }
-  if (type.dispatch == DispatchShape::over_tiles && kernel.indirect_port == no_index)
+  if (type.dispatch.domain == DispatchRule::Domain::indirect && kernel.indirect_port == no_index)
     return {ErrorKind::shader, VK_SUCCESS,
-            fmt::format("pass type '{}' dispatches over tiles but has no port with usage indirect_arguments",
+            fmt::format("pass type '{}' dispatches indirectly but has no port with usage indirect_arguments",
                         type.name)};
   if (!type.arguments_entry.empty())
     kernel.entry_setting = static_cast<uint32_t>(find_setting(type, type.arguments_entry));
@@ -191,8 +191,7 @@ Error create_pipeline(const Device& device, const std::string& subresource, cons
 Error create_kernels(State& state, const ExecutorInput& input) {
   for (uint32_t p = 0; p < state.passes.size(); ++p) {
     const PassTypeId type = state.plan.passes[p].type;
-    const DispatchShape dispatch = (*input.pass_types)[type].dispatch;
-    if (dispatch == DispatchShape::none || dispatch == DispatchShape::host) continue;
+    if (!(*input.pass_types)[type].dispatch.is_kernel()) continue;
     const auto code = find_code(input, (*input.pass_types)[type]);
     const uint64_t version = code != input.kernels.end() ? code->version : 0;
     const auto runs = [&](const auto& kernel) { return kernel->type == type && kernel->version == version; };

@@ -7,14 +7,6 @@
 namespace dermis::vulkan {
 namespace {
 
-constexpr uint32_t tile_side = 8;        // pixels; kernels over the view use 8x8 groups
-constexpr uint64_t tiles_per_group = 64; // DispatchShape::over_tile_grid
-constexpr uint32_t block_side = 4;       // tiles; DispatchShape::over_tile_blocks
-
-constexpr uint32_t tiles_along(uint32_t pixels) {
-  return (pixels + tile_side - 1) / tile_side;
-}
-
 RecordResult refuse(const char* text, int32_t slot = -1) {
   return {ErrorKind::argument, VK_SUCCESS, text, slot};
 }
@@ -119,53 +111,19 @@ uint64_t indirect_offset(const State& state, const FrameInput& frame, const Plan
          std::min(static_cast<uint64_t>(std::max(entry, int64_t{0})), pass.indirect_entries - 1);
 }
 
-// Returns zero if the pass writes no image.
-VkExtent2D first_written_size(const State& state, const Pass& pass) {
-  for (const PortAccess& port : pass.ports) {
-    if (port.access == no_index) continue;
-    const PlanAccess& access = state.plan.accesses[port.access];
-    const PlanResource& resource = state.plan.resources[access.resource];
-    if ((access.access & access::shader_storage_write) != 0 && resource.type == ResourceType::image)
-      return {std::max(resource.width >> access.range.first_mip, 1u),
-              std::max(resource.height >> access.range.first_mip, 1u)};
-  }
-  return {0, 0};
-}
-
 void dispatch(State& state, const FrameInput& frame, const PlanPass& planned, const Pass& pass,
               const Kernel& kernel, const Rectangle& r) {
   const FunctionTable& vk = *state.commands;
-  const VkCommandBuffer commands = frame.command_buffer;
-  const uint32_t across = tiles_along(r.width), down = tiles_along(r.height);
-  switch (kernel.dispatch) {
-  case DispatchShape::over_view:
-    vk.vkCmdDispatch(commands, across, down, 1);
-    break;
-  case DispatchShape::over_tiles:
-    vk.vkCmdDispatchIndirect(commands, indirect_buffer(state, pass, kernel),
-                             indirect_offset(state, frame, planned, pass, kernel));
-    break;
-  case DispatchShape::over_tile_grid: {
-    const uint64_t tiles = uint64_t{across} * down;
-    vk.vkCmdDispatch(commands, static_cast<uint32_t>((tiles + tiles_per_group - 1) / tiles_per_group), 1, 1);
-    break;
-  }
-  case DispatchShape::over_tile_blocks:
-    vk.vkCmdDispatch(commands, (across + block_side - 1) / block_side, (down + block_side - 1) / block_side,
-                     1);
-    break;
-  case DispatchShape::over_written: {
-    const VkExtent2D size = first_written_size(state, pass);
-    if (size.width > 0) vk.vkCmdDispatch(commands, tiles_along(size.width), tiles_along(size.height), 1);
-    break;
-  }
-  case DispatchShape::single_group:
-    vk.vkCmdDispatch(commands, 1, 1, 1);
-    break;
-  case DispatchShape::none:
-  case DispatchShape::host:
-    break;
-  }
+  if (kernel.dispatch.domain == DispatchRule::Domain::indirect)
+    return vk.vkCmdDispatchIndirect(frame.command_buffer, indirect_buffer(state, pass, kernel),
+                                    indirect_offset(state, frame, planned, pass, kernel));
+  const bool over_written = kernel.dispatch.domain == DispatchRule::Domain::written_image;
+  const GroupCount groups = over_written
+                                ? group_count(kernel.dispatch, pass.written.width, pass.written.height)
+                                : group_count(kernel.dispatch, r.width, r.height);
+  if (groups.total() > 0)
+    vk.vkCmdDispatch(frame.command_buffer, static_cast<uint32_t>(groups.x), static_cast<uint32_t>(groups.y),
+                     static_cast<uint32_t>(groups.z));
 }
 
 void run_kernel(State& state, const FrameInput& frame, uint32_t frame_slot, size_t p,

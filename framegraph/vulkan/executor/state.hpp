@@ -2,6 +2,7 @@
 // Declares the parts of an Executor's state and the functions that create and use them. Internal to
 // vulkan/executor/. The destroy function of each part also handles partly created state.
 
+#include "framegraph/compile/written_size.hpp"
 #include "framegraph/vulkan/device_memory.hpp"
 #include "framegraph/vulkan/executor.hpp"
 #include "framegraph/vulkan/heap_pool.hpp"
@@ -59,7 +60,7 @@ struct Kernel {
   const Device* device = nullptr;
   PassTypeId type;
   uint64_t version = 0; // KernelCode::version
-  DispatchShape dispatch = DispatchShape::none;
+  DispatchRule dispatch = {};
   uint32_t indirect_port = no_index;
   // setting that selects the entry of the indirect arguments; no_index: entry 0
   uint32_t entry_setting = no_index;
@@ -151,6 +152,7 @@ struct Pass {
   std::vector<PortAccess> ports;
   uint32_t port_mask = 0;                      // ports that are bound in every frame
   std::vector<uint32_t> conditional_ports;     // ports that are bound in some frames
+  TexelSize written;                           // of the first image that the pass type writes
   uint64_t indirect_entries = 1;               // number of entries in its indirect arguments
   std::vector<uint32_t> writable_placeholders; // into State::placeholders
 };

@@ -5,10 +5,6 @@
 namespace dermis::vulkan {
 namespace {
 
-// for kernels over the view or its tiles: one invocation per pixel of a tile
-constexpr uint32_t group_side = 8;
-constexpr uint32_t tile_invocations = 64;
-
 struct Checker {
   const PassType& type;
   std::vector<std::string> found;
@@ -100,23 +96,16 @@ struct Checker {
 
   void check_local_size(const std::array<uint32_t, 3>& size) {
     const uint64_t invocations = uint64_t{size[0]} * size[1] * size[2];
-    const auto refuse = [&](const char* wanted) {
-      mismatch("its workgroup is {}x{}x{}, but this dispatch needs {}", size[0], size[1], size[2], wanted);
+    const DispatchRule& rule = type.dispatch;
+    const uint32_t side = rule.cell_side;
+    const auto refuse = [&](const std::string& needed) {
+      mismatch("its workgroup is {}x{}x{}, but this dispatch needs {}", size[0], size[1], size[2], needed);
     };
-    switch (type.dispatch) {
-    case DispatchShape::over_view:
-    case DispatchShape::over_written:
-      if (size[0] != group_side || size[1] != group_side || size[2] != 1) refuse("8x8x1");
-      break;
-    case DispatchShape::over_tiles:
-    case DispatchShape::over_tile_grid:
-    case DispatchShape::over_tile_blocks:
-      if (invocations != tile_invocations) refuse("64 invocations");
-      break;
-    case DispatchShape::single_group:
-    case DispatchShape::none:
-    case DispatchShape::host:
-      break;
+    if (!rule.is_kernel() || rule.domain == DispatchRule::Domain::one) return;
+    if (rule.cell_shaped()) {
+      if (size[0] != side || size[1] != side || size[2] != 1) refuse(fmt::format("{}x{}x1", side, side));
+    } else if (invocations != rule.invocations) {
+      refuse(fmt::format("{} invocations", rule.invocations));
     }
   }
 };

@@ -49,7 +49,7 @@ bool compile_missing(RuntimeShaders& shaders, const Graph& graph, const PassType
   for (const PassDeclaration& pass : graph.passes) {
     const PassType& type = pass_types[pass.type];
     const std::string shader(type.shader);
-    if (type.dispatch == DispatchShape::none || type.dispatch == DispatchShape::host) continue;
+    if (!type.dispatch.is_kernel()) continue;
     if (shaders.kernels.contains(shader) || std::ranges::find(missing, shader) != missing.end()) continue;
     missing.push_back(shader);
   }

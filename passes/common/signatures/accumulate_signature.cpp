@@ -1,5 +1,6 @@
 // Accumulation of light over frames, for hosts without their own temporal anti-aliasing.
 
+#include "passes/common/dispatch.hpp"
 #include "passes/common/signatures/signatures.hpp"
 
 namespace dermis::subsurface {
@@ -50,7 +51,7 @@ const PassType accumulate_type{
     .doc = "Blends scattered light with that of earlier frames, reprojected along surfaces.",
     .ports = ports,
     .settings = settings,
-    .dispatch = DispatchShape::over_tiles,
+    .dispatch = over_tiles,
     .side_effects = false,
     .mixes = accumulate_mixes,
 };

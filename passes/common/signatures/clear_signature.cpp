@@ -1,5 +1,6 @@
 // Clears resources that later passes write only in part.
 
+#include "passes/common/dispatch.hpp"
 #include "passes/common/signatures/signatures.hpp"
 
 namespace dermis::subsurface {
@@ -14,7 +15,7 @@ const PassType clear_type{
     .doc = "Fills an image or a buffer with zeros. Runs no kernel.",
     .ports = ports,
     .settings = {},
-    .dispatch = DispatchShape::none,
+    .dispatch = no_dispatch,
     .side_effects = false,
 };
 

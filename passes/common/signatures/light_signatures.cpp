@@ -1,5 +1,6 @@
 // Passes that prepare light for scattering and write it back.
 
+#include "passes/common/dispatch.hpp"
 #include "passes/common/signatures/signatures.hpp"
 
 namespace dermis::subsurface {
@@ -121,7 +122,7 @@ const PassType setup_type{
            "nearest even.",
     .ports = setup_ports,
     .settings = setup_settings,
-    .dispatch = DispatchShape::over_tiles,
+    .dispatch = over_tiles,
     .side_effects = false,
 };
 
@@ -133,7 +134,7 @@ const PassType transmission_type{
            "thickness.",
     .ports = transmission_ports,
     .settings = {},
-    .dispatch = DispatchShape::over_view,
+    .dispatch = over_view,
     .side_effects = false,
 };
 
@@ -144,7 +145,7 @@ const PassType transmission_stats_type{
            "of screen-space techniques.",
     .ports = thin_parts_ports,
     .settings = {},
-    .dispatch = DispatchShape::over_tiles,
+    .dispatch = over_tiles,
     .side_effects = true, // reports to the host
 };
 
@@ -154,7 +155,7 @@ const PassType combine_type{
     .doc = "Writes scattered light into the host's lighting. The host adds specular light.",
     .ports = combine_ports,
     .settings = combine_settings,
-    .dispatch = DispatchShape::over_tiles,
+    .dispatch = over_tiles,
     .side_effects = false,
     .one_of = combined,
 };
@@ -166,7 +167,7 @@ const PassType copy_tiles_type{
            "image.",
     .ports = copy_ports,
     .settings = copy_settings,
-    .dispatch = DispatchShape::over_tiles,
+    .dispatch = over_tiles,
     .side_effects = false,
 };
 
@@ -177,7 +178,7 @@ const PassType export_scattered_type{
            "later.",
     .ports = light_ports,
     .settings = light_settings,
-    .dispatch = DispatchShape::over_view,
+    .dispatch = over_view,
     .side_effects = false,
 };
 

@@ -1,5 +1,6 @@
 // The error probe: the reference at a few pixels of the frame.
 
+#include "passes/common/dispatch.hpp"
 #include "passes/common/signatures/signatures.hpp"
 
 namespace dermis::subsurface {
@@ -41,7 +42,7 @@ const PassType probe_type{
            "the frame's error and its uncertainty.",
     .ports = probe_ports,
     .settings = probe_settings,
-    .dispatch = DispatchShape::over_tile_grid,
+    .dispatch = over_tile_grid,
     .side_effects = true, // reports to the host
 };
 

@@ -1,6 +1,7 @@
 // Classification of 8x8 tiles, and the list of tiles with subsurface that indirect dispatches run
 // over.
 
+#include "passes/common/dispatch.hpp"
 #include "passes/common/signatures/signatures.hpp"
 
 namespace dermis::subsurface {
@@ -63,7 +64,7 @@ const PassType classify_type{
     .doc = "Classifies 8x8 tiles by material and projected scattering radius.",
     .ports = classify_ports,
     .settings = classify_settings,
-    .dispatch = DispatchShape::over_tile_blocks,
+    .dispatch = over_tile_blocks,
     .side_effects = false,
 };
 
@@ -73,7 +74,7 @@ const PassType classify_uniform_light_type{
     .doc = "Reclassifies tiles as copied if their light is uniform within the reach of scattering.",
     .ports = flat_ports,
     .settings = {},
-    .dispatch = DispatchShape::over_tile_grid,
+    .dispatch = over_tile_grid,
     .side_effects = false,
 };
 
@@ -83,7 +84,7 @@ const PassType debug_tile_class_type{
     .doc = "Writes the class of each tile for tools.",
     .ports = skips_ports,
     .settings = {},
-    .dispatch = DispatchShape::over_view,
+    .dispatch = over_view,
     .side_effects = false,
 };
 
@@ -94,7 +95,7 @@ const PassType tile_list_type{
            "atomics, so that the list is deterministic).",
     .ports = tile_list_ports,
     .settings = {},
-    .dispatch = DispatchShape::single_group,
+    .dispatch = single_group,
     .side_effects = false,
 };
 

@@ -158,11 +158,11 @@ TEST(Signature, EnvironmentMustHoldAllThatTheShaderReads) {
 
 TEST(Signature, TheWorkgroupMustFitTheDispatch) {
   PassType changed = type("test.classes");
-  changed.dispatch = DispatchShape::over_view;
+  changed.dispatch = DispatchRule{};
   EXPECT_THAT(problems(changed, reflected("test_classes")),
               HasSubstr("its workgroup is 64x1x1, but this dispatch needs 8x8x1"));
   changed = type("test.list");
-  changed.dispatch = DispatchShape::over_tile_grid;
+  changed.dispatch = DispatchRule{.cells_per_group = 64};
   EXPECT_THAT(problems(changed, reflected("test_list")),
               HasSubstr("its workgroup is 1x1x1, but this dispatch needs 64"));
 }

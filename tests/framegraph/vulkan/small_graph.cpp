@@ -64,17 +64,29 @@ constexpr Port clear_ports[] = {
 
 PassTypeRegistry make_pass_types() {
   PassTypeRegistry pass_types;
-  pass_types.add({"test.fill", "test_fill", "", fill_ports, fill_settings, DispatchShape::over_view, false});
-  pass_types.add({"test.add", "test_add", "", add_ports, add_settings, DispatchShape::over_view, false});
-  pass_types.add({"test.sample", "test_sample", "", sample_ports, {}, DispatchShape::over_view, false});
+  pass_types.add({"test.fill", "test_fill", "", fill_ports, fill_settings, DispatchRule{}, false});
+  pass_types.add({"test.add", "test_add", "", add_ports, add_settings, DispatchRule{}, false});
+  pass_types.add({"test.sample", "test_sample", "", sample_ports, {}, DispatchRule{}, false});
   pass_types.add(
-      {"test.classes", "test_classes", "", classes_ports, {}, DispatchShape::over_tile_grid, false});
-  pass_types.add({"test.list", "test_list", "", list_ports, {}, DispatchShape::single_group, false});
-  pass_types.add({"test.mark", "test_mark", "", mark_ports, {}, DispatchShape::over_tiles, false});
+      {"test.classes", "test_classes", "", classes_ports, {}, DispatchRule{.cells_per_group = 64}, false});
+  pass_types.add({"test.list",
+                  "test_list",
+                  "",
+                  list_ports,
+                  {},
+                  DispatchRule{.domain = DispatchRule::Domain::one},
+                  false});
+  pass_types.add({"test.mark",
+                  "test_mark",
+                  "",
+                  mark_ports,
+                  {},
+                  DispatchRule{.domain = DispatchRule::Domain::indirect},
+                  false});
+  pass_types.add({"test.stamp", "test_stamp", "", stamp_ports, stamp_settings, DispatchRule{}, false});
+  pass_types.add({"test.show", "test_show", "", show_ports, {}, DispatchRule{}, false});
   pass_types.add(
-      {"test.stamp", "test_stamp", "", stamp_ports, stamp_settings, DispatchShape::over_view, false});
-  pass_types.add({"test.show", "test_show", "", show_ports, {}, DispatchShape::over_view, false});
-  pass_types.add({"test.clear", "", "", clear_ports, {}, DispatchShape::none, false});
+      {"test.clear", "", "", clear_ports, {}, DispatchRule{.domain = DispatchRule::Domain::none}, false});
   return pass_types;
 }
 

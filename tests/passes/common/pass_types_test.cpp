@@ -69,7 +69,7 @@ TEST_F(PassTypes, DefaultsAreWithinRangesAndOptions) {
 TEST_F(PassTypes, TileDispatches_ReadTheListAndItsArguments) {
   for (uint32_t i = 0; i < pass_types.size(); ++i) {
     const PassType& type = pass_types[PassTypeId{i}];
-    if (type.dispatch == DispatchShape::over_tiles) {
+    if (type.dispatch.domain == DispatchRule::Domain::indirect) {
       const bool levels = find_port(type, "level_tiles") >= 0;
       EXPECT_GE(find_port(type, levels ? "level_tiles" : "tiles"), 0) << type.name;
       EXPECT_GE(find_port(type, levels ? "level_arguments" : "arguments"), 0) << type.name;

@@ -48,7 +48,7 @@ void KernelTest::run(const vulkan::KernelCode& kernel, uint32_t width, uint32_t 
   const DeviceProfile profile = vulkan::device_profile(dermis_device);
   const Graph graph = one_pass();
   PassTypeRegistry pass_types;
-  pass_types.add({"test.kernel", kernel.shader, "", ports, {}, DispatchShape::over_view, false});
+  pass_types.add({"test.kernel", kernel.shader, "", ports, {}, DispatchRule{}, false});
   CompileInput compiled;
   compiled.graph = &graph;
   compiled.pass_types = &pass_types;

@@ -177,7 +177,7 @@ TechniqueCounts TechniqueRun::counts(double sampled_fraction, const subsurface::
   for (const PlanPass& pass : plan.passes) {
     const PassType& type = loaded_.pass_types[pass.type];
     if (type.name == export_scattered_type) continue;
-    counts.dispatches += type.dispatch != DispatchShape::none && type.dispatch != DispatchShape::host;
+    counts.dispatches += type.dispatch.is_kernel();
     std::vector<SettingValue> settings;
     for (size_t i = 0; i < type.settings.size(); ++i)
       settings.push_back(plan.settings[pass.first_setting + i].value);

@@ -1,4 +1,5 @@
 #include "integration/tools/command/run/surface_warnings.hpp"
+#include "passes/common/dispatch.hpp"
 
 #include <fmt/format.h>
 
@@ -8,7 +9,7 @@
 namespace dermis::tools {
 namespace {
 
-constexpr uint32_t tile_side = 8;
+using subsurface::tile_side;
 
 // Depths of one frame, and sides of a pixel.
 struct DepthPicture {

@@ -1,7 +1,9 @@
 #include "integration/tools/command/run/tile_costs.hpp"
 
+#include "framegraph/compile/written_size.hpp"
 #include "integration/tools/command/present.hpp"
 #include "integration/tools/references/image_reads.hpp"
+#include "passes/common/dispatch.hpp"
 #include "passes/common/environment.hpp"
 
 #include <fmt/format.h>
@@ -13,12 +15,13 @@
 namespace dermis::tools {
 namespace {
 
-constexpr double tile_pixels = 64;
+constexpr double tile_pixels = double(subsurface::tile_side * subsurface::tile_side);
 
 // Splits "technique=hybrid, variant=smooth" into settings.
 void add_outcome(const Graph& graph, std::string_view configuration, std::vector<NamedValue>& settings) {
   while (!configuration.empty()) {
-    const size_t end = std::min(configuration.find(", "), configuration.size()), equals = configuration.find('=');
+    const size_t end = std::min(configuration.find(", "), configuration.size()),
+                 equals = configuration.find('=');
     if (equals < end) {
       const std::string name(configuration.substr(0, equals));
       if (std::any_of(graph.settings.begin(), graph.settings.end(),
@@ -27,21 +30,6 @@ void add_outcome(const Graph& graph, std::string_view configuration, std::vector
     }
     configuration.remove_prefix(std::min(end + 2, configuration.size()));
   }
-}
-
-double texels_of(const PlanResource& resource) {
-  return double(resource.width) * double(resource.height);
-}
-
-// Returns the number of texels that the pass writes, for passes over an image of their own.
-double written_texels(const Plan& plan, const PlanPass& pass) {
-  for (uint32_t a = 0; a < pass.access_count; ++a) {
-    const PlanAccess& access = plan.accesses[pass.first_access + a];
-    const PlanResource& resource = plan.resources[access.resource];
-    if ((access.access & access::shader_storage_write) != 0 && resource.type == ResourceType::image)
-      return texels_of(resource);
-  }
-  return 0;
 }
 
 } // namespace
@@ -86,10 +74,11 @@ TileCosts tile_costs(const LoadedGraph& loaded, const Size& size, std::span<cons
       out.reads_per_sample = (reads->per_invocation - without) / reads->samples;
       first_step = reads->samples / 2;
       per_step += without;
-    } else if (type.dispatch == DispatchShape::over_tiles) {
+    } else if (type.dispatch.domain == DispatchRule::Domain::indirect) {
       everywhere += reads->per_invocation / finer;
-    } else if (type.dispatch == DispatchShape::over_written) {
-      out.reads_beside += reads->per_invocation * written_texels(plan, pass);
+    } else if (type.dispatch.domain == DispatchRule::Domain::written_image) {
+      const TexelSize written = first_written_size(plan, pass, type);
+      out.reads_beside += reads->per_invocation * double(written.width) * written.height;
     } else {
       out.reads_beside += reads->per_invocation * tile_pixels * double(choice.view_tiles);
     }

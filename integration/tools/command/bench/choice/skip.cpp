@@ -153,7 +153,7 @@ double reads_of(const SkipBench& bench, const Case& one, std::span<const float> 
     }
     const auto reads = subsurface::image_reads(type, question);
     const bool over_all =
-        type.dispatch == DispatchShape::over_view || type.dispatch == DispatchShape::over_tile_blocks;
+        type.dispatch.domain == DispatchRule::Domain::rectangle && type.dispatch.cells_per_group == 1;
     const double tiles = over_all ? double(one.choice.view_tiles) : listed;
     if (reads) sum += reads->per_invocation * pixels_per_tile * tiles / finer;
   }

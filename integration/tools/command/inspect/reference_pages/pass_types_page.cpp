@@ -7,23 +7,23 @@
 namespace dermis::tools {
 namespace {
 
-std::string_view dispatch_text(DispatchShape shape) {
-  switch (shape) {
-  case DispatchShape::over_view:
-    return "one group per 8x8 pixels of the render rectangle";
-  case DispatchShape::over_tiles:
-    return "one group per listed tile, by indirect arguments";
-  case DispatchShape::over_tile_grid:
-    return "one group per 64 tiles of the render rectangle";
-  case DispatchShape::over_tile_blocks:
-    return "one group per 4x4 tiles of the render rectangle";
-  case DispatchShape::over_written:
-    return "one group per 8x8 texels of the first image that it writes";
-  case DispatchShape::single_group:
+std::string dispatch_text(const DispatchRule& rule) {
+  const std::string cell = fmt::format("{0}x{0}", rule.cell_side);
+  switch (rule.domain) {
+  case DispatchRule::Domain::rectangle:
+    return rule.cells_per_group == 1
+               ? fmt::format("one group per {} pixels of the render rectangle", cell)
+               : fmt::format("one group per {} squares of {} pixels of the render rectangle",
+                             rule.cells_per_group, cell);
+  case DispatchRule::Domain::written_image:
+    return fmt::format("one group per {} texels of the first image that it writes", cell);
+  case DispatchRule::Domain::indirect:
+    return "by indirect arguments";
+  case DispatchRule::Domain::one:
     return "one group";
-  case DispatchShape::none:
+  case DispatchRule::Domain::none:
     return "no dispatch";
-  case DispatchShape::host:
+  case DispatchRule::Domain::host:
     break;
   }
   return "recorded by the host";
