@@ -62,21 +62,35 @@ std::string declare_setting(const PassTypeSetting& setting) {
 }
 
 std::string header_of(const PassType& type) {
-  std::string out = fmt::format("// Generated from the signature of {}.\n\n", type.name);
+  std::string out = fmt::format("// Generated from the signature of {}.\n", type.name);
+  out += "#include \"options.glsl\"\n\n";
   for (uint32_t i = 0; i < type.ports.size(); ++i)
     out += declare_port(type.ports[i], i);
   out += "\nlayout(push_constant) uniform settings_block {\n  uint port_mask; // bit i: port i is bound\n";
   for (const PassTypeSetting& setting : type.settings)
     out += declare_setting(setting);
   out += "} settings;\n\n";
-  for (const PassTypeSetting& setting : type.settings)
-    for (uint32_t i = 0; i < setting.options.size(); ++i)
-      out += fmt::format("const int {}_{} = {};\n", upper(setting.name), upper(setting.options[i]), i);
   for (uint32_t i = 0; i < type.ports.size(); ++i)
     if (type.ports[i].optional)
       out += fmt::format("bool has_{}() {{ return (settings.port_mask & {}u) != 0u; }}\n", type.ports[i].name,
                          1u << i);
   return out;
+}
+
+// Returns the values of the options of all settings. Settings of one name must number their options
+// alike; otherwise a constant is defined twice and no kernel compiles.
+std::string option_values(const PassTypeRegistry& pass_types) {
+  std::vector<std::string> lines;
+  for (uint32_t type = 0; type < pass_types.size(); ++type)
+    for (const PassTypeSetting& setting : pass_types[PassTypeId{type}].settings)
+      for (uint32_t i = 0; i < setting.options.size(); ++i) {
+        std::string line =
+            fmt::format("const int {}_{} = {};", upper(setting.name), upper(setting.options[i]), i);
+        if (std::ranges::find(lines, line) == lines.end()) lines.push_back(std::move(line));
+      }
+  return fmt::format("// Generated from the settings of all pass types.\n"
+                     "#ifndef DERMIS_OPTIONS_GLSL\n#define DERMIS_OPTIONS_GLSL\n\n{}\n\n#endif\n",
+                     fmt::join(lines, "\n"));
 }
 
 // Returns the constants that C++ and GLSL share.
@@ -90,10 +104,10 @@ std::string shared_constants() {
       "const int flat_max_reach = {};\n"
       "const uint flat_cell_side = {}u;\n"
       "const int probe_max_reach = {}; // pass_types.hpp\n"
-      "const float allot_gain_0 = {}, allot_gain_1 = {}, allot_gain_2 = {}; // allotment.hpp\n"
+      "const float allot_gain_0 = {}, allot_gain_1 = {}, allot_gain_2 = {}; // sample_allocation.hpp\n"
       "const float allocation_stay = {};\n"
       "const int allocation_first_bin = {};\n"
-      "const float min_patch_cosine = {}; // truth/surface.hpp\n"
+      "const float min_patch_cosine = {}; // reference/surface.hpp\n"
       "const int separable_nodes = {}; // separable_kernel.hpp\n"
       "const float separable_first_log2_d = {:.1f};\n"
       "const float separable_log2_d_step = {:.1f};\n"
@@ -110,12 +124,12 @@ std::string shared_constants() {
       "const float radial_log2_r_first = {:.1f};\n"
       "const float radial_nodes_per_octave = {:.1f};\n"
       "const float radial_inverse_nodes_per_unit = {:.1f};\n"
-      "const float reproject_snap_px = {}; // temporal/reproject.hpp\n"
+      "const float reproject_snap_px = {}; // reproject.hpp\n"
       "const float reproject_largest_velocity = {:.1f};\n"
       "const float reproject_depth_fraction = {};\n"
       "const float reproject_slope_pixels = {:.1f};\n"
       "const float reproject_min_weight = {};\n"
-      "const float accumulate_min_brightness = {}; // temporal/accumulate.hpp\n"
+      "const float accumulate_min_brightness = {}; // accumulate.hpp\n"
       "const float accumulate_largest_remainder = {:.1f};\n"
       "const float counter_log2_shift = {:.1f}; // environment.hpp\n"
       "const float counter_log2_steps = {:.1f};\n"
@@ -147,6 +161,7 @@ std::vector<GeneratedFile> generated_glsl() {
     files.push_back({fmt::format("{}.bindings.glsl", type.shader), header_of(type)});
   }
   files.push_back({"constants.glsl", shared_constants()});
+  files.push_back({"options.glsl", option_values(pass_types)});
   return files;
 }
 

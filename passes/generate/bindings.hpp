@@ -1,6 +1,6 @@
 #pragma once
-// Generated GLSL: one header per kernel with bindings and push constants from its signature, and
-// the constants that C++ and GLSL share.
+// Generated GLSL: one header per kernel with bindings and push constants from its signature, the
+// values of the options of settings, and the constants that C++ and GLSL share.
 
 #include <string>
 #include <vector>
@@ -8,7 +8,8 @@
 namespace dermis {
 
 struct GeneratedFile {
-  // "afis/subsurface_afis.bindings.glsl", "constants.glsl": the name used by #include.
+  // "afis/subsurface_afis.bindings.glsl", "constants.glsl", "options.glsl": the name used by
+  // #include.
   std::string name;
   std::string text;
 };

@@ -15,9 +15,10 @@ std::string shader_compiler();
 
 // Compiles each kernel of `shaders` (PassType::shader) from "NAME.comp" and its includes. #include
 // "FILE" calls `open`, except for headers generated from signatures (*.bindings.glsl,
-// constants.glsl), which the library provides. Names that leave the folder are rejected before
-// `open` is called. spirv[i] is empty if `open` has no such kernel. Returns false with the errors
-// of all kernels in `diagnostics`. Allocates from the C library. Free-threaded if `open` is.
+// constants.glsl, options.glsl), which the library provides. Names that leave the folder are
+// rejected before `open` is called. spirv[i] is empty if `open` has no such kernel. Returns false
+// with the errors of all kernels in `diagnostics`. Allocates from the C library. Free-threaded if
+// `open` is.
 bool compile_shaders(std::span<const std::string> shaders, const OpenFile& open,
                      std::vector<std::vector<uint32_t>>& spirv, Diagnostics& diagnostics);
 
