@@ -1,23 +1,32 @@
 // Filtered importance sampling. Each sample represents an area that is inversely proportional to
 // its density, and reads the level of a masked mip chain whose texels have that size. Light within
-// the direct radius is the pixel's own light. Include after bindings with the ports and settings of
-// subsurface.afis.
+// the direct radius is the pixel's own light.
 #ifndef DERMIS_AFIS_GLSL
 #define DERMIS_AFIS_GLSL
 
-#include "common/radius.glsl"
+#extension GL_EXT_samplerless_texture_functions : require
+
 #include "common/sequence.glsl"
 #include "common/tap.glsl"
 #include "common/radial_draw.glsl"
 #include "afis/mixture.glsl"
 #include "afis/mips.glsl"
+#include "options.glsl"
 
-bool draws_mixture(scatter_profile profile) {
+// Settings of subsurface.afis, under the same names.
+struct afis_settings {
+  float lod_bias;
+  int sequence, channels, inverse, weighting, surface, direct, estimator, mips;
+};
+
+bool draws_mixture(afis_settings settings, scatter_profile profile) {
   return settings.channels == CHANNELS_MIXTURE && profile.row == no_radial_row;
 }
 
-radial_sample draw(scatter_profile profile, float survival) {
-  return draws_mixture(profile) ? mixture_sample(profile, survival) : radial_draw(profile, survival);
+radial_sample draw(afis_settings settings, scatter_profile profile, float survival) {
+  if (draws_mixture(settings, profile))
+    return mixture_sample(profile, survival);
+  return radial_draw(profile, survival, settings.inverse, settings.weighting);
 }
 
 // A set of `count` of the `all` samples of a pixel in this frame, at the points of a sequence from
@@ -29,22 +38,28 @@ struct sample_set {
 };
 
 // Returns the offset for this pixel, frame and set in fixed point, in units of 2^-32.
-uvec2 sequence_offset(ivec2 pixel, sample_set set) {
-  uint frame_index = settings.sequence == SEQUENCE_HASHED ? frame.frame_index : 0u;
+uvec2 sequence_offset(int sequence, ivec2 pixel, sample_set set) {
+  uint frame_index = sequence == SEQUENCE_HASHED ? frame.frame_index : 0u;
   uvec2 offset = offset_from_hash(pcg3d16(uvec3(pixel, frame_index ^ (set.number << 31))).xy);
-  return settings.sequence == SEQUENCE_STRATIFIED ? r2_point(offset, frame.frame_index) : offset;
+  return sequence == SEQUENCE_STRATIFIED ? r2_point(offset, frame.frame_index) : offset;
 }
 
 // Returns sample i: x = survival divided by the survival at the direct radius, y = angle / (2 pi).
-vec2 sequence_point(uvec2 offset, sample_set set, int i) {
-  if (settings.sequence == SEQUENCE_STRATIFIED) {
+vec2 sequence_point(int sequence, uvec2 offset, sample_set set, int i) {
+  if (sequence == SEQUENCE_STRATIFIED) {
     vec2 unit = unit_from_fixed(offset);
     return vec2((float(i) + unit.x) / float(set.count), float(i) * (golden_angle / two_pi) + unit.y);
   }
-  return unit_from_fixed(r2_point(offset, (settings.sequence == SEQUENCE_CONTINUED ? set.first : 0u) + uint(i)));
+  return unit_from_fixed(
+      r2_point(offset, (sequence == SEQUENCE_CONTINUED ? set.first : 0u) + uint(i)));
 }
 
-vec3 scatter(scatter_point point, scatter_profile profile, float area, vec3 own, sample_set set) {
+// Returns the scattered light of a pixel. `own`: its own light, and the area of its patch. The
+// textures are the ports of subsurface.afis.
+vec3 scatter(afis_settings settings, sample_set set, scatter_point point, scatter_profile profile,
+             vec4 own, utexture2D material, texture2D depth, texture2D slope, texture2D light,
+             texture2D level_1, texture2D level_2, texture2D level_3, texture2D level_4,
+             texture2D level_5, texture2D level_6, texture2D level_7, texture2D level_8) {
   vec2 footprint = pixel_footprint(point.depth);
   uint widest = profiles[min(point.id, 255u)].widest;
 
@@ -53,42 +68,46 @@ vec3 scatter(scatter_point point, scatter_profile profile, float area, vec3 own,
   if (settings.direct != DIRECT_NONE) {
     float r0 = settings.direct == DIRECT_INSCRIBED ? 0.5 * min(footprint.x, footprint.y) : 0.5 * length(footprint);
     vec3 survival = profile_survival(profile, r0);
-    beyond = draws_mixture(profile) ? dot(mixture_fractions(profile), survival) : survival[widest];
+    beyond = draws_mixture(settings, profile) ? dot(mixture_fractions(profile), survival)
+                                              : survival[widest];
     // The pixel's own light must cover exactly the radii that the sampler leaves out.
-    r0 = draw(profile, beyond).r;
-    direct = 1.0 - profile_survival(profile, settings.surface == SURFACE_PATCH ? r0 * sqrt(area) : r0);
+    r0 = draw(settings, profile, beyond).r;
+    direct =
+        1.0 - profile_survival(profile, settings.surface == SURFACE_PATCH ? r0 * sqrt(own.a) : r0);
   }
   // Number of pixels that a sample represents: 1 / (samples * density on the view plane). The
   // density on the plane is the density of the radius / (2 pi r).
   float pixels_per_sample = two_pi * beyond / (float(set.all) * footprint.x * footprint.y);
-  uvec2 offset = sequence_offset(point.pixel, set);
+  uvec2 offset = sequence_offset(settings.sequence, point.pixel, set);
   float each = beyond / float(set.count);
   vec3 sum = vec3(0.0), total = vec3(0.0);
   for (int i = 0; i < set.count; ++i) {
-    vec2 unit = sequence_point(offset, set, i);
-    radial_sample drawn = draw(profile, unit.x * beyond);
+    vec2 unit = sequence_point(settings.sequence, offset, set, i);
+    radial_sample drawn = draw(settings, profile, unit.x * beyond);
     vec2 at = vec2(point.pixel) + drawn.r * vec2(cos(unit.y * two_pi), sin(unit.y * two_pi)) / footprint;
-    vec3 weight;
-    vec4 light;
-    if (!take_tap(point, profile, at, drawn, weight, light))
+    surface_tap tap;
+    if (!find_tap(material, depth, slope, point.id, at, tap))
       continue;
+    vec4 nearest = texelFetch(light, texel_of(tap.pixel), 0);
+    vec3 weight = tap_weight(point, profile, tap, drawn, nearest.a), seen = nearest.rgb;
     if (settings.surface == SURFACE_DISTANCE)
-      weight /= light.a;
+      weight /= nearest.a;
     if (settings.mips != MIPS_NONE) {
       float lod = 0.5 * log2(max(pixels_per_sample * drawn.r / drawn.density, 1e-20)) + settings.lod_bias;
       if (lod > 0.0)
-        light.rgb = filtered_light(at, lod, light.rgb);
+        seen = filtered_light(level_1, level_2, level_3, level_4, level_5, level_6, level_7,
+                              level_8, settings.mips, at, lod, nearest.rgb);
     }
-    sum += weight * light.rgb;
+    sum += weight * seen;
     total += weight;
   }
-  vec3 mass = direct + each * total, mean = direct * own + each * sum;
+  vec3 mass = direct + each * total, mean = direct * own.rgb + each * sum;
   if (settings.estimator == ESTIMATOR_SELF)
-    mean = mix(own, mean / max(mass, vec3(1e-30)), greaterThan(mass, vec3(1e-30)));
+    mean = mix(own.rgb, mean / max(mass, vec3(1e-30)), greaterThan(mass, vec3(1e-30)));
   else if (settings.estimator == ESTIMATOR_CENTRED)
-    mean += (1.0 - mass) * own;
-  mean = max(mix(own, mean, greaterThan(profile.d.rgb, vec3(0.0))), vec3(0.0));
-  return mix(mean, own, profile_direct(point.id));
+    mean += (1.0 - mass) * own.rgb;
+  mean = max(mix(own.rgb, mean, greaterThan(profile.d.rgb, vec3(0.0))), vec3(0.0));
+  return mix(mean, own.rgb, profile_direct(point.id));
 }
 
 #endif

@@ -1,19 +1,24 @@
 // Computes the number of samples of a pixel from the variance of its earlier results: SPVG and
 // control variates (Xie and others 2021; ids of docs/papers.md).
-// integration/tools/references/guidance.hpp mirrors these functions under the same names. Include
-// after bindings with the settings of subsurface.guided.
+// integration/tools/references/guidance.hpp mirrors these functions under the same names.
 #ifndef DERMIS_GUIDANCE_GLSL
 #define DERMIS_GUIDANCE_GLSL
 
+// Settings of subsurface.guided, under the same names.
+struct guidance_settings {
+  float sigma2_target, kappa, eta, eta_cv, eps_alpha;
+  int min_samples, max_samples;
+};
+
 // Equations 8 to 10 (A4): returns kappa * Delta + E, not clamped.
-float wanted_samples(float variance, float mean_count) {
+float wanted_samples(float variance, float mean_count, guidance_settings settings) {
   float ratio = variance / settings.sigma2_target;
   float change = (ratio - 1.0) * mean_count * (2.0 / settings.eta - 2.0);
   return settings.kappa * change + ratio * mean_count;
 }
 
 // A6: returns a whole number within the range.
-int clamped_samples(float wanted) {
+int clamped_samples(float wanted, guidance_settings settings) {
   return int(round(clamp(wanted, float(settings.min_samples), float(settings.max_samples))));
 }
 
@@ -38,8 +43,8 @@ moving_covariance add_values(moving_covariance moments, float f, float g, float 
 }
 
 // Algorithm 2 (C10). The bound is not applied if the mean of g is 0.
-float control_weight(moving_covariance moments) {
-  float weight = (moments.covariance + settings.eps_alpha) / (moments.variance_g + settings.eps_alpha);
+float control_weight(moving_covariance moments, float eps_alpha) {
+  float weight = (moments.covariance + eps_alpha) / (moments.variance_g + eps_alpha);
   return moments.mean_g > 0.0 ? clamp(weight, 0.0, (moments.mean_f + moments.mean_g) / moments.mean_g) : weight;
 }
 

@@ -3,6 +3,8 @@
 #ifndef DERMIS_PYRAMID_GLSL
 #define DERMIS_PYRAMID_GLSL
 
+#extension GL_EXT_samplerless_texture_functions : require
+
 #include "common/environment.glsl"
 
 layout(set = 1, binding = 3) uniform sampler linear_sampler;

@@ -6,12 +6,23 @@
 #include "common/environment.glsl"
 #include "common/tiles.glsl"
 #include "common/half.glsl"
+#include "common/radius.glsl"
 #include "afis/afis.glsl"
+
+vec3 scatter_light(scatter_point point, scatter_profile profile, vec4 own, sample_set set) {
+  afis_settings chosen = afis_settings(settings.lod_bias, settings.sequence, settings.channels,
+                                       settings.inverse, settings.weighting, settings.surface,
+                                       settings.direct, settings.estimator, settings.mips);
+  return scatter(chosen, set, point, profile, own, material_image, depth_image, slope_image,
+                 light_image, level_1_image, level_2_image, level_3_image, level_4_image,
+                 level_5_image, level_6_image, level_7_image, level_8_image);
+}
 
 void main() {
   ivec2 pixel;
   bool copy_only;
-  if (!listed_pixel(pixel, copy_only))
+  uint listed = listed_tile();
+  if (listed >= tiles_data[0] || !pixel_of_tile(tiles_data[1u + listed], pixel, copy_only))
     return;
   ivec2 texel = texel_of(pixel);
   uint id = texelFetch(material_image, texel, 0).r;
@@ -22,9 +33,12 @@ void main() {
   if (!copy_only && depth > 0.0) {
     float scale = has_scatter_scale() ? clean_scatter_scale(texelFetch(scatter_scale_image, texel, 0).r) : 1.0;
     scatter_profile profile = find_profile(id, scale);
-    if (projected_d(profile.d.w, depth) >= copy_below_d_px)
-      light.rgb = scatter(scatter_point(pixel, id, depth, view_position(vec2(pixel), depth)), profile, light.a, light.rgb,
-                          sample_set(0u, settings.samples, settings.samples, frame.frame_index * uint(settings.samples)));
+    if (projected_d(profile.d.w, depth) >= copy_below_d_px) {
+      scatter_point point = scatter_point(pixel, id, depth, view_position(vec2(pixel), depth));
+      uint first = frame.frame_index * uint(settings.samples);
+      sample_set set = sample_set(0u, settings.samples, settings.samples, first);
+      light.rgb = scatter_light(point, profile, light, set);
+    }
   }
   imageStore(scattered_image, texel, vec4(round_to_half(light.rgb), 1.0));
 }

@@ -8,16 +8,27 @@
 #include "common/environment.glsl"
 #include "common/tiles.glsl"
 #include "common/half.glsl"
+#include "common/radius.glsl"
 #include "afis/afis.glsl"
 #include "common/tile_edges.glsl"
 
 // The ramp covers the whole tile, because replaced light differs by more than blended light.
 const float ramp_px = 8.0;
 
+vec3 scatter_light(scatter_point point, scatter_profile profile, vec4 own, sample_set set) {
+  afis_settings chosen = afis_settings(settings.lod_bias, settings.sequence, settings.channels,
+                                       settings.inverse, settings.weighting, settings.surface,
+                                       settings.direct, settings.estimator, settings.mips);
+  return scatter(chosen, set, point, profile, own, material_image, depth_image, slope_image,
+                 light_image, level_1_image, level_2_image, level_3_image, level_4_image,
+                 level_5_image, level_6_image, level_7_image, level_8_image);
+}
+
 void main() {
   ivec2 pixel;
   bool copy_only;
-  if (!listed_pixel(pixel, copy_only))
+  uint listed = listed_tile();
+  if (listed >= tiles_data[0] || !pixel_of_tile(tiles_data[1u + listed], pixel, copy_only))
     return;
   ivec2 texel = texel_of(pixel), tile = pixel >> 3;
   uint id = texelFetch(material_image, texel, 0).r;
@@ -31,8 +42,16 @@ void main() {
     return;
   vec4 light = texelFetch(light_image, texel, 0);
   int count = settings.samples << (steps - 1u);
-  vec3 sampled = scatter(scatter_point(pixel, id, depth, view_position(vec2(pixel), depth)), profile, light.a, light.rgb,
-                         sample_set(0u, count, count, frame.frame_index * uint(count)));
+  scatter_point point = scatter_point(pixel, id, depth, view_position(vec2(pixel), depth));
+  sample_set set = sample_set(0u, count, count, frame.frame_index * uint(count));
+  vec3 sampled = scatter_light(point, profile, light, set);
+  uint sampled_tiles = 0u;
+  for (int i = 0; i < edge_tiles; ++i) {
+    int at = edge_tile(tile, i);
+    sampled_tiles |= has_samples(classes_data[at], samples_per_tile_data[at]) ? 1u << uint(i) : 0u;
+  }
   vec4 other = imageLoad(scattered_image, texel);
-  imageStore(scattered_image, texel, vec4(round_to_half(mix(other.rgb, sampled, edge_weight(pixel, ramp_px))), other.a));
+  float fraction = edge_weight(sampled_tiles, pixel, ramp_px);
+  imageStore(scattered_image, texel,
+             vec4(round_to_half(mix(other.rgb, sampled, fraction)), other.a));
 }

@@ -10,12 +10,26 @@
 #include "common/half.glsl"
 #include "afis/afis.glsl"
 #include "afis/guidance.glsl"
-vec2 surface_before(ivec2 pixel);
+#include "common/radius.glsl"
 #include "common/reproject.glsl"
 
 const float first_count = 16.0;  // samples of a pixel without history
 // offset in the sequence from frame to frame, whatever number of points a pixel uses
 const uint frame_stride = 61u;
+
+vec3 scatter_light(scatter_point point, scatter_profile profile, vec4 own, sample_set set) {
+  afis_settings chosen = afis_settings(settings.lod_bias, settings.sequence, settings.channels,
+                                       settings.inverse, settings.weighting, settings.surface,
+                                       settings.direct, settings.estimator, settings.mips);
+  return scatter(chosen, set, point, profile, own, material_image, depth_image, slope_image,
+                 light_image, level_1_image, level_2_image, level_3_image, level_4_image,
+                 level_5_image, level_6_image, level_7_image, level_8_image);
+}
+
+guidance_settings guidance() {
+  return guidance_settings(settings.sigma2_target, settings.kappa, settings.eta, settings.eta_cv,
+                           settings.eps_alpha, settings.min_samples, settings.max_samples);
+}
 
 bool splits() { return settings.guidance == GUIDANCE_SPLIT_HALF; }
 bool has_moments() { return settings.guidance == GUIDANCE_OCV; }
@@ -28,6 +42,15 @@ vec2 surface_before(ivec2 pixel) {
   vec2 kept = guide_before(pixel).ba;
   float depth = splits() ? kept.r : texelFetch(place_image, previous_texel(pixel), 0).r;
   return vec2(depth * mm_per_metre, kept.g);
+}
+
+history_taps find_history(previous_place place, uint id, float tolerance) {
+  history_taps taps = taps_around(place);
+  for (int i = 0; i < 4; ++i)
+    if (taps.weight[i] > 0.0 &&
+        !shows_surface(surface_before(tap_pixel(taps, i)), place, id, tolerance))
+      taps.weight[i] = 0.0;
+  return normalised_taps(taps);
 }
 
 struct guide_state {
@@ -51,7 +74,7 @@ guide_state state_before(ivec2 pixel, float depth, uint id, float rise) {
   vec4 guide = vec4(0.0), control = vec4(0.0);
   for (int i = 0; i < 4; ++i)
     if (taps.weight[i] > 0.0) {
-      ivec2 at = taps.first + ivec2(i & 1, i >> 1);
+      ivec2 at = tap_pixel(taps, i);
       guide += taps.weight[i] * guide_before(at);
       if (has_moments())
         control += taps.weight[i] * texelFetch(control_image, previous_texel(at), 0);
@@ -91,8 +114,9 @@ struct guided_pixel {
 // number of samples.
 float sample_halves(inout guided_pixel at, int count, uint first) {
   scatter_point point = scatter_point(at.pixel, at.id, at.depth, view_position(vec2(at.pixel), at.depth));
-  vec3 a = scatter(point, at.profile, at.alpha, at.light, sample_set(0u, count / 2, count, first));
-  vec3 b = scatter(point, at.profile, at.alpha, at.light, sample_set(1u, count / 2, count, first));
+  vec4 own = vec4(at.light, at.alpha);
+  vec3 a = scatter_light(point, at.profile, own, sample_set(0u, count / 2, count, first));
+  vec3 b = scatter_light(point, at.profile, own, sample_set(1u, count / 2, count, first));
   at.light = 0.5 * (a + b);
   float half_way = 0.5 * (exposed(a) - exposed(b));
   return half_way * half_way * float(count);
@@ -102,11 +126,14 @@ float sample_halves(inout guided_pixel at, int count, uint first) {
 void sample_and_watch(inout guided_pixel at, inout guide_state state, int count, uint first) {
   scatter_point point = scatter_point(at.pixel, at.id, at.depth, view_position(vec2(at.pixel), at.depth));
   float g = exposed(at.light);
-  at.light = scatter(point, at.profile, at.alpha, at.light, sample_set(0u, count, count, first));
+  vec4 own = vec4(at.light, at.alpha);
+  at.light = scatter_light(point, at.profile, own, sample_set(0u, count, count, first));
   float f = exposed(at.light);
   if (state.lost)
     state.moments = moving_covariance(f, g, 0.0, 0.0);
-  float weight = settings.guidance == GUIDANCE_SPVG ? 0.0 : has_moments() ? control_weight(state.moments) : 1.0;
+  float weight = settings.guidance == GUIDANCE_SPVG ? 0.0 : 1.0;
+  if (has_moments())
+    weight = control_weight(state.moments, settings.eps_alpha);
   float watched = f - weight * g;
   moving_variance moments = moving_variance(state.lost ? watched : state.mean, state.sd * state.sd);
   if (!state.lost)
@@ -119,8 +146,10 @@ void sample_and_watch(inout guided_pixel at, inout guide_state state, int count,
 
 void main() {
   guided_pixel at;
-  bool copy_only;
-  bool listed = listed_pixel(at.pixel, copy_only);
+  at.pixel = ivec2(0);
+  bool copy_only = false;
+  uint tile = listed_tile();
+  bool listed = tile < tiles_data[0] && pixel_of_tile(tiles_data[1u + tile], at.pixel, copy_only);
   ivec2 texel = ivec2(0);
   at.id = 0u;
   at.depth = 0.0;
@@ -146,7 +175,8 @@ void main() {
   if (at.id != 0u) {
     vec2 footprint = pixel_footprint(at.depth);
     state = state_before(at.pixel, at.depth, at.id, length(texelFetch(slope_image, texel, 0).rg * footprint));
-    count = clamped_samples(wanted_samples(state.sd * state.sd, state.mean_count));
+    float wanted = wanted_samples(state.sd * state.sd, state.mean_count, guidance());
+    count = clamped_samples(wanted, guidance());
     uint first = frame.frame_index * frame_stride;
     if (splits()) {
       count += count & 1;

@@ -33,7 +33,9 @@ void main() {
     ivec2 texel = texel_of(pixel);
     uint id = texelFetch(material_image, texel, 0).r;
     if (id != 0u) {
-      light = vec4(pixel_light(texel), 1.0);
+      light.rgb =
+          pixel_light(lighting_image, albedo_image, has_albedo(), settings.texturing, texel);
+      light.a = 1.0;
       if (settings.profiles == PROFILES_APART)
         light.a = beside_another_profile(pixel, id) ? mixed_mask : apart_scale;
     }

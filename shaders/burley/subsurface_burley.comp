@@ -24,10 +24,12 @@ vec3 scatter(scatter_point point, scatter_profile profile, vec3 own) {
   vec3 sum = vec3(0.0), total = vec3(0.0);
   for (int i = 0; i < settings.samples; ++i, direction = turn * direction) {
     radial_sample drawn = profile_sample(profile, 1.0 - (float(i) + random.x) / float(settings.samples));
-    vec3 weight;
-    vec4 light;
-    if (!take_tap(point, profile, vec2(point.pixel) + direction * drawn.r * pixels_per_mm, drawn, weight, light))
+    vec2 at = vec2(point.pixel) + direction * drawn.r * pixels_per_mm;
+    surface_tap tap;
+    if (!find_tap(material_image, depth_image, slope_image, point.id, at, tap))
       continue;
+    vec4 light = texelFetch(light_image, texel_of(tap.pixel), 0);
+    vec3 weight = tap_weight(point, profile, tap, drawn, light.a);
     sum += weight * light.rgb;
     total += weight;
   }
@@ -39,7 +41,8 @@ vec3 scatter(scatter_point point, scatter_profile profile, vec3 own) {
 void main() {
   ivec2 pixel;
   bool copy_only;
-  if (!listed_pixel(pixel, copy_only))
+  uint listed = listed_tile();
+  if (listed >= tiles_data[0] || !pixel_of_tile(tiles_data[1u + listed], pixel, copy_only))
     return;
   ivec2 texel = texel_of(pixel);
   uint id = texelFetch(material_image, texel, 0).r;

@@ -2,6 +2,8 @@
 #ifndef DERMIS_COUNTERS_GLSL
 #define DERMIS_COUNTERS_GLSL
 
+#include "constants.glsl"
+
 layout(std430, set = 1, binding = 6) buffer counter_block {
   uint scattering_tiles;
   uint copied_tiles;

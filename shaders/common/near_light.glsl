@@ -1,12 +1,11 @@
-// Light around a group of 8x8 pixels, read once into shared memory: the scattered light that the
-// nearest pixels explain, and the mean brightness around. Include after bindings with `lighting`,
-// `albedo`, `scattered`, `material`, `depth` and the setting `texturing`.
+// Light around a group of 8x8 pixels, stored once in shared memory: the scattered light that the
+// nearest pixels explain, and the mean brightness around. The group stores its texels with
+// store_near_texel, then calls finish_near_light.
 #ifndef DERMIS_NEAR_LIGHT_GLSL
 #define DERMIS_NEAR_LIGHT_GLSL
 
 #include "constants.glsl"
 #include "common/environment.glsl"
-#include "common/pixel_light.glsl"
 #include "common/profile.glsl"
 
 const int near_reach = 2;                // pixels to each side that explain scattered light
@@ -44,25 +43,22 @@ float near_rise(int index, int step) {
 }
 vec2 near_rise(int index) { return vec2(near_rise(index, 1), near_rise(index, near_side)); }
 
-// Reads the texels around the group with first pixel `first`, each once. Every invocation of the
-// group must call this.
-void share_near_light(ivec2 first) {
-  for (int i = int(gl_LocalInvocationIndex); i < near_texels; i += 64) {
-    ivec2 pixel = first + ivec2(i % near_side, i / near_side) - near_ring, texel = texel_of(pixel);
-    // Nothing is scattered beyond the bounds, so `scattered` is not written there.
-    uint id = inside_rect(pixel) && inside_bounds(pixel) ? texelFetch(material_image, texel, 0).r : 0u;
-    vec3 light = vec3(0.0), scattered = vec3(0.0);
-    float depth = 0.0;
-    if (id != 0u) {
-      light = pixel_light(texel);
-      scattered = texelFetch(scattered_image, texel, 0).rgb;
-      depth = view_depth(texelFetch(depth_image, texel, 0).r);
-    }
-    near_profile[i] = id;
-    near_depth[i] = depth;
-    near_light[i] = vec4(light, 0.0);
-    near_brightness[i] = vec4(light + near_scattered_part * scattered, id != 0u ? 1.0 : 0.0);
-  }
+// Returns the pixel of texel i of the shared square around the group with first pixel `first`.
+ivec2 near_pixel(ivec2 first, int i) {
+  return first + ivec2(i % near_side, i / near_side) - near_ring;
+}
+
+// Stores texel i; all values are 0 if the pixel has no subsurface. `light`: light that can scatter.
+void store_near_texel(int i, uint id, float depth, vec3 light, vec3 scattered) {
+  near_profile[i] = id;
+  near_depth[i] = depth;
+  near_light[i] = vec4(light, 0.0);
+  near_brightness[i] = vec4(light + near_scattered_part * scattered, id != 0u ? 1.0 : 0.0);
+}
+
+// Computes areas and sums over rows from the stored texels. Every invocation of the group must call
+// this.
+void finish_near_light() {
   barrier();
   for (int i = int(gl_LocalInvocationIndex); i < near_texels; i += 64) {
     ivec2 from_edge = min(ivec2(i % near_side, i / near_side), near_side - 1 - ivec2(i % near_side, i / near_side));

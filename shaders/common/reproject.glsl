@@ -1,7 +1,6 @@
 // Reprojection into the frame before: finds the position of a pixel's surface, and which of the
 // four texels around it show the same surface. passes/common/reproject.hpp mirrors these functions
-// under the same names. Include after `vec2 surface_before(ivec2 pixel)`, which returns view depth
-// (mm) and profile id at a pixel of the previous rectangle, or 0, 0 if there was no surface.
+// under the same names; find_history there is taps_around, shows_surface and normalised_taps here.
 #ifndef DERMIS_REPROJECT_GLSL
 #define DERMIS_REPROJECT_GLSL
 
@@ -58,26 +57,37 @@ struct history_taps {
   vec4 weight;  // sum 1; all 0 if the surface was not visible
 };
 
-// Returns bilinear weights of the taps that show profile `id` within `tolerance` (mm) of the
-// expected depth.
-history_taps find_history(previous_place place, uint id, float tolerance) {
+// Returns the pixel of tap i in the previous rectangle.
+ivec2 tap_pixel(history_taps taps, int i) { return taps.first + ivec2(i & 1, i >> 1); }
+
+// Returns bilinear weights of the taps in the previous rectangle. A kernel clears the weights of
+// taps that do not show the surface (shows_surface) and calls normalised_taps.
+history_taps taps_around(previous_place place) {
   history_taps none = history_taps(ivec2(0), vec4(0.0));
   if (!(place.depth > 0.0) || !all(lessThan(abs(place.pixel), vec2(reproject_largest_velocity))))
     return none;
   ivec2 first = ivec2(floor(place.pixel));
   vec2 part = place.pixel - vec2(first);
-  vec4 weight = vec4((1.0 - part.x) * (1.0 - part.y), part.x * (1.0 - part.y), (1.0 - part.x) * part.y, part.x * part.y);
-  for (int i = 0; i < 4; ++i) {
-    ivec2 pixel = first + ivec2(i & 1, i >> 1);
-    if (weight[i] > 0.0 && inside_previous(pixel)) {
-      vec2 surface = surface_before(pixel);
-      if (uint(surface.y) == id && abs(surface.x - place.depth) <= tolerance)
-        continue;
-    }
-    weight[i] = 0.0;
-  }
-  float total = weight.x + weight.y + weight.z + weight.w;
-  return total < reproject_min_weight ? none : history_taps(first, weight / total);
+  history_taps taps =
+      history_taps(first, vec4((1.0 - part.x) * (1.0 - part.y), part.x * (1.0 - part.y),
+                               (1.0 - part.x) * part.y, part.x * part.y));
+  for (int i = 0; i < 4; ++i)
+    if (!inside_previous(tap_pixel(taps, i)))
+      taps.weight[i] = 0.0;
+  return taps;
+}
+
+// Returns whether `surface` of the frame before (x: view depth in mm, y: profile id; 0, 0 if there
+// was no surface) has profile `id` and is within `tolerance` (mm) of the expected depth.
+bool shows_surface(vec2 surface, previous_place place, uint id, float tolerance) {
+  return uint(surface.y) == id && abs(surface.x - place.depth) <= tolerance;
+}
+
+// Returns the taps with weights of sum 1, or all 0 if too little of the surface was visible.
+history_taps normalised_taps(history_taps taps) {
+  float total = taps.weight.x + taps.weight.y + taps.weight.z + taps.weight.w;
+  return total < reproject_min_weight ? history_taps(ivec2(0), vec4(0.0))
+                                      : history_taps(taps.first, taps.weight / total);
 }
 
 #endif

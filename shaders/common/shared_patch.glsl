@@ -1,7 +1,8 @@
-// Patches of a group of 8x8 pixels, from texels read once into shared memory. Include after
-// bindings with `material` and `depth`.
+// Patches of a group of 8x8 pixels, from texels read once into shared memory.
 #ifndef DERMIS_SHARED_PATCH_GLSL
 #define DERMIS_SHARED_PATCH_GLSL
+
+#extension GL_EXT_samplerless_texture_functions : require
 
 #include "common/patch.glsl"
 
@@ -11,12 +12,12 @@ shared float patch_depth[patch_side * patch_side]; // mm; 0 if nothing is visibl
 
 // Reads the texels around the group with first pixel `first`, each once. Every invocation of the
 // group must call this.
-void share_patches(ivec2 first) {
+void share_patches(utexture2D material, texture2D depth, ivec2 first) {
   for (int i = int(gl_LocalInvocationIndex); i < patch_side * patch_side; i += 64) {
     ivec2 pixel = first + ivec2(i % patch_side, i / patch_side) - 1, texel = texel_of(pixel);
-    uint id = inside_rect(pixel) ? texelFetch(material_image, texel, 0).r : 0u;
+    uint id = inside_rect(pixel) ? texelFetch(material, texel, 0).r : 0u;
     patch_profile[i] = id;
-    patch_depth[i] = id != 0u ? view_depth(texelFetch(depth_image, texel, 0).r) : 0.0;
+    patch_depth[i] = id != 0u ? view_depth(texelFetch(depth, texel, 0).r) : 0.0;
   }
   barrier();
 }

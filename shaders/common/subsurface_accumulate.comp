@@ -11,10 +11,9 @@
 #include "common/half.glsl"
 #include "common/radius.glsl"
 #include "common/near_light.glsl"
+#include "common/pixel_light.glsl"
 #include "common/accumulate.glsl"
-vec2 surface_before(ivec2 pixel);
 #include "common/reproject.glsl"
-
 
 accumulated_light past_at(ivec2 pixel) {
   vec4 kept = texelFetch(past_image, previous_texel(pixel), 0);
@@ -26,9 +25,13 @@ vec2 surface_before(ivec2 pixel) {
   return vec2(kept.r * mm_per_metre, kept.g);
 }
 
-bool is_surface(ivec2 pixel, uint id, float depth, float tolerance) {
-  vec2 surface = inside_previous(pixel) ? surface_before(pixel) : vec2(0.0);
-  return uint(surface.y) == id && abs(surface.x - depth) <= tolerance;
+history_taps find_history(previous_place place, uint id, float tolerance) {
+  history_taps taps = taps_around(place);
+  for (int i = 0; i < 4; ++i)
+    if (taps.weight[i] > 0.0 &&
+        !shows_surface(surface_before(tap_pixel(taps, i)), place, id, tolerance))
+      taps.weight[i] = 0.0;
+  return normalised_taps(taps);
 }
 
 // Reads history with cubic weights from the 4x4 texels around the place. Returns false unless all
@@ -44,7 +47,8 @@ bool sharp_history(previous_place place, uint id, float tolerance, out accumulat
       float weight = across[x] * down[y];
       if (weight == 0.0)
         continue;
-      if (!is_surface(pixel, id, place.depth, tolerance))
+      vec2 surface = inside_previous(pixel) ? surface_before(pixel) : vec2(0.0);
+      if (!shows_surface(surface, place, id, tolerance))
         return false;
       accumulated_light one = past_at(pixel);
       found.light += weight * one.light;
@@ -69,11 +73,31 @@ accumulated_light history_of(ivec2 pixel, float depth, uint id, float rise) {
   found = accumulated_light(vec3(0.0), 0.0);
   for (int i = 0; i < 4; ++i)
     if (taps.weight[i] > 0.0) {
-      accumulated_light one = past_at(taps.first + ivec2(i & 1, i >> 1));
+      accumulated_light one = past_at(tap_pixel(taps, i));
       found.light += taps.weight[i] * one.light;
       found.count += taps.weight[i] * one.count;
     }
   return found;
+}
+
+// Reads the texels around the group with first pixel `first`, each once. Every invocation of the
+// group must call this.
+void share_near_light(ivec2 first) {
+  for (int i = int(gl_LocalInvocationIndex); i < near_texels; i += 64) {
+    ivec2 pixel = near_pixel(first, i), texel = texel_of(pixel);
+    // Nothing is scattered beyond the bounds, so `scattered` is not written there.
+    uint id =
+        inside_rect(pixel) && inside_bounds(pixel) ? texelFetch(material_image, texel, 0).r : 0u;
+    vec3 light = vec3(0.0), scattered = vec3(0.0);
+    float depth = 0.0;
+    if (id != 0u) {
+      light = pixel_light(lighting_image, albedo_image, has_albedo(), settings.texturing, texel);
+      scattered = texelFetch(scattered_image, texel, 0).rgb;
+      depth = view_depth(texelFetch(depth_image, texel, 0).r);
+    }
+    store_near_texel(i, id, depth, light, scattered);
+  }
+  finish_near_light();
 }
 
 // Remainders of this frame's light, by pixel of the group and a ring of neighbours.
@@ -150,9 +174,10 @@ shown_and_kept with_history(accumulated_light history, vec3 light, near_field ne
 }
 
 void main() {
-  ivec2 pixel;
-  bool copy_only;
-  bool listed = listed_pixel(pixel, copy_only);
+  uint tile = listed_tile();
+  ivec2 pixel = ivec2(0);
+  bool copy_only = false;
+  bool listed = tile < tiles_data[0] && pixel_of_tile(tiles_data[1u + tile], pixel, copy_only);
   ivec2 local = ivec2(gl_LocalInvocationID.xy), first = pixel - local, texel = texel_of(pixel);
   share_near_light(first);
   near_field near = share_remainder(first, local);

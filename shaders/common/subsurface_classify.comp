@@ -99,11 +99,16 @@ uint find_widest(ivec2 first, uint mask, uint ids[run]) {
   return widest;
 }
 
+vec3 own_light(ivec2 texel) {
+  return pixel_light(lighting_image, albedo_image, has_albedo(), settings.texturing, texel);
+}
+
 void gather_light(ivec2 first, uint mask, uint tile) {
   vec3 low = vec3(largest_half), high = vec3(0.0);
   bool any = mask != 0u;
   while (mask != 0u) {
-    vec3 light = round_to_half(pixel_light(texel_of(run_pixel(first, findLSB(mask)))));
+    ivec2 texel = texel_of(run_pixel(first, findLSB(mask)));
+    vec3 light = round_to_half(own_light(texel));
     mask &= mask - 1u;
     low = min(low, light);
     high = max(high, light);

@@ -12,7 +12,8 @@
 void main() {
   ivec2 pixel;
   bool copy_only, full;
-  if (!listed_pixel(pixel, copy_only, full))
+  uint listed = listed_tile();
+  if (listed >= tiles_data[0] || !pixel_of_tile(tiles_data[1u + listed], pixel, copy_only, full))
     return;
   ivec2 texel = texel_of(pixel);
   bool subsurface = full;

@@ -12,8 +12,10 @@
 void main() {
   ivec2 pixel;
   bool copy_only;
-  if (!listed_pixel(pixel, copy_only))
+  uint listed = listed_tile();
+  if (listed >= tiles_data[0] || !pixel_of_tile(tiles_data[1u + listed], pixel, copy_only))
     return;
   ivec2 texel = texel_of(pixel);
-  imageStore(scattered_image, texel, vec4(round_to_half(pixel_light(texel)), 1.0));
+  vec3 light = pixel_light(lighting_image, albedo_image, has_albedo(), settings.texturing, texel);
+  imageStore(scattered_image, texel, vec4(round_to_half(light), 1.0));
 }

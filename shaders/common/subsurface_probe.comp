@@ -49,6 +49,10 @@ surface_patch patch_of(ivec2 pixel, uint id, float depth) {
                                       vec2(depth_of(pixel + ivec2(1, 0), id), depth_of(pixel + ivec2(0, 1), id))));
 }
 
+vec3 own_light(ivec2 texel) {
+  return pixel_light(lighting_image, albedo_image, has_albedo(), settings.texturing, texel);
+}
+
 // Returns the intersection of the patch's plane with the ray through a point `offset` pixels from
 // the centre of `pixel`.
 vec3 patch_point(ivec2 pixel, float depth, vec2 slope, vec2 offset) {
@@ -103,7 +107,7 @@ float squared_error(ivec2 pixel, uint lane, bool copied) {
       vec2 sides = pixel_footprint(there);
       vec3 k = kernel(profile, p, pixel, q, there, surface) * (sides.x * sides.y * surface.area);
       weight += k;
-      light += k * pixel_light(texel_of(q));
+      light += k * own_light(texel_of(q));
     }
   }
   sums[lane] = light;
@@ -118,7 +122,7 @@ float squared_error(ivec2 pixel, uint lane, bool copied) {
   }
   if (!counts)
     return -1.0;
-  vec3 own = pixel_light(texel), direct = profile_direct(id);
+  vec3 own = own_light(texel), direct = profile_direct(id);
   vec3 reference = mix(sums[0] / max(weights[0], vec3(1e-30)), own, direct);
   reference = mix(own, reference, vec3(greaterThan(profile.d.rgb, vec3(0.0))));
   vec3 shown = has_scattered() && !copied ? texelFetch(scattered_image, texel, 0).rgb : own;

@@ -10,10 +10,11 @@
 #include "common/shared_patch.glsl"
 
 void main() {
-  ivec2 pixel;
-  bool copy_only;
-  bool listed = listed_pixel(pixel, copy_only);
-  share_patches(pixel - ivec2(gl_LocalInvocationID.xy));
+  uint tile = listed_tile();
+  ivec2 pixel = ivec2(0);
+  bool copy_only = false;
+  bool listed = tile < tiles_data[0] && pixel_of_tile(tiles_data[1u + tile], pixel, copy_only);
+  share_patches(material_image, depth_image, pixel - ivec2(gl_LocalInvocationID.xy));
   if (!listed)
     return;
   ivec2 texel = texel_of(pixel);
@@ -21,7 +22,7 @@ void main() {
   vec4 light = vec4(0.0);
   vec2 slope = vec2(0.0);
   if (id != 0u) {
-    light.rgb = pixel_light(texel);
+    light.rgb = pixel_light(lighting_image, albedo_image, has_albedo(), settings.texturing, texel);
     float depth = own_depth();
     light.a = 1.0;
     if (depth > 0.0 && !copy_only) {

@@ -5,6 +5,8 @@
 #include "common/subsurface_transmission.bindings.glsl"
 #include "common/environment.glsl"
 #include "common/half.glsl"
+#include "common/radius.glsl"
+#include "common/sanitise.glsl"
 #include "common/slab.glsl"
 
 layout(local_size_x = 8, local_size_y = 8, local_size_z = 1) in;
@@ -16,7 +18,12 @@ void main() {
   ivec2 texel = texel_of(pixel);
   vec4 light = texelFetch(lighting_image, texel, 0);
   uint id = texelFetch(material_image, texel, 0).r;
-  if (id != 0u)
-    light.rgb = clean_light(light.rgb) + light_through_slab(texel, id);
+  if (id != 0u) {
+    float scale = 1.0, metres = texelFetch(thickness_image, texel, 0).r;
+    if (has_scatter_scale())
+      scale = clean_scatter_scale(texelFetch(scatter_scale_image, texel, 0).r);
+    vec3 back_lighting = texelFetch(back_lighting_image, texel, 0).rgb;
+    light.rgb = clean_light(light.rgb) + light_through_slab(id, scale, metres, back_lighting);
+  }
   imageStore(lit_image, texel, vec4(round_to_half(light.rgb), light.a));
 }

@@ -10,6 +10,7 @@
 #include "common/environment.glsl"
 #include "constants.glsl"
 #include "common/counters.glsl"
+#include "common/radius.glsl"
 #include "common/slab.glsl"
 #include "common/tiles.glsl"
 
@@ -17,6 +18,13 @@
 const float pixel_steps = 65536.0;
 
 shared uint squares, pixels;
+
+vec3 transmitted_light(ivec2 texel, uint id) {
+  float scale = 1.0, metres = texelFetch(thickness_image, texel, 0).r;
+  if (has_scatter_scale())
+    scale = clean_scatter_scale(texelFetch(scatter_scale_image, texel, 0).r);
+  return light_through_slab(id, scale, metres, texelFetch(back_lighting_image, texel, 0).rgb);
+}
 
 void main() {
   if (gl_LocalInvocationIndex == 0u) {
@@ -26,11 +34,13 @@ void main() {
   barrier();
   ivec2 pixel;
   bool copy_only;
-  if (listed_pixel(pixel, copy_only)) {
+  uint listed = listed_tile();
+  if (listed < tiles_data[0] && pixel_of_tile(tiles_data[1u + listed], pixel, copy_only)) {
     ivec2 texel = texel_of(pixel);
     uint id = texelFetch(material_image, texel, 0).r;
     if (id != 0u) {
-      float exposed = min(frame.exposure * dot(luminance_weights, light_through_slab(texel, id)), 1.0);
+      vec3 light = transmitted_light(texel, id);
+      float exposed = min(frame.exposure * dot(luminance_weights, light), 1.0);
       atomicAdd(squares, uint(exposed * exposed * pixel_steps));
       atomicAdd(pixels, 1u);
     }

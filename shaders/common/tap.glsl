@@ -1,13 +1,14 @@
-// One sample of the surface around a pixel. Include after bindings with `light`, `slope`,
-// `material`, `depth`.
+// One sample of the surface around a pixel.
 #ifndef DERMIS_TAP_GLSL
 #define DERMIS_TAP_GLSL
+
+#extension GL_EXT_samplerless_texture_functions : require
 
 #include "common/constants_math.glsl"
 #include "common/environment.glsl"
 #include "common/profile.glsl"
 
-
+// The pixel whose light is sampled.
 struct scatter_point {
   ivec2 pixel;
   uint id;
@@ -15,32 +16,41 @@ struct scatter_point {
   vec3 position; // view space, mm
 };
 
-// Evaluates the sample at `at` (pixels of the rectangle, integers are centres), which was drawn at
-// radius r across the view with a density of the radius. weight_c = R_c(distance) * area / density
-// on the plane; its mean is the fraction of the kernel that hits the surface. light: rgb, a = area.
-// Returns false if the pixel's profile has no surface there.
-bool take_tap(scatter_point point, scatter_profile profile, vec2 at, radial_sample drawn, out vec3 weight, out vec4 light) {
-  weight = vec3(0.0);
-  light = vec4(0.0);
-  ivec2 q = ivec2(round(clamp(at, vec2(-1.0), vec2(frame.rect.zw))));
-  if (!inside_rect(q))
+// The surface under a sample.
+struct surface_tap {
+  vec2 at;     // the sample's place in pixels of the rectangle; integers are centres
+  ivec2 pixel; // the pixel there
+  float depth; // of this pixel, mm
+  vec2 slope;  // of this pixel's patch, as surface_patch
+};
+
+// Finds the surface at `at`, in pixels of the rectangle. Returns false if profile `id` has no
+// surface there.
+bool find_tap(utexture2D material, texture2D depth, texture2D slope, uint id, vec2 at,
+              out surface_tap tap) {
+  tap = surface_tap(at, ivec2(round(clamp(at, vec2(-1.0), vec2(frame.rect.zw)))), 0.0, vec2(0.0));
+  if (!inside_rect(tap.pixel))
     return false;
-  ivec2 texel = texel_of(q);
-  if (texelFetch(material_image, texel, 0).r != point.id)
+  ivec2 texel = texel_of(tap.pixel);
+  if (texelFetch(material, texel, 0).r != id)
     return false;
-  float depth = view_depth(texelFetch(depth_image, texel, 0).r);
-  if (depth <= 0.0)
-    return false;
-  light = texelFetch(light_image, texel, 0);
-  vec2 slope = texelFetch(slope_image, texel, 0).rg;
+  tap.depth = view_depth(texelFetch(depth, texel, 0).r);
+  tap.slope = texelFetch(slope, texel, 0).rg;
+  return tap.depth > 0.0;
+}
+
+// Returns weight_c = R_c(distance) * area / density on the plane; its mean is the fraction of the
+// kernel that hits the surface. `drawn`: the sample's radius across the view, with its density.
+// `area`: that of the tap's patch, as surface_patch.
+vec3 tap_weight(scatter_point point, scatter_profile profile, surface_tap tap, radial_sample drawn,
+                float area) {
   // Uses the sample's own point on the patch, not the patch's centre, because the reference
   // averages over the patch.
-  float point_depth = depth + dot(slope * pixel_footprint(depth), at - vec2(q));
-  float distance_3d = max(length(view_position(at, point_depth) - point.position), 1e-12);
+  float depth = tap.depth + dot(tap.slope * pixel_footprint(tap.depth), tap.at - vec2(tap.pixel));
+  float distance_3d = max(length(view_position(tap.at, depth) - point.position), 1e-12);
   // The density on the view plane at the pixel's depth is the density of the radius / (2 pi r).
-  float zoom = is_perspective() ? depth / point.depth : 1.0;
-  weight = profile_falloff(profile, distance_3d) * (drawn.r / drawn.density * light.a * zoom * zoom);
-  return true;
+  float zoom = is_perspective() ? tap.depth / point.depth : 1.0;
+  return profile_falloff(profile, distance_3d) * (drawn.r / drawn.density * area * zoom * zoom);
 }
 
 #endif

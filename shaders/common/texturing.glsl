@@ -1,6 +1,8 @@
-// Applies albedo before or after scattering. Include after bindings with the setting `texturing`.
+// Applies albedo before or after scattering, as the setting `texturing` says.
 #ifndef DERMIS_TEXTURING_GLSL
 #define DERMIS_TEXTURING_GLSL
+
+#include "options.glsl"
 
 // Lower bound of albedo in divisions, because light divided by almost no albedo is unreliable. Both
 // sides of scattering use the same bound, so that light that does not scatter is restored exactly.

@@ -1,11 +1,14 @@
 // State that subsurface.residual keeps of a pixel in addition to its ratio: view depth in metres,
 // profile, pattern, and mean square deviation. The pattern is the logarithm of the light in which
 // the ratio was learned, so that halves can hold the value in any unit of light. The deviation is
-// that of later patterns while light is stable. Include after reproject.glsl.
+// that of later patterns while light is stable.
 #ifndef DERMIS_RESIDUAL_GLSL
 #define DERMIS_RESIDUAL_GLSL
 
+#extension GL_EXT_samplerless_texture_functions : require
+
 #include "common/constants_math.glsl"
+#include "common/reproject.glsl"
 
 // Halves hold a depth within 0.05 % from 0.1 mm to 65 km.
 const float min_light = 1e-6;    // light of the pyramid below which a ratio is meaningless
@@ -14,7 +17,21 @@ const float never_lit = -128.0;    // stored instead of a pattern
 const float stray_width = 2.0;
 const float sqrt_pi = 1.7724539;
 
-vec2 residual_surface_before(vec4 kept) { return vec2(kept.r * mm_per_metre, kept.g); }
+// `place_image`: the image that keeps the state.
+vec2 residual_surface_before(texture2D place_image, ivec2 pixel) {
+  vec2 kept = texelFetch(place_image, previous_texel(pixel), 0).rg;
+  return vec2(kept.r * mm_per_metre, kept.g);
+}
+
+history_taps find_history(texture2D place_image, previous_place place, uint id, float tolerance) {
+  history_taps taps = taps_around(place);
+  for (int i = 0; i < 4; ++i)
+    if (taps.weight[i] > 0.0 &&
+        !shows_surface(residual_surface_before(place_image, tap_pixel(taps, i)), place, id,
+                       tolerance))
+      taps.weight[i] = 0.0;
+  return normalised_taps(taps);
+}
 
 // Rec. 709
 float residual_luminance(vec3 light) { return dot(light, luminance_weights); }
@@ -25,11 +42,11 @@ bool has_pattern(vec2 kept) { return kept.x > 0.5 * never_lit; }
 
 // Returns the pattern and the squared deviation that the frame before kept; never_lit if it knew
 // neither.
-vec2 pattern_before(history_taps taps) {
+vec2 pattern_before(texture2D place_image, history_taps taps) {
   vec3 sum = vec3(0.0);
   for (int i = 0; i < 4; ++i)
     if (taps.weight[i] > 0.0) {
-      vec2 kept = texelFetch(place_image, previous_texel(taps.first + ivec2(i & 1, i >> 1)), 0).ba;
+      vec2 kept = texelFetch(place_image, previous_texel(tap_pixel(taps, i)), 0).ba;
       if (has_pattern(kept))
         sum += taps.weight[i] * vec3(kept, 1.0);
     }

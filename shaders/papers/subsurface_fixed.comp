@@ -26,18 +26,21 @@ vec3 scatter(scatter_point point, scatter_profile profile, float area, vec3 own)
   if (settings.direct != DIRECT_NONE) {
     float r0 = settings.direct == DIRECT_INSCRIBED ? 0.5 * min(footprint.x, footprint.y) : 0.5 * length(footprint);
     beyond = profile_survival(profile, r0)[widest];
-    r0 = radial_draw(profile, beyond).r;
+    r0 = radial_draw(profile, beyond, settings.inverse, settings.weighting).r;
     direct = 1.0 - profile_survival(profile, r0 * sqrt(area));
   }
   vec3 sum = vec3(0.0), total = vec3(0.0);
   for (int i = 0; i < settings.samples; ++i) {
     vec2 unit = unit_from_fixed(r2_point(hash.xy, uint(i)));
-    radial_sample drawn = radial_draw(profile, unit.x * beyond);
+    radial_sample drawn =
+        radial_draw(profile, unit.x * beyond, settings.inverse, settings.weighting);
     vec2 offset = drawn.r * vec2(cos(unit.y * two_pi), sin(unit.y * two_pi));
-    vec3 weight;
-    vec4 light;
-    if (!take_tap(point, profile, vec2(point.pixel) + offset / footprint, drawn, weight, light))
+    surface_tap tap;
+    if (!find_tap(material_image, depth_image, slope_image, point.id,
+                  vec2(point.pixel) + offset / footprint, tap))
       continue;
+    vec4 light = texelFetch(light_image, texel_of(tap.pixel), 0);
+    vec3 weight = tap_weight(point, profile, tap, drawn, light.a);
     sum += weight * light.rgb;
     total += weight;
   }
@@ -54,7 +57,8 @@ vec3 scatter(scatter_point point, scatter_profile profile, float area, vec3 own)
 void main() {
   ivec2 pixel;
   bool copy_only;
-  if (!listed_pixel(pixel, copy_only))
+  uint listed = listed_tile();
+  if (listed >= tiles_data[0] || !pixel_of_tile(tiles_data[1u + listed], pixel, copy_only))
     return;
   ivec2 texel = texel_of(pixel);
   uint id = texelFetch(material_image, texel, 0).r;

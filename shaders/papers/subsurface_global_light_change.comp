@@ -11,7 +11,6 @@
 #include "common/environment.glsl"
 #include "common/tile_packing.glsl"
 #include "sap/sap.glsl"
-vec2 surface_before(ivec2 pixel);
 #include "common/reproject.glsl"
 #include "papers/residual.glsl"
 
@@ -35,8 +34,6 @@ shared float strays[lanes * each];  // squared deviations in stable light
 shared bool known[lanes * each];
 shared vec2 sums[lanes];
 
-vec2 surface_before(ivec2 pixel) { return residual_surface_before(texelFetch(place_image, previous_texel(pixel), 0)); }
-
 // Computes the brightness of the surface at a pixel relative to the pattern that it learned, and
 // the squared deviation of its patterns. Returns false if the surface was not visible before, or is
 // dark.
@@ -53,9 +50,9 @@ bool offset_of(ivec2 pixel, out float offset, out float stray) {
   previous_place place = has_velocity()
                              ? place_before(vec2(pixel), own.depth, texelFetch(velocity_image, texel, 0).rgb)
                              : place_before(vec2(pixel), own.depth);
-  history_taps taps =
-      find_history(place, own.id, depth_tolerance(place.depth, length(own.slope) * sap_footprint(own.depth)));
-  vec2 kept = pattern_before(taps);
+  float tolerance = depth_tolerance(place.depth, length(own.slope) * sap_footprint(own.depth));
+  history_taps taps = find_history(place_image, place, own.id, tolerance);
+  vec2 kept = pattern_before(place_image, taps);
   offset = brightness(light) - kept.x;
   stray = kept.y;
   return has_pattern(kept);

@@ -39,7 +39,8 @@ vec3 add_level(texture2D level, int index, uint id, vec3 d_px, vec2 pixel, vec3 
 void main() {
   ivec2 pixel;
   bool copy_only;
-  if (!listed_pixel(pixel, copy_only))
+  uint listed = listed_tile();
+  if (listed >= tiles_data[0] || !pixel_of_tile(tiles_data[1u + listed], pixel, copy_only))
     return;
   ivec2 texel = texel_of(pixel);
   uint id = texelFetch(material_image, texel, 0).r;

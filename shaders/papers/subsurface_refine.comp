@@ -13,7 +13,8 @@ bool near_written(ivec2 at) { return class_of_tile(classes_data[sap_tile(at)]) !
 void main() {
   ivec2 pixel;
   bool copy_only;
-  if (!listed_pixel(pixel, copy_only))
+  uint listed = listed_tile();
+  if (listed >= tiles_data[0] || !pixel_of_tile(tiles_data[1u + listed], pixel, copy_only))
     return;
   ivec2 texel = texel_of(pixel);
   vec4 light = texelFetch(scattered_image, texel, 0);

@@ -13,7 +13,6 @@
 #include "common/half.glsl"
 #include "sap/sap.glsl"
 bool near_written(ivec2 at) { return class_of_tile(classes_data[sap_tile(at)]) != class_none; }
-vec2 surface_before(ivec2 pixel);
 #include "common/reproject.glsl"
 #include "sap/sap_samples.glsl"
 #include "papers/residual.glsl"
@@ -26,8 +25,6 @@ const float largest_stray = 0.3; // maximum deviation of a logarithm that counts
 const float caution = 0.5;       // factor on alpha where light has just appeared that may not stay
 // Number of samples that a moving mean of weight alpha is worth, in n / alpha: (2 - alpha) / alpha.
 const float memory = 1.9;
-
-vec2 surface_before(ivec2 pixel) { return residual_surface_before(texelFetch(place_image, previous_texel(pixel), 0)); }
 
 // Returns how much a ratio applies to light whose pattern differs by `off` from the pattern in
 // which the ratio was learned. The result is the odds of unchanged light against light that changed
@@ -43,7 +40,7 @@ history_taps taps_of(ivec2 pixel, sap_texel own) {
                              ? place_before(vec2(pixel), own.depth, texelFetch(velocity_image, texel_of(pixel), 0).rgb)
                              : place_before(vec2(pixel), own.depth);
   float rise = length(own.slope) * sap_footprint(own.depth);
-  return find_history(place, own.id, depth_tolerance(place.depth, rise));
+  return find_history(place_image, place, own.id, depth_tolerance(place.depth, rise));
 }
 
 // rgb: ratio, a: number of its samples.
@@ -51,7 +48,7 @@ vec4 ratio_before(history_taps taps) {
   vec4 sum = vec4(0.0);
   for (int i = 0; i < 4; ++i)
     if (taps.weight[i] > 0.0)
-      sum += taps.weight[i] * texelFetch(ratio_image, previous_texel(taps.first + ivec2(i & 1, i >> 1)), 0);
+      sum += taps.weight[i] * texelFetch(ratio_image, previous_texel(tap_pixel(taps, i)), 0);
   return sum;
 }
 
@@ -66,7 +63,8 @@ bool is_turn(ivec2 tile, float confidence) {
 void main() {
   ivec2 pixel;
   bool copy_only;
-  if (!listed_pixel(pixel, copy_only))
+  uint listed = listed_tile();
+  if (listed >= tiles_data[0] || !pixel_of_tile(tiles_data[1u + listed], pixel, copy_only))
     return;
   ivec2 texel = texel_of(pixel);
   vec4 light = texelFetch(scattered_image, texel, 0);
@@ -85,7 +83,7 @@ void main() {
       lost = taps.weight == vec4(0.0);
       if (!lost)
         ratio = ratio_before(taps);
-      kept = pattern_before(taps);
+      kept = pattern_before(place_image, taps);
       // History interpolated between texels is blurred, and so differs at each edge from the new
       // pattern.
       bool resampled = !any(equal(taps.weight, vec4(1.0)));

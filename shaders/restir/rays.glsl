@@ -1,23 +1,26 @@
-// Ray queries through the host's scene from compute kernels. Include after the bindings.
+// Ray queries through the host's scene from compute kernels.
 #ifndef DERMIS_RESTIR_RAYS_GLSL
 #define DERMIS_RESTIR_RAYS_GLSL
+
+#extension GL_EXT_ray_query : require
 
 #include "restir/surfaces.glsl"
 
 const uint ray_any = 0xffu; // instance mask that accepts all instances
 
-void trace_probe(probe_ray ray, uint medium, out probe_hits hits) {
+// As trace_probe of scene.glsl, through an acceleration structure.
+void trace_probe(accelerationStructureEXT scene, probe_ray ray, uint medium, out probe_hits hits) {
   hits.count = 0u;
   if (!(ray.reach > 0.0))
     return;
   rayQueryEXT query;
-  rayQueryInitializeEXT(query, scene_structure, gl_RayFlagsNoOpaqueEXT, ray_any, ray.origin, 0.0, ray.direction,
-                        ray.reach);
+  rayQueryInitializeEXT(query, scene, gl_RayFlagsNoOpaqueEXT, ray_any, ray.origin, 0.0,
+                        ray.direction, ray.reach);
   // No intersection is confirmed, so every triangle is a candidate.
   while (rayQueryProceedEXT(query)) {
     probe_hit met;
     met.instance = uint(rayQueryGetIntersectionInstanceCustomIndexEXT(query, false));
-    if (instances_data[met.instance].place.z != medium)
+    if (instance_at(met.instance).place.z != medium)
       continue;
     met.primitive = uint(rayQueryGetIntersectionPrimitiveIndexEXT(query, false));
     met.barycentrics = rayQueryGetIntersectionBarycentricsEXT(query, false);
@@ -36,18 +39,16 @@ void trace_probe(probe_ray ray, uint medium, out probe_hits hits) {
 // origin: a few rounding errors of a position's coordinates.
 const float ray_lift = 2e-5;
 
-bool visible(surface_point from, vec3 target) {
+// As visible of scene.glsl, through an acceleration structure.
+bool visible(accelerationStructureEXT scene, surface_point from, vec3 target) {
   float size = 1.0 + max(abs(from.position.x), max(abs(from.position.y), abs(from.position.z)));
   vec3 origin = from.position + ray_lift * size * from.normal;
   rayQueryEXT query;
-  rayQueryInitializeEXT(query, scene_structure, gl_RayFlagsOpaqueEXT | gl_RayFlagsTerminateOnFirstHitEXT, ray_any,
-                        origin, 0.0, target - origin, 1.0 - ray_lift);
+  rayQueryInitializeEXT(query, scene, gl_RayFlagsOpaqueEXT | gl_RayFlagsTerminateOnFirstHitEXT,
+                        ray_any, origin, 0.0, target - origin, 1.0 - ray_lift);
   while (rayQueryProceedEXT(query))
     ;
   return rayQueryGetIntersectionTypeEXT(query, true) == gl_RayQueryCommittedIntersectionNoneEXT;
 }
-
-uint light_count() { return uint(lights_data.length()); }
-light_source light_at(uint index) { return lights_data[index]; }
 
 #endif

@@ -9,14 +9,30 @@
 #include "restir/restir_initial.bindings.glsl"
 #include "common/environment.glsl"
 #include "common/tiles.glsl"
-
 #include "restir/rays.glsl"
 #include "restir/reuse.glsl"
+
+// The host's scene.
+ray_instance instance_at(uint index) { return instances_data[index]; }
+uint index_at(uint index) { return indices_data[index]; }
+vec4 vertex_at(uint index) { return vertices_data[index]; }
+uint light_count() { return uint(lights_data.length()); }
+light_source light_at(uint index) { return lights_data[index]; }
+void trace_probe(probe_ray ray, uint medium, out probe_hits hits) {
+  trace_probe(scene_structure, ray, medium, hits);
+}
+bool visible(surface_point from, vec3 target) { return visible(scene_structure, from, target); }
+
+scatter_domain domain_of(ivec2 pixel) {
+  return domain_of(material_image, depth_image, normal_image, scatter_scale_image,
+                   has_scatter_scale(), pixel);
+}
 
 void main() {
   ivec2 pixel;
   bool copy_only;
-  if (!listed_pixel(pixel, copy_only))
+  uint listed = listed_tile();
+  if (listed >= tiles_data[0] || !pixel_of_tile(tiles_data[1u + listed], pixel, copy_only))
     return;
   scatter_domain domain = domain_of(pixel);
   random_state random = random_of(pixel, random_numbers_of_samples);

@@ -8,33 +8,35 @@
 #include "common/tiles.glsl"
 #include "common/half.glsl"
 #include "common/pixel_light.glsl"
-
 #include "restir/surfaces.glsl"
 #include "restir/reuse.glsl"
 
-uint light_count() { return 0u; } // unused definitions: this kernel shifts no path
-light_source light_at(uint index) { return light_source(vec3(0.0), 0u, vec3(0.0), 0.0, vec3(0.0), 0.0, vec3(0.0), 0.0); }
-bool visible(surface_point from, vec3 target) { return false; }
-void trace_probe(probe_ray ray, uint medium, out probe_hits hits) { hits.count = 0u; }
+// The host's scene; this kernel shifts no path and needs no rays and lights.
+ray_instance instance_at(uint index) { return instances_data[index]; }
+uint index_at(uint index) { return indices_data[index]; }
+vec4 vertex_at(uint index) { return vertices_data[index]; }
 
 void main() {
   ivec2 pixel;
   bool copy_only;
-  if (!listed_pixel(pixel, copy_only))
+  uint listed = listed_tile();
+  if (listed >= tiles_data[0] || !pixel_of_tile(tiles_data[1u + listed], pixel, copy_only))
     return;
   ivec2 texel = texel_of(pixel);
   uint id = texelFetch(material_image, texel, 0).r;
   if (id == 0u)
     return;
-  scatter_domain domain = domain_of(pixel);
+  scatter_domain domain = domain_of(material_image, depth_image, normal_image, scatter_scale_image,
+                                    has_scatter_scale(), pixel);
   packed_reservoir packed;
   for (uint i = 0u; i < 4u; ++i)
     packed.words[i] = reservoirs_data[4u * element_of(pixel) + i];
   // Traced light contains no albedo, because the albedo at x2 is unknown.
   vec3 came = resolve(domain, unpack_reservoir(packed));
   if (settings.texturing != TEXTURING_DEMODULATE)
-    came = texture_light(texel, came);
+    came = texture_light(albedo_image, has_albedo(), settings.texturing, texel, came);
   vec3 direct = mix(vec3(1.0), profile_direct(id), greaterThan(domain.d, vec3(0.0)));
-  vec3 light = mix(came, pixel_light(texel), direct);
+  vec3 own = pixel_light(lighting_image, albedo_image, has_albedo(), settings.texturing, texel);
+  vec3 light = mix(came, own, direct);
   imageStore(scattered_image, texel, vec4(round_to_half(light), 1.0));
 }

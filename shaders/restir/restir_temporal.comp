@@ -4,7 +4,6 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 #extension GL_EXT_ray_query : require
-#define DERMIS_RESTIR_RELIGHT
 #include "restir/instances.glsl"
 #include "restir/lights.glsl"
 #include "restir/restir_temporal.bindings.glsl"
@@ -12,16 +11,29 @@
 #include "common/tiles.glsl"
 #include "restir/rays.glsl"
 #include "restir/reuse.glsl"
-vec2 surface_before(ivec2 pixel);
 #include "common/reproject.glsl"
 
-// Returns the light as it was in the frame before. A light without a kept copy is returned as it is
-// now.
+// The host's scene.
+ray_instance instance_at(uint index) { return instances_data[index]; }
+uint index_at(uint index) { return indices_data[index]; }
+vec4 vertex_at(uint index) { return vertices_data[index]; }
+uint light_count() { return uint(lights_data.length()); }
+light_source light_at(uint index) { return lights_data[index]; }
+// A light without a kept copy is returned as it is now.
 light_source previous_light_at(uint index) {
   light_source light = light_at(index);
   if (index < uint(lights_before_data.length())) // an if instead of ?:, because the layouts differ
     light = lights_before_data[index];
   return light;
+}
+void trace_probe(probe_ray ray, uint medium, out probe_hits hits) {
+  trace_probe(scene_structure, ray, medium, hits);
+}
+bool visible(surface_point from, vec3 target) { return visible(scene_structure, from, target); }
+
+scatter_domain domain_of(ivec2 pixel) {
+  return domain_of(material_image, depth_image, normal_image, scatter_scale_image,
+                   has_scatter_scale(), pixel);
 }
 
 void keep_lights() {
@@ -53,6 +65,15 @@ vec2 surface_before(ivec2 pixel) {
   return vec2(-dot(frame.previous_from_view[2], view), float(domain.medium));
 }
 
+history_taps find_history(previous_place place, uint id, float tolerance) {
+  history_taps taps = taps_around(place);
+  for (int i = 0; i < 4; ++i)
+    if (taps.weight[i] > 0.0 &&
+        !shows_surface(surface_before(tap_pixel(taps, i)), place, id, tolerance))
+      taps.weight[i] = 0.0;
+  return normalised_taps(taps);
+}
+
 // Returns the change of the surface's depth over a pixel, mm.
 float rise_over_pixel(ivec2 pixel, float depth) {
   vec3 normal = normalize(view_normal(texelFetch(normal_image, texel_of(pixel), 0).xyz));
@@ -78,7 +99,7 @@ bool find_past(ivec2 pixel, uint id, float u, out ivec2 past) {
     if (!(taps.weight[i] > 0.0))
       continue;
     found = true;
-    past = taps.first + ivec2(i & 1, i >> 1);
+    past = tap_pixel(taps, i);
     if (u < taps.weight[i])
       break;
     u -= taps.weight[i];
@@ -90,7 +111,8 @@ void main() {
   keep_lights();
   ivec2 pixel;
   bool copy_only;
-  if (!listed_pixel(pixel, copy_only))
+  uint listed = listed_tile();
+  if (listed >= tiles_data[0] || !pixel_of_tile(tiles_data[1u + listed], pixel, copy_only))
     return;
   uint element = element_of(pixel);
   scatter_domain domain = domain_of(pixel);

@@ -68,8 +68,10 @@ void exchange_paths(reuse_settings settings, uint first, bool over_time, inout e
     if (i >= first)
       prepare(settings.shift, settings.index, both.domain[i], x2, both.path[i], random);
     both.target[i] = target_of(both.domain[i], x2, both.path[i]);
+    // Over time, path 0 moves to the frame before.
+    uint lights = !over_time ? lights_kept : i == 0u ? lights_before : lights_now;
     both.image[i] =
-        shift_path(settings.shift, over_time && i == 0u, both.domain[i], both.domain[1u - i], x2, both.path[i]);
+        shift_path(settings.shift, lights, both.domain[i], both.domain[1u - i], x2, both.path[i]);
   }
 }
 

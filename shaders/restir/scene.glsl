@@ -1,6 +1,6 @@
-// The interface to a scene. The kernel that includes this file defines the five functions at the
-// end, over its acceleration structure and buffers. tests/passes/restir/cpu/scene.hpp is the CPU
-// version.
+// The interface to a scene. GLSL cannot pass a scene's buffers to functions, so this file declares
+// functions that read the scene, and a kernel defines the functions that it uses.
+// tests/passes/restir/cpu/scene.hpp is the CPU version.
 #ifndef DERMIS_RESTIR_SCENE_GLSL
 #define DERMIS_RESTIR_SCENE_GLSL
 
@@ -24,6 +24,8 @@ surface_point surface_at(uint instance, uint primitive, vec2 barycentrics);
 bool visible(surface_point from, vec3 target);
 uint light_count();
 light_source light_at(uint index);
+// Returns the same light in the frame before.
+light_source previous_light_at(uint index);
 
 // Returns the first light whose `until` is above u; the last light if none is.
 uint pick_light(float u) {

@@ -10,6 +10,9 @@
 const uint shift_reconnection = 0u, shift_delayed = 1u, shift_hybrid = 2u, shift_sequential = 3u;
 const uint stage_temporal = 0u, stage_spatial_first = 1u, stage_spatial_second = 2u;
 const uint index_traced = 0u, index_drawn = 1u;
+// How shift_path lights a path in the new pixel: reconnected paths keep their light; or all paths
+// are lit by the lights of this frame or of the frame before.
+const uint lights_kept = 0u, lights_now = 1u, lights_before = 2u;
 
 const float connectable_cosine = 0.5, connectable_distance_in_d = 2.0;
 
@@ -18,12 +21,6 @@ struct shifted_path {
   float jacobian; // 0: the path has no image
   float target;   // in the new pixel
 };
-
-#ifdef DERMIS_RESTIR_RELIGHT
-// Returns the same light in the frame before. Kernels that define DERMIS_RESTIR_RELIGHT before this
-// include must define this function.
-light_source previous_light_at(uint index);
-#endif
 
 uint shift_of_stage(uint shift, uint stage) {
   if (shift != shift_sequential)
@@ -100,10 +97,8 @@ void relight(bool before, scatter_domain domain, surface_point x2, inout shifted
   if (!(shifted.jacobian > 0.0) || shifted.path.light >= light_count())
     return;
   light_source light = light_at(shifted.path.light);
-#ifdef DERMIS_RESTIR_RELIGHT
   if (before)
     light = previous_light_at(shifted.path.light);
-#endif
   vec3 irradiance = light_irradiance(light, shifted.path.place, x2.position, x2.normal, x2.shading);
   float target = luminance(scattered(domain, length(x2.position - domain.position), irradiance));
   if (target > 0.0 && visible(x2, light_target(light, shifted.path.place, x2.position))) {
@@ -135,10 +130,9 @@ void prepare(uint shift, uint index, scatter_domain domain, surface_point x2, in
     path.hits = hits.count;
 }
 
-// Shifts a path. `shift` must not be shift_sequential: call shift_of_stage first. `before`: the
-// destination is in the frame before. With DERMIS_RESTIR_RELIGHT, paths are lit by the lights of
-// the destination's frame.
-shifted_path shift_path(uint shift, bool before, scatter_domain from, scatter_domain to, surface_point x2, reservoir path) {
+// Shifts a path. `shift` must not be shift_sequential: call shift_of_stage first.
+shifted_path shift_path(uint shift, uint lights, scatter_domain from, scatter_domain to,
+                        surface_point x2, reservoir path) {
   shifted_path none = shifted_path(path, 0.0, 0.0);
   if (!has_sample(path) || from.medium != to.medium)
     return none;
@@ -150,12 +144,8 @@ shifted_path shift_path(uint shift, bool before, scatter_domain from, scatter_do
     image = replay(shift, to, path, x2);
   else
     image = reconnect(to, x2, path);
-  bool relit = replayed;
-#ifdef DERMIS_RESTIR_RELIGHT
-  relit = true;
-#endif
-  if (relit)
-    relight(before, to, x2, image);
+  if (replayed || lights != lights_kept)
+    relight(lights == lights_before, to, x2, image);
   return image;
 }
 

@@ -60,7 +60,8 @@ void main() {
       continue;
     vec4 result = vec4(0.0, 0.0, 0.0, 1.0);
     if (pixel_profile[k] != 0u) {
-      result.rgb = pixel_light(texel_of(pixel));
+      result.rgb = pixel_light(lighting_image, albedo_image, has_albedo(), settings.texturing,
+                               texel_of(pixel));
       if (pixel_depth[k] > 0.0)
         result = gather(k, pixel, result.rgb);
     }

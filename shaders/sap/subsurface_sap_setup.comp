@@ -46,7 +46,8 @@ void main() {
     vec4 light = vec4(0.0);
     uvec4 bits = uvec4(0u);
     if (id != 0u) {
-      light.rgb = pixel_light(texel);
+      light.rgb =
+          pixel_light(lighting_image, albedo_image, has_albedo(), settings.texturing, texel);
       if (depth > 0.0) {
         patch_neighbours around = patch_neighbours(
             vec2(depth_of_profile(here - 1, id), depth_of_profile(here - ring_width, id)),

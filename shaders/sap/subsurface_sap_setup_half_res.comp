@@ -32,7 +32,8 @@ void read_pixels(texel_block block, ivec2 first) {
     block_light[i] = vec4(0.0);
     if (pixel_profile[i] != 0u && pixel_depth[i] > 0.0) {
       block_children[i] = block_surface(pixel, i, block_light[i].a);
-      block_light[i].rgb = pixel_light(texel_of(pixel));
+      block_light[i].rgb = pixel_light(lighting_image, albedo_image, has_albedo(),
+                                       settings.texturing, texel_of(pixel));
     }
   }
 }

@@ -17,9 +17,10 @@ void main() {
   if (gl_LocalInvocationIndex == 0u)
     sum = 0u;
   barrier();
-  ivec2 pixel;
-  bool copy_only;
-  bool listed = listed_pixel(pixel, copy_only);
+  uint tile = listed_tile();
+  ivec2 pixel = ivec2(0);
+  bool copy_only = false;
+  bool listed = tile < tiles_data[0] && pixel_of_tile(tiles_data[1u + tile], pixel, copy_only);
   if (listed && !copy_only) {
     ivec2 texel = texel_of(pixel);
     if (texelFetch(material_image, texel, 0).r != 0u) {

@@ -21,7 +21,8 @@ const float soft = 0.2;
 void main() {
   ivec2 pixel;
   bool copy_only;
-  if (!listed_pixel(pixel, copy_only))
+  uint listed = listed_tile();
+  if (listed >= tiles_data[0] || !pixel_of_tile(tiles_data[1u + listed], pixel, copy_only))
     return;
   ivec2 texel = texel_of(pixel);
   vec4 light = imageLoad(scattered_image, texel);
@@ -30,7 +31,13 @@ void main() {
     return;
   ivec2 tile = pixel >> 3;
   int count = samples_of(samples_per_tile_data[tile.y * frame.tiles.x + tile.x]);
-  float fraction = settings.sample_weight * edge_weight(pixel, ramp_px) * clamp((settings.below - light.a) / soft, 0.0, 1.0);
+  uint sampled_tiles = 0u;
+  for (int i = 0; i < edge_tiles; ++i) {
+    int at = edge_tile(tile, i);
+    sampled_tiles |= has_samples(classes_data[at], samples_per_tile_data[at]) ? 1u << uint(i) : 0u;
+  }
+  float fraction = settings.sample_weight * edge_weight(sampled_tiles, pixel, ramp_px) *
+                   clamp((settings.below - light.a) / soft, 0.0, 1.0);
   uvec2 offset = r2_point(offset_from_hash(pcg3d16(uvec3(pixel, 0u)).xy), frame.frame_index);
   vec3 sampled = sap_sampled_light(pixel, own, texelFetch(light_image, texel, 0).rgb, offset, count, settings.lod_bias);
   imageStore(scattered_image, texel, vec4(round_to_half(mix(light.rgb, sampled, fraction)), light.a));

@@ -7,11 +7,6 @@
 // A case is four rows of the table of questions; see guidance_test.cpp.
 #extension GL_GOOGLE_include_directive : require
 #include "common/environment.glsl"
-struct guidance_settings {
-  float sigma2_target, kappa, eta, eps_alpha;
-  int min_samples, max_samples;
-};
-guidance_settings settings;
 #include "afis/guidance.glsl"
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(set = 0, binding = 0, rgba32f) uniform writeonly image2D target;
@@ -23,12 +18,14 @@ void main() {
     return;
   vec4 set = separable_rows[4 * pixel.x], requested = separable_rows[4 * pixel.x + 1];
   vec4 kept = separable_rows[4 * pixel.x + 2], found = separable_rows[4 * pixel.x + 3];
-  settings = guidance_settings(set.x, set.y, set.z, set.w, int(requested.x), int(requested.y));
+  guidance_settings settings =
+      guidance_settings(set.x, set.y, set.z, 0.0, set.w, int(requested.x), int(requested.y));
   moving_covariance moments = moving_covariance(kept.x, kept.y, kept.z, kept.w);
   vec4 answer = vec4(0.0);
   if (pixel.y == 0) {
-    float wanted = wanted_samples(requested.z, requested.w);
-    answer = vec4(wanted, clamped_samples(wanted), clamped_samples(found.w), control_weight(moments));
+    float wanted = wanted_samples(requested.z, requested.w, settings);
+    answer = vec4(wanted, clamped_samples(wanted, settings), clamped_samples(found.w, settings),
+                  control_weight(moments, settings.eps_alpha));
   }
   if (pixel.y == 1) {
     moving_variance now = add_value(moving_variance(kept.x, kept.w), found.x, found.z);

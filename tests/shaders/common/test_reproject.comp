@@ -2,13 +2,12 @@
 // Evaluates the functions of reproject.glsl for case x, one row per question:
 //   row 0  place_before of a static point: pixel, depth; history_usable
 //   row 1  place_before of a point with a velocity: pixel, depth; depth_tolerance
-//   row 2  find_history: the first texel, the number of valid taps
-//   row 3  find_history: the weights
+//   row 2  the taps that show the surface: the first texel, the number of valid taps
+//   row 3  the taps that show the surface: the weights
 // A case is three rows of the table of questions, followed by depth and profile of the texels of
 // the previous frame; see reproject_test.cpp in this folder.
 #extension GL_GOOGLE_include_directive : require
 #include "common/environment.glsl"
-vec2 surface_before(ivec2 pixel);
 #include "common/reproject.glsl"
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(set = 0, binding = 0, rgba32f) uniform writeonly image2D target;
@@ -28,7 +27,13 @@ void main() {
   vec4 seen = separable_rows[rows_of_case * at.x]; // pixel, depth, rise
   vec4 moved = separable_rows[rows_of_case * at.x + 1]; // velocity, profile
   vec4 requested = separable_rows[rows_of_case * at.x + 2]; // place, depth, tolerance
-  history_taps taps = find_history(previous_place(requested.xy, requested.z), uint(moved.w), requested.w);
+  previous_place expected = previous_place(requested.xy, requested.z);
+  history_taps taps = taps_around(expected);
+  for (int i = 0; i < 4; ++i)
+    if (taps.weight[i] > 0.0 &&
+        !shows_surface(surface_before(tap_pixel(taps, i)), expected, uint(moved.w), requested.w))
+      taps.weight[i] = 0.0;
+  taps = normalised_taps(taps);
   vec4 answer = taps.weight;
   if (at.y == 0) {
     previous_place place = place_before(seen.xy, seen.z);

@@ -3,7 +3,6 @@
 // inputs, so that the CPU functions get equal inputs. Rows 17 on merge paths over three sheets of
 // surface.
 #extension GL_GOOGLE_include_directive : require
-#define DERMIS_RESTIR_RELIGHT
 #include "common/environment.glsl"
 #include "restir/reuse.glsl"
 layout(local_size_x = 8, local_size_y = 8) in;
