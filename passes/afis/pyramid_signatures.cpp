@@ -1,23 +1,17 @@
 // The plain pyramid: light times mask, halved level by level. Every image has a border of two
 // texels whose outer ring is always 0, so that filtered reads return 0 outside.
 
-#include "passes/common/dispatch.hpp"
 #include "passes/common/signatures/signatures.hpp"
 
 namespace dermis::subsurface {
 
 namespace {
 
-using port::level_doc;
-using port::level_port;
-using port::light_formats;
-
 constexpr Port setup_ports[] = {
-    {"lighting", Usage::sampled_image, false, "texture2D", "diffuse irradiance before albedo, linear",
-     port::color_formats},
+    port::lighting,
     port::material,
     port::albedo,
-    {"level_0", Usage::storage_image_write, false, "image2D", level_doc, light_formats},
+    port::written("level_0", port::level_doc, port::light_formats),
 };
 constexpr std::string_view profiles_options[] = {"merged", "apart"};
 constexpr PassTypeSetting setup_settings[] = {
@@ -27,8 +21,8 @@ constexpr PassTypeSetting setup_settings[] = {
 };
 
 constexpr Port down_ports[] = {
-    level_port("fine"),
-    {"coarse", Usage::storage_image_write, false, "image2D", level_doc, light_formats},
+    port::level("fine"),
+    port::written("coarse", port::level_doc, port::light_formats),
 };
 
 constexpr std::string_view halving_options[] = {"binomial", "box"};
@@ -46,7 +40,6 @@ const PassType pyramid_setup_type{
     .ports = setup_ports,
     .settings = setup_settings,
     .dispatch = over_written,
-    .side_effects = false,
 };
 
 const PassType pyramid_down_type{
@@ -56,7 +49,6 @@ const PassType pyramid_down_type{
     .ports = down_ports,
     .settings = down_settings,
     .dispatch = over_written,
-    .side_effects = false,
 };
 
 } // namespace dermis::subsurface

@@ -1,37 +1,25 @@
 // Baseline: a fixed number of samples without mips.
 
-#include "passes/common/dispatch.hpp"
 #include "passes/common/signatures/signatures.hpp"
 
 namespace dermis::subsurface {
 
 namespace {
 
-using port::burley_ports;
-
-constexpr std::string_view inverse_options[] = {"polynomial", "exact", "approximate"};
-constexpr std::string_view weighting_options[] = {"sampler", "profile"};
 constexpr std::string_view normalise_options[] = {"self", "none"};
-constexpr std::string_view direct_options[] = {"inscribed", "circumscribed", "none"};
 constexpr PassTypeSetting fixed_settings[] = {
-    {.name = "samples",
-     .type = SettingType::integer,
-     .default_value = integer_value(16),
-     .minimum = 1,
-     .maximum = 4096,
-     .options = {},
-     .unit = "samples per pixel",
-     .doc = "number of R2 points beyond the direct radius; the error decreases about as n^-0.7"},
-    setting::choice("inverse", inverse_options,
+    setting::samples(16, 1,
+                     "number of R2 points beyond the direct radius; the error decreases about as n^-0.7"),
+    setting::choice("inverse", setting::inverse_options,
                     "inverse of Burley's distribution: polynomial (error below 0.5 %), exact, or approximate "
                     "(c = 2.5715, Golubev 2019). Other profiles use a table"),
-    setting::choice("weighting", weighting_options,
+    setting::choice("weighting", setting::weighting_options,
                     "density that divides a sample: sampler: the sampler's own (unbiased); profile: the "
                     "profile's, as published"),
     setting::choice("normalise", normalise_options,
                     "normalisation. self: divide by the sum of weights; none: unbiased, loses light of "
                     "samples outside the surface"),
-    setting::choice("direct", direct_options,
+    setting::choice("direct", setting::direct_options,
                     "radius within which the pixel's own light is used: inscribed in the pixel (unbiased), "
                     "circumscribed (as published), "
                     "none"),
@@ -44,10 +32,9 @@ const PassType fixed_type{
     .shader = "papers/subsurface_fixed",
     .doc = "Samples the widest channel's profile by importance at points of the R2 sequence, weighted by 3-D "
            "distance and patch area.",
-    .ports = burley_ports,
+    .ports = port::burley_ports,
     .settings = fixed_settings,
     .dispatch = over_tiles,
-    .side_effects = false,
 };
 
 } // namespace dermis::subsurface

@@ -1,6 +1,5 @@
 // Scattering by rays: light that enters wherever the host's scene has surfaces of the same profile.
 
-#include "passes/common/dispatch.hpp"
 #include "passes/common/signatures/signatures.hpp"
 
 namespace dermis::subsurface {
@@ -14,70 +13,47 @@ constexpr std::string_view domains_doc =
     "determines; 0 where nothing was written";
 constexpr std::string_view kept_lights_doc = "copy of `lights`, as many as fit into the buffer";
 
-constexpr Port normal{"normal",
-                      Usage::sampled_image,
-                      false,
-                      "texture2D",
-                      "geometric normal in view space, unit length",
-                      port::light_formats};
+constexpr Port normal =
+    port::sampled("normal", "geometric normal in view space, unit length", port::light_formats);
 constexpr Port scene{
     "scene", Usage::acceleration_structure, false, "accelerationStructureEXT",
     "geometry that rays intersect; an instance's custom index is its element in `instances`"};
-constexpr Port vertices{
-    "vertices", Usage::storage_buffer_read, false, "vec4",
-    "two elements per vertex: position and normal in object space; the fourth component is unused"};
-constexpr Port indices{"indices", Usage::storage_buffer_read, false, "uint", "three elements per triangle"};
-constexpr Port instances{
-    "instances", Usage::storage_buffer_read, false, "ray_instance",
-    "64 bytes each: three rows of the world-from-object matrix, first vertex, first index, profile id, 0"};
-constexpr Port lights{"lights", Usage::storage_buffer_read, false, "light_source",
-                      "64 bytes each, in the layout of shaders/restir/lights.glsl"};
+constexpr Port vertices = port::read_buffer(
+    "vertices", "vec4",
+    "two elements per vertex: position and normal in object space; the fourth component is unused");
+constexpr Port indices = port::read_buffer("indices", "uint", "three elements per triangle");
+constexpr Port instances = port::read_buffer(
+    "instances", "ray_instance",
+    "64 bytes each: three rows of the world-from-object matrix, first vertex, first index, profile id, 0");
+constexpr Port lights =
+    port::read_buffer("lights", "light_source", "64 bytes each, in the layout of shaders/restir/lights.glsl");
+constexpr std::array traced{scene, vertices, indices, instances, lights};
+constexpr std::array surface{port::material, port::depth, normal, port::scatter_scale};
+constexpr std::array tiles{port::tiles, port::arguments};
 
-constexpr Port initial_ports[] = {
-    port::material,  port::depth,
-    normal,          port::scatter_scale,
-    scene,           vertices,
-    indices,         instances,
-    lights,          port::tiles,
-    port::arguments, {"reservoirs", Usage::storage_buffer_write, false, "uvec4", reservoirs_doc},
-};
+constexpr Port reservoirs = port::read_buffer("reservoirs", "uvec4", reservoirs_doc);
+constexpr Port merged = port::written_buffer("merged", "uvec4", reservoirs_doc);
+
+constexpr auto initial_ports = join(surface, traced, tiles, std::array{port::writer_of(reservoirs)});
 
 constexpr PassTypeSetting initial_settings[] = {
-    {.name = "samples",
-     .type = SettingType::integer,
-     .default_value = integer_value(1),
-     .minimum = 1,
-     .maximum = 1024,
-     .options = {},
-     .unit = "paths per pixel",
-     .doc = "number of candidate paths; one path is kept with a probability proportional to its light"},
+    setting::integer(
+        "samples", 1, 1, 1024, "paths per pixel",
+        "number of candidate paths; one path is kept with a probability proportional to its light"),
 };
 
 constexpr std::string_view shift_options[] = {"reconnection", "delayed", "hybrid", "sequential"};
 constexpr PassTypeSetting shift =
     setting::choice("shift", shift_options, "mapping of a path of one pixel to a path of another pixel");
 
-constexpr Port temporal_ports[] = {
-    port::material,
-    port::depth,
-    normal,
-    port::scatter_scale,
-    port::velocity,
-    scene,
-    vertices,
-    indices,
-    instances,
-    lights,
-    {"reservoirs", Usage::storage_buffer_read, false, "uvec4", reservoirs_doc},
-    {"reservoirs_before", Usage::storage_buffer_read, false, "uvec4", reservoirs_doc},
-    {"domains_before", Usage::storage_buffer_read, false, "uvec4", domains_doc},
-    {"lights_before", Usage::storage_buffer_read, false, "light_source", kept_lights_doc},
-    port::tiles,
-    port::arguments,
-    {"merged", Usage::storage_buffer_write, false, "uvec4", reservoirs_doc},
-    {"domains", Usage::storage_buffer_update, false, "uvec4", domains_doc},
-    {"lights_kept", Usage::storage_buffer_write, false, "light_source", kept_lights_doc},
-};
+constexpr auto temporal_ports =
+    join(surface, std::array{port::velocity}, traced,
+         std::array{reservoirs, port::read_buffer("reservoirs_before", "uvec4", reservoirs_doc),
+                    port::read_buffer("domains_before", "uvec4", domains_doc),
+                    port::read_buffer("lights_before", "light_source", kept_lights_doc)},
+         tiles,
+         std::array{merged, Port{"domains", Usage::storage_buffer_update, false, "uvec4", domains_doc},
+                    port::written_buffer("lights_kept", "light_source", kept_lights_doc)});
 
 constexpr PassTypeSetting temporal_settings[] = {
     shift,
@@ -85,59 +61,23 @@ constexpr PassTypeSetting temporal_settings[] = {
         setting::real("cap", 20, 0, 1000, "times the frame", "maximum confidence weight of the history")),
 };
 
-constexpr Port spatial_ports[] = {
-    port::material,
-    port::depth,
-    normal,
-    port::scatter_scale,
-    scene,
-    vertices,
-    indices,
-    instances,
-    lights,
-    port::classes,
-    {"reservoirs", Usage::storage_buffer_read, false, "uvec4", reservoirs_doc},
-    port::tiles,
-    port::arguments,
-    {"merged", Usage::storage_buffer_write, false, "uvec4", reservoirs_doc},
-};
+constexpr auto spatial_ports =
+    join(surface, traced, std::array{port::classes, reservoirs}, tiles, std::array{merged});
 
 constexpr PassTypeSetting spatial_settings[] = {
     shift,
-    {.name = "pass",
-     .type = SettingType::integer,
-     .default_value = integer_value(0),
-     .minimum = 0,
-     .maximum = 1,
-     .options = {},
-     .unit = "",
-     .doc = "index of the spatial pass; with the shift `sequential`, pass 0 reconnects and pass 1 replays"},
-    {.name = "neighbours",
-     .type = SettingType::integer,
-     .default_value = integer_value(4),
-     .minimum = 1,
-     .maximum = 8,
-     .options = {},
-     .unit = "pixels",
-     .doc = "number of neighbouring pixels that are tested"},
+    setting::integer(
+        "pass", 0, 0, 1, "",
+        "index of the spatial pass; with the shift `sequential`, pass 0 reconnects and pass 1 replays"),
+    setting::integer("neighbours", 4, 1, 8, "pixels", "number of neighbouring pixels that are tested"),
 };
 
-constexpr Port resolve_ports[] = {
-    {"lighting", Usage::sampled_image, false, "texture2D",
-     "diffuse irradiance before albedo, linear; used where light does not scatter", port::color_formats},
-    port::material,
-    port::depth,
-    normal,
-    port::scatter_scale,
-    port::albedo,
-    vertices,
-    indices,
-    instances,
-    {"reservoirs", Usage::storage_buffer_read, false, "uvec4", reservoirs_doc},
-    port::tiles,
-    port::arguments,
-    port::scattered,
-};
+constexpr auto resolve_ports =
+    join(std::array{port::sampled(
+             "lighting", "diffuse irradiance before albedo, linear; used where light does not scatter",
+             port::color_formats)},
+         surface, std::array{port::albedo, vertices, indices, instances, reservoirs}, tiles,
+         std::array{port::scattered});
 
 constexpr PassTypeSetting resolve_settings[] = {setting::texturing};
 
@@ -152,7 +92,6 @@ const PassType restir_initial_type{
     .ports = initial_ports,
     .settings = initial_settings,
     .dispatch = over_tiles,
-    .side_effects = false,
     .features = bit_of(Feature::ray_query),
 };
 
@@ -163,7 +102,6 @@ const PassType restir_temporal_type{
     .ports = temporal_ports,
     .settings = temporal_settings,
     .dispatch = over_tiles,
-    .side_effects = false,
     .features = bit_of(Feature::ray_query),
     .mixes = temporal_mixes,
 };
@@ -175,7 +113,6 @@ const PassType restir_spatial_type{
     .ports = spatial_ports,
     .settings = spatial_settings,
     .dispatch = over_tiles,
-    .side_effects = false,
     .features = bit_of(Feature::ray_query),
 };
 
@@ -187,7 +124,6 @@ const PassType restir_resolve_type{
     .ports = resolve_ports,
     .settings = resolve_settings,
     .dispatch = over_tiles,
-    .side_effects = false,
 };
 
 } // namespace dermis::subsurface

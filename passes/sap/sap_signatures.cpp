@@ -2,8 +2,7 @@
 // l has a texel every 2^l pixels and a border of one texel, which covers what lies beyond the last
 // pixels.
 
-#include "passes/common/dispatch.hpp"
-#include "passes/common/signatures/level_ports.hpp"
+#include "passes/common/signatures/signatures.hpp"
 #include "passes/sap/sap_weights.hpp"
 
 namespace dermis::subsurface {
@@ -26,16 +25,8 @@ constexpr std::string_view scattered_doc =
 using port::light_formats;
 using port::surface_formats;
 
-constexpr PassTypeSetting level_setting(double first, std::string_view doc,
-                                        double last = sap_level_count - 1) {
-  return {.name = "level",
-          .type = SettingType::integer,
-          .default_value = integer_value(static_cast<int64_t>(first)),
-          .minimum = first,
-          .maximum = last,
-          .options = {},
-          .unit = "",
-          .doc = doc};
+constexpr PassTypeSetting written_level(double last = sap_level_count - 1) {
+  return setting::integer("level", 1, 1, last, "", "level that the pass writes");
 }
 
 constexpr PassTypeSetting variant =
@@ -55,161 +46,108 @@ constexpr PassTypeSetting storage =
                     "precision of written light. half: half floats; full: floats, whose images need 32 bits "
                     "per channel. All passes of a pyramid must use the same value");
 
-constexpr Port level_tiles{"level_tiles", Usage::storage_buffer_read,       false,
-                           "uvec2",       "output of subsurface.sap_tiles", {}};
-constexpr Port level_arguments{
-    "level_arguments", Usage::indirect_arguments, false, "uint", "output of subsurface.sap_tiles", {}};
+constexpr Port level_tiles = port::read_buffer("level_tiles", "uvec2", "output of subsurface.sap_tiles");
+constexpr Port level_arguments{"level_arguments", Usage::indirect_arguments, false, "uint",
+                               "output of subsurface.sap_tiles"};
 
 constexpr Port tiles_ports[] = {
-    {"classes", Usage::storage_buffer_read, false, "uint", "output of subsurface.classify", {}},
-    {"level_tiles",
-     Usage::storage_buffer_write,
-     false,
-     "uvec2",
-     "for each level, the index of its first entry and the number of entries; then the entries: tile x in "
-     "bits 0-14, y in bits 15-29, bit 30: all pixels have subsurface, bit 31: copy only; then a mask of the "
-     "3x3 tiles that can contain surface: bits 0-8 for the tiles of the finer level that the tile reduces, "
-     "bits 9-17 for the tiles around it",
-     {}},
-    {"level_arguments",
-     Usage::storage_buffer_write,
-     false,
-     "uint",
-     "for each level, the group counts x, y, z of an indirect dispatch over its tiles, and x times y",
-     {}},
-    {"tiles", Usage::storage_buffer_write, false, "uint", port::tiles.doc, {}},
-    {"arguments", Usage::storage_buffer_write, false, "uint", port::arguments.doc, {}},
-    {"copy_arguments",
-     Usage::storage_buffer_write,
-     true,
-     "uint",
-     "like 'arguments', but 0 groups if any tile scatters, because the pyramid then also copies the other "
-     "tiles. If the port is bound, the pyramid's lists are empty when no tile scatters",
-     {}},
+    port::classes,
+    port::written_buffer(
+        "level_tiles", "uvec2",
+        "for each level, the index of its first entry and the number of entries; then the entries: tile x in "
+        "bits 0-14, y in bits 15-29, bit 30: all pixels have subsurface, bit 31: copy only; then a mask of "
+        "the 3x3 tiles that can contain surface: bits 0-8 for the tiles of the finer level that the tile "
+        "reduces, bits 9-17 for the tiles around it"),
+    port::written_buffer(
+        "level_arguments", "uint",
+        "for each level, the group counts x, y, z of an indirect dispatch over its tiles, and x times y"),
+    port::writer_of(port::tiles),
+    port::writer_of(port::arguments),
+    port::optional(port::written_buffer(
+        "copy_arguments", "uint",
+        "like 'arguments', but 0 groups if any tile scatters, because the pyramid then also copies the other "
+        "tiles. If the port is bound, the pyramid's lists are empty when no tile scatters")),
 };
 
-constexpr Port setup_ports[] = {
-    {"lighting", Usage::sampled_image, false, "texture2D", "diffuse irradiance before albedo, linear",
-     port::color_formats},
-    port::material,
-    port::depth,
-    port::scatter_scale,
-    port::albedo,
-    level_tiles,
-    level_arguments,
-    {"light", Usage::storage_image_write, false, "image2D", light_doc, light_formats},
-    {"surface", Usage::storage_image_write, false, "uimage2D", surface_doc, surface_formats},
-};
+constexpr Port written_light(std::string_view name, std::string_view doc = light_doc) {
+  return port::written(name, doc, light_formats);
+}
+constexpr Port written_surface(std::string_view name, std::string_view doc = surface_doc) {
+  return port::written_uint(name, doc, surface_formats);
+}
+constexpr Port read_light(std::string_view name, std::string_view doc) {
+  return port::sampled(name, doc, light_formats);
+}
+constexpr Port read_surface(std::string_view name, std::string_view doc) {
+  return port::sampled_uint(name, doc, surface_formats);
+}
+
+// Ports that read the view, and the tiles of a level.
+constexpr std::array view{port::lighting, port::material, port::depth, port::scatter_scale, port::albedo};
+constexpr std::array level{level_tiles, level_arguments};
+
+constexpr auto setup_ports =
+    join(view, level, std::array{written_light("light"), written_surface("surface")});
 constexpr PassTypeSetting setup_settings[] = {setting::texturing, storage};
 
-constexpr Port halve_ports[] = {
-    setup_ports[0],
-    port::material,
-    port::depth,
-    port::scatter_scale,
-    port::albedo,
-    level_tiles,
-    level_arguments,
-    {"coarse_light", Usage::storage_image_write, false, "image2D", light_doc, light_formats},
-    {"coarse_surface", Usage::storage_image_write, false, "uimage2D", surface_doc, surface_formats},
-};
-constexpr PassTypeSetting halve_settings[] = {level_setting(1, "level that the pass writes", 1),
-                                              setting::texturing, storage};
+// Results of a step down.
+constexpr std::array coarse{written_light("coarse_light"), written_surface("coarse_surface")};
 
-constexpr Port down_ports[] = {
-    {"light", Usage::sampled_image, false, "texture2D", "image of the finer level", light_formats},
-    {"surface", Usage::sampled_image, false, "utexture2D", "image of the finer level", surface_formats},
-    level_tiles,
-    level_arguments,
-    {"coarse_light", Usage::storage_image_write, false, "image2D", light_doc, light_formats},
-    {"coarse_surface", Usage::storage_image_write, false, "uimage2D", surface_doc, surface_formats},
-};
-constexpr PassTypeSetting down_settings[] = {level_setting(1, "level that the pass writes"), storage};
+constexpr auto halve_ports = join(view, level, coarse);
+constexpr PassTypeSetting halve_settings[] = {written_level(1), setting::texturing, storage};
+
+constexpr std::array finer{read_light("light", "image of the finer level"),
+                           read_surface("surface", "image of the finer level")};
+constexpr auto down_ports = join(finer, level, coarse);
+constexpr PassTypeSetting down_settings[] = {written_level(), storage};
 
 // Ports of the second layer, for levels whose texels can have a second surface. Its images are
 // valid only at texels whose first surface has the flag.
 constexpr std::string_view second_doc = "image of the second layer, which holds surfaces apart from the "
                                         "first layer; undefined where a texel has only one layer";
-constexpr Port second_coarse_surface{
-    "second_coarse_surface", Usage::sampled_image, true, "utexture2D", second_doc, surface_formats};
-constexpr Port second_coarse_scattered{
-    "second_coarse_scattered", Usage::sampled_image, true, "utexture2D", second_doc, surface_formats};
+constexpr Port second_coarse_surface = read_surface("second_coarse_surface", second_doc);
+constexpr Port second_coarse_scattered = read_surface("second_coarse_scattered", second_doc);
 
-constexpr Port up_ports[] = {
-    {"light", Usage::sampled_image, false, "texture2D", "image of this level", light_formats},
-    {"surface", Usage::sampled_image, false, "utexture2D", "image of this level", surface_formats},
-    {"coarse_surface", Usage::sampled_image, true, "utexture2D",
-     "image of the coarser level; unbound at the last level", surface_formats},
-    {"coarse_scattered", Usage::sampled_image, true, "utexture2D",
-     "image of the coarser level; unbound at the last level", surface_formats},
-    second_coarse_surface,
-    second_coarse_scattered,
-    level_tiles,
-    level_arguments,
-    {"scattered", Usage::storage_image_write, false, "uimage2D", scattered_doc, surface_formats},
-};
-constexpr PassTypeSetting up_settings[] = {level_setting(1, "level that the pass writes"), variant, storage};
+constexpr std::array this_level{read_light("light", "image of this level"),
+                                read_surface("surface", "image of this level")};
+constexpr std::string_view coarser_doc = "image of the coarser level; unbound at the last level";
+constexpr std::array coarser{port::optional(read_surface("coarse_surface", coarser_doc)),
+                             port::optional(read_surface("coarse_scattered", coarser_doc)),
+                             port::optional(second_coarse_surface), port::optional(second_coarse_scattered)};
+constexpr std::array up_result{written_surface("scattered", scattered_doc)};
+constexpr auto up_ports = join(this_level, coarser, level, up_result);
+constexpr PassTypeSetting up_settings[] = {written_level(), variant, storage};
 
-constexpr Port gather_ports[] = {
-    {"light", Usage::sampled_image, false, "texture2D", "image of level 0", light_formats},
-    {"surface", Usage::sampled_image, false, "utexture2D", "image of level 0", surface_formats},
-    {"coarse_surface", Usage::sampled_image, false, "utexture2D", "image of level 1", surface_formats},
-    {"coarse_scattered", Usage::sampled_image, false, "utexture2D", "image of level 1", surface_formats},
-    level_tiles,
-    level_arguments,
-    {"scattered", Usage::storage_image_write, false, "image2D",
-     "rgb: scattered light where there is subsurface, undefined elsewhere; a: confidence", light_formats},
-};
+constexpr std::array level_0{read_light("light", "image of level 0"),
+                             read_surface("surface", "image of level 0")};
+constexpr std::array level_1{read_surface("coarse_surface", "image of level 1"),
+                             read_surface("coarse_scattered", "image of level 1")};
+constexpr std::array gather_result{written_light(
+    "scattered", "rgb: scattered light where there is subsurface, undefined elsewhere; a: confidence")};
+constexpr auto gather_ports = join(level_0, level_1, level, gather_result);
 constexpr PassTypeSetting gather_settings[] = {variant, storage};
 
-constexpr Port half_gather_ports[] = {
-    setup_ports[0],  port::material,  port::depth, port::scatter_scale, port::albedo,
-    gather_ports[2], gather_ports[3], level_tiles, level_arguments,     gather_ports[6],
-};
+constexpr auto half_gather_ports = join(view, level_1, level, gather_result);
 
 constexpr PassTypeSetting layered_gather_settings[] = {layered_variant, storage};
 
-constexpr Port layered_down_ports[] = {
-    down_ports[0],
-    down_ports[1],
-    {"second_light", Usage::sampled_image, true, "texture2D",
-     "image of the second layer; unbound if the finer level has one layer", light_formats},
-    {"second_surface", Usage::sampled_image, true, "utexture2D",
-     "image of the second layer; unbound if the finer level has one layer", surface_formats},
-    level_tiles,
-    level_arguments,
-    down_ports[4],
-    down_ports[5],
-    {"second_coarse_light", Usage::storage_image_write, false, "image2D", second_doc, light_formats},
-    {"second_coarse_surface", Usage::storage_image_write, false, "uimage2D", second_doc, surface_formats},
-};
+constexpr std::string_view second_finer_doc =
+    "image of the second layer; unbound if the finer level has one layer";
+constexpr auto layered_down_ports =
+    join(finer,
+         std::array{port::optional(read_light("second_light", second_finer_doc)),
+                    port::optional(read_surface("second_surface", second_finer_doc))},
+         level, coarse,
+         std::array{written_light("second_coarse_light", second_doc),
+                    written_surface("second_coarse_surface", second_doc)});
 
-constexpr Port layered_up_ports[] = {
-    up_ports[0],
-    up_ports[1],
-    {"second_light", Usage::sampled_image, false, "texture2D", second_doc, light_formats},
-    {"second_surface", Usage::sampled_image, false, "utexture2D", second_doc, surface_formats},
-    up_ports[2],
-    up_ports[3],
-    second_coarse_surface,
-    second_coarse_scattered,
-    level_tiles,
-    level_arguments,
-    up_ports[8],
-    {"second_scattered", Usage::storage_image_write, false, "uimage2D", second_doc, surface_formats},
-};
+constexpr auto layered_up_ports =
+    join(this_level,
+         std::array{read_light("second_light", second_doc), read_surface("second_surface", second_doc)},
+         coarser, level, up_result, std::array{written_surface("second_scattered", second_doc)});
 
-constexpr Port layered_gather_ports[] = {
-    gather_ports[0],
-    gather_ports[1],
-    gather_ports[2],
-    gather_ports[3],
-    {"second_coarse_surface", Usage::sampled_image, false, "utexture2D", second_doc, surface_formats},
-    {"second_coarse_scattered", Usage::sampled_image, false, "utexture2D", second_doc, surface_formats},
-    level_tiles,
-    level_arguments,
-    gather_ports[6],
-};
+constexpr auto layered_gather_ports =
+    join(level_0, level_1, std::array{second_coarse_surface, second_coarse_scattered}, level, gather_result);
 
 } // namespace
 
@@ -221,7 +159,6 @@ const PassType sap_tiles_type{
     .ports = tiles_ports,
     .settings = {},
     .dispatch = single_group,
-    .side_effects = false,
 };
 
 const PassType sap_setup_type{
@@ -231,7 +168,6 @@ const PassType sap_setup_type{
     .ports = setup_ports,
     .settings = setup_settings,
     .dispatch = over_tiles,
-    .side_effects = false,
 };
 
 const PassType sap_down_type{
@@ -241,7 +177,6 @@ const PassType sap_down_type{
     .ports = down_ports,
     .settings = down_settings,
     .dispatch = over_tiles,
-    .side_effects = false,
     .arguments_entry = "level",
 };
 
@@ -253,7 +188,6 @@ const PassType sap_up_type{
     .ports = up_ports,
     .settings = up_settings,
     .dispatch = over_tiles,
-    .side_effects = false,
     .arguments_entry = "level",
 };
 
@@ -264,7 +198,6 @@ const PassType sap_gather_type{
     .ports = gather_ports,
     .settings = gather_settings,
     .dispatch = over_tiles,
-    .side_effects = false,
 };
 
 const PassType sap_setup_half_res_type{
@@ -275,7 +208,6 @@ const PassType sap_setup_half_res_type{
     .ports = halve_ports,
     .settings = halve_settings,
     .dispatch = over_tiles,
-    .side_effects = false,
     .arguments_entry = "level",
 };
 
@@ -287,7 +219,6 @@ const PassType sap_gather_half_type{
     .ports = half_gather_ports,
     .settings = setup_settings,
     .dispatch = over_tiles,
-    .side_effects = false,
 };
 
 const PassType sap_down_layered_type{
@@ -297,7 +228,6 @@ const PassType sap_down_layered_type{
     .ports = layered_down_ports,
     .settings = down_settings,
     .dispatch = over_tiles,
-    .side_effects = false,
     .arguments_entry = "level",
 };
 
@@ -308,7 +238,6 @@ const PassType sap_up_layered_type{
     .ports = layered_up_ports,
     .settings = up_settings,
     .dispatch = over_tiles,
-    .side_effects = false,
     .arguments_entry = "level",
 };
 
@@ -319,7 +248,6 @@ const PassType sap_gather_layered_type{
     .ports = layered_gather_ports,
     .settings = layered_gather_settings,
     .dispatch = over_tiles,
-    .side_effects = false,
 };
 
 } // namespace dermis::subsurface

@@ -1,6 +1,5 @@
 // Accumulation of light over frames, for hosts without their own temporal anti-aliasing.
 
-#include "passes/common/dispatch.hpp"
 #include "passes/common/signatures/signatures.hpp"
 
 namespace dermis::subsurface {
@@ -14,23 +13,20 @@ constexpr std::string_view past_doc = "scattered light minus the part that the n
 constexpr std::string_view place_doc = "view depth in metres, profile id; 0 where nothing was written";
 
 constexpr Port ports[] = {
-    {"lighting", Usage::sampled_image, false, "texture2D", "diffuse irradiance before albedo, linear",
-     port::color_formats},
+    port::lighting,
     port::albedo,
-    {"scattered", Usage::sampled_image, false, "texture2D", "scattered light of this frame",
-     port::color_formats},
+    port::sampled("scattered", "scattered light of this frame", port::color_formats),
     port::material,
     port::depth,
     port::scatter_scale,
     port::velocity,
-    {"past", Usage::sampled_image, false, "texture2D", past_doc, past_formats},
-    {"place", Usage::sampled_image, false, "texture2D", place_doc, place_formats},
+    port::sampled("past", past_doc, past_formats),
+    port::sampled("place", place_doc, place_formats),
     port::tiles,
     port::arguments,
-    {"accumulated", Usage::storage_image_write, false, "image2D", "scattered light, accumulated over frames",
-     port::color_formats},
-    {"past_out", Usage::storage_image_write, false, "image2D", past_doc, past_formats},
-    {"place_out", Usage::storage_image_update, false, port::part_of_cleared, place_doc, place_formats},
+    port::written("accumulated", "scattered light, accumulated over frames", port::color_formats),
+    port::written("past_out", past_doc, past_formats),
+    port::written_in_part("place_out", place_doc, place_formats),
 };
 
 constexpr PassTypeSetting settings[] = {
@@ -52,7 +48,6 @@ const PassType accumulate_type{
     .ports = ports,
     .settings = settings,
     .dispatch = over_tiles,
-    .side_effects = false,
     .mixes = accumulate_mixes,
 };
 

@@ -1,12 +1,11 @@
 // Clears resources that later passes write only in part.
 
-#include "passes/common/dispatch.hpp"
 #include "passes/common/signatures/signatures.hpp"
 
 namespace dermis::subsurface {
 
 namespace {
-constexpr Port ports[] = {{"target", Usage::clear, false, "", "an image or a buffer, as a whole", {}}};
+constexpr Port ports[] = {{"target", Usage::clear, false, "", "an image or a buffer, as a whole"}};
 } // namespace
 
 const PassType clear_type{
@@ -16,7 +15,6 @@ const PassType clear_type{
     .ports = ports,
     .settings = {},
     .dispatch = no_dispatch,
-    .side_effects = false,
 };
 
 } // namespace dermis::subsurface

@@ -1,6 +1,5 @@
 // Passes that prepare light for scattering and write it back.
 
-#include "passes/common/dispatch.hpp"
 #include "passes/common/signatures/signatures.hpp"
 
 namespace dermis::subsurface {
@@ -10,37 +9,40 @@ namespace {
 constexpr std::string_view result_options[] = {"color", "light"};
 
 constexpr Port setup_ports[] = {
-    {"lighting", Usage::sampled_image, false, "texture2D", "diffuse irradiance before albedo, linear",
-     port::color_formats},
+    port::lighting,
     port::material,
     port::depth,
     port::albedo,
     port::tiles,
     port::arguments,
-    {"light", Usage::storage_image_write, false, "image2D",
-     "rgb: light that can scatter; a: area of the pixel's surface patch divided by its projected area; 0 "
-     "outside",
-     port::light_formats},
-    {"slope", Usage::storage_image_write, true, "image2D",
-     "change of depth from pixel to pixel divided by the pixel's size, in x and y", port::way_formats},
+    port::written("light",
+                  "rgb: light that can scatter; a: area of the pixel's surface patch divided by its "
+                  "projected area; 0 outside",
+                  port::light_formats),
+    port::optional(
+        port::written("slope", "change of depth from pixel to pixel divided by the pixel's size, in x and y",
+                      port::way_formats)),
 };
-constexpr PassTypeSetting setup_settings[] = {setting::texturing};
+constexpr PassTypeSetting texturing[] = {setting::texturing};
+
+// An optional image of light of which each invocation reads only its own texel.
+constexpr Port own_light(std::string_view name, std::string_view doc) {
+  return port::optional(port::own_texels(port::sampled(name, doc, port::color_formats)));
+}
 
 constexpr std::string_view copied_options[] = {"unscattered", "scattered"};
 constexpr Port combine_ports[] = {
-    {"scattered", Usage::sampled_image, true, "texture2D",
-     "scattered light; unbound: no light scatters, and all light comes from 'unscattered'",
-     port::color_formats, true},
-    {"unscattered", Usage::sampled_image, true, "texture2D",
-     "diffuse irradiance before albedo, which copied tiles show. May be the image bound to 'lighting'; "
-     "'scattered' or 'unscattered' must be bound",
-     port::color_formats, true},
+    own_light("scattered",
+              "scattered light; unbound: no light scatters, and all light comes from 'unscattered'"),
+    own_light("unscattered",
+              "diffuse irradiance before albedo, which copied tiles show. May be the image bound to "
+              "'lighting'; 'scattered' or 'unscattered' must be bound"),
     port::material,
     port::albedo,
     port::tiles,
     port::arguments,
-    {"lighting", Usage::storage_image_write, false, "image2D",
-     "written where there is subsurface, with alpha 1; unchanged elsewhere", port::color_formats},
+    port::written("lighting", "written where there is subsurface, with alpha 1; unchanged elsewhere",
+                  port::color_formats),
 };
 constexpr std::string_view combined[] = {"scattered", "unscattered"};
 constexpr PassTypeSetting combine_settings[] = {
@@ -52,65 +54,45 @@ constexpr PassTypeSetting combine_settings[] = {
                     "source of the light of copied tiles: unscattered (if bound) or scattered"),
 };
 
-constexpr Format scattered_formats[] = {Format::rgba16f}; // formats that a shader may load
 constexpr Port copy_ports[] = {
-    {"lighting", Usage::sampled_image, false, "texture2D", "diffuse irradiance before albedo, linear",
-     port::color_formats, true},
+    port::own_texels(port::lighting),
     port::albedo,
     port::tiles,
     port::arguments,
-    {"scattered", Usage::storage_image_update, false, "image2D",
-     "written if no tile scatters; otherwise unchanged", scattered_formats},
+    port::updated("scattered", "written if no tile scatters; otherwise unchanged"),
 };
-constexpr PassTypeSetting copy_settings[] = {setting::texturing};
 
 constexpr Port light_ports[] = {
-    {"lighting", Usage::sampled_image, false, "texture2D", "diffuse irradiance before albedo, linear",
-     port::color_formats, true},
-    {"scattered", Usage::sampled_image, true, "texture2D", "scattered light; unbound: no light scatters",
-     port::color_formats, true},
+    port::own_texels(port::lighting),
+    own_light("scattered", "scattered light; unbound: no light scatters"),
     port::material,
     port::depth,
     port::scatter_scale,
     port::albedo,
-    {"classes",
-     Usage::storage_buffer_read,
-     true,
-     "uint",
-     "output of subsurface.classify: tiles that do not scatter keep their light. Unbound: 'scattered' holds "
-     "the light of these tiles",
-     {}},
-    {"light", Usage::storage_image_write, false, "image2D",
-     "scattered light before albedo; the input light where nothing scatters, in full precision",
-     port::color_formats},
+    port::optional(port::read_buffer(
+        "classes", "uint",
+        "output of subsurface.classify: tiles that do not scatter keep their light. Unbound: 'scattered' "
+        "holds the light of these tiles")),
+    port::written("light",
+                  "scattered light before albedo; the input light where nothing scatters, in full precision",
+                  port::color_formats),
 };
-constexpr PassTypeSetting light_settings[] = {setting::texturing};
 
-constexpr Port back_lighting_port{
+constexpr Port back_lighting = port::sampled(
     "back_lighting",
-    Usage::sampled_image,
-    false,
-    "texture2D",
     "irradiance on the far side, linear, from the light along whose direction thickness is measured",
-    port::color_formats};
-constexpr Port thickness_port{"thickness",
-                              Usage::sampled_image,
-                              false,
-                              "texture2D",
-                              "path length of that light through the material [m]",
-                              {}};
+    port::color_formats);
+constexpr Port thickness = port::sampled("thickness", "path length of that light through the material [m]");
 constexpr Port thin_parts_ports[] = {
-    back_lighting_port, thickness_port, port::material, port::scatter_scale, port::tiles, port::arguments,
+    back_lighting, thickness, port::material, port::scatter_scale, port::tiles, port::arguments,
 };
 constexpr Port transmission_ports[] = {
-    {"lighting", Usage::sampled_image, false, "texture2D", "diffuse irradiance before albedo, linear",
-     port::color_formats, true},
-    back_lighting_port,
-    thickness_port,
+    port::own_texels(port::lighting),
+    back_lighting,
+    thickness,
     port::material,
     port::scatter_scale,
-    {"lit", Usage::storage_image_write, false, "image2D", "lighting plus transmitted light",
-     port::color_formats},
+    port::written("lit", "lighting plus transmitted light", port::color_formats),
 };
 
 } // namespace
@@ -121,9 +103,8 @@ const PassType setup_type{
     .doc = "Extracts the light that can scatter: sanitised, premultiplied by the subsurface mask, rounded to "
            "nearest even.",
     .ports = setup_ports,
-    .settings = setup_settings,
+    .settings = texturing,
     .dispatch = over_tiles,
-    .side_effects = false,
 };
 
 const PassType transmission_type{
@@ -135,7 +116,6 @@ const PassType transmission_type{
     .ports = transmission_ports,
     .settings = {},
     .dispatch = over_view,
-    .side_effects = false,
 };
 
 const PassType transmission_stats_type{
@@ -156,7 +136,6 @@ const PassType combine_type{
     .ports = combine_ports,
     .settings = combine_settings,
     .dispatch = over_tiles,
-    .side_effects = false,
     .one_of = combined,
 };
 
@@ -166,9 +145,8 @@ const PassType copy_tiles_type{
     .doc = "Copies light unchanged if no tile of the screen scatters, for passes that need all tiles in one "
            "image.",
     .ports = copy_ports,
-    .settings = copy_settings,
+    .settings = texturing,
     .dispatch = over_tiles,
-    .side_effects = false,
 };
 
 const PassType export_scattered_type{
@@ -177,9 +155,8 @@ const PassType export_scattered_type{
     .doc = "Exports scattered light before albedo for every pixel, for tools and for hosts that apply albedo "
            "later.",
     .ports = light_ports,
-    .settings = light_settings,
+    .settings = texturing,
     .dispatch = over_view,
-    .side_effects = false,
 };
 
 } // namespace dermis::subsurface

@@ -1,59 +1,53 @@
 // Classification of 8x8 tiles, and the list of tiles with subsurface that indirect dispatches run
 // over.
 
-#include "passes/common/dispatch.hpp"
 #include "passes/common/signatures/signatures.hpp"
 
 namespace dermis::subsurface {
 
 namespace {
 
-constexpr std::string_view light_range_doc =
-    "per tile: minimum and maximum of the light that can scatter, and the widest d (light_range.glsl)";
-
-constexpr std::string_view light_cells_doc = "light_range of each block of 4x4 tiles, row by row";
+constexpr Port light_range = port::read_buffer(
+    "light_range", "uvec4",
+    "per tile: minimum and maximum of the light that can scatter, and the widest d (light_range.glsl)");
+constexpr Port light_cells =
+    port::read_buffer("light_cells", "uvec4", "light_range of each block of 4x4 tiles, row by row");
 
 constexpr Port classify_ports[] = {
     port::material,
     port::depth,
     port::scatter_scale,
-    {"lighting", Usage::sampled_image, true, "texture2D",
-     "diffuse irradiance before albedo, linear; for light_range and light_cells", port::color_formats},
+    port::optional(port::sampled("lighting",
+                                 "diffuse irradiance before albedo, linear; for light_range and light_cells",
+                                 port::color_formats)),
     port::albedo,
-    {"classes",
-     Usage::storage_buffer_write,
-     false,
-     "uint",
-     "per tile of the render rectangle, row by row: 0: no subsurface; 1: scatters; 2: scattering below a "
-     "pixel (copy); 3: uniform light (copy); plus 4 if all 64 pixels have subsurface",
-     {}},
-    {"light_range", Usage::storage_buffer_write, true, "uvec4", light_range_doc, {}},
-    {"light_cells", Usage::storage_buffer_write, true, "uvec4", light_cells_doc, {}},
+    port::written_buffer(
+        "classes", "uint",
+        "per tile of the render rectangle, row by row: 0: no subsurface; 1: scatters; 2: scattering below a "
+        "pixel (copy); 3: uniform light (copy); plus 4 if all 64 pixels have subsurface"),
+    port::optional(port::writer_of(light_range)),
+    port::optional(port::writer_of(light_cells)),
 };
 constexpr PassTypeSetting classify_settings[] = {setting::texturing};
 
 constexpr Port flat_ports[] = {
-    {"light_range", Usage::storage_buffer_read, false, "uvec4", light_range_doc, {}},
-    {"light_cells", Usage::storage_buffer_read, false, "uvec4", light_cells_doc, {}},
-    {"classes", Usage::storage_buffer_update, false, "uint", "output of subsurface.classify", {}},
+    light_range,
+    light_cells,
+    {"classes", Usage::storage_buffer_update, false, "uint", port::classes.doc},
 };
 
 constexpr Port tile_list_ports[] = {
-    {"classes", Usage::storage_buffer_read, false, "uint", "output of subsurface.classify", {}},
-    {"tiles", Usage::storage_buffer_write, false, "uint", port::tiles.doc, {}},
-    {"arguments", Usage::storage_buffer_write, false, "uint", port::arguments.doc, {}},
+    port::classes,
+    port::writer_of(port::tiles),
+    port::writer_of(port::arguments),
 };
 
 constexpr Port skips_ports[] = {
-    {"classes",
-     Usage::storage_buffer_read,
-     false,
-     "uint",
-     "output of subsurface.classify or subsurface.classify_uniform_light",
-     {}},
+    port::read_buffer("classes", "uint",
+                      "output of subsurface.classify or subsurface.classify_uniform_light"),
     port::material,
-    {"skips", Usage::storage_image_write, true, "image2D",
-     "for tools: class of the pixel's tile, profile id of the pixel, 0, 1", port::light_formats},
+    port::optional(port::written(
+        "skips", "for tools: class of the pixel's tile, profile id of the pixel, 0, 1", port::light_formats)),
 };
 
 } // namespace
@@ -65,7 +59,6 @@ const PassType classify_type{
     .ports = classify_ports,
     .settings = classify_settings,
     .dispatch = over_tile_blocks,
-    .side_effects = false,
 };
 
 const PassType classify_uniform_light_type{
@@ -75,7 +68,6 @@ const PassType classify_uniform_light_type{
     .ports = flat_ports,
     .settings = {},
     .dispatch = over_tile_grid,
-    .side_effects = false,
 };
 
 const PassType debug_tile_class_type{
@@ -85,7 +77,6 @@ const PassType debug_tile_class_type{
     .ports = skips_ports,
     .settings = {},
     .dispatch = over_view,
-    .side_effects = false,
 };
 
 const PassType tile_list_type{
@@ -96,7 +87,6 @@ const PassType tile_list_type{
     .ports = tile_list_ports,
     .settings = {},
     .dispatch = single_group,
-    .side_effects = false,
 };
 
 } // namespace dermis::subsurface
