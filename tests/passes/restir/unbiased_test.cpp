@@ -123,7 +123,7 @@ TEST_F(Unbiased, InTheFrameAfterLightsMoved) {
   after.lights[0].emission = {2, 6, 20};
   after.lights[1].emission = {8, 4, 2};
   testing::finish(after);
-  const auto reference = means_of(area_reference(after, pixels, regions, batches, 20000, 97));
+  const auto moved = means_of(area_reference(after, pixels, regions, batches, 20000, 97));
   const int tests = static_cast<int>(regions.pixels.size()) * 3;
   for (const Shift shift : {Shift::reconnection, Shift::delayed, Shift::hybrid}) {
     SequenceSettings settings = settings_of(shift, Reuse::spatiotemporal);
@@ -137,7 +137,7 @@ TEST_F(Unbiased, InTheFrameAfterLightsMoved) {
       for (size_t r = 0; r < values.size(); ++r)
         values[r][i] = result.region_mean[r];
     });
-    const Judged judged = judge(means_of(values), reference);
+    const Judged judged = judge(means_of(values), moved);
     std::printf("lights moved, shift %u: %.2f sigma, %.2f %% off, 1 sigma is %.2f %%\n",
                 static_cast<unsigned>(shift), judged.worst, 100 * judged.largest, 100 * judged.spread);
     EXPECT_LT(judged.worst, testing::three_sigma_limit(restarts - 1, tests));
@@ -160,19 +160,19 @@ TEST_F(Unbiased, SampledIndices_BiasIsSmall) {
 // Mean square error of a frame late in the sequence, over pixels and restarts.
 TEST_F(Unbiased, Reuse_ReducesTheError) {
   testing::Regions each;
-  std::vector<double> reference(pixels.size());
+  std::vector<double> light(pixels.size());
   for (uint32_t i = 0; i < pixels.size(); ++i)
     if (pixels[i].domain.medium != 0) each.pixels.push_back({i});
   const auto means = means_of(area_reference(scene, pixels, each, batches, 20000, 98));
   for (size_t r = 0; r < each.pixels.size(); ++r)
-    reference[each.pixels[r][0]] = means[r].mean;
+    light[each.pixels[r][0]] = means[r].mean;
   const auto error = [&](Shift shift, Reuse reuse) {
     SequenceSettings settings = settings_of(shift, reuse);
     settings.frames = 13;
     std::vector<double> squares(16);
     subsurface::parallel_for(squares.size(), 1, 0, [&](size_t restart) {
       squares[restart] =
-          run_sequence(scene, settings, regions, reference, static_cast<uint32_t>(restart + 101)).last_square;
+          run_sequence(scene, settings, regions, light, static_cast<uint32_t>(restart + 101)).last_square;
     });
     return testing::mean_of(squares).mean;
   };
