@@ -3,6 +3,9 @@
 
 #include "framegraph/compile/plan.hpp"
 
+#include <string>
+#include <vector>
+
 namespace dermis::testing {
 
 // The effect of one command on one subresource: one mip of one layer of one resource instance.
@@ -39,5 +42,24 @@ inline Access written(const Operation& o) {
 inline Access read(const Operation& o) {
   return accesses(o) ? o.access->access & ~all_write_access : 0;
 }
+
+inline size_t queue_index(Queue queue) {
+  return queue == Queue::main ? 0 : 1;
+}
+inline bool is_host_resource(const Plan& plan, uint32_t resource) {
+  return plan.resources[resource].first_instance == no_instance;
+}
+inline uint32_t instance_in_frame(const Plan& plan, uint32_t resource, uint32_t frames_back, uint32_t frame) {
+  const uint32_t count = plan.resources[resource].instance_count;
+  return (frame + count - frames_back) % count;
+}
+
+struct UnrolledPlan {
+  std::vector<Operation> operations; // In the order of recording.
+  std::string misplaced;             // An error in signals, waits, releases or orderings, or "".
+};
+
+// Returns the operations of the first frames. Indices of the plan must be in range.
+UnrolledPlan unroll(const Plan& plan, uint32_t frames);
 
 } // namespace dermis::testing

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <map>
+#include <utility>
 #include <vector>
 
 namespace dermis::testing {
@@ -17,117 +18,11 @@ struct Oracle {
   std::vector<Operation> all;
   std::vector<size_t> next_write =
       {}; // By operation: the next operation of another step that writes the same subresource.
-  std::string misplaced = {}; // The first error in signals, waits, releases and orderings.
-
-  // --- Operations of the unrolled frames
 
   uint32_t instance(uint32_t resource, uint32_t frames_back, uint32_t frame) const {
-    const uint32_t count = plan.resources[resource].instance_count;
-    return (frame + count - frames_back) % count;
+    return instance_in_frame(plan, resource, frames_back, frame);
   }
-
-  void add(Operation operation, const SubresourceRange& range) {
-    if (host(operation.resource)) {
-      operation.heap = ~(uint64_t{operation.resource} << 32 | operation.instance);
-    } else {
-      const Placement& at =
-          plan.placements[plan.resources[operation.resource].first_instance + operation.instance];
-      operation.heap = at.heap;
-      operation.begin = at.offset;
-      operation.end = at.offset + at.size;
-    }
-    for (uint32_t m = range.first_mip; m < uint32_t{range.first_mip} + range.mips; ++m)
-      for (uint32_t l = range.first_layer; l < uint32_t{range.first_layer} + range.layers; ++l) {
-        operation.mip = m;
-        operation.layer = l;
-        all.push_back(operation);
-      }
-  }
-
-  static size_t number(Queue queue) { return queue == Queue::main ? 0 : 1; }
-
-  // `step_of` holds the steps of the earlier passes of this frame.
-  bool follows(const PlanOrdering& ordering, const std::vector<uint32_t>& step_of) const {
-    if (ordering.earlier >= step_of.size()) return false;
-    const Queue queue = plan.passes[ordering.later].queue;
-    return plan.passes[ordering.earlier].queue == queue ||
-           std::any_of(all.begin(), all.end(), [&](const Operation& o) {
-             return o.what == Operation::What::wait && o.queue == queue &&
-                    o.until >= step_of[ordering.earlier];
-           });
-  }
-
-  void unroll(uint32_t frames) {
-    uint32_t step = 0;
-    std::vector<uint32_t> reached[2]; // Steps, by queue and timeline point.
-    for (uint32_t f = 0; f < frames; ++f) {
-      const size_t before[2] = {reached[0].size(), reached[1].size()};
-      const auto barriers = [&](uint32_t first, uint32_t count, Queue queue, bool releases) {
-        for (uint32_t b = first; b < first + count; ++b) {
-          const PlanBarrier& one = plan.barriers[b];
-          if ((one.transfer == PlanBarrier::Transfer::release) != releases)
-            misplaced = "a release stands wrong";
-          Operation operation{Operation::What::barrier,
-                              step++,
-                              f,
-                              one.resource,
-                              instance(one.resource, one.frames_back, f),
-                              nullptr,
-                              &one};
-          operation.queue = queue;
-          add(operation, one.range);
-        }
-      };
-      const auto wait = [&](uint32_t point, Queue queue) {
-        if (point == no_point) return;
-        const size_t other = 1 - number(queue);
-        const size_t wanted = before[other] + point;
-        if (wanted > reached[other].size()) misplaced = "a point is waited for that is not reached";
-        if (wanted == 0 || wanted > reached[other].size()) return;
-        Operation operation{Operation::What::wait, step++, f, no_instance, 0, nullptr, nullptr};
-        operation.queue = queue;
-        operation.until = reached[other][wanted - 1];
-        all.push_back(operation);
-      };
-      const auto reach = [&](uint32_t point, Queue queue) {
-        if (point == 0) return;
-        if (before[number(queue)] + point != reached[number(queue)].size() + 1)
-          misplaced = "a point is reached out of turn";
-        reached[number(queue)].push_back(step++);
-      };
-      for (uint32_t r = 0; r < plan.resources.size(); ++r)
-        add({Operation::What::frame_begins, step++, f, r, instance(r, 0, f), nullptr, nullptr},
-            plan.resources[r].whole());
-      std::vector<uint32_t> step_of; // Indexed by pass.
-      for (const PlanPass& pass : plan.passes) {
-        wait(pass.wait, pass.queue);
-        for (const PlanOrdering& ordering : plan.orderings)
-          if (&plan.passes[ordering.later] == &pass && !follows(ordering, step_of))
-            misplaced = "a pass does not come after one that it is to follow";
-        barriers(pass.first_barrier, pass.barrier_count, pass.queue, false);
-        for (uint32_t a = pass.first_access; a < pass.first_access + pass.access_count; ++a) {
-          const PlanAccess& one = plan.accesses[a];
-          Operation operation{Operation::What::access,
-                              step,
-                              f,
-                              one.resource,
-                              instance(one.resource, one.frames_back, f),
-                              &one,
-                              nullptr};
-          operation.queue = pass.queue;
-          add(operation, one.range);
-        }
-        step_of.push_back(step);
-        ++step;
-        barriers(pass.first_barrier + pass.barrier_count, pass.release_count, pass.queue, true);
-        reach(pass.signal, pass.queue);
-      }
-      wait(plan.final_wait, Queue::main);
-      barriers(plan.first_final_barrier, plan.final_barrier_count, Queue::main, false);
-    }
-  }
-
-  bool host(uint32_t resource) const { return plan.resources[resource].first_instance == no_instance; }
+  bool host(uint32_t resource) const { return is_host_resource(plan, resource); }
   bool image(const Operation& o) const { return plan.resources[o.resource].type == ResourceType::image; }
   bool overlap(const Operation& a, const Operation& b) const {
     if (a.heap != b.heap || std::max(a.begin, b.begin) >= std::min(a.end, b.end)) return false;
@@ -178,8 +73,8 @@ struct Oracle {
   }
 
   static void reach(Path& p, const Operation& by, Stage stages) {
-    p.ordered[number(by.queue)] |= stages;
-    if (stages != 0) p.since[number(by.queue)] = std::min(p.since[number(by.queue)], by.step);
+    p.ordered[queue_index(by.queue)] |= stages;
+    if (stages != 0) p.since[queue_index(by.queue)] = std::min(p.since[queue_index(by.queue)], by.step);
   }
 
   Path path(size_t first, size_t second, uint64_t byte) const {
@@ -193,8 +88,8 @@ struct Oracle {
     for (size_t k = first + 1; k < second; ++k) {
       const Operation& o = all[k];
       if (o.what == Operation::What::wait) {
-        const size_t other = 1 - number(o.queue);
-        const bool done = number(a.queue) == other && a.step <= o.until;
+        const size_t other = 1 - queue_index(o.queue);
+        const bool done = queue_index(a.queue) == other && a.step <= o.until;
         if (!done && p.since[other] > o.until) continue;
         reach(p, o, ~uint64_t{0});
         p.available = true;
@@ -204,7 +99,7 @@ struct Oracle {
       if (!is_barrier(o) || o.barrier->from_host || !reaches(o, a, byte)) continue;
       const PlanBarrier& b = *o.barrier;
       const bool directly = accesses(a) && a.queue == o.queue && (a.access->stages & ~b.source_stages) == 0;
-      if (!directly && (p.ordered[number(o.queue)] & b.source_stages) == 0) continue;
+      if (!directly && (p.ordered[queue_index(o.queue)] & b.source_stages) == 0) continue;
       reach(p, o, b.destination_stages);
       p.available |= directly && (written(a) & ~b.source_access) == 0;
       show(p, all[second], o.queue, b.destination_stages, b.destination_access);
@@ -254,7 +149,7 @@ struct Oracle {
   std::string pair(size_t first, size_t second, uint64_t byte) const {
     const Operation &a = all[first], &b = all[second];
     const Path p = path(first, second, byte);
-    const Stage before = p.ordered[number(b.queue)];
+    const Stage before = p.ordered[queue_index(b.queue)];
     const bool directly = is_barrier(b) && accesses(a) && a.queue == b.queue &&
                           (a.access->stages & ~b.barrier->source_stages) == 0;
     const bool ordered = accesses(b) ? (b.access->stages & ~before) == 0
@@ -477,16 +372,17 @@ struct Oracle {
 } // namespace
 
 std::string first_hazard(const Plan& plan) {
-  Oracle oracle{plan, {}};
-  if (const std::string wrong = oracle.live_together(); !wrong.empty()) return wrong;
+  if (const std::string wrong = Oracle{plan, {}}.live_together(); !wrong.empty()) return wrong;
   uint32_t frames = 3;
   for (const PlanHistory& history : plan.histories)
     frames = std::max(frames, history.frames + 3);
   // Instances need enough frames for each to become the oldest.
   for (const PlanResource& resource : plan.resources)
     frames = std::max(frames, 2 * resource.instance_count + 1);
-  oracle.unroll(frames + 1); // The beginning of the last frame checks how the frame before ended.
-  if (!oracle.misplaced.empty()) return oracle.misplaced;
+  // The beginning of the last frame checks how the frame before ended.
+  UnrolledPlan unrolled = unroll(plan, frames + 1);
+  if (!unrolled.misplaced.empty()) return unrolled.misplaced;
+  Oracle oracle{plan, std::move(unrolled.operations)};
   oracle.find_next_writes();
   std::vector<size_t> acting, writing; // Operations before b.
   for (size_t b = 0; b < oracle.all.size() && oracle.all[b].frame <= frames; ++b) {
