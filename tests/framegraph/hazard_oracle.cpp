@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <map>
+#include <set>
 #include <utility>
 #include <vector>
 
@@ -18,6 +19,8 @@ struct Oracle {
   std::vector<Operation> all;
   std::vector<size_t> next_write =
       {}; // By operation: the next operation of another step that writes the same subresource.
+  // By resource: mips and layers that accesses and barriers name.
+  std::map<uint32_t, std::set<std::array<uint32_t, 2>>> used_parts = {};
 
   uint32_t instance(uint32_t resource, uint32_t frames_back, uint32_t frame) const {
     return instance_in_frame(plan, resource, frames_back, frame);
@@ -114,12 +117,13 @@ struct Oracle {
     return k < second && all[k].step != all[second].step;
   }
 
-  void find_next_writes() {
+  void find_next_writes_and_used_parts() {
     next_write.assign(all.size(), all.size());
     std::map<std::array<uint32_t, 4>, size_t> nearest; // By subresource: the nearest later write.
     for (size_t i = all.size(); i-- > 0;) {
       const Operation& o = all[i];
       if (o.what == Operation::What::wait) continue;
+      if (accesses(o) || is_barrier(o)) used_parts[o.resource].insert({o.mip, o.layer});
       size_t& first = nearest.try_emplace({o.resource, o.instance, o.mip, o.layer}, all.size()).first->second;
       if (first < all.size()) next_write[i] = all[first].step != o.step ? first : next_write[first];
       if (writes(o)) first = i;
@@ -132,6 +136,22 @@ struct Oracle {
           same_subresource(all[k], all[first]))
         return true;
     return false;
+  }
+
+  // Whether another instance has overwritten this byte between the two operations: every part of it
+  // that the plan uses was written. Then the result of `first` is not the last write.
+  bool overwritten(size_t first, size_t second, uint64_t byte) const {
+    std::map<std::array<uint32_t, 2>, std::set<std::array<uint32_t, 2>>> parts; // By instance.
+    for (size_t k = first + 1; k < second; ++k) {
+      const Operation& o = all[k];
+      const bool other =
+          o.step != all[first].step && o.step != all[second].step && !same_instance(o, all[first]);
+      if (other && writes(o) && reaches(o, all[first], byte))
+        parts[{o.resource, o.instance}].insert({o.mip, o.layer});
+    }
+    return std::any_of(parts.begin(), parts.end(), [&](const auto& instance) {
+      return instance.second.size() == used_parts.at(instance.first[0]).size();
+    });
   }
 
   // --- Checks
@@ -159,7 +179,9 @@ struct Oracle {
     if (writes(a) && writes(b) && !made_available) return "comes before an earlier write is available";
     if (writes(a) && read(b) != 0 && same_subresource(a, b) && !p.visible)
       return "does not see the last write";
-    if (writes(a) && written(b) != 0 && !p.visible_to_write && !read_since(first, second))
+    // Two writes need availability. The last write must also be visible, unless it was read since.
+    if (writes(a) && written(b) != 0 && !p.visible_to_write && !read_since(first, second) &&
+        !overwritten(first, second, byte))
       return "is written where the last write is not visible";
     return "";
   }
@@ -383,7 +405,7 @@ std::string first_hazard(const Plan& plan) {
   UnrolledPlan unrolled = unroll(plan, frames + 1);
   if (!unrolled.misplaced.empty()) return unrolled.misplaced;
   Oracle oracle{plan, std::move(unrolled.operations)};
-  oracle.find_next_writes();
+  oracle.find_next_writes_and_used_parts();
   std::vector<size_t> acting, writing; // Operations before b.
   for (size_t b = 0; b < oracle.all.size() && oracle.all[b].frame <= frames; ++b) {
     const Operation& o = oracle.all[b];
