@@ -133,9 +133,9 @@ struct Checker {
       }
       const auto next = alive.lower_bound(own.offset);
       const auto refuses = [&](size_t other) {
-        const bool fractions = share_memory(own, plan.placements[other]);
-        expect(!fractions, "placements that are alive at the same time overlap", std::max(i, other));
-        return fractions;
+        const bool overlap = share_memory(own, plan.placements[other]);
+        expect(!overlap, "placements that are alive at the same time overlap", std::max(i, other));
+        return overlap;
       };
       if ((next != alive.end() && refuses(next->second)) ||
           (next != alive.begin() && refuses(std::prev(next)->second)))
