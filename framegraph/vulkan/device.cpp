@@ -65,6 +65,9 @@ Error make_device(const DeviceInput& input, Device& device) {
   if (Error error = read_queue_family(input, device)) return error;
   device.features = input.features;
   device.separate_depth_stencil = input.separate_depth_stencil;
+  device.texel_shape = input.kernel_shape == KernelShape::by_device
+                           ? device.properties.deviceType != VK_PHYSICAL_DEVICE_TYPE_CPU
+                           : input.kernel_shape == KernelShape::texel;
   device.labels = input.labels;
   device.host_memory = input.host_memory;
   device.timings = input.timings && device.timestamp_valid_bits > 0;

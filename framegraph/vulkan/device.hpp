@@ -42,6 +42,13 @@ struct HostMemory {
   void* user = nullptr;
 };
 
+// How kernels divide work among invocations (shaders/common/shape.glsl).
+enum class KernelShape : uint8_t {
+  by_device, // block for devices of type CPU, otherwise texel
+  texel,     // one texel per invocation, shared memory
+  block      // one block of texels per invocation, no shared memory
+};
+
 // All handles belong to the host and must outlive the Device.
 struct DeviceInput {
   PFN_vkGetInstanceProcAddr get_instance_proc_addr = nullptr;
@@ -58,6 +65,7 @@ struct DeviceInput {
   Features features = 0;               // that the host enabled
   bool timings = false;                // timestamps around each pass
   bool separate_depth_stencil = false; // separateDepthStencilLayouts is enabled
+  KernelShape kernel_shape = KernelShape::by_device;
   HostMemory host_memory{};
 };
 
@@ -75,6 +83,7 @@ struct Device {
   bool labels = false;
   bool timings = false; // requested, and timestamp_valid_bits > 0
   bool separate_depth_stencil = false;
+  bool texel_shape = true; // of kernels
   HostMemory host_memory{};
 };
 

@@ -62,7 +62,8 @@ dermis_result check_alive(const dermis_context_t& context, const char* function)
 namespace {
 
 constexpr uint32_t known_context_flags = DERMIS_CONTEXT_TIMINGS | DERMIS_CONTEXT_LABELS |
-                                         DERMIS_CONTEXT_RAY_QUERY | DERMIS_CONTEXT_SEPARATE_DEPTH_STENCIL;
+                                         DERMIS_CONTEXT_RAY_QUERY | DERMIS_CONTEXT_SEPARATE_DEPTH_STENCIL |
+                                         DERMIS_CONTEXT_GPU_KERNELS | DERMIS_CONTEXT_CPU_KERNELS;
 
 dermis_result check_desc(const dermis_context_desc& desc, const Log& log) {
   const auto null = [&](const char* field) {
@@ -75,6 +76,10 @@ dermis_result check_desc(const dermis_context_desc& desc, const Log& log) {
   if ((desc.flags & ~known_context_flags) != 0)
     return bad_argument(log, "dermis_context_create: desc.flags is {:#x}, known bits are {:#x}", desc.flags,
                         known_context_flags);
+  constexpr uint32_t both_shapes = DERMIS_CONTEXT_GPU_KERNELS | DERMIS_CONTEXT_CPU_KERNELS;
+  if ((desc.flags & both_shapes) == both_shapes)
+    return bad_argument(log, "dermis_context_create: desc.flags has DERMIS_CONTEXT_GPU_KERNELS and "
+                             "DERMIS_CONTEXT_CPU_KERNELS, expected at most one of them");
   if (desc.frames_in_flight > vulkan::max_frames_in_flight)
     return bad_argument(log, "dermis_context_create: desc.frames_in_flight is {}, expected 0 (= {}) or 1..{}",
                         desc.frames_in_flight, default_frames_in_flight, vulkan::max_frames_in_flight);
@@ -171,6 +176,8 @@ dermis_result create(const dermis_context_desc* given, dermis_context* out) {
   input.labels = (desc.flags & DERMIS_CONTEXT_LABELS) != 0;
   if ((desc.flags & DERMIS_CONTEXT_RAY_QUERY) != 0) input.features |= bit_of(Feature::ray_query);
   input.separate_depth_stencil = (desc.flags & DERMIS_CONTEXT_SEPARATE_DEPTH_STENCIL) != 0;
+  if ((desc.flags & DERMIS_CONTEXT_GPU_KERNELS) != 0) input.kernel_shape = vulkan::KernelShape::texel;
+  if ((desc.flags & DERMIS_CONTEXT_CPU_KERNELS) != 0) input.kernel_shape = vulkan::KernelShape::block;
   input.timings = (desc.flags & DERMIS_CONTEXT_TIMINGS) != 0;
   input.host_memory = host_memory_of(context->device_allocator);
   if (const vulkan::Error error = vulkan::make_device(input, context->device))

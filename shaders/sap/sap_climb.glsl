@@ -3,23 +3,22 @@
 #ifndef DERMIS_SAP_CLIMB_GLSL
 #define DERMIS_SAP_CLIMB_GLSL
 
-const int block_width = 2, block_height = 2, coarse_width = 2, coarse_height = 2;
-const ivec2 odd_first = ivec2(1);
+const int block_width = 2, block_height = 2, coarse_width = 2, coarse_height = 2, border = 1;
 #include "sap/sap_up.glsl"
 
 const float min_fraction = 0.004; // the tent is not worth its time for a smaller weight
 
-// Returns the bits of the current texel, whose position has parity `odd`, blended with the values
-// of the coarser level. `layers`: number of layers to read.
-uvec4 climb(ivec2 odd, int level, sap_texel own, vec3 light, int layers, bool smooth_level, bool last) {
+// Returns the bits of the texel at `place`, blended with the values of the coarser level. `layers`:
+// number of layers to read.
+uvec4 climb(sap_place place, int level, sap_texel own, vec3 light, int layers, bool smooth_level, bool last) {
   vec3 fraction = last ? vec3(1.0) : sap_lookup(own.id, settings.variant, level + 1, sap_d_px(own));
   sap_sum here = sap_sum(light, vec3(own.mass));
   if (smooth_level && max(fraction.r, max(fraction.g, fraction.b)) >= min_fraction)
-    here = sap_tent(level, own, layers);
+    here = sap_tent(place, level, own, layers);
   float confidence = 0.0;
   sap_sum rest = sap_sum(here.light, vec3(0.0));
   if (!last)
-    rest = sap_from_coarser(odd, level, own, here.light, layers, confidence);
+    rest = sap_from_coarser(place, level, own, here.light, layers, confidence);
   rest.mass *= max(1.0 - fraction, vec3(0.0));
   sap_sum blend = sap_blend(fraction * here.mass, here.light, vec3(0.0), here.light, rest);
   float widest = fraction[profiles[min(own.id, 255u)].widest];

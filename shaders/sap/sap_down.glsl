@@ -1,7 +1,8 @@
 // One level down: [1 3 3 1] x [1 3 3 1] over the children on the parent's tangent plane, or the
 // mean of 2x2 children (SAP_BOX). Children that the first layer of a parent does not use can form a
 // second layer (SAP_SECOND); both layers are children of the next level. Works on one parent at a
-// time, whose children are in `children` and `child_light`.
+// time. In the block shape and for boxes its children are in `children` and `child_light`; in the
+// texel shape the children of a tile are in shared memory.
 // Include after bindings with `light` and `surface` (except for a box), `level_tiles` and, for two
 // layers, `second_light` and `second_surface`.
 #ifndef DERMIS_SAP_DOWN_GLSL
@@ -30,8 +31,17 @@ const int max_layers = 1;
 const int children_a_layer = children_across * children_across;
 sap_texel children[max_layers * children_a_layer]; // the second layer follows the first
 vec4 child_light[max_layers * children_a_layer];
-// fraction that no layer of the parent has used yet
-float child_left[max_layers * children_a_layer];
+
+struct sap_parent {
+  ivec2 at;   // texel of its level
+  int finer;  // level of its children
+  float spacing; // of the children, in pixels
+  int base;   // texel shape: place of the first child in shared memory
+  bool two;   // a child has two layers
+};
+const sap_texel no_texel = sap_texel(0.0, vec2(0.0), 0.0, 0.0, 0u);
+
+vec4 stored(vec4 light) { return settings.storage == STORAGE_FULL ? light : round_to_half(light); }
 
 // The parents of a block share children.
 const int side = block_width * 2 + children_across - 2;
@@ -39,17 +49,47 @@ int shared_child(int parent, int child) {
   return (2 * (parent / block_width) + child / children_across) * side + 2 * (parent % block_width) + child % children_across;
 }
 
-vec4 stored(vec4 light) { return settings.storage == STORAGE_FULL ? light : round_to_half(light); }
-
 #ifndef SAP_BOX
 uvec4 block_surface[side * side];
 vec4 block_light[side * side];
+
+// Children of the group's tile, in rows with the even columns first: invocations next to each other
+// read words next to each other. Light is kept as halves, which is exact unless `storage` is full.
+const int tile_side = 18;
+shared uvec4 tile_surface[texel_shape ? tile_side * tile_side : 1];
+shared uvec2 tile_light[texel_shape ? tile_side * tile_side : 1];
+
+int place_in_tile(int x, int y) { return y * tile_side + (x >> 1) + tile_side / 2 * (x & 1); }
+int place_of_child(sap_parent parent, int c) {
+  return parent.base + (c >> 2 & 3) * tile_side + ((c & 3) >> 1) + tile_side / 2 * (c & 1);
+}
+ivec2 address_of_child(sap_parent parent, int c) {
+  return sap_address(2 * parent.at - 1 + ivec2(c & 3, c >> 2 & 3), parent.finer);
+}
 
 bool child_written(texel_block block, ivec2 at, int finer) {
   ivec2 address = finer > 0 ? at + 1 : at;
   return sap_inside(at, finer) && tile_written(block.children, (address >> 3) - 2 * block.tile + 1);
 }
-// Reads the children of all parents of a block, starting at parent `first`.
+// Texel shape: reads the children of all parents of the tile.
+void read_tile(texel_block block, int finer) {
+  ivec2 corner = 2 * (8 * block.tile - 1) - 1;
+  [[dont_unroll]] for (int i = int(gl_LocalInvocationIndex); i < tile_side * tile_side; i += 64) {
+    int y = i / tile_side, x = i - y * tile_side;
+    ivec2 at = corner + ivec2(x, y);
+    uvec4 bits = uvec4(0u);
+    vec4 light = vec4(0.0);
+    if (child_written(block, at, finer)) {
+      bits = texelFetch(surface_image, sap_address(at, finer), 0);
+      light = texelFetch(light_image, sap_address(at, finer), 0);
+    }
+    int place = place_in_tile(x, y);
+    tile_surface[place] = bits;
+    tile_light[place] = uvec2(packHalf2x16(light.rg), packHalf2x16(light.ba));
+  }
+  barrier();
+}
+// Block shape: reads the children of all parents of a block, starting at parent `first`.
 void read_block(texel_block block, ivec2 first, int finer) {
   [[unroll]] for (int i = 0; i < side * side; ++i) {
     ivec2 at = 2 * first - 1 + ivec2(i % side, i / side);
@@ -58,30 +98,63 @@ void read_block(texel_block block, ivec2 first, int finer) {
     block_light[i] = needed ? texelFetch(light_image, sap_address(at, finer), 0) : vec4(0.0);
   }
 }
-// Copies the children of one parent. Returns whether any of them has two layers.
-bool take_children(int parent) {
+// Prepares the children of parent k of the block.
+sap_parent take_parent(texel_block block, int k, int finer) {
+  ivec2 offset = block_offset(k), in_tile = block.first - 8 * block.tile;
+  sap_parent parent = sap_parent(block.first - 1 + offset, finer, float(1 << finer), 0, false);
   uint flags = 0u;
-  [[unroll]] for (int c = 0; c < children_a_layer; ++c) {
-    int i = shared_child(parent, c);
-    children[c] = sap_unpack(block_surface[i]);
-    child_light[c] = block_light[i];
-    flags |= block_surface[i].w;
+  if (texel_shape) {
+    parent.base = place_in_tile(2 * in_tile.x, 2 * in_tile.y);
+    [[unroll]] for (int c = 0; c < children_a_layer; ++c)
+      flags |= tile_surface[place_of_child(parent, c)].w;
+  } else {
+    [[unroll]] for (int c = 0; c < children_a_layer; ++c) {
+      int i = shared_child(k, c);
+      children[c] = sap_unpack(block_surface[i]);
+      child_light[c] = block_light[i];
+      flags |= block_surface[i].w;
+    }
   }
-  return (flags & sap_second_bit) != 0u;
+  parent.two = (flags & sap_second_bit) != 0u;
+  return parent;
 }
 #endif
 
-void begin_parent(int layers) {
-  [[unroll]] for (int c = 0; c < layers * children_a_layer; ++c)
-    child_left[c] = 1.0;
+// Return child c of the parent: 0 to 15 of the first layer, 16 to 31 of the second. The id is 0 if
+// there is none.
+sap_texel child_of(sap_parent parent, int c) {
+#ifndef SAP_BOX
+  if (texel_shape) {
+    uvec4 bits = tile_surface[place_of_child(parent, c)];
+    if (c < children_a_layer)
+      return sap_unpack(bits);
+#ifdef SAP_SECOND
+    if (sap_has_second(bits) && has_second_surface() && has_second_light())
+      return sap_unpack(texelFetch(second_surface_image, address_of_child(parent, c), 0));
+#endif
+    return no_texel;
+  }
+#endif
+  return children[c];
 }
-bool may_seed(int child) { return children[child].id != 0u && child_left[child] >= min_seed_part; }
-// Returns whether there is a seed for another layer.
-bool remains(int layers) {
-  bool any_seed = false;
-  [[unroll]] for (int c = 0; c < layers * children_a_layer; ++c)
-    any_seed = any_seed || may_seed(c);
-  return any_seed;
+vec4 light_of(sap_parent parent, int c, uint id) {
+#ifndef SAP_BOX
+  if (texel_shape) {
+    vec4 light = vec4(0.0);
+    if (c < children_a_layer && settings.storage != STORAGE_FULL) {
+      uvec2 bits = tile_light[place_of_child(parent, c)];
+      light = vec4(unpackHalf2x16(bits.x), unpackHalf2x16(bits.y));
+    } else if (id != 0u) {
+#ifdef SAP_SECOND
+      if (c >= children_a_layer)
+        return texelFetch(second_light_image, address_of_child(parent, c), 0);
+#endif
+      light = texelFetch(light_image, address_of_child(parent, c), 0);
+    }
+    return light;
+  }
+#endif
+  return child_light[c];
 }
 
 vec2 offset_of(int child, float spacing) {
@@ -99,11 +172,25 @@ float at_parent(sap_texel child, vec2 offset) {
   return max(child.depth - sap_rise(child.depth, child.slope, offset), nearest_fraction * child.depth);
 }
 
-struct seed_search {
-  sap_texel best;
-  float maximum;
-  int child;
-};
+// Returns the fraction of a child that lies on the surface of a seed. `depth_step` receives the
+// difference of their depths in sigmas.
+float kept_of(sap_texel seed, sap_texel child, vec2 offset, float per_sigma_mm, out float depth_step) {
+  depth_step = (child.depth - seed.depth) * per_sigma_mm;
+  float off = sap_nearer(depth_step - sap_rise(seed.depth, seed.slope, offset) * per_sigma_mm, depth_step);
+  return child.id == seed.id ? exp2(sap_factor(sap_depth_width) * off * off) : 0.0;
+}
+// Returns the fraction of a child that the layer with seed `before` has not used; 1 without such a
+// layer (id 0).
+float left_of(sap_texel before, sap_texel child, vec2 offset, float spacing) {
+  if (before.id == 0u)
+    return 1.0;
+  float depth_step, per_sigma = 1.0 / (sap_sigma * spacing);
+  return 1.0 - kept_of(before, child, offset, per_sigma / sap_footprint(before.depth), depth_step);
+}
+bool may_seed(sap_parent parent, sap_texel before, sap_texel child, int c) {
+  return child.id != 0u && left_of(before, child, offset_of(c, parent.spacing), parent.spacing) >= min_seed_part;
+}
+
 // Returns the central child: 0 to 3 of the first layer, 4 to 7 of the second.
 int central(int i) {
 #ifdef SAP_BOX
@@ -112,28 +199,39 @@ int central(int i) {
   return 16 * (i / 4) + 5 + i % 2 + 4 * (i % 4 / 2);
 #endif
 }
-// Returns how much of the central children lies on a seed's surface.
-float support_of(sap_texel seed, float spacing, int layers) {
-  float per_sigma_mm = 1.0 / (sap_sigma * spacing * sap_footprint(seed.depth)), support = 0.0;
-  [[unroll]] for (int b = 0; b < 4 * layers; ++b) {
-    int c = central(b);
-    float off = sap_off_plane(seed, children[c], offset_of(c, spacing)) * per_sigma_mm;
-    support += children[c].id == seed.id && may_seed(c) ? exp2(sap_factor(sap_depth_width) * off * off) : 0.0;
-  }
-  return support;
+
+struct seed_search {
+  sap_texel best;
+  float maximum;
+  int child;
+};
+void consider_outer(sap_parent parent, sap_texel before, int c, inout seed_search found) {
+  sap_texel child = child_of(parent, c);
+  float weight = may_seed(parent, before, child, c) ? binomial(c) * child.mass : 0.0;
+  if (weight > hysteresis * found.maximum)
+    found = seed_search(child, weight, c);
 }
 
 // Returns the child whose plane has the most support among the central children; without a central
 // child, the outer child with the largest weight. Its depth is the depth of its plane at the
 // parent; id 0 means no child.
-sap_texel find_seed(float spacing, int layers) {
-  seed_search found = seed_search(sap_texel(0.0, vec2(0.0), 0.0, 0.0, 0u), 0.0, 0);
+sap_texel find_seed(sap_parent parent, int layers, sap_texel before) {
+  sap_texel near[4 * max_layers];
+  bool may[4 * max_layers];
+  [[unroll]] for (int b = 0; b < 4 * layers; ++b) {
+    near[b] = b < 4 || parent.two || !texel_shape ? child_of(parent, central(b)) : no_texel;
+    may[b] = may_seed(parent, before, near[b], central(b));
+  }
+  seed_search found = seed_search(no_texel, 0.0, 0);
   [[unroll]] for (int a = 0; a < 4 * layers; ++a) {
-    int c = central(a);
-    sap_texel seed = children[c];
-    seed.depth = at_parent(seed, offset_of(c, spacing));
-    float support = support_of(seed, spacing, layers);
-    if (may_seed(c) && (found.best.id == 0u || support > hysteresis * found.maximum)) {
+    sap_texel seed = near[a];
+    seed.depth = at_parent(seed, offset_of(central(a), parent.spacing));
+    float per_sigma_mm = 1.0 / (sap_sigma * parent.spacing * sap_footprint(seed.depth)), support = 0.0;
+    [[unroll]] for (int b = 0; b < 4 * layers; ++b) {
+      float off = sap_off_plane(seed, near[b], offset_of(central(b), parent.spacing)) * per_sigma_mm;
+      support += near[b].id == seed.id && may[b] ? exp2(sap_factor(sap_depth_width) * off * off) : 0.0;
+    }
+    if (may[a] && (found.best.id == 0u || support > hysteresis * found.maximum)) {
       found.best = seed;
       found.maximum = support;
     }
@@ -141,15 +239,15 @@ sap_texel find_seed(float spacing, int layers) {
 #ifndef SAP_BOX
   if (found.best.id != 0u)
     return found.best;
-  [[unroll]] for (int a = 0; a < layers * children_a_layer; ++a) {
-    float weight = may_seed(a) ? binomial(a) * children[a].mass : 0.0;
-    if (weight > hysteresis * found.maximum) {
-      found.best = children[a];
-      found.child = a;
-      found.maximum = weight;
-    }
+  if (texel_shape) {
+    int last = parent.two ? layers * children_a_layer : children_a_layer;
+    [[dont_unroll]] for (int c = 0; c < last; ++c)
+      consider_outer(parent, before, c, found);
+  } else {
+    [[unroll]] for (int c = 0; c < layers * children_a_layer; ++c)
+      consider_outer(parent, before, c, found);
   }
-  found.best.depth = at_parent(found.best, offset_of(found.child, spacing));
+  found.best.depth = at_parent(found.best, offset_of(found.child, parent.spacing));
 #endif
   return found.best;
 }
@@ -159,50 +257,68 @@ struct reduction {
   float all_weight, mass, total, total_flat, mean_depth, mean_reach;
   vec2 mean_slope;
   vec3 light;
+  bool remains; // a child can be the seed of another layer
 };
-void add_children(float spacing, sap_texel seed, int layers, inout reduction sum) {
+void add_child(sap_parent parent, sap_texel seed, sap_texel before, int c, inout reduction sum) {
+  sap_texel child = child_of(parent, c);
+  float spacing = parent.spacing;
   float per_sigma = 1.0 / (sap_sigma * spacing), per_sigma_mm = per_sigma / sap_footprint(seed.depth);
-  [[unroll]] for (int c = 0; c < layers * children_a_layer; ++c) {
-    vec2 offset = offset_of(c, spacing);
-    float tilt = dot(seed.slope, offset) * per_sigma;
-    if (c < children_a_layer)
-      sum.all_weight += binomial(c) * exp2(sap_factor(sap_tilt_width_down) * tilt * tilt);
-    sap_texel child = children[c];
-    float depth_step = (child.depth - seed.depth) * per_sigma_mm;
-    float off = sap_nearer(depth_step - sap_rise(seed.depth, seed.slope, offset) * per_sigma_mm, depth_step);
-    float along = sap_nearer(tilt, depth_step);
-    float narrowing = exp2(sap_factor(sap_tilt_width_down) * along * along);
-    float kept = child.id == seed.id ? exp2(sap_factor(sap_depth_width) * off * off) : 0.0;
-    float flat_weight = binomial(c) * kept * child.mass * child_left[c];
-    child_left[c] *= 1.0 - kept;
-    vec4 tap = child_light[c];
-    float weight = flat_weight * narrowing * tap.a;
-    sum.mass += flat_weight * narrowing;
-    sum.total += weight;
-    sum.total_flat += flat_weight;
-    sum.light += weight * tap.rgb;
-    sum.mean_depth += flat_weight * (child.depth - sap_rise(child.depth, child.slope, offset));
-    sum.mean_slope += flat_weight * child.slope;
-    sum.mean_reach += flat_weight * child.reach;
+  vec2 offset = offset_of(c, spacing);
+  float tilt = dot(seed.slope, offset) * per_sigma;
+  if (c < children_a_layer)
+    sum.all_weight += binomial(c) * exp2(sap_factor(sap_tilt_width_down) * tilt * tilt);
+  float depth_step, kept = kept_of(seed, child, offset, per_sigma_mm, depth_step);
+  float along = sap_nearer(tilt, depth_step);
+  float narrowing = exp2(sap_factor(sap_tilt_width_down) * along * along);
+  float flat_weight = binomial(c) * kept * child.mass * left_of(before, child, offset, spacing);
+  sum.remains = sum.remains || child.id != 0u && 1.0 - kept >= min_seed_part;
+  vec4 tap = light_of(parent, c, child.id);
+  float weight = flat_weight * narrowing * tap.a;
+  sum.mass += flat_weight * narrowing;
+  sum.total += weight;
+  sum.total_flat += flat_weight;
+  sum.light += weight * tap.rgb;
+  sum.mean_depth += flat_weight * (child.depth - sap_rise(child.depth, child.slope, offset));
+  sum.mean_slope += flat_weight * child.slope;
+  sum.mean_reach += flat_weight * child.reach;
+}
+void add_children(sap_parent parent, int layers, sap_texel seed, sap_texel before, inout reduction sum) {
+  if (texel_shape && layers > 1) {
+    [[dont_unroll]] for (int row = 0; row < 4; ++row)
+      [[unroll]] for (int column = 0; column < 4; ++column)
+        add_child(parent, seed, before, 4 * row + column, sum);
+    if (parent.two)
+      [[dont_unroll]] for (int c = children_a_layer; c < 2 * children_a_layer; ++c)
+        add_child(parent, seed, before, c, sum);
+  } else {
+    [[unroll]] for (int c = 0; c < layers * children_a_layer; ++c)
+      add_child(parent, seed, before, c, sum);
   }
 }
 
-// Computes the next layer of the parent: light and surface. The id is 0 if nothing is left for the
-// layer.
-void reduce(float spacing, int layers, out vec4 light, out uvec4 bits) {
-  light = vec4(0.0);
-  bits = uvec4(0u);
-  sap_texel seed = find_seed(spacing, layers);
+struct sap_layer {
+  vec4 light;
+  uvec4 bits;    // of the surface; 0 if nothing is left for the layer
+  sap_texel seed;
+  bool remains;  // a child can be the seed of another layer
+};
+// Computes the layer of the parent that follows the layer with seed `before` (id 0: the first one),
+// from `layers` layers of children.
+sap_layer reduce(sap_parent parent, int layers, sap_texel before) {
+  sap_layer layer = sap_layer(vec4(0.0), uvec4(0u), find_seed(parent, layers, before), false);
+  sap_texel seed = layer.seed;
   if (seed.id == 0u)
-    return;
-  reduction sum = reduction(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, vec2(0.0), vec3(0.0));
-  add_children(spacing, seed, layers, sum);
+    return layer;
+  reduction sum = reduction(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, vec2(0.0), vec3(0.0), false);
+  add_children(parent, layers, seed, before, sum);
+  layer.remains = sum.remains;
   if (sum.total > sap_negligible) {
-    light = vec4(sum.light / sum.total, sum.total / sum.mass);
+    layer.light = vec4(sum.light / sum.total, sum.total / sum.mass);
     vec3 rounded = round_to_half(vec3(sum.mean_slope / sum.total_flat, sum.mean_reach / sum.total_flat));
-    bits = sap_pack(sap_texel(max(sum.mean_depth / sum.total_flat, nearest_fraction * seed.depth), rounded.xy, rounded.z,
-                              round_to_half(min(sum.mass / sum.all_weight, 1.0)), seed.id));
+    layer.bits = sap_pack(sap_texel(max(sum.mean_depth / sum.total_flat, nearest_fraction * seed.depth), rounded.xy,
+                                    rounded.z, round_to_half(min(sum.mass / sum.all_weight, 1.0)), seed.id));
   }
+  return layer;
 }
 
 #endif

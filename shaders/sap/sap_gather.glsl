@@ -3,23 +3,22 @@
 #ifndef DERMIS_SAP_GATHER_GLSL
 #define DERMIS_SAP_GATHER_GLSL
 
-const int block_width = 4, block_height = 2, coarse_width = 4, coarse_height = 3;
-const ivec2 odd_first = ivec2(0);
+const int block_width = 4, block_height = 2, coarse_width = 4, coarse_height = 3, border = 0;
 #include "sap/sap_up.glsl"
 
 const float min_fraction = 0.002; // the tent is not worth its time for a smaller weight
 
-// Returns the light of the current texel, whose position has parity `odd`.
-vec4 gather(ivec2 odd, sap_texel own) {
-  vec3 light = near_light[near_centre].rgb;
+// Returns the light of the texel at `place`, whose own light is `centre_light`.
+vec4 gather(sap_place place, sap_texel own, vec4 centre_light) {
+  vec3 light = centre_light.rgb;
   // a tilted pixel keeps more of its own light
-  vec3 d_px = sap_d_px(own) * inversesqrt(near_light[near_centre].a);
+  vec3 d_px = sap_d_px(own) * inversesqrt(centre_light.a);
   vec3 centre = sap_lookup(own.id, settings.variant, 0, d_px), tent = sap_lookup(own.id, settings.variant, 1, d_px);
   sap_sum near = sap_sum(light, vec3(own.mass));
   if (max(tent.r, max(tent.g, tent.b)) >= min_fraction)
-    near = sap_tent(0, own, 1);
+    near = sap_tent(place, 0, own, 1);
   float confidence;
-  sap_sum rest = sap_from_coarser(odd, 0, own, light, SAP_COARSE_LAYERS, confidence);
+  sap_sum rest = sap_from_coarser(place, 0, own, light, SAP_COARSE_LAYERS, confidence);
   rest.mass *= max(1.0 - centre - tent, vec3(0.0));
   uint widest = profiles[min(own.id, 255u)].widest;
   confidence = mix(confidence, 1.0, centre[widest] + tent[widest]) - tent[widest] * (1.0 - near.mass.r);
@@ -34,21 +33,23 @@ void gather_block() {
   texel_block block;
   if (!listed_block(0, block))
     return;
-  read_ring(block, block.first, 0, !block.copy_only);
+  read_ring(block, 0, !block.copy_only);
   if (!block.copy_only)
-    read_coarser(block.first, 0);
-  [[unroll]] for (int k = 0; k < block_width * block_height; ++k) {
-    ivec2 pixel = block.first + ivec2(k % block_width, k / block_width);
-    if (!inside_rect(pixel))
+    read_coarser(block, 0);
+  finish_reading();
+  [[unroll]] for (int k = 0; k < block_texels; ++k) {
+    sap_place place = place_of(block, k);
+    if (!inside_rect(place.at))
       continue;
     take_near(k);
-    vec4 result = vec4(near_light[near_centre].rgb, 1.0);
-    sap_texel own = sap_unpack(near_surface[near_centre]);
+    vec4 light = light_near(place, 0, near_centre);
+    vec4 result = vec4(light.rgb, 1.0);
+    sap_texel own = sap_unpack(near_bits(place, near_centre));
     if (!block.copy_only && own.id != 0u) {
       take_corners(k);
-      result = gather(odd_of(k), own);
+      result = gather(place, own, light);
     }
-    imageStore(scattered_image, texel_of(pixel), settings.storage == STORAGE_FULL ? result : round_to_half(result));
+    imageStore(scattered_image, texel_of(place.at), settings.storage == STORAGE_FULL ? result : round_to_half(result));
   }
 }
 

@@ -1,11 +1,12 @@
-// One texel on the way up: its own level, tent-filtered, and the values of the coarser level.
-// Functions work on the current texel. `near_surface` and `near_light` hold its 3x3 neighbourhood
-// in its own level; `corner_surface` and `corner_scattered` hold the 2x2 nearest texels of the
-// coarser level. An invocation computes a block of texels. It reads the block, a ring around the
-// block and the coarser texels under it once, and copies each texel's neighbourhood from there.
+// One texel on the way up: its own level, tent-filtered, and the values of the coarser level. Reads
+// the 3x3 neighbourhood of the texel in its own level and the 2x2 nearest texels of the coarser
+// level. In the block shape an invocation reads its block, a ring around the block and the coarser
+// texels under it once into private arrays; in the texel shape the group reads those of its tile
+// into shared memory.
 // Include after bindings with `light`, `surface`, `coarse_surface`, `coarse_scattered` and
-// `level_tiles`, and after `block_width`, `block_height`, `coarse_width`, `coarse_height` and
-// `odd_first` (across, down: 1 if a block's first texel is odd).
+// `level_tiles`, and after `block_width`, `block_height`, `coarse_width`, `coarse_height` (coarser
+// texels under a block) and `border` (1 if the level has a border, so that the first texel of a
+// tile is odd; else 0).
 // - SAP_NO_RING: the kernel reads texels of the level by itself and has no `light` and `surface`.
 // - SAP_OWN_LAYERS, SAP_COARSE_LAYERS: maximum layers of a texel of the level and of the coarser
 //   level; 1 unless defined. The second layer needs `second_light`, `second_surface`,
@@ -28,8 +29,28 @@ struct sap_sum {
   vec3 mass; // fraction of the kernel that hit the surface
 };
 
+// The texel that is computed.
+struct sap_place {
+  ivec2 at;   // texel of its level
+  ivec2 odd;  // parity of its position
+  int ring;   // texel shape: its index in the tile's ring
+  int corner; // texel shape: index of its first corner in the tile's coarser texels
+};
+
 const int corner_texels = 4, near_texels = 9, near_centre = 4;
-uvec4 corner_surface[SAP_COARSE_LAYERS * corner_texels]; // the second layer follows the first
+ivec2 near_step(int n) { return ivec2(n % 3 - 1, n / 3 - 1); }
+
+// Texel shape: the tile's texels with a ring around them, and the coarser texels under the tile.
+const int ring_side = 10, coarse_side = 6 - border;
+#ifndef SAP_NO_RING
+shared uvec4 tile_surface[texel_shape ? ring_side * ring_side : 1];
+shared uvec2 tile_light[texel_shape ? ring_side * ring_side : 1]; // halves, exact unless `storage` is full
+#endif
+shared uvec4 tile_coarse_surface[texel_shape ? coarse_side * coarse_side : 1];
+shared uvec4 tile_coarse_scattered[texel_shape ? coarse_side * coarse_side : 1];
+
+// Block shape: the neighbourhood of the current texel. The second layer follows the first.
+uvec4 corner_surface[SAP_COARSE_LAYERS * corner_texels];
 uvec4 corner_scattered[SAP_COARSE_LAYERS * corner_texels];
 #ifndef SAP_NO_RING
 uvec4 near_surface[SAP_OWN_LAYERS * near_texels];
@@ -42,77 +63,139 @@ const int coarse_texels = coarse_width * coarse_height;
 uvec4 coarse_surface[block_coarse_layers * coarse_texels];
 uvec4 coarse_scattered[block_coarse_layers * coarse_texels];
 
+// Returns whether the second layer of a texel of the coarser level can be read.
+bool has_second_corner(uvec4 bits) {
+#if SAP_COARSE_LAYERS > 1
+  bool there = sap_has_second(bits);
+#ifdef SAP_SECOND_MAY_LACK
+  there = there && has_second_coarse_surface() && has_second_coarse_scattered();
+#endif
+  return there;
+#else
+  return false;
+#endif
+}
+
 #ifndef SAP_NO_RING
-const int ring_width = block_width + 2, ring_height = block_height + 2;
-uvec4 ring_surface[ring_width * ring_height];
-vec4 ring_light[ring_width * ring_height];
+const int block_ring_width = block_width + 2, block_ring_height = block_height + 2;
+uvec4 ring_surface[block_ring_width * block_ring_height];
+vec4 ring_light[block_ring_width * block_ring_height];
 
-// Returns the index of texel k plus an offset in the ring's arrays.
-int ring_index(int k, int i, int j) { return (k / block_width + 1 + j) * ring_width + k % block_width + 1 + i; }
-
-// Reads the texels from `first` (a texel of the level) on and, if requested, the ring around them.
-void read_ring(texel_block block, ivec2 first, int level, bool with_ring) {
-  [[unroll]] for (int i = 0; i < ring_width * ring_height; ++i) {
-    int x = i % ring_width - 1, y = i / ring_width - 1;
-    bool inner = x >= 0 && y >= 0 && x < block_width && y < block_height;
-    ivec2 at = first + ivec2(x, y), tile = (block.first + ivec2(x, y)) >> 3;
-    bool needed = (inner || with_ring) && sap_inside(at, level) && tile_written(block.around, tile - block.tile + 1);
-    ring_surface[i] = needed ? texelFetch(surface_image, sap_address(at, level), 0) : uvec4(0u);
-    ring_light[i] = needed ? texelFetch(light_image, sap_address(at, level), 0) : vec4(0.0);
+bool is_written(texel_block block, ivec2 place, int level) {
+  return sap_inside(place - border, level) && tile_written(block.around, (place >> 3) - block.tile + 1);
+}
+// Reads the texels of the block or tile and, if requested, the ring around them.
+void read_ring(texel_block block, int level, bool with_ring) {
+  if (texel_shape) {
+    [[dont_unroll]] for (int i = int(gl_LocalInvocationIndex); i < ring_side * ring_side; i += 64) {
+      int y = i / ring_side - 1, x = i % ring_side - 1;
+      bool inner = x >= 0 && y >= 0 && x < 8 && y < 8;
+      ivec2 place = 8 * block.tile + ivec2(x, y);
+      uvec4 bits = uvec4(0u);
+      vec4 light = vec4(0.0);
+      if ((inner || with_ring) && is_written(block, place, level)) {
+        bits = texelFetch(surface_image, sap_address(place - border, level), 0);
+        light = texelFetch(light_image, sap_address(place - border, level), 0);
+      }
+      tile_surface[i] = bits;
+      tile_light[i] = uvec2(packHalf2x16(light.rg), packHalf2x16(light.ba));
+    }
+  } else {
+    [[unroll]] for (int i = 0; i < block_ring_width * block_ring_height; ++i) {
+      int x = i % block_ring_width - 1, y = i / block_ring_width - 1;
+      bool inner = x >= 0 && y >= 0 && x < block_width && y < block_height;
+      ivec2 place = block.first + ivec2(x, y);
+      bool needed = (inner || with_ring) && is_written(block, place, level);
+      ring_surface[i] = needed ? texelFetch(surface_image, sap_address(place - border, level), 0) : uvec4(0u);
+      ring_light[i] = needed ? texelFetch(light_image, sap_address(place - border, level), 0) : vec4(0.0);
+    }
   }
 }
-// Copies the neighbourhood of texel k. Returns the union of its surface bits.
+#endif
+
+// Reads the coarser texels under the block or tile. They exist if a texel of it exists.
+void read_coarser(texel_block block, int level) {
+  ivec2 first = ((texel_shape ? 8 * block.tile : block.first) - border - 1) >> 1;
+  if (texel_shape) {
+    int i = int(gl_LocalInvocationIndex);
+    ivec2 at = first + ivec2(i % coarse_side, i / coarse_side);
+    if (i < coarse_side * coarse_side) {
+      uvec4 bits = uvec4(0u), scattered = uvec4(0u);
+      if (sap_inside(at, level + 1)) {
+        bits = texelFetch(coarse_surface_image, sap_address(at, level + 1), 0);
+        scattered = texelFetch(coarse_scattered_image, sap_address(at, level + 1), 0);
+      }
+      tile_coarse_surface[i] = bits;
+      tile_coarse_scattered[i] = scattered;
+    }
+  } else {
+    [[unroll]] for (int i = 0; i < coarse_texels; ++i) {
+      ivec2 at = first + ivec2(i % coarse_width, i / coarse_width);
+      bool needed = sap_inside(at, level + 1);
+      coarse_surface[i] = needed ? texelFetch(coarse_surface_image, sap_address(at, level + 1), 0) : uvec4(0u);
+      coarse_scattered[i] = needed ? texelFetch(coarse_scattered_image, sap_address(at, level + 1), 0) : uvec4(0u);
+#if SAP_COARSE_LAYERS > 1 && SAP_OWN_LAYERS == 1
+      needed = needed && has_second_corner(coarse_surface[i]);
+      coarse_surface[coarse_texels + i] = needed ? texelFetch(second_coarse_surface_image, sap_address(at, level + 1), 0) : uvec4(0u);
+      coarse_scattered[coarse_texels + i] = needed ? texelFetch(second_coarse_scattered_image, sap_address(at, level + 1), 0) : uvec4(0u);
+#endif
+    }
+  }
+}
+// Makes the reads of the group visible to all its invocations.
+void finish_reading() {
+  if (texel_shape)
+    barrier();
+}
+
+sap_place place_of(texel_block block, int k) {
+  ivec2 offset = block_offset(k);
+  if (texel_shape) {
+    ivec2 local = block.first - 8 * block.tile, at = block.first - border;
+    ivec2 corner = ((at - 1) >> 1) - ((8 * block.tile - border - 1) >> 1);
+    return sap_place(at, at & 1, (local.y + 1) * ring_side + local.x + 1, corner.y * coarse_side + corner.x);
+  }
+  return sap_place(block.first - border + offset, (offset + border) & 1, 0, 0);
+}
+
+#ifndef SAP_NO_RING
+// Selects the neighbourhood of texel k of the block. Returns the union of its surface bits.
 uint take_near(int k) {
   uint bits = 0u;
-  [[unroll]] for (int n = 0; n < near_texels; ++n) {
-    int i = ring_index(k, n % 3 - 1, n / 3 - 1);
-    near_surface[n] = ring_surface[i];
-    near_light[n] = ring_light[i];
-    bits |= ring_surface[i].w;
+  if (!texel_shape) {
+    [[unroll]] for (int n = 0; n < near_texels; ++n) {
+      ivec2 at = block_offset(k) + 1 + near_step(n);
+      int i = at.y * block_ring_width + at.x;
+      near_surface[n] = ring_surface[i];
+      near_light[n] = ring_light[i];
+      bits |= ring_surface[i].w;
+    }
   }
   return bits;
 }
 #endif
-
-// Reads the coarser texels under a block. They exist if a texel of the block exists.
-void read_coarser(ivec2 first, int level) {
-  [[unroll]] for (int i = 0; i < coarse_texels; ++i) {
-    ivec2 at = ((first - 1) >> 1) + ivec2(i % coarse_width, i / coarse_width);
-    bool needed = sap_inside(at, level + 1);
-    coarse_surface[i] = needed ? texelFetch(coarse_surface_image, sap_address(at, level + 1), 0) : uvec4(0u);
-    coarse_scattered[i] = needed ? texelFetch(coarse_scattered_image, sap_address(at, level + 1), 0) : uvec4(0u);
-#if SAP_COARSE_LAYERS > 1 && SAP_OWN_LAYERS == 1
-    needed = needed && sap_has_second(coarse_surface[i]);
-#ifdef SAP_SECOND_MAY_LACK
-    needed = needed && has_second_coarse_surface() && has_second_coarse_scattered();
-#endif
-    coarse_surface[coarse_texels + i] = needed ? texelFetch(second_coarse_surface_image, sap_address(at, level + 1), 0) : uvec4(0u);
-    coarse_scattered[coarse_texels + i] = needed ? texelFetch(second_coarse_scattered_image, sap_address(at, level + 1), 0) : uvec4(0u);
-#endif
-  }
-}
-// Returns the parity of the position of texel k.
-ivec2 odd_of(int k) { return (ivec2(k % block_width, k / block_width) + odd_first) & 1; }
-// Copies the coarser texels under texel k. Returns the union of their surface bits.
+// Selects the coarser texels under texel k of the block. Returns the union of their surface bits.
 uint take_corners(int k) {
-  ivec2 at = ivec2(k % block_width, k / block_width) + odd_first; // relative to an even texel
-  ivec2 first = ((at - 1) >> 1) - ((odd_first - 1) >> 1);
   uint bits = 0u;
-  [[unroll]] for (int n = 0; n < block_coarse_layers * corner_texels; ++n) {
-    int i = n / corner_texels * coarse_texels + (first.y + n % corner_texels / 2) * coarse_width + first.x + n % 2;
-    corner_surface[n] = coarse_surface[i];
-    corner_scattered[n] = coarse_scattered[i];
-    bits |= coarse_surface[i].w;
+  if (!texel_shape) {
+    ivec2 at = block_offset(k) + border; // relative to an even texel
+    ivec2 first = ((at - 1) >> 1) - ((border - 1) >> 1);
+    [[unroll]] for (int n = 0; n < block_coarse_layers * corner_texels; ++n) {
+      int i = n / corner_texels * coarse_texels + (first.y + n % corner_texels / 2) * coarse_width + first.x + n % 2;
+      corner_surface[n] = coarse_surface[i];
+      corner_scattered[n] = coarse_scattered[i];
+      bits |= coarse_surface[i].w;
+    }
   }
   return bits;
 }
 
 #if SAP_OWN_LAYERS > 1
-// Reads both layers of a texel of the block and, if requested, of its neighbours.
-void read_near(texel_block block, ivec2 offset, ivec2 place, int level, bool with_ring) {
+// Block shape: reads both layers of a texel and, if requested, of its neighbours.
+void read_near(texel_block block, ivec2 place, int level, bool with_ring) {
   [[unroll]] for (int n = 0; n < near_texels; ++n) {
-    ivec2 step = ivec2(n % 3 - 1, n / 3 - 1), at = place + step, tile = (block.first + offset + step) >> 3;
-    bool needed = (n == near_centre || with_ring) && sap_inside(at, level) && tile_written(block.around, tile - block.tile + 1);
+    ivec2 at = place - border + near_step(n);
+    bool needed = (n == near_centre || with_ring) && is_written(block, place + near_step(n), level);
     near_surface[n] = needed ? texelFetch(surface_image, sap_address(at, level), 0) : uvec4(0u);
     near_light[n] = needed ? texelFetch(light_image, sap_address(at, level), 0) : vec4(0.0);
     needed = needed && sap_has_second(near_surface[n]);
@@ -120,18 +203,70 @@ void read_near(texel_block block, ivec2 offset, ivec2 place, int level, bool wit
     near_light[near_texels + n] = needed ? texelFetch(second_light_image, sap_address(at, level), 0) : vec4(0.0);
   }
 }
-// Reads both layers of the coarser texels under the texel.
+// Block shape: reads both layers of the coarser texels under the texel.
 void read_corners(ivec2 place, int level, bool there) {
   [[unroll]] for (int n = 0; n < corner_texels; ++n) {
     ivec2 at = ((place - 1) >> 1) + ivec2(n % 2, n / 2);
     bool needed = there && sap_inside(at, level + 1);
     corner_surface[n] = needed ? texelFetch(coarse_surface_image, sap_address(at, level + 1), 0) : uvec4(0u);
     corner_scattered[n] = needed ? texelFetch(coarse_scattered_image, sap_address(at, level + 1), 0) : uvec4(0u);
-    needed = needed && sap_has_second(corner_surface[n]) && has_second_coarse_surface() && has_second_coarse_scattered();
+    needed = needed && has_second_corner(corner_surface[n]);
     int second = corner_texels + n;
     corner_surface[second] = needed ? texelFetch(second_coarse_surface_image, sap_address(at, level + 1), 0) : uvec4(0u);
     corner_scattered[second] = needed ? texelFetch(second_coarse_scattered_image, sap_address(at, level + 1), 0) : uvec4(0u);
   }
+}
+#endif
+
+// Neighbour n of the texel (0 to 8, row by row): bits of its surface, and its light.
+#ifndef SAP_NO_RING
+int ring_place(sap_place place, int n) { return place.ring + ring_side * near_step(n).y + near_step(n).x; }
+uvec4 near_bits(sap_place place, int n) {
+  return texel_shape ? tile_surface[ring_place(place, n)] : near_surface[n];
+}
+vec4 light_near(sap_place place, int level, int n) {
+  if (!texel_shape)
+    return near_light[n];
+  vec4 light = vec4(0.0);
+  if (settings.storage != STORAGE_FULL) {
+    uvec2 bits = tile_light[ring_place(place, n)];
+    light = vec4(unpackHalf2x16(bits.x), unpackHalf2x16(bits.y));
+  } else if (n == near_centre || near_bits(place, n).w != 0u) {
+    light = texelFetch(light_image, sap_address(place.at + near_step(n), level), 0);
+  }
+  return light;
+}
+#if SAP_OWN_LAYERS > 1
+uvec4 second_near_bits(sap_place place, int level, int n) {
+  return texel_shape ? texelFetch(second_surface_image, sap_address(place.at + near_step(n), level), 0)
+                     : near_surface[near_texels + n];
+}
+vec4 second_light_near(sap_place place, int level, int n) {
+  return texel_shape ? texelFetch(second_light_image, sap_address(place.at + near_step(n), level), 0)
+                     : near_light[near_texels + n];
+}
+#endif
+#endif
+
+// Corner n of the texel (0 to 3, row by row): bits of its surface, and its values.
+int corner_place(sap_place place, int n) { return place.corner + n / 2 * coarse_side + n % 2; }
+uvec4 corner_bits(sap_place place, int n) {
+  return texel_shape ? tile_coarse_surface[corner_place(place, n)] : corner_surface[n];
+}
+uvec4 scattered_at_corner(sap_place place, int n) {
+  return texel_shape ? tile_coarse_scattered[corner_place(place, n)] : corner_scattered[n];
+}
+#if SAP_COARSE_LAYERS > 1
+ivec2 corner_address(sap_place place, int level, int n) {
+  return sap_address(((place.at - 1) >> 1) + ivec2(n % 2, n / 2), level + 1);
+}
+uvec4 second_corner_bits(sap_place place, int level, int n) {
+  return texel_shape ? texelFetch(second_coarse_surface_image, corner_address(place, level, n), 0)
+                     : corner_surface[corner_texels + n];
+}
+uvec4 second_scattered_at_corner(sap_place place, int level, int n) {
+  return texel_shape ? texelFetch(second_coarse_scattered_image, corner_address(place, level, n), 0)
+                     : corner_scattered[corner_texels + n];
 }
 #endif
 
@@ -142,7 +277,7 @@ bool sap_takes_second(sap_texel own, sap_texel first, float first_off, sap_texel
 
 #ifndef SAP_NO_RING
 // Returns a 3x3 tent over the level's own light, over its first `layers` layers.
-sap_sum sap_tent(int level, sap_texel own, int layers) {
+sap_sum sap_tent(sap_place place, int level, sap_texel own, int layers) {
   float spacing = float(1 << level);
   float per_sigma = 1.0 / (sap_sigma * spacing), per_sigma_mm = per_sigma / sap_footprint(own.depth);
   // Tilt in units of the tent's width: across, down, and along both diagonals. The tilt is
@@ -159,16 +294,17 @@ sap_sum sap_tent(int level, sap_texel own, int layers) {
       if (i != 0 || j != 0)
         weight *= j == 0 ? narrowing.x : i == 0 ? narrowing.y : i == j ? narrowing.z : narrowing.w;
       int n = 3 * (j + 1) + i + 1;
-      sap_texel tap = sap_unpack(near_surface[n]);
-      vec4 light = near_light[n];
+      uvec4 bits = near_bits(place, n);
+      sap_texel tap = sap_unpack(bits);
+      vec4 light = light_near(place, level, n);
       float off = sap_off_plane(own, tap, offset);
 #if SAP_OWN_LAYERS > 1
-      if (layers > 1) {
-        sap_texel second = sap_unpack(near_surface[near_texels + n]);
+      if (layers > 1 && (!texel_shape || sap_has_second(bits))) {
+        sap_texel second = sap_unpack(second_near_bits(place, level, n));
         float second_off = sap_off_plane(own, second, offset);
         if (sap_takes_second(own, tap, off, second, second_off)) {
           tap = second;
-          light = near_light[near_texels + n];
+          light = second_light_near(place, level, n);
           off = second_off;
         }
       }
@@ -186,29 +322,30 @@ sap_sum sap_tent(int level, sap_texel own, int layers) {
 #endif
 
 // Interpolates bilinearly, along the surface, over the four nearest texels of the coarser level and
-// their first `layers` layers, from a texel of parity `odd`. `confidence` receives the fraction
+// their first `layers` layers, at the texel at `place`. `confidence` receives the fraction
 // that remains with stricter weights, which use the farther tangent plane: each texel must lie on
 // the plane of the other.
-sap_sum sap_from_coarser(ivec2 odd, int level, sap_texel own, vec3 fallback, int layers, out float confidence) {
+sap_sum sap_from_coarser(sap_place place, int level, sap_texel own, vec3 fallback, int layers, out float confidence) {
   float spacing = float(1 << level);
   float per_sigma_mm = 1.0 / (sap_sigma * spacing * sap_footprint(own.depth));
   vec3 sum = vec3(0.0), mass = vec3(0.0);
   confidence = 0.0;
   [[unroll]] for (int j = 0; j < 2; ++j)
     [[unroll]] for (int i = 0; i < 2; ++i) {
-      vec2 steps = vec2(2 * ((odd - 1) >> 1) + 2 * ivec2(i, j) - odd) + 0.5, offset = steps * spacing;
+      vec2 steps = vec2(2 * ((place.odd - 1) >> 1) + 2 * ivec2(i, j) - place.odd) + 0.5, offset = steps * spacing;
       float bilinear = (abs(steps.x) < 1.0 ? 0.75 : 0.25) * (abs(steps.y) < 1.0 ? 0.75 : 0.25);
       int n = 2 * j + i;
-      sap_texel tap = sap_unpack(corner_surface[n]);
-      uvec4 handed_down = corner_scattered[n];
+      uvec4 bits = corner_bits(place, n);
+      sap_texel tap = sap_unpack(bits);
+      uvec4 handed_down = scattered_at_corner(place, n);
       float off = sap_off_planes(own, tap, offset);
 #if SAP_COARSE_LAYERS > 1
-      if (layers > 1) {
-        sap_texel second = sap_unpack(corner_surface[corner_texels + n]);
+      if (layers > 1 && (!texel_shape || has_second_corner(bits))) {
+        sap_texel second = sap_unpack(second_corner_bits(place, level, n));
         float second_off = sap_off_planes(own, second, offset);
         if (sap_takes_second(own, tap, off, second, second_off)) {
           tap = second;
-          handed_down = corner_scattered[corner_texels + n];
+          handed_down = second_scattered_at_corner(place, level, n);
           off = second_off;
         }
       }

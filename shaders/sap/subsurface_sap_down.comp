@@ -1,5 +1,5 @@
 #version 460
-// Computes the next coarser level. The four parents of a block share their children.
+// Computes the next coarser level.
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 #include "sap/subsurface_sap_down.bindings.glsl"
@@ -12,19 +12,16 @@ void main() {
   texel_block block;
   if (!listed_block(level, block))
     return;
-  ivec2 first = block.first - 1;
-  float spacing = float(1 << finer);
-  read_block(block, first, finer);
-  [[unroll]] for (int k = 0; k < block_width * block_height; ++k) {
-    ivec2 at = first + ivec2(k % block_width, k / block_width);
-    if (!sap_inside(at, level))
+  if (texel_shape)
+    read_tile(block, finer);
+  else
+    read_block(block, block.first - 1, finer);
+  [[unroll]] for (int k = 0; k < block_texels; ++k) {
+    sap_parent parent = take_parent(block, k, finer);
+    if (!sap_inside(parent.at, level))
       continue;
-    take_children(k);
-    begin_parent(1);
-    vec4 light;
-    uvec4 bits;
-    reduce(spacing, 1, light, bits);
-    imageStore(coarse_light_image, sap_address(at, level), stored(light));
-    imageStore(coarse_surface_image, sap_address(at, level), bits);
+    sap_layer layer = reduce(parent, 1, no_texel);
+    imageStore(coarse_light_image, sap_address(parent.at, level), stored(layer.light));
+    imageStore(coarse_surface_image, sap_address(parent.at, level), layer.bits);
   }
 }

@@ -1,8 +1,8 @@
 #version 460
 // Computes the next coarser level, with a second layer where one surface does not hold all
-// children. First computes parents in groups of four that share their children. Then recomputes,
-// one by one and from both layers, the parents with a child off their surface or with a child that
-// has two layers.
+// children. First computes one layer of each parent from the first layer of its children. Then
+// recomputes, from both layers, the parents with a child off their surface or with a child that has
+// two layers.
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 #include "sap/subsurface_sap_down_layered.bindings.glsl"
@@ -11,19 +11,49 @@
 #define SAP_SECOND
 #include "sap/sap_down.glsl"
 
-// Reads both layers of the children of a parent.
-void read_children(texel_block block, ivec2 parent, int finer) {
+// Block shape: reads both layers of the children of parent k.
+sap_parent read_children(texel_block block, int k, int finer) {
+  sap_parent parent = sap_parent(block.first - 1 + block_offset(k), finer, float(1 << finer), 0, true);
   [[unroll]] for (int c = 0; c < children_a_layer; ++c) {
-    ivec2 at = 2 * parent - 1 + ivec2(c % children_across, c / children_across);
-    bool needed = child_written(block, at, finer);
-    uvec4 bits = needed ? texelFetch(surface_image, sap_address(at, finer), 0) : uvec4(0u);
+    ivec2 address = address_of_child(parent, c);
+    bool needed = child_written(block, 2 * parent.at - 1 + ivec2(c & 3, c >> 2), finer);
+    uvec4 bits = needed ? texelFetch(surface_image, address, 0) : uvec4(0u);
     children[c] = sap_unpack(bits);
-    child_light[c] = needed ? texelFetch(light_image, sap_address(at, finer), 0) : vec4(0.0);
+    child_light[c] = needed ? texelFetch(light_image, address, 0) : vec4(0.0);
     needed = needed && sap_has_second(bits) && has_second_surface() && has_second_light();
     int second = children_a_layer + c;
-    children[second] = sap_unpack(needed ? texelFetch(second_surface_image, sap_address(at, finer), 0) : uvec4(0u));
-    child_light[second] = needed ? texelFetch(second_light_image, sap_address(at, finer), 0) : vec4(0.0);
+    children[second] = sap_unpack(needed ? texelFetch(second_surface_image, address, 0) : uvec4(0u));
+    child_light[second] = needed ? texelFetch(second_light_image, address, 0) : vec4(0.0);
   }
+  return parent;
+}
+
+void store(sap_parent parent, int level, sap_layer layer) {
+  imageStore(coarse_light_image, sap_address(parent.at, level), stored(layer.light));
+  imageStore(coarse_surface_image, sap_address(parent.at, level), layer.bits);
+}
+
+// Computes both layers of a parent. In the texel shape the first layer is known if no child has two
+// layers. The loop tests at its end, because some drivers execute the body of a loop before they
+// find that no invocation is active.
+void compute_both(sap_parent parent, int level, sap_layer first, bool computes) {
+  bool known = texel_shape && !parent.two;
+  sap_texel before = no_texel;
+  if (known)
+    before = first.seed;
+  int index = known ? 1 : 0, count = computes ? max_layers : 1;
+  [[dont_unroll]] do {
+    sap_layer layer = reduce(parent, max_layers, before);
+    before = layer.seed;
+    if (index == 0) {
+      first = layer;
+    } else if (layer.bits.w != 0u) {
+      first.bits.w |= sap_second_bit;
+      imageStore(second_coarse_light_image, sap_address(parent.at, level), stored(layer.light));
+      imageStore(second_coarse_surface_image, sap_address(parent.at, level), layer.bits);
+    }
+  } while (++index < count);
+  store(parent, level, first);
 }
 
 void main() {
@@ -31,47 +61,34 @@ void main() {
   texel_block block;
   if (!listed_block(level, block))
     return;
-  ivec2 first = block.first - 1;
-  float spacing = float(1 << finer);
-  read_block(block, first, finer);
+  if (texel_shape) {
+    read_tile(block, finer);
+    sap_parent parent = take_parent(block, 0, finer);
+    if (!sap_inside(parent.at, level))
+      return;
+    sap_layer layer = sap_layer(vec4(0.0), uvec4(0u), no_texel, true);
+    if (!parent.two)
+      layer = reduce(parent, 1, no_texel);
+    if (layer.remains)
+      compute_both(parent, level, layer, true);
+    else
+      store(parent, level, layer);
+    return;
+  }
+  read_block(block, block.first - 1, finer);
   uint layered = 0u; // bit k: parent k needs more than one layer
   [[unroll]] for (int k = 0; k < block_width * block_height; ++k) {
-    ivec2 at = first + ivec2(k % block_width, k / block_width);
-    if (!sap_inside(at, level))
+    sap_parent parent = take_parent(block, k, finer);
+    if (!sap_inside(parent.at, level))
       continue;
-    bool more = take_children(k);
-    begin_parent(1);
-    vec4 light;
-    uvec4 bits;
-    reduce(spacing, 1, light, bits);
-    layered |= more || remains(1) ? 1u << k : 0u;
-    imageStore(coarse_light_image, sap_address(at, level), stored(light));
-    imageStore(coarse_surface_image, sap_address(at, level), bits);
+    sap_layer layer = reduce(parent, 1, no_texel);
+    layered |= parent.two || layer.remains ? 1u << k : 0u;
+    store(parent, level, layer);
   }
-  // The loops test at their end, because some drivers execute the body of a loop before they find
-  // that no invocation is active.
   if (layered != 0u)
     do {
-      int k = findLSB(layered);
-      ivec2 at = first + ivec2(k % block_width, k / block_width);
-      read_children(block, at, finer);
-      begin_parent(max_layers);
-      uvec4 first_bits = uvec4(0u);
-      int layer = 0, layers = layered != 0u ? max_layers : 1;
-      [[dont_unroll]] do {
-        vec4 light;
-        uvec4 bits;
-        reduce(spacing, max_layers, light, bits);
-        if (layer == 0) {
-          first_bits = bits;
-          imageStore(coarse_light_image, sap_address(at, level), stored(light));
-        } else if (bits.w != 0u) {
-          first_bits.w |= sap_second_bit;
-          imageStore(second_coarse_light_image, sap_address(at, level), stored(light));
-          imageStore(second_coarse_surface_image, sap_address(at, level), bits);
-        }
-      } while (++layer < layers);
-      imageStore(coarse_surface_image, sap_address(at, level), first_bits);
+      sap_parent parent = read_children(block, findLSB(layered), finer);
+      compute_both(parent, level, sap_layer(vec4(0.0), uvec4(0u), no_texel, true), layered != 0u);
       layered &= layered - 1u;
     } while (layered != 0u);
 }

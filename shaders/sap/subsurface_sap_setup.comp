@@ -1,7 +1,6 @@
 #version 460
 // Computes level 0 of the surface-aware pyramid: every pixel of listed tiles, 0 if nothing
-// scatters. An invocation computes a block of pixels, whose patches need material and depth of a
-// ring around the block.
+// scatters. Patches need material and depth of a ring around the block or tile.
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 #include "sap/subsurface_sap_setup.bindings.glsl"
@@ -10,39 +9,60 @@
 const int block_width = 4, block_height = 2;
 #include "sap/sap_tiles.glsl"
 
-const int ring_width = block_width + 2, ring_height = block_height + 2;
-uint ring_profile[ring_width * ring_height];
-float ring_depth[ring_width * ring_height]; // mm; 0 if nothing is visible
+const int ring_width = (texel_shape ? 8 : block_width) + 2, ring_height = (texel_shape ? 8 : block_height) + 2;
+// mm; 0 if nothing is visible
+uint block_profile[(block_width + 2) * (block_height + 2)];
+float block_depth[(block_width + 2) * (block_height + 2)];
+shared uint tile_profile[texel_shape ? 100 : 1];
+shared float tile_depth[texel_shape ? 100 : 1];
 
-void read_ring(ivec2 first) {
-  [[unroll]] for (int i = 0; i < ring_width * ring_height; ++i) {
-    int x = i % ring_width, y = i / ring_width;
-    bool corner = (x == 0 || x == ring_width - 1) && (y == 0 || y == ring_height - 1);
-    ivec2 pixel = first + ivec2(x, y) - 1, texel = texel_of(pixel);
-    uint id = 0u;
-    float depth = 0.0;
-    if (!corner && inside_rect(pixel))
-      id = texelFetch(material_image, texel, 0).r;
-    if (id != 0u)
-      depth = view_depth(texelFetch(depth_image, texel, 0).r);
-    ring_profile[i] = id;
-    ring_depth[i] = depth;
+uint profile_at(int i) { return texel_shape ? tile_profile[i] : block_profile[i]; }
+float depth_at(int i) { return texel_shape ? tile_depth[i] : block_depth[i]; }
+float depth_of_profile(int i, uint id) { return profile_at(i) == id ? depth_at(i) : 0.0; }
+
+// Reads element i of the ring around the pixels from `first` on.
+void read_pixel(ivec2 first, int i) {
+  int x = i % ring_width, y = i / ring_width;
+  bool corner = (x == 0 || x == ring_width - 1) && (y == 0 || y == ring_height - 1);
+  ivec2 pixel = first + ivec2(x, y) - 1, texel = texel_of(pixel);
+  uint id = 0u;
+  float depth = 0.0;
+  if (!corner && inside_rect(pixel))
+    id = texelFetch(material_image, texel, 0).r;
+  if (id != 0u)
+    depth = view_depth(texelFetch(depth_image, texel, 0).r);
+  if (texel_shape) {
+    tile_profile[i] = id;
+    tile_depth[i] = depth;
+  } else {
+    block_profile[i] = id;
+    block_depth[i] = depth;
   }
 }
-float depth_of_profile(int index, uint id) { return ring_profile[index] == id ? ring_depth[index] : 0.0; }
+void read_ring(texel_block block) {
+  if (texel_shape) {
+    [[dont_unroll]] for (int i = int(gl_LocalInvocationIndex); i < ring_width * ring_height; i += 64)
+      read_pixel(8 * block.tile, i);
+    barrier();
+  } else {
+    [[unroll]] for (int i = 0; i < (block_width + 2) * (block_height + 2); ++i)
+      read_pixel(block.first, i);
+  }
+}
 
 void main() {
   texel_block block;
   if (!listed_block(0, block))
     return;
-  read_ring(block.first);
-  [[unroll]] for (int k = 0; k < block_width * block_height; ++k) {
-    ivec2 pixel = block.first + ivec2(k % block_width, k / block_width), texel = texel_of(pixel);
+  read_ring(block);
+  [[unroll]] for (int k = 0; k < block_texels; ++k) {
+    ivec2 pixel = block.first + block_offset(k), texel = texel_of(pixel);
     if (!inside_rect(pixel))
       continue;
-    int here = (k / block_width + 1) * ring_width + k % block_width + 1;
-    uint id = ring_profile[here];
-    float depth = ring_depth[here];
+    ivec2 place = texel_shape ? pixel - 8 * block.tile + 1 : block_offset(k) + 1;
+    int here = place.y * ring_width + place.x;
+    uint id = profile_at(here);
+    float depth = depth_at(here);
     vec4 light = vec4(0.0);
     uvec4 bits = uvec4(0u);
     if (id != 0u) {

@@ -7,6 +7,7 @@
 #include "common/environment.glsl"
 #include "constants.glsl"
 #include "common/counters.glsl"
+#include "common/shape.glsl"
 #include "sap/sap_lists.glsl"
 
 const uint lanes = 256u;
@@ -122,7 +123,7 @@ void main() {
       arguments_data[2] = 1u;
     }
     if (lane == 0u && builds) {
-      uint per_group = level == 0 ? sap_tiles_per_group_first : sap_tiles_per_group;
+      uint per_group = texel_shape ? 1u : level == 0 ? sap_tiles_per_group_first : sap_tiles_per_group;
       uint groups = (listed + per_group - 1u) / per_group;
       level_tiles_data[level] = uvec2(next, listed);
       level_arguments_data[4 * level] = min(groups, tile_groups_per_row);

@@ -1,8 +1,8 @@
 #version 460
 // Computes the next finer level with two layers per texel: blends its own light with the values of
-// the coarser level by the profile's fractions. First computes texels in groups of four. Then
-// recomputes, one by one and from both layers, the texels that have a second layer themselves, next
-// to them or in the coarser level.
+// the coarser level by the profile's fractions. The block shape first computes one layer of all
+// texels. Then it recomputes, one by one and from both layers, the texels that have a second layer
+// themselves, next to them or in the coarser level.
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 #include "sap/subsurface_sap_up_layered.bindings.glsl"
@@ -10,55 +10,68 @@
 #include "common/half.glsl"
 #define SAP_OWN_LAYERS 2
 #define SAP_COARSE_LAYERS 2
+#define SAP_SECOND_MAY_LACK
 #include "sap/sap_climb.glsl"
+
+// Computes the layers of the texel at `place`. The loop tests at its end, because some drivers
+// execute the body of a loop before they find that no invocation is active.
+void compute_layers(sap_place place, int level, bool smooth_level, bool last) {
+  uvec4 first = near_bits(place, near_centre);
+  sap_texel own = sap_unpack(first);
+  vec3 light = light_near(place, level, near_centre).rgb;
+  int layer = 0, layers = sap_has_second(first) ? 2 : 1;
+  [[dont_unroll]] do {
+    uvec4 bits = uvec4(0u);
+    if (own.id != 0u)
+      bits = climb(place, level, own, light, SAP_OWN_LAYERS, smooth_level, last);
+    if (layer == 0)
+      imageStore(scattered_image, sap_address(place.at, level), bits);
+    else
+      imageStore(second_scattered_image, sap_address(place.at, level), bits);
+    if (!texel_shape || layers > 1) {
+      own = sap_unpack(second_near_bits(place, level, near_centre));
+      light = second_light_near(place, level, near_centre).rgb;
+    }
+  } while (++layer < layers);
+}
 
 void main() {
   int level = settings.level;
   texel_block block;
   if (!listed_block(level, block))
     return;
-  ivec2 first = block.first - 1;
   bool smooth_level = settings.variant == VARIANT_SMOOTH || level == 1, last = !has_coarse_scattered();
-  read_ring(block, first, level, smooth_level);
+  read_ring(block, level, smooth_level);
   if (!last)
-    read_coarser(first, level);
+    read_coarser(block, level);
+  finish_reading();
+  if (texel_shape) {
+    sap_place place = place_of(block, 0);
+    if (sap_inside(place.at, level))
+      compute_layers(place, level, smooth_level, last);
+    return;
+  }
   uint layered = 0u; // bit k: texel k needs more than one layer
   [[unroll]] for (int k = 0; k < block_width * block_height; ++k) {
-    ivec2 at = first + ivec2(k % block_width, k / block_width);
-    if (!sap_inside(at, level))
+    sap_place place = place_of(block, k);
+    if (!sap_inside(place.at, level))
       continue;
     uint found = take_near(k);
     if (!last)
       found |= take_corners(k);
     layered |= (found & sap_second_bit) != 0u ? 1u << k : 0u;
     uvec4 bits = uvec4(0u);
-    sap_texel own = sap_unpack(near_surface[near_centre]);
+    sap_texel own = sap_unpack(near_bits(place, near_centre));
     if (own.id != 0u)
-      bits = climb(odd_of(k), level, own, near_light[near_centre].rgb, 1, smooth_level, last);
-    imageStore(scattered_image, sap_address(at, level), bits);
+      bits = climb(place, level, own, light_near(place, level, near_centre).rgb, 1, smooth_level, last);
+    imageStore(scattered_image, sap_address(place.at, level), bits);
   }
-  // The loops test at their end, because some drivers execute the body of a loop before they find
-  // that no invocation is active.
   if (layered != 0u)
     do {
-      int k = findLSB(layered);
-      ivec2 offset = ivec2(k % block_width, k / block_width), at = first + offset;
-      read_near(block, offset, at, level, smooth_level);
+      ivec2 offset = block_offset(findLSB(layered)), at = block.first - border + offset;
+      read_near(block, block.first + offset, level, smooth_level);
       read_corners(at, level, !last);
-      vec3 light = near_light[near_centre].rgb;
-      sap_texel own = sap_unpack(near_surface[near_centre]);
-      int layer = 0, layers = sap_has_second(near_surface[near_centre]) ? 2 : 1;
-      [[dont_unroll]] do {
-        uvec4 bits = uvec4(0u);
-        if (own.id != 0u)
-          bits = climb(at & 1, level, own, light, SAP_OWN_LAYERS, smooth_level, last);
-        if (layer == 0)
-          imageStore(scattered_image, sap_address(at, level), bits);
-        else
-          imageStore(second_scattered_image, sap_address(at, level), bits);
-        own = sap_unpack(near_surface[near_texels + near_centre]);
-        light = near_light[near_texels + near_centre].rgb;
-      } while (++layer < layers);
+      compute_layers(sap_place(at, at & 1, 0, 0), level, smooth_level, last);
       layered &= layered - 1u;
     } while (layered != 0u);
 }

@@ -156,6 +156,9 @@ Kernel::~Kernel() {
   device->vk.vkDestroyDescriptorSetLayout(device->device, set_layout, device->allocator);
 }
 
+// constant_id in shaders/common/shape.glsl; kernels without the constant ignore it
+constexpr uint32_t shape_constant = 0;
+
 Error create_pipeline(const Device& device, const std::string& subresource, const std::string& label,
                       std::span<const uint32_t> spirv, VkPipelineCache cache, Kernel& kernel) {
   VkShaderModuleCreateInfo module_info{};
@@ -176,6 +179,10 @@ Error create_pipeline(const Device& device, const std::string& subresource, cons
   info.stage.stage = VK_SHADER_STAGE_COMPUTE_BIT;
   info.stage.module = module;
   info.stage.pName = "main";
+  const VkBool32 texel_shape = device.texel_shape ? VK_TRUE : VK_FALSE;
+  const VkSpecializationMapEntry shape{shape_constant, 0, sizeof texel_shape};
+  const VkSpecializationInfo constants{1, &shape, sizeof texel_shape, &texel_shape};
+  info.stage.pSpecializationInfo = &constants;
   info.layout = kernel.layout;
   result =
       device.vk.vkCreateComputePipelines(device.device, cache, 1, &info, device.allocator, &kernel.pipeline);

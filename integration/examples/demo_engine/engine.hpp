@@ -3,6 +3,7 @@
 // its graph and its user see: pictures, the graph's inputs as floats, the camera, device times.
 
 #include "integration/examples/demo_engine/context_hooks.hpp"
+#include "integration/examples/demo_engine/kernel_shape.hpp"
 #include "integration/examples/demo_engine/result.hpp"
 
 #include <array>
@@ -59,7 +60,8 @@ struct RenderOptions {
   bool sampling = false;        // reads back the graph's `sampling` output
   bool skips = false;           // reads back the graph's `skips` output
   bool validation = false;      // run under the Khronos validation layer
-  std::string device;           // part of the device's name; "" = choose
+  KernelShape kernels = KernelShape::by_device;
+  std::string device; // part of the device's name; "" = choose
   std::optional<CameraPlace> camera;
   // Magnification by a smaller field of view of the camera; > 0.
   double zoom = 1.0;

@@ -145,6 +145,7 @@ Result<std::unique_ptr<VulkanHost>> create_vulkan_host(const HostOptions& option
   host->properties = chosen->properties;
   host->queue_family = chosen->queue_family;
   host->timestamp_mask = chosen->timestamp_mask;
+  host->kernels = options.kernels;
   if (auto done = create_device(*host, options); !done) return done.error();
   return host;
 }

@@ -25,6 +25,7 @@ struct VulkanHost {
   VkQueue queue = VK_NULL_HANDLE;
   VkCommandPool pool = VK_NULL_HANDLE;
   VkFence fence = VK_NULL_HANDLE;
+  KernelShape kernels = KernelShape::by_device;
   bool ray_query = false;      // VK_KHR_ray_query and VK_KHR_acceleration_structure are enabled
   uint64_t timestamp_mask = 0; // 0: the queue has no timestamps
   ValidationLog log;

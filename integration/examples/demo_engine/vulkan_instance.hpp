@@ -1,6 +1,7 @@
 #pragma once
 // Access to a Vulkan device: loader, instance, and selection of a device.
 
+#include "integration/examples/demo_engine/kernel_shape.hpp"
 #include "integration/examples/demo_engine/result.hpp"
 
 #include <volk.h>
@@ -19,6 +20,7 @@ struct HostOptions {
   bool as_vulkan_12 = false; // emulates an engine before Vulkan 1.3: 1.2 and extensions
   // false: without the feature separateDepthStencilLayouts
   bool separate_depth_stencil = true;
+  KernelShape kernels = KernelShape::by_device;
 };
 
 // Messages of the validation layer. Any thread that calls Vulkan may add messages.

@@ -3,6 +3,7 @@
 // Paths may be "": no file is then written or read. `scenes`, `techniques` and other filters may be
 // empty, which selects all.
 
+#include "integration/examples/demo_engine/kernel_shape.hpp"
 #include "integration/tools/command/session.hpp"
 #include "integration/tools/command/shipped.hpp"
 
@@ -138,6 +139,7 @@ struct RenderOptions {
   bool deterministic = false; // judge times only by the calibration
   std::string calibration;    // file of dermis calibrate; "": the library's calibration
   bool taa = false;           // temporal anti-aliasing in the engine
+  demo::KernelShape kernels = demo::KernelShape::by_device;
   enum class Debug : uint8_t {
     none,
     samples,

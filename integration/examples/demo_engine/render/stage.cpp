@@ -53,7 +53,7 @@ void zoom_in(Camera& camera, double zoom) {
 bool same_stage(const RenderOptions& a, const RenderOptions& b) {
   const auto of = [](const RenderOptions& o) {
     return std::tie(o.scene, o.model, o.roots, o.width, o.height, o.frames_per_second, o.reversed_depth,
-                    o.jitter, o.taa, o.validation, o.device, o.camera, o.zoom);
+                    o.jitter, o.taa, o.validation, o.device, o.kernels, o.camera, o.zoom);
   };
   return of(a) == of(b);
 }
@@ -81,6 +81,7 @@ Result<> load_stage(Stage& stage, const RenderOptions& options) {
   HostOptions host_options;
   host_options.validation = options.validation;
   host_options.device = options.device;
+  host_options.kernels = options.kernels;
   auto host = create_vulkan_host(host_options);
   if (!host) return host.error();
   stage.host = host.take();

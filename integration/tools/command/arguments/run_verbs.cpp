@@ -84,6 +84,12 @@ void add_picture_verbs(CLI::App& app, Invocation& invocation) {
         verb.add_flag(
             "--taa", options.taa,
             "Use temporal anti-aliasing in the engine, after the graph, with sub-pixel jitter (Halton 2, 3)");
+        static const std::map<std::string, demo::KernelShape> shapes{{"device", demo::KernelShape::by_device},
+                                                                     {"gpu", demo::KernelShape::gpu},
+                                                                     {"cpu", demo::KernelShape::cpu}};
+        add_choice(verb, "--kernels", options.kernels, shapes,
+                   "Shape of the kernels: for GPUs, for drivers on the CPU, or by the device's type [device]")
+            ->type_name("SHAPE");
         static const std::map<std::string, RenderOptions::Debug> views{
             {"samples", RenderOptions::Debug::samples}, {"skips", RenderOptions::Debug::skips}};
         add_choice(verb, "--debug", options.debug, views,

@@ -263,6 +263,7 @@ ExitCode render(const Session& session, const RenderOptions& options) {
   engine.budget_ms = options.budget_ms;
   engine.deterministic = options.deterministic;
   engine.taa = options.taa;
+  engine.kernels = options.kernels;
   engine.sampling = options.debug == RenderOptions::Debug::samples;
   engine.skips = options.debug == RenderOptions::Debug::skips;
   GraphParts parts = options.parts;

@@ -1,0 +1,123 @@
+// Tests that both shapes of kernels give equal pictures, and that each shape really runs.
+
+#include "tests/integration/tools/command_fixture.hpp"
+
+#include <filesystem>
+
+namespace dermis::test {
+namespace {
+
+struct ShapeCase {
+  const char* name;
+  const char* scene;
+  const char* size;
+  std::vector<std::string> graph;
+};
+
+class KernelShape : public CommandTest, public ::testing::WithParamInterface<ShapeCase> {
+protected:
+  // Renders with kernels of the shape into the folder `out`.
+  Outcome render(const ShapeCase& one, const std::string& shape, const std::string& out,
+                 const std::vector<std::string>& more = {}) const {
+    std::vector<std::string> words{"render",    one.scene,  "--size",  one.size,         "--out",
+                                   path(out),   "--frames", "2",       "--subset",       "0",
+                                   "--kernels", shape,      "--quiet", "--deterministic"};
+    words.insert(words.end(), one.graph.begin(), one.graph.end());
+    words.insert(words.end(), more.begin(), more.end());
+    RunOptions options;
+    options.environment = validation_environment();
+    return run(words, options);
+  }
+  void expect_equal_pictures(const std::string& a, const std::string& b) const {
+    size_t pictures = 0;
+    for (const std::string& file : files(a)) {
+      if (!file.ends_with(".exr")) continue;
+      EXPECT_TRUE(read(a + "/" + file) == read(b + "/" + file))
+          << file << " differs in " << a << " and " << b;
+      ++pictures;
+    }
+    EXPECT_GT(pictures, 0u);
+  }
+  // Returns the text of a kernel that writes nothing in the texel shape.
+  static std::string broken(const std::string& file) {
+    std::string text = text_of(file);
+    const std::string begin = "void main() {";
+    text.insert(text.find(begin) + begin.size(), "\n  if (texel_shape)\n    return;\n");
+    return text;
+  }
+};
+
+TEST_P(KernelShape, GivesEqualPictures) {
+  for (const char* shape : {"cpu", "gpu"}) {
+    const Outcome outcome = render(GetParam(), shape, shape);
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+    EXPECT_EQ(outcome.out, "") << "a message of the validation layer";
+  }
+  expect_equal_pictures("cpu", "gpu");
+}
+
+const ShapeCase shape_cases[] = {
+    {"smooth", "configs/scenes/bust.json", "161x97", {"-g", "configs/graphs/sap.json"}},
+    {"base",
+     "configs/scenes/dolly.json",
+     "96x64",
+     {"-g", "configs/graphs/sap.json", "--set", "variant=base"}},
+    {"half",
+     "configs/scenes/bust.json",
+     "161x97",
+     {"-g", "configs/graphs/skin.json", "--set", "technique=sap", "--set", "variant=half"}},
+    {"full_precision",
+     "configs/scenes/bust.json",
+     "96x64",
+     {"-g", "configs/graphs/sap.json", "--overlay", "configs/overlays/sap_full_precision.json"}},
+    {"layers_from_level_1",
+     "configs/scenes/bust.json",
+     "96x64",
+     {"-g", "configs/graphs/papers/sap_layered.json"}},
+    {"hybrid", "configs/scenes/dynamic.json", "96x64", {"-g", "configs/graphs/papers/hybrid.json"}},
+    {"residual", "configs/scenes/bust.json", "96x64", {"-g", "configs/graphs/papers/sap_residual.json"}},
+    {"smaller_than_two_tiles", "configs/scenes/bust.json", "9x7", {"-g", "configs/graphs/sap.json"}},
+};
+INSTANTIATE_TEST_SUITE_P(Graphs, KernelShape, ::testing::ValuesIn(shape_cases),
+                         [](const auto& one) { return std::string(one.param.name); });
+
+using KernelShapes = KernelShape;
+
+// Without this test, two equal pictures could be two pictures of one shape.
+TEST_F(KernelShapes, BrokenTexelShape_ChangesOnlyPicturesForGpus) {
+  const Outcome has = run({"doctor", "--json"});
+  if (has.out.find("\"shader_compiler\": \"\"") != std::string::npos)
+    GTEST_SKIP() << "built without glslang (package glslang-dev)";
+  const ShapeCase smooth{"", "configs/scenes/bust.json", "96x64", {"-g", "configs/graphs/sap.json"}};
+  const ShapeCase half{"",
+                       "configs/scenes/bust.json",
+                       "96x64",
+                       {"-g", "configs/graphs/skin.json", "--set", "technique=sap", "--set", "variant=half"}};
+  ASSERT_EQ(render(smooth, "cpu", "smooth").exit_code, 0);
+  ASSERT_EQ(render(half, "cpu", "half").exit_code, 0);
+  const std::filesystem::path copy = path("shaders");
+  std::filesystem::create_directories(path("."));
+  std::filesystem::copy("shaders", copy, std::filesystem::copy_options::recursive);
+  const char* kernels[] = {"setup",      "down",   "down_layered",   "up",
+                           "up_layered", "gather", "setup_half_res", "gather_half"};
+  for (const char* kernel : kernels) {
+    SCOPED_TRACE(kernel);
+    const std::string file = std::string("shaders/sap/subsurface_sap_") + kernel + ".comp";
+    write(file, broken(file));
+    const std::string reference = std::string(kernel).find("half") != std::string::npos ? "half" : "smooth";
+    ASSERT_EQ(render(reference == "half" ? half : smooth, "gpu", "gpu", {"--shaders", copy}).exit_code, 0);
+    EXPECT_FALSE(read(reference + "/scattered_0001.exr") == read("gpu/scattered_0001.exr"));
+    write(file, text_of(file));
+  }
+  for (const char* kernel : kernels) {
+    const std::string file = std::string("shaders/sap/subsurface_sap_") + kernel + ".comp";
+    write(file, broken(file));
+  }
+  ASSERT_EQ(render(smooth, "cpu", "cpu", {"--shaders", copy}).exit_code, 0);
+  expect_equal_pictures("smooth", "cpu");
+  ASSERT_EQ(render(half, "cpu", "cpu", {"--shaders", copy}).exit_code, 0);
+  expect_equal_pictures("half", "cpu");
+}
+
+} // namespace
+} // namespace dermis::test
