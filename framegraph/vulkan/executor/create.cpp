@@ -76,6 +76,22 @@ void make_passes(State& state, const ExecutorInput& input) {
   }
 }
 
+Error add_kernels(State& state, const ExecutorInput& input) {
+  PlanKernels made;
+  const KernelInput kernels{.device = *state.device,
+                            .pass_types = *input.pass_types,
+                            .codes = input.kernels,
+                            .environment = input.environment,
+                            .environment_layout = state.environment.set_layout,
+                            .cache = input.pipeline_cache,
+                            .store = input.kernel_store};
+  if (Error error = create_kernels(kernels, state.plan, made)) return error;
+  state.kernels = std::move(made.kernels);
+  for (size_t p = 0; p < state.passes.size(); ++p)
+    state.passes[p].kernel = made.of_pass[p];
+  return {};
+}
+
 // Checks before the first frame that clear passes only clear colour and buffers, and that indirect
 // dispatches have arguments.
 Error check_passes(State& state, const PassTypeRegistry& pass_types) {
@@ -181,7 +197,7 @@ Error Executor::create(const ExecutorInput& input, std::unique_ptr<Executor>& ex
   make_slots(*state);
   make_histories(*state, input);
   if (Error error = create_environment(*state, input.environment, input.tables)) return error;
-  if (Error error = create_kernels(*state, input)) return error;
+  if (Error error = add_kernels(*state, input)) return error;
   if (Error error = check_passes(*state, *input.pass_types)) return error;
   if (Error error = check_host_passes(*state, input)) return error;
   if (Error error = create_memory(*state, *input.graph)) return error;

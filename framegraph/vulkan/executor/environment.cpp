@@ -80,29 +80,17 @@ Error create_sampler(State& state) {
 Error create_sets(State& state, std::span<const EnvironmentBinding> bindings) {
   const Device& device = *state.device;
   Environment& environment = state.environment;
-  std::vector<VkDescriptorSetLayoutBinding> slots;
+  if (Error error = create_environment_layout(device, bindings, environment.set_layout)) return error;
   std::vector<VkDescriptorPoolSize> sizes;
-  for (uint32_t i = 0; i < bindings.size(); ++i) {
-    const VkDescriptorType type = descriptor_type(bindings[i].type);
-    slots.push_back({i, type, 1, VK_SHADER_STAGE_COMPUTE_BIT, nullptr});
-    sizes.push_back({type, state.frames_in_flight});
-  }
-  VkDescriptorSetLayoutCreateInfo layout{};
-  layout.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO;
-  layout.bindingCount = static_cast<uint32_t>(slots.size());
-  layout.pBindings = slots.data();
-  VkResult result = device.vk.vkCreateDescriptorSetLayout(device.device, &layout, device.allocator,
-                                                          &environment.set_layout);
-  if (result != VK_SUCCESS) {
-    environment.set_layout = VK_NULL_HANDLE;
-    return call_error(result, "vkCreateDescriptorSetLayout", "environment");
-  }
+  for (const EnvironmentBinding& binding : bindings)
+    sizes.push_back({descriptor_type(binding.type), state.frames_in_flight});
   VkDescriptorPoolCreateInfo pool{};
   pool.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO;
   pool.maxSets = state.frames_in_flight;
   pool.poolSizeCount = static_cast<uint32_t>(sizes.size());
   pool.pPoolSizes = sizes.data();
-  result = device.vk.vkCreateDescriptorPool(device.device, &pool, device.allocator, &environment.pool);
+  VkResult result =
+      device.vk.vkCreateDescriptorPool(device.device, &pool, device.allocator, &environment.pool);
   if (result != VK_SUCCESS) {
     environment.pool = VK_NULL_HANDLE;
     return call_error(result, "vkCreateDescriptorPool", "environment");
@@ -147,6 +135,21 @@ uint64_t table_alignment(const Device& device) {
   const VkPhysicalDeviceLimits& limits = device.properties.limits;
   return std::max<uint64_t>(
       {limits.minUniformBufferOffsetAlignment, limits.minStorageBufferOffsetAlignment, 16});
+}
+
+Error create_environment_layout(const Device& device, std::span<const EnvironmentBinding> bindings,
+                                VkDescriptorSetLayout& layout) {
+  std::vector<VkDescriptorSetLayoutBinding> slots;
+  for (uint32_t i = 0; i < bindings.size(); ++i)
+    slots.push_back({i, descriptor_type(bindings[i].type), 1, VK_SHADER_STAGE_COMPUTE_BIT, nullptr});
+  VkDescriptorSetLayoutCreateInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO;
+  info.bindingCount = static_cast<uint32_t>(slots.size());
+  info.pBindings = slots.data();
+  const VkResult result =
+      device.vk.vkCreateDescriptorSetLayout(device.device, &info, device.allocator, &layout);
+  if (result != VK_SUCCESS) layout = VK_NULL_HANDLE;
+  return call_error(result, "vkCreateDescriptorSetLayout", "environment");
 }
 
 Error create_environment_buffer(const Device& device, uint64_t bytes, const char* name, VkBuffer& buffer,

@@ -81,7 +81,7 @@ Error find_rescale_kernel(State& state, const ExecutorInput& input, bool unsigne
   added->push_bytes = sizeof(RescalePush);
   if (Error error = create_rescale_layouts(*state.device, *added)) return error;
   if (Error error =
-          create_pipeline(*state.device, code.name, code.name, code.spirv, input.pipeline_cache, *added))
+          create_pipeline(*state.device, code.name, code.name, code.spirv, {input.pipeline_cache}, *added))
     return error;
   wanted = added;
   if (input.kernel_store != nullptr) input.kernel_store->add(wanted);

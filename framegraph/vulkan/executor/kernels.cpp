@@ -68,8 +68,7 @@ std::string join_lines(const std::vector<std::string>& lines) {
   return fmt::format("{}", fmt::join(lines, "\n"));
 }
 
-Error create_set_layout(State& state, const PassType& type, Kernel& kernel) {
-  const Device& device = *state.device;
+Error create_set_layout(const Device& device, const PassType& type, Kernel& kernel) {
   std::vector<VkDescriptorSetLayoutBinding> bindings;
   for (uint32_t i = 0; i < kernel.ports.size(); ++i)
     if (kernel.ports[i].type)
@@ -84,13 +83,13 @@ Error create_set_layout(State& state, const PassType& type, Kernel& kernel) {
   return call_error(result, "vkCreateDescriptorSetLayout", fmt::format("pass type '{}'", type.name));
 }
 
-Error create_layout(State& state, const PassType& type, Kernel& kernel) {
-  const Device& device = *state.device;
-  const VkDescriptorSetLayout sets[] = {kernel.set_layout, state.environment.set_layout};
+Error create_layout(const Device& device, VkDescriptorSetLayout environment, const PassType& type,
+                    Kernel& kernel) {
+  const VkDescriptorSetLayout sets[] = {kernel.set_layout, environment};
   const VkPushConstantRange range{VK_SHADER_STAGE_COMPUTE_BIT, 0, kernel.push_bytes};
   VkPipelineLayoutCreateInfo info{};
   info.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO;
-  info.setLayoutCount = state.environment.set_layout != VK_NULL_HANDLE ? 2 : 1;
+  info.setLayoutCount = environment != VK_NULL_HANDLE ? 2 : 1;
   info.pSetLayouts = sets;
   info.pushConstantRangeCount = 1;
   info.pPushConstantRanges = &range;
@@ -100,18 +99,18 @@ Error create_layout(State& state, const PassType& type, Kernel& kernel) {
   return call_error(result, "vkCreatePipelineLayout", fmt::format("pass type '{}'", type.name));
 }
 
-auto find_code(const ExecutorInput& input, const PassType& type) {
-  return std::find_if(input.kernels.begin(), input.kernels.end(),
+auto find_code(const KernelInput& input, const PassType& type) {
+  return std::find_if(input.codes.begin(), input.codes.end(),
                       [&](const KernelCode& candidate) { return candidate.shader == type.shader; });
 }
 
-Error create_kernel(State& state, const ExecutorInput& input, PassTypeId id, Kernel& kernel) {
-  const PassType& type = (*input.pass_types)[id];
+Error create_kernel(const KernelInput& input, PassTypeId id, Kernel& kernel) {
+  const PassType& type = input.pass_types[id];
   const auto code = find_code(input, type);
-  if (code == input.kernels.end())
+  if (code == input.codes.end())
     return {ErrorKind::shader, VK_SUCCESS,
             fmt::format("kernel '{}' of type '{}' is not among the {} provided kernels", type.shader,
-                        type.name, input.kernels.size())};
+                        type.name, input.codes.size())};
   std::string problem;
   const std::optional<Reflection> reflection = reflect(code->spirv, problem);
   if (!reflection)
@@ -142,10 +141,10 @@ Error create_kernel(State& state, const ExecutorInput& input, PassTypeId id, Ker
   if (!type.arguments_entry.empty())
     kernel.entry_setting = static_cast<uint32_t>(find_setting(type, type.arguments_entry));
   kernel.push_bytes = static_cast<uint32_t>(sizeof(uint32_t) * (1 + type.settings.size()));
-  if (Error error = create_set_layout(state, type, kernel)) return error;
-  if (Error error = create_layout(state, type, kernel)) return error;
-  return create_pipeline(*state.device, fmt::format("kernel '{}'", type.shader), std::string(type.name),
-                         code->spirv, input.pipeline_cache, kernel);
+  if (Error error = create_set_layout(input.device, type, kernel)) return error;
+  if (Error error = create_layout(input.device, input.environment_layout, type, kernel)) return error;
+  return create_pipeline(input.device, fmt::format("kernel '{}'", type.shader), std::string(type.name),
+                         code->spirv, {input.cache, input.flags}, kernel);
 }
 
 } // namespace
@@ -160,7 +159,7 @@ Kernel::~Kernel() {
 constexpr uint32_t shape_constant = 0;
 
 Error create_pipeline(const Device& device, const std::string& subresource, const std::string& label,
-                      std::span<const uint32_t> spirv, VkPipelineCache cache, Kernel& kernel) {
+                      std::span<const uint32_t> spirv, const PipelineOptions& options, Kernel& kernel) {
   VkShaderModuleCreateInfo module_info{};
   module_info.sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO;
   std::vector<uint32_t> refined;
@@ -184,8 +183,9 @@ Error create_pipeline(const Device& device, const std::string& subresource, cons
   const VkSpecializationInfo constants{1, &shape, sizeof texel_shape, &texel_shape};
   info.stage.pSpecializationInfo = &constants;
   info.layout = kernel.layout;
-  result =
-      device.vk.vkCreateComputePipelines(device.device, cache, 1, &info, device.allocator, &kernel.pipeline);
+  info.flags = options.flags;
+  result = device.vk.vkCreateComputePipelines(device.device, options.cache, 1, &info, device.allocator,
+                                              &kernel.pipeline);
   device.vk.vkDestroyShaderModule(device.device, module, device.allocator);
   if (result != VK_SUCCESS) {
     kernel.pipeline = VK_NULL_HANDLE;
@@ -195,25 +195,26 @@ Error create_pipeline(const Device& device, const std::string& subresource, cons
   return {};
 }
 
-Error create_kernels(State& state, const ExecutorInput& input) {
-  for (uint32_t p = 0; p < state.passes.size(); ++p) {
-    const PassTypeId type = state.plan.passes[p].type;
-    if (!(*input.pass_types)[type].dispatch.is_kernel()) continue;
-    const auto code = find_code(input, (*input.pass_types)[type]);
-    const uint64_t version = code != input.kernels.end() ? code->version : 0;
+Error create_kernels(const KernelInput& input, const Plan& plan, PlanKernels& made) {
+  made.of_pass.assign(plan.passes.size(), no_index);
+  for (uint32_t p = 0; p < plan.passes.size(); ++p) {
+    const PassTypeId type = plan.passes[p].type;
+    if (!input.pass_types[type].dispatch.is_kernel()) continue;
+    const auto code = find_code(input, input.pass_types[type]);
+    const uint64_t version = code != input.codes.end() ? code->version : 0;
     const auto runs = [&](const auto& kernel) { return kernel->type == type && kernel->version == version; };
-    const auto existing = std::find_if(state.kernels.begin(), state.kernels.end(), runs);
-    state.passes[p].kernel = static_cast<uint32_t>(existing - state.kernels.begin());
-    if (existing != state.kernels.end()) continue;
+    const auto existing = std::find_if(made.kernels.begin(), made.kernels.end(), runs);
+    made.of_pass[p] = static_cast<uint32_t>(existing - made.kernels.begin());
+    if (existing != made.kernels.end()) continue;
     std::shared_ptr<const Kernel> kernel;
-    if (input.kernel_store != nullptr) kernel = input.kernel_store->find(type, version);
+    if (input.store != nullptr) kernel = input.store->find(type, version);
     if (kernel == nullptr) {
-      const auto added = std::make_shared<Kernel>(*state.device);
-      if (Error error = create_kernel(state, input, type, *added)) return error;
+      const auto added = std::make_shared<Kernel>(input.device);
+      if (Error error = create_kernel(input, type, *added)) return error;
       kernel = added;
-      if (input.kernel_store != nullptr) input.kernel_store->add(kernel);
+      if (input.store != nullptr) input.store->add(kernel);
     }
-    state.kernels.push_back(std::move(kernel));
+    made.kernels.push_back(std::move(kernel));
   }
   return {};
 }

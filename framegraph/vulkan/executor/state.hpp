@@ -266,6 +266,9 @@ void destroy_placeholders(State& state);
 Error create_environment(State& state, std::span<const EnvironmentBinding> bindings,
                          const std::shared_ptr<const EnvironmentTables>& tables);
 void destroy_environment(State& state);
+// Creates the layout of set 1. `layout` is null after an error.
+Error create_environment_layout(const Device& device, std::span<const EnvironmentBinding> bindings,
+                                VkDescriptorSetLayout& layout);
 uint64_t table_alignment(const Device& device); // of each binding's offset in a buffer
 // Allocates zeroed, host-visible memory for set 1. The caller frees `buffer` and `memory`, also on
 // an error.
@@ -281,11 +284,31 @@ void clear_counters(State& state, uint32_t frame_slot) noexcept;
 void write_frame_constants(State& state, uint32_t frame_slot, std::span<const std::byte> constants) noexcept;
 
 // ---- kernels.cpp
-Error create_kernels(State& state, const ExecutorInput& input);
+// Describes what the kernels of plans are created from.
+struct KernelInput {
+  const Device& device;
+  const PassTypeRegistry& pass_types;
+  std::span<const KernelCode> codes;
+  std::span<const EnvironmentBinding> environment;
+  VkDescriptorSetLayout environment_layout = VK_NULL_HANDLE; // null: no environment
+  VkPipelineCache cache = VK_NULL_HANDLE;                    // may be null
+  VkPipelineCreateFlags flags = 0;
+  KernelStore* store = nullptr; // null: the kernels are shared with no other plan
+};
+struct PlanKernels {
+  std::vector<std::shared_ptr<const Kernel>> kernels;
+  std::vector<uint32_t> of_pass; // by plan pass: into `kernels`; no_index: the pass has no kernel
+};
+// Creates the kernels of a plan. Needs no memory, image or buffer of the device.
+Error create_kernels(const KernelInput& input, const Plan& plan, PlanKernels& made);
+struct PipelineOptions {
+  VkPipelineCache cache = VK_NULL_HANDLE;
+  VkPipelineCreateFlags flags = 0;
+};
 // Creates `kernel.pipeline` from `kernel.layout`. `subresource` names it in errors, `label` in
 // debuggers.
 Error create_pipeline(const Device& device, const std::string& subresource, const std::string& label,
-                      std::span<const uint32_t> spirv, VkPipelineCache cache, Kernel& kernel);
+                      std::span<const uint32_t> spirv, const PipelineOptions& options, Kernel& kernel);
 
 // ---- history.cpp
 void remember_before_frame(State& state) noexcept;
