@@ -14,6 +14,14 @@
 
 namespace dermis {
 
+// Texels that a kernel accesses at a port, within the area that its dispatch covers. Counts of
+// bytes use this; compilation does not.
+enum class Touched : uint8_t {
+  dispatched, // all
+  covered,    // pixels to which the graph's effect applies; a dispatch over a list has only these
+  flagged     // covered pixels that another image marks, such as texels with a second layer
+};
+
 struct Port {
   std::string_view name;
   Usage usage = Usage::sampled_image;
@@ -28,6 +36,7 @@ struct Port {
   // before writing it. The pass may then write what this port reads. Update ports do not need the
   // flag for their own accesses.
   bool own_texels = false;
+  Touched touched = Touched::dispatched;
 };
 
 // Returns whether a kernel supports the format at the port: one of Port::formats, or, if that is

@@ -52,16 +52,16 @@ constexpr Port level_arguments{"level_arguments", Usage::indirect_arguments, fal
 
 constexpr Port tiles_ports[] = {
     port::classes,
-    port::written_buffer(
+    port::where_covered(port::written_buffer(
         "level_tiles", "uvec2",
         "for each level, the index of its first entry and the number of entries; then the entries: tile x in "
         "bits 0-14, y in bits 15-29, bit 30: all pixels have subsurface, bit 31: copy only; then a mask of "
         "the 3x3 tiles that can contain surface: bits 0-8 for the tiles of the finer level that the tile "
-        "reduces, bits 9-17 for the tiles around it"),
+        "reduces, bits 9-17 for the tiles around it")),
     port::written_buffer(
         "level_arguments", "uint",
         "for each level, the group counts x, y, z of an indirect dispatch over its tiles, and x times y"),
-    port::writer_of(port::tiles),
+    port::where_covered(port::writer_of(port::tiles)),
     port::writer_of(port::arguments),
     port::optional(port::written_buffer(
         "copy_arguments", "uint",
@@ -105,8 +105,9 @@ constexpr PassTypeSetting down_settings[] = {written_level(), storage};
 // valid only at texels whose first surface has the flag.
 constexpr std::string_view second_doc = "image of the second layer, which holds surfaces apart from the "
                                         "first layer; undefined where a texel has only one layer";
-constexpr Port second_coarse_surface = read_surface("second_coarse_surface", second_doc);
-constexpr Port second_coarse_scattered = read_surface("second_coarse_scattered", second_doc);
+constexpr Port second_coarse_surface = port::where_flagged(read_surface("second_coarse_surface", second_doc));
+constexpr Port second_coarse_scattered =
+    port::where_flagged(read_surface("second_coarse_scattered", second_doc));
 
 constexpr std::array this_level{read_light("light", "image of this level"),
                                 read_surface("surface", "image of this level")};
@@ -135,16 +136,18 @@ constexpr std::string_view second_finer_doc =
     "image of the second layer; unbound if the finer level has one layer";
 constexpr auto layered_down_ports =
     join(finer,
-         std::array{port::optional(read_light("second_light", second_finer_doc)),
-                    port::optional(read_surface("second_surface", second_finer_doc))},
+         std::array{port::where_flagged(port::optional(read_light("second_light", second_finer_doc))),
+                    port::where_flagged(port::optional(read_surface("second_surface", second_finer_doc)))},
          level, coarse,
-         std::array{written_light("second_coarse_light", second_doc),
-                    written_surface("second_coarse_surface", second_doc)});
+         std::array{port::where_flagged(written_light("second_coarse_light", second_doc)),
+                    port::where_flagged(written_surface("second_coarse_surface", second_doc))});
 
 constexpr auto layered_up_ports =
     join(this_level,
-         std::array{read_light("second_light", second_doc), read_surface("second_surface", second_doc)},
-         coarser, level, up_result, std::array{written_surface("second_scattered", second_doc)});
+         std::array{port::where_flagged(read_light("second_light", second_doc)),
+                    port::where_flagged(read_surface("second_surface", second_doc))},
+         coarser, level, up_result,
+         std::array{port::where_flagged(written_surface("second_scattered", second_doc))});
 
 constexpr auto layered_gather_ports =
     join(level_0, level_1, std::array{second_coarse_surface, second_coarse_scattered}, level, gather_result);

@@ -64,11 +64,11 @@ constexpr Port copy_ports[] = {
 
 constexpr Port light_ports[] = {
     port::own_texels(port::lighting),
-    own_light("scattered", "scattered light; unbound: no light scatters"),
+    port::where_covered(own_light("scattered", "scattered light; unbound: no light scatters")),
     port::material,
-    port::depth,
-    port::scatter_scale,
-    port::albedo,
+    port::where_covered(port::depth),
+    port::where_covered(port::scatter_scale),
+    port::where_covered(port::albedo),
     port::optional(port::read_buffer(
         "classes", "uint",
         "output of subsurface.classify: tiles that do not scatter keep their light. Unbound: 'scattered' "
@@ -88,10 +88,10 @@ constexpr Port thin_parts_ports[] = {
 };
 constexpr Port transmission_ports[] = {
     port::own_texels(port::lighting),
-    back_lighting,
-    thickness,
+    port::where_covered(back_lighting),
+    port::where_covered(thickness),
     port::material,
-    port::scatter_scale,
+    port::where_covered(port::scatter_scale),
     port::written("lit", "lighting plus transmitted light", port::color_formats),
 };
 

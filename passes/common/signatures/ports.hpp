@@ -84,6 +84,16 @@ constexpr Port own_texels(Port port) {
   return port;
 }
 
+// See Touched. Passes over a list need no where_covered.
+constexpr Port where_covered(Port port) {
+  port.touched = Touched::covered;
+  return port;
+}
+constexpr Port where_flagged(Port port) {
+  port.touched = Touched::flagged;
+  return port;
+}
+
 // Inputs of the host.
 inline constexpr Port lighting =
     sampled("lighting", "diffuse irradiance before albedo, linear", color_formats);

@@ -15,12 +15,12 @@ constexpr Port light_cells =
 
 constexpr Port classify_ports[] = {
     port::material,
-    port::depth,
-    port::scatter_scale,
-    port::optional(port::sampled("lighting",
-                                 "diffuse irradiance before albedo, linear; for light_range and light_cells",
-                                 port::color_formats)),
-    port::albedo,
+    port::where_covered(port::depth),
+    port::where_covered(port::scatter_scale),
+    port::where_covered(port::optional(
+        port::sampled("lighting", "diffuse irradiance before albedo, linear; for light_range and light_cells",
+                      port::color_formats))),
+    port::where_covered(port::albedo),
     port::written_buffer(
         "classes", "uint",
         "per tile of the render rectangle, row by row: 0: no subsurface; 1: scatters; 2: scattering below a "
@@ -38,7 +38,7 @@ constexpr Port flat_ports[] = {
 
 constexpr Port tile_list_ports[] = {
     port::classes,
-    port::writer_of(port::tiles),
+    port::where_covered(port::writer_of(port::tiles)),
     port::writer_of(port::arguments),
 };
 
