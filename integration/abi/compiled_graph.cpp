@@ -5,6 +5,7 @@
 #include "framegraph/model/read_graph.hpp"
 #include "framegraph/text/document.hpp"
 #include "integration/abi/host_files.hpp"
+#include "integration/abi/kernel_environment.hpp"
 #include "integration/abi/slots.hpp"
 #include "passes/common/pass_types.hpp"
 
@@ -72,26 +73,6 @@ std::optional<Composition> compose_sources(CompiledGraphInput& input, Diagnostic
   return compose(std::move(*graph), std::move(overlays), open, diagnostics);
 }
 
-template <class T> std::span<const std::byte> bytes_of(const std::vector<T>& values) {
-  return std::as_bytes(std::span<const T>(values));
-}
-
-using Environment = std::array<vulkan::EnvironmentBinding, 7>;
-static_assert(static_cast<size_t>(subsurface::EnvironmentSlot::count) == 7);
-
-Environment environment_of(const subsurface::KernelTables& tables) { // refers to `tables`
-  return {{
-      {vulkan::EnvironmentType::uniform_buffer, sizeof(subsurface::FrameConstants), {}},
-      {vulkan::EnvironmentType::storage_buffer, bytes_of(tables.profiles).size(), bytes_of(tables.profiles)},
-      {vulkan::EnvironmentType::storage_buffer, bytes_of(tables.separable).size(),
-       bytes_of(tables.separable)},
-      {vulkan::EnvironmentType::linear_sampler, 0, {}},
-      {vulkan::EnvironmentType::storage_buffer, bytes_of(tables.pyramid).size(), bytes_of(tables.pyramid)},
-      {vulkan::EnvironmentType::storage_buffer, bytes_of(tables.radial).size(), bytes_of(tables.radial)},
-      {vulkan::EnvironmentType::counters, sizeof(subsurface::FrameCounters), {}},
-  }};
-}
-
 // Creates one executor per plan. If there are several plans, their transients share memory.
 vulkan::Error make_executors(dermis_context_t& context, CompiledGraphInput& input,
                              vulkan::HistoryReason history, vulkan::KernelStore& kernels,
@@ -100,7 +81,7 @@ vulkan::Error make_executors(dermis_context_t& context, CompiledGraphInput& inpu
   const subsurface::TableUse use = subsurface::table_use(compiled_graph.graph, context.pass_types);
   if (!input.tables || input.tables->use != use)
     if (vulkan::Error error = make_tables(context, use, input)) return error;
-  const Environment environment = environment_of(*input.tables);
+  const KernelEnvironment environment = kernel_environment(*input.tables);
   vulkan::ExecutorInput executor;
   executor.device = &context.device;
   executor.graph = &compiled_graph.graph;
@@ -199,7 +180,7 @@ vulkan::Error make_tables(dermis_context_t& context, const subsurface::TableUse&
   auto tables =
       std::make_shared<const subsurface::KernelTables>(subsurface::make_kernel_tables(use, input.profiles));
   if (vulkan::Error error =
-          vulkan::EnvironmentTables::create(context.device, environment_of(*tables), input.device_tables))
+          vulkan::EnvironmentTables::create(context.device, kernel_environment(*tables), input.device_tables))
     return error;
   input.tables = std::move(tables);
   return {};

@@ -35,6 +35,21 @@ constexpr const char* ray_extensions[] = {VK_KHR_ACCELERATION_STRUCTURE_EXTENSIO
                                           VK_KHR_RAY_QUERY_EXTENSION_NAME,
                                           VK_KHR_DEFERRED_HOST_OPERATIONS_EXTENSION_NAME};
 
+constexpr const char* statistics_extensions[] = {VK_KHR_PIPELINE_EXECUTABLE_PROPERTIES_EXTENSION_NAME};
+
+Result<> create_queue_objects(VulkanHost& host) {
+  host.vk.vkGetDeviceQueue(host.device, host.queue_family, 0, &host.queue);
+  auto pool = vulkan_struct<VkCommandPoolCreateInfo>(VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO);
+  pool.queueFamilyIndex = host.queue_family;
+  pool.flags = VK_COMMAND_POOL_CREATE_RESET_COMMAND_BUFFER_BIT;
+  const VkResult pooled = host.vk.vkCreateCommandPool(host.device, &pool, nullptr, &host.pool);
+  if (pooled != VK_SUCCESS) return vulkan_error("vkCreateCommandPool", pooled);
+  const auto fence = vulkan_struct<VkFenceCreateInfo>(VK_STRUCTURE_TYPE_FENCE_CREATE_INFO);
+  const VkResult fenced = host.vk.vkCreateFence(host.device, &fence, nullptr, &host.fence);
+  if (fenced != VK_SUCCESS) return vulkan_error("vkCreateFence", fenced);
+  return success();
+}
+
 Result<> create_device(VulkanHost& host, const HostOptions& options) {
   const bool as_vulkan_12 = options.as_vulkan_12;
   auto features13 =
@@ -65,6 +80,15 @@ Result<> create_device(VulkanHost& host, const HostOptions& options) {
   host.ray_query =
       rays && structures.accelerationStructure && queries.rayQuery && features12.bufferDeviceAddress;
   if (!host.ray_query) features13.pNext = nullptr;
+  auto statistics = vulkan_struct<VkPhysicalDevicePipelineExecutablePropertiesFeaturesKHR>(
+      VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PIPELINE_EXECUTABLE_PROPERTIES_FEATURES_KHR);
+  host.pipeline_statistics =
+      options.compile_only && has_extensions(host.physical_device, statistics_extensions);
+  if (host.pipeline_statistics) { // the extension requires the feature
+    statistics.pipelineExecutableInfo = VK_TRUE;
+    statistics.pNext = features.pNext;
+    features.pNext = &statistics;
+  }
   features.features.robustBufferAccess = VK_FALSE;
   features13.robustImageAccess = VK_FALSE;
   if (!options.separate_depth_stencil) features12.separateDepthStencilLayouts = VK_FALSE;
@@ -86,15 +110,14 @@ Result<> create_device(VulkanHost& host, const HostOptions& options) {
   info.pNext = &features;
   info.queueCreateInfoCount = 1;
   info.pQueueCreateInfos = &queue;
-  const char* const extensions[] = {VK_KHR_SYNCHRONIZATION_2_EXTENSION_NAME,
-                                    VK_KHR_MAINTENANCE_4_EXTENSION_NAME};
-  if (as_vulkan_12) {
-    info.enabledExtensionCount = static_cast<uint32_t>(std::size(extensions));
-    info.ppEnabledExtensionNames = extensions;
-  } else if (host.ray_query) {
-    info.enabledExtensionCount = static_cast<uint32_t>(std::size(ray_extensions));
-    info.ppEnabledExtensionNames = ray_extensions;
-  }
+  std::vector<const char*> extensions;
+  if (as_vulkan_12)
+    extensions = {VK_KHR_SYNCHRONIZATION_2_EXTENSION_NAME, VK_KHR_MAINTENANCE_4_EXTENSION_NAME};
+  else if (host.ray_query)
+    extensions.assign(std::begin(ray_extensions), std::end(ray_extensions));
+  if (host.pipeline_statistics) extensions.push_back(statistics_extensions[0]);
+  info.enabledExtensionCount = static_cast<uint32_t>(extensions.size());
+  info.ppEnabledExtensionNames = extensions.data();
   const VkResult created = vkCreateDevice(host.physical_device, &info, nullptr, &host.device);
   if (created != VK_SUCCESS) return vulkan_error("vkCreateDevice", created);
   volkLoadDeviceTable(&host.vk, host.device);
@@ -102,25 +125,15 @@ Result<> create_device(VulkanHost& host, const HostOptions& options) {
     host.vk.vkCmdPipelineBarrier2 = host.vk.vkCmdPipelineBarrier2KHR;
     host.vk.vkQueueSubmit2 = host.vk.vkQueueSubmit2KHR;
   }
-  host.vk.vkGetDeviceQueue(host.device, host.queue_family, 0, &host.queue);
   vkGetPhysicalDeviceMemoryProperties(host.physical_device, &host.memory);
-
-  auto pool = vulkan_struct<VkCommandPoolCreateInfo>(VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO);
-  pool.queueFamilyIndex = host.queue_family;
-  pool.flags = VK_COMMAND_POOL_CREATE_RESET_COMMAND_BUFFER_BIT;
-  const VkResult pooled = host.vk.vkCreateCommandPool(host.device, &pool, nullptr, &host.pool);
-  if (pooled != VK_SUCCESS) return vulkan_error("vkCreateCommandPool", pooled);
-  const auto fence = vulkan_struct<VkFenceCreateInfo>(VK_STRUCTURE_TYPE_FENCE_CREATE_INFO);
-  const VkResult fenced = host.vk.vkCreateFence(host.device, &fence, nullptr, &host.fence);
-  if (fenced != VK_SUCCESS) return vulkan_error("vkCreateFence", fenced);
-  return success();
+  return options.compile_only ? success() : create_queue_objects(host);
 }
 
 } // namespace
 
 VulkanHost::~VulkanHost() {
   if (device != VK_NULL_HANDLE) {
-    vk.vkDeviceWaitIdle(device);
+    if (pool != VK_NULL_HANDLE) vk.vkDeviceWaitIdle(device);
     engine_context.reset();
     tool_context.reset();
     vk.vkDestroyFence(device, fence, nullptr);

@@ -27,6 +27,8 @@ struct VulkanHost {
   VkFence fence = VK_NULL_HANDLE;
   KernelShape kernels = KernelShape::by_device;
   bool ray_query = false;      // VK_KHR_ray_query and VK_KHR_acceleration_structure are enabled
+  // VK_KHR_pipeline_executable_properties is enabled; only with HostOptions::compile_only
+  bool pipeline_statistics = false;
   uint64_t timestamp_mask = 0; // 0: the queue has no timestamps
   ValidationLog log;
   // Contexts shared by the graphs of the engine and by the graphs of tools; null until first

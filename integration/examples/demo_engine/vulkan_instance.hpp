@@ -21,6 +21,9 @@ struct HostOptions {
   // false: without the feature separateDepthStencilLayouts
   bool separate_depth_stencil = true;
   KernelShape kernels = KernelShape::by_device;
+  // A device that only compiles pipelines: no command pool and no fence, and the destructor does
+  // not wait. Drivers without hardware, such as RADV's null device, can do no more.
+  bool compile_only = false;
 };
 
 // Messages of the validation layer. Any thread that calls Vulkan may add messages.

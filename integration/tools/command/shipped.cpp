@@ -1,5 +1,6 @@
 #include "integration/tools/command/shipped.hpp"
 
+#include <algorithm>
 #include <filesystem>
 #include <string_view>
 
@@ -28,6 +29,24 @@ std::string shipped(std::string_view folder, std::string_view name) {
       !std::filesystem::exists(found, error) && std::filesystem::exists(of_papers, error))
     return of_papers;
   return found;
+}
+
+std::vector<std::string> shipped_files(std::string_view folder, std::vector<std::string> names_or_paths) {
+  for (std::string& file : names_or_paths)
+    if (file.find_first_of("./") == std::string::npos) file = shipped(folder, file);
+  return names_or_paths;
+}
+
+std::vector<std::string> graph_files(const std::string& folder) {
+  std::vector<std::filesystem::path> files;
+  std::error_code error;
+  for (std::filesystem::recursive_directory_iterator at(folder, error), end; !error && at != end;
+       at.increment(error))
+    if (at->path().extension() == ".json" && !at->path().string().ends_with(".expect.json"))
+      files.push_back(at->path());
+  std::sort(files.begin(), files.end(),
+            [](const auto& a, const auto& b) { return a.filename() < b.filename(); });
+  return {files.begin(), files.end()};
 }
 
 } // namespace dermis::tools

@@ -3,6 +3,7 @@
 // Paths may be "": no file is then written or read. `scenes`, `techniques` and other filters may be
 // empty, which selects all.
 
+#include "framegraph/explain/traffic.hpp"
 #include "integration/examples/demo_engine/kernel_shape.hpp"
 #include "integration/tools/command/session.hpp"
 #include "integration/tools/command/shipped.hpp"
@@ -123,6 +124,20 @@ struct SchemaOptions {
   std::string out = "-"; // file, or the folder for all schemas
 };
 ExitCode schema(const Session& session, const SchemaOptions& options);
+
+struct KernelsOptions {
+  std::vector<std::string> graphs; // files, or names of shipped graphs; empty: all shipped graphs
+  GraphParts parts;
+  Size size{2560, 1440};
+  std::vector<NamedValue> settings; // apply to the graphs that have them, like `unbound`
+  std::vector<std::string> unbound; // optional imports and exports that the host does not bind
+  std::string device;               // part of its name; "": the first discrete GPU, or any device
+  std::string limits;               // limits file
+  std::string assembly;             // output folder
+  std::string shaders;              // folder of shaders that replace the built-in ones
+  TrafficAssumptions assumptions;
+};
+ExitCode kernels(const Session& session, const KernelsOptions& options);
 
 struct DoctorOptions {};
 ExitCode doctor(const Session& session, const DoctorOptions& options);

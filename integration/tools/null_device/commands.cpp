@@ -16,6 +16,13 @@ VKAPI_ATTR void VKAPI_CALL count_barrier(VkCommandBuffer commands, const VkDepen
   ++state.barriers;
 }
 
+template <class... Arguments>
+VKAPI_ATTR void VKAPI_CALL count_dispatch(VkCommandBuffer commands, Arguments...) {
+  NullDeviceState& state = state_of(commands);
+  ++state.commands;
+  ++state.dispatches;
+}
+
 template <class Function> NullEntry command(const char* name) {
   const Function function = &count; // deduces the arguments from Function
   return entry(name, function);
@@ -29,8 +36,8 @@ PFN_vkVoidFunction command_function(const char* name) {
       command<PFN_vkCmdBindPipeline>("vkCmdBindPipeline"),
       command<PFN_vkCmdBindDescriptorSets>("vkCmdBindDescriptorSets"),
       command<PFN_vkCmdPushConstants>("vkCmdPushConstants"),
-      command<PFN_vkCmdDispatch>("vkCmdDispatch"),
-      command<PFN_vkCmdDispatchIndirect>("vkCmdDispatchIndirect"),
+      entry<PFN_vkCmdDispatch>("vkCmdDispatch", &count_dispatch),
+      entry<PFN_vkCmdDispatchIndirect>("vkCmdDispatchIndirect", &count_dispatch),
       command<PFN_vkCmdFillBuffer>("vkCmdFillBuffer"),
       command<PFN_vkCmdCopyBuffer>("vkCmdCopyBuffer"),
       command<PFN_vkCmdCopyImage>("vkCmdCopyImage"),

@@ -97,6 +97,10 @@ uint64_t NullDevice::commands() const {
   return state_->commands;
 }
 
+uint64_t NullDevice::dispatches() const {
+  return state_->dispatches;
+}
+
 uint64_t NullDevice::barriers() const {
   return state_->barriers;
 }

@@ -33,6 +33,7 @@ public:
 
   uint64_t commands() const;     // number of vkCmd... calls
   uint64_t barriers() const;     // number of vkCmdPipelineBarrier2 calls
+  uint64_t dispatches() const;   // number of vkCmdDispatch and vkCmdDispatchIndirect calls
   uint64_t alive() const;        // objects created through the functions and not yet destroyed
   uint64_t memory_bytes() const; // device memory allocated and not yet freed, bytes
   uint64_t creations() const;    // calls that create an object or allocate, including failed calls

@@ -60,6 +60,7 @@ void add_text_verbs(CLI::App& app, Invocation& invocation);
 void add_plan_verbs(CLI::App& app, Invocation& invocation);
 void add_schema_verb(CLI::App& app, Invocation& invocation);
 void add_docs_verb(CLI::App& app, Invocation& invocation);
+void add_kernels_verb(CLI::App& app, Invocation& invocation);
 void add_doctor_verb(CLI::App& app, Invocation& invocation);
 void add_picture_verbs(CLI::App& app, Invocation& invocation);
 void add_bench_verbs(CLI::App& app, Invocation& invocation);

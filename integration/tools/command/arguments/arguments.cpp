@@ -78,6 +78,7 @@ Invocation read_arguments(int argc, const char* const* argv) {
   add_plan_verbs(app, invocation);
   add_schema_verb(app, invocation);
   add_docs_verb(app, invocation);
+  add_kernels_verb(app, invocation);
   add_doctor_verb(app, invocation);
   add_picture_verbs(app, invocation);
   add_bench_verbs(app, invocation);

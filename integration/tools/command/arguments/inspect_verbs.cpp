@@ -190,6 +190,48 @@ void add_docs_verb(CLI::App& app, Invocation& invocation) {
       });
 }
 
+void add_kernels_verb(CLI::App& app, Invocation& invocation) {
+  add_verb<KernelsOptions>(
+      app, invocation, "kernels", "Show what the driver's compiler made of the kernels of graphs",
+      "dermis kernels\n"
+      "  dermis kernels sap --unbound scattered_light --limits limits.json\n\n"
+      "Compiles the pipelines of the graphs' plans on a device and prints the driver's statistics.\n"
+      "Creates no memory, no image and no command, so drivers without hardware work, too\n"
+      "(RADV_FORCE_FAMILY=navi21 with Mesa's radeon driver).\n\n"
+      "Plans: the default settings, all combinations of choices, and each value of other switches.\n"
+      "Dispatches, barrier calls and bytes are those of the default settings.\n\n"
+      "Bytes: each texel of an image and each element of a list counts once per pass and port, with\n"
+      "the size of its format. Passes over a list touch the covered pixels, others the whole view;\n"
+      "images of second layers count with the flagged fraction. The sum is divided by the covered\n"
+      "pixels. Not counted: tables, counters, indirect arguments, passes of the host.\n\n"
+      "A limits file names values by device, driver and kernel; docs/tools.md describes the format.",
+      kernels, [](CLI::App& verb, KernelsOptions& options) {
+        verb.add_option("graphs", options.graphs, "Graph files, or names of shipped graphs [all]")
+            ->type_name("GRAPH");
+        add_size(verb, options.size);
+        add_settings(verb, options.settings);
+        add_unbound(verb, options.unbound);
+        add_parts(verb, options.parts);
+        verb.add_option("--device", options.device, "Part of the device's name [the first discrete GPU]")
+            ->type_name("NAME");
+        verb.add_option("--limits", options.limits,
+                        "Check the values against this file; exit with 1 if a limit is exceeded")
+            ->type_name("FILE");
+        verb.add_option("--covered", options.assumptions.covered,
+                        "Fraction of the view with subsurface [0.5]")
+            ->check(CLI::Range(0.001, 1.0))
+            ->type_name("FRACTION");
+        verb.add_option("--flagged", options.assumptions.flagged,
+                        "Fraction of texels that have a second layer [0.5]")
+            ->check(CLI::Range(0.0, 1.0))
+            ->type_name("FRACTION");
+        verb.add_option("--assembly", options.assembly, "Write the kernels' assembly to this folder")
+            ->type_name("DIR");
+        verb.add_option("--shaders", options.shaders, "Folder of shaders that replace the built-in ones")
+            ->type_name("DIR");
+      });
+}
+
 void add_doctor_verb(CLI::App& app, Invocation& invocation) {
   add_verb<DoctorOptions>(app, invocation, "doctor", "Check this machine against the requirements of Dermis",
                           "dermis doctor\n  dermis doctor --json", doctor, [](CLI::App&, DoctorOptions&) {});

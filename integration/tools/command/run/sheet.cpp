@@ -29,13 +29,6 @@ std::vector<std::string> all_shipped(std::string_view folder, std::initializer_l
   return files;
 }
 
-// Plain words are names of shipped files.
-std::vector<std::string> named(std::string_view folder, std::vector<std::string> files) {
-  for (std::string& file : files)
-    if (file.find_first_of("./") == std::string::npos) file = shipped(folder, file);
-  return files;
-}
-
 std::vector<std::string> stems(const std::vector<std::string>& files) {
   std::vector<std::string> names;
   for (const std::string& file : files)
@@ -67,11 +60,11 @@ struct Sheet {
 ExitCode sheet(const Session& session, const SheetOptions& options) {
   const std::vector<std::string> profiles =
       options.profiles.empty() ? all_shipped("profiles", {"skin", "jade", "marble", "wax", "ketchup", "milk"})
-                               : named("profiles", options.profiles);
+                               : shipped_files("profiles", options.profiles);
   const std::vector<std::string> graphs =
       options.graphs.empty()
           ? all_shipped("graphs", {"separable_jimenez", "separable", "pyramid", "fixed", "burley", "sap"})
-          : named("graphs", options.graphs);
+          : shipped_files("graphs", options.graphs);
   const size_t rows = graphs.size() + 1, columns = profiles.size();
   if (columns * (options.size.width + gap) > longest_side ||
       rows * (options.size.height + gap) > longest_side)

@@ -180,19 +180,6 @@ std::string table_line(const Row& row) {
                      row.high, row.per_pass(), goal_per_pass);
 }
 
-// Returns graph files below a folder, sorted by name.
-std::vector<std::filesystem::path> graphs_of(const std::string& folder) {
-  std::vector<std::filesystem::path> files;
-  std::error_code error;
-  for (std::filesystem::recursive_directory_iterator at(folder, error), end; !error && at != end;
-       at.increment(error))
-    if (at->path().extension() == ".json" && !at->path().string().ends_with(".expect.json"))
-      files.push_back(at->path());
-  std::sort(files.begin(), files.end(),
-            [](const auto& a, const auto& b) { return a.filename() < b.filename(); });
-  return files;
-}
-
 struct Source {
   std::string name, text;
 };
@@ -207,8 +194,8 @@ std::string read_sources(const BenchRecordOptions& options, std::vector<Source>&
     return bytes.has_value();
   };
   if (!read(options.profile, profile)) return error;
-  for (const std::filesystem::path& path : graphs_of(options.graphs)) {
-    graphs.push_back({path.string(), ""});
+  for (const std::string& path : graph_files(options.graphs)) {
+    graphs.push_back({path, ""});
     if (!read(path, graphs.back().text)) return error;
   }
   if (graphs.empty())
