@@ -7,11 +7,13 @@ cd "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")"
 source .ci/common.sh
 
 usage="usage: ./test.sh [--full]
-  Runs the tests. Tests that need ray queries run on a second driver, if the driver can be fetched. Then runs
-  each fuzz target for 10 seconds, if clang can be installed.
-  --full   run more cases per test. Then run code coverage (gcovr), the thread sanitizer, random graphs on
-           a device, the device tests on other drivers, every bench with --quick, and the suites that
-           manage memory or use a device with the address and undefined-behaviour sanitizers. Takes about
+  Runs the tests. Tests that need ray queries run on a second driver, if the driver can be fetched. Then
+  compiles the kernels for absent GPUs and checks their limits, and runs each fuzz target for 10 seconds, if
+  clang can be installed.
+  --full   run more cases per test, check kernels on more GPUs, and run each graph on the drivers of absent
+           GPUs. Then run code coverage (gcovr), the thread sanitizer, random graphs on a device, the device
+           tests on other drivers, every bench with --quick, and the suites that manage memory or use a device
+           with the address and undefined-behaviour sanitizers. Takes about
            100 minutes on two cores. CONTRIBUTING.md lists the commands for longer runs."
 
 full=no
@@ -89,6 +91,13 @@ ray_queries() {
   say "$ran tests ran on the driver with ray queries"
   [[ $ran -gt 0 ]] || fail 1 "a driver with ray queries is present, but no test ran on it; log: $log"
 }
+# Kernels of the shipped graphs on compilers of GPUs, which need no GPU.
+kernels() {
+  local more=()
+  [[ $full == no ]] || more=(--full)
+  built dermis_command
+  tests/gpu/check_kernels.sh "${more[@]}" build/release
+}
 other_drivers() { quick tests/scripts/run_on_drivers.sh build/release; }
 coverage() { tests/scripts/coverage.sh; }
 benches() {
@@ -107,7 +116,7 @@ fuzzers() { # also compares the plans of two compilers
   tests/fuzz/run.sh "$seconds" || fail 1 "a fuzz target has a finding; it is kept in build/fuzz/findings"
 }
 
-steps=(release "ray queries" fuzzers)
+steps=(release "ray queries" kernels fuzzers)
 [[ $full == no ]] || steps+=(coverage tsan "random graphs" "other drivers" benches asan)
 for one in "${steps[@]}"; do
   step "$one"

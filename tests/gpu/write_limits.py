@@ -15,7 +15,12 @@ import re
 import sys
 
 HEADING = "    // Present values beyond their goals, written by write_limits.py."
-DEVICES = {"NAVI21": "*Mesa 22.3*", "VEGA10": "*Mesa 22.3*", "NAVI31": "*Mesa 25.0*", "GFX1201": "*Mesa 25.0*"}
+DRIVERS = {
+    "NAVI21": "*Mesa 22.3*",
+    "VEGA10": "*Mesa 22.3*",
+    "NAVI31": "*Mesa 25.0*",
+    "GFX1201": "*Mesa 25.0*",
+}
 
 
 def without_comments(text):
@@ -23,17 +28,16 @@ def without_comments(text):
 
 
 def matches(patterns, text):
-    patterns = [patterns] if isinstance(patterns, str) else patterns
-    return patterns is None or any(fnmatch.fnmatchcase(text, pattern.replace("[", "[[]")) for pattern in patterns)
+    patterns = [patterns] if isinstance(patterns, str) else patterns or ["*"]
+    return any(fnmatch.fnmatchcase(text, pattern) for pattern in patterns)
 
 
 def limits_of(rules, values, kernel):
     """Returns {(key, minimum): limit} of the last rules that match the kernel."""
     found = {}
     for rule in rules:
-        if "kernel" not in rule or not matches(rule["kernel"], kernel):
-            continue
-        if matches(rule.get("device"), values["device"]) and matches(rule.get("driver"), values["driver"]):
+        subjects = (("device", values["device"]), ("driver", values["driver"]), ("kernel", kernel))
+        if "kernel" in rule and all(matches(rule.get(key), text) for key, text in subjects):
             for side in ("max", "min"):
                 for key, limit in rule.get(side, {}).items():
                     found[key, side] = limit
@@ -73,9 +77,9 @@ def main():
     lines, worse = [], []
     for name in options.values:
         values = json.load(open(name, encoding="utf-8"))
-        family = next((one for one in DEVICES if one in values["device"]), None)
+        family = next((one for one in DRIVERS if one in values["device"]), None)
         if family is None:
-            sys.exit(f"{name}: '{values['device']}' is none of {', '.join(DEVICES)}")
+            sys.exit(f"{name}: '{values['device']}' is none of {', '.join(DRIVERS)}")
         for kernel, ranges in sorted(worst_values(values["kernels"]).items()):
             present = {"max": {}, "min": {}}
             earlier = limits_of(before, values, kernel)
@@ -91,14 +95,17 @@ def main():
                     worse.append(f"{kernel} on {family}: {key} is {value}, before {known['now']}")
             present = {side: limits for side, limits in present.items() if limits}
             if present:
-                rule = {"device": f"*{family}*", "driver": DEVICES[family], "kernel": kernel, **present}
-                lines.append("    " + json.dumps(rule))
+                subject = {"device": f"*{family}*", "driver": DRIVERS[family], "kernel": kernel}
+                lines.append("    " + json.dumps({**subject, **present}))
     if worse and not options.worse:
         sys.exit("values became worse; --worse accepts them:\n  " + "\n  ".join(worse))
-    head = text[: text.index(HEADING)].rstrip().rstrip(",")
+    head = text[: text.index(HEADING)].rstrip()
+    end = head.rindex("}") + 1  # of the last goal
+    rest = head[end:].lstrip(",")
     body = ",\n".join(lines)
     with open(options.limits, "w", encoding="utf-8") as out:
-        out.write(head + ("," if lines else "") + "\n" + HEADING + "\n" + (body + "\n" if lines else "") + "  ]\n}\n")
+        out.write(head[:end] + ("," if lines else "") + rest + "\n" + HEADING + "\n")
+        out.write((body + "\n" if lines else "") + "  ]\n}\n")
 
 
 main()

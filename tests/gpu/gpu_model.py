@@ -1,0 +1,394 @@
+#!/usr/bin/env python3
+"""Models the time of techniques on GPUs from counts of instructions, bytes and dispatches.
+
+usage: gpu_model.py [--kernels FILE] [--sensitivity]
+  --kernels      adds a row "SAP as built", whose bytes, occupancy and code size come from
+                 `dermis kernels sap --unbound scattered_light,albedo,scatter_scale --json` on navi21;
+                 executed instructions are those of SAP_AS_BUILT below
+  --sensitivity  also prints the totals with other latencies, cache misses and fixed costs
+
+No time was measured. Formulas, hardware rows and the assumed fractions of layered work stay fixed,
+so that tables of different dates can be compared; only counts change.
+Units: clocks per subgroup of 64 invocations. The time of a pass is the largest of issue or latency,
+texture unit, shared memory, memory and the latency of one subgroup, plus scratch traffic and a fixed
+cost per dispatch.
+"""
+import argparse
+import dataclasses
+import json
+import math
+import sys
+
+COVERED = 0.5  # fraction of the view
+TILE_FILL = 0.95  # fraction of the pixels of listed tiles that are covered
+LAYERED_FRACTION = {2: 0.35, 3: 0.6, 4: 0.8}  # of subgroups by level; 1 from level 5 on
+
+
+@dataclasses.dataclass
+class Hardware:
+    name: str
+    compute_units: int
+    clock: float  # Hz
+    simds: int
+    dram: float  # bytes per second, like the next two
+    cache: float
+    l2: float
+    fixed: float  # seconds per dependent dispatch
+    valu: float  # clocks per instruction, like the next
+    transcendental: float
+    cache_hits: float  # fraction
+
+
+RX_6800 = Hardware("RX 6800-class (60 CU, 2.1 GHz, 512 GB/s + 128 MB IC)", 60, 2.1e9, 120, 512e9, 1.1e12,
+                   1.6e12, 4e-6, 2, 8, 0.55)
+# A transfer of AMD counts: 4 partitions per SM, integer and conversion work shares issue slots.
+NVIDIA_LIKE = Hardware("NVIDIA-like (46 SM, 1.7 GHz, 448 GB/s, 4 MB L2)", 46, 1.7e9, 184, 448e9, 448e9,
+                       1.4e12, 3.5e-6, 2 * 1.45, 2 * 8, 0.0)
+SMALL_RDNA2 = Hardware("small RDNA2 (28 CU, 2.3 GHz, 224 GB/s + 32 MB IC)", 28, 2.3e9, 56, 224e9, 0.5e12,
+                       0.8e12, 4e-6, 2, 8, 0.2)
+
+
+@dataclasses.dataclass
+class Factors:  # of the sensitivity runs
+    latency: float = 1.0
+    cache_miss: float = 20.0  # clocks per line of code beyond the instruction cache
+    serial: float = 1.0
+    fixed: float = 1.0
+    spill: float = 1.0
+
+
+@dataclasses.dataclass
+class Pass:
+    name: str
+    seconds: float
+    limit: str
+    bytes: float
+    memory_seconds: float
+
+
+class Model:
+    def __init__(self, hardware, factors=Factors(), width=2560, height=1440):
+        self.hardware, self.factors = hardware, factors
+        self.pixels = width * height
+        self.covered = self.pixels * COVERED
+        self.view_tiles = (width // 8) * (height // 8)
+        self.tiles = self.tiles_of_levels(self.covered / TILE_FILL / 64)
+        self.techniques = {}
+
+    @staticmethod
+    def tiles_of_levels(tiles):
+        """Returns the listed tiles of levels 0 to 8, for one compact object."""
+        side, levels = math.sqrt(tiles), [tiles]
+        for _ in range(8):
+            side = side / 2 + 1
+            levels.append(side * side)
+        return levels
+
+    def wave(self, valu=0, trans=0, qmul=0, img=0, img128=0, scat=0, st64=0, st128=0, buf=0, lds=0, vm=0,
+             vml=400, lg=0, W=8, scr=0, code=8000):
+        """Returns the clocks of one subgroup.
+
+        valu, trans, qmul: arithmetic, transcendental and quarter-rate instructions. img, img128,
+        scat: reads of texels up to 64 bits, of 128 bits, and scattered. st64, st128: image writes.
+        buf: buffer reads. lds: clocks of shared memory. vm, lg: waits for memory (vml clocks each)
+        and for shared or scalar memory. W: subgroups per SIMD. scr: scratch words. code: bytes.
+        """
+        hardware, factors = self.hardware, self.factors
+        issue = (valu + trans) * hardware.valu + qmul * 8
+        latency = issue + (vm * vml + lg * 60) * factors.latency
+        if code > 32768:
+            latency += code / 64 * factors.cache_miss
+        texture = img * 16 + img128 * 32 + scat * 44 + st64 * 16 + st128 * 32 + buf * 16 + scr * 4
+        return {"simd": max(issue, trans * hardware.transcendental, latency / W), "tmu": texture, "lds": lds,
+                "lat": latency, "scr": scr * 256}
+
+    def add(self, technique, name, waves, wave, bytes_moved):
+        hardware, factors = self.hardware, self.factors
+        bandwidth = 1 / (hardware.cache_hits / hardware.cache + (1 - hardware.cache_hits) / hardware.dram)
+        times = [(waves * wave["simd"] / hardware.simds / hardware.clock, "alu/lat"),
+                 (waves * wave["tmu"] / hardware.compute_units / hardware.clock, "tmu"),
+                 (waves * wave["lds"] / hardware.compute_units / hardware.clock, "lds"),
+                 (bytes_moved / bandwidth, "mem"), (wave["lat"] / hardware.clock, "one wave")]
+        seconds, limit = max(times)
+        seconds += waves * wave["scr"] / hardware.l2 * 0.5 * factors.spill + hardware.fixed * factors.fixed
+        self.techniques.setdefault(technique, []).append(
+            Pass(name, seconds, limit, bytes_moved, bytes_moved / bandwidth))
+
+    def add_serial(self, technique, name, clocks):
+        seconds = clocks * self.factors.serial / self.hardware.clock + self.hardware.fixed * self.factors.fixed
+        self.techniques.setdefault(technique, []).append(Pass(name, seconds, "serial", 0, 0))
+
+    def total(self, technique):
+        return sum(one.seconds for one in self.techniques[technique])
+
+
+# ---- counts of executed instructions per subgroup, from ACO's assembly of navi21; branches count
+# with their usual side, chosen by hand
+CLASSIFY = dict(valu=450, trans=15, img=34, vm=6, lg=15, W=12)
+COMBINE = dict(valu=80, trans=3, img=2, st64=1, vm=2, W=16)
+SETUP = dict(valu=260, trans=13, img=5, st64=2, vm=3, lg=20, W=16, lds=40)
+# 12 taps to each side of 4 texels
+SEPARABLE = dict(valu=130 + 12 * 13 + 48 * 85, trans=12 + 48 * 16, qmul=3, img=3 + 144, buf=26, st64=1,
+                 vm=3 + 144, vml=140, lg=12, W=9)
+SEPARABLE_TUNED = dict(valu=90 + 25 * 14, trans=6 + 25, img=2 + 25, st64=1, vm=2 + 5, vml=250, lg=10, W=12)
+BURLEY = dict(valu=100 + 32 * 115, trans=10 + 32 * 18, img=4, scat=32 * 4, st64=1, vm=3 + 96, vml=260, lg=40,
+              W=10)
+FIXED = dict(valu=260 + 16 * 150, trans=35 + 16 * 32, img=4, scat=16 * 4, st64=1, vm=3 + 48, vml=260, lg=30,
+             W=9)
+AFIS = dict(valu=430 + 16 * 420, trans=60 + 16 * 80, img=6, scat=16 * 9, st64=1, vm=4 + 16 * 6, vml=260,
+            lg=60, W=8)
+AFIS_MIP_SETUP = dict(valu=170, img=4, img128=0, st64=1, vm=3, W=16)
+AFIS_MIP_DOWN = dict(valu=140, trans=2, img=9, st64=1, vm=2, W=16)
+
+
+@dataclasses.dataclass
+class Pyramid:
+    """Counts of one implementation. `slow_...(level)`: a subgroup with two layers; None: one layer."""
+    setup: dict
+    down: dict
+    up: dict
+    gather: dict
+    texels_setup: int = 1  # per invocation
+    texels: int = 1
+    slow_down: object = None
+    slow_up: object = None
+
+
+def blocks_slow_down(level):
+    k = 2 if level < 5 else 3  # parents with two layers in the slowest invocation
+    return dict(valu=5600 + k * (1019 + 2 * 2467), trans=300 + k * 320, img=36 + k * 32, img128=36 + k * 32,
+                st64=4, st128=4, vm=60 + k * 60, lg=322 + k * 430, W=2, scr=350 + k * 1000, code=84320)
+
+
+def blocks_slow_up(level):
+    k = 2 if level < 5 else 3
+    return dict(valu=2950 + k * (520 + 2 * 920), trans=150 + k * 78, img=16 + k * 18, img128=24 + k * 30,
+                st128=4, buf=25 + 12 * k, vm=30 + k * 40, lg=250 + k * 150, W=2, code=39804)
+
+
+def texel_slow_down(_):
+    return dict(valu=1175 + 2 * 2700, trans=75 + 2 * 230, img=5.1 + 8, img128=5.1 + 16, st64=2, st128=2,
+                vm=6 + 20, lg=62 + 2 * 70, W=4, lds=2 * 64 * 10 + 300)
+
+
+def texel_slow_up(_):
+    return dict(valu=200 + 2 * 1016, trans=78, img=10, img128=20, st128=2, buf=14, vm=30, lg=140, W=7, lds=400)
+
+
+BLOCKS = Pyramid(
+    setup=dict(valu=1900, trans=140, img=48, st64=8, st128=8, vm=65 * 0.5, lg=104, W=7),
+    down=dict(valu=5000, trans=270, img=36, img128=36, st64=4, st128=4, vm=49, lg=322, W=2, scr=345, code=47144),
+    up=dict(valu=3150, trans=140, img=16, img128=24, st128=4, buf=25, vm=29, lg=234, W=2, code=28980),
+    gather=dict(valu=5100, trans=260, img=24, img128=24 + 24, st64=8, buf=81, vm=126, vml=240, lg=253, W=2,
+                scr=191, code=42568),
+    texels_setup=8, texels=4, slow_down=blocks_slow_down, slow_up=blocks_slow_up)
+TEXELS = Pyramid(
+    setup=dict(valu=330, trans=18, img=4, st64=1, st128=1, vm=4, lg=20, W=16, lds=30),
+    down=dict(valu=1175, trans=75, qmul=12, img=5.1, img128=5.1, st64=1, st128=1, vm=6, lg=42 + 20, W=4,
+              lds=16 * 12 + 4 * 8 + 6 * 12),
+    up=dict(valu=900, trans=38, qmul=10, img=1.6, img128=1.6 + 0.8, st128=1, buf=8, vm=8, lg=45, W=8,
+            lds=9 * 12 + 8 * 8 + 2 * 12),
+    gather=dict(valu=730, trans=35, qmul=10, img=1.6, img128=1.6 + 1.2, st64=1, buf=12, vm=8, lg=39, W=7,
+                lds=9 * 12 + 8 * 8 + 2 * 12),
+    slow_down=texel_slow_down, slow_up=texel_slow_up)
+SAP_AS_BUILT = BLOCKS  # the shape of the kernels in shaders/sap
+
+
+def serial_tile_list(model):
+    return model.view_tiles / 256 * 330 * 2 + 1500
+
+
+def serial_sap_tiles(model):
+    """Clocks of sap_tiles in one group of 256: each invocation loops over its own run of tiles."""
+    lane = model.view_tiles / 256
+    flags = 9 * (130 if model.view_tiles <= 49152 else 300)  # in shared memory, or in memory
+    clocks, tiles = lane * 350 + lane * 300 + lane * (flags + 250), model.view_tiles
+    for level in range(1, 9):
+        tiles = max(4, (math.sqrt(tiles) / 2 + 1) ** 2)
+        per_lane = min(tiles, 32 * math.ceil(math.ceil(tiles / 32) / 256))
+        children = flags if level == 1 else 9 * 130
+        clocks += per_lane * children + per_lane * (children + 9 * 130 + 200) + 1500
+    return clocks
+
+
+def serial_parallel_tiles(model):
+    """Clocks of lists made by one group of 1024."""
+    lane = model.view_tiles / 1024
+    clocks, tiles = lane * 320 + lane * 520 + 1500, model.view_tiles
+    for _ in range(1, 9):
+        tiles = max(4, (math.sqrt(tiles) / 2 + 1) ** 2)
+        clocks += math.ceil(tiles / 1024) * (300 + 650) + 1800
+    return clocks
+
+
+def layered_fraction(level):
+    return LAYERED_FRACTION.get(level, 1.0) if level >= 2 else 0.0
+
+
+def mix(fast, slow, fraction):
+    """The mean of both, with the latency of the slow one if any subgroup is slow."""
+    mixed = {key: (1 - fraction) * fast[key] + fraction * slow[key] for key in fast}
+    mixed["lat"] = slow["lat"] if fraction else fast["lat"]
+    return mixed
+
+
+def add_rivals(model):
+    n, tiles0 = model.covered, model.tiles[0]
+    material = 1 * model.pixels + 5 * n
+    setup, combine = model.wave(**SETUP), model.wave(**COMBINE)
+
+    def frame(technique, setup_bytes, passes):
+        model.add(technique, "classify", model.view_tiles / 16, model.wave(**CLASSIFY), material)
+        model.add_serial(technique, "tile_list", serial_tile_list(model))
+        model.add(technique, "setup", tiles0, setup, n * setup_bytes)
+        for one in passes:
+            model.add(technique, *one)
+        model.add(technique, "combine", tiles0, combine, n * 17)
+
+    separable, tuned = model.wave(**SEPARABLE), model.wave(**SEPARABLE_TUNED)
+    frame("separable 25", 13 + 8, [("horizontal", tiles0, separable, n * 21), ("vertical", tiles0, separable, n * 29)])
+    frame("separable tuned*", 13 + 8, [("horizontal", tiles0, tuned, n * 24), ("vertical", tiles0, tuned, n * 24)])
+    frame("burley 32", 13 + 12, [("scatter", tiles0, model.wave(**BURLEY), n * 25)])
+    frame("fixed 16", 13 + 12, [("scatter", tiles0, model.wave(**FIXED), n * 25)])
+    mips = [("mip_setup", model.pixels / 64, model.wave(**AFIS_MIP_SETUP), model.pixels * 13)]
+    for level in range(1, 9):
+        mips.append((f"mip_down_{level}", max(1, model.pixels / 64 / 4**level), model.wave(**AFIS_MIP_DOWN),
+                     model.pixels / 4**level * (8 * 4 + 8)))
+    frame("afis 16", 13 + 12, mips + [("scatter", tiles0, model.wave(**AFIS), n * 30)])
+
+
+def add_pyramid(model, technique, counts, list_clocks, layered=True, built=None):
+    """`built` (of `dermis kernels`) replaces bytes, occupancy and code size of the kernels."""
+    n, tiles = model.covered, model.tiles
+
+    def wave(counts_of_kernel, name):
+        return model.wave(**{**counts_of_kernel, **(built.of_kernel(name) if built else {})})
+
+    def moved(name, computed):
+        return n * built.bytes_of(name) if built else computed
+
+    model.add(technique, "classify", model.view_tiles / 16, model.wave(**CLASSIFY),
+              moved("classify", 1 * model.pixels + 5 * n))
+    model.add_serial(technique, "lists", list_clocks)
+    model.add(technique, "setup", tiles[0] / counts.texels_setup, wave(counts.setup, "setup"),
+              moved("setup", n * (13 + 24)))
+    for name, levels, fast, slow in (("down", range(1, 9), counts.down, counts.slow_down),
+                                     ("up", range(8, 0, -1), counts.up, counts.slow_up)):
+        for level in levels:
+            of_level = n / 4**level
+            fraction = layered_fraction(level) if layered else 0.0
+            clocks = wave(fast, name)
+            if fraction:
+                clocks = mix(clocks, wave(slow(level), name + "_layered"), fraction)
+            computed = of_level * (4 * 24 + 24) if name == "down" else of_level * (24 + 32 / 4 + 16)
+            model.add(technique, f"{name}_{level}", max(1, tiles[level] / counts.texels), clocks,
+                      moved(f"{name}_{level}", computed * (1.5 if layered and level >= 2 else 1)))
+    model.add(technique, "gather", tiles[0] / counts.texels_setup, wave(counts.gather, "gather"),
+              moved("gather", n * (24 + 8 + 8)))
+    model.add(technique, "combine", tiles[0], model.wave(**COMBINE), moved("combine", n * 17))
+
+
+def add_target(model):
+    """Lists in parallel, texels of 16 bytes, levels 5 to 8 in one dispatch, combine inside gather."""
+    technique, n, tiles = "SAP target", model.covered, model.tiles
+    model.add(technique, "classify", model.view_tiles / 16, model.wave(**CLASSIFY), 1 * model.pixels + 5 * n)
+    model.add_serial(technique, "lists", 8000)
+    model.add(technique, "setup", tiles[0], model.wave(**TEXELS.setup), n * (13 + 16))
+    down = model.wave(valu=1000, trans=60, qmul=8, img=0, img128=5.1, st128=1, vm=6, lg=50, W=5, lds=16 * 8 + 6 * 8)
+    slow_down = model.wave(valu=1000 + 2 * 1500, trans=60 + 2 * 150, img128=5.1 + 16, st128=2, vm=14, lg=110,
+                           W=5, lds=700)
+    up = model.wave(valu=750, trans=38, qmul=8, img128=1.6 + 0.8, st128=1, buf=6, vm=6, lg=40, W=8, lds=130)
+    slow_up = model.wave(valu=200 + 2 * 800, trans=78, img128=12, st128=2, buf=12, vm=16, lg=90, W=8, lds=260)
+    for level in range(1, 5):
+        model.add(technique, f"down_{level}", tiles[level], mix(down, slow_down, layered_fraction(level)),
+                  n / 4**level * (4 * 16 + 16) * (1.4 if level >= 2 else 1))
+    tail = sum((math.ceil(tiles[level] / 32) * 0.6 + 0.4) * (slow_down["lat"] + slow_up["lat"])
+               for level in range(5, 9))
+    model.add_serial(technique, "levels 5 to 8", tail)
+    for level in range(4, 0, -1):
+        model.add(technique, f"up_{level}", tiles[level], mix(up, slow_up, layered_fraction(level)),
+                  n / 4**level * (16 + 32 / 4 + 16) * (1.4 if level >= 2 else 1))
+    gather = model.wave(valu=560, trans=32, qmul=6, img=1, img128=1.6 + 1.2, st64=1, buf=8, vm=6, lg=32, W=8, lds=130)
+    model.add(technique, "gather and combine", tiles[0], gather, n * (16 + 8 + 4 + 8))
+
+
+class Built:
+    """What `dermis kernels --json` reports of sap."""
+
+    def __init__(self, report):
+        self.kernels = {row["kernel"]: row["values"] for row in report["kernels"]}
+        graph = next(graph for graph in report["graphs"] if graph["graph"] == "sap")
+        self.passes = {one["pass"]: one["read"] + one["written"] for one in graph["passes"]}
+
+    def bytes_of(self, name):
+        """Bytes per covered pixel. The model has no memory traffic for lists, so classify has theirs."""
+        if name == "classify":
+            return self.passes["classify"] + self.passes["list"]
+        return self.passes[name]
+
+    def of_kernel(self, name):
+        values = self.kernels.get(f"sap/subsurface_sap_{name}")
+        if values is None:
+            return {}
+        # RADV counts occupancy in subgroups of 32.
+        return {"W": values["occupancy"] / 2, "code": values["code_bytes"]}
+
+
+def run(hardware, factors=Factors(), width=2560, height=1440, built=None):
+    model = Model(hardware, factors, width, height)
+    add_rivals(model)
+    add_pyramid(model, "SAP shipped", BLOCKS, serial_sap_tiles(model))
+    add_pyramid(model, "SAP shipped, 1 layer", BLOCKS, serial_sap_tiles(model), layered=False)
+    add_pyramid(model, "SAP prototype", TEXELS, serial_parallel_tiles(model))
+    add_pyramid(model, "SAP prototype, 1 layer", TEXELS, serial_parallel_tiles(model), layered=False)
+    add_target(model)
+    if built:
+        add_pyramid(model, "SAP as built", SAP_AS_BUILT, serial_sap_tiles(model), built=built)
+    return model
+
+
+SENSITIVITY = {
+    "base": {},
+    "latencies x0.5": dict(latency=0.5),
+    "latencies x1.5": dict(latency=1.5),
+    "no instruction-cache misses": dict(cache_miss=0),
+    "misses x2": dict(cache_miss=40),
+    "single-group lists x0.5": dict(serial=0.5),
+    "fixed 2 us": dict(fixed=0.5),
+    "fixed 8 us": dict(fixed=2),
+    "best case of blocks": dict(latency=0.5, cache_miss=0, serial=0.5, spill=0),
+}
+
+
+def print_model(model, width, height):
+    print(f"\n{model.hardware.name}; {width}x{height}, {COVERED:.0%} covered: {model.covered / 1e6:.2f} Mpx")
+    for technique, passes in model.techniques.items():
+        moved = sum(one.bytes for one in passes)
+        slowest = sorted(passes, key=lambda one: -one.seconds)[:6]
+        print(f"{technique:24} {model.total(technique) * 1e3:6.2f} ms | {len(passes):2} passes | "
+              f"{moved / model.covered:4.0f} B/px, memory alone {sum(one.memory_seconds for one in passes) * 1e3:5.2f} ms | "
+              + ", ".join(f"{one.name} {one.seconds * 1e6:.0f} us ({one.limit})" for one in slowest))
+
+
+def main():
+    parser = argparse.ArgumentParser(usage=__doc__)
+    parser.add_argument("--kernels")
+    parser.add_argument("--sensitivity", action="store_true")
+    options = parser.parse_args()
+    built = None
+    if options.kernels:
+        with open(options.kernels, encoding="utf-8") as file:
+            built = Built(json.load(file))
+    for hardware in (RX_6800, NVIDIA_LIKE, SMALL_RDNA2):
+        for width, height in ((2560, 1440), (1920, 1080)):
+            print_model(run(hardware, width=width, height=height, built=built), width, height)
+    if options.sensitivity:
+        print("\nsensitivity, RX 6800-class, 2560x1440: total ms")
+        for name, factors in SENSITIVITY.items():
+            model = run(RX_6800, Factors(**factors), built=built)
+            totals = " | ".join(f"{one} {model.total(one) * 1e3:.2f}" for one in model.techniques)
+            print(f"{name:28} {totals}")
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,128 @@
+#!/usr/bin/env python3
+"""Tests the model of GPU times, the count of instructions and the present values of limits."""
+import json
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+
+import gpu_model
+import instruction_mix
+
+HERE = pathlib.Path(__file__).resolve().parent
+
+# Milliseconds at 2560x1440 and 1920x1080. Formulas and hardware rows must not change, so these
+# techniques, whose counts are fixed, keep their times.
+FROZEN = {
+    "RX_6800": {"separable 25": (2.70, 1.53), "burley 32": (1.59, 0.90), "fixed 16": (0.99, 0.57),
+                "afis 16": (2.44, 1.40), "SAP shipped": (3.48, 2.54), "SAP prototype": (0.87, 0.61),
+                "SAP target": (0.60, 0.41)},
+    "NVIDIA_LIKE": {"separable 25": (3.19, 1.80), "burley 32": (2.52, 1.43), "fixed 16": (1.43, 0.81),
+                    "afis 16": (3.06, 1.74), "SAP shipped": (4.06, 3.06), "SAP prototype": (1.13, 0.78),
+                    "SAP target": (0.74, 0.51)},
+    "SMALL_RDNA2": {"separable 25": (5.27, 2.98), "burley 32": (3.13, 1.77), "fixed 16": (1.95, 1.11),
+                    "afis 16": (4.86, 2.76), "SAP shipped": (4.80, 3.20), "SAP prototype": (1.63, 1.02),
+                    "SAP target": (1.09, 0.68)},
+}
+
+# Two blocks before a loop of two, and one behind it; a branch skips the second block.
+ASSEMBLY = """
+BB0:
+\tv_add_f32_e32 v0, v1, v2                ; 06000501
+\ts_cbranch_execz BB2                     ; bf880001
+BB1:
+\tv_exp_f32_e32 v0, v0                    ; 7e004b00
+BB2:
+\tv_mul_lo_u32 v1, v0, v2                 ; d5690001
+\timage_load v[0:3], v[0:1], s[0:7]       ; f0000f08
+\ts_waitcnt vmcnt(0)                      ; bf8c3f70
+BB3:
+\tbuffer_load_dword v1, off, s[8:11], 0   ; e0300000
+\ts_cbranch_scc1 BB2                      ; bf850001
+BB4:
+\tds_read_b32 v1, v0                      ; d8d80000
+\ts_endpgm                                ; bf810000
+"""
+
+
+class Model(unittest.TestCase):
+    def test_times_of_fixed_counts_stay(self):
+        for hardware, techniques in FROZEN.items():
+            for i, (width, height) in enumerate(((2560, 1440), (1920, 1080))):
+                model = gpu_model.run(getattr(gpu_model, hardware), width=width, height=height)
+                for technique, milliseconds in techniques.items():
+                    self.assertAlmostEqual(model.total(technique) * 1e3, milliseconds[i], delta=0.005,
+                                           msg=f"{technique} on {hardware}, {width}x{height}")
+
+    def test_counts_of_built_kernels_are_used(self):
+        passes = ["classify", "list", "setup", "gather", "combine"]
+        passes += [f"{way}_{level}" for way in ("down", "up") for level in range(1, 9)]
+        report = {"kernels": [{"kernel": "sap/subsurface_sap_gather", "values": {"occupancy": 32, "code_bytes": 100}}],
+                  "graphs": [{"graph": "sap", "passes": [{"pass": one, "read": 1, "written": 2} for one in passes]}]}
+        model = gpu_model.run(gpu_model.RX_6800, built=gpu_model.Built(report))
+        gather = {name: next(one for one in model.techniques[name] if one.name == "gather")
+                  for name in ("SAP shipped", "SAP as built")}
+        self.assertAlmostEqual(gather["SAP as built"].bytes, 3 * model.covered)
+        self.assertLess(gather["SAP as built"].seconds, gather["SAP shipped"].seconds)
+
+
+class InstructionMix(unittest.TestCase):
+    def setUp(self):
+        self.blocks = instruction_mix.read_blocks(ASSEMBLY.splitlines())
+
+    def test_each_instruction_has_a_class(self):
+        total = instruction_mix.count(self.blocks)
+        self.assertEqual(total, {"valu": 1, "branch": 2, "transcendental": 1, "quarter_rate": 1, "image_load": 1,
+                                 "wait": 1, "scratch_load": 1, "shared": 1, "scalar": 1, "vector": 3})
+
+    def test_loops_and_skipped_blocks(self):
+        self.assertEqual(instruction_mix.find_loops(self.blocks), [(2, 3)])
+        total = instruction_mix.count(self.blocks, [4], instruction_mix.parse_ranges("BB1"), texels=2)
+        self.assertEqual(total["vector"], (1 + 4) / 2)
+        self.assertEqual(total["transcendental"], 0)
+
+
+class WriteLimits(unittest.TestCase):
+    def rewrite(self, vgprs, *options):
+        values = {"device": "Null hardware (RADV NAVI21)", "driver": "radv Mesa 22.3.6",
+                  "kernels": [{"kernel": "a/k", "values": {"vgprs": one}} for one in vgprs]}
+        (self.folder / "values.json").write_text(json.dumps(values), encoding="utf-8")
+        return subprocess.run([sys.executable, HERE / "write_limits.py", *options, self.folder / "limits.json",
+                               self.folder / "values.json"], capture_output=True, text=True, check=False)
+
+    def setUp(self):
+        temporary = tempfile.TemporaryDirectory()
+        self.addCleanup(temporary.cleanup)
+        self.folder = pathlib.Path(temporary.name)
+        (self.folder / "limits.json").write_text("""{ "dermis_kernel_limits": 1, "rules": [
+    { "kernel": "a/*", "max": { "vgprs": 80 } } // a goal
+    // Present values beyond their goals, written by write_limits.py.
+  ]
+}
+""", encoding="utf-8")
+
+    def present(self):
+        return (self.folder / "limits.json").read_text(encoding="utf-8")
+
+    def test_the_worst_pipeline_of_a_kernel_counts(self):
+        self.assertEqual(self.rewrite([90, 96, 70]).returncode, 0)
+        self.assertIn('"max": {"vgprs": {"goal": 80, "now": 96}}', self.present())
+
+    def test_reached_goals_disappear(self):
+        self.rewrite([96])
+        self.assertEqual(self.rewrite([80]).returncode, 0)
+        self.assertNotIn("now", self.present().split("Present")[1])
+
+    def test_worse_values_need_consent(self):
+        self.rewrite([96])
+        refused = self.rewrite([97])
+        self.assertEqual(refused.returncode, 1)
+        self.assertIn("vgprs is 97, before 96", refused.stderr)
+        self.assertIn('"now": 96', self.present())
+        self.assertEqual(self.rewrite([97], "--worse").returncode, 0)
+        self.assertIn('"now": 97', self.present())
+
+
+if __name__ == "__main__":
+    unittest.main()

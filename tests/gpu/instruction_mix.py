@@ -1,0 +1,130 @@
+#!/usr/bin/env python3
+"""Counts the instructions that an invocation of a kernel executes, from the compiler's assembly.
+
+usage: instruction_mix.py [--trips N,N,...] [--skip BB3-BB7,BB9] [--texels N] [--json] FILE
+  FILE      assembly of RADV, from `dermis kernels --assembly DIR`
+  --trips   how often each loop runs, in the order of their first blocks; default: once
+  --skip    blocks that the counted path does not execute, as ranges of numbers in the file
+  --texels  texels per invocation; counts are divided by it
+  --blocks  also print each block's counts and targets, to choose --skip
+
+A subgroup executes an instruction for all of its invocations at once, so counts per subgroup are
+counts per invocation. "vector" is the sum of vector arithmetic: valu, transcendental and quarter
+rate.
+"""
+import argparse
+import json
+import re
+import sys
+
+CLASSES = [  # the first pattern that matches an instruction's name decides
+    (r"image_(load|sample|gather|msaa)", "image_load"),
+    (r"image_store", "image_store"),
+    (r"scratch_load", "scratch_load"),
+    (r"scratch_store", "scratch_store"),
+    (r"(buffer|global|flat)_load", "buffer_load"),
+    (r"(buffer|global|flat)_(store|atomic)", "buffer_store"),
+    (r"ds_", "shared"),
+    (r"v_s?_?(exp|log|rcp|rsq|sqrt|sin|cos)_", "transcendental"),
+    (r"v_mul_(lo|hi)_", "quarter_rate"),
+    (r"v_", "valu"),
+    (r"s_(load|buffer_load)", "scalar_load"),
+    (r"s_c?branch", "branch"),
+    (r"s_wait", "wait"),
+    (r"s_", "scalar"),
+]
+VECTOR = ("valu", "transcendental", "quarter_rate")
+
+
+def class_of(name, line):
+    # Before GFX11, scratch memory is accessed by buffer instructions without an index or address.
+    if re.match(r"buffer_(load|store)", name) and not re.search(r"\b(offen|idxen)\b", line):
+        return "scratch_load" if "load" in name else "scratch_store"
+    return next((kind for pattern, kind in CLASSES if re.match(pattern, name)), "other")
+
+
+class Block:
+    def __init__(self, number):
+        self.number = number
+        self.counts = {}
+        self.targets = []
+
+
+def read_blocks(lines):
+    """Returns the blocks in order. An instruction's line ends in its encoding, after a ';'."""
+    blocks = []
+    for line in lines:
+        label = re.match(r"BB(\d+):", line)
+        if label:
+            blocks.append(Block(int(label.group(1))))
+        instruction = re.match(r"\s+([a-z]\w+)(.*?);", line)
+        if instruction and blocks:
+            kind = class_of(instruction.group(1), line)
+            blocks[-1].counts[kind] = blocks[-1].counts.get(kind, 0) + 1
+            blocks[-1].targets += [int(n) for n in re.findall(r"BB(\d+)", instruction.group(2))]
+    return blocks
+
+
+def find_loops(blocks):
+    """Returns (first, last) positions of each loop: a branch back to an earlier block."""
+    position = {block.number: i for i, block in enumerate(blocks)}
+    ends = {}
+    for i, block in enumerate(blocks):
+        for target in block.targets:
+            if position.get(target, i + 1) <= i:
+                ends[position[target]] = max(ends.get(position[target], 0), i)
+    return sorted(ends.items())
+
+
+def parse_ranges(text):
+    numbers = set()
+    for part in filter(None, text.split(",")):
+        first, last = re.fullmatch(r"BB(\d+)(?:-BB(\d+))?", part).groups()
+        numbers.update(range(int(first), int(last or first) + 1))
+    return numbers
+
+
+def count(blocks, trips=(), skipped=frozenset(), texels=1):
+    """Returns the executed instructions by class, with the sum "vector"."""
+    weights = [0.0 if block.number in skipped else 1.0 for block in blocks]
+    for (first, last), trip in zip(find_loops(blocks), trips):
+        for i in range(first, last + 1):
+            weights[i] *= trip
+    total = {}
+    for block, weight in zip(blocks, weights):
+        for kind, number in block.counts.items():
+            total[kind] = total.get(kind, 0) + weight * number / texels
+    total["vector"] = sum(total.get(kind, 0) for kind in VECTOR)
+    return total
+
+
+def main():
+    parser = argparse.ArgumentParser(usage=__doc__)
+    parser.add_argument("--trips", default="")
+    parser.add_argument("--skip", default="")
+    parser.add_argument("--texels", type=float, default=1)
+    parser.add_argument("--json", action="store_true")
+    parser.add_argument("--blocks", action="store_true")
+    parser.add_argument("file")
+    options = parser.parse_args()
+    with open(options.file, encoding="utf-8") as lines:
+        blocks = read_blocks(lines)
+    if not blocks:
+        sys.exit(f"{options.file}: no blocks of instructions")
+    trips = [float(trip) for trip in options.trips.split(",") if trip]
+    total = count(blocks, trips, parse_ranges(options.skip), options.texels)
+    if options.json:
+        print(json.dumps(total, sort_keys=True))
+        return
+    if options.blocks:
+        for block in blocks:
+            targets = ", ".join(f"BB{target}" for target in block.targets)
+            print(f"BB{block.number}: {block.counts} -> {targets or 'next'}")
+    for i, (first, last) in enumerate(find_loops(blocks)):
+        print(f"loop {i}: BB{blocks[first].number} to BB{blocks[last].number}")
+    for kind, number in sorted(total.items()):
+        print(f"{kind:16} {number:10.1f}")
+
+
+if __name__ == "__main__":
+    main()
