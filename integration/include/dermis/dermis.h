@@ -147,7 +147,6 @@ DERMIS_API uint32_t DERMIS_CALL dermis_version(void);
 DERMIS_API const char* DERMIS_CALL dermis_result_name(dermis_result result);
 
 /* ---- before the device exists ---------------------------------------------------------------- */
-
 typedef enum dermis_requirement_type {
   DERMIS_REQUIREMENT_API_VERSION = 0, /* `version` holds VK_API_VERSION_1_2 */
   DERMIS_REQUIREMENT_FEATURE = 1,     /* a VkBool32 in a VkPhysicalDevice...Features struct */
@@ -240,7 +239,6 @@ typedef struct dermis_device_allocator {
 #define DERMIS_DEVICE_ALLOCATOR_INIT {sizeof(dermis_device_allocator), NULL, NULL, NULL}
 
 /* ---- context --------------------------------------------------------------------------------- */
-
 /* Writes timestamps around each pass. */
 #define DERMIS_CONTEXT_TIMINGS 0x1u
 /* Writes debug labels and object names; needs VK_EXT_debug_utils enabled. */
@@ -289,7 +287,6 @@ DERMIS_API void DERMIS_CALL dermis_context_destroy(dermis_context context);
 DERMIS_API const char* DERMIS_CALL dermis_last_error(void);
 
 /* ---- reports --------------------------------------------------------------------------------- */
-
 /* Returns the number of messages; 0 for NULL. Costs: none. Thread: any. */
 DERMIS_API uint32_t DERMIS_CALL dermis_report_count(dermis_report report);
 /* Returns message `index`, in order of discovery. Strings live as long as the report. Costs: none.
@@ -306,7 +303,6 @@ DERMIS_API const char* DERMIS_CALL dermis_report_json(dermis_report report);
 DERMIS_API void DERMIS_CALL dermis_report_destroy(dermis_report report);
 
 /* ---- graphs ---------------------------------------------------------------------------------- */
-
 /* JSON text. Copied during the call. */
 typedef struct dermis_source {
   size_t struct_size;
@@ -747,7 +743,6 @@ typedef struct dermis_pass_type {
 } dermis_pass_type;
 #define DERMIS_PASS_TYPE_INIT \
   {sizeof(dermis_pass_type), NULL, NULL, NULL, NULL, 0, 0, 0, 0, NULL, NULL}
-
 /* Registers a kind of pass for the graphs of a context, so that the host's own passes are part of
  * the graph, with the same barriers, aliased memory and history. Copied, except `record` and
  * `user`, which are used as long as the context lives. Call before the context creates its first
@@ -998,4 +993,4 @@ DERMIS_API dermis_result DERMIS_CALL dermis_view_set_setting(
 #ifdef __cplusplus
 }
 #endif
-#endif /* DERMIS_DERMIS_H */
+#endif
