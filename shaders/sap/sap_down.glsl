@@ -212,6 +212,22 @@ void consider_outer(sap_parent parent, sap_texel before, int c, inout seed_searc
     found = seed_search(child, weight, c);
 }
 
+// Compares the plane of central child c with the best one so far. `near` and `may`: the central
+// children, and whether each can be a seed.
+void consider_central(sap_parent parent, int layers, sap_texel near[4 * max_layers], bool may[4 * max_layers], sap_texel seed,
+                      bool may_be_seed, int c, inout seed_search found) {
+  seed.depth = at_parent(seed, offset_of(c, parent.spacing));
+  float per_sigma_mm = 1.0 / (sap_sigma * parent.spacing * sap_footprint(seed.depth)), support = 0.0;
+  [[unroll]] for (int b = 0; b < 4 * layers; ++b) {
+    float off = sap_off_plane(seed, near[b], offset_of(central(b), parent.spacing)) * per_sigma_mm;
+    support += near[b].id == seed.id && may[b] ? exp2(sap_factor(sap_depth_width) * off * off) : 0.0;
+  }
+  if (may_be_seed && (found.best.id == 0u || support > hysteresis * found.maximum)) {
+    found.best = seed;
+    found.maximum = support;
+  }
+}
+
 // Returns the child whose plane has the most support among the central children; without a central
 // child, the outer child with the largest weight. Its depth is the depth of its plane at the
 // parent; id 0 means no child.
@@ -223,18 +239,15 @@ sap_texel find_seed(sap_parent parent, int layers, sap_texel before) {
     may[b] = may_seed(parent, before, near[b], central(b));
   }
   seed_search found = seed_search(no_texel, 0.0, 0);
-  [[unroll]] for (int a = 0; a < 4 * layers; ++a) {
-    sap_texel seed = near[a];
-    seed.depth = at_parent(seed, offset_of(central(a), parent.spacing));
-    float per_sigma_mm = 1.0 / (sap_sigma * parent.spacing * sap_footprint(seed.depth)), support = 0.0;
-    [[unroll]] for (int b = 0; b < 4 * layers; ++b) {
-      float off = sap_off_plane(seed, near[b], offset_of(central(b), parent.spacing)) * per_sigma_mm;
-      support += near[b].id == seed.id && may[b] ? exp2(sap_factor(sap_depth_width) * off * off) : 0.0;
+  if (texel_shape && layers > 1) { // small enough for the instruction cache
+    int last = parent.two ? 8 : 4;
+    [[dont_unroll]] for (int a = 0; a < last; ++a) {
+      sap_texel seed = child_of(parent, central(a));
+      consider_central(parent, layers, near, may, seed, may_seed(parent, before, seed, central(a)), central(a), found);
     }
-    if (may[a] && (found.best.id == 0u || support > hysteresis * found.maximum)) {
-      found.best = seed;
-      found.maximum = support;
-    }
+  } else {
+    [[unroll]] for (int a = 0; a < 4 * layers; ++a)
+      consider_central(parent, layers, near, may, near[a], may[a], central(a), found);
   }
 #ifndef SAP_BOX
   if (found.best.id != 0u)
@@ -283,11 +296,11 @@ void add_child(sap_parent parent, sap_texel seed, sap_texel before, int c, inout
   sum.mean_reach += flat_weight * child.reach;
 }
 void add_children(sap_parent parent, int layers, sap_texel seed, sap_texel before, inout reduction sum) {
-  if (texel_shape && layers > 1) {
+  if (texel_shape && max_layers > 1) { // small enough for the instruction cache
     [[dont_unroll]] for (int row = 0; row < 4; ++row)
       [[unroll]] for (int column = 0; column < 4; ++column)
         add_child(parent, seed, before, 4 * row + column, sum);
-    if (parent.two)
+    if (layers > 1 && parent.two)
       [[dont_unroll]] for (int c = children_a_layer; c < 2 * children_a_layer; ++c)
         add_child(parent, seed, before, c, sum);
   } else {
