@@ -250,25 +250,6 @@ struct CompareOptions {
 };
 ExitCode compare(const Session& session, const CompareOptions& options);
 
-struct BenchCompileOptions {
-  std::string shapes = shipped("tests/benchmark/shapes.json");
-  std::string graphs;                  // folder of graph files to measure instead of shapes
-  std::vector<std::string> pass_types; // files that declare the host's pass types
-  std::string json, html;              // output files
-  bool optimize = false;               // also measure the level that takes seconds per graph
-  // smaller and fewer cases, as a smoke test; also in the suites below
-  bool quick = false;
-};
-ExitCode bench_compile(const Session& session, const BenchCompileOptions& options);
-
-struct BenchRecordOptions {
-  std::string graphs = shipped("configs/graphs"), profile = shipped("configs/profiles/skin.json");
-  std::vector<std::string> pass_types; // files that declare the host's pass types
-  std::string json, html;              // output files
-  Size size{1280, 720};
-};
-ExitCode bench_record(const Session& session, const BenchRecordOptions& options);
-
 struct BenchAllOptions {
   std::string out;                         // output folder
   std::vector<std::string> suites;         // empty: all
@@ -277,95 +258,6 @@ struct BenchAllOptions {
   bool again = false;                      // also repeat suites that an earlier run measured
   bool quick = false;
 };
-std::vector<std::string> bench_suite_names(); // "record", "skip", ...
 ExitCode bench_all(const Session& session, const BenchAllOptions& options);
-
-struct BenchErrorTimeOptions {
-  std::string file = shipped("tests/benchmark/error_time.json"); // benchmark description
-  Size size{640, 360};
-  std::string json, csv, html;             // output files
-  std::string head;                        // folder of the head scan; "": its scenes are left out
-  bool study = false;                      // also the scenes for the study of one head
-  std::vector<std::string> scenes;         // empty: all
-  std::vector<std::string> techniques;     // empty: all
-  std::string cache = "build/bench_truth"; // folder for references; "": references are not kept
-  bool quick = false;
-};
-ExitCode bench_error_time(const Session& session, const BenchErrorTimeOptions& options);
-
-struct BenchReferenceOptions {
-  std::string file = shipped("tests/benchmark/truth.json"); // techniques and tolerances
-  std::string json, csv, html;                              // output files
-  bool quick = false;
-};
-ExitCode bench_reference(const Session& session, const BenchReferenceOptions& options);
-
-struct BenchDynamicOptions {
-  std::string file = shipped("tests/benchmark/dynamic.json"); // benchmark description
-  Size size{320, 180};
-  uint32_t frames = 0;         // per sequence; 0: as in the file
-  std::string json, csv, html; // output files
-  // folder of the head scan, which replaces the bust; "": no replacement
-  std::string head;
-  std::vector<std::string> scenes, framings; // empty: all
-  std::vector<std::string> techniques;       // empty: all
-  std::string cache = "build/bench_truth";   // folder for references; "": references are not kept
-  bool quick = false;
-};
-ExitCode bench_dynamic(const Session& session, const BenchDynamicOptions& options);
-
-struct BenchSupplementOptions {
-  uint32_t runs = 4096;
-  std::string json, html; // output files
-};
-ExitCode bench_supplement(const Session& session, const BenchSupplementOptions& options);
-
-struct BenchStabilityOptions {
-  std::string file = shipped("tests/benchmark/stability.json"); // techniques
-  std::vector<std::string> cases, techniques;                   // empty: all
-  // updates of moving averages in half floats
-  uint64_t updates = 1000000;
-  std::string json, html; // output files
-  bool quick = false;
-};
-ExitCode bench_stability(const Session& session, const BenchStabilityOptions& options);
-
-struct BenchBudgetOptions {
-  std::string graph = shipped("configs/graphs/skin.json");
-  std::string calibration; // file of dermis calibrate; "": the library's calibration
-  // in configs/scenes
-  std::vector<std::string> scenes{"flashing", "regular", "dynamic", "dolly", "cut"};
-  Size size{480, 270};
-  uint32_t frames = 32;                    // judged frames per run
-  uint32_t repetitions = 3;                // timed runs per budget
-  std::string head;                        // folder of the head scan, for scenes that show it
-  std::vector<std::string> pass_types;     // files that declare the host's pass types
-  std::string json, html;                  // output files
-  std::string cache = "build/bench_truth"; // folder for references; "": references are not kept
-  bool quick = false;
-};
-ExitCode bench_budget(const Session& session, const BenchBudgetOptions& options);
-
-struct BenchSkipOptions {
-  std::string graph = shipped("configs/graphs/skin.json"), profile = shipped("configs/profiles/skin.json");
-  Size size{1280, 720}; // in a smaller view the fixed cost of 22 dispatches is a large fraction
-  uint32_t repetitions = 31;
-  std::vector<std::string> pass_types; // files that declare the host's pass types
-  std::string json, html;              // output files
-  bool quick = false;
-};
-ExitCode bench_skip(const Session& session, const BenchSkipOptions& options);
-
-struct BenchRestirOptions {
-  std::string file = shipped("tests/benchmark/restir.json"); // benchmark description
-  Size size{96, 96};
-  std::string json, csv, html;             // output files
-  std::string head;                        // folder of the head scan; "": its scene is left out
-  std::vector<std::string> scenes, shifts; // empty: all
-  std::string cache = "build/bench_truth"; // folder for references; "": references are not kept
-  bool quick = false;
-};
-ExitCode bench_restir(const Session& session, const BenchRestirOptions& options);
-std::string why_no_restir(); // what this machine lacks for ReSTIR; "": nothing
 
 } // namespace dermis::tools

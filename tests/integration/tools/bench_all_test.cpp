@@ -19,10 +19,11 @@ TEST_F(BenchAll, WritesPagesAndAnIndex_MeasuresNothingTwice) {
   const std::vector<std::string> arguments = {"bench", "all", "--out", path("out"), "--suites", "record"};
   const Outcome first = run(arguments);
   ASSERT_EQ(first.exit_code, 0) << first.err;
-  EXPECT_THAT(files("out"), ::testing::ElementsAre("index.html", "index.json", "record.html", "record.json"));
+  EXPECT_THAT(files("out"),
+              ::testing::ElementsAre("index.html", "index.json", "record.csv", "record.html", "record.json"));
   const std::string index = read("out/index.html");
   EXPECT_THAT(index, HasSubstr("<a href='record.html'>"));
-  EXPECT_THAT(index, HasSubstr("dermis bench record --json record.json --html record.html"));
+  EXPECT_THAT(index, HasSubstr("dermis bench record --json record.json --csv record.csv --html record.html"));
   EXPECT_THAT(index, HasSubstr("not measured")); // The other suites.
   EXPECT_THAT(index, HasSubstr("<dt>processor"));
   EXPECT_THAT(read("out/record.html"), HasSubstr("chain of 100"));
@@ -61,7 +62,8 @@ TEST_F(BenchAll, StoppedRun_ContinuesInItsMode) {
   RunOptions stopped;
   stopped.interrupt_after = path("out/index.html"); // The index exists after the first suite.
   EXPECT_EQ(run(arguments, stopped).exit_code, 130);
-  EXPECT_THAT(files("out"), ::testing::ElementsAre("index.html", "index.json", "record.html", "record.json"));
+  EXPECT_THAT(files("out"),
+              ::testing::ElementsAre("index.html", "index.json", "record.csv", "record.html", "record.json"));
 
   const Outcome outcome = run(arguments);
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
@@ -76,10 +78,10 @@ TEST_F(BenchAll, StoppedRun_ContinuesInItsMode) {
 
   nlohmann::json state = nlohmann::json::parse(read("out/index.json"));
   ASSERT_EQ(state["suites"][1]["line"],
-            "dermis bench compile --quick --json compile.json --html compile.html");
+            "dermis bench compile --quick --json compile.json --csv compile.csv --html compile.html");
   state["suites"][1]["line"] =
       // The command line of a whole run.
-      "dermis bench compile --json compile.json --html compile.html";
+      "dermis bench compile --json compile.json --csv compile.csv --html compile.html";
   std::ofstream(path("out/index.json")) << state;
   EXPECT_THAT(run(arguments).out, Not(HasSubstr("compile is there")));
 }

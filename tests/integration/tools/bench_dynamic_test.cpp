@@ -27,7 +27,7 @@ TEST(BenchDynamic, ShippedFileIsValidAndNamesExistingFiles) {
     scenes.insert(scene.scene);
   }
   for (const DynamicTechnique& technique : file->techniques) {
-    EXPECT_TRUE(std::filesystem::exists(root + "/" + technique.request.graph)) << technique.request.graph;
+    EXPECT_TRUE(std::filesystem::exists(root + "/" + technique.graph)) << technique.graph;
     guidance.insert(technique.guidance);
   }
   for (const char* scene : {"flashing", "regular", "dynamic", "pan", "dolly", "cut", "strobe"})

@@ -122,13 +122,6 @@ TEST(RestirClaims, ExpectationsOfReuseAreChecked) {
   EXPECT_FALSE(alone[1].mse_at_most);
 }
 
-TEST(RestirClaims, RowsWithLargerErrorsAreCounted) {
-  ReportTable table;
-  table.columns = {{"holds", "holds"}};
-  table.rows = {{true}, {false}, {ReportValue()}, {false}};
-  EXPECT_EQ(rows_that_err_more(table), 2u);
-}
-
 struct BenchRestir : test::CommandTest {
   static test::RunOptions with_rays() {
     return {{"VK_DRIVER_FILES=" + dermis::testing::driver_with_ray_queries()}, "", ""};

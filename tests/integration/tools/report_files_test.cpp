@@ -63,6 +63,54 @@ TEST(ReportFiles, BaselinesAreGreyAndOwnTechniquesAreNot) {
   EXPECT_THAT(report_as_html(report), HasSubstr("<g class='s0 base b0'>"));
 }
 
+TEST(ReportFiles, JsonOmitsObjectsThatWereNotMeasured) {
+  Report report;
+  report.constants = {{"clock", "thread"}};
+  report.table.columns = {{"time.low", ""}, {"time.high", "high"}, {"size", "size"}};
+  report.table.rows = {{1.5, 2.5, 3}, {ReportValue(), ReportValue(), 4}};
+  const std::string text = report_as_json(report);
+  EXPECT_TRUE(test::is_json(text));
+  EXPECT_THAT(text, HasSubstr(R"("clock": "thread",)"));
+  EXPECT_THAT(text, HasSubstr(R"({ "time": { "low": 1.5, "high": 2.5 }, "size": 3 })"));
+  EXPECT_THAT(text, HasSubstr(R"({ "size": 4 })"));
+}
+
+TEST(ReportFiles, TextHasRulesBetweenGroups) {
+  Report report = small_report();
+  report.table.columns[0].style.groups = true;
+  report.table.columns[2].style.in_text = false;
+  report.notes = {"reason"};
+  EXPECT_EQ(report_as_text(report), "name     value\n"
+                                    "-------  -----\n"
+                                    "a,b \"c\"    0.1\n"
+                                    "-------  -----\n"
+                                    "plain        -\n"
+                                    "left out: reason\n"
+                                    "command: dermis \"x\"\n");
+}
+
+TEST(ReportFiles, NumbersHaveSignificantDigitsAndNoPowers) {
+  const auto text = [](double value, int digits) { return cell_text(value, {"key", "title", {digits}}); };
+  EXPECT_EQ(text(1234.5, 3), "1234");
+  EXPECT_EQ(text(12.345, 4), "12.35");
+  EXPECT_EQ(text(0.00012345, 3), "0.000123");
+  EXPECT_EQ(text(0, 3), "0");
+}
+
+TEST(ReportFiles, RowsThatMissTheirGoalsAreCountedAndMarked) {
+  Report report;
+  report.table.columns = {{"holds", "holds", {.goal = Goal::required}}, {"flag", "flag"}};
+  report.table.rows = {{true, false}, {false, true}, {ReportValue(), false}, {false, false}};
+  const GoalCount count = count_goals(report.table, Goal::required);
+  EXPECT_EQ(count.missed, 2u);
+  EXPECT_EQ(count.rows, 3u);
+  EXPECT_EQ(count_goals(report.table, Goal::wanted).rows, 0u);
+  const std::string page = report_as_html(report);
+  EXPECT_THAT(page, HasSubstr("Marked rows miss their limits (column 'holds')."));
+  EXPECT_THAT(page, HasSubstr("<tr class=bad><td data-v=0>no<td data-v=1>yes"));
+  EXPECT_THAT(page, HasSubstr("<tr><td data-v=1>yes"));
+}
+
 TEST(ReportFiles, PlotsHaveTheTitleOfTheBench) {
   Report report = small_report();
   EXPECT_THAT(report_as_html(report), HasSubstr("<h2>Time against error</h2><p>Filled points"));

@@ -41,10 +41,10 @@ CLI::Option* add_choice(CLI::App& verb, const char* option, Value& value,
 // Adds a verb that has subcommands.
 CLI::App& add_group(CLI::App& app, const char* name, const char* what, const char* example);
 
-// The callback owns the verb's options.
-template <class Options, class Declare>
-void add_verb(CLI::App& app, Invocation& invocation, const char* name, const char* what, const char* example,
-              ExitCode (*work)(const Session&, const Options&), Declare declare, bool json_is_file = false) {
+// The callback owns the verb's options and runs work(session, options).
+template <class Options, class Work, class Declare>
+void add_verb(CLI::App& app, Invocation& invocation, const std::string& name, const std::string& what,
+              const std::string& example, Work work, Declare declare, bool json_is_file = false) {
   CLI::App& verb = *app.add_subcommand(name, what);
   verb.footer(fmt::format("Example:\n  {}", example));
   auto options = std::make_shared<Options>();

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double half_a_degree = 0.5 * 3.14159265358979323846 / 180; // in radians
 constexpr double close_enough = 0.02;                                // relative to d_px
-constexpr int max_tries = 5;
+constexpr int max_zooms = 5;
 
 demo::Result<Subject> render_once(const SceneRequest& request, const SubjectOptions& options,
                                   const std::optional<demo::CameraPlace>& camera) {
@@ -51,7 +51,7 @@ demo::Result<Subject> render_subject(const SceneRequest& request, const SubjectO
   auto subject = render_once(request, options, camera);
   if (!subject || request.d_px.empty() || !camera) return subject;
   const double wanted = request.d_px.front();
-  for (int i = 0; i < max_tries && subject->d_px > 0 && std::abs(subject->d_px / wanted - 1) > close_enough;
+  for (int i = 0; i < max_zooms && subject->d_px > 0 && std::abs(subject->d_px / wanted - 1) > close_enough;
        ++i) {
     const double half = std::tan(camera->vertical_fov * half_a_degree) * subject->d_px / wanted;
     camera->vertical_fov = std::clamp(std::atan(half) / half_a_degree, 1.0, 150.0);

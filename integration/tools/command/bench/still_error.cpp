@@ -7,39 +7,48 @@
 namespace dermis::tools {
 namespace {
 
-// Returns the measured pixels exposed and tonemapped.
-template <class Value> std::vector<uint8_t> shown(size_t count, double exposure, Value&& value) {
-  demo::FloatImage image{static_cast<uint32_t>(count), 1, 3, {}};
-  for (size_t i = 0; i < 3 * count; ++i)
-    image.texels.push_back(static_cast<float>(value(i) * exposure));
+std::vector<uint8_t> shown(std::span<const double> light, double exposure) {
+  demo::FloatImage image{static_cast<uint32_t>(light.size() / 3), 1, 3, {}};
+  for (const double value : light)
+    image.texels.push_back(static_cast<float>(value * exposure));
   return demo::tonemap(image);
 }
 
+// Returns the values at the reference's pixels.
+std::vector<double> at_pixels(std::span<const float> light, const Reference& reference) {
+  std::vector<double> values;
+  for (const uint32_t pixel : reference.pixels)
+    for (size_t c = 0; c < 3; ++c)
+      values.push_back(double(light[size_t{3} * pixel + c]));
+  return values;
+}
+
 } // namespace
+
+double sdr8_mse(std::span<const double> light, std::span<const double> reference, double exposure) {
+  const std::vector<uint8_t> here = shown(light, exposure), there = shown(reference, exposure);
+  double squares = 0;
+  for (size_t i = 0; i < here.size(); ++i) {
+    const double difference = (double(here[i]) - double(there[i])) / 255.0;
+    squares += difference * difference;
+  }
+  return here.empty() ? 0 : squares / double(here.size());
+}
 
 StillError still_error(std::span<const float> light, const Reference& reference) {
   StillError error;
   error.population = reference.population;
   error.figures =
       measure_error(light, reference.light, reference.pixels, reference.exposure, reference.population);
-  const size_t count = reference.pixels.size();
-  const auto here = shown(count, reference.exposure, [&](size_t i) {
-    return double(light[size_t{3} * reference.pixels[i / 3] + i % 3]);
-  });
-  const auto exact = shown(count, reference.exposure, [&](size_t i) { return reference.light[i]; });
-  double squares = 0;
-  for (size_t i = 0; i < here.size(); ++i)
-    squares += (double(here[i]) - exact[i]) * (double(here[i]) - exact[i]);
-  error.psnr_db_sdr8 = psnr_from_mse(here.empty() ? 0 : squares / (255.0 * 255.0 * double(here.size())));
+  error.psnr_db_sdr8 =
+      psnr_from_mse(sdr8_mse(at_pixels(light, reference), reference.light, reference.exposure));
   return error;
 }
 
 double psnr_between(std::span<const float> light, std::span<const float> other, const Reference& reference) {
-  std::vector<double> values;
-  for (const uint32_t pixel : reference.pixels)
-    for (size_t c = 0; c < 3; ++c)
-      values.push_back(double(other[size_t{3} * pixel + c]));
-  return measure_error(light, values, reference.pixels, reference.exposure, reference.population).psnr_db;
+  return measure_error(light, at_pixels(other, reference), reference.pixels, reference.exposure,
+                       reference.population)
+      .psnr_db;
 }
 
 CapturedFrame window_of(const CapturedFrame& frame, uint32_t side) {

@@ -11,6 +11,10 @@ struct StillError {
   uint64_t population = 0; // subsurface pixels of the frame
 };
 
+// Returns the mean square difference of two images, exposed and tonemapped to 8 bits; peak 1. 3
+// values per pixel.
+double sdr8_mse(std::span<const double> light, std::span<const double> reference, double exposure);
+
 // `light` holds 3 values for every pixel of the frame.
 StillError still_error(std::span<const float> light, const Reference& reference);
 

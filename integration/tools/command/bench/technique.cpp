@@ -12,8 +12,6 @@
 namespace dermis::tools {
 namespace {
 
-// Exports light for tools and for hosts that apply albedo later; not part of a technique.
-constexpr std::string_view export_scattered_type = "subsurface.export_scattered";
 // Passes before and after scattering, common to all techniques.
 constexpr std::array<std::string_view, 6> common_pass_types = {
     "subsurface.classify",  "subsurface.tile_list",     "subsurface.setup",
@@ -60,6 +58,20 @@ std::vector<float> depth_buffer_of(std::span<const float> distances,
 }
 
 } // namespace
+
+subsurface::PerChannel d_of(const CapturedFrame& frame, double d_px) {
+  std::array<uint64_t, 256> count{};
+  for (const uint8_t id : frame.profile)
+    count[id] += id != 0;
+  const auto maximum = static_cast<uint32_t>(std::max_element(count.begin(), count.end()) - count.begin());
+  for (const CaptureProfile& one : frame.description.profiles)
+    if (one.id == maximum) {
+      const auto& d = one.profile.d_mm;
+      const double widest = std::max({d[0], d[1], d[2], 1e-30});
+      return {d_px * d[0] / widest, d_px * d[1] / widest, d_px * d[2] / widest};
+    }
+  return {d_px, d_px, d_px};
+}
 
 demo::Result<std::unique_ptr<TechniqueRun>> TechniqueRun::create(demo::VulkanHost& host,
                                                                  const TechniqueRequest& request,

@@ -1,7 +1,7 @@
 #pragma once
 // Runs one technique at one setting on still frames.
 
-#include "integration/tools/command/bench/plan_file.hpp"
+#include "integration/tools/command/bench/suite/bench_file.hpp"
 #include "integration/tools/command/graph_input.hpp"
 #include "integration/tools/command/run/apply_slots.hpp"
 #include "integration/tools/command/run/device_graph.hpp"
@@ -14,6 +14,10 @@
 #include <vector>
 
 namespace dermis::tools {
+
+// Type of the pass that exports light for tools and for hosts that apply albedo later; not part of a
+// technique.
+inline constexpr std::string_view export_scattered_type = "subsurface.export_scattered";
 
 struct TechniqueTimes { // milliseconds per run
   double device = 0;    // all passes except those that only export light
@@ -33,6 +37,10 @@ enum class DepthGiven : uint8_t {
   view_distance, // as in captures
   depth_buffer,  // as a depth test with the frame's projection; background is the far plane
 };
+
+// Returns d per channel of the most frequent profile, scaled so that its widest channel projects to
+// `d_px`.
+subsurface::PerChannel d_of(const CapturedFrame& frame, double d_px);
 
 // Keeps its graph on the device between frames as long as size and slots fit. One thread.
 class TechniqueRun {

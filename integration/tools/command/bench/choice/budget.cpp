@@ -5,12 +5,9 @@
 #include "integration/examples/demo_engine/files.hpp"
 #include "integration/examples/demo_engine/scene/read_scene.hpp"
 #include "integration/tools/command/bench/choice/budget_judge.hpp"
-#include "integration/tools/command/bench/choice/budget_report.hpp"
-#include "integration/tools/command/bench/quick.hpp"
-#include "integration/tools/command/bench/report/report.hpp"
 #include "integration/tools/command/bench/subject.hpp"
+#include "integration/tools/command/bench/suite/suites.hpp"
 #include "integration/tools/command/graph_input.hpp"
-#include "integration/tools/command/interrupt.hpp"
 #include "integration/tools/command/run/choice_sets.hpp"
 #include "integration/tools/command/run/host_passes.hpp"
 
@@ -37,19 +34,17 @@ Stretch stretch_of(std::string_view scene) {
 }
 
 struct BudgetBench {
-  const Session& session;
-  const BenchBudgetOptions& options;
+  SuiteRun& run;
   SceneRunRequest request;
   std::vector<std::vector<NamedValue>> sets; // one per configuration
   Progress& progress;
   SharedScene shared = {};
   uint64_t done = 0;
-  std::string device = {};
   std::vector<BudgetRow> rows = {};
 };
 
 demo::Result<SceneRun> run_counted(BudgetBench& bench) {
-  auto run = run_scene(bench.session, bench.request, bench.shared);
+  auto run = run_scene(bench.run.session, bench.request, bench.shared);
   bench.progress.update(++bench.done);
   return run;
 }
@@ -61,7 +56,7 @@ std::string file_of(const std::string& scene) {
 // Resets the request for runs of a scene, without state of the previous scene.
 void begin_scene(BudgetBench& bench, const std::string& scene) {
   const Stretch stretch = stretch_of(scene);
-  const uint32_t judged = stretch.times * bench.options.frames;
+  const uint32_t judged = stretch.times * uint32_t(bench.run.number("frames"));
   bench.request.scene = file_of(scene);
   bench.request.frames = unjudged_frames + judged;
   bench.request.frames_per_second = stretch.frames_per_second;
@@ -77,7 +72,7 @@ demo::Result<std::vector<Single>> measure_singles(BudgetBench& bench) {
     bench.request.set = set;
     const auto run = run_counted(bench);
     if (!run) return run.error();
-    bench.device = run->device;
+    bench.run.device = run->device;
     singles.push_back(single_of(*run, set));
   }
   bench.request.set.clear();
@@ -128,19 +123,19 @@ demo::Result<> measure_by_time(BudgetBench& bench, const std::string& scene) {
 
 // A temporary slowdown of the machine should affect one run per budget and not its median, so all
 // other scenes are timed between two runs of one budget.
-demo::Result<> measure(BudgetBench& bench) {
-  for (const std::string& scene : bench.options.scenes)
+demo::Result<> measure_budgets(BudgetBench& bench) {
+  for (const std::string& scene : bench.run.list("scenes"))
     if (auto measured = measure_by_meter(bench, scene); !measured) return measured;
-  for (uint32_t i = 0; i < bench.options.repetitions; ++i)
-    for (const std::string& scene : bench.options.scenes)
+  for (uint64_t i = 0; i < bench.run.number("repetitions"); ++i)
+    for (const std::string& scene : bench.run.list("scenes"))
       if (auto measured = measure_by_time(bench, scene); !measured) return measured;
   return demo::success();
 }
 
 // Returns the reason why the scenes cannot be measured, or "". Runs before minutes are spent on
 // other scenes.
-std::string why_not(const BenchBudgetOptions& options) {
-  for (const std::string& name : options.scenes) {
+std::string why_no_scenes(const SuiteRun& run) {
+  for (const std::string& name : run.list("scenes")) {
     const std::string file = file_of(name);
     if (!std::filesystem::exists(file))
       return fmt::format("there is no scene '{}': '{}' is missing (--scenes takes names in configs/scenes)",
@@ -151,58 +146,104 @@ std::string why_not(const BenchBudgetOptions& options) {
     const bool model =
         std::any_of(scene->objects.begin(), scene->objects.end(),
                     [](const demo::Object& object) { return object.shape == demo::Shape::model; });
-    const std::string problem = model ? why_no_head(options.head) : "";
+    const std::string problem = model ? why_no_head(run.text("head")) : "";
     if (!problem.empty()) return fmt::format("scene {}: {}", name, problem);
   }
   return "";
 }
 
-} // namespace
+// Adds plots of a scene's frame time and error over the budget.
+void add_plots(Report& report, const std::vector<BudgetRow>& rows) {
+  Plot time{"mean device time of a frame", "budget, ms", "ms", {}};
+  Plot error{"error", "budget, ms", "RMSE of linear luminance", {}};
+  for (const BudgetRow& row : rows) {
+    if (time.series.empty() || time.series.back().name != row.scene) {
+      time.series.push_back({row.scene, {}});
+      error.series.push_back({row.scene, {}});
+    }
+    const double mean_ms = median_of(row.timed).mean_ms;
+    const std::string label = fmt::format("{} within {:.2f} ms: {:.2f} ms, RMSE {:.5f}", row.scene,
+                                          row.budget_ms, mean_ms, row.rmse);
+    time.series.back().points.push_back({row.budget_ms, mean_ms, label, false});
+    error.series.back().points.push_back({row.budget_ms, row.rmse, label, false});
+  }
+  report.plots = {time, error};
+  report.plots_title = "Over the budget";
+  report.plots_text = "Point at a budget to see the time and error of its frames.";
+}
 
-ExitCode bench_budget(const Session& session, const BenchBudgetOptions& requested) {
-  const BenchBudgetOptions options = quickened(requested);
+demo::Result<> measure_budget(SuiteRun& run, const Emit<BudgetRow>& emit) {
   Diagnostics diagnostics;
-  const std::optional<LoadedGraph> loaded =
-      load_graph(options.graph, {.overlays = {}, .roots = {}, .pass_types = options.pass_types}, diagnostics);
-  if (!loaded) return fail_graph(session, options.graph, diagnostics);
-  auto sets = choice_sets(*loaded, options.size, diagnostics);
-  if (sets.empty()) return fail_graph(session, options.graph, diagnostics);
+  const std::string graph = run.file("graph");
+  const std::optional<LoadedGraph> loaded = load_graph(graph, run.pass_types(), diagnostics);
+  if (!loaded) return run.refuse(graph, diagnostics);
+  auto sets = choice_sets(*loaded, run.size(), diagnostics);
+  if (sets.empty()) return run.refuse(graph, diagnostics);
   HostPasses host_passes(loaded->host_pass_types); // outlives the stage of the runs
   SceneRunRequest request;
-  request.graph = options.graph;
+  request.graph = graph;
   request.hooks = host_passes.hooks();
-  request.size = options.size;
-  request.cache = options.cache;
-  request.model = head_model(options.head);
-  if (!options.calibration.empty()) {
-    auto text = demo::read_text_file(options.calibration);
-    if (!text) return fail(session, static_cast<ExitCode>(text.error().kind), text.error().text);
-    request.calibration = {options.calibration, text.take()};
+  request.size = run.size();
+  request.cache = run.text("cache");
+  request.model = head_model(run.text("head"));
+  if (const std::string path = run.text("calibration"); !path.empty()) {
+    auto text = demo::read_text_file(path);
+    if (!text) return text.error();
+    request.calibration = {path, text.take()};
   }
-  if (const std::string problem = why_not(options); !problem.empty())
-    return fail(session, ExitCode::usage, problem);
-  Progress progress(progress_style(session.quiet, false), "budget", "run",
-                    options.scenes.size() * (sets.size() + (1 + options.repetitions) * std::size(fractions)));
-  BudgetBench bench{session, options, std::move(request), std::move(sets), progress};
-  Report report;
-  report.bench = "budget";
-  report.title = "Frames within a budget";
-  report.summary =
+  if (const std::string problem = why_no_scenes(run); !problem.empty())
+    return demo::Error{demo::ErrorKind::usage, problem};
+  const uint64_t frames = run.number("frames"), repetitions = run.number("repetitions");
+  run.report.summary =
       fmt::format("{} judged frames after {}; over: more than {} of the budget by timestamps, {} by the "
                   "meter; times: median of {}",
-                  options.frames, unjudged_frames, measured_tolerance, model_tolerance, options.repetitions);
-  report.table.columns = budget_columns();
-  const auto measured = measure(bench);
-  if (interrupted()) return fail(session, ExitCode::interrupted, "stopped");
-  if (!measured) return fail(session, static_cast<ExitCode>(measured.error().kind), measured.error().text);
+                  frames, unjudged_frames, measured_tolerance, model_tolerance, repetitions);
+  const uint64_t runs = sets.size() + (1 + repetitions) * std::size(fractions);
+  Progress progress = run.progress("run", run.list("scenes").size() * runs);
+  BudgetBench bench{run, std::move(request), std::move(sets), progress};
+  if (auto measured = measure_budgets(bench); !measured) return measured;
   for (const BudgetRow& row : bench.rows)
-    add_budget_row(report, row);
-  report.info = machine_info(session.command, bench.device);
-  if (options.quick) report.info.push_back(quick_fact());
-  add_budget_plots(report);
-  if (!session.quiet && options.json != "-" && options.html != "-") print(text_of_budget(report));
-  const std::string problem = deliver_report(report, options.json, "", options.html);
-  return problem.empty() ? ExitCode::ok : fail(session, ExitCode::environment, problem);
+    emit(row);
+  add_plots(run.report, bench.rows);
+  return demo::success();
+}
+
+template <double TimedFigures::*Figure> double timed(const BudgetRow& row) {
+  return median_of(row.timed).*Figure;
+}
+
+} // namespace
+
+Suite budget_suite() {
+  using Row = BudgetRow;
+  using List = std::vector<std::string>;
+  return make_suite<Row>(
+      {.name = "budget",
+       .what = "Measure how well frames keep a budget, and at what error",
+       .title = "Frames within a budget",
+       .options = {size_option({480, 270}),
+                   {"graph", "Graph with choices by budget", "configs/graphs/skin.json", "FILE"},
+                   pass_types_option(),
+                   {"calibration", "What dermis calibrate wrote for this device", "", "FILE"},
+                   {"scenes", "Scenes of configs/scenes, separated by commas",
+                    List{"flashing", "regular", "dynamic", "dolly", "cut"}, "NAME",
+                    List{"flashing", "dolly"}}, // changing light, and changing size
+                   {"frames", "Judged frames per run", 32u, "", 4u, 4},
+                   {"repetitions", "Timed runs per budget; results are medians", 3u, "", 1u, 1, 100},
+                   head_option(),
+                   cache_option()}},
+      {{"scene", "scene", &Row::scene, {.groups = true}},
+       {"x", "x", &Row::x},
+       {"budget_ms", "budget, ms", &Row::budget_ms},
+       {"mean_ms", "mean, ms", timed<&TimedFigures::mean_ms>},
+       {"p95_ms", "95 %, ms", timed<&TimedFigures::p95_ms>},
+       {"over_budget_fraction", "over, timed", timed<&TimedFigures::over>, {2}},
+       {"over_budget_fraction_meter", "over, meter", &Row::over_model, {2}},
+       {"mean_rmse", "RMSE", &Row::rmse},
+       {"best_single_rmse_within_budget", "best single RMSE", &Row::single_rmse},
+       {"best_single", "best single", &Row::single},
+       {"switches", "switches", [](const Row& row) { return int64_t(median_of(row.timed).switches); }}},
+      measure_budget);
 }
 
 } // namespace dermis::tools

@@ -1,5 +1,7 @@
 #include "integration/tools/command/bench/choice/budget_judge.hpp"
 
+#include "integration/tools/command/bench/suite/statistics.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <span>
@@ -52,28 +54,24 @@ TimedFigures judge_times(const SceneRun& run, double budget_ms) {
   std::vector<double> times;
   for (const RunFrame& frame : judged_frames(run))
     times.push_back(frame.choice.measured_ms);
-  std::sort(times.begin(), times.end());
   for (const double ms : times) {
     out.mean_ms += ms / double(times.size());
     out.over += ms > measured_tolerance * budget_ms ? 1.0 / double(times.size()) : 0;
   }
-  constexpr double tail = 0.95;
-  out.p95_ms = times[static_cast<size_t>(tail * double(times.size() - 1) + 0.5)];
+  out.p95_ms = quantile(times, 0.95);
   out.switches = double(run.frames.back().choice.switches);
   return out;
 }
 
 TimedFigures median_of(const std::vector<TimedFigures>& runs) {
-  const auto median = [&](double TimedFigures::*figure) {
+  const auto middle = [&](double TimedFigures::*figure) {
     std::vector<double> values;
     for (const TimedFigures& run : runs)
       values.push_back(run.*figure);
-    const auto middle = values.begin() + std::ptrdiff_t(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
+    return median(values);
   };
-  return {median(&TimedFigures::mean_ms), median(&TimedFigures::p95_ms), median(&TimedFigures::over),
-          median(&TimedFigures::switches)};
+  return {middle(&TimedFigures::mean_ms), middle(&TimedFigures::p95_ms), middle(&TimedFigures::over),
+          middle(&TimedFigures::switches)};
 }
 
 double fraction_over_model(const SceneRun& run, double budget_ms) {

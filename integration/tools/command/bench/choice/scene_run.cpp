@@ -1,5 +1,5 @@
 #include "integration/tools/command/bench/choice/scene_run.hpp"
-#include "integration/tools/command/bench/selection.hpp"
+#include "integration/tools/command/bench/suite/suite.hpp"
 
 #include "integration/tools/command/interrupt.hpp"
 #include "integration/tools/command/run/rendered_frame.hpp"
@@ -7,7 +7,6 @@
 #include <fmt/format.h>
 
 namespace dermis::tools {
-namespace {} // namespace
 
 demo::Result<SceneRun> run_scene(const Session& session, const SceneRunRequest& request,
                                  SharedScene& shared) {

@@ -4,8 +4,8 @@
 #include "framegraph/text/document.hpp"
 #include "integration/examples/demo_engine/render/reported_frame.hpp"
 #include "integration/tools/command/bench/choice/skip_cases.hpp"
-#include "integration/tools/command/bench/quick.hpp"
-#include "integration/tools/command/bench/report/report.hpp"
+#include "integration/tools/command/bench/suite/statistics.hpp"
+#include "integration/tools/command/bench/suite/suites.hpp"
 #include "integration/tools/command/graph_input.hpp"
 #include "integration/tools/command/interrupt.hpp"
 #include "integration/tools/command/run/apply_slots.hpp"
@@ -24,7 +24,7 @@ namespace dermis::tools {
 namespace {
 
 constexpr double d_px = 4; // as in the framing "close"
-constexpr uint32_t warm_up = 3;
+constexpr uint64_t warm_up = 3;
 constexpr double pixels_per_tile = 64;
 
 // Removes the detection of uniform light from a graph.
@@ -32,7 +32,7 @@ constexpr const char* without_uniform_light = R"({ "dermis_overlay": 2, "edits":
   { "remove": "/passes/classify_uniform_light" }, { "remove": "/passes/classify/write/light_range" },
   { "remove": "/passes/classify/write/light_cells" } ] })";
 
-struct Case {
+struct SkipFrame {
   SkipCase from;
   std::unique_ptr<DeviceGraph> device;
   CompiledPlan plan;
@@ -45,28 +45,28 @@ struct Case {
 
 struct SkipBench {
   demo::VulkanHost& host;
-  const BenchSkipOptions& options;
+  const SuiteRun& run;
   LoadedGraph loaded, plain; // `plain` is without the detection of uniform light
   std::string text;
   std::vector<CaptureProfile> profiles;
   demo::ContextHooks hooks;
-  std::vector<Case> cases = {};
+  std::vector<SkipFrame> cases = {};
 
   const LoadedGraph& graph_of(const SkipCase& one) const { return one.skips ? loaded : plain; }
 };
 
-demo::Result<> prepare(SkipBench& bench, SkipCase from) {
-  Case one;
+demo::Result<> prepare_frame(SkipBench& bench, SkipCase from) {
+  SkipFrame one;
   one.from = std::move(from);
   const LoadedGraph& loaded = bench.graph_of(one.from);
   one.slots = choose_slots(loaded.graph, one.from.frame);
   if (!one.slots.problem.empty()) return demo::Error{demo::ErrorKind::input, one.slots.problem};
   one.slots.unbound.emplace_back("scattered_light"); // only used by tools
   DeviceGraphRequest request;
-  request.graph_name = bench.options.graph;
+  request.graph_name = bench.run.file("graph");
   request.graph_text = bench.text;
-  request.width = bench.options.size.width;
-  request.height = bench.options.size.height;
+  request.width = bench.run.size().width;
+  request.height = bench.run.size().height;
   if (!one.from.skips) request.overlays.emplace_back("without flat light", without_uniform_light);
   if (!one.from.no_profiles)
     for (const CaptureProfile& profile : bench.profiles)
@@ -84,7 +84,7 @@ demo::Result<> prepare(SkipBench& bench, SkipCase from) {
   Diagnostics diagnostics;
   if (!one.from.no_profiles) {
     const CompileChoices choices = read_choices(loaded.graph, {}, one.slots.unbound);
-    auto plan = compile_generic(loaded, bench.options.size, choices, diagnostics);
+    auto plan = compile_generic(loaded, bench.run.size(), choices, diagnostics);
     if (!plan) return demo::Error{demo::ErrorKind::input, "the graph cannot be compiled"};
     one.plan = std::move(*plan);
   }
@@ -93,7 +93,7 @@ demo::Result<> prepare(SkipBench& bench, SkipCase from) {
 }
 
 // Uploads light for each run, since the graph scatters in place.
-demo::Result<> run_once(Case& one, bool timed) {
+demo::Result<> run_once(SkipFrame& one, bool timed) {
   for (const SlotData& data : one.slots.data)
     if (auto given = one.device->upload(data.slot, data.texels, data.channels); !given) return given.error();
   if (auto ran = one.device->run(one.frame); !ran) return ran.error();
@@ -105,15 +105,15 @@ demo::Result<> run_once(Case& one, bool timed) {
   return demo::success();
 }
 
-demo::Result<> measure(SkipBench& bench, Progress& progress) {
-  for (uint32_t i = 0; i < warm_up + bench.options.repetitions; ++i) {
+demo::Result<> measure_frames(SkipBench& bench, Progress& progress) {
+  for (uint64_t i = 0; i < warm_up + bench.run.number("repetitions"); ++i) {
     // interleaved, so that a slowdown of the machine affects all cases
-    for (Case& one : bench.cases)
+    for (SkipFrame& one : bench.cases)
       if (auto ran = run_once(one, i >= warm_up); !ran) return ran.error();
-    if (interrupted()) return demo::Error{demo::ErrorKind::environment, "stopped"};
+    if (interrupted()) return stopped();
     progress.update(i + 1);
   }
-  for (Case& one : bench.cases) {
+  for (SkipFrame& one : bench.cases) {
     auto picture = one.device->read_rgb("lighting");
     if (!picture) return picture.error();
     one.picture = picture.take();
@@ -122,7 +122,7 @@ demo::Result<> measure(SkipBench& bench, Progress& progress) {
 }
 
 // Counts texels read by the groups that ran, assuming subsurface everywhere around them.
-double reads_of(const SkipBench& bench, const Case& one, std::span<const float> sap_tables) {
+double reads_of(const SkipBench& bench, const SkipFrame& one, std::span<const float> sap_tables) {
   if (one.from.no_profiles || one.from.empty_bounds) return 0;
   const LoadedGraph& loaded = bench.graph_of(one.from);
   const double listed =
@@ -160,13 +160,8 @@ double reads_of(const SkipBench& bench, const Case& one, std::span<const float> 
   return sum;
 }
 
-double median(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  return values.empty() ? 0 : values[values.size() / 2];
-}
-
-ReportValue largest_difference(const SkipBench& bench, const Case& one) {
-  for (const Case& other : bench.cases) {
+std::optional<double> largest_difference(const SkipBench& bench, const SkipFrame& one) {
+  for (const SkipFrame& other : bench.cases) {
     if (other.from.name != one.from.same_as) continue;
     double largest = 0;
     for (size_t i = 0; i < one.picture.size(); ++i)
@@ -176,99 +171,91 @@ ReportValue largest_difference(const SkipBench& bench, const Case& one) {
   return {};
 }
 
-Report make_report(const Session& session, SkipBench& bench) {
+struct SkipRow {
+  std::string name;
+  uint64_t dispatches = 0, groups = 0, reads = 0, transient_bytes = 0;
+  double device_ms = 0, full_ms = 0;
+  std::optional<double> max_difference;
+};
+
+// Loads the graph and the same without the detection of uniform light.
+demo::Result<> load_graphs(const SuiteRun& run, LoadedGraph& loaded, LoadedGraph& plain, std::string& text) {
+  const std::string path = run.file("graph");
+  Diagnostics diagnostics;
+  auto whole = load_graph(path, run.pass_types(), diagnostics);
+  if (!whole) return run.refuse(path, diagnostics);
+  text = diagnostics.files.front().text;
+  std::vector<Document> overlays;
+  if (auto overlay = parse_document("without flat light", without_uniform_light, diagnostics))
+    overlays.push_back(std::move(*overlay));
+  auto document = read_document(path, diagnostics);
+  auto part = document ? load_graph(std::move(*document), std::move(overlays), open_beside(path, {}),
+                                    diagnostics, run.pass_types().pass_types)
+                       : std::nullopt;
+  if (!part) return run.refuse(path, diagnostics);
+  loaded = std::move(*whole);
+  plain = std::move(*part);
+  return demo::success();
+}
+
+demo::Result<> measure_skip(SuiteRun& run, const Emit<SkipRow>& emit) {
+  LoadedGraph loaded, plain;
+  std::string text;
+  if (auto done = load_graphs(run, loaded, plain, text); !done) return done;
+  Diagnostics diagnostics;
+  const auto profile_text = read_document(run.file("profile"), diagnostics);
+  const auto profile = profile_text ? subsurface::read_profile(*profile_text, diagnostics) : std::nullopt;
+  if (!profile) return run.refuse(run.file("profile"), diagnostics);
+
+  HostPasses host_passes(loaded.host_pass_types); // outlives the device's context
+  const auto host = run.open_device();
+  if (!host) return host.error();
+  SkipBench bench{
+      **host, run, std::move(loaded), std::move(plain), text, {{1, *profile}}, host_passes.hooks()};
+  for (SkipCase& one : make_skip_cases(run.size().width, run.size().height, d_px, bench.profiles))
+    if (auto ready = prepare_frame(bench, std::move(one)); !ready) return ready;
+  Progress progress = run.progress("frame", warm_up + run.number("repetitions"));
+  if (auto done = measure_frames(bench, progress); !done) return done;
+
+  run.report.summary = fmt::format("{}, {}x{}, d = {} px; medians of {}, all cases interleaved",
+                                   run.file("graph"), run.size().width, run.size().height, d_px,
+                                   format_count(run.number("repetitions"), "frame"));
+  run.add_fact("full", "the whole image scatters and nothing is skipped");
+  run.add_fact("reads", "texels read by the groups that ran, counted from the kernels' source for an "
+                        "environment that scatters");
   const std::vector<float> sap_tables = subsurface::make_sap_tables({true, true}, {});
-  const double full = median(bench.cases.front().device_ms);
-  Report report;
-  report.bench = "skip";
-  report.title = "Frames that do not need all of a graph";
-  report.summary = fmt::format("{}, {}x{}, d = {} px; medians of {}, all cases interleaved",
-                               bench.options.graph, bench.options.size.width, bench.options.size.height, d_px,
-                               format_count(bench.options.repetitions, "frame"));
-  report.info = machine_info(session.command, bench.host.properties.deviceName);
-  if (bench.options.quick) report.info.push_back(quick_fact());
-  report.info.emplace_back("full", "the whole image scatters and nothing is skipped");
-  report.info.emplace_back("reads", "texels read by the groups that ran, counted from the kernels' source "
-                                    "for an environment that scatters");
-  report.table.columns = {{"case", "case"},
-                          {"dispatches", "dispatches"},
-                          {"groups", "groups"},
-                          {"reads", "reads"},
-                          {"transient_bytes", "transient bytes"},
-                          {"device_ms", "device, ms"},
-                          {"full_device_ms", "full, ms"},
-                          {"share", "of full"},
-                          {"max_difference", "largest difference"}};
-  for (const Case& one : bench.cases) {
-    const double ms = median(one.device_ms);
-    report.table.rows.push_back({one.from.name, int64_t{one.choice.dispatches},
-                                 static_cast<int64_t>(one.choice.groups),
-                                 static_cast<int64_t>(reads_of(bench, one, sap_tables)),
-                                 static_cast<int64_t>(one.device->memory().transient_bytes), ms, full,
-                                 full > 0 ? ms / full : 0, largest_difference(bench, one)});
-  }
-  return report;
-}
-
-std::string text_of(const Report& report) {
-  Table table;
-  for (const ReportColumn& column : report.table.columns)
-    table.columns.push_back({column.title, column.key != "case"});
-  for (const auto& row : report.table.rows) {
-    auto& cells = table.rows.emplace_back();
-    for (const ReportValue& value : row) {
-      if (const auto* text = std::get_if<std::string>(&value))
-        cells.push_back(*text);
-      else if (const auto* number = std::get_if<double>(&value))
-        cells.push_back(fmt::format("{:.3g}", *number));
-      else if (const auto* count = std::get_if<int64_t>(&value))
-        cells.push_back(fmt::format("{}", *count));
-      else
-        cells.emplace_back("-");
-    }
-  }
-  return format_table(table);
-}
-
-ExitCode failed(const Session& session, const demo::Error& error) {
-  if (interrupted()) return fail(session, ExitCode::interrupted, "stopped");
-  return fail(session, static_cast<ExitCode>(error.kind), error.text);
+  const double full_ms = median(bench.cases.front().device_ms);
+  for (const SkipFrame& one : bench.cases)
+    emit({one.from.name, one.choice.dispatches, one.choice.groups,
+          static_cast<uint64_t>(reads_of(bench, one, sap_tables)), one.device->memory().transient_bytes,
+          median(one.device_ms), full_ms, largest_difference(bench, one)});
+  return demo::success();
 }
 
 } // namespace
 
-ExitCode bench_skip(const Session& session, const BenchSkipOptions& requested) {
-  const BenchSkipOptions options = quickened(requested);
-  Diagnostics diagnostics;
-  const GraphParts parts{.overlays = {}, .roots = {}, .pass_types = options.pass_types};
-  auto loaded = load_graph(options.graph, parts, diagnostics);
-  if (!loaded) return fail_graph(session, options.graph, diagnostics);
-  const std::string text = diagnostics.files.front().text;
-  std::vector<Document> overlays;
-  if (auto overlay = parse_document("without flat light", without_uniform_light, diagnostics))
-    overlays.push_back(std::move(*overlay));
-  auto document = read_document(options.graph, diagnostics);
-  auto plain = document ? load_graph(std::move(*document), std::move(overlays),
-                                     open_beside(options.graph, {}), diagnostics, options.pass_types)
-                        : std::nullopt;
-  if (!plain) return fail_graph(session, options.graph, diagnostics);
-  const auto profile_text = read_document(options.profile, diagnostics);
-  const auto profile = profile_text ? subsurface::read_profile(*profile_text, diagnostics) : std::nullopt;
-  if (!profile) return fail_graph(session, options.profile, diagnostics);
-
-  HostPasses host_passes(loaded->host_pass_types); // outlives the device's context
-  auto host = demo::create_vulkan_host({});
-  if (!host) return failed(session, host.error());
-  SkipBench bench{**host, options,         std::move(*loaded), std::move(*plain),
-                  text,   {{1, *profile}}, host_passes.hooks()};
-  for (SkipCase& one : make_skip_cases(options.size.width, options.size.height, d_px, bench.profiles))
-    if (auto ready = prepare(bench, std::move(one)); !ready) return failed(session, ready.error());
-  Progress progress(progress_style(session.quiet, false), "skip", "frame", warm_up + options.repetitions);
-  if (auto done = measure(bench, progress); !done) return failed(session, done.error());
-  const Report report = make_report(session, bench);
-  if (!session.quiet && options.json != "-" && options.html != "-") print(text_of(report));
-  const std::string problem = deliver_report(report, options.json, "", options.html);
-  return problem.empty() ? ExitCode::ok : fail(session, ExitCode::environment, problem);
+Suite skip_suite() {
+  using Row = SkipRow;
+  SuiteOption size = size_option({1280, 720}); // in a smaller view, fixed costs are a large fraction
+  return make_suite<Row>(
+      {.name = "skip",
+       .what = "Measure frames that do not need all of a graph",
+       .title = "Frames that do not need all of a graph",
+       .options = {size,
+                   {"graph", "Graph file", "configs/graphs/skin.json", "FILE"},
+                   pass_types_option(),
+                   {"profile", "Profile of the plane", "configs/profiles/skin.json", "FILE"},
+                   {"repetitions", "Timed frames per case", 31u, "", 1u, 1, 3600}}},
+      {{"case", "case", &Row::name},
+       {"dispatches", "dispatches", &Row::dispatches},
+       {"groups", "groups", &Row::groups},
+       {"reads", "reads", &Row::reads},
+       {"transient_bytes", "transient bytes", &Row::transient_bytes},
+       {"device_ms", "device, ms", &Row::device_ms},
+       {"full_device_ms", "full, ms", &Row::full_ms},
+       {"share", "of full", [](const Row& row) { return row.full_ms > 0 ? row.device_ms / row.full_ms : 0; }},
+       {"max_difference", "largest difference", &Row::max_difference}},
+      measure_skip);
 }
 
 } // namespace dermis::tools

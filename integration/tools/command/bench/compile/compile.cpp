@@ -2,21 +2,17 @@
 // graphs.
 
 #include "framegraph/compile/compile.hpp"
-#include "framegraph/text/json_writer.hpp"
 #include "integration/tools/command/bench/compile/shapes.hpp"
-#include "integration/tools/command/bench/quick.hpp"
-#include "integration/tools/command/bench/report/report.hpp"
+#include "integration/tools/command/bench/suite/statistics.hpp"
+#include "integration/tools/command/bench/suite/suites.hpp"
 #include "integration/tools/command/bench/thread_time.hpp"
 #include "integration/tools/command/graph_input.hpp"
 #include "integration/tools/command/interrupt.hpp"
-#include "integration/tools/command/output.hpp"
-#include "integration/tools/command/verbs.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <filesystem>
-#include <numeric>
 
 namespace dermis::tools {
 namespace {
@@ -45,7 +41,7 @@ double time_goal(std::string_view shape, uint32_t passes, PackingLevel level, bo
   return reasons ? 2.0 * plain : plain;
 }
 
-struct Subject { // graphs that alternate
+struct GraphSet { // graphs that alternate
   std::string shape;
   uint32_t passes = 0;
   uint32_t view_width = 0, view_height = 0;
@@ -53,32 +49,33 @@ struct Subject { // graphs that alternate
   std::vector<Graph> graphs;
 };
 
-struct Options {
+struct CompileOptions {
   PackingLevel level = PackingLevel::fast;
   PassOrder order = PassOrder::memory;
   bool reasons = false;
 };
 
-struct Row {
+struct CompileRow {
   std::string shape;
-  uint32_t passes = 0, rotating = 0, samples = 0;
-  Options options;
-  // ns per pass; low and high: 10 % and 90 %
-  double median = 0.0, lowest = 0.0, low = 0.0, high = 0.0;
-  double goal = 0.0;
+  uint32_t passes = 0;
+  size_t rotating = 0;
+  CompileOptions options;
+  std::optional<size_t> samples; // not set: not timed, as the times
+  std::optional<Spread> ns;      // per pass
+  std::optional<double> goal;    // of the median
   double heap_bytes = 0.0, max_live_bytes = 0.0, ratio = 0.0, worst_ratio = 0.0, batches_per_pass = 0.0;
   uint32_t optimal = 0;                   // graphs whose heap equals the lower bound
   double mean_ms = 0.0, slowest_ms = 0.0; // CPU time per graph, each compiled once
 };
 
-CompileInput input_of(const Subject& subject, const Graph& graph, const DeviceProfile& device,
-                      const Options& options) {
+CompileInput input_of(const GraphSet& set, const Graph& graph, const DeviceProfile& device,
+                      const CompileOptions& options) {
   CompileInput input;
   input.graph = &graph;
-  input.pass_types = subject.pass_types;
+  input.pass_types = set.pass_types;
   input.device = &device;
-  input.view_width = subject.view_width;
-  input.view_height = subject.view_height;
+  input.view_width = set.view_width;
+  input.view_height = set.view_height;
   input.reasons = options.reasons;
   input.order = options.order;
   input.packing = options.level;
@@ -93,11 +90,11 @@ double batches_per_pass(const Plan& plan) {
 
 // Measures memory and order of each graph once, which also warms up the compiler. Returns false if
 // a graph is rejected.
-bool measure_memory(Compiler& compiler, const Subject& subject, const DeviceProfile& device,
-                    CompiledPlan& plan, Row& row, Diagnostics& diagnostics) {
-  for (const Graph& graph : subject.graphs) {
+bool measure_memory(Compiler& compiler, const GraphSet& set, const DeviceProfile& device, CompiledPlan& plan,
+                    CompileRow& row, Diagnostics& diagnostics) {
+  for (const Graph& graph : set.graphs) {
     const uint64_t began = thread_nanoseconds();
-    if (!compiler.compile(input_of(subject, graph, device, row.options), diagnostics, plan)) return false;
+    if (!compiler.compile(input_of(set, graph, device, row.options), diagnostics, plan)) return false;
     const double ms = static_cast<double>(thread_nanoseconds() - began) / ns_per_ms;
     row.mean_ms += ms;
     row.slowest_ms = std::max(row.slowest_ms, ms);
@@ -114,18 +111,18 @@ bool measure_memory(Compiler& compiler, const Subject& subject, const DeviceProf
     row.batches_per_pass += batches_per_pass(plan.plan);
     row.optimal += size == bound;
   }
-  const auto count = static_cast<double>(subject.graphs.size());
+  const auto count = static_cast<double>(set.graphs.size());
   for (double* mean : {&row.heap_bytes, &row.max_live_bytes, &row.ratio, &row.batches_per_pass, &row.mean_ms})
     *mean /= count;
   return true;
 }
 
-void measure_time(Compiler& compiler, const Subject& subject, const DeviceProfile& device, CompiledPlan& plan,
-                  uint64_t time_per_row, Row& row, Diagnostics& diagnostics) {
+void measure_time(Compiler& compiler, const GraphSet& set, const DeviceProfile& device, CompiledPlan& plan,
+                  uint64_t time_per_row, CompileRow& row, Diagnostics& diagnostics) {
   std::vector<CompileInput> inputs;
   uint64_t passes = 0;
-  for (const Graph& graph : subject.graphs) {
-    inputs.push_back(input_of(subject, graph, device, row.options));
+  for (const Graph& graph : set.graphs) {
+    inputs.push_back(input_of(set, graph, device, row.options));
     passes += graph.passes.size();
   }
   std::vector<double> samples;
@@ -138,225 +135,179 @@ void measure_time(Compiler& compiler, const Subject& subject, const DeviceProfil
     spent += took;
     samples.push_back(static_cast<double>(took) / static_cast<double>(passes));
   }
-  std::sort(samples.begin(), samples.end());
-  row.samples = static_cast<uint32_t>(samples.size());
-  row.lowest = samples.front();
-  row.median = samples[samples.size() / 2];
-  row.low = samples[samples.size() / 10];
-  row.high = samples[samples.size() * 9 / 10];
+  row.samples = samples.size();
+  row.ns = spread_of(samples);
+  const double goal = time_goal(row.shape, row.passes, row.options.level, row.options.reasons);
+  if (goal > 0) row.goal = goal;
 }
 
 // time_per_row is the duration of the timing in ns; 0 skips the timing.
-std::optional<Row> measure(const Subject& subject, const Options& options, uint64_t time_per_row,
-                           Diagnostics& diagnostics) {
+std::optional<CompileRow> measure_set(const GraphSet& set, const CompileOptions& options,
+                                      uint64_t time_per_row, Diagnostics& diagnostics) {
   const DeviceProfile device = generic_profile();
-  Row row;
-  row.shape = subject.shape;
-  row.passes = subject.passes;
-  row.rotating = static_cast<uint32_t>(subject.graphs.size());
-  row.options = options;
-  row.goal = time_goal(row.shape, row.passes, options.level, options.reasons);
+  CompileRow row{set.shape, set.passes, set.graphs.size(), options, {}, {}, {}};
   Compiler compiler;
   CompiledPlan plan;
-  if (!measure_memory(compiler, subject, device, plan, row, diagnostics)) return std::nullopt;
-  if (time_per_row > 0) measure_time(compiler, subject, device, plan, time_per_row, row, diagnostics);
+  if (!measure_memory(compiler, set, device, plan, row, diagnostics)) return std::nullopt;
+  if (time_per_row > 0) measure_time(compiler, set, device, plan, time_per_row, row, diagnostics);
   return row;
 }
 
-Subject draw(const ShapeFile& file, const PassTypeRegistry& pass_types, const Shape& shape, uint32_t passes,
-             uint32_t count) {
-  Subject subject{shape.name, passes, file.view_width, file.view_height, &pass_types, {}};
-  for (uint32_t seed = 0; seed < count; ++seed)
-    subject.graphs.push_back(draw_graph(file, shape, passes, seed));
-  return subject;
-}
-
-std::string table_line(const Row& row) {
-  const auto time = [&](double ns, bool given) { return given ? fmt::format("{:.0f}", ns) : "-"; };
-  const bool timed = row.samples > 0;
-  return fmt::format(
-      "{:<22}{:>6}{:>5}  {:<9}{:<9}{:<4}{:>9}{:>9}{:>9}{:>7}{:>10.1f}{:>8.4f}{:>8.4f}{:>6}{:>9.1f}{:>7.2f}\n",
-      row.shape, row.passes, row.rotating, level_names[static_cast<size_t>(row.options.level)],
-      order_names[static_cast<size_t>(row.options.order)], row.options.reasons ? "yes" : "no",
-      time(row.median, timed), time(row.low, timed), time(row.high, timed),
-      time(row.goal, timed && row.goal > 0.0), row.heap_bytes / mebibyte, row.ratio, row.worst_ratio,
-      row.optimal, row.slowest_ms, row.batches_per_pass);
-}
-
-constexpr std::string_view table_head =
-    "shape                 passes  rot  level    order    why  ns/pass    10 %    "
-    " 90 %   goal  heap MiB   ratio   worst  best  slow ms  batch\n";
-
-void write_row(JsonWriter& out, const Row& row) {
-  out.open_object(true)
-      .member("shape", row.shape)
-      .member("passes", row.passes)
-      .member("rotating", row.rotating);
-  out.member("level", level_names[static_cast<size_t>(row.options.level)]);
-  out.member("order", order_names[static_cast<size_t>(row.options.order)]);
-  out.member("reasons_on", row.options.reasons);
-  if (row.samples > 0) {
-    out.key("ns_per_pass").open_object(true).member("median", row.median).member("lowest", row.lowest);
-    out.member("p10", row.low).member("p90", row.high).member("samples", row.samples).close();
-    if (row.goal > 0.0) out.member("goal_ns_per_pass", row.goal).member("goal_met", row.median <= row.goal);
-  }
-  out.member("heap_bytes", row.heap_bytes).member("max_live_bytes", row.max_live_bytes);
-  out.member("ratio", row.ratio).member("worst_ratio", row.worst_ratio).member("optimal", row.optimal);
-  out.member("mean_ms_per_graph", row.mean_ms).member("slowest_ms_per_graph", row.slowest_ms);
-  out.member("batches_per_pass", row.batches_per_pass).close();
-}
-
-Report page_of(const Session& session, const std::vector<Row>& rows) {
-  Report report;
-  report.bench = "compile";
-  report.title = "Cost of compiling a graph";
-  report.summary = "CPU time of the compiling thread, and memory efficiency of the heaps.";
-  report.info = machine_info(session.command, "");
-  report.table.columns = {{"shape", "shape"},
-                          {"passes", "passes"},
-                          {"rotating", "graphs"},
-                          {"level", "level"},
-                          {"order", "order"},
-                          {"reasons_on", "with reasons"},
-                          {"ns_per_pass", "ns a pass, median"},
-                          {"low", "10 %"},
-                          {"high", "90 %"},
-                          {"goal", "goal"},
-                          {"heap_mib", "heap, MiB", 4},
-                          {"ratio", "heap / live at once", 5},
-                          {"worst_ratio", "worst", 5},
-                          {"slowest_ms", "slowest, ms"},
-                          {"batches_per_pass", "batches a pass"}};
-  Plot plot{"packing level fast, without reasons", "passes", "ns a pass", {}};
-  for (const Row& row : rows) {
-    const bool timed = row.samples > 0;
-    const auto time = [&](double value) { return timed && value > 0 ? ReportValue(value) : ReportValue(); };
-    const std::string level(level_names[static_cast<size_t>(row.options.level)]);
-    report.table.rows.push_back({row.shape, int64_t{row.passes}, int64_t{row.rotating}, level,
-                                 std::string(order_names[static_cast<size_t>(row.options.order)]),
-                                 std::string(row.options.reasons ? "yes" : "no"), time(row.median),
-                                 time(row.low), time(row.high), time(row.goal), row.heap_bytes / mebibyte,
-                                 row.ratio, row.worst_ratio, row.slowest_ms, row.batches_per_pass});
-    if (!timed || row.options.reasons || row.options.level != PackingLevel::fast) continue;
-    if (plot.series.empty() || plot.series.back().name != row.shape) plot.series.push_back({row.shape, {}});
-    plot.series.back().points.push_back(
-        {double(row.passes), row.median,
-         fmt::format("{} of {} passes: {:.0f} ns a pass", row.shape, row.passes, row.median), false});
-  }
-  if (!plot.series.empty()) report.plots = {plot};
-  report.plots_title = "Time over size";
-  report.plots_text = "Point at a row to see its name.";
-  return report;
-}
-
-struct Bench {
-  const Session& session;
-  Effort effort = {};
-  Diagnostics diagnostics = {};
-  std::vector<Row> rows = {};
-
-  bool add(const Subject& subject, const Options& options, bool timed) {
-    if (interrupted()) return false;
-    const std::optional<Row> row = measure(subject, options, timed ? effort.time_per_row : 0, diagnostics);
-    if (!row) return false;
-    if (!session.quiet) print(table_line(*row));
-    rows.push_back(*row);
-    return true;
-  }
-
-  bool add_times(const ShapeFile& file, const PassTypeRegistry& pass_types) {
-    for (const Shape& shape : file.shapes)
-      for (const uint32_t passes : pass_counts) {
-        const Subject subject = draw(file, pass_types, shape, passes, effort.rotating);
-        if (!add(subject, {}, true) || !add(subject, {PackingLevel::fast, PassOrder::memory, true}, true))
-          return false;
-        if (passes == memory_passes && !add(subject, {PackingLevel::tight, PassOrder::memory, false}, true))
-          return false;
-      }
-    return true;
-  }
-
-  bool add_memory(const ShapeFile& file, const PassTypeRegistry& pass_types, bool optimize) {
-    for (const Shape& shape : file.shapes) {
-      if (shape.kind == Shape::Kind::random && shape.dead_percent == 0) {
-        const Subject subject = draw(file, pass_types, shape, memory_passes, effort.memory_seeds);
-        for (const PackingLevel level : {PackingLevel::fast, PackingLevel::tight, PackingLevel::optimize})
-          if ((level != PackingLevel::optimize || optimize) &&
-              !add(subject, {level, PassOrder::memory, false}, false))
-            return false;
-      }
-      if (shape.kind != Shape::Kind::fan) continue;
-      for (const uint32_t passes : pass_counts) {
-        const Subject subject = draw(file, pass_types, shape, passes, effort.fan_seeds);
-        for (const PassOrder order : {PassOrder::memory, PassOrder::program})
-          if (!add(subject, {PackingLevel::fast, order, false}, false)) return false;
-        if (!add(subject, {PackingLevel::tight, PassOrder::memory, false}, false)) return false;
-      }
-    }
-    return true;
-  }
-
-  bool add_given(const std::string& folder, const std::vector<std::string>& pass_types) {
-    std::vector<std::string> files;
-    std::error_code error;
-    for (std::filesystem::recursive_directory_iterator at(folder, error), end; !error && at != end;
-         at.increment(error))
-      if (at->path().extension() == ".json" && !at->path().string().ends_with(".expect.json"))
-        files.push_back(at->path().string());
-    std::sort(files.begin(), files.end(), [](const std::string& a, const std::string& b) {
-      return std::filesystem::path(a).filename() < std::filesystem::path(b).filename();
-    });
-    std::vector<LoadedGraph> loaded;
-    for (const std::string& file : files) {
-      std::optional<LoadedGraph> graph =
-          load_graph(file, {.overlays = {}, .roots = {}, .pass_types = pass_types}, diagnostics);
-      if (!graph) return false;
-      loaded.push_back(std::move(*graph));
-    }
-    for (size_t i = 0; i < loaded.size(); ++i) {
-      const auto passes = static_cast<uint32_t>(loaded[i].graph.passes.size());
-      const Subject subject{std::filesystem::path(files[i]).stem().string(),
-                            passes,
-                            default_size.width,
-                            default_size.height,
-                            &loaded[i].pass_types,
-                            {loaded[i].graph}};
-      for (const bool reasons : {false, true})
-        if (!add(subject, {PackingLevel::fast, PassOrder::memory, reasons}, true)) return false;
-    }
-    return true;
-  }
+// The rows of one set of graphs.
+struct CompileTask {
+  std::function<GraphSet()> make;
+  std::vector<CompileOptions> options;
+  bool timed = true;
 };
+
+CompileTask task_of(const ShapeFile& file, const PassTypeRegistry& pass_types, const Shape& shape,
+                    uint32_t passes, uint32_t count, std::vector<CompileOptions> options, bool timed) {
+  const auto make = [&file, &pass_types, &shape, passes, count] {
+    GraphSet set{shape.name, passes, file.view_width, file.view_height, &pass_types, {}};
+    for (uint32_t seed = 0; seed < count; ++seed)
+      set.graphs.push_back(draw_graph(file, shape, passes, seed));
+    return set;
+  };
+  return {make, std::move(options), timed};
+}
+
+constexpr CompileOptions fast_options{}, tight_options{PackingLevel::tight},
+    fast_in_program_order{PackingLevel::fast, PassOrder::program},
+    fast_with_reasons{PackingLevel::fast, PassOrder::memory, true};
+
+void add_times(std::vector<CompileTask>& tasks, const Effort& effort, const ShapeFile& file,
+               const PassTypeRegistry& pass_types) {
+  for (const Shape& shape : file.shapes)
+    for (const uint32_t passes : pass_counts) {
+      std::vector<CompileOptions> options = {fast_options, fast_with_reasons};
+      if (passes == memory_passes) options.push_back(tight_options);
+      tasks.push_back(task_of(file, pass_types, shape, passes, effort.rotating, options, true));
+    }
+}
+
+void add_memory(std::vector<CompileTask>& tasks, const Effort& effort, const ShapeFile& file,
+                const PassTypeRegistry& pass_types, bool optimize) {
+  for (const Shape& shape : file.shapes) {
+    if (shape.kind == Shape::Kind::random && shape.dead_percent == 0) {
+      std::vector<CompileOptions> options = {fast_options, tight_options};
+      if (optimize) options.push_back({PackingLevel::optimize});
+      tasks.push_back(task_of(file, pass_types, shape, memory_passes, effort.memory_seeds, options, false));
+    }
+    if (shape.kind != Shape::Kind::fan) continue;
+    for (const uint32_t passes : pass_counts)
+      tasks.push_back(task_of(file, pass_types, shape, passes, effort.fan_seeds,
+                              {fast_options, fast_in_program_order, tight_options}, false));
+  }
+}
+
+// Returns false if a graph cannot be used. `loaded` owns the graphs' pass types.
+bool add_given(std::vector<CompileTask>& tasks, const SuiteRun& run, std::vector<LoadedGraph>& loaded,
+               Diagnostics& diagnostics) {
+  const std::vector<std::string> files = graph_files(run.text("graphs"));
+  for (const std::string& file : files) {
+    std::optional<LoadedGraph> graph = load_graph(file, run.pass_types(), diagnostics);
+    if (!graph) return false;
+    loaded.push_back(std::move(*graph));
+  }
+  for (size_t i = 0; i < loaded.size(); ++i) {
+    const auto passes = static_cast<uint32_t>(loaded[i].graph.passes.size());
+    const auto make = [&loaded, i, passes, name = std::filesystem::path(files[i]).stem().string()] {
+      return GraphSet{
+          name, passes, default_size.width, default_size.height, &loaded[i].pass_types, {loaded[i].graph}};
+    };
+    tasks.push_back({make, {fast_options, fast_with_reasons}});
+  }
+  return true;
+}
+
+void add_point(Plot& plot, const CompileRow& row) {
+  if (!row.ns || row.options.reasons || row.options.level != PackingLevel::fast) return;
+  if (plot.series.empty() || plot.series.back().name != row.shape) plot.series.push_back({row.shape, {}});
+  plot.series.back().points.push_back(
+      {double(row.passes), row.ns->median,
+       fmt::format("{} of {} passes: {:.0f} ns a pass", row.shape, row.passes, row.ns->median), false});
+}
+
+demo::Result<> measure_compile(SuiteRun& run, const Emit<CompileRow>& emit) {
+  const Effort effort = run.quick ? quick_effort : Effort();
+  const std::string source = run.text("graphs").empty() ? run.file("shapes") : run.text("graphs");
+  Diagnostics diagnostics;
+  std::vector<CompileTask> tasks;
+  std::vector<LoadedGraph> loaded;
+  std::optional<ShapeFile> file;
+  const PassTypeRegistry pass_types = benchmark_pass_types();
+  if (run.text("graphs").empty()) {
+    file = read_shapes(source, diagnostics);
+    if (!file) return run.refuse(source, diagnostics);
+    add_times(tasks, effort, *file, pass_types);
+    add_memory(tasks, effort, *file, pass_types, run.flag("optimize"));
+  } else if (!add_given(tasks, run, loaded, diagnostics)) {
+    return run.refuse(source, diagnostics);
+  }
+  run.report.constants = {{"clock", "CPU time of the thread"}};
+  run.report.plots_title = "Time over size";
+  run.report.plots_text = "Point at a row to see its name.";
+  Plot plot{"packing level fast, without reasons", "passes", "ns a pass", {}};
+  Progress progress = run.progress("set", tasks.size());
+  uint64_t done = 0;
+  for (const CompileTask& task : tasks) {
+    const GraphSet set = task.make();
+    for (const CompileOptions& options : task.options) {
+      if (interrupted()) return stopped();
+      const auto row = measure_set(set, options, task.timed ? effort.time_per_row : 0, diagnostics);
+      if (!row) return run.refuse(source, diagnostics);
+      add_point(plot, *row);
+      emit(*row);
+    }
+    progress.update(++done);
+  }
+  if (!plot.series.empty()) run.report.plots = {plot};
+  return demo::success();
+}
+
+template <double Spread::*Figure> std::optional<double> time_of(const CompileRow& row) {
+  return row.ns ? std::optional((*row.ns).*Figure) : std::nullopt;
+}
 
 } // namespace
 
-ExitCode bench_compile(const Session& session, const BenchCompileOptions& options) {
-  Bench bench{session, options.quick ? quick_effort : Effort()};
-  if (!session.quiet) print(table_head);
-  bool good = true;
-  if (options.graphs.empty()) {
-    const std::optional<ShapeFile> file = read_shapes(options.shapes, bench.diagnostics);
-    if (!file) return fail_graph(session, options.shapes, bench.diagnostics);
-    const PassTypeRegistry pass_types = benchmark_pass_types();
-    good = bench.add_times(*file, pass_types) && bench.add_memory(*file, pass_types, options.optimize);
-  } else {
-    good = bench.add_given(options.graphs, options.pass_types);
-  }
-  if (interrupted()) return fail(session, ExitCode::interrupted, "stopped");
-  if (!good) return fail_graph(session, options.graphs, bench.diagnostics);
-  Report page = page_of(session, bench.rows);
-  if (options.quick) page.info.push_back(quick_fact());
-  const std::string refused = deliver_report(page, "", "", options.html);
-  if (!refused.empty()) return fail(session, ExitCode::environment, refused);
-  if (options.json.empty()) return ExitCode::ok;
-  JsonWriter out;
-  out.open_object().member("dermis_bench", "compile").member("clock", "CPU time of the thread");
-  out.key("rows").open_array();
-  for (const Row& row : bench.rows)
-    write_row(out, row);
-  out.close().close();
-  const std::string problem = deliver_text(options.json, std::move(out).finish());
-  return problem.empty() ? ExitCode::ok : fail(session, ExitCode::environment, problem);
+Suite compile_suite() {
+  using Row = CompileRow;
+  return make_suite<Row>(
+      {.name = "compile",
+       .what = "Measure time and memory of compiling random graphs or given graphs",
+       .title = "Cost of compiling a graph",
+       .summary = "CPU time of the compiling thread, and memory efficiency of the heaps.",
+       .options = {{"shapes", "Description of the random graphs", "tests/benchmark/shapes.json", "FILE"},
+                   {"graphs", "Measure the graph files of a folder instead", "", "DIR"},
+                   pass_types_option(),
+                   {"optimize", "Also measure the packing level that takes seconds per graph", false}}},
+      {{"shape", "shape", &Row::shape, {.groups = true}},
+       {"passes", "passes", &Row::passes},
+       {"rotating", "graphs", &Row::rotating},
+       {"level", "level", [](const Row& row) { return level_names[size_t(row.options.level)]; }},
+       {"order", "order", [](const Row& row) { return order_names[size_t(row.options.order)]; }},
+       {"reasons_on", "with reasons", [](const Row& row) { return row.options.reasons; }},
+       {"ns_per_pass.median", "ns a pass, median", time_of<&Spread::median>},
+       {"ns_per_pass.lowest", "", time_of<&Spread::lowest>},
+       {"ns_per_pass.p10", "10 %", time_of<&Spread::p10>},
+       {"ns_per_pass.p90", "90 %", time_of<&Spread::p90>},
+       {"ns_per_pass.samples", "", &Row::samples},
+       {"goal_ns_per_pass", "goal", &Row::goal},
+       {"goal_met",
+        "goal met",
+        [](const Row& row) { return row.goal ? std::optional(row.ns->median <= *row.goal) : std::nullopt; },
+        {.goal = Goal::wanted}},
+       {"heap_bytes", "", &Row::heap_bytes},
+       {"max_live_bytes", "", &Row::max_live_bytes},
+       {"heap_mib", "heap, MiB", [](const Row& row) { return row.heap_bytes / mebibyte; }, {4}},
+       {"ratio", "heap / live at once", &Row::ratio, {5}},
+       {"worst_ratio", "worst", &Row::worst_ratio, {5}},
+       {"optimal", "optimal", &Row::optimal},
+       {"mean_ms_per_graph", "", &Row::mean_ms},
+       {"slowest_ms_per_graph", "slowest, ms", &Row::slowest_ms},
+       {"batches_per_pass", "batches a pass", &Row::batches_per_pass}},
+      measure_compile);
 }
 
 } // namespace dermis::tools

@@ -1,6 +1,7 @@
 #include "integration/tools/command/bench/compile/shapes.hpp"
 
 #include "framegraph/model/splitmix.hpp"
+#include "integration/tools/command/bench/suite/bench_file.hpp"
 
 #include <fmt/format.h>
 
@@ -147,101 +148,57 @@ struct Draft {
   }
 };
 
-struct Fields {
-  const Document& document;
-  Diagnostics& diagnostics;
+// Reads two integers.
+void read_pair(BenchObject& object, std::string_view key, int64_t maximum, int64_t& first, int64_t& second) {
+  const NodeId list = object.reader.array(key, 2, 2);
+  if (!list.valid()) return;
+  const std::vector<NodeId> nodes = children(object.document, list);
+  const std::string what = fmt::format("'{}' of {}", key, object.reader.what());
+  first = read_integer(object.document, nodes[0], what, 1, maximum, object.diagnostics).value_or(1);
+  second = read_integer(object.document, nodes[1], what, 1, maximum, object.diagnostics).value_or(1);
+}
 
-  NodeId member(NodeId object, std::string_view key, NodeKind kind) {
-    const NodeId node = document.find(object, key);
-    if (node.valid() && document[node].kind == kind) return node;
-    diagnostics.add(node.valid() ? DiagnosticId::wrong_type : DiagnosticId::missing_key,
-                    document.where(node.valid() ? node : object),
-                    fmt::format("'{}' must be {}", key, kind_name(kind)));
-    return {};
-  }
+void read_resource(BenchObject& object, DrawnResource& drawn) {
+  std::string name;
+  object.count("percent", drawn.percent, 1, 100);
+  object.text("format", name);
+  const auto format = format_from_name(name);
+  if (!format)
+    object.diagnostics.add(DiagnosticId::invalid_value, object.document.where(object.reader.node()),
+                           fmt::format("no format has the name '{}'", name));
+  drawn.format = format.value_or(Format::undefined);
+  read_pair(object, "scale", 64, drawn.scale.numerator, drawn.scale.denominator);
+}
 
-  uint32_t integer(NodeId object, std::string_view key, int64_t minimum, int64_t maximum) {
-    const NodeId node = member(object, key, NodeKind::integer);
-    return node.valid() ? checked(node, minimum, maximum) : 1;
+void read_shape(BenchObject& object, Shape& shape) {
+  constexpr std::string_view kinds[] = {"chain", "fan", "random"}; // in the order of Shape::Kind
+  object.name("name", shape.name);
+  if (const auto kind = object.reader.word("kind", kinds)) shape.kind = static_cast<Shape::Kind>(*kind);
+  if (shape.kind == Shape::Kind::fan) {
+    read_pair(object, "readers", 64, shape.readers.numerator, shape.readers.denominator);
+    object.count("arity", shape.arity, 2, max_reads);
+  } else if (shape.kind == Shape::Kind::random) {
+    object.count("max_reads", shape.max_reads, 1, max_reads);
+    object.count("max_writes", shape.max_writes, 1, max_writes);
+    object.count("unread_percent", shape.unread_percent, 0, 100);
+    object.count("window", shape.window, 1, 1 << 20);
+    object.count("dead_percent", shape.dead_percent, 0, 90);
   }
-
-  uint32_t checked(NodeId node, int64_t minimum, int64_t maximum) {
-    const int64_t value = document[node].integer;
-    if (document[node].kind == NodeKind::integer && value >= minimum && value <= maximum)
-      return static_cast<uint32_t>(value);
-    diagnostics.add(DiagnosticId::out_of_range, document.where(node),
-                    fmt::format("an integer within {} .. {} is expected", minimum, maximum));
-    return 1;
-  }
-
-  std::pair<uint32_t, uint32_t> pair(NodeId object, std::string_view key, int64_t maximum) {
-    const NodeId node = member(object, key, NodeKind::array);
-    if (!node.valid()) return {1, 1};
-    if (document[node].child_count != 2) {
-      diagnostics.add(DiagnosticId::wrong_type, document.where(node), "two integers are expected");
-      return {1, 1};
-    }
-    const NodeId first = document[node].first_child;
-    return {checked(first, 1, maximum), checked(document[first].next, 1, maximum)};
-  }
-
-  void resource(NodeId node, ShapeFile& file) {
-    DrawnResource drawn;
-    drawn.percent = integer(node, "percent", 1, 100);
-    const NodeId name = member(node, "format", NodeKind::string);
-    const auto format = name.valid() ? format_from_name(document.text(name)) : std::nullopt;
-    if (name.valid() && !format)
-      diagnostics.add(DiagnosticId::invalid_value, document.where(name), "no format has this name");
-    drawn.format = format.value_or(Format::undefined);
-    const auto [numerator, denominator] = pair(node, "scale", 64);
-    drawn.scale = {numerator, denominator};
-    file.resources.push_back(drawn);
-  }
-
-  void shape(NodeId node, ShapeFile& file) {
-    Shape shape;
-    const NodeId name = member(node, "name", NodeKind::string), kind = member(node, "kind", NodeKind::string);
-    if (!name.valid() || !kind.valid()) return;
-    shape.name = document.text(name);
-    if (document.text(kind) == "fan") {
-      shape.kind = Shape::Kind::fan;
-      const auto [numerator, denominator] = pair(node, "readers", 64);
-      shape.readers = {numerator, denominator};
-      shape.arity = integer(node, "arity", 2, max_reads);
-    } else if (document.text(kind) == "random") {
-      shape.kind = Shape::Kind::random;
-      shape.max_reads = integer(node, "max_reads", 1, max_reads);
-      shape.max_writes = integer(node, "max_writes", 1, max_writes);
-      shape.unread_percent = integer(node, "unread_percent", 0, 100);
-      shape.window = integer(node, "window", 1, 1 << 20);
-      shape.dead_percent = integer(node, "dead_percent", 0, 90);
-    } else if (document.text(kind) != "chain") {
-      diagnostics.add(DiagnosticId::invalid_value, document.where(kind), "expected chain, fan or random");
-    }
-    file.shapes.push_back(std::move(shape));
-  }
-};
+}
 
 } // namespace
 
 std::optional<ShapeFile> read_shapes(const std::string& path, Diagnostics& diagnostics) {
-  const std::optional<Document> document = read_document(path, diagnostics);
-  if (!document) return std::nullopt;
-  Fields fields{*document, diagnostics};
-  ShapeFile file;
-  fields.integer(document->root(), "dermis_benchmark", 1, 1);
-  std::tie(file.view_width, file.view_height) = fields.pair(document->root(), "view", 16384);
-  const NodeId resources = fields.member(document->root(), "resources", NodeKind::array);
-  const NodeId shapes = fields.member(document->root(), "shapes", NodeKind::array);
-  if (!resources.valid() || !shapes.valid()) return std::nullopt;
-  for (NodeId at = (*document)[resources].first_child; at.valid(); at = (*document)[at].next)
-    fields.resource(at, file);
-  for (NodeId at = (*document)[shapes].first_child; at.valid(); at = (*document)[at].next)
-    fields.shape(at, file);
-  if (file.resources.empty())
-    diagnostics.add(DiagnosticId::missing_key, document->where(resources),
-                    "at least one resource is expected");
-  return diagnostics.has_errors() ? std::nullopt : std::optional(std::move(file));
+  return read_bench_file<ShapeFile>(path, diagnostics, [](BenchObject& root, ShapeFile& file) {
+    int64_t width = 1, height = 1;
+    read_pair(root, "view", 16384, width, height);
+    file.view_width = static_cast<uint32_t>(width);
+    file.view_height = static_cast<uint32_t>(height);
+    root.entries("resources", "resource", 1,
+                 [&](BenchObject& entry) { read_resource(entry, file.resources.emplace_back()); });
+    root.entries("shapes", "shape", 0,
+                 [&](BenchObject& entry) { read_shape(entry, file.shapes.emplace_back()); });
+  });
 }
 
 PassTypeRegistry benchmark_pass_types() {

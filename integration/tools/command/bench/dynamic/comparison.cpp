@@ -4,45 +4,38 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
-#include <optional>
 
 namespace dermis::tools {
 namespace {
 
 constexpr std::array<const char*, 3> changing = {"flashing", "regular", "dynamic"};
 
-struct Row {
-  double samples = 0, maximum = 0, ms = 0, psnr = 0, shown = 0;
-};
-
-// Returns the first row of a sequence with framing `close`. The row with 8 minimum samples precedes
-// rows with other minimums.
-std::optional<Row> row_of(Report& report, const std::string& scene, const std::string& technique,
-                          const std::string& guidance) {
-  ReportTable& table = report.table;
-  const auto text = [&](size_t row, const char* key) { return std::get<std::string>(table.at(row, key)); };
-  const auto number = [&](size_t row, const char* key) { return std::get<double>(table.at(row, key)); };
-  for (size_t i = 0; i < table.rows.size(); ++i)
-    if (text(i, "scene") == scene && text(i, "framing") == "close" && text(i, "technique") == technique &&
-        text(i, "guidance") == guidance)
-      return Row{number(i, "mean_spp"), number(i, "peak_spp"), number(i, "mean_ms"),
-                 number(i, "psnr_db_frame"), number(i, "psnr_db_sdr8")};
-  return std::nullopt;
+// Returns the first row of a sequence with framing `close`, or null. The row with 8 minimum samples
+// precedes rows with other minimums.
+const DynamicRow* find_row(std::span<const DynamicRow> rows, std::string_view scene,
+                           std::string_view technique, std::string_view guidance) {
+  const auto found = std::find_if(rows.begin(), rows.end(), [&](const DynamicRow& row) {
+    return row.scene == scene && row.framing == "close" && row.technique.technique == technique &&
+           row.technique.guidance == guidance;
+  });
+  return found == rows.end() ? nullptr : &*found;
 }
 
-void add_against(Report& report, const std::string& technique, const std::string& guidance) {
+void add_against(Report& report, std::span<const DynamicRow> rows, const std::string& technique,
+                 const std::string& guidance) {
   double log_samples = 0, log_ms = 0, difference = 0;
   int count = 0;
   for (const char* scene : changing) {
-    const auto ours = row_of(report, scene, technique, guidance),
-               theirs = row_of(report, scene, "afis", "ccv");
-    if (!ours || !theirs) continue;
+    const DynamicRow* ours = find_row(rows, scene, technique, guidance);
+    const DynamicRow* theirs = find_row(rows, scene, "afis", "ccv");
+    if (ours == nullptr || theirs == nullptr) continue;
     ++count;
-    log_samples += std::log(ours->samples / theirs->samples);
-    log_ms += std::log(ours->ms / theirs->ms);
-    difference += ours->psnr - theirs->psnr;
+    log_samples += std::log(ours->mean_spp / theirs->mean_spp);
+    log_ms += std::log(ours->mean_ms / theirs->mean_ms);
+    difference += ours->figures.psnr_db_frame - theirs->figures.psnr_db_frame;
   }
   if (count == 0) return;
   report.info.emplace_back(technique + " against afis + ccv",
@@ -69,42 +62,42 @@ constexpr Published published[] = {
 
 } // namespace
 
-void add_comparisons(Report& report) {
-  add_against(report, "sap_residual", "conf");
-  add_against(report, "sap", "none");
-  if (const auto ocv = row_of(report, "flashing", "afis", "ocv"),
-      spvg = row_of(report, "flashing", "afis", "spvg");
-      ocv && spvg)
+void add_comparisons(Report& report, std::span<const DynamicRow> rows) {
+  add_against(report, rows, "sap_residual", "conf");
+  add_against(report, rows, "sap", "none");
+  const DynamicRow* ocv = find_row(rows, "flashing", "afis", "ocv");
+  const DynamicRow* spvg = find_row(rows, "flashing", "afis", "spvg");
+  if (ocv != nullptr && spvg != nullptr)
     report.info.emplace_back("ocv against spvg, flashing",
-                             fmt::format("samples x {:.3f}", ocv->samples / spvg->samples));
-  if (const auto split = row_of(report, "regular", "afis", "split_half"))
+                             fmt::format("samples x {:.3f}", ocv->mean_spp / spvg->mean_spp));
+  if (const DynamicRow* split = find_row(rows, "regular", "afis", "split_half"))
     report.info.emplace_back("split_half, regular", fmt::format("maximum samples x {:.3f} of the mean",
-                                                                split->maximum / split->samples));
+                                                                split->peak_spp / split->mean_spp));
 }
 
-void add_published(Report& report) {
+void add_published(Report& report, std::span<const DynamicRow> rows) {
   report.more_title = "Comparison with the paper's table 3";
   report.more_text = "Theirs: Xie et al. 2021, 2560x1440 on a GeForce RTX 2080 Ti, 300 frames, PSNR of 8-bit "
                      "video. Ours: this run. Scenes, device and size differ, so only ratios are comparable.";
   report.more.columns = {{"scene", "scene"},
                          {"guidance", "guidance"},
-                         {"their_spp", "their samples", 4},
-                         {"our_spp", "our samples", 4},
+                         {"their_spp", "their samples", {4}},
+                         {"our_spp", "our samples", {4}},
                          {"their_ratio", "theirs / AS"},
                          {"our_ratio", "ours / AS"},
                          {"their_ms", "their ms"},
-                         {"our_ms", "our ms", 4},
-                         {"their_db", "their 8-bit dB", 4},
-                         {"our_db", "our 8-bit dB", 4}};
+                         {"our_ms", "our ms", {4}},
+                         {"their_db", "their 8-bit dB", {4}},
+                         {"our_db", "our 8-bit dB", {4}}};
   double all = 0; // samples of AS, the first row of each scene
   for (const Published& one : published) {
     if (std::string(one.name) == "AS") all = one.samples;
-    const auto ours = row_of(report, one.scene, "afis", one.guidance),
-               base = row_of(report, one.scene, "afis", "spvg");
-    if (!ours || !base) continue;
-    report.more.rows.push_back({std::string(one.scene), std::string(one.name), one.samples, ours->samples,
-                                one.samples / all, ours->samples / base->samples, one.ms, ours->ms, one.psnr,
-                                ours->shown});
+    const DynamicRow* ours = find_row(rows, one.scene, "afis", one.guidance);
+    const DynamicRow* base = find_row(rows, one.scene, "afis", "spvg");
+    if (ours == nullptr || base == nullptr) continue;
+    report.more.rows.push_back({one.scene, one.name, one.samples, ours->mean_spp, one.samples / all,
+                                ours->mean_spp / base->mean_spp, one.ms, ours->mean_ms, one.psnr,
+                                ours->figures.psnr_db_sdr8});
   }
 }
 

@@ -4,27 +4,23 @@
 #include "integration/tools/command/bench/dynamic/accumulation.hpp"
 #include "integration/tools/command/bench/dynamic/combined_reference.hpp"
 #include "integration/tools/command/bench/dynamic/comparison.hpp"
-#include "integration/tools/command/bench/dynamic/dynamic_file.hpp"
-#include "integration/tools/command/bench/dynamic/figures.hpp"
-#include "integration/tools/command/bench/quick.hpp"
-#include "integration/tools/command/bench/report/report.hpp"
-#include "integration/tools/command/bench/selection.hpp"
+#include "integration/tools/command/bench/subject.hpp"
+#include "integration/tools/command/bench/suite/suites.hpp"
+#include "integration/tools/command/bench/suite/techniques.hpp"
 #include "integration/tools/command/bench/technique.hpp"
 #include "integration/tools/command/interrupt.hpp"
-#include "integration/tools/files/capture_reference.hpp"
 #include "passes/common/environment.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <numeric>
 
 namespace dermis::tools {
 namespace {
 
-struct Measured {
+struct MeasuredSequence {
   std::vector<FrameLight> light;                   // one per frame
   std::vector<double> device_ms, sampling_ms, spp; // one per frame
   Accumulation accumulation;                       // used if camera or surfaces move
@@ -33,19 +29,14 @@ struct Measured {
   uint64_t history_bytes = 0;
 };
 
-struct Bench {
-  const Session& session;
-  const BenchDynamicOptions& options;
+struct DynamicBench {
+  SuiteRun& run;
   const DynamicFile& file;
   demo::VulkanHost& host;
+  std::vector<DynamicTechnique> techniques;
   std::vector<float> sap_tables = {};
-  std::vector<std::string> notes = {};
-  Report report = {};
+  std::vector<DynamicRow> rows = {};
 };
-
-std::string name_of(const DynamicTechnique& technique) {
-  return fmt::format("{} {} {}", technique.request.technique, technique.guidance, technique.request.setting);
-}
 
 double mean_of(const std::vector<double>& values, uint32_t first) {
   if (values.size() <= first) return 0;
@@ -67,24 +58,8 @@ double mean_samples(const std::vector<float>& sampling, const std::vector<uint8_
   return count > 0 ? sum / double(count) : 0;
 }
 
-// Returns d per channel of the most frequent profile, scaled so that its widest channel projects to
-// `d_px`.
-subsurface::PerChannel d_of(const CapturedFrame& frame, double d_px) {
-  std::array<uint64_t, 256> count{};
-  for (const uint8_t id : frame.profile)
-    count[id] += id != 0;
-  const auto maximum = static_cast<uint32_t>(std::max_element(count.begin(), count.end()) - count.begin());
-  for (const CaptureProfile& one : frame.description.profiles)
-    if (one.id == maximum) {
-      const auto& d = one.profile.d_mm;
-      const double widest = std::max({d[0], d[1], d[2], 1e-30});
-      return {d_px * d[0] / widest, d_px * d[1] / widest, d_px * d[2] / widest};
-    }
-  return {d_px, d_px, d_px};
-}
-
-demo::Result<> measure_frame(Bench& bench, const Sequence& sequence, size_t t, TechniqueRun& run,
-                             const Reference& reference, Measured& measured) {
+demo::Result<> measure_frame(const DynamicBench& bench, const Sequence& sequence, size_t t, TechniqueRun& run,
+                             const Reference& reference, MeasuredSequence& measured) {
   const SequenceFrame& frame = sequence.frames[t];
   auto light = run.scatter(frame.captured, t > 0 && !frame.cut);
   if (!light) return light.error();
@@ -114,186 +89,176 @@ demo::Result<> measure_frame(Bench& bench, const Sequence& sequence, size_t t, T
   return demo::success();
 }
 
-void add_rows(Bench& bench, const Sequence& sequence, const std::vector<DynamicTechnique>& techniques,
-              const std::vector<Measured>& all) {
-  const uint32_t counted = bench.file.counted;
-  const bool still = sequence.request.still;
-  Plot plot{fmt::format("{} {}, error of each frame", sequence.request.scene, sequence.request.framing),
-            "frame",
-            "RMSE of linear luminance",
-            {},
-            true};
-  Plot samples{fmt::format("{} {}, samples of each frame", sequence.request.scene, sequence.request.framing),
-               "frame",
-               "samples a pixel",
-               {},
-               true};
-  for (size_t i = 0; i < techniques.size(); ++i) {
-    const DynamicTechnique& technique = techniques[i];
-    const Measured& one = all[i];
-    const double mean_spp = one.spp.empty() ? one.counts.mean_spp : mean_of(one.spp, counted);
-    const double peak_spp = one.spp.empty() ? one.counts.mean_spp : largest_of(one.spp, counted);
-    ReportValue reads, accumulated, flicker;
-    if (one.counts.reads_per_pixel) reads = *one.counts.reads_per_pixel;
-    accumulated = one.figures.psnr_db_accumulated;
-    if (still) flicker = one.figures.flicker;
-    bench.report.table.rows.push_back(
-        {sequence.request.scene, sequence.d_px, sequence.request.framing, technique.request.technique,
-         technique.request.setting, technique.guidance, static_cast<int64_t>(technique.min_samples), mean_spp,
-         peak_spp, reads, mean_of(one.device_ms, counted), largest_of(one.device_ms, counted),
-         mean_of(one.sampling_ms, counted), one.figures.psnr_db_frame, accumulated, one.figures.psnr_db_sdr8,
-         flicker, static_cast<int64_t>(one.history_bytes)});
-    const std::string series_name = technique.request.technique + " " + technique.guidance;
-    PlotSeries series{series_name, {}, is_baseline(technique.request.technique)};
-    for (size_t t = 0; t < one.figures.psnr_db.size(); ++t) {
-      const double rmse = std::pow(10.0, -one.figures.psnr_db[t] / 20);
-      series.points.push_back(
-          {double(t), rmse,
-           fmt::format("{}, frame {}: {:.2f} dB", name_of(technique), t, one.figures.psnr_db[t]), false});
-    }
-    plot.series.push_back(std::move(series));
-    if (one.spp.empty()) continue;
-    constexpr double min_shown = 0.1; // lower bound for the logarithmic axis
-    PlotSeries taken{series_name, {}, is_baseline(technique.request.technique)};
-    for (size_t t = 0; t < one.spp.size(); ++t)
-      taken.points.push_back({double(t), std::max(one.spp[t], min_shown),
-                              fmt::format("{}, frame {}: {:.2f}", name_of(technique), t, one.spp[t]), false});
-    samples.series.push_back(std::move(taken));
-  }
-  bench.report.plots.push_back(std::move(plot));
-  if (!samples.series.empty()) bench.report.plots.push_back(std::move(samples));
+Plot frames_plot(const SequenceRequest& request, const char* what, const char* axis) {
+  return {
+      fmt::format("{} {}, {} of each frame", request.scene, request.framing, what), "frame", axis, {}, true};
 }
 
-demo::Result<> measure_scene(Bench& bench, const SequenceRequest& request) {
-  SequenceRequest wanted = request;
-  if (bench.options.frames > 0) wanted.frames = bench.options.frames;
-  auto rendered = render_sequence(wanted, bench.options.size.width, bench.options.size.height,
-                                  head_model(bench.options.head));
+// Returns a series over frames. `point` returns a frame's value and its text.
+template <class Point> PlotSeries series_of(const DynamicTechnique& technique, size_t frames, Point point) {
+  PlotSeries series{technique.technique + " " + technique.guidance, {}, is_baseline(technique.technique)};
+  for (size_t t = 0; t < frames; ++t) {
+    const auto [value, text] = point(t);
+    series.points.push_back({double(t), value,
+                             fmt::format("{} {} {}, frame {}: {}", technique.technique, technique.guidance,
+                                         technique.setting, t, text),
+                             false});
+  }
+  return series;
+}
+
+void add_plots(DynamicBench& bench, const Sequence& sequence, const std::vector<MeasuredSequence>& all) {
+  Plot errors = frames_plot(sequence.request, "error", "RMSE of linear luminance");
+  Plot samples = frames_plot(sequence.request, "samples", "samples a pixel");
+  for (size_t i = 0; i < all.size(); ++i) {
+    const std::vector<double>& psnr_db = all[i].figures.psnr_db;
+    errors.series.push_back(series_of(bench.techniques[i], psnr_db.size(), [&](size_t t) {
+      return std::pair(std::pow(10.0, -psnr_db[t] / 20), fmt::format("{:.2f} dB", psnr_db[t]));
+    }));
+    const std::vector<double>& spp = all[i].spp;
+    constexpr double min_shown = 0.1; // lower bound for the logarithmic axis
+    if (!spp.empty())
+      samples.series.push_back(series_of(bench.techniques[i], spp.size(), [&](size_t t) {
+        return std::pair(std::max(spp[t], min_shown), fmt::format("{:.2f}", spp[t]));
+      }));
+  }
+  bench.run.report.plots.push_back(std::move(errors));
+  if (!samples.series.empty()) bench.run.report.plots.push_back(std::move(samples));
+}
+
+DynamicRow row_of(const Sequence& sequence, const DynamicTechnique& technique, const MeasuredSequence& one,
+                  uint32_t counted) {
+  DynamicRow row{sequence.request.scene, sequence.request.framing, sequence.d_px, technique};
+  row.mean_spp = one.spp.empty() ? one.counts.mean_spp : mean_of(one.spp, counted);
+  row.peak_spp = one.spp.empty() ? one.counts.mean_spp : largest_of(one.spp, counted);
+  row.reads_per_pixel = one.counts.reads_per_pixel;
+  row.mean_ms = mean_of(one.device_ms, counted);
+  row.max_ms = largest_of(one.device_ms, counted);
+  row.sampling_ms = mean_of(one.sampling_ms, counted);
+  row.figures = one.figures;
+  if (sequence.request.still) row.flicker = one.figures.flicker;
+  row.history_bytes = one.history_bytes;
+  return row;
+}
+
+demo::Result<> measure_sequence(DynamicBench& bench, SequenceRequest request) {
+  SuiteRun& run = bench.run;
+  if (const uint64_t frames = run.number("frames"); frames > 0) request.frames = uint32_t(frames);
+  auto rendered = render_sequence(request, run.size().width, run.size().height, head_model(run.text("head")));
   if (!rendered) return rendered.error();
   const Sequence sequence = rendered.take();
 
-  std::vector<DynamicTechnique> techniques;
   std::vector<std::unique_ptr<TechniqueRun>> runs;
-  for (const DynamicTechnique& technique : bench.file.techniques) {
-    if (!is_selected(bench.options.techniques, technique.request.technique)) continue;
-    auto made = TechniqueRun::create(bench.host, technique.request,
+  for (const DynamicTechnique& technique : bench.techniques) {
+    auto made = TechniqueRun::create(bench.host, technique,
                                      sequence.frames.front().captured.description.profiles, bench.sap_tables);
     if (!made) return made.error();
-    techniques.push_back(technique);
     runs.push_back(made.take());
   }
-  std::vector<Measured> all(techniques.size());
+  std::vector<MeasuredSequence> all(runs.size());
   const std::string name = fmt::format("{} {}", request.scene, request.framing);
-  Progress progress(progress_style(bench.session.quiet, false), name, "frame", sequence.frames.size());
+  Progress progress = run.progress("frame", sequence.frames.size(), name);
   KnownReferences known;
   for (size_t t = 0; t < sequence.frames.size(); ++t) {
     progress.update(t);
     const CapturedFrame& frame = sequence.frames[t].captured;
-    const std::string what = fmt::format("reference of {}, frame {}", name, t);
-    const auto reference =
-        request.still ? make_reference_of_still(bench.session, frame, what, bench.file.subset,
-                                                bench.options.cache, known)
-                      : make_reference(bench.session, frame, what, bench.file.subset, bench.options.cache);
+    const std::string what = fmt::format("reference of {}, frame {}", name, t), cache = run.text("cache");
+    const uint32_t subset = bench.file.subset;
+    const auto reference = request.still
+                               ? make_reference_of_still(run.session, frame, what, subset, cache, known)
+                               : make_reference(run.session, frame, what, subset, cache);
     if (!reference || interrupted()) return stopped();
     for (size_t i = 0; i < runs.size(); ++i)
       if (auto done = measure_frame(bench, sequence, t, *runs[i], *reference, all[i]); !done) return done;
   }
-  for (Measured& one : all)
-    one.figures = sequence_figures(one.light, bench.file.counted, request.still, sequence.exposure);
-  add_rows(bench, sequence, techniques, all);
+  for (size_t i = 0; i < all.size(); ++i) {
+    all[i].figures = sequence_figures(all[i].light, bench.file.counted, request.still, sequence.exposure);
+    bench.rows.push_back(row_of(sequence, bench.techniques[i], all[i], bench.file.counted));
+  }
+  add_plots(bench, sequence, all);
   return demo::success();
 }
 
-std::string facts_text(const Report& report) {
-  std::string text;
-  for (const auto& [name, value] : report.info)
-    text += fmt::format("{}: {}\n", name, value);
-  return text;
+// Shortens a file for --quick.
+void quicken(DynamicFile& file) {
+  constexpr uint32_t more_frames = 2; // after those in which histories start
+  file.counted = std::min(file.counted, more_frames);
+  file.subset = std::min(file.subset, quick_subset);
+  for (SequenceRequest& scene : file.scenes)
+    scene.frames = std::min(scene.frames, file.counted + more_frames);
 }
 
-std::vector<ReportColumn> dynamic_columns() {
-  return {{"scene", "scene"},
-          {"d_px", "d, px"},
-          {"framing", "framing"},
-          {"technique", "technique"},
-          {"setting", "setting"},
-          {"guidance", "guidance"},
-          {"min_samples", "least samples"},
-          {"mean_spp", "samples"},
-          {"peak_spp", "most samples"},
-          {"reads_per_pixel", "reads a pixel"},
-          {"mean_ms", "ms", 4},
-          {"max_ms", "longest ms", 4},
-          {"sampling_ms", "scattering ms", 4},
-          {"psnr_db_frame", "PSNR dB", 4},
-          {"psnr_db_accumulated", "accumulated dB", 4},
-          {"psnr_db_sdr8", "8-bit dB", 4},
-          {"flicker", "flicker"},
-          {"history_bytes", "history bytes"}};
+demo::Result<> measure_dynamic(SuiteRun& run, const Emit<DynamicRow>& emit) {
+  auto read = run.read(read_dynamic);
+  if (!read) return read.error();
+  DynamicFile file = read.take();
+  if (run.quick) quicken(file);
+  auto techniques = select_techniques(run, file.techniques);
+  if (!techniques) return techniques.error();
+  const auto host = run.open_device();
+  if (!host) return host.error();
+  DynamicBench bench{run, file, **host, techniques.take(), subsurface::make_sap_tables({true, true}, {})};
+  for (const SequenceRequest& request : file.scenes)
+    if (run.is_requested("scenes", request.scene) && run.is_requested("framings", request.framing))
+      if (auto done = measure_sequence(bench, request); !done) return done;
+  if (bench.rows.empty()) return demo::Error{demo::ErrorKind::usage, "no scene is selected"};
+  run.add_fact("size", fmt::format("{}x{} pixels", run.size().width, run.size().height));
+  run.add_fact("truth", fmt::format("at {} stratified pixels a frame", file.subset));
+  run.add_fact("frames", fmt::format("counted from number {} of each sequence on", file.counted));
+  add_comparisons(run.report, bench.rows);
+  add_published(run.report, bench.rows);
+  for (const DynamicRow& row : bench.rows)
+    emit(row);
+  return demo::success();
 }
 
-std::string text_of(const Report& report) {
-  Table table;
-  table.columns = {{"scene"},         {"framing"},           {"technique"},    {"setting"},
-                   {"guidance"},      {"samples", true},     {"most", true},   {"ms", true},
-                   {"PSNR dB", true}, {"accumulated", true}, {"flicker", true}};
-  std::string last;
-  for (size_t i = 0; i < report.table.rows.size(); ++i) {
-    const auto text = [&](const char* key, int digits = 0) { return report.table.text_at(i, key, digits); };
-    const std::string here = text("scene") + text("framing");
-    if (!last.empty() && here != last) table.rows.emplace_back();
-    last = here;
-    table.rows.push_back({text("scene"), text("framing"), text("technique"), text("setting"),
-                          text("guidance"), text("mean_spp", 2), text("peak_spp", 2), text("mean_ms", 2),
-                          text("psnr_db_frame", 2), text("psnr_db_accumulated", 2), text("flicker", 5)});
-  }
-  return format_table(table);
+template <auto Member> ReportValue of_technique(const DynamicRow& row) {
+  return row.technique.*Member;
+}
+
+template <auto Figure> ReportValue figure_of(const DynamicRow& row) {
+  return row.figures.*Figure;
 }
 
 } // namespace
 
-ExitCode bench_dynamic(const Session& session, const BenchDynamicOptions& requested) {
-  const BenchDynamicOptions options = quickened(requested);
-  const auto start = std::chrono::steady_clock::now();
-  Diagnostics diagnostics;
-  std::optional<DynamicFile> file = read_dynamic(options.file, diagnostics);
-  if (!file)
-    return fail(session, ExitCode::problems, fmt::format("the bench file '{}' cannot be used", options.file),
-                &diagnostics);
-  if (options.quick) quicken(*file);
-  auto host = demo::create_vulkan_host({});
-  if (!host) return fail(session, static_cast<ExitCode>(host.error().kind), host.error().text);
-  Bench bench{session, options, *file, **host};
-  bench.sap_tables = subsurface::make_sap_tables({true, true}, {});
-  bench.report.bench = "dynamic";
-  bench.report.title = "Changing light, cameras and objects";
-  bench.report.summary = "Error of the scattered light before albedo against the fp64 truth of each frame: "
-                         "linear Rec.709 luminance, the "
-                         "sequence's 99.9th percentile of light at 1. Samples are counted on the device.";
-  bench.report.table.columns = dynamic_columns();
-  for (const SequenceRequest& request : file->scenes) {
-    if (!is_selected(options.scenes, request.scene) || !is_selected(options.framings, request.framing))
-      continue;
-    const auto done = measure_scene(bench, request);
-    if (interrupted()) return fail(session, ExitCode::interrupted, "stopped");
-    if (!done) return fail(session, static_cast<ExitCode>(done.error().kind), done.error().text);
-  }
-  if (bench.report.table.rows.empty()) return fail(session, ExitCode::usage, "no scene is selected");
-  bench.report.info = machine_info(session.command, (*host)->properties.deviceName);
-  bench.report.info.emplace_back("size",
-                                 fmt::format("{}x{} pixels", options.size.width, options.size.height));
-  bench.report.info.emplace_back("truth", fmt::format("at {} stratified pixels a frame", file->subset));
-  bench.report.info.emplace_back("frames",
-                                 fmt::format("counted from number {} of each sequence on", file->counted));
-  if (options.quick) bench.report.info.push_back(quick_fact());
-  add_comparisons(bench.report);
-  add_published(bench.report);
-  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  bench.report.info.emplace_back("took", format_duration(seconds));
-  if (!session.quiet && options.json != "-" && options.html != "-" && options.csv != "-")
-    print(text_of(bench.report) + facts_text(bench.report));
-  const std::string problem = deliver_report(bench.report, options.json, options.csv, options.html);
-  return problem.empty() ? ExitCode::ok : fail(session, ExitCode::environment, problem);
+Suite dynamic_suite() {
+  using Row = DynamicRow;
+  const ColumnStyle page{.in_text = false}, four{.digits = 4}, four_on_page{.digits = 4, .in_text = false};
+  return make_suite<Row>(
+      {.name = "dynamic",
+       .what = "Measure samples, time, error and flicker with changing light, camera or objects",
+       .title = "Changing light, cameras and objects",
+       .summary = "Error of the scattered light before albedo against the fp64 truth of each frame: linear "
+                  "Rec.709 luminance, the sequence's 99.9th percentile of light at 1. Samples are counted on "
+                  "the device.",
+       .options = {size_option({320, 180}),
+                   {"frames", "Frames per sequence; 0: as in the file", 0u, "", 0u, 0, 3600},
+                   head_option("Folder of the head scan, which replaces the bust"),
+                   only_option("scenes"),
+                   only_option("framings"),
+                   only_option("techniques"),
+                   file_option("tests/benchmark/dynamic.json"),
+                   cache_option()}},
+      {{"scene", "scene", &Row::scene, {.groups = true}},
+       {"d_px", "d, px", &Row::d_px, page},
+       {"framing", "framing", &Row::framing, {.groups = true}},
+       {"technique", "technique", of_technique<&DynamicTechnique::technique>},
+       {"setting", "setting", of_technique<&DynamicTechnique::setting>},
+       {"guidance", "guidance", of_technique<&DynamicTechnique::guidance>},
+       {"min_samples", "least samples", of_technique<&DynamicTechnique::min_samples>, page},
+       {"mean_spp", "samples", &Row::mean_spp},
+       {"peak_spp", "most samples", &Row::peak_spp},
+       {"reads_per_pixel", "reads a pixel", &Row::reads_per_pixel, page},
+       {"mean_ms", "ms", &Row::mean_ms, four},
+       {"max_ms", "longest ms", &Row::max_ms, four_on_page},
+       {"sampling_ms", "scattering ms", &Row::sampling_ms, four_on_page},
+       {"psnr_db_frame", "PSNR dB", figure_of<&SequenceFigures::psnr_db_frame>, four},
+       {"psnr_db_accumulated", "accumulated dB", figure_of<&SequenceFigures::psnr_db_accumulated>, four},
+       {"psnr_db_sdr8", "8-bit dB", figure_of<&SequenceFigures::psnr_db_sdr8>, four_on_page},
+       {"flicker", "flicker", &Row::flicker},
+       {"history_bytes", "history bytes", &Row::history_bytes, page}},
+      measure_dynamic);
 }
 
 } // namespace dermis::tools

@@ -2,7 +2,7 @@
 // Contents of tests/benchmark/dynamic.json, which describes `dermis bench dynamic`.
 
 #include "integration/tools/command/bench/dynamic/sequence.hpp"
-#include "integration/tools/command/bench/plan_file.hpp"
+#include "integration/tools/command/bench/suite/bench_file.hpp"
 
 #include <optional>
 #include <string>
@@ -10,8 +10,7 @@
 
 namespace dermis::tools {
 
-struct DynamicTechnique {
-  TechniqueRequest request;
+struct DynamicTechnique : TechniqueRequest {
   std::string guidance;     // "none": a constant number of samples, possibly 0
   uint32_t min_samples = 0; // per sampled pixel
 };

@@ -1,6 +1,6 @@
 #include "integration/tools/command/bench/dynamic/figures.hpp"
 
-#include "integration/examples/demo_engine/engine.hpp"
+#include "integration/tools/command/bench/still_error.hpp"
 #include "integration/tools/files/metrics.hpp"
 
 #include <cmath>
@@ -17,15 +17,8 @@ double luminance(const std::vector<double>& light, size_t pixel) {
   return sum;
 }
 
-std::vector<uint8_t> shown(const std::vector<double>& light, double exposure) {
-  demo::FloatImage image{static_cast<uint32_t>(light.size() / 3), 1, 3, {}};
-  for (const double value : light)
-    image.texels.push_back(static_cast<float>(value * exposure));
-  return demo::tonemap(image);
-}
-
 // Mean of squares over pixels.
-struct Mean {
+struct MeanSquare {
   double sum = 0;
   uint64_t count = 0;
   void add_square(double x) {
@@ -42,12 +35,12 @@ SequenceFigures sequence_figures(const std::vector<FrameLight>& frames, uint32_t
   SequenceFigures figures;
   double frame_sum = 0, shown_sum = 0, accumulated_sum = 0;
   uint32_t used = 0;
-  Mean flicker;
+  MeanSquare flicker;
   std::vector<double> found_mean, reference_mean;
   for (uint32_t t = 0; t < frames.size(); ++t) {
     const FrameLight& now = frames[t];
     const size_t pixels = now.reference.size() / 3;
-    Mean error;
+    MeanSquare error;
     for (size_t i = 0; i < pixels; ++i)
       error.add_square(exposure * (luminance(now.found, i) - luminance(now.reference, i)));
     figures.psnr_db.push_back(psnr_from_mse(error.value()));
@@ -64,12 +57,8 @@ SequenceFigures sequence_figures(const std::vector<FrameLight>& frames, uint32_t
     if (t < counted) continue;
     ++used;
     frame_sum += error.value();
-    const std::vector<uint8_t> here = shown(now.found, exposure), there = shown(now.reference, exposure);
-    Mean eight_bit;
-    for (size_t i = 0; i < here.size(); ++i)
-      eight_bit.add_square((double(here[i]) - double(there[i])) / 255.0);
-    shown_sum += eight_bit.value();
-    Mean accumulated;
+    shown_sum += sdr8_mse(now.found, now.reference, exposure);
+    MeanSquare accumulated;
     for (size_t i = 0; !still && i < now.accumulated.size() / 3; ++i)
       accumulated.add_square(exposure * (luminance(now.accumulated, i) - luminance(now.reference, i)));
     for (size_t i = 0; still && i < pixels; ++i) {

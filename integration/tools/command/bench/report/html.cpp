@@ -53,50 +53,43 @@ th.onkeydown=e=>{if(e.key==='Enter'||e.key===' '){e.preventDefault();th.onclick(
 </script>
 )";
 
-// Rows on the front are highlighted. For any other flag, rows with the value false are highlighted
-// as bad.
-constexpr std::string_view front_flag = "on_pareto_front";
-
 std::string cell(const ReportValue& value, const ReportColumn& column) {
+  const std::string text = html_text(cell_text(value, column));
   if (const auto* flag = std::get_if<bool>(&value))
-    return fmt::format("<td data-v={}>{}", *flag ? 1 : 0,
-                       *flag                      ? "yes"
-                       : column.key == front_flag ? ""
-                                                  : "no");
-  if (const auto* whole = std::get_if<int64_t>(&value)) return fmt::format("<td data-v={0}>{0}", *whole);
+    return fmt::format("<td data-v={}>{}", *flag ? 1 : 0, text);
+  if (const auto* whole = std::get_if<int64_t>(&value)) return fmt::format("<td data-v={}>{}", *whole, text);
   if (const auto* number = std::get_if<double>(&value); number != nullptr && std::isfinite(*number))
-    return fmt::format("<td data-v={}>{:.{}g}", *number, *number, column.digits);
-  if (const auto* text = std::get_if<std::string>(&value))
-    return fmt::format("<td class=t>{}", html_text(*text));
+    return fmt::format("<td data-v={}>{}", *number, text);
+  if (std::holds_alternative<std::string>(value)) return "<td class=t>" + text;
   return "<td data-v=''>&ndash;";
 }
 
-bool is_text(const ReportTable& table, size_t column) {
-  return std::any_of(table.rows.begin(), table.rows.end(),
-                     [&](const auto& row) { return std::holds_alternative<std::string>(row[column]); });
+bool misses(Goal goal, bool flag) {
+  return (goal == Goal::wanted || goal == Goal::required) && !flag;
 }
 
 std::string_view mark_of(const ReportTable& table, const std::vector<ReportValue>& row) {
-  bool on_front = false;
+  std::string_view mark;
   for (size_t i = 0; i < row.size(); ++i) {
     const auto* flag = std::get_if<bool>(&row[i]);
     if (flag == nullptr) continue;
-    if (table.columns[i].key != front_flag && !*flag) return " class=bad";
-    on_front |= table.columns[i].key == front_flag && *flag;
+    const Goal goal = table.columns[i].style.goal;
+    if (misses(goal, *flag)) return " class=bad";
+    if (goal == Goal::best && *flag) mark = " class=best";
   }
-  return on_front ? " class=best" : "";
+  return mark;
 }
 
 // Returns the legend of highlighted rows, or "" if there are none.
 std::string marks_text(const ReportTable& table) {
-  for (size_t i = 0; i < table.columns.size(); ++i) {
-    const bool flag = std::any_of(table.rows.begin(), table.rows.end(),
-                                  [&](const auto& row) { return std::holds_alternative<bool>(row[i]); });
-    if (!flag) continue;
-    if (table.columns[i].key == front_flag) return " Marked rows are on the front.";
-    return fmt::format(" Marked rows miss their limits (column '{}').", table.columns[i].title);
+  std::string text;
+  for (const ReportColumn& column : table.columns) {
+    if (column.style.goal == Goal::none || count_goals(table, column.style.goal).rows == 0) continue;
+    text += column.style.goal == Goal::best
+                ? " Marked rows are on the front."
+                : fmt::format(" Marked rows miss their limits (column '{}').", column.title);
   }
-  return "";
+  return text;
 }
 
 void add_table(std::string& page, const ReportTable& table) {

@@ -2,6 +2,7 @@
 
 #include "framegraph/text/json_writer.hpp"
 #include "integration/tools/command/output.hpp"
+#include "integration/tools/command/present.hpp"
 
 #include <fmt/format.h>
 
@@ -26,13 +27,45 @@ std::string processor_name() {
 void write_value(JsonWriter& out, const ReportValue& value) {
   std::visit(
       [&](const auto& held) {
-        using Held = std::decay_t<decltype(held)>;
-        if constexpr (std::is_same_v<Held, std::monostate>)
+        if constexpr (std::is_same_v<std::decay_t<decltype(held)>, std::monostate>)
           out.null();
         else
           out.value(held);
       },
-      value);
+      static_cast<const ReportVariant&>(value));
+}
+
+// Returns the object of a key "object.member", or "".
+std::string_view object_of(const ReportColumn& column) {
+  const size_t dot = column.key.find('.');
+  return dot == std::string::npos ? "" : std::string_view(column.key).substr(0, dot);
+}
+
+// Columns of one object are neighbours. The object is omitted if its first member was not measured.
+void write_row(JsonWriter& out, const ReportTable& table, const std::vector<ReportValue>& row) {
+  out.open_object(true);
+  for (size_t i = 0; i < row.size();) {
+    const std::string_view object = object_of(table.columns[i]);
+    if (object.empty()) {
+      write_value(out.key(table.columns[i].key), row[i]);
+      ++i;
+      continue;
+    }
+    const bool measured = !std::holds_alternative<std::monostate>(row[i]);
+    if (measured) out.key(object).open_object(true);
+    for (; i < row.size() && object_of(table.columns[i]) == object; ++i)
+      if (measured) write_value(out.key(table.columns[i].key.substr(object.size() + 1)), row[i]);
+    if (measured) out.close();
+  }
+  out.close();
+}
+
+// Large numbers are whole numbers instead of powers of ten.
+std::string number_text(double value, int digits) {
+  constexpr double huge = 1e12;
+  const double size = std::abs(value);
+  return size >= std::pow(10.0, digits) && size < huge ? fmt::format("{:.0f}", value)
+                                                       : fmt::format("{:.{}g}", value, digits);
 }
 
 // Quotes text for CSV (RFC 4180).
@@ -63,21 +96,31 @@ bool is_baseline(std::string_view technique) {
                       [&](std::string_view name) { return technique.starts_with(name); });
 }
 
-const ReportValue& ReportTable::at(size_t row, std::string_view key) const {
-  const auto column =
-      std::find_if(columns.begin(), columns.end(), [&](const ReportColumn& one) { return one.key == key; });
-  return rows[row][static_cast<size_t>(column - columns.begin())];
-}
-ReportValue& ReportTable::at(size_t row, std::string_view key) {
-  return const_cast<ReportValue&>(std::as_const(*this).at(row, key));
+std::string cell_text(const ReportValue& value, const ReportColumn& column) {
+  if (const auto* flag = std::get_if<bool>(&value))
+    return *flag ? "yes" : column.style.goal == Goal::best ? "" : "no";
+  if (const auto* whole = std::get_if<int64_t>(&value)) return fmt::format("{}", *whole);
+  if (const auto* number = std::get_if<double>(&value); number != nullptr && std::isfinite(*number))
+    return number_text(*number, column.style.digits);
+  const auto* text = std::get_if<std::string>(&value);
+  return text != nullptr ? *text : "-";
 }
 
-std::string ReportTable::text_at(size_t row, std::string_view key, int digits) const {
-  const ReportValue& value = at(row, key);
-  if (const auto* words = std::get_if<std::string>(&value)) return *words;
-  if (const auto* reference = std::get_if<bool>(&value)) return *reference ? "yes" : "no";
-  const auto* number = std::get_if<double>(&value);
-  return number != nullptr ? fmt::format("{:.{}f}", *number, digits) : "-";
+bool is_text(const ReportTable& table, size_t column) {
+  return std::any_of(table.rows.begin(), table.rows.end(),
+                     [&](const auto& row) { return std::holds_alternative<std::string>(row[column]); });
+}
+
+GoalCount count_goals(const ReportTable& table, Goal goal) {
+  GoalCount count;
+  for (const auto& row : table.rows)
+    for (size_t i = 0; i < row.size(); ++i)
+      if (const auto* flag = std::get_if<bool>(&row[i]);
+          flag != nullptr && table.columns[i].style.goal == goal) {
+        ++count.rows;
+        count.missed += *flag ? 0 : 1;
+      }
+  return count;
 }
 
 std::vector<std::pair<std::string, std::string>> machine_info(const std::string& command,
@@ -89,9 +132,39 @@ std::vector<std::pair<std::string, std::string>> machine_info(const std::string&
   return info;
 }
 
+std::string report_as_text(const Report& report) {
+  const ReportTable& all = report.table;
+  Table table;
+  std::vector<size_t> shown;
+  for (size_t i = 0; i < all.columns.size(); ++i)
+    if (all.columns[i].style.in_text && !all.columns[i].title.empty()) {
+      shown.push_back(i);
+      table.columns.push_back({all.columns[i].title, !is_text(all, i)});
+    }
+  std::string group;
+  for (const auto& row : all.rows) {
+    std::string own;
+    for (size_t i = 0; i < row.size(); ++i)
+      if (all.columns[i].style.groups) own += cell_text(row[i], all.columns[i]) + '\n';
+    if (!table.rows.empty() && own != group) table.rows.emplace_back();
+    group = own;
+    auto& cells = table.rows.emplace_back();
+    for (const size_t i : shown)
+      cells.push_back(cell_text(row[i], all.columns[i]));
+  }
+  std::string text = report.text.empty() ? format_table(table) : report.text;
+  for (const std::string& note : report.notes)
+    text += fmt::format("left out: {}\n", note);
+  for (const auto& [name, fact] : report.info)
+    text += fmt::format("{}: {}\n", name, fact);
+  return text;
+}
+
 std::string report_as_json(const Report& report) {
   JsonWriter out;
   out.open_object().member("dermis_bench", report.bench);
+  for (const auto& [name, value] : report.constants)
+    write_value(out.key(name), value);
   out.key("facts").open_object();
   for (const auto& [name, text] : report.info)
     out.member(name, text);
@@ -99,12 +172,8 @@ std::string report_as_json(const Report& report) {
   for (const std::string& note : report.notes)
     out.value(note);
   out.close().key("rows").open_array();
-  for (const auto& row : report.table.rows) {
-    out.open_object(true);
-    for (size_t i = 0; i < row.size(); ++i)
-      write_value(out.key(report.table.columns[i].key), row[i]);
-    out.close();
-  }
+  for (const auto& row : report.table.rows)
+    write_row(out, report.table, row);
   out.close().close();
   return std::move(out).finish();
 }

@@ -2,7 +2,9 @@
 // The results of a bench and their output formats: JSON and CSV for programs, one self-contained
 // HTML page for people. All benches use these structs.
 
+#include <concepts>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -11,23 +13,46 @@
 
 namespace dermis::tools {
 
-// monostate means not measured: null in JSON, empty in CSV, a dash in HTML.
-using ReportValue = std::variant<std::monostate, bool, int64_t, double, std::string>;
+using ReportVariant = std::variant<std::monostate, bool, int64_t, double, std::string>;
+
+// monostate means not measured: null in JSON, empty in CSV, a dash in tables.
+struct ReportValue : ReportVariant {
+  ReportValue() = default;
+  ReportValue(bool value) : ReportVariant(value) {}
+  ReportValue(double value) : ReportVariant(value) {}
+  ReportValue(std::string value) : ReportVariant(std::move(value)) {}
+  ReportValue(std::string_view value) : ReportVariant(std::string(value)) {}
+  ReportValue(const char* value) : ReportVariant(std::string(value)) {}
+  template <std::integral T> ReportValue(T value) : ReportVariant(static_cast<int64_t>(value)) {}
+  template <class T> ReportValue(const std::optional<T>& value) {
+    if (value) *this = ReportValue(*value);
+  }
+};
+
+// The meaning of a flag in a column.
+enum class Goal : uint8_t {
+  none,
+  best,     // true: marks the row as one of the best
+  wanted,   // false: marks the row, which misses its limits
+  required, // false: as `wanted`, and the suite fails
+};
+
+struct ColumnStyle {
+  int digits = 3;      // significant digits of numbers in tables
+  bool in_text = true; // also in the terminal's table
+  bool groups = false; // a change of the value starts a group of rows in the terminal's table
+  Goal goal = Goal::none;
+};
 
 struct ReportColumn {
-  std::string key;   // in JSON and CSV
-  std::string title; // in HTML, with the unit; "": hidden
-  int digits = 3;    // significant digits of numbers in HTML
+  std::string key;   // in JSON and CSV; "a.b" is member b of the object a in JSON
+  std::string title; // in tables, with the unit; "": only in JSON and CSV
+  ColumnStyle style = {};
 };
 
 struct ReportTable {
   std::vector<ReportColumn> columns;
   std::vector<std::vector<ReportValue>> rows; // each as long as `columns`
-
-  ReportValue& at(size_t row, std::string_view key); // the column must exist
-  const ReportValue& at(size_t row, std::string_view key) const;
-  // Returns a value as text: numbers with `digits` digits, "-" if not measured.
-  std::string text_at(size_t row, std::string_view key, int digits = 0) const;
 };
 
 struct PlotPoint {
@@ -62,6 +87,8 @@ struct Report {
   std::string title, summary;
   std::vector<std::pair<std::string, std::string>> info; // machine, command, repetitions
   std::vector<std::string> notes;                        // omitted parts, with reasons
+  // additional members of the JSON document
+  std::vector<std::pair<std::string, ReportValue>> constants = {};
   ReportTable table;
   std::vector<Plot> plots;
   std::string plots_title, plots_text; // "": default title and text
@@ -70,12 +97,25 @@ struct Report {
       // title and text of a second table, only in HTML: published figures next to measured ones
       more_text;
   ReportTable more;
+  std::string text = {}; // replaces the table in the terminal
 };
 
 // Returns facts that every bench states: command, processor, threads, and the device if given.
 std::vector<std::pair<std::string, std::string>> machine_info(const std::string& command,
                                                               const std::string& device);
 
+// Returns the value as a table shows it.
+std::string cell_text(const ReportValue& value, const ReportColumn& column);
+// Returns whether the column holds text.
+bool is_text(const ReportTable& table, size_t column);
+// Counts rows in which a flag of this goal is false, and rows with such a flag.
+struct GoalCount {
+  size_t missed = 0, rows = 0;
+};
+GoalCount count_goals(const ReportTable& table, Goal goal);
+
+// Returns the table, the notes and the facts for a terminal.
+std::string report_as_text(const Report& report);
 std::string report_as_json(const Report& report);
 std::string report_as_csv(const Report& report);
 // Returns a page without external resources, in the reader's light or dark scheme. With scripts

@@ -48,13 +48,4 @@ void expect_of_reuse(std::span<RestirRow> rows) {
     if (row.samples > 0) row.mse_at_most = limit_of(rows, row);
 }
 
-size_t rows_that_err_more(const ReportTable& table) {
-  size_t count = 0;
-  for (size_t i = 0; i < table.rows.size(); ++i) {
-    const bool* holds = std::get_if<bool>(&table.at(i, "holds"));
-    count += holds != nullptr && !*holds ? 1 : 0;
-  }
-  return count;
-}
-
 } // namespace dermis::tools

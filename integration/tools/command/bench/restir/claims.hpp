@@ -17,7 +17,4 @@ std::string expectation_text();
 // - a sequential shift: the larger error of its two parts
 // Limits without the factor of a half include a margin of 10 % for statistical error.
 void expect_of_reuse(std::span<RestirRow> rows);
-// Counts rows whose "holds" is false.
-size_t rows_that_err_more(const ReportTable& table);
-
 } // namespace dermis::tools

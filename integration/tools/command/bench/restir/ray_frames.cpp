@@ -1,14 +1,12 @@
 #include "integration/tools/command/bench/restir/ray_frames.hpp"
 
+#include "integration/tools/command/bench/technique.hpp"
 #include "integration/tools/command/interrupt.hpp"
 
 #include <algorithm>
 
 namespace dermis::tools {
 namespace {
-
-// not part of a technique
-constexpr std::string_view export_scattered_type = "subsurface.export_scattered";
 
 double device_ms_of(const demo::FrameOutputs& frame, const LoadedGraph& loaded) {
   double sum = 0;

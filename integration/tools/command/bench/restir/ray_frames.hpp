@@ -7,10 +7,6 @@
 
 #include <functional>
 
-namespace demo {
-struct VulkanHost;
-}
-
 namespace dermis::tools {
 
 struct RayRequest {
@@ -35,7 +31,7 @@ demo::Result<std::vector<std::string>>
 scatter_by_rays(const RayRequest& request, const SceneRequest& scene, const SubjectOptions& options,
                 const std::function<demo::Result<>(const RayFrame&)>& on_frame);
 
-// Returns the reason why the device cannot trace rays and a remedy, or "".
-std::string why_no_rays(const demo::VulkanHost& host);
+// Returns the reason why this machine cannot trace rays and a remedy, or "".
+std::string why_no_rays();
 
 } // namespace dermis::tools

@@ -11,11 +11,11 @@ namespace dermis::tools {
 namespace {
 
 // "ray", 1: change with the contents of the cache
-constexpr uint64_t definition_version = 0x7261790000000001u;
+constexpr uint64_t ray_definition_version = 0x7261790000000001u;
 
 Hash hash_of(const RayReferenceSize& size, const std::string& scene, const CapturedFrame& frame) {
   Hash hash;
-  const uint64_t sizes[] = {definition_version, size.samples, size.frames, frame.description.width,
+  const uint64_t sizes[] = {ray_definition_version, size.samples, size.frames, frame.description.width,
                             frame.description.height};
   hash.add(std::span<const uint64_t>(sizes));
   hash.add(std::span<const char>(scene.data(), scene.size()));

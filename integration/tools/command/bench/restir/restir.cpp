@@ -1,18 +1,16 @@
 // dermis bench restir: compares light by rays with every reuse and shift of the graph, and
 // screen-space techniques, with a reference by rays.
 
-#include "integration/tools/command/bench/quick.hpp"
 #include "integration/tools/command/bench/restir/claims.hpp"
 #include "integration/tools/command/bench/restir/restir_report.hpp"
-#include "integration/tools/command/bench/selection.hpp"
+#include "integration/tools/command/bench/suite/statistics.hpp"
+#include "integration/tools/command/bench/technique.hpp"
 #include "integration/tools/command/interrupt.hpp"
 #include "passes/common/environment.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
-#include <cmath>
 
 namespace dermis::tools {
 namespace {
@@ -25,24 +23,17 @@ struct Steps {
   void reach(uint64_t frames) { progress.update(done = frames); }
 };
 
-struct Bench {
-  const Session& session;
-  const BenchRestirOptions& options;
+struct RestirBench {
+  SuiteRun& run;
   const RestirFile& file;
   const LoadedGraph& loaded;
   demo::VulkanHost& host;
   SubjectOptions subject_options = {};
   bool reuses = false; // the graph has settings for reuse
   std::vector<RestirVariant> variants = {};
-  Report report = {};
 };
 
-double median_of(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  return values[values.size() / 2];
-}
-
-RayRequest request_of(const Bench& bench, const RestirVariant& variant) {
+RayRequest request_of(const RestirBench& bench, const RestirVariant& variant) {
   RayRequest request{bench.loaded, bench.file.graph, {{"technique", "restir"}}};
   if (bench.reuses) request.set.emplace_back("reuse", variant.reuse);
   if (!variant.shift.empty()) request.set.emplace_back("shift", variant.shift);
@@ -53,9 +44,9 @@ uint32_t settle_of(const RestirFile& file, const RestirVariant& variant) {
   return variant.has_history() ? file.settle : 1; // the driver compiles in the first frame
 }
 
-demo::Result<RestirRow> measure_variant(Bench& bench, const SceneRequest& scene, const RayRegions& regions,
-                                        const RestirVariant& variant, uint32_t samples, double& slab_rms,
-                                        Steps& steps) {
+demo::Result<RestirRow> measure_variant(RestirBench& bench, const SceneRequest& scene,
+                                        const RayRegions& regions, const RestirVariant& variant,
+                                        uint32_t samples, double& slab_rms, Steps& steps) {
   RestirRow row{"restir", samples == 1 ? "1 path" : fmt::format("{} paths", samples), variant, samples};
   RayRequest request = request_of(bench, variant);
   request.step = [&] { steps.reach(steps.done + 1); };
@@ -76,15 +67,13 @@ demo::Result<RestirRow> measure_variant(Bench& bench, const SceneRequest& scene,
       });
   if (!done) return done.error();
   for (const std::string& credit : *done)
-    if (const std::pair<std::string, std::string> fact{"credit", credit};
-        std::find(bench.report.info.begin(), bench.report.info.end(), fact) == bench.report.info.end())
-      bench.report.info.push_back(fact);
+    bench.run.add_fact("credit", credit);
   row.error = mean_of(errors);
-  row.device_ms = median_of(times);
+  row.device_ms = median(times);
   return row;
 }
 
-demo::Result<RestirRow> measure_in_screen_space(Bench& bench, const TechniqueRequest& request,
+demo::Result<RestirRow> measure_in_screen_space(RestirBench& bench, const TechniqueRequest& request,
                                                 const Subject& subject, const RayRegions& regions,
                                                 std::span<const float> sap_tables) {
   RestirRow row{request.technique, request.setting};
@@ -100,7 +89,7 @@ demo::Result<RestirRow> measure_in_screen_space(Bench& bench, const TechniqueReq
   }
   row.light = light.take();
   row.error = measure_light(row.light, regions);
-  row.device_ms = median_of(times);
+  row.device_ms = median(times);
   row.heat_map = request.heat_map;
   return row;
 }
@@ -113,7 +102,8 @@ void choose_pictures(std::vector<RestirRow>& rows) {
   rows.front().heat_map = nearest->heat_map = true;
 }
 
-demo::Result<> measure_scene(Bench& bench, const SceneRequest& request, Steps& steps) {
+demo::Result<> measure_ray_scene(RestirBench& bench, const SceneRequest& request, Steps& steps,
+                                 const Emit<RestirRow>& emit) {
   auto subject = render_subject(request, bench.subject_options);
   if (!subject) return subject.error();
   RestirScene scene{subject.take(), {}, {}, {}, {}};
@@ -122,7 +112,7 @@ demo::Result<> measure_scene(Bench& bench, const SceneRequest& request, Steps& s
   // also if the reference is cached
   const uint64_t after_reference = steps.done + bench.file.reference.frames;
   auto reference = make_ray_reference(bench.file.reference, none, request, scene.subject,
-                                      bench.subject_options, bench.options.cache);
+                                      bench.subject_options, bench.run.text("cache"));
   if (!reference) return reference.error();
   steps.reach(after_reference);
   scene.reference = reference.take();
@@ -140,7 +130,7 @@ demo::Result<> measure_scene(Bench& bench, const SceneRequest& request, Steps& s
     }
   }
   scene.slab_rms *= scene.reference.reference.exposure;
-  if (!bench.options.quick) expect_of_reuse(scene.rows); // a few frames are not significant
+  if (!bench.run.quick) expect_of_reuse(scene.rows); // a few frames are not significant
   choose_pictures(scene.rows);
   const std::vector<float> sap_tables = subsurface::make_sap_tables({true, true}, {});
   for (const TechniqueRequest& technique : bench.file.screen_space) {
@@ -149,83 +139,75 @@ demo::Result<> measure_scene(Bench& bench, const SceneRequest& request, Steps& s
     if (!row) return row.error();
     scene.rows.push_back(row.take());
   }
-  add_scene(bench.report, scene);
+  add_pictures(bench.run.report, scene);
+  for (RestirRow& row : scene.rows) {
+    row.scene = &scene;
+    emit(row);
+  }
   return demo::success();
 }
 
-demo::Result<> measure(Bench& bench) {
+// Returns the scenes to measure. Errors: usage (there is none).
+demo::Result<std::vector<SceneRequest>> select_scenes(SuiteRun& run, const RestirFile& file) {
   std::vector<SceneRequest> scenes;
-  for (const SceneRequest& scene : bench.file.scenes) {
-    if (!is_selected(bench.options.scenes, scene.scene)) continue;
-    const std::string reason = scene.model ? why_no_head(bench.options.head) : "";
+  for (const SceneRequest& scene : file.scenes) {
+    if (!run.is_requested("scenes", scene.scene)) continue;
+    const std::string reason = scene.model ? why_no_head(run.text("head")) : "";
     if (reason.empty())
       scenes.push_back(scene);
     else
-      bench.report.notes.push_back(fmt::format("scene {}: {}", scene.scene, reason));
+      run.add_note(fmt::format("scene {}: {}", scene.scene, reason));
   }
   if (scenes.empty()) return demo::Error{demo::ErrorKind::usage, "no scene is selected"};
+  return scenes;
+}
+
+demo::Result<> measure_scenes(RestirBench& bench, const Emit<RestirRow>& emit) {
+  const auto scenes = select_scenes(bench.run, bench.file);
+  if (!scenes) return scenes.error();
   uint64_t frames = 0;
   for (const RestirVariant& variant : bench.variants)
     frames += settle_of(bench.file, variant) + bench.file.frames;
   frames = bench.file.reference.frames + frames * bench.file.samples.size();
-  Steps steps{
-      Progress(progress_style(bench.session.quiet, false), "restir", "frame", frames * scenes.size())};
-  for (const SceneRequest& scene : scenes)
-    if (auto measured = measure_scene(bench, scene, steps); !measured) return measured;
+  Steps steps{bench.run.progress("frame", frames * scenes->size())};
+  for (const SceneRequest& scene : *scenes)
+    if (auto measured = measure_ray_scene(bench, scene, steps, emit); !measured) return measured;
   return demo::success();
+}
+
+// Shortens a file for --quick.
+void quicken(RestirFile& file) {
+  file.settle = file.frames = 2;
+  file.repetitions = 1;
+  file.reference = {16, 4};
+  file.samples.resize(1);
+  file.scenes.resize(1);
 }
 
 } // namespace
 
-ExitCode bench_restir(const Session& session, const BenchRestirOptions& requested) {
-  const BenchRestirOptions options = quickened(requested);
-  const auto start = std::chrono::steady_clock::now();
+demo::Result<> measure_restir(SuiteRun& run, const Emit<RestirRow>& emit) {
+  auto read = run.read(read_restir);
+  if (!read) return read.error();
+  RestirFile file = read.take();
+  if (run.quick) quicken(file);
   Diagnostics diagnostics;
-  std::optional<RestirFile> file = read_restir(options.file, diagnostics);
-  if (!file)
-    return fail(session, ExitCode::problems, fmt::format("the bench file '{}' cannot be used", options.file),
-                &diagnostics);
-  if (options.quick) quicken(*file);
-  const std::optional<LoadedGraph> loaded = load_graph(file->graph, {}, diagnostics);
-  if (!loaded) return fail_graph(session, file->graph, diagnostics);
-  auto host = demo::create_vulkan_host({});
-  if (!host) return fail(session, static_cast<ExitCode>(host.error().kind), host.error().text);
-  if (const std::string reason = why_no_rays(**host); !reason.empty())
-    return fail(session, ExitCode::environment, reason);
-
-  Bench bench{session, options, *file, *loaded, **host};
-  bench.subject_options = {options.size.width, options.size.height, head_model(options.head)};
+  const std::optional<LoadedGraph> loaded = load_graph(file.graph, {}, diagnostics);
+  if (!loaded) return run.refuse(file.graph, diagnostics);
+  const auto host = run.open_device();
+  if (!host) return host.error();
+  RestirBench bench{run, file, *loaded, **host};
+  bench.subject_options = {run.size().width, run.size().height, head_model(run.text("head"))};
   const std::vector<RestirVariant> variants = variants_of(loaded->graph);
   bench.reuses = variants.size() > 1;
   for (const RestirVariant& variant : variants)
-    if (variant.shift.empty() || is_selected(options.shifts, variant.shift))
-      bench.variants.push_back(variant);
+    if (variant.shift.empty() || run.is_requested("shifts", variant.shift)) bench.variants.push_back(variant);
   if (bench.reuses && bench.variants.size() == 1)
-    return fail(session, ExitCode::usage, fmt::format("'{}' has none of these shifts", file->graph));
-  bench.report = start_restir_report(*file);
-  const auto done = measure(bench);
-  if (interrupted()) return fail(session, ExitCode::interrupted, "stopped");
-  if (!done) return fail(session, static_cast<ExitCode>(done.error().kind), done.error().text);
-  Report& report = bench.report;
-  auto info = machine_info(session.command, (*host)->properties.deviceName);
-  info.emplace_back("size", fmt::format("{}x{} pixels", options.size.width, options.size.height));
-  report.info.insert(report.info.begin(), info.begin(), info.end());
-  if (!bench.reuses)
-    report.notes.push_back(fmt::format("reuse: '{}' has no settings 'reuse' and 'shift'", file->graph));
-  if (options.quick) report.info.push_back(quick_fact());
-  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  report.info.emplace_back("took", format_duration(seconds));
-  if (!session.quiet && options.json != "-" && options.html != "-" && options.csv != "-") {
-    std::string text = text_of_restir(report);
-    for (const std::string& note : report.notes)
-      text += fmt::format("left out: {}\n", note);
-    print(text + fmt::format("took {}\n", format_duration(seconds)));
-  }
-  const std::string problem = deliver_report(report, options.json, options.csv, options.html);
-  if (!problem.empty()) return fail(session, ExitCode::environment, problem);
-  const size_t broken = rows_that_err_more(report.table);
-  if (broken == 0) return ExitCode::ok;
-  return fail(session, ExitCode::problems, fmt::format("{} rows exceed the error expected of reuse", broken));
+    return demo::Error{demo::ErrorKind::usage, fmt::format("'{}' has none of these shifts", file.graph)};
+  start_restir_report(run, file);
+  if (auto done = measure_scenes(bench, emit); !done) return done;
+  if (!bench.reuses) run.add_note(fmt::format("reuse: '{}' has no settings 'reuse' and 'shift'", file.graph));
+  return demo::success();
 }
 
 } // namespace dermis::tools

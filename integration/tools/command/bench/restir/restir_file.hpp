@@ -1,7 +1,8 @@
 #pragma once
 // Contents of tests/benchmark/restir.json, which describes `dermis bench restir`.
 
-#include "integration/tools/command/bench/plan_file.hpp"
+#include "integration/tools/command/bench/subject.hpp"
+#include "integration/tools/command/bench/suite/bench_file.hpp"
 
 #include <optional>
 #include <string>

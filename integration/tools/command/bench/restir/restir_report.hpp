@@ -1,12 +1,14 @@
 #pragma once
-// Results of dermis bench restir and their report.
+// Rows of dermis bench restir and their images.
 
-#include "integration/tools/command/bench/report/report.hpp"
 #include "integration/tools/command/bench/restir/ray_reference.hpp"
 #include "integration/tools/command/bench/restir/regions.hpp"
 #include "integration/tools/command/bench/restir/variants.hpp"
+#include "integration/tools/command/bench/suite/suite.hpp"
 
 namespace dermis::tools {
+
+struct RestirScene;
 
 // One technique on one scene.
 struct RestirRow {
@@ -19,6 +21,7 @@ struct RestirRow {
   std::optional<double> mse_at_most = {}; // expected limit (claims.hpp)
   std::vector<float> light = {};          // of the last frame
   bool heat_map = false;
+  const RestirScene* scene = nullptr; // set when the scene is complete
 };
 
 struct RestirScene {
@@ -29,11 +32,9 @@ struct RestirScene {
   std::vector<RestirRow> rows; // row without reuse first
 };
 
-// Adds the scene's rows and images.
-void add_scene(Report& report, const RestirScene& scene);
-// Returns a report with columns, title and explanations.
-Report start_restir_report(const RestirFile& file);
-// Formats the table for a terminal.
-std::string text_of_restir(const Report& report);
+demo::Result<> measure_restir(SuiteRun& run, const Emit<RestirRow>& emit);
+// Adds the facts and the groups of images.
+void start_restir_report(SuiteRun& run, const RestirFile& file);
+void add_pictures(Report& report, const RestirScene& scene);
 
 } // namespace dermis::tools

@@ -35,9 +35,9 @@ enum class Asked : uint8_t {
 };
 
 struct StabilityCase {
-  std::string_view name;
+  std::string_view name = {};
   uint32_t frames = 1;
-  std::function<CapturedFrame(uint32_t frame)> given;
+  std::function<CapturedFrame(uint32_t frame)> given = nullptr;
   // The required result is the first available of: the technique's own result for `same_as`, the
   // value of `wanted` for pixels with a profile (all channels), the input light. Pixels without a
   // profile keep their light.
@@ -73,6 +73,19 @@ std::vector<CaptureProfile> stability_profiles();
 // Returns a white plane under light 1, all of profile 1.
 CapturedFrame sound_frame(uint32_t width = stability_side, uint32_t height = stability_side,
                           double d_px = stability_d_px);
+// Calls change(x, y, index) for each pixel of a frame.
+template <class Change> void for_pixels(const CapturedFrame& frame, Change change) {
+  for (uint32_t y = 0, i = 0; y < frame.description.height; ++y)
+    for (uint32_t x = 0; x < frame.description.width; ++x, ++i)
+      change(x, y, i);
+}
+// Required light of a white furnace, for StabilityCase::wanted.
+inline double white(uint32_t) {
+  return 1;
+}
+inline bool is_right_half(uint32_t x) {
+  return x >= stability_side / 2;
+}
 // Sets smooth light with contrast 0.4 around 0.5.
 void set_texture(CapturedFrame& frame);
 CapturedFrame textured_frame();

@@ -85,8 +85,8 @@ StabilityRow dmfp(std::string name, double dmfp, double d) {
   return formula_row(std::move(name), std::abs(subsurface::burley_d_from_dmfp(dmfp, 0.33) - d), 1e-40);
 }
 
-StabilityRow weight(std::string name, const subsurface::MovingCovariance& moments, double expected,
-                    double bound) {
+StabilityRow weight_of(std::string name, const subsurface::MovingCovariance& moments, double expected,
+                       double bound) {
   return formula_row(std::move(name), std::abs(subsurface::control_weight(moments, 1e-6) - expected), bound);
 }
 
@@ -126,10 +126,10 @@ std::vector<StabilityRow> formula_rows() {
           dmfp("dmfp_1e-30", 1e-30, 1e-30 / 3.5),
           dmfp("dmfp_negative", -1, 0),
           dmfp("dmfp_nan", no_number, 0),
-          weight("control_weight_dark", dark, 1, 0),
-          weight("control_weight_faint", tiny, 1, 1e-6),
-          weight("control_weight_first_flash", flash, 1, 1e-6),
-          weight("control_weight_opposed", against, 0, 0)};
+          weight_of("control_weight_dark", dark, 1, 0),
+          weight_of("control_weight_faint", tiny, 1, 1e-6),
+          weight_of("control_weight_first_flash", flash, 1, 1e-6),
+          weight_of("control_weight_opposed", against, 0, 0)};
 }
 
 } // namespace dermis::tools

@@ -1,11 +1,9 @@
 // dermis bench stability: runs every technique on known difficult inputs.
 
-#include "integration/tools/command/bench/quick.hpp"
-#include "integration/tools/command/bench/report/report.hpp"
-#include "integration/tools/command/bench/selection.hpp"
 #include "integration/tools/command/bench/stability/rows.hpp"
+#include "integration/tools/command/bench/suite/suites.hpp"
+#include "integration/tools/command/bench/suite/techniques.hpp"
 #include "integration/tools/command/interrupt.hpp"
-#include "integration/tools/command/verbs.hpp"
 
 #include <fmt/format.h>
 
@@ -15,66 +13,26 @@
 namespace dermis::tools {
 namespace {
 
-constexpr size_t max_techniques = 256;
+using Techniques = std::vector<TechniqueRequest>;
 
-std::optional<std::vector<TechniqueRequest>> read_techniques(const std::string& path,
-                                                             Diagnostics& diagnostics) {
-  const auto document = read_document(path, diagnostics);
-  if (!document || !check_version(*document, "dermis_benchmark", 1, diagnostics)) return std::nullopt;
-  ObjectReader object(*document, document->root(), "the bench file", diagnostics);
-  object.integer("dermis_benchmark", 1, 1);
-  std::vector<TechniqueRequest> techniques;
-  if (const NodeId list = object.array("techniques", 1, max_techniques); list.valid())
-    for (const NodeId node : children(*document, list)) {
-      ObjectReader entry(*document, node, fmt::format("technique {}", techniques.size()), diagnostics);
-      techniques.push_back(read_technique(*document, entry, diagnostics));
-      entry.finish();
-    }
-  object.finish();
-  if (diagnostics.has_errors()) return std::nullopt;
-  return techniques;
+std::optional<Techniques> read_techniques(const std::string& path, Diagnostics& diagnostics) {
+  return read_bench_file<Techniques>(path, diagnostics, [](BenchObject& root, Techniques& techniques) {
+    root.entries("techniques", "technique", 1,
+                 [&](BenchObject& entry) { entry.technique(techniques.emplace_back()); });
+  });
 }
 
-std::vector<StabilityCase> requested_cases(const std::vector<std::string>& only, bool quick) {
+std::vector<StabilityCase> requested_cases(const SuiteRun& run) {
   std::vector<StabilityCase> requested;
   for (const auto& list : {light_cases(), shape_cases(), depth_cases(), tile_cases(), time_cases(),
                            motion_cases(), guidance_cases(), random_cases()})
     for (const StabilityCase& one : list)
-      if (is_selected(only, one.name) && !(quick && one.large)) requested.push_back(one);
+      if (run.is_requested("cases", one.name) && !(run.quick && one.large)) requested.push_back(one);
   return requested;
 }
 
-Report make_report(const Session& session, const std::vector<StabilityRow>& rows,
-                   const std::vector<std::string>& notes, const std::string& device) {
-  Report report;
-  report.bench = "stability";
-  report.title = "Numerical stability";
-  report.summary = "Damaged light, depth, masks, velocities and histories; sizes, radii, slopes and frame "
-                   "numbers at their limits. Errors are relative to the brightest light of a case.";
-  report.info = machine_info(session.command, device);
-  report.notes = notes;
-  report.table.columns = {{"case", "case"},
-                          {"technique", "technique"},
-                          {"frames", "frames"},
-                          {"nonfinite_pixels", "not finite, pixels"},
-                          {"negative_pixels", "below 0, pixels"},
-                          {"max_abs_error", "largest error"},
-                          {"bound", "bound"},
-                          {"recovered_after_frames", "frames to recover"},
-                          {"holds", "holds"}};
-  for (const StabilityRow& row : rows) {
-    ReportValue recovered;
-    if (row.recovered_after_frames) recovered = int64_t{*row.recovered_after_frames};
-    report.table.rows.push_back({row.name, row.technique, static_cast<int64_t>(row.frames),
-                                 static_cast<int64_t>(row.nonfinite_pixels),
-                                 static_cast<int64_t>(row.negative_pixels), row.max_abs_error, row.bound,
-                                 recovered, row.holds()});
-  }
-  return report;
-}
-
 // Formats one line per case with the worst technique, and every failing row.
-std::string text_of(const std::vector<StabilityRow>& rows, const std::vector<std::string>& notes) {
+std::string summary_of(const std::vector<StabilityRow>& rows) {
   Table table;
   table.columns = {{"case"}, {"techniques", true}, {"largest error", true}, {"bound", true}, {"of"},
                    {"holds"}};
@@ -95,8 +53,6 @@ std::string text_of(const std::vector<StabilityRow>& rows, const std::vector<std
                           fmt::format("{:.2g}", worst->bound), worst->technique, all ? "yes" : "NO"});
   }
   std::string text = format_table(table);
-  for (const std::string& note : notes)
-    text += fmt::format("left out: {}\n", note);
   for (const StabilityRow& row : rows)
     if (!row.holds())
       text += fmt::format(
@@ -105,59 +61,73 @@ std::string text_of(const std::vector<StabilityRow>& rows, const std::vector<std
   return text;
 }
 
-} // namespace
-
-ExitCode bench_stability(const Session& session, const BenchStabilityOptions& requested) {
-  const BenchStabilityOptions options = quickened(requested);
-  Diagnostics diagnostics;
-  auto techniques = read_techniques(options.file, diagnostics);
-  if (!techniques)
-    return fail(session, ExitCode::problems,
-                fmt::format("the file of techniques '{}' cannot be used", options.file), &diagnostics);
-  if (options.quick && options.techniques.empty()) quicken(*techniques);
-  auto host = demo::create_vulkan_host({});
-  if (!host) return fail(session, static_cast<ExitCode>(host.error().kind), host.error().text);
-  const std::vector<StabilityCase> cases = requested_cases(options.cases, options.quick);
+demo::Result<> measure_stability(SuiteRun& run, const Emit<StabilityRow>& emit) {
+  auto read = run.read(read_techniques);
+  if (!read) return read.error();
+  Techniques techniques = read.take();
+  if (run.quick && run.list("techniques").empty()) keep_few(techniques);
+  std::erase_if(techniques, [&](const TechniqueRequest& one) { return !is_usable(run, one); });
+  const auto host = run.open_device();
+  if (!host) return host.error();
   std::vector<StabilityRow> rows;
-  std::vector<std::string> notes;
-  for (std::vector<StabilityRow>& list : std::array{formula_rows(), moving_rows(options.updates)})
+  for (std::vector<StabilityRow>& list : std::array{formula_rows(), moving_rows(run.number("updates"))})
     for (StabilityRow& row : list)
-      if (is_selected(options.cases, row.name) && is_selected(options.techniques, row.technique))
+      if (run.is_requested("cases", row.name) && run.is_requested("techniques", row.technique))
         rows.push_back(std::move(row));
+  const std::vector<StabilityCase> cases = requested_cases(run);
   const std::vector<CaptureProfile> profiles = stability_profiles();
-  Progress progress(progress_style(session.quiet, false), "stability", "case",
-                    cases.size() * techniques->size());
+  Progress progress = run.progress("case", cases.size() * techniques.size());
   uint64_t done = 0;
-  for (const TechniqueRequest& request : *techniques) {
-    if (!is_selected(options.techniques, request.technique)) {
-      done += cases.size();
-      continue;
-    }
-    auto run = TechniqueRun::create(**host, request, profiles, {});
-    if (!run) return fail(session, static_cast<ExitCode>(run.error().kind), run.error().text);
-    const std::string name = fmt::format("{} {}", request.technique, request.setting);
+  for (const TechniqueRequest& request : techniques) {
+    auto made = TechniqueRun::create(**host, request, profiles, {});
+    if (!made) return made.error();
+    const std::string name = name_of(request);
     for (const StabilityCase& one : cases) {
       progress.update(done++);
-      if (interrupted()) return fail(session, ExitCode::interrupted, "stopped");
-      auto row = run_case(**run, one, name);
+      if (interrupted()) return stopped();
+      auto row = run_case(**made, one, name);
       if (!row && one.may_be_rejected && row.error().kind == demo::ErrorKind::input) {
-        notes.push_back(fmt::format("{} with {}: rejected, as the case permits", one.name, name));
+        run.add_note(fmt::format("{} with {}: rejected, as the case permits", one.name, name));
         continue;
       }
-      if (!row) return fail(session, static_cast<ExitCode>(row.error().kind), row.error().text);
+      if (!row) return row.error();
       if (*row) rows.push_back(**row);
     }
   }
-  if (rows.empty()) return fail(session, ExitCode::usage, "no case and technique has these names");
-  const auto broken =
-      std::count_if(rows.begin(), rows.end(), [](const StabilityRow& row) { return !row.holds(); });
-  if (!session.quiet && options.json != "-" && options.html != "-")
-    print(text_of(rows, notes) + fmt::format("{} of {} rows do not hold\n", broken, rows.size()));
-  Report report = make_report(session, rows, notes, (*host)->properties.deviceName);
-  if (options.quick) report.info.push_back(quick_fact());
-  const std::string problem = deliver_report(report, options.json, "", options.html);
-  if (!problem.empty()) return fail(session, ExitCode::environment, problem);
-  return broken == 0 ? ExitCode::ok : ExitCode::problems;
+  if (rows.empty()) return demo::Error{demo::ErrorKind::usage, "no case and technique has these names"};
+  for (const StabilityRow& row : rows)
+    emit(row);
+  run.report.text = summary_of(rows);
+  return demo::success();
+}
+
+} // namespace
+
+Suite stability_suite() {
+  using Row = StabilityRow;
+  SuiteOption techniques = only_option("techniques");
+  techniques.help = "Only these techniques or formula, separated by commas";
+  return make_suite<Row>(
+      {.name = "stability",
+       .what = "Test every technique with damaged and extreme inputs",
+       .title = "Numerical stability",
+       .summary = "Damaged light, depth, masks, velocities and histories; sizes, radii, slopes and frame "
+                  "numbers at their limits. Errors are relative to the brightest light of a case.",
+       .options = {file_option("tests/benchmark/stability.json", "Techniques"),
+                   only_option("cases"),
+                   techniques,
+                   {"updates", "Updates of moving averages in half floats", 1000000u, "", 1000u, 1000,
+                    uint64_t{1} << 40}}},
+      {{"case", "case", &Row::name},
+       {"technique", "technique", &Row::technique},
+       {"frames", "frames", &Row::frames},
+       {"nonfinite_pixels", "not finite, pixels", &Row::nonfinite_pixels},
+       {"negative_pixels", "below 0, pixels", &Row::negative_pixels},
+       {"max_abs_error", "largest error", &Row::max_abs_error},
+       {"bound", "bound", &Row::bound},
+       {"recovered_after_frames", "frames to recover", &Row::recovered_after_frames},
+       {"holds", "holds", &Row::holds, {.goal = Goal::required}}},
+      measure_stability);
 }
 
 } // namespace dermis::tools

@@ -16,7 +16,7 @@ constexpr double eta_residual = 0.2, eta_covariance = 0.05;
 const double ln2 = std::log(2.0);
 
 // SplitMix64 (Steele et al. 2014), for equal numbers on every compiler.
-struct Random {
+struct Uniform {
   uint64_t state;
   double next() {
     uint64_t z = (state += 0x9e3779b97f4a7c15u);
@@ -35,7 +35,7 @@ struct Frame {
   double covariance = 0, variance_g = 0; // of its samples
 };
 
-Frame draw(Random& random, double h, uint32_t samples) {
+Frame draw(Uniform& random, double h, uint32_t samples) {
   double f = 0, g = 0, fg = 0, gg = 0;
   for (uint32_t i = 0; i < samples; ++i) {
     const double y = random.next(), a = h / (1 + y), b = h * (1 - y);
@@ -55,7 +55,7 @@ double best_control_weight(bool dynamic) {
 }
 
 std::array<double, 6> run_supplement(bool dynamic, uint64_t seed) {
-  Random random{seed};
+  Uniform random{seed};
   const double best = best_control_weight(dynamic);
   std::array<MovingVariance, 6> spread{};
   std::array<double, 6> mean{};
@@ -85,7 +85,7 @@ std::array<double, 6> run_supplement(bool dynamic, uint64_t seed) {
 }
 
 double sampled_control_weight(bool dynamic, uint32_t samples, uint64_t seed) {
-  Random random{seed};
+  Uniform random{seed};
   if (!dynamic) {
     const Frame all = draw(random, 1, samples);
     return all.covariance / all.variance_g;

@@ -19,12 +19,12 @@ namespace dermis::tools {
 namespace {
 
 constexpr double middle_x = property_width / 2, middle_y = property_height / 2; // pixels
-constexpr double d = 4;             // pixels, except where stated otherwise
-constexpr uint32_t sub_samples = 8; // per side of a pixel, for light with edges
+constexpr double d = 4;                  // pixels, except where stated otherwise
+constexpr uint32_t samples_per_side = 8; // per side of a pixel, for light with edges
 
 using Light = std::function<double(double x, double y)>; // pixels from the middle pixel's centre
 
-void paint(CapturedFrame& frame, const Light& light, uint32_t samples = sub_samples) {
+void paint(CapturedFrame& frame, const Light& light, uint32_t samples = samples_per_side) {
   for (uint32_t y = 0; y < property_height; ++y)
     for (uint32_t x = 0; x < property_width; ++x) {
       double sum = 0;
@@ -41,7 +41,7 @@ CapturedFrame plane(double d_px) {
   return plane_frame(property_width, property_height, d_px, profiles);
 }
 
-struct Asked {
+struct Probe {
   const PropertySubject& subject;
   std::vector<PropertyRow> rows = {};
   std::vector<float> light = {}; // of the last frame
@@ -70,13 +70,13 @@ struct Asked {
   }
 };
 
-void white_furnace(Asked& requested) {
+void white_furnace(Probe& probe) {
   for (const double d_px : {0.3, 1.0, 4.0, 16.0}) {
-    if (!requested.scatter(plane(d_px))) return;
+    if (!probe.scatter(plane(d_px))) return;
     double worst = 0;
-    for (const float value : requested.light)
+    for (const float value : probe.light)
       worst = std::max(worst, std::abs(double(value) - 1));
-    requested.add("white_furnace", fmt::format("largest deviation from 1, d = {} px", d_px), 0, worst);
+    probe.add("white_furnace", fmt::format("largest deviation from 1, d = {} px", d_px), 0, worst);
   }
 }
 
@@ -87,41 +87,41 @@ double edge_of_columns(double x, double d_px, double stretch = 1) {
                 subsurface::burley_edge((x + 0.5) * stretch, d_px));
 }
 
-void edge(Asked& requested) {
+void edge(Probe& probe) {
   CapturedFrame frame = plane(d);
   paint(frame, [](double x, double) { return x > 0 ? 1.0 : 0.0; });
-  if (!requested.scatter(frame)) return;
+  if (!probe.scatter(frame)) return;
   for (const int x : {-16, -4, -1, 0, 1, 2, 4, 8, 16}) {
     double mean = 0;
     for (int y = -8; y < 8; ++y)
-      mean += requested.at(x, y) / 16;
-    requested.add("edge", fmt::format("mean of a column at {} d", x / d), edge_of_columns(x, d), mean);
+      mean += probe.at(x, y) / 16;
+    probe.add("edge", fmt::format("mean of a column at {} d", x / d), edge_of_columns(x, d), mean);
   }
 }
 
-void slanted_edge(Asked& requested) {
+void slanted_edge(Probe& probe) {
   const double half = std::sqrt(0.5);
   CapturedFrame frame = plane(d);
   paint(frame, [&](double x, double y) { return half * (x + y) > 0 ? 1.0 : 0.0; });
-  if (!requested.scatter(frame)) return;
+  if (!probe.scatter(frame)) return;
   double squares = 0, count = 0;
   for (int y = -8; y <= 8; ++y)
     for (int x = -64; x <= 64; ++x) {
-      const double error = requested.at(x, y) - subsurface::burley_edge(half * (x + y), d);
+      const double error = probe.at(x, y) - subsurface::burley_edge(half * (x + y), d);
       squares += error * error;
       ++count;
     }
   // Averaging over pixels changes an edge's response by about a third of a pixel's variance times
   // its curvature.
-  requested.add("slanted_edge", "RMSE around an edge at 45 degrees", 0, std::sqrt(squares / count));
+  probe.add("slanted_edge", "RMSE around an edge at 45 degrees", 0, std::sqrt(squares / count));
 }
 
 // Least-squares fit of a + b cos over the middle. b is half the remaining contrast.
-double contrast(const Asked& requested, double kx, double ky) {
+double contrast(const Probe& probe, double kx, double ky) {
   double n = 0, sc = 0, scc = 0, sy = 0, syc = 0;
   for (int y = -16; y < 16; ++y)
     for (int x = -160; x < 160; ++x) {
-      const double c = std::cos(kx * x + ky * y), value = requested.at(x, y);
+      const double c = std::cos(kx * x + ky * y), value = probe.at(x, y);
       n += 1;
       sc += c;
       scc += c * c;
@@ -151,66 +151,65 @@ double sampled_contrast(double kx, double ky) {
   return sum;
 }
 
-void sinusoid(Asked& requested) {
+void sinusoid(Probe& probe) {
   for (const bool diagonal : {false, true})
     for (const double kd : {0.5, 1.0, 2.0, 5.0}) {
       const double k = kd / d, kx = diagonal ? k * std::sqrt(0.5) : k, ky = diagonal ? kx : 0;
       CapturedFrame frame = plane(d);
       paint(
           frame, [&](double x, double y) { return 0.5 + 0.5 * std::cos(kx * x + ky * y); }, 1);
-      if (!requested.scatter(frame)) return;
-      requested.add(diagonal ? "sinusoid_45" : "sinusoid", fmt::format("contrast, k d = {}", kd),
-                    sampled_contrast(kx, ky), contrast(requested, kx, ky));
+      if (!probe.scatter(frame)) return;
+      probe.add(diagonal ? "sinusoid_45" : "sinusoid", fmt::format("contrast, k d = {}", kd),
+                sampled_contrast(kx, ky), contrast(probe, kx, ky));
     }
 }
 
-void disc(Asked& requested) {
+void disc(Probe& probe) {
   for (const double rho : {1.0, 2.0, 4.0, 8.0}) {
     CapturedFrame frame = plane(d);
     paint(frame, [&](double x, double y) { return std::hypot(x, y) < rho * d ? 1.0 : 0.0; });
-    if (!requested.scatter(frame)) return;
-    requested.add("disc", fmt::format("centre, radius {} d", rho), subsurface::burley_disc(0, rho * d, d),
-                  requested.at(0, 0));
+    if (!probe.scatter(frame)) return;
+    probe.add("disc", fmt::format("centre, radius {} d", rho), subsurface::burley_disc(0, rho * d, d),
+              probe.at(0, 0));
     if (rho == 4.0)
       for (const int x : {8, 16, 24})
-        requested.add(
-            "disc", fmt::format("{} d from the centre, radius 4 d", x / d),
-            subsurface::burley_disc(x, rho * d, d),
-            0.25 * (requested.at(x, 0) + requested.at(-x, 0) + requested.at(0, x) + requested.at(0, -x)));
+        probe.add("disc", fmt::format("{} d from the centre, radius 4 d", x / d),
+                  subsurface::burley_disc(x, rho * d, d),
+                  0.25 * (probe.at(x, 0) + probe.at(-x, 0) + probe.at(0, x) + probe.at(0, -x)));
   }
 }
 
-void gaussian(Asked& requested) {
+void gaussian(Probe& probe) {
   for (const double s : {0.5, 2.0}) {
     const double d_px = s < 1 ? 2 * d : d; // averaging over pixels widens the light: sigma^2 + 1/12
     CapturedFrame frame = plane(d_px);
     const double sigma = s * d_px;
     paint(frame, [&](double x, double y) { return std::exp(-(x * x + y * y) / (2 * sigma * sigma)); });
-    if (!requested.scatter(frame)) return;
-    requested.add("gaussian", fmt::format("centre, s = {} d", s),
-                  subsurface::burley_gaussian_centre(sigma, d_px), requested.at(0, 0));
+    if (!probe.scatter(frame)) return;
+    probe.add("gaussian", fmt::format("centre, s = {} d", s), subsurface::burley_gaussian_centre(sigma, d_px),
+              probe.at(0, 0));
   }
 }
 
-void polynomial(Asked& requested) {
+void polynomial(Probe& probe) {
   CapturedFrame frame = plane(2);
   paint(
       frame, [](double x, double) { return 0.5 + x / property_width; }, 1);
-  if (!requested.scatter(frame)) return;
+  if (!probe.scatter(frame)) return;
   double worst = 0;
   for (int x = -64; x <= 64; ++x)
-    worst = std::max(worst, std::abs(requested.at(x, 0) - (0.5 + double(x) / property_width)));
-  requested.add("ramp", "largest deviation in the middle", 0, worst);
+    worst = std::max(worst, std::abs(probe.at(x, 0) - (0.5 + double(x) / property_width)));
+  probe.add("ramp", "largest deviation in the middle", 0, worst);
 
   const double scale = 1 / (middle_x * middle_x);
   paint(
       frame, [&](double x, double) { return x * x * scale; }, 1);
-  if (!requested.scatter(frame)) return;
-  requested.add("parabola", "E[x^2] at the vertex, in d^2", 7, requested.at(0, 0) / (4 * scale));
+  if (!probe.scatter(frame)) return;
+  probe.add("parabola", "E[x^2] at the vertex, in d^2", 7, probe.at(0, 0) / (4 * scale));
 }
 
 // The edge response in distances along the tilted surface.
-void tilted_edge(Asked& requested) {
+void tilted_edge(Probe& probe) {
   for (const double degrees : {30.0, 60.0}) {
     const double slope = std::tan(degrees * 3.14159265358979323846 / 180),
                  stretch = std::sqrt(1 + slope * slope);
@@ -220,17 +219,17 @@ void tilted_edge(Asked& requested) {
       for (uint32_t x = 0; x < property_width; ++x)
         frame.depth.at(x, y, 0) = static_cast<float>(1 + slope * pitch * (x - middle_x));
     paint(frame, [](double x, double) { return x > 0 ? 1.0 : 0.0; });
-    if (!requested.scatter(frame)) return;
+    if (!probe.scatter(frame)) return;
     double squares = 0;
     for (int x = -32; x <= 32; ++x) {
       double mean = 0;
       for (int y = -8; y < 8; ++y)
-        mean += requested.at(x, y) / 16;
+        mean += probe.at(x, y) / 16;
       const double error = mean - edge_of_columns(x, d, stretch);
       squares += error * error;
     }
-    requested.add(degrees < 45 ? "tilted_edge_30" : "tilted_edge_60", "RMSE of columns, in surface distance",
-                  0, std::sqrt(squares / 65));
+    probe.add(degrees < 45 ? "tilted_edge_30" : "tilted_edge_60", "RMSE of columns, in surface distance", 0,
+              std::sqrt(squares / 65));
   }
 }
 
@@ -252,7 +251,7 @@ double sphere_pole(const Light& of_cosine, double radius, double d_px) {
   return light / all;
 }
 
-void sphere(Asked& requested) {
+void sphere(Probe& probe) {
   constexpr double wide = 4 * d, radius = 5 * wide; // pixels
   CapturedFrame frame = plane(wide);
   const double pitch = *frame.description.pixel_pitch_m;
@@ -273,54 +272,53 @@ void sphere(Asked& requested) {
           return light(std::sqrt(std::max(0.0, 1 - (x * x + y * y) / (radius * radius))), 0);
         },
         1);
-    if (!requested.scatter(frame)) return;
-    requested.add("sphere", fmt::format("pole of a sphere of radius 5 d, harmonic {}", degree),
-                  sphere_pole(light, radius, wide), requested.at(0, 0));
+    if (!probe.scatter(frame)) return;
+    probe.add("sphere", fmt::format("pole of a sphere of radius 5 d, harmonic {}", degree),
+              sphere_pole(light, radius, wide), probe.at(0, 0));
   }
 }
 
-double leak(const Asked& requested) {
+double leak(const Probe& probe) {
   double worst = 0;
   for (uint32_t y = 0; y < property_height; ++y)
     for (uint32_t x = 0; x < property_width; ++x) {
       if (!is_looked_at(x, y)) continue;
       const double expected = x < property_width / 2 ? 1 : 0;
-      worst =
-          std::max(worst, std::abs(double(requested.light[3 * (size_t{y} * property_width + x)]) - expected));
+      worst = std::max(worst, std::abs(double(probe.light[3 * (size_t{y} * property_width + x)]) - expected));
     }
   return worst;
 }
 
-void borders(Asked& requested) {
+void borders(Probe& probe) {
   CapturedFrame frame = plane(d);
   paint(
       frame, [](double x, double) { return x < -0.5 ? 1.0 : 0.0; }, 1);
   for (uint32_t i = 0; i < frame.profile.size(); ++i)
     if (i % property_width >= property_width / 2) frame.profile[i] = 2;
-  if (!requested.scatter(frame)) return;
-  requested.add("two_materials", "largest leak", 0, leak(requested));
+  if (!probe.scatter(frame)) return;
+  probe.add("two_materials", "largest leak", 0, leak(probe));
 
   std::fill(frame.profile.begin(), frame.profile.end(), uint8_t{1});
   const double pitch = *frame.description.pixel_pitch_m;
   for (uint32_t i = 0; i < frame.profile.size(); ++i)
     if (i % property_width >= property_width / 2)
       frame.depth.values[i] = static_cast<float>(1 + 100 * d * pitch);
-  if (!requested.scatter(frame)) return;
-  requested.add("depth_step", "largest leak over a step of 100 d", 0, leak(requested));
+  if (!probe.scatter(frame)) return;
+  probe.add("depth_step", "largest leak over a step of 100 d", 0, leak(probe));
 }
 
 // The same light and d at twice the size: means of 2x2 pixels must equal the pixels at single size.
-void scale_invariance(Asked& requested) {
+void scale_invariance(Probe& probe) {
   const auto pattern = [](double x, double y) {
     return 0.5 + 0.5 * std::sin(0.05 * x) * std::cos(0.11 * y) * (x * y > 0 ? 1 : -0.4);
   };
   CapturedFrame small = plane(d), large = plane(2 * d);
   paint(small, [&](double x, double y) { return pattern(x + 0.5, y + 0.5); });
   paint(large, [&](double x, double y) { return pattern((x + 0.5) / 2, (y + 0.5) / 2); });
-  if (!requested.scatter(small)) return;
-  const std::vector<float> first = requested.light;
-  if (!requested.scatter(large)) return;
-  const std::vector<float> second = requested.light;
+  if (!probe.scatter(small)) return;
+  const std::vector<float> first = probe.light;
+  if (!probe.scatter(large)) return;
+  const std::vector<float> second = probe.light;
   double squares = 0, count = 0;
   for (int y = -10; y < 10; ++y)
     for (int x = -90; x < 90; ++x) {
@@ -333,13 +331,12 @@ void scale_invariance(Asked& requested) {
       squares += (mean - of(first, x, y)) * (mean - of(first, x, y));
       ++count;
     }
-  requested.add("scale_invariance", "RMS difference of one scene at two sizes", 0,
-                std::sqrt(squares / count));
+  probe.add("scale_invariance", "RMS difference of one scene at two sizes", 0, std::sqrt(squares / count));
 }
 
 struct Property {
   std::string_view name;
-  void (*measure)(Asked&);
+  void (*measure)(Probe&);
 };
 constexpr Property properties[] = {{"white_furnace", white_furnace},
                                    {"edge", edge},
@@ -374,11 +371,11 @@ std::vector<std::string_view> plane_property_names() {
 }
 
 demo::Result<std::vector<PropertyRow>> plane_properties(const PropertySubject& subject) {
-  Asked requested{subject};
+  Probe probe{subject};
   for (const Property& property : properties)
-    property.measure(requested);
-  if (requested.error) return *requested.error;
-  return requested.rows;
+    property.measure(probe);
+  if (probe.error) return *probe.error;
+  return probe.rows;
 }
 
 } // namespace dermis::tools

@@ -12,8 +12,7 @@ namespace dermis::tools {
 
 using Tolerances = std::vector<std::pair<std::string, double>>; // property, absolute tolerance
 
-struct PropertyTechnique {
-  TechniqueRequest request;
+struct PropertyTechnique : TechniqueRequest {
   Tolerances tolerances;
 };
 

@@ -11,45 +11,27 @@ StabilityCase odd_depth(std::string_view name, float depth) {
   const auto with = [depth](bool damaged) {
     return [depth, damaged](uint32_t) {
       CapturedFrame frame = sound_frame();
-      for (uint32_t y = 0; y < stability_side; ++y)
-        for (uint32_t x = stability_side / 2; x < stability_side; ++x) {
-          frame.depth.at(x, y, 0) = damaged ? depth : 0.0f;
-          frame.profile[y * stability_side + x] = damaged ? 1 : 0;
-        }
+      for_pixels(frame, [&](uint32_t x, uint32_t y, size_t i) {
+        if (!is_right_half(x)) return;
+        frame.depth.at(x, y, 0) = damaged ? depth : 0.0f;
+        frame.profile[i] = damaged ? 1 : 0;
+      });
       return frame;
     };
   };
-  StabilityCase made;
-  made.name = name;
-  made.given = with(true);
-  made.same_as = with(false);
-  made.bound = furnace;
-  return made;
+  return {.name = name, .given = with(true), .same_as = with(false), .bound = furnace};
 }
 
-StabilityCase far_plane(std::string_view name, float metres) {
-  StabilityCase made;
-  made.name = name;
-  made.given = [metres](uint32_t) {
+std::function<CapturedFrame(uint32_t)> at_depth(float metres) {
+  return [metres](uint32_t) {
     CapturedFrame frame = sound_frame();
     std::fill(frame.depth.values.begin(), frame.depth.values.end(), metres);
     return frame;
   };
-  made.wanted = [](uint32_t) { return 1.0; };
-  made.bound = furnace;
-  return made;
 }
 
-StabilityCase nothing_but_sky() {
-  StabilityCase made;
-  made.name = "nothing_but_sky";
-  made.given = [](uint32_t) {
-    CapturedFrame frame = sound_frame();
-    std::fill(frame.depth.values.begin(), frame.depth.values.end(), 0.0f);
-    return frame;
-  };
-  made.finite_only = true;
-  return made;
+StabilityCase far_plane(std::string_view name, float metres) {
+  return {.name = name, .given = at_depth(metres), .wanted = white, .bound = furnace};
 }
 
 enum class View : uint8_t { perspective, orthographic };
@@ -92,21 +74,19 @@ StabilityCase depth_buffer(std::string_view name, View view, Range range, double
     description.clip_from_view = projection(view, range, far_plane, pitch * stability_side / 2);
     complete_projection(description, frame.rays);
     description.previous_clip_from_view = description.clip_from_view;
-    for (uint32_t y = 0; y < stability_side; ++y)
-      for (uint32_t x = 0; x < stability_side; ++x) {
-        const bool sky = x >= 36;
-        frame.depth.at(x, y, 0) = sky ? 0.0f : static_cast<float>(1 + pitch * x);
-        if (sky) frame.profile[y * stability_side + x] = 0;
-      }
+    for_pixels(frame, [&](uint32_t x, uint32_t y, size_t i) {
+      const bool sky = x >= 36;
+      frame.depth.at(x, y, 0) = sky ? 0.0f : static_cast<float>(1 + pitch * x);
+      if (sky) frame.profile[i] = 0;
+    });
     return frame;
   };
-  StabilityCase made;
-  made.name = name;
-  made.given = made.same_as = make;
-  made.depth = DepthGiven::depth_buffer;
-  made.judged = Judged::light_rms;
-  made.bound = furnace; // a float step is 1 micrometre there, a thousandth of d
-  return made;
+  return {.name = name,
+          .given = make,
+          .same_as = make,
+          .judged = Judged::light_rms,
+          .bound = furnace, // a float step is 1 micrometre there, a thousandth of d
+          .depth = DepthGiven::depth_buffer};
 }
 
 } // namespace
@@ -118,7 +98,7 @@ std::vector<StabilityCase> depth_cases() {
           odd_depth("depth_negative_beside", -1),
           far_plane("depth_1e-6_m", 1e-6f),
           far_plane("depth_1e6_m", 1e6f),
-          nothing_but_sky(),
+          {.name = "nothing_but_sky", .given = at_depth(0), .finite_only = true},
           depth_buffer("depth_forward", View::perspective, Range::forward, far_m),
           depth_buffer("depth_reversed", View::perspective, Range::reversed, far_m),
           depth_buffer("depth_forward_infinite_far", View::perspective, Range::forward, no_far_m),

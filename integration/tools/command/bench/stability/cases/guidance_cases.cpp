@@ -9,9 +9,9 @@ namespace {
 // Light and dark halves.
 CapturedFrame edge_frame() {
   CapturedFrame frame = sound_frame();
-  for (uint32_t y = 0; y < stability_side; ++y)
-    for (uint32_t x = 0; x < stability_side / 2; ++x)
-      set_light(frame, x, y, 0);
+  for_pixels(frame, [&](uint32_t x, uint32_t y, size_t) {
+    if (!is_right_half(x)) set_light(frame, x, y, 0);
+  });
   return frame;
 }
 
@@ -19,16 +19,14 @@ CapturedFrame edge_frame() {
 // at the edge must take at least twice the minimum number of samples.
 StabilityCase wakes_up() {
   constexpr uint32_t comes = 600; // frame
-  StabilityCase made;
-  made.name = "samples_after_600_even_frames";
-  made.frames = comes + 3;
-  made.given = [](uint32_t frame) { return frame < comes ? sound_frame() : edge_frame(); };
-  made.judged = Judged::samples_at_edge;
-  made.requested = Asked::guided;
-  made.large = true;
-  made.first_judged = comes + 1;
-  made.bound = 0.5;
-  return made;
+  return {.name = "samples_after_600_even_frames",
+          .frames = comes + 3,
+          .given = [](uint32_t frame) { return frame < comes ? sound_frame() : edge_frame(); },
+          .judged = Judged::samples_at_edge,
+          .requested = Asked::guided,
+          .bound = 0.5,
+          .first_judged = comes + 1,
+          .large = true};
 }
 
 // Light in other units with a matching exposure must give the same numbers of samples.
@@ -43,28 +41,24 @@ StabilityCase in_other_units() {
       return out;
     };
   };
-  StabilityCase made;
-  made.name = "samples_under_exposure_x16";
-  made.frames = 24;
-  made.given = with(16);
-  made.same_as = with(1);
-  made.judged = Judged::mean_samples;
-  made.requested = Asked::guided;
-  made.bound = 0.02;
-  return made;
+  return {.name = "samples_under_exposure_x16",
+          .frames = 24,
+          .given = with(16),
+          .same_as = with(1),
+          .judged = Judged::mean_samples,
+          .requested = Asked::guided,
+          .bound = 0.02};
 }
 
 // A pixel with many samples stalls its group. The maximum over the mean of a tile is bounded by the
 // range of sample counts (8 to 64).
 StabilityCase uneven() {
-  StabilityCase made;
-  made.name = "samples_in_a_tile";
-  made.frames = 24;
-  made.given = [](uint32_t) { return edge_frame(); };
-  made.judged = Judged::samples_in_tile;
-  made.requested = Asked::guided;
-  made.bound = 8;
-  return made;
+  return {.name = "samples_in_a_tile",
+          .frames = 24,
+          .given = [](uint32_t) { return edge_frame(); },
+          .judged = Judged::samples_in_tile,
+          .requested = Asked::guided,
+          .bound = 8};
 }
 
 } // namespace

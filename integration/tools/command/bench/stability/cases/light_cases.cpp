@@ -22,41 +22,29 @@ StabilityCase damaged_light(std::string_view name, float damage, float taken) {
       return frame;
     };
   };
-  StabilityCase made;
-  made.name = name;
-  made.given = with(damage);
-  made.same_as = with(taken);
-  return made;
+  return {.name = name, .given = with(damage), .same_as = with(taken)};
 }
 
 StabilityCase uniform(std::string_view name, float value, double bound) {
-  StabilityCase made;
-  made.name = name;
-  made.given = [value](uint32_t) {
+  const double taken = std::min(value, largest_half);
+  const auto given = [value](uint32_t) {
     CapturedFrame frame = sound_frame();
     fill_light(frame, value);
     return frame;
   };
-  made.wanted = [value](uint32_t) { return double(std::min(value, largest_half)); };
-  made.scale = std::max(1e-30, double(std::min(value, largest_half)));
-  made.bound = bound;
-  return made;
+  const auto wanted = [taken](uint32_t) { return taken; };
+  return {.name = name, .given = given, .wanted = wanted, .bound = bound, .scale = std::max(1e-30, taken)};
 }
 
 // A white plane that scatters where `has_profile` is true.
 template <class Mask> StabilityCase masked(std::string_view name, Mask has_profile) {
-  StabilityCase made;
-  made.name = name;
-  made.given = [has_profile](uint32_t) {
+  const auto given = [has_profile](uint32_t) {
     CapturedFrame frame = sound_frame();
-    for (uint32_t y = 0; y < stability_side; ++y)
-      for (uint32_t x = 0; x < stability_side; ++x)
-        frame.profile[y * stability_side + x] = has_profile(x, y) ? 1 : 0;
+    for_pixels(frame,
+               [&](uint32_t x, uint32_t y, size_t i) { frame.profile[i] = has_profile(x, y) ? 1 : 0; });
     return frame;
   };
-  made.wanted = [](uint32_t) { return 1.0; };
-  made.bound = furnace;
-  return made;
+  return {.name = name, .given = given, .wanted = white, .bound = furnace};
 }
 
 // Half of the plane is dark and scatters. Light of the other half must reach the dark half.
@@ -64,76 +52,72 @@ StabilityCase black_half() {
   const auto with = [](float dark) {
     return [dark](uint32_t) {
       CapturedFrame frame = sound_frame();
-      for (uint32_t y = 0; y < stability_side; ++y)
-        for (uint32_t x = stability_side / 2; x < stability_side; ++x)
-          set_light(frame, x, y, dark);
+      for_pixels(frame, [&](uint32_t x, uint32_t y, size_t) {
+        if (is_right_half(x)) set_light(frame, x, y, dark);
+      });
       return frame;
     };
   };
-  StabilityCase made;
-  made.name = "black_subsurface";
-  made.given = with(0.0f);
-  made.same_as = with(1e-6f);
-  made.bound = furnace;
-  return made;
+  return {.name = "black_subsurface", .given = with(0.0f), .same_as = with(1e-6f), .bound = furnace};
 }
 
 // Half of the image has no profile and 1000 times the light. None of that light may leak.
 StabilityCase glare_beside() {
-  StabilityCase made;
-  made.name = "glare_without_profile";
-  made.given = [](uint32_t) {
+  const auto given = [](uint32_t) {
     CapturedFrame frame = sound_frame();
-    for (uint32_t y = 0; y < stability_side; ++y)
-      for (uint32_t x = stability_side / 2; x < stability_side; ++x) {
-        set_light(frame, x, y, 1000);
-        frame.profile[y * stability_side + x] = 0;
-      }
+    for_pixels(frame, [&](uint32_t x, uint32_t y, size_t i) {
+      if (!is_right_half(x)) return;
+      set_light(frame, x, y, 1000);
+      frame.profile[i] = 0;
+    });
     return frame;
   };
-  made.wanted = [](uint32_t) { return 1.0; };
-  made.bound = furnace;
-  return made;
+  return {.name = "glare_without_profile", .given = given, .wanted = white, .bound = furnace};
 }
 
 // The brightest light next to darkness, on pixels at many depths, so that dark pixels receive
 // almost no light, least in blue. Results must not become negative.
 StabilityCase glare_in_the_dark() {
   constexpr float step = 2e-3f; // metres: two d
-  StabilityCase made;
-  made.name = "glare_in_the_dark";
-  made.frames = 8;
-  made.given = [](uint32_t frame) {
+  const auto given = [](uint32_t frame) {
     CapturedFrame out = sound_frame();
-    for (uint32_t y = 0; y < stability_side; ++y)
-      for (uint32_t x = 0; x < stability_side; ++x) {
-        const uint32_t hash = (31 * x + 17 * y + x * y) % 23;
-        set_light(out, x, y, (hash + frame) % 3 == 0 ? largest_half : 0);
-        out.depth.at(x, y, 0) = 1 + step * static_cast<float>(hash % 7);
-        if (x < stability_side / 2) out.profile[y * stability_side + x] = 5;
-      }
+    for_pixels(out, [&](uint32_t x, uint32_t y, size_t i) {
+      const uint32_t hash = (31 * x + 17 * y + x * y) % 23;
+      set_light(out, x, y, (hash + frame) % 3 == 0 ? largest_half : 0);
+      out.depth.at(x, y, 0) = 1 + step * static_cast<float>(hash % 7);
+      if (!is_right_half(x)) out.profile[i] = 5;
+    });
     return out;
   };
-  made.finite_only = true;
-  return made;
+  return {.name = "glare_in_the_dark", .frames = 8, .given = given, .finite_only = true};
 }
 
 // Light alternates between 1000 and the next float, long enough for variances to become negative by
 // rounding.
 StabilityCase trembling() {
-  StabilityCase made;
-  made.name = "light_1000_within_a_step";
-  made.frames = 32;
-  made.given = [](uint32_t frame) {
+  const auto given = [](uint32_t frame) {
     CapturedFrame out = sound_frame();
     for (size_t i = 0; i < out.lighting.values.size(); ++i)
       out.lighting.values[i] = (i + frame) % 2 == 0 ? 1000.0f : std::nextafter(1000.0f, 2000.0f);
     return out;
   };
-  made.wanted = [](uint32_t) { return 1000.0; };
-  made.scale = 1000;
-  made.bound = furnace;
-  return made;
+  return {.name = "light_1000_within_a_step",
+          .frames = 32,
+          .given = given,
+          .wanted = [](uint32_t) { return 1000.0; },
+          .bound = furnace,
+          .scale = 1000};
+}
+
+StabilityCase wrong_albedo() {
+  const auto given = [](uint32_t) {
+    CapturedFrame frame = textured_frame();
+    constexpr std::array values{-1.0f, 2.0f, not_a_number, infinity};
+    for (size_t i = 0; i < frame.albedo.values.size(); ++i)
+      frame.albedo.values[i] = values[i % values.size()];
+    return frame;
+  };
+  return {.name = "albedo_out_of_range", .given = given, .finite_only = true};
 }
 
 } // namespace
@@ -164,9 +148,9 @@ CapturedFrame sound_frame(uint32_t width, uint32_t height, double d_px) {
 }
 
 void set_texture(CapturedFrame& frame) {
-  for (uint32_t y = 0; y < frame.description.height; ++y)
-    for (uint32_t x = 0; x < frame.description.width; ++x)
-      set_light(frame, x, y, static_cast<float>(0.5 + 0.4 * std::sin(x * 0.2) * std::cos(y * 0.3)));
+  for_pixels(frame, [&](uint32_t x, uint32_t y, size_t) {
+    set_light(frame, x, y, static_cast<float>(0.5 + 0.4 * std::sin(x * 0.2) * std::cos(y * 0.3)));
+  });
 }
 
 CapturedFrame textured_frame() {
@@ -185,16 +169,6 @@ void fill_light(CapturedFrame& frame, float value) {
 }
 
 std::vector<StabilityCase> light_cases() {
-  StabilityCase albedo;
-  albedo.name = "albedo_out_of_range";
-  albedo.given = [](uint32_t) {
-    CapturedFrame frame = textured_frame();
-    constexpr std::array values{-1.0f, 2.0f, not_a_number, infinity};
-    for (size_t i = 0; i < frame.albedo.values.size(); ++i)
-      frame.albedo.values[i] = values[i % values.size()];
-    return frame;
-  };
-  albedo.finite_only = true;
   return {damaged_light("light_nan", not_a_number, 0),
           damaged_light("light_negative", -1, 0),
           damaged_light("light_minus_infinity", -infinity, 0),
@@ -207,7 +181,7 @@ std::vector<StabilityCase> light_cases() {
           trembling(),
           glare_beside(),
           glare_in_the_dark(),
-          albedo,
+          wrong_albedo(),
           black_half(),
           masked("isolated_pixel", [](uint32_t x, uint32_t y) { return x == 13 && y == 17; }),
           masked("hair_thin_holes", [](uint32_t x, uint32_t y) { return x % 7 != 3 && y % 11 != 5; }),

@@ -14,19 +14,18 @@ constexpr Velocity rests{0, 0, 0};
 constexpr Velocity leads_outside{1e3f, 0, 0};
 
 StabilityCase velocity(std::string_view name, float value) {
-  StabilityCase made;
-  made.name = name;
-  made.frames = 4;
-  made.given = [value](uint32_t) {
+  const auto given = [value](uint32_t) {
     CapturedFrame frame = sound_frame();
     frame.velocity = Image::sized(stability_side, stability_side, 2);
     std::fill(frame.velocity.values.begin(), frame.velocity.values.end(), value);
     return frame;
   };
-  made.wanted = [](uint32_t) { return 1.0; };
-  made.bound = furnace;
-  made.requested = Asked::with_history;
-  return made;
+  return {.name = name,
+          .frames = 4,
+          .given = given,
+          .wanted = white,
+          .requested = Asked::with_history,
+          .bound = furnace};
 }
 
 // Stripes of invalid velocities alternate with resting stripes, under varying light. A pixel with
@@ -37,23 +36,20 @@ StabilityCase striped(std::string_view name, std::array<Velocity, 3> broken) {
       constexpr uint32_t stripe = 8; // pixels
       CapturedFrame frame = textured_frame();
       frame.velocity = Image::sized(stability_side, stability_side, 3);
-      for (uint32_t y = 0; y < stability_side; ++y)
-        for (uint32_t x = 0; x < stability_side; ++x) {
-          const uint32_t number = x / stripe;
-          const Velocity there = damaged ? broken[number / 2] : leads_outside;
-          for (uint32_t c = 0; c < 3; ++c)
-            frame.velocity.at(x, y, c) = (number % 2 == 0 ? there : rests)[c];
-        }
+      for_pixels(frame, [&](uint32_t x, uint32_t y, size_t) {
+        const uint32_t number = x / stripe;
+        const Velocity there = damaged ? broken[number / 2] : leads_outside;
+        for (uint32_t c = 0; c < 3; ++c)
+          frame.velocity.at(x, y, c) = (number % 2 == 0 ? there : rests)[c];
+      });
       return frame;
     };
   };
-  StabilityCase made;
-  made.name = name;
-  made.frames = 5;
-  made.given = with(true);
-  made.same_as = with(false);
-  made.requested = Asked::with_history;
-  return made;
+  return {.name = name,
+          .frames = 5,
+          .given = with(true),
+          .same_as = with(false),
+          .requested = Asked::with_history};
 }
 
 // Terraces on which pyramids have low confidence. First red light falls on a single pixel, where
@@ -64,25 +60,23 @@ StabilityCase red_comes() {
   constexpr uint32_t terrace = 6;             // pixels
   constexpr float level = 0.5f, step = 2e-3f; // metres: two d
   constexpr double largest_ratio = 4;         // shaders/papers/subsurface_residual.comp
-  StabilityCase made;
-  made.name = "red_comes";
-  made.frames = 16;
-  made.given = [](uint32_t frame) {
+  const auto given = [](uint32_t frame) {
     CapturedFrame out = sound_frame();
     fill_light(out, level);
-    for (uint32_t y = 0; y < stability_side; ++y)
-      for (uint32_t x = 0; x < stability_side; ++x) {
-        out.depth.at(x, y, 0) = 1 + step * static_cast<float>((x / terrace + y / terrace) % 2);
-        if (frame < comes) out.lighting.at(x, y, 0) = x == 24 && y == 24 ? 1.0f : 0.0f;
-      }
+    for_pixels(out, [&](uint32_t x, uint32_t y, size_t) {
+      out.depth.at(x, y, 0) = 1 + step * static_cast<float>((x / terrace + y / terrace) % 2);
+      if (frame < comes) out.lighting.at(x, y, 0) = x == 24 && y == 24 ? 1.0f : 0.0f;
+    });
     return out;
   };
-  made.wanted = [](uint32_t) { return double(level); };
-  made.first_judged = comes;
-  made.scale = level;
-  made.bound = largest_ratio - 1;
-  made.requested = Asked::with_history;
-  return made;
+  return {.name = "red_comes",
+          .frames = 16,
+          .given = given,
+          .wanted = [](uint32_t) { return double(level); },
+          .requested = Asked::with_history,
+          .bound = largest_ratio - 1,
+          .scale = level,
+          .first_judged = comes};
 }
 
 } // namespace

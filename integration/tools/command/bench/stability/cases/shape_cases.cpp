@@ -10,13 +10,11 @@
 namespace dermis::tools {
 namespace {
 
-StabilityCase furnace_of(std::string_view name, std::function<CapturedFrame()> make, double bound = furnace) {
-  StabilityCase made;
-  made.name = name;
-  made.given = [make = std::move(make)](uint32_t) { return make(); };
-  made.wanted = [](uint32_t) { return 1.0; };
-  made.bound = bound;
-  return made;
+StabilityCase furnace_of(std::string_view name, std::function<CapturedFrame()> make) {
+  return {.name = name,
+          .given = [make = std::move(make)](uint32_t) { return make(); },
+          .wanted = white,
+          .bound = furnace};
 }
 
 // A plane tilted by `degrees` about the vertical axis.
@@ -24,9 +22,9 @@ StabilityCase grazing(std::string_view name, double degrees) {
   return furnace_of(name, [degrees] {
     CapturedFrame frame = sound_frame();
     const double slope = std::tan(degrees * 3.14159265358979323846 / 180) * *frame.description.pixel_pitch_m;
-    for (uint32_t y = 0; y < stability_side; ++y)
-      for (uint32_t x = 0; x < stability_side; ++x)
-        frame.depth.at(x, y, 0) = static_cast<float>(1 + slope * x);
+    for_pixels(frame, [&](uint32_t x, uint32_t y, size_t) {
+      frame.depth.at(x, y, 0) = static_cast<float>(1 + slope * x);
+    });
     return frame;
   });
 }
@@ -43,34 +41,15 @@ CapturedFrame with_scale(CapturedFrame frame, float scale) {
 
 // A factor on d that removes scattering: light must stay unchanged bit for bit.
 StabilityCase without_scattering(std::string_view name, float scale) {
-  StabilityCase made;
-  made.name = name;
-  made.given = [scale](uint32_t) { return with_scale(textured_frame(), scale); };
-  made.same_as = [](uint32_t) { return with_scale(textured_frame(), 0.0f); };
-  return made;
-}
-
-// Profile 3: blue must be unchanged next to red and green, which scatter.
-StabilityCase without_blue() {
-  StabilityCase made;
-  made.name = "d_0_of_blue";
-  made.given = [](uint32_t) {
-    CapturedFrame frame = textured_frame();
-    std::fill(frame.profile.begin(), frame.profile.end(), uint8_t{3});
-    return frame;
+  const auto with = [](float factor) {
+    return [factor](uint32_t) { return with_scale(textured_frame(), factor); };
   };
-  made.first_channel = 2;
-  return made;
+  return {.name = name, .given = with(scale), .same_as = with(0)};
 }
 
-// Profile 4: blue has a thousandth of the width, so that samples for red contain no information for
-// blue.
-StabilityCase narrow_blue() {
-  return furnace_of("d_of_blue_1e-3", [] {
-    CapturedFrame frame = sound_frame();
-    std::fill(frame.profile.begin(), frame.profile.end(), uint8_t{4});
-    return frame;
-  });
+CapturedFrame with_profile(CapturedFrame frame, uint8_t id) {
+  std::fill(frame.profile.begin(), frame.profile.end(), id);
+  return frame;
 }
 
 // Neighbouring pixels differ in depth by d or more; blue has a hundredth of d. Weights of
@@ -78,8 +57,7 @@ StabilityCase narrow_blue() {
 StabilityCase far_apart() {
   return furnace_of("surfaces_far_apart", [] {
     constexpr float step = 3e-3f; // metres: three d
-    CapturedFrame frame = sound_frame(stability_side, stability_side, 1000);
-    std::fill(frame.profile.begin(), frame.profile.end(), uint8_t{5});
+    CapturedFrame frame = with_profile(sound_frame(stability_side, stability_side, 1000), 5);
     for (uint32_t i = 0; i < frame.depth.values.size(); ++i)
       frame.depth.values[i] = 1 + step * static_cast<float>(i * 37 % 251);
     return frame;
@@ -92,43 +70,33 @@ StabilityCase begins_to_scatter() {
   constexpr double leaves = 0.0354;
   // weight of one of 16 samples if all radii are sampled, as in burley
   constexpr double sample = 1.0 / 16.0;
-  StabilityCase made;
-  made.name = "d_begins_to_scatter";
-  made.given = [](uint32_t) {
+  const auto given = [](uint32_t) {
     CapturedFrame frame =
         with_scale(sound_frame(), static_cast<float>(1.001 * subsurface::copy_below_d_px / stability_d_px));
-    for (uint32_t y = 0; y < stability_side; ++y)
-      for (uint32_t x = 0; x < stability_side; ++x)
-        set_light(frame, x, y, (x + y) % 2 == 0 ? 1.0f : 0.0f);
+    for_pixels(frame, [&](uint32_t x, uint32_t y, size_t) {
+      set_light(frame, x, y, (x + y) % 2 == 0 ? 1.0f : 0.0f);
+    });
     return frame;
   };
-  made.requested = Asked::of_profile;
-  made.bound = std::max(leaves, sample) + furnace;
-  return made;
+  return {.name = "d_begins_to_scatter",
+          .given = given,
+          .requested = Asked::of_profile,
+          .bound = std::max(leaves, sample) + furnace};
 }
 
 // The size changes in each frame while histories continue.
 StabilityCase resized() {
-  StabilityCase made;
-  made.name = "size_changes_every_frame";
-  made.frames = 8;
-  made.given = [](uint32_t frame) {
+  const auto given = [](uint32_t frame) {
     constexpr std::array<uint32_t, 4> widths{48, 31, 64, 17};
     return sound_frame(widths[frame % widths.size()], widths[(frame + 1) % widths.size()]);
   };
-  made.wanted = [](uint32_t) { return 1.0; };
-  made.bound = furnace;
-  return made;
+  return {.name = "size_changes_every_frame", .frames = 8, .given = given, .wanted = white, .bound = furnace};
 }
 
 } // namespace
 
 std::vector<StabilityCase> shape_cases() {
-  StabilityCase no_number = without_scattering("scatter_scale_nan", not_a_number);
-  StabilityCase endless =
-      furnace_of("scatter_scale_infinity", [] { return with_scale(sound_frame(), infinity); });
-  StabilityCase widest = sized("size_16384x64", 16384, 64);
-  StabilityCase odd = sized("size_1919x1079", 1919, 1079);
+  StabilityCase widest = sized("size_16384x64", 16384, 64), odd = sized("size_1919x1079", 1919, 1079);
   odd.large = true;
   // at the border of images, the last columns do not fit on the device
   widest.may_be_rejected = true;
@@ -144,13 +112,18 @@ std::vector<StabilityCase> shape_cases() {
           resized(),
           without_scattering("d_1e-30", 1e-30f),
           without_scattering("d_1e-6", 1e-6f),
-          without_blue(),
-          narrow_blue(),
+          // profile 3: blue must be unchanged next to red and green, which scatter
+          {.name = "d_0_of_blue",
+           .given = [](uint32_t) { return with_profile(textured_frame(), 3); },
+           .first_channel = 2},
+          // profile 4: blue has a thousandth of the width, so that samples for red contain no
+          // information for blue
+          furnace_of("d_of_blue_1e-3", [] { return with_profile(sound_frame(), 4); }),
           far_apart(),
           begins_to_scatter(),
           without_scattering("scatter_scale_negative", -1),
-          no_number,
-          endless,
+          without_scattering("scatter_scale_nan", not_a_number),
+          furnace_of("scatter_scale_infinity", [] { return with_scale(sound_frame(), infinity); }),
           furnace_of("d_1e4_px",
                      [] { return with_scale(sound_frame(), static_cast<float>(1e4 / stability_d_px)); })};
 }

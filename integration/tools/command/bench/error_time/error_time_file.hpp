@@ -2,23 +2,14 @@
 // Contents of tests/benchmark/error_time.json, which describes `dermis bench error-time`. A
 // technique, setting or framing is one entry.
 
-#include "framegraph/text/reader.hpp"
 #include "integration/tools/command/bench/subject.hpp"
-#include "integration/tools/command/verbs.hpp"
+#include "integration/tools/command/bench/suite/bench_file.hpp"
 
 #include <optional>
 #include <string>
 #include <vector>
 
 namespace dermis::tools {
-
-struct TechniqueRequest {
-  std::string technique, setting;         // names in the report
-  std::string graph;                      // file
-  std::vector<NamedValue> set;            // values of the graph's settings
-  bool heat_map = false;                  // include an error map in the report
-  std::vector<std::string> overlays = {}; // files, in order
-};
 
 struct ErrorTimeFile {
   uint32_t repetitions = 15, warm_up = 2; // per technique and scene
@@ -38,14 +29,6 @@ struct ErrorTimeFile {
   // side of the square in the image's middle used for psnr_db_self; 0: whole image
   uint32_t self_window = 0;
 };
-
-// Reads the keys technique, setting, graph, overlays, set and heat_map of an entry. The caller
-// finishes the object.
-TechniqueRequest read_technique(const Document& document, ObjectReader& object, Diagnostics& diagnostics);
-
-// Reads the optional key camera of an entry.
-std::optional<demo::CameraPlace> read_camera(const Document& document, ObjectReader& object,
-                                             Diagnostics& diagnostics);
 
 // Returns nullopt with located errors.
 std::optional<ErrorTimeFile> read_error_time(const std::string& path, Diagnostics& diagnostics);

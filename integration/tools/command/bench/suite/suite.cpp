@@ -1,0 +1,127 @@
+#include "integration/tools/command/bench/suite/suite.hpp"
+
+#include "integration/tools/command/interrupt.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+
+namespace dermis::tools {
+namespace {
+
+constexpr Size quick_size{96, 54};
+
+// Facts of the machine precede those of the suite.
+void complete_facts(SuiteRun& run, double seconds) {
+  auto facts = machine_info(run.session.command, run.device);
+  std::vector<std::pair<std::string, std::string>>& own = run.report.info;
+  own.insert(own.begin(), facts.begin(), facts.end());
+  if (run.quick)
+    run.add_fact("quick", "a smoke test with small images and few repetitions, scenes or techniques; figures "
+                          "are meaningless");
+  run.add_fact("took", format_duration(seconds));
+}
+
+} // namespace
+
+SuiteOption file_option(std::string path, std::string help) {
+  return {"file", std::move(help), std::move(path), "FILE"};
+}
+
+SuiteOption size_option(Size size) {
+  return {.name = "size", .help = "", .value = size, .quick = quick_size};
+}
+
+SuiteOption head_option(std::string help) {
+  return {"head", std::move(help), "", "DIR"};
+}
+
+SuiteOption cache_option() {
+  return {"cache", "Folder of cached references; \"\": references are not kept", "build/bench_truth", "DIR"};
+}
+
+SuiteOption pass_types_option() {
+  return {"pass-types", "File of the host's pass types (dermis_export_pass_types); may be repeated",
+          std::vector<std::string>(), "FILE"};
+}
+
+SuiteOption only_option(const std::string& kind) {
+  return {kind, fmt::format("Only these {}, separated by commas", kind), std::vector<std::string>(), "NAME"};
+}
+
+bool SuiteRun::is_requested(const std::string& name, std::string_view word) const {
+  const auto& words = list(name);
+  return words.empty() || std::find(words.begin(), words.end(), word) != words.end();
+}
+
+GraphParts SuiteRun::pass_types() const {
+  return {.overlays = {}, .roots = {}, .pass_types = list("pass-types")};
+}
+
+void SuiteRun::add_fact(std::string name, std::string fact) {
+  std::pair<std::string, std::string> added{std::move(name), std::move(fact)};
+  if (std::find(report.info.begin(), report.info.end(), added) == report.info.end())
+    report.info.push_back(std::move(added));
+}
+
+void SuiteRun::add_note(std::string note) {
+  if (std::find(report.notes.begin(), report.notes.end(), note) == report.notes.end())
+    report.notes.push_back(std::move(note));
+}
+
+Progress SuiteRun::progress(std::string unit, uint64_t total, std::string what) const {
+  return {progress_style(session.quiet, false), what.empty() ? report.bench : std::move(what),
+          std::move(unit), total};
+}
+
+demo::Result<std::unique_ptr<demo::VulkanHost>> SuiteRun::open_device() {
+  auto host = demo::create_vulkan_host({});
+  if (host) device = (*host)->properties.deviceName;
+  return host;
+}
+
+demo::Error SuiteRun::refuse(const std::string& path, const Diagnostics& diagnostics) const {
+  print_diagnostics(session, diagnostics);
+  return {demo::ErrorKind::input, fmt::format("'{}' cannot be used", path)};
+}
+
+demo::Error stopped() {
+  return {demo::ErrorKind::environment, "stopped"};
+}
+
+SuiteRequest default_request(const Suite& suite) {
+  SuiteRequest request;
+  for (const SuiteOption& option : suite.options)
+    request.options.emplace(option.name, option.value);
+  return request;
+}
+
+ExitCode run_suite(const Session& session, const Suite& suite, const SuiteRequest& request) {
+  const auto start = std::chrono::steady_clock::now();
+  if (const std::string reason = suite.why_not != nullptr ? suite.why_not() : ""; !reason.empty())
+    return fail(session, ExitCode::environment, reason);
+  SuiteRun run{session, request.quick, request.options};
+  for (const SuiteOption& option : suite.options)
+    if (request.quick && option.quick) run.options.at(option.name) = *option.quick;
+  Report& report = run.report;
+  report.bench = suite.name;
+  report.title = suite.title;
+  report.summary = suite.summary;
+  report.table.columns = suite.columns;
+  const auto done = suite.run(run);
+  if (interrupted()) return fail(session, ExitCode::interrupted, "stopped");
+  if (!done) return fail(session, static_cast<ExitCode>(done.error().kind), done.error().text);
+  complete_facts(run, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+
+  const GoalCount goals = count_goals(report.table, Goal::required);
+  const std::string verdict =
+      fmt::format("{} of {} rows do not hold", goals.missed, report.table.rows.size());
+  if (!session.quiet && request.json != "-" && request.csv != "-" && request.html != "-")
+    print(report_as_text(report) + (goals.rows > 0 ? verdict + "\n" : ""));
+  const std::string problem = deliver_report(report, request.json, request.csv, request.html);
+  if (!problem.empty()) return fail(session, ExitCode::environment, problem);
+  return goals.missed == 0 ? ExitCode::ok : fail(session, ExitCode::problems, verdict);
+}
+
+} // namespace dermis::tools

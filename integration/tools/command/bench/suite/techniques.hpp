@@ -1,0 +1,44 @@
+#pragma once
+// Selects the techniques of a suite from its file.
+
+#include "integration/tools/command/bench/suite/bench_file.hpp"
+#include "integration/tools/command/bench/suite/suite.hpp"
+
+#include <set>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace dermis::tools {
+
+// "sap smooth"
+std::string name_of(const TechniqueRequest& technique);
+// Returns whether --techniques requests the technique and its graph exists; notes a missing graph.
+bool is_usable(SuiteRun& run, const TechniqueRequest& technique);
+// Returns whether --quick measures the technique: one of each kind.
+bool is_one_of_few(std::string_view technique);
+// The usage error that lists the techniques of a file.
+demo::Error no_technique(std::vector<std::string> known);
+
+// Keeps the first setting of some techniques, for --quick.
+template <class Request> void keep_few(std::vector<Request>& all) {
+  std::set<std::string> seen;
+  std::erase_if(all, [&](const Request& one) {
+    return !is_one_of_few(one.technique) || !seen.insert(one.technique).second;
+  });
+}
+
+// Returns the usable techniques. Errors: usage (there is none).
+template <class Request>
+demo::Result<std::vector<Request>> select_techniques(SuiteRun& run, const std::vector<Request>& all) {
+  std::vector<Request> selected;
+  std::vector<std::string> known;
+  for (const Request& one : all) {
+    known.push_back(one.technique);
+    if (is_usable(run, one)) selected.push_back(one);
+  }
+  if (selected.empty()) return no_technique(std::move(known));
+  return selected;
+}
+
+} // namespace dermis::tools
