@@ -98,7 +98,7 @@ inline uint32_t BarrierWalk::wait_for_occupant(const HeapRange& occupant, uint32
   }
   const bool own = occupant.resource == resource;
   if (!own && info(resource).frames == 1) draft.why = PlanBarrier::ReasonKind::alias;
-  record_reason(barrier, own ? Reason::ReasonKind::behind_last_use : Reason::ReasonKind::takes_memory,
+  record_reason(barrier, own ? Reason::ReasonKind::after_last_use : Reason::ReasonKind::acquires_memory,
                 occupant.resource, frame_before ? 1 : 0);
   return end_of_last;
 }
@@ -227,7 +227,7 @@ void BarrierWalk::resolve_divided_first_uses() {
       barrier.why = acquiring.why;
     }
     wait_for_state(objects.states[use.object], use.barrier, true);
-    record_reason(use.barrier, Reason::ReasonKind::behind_last_use, use.resource, 1);
+    record_reason(use.barrier, Reason::ReasonKind::after_last_use, use.resource, 1);
   }
 }
 

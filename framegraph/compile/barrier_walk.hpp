@@ -60,7 +60,7 @@ struct BarrierWalk {
   }
 
   // Fills in the barrier that an access needs after the accesses in `state`.
-  void fill_dependency(const ObjectState& state, const UsageSet& set, Layout layout, bool must_see,
+  void fill_dependency(const ObjectState& state, const UsageSet& set, Layout layout, bool needs_visibility,
                        PlanBarrier& barrier) const;
 
   // Transfers the object with its contents from one queue to the other.

@@ -48,7 +48,7 @@ void SyncObjects::number(const Subresources& subresources, const Histories& hist
 }
 
 inline void BarrierWalk::fill_dependency(const ObjectState& state, const UsageSet& set, Layout layout,
-                                         bool must_see, PlanBarrier& barrier) const {
+                                         bool needs_visibility, PlanBarrier& barrier) const {
   const bool pending_write = state.source_access != 0;
   const SyncScope everything = scope_of(state);
   barrier.source_stages = everything.stages;
@@ -61,7 +61,7 @@ inline void BarrierWalk::fill_dependency(const ObjectState& state, const UsageSe
     barrier.why = !pending_write ? PlanBarrier::ReasonKind::layout
                   : set.reads    ? PlanBarrier::ReasonKind::read_after_write
                                  : PlanBarrier::ReasonKind::write_after_write;
-  } else if (must_see) {
+  } else if (needs_visibility) {
     barrier.why = PlanBarrier::ReasonKind::read_after_write;
     barrier.source_stages = set.writes ? everything.stages | state.source_stages : state.source_stages;
   } else {
@@ -83,15 +83,15 @@ inline void BarrierWalk::apply_access(const PassAccess& access, uint32_t positio
   } else if (other_queue) {
     if (emit) transfer_ownership(access, state, set, position);
   } else {
-    const bool must_see = set.reads && (access.usages & ~sets[state.visible].sees) != 0;
-    waited = layout != state.layout || must_see || set.writes;
+    const bool needs_visibility = set.reads && (access.usages & ~sets[state.visible].covers) != 0;
+    waited = layout != state.layout || needs_visibility || set.writes;
     if (waited && emit) {
       const uint32_t draft = drafts.add();
       PlanBarrier& barrier = drafts.barriers[draft];
       barrier.resource = access.resource;
       barrier.frames_back = access.frames_back;
       barrier.range = range_of(access.resource, access.range);
-      fill_dependency(state, set, layout, must_see, barrier);
+      fill_dependency(state, set, layout, needs_visibility, barrier);
       report.record_reason(Reason::About::barrier, draft, Reason::ReasonKind::dependency, state.last_pass,
                            state.carried ? 1 : 0, position);
       if (queues.two_queues) { // a barrier that only makes a write visible waits for no reader since then
@@ -149,12 +149,12 @@ void BarrierWalk::begin_frame() {
     for (uint32_t i = resource.objects(); i-- > 0;) {
       const uint32_t back = i / resource.ranges, range = i % resource.ranges;
       const uint32_t object = resource.first_object + i;
-      const uint32_t younger = back == 0 ? 0 : resource.object(back - 1, range);
-      objects.states[object] = back == 0 ? ObjectState{} : objects.states_at_frame_end[younger];
+      const uint32_t newer = back == 0 ? 0 : resource.object(back - 1, range);
+      objects.states[object] = back == 0 ? ObjectState{} : objects.states_at_frame_end[newer];
       objects.states[object].carried = back != 0;
       if (!queues.two_queues) continue;
       LastAccess& last = queues.last_access[object];
-      last = back == 0 ? LastAccess{} : queues.last_access_at_frame_end[younger];
+      last = back == 0 ? LastAccess{} : queues.last_access_at_frame_end[newer];
       ++last.any.frames_back;
       ++last.write.frames_back;
     }
@@ -231,10 +231,10 @@ void BarrierWalk::describe_histories() {
     history.frames = resource.frames - 1;
     history.first_layout = static_cast<uint32_t>(plan.history_layouts.size());
     history.declaration = in.graph.resources[plan.resources[r].declared.value].history;
-    history.first_part = static_cast<uint32_t>(plan.history_parts.size());
-    history.parts = resource.ranges;
+    history.first_range = static_cast<uint32_t>(plan.history_ranges.size());
+    history.range_count = resource.ranges;
     for (uint32_t range = 0; range < resource.ranges; ++range)
-      plan.history_parts.push_back(range_of(r, range));
+      plan.history_ranges.push_back(range_of(r, range));
     plan.history_layouts.insert(plan.history_layouts.end(), resource.ranges, Layout::undefined);
     for (uint32_t back = 1; back < resource.frames; ++back)
       for (uint32_t range = 0; range < resource.ranges; ++range)

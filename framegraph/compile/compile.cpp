@@ -39,7 +39,7 @@ void clear(CompiledPlan& out) {
   plan.settings.clear();
   plan.histories.clear();
   plan.history_layouts.clear();
-  plan.history_parts.clear();
+  plan.history_ranges.clear();
   plan.orderings.clear();
   plan.first_final_barrier = plan.final_barrier_count = 0;
   plan.final_wait = no_point;

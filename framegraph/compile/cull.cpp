@@ -3,7 +3,7 @@
 
 #include "framegraph/compile/hardware.hpp"
 #include "framegraph/compile/phases.hpp"
-#include "framegraph/model/image_part.hpp"
+#include "framegraph/model/image_range.hpp"
 #include "framegraph/text/suggest.hpp"
 
 #include <fmt/format.h>
@@ -61,7 +61,7 @@ struct Culler {
       mark_producer_of_read(use.read_version, pass, resource);
       // A pass that writes in place may keep texels of the version before.
       if (versions.overwrites && use.write_version != invalid_index)
-        mark_producer(versions[use.write_version].previous, Reason::ReasonKind::written_over_by, pass.value,
+        mark_producer(versions[use.write_version].previous, Reason::ReasonKind::overwritten_by, pass.value,
                       resource);
     }
   }
@@ -178,10 +178,10 @@ struct Culler {
       return use.frames_back > 0
                  ? report_error(DiagnosticId::history_unwritten,
                                 fmt::format("{} reads '{}@-{}', but no pass that is on writes {}", reader,
-                                            seen_text(use), use.frames_back, unwritten_parts(use)))
+                                            seen_text(use), use.frames_back, unwritten_ranges(use)))
                  : report_error(DiagnosticId::read_before_write,
                                 fmt::format("{} reads '{}', but no pass that is on writes {} before it",
-                                            reader, seen_text(use), unwritten_parts(use)));
+                                            reader, seen_text(use), unwritten_ranges(use)));
     }
   }
 
@@ -202,30 +202,30 @@ struct Culler {
   // Names the range as the file does, without the frame.
   std::string seen_text(const Use& use) const {
     const PortBinding& binding = graph.bindings_of(graph.passes[use.pass.value])[use.binding];
-    return name_of(graph, use.requested) + part_text(binding.part);
+    return name_of(graph, use.requested) + image_range_text(binding.range);
   }
 
   // Omits mips and layers that the range covers completely.
-  ImagePart part_of(const Use& use) const {
+  ImageRange part_of(const Use& use) const {
     const SubresourceRange& range = subresources.ranges[use.subresource];
-    ImagePart part;
+    ImageRange named;
     if (range.mips != sizes.extents[use.requested.value].mips) {
-      part.first_mip = static_cast<uint8_t>(range.first_mip);
-      part.mips = static_cast<uint8_t>(range.mips);
+      named.first_mip = static_cast<uint8_t>(range.first_mip);
+      named.mips = static_cast<uint8_t>(range.mips);
     }
     if (range.layers != sizes.info[use.requested.value].layers) {
-      part.first_layer = range.first_layer;
-      part.layers = range.layers;
+      named.first_layer = range.first_layer;
+      named.layers = range.layers;
     }
-    return part;
+    return named;
   }
 
   // Lists the ranges of the binding that no pass writes: "'chain#1' or 'chain#4..5'".
-  std::string unwritten_parts(const Use& use) const {
+  std::string unwritten_ranges(const Use& use) const {
     std::vector<std::string> names;
     for (const Use* at = &use; at != end_of_pass(use); ++at) {
       if (at->binding != use.binding || versions.is_written(*at)) continue;
-      names.push_back(name_of(graph, use.requested) + part_text(part_of(*at)));
+      names.push_back(name_of(graph, use.requested) + image_range_text(part_of(*at)));
     }
     return list_words(std::vector<std::string_view>(names.begin(), names.end()));
   }
@@ -236,7 +236,7 @@ struct Culler {
       if (!subresources.divided(use.requested)) return true;
       for (const Use* at = &use; at != end_of_pass(use); ++at)
         if (at->binding == use.binding && !versions.is_written(*at) &&
-            overlaps(written.part, subresources.ranges[at->subresource]))
+            overlaps(written.range, subresources.ranges[at->subresource]))
           return true;
       return false;
     });

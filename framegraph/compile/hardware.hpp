@@ -47,12 +47,12 @@ inline uint32_t any_common_bits_portable(const uint32_t* numbers, uint32_t mask)
 // Returns a bit i for each numbers[i] that has a bit in common with `mask`.
 inline uint32_t any_common_bits(const uint32_t* numbers, uint32_t mask) {
 #if defined(__SSE2__)
-  const __m128i wanted = _mm_set1_epi32(static_cast<int>(mask)), none = _mm_setzero_si128();
+  const __m128i masks = _mm_set1_epi32(static_cast<int>(mask)), none = _mm_setzero_si128();
   uint32_t missed = 0;
   for (uint32_t half = 0; half < 2; ++half) {
     const auto missing = [&](uint32_t quarter) { // all bits set for each of four numbers without a common bit
       const uint32_t* at = numbers + half * 16 + quarter * 4;
-      return _mm_cmpeq_epi32(_mm_and_si128(_mm_loadu_si128(reinterpret_cast<const __m128i*>(at)), wanted),
+      return _mm_cmpeq_epi32(_mm_and_si128(_mm_loadu_si128(reinterpret_cast<const __m128i*>(at)), masks),
                              none);
     };
     const __m128i low = _mm_packs_epi32(missing(0), missing(1));

@@ -49,7 +49,7 @@ const Histories& analyze_histories(const CompileInput& in, const Activation& act
     if (history.last_read >= history.first_access && !history.oldest_updated) continue;
     resource.instance_count = history.frames;
     report.record_reason(Reason::About::resource, resource.declared.value,
-                         Reason::ReasonKind::renewed_in_place, history.frames,
+                         Reason::ReasonKind::overwritten_in_place, history.frames,
                          history.oldest_updated ? 1 : 0);
   }
   return histories;

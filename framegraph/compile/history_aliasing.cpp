@@ -56,7 +56,7 @@ struct HistoryAliaser {
   }
 
   // Whether the transient fits into the target in an idle time and allows the memory types of its heap.
-  bool suits(uint32_t resource, uint32_t target, bool after_last_read) const {
+  bool can_alias(uint32_t resource, uint32_t target, bool after_last_read) const {
     const Placement &own = placement(resource), &there = placement(target);
     const bool in_time = after_last_read ? life(resource).first > history(target).last_read
                                          : life(resource).last < history(target).first_access;
@@ -88,7 +88,7 @@ struct HistoryAliaser {
     for (const uint32_t target : targets)
       for (const bool after_last_read : {false, true}) {
         uint64_t offset = 0;
-        if (!suits(resource, target, after_last_read) ||
+        if (!can_alias(resource, target, after_last_read) ||
             !find_offset(resource, target, after_last_read, offset))
           continue;
         aliases[resource] = {target, after_last_read, offset};

@@ -74,8 +74,8 @@ void Packer::place_by_time(Packing& out) {
       for (uint32_t at = i; at > begin && items_[by_first_[at]].size > items_[by_first_[at - 1]].size; --at)
         std::swap(by_first_[at], by_first_[at - 1]);
     for (; over < count && items_[by_last_[over]].last < now; ++over) {
-      const uint32_t gone = by_last_[over];
-      const auto at = std::lower_bound(spans_.begin(), spans_.end(), offsets_[gone],
+      const uint32_t ended = by_last_[over];
+      const auto at = std::lower_bound(spans_.begin(), spans_.end(), offsets_[ended],
                                        [](const Span& span, uint64_t offset) { return span.begin < offset; });
       spans_.erase(at);
     }
@@ -164,12 +164,12 @@ void Packer::Block::insert(const Range& range, uint32_t positions) {
 
 // Appends the ranges that are live in `positions` of the block to `to`, which has room for all; if `began`,
 // only ranges that begin in the block. Returns their number.
-size_t Packer::gather(const Block& block, uint32_t positions, bool began, Range* to) {
+size_t Packer::gather(const Block& block, uint32_t positions, bool only_begun, Range* to) {
   steps_ += block.count;
   size_t count = 0;
   for (size_t from = 0; from < block.count; from += chunk) {
     uint32_t bits = any_common_bits(block.when.data() + from, positions & ~began_before);
-    if (began) bits &= ~any_common_bits(block.when.data() + from, began_before);
+    if (only_begun) bits &= ~any_common_bits(block.when.data() + from, began_before);
     for (; bits != 0; bits &= bits - 1)
       to[count++] = block.ranges[from + static_cast<size_t>(std::countr_zero(bits))];
   }
@@ -303,7 +303,7 @@ void Packer::try_orders(Packing& out) {
 // Local search: moves an item, preferably one at the top of the heap, to another turn, and keeps orders that
 // are not worse. Restarts from a perturbed best order after `patience` moves without a gain.
 void Packer::search(uint64_t steps, Packing& out) {
-  constexpr uint32_t patience = 200; // moves
+  constexpr uint32_t max_idle_moves = 200; // moves
   SplitMix64 random{items_.size()};
   const uint64_t end = steps_ + steps;
   std::vector<uint32_t>& current = order_;
@@ -344,11 +344,11 @@ void Packer::search(uint64_t steps, Packing& out) {
         best_fit_ = fit;
       }
     }
-    if (idle < patience) continue;
+    if (idle < max_idle_moves) continue;
     idle = 0;
     current = best_order_;
     fit = random.below(2) == 0 ? Fit::first : Fit::tightest;
-    for (size_t kick = 1 + current.size() / 8; kick > 0; --kick)
+    for (size_t swaps = 1 + current.size() / 8; swaps > 0; --swaps)
       std::swap(current[random.below(current.size())], current[random.below(current.size())]);
     current_size = place_in_order(current, fit, unlimited);
   }
@@ -361,9 +361,9 @@ void Packer::try_again(Packing& out) {
   // profit from fewer orders.
   constexpr size_t many_items = 4096;
   const bool large = items_.size() >= many_items;
-  const uint64_t much = large ? 16 : 11;
-  const auto worth_it = [&] { return out.size - out.lower_bound > out.lower_bound / much; };
-  if (!worth_it()) return;
+  const uint64_t wasted_fraction = large ? 16 : 11;
+  const auto worth_a_try = [&] { return out.size - out.lower_bound > out.lower_bound / wasted_fraction; };
+  if (!worth_a_try()) return;
   if (!large) {
     const auto count = static_cast<uint32_t>(items_.size());
     const auto positions = static_cast<uint32_t>(change_.size());
@@ -379,7 +379,7 @@ void Packer::try_again(Packing& out) {
   };
   constexpr std::array<Powers, 3> powers = {{{2, 1}, {1, 2}, {2, 3}}};
   for (const Powers power : std::span(powers).subspan(large ? 1 : 0)) {
-    if (!worth_it()) return;
+    if (!worth_a_try()) return;
     by_weight(power.size, power.time, order_);
     try_order(order_, Fit::tightest, out);
   }

@@ -145,10 +145,10 @@ struct PlanOrdering { // positions in Plan::passes
 // A history as the executor keeps it. New or invalidated instances must be cleared, or transitioned with
 // their contents discarded, into their layout at the start of a frame before the first frame that reads them.
 struct PlanHistory {
-  uint32_t resource = 0;              // into Plan::resources
-  uint32_t frames = 1;                // deepest `@-N` this plan reads
-  uint32_t first_part = 0, parts = 1; // into Plan::history_parts: subresource ranges
-  uint32_t first_layout = 0;          // into Plan::history_layouts, `parts` for each frames_back 0 .. frames
+  uint32_t resource = 0;                     // into Plan::resources
+  uint32_t frames = 1;                       // deepest `@-N` this plan reads
+  uint32_t first_range = 0, range_count = 1; // into Plan::history_ranges: subresource ranges
+  uint32_t first_layout = 0; // into Plan::history_layouts, `range_count` for each frames_back 0 .. frames
   HistoryDeclaration declaration;
 };
 
@@ -166,7 +166,7 @@ struct Plan {
   std::vector<PlanSetting> settings;
   std::vector<PlanOrdering> orderings; // sorted by the later pass
   std::vector<PlanHistory> histories;
-  std::vector<SubresourceRange> history_parts;
+  std::vector<SubresourceRange> history_ranges;
   // Layouts of the ranges of an instance at the start of a frame; undefined for the newest instance, whose
   // old contents are discarded.
   std::vector<Layout> history_layouts;
@@ -186,35 +186,35 @@ struct Reason {
     off,                        // its `when` is false
     read_by,                    // pass a reads its resource b
     read_later_by,              // pass a reads its resource b in later frames
-    written_over_by,            // pass a overwrites its resource b
+    overwritten_by,             // pass a overwrites its resource b
     writes_export,              // resource a
     side_effects,               // of its pass type
     culling_off,                // requested by the caller
-    beside,                     // declared async, and on the async queue
-    behind,                     // runs after pass a, which its `after` number b names
-    not_beside,                 // declared async, but resource a is the host's, a history, or divided
+    async_queue,                // declared async, and on the async queue
+    after_pass,                 // runs after pass a, which its `after` number b names
+    not_async,                  // declared async, but resource a is the host's, a history, or divided
     port_unbound,               // optional port a; no pass or binding provides resource b
     always_otherwise,           // port a has no history b: it reads its `otherwise` in every frame
     not_needed,                 // culled
     lacks_input_without_bounds, // in frames with empty bounds no pass writes its resource a
     // of a resource
-    unbound,            // the host does not bind this optional slot
-    stands_for,         // readers get resource a, because pass b is off
-    unwritten_export,   // optional, and no pass that is on writes it
-    format,             // Format a; b: 0 first of the list, 1 first usable one, 2 bound by the host
-    format_not_ported,  // not Format a: port c of pass b cannot work with it
-    format_unsupported, // not Format a: the device does not support image usage b
-    history_unused,     // no pass that runs uses it
-    history_unread,     // no pass that runs reads its earlier frames
-    history_read,       // earlier frames are read, down to a
-    renewed_in_place,   // frame a is read before this frame is written over it; b: 1 by the same pass
-    aliases_history,    // of resource a; b: 0 before it is written, 1 after the last read of its oldest frame
+    unbound,              // the host does not bind this optional slot
+    replaced_by,          // readers get resource a, because pass b is off
+    unwritten_export,     // optional, and no pass that is on writes it
+    format,               // Format a; b: 0 first of the list, 1 first usable one, 2 bound by the host
+    format_not_ported,    // not Format a: port c of pass b cannot work with it
+    format_unsupported,   // not Format a: the device does not support image usage b
+    history_unused,       // no pass that runs uses it
+    history_unread,       // no pass that runs reads its earlier frames
+    history_read,         // earlier frames are read, down to a
+    overwritten_in_place, // frame a is read before this frame is written over it; b: 1 by the same pass
+    aliases_history, // of resource a; b: 0 before it is written, 1 after the last read of its oldest frame
     // of a barrier; b: 1 if the earlier access was in the frame before
     from_host,       // the first access to resource a, which the host passed in
     oldest_instance, // of resource a becomes this frame's
     first_use,       // of resource a
-    behind_last_use, // after the last use of the same resource a
-    takes_memory,    // acquires memory of resource a
+    after_last_use,  // after the last use of the same resource a
+    acquires_memory, // acquires memory of resource a
     dependency,      // pass at position c after the pass at position a: see PlanBarrier::why
     to_host,         // resource a is passed back; b: 1 if no pass accessed it
     // of a setting

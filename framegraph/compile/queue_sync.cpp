@@ -43,7 +43,8 @@ void QueueSync::add_orderings(const Graph& graph, const Activation& active, Repo
       const uint32_t earlier = position_of[after[i].after.value];
       if (earlier == invalid_index) continue; // does not run
       plan.orderings.push_back({earlier, later});
-      report.record_reason(Reason::About::pass, pass, Reason::ReasonKind::behind, after[i].after.value, i);
+      report.record_reason(Reason::About::pass, pass, Reason::ReasonKind::after_pass, after[i].after.value,
+                           i);
       if (plan.passes[earlier].queue != plan.passes[later].queue) wait_for_pass(later, earlier);
     }
   }

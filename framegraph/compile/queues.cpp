@@ -31,7 +31,7 @@ const QueueAssignment& assign_queues(const CompileInput& in, const Sizes& sizes,
     const ResourceId tie = tie_to_main(sizes, subresources, versions.uses_of(pass));
     if (!tie.valid()) queues.by_pass[pass] = Queue::async;
     report.record_reason(Reason::About::pass, pass,
-                         tie.valid() ? Reason::ReasonKind::not_beside : Reason::ReasonKind::beside,
+                         tie.valid() ? Reason::ReasonKind::not_async : Reason::ReasonKind::async_queue,
                          tie.value);
   }
   return queues;

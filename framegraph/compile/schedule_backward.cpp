@@ -21,11 +21,11 @@ struct Edge { // `before` must run before `after`
 };
 
 std::vector<Edge> find_dependencies(const Graph& graph, const Versions& versions,
-                                    const std::vector<uint8_t>& wanted, bool with_readers) {
+                                    const std::vector<uint8_t>& included, bool with_readers) {
   std::vector<Edge> edges;
   const auto add = [&](const Edge& edge) {
     if (!edge.before.valid() || !edge.after.valid() || edge.before == edge.after) return;
-    if (wanted[edge.before.value] && wanted[edge.after.value]) edges.push_back(edge);
+    if (included[edge.before.value] && included[edge.after.value]) edges.push_back(edge);
   };
   std::vector<PassId> overwriter(versions.list.size()); // by version: pass that overwrites it
   for (const Version& version : versions.list)
@@ -67,16 +67,16 @@ std::string explain(const Graph& graph, const Edge& edge) {
 
 // Kahn's algorithm, the smallest pass first. Passes on a cycle, or that depend on one, are missing from the
 // result.
-std::vector<PassId> sort_topologically(const std::vector<uint8_t>& wanted, const std::vector<Edge>& edges) {
-  std::vector<uint32_t> waits(wanted.size(), 0);
-  std::vector<std::vector<PassId>> followers(wanted.size());
+std::vector<PassId> sort_topologically(const std::vector<uint8_t>& included, const std::vector<Edge>& edges) {
+  std::vector<uint32_t> waits(included.size(), 0);
+  std::vector<std::vector<PassId>> followers(included.size());
   for (const Edge& edge : edges) {
     ++waits[edge.after.value];
     followers[edge.before.value].push_back(edge.after);
   }
   std::priority_queue<uint32_t, std::vector<uint32_t>, std::greater<>> ready;
-  for (uint32_t i = 0; i < wanted.size(); ++i)
-    if (wanted[i] && waits[i] == 0) ready.push(i);
+  for (uint32_t i = 0; i < included.size(); ++i)
+    if (included[i] && waits[i] == 0) ready.push(i);
   std::vector<PassId> result;
   while (!ready.empty()) {
     const uint32_t pass = ready.top();
@@ -90,17 +90,17 @@ std::vector<PassId> sort_topologically(const std::vector<uint8_t>& wanted, const
 
 // Follows edges backwards among the passes that could not be sorted. Each of them depends on another one, so
 // the path returns to a visited pass, and that section of the path is a cycle.
-void report_cycle(const Graph& graph, std::vector<uint8_t> stuck, const std::vector<PassId>& done,
+void report_cycle(const Graph& graph, std::vector<uint8_t> unsorted, const std::vector<PassId>& done,
                   const std::vector<Edge>& edges, Report& report) {
   for (const PassId pass : done)
-    stuck[pass.value] = 0;
-  std::vector<uint32_t> incoming(stuck.size(), invalid_index); // by pass: one edge from a stuck pass
+    unsorted[pass.value] = 0;
+  std::vector<uint32_t> incoming(unsorted.size(), invalid_index); // by pass: one edge from a stuck pass
   for (uint32_t e = 0; e < edges.size(); ++e)
-    if (stuck[edges[e].before.value] && stuck[edges[e].after.value] &&
+    if (unsorted[edges[e].before.value] && unsorted[edges[e].after.value] &&
         incoming[edges[e].after.value] == invalid_index)
       incoming[edges[e].after.value] = e;
-  const auto first = static_cast<uint32_t>(std::find(stuck.begin(), stuck.end(), 1) - stuck.begin());
-  std::vector<uint8_t> seen(stuck.size(), 0);
+  const auto first = static_cast<uint32_t>(std::find(unsorted.begin(), unsorted.end(), 1) - unsorted.begin());
+  std::vector<uint8_t> seen(unsorted.size(), 0);
   uint32_t at = first;
   while (!seen[at]) {
     seen[at] = 1;
@@ -129,11 +129,11 @@ void report_cycle(const Graph& graph, std::vector<uint8_t> stuck, const std::vec
 
 std::vector<PassId> sort_backward_graph(const Graph& graph, const Activation& active,
                                         const Versions& versions, const LiveSet& live, Report& report) {
-  const auto sort_among = [&](const std::vector<uint8_t>& wanted, bool with_readers) {
-    const std::vector<Edge> edges = find_dependencies(graph, versions, wanted, with_readers);
-    std::vector<PassId> order = sort_topologically(wanted, edges);
-    const auto count = static_cast<size_t>(std::count(wanted.begin(), wanted.end(), 1));
-    if (order.size() != count) report_cycle(graph, wanted, order, edges, report);
+  const auto sort_among = [&](const std::vector<uint8_t>& included, bool with_readers) {
+    const std::vector<Edge> edges = find_dependencies(graph, versions, included, with_readers);
+    std::vector<PassId> order = sort_topologically(included, edges);
+    const auto count = static_cast<size_t>(std::count(included.begin(), included.end(), 1));
+    if (order.size() != count) report_cycle(graph, included, order, edges, report);
     return order;
   };
   // A cycle is an error even among passes that are not live with these settings.

@@ -2,7 +2,7 @@
 // mips and layers: the fewest for which every port accesses each rectangle as a whole or not at all.
 
 #include "framegraph/compile/phases.hpp"
-#include "framegraph/model/image_part.hpp"
+#include "framegraph/model/image_range.hpp"
 #include "framegraph/text/limits.hpp"
 
 #include <fmt/format.h>
@@ -25,14 +25,14 @@ struct SubresourceSplitter {
   bool range_of(const PortBinding& binding, SubresourceRange& range) const {
     const uint32_t has_mips = sizes.extents[binding.resource.value].mips;
     const uint32_t has_layers = graph.resources[binding.resource.value].layers;
-    const ImagePart& part = binding.part;
-    const uint32_t end_mip = part.mips == 0 ? has_mips : part.first_mip + part.mips;
-    const uint32_t end_layer = part.layers == 0 ? has_layers : uint32_t{part.first_layer} + part.layers;
-    if (part.first_mip >= end_mip || end_mip > has_mips || part.first_layer >= end_layer ||
+    const ImageRange& named = binding.range;
+    const uint32_t end_mip = named.mips == 0 ? has_mips : named.first_mip + named.mips;
+    const uint32_t end_layer = named.layers == 0 ? has_layers : uint32_t{named.first_layer} + named.layers;
+    if (named.first_mip >= end_mip || end_mip > has_mips || named.first_layer >= end_layer ||
         end_layer > has_layers)
       return false;
-    range = {part.first_mip, static_cast<uint16_t>(end_mip - part.first_mip), part.first_layer,
-             static_cast<uint16_t>(end_layer - part.first_layer)};
+    range = {named.first_mip, static_cast<uint16_t>(end_mip - named.first_mip), named.first_layer,
+             static_cast<uint16_t>(end_layer - named.first_layer)};
     return true;
   }
 
@@ -42,7 +42,7 @@ struct SubresourceSplitter {
     report.diagnostics
         .add(DiagnosticId::part_missing, graph.place_of(binding),
              fmt::format("pass '{}' binds '{}{}', but at {}x{} texels '{}' has {} mip{} and {} layer{}",
-                         name_of(graph, pass), resource.name, part_text(binding.part), extent.width,
+                         name_of(graph, pass), resource.name, image_range_text(binding.range), extent.width,
                          extent.height, resource.name, extent.mips, extent.mips == 1 ? "" : "s",
                          resource.layers, resource.layers == 1 ? "" : "s"))
         .related.emplace_back(resource.where, fmt::format("'{}' is declared here", resource.name));
@@ -50,7 +50,7 @@ struct SubresourceSplitter {
 
   void add_cuts(PassId pass) {
     for (const PortBinding& binding : graph.bindings_of(graph.passes[pass.value])) {
-      if (binding.part.whole()) continue;
+      if (binding.range.whole()) continue;
       SubresourceRange range;
       if (!range_of(binding, range)) {
         report_missing_range(pass, binding);
@@ -79,10 +79,11 @@ struct SubresourceSplitter {
     sort_cuts(cuts[mips], sizes.extents[id.value].mips);
     sort_cuts(cuts[layers], declared.layers);
     const size_t count = (cuts[mips].size() - 1) * (cuts[layers].size() - 1);
-    if (count > limits::image_parts) {
-      report.diagnostics.add(DiagnosticId::limit_exceeded, declared.where,
-                             fmt::format("ports tell {} parts of '{}' apart, at most {} are accepted", count,
-                                         declared.name, limits::image_parts));
+    if (count > limits::image_ranges) {
+      report.diagnostics.add(
+          DiagnosticId::limit_exceeded, declared.where,
+          fmt::format("ports name {} different subresource ranges of '{}', at most {} are accepted", count,
+                      declared.name, limits::image_ranges));
       return;
     }
     subresources.counts[id.value] = static_cast<uint32_t>(count);
@@ -109,7 +110,7 @@ const Subresources& split_subresources(const CompileInput& in, const Sizes& size
   subresources.counts.clear();
   subresources.second.clear();
   subresources.ranges.clear();
-  if (!graph.parts) return subresources;
+  if (!graph.names_ranges) return subresources;
   const size_t resources = graph.resources.size();
   subresources.counts.assign(resources, 1);
   subresources.second.assign(resources, 0);

@@ -16,9 +16,9 @@ std::array<UsageSet, usage_sets> make_usage_sets() {
       set.reads |= info.reads;
       set.writes |= info.writes;
       for (uint32_t other = 0; other < usage_count; ++other) {
-        const UsageInfo& wanted = usage_info(static_cast<Usage>(other));
-        if ((wanted.stages & ~info.stages) == 0 && (wanted.access & ~info.access) == 0)
-          set.sees = static_cast<uint16_t>(set.sees | 1u << other);
+        const UsageInfo& other_info = usage_info(static_cast<Usage>(other));
+        if ((other_info.stages & ~info.stages) == 0 && (other_info.access & ~info.access) == 0)
+          set.covers = static_cast<uint16_t>(set.covers | 1u << other);
       }
     }
   }

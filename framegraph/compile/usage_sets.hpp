@@ -17,7 +17,8 @@ struct UsageSet {
   Stage stages = 0;
   Access access = 0;
   Layout image_layout = Layout::undefined; // `general` if the usages need different layouts
-  uint16_t sees = 0; // usages whose stages and accesses are a subset: a barrier for the set serves them, too
+  uint16_t covers =
+      0; // usages whose stages and accesses are a subset: a barrier for the set serves them, too
   bool reads = false, writes = false;
 };
 

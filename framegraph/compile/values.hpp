@@ -93,7 +93,7 @@ struct Subresources {
 };
 
 // Whether a port that names `seen` accesses some of the range.
-inline bool overlaps(const ImagePart& seen, const SubresourceRange& range) {
+inline bool overlaps(const ImageRange& seen, const SubresourceRange& range) {
   const auto meet = [](uint32_t first, uint32_t count, uint32_t other, uint32_t others) { // count 0: all
     return first < other + others && (count == 0 || other < first + count);
   };

@@ -23,7 +23,7 @@ struct VersionResolver {
   VersionScratch& scratch;
   Versions& versions = scratch.result;
   const bool any_divided = subresources.any();
-  uint64_t divided_uses = 0;                          // uses of divided images, for limits::part_uses
+  uint64_t divided_uses = 0;                          // uses of divided images, for limits::range_uses
   std::pair<PassId, uint16_t> last_second_producer{}; // pass and port reported last
 
   void begin() {
@@ -54,7 +54,7 @@ struct VersionResolver {
   }
 
   // Adds one use for each subresource range that the port accesses.
-  void add_divided(Use use, const ImagePart& seen) {
+  void add_divided(Use use, const ImageRange& seen) {
     for (uint32_t i = 0; i < subresources.counts[use.requested.value]; ++i) {
       use.subresource = subresources.number(use.requested, i);
       if (overlaps(seen, subresources.ranges[use.subresource])) versions.uses.push_back(use);
@@ -83,7 +83,7 @@ struct VersionResolver {
     for (const PassDeclaration& pass : graph.passes)
       for (const PortBinding& written : graph.writes(pass)) {
         if (written.resource != use.requested ||
-            !overlaps(written.part, subresources.ranges[use.subresource]))
+            !overlaps(written.range, subresources.ranges[use.subresource]))
           continue;
         if (pass.absence == PassDeclaration::Absence::none) return false;
         unmet = true;
@@ -138,7 +138,7 @@ struct VersionResolver {
       if (any_divided && subresources.divided(use.requested)) {
         const Use whole = use;
         versions.uses.pop_back();
-        add_divided(whole, binding.part);
+        add_divided(whole, binding.range);
       }
     }
     if (!sorted)
@@ -231,15 +231,15 @@ struct VersionResolver {
         report.diagnostics.add(
             DiagnosticId::otherwise_mismatch, through.where,
             fmt::format(
-                "'{}' cannot stand in for '{}': ports name parts of '{}'", name_of(graph, through.instead),
-                name_of(graph, through.output),
+                "'{}' cannot stand in for '{}': ports name mips or layers of '{}'",
+                name_of(graph, through.instead), name_of(graph, through.output),
                 name_of(graph, subresources.divided(through.output) ? through.output : through.instead)));
         continue;
       }
       VersionScratch::Binding binding = scratch.current[through.instead.value];
       if (binding.version == invalid_index && !binding.later.valid()) binding.later = through.instead;
       replaced.emplace_back(through.output, binding);
-      report.record_reason(Reason::About::resource, through.output.value, Reason::ReasonKind::stands_for,
+      report.record_reason(Reason::About::resource, through.output.value, Reason::ReasonKind::replaced_by,
                            through.instead.value, pass.value);
     }
     for (const auto& [output, binding] : replaced) {
@@ -309,9 +309,9 @@ const Versions& resolve_versions(const CompileInput& in, const Sizes& sizes, con
       resolver.scan_uses(PassId{i});
     else
       resolver.scan_otherwise(PassId{i});
-    if (resolver.divided_uses <= limits::part_uses) continue;
+    if (resolver.divided_uses <= limits::range_uses) continue;
     report.diagnostics.add(DiagnosticId::limit_exceeded, graph.passes[i].where,
-                           fmt::format("ports see more than {} parts of images", limits::part_uses));
+                           fmt::format("ports access more than {} subresource ranges", limits::range_uses));
     return versions;
   }
   versions.first_use.push_back(static_cast<uint32_t>(versions.uses.size()));

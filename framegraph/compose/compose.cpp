@@ -98,7 +98,7 @@ std::optional<Composition> compose(Document graph, std::vector<Document> overlay
   Composer composer{open, diagnostics};
   const SourceLocation root = graph.where(graph.root());
   if (!add_document(composer, std::move(graph), root)) return std::nullopt;
-  composer.tree.graft(0, composer.tree.documents.front().root());
+  composer.tree.insert_copy(0, composer.tree.documents.front().root());
   expand_graph(composer);
   for (Document& overlay : overlays) {
     const SourceLocation where = overlay.where(overlay.root());
@@ -121,7 +121,7 @@ std::optional<Composition> compose_fragment(Document fragment, const OpenFile& o
   if (!graph || !add_document(composer, std::move(*graph), where) ||
       !add_document(composer, std::move(fragment), where))
     return std::nullopt;
-  composer.tree.graft(0, composer.tree.documents.front().root());
+  composer.tree.insert_copy(0, composer.tree.documents.front().root());
   std::vector<ItemId> passes;
   join_fragment(composer, 1, passes);
   if (errors() != errors_before) return std::nullopt;

@@ -49,13 +49,13 @@ void join_section(Composer& composer, std::string_view section, uint32_t documen
   EditTree& tree = composer.tree;
   ItemId into = tree.find({0}, section);
   if (!into.valid()) { // first members; the key is that of the fragment's section
-    into = tree.graft(document, list);
+    into = tree.insert_copy(document, list);
     tree[into].children.clear();
     tree[{0}].children.push_back(into);
   }
   if (tree.kind(into) != NodeKind::object) return; // the graph's reader reports it
   for (const NodeId node : children(tree.documents[document], list)) {
-    const ItemId fresh = tree.graft(document, node);
+    const ItemId fresh = tree.insert_copy(document, node);
     const std::string key = tree[fresh].key;
     const ItemId known = tree.find(into, key);
     if (!known.valid()) {
@@ -76,7 +76,7 @@ void join_exports(Composer& composer, uint32_t document, NodeId list) {
   const ItemId into = tree.find({0}, "exports");
   if (!into.valid() || tree.kind(into) != NodeKind::array) return; // the graph's reader reports it
   for (const NodeId node : children(tree.documents[document], list)) {
-    const ItemId fresh = tree.graft(document, node);
+    const ItemId fresh = tree.insert_copy(document, node);
     const std::vector<ItemId>& known = tree[into].children;
     if (tree.kind(fresh) == NodeKind::string && std::any_of(known.begin(), known.end(), [&](ItemId one) {
           return tree.kind(one) == NodeKind::string && tree.text(one) == tree.text(fresh);
@@ -146,7 +146,7 @@ bool is_include(const Document& document, NodeId entry) {
 void expand_pass(Composer& composer, uint32_t document, NodeId node, Change::What what,
                  std::vector<ItemId>& out) {
   if (is_include(composer.tree.documents[document], node)) return include(composer, document, node, out);
-  const ItemId pass = composer.tree.graft(document, node);
+  const ItemId pass = composer.tree.insert_copy(document, node);
   const ItemId name = composer.tree.find(pass, "pass");
   composer.changes.push_back(
       {what, fmt::format("/passes/{}", name.valid() ? composer.tree.text(name) : std::string_view()),

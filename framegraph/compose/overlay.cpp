@@ -145,7 +145,7 @@ struct Edit {
     const int at = find_step(tree(), parent, steps.back());
     if (at < 0 && (array ? steps.back() != "-" : tree().kind(parent) != NodeKind::object))
       return missing(parent, path, steps.back());
-    const ItemId fresh = tree().graft(overlay, value);
+    const ItemId fresh = tree().insert_copy(overlay, value);
     if (depth + height_of(tree(), fresh) > limits::nesting) {
       composer.error(DiagnosticId::limit_exceeded, target_place(),
                      fmt::format("{} nests objects and arrays more than {} deep", what, limits::nesting));

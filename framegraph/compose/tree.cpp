@@ -88,7 +88,7 @@ SourceLocation EditTree::where_key(ItemId id) const {
   return item.key_node.valid() ? from.where(item.key_node) : from.where_key(item.node);
 }
 
-ItemId EditTree::graft(uint32_t document, NodeId node) {
+ItemId EditTree::insert_copy(uint32_t document, NodeId node) {
   return copy(*this, document, node);
 }
 

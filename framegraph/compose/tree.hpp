@@ -36,7 +36,7 @@ struct EditTree {
   SourceLocation where_key(ItemId id) const;
 
   // Copies the value `node` of a document with all its contents. The copy has no parent yet.
-  ItemId graft(uint32_t document, NodeId node);
+  ItemId insert_copy(uint32_t document, NodeId node);
 };
 
 // Returns whether both values are equal, ignoring "note"s and the order of members. Objects with

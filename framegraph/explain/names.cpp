@@ -1,6 +1,6 @@
 #include "framegraph/explain/names.hpp"
 
-#include "framegraph/model/image_part.hpp"
+#include "framegraph/model/image_range.hpp"
 
 #include <fmt/format.h>
 
@@ -167,17 +167,17 @@ std::string_view read_when_text(ReadWhen when) {
 }
 
 std::string range_text(const PlanResource& resource, const SubresourceRange& range) {
-  ImagePart part;
+  ImageRange image_range;
   const SubresourceRange whole = resource.whole();
   if (range.first_mip != whole.first_mip || range.mips != whole.mips) {
-    part.first_mip = static_cast<uint8_t>(range.first_mip);
-    part.mips = static_cast<uint8_t>(range.mips);
+    image_range.first_mip = static_cast<uint8_t>(range.first_mip);
+    image_range.mips = static_cast<uint8_t>(range.mips);
   }
   if (range.first_layer != whole.first_layer || range.layers != whole.layers) {
-    part.first_layer = range.first_layer;
-    part.layers = range.layers;
+    image_range.first_layer = range.first_layer;
+    image_range.layers = range.layers;
   }
-  return part_text(part);
+  return image_range_text(image_range);
 }
 
 std::string shape_text(const PlanResource& resource) {

@@ -2,7 +2,7 @@
 
 #include "framegraph/explain/names.hpp"
 #include "framegraph/explain/reasons.hpp"
-#include "framegraph/model/image_part.hpp"
+#include "framegraph/model/image_range.hpp"
 
 #include <fmt/format.h>
 
@@ -40,10 +40,11 @@ std::string resource_node(const ResourceDeclaration& declared, uint32_t index, c
 }
 
 // A port that both reads and writes gets an arrow each way.
-std::string arrows(uint32_t pass, uint32_t resource, uint32_t frames_back, const std::string& part,
+std::string arrows(uint32_t pass, uint32_t resource, uint32_t frames_back, const std::string& range_suffix,
                    const Port& port) {
   const UsageInfo& usage = usage_info(port.usage);
-  const std::string name = part.empty() ? std::string(port.name) : fmt::format("{} {}", port.name, part);
+  const std::string name =
+      range_suffix.empty() ? std::string(port.name) : fmt::format("{} {}", port.name, range_suffix);
   const std::string label = quoted(frames_back > 0 ? fmt::format("{} @-{}", name, frames_back) : name) +
                             (frames_back > 0 ? ", style=dashed" : "");
   std::string result;
@@ -62,7 +63,7 @@ std::string graph_dot(const Graph& graph, const PassTypeRegistry& pass_types) {
     const PassDeclaration& declared = graph.passes[p];
     out += pass_node(graph, pass_types, p, "", declared.when.valid() ? ", style=dashed" : "");
     for (const PortBinding& binding : graph.bindings_of(declared))
-      out += arrows(p, binding.resource.value, binding.frames_back, part_text(binding.part),
+      out += arrows(p, binding.resource.value, binding.frames_back, image_range_text(binding.range),
                     pass_types[declared.type].ports[binding.port]);
   }
   return out + "}\n";

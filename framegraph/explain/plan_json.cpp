@@ -210,11 +210,11 @@ struct Exporter {
       out.member("on_cut", name_in(history_on_cut, history.declaration.on_cut));
       out.member("on_resize", name_in(history_on_resize, history.declaration.on_resize));
       out.key("layout_at_start").open_array(true);
-      for (uint32_t i = 0; i < (history.frames + 1) * history.parts; ++i)
+      for (uint32_t i = 0; i < (history.frames + 1) * history.range_count; ++i)
         out.value(layout_name(plan.history_layouts[history.first_layout + i]));
       out.close().key("parts").open_array();
-      for (uint32_t part = 0; part < history.parts; ++part)
-        subresources(plan.history_parts[history.first_part + part], {});
+      for (uint32_t r = 0; r < history.range_count; ++r)
+        subresources(plan.history_ranges[history.first_range + r], {});
       out.close().close();
     }
     out.close();

@@ -22,8 +22,8 @@ struct TextExporter {
 
   std::string reason(Reason::About about, uint32_t index) const { return reasons.about(about, index); }
 
-  std::string object(uint32_t resource, uint32_t frames_back, const std::string& part = {}) const {
-    const std::string name = graph.resources[plan.resources[resource].declared.value].name + part;
+  std::string object(uint32_t resource, uint32_t frames_back, const std::string& range_suffix = {}) const {
+    const std::string name = graph.resources[plan.resources[resource].declared.value].name + range_suffix;
     return frames_back == 0 ? name : fmt::format("{}@-{}", name, frames_back);
   }
 
@@ -55,7 +55,7 @@ struct TextExporter {
   }
 
   // Names the pass after which a queue reaches a point; 0: the last point of its frame.
-  std::string behind(Queue queue, uint32_t point) const {
+  std::string wait_text(Queue queue, uint32_t point) const {
     uint32_t found = static_cast<uint32_t>(plan.passes.size());
     for (uint32_t p = 0; p < plan.passes.size(); ++p)
       if (plan.passes[p].queue == queue && plan.passes[p].signal != 0 &&
@@ -80,16 +80,17 @@ struct TextExporter {
                        one.transfer != PlanBarrier::Transfer::release;
     line(fmt::format("     | {}{}", reason(Reason::About::barrier, index),
                      early ? fmt::format(" (for '{}': merged into this earlier batch)", pass_name(by)) : ""));
-    const std::string part = range_text(plan.resources[one.resource], one.range);
+    const std::string range_suffix = range_text(plan.resources[one.resource], one.range);
     const std::string half =
         one.transfer == PlanBarrier::Transfer::none ? "" : fmt::format("{}, ", transfer_name(one.transfer));
     line(fmt::format("     |   {}{}{}: {} -> {}{}", half, why_name(one.why),
-                     part.empty() ? "" : " of " + part, from, to, layouts));
+                     range_suffix.empty() ? "" : " of " + range_suffix, from, to, layouts));
   }
 
   void waits(Queue for_queue, uint32_t point) {
     line(fmt::format("     | waits for point {} of the {} queue{}{}", point, queue_name(for_queue),
-                     behind(for_queue, point), point == 0 ? " (the last point of the previous frame)" : ""));
+                     wait_text(for_queue, point),
+                     point == 0 ? " (the last point of the previous frame)" : ""));
   }
 
   void passes() {

@@ -122,7 +122,7 @@ struct ReasonFormatter {
       return needed("reads");
     case Reason::ReasonKind::read_later_by:
       return needed("reads in later frames");
-    case Reason::ReasonKind::written_over_by:
+    case Reason::ReasonKind::overwritten_by:
       return needed("overwrites");
     case Reason::ReasonKind::writes_export:
       return fmt::format("runs: it writes the export '{}'", resource(reason.a));
@@ -133,12 +133,12 @@ struct ReasonFormatter {
     case Reason::ReasonKind::port_unbound:
       return fmt::format("optional port '{}' is unbound: nothing provides '{}'", port(reason.index, reason.a),
                          resource(reason.b));
-    case Reason::ReasonKind::beside:
+    case Reason::ReasonKind::async_queue:
       return "runs on the async queue";
-    case Reason::ReasonKind::behind:
+    case Reason::ReasonKind::after_pass:
       return fmt::format("runs after '{}': {}", pass(reason.a),
                          graph.passes[reason.index].after[reason.b].reason);
-    case Reason::ReasonKind::not_beside:
+    case Reason::ReasonKind::not_async:
       return fmt::format(
           "runs on the main queue: '{}' is owned by the host, kept across frames, or bound by mip or layer",
           resource(reason.a));
@@ -153,7 +153,7 @@ struct ReasonFormatter {
       return not_needed();
     case Reason::ReasonKind::unbound:
       return "optional slot that the host does not bind";
-    case Reason::ReasonKind::stands_for:
+    case Reason::ReasonKind::replaced_by:
       return fmt::format("replaces '{}' after pass '{}', which is off", resource(reason.a), pass(reason.b));
     case Reason::ReasonKind::unwritten_export:
       return "unchanged: no enabled pass writes this optional export";
@@ -171,7 +171,7 @@ struct ReasonFormatter {
       return "placed like a transient: no running pass reads its earlier frames";
     case Reason::ReasonKind::history_read:
       return fmt::format("earlier frames are read back to @-{}", reason.a);
-    case Reason::ReasonKind::renewed_in_place:
+    case Reason::ReasonKind::overwritten_in_place:
       return fmt::format("each frame reuses the memory of @-{}, which {}", reason.a,
                          reason.b != 0 ? "its writer reads texel by texel" : "no later pass reads");
     case Reason::ReasonKind::aliases_history:
@@ -184,9 +184,9 @@ struct ReasonFormatter {
       return fmt::format("reuses the oldest instance of '{}' for this frame", resource(reason.a));
     case Reason::ReasonKind::first_use:
       return fmt::format("first use of '{}'", resource(reason.a));
-    case Reason::ReasonKind::behind_last_use:
+    case Reason::ReasonKind::after_last_use:
       return fmt::format("after its last use{}", when());
-    case Reason::ReasonKind::takes_memory:
+    case Reason::ReasonKind::acquires_memory:
       return fmt::format("reuses memory of '{}'{}", resource(reason.a), when());
     case Reason::ReasonKind::dependency:
       return dependency();
@@ -220,7 +220,7 @@ bool share_bytes(const Placement& a, const Placement& b) {
   return a.heap == b.heap && a.offset < b.offset + b.size && b.offset < a.offset + a.size;
 }
 
-bool meet(const Placement& a, const Placement& b) {
+bool overlap(const Placement& a, const Placement& b) {
   return a.first_use <= b.last_use && b.first_use <= a.last_use;
 }
 
@@ -243,20 +243,20 @@ ReasonIndex::ReasonIndex(const Graph& graph, const PassTypeRegistry& pass_types,
 }
 
 std::string ReasonIndex::about(Reason::About about, uint32_t index) const {
-  const auto wanted = std::tuple(about, index);
-  auto at = std::lower_bound(sorted_.begin(), sorted_.end(), wanted,
+  const auto subject_key = std::tuple(about, index);
+  auto at = std::lower_bound(sorted_.begin(), sorted_.end(), subject_key,
                              [](const Reason* one, const auto& key) { return subject(*one) < key; });
   const auto first = at;
   std::string all;
-  for (; at != sorted_.end() && subject(**at) == wanted; ++at) {
+  for (; at != sorted_.end() && subject(**at) == subject_key; ++at) {
     const Reason& one = **at;
     const auto alike = [&](const Reason* other) {
-      return one.why == Reason::ReasonKind::takes_memory && other->why == one.why && other->b == one.b;
+      return one.why == Reason::ReasonKind::acquires_memory && other->why == one.why && other->b == one.b;
     };
     if (std::any_of(first, at, alike)) continue; // already named there
     all += (all.empty() ? "" : "; ") + reason_text(graph_, pass_types_, compiled_.plan, one);
     std::string others;
-    for (auto later = at + 1; later != sorted_.end() && subject(**later) == wanted; ++later)
+    for (auto later = at + 1; later != sorted_.end() && subject(**later) == subject_key; ++later)
       if (alike(*later)) others += fmt::format(", '{}'", graph_.resources[(*later)->a].name);
     if (!others.empty()) all.insert(all.rfind('\'') + 1, others); // after the name of the first
   }
@@ -292,7 +292,7 @@ std::vector<std::string> placement_reasons(const Graph& graph, const Plan& plan)
       const std::string& name = graph.resources[plan.resources[other.resource].declared.value].name;
       if (share_bytes(own, other))
         shared += fmt::format("{}'{}'", shared.empty() ? "" : ", ", name);
-      else if (meet(own, other))
+      else if (overlap(own, other))
         apart +=
             fmt::format("{}'{}' [{}, {}]", apart.empty() ? "" : ", ", name, other.first_use, other.last_use);
     }

@@ -69,8 +69,8 @@ using MaybeValue = std::optional<SettingValue>;
 
 MaybeValue value_of(const Graph& graph, ExpressionId id, const PartialValues& values) {
   const Expression& node = graph.expressions[id.value];
-  const auto is = [](const MaybeValue& value, bool wanted) {
-    return value && (value->integer != 0) == wanted;
+  const auto is = [](const MaybeValue& value, bool expected) {
+    return value && (value->integer != 0) == expected;
   };
   if (node.op == Expression::Op::literal) return node.literal;
   if (node.op == Expression::Op::setting) return values[node.setting.value];

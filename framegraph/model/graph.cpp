@@ -19,7 +19,7 @@ std::string_view type_phrase(ResourceType type) {
 void Graph::bind(PassDeclaration& pass, PortSide side, const PortBinding& binding, SourceLocation where) {
   if (pass.read_count + pass.write_count == 0) pass.first_binding = static_cast<uint32_t>(bindings.size());
   ++(side == PortSide::read ? pass.read_count : pass.write_count);
-  parts |= !binding.part.whole();
+  names_ranges |= !binding.range.whole();
   bindings.push_back(binding);
   binding_places.push_back(std::move(where));
 }

@@ -106,7 +106,7 @@ struct Expression {
 };
 
 // Mips and layers of an image, counted from 0: `name#1..3[0]`.
-struct ImagePart {
+struct ImageRange {
   uint8_t first_mip = 0, mips = 0;      // mips 0: to the last
   uint16_t first_layer = 0, layers = 0; // layers 0: to the last
 
@@ -125,7 +125,7 @@ struct PortBinding {
   // history_invalid: the port reads this binding if the history of the previous binding, at the
   // same port, is not valid.
   ReadWhen when = ReadWhen::always;
-  ImagePart part; // images that the graph owns
+  ImageRange range; // images that the graph owns
 };
 
 struct SettingBinding {
@@ -179,7 +179,7 @@ struct Graph {
   std::vector<ResourceDeclaration> resources; // in file order: imports, then resources
   std::vector<Expression> expressions;
   std::vector<PassDeclaration> passes; // in file order, which determines the versions of a resource
-  bool parts = false;                  // some port names a part of an image
+  bool names_ranges = false;           // some port names mips or layers
   // Bindings of all passes. Compiling reads `bindings`; their source locations are stored
   // separately.
   std::vector<PortBinding> bindings;

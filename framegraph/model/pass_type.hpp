@@ -77,7 +77,7 @@ struct PortNeed {
 struct HistoryWeight {
   enum class By : uint8_t {
     fraction, // the frame's weight is at least the setting
-    cap       // the frame has 1 part, the history at most as many parts as the setting
+    cap       // the frame has weight 1, the history at most the setting
   };
   std::string_view port;    // port that writes the history
   std::string_view setting; // a real setting

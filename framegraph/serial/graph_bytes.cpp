@@ -87,8 +87,8 @@ struct GraphWriter {
       index(binding.resource);
       number(binding.frames_back);
       word(binding.when);
-      for (const uint64_t side : {uint64_t{binding.part.first_mip}, uint64_t{binding.part.mips},
-                                  uint64_t{binding.part.first_layer}, uint64_t{binding.part.layers}})
+      for (const uint64_t side : {uint64_t{binding.range.first_mip}, uint64_t{binding.range.mips},
+                                  uint64_t{binding.range.first_layer}, uint64_t{binding.range.layers}})
         number(side);
     });
   }

@@ -153,8 +153,8 @@ template <class A> void fields(A& a, Of<A, HistoryDeclaration>& history) {
 template <class A> void fields(A& a, Of<A, PlanHistory>& history) {
   a.number("history's resource", history.resource);
   a.number("history's frames", history.frames);
-  a.number("first part", history.first_part);
-  a.number("parts", history.parts);
+  a.number("first range", history.first_range);
+  a.number("ranges", history.range_count);
   a.number("first layout", history.first_layout);
   fields(a, history.declaration);
 }
@@ -174,7 +174,7 @@ template <class A> void fields(A& a, Of<A, Plan>& plan) {
   a.list("settings", plan.settings, many);
   a.list("orderings", plan.orderings, many);
   a.list("histories", plan.histories, limits::resources);
-  a.list("history parts", plan.history_parts, many);
+  a.list("history ranges", plan.history_ranges, many);
   a.list("history layouts", plan.history_layouts, many);
   a.number("first final barrier", plan.first_final_barrier);
   a.number("final barriers", plan.final_barrier_count);

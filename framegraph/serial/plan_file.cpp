@@ -53,7 +53,7 @@ PlanNames names_of(const Graph& graph, const PassTypeRegistry& pass_types, const
 
 // Checks what verify_structure() does not see: key and names, and values that only an executor
 // uses.
-std::string first_misfit(const SavedPlan& saved) {
+std::string first_mismatch(const SavedPlan& saved) {
   const Plan& plan = saved.plan;
   const PlanNames& names = saved.names;
   if (names.passes.size() != plan.passes.size() || names.pass_types.size() != plan.passes.size() ||
@@ -133,7 +133,7 @@ std::optional<SavedPlan> read_plan(const std::string& name, std::string_view byt
   serial::fields(reader, saved.plan);
   reader.expect_end();
   if (!reader.problem().empty()) return refuse(reader.problem());
-  if (const std::string misfit = first_misfit(saved); !misfit.empty()) return refuse(misfit);
+  if (const std::string mismatch = first_mismatch(saved); !mismatch.empty()) return refuse(mismatch);
   if (const std::vector<std::string> violations = verify_structure(saved.plan); !violations.empty())
     return refuse(violations.front());
   return saved;

@@ -40,10 +40,10 @@ std::string_view Document::key(NodeId id) const {
   return std::string_view(characters).substr(node.key_begin, node.key_size);
 }
 
-NodeId Document::find(NodeId object, std::string_view wanted) const {
+NodeId Document::find(NodeId object, std::string_view name) const {
   if (nodes[object.value].kind != NodeKind::object) return {};
   for (NodeId child = nodes[object.value].first_child; child.valid(); child = nodes[child.value].next) {
-    if (key(child) == wanted) return child;
+    if (key(child) == name) return child;
   }
   return {};
 }

@@ -114,11 +114,11 @@ bool read_numbers(const Document& document, NodeId node, std::string_view what, 
 
 NodeId find_misspelt(const Document& document, NodeId object, std::string_view key) {
   constexpr size_t max_looked_at = 256; // a hostile object may have hundreds of thousands of keys
-  const std::string_view wanted[] = {key};
+  const std::string_view names[] = {key};
   size_t looked_at = 0;
   for (NodeId child = document[object].first_child; child.valid() && looked_at < max_looked_at;
        child = document[child].next, ++looked_at)
-    if (!nearest(document.key(child), wanted).empty()) return child;
+    if (!nearest(document.key(child), names).empty()) return child;
   return {};
 }
 

@@ -42,9 +42,10 @@ void Memory::set_kept(uint32_t subresource, int64_t of_frame, Layout layout) {
                  [&](ByteRange& range) { events_of(range, subresource); });
 }
 
-ThingEvents* Memory::find(InstanceEvents& occupant, uint32_t subresource) {
-  const auto found = std::lower_bound(occupant.subresources.begin(), occupant.subresources.end(), subresource,
-                                      [](const ThingEvents& a, uint32_t b) { return a.subresource < b; });
+SubresourceEvents* Memory::find(InstanceEvents& occupant, uint32_t subresource) {
+  const auto found =
+      std::lower_bound(occupant.subresources.begin(), occupant.subresources.end(), subresource,
+                       [](const SubresourceEvents& a, uint32_t b) { return a.subresource < b; });
   return found != occupant.subresources.end() && found->subresource == subresource ? &*found : nullptr;
 }
 
@@ -55,9 +56,9 @@ std::vector<Event>& Memory::events_of(ByteRange& range, uint32_t subresource) co
   if (occupant == range.occupants.end())
     occupant = range.occupants.insert(range.occupants.end(), InstanceEvents{owner, {}});
   const auto at = std::lower_bound(occupant->subresources.begin(), occupant->subresources.end(), subresource,
-                                   [](const ThingEvents& a, uint32_t b) { return a.subresource < b; });
+                                   [](const SubresourceEvents& a, uint32_t b) { return a.subresource < b; });
   if (at != occupant->subresources.end() && at->subresource == subresource) return at->events;
-  return occupant->subresources.insert(at, ThingEvents{subresource, {}})->events;
+  return occupant->subresources.insert(at, SubresourceEvents{subresource, {}})->events;
 }
 
 // The ranges of `place` must be isolated.
@@ -100,17 +101,17 @@ void Memory::add_read(uint32_t subresource, const Event& event) {
 
 // Drops the events that other instances left on these bytes. They count until each used subresource
 // of the new owner has been written.
-void Memory::take_over(ByteRange& range, uint32_t owner, bool whole, const Event& write) {
+void Memory::acquire(ByteRange& range, uint32_t owner, bool whole, const Event& write) {
   for (InstanceEvents& other : range.occupants) {
     if (other.instance == owner) continue;
-    for (ThingEvents& left : other.subresources) {
+    for (SubresourceEvents& left : other.subresources) {
       Subresource& subresource = subresources[left.subresource];
       subresource.defined = false;
       if (subresource.written) --instances[other.instance].written_subresources;
       subresource.written = false;
       if (whole) std::erase_if(left.events, [&](const Event& event) { return is_before(event, write); });
     }
-    std::erase_if(other.subresources, [](const ThingEvents& left) { return left.events.empty(); });
+    std::erase_if(other.subresources, [](const SubresourceEvents& left) { return left.events.empty(); });
   }
   std::erase_if(range.occupants, [](const InstanceEvents& one) { return one.subresources.empty(); });
 }
@@ -122,7 +123,7 @@ void Memory::add_write(uint32_t subresource, const Event& event) {
   subresources[subresource].written = true;
   isolate(subresource);
   for_each_range(place, [&](ByteRange& range) {
-    take_over(range, owner, place.written_subresources >= place.used_subresources, event);
+    acquire(range, owner, place.written_subresources >= place.used_subresources, event);
     std::vector<Event>& events = events_of(range, subresource);
     std::erase_if(events, [&](const Event& one) { return is_before(one, event); });
     events.push_back(event);

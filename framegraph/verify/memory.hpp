@@ -13,16 +13,16 @@
 
 namespace dermis {
 
-struct ThingEvents {
+struct SubresourceEvents {
   uint32_t subresource = 0;
   std::vector<Event> events;
 
-  bool operator==(const ThingEvents&) const = default;
+  bool operator==(const SubresourceEvents&) const = default;
 };
 
 struct InstanceEvents {
   uint32_t instance = 0;
-  std::vector<ThingEvents> subresources; // sorted by index
+  std::vector<SubresourceEvents> subresources; // sorted by index
 
   bool operator==(const InstanceEvents&) const = default;
 };
@@ -44,10 +44,10 @@ public:
   // Marks a subresource as holding an earlier frame, as the executor left it.
   void set_kept(uint32_t subresource, int64_t of_frame, Layout layout);
 
-  // Calls visit(ThingEvents&, bool own) for the subresource itself and for each subresource of
+  // Calls visit(SubresourceEvents&, bool own) for the subresource itself and for each subresource of
   // another instance that has events on some of the instance's bytes. Subresources of one image
   // share no byte.
-  template <class Visit> void for_each_meeting(uint32_t subresource, Visit visit) {
+  template <class Visit> void for_each_overlap(uint32_t subresource, Visit visit) {
     const uint32_t owner = subresources[subresource].owner;
     const InstanceSubresources& place = instances[owner];
     std::map<uint64_t, ByteRange>& space = spaces_[place.space];
@@ -55,9 +55,9 @@ public:
          range != space.end() && range->first < place.end; ++range)
       for (InstanceEvents& occupant : range->second.occupants) {
         if (occupant.instance != owner) {
-          for (ThingEvents& other : occupant.subresources)
+          for (SubresourceEvents& other : occupant.subresources)
             visit(other, false);
-        } else if (ThingEvents* const own = find(occupant, subresource)) {
+        } else if (SubresourceEvents* const own = find(occupant, subresource)) {
           visit(*own, true);
         }
       }
@@ -76,11 +76,11 @@ public:
   std::vector<InstanceSubresources> instances;
 
 private:
-  static ThingEvents* find(InstanceEvents& occupant, uint32_t subresource);
+  static SubresourceEvents* find(InstanceEvents& occupant, uint32_t subresource);
   std::vector<Event>& events_of(ByteRange& range, uint32_t subresource) const;
   template <class Visit> void for_each_range(const InstanceSubresources& place, Visit visit);
   void cut(std::map<uint64_t, ByteRange>& space, uint64_t at);
-  void take_over(ByteRange& range, uint32_t owner, bool whole, const Event& write);
+  void acquire(ByteRange& range, uint32_t owner, bool whole, const Event& write);
   void join(const InstanceSubresources& place);
 
   const Plan& plan_;

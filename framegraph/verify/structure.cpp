@@ -132,13 +132,13 @@ struct Checker {
         by_last_use.erase(by_last_use.begin());
       }
       const auto next = alive.lower_bound(own.offset);
-      const auto refuses = [&](size_t other) {
+      const auto conflicts = [&](size_t other) {
         const bool overlap = share_memory(own, plan.placements[other]);
         expect(!overlap, "placements that are alive at the same time overlap", std::max(i, other));
         return overlap;
       };
-      if ((next != alive.end() && refuses(next->second)) ||
-          (next != alive.begin() && refuses(std::prev(next)->second)))
+      if ((next != alive.end() && conflicts(next->second)) ||
+          (next != alive.begin() && conflicts(std::prev(next)->second)))
         continue;
       alive.emplace(own.offset, i);
       by_last_use.emplace(lifetime(own).second, own.offset);
@@ -213,15 +213,16 @@ struct Checker {
       if (!exists) continue;
       ++described[history.resource];
       const uint32_t instances = plan.resources[history.resource].instance_count;
-      expect(history.frames >= 1 && history.parts >= 1 && instances <= history.frames + 1 &&
+      expect(history.frames >= 1 && history.range_count >= 1 && instances <= history.frames + 1 &&
                  instances >= history.frames &&
-                 range_in(history.first_part, history.parts, plan.history_parts.size()) &&
-                 range_in(history.first_layout, (uint64_t{history.frames} + 1) * history.parts,
+                 range_in(history.first_range, history.range_count, plan.history_ranges.size()) &&
+                 range_in(history.first_layout, (uint64_t{history.frames} + 1) * history.range_count,
                           plan.history_layouts.size()),
-             "a history has the wrong number of instances, parts or layouts", h);
-      const bool parts = range_in(history.first_part, history.parts, plan.history_parts.size());
-      for (uint32_t part = 0; parts && part < history.parts; ++part)
-        expect(has(history.resource, plan.history_parts[history.first_part + part]),
+             "a history has the wrong number of instances, subresource ranges or layouts", h);
+      const bool ranges_exist =
+          range_in(history.first_range, history.range_count, plan.history_ranges.size());
+      for (uint32_t r = 0; ranges_exist && r < history.range_count; ++r)
+        expect(has(history.resource, plan.history_ranges[history.first_range + r]),
                "a history has mips or layers that do not exist", h);
     }
     // An alias in history memory has as many instances as the history.

@@ -1,6 +1,6 @@
 #pragma once
-// Divides each image of a plan into the smallest number of parts such that the range of every
-// access and barrier is a set of whole parts.
+// Divides each image of a plan into the smallest number of subresources such that the range of every
+// access and barrier is a set of whole subresources.
 
 #include "framegraph/compile/plan.hpp"
 
@@ -11,13 +11,13 @@
 
 namespace dermis {
 
-// Parts of one resource: a grid of mips by layers, mips first. A buffer has one part.
-struct ResourceParts {
-  std::vector<uint16_t> mips, layers; // first mip and first layer of each part, then the end
+// Subresources of one resource: a grid of mips by layers, mips first. A buffer has one.
+struct SubresourceGrid {
+  std::vector<uint16_t> mips, layers; // first mip and first layer of each cell, then the end
 
   uint32_t count() const { return static_cast<uint32_t>((mips.size() - 1) * (layers.size() - 1)); }
 
-  // Calls visit with the number of each part that begins in the range.
+  // Calls visit with the number of each cell that begins in the range.
   template <class Visit> void for_each_in(const SubresourceRange& range, Visit visit) const {
     const auto columns = static_cast<uint32_t>(layers.size() - 1);
     const auto [first_row, end_row] = between(mips, range.first_mip, range.mips);
@@ -38,13 +38,13 @@ private:
   }
 };
 
-// Returns the parts of each resource. `plan` must pass verify_structure().
-std::vector<ResourceParts> parts_of(const Plan& plan);
+// Returns the grid of each resource. `plan` must pass verify_structure().
+std::vector<SubresourceGrid> subresource_grids(const Plan& plan);
 
-// Returns for each resource how many of its parts an access or barrier uses.
-std::vector<uint32_t> used_parts(const Plan& plan, const std::vector<ResourceParts>& parts);
+// Returns for each resource how many of its subresources an access or barrier uses.
+std::vector<uint32_t> used_subresource_counts(const Plan& plan, const std::vector<SubresourceGrid>& grids);
 
 // Returns whether the two ranges have a mip of a layer in common.
-bool meet(const SubresourceRange& a, const SubresourceRange& b);
+bool overlap(const SubresourceRange& a, const SubresourceRange& b);
 
 } // namespace dermis

@@ -79,10 +79,10 @@ struct Subresource {
   uint32_t owner = 0;               // into Memory::instances
   uint32_t placement = no_instance; // no_instance: host memory
   bool image = false;
-  bool with_host = false;    // true: the host owns it now
-  bool handed_back = false;  // to the host, in this frame
-  Queue queue = Queue::main; // queue that owns it
-  bool in_transfer = false;  // released by that queue, not yet acquired
+  bool with_host = false;        // true: the host owns it now
+  bool returned_to_host = false; // to the host, in this frame
+  Queue queue = Queue::main;     // queue that owns it
+  bool in_transfer = false;      // released by that queue, not yet acquired
   Layout released_old = Layout::undefined, released_new = Layout::undefined;
   bool defined = false; // true: the contents are defined
   int64_t of_frame = 0; // frame of the last write; below 0: as the executor left it

@@ -19,7 +19,7 @@ namespace {
 
 // Work limits: a hostile plan could divide images without end and place everything in the same
 // memory. A chain of 4,096 passes, the longest that a graph may have, takes 3e5 units of work.
-constexpr uint64_t max_subresources = 1u << 20, max_looks = 1u << 27;
+constexpr uint64_t max_subresources = 1u << 20, max_work = 1u << 27;
 
 // Waits of one queue for the other queue, in order. Only waits that imply more than the waits
 // before them are kept.
@@ -41,7 +41,7 @@ struct Waits {
 
 struct Machine {
   const Plan& plan;
-  const std::vector<ResourceParts> parts; // by resource
+  const std::vector<SubresourceGrid> grids; // by resource
   Memory memory = Memory(plan);
   std::vector<uint32_t> first_instance = {}; // by resource: into Memory::instances
   std::vector<uint8_t> in_place = {};        // by resource: 1: the frame overwrites the oldest one
@@ -54,10 +54,10 @@ struct Machine {
   std::array<size_t, queues> points_before = {}; // by queue: number of points in earlier frames
   std::array<Waits, queues> waits = {};          // by queue that waits
   int64_t frame_began = 0;                       // last pass before the frame
-  uint64_t work_budget = 0;                      // work done so far: visits of events
+  uint64_t work_done = 0;                        // work done so far: visits of events
 
   void prepare() {
-    const std::vector<uint32_t> used = used_parts(plan, parts);
+    const std::vector<uint32_t> used = used_subresource_counts(plan, grids);
     for (uint32_t r = 0; r < plan.resources.size(); ++r) {
       const PlanResource& resource = plan.resources[r];
       first_instance.push_back(static_cast<uint32_t>(memory.instances.size()));
@@ -66,7 +66,7 @@ struct Machine {
         subresource.image = resource.type == ResourceType::image;
         if (resource.first_instance != no_instance) subresource.placement = resource.first_instance + i;
         subresource.with_host = resource.first_instance == no_instance;
-        memory.add_instance(subresource, parts[r].count(), used[r]);
+        memory.add_instance(subresource, grids[r].count(), used[r]);
       }
     }
     in_place.assign(plan.resources.size(), 0);
@@ -81,12 +81,12 @@ struct Machine {
   // promised layout.
   template <class Visit> void for_each_kept(Visit visit) const {
     for (const PlanHistory& history : plan.histories)
-      for (uint32_t i = history.parts; i < (history.frames + 1) * history.parts; ++i)
-        for_each_part(history.resource, i / history.parts,
-                      plan.history_parts[history.first_part + i % history.parts], [&](uint32_t index) {
-                        visit(history, i / history.parts, plan.history_layouts[history.first_layout + i],
-                              index);
-                      });
+      for (uint32_t i = history.range_count; i < (history.frames + 1) * history.range_count; ++i)
+        for_each_subresource(
+            history.resource, i / history.range_count,
+            plan.history_ranges[history.first_range + i % history.range_count], [&](uint32_t index) {
+              visit(history, i / history.range_count, plan.history_layouts[history.first_layout + i], index);
+            });
   }
 
   uint32_t instance_of(uint32_t resource, uint32_t frames_back) const {
@@ -96,10 +96,10 @@ struct Machine {
 
   // Calls visit with the index of each subresource in the range.
   template <class Visit>
-  void for_each_part(uint32_t resource, uint32_t frames_back, const SubresourceRange& range,
-                     Visit visit) const {
+  void for_each_subresource(uint32_t resource, uint32_t frames_back, const SubresourceRange& range,
+                            Visit visit) const {
     const uint32_t first = memory.instances[instance_of(resource, frames_back)].first;
-    parts[resource].for_each_in(range, [&](uint32_t part) { visit(first + part); });
+    grids[resource].for_each_in(range, [&](uint32_t cell) { visit(first + cell); });
   }
 
   void object(const std::string& what, uint32_t resource, uint32_t frames_back, const std::string& where) {
@@ -109,14 +109,14 @@ struct Machine {
   }
 
   // Returns whether the check has exceeded its work limit.
-  bool is_over() const { return work_budget > max_looks; }
+  bool is_over() const { return work_done > max_work; }
 
   // Calls visit with the events of the subresource and of everything that shares memory with it,
   // after applying the waits so far.
-  template <class Visit> void for_each_meeting(uint32_t index, Visit visit) {
-    ++work_budget;
-    memory.for_each_meeting(index, [&](ThingEvents& there, bool own) {
-      work_budget += 1 + there.events.size();
+  template <class Visit> void for_each_overlap(uint32_t index, Visit visit) {
+    ++work_done;
+    memory.for_each_overlap(index, [&](SubresourceEvents& there, bool own) {
+      work_done += 1 + there.events.size();
       if (is_over()) return;
       for (Event& event : there.events)
         apply_waits(event);
@@ -126,10 +126,10 @@ struct Machine {
 
   void begin_frame() {
     for (Subresource& subresource : memory.subresources)
-      subresource.handed_back = false;
+      subresource.returned_to_host = false;
     for (uint32_t r = 0; r < plan.resources.size(); ++r) {
       if (in_place[r] != 0) continue; // still holds the oldest frame
-      for_each_part(r, 0, plan.resources[r].whole(), [&](uint32_t index) {
+      for_each_subresource(r, 0, plan.resources[r].whole(), [&](uint32_t index) {
         Subresource& current = memory.subresources[index];
         current.defined = current.placement == no_instance && plan.resources[r].origin == Origin::imported;
       });
@@ -186,7 +186,7 @@ struct Machine {
     }
   }
 
-  void complain(std::string what) {
+  void report_violation(std::string what) {
     if (violations.size() < max_violations) violations.push_back(std::move(what));
   }
 
@@ -195,7 +195,7 @@ struct Machine {
     const size_t other = index_of(other_than(queue));
     const size_t wanted = points_before[other] + point;
     if (wanted > reached[other].size())
-      complain(fmt::format(
+      report_violation(fmt::format(
           "frame {}, {}: waits for point {} of the other queue, which is not signalled before the wait",
           frame, where, point));
     else if (wanted > 0) // 0: frames before the first, which need no wait
@@ -206,12 +206,12 @@ struct Machine {
     if (point == 0) return;
     std::vector<int64_t>& own = reached[index_of(queue)];
     if (point != own.size() - points_before[index_of(queue)] + 1)
-      complain(fmt::format("frame {}, {}: signals point {} out of order", frame, where, point));
+      report_violation(fmt::format("frame {}, {}: signals point {} out of order", frame, where, point));
     own.push_back(now);
   }
 
   // Returns a layout transition as an event: a write that its own barrier has made available.
-  Event left_by(const PlanBarrier& barrier) const {
+  Event transition_event(const PlanBarrier& barrier) const {
     Event event;
     event.is_write = event.available = true;
     event.queue = queue;
@@ -253,8 +253,8 @@ struct Machine {
   }
 
   void run(const PlanBarrier& barrier, const std::string& where) {
-    for_each_part(barrier.resource, barrier.frames_back, barrier.range,
-                  [&](uint32_t index) { run(barrier, index, where); });
+    for_each_subresource(barrier.resource, barrier.frames_back, barrier.range,
+                         [&](uint32_t index) { run(barrier, index, where); });
   }
 
   void run(const PlanBarrier& barrier, uint32_t index, const std::string& where) {
@@ -263,8 +263,8 @@ struct Machine {
     const auto wrong = [&](const char* what) { object(what, barrier.resource, barrier.frames_back, where); };
     if (barrier.to_host) {
       if (subresource.placement != no_instance) wrong("is returned to the host, which does not own it");
-      if (subresource.handed_back) wrong("is returned to the host twice");
-      subresource.handed_back = true;
+      if (subresource.returned_to_host) wrong("is returned to the host twice");
+      subresource.returned_to_host = true;
     }
     if ((barrier.from_host || barrier.to_host) && queue != Queue::main)
       wrong("is owned by the host, but used on the async queue");
@@ -272,7 +272,7 @@ struct Machine {
       if (!subresource.with_host) wrong("is acquired from the host twice");
       subresource.with_host = barrier.to_host;
       subresource.layout = barrier.new_layout;
-      memory.add_write(index, left_by(barrier));
+      memory.add_write(index, transition_event(barrier));
       return;
     }
     if (subresource.with_host) wrong("has a barrier while the host owns it");
@@ -289,7 +289,7 @@ struct Machine {
       subresource.defined = false;
     }
     memory.isolate(index);
-    for_each_meeting(index, [&](ThingEvents& there, bool) {
+    for_each_overlap(index, [&](SubresourceEvents& there, bool) {
       for (Event& event : there.events) {
         extend(event, barrier);
         if (!transition) continue;
@@ -300,14 +300,14 @@ struct Machine {
     });
     if (!transition) return;
     if (!release) subresource.layout = barrier.new_layout;
-    memory.add_write(index, left_by(barrier));
+    memory.add_write(index, transition_event(barrier));
     subresource.with_host = barrier.to_host;
   }
 
   void run(const PlanBarrier* barriers, uint32_t count, bool releases, const std::string& where) {
     for (uint32_t b = 0; b < count; ++b) {
       if ((barriers[b].transfer == PlanBarrier::Transfer::release) != releases)
-        complain(fmt::format(
+        report_violation(fmt::format(
             "frame {}, {}: a release belongs after a pass, and all other barriers belong before it", frame,
             where));
       run(barriers[b], where);
@@ -321,8 +321,8 @@ struct Machine {
   }
 
   void check(const PlanAccess& access, const std::string& where) {
-    for_each_part(access.resource, access.frames_back, access.range,
-                  [&](uint32_t index) { check(access, index, where); });
+    for_each_subresource(access.resource, access.frames_back, access.range,
+                         [&](uint32_t index) { check(access, index, where); });
   }
 
   void check(const PlanAccess& access, uint32_t index, const std::string& where) {
@@ -342,7 +342,7 @@ struct Machine {
         plan.placements[subresource.placement].persistent &&
         subresource.of_frame != int64_t{frame} - access.frames_back)
       wrong("is read, but holds the contents of another frame");
-    for_each_meeting(index, [&](const ThingEvents& there, bool own) {
+    for_each_overlap(index, [&](const SubresourceEvents& there, bool own) {
       bool followed = false; // a later access happens in every frame
       for (size_t e = there.events.size(); e-- > 0;) {
         const Event& event = there.events[e];
@@ -360,7 +360,7 @@ struct Machine {
     });
   }
 
-  void leave(const PlanAccess& access, uint32_t index) {
+  void record_access(const PlanAccess& access, uint32_t index) {
     Event event;
     event.access = &access;
     event.stages = access.stages;
@@ -386,8 +386,8 @@ struct Machine {
       const bool known = plan.passes[at->earlier].queue == queue ||
                          waits[index_of(queue)].knows(frame_began + at->earlier + 1);
       if (at->earlier >= position || !known)
-        complain(fmt::format("frame {}, {}: does not run after pass {}, as the graph requires", frame, where,
-                             at->earlier));
+        report_violation(fmt::format("frame {}, {}: does not run after pass {}, as the graph requires", frame,
+                                     where, at->earlier));
     }
   }
 
@@ -400,13 +400,13 @@ struct Machine {
     run(plan.barriers.data() + pass.first_barrier, pass.barrier_count, false, where);
     for (uint32_t a = 0; a < pass.access_count; ++a)
       check(accesses[a], where);
-    work_budget += uint64_t{pass.access_count} * pass.access_count;
+    work_done += uint64_t{pass.access_count} * pass.access_count;
     if (is_over()) return;
     for (const PassRace& race : races_within(plan, pass, frame))
       object(race.what, race.resource, race.frames_back, where);
     for (uint32_t a = 0; a < pass.access_count; ++a)
-      for_each_part(accesses[a].resource, accesses[a].frames_back, accesses[a].range,
-                    [&](uint32_t index) { leave(accesses[a], index); });
+      for_each_subresource(accesses[a].resource, accesses[a].frames_back, accesses[a].range,
+                           [&](uint32_t index) { record_access(accesses[a], index); });
     run(plan.barriers.data() + pass.first_barrier + pass.barrier_count, pass.release_count, true, where);
     reach(pass.signal, where);
   }
@@ -414,7 +414,7 @@ struct Machine {
   void run_frame() {
     begin_frame();
     frame_began = now;
-    for (uint32_t p = 0; p < plan.passes.size() && !is_over(); ++p, ++work_budget)
+    for (uint32_t p = 0; p < plan.passes.size() && !is_over(); ++p, ++work_done)
       run(plan.passes[p], fmt::format("pass {}", p));
     if (is_over()) return;
     queue = Queue::main;
@@ -423,7 +423,7 @@ struct Machine {
     run(plan.barriers.data() + plan.first_final_barrier, plan.final_barrier_count, false, "final batch");
     for (uint32_t r = 0; r < plan.resources.size(); ++r)
       if (plan.resources[r].first_instance == no_instance &&
-          !memory.subresources[memory.instances[first_instance[r]].first].handed_back)
+          !memory.subresources[memory.instances[first_instance[r]].first].returned_to_host)
         object("is not returned to the host", r, 0, "end");
     for (size_t q = 0; q < queues; ++q)
       points_before[q] = reached[q].size();
@@ -443,20 +443,21 @@ Verdict verify(const Plan& plan) {
   // The use of one instance too many is detected once that instance has become the oldest.
   for (const PlanResource& resource : plan.resources)
     frames = std::max(frames, 2 * resource.instance_count + 1);
-  std::vector<ResourceParts> parts = parts_of(plan);
+  std::vector<SubresourceGrid> grids = subresource_grids(plan);
   uint64_t subresources = 0;
-  for (size_t r = 0; r < parts.size(); ++r)
-    subresources += uint64_t{parts[r].count()} * plan.resources[r].instance_count;
+  for (size_t r = 0; r < grids.size(); ++r)
+    subresources += uint64_t{grids[r].count()} * plan.resources[r].instance_count;
   if (subresources > max_subresources)
     return {{},
-            fmt::format("it divides its images into {} parts, more than {}", subresources, max_subresources)};
-  Machine machine{plan, std::move(parts)};
+            fmt::format("it divides its images into {} subresources, more than {}", subresources,
+                        max_subresources)};
+  Machine machine{plan, std::move(grids)};
   machine.prepare();
   for (uint32_t f = 0; f < frames && machine.violations.empty() && !machine.is_over(); ++f)
     machine.run_frame();
   Verdict verdict{std::move(machine.violations), ""};
   if (machine.is_over())
-    verdict.not_verified = fmt::format("its accesses overlap in memory more than {} times", max_looks);
+    verdict.not_verified = fmt::format("its accesses overlap in memory more than {} times", max_work);
   return verdict;
 }
 

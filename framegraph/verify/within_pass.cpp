@@ -26,7 +26,7 @@ const char* race_of(const Plan& plan, const PlanAccess& write, const PlanAccess&
     return lie_in_same_memory(plan, write, other, frame) ? "aliases memory that the same pass writes"
                                                          : nullptr;
   const bool own = (other.access & all_write_access) == 0 && other.own_texels;
-  if (own || !meet(write.range, other.range)) return nullptr;
+  if (own || !overlap(write.range, other.range)) return nullptr;
   return "is read without own_texels by the pass that writes it";
 }
 

@@ -54,8 +54,8 @@ Error take_from_host(const Device& device, const MemoryRequest& request, const s
 
 } // namespace
 
-Error take_memory(const Device& device, const MemoryRequest& request, const std::string& subresource,
-                  MemoryBlock& block) {
+Error allocate_memory(const Device& device, const MemoryRequest& request, const std::string& subresource,
+                      MemoryBlock& block) {
   if (device.host_memory.take != nullptr) return take_from_host(device, request, subresource, block);
   const auto type = choose_type(device, request);
   if (!type)

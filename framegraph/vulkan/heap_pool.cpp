@@ -25,7 +25,8 @@ Error HeapPool::create(const Device& device, std::span<const Plan* const> plans,
       at->request.alignment = std::max(at->request.alignment, heap_alignment(device, *plan, h));
     }
   for (Block& block : made->blocks_)
-    if (Error error = take_memory(device, block.request, "shared transient heap", block.memory)) return error;
+    if (Error error = allocate_memory(device, block.request, "shared transient heap", block.memory))
+      return error;
   pool = std::move(made);
   return {};
 }

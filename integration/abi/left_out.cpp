@@ -44,17 +44,18 @@ private:
   std::vector<std::vector<SubresourceRange>> ranges_; // by resource
 };
 
-SubresourceRange declared_range(const ResourceDeclaration& resource, const ImagePart& part) {
+SubresourceRange declared_range(const ResourceDeclaration& resource, const ImageRange& image_range) {
   const uint32_t mips = resource.mips == 0 ? limits::image_mips : resource.mips;
   SubresourceRange range;
-  range.first_mip = part.first_mip;
-  range.mips =
-      part.mips == 0 ? static_cast<uint16_t>(mips - std::min<uint32_t>(mips, part.first_mip)) : part.mips;
-  range.first_layer = part.first_layer;
-  range.layers =
-      part.layers == 0
-          ? static_cast<uint16_t>(resource.layers - std::min<uint32_t>(resource.layers, part.first_layer))
-          : part.layers;
+  range.first_mip = image_range.first_mip;
+  range.mips = image_range.mips == 0
+                   ? static_cast<uint16_t>(mips - std::min<uint32_t>(mips, image_range.first_mip))
+                   : image_range.mips;
+  range.first_layer = image_range.first_layer;
+  range.layers = image_range.layers == 0
+                     ? static_cast<uint16_t>(resource.layers -
+                                             std::min<uint32_t>(resource.layers, image_range.first_layer))
+                     : image_range.layers;
   return range;
 }
 
@@ -69,7 +70,7 @@ Subresources provided_subresources(const Graph& graph, const PassTypeRegistry& p
     for (const PortBinding& binding : graph.writes(pass))
       if (!is_off(pass) && !usage_info(pass_types[pass.type].ports[binding.port].usage).reads)
         provided.add(binding.resource.value,
-                     declared_range(graph.resources[binding.resource.value], binding.part));
+                     declared_range(graph.resources[binding.resource.value], binding.range));
   for (bool again = true; again;) {
     again = false;
     for (const PassDeclaration& pass : graph.passes)
@@ -102,7 +103,7 @@ ResourceId missing_input(const Graph& graph, const Subresources& provided, const
   for (const PortBinding& binding : graph.bindings_of(pass)) {
     const Port& port = type.ports[binding.port];
     if (port.optional || !usage_info(port.usage).reads || binding.when != ReadWhen::always) continue;
-    const SubresourceRange range = declared_range(graph.resources[binding.resource.value], binding.part);
+    const SubresourceRange range = declared_range(graph.resources[binding.resource.value], binding.range);
     if (!provided.has(binding.resource.value, range) && turned_off_writer(graph, binding.resource))
       return binding.resource;
   }

@@ -3,7 +3,7 @@
 
 #include "tests/framegraph/graph_builder.hpp"
 
-#include "framegraph/model/image_part.hpp"
+#include "framegraph/model/image_range.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -47,18 +47,18 @@ std::vector<PlanBarrier> barriers_before(const GraphBuilder& b, const Plan& plan
   return found;
 }
 
-TEST(ImagePart, ReferenceText_RoundTrips) {
+TEST(ImageRange, ReferenceText_RoundTrips) {
   for (const char* text :
        {"", "#0", "#14", "#1..3", "#2..", "[0]", "[2047]", "[1..4]", "#0[1]", "#1..2[3..]"}) {
-    const auto part = parse_part(text);
-    ASSERT_TRUE(part) << text;
-    EXPECT_EQ(part_text(*part), text);
+    const auto image_range = parse_image_range(text);
+    ASSERT_TRUE(image_range) << text;
+    EXPECT_EQ(image_range_text(*image_range), text);
   }
-  EXPECT_TRUE(parse_part("")->whole());
-  EXPECT_TRUE(parse_part("#0..[0..]")->whole());
+  EXPECT_TRUE(parse_image_range("")->whole());
+  EXPECT_TRUE(parse_image_range("#0..[0..]")->whole());
   for (const char* text : {"#", "#-1", "#15", "#3..1", "#1.2", "#1...2", "[", "[]", "[0", "0]", "[2048]",
                            "[0]#1", "#1[0]x", " #1", "#1 ", "#99999999999", "#1..99"})
-    EXPECT_FALSE(parse_part(text)) << text;
+    EXPECT_FALSE(parse_image_range(text)) << text;
 }
 
 TEST(Subresources, OneMipIsReadWhileAnotherIsWritten) {
@@ -92,8 +92,8 @@ GraphBuilder kept_mips() {
 TEST(Subresources, HistoryMipsKeepSeparateLayouts) {
   const Plan plan = compiled(kept_mips()).plan;
   ASSERT_EQ(plan.histories.size(), 1u);
-  EXPECT_EQ(plan.histories[0].parts, 2u);
-  EXPECT_THAT(plan.history_parts,
+  EXPECT_EQ(plan.histories[0].range_count, 2u);
+  EXPECT_THAT(plan.history_ranges,
               ::testing::ElementsAre(SubresourceRange{0, 1, 0, 1}, SubresourceRange{1, 1, 0, 1}));
   // Mip 0 keeps the layout of its last read; mip 1 keeps the layout of its write.
   EXPECT_THAT(plan.history_layouts, ::testing::ElementsAre(Layout::undefined, Layout::undefined,
@@ -154,7 +154,7 @@ TEST(Subresources, PartlyWrittenLayersAndHistories_AreRefused) {
   EXPECT_THAT(half_written(layers).text, HasSubstr("'cube[4..5]'"));
   auto history = kept_mips();
   history.graph.resources[1].mips = 3;
-  history.read(2, 0).part = {};
+  history.read(2, 0).range = {};
   EXPECT_THAT(half_written(history, DiagnosticId::history_unwritten).text,
               HasSubstr("reads 'kept@-1', but no pass that is on writes 'kept#2'"));
 }
@@ -177,7 +177,7 @@ TEST(Subresources, OptionalPort_NothingWritten_StaysUnbound) {
 
 TEST(Subresources, UnreadPartIsCulled) {
   auto b = pyramid();
-  b.read(3, 0).part = *parse_part("#0..1");
+  b.read(3, 0).range = *parse_image_range("#0..1");
   const auto plan = compiled(b);
   EXPECT_EQ(pass_names(b, plan.plan), "base down1 gather");
   EXPECT_THAT(reasons(b, plan, Reason::About::pass, 2), HasSubstr("culled"));
@@ -250,7 +250,7 @@ TEST(Subresources, OtherwiseForAPart_IsRefused) {
   const auto errors = refused(b);
   ASSERT_GE(errors.size(), 1u);
   EXPECT_EQ(errors[0].id, DiagnosticId::otherwise_mismatch);
-  EXPECT_THAT(errors[0].text, HasSubstr("ports name parts of 'chain'"));
+  EXPECT_THAT(errors[0].text, HasSubstr("ports name mips or layers of 'chain'"));
 }
 
 TEST(Subresources, TooManySubresources_AreRefused) {
@@ -266,7 +266,7 @@ TEST(Subresources, TooManySubresources_AreRefused) {
   const auto errors = refused(b);
   ASSERT_EQ(errors.size(), 1u);
   EXPECT_EQ(errors[0].id, DiagnosticId::limit_exceeded);
-  EXPECT_THAT(errors[0].text, HasSubstr("1024 parts of 'array'"));
+  EXPECT_THAT(errors[0].text, HasSubstr("1024 different subresource ranges of 'array'"));
 }
 
 TEST(Subresources, EqualTransitionsShareABarrier) {
@@ -282,12 +282,12 @@ TEST(Subresources, EqualTransitionsShareABarrier) {
   ASSERT_EQ(first.size(), 1u);
   EXPECT_EQ(first[0].range, (SubresourceRange{0, 2, 0, 2}));
   const auto second = barriers_before(b, plan, "touch", "image");
-  uint32_t parts = 0;
+  uint32_t subresources = 0;
   for (const PlanBarrier& barrier : second)
-    parts += barrier.range.mips * barrier.range.layers;
+    subresources += barrier.range.mips * barrier.range.layers;
   for (const PlanBarrier& barrier : barriers_before(b, plan, "show", "image"))
-    parts += barrier.range.mips * barrier.range.layers;
-  EXPECT_EQ(parts, 5u); // The mip that is written in place counts twice.
+    subresources += barrier.range.mips * barrier.range.layers;
+  EXPECT_EQ(subresources, 5u); // The mip that is written in place counts twice.
 }
 
 TEST(Subresources, OnePortUsesOneLayout) {

@@ -1,7 +1,7 @@
 #include "tests/framegraph/graph_builder.hpp"
 
 #include "framegraph/explain/reasons.hpp"
-#include "framegraph/model/image_part.hpp"
+#include "framegraph/model/image_range.hpp"
 
 #include "framegraph/verify/verify.hpp"
 
@@ -156,9 +156,9 @@ PortBinding GraphBuilder::reference(uint32_t port, const std::string& text) cons
   PortBinding binding;
   binding.port = port;
   binding.resource = resource(text.substr(0, end));
-  const auto part = parse_part(text.substr(end, at - end));
-  EXPECT_TRUE(part) << text;
-  if (part) binding.part = *part;
+  const auto image_range = parse_image_range(text.substr(end, at - end));
+  EXPECT_TRUE(image_range) << text;
+  if (image_range) binding.range = *image_range;
   if (at != text.size()) binding.frames_back = static_cast<uint32_t>(std::stoul(text.substr(at + 2)));
   return binding;
 }

@@ -20,12 +20,15 @@ Contents undefined(const ResourceDeclaration& resource) {
   return Contents(size_t{resource.mips} * resource.layers);
 }
 
-// Returns the indices of the subresources in the part.
-std::vector<size_t> numbers(const ResourceDeclaration& resource, const ImagePart& part) {
+// Returns the indices of the subresources in the range.
+std::vector<size_t> numbers(const ResourceDeclaration& resource, const ImageRange& image_range) {
   std::vector<size_t> result;
-  for (uint32_t m = part.first_mip; m < (part.mips == 0 ? resource.mips : part.first_mip + part.mips); ++m)
-    for (uint32_t l = part.first_layer;
-         l < (part.layers == 0 ? resource.layers : uint32_t{part.first_layer} + part.layers); ++l)
+  for (uint32_t m = image_range.first_mip;
+       m < (image_range.mips == 0 ? resource.mips : image_range.first_mip + image_range.mips); ++m)
+    for (uint32_t l = image_range.first_layer;
+         l <
+         (image_range.layers == 0 ? resource.layers : uint32_t{image_range.first_layer} + image_range.layers);
+         ++l)
       result.push_back(m * resource.layers + l);
   return result;
 }
@@ -60,17 +63,17 @@ Interpretation graph_reference(const Graph& graph, const PassTypeRegistry& pass_
     const auto read = [&](const PortBinding& binding, std::vector<StandInInput>& inputs) {
       const ResourceDeclaration& resource = graph.resources[binding.resource.value];
       if (!in_history(binding)) { // Histories start from zero.
-        inputs.insert(inputs.end(), numbers(resource, binding.part).size(), {binding.port, Pixels{}});
+        inputs.insert(inputs.end(), numbers(resource, binding.range).size(), {binding.port, Pixels{}});
         return;
       }
       const Contents& found = contents_of[binding.resource.value][frame - binding.frames_back];
-      if (binding.part.whole()) // The parts of the resource that is read instead.
+      if (binding.range.whole()) // The subresources of the resource that is read instead.
         for (const auto& pixels : found) {
           EXPECT_TRUE(pixels.has_value()) << resource.name;
           inputs.push_back({binding.port, pixels.value_or(Pixels{})});
         }
       else
-        for (const size_t number : numbers(resource, binding.part)) {
+        for (const size_t number : numbers(resource, binding.range)) {
           EXPECT_TRUE(found[number].has_value()) << resource.name;
           inputs.push_back({binding.port, found[number].value_or(Pixels{})});
         }
@@ -96,9 +99,10 @@ Interpretation graph_reference(const Graph& graph, const PassTypeRegistry& pass_
       std::stable_sort(inputs.begin(), inputs.end(),
                        [](const StandInInput& a, const StandInInput& b) { return a.port < b.port; });
       for (const PortBinding& binding : writes) {
-        uint32_t part = 0;
-        for (const size_t number : numbers(graph.resources[binding.resource.value], binding.part))
-          contents_of[binding.resource.value][frame][number] = placeholder(p, binding.port, part++, inputs);
+        uint32_t image_range = 0;
+        for (const size_t number : numbers(graph.resources[binding.resource.value], binding.range))
+          contents_of[binding.resource.value][frame][number] =
+              placeholder(p, binding.port, image_range++, inputs);
       }
     }
     for (size_t r = 0; r < graph.resources.size(); ++r)

@@ -259,11 +259,11 @@ struct Oracle {
 
   // Returns the layout that the plan states for this mip and layer at the start of a frame.
   Layout kept_layout(const PlanHistory& history, const Operation& subresource, uint32_t back) const {
-    for (uint32_t part = 0; part < history.parts; ++part) {
-      const SubresourceRange& range = plan.history_parts[history.first_part + part];
+    for (uint32_t r = 0; r < history.range_count; ++r) {
+      const SubresourceRange& range = plan.history_ranges[history.first_range + r];
       if (subresource.mip >= range.first_mip && subresource.mip - range.first_mip < range.mips &&
           subresource.layer >= range.first_layer && subresource.layer - range.first_layer < range.layers)
-        return plan.history_layouts[history.first_layout + back * history.parts + part];
+        return plan.history_layouts[history.first_layout + back * history.range_count + r];
     }
     return Layout::undefined;
   }

@@ -154,7 +154,7 @@ TEST(Verify, ExcessiveWork_GivesUpWithoutViolations) {
   }
   const Verdict verdict = verify(plan);
   EXPECT_THAT(verdict.violations, IsEmpty());
-  EXPECT_THAT(verdict.not_verified, HasSubstr("parts"));
+  EXPECT_THAT(verdict.not_verified, HasSubstr("subresources"));
   EXPECT_FALSE(verdict.proven());
 }
 

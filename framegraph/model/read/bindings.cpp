@@ -1,6 +1,6 @@
 // Reads "read" and "write" of a pass: the resource and frame bound to each port.
 
-#include "framegraph/model/image_part.hpp"
+#include "framegraph/model/image_range.hpp"
 #include "framegraph/model/read/graph_reader.hpp"
 #include "framegraph/text/limits.hpp"
 #include "framegraph/text/suggest.hpp"
@@ -145,9 +145,9 @@ private:
           fmt::format(
               "{} provides the size of the dispatch, which every frame reads; the read cannot be conditional",
               what));
-    const bool says = instead.binding.resource.valid() || port.optional ||
-                      resource.history.first == HistoryDeclaration::First::clear;
-    if (says) return true;
+    const bool has_fallback = instead.binding.resource.valid() || port.optional ||
+                              resource.history.first == HistoryDeclaration::First::clear;
+    if (has_fallback) return true;
     return refuse(
         history.where,
         fmt::format("{} must be bound, but nothing is declared for frames in which '{}@-{}' is invalid", what,
@@ -204,8 +204,8 @@ private:
       out.binding.frames_back = static_cast<uint32_t>(-frame);
     }
     const size_t end = std::min(text.find_first_of("#[@"), text.size());
-    const auto part = parse_part(text.substr(end, std::min(at, text.size()) - end));
-    if (!part) {
+    const auto image_range = parse_image_range(text.substr(end, std::min(at, text.size()) - end));
+    if (!image_range) {
       reader_.error(
           DiagnosticId::bad_reference, where,
           fmt::format("{} names '{}'; mips are #0, #1..3, #1.., layers [0], [1..3], [1..]; at most {} "
@@ -213,7 +213,7 @@ private:
                       what, text, limits::image_mips, limits::image_layers));
       return false;
     }
-    out.binding.part = *part;
+    out.binding.range = *image_range;
     out.binding.resource = find_resource(reader_, text.substr(0, end), what, where);
     if (!out.binding.resource.valid()) return false;
     const ResourceDeclaration& resource = reader_.graph.resources[out.binding.resource.value];
@@ -233,18 +233,18 @@ private:
           .related.emplace_back(resource.where, fmt::format("'{}' is declared here", resource.name));
       return false;
     }
-    return out.binding.part.whole() || check_part(text, what, out);
+    return out.binding.range.whole() || check_image_range(text, what, out);
   }
 
-  // Checks that the resource has the named part, as far as this is known without a view.
-  bool check_part(std::string_view text, const std::string& what, const Found& found) {
+  // Checks that the resource has the named mips and layers, as far as this is known without a view.
+  bool check_image_range(std::string_view text, const std::string& what, const Found& found) {
     const ResourceDeclaration& resource = reader_.graph.resources[found.binding.resource.value];
     if (reader_.broken_resources[found.binding.resource.value]) return true;
     std::string problem;
     const uint32_t last_mip =
-        found.binding.part.first_mip + std::max<uint32_t>(found.binding.part.mips, 1) - 1;
+        found.binding.range.first_mip + std::max<uint32_t>(found.binding.range.mips, 1) - 1;
     const uint32_t last_layer =
-        found.binding.part.first_layer + std::max<uint32_t>(found.binding.part.layers, 1) - 1;
+        found.binding.range.first_layer + std::max<uint32_t>(found.binding.range.layers, 1) - 1;
     if (resource.type != ResourceType::image)
       problem = fmt::format("'{}' is {}", resource.name, type_phrase(resource.type));
     else if (resource.origin == Origin::imported || resource.exported)
@@ -256,7 +256,8 @@ private:
           fmt::format("'{}' has {} layer{}", resource.name, resource.layers, resource.layers == 1 ? "" : "s");
     if (problem.empty()) return true;
     reader_
-        .error(DiagnosticId::bad_part, found.where, fmt::format("{} names '{}', but {}", what, text, problem))
+        .error(DiagnosticId::bad_subresource, found.where,
+               fmt::format("{} names '{}', but {}", what, text, problem))
         .related.emplace_back(resource.where, fmt::format("'{}' is declared here", resource.name));
     return false;
   }
@@ -269,12 +270,12 @@ private:
       return true;
     const Usage usage = kind_->ports[found.binding.port].usage;
     if (usage != Usage::storage_image_write && usage != Usage::storage_image_update) return true;
-    if (found.binding.part.first_mip == 0 && found.binding.part.mips == 0) found.binding.part.mips = 1;
-    if (found.binding.part.mips == 1) return true;
+    if (found.binding.range.first_mip == 0 && found.binding.range.mips == 0) found.binding.range.mips = 1;
+    if (found.binding.range.mips == 1) return true;
     reader_
-        .error(DiagnosticId::bad_part, found.where,
+        .error(DiagnosticId::bad_subresource, found.where,
                fmt::format("{} writes one mip, but '{}{}' names several", what, resource.name,
-                           part_text(found.binding.part)))
+                           image_range_text(found.binding.range)))
         .related.emplace_back(resource.where, fmt::format("'{}' is declared here", resource.name));
     return false;
   }
@@ -290,11 +291,11 @@ private:
                        : resource.type == ResourceType::buffer ? usage.buffer
                                                                : usage.acceleration_structure;
     if (!taken) {
-      const ResourceType wanted = usage.image    ? ResourceType::image
-                                  : usage.buffer ? ResourceType::buffer
-                                                 : ResourceType::acceleration_structure;
+      const ResourceType expected = usage.image    ? ResourceType::image
+                                    : usage.buffer ? ResourceType::buffer
+                                                   : ResourceType::acceleration_structure;
       declared_here(reader_.error(DiagnosticId::usage_mismatch, found.where,
-                                  fmt::format("{} expects {}; '{}' is {}", what, type_phrase(wanted),
+                                  fmt::format("{} expects {}; '{}' is {}", what, type_phrase(expected),
                                               resource.name, type_phrase(resource.type))));
       return;
     }

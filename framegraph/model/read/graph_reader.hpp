@@ -82,8 +82,8 @@ std::vector<std::string_view> names_of(const std::map<std::string, Id, std::less
   return out;
 }
 
-// Returns whether two parts of one image have a mip of a layer in common.
-bool meet(const ImagePart& a, const ImagePart& b);
+// Returns whether two ranges of one image have a mip of a layer in common.
+bool overlap(const ImageRange& a, const ImageRange& b);
 // Imports and exports: the host may bind an image of any declared format.
 inline bool may_be_host_owned(const ResourceDeclaration& resource) {
   return resource.origin == Origin::imported || resource.exported;

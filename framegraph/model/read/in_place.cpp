@@ -4,7 +4,7 @@
 
 #include "framegraph/model/in_place.hpp"
 #include "framegraph/model/expression.hpp"
-#include "framegraph/model/image_part.hpp"
+#include "framegraph/model/image_range.hpp"
 #include "framegraph/model/read/graph_reader.hpp"
 
 #include <algorithm>
@@ -16,7 +16,7 @@ namespace {
 
 struct Write {
   PassId pass;
-  ImagePart part;
+  ImageRange range;
   ResourceId instead; // valid: readers get it if the pass is off
   SourceLocation where;
 };
@@ -26,7 +26,7 @@ public:
   explicit Reads(GraphReader& reader) : reader_(reader), writes_(reader.graph.resources.size()) {
     for (uint32_t p = 0; p < graph().passes.size(); ++p)
       for (const PortBinding& binding : graph().writes(graph().passes[p])) {
-        Write write{{p}, binding.part, {}, {}};
+        Write write{{p}, binding.range, {}, {}};
         for (const PassThrough& through : graph().passes[p].otherwise)
           if (through.output == binding.resource) {
             write.instead = through.instead;
@@ -61,7 +61,7 @@ private:
   void follow() {
     conditions_.assign(1, {graph().passes[pass_.value].when, true});
     steps_.clear();
-    seen_ = read_->part;
+    seen_ = read_->range;
     ResourceId resource = read_->resource;
     uint32_t before = pass_.value; // only writes of earlier passes count
     for (size_t later = 0; later <= writes_.size();) {
@@ -71,7 +71,7 @@ private:
       const Write* replaced = nullptr;
       for (auto at = end; at != writes.begin() && !replaced;) {
         --at;
-        if (!meet(at->part, seen_)) continue;
+        if (!overlap(at->range, seen_)) continue;
         if (!condition_known(at->pass)) return;
         if (done(resource, &*at) || !turn_off(at->pass)) return;
         if (at->instead.valid()) replaced = &*at;
@@ -109,27 +109,27 @@ private:
   bool done(ResourceId resource, const Write* write) {
     const PortBinding* written = port_->own_texels ? nullptr : written_too(resource);
     const ResourceDeclaration& declared = graph().resources[resource.value];
-    const bool misfit = !steps_.empty() && declared.type == ResourceType::image &&
-                        !reader_.broken_resources[resource.value] && !formats_fit(*port_, declared);
-    if (!written && !misfit) return false;
+    const bool unusable = !steps_.empty() && declared.type == ResourceType::image &&
+                          !reader_.broken_resources[resource.value] && !formats_fit(*port_, declared);
+    if (!written && !unusable) return false;
     conditions_.push_back({write ? graph().passes[write->pass.value].when : ExpressionId(), true});
     const bool possible = can_hold(graph(), conditions_);
     conditions_.pop_back();
     if (!possible) return false;
     if (written) report_race(*written);
-    if (misfit) report_misfit(resource);
+    if (unusable) report_unusable(resource);
     return true;
   }
 
   const PortBinding* written_too(ResourceId resource) const {
     for (const PortBinding& binding : graph().writes(graph().passes[pass_.value]))
-      if (binding.resource == resource && binding.port != unknown_port && meet(binding.part, seen_))
+      if (binding.resource == resource && binding.port != unknown_port && overlap(binding.range, seen_))
         return &binding;
     return nullptr;
   }
 
   std::string name_of(const PortBinding& binding) const {
-    return graph().resources[binding.resource.value].name + part_text(binding.part);
+    return graph().resources[binding.resource.value].name + image_range_text(binding.range);
   }
 
   void report_race(const PortBinding& written) {
@@ -148,10 +148,11 @@ private:
     relate_steps(diagnostic);
   }
 
-  void report_misfit(ResourceId resource) {
+  void report_unusable(ResourceId resource) {
     report_formats(reader_, resource, graph().place_of(*read_),
-                   fmt::format("port '{}' of pass '{}' reads the replacement of '{}' and supports {}", port_->name,
-                               graph().passes[pass_.value].name, name_of(*read_), formats_taken(*port_)));
+                   fmt::format("port '{}' of pass '{}' reads the replacement of '{}' and supports {}",
+                               port_->name, graph().passes[pass_.value].name, name_of(*read_),
+                               formats_taken(*port_)));
   }
 
   void relate_steps(Diagnostic& diagnostic) const {
@@ -173,7 +174,7 @@ private:
   PassId pass_;
   const PortBinding* read_ = nullptr;
   const Port* port_ = nullptr;
-  ImagePart seen_;
+  ImageRange seen_;
   std::vector<Condition> conditions_; // conditions under which the read happens
   std::vector<Step> steps_;           // replacements followed so far
 };

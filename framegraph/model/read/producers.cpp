@@ -29,7 +29,7 @@ bool updates(const GraphReader& reader, const PassDeclaration& pass, const PortB
 
 bool reads_now(std::span<const PortBinding> reads, const PortBinding& written) {
   return std::any_of(reads.begin(), reads.end(), [&](const PortBinding& one) {
-    return one.resource == written.resource && one.frames_back == 0 && meet(one.part, written.part);
+    return one.resource == written.resource && one.frames_back == 0 && overlap(one.range, written.range);
   });
 }
 
@@ -38,7 +38,7 @@ void check_written_once(GraphReader& reader, const PassDeclaration& pass) {
   const auto writes = reader.graph.writes(pass);
   for (size_t i = 0; i < writes.size(); ++i) {
     for (size_t j = 0; j < i; ++j) {
-      if (writes[i].resource != writes[j].resource || !meet(writes[i].part, writes[j].part)) continue;
+      if (writes[i].resource != writes[j].resource || !overlap(writes[i].range, writes[j].range)) continue;
       reader
           .error(DiagnosticId::two_producers, reader.graph.place_of(writes[i]),
                  fmt::format("pass '{}' writes '{}' through two ports", pass.name,
@@ -60,9 +60,9 @@ void collect(GraphReader& reader, PassId id, std::vector<Producers>& all) {
     producers.fresh = true;
     // Passes with a `when` may exclude each other, and an unknown port may update.
     const bool sometimes = reader.document.find(reader.pass_nodes[id.value], "when").valid();
-    // The compiler checks parts of images, because it knows how many parts there are.
+    // The compiler checks ranges of images, because it knows how many mips and layers there are.
     if (sometimes || binding.port == unknown_port || resource.origin == Origin::imported ||
-        !binding.part.whole())
+        !binding.range.whole())
       continue;
     if (!producers.first.pass.valid()) {
       producers.first = {id, reader.graph.place_of(binding)};
@@ -93,7 +93,7 @@ void require_producer(GraphReader& reader, std::vector<Producers>& all, Resource
 
 } // namespace
 
-bool meet(const ImagePart& a, const ImagePart& b) {
+bool overlap(const ImageRange& a, const ImageRange& b) {
   const auto apart = [](uint32_t first, uint32_t count, uint32_t other) { // count 0: to the last
     return count != 0 && first + count <= other;
   };

@@ -81,7 +81,7 @@ Scopes scopes_of(const Device& device, const PlanBarrier& barrier, const HostSta
 // Returns whether the barrier has nothing to wait for and no layout to change. The host's states
 // only hold at the frame's borders: if the plan does not use the image, the host orders its own
 // accesses.
-bool nothing_to_do(const PlanBarrier& barrier, const Scopes& s) {
+bool is_redundant(const PlanBarrier& barrier, const Scopes& s) {
   if (s.old_layout != s.new_layout) return false;
   if (barrier.from_host && barrier.to_host) return true;
   if (barrier.from_host || barrier.to_host) return s.source_stages == 0 && s.source_access == 0;
@@ -160,7 +160,7 @@ struct Batch {
 // available. Both barriers name writes even if they only wait for reads. Nothing is left to make
 // available then, but the validation layer (1.3.239), which ignores image padding, may have missed
 // the earlier barrier.
-struct Takeover {
+struct AliasBarrier {
   Scopes scopes{};
 
   void add(Scopes& s) {
@@ -197,11 +197,11 @@ void global_barrier(const State& state, VkCommandBuffer commands, const VkMemory
   state.commands->vkCmdPipelineBarrier2(commands, &info);
 }
 
-void record_takeover(const State& state, VkCommandBuffer commands, Takeover& takeover) {
-  takeover.scopes.destination_stages = all_commands;
-  takeover.scopes.destination_access = all_memory;
-  if (takeover.needed()) global_barrier(state, commands, memory_barrier(takeover.scopes));
-  takeover = {};
+void record_alias_barrier(const State& state, VkCommandBuffer commands, AliasBarrier& alias_barrier) {
+  alias_barrier.scopes.destination_stages = all_commands;
+  alias_barrier.scopes.destination_access = all_memory;
+  if (alias_barrier.needed()) global_barrier(state, commands, memory_barrier(alias_barrier.scopes));
+  alias_barrier = {};
 }
 
 // Adds a barrier for the resource that the host binds to the slot.
@@ -233,13 +233,13 @@ uint32_t instance_of(const State& state, const PlanResource& resource, uint32_t 
 void record_barriers(State& state, const FrameInput& frame, uint32_t first, uint32_t count,
                      std::span<const uint32_t> writable_placeholders) noexcept {
   Batch batch;
-  Takeover takeover;
+  AliasBarrier alias_barrier;
   for (uint32_t i = first; i < first + count; ++i) {
     const PlanBarrier& barrier = state.plan.barriers[i];
     const PlanResource& resource = state.plan.resources[barrier.resource];
     const bool host_owned = resource.first_instance == no_instance;
     Scopes s = scopes_of(*state.device, barrier, host_states(frame, resource));
-    if (nothing_to_do(barrier, s)) continue;
+    if (is_redundant(barrier, s)) continue;
     if (host_owned) {
       add_host_barrier(state, frame, resource, s, batch);
       continue;
@@ -247,9 +247,9 @@ void record_barriers(State& state, const FrameInput& frame, uint32_t first, uint
     const Instance& instance = state.instances[instance_of(state, resource, barrier.frames_back)];
     const bool discarded = discards(state.plan, barrier), poison = state.poison && discarded;
     if (discarded && instance.shared) {
-      takeover.add(s);
+      alias_barrier.add(s);
       // the fill must come after the other resource's writes
-      if (poison) record_takeover(state, frame.command_buffer, takeover);
+      if (poison) record_alias_barrier(state, frame.command_buffer, alias_barrier);
     }
     if (resource.type == ResourceType::image) {
       VkImageMemoryBarrier2& image = state.image_barriers[batch.images];
@@ -268,12 +268,12 @@ void record_barriers(State& state, const FrameInput& frame, uint32_t first, uint
     else
       ++batch.buffers;
   }
-  if (takeover.needed()) state.memory_barriers[batch.memory++] = memory_barrier(takeover.scopes);
+  if (alias_barrier.needed()) state.memory_barriers[batch.memory++] = memory_barrier(alias_barrier.scopes);
   // Only the shader knows that it does not write to an unbound port, so its accesses are ordered.
   constexpr Scopes in_order{
       compute, compute, shader_write, shader_write, VK_IMAGE_LAYOUT_GENERAL, VK_IMAGE_LAYOUT_GENERAL};
   for (const uint32_t index : writable_placeholders) {
-    const StandIn& placeholder = state.placeholders[index];
+    const Placeholder& placeholder = state.placeholders[index];
     if (placeholder.image != VK_NULL_HANDLE)
       state.image_barriers[batch.images++] =
           image_barrier(placeholder.image, VK_IMAGE_ASPECT_COLOR_BIT, in_order);

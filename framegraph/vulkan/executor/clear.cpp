@@ -70,7 +70,7 @@ void initialise(const FunctionTable& vk, VkCommandBuffer commands, const Target&
 void record_initialisation(State& state, VkCommandBuffer commands) noexcept {
   const FunctionTable& vk = *state.commands;
   if (!state.placeholders_ready)
-    for (const StandIn& placeholder : state.placeholders)
+    for (const Placeholder& placeholder : state.placeholders)
       initialise(vk, commands, {placeholder.image, placeholder.buffer, VK_IMAGE_LAYOUT_GENERAL});
   state.placeholders_ready = true;
   for (const PlanHistory& history : state.plan.histories) {
@@ -81,9 +81,10 @@ void record_initialisation(State& state, VkCommandBuffer commands) noexcept {
       if (instance.ready) continue;
       // the bit has the same value for buffers
       const bool clear = (resource.vk_usage & VK_IMAGE_USAGE_TRANSFER_DST_BIT) != 0;
-      for (uint32_t part = 0; part < history.parts; ++part) {
-        const SubresourceRange& range = state.plan.history_parts[history.first_part + part];
-        const Layout layout = state.plan.history_layouts[history.first_layout + back * history.parts + part];
+      for (uint32_t number = 0; number < history.range_count; ++number) {
+        const SubresourceRange& range = state.plan.history_ranges[history.first_range + number];
+        const Layout layout =
+            state.plan.history_layouts[history.first_layout + back * history.range_count + number];
         initialise(vk, commands,
                    {instance.image,
                     instance.buffer,

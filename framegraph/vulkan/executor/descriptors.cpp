@@ -137,11 +137,12 @@ void write_descriptors(State& state, uint32_t frame_slot, const FrameInput& fram
     }
     const uint32_t number = instance_of(state, resource, access.frames_back);
     const Instance& instance = state.instances[number];
-    const uint32_t part = state.view_of_access[index];
+    const uint32_t first_view = state.view_of_access[index];
     const bool sampled = d.writes[i].descriptorType == VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE;
-    d.images[i].imageView = part != no_index ? state.part_views[part + number - resource.first_instance].view
-                            : sampled        ? instance.all_mips
-                                             : instance.first_mip;
+    d.images[i].imageView = first_view != no_index
+                                ? state.subresource_views[first_view + number - resource.first_instance].view
+                            : sampled ? instance.all_mips
+                                      : instance.first_mip;
     d.buffers[i].buffer = instance.buffer;
   }
   if (!d.writes.empty())

@@ -169,7 +169,7 @@ Error create_environment_buffer(const Device& device, uint64_t bytes, const char
   const MemoryRequest request{
       MemoryPurpose::constants,           needs.memoryTypeBits, needs.size, needs.alignment, visible,
       VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT};
-  if (Error error = take_memory(device, request, name, memory)) return error;
+  if (Error error = allocate_memory(device, request, name, memory)) return error;
   const VkBindBufferMemoryInfo bind{VK_STRUCTURE_TYPE_BIND_BUFFER_MEMORY_INFO, nullptr, buffer, memory.memory,
                                     memory.offset};
   result = device.vk.vkBindBufferMemory2(device.device, 1, &bind);

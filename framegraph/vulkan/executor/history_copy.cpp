@@ -72,7 +72,7 @@ void copy_buffer(const FunctionTable& vk, VkCommandBuffer commands, const PlanRe
   submit(vk, commands, transfer, nullptr, 0, false);
 }
 
-struct Kept { // one frame of a history
+struct HistoryFrame { // one frame of a history
   const State& state;
   const PlanHistory& history;
   uint32_t frames_back = 0;
@@ -81,14 +81,15 @@ struct Kept { // one frame of a history
   const Instance& instance() const { return state.instances[instance_of(state, resource(), frames_back)]; }
 };
 
-// Changes layouts part by part, because each part of a history has its own layout.
+// Changes the layout of each subresource range, because each range of a history has its own.
 void change_layouts(const FunctionTable& vk, VkCommandBuffer commands, const CopyScope& copy,
-                    const Kept& frame, VkImageLayout other, bool before) {
-  for (uint32_t part = 0; part < frame.history.parts; ++part) {
+                    const HistoryFrame& frame, VkImageLayout other, bool before) {
+  for (uint32_t number = 0; number < frame.history.range_count; ++number) {
     const Plan& plan = frame.state.plan;
-    const SubresourceRange& range = plan.history_parts[frame.history.first_part + part];
+    const SubresourceRange& range = plan.history_ranges[frame.history.first_range + number];
     const auto own = static_cast<VkImageLayout>(
-        plan.history_layouts[frame.history.first_layout + frame.frames_back * frame.history.parts + part]);
+        plan.history_layouts[frame.history.first_layout + frame.frames_back * frame.history.range_count +
+                             number]);
     VkImageMemoryBarrier2 change = layout_change(frame.instance().image,
                                                  {barrier_aspects(frame.resource().format), range.first_mip,
                                                   range.mips, range.first_layer, range.layers},
@@ -98,7 +99,7 @@ void change_layouts(const FunctionTable& vk, VkCommandBuffer commands, const Cop
 }
 
 // Discards the whole target image, because the copy replaces its contents.
-void discard(const FunctionTable& vk, VkCommandBuffer commands, const CopyScope& copy, const Kept& to,
+void discard(const FunctionTable& vk, VkCommandBuffer commands, const CopyScope& copy, const HistoryFrame& to,
              VkImageLayout layout) {
   VkImageMemoryBarrier2 change = layout_change(
       to.instance().image,
@@ -107,7 +108,8 @@ void discard(const FunctionTable& vk, VkCommandBuffer commands, const CopyScope&
   submit(vk, commands, copy, &change, 1, true);
 }
 
-void copy_image(const FunctionTable& vk, VkCommandBuffer commands, const Kept& from, const Kept& to) {
+void copy_image(const FunctionTable& vk, VkCommandBuffer commands, const HistoryFrame& from,
+                const HistoryFrame& to) {
   constexpr VkImageLayout source = VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
                           target = VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL;
   const PlanResource& size = to.resource();
@@ -137,11 +139,13 @@ PassTypeId writer_of(const State& state, const PlanHistory& history) {
 }
 
 bool usable(const State& to, uint32_t to_history, const State& from, uint32_t from_history) {
-  const PlanHistory &wanted = to.plan.histories[to_history], &kept = from.plan.histories[from_history];
-  const PlanResource &a = to.plan.resources[wanted.resource], &b = from.plan.resources[kept.resource];
+  const PlanHistory &new_history = to.plan.histories[to_history],
+                    &old_history = from.plan.histories[from_history];
+  const PlanResource &a = to.plan.resources[new_history.resource],
+                     &b = from.plan.resources[old_history.resource];
   const bool scales = to.histories[to_history].scales && from.histories[from_history].scales;
   return to.histories[to_history].name == from.histories[from_history].name && same_texels(a, b) &&
-         (same_size(a, b) || scales) && writer_of(to, wanted) == writer_of(from, kept);
+         (same_size(a, b) || scales) && writer_of(to, new_history) == writer_of(from, old_history);
 }
 
 } // namespace
@@ -159,13 +163,13 @@ Rectangle carried_rectangle(const State& to, const State& from) noexcept {
 }
 
 CarriedHistory carried_history(const State& to, uint32_t index, const State& from, bool reset) noexcept {
-  const PlanHistory& wanted = to.plan.histories[index];
-  if (reset && wanted.declaration.on_cut == HistoryDeclaration::OnCut::invalidate) return {};
+  const PlanHistory& new_history = to.plan.histories[index];
+  if (reset && new_history.declaration.on_cut == HistoryDeclaration::OnCut::invalidate) return {};
   for (uint32_t h = 0; h < from.plan.histories.size(); ++h) {
-    const PlanHistory& kept = from.plan.histories[h];
+    const PlanHistory& old_history = from.plan.histories[h];
     if (!usable(to, index, from, h)) continue;
     const uint32_t age = from.histories[h].age;
-    return {h, kept.frames < wanted.frames ? std::min(age, kept.frames) : age};
+    return {h, old_history.frames < new_history.frames ? std::min(age, old_history.frames) : age};
   }
   return {};
 }
@@ -187,11 +191,12 @@ void record_carried(State& to, const State& from, VkCommandBuffer commands, uint
   for (uint32_t h = 0; h < to.histories.size(); ++h) {
     const CarriedHistory carried = carried_history(to, h, from, reset);
     if (carried.age == 0) continue;
-    const PlanHistory &wanted = to.plan.histories[h], &kept = from.plan.histories[carried.history];
-    const PlanResource& resource = to.plan.resources[wanted.resource];
-    for (uint32_t back = 1; back <= std::min({wanted.frames, kept.frames, carried.age}); ++back) {
+    const PlanHistory &new_history = to.plan.histories[h],
+                      &old_history = from.plan.histories[carried.history];
+    const PlanResource& resource = to.plan.resources[new_history.resource];
+    for (uint32_t back = 1; back <= std::min({new_history.frames, old_history.frames, carried.age}); ++back) {
       Instance& instance = to.instances[instance_of(to, resource, back)];
-      const Kept source{from, kept, back}, target{to, wanted, back};
+      const HistoryFrame source{from, old_history, back}, target{to, new_history, back};
       if (resource.type == ResourceType::buffer) {
         copy_buffer(vk, commands, resource, source.instance().buffer, instance.buffer);
       } else if (same_size(source.resource(), resource)) {

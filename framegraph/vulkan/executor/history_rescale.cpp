@@ -71,11 +71,11 @@ Error create_rescale_layouts(const Device& device, Kernel& kernel) {
 }
 
 Error find_rescale_kernel(State& state, const ExecutorInput& input, bool unsigned_components) {
-  std::shared_ptr<const Kernel>& wanted = state.rescaling.kernels[unsigned_components ? 1 : 0];
-  if (wanted != nullptr) return {};
+  std::shared_ptr<const Kernel>& stored = state.rescaling.kernels[unsigned_components ? 1 : 0];
+  if (stored != nullptr) return {};
   const RescaleCode code = rescale_code(unsigned_components);
-  if (input.kernel_store != nullptr) wanted = input.kernel_store->find(code.type, 0);
-  if (wanted != nullptr) return {};
+  if (input.kernel_store != nullptr) stored = input.kernel_store->find(code.type, 0);
+  if (stored != nullptr) return {};
   const auto added = std::make_shared<Kernel>(*state.device);
   added->type = code.type;
   added->push_bytes = sizeof(RescalePush);
@@ -83,8 +83,8 @@ Error find_rescale_kernel(State& state, const ExecutorInput& input, bool unsigne
   if (Error error =
           create_pipeline(*state.device, code.name, code.name, code.spirv, {input.pipeline_cache}, *added))
     return error;
-  wanted = added;
-  if (input.kernel_store != nullptr) input.kernel_store->add(wanted);
+  stored = added;
+  if (input.kernel_store != nullptr) input.kernel_store->add(stored);
   return {};
 }
 

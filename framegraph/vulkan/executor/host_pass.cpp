@@ -44,11 +44,12 @@ HostPort port_now(const State& state, const FrameInput& frame, const PortAccess&
     port.bytes = resource.bytes;
     return port;
   }
-  const uint32_t part = state.view_of_access[index];
+  const uint32_t first_view = state.view_of_access[index];
   port.image = instance.image;
-  port.view = part != no_index ? state.part_views[part + number - resource.first_instance].view
-              : storage        ? instance.first_mip
-                               : instance.all_mips;
+  port.view = first_view != no_index
+                  ? state.subresource_views[first_view + number - resource.first_instance].view
+              : storage ? instance.first_mip
+                        : instance.all_mips;
   return port;
 }
 

@@ -14,7 +14,7 @@ namespace {
 
 // Returns the placeholder format of an unbound port: the format that the port or shader declares,
 // else any format with the same numeric type. Some drivers recompile a kernel for another format.
-VkFormat stand_in_format(const Port& port, const ShaderBinding& binding) {
+VkFormat placeholder_format(const Port& port, const ShaderBinding& binding) {
   if (port.usage == Usage::sampled_image && !port.formats.empty() && !format_info(port.formats.front()).depth)
     return vk_format(port.formats.front());
   // values of SPIR-V specification, 3.11 Image Format
@@ -130,7 +130,7 @@ Error create_kernel(const KernelInput& input, PassTypeId id, Kernel& kernel) {
     if (type.ports[p].usage == Usage::indirect_arguments) kernel.indirect_port = p;
     for (const ShaderBinding& binding : reflection->bindings)
       if (binding.set == 0 && binding.binding == p)
-        kernel.ports[p].placeholder = stand_in_format(type.ports[p], binding);
+        kernel.ports[p].placeholder = placeholder_format(type.ports[p], binding);
     if (kernel.ports[p].placeholder == VK_FORMAT_UNDEFINED)
       kernel.ports[p].placeholder = VK_FORMAT_R16G16B16A16_SFLOAT;
   }

@@ -31,7 +31,7 @@ Error create_heaps(State& state) {
                       0,
                       VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT};
     const std::string subresource = fmt::format("{} heap {}", heap.persistent ? "history" : "transient", h);
-    if (Error error = take_memory(*state.device, memory.request, subresource, memory.block)) return error;
+    if (Error error = allocate_memory(*state.device, memory.request, subresource, memory.block)) return error;
   }
   return {};
 }
@@ -44,13 +44,12 @@ Error check_needs(const State& state, const Placement& placement, const VkMemory
                     placement.offset + placement.size <= heap.size &&
                     (heap.memory_type_bits & ~needs.memoryTypeBits) == 0;
   if (fits) return {};
-  return {
-      ErrorKind::argument, VK_SUCCESS,
-      fmt::format(
-          "'{}' needs {} bytes aligned to {} of memory types {:#x}; the plan provides {} bytes at {} of types "
-          "{:#x}: compile it with the profile of this device",
-          name, needs.size, needs.alignment, needs.memoryTypeBits, placement.size, placement.offset,
-          heap.memory_type_bits)};
+  return {ErrorKind::argument, VK_SUCCESS,
+          fmt::format("'{}' needs {} bytes aligned to {} of memory types {:#x}; the plan provides {} bytes "
+                      "at {} of types "
+                      "{:#x}: compile it with the profile of this device",
+                      name, needs.size, needs.alignment, needs.memoryTypeBits, placement.size,
+                      placement.offset, heap.memory_type_bits)};
 }
 
 Error create_view(const Device& device, const PlanResource& resource, VkImage image,
@@ -96,8 +95,9 @@ Error create_image(State& state, const PlanResource& resource, const Placement& 
   return create_view(device, resource, instance.image, range, name, instance.first_mip);
 }
 
-// Creates views for accesses to a part of an image. Accesses with equal ranges share their views.
-Error create_part_views(State& state, const Graph& graph) {
+// Creates views for accesses to some mips or layers of an image. Accesses with equal ranges share their
+// views.
+Error create_subresource_views(State& state, const Graph& graph) {
   constexpr Access viewed =
       access::shader_sampled_read | access::shader_storage_read | access::shader_storage_write;
   state.view_of_access.assign(state.plan.accesses.size(), no_index);
@@ -107,18 +107,19 @@ Error create_part_views(State& state, const Graph& graph) {
     if (resource.first_instance == no_instance || access.range == resource.whole() ||
         (access.access & viewed) == 0)
       continue;
-    for (size_t v = 0; v < state.part_views.size(); ++v)
-      if (state.part_views[v].instance == resource.first_instance &&
-          state.part_views[v].range == access.range)
+    for (size_t v = 0; v < state.subresource_views.size(); ++v)
+      if (state.subresource_views[v].instance == resource.first_instance &&
+          state.subresource_views[v].range == access.range)
         state.view_of_access[a] = static_cast<uint32_t>(v);
     if (state.view_of_access[a] != no_index) continue;
-    state.view_of_access[a] = static_cast<uint32_t>(state.part_views.size());
+    state.view_of_access[a] = static_cast<uint32_t>(state.subresource_views.size());
     for (uint32_t i = 0; i < resource.instance_count; ++i) {
-      PartView& part = state.part_views.emplace_back();
-      part.instance = resource.first_instance + i;
-      part.range = access.range;
-      if (Error error = create_view(*state.device, resource, state.instances[part.instance].image, part.range,
-                                    graph.resources[resource.declared.value].name, part.view))
+      SubresourceView& subresource_view = state.subresource_views.emplace_back();
+      subresource_view.instance = resource.first_instance + i;
+      subresource_view.range = access.range;
+      if (Error error = create_view(*state.device, resource, state.instances[subresource_view.instance].image,
+                                    subresource_view.range, graph.resources[resource.declared.value].name,
+                                    subresource_view.view))
         return error;
     }
   }
@@ -185,13 +186,13 @@ Error create_memory(State& state, const Graph& graph) {
       if (error) return error;
     }
   }
-  return create_part_views(state, graph);
+  return create_subresource_views(state, graph);
 }
 
 void destroy_memory(State& state) {
   const Device& device = *state.device;
-  for (const PartView& part : state.part_views)
-    device.vk.vkDestroyImageView(device.device, part.view, device.allocator);
+  for (const SubresourceView& subresource_view : state.subresource_views)
+    device.vk.vkDestroyImageView(device.device, subresource_view.view, device.allocator);
   for (const Instance& instance : state.instances) {
     device.vk.vkDestroyImageView(device.device, instance.all_mips, device.allocator);
     device.vk.vkDestroyImageView(device.device, instance.first_mip, device.allocator);

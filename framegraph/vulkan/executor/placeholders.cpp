@@ -7,14 +7,14 @@
 namespace dermis::vulkan {
 namespace {
 
-constexpr uint64_t stand_in_buffer_bytes = 16; // the largest element a buffer block can start with
+constexpr uint64_t placeholder_buffer_bytes = 16; // the largest element a buffer block can start with
 
 MemoryRequest request_of(const VkMemoryRequirements& needs) {
   return {MemoryPurpose::constants,           needs.memoryTypeBits, needs.size, needs.alignment, 0,
           VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT};
 }
 
-Error create_image(const Device& device, StandIn& placeholder) {
+Error create_image(const Device& device, Placeholder& placeholder) {
   VkImageCreateInfo info = image_create_info({});
   info.extent = {3, 3, 1}; // llvmpipe recompiles a kernel if the sides are powers of two
   info.format = placeholder.format;
@@ -29,7 +29,7 @@ Error create_image(const Device& device, StandIn& placeholder) {
               "placeholder image");
   VkMemoryRequirements needs{};
   device.vk.vkGetImageMemoryRequirements(device.device, placeholder.image, &needs);
-  if (Error error = take_memory(device, request_of(needs), "placeholder image", placeholder.memory))
+  if (Error error = allocate_memory(device, request_of(needs), "placeholder image", placeholder.memory))
     return error;
   const VkBindImageMemoryInfo bind{VK_STRUCTURE_TYPE_BIND_IMAGE_MEMORY_INFO, nullptr, placeholder.image,
                                    placeholder.memory.memory, placeholder.memory.offset};
@@ -46,9 +46,9 @@ Error create_image(const Device& device, StandIn& placeholder) {
   return call_error(result, "vkCreateImageView", "placeholder image");
 }
 
-Error create_buffer(const Device& device, StandIn& placeholder) {
+Error create_buffer(const Device& device, Placeholder& placeholder) {
   const VkBufferCreateInfo info = buffer_create_info(
-      {stand_in_buffer_bytes, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT});
+      {placeholder_buffer_bytes, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT});
   VkResult result = device.vk.vkCreateBuffer(device.device, &info, device.allocator, &placeholder.buffer);
   if (result != VK_SUCCESS) {
     placeholder.buffer = VK_NULL_HANDLE;
@@ -56,7 +56,7 @@ Error create_buffer(const Device& device, StandIn& placeholder) {
   }
   VkMemoryRequirements needs{};
   device.vk.vkGetBufferMemoryRequirements(device.device, placeholder.buffer, &needs);
-  if (Error error = take_memory(device, request_of(needs), "placeholder buffer", placeholder.memory))
+  if (Error error = allocate_memory(device, request_of(needs), "placeholder buffer", placeholder.memory))
     return error;
   const VkBindBufferMemoryInfo bind{VK_STRUCTURE_TYPE_BIND_BUFFER_MEMORY_INFO, nullptr, placeholder.buffer,
                                     placeholder.memory.memory, placeholder.memory.offset};
@@ -73,14 +73,14 @@ uint32_t placeholder_for(State& state, const KernelPort& port, bool writes) {
   const bool storage = buffer ? writes : *port.type == VK_DESCRIPTOR_TYPE_STORAGE_IMAGE;
   for (uint32_t i = 0; i < state.placeholders.size(); ++i)
     if (state.placeholders[i].format == format && state.placeholders[i].storage == storage) return i;
-  StandIn& added = state.placeholders.emplace_back();
+  Placeholder& added = state.placeholders.emplace_back();
   added.format = format;
   added.storage = storage;
   return static_cast<uint32_t>(state.placeholders.size() - 1);
 }
 
 Error create_placeholders(State& state) {
-  for (StandIn& placeholder : state.placeholders) {
+  for (Placeholder& placeholder : state.placeholders) {
     Error error = placeholder.format == VK_FORMAT_UNDEFINED ? create_buffer(*state.device, placeholder)
                                                             : create_image(*state.device, placeholder);
     if (error) return error;
@@ -90,7 +90,7 @@ Error create_placeholders(State& state) {
 
 void destroy_placeholders(State& state) {
   const Device& device = *state.device;
-  for (const StandIn& placeholder : state.placeholders) {
+  for (const Placeholder& placeholder : state.placeholders) {
     device.vk.vkDestroyImageView(device.device, placeholder.view, device.allocator);
     device.vk.vkDestroyImage(device.device, placeholder.image, device.allocator);
     device.vk.vkDestroyBuffer(device.device, placeholder.buffer, device.allocator);

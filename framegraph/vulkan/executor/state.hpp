@@ -34,14 +34,14 @@ struct Instance {
 };
 
 // View of a range of mips and layers of one instance.
-struct PartView {
+struct SubresourceView {
   uint32_t instance = 0;
   SubresourceRange range;
   VkImageView view = VK_NULL_HANDLE;
 };
 
 // Zeroed resource bound to unbound optional ports.
-struct StandIn {
+struct Placeholder {
   VkFormat format = VK_FORMAT_UNDEFINED; // undefined: a buffer
   bool storage = false;                  // image: storage usage; buffer: shaders may write it
   VkImage image = VK_NULL_HANDLE;
@@ -212,11 +212,11 @@ struct Executor::State {
   const HeapPool* heap_pool = nullptr; // may be null
   std::vector<HeapMemory> heaps;
   std::vector<Instance> instances;
-  std::vector<PartView> part_views;
-  // By plan access: first of its part_views, one per instance; no_index: the whole image, or no
+  std::vector<SubresourceView> subresource_views;
+  // By plan access: first of its subresource_views, one per instance; no_index: the whole image, or no
   // view.
   std::vector<uint32_t> view_of_access;
-  std::vector<StandIn> placeholders;
+  std::vector<Placeholder> placeholders;
   bool placeholders_ready = false;
   bool poison = false; // ExecutorInput::poison
   std::vector<std::shared_ptr<const Kernel>> kernels;

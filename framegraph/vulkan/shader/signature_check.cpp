@@ -15,12 +15,12 @@ struct Checker {
                     fmt::format(text, std::forward<Arguments>(arguments)...));
   }
 
-  void check_type(const ShaderBinding& binding, const std::string& place, BindingType wanted) {
+  void check_type(const ShaderBinding& binding, const std::string& place, BindingType expected) {
     if (binding.array)
       mismatch("{} is an array of descriptors in the shader ('{}'), but the signature binds one descriptor",
                place, binding.name);
-    else if (binding.type != wanted)
-      mismatch("{} is a {} in the signature and a {} ('{}') in the shader", place, binding_type_name(wanted),
+    else if (binding.type != expected)
+      mismatch("{} is a {} in the signature and a {} ('{}') in the shader", place, binding_type_name(expected),
                binding_type_name(binding.type), binding.name);
   }
 
@@ -34,14 +34,14 @@ struct Checker {
     if (!descriptor)
       return mismatch("{} has usage {} and therefore no descriptor, but the shader binds '{}' there", place,
                       usage_info(port.usage).name, binding.name);
-    const BindingType wanted = *descriptor == VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE   ? BindingType::sampled_image
+    const BindingType expected = *descriptor == VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE   ? BindingType::sampled_image
                                : *descriptor == VK_DESCRIPTOR_TYPE_STORAGE_IMAGE ? BindingType::storage_image
                                : *descriptor == VK_DESCRIPTOR_TYPE_ACCELERATION_STRUCTURE_KHR
                                    ? BindingType::acceleration_structure
                                    : BindingType::storage_buffer;
-    check_type(binding, place, wanted);
-    if (wanted == BindingType::storage_buffer || wanted == BindingType::acceleration_structure ||
-        binding.type != wanted || port.glsl_type.empty())
+    check_type(binding, place, expected);
+    if (expected == BindingType::storage_buffer || expected == BindingType::acceleration_structure ||
+        binding.type != expected || port.glsl_type.empty())
       return;
     const char first = port.glsl_type.front(); // utexture2D, itexture2D, texture2D
     const Numeric numeric = first == 'u'                          ? Numeric::unsigned_integer
@@ -70,13 +70,13 @@ struct Checker {
 
   void check_push_constants(const Reflection& reflection) {
     const auto& members = reflection.push_members;
-    const size_t wanted = 1 + type.settings.size();
+    const size_t expected = 1 + type.settings.size();
     if (!reflection.has_push_constants) {
       if (!type.settings.empty())
         mismatch("the shader has no push constants, but the signature has {} settings", type.settings.size());
       return;
     }
-    if (members.size() != wanted)
+    if (members.size() != expected)
       return mismatch("the shader has {} push constants, but the signature has the port mask and {} settings",
                       members.size(), type.settings.size());
     for (size_t i = 0; i < members.size(); ++i) {

@@ -1,6 +1,6 @@
 #include "tests/framegraph/vulkan/small_graph.hpp"
 
-#include "framegraph/model/image_part.hpp"
+#include "framegraph/model/image_range.hpp"
 
 #include <gtest/gtest.h>
 
@@ -152,7 +152,7 @@ PortBinding SmallGraph::binding(const PassType& type, const std::string& port,
   const size_t at = std::min(text.find("@-"), text.size());
   const size_t end = std::min(text.find_first_of("#["), at);
   PortBinding result;
-  result.part = parse_part(text.substr(end, at - end)).value_or(ImagePart{});
+  result.range = parse_image_range(text.substr(end, at - end)).value_or(ImageRange{});
   result.port = static_cast<uint32_t>(find_port(type, port));
   result.frames_back = at == text.size() ? 0 : static_cast<uint32_t>(std::stoul(text.substr(at + 2)));
   for (uint32_t i = 0; i < graph.resources.size(); ++i)

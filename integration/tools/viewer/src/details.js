@@ -7,7 +7,7 @@ function facts(pairs) {
   return h('dl', null, pairs.filter(([, value]) => value !== null && value !== undefined && value !== '').flatMap(([name, value]) => [h('dt', null, name), h('dd', null, value)]));
 }
 
-function part_text(range, resource) {
+function image_range_text(range, resource) {
   if (range.mips === (resource.mips ?? 1) && range.layers === (resource.layers ?? 1)) return '';
   const span = (first, count) => (count > 1 ? `${first}..${first + count - 1}` : `${first}`);
   return ` mips ${span(range.first_mip, range.mips)}, layers ${span(range.first_layer, range.layers)}`;
@@ -23,7 +23,7 @@ const chain = (names, kind, choose) => (names.length === 0 ? 'nobody' : names.ma
 function access_list(title, accesses, plan, choose) {
   return accesses.length > 0 && [h('h3', null, title), h('ul', null, accesses.map((access) => h('li', null,
     h('button', { class: 'link', click: () => choose('resource', access.name) }, access.name + (access.frames_back > 0 ? `@-${access.frames_back}` : '')),
-    ` as ${access.port}: ${access.usage.replaceAll('_', ' ')}${part_text(access.range, plan.resources[access.resource])}${access.when === 'always' ? '' : `, when ${access.when.replaceAll('_', ' ')}`}`)))];
+    ` as ${access.port}: ${access.usage.replaceAll('_', ' ')}${image_range_text(access.range, plan.resources[access.resource])}${access.when === 'always' ? '' : `, when ${access.when.replaceAll('_', ' ')}`}`)))];
 }
 
 export function pass_details(plan, declared, time, tools) {

@@ -10,11 +10,11 @@
 
 namespace dermis {
 
-// Returns the part; "" is the whole image. Returns nullopt if the text is malformed or exceeds the
+// Returns the range; "" is the whole image. Returns nullopt if the text is malformed or exceeds the
 // limits of images.
-std::optional<ImagePart> parse_part(std::string_view text);
+std::optional<ImageRange> parse_image_range(std::string_view text);
 
-// Returns the text that parse_part() reads.
-std::string part_text(const ImagePart& part);
+// Returns the text that parse_image_range() reads.
+std::string image_range_text(const ImageRange& range);
 
 } // namespace dermis

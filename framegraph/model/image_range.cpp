@@ -1,4 +1,4 @@
-#include "framegraph/model/image_part.hpp"
+#include "framegraph/model/image_range.hpp"
 
 #include "framegraph/text/limits.hpp"
 
@@ -37,31 +37,31 @@ std::string numbers_text(uint32_t first, uint32_t count) {
 
 } // namespace
 
-std::optional<ImagePart> parse_part(std::string_view text) {
-  ImagePart part;
+std::optional<ImageRange> parse_image_range(std::string_view text) {
+  ImageRange range;
   if (text.starts_with('#')) {
     const size_t end = std::min(text.find('['), text.size());
     const auto mips = parse_numbers(text.substr(1, end - 1), limits::image_mips);
     if (!mips) return std::nullopt;
-    part.first_mip = static_cast<uint8_t>(mips->first);
-    part.mips = static_cast<uint8_t>(mips->count);
+    range.first_mip = static_cast<uint8_t>(mips->first);
+    range.mips = static_cast<uint8_t>(mips->count);
     text.remove_prefix(end);
   }
-  if (text.empty()) return part;
+  if (text.empty()) return range;
   if (!text.starts_with('[') || !text.ends_with(']')) return std::nullopt;
   const auto layers = parse_numbers(text.substr(1, text.size() - 2), limits::image_layers);
   if (!layers) return std::nullopt;
-  part.first_layer = static_cast<uint16_t>(layers->first);
-  part.layers = static_cast<uint16_t>(layers->count);
-  return part;
+  range.first_layer = static_cast<uint16_t>(layers->first);
+  range.layers = static_cast<uint16_t>(layers->count);
+  return range;
 }
 
-std::string part_text(const ImagePart& part) {
+std::string image_range_text(const ImageRange& range) {
   std::string text;
-  if (part.first_mip != 0 || part.mips != 0)
-    text += fmt::format("#{}", numbers_text(part.first_mip, part.mips));
-  if (part.first_layer != 0 || part.layers != 0)
-    text += fmt::format("[{}]", numbers_text(part.first_layer, part.layers));
+  if (range.first_mip != 0 || range.mips != 0)
+    text += fmt::format("#{}", numbers_text(range.first_mip, range.mips));
+  if (range.first_layer != 0 || range.layers != 0)
+    text += fmt::format("[{}]", numbers_text(range.first_layer, range.layers));
   return text;
 }
 
