@@ -68,9 +68,12 @@ bool run_phases(const CompileInput& in, Report& report, Plan& plan, CompileScrat
   report_races(in, active, versions, report);
   if (report.failed()) return false;
 
-  // Keeps the passes that a bound export needs, and assigns them to queues.
-  const LiveSet& live = cull(in, sizes, active, subresources, versions, report, scratch.cull);
+  // Keeps the passes that a bound export needs. Only they have to bind all required ports.
+  const LiveSet& live = cull(in, sizes, active, versions, report, scratch.cull);
+  report_bind_errors(in, sizes, active, subresources, versions, live, report, scratch.bind_errors);
   if (report.failed()) return false;
+
+  // Assigns the passes to queues.
   const QueueAssignment& queues =
       assign_queues(in, sizes, subresources, versions, live, report, scratch.queues);
 

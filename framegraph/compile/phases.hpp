@@ -80,12 +80,20 @@ void report_races(const CompileInput& in, const Activation& active, const Versio
 struct CullScratch {
   LiveSet result;
   std::vector<uint64_t> unvisited; // bit set of live passes whose reads were not followed yet
-  std::vector<uint8_t> reported;   // by resource: one root cause gives one diagnostic
 };
 // Finds the passes that a bound export or a side effect needs.
 const LiveSet& cull(const CompileInput& in, const Sizes& sizes, const Activation& active,
-                    const Subresources& subresources, const Versions& versions, Report& report,
-                    CullScratch& scratch);
+                    const Versions& versions, Report& report, CullScratch& scratch);
+
+// ---- bind_errors.cpp ----
+
+struct BindErrorScratch {
+  std::vector<uint8_t> reported; // by resource: one root cause gives one diagnostic
+};
+// Reports ports of live passes and exports that resolve_versions could not bind.
+void report_bind_errors(const CompileInput& in, const Sizes& sizes, const Activation& active,
+                        const Subresources& subresources, const Versions& versions, const LiveSet& live,
+                        Report& report, BindErrorScratch& scratch);
 
 // ---- queues.cpp ----
 

@@ -13,6 +13,7 @@ struct CompileScratch {
   SubresourceScratch subresources;
   VersionScratch versions;
   CullScratch cull;
+  BindErrorScratch bind_errors;
   QueueScratch queues;
   UsageScratch usages;
   FormatScratch formats;

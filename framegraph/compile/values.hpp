@@ -174,7 +174,8 @@ inline uint32_t Subresources::index_of(const Use& use) const {
 // ---- LiveSet, QueueAssignment: see cull.cpp, queues.cpp ----
 
 struct LiveSet {
-  std::vector<uint8_t> passes; // by pass: runs in this plan
+  std::vector<uint8_t> passes;       // by pass: runs in this plan
+  std::vector<uint32_t> failed_uses; // into Versions::uses: of live passes, without a version
 
   bool contains(PassId pass) const { return passes[pass.value] != 0; }
 };
