@@ -34,7 +34,7 @@ struct Edit {
   EditTree& tree() const { return composer.tree; }
   SourceLocation target_place() const { return tree().documents[overlay].where(target_node); }
 
-  void refuse(std::string text, std::string suggestion, std::string_view path) const {
+  void reject(std::string text, std::string suggestion, std::string_view path) const {
     Diagnostic& one = composer.error(DiagnosticId::edit_target, target_place(), std::move(text));
     one.suggestion = std::move(suggestion);
     for (const Change& change : composer.changes) {
@@ -56,7 +56,7 @@ struct Edit {
     const bool list = passes.valid() && tree().kind(passes) == NodeKind::array;
     const int at = list ? find_pass(tree(), passes, name) : -1;
     if (at < 0)
-      refuse(fmt::format("{} names the pass '{}', which does not exist when this edit is applied", what,
+      reject(fmt::format("{} names the pass '{}', which does not exist when this edit is applied", what,
                          shown(name)),
              list ? did_you_mean(name, steps_into(tree(), passes)) : std::string(),
              fmt::format("/passes/{}", name));
@@ -83,7 +83,7 @@ struct Edit {
   ItemId parent_of(std::string_view path, const std::vector<std::string>& steps, uint32_t& depth,
                    bool make = false) const {
     if (steps.empty()) {
-      refuse(fmt::format("{} is '{}'; a path must begin with '/'", what, shown(path)), "", path);
+      reject(fmt::format("{} is '{}'; a path must begin with '/'", what, shown(path)), "", path);
       return {};
     }
     ItemId at{0};
@@ -119,7 +119,7 @@ struct Edit {
   }
 
   void missing(ItemId parent, std::string_view path, std::string_view step) const {
-    refuse(fmt::format("{} names '{}', but '{}' does not exist when this edit is applied", what, shown(path),
+    reject(fmt::format("{} names '{}', but '{}' does not exist when this edit is applied", what, shown(path),
                        shown(step)),
            did_you_mean(step, steps_into(tree(), parent)), path);
   }

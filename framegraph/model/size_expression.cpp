@@ -33,7 +33,7 @@ std::optional<SizeExpression> parse_text(const Document& document, NodeId node, 
                                          const std::function<ResourceId(std::string_view)>& find,
                                          Diagnostics& diagnostics) {
   const std::string_view text = document.text(node);
-  const auto refuse = [&](size_t at, std::string reason) {
+  const auto reject = [&](size_t at, std::string reason) {
     diagnostics.add(DiagnosticId::bad_size, where_in_string(document, node, at, diagnostics),
                     fmt::format("{}: {}", what, reason));
     return std::nullopt;
@@ -45,11 +45,11 @@ std::optional<SizeExpression> parse_text(const Document& document, NodeId node, 
   std::optional<int64_t> numerator = 1, denominator = 1;
   if (star < text.size())
     numerator = factor_of(text.substr(star + 1, std::min(slash, text.size()) - star - 1));
-  if (!numerator) return refuse(star + 1, range + " after '*'");
+  if (!numerator) return reject(star + 1, range + " after '*'");
   if (slash != std::string_view::npos) denominator = factor_of(text.substr(slash + 1));
-  if (!denominator) return refuse(slash + 1, range + " after '/'");
+  if (!denominator) return reject(slash + 1, range + " after '/'");
   const std::string_view base = trimmed(text.substr(0, base_end));
-  if (base.empty()) return refuse(0, "expected 'view' or the name of a resource");
+  if (base.empty()) return reject(0, "expected 'view' or the name of a resource");
   SizeExpression out;
   const int64_t divisor = std::gcd(*numerator, *denominator);
   out.x = out.y = {*numerator / divisor, *denominator / divisor};
@@ -57,7 +57,7 @@ std::optional<SizeExpression> parse_text(const Document& document, NodeId node, 
   out.base = SizeExpression::Base::resource;
   out.resource = find(base);
   if (!out.resource.valid()) return std::nullopt;
-  if (out.resource == owner) return refuse(0, "the size of a resource cannot refer to the resource itself");
+  if (out.resource == owner) return reject(0, "the size of a resource cannot refer to the resource itself");
   return out;
 }
 

@@ -113,29 +113,29 @@ std::optional<SavedPlan> read_plan(const std::string& name, std::string_view byt
                                    Diagnostics& diagnostics) {
   const SourceLocation where{{static_cast<uint32_t>(diagnostics.files.size())}, 0, 0, ""};
   diagnostics.files.push_back({name, ""});
-  const auto refuse = [&](const std::string& why) -> std::optional<SavedPlan> {
+  const auto reject = [&](const std::string& why) -> std::optional<SavedPlan> {
     diagnostics.add(DiagnosticId::plan_file, where, why);
     return std::nullopt;
   };
-  if (!is_plan_file(bytes)) return refuse(fmt::format("a saved plan must begin with {}", magic));
+  if (!is_plan_file(bytes)) return reject(fmt::format("a saved plan must begin with {}", magic));
   if (bytes.size() > limits::file_bytes)
-    return refuse(
+    return reject(
         fmt::format("the file has {} bytes; at most {} are accepted", bytes.size(), limits::file_bytes));
   serial::Reader reader(bytes.substr(magic.size()), magic.size());
   uint32_t version = 0;
   reader.number("version", version);
   if (reader.problem().empty() && version != plan_file_version)
-    return refuse(
+    return reject(
         fmt::format("the plan has version {}; this library reads version {}", version, plan_file_version));
   SavedPlan saved;
   serial::fields(reader, saved.key);
   serial::fields(reader, saved.names);
   serial::fields(reader, saved.plan);
   reader.expect_end();
-  if (!reader.problem().empty()) return refuse(reader.problem());
-  if (const std::string mismatch = first_mismatch(saved); !mismatch.empty()) return refuse(mismatch);
+  if (!reader.problem().empty()) return reject(reader.problem());
+  if (const std::string mismatch = first_mismatch(saved); !mismatch.empty()) return reject(mismatch);
   if (const std::vector<std::string> violations = verify_structure(saved.plan); !violations.empty())
-    return refuse(violations.front());
+    return reject(violations.front());
   return saved;
 }
 

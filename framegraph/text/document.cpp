@@ -121,7 +121,7 @@ SourceLocation where_in_string(const Document& document, NodeId id, size_t decod
 }
 
 std::optional<Document> read_document(const std::string& path, Diagnostics& diagnostics) {
-  const auto refuse = [&](DiagnosticId id, const std::string& text) {
+  const auto reject = [&](DiagnosticId id, const std::string& text) {
     diagnostics.files.push_back({path, ""});
     const FileId file{static_cast<uint32_t>(diagnostics.files.size() - 1)};
     diagnostics.add(id, {file, 0, 0, ""}, text);
@@ -130,25 +130,25 @@ std::optional<Document> read_document(const std::string& path, Diagnostics& diag
   std::error_code error;
   const std::filesystem::file_status status = std::filesystem::status(path, error);
   if (!std::filesystem::exists(status)) {
-    return refuse(DiagnosticId::file_unreadable,
+    return reject(DiagnosticId::file_unreadable,
                   error && error != std::errc::no_such_file_or_directory
                       ? fmt::format("cannot read the file: {}", error.message())
                       : "the file does not exist");
   }
   // A pipe or a device could deliver data without end.
   if (!std::filesystem::is_regular_file(status))
-    return refuse(DiagnosticId::file_unreadable, "not a regular file");
+    return reject(DiagnosticId::file_unreadable, "not a regular file");
   const uintmax_t size = std::filesystem::file_size(path, error);
   if (error)
-    return refuse(DiagnosticId::file_unreadable, fmt::format("cannot read the file: {}", error.message()));
+    return reject(DiagnosticId::file_unreadable, fmt::format("cannot read the file: {}", error.message()));
   if (size > limits::file_bytes) {
-    return refuse(DiagnosticId::limit_exceeded,
+    return reject(DiagnosticId::limit_exceeded,
                   fmt::format("the file has {} bytes; at most {} are read", size, limits::file_bytes));
   }
   std::string text(static_cast<size_t>(size), '\0');
   std::ifstream stream(path, std::ios::binary);
   if (!stream || (size > 0 && !stream.read(text.data(), static_cast<std::streamsize>(size)))) {
-    return refuse(DiagnosticId::file_unreadable, "the file cannot be opened or read to its end");
+    return reject(DiagnosticId::file_unreadable, "the file cannot be opened or read to its end");
   }
   return parse_document(path, std::move(text), diagnostics);
 }

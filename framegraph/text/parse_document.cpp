@@ -101,18 +101,18 @@ private:
     const std::string pointer = open_.empty() ? std::string() : document_.pointer(open_.back().node);
     return {document_.file, position.line, position.column, pointer};
   }
-  bool refuse(DiagnosticId id, TextPosition position, std::string text) {
+  bool reject(DiagnosticId id, TextPosition position, std::string text) {
     diagnostics_.add(id, at(position), std::move(text));
     failed_ = true;
     return false;
   }
   bool reject_integer() {
-    return refuse(DiagnosticId::integer_precision, cursor_.value_position(),
+    return reject(DiagnosticId::integer_precision, cursor_.value_position(),
                   fmt::format("the integer {} does not fit in 64 signed bits", shown_token(number_token())));
   }
   bool check_no_nul(std::string_view value) {
     if (value.find('\0') == std::string_view::npos) return true;
-    return refuse(DiagnosticId::syntax, cursor_.value_position(), "strings may not contain \\u0000");
+    return reject(DiagnosticId::syntax, cursor_.value_position(), "strings may not contain \\u0000");
   }
   std::string_view number_token() const {
     const std::string_view rest = text_.substr(cursor_.value_position().offset);
@@ -143,7 +143,7 @@ private:
 Node* NodeBuilder::add(NodeKind kind) {
   const TextPosition position = cursor_.value_position();
   if (document_.nodes.size() >= limits::nodes) {
-    refuse(DiagnosticId::limit_exceeded, position,
+    reject(DiagnosticId::limit_exceeded, position,
            fmt::format("the document has more than {} values", limits::nodes));
     return nullptr;
   }
@@ -176,7 +176,7 @@ Node* NodeBuilder::add(NodeKind kind) {
 bool NodeBuilder::key(string_t& value) {
   key_position_ = cursor_.value_position();
   if (value.size() > limits::key_bytes) {
-    return refuse(
+    return reject(
         DiagnosticId::limit_exceeded, key_position_,
         fmt::format("this key has {} bytes; at most {} are allowed", value.size(), limits::key_bytes));
   }
@@ -224,7 +224,7 @@ bool NodeBuilder::parse_error(size_t position, const std::string&,
   failed_ = true;
   if (cursor_.early_end() != EarlyEnd::none) return false; // the caller reports the limit
   if (exception.id == out_of_range_exception) {
-    return refuse(
+    return reject(
         DiagnosticId::out_of_range, cursor_.value_position(),
         fmt::format("the number {} is beyond the range of double precision", shown_token(number_token())));
   }
@@ -260,7 +260,7 @@ bool NodeBuilder::parse_error(size_t position, const std::string&,
   const size_t last = position == 0 ? 0 : position - 1;
   TextPosition place = locate(text_, last);
   if (unexpected && last < text_.size()) place = cursor_.token_position_before(position);
-  return refuse(
+  return reject(
       DiagnosticId::syntax, place,
       fmt::format("malformed {}: {}", where_in_grammar.empty() ? "JSON" : where_in_grammar, reason));
 }

@@ -102,11 +102,11 @@ dermis_result set_budget(dermis_graph_t& graph, const dermis_budget* given, derm
   if (diagnostics.has_errors()) return conclude(log, DERMIS_ERROR_CONFIG, std::move(diagnostics), report);
 
   const std::lock_guard changing(graph.changing);
-  const bool anew = tables.errors || tables.calibration;
+  const bool rebuild_tables = tables.errors || tables.calibration;
   std::vector<ViewTables> views;
   for_each_view(graph, [&](dermis_view_t& view) {
     const std::lock_guard lock(view.mutex);
-    if (anew) views.push_back(tables_of(view, tables));
+    if (rebuild_tables) views.push_back(tables_of(view, tables));
   });
   if (const dermis_result result = conclude(log, DERMIS_OK, std::move(diagnostics), report);
       result != DERMIS_OK)
@@ -114,7 +114,7 @@ dermis_result set_budget(dermis_graph_t& graph, const dermis_budget* given, derm
   size_t v = 0; // nothing fails from here on
   for_each_view(graph, [&](dermis_view_t& view) {
     const std::lock_guard lock(view.mutex);
-    if (anew) take_over(view, views[v++]);
+    if (rebuild_tables) take_over(view, views[v++]);
     view.chooser.budget_ms = static_cast<double>(budget.milliseconds);
     view.chooser.deterministic = (budget.flags & DERMIS_BUDGET_DETERMINISTIC) != 0;
   });
@@ -138,7 +138,7 @@ const char* miss_of(const FrameChoice& frame) {
   constexpr double tolerance = 1.15; // times the budget, as in dermis bench budget
   constexpr double changed_by = 0.1; // fraction of the tiles
   if (!frame.timed || frame.budget_ms <= 0 || frame.measured_ms <= tolerance * frame.budget_ms) return "";
-  if (frame.decision.why == choice::ReasonKind::nothing_fits) return "no outcome fits the budget";
+  if (frame.decision.why == choice::ReasonKind::nothing_fits) return "no configuration fits the budget";
   const double expected = static_cast<double>(frame.expected_tiles);
   const double seen = static_cast<double>(uint64_t{frame.counters.scattering_tiles} +
                                           frame.counters.copied_tiles + frame.counters.uniform_tiles);

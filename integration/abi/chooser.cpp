@@ -115,9 +115,9 @@ void observe_frame(Chooser& chooser, CompiledGraph& compiled_graph, FrameChoice&
   chooser.newest = frame;
   if (!counted || frame.left_out) return; // no tile was classified
   if (configuration.takes_samples && frame.counters.scattering_tiles > 0)
-    found_units(chooser.wanted, subsurface::mean_d_px(frame.counters),
-                double(frame.counters.sample_demand) / frame.counters.scattering_tiles);
-  follow(chooser.trend, frame.frame_index, listed_tiles(frame.counters));
+    record_units(chooser.demand, subsurface::mean_d_px(frame.counters),
+                 double(frame.counters.sample_demand) / frame.counters.scattering_tiles);
+  update_growth(chooser.tile_growth, frame.frame_index, listed_tiles(frame.counters));
   chooser.counted = true;
   chooser.counters = frame.counters;
 }
@@ -167,7 +167,7 @@ FrameChoice choose(const Chooser& chooser, const CompiledGraph& compiled_graph, 
   uint64_t scattering = view_tiles;
   if (chooser.counted) {
     load = load_of(chooser.counters, rectangle);
-    const double growth = growth_until(chooser.trend, frame_index);
+    const double growth = growth_until(chooser.tile_growth, frame_index);
     const auto grown = [&](uint64_t tiles) {
       return std::min(view_tiles, static_cast<uint64_t>(std::lround(growth * double(tiles))));
     };
@@ -177,21 +177,21 @@ FrameChoice choose(const Chooser& chooser, const CompiledGraph& compiled_graph, 
     if (scattering > 0) d_px = subsurface::mean_d_px(chooser.counters);
     through = subsurface::transmitted_rms(chooser.counters);
   }
-  const auto wanted = static_cast<uint32_t>(expected_units(chooser.wanted, d_px) * double(scattering));
+  const auto demand = static_cast<uint32_t>(expected_units(chooser.demand, d_px) * double(scattering));
   const double filled_ms = chooser.budget_ms / choice::entry_margin;
   for (size_t i = 0; i < compiled_graph.configurations.size(); ++i) {
     const choice::Configuration& configuration = compiled_graph.configurations[i];
     load.sample_units = 0;
     if (configuration.takes_samples)
       load.sample_units = chooser.budget_ms > 0
-                              ? std::min(wanted, units_within(configuration, chooser.costs, load, filled_ms,
+                              ? std::min(demand, units_within(configuration, chooser.costs, load, filled_ms,
                                                               chooser.deterministic))
-                              : wanted;
+                              : demand;
     const choice::Estimate cost = chooser.deterministic
                                       ? calibrated_estimate(configuration, chooser.costs, load)
                                       : estimate(configuration, chooser.costs, load);
     const double rmse =
-        expected_rmse(chooser.errors, configuration, d_px, static_cast<uint32_t>(load.sample_units), wanted);
+        expected_rmse(chooser.errors, configuration, d_px, static_cast<uint32_t>(load.sample_units), demand);
     const double seen = rmse * error_factor(chooser.found, configuration.technique);
     const double missed = missed_rmse(chooser.errors, configuration.technique, through);
     forecasts[i] = {cost.ms, cost.spread_ms, std::hypot(seen, missed), missed};

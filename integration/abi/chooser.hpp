@@ -64,9 +64,9 @@ struct Chooser {
   uint64_t decided_for = 0;           // CompiledGraph::serial that `state` belongs to
   subsurface::FrameCounters counters; // of the newest observed frame
   bool counted = false;
-  choice::TileGrowth trend; // of tiles with subsurface
+  choice::TileGrowth tile_growth; // of tiles with subsurface
   // of tiles that get samples individually
-  choice::SampleDemand wanted;
+  choice::SampleDemand demand;
   std::array<FrameChoice, vulkan::max_frames_in_flight + 2> frames; // by frame_index
   FrameChoice newest;                                               // the newest observed frame
   // number of programs adopted so far
@@ -94,6 +94,6 @@ FrameChoice choose(const Chooser& chooser, const CompiledGraph& compiled_graph, 
                    std::span<choice::Forecast> forecasts, choice::DecisionState& state) noexcept;
 void remember(Chooser& chooser, const FrameChoice& frame, const choice::DecisionState& state) noexcept;
 // Forgets a frame that was never submitted, so that nothing is learned from it.
-void forget(Chooser& chooser, uint64_t frame_index) noexcept;
+void discard_prediction(Chooser& chooser, uint64_t frame_index) noexcept;
 
 } // namespace dermis::abi

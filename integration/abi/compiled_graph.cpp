@@ -168,7 +168,7 @@ std::optional<CompiledPlan> compile_without_bounds(const CompileInput& input,
 
 } // namespace
 
-dermis_result refused(dermis_context_t& context, const vulkan::Error& error, Diagnostics& diagnostics) {
+dermis_result rejected(dermis_context_t& context, const vulkan::Error& error, Diagnostics& diagnostics) {
   diagnostics.add(diagnostic_of(error.kind), {}, error.text);
   if (error.kind == vulkan::ErrorKind::device_lost) context.lost = true;
   // The library built the executor's input, so an argument error is a defect of the library.
@@ -286,7 +286,7 @@ dermis_result build_compiled_graph(dermis_context_t& context, CompiledGraphInput
   if (!compile_missing(input.shaders, candidate->graph, context.pass_types, diagnostics))
     return DERMIS_ERROR_SHADER;
   if (const vulkan::Error error = make_executors(context, input, history, *candidate->kernels, *candidate))
-    return refused(context, error, diagnostics);
+    return rejected(context, error, diagnostics);
   compiled_graph = std::move(candidate);
   return DERMIS_OK;
 }
@@ -316,7 +316,7 @@ dermis_result copy_compiled_graph(dermis_context_t& context, CompiledGraphInput&
   if (of.kernels == nullptr) candidate->kernels = std::make_unique<vulkan::KernelStore>(context.kernels);
   vulkan::KernelStore& kernels = of.kernels != nullptr ? *of.kernels : *candidate->kernels;
   if (const vulkan::Error error = make_executors(context, input, history, kernels, *candidate))
-    return refused(context, error, diagnostics);
+    return rejected(context, error, diagnostics);
   compiled_graph = std::move(candidate);
   return DERMIS_OK;
 }

@@ -128,7 +128,7 @@ dermis_result build_compiled_graph(dermis_context_t& context, CompiledGraphInput
                                    Diagnostics& diagnostics, std::shared_ptr<CompiledGraph>& compiled_graph);
 
 // Adds the error to `diagnostics` and returns its result.
-dermis_result refused(dermis_context_t& context, const vulkan::Error& error, Diagnostics& diagnostics);
+dermis_result rejected(dermis_context_t& context, const vulkan::Error& error, Diagnostics& diagnostics);
 
 // Fits the tables of input.profiles that passes `use`, and copies them to the device.
 vulkan::Error make_tables(dermis_context_t& context, const subsurface::TableUse& use,

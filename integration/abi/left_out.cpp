@@ -114,10 +114,10 @@ std::span<const PlanAccess> accesses_of(const Plan& plan, size_t pass) {
   return std::span(plan.accesses).subspan(plan.passes[pass].first_access, plan.passes[pass].access_count);
 }
 
-bool writes_wanted(const Plan& plan, size_t pass, const std::vector<uint8_t>& wanted) {
+bool writes_needed(const Plan& plan, size_t pass, const std::vector<uint8_t>& needed) {
   const auto accesses = accesses_of(plan, pass);
   return std::any_of(accesses.begin(), accesses.end(), [&](const PlanAccess& access) {
-    return (access.access & all_write_access) != 0 && wanted[access.resource] != 0;
+    return (access.access & all_write_access) != 0 && needed[access.resource] != 0;
   });
 }
 
@@ -150,19 +150,19 @@ void turn_scattering_off(Graph& graph, const PassTypeRegistry& pass_types) {
 }
 
 std::vector<uint8_t> left_out_without_bounds(const PassTypeRegistry& pass_types, const Plan& plan) {
-  std::vector<uint8_t> left_out(plan.passes.size(), 1), wanted(plan.resources.size(), 0);
+  std::vector<uint8_t> left_out(plan.passes.size(), 1), needed(plan.resources.size(), 0);
   for (size_t r = 0; r < plan.resources.size(); ++r)
-    wanted[r] = plan.resources[r].slot >= 0;
+    needed[r] = plan.resources[r].slot >= 0;
   for (bool again = true; again;) { // passes that feed the writers of a history are needed too
     again = false;
     for (size_t p = plan.passes.size(); p-- > 0;) {
       const PassType& type = pass_types[plan.passes[p].type];
       if (left_out[p] == 0 || type.serves_scattering) continue;
-      if (!type.side_effects && !writes_wanted(plan, p, wanted)) continue;
+      if (!type.side_effects && !writes_needed(plan, p, needed)) continue;
       left_out[p] = 0;
       again = true;
       for (const PlanAccess& access : accesses_of(plan, p))
-        wanted[access.resource] = 1;
+        needed[access.resource] = 1;
     }
   }
   return left_out;

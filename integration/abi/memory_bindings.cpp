@@ -13,7 +13,7 @@ struct Place { // identifies one binding in messages
 };
 
 template <class... Arguments>
-dermis_result refuse(const Place& place, fmt::format_string<Arguments...> text, Arguments&&... arguments) {
+dermis_result reject(const Place& place, fmt::format_string<Arguments...> text, Arguments&&... arguments) {
   std::array<char, failure_text_size> what;
   const auto end = fmt::format_to_n(what.data(), what.size(), text, std::forward<Arguments>(arguments)...);
   return bad_argument(place.log, "{}: {}[{}]{}", place.function, place.array, place.index,
@@ -23,13 +23,13 @@ dermis_result refuse(const Place& place, fmt::format_string<Arguments...> text, 
 dermis_result check_state(const dermis_view_t& view, const Place& place, const Slot& slot, const char* which,
                           const dermis_image_state& state) {
   if (state.access != 0 && state.stages == 0)
-    return refuse(place, ".{} ('{}') has access {:#x} but no stages", which, slot.name, state.access);
+    return reject(place, ".{} ('{}') has access {:#x} but no stages", which, slot.name, state.access);
   if (state.layout != VK_IMAGE_LAYOUT_UNDEFINED)
-    return refuse(place, ".{}.layout ('{}') is {}, expected UNDEFINED: only images have layouts", which,
+    return reject(place, ".{}.layout ('{}') is {}, expected UNDEFINED: only images have layouts", which,
                   slot.name, static_cast<uint32_t>(state.layout));
   FamilyText text;
   const std::string_view problem = family_problem(*view.context, slot.type, state, text);
-  if (!problem.empty()) return refuse(place, ".{} ('{}'): {}", which, slot.name, problem);
+  if (!problem.empty()) return reject(place, ".{} ('{}'): {}", which, slot.name, problem);
   return DERMIS_OK;
 }
 
@@ -39,10 +39,10 @@ const Slot* find_slot(const Place& place, const CompiledGraph& compiled_graph, u
   result = DERMIS_OK;
   const Slot& slot = compiled_graph.slots[number];
   if (slot.type != type)
-    result = refuse(place, " binds {} to slot {} ('{}'), which takes {}", type_phrase(type), number,
+    result = reject(place, " binds {} to slot {} ('{}'), which takes {}", type_phrase(type), number,
                     slot.name, type_phrase(slot.type));
   else if (slot.bound && bound_before)
-    result = refuse(place, " binds slot {} ('{}') a second time", number, slot.name);
+    result = reject(place, " binds slot {} ('{}') a second time", number, slot.name);
   return result == DERMIS_OK && slot.bound ? &slot : nullptr;
 }
 
@@ -66,10 +66,10 @@ dermis_result for_each(const Place& array, const CompiledGraph& compiled_graph, 
                   "{}: {}[{}] has fields beyond those this library knows that are not zero", array.function,
                   array.array, i);
     if (read != SizedRead::ok)
-      return refuse(place, ".struct_size is {}, expected {} as in the first, at least {}: use its INIT",
+      return reject(place, ".struct_size is {}, expected {} as in the first, at least {}: use its INIT",
                     stated_size(from), step, sizeof(T));
     if (item.slot >= compiled_graph.slots.size())
-      return refuse(place, ".slot is {}, the graph has slots 0..{}", item.slot,
+      return reject(place, ".slot is {}, the graph has slots 0..{}", item.slot,
                     static_cast<int64_t>(compiled_graph.slots.size()) - 1);
     if (const dermis_result result = use(place, item); result != DERMIS_OK) return result;
   }
@@ -80,18 +80,18 @@ dermis_result check_buffer(const dermis_view_t& view, const Place& place, const 
                            const dermis_buffer_binding& binding) {
   const VkPhysicalDeviceLimits& limits = view.context->device.properties.limits;
   const uint64_t alignment = std::max<uint64_t>(limits.minStorageBufferOffsetAlignment, 1);
-  if (binding.buffer == VK_NULL_HANDLE) return refuse(place, ".buffer ('{}') is null", slot.name);
+  if (binding.buffer == VK_NULL_HANDLE) return reject(place, ".buffer ('{}') is null", slot.name);
   if (binding.offset % alignment != 0)
-    return refuse(place, ".offset ('{}') is {}, expected a multiple of {}", slot.name, binding.offset,
+    return reject(place, ".offset ('{}') is {}, expected a multiple of {}", slot.name, binding.offset,
                   alignment);
   if (binding.bytes < slot.bytes)
-    return refuse(place, ".bytes ('{}') is {}, the graph needs at least {}", slot.name, binding.bytes,
+    return reject(place, ".bytes ('{}') is {}, the graph needs at least {}", slot.name, binding.bytes,
                   slot.bytes);
   if (binding.bytes % slot.stride != 0)
-    return refuse(place, ".bytes ('{}') is {}, no multiple of the {} bytes of an element", slot.name,
+    return reject(place, ".bytes ('{}') is {}, no multiple of the {} bytes of an element", slot.name,
                   binding.bytes, slot.stride);
   if (binding.bytes > limits.maxStorageBufferRange)
-    return refuse(place, ".bytes ('{}') is {}, the device binds at most {}", slot.name, binding.bytes,
+    return reject(place, ".bytes ('{}') is {}, the device binds at most {}", slot.name, binding.bytes,
                   limits.maxStorageBufferRange);
   return DERMIS_OK;
 }
@@ -183,7 +183,7 @@ dermis_result check_memory_bindings(dermis_view_t& view, CompiledGraph& compiled
     const Slot* slot = find_slot(place, compiled_graph, binding.slot, ResourceType::acceleration_structure,
                                  bound.structure != VK_NULL_HANDLE, checked);
     if (slot == nullptr) return checked;
-    if (binding.structure == VK_NULL_HANDLE) return refuse(place, ".structure ('{}') is null", slot->name);
+    if (binding.structure == VK_NULL_HANDLE) return reject(place, ".structure ('{}') is null", slot->name);
     bound = {binding.structure, host_state(binding.before), host_state(binding.after)};
     return check_states(view, place, *slot, binding.before, binding.after);
   };

@@ -39,7 +39,7 @@ dermis_result replace_tables(dermis_graph_t& graph, CompiledGraphInput&& input, 
   dermis_context_t& context = *graph.context;
   Diagnostics diagnostics;
   if (const vulkan::Error error = make_tables(context, graph.input.tables->use, input)) {
-    const dermis_result result = refused(context, error, diagnostics);
+    const dermis_result result = rejected(context, error, diagnostics);
     return conclude(context.log, result, std::move(diagnostics), report);
   }
   {

@@ -51,7 +51,7 @@ dermis_result discard(dermis_view_t& view, const char* function, uint64_t frame_
   compiled_graph.last_jitter_px = recorded.last_jitter_px;
   compiled_graph.configuration = recorded.configuration;
   compiled_graph.plan = recorded.compiled_graph_plan;
-  forget(view.chooser, frame_index);
+  discard_prediction(view.chooser, frame_index);
   view.chooser.state = recorded.decision;
   view.chooser.decided_for = recorded.decided_for;
   if (recorded.took_over) {

@@ -42,7 +42,7 @@ std::optional<SettingValue> read_setting(const SettingDeclaration& declared, con
   if (!document) return std::nullopt;
   const Node& node = (*document)[document->root()];
   SettingValue value{declared.type, 0, 0.0};
-  const auto refuse = [&](DiagnosticId id, const std::string& expected) -> std::optional<SettingValue> {
+  const auto reject = [&](DiagnosticId id, const std::string& expected) -> std::optional<SettingValue> {
     diagnostics.add(id, document->where(document->root()),
                     fmt::format("setting '{}' expects {}, found {}", declared.name, expected, json));
     return std::nullopt;
@@ -57,12 +57,12 @@ std::optional<SettingValue> read_setting(const SettingDeclaration& declared, con
   case SettingType::integer:
     if (node.kind != NodeKind::integer) break;
     if (!in_range(declared, static_cast<double>(node.integer)))
-      return refuse(DiagnosticId::out_of_range, range);
+      return reject(DiagnosticId::out_of_range, range);
     value.integer = node.integer;
     return value;
   case SettingType::real:
     if (node.kind != NodeKind::integer && node.kind != NodeKind::real) break;
-    if (!in_range(declared, node.real)) return refuse(DiagnosticId::out_of_range, range);
+    if (!in_range(declared, node.real)) return reject(DiagnosticId::out_of_range, range);
     value.real = node.real;
     return value;
   case SettingType::enumeration:
@@ -73,9 +73,9 @@ std::optional<SettingValue> read_setting(const SettingDeclaration& declared, con
         value.integer = static_cast<int64_t>(i);
         return value;
       }
-    return refuse(DiagnosticId::invalid_value, "one of " + option_list(declared));
+    return reject(DiagnosticId::invalid_value, "one of " + option_list(declared));
   }
-  return refuse(DiagnosticId::wrong_type, type_name(declared.type));
+  return reject(DiagnosticId::wrong_type, type_name(declared.type));
 }
 
 } // namespace dermis::abi

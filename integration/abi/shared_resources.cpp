@@ -46,26 +46,26 @@ bool overlap(const vulkan::HostBuffer& x, const vulkan::HostBuffer& y) {
 
 dermis_result check_pair(const dermis_view_t& view, const CompiledGraph& compiled_graph, size_t i, size_t j) {
   const Slot &a = compiled_graph.slots[i], &b = compiled_graph.slots[j];
-  const auto refuse = [&](const char* what, const char* rule) {
+  const auto reject = [&](const char* what, const char* rule) {
     return bad_argument(view.context->log, "{}: slots '{}' and '{}' are bound to the same {}; {}",
                         "dermis_view_record", a.name, b.name, what, rule);
   };
   const vulkan::HostImage &image = compiled_graph.images[i], &other_image = compiled_graph.images[j];
   if (image.image != VK_NULL_HANDLE && overlap(a, image, b, other_image) &&
       !may_share(a, image, b, other_image))
-    return refuse("aspect and layers of an image",
+    return reject("aspect and layers of an image",
                   "two slots share them only if the graph writes neither, their states are equal without a "
                   "queue family transfer, and both layouts are dermis_slot.best_layout");
   const vulkan::HostBuffer &buffer = compiled_graph.buffers[i], &other_buffer = compiled_graph.buffers[j];
   if (buffer.buffer != VK_NULL_HANDLE && overlap(buffer, other_buffer) &&
       !only_read(a, buffer, b, other_buffer))
-    return refuse("bytes of a buffer", "two slots share them only if the graph writes neither and their "
+    return reject("bytes of a buffer", "two slots share them only if the graph writes neither and their "
                                        "states are equal without a queue family transfer");
   const vulkan::HostStructure &structure = compiled_graph.structures[i],
                               &other = compiled_graph.structures[j];
   if (structure.structure != VK_NULL_HANDLE && structure.structure == other.structure &&
       !only_read(a, structure, b, other))
-    return refuse("acceleration structure", "two slots share it only if their states are equal");
+    return reject("acceleration structure", "two slots share it only if their states are equal");
   return DERMIS_OK;
 }
 

@@ -54,14 +54,14 @@ Layout first_layout(const Plan& plan, uint32_t resource) {
   return Layout::undefined;
 }
 
-struct Touch {
+struct SlotAccess {
   bool read = false, written = false;
 };
 
 // Returns how the plan uses the host's contents: `read` if the first pass that accesses them reads
 // them.
-Touch touch(const Plan& plan, uint32_t resource) {
-  Touch result;
+SlotAccess access_of(const Plan& plan, uint32_t resource) {
+  SlotAccess result;
   for (const PlanPass& pass : plan.passes) {
     bool reads = false, writes = false;
     for (uint32_t i = 0; i < pass.access_count; ++i) {
@@ -122,9 +122,9 @@ std::vector<Slot> make_slots(const Graph& graph, const Plan& plan) {
       slot.width = resource.width;
       slot.height = resource.height;
       slot.first_layout = first_layout(plan, r);
-      const Touch touched = touch(plan, r);
-      slot.read = touched.read;
-      slot.written = touched.written;
+      const SlotAccess slot_access = access_of(plan, r);
+      slot.read = slot_access.read;
+      slot.written = slot_access.written;
     }
     slots.push_back(std::move(slot));
   }

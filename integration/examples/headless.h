@@ -83,12 +83,12 @@ static headless headless_create(void) {
   return host;
 }
 
-static uint32_t headless_memory_type(const headless* host, uint32_t allowed, VkMemoryPropertyFlags wanted) {
+static uint32_t headless_memory_type(const headless* host, uint32_t allowed, VkMemoryPropertyFlags required) {
   VkPhysicalDeviceMemoryProperties properties;
   uint32_t i;
   vkGetPhysicalDeviceMemoryProperties(host->gpu, &properties);
   for (i = 0; i < properties.memoryTypeCount; ++i)
-    if ((allowed & (1u << i)) && (properties.memoryTypes[i].propertyFlags & wanted) == wanted) return i;
+    if ((allowed & (1u << i)) && (properties.memoryTypes[i].propertyFlags & required) == required) return i;
   headless_die("no memory type", "");
   return 0;
 }

@@ -26,7 +26,7 @@ enum class ReasonKind : uint8_t {
 };
 
 // Factor on the bound of an configuration that must fit the budget before a switch to the configuration.
-// Outcomes that fill a budget with samples leave the same margin, so that their own samples neither
+// Configurations that fill a budget with samples leave the same margin, so that their own samples neither
 // prevent a switch to them nor force a switch away.
 inline constexpr double entry_margin = 1.05;
 

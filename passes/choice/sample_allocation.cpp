@@ -34,7 +34,7 @@ SampleAllocation allocate_samples(std::span<const uint32_t> tile_errors, std::sp
 
   SampleAllocation out;
   for (const uint32_t cost : cost_of_bin)
-    out.wanted += cost;
+    out.demand += cost;
   int32_t last_bin = static_cast<int32_t>(allocation_bins) - 1;
   uint32_t left = units;
   for (; last_bin >= 0 && cost_of_bin[static_cast<size_t>(last_bin)] <= left; --last_bin)

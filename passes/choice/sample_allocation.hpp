@@ -35,7 +35,7 @@ uint32_t step_bin(uint32_t tile_error, int k, uint32_t before);
 struct SampleAllocation {
   std::vector<uint32_t> steps; // by tile
   uint32_t units = 0;          // units spent
-  uint32_t wanted = 0;         // units that all tiles would take
+  uint32_t demand = 0;         // units that all tiles would take
 };
 // Allocates samples. `tile_errors`: by tile, row by row. `before`: steps of the frame before by
 // tile, or empty. Spends at most `units`.

@@ -19,7 +19,7 @@ struct SampleDemand {
 };
 
 // Record or return the units per tile of a frame with this d. d_px > 0.
-void found_units(SampleDemand& wanted, double d_px, double units_per_tile);
-double expected_units(const SampleDemand& wanted, double d_px);
+void record_units(SampleDemand& demand, double d_px, double units_per_tile);
+double expected_units(const SampleDemand& demand, double d_px);
 
 } // namespace dermis::choice

@@ -17,10 +17,10 @@ inline constexpr double max_growth = 1.5;
 
 // Adds the count `tiles` of tiles with subsurface in `frame`, which must be newer than earlier
 // frames. Growth between three counts is expected to continue; a cut grows only once and is not.
-void follow(TileGrowth& trend, uint64_t frame, uint64_t tiles);
+void update_growth(TileGrowth& growth_estimate, uint64_t frame, uint64_t tiles);
 
 // Returns the expected factor on the last count in `frame`: 1 .. max_growth^2. Never below 1,
 // because an overestimate of time is harmless.
-double growth_until(const TileGrowth& trend, uint64_t frame);
+double growth_until(const TileGrowth& growth_estimate, uint64_t frame);
 
 } // namespace dermis::choice

@@ -83,19 +83,19 @@ std::array<double, N> solve_non_negative(const NormalEquations<N>& equations,
     if (best == N) break;
     used[best] = true;
     for (size_t inner = 0; inner <= N; ++inner) {
-      const std::array<double, N> wanted = solve_some(equations, right, used);
+      const std::array<double, N> solution = solve_some(equations, right, used);
       double step = 1;
       size_t blocking = N;
       for (size_t i = 0; i < N; ++i)
-        if (used[i] && wanted[i] <= 0) {
-          const double reach = x[i] > wanted[i] ? x[i] / (x[i] - wanted[i]) : 0.0;
+        if (used[i] && solution[i] <= 0) {
+          const double reach = x[i] > solution[i] ? x[i] / (x[i] - solution[i]) : 0.0;
           if (reach < step || blocking == N) {
             step = std::min(step, reach);
             blocking = i;
           }
         }
       for (size_t i = 0; i < N; ++i)
-        x[i] += step * (wanted[i] - x[i]);
+        x[i] += step * (solution[i] - x[i]);
       if (blocking == N) break;
       for (size_t i = 0; i < N; ++i)
         if (used[i] && (i == blocking || x[i] <= 0)) {

@@ -29,7 +29,7 @@ constexpr std::string_view global_light_doc =
 
 constexpr Port place = port::sampled("place", place_doc, place_formats);
 
-constexpr Port brightness_ports[] = {
+constexpr Port global_light_ports[] = {
     port::sap_surface("surface"),
     port::sap_scattered,
     port::velocity,
@@ -50,7 +50,7 @@ constexpr auto residual_ports =
 constexpr PassTypeSetting samples =
     setting::samples(16, 1, "number of samples beyond the direct radius, where confidence is low");
 
-constexpr PassTypeSetting brightness_settings[] = {
+constexpr PassTypeSetting global_light_settings[] = {
     setting::per_frame(setting::real("tolerance", 0.06, 0.001, 100, "",
                                      "minimum change of the logarithm of a surface's light, relative to the "
                                      "global change, that counts as a change")),
@@ -93,8 +93,8 @@ const PassType global_light_change_type{
     .name = "subsurface.global_light_change",
     .shader = "papers/subsurface_global_light_change",
     .doc = "Estimates the global change in brightness, to distinguish flashing light from a different light.",
-    .ports = brightness_ports,
-    .settings = brightness_settings,
+    .ports = global_light_ports,
+    .settings = global_light_settings,
     .dispatch = single_group,
 };
 

@@ -9,7 +9,7 @@ namespace {
 constexpr PassTypeSetting below = setting::per_frame(
     setting::real("below", 0.8, 0, 2, "", "confidence below which a pixel may be sampled"));
 
-constexpr Port doubt_ports[] = {
+constexpr Port tile_error_ports[] = {
     port::sap_scattered,
     port::optional(port::sampled("light",
                                  "light before scattering: light that scattering did not change counts less; "
@@ -21,9 +21,9 @@ constexpr Port doubt_ports[] = {
     port::arguments,
     port::writer_of(port::tile_errors),
 };
-constexpr PassTypeSetting doubt_settings[] = {below};
+constexpr PassTypeSetting tile_error_settings[] = {below};
 
-constexpr Port allot_ports[] = {
+constexpr Port allocate_samples_ports[] = {
     port::classes,
     port::tile_errors,
     port::optional(port::read_buffer("before", "uint", "samples_per_tile of the previous frame")),
@@ -32,11 +32,11 @@ constexpr Port allot_ports[] = {
     port::writer_of(port::arguments),
 };
 
-constexpr auto mend_ports =
+constexpr auto tile_refine_ports =
     join(port::sap_levels,
          std::array{port::classes, port::samples_per_tile, port::tiles, port::arguments,
                     port::updated("scattered", "rgb: scattered light; a: confidence; refined in place")});
-constexpr PassTypeSetting mend_settings[] = {
+constexpr PassTypeSetting tile_refine_settings[] = {
     setting::lod_bias(-1.5),
     below,
     setting::sample_weight,
@@ -49,8 +49,8 @@ const PassType tile_error_estimate_type{
     .shader = "sap/subsurface_tile_error_estimate",
     .doc = "Estimates the error of each tile: the confidence that the pyramid lacks, times light and "
            "importance.",
-    .ports = doubt_ports,
-    .settings = doubt_settings,
+    .ports = tile_error_ports,
+    .settings = tile_error_settings,
     .dispatch = over_tiles,
 };
 
@@ -59,7 +59,7 @@ const PassType allocate_samples_type{
     .shader = "sap/subsurface_allocate_samples",
     .doc = "Allocates samples to tiles in the order of error reduction per cost, until the frame's budget is "
            "spent.",
-    .ports = allot_ports,
+    .ports = allocate_samples_ports,
     .settings = {},
     .dispatch = single_group,
 };
@@ -68,8 +68,8 @@ const PassType tile_refine_type{
     .name = "subsurface.tile_refine",
     .shader = "sap/subsurface_tile_refine",
     .doc = "Blends samples into the pyramid's light in tiles that have samples.",
-    .ports = mend_ports,
-    .settings = mend_settings,
+    .ports = tile_refine_ports,
+    .settings = tile_refine_settings,
     .dispatch = over_tiles,
 };
 

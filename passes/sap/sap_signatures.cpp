@@ -93,8 +93,8 @@ constexpr PassTypeSetting setup_settings[] = {setting::texturing, storage};
 // Results of a step down.
 constexpr std::array coarse{written_light("coarse_light"), written_surface("coarse_surface")};
 
-constexpr auto halve_ports = join(view, level, coarse);
-constexpr PassTypeSetting halve_settings[] = {written_level(1), setting::texturing, storage};
+constexpr auto setup_half_res_ports = join(view, level, coarse);
+constexpr PassTypeSetting setup_half_res_settings[] = {written_level(1), setting::texturing, storage};
 
 constexpr std::array finer{read_light("light", "image of the finer level"),
                            read_surface("surface", "image of the finer level")};
@@ -208,8 +208,8 @@ const PassType sap_setup_half_res_type{
     .shader = "sap/subsurface_sap_setup_half_res",
     .doc = "Writes level 1 of the surface-aware pyramid directly from the view: 2x2 pixels of one surface "
            "per texel. Replaces subsurface.sap_setup and the first subsurface.sap_down.",
-    .ports = halve_ports,
-    .settings = halve_settings,
+    .ports = setup_half_res_ports,
+    .settings = setup_half_res_settings,
     .dispatch = over_tiles,
     .arguments_entry = "level",
 };

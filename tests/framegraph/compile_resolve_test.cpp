@@ -82,7 +82,7 @@ TEST(Sizes, CircularReference_IsRefusedWithTheCycle) {
     b.graph.resources[from].size.base = SizeExpression::Base::resource;
     b.graph.resources[from].size.resource = ResourceId{to};
   }
-  const auto errors = refused(b);
+  const auto errors = rejected(b);
   ASSERT_THAT(errors, SizeIs(1));
   EXPECT_EQ(errors[0].id, DiagnosticId::size_cycle);
   EXPECT_THAT(errors[0].text, HasSubstr("'middle' -> 'result' -> 'middle'"));
@@ -95,12 +95,12 @@ TEST(Sizes, BeyondTheDevice_IsRefusedOnce) {
   b.middle().size.x = {1000, 1};
   b.graph.resources[2].size.base = SizeExpression::Base::resource;
   b.graph.resources[2].size.resource = ResourceId{1};
-  const auto errors = refused(b);
+  const auto errors = rejected(b);
   ASSERT_THAT(errors, SizeIs(1));
   EXPECT_EQ(errors[0].id, DiagnosticId::size_out_of_range);
   EXPECT_THAT(errors[0].text, HasSubstr("'middle' is 64000x64 texels"));
   b.middle().size.x = {INT64_MAX, 1};
-  EXPECT_EQ(refused(b)[0].id, DiagnosticId::size_out_of_range);
+  EXPECT_EQ(rejected(b)[0].id, DiagnosticId::size_out_of_range);
 }
 
 TEST(Sizes, BuffersCountTilesAndExtraElements) {
@@ -112,7 +112,7 @@ TEST(Sizes, BuffersCountTilesAndExtraElements) {
   // ceil(65 / 8) * ceil(9 / 8) tiles and 4 more elements, of 4 bytes each.
   EXPECT_EQ(resource_of(b, compiled(b, b.input(65, 9)).plan, "tiles").bytes, (9u * 2u + 4u) * 4u);
   b.graph.resources[0].extra_elements = UINT64_MAX;
-  EXPECT_EQ(refused(b)[0].id, DiagnosticId::size_out_of_range);
+  EXPECT_EQ(rejected(b)[0].id, DiagnosticId::size_out_of_range);
 }
 
 TEST(Sizes, MipChains) {
@@ -120,10 +120,10 @@ TEST(Sizes, MipChains) {
   b.middle().mips = 0;
   EXPECT_EQ(resource_of(b, compiled(b, b.input(64, 9)).plan, "middle").mips, 7u);
   b.middle().mips = 8;
-  EXPECT_THAT(refused(b)[0].text, HasSubstr("asks for 8 mip levels; 64x64 has 7"));
+  EXPECT_THAT(rejected(b)[0].text, HasSubstr("asks for 8 mip levels; 64x64 has 7"));
   b.middle().mips = 1;
   b.middle().layers = 257;
-  EXPECT_EQ(refused(b)[0].id, DiagnosticId::size_out_of_range);
+  EXPECT_EQ(rejected(b)[0].id, DiagnosticId::size_out_of_range);
 }
 
 TEST(Formats, FirstFormatUsableByPortsAndDeviceIsTaken) {
@@ -143,7 +143,7 @@ TEST(Formats, FirstFormatUsableByPortsAndDeviceIsTaken) {
   EXPECT_THAT(reasons(b, whole, Reason::About::resource, 1),
               HasSubstr("port 'a' of pass 'second' does not support it"));
   b.middle().formats = {Format::r8_unorm};
-  const auto errors = refused(b);
+  const auto errors = rejected(b);
   ASSERT_THAT(errors, SizeIs(1));
   EXPECT_EQ(errors[0].id, DiagnosticId::no_usable_format);
 }
@@ -168,7 +168,7 @@ TEST(Formats, HostFormatMustFitTheComponentType) {
   auto input = b.input();
   const std::vector<Format> formats{Format::r8_unorm, Format::undefined};
   input.host_formats = formats;
-  EXPECT_EQ(refused(b, input)[0].id, DiagnosticId::no_usable_format);
+  EXPECT_EQ(rejected(b, input)[0].id, DiagnosticId::no_usable_format);
 }
 
 // Resources with equal declarations are reported separately, too.
@@ -183,7 +183,7 @@ TEST(Formats, EveryResourceWithoutUsableFormatIsReported) {
   CompileInput input = b.input();
   for (const bool reasons : {false, true}) {
     input.reasons = reasons;
-    EXPECT_THAT(refused(b, input), SizeIs(2));
+    EXPECT_THAT(rejected(b, input), SizeIs(2));
   }
 }
 
@@ -213,9 +213,9 @@ TEST(Sizes, ManyShapesInAnyOrderStayDistinct) {
   const Plan plan = compiled(b).plan;
   for (uint32_t i = 0; i < count; ++i) {
     const PlanResource image = resource_of(b, plan, "image" + std::to_string(i));
-    const Expected wanted = expected(i);
+    const Expected resolved = expected(i);
     EXPECT_EQ(std::tie(image.width, image.height, image.mips, image.format),
-              std::tie(wanted.width, wanted.height, wanted.mips, wanted.format))
+              std::tie(resolved.width, resolved.height, resolved.mips, resolved.format))
         << i;
   }
 }
@@ -229,7 +229,7 @@ TEST(Formats, HostFormatMustBeDeclared) {
   input.host_formats[0] = Format::b10g11r11f;
   EXPECT_EQ(resource_of(b, compiled(b, input).plan, "light").format, Format::b10g11r11f);
   input.host_formats[0] = Format::r8_unorm;
-  const auto errors = refused(b, input);
+  const auto errors = rejected(b, input);
   EXPECT_EQ(errors[0].id, DiagnosticId::host_format);
   EXPECT_THAT(errors[0].text, HasSubstr("binds 'light' as r8_unorm; declared are rgba16f, b10g11r11f"));
 }
@@ -237,21 +237,21 @@ TEST(Formats, HostFormatMustBeDeclared) {
 TEST(Limits, DeviceLimitsAreEnforced) {
   Chain b;
   b.device.max_workgroup_count = 7;
-  EXPECT_EQ(refused(b)[0].id, DiagnosticId::device_limit); // 64 / 8 = 8 groups in x.
+  EXPECT_EQ(rejected(b)[0].id, DiagnosticId::device_limit); // 64 / 8 = 8 groups in x.
   b.device.max_workgroup_count = 8;
   compiled(b);
   b.device.max_push_constants_bytes = 3;
-  EXPECT_EQ(refused(b)[0].id, DiagnosticId::device_limit);
+  EXPECT_EQ(rejected(b)[0].id, DiagnosticId::device_limit);
 }
 
 TEST(Limits, CompileInputMustFitTheGraph) {
   Chain b;
-  EXPECT_EQ(refused(b, b.input(0, 64))[0].id, DiagnosticId::compile_input);
-  EXPECT_EQ(refused(b, b.input(64, 16385))[0].id, DiagnosticId::compile_input);
+  EXPECT_EQ(rejected(b, b.input(0, 64))[0].id, DiagnosticId::compile_input);
+  EXPECT_EQ(rejected(b, b.input(64, 16385))[0].id, DiagnosticId::compile_input);
   auto input = b.input();
   input.bound = {true};
   input.host_formats = {Format::rgba16f};
-  EXPECT_THAT(refused(b, input), SizeIs(2));
+  EXPECT_THAT(rejected(b, input), SizeIs(2));
 }
 
 TEST(Packing, ItemsAliveTogetherNeverOverlap) {

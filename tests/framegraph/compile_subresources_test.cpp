@@ -105,7 +105,7 @@ TEST(Subresources, HistoryOfUnwrittenMip_IsRefused) {
   b.graph.resources[1].mips = 3;
   b.exported("late");
   b.pass("needs", "test.need", {{"a", "kept#2@-1"}}, {{"out", "late"}});
-  const auto errors = refused(b);
+  const auto errors = rejected(b);
   ASSERT_EQ(errors.size(), 1u);
   EXPECT_EQ(errors[0].id, DiagnosticId::history_unwritten);
   EXPECT_THAT(errors[0].text, HasSubstr("'kept#2@-1', but no pass that is on writes 'kept#2'"));
@@ -113,7 +113,7 @@ TEST(Subresources, HistoryOfUnwrittenMip_IsRefused) {
 
 // Expects the diagnostic for an optional port that reads a mip chain with unwritten mips.
 Diagnostic half_written(const GraphBuilder& b, DiagnosticId id = DiagnosticId::read_before_write) {
-  const auto errors = refused(b);
+  const auto errors = rejected(b);
   EXPECT_EQ(errors.size(), 1u);
   EXPECT_EQ(errors[0].id, id);
   return errors[0];
@@ -186,7 +186,7 @@ TEST(Subresources, UnreadPartIsCulled) {
 TEST(Subresources, ReadOfUnwrittenPart_IsRefused) {
   auto b = pyramid();
   b.graph.resources[1].mips = 4;
-  const auto errors = refused(b);
+  const auto errors = rejected(b);
   ASSERT_EQ(errors.size(), 1u);
   EXPECT_EQ(errors[0].id, DiagnosticId::read_before_write);
   EXPECT_THAT(errors[0].text, HasSubstr("'chain'"));
@@ -200,7 +200,7 @@ TEST(Subresources, OnlyWritersOfTheMissingMipAreListed) {
   b.boolean("deep", false);
   b.pass("down3", "test.need", {{"a", "chain#2"}}, {{"out", "chain#3"}}).when = b.when("deep");
   std::swap(b.graph.passes[3], b.graph.passes[4]);
-  const auto errors = refused(b);
+  const auto errors = rejected(b);
   ASSERT_EQ(errors.size(), 1u);
   EXPECT_EQ(errors[0].id, DiagnosticId::read_before_write);
   ASSERT_EQ(errors[0].related.size(), 2u);
@@ -210,7 +210,7 @@ TEST(Subresources, OnlyWritersOfTheMissingMipAreListed) {
 TEST(Subresources, TwoWritersOfOneMipAreRefusedOnce) {
   auto b = pyramid();
   b.pass("again", "test.need", {{"a", "light"}}, {{"out", "chain#0..1"}});
-  const auto errors = refused(b);
+  const auto errors = rejected(b);
   ASSERT_EQ(errors.size(), 1u);
   EXPECT_EQ(errors[0].id, DiagnosticId::second_producer);
 }
@@ -219,7 +219,7 @@ TEST(Subresources, MipsBeyondTheViewAreRefused) {
   auto b = pyramid();
   b.graph.resources[1].mips = 0; // mips = 0 declares the full chain; 64 texels have 7 mips.
   b.pass("far", "test.need", {{"a", "chain#7"}}, {{"out", "chain#8[1]"}});
-  const auto errors = refused(b);
+  const auto errors = rejected(b);
   ASSERT_EQ(errors.size(), 2u);
   for (const Diagnostic& error : errors) {
     EXPECT_EQ(error.id, DiagnosticId::part_missing);
@@ -247,7 +247,7 @@ TEST(Subresources, OtherwiseForAPart_IsRefused) {
   b.image("half");
   b.graph.passes[0].when = b.when("small", false);
   b.otherwise(b.graph.passes[0], "chain", "light");
-  const auto errors = refused(b);
+  const auto errors = rejected(b);
   ASSERT_GE(errors.size(), 1u);
   EXPECT_EQ(errors[0].id, DiagnosticId::otherwise_mismatch);
   EXPECT_THAT(errors[0].text, HasSubstr("ports name mips or layers of 'chain'"));
@@ -263,7 +263,7 @@ TEST(Subresources, TooManySubresources_AreRefused) {
   for (uint32_t l = 0; l < 256; ++l)
     b.pass(fmt::format("p{}", l), "test.fill", {}, {{"target", fmt::format("array#0[{}]", l)}});
   b.pass("show", "test.need", {{"a", "array#0"}}, {{"out", "result"}});
-  const auto errors = refused(b);
+  const auto errors = rejected(b);
   ASSERT_EQ(errors.size(), 1u);
   EXPECT_EQ(errors[0].id, DiagnosticId::limit_exceeded);
   EXPECT_THAT(errors[0].text, HasSubstr("1024 different subresource ranges of 'array'"));

@@ -231,7 +231,7 @@ TEST(InPlace, WithoutOwnTexelsReadAndWriteAreRefused) {
   GraphBuilder b;
   b.import("light").exported = true;
   b.pass("blur", "test.need", {{"a", "light"}}, {{"out", "light"}});
-  const auto errors = refused(b);
+  const auto errors = rejected(b);
   ASSERT_THAT(errors, SizeIs(1));
   EXPECT_EQ(errors[0].id, DiagnosticId::in_place_race);
   EXPECT_THAT(errors[0].text, HasSubstr("'blur' reads 'light' through its port 'a'"));
@@ -249,7 +249,7 @@ TEST(InPlace, OtherwiseValueIsCheckedForRaces) {
   compiled(b);
   auto input = b.input();
   input.settings = {{SettingType::boolean, 0, 0.0}};
-  EXPECT_EQ(refused(b, input)[0].id, DiagnosticId::in_place_race);
+  EXPECT_EQ(rejected(b, input)[0].id, DiagnosticId::in_place_race);
 }
 
 TEST(InPlace, VerifierRefusesARaceInsideAPass) {

@@ -86,7 +86,7 @@ TEST(Culling, ARequiredPortOfALivePassNeedsItsImport) {
   input.bound.assign(b.graph.resources.size(), true);
   compiled(b, input);
   input.bound[b.resource("mask").value] = false;
-  const auto errors = refused(b, input);
+  const auto errors = rejected(b, input);
   ASSERT_THAT(errors, SizeIs(1));
   EXPECT_EQ(errors[0].id, DiagnosticId::unbound_import);
   EXPECT_THAT(errors[0].text, HasSubstr("'apply_mask', port 'a' needs 'mask'"));
@@ -152,7 +152,7 @@ TEST(Choice, DisabledPassWithoutOtherwise_IsNamed) {
   b.exported("result");
   b.pass("blur", "test.shade", {{"a", "light"}}, {{"out", "blurred"}}).when = b.when("on");
   b.pass("finish", "test.need", {{"a", "blurred"}}, {{"out", "result"}});
-  const auto errors = refused(b);
+  const auto errors = rejected(b);
   ASSERT_THAT(errors, SizeIs(1));
   EXPECT_EQ(errors[0].id, DiagnosticId::read_before_write);
   EXPECT_THAT(errors[0].text, HasSubstr("pass 'finish', port 'a' reads 'blurred'"));
@@ -178,7 +178,7 @@ TEST(Choice, ExclusiveProducersOfOneResourceAreFine) {
 TEST(Choice, TwoEnabledProducers_AreRefusedNamingBoth) {
   GraphBuilder b = chain();
   b.pass("blur_again", "test.shade", {{"a", "light"}}, {{"out", "blurred"}});
-  const auto errors = refused(b);
+  const auto errors = rejected(b);
   ASSERT_THAT(errors, SizeIs(1));
   EXPECT_EQ(errors[0].id, DiagnosticId::second_producer);
   EXPECT_THAT(errors[0].text, HasSubstr("'blur' and 'blur_again' both write 'blurred'"));
@@ -196,7 +196,7 @@ TEST(Choice, AReplacedResourceCannotBeUpdatedInPlace) {
   b.otherwise(blur, "blurred", "light");
   b.pass("sharpen", "test.update", {}, {{"image", "blurred"}});
   b.pass("finish", "test.need", {{"a", "blurred"}}, {{"out", "result"}});
-  const auto errors = refused(b);
+  const auto errors = rejected(b);
   ASSERT_THAT(errors, SizeIs(1));
   EXPECT_EQ(errors[0].id, DiagnosticId::replaced_update);
   EXPECT_THAT(errors[0].text,
@@ -210,7 +210,7 @@ TEST(Choice, AnOtherwiseOfAnotherTypeIsRefused) {
   auto& finish = b.graph.passes[1];
   finish.when = b.when("on");
   b.otherwise(finish, "result", "tiles");
-  EXPECT_EQ(refused(b)[0].id, DiagnosticId::otherwise_mismatch);
+  EXPECT_EQ(rejected(b)[0].id, DiagnosticId::otherwise_mismatch);
 }
 
 TEST(Choice, SettingsOutsideTheirRangeAreRefused) {
@@ -223,16 +223,16 @@ TEST(Choice, SettingsOutsideTheirRangeAreRefused) {
   compiled(b);
   auto input = b.input();
   input.settings = {{SettingType::integer, 65, 0.0}};
-  EXPECT_EQ(refused(b, input)[0].id, DiagnosticId::setting_value);
+  EXPECT_EQ(rejected(b, input)[0].id, DiagnosticId::setting_value);
   input.settings = {{SettingType::real, 8, 8.0}};
-  EXPECT_EQ(refused(b, input)[0].id, DiagnosticId::setting_value);
+  EXPECT_EQ(rejected(b, input)[0].id, DiagnosticId::setting_value);
 }
 
 TEST(Exports, ARequiredExportThatNothingWritesIsRefused) {
   GraphBuilder b = chain();
   b.boolean("on", false);
   b.graph.passes[1].when = b.when("on");
-  const auto errors = refused(b);
+  const auto errors = rejected(b);
   ASSERT_THAT(errors, SizeIs(1));
   EXPECT_EQ(errors[0].id, DiagnosticId::export_unwritten);
   EXPECT_THAT(errors[0].related[0].second, HasSubstr("'finish' writes it and is off"));
@@ -279,7 +279,7 @@ TEST(Versions, AReaderBeforeSeveralProducersIsRefused) {
   b.pass("finish", "test.need", {{"a", "blurred"}}, {{"out", "result"}});
   b.pass("blur", "test.need", {{"a", "light"}}, {{"out", "blurred"}});
   b.pass("sharpen", "test.update", {}, {{"image", "blurred"}});
-  EXPECT_EQ(refused(b)[0].id, DiagnosticId::ambiguous_version);
+  EXPECT_EQ(rejected(b)[0].id, DiagnosticId::ambiguous_version);
 }
 
 TEST(Versions, UpdateOfUnwrittenResourceIsRefused) {
@@ -288,7 +288,7 @@ TEST(Versions, UpdateOfUnwrittenResourceIsRefused) {
   b.exported("total");
   b.pass("add", "test.update", {{"a", "light"}}, {{"image", "sum"}});
   b.pass("show", "test.need", {{"a", "sum"}}, {{"out", "total"}});
-  const auto errors = refused(b);
+  const auto errors = rejected(b);
   ASSERT_THAT(errors, SizeIs(1));
   EXPECT_EQ(errors[0].id, DiagnosticId::read_before_write);
 }
@@ -297,7 +297,7 @@ TEST(Versions, WritingTheSameResourceThroughTwoPortsIsRefused) {
   GraphBuilder b = chain();
   b.exported("twice");
   b.pass("double", "test.shade", {{"a", "light"}}, {{"out", "twice"}, {"out2", "twice"}});
-  EXPECT_EQ(refused(b)[0].id, DiagnosticId::second_producer);
+  EXPECT_EQ(rejected(b)[0].id, DiagnosticId::second_producer);
 }
 
 TEST(Order, CycleIsRefusedWithThePlaceOfEachPass) {
@@ -308,7 +308,7 @@ TEST(Order, CycleIsRefusedWithThePlaceOfEachPass) {
   b.pass("first", "test.need", {{"a", "y"}}, {{"out", "x"}});
   b.pass("second", "test.need", {{"a", "x"}}, {{"out", "y"}});
   b.pass("third", "test.need", {{"a", "y"}}, {{"out", "z"}});
-  const auto errors = refused(b);
+  const auto errors = rejected(b);
   ASSERT_THAT(errors, SizeIs(1));
   EXPECT_EQ(errors[0].id, DiagnosticId::pass_cycle);
   EXPECT_THAT(errors[0].text, HasSubstr("'first' -> 'second' -> 'first'"));
@@ -325,7 +325,7 @@ TEST(Order, CycleAmongUnneededPassesIsRefused) {
   b.image("y");
   b.pass("first", "test.need", {{"a", "y"}}, {{"out", "x"}});
   b.pass("second", "test.need", {{"a", "x"}}, {{"out", "y"}});
-  EXPECT_EQ(refused(b)[0].id, DiagnosticId::pass_cycle);
+  EXPECT_EQ(rejected(b)[0].id, DiagnosticId::pass_cycle);
 }
 
 TEST(Order, AfterIsObeyedAndTakesPartInCycles) {
@@ -335,7 +335,7 @@ TEST(Order, AfterIsObeyedAndTakesPartInCycles) {
   b.graph.passes[0].after.push_back({b.pass_id("late"), "to test it", {}});
   EXPECT_EQ(pass_names(b, compiled(b).plan), "late blur finish");
   b.graph.passes[2].after.push_back({b.pass_id("finish"), "to close the circle", {}});
-  const auto errors = refused(b);
+  const auto errors = rejected(b);
   EXPECT_EQ(errors[0].id, DiagnosticId::pass_cycle);
   EXPECT_THAT(errors[0].related.back().second, HasSubstr("to test it"));
 }
@@ -358,7 +358,7 @@ TEST(History, ReadOfAHistoryWithoutWriterIsRefused) {
   b.exported("result");
   b.pass("accumulate", "test.need", {{"a", "light"}}, {{"out", "sum"}}).when = b.when("on");
   b.pass("show", "test.need", {{"a", "sum@-1"}}, {{"out", "result"}});
-  const auto errors = refused(b);
+  const auto errors = rejected(b);
   ASSERT_THAT(errors, SizeIs(1));
   EXPECT_EQ(errors[0].id, DiagnosticId::history_unwritten);
   EXPECT_THAT(errors[0].text, HasSubstr("reads 'sum@-1'"));
@@ -384,7 +384,7 @@ TEST(History, ReadOnlyByItsWriter_KeepsNothingAlive) {
 TEST(History, HostResourceCannotBeAHistory) {
   GraphBuilder b = chain();
   b.graph.resources[2].history.frames = 1;
-  EXPECT_EQ(refused(b)[0].id, DiagnosticId::history_of_host_memory);
+  EXPECT_EQ(rejected(b)[0].id, DiagnosticId::history_of_host_memory);
 }
 
 } // namespace

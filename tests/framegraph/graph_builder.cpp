@@ -119,7 +119,7 @@ SettingDeclaration& GraphBuilder::boolean(const std::string& name, bool value) {
   return graph.settings.back();
 }
 
-ExpressionId GraphBuilder::when(const std::string& name, bool wanted) {
+ExpressionId GraphBuilder::when(const std::string& name, bool when_set) {
   uint32_t setting = 0;
   while (graph.settings[setting].name != name)
     ++setting;
@@ -127,7 +127,7 @@ ExpressionId GraphBuilder::when(const std::string& name, bool wanted) {
   leaf.op = Expression::Op::setting;
   leaf.setting = SettingId{setting};
   graph.expressions.push_back(leaf);
-  if (!wanted) {
+  if (!when_set) {
     Expression negated;
     negated.op = Expression::Op::logical_not;
     negated.left = ExpressionId{static_cast<uint32_t>(graph.expressions.size() - 1)};
@@ -233,11 +233,11 @@ CompiledPlan compiled(const GraphBuilder& builder, const CompileInput& input) {
   return *std::move(plan);
 }
 
-std::vector<Diagnostic> refused(const GraphBuilder& builder) {
-  return refused(builder, builder.input());
+std::vector<Diagnostic> rejected(const GraphBuilder& builder) {
+  return rejected(builder, builder.input());
 }
 
-std::vector<Diagnostic> refused(const GraphBuilder& builder, const CompileInput& input) {
+std::vector<Diagnostic> rejected(const GraphBuilder& builder, const CompileInput& input) {
   Diagnostics diagnostics;
   EXPECT_EQ(&builder.graph, input.graph);
   EXPECT_FALSE(compile(input, diagnostics).has_value());

@@ -47,7 +47,7 @@ struct GraphBuilder {
   PassDeclaration& pass(const std::string& name, const std::string& type, const Bindings& reads,
                         const Bindings& writes);
   // Takes "setting" or "not setting".
-  ExpressionId when(const std::string& setting, bool wanted = true);
+  ExpressionId when(const std::string& setting, bool when_set = true);
   void otherwise(PassDeclaration& pass, const std::string& output, const std::string& instead);
 
   // Parses a reference as in Bindings, without "?".
@@ -65,8 +65,8 @@ CompiledPlan compiled(const GraphBuilder& builder);
 CompiledPlan compiled(const GraphBuilder& builder, const CompileInput& input);
 
 // Compiles, expects errors and returns them.
-std::vector<Diagnostic> refused(const GraphBuilder& builder);
-std::vector<Diagnostic> refused(const GraphBuilder& builder, const CompileInput& input);
+std::vector<Diagnostic> rejected(const GraphBuilder& builder);
+std::vector<Diagnostic> rejected(const GraphBuilder& builder, const CompileInput& input);
 
 // Returns the pass names of a plan in order, separated by spaces.
 std::string pass_names(const GraphBuilder& builder, const Plan& plan);

@@ -60,7 +60,7 @@ Interpretation graph_reference(const Graph& graph, const PassTypeRegistry& pass_
         if (back == frame || (cuts_count && (cuts >> (frame - back) & 1u) != 0)) return false;
       return true;
     };
-    const auto read = [&](const PortBinding& binding, std::vector<StandInInput>& inputs) {
+    const auto read = [&](const PortBinding& binding, std::vector<PlaceholderInput>& inputs) {
       const ResourceDeclaration& resource = graph.resources[binding.resource.value];
       if (!in_history(binding)) { // Histories start from zero.
         inputs.insert(inputs.end(), numbers(resource, binding.range).size(), {binding.port, Pixels{}});
@@ -86,7 +86,7 @@ Interpretation graph_reference(const Graph& graph, const PassTypeRegistry& pass_
           contents_of[one.output.value][frame] = contents_of[one.instead.value][frame];
         continue;
       }
-      std::vector<StandInInput> inputs;
+      std::vector<PlaceholderInput> inputs;
       const auto reads = graph.reads(pass), writes = graph.writes(pass);
       for (size_t i = 0; i < reads.size(); ++i) {
         const PortBinding& binding = reads[i];
@@ -97,7 +97,7 @@ Interpretation graph_reference(const Graph& graph, const PassTypeRegistry& pass_
       for (const PortBinding& binding : writes)
         if (usage_info(pass_types[pass.type].ports[binding.port].usage).reads) read(binding, inputs);
       std::stable_sort(inputs.begin(), inputs.end(),
-                       [](const StandInInput& a, const StandInInput& b) { return a.port < b.port; });
+                       [](const PlaceholderInput& a, const PlaceholderInput& b) { return a.port < b.port; });
       for (const PortBinding& binding : writes) {
         uint32_t image_range = 0;
         for (const size_t number : numbers(graph.resources[binding.resource.value], binding.range))

@@ -64,12 +64,12 @@ struct Unroller {
       const auto wait = [&](uint32_t point, Queue queue) {
         if (point == no_point) return;
         const size_t other = 1 - queue_index(queue);
-        const size_t wanted = before[other] + point;
-        if (wanted > reached[other].size()) misplaced = "a point is waited for that is not reached";
-        if (wanted == 0 || wanted > reached[other].size()) return;
+        const size_t awaited = before[other] + point;
+        if (awaited > reached[other].size()) misplaced = "a point is waited for that is not reached";
+        if (awaited == 0 || awaited > reached[other].size()) return;
         Operation operation{Operation::What::wait, step++, f, no_instance, 0, nullptr, nullptr};
         operation.queue = queue;
-        operation.until = reached[other][wanted - 1];
+        operation.until = reached[other][awaited - 1];
         all.push_back(operation);
       };
       const auto reach = [&](uint32_t point, Queue queue) {

@@ -124,21 +124,21 @@ TEST(Interpreter, CullingChangesNothingForTheHost) {
     CompileInput input = builder.input();
     input.bound = bound;
     const Plan cut = compiled(builder, input).plan;
-    Interpretation wanted = reference;
+    Interpretation expected = reference;
     const Interpretation found = interpret(cut, options(seed, 1, seed + 1));
     for (size_t frame = 0; frame < frames; ++frame)
-      for (size_t slot = 0; slot < wanted[frame].size(); ++slot)
-        if (slot >= found[frame].size() || !found[frame][slot]) wanted[frame][slot].reset();
+      for (size_t slot = 0; slot < expected[frame].size(); ++slot)
+        if (slot >= found[frame].size() || !found[frame][slot]) expected[frame][slot].reset();
     // Only the unbound exports may be missing.
     for (size_t r = 0, slot = 0; r < bound.size(); ++r) {
       const ResourceDeclaration& resource = builder.graph.resources[r];
       if (resource.origin != Origin::imported && !resource.exported) continue;
       if (bound[r]) {
-        ASSERT_EQ(wanted[0][slot].has_value(), reference[0][slot].has_value()) << "seed " << seed;
+        ASSERT_EQ(expected[0][slot].has_value(), reference[0][slot].has_value()) << "seed " << seed;
       }
       ++slot;
     }
-    ASSERT_TRUE(agrees(found, wanted)) << "seed " << seed;
+    ASSERT_TRUE(agrees(found, expected)) << "seed " << seed;
     fewer += cut.passes.size() < passes;
   }
   EXPECT_GT(fewer, random_graphs() / 8);

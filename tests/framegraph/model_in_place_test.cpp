@@ -82,7 +82,7 @@ Outcome read_passes(const char* passes) {
 #define BLUR_X(rest)                                                                                         \
   R"({ "pass": "blur", "type": "t.blur", "read": { "a": "x" }, "write": { "o": "light" })" rest R"( }, )"
 
-const Case refused[] = {
+const Case rejected[] = {
     {"Directly",
      R"({ "pass": "blur", "type": "t.blur", "read": { "a": "light" }, "write": { "o": "light" } }, )" SHOW(
          "light"),
@@ -215,7 +215,7 @@ std::string name_of(const ::testing::TestParamInfo<Case>& one) {
   return one.param.name;
 }
 
-INSTANTIATE_TEST_SUITE_P(Refused, InPlace, ::testing::ValuesIn(refused), name_of);
+INSTANTIATE_TEST_SUITE_P(Refused, InPlace, ::testing::ValuesIn(rejected), name_of);
 INSTANTIATE_TEST_SUITE_P(Accepted, InPlace, ::testing::ValuesIn(accepted), name_of);
 
 } // namespace

@@ -12,7 +12,7 @@ void expect_same_verdict(const Plan& mutant, const std::string& what, Tally& tal
   const auto violations = verify(mutant).violations;
   const std::string hazard = first_hazard(mutant);
   ++tally.tried;
-  tally.refused += !violations.empty();
+  tally.rejected += !violations.empty();
   ASSERT_EQ(violations.empty(), hazard.empty())
       << what << "\nverifier: " << (violations.empty() ? "accepts" : violations.front())
       << "\noracle: " << (hazard.empty() ? "accepts" : hazard);

@@ -9,7 +9,7 @@
 namespace dermis::testing {
 
 struct Tally {
-  uint64_t tried = 0, refused = 0;
+  uint64_t tried = 0, rejected = 0;
 };
 
 // Counts the mutant as tried, and as refused if the verifier refuses it. Adds a fatal failure to

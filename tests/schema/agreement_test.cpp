@@ -208,19 +208,19 @@ void expect_agreement(const SchemaFile& schema, Reader reader, const std::vector
     EXPECT_EQ(schema.first_problem(file), "");
     EXPECT_EQ(structural_errors(reader, file.dump()), "");
   }
-  uint32_t refused = 0, wrong = 0;
+  uint32_t rejected = 0, wrong = 0;
   for (uint32_t i = 0; i < mutations && wrong < 5; ++i) {
     const json damaged = mutate(files[i % files.size()], i);
     const std::string errors = structural_errors(reader, damaged.dump());
     const bool accepted = schema.accepts(damaged);
-    refused += accepted ? 0 : 1;
+    rejected += accepted ? 0 : 1;
     if (accepted == errors.empty()) continue;
     ++wrong;
     ADD_FAILURE() << "mutation " << i << ": the schema " << (accepted ? "accepts" : "refuses") << "\n"
                   << schema.first_problem(damaged) << "the parser says:\n"
                   << errors << damaged.dump().substr(0, 3000);
   }
-  EXPECT_GT(refused, mutations / 4) << "hardly any mutation damages anything";
+  EXPECT_GT(rejected, mutations / 4) << "hardly any mutation damages anything";
 }
 
 std::vector<json> read_all(const char* folder, bool expectations = false) {

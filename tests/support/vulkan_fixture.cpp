@@ -76,9 +76,10 @@ struct VulkanTest::Parts {
     return VK_FALSE;
   }
 
-  uint32_t memory_type(uint32_t bits, VkMemoryPropertyFlags wanted) const {
+  uint32_t memory_type(uint32_t bits, VkMemoryPropertyFlags required_flags) const {
     for (uint32_t i = 0; i < memory.memoryTypeCount; ++i)
-      if ((bits >> i & 1u) != 0 && (memory.memoryTypes[i].propertyFlags & wanted) == wanted) return i;
+      if ((bits >> i & 1u) != 0 && (memory.memoryTypes[i].propertyFlags & required_flags) == required_flags)
+        return i;
     return 0;
   }
 };

@@ -123,24 +123,24 @@ private:
   // Checks a conditional read. `instead` has no resource if the port has no "otherwise".
   bool condition_fits(const std::string& what, const Found& history, const Found& instead) {
     const ResourceDeclaration& resource = reader_.graph.resources[history.binding.resource.value];
-    const auto refuse = [&](const SourceLocation& where, std::string text) {
+    const auto reject = [&](const SourceLocation& where, std::string text) {
       reader_.error(DiagnosticId::bad_requires, where, std::move(text))
           .related.emplace_back(resource.where, fmt::format("'{}' is declared here", resource.name));
       return false;
     };
     if (history.binding.frames_back == 0)
-      return refuse(history.where, fmt::format("{} requires '{}' of the current frame to be valid; only "
+      return reject(history.where, fmt::format("{} requires '{}' of the current frame to be valid; only "
                                                "earlier frames (name@-1) can be required",
                                                what, resource.name));
     if (instead.binding.frames_back > 0)
-      return refuse(
+      return reject(
           instead.where,
           fmt::format("{} reads an earlier frame if '{}@-{}' is invalid, and that frame may be invalid, too",
                       what, resource.name, history.binding.frames_back));
     if (history.binding.port == unknown_port) return true;
     const Port& port = kind_->ports[history.binding.port];
     if (port.usage == Usage::indirect_arguments)
-      return refuse(
+      return reject(
           history.where,
           fmt::format(
               "{} provides the size of the dispatch, which every frame reads; the read cannot be conditional",
@@ -148,7 +148,7 @@ private:
     const bool has_fallback = instead.binding.resource.valid() || port.optional ||
                               resource.history.first == HistoryDeclaration::First::clear;
     if (has_fallback) return true;
-    return refuse(
+    return reject(
         history.where,
         fmt::format("{} must be bound, but nothing is declared for frames in which '{}@-{}' is invalid", what,
                     resource.name, history.binding.frames_back));

@@ -20,8 +20,8 @@ struct Checker {
       mismatch("{} is an array of descriptors in the shader ('{}'), but the signature binds one descriptor",
                place, binding.name);
     else if (binding.type != expected)
-      mismatch("{} is a {} in the signature and a {} ('{}') in the shader", place, binding_type_name(expected),
-               binding_type_name(binding.type), binding.name);
+      mismatch("{} is a {} in the signature and a {} ('{}') in the shader", place,
+               binding_type_name(expected), binding_type_name(binding.type), binding.name);
   }
 
   void check_port(const ShaderBinding& binding) {
@@ -34,11 +34,11 @@ struct Checker {
     if (!descriptor)
       return mismatch("{} has usage {} and therefore no descriptor, but the shader binds '{}' there", place,
                       usage_info(port.usage).name, binding.name);
-    const BindingType expected = *descriptor == VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE   ? BindingType::sampled_image
-                               : *descriptor == VK_DESCRIPTOR_TYPE_STORAGE_IMAGE ? BindingType::storage_image
-                               : *descriptor == VK_DESCRIPTOR_TYPE_ACCELERATION_STRUCTURE_KHR
-                                   ? BindingType::acceleration_structure
-                                   : BindingType::storage_buffer;
+    const BindingType expected =
+        *descriptor == VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE                ? BindingType::sampled_image
+        : *descriptor == VK_DESCRIPTOR_TYPE_STORAGE_IMAGE              ? BindingType::storage_image
+        : *descriptor == VK_DESCRIPTOR_TYPE_ACCELERATION_STRUCTURE_KHR ? BindingType::acceleration_structure
+                                                                       : BindingType::storage_buffer;
     check_type(binding, place, expected);
     if (expected == BindingType::storage_buffer || expected == BindingType::acceleration_structure ||
         binding.type != expected || port.glsl_type.empty())
@@ -98,14 +98,14 @@ struct Checker {
     const uint64_t invocations = uint64_t{size[0]} * size[1] * size[2];
     const DispatchRule& rule = type.dispatch;
     const uint32_t side = rule.cell_side;
-    const auto refuse = [&](const std::string& needed) {
+    const auto reject = [&](const std::string& needed) {
       mismatch("its workgroup is {}x{}x{}, but this dispatch needs {}", size[0], size[1], size[2], needed);
     };
     if (!rule.is_kernel() || rule.domain == DispatchRule::Domain::one) return;
     if (rule.cell_shaped()) {
-      if (size[0] != side || size[1] != side || size[2] != 1) refuse(fmt::format("{}x{}x1", side, side));
+      if (size[0] != side || size[1] != side || size[2] != 1) reject(fmt::format("{}x{}x1", side, side));
     } else if (invocations != rule.invocations) {
-      refuse(fmt::format("{} invocations", rule.invocations));
+      reject(fmt::format("{} invocations", rule.invocations));
     }
   }
 };

@@ -5,10 +5,10 @@ namespace {
 
 VkResult allocate_block(void* allocator, const vulkan::MemoryRequest& request, vulkan::MemoryBlock& block) {
   const auto& host = *static_cast<const DeviceAllocator*>(allocator);
-  const dermis_memory_request wanted = request_of(request);
+  const dermis_memory_request host_request = request_of(request);
   dermis_memory_block given = DERMIS_MEMORY_BLOCK_INIT;
   try {
-    const VkResult result = host.allocate(host.user, &wanted, &given);
+    const VkResult result = host.allocate(host.user, &host_request, &given);
     if (result != VK_SUCCESS) return result;
   } catch (...) { // exceptions of a C++ host
     return VK_ERROR_UNKNOWN;

@@ -48,15 +48,15 @@ public:
   IncludeResult* includeLocal(const char* header, const char*, size_t depth) override {
     problem_.clear();
     if (depth > include_nesting)
-      return refuse(fmt::format("more than {} files include each other", include_nesting));
-    if (++count_ > includes) return refuse(fmt::format("more than {} files are included", includes));
+      return reject(fmt::format("more than {} files include each other", include_nesting));
+    if (++count_ > includes) return reject(fmt::format("more than {} files are included", includes));
     const std::string name = header;
     for (const GeneratedFile& file : generated_)
       if (file.name == name) return keep(name, {name, file.text, ""});
-    if (std::string problem = why_not_to_be_opened(name); !problem.empty()) return refuse(problem);
+    if (std::string problem = why_not_to_be_opened(name); !problem.empty()) return reject(problem);
     if (const auto known = files_.find(name); known != files_.end()) return give(*known);
     FileText file = open_(name);
-    if (!file.problem.empty()) return refuse(fmt::format("'{}': {}", name, file.problem));
+    if (!file.problem.empty()) return reject(fmt::format("'{}': {}", name, file.problem));
     return keep(name, std::move(file));
   }
   IncludeResult* includeSystem(const char*, const char*, size_t) override {
@@ -72,7 +72,7 @@ private:
   IncludeResult* keep(std::string name, FileText file) {
     return give(*files_.try_emplace(std::move(name), std::move(file)).first);
   }
-  IncludeResult* refuse(std::string problem) {
+  IncludeResult* reject(std::string problem) {
     problem_ = std::move(problem);
     return nullptr;
   }
@@ -84,21 +84,21 @@ private:
   std::string problem_; // of the include that was rejected last
 };
 
-struct Complaint {
+struct CompilerMessage {
   FileText file;
   uint32_t line = 0, column = 0;
   std::string text;
 };
 
-// Returns the column, from 1, where the word that the complaint quotes first occurs. glslang
+// Returns the column, from 1, where the word that the message quotes first occurs. glslang
 // reports no columns.
-uint32_t column_of(std::string_view line, std::string_view complaint) {
-  const size_t begin = complaint.find('\''), end = complaint.find('\'', begin + 1);
+uint32_t column_of(std::string_view line, std::string_view message) {
+  const size_t begin = message.find('\''), end = message.find('\'', begin + 1);
   const auto in_word = [&](size_t at) {
     return at < line.size() && (std::isalnum(static_cast<unsigned char>(line[at])) != 0 || line[at] == '_');
   };
   if (end != std::string_view::npos && end > begin + 1) {
-    const std::string_view word = complaint.substr(begin + 1, end - begin - 1);
+    const std::string_view word = message.substr(begin + 1, end - begin - 1);
     for (size_t at = line.find(word); at != std::string_view::npos; at = line.find(word, at + 1))
       if (!in_word(at + word.size()) && (at == 0 || !in_word(at - 1))) return static_cast<uint32_t>(at + 1);
   }
@@ -117,9 +117,10 @@ std::string_view line_of(std::string_view text, uint32_t number) {
 
 // Parses "ERROR: afis/afis.glsl:12: 'x' : undeclared identifier", one per line. Ignores glslang's
 // summary.
-std::vector<Complaint> complaints_in(std::string_view log, const std::string& kernel, const Files& files) {
+std::vector<CompilerMessage> messages_in(std::string_view log, const std::string& kernel,
+                                         const Files& files) {
   constexpr std::string_view mark = "ERROR: ";
-  std::vector<Complaint> found;
+  std::vector<CompilerMessage> found;
   std::string rest;
   for (; !log.empty(); log.remove_prefix(std::min(log.find('\n'), log.size() - 1) + 1)) {
     std::string_view line = log.substr(0, log.find('\n'));
@@ -151,7 +152,7 @@ std::vector<Complaint> complaints_in(std::string_view log, const std::string& ke
 
 struct Answer {
   std::vector<uint32_t> spirv;
-  std::vector<Complaint> complaints;
+  std::vector<CompilerMessage> messages;
 };
 
 Answer compile_one(const std::string& shader, const std::vector<GeneratedFile>& generated,
@@ -172,10 +173,10 @@ Answer compile_one(const std::string& shader, const std::vector<GeneratedFile>& 
   constexpr auto rules = static_cast<EShMessages>(EShMsgSpvRules | EShMsgVulkanRules);
   Includer includer(generated, open, files);
   if (!compiled.parse(GetDefaultResources(), default_version, false, rules, includer))
-    return {{}, complaints_in(compiled.getInfoLog(), name, files)};
+    return {{}, messages_in(compiled.getInfoLog(), name, files)};
   glslang::TProgram program;
   program.addShader(&compiled);
-  if (!program.link(rules)) return {{}, complaints_in(program.getInfoLog(), name, files)};
+  if (!program.link(rules)) return {{}, messages_in(program.getInfoLog(), name, files)};
   Answer answer;
   glslang::GlslangToSpv(*program.getIntermediate(EShLangCompute), answer.spirv);
   return answer;
@@ -209,12 +210,12 @@ bool compile_shaders(std::span<const std::string> shaders, const OpenFile& open,
   spirv.clear();
   bool fine = true;
   // errors of a file that many kernels include are reported once
-  std::vector<const Complaint*> reported;
+  std::vector<const CompilerMessage*> reported;
   for (const Answer& answer : answers) {
     spirv.emplace_back(answer.spirv.begin(), answer.spirv.end());
-    for (const Complaint& one : answer.complaints) {
+    for (const CompilerMessage& one : answer.messages) {
       fine = false;
-      const bool again = std::any_of(reported.begin(), reported.end(), [&](const Complaint* other) {
+      const bool again = std::any_of(reported.begin(), reported.end(), [&](const CompilerMessage* other) {
         return other->file.name == one.file.name && other->line == one.line && other->text == one.text;
       });
       if (again) continue;

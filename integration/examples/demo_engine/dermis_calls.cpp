@@ -38,12 +38,12 @@ dermis_source source_of(const std::string& name, const std::string& text) {
   return source;
 }
 
-Result<> make_context(const VulkanHost& host, uint32_t frames_in_flight, bool rays_wanted,
+Result<> make_context(const VulkanHost& host, uint32_t frames_in_flight, bool enable_rays,
                       std::shared_ptr<dermis_context_t>& context, const ContextHooks& hooks) {
   if (context != nullptr) return success();
   dermis_context_desc desc = DERMIS_CONTEXT_DESC_INIT;
   if (host.timestamp_mask != 0) desc.flags |= DERMIS_CONTEXT_TIMINGS;
-  if (host.ray_query && rays_wanted) desc.flags |= DERMIS_CONTEXT_RAY_QUERY;
+  if (host.ray_query && enable_rays) desc.flags |= DERMIS_CONTEXT_RAY_QUERY;
   if (host.kernels == KernelShape::gpu) desc.flags |= DERMIS_CONTEXT_GPU_KERNELS;
   if (host.kernels == KernelShape::cpu) desc.flags |= DERMIS_CONTEXT_CPU_KERNELS;
   desc.frames_in_flight = frames_in_flight;

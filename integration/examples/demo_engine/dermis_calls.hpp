@@ -28,9 +28,9 @@ Error dermis_error(const char* call, dermis_result result, dermis_report report 
 dermis_source source_of(const std::string& name, const std::string& text);
 
 // Makes a context of the host in `context`, once. The context measures times if the device has
-// timestamps, and has ray queries if the host enabled them and `rays_wanted` is set. Errors:
+// timestamps, and has ray queries if the host enabled them and `enable_rays` is set. Errors:
 // environment, those of `hooks.prepare`.
-Result<> make_context(const VulkanHost& host, uint32_t frames_in_flight, bool rays_wanted,
+Result<> make_context(const VulkanHost& host, uint32_t frames_in_flight, bool enable_rays,
                       std::shared_ptr<dermis_context_t>& context, const ContextHooks& hooks);
 
 } // namespace demo

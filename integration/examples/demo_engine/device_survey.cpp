@@ -55,12 +55,12 @@ Result<std::vector<SurveyItem>> requirements_of(VkInstance instance, VkPhysicalD
 }
 
 // Formats of light, depth and history in the shipped graphs.
-struct WantedFormat {
+struct SurveyedFormat {
   VkFormat format;
   const char* name;
   const char* use;
 };
-constexpr WantedFormat wanted_formats[] = {
+constexpr SurveyedFormat surveyed_formats[] = {
     {VK_FORMAT_R16G16B16A16_SFLOAT, "rgba16f storage images", "light and history"},
     {VK_FORMAT_R32_SFLOAT, "r32f storage images", "depth of pyramids"},
     {VK_FORMAT_R8_UINT, "r8_uint storage images", "profile ids of pyramids"},
@@ -69,17 +69,17 @@ constexpr WantedFormat wanted_formats[] = {
 void add_optional(VkPhysicalDevice device, bool timestamps, std::vector<SurveyItem>& items) {
   items.push_back({"timestamps", timestamps, false,
                    timestamps ? "times of passes; budgets learn from them"
-                              : "no times of passes; budgets go by the calibration alone"});
-  for (const WantedFormat& wanted : wanted_formats) {
+                              : "no times of passes; budgets use only the calibration"});
+  for (const SurveyedFormat& format : surveyed_formats) {
     VkFormatProperties properties{};
-    vkGetPhysicalDeviceFormatProperties(device, wanted.format, &properties);
+    vkGetPhysicalDeviceFormatProperties(device, format.format, &properties);
     constexpr VkFormatFeatureFlags needed =
         VK_FORMAT_FEATURE_STORAGE_IMAGE_BIT | VK_FORMAT_FEATURE_SAMPLED_IMAGE_BIT;
     SurveyItem& item = items.emplace_back();
-    item.name = wanted.name;
+    item.name = format.name;
     item.present = (properties.optimalTilingFeatures & needed) == needed;
-    item.why = item.present ? std::string(wanted.use)
-                            : fmt::format("{}; graphs that name no other format do not compile", wanted.use);
+    item.why = item.present ? std::string(format.use)
+                            : fmt::format("{}; graphs that name no other format do not compile", format.use);
   }
 }
 

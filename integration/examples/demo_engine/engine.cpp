@@ -71,17 +71,17 @@ Result<> read(VulkanHost& host, const Image& image, uint32_t channels, FloatImag
 
 Result<> read_inputs(VulkanHost& host, const Renderer& renderer, const SceneState& state,
                      GraphInputs& inputs) {
-  struct Wanted {
+  struct Readback {
     Target target;
     uint32_t channels;
     FloatImage* out;
   };
-  for (const Wanted& one :
-       {Wanted{Target::lighting, 3, &inputs.lighting}, Wanted{Target::depth, 1, &inputs.depth},
-        Wanted{Target::normal, 3, &inputs.normal}, Wanted{Target::albedo, 3, &inputs.albedo},
-        Wanted{Target::material, 1, &inputs.profile}, Wanted{Target::velocity, 2, &inputs.velocity},
-        Wanted{Target::specular, 3, &inputs.specular}, Wanted{Target::thickness, 1, &inputs.thickness},
-        Wanted{Target::back_lighting, 3, &inputs.back_lighting}})
+  for (const Readback& one :
+       {Readback{Target::lighting, 3, &inputs.lighting}, Readback{Target::depth, 1, &inputs.depth},
+        Readback{Target::normal, 3, &inputs.normal}, Readback{Target::albedo, 3, &inputs.albedo},
+        Readback{Target::material, 1, &inputs.profile}, Readback{Target::velocity, 2, &inputs.velocity},
+        Readback{Target::specular, 3, &inputs.specular}, Readback{Target::thickness, 1, &inputs.thickness},
+        Readback{Target::back_lighting, 3, &inputs.back_lighting}})
     if (auto done = read(host, renderer[one.target], one.channels, *one.out); !done) return done;
   const float nothing = renderer.view.reversed_depth ? 0.0f : 1.0f;
   for (float& depth : inputs.depth.texels) {
@@ -117,7 +117,7 @@ struct Session {
 };
 
 // Which outputs of a frame are read back.
-struct Wanted {
+struct RequestedOutputs {
   bool inputs = true, pictures = true;
 };
 
@@ -142,15 +142,15 @@ Result<> read_pictures(const Session& session, FrameOutputs& out) {
   VulkanHost& host = session.host;
   Renderer& renderer = session.renderer;
   auto done = success();
-  if (session.dermis && hands_out_light(*session.dermis)) {
+  if (session.dermis && exports_light(*session.dermis)) {
     done = read(host, renderer[Target::scattered], 3, out.scattered);
     if (!done) return done;
   }
-  if (session.dermis && hands_out_sampling(*session.dermis)) {
+  if (session.dermis && exports_sampling(*session.dermis)) {
     done = read(host, renderer[Target::sampling], 4, out.sampling);
     if (!done) return done;
   }
-  if (session.dermis && hands_out_skips(*session.dermis)) {
+  if (session.dermis && exports_tile_class(*session.dermis)) {
     done = read(host, renderer[Target::skips], 2, out.skips);
     if (!done) return done;
   }
@@ -159,7 +159,8 @@ Result<> read_pictures(const Session& session, FrameOutputs& out) {
   return done;
 }
 
-Result<FrameOutputs> render_frame(Session& session, uint32_t frame, uint64_t frame_index, Wanted wanted) {
+Result<FrameOutputs> render_frame(Session& session, uint32_t frame, uint64_t frame_index,
+                                  RequestedOutputs requested) {
   VulkanHost& host = session.host;
   Renderer& renderer = session.renderer;
   const SceneState state = state_at(session.scene, frame, renderer.view);
@@ -171,16 +172,16 @@ Result<FrameOutputs> render_frame(Session& session, uint32_t frame, uint64_t fra
   out.cut = state.cut;
   out.exposure = static_cast<float>(session.scene.exposure);
   out.camera = camera_of(session.scene, state);
-  const bool drawn = !session.kept || !is_kept(*session.kept, frame);
+  const bool rendered = !session.kept || !is_kept(*session.kept, frame);
   auto done = run_scene(session, state, frame, clock);
   if (!done) return done.error();
-  if (wanted.inputs) {
+  if (requested.inputs) {
     clock.begin("read inputs");
     // before the graph updates the lighting in place
     done = read_inputs(host, renderer, state, out.inputs);
     if (!done) return done.error();
   }
-  if (session.dermis && wants_rays(*session.dermis)) {
+  if (session.dermis && uses_rays(*session.dermis)) {
     clock.begin("place rays");
     done = place_rays(renderer, state);
     if (!done) return done.error();
@@ -191,19 +192,19 @@ Result<FrameOutputs> render_frame(Session& session, uint32_t frame, uint64_t fra
       auto recorded = record_graph(*session.dermis, renderer, state, commands, frame_index);
       if (!recorded) return recorded;
     }
-    if (wanted.pictures || session.taa) record_composite(renderer, commands);
+    if (requested.pictures || session.taa) record_composite(renderer, commands);
     if (session.taa) record_taa(*session.taa, renderer, commands, state);
     clock.begin("run graph");
     return success();
   });
   if (!done) return done.error();
-  if (wanted.pictures) {
+  if (requested.pictures) {
     clock.begin("read pictures");
     done = read_pictures(session, out);
     if (!done) return done.error();
   }
   clock.end();
-  if (renderer.queries.host && drawn)
+  if (renderer.queries.host && rendered)
     out.host_times = {{"shadows", elapsed_ms(renderer, at_start, after_shadows)},
                       {"gbuffer", elapsed_ms(renderer, after_shadows, after_gbuffer)},
                       {"lighting", elapsed_ms(renderer, after_gbuffer, after_lighting)},
@@ -255,7 +256,7 @@ Result<RenderSummary> render(const RenderOptions& options, const RenderCallbacks
     for (const std::string& warning : warnings_of(*dermis))
       info.warnings.push_back(warning);
   }
-  if (auto done = furnish_stage(stage, options, usage); !done) return done.error();
+  if (auto done = prepare_stage(stage, options, usage); !done) return done.error();
   std::unique_ptr<Taa> taa;
   if (options.taa) {
     auto made = create_taa(*stage.renderer);
@@ -280,10 +281,10 @@ Result<RenderSummary> render(const RenderOptions& options, const RenderCallbacks
         summary.rejected_reloads += *taken ? 0 : 1;
       }
     const uint32_t number = options.first_frame + i;
-    Wanted wanted;
-    wanted.pictures = !options.pictures_of || options.pictures_of(number);
-    wanted.inputs = options.inputs_of ? options.inputs_of(number) : wanted.pictures;
-    auto frame = render_frame(session, number, uint64_t{i} + 1, wanted);
+    RequestedOutputs requested;
+    requested.pictures = !options.pictures_of || options.pictures_of(number);
+    requested.inputs = options.inputs_of ? options.inputs_of(number) : requested.pictures;
+    auto frame = render_frame(session, number, uint64_t{i} + 1, requested);
     if (!frame) return frame.error();
     ++summary.frames;
     if (callbacks.on_frame)

@@ -20,12 +20,12 @@ struct ExtensionFeatures {
       VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MAINTENANCE_4_FEATURES);
 };
 
-bool has_extensions(VkPhysicalDevice device, std::span<const char* const> wanted) {
+bool has_extensions(VkPhysicalDevice device, std::span<const char* const> required) {
   uint32_t count = 0;
   vkEnumerateDeviceExtensionProperties(device, nullptr, &count, nullptr);
   std::vector<VkExtensionProperties> offered(count);
   vkEnumerateDeviceExtensionProperties(device, nullptr, &count, offered.data());
-  return std::all_of(wanted.begin(), wanted.end(), [&](std::string_view name) {
+  return std::all_of(required.begin(), required.end(), [&](std::string_view name) {
     return std::any_of(offered.begin(), offered.end(),
                        [&](const VkExtensionProperties& one) { return name == one.extensionName; });
   });
@@ -174,8 +174,8 @@ Result<> run_commands(VulkanHost& host, const std::function<Result<>(VkCommandBu
   auto begin = vulkan_struct<VkCommandBufferBeginInfo>(VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO);
   begin.flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT;
   host.vk.vkBeginCommandBuffer(commands, &begin);
-  Result<> outcome = record(commands);
-  if (outcome) {
+  Result<> recorded = record(commands);
+  if (recorded) {
     result = host.vk.vkEndCommandBuffer(commands);
     auto buffer = vulkan_struct<VkCommandBufferSubmitInfo>(VK_STRUCTURE_TYPE_COMMAND_BUFFER_SUBMIT_INFO);
     buffer.commandBuffer = commands;
@@ -186,15 +186,15 @@ Result<> run_commands(VulkanHost& host, const std::function<Result<>(VkCommandBu
     if (result == VK_SUCCESS)
       result = host.vk.vkWaitForFences(host.device, 1, &host.fence, VK_TRUE, UINT64_MAX);
     host.vk.vkResetFences(host.device, 1, &host.fence);
-    if (result != VK_SUCCESS) outcome = vulkan_error("submitting commands", result);
+    if (result != VK_SUCCESS) recorded = vulkan_error("submitting commands", result);
   }
   host.vk.vkFreeCommandBuffers(host.device, host.pool, 1, &commands);
-  return outcome;
+  return recorded;
 }
 
-uint32_t find_memory_type(const VulkanHost& host, uint32_t type_bits, VkMemoryPropertyFlags wanted,
-                          VkMemoryPropertyFlags needed) {
-  for (const VkMemoryPropertyFlags flags : {wanted | needed, needed}) {
+uint32_t find_memory_type(const VulkanHost& host, uint32_t type_bits, VkMemoryPropertyFlags preferred,
+                          VkMemoryPropertyFlags required) {
+  for (const VkMemoryPropertyFlags flags : {preferred | required, required}) {
     for (uint32_t i = 0; i < host.memory.memoryTypeCount; ++i) {
       const bool allowed = (type_bits >> i) & 1u;
       if (allowed && (host.memory.memoryTypes[i].propertyFlags & flags) == flags) return i;

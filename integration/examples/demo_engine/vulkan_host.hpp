@@ -50,9 +50,9 @@ Result<std::unique_ptr<VulkanHost>> create_vulkan_host(const HostOptions& option
 // returns.
 Result<> run_commands(VulkanHost& host, const std::function<Result<>(VkCommandBuffer)>& record);
 
-// Returns the index of a memory type with all `wanted` flags, else with `needed`; UINT32_MAX if
+// Returns the index of a memory type with all `preferred` flags, else with `required`; UINT32_MAX if
 // there is none.
-uint32_t find_memory_type(const VulkanHost& host, uint32_t type_bits, VkMemoryPropertyFlags wanted,
-                          VkMemoryPropertyFlags needed);
+uint32_t find_memory_type(const VulkanHost& host, uint32_t type_bits, VkMemoryPropertyFlags preferred,
+                          VkMemoryPropertyFlags required);
 
 } // namespace demo

@@ -15,9 +15,9 @@ using namespace dermis::tools;
 
 // Sends log lines to stderr, so that stdout holds only results.
 void set_up_log(const Session& session) {
-  auto log = spdlog::stderr_color_st("dermis", color_wanted(session.color, STDERR_FILENO)
-                                                   ? spdlog::color_mode::always
-                                                   : spdlog::color_mode::never);
+  auto log =
+      spdlog::stderr_color_st("dermis", use_color(session.color, STDERR_FILENO) ? spdlog::color_mode::always
+                                                                                : spdlog::color_mode::never);
   log->set_pattern("%n: %^%l%$: %v");
   log->set_level(session.quiet  ? spdlog::level::err
                  : session.json ? spdlog::level::warn

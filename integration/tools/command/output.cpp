@@ -60,10 +60,10 @@ std::string OutputFolder::open(const std::string& path) {
   const bool made = files::create_directories(path, problem);
   if (problem) return fmt::format("cannot make the output folder '{}': {}", path, problem.message());
   if (made) first_made_ = outermost.string();
-  const files::path probe = temporary_beside(path_of("probe"));
-  std::string refused;
-  if (!write_text(probe, "", refused))
-    return fmt::format("cannot write into the output folder '{}': {}", path, refused);
+  const files::path probe = temporary_path(path_of("probe"));
+  std::string rejected;
+  if (!write_text(probe, "", rejected))
+    return fmt::format("cannot write into the output folder '{}': {}", path, rejected);
   files::remove(probe, problem);
   return "";
 }

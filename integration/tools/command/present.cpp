@@ -38,7 +38,7 @@ void replace_first(std::string& text, std::string_view from, std::string_view co
 
 } // namespace
 
-bool color_wanted(ColorMode mode, int file_descriptor) {
+bool use_color(ColorMode mode, int file_descriptor) {
   if (mode != ColorMode::automatic) return mode == ColorMode::always;
   const char* term = std::getenv("TERM");
   return isatty(file_descriptor) != 0 && std::getenv("NO_COLOR") == nullptr && term != nullptr &&

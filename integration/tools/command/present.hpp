@@ -14,7 +14,7 @@ enum class ColorMode : uint8_t { automatic, always, never };
 
 // Returns whether to use colour on this file descriptor. Automatic means on a terminal, unless
 // NO_COLOR is set or TERM is "dumb".
-bool color_wanted(ColorMode mode, int file_descriptor);
+bool use_color(ColorMode mode, int file_descriptor);
 
 // Colours the severity and the caret lines of a formatted diagnostic.
 std::string color_diagnostic(std::string_view formatted);

@@ -27,7 +27,7 @@ ExitCode fail(const Session& session, ExitCode code, std::string_view message,
 
 void print_diagnostics(const Session& session, const Diagnostics& diagnostics) {
   if (session.json) return;
-  const bool color = color_wanted(session.color, STDERR_FILENO);
+  const bool color = use_color(session.color, STDERR_FILENO);
   for (const Diagnostic& one : diagnostics.list) {
     if (session.quiet && diagnostic_info(one.id).severity != Severity::error) continue;
     const std::string text = format_for_people(diagnostics, one);

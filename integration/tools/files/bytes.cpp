@@ -50,7 +50,7 @@ std::optional<std::vector<uint8_t>> read_bytes(const fs::path& path, uint64_t li
   return bytes;
 }
 
-fs::path temporary_beside(const fs::path& path) {
+fs::path temporary_path(const fs::path& path) {
   static std::atomic<uint64_t> counter{0}; // makes names unique within the process
   fs::path result = path;
   result += fmt::format(".{}-{}.part", ::getpid(), counter.fetch_add(1));
@@ -58,7 +58,7 @@ fs::path temporary_beside(const fs::path& path) {
 }
 
 bool write_bytes(const fs::path& path, std::span<const uint8_t> bytes, std::string& error) {
-  const fs::path part = temporary_beside(path);
+  const fs::path part = temporary_path(path);
   std::error_code code;
   bool complete = false;
   {

@@ -22,6 +22,6 @@ bool write_bytes(const std::filesystem::path& path, std::span<const uint8_t> byt
 bool write_text(const std::filesystem::path& path, std::string_view text, std::string& error);
 
 // Returns a name next to `path` that no other call of any process uses at the same time.
-std::filesystem::path temporary_beside(const std::filesystem::path& path);
+std::filesystem::path temporary_path(const std::filesystem::path& path);
 
 } // namespace dermis::tools

@@ -75,14 +75,14 @@ void read_projection(const Document& document, ObjectReader& reader, CapturedFra
   frame.metres_per_unit = reader.number("metres_per_unit", minimum, maximum, Need::optional).value_or(1);
   reader.numbers("jitter_px", frame.jitter_px, -1, 1, Need::optional);
   subsurface::CameraMatrices camera = read_matrices(reader, frame.pixel_pitch_m.has_value());
-  const auto refuse = [&](std::string_view key, std::string text) {
+  const auto reject = [&](std::string_view key, std::string text) {
     diagnostics.add(DiagnosticId::capture_projection, document.where(document.find(reader.node(), key)),
                     std::move(text));
   };
   if (frame.pixel_pitch_m && frame.perspective)
-    return refuse("pixel_pitch_m", "'pixel_pitch_m' is for orthographic captures; this one is perspective");
+    return reject("pixel_pitch_m", "'pixel_pitch_m' is for orthographic captures; this one is perspective");
   if (frame.pixel_pitch_m && document.find(reader.node(), "clip_from_view").valid())
-    return refuse("pixel_pitch_m",
+    return reject("pixel_pitch_m",
                   "'pixel_pitch_m' and 'clip_from_view' both describe the projection; give one");
   if (!reader.ok()) return;
   if (frame.pixel_pitch_m) {
@@ -102,13 +102,13 @@ void read_projection(const Document& document, ObjectReader& reader, CapturedFra
       captured.rays.perspective == frame.perspective)
     return;
   if (fault == subsurface::CameraFault::none || fault == subsurface::CameraFault::no_projection)
-    return refuse("clip_from_view", fmt::format("'clip_from_view' is not an axis-aligned {} projection "
+    return reject("clip_from_view", fmt::format("'clip_from_view' is not an axis-aligned {} projection "
                                                 "(row-major, clip = M * view, Vulkan clip space)",
                                                 frame.perspective ? "perspective" : "orthographic"));
   const bool previous = fault == subsurface::CameraFault::previous_left ||
                         fault == subsurface::CameraFault::previous_right ||
                         fault == subsurface::CameraFault::previous_behind_camera;
-  refuse(previous ? "previous_clip_from_view" : "clip_from_view",
+  reject(previous ? "previous_clip_from_view" : "clip_from_view",
          fmt::format("{}; the camera looks down -z, or along +z with \"view_space\": \"left_handed\"",
                      subsurface::text_of(fault)));
 }

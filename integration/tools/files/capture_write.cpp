@@ -28,8 +28,8 @@ bool may_replace(const fs::path& folder) {
   if (!fs::exists(folder, code)) return true;
   if (!fs::is_directory(folder, code)) return false;
   if (fs::is_empty(folder, code)) return true;
-  Diagnostics unheard;
-  return !find_frames(folder, unheard).empty();
+  Diagnostics unreported;
+  return !find_frames(folder, unreported).empty();
 }
 
 } // namespace
@@ -67,7 +67,7 @@ bool CaptureWriter::begin(const fs::path& folder, std::string& error) {
     error = fmt::format("'{}' exists and is not a capture; choose another folder", folder.string());
     return false;
   }
-  part_ = temporary_beside(target_);
+  part_ = temporary_path(target_);
   frames_ = 0;
   fs::create_directories(part_, code);
   if (code) error = fmt::format("'{}' cannot be made: {}", folder.string(), code.message());
@@ -107,7 +107,7 @@ bool CaptureWriter::finish(std::string& error) {
   if (fs::exists(target_, code)) {
     // Folders cannot be exchanged in one step. The old folder is renamed first, so that a complete
     // capture always exists.
-    const fs::path old = temporary_beside(target_);
+    const fs::path old = temporary_path(target_);
     fs::rename(target_, old, code);
     if (!code) fs::rename(part_, target_, code);
     std::error_code ignored;

@@ -146,7 +146,7 @@ struct Window {
 };
 
 // Returns the reason to reject an image of these sizes, or "". Runs before pixels are allocated.
-std::string check_sizes(const Imf::Header& header, bool tiled, size_t wanted, size_t file_bytes) {
+std::string check_sizes(const Imf::Header& header, bool tiled, size_t read_channels, size_t file_bytes) {
   const Window data(header.dataWindow()), display(header.displayWindow());
   for (const auto& [name, window] : {std::pair("data", data), std::pair("display", display)})
     if (window.width < 1 || window.height < 1 || window.width > max_image_side ||
@@ -160,7 +160,7 @@ std::string check_sizes(const Imf::Header& header, bool tiled, size_t wanted, si
       std::min(max_image_bytes, std::max(always_read, max_packing * uint64_t{file_bytes}));
   if (pixel_bytes > maximum || data.pixels() > maximum / pixel_bytes)
     return fmt::format("its {} channels hold more than {} bytes", channels, maximum);
-  if (display.pixels() > maximum / (wanted * sizeof(float)))
+  if (display.pixels() > maximum / (read_channels * sizeof(float)))
     return fmt::format("its display window holds more than {} bytes", maximum);
   uint64_t chunk = static_cast<uint64_t>(data.width) *
                    std::min(static_cast<uint64_t>(data.height),
@@ -192,14 +192,14 @@ ChannelNames select_channels(const Imf::ChannelList& channels, std::span<const C
 }
 
 std::string describe_mismatch(const Imf::ChannelList& channels, std::span<const ChannelNames> accepted) {
-  std::vector<std::string> present, wanted;
+  std::vector<std::string> present, expected;
   for (auto c = channels.begin(); c != channels.end(); ++c)
     present.emplace_back(c.name());
   for (const ChannelNames& names : accepted)
-    wanted.push_back(names == ChannelNames{"*"} ? "a single channel"
-                                                : fmt::format("{}", fmt::join(names, ",")));
+    expected.push_back(names == ChannelNames{"*"} ? "a single channel"
+                                                  : fmt::format("{}", fmt::join(names, ",")));
   return fmt::format("it has the channels {}; expected {}", fmt::join(present, ","),
-                     fmt::join(wanted, " or "));
+                     fmt::join(expected, " or "));
 }
 
 // Rows of the data window, decoded in blocks.

@@ -16,10 +16,10 @@ namespace {
 
 FileText open_file(const std::vector<fs::path>& roots, std::string_view name) {
   FileText out;
-  std::string looked_in;
+  std::string searched;
   for (const fs::path& root : roots) {
     const PlacedFile placed = place_file(root, name, std::span(&root, 1));
-    looked_in += fmt::format("{}'{}'", looked_in.empty() ? "" : ", ", root.empty() ? "." : root.string());
+    searched += fmt::format("{}'{}'", searched.empty() ? "" : ", ", root.empty() ? "." : root.string());
     std::error_code code;
     if (!fs::exists(placed.real, code)) continue;
     out.name = placed.path.string();
@@ -32,9 +32,9 @@ FileText open_file(const std::vector<fs::path>& roots, std::string_view name) {
     if (bytes) out.text.assign(bytes->begin(), bytes->end());
     return out;
   }
-  out.problem = looked_in.empty()
+  out.problem = searched.empty()
                     ? std::string("no folder to read from is declared; add one with --root")
-                    : fmt::format("there is no such file in {}; add folders with --root", looked_in);
+                    : fmt::format("there is no such file in {}; add folders with --root", searched);
   return out;
 }
 

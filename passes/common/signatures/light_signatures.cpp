@@ -54,7 +54,7 @@ constexpr PassTypeSetting combine_settings[] = {
                     "source of the light of copied tiles: unscattered (if bound) or scattered"),
 };
 
-constexpr Port copy_ports[] = {
+constexpr Port copy_tiles_ports[] = {
     port::own_texels(port::lighting),
     port::albedo,
     port::tiles,
@@ -62,7 +62,7 @@ constexpr Port copy_ports[] = {
     port::updated("scattered", "written if no tile scatters; otherwise unchanged"),
 };
 
-constexpr Port light_ports[] = {
+constexpr Port export_scattered_ports[] = {
     port::own_texels(port::lighting),
     port::where_covered(own_light("scattered", "scattered light; unbound: no light scatters")),
     port::material,
@@ -83,7 +83,7 @@ constexpr Port back_lighting = port::sampled(
     "irradiance on the far side, linear, from the light along whose direction thickness is measured",
     port::color_formats);
 constexpr Port thickness = port::sampled("thickness", "path length of that light through the material [m]");
-constexpr Port thin_parts_ports[] = {
+constexpr Port transmission_stats_ports[] = {
     back_lighting, thickness, port::material, port::scatter_scale, port::tiles, port::arguments,
 };
 constexpr Port transmission_ports[] = {
@@ -123,7 +123,7 @@ const PassType transmission_stats_type{
     .shader = "common/subsurface_transmission_stats",
     .doc = "Measures the light transmitted through thin parts, which the choice uses to estimate the error "
            "of screen-space techniques.",
-    .ports = thin_parts_ports,
+    .ports = transmission_stats_ports,
     .settings = {},
     .dispatch = over_tiles,
     .side_effects = true, // reports to the host
@@ -144,7 +144,7 @@ const PassType copy_tiles_type{
     .shader = "common/subsurface_copy_tiles",
     .doc = "Copies light unchanged if no tile of the screen scatters, for passes that need all tiles in one "
            "image.",
-    .ports = copy_ports,
+    .ports = copy_tiles_ports,
     .settings = texturing,
     .dispatch = over_tiles,
 };
@@ -154,7 +154,7 @@ const PassType export_scattered_type{
     .shader = "common/subsurface_export_scattered",
     .doc = "Exports scattered light before albedo for every pixel, for tools and for hosts that apply albedo "
            "later.",
-    .ports = light_ports,
+    .ports = export_scattered_ports,
     .settings = texturing,
     .dispatch = over_view,
 };

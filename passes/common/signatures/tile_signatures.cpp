@@ -30,7 +30,7 @@ constexpr Port classify_ports[] = {
 };
 constexpr PassTypeSetting classify_settings[] = {setting::texturing};
 
-constexpr Port flat_ports[] = {
+constexpr Port uniform_light_ports[] = {
     light_range,
     light_cells,
     {"classes", Usage::storage_buffer_update, false, "uint", port::classes.doc},
@@ -42,7 +42,7 @@ constexpr Port tile_list_ports[] = {
     port::writer_of(port::arguments),
 };
 
-constexpr Port skips_ports[] = {
+constexpr Port debug_tile_class_ports[] = {
     port::read_buffer("classes", "uint",
                       "output of subsurface.classify or subsurface.classify_uniform_light"),
     port::material,
@@ -65,7 +65,7 @@ const PassType classify_uniform_light_type{
     .name = "subsurface.classify_uniform_light",
     .shader = "common/subsurface_classify_uniform_light",
     .doc = "Reclassifies tiles as copied if their light is uniform within the reach of scattering.",
-    .ports = flat_ports,
+    .ports = uniform_light_ports,
     .settings = {},
     .dispatch = over_tile_grid,
 };
@@ -74,7 +74,7 @@ const PassType debug_tile_class_type{
     .name = "subsurface.debug_tile_class",
     .shader = "common/subsurface_debug_tile_class",
     .doc = "Writes the class of each tile for tools.",
-    .ports = skips_ports,
+    .ports = debug_tile_class_ports,
     .settings = {},
     .dispatch = over_view,
 };

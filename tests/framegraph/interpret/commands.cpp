@@ -12,7 +12,7 @@ namespace dermis {
 namespace {
 
 // One access of a command to one piece of memory.
-struct Touch {
+struct Access {
   uint32_t command = 0;
   bool is_barrier = false;
   // For barriers: the stages waited for. For passes: the stages of the access.
@@ -22,11 +22,11 @@ struct Touch {
   Queue queue = Queue::main;
 };
 
-bool same(const Touch& a, const Touch& b) {
+bool same(const Access& a, const Access& b) {
   return a.command == b.command && a.source == b.source && a.destination == b.destination;
 }
 
-bool waits(const Touch& later, const Touch& earlier) {
+bool waits(const Access& later, const Access& earlier) {
   if (later.queue != earlier.queue) return false;
   if (later.is_barrier && later.from_host) return earlier.is_barrier && earlier.to_host;
   if (later.is_barrier && earlier.is_barrier) return (earlier.destination & later.source) != 0;
@@ -35,14 +35,15 @@ bool waits(const Touch& later, const Touch& earlier) {
 }
 
 // Returns the accesses to each piece of memory, in command order.
-std::vector<std::vector<Touch>> touches_of(const Plan& plan, const Memory& memory,
-                                           const std::vector<Command>& commands) {
-  std::vector<std::vector<Touch>> touches(memory.overlap.size());
+std::vector<std::vector<Access>> accesses_by_piece(const Plan& plan, const Memory& memory,
+                                                   const std::vector<Command>& commands) {
+  std::vector<std::vector<Access>> piece_accesses(memory.overlap.size());
   // Adds at most one access per piece.
-  const auto touch = [&](const auto& what, uint32_t frame, const Touch& one) {
+  const auto add_access = [&](const auto& what, uint32_t frame, const Access& one) {
     for (const uint32_t own : memory.pieces(plan, what.resource, what.frames_back, frame, what.range))
       for (const uint32_t piece : memory.overlap[own])
-        if (touches[piece].empty() || !same(touches[piece].back(), one)) touches[piece].push_back(one);
+        if (piece_accesses[piece].empty() || !same(piece_accesses[piece].back(), one))
+          piece_accesses[piece].push_back(one);
   };
   for (uint32_t c = 0; c < commands.size(); ++c) {
     const Command& command = commands[c];
@@ -51,16 +52,16 @@ std::vector<std::vector<Touch>> touches_of(const Plan& plan, const Memory& memor
       const PlanPass& pass = plan.passes[command.index];
       for (uint32_t a = pass.first_access; a < pass.first_access + pass.access_count; ++a) {
         const PlanAccess& access = plan.accesses[a];
-        touch(access, command.frame, {c, false, access.stages, 0, false, false, command.queue});
+        add_access(access, command.frame, {c, false, access.stages, 0, false, false, command.queue});
       }
     } else {
       const PlanBarrier& barrier = plan.barriers[command.index];
-      touch(barrier, command.frame,
-            {c, true, barrier.source_stages, barrier.destination_stages, barrier.from_host, barrier.to_host,
-             command.queue});
+      add_access(barrier, command.frame,
+                 {c, true, barrier.source_stages, barrier.destination_stages, barrier.from_host,
+                  barrier.to_host, command.queue});
     }
   }
-  return touches;
+  return piece_accesses;
 }
 
 } // namespace
@@ -147,7 +148,7 @@ std::vector<uint32_t> legal_order(const Plan& plan, const Memory& memory,
   std::iota(order.begin(), order.end(), 0u);
   if (seed == 0) return order;
   std::vector<std::vector<uint32_t>> followers(commands.size());
-  for (const std::vector<Touch>& on_piece : touches_of(plan, memory, commands))
+  for (const std::vector<Access>& on_piece : accesses_by_piece(plan, memory, commands))
     for (size_t later = 0; later < on_piece.size(); ++later)
       for (size_t earlier = 0; earlier < later; ++earlier) {
         const uint32_t a = on_piece[earlier].command, b = on_piece[later].command;

@@ -111,7 +111,7 @@ struct Interpreter {
 
   void run(const PlanPass& pass, uint32_t frame) {
     const PlanAccess* accesses = plan.accesses.data() + pass.first_access;
-    std::vector<StandInInput> inputs;
+    std::vector<PlaceholderInput> inputs;
     for (uint32_t a = 0; a < pass.access_count; ++a)
       if ((accesses[a].access & ~all_write_access) != 0 && happens(accesses, a, frame))
         for (const uint32_t piece : pieces_of(accesses[a], frame)) {
@@ -119,7 +119,7 @@ struct Interpreter {
           inputs.push_back({accesses[a].port, pieces[piece]});
         }
     std::stable_sort(inputs.begin(), inputs.end(),
-                     [](const StandInInput& a, const StandInInput& b) { return a.port < b.port; });
+                     [](const PlaceholderInput& a, const PlaceholderInput& b) { return a.port < b.port; });
     for (uint32_t a = 0; a < pass.access_count; ++a) {
       if ((accesses[a].access & all_write_access) == 0) continue;
       uint32_t part = 0;

@@ -24,11 +24,11 @@ Pixels arbitrary_pixels(uint64_t seed, uint64_t stream) {
   return out;
 }
 
-Pixels placeholder(uint32_t pass, uint32_t port, uint32_t part, std::span<const StandInInput> inputs) {
+Pixels placeholder(uint32_t pass, uint32_t port, uint32_t part, std::span<const PlaceholderInput> inputs) {
   Pixels out{};
   for (size_t i = 0; i < out.size(); ++i) {
     uint64_t sum = mix(mix(mix(pass, port), part), i);
-    for (const StandInInput& input : inputs) {
+    for (const PlaceholderInput& input : inputs) {
       sum = mix(sum, input.port);
       for (const size_t ahead : neighbours)
         sum = mix(sum, input.pixels[(i + ahead) % input.pixels.size()]);

@@ -12,7 +12,7 @@ namespace dermis {
 // Used for every buffer and every mip of a layer, whatever its size.
 using Pixels = std::array<uint64_t, 8>;
 
-struct StandInInput {
+struct PlaceholderInput {
   uint32_t port = 0;
   Pixels pixels{};
 };
@@ -24,6 +24,6 @@ Pixels arbitrary_pixels(uint64_t seed, uint64_t stream);
 // Returns the pixels that pass number `pass` writes to `port` from these inputs, in this order.
 // `part` is the index of the mip and layer among those of the port. Each pixel depends on several
 // pixels of every input. Settings have no effect.
-Pixels placeholder(uint32_t pass, uint32_t port, uint32_t part, std::span<const StandInInput> inputs);
+Pixels placeholder(uint32_t pass, uint32_t port, uint32_t part, std::span<const PlaceholderInput> inputs);
 
 } // namespace dermis

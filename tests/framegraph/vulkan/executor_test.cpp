@@ -252,9 +252,9 @@ TEST_F(ExecutorTest, AWrongFrameIsRefusedAndRecordsNothing) {
   const vulkan::HostImage bound = images[0];
 
   images[0].image = VK_NULL_HANDLE;
-  vulkan::RecordResult refused = frame();
-  EXPECT_EQ(refused.kind, vulkan::ErrorKind::argument);
-  EXPECT_EQ(refused.slot, 0);
+  vulkan::RecordResult rejected = frame();
+  EXPECT_EQ(rejected.kind, vulkan::ErrorKind::argument);
+  EXPECT_EQ(rejected.slot, 0);
   images[0] = bound;
   images[0].view = VK_NULL_HANDLE;
   EXPECT_EQ(frame().slot, 0);

@@ -84,9 +84,9 @@ TEST_F(RejectedFrames, ReasonIsGiven_ExecutorIsUnchanged) {
       {"after.layout", [=](Frame& f) { f.images[out].after.layout = VK_IMAGE_LAYOUT_PREINITIALIZED; }},
   };
   for (const auto& [said, change] : changes) {
-    const vulkan::RecordResult refused = record(change);
-    EXPECT_EQ(refused.kind, vulkan::ErrorKind::argument) << said;
-    EXPECT_THAT(refused.text, HasSubstr(said));
+    const vulkan::RecordResult rejected = record(change);
+    EXPECT_EQ(rejected.kind, vulkan::ErrorKind::argument) << said;
+    EXPECT_THAT(rejected.text, HasSubstr(said));
   }
   settings.clear();
   ASSERT_FALSE(frame()) << "the next right frame runs";
@@ -104,9 +104,9 @@ TEST_F(RejectedFrames, TooFewSettings_AreRefused) {
   images.clear();
   make_executor(two, side, side);
   bind(two, "result", {});
-  const vulkan::RecordResult refused = record([](Frame&) {});
-  EXPECT_EQ(refused.kind, vulkan::ErrorKind::argument);
-  EXPECT_THAT(refused.text, HasSubstr("settings has fewer values"));
+  const vulkan::RecordResult rejected = record([](Frame&) {});
+  EXPECT_EQ(rejected.kind, vulkan::ErrorKind::argument);
+  EXPECT_THAT(rejected.text, HasSubstr("settings has fewer values"));
 }
 
 TEST_F(RejectedFrames, WrongHostBuffer_IsRefusedWithSizeAndPlace) {
@@ -131,18 +131,18 @@ TEST_F(RejectedFrames, WrongHostBuffer_IsRefusedWithSizeAndPlace) {
   // Refused before the buffer is used.
   const auto some_buffer = reinterpret_cast<VkBuffer>(uintptr_t{8});
   std::vector<vulkan::HostBuffer> buffers(slot + 1);
-  const auto refused = [&](const vulkan::HostBuffer& binding) {
+  const auto rejected = [&](const vulkan::HostBuffer& binding) {
     buffers[slot] = binding;
     return record([&](Frame& f) {
       f.settings.clear();
       f.input.buffers = buffers;
     });
   };
-  EXPECT_THAT(refused({}).text, HasSubstr("the slot is not bound"));
-  EXPECT_THAT(refused({some_buffer, 0, bytes - 1, {}, {}}).text, HasSubstr("fewer bytes"));
-  EXPECT_THAT(refused({some_buffer, 0, uint64_t{limits.maxStorageBufferRange} + 1, {}, {}}).text,
+  EXPECT_THAT(rejected({}).text, HasSubstr("the slot is not bound"));
+  EXPECT_THAT(rejected({some_buffer, 0, bytes - 1, {}, {}}).text, HasSubstr("fewer bytes"));
+  EXPECT_THAT(rejected({some_buffer, 0, uint64_t{limits.maxStorageBufferRange} + 1, {}, {}}).text,
               HasSubstr("more than the device can bind"));
-  const vulkan::RecordResult aside = refused({some_buffer, 1, bytes, {}, {}});
+  const vulkan::RecordResult aside = rejected({some_buffer, 1, bytes, {}, {}});
   if (limits.minStorageBufferOffsetAlignment > 1) {
     EXPECT_THAT(aside.text, HasSubstr("minStorageBufferOffsetAlignment"));
     EXPECT_EQ(aside.slot, static_cast<int32_t>(slot));

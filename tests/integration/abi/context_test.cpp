@@ -77,20 +77,21 @@ TEST_F(Context, EveryMissingFeatureIsNamedAtOnce) {
 
 TEST_F(Context, OutOfRangeFieldsAreNamed) {
   dermis_context other = nullptr;
-  const auto refused = [&](dermis_result result, const char* field, auto change) {
+  const auto rejected = [&](dermis_result result, const char* field, auto change) {
     dermis_context_desc desc = context_desc();
     change(desc);
     EXPECT_EQ(dermis_context_create(&desc, &other), result) << field;
     EXPECT_THAT(dermis_last_error(), HasSubstr(field));
     EXPECT_EQ(other, nullptr);
   };
-  refused(DERMIS_ERROR_VERSION, "abi_version", [](auto& desc) { desc.abi_version = DERMIS_ABI_VERSION + 1; });
-  refused(DERMIS_ERROR_VERSION, "abi_version", [](auto& desc) { desc.abi_version = 0; });
-  refused(DERMIS_ERROR_ARGUMENT, "flags", [](auto& desc) { desc.flags = 0x80000000u; });
-  refused(DERMIS_ERROR_ARGUMENT, "frames_in_flight", [](auto& desc) { desc.frames_in_flight = 9; });
-  refused(DERMIS_ERROR_ARGUMENT, "queue family", [](auto& desc) { desc.queue_family = 1000; });
-  refused(DERMIS_ERROR_ARGUMENT, "struct_size", [](auto& desc) { desc.struct_size = 0; });
-  refused(DERMIS_ERROR_ARGUMENT, "struct_size", [](auto& desc) { desc.struct_size = 1; });
+  rejected(DERMIS_ERROR_VERSION, "abi_version",
+           [](auto& desc) { desc.abi_version = DERMIS_ABI_VERSION + 1; });
+  rejected(DERMIS_ERROR_VERSION, "abi_version", [](auto& desc) { desc.abi_version = 0; });
+  rejected(DERMIS_ERROR_ARGUMENT, "flags", [](auto& desc) { desc.flags = 0x80000000u; });
+  rejected(DERMIS_ERROR_ARGUMENT, "frames_in_flight", [](auto& desc) { desc.frames_in_flight = 9; });
+  rejected(DERMIS_ERROR_ARGUMENT, "queue family", [](auto& desc) { desc.queue_family = 1000; });
+  rejected(DERMIS_ERROR_ARGUMENT, "struct_size", [](auto& desc) { desc.struct_size = 0; });
+  rejected(DERMIS_ERROR_ARGUMENT, "struct_size", [](auto& desc) { desc.struct_size = 1; });
 }
 
 TEST_F(Context, NewerHeader_ZeroNewFieldsAreAccepted) {

@@ -352,19 +352,19 @@ TEST_F(GraphLife, Resize_StartsAtTheNextRecord) {
 TEST_F(GraphLife, SettingsAreCheckedAndNamed) {
   const dermis_graph graph = make_graph();
   ASSERT_NE(graph, nullptr);
-  const auto refused = [&](const char* name, const char* json, dermis_result result, const char* said) {
+  const auto rejected = [&](const char* name, const char* json, dermis_result result, const char* said) {
     dermis_report report = nullptr;
     EXPECT_EQ(dermis_graph_set_setting(graph, name, json, &report), result) << name << " = " << json;
     EXPECT_THAT(take(report).all, HasSubstr(said));
   };
-  refused("sample", "16", DERMIS_ERROR_ARGUMENT, "'samples'");
-  refused("samples", "3", DERMIS_ERROR_CONFIG, "4..4096");
-  refused("samples", "5000", DERMIS_ERROR_CONFIG, "4..4096");
-  refused("samples", "16.5", DERMIS_ERROR_CONFIG, "an integer");
-  refused("samples", "\"16\"", DERMIS_ERROR_CONFIG, "an integer");
-  refused("samples", "", DERMIS_ERROR_CONFIG, "setting samples:1:1");
-  refused("samples", "16,", DERMIS_ERROR_CONFIG, "setting samples:1:3");
-  refused("texturing", "\"after\"", DERMIS_ERROR_CONFIG, "\"pre_post\"");
+  rejected("sample", "16", DERMIS_ERROR_ARGUMENT, "'samples'");
+  rejected("samples", "3", DERMIS_ERROR_CONFIG, "4..4096");
+  rejected("samples", "5000", DERMIS_ERROR_CONFIG, "4..4096");
+  rejected("samples", "16.5", DERMIS_ERROR_CONFIG, "an integer");
+  rejected("samples", "\"16\"", DERMIS_ERROR_CONFIG, "an integer");
+  rejected("samples", "", DERMIS_ERROR_CONFIG, "setting samples:1:1");
+  rejected("samples", "16,", DERMIS_ERROR_CONFIG, "setting samples:1:3");
+  rejected("texturing", "\"after\"", DERMIS_ERROR_CONFIG, "\"pre_post\"");
   EXPECT_EQ(dermis_graph_set_setting(graph, "texturing", "\"pre\"", nullptr), DERMIS_OK);
   EXPECT_EQ(dermis_graph_set_setting(graph, nullptr, "1", nullptr), DERMIS_ERROR_ARGUMENT);
   EXPECT_EQ(dermis_graph_set_setting(graph, "samples", nullptr, nullptr), DERMIS_ERROR_ARGUMENT);

@@ -302,19 +302,19 @@ TEST_F(Histories, GraphWithoutHistories_ReportsNone) {
 TEST_F(Histories, WrongArgumentsAreNamed) {
   make(keeping("burley"));
   uint32_t count = 2;
-  const auto refused = [](dermis_result result, const char* named) {
+  const auto rejected = [](dermis_result result, const char* named) {
     EXPECT_EQ(result, DERMIS_ERROR_ARGUMENT);
     EXPECT_THAT(dermis_last_error(), HasSubstr(named));
   };
-  refused(dermis_view_histories(dermis_graph_view(nullptr), &count, nullptr), "view is NULL");
-  refused(dermis_view_histories(dermis_graph_view(graph), nullptr, nullptr), "count is NULL");
-  refused(dermis_view_histories(nullptr, &count, nullptr), "view is NULL");
+  rejected(dermis_view_histories(dermis_graph_view(nullptr), &count, nullptr), "view is NULL");
+  rejected(dermis_view_histories(dermis_graph_view(graph), nullptr, nullptr), "count is NULL");
+  rejected(dermis_view_histories(nullptr, &count, nullptr), "view is NULL");
   // Every size below that of the first version is refused; bytes beyond the known size are filled
   // with zeros.
   for (size_t size = 0; size < sizeof(dermis_history); ++size) {
     dermis_history small = DERMIS_HISTORY_INIT;
     small.struct_size = size;
-    refused(dermis_view_histories(dermis_graph_view(graph), &count, &small), "struct_size");
+    rejected(dermis_view_histories(dermis_graph_view(graph), &count, &small), "struct_size");
   }
   struct Newer {
     dermis_history known;

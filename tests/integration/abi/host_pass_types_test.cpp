@@ -274,8 +274,8 @@ TEST_F(HostPassTypes, UpdateInPlaceNeedsOwnTexels) {
       "exports": ["lighting"] })";
     return options;
   };
-  dermis_graph refused = nullptr;
-  EXPECT_NE(create_graph(options_of("studio.blur"), &refused), DERMIS_OK);
+  dermis_graph rejected = nullptr;
+  EXPECT_NE(create_graph(options_of("studio.blur"), &rejected), DERMIS_OK);
   EXPECT_THAT(dermis_last_error(), HasSubstr("D0232"));
   EXPECT_NE(make_graph(options_of("studio.fade")), nullptr);
   size_t size = 0;

@@ -115,14 +115,14 @@ TEST_F(Hybrid, DeviceAllocatesSamplesLikeTheCpu) {
       values.insert(values.end(), {1, 1, 1, 1.0f - float(unmet(x, y)) / 1024});
     }
   upload("painted", values);
-  const uint32_t wanted = choice::allocate_samples(tile_errors, {}, UINT32_MAX).wanted;
+  const uint32_t demand = choice::allocate_samples(tile_errors, {}, UINT32_MAX).demand;
   std::vector<uint32_t> before;
-  for (const uint32_t units : {wanted, wanted / 2, wanted / 3, 7u, 1u, 0u}) {
+  for (const uint32_t units : {demand, demand / 2, demand / 3, 7u, 1u, 0u}) {
     fill("lighting", [](uint32_t x, uint32_t) { return x % 2 == 0 ? 0.25f : 0.5f; }); // Not flat.
     set_units(units);
     const demo::ReportedFrame choice = run_frame();
     const choice::SampleAllocation expected = choice::allocate_samples(tile_errors, before, units);
-    EXPECT_EQ(choice.sample_demand, wanted);
+    EXPECT_EQ(choice.sample_demand, demand);
     EXPECT_EQ(choice.sample_units, expected.units);
     const auto light = texels("lighting");
     std::array<uint32_t, 4> counts{};
@@ -225,11 +225,11 @@ void expect_no_seams(const std::vector<float>& none, const std::vector<float>& a
                      const std::vector<float>& half) {
   for (const auto* pure : {&none, &all})
     for (const uint32_t harmonic : {8u, 16u, 24u}) {
-      std::vector<double> beside;
+      std::vector<double> neighbours;
       for (int k = -3; k <= 3; ++k)
-        if (k != 0) beside.push_back(energy(half, *pure, harmonic + static_cast<uint32_t>(k)));
-      std::sort(beside.begin(), beside.end());
-      EXPECT_LE(energy(half, *pure, harmonic), 2 * 0.5 * (beside[2] + beside[3])) << harmonic;
+        if (k != 0) neighbours.push_back(energy(half, *pure, harmonic + static_cast<uint32_t>(k)));
+      std::sort(neighbours.begin(), neighbours.end());
+      EXPECT_LE(energy(half, *pure, harmonic), 2 * 0.5 * (neighbours[2] + neighbours[3])) << harmonic;
     }
 }
 

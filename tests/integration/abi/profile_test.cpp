@@ -188,17 +188,17 @@ TEST_F(SetProfile, IsKeptOverAReloadAndForNewViews) {
 
 TEST_F(SetProfile, WrongProfile_IsNamedAndChangesNothing) {
   const dermis_graph graph = make_graph(with("burley", "skin")), skin = make_graph(with("burley", "skin"));
-  const auto refused = [](dermis_result result, const char* said) {
+  const auto rejected = [](dermis_result result, const char* said) {
     EXPECT_EQ(result, DERMIS_ERROR_ARGUMENT) << said;
     EXPECT_THAT(dermis_last_error(), HasSubstr(said));
   };
   const std::string text = profile_text("marble");
-  refused(dermis_graph_set_profile(nullptr, 1, nullptr, nullptr), "graph is NULL");
-  refused(set_profile(graph, text, 0), "id is 0, expected 1..255");
-  refused(set_profile(graph, text, 256), "id is 256, expected 1..255");
-  refused(dermis_graph_set_profile(graph, 2, nullptr, nullptr), "the graph has no profile 2");
+  rejected(dermis_graph_set_profile(nullptr, 1, nullptr, nullptr), "graph is NULL");
+  rejected(set_profile(graph, text, 0), "id is 0, expected 1..255");
+  rejected(set_profile(graph, text, 256), "id is 256, expected 1..255");
+  rejected(dermis_graph_set_profile(graph, 2, nullptr, nullptr), "the graph has no profile 2");
   const dermis_source empty = DERMIS_SOURCE_INIT;
-  refused(dermis_graph_set_profile(graph, 1, &empty, nullptr), "source.text is NULL");
+  rejected(dermis_graph_set_profile(graph, 1, &empty, nullptr), "source.text is NULL");
   dermis_report report = nullptr;
   EXPECT_EQ(set_profile(graph, "{ \"dermis_profile\": 1 }", 1, &report), DERMIS_ERROR_CONFIG);
   EXPECT_THAT(take(report).all, HasSubstr("profile.json:1:1"));

@@ -126,41 +126,41 @@ TEST_F(Fields, OfTexts_WrongOnesAreReportedWithTheirPlace) {
 
 TEST_F(Fields, OfCallsOnAGraph_NullOnesAreNamed) {
   ASSERT_EQ(host.make_graph(), DERMIS_OK) << dermis_last_error();
-  const auto refused = [](dermis_result result, const char* said) {
+  const auto rejected = [](dermis_result result, const char* said) {
     EXPECT_EQ(result, DERMIS_ERROR_ARGUMENT) << said;
     EXPECT_THAT(dermis_last_error(), HasSubstr(said));
   };
-  refused(dermis_graph_reload(host.graph, nullptr, nullptr), "dermis_graph_reload: desc is NULL");
+  rejected(dermis_graph_reload(host.graph, nullptr, nullptr), "dermis_graph_reload: desc is NULL");
   dermis_graph_desc empty = DERMIS_GRAPH_DESC_INIT;
-  refused(dermis_graph_reload(host.graph, &empty, nullptr), "dermis_graph_reload: desc.source.text is NULL");
+  rejected(dermis_graph_reload(host.graph, &empty, nullptr), "dermis_graph_reload: desc.source.text is NULL");
   empty.keep = DERMIS_KEEP_SOURCE;
-  refused(dermis_graph_reload(host.graph, &empty, nullptr), "dermis_graph_reload: the size is 0x0");
+  rejected(dermis_graph_reload(host.graph, &empty, nullptr), "dermis_graph_reload: the size is 0x0");
   empty.keep = DERMIS_KEEP_ALL + 1;
-  refused(dermis_graph_reload(host.graph, &empty, nullptr), "desc.keep is 0x80, known bits are 0x7f");
-  refused(dermis_graph_resize(host.graph, 0, 1, nullptr), "dermis_graph_resize: the size is 0x1");
-  refused(dermis_graph_set_setting(host.graph, nullptr, "1", nullptr), "name is NULL");
-  refused(dermis_graph_set_setting(host.graph, "samples", nullptr, nullptr), "json is NULL");
-  refused(dermis_graph_set_budget(host.graph, nullptr, nullptr), "budget is NULL");
-  refused(dermis_graph_set_budget(nullptr, nullptr, nullptr), "graph is NULL");
-  refused(dermis_graph_memory(host.graph, nullptr), "memory is NULL");
+  rejected(dermis_graph_reload(host.graph, &empty, nullptr), "desc.keep is 0x80, known bits are 0x7f");
+  rejected(dermis_graph_resize(host.graph, 0, 1, nullptr), "dermis_graph_resize: the size is 0x1");
+  rejected(dermis_graph_set_setting(host.graph, nullptr, "1", nullptr), "name is NULL");
+  rejected(dermis_graph_set_setting(host.graph, "samples", nullptr, nullptr), "json is NULL");
+  rejected(dermis_graph_set_budget(host.graph, nullptr, nullptr), "budget is NULL");
+  rejected(dermis_graph_set_budget(nullptr, nullptr, nullptr), "graph is NULL");
+  rejected(dermis_graph_memory(host.graph, nullptr), "memory is NULL");
   const dermis_view view = dermis_graph_view(host.graph);
-  refused(dermis_view_report(view, 0, nullptr), "report is NULL");
-  refused(dermis_view_statistics(view, 0, nullptr), "statistics is NULL");
+  rejected(dermis_view_report(view, 0, nullptr), "report is NULL");
+  rejected(dermis_view_statistics(view, 0, nullptr), "statistics is NULL");
   EXPECT_EQ(dermis_graph_view(nullptr), nullptr);
-  refused(dermis_graph_calibration(nullptr, nullptr, nullptr), "graph is NULL");
-  refused(dermis_graph_heaps(nullptr, nullptr, nullptr), "graph is NULL");
-  refused(dermis_register_pass_type(host.context, nullptr), "kind is NULL");
+  rejected(dermis_graph_calibration(nullptr, nullptr, nullptr), "graph is NULL");
+  rejected(dermis_graph_heaps(nullptr, nullptr, nullptr), "graph is NULL");
+  rejected(dermis_register_pass_type(host.context, nullptr), "kind is NULL");
   dermis_report report = nullptr;
   ASSERT_EQ(dermis_graph_set_setting(host.graph, "samples", "{}", &report), DERMIS_ERROR_CONFIG);
-  refused(dermis_report_message(report, 0, nullptr), "message is NULL");
+  rejected(dermis_report_message(report, 0, nullptr), "message is NULL");
   dermis_message message = DERMIS_MESSAGE_INIT;
-  refused(dermis_report_message(report, dermis_report_count(report), &message), "index is 1");
+  rejected(dermis_report_message(report, dermis_report_count(report), &message), "index is 1");
   dermis_report_destroy(report);
   demo::ReportedFrame choice;
   EXPECT_EQ(demo::read_reported(dermis_graph_view(host.graph), 0, choice), DERMIS_NOT_READY)
       << "no frame was recorded";
-  refused(dermis_view_discard(dermis_graph_view(host.graph), 1),
-          "frame_index is 1, expected that of the frame recorded last, 0");
+  rejected(dermis_view_discard(dermis_graph_view(host.graph), 1),
+           "frame_index is 1, expected that of the frame recorded last, 0");
 }
 
 TEST_F(Fields, OfABudget_WrongTablesChangeNothing) {

@@ -113,21 +113,21 @@ TEST_F(Frames, ContradictingHandedness_IsRefused) {
     frame.flags |= flags;
     return frame;
   };
-  const auto refused = [&](const dermis_frame& frame, const char* said) {
+  const auto rejected = [&](const dermis_frame& frame, const char* said) {
     EXPECT_EQ(dermis_view_record(dermis_graph_view(host.graph), &frame), DERMIS_ERROR_ARGUMENT) << said;
     EXPECT_THAT(dermis_last_error(), HasSubstr(said));
     EXPECT_THAT(dermis_last_error(), HasSubstr("DERMIS_FRAME_LEFT_HANDED"));
   };
-  refused(frame_of(perspective, false, perspective, false, DERMIS_FRAME_LEFT_HANDED),
-          "declared left-handed, but clip_from_view has w = -z");
-  refused(frame_of(perspective, true, perspective, false, 0), "previous_clip_from_view has w = -z");
-  refused(frame_of(perspective, false, perspective, true, 0), "previous_clip_from_view has w = z");
-  refused(frame_of(orthographic, false, perspective, true, 0), "the frame is right-handed");
-  refused(frame_of(orthographic, true, perspective, false, DERMIS_FRAME_LEFT_HANDED),
-          "the frame is left-handed");
-  refused(frame_of(orthographic, true, orthographic, true, 0), "only points behind the camera");
-  refused(frame_of(orthographic, false, orthographic, false, DERMIS_FRAME_LEFT_HANDED),
-          "only points behind the camera");
+  rejected(frame_of(perspective, false, perspective, false, DERMIS_FRAME_LEFT_HANDED),
+           "declared left-handed, but clip_from_view has w = -z");
+  rejected(frame_of(perspective, true, perspective, false, 0), "previous_clip_from_view has w = -z");
+  rejected(frame_of(perspective, false, perspective, true, 0), "previous_clip_from_view has w = z");
+  rejected(frame_of(orthographic, false, perspective, true, 0), "the frame is right-handed");
+  rejected(frame_of(orthographic, true, perspective, false, DERMIS_FRAME_LEFT_HANDED),
+           "the frame is left-handed");
+  rejected(frame_of(orthographic, true, orthographic, true, 0), "only points behind the camera");
+  rejected(frame_of(orthographic, false, orthographic, false, DERMIS_FRAME_LEFT_HANDED),
+           "only points behind the camera");
   const dermis_frame accepted[] = {
       frame_of(perspective, true, perspective, true, 0),
       frame_of(perspective, true, perspective, true, DERMIS_FRAME_LEFT_HANDED),
@@ -140,20 +140,20 @@ TEST_F(Frames, ContradictingHandedness_IsRefused) {
 }
 
 TEST_F(Frames, Discard_WorksOnceAndNotAcrossAReload) {
-  const auto refused = [&](uint64_t index, const char* said) {
+  const auto rejected = [&](uint64_t index, const char* said) {
     EXPECT_EQ(dermis_view_discard(dermis_graph_view(host.graph), index), DERMIS_ERROR_ARGUMENT) << said;
     EXPECT_THAT(dermis_last_error(), HasSubstr(said));
   };
   ASSERT_EQ(host.record(), DERMIS_OK);
-  refused(1, "expected that of the frame recorded last, 2");
+  rejected(1, "expected that of the frame recorded last, 2");
   EXPECT_EQ(dermis_view_discard(dermis_graph_view(host.graph), 2), DERMIS_OK);
-  refused(1, "which can be taken back once and alone");
+  rejected(1, "which can be taken back once and alone");
   // The first frame of a reloaded graph, after the next reload.
   ASSERT_EQ(host.reload(), DERMIS_OK);
   host.last_frame = 1;
   ASSERT_EQ(host.record(), DERMIS_OK) << dermis_last_error();
   ASSERT_EQ(host.reload(), DERMIS_OK);
-  refused(2, "the graph was reloaded or resized since frame 2");
+  rejected(2, "the graph was reloaded or resized since frame 2");
   EXPECT_EQ(host.record(), DERMIS_OK) << dermis_last_error();
 }
 
@@ -222,17 +222,17 @@ TEST(HostsPassTypes, TooManyPassTypes_AreRefused) {
   type.ports = &port;
   type.port_count = 1;
   type.record = [](void*, const dermis_pass_call*) {};
-  const auto refused = [&](const char* said) {
+  const auto rejected = [&](const char* said) {
     EXPECT_EQ(dermis_register_pass_type(host.context, &type), DERMIS_ERROR_ARGUMENT) << said;
     EXPECT_THAT(dermis_last_error(), HasSubstr(said));
   };
   type.setting_count = 1;
-  refused("kind.settings is NULL, setting_count is 1");
+  rejected("kind.settings is NULL, setting_count is 1");
   type.settings = &setting;
   setting.type = static_cast<dermis_pass_setting_type>(3);
-  refused("kind.settings[0].type is 3, expected 0..2");
+  rejected("kind.settings[0].type is 3, expected 0..2");
   type.setting_count = 33;
-  refused("setting_count 33, at most");
+  rejected("setting_count 33, at most");
   type.setting_count = 0;
   dermis_result result = DERMIS_OK;
   uint32_t taken = 0;

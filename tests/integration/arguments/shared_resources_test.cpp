@@ -31,7 +31,7 @@ struct SharedImages : RecordedFrame {
     ADD_FAILURE() << name;
     return bindings.front();
   }
-  void refused(const char* a, const char* b) {
+  void rejected(const char* a, const char* b) {
     EXPECT_EQ(dermis_view_record(dermis_graph_view(host.graph), &frame), DERMIS_ERROR_ARGUMENT);
     EXPECT_THAT(dermis_last_error(), AllOf(HasSubstr(a), HasSubstr(b), HasSubstr("bound to the same")));
   }
@@ -44,9 +44,9 @@ struct SharedImages : RecordedFrame {
 
 TEST_F(SharedImages, LayoutChange_IsRefusedNamingBothSlots) {
   slot("albedo").image = slot("scatter_scale").image;
-  refused("'albedo'", "'scatter_scale'"); // Read in another layout than that of the states.
+  rejected("'albedo'", "'scatter_scale'"); // Read in another layout than that of the states.
   slot("albedo").image = slot("lighting").image;
-  refused("'albedo'", "'lighting'");
+  rejected("'albedo'", "'lighting'");
 }
 
 TEST_F(SharedImages, UnchangedLayout_IsAccepted) {
@@ -55,18 +55,18 @@ TEST_F(SharedImages, UnchangedLayout_IsAccepted) {
   slot("albedo").image = slot("scatter_scale").image;
   recorded();
   slot("albedo").before.access = VK_ACCESS_2_TRANSFER_WRITE_BIT;
-  refused("'albedo'", "'scatter_scale'");
+  rejected("'albedo'", "'scatter_scale'");
 }
 
 TEST_F(SharedImages, OtherLayersOrAspect_AreDistinct) {
   slot("albedo").image = slot("lighting").image;
   slot("albedo").layer = 1;
   slot("albedo").layer_count = 1;
-  refused("'albedo'", "'lighting'"); // All layers of lighting.
+  rejected("'albedo'", "'lighting'"); // All layers of lighting.
   slot("lighting").layer_count = 1;
   recorded();
   slot("lighting").layer_count = 2;
-  refused("'albedo'", "'lighting'");
+  rejected("'albedo'", "'lighting'");
 }
 
 } // namespace

@@ -19,7 +19,7 @@ struct Arena {
   std::map<uint32_t, Block> blocks; // By type.
   uint64_t alive = 0, taken = 0;
   std::map<dermis_memory_purpose, uint64_t> alive_bytes;
-  uint64_t refused = 0; // Number of the call, from 1; 0: none.
+  uint64_t rejected = 0; // Number of the call, from 1; 0: none.
   // Number of transient heaps of one view that heaps of further views overlap; 0: each view has
   // separate heaps.
   size_t overlaid = 0, transients = 0;
@@ -46,7 +46,7 @@ struct Arena {
   static VkResult DERMIS_CALL take(void* user, const dermis_memory_request* request,
                                    dermis_memory_block* out) {
     Arena& arena = *static_cast<Arena*>(user);
-    if (++arena.taken == arena.refused) return VK_ERROR_OUT_OF_DEVICE_MEMORY;
+    if (++arena.taken == arena.rejected) return VK_ERROR_OUT_OF_DEVICE_MEMORY;
     const bool fractions = arena.overlaid > 0 && request->purpose == DERMIS_MEMORY_TRANSIENT;
     const size_t number = fractions ? arena.transients++ : 0;
     if (fractions && number >= arena.overlaid) {
@@ -233,7 +233,7 @@ TEST_F(DeviceMemory, HostRefuses_IsReportedAndNothingLeaks) {
   uint64_t refusals = 0;
   for (;; ++refusals) {
     arena->taken = 0;
-    arena->refused = refusals + 1;
+    arena->rejected = refusals + 1;
     const dermis_result result = create_graph(accumulating(), &graph);
     if (result == DERMIS_OK) break;
     ASSERT_EQ(result, DERMIS_ERROR_DEVICE_MEMORY) << dermis_last_error();
@@ -241,7 +241,7 @@ TEST_F(DeviceMemory, HostRefuses_IsReportedAndNothingLeaks) {
     ASSERT_THAT(dermis_last_error(), testing::HasSubstr("the host's allocator"));
   }
   EXPECT_GE(refusals, 3u);
-  arena->refused = 0;
+  arena->rejected = 0;
   dermis_graph_destroy(graph);
 }
 

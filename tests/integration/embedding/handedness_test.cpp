@@ -121,11 +121,11 @@ TEST_F(Handedness, OfViewSpaceDoesNotChangeThePicture) {
     SCOPED_TRACE(static_cast<int>(&right - views));
     View left = right, left_in_left = right;
     left.left = left_in_left.left = left_in_left.left_world = true;
-    const std::vector<float> wanted = picture(right);
-    ASSERT_FALSE(wanted.empty());
-    EXPECT_EQ(picture(left), wanted);
-    EXPECT_EQ(picture(left_in_left), wanted) << "the world is left-handed, too";
-    if (first.empty()) first = wanted;
+    const std::vector<float> expected = picture(right);
+    ASSERT_FALSE(expected.empty());
+    EXPECT_EQ(picture(left), expected);
+    EXPECT_EQ(picture(left_in_left), expected) << "the world is left-handed, too";
+    if (first.empty()) first = expected;
   }
   View misplaced = views[0];
   misplaced.past_error = 0.004f;

@@ -18,12 +18,12 @@ namespace {
 struct Heap {
   uint64_t blocks = 0, bytes = 0; // Alive.
   uint64_t calls = 0;
-  uint64_t refused = 0; // Number of the call, from 1; 0: none.
+  uint64_t rejected = 0; // Number of the call, from 1; 0: none.
   bool misaligned = false;
 
   static void* DERMIS_CALL allocate(void* user, size_t size, size_t alignment) {
     Heap& heap = *static_cast<Heap*>(user);
-    if (++heap.calls == heap.refused) return nullptr;
+    if (++heap.calls == heap.rejected) return nullptr;
     ++heap.blocks;
     heap.bytes += size;
     heap.misaligned = heap.misaligned || alignment < 16 || (alignment & (alignment - 1)) != 0;
@@ -83,9 +83,9 @@ struct HostMemory : ::testing::Test {
       const uint64_t blocks = heap.blocks, bytes = heap.bytes;
       const uint64_t alive = host.device.alive(), device_bytes = host.device.memory_bytes();
       heap.calls = 0;
-      heap.refused = number;
+      heap.rejected = number;
       const dermis_result result = change();
-      heap.refused = 0;
+      heap.rejected = 0;
       if (result == DERMIS_OK) break;
       ++refusals;
       ASSERT_EQ(result, DERMIS_ERROR_MEMORY) << "allocation " << number << ": " << dermis_last_error();
@@ -237,9 +237,9 @@ TEST_F(HostMemory, FailedCommandList_LeavesNoFrame) {
     uint32_t count = 1;
     const dermis_command* commands = nullptr;
     heap.calls = 0;
-    heap.refused = number;
+    heap.rejected = number;
     const dermis_result result = dermis_view_commands(view, &frame, &count, &commands);
-    heap.refused = 0;
+    heap.rejected = 0;
     if (result != DERMIS_OK) {
       ASSERT_EQ(result, DERMIS_ERROR_MEMORY) << "allocation " << number << ": " << dermis_last_error();
       EXPECT_EQ(count, 0u);
@@ -277,9 +277,9 @@ TEST_F(HostMemory, FailedQuery_CanBeRepeated) {
     for (uint64_t number = 1;; number += number < 100 ? 1 : 61) {
       const uint64_t blocks = heap.blocks;
       heap.calls = 0;
-      heap.refused = number;
+      heap.rejected = number;
       const dermis_result result = ask();
-      heap.refused = 0;
+      heap.rejected = 0;
       ASSERT_EQ(heap.blocks, blocks) << "allocation " << number;
       if (result == DERMIS_OK) break;
       ++refusals;
@@ -292,11 +292,11 @@ TEST_F(HostMemory, FailedQuery_CanBeRepeated) {
 TEST_F(HostMemory, RecordingAFrame_AllocatesNothing) {
   make_graph();
   heap.calls = 0;
-  heap.refused = 1;
+  heap.rejected = 1;
   EXPECT_EQ(host.record(), DERMIS_OK) << dermis_last_error();
   EXPECT_EQ(heap.calls, 0u);
   ASSERT_EQ(host.reload(), DERMIS_ERROR_MEMORY);
-  heap.refused = 0;
+  heap.rejected = 0;
   ASSERT_EQ(host.reload(), DERMIS_OK);
   heap.calls = 0;
   EXPECT_EQ(host.record(), DERMIS_OK) << "switching plans allocates nothing";

@@ -62,7 +62,7 @@ Storm rendered(const std::function<std::vector<std::string>(uint32_t)>& reloads)
 TEST(ReloadStorm, BrokenReloadsChangeNothing) {
   const std::string text = read_text("configs/graphs/papers/sap_residual.json");
   const Storm calm = rendered({});
-  const Storm refused = rendered([&](uint32_t frame) {
+  const Storm rejected = rendered([&](uint32_t frame) {
     std::vector<std::string> texts;
     for (uint32_t i = 0; i < reloads_a_frame / 2; ++i)
       texts.push_back(broken(text, frame * reloads_a_frame + i));
@@ -75,11 +75,11 @@ TEST(ReloadStorm, BrokenReloadsChangeNothing) {
     return texts;
   });
   ASSERT_EQ(calm.colors.size(), storm_frames);
-  EXPECT_EQ(refused.summary.reloads, storm_frames * reloads_a_frame / 2);
-  EXPECT_EQ(refused.summary.rejected_reloads, refused.summary.reloads);
+  EXPECT_EQ(rejected.summary.reloads, storm_frames * reloads_a_frame / 2);
+  EXPECT_EQ(rejected.summary.rejected_reloads, rejected.summary.reloads);
   EXPECT_EQ(mixed.summary.reloads, storm_frames * reloads_a_frame);
   EXPECT_EQ(mixed.summary.rejected_reloads, mixed.summary.reloads / 2);
-  EXPECT_TRUE(calm.colors == refused.colors) << "a refused reload changed a picture";
+  EXPECT_TRUE(calm.colors == rejected.colors) << "a refused reload changed a picture";
   EXPECT_TRUE(calm.colors == mixed.colors) << "a reload of the same graph lost history";
 }
 

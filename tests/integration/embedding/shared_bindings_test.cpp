@@ -48,13 +48,13 @@ struct SharedBindings : ::testing::Test {
   uint64_t frame_index = 0;
 
   void add_pass_type() {
-    const std::pair<const char*, dermis_port_usage> wanted[] = {
+    const std::pair<const char*, dermis_port_usage> expected[] = {
         {"first", DERMIS_PORT_STORAGE_BUFFER_READ},    {"second", DERMIS_PORT_STORAGE_BUFFER_READ},
         {"scene", DERMIS_PORT_ACCELERATION_STRUCTURE}, {"shadows", DERMIS_PORT_ACCELERATION_STRUCTURE},
         {"depth", DERMIS_PORT_SAMPLED_IMAGE},          {"marks", DERMIS_PORT_SAMPLED_IMAGE},
         {"out", DERMIS_PORT_STORAGE_IMAGE_WRITE},      {"changed", DERMIS_PORT_STORAGE_BUFFER_UPDATE}};
     std::vector<dermis_port> ports;
-    for (const auto& [name, usage] : wanted) {
+    for (const auto& [name, usage] : expected) {
       ports.push_back(dermis_port DERMIS_PORT_INIT);
       ports.back().name = name;
       ports.back().usage = usage;
@@ -140,7 +140,7 @@ struct SharedBindings : ::testing::Test {
     return result;
   }
   void recorded() { EXPECT_EQ(record(), DERMIS_OK) << dermis_last_error(); }
-  void refused(const char* a, const char* b) {
+  void rejected(const char* a, const char* b) {
     EXPECT_EQ(record(), DERMIS_ERROR_ARGUMENT);
     EXPECT_THAT(dermis_last_error(), AllOf(HasSubstr(a), HasSubstr(b), HasSubstr("bound to the same")));
   }
@@ -153,23 +153,23 @@ TEST_F(SharedBindings, ReadOnlyBuffer_MayHaveTwoSlots) {
   buffer("second").buffer = buffer("first").buffer;
   recorded();
   buffer("second").before.stages = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
-  refused("'first'", "'second'");
+  rejected("'first'", "'second'");
 }
 
 TEST_F(SharedBindings, WrittenBuffer_HasOneSlotPerRange) {
   buffer("changed").buffer = buffer("first").buffer;
-  refused("'first'", "'changed'");
+  rejected("'first'", "'changed'");
   buffer("changed").offset = 256; // After the 64 bytes of `first`.
   recorded();
   buffer("first").bytes = 320;
-  refused("'first'", "'changed'");
+  rejected("'first'", "'changed'");
 }
 
 TEST_F(SharedBindings, AccelerationStructure_EqualStates_MayHaveTwoSlots) {
   structure("shadows").structure = structure("scene").structure;
   recorded();
   structure("shadows").after.access = VK_ACCESS_2_ACCELERATION_STRUCTURE_READ_BIT_KHR;
-  refused("'scene'", "'shadows'");
+  rejected("'scene'", "'shadows'");
 }
 
 } // namespace

@@ -69,7 +69,7 @@ struct Views : CameraTest {
   }
 
   // Returns the light of one camera with a separate graph.
-  std::vector<float> alone(size_t number, uint64_t last, const Change& change) {
+  std::vector<float> rendered_alone(size_t number, uint64_t last, const Change& change) {
     const dermis_graph graph = make_accumulating();
     std::vector<Camera> cameras;
     cameras.push_back(make_camera(graph, static_cast<uint32_t>(number + 1)));
@@ -90,9 +90,9 @@ TEST_F(Views, EachOfEightMatchesASingleView) {
   constexpr uint64_t last = 9;
   const auto light = together(8, last, nothing);
   for (size_t c = 0; c < light.size(); ++c)
-    EXPECT_TRUE(light[c] == alone(c, last, nothing)) << "camera " << c;
+    EXPECT_TRUE(light[c] == rendered_alone(c, last, nothing)) << "camera " << c;
   EXPECT_FALSE(light[0] == light[4]) << "the views differ";
-  EXPECT_FALSE(light[0] == alone(0, last - 1, nothing)) << "each frame changes the light";
+  EXPECT_FALSE(light[0] == rendered_alone(0, last - 1, nothing)) << "each frame changes the light";
 }
 
 TEST_F(Views, Reload_KeepsTheHistoryOfEach) {
@@ -106,7 +106,7 @@ TEST_F(Views, Reload_KeepsTheHistoryOfEach) {
   };
   const auto light = together(3, last, reload);
   for (size_t c = 0; c < light.size(); ++c)
-    EXPECT_TRUE(light[c] == alone(c, last, nothing)) << "camera " << c << " notices the reload";
+    EXPECT_TRUE(light[c] == rendered_alone(c, last, nothing)) << "camera " << c << " notices the reload";
 }
 
 TEST_F(Views, Resize_AppliesToAll) {
@@ -118,7 +118,7 @@ TEST_F(Views, Resize_AppliesToAll) {
   };
   const auto light = together(3, last, resize);
   for (size_t c = 0; c < light.size(); ++c)
-    EXPECT_TRUE(light[c] == alone(c, last, resize)) << "camera " << c;
+    EXPECT_TRUE(light[c] == rendered_alone(c, last, resize)) << "camera " << c;
 }
 
 TEST_F(Views, GraphSetting_AppliesToAll) {
@@ -129,8 +129,8 @@ TEST_F(Views, GraphSetting_AppliesToAll) {
     }
   };
   const auto light = together(2, last, set);
-  EXPECT_TRUE(light[1] == alone(1, last, set));
-  EXPECT_FALSE(light[1] == alone(1, last, nothing)) << "the setting changes the picture";
+  EXPECT_TRUE(light[1] == rendered_alone(1, last, set));
+  EXPECT_FALSE(light[1] == rendered_alone(1, last, nothing)) << "the setting changes the picture";
 }
 
 TEST_F(Views, DiscardedFrame_ChangesNoView) {
@@ -163,8 +163,8 @@ TEST_F(Views, DiscardedFrame_ChangesNoView) {
     });
   }
   submitted = 6;
-  EXPECT_TRUE(light_of(cameras[0]) == alone(0, 6, nothing));
-  EXPECT_TRUE(light_of(cameras[1]) == alone(1, 6, nothing));
+  EXPECT_TRUE(light_of(cameras[0]) == rendered_alone(0, 6, nothing));
+  EXPECT_TRUE(light_of(cameras[1]) == rendered_alone(1, 6, nothing));
 }
 
 TEST_F(Views, CanBeCreatedAndDestroyedWhileOthersRun) {
@@ -192,7 +192,7 @@ TEST_F(Views, CanBeCreatedAndDestroyedWhileOthersRun) {
     });
   }
   submitted = 9;
-  EXPECT_TRUE(light_of(cameras[0]) == alone(0, 9, nothing));
+  EXPECT_TRUE(light_of(cameras[0]) == rendered_alone(0, 9, nothing));
   dermis_view_destroy(nullptr);
 }
 
@@ -265,7 +265,7 @@ TEST_F(Views, CanUseLayersOfOneImage) {
   const auto left_light = demo::read_image(*host, both, state, 0),
              right_light = demo::read_image(*host, both, state, 1);
   ASSERT_TRUE(left_light && right_light);
-  EXPECT_TRUE(*left_light == alone(0, last, nothing));
+  EXPECT_TRUE(*left_light == rendered_alone(0, last, nothing));
   // Equal layers would mean that the library wrote one eye's light into both.
   EXPECT_FALSE(*left_light == *right_light);
 }

@@ -34,8 +34,8 @@ VkResult DERMIS_CALL take(void* user, const dermis_memory_request* request, derm
   auto& counted = *static_cast<CountedDeviceMemory*>(user);
   VkPhysicalDeviceMemoryProperties properties;
   vkGetPhysicalDeviceMemoryProperties(counted.host.physical_device, &properties);
-  const VkMemoryPropertyFlags wanted[] = {request->required | request->preferred, request->required};
-  for (const VkMemoryPropertyFlags flags : wanted)
+  const VkMemoryPropertyFlags required_flags[] = {request->required | request->preferred, request->required};
+  for (const VkMemoryPropertyFlags flags : required_flags)
     for (uint32_t type = 0; type < properties.memoryTypeCount; ++type) {
       const VkMemoryPropertyFlags has = properties.memoryTypes[type].propertyFlags;
       if ((request->memory_types >> type & 1u) == 0 || (has & flags) != flags) continue;

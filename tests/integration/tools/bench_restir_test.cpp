@@ -25,17 +25,17 @@ TEST(BenchRestirFile, ShippedFileIsValidAndNamesExistingFiles) {
   const auto file = read_restir(sources + "/tests/benchmark/restir.json", diagnostics);
   ASSERT_TRUE(file.has_value());
   EXPECT_TRUE(std::filesystem::exists(sources + "/" + file->graph));
-  std::set<std::string> scenes, beside;
+  std::set<std::string> scenes, techniques;
   for (const SceneRequest& scene : file->scenes) {
     EXPECT_TRUE(std::filesystem::exists(sources + "/" + scene.file)) << scene.file;
     scenes.insert(scene.scene);
   }
   for (const TechniqueRequest& technique : file->screen_space) {
     EXPECT_TRUE(std::filesystem::exists(sources + "/" + technique.graph)) << technique.graph;
-    beside.insert(technique.technique);
+    techniques.insert(technique.technique);
   }
   EXPECT_TRUE(scenes.contains("back_lit_ear"));
-  EXPECT_TRUE(beside.contains("sap"));
+  EXPECT_TRUE(techniques.contains("sap"));
 }
 
 TEST(BenchRestirFile, UnknownEntry_IsRefusedWithThePlace) {

@@ -28,7 +28,7 @@ TEST_F(Choice, FramesReportExpectedAndMeasured) {
     EXPECT_THAT(frame["technique"].get<std::string>(), ::testing::AnyOf("hybrid smooth", "sap base"));
     EXPECT_EQ(frame["budget_ms"], 1000);
     EXPECT_GT(frame["measured_ms"], 0);
-    EXPECT_GT(frame["metered_ms"], 0);
+    EXPECT_GT(frame["calibrated_ms"], 0);
     EXPECT_EQ(frame["view_tiles"], 8 * 5);
     EXPECT_GT(frame["scattering_tiles"], 0);
   }
@@ -113,7 +113,7 @@ TEST_F(Choice, ExplainCountsReadsByTileClass) {
   const json frame = json::parse(outcome.out)[0];
   const json& classes = frame["tile_classes"];
   ASSERT_EQ(classes.size(), 4u);
-  double sum = frame["reads_beside"].get<double>();
+  double sum = frame["reads_per_view"].get<double>();
   uint64_t tiles = 0;
   for (const json& one : classes) {
     sum += 64 * one["tiles"].get<double>() * one["reads_per_pixel"].get<double>();

@@ -19,7 +19,7 @@ using ::testing::StartsWith;
 
 struct Expectations : CommandTest {
   // Writes the shipped burley.json into the test's folder, with these expectations next to it.
-  std::string beside_burley(const std::string& expectations) const {
+  std::string file_next_to_burley(const std::string& expectations) const {
     write("burley.json", text_of(DERMIS_SOURCE_DIR "/configs/graphs/burley.json"));
     return write("burley.expect.json", expectations);
   }
@@ -50,7 +50,7 @@ TEST_F(Expectations, EveryShippedGraphMeetsItsExpectations) {
 }
 
 TEST_F(Expectations, OnlyStatedFactsAreCompared) {
-  beside_burley(two_infos);
+  file_next_to_burley(two_infos);
   const Outcome outcome = run({"test", path("")});
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_THAT(outcome.out, HasSubstr("burley.expect.json: 1 case as expected"));
@@ -59,7 +59,7 @@ TEST_F(Expectations, OnlyStatedFactsAreCompared) {
 TEST_F(Expectations, DifferencesAreShownLineByLine) {
   std::string wrong = two_infos;
   wrong.replace(wrong.find("\"scatter\", "), 11, "\"sharpen\", ");
-  const std::string file = beside_burley(wrong);
+  const std::string file = file_next_to_burley(wrong);
   const Outcome outcome = run({"test", file});
   EXPECT_EQ(outcome.exit_code, 1);
   EXPECT_THAT(outcome.err,
@@ -72,7 +72,7 @@ TEST_F(Expectations, DifferencesAreShownLineByLine) {
 TEST_F(Expectations, UpdateChangesOnlyTheFacts) {
   std::string wrong = two_infos;
   wrong.replace(wrong.find("\"history_bytes\": 0"), 18, "\"history_bytes\": 5");
-  const std::string file = beside_burley(wrong);
+  const std::string file = file_next_to_burley(wrong);
   EXPECT_EQ(run({"test", file, "--update"}).exit_code, 0);
   const std::string after = text_of(file);
   EXPECT_THAT(after, AllOf(HasSubstr("// what the smallest host gets"), HasSubstr("\"history_bytes\": 0"),
@@ -83,7 +83,7 @@ TEST_F(Expectations, UpdateChangesOnlyTheFacts) {
 }
 
 TEST_F(Expectations, UpdateOfAnEmptyCaseStatesEverything) {
-  const std::string file = beside_burley(R"({ "dermis_expect": 1, "cases": [
+  const std::string file = file_next_to_burley(R"({ "dermis_expect": 1, "cases": [
   { "case": "new" },
   { "case": "too_large", "device": { "max_image_dimension": 16 } } ] })");
   const Outcome before = run({"test", file});
@@ -96,7 +96,7 @@ TEST_F(Expectations, UpdateOfAnEmptyCaseStatesEverything) {
 }
 
 TEST_F(Expectations, UnstatedMessagesAreShown) {
-  const std::string file = beside_burley(R"({ "dermis_expect": 1, "cases": [
+  const std::string file = file_next_to_burley(R"({ "dermis_expect": 1, "cases": [
   { "case": "small", "device": { "max_image_dimension": 16 }, "expect": {} } ] })");
   const Outcome outcome = run({"test", file});
   EXPECT_EQ(outcome.exit_code, 1);
@@ -112,8 +112,8 @@ TEST_F(Expectations, UnreadableGraph_HasOnlyMessages) {
 
 TEST_F(Expectations, UnknownNamesAreReported) {
   const auto says = [&](const std::string& inputs, const std::string& message) {
-    const std::string file = beside_burley("{ \"dermis_expect\": 1, \"cases\": [ { \"case\": \"a\", " +
-                                           inputs + ", \"expect\": {} } ] }");
+    const std::string file = file_next_to_burley("{ \"dermis_expect\": 1, \"cases\": [ { \"case\": \"a\", " +
+                                                 inputs + ", \"expect\": {} } ] }");
     for (const char* flag : {"--quiet", "--update"}) {
       const Outcome outcome = run({"test", file, flag});
       EXPECT_EQ(outcome.exit_code, 1) << inputs;
@@ -128,7 +128,7 @@ TEST_F(Expectations, UnknownNamesAreReported) {
 
 TEST_F(Expectations, ErrorsInTheFileAreLocated) {
   const auto says = [&](const std::string& text, const std::string& message) {
-    const std::string file = beside_burley(text);
+    const std::string file = file_next_to_burley(text);
     const Outcome outcome = run({"test", file});
     EXPECT_EQ(outcome.exit_code, 1) << text;
     EXPECT_THAT(outcome.err, AllOf(HasSubstr(file + ":"), HasSubstr(message)));
@@ -163,7 +163,7 @@ TEST_F(Expectations, ResultsAreWrittenAsJUnitAndJson) {
   std::string wrong = two_infos;
   wrong.replace(wrong.find("\"least\""), 7, "\"a<b & c\"");
   wrong.replace(wrong.find("\"history_bytes\": 0"), 18, "\"history_bytes\": 5");
-  const std::string file = beside_burley(wrong);
+  const std::string file = file_next_to_burley(wrong);
   const Outcome outcome = run({"test", file, "configs", "--junit", path("results.xml"), "--json"});
   EXPECT_EQ(outcome.exit_code, 1);
   EXPECT_TRUE(is_json(outcome.out)) << outcome.out;
@@ -177,7 +177,7 @@ TEST_F(Expectations, ResultsAreWrittenAsJUnitAndJson) {
 }
 
 TEST_F(Expectations, OverlaysComeOnlyFromDeclaredFolders) {
-  const std::string file = beside_burley(R"({ "dermis_expect": 1, "cases": [
+  const std::string file = file_next_to_burley(R"({ "dermis_expect": 1, "cases": [
   { "case": "changed", "overlays": ["changes/less.json"], "unbound": ["scattered_light"],
     "expect": { "passes": ["classify", "list", "setup", "scatter"] } } ] })");
   std::filesystem::create_directories(path("other/changes"));
@@ -199,8 +199,8 @@ TEST_F(Expectations, OverlaysComeOnlyFromDeclaredFolders) {
   const Outcome outside = run({"test", file});
   EXPECT_EQ(outside.exit_code, 1);
   EXPECT_THAT(outside.err, HasSubstr("outside the readable folders"));
-  const std::string escaping =
-      beside_burley(R"({ "dermis_expect": 1, "cases": [ { "case": "a", "overlays": ["../x.json"] } ] })");
+  const std::string escaping = file_next_to_burley(
+      R"({ "dermis_expect": 1, "cases": [ { "case": "a", "overlays": ["../x.json"] } ] })");
   EXPECT_THAT(run({"test", escaping}).err, AllOf(HasSubstr(escaping + ":1:"), HasSubstr("D0115")));
 }
 

@@ -205,11 +205,11 @@ TEST_F(GraphFiles, Upgrade_NewestAndUnknownVersions) {
   }
   EXPECT_THAT(files(), ::testing::ElementsAre("mine.json"));
   const std::string newer = write("newer.json", "{ \"dermis_scene\": 7 }");
-  const Outcome refused = run({"upgrade", "--check", newer, mine, "--json"});
-  EXPECT_EQ(refused.exit_code, 1);
-  ASSERT_TRUE(is_json(refused.out));
-  EXPECT_THAT(refused.out, AllOf(HasSubstr("\"kind\": \"scene\", \"version\": null"), HasSubstr("D0110"),
-                                 HasSubstr("\"kind\": \"graph\", \"version\": 2, \"changed\": false")));
+  const Outcome rejected = run({"upgrade", "--check", newer, mine, "--json"});
+  EXPECT_EQ(rejected.exit_code, 1);
+  ASSERT_TRUE(is_json(rejected.out));
+  EXPECT_THAT(rejected.out, AllOf(HasSubstr("\"kind\": \"scene\", \"version\": null"), HasSubstr("D0110"),
+                                  HasSubstr("\"kind\": \"graph\", \"version\": 2, \"changed\": false")));
 }
 
 TEST_F(GraphFiles, OverlaysApplyInOrder_ExplainNamesTheirFiles) {

@@ -37,10 +37,10 @@ TEST_F(PassTypes, FileIsChecked) {
   EXPECT_EQ(run({"validate", write("pass_types.json", pass_types)}).exit_code, 0);
   std::string range = pass_types, own = pass_types;
   range.replace(range.find("\"default\": 1"), 12, "\"default\": 9");
-  const Outcome refused = run({"validate", write("range.json", range)});
-  EXPECT_EQ(refused.exit_code, 1);
-  EXPECT_THAT(refused.err, HasSubstr("range.json:2:3"));
-  EXPECT_THAT(refused.err, HasSubstr("settings[0]"));
+  const Outcome rejected = run({"validate", write("range.json", range)});
+  EXPECT_EQ(rejected.exit_code, 1);
+  EXPECT_THAT(rejected.err, HasSubstr("range.json:2:3"));
+  EXPECT_THAT(rejected.err, HasSubstr("settings[0]"));
   own.replace(own.find("studio"), 6, "subsurface");
   EXPECT_THAT(run({"validate", write("own.json", own)}).err, HasSubstr("are reserved for the library"));
   const std::string graph_file = write("tone.json", tone);

@@ -20,8 +20,8 @@ std::vector<uint32_t> some_tile_errors(size_t tiles, uint64_t seed) {
 TEST(SampleAllocation, NeverExceedsTheBudget) {
   for (uint64_t seed = 1; seed <= 20; ++seed) {
     const auto tile_errors = some_tile_errors(400, seed);
-    const uint32_t wanted = allocate_samples(tile_errors, {}, UINT32_MAX).wanted;
-    for (uint32_t units = 0; units <= wanted + 7; units += 7) {
+    const uint32_t demand = allocate_samples(tile_errors, {}, UINT32_MAX).demand;
+    for (uint32_t units = 0; units <= demand + 7; units += 7) {
       const SampleAllocation given = allocate_samples(tile_errors, {}, units);
       uint32_t sum = 0;
       for (const uint32_t steps : given.steps)
@@ -30,7 +30,7 @@ TEST(SampleAllocation, NeverExceedsTheBudget) {
       EXPECT_EQ(sum, given.units);
       EXPECT_LE(given.units, units);
       EXPECT_GE(given.units + 1,
-                std::min(units, wanted)); // A step of two units may not fit into the last unit.
+                std::min(units, demand)); // A step of two units may not fit into the last unit.
     }
   }
 }
@@ -40,7 +40,7 @@ TEST(SampleAllocation, AmpleBudget_AllRequestsAreMet) {
   const SampleAllocation given = allocate_samples(tile_errors, {}, UINT32_MAX);
   for (size_t i = 0; i < tile_errors.size(); ++i)
     EXPECT_EQ(given.steps[i], tile_errors[i] > 0 ? uint32_t{allocation_steps} : 0u);
-  EXPECT_EQ(given.units, given.wanted);
+  EXPECT_EQ(given.units, given.demand);
 }
 
 TEST(SampleAllocation, LargerTileError_NeverGetsFewerSamples) {

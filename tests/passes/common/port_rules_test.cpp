@@ -131,9 +131,9 @@ std::string shader_text(const std::string& name) {
 // Counts the places where a shader reads the image; with `own`, only reads of the invocation's own
 // texel.
 size_t count_reads(const std::string& shader, const std::string& image, bool own) {
-  const std::string wanted = own ? "texelFetch(" + image + ", texel, 0)" : "(" + image + ",";
+  const std::string expected = own ? "texelFetch(" + image + ", texel, 0)" : "(" + image + ",";
   size_t count = 0;
-  for (size_t at = shader.find(wanted); at != std::string::npos; at = shader.find(wanted, at + 1))
+  for (size_t at = shader.find(expected); at != std::string::npos; at = shader.find(expected, at + 1))
     ++count;
   return count;
 }

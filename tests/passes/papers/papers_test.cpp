@@ -27,11 +27,11 @@ public:
   RingOfSamples(size_t k, double first) : counts_(k, first), sum_(first * double(k)) {}
 
   double next(double variance, double target) {
-    const double wanted = sum_ * variance / target, oldest = counts_.front();
-    const double count = wanted - sum_ + oldest;
+    const double required = sum_ * variance / target, oldest = counts_.front();
+    const double count = required - sum_ + oldest;
     counts_.pop_front();
     counts_.push_back(count);
-    sum_ = wanted;
+    sum_ = required;
     return count;
   }
   double mean() const { return sum_ / double(counts_.size()); }

@@ -63,32 +63,33 @@ TEST_F(Merge, CountsEachPathOnce) {
   Reservoir nothing;
   int judged = 0, with_jacobian = 0;
   for (size_t i = 0; i + 2 < pixels.size(); ++i) {
-    const Domain &domain = pixels[i].domain, &beside = pixels[i + 2].domain;
-    if (domain.medium == 0 || beside.medium != domain.medium) continue;
+    const Domain &domain = pixels[i].domain, &neighbour = pixels[i + 2].domain;
+    if (domain.medium == 0 || neighbour.medium != domain.medium) continue;
     for (const Shift shift : {Shift::reconnection, Shift::delayed, Shift::hybrid}) {
       ReuseSettings settings{shift, Index::traced, confidence_cap};
       Reservoir own = sample_with_estimate(domain, 1);
       own.weight = 1;
       own.confidence = 3;
       const double target = target_of(scene, domain, own);
-      const Shifted image = shift_path(scene, shift, domain, beside, own);
+      const Shifted image = shift_path(scene, shift, domain, neighbour, own);
       if (!(image.target > 0)) continue;
       Reservoir other = image.path;
       other.confidence = 5;
       if (other.hits == 0 && shift != Shift::reconnection)
-        prepare(scene, shift, Index::traced, beside, other, random);
+        prepare(scene, shift, Index::traced, neighbour, other, random);
       other.weight = image.jacobian; // 1 over the Jacobian of the inverse shift.
       Reservoir no_own = nothing, no_other = nothing;
       no_own.confidence = own.confidence;
       no_other.confidence = other.confidence;
       const auto light = [&](const Reservoir& merged) { return luminance(resolve(scene, domain, merged)); };
 
-      const double temporal = light(merge_temporal(scene, settings, domain, own, beside, no_other, random)) +
-                              light(merge_temporal(scene, settings, domain, no_own, beside, other, random));
+      const double temporal =
+          light(merge_temporal(scene, settings, domain, own, neighbour, no_other, random)) +
+          light(merge_temporal(scene, settings, domain, no_own, neighbour, other, random));
       EXPECT_NEAR(temporal / target, 1, 1e-6);
       const auto spatial = [&](const Reservoir& mine, const Reservoir& theirs) {
         Spatial merge = spatial_begin(scene, settings, domain, mine, theirs.confidence, random);
-        spatial_add(scene, settings, domain, merge, beside, theirs, random);
+        spatial_add(scene, settings, domain, merge, neighbour, theirs, random);
         return light(spatial_end(merge, random));
       };
       EXPECT_NEAR((spatial(own, no_other) + spatial(no_own, other)) / target, 1, 1e-6);

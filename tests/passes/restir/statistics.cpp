@@ -27,7 +27,7 @@ Mean mean_of(const std::vector<double>& values) {
 }
 
 double three_sigma_limit(int degrees_of_freedom, int tests) {
-  const double n = degrees_of_freedom, wanted = 0.0026998 / tests / 2;
+  const double n = degrees_of_freedom, tail_probability = 0.0026998 / tests / 2;
   const double scale =
       std::exp(std::lgamma((n + 1) / 2) - std::lgamma(n / 2)) / std::sqrt(n * 3.14159265358979);
   const auto tail = [&](double from) { // Integral over [from, inf), with t = from / s.
@@ -41,7 +41,7 @@ double three_sigma_limit(int degrees_of_freedom, int tests) {
   };
   double low = 1, high = 100;
   for (int i = 0; i < 60; ++i)
-    (tail((low + high) / 2) > wanted ? low : high) = (low + high) / 2;
+    (tail((low + high) / 2) > tail_probability ? low : high) = (low + high) / 2;
   return high;
 }
 

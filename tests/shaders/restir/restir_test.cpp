@@ -203,16 +203,16 @@ TEST_F(RestirKernel, MergedPathsAreEqual) {
     Random random{x, 2, 0};
     const ReuseSettings settings{static_cast<Shift>(x % 3), static_cast<Index>(x / 3 % 2), confidence_cap};
     const Domain here = pixel_on_sheet(random), there = pixel_on_sheet(random),
-                 beside = pixel_on_sheet(random);
+                 neighbour = pixel_on_sheet(random);
     const Reservoir own = draw_initial(sheet_scene, here, random);
     Reservoir history = draw_initial(sheet_scene, there, random);
-    const Reservoir other = draw_initial(sheet_scene, beside, random);
+    const Reservoir other = draw_initial(sheet_scene, neighbour, random);
     history.confidence = 30;
     const Reservoir merged = merge_temporal(sheet_scene, settings, here, own, there, history, random);
     Spatial spatial =
         spatial_begin(sheet_scene, settings, here, merged, history.confidence + other.confidence, random);
     spatial_add(sheet_scene, settings, here, spatial, there, history, random);
-    spatial_add(sheet_scene, settings, here, spatial, beside, other, random);
+    spatial_add(sheet_scene, settings, here, spatial, neighbour, other, random);
     const Reservoir last = spatial_end(spatial, random);
     // A number within rounding of a threshold may decide differently on the device; such cases are
     // counted.

@@ -134,13 +134,13 @@ void main() {
   random = random_state(uint(pixel.x), 2u, 0u);
   uint shift = uint(pixel.x) % 3u;
   reuse_settings settings = reuse_settings(shift, uint(pixel.x) / 3u % 2u, confidence_cap);
-  scatter_domain here = pixel_on_sheet(random), there = pixel_on_sheet(random), beside = pixel_on_sheet(random);
-  reservoir own = draw_initial(here, random), history = draw_initial(there, random), other = draw_initial(beside, random);
+  scatter_domain here = pixel_on_sheet(random), there = pixel_on_sheet(random), neighbour = pixel_on_sheet(random);
+  reservoir own = draw_initial(here, random), history = draw_initial(there, random), other = draw_initial(neighbour, random);
   history.confidence = 30.0;
   reservoir merged = merge_temporal(settings, here, own, there, history, random);
   spatial_merge spatial = spatial_begin(settings, here, merged, history.confidence + other.confidence, random);
   spatial_add(settings, here, spatial, there, history, random);
-  spatial_add(settings, here, spatial, beside, other, random);
+  spatial_add(settings, here, spatial, neighbour, other, random);
   reservoir last = spatial_end(spatial, random);
   if (row == 17)
     result = vec4(has_sample(own) ? own.instance - 16777216u : 0u, own.barycentrics, own.weight);

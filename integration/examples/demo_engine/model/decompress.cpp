@@ -22,7 +22,7 @@ struct Decoding {
   const std::string& path;
   uint64_t decoded = 0; // bytes
 
-  Error refuse(const std::string& what, const std::string& why) const {
+  Error reject(const std::string& what, const std::string& why) const {
     return {ErrorKind::input, fmt::format("{}: {}: {}", path, what, why)};
   }
 
@@ -75,29 +75,29 @@ Result<> decode_view(Decoding& decoding, size_t index, const tinygltf::Value& ex
   const std::string mode = text_of(extension, "mode", "none"), filter = text_of(extension, "filter", "NONE");
   const unsigned char* from =
       decoding.range(number_of(extension, "buffer", SIZE_MAX), number_of(extension, "byteOffset", 0), length);
-  if (from == nullptr) return decoding.refuse(what, "reaches beyond the end of its buffer");
+  if (from == nullptr) return decoding.reject(what, "reaches beyond the end of its buffer");
   const bool vertices = mode == "ATTRIBUTES", triangles = mode == "TRIANGLES";
   if (!vertices && !triangles && mode != "INDICES")
-    return decoding.refuse(what, "mode is '" + mode + "'; expected ATTRIBUTES, TRIANGLES or INDICES");
+    return decoding.reject(what, "mode is '" + mode + "'; expected ATTRIBUTES, TRIANGLES or INDICES");
   const bool stride_fits =
       vertices ? stride > 0 && stride <= 256 && stride % 4 == 0 : stride == 2 || stride == 4;
   if (!stride_fits)
-    return decoding.refuse(what, vertices ? "byteStride is not a multiple of 4 up to 256"
+    return decoding.reject(what, vertices ? "byteStride is not a multiple of 4 up to 256"
                                           : "byteStride is not 2 or 4");
   if (count == 0 || count > max_model_bytes || !decoding.has_space(uint64_t{count} * stride) ||
       (triangles && count % 3 != 0))
-    return decoding.refuse(what, "count is not a number of elements that can be read");
+    return decoding.reject(what, "count is not a number of elements that can be read");
   const bool octahedral = filter == "OCTAHEDRAL", quaternion = filter == "QUATERNION";
   const bool exponential = filter == "EXPONENTIAL";
   if ((!octahedral && !quaternion && !exponential && filter != "NONE") || (!vertices && filter != "NONE") ||
       (octahedral && stride != 4 && stride != 8) || (quaternion && stride != 8))
-    return decoding.refuse(what, "filter '" + filter + "' does not fit its mode and byteStride");
+    return decoding.reject(what, "filter '" + filter + "' does not fit its mode and byteStride");
 
   std::vector<unsigned char> data(count * stride);
   const int failed = vertices    ? meshopt_decodeVertexBuffer(data.data(), count, stride, from, length)
                      : triangles ? meshopt_decodeIndexBuffer(data.data(), count, stride, from, length)
                                  : meshopt_decodeIndexSequence(data.data(), count, stride, from, length);
-  if (failed != 0) return decoding.refuse(what, "the compressed bytes are damaged");
+  if (failed != 0) return decoding.reject(what, "the compressed bytes are damaged");
   if (octahedral) meshopt_decodeFilterOct(data.data(), count, stride);
   if (quaternion) meshopt_decodeFilterQuat(data.data(), count, stride);
   if (exponential) meshopt_decodeFilterExp(data.data(), count, stride);
@@ -131,12 +131,12 @@ Result<int> decode_attribute(Decoding& decoding, const std::string& what, const 
   const draco::PointAttribute* attribute =
       id < UINT32_MAX ? mesh.GetAttributeByUniqueId(static_cast<uint32_t>(id)) : nullptr;
   if (attribute == nullptr)
-    return decoding.refuse(what,
+    return decoding.reject(what,
                            fmt::format("{} is attribute {}, which the compressed mesh lacks", name, id));
   const int width = name.starts_with("TEXCOORD_") ? 2 : name == "TANGENT" ? 4 : 3;
   const size_t points = mesh.num_points();
   if (!decoding.has_space(points * static_cast<uint64_t>(width) * sizeof(float)))
-    return decoding.refuse(what, "the mesh is too large");
+    return decoding.reject(what, "the mesh is too large");
   std::vector<unsigned char> data(points * static_cast<size_t>(width) * sizeof(float));
   for (size_t i = 0; i < points; ++i) {
     float values[4] = {};
@@ -144,7 +144,7 @@ Result<int> decode_attribute(Decoding& decoding, const std::string& what, const 
         attribute->mapped_index(draco::PointIndex(static_cast<uint32_t>(i)));
     if (at.value() >= attribute->size() ||
         !attribute->ConvertValue<float>(at, static_cast<int8_t>(width), values))
-      return decoding.refuse(what, fmt::format("{} cannot be read at vertex {}", name, i));
+      return decoding.reject(what, fmt::format("{} cannot be read at vertex {}", name, i));
     std::memcpy(data.data() + i * static_cast<size_t>(width) * sizeof(float), values,
                 static_cast<size_t>(width) * sizeof(float));
   }
@@ -156,22 +156,22 @@ Result<> decode_primitive(Decoding& decoding, const std::string& what, tinygltf:
                           const tinygltf::Value& extension) {
   const size_t view_index = number_of(extension, "bufferView", SIZE_MAX);
   if (view_index >= decoding.model.bufferViews.size())
-    return decoding.refuse(what, "refers to a buffer view that does not exist");
+    return decoding.reject(what, "refers to a buffer view that does not exist");
   const tinygltf::BufferView& view = decoding.model.bufferViews[view_index];
   const unsigned char* from =
       view.buffer < 0 ? nullptr
                       : decoding.range(static_cast<size_t>(view.buffer), view.byteOffset, view.byteLength);
-  if (from == nullptr) return decoding.refuse(what, "reaches beyond the end of its buffer");
+  if (from == nullptr) return decoding.reject(what, "reaches beyond the end of its buffer");
   draco::DecoderBuffer buffer;
   buffer.Init(reinterpret_cast<const char*>(from), view.byteLength);
   draco::Decoder decoder;
   auto decoded = decoder.DecodeMeshFromBuffer(&buffer);
   if (!decoded.ok() || decoded.value() == nullptr)
-    return decoding.refuse(
+    return decoding.reject(
         what, fmt::format("the compressed mesh is damaged: {}", decoded.status().error_msg_string()));
   const draco::Mesh& mesh = *decoded.value();
   const tinygltf::Value& attributes = extension.Get("attributes");
-  if (!attributes.IsObject() || !attributes.Has("POSITION")) return decoding.refuse(what, "has no positions");
+  if (!attributes.IsObject() || !attributes.Has("POSITION")) return decoding.reject(what, "has no positions");
   for (const std::string& name : attributes.Keys()) {
     if (name != "POSITION" && name != "NORMAL" && name != "TANGENT" && !name.starts_with("TEXCOORD_"))
       continue; // other attributes are not rendered
@@ -181,7 +181,7 @@ Result<> decode_primitive(Decoding& decoding, const std::string& what, tinygltf:
     primitive.attributes[name] = *accessor;
   }
   const size_t indices = size_t{mesh.num_faces()} * 3;
-  if (!decoding.has_space(indices * sizeof(uint32_t))) return decoding.refuse(what, "the mesh is too large");
+  if (!decoding.has_space(indices * sizeof(uint32_t))) return decoding.reject(what, "the mesh is too large");
   std::vector<unsigned char> data(indices * sizeof(uint32_t));
   for (uint32_t face = 0; face < mesh.num_faces(); ++face)
     for (uint32_t corner = 0; corner < 3; ++corner) {

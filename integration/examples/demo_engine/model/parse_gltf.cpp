@@ -22,19 +22,19 @@ namespace {
 namespace fs = std::filesystem;
 
 // State for tinygltf's callbacks, which look up files next to the model.
-struct Beside {
+struct GltfFiles {
   const tinygltf::Model& model;
   fs::path folder;
   std::vector<fs::path> roots;
-  std::string refused; // the first name outside of the allowed folders, and why
+  std::string rejected; // the first name outside of the allowed folders, and why
 };
 
-bool is_there(const std::string& name, void* user) {
-  auto& beside = *static_cast<Beside*>(user);
-  const dermis::PlacedFile placed = dermis::place_file(beside.folder, name, beside.roots);
+bool file_exists(const std::string& name, void* user) {
+  auto& files = *static_cast<GltfFiles*>(user);
+  const dermis::PlacedFile placed = dermis::place_file(files.folder, name, files.roots);
   if (!placed.problem.empty()) {
-    if (beside.refused.empty())
-      beside.refused =
+    if (files.rejected.empty())
+      files.rejected =
           fmt::format("'{}' is not read: {}; --root declares further folders", name, placed.problem);
     return false;
   }
@@ -47,8 +47,8 @@ std::string as_it_is(const std::string& name, void*) {
 }
 
 bool read_whole(std::vector<unsigned char>* out, std::string* error, const std::string& name, void* user) {
-  const auto& beside = *static_cast<const Beside*>(user);
-  const dermis::PlacedFile placed = dermis::place_file(beside.folder, name, beside.roots);
+  const auto& files = *static_cast<const GltfFiles*>(user);
+  const dermis::PlacedFile placed = dermis::place_file(files.folder, name, files.roots);
   auto bytes = read_binary_file(placed.path.string(), max_model_bytes);
   if (!bytes) {
     if (error != nullptr) *error += bytes.error().text;
@@ -63,7 +63,7 @@ bool read_whole(std::vector<unsigned char>* out, std::string* error, const std::
 // buffers without a check of their end.
 bool keep_encoded(tinygltf::Image* image, const int, std::string*, std::string*, int, int,
                   const unsigned char* bytes, int size, void* user) {
-  const tinygltf::Model& model = static_cast<const Beside*>(user)->model;
+  const tinygltf::Model& model = static_cast<const GltfFiles*>(user)->model;
   image->as_is = true;
   if (image->bufferView >= 0) {
     const tinygltf::BufferView& view = model.bufferViews[static_cast<size_t>(image->bufferView)];
@@ -247,7 +247,7 @@ std::vector<std::byte> with_json(std::span<const std::byte> bytes, const Json& j
 
 Result<tinygltf::Model> parse_gltf(const std::string& path, std::span<const std::byte> bytes,
                                    const std::vector<std::string>& roots) {
-  const auto refuse = [&](std::string_view why) {
+  const auto reject = [&](std::string_view why) {
     return Error{ErrorKind::input, fmt::format("{}: {}", path, why)};
   };
   const bool binary = bytes.size() >= 4 && std::memcmp(bytes.data(), "glTF", 4) == 0;
@@ -256,24 +256,24 @@ Result<tinygltf::Model> parse_gltf(const std::string& path, std::span<const std:
   while (first < text.size() && std::isspace(static_cast<unsigned char>(text[first])) != 0)
     ++first;
   if (!binary && (first == text.size() || text[first] != '{'))
-    return refuse("this is not a glTF file: it starts neither with 'glTF' (binary) nor with '{' (JSON)");
+    return reject("this is not a glTF file: it starts neither with 'glTF' (binary) nor with '{' (JSON)");
   if (binary) {
     uint32_t version = 2;
     if (bytes.size() >= 8) std::memcpy(&version, bytes.data() + 4, sizeof version);
-    if (version != 2) return refuse(fmt::format("binary glTF of version {}; expected 2", version));
+    if (version != 2) return reject(fmt::format("binary glTF of version {}; expected 2", version));
     if (const std::string wrong = wrong_chunks(bytes); !wrong.empty())
-      return refuse("the glTF file is damaged: " + wrong);
+      return reject("the glTF file is damaged: " + wrong);
     uint32_t json_size = 0;
     std::memcpy(&json_size, bytes.data() + 12, sizeof json_size);
     text = text.substr(20, json_size);
   }
   if (nesting_of(text) > dermis::limits::nesting)
-    return refuse(fmt::format("objects and arrays are nested deeper than {}", dermis::limits::nesting));
+    return reject(fmt::format("objects and arrays are nested deeper than {}", dermis::limits::nesting));
 
   Json json = Json::parse(text, nullptr, false);
   if (json.is_object()) { // otherwise tinygltf reports the fault
-    if (const std::string wrong = wrong_version(json); !wrong.empty()) return refuse(wrong);
-    if (const std::string unknown = unknown_extensions(json); !unknown.empty()) return refuse(unknown);
+    if (const std::string wrong = wrong_version(json); !wrong.empty()) return reject(wrong);
+    if (const std::string unknown = unknown_extensions(json); !unknown.empty()) return reject(unknown);
   }
   std::vector<std::byte> changed;
   if (prepare(json)) {
@@ -282,11 +282,11 @@ Result<tinygltf::Model> parse_gltf(const std::string& path, std::span<const std:
   }
 
   tinygltf::Model model;
-  Beside beside{model, fs::path(path).parent_path(), {fs::path(path).parent_path()}, ""};
-  beside.roots.insert(beside.roots.end(), roots.begin(), roots.end());
+  GltfFiles files{model, fs::path(path).parent_path(), {fs::path(path).parent_path()}, ""};
+  files.roots.insert(files.roots.end(), roots.begin(), roots.end());
   tinygltf::TinyGLTF loader;
-  loader.SetImageLoader(keep_encoded, &beside);
-  loader.SetFsCallbacks({is_there, as_it_is, read_whole, nullptr, &beside});
+  loader.SetImageLoader(keep_encoded, &files);
+  loader.SetFsCallbacks({file_exists, as_it_is, read_whole, nullptr, &files});
   std::string error, warning;
   const auto size = static_cast<unsigned int>(bytes.size());
   bool loaded = false;
@@ -302,13 +302,13 @@ Result<tinygltf::Model> parse_gltf(const std::string& path, std::span<const std:
   }
   while (!error.empty() && error.back() == '\n')
     error.pop_back();
-  if (!beside.refused.empty()) return refuse(beside.refused);
+  if (!files.rejected.empty()) return reject(files.rejected);
   if (!loaded)
-    return refuse(fmt::format("the glTF file is damaged: {}", error.empty() ? "no reason given" : error));
+    return reject(fmt::format("the glTF file is damaged: {}", error.empty() ? "no reason given" : error));
   try {
     if (auto done = decompress(model, path); !done) return done.error();
   } catch (const std::exception& problem) {
-    return refuse(fmt::format("the compressed mesh is damaged: {}", problem.what()));
+    return reject(fmt::format("the compressed mesh is damaged: {}", problem.what()));
   }
   return model;
 }

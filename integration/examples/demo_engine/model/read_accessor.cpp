@@ -30,7 +30,7 @@ struct Elements {
   }
 };
 
-Error refuse(const std::string& file, int index, const std::string& why) {
+Error reject(const std::string& file, int index, const std::string& why) {
   return {ErrorKind::input, fmt::format("{}: accessor {} {}", file, index, why)};
 }
 
@@ -48,10 +48,10 @@ struct Range {
 Result<Range> find_range(const tinygltf::Model& model, const std::string& file, int index, int buffer_view,
                          size_t offset, size_t element, size_t count) {
   if (buffer_view < 0 || static_cast<size_t>(buffer_view) >= model.bufferViews.size())
-    return refuse(file, index, "refers to a buffer view that does not exist");
+    return reject(file, index, "refers to a buffer view that does not exist");
   const tinygltf::BufferView& view = model.bufferViews[static_cast<size_t>(buffer_view)];
   if (view.buffer < 0 || static_cast<size_t>(view.buffer) >= model.buffers.size())
-    return refuse(file, index, "refers to a buffer that does not exist");
+    return reject(file, index, "refers to a buffer that does not exist");
   const std::vector<unsigned char>& data = model.buffers[static_cast<size_t>(view.buffer)].data;
   const size_t stride = view.byteStride == 0 ? element : view.byteStride;
   const size_t available = view.byteOffset <= data.size() ? data.size() - view.byteOffset : 0;
@@ -59,7 +59,7 @@ Result<Range> find_range(const tinygltf::Model& model, const std::string& file, 
   const bool starts = offset <= view.byteLength && view.byteLength - offset >= element;
   if (!view_fits || !starts || stride < element || stride > 4096 ||
       (count - 1) > (view.byteLength - offset - element) / stride)
-    return refuse(file, index, "reaches beyond the end of its buffer");
+    return reject(file, index, "reaches beyond the end of its buffer");
   return Range{data.data() + view.byteOffset + offset, stride};
 }
 
@@ -72,7 +72,7 @@ Result<uint32_t> unsigned_at(const unsigned char* at, int component, const std::
   case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT:
     return load<uint32_t>(at);
   default:
-    return refuse(file, index, "is used for indices and holds no unsigned integers");
+    return reject(file, index, "is used for indices and holds no unsigned integers");
   }
 }
 
@@ -81,13 +81,13 @@ Result<> find_replaced(const tinygltf::Model& model, const std::string& file, in
                        Elements& elements) {
   const auto& sparse = model.accessors[static_cast<size_t>(index)].sparse;
   if (sparse.count < 1 || static_cast<size_t>(sparse.count) > elements.count)
-    return refuse(file, index,
+    return reject(file, index,
                   fmt::format("replaces {} elements; expected 1 to {}", sparse.count, elements.count));
   if (sparse.indices.byteOffset < 0 || sparse.values.byteOffset < 0)
-    return refuse(file, index, "begins before its buffer view");
+    return reject(file, index, "begins before its buffer view");
   const int type = sparse.indices.componentType;
   const int bytes = tinygltf::GetComponentSizeInBytes(static_cast<uint32_t>(type));
-  if (bytes <= 0) return refuse(file, index, "has an unknown component type");
+  if (bytes <= 0) return reject(file, index, "has an unknown component type");
   const auto count = static_cast<size_t>(sparse.count);
   const auto where =
       find_range(model, file, index, sparse.indices.bufferView,
@@ -103,9 +103,9 @@ Result<> find_replaced(const tinygltf::Model& model, const std::string& file, in
     const auto one = unsigned_at(where->first + i * where->stride, type, file, index);
     if (!one) return one.error();
     if (*one >= elements.count)
-      return refuse(file, index, fmt::format("replaces element {}; there are {}", *one, elements.count));
+      return reject(file, index, fmt::format("replaces element {}; there are {}", *one, elements.count));
     if (i > 0 && *one <= elements.replaced.back())
-      return refuse(file, index, "replaces elements that are not in ascending order");
+      return reject(file, index, "replaces elements that are not in ascending order");
     elements.replaced.push_back(*one);
   }
   return success();
@@ -113,15 +113,15 @@ Result<> find_replaced(const tinygltf::Model& model, const std::string& file, in
 
 Result<Elements> find_elements(const tinygltf::Model& model, const std::string& file, int index, int type) {
   if (index < 0 || static_cast<size_t>(index) >= model.accessors.size())
-    return refuse(file, index, fmt::format("does not exist; there are {}", model.accessors.size()));
+    return reject(file, index, fmt::format("does not exist; there are {}", model.accessors.size()));
   const tinygltf::Accessor& accessor = model.accessors[static_cast<size_t>(index)];
-  if (accessor.type != type) return refuse(file, index, "has another element type than its use needs");
+  if (accessor.type != type) return reject(file, index, "has another element type than its use needs");
   if (accessor.count == 0 || accessor.count > max_elements)
-    return refuse(file, index,
+    return reject(file, index,
                   fmt::format("has {} elements; expected 1 to {}", accessor.count, max_elements));
   const int components = tinygltf::GetNumComponentsInType(static_cast<uint32_t>(type));
   const int bytes = tinygltf::GetComponentSizeInBytes(static_cast<uint32_t>(accessor.componentType));
-  if (components <= 0 || bytes <= 0) return refuse(file, index, "has an unknown component type");
+  if (components <= 0 || bytes <= 0) return reject(file, index, "has an unknown component type");
   Elements elements;
   elements.count = accessor.count;
   elements.component = accessor.componentType;
@@ -183,7 +183,7 @@ Result<std::vector<float>> read_floats(const tinygltf::Model& model, const std::
   auto elements = find_elements(model, file, index, type);
   if (!elements) return elements.error();
   if (!holds_floats(elements->component))
-    return refuse(
+    return reject(
         file, index,
         fmt::format("has the component type {}; expected floats, bytes or shorts", elements->component));
   std::vector<float> values(elements->count * width);
@@ -191,7 +191,7 @@ Result<std::vector<float>> read_floats(const tinygltf::Model& model, const std::
     for (uint32_t c = 0; c < width; ++c) {
       const float value = component_at(*elements, i, c);
       if (!std::isfinite(value))
-        return refuse(file, index, fmt::format("holds a number that is not finite at element {}", i));
+        return reject(file, index, fmt::format("holds a number that is not finite at element {}", i));
       values[i * width + c] = value;
     }
   }
@@ -210,7 +210,7 @@ Result<std::vector<uint32_t>> read_indices(const tinygltf::Model& model, const s
       values[i] = *value;
     }
     if (values[i] >= limit)
-      return refuse(file, index, fmt::format("holds index {}; there are {} vertices", values[i], limit));
+      return reject(file, index, fmt::format("holds index {}; there are {} vertices", values[i], limit));
   }
   return values;
 }

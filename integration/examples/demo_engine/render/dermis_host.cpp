@@ -277,26 +277,26 @@ bool writes(const DermisHost& host, Target target) {
 
 } // namespace
 
-bool hands_out_light(const DermisHost& host) {
+bool exports_light(const DermisHost& host) {
   return writes(host, Target::scattered);
 }
 
-bool wants_rays(const DermisHost& host) {
+bool uses_rays(const DermisHost& host) {
   return std::any_of(host.slots.begin(), host.slots.end(),
                      [](const dermis_slot& slot) { return slot.bound && is_rays(slot); });
 }
 
-bool hands_out_sampling(const DermisHost& host) {
+bool exports_sampling(const DermisHost& host) {
   return writes(host, Target::sampling);
 }
 
-bool hands_out_skips(const DermisHost& host) {
+bool exports_tile_class(const DermisHost& host) {
   return writes(host, Target::skips);
 }
 
 Scattering scattering_of(const DermisHost& host) {
   if (writes(host, Target::lighting)) return Scattering::in_place;
-  return hands_out_light(host) ? Scattering::apart : Scattering::none;
+  return exports_light(host) ? Scattering::apart : Scattering::none;
 }
 
 const std::vector<std::string>& warnings_of(const DermisHost& host) {

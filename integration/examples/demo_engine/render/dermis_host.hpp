@@ -51,10 +51,10 @@ std::array<VkImageUsageFlags, target_count> usage_for_graph(const DermisHost& ho
 // Returns in_place if the graph writes `lighting`, else apart if it writes `scattered_light`, else
 // none.
 Scattering scattering_of(const DermisHost& host);
-bool hands_out_light(const DermisHost& host);
-bool wants_rays(const DermisHost& host); // buffers and acceleration structures are bound
-bool hands_out_sampling(const DermisHost& host);
-bool hands_out_skips(const DermisHost& host);
+bool exports_light(const DermisHost& host);
+bool uses_rays(const DermisHost& host); // buffers and acceleration structures are bound
+bool exports_sampling(const DermisHost& host);
+bool exports_tile_class(const DermisHost& host);
 const std::vector<std::string>& warnings_of(const DermisHost& host);
 
 // Reloads the graph from another text. Returns false if the text has errors; the present graph then

@@ -68,7 +68,7 @@ ObjectData object_data(const SceneState& state, uint32_t object, uint32_t layer)
 void draw_object(Renderer& renderer, VkCommandBuffer commands, const ProgramLayout& layout,
                  VkShaderStageFlags stages, uint32_t object, const ObjectData& data) {
   const VulkanHost& host = *renderer.host;
-  const DrawnMesh& mesh = renderer.gpu.meshes[renderer.gpu.mesh_of[object]];
+  const GpuMesh& mesh = renderer.gpu.meshes[renderer.gpu.mesh_of[object]];
   const VkDeviceSize start = 0;
   host.vk.vkCmdPushConstants(commands, layout.layout.handle, stages, 0, sizeof(data), &data);
   host.vk.vkCmdBindVertexBuffers(commands, 0, 1, &mesh.vertices.buffer, &start);
@@ -78,9 +78,9 @@ void draw_object(Renderer& renderer, VkCommandBuffer commands, const ProgramLayo
 
 void record_shadows(Renderer& renderer, VkCommandBuffer commands, const SceneState& state) {
   // Maps stay valid while neither lights nor objects move; changed intensities do not matter.
-  if (state.shadow_from_world == renderer.rendered_shadows && state.world == renderer.drawn_world) return;
+  if (state.shadow_from_world == renderer.rendered_shadows && state.world == renderer.rendered_world) return;
   renderer.rendered_shadows = state.shadow_from_world;
-  renderer.drawn_world = state.world;
+  renderer.rendered_world = state.world;
   const VulkanHost& host = *renderer.host;
   transition(host, commands, renderer.shadow_maps, resting, depth_target);
   for (uint32_t layer = 0; layer < state.shadow_from_world.size(); ++layer) {

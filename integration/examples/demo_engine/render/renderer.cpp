@@ -11,7 +11,7 @@
 namespace demo {
 namespace {
 
-constexpr VkImageUsageFlags drawn =
+constexpr VkImageUsageFlags attachment_usage =
     VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
 constexpr VkImageUsageFlags stored =
     VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
@@ -20,12 +20,12 @@ constexpr VkImageUsageFlags tested = VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT
 
 constexpr std::array<TargetInfo, target_count> target_infos = {{
     {"depth", VK_FORMAT_D32_SFLOAT, tested},
-    {"normal", VK_FORMAT_R16G16B16A16_SFLOAT, drawn},
-    {"", VK_FORMAT_R16G16B16A16_SFLOAT, drawn},
-    {"albedo", VK_FORMAT_R8G8B8A8_SRGB, drawn},
-    {"material", VK_FORMAT_R8_UINT, drawn},
-    {"", VK_FORMAT_R8G8B8A8_UNORM, drawn},
-    {"velocity", VK_FORMAT_R16G16_SFLOAT, drawn},
+    {"normal", VK_FORMAT_R16G16B16A16_SFLOAT, attachment_usage},
+    {"", VK_FORMAT_R16G16B16A16_SFLOAT, attachment_usage},
+    {"albedo", VK_FORMAT_R8G8B8A8_SRGB, attachment_usage},
+    {"material", VK_FORMAT_R8_UINT, attachment_usage},
+    {"", VK_FORMAT_R8G8B8A8_UNORM, attachment_usage},
+    {"velocity", VK_FORMAT_R16G16_SFLOAT, attachment_usage},
     {"lighting", VK_FORMAT_R16G16B16A16_SFLOAT, stored},
     {"", VK_FORMAT_R16G16B16A16_SFLOAT, stored},
     {"scattered_light", VK_FORMAT_R16G16B16A16_SFLOAT, stored},
@@ -48,12 +48,12 @@ constexpr VkShaderStageFlags compute_stage = VK_SHADER_STAGE_COMPUTE_BIT;
 Result<> create_targets(Renderer& renderer, const RendererDesc& desc) {
   VulkanHost& host = *renderer.host;
   for (size_t i = 0; i < target_count; ++i) {
-    ImageDesc wanted;
-    wanted.format = target_infos[i].format;
-    wanted.width = desc.view.width;
-    wanted.height = desc.view.height;
-    wanted.usage = target_infos[i].usage | desc.more_usage[i];
-    auto made = create_image(host, wanted);
+    ImageDesc image_desc;
+    image_desc.format = target_infos[i].format;
+    image_desc.width = desc.view.width;
+    image_desc.height = desc.view.height;
+    image_desc.usage = target_infos[i].usage | desc.more_usage[i];
+    auto made = create_image(host, image_desc);
     if (!made) return made.error();
     renderer.targets[i] = made.take();
   }
@@ -204,13 +204,13 @@ Result<std::unique_ptr<Renderer>> create_renderer(VulkanHost& host, const Scene&
   renderer->scene = &scene;
   renderer->view = desc.view;
   if (auto done = create_targets(*renderer, desc); !done) return done.error();
-  struct Wanted {
+  struct SamplerSlot {
     Sampling sampling;
     OwnedSampler& out;
   };
-  for (const Wanted& one :
-       {Wanted{Sampling::nearest, renderer->texel_sampler}, Wanted{Sampling::smooth, renderer->map_sampler},
-        Wanted{Sampling::compare, renderer->shadow_sampler}}) {
+  for (const SamplerSlot& one : {SamplerSlot{Sampling::nearest, renderer->texel_sampler},
+                                 SamplerSlot{Sampling::smooth, renderer->map_sampler},
+                                 SamplerSlot{Sampling::compare, renderer->shadow_sampler}}) {
     auto sampler = create_sampler(host, one.sampling);
     if (!sampler) return sampler.error();
     one.out = sampler.take();

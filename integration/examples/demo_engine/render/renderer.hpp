@@ -76,7 +76,7 @@ struct Renderer {
   SceneGpu gpu;
   std::unique_ptr<RayScene> rays; // null until requested
   // state for which the shadow maps were rendered
-  std::vector<glm::dmat4> rendered_shadows, drawn_world;
+  std::vector<glm::dmat4> rendered_shadows, rendered_world;
 
   const Image& operator[](Target target) const { return targets[static_cast<size_t>(target)]; }
 };

@@ -38,14 +38,14 @@ Mesh make(Shape shape, const Model& model) {
   return {};
 }
 
-Result<DrawnMesh> upload(VulkanHost& host, const Mesh& mesh) {
+Result<GpuMesh> upload(VulkanHost& host, const Mesh& mesh) {
   auto vertices =
       upload_buffer(host, std::as_bytes(std::span(mesh.vertices)), VK_BUFFER_USAGE_VERTEX_BUFFER_BIT);
   if (!vertices) return vertices.error();
   auto indices =
       upload_buffer(host, std::as_bytes(std::span(mesh.indices)), VK_BUFFER_USAGE_INDEX_BUFFER_BIT);
   if (!indices) return indices.error();
-  return DrawnMesh{vertices.take(), indices.take(), static_cast<uint32_t>(mesh.indices.size())};
+  return GpuMesh{vertices.take(), indices.take(), static_cast<uint32_t>(mesh.indices.size())};
 }
 
 Result<Image> upload(VulkanHost& host, const Texture& texture, VkFormat format) {
@@ -122,10 +122,10 @@ Result<SceneGpu> load_scene(VulkanHost& host, const Scene& scene, const Model& m
         return Error{ErrorKind::usage,
                      "scene '" + scene.name +
                          "' has an object of shape 'model' and no model was given: add --model"};
-      auto drawn = upload(host, mesh);
-      if (!drawn) return drawn.error();
+      auto uploaded = upload(host, mesh);
+      if (!uploaded) return uploaded.error();
       index = static_cast<uint32_t>(gpu.meshes.size());
-      gpu.meshes.push_back(drawn.take());
+      gpu.meshes.push_back(uploaded.take());
       if (host.ray_query) gpu.shapes.push_back(std::move(mesh));
     }
     gpu.mesh_of.push_back(*index);

@@ -25,13 +25,13 @@ struct Model {
   std::vector<std::string> credits, warnings;
 };
 
-struct DrawnMesh {
+struct GpuMesh {
   Buffer vertices, indices;
   uint32_t index_count = 0;
 };
 
 struct SceneGpu {
-  std::vector<DrawnMesh> meshes;
+  std::vector<GpuMesh> meshes;
   std::vector<Mesh> shapes;             // copies of the meshes if the device has ray queries
   std::vector<uint32_t> mesh_of;        // by object
   std::vector<VkDescriptorSet> maps_of; // by object

@@ -90,7 +90,7 @@ Result<> load_stage(Stage& stage, const RenderOptions& options) {
   return success();
 }
 
-Result<> furnish_stage(Stage& stage, const RenderOptions& options,
+Result<> prepare_stage(Stage& stage, const RenderOptions& options,
                        const std::array<VkImageUsageFlags, target_count>& usage) {
   bool fits = stage.renderer != nullptr;
   for (size_t i = 0; i < target_count; ++i)

@@ -28,7 +28,7 @@ struct Stage {
 Result<> load_stage(Stage& stage, const RenderOptions& options);
 // Makes the renderer, unless there is one whose targets have this usage. Errors: usage,
 // environment.
-Result<> furnish_stage(Stage& stage, const RenderOptions& options,
+Result<> prepare_stage(Stage& stage, const RenderOptions& options,
                        const std::array<VkImageUsageFlags, target_count>& usage);
 
 } // namespace demo

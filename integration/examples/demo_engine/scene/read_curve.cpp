@@ -50,17 +50,17 @@ template <class T> bool read_keys(const Reading& reading, ObjectReader& object, 
     const std::string what = fmt::format("keyframe {} of {}", keys.size(), reading.what);
     if (!dermis::read_numbers(reading.document, row, what, numbers, minimum, maximum, reading.diagnostics))
       return false;
-    const auto refuse = [&](DiagnosticId id, std::string text) {
+    const auto reject = [&](DiagnosticId id, std::string text) {
       reading.diagnostics.add(id, reading.document.where(row), std::move(text));
       return false;
     };
     const std::string at =
         fmt::format("{} is at {} s; times ascend from 0 to {} s", what, numbers[0], longest_seconds);
-    if (numbers[0] < 0.0 || numbers[0] > longest_seconds) return refuse(DiagnosticId::out_of_range, at);
-    if (!keys.empty() && numbers[0] <= keys.back().seconds) return refuse(DiagnosticId::scene_range, at);
+    if (numbers[0] < 0.0 || numbers[0] > longest_seconds) return reject(DiagnosticId::out_of_range, at);
+    if (!keys.empty() && numbers[0] <= keys.back().seconds) return reject(DiagnosticId::scene_range, at);
     for (size_t i = 1; i < numbers.size(); ++i)
       if (numbers[i] < reading.range.minimum || numbers[i] > reading.range.maximum)
-        return refuse(DiagnosticId::out_of_range,
+        return reject(DiagnosticId::out_of_range,
                       fmt::format("{} has the value {}; expected {} to {}", what, numbers[i],
                                   reading.range.minimum, reading.range.maximum));
     typename Curve<T>::Key key{numbers[0], T(0.0)};

@@ -22,7 +22,7 @@ struct CaseReader {
   Diagnostics& diagnostics;
   bool ok = true;
 
-  void refuse(NodeId node, std::string text) {
+  void reject(NodeId node, std::string text) {
     diagnostics.add(DiagnosticId::invalid_value, document.where(node), std::move(text));
     ok = false;
   }
@@ -43,7 +43,7 @@ struct CaseReader {
     ok &= name.has_value();
     if (!name) return std::nullopt;
     const std::optional<Format> found = format_from_name(*name);
-    if (!found) refuse(node, fmt::format("{}: there is no format '{}'", what, *name));
+    if (!found) reject(node, fmt::format("{}: there is no format '{}'", what, *name));
     return found;
   }
 
@@ -54,7 +54,7 @@ struct CaseReader {
     if (const std::optional<Feature> found = feature_from_name(*name))
       out.unmet |= bit_of(*found);
     else
-      refuse(node, fmt::format("'lacks': there is no feature '{}'", *name));
+      reject(node, fmt::format("'lacks': there is no feature '{}'", *name));
   }
 
   // Returns values as --set accepts them; the graph determines their types later.
@@ -73,7 +73,7 @@ struct CaseReader {
       else if (value.kind == NodeKind::real)
         out.emplace_back(name, fmt::format("{}", value.real));
       else
-        refuse(node, fmt::format("setting '{}': expected a bool, a number or a string, found {}", name,
+        reject(node, fmt::format("setting '{}': expected a bool, a number or a string, found {}", name,
                                  kind_name(value.kind)));
     }
     return out;

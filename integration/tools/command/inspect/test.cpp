@@ -172,7 +172,7 @@ std::string answer_json(const std::vector<TestRun>& runs, bool all_good) {
   return std::move(answer).finish();
 }
 
-void tell(const Session& session, const TestRun& run) {
+void print_result(const Session& session, const TestRun& run) {
   print_diagnostics(session, run.diagnostics);
   if (session.json) return;
   for (const TestResult& one : run.suite.results)
@@ -212,7 +212,7 @@ ExitCode test(const Session& session, const TestOptions& options) {
     runs.push_back(run_file(path, options, roots));
     if (runs.back().rewritten) problem = deliver_text(path, runs.back().text);
     if (!problem.empty()) return fail(session, ExitCode::environment, problem);
-    tell(session, runs.back());
+    print_result(session, runs.back());
   }
   if (!options.junit.empty()) problem = deliver_text(options.junit, junit_xml(suites_of(runs)));
   if (!problem.empty()) return fail(session, ExitCode::environment, problem);

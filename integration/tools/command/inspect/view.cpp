@@ -27,13 +27,14 @@ std::string value_text(const SettingDeclaration& setting, const SettingValue& va
 
 std::vector<uint32_t> switched_settings(const Graph& graph) {
   std::vector<uint32_t> switched;
-  size_t outcomes = 1;
+  size_t configurations = 1;
   for (const bool by_budget : {true, false})
     for (uint32_t i = 0; i < graph.settings.size(); ++i) {
       const size_t values = values_of(graph.settings[i]).size();
-      if (graph.settings[i].by_budget != by_budget || values < 2 || outcomes * values > max_view_outcomes)
+      if (graph.settings[i].by_budget != by_budget || values < 2 ||
+          configurations * values > max_view_configurations)
         continue;
-      outcomes *= values;
+      configurations *= values;
       switched.push_back(i);
     }
   return switched;
@@ -211,7 +212,7 @@ struct View {
     runs.close();
     list.close();
     lines.write(out.key("lines"));
-    out.key("plans").json(std::move(runs).finish()).key("outcomes").json(std::move(list).finish());
+    out.key("plans").json(std::move(runs).finish()).key("configurations").json(std::move(list).finish());
     return true;
   }
 

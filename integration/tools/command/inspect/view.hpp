@@ -7,7 +7,7 @@
 
 namespace dermis::tools {
 
-inline constexpr size_t max_view_outcomes = 64; // plans per page
+inline constexpr size_t max_view_configurations = 64; // plans per page
 
 // Inputs of a page in addition to the graph.
 struct ViewOptions {
@@ -23,7 +23,7 @@ struct ViewAnswer {
 };
 
 // Builds the page. Switchable settings are the choices by budget, then booleans and enumerations,
-// in file order, as long as they have at most `max_view_outcomes` combinations. Other settings keep
+// in file order, as long as they have at most `max_view_configurations` combinations. Other settings keep
 // their values.
 ViewAnswer make_view(const LoadedGraph& loaded, const ViewOptions& options, Diagnostics& diagnostics);
 

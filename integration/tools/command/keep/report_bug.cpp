@@ -27,12 +27,12 @@ namespace fs = std::filesystem;
 
 // A folder under construction. `finish` renames it or packs it into an archive; the destructor
 // removes the rest.
-struct Parcel {
+struct BugReport {
   fs::path target, part;
   std::string archived{}; // the folder's name in the archive; "" for no archive
   std::string problem{};
 
-  ~Parcel() {
+  ~BugReport() {
     std::error_code ignored;
     fs::remove_all(part, ignored);
   }
@@ -87,22 +87,23 @@ struct GraphFiles {
 
 // Adds graph, overlays, pass types and included files. File names are chosen so that references
 // resolve.
-bool add_graph(Parcel& parcel, const ReportBugOptions& options, const Diagnostics& diagnostics,
+bool add_graph(BugReport& bug_report, const ReportBugOptions& options, const Diagnostics& diagnostics,
                GraphFiles& files) {
   files.graph = options.graph == "-" ? "graph.json" : fs::path(options.graph).filename().string();
-  bool good = parcel.add(files.graph, diagnostics.files.front().text);
+  bool good = bug_report.add(files.graph, diagnostics.files.front().text);
   const auto add_all = [&](const char* folder, const std::vector<std::string>& paths,
                            std::vector<std::string>& names) {
     for (size_t i = 0; i < paths.size() && good; ++i) {
-      const auto bytes = read_bytes(paths[i], limits::file_bytes, parcel.problem);
+      const auto bytes = read_bytes(paths[i], limits::file_bytes, bug_report.problem);
       names.push_back(fmt::format("{}/{}_{}", folder, i, fs::path(paths[i]).filename().string()));
-      good = bytes && parcel.add(names.back(), {reinterpret_cast<const char*>(bytes->data()), bytes->size()});
+      good = bytes &&
+             bug_report.add(names.back(), {reinterpret_cast<const char*>(bytes->data()), bytes->size()});
     }
   };
   add_all("overlays", options.parts.overlays, files.overlays);
   add_all("pass_types", options.parts.pass_types, files.pass_types);
   for (const auto& [name, text] : files.included)
-    good = good && parcel.add(name, text);
+    good = good && bug_report.add(name, text);
   return good;
 }
 
@@ -124,8 +125,8 @@ std::string device_json() {
 }
 
 // Adds the last frame of the given capture, or a frame of the scene.
-demo::Result<> add_frame(const Session& session, const ReportBugOptions& options, Parcel& parcel) {
-  const std::string folder = (parcel.folder() / "capture").string();
+demo::Result<> add_frame(const Session& session, const ReportBugOptions& options, BugReport& bug_report) {
+  const std::string folder = (bug_report.folder() / "capture").string();
   if (options.frames.empty()) {
     Session quiet = session;
     quiet.quiet = true; // no progress for one frame
@@ -216,19 +217,20 @@ ExitCode report_bug(const Session& session, const ReportBugOptions& options) {
   const DeviceProfile generic = generic_profile();
   const SavedPlan saved = saved_plan(compile_input(*loaded, generic, options.size, choices), compiled->plan);
 
-  Parcel parcel{named, temporary_beside(named), archived};
-  bool good = add_graph(parcel, options, diagnostics, files) &&
-              parcel.add("settings.json", settings_json(*loaded, choices, saved)) &&
-              parcel.add("plan.json", plan_json(loaded->graph, loaded->pass_types, *compiled,
-                                                {loaded->changes, diagnostics.files})) &&
-              parcel.add("graph.plan", write_plan(saved)) && parcel.add("device.json", device_json()) &&
-              parcel.add("README.txt", about(session, replay_line(options, files)));
-  if (!good) return fail(session, ExitCode::environment, parcel.problem);
-  const auto captured = add_frame(session, options, parcel);
+  BugReport bug_report{named, temporary_path(named), archived};
+  bool good = add_graph(bug_report, options, diagnostics, files) &&
+              bug_report.add("settings.json", settings_json(*loaded, choices, saved)) &&
+              bug_report.add("plan.json", plan_json(loaded->graph, loaded->pass_types, *compiled,
+                                                    {loaded->changes, diagnostics.files})) &&
+              bug_report.add("graph.plan", write_plan(saved)) &&
+              bug_report.add("device.json", device_json()) &&
+              bug_report.add("README.txt", about(session, replay_line(options, files)));
+  if (!good) return fail(session, ExitCode::environment, bug_report.problem);
+  const auto captured = add_frame(session, options, bug_report);
   if (interrupted()) return fail(session, ExitCode::interrupted, "stopped");
   if (!captured) return fail(session, static_cast<ExitCode>(captured.error().kind), captured.error().text);
   if (archived.empty()) fs::remove(named, error); // the target may be an empty folder
-  if (!parcel.finish()) return fail(session, ExitCode::environment, parcel.problem);
+  if (!bug_report.finish()) return fail(session, ExitCode::environment, bug_report.problem);
   say(session, fmt::format("{}: attach this file to your report; its README.txt has the command that "
                            "reproduces the problem:\n  {}\n",
                            options.out, replay_line(options, files)));

@@ -12,7 +12,7 @@ template <class T> void append(std::vector<T>& to, const std::vector<T>& from) {
   to.insert(to.end(), from.begin(), from.end());
 }
 
-bool tells_sides_apart(const PlanDiffOptions& options) {
+bool sides_differ(const PlanDiffOptions& options) {
   return !options.b_settings.empty() || !options.b_unbound.empty() || !options.b_overlays.empty() ||
          options.b_size.width > 0;
 }
@@ -20,7 +20,7 @@ bool tells_sides_apart(const PlanDiffOptions& options) {
 } // namespace
 
 ExitCode plan_diff(const Session& session, const PlanDiffOptions& options) {
-  if (options.files.size() == 1 && !tells_sides_apart(options))
+  if (options.files.size() == 1 && !sides_differ(options))
     return fail(session, ExitCode::usage,
                 "name two plans, or set differences of the second plan with --b-set, --b-size, --b-unbound "
                 "or --b-overlay");
@@ -41,7 +41,7 @@ ExitCode plan_diff(const Session& session, const PlanDiffOptions& options) {
     if (!plan) return fail_graph(session, source->file, diagnostics);
     plans.push_back(std::move(*plan));
   }
-  if (!plans.back().from_graph && tells_sides_apart(options))
+  if (!plans.back().from_graph && sides_differ(options))
     return fail(session, ExitCode::usage,
                 options.files.back() + ": is a saved plan; --b-set, --b-size, --b-unbound and "
                                        "--b-overlay need a graph to compile");

@@ -54,8 +54,8 @@ std::optional<CapturedSequence> check_sequence(const Session& session, const std
 }
 
 std::optional<CapturedFrame> load_frame(const CapturedSequence& sequence, size_t index) {
-  Diagnostics already_said;
-  return read_frame(sequence.folders[index], sequence.profiles, already_said, sequence.roots);
+  Diagnostics already_reported;
+  return read_frame(sequence.folders[index], sequence.profiles, already_reported, sequence.roots);
 }
 
 std::string profile_as_json(const subsurface::Profile& profile) {

@@ -55,8 +55,9 @@ std::string ChoiceReport::text() const {
       if (std::find(seen.begin(), seen.end(), frame.choice.configuration) == seen.end())
         seen.push_back(frame.choice.configuration);
     for (const std::string& configuration : seen) {
-      const auto count = std::count_if(frames_.begin(), frames_.end(),
-                                       [&](const Frame& frame) { return frame.choice.configuration == configuration; });
+      const auto count = std::count_if(frames_.begin(), frames_.end(), [&](const Frame& frame) {
+        return frame.choice.configuration == configuration;
+      });
       text += fmt::format("{} of {} frames ran {}\n", count, frames_.size(), configuration);
     }
   }
@@ -68,7 +69,9 @@ void ChoiceReport::write(JsonWriter& writer) const {
   writer.open_array();
   for (const Frame& frame : frames_) {
     const demo::FrameChoice& choice = frame.choice;
-    writer.open_object(true).member("frame", frame.frame).member("outcome", std::string_view(choice.configuration));
+    writer.open_object(true)
+        .member("frame", frame.frame)
+        .member("configuration", std::string_view(choice.configuration));
     writer.member("technique", std::string_view(choice.technique))
         .member("why", std::string_view(choice.why));
     writer.member("budget_ms", choice.budget_ms).member("predicted_ms", choice.predicted_ms);
@@ -77,19 +80,19 @@ void ChoiceReport::write(JsonWriter& writer) const {
       writer.null();
     else
       writer.value(choice.measured_ms);
-    writer.member("metered_ms", choice.metered_ms);
+    writer.member("calibrated_ms", choice.metered_ms);
     writer.member("predicted_rmse", choice.predicted_rmse).member("mean_d_px", choice.mean_d_px);
     writer.member("view_tiles", choice.view_tiles).member("scattering_tiles", choice.scattering_tiles);
     writer.member("copied_tiles", choice.copied_tiles).member("switches", choice.switches);
-    writer.member("flat_tiles", choice.uniform_tiles).member("dispatches", choice.dispatches);
+    writer.member("uniform_tiles", choice.uniform_tiles).member("dispatches", choice.dispatches);
     writer.member("groups", choice.groups).member("sample_units", choice.sample_units);
-    writer.member("wanted_units", choice.sample_demand).key("sampled_tiles").open_array();
+    writer.member("sample_demand", choice.sample_demand).key("sampled_tiles").open_array();
     for (const uint32_t tiles : choice.sampled_tiles)
       writer.value(tiles);
     writer.close();
     if (choice.probed_tiles > 0) writer.member("probed_tiles", choice.probed_tiles);
     if (choice.probed_tiles > 0) writer.member("probed_rmse", choice.probed_rmse);
-    if (choice.transmitted_rms > 0) writer.member("through_rms", choice.transmitted_rms);
+    if (choice.transmitted_rms > 0) writer.member("transmitted_rms", choice.transmitted_rms);
     if (choice.probed_tiles > 1)
       writer.member("probed_rmse_low", choice.probed_rmse_low)
           .member("probed_rmse_high", choice.probed_rmse_high);
@@ -102,7 +105,7 @@ void ChoiceReport::write(JsonWriter& writer) const {
             .member("reads_per_pixel", one.reads)
             .close();
       writer.close().member("reads_per_sample", frame.costs.reads_per_sample);
-      writer.member("reads_beside", frame.costs.reads_beside).member("reads", frame.costs.total());
+      writer.member("reads_per_view", frame.costs.reads_per_view).member("reads", frame.costs.total());
     }
     write_histories(writer.key("histories"), frame.histories);
     writer.member("miss", std::string_view(choice.miss));

@@ -97,12 +97,12 @@ std::vector<Pair> pairs_of(const std::string& a, const std::string& b, std::stri
     in_a = frames_with(in_a, a_is_applied ? scattered : reference);
     in_b = frames_with(in_b, b_is_applied ? scattered : reference);
   }
-  std::vector<std::string> alone;
+  std::vector<std::string> unmatched;
   std::set_symmetric_difference(in_a.begin(), in_a.end(), in_b.begin(), in_b.end(),
-                                std::back_inserter(alone));
-  if (!alone.empty())
-    problem = fmt::format("'{}' is only in one of the folders{}", alone.front(),
-                          alone.size() > 1 ? fmt::format(", and {} more", alone.size() - 1) : "");
+                                std::back_inserter(unmatched));
+  if (!unmatched.empty())
+    problem = fmt::format("'{}' is only in one of the folders{}", unmatched.front(),
+                          unmatched.size() > 1 ? fmt::format(", and {} more", unmatched.size() - 1) : "");
   if (in_a.empty() && in_b.empty()) problem = fmt::format("there are no .png or .exr files below '{}'", a);
   std::vector<Pair> pairs;
   for (const std::string& name : in_a) {

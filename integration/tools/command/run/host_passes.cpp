@@ -14,7 +14,7 @@ demo::ContextHooks HostPasses::hooks() {
 }
 
 demo::Result<> HostPasses::prepare(dermis_context_t* context) {
-  const auto refuse = [](void* user, const dermis_pass_call* call) {
+  const auto reject = [](void* user, const dermis_pass_call* call) {
     const Kind& kind = *static_cast<const Kind*>(user);
     if (kind.owner->rejected_.empty())
       kind.owner->rejected_ = fmt::format(
@@ -22,7 +22,7 @@ demo::Result<> HostPasses::prepare(dermis_context_t* context) {
   };
   for (size_t i = 0; i < declared_->size(); ++i) {
     Kind& kind = pass_types_.emplace_back(Kind{this, (*declared_)[i].name});
-    const dermis_result result = abi::add_host_pass_type(*context, (*declared_)[i], refuse, &kind);
+    const dermis_result result = abi::add_host_pass_type(*context, (*declared_)[i], reject, &kind);
     if (result != DERMIS_OK) return demo::dermis_error("dermis_register_pass_type", result);
   }
   return demo::success();

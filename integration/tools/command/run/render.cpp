@@ -178,7 +178,7 @@ bool textured_before(const Graph& graph, const CompileChoices& choices) {
   return false;
 }
 
-bool hands_out_samples(const Graph& graph) {
+bool exports_samples(const Graph& graph) {
   return std::any_of(graph.resources.begin(), graph.resources.end(),
                      [](const ResourceDeclaration& one) { return one.name == "sampling"; });
 }
@@ -288,7 +288,7 @@ ExitCode render(const Session& session, const RenderOptions& options) {
     if (!loaded) return fail_graph(session, options.graph, diagnostics);
     const CompileChoices choices = read_choices(loaded->graph, options.settings);
     if (!choices.problem.empty()) return fail(session, ExitCode::usage, choices.problem);
-    if (engine.sampling && !hands_out_samples(loaded->graph))
+    if (engine.sampling && !exports_samples(loaded->graph))
       return fail(session, ExitCode::usage,
                   fmt::format("--debug samples: '{}' does not export 'sampling'; afis_guided.json, "
                               "sap_blend.json and sap_residual.json do",

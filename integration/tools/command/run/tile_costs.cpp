@@ -18,7 +18,8 @@ namespace {
 constexpr double tile_pixels = double(subsurface::tile_side * subsurface::tile_side);
 
 // Splits "technique=hybrid, variant=smooth" into settings.
-void add_outcome(const Graph& graph, std::string_view configuration, std::vector<NamedValue>& settings) {
+void add_configuration(const Graph& graph, std::string_view configuration,
+                       std::vector<NamedValue>& settings) {
   while (!configuration.empty()) {
     const size_t end = std::min(configuration.find(", "), configuration.size()),
                  equals = configuration.find('=');
@@ -35,15 +36,15 @@ void add_outcome(const Graph& graph, std::string_view configuration, std::vector
 } // namespace
 
 double TileCosts::total() const {
-  return std::accumulate(classes.begin(), classes.end(), reads_beside, [](double sum, const TileClass& one) {
-    return sum + tile_pixels * double(one.tiles) * one.reads;
-  });
+  return std::accumulate(
+      classes.begin(), classes.end(), reads_per_view,
+      [](double sum, const TileClass& one) { return sum + tile_pixels * double(one.tiles) * one.reads; });
 }
 
 TileCosts tile_costs(const LoadedGraph& loaded, const Size& size, std::span<const NamedValue> settings,
                      const demo::FrameChoice& choice) {
   std::vector<NamedValue> values(settings.begin(), settings.end());
-  add_outcome(loaded.graph, choice.configuration, values);
+  add_configuration(loaded.graph, choice.configuration, values);
   Diagnostics scratch; // not reported: the frame ran, so the graph compiles
   const auto compiled = compile_generic(loaded, size, read_choices(loaded.graph, values), scratch);
   TileCosts out;
@@ -78,9 +79,9 @@ TileCosts tile_costs(const LoadedGraph& loaded, const Size& size, std::span<cons
       everywhere += reads->per_invocation / finer;
     } else if (type.dispatch.domain == DispatchRule::Domain::written_image) {
       const TexelSize written = first_written_size(plan, pass, type);
-      out.reads_beside += reads->per_invocation * double(written.width) * written.height;
+      out.reads_per_view += reads->per_invocation * double(written.width) * written.height;
     } else {
-      out.reads_beside += reads->per_invocation * tile_pixels * double(choice.view_tiles);
+      out.reads_per_view += reads->per_invocation * tile_pixels * double(choice.view_tiles);
     }
   }
   if (first_step <= 0) return out;
@@ -109,7 +110,7 @@ std::string describe_tile_costs(const TileCosts& costs) {
                           fmt::format("{:.3f}", tile_pixels * double(one.tiles) * one.reads * 1e-6)});
   return format_table(table) +
          fmt::format("M(d) = {:.1f} reads per sample, O(n) = {:.3f} M reads, T'(n) = {:.3f} M reads\n",
-                     costs.reads_per_sample, costs.reads_beside * 1e-6, costs.total() * 1e-6);
+                     costs.reads_per_sample, costs.reads_per_view * 1e-6, costs.total() * 1e-6);
 }
 
 } // namespace dermis::tools

@@ -23,7 +23,7 @@ struct TileCosts {
   // the class without samples first; empty if the graph allocates no samples
   std::vector<TileClass> classes;
   double reads_per_sample = 0; // M(d)
-  double reads_beside = 0;     // O(n): texels read by passes over the whole view
+  double reads_per_view = 0;   // O(n): texels read by passes over the whole view
   double total() const;        // T'(n), texels
 };
 

@@ -14,19 +14,19 @@ function unfold(runs, lines) {
 }
 
 // Returns plans by configuration; each plan is parsed on first access.
-export function make_outcomes(document) {
+export function make_configurations(document) {
   const plans = document.plans.map(() => null);
   const key = (values) => values.join(',');
-  const by_values = new Map(document.outcomes.map((outcome) => [key(outcome.values), outcome]));
+  const by_values = new Map(document.configurations.map((configuration) => [key(configuration.values), configuration]));
   return {
-    count: document.outcomes.length,
-    first: document.outcomes[0].values,
+    count: document.configurations.length,
+    first: document.configurations[0].values,
     // Returns { plan } or { problem }.
     at(values) {
-      const outcome = by_values.get(key(values));
-      if (outcome.plan === null) return { problem: outcome.problem };
-      plans[outcome.plan] ??= unfold(document.plans[outcome.plan], document.lines);
-      return { plan: plans[outcome.plan] };
+      const configuration = by_values.get(key(values));
+      if (configuration.plan === null) return { problem: configuration.problem };
+      plans[configuration.plan] ??= unfold(document.plans[configuration.plan], document.lines);
+      return { plan: plans[configuration.plan] };
     },
   };
 }

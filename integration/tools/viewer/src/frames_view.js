@@ -40,8 +40,8 @@ export function show_frames(panel, report, choose) {
           { label: 'budget', color: '--slot', value: (frame) => (frame.budget_ms > 0 ? frame.budget_ms : null) }], width),
         plot('Tiles', frames, [
           { label: 'scatter', color: '--accent', value: (frame) => frame.scattering_tiles },
-          { label: 'flat', color: '--past', value: (frame) => frame.flat_tiles },
+          { label: 'uniform light', color: '--past', value: (frame) => frame.uniform_tiles },
           { label: 'copied', color: '--slot', value: (frame) => frame.copied_tiles },
-          { label: 'no subsurface', color: '--line', value: (frame) => Math.max(0, frame.view_tiles - frame.scattering_tiles - frame.flat_tiles - frame.copied_tiles) }], width))),
-    frames.length > 0 && table(['frame', 'ran', 'why', 'expected error'], frames.map((frame) => ({ cells: [frame.frame, frame.outcome, frame.why, frame.predicted_rmse.toExponential(2)] }))));
+          { label: 'no subsurface', color: '--line', value: (frame) => Math.max(0, frame.view_tiles - frame.scattering_tiles - frame.uniform_tiles - frame.copied_tiles) }], width))),
+    frames.length > 0 && table(['frame', 'ran', 'why', 'expected error'], frames.map((frame) => ({ cells: [frame.frame, frame.configuration, frame.why, frame.predicted_rmse.toExponential(2)] }))));
 }

@@ -28,14 +28,14 @@ function place_by_layers(nodes, edges) {
   const places = new Map();
   let x = 0;
   for (const members of layers) {
-    const wish = new Map(members.map((node) => {
+    const preferred_y = new Map(members.map((node) => {
       const ys = sources.get(node.id).map((from) => places.get(from)?.y ?? 0);
       return [node.id, ys.length === 0 ? 0 : ys.reduce((a, b) => a + b, 0) / ys.length];
     }));
-    members.sort((a, b) => wish.get(a.id) - wish.get(b.id));
+    members.sort((a, b) => preferred_y.get(a.id) - preferred_y.get(b.id));
     const width = Math.max(...members.map((node) => node.width));
     const height = members.reduce((sum, node) => sum + node.height + gap.node, 0);
-    let y = members.reduce((sum, node) => sum + wish.get(node.id), 0) / members.length - height / 2;
+    let y = members.reduce((sum, node) => sum + preferred_y.get(node.id), 0) / members.length - height / 2;
     for (const node of members) {
       places.set(node.id, { x: x + width / 2, y: y + node.height / 2 });
       y += node.height + gap.node;

@@ -1,5 +1,5 @@
 // The page: one state (configuration and selection), redrawn on change.
-import { make_outcomes, unpack } from './data.js';
+import { make_configurations, unpack } from './data.js';
 import { show_barriers } from './barriers_view.js';
 import { show_change, show_choices } from './choices.js';
 import { pass_details, resource_details } from './details.js';
@@ -15,15 +15,15 @@ import { make_theme_button } from './theme.js';
 
 async function start() {
   const data = await unpack(by_id('data').textContent);
-  const outcomes = make_outcomes(data);
-  const first = outcomes.at(outcomes.first).plan;
-  const state = { values: outcomes.first, plan: first, kind: null, name: null };
+  const configurations = make_configurations(data);
+  const first = configurations.at(configurations.first).plan;
+  const state = { values: configurations.first, plan: first, kind: null, name: null };
   const declared = { pass: new Map(data.passes.map((one) => [one.name, one])), resource: new Map(data.resources.map((one) => [one.name, one])) };
   const times = Object.fromEntries((data.frame?.passes ?? []).map((pass) => [pass.pass, pass.milliseconds]));
 
   document.title = `${data.graph}: frame graph`;
   by_id('title').textContent = data.graph;
-  by_id('about').textContent = `${first.view[0]}x${first.view[1]}, ${outcomes.count} outcome${outcomes.count === 1 ? '' : 's'} · ${data.command}`;
+  by_id('about').textContent = `${first.view[0]}x${first.view[1]}, ${configurations.count} configuration${configurations.count === 1 ? '' : 's'} · ${data.command}`;
 
   const describe = (node) => {
     const plan = state.plan;
@@ -80,13 +80,13 @@ async function start() {
     select(state.kind, state.name);
   }
 
-  function choose_outcome(values) {
-    const outcome = outcomes.at(values);
-    by_id('problem').textContent = outcome.problem ? `There is no plan for these settings: ${outcome.problem}` : '';
+  function choose_configuration(values) {
+    const configuration = configurations.at(values);
+    by_id('problem').textContent = configuration.problem ? `There is no plan for these settings: ${configuration.problem}` : '';
     state.values = values;
-    show_choices(by_id('choices'), data.settings, values, choose_outcome);
-    if (!outcome.plan) return;
-    state.plan = outcome.plan;
+    show_choices(by_id('choices'), data.settings, values, choose_configuration);
+    if (!configuration.plan) return;
+    state.plan = configuration.plan;
     show_plan();
   }
 
@@ -101,7 +101,7 @@ async function start() {
   const asked = /^#(pass|resource)=(.*)$/.exec(location.hash);
   if (asked) try { Object.assign(state, { kind: asked[1], name: decodeURIComponent(asked[2]) }); } catch { /* not an address of ours */ }
   if (state.kind !== null && !declared[state.kind].has(state.name)) Object.assign(state, { kind: null, name: null });
-  choose_outcome(outcomes.first);
+  choose_configuration(configurations.first);
   document.body.dataset.ready = 'true';
   window.dermis_viewer = { counts: graph.counts, place_of: graph.place_of }; // for tests
 }

@@ -61,7 +61,7 @@ struct Engine : ::testing::Test {
   static std::vector<FrameOutputs> frames_of(const RenderOptions& options) {
     return rendered(options).frames;
   }
-  static Error refused(const RenderOptions& options) {
+  static Error rejected(const RenderOptions& options) {
     const auto summary = render(options, {});
     if (summary) {
       ADD_FAILURE() << "it was rendered";
@@ -185,33 +185,33 @@ TEST_F(Engine, GraphsOnlyChangePixelsThatScatter) {
 TEST_F(Engine, ErrorsHaveTheRightKindAndNameTheirSubject) {
   RenderOptions options = small();
   options.width = 0;
-  EXPECT_EQ(refused(options).kind, ErrorKind::usage);
-  EXPECT_THAT(refused(options).text, HasSubstr("0x45"));
+  EXPECT_EQ(rejected(options).kind, ErrorKind::usage);
+  EXPECT_THAT(rejected(options).text, HasSubstr("0x45"));
 
   options = small();
   options.frames = 0;
-  EXPECT_EQ(refused(options).kind, ErrorKind::usage);
+  EXPECT_EQ(rejected(options).kind, ErrorKind::usage);
 
   options = small();
   options.scene = "no/such/scene.json";
-  EXPECT_EQ(refused(options).kind, ErrorKind::input);
-  EXPECT_THAT(refused(options).text, HasSubstr("no/such/scene.json"));
+  EXPECT_EQ(rejected(options).kind, ErrorKind::input);
+  EXPECT_THAT(rejected(options).text, HasSubstr("no/such/scene.json"));
 
   options = small();
   options.graph = "no/such/graph.json";
-  EXPECT_EQ(refused(options).kind, ErrorKind::input);
-  EXPECT_THAT(refused(options).text, HasSubstr("no/such/graph.json"));
+  EXPECT_EQ(rejected(options).kind, ErrorKind::input);
+  EXPECT_THAT(rejected(options).text, HasSubstr("no/such/graph.json"));
 
   options =
       small(R"({ "position": [0, 0, 1], "target": [0, 0, 0], "vertical_fov": 20 })", "no/such/profile.json");
   options.graph = shipped + "graphs/burley.json";
-  EXPECT_EQ(refused(options).kind, ErrorKind::input);
-  EXPECT_THAT(refused(options).text, HasSubstr("no/such/profile.json"));
+  EXPECT_EQ(rejected(options).kind, ErrorKind::input);
+  EXPECT_THAT(rejected(options).text, HasSubstr("no/such/profile.json"));
 
   options = small();
   options.scene = shipped + "scenes/head.json";
-  EXPECT_EQ(refused(options).kind, ErrorKind::usage);
-  EXPECT_THAT(refused(options).text, HasSubstr("--model"));
+  EXPECT_EQ(rejected(options).kind, ErrorKind::usage);
+  EXPECT_THAT(rejected(options).text, HasSubstr("--model"));
 }
 
 TEST_F(Engine, GraphWithUnsupportedInput_IsNamed) {
@@ -220,12 +220,13 @@ TEST_F(Engine, GraphWithUnsupportedInput_IsNamed) {
   std::string text((std::istreambuf_iterator<char>(shipped_graph)), {});
   const std::string optional = "\"size\": \"view\", \"optional\": true, \"note\": \"factor on the scattering";
   ASSERT_NE(text.find(optional), std::string::npos);
-  text.replace(text.find(optional), optional.size(), "\"size\": \"view\", \"note\": \"factor on the scattering");
+  text.replace(text.find(optional), optional.size(),
+               "\"size\": \"view\", \"note\": \"factor on the scattering");
   std::ofstream(path) << text;
   RenderOptions options = small();
   options.graph = path;
-  EXPECT_EQ(refused(options).kind, ErrorKind::input);
-  EXPECT_THAT(refused(options).text, HasSubstr("scatter_scale"));
+  EXPECT_EQ(rejected(options).kind, ErrorKind::input);
+  EXPECT_THAT(rejected(options).text, HasSubstr("scatter_scale"));
 }
 
 // Mesa's software driver recompiles a kernel at each bind if a branch depends only on uniform
@@ -285,8 +286,8 @@ TEST_F(Engine, GraphSettingIsSetByName) {
   // The first has another name, the second is not a number.
   for (const char* name : {"sample", "samples"}) {
     options.settings = {{name, "\"many\""}};
-    EXPECT_EQ(refused(options).kind, ErrorKind::usage);
-    EXPECT_THAT(refused(options).text, HasSubstr(name));
+    EXPECT_EQ(rejected(options).kind, ErrorKind::usage);
+    EXPECT_THAT(rejected(options).text, HasSubstr(name));
   }
 }
 

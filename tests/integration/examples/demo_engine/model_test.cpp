@@ -42,7 +42,7 @@ struct ModelFile : ::testing::Test {
       "nodes": )" + nodes + R"(, "scenes": [{ "nodes": [0] }], "scene": 0 })");
   }
 
-  static Error refused(const ModelOptions& options) {
+  static Error rejected(const ModelOptions& options) {
     auto model = load_model(options);
     if (model) {
       ADD_FAILURE() << "the model was accepted";
@@ -74,15 +74,15 @@ TEST_F(ModelFile, TriangleIsScaledAndCentred) {
 }
 
 TEST_F(ModelFile, NotAGltf_IsReported) {
-  const Error error = refused(only(write("cat.glb", "\x89PNG and so on")));
+  const Error error = rejected(only(write("cat.glb", "\x89PNG and so on")));
   EXPECT_EQ(error.kind, ErrorKind::input);
   EXPECT_THAT(error.text, HasSubstr("cat.glb"));
   EXPECT_THAT(error.text, HasSubstr("not a glTF file"));
-  EXPECT_THAT(refused(only(write("empty.glb", ""))).text, HasSubstr("not a glTF file"));
-  EXPECT_THAT(refused(only(write("short.glb", "glTF\x02"))).text, HasSubstr("damaged"));
-  EXPECT_THAT(refused(only(write("bad.gltf", "{ \"asset\": "))).text, HasSubstr("damaged"));
-  EXPECT_THAT(refused(only((folder / "absent.glb").string())).text, HasSubstr("no such file"));
-  EXPECT_THAT(refused(only(folder.path().string())).text, HasSubstr("not a regular file"));
+  EXPECT_THAT(rejected(only(write("empty.glb", ""))).text, HasSubstr("not a glTF file"));
+  EXPECT_THAT(rejected(only(write("short.glb", "glTF\x02"))).text, HasSubstr("damaged"));
+  EXPECT_THAT(rejected(only(write("bad.gltf", "{ \"asset\": "))).text, HasSubstr("damaged"));
+  EXPECT_THAT(rejected(only((folder / "absent.glb").string())).text, HasSubstr("no such file"));
+  EXPECT_THAT(rejected(only(folder.path().string())).text, HasSubstr("not a regular file"));
 }
 
 std::string text_of(const std::string& path) {
@@ -104,13 +104,13 @@ TEST_F(ModelFile, OtherVersionsAreRefusedByName) {
   const auto with_asset = [&](const std::string& asset) {
     return only(write("version.gltf", exchanged(whole, R"("version": "2.0")", asset)));
   };
-  EXPECT_THAT(refused(with_asset(R"("version": "1.0")")).text, HasSubstr("asset.version is '1.0'"));
-  EXPECT_THAT(refused(with_asset(R"("version": "3.0")")).text, HasSubstr("asset.version is '3.0'"));
-  EXPECT_THAT(refused(with_asset(R"("version": "20.0")")).text, HasSubstr("asset.version is '20.0'"));
-  EXPECT_THAT(refused(with_asset(R"("version": 2.0)")).text, HasSubstr("asset.version is no text"));
-  EXPECT_THAT(refused(with_asset(R"("generator": "a")")).text, HasSubstr("asset.version is missing"));
-  EXPECT_THAT(refused(with_asset(R"("version": "3.1", "minVersion": "3.0")")).text, HasSubstr("3.1"));
-  EXPECT_THAT(refused(with_asset(R"("version": "2.1", "minVersion": "3.0")")).text,
+  EXPECT_THAT(rejected(with_asset(R"("version": "1.0")")).text, HasSubstr("asset.version is '1.0'"));
+  EXPECT_THAT(rejected(with_asset(R"("version": "3.0")")).text, HasSubstr("asset.version is '3.0'"));
+  EXPECT_THAT(rejected(with_asset(R"("version": "20.0")")).text, HasSubstr("asset.version is '20.0'"));
+  EXPECT_THAT(rejected(with_asset(R"("version": 2.0)")).text, HasSubstr("asset.version is no text"));
+  EXPECT_THAT(rejected(with_asset(R"("generator": "a")")).text, HasSubstr("asset.version is missing"));
+  EXPECT_THAT(rejected(with_asset(R"("version": "3.1", "minVersion": "3.0")")).text, HasSubstr("3.1"));
+  EXPECT_THAT(rejected(with_asset(R"("version": "2.1", "minVersion": "3.0")")).text,
               HasSubstr("asset.minVersion is '3.0'"));
   EXPECT_TRUE(load_model(with_asset(R"("version": "2.1", "minVersion": "2.0")")));
 }
@@ -120,7 +120,7 @@ TEST_F(ModelFile, RequiredExtensionsAreRefusedByName) {
   const auto with = [&](const std::string& more) {
     return only(write("required.gltf", exchanged(whole, R"("scene": 0)", R"("scene": 0, )" + more)));
   };
-  EXPECT_THAT(refused(with(R"("extensionsRequired": ["KHR_texture_basisu", "ACME_spheres"])")).text,
+  EXPECT_THAT(rejected(with(R"("extensionsRequired": ["KHR_texture_basisu", "ACME_spheres"])")).text,
               testing::AllOf(HasSubstr("'KHR_texture_basisu'"), HasSubstr("'ACME_spheres'")));
   EXPECT_TRUE(load_model(with(R"("extensionsUsed": ["ACME_spheres"])")));
 }
@@ -239,41 +239,42 @@ TEST_F(ModelFile, SkinnedMeshesAreRefusedByName) {
       triangle("[0, 1, 2]", "", R"([{ "mesh": 0, "skin": 0, "name": "torso" }, { "name": "joint" }])");
   const std::string whole =
       exchanged(text_of(path), R"("scene": 0)", R"("scene": 0, "skins": [{ "joints": [1] }])");
-  EXPECT_THAT(refused(only(write("skin.gltf", whole))).text,
+  EXPECT_THAT(rejected(only(write("skin.gltf", whole))).text,
               testing::AllOf(HasSubstr("node 0 'torso'"), HasSubstr("skin")));
 }
 
 TEST_F(ModelFile, IndicesBeyondTheVerticesAreRefused) {
-  EXPECT_THAT(refused(only(triangle("[0, 1, 3]"))).text, HasSubstr("holds index 3; there are 3 vertices"));
+  EXPECT_THAT(rejected(only(triangle("[0, 1, 3]"))).text, HasSubstr("holds index 3; there are 3 vertices"));
 }
 
 TEST_F(ModelFile, AccessorsBeyondTheirBufferAreRefused) {
-  EXPECT_THAT(refused(only(triangle("[0, 1, 2]", R"(, "byteOffset": 8)"))).text, HasSubstr("beyond the end"));
-  EXPECT_THAT(refused(only(triangle("[0, 1, 2]", R"(, "byteOffset": 18446744073709551600)"))).kind,
+  EXPECT_THAT(rejected(only(triangle("[0, 1, 2]", R"(, "byteOffset": 8)"))).text,
+              HasSubstr("beyond the end"));
+  EXPECT_THAT(rejected(only(triangle("[0, 1, 2]", R"(, "byteOffset": 18446744073709551600)"))).kind,
               ErrorKind::input);
 }
 
 TEST_F(ModelFile, NodeCyclesAreRefused) {
-  EXPECT_THAT(refused(only(triangle("[0, 1, 2]", "", R"([{ "children": [1] }, { "children": [0] }])"))).text,
+  EXPECT_THAT(rejected(only(triangle("[0, 1, 2]", "", R"([{ "children": [1] }, { "children": [0] }])"))).text,
               HasSubstr("circle"));
 }
 
 TEST_F(ModelFile, ASceneWithoutTrianglesIsRefused) {
-  EXPECT_THAT(refused(only(triangle("[0, 1, 2]", "", R"([{ "name": "lamp" }])"))).text,
+  EXPECT_THAT(rejected(only(triangle("[0, 1, 2]", "", R"([{ "name": "lamp" }])"))).text,
               HasSubstr("no triangles"));
 }
 
 TEST_F(ModelFile, MapsThatAreNotImagesAreNamed) {
   ModelOptions options = only(triangle());
   options.albedo = write("albedo.png", "no image at all");
-  EXPECT_THAT(refused(options).text, HasSubstr("albedo.png"));
+  EXPECT_THAT(rejected(options).text, HasSubstr("albedo.png"));
 }
 
 TEST_F(ModelFile, HeightMustBePositive) {
   ModelOptions options = only(triangle());
   for (const double height : {-1.0, std::nan(""), 1e9}) {
     options.height_metres = height;
-    EXPECT_EQ(refused(options).kind, ErrorKind::usage) << height;
+    EXPECT_EQ(rejected(options).kind, ErrorKind::usage) << height;
   }
 }
 
@@ -295,8 +296,8 @@ TEST_F(ModelFile, FilesAreOnlyReadInTheModelsFolder) {
        {std::string("../triangle.bin"), absolute, std::string("link/triangle.bin"),
         std::string("%2e%2e/triangle.bin"), std::string("../not_there.bin")}) {
     const std::string model = write("models/a.gltf", with_buffer(whole, outside));
-    EXPECT_THAT(refused(only(model)).text, HasSubstr("outside the readable folders")) << outside;
-    EXPECT_THAT(refused(only(model)).text, HasSubstr("--root")) << outside;
+    EXPECT_THAT(rejected(only(model)).text, HasSubstr("outside the readable folders")) << outside;
+    EXPECT_THAT(rejected(only(model)).text, HasSubstr("--root")) << outside;
   }
   const auto declared = load_model(only(write("models/a.gltf", with_buffer(whole, "../triangle.bin"))),
                                    {folder.path().string()});
@@ -306,9 +307,9 @@ TEST_F(ModelFile, FilesAreOnlyReadInTheModelsFolder) {
   // Not in the working folder either, where tinygltf would look.
   const std::filesystem::path before = std::filesystem::current_path();
   std::filesystem::current_path(folder.path());
-  EXPECT_THAT(refused(only(write("models/c.gltf", whole))).text, HasSubstr("triangle.bin"));
+  EXPECT_THAT(rejected(only(write("models/c.gltf", whole))).text, HasSubstr("triangle.bin"));
   std::filesystem::current_path(before);
-  EXPECT_THAT(refused(only(write("models/d.gltf", with_buffer(whole, std::string(5000, 'a'))))).text,
+  EXPECT_THAT(rejected(only(write("models/d.gltf", with_buffer(whole, std::string(5000, 'a'))))).text,
               HasSubstr("too long"));
 }
 
@@ -383,14 +384,14 @@ TEST_F(ModelFile, PicturesThatAreMissingAreNamed) {
 
 TEST_F(ModelFile, ChunksBeyondTheEndOfTheFileAreRefused) {
   const std::string json = R"({ "asset": { "version": "2.0" }, "buffers": [{ "byteLength": 16 }] })";
-  EXPECT_THAT(refused(only(write("chunk.glb", binary(json, "12345678", 8)))).text,
+  EXPECT_THAT(rejected(only(write("chunk.glb", binary(json, "12345678", 8)))).text,
               HasSubstr("second chunk reaches beyond its end"));
 }
 
 TEST_F(ModelFile, DeepNestingIsRefused) {
   const std::string deep = std::string(1000000, '[') + std::string(1000000, ']');
   EXPECT_THAT(
-      refused(only(write("deep.gltf", R"({ "asset": { "version": "2.0" }, "extras": )" + deep + "}"))).text,
+      rejected(only(write("deep.gltf", R"({ "asset": { "version": "2.0" }, "extras": )" + deep + "}"))).text,
       HasSubstr("nested deeper than 64"));
 }
 

@@ -147,15 +147,16 @@ TEST_F(WithRayQueries, TransmissionMatchesTheReference) {
     for (const FrameOutputs& frame : rays.frames)
       means.push_back(mean_over(frame.scattered));
     const restir::testing::Mean drawn = restir::testing::mean_of(means);
-    const restir::testing::Mean wanted = restir::testing::mean_of(reference[r]);
+    const restir::testing::Mean expected = restir::testing::mean_of(reference[r]);
     const double flat = mean_over(pyramid.frames[0].scattered);
     RecordProperty("region_" + std::to_string(r), std::to_string(drawn.mean) + " of " +
-                                                      std::to_string(wanted.mean) + ", sap " +
+                                                      std::to_string(expected.mean) + ", sap " +
                                                       std::to_string(flat));
     // Three standard errors of both, and 2 %: the reference's facets are shaded flat, the graph's
     // smoothly.
-    const double noise = 3 * std::hypot(drawn.sigma, wanted.sigma);
-    EXPECT_NEAR(drawn.mean, wanted.mean, noise + 0.02 * wanted.mean) << "region " << r << ", sap " << flat;
+    const double noise = 3 * std::hypot(drawn.sigma, expected.sigma);
+    EXPECT_NEAR(drawn.mean, expected.mean, noise + 0.02 * expected.mean)
+        << "region " << r << ", sap " << flat;
     EXPECT_TRUE(r != 0 || flat < 0.5 * drawn.mean) << "screen space has no light from behind the sheet";
   }
 }
@@ -175,13 +176,13 @@ TEST_F(WithRayQueries, ChannelsThatDoNotScatterKeepTheirLight) {
   ASSERT_EQ(by_pyramid.frames.size(), 1u);
   EXPECT_TRUE(ran(by_rays.frames[0], "resolve"));
   const FloatImage& found = by_rays.frames[0].color; // The output of combine, times albedo.
-  const FloatImage& wanted = by_pyramid.frames[0].color;
+  const FloatImage& expected = by_pyramid.frames[0].color;
   size_t lit = 0, red_differs = 0;
   for (size_t i = 0; i < found.texels.size(); i += 3) {
-    EXPECT_EQ(found.texels[i + 1], wanted.texels[i + 1]) << "pixel " << i / 3;
-    EXPECT_EQ(found.texels[i + 2], wanted.texels[i + 2]) << "pixel " << i / 3;
+    EXPECT_EQ(found.texels[i + 1], expected.texels[i + 1]) << "pixel " << i / 3;
+    EXPECT_EQ(found.texels[i + 2], expected.texels[i + 2]) << "pixel " << i / 3;
     lit += found.texels[i + 1] > 0.01f;
-    red_differs += found.texels[i] != wanted.texels[i];
+    red_differs += found.texels[i] != expected.texels[i];
   }
   EXPECT_GT(lit, 20u);
   EXPECT_GT(red_differs, 100u);

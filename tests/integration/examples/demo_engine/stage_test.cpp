@@ -93,9 +93,9 @@ TEST_F(KeptStage, AfterAnError_TheNextCallWorks) {
   const StageHandle stage = make_stage();
   RenderOptions options = moving("sap");
   options.scene = "no/such/scene.json";
-  const auto refused = render(options, {}, stage.get());
-  ASSERT_FALSE(refused);
-  EXPECT_EQ(refused.error().kind, ErrorKind::input);
+  const auto rejected = render(options, {}, stage.get());
+  ASSERT_FALSE(rejected);
+  EXPECT_EQ(rejected.error().kind, ErrorKind::input);
   EXPECT_EQ(rendered(moving("sap"), stage.get()).frames.size(), 5u);
 }
 

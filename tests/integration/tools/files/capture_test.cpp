@@ -412,11 +412,11 @@ CapturedFrame left_handed(CapturedFrame frame) {
 // Reads `folder` and expects the matrices, rays and normals of `right`.
 void expect_read_as(const std::optional<CapturedFrame>& read, const CapturedFrame& right) {
   ASSERT_TRUE(read);
-  const FrameDescription &d = read->description, &wanted = right.description;
-  EXPECT_EQ(d.clip_from_view, wanted.clip_from_view);
-  EXPECT_EQ(d.view_from_world, wanted.view_from_world);
-  EXPECT_EQ(d.previous_clip_from_view, wanted.previous_clip_from_view);
-  EXPECT_EQ(d.previous_view_from_world, wanted.previous_view_from_world);
+  const FrameDescription &d = read->description, &stated = right.description;
+  EXPECT_EQ(d.clip_from_view, stated.clip_from_view);
+  EXPECT_EQ(d.view_from_world, stated.view_from_world);
+  EXPECT_EQ(d.previous_clip_from_view, stated.previous_clip_from_view);
+  EXPECT_EQ(d.previous_view_from_world, stated.previous_view_from_world);
   EXPECT_EQ(read->rays.scale_y, right.rays.scale_y);
   EXPECT_EQ(read->rays.offset_x, right.rays.offset_x);
   EXPECT_EQ(read->normal.values, right.normal.values);
@@ -453,24 +453,24 @@ TEST_F(Captures, ContradictingViewSpacesAreRefused) {
            std::string("\"") + projection + "\", \"view_space\": \"" + space + "\"");
   };
   CapturedFrame frame = sample();
-  const auto refused = [&](const fs::path& folder, const char* pointer, const char* text) {
+  const auto rejected = [&](const fs::path& folder, const char* pointer, const char* text) {
     diagnostics = {};
     expect_rejected(folder, DiagnosticId::capture_projection, pointer, text);
     EXPECT_THAT(messages(), HasSubstr("\"view_space\": \"left_handed\""));
   };
   const fs::path right = write(frame, "right");
   declare(right, "perspective", "left_handed");
-  refused(right, "/clip_from_view", "declared left-handed, but clip_from_view has w = -z");
+  rejected(right, "/clip_from_view", "declared left-handed, but clip_from_view has w = -z");
   const fs::path left = write(left_handed(frame), "left");
   declare(left, "perspective", "right_handed");
-  refused(left, "/clip_from_view", "declared right-handed, but clip_from_view has w = z");
+  rejected(left, "/clip_from_view", "declared right-handed, but clip_from_view has w = z");
   frame.description.previous_clip_from_view =
       subsurface::with_mirrored_view(frame.description.previous_clip_from_view);
-  refused(write(frame, "mixed"), "/previous_clip_from_view", "previous_clip_from_view has w = z");
+  rejected(write(frame, "mixed"), "/previous_clip_from_view", "previous_clip_from_view has w = z");
   frame.description.perspective = false;
   frame.description.clip_from_view = {1, 0, 0, 0, 0, -1, 0, 0, 0, 0, 0.1, -0.05, 0, 0, 0, 1};
   frame.description.previous_clip_from_view = frame.description.clip_from_view;
-  refused(write(frame, "behind"), "/clip_from_view", "only points behind the camera");
+  rejected(write(frame, "behind"), "/clip_from_view", "only points behind the camera");
 }
 
 TEST_F(Captures, PixelPitchAndMatrixExcludeEachOther) {

@@ -58,8 +58,8 @@ TEST_F(Pictures, ExrRoundTripIsBitForBit) {
 
 TEST_F(Pictures, ExrChannelsAreFoundByName) {
   ASSERT_TRUE(write_exr(folder / "a.exr", sample(4, 4, 2), {"Z", "Y"}, error)) << error;
-  const std::vector<ChannelNames> wanted = {{"A"}, {"Y"}};
-  const auto back = read_exr(folder / "a.exr", wanted, error);
+  const std::vector<ChannelNames> requested_channels = {{"A"}, {"Y"}};
+  const auto back = read_exr(folder / "a.exr", requested_channels, error);
   ASSERT_TRUE(back) << error;
   EXPECT_EQ(back->channels, 1u);
   EXPECT_EQ(back->values[1], sample(4, 4, 2).values[3]);

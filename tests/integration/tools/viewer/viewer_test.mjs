@@ -44,8 +44,8 @@ function write_hostile_graph() {
 
 function write_frame_report() {
   const file = join(out, 'report.json');
-  const frame = (i) => ({ frame: i, outcome: 'technique=sap, variant=smooth', why: hostile, budget_ms: 30, predicted_ms: 18 - i, measured_ms: i === 0 ? -1 : 17 + i % 3,
-    predicted_rmse: 6e-4, view_tiles: 920, scattering_tiles: 300 + i, flat_tiles: 40, copied_tiles: 10 });
+  const frame = (i) => ({ frame: i, configuration: 'technique=sap, variant=smooth', why: hostile, budget_ms: 30, predicted_ms: 18 - i, measured_ms: i === 0 ? -1 : 17 + i % 3,
+    predicted_rmse: 6e-4, view_tiles: 920, scattering_tiles: 300 + i, uniform_tiles: 40, copied_tiles: 10 });
   writeFileSync(file, JSON.stringify({ scene: 'bust', graph: 'configs/graphs/skin.json', device: 'a device', width: 320, height: 180,
     passes: [{ pass: 'classify', milliseconds: 1.4, frames: 7 }, { pass: 'gather', milliseconds: 2.9, frames: 7 }], choices: Array.from({ length: 8 }, (_, i) => frame(i)) }));
   return file;
