@@ -9,7 +9,7 @@
 namespace dermis::abi_test {
 namespace {
 
-// An overlay that removes the detection of flat light.
+// An overlay that removes the detection of uniform light.
 constexpr const char* without_uniform_light = R"({ "dermis_overlay": 2, "edits": [
   { "remove": "/passes/classify_uniform_light" }, { "remove": "/passes/classify/write/light_range" },
   { "remove": "/passes/classify/write/light_cells" } ] })";
@@ -141,7 +141,7 @@ TEST_F(Skip, NothingOnScreen_OnlyClassifiesTiles) {
   const auto before = texels("lighting");
   const demo::ReportedFrame choice = run_frame();
   EXPECT_EQ(choice.skips, DERMIS_SKIP_NOTHING_SEEN);
-  EXPECT_EQ(choice.groups, 4u + 1 + 1); // Classes by 4x4 tiles, flat light by 64 tiles, the list.
+  EXPECT_EQ(choice.groups, 4u + 1 + 1); // Classes by 4x4 tiles, uniform light by 64 tiles, the list.
   EXPECT_EQ(texels("lighting"), before);
 }
 
@@ -286,7 +286,7 @@ TEST_F(Skip, ScatteringBelowAPixelIsCopiedExactly) {
   ASSERT_EQ(demo::read_reported(dermis_graph_view(graph), last_frame, choice), DERMIS_OK);
   EXPECT_EQ(choice.copied_tiles, 64u);
   EXPECT_EQ(choice.skips, DERMIS_SKIP_SUBPIXEL);
-  // Classes, flat light, the list, and once over the listed tiles.
+  // Classes, uniform light, the list, and once over the listed tiles.
   EXPECT_EQ(choice.groups, 4u + 1 + 1 + 64);
   const auto after = texels("lighting");
   for (size_t i = 0; i < after.size(); ++i)

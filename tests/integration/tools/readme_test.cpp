@@ -1,6 +1,9 @@
 // README.md and docs: what they show is run, compiled, and there.
 #include "tests/integration/tools/command_fixture.hpp"
 
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -12,6 +15,7 @@ namespace dermis::test {
 namespace {
 
 namespace fs = std::filesystem;
+using nlohmann::json;
 
 const fs::path repository = DERMIS_SOURCE_DIR;
 
@@ -55,17 +59,48 @@ protected:
   }
 };
 
-TEST_F(Readme, GraphInFiveMinutesRuns) {
-  const auto shown = blocks(text, "jsonc");
-  ASSERT_EQ(shown.size(), 1u);
-  const std::string graph = write("shown.json", shown[0]);
+// Returns the complete graph of docs/format.md.
+std::string complete_graph() {
+  const std::string text = text_of(repository / "docs/format.md");
+  const size_t section = text.find("## A complete graph");
+  const auto shown = blocks(text.substr(std::min(section, text.size())), "jsonc");
+  return shown.empty() ? "" : shown[0];
+}
+
+// Whether each member and element of `part` is in `whole`, at the same key.
+bool contains(const json& whole, const json& part) {
+  const auto is_in_whole = [&](const json& one) {
+    return std::any_of(whole.begin(), whole.end(), [&](const json& other) { return contains(other, one); });
+  };
+  if (part.is_array() && whole.is_array()) return std::all_of(part.begin(), part.end(), is_in_whole);
+  if (!part.is_object() || !whole.is_object()) return part == whole;
+  return std::all_of(part.items().begin(), part.items().end(), [&](const auto& item) {
+    return whole.contains(item.key()) && contains(whole[item.key()], item.value());
+  });
+}
+
+TEST_F(Readme, CompleteGraphRuns) {
+  const std::string shown = complete_graph();
+  const std::string graph = write("shown.json", shown);
   const Outcome valid = run({"validate", graph});
   EXPECT_EQ(valid.exit_code, 0) << valid.err;
   const Outcome rendered = run({"render", "configs/scenes/bust.json", "--graph", graph, "--size", "64x36",
                                 "--frames", "1", "--out", path("out")});
   EXPECT_EQ(rendered.exit_code, 0) << rendered.err;
-  EXPECT_THAT(shown[0], ::testing::HasSubstr("\"albedo\": \"albedo\""))
-      << "the line would render white plaster";
+  EXPECT_THAT(shown, ::testing::HasSubstr("\"albedo\": \"albedo\"")) << "the line would render white plaster";
+}
+
+TEST_F(Readme, ExcerptIsPartOfTheCompleteGraph) {
+  const auto shown = blocks(text, "jsonc");
+  ASSERT_EQ(shown.size(), 1u);
+  const auto parsed = [](const std::string& jsonc) { return json::parse(jsonc, nullptr, false, true); };
+  const json whole = parsed(complete_graph()), excerpt = parsed(shown[0]);
+  ASSERT_TRUE(whole.is_object());
+  ASSERT_TRUE(excerpt.is_object());
+  EXPECT_TRUE(contains(whole, excerpt));
+  json changed = excerpt;
+  changed["passes"][0]["read"]["depth"] = "material";
+  EXPECT_FALSE(contains(whole, changed));
 }
 
 TEST_F(Readme, EveryShellLineRuns) {
@@ -112,13 +147,14 @@ TEST_F(Readme, ToolsPageListsEveryVerb) {
 
 TEST_F(Readme, ShortCExamplesCompile) {
   auto shown = blocks(text, "c");
-  ASSERT_EQ(shown.size(), 2u);
-  std::string source =
-      "#include <dermis/dermis.h>\n"
-      "dermis_context context; dermis_graph graph; dermis_report report;\n"
-      "dermis_slot slots[8]; uint32_t count; uint64_t completed_frame_index;\n"
-      "void create(void); void choose(void);\n";
-  source += "void create(void) {\n" + shown[0] + "}\nvoid choose(void) {\n" + shown[1] + "}\n";
+  ASSERT_EQ(shown.size(), 1u);
+  const auto choice = blocks(text_of(repository / "docs/choice.md"), "c");
+  ASSERT_EQ(choice.size(), 1u);
+  std::string source = "#include <dermis/dermis.h>\n"
+                       "dermis_context context; dermis_graph graph; dermis_report report;\n"
+                       "dermis_slot slots[8]; uint32_t count; uint64_t completed_frame_index;\n"
+                       "void create(void); void choose(void);\n";
+  source += "void create(void) {\n" + shown[0] + "}\nvoid choose(void) {\n" + choice[0] + "}\n";
   const std::string file = write("shown.c", source);
   const std::string line = std::string(DERMIS_C_COMPILER) + " -std=c99 -fsyntax-only -Wno-unused-result -I " +
                            (repository / "integration/include").string() + " " + file;
