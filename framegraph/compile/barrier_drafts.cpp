@@ -90,20 +90,22 @@ void BarrierDrafts::merge_ranges(Report& report) {
       kept.pop_back();
     }
   }
-  std::vector<uint32_t> number(barriers.size()); // by old draft: the new one
+  std::vector<uint32_t> new_index(barriers.size()); // by draft
   for (uint32_t k = 0; k < kept.size(); ++k) {
-    number[kept[k]] = k;
+    new_index[kept[k]] = k;
     barriers[k] = barriers[kept[k]];
     batch_of[k] = batch_of[kept[k]];
   }
   for (uint32_t i = 0; i < merged_into.size(); ++i)
-    if (merged_into[i] != i) number[i] = number[merged_into[i]];
+    if (merged_into[i] != i) new_index[i] = new_index[merged_into[i]];
   barriers.resize(kept.size());
   batch_of.resize(kept.size());
+  for (size_t i = first_reason; i < report.reasons.size(); ++i)
+    report.reasons[i].index = new_index[report.reasons[i].index];
+  // Merged barriers may have equal reasons, of which one is enough.
   using Key = std::tuple<uint32_t, Reason::ReasonKind, uint32_t, uint32_t, uint32_t>;
   std::set<Key> seen;
-  remove_reasons(report.reasons, first_reason, [&](Reason& reason) {
-    reason.index = number[reason.index];
+  remove_reasons(report.reasons, first_reason, [&](const Reason& reason) {
     return !seen.insert({reason.index, reason.why, reason.a, reason.b, reason.c}).second;
   });
 }

@@ -17,8 +17,8 @@ namespace {
 constexpr uint64_t tight_steps_per_item = 10'000;
 constexpr uint64_t max_tight_steps = 25'000'000;
 constexpr uint64_t optimize_steps = 1'000'000'000;
-constexpr uint32_t block_passes = 24; // positions that share one list of live items: below 32
-constexpr uint32_t began_before = 0x80000000;
+constexpr uint32_t block_passes = 24;         // positions that share one list of live items: below 32
+constexpr uint32_t began_before = 0x80000000; // flag next to the bits of positions: live before the block
 constexpr uint64_t unlimited = UINT64_MAX;
 
 uint64_t align_to_power_of_two(uint64_t value, uint64_t alignment) {
@@ -131,8 +131,8 @@ struct GapFinder {
 
 constexpr uint32_t chunk = numbers_at_once; // placed items that are tested together
 
-// Returns the positions of a block in which an item is live, as bits; began_before: it began before the
-// block.
+// Returns one bit for each position of a block of the schedule at which the item is live, and began_before
+// if its lifetime began in an earlier block.
 uint32_t positions_in(uint32_t block, const PackItem& item) {
   const uint32_t begin = block * block_passes;
   const uint32_t first = std::max(item.first, begin) - begin;

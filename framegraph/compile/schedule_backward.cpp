@@ -94,7 +94,7 @@ void report_cycle(const Graph& graph, std::vector<uint8_t> unsorted, const std::
                   const std::vector<Edge>& edges, Report& report) {
   for (const PassId pass : done)
     unsorted[pass.value] = 0;
-  std::vector<uint32_t> incoming(unsorted.size(), invalid_index); // by pass: one edge from a stuck pass
+  std::vector<uint32_t> incoming(unsorted.size(), invalid_index); // by pass: one edge from an unsorted pass
   for (uint32_t e = 0; e < edges.size(); ++e)
     if (unsorted[edges[e].before.value] && unsorted[edges[e].after.value] &&
         incoming[edges[e].after.value] == invalid_index)
@@ -110,7 +110,8 @@ void report_cycle(const Graph& graph, std::vector<uint8_t> unsorted, const std::
   for (uint32_t start = at; cycle.empty() || at != start; at = cycle.back()->before.value)
     cycle.push_back(&edges[incoming[at]]);
   std::reverse(cycle.begin(), cycle.end());
-  // Start with the first pass of the file: the message does not depend on where the path began.
+  // Rotates the cycle to its first pass in file order, so that the message does not depend on where the
+  // path began.
   std::rotate(cycle.begin(),
               std::min_element(cycle.begin(), cycle.end(),
                                [](const Edge* a, const Edge* b) { return a->before < b->before; }),

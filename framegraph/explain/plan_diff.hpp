@@ -2,7 +2,7 @@
 // Compares two plans by name: their inputs, passes and pass order, resources, memory, histories and
 // barriers.
 
-#include "framegraph/serial/plan_file.hpp"
+#include "framegraph/serialize/plan_file.hpp"
 
 #include <cstdint>
 #include <string>

@@ -134,7 +134,7 @@ std::vector<Slot> slots_of(const CompiledGraph& compiled_graph) {
       slots[i].vk_usage |= others[i].vk_usage;
       slots[i].read = slots[i].read || others[i].read;
       slots[i].written = slots[i].written || others[i].written;
-      slots[i].bound = slots[i].bound || others[i].bound;
+      slots[i].in_plan = slots[i].in_plan || others[i].in_plan;
     }
   }
   return slots;

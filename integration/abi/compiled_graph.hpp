@@ -3,7 +3,7 @@
 
 #include "framegraph/compile/compile.hpp"
 #include "framegraph/compose/compose.hpp"
-#include "framegraph/serial/plan_cache.hpp"
+#include "framegraph/serialize/plan_cache.hpp"
 #include "framegraph/vulkan/executor.hpp"
 #include "framegraph/vulkan/heap_pool.hpp"
 #include "integration/abi/context.hpp"
@@ -62,7 +62,7 @@ struct Slot {
   uint32_t stride = 0; // buffers: bytes per element
   uint64_t bytes = 0;  // buffers: minimum size of a binding
   bool required = false, read = false, written = false;
-  bool bound = false; // the plan expects a binding
+  bool in_plan = false; // the plan expects a binding
   Format format = Format::undefined;
   uint32_t vk_usage = 0;
   Layout first_layout = Layout::undefined;

@@ -194,7 +194,7 @@ dermis_result check_complete(const Log& log, const char* function, const Compile
                        compiled_graph.buffers[i].buffer != VK_NULL_HANDLE ||
                        compiled_graph.structures[i].structure != VK_NULL_HANDLE;
     const Slot& slot = compiled_graph.slots[i];
-    if (!slot.bound || given) continue;
+    if (!slot.in_plan || given) continue;
     optional = optional || !slot.required;
     const auto written =
         fmt::format_to_n(names.data() + used, names.size() - used, "{}'{}' (slot {}, {})",
@@ -237,7 +237,7 @@ dermis_result check_bindings(dermis_view_t& view, CompiledGraph& compiled_graph,
     if (slot.type != ResourceType::image)
       return bad_argument(log, "{}: bindings[{}] binds an image to slot {} ('{}'), which takes {}", function,
                           i, binding.slot, slot.name, type_phrase(slot.type));
-    if (!slot.bound) continue;
+    if (!slot.in_plan) continue;
     vulkan::HostImage& image = compiled_graph.images[binding.slot];
     if (image.image != VK_NULL_HANDLE)
       return bad_argument(log, "{}: bindings[{}] binds slot {} ('{}') a second time", function, i,

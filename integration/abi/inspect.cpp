@@ -24,7 +24,7 @@ dermis_slot describe_slot(const Slot& slot, uint32_t id) {
   out.best_layout = static_cast<VkImageLayout>(slot.first_layout);
   out.width = slot.width;
   out.height = slot.height;
-  out.bound = slot.bound ? 1 : 0;
+  out.bound = slot.in_plan ? 1 : 0;
   out.type = static_cast<dermis_slot_type>(slot.type);
   out.stride = slot.stride;
   out.bytes = slot.bytes;

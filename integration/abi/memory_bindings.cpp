@@ -5,7 +5,7 @@
 namespace dermis::abi {
 namespace {
 
-struct Place { // identifies one binding in messages
+struct BindingPlace { // identifies one binding in messages
   const Log& log;
   const char* function;
   const char* array;
@@ -13,15 +13,16 @@ struct Place { // identifies one binding in messages
 };
 
 template <class... Arguments>
-dermis_result reject(const Place& place, fmt::format_string<Arguments...> text, Arguments&&... arguments) {
+dermis_result reject(const BindingPlace& place, fmt::format_string<Arguments...> text,
+                     Arguments&&... arguments) {
   std::array<char, failure_text_size> what;
   const auto end = fmt::format_to_n(what.data(), what.size(), text, std::forward<Arguments>(arguments)...);
   return bad_argument(place.log, "{}: {}[{}]{}", place.function, place.array, place.index,
                       std::string_view{what.data(), std::min(what.size(), end.size)});
 }
 
-dermis_result check_state(const dermis_view_t& view, const Place& place, const Slot& slot, const char* which,
-                          const dermis_image_state& state) {
+dermis_result check_state(const dermis_view_t& view, const BindingPlace& place, const Slot& slot,
+                          const char* which, const dermis_image_state& state) {
   if (state.access != 0 && state.stages == 0)
     return reject(place, ".{} ('{}') has access {:#x} but no stages", which, slot.name, state.access);
   if (state.layout != VK_IMAGE_LAYOUT_UNDEFINED)
@@ -33,23 +34,24 @@ dermis_result check_state(const dermis_view_t& view, const Place& place, const S
   return DERMIS_OK;
 }
 
-// Returns the bound slot; null after an error in `result`, or if the plan does not bind the slot.
-const Slot* find_slot(const Place& place, const CompiledGraph& compiled_graph, uint32_t number,
+// Returns the slot that the host binds. Returns null after an error in `result`, or if the plan does not
+// use the slot. `bound_before`: the host already bound it in this call.
+const Slot* find_slot(const BindingPlace& place, const CompiledGraph& compiled_graph, uint32_t number,
                       ResourceType type, bool bound_before, dermis_result& result) {
   result = DERMIS_OK;
   const Slot& slot = compiled_graph.slots[number];
   if (slot.type != type)
     result = reject(place, " binds {} to slot {} ('{}'), which takes {}", type_phrase(type), number,
                     slot.name, type_phrase(slot.type));
-  else if (slot.bound && bound_before)
+  else if (slot.in_plan && bound_before)
     result = reject(place, " binds slot {} ('{}') a second time", number, slot.name);
-  return result == DERMIS_OK && slot.bound ? &slot : nullptr;
+  return result == DERMIS_OK && slot.in_plan ? &slot : nullptr;
 }
 
 // Calls `use(place, binding)` for each element of a caller's array, whose stride is the first
 // element's struct_size.
 template <class T, class Use>
-dermis_result for_each(const Place& array, const CompiledGraph& compiled_graph, const T* items,
+dermis_result for_each(const BindingPlace& array, const CompiledGraph& compiled_graph, const T* items,
                        uint32_t count, const T& defaults, Use use) {
   if (count == 0) return DERMIS_OK;
   if (items == nullptr)
@@ -57,7 +59,7 @@ dermis_result for_each(const Place& array, const CompiledGraph& compiled_graph, 
   const size_t step = stated_size(items);
   const auto* at = reinterpret_cast<const std::byte*>(items);
   for (uint32_t i = 0; i < count; ++i) {
-    const Place place{array.log, array.function, array.array, i};
+    const BindingPlace place{array.log, array.function, array.array, i};
     T item = defaults;
     const std::byte* from = at + i * step;
     const SizedRead read = stated_size(from) == step ? read_sized(from, item) : SizedRead::too_small;
@@ -76,7 +78,7 @@ dermis_result for_each(const Place& array, const CompiledGraph& compiled_graph, 
   return DERMIS_OK;
 }
 
-dermis_result check_buffer(const dermis_view_t& view, const Place& place, const Slot& slot,
+dermis_result check_buffer(const dermis_view_t& view, const BindingPlace& place, const Slot& slot,
                            const dermis_buffer_binding& binding) {
   const VkPhysicalDeviceLimits& limits = view.context->device.properties.limits;
   const uint64_t alignment = std::max<uint64_t>(limits.minStorageBufferOffsetAlignment, 1);
@@ -96,7 +98,7 @@ dermis_result check_buffer(const dermis_view_t& view, const Place& place, const 
   return DERMIS_OK;
 }
 
-dermis_result check_states(const dermis_view_t& view, const Place& place, const Slot& slot,
+dermis_result check_states(const dermis_view_t& view, const BindingPlace& place, const Slot& slot,
                            const dermis_image_state& before, const dermis_image_state& after) {
   if (const dermis_result result = check_state(view, place, slot, "before", before); result != DERMIS_OK)
     return result;
@@ -161,7 +163,7 @@ dermis_result check_memory_bindings(dermis_view_t& view, CompiledGraph& compiled
   std::fill(compiled_graph.buffers.begin(), compiled_graph.buffers.end(), vulkan::HostBuffer{});
   std::fill(compiled_graph.structures.begin(), compiled_graph.structures.end(), vulkan::HostStructure{});
   const dermis_buffer_binding no_buffer = DERMIS_BUFFER_BINDING_INIT;
-  const auto bind_buffer = [&](const Place& place, const dermis_buffer_binding& binding) {
+  const auto bind_buffer = [&](const BindingPlace& place, const dermis_buffer_binding& binding) {
     vulkan::HostBuffer& bound = compiled_graph.buffers[binding.slot];
     dermis_result result = DERMIS_OK;
     const Slot* slot = find_slot(place, compiled_graph, binding.slot, ResourceType::buffer,
@@ -177,7 +179,8 @@ dermis_result check_memory_bindings(dermis_view_t& view, CompiledGraph& compiled
                                         frame.buffer_count, no_buffer, bind_buffer);
   if (result != DERMIS_OK) return result;
   const dermis_acceleration_structure_binding no_structure = DERMIS_ACCELERATION_STRUCTURE_BINDING_INIT;
-  const auto bind_structure = [&](const Place& place, const dermis_acceleration_structure_binding& binding) {
+  const auto bind_structure = [&](const BindingPlace& place,
+                                  const dermis_acceleration_structure_binding& binding) {
     vulkan::HostStructure& bound = compiled_graph.structures[binding.slot];
     dermis_result checked = DERMIS_OK;
     const Slot* slot = find_slot(place, compiled_graph, binding.slot, ResourceType::acceleration_structure,

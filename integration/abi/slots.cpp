@@ -115,7 +115,7 @@ std::vector<Slot> make_slots(const Graph& graph, const Plan& plan) {
     for (uint32_t r = 0; r < plan.resources.size(); ++r) {
       const PlanResource& resource = plan.resources[r];
       if (resource.slot != id) continue;
-      slot.bound = resource.first_instance == no_instance;
+      slot.in_plan = resource.first_instance == no_instance;
       slot.format = resource.format;
       slot.bytes = resource.bytes;
       slot.vk_usage = resource.vk_usage;

@@ -2,7 +2,7 @@
 // slots, then random graphs at every packing level and order. usage: plan_digests FOLDER COUNT
 
 #include "framegraph/model/read_graph.hpp"
-#include "framegraph/serial/plan_file.hpp"
+#include "framegraph/serialize/plan_file.hpp"
 #include "passes/common/pass_types.hpp"
 #include "tests/framegraph/random_graph.hpp"
 

@@ -3,7 +3,7 @@
 
 #include "tests/framegraph/random_graph.hpp"
 
-#include "framegraph/serial/plan_file.hpp"
+#include "framegraph/serialize/plan_file.hpp"
 
 #include <gtest/gtest.h>
 

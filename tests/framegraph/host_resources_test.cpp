@@ -4,7 +4,7 @@
 #include "framegraph/compile/availability.hpp"
 #include "framegraph/compile/compile.hpp"
 #include "framegraph/explain/plan_text.hpp"
-#include "framegraph/serial/plan_file.hpp"
+#include "framegraph/serialize/plan_file.hpp"
 #include "framegraph/verify/verify.hpp"
 #include "tests/framegraph/text_support.hpp"
 

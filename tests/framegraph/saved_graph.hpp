@@ -1,7 +1,7 @@
 #pragma once
 // Returns the saved plan of a graph that has to compile.
 
-#include "framegraph/serial/plan_file.hpp"
+#include "framegraph/serialize/plan_file.hpp"
 
 #include <gtest/gtest.h>
 

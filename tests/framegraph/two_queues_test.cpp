@@ -8,7 +8,7 @@
 #include "tests/framegraph/second_opinion.hpp"
 #include "tests/framegraph/test_scale.hpp"
 
-#include "framegraph/serial/plan_file.hpp"
+#include "framegraph/serialize/plan_file.hpp"
 #include "framegraph/verify/verify.hpp"
 #include "tests/framegraph/interpret/commands.hpp"
 

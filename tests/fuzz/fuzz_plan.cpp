@@ -2,7 +2,7 @@
 // bytes, and that can be verified and compared within its memory.
 
 #include "framegraph/explain/plan_diff.hpp"
-#include "framegraph/serial/plan_file.hpp"
+#include "framegraph/serialize/plan_file.hpp"
 #include "framegraph/verify/verify.hpp"
 #include "tests/fuzz/fuzz_input.hpp"
 

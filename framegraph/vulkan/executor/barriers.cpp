@@ -246,7 +246,7 @@ void record_barriers(State& state, const FrameInput& frame, uint32_t first, uint
     }
     const Instance& instance = state.instances[instance_of(state, resource, barrier.frames_back)];
     const bool discarded = discards(state.plan, barrier), poison = state.poison && discarded;
-    if (discarded && instance.shared) {
+    if (discarded && instance.aliased) {
       alias_barrier.add(s);
       // the fill must come after the other resource's writes
       if (poison) record_alias_barrier(state, frame.command_buffer, alias_barrier);

@@ -147,7 +147,7 @@ Error create_buffer(State& state, const PlanResource& resource, const Placement&
 }
 
 // Marks instances that share bytes with another instance.
-void find_shared(State& state) {
+void mark_aliased_instances(State& state) {
   const std::vector<Placement>& placements = state.plan.placements;
   std::vector<uint32_t> order(placements.size());
   std::iota(order.begin(), order.end(), 0);
@@ -162,7 +162,7 @@ void find_shared(State& state) {
     const uint32_t before = order[furthest], here = order[at];
     const bool same_heap = placements[before].heap == placements[here].heap;
     if (same_heap && placements[here].offset < end(before))
-      state.instances[before].shared = state.instances[here].shared = true;
+      state.instances[before].aliased = state.instances[here].aliased = true;
     if (!same_heap || end(here) > end(before)) furthest = at;
   }
 }
@@ -172,7 +172,7 @@ void find_shared(State& state) {
 Error create_memory(State& state, const Graph& graph) {
   if (Error error = create_heaps(state)) return error;
   state.instances.assign(state.plan.placements.size(), {});
-  find_shared(state);
+  mark_aliased_instances(state);
   for (const PlanResource& resource : state.plan.resources) {
     if (resource.first_instance == no_instance) continue;
     const std::string& name = graph.resources[resource.declared.value].name;

@@ -29,8 +29,8 @@ struct Instance {
   VkImage image = VK_NULL_HANDLE;
   VkImageView all_mips = VK_NULL_HANDLE, first_mip = VK_NULL_HANDLE;
   VkBuffer buffer = VK_NULL_HANDLE;
-  bool shared = false; // shares bytes with another instance
-  bool ready = false;  // histories: holds defined contents in the expected layout
+  bool aliased = false; // shares bytes with another instance
+  bool ready = false;   // histories: holds defined contents in the expected layout
 };
 
 // View of a range of mips and layers of one instance.

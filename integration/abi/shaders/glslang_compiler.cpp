@@ -3,7 +3,7 @@
 #include "framegraph/text/limits.hpp"
 #include "integration/abi/memory/host_memory.hpp"
 #include "integration/abi/shaders/compiler.hpp"
-#include "passes/generate/bindings.hpp"
+#include "passes/glsl_bindings/bindings.hpp"
 
 #include <fmt/format.h>
 #include <glslang/Public/ResourceLimits.h>

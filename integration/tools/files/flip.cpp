@@ -230,8 +230,8 @@ std::vector<float> low_range(const std::vector<Color>& a, const std::vector<Colo
   return out;
 }
 
-// Tone curve of Narkowicz 2016 with the papers' exposure of 0.6 folded in: (k0 x^2 + k1 x) / (k3
-// x^2 + k4 x + k5).
+// Filmic tone curve of Narkowicz 2016 as FLIP uses it (2021), with its factor of 0.6 on the input
+// folded in: (k0 x^2 + k1 x) / (k3 x^2 + k4 x + k5).
 constexpr double k0 = 0.6 * 0.6 * 2.51, k1 = 0.6 * 0.03, k3 = 0.6 * 0.6 * 2.43, k4 = 0.6 * 0.59, k5 = 0.14;
 
 double tone(double x) {

@@ -12,7 +12,7 @@ namespace {
 
 using Complex = std::complex<double>;
 
-// Returns e^(-+ 2 pi i k / n) for k < n/2, each from its own angle, so that no error accumulates.
+// Returns e^(sign 2 pi i k / n) for k < n/2, each from its own angle, so that no error accumulates.
 std::vector<Complex> roots_of_unity(size_t n, double sign) {
   std::vector<Complex> roots(n / 2);
   for (size_t k = 0; k < roots.size(); ++k) {

@@ -1,7 +1,7 @@
 // Tests `dermis plan`: a saved plan can be verified on its own and compared with the graph's
 // present plan.
 
-#include "framegraph/serial/plan_file.hpp"
+#include "framegraph/serialize/plan_file.hpp"
 #include "tests/integration/tools/command_fixture.hpp"
 
 #include <fstream>

@@ -1,6 +1,6 @@
 #include "tests/passes/device/golden.hpp"
 
-#include "framegraph/serial/sha256.hpp"
+#include "framegraph/serialize/sha256.hpp"
 #include "integration/examples/demo_engine/pixel_format.hpp"
 
 #include <fstream>

@@ -2,7 +2,7 @@
 // Loads plans for the verbs of `dermis plan`: reads saved plans, and compiles graphs with the
 // generic device profile.
 
-#include "framegraph/serial/plan_file.hpp"
+#include "framegraph/serialize/plan_file.hpp"
 #include "integration/tools/command/graph_input.hpp"
 
 #include <optional>

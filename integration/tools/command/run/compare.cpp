@@ -62,7 +62,7 @@ std::vector<std::string> pictures_below(const fs::path& folder) {
   return names;
 }
 
-// Returns the frames of a folder that hold a file of that name, as "frame_0000/".
+// Returns the frame folders, such as "frame_0000/", that contain a picture named `file`.
 std::vector<std::string> frames_with(const std::vector<std::string>& pictures, const std::string& file) {
   std::vector<std::string> frames;
   for (const std::string& name : pictures)
@@ -88,9 +88,9 @@ std::vector<Pair> pairs_of(const std::string& a, const std::string& b, std::stri
   if (!folder) return {{fs::path(a).filename().string(), a, b}};
   std::vector<std::string> in_a = pictures_below(a), in_b = pictures_below(b);
   // Output of apply and of reference: compare the scattered light of each frame.
-  const auto are = [](const std::vector<std::string>& ours, const std::vector<std::string>& theirs) {
-    return !frames_with(ours, scattered).empty() && !frames_with(theirs, reference).empty() &&
-           frames_with(ours, reference).empty();
+  const auto are = [](const std::vector<std::string>& first, const std::vector<std::string>& second) {
+    return !frames_with(first, scattered).empty() && !frames_with(second, reference).empty() &&
+           frames_with(first, reference).empty();
   };
   const bool a_is_applied = are(in_a, in_b), b_is_applied = are(in_b, in_a);
   if (a_is_applied || b_is_applied) {

@@ -18,7 +18,7 @@
 namespace dermis::tools {
 namespace {
 
-constexpr auto between_looks = std::chrono::milliseconds(200);
+constexpr auto poll_interval = std::chrono::milliseconds(200);
 constexpr auto settling = std::chrono::milliseconds(50); // editors write a file in several steps
 
 struct Figures { // of one rendering; negative: not measured
@@ -44,15 +44,15 @@ std::string list_files(const std::vector<std::string>& files) {
   return files.size() > maximum ? fmt::format("{} and {} more", text, files.size() - maximum) : text;
 }
 
-// Lists graph, overlays, included files, scene and profiles as far as they can be read. Returns the
-// plan, or reports errors.
-std::optional<SavedPlan> look_at_files(Watch& watch) {
+// Updates the list of watched files: graph, overlays, included files, scene and profiles, as far as
+// they can be read. Returns the plan, or reports errors.
+std::optional<SavedPlan> reload_inputs(Watch& watch) {
   const WatchOptions& options = watch.options;
   std::vector<std::string> files = {options.scene, options.graph};
   for (const auto* named : {&options.parts.overlays, &options.parts.pass_types})
     files.insert(files.end(), named->begin(), named->end());
-  Diagnostics of_scene;
-  if (const auto scene = demo::read_scene(options.scene, of_scene, options.parts.roots))
+  Diagnostics scene_errors; // ignored, since `dermis render` reports them
+  if (const auto scene = demo::read_scene(options.scene, scene_errors, options.parts.roots))
     for (const demo::SceneProfile& profile : scene->profiles)
       files.push_back(profile.file);
   Diagnostics diagnostics;
@@ -73,8 +73,8 @@ std::vector<std::string> shader_files(const Watch& watch) {
   return files_below(watch.options.shaders, {".glsl", ".comp"});
 }
 
-// Returns whether renderings compile the shaders themselves: no build command, and a shader
-// compiler exists.
+// Returns whether `dermis render` compiles the shader files itself (--shaders): there is a shader
+// compiler, and no build command that would compile them.
 bool compiles_shaders(const Watch& watch) {
   return watch.options.build.empty() && !abi::shader_compiler().empty() && !shader_files(watch).empty();
 }
@@ -150,7 +150,7 @@ std::string figures_text(const Figures& now, const Figures& before) {
 // Renders once. Returns false on failure; watching then continues, since the next change may
 // correct the file.
 bool render_once(Watch& watch) {
-  const std::optional<SavedPlan> plan = look_at_files(watch);
+  const std::optional<SavedPlan> plan = reload_inputs(watch);
   watch.changes.add(watch.files); // later changes trigger the next rendering
   if (!plan) return false;
   if (watch.plan) {
@@ -213,7 +213,7 @@ ExitCode watch(const Session& session, const WatchOptions& options) {
   while (!interrupted() && (options.rounds == 0 || ++rounds < options.rounds)) {
     std::vector<std::string> changed, of_shaders;
     while (!interrupted() && changed.empty() && of_shaders.empty()) {
-      std::this_thread::sleep_for(between_looks);
+      std::this_thread::sleep_for(poll_interval);
       changed = state.changes.look(state.files);
       of_shaders = shaders.look(shader_files(state));
     }

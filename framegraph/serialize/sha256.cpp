@@ -1,4 +1,4 @@
-#include "framegraph/serial/sha256.hpp"
+#include "framegraph/serialize/sha256.hpp"
 
 #include <fmt/format.h>
 

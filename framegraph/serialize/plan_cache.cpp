@@ -1,4 +1,4 @@
-#include "framegraph/serial/plan_cache.hpp"
+#include "framegraph/serialize/plan_cache.hpp"
 
 #include <algorithm>
 

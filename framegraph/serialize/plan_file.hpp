@@ -3,7 +3,7 @@
 // of its parts. docs/plans.md describes the layout.
 
 #include "framegraph/compile/plan.hpp"
-#include "framegraph/serial/plan_key.hpp"
+#include "framegraph/serialize/plan_key.hpp"
 #include "framegraph/text/diagnostic.hpp"
 
 #include <optional>

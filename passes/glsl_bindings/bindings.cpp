@@ -1,4 +1,4 @@
-#include "passes/generate/bindings.hpp"
+#include "passes/glsl_bindings/bindings.hpp"
 
 #include "passes/choice/sample_allocation.hpp"
 #include "passes/common/accumulate.hpp"

@@ -1,8 +1,8 @@
 #pragma once
-// Lists the members of everything in a plan file in file order. Private to serial/.
+// Lists the members of everything in a plan file in file order. Private to serialize/.
 
-#include "framegraph/serial/archive.hpp"
-#include "framegraph/serial/plan_file.hpp"
+#include "framegraph/serialize/archive.hpp"
+#include "framegraph/serialize/plan_file.hpp"
 #include "framegraph/text/limits.hpp"
 
 #include <limits>

@@ -3,7 +3,7 @@
 // reasons are collected, because plans do not hold them.
 
 #include "framegraph/compile/compile.hpp"
-#include "framegraph/serial/sha256.hpp"
+#include "framegraph/serialize/sha256.hpp"
 
 #include <string>
 #include <vector>

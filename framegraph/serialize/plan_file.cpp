@@ -1,6 +1,6 @@
-#include "framegraph/serial/plan_file.hpp"
+#include "framegraph/serialize/plan_file.hpp"
 
-#include "framegraph/serial/plan_fields.hpp"
+#include "framegraph/serialize/plan_fields.hpp"
 #include "framegraph/verify/structure.hpp"
 
 #include <fmt/format.h>

@@ -1,6 +1,6 @@
 // Saved plans read back as they were written; any other file is refused in bounded memory.
 
-#include "framegraph/serial/plan_file.hpp"
+#include "framegraph/serialize/plan_file.hpp"
 #include "framegraph/verify/verify.hpp"
 #include "tests/framegraph/random_graph.hpp"
 #include "tests/framegraph/saved_graph.hpp"

@@ -1,6 +1,6 @@
-#include "framegraph/serial/plan_key.hpp"
+#include "framegraph/serialize/plan_key.hpp"
 
-#include "framegraph/serial/plan_fields.hpp"
+#include "framegraph/serialize/plan_fields.hpp"
 
 namespace dermis {
 

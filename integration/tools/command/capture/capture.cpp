@@ -2,7 +2,7 @@
 #include "integration/tools/files/capture.hpp"
 #include "framegraph/text/json_writer.hpp"
 #include "integration/tools/command/interrupt.hpp"
-#include "integration/tools/command/keep/capture_scene.hpp"
+#include "integration/tools/command/capture/capture_scene.hpp"
 #include "integration/tools/command/run/rendered_frame.hpp"
 
 #include <fmt/format.h>

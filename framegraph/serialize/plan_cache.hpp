@@ -2,7 +2,7 @@
 // Caches compiled plans by the whole key of their input, so that a setting that switches back and
 // forth compiles once per value.
 
-#include "framegraph/serial/plan_key.hpp"
+#include "framegraph/serialize/plan_key.hpp"
 
 #include <cstdint>
 #include <optional>

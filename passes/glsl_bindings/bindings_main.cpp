@@ -1,5 +1,5 @@
 // Build tool that writes the GLSL generated from signatures. Usage: write_bindings <output folder>
-#include "passes/generate/bindings.hpp"
+#include "passes/glsl_bindings/bindings.hpp"
 
 #include <fmt/format.h>
 

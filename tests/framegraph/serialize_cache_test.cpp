@@ -1,7 +1,7 @@
 // Cached plans equal compiled plans, and different inputs never have equal keys.
 
-#include "framegraph/serial/plan_cache.hpp"
-#include "framegraph/serial/plan_file.hpp"
+#include "framegraph/serialize/plan_cache.hpp"
+#include "framegraph/serialize/plan_file.hpp"
 #include "tests/framegraph/random_graph.hpp"
 
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 // Serialises everything that compiling reads of a graph, so that equal bytes mean equal plans.
 
-#include "framegraph/serial/plan_fields.hpp"
+#include "framegraph/serialize/plan_fields.hpp"
 
 #include <algorithm>
 

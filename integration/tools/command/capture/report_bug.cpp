@@ -1,14 +1,14 @@
 // dermis report-bug: writes a folder or archive with all files needed to reproduce a problem, and
 // the command line that does.
 #include "framegraph/explain/plan_json.hpp"
-#include "framegraph/serial/plan_file.hpp"
+#include "framegraph/serialize/plan_file.hpp"
 #include "framegraph/text/json_writer.hpp"
 #include "framegraph/text/limits.hpp"
 #include "integration/tools/command/child.hpp"
 #include "integration/tools/command/graph_input.hpp"
 #include "integration/tools/command/inspect/survey.hpp"
 #include "integration/tools/command/interrupt.hpp"
-#include "integration/tools/command/keep/capture_scene.hpp"
+#include "integration/tools/command/capture/capture_scene.hpp"
 #include "integration/tools/command/output.hpp"
 #include "integration/tools/command/run/captured.hpp"
 #include "integration/tools/files/bytes.hpp"
