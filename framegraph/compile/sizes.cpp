@@ -32,10 +32,10 @@ struct SizeResolver {
   }
 
   // Evaluates a size that follows another resource's. Not recursive: a file may chain thousands.
-  void resolve(ResourceId wanted) {
-    if (mark(wanted) != Mark::unvisited) return;
+  void resolve(ResourceId requested) {
+    if (mark(requested) != Mark::unvisited) return;
     std::vector<ResourceId>& chain = scratch.chain;
-    chain.assign(1, wanted);
+    chain.assign(1, requested);
     while (true) { // to the first resource whose base is known
       const ResourceId id = chain.back();
       if (mark(id) == Mark::done || mark(id) == Mark::failed) break;

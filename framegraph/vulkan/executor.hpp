@@ -194,7 +194,7 @@ struct FrameInput {
   uint64_t frame_index = 1;
   // True: other plans recorded frames since the last record, so the pool's memory was overwritten.
   // All histories restart, except those that `before` holds.
-  bool taken_over = false;
+  bool memory_overwritten = false;
   // The executor that recorded the previous frame with another plan: of this graph, or of the graph
   // before a reload or resize. Histories that both have are copied from it. It must live until the
   // device has finished this frame.

@@ -173,7 +173,7 @@ dermis_frame_statistics make_statistics(const Chooser& chooser, const CompiledGr
   out.next_better = better ? compiled_graph.configurations[frame.decision.next_better].name.c_str() : "";
   out.next_better_missing_ms = static_cast<float>(frame.decision.missing_ms);
   out.predicted_spread_ms = static_cast<float>(frame.forecast.spread_ms);
-  out.calibrated_ms = static_cast<float>(frame.metered_ms);
+  out.calibrated_ms = static_cast<float>(frame.calibrated_ms);
   out.configuration_count = static_cast<uint32_t>(compiled_graph.configurations.size());
   out.switches = frame.switches;
   out.dispatches = frame.dispatches;

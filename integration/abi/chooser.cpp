@@ -106,7 +106,7 @@ void observe_frame(Chooser& chooser, CompiledGraph& compiled_graph, FrameChoice&
       executor.read_timings(frame.frame_index, timed_frame, times) && timed_frame == frame.frame_index;
   count_groups(passes, plan.left_out, frame);
   if (!frame.left_out)
-    frame.metered_ms =
+    frame.calibrated_ms =
         calibrated_estimate(configuration, chooser.costs, load_of(frame.counters, frame.rectangle)).ms;
   if (counted && frame.timed) learn(chooser, passes, frame);
   if (counted) learn_error(chooser, configuration, frame.counters);
@@ -221,7 +221,7 @@ void remember(Chooser& chooser, const FrameChoice& frame, const choice::Decision
   chooser.decided_for = frame.compiled_graph;
 }
 
-void forget(Chooser& chooser, uint64_t frame_index) noexcept {
+void invalidate_history(Chooser& chooser, uint64_t frame_index) noexcept {
   FrameChoice& frame = place_of(chooser, frame_index);
   if (frame.frame_index == frame_index) frame = {};
 }

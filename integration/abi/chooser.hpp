@@ -46,8 +46,8 @@ struct FrameChoice {
   uint32_t sample_units = UINT32_MAX; // limit on the samples of tiles
   bool observed = false;
   bool timed = false;
-  double measured_ms = 0; // valid if `timed`
-  double metered_ms = 0;  // cost by the calibration only, for the counted work
+  double measured_ms = 0;   // valid if `timed`
+  double calibrated_ms = 0; // cost by the calibration only, for the counted work
   uint32_t dispatches = 0;
   uint64_t groups = 0; // launched by the dispatches
   subsurface::FrameCounters counters;

@@ -355,7 +355,7 @@ dermis_result fill_frame(const dermis_view_t& view, const CompiledGraph& compile
   checked.input.settings = compiled_graph.configurations[chosen.configuration].settings;
   checked.input.frame_index = frame.frame_index;
   checked.input.reset_history = reset;
-  checked.input.taken_over = before != nullptr && compiled_graph.last_frame > 0; // of the memory pool
+  checked.input.memory_overwritten = before != nullptr && compiled_graph.last_frame > 0; // of the memory pool
   checked.input.before = before;
   checked.input.view_user = view.user;
   checked.history_invalid = history_invalid;

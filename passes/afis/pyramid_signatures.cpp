@@ -39,7 +39,7 @@ const PassType pyramid_setup_type{
     .doc = "Writes level 0 of the plain pyramid: light times mask of every pixel, with a border of zeros.",
     .ports = setup_ports,
     .settings = setup_settings,
-    .dispatch = over_written,
+    .dispatch = over_written_image,
 };
 
 const PassType pyramid_down_type{
@@ -48,7 +48,7 @@ const PassType pyramid_down_type{
     .doc = "Reduces a level of the plain pyramid to half its size, with a [1 3 3 1] or a box filter.",
     .ports = down_ports,
     .settings = down_settings,
-    .dispatch = over_written,
+    .dispatch = over_written_image,
 };
 
 } // namespace dermis::subsurface

@@ -271,7 +271,7 @@ Estimate calibrated_estimate(const Configuration& configuration, const CostModel
                              const FrameLoad& load) {
   Estimate sum;
   for (const PassLoad& pass : configuration.passes)
-    sum.ms += costs.metered_ms(pass.cost, groups_of(pass, load));
+    sum.ms += costs.calibrated_ms(pass.cost, groups_of(pass, load));
   return sum;
 }
 
@@ -310,11 +310,11 @@ uint32_t units_within(const Configuration& configuration, const CostModel& costs
 }
 
 double expected_rmse(const ErrorModel& errors, const Configuration& configuration, double d_px,
-                     uint32_t given, uint32_t wanted) {
+                     uint32_t given, uint32_t demand) {
   const double all = expected_rmse(errors, configuration.technique, d_px);
   if (!configuration.takes_samples) return all;
   const double none = expected_rmse(errors, configuration.without_samples, d_px);
-  const double fraction = wanted > 0 ? std::min(1.0, double(given) / double(wanted)) : 0.0;
+  const double fraction = demand > 0 ? std::min(1.0, double(given) / double(demand)) : 0.0;
   return std::sqrt(none * none + fraction * (all * all - none * none));
 }
 

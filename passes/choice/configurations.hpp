@@ -1,5 +1,5 @@
 #pragma once
-// Outcomes of a graph's choices by budget: a value for each choice, the resulting plan, its work
+// Configurations of a graph's choices by budget: a value for each choice, the resulting plan, its work
 // and its technique.
 
 #include "framegraph/compile/compile.hpp"
@@ -98,6 +98,6 @@ uint32_t units_within(const Configuration& configuration, const CostModel& costs
 // between the mean squares without samples and with all samples. Units with the largest benefit
 // come first, so the result is an upper bound of the measured error.
 double expected_rmse(const ErrorModel& errors, const Configuration& configuration, double d_px,
-                     uint32_t given, uint32_t wanted);
+                     uint32_t given, uint32_t demand);
 
 } // namespace dermis::choice

@@ -116,7 +116,7 @@ Estimate CostModel::estimate(CostId id, uint64_t groups) const {
   return {ms, ms * line.spread, line.observations > 0};
 }
 
-double CostModel::metered_ms(CostId id, uint64_t groups) const {
+double CostModel::calibrated_ms(CostId id, uint64_t groups) const {
   const Line& line = lines_[id.value];
   return line.prior[0] + line.prior[1] * units(groups);
 }

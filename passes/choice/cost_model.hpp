@@ -42,7 +42,7 @@ public:
 
   Estimate estimate(CostId id, uint64_t groups) const;
   // Returns the time by the calibration only, which is equal on all machines and in all runs.
-  double metered_ms(CostId id, uint64_t groups) const;
+  double calibrated_ms(CostId id, uint64_t groups) const;
   // Adds one timestamped run. Ignores times that are not finite or negative.
   void observe(CostId id, uint64_t groups, double ms);
 

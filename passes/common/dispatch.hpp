@@ -17,7 +17,8 @@ inline constexpr DispatchRule over_tile_grid{
 // One group per 4x4 tiles of the render rectangle.
 inline constexpr DispatchRule over_tile_blocks{.name = "over_tile_blocks", .cell_side = 4 * tile_side};
 // One group per 8x8 texels of the first image that the pass type writes.
-inline constexpr DispatchRule over_written{.name = "over_written", .domain = DispatchRule::Domain::written_image};
+inline constexpr DispatchRule over_written_image{.name = "over_written",
+                                                 .domain = DispatchRule::Domain::written_image};
 inline constexpr DispatchRule single_group{.name = "single_group", .domain = DispatchRule::Domain::one};
 inline constexpr DispatchRule no_dispatch{.name = "none", .domain = DispatchRule::Domain::none};
 

@@ -283,7 +283,7 @@ void record_barriers(State& state, const FrameInput& frame, uint32_t first, uint
   submit_batch(state, frame.command_buffer, batch);
 }
 
-void record_memory_takeover(State& state, const FrameInput& frame) noexcept {
+void record_memory_acquire(State& state, const FrameInput& frame) noexcept {
   global_barrier(state, frame.command_buffer,
                  {VK_STRUCTURE_TYPE_MEMORY_BARRIER_2, nullptr, all_commands, VK_ACCESS_2_MEMORY_WRITE_BIT,
                   all_commands, all_memory});

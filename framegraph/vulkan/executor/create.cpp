@@ -143,7 +143,8 @@ void make_histories(State& state, const ExecutorInput& input) {
   for (const PlanHistory& history : state.plan.histories) {
     HistoryRecord& record = state.histories.emplace_back();
     record.name = input.graph->resources[state.plan.resources[history.resource].declared.value].name;
-    forget(record, input.history == HistoryReason::valid ? HistoryReason::first_frame : input.history);
+    invalidate_history(record,
+                       input.history == HistoryReason::valid ? HistoryReason::first_frame : input.history);
     record.scales = can_rescale(*state.device, state.plan.resources[history.resource], history.declaration);
     for (const PlanPass& planned : state.plan.passes)
       for (uint32_t a = planned.first_access; a < planned.first_access + planned.access_count; ++a) {

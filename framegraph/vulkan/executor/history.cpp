@@ -58,15 +58,15 @@ uint32_t access_now(const State& state, const PortAccess& port) noexcept {
   return valid ? port.access : port.otherwise;
 }
 
-void forget(HistoryRecord& history, HistoryReason reason) noexcept {
+void invalidate_history(HistoryRecord& history, HistoryReason reason) noexcept {
   history.age = 0;
   history.reason = history.lost = reason;
 }
 
-void forget_histories(State& state, HistoryReason reason) noexcept {
+void invalidate_histories(State& state, HistoryReason reason) noexcept {
   for (size_t h = 0; h < state.histories.size(); ++h) {
     HistoryRecord& history = state.histories[h];
-    forget(history, reason == HistoryReason::switched ? not_carried(history) : reason);
+    invalidate_history(history, reason == HistoryReason::switched ? not_carried(history) : reason);
     const PlanResource& resource = state.plan.resources[state.plan.histories[h].resource];
     for (uint32_t i = 0; resource.first_instance != no_instance && i < resource.instance_count; ++i)
       state.instances[resource.first_instance + i].ready = false;

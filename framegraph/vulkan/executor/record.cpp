@@ -7,21 +7,21 @@
 namespace dermis::vulkan {
 namespace {
 
-RecordResult refuse(const char* text, int32_t slot = -1) {
+RecordResult reject(const char* text, int32_t slot = -1) {
   return {ErrorKind::argument, VK_SUCCESS, text, slot};
 }
 
 RecordResult check_buffer(const State& state, const FrameInput& frame, const PlanResource& resource) {
   const auto slot = static_cast<size_t>(resource.slot);
   if (slot >= frame.buffers.size() || frame.buffers[slot].buffer == VK_NULL_HANDLE)
-    return refuse("the slot is not bound", resource.slot);
+    return reject("the slot is not bound", resource.slot);
   const HostBuffer& bound = frame.buffers[slot];
   const VkPhysicalDeviceLimits& limits = state.device->properties.limits;
   if (bound.bytes < resource.bytes || bound.bytes > limits.maxStorageBufferRange)
-    return refuse("the buffer has fewer bytes than the graph needs, or more than the device can bind",
+    return reject("the buffer has fewer bytes than the graph needs, or more than the device can bind",
                   resource.slot);
   if (bound.offset % std::max<VkDeviceSize>(limits.minStorageBufferOffsetAlignment, 1) != 0)
-    return refuse("the buffer's offset is not a multiple of minStorageBufferOffsetAlignment", resource.slot);
+    return reject("the buffer's offset is not a multiple of minStorageBufferOffsetAlignment", resource.slot);
   return {};
 }
 
@@ -36,32 +36,32 @@ RecordResult check_slots(const State& state, const FrameInput& frame) {
     }
     if (resource.type == ResourceType::acceleration_structure) {
       if (slot >= frame.structures.size() || frame.structures[slot].structure == VK_NULL_HANDLE)
-        return refuse("the slot is not bound", number);
+        return reject("the slot is not bound", number);
       continue;
     }
     if (slot >= frame.images.size() || frame.images[slot].image == VK_NULL_HANDLE)
-      return refuse("the slot is not bound", number);
-    if (frame.images[slot].view == VK_NULL_HANDLE) return refuse("the binding has no view", number);
+      return reject("the slot is not bound", number);
+    if (frame.images[slot].view == VK_NULL_HANDLE) return reject("the binding has no view", number);
     const VkImageLayout after = frame.images[slot].after.layout;
     if (after == VK_IMAGE_LAYOUT_UNDEFINED || after == VK_IMAGE_LAYOUT_PREINITIALIZED)
-      return refuse("after.layout must be a layout to which an image can be transitioned", number);
+      return reject("after.layout must be a layout to which an image can be transitioned", number);
   }
   return {};
 }
 
 RecordResult check_frame(const State& state, const FrameInput& frame, const Rectangle& rectangle) {
-  if (frame.command_buffer == VK_NULL_HANDLE) return refuse("the command buffer is null");
+  if (frame.command_buffer == VK_NULL_HANDLE) return reject("the command buffer is null");
   if (frame.frame_index <= state.last_frame_index)
-    return refuse("frame_index must increase from frame to frame");
+    return reject("frame_index must increase from frame to frame");
   const uint64_t right = uint64_t{rectangle.x} + rectangle.width,
                  bottom = uint64_t{rectangle.y} + rectangle.height;
   if (rectangle.width == 0 || rectangle.height == 0 || right > state.plan.view_width ||
       bottom > state.plan.view_height)
-    return refuse("the render rectangle is empty or not inside the allocated size");
+    return reject("the render rectangle is empty or not inside the allocated size");
   if (frame.frame_constants.size() > state.environment.constants_bytes)
-    return refuse("frame_constants has more bytes than environment binding 0");
+    return reject("frame_constants has more bytes than environment binding 0");
   if (!frame.settings.empty() && frame.settings.size() < state.plan.setting_values.size())
-    return refuse("settings has fewer values than the graph has settings");
+    return reject("settings has fewer values than the graph has settings");
   return check_slots(state, frame);
 }
 
@@ -69,7 +69,7 @@ void invalidate_for_cut(State& state) {
   for (size_t h = 0; h < state.histories.size(); ++h) {
     const PlanHistory& history = state.plan.histories[h];
     if (history.declaration.on_cut != HistoryDeclaration::OnCut::invalidate) continue;
-    forget(state.histories[h], HistoryReason::cut);
+    invalidate_history(state.histories[h], HistoryReason::cut);
     const PlanResource& resource = state.plan.resources[history.resource];
     for (uint32_t i = 0; i < resource.instance_count; ++i)
       state.instances[resource.first_instance + i].ready = false;
@@ -117,10 +117,9 @@ void dispatch(State& state, const FrameInput& frame, const PlanPass& planned, co
   if (kernel.dispatch.domain == DispatchRule::Domain::indirect)
     return vk.vkCmdDispatchIndirect(frame.command_buffer, indirect_buffer(state, pass, kernel),
                                     indirect_offset(state, frame, planned, pass, kernel));
-  const bool over_written = kernel.dispatch.domain == DispatchRule::Domain::written_image;
-  const GroupCount groups = over_written
-                                ? group_count(kernel.dispatch, pass.written.width, pass.written.height)
-                                : group_count(kernel.dispatch, r.width, r.height);
+  const bool by_image = kernel.dispatch.domain == DispatchRule::Domain::written_image;
+  const GroupCount groups = by_image ? group_count(kernel.dispatch, pass.written.width, pass.written.height)
+                                     : group_count(kernel.dispatch, r.width, r.height);
   if (groups.total() > 0)
     vk.vkCmdDispatch(frame.command_buffer, static_cast<uint32_t>(groups.x), static_cast<uint32_t>(groups.y),
                      static_cast<uint32_t>(groups.z));
@@ -178,14 +177,14 @@ bool is_left_out(const FrameInput& frame, size_t p) {
 }
 
 // Invalidates the histories that pass `p` writes, because the pass did not run.
-void forget_written(State& state, size_t p) {
+void invalidate_written(State& state, size_t p) {
   const PlanPass& pass = state.plan.passes[p];
   for (uint32_t a = pass.first_access; a < pass.first_access + pass.access_count; ++a) {
     const PlanAccess& access = state.plan.accesses[a];
     if (access.frames_back != 0 || (access.access & all_write_access) == 0) continue;
     for (size_t h = 0; h < state.histories.size(); ++h) {
       if (state.plan.histories[h].resource != access.resource) continue;
-      forget(state.histories[h], HistoryReason::left_out);
+      invalidate_history(state.histories[h], HistoryReason::left_out);
       const PlanResource& resource = state.plan.resources[access.resource];
       for (uint32_t i = 0; resource.first_instance != no_instance && i < resource.instance_count; ++i)
         state.instances[resource.first_instance + i].ready = false;
@@ -249,13 +248,13 @@ RecordResult Executor::record(const FrameInput& frame) noexcept {
   remember_before_frame(state);
   if (frame.reset_history) invalidate_for_cut(state);
 
-  if (frame.taken_over) forget_histories(state, HistoryReason::switched);
+  if (frame.memory_overwritten) invalidate_histories(state, HistoryReason::switched);
   if (frame.before != nullptr) carry_ages(state, *frame.before->state_, frame.reset_history);
   refresh_tables(state, frame_slot);
   write_frame_constants(state, frame_slot, frame.frame_constants);
   clear_counters(state, frame_slot);
   write_descriptors(state, frame_slot, frame);
-  if (frame.taken_over) record_memory_takeover(state, frame);
+  if (frame.memory_overwritten) record_memory_acquire(state, frame);
   if (frame.before != nullptr)
     record_carried(state, *frame.before->state_, commands, frame_slot, frame.reset_history);
   begin_timestamps(state, commands, frame_slot);
@@ -275,7 +274,7 @@ RecordResult Executor::record(const FrameInput& frame) noexcept {
   record_releases(state, frame);
   finish_frame(state, frame, frame_slot, rectangle);
   for (size_t p = 0; p < state.passes.size(); ++p)
-    if (is_left_out(frame, p)) forget_written(state, p);
+    if (is_left_out(frame, p)) invalidate_written(state, p);
   return {};
 }
 

@@ -331,7 +331,7 @@ void record_barriers(State& state, const FrameInput& frame, uint32_t first, uint
                      std::span<const uint32_t> writable_placeholders) noexcept;
 // Makes all earlier writes visible to all later commands, because other commands used the same
 // memory.
-void record_memory_takeover(State& state, const FrameInput& frame) noexcept;
+void record_memory_acquire(State& state, const FrameInput& frame) noexcept;
 // Makes counters that earlier passes wrote visible to this pass, which also counts.
 void record_counters_in_order(State& state, const FrameInput& frame) noexcept;
 // Makes counters visible to the host. Does nothing without counters.
@@ -343,9 +343,9 @@ void record_releases(State& state, const FrameInput& frame) noexcept;
 
 // ---- history.cpp
 // Invalidates the history.
-void forget(HistoryRecord& history, HistoryReason reason) noexcept;
+void invalidate_history(HistoryRecord& history, HistoryReason reason) noexcept;
 // Invalidates every history.
-void forget_histories(State& state, HistoryReason reason) noexcept;
+void invalidate_histories(State& state, HistoryReason reason) noexcept;
 
 // ---- history_copy.cpp
 struct CarriedHistory {

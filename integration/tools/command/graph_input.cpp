@@ -131,7 +131,7 @@ std::optional<Document> read_input(const std::string& path, Diagnostics& diagnos
                      : read_document(path, diagnostics);
 }
 
-OpenFile open_beside(const std::string& path, const std::vector<std::string>& roots) {
+OpenFile open_included(const std::string& path, const std::vector<std::string>& roots) {
   std::vector<std::filesystem::path> folders(roots.begin(), roots.end());
   if (path != "-") folders.insert(folders.begin(), std::filesystem::path(path).parent_path());
   return open_below(std::move(folders));
@@ -145,13 +145,13 @@ std::optional<std::vector<Document>> read_overlays(const std::vector<std::string
   return read.size() == paths.size() ? std::optional(std::move(read)) : std::nullopt;
 }
 
-std::optional<LoadedGraph> load_graph(const std::string& path, const GraphParts& parts,
+std::optional<LoadedGraph> load_graph(const std::string& path, const GraphInputs& inputs,
                                       Diagnostics& diagnostics) {
   std::optional<Document> document = read_input(path, diagnostics);
-  auto overlays = read_overlays(parts.overlays, diagnostics);
+  auto overlays = read_overlays(inputs.overlays, diagnostics);
   if (!document || !overlays) return std::nullopt;
-  return load_graph(std::move(*document), std::move(*overlays), open_beside(path, parts.roots), diagnostics,
-                    parts.pass_types);
+  return load_graph(std::move(*document), std::move(*overlays), open_included(path, inputs.roots),
+                    diagnostics, inputs.pass_types);
 }
 
 std::optional<LoadedGraph> load_graph(Document document, std::vector<Document> overlays, const OpenFile& open,

@@ -32,7 +32,7 @@ std::optional<LoadedGraph> load_pass_types(std::span<const std::string> files, D
 // Reads a document; `path` "-" is standard input. Returns nullopt with errors in `diagnostics`.
 std::optional<Document> read_input(const std::string& path, Diagnostics& diagnostics);
 // Opens files that graph files include: below the folder of `path`, then below each of `roots`.
-OpenFile open_beside(const std::string& path, const std::vector<std::string>& roots);
+OpenFile open_included(const std::string& path, const std::vector<std::string>& roots);
 // Loads the graph of a document or file with its overlays and included files. `pass_type_files`
 // declare pass types of the host.
 std::optional<LoadedGraph> load_graph(Document document, std::vector<Document> overlays, const OpenFile& open,
@@ -41,7 +41,7 @@ std::optional<LoadedGraph> load_graph(Document document, std::vector<Document> o
 // Reads overlay files. Returns nullopt if one of them cannot be read.
 std::optional<std::vector<Document>> read_overlays(const std::vector<std::string>& paths,
                                                    Diagnostics& diagnostics);
-std::optional<LoadedGraph> load_graph(const std::string& path, const GraphParts& parts,
+std::optional<LoadedGraph> load_graph(const std::string& path, const GraphInputs& inputs,
                                       Diagnostics& diagnostics);
 // Loads a fragment as a graph of its own.
 std::optional<LoadedGraph> load_fragment(Document document, const OpenFile& open, Diagnostics& diagnostics,

@@ -23,7 +23,7 @@ struct Size {
 using NamedValue = std::pair<std::string, std::string>;
 
 // Files that are combined with a graph file.
-struct GraphParts {
+struct GraphInputs {
   std::vector<std::string> overlays;   // applied in this order
   std::vector<std::string> roots;      // additional folders that files may include from
   std::vector<std::string> pass_types; // files that declare the host's pass types
@@ -34,7 +34,7 @@ struct ValidateOptions {
   std::vector<std::string> files;
   std::string profiles;  // folder of the profiles that captures name
   std::string sarif;     // SARIF output file, - for standard output
-  GraphParts parts;      // for the graphs among the files
+  GraphInputs inputs;    // for the graphs among the files
   bool diagnose = false; // report usual integration mistakes in captured frames
 };
 ExitCode validate(const Session& session, const ValidateOptions& options);
@@ -47,7 +47,7 @@ ExitCode upgrade(const Session& session, const UpgradeOptions& options);
 
 struct ExplainOptions {
   std::string graph; // or the code of a diagnostic: "D0103"
-  GraphParts parts;
+  GraphInputs inputs;
   Size size{1920, 1080};
   std::vector<NamedValue> settings;
   std::vector<std::string> unbound; // optional imports and exports that the host does not bind
@@ -62,7 +62,7 @@ ExitCode explain(const Session& session, const ExplainOptions& options);
 
 struct GraphOptions {
   std::string graph;
-  GraphParts parts;
+  GraphInputs inputs;
   Size size{1920, 1080};
   std::vector<NamedValue> settings;
   std::vector<std::string> unbound; // optional imports and exports that the host does not bind
@@ -76,7 +76,7 @@ ExitCode graph(const Session& session, const GraphOptions& options);
 struct PlanDiffOptions {
   // one or two graphs or saved plans; one graph is used for both sides
   std::vector<std::string> files;
-  GraphParts parts; // for the graphs on both sides
+  GraphInputs inputs; // for the graphs on both sides
   Size size{1920, 1080};
   std::vector<NamedValue> settings;
   std::vector<std::string> unbound;
@@ -90,7 +90,7 @@ ExitCode plan_diff(const Session& session, const PlanDiffOptions& options);
 
 struct PlanSaveOptions {
   std::string graph;
-  GraphParts parts;
+  GraphInputs inputs;
   Size size{1920, 1080};
   std::vector<NamedValue> settings;
   std::vector<std::string> unbound;
@@ -148,7 +148,7 @@ struct RenderOptions {
   uint32_t frames = 8;
   uint32_t subset = 4096; // pixels per frame compared with the reference; 0: no comparison
   std::vector<NamedValue> settings;
-  GraphParts parts;
+  GraphInputs inputs;
   ModelOptions model;
   double budget_ms = 0;       // device time budget for the graph's choices, ms; 0: default choices
   bool deterministic = false; // judge times only by the calibration
@@ -177,7 +177,7 @@ ExitCode capture(const Session& session, const CaptureOptions& options);
 
 struct WatchOptions {
   std::string scene, graph, out;
-  GraphParts parts;
+  GraphInputs inputs;
   std::vector<NamedValue> settings;
   Size size{320, 180};
   uint32_t frames = 4, subset = 1024;
@@ -192,7 +192,7 @@ struct ReportBugOptions {
   std::string graph, out;
   std::string scene = shipped("configs/scenes/bust.json");
   std::string frames; // capture to use instead of the scene
-  GraphParts parts;
+  GraphInputs inputs;
   std::vector<NamedValue> settings;
   Size size{640, 360};
   uint32_t count = 8; // frames of the scene, the last of which is kept
@@ -203,7 +203,7 @@ struct CalibrateOptions {
   std::string graph = shipped("configs/graphs/skin.json"), scene = shipped("configs/scenes/bust.json"),
               out = "-";
   std::string calibration; // initial calibration file; "": the library's calibration
-  GraphParts parts;
+  GraphInputs inputs;
   Size size{640, 360};
   uint32_t frames = 16; // per combination of choices and distance
 };
@@ -220,7 +220,7 @@ ExitCode sheet(const Session& session, const SheetOptions& options);
 
 struct ApplyOptions {
   std::string graph, frames, out, profiles;
-  GraphParts parts;
+  GraphInputs inputs;
   std::vector<NamedValue> settings;
   uint32_t repeat = 1; // runs per frame; times are medians
 };

@@ -63,12 +63,12 @@ protected:
     make_recording(dermis_device.vk);
     recorded = {};
   }
-  vulkan::RecordResult record(vulkan::Rectangle rectangle = {}, bool taken_over = false) {
+  vulkan::RecordResult record(vulkan::Rectangle rectangle = {}, bool memory_overwritten = false) {
     vulkan::FrameInput input;
     input.command_buffer = reinterpret_cast<VkCommandBuffer>(this); // Never dereferenced.
     input.images = images;
     input.rectangle = rectangle;
-    input.taken_over = taken_over;
+    input.memory_overwritten = memory_overwritten;
     input.frame_index = ++frame_index;
     return executor->record(input);
   }
@@ -171,11 +171,11 @@ TEST_F(CommandsTest, AliasedMemory_UsesAGlobalBarrier) {
   EXPECT_EQ(recorded.all_memory.dstStageMask, VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT);
   EXPECT_EQ(recorded.all_memory.dstAccessMask, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT);
   // The validation layer needs image barriers that name the writes, even though 'one' was read.
-  size_t taken_over = 0;
+  size_t memory_overwritten = 0;
   for (size_t i = 0; i < recorded.barrier_count; ++i)
-    taken_over += recorded.barriers[i].oldLayout == VK_IMAGE_LAYOUT_UNDEFINED &&
-                  recorded.barriers[i].srcAccessMask == VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT;
-  EXPECT_EQ(taken_over, 2u);
+    memory_overwritten += recorded.barriers[i].oldLayout == VK_IMAGE_LAYOUT_UNDEFINED &&
+                          recorded.barriers[i].srcAccessMask == VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT;
+  EXPECT_EQ(memory_overwritten, 2u);
 }
 
 TEST_F(CommandsTest, GroupsCoverTheRenderRectangleAndEveryPassHasALabel) {

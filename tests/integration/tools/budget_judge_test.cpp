@@ -17,14 +17,15 @@ SceneRun run_of(const std::vector<double>& ms) {
   SceneRun run;
   for (uint32_t i = 0; i < unjudged_frames + ms.size(); ++i) {
     RunFrame& frame = run.frames.emplace_back();
-    frame.choice.measured_ms = frame.choice.metered_ms = i < unjudged_frames ? 1000 : ms[i - unjudged_frames];
+    frame.choice.measured_ms = frame.choice.calibrated_ms =
+        i < unjudged_frames ? 1000 : ms[i - unjudged_frames];
     if (i < unjudged_frames) frame.rmse = 1.0;
   }
   return run;
 }
 
-Single single(double metered_ms, double rmse) {
-  return {{}, {metered_ms}, rmse};
+Single single(double calibrated_ms, double rmse) {
+  return {{}, {calibrated_ms}, rmse};
 }
 
 TEST(BudgetJudge, CountsFramesOverTheToleranceExceptTheFirst) {
@@ -55,10 +56,10 @@ TEST(BudgetJudge, BestSingle_MayMissTheBudgetInOnePercent) {
   std::vector<Single> singles = {single(8, 0.3), single(10.4, 0.2), single(10.6, 0.1)};
   EXPECT_EQ(best_within(singles, budget_ms), &singles[1]);
   EXPECT_EQ(best_within(singles, 7), nullptr);
-  singles[2].metered_ms.assign(100, 8);
-  singles[2].metered_ms[50] = 20; // One frame of a hundred.
+  singles[2].calibrated_ms.assign(100, 8);
+  singles[2].calibrated_ms[50] = 20; // One frame of a hundred.
   EXPECT_EQ(best_within(singles, budget_ms), &singles[2]);
-  singles[2].metered_ms[51] = 20;
+  singles[2].calibrated_ms[51] = 20;
   EXPECT_EQ(best_within(singles, budget_ms), &singles[1]);
 }
 

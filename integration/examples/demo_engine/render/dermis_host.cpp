@@ -415,7 +415,7 @@ Result<FrameChoice> graph_choice(DermisHost& host, uint64_t frame_index) {
   out.predicted_ms = choice.predicted_ms;
   out.predicted_spread_ms = choice.predicted_spread_ms;
   out.measured_ms = choice.measured_ms;
-  out.metered_ms = choice.calibrated_ms;
+  out.calibrated_ms = choice.calibrated_ms;
   out.predicted_rmse = choice.predicted_rmse;
   out.next_better_missing_ms = choice.next_better_missing_ms;
   out.mean_d_px = choice.mean_d_px;

@@ -50,13 +50,13 @@ void add_root(CLI::App& verb, std::vector<std::string>& roots, const char* what)
   repeat(verb.add_option("--root", roots, what)->type_name("DIR"));
 }
 
-void add_parts(CLI::App& verb, GraphParts& parts) {
-  repeat(verb.add_option("--overlay", parts.overlays,
+void add_graph_inputs(CLI::App& verb, GraphInputs& inputs) {
+  repeat(verb.add_option("--overlay", inputs.overlays,
                          "Overlay to apply to the graph; may be repeated, applied in order")
              ->type_name("FILE"));
-  add_root(verb, parts.roots,
+  add_root(verb, inputs.roots,
            "Additional folder that graph, scene, model or capture may read from; may be repeated");
-  add_pass_types(verb, parts.pass_types);
+  add_pass_types(verb, inputs.pass_types);
 }
 
 void add_pass_types(CLI::App& verb, std::vector<std::string>& pass_types) {

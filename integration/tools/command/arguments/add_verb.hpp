@@ -23,8 +23,8 @@ CLI::Option* repeat(CLI::Option* option);
 CLI::Option* add_size(CLI::App& verb, Size& size, const char* name = "--size");
 void add_settings(CLI::App& verb, std::vector<NamedValue>& settings, const char* name = "--set");
 void add_root(CLI::App& verb, std::vector<std::string>& roots, const char* what);
-void add_parts(CLI::App& verb, GraphParts& parts);
-// Adds only --pass-types, for verbs without other parts; add_parts() includes it.
+void add_graph_inputs(CLI::App& verb, GraphInputs& inputs);
+// Adds only --pass-types, for verbs without other graph inputs; add_graph_inputs() includes it.
 void add_pass_types(CLI::App& verb, std::vector<std::string>& pass_types);
 void add_common(CLI::App& verb, Session& session, bool json_is_file);
 

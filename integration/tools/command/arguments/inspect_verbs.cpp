@@ -29,7 +29,7 @@ void add_text_verbs(CLI::App& app, Invocation& invocation) {
             ->type_name("DIR");
         verb.add_flag("--diagnose", options.diagnose,
                       "Report usual integration mistakes in captured frames; fail if one is found");
-        add_parts(verb, options.parts);
+        add_graph_inputs(verb, options.inputs);
         verb.add_option("--sarif", options.sarif,
                         "Write the messages as SARIF 2.1.0 to this file, - for standard output")
             ->type_name("FILE");
@@ -55,7 +55,7 @@ void add_text_verbs(CLI::App& app, Invocation& invocation) {
         add_settings(verb, options.settings);
         add_unbound(verb, options.unbound);
         add_two_queues(verb, options.two_queues);
-        add_parts(verb, options.parts);
+        add_graph_inputs(verb, options.inputs);
         CLI::Option* frame = verb.add_flag("--frame", options.frame,
                                            "Explain the library's choices for a frame instead of the plan");
         verb.add_option("--scene", options.scene, "Scene of the frame [configs/scenes/bust.json]")
@@ -93,7 +93,7 @@ void add_text_verbs(CLI::App& app, Invocation& invocation) {
         add_settings(verb, options.settings);
         add_unbound(verb, options.unbound);
         add_two_queues(verb, options.two_queues);
-        add_parts(verb, options.parts);
+        add_graph_inputs(verb, options.inputs);
         verb.add_option("--out,-o", options.out, "File to write, - for standard output [-]")
             ->excludes(html)
             ->type_name("FILE");
@@ -130,7 +130,7 @@ void add_plan_verbs(CLI::App& app, Invocation& invocation) {
             ->required()
             ->expected(1, 2)
             ->type_name("FILE");
-        add_parts(verb, options.parts);
+        add_graph_inputs(verb, options.inputs);
         add_size(verb, options.size);
         add_settings(verb, options.settings);
         add_unbound(verb, options.unbound);
@@ -151,7 +151,7 @@ void add_plan_verbs(CLI::App& app, Invocation& invocation) {
       "dermis plan save configs/graphs/burley.json --size 1280x720 --out burley.plan", plan_save,
       [](CLI::App& verb, PlanSaveOptions& options) {
         verb.add_option("graph", options.graph, "Graph file")->required()->type_name("FILE");
-        add_parts(verb, options.parts);
+        add_graph_inputs(verb, options.inputs);
         add_size(verb, options.size);
         add_settings(verb, options.settings);
         add_two_queues(verb, options.two_queues);

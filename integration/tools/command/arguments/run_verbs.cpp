@@ -101,7 +101,7 @@ void add_picture_verbs(CLI::App& app, Invocation& invocation) {
                         "Pixels of the last frame compared with the reference; 0: none [4096]")
             ->check(CLI::Range(0u, max_subset));
         add_settings(verb, options.settings);
-        add_parts(verb, options.parts);
+        add_graph_inputs(verb, options.inputs);
         add_budget(verb, options);
         add_model(verb, options.model);
       });
@@ -147,7 +147,7 @@ void add_picture_verbs(CLI::App& app, Invocation& invocation) {
             ->type_name("DIR");
         verb.add_option("--rounds", options.rounds, "Number of renderings; 0: until Ctrl-C [0]");
         add_settings(verb, options.settings);
-        add_parts(verb, options.parts);
+        add_graph_inputs(verb, options.inputs);
       },
       true);
   add_verb<ReportBugOptions>(
@@ -170,7 +170,7 @@ void add_picture_verbs(CLI::App& app, Invocation& invocation) {
             ->check(CLI::Range(1u, max_frames));
         add_size(verb, options.size);
         add_settings(verb, options.settings);
-        add_parts(verb, options.parts);
+        add_graph_inputs(verb, options.inputs);
       });
   add_verb<SheetOptions>(
       app, invocation, "sheet", "Render a scene with every technique and material into one image",
@@ -205,7 +205,7 @@ void add_picture_verbs(CLI::App& app, Invocation& invocation) {
         verb.add_option("--frames,-n", options.frames, "Frames per combination of choices, near and far [16]")
             ->check(CLI::Range(2u, max_frames));
         add_size(verb, options.size);
-        add_parts(verb, options.parts);
+        add_graph_inputs(verb, options.inputs);
       });
   add_verb<ApplyOptions>(
       app, invocation, "apply", "Run a graph on captured frames",
@@ -219,7 +219,7 @@ void add_picture_verbs(CLI::App& app, Invocation& invocation) {
         verb.add_option("--repeat", options.repeat, "Runs per frame; times are medians [1]")
             ->check(CLI::Range(1u, max_repeat));
         add_settings(verb, options.settings);
-        add_parts(verb, options.parts);
+        add_graph_inputs(verb, options.inputs);
       });
   add_verb<ReferenceOptions>(
       app, invocation, "reference", "Compute the exact scattered light of captured frames",

@@ -4,11 +4,11 @@
 #include "framegraph/serialize/plan_file.hpp"
 #include "framegraph/text/json_writer.hpp"
 #include "framegraph/text/limits.hpp"
+#include "integration/tools/command/capture/capture_scene.hpp"
 #include "integration/tools/command/child.hpp"
 #include "integration/tools/command/graph_input.hpp"
 #include "integration/tools/command/inspect/survey.hpp"
 #include "integration/tools/command/interrupt.hpp"
-#include "integration/tools/command/capture/capture_scene.hpp"
 #include "integration/tools/command/output.hpp"
 #include "integration/tools/command/run/captured.hpp"
 #include "integration/tools/files/bytes.hpp"
@@ -100,8 +100,8 @@ bool add_graph(BugReport& bug_report, const ReportBugOptions& options, const Dia
              bug_report.add(names.back(), {reinterpret_cast<const char*>(bytes->data()), bytes->size()});
     }
   };
-  add_all("overlays", options.parts.overlays, files.overlays);
-  add_all("pass_types", options.parts.pass_types, files.pass_types);
+  add_all("overlays", options.inputs.overlays, files.overlays);
+  add_all("pass_types", options.inputs.pass_types, files.pass_types);
   for (const auto& [name, text] : files.included)
     good = good && bug_report.add(name, text);
   return good;
@@ -136,14 +136,14 @@ demo::Result<> add_frame(const Session& session, const ReportBugOptions& options
     one.size = options.size;
     one.frames = 1;
     one.first = options.count - 1;
-    one.roots = options.parts.roots;
+    one.roots = options.inputs.roots;
     return capture_scene(quiet, one);
   }
   Diagnostics diagnostics;
-  const std::vector<fs::path> frames = find_frames(options.frames, diagnostics, options.parts.roots);
+  const std::vector<fs::path> frames = find_frames(options.frames, diagnostics, options.inputs.roots);
   const auto frame = frames.empty()
                          ? std::nullopt
-                         : read_frame(frames.back(), profiles_folder(""), diagnostics, options.parts.roots);
+                         : read_frame(frames.back(), profiles_folder(""), diagnostics, options.inputs.roots);
   if (!frame) {
     print_diagnostics(session, diagnostics);
     return demo::Error{demo::ErrorKind::input,
@@ -199,15 +199,15 @@ ExitCode report_bug(const Session& session, const ReportBugOptions& options) {
   Diagnostics diagnostics;
   GraphFiles files;
   std::optional<Document> document = read_input(options.graph, diagnostics);
-  auto overlays = read_overlays(options.parts.overlays, diagnostics);
-  const OpenFile recorded = [&,
-                             open = open_beside(options.graph, options.parts.roots)](std::string_view name) {
-    FileText file = open(name);
-    if (file.problem.empty()) files.included[std::string(name)] = file.text;
-    return file;
-  };
+  auto overlays = read_overlays(options.inputs.overlays, diagnostics);
+  const OpenFile recorded =
+      [&, open = open_included(options.graph, options.inputs.roots)](std::string_view name) {
+        FileText file = open(name);
+        if (file.problem.empty()) files.included[std::string(name)] = file.text;
+        return file;
+      };
   const auto loaded = document && overlays ? load_graph(std::move(*document), std::move(*overlays), recorded,
-                                                        diagnostics, options.parts.pass_types)
+                                                        diagnostics, options.inputs.pass_types)
                                            : std::nullopt;
   if (!loaded) return fail_graph(session, options.graph, diagnostics);
   const CompileChoices choices = read_choices(loaded->graph, options.settings);

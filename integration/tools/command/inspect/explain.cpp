@@ -61,7 +61,7 @@ ExitCode explain_frame(const Session& session, const ExplainOptions& options, co
   constexpr uint32_t frames = 6;
   demo::RenderOptions engine;
   engine.scene = options.scene;
-  engine.roots = options.parts.roots;
+  engine.roots = options.inputs.roots;
   engine.graph = options.graph;
   engine.width = options.size.width;
   engine.height = options.size.height;
@@ -71,7 +71,7 @@ ExitCode explain_frame(const Session& session, const ExplainOptions& options, co
   engine.deterministic = options.deterministic;
   for (const auto& [name, text] : loaded.overlays)
     engine.overlays.push_back({name, text});
-  engine.include = [open = open_beside(options.graph, options.parts.roots)](
+  engine.include = [open = open_included(options.graph, options.inputs.roots)](
                        const std::string& name) -> std::optional<demo::NamedText> {
     const FileText file = open(name);
     return file.problem.empty() ? std::optional(demo::NamedText{file.name, file.text}) : std::nullopt;
@@ -107,7 +107,7 @@ ExitCode explain(const Session& session, const ExplainOptions& options) {
   }
 
   Diagnostics diagnostics;
-  const std::optional<LoadedGraph> loaded = load_graph(options.graph, options.parts, diagnostics);
+  const std::optional<LoadedGraph> loaded = load_graph(options.graph, options.inputs, diagnostics);
   if (!loaded) return fail_graph(session, options.graph, diagnostics);
   CompileChoices choices = read_choices(loaded->graph, options.settings, options.unbound);
   choices.two_queues = options.two_queues;

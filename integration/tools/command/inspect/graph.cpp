@@ -30,7 +30,7 @@ ExitCode write_view(const Session& session, const GraphOptions& options, const L
 
 ExitCode graph(const Session& session, const GraphOptions& options) {
   Diagnostics diagnostics;
-  const std::optional<LoadedGraph> loaded = load_graph(options.graph, options.parts, diagnostics);
+  const std::optional<LoadedGraph> loaded = load_graph(options.graph, options.inputs, diagnostics);
   if (!loaded) return fail_graph(session, options.graph, diagnostics);
   CompileChoices choices = read_choices(loaded->graph, options.settings, options.unbound);
   choices.two_queues = options.two_queues;

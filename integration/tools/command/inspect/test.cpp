@@ -130,7 +130,7 @@ TestRun run_file(const std::string& path, const TestOptions& options, const std:
   const files::path of_graph = files::absolute(graph_path, ignored).parent_path();
   for (const char* above : {"..", "../.."})
     folders.push_back((of_graph / above).lexically_normal().string());
-  const OpenFile open = open_beside(graph_path, folders);
+  const OpenFile open = open_included(graph_path, folders);
   std::vector<std::optional<MachineInfo>> fresh(cases->size());
   for (size_t i = 0; i < cases->size(); ++i) {
     Observation observed;

@@ -24,12 +24,12 @@
 namespace dermis::tools {
 namespace {
 
-bool check_graph(const Document& document, const std::string& path, const GraphParts& parts,
+bool check_graph(const Document& document, const std::string& path, const GraphInputs& inputs,
                  Diagnostics& diagnostics, bool& verified) {
-  auto overlays = read_overlays(parts.overlays, diagnostics);
+  auto overlays = read_overlays(inputs.overlays, diagnostics);
   if (!overlays) return false;
   const std::optional<LoadedGraph> loaded = load_graph(
-      document, std::move(*overlays), open_beside(path, parts.roots), diagnostics, parts.pass_types);
+      document, std::move(*overlays), open_included(path, inputs.roots), diagnostics, inputs.pass_types);
   if (!loaded) return false;
   const CompileChoices choices = read_choices(loaded->graph);
   const std::optional<CompiledPlan> compiled = compile_generic(*loaded, default_size, choices, diagnostics);
@@ -73,9 +73,9 @@ void check_capture(const Document& document, const ValidateOptions& options, Dia
   const std::filesystem::path folder = std::filesystem::path(checked.path).parent_path();
   const uint32_t errors = diagnostics.count(Severity::error);
   const uint32_t warnings = diagnostics.count(Severity::warning);
-  std::optional<CapturedFrame> frame =
-      read_description(document, folder, profiles_folder(options.profiles), diagnostics, options.parts.roots);
-  if (frame) read_pictures(folder, document, *frame, diagnostics, options.parts.roots);
+  std::optional<CapturedFrame> frame = read_description(document, folder, profiles_folder(options.profiles),
+                                                        diagnostics, options.inputs.roots);
+  if (frame) read_pictures(folder, document, *frame, diagnostics, options.inputs.roots);
   checked.good = diagnostics.count(Severity::error) == errors;
   if (!checked.good || !options.diagnose) return;
   checked.about = diagnose_frame(*frame, document.where(document.root()), diagnostics);
@@ -89,13 +89,13 @@ CheckedFile check_file(const std::string& path, const ValidateOptions& options, 
   CheckedFile checked{path, file_kinds()[static_cast<size_t>(kind)].name};
   switch (kind) {
   case FileKindId::graph:
-    checked.good = check_graph(*document, path, options.parts, diagnostics, checked.verified);
+    checked.good = check_graph(*document, path, options.inputs, diagnostics, checked.verified);
     break;
   case FileKindId::profile:
     checked.good = check_profile(*document, diagnostics, checked.about);
     break;
   case FileKindId::scene:
-    checked.good = check_scene(*document, options.parts.roots, diagnostics);
+    checked.good = check_scene(*document, options.inputs.roots, diagnostics);
     break;
   case FileKindId::expectations:
     checked.good = check_expectations(*document, diagnostics);
@@ -107,8 +107,8 @@ CheckedFile check_file(const std::string& path, const ValidateOptions& options, 
     checked.good = check_overlay(*document, diagnostics);
     break;
   case FileKindId::fragment:
-    checked.good = load_fragment(*document, open_beside(path, options.parts.roots), diagnostics,
-                                 options.parts.pass_types)
+    checked.good = load_fragment(*document, open_included(path, options.inputs.roots), diagnostics,
+                                 options.inputs.pass_types)
                        .has_value();
     break;
   case FileKindId::errors:
@@ -130,7 +130,7 @@ std::vector<CheckedFile> check_path(const std::string& path, const ValidateOptio
   std::error_code ignored;
   if (!std::filesystem::is_directory(path, ignored)) return {check_file(path, options, diagnostics)};
   std::vector<CheckedFile> checked;
-  for (const std::filesystem::path& frame : find_frames(path, diagnostics, options.parts.roots))
+  for (const std::filesystem::path& frame : find_frames(path, diagnostics, options.inputs.roots))
     checked.push_back(check_file((frame / "frame.json").string(), options, diagnostics));
   if (checked.empty()) checked.push_back({path});
   return checked;
@@ -155,7 +155,7 @@ ExitCode validate(const Session& session, const ValidateOptions& options) {
   const std::string_view graph_kind = file_kinds()[static_cast<size_t>(FileKindId::graph)].name;
   const bool has_graph =
       std::any_of(files.begin(), files.end(), [&](const CheckedFile& one) { return one.kind == graph_kind; });
-  if (!options.parts.overlays.empty() && !has_graph && !diagnostics.has_errors())
+  if (!options.inputs.overlays.empty() && !has_graph && !diagnostics.has_errors())
     return fail(session, ExitCode::usage, "--overlay needs a graph among the files");
   const auto capture = file_kinds()[static_cast<size_t>(FileKindId::capture)].name;
   const bool has_capture =

@@ -24,10 +24,10 @@ ExitCode plan_diff(const Session& session, const PlanDiffOptions& options) {
     return fail(session, ExitCode::usage,
                 "name two plans, or set differences of the second plan with --b-set, --b-size, --b-unbound "
                 "or --b-overlay");
-  const PlanSource a{options.files.front(), options.parts, options.size, options.settings, options.unbound};
+  const PlanSource a{options.files.front(), options.inputs, options.size, options.settings, options.unbound};
   PlanSource b = a;
   b.file = options.files.back();
-  append(b.parts.overlays, options.b_overlays);
+  append(b.inputs.overlays, options.b_overlays);
   append(b.settings, options.b_settings);
   append(b.unbound, options.b_unbound);
   if (options.b_size.width > 0) b.size = options.b_size;

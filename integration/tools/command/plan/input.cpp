@@ -21,7 +21,7 @@ bool holds_plan(const std::string& path) {
 
 std::string name_of(const PlanSource& source) {
   std::string name = fmt::format("{}, {}x{}", source.file, source.size.width, source.size.height);
-  for (const std::string& overlay : source.parts.overlays)
+  for (const std::string& overlay : source.inputs.overlays)
     name += fmt::format(", overlay {}", overlay);
   for (const auto& [setting, value] : source.settings)
     name += fmt::format(", {}={}", setting, value);
@@ -47,7 +47,7 @@ std::optional<NamedPlan> load_plan(const PlanSource& source, Diagnostics& diagno
     if (!saved) return std::nullopt;
     return NamedPlan{source.file, false, std::move(*saved)};
   }
-  const std::optional<LoadedGraph> loaded = load_graph(source.file, source.parts, diagnostics);
+  const std::optional<LoadedGraph> loaded = load_graph(source.file, source.inputs, diagnostics);
   if (!loaded) return std::nullopt;
   CompileChoices choices = read_choices(loaded->graph, source.settings, source.unbound);
   choices.two_queues = source.two_queues;

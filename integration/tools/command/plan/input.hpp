@@ -14,7 +14,7 @@ namespace dermis::tools {
 
 struct PlanSource {
   std::string file;
-  GraphParts parts;
+  GraphInputs inputs;
   Size size = default_size;
   std::vector<NamedValue> settings;
   std::vector<std::string> unbound;

@@ -12,7 +12,7 @@ ExitCode plan_save(const Session& session, const PlanSaveOptions& options) {
   Diagnostics diagnostics;
   std::string problem;
   const auto plan = load_plan(
-      {options.graph, options.parts, options.size, options.settings, options.unbound, options.two_queues},
+      {options.graph, options.inputs, options.size, options.settings, options.unbound, options.two_queues},
       diagnostics, problem);
   if (!problem.empty()) return fail(session, ExitCode::usage, problem);
   if (!plan) return fail_graph(session, options.graph, diagnostics);

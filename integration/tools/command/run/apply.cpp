@@ -43,7 +43,7 @@ demo::Result<> prepare(ApplyRun& run, const CapturedFrame& frame, const SlotChoi
   request.graph_name = run.options.graph;
   request.graph_text = run.graph_text;
   request.overlays = run.loaded.overlays;
-  request.open = open_beside(run.options.graph, run.options.parts.roots);
+  request.open = open_included(run.options.graph, run.options.inputs.roots);
   request.width = frame.description.width;
   request.height = frame.description.height;
   request.settings = settings_as_json(run.loaded.graph, run.options.settings);
@@ -155,12 +155,12 @@ ExitCode report(const ApplyRun& run, const CapturedSequence& sequence, const Dia
 
 ExitCode apply(const Session& session, const ApplyOptions& options) {
   Diagnostics diagnostics;
-  const std::optional<LoadedGraph> loaded = load_graph(options.graph, options.parts, diagnostics);
+  const std::optional<LoadedGraph> loaded = load_graph(options.graph, options.inputs, diagnostics);
   if (!loaded) return fail_graph(session, options.graph, diagnostics);
   const CompileChoices choices = read_choices(loaded->graph, options.settings);
   if (!choices.problem.empty()) return fail(session, ExitCode::usage, choices.problem);
   const std::optional<CapturedSequence> sequence =
-      check_sequence(session, options.frames, options.profiles, options.parts.roots);
+      check_sequence(session, options.frames, options.profiles, options.inputs.roots);
   if (!sequence) return ExitCode::problems;
 
   HostPasses host_passes(loaded->host_pass_types); // outlives the device's context

@@ -15,7 +15,7 @@ namespace dermis::tools {
 
 ExitCode calibrate(const Session& session, const CalibrateOptions& options) {
   Diagnostics diagnostics;
-  const std::optional<LoadedGraph> loaded = load_graph(options.graph, options.parts, diagnostics);
+  const std::optional<LoadedGraph> loaded = load_graph(options.graph, options.inputs, diagnostics);
   if (!loaded) return fail_graph(session, options.graph, diagnostics);
   const auto all = choice_sets(*loaded, options.size, diagnostics);
   if (all.empty()) return fail_graph(session, options.graph, diagnostics);
@@ -24,7 +24,7 @@ ExitCode calibrate(const Session& session, const CalibrateOptions& options) {
   request.hooks = host_passes.hooks();
   request.graph = options.graph;
   request.scene = options.scene;
-  request.roots = options.parts.roots;
+  request.roots = options.inputs.roots;
   request.size = options.size;
   request.frames = options.frames;
   request.sets = all;
@@ -35,7 +35,7 @@ ExitCode calibrate(const Session& session, const CalibrateOptions& options) {
   }
   for (const auto& [name, text] : loaded->overlays)
     request.overlays.push_back({name, text});
-  request.include = [open = open_beside(options.graph, options.parts.roots)](
+  request.include = [open = open_included(options.graph, options.inputs.roots)](
                         const std::string& name) -> std::optional<demo::NamedText> {
     const FileText file = open(name);
     return file.problem.empty() ? std::optional(demo::NamedText{file.name, file.text}) : std::nullopt;

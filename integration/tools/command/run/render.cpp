@@ -254,7 +254,7 @@ ExitCode report(RenderRun& run) {
 ExitCode render(const Session& session, const RenderOptions& options) {
   demo::RenderOptions engine;
   engine.scene = options.scene;
-  engine.roots = options.parts.roots;
+  engine.roots = options.inputs.roots;
   engine.model = {options.model.model, options.model.albedo, options.model.normal, options.model.specular,
                   options.model.height};
   engine.width = options.size.width;
@@ -266,12 +266,12 @@ ExitCode render(const Session& session, const RenderOptions& options) {
   engine.kernels = options.kernels;
   engine.sampling = options.debug == RenderOptions::Debug::samples;
   engine.skips = options.debug == RenderOptions::Debug::skips;
-  GraphParts parts = options.parts;
+  GraphInputs inputs = options.inputs;
   constexpr const char* skips = "skips.json"; // not added again if already given
-  if (engine.skips && std::none_of(parts.overlays.begin(), parts.overlays.end(), [&](const std::string& one) {
-        return std::filesystem::path(one).filename() == skips;
-      }))
-    parts.overlays.push_back(shipped(std::string("configs/overlays/") + skips));
+  if (engine.skips &&
+      std::none_of(inputs.overlays.begin(), inputs.overlays.end(),
+                   [&](const std::string& one) { return std::filesystem::path(one).filename() == skips; }))
+    inputs.overlays.push_back(shipped(std::string("configs/overlays/") + skips));
   if (!options.calibration.empty()) {
     auto text = demo::read_text_file(options.calibration);
     if (!text) return fail(session, static_cast<ExitCode>(text.error().kind), text.error().text);
@@ -284,7 +284,7 @@ ExitCode render(const Session& session, const RenderOptions& options) {
   std::optional<HostPasses> host_passes;
   if (options.graph != no_graph) {
     Diagnostics diagnostics;
-    const std::optional<LoadedGraph> loaded = load_graph(options.graph, parts, diagnostics);
+    const std::optional<LoadedGraph> loaded = load_graph(options.graph, inputs, diagnostics);
     if (!loaded) return fail_graph(session, options.graph, diagnostics);
     const CompileChoices choices = read_choices(loaded->graph, options.settings);
     if (!choices.problem.empty()) return fail(session, ExitCode::usage, choices.problem);
@@ -306,13 +306,13 @@ ExitCode render(const Session& session, const RenderOptions& options) {
         return file.problem.empty() ? std::optional(demo::NamedText{file.name, file.text}) : std::nullopt;
       };
     };
-    engine.include = files_of(open_beside(options.graph, options.parts.roots));
+    engine.include = files_of(open_included(options.graph, options.inputs.roots));
     if (!options.shaders.empty()) engine.shaders = files_of(open_below({options.shaders}));
     engine.settings = settings_as_json(loaded->graph, options.settings);
     textured = textured_before(loaded->graph, choices);
     transmission = transmits(loaded->graph, choices);
-  } else if (!options.settings.empty() || !options.parts.overlays.empty() ||
-             !options.parts.pass_types.empty() || !options.shaders.empty()) {
+  } else if (!options.settings.empty() || !options.inputs.overlays.empty() ||
+             !options.inputs.pass_types.empty() || !options.shaders.empty()) {
     return fail(session, ExitCode::usage, "--set, --overlay, --pass-types and --shaders need a graph");
   }
 

@@ -49,15 +49,15 @@ std::string list_files(const std::vector<std::string>& files) {
 std::optional<SavedPlan> reload_inputs(Watch& watch) {
   const WatchOptions& options = watch.options;
   std::vector<std::string> files = {options.scene, options.graph};
-  for (const auto* named : {&options.parts.overlays, &options.parts.pass_types})
+  for (const auto* named : {&options.inputs.overlays, &options.inputs.pass_types})
     files.insert(files.end(), named->begin(), named->end());
   Diagnostics scene_errors; // ignored, since `dermis render` reports them
-  if (const auto scene = demo::read_scene(options.scene, scene_errors, options.parts.roots))
+  if (const auto scene = demo::read_scene(options.scene, scene_errors, options.inputs.roots))
     for (const demo::SceneProfile& profile : scene->profiles)
       files.push_back(profile.file);
   Diagnostics diagnostics;
   std::string problem;
-  auto plan = load_plan({options.graph, options.parts, options.size, options.settings, {}, false},
+  auto plan = load_plan({options.graph, options.inputs, options.size, options.settings, {}, false},
                         diagnostics, problem);
   for (const SourceFile& file : diagnostics.files)
     if (std::filesystem::exists(file.name)) files.push_back(file.name);
@@ -99,10 +99,10 @@ std::vector<std::string> render_line(const Watch& watch) {
     for (const std::string& value : values)
       line.insert(line.end(), {option, value});
   };
-  add("--overlay", o.parts.overlays);
+  add("--overlay", o.inputs.overlays);
   if (compiles_shaders(watch)) add("--shaders", {o.shaders});
-  add("--root", o.parts.roots);
-  add("--pass-types", o.parts.pass_types);
+  add("--root", o.inputs.roots);
+  add("--pass-types", o.inputs.pass_types);
   for (const auto& [name, value] : o.settings)
     line.insert(line.end(), {"--set", name + "=" + value});
   return line;
@@ -204,7 +204,7 @@ ExitCode watch(const Session& session, const WatchOptions& options) {
   if (error)
     return fail(session, ExitCode::environment, "cannot find this program's own file: " + error.message());
   state.files = {options.scene, options.graph};
-  state.files.insert(state.files.end(), options.parts.overlays.begin(), options.parts.overlays.end());
+  state.files.insert(state.files.end(), options.inputs.overlays.begin(), options.inputs.overlays.end());
   state.changes.add(state.files);
   Changes shaders;
   shaders.add(shader_files(state));

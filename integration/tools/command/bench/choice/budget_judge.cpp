@@ -19,7 +19,7 @@ std::span<const RunFrame> judged_frames(const SceneRun& run) {
 } // namespace
 
 double Single::metered_at(double fraction) const {
-  std::vector<double> sorted = metered_ms;
+  std::vector<double> sorted = calibrated_ms;
   std::sort(sorted.begin(), sorted.end());
   const auto rank = static_cast<size_t>(std::ceil(fraction * double(sorted.size())));
   return sorted[std::clamp<size_t>(rank, 1, sorted.size()) - 1];
@@ -28,7 +28,7 @@ double Single::metered_at(double fraction) const {
 Single single_of(const SceneRun& run, std::vector<NamedValue> set) {
   Single single{std::move(set), {}, pooled_rmse(run)};
   for (const RunFrame& frame : judged_frames(run))
-    single.metered_ms.push_back(frame.choice.metered_ms);
+    single.calibrated_ms.push_back(frame.choice.calibrated_ms);
   return single;
 }
 
@@ -78,7 +78,7 @@ double fraction_over_model(const SceneRun& run, double budget_ms) {
   double over = 0;
   const auto frames = judged_frames(run);
   for (const RunFrame& frame : frames)
-    over += frame.choice.metered_ms > model_tolerance * budget_ms ? 1 / double(frames.size()) : 0;
+    over += frame.choice.calibrated_ms > model_tolerance * budget_ms ? 1 / double(frames.size()) : 0;
   return over;
 }
 

@@ -18,7 +18,7 @@ constexpr double measured_tolerance = 1.15, model_tolerance = 1.05;
 // One configuration used for the whole scene.
 struct Single {
   std::vector<NamedValue> set; // values as JSON
-  std::vector<double> metered_ms;
+  std::vector<double> calibrated_ms;
   double rmse = 0;
 
   double metered_at(double fraction) const; // percentile by nearest rank
