@@ -38,10 +38,10 @@ AccumulatedLight add_frame(const AccumulatedLight& history, const std::array<dou
 }
 
 std::array<double, 3> remainder_of(const std::array<double, 3>& light, const std::array<double, 3>& near,
-                                   const std::array<double, 3>& brightness) {
+                                   const std::array<double, 3>& local_mean) {
   std::array<double, 3> remainder{};
   for (size_t c = 0; c < 3; ++c)
-    remainder[c] = (light[c] - near[c]) / std::max(brightness[c], accumulate_min_brightness);
+    remainder[c] = (light[c] - near[c]) / std::max(local_mean[c], accumulate_min_mean);
   return remainder;
 }
 
@@ -52,10 +52,10 @@ bool can_be_kept(const std::array<double, 3>& remainder) {
 
 std::array<double, 3> light_of_remainder(const std::array<double, 3>& remainder,
                                          const std::array<double, 3>& near,
-                                         const std::array<double, 3>& brightness) {
+                                         const std::array<double, 3>& local_mean) {
   std::array<double, 3> light{};
   for (size_t c = 0; c < 3; ++c)
-    light[c] = std::max(near[c] + brightness[c] * remainder[c], 0.0);
+    light[c] = std::max(near[c] + local_mean[c] * remainder[c], 0.0);
   return light;
 }
 

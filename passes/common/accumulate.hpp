@@ -26,20 +26,20 @@ double frame_weight(double count, double minimum);
 AccumulatedLight add_frame(const AccumulatedLight& history, const std::array<double, 3>& light,
                            double minimum);
 
-// Lower brightness counts as dark, because half floats of light are too coarse there.
-inline constexpr double accumulate_min_brightness = 1e-6;
+// A lower mean counts as dark, because half floats of light are too coarse there.
+inline constexpr double accumulate_min_mean = 1e-6;
 // A larger remainder is not kept. Accumulated light is then at most 1 + 1.5 * 4.5 = 7.75 times the
 // brightest light around.
 inline constexpr double accumulate_largest_remainder = 4.5;
 
 // Returns the part of a pixel's scattered light that history keeps: the light that the nearest
-// pixels (`near`) do not explain, divided by the brightness around.
+// pixels (`near`) do not explain, divided by the mean light around.
 std::array<double, 3> remainder_of(const std::array<double, 3>& light, const std::array<double, 3>& near,
-                                   const std::array<double, 3>& brightness);
+                                   const std::array<double, 3>& local_mean);
 bool can_be_kept(const std::array<double, 3>& remainder);
 // Returns the light that a remainder represents under the light of this frame; never below 0.
 std::array<double, 3> light_of_remainder(const std::array<double, 3>& remainder,
                                          const std::array<double, 3>& near,
-                                         const std::array<double, 3>& brightness);
+                                         const std::array<double, 3>& local_mean);
 
 } // namespace dermis::subsurface

@@ -9,15 +9,15 @@ namespace dermis::subsurface {
 
 // Light reaches this many d: exp(-20) / 4 + 3/4 exp(-20/3) = 9.5e-4 of Burley's profile lies beyond
 // (Christensen & Burley 2015). The reference uses the same radius.
-inline constexpr double flat_reach_d = 20;
+inline constexpr double uniform_reach_d = 20;
 // Light counts as uniform if it differs by at most this fraction of the tile's maximum: half of a
 // step of 8 bits. The picture changes by at most this fraction, plus the weight of the tail beyond
 // the reach.
-inline constexpr double flat_tolerance = 1.0 / 512;
+inline constexpr double uniform_tolerance = 1.0 / 512;
 // Maximum reach in tiles to a side: with wider scattering, a tile would read more tiles than the
 // pixels that it saves.
-inline constexpr int32_t flat_max_reach = 24;
+inline constexpr int32_t uniform_max_reach = 24;
 // Side of a cell in tiles; the light of a cell is tested in one step.
-inline constexpr uint32_t flat_cell_side = 4;
+inline constexpr uint32_t uniform_cell_side = 4;
 
 } // namespace dermis::subsurface

@@ -99,10 +99,10 @@ std::string shared_constants() {
       "// Generated from the constants of passes/common/.\n"
       "#ifndef DERMIS_CONSTANTS_GLSL\n#define DERMIS_CONSTANTS_GLSL\n\n"
       "const float copy_below_d_px = {}; // pass_types.hpp\n"
-      "const float flat_reach_d = {:.1f}; // uniform_light.hpp\n"
-      "const float flat_tolerance = {};\n"
-      "const int flat_max_reach = {};\n"
-      "const uint flat_cell_side = {}u;\n"
+      "const float uniform_reach_d = {:.1f}; // uniform_light.hpp\n"
+      "const float uniform_tolerance = {};\n"
+      "const int uniform_max_reach = {};\n"
+      "const uint uniform_cell_side = {}u;\n"
       "const int probe_max_reach = {}; // pass_types.hpp\n"
       "const float allot_gain_0 = {}, allot_gain_1 = {}, allot_gain_2 = {}; // sample_allocation.hpp\n"
       "const float allocation_stay = {};\n"
@@ -129,13 +129,13 @@ std::string shared_constants() {
       "const float reproject_depth_fraction = {};\n"
       "const float reproject_slope_pixels = {:.1f};\n"
       "const float reproject_min_weight = {};\n"
-      "const float accumulate_min_brightness = {}; // accumulate.hpp\n"
+      "const float accumulate_min_mean = {}; // accumulate.hpp\n"
       "const float accumulate_largest_remainder = {:.1f};\n"
       "const float counter_log2_shift = {:.1f}; // environment.hpp\n"
       "const float counter_log2_steps = {:.1f};\n"
       "const float through_square_steps = {:.1f};\n\n#endif\n",
-      subsurface::copy_below_d_px, subsurface::flat_reach_d, subsurface::flat_tolerance,
-      subsurface::flat_max_reach, subsurface::flat_cell_side, subsurface::probe_max_reach,
+      subsurface::copy_below_d_px, subsurface::uniform_reach_d, subsurface::uniform_tolerance,
+      subsurface::uniform_max_reach, subsurface::uniform_cell_side, subsurface::probe_max_reach,
       choice::allocation_gain[0], choice::allocation_gain[1], choice::allocation_gain[2],
       choice::allocation_stay, choice::allocation_first_bin, subsurface::min_patch_cosine,
       subsurface::separable_nodes, subsurface::separable_first_log2_d, subsurface::separable_log2_d_step,
@@ -146,9 +146,9 @@ std::string shared_constants() {
       subsurface::radial_log2_r_first, subsurface::radial_nodes_per_octave,
       subsurface::radial_inverse_nodes_per_unit, subsurface::reproject_snap_px,
       subsurface::reproject_largest_velocity, subsurface::reproject_depth_fraction,
-      subsurface::reproject_slope_pixels, subsurface::reproject_min_weight,
-      subsurface::accumulate_min_brightness, subsurface::accumulate_largest_remainder,
-      subsurface::counter_log2_shift, subsurface::counter_log2_steps, subsurface::through_square_steps);
+      subsurface::reproject_slope_pixels, subsurface::reproject_min_weight, subsurface::accumulate_min_mean,
+      subsurface::accumulate_largest_remainder, subsurface::counter_log2_shift,
+      subsurface::counter_log2_steps, subsurface::through_square_steps);
 }
 
 } // namespace

@@ -24,7 +24,7 @@ constexpr std::string_view place_doc =
 
 constexpr Format global_light_formats[] = {Format::rgba32f};
 constexpr std::string_view global_light_doc =
-    "logarithm of the global change in brightness since the ratio was learned; odds that light with the "
+    "logarithm of the global change of luminance since the ratio was learned; odds that light with the "
     "learned pattern is the learned light; tolerance of patterns";
 
 constexpr Port place = port::sampled("place", place_doc, place_formats);
@@ -35,13 +35,13 @@ constexpr Port global_light_ports[] = {
     port::velocity,
     port::classes,
     place,
-    port::written("brightness", global_light_doc, global_light_formats),
+    port::written("luminance_change", global_light_doc, global_light_formats),
 };
 
 constexpr auto residual_ports =
     join(port::sap_levels,
          std::array{port::own_texels(port::sap_scattered),
-                    port::sampled("brightness", global_light_doc, global_light_formats), port::velocity,
+                    port::sampled("luminance_change", global_light_doc, global_light_formats), port::velocity,
                     port::classes, port::sampled("ratio", ratio_doc, ratio_formats), place, port::tiles,
                     port::arguments, port::written("refined", result_doc, port::light_formats),
                     port::written("ratio_out", ratio_doc, ratio_formats),
@@ -92,7 +92,7 @@ const PassType refine_type{
 const PassType global_light_change_type{
     .name = "subsurface.global_light_change",
     .shader = "papers/subsurface_global_light_change",
-    .doc = "Estimates the global change in brightness, to distinguish flashing light from a different light.",
+    .doc = "Estimates the global change of luminance, to distinguish flashing light from a different light.",
     .ports = global_light_ports,
     .settings = global_light_settings,
     .dispatch = single_group,

@@ -83,17 +83,17 @@ vec3 scatter(afis_settings settings, sample_set set, scatter_point point, scatte
   vec3 sum = vec3(0.0), total = vec3(0.0);
   for (int i = 0; i < set.count; ++i) {
     vec2 unit = sequence_point(settings.sequence, offset, set, i);
-    radial_sample drawn = draw(settings, profile, unit.x * beyond);
-    vec2 at = vec2(point.pixel) + drawn.r * vec2(cos(unit.y * two_pi), sin(unit.y * two_pi)) / footprint;
+    radial_sample radial = draw(settings, profile, unit.x * beyond);
+    vec2 at = vec2(point.pixel) + radial.r * vec2(cos(unit.y * two_pi), sin(unit.y * two_pi)) / footprint;
     surface_tap tap;
     if (!find_tap(material, depth, slope, point.id, at, tap))
       continue;
     vec4 nearest = texelFetch(light, texel_of(tap.pixel), 0);
-    vec3 weight = tap_weight(point, profile, tap, drawn, nearest.a), seen = nearest.rgb;
+    vec3 weight = tap_weight(point, profile, tap, radial, nearest.a), seen = nearest.rgb;
     if (settings.surface == SURFACE_DISTANCE)
       weight /= nearest.a;
     if (settings.mips != MIPS_NONE) {
-      float lod = 0.5 * log2(max(pixels_per_sample * drawn.r / drawn.density, 1e-20)) + settings.lod_bias;
+      float lod = 0.5 * log2(max(pixels_per_sample * radial.r / radial.density, 1e-20)) + settings.lod_bias;
       if (lod > 0.0)
         seen = filtered_light(level_1, level_2, level_3, level_4, level_5, level_6, level_7,
                               level_8, settings.mips, at, lod, nearest.rgb);

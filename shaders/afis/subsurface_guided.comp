@@ -175,8 +175,8 @@ void main() {
   if (at.id != 0u) {
     vec2 footprint = pixel_footprint(at.depth);
     state = state_before(at.pixel, at.depth, at.id, length(texelFetch(slope_image, texel, 0).rg * footprint));
-    float wanted = wanted_samples(state.sd * state.sd, state.mean_count, guidance());
-    count = clamped_samples(wanted, guidance());
+    float required = required_samples(state.sd * state.sd, state.mean_count, guidance());
+    count = clamped_samples(required, guidance());
     uint first = frame.frame_index * frame_stride;
     if (splits()) {
       count += count & 1;

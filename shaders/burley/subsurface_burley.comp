@@ -23,13 +23,13 @@ vec3 scatter(scatter_point point, scatter_profile profile, vec3 own) {
 
   vec3 sum = vec3(0.0), total = vec3(0.0);
   for (int i = 0; i < settings.samples; ++i, direction = turn * direction) {
-    radial_sample drawn = profile_sample(profile, 1.0 - (float(i) + random.x) / float(settings.samples));
-    vec2 at = vec2(point.pixel) + direction * drawn.r * pixels_per_mm;
+    radial_sample radial = profile_sample(profile, 1.0 - (float(i) + random.x) / float(settings.samples));
+    vec2 at = vec2(point.pixel) + direction * radial.r * pixels_per_mm;
     surface_tap tap;
     if (!find_tap(material_image, depth_image, slope_image, point.id, at, tap))
       continue;
     vec4 light = texelFetch(light_image, texel_of(tap.pixel), 0);
-    vec3 weight = tap_weight(point, profile, tap, drawn, light.a);
+    vec3 weight = tap_weight(point, profile, tap, radial, light.a);
     sum += weight * light.rgb;
     total += weight;
   }

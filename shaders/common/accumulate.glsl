@@ -40,16 +40,16 @@ accumulated_light add_frame(accumulated_light history, vec3 light, float minimum
 }
 
 // Returns the part of a pixel's scattered light that history keeps: the light that the nearest
-// pixels do not explain, divided by the brightness around. The nearest pixels carry the sharp
-// detail and are read again in each frame; the brightness follows lights that change.
-vec3 remainder_of(vec3 light, vec3 near, vec3 brightness) {
-  return (light - near) / max(brightness, vec3(accumulate_min_brightness));
+// pixels do not explain, divided by the mean light around. The nearest pixels carry the sharp
+// detail and are read again in each frame; the mean follows lights that change.
+vec3 remainder_of(vec3 light, vec3 near, vec3 local_mean) {
+  return (light - near) / max(local_mean, vec3(accumulate_min_mean));
 }
 bool can_be_kept(vec3 remainder) { return all(lessThanEqual(abs(remainder), vec3(accumulate_largest_remainder))); }
 
 // Returns the light that a remainder represents under the light of this frame.
-vec3 light_of_remainder(vec3 remainder, vec3 near, vec3 brightness) {
-  return max(near + brightness * remainder, vec3(0.0));
+vec3 light_of_remainder(vec3 remainder, vec3 near, vec3 local_mean) {
+  return max(near + local_mean * remainder, vec3(0.0));
 }
 
 #endif

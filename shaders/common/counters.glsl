@@ -33,7 +33,7 @@ void count_tiles(uint scattering, uint copied, uint steps) {
     atomicAdd(counters.copied_tiles, copied);
 }
 // Moves a tile that was counted as scattering to the tiles with uniform light.
-void recount_as_flat(float d_px) {
+void recount_as_uniform(float d_px) {
   atomicAdd(counters.scattering_tiles, 0xffffffffu);
   atomicAdd(counters.log2_d_sum, 0u - counter_steps(d_px));
   atomicAdd(counters.uniform_tiles, 1u);

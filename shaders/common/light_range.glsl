@@ -22,7 +22,7 @@ void unpack_range(uvec4 range, out vec3 low, out vec3 high) {
 
 // Returns how many tiles light reaches to each side of a tile with this d. In Burley's profile,
 // less than 0.1 % of the light goes further.
-int flat_reach(float d_px) { return int(ceil(flat_reach_d * d_px / 8.0)); }
+int uniform_reach(float d_px) { return int(ceil(uniform_reach_d * d_px / 8.0)); }
 
 // Returns whether all of `range` is within the tolerance of the light between `low` and `high`. The
 // result then also holds for every range inside `range`.
@@ -31,7 +31,7 @@ bool is_alike(uvec4 range, vec3 low, vec3 high) {
   unpack_range(range, other_low, other_high);
   if (other_low.r > other_high.r) // no subsurface
     return true;
-  return all(lessThanEqual(max(high, other_high) - min(low, other_low), flat_tolerance * high));
+  return all(lessThanEqual(max(high, other_high) - min(low, other_low), uniform_tolerance * high));
 }
 
 #endif

@@ -1,5 +1,5 @@
 // Light around a group of 8x8 pixels, stored once in shared memory: the scattered light that the
-// nearest pixels explain, and the mean brightness around. The group stores its texels with
+// nearest pixels explain, and the mean light around. The group stores its texels with
 // store_near_texel, then calls finish_near_light.
 #ifndef DERMIS_NEAR_LIGHT_GLSL
 #define DERMIS_NEAR_LIGHT_GLSL
@@ -9,23 +9,23 @@
 #include "common/profile.glsl"
 
 const int near_reach = 2;                // pixels to each side that explain scattered light
-const int near_brightness_reach = 3;     // radius in pixels of the mean that gives the brightness
-// border in pixels around the group: near_brightness_reach and a ring of neighbours
+const int near_mean_reach = 3;     // radius in pixels of the mean
+// border in pixels around the group: near_mean_reach and a ring of neighbours
 const int near_ring = 4;
 const int near_side = 8 + 2 * near_ring; // side of the shared square, pixels
 const int near_columns = 8 + 2;          // columns of the group and a ring of neighbours
 const int near_texels = near_side * near_side;
-// Weight of scattered light in the brightness, which keeps shadows next to light above 0.
-const float near_scattered_part = 0.5;
+// Weight of scattered light in the mean, which keeps shadows next to light above 0.
+const float near_scattered_fraction = 0.5;
 const float inverse_pi = 0.31830989;
 
 // rgb: light that can scatter; a: area of the patch over that of its pixel
 shared vec4 near_light[near_texels];
 // rgb: light and a part of the scattered light; a: 1 if the pixel has subsurface
-shared vec4 near_brightness[near_texels];
+shared vec4 near_mean_light[near_texels];
 shared float near_depth[near_texels];     // mm; 0 if nothing is visible
 shared uint near_profile[near_texels];    // 0: no subsurface
-// sums of near_brightness over rows of 2 * near_brightness_reach + 1
+// sums of near_mean_light over rows of 2 * near_mean_reach + 1
 shared vec4 near_rows[near_columns * near_side];
 
 int near_index(ivec2 local) { return (local.y + near_ring) * near_side + local.x + near_ring; }
@@ -53,7 +53,7 @@ void store_near_texel(int i, uint id, float depth, vec3 light, vec3 scattered) {
   near_profile[i] = id;
   near_depth[i] = depth;
   near_light[i] = vec4(light, 0.0);
-  near_brightness[i] = vec4(light + near_scattered_part * scattered, id != 0u ? 1.0 : 0.0);
+  near_mean_light[i] = vec4(light + near_scattered_fraction * scattered, id != 0u ? 1.0 : 0.0);
 }
 
 // Computes areas and sums over rows from the stored texels. Every invocation of the group must call
@@ -69,8 +69,8 @@ void finish_near_light() {
   }
   for (int i = int(gl_LocalInvocationIndex); i < near_columns * near_side; i += 64) {
     vec4 sum = vec4(0.0);
-    for (int k = -near_brightness_reach; k <= near_brightness_reach; ++k)
-      sum += near_brightness[(i / near_columns) * near_side + i % near_columns + near_ring - 1 + k];
+    for (int k = -near_mean_reach; k <= near_mean_reach; ++k)
+      sum += near_mean_light[(i / near_columns) * near_side + i % near_columns + near_ring - 1 + k];
     near_rows[i] = sum;
   }
   barrier();
@@ -78,7 +78,7 @@ void finish_near_light() {
 
 struct near_field {
   vec3 light;      // scattered light if only the nearest pixels contributed
-  vec3 brightness; // mean around, in the unit of light
+  vec3 local_mean; // mean around, in the unit of light
 };
 
 // Computes the near field of a pixel of the group or of a neighbour of the group. Weights are the
@@ -104,7 +104,7 @@ near_field find_near_field(ivec2 local, scatter_profile profile, vec3 direct) {
   bvec3 scatters = bvec3(uvec3(greaterThan(profile.d.rgb, vec3(0.0))) * uvec3(greaterThan(total, vec3(1e-30))));
   vec3 light = mix(near_light[own].rgb, sum / max(total, vec3(1e-30)), scatters);
   vec4 around = vec4(0.0);
-  for (int k = -near_brightness_reach; k <= near_brightness_reach; ++k)
+  for (int k = -near_mean_reach; k <= near_mean_reach; ++k)
     around += near_rows[(local.y + near_ring + k) * near_columns + local.x + 1];
   return near_field(mix(light, near_light[own].rgb, direct), around.rgb / max(around.a, 1.0));
 }

@@ -9,10 +9,10 @@
 
 radial_sample radial_draw(scatter_profile profile, float survival, int inverse, int weighting) {
   if (profile.row != no_radial_row || inverse == INVERSE_POLYNOMIAL) {
-    radial_sample drawn = profile_sample(profile, survival);
+    radial_sample radial = profile_sample(profile, survival);
     if (weighting == WEIGHTING_PROFILE && profile.row == no_radial_row)
-      drawn.density = burley_pdf(drawn.r, profile.d.w);
-    return drawn;
+      radial.density = burley_pdf(radial.r, profile.d.w);
+    return radial;
   }
   bool exact = inverse == INVERSE_EXACT;
   float r = exact ? burley_inverse_survival(survival, profile.d.w) : burley_approximate_survival(survival, profile.d.w);

@@ -1,7 +1,7 @@
 #version 460
 // Accumulates scattered light over frames, for hosts without their own temporal anti-aliasing.
 // History keeps only the part of scattered light that the nearest pixels do not explain, relative
-// to the brightness around. Noise is averaged; each frame's own sharp light is shown unchanged.
+// to the mean light around. Noise is averaged; each frame's own sharp light is shown unchanged.
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 #include "common/constants_math.glsl"
@@ -113,7 +113,7 @@ near_field share_remainder(ivec2 first, ivec2 local) {
   uint id = near_profile[index];
   near_field near = find_near_field(local, find_profile(id, scale), profile_direct(id));
   shared_remainders[remainder_index(local)] =
-      remainder_of(texelFetch(scattered_image, texel, 0).rgb, near.light, near.brightness);
+      remainder_of(texelFetch(scattered_image, texel, 0).rgb, near.light, near.local_mean);
   return near;
 }
 
@@ -157,7 +157,7 @@ struct shown_and_kept {
   accumulated_light kept;
 };
 shown_and_kept with_history(accumulated_light history, vec3 light, near_field near, vec3 now, neighbourhood around) {
-  bvec3 lit = greaterThan(near.brightness, vec3(accumulate_min_brightness));
+  bvec3 lit = greaterThan(near.local_mean, vec3(accumulate_min_mean));
   if (!any(lit)) // keeps history until light comes back
     return shown_and_kept(light, history);
   now = mix(history.light, now, lit);
@@ -169,7 +169,7 @@ shown_and_kept with_history(accumulated_light history, vec3 light, near_field ne
   if (settings.clip > 0.0)
     history = clip_to_neighbours(history, mix(history.light, around.mean, lit), around.deviation, settings.clip);
   accumulated_light sum = add_frame(history, now, settings.weight);
-  vec3 shown = mix(light, light_of_remainder(sum.light, near.light, near.brightness), lit);
+  vec3 shown = mix(light, light_of_remainder(sum.light, near.light, near.local_mean), lit);
   return shown_and_kept(settings.clip > 0.0 ? clamp(shown, around.minimum, around.largest) : shown, sum);
 }
 

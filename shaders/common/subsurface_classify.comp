@@ -18,7 +18,7 @@
 #include "common/sanitise.glsl"
 #include "common/tile_packing.glsl"
 
-const uint block_tiles = flat_cell_side * flat_cell_side;
+const uint block_tiles = uniform_cell_side * uniform_cell_side;
 const int run = 16; // pixels of an invocation: two rows of a tile
 layout(local_size_x = 64, local_size_y = 1, local_size_z = 1) in;
 
@@ -121,11 +121,11 @@ void gather_light(ivec2 first, uint mask, uint tile) {
 
 void main() {
   uint lane = gl_LocalInvocationIndex;
-  ivec2 block = ivec2(gl_WorkGroupID.xy) * int(flat_cell_side);
+  ivec2 block = ivec2(gl_WorkGroupID.xy) * int(uniform_cell_side);
   // adjacent runs map to adjacent invocations
-  uint row_pair = lane / flat_cell_side, column = lane % flat_cell_side;
+  uint row_pair = lane / uniform_cell_side, column = lane % uniform_cell_side;
   ivec2 first = 8 * block + ivec2(8u * column, 2u * row_pair);
-  uint tile_of_run = row_pair / flat_cell_side * flat_cell_side + column;
+  uint tile_of_run = row_pair / uniform_cell_side * uniform_cell_side + column;
   bool ranged = has_light_range() && has_light_cells() && has_lighting();
 
   if (lane < block_tiles) {
@@ -149,7 +149,7 @@ void main() {
     barrier();
   }
 
-  ivec2 tile = block + ivec2(lane % flat_cell_side, lane / flat_cell_side);
+  ivec2 tile = block + ivec2(lane % uniform_cell_side, lane / uniform_cell_side);
   if (lane < block_tiles && all(lessThan(tile, frame.tiles))) {
     int index = tile.y * frame.tiles.x + tile.x;
     uint own = widest_of[lane];

@@ -15,8 +15,8 @@
 layout(local_size_x = 64, local_size_y = 1, local_size_z = 1) in;
 
 bool cells_alike(ivec2 first, ivec2 last, vec3 low, vec3 high) {
-  int across = (frame.tiles.x + int(flat_cell_side) - 1) / int(flat_cell_side);
-  ivec2 begin = first / int(flat_cell_side), end = last / int(flat_cell_side), cell = begin;
+  int across = (frame.tiles.x + int(uniform_cell_side) - 1) / int(uniform_cell_side);
+  ivec2 begin = first / int(uniform_cell_side), end = last / int(uniform_cell_side), cell = begin;
   while (cell.y <= end.y) {
     if (!is_alike(light_cells_data[cell.y * across + cell.x], low, high))
       return false;
@@ -45,13 +45,13 @@ void main() {
   vec3 low, high;
   unpack_range(own, low, high);
   float d_px = uintBitsToFloat(own.w);
-  int reach = flat_reach(d_px);
-  if (reach > flat_max_reach || !is_alike(own, low, high))
+  int reach = uniform_reach(d_px);
+  if (reach > uniform_max_reach || !is_alike(own, low, high))
     return;
   ivec2 tile = ivec2(index % frame.tiles.x, index / frame.tiles.x);
   ivec2 first = max(tile - reach, ivec2(0)), last = min(tile + reach, frame.tiles - 1);
   if (!cells_alike(first, last, low, high) && !tiles_alike(first, last, low, high))
     return;
-  classes_data[index] = class_flat | (classes_data[index] & class_full_bit);
-  recount_as_flat(d_px);
+  classes_data[index] = class_uniform | (classes_data[index] & class_full_bit);
+  recount_as_uniform(d_px);
 }

@@ -91,13 +91,13 @@ float squared_error(ivec2 pixel, uint lane, bool copied) {
   float depth = id != 0u ? depth_of(pixel, id) : 0.0;
   float scale = has_scatter_scale() && inside ? clean_scatter_scale(texelFetch(scatter_scale_image, texel, 0).r) : 1.0;
   scatter_profile profile = find_profile(id, scale);
-  float reach = depth > 0.0 ? flat_reach_d * projected_d(profile.d.w, depth) : 0.0;
-  bool counts = depth > 0.0 && reach >= flat_reach_d * copy_below_d_px && reach <= float(probe_max_reach);
+  float reach = depth > 0.0 ? uniform_reach_d * projected_d(profile.d.w, depth) : 0.0;
+  bool counts = depth > 0.0 && reach >= uniform_reach_d * copy_below_d_px && reach <= float(probe_max_reach);
   vec3 light = vec3(0.0), weight = vec3(0.0);
   if (counts) {
     vec3 p = view_position(vec2(pixel), depth);
     int radius = int(ceil(reach)), side = 2 * radius + 1;
-    float reach_mm = flat_reach_d * profile.d.w;
+    float reach_mm = uniform_reach_d * profile.d.w;
     for (int i = int(lane); i < side * side; i += int(lanes)) {
       ivec2 q = pixel + ivec2(i % side, i / side) - radius;
       float there = depth_of(q, id);
@@ -150,8 +150,8 @@ void main() {
   uint count = listed_count;
   if (count == 0u)
     return;
-  uvec3 drawn = pcg3d(uvec3(frame.frame_index, run, 1u));
-  uint chosen = listed[min(uint(unit_from_hash(drawn).x * float(count)), count - 1u)];
+  uvec3 random_bits = pcg3d(uvec3(frame.frame_index, run, 1u));
+  uint chosen = listed[min(uint(unit_from_hash(random_bits).x * float(count)), count - 1u)];
   ivec2 first = 8 * ivec2(chosen % uint(frame.tiles.x), chosen / uint(frame.tiles.x));
   float errors = 0.0, pixels = 0.0;
   for (uint quarter = 0u; quarter < quarters; ++quarter) {

@@ -40,9 +40,9 @@ bool find_tap(utexture2D material, texture2D depth, texture2D slope, uint id, ve
 }
 
 // Returns weight_c = R_c(distance) * area / density on the plane; its mean is the fraction of the
-// kernel that hits the surface. `drawn`: the sample's radius across the view, with its density.
+// kernel that hits the surface. `radial`: the sample's radius across the view, with its density.
 // `area`: that of the tap's patch, as surface_patch.
-vec3 tap_weight(scatter_point point, scatter_profile profile, surface_tap tap, radial_sample drawn,
+vec3 tap_weight(scatter_point point, scatter_profile profile, surface_tap tap, radial_sample radial,
                 float area) {
   // Uses the sample's own point on the patch, not the patch's centre, because the reference
   // averages over the patch.
@@ -50,7 +50,7 @@ vec3 tap_weight(scatter_point point, scatter_profile profile, surface_tap tap, r
   float distance_3d = max(length(view_position(tap.at, depth) - point.position), 1e-12);
   // The density on the view plane at the pixel's depth is the density of the radius / (2 pi r).
   float zoom = is_perspective() ? tap.depth / point.depth : 1.0;
-  return profile_falloff(profile, distance_3d) * (drawn.r / drawn.density * area * zoom * zoom);
+  return profile_falloff(profile, distance_3d) * (radial.r / radial.density * area * zoom * zoom);
 }
 
 #endif

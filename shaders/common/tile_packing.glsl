@@ -7,7 +7,7 @@ const uint class_none = 0u;    // no subsurface
 const uint class_scatter = 1u;
 const uint class_copy = 2u;    // no pixel scatters further than itself: copied
 // Would scatter, but light is uniform as far as it reaches: copied.
-const uint class_flat = 3u;
+const uint class_uniform = 3u;
 // Flag in addition to the class: all 64 pixels have subsurface.
 const uint class_full_bit = 4u;
 

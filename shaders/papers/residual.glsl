@@ -14,7 +14,7 @@
 const float min_light = 1e-6;    // light of the pyramid below which a ratio is meaningless
 const float never_lit = -128.0;    // stored instead of a pattern
 // Width of the deviation in units of its root mean square: 95 % of a normal distribution.
-const float stray_width = 2.0;
+const float deviation_width = 2.0;
 const float sqrt_pi = 1.7724539;
 
 // `place_image`: the image that keeps the state.
@@ -36,7 +36,7 @@ history_taps find_history(texture2D place_image, previous_place place, uint id, 
 // Rec. 709
 float residual_luminance(vec3 light) { return dot(light, luminance_weights); }
 bool is_lit(vec3 light) { return residual_luminance(light) > min_light; }
-float brightness(vec3 light) { return log(max(residual_luminance(light), min_light)); }
+float log_luminance(vec3 light) { return log(max(residual_luminance(light), min_light)); }
 
 bool has_pattern(vec2 kept) { return kept.x > 0.5 * never_lit; }
 
@@ -55,8 +55,8 @@ vec2 pattern_before(texture2D place_image, history_taps taps) {
 
 // Returns the deviation of a logarithm for a surface with squared deviation `stray`.
 // `common_tolerance` applies without such a deviation.
-float tolerance_of(float common_tolerance, float stray) {
-  return sqrt(common_tolerance * common_tolerance + stray_width * stray_width * stray);
+float tolerance_of(float common_tolerance, float squared_deviation) {
+  return sqrt(common_tolerance * common_tolerance + deviation_width * deviation_width * squared_deviation);
 }
 
 #endif

@@ -32,15 +32,15 @@ vec3 scatter(scatter_point point, scatter_profile profile, float area, vec3 own)
   vec3 sum = vec3(0.0), total = vec3(0.0);
   for (int i = 0; i < settings.samples; ++i) {
     vec2 unit = unit_from_fixed(r2_point(hash.xy, uint(i)));
-    radial_sample drawn =
+    radial_sample radial =
         radial_draw(profile, unit.x * beyond, settings.inverse, settings.weighting);
-    vec2 offset = drawn.r * vec2(cos(unit.y * two_pi), sin(unit.y * two_pi));
+    vec2 offset = radial.r * vec2(cos(unit.y * two_pi), sin(unit.y * two_pi));
     surface_tap tap;
     if (!find_tap(material_image, depth_image, slope_image, point.id,
                   vec2(point.pixel) + offset / footprint, tap))
       continue;
     vec4 light = texelFetch(light_image, texel_of(tap.pixel), 0);
-    vec3 weight = tap_weight(point, profile, tap, drawn, light.a);
+    vec3 weight = tap_weight(point, profile, tap, radial, light.a);
     sum += weight * light.rgb;
     total += weight;
   }

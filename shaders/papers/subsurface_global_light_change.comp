@@ -1,5 +1,5 @@
 #version 460
-// Estimates the change of brightness of the whole picture since the ratios were learned, as a
+// Estimates the change of luminance of the whole picture since the ratios were learned, as a
 // logarithm, and its tolerance. The change is the most common change of surfaces, each compared
 // with itself, for any motion of the camera.
 // Also estimates how many more surfaces agree with this change than would by chance. If light comes
@@ -30,16 +30,16 @@ const float max_tolerance = 0.12;
 const float min_chance = 0.01;
 
 shared float offsets[lanes * each]; // logarithms
-shared float strays[lanes * each];  // squared deviations in stable light
+shared float squared_deviations[lanes * each];  // squared deviations in stable light
 shared bool known[lanes * each];
 shared vec2 sums[lanes];
 
-// Computes the brightness of the surface at a pixel relative to the pattern that it learned, and
+// Computes the logarithm of luminance of the surface at a pixel relative to the pattern that it learned, and
 // the squared deviation of its patterns. Returns false if the surface was not visible before, or is
 // dark.
-bool offset_of(ivec2 pixel, out float offset, out float stray) {
+bool offset_of(ivec2 pixel, out float offset, out float squared_deviation) {
   offset = 0.0;
-  stray = 0.0;
+  squared_deviation = 0.0;
   if (!inside_rect(pixel) || class_of_tile(classes_data[sap_tile(pixel)]) != class_scatter)
     return false;
   ivec2 texel = texel_of(pixel);
@@ -53,8 +53,8 @@ bool offset_of(ivec2 pixel, out float offset, out float stray) {
   float tolerance = depth_tolerance(place.depth, length(own.slope) * sap_footprint(own.depth));
   history_taps taps = find_history(place_image, place, own.id, tolerance);
   vec2 kept = pattern_before(place_image, taps);
-  offset = brightness(light) - kept.x;
-  stray = kept.y;
+  offset = log_luminance(light) - kept.x;
+  squared_deviation = kept.y;
   return has_pattern(kept);
 }
 
@@ -115,7 +115,7 @@ float odds_of_agreement(uint lane, float found, float tolerance) {
   vec2 sum = vec2(0.0);
   for (uint k = 0u; k < each; ++k) {
     uint i = k * lanes + lane;
-    float off = abs(offsets[i] - found) / tolerance_of(tolerance, strays[i]);
+    float off = abs(offsets[i] - found) / tolerance_of(tolerance, squared_deviations[i]);
     if (known[i])
       sum += vec2(off < 2.0 ? 1.0 : 0.0, off >= 2.0 && off < 4.0 ? 1.0 : 0.0);
   }
@@ -131,14 +131,14 @@ void main() {
   for (uint k = 0u; k < each; ++k) {
     uint i = k * lanes + lane, tile = i * stride;
     ivec2 pixel = ivec2(tile % uint(frame.tiles.x), tile / uint(frame.tiles.x)) * 8 + 3;
-    float offset = 0.0, stray = 0.0;
-    known[i] = history_usable() && tile < tiles && offset_of(pixel, offset, stray);
+    float offset = 0.0, squared_deviation = 0.0;
+    known[i] = history_usable() && tile < tiles && offset_of(pixel, offset, squared_deviation);
     offsets[i] = offset;
-    strays[i] = stray;
+    squared_deviations[i] = squared_deviation;
   }
   float found = most_common(lane);
   float tolerance = max(settings.tolerance, min(per_median * median_deviation(lane, found), max_tolerance));
   float odds = odds_of_agreement(lane, found, tolerance);
   if (lane == 0u)
-    imageStore(brightness_image, ivec2(0), vec4(found, odds, tolerance, 0.0));
+    imageStore(luminance_change_image, ivec2(0), vec4(found, odds, tolerance, 0.0));
 }

@@ -20,17 +20,17 @@ bool near_written(ivec2 at) { return class_of_tile(classes_data[sap_tile(at)]) !
 const float largest_kept = 8.0;  // maximum of a sampled ratio
 const float largest_ratio = 4.0; // maximum factor on light
 const float tile_error = 16.0;        // number of samples that weigh as much as the pyramid
-const float stray_rate = 0.1;    // rate of the moving mean of the squared deviation
-const float largest_stray = 0.3; // maximum deviation of a logarithm that counts in this mean
-const float caution = 0.5;       // factor on alpha where light has just appeared that may not stay
+const float deviation_rate = 0.1;    // rate of the moving mean of the squared deviation
+const float max_squared_deviation = 0.3; // maximum deviation of a logarithm that counts in this mean
+const float new_light_factor = 0.5;       // factor on alpha where light has just appeared that may not stay
 // Number of samples that a moving mean of weight alpha is worth, in n / alpha: (2 - alpha) / alpha.
 const float memory = 1.9;
 
 // Returns how much a ratio applies to light whose pattern differs by `off` from the pattern in
 // which the ratio was learned. The result is the odds of unchanged light against light that changed
-// and looks alike. A pixel's pattern is its brightness minus the change of the whole picture: a
+// and looks alike. A pixel's pattern is its log luminance minus the change of the whole picture: a
 // flash does not change it, but a shadow or light from another direction does.
-float trust(float off, float tolerance, float odds) {
+float agreement_weight(float off, float tolerance, float odds) {
   float same = odds * exp(-off * off / (tolerance * tolerance));
   return same / (1.0 + same);
 }
@@ -74,9 +74,9 @@ void main() {
   bool lost = false;
   vec2 kept = vec2(never_lit, 0.0); // x: learned pattern, y: squared deviation
   if (own.id != 0u && !copy_only) {
-    // brightness, odds that patterns agree, their tolerance
-    vec4 all = texelFetch(brightness_image, ivec2(0), 0);
-    float pattern = brightness(light.rgb) - all.r, agreement = all.g / (1.0 + all.g);
+    // change of log luminance, odds that patterns agree, their tolerance
+    vec4 all = texelFetch(luminance_change_image, ivec2(0), 0);
+    float pattern = log_luminance(light.rgb) - all.r, agreement = all.g / (1.0 + all.g);
     bool lit = is_lit(light.rgb), turn = is_turn(pixel >> 3, light.a);
     if (history_usable() && own.depth > 0.0) {
       history_taps taps = taps_of(pixel, own);
@@ -87,14 +87,14 @@ void main() {
       // History interpolated between texels is blurred, and so differs at each edge from the new
       // pattern.
       bool resampled = !any(equal(taps.weight, vec4(1.0)));
-      float off = min(abs(pattern - kept.x), largest_stray);
+      float off = min(abs(pattern - kept.x), max_squared_deviation);
       if (lit)
-        kept.y = mix(kept.y, resampled ? off * off : 0.0, stray_rate * agreement);
+        kept.y = mix(kept.y, resampled ? off * off : 0.0, deviation_rate * agreement);
     }
     if (!has_pattern(kept))
       kept = vec2(lit ? pattern : never_lit, 0.0);
     // Light that appeared suddenly may vanish suddenly: keeps the earlier state a little longer.
-    float alpha = settings.alpha * mix(caution, 1.0, agreement);
+    float alpha = settings.alpha * mix(new_light_factor, 1.0, agreement);
     bool first = ratio.a == 0.0;
     float n = float(settings.samples);
     if (light.a >= settings.below) {
@@ -117,8 +117,8 @@ void main() {
       kept.x = mix(kept.x, pattern, weight);
       ratio.a = min(ratio.a + float(count), memory * n / settings.alpha);
     }
-    float trusted = first ? 1.0 : trust(pattern - kept.x, tolerance_of(all.b, kept.y), all.g);
-    light.rgb *= 1.0 + trusted * ratio.a / (ratio.a + tile_error) * (min(ratio.rgb, vec3(largest_ratio)) - 1.0);
+    float pattern_agreement = first ? 1.0 : agreement_weight(pattern - kept.x, tolerance_of(all.b, kept.y), all.g);
+    light.rgb *= 1.0 + pattern_agreement * ratio.a / (ratio.a + tile_error) * (min(ratio.rgb, vec3(largest_ratio)) - 1.0);
   }
   imageStore(refined_image, texel, round_to_half(light));
   imageStore(ratio_out_image, texel, round_to_half(ratio));

@@ -39,9 +39,9 @@ void main() {
   reservoir_stream stream = stream_begin();
   float fraction = 1.0 / float(settings.samples); // MIS weight of equal techniques
   for (int i = 0; i < settings.samples; ++i) {
-    reservoir drawn = draw_initial(domain, random);
-    float target = has_sample(drawn) ? target_of(domain, surface_of(drawn), drawn) : 0.0;
-    stream_add(stream, drawn, target, fraction * target * drawn.weight, fraction, random_unit(random));
+    reservoir candidate = draw_initial(domain, random);
+    float target = has_sample(candidate) ? target_of(domain, surface_of(candidate), candidate) : 0.0;
+    stream_add(stream, candidate, target, fraction * target * candidate.weight, fraction, random_unit(random));
   }
   packed_reservoir packed = pack_reservoir(stream_end(stream));
   for (uint i = 0u; i < 4u; ++i)

@@ -8,40 +8,40 @@
 
 struct reuse_settings {
   uint shift; // shift of this stage: shift_of_stage
-  uint index; // index_traced or index_drawn
+  uint index; // index_traced or index_sampled
   float cap;  // confidence_cap
 };
 
 // Samples one x2 by a probe, one place on one light, and one shadow ray. Confidence is 1, even
 // without a sample.
 reservoir draw_initial(scatter_domain domain, inout random_state random) {
-  reservoir none = no_reservoir(1.0), drawn = none;
+  reservoir none = no_reservoir(1.0), candidate = none;
   float u[7];
   for (int i = 0; i < 7; ++i)
     u[i] = random_unit(random);
   if (!(scattering_reach(domain.d) > 0.0) || light_count() == 0u)
     return none;
-  drawn.numbers = draw_numbers(domain.d, vec4(u[0], u[1], u[2], u[3]));
+  candidate.numbers = draw_numbers(domain.d, vec4(u[0], u[1], u[2], u[3]));
   probe_hits hits;
-  trace_probe(probe_of(domain, drawn.numbers), domain.medium, hits);
+  trace_probe(probe_of(domain, candidate.numbers), domain.medium, hits);
   if (hits.count == 0u)
     return none;
   probe_hit hit = hits.hit[picked_hit(u[3], hits.count)];
   surface_point x2 = surface_at(hit.instance, hit.primitive, hit.barycentrics);
-  drawn.instance = hit.instance;
-  drawn.primitive = hit.primitive;
-  drawn.barycentrics = hit.barycentrics;
-  drawn.hits = hits.count;
-  drawn.density = probe_pdf(domain, x2.position, x2.normal);
-  drawn.light = pick_light(u[4]);
-  drawn.place = light_place(u[5], u[6]);
-  light_source light = light_at(drawn.light);
-  drawn.irradiance = light_irradiance(light, drawn.place, x2.position, x2.normal, x2.shading);
-  drawn.weight = float(hits.count) / (drawn.density * light_density(light));
-  float target = luminance(scattered(domain, length(x2.position - domain.position), drawn.irradiance));
-  if (!(target > 0.0) || !visible(x2, light_target(light, drawn.place, x2.position)))
+  candidate.instance = hit.instance;
+  candidate.primitive = hit.primitive;
+  candidate.barycentrics = hit.barycentrics;
+  candidate.hits = hits.count;
+  candidate.density = probe_pdf(domain, x2.position, x2.normal);
+  candidate.light = pick_light(u[4]);
+  candidate.place = light_place(u[5], u[6]);
+  light_source light = light_at(candidate.light);
+  candidate.irradiance = light_irradiance(light, candidate.place, x2.position, x2.normal, x2.shading);
+  candidate.weight = float(hits.count) / (candidate.density * light_density(light));
+  float target = luminance(scattered(domain, length(x2.position - domain.position), candidate.irradiance));
+  if (!(target > 0.0) || !visible(x2, light_target(light, candidate.place, x2.position)))
     return none;
-  return sanitised(drawn);
+  return sanitised(candidate);
 }
 
 // Returns x / (x + y) for densities; 0 if both are 0.

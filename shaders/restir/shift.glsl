@@ -9,7 +9,7 @@
 
 const uint shift_reconnection = 0u, shift_delayed = 1u, shift_hybrid = 2u, shift_sequential = 3u;
 const uint stage_temporal = 0u, stage_spatial_first = 1u, stage_spatial_second = 2u;
-const uint index_traced = 0u, index_drawn = 1u;
+const uint index_traced = 0u, index_sampled = 1u;
 // How shift_path lights a path in the new pixel: reconnected paths keep their light; or all paths
 // are lit by the lights of this frame or of the frame before.
 const uint lights_kept = 0u, lights_now = 1u, lights_before = 2u;
@@ -119,7 +119,7 @@ void prepare(uint shift, uint index, scatter_domain domain, surface_point x2, in
   if (!replays(shift, domain, x2) || !invert_point(domain, x2.position, x2.normal, technique, path.numbers))
     return;
   path.density = probe_pdf(domain, x2.position, x2.normal);
-  if (index == index_drawn) {
+  if (index == index_sampled) {
     path.numbers.pick = within;
     path.hits = assumed_hits;
     return;

@@ -87,9 +87,9 @@ vec3 sap_sampled_light(ivec2 pixel, sap_texel own, vec3 light, uvec2 offset, int
   vec2 shift = unit_from_fixed(offset);
   vec3 sum = direct * light, mass = direct;
   for (int i = 0; i < count; ++i) {
-    radial_sample drawn = profile_sample(profile, (float(i) + shift.x) / float(count) * beyond);
+    radial_sample radial = profile_sample(profile, (float(i) + shift.x) / float(count) * beyond);
     float angle = float(i) * golden_angle + shift.y * two_pi;
-    vec2 at = vec2(pixel) + drawn.r * vec2(cos(angle), sin(angle)) / footprint;
+    vec2 at = vec2(pixel) + radial.r * vec2(cos(angle), sin(angle)) / footprint;
     ivec2 q = ivec2(round(clamp(at, vec2(-1.0), vec2(frame.rect.zw))));
     if (!inside_rect(q) || !near_written(q))
       continue;
@@ -102,8 +102,8 @@ vec3 sap_sampled_light(ivec2 pixel, sap_texel own, vec3 light, uvec2 offset, int
     float distance_3d = max(length(view_position(at, depth) - position), 1e-12);
     float zoom = is_perspective() ? tap.depth / own.depth : 1.0;
     vec3 weight = profile_falloff(profile, distance_3d) *
-                  (each * drawn.r / drawn.density * sap_area(tap, vec2(q)) * zoom * zoom);
-    float lod = 0.5 * log2(max(pixels_per_sample * drawn.r / drawn.density, 1e-20)) + lod_bias;
+                  (each * radial.r / radial.density * sap_area(tap, vec2(q)) * zoom * zoom);
+    float lod = 0.5 * log2(max(pixels_per_sample * radial.r / radial.density, 1e-20)) + lod_bias;
     sum += weight * sample_light(q, at, tap, lod);
     mass += weight;
   }

@@ -121,9 +121,9 @@ void main() {
     arguments_data[2] = 1u;
   }
   if (lane == 0u) {
-    uint wanted = 0u;
+    uint demand = 0u;
     for (uint bin = 0u; bin < allocation_bins; ++bin)
-      wanted += cost_of_bin[bin];
-    counters.sample_demand = wanted;
+      demand += cost_of_bin[bin];
+    counters.sample_demand = demand;
   }
 }

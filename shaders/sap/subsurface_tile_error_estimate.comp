@@ -9,7 +9,7 @@
 #include "common/environment.glsl"
 #include "common/tiles.glsl"
 
-const float doubt_steps = 1024.0; // steps for the error of one pixel under exposed light of 1
+const float error_steps = 1024.0; // steps for the error of one pixel under exposed light of 1
 
 shared uint sum;
 
@@ -25,13 +25,13 @@ void main() {
     ivec2 texel = texel_of(pixel);
     if (texelFetch(material_image, texel, 0).r != 0u) {
       vec4 light = texelFetch(scattered_image, texel, 0);
-      float unmet = clamp((settings.below - light.a) / max(settings.below, 1e-6), 0.0, 1.0);
-      float stake = dot(light.rgb, luminance_weights);
+      float missing_confidence = clamp((settings.below - light.a) / max(settings.below, 1e-6), 0.0, 1.0);
+      float pixel_error = dot(light.rgb, luminance_weights);
       if (has_light())
-        stake = abs(stake - dot(texelFetch(light_image, texel, 0).rgb, luminance_weights));
-      float seen = clamp(stake * frame.exposure, 0.0, 4.0);
-      float matters = has_importance() ? clamp(texelFetch(importance_image, texel, 0).r, 0.0, 1.0) : 1.0;
-      atomicAdd(sum, uint(unmet * seen * matters * doubt_steps + 0.5));
+        pixel_error = abs(pixel_error - dot(texelFetch(light_image, texel, 0).rgb, luminance_weights));
+      float exposed_error = clamp(pixel_error * frame.exposure, 0.0, 4.0);
+      float importance = has_importance() ? clamp(texelFetch(importance_image, texel, 0).r, 0.0, 1.0) : 1.0;
+      atomicAdd(sum, uint(missing_confidence * exposed_error * importance * error_steps + 0.5));
     }
   }
   barrier();

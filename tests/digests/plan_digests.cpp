@@ -77,8 +77,8 @@ int main(int argc, char** argv) {
   bool good = !files.empty();
   for (const auto& file : files)
     good = digest_file(file) && good;
-  const uint64_t drawn = std::strtoull(argv[2], nullptr, 10);
-  for (uint64_t seed = 0; seed < drawn; ++seed)
+  const uint64_t random_graphs = std::strtoull(argv[2], nullptr, 10);
+  for (uint64_t seed = 0; seed < random_graphs; ++seed)
     good = digest_random(seed) && good;
   return good ? 0 : 1;
 }

@@ -125,11 +125,11 @@ TEST(PlanText, ExplainsTheRequestedOptions) {
 TEST(PlanText, RandomGraphs_EveryReasonHasText) {
   for (uint64_t seed = 0; seed < 60; ++seed) {
     const auto b = random_graph(seed);
-    CompileInput drawn = b.input(), whole = b.input();
-    drawn.order = PassOrder::random;
-    drawn.order_seed = seed;
+    CompileInput in_random_order = b.input(), whole = b.input();
+    in_random_order.order = PassOrder::random;
+    in_random_order.order_seed = seed;
     whole.cull = false;
-    for (const CompileInput& input : {b.input(), drawn, whole}) {
+    for (const CompileInput& input : {b.input(), in_random_order, whole}) {
       const auto json = plan_json(b.graph, b.pass_types, compiled(b, input));
       EXPECT_THAT(json, ::testing::Not(HasSubstr("\"text\": \"\""))) << seed;
       EXPECT_THAT(json, ::testing::Not(HasSubstr("unknown"))) << seed;

@@ -151,7 +151,7 @@ Result<> read_pictures(const Session& session, FrameOutputs& out) {
     if (!done) return done;
   }
   if (session.dermis && exports_tile_class(*session.dermis)) {
-    done = read(host, renderer[Target::skips], 2, out.skips);
+    done = read(host, renderer[Target::tile_class], 2, out.tile_class);
     if (!done) return done;
   }
   done = read(host, session.taa ? taa_result(*session.taa) : renderer[Target::color], 3, out.color);
@@ -246,7 +246,7 @@ Result<RenderSummary> render(const RenderOptions& options, const RenderCallbacks
                                    {options.graph, info.profiles, options.settings, options.width,
                                     options.height, options.overlays, options.include, options.shaders,
                                     options.budget_ms, options.deterministic, options.calibration,
-                                    options.sampling, options.skips, options.hooks},
+                                    options.sampling, options.tile_class, options.hooks},
                                    &stage.slots);
     if (!made) return made.error();
     dermis = made.take();

@@ -58,7 +58,7 @@ struct RenderOptions {
   bool jitter = false;          // sub-pixel camera jitter (Halton 2, 3; period 8)
   bool taa = false;             // temporal anti-aliasing of `color`, with jitter
   bool sampling = false;        // reads back the graph's `sampling` output
-  bool skips = false;           // reads back the graph's `skips` output
+  bool tile_class = false;      // reads back the graph's `tile_class` output
   bool validation = false;      // run under the Khronos validation layer
   KernelShape kernels = KernelShape::by_device;
   std::string device; // part of the device's name; "" = choose
@@ -170,7 +170,7 @@ struct FrameOutputs {
   FloatImage sampling;
   // 2: class of the tile (0 nothing, 1 scatters, 2 below a pixel, 3 uniform light), profile id.
   // Empty unless requested and exported.
-  FloatImage skips;
+  FloatImage tile_class;
   FloatImage color;                  // 3: linear radiance times exposure
   std::vector<uint8_t> display;      // RGB, tonemapped and sRGB encoded
   std::vector<PassTime> host_times;  // shadows, gbuffer, lighting, composite

@@ -159,7 +159,7 @@ struct RenderOptions {
     none,
     samples,
     // also write images of samples or skipped tiles
-    skips
+    tile_class
   } debug = Debug::none;
   std::string trace;   // Chrome trace output file
   std::string shaders; // folder of shaders that replace the built-in ones

@@ -5,14 +5,14 @@
 
 namespace dermis::subsurface {
 
-double wanted_samples(double variance, double mean_count, const GuidanceSettings& settings) {
+double required_samples(double variance, double mean_count, const GuidanceSettings& settings) {
   const double ratio = variance / settings.sigma2_target;
   const double change = (ratio - 1) * mean_count * (2 / settings.eta - 2); // equation 9
   return settings.kappa * change + ratio * mean_count;
 }
 
-int clamped_samples(double wanted, const GuidanceSettings& settings) {
-  return static_cast<int>(std::lround(std::clamp(wanted, settings.min_samples, settings.max_samples)));
+int clamped_samples(double required, const GuidanceSettings& settings) {
+  return static_cast<int>(std::lround(std::clamp(required, settings.min_samples, settings.max_samples)));
 }
 
 double control_weight(const MovingCovariance& moments, double eps_alpha) {

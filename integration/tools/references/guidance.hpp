@@ -19,9 +19,9 @@ struct GuidanceSettings {
 
 // Returns kappa * Delta + E, not clamped (equations 8 to 10, A4). `variance` is of one frame's
 // estimate with `mean_count` samples.
-double wanted_samples(double variance, double mean_count, const GuidanceSettings& settings);
+double required_samples(double variance, double mean_count, const GuidanceSettings& settings);
 // Rounds to a whole number within [min_samples, max_samples] (A6).
-int clamped_samples(double wanted, const GuidanceSettings& settings);
+int clamped_samples(double required, const GuidanceSettings& settings);
 // Returns (cov + eps) / (var + eps), clamped to [0, (mean_f + mean_g) / mean_g] (algorithm 2, C10).
 // Not clamped if mean_g is 0, where the upper bound is undefined; all black gives 1.
 double control_weight(const MovingCovariance& moments, double eps_alpha);

@@ -176,7 +176,7 @@ ImageReads blend(const PassType& type, const ReadsQuestion& question) {
 }
 
 // One pixel of 64: surface, light, velocity, and twice four history texels.
-ImageReads brightness(const PassType& type, const ReadsQuestion& question) {
+ImageReads global_light_change(const PassType& type, const ReadsQuestion& question) {
   return {(2 + one_if(type, question, "velocity", PortSide::read) + 4 * 2) / 64.0};
 }
 
@@ -268,7 +268,7 @@ ImageReads refine_tiles(const PassType&, const ReadsQuestion& question) {
 }
 
 // Material.
-ImageReads skips(const PassType&, const ReadsQuestion&) {
+ImageReads debug_tile_class(const PassType&, const ReadsQuestion&) {
   return {1};
 }
 
@@ -314,7 +314,7 @@ constexpr Entry entries[] = {
     {"subsurface.tile_list", none},
     {"subsurface.classify_uniform_light", none},
     {"subsurface.copy_tiles", copy},
-    {"subsurface.debug_tile_class", skips},
+    {"subsurface.debug_tile_class", debug_tile_class},
     {"subsurface.probe", probe},
     {"subsurface.setup", setup},
     {"subsurface.burley", burley},
@@ -340,7 +340,7 @@ constexpr Entry entries[] = {
     {"subsurface.afis", afis},
     {"subsurface.guided", guided},
     {"subsurface.refine", blend},
-    {"subsurface.global_light_change", brightness},
+    {"subsurface.global_light_change", global_light_change},
     {"subsurface.residual", residual},
     {"subsurface.accumulate", accumulate},
     {"subsurface.tile_error_estimate", tile_error},

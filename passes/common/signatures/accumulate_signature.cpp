@@ -9,7 +9,7 @@ namespace {
 constexpr Format past_formats[] = {Format::rgba16f};
 constexpr Format place_formats[] = {Format::rg16f};
 constexpr std::string_view past_doc = "scattered light minus the part that the nearest pixels explain, "
-                                      "divided by the local brightness; number of accumulated frames";
+                                      "divided by the local mean; number of accumulated frames";
 constexpr std::string_view place_doc = "view depth in metres, profile id; 0 where nothing was written";
 
 constexpr Port ports[] = {

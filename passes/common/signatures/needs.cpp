@@ -57,7 +57,7 @@ constexpr PortNeed needs[] = {
     {"refined", pixel},
     {"accumulated", pixel},
     {"sampling", pixel},
-    {"skips", pixel},
+    {"tile_class", pixel},
     {"guide", pixel},
     {"guide_out", pixel},
     {"control", pixel},

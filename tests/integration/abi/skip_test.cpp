@@ -161,7 +161,7 @@ TEST_F(Skip, FlatLight_IsCopiedWithinTheTolerance) {
   EXPECT_EQ(choice.skips, DERMIS_SKIP_UNIFORM_LIGHT);
   const auto skipped = texels("lighting");
   // Difference: the tolerance, and the pyramid's three roundings to half floats (2^-11 each).
-  const double bound = 0.7505 * (subsurface::flat_tolerance + 3.0 / 2048);
+  const double bound = 0.7505 * (subsurface::uniform_tolerance + 3.0 / 2048);
   for (size_t i = 0; i < skipped.size(); ++i)
     ASSERT_NEAR(skipped[i], unskipped[i], i % 4 == 3 ? 0 : bound) << i;
 }
@@ -211,14 +211,14 @@ TEST_F(Skip, OneDifferentTile_IsSeenWithinTheReach) {
   const demo::ReportedFrame choice = run_frame();
   // Skin's d is two pixels here: 20 d are five tiles, and the picture has eight.
   EXPECT_EQ(choice.uniform_tiles + choice.scattering_tiles, 64u);
-  const auto reach = static_cast<uint32_t>(std::ceil(subsurface::flat_reach_d * 3.67 / 3.5 / 0.5 / 8));
+  const auto reach = static_cast<uint32_t>(std::ceil(subsurface::uniform_reach_d * 3.67 / 3.5 / 0.5 / 8));
   EXPECT_EQ(choice.scattering_tiles, (reach + 1) * (reach + 1));
 }
 
 TEST_F(Skip, DifferenceInACell_IsSeenExactlyWithinTheReach) {
   // Cells of 4x4 tiles are tested first. Differing light in a cell is beyond the reach of some
   // neighbouring tiles.
-  const auto reach = static_cast<uint32_t>(std::ceil(subsurface::flat_reach_d * 3.67 / 3.5 / 0.5 / 8));
+  const auto reach = static_cast<uint32_t>(std::ceil(subsurface::uniform_reach_d * 3.67 / 3.5 / 0.5 / 8));
   for (const uint32_t column : {0u, 1u, 2u, 3u}) {
     make();
     fill("lighting", [&](uint32_t x, uint32_t) { return x / 8 == column ? 1.0f : 0.5f; });
@@ -239,7 +239,7 @@ TEST_F(Skip, SubpixelScattering_LightIsNotTested) {
   fill("lighting", [](uint32_t, uint32_t) { return 0.5f; });
   fill("scatter_scale", [](uint32_t x, uint32_t y) { return x < 8 && y < 8 ? 0.0f : 1.0f; });
   const demo::ReportedFrame choice = run_frame();
-  const auto reach = static_cast<uint32_t>(std::ceil(subsurface::flat_reach_d * 3.67 / 3.5 / 0.5 / 8));
+  const auto reach = static_cast<uint32_t>(std::ceil(subsurface::uniform_reach_d * 3.67 / 3.5 / 0.5 / 8));
   EXPECT_EQ(choice.copied_tiles, 1u);
   EXPECT_EQ(choice.scattering_tiles, (reach + 1) * (reach + 1) - 1); // Its light is not tested.
 }
@@ -259,7 +259,7 @@ TEST_F(Skip, BoundsCanCutTiles) {
 TEST_F(Skip, ToolsGetTheClassOfEachTile) {
   GraphOptions options;
   options.text = read_text("configs/graphs/skin.json");
-  options.overlays = {read_text("configs/overlays/skips.json")};
+  options.overlays = {read_text("configs/overlays/debug_tile_class.json")};
   graph = make_graph(options);
   ASSERT_NE(graph, nullptr);
   make_images(graph);
@@ -267,7 +267,7 @@ TEST_F(Skip, ToolsGetTheClassOfEachTile) {
   fill("lighting", [](uint32_t, uint32_t) { return 0.5f; });
   const demo::ReportedFrame choice = run_frame();
   EXPECT_EQ(choice.uniform_tiles, 32u);
-  const auto shown = texels("skips");
+  const auto shown = texels("tile_class");
   for (uint32_t y = 0; y < 64; ++y)
     for (uint32_t x = 0; x < 64; ++x) {
       ASSERT_EQ(shown[4 * (64 * y + x)], x < 32 ? 3.0f : 0.0f) << x << ", " << y; // Flat light.

@@ -135,8 +135,9 @@ TEST_F(Compare, SummarisesAFolderAndDescribesTheMap) {
   EXPECT_NEAR(answer["all"]["rmse"], 0.2 / std::sqrt(1024.0), 1e-6);
   EXPECT_EQ(answer["all"]["pixels"], 1024);
   EXPECT_THAT(run({"compare", path("a"), path("b")}).out, HasSubstr("\nall "));
-  const Outcome drawn = run({"compare", path("a/one.png"), path("b/one.png"), "--heat", path("heat.png")});
-  EXPECT_THAT(drawn.out, ::testing::AllOf(HasSubstr(path("heat.png")), HasSubstr("1e-4")));
+  const Outcome with_heat_map =
+      run({"compare", path("a/one.png"), path("b/one.png"), "--heat", path("heat.png")});
+  EXPECT_THAT(with_heat_map.out, ::testing::AllOf(HasSubstr(path("heat.png")), HasSubstr("1e-4")));
 }
 
 TEST_F(Compare, RefusesIncomparablePictures) {

@@ -58,7 +58,7 @@ TEST_F(Render, NoValidationMessages) {
 
 TEST_F(Render, DebugPicturesShowSkippedTiles) {
   for (const char* graph : {burley, "configs/graphs/skin.json"}) {
-    const Outcome outcome = render(bust, graph, {"--frames", "1", "--subset", "0", "--debug", "skips"});
+    const Outcome outcome = render(bust, graph, {"--frames", "1", "--subset", "0", "--debug", "tile_class"});
     ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
     EXPECT_THAT(files("out"), Contains("debug_0000.png")) << graph;
   }
@@ -69,18 +69,18 @@ TEST_F(Render, DebugSamples_NotExported_IsRefused) {
   EXPECT_EQ(outcome.exit_code, 2);
   EXPECT_THAT(outcome.err, HasSubstr("afis_guided.json, sap_blend.json and sap_residual.json do"));
   for (const char* graph : {"afis_guided", "sap_blend", "sap_residual"}) {
-    const Outcome drawn = render(bust, dermis::shipped::graph_file(graph),
-                                 {"--frames", "1", "--subset", "0", "--debug", "samples"});
-    EXPECT_EQ(drawn.exit_code, 0) << drawn.err;
+    const Outcome rendered = render(bust, dermis::shipped::graph_file(graph),
+                                    {"--frames", "1", "--subset", "0", "--debug", "samples"});
+    EXPECT_EQ(rendered.exit_code, 0) << rendered.err;
     EXPECT_THAT(files("out"), Contains("debug_0000.png")) << graph;
     std::filesystem::remove_all(path("out"));
   }
 }
 
 TEST_F(Render, SkipOverlayIsAppliedOnce) {
-  const Outcome outcome = render(
-      bust, burley,
-      {"--frames", "1", "--subset", "0", "--debug", "skips", "--overlay", "configs/overlays/skips.json"});
+  const Outcome outcome = render(bust, burley,
+                                 {"--frames", "1", "--subset", "0", "--debug", "tile_class", "--overlay",
+                                  "configs/overlays/debug_tile_class.json"});
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
 }
 
@@ -94,7 +94,7 @@ TEST_F(Render, SingleFrame_NoExpectedErrorWithoutBudget) {
 TEST_F(Render, UnknownDebugPicture_IsAUsageError) {
   const Outcome outcome = render(bust, burley, {"--debug", "colours"});
   EXPECT_EQ(outcome.exit_code, 2);
-  EXPECT_THAT(outcome.err, AllOf(HasSubstr("--debug"), HasSubstr("skips")));
+  EXPECT_THAT(outcome.err, AllOf(HasSubstr("--debug"), HasSubstr("tile_class")));
   EXPECT_THAT(files("out"), IsEmpty());
 }
 

@@ -122,6 +122,20 @@ TEST_F(Upgrade, Pass_Upgrade_RenamesTypePortsAndSettings) {
     { "pass": "mend2", "type": "mine.mend", "set": { "share": 1 } } ], "exports": ["doubts"] })");
 }
 
+TEST_F(Upgrade, Ports_Upgrade_RenamedOnlyInTheirTypes) {
+  const std::string graph = write("ports.json", R"({ "dermis": 1, "name": "g", "passes": [
+  { "pass": "b", "kind": "subsurface.brightness", "write": { "brightness": "brightness" } },
+  { "pass": "r", "kind": "subsurface.residual", "read": { "brightness": "brightness" } },
+  { "pass": "s", "kind": "subsurface.skips", "write": { "skips": "skips" } },
+  { "pass": "m", "kind": "mine.x", "write": { "brightness": "skips" } } ], "exports": ["skips"] })");
+  EXPECT_EQ(run({"upgrade", graph}).exit_code, 0);
+  EXPECT_EQ(text_of(graph), R"({ "dermis": 2, "name": "g", "passes": [
+  { "pass": "b", "type": "subsurface.global_light_change", "write": { "luminance_change": "brightness" } },
+  { "pass": "r", "type": "subsurface.residual", "read": { "luminance_change": "brightness" } },
+  { "pass": "s", "type": "subsurface.debug_tile_class", "write": { "tile_class": "skips" } },
+  { "pass": "m", "type": "mine.x", "write": { "brightness": "skips" } } ], "exports": ["skips"] })");
+}
+
 TEST_F(Upgrade, Overlay_Upgrade_RenamesTargetsAndPaths) {
   const std::string overlay = write("overlay.json", R"({ "dermis_overlay": 1, "edits": [
   { "insert_before": "hand_out", "passes": [ { "pass": "p", "kind": "subsurface.copy" } ] },

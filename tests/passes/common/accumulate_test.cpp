@@ -38,46 +38,46 @@ TEST(Accumulate, HistoryNearItsNeighboursIsUnchanged) {
 
 TEST(Accumulate, HistoryFarFromNeighbours_IsClippedAndCountsLess) {
   const AccumulatedLight far{{3.0, 2.0, 1.0}, 8};
-  const AccumulatedLight drawn = clip_to_neighbours(far, {1, 1, 1}, {0.25, 1, 1}, 2);
+  const AccumulatedLight clipped = clip_to_neighbours(far, {1, 1, 1}, {0.25, 1, 1}, 2);
   // Red is 2 from the mean with a limit of 0.5, so all channels keep a quarter of the difference.
-  EXPECT_NEAR(drawn.light[0], 1.5, 1e-15);
-  EXPECT_NEAR(drawn.light[1], 1.25, 1e-15);
-  EXPECT_NEAR(drawn.light[2], 1.0, 1e-15);
-  EXPECT_NEAR(drawn.count, 2, 1e-15);
+  EXPECT_NEAR(clipped.light[0], 1.5, 1e-15);
+  EXPECT_NEAR(clipped.light[1], 1.25, 1e-15);
+  EXPECT_NEAR(clipped.light[2], 1.0, 1e-15);
+  EXPECT_NEAR(clipped.count, 2, 1e-15);
   // If all neighbours are equal, only their value is accepted.
   const AccumulatedLight flat = clip_to_neighbours(far, {1, 1, 1}, {0, 0, 0}, 2);
   EXPECT_EQ(flat.light, (std::array<double, 3>{1, 1, 1}));
   EXPECT_EQ(flat.count, 0);
 }
 
-constexpr std::array<double, 3> near_light = {0.2, 0.5, 0.0}, brightness = {0.4, 0.6, 0.3};
+constexpr std::array<double, 3> near_light = {0.2, 0.5, 0.0}, local_mean = {0.4, 0.6, 0.3};
 
 TEST(Accumulate, RemaindersReproduceTheLight) {
   const std::array<double, 3> light = {0.25, 0.4, 0.1};
-  const std::array<double, 3> remainder = remainder_of(light, near_light, brightness);
+  const std::array<double, 3> remainder = remainder_of(light, near_light, local_mean);
   EXPECT_NEAR(remainder[1], (0.4 - 0.5) / 0.6, 1e-15); // Signed.
-  const std::array<double, 3> found = light_of_remainder(remainder, near_light, brightness);
+  const std::array<double, 3> found = light_of_remainder(remainder, near_light, local_mean);
   for (size_t c = 0; c < 3; ++c)
     EXPECT_NEAR(found[c], light[c], 1e-15);
 }
 
 TEST(Accumulate, RemainderIsIndependentOfTheBrightness) {
   const std::array<double, 3> light = {0.25, 0.4, 0.1};
-  const std::array<double, 3> dim = remainder_of(light, near_light, brightness);
+  const std::array<double, 3> dim = remainder_of(light, near_light, local_mean);
   for (const double factor : {1e-4, 0.5, 60.0}) {
     const auto scaled = [&](std::array<double, 3> values) {
       for (double& value : values)
         value *= factor;
       return values;
     };
-    const std::array<double, 3> bright = remainder_of(scaled(light), scaled(near_light), scaled(brightness));
+    const std::array<double, 3> bright = remainder_of(scaled(light), scaled(near_light), scaled(local_mean));
     for (size_t c = 0; c < 3; ++c)
       EXPECT_NEAR(bright[c], dim[c], 1e-12) << factor;
   }
 }
 
 TEST(Accumulate, LightOfARemainderIsNeverBelowZero) {
-  EXPECT_EQ(light_of_remainder({-4, -4, -4}, near_light, brightness), (std::array<double, 3>{0, 0, 0}));
+  EXPECT_EQ(light_of_remainder({-4, -4, -4}, near_light, local_mean), (std::array<double, 3>{0, 0, 0}));
 }
 
 TEST(Accumulate, ExcessiveRemaindersAreDiscarded) {

@@ -84,9 +84,9 @@ TEST_P(RadialTable, WeightsByTheTableDensityAreUnbiased) {
   double total = 0, square = 0, minimum = 1e9, maximum = 0;
   constexpr int n = 400000;
   for (int i = 0; i < n; ++i) {
-    const RadialSample drawn = radial_sample(rows, static_cast<float>((i + 0.5) / n));
-    const double r = static_cast<double>(drawn.r);
-    const double weight = shape_pdf(shape[0], r) / static_cast<double>(drawn.density);
+    const RadialSample radial = radial_sample(rows, static_cast<float>((i + 0.5) / n));
+    const double r = static_cast<double>(radial.r);
+    const double weight = shape_pdf(shape[0], r) / static_cast<double>(radial.density);
     total += weight / n;
     square += weight * r * r / n;
     if (i > 0) minimum = std::min(minimum, weight), maximum = std::max(maximum, weight);

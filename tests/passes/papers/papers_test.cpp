@@ -56,7 +56,7 @@ TEST(SampleRing, ShortForm_MatchesInFirstFrameAndMean) {
     constexpr int settle = 90, frames = 900;
     for (int i = 0; i < settle + frames; ++i) {
       const double by_ring = ring.next(one_sample / ring.mean(), target);
-      const double by_mean = wanted_samples(one_sample / moving, moving, settings);
+      const double by_mean = required_samples(one_sample / moving, moving, settings);
       moving += eta * (by_mean - moving);
       if (i == 0) {
         EXPECT_NEAR(by_ring, by_mean, 1e-9) << first;

@@ -122,11 +122,11 @@ TEST(Inversion, RecoversThePoint) {
   for (int i = 0; i < 60000; ++i) {
     const Domain& domain = pixels[static_cast<size_t>(i) % pixels.size()].domain;
     if (domain.medium == 0) continue;
-    const ProbeNumbers drawn = draw_numbers(domain.d, four_units(random));
+    const ProbeNumbers probe_numbers = draw_numbers(domain.d, four_units(random));
     ProbeHits hits;
-    scene.trace_probe(scene.of, probe_of(domain, drawn), domain.medium, hits);
+    scene.trace_probe(scene.of, probe_of(domain, probe_numbers), domain.medium, hits);
     if (hits.count == 0) continue;
-    const ProbeHit& hit = hits.hit[picked_hit(drawn.pick, hits.count)];
+    const ProbeHit& hit = hits.hit[picked_hit(probe_numbers.pick, hits.count)];
     const SurfacePoint x2 = scene.surface_at(scene.of, hit.instance, hit.primitive, hit.barycentrics);
     ProbeNumbers again;
     ASSERT_TRUE(invert_point(domain, x2.position, x2.normal, random_unit(random), again));
@@ -162,9 +162,9 @@ TEST(Inversion, FindsUniformNumbers) {
   std::vector<double> techniques, radii, angles, picks;
   Random random{13, 0, 0};
   while (techniques.size() < 100000) {
-    const ProbeNumbers drawn = draw_numbers(domain.d, four_units(random));
+    const ProbeNumbers probe_numbers = draw_numbers(domain.d, four_units(random));
     ProbeHits hits;
-    scene.trace_probe(scene.of, probe_of(domain, drawn), 1, hits);
+    scene.trace_probe(scene.of, probe_of(domain, probe_numbers), 1, hits);
     if (hits.count == 0) continue;
     ASSERT_EQ(hits.count, 1u);
     const ProbeHit& hit = hits.hit[0];

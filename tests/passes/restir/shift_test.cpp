@@ -195,10 +195,10 @@ TEST(Jacobian, Reconnection_MatchesFiniteDifferences) {
 std::vector<Reservoir> samples_of(const Scene& scene, const Domain& domain, Random& random) {
   std::vector<Reservoir> samples;
   for (int i = 0; i < 4; ++i) {
-    const Reservoir drawn = draw_initial(scene, domain, random);
-    if (!has_sample(drawn)) continue;
-    samples.push_back(drawn);
-    Reservoir forgotten = drawn;
+    const Reservoir candidate = draw_initial(scene, domain, random);
+    if (!has_sample(candidate)) continue;
+    samples.push_back(candidate);
+    Reservoir forgotten = candidate;
     forgotten.hits = 0;
     samples.push_back(forgotten);
   }

@@ -148,7 +148,7 @@ TEST_F(Unbiased, InTheFrameAfterLightsMoved) {
 // bias and bounds it.
 TEST_F(Unbiased, SampledIndices_BiasIsSmall) {
   SequenceSettings settings = settings_of(Shift::sequential, Reuse::spatiotemporal);
-  settings.index = Index::drawn;
+  settings.index = Index::sampled;
   const std::vector<Mean> found = restarted(scene, settings, regions);
   for (size_t r = 0; r < found.size(); ++r)
     std::printf("region %zu: %+.2f %%, 1 sigma is %.2f %%\n", r,

@@ -85,19 +85,19 @@ TEST_F(GuidanceKernel, SampleNumbersEqualTheReference) {
   for (size_t i = 0; i < requested.size(); ++i) {
     const Case& one = requested[i];
     const GuidanceSettings settings = one.settings();
-    const double wanted = wanted_samples(one.variance, one.mean_count, settings);
+    const double required = required_samples(one.variance, one.mean_count, settings);
     // Two quotients and seven sums and products.
     const double ratio = double(one.variance) / settings.sigma2_target;
     const double magnitude =
         settings.kappa * (ratio + 1) * one.mean_count * (2 / settings.eta + 2) + ratio * one.mean_count;
     const double bound = (2 * 2.5 + 7) * ulp * magnitude;
-    EXPECT_NEAR(at(i, 0, 0), wanted, bound) << i;
+    EXPECT_NEAR(at(i, 0, 0), required, bound) << i;
     EXPECT_EQ(at(i, 0, 2), clamped_samples(one.requested, settings)) << i << ": " << one.requested;
     // Both results are equal unless the bound contains a value halfway between two integers.
-    const int low = clamped_samples(wanted - bound, settings),
-              high = clamped_samples(wanted + bound, settings);
+    const int low = clamped_samples(required - bound, settings),
+              high = clamped_samples(required + bound, settings);
     EXPECT_THAT(at(i, 0, 1), ::testing::AllOf(::testing::Ge(low), ::testing::Le(high)))
-        << i << ": " << wanted;
+        << i << ": " << required;
     whole += low == high ? 1 : 0;
   }
   EXPECT_GT(whole, cases * 95 / 100) << "number of compared decisions";

@@ -1,6 +1,6 @@
 #version 460
 // Evaluates the functions of guidance.glsl for case x, one row per question:
-//   row 0  wanted_samples, clamped_samples of the result, clamped_samples of the request,
+//   row 0  required_samples, clamped_samples of the result, clamped_samples of the request,
 // control_weight
 //   row 1  add_value: mean, variance
 //   row 2  add_values: means of f and g, covariance, variance of g
@@ -23,8 +23,8 @@ void main() {
   moving_covariance moments = moving_covariance(kept.x, kept.y, kept.z, kept.w);
   vec4 answer = vec4(0.0);
   if (pixel.y == 0) {
-    float wanted = wanted_samples(requested.z, requested.w, settings);
-    answer = vec4(wanted, clamped_samples(wanted, settings), clamped_samples(found.w, settings),
+    float required = required_samples(requested.z, requested.w, settings);
+    answer = vec4(required, clamped_samples(required, settings), clamped_samples(found.w, settings),
                   control_weight(moments, settings.eps_alpha));
   }
   if (pixel.y == 1) {

@@ -20,8 +20,8 @@ void main() {
   if (pixel.y % 3 == 1)
     result = profile_survival(profile, r);
   if (pixel.y % 3 == 2) {
-    radial_sample drawn = profile_sample(profile, exp2(-float(pixel.x) / 16.0));
-    result.xy = vec2(drawn.r, drawn.density);
+    radial_sample radial = profile_sample(profile, exp2(-float(pixel.x) / 16.0));
+    result.xy = vec2(radial.r, radial.density);
   }
   imageStore(target, pixel, vec4(result, 0.0));
 }

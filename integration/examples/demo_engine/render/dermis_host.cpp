@@ -186,7 +186,8 @@ Result<std::vector<std::string>> find_unbound(const DermisHost& host, const Derm
   for (const dermis_slot& slot : host.slots) {
     if (rays && is_rays(slot)) continue;
     const auto target = target_of(slot.name);
-    if (target && (target != Target::sampling || desc.sampling) && (target != Target::skips || desc.skips))
+    if (target && (target != Target::sampling || desc.sampling) &&
+        (target != Target::tile_class || desc.tile_class))
       continue;
     if (slot.required)
       return Error{
@@ -215,7 +216,7 @@ Result<DermisHandle> create_dermis_host(VulkanHost& vulkan, const DermisDesc& de
     return ready.error();
   host->context = vulkan.engine_context;
   host->recorded = desc.hooks.recorded;
-  const bool whole = desc.overlays.empty() && !desc.include && !desc.sampling && !desc.skips;
+  const bool whole = desc.overlays.empty() && !desc.include && !desc.sampling && !desc.tile_class;
   if (!whole) known = nullptr;
   std::vector<std::string> unbound;
   if (known && known->graph == sources->graph) {
@@ -291,7 +292,7 @@ bool exports_sampling(const DermisHost& host) {
 }
 
 bool exports_tile_class(const DermisHost& host) {
-  return writes(host, Target::skips);
+  return writes(host, Target::tile_class);
 }
 
 Scattering scattering_of(const DermisHost& host) {

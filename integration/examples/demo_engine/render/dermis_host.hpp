@@ -22,8 +22,8 @@ struct DermisDesc {
   double budget_ms = 0;
   bool deterministic = false;
   NamedText calibration = {};
-  bool sampling = false; // binds `sampling`, which adds a write to the graph
-  bool skips = false;    // binds `skips`
+  bool sampling = false;   // binds `sampling`, which adds a write to the graph
+  bool tile_class = false; // binds `tile_class`
   ContextHooks hooks = {};
 };
 

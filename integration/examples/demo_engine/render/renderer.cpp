@@ -33,7 +33,7 @@ constexpr std::array<TargetInfo, target_count> target_infos = {{
     {"thickness", VK_FORMAT_R32_SFLOAT, stored},
     {"back_lighting", VK_FORMAT_R16G16B16A16_SFLOAT, stored},
     {"sampling", VK_FORMAT_R16G16B16A16_SFLOAT, stored},
-    {"skips", VK_FORMAT_R16G16B16A16_SFLOAT, stored},
+    {"tile_class", VK_FORMAT_R16G16B16A16_SFLOAT, stored},
 }};
 
 constexpr VkDescriptorType uniform = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;

@@ -31,7 +31,7 @@ enum class Target : uint8_t {
   thickness,
   back_lighting, // irradiance of this light on the far side
   sampling,      // the graph's `sampling` output, if requested
-  skips,         // the graph's `skips` output, if requested
+  tile_class,    // the graph's `tile_class` output, if requested
 };
 inline constexpr size_t target_count = 15;
 

@@ -91,11 +91,12 @@ void add_picture_verbs(CLI::App& app, Invocation& invocation) {
                    "Shape of the kernels: for GPUs, for drivers on the CPU, or by the device's type [device]")
             ->type_name("SHAPE");
         static const std::map<std::string, RenderOptions::Debug> views{
-            {"samples", RenderOptions::Debug::samples}, {"skips", RenderOptions::Debug::skips}};
-        add_choice(verb, "--debug", options.debug, views,
-                   "Also write debug_NNNN.png. samples: green pixels were sampled, red pixels have no "
-                   "history. skips: green tiles scatter, blue tiles scatter below a pixel, yellow tiles have "
-                   "uniform light, grey tiles have no subsurface")
+            {"samples", RenderOptions::Debug::samples}, {"tile_class", RenderOptions::Debug::tile_class}};
+        add_choice(
+            verb, "--debug", options.debug, views,
+            "Also write debug_NNNN.png. samples: green pixels were sampled, red pixels have no "
+            "history. tile_class: green tiles scatter, blue tiles scatter below a pixel, yellow tiles have "
+            "uniform light, grey tiles have no subsurface")
             ->type_name("VIEW");
         verb.add_option("--subset", options.subset,
                         "Pixels of the last frame compared with the reference; 0: none [4096]")

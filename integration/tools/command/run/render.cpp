@@ -104,7 +104,7 @@ std::vector<uint8_t> skips_picture(const demo::FrameOutputs& frame) {
   constexpr float minimum = 64; // of 255, keeps dark tiles distinguishable
   std::vector<uint8_t> rgb(frame.display.size());
   for (size_t i = 0; i < rgb.size() / 3; ++i) {
-    const auto tile = std::min(static_cast<size_t>(frame.skips.texels[2 * i]), tints.size() - 1);
+    const auto tile = std::min(static_cast<size_t>(frame.tile_class.texels[2 * i]), tints.size() - 1);
     const float floor = tile == 0 ? 0 : minimum;
     for (size_t c = 0; c < 3; ++c)
       rgb[3 * i + c] = static_cast<uint8_t>(tints[tile][c] *
@@ -127,7 +127,7 @@ demo::Result<> write_pictures(RenderRun& run, const demo::FrameOutputs& frame) {
   if (!frame.sampling.texels.empty() && !write_png(name("debug", "png"), frame.color.width,
                                                    frame.color.height, sampling_picture(frame), problem))
     return cannot_write(problem);
-  if (!frame.skips.texels.empty() &&
+  if (!frame.tile_class.texels.empty() &&
       !write_png(name("debug", "png"), frame.color.width, frame.color.height, skips_picture(frame), problem))
     return cannot_write(problem);
   return demo::success();
@@ -265,13 +265,13 @@ ExitCode render(const Session& session, const RenderOptions& options) {
   engine.taa = options.taa;
   engine.kernels = options.kernels;
   engine.sampling = options.debug == RenderOptions::Debug::samples;
-  engine.skips = options.debug == RenderOptions::Debug::skips;
+  engine.tile_class = options.debug == RenderOptions::Debug::tile_class;
   GraphInputs inputs = options.inputs;
-  constexpr const char* skips = "skips.json"; // not added again if already given
-  if (engine.skips &&
+  constexpr const char* overlay = "debug_tile_class.json"; // not added again if already given
+  if (engine.tile_class &&
       std::none_of(inputs.overlays.begin(), inputs.overlays.end(),
-                   [&](const std::string& one) { return std::filesystem::path(one).filename() == skips; }))
-    inputs.overlays.push_back(shipped(std::string("configs/overlays/") + skips));
+                   [&](const std::string& one) { return std::filesystem::path(one).filename() == overlay; }))
+    inputs.overlays.push_back(shipped(std::string("configs/overlays/") + overlay));
   if (!options.calibration.empty()) {
     auto text = demo::read_text_file(options.calibration);
     if (!text) return fail(session, static_cast<ExitCode>(text.error().kind), text.error().text);

@@ -146,18 +146,18 @@ TEST_F(WithRayQueries, TransmissionMatchesTheReference) {
     std::vector<double> means;
     for (const FrameOutputs& frame : rays.frames)
       means.push_back(mean_over(frame.scattered));
-    const restir::testing::Mean drawn = restir::testing::mean_of(means);
+    const restir::testing::Mean measured = restir::testing::mean_of(means);
     const restir::testing::Mean expected = restir::testing::mean_of(reference[r]);
     const double flat = mean_over(pyramid.frames[0].scattered);
-    RecordProperty("region_" + std::to_string(r), std::to_string(drawn.mean) + " of " +
+    RecordProperty("region_" + std::to_string(r), std::to_string(measured.mean) + " of " +
                                                       std::to_string(expected.mean) + ", sap " +
                                                       std::to_string(flat));
     // Three standard errors of both, and 2 %: the reference's facets are shaded flat, the graph's
     // smoothly.
-    const double noise = 3 * std::hypot(drawn.sigma, expected.sigma);
-    EXPECT_NEAR(drawn.mean, expected.mean, noise + 0.02 * expected.mean)
+    const double noise = 3 * std::hypot(measured.sigma, expected.sigma);
+    EXPECT_NEAR(measured.mean, expected.mean, noise + 0.02 * expected.mean)
         << "region " << r << ", sap " << flat;
-    EXPECT_TRUE(r != 0 || flat < 0.5 * drawn.mean) << "screen space has no light from behind the sheet";
+    EXPECT_TRUE(r != 0 || flat < 0.5 * measured.mean) << "screen space has no light from behind the sheet";
   }
 }
 

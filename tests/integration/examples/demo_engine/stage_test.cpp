@@ -52,7 +52,7 @@ void expect_same(const std::vector<FrameOutputs>& a, const std::vector<FrameOutp
   }
 }
 
-size_t drawn(const std::vector<FrameOutputs>& frames) {
+size_t rendered_frames(const std::vector<FrameOutputs>& frames) {
   return static_cast<size_t>(std::count_if(
       frames.begin(), frames.end(), [](const FrameOutputs& frame) { return !frame.host_times.empty(); }));
 }
@@ -63,9 +63,9 @@ TEST_F(KeptStage, ReproducesFramesBitForBit) {
   const auto alone = rendered(options).frames;
   const auto first = rendered(options, stage.get()).frames;
   const auto second = rendered(options, stage.get()).frames;
-  EXPECT_EQ(drawn(alone), 5u);
-  EXPECT_EQ(drawn(first), 5u);
-  EXPECT_EQ(drawn(second), 0u);
+  EXPECT_EQ(rendered_frames(alone), 5u);
+  EXPECT_EQ(rendered_frames(first), 5u);
+  EXPECT_EQ(rendered_frames(second), 0u);
   expect_same(alone, first);
   expect_same(alone, second);
 }
@@ -85,7 +85,7 @@ TEST_F(KeptStage, OtherPictureOrScene_IsRebuilt) {
   expect_same(rendered(options).frames, rendered(options, stage.get()).frames);
   options.scene = moving("sap", "0.4").scene;
   const auto frames = rendered(options, stage.get()).frames;
-  EXPECT_EQ(drawn(frames), 5u);
+  EXPECT_EQ(rendered_frames(frames), 5u);
   expect_same(rendered(options).frames, frames);
 }
 

@@ -13,7 +13,7 @@ namespace {
 struct Pairs {
   std::vector<double> f, g;
 };
-Pairs drawn(size_t count) {
+Pairs random_pairs(size_t count) {
   std::mt19937_64 random(17);
   std::normal_distribution<double> normal;
   Pairs pairs;
@@ -42,7 +42,7 @@ double weighted_covariance(const Pairs& pairs, size_t count, double eta) {
 }
 
 TEST(MovingMoments, CovarianceMatchesTheWeightedOne) {
-  const Pairs pairs = drawn(600);
+  const Pairs pairs = random_pairs(600);
   for (const double eta : {0.5, 0.2, 0.05, 0.005, 1e-6}) {
     MovingCovariance moments;
     for (size_t i = 0; i < pairs.f.size(); ++i) {
@@ -55,7 +55,7 @@ TEST(MovingMoments, CovarianceMatchesTheWeightedOne) {
 }
 
 TEST(MovingMoments, OtherFormDiffersByAConstantFactor) {
-  const Pairs pairs = drawn(400);
+  const Pairs pairs = random_pairs(400);
   for (const double eta : {0.5, 0.2, 0.05}) {
     MovingCovariance emc;
     WeightedCovariance ewma;
@@ -98,14 +98,14 @@ TEST(MovingMoments, ConstantHasNoVariance) {
 TEST(Guidance, VarianceOnTarget_KeepsTheSampleCount) {
   for (const double count : {8.0, 17.0, 64.0})
     for (const double kappa : {0.0, 0.2, 1.0})
-      EXPECT_NEAR(wanted_samples(1e-4, count, {.kappa = kappa}), count, 1e-9);
+      EXPECT_NEAR(required_samples(1e-4, count, {.kappa = kappa}), count, 1e-9);
 }
 
 TEST(Guidance, KappaOne_IsTheFormOfTheSlides) {
   const GuidanceSettings settings{.kappa = 1};
   for (const double variance : {2e-5, 1e-4, 3e-4}) {
     const double slides = 20 * (1 + (variance / 1e-4 - 1) * (2 / settings.eta - 1));
-    EXPECT_NEAR(wanted_samples(variance, 20, settings), slides, 1e-9);
+    EXPECT_NEAR(required_samples(variance, 20, settings), slides, 1e-9);
   }
 }
 

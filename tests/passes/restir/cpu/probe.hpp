@@ -17,7 +17,7 @@ inline constexpr std::array<double, 3> probe_axis_fraction = {0.5, 0.25, 0.25};
 // Maximum number of surfaces along one probe; more are ignored.
 inline constexpr uint32_t max_probe_hits = 16;
 // A hit count that was not traced: treated as equal to any count it is compared with
-// (Index::drawn).
+// (Index::sampled).
 inline constexpr uint32_t assumed_hits = 255;
 
 // The random numbers of one point x2, and the choices that follow from them.

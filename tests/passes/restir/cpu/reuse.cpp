@@ -39,27 +39,28 @@ Reservoir draw_initial(const Scene& scene, const Domain& domain, Random& random)
                pick = random_unit(random), which = random_unit(random), u = random_unit(random),
                v = random_unit(random);
   if (!(scattering_reach(domain.d) > 0) || scene.lights.empty()) return none;
-  Reservoir drawn = none;
-  drawn.numbers = draw_numbers(domain.d, {technique, radius, angle, pick});
+  Reservoir candidate = none;
+  candidate.numbers = draw_numbers(domain.d, {technique, radius, angle, pick});
   ProbeHits hits;
-  scene.trace_probe(scene.of, probe_of(domain, drawn.numbers), domain.medium, hits);
+  scene.trace_probe(scene.of, probe_of(domain, candidate.numbers), domain.medium, hits);
   if (hits.count == 0) return none;
   const ProbeHit& hit = hits.hit[picked_hit(pick, hits.count)];
   const SurfacePoint x2 = scene.surface_at(scene.of, hit.instance, hit.primitive, hit.barycentrics);
-  drawn.instance = hit.instance;
-  drawn.primitive = hit.primitive;
-  drawn.barycentrics = hit.barycentrics;
-  drawn.hits = hits.count;
-  drawn.density = probe_pdf(domain, x2.position, x2.normal);
-  drawn.light = pick_light(scene.lights, which);
-  drawn.place = light_place(u, v);
-  const Light& light = scene.lights[drawn.light];
-  drawn.irradiance = light_irradiance(light, drawn.place, x2.position, x2.normal, x2.shading);
-  drawn.weight = hits.count / (drawn.density * light_density(light));
-  const double target = luminance(scattered(domain, length(x2.position - domain.position), drawn.irradiance));
-  if (!(target > 0) || !scene.visible(scene.of, x2, light_target(light, drawn.place, x2.position)))
+  candidate.instance = hit.instance;
+  candidate.primitive = hit.primitive;
+  candidate.barycentrics = hit.barycentrics;
+  candidate.hits = hits.count;
+  candidate.density = probe_pdf(domain, x2.position, x2.normal);
+  candidate.light = pick_light(scene.lights, which);
+  candidate.place = light_place(u, v);
+  const Light& light = scene.lights[candidate.light];
+  candidate.irradiance = light_irradiance(light, candidate.place, x2.position, x2.normal, x2.shading);
+  candidate.weight = hits.count / (candidate.density * light_density(light));
+  const double target =
+      luminance(scattered(domain, length(x2.position - domain.position), candidate.irradiance));
+  if (!(target > 0) || !scene.visible(scene.of, x2, light_target(light, candidate.place, x2.position)))
     return none;
-  return sanitised(drawn);
+  return sanitised(candidate);
 }
 
 Reservoir merge_temporal(const Scene& scene, const ReuseSettings& settings, const Domain& domain,

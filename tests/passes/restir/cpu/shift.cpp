@@ -100,7 +100,7 @@ void prepare(const Scene& scene, Shift shift, Index index, const Domain& domain,
   if (!replays(shift, domain, x2) || !invert_point(domain, x2.position, x2.normal, technique, path.numbers))
     return;
   path.density = probe_pdf(domain, x2.position, x2.normal);
-  if (index == Index::drawn) {
+  if (index == Index::sampled) {
     path.numbers.pick = within;
     path.hits = assumed_hits;
     return;

@@ -36,7 +36,7 @@ Vector3 contribution_of(const Scene& scene, const Domain& domain, const Reservoi
 // Whether inversion traces the probe to find the hit's index, or samples the index and assumes
 // equal hit counts of both probes. Sampling saves a probe, but biases the sequential shift
 // (supplement, section 6).
-enum class Index : uint32_t { traced, drawn };
+enum class Index : uint32_t { traced, sampled };
 
 // Finds the random numbers of a sample without numbers (it was reconnected before) that `shift`
 // will replay, by probabilistic inversion in its own pixel. Called once per sample and pass: later
