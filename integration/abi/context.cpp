@@ -129,7 +129,7 @@ dermis_result read_allocators(const dermis_context_desc& desc, const Log& log, H
     if (!serves_host_allocator())
       return fail(
           log, DERMIS_ERROR_UNSUPPORTED, DiagnosticId::device_unsupported,
-          "{}: desc.allocator is served by the shared library alone; here operator new is the program's",
+          "{}: desc.allocator works only in the shared library; here operator new belongs to the program",
           function);
     host = {given.allocate, given.free, given.user};
   }

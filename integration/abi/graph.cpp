@@ -34,7 +34,7 @@ void report_lost_histories(const dermis_view_t& view, const CompiledGraph& compi
         compiled_graph.graph.resources[plan.resources[plan.histories[h].resource].declared.value];
     diagnostics.add(
         DiagnosticId::history_restarts, declared.where,
-        fmt::format("history '{}' starts anew: {}", declared.name, vulkan::history_reason_text(reason)));
+        fmt::format("history '{}' restarts: {}", declared.name, vulkan::history_reason_text(reason)));
   }
 }
 

@@ -33,15 +33,15 @@ dermis_result discard(dermis_view_t& view, const char* function, uint64_t frame_
   const Log& log = view.context->log;
   dermis_view_t::Recorded& recorded = view.recorded;
   if (!recorded.known || frame_index != view.last_frame)
-    return bad_argument(log, "{}: frame_index is {}, expected that of the frame recorded last, {}{}",
-                        function, frame_index, view.last_frame,
-                        recorded.known || view.last_frame == 0 ? ""
-                                                               : ", which can be taken back once and alone");
+    return bad_argument(
+        log, "{}: frame_index is {}, expected that of the frame recorded last, {}{}", function, frame_index,
+        view.last_frame,
+        recorded.known || view.last_frame == 0 ? "" : "; only that frame can be discarded, and only once");
   if (recorded.took_over && view.next)
     return bad_argument(log,
                         "{}: the graph was reloaded or resized since frame {}, which was the first of the "
                         "graph before that: it "
-                        "cannot be taken back any more",
+                        "can no longer be discarded",
                         function, frame_index);
   CompiledGraph& compiled_graph = *view.running;
   if (!compiled_graph.plans[recorded.plan].executor->discard_frame(frame_index))

@@ -135,7 +135,7 @@ static uint32_t capture_texel_bytes(VkFormat format) {
 }
 
 /* Copies a 2-D image in layout GENERAL, created with TRANSFER_SRC, to host memory and writes it to
- * `path`. Submits and waits; records `host->commands` anew. `decode` (may be NULL) maps each value,
+ * `path`. Submits and waits; records `host->commands` again. `decode` (may be NULL) maps each value,
  * for example depth values to metres. `channels`: "BGR", or "Y" for the first channel. */
 static void capture_image(headless* host, VkImage image, VkFormat format, uint32_t width, uint32_t height,
                           const char* channels, float (*decode)(float), const char* path) {

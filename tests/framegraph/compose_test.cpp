@@ -333,9 +333,9 @@ TEST(Include, DepthAndNumberOfFilesAreLimited) {
 TEST(Include, FragmentCanBeCheckedOnItsOwn) {
   Diagnostics diagnostics;
   auto document = parse_document("tiles.json", tiles_fragment, diagnostics);
-  const auto alone = compose_fragment(std::move(*document), {}, diagnostics);
-  ASSERT_TRUE(alone) << all_messages(diagnostics);
-  EXPECT_TRUE(read_graph(alone->document, pass_types(), diagnostics)) << all_messages(diagnostics);
+  const auto as_graph = compose_fragment(std::move(*document), {}, diagnostics);
+  ASSERT_TRUE(as_graph) << all_messages(diagnostics);
+  EXPECT_TRUE(read_graph(as_graph->document, pass_types(), diagnostics)) << all_messages(diagnostics);
 }
 
 } // namespace

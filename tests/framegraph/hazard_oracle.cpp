@@ -331,7 +331,7 @@ struct Oracle {
     return "";
   }
 
-  std::string alone(size_t at) const {
+  std::string check_operation(size_t at) const {
     const Operation& o = all[at];
     if (o.what == Operation::What::wait) return "";
     if (const std::string wrong = on_queue(at); !wrong.empty()) return wrong;
@@ -410,7 +410,7 @@ std::string first_hazard(const Plan& plan) {
   for (size_t b = 0; b < oracle.all.size() && oracle.all[b].frame <= frames; ++b) {
     const Operation& o = oracle.all[b];
     if (o.frame == frames && o.what != Operation::What::frame_begins) break;
-    std::string wrong = oracle.alone(b);
+    std::string wrong = oracle.check_operation(b);
     if (oracle.acts(o)) {
       const std::vector<size_t>& earlier = oracle.writes(o) ? acting : writing;
       for (size_t i = 0; i < earlier.size() && wrong.empty(); ++i)

@@ -34,14 +34,14 @@ Plane island() {
 
 // The same island among empty tiles, aligned to the grids of all levels as in its own picture (256
 // px).
-Plane among_empty_tiles(const Plane& alone) {
-  Plane plane = alone;
+Plane among_empty_tiles(const Plane& island_plane) {
+  Plane plane = island_plane;
   plane.width = 512;
   plane.height = 512;
-  plane.light = [alone](double x, double y) { return alone.light(x - 256, y - 256); };
-  plane.profile = [alone](int x, int y) {
+  plane.light = [island_plane](double x, double y) { return island_plane.light(x - 256, y - 256); };
+  plane.profile = [island_plane](int x, int y) {
     const bool inside = x >= 256 && x < 416 && y >= 256 && y < 352;
-    return inside ? alone.profile(x - 256, y - 256) : uint8_t{0};
+    return inside ? island_plane.profile(x - 256, y - 256) : uint8_t{0};
   };
   return plane;
 }
@@ -50,15 +50,15 @@ TEST_P(Culling, StaleContentsOfEmptyTiles_ChangeNoBit) {
   if (std::string_view(GetParam()) == "base") DERMIS_FULL_TESTS_ONLY();
   const char* const graph = std::string_view(GetParam()) == "half" ? "skin" : "sap";
   const Settings settings = {{"variant", std::string("\"") + GetParam() + "\""}};
-  const Plane alone = island();
-  const Picture expected = run(graph, alone, settings);
-  Plane plane = among_empty_tiles(alone);
+  const Plane island_plane = island();
+  const Picture expected = run(graph, island_plane, settings);
+  Plane plane = among_empty_tiles(island_plane);
   plane.earlier_profile = [](int x, int) { return static_cast<uint8_t>(x < 300 ? 1 : 2); };
   Picture picture;
   run_frames(graph, plane, settings, 2, [&](const Picture& each) { picture = each; });
   ASSERT_EQ(picture.width, plane.width);
-  for (uint32_t y = 0; y < alone.height; ++y)
-    for (uint32_t x = 0; x < alone.width; ++x)
+  for (uint32_t y = 0; y < island_plane.height; ++y)
+    for (uint32_t x = 0; x < island_plane.width; ++x)
       for (uint32_t c = 0; c < 3; ++c)
         ASSERT_EQ(picture.at(256 + x, 256 + y, c), expected.at(x, y, c)) << x << " " << y;
 }

@@ -70,18 +70,18 @@ TEST_F(Resize, Ratio_RefinesTheFirstFrameOfTheNewSize) {
     Judge judge{one.resized}, judge_always{one.always};
     const auto request = properties::request_of("sap_residual");
     const SequenceRun kept = run(judge, request, judged);
-    const SequenceRun anew = run(judge, request, judged, before_the_resize_or_after);
+    const SequenceRun restarted = run(judge, request, judged, before_the_resize_or_after);
     const SequenceRun always = run(judge_always, request, judged);
     RecordProperty(one.name + "_kept", std::to_string(kept.psnr_db.at(learned)));
-    RecordProperty(one.name + "_anew", std::to_string(anew.psnr_db.at(learned)));
+    RecordProperty(one.name + "_anew", std::to_string(restarted.psnr_db.at(learned)));
     RecordProperty(one.name + "_always", std::to_string(always.psnr_db.at(learned)));
     // Regression bounds. Measured: larger 56.5, 53.6 and 56.7 dB; smaller 57.2, 52.4 and 55.4 dB;
     // odd 57.4, 53.7 and 57.3 dB.
     for (const uint32_t t : judged)
       EXPECT_GT(kept.psnr_db.at(t), always.psnr_db.at(t) - 1) << one.name << ", frame " << t;
-    EXPECT_GT(kept.psnr_db.at(learned), anew.psnr_db.at(learned) + 2) << one.name;
+    EXPECT_GT(kept.psnr_db.at(learned), restarted.psnr_db.at(learned) + 2) << one.name;
     EXPECT_LT(kept.samples[learned], 1.5 * always.samples[learned]) << one.name;
-    EXPECT_GT(anew.samples[learned], 5 * kept.samples[learned]) << one.name;
+    EXPECT_GT(restarted.samples[learned], 5 * kept.samples[learned]) << one.name;
   }
 }
 
@@ -92,13 +92,13 @@ TEST_F(Resize, Guidance_KeepsItsSampleCounts) {
       Judge judge{one.resized}, judge_always{one.always};
       const auto request = properties::request_of("afis_guided", {{"guidance", guidance}});
       const SequenceRun kept = run(judge, request, {});
-      const SequenceRun anew = run(judge, request, {}, before_the_resize_or_after);
+      const SequenceRun restarted = run(judge, request, {}, before_the_resize_or_after);
       const SequenceRun always = run(judge_always, request, {});
       const std::string name = one.name + "_" + guidance;
       RecordProperty(name + "_kept", std::to_string(kept.samples[learned]));
       RecordProperty(name + "_always", std::to_string(always.samples[learned]));
       EXPECT_NEAR(kept.samples[learned], always.samples[learned], 0.05 * always.samples[learned]) << name;
-      EXPECT_EQ(anew.samples[learned], 16) << name; // The sample count of a pixel without history.
+      EXPECT_EQ(restarted.samples[learned], 16) << name; // The sample count of a pixel without history.
     }
 }
 
@@ -110,12 +110,12 @@ TEST_F(Resize, Accumulation_Continues) {
   for (const Case& one : cases()) {
     Judge judge{one.resized}, judge_always{one.always};
     const SequenceRun kept = run(judge, request, {learned});
-    const SequenceRun anew = run(judge, request, {learned}, before_the_resize_or_after);
+    const SequenceRun restarted = run(judge, request, {learned}, before_the_resize_or_after);
     const SequenceRun always = run(judge_always, request, {learned});
     RecordProperty(one.name + "_kept", std::to_string(kept.mean_psnr_db));
-    RecordProperty(one.name + "_anew", std::to_string(anew.mean_psnr_db));
+    RecordProperty(one.name + "_anew", std::to_string(restarted.mean_psnr_db));
     RecordProperty(one.name + "_always", std::to_string(always.mean_psnr_db));
-    EXPECT_GT(kept.mean_psnr_db, anew.mean_psnr_db + 4) << one.name;
+    EXPECT_GT(kept.mean_psnr_db, restarted.mean_psnr_db + 4) << one.name;
     EXPECT_LT(kept.mean_psnr_db, always.mean_psnr_db + 3) << one.name;
   }
 }

@@ -31,7 +31,7 @@ Result<> check(const RenderOptions& options) {
                              max_pixels_per_side, max_pixels_per_side)};
   if (options.frames < 1 || options.frames > max_frames || options.first_frame > max_frames)
     return Error{ErrorKind::usage,
-                 fmt::format("{} frames from frame {} were asked for; expected 1 to {}, from 0 to {}",
+                 fmt::format("{} frames from frame {} were requested; expected 1 to {}, from 0 to {}",
                              options.frames, options.first_frame, max_frames, max_frames)};
   return success();
 }

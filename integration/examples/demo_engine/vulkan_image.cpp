@@ -142,7 +142,7 @@ Result<Image> create_image(VulkanHost& host, const ImageDesc& desc) {
   const uint32_t largest = host.properties.limits.maxImageDimension2D;
   if (desc.width == 0 || desc.height == 0 || desc.width > largest || desc.height > largest) {
     return Error{ErrorKind::usage,
-                 fmt::format("an image of {}x{} pixels was asked for; the device allows 1x1 to "
+                 fmt::format("an image of {}x{} pixels was requested; the device allows 1x1 to "
                              "{}x{}",
                              desc.width, desc.height, largest, largest)};
   }

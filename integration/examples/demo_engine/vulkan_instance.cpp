@@ -95,7 +95,7 @@ Result<> create_instance(const HostOptions& options, ValidationLog& log, VulkanI
   if (options.validation) {
     if (!validation_layer_is_there()) {
       return Error{ErrorKind::environment,
-                   fmt::format("validation was asked for, but the layer {} is not installed (Debian: "
+                   fmt::format("validation was requested, but the layer {} is not installed (Debian: "
                                "vulkan-validationlayers)",
                                validation_layer)};
     }

@@ -658,7 +658,7 @@ typedef struct dermis_port {
   const char* doc;  /* for schemas and messages; may be NULL */
   dermis_port_usage usage;
   uint32_t optional; /* 1: a graph may omit it */
-  /* 1: each invocation reads only the texel or element that it alone writes, before it writes it.
+  /* 1: each invocation reads only the texel or element that only it writes, before the write.
    * Required for a port that reads what another port of the pass writes; without it such graphs are
    * refused (D0232). Update ports do not need it for their own accesses. */
   uint32_t own_texels;
@@ -845,7 +845,7 @@ typedef enum dermis_depth_kind {
  * Matrices that contradict the flag, each other or the depth range (all of it behind the camera)
  * return DERMIS_ERROR_ARGUMENT. clip_from_view is the matrix that the picture was rendered with;
  * jitter_x and jitter_y state its sub-pixel shift. The previous matrices are those of the frame
- * before; if they are no projection (all 0), histories that follow surfaces start anew in each
+ * before; if they are no projection (all 0), histories that follow surfaces restart in each
  * frame. */
 typedef struct dermis_frame {
   size_t struct_size;

@@ -193,7 +193,7 @@ TEST_F(ReplacedHistory, SameGraph_KeepsBuffers) {
     wait();
     replaced.reset();
   }
-  take_over(g, side, side / 2); // Another size starts anew.
+  take_over(g, side, side / 2); // Another size restarts the history.
   EXPECT_FALSE(executor->history_state(0, false, replaced.get()).valid);
   wait();
   replaced.reset();

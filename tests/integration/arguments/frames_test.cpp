@@ -147,7 +147,7 @@ TEST_F(Frames, Discard_WorksOnceAndNotAcrossAReload) {
   ASSERT_EQ(host.record(), DERMIS_OK);
   rejected(1, "expected that of the frame recorded last, 2");
   EXPECT_EQ(dermis_view_discard(dermis_graph_view(host.graph), 2), DERMIS_OK);
-  rejected(1, "which can be taken back once and alone");
+  rejected(1, "only that frame can be discarded, and only once");
   // The first frame of a reloaded graph, after the next reload.
   ASSERT_EQ(host.reload(), DERMIS_OK);
   host.last_frame = 1;

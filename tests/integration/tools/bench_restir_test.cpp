@@ -117,9 +117,9 @@ TEST(RestirClaims, ExpectationsOfReuseAreChecked) {
   const std::vector<double> at_most = {1.1, 1.1, 1.32, 0.5, 0.25, 0.33};
   for (size_t i = 0; i < at_most.size(); ++i)
     EXPECT_NEAR(rows[i + 1].mse_at_most.value_or(0), at_most[i], 1e-12) << i;
-  std::vector<RestirRow> alone = {row_of("none", "", 1), row_of("spatial", "sequential", 2)};
-  expect_of_reuse(alone); // A sequence whose parts were not measured has no expectation.
-  EXPECT_FALSE(alone[1].mse_at_most);
+  std::vector<RestirRow> sequential = {row_of("none", "", 1), row_of("spatial", "sequential", 2)};
+  expect_of_reuse(sequential); // A sequence whose parts were not measured has no expectation.
+  EXPECT_FALSE(sequential[1].mse_at_most);
 }
 
 struct BenchRestir : test::CommandTest {
@@ -138,11 +138,11 @@ struct BenchRestirWithRayQueries : BenchRestir {
 };
 
 TEST_F(BenchRestir, NoRayQueries_NamesTheDriverAndIsNoFailure) {
-  const Outcome alone = run({"bench", "restir", "--quick", "--cache", path("cache")});
-  if (alone.exit_code == 0) GTEST_SKIP() << "this device has ray queries";
-  EXPECT_EQ(alone.exit_code, 3);
-  EXPECT_THAT(alone.err, HasSubstr("no ray queries"));
-  EXPECT_THAT(alone.err, HasSubstr("tests/scripts/fetch_driver.sh"));
+  const Outcome sequential = run({"bench", "restir", "--quick", "--cache", path("cache")});
+  if (sequential.exit_code == 0) GTEST_SKIP() << "this device has ray queries";
+  EXPECT_EQ(sequential.exit_code, 3);
+  EXPECT_THAT(sequential.err, HasSubstr("no ray queries"));
+  EXPECT_THAT(sequential.err, HasSubstr("tests/scripts/fetch_driver.sh"));
   const Outcome all = run({"bench", "all", "--out", path("out"), "--suites", "restir", "--quick"});
   EXPECT_EQ(all.exit_code, 0) << all.err;
   EXPECT_THAT(all.out, HasSubstr("left out: "));

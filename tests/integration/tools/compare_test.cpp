@@ -82,9 +82,9 @@ TEST_F(Compare, Folders_FilesInOnlyOneAreNamed) {
   ASSERT_EQ(both.exit_code, 0) << both.err;
   EXPECT_EQ(nlohmann::json::parse(both.out)["rows"].size(), 2u);
   png("a/three.png", 10, 10);
-  const Outcome alone = run({"compare", path("a"), path("b")});
-  EXPECT_EQ(alone.exit_code, 1);
-  EXPECT_THAT(alone.err, HasSubstr("three.png"));
+  const Outcome one_sided = run({"compare", path("a"), path("b")});
+  EXPECT_EQ(one_sided.exit_code, 1);
+  EXPECT_THAT(one_sided.err, HasSubstr("three.png"));
 }
 
 TEST_F(Compare, ComparesOnlyPixelsOfTheReferencesMask) {

@@ -260,9 +260,9 @@ TEST_F(GraphFiles, IncludesAreReadBelowFolderAndRoots) {
   write("shared/parts/classify.json", "{ \"dermis_fragment\": 2, \"passes\": [ " + classify + " ] }");
   const Outcome good = run({"validate", graph, "--root", path("shared")});
   EXPECT_EQ(good.exit_code, 0) << good.err;
-  const Outcome alone = run({"validate", path("shared/parts/classify.json")});
-  EXPECT_EQ(alone.exit_code, 1) << "the file does not declare its resources";
-  EXPECT_THAT(alone.err, HasSubstr("classify.json:2:29: error[D0203"));
+  const Outcome fragment_outcome = run({"validate", path("shared/parts/classify.json")});
+  EXPECT_EQ(fragment_outcome.exit_code, 1) << "the file does not declare its resources";
+  EXPECT_THAT(fragment_outcome.err, HasSubstr("classify.json:2:29: error[D0203"));
 }
 
 TEST_F(GraphFiles, SceneProfilesAreReadInFolderAndRoots) {

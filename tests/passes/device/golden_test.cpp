@@ -44,7 +44,8 @@ TEST_P(Golden, FramesMatchTheStoredHashOfThisDriver) {
   std::printf("%s", line(found).c_str());
   const std::string kept = golden_hash(here, GetParam());
   if (kept.empty())
-    GTEST_SKIP() << "no frames are kept for this driver, '" << here << "', but for\n" << golden_drivers();
+    GTEST_SKIP() << "no frames are kept for this driver, '" << here << "'; there are frames for\n"
+                 << golden_drivers();
   EXPECT_EQ(found, kept);
 }
 

@@ -13,7 +13,7 @@ namespace dermis::testing {
 
 struct ShownFrame {
   uint32_t x = 0, y = 0, width = 0, height = 0;       // Rendered rectangle of the view, in pixels.
-  bool cut = false;                                   // Histories start anew.
+  bool cut = false;                                   // Histories restart.
   std::map<std::string, std::vector<float>> pictures; // By import: channels per pixel, row by row.
 };
 

@@ -108,8 +108,8 @@ TEST_F(Merge, WithNothingKeepsTheOwnSample) {
     const ReuseSettings settings;
     const Reservoir merged = merge_temporal(scene, settings, pixel.domain, own, pixel.domain, {}, random);
     EXPECT_NEAR(luminance(resolve(scene, pixel.domain, merged)), 3, 1e-9);
-    Spatial alone = spatial_begin(scene, settings, pixel.domain, own, 0, random);
-    EXPECT_NEAR(luminance(resolve(scene, pixel.domain, spatial_end(alone, random))), 3, 1e-9);
+    Spatial without_neighbours = spatial_begin(scene, settings, pixel.domain, own, 0, random);
+    EXPECT_NEAR(luminance(resolve(scene, pixel.domain, spatial_end(without_neighbours, random))), 3, 1e-9);
     break;
   }
 }

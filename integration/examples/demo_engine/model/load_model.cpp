@@ -279,7 +279,7 @@ Result<> read_maps(Gathering& gathering, const ModelOptions& options) {
       if (info.index < 0 || place_of(info) == gathering.place_of_maps())
         return own_map(gathering, info.index);
       model.warnings.push_back(fmt::format("{}: the {} map has other coordinates or another "
-                                           "KHR_texture_transform than the maps beside it and is left out",
+                                           "KHR_texture_transform than the other maps and is ignored",
                                            gathering.path, which));
       return {};
     };

@@ -24,7 +24,7 @@ struct DepthPicture {
   }
   // Returns whether both neighbours along the axis are nearer or both farther than the pixel, each
   // beyond the steepest slope.
-  bool stands_alone(uint32_t x, uint32_t y, uint32_t dx, uint32_t dy) const {
+  bool is_isolated(uint32_t x, uint32_t y, uint32_t dx, uint32_t dy) const {
     const Rectangle& render = frame.description.render;
     if (x < render.x + dx || y < render.y + dy || x + dx >= render.x + render.width ||
         y + dy >= render.y + render.height)
@@ -58,16 +58,16 @@ double dithered_tiles(const CapturedFrame& frame) {
     for (uint32_t left = render.x; left < render.x + render.width; left += tile_side) {
       const uint32_t right = std::min(left + tile_side, render.x + render.width),
                      bottom = std::min(top + tile_side, render.y + render.height);
-      uint32_t pixels = 0, alone = 0;
+      uint32_t pixels = 0, isolated = 0;
       for (uint32_t y = top; y < bottom; ++y)
         for (uint32_t x = left; x < right; ++x) {
           const uint8_t id = frame.profile[size_t{y} * frame.description.width + x];
           if (id == 0 || !picture.holds(x, y, id)) continue;
           ++pixels;
-          alone += picture.stands_alone(x, y, 1, 0) || picture.stands_alone(x, y, 0, 1);
+          isolated += picture.is_isolated(x, y, 1, 0) || picture.is_isolated(x, y, 0, 1);
         }
       tiles += pixels > 0;
-      dithered += pixels > 0 && alone >= tile_side && alone * tile_side >= pixels;
+      dithered += pixels > 0 && isolated >= tile_side && isolated * tile_side >= pixels;
     }
   return tiles > 0 ? double(dithered) / double(tiles) : 0;
 }

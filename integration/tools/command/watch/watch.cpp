@@ -181,8 +181,8 @@ void take_shaders(const Watch& watch, const std::vector<std::string>& shaders) {
     return;
   }
   if (watch.options.build.empty()) {
-    spdlog::warn("{} changed: this program was built without a compiler of shaders; --build LINE builds it "
-                 "anew",
+    spdlog::warn("{} changed: this program was built without a shader compiler; use --build LINE to rebuild "
+                 "it",
                  list_files(shaders));
     return;
   }

@@ -126,7 +126,7 @@ Motion walking_camera() {
 }
 
 constexpr uint32_t reference_periods = 10, reference_samples = 64;
-const Way alone = {"none", "reconnection"};
+const Way no_reuse = {"none", "reconnection"};
 
 // Expects deviations below 3 sigma over all tests, and a sigma small enough to detect a bias.
 void expect_no_bias(const std::vector<std::vector<double>>& found,
@@ -142,7 +142,7 @@ void expect_no_bias(const std::vector<std::vector<double>>& found,
 
 TEST_F(ReuseWithRayQueries, MovingCamera_NoBiasWithAnyShift) {
   const Motion motion = walking_camera();
-  const auto reference_frames = frames_of(motion, alone, reference_periods, reference_samples);
+  const auto reference_frames = frames_of(motion, no_reuse, reference_periods, reference_samples);
   ASSERT_EQ(reference_frames.size(), reference_periods * motion.period);
   const auto reference = lights_of(reference_frames, motion, 0, motion.period);
   std::vector<double> last(size_t{side} * side); // The reference of the last frame of a period.
@@ -150,13 +150,13 @@ TEST_F(ReuseWithRayQueries, MovingCamera_NoBiasWithAnyShift) {
     for (size_t i = 0; i < last.size(); ++i)
       last[i] += luminance(reference_frames[first + motion.period - 1].scattered, i) / reference_periods;
 
-  std::vector<Way> ways = {alone};
+  std::vector<Way> ways = {no_reuse};
   for (const char* shift : {"reconnection", "delayed", "hybrid", "sequential"})
     for (const char* reuse : {"temporal", "spatial", "spatiotemporal"})
       if (quality(0, 1) != 0 || reuse == std::string("spatiotemporal") || shift == std::string("delayed"))
         ways.push_back({reuse, shift});
   const uint32_t periods = quality(10, 40);
-  double error_alone = 0;
+  double error_without_reuse = 0;
   for (const Way& way : ways) {
     const auto frames = frames_of(motion, way, periods);
     ASSERT_EQ(frames.size(), periods * motion.period);
@@ -165,9 +165,9 @@ TEST_F(ReuseWithRayQueries, MovingCamera_NoBiasWithAnyShift) {
     double error = 0;
     for (size_t first = 0; first < frames.size(); first += motion.period)
       error += square_of(frames[first + motion.period - 1], last) / periods;
-    if (way.reuse == "none") error_alone = error;
-    std::printf("  mse of the last frame %.3g, %.2f of that alone\n", error, error / error_alone);
-    EXPECT_TRUE(way.reuse != "spatiotemporal" || error < error_alone) << way.shift;
+    if (way.reuse == "none") error_without_reuse = error;
+    std::printf("  mse of the last frame %.3g, %.2f of that alone\n", error, error / error_without_reuse);
+    EXPECT_TRUE(way.reuse != "spatiotemporal" || error < error_without_reuse) << way.shift;
   }
 }
 
@@ -208,7 +208,7 @@ TEST_F(ReuseWithRayQueries, MovedLight_IsFollowedAtOnce) {
     return phase < 5 ? glm::dvec3(0.02, 0.03, -0.15) : glm::dvec3(-0.06, -0.05, -0.09);
   };
   const auto reference =
-      lights_of(frames_of(motion, alone, reference_periods, reference_samples), motion, 5, 6);
+      lights_of(frames_of(motion, no_reuse, reference_periods, reference_samples), motion, 5, 6);
   for (const std::string& shift : shifts())
     expect_no_bias(lights_of(frames_of(motion, {"temporal", shift}, quality(20, 96)), motion, 5, 6),
                    reference, 20, "light jumps, " + shift);
@@ -218,7 +218,7 @@ TEST_F(ReuseWithRayQueries, MovingObject_NoBias) {
   Motion motion;
   motion.lobe = [](uint32_t phase) { return glm::dvec3(-0.022 + 0.003 * phase, -0.012, 0.012); };
   const auto reference =
-      lights_of(frames_of(motion, alone, reference_periods, reference_samples), motion, 0, motion.period);
+      lights_of(frames_of(motion, no_reuse, reference_periods, reference_samples), motion, 0, motion.period);
   for (const std::string& shift : shifts())
     expect_no_bias(
         lights_of(frames_of(motion, {"spatiotemporal", shift}, quality(10, 40)), motion, 0, motion.period),
@@ -234,7 +234,7 @@ TEST_F(ReuseWithRayQueries, RemovedShadow_FadesAsTheCapAllows) {
   motion.shield = [](uint32_t phase) { return glm::dvec3(0, phase < shaded ? 0 : 5, -0.05); };
   Motion bare;
   bare.period = 1;
-  const auto reference = frames_of(bare, alone, reference_periods, reference_samples);
+  const auto reference = frames_of(bare, no_reuse, reference_periods, reference_samples);
   for (const std::string& shift : shifts()) {
     const auto frames = frames_of(motion, {"temporal", shift}, 1);
     ASSERT_EQ(frames.size(), shaded + lit);

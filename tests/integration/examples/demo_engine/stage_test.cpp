@@ -60,14 +60,14 @@ size_t rendered_frames(const std::vector<FrameOutputs>& frames) {
 TEST_F(KeptStage, ReproducesFramesBitForBit) {
   const RenderOptions options = moving("sap");
   const StageHandle stage = make_stage();
-  const auto alone = rendered(options).frames;
+  const auto separate = rendered(options).frames;
   const auto first = rendered(options, stage.get()).frames;
   const auto second = rendered(options, stage.get()).frames;
-  EXPECT_EQ(rendered_frames(alone), 5u);
+  EXPECT_EQ(rendered_frames(separate), 5u);
   EXPECT_EQ(rendered_frames(first), 5u);
   EXPECT_EQ(rendered_frames(second), 0u);
-  expect_same(alone, first);
-  expect_same(alone, second);
+  expect_same(separate, first);
+  expect_same(separate, second);
 }
 
 TEST_F(KeptStage, OtherGraph_UsesTheKeptFrames) {

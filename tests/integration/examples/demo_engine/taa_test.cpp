@@ -100,9 +100,9 @@ TEST_F(TemporalAntiAliasing, FirstFrameAfterACut_HasNoGhosts) {
   const std::vector<FloatImage> through = colors_of(going);
   going.first_frame = 10;
   going.frames = 1;
-  const std::vector<FloatImage> alone = colors_of(going);
+  const std::vector<FloatImage> still_frame = colors_of(going);
   ASSERT_EQ(through.size(), 5u);
-  EXPECT_EQ(through[4].texels, alone[0].texels);
+  EXPECT_EQ(through[4].texels, still_frame[0].texels);
   going.first_frame = 9;
   EXPECT_NE(through[3].texels, colors_of(going)[0].texels);
 }
