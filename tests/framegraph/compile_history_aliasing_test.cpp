@@ -99,7 +99,7 @@ TEST(HistoryAliasing, NoAliasing_OptionOffOrKeptAlive) {
     EXPECT_FALSE(aliases_history(kept, resource));
 }
 
-TEST(HistoryAliasing, Verifier_WrongInstance_IsRefused) {
+TEST(HistoryAliasing, Verifier_WrongInstance_IsRejected) {
   for (const bool after : {false, true})
     for (const uint32_t frames : {1u, 2u, 3u}) {
       const GraphBuilder b = chain(frames, after);

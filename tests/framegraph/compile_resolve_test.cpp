@@ -76,7 +76,7 @@ TEST(Sizes, MayFollowAnotherResourceWhereverItIsDeclared) {
   EXPECT_EQ(resource_of(b, compiled(b).plan, "middle").width, 16u);
 }
 
-TEST(Sizes, CircularReference_IsRefusedWithTheCycle) {
+TEST(Sizes, CircularReference_IsRejectedWithTheCycle) {
   Chain b;
   for (const auto& [from, to] : {std::pair{1u, 2u}, {2u, 1u}}) {
     b.graph.resources[from].size.base = SizeExpression::Base::resource;
@@ -90,7 +90,7 @@ TEST(Sizes, CircularReference_IsRefusedWithTheCycle) {
   EXPECT_EQ(errors[0].related[0].first.line, b.graph.resources[2].where.line);
 }
 
-TEST(Sizes, BeyondTheDevice_IsRefusedOnce) {
+TEST(Sizes, BeyondTheDevice_IsRejectedOnce) {
   Chain b;
   b.middle().size.x = {1000, 1};
   b.graph.resources[2].size.base = SizeExpression::Base::resource;

@@ -100,7 +100,7 @@ TEST(Subresources, HistoryMipsKeepSeparateLayouts) {
                                                            Layout::shader_read_only, Layout::general));
 }
 
-TEST(Subresources, HistoryOfUnwrittenMip_IsRefused) {
+TEST(Subresources, HistoryOfUnwrittenMip_IsRejected) {
   auto b = kept_mips();
   b.graph.resources[1].mips = 3;
   b.exported("late");
@@ -119,7 +119,7 @@ Diagnostic half_written(const GraphBuilder& b, DiagnosticId id = DiagnosticId::r
   return errors[0];
 }
 
-TEST(Subresources, PartlyWrittenChain_AtOptionalPort_IsRefused) {
+TEST(Subresources, PartlyWrittenChain_AtOptionalPort_IsRejected) {
   GraphBuilder b;
   b.import("light");
   b.image("chain").mips = 0; // A full chain has 7 mips.
@@ -144,7 +144,7 @@ TEST(Subresources, MissingPart_NamesTheDisabledWriter) {
   EXPECT_THAT(one.related[1].second, HasSubstr("'down2' writes it and is off"));
 }
 
-TEST(Subresources, PartlyWrittenLayersAndHistories_AreRefused) {
+TEST(Subresources, PartlyWrittenLayersAndHistories_AreRejected) {
   GraphBuilder layers;
   layers.import("light");
   layers.image("cube").layers = 6;
@@ -183,7 +183,7 @@ TEST(Subresources, UnreadPartIsCulled) {
   EXPECT_THAT(reasons(b, plan, Reason::About::pass, 2), HasSubstr("culled"));
 }
 
-TEST(Subresources, ReadOfUnwrittenPart_IsRefused) {
+TEST(Subresources, ReadOfUnwrittenPart_IsRejected) {
   auto b = pyramid();
   b.graph.resources[1].mips = 4;
   const auto errors = rejected(b);
@@ -207,7 +207,7 @@ TEST(Subresources, OnlyWritersOfTheMissingMipAreListed) {
   EXPECT_THAT(errors[0].related[1].second, HasSubstr("'down3' writes it and is off"));
 }
 
-TEST(Subresources, TwoWritersOfOneMipAreRefusedOnce) {
+TEST(Subresources, TwoWritersOfOneMipAreRejectedOnce) {
   auto b = pyramid();
   b.pass("again", "test.need", {{"a", "light"}}, {{"out", "chain#0..1"}});
   const auto errors = rejected(b);
@@ -215,7 +215,7 @@ TEST(Subresources, TwoWritersOfOneMipAreRefusedOnce) {
   EXPECT_EQ(errors[0].id, DiagnosticId::second_producer);
 }
 
-TEST(Subresources, MipsBeyondTheViewAreRefused) {
+TEST(Subresources, MipsBeyondTheViewAreRejected) {
   auto b = pyramid();
   b.graph.resources[1].mips = 0; // mips = 0 declares the full chain; 64 texels have 7 mips.
   b.pass("far", "test.need", {{"a", "chain#7"}}, {{"out", "chain#8[1]"}});
@@ -241,7 +241,7 @@ TEST(Subresources, OpenRangeEndsWithTheImage) {
   }
 }
 
-TEST(Subresources, OtherwiseForAPart_IsRefused) {
+TEST(Subresources, OtherwiseForAPart_IsRejected) {
   auto b = pyramid();
   b.boolean("small", true);
   b.image("half");
@@ -253,7 +253,7 @@ TEST(Subresources, OtherwiseForAPart_IsRefused) {
   EXPECT_THAT(errors[0].text, HasSubstr("ports name mips or layers of 'chain'"));
 }
 
-TEST(Subresources, TooManySubresources_AreRefused) {
+TEST(Subresources, TooManySubresources_AreRejected) {
   GraphBuilder b;
   auto& array = b.image("array");
   array.layers = 256;

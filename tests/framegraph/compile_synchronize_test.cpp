@@ -227,7 +227,7 @@ TEST(History, InstancesRotateAndKeepThreeFrames) {
     EXPECT_TRUE(whole.plan.placements[sum.first_instance + i].persistent);
 }
 
-TEST(InPlace, WithoutOwnTexelsReadAndWriteAreRefused) {
+TEST(InPlace, WithoutOwnTexelsReadAndWriteAreRejected) {
   GraphBuilder b;
   b.import("light").exported = true;
   b.pass("blur", "test.need", {{"a", "light"}}, {{"out", "light"}});
@@ -252,7 +252,7 @@ TEST(InPlace, OtherwiseValueIsCheckedForRaces) {
   EXPECT_EQ(rejected(b, input)[0].id, DiagnosticId::in_place_race);
 }
 
-TEST(InPlace, VerifierRefusesARaceInsideAPass) {
+TEST(InPlace, VerifierRejectsARaceInsideAPass) {
   GraphBuilder b;
   b.import("light").exported = true;
   b.pass("blend", "test.blend", {{"own", "light"}}, {{"out", "light"}});
@@ -315,7 +315,7 @@ TEST(History, ReadByALaterPass_IsNotOverwritten) {
   EXPECT_EQ(history_of(compiled(b, input).plan).instance_count, 2u);
 }
 
-TEST(History, VerifierRefusesAnEarlyOverwrite) {
+TEST(History, VerifierRejectsAnEarlyOverwrite) {
   Plan freely = compiled(blend("own")).plan;
   for (PlanAccess& access : freely.accesses)
     access.own_texels = false;

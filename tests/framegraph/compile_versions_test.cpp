@@ -175,7 +175,7 @@ TEST(Choice, ExclusiveProducersOfOneResourceAreFine) {
   EXPECT_EQ(pass_names(b, compiled(b, input).plan), "fast_way finish");
 }
 
-TEST(Choice, TwoEnabledProducers_AreRefusedNamingBoth) {
+TEST(Choice, TwoEnabledProducers_AreRejectedNamingBoth) {
   GraphBuilder b = chain();
   b.pass("blur_again", "test.shade", {{"a", "light"}}, {{"out", "blurred"}});
   const auto errors = rejected(b);
@@ -203,7 +203,7 @@ TEST(Choice, AReplacedResourceCannotBeUpdatedInPlace) {
               HasSubstr("'sharpen', port 'image' updates 'blurred' in place, but it stands for 'light'"));
 }
 
-TEST(Choice, AnOtherwiseOfAnotherTypeIsRefused) {
+TEST(Choice, AnOtherwiseOfAnotherTypeIsRejected) {
   GraphBuilder b = chain();
   b.boolean("on", false);
   b.buffer("tiles");
@@ -213,7 +213,7 @@ TEST(Choice, AnOtherwiseOfAnotherTypeIsRefused) {
   EXPECT_EQ(rejected(b)[0].id, DiagnosticId::otherwise_mismatch);
 }
 
-TEST(Choice, SettingsOutsideTheirRangeAreRefused) {
+TEST(Choice, SettingsOutsideTheirRangeAreRejected) {
   GraphBuilder b = chain();
   auto& setting = b.boolean("samples", false);
   setting.type = SettingType::integer;
@@ -228,7 +228,7 @@ TEST(Choice, SettingsOutsideTheirRangeAreRefused) {
   EXPECT_EQ(rejected(b, input)[0].id, DiagnosticId::setting_value);
 }
 
-TEST(Exports, ARequiredExportThatNothingWritesIsRefused) {
+TEST(Exports, ARequiredExportThatNothingWritesIsRejected) {
   GraphBuilder b = chain();
   b.boolean("on", false);
   b.graph.passes[1].when = b.when("on");
@@ -271,7 +271,7 @@ TEST(Versions, ReaderMayPrecedeTheOnlyProducer) {
   EXPECT_EQ(pass_names(b, compiled(b).plan), "blur finish");
 }
 
-TEST(Versions, AReaderBeforeSeveralProducersIsRefused) {
+TEST(Versions, AReaderBeforeSeveralProducersIsRejected) {
   GraphBuilder b;
   b.import("light");
   b.image("blurred");
@@ -282,7 +282,7 @@ TEST(Versions, AReaderBeforeSeveralProducersIsRefused) {
   EXPECT_EQ(rejected(b)[0].id, DiagnosticId::ambiguous_version);
 }
 
-TEST(Versions, UpdateOfUnwrittenResourceIsRefused) {
+TEST(Versions, UpdateOfUnwrittenResourceIsRejected) {
   GraphBuilder b = chain();
   b.image("sum");
   b.exported("total");
@@ -293,14 +293,14 @@ TEST(Versions, UpdateOfUnwrittenResourceIsRefused) {
   EXPECT_EQ(errors[0].id, DiagnosticId::read_before_write);
 }
 
-TEST(Versions, WritingTheSameResourceThroughTwoPortsIsRefused) {
+TEST(Versions, WritingTheSameResourceThroughTwoPortsIsRejected) {
   GraphBuilder b = chain();
   b.exported("twice");
   b.pass("double", "test.shade", {{"a", "light"}}, {{"out", "twice"}, {"out2", "twice"}});
   EXPECT_EQ(rejected(b)[0].id, DiagnosticId::second_producer);
 }
 
-TEST(Order, CycleIsRefusedWithThePlaceOfEachPass) {
+TEST(Order, CycleIsRejectedWithThePlaceOfEachPass) {
   GraphBuilder b = chain();
   b.image("x");
   b.image("y");
@@ -319,7 +319,7 @@ TEST(Order, CycleIsRefusedWithThePlaceOfEachPass) {
   EXPECT_THAT(errors[0].related[1].second, HasSubstr("'first' reads 'y' from 'second'"));
 }
 
-TEST(Order, CycleAmongUnneededPassesIsRefused) {
+TEST(Order, CycleAmongUnneededPassesIsRejected) {
   GraphBuilder b = chain();
   b.image("x");
   b.image("y");
@@ -350,7 +350,7 @@ TEST(Order, AHistoryReadIsNoCycle) {
   EXPECT_EQ(pass_names(b, compiled(b).plan), "accumulate show");
 }
 
-TEST(History, ReadOfAHistoryWithoutWriterIsRefused) {
+TEST(History, ReadOfAHistoryWithoutWriterIsRejected) {
   GraphBuilder b;
   b.boolean("on", false);
   b.import("light");

@@ -149,7 +149,7 @@ TEST(Overlay, WrongValueIsReportedInTheFileThatSetIt) {
       Id::missing_key, "overlay0.json:2:36", {"'halff'"});
 }
 
-TEST(Overlay, EditOfAMissingTarget_IsRefused) {
+TEST(Overlay, EditOfAMissingTarget_IsRejected) {
   expect_one(put_together(whole_graph(), {overlay(R"({ "remove": "/passes/blurr" })")}), Id::edit_target,
              "overlay0.json:2:13", {"'remove' of edit 1", "'blurr'", "did you mean 'blur'?"});
   expect_one(put_together(whole_graph(), {overlay(R"({ "set": "/resource/half/mips", "to": 1 })")}),
@@ -258,7 +258,7 @@ TEST(Include, AMessageAboutAFragmentPointsIntoIt) {
              Id::other_kind_of_file, "parts/tiles.json:1:3", {"dermis_fragment"});
 }
 
-TEST(Include, EqualDeclarationsMerge_DifferentAreRefused) {
+TEST(Include, EqualDeclarationsMerge_DifferentAreRejected) {
   std::string other = tiles_fragment;
   other.replace(other.find("r8_uint"), 7, "r16_uint");
   expect_one(put_together(including_graph(), {}, {{"parts/tiles.json", other}}), Id::duplicate_name,
@@ -279,7 +279,7 @@ TEST(Include, OverlaysSeeIncludesAndCanInclude) {
   EXPECT_EQ(pass_names(including), (std::vector<std::string>{"find", "blur", "copy", "mix"}));
 }
 
-TEST(Include, PathsOutsideTheRootsAreRefused) {
+TEST(Include, PathsOutsideTheRootsAreRejected) {
   for (const char* name : {"/etc/passwd", "../x.json", "a/../../x.json", "a/./x.json", "a//x.json", "a/", "",
                            "C:/x.json", "a\\\\x.json"}) {
     Files files{{name, tiles_fragment}};
@@ -300,7 +300,7 @@ TEST(Include, MissingFileIsReportedAtTheInclude) {
   EXPECT_EQ(diagnostics.list[0].id, Id::file_unreadable);
 }
 
-TEST(Include, CyclesAreRefusedWithTheWholeChain) {
+TEST(Include, CyclesAreRejectedWithTheWholeChain) {
   const auto including = [](const char* name) {
     return fmt::format(R"({{ "dermis_fragment": 2, "passes": [ {{ "include": "{}" }} ] }})", name);
   };

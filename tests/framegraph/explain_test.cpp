@@ -155,7 +155,7 @@ TEST(Names, UnknownBitsAreWrittenAsNumbers) {
   EXPECT_EQ(bytes_text(1536), "1.5 KiB");
 }
 
-TEST(JsonWriter, EscapesNestsAndRefusesNonFiniteNumbers) {
+TEST(JsonWriter, EscapesNestsAndRejectsNonFiniteNumbers) {
   JsonWriter out;
   out.open_object().member("text", "a\"\\\n\x01").key("list").open_array(true).value(1).value(-2.5);
   out.value(std::numeric_limits<double>::infinity()).value(UINT64_MAX).close();

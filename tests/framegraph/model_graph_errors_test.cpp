@@ -19,7 +19,7 @@ INSTANTIATE_TEST_SUITE_P(
     ::testing::Values(
         Damage{
             "TheVersionIsRequired", "\"dermis\": 2, ", "", Id::missing_key, "{ \"$sche", {"\"dermis\": 2"}},
-        Damage{"ANewerVersionIsRefused",
+        Damage{"ANewerVersionIsRejected",
                "\"dermis\": 2",
                "\"dermis\": 3",
                Id::unsupported_version,

@@ -215,7 +215,7 @@ std::string name_of(const ::testing::TestParamInfo<Case>& one) {
   return one.param.name;
 }
 
-INSTANTIATE_TEST_SUITE_P(Refused, InPlace, ::testing::ValuesIn(rejected), name_of);
+INSTANTIATE_TEST_SUITE_P(Rejected, InPlace, ::testing::ValuesIn(rejected), name_of);
 INSTANTIATE_TEST_SUITE_P(Accepted, InPlace, ::testing::ValuesIn(accepted), name_of);
 
 } // namespace

@@ -89,7 +89,7 @@ TEST(GraphErrors, WrongSectionType_SuppressesReferenceErrors) {
   }
 }
 
-TEST(GraphErrors, CountsBeyondTheLimitsAreRefused) {
+TEST(GraphErrors, CountsBeyondTheLimitsAreRejected) {
   std::string many_passes, many_resources, many_settings;
   for (size_t i = 0; i <= limits::passes; ++i)
     many_passes += (i ? ",{}" : "{}");

@@ -44,7 +44,7 @@ TEST(Mutation, OracleAcceptsCompiledPlans) {
   });
 }
 
-TEST(Mutation, DroppedBarrier_IsRefused) {
+TEST(Mutation, DroppedBarrier_IsRejected) {
   uint64_t dropped = 0;
   for_random_plans(1000, 5000, [&](const GraphBuilder&, const Plan& plan, uint64_t seed) {
     for (uint32_t b = 0; b < plan.barriers.size(); ++b, ++dropped)
@@ -56,17 +56,17 @@ TEST(Mutation, DroppedBarrier_IsRefused) {
 
 // Alias barriers name the accesses of every earlier occupant, including those that a later occupant
 // waited for. Few other masks may be wider than necessary.
-TEST(Mutation, WeakerMask_IsRefusedIfHazardous) {
+TEST(Mutation, WeakerMask_IsRejectedIfHazardous) {
   const Tally tally = compare_verdicts(60, 600, for_each_weaker_mask);
   EXPECT_GT(tally.rejected * 20, tally.tried * 19);
 }
 
-TEST(Mutation, MovedPlacement_IsRefusedIfHazardous) {
+TEST(Mutation, MovedPlacement_IsRejectedIfHazardous) {
   const Tally tally = compare_verdicts(150, 1500, for_each_shifted_placement);
   EXPECT_GT(tally.rejected * 10, tally.tried * 9);
 }
 
-TEST(Mutation, LostAliasDependency_IsRefused) {
+TEST(Mutation, LostAliasDependency_IsRejected) {
   uint64_t lost = 0;
   for_random_plans(1000, 5000, [&](const GraphBuilder&, const Plan& plan, uint64_t seed) {
     for (uint32_t b = 0; b < plan.barriers.size(); ++b) {
@@ -85,7 +85,7 @@ TEST(Mutation, LostAliasDependency_IsRefused) {
 // frame. The pixels show that after the difference has passed through all histories to the host.
 // The exception is a flip that only leads to a placeholder, which is read while all histories are
 // zero.
-TEST(Mutation, FlippedHistorySlot_IsRefusedOrChangesPixels) {
+TEST(Mutation, FlippedHistorySlot_IsRejectedOrChangesPixels) {
   constexpr uint32_t frames = 14;
   Tally tally;
   for_random_plans(300, 3000, [&](const GraphBuilder& builder, const Plan& plan, uint64_t seed) {
@@ -107,24 +107,24 @@ TEST(Mutation, FlippedHistorySlot_IsRefusedOrChangesPixels) {
 }
 
 // The declaration does not matter for a history whose frames have separate memory.
-TEST(Mutation, LostOwnTexels_IsRefusedIfHazardous) {
+TEST(Mutation, LostOwnTexels_IsRejectedIfHazardous) {
   const Tally tally = compare_verdicts(300, 3000, for_each_lost_own_texels);
   EXPECT_GT(tally.rejected, 30u);
   EXPECT_GT(tally.tried, tally.rejected);
 }
 
-TEST(Mutation, RedirectedAccess_IsRefusedIfHazardous) {
+TEST(Mutation, RedirectedAccess_IsRejectedIfHazardous) {
   const Tally tally = compare_verdicts(60, 600, for_each_redirected_access);
   EXPECT_GT(tally.rejected, 500u);
 }
 
-TEST(Mutation, SwappedPasses_AreRefusedIfHazardous) {
+TEST(Mutation, SwappedPasses_AreRejectedIfHazardous) {
   const Tally tally = compare_verdicts(150, 1500, for_each_swap);
   EXPECT_GT(tally.rejected, 100u);
   EXPECT_GT(tally.tried, tally.rejected); // Some neighbouring passes are independent.
 }
 
-TEST(Mutation, MovedBarrier_IsRefusedIfHazardous) {
+TEST(Mutation, MovedBarrier_IsRejectedIfHazardous) {
   const Tally tally = compare_verdicts(60, 600, for_each_moved_barrier);
   EXPECT_GT(tally.rejected, 100u);
   EXPECT_GT(tally.tried, tally.rejected); // Some barriers wait for work that ended long before.

@@ -73,21 +73,21 @@ TEST(SavedPlan, KeepsNumbersOf64Bits) {
   EXPECT_EQ(after->plan.barriers[0].source_stages, plan.plan.barriers[0].source_stages);
 }
 
-TEST(SavedPlan, TruncatedFile_IsRefused) {
+TEST(SavedPlan, TruncatedFile_IsRejected) {
   const std::string bytes = file_of(5);
   for (size_t size = 0; size < bytes.size(); ++size)
     EXPECT_NE(refusal(std::string_view(bytes).substr(0, size)), "") << size;
   EXPECT_THAT(refusal(bytes + "x"), HasSubstr("1 bytes remain after the last field"));
 }
 
-TEST(SavedPlan, OtherVersion_IsRefused) {
+TEST(SavedPlan, OtherVersion_IsRejected) {
   std::string bytes = file_of(5);
   bytes[8] = 9;
   EXPECT_EQ(refusal(bytes), "the plan has version 9; this library reads version 6");
   EXPECT_EQ(refusal("{}"), "a saved plan must begin with DERMPLAN");
 }
 
-TEST(SavedPlan, ExcessiveCount_IsRefusedBeforeAllocation) {
+TEST(SavedPlan, ExcessiveCount_IsRejectedBeforeAllocation) {
   SavedPlan plan;
   std::string bytes = write_plan(plan); // The last lists are empty, so 3 * 4 + 2 * 8 bytes follow.
   const size_t layouts = bytes.size() - 32;
@@ -97,7 +97,7 @@ TEST(SavedPlan, ExcessiveCount_IsRefusedBeforeAllocation) {
       HasSubstr("'history layouts' has 4294967295 entries, but the rest of the file can hold only 7"));
 }
 
-TEST(SavedPlan, ChangedByte_IsRefusedOrAValidPlan) {
+TEST(SavedPlan, ChangedByte_IsRejectedOrAValidPlan) {
   size_t accepted = 0, tried = 0;
   for (const uint64_t seed : {1u, 2u, 8u}) {
     const std::string bytes = file_of(seed);
@@ -118,7 +118,7 @@ TEST(SavedPlan, ChangedByte_IsRefusedOrAValidPlan) {
   EXPECT_LT(accepted, tried);
 }
 
-TEST(SavedPlan, IndexOutOfRange_IsRefused) {
+TEST(SavedPlan, IndexOutOfRange_IsRejected) {
   const GraphBuilder builder = random_graph(8);
   const SavedPlan good = saved(builder.input());
   const auto rejected_with = [&](auto&& change) {

@@ -105,7 +105,7 @@ TEST(Document, APlaceInsideAStringIsFoundThroughEscapes) {
   EXPECT_EQ(place(where_in_string(d, {1}, 8, parsed.diagnostics)), "2:25"); // Character "b".
 }
 
-TEST(Document, DuplicateKeysAreRefusedWithBothLocations) {
+TEST(Document, DuplicateKeysAreRejectedWithBothLocations) {
   const Parsed parsed = parse("{ \"a\": 1,\n  \"b\": 2,\n  \"a\": 3 }");
   EXPECT_FALSE(parsed.document);
   expect_only(parsed.diagnostics, DiagnosticId::duplicate_key, 3, 3, {"'a'"});
@@ -133,7 +133,7 @@ struct Malformed {
 
 class MalformedText : public ::testing::TestWithParam<Malformed> {};
 
-TEST_P(MalformedText, IsRefusedWhereItGoesWrong) {
+TEST_P(MalformedText, IsRejectedWhereItGoesWrong) {
   const Parsed parsed = parse(GetParam().text);
   EXPECT_FALSE(parsed.document);
   expect_only(parsed.diagnostics, DiagnosticId::syntax, GetParam().line, GetParam().column);
@@ -159,7 +159,7 @@ TEST(Document, TextAfterANulByteIsNotIgnored) {
   expect_only(comment.diagnostics, DiagnosticId::syntax, 1, 8, {"NUL"});
 }
 
-TEST(Document, IntegersThatWouldBecomeDoublesAreRefused) {
+TEST(Document, IntegersThatWouldBecomeDoublesAreRejected) {
   for (const char* text :
        {"[1,\n 9223372036854775808]", "[1,\n -9223372036854775809]", "[1,\n 99999999999999999999]"}) {
     const Parsed parsed = parse(text);
@@ -168,13 +168,13 @@ TEST(Document, IntegersThatWouldBecomeDoublesAreRefused) {
   }
 }
 
-TEST(Document, NumbersBeyondDoubleAreRefused) {
+TEST(Document, NumbersBeyondDoubleAreRejected) {
   const Parsed parsed = parse("{ \"x\": 1e999 }");
   EXPECT_FALSE(parsed.document);
   expect_only(parsed.diagnostics, DiagnosticId::out_of_range, 1, 8, {"1e999"});
 }
 
-TEST(Document, IllFormedUtf8IsRefusedAtItsPlace) {
+TEST(Document, IllFormedUtf8IsRejectedAtItsPlace) {
   for (const char* bytes : {"\xff", "\xc0\xaf", "\xe0\x80\x80", "\xed\xa0\x80", "\xf5\x80\x80\x80", "\xc3"}) {
     const Parsed parsed = parse(std::string("[\n\"ab") + bytes + "\"]");
     EXPECT_FALSE(parsed.document);
@@ -183,13 +183,13 @@ TEST(Document, IllFormedUtf8IsRefusedAtItsPlace) {
   expect_only(parse("[] // \x80").diagnostics, DiagnosticId::invalid_utf8, 1, 7);
 }
 
-TEST(Document, ATextBeyondTheFileLimitIsRefused) {
+TEST(Document, ATextBeyondTheFileLimitIsRejected) {
   const Parsed parsed = parse(std::string(20u << 20, ' '));
   EXPECT_FALSE(parsed.document);
   expect_only(parsed.diagnostics, DiagnosticId::limit_exceeded, 0, 0, {"16777216"});
 }
 
-TEST(Document, AFileBeyondTheLimitIsRefusedBeforeItIsRead) {
+TEST(Document, AFileBeyondTheLimitIsRejectedBeforeItIsRead) {
   const std::filesystem::path path =
       std::filesystem::temp_directory_path() / "dermis_text_document_test_large.json";
   std::ofstream(path).put('[');
@@ -200,7 +200,7 @@ TEST(Document, AFileBeyondTheLimitIsRefusedBeforeItIsRead) {
   expect_only(diagnostics, DiagnosticId::limit_exceeded, 0, 0, {"17179869184"});
 }
 
-TEST(Document, UnreadableFileIsRefused) {
+TEST(Document, UnreadableFileIsRejected) {
   Diagnostics missing;
   EXPECT_FALSE(read_document("/nonexistent/graph.json", missing));
   expect_only(missing, DiagnosticId::file_unreadable, 0, 0, {"/nonexistent/graph.json", "does not exist"});
@@ -209,7 +209,7 @@ TEST(Document, UnreadableFileIsRefused) {
   expect_only(folder, DiagnosticId::file_unreadable, 0, 0, {"not a regular file"});
 }
 
-TEST(Document, NestingBeyondTheLimitIsRefusedAtTheBracket) {
+TEST(Document, NestingBeyondTheLimitIsRejectedAtTheBracket) {
   const size_t maximum = limits::nesting;
   EXPECT_TRUE(parse(std::string(maximum, '[') + std::string(maximum, ']')).document);
   const Parsed parsed = parse(std::string(1000000, '['));
@@ -218,7 +218,7 @@ TEST(Document, NestingBeyondTheLimitIsRefusedAtTheBracket) {
               {"nested"});
 }
 
-TEST(Document, StringsBeyondTheLimitAreRefusedAtTheirStart) {
+TEST(Document, StringsBeyondTheLimitAreRejectedAtTheirStart) {
   const size_t maximum = limits::string_bytes;
   EXPECT_TRUE(parse("[\"" + std::string(maximum, 'x') + "\"]").document);
   for (const std::string& text :
@@ -230,7 +230,7 @@ TEST(Document, StringsBeyondTheLimitAreRefusedAtTheirStart) {
   }
 }
 
-TEST(Document, KeysAndNumbersBeyondTheirLimitAreRefused) {
+TEST(Document, KeysAndNumbersBeyondTheirLimitAreRejected) {
   expect_only(parse("{\"" + std::string(limits::key_bytes + 1, 'k') + "\": 1}").diagnostics,
               DiagnosticId::limit_exceeded, 1, 2, {"key"});
   EXPECT_TRUE(parse("{\"" + std::string(limits::key_bytes, 'k') + "\": 1}").document);
@@ -238,7 +238,7 @@ TEST(Document, KeysAndNumbersBeyondTheirLimitAreRefused) {
               2);
 }
 
-TEST(Document, MoreValuesThanTheLimitAreRefused) {
+TEST(Document, MoreValuesThanTheLimitAreRejected) {
   std::string text = "[0";
   for (size_t i = 0; i < limits::nodes; ++i)
     text += ",0";

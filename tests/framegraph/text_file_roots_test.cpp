@@ -46,7 +46,7 @@ TEST_F(FileRoots, PathBelowARoot_IsAccepted) {
   EXPECT_EQ(place_file(root, "inner/file", std::vector<fs::path>{root}).real, root / "in/file");
 }
 
-TEST_F(FileRoots, PathOutsideTheRoots_IsRefused) {
+TEST_F(FileRoots, PathOutsideTheRoots_IsRejected) {
   const fs::path root = top / "root";
   for (const std::string& name :
        {std::string("../root_beside/file"), std::string("out/file"), std::string("out"),
@@ -57,7 +57,7 @@ TEST_F(FileRoots, PathOutsideTheRoots_IsRefused) {
   EXPECT_THAT(problem("", "../x", ""), HasSubstr("'.'"));
 }
 
-TEST_F(FileRoots, NonPortableName_IsRefused) {
+TEST_F(FileRoots, NonPortableName_IsRejected) {
   const fs::path root = top / "root";
   EXPECT_EQ(problem(root, "", root), "it is not a file name");
   EXPECT_EQ(problem(root, std::string("in/file\0.json", 13), root), "it is not a file name");

@@ -38,7 +38,7 @@ TEST(Reader, ReadsEveryTypeOfValue) {
   EXPECT_TRUE(parsed.diagnostics.list.empty());
 }
 
-TEST(Reader, AnUnknownKeyIsRefusedAtTheKeyWithASuggestion) {
+TEST(Reader, AnUnknownKeyIsRejectedAtTheKeyWithASuggestion) {
   Parsed parsed = parse("{ \"name\": \"x\",\n  \"colur\": \"red\" }");
   ObjectReader object(*parsed.document, parsed.document->root(), "thing", parsed.diagnostics);
   object.string("name");
@@ -114,7 +114,7 @@ TEST(Reader, ValuesOutOfRangeNameTheRange) {
   EXPECT_EQ(out[0], 0.0) << "untouched on error";
 }
 
-TEST(Reader, ArraysOfAnotherLengthAreRefused) {
+TEST(Reader, ArraysOfAnotherLengthAreRejected) {
   Parsed numbers = parse("{ \"k\": [1, 2] }");
   std::array<double, 3> out{};
   EXPECT_FALSE(ObjectReader(*numbers.document, {0}, "thing", numbers.diagnostics).numbers("k", out, 0, 10));
@@ -127,7 +127,7 @@ TEST(Reader, ArraysOfAnotherLengthAreRefused) {
   expect_only(many.diagnostics, DiagnosticId::limit_exceeded, 1, 8, {"3 entries"});
 }
 
-TEST(Reader, AnUnlistedWordIsRefusedWithTheListAndASuggestion) {
+TEST(Reader, AnUnlistedWordIsRejectedWithTheListAndASuggestion) {
   Parsed parsed = parse("{ \"k\": \"grean\" }");
   EXPECT_FALSE(ObjectReader(*parsed.document, {0}, "thing", parsed.diagnostics).word("k", colours));
   expect_only(parsed.diagnostics, DiagnosticId::invalid_value, 1, 8,

@@ -222,18 +222,18 @@ void expect_none_needless(uint64_t judged_twice, uint64_t quick, uint64_t full, 
   EXPECT_GT(dropped, minimum);
 }
 
-TEST(TwoQueues, DroppedBarrierOrHalfTransfer_IsRefused) {
+TEST(TwoQueues, DroppedBarrierOrHalfTransfer_IsRejected) {
   expect_none_needless(100, 1000, 10000, 10000, [](const Plan& plan, const VisitMutant& visit) {
     for (uint32_t b = 0; b < plan.barriers.size(); ++b)
       visit(without_barrier(plan, b), fmt::format("without barrier {}", b));
   });
 }
 
-TEST(TwoQueues, LostOrEarlierWaitOrSignal_IsRefused) {
+TEST(TwoQueues, LostOrEarlierWaitOrSignal_IsRejected) {
   expect_none_needless(300, 1000, 10000, 2000, for_each_lost_point);
 }
 
-TEST(TwoQueues, WeakerMask_IsRefusedIfHazardous) {
+TEST(TwoQueues, WeakerMask_IsRejectedIfHazardous) {
   Tally tally;
   for_random_plans(60, 600, [&](const GraphBuilder&, const Plan& plan, uint64_t seed) {
     for_each_weaker_mask(plan, [&](const Plan& mutant, const std::string& what) {
@@ -243,7 +243,7 @@ TEST(TwoQueues, WeakerMask_IsRefusedIfHazardous) {
   EXPECT_GT(tally.rejected, 100u);
 }
 
-TEST(TwoQueues, PassOnTheOtherQueue_IsRefusedIfHazardous) {
+TEST(TwoQueues, PassOnTheOtherQueue_IsRejectedIfHazardous) {
   Tally tally;
   for_random_plans(150, 1500, [&](const GraphBuilder&, const Plan& plan, uint64_t seed) {
     for (size_t p = 0; p < plan.passes.size() && !HasFatalFailure(); ++p) {

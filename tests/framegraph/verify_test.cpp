@@ -52,7 +52,7 @@ TEST(Verify, AcceptsCompiledPlans) {
   EXPECT_TRUE(verify(compiled(b).plan).proven());
 }
 
-TEST(Verify, RefusesAliasedLiveMemory) {
+TEST(Verify, RejectsAliasedLiveMemory) {
   expect_rejected(
       [](Plan& plan) {
         for (Placement& placement : plan.placements)
@@ -177,7 +177,7 @@ TEST(Verify, TooManyAccesses_GivesUp) {
   EXPECT_THAT(verdict.not_verified, HasSubstr("accesses overlap in memory"));
 }
 
-TEST(Verify, RefusesAWriteToAnEarlierFrame) {
+TEST(Verify, RejectsAWriteToAnEarlierFrame) {
   const auto redirect = [](Plan& plan) {
     for (PlanAccess& access : plan.accesses)
       if ((access.access & all_write_access) != 0 && plan.resources[access.resource].instance_count > 1)
@@ -186,12 +186,12 @@ TEST(Verify, RefusesAWriteToAnEarlierFrame) {
   expect_rejected(redirect, "is written, although it holds an earlier frame");
 }
 
-TEST(Verify, RefusesPlacementsOutsideTheirHeapOrMisaligned) {
+TEST(Verify, RejectsPlacementsOutsideTheirHeapOrMisaligned) {
   expect_rejected([](Plan& plan) { plan.heaps[0].size = 1; }, "exceeds its heap");
   expect_rejected([](Plan& plan) { plan.placements[0].offset = 1; }, "misaligned");
 }
 
-TEST(Verify, RefusesIndicesOutOfRange) {
+TEST(Verify, RejectsIndicesOutOfRange) {
   expect_rejected([](Plan& plan) { plan.accesses[0].resource = 1000; }, "does not exist");
   expect_rejected([](Plan& plan) { plan.accesses[0].frames_back = 7; }, "does not exist");
   expect_rejected([](Plan& plan) { plan.barriers[0].resource = 1000; }, "does not exist");
@@ -200,13 +200,13 @@ TEST(Verify, RefusesIndicesOutOfRange) {
   expect_rejected([](Plan& plan) { plan.histories.clear(); }, "not described exactly once");
 }
 
-TEST(Verify, RefusesAWrongLayout) {
+TEST(Verify, RejectsAWrongLayout) {
   expect_rejected([](Plan& plan) { plan.accesses.back().layout = Layout::transfer_source; },
                   "not in the layout that the plan states for the access");
   expect_rejected([](Plan& plan) { plan.history_layouts[1] = Layout::transfer_source; }, "layout");
 }
 
-TEST(Verify, RefusesAReadOutsideItsLifetime) {
+TEST(Verify, RejectsAReadOutsideItsLifetime) {
   expect_rejected(
       [](Plan& plan) {
         for (Placement& placement : plan.placements)
@@ -215,7 +215,7 @@ TEST(Verify, RefusesAReadOutsideItsLifetime) {
       "outside its lifetime");
 }
 
-TEST(Verify, RefusesBarriersWithoutSourceStages) {
+TEST(Verify, RejectsBarriersWithoutSourceStages) {
   for (uint64_t seed = 0; seed < verified_graphs; ++seed) {
     const auto plan = compiled(random_graph(seed)).plan;
     for (uint32_t i = 0; i < plan.barriers.size(); ++i) {
@@ -228,7 +228,7 @@ TEST(Verify, RefusesBarriersWithoutSourceStages) {
   }
 }
 
-TEST(Verify, RefusesBarriersWithoutSourceAccess) {
+TEST(Verify, RejectsBarriersWithoutSourceAccess) {
   for (uint64_t seed = 0; seed < verified_graphs; ++seed) {
     const auto builder = random_graph(seed);
     const auto whole = compiled(builder);
@@ -248,7 +248,7 @@ TEST(Verify, RefusesBarriersWithoutSourceAccess) {
   }
 }
 
-TEST(Verify, RefusesBarriersWithoutDestination) {
+TEST(Verify, RejectsBarriersWithoutDestination) {
   for (uint64_t seed = 0; seed < verified_graphs; ++seed) {
     const auto plan = compiled(random_graph(seed)).plan;
     for (uint32_t i = 0; i < plan.barriers.size(); ++i) {
@@ -262,7 +262,7 @@ TEST(Verify, RefusesBarriersWithoutDestination) {
 }
 
 // A pass cannot run before the pass that produces its input.
-TEST(Verify, RefusesSwappedPasses) {
+TEST(Verify, RejectsSwappedPasses) {
   const auto b = everything();
   const Plan plan = compiled(b).plan;
   for (size_t p = 0; p + 1 < plan.passes.size() - 1; ++p) {
@@ -272,7 +272,7 @@ TEST(Verify, RefusesSwappedPasses) {
   }
 }
 
-TEST(Verify, RefusesAConditionOnAWriteOrOnNoHistory) {
+TEST(Verify, RejectsAConditionOnAWriteOrOnNoHistory) {
   const auto set_all = [](ReadWhen when, bool writes) {
     return [=](Plan& plan) {
       for (PlanAccess& access : plan.accesses)

@@ -47,7 +47,7 @@ TEST(Outputs, SarifFollowsTheStandard) {
   EXPECT_GE(sarif_of(cases[4].first, cases[4].second)["runs"][0]["results"].size(), 3u);
 }
 
-TEST(Outputs, SarifSchemaRefusesInvalidFiles) {
+TEST(Outputs, SarifSchemaRejectsInvalidFiles) {
   const SchemaFile schema = schema_in("tests/schema/sarif.schema.json");
   json log = sarif_of("broken.json", "{");
   ASSERT_TRUE(schema.accepts(log));

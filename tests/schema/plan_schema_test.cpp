@@ -108,7 +108,7 @@ TEST_F(PlanSchema, AcceptsThePlanOfTwoQueues) {
   EXPECT_EQ(plan["passes"][1]["queue"], "async");
 }
 
-TEST_F(PlanSchema, RefusesMissingAndAdditionalKeys) {
+TEST_F(PlanSchema, RejectsMissingAndAdditionalKeys) {
   json whole = plan_of(DERMIS_SOURCE_DIR "/configs/graphs/burley.json", true);
   const json copy = whole;
   uint32_t tried = 0;

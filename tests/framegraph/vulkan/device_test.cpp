@@ -89,7 +89,7 @@ TEST_F(DeviceTest, EveryMissingFunctionIsNamedAtOnce) {
   EXPECT_THAT(error.text, Not(HasSubstr("vkSetDebugUtilsObjectNameEXT"))) << "labels were not requested";
 }
 
-TEST_F(DeviceTest, NullHandlesAndUnknownQueueFamiliesAreRefused) {
+TEST_F(DeviceTest, NullHandlesAndUnknownQueueFamiliesAreRejected) {
   vulkan::Device made;
   vulkan::DeviceInput in = input();
   in.device = VK_NULL_HANDLE;

@@ -243,7 +243,7 @@ TEST_F(ExecutorTest, EveryPassHasATimeOfACompletedFrame) {
   }
 }
 
-TEST_F(ExecutorTest, AWrongFrameIsRefusedAndRecordsNothing) {
+TEST_F(ExecutorTest, AWrongFrameIsRejectedAndRecordsNothing) {
   SmallGraph g;
   g.import("light", Format::r32f).exported = true;
   g.pass("fill", "test.fill", {}, {{"target", "light"}});

@@ -102,7 +102,7 @@ TEST_F(FailureTest, AMissingKernelIsNamed) {
   EXPECT_THAT(error.text, HasSubstr("set 1 binding 0, but the environment has only 0 bindings"));
 }
 
-TEST_F(FailureTest, APlanOfAnotherDeviceIsRefused) {
+TEST_F(FailureTest, APlanOfAnotherDeviceIsRejected) {
   const SmallGraph g = graph();
   Plan plan = g.compile(profile, 16, 16);
   for (Placement& placement : plan.placements)
@@ -113,7 +113,7 @@ TEST_F(FailureTest, APlanOfAnotherDeviceIsRefused) {
   EXPECT_THAT(error.text, HasSubstr("compile it with the profile of this device"));
 }
 
-TEST_F(FailureTest, BadInputsAreRefused) {
+TEST_F(FailureTest, BadInputsAreRejected) {
   const SmallGraph g = graph();
   const Plan plan = g.compile(profile, 16, 16);
   std::unique_ptr<vulkan::Executor> made;
@@ -131,7 +131,7 @@ TEST_F(FailureTest, BadInputsAreRefused) {
   EXPECT_THAT(vulkan::Executor::create(input, made).text, HasSubstr("environment binding 0 has 0 bytes"));
 }
 
-TEST_F(ExecutorTest, APlanOfTwoQueuesIsRefused) {
+TEST_F(ExecutorTest, APlanOfTwoQueuesIsRejected) {
   SmallGraph g;
   g.exported("result");
   for (const char* name : {"first", "second"})

@@ -94,7 +94,7 @@ TEST_F(RejectedFrames, ReasonIsGiven_ExecutorIsUnchanged) {
 }
 
 // The host passes one value for each setting of the graph, or none.
-TEST_F(RejectedFrames, TooFewSettings_AreRefused) {
+TEST_F(RejectedFrames, TooFewSettings_AreRejected) {
   SmallGraph two;
   two.setting("bias", 1);
   two.setting("other", 2);
@@ -109,7 +109,7 @@ TEST_F(RejectedFrames, TooFewSettings_AreRefused) {
   EXPECT_THAT(rejected.text, HasSubstr("settings has fewer values"));
 }
 
-TEST_F(RejectedFrames, WrongHostBuffer_IsRefusedWithSizeAndPlace) {
+TEST_F(RejectedFrames, WrongHostBuffer_IsRejectedWithSizeAndPlace) {
   SmallGraph with;
   ResourceDeclaration& weights = with.buffer("weights", 1);
   weights.origin = Origin::imported;
@@ -128,7 +128,7 @@ TEST_F(RejectedFrames, WrongHostBuffer_IsRefusedWithSizeAndPlace) {
   ASSERT_NE(planned, nullptr);
   const uint64_t bytes = planned->bytes;
   const VkPhysicalDeviceLimits& limits = dermis_device.properties.limits;
-  // Refused before the buffer is used.
+  // Rejected before the buffer is used.
   const auto some_buffer = reinterpret_cast<VkBuffer>(uintptr_t{8});
   std::vector<vulkan::HostBuffer> buffers(slot + 1);
   const auto rejected = [&](const vulkan::HostBuffer& binding) {
@@ -150,7 +150,7 @@ TEST_F(RejectedFrames, WrongHostBuffer_IsRefusedWithSizeAndPlace) {
   EXPECT_THAT(record([](Frame& f) { f.settings.clear(); }).text, HasSubstr("the slot is not bound"));
 }
 
-TEST_F(ExecutorTest, EnvironmentsThatNoDeviceCanBindAreRefused) {
+TEST_F(ExecutorTest, EnvironmentsThatNoDeviceCanBindAreRejected) {
   SmallGraph g;
   g.exported("result");
   g.pass("fill", "test.fill", {}, {{"target", "result"}});

@@ -68,7 +68,7 @@ TEST(Reflection, ReadsBindingsPushConstantsAndLocalSize) {
   EXPECT_THAT(reflected("test_classes").local_size, ElementsAre(64, 1, 1));
 }
 
-TEST(Reflection, TruncatedModule_IsRefusedOrRead) {
+TEST(Reflection, TruncatedModule_IsRejectedOrRead) {
   const auto whole = spirv("test_add");
   for (size_t length = 0; length < whole.size(); ++length) {
     const std::vector<uint32_t> cut(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(length));
@@ -83,7 +83,7 @@ TEST(Reflection, TruncatedModule_IsRefusedOrRead) {
   }
 }
 
-TEST(Reflection, RandomWords_AreRefusedOrRead) {
+TEST(Reflection, RandomWords_AreRejectedOrRead) {
   const auto whole = spirv("test_mark");
   std::mt19937 random(1);
   for (int trial = 0; trial < 5000; ++trial) {

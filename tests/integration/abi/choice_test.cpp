@@ -400,7 +400,7 @@ TEST_F(Choice, UnfinishedFrame_IsNotReady) {
   EXPECT_THAT(dermis_last_error(), HasSubstr("completed_frame_index"));
 }
 
-TEST_F(Choice, WrongBudgetsAreRefusedAndChangeNothing) {
+TEST_F(Choice, WrongBudgetsAreRejectedAndChangeNothing) {
   make();
   set_budget(30);
   dermis_budget budget = DERMIS_BUDGET_INIT;

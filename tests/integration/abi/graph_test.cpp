@@ -67,7 +67,7 @@ TEST(Validate, NamesFileLineAndColumnOfAnError) {
   EXPECT_THAT(dermis_last_error(), HasSubstr("typo.json:"));
 }
 
-TEST(Validate, RefusesASourceWithoutTextOrLength) {
+TEST(Validate, RejectsASourceWithoutTextOrLength) {
   dermis_source source = DERMIS_SOURCE_INIT;
   EXPECT_EQ(dermis_validate(&source, nullptr), DERMIS_ERROR_ARGUMENT);
   source.text = "{}";
@@ -136,7 +136,7 @@ TEST_F(GraphLife, WrongSlotsOfTheHostAreReported) {
   graphs.push_back(graph);
 }
 
-TEST_F(GraphLife, SizesAndProfilesOutOfRangeAreRefused) {
+TEST_F(GraphLife, SizesAndProfilesOutOfRangeAreRejected) {
   GraphOptions options;
   dermis_graph graph = nullptr;
   for (const auto& [width, height] : {std::pair{0u, 64u}, {64u, 0u}, {16385u, 64u}, {64u, ~0u}}) {

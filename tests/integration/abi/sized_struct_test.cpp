@@ -39,7 +39,7 @@ TEST(SizedStruct, SmallerThanTheStruct_Read_IsRejected) {
   }
 }
 
-TEST(SizedStruct, ANewerCallersTailIsAcceptedWhenItIsZeroAndRefusedWhenItIsNot) {
+TEST(SizedStruct, NewerCallersTail_IsAcceptedOnlyIfZero) {
   for (size_t size = sizeof(Grown); size <= sizeof(Grown) + 64; ++size) {
     Grown read{};
     EXPECT_EQ(read_sized(structure(size, size).get(), read), SizedRead::ok) << size;
@@ -51,7 +51,7 @@ TEST(SizedStruct, ANewerCallersTailIsAcceptedWhenItIsZeroAndRefusedWhenItIsNot) 
   }
 }
 
-TEST(SizedStruct, UninitialisedSize_IsRefusedBeforeReadingTheTail) {
+TEST(SizedStruct, UninitialisedSize_IsRejectedBeforeReadingTheTail) {
   Grown read{};
   EXPECT_EQ(read_sized(structure(sizeof(Grown), largest_struct_size + 1).get(), read), SizedRead::too_large);
   EXPECT_EQ(read_sized(structure(sizeof(Grown), ~size_t{0}).get(), read), SizedRead::too_large);

@@ -126,7 +126,7 @@ TEST_F(Skip, BoundsAroundAllSubsurfaceChangeNothing) {
   EXPECT_EQ(texels("lighting"), picture);
 }
 
-TEST_F(Skip, BoundsWithoutTheirFlagAreRefused) {
+TEST_F(Skip, BoundsWithoutTheirFlagAreRejected) {
   make();
   const auto bound = bindings(graph);
   dermis_frame one = frame(bound);

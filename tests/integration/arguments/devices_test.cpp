@@ -117,7 +117,7 @@ struct PoorDevice : ::testing::Test {
   }
 };
 
-TEST_F(PoorDevice, OlderVulkan_IsRefusedWithoutNewerQueries) {
+TEST_F(PoorDevice, OlderVulkan_IsRejectedWithoutNewerQueries) {
   lack.api_version = VK_API_VERSION_1_1;
   EXPECT_EQ(create(), DERMIS_ERROR_UNSUPPORTED);
   EXPECT_THAT(dermis_last_error(), AllOf(HasSubstr("VK_API_VERSION_1_2"), HasSubstr("synchronization2")));
@@ -232,7 +232,7 @@ TEST_F(PoorDevice, MissingLabels_AreAnErrorOnlyIfRequested) {
   }
 }
 
-TEST_F(PoorDevice, QueueWithoutCompute_IsRefused) {
+TEST_F(PoorDevice, QueueWithoutCompute_IsRejected) {
   lack.queue_flags = VK_QUEUE_GRAPHICS_BIT;
   EXPECT_EQ(create(), DERMIS_ERROR_ARGUMENT);
   EXPECT_THAT(dermis_last_error(), HasSubstr("queue family 0 does not support compute"));
@@ -336,7 +336,7 @@ struct BadBlocks {
   }
 };
 
-TEST(HostsDeviceMemory, UnusableBlock_IsRefusedAndFreed) {
+TEST(HostsDeviceMemory, UnusableBlock_IsRejectedAndFreed) {
   const std::pair<BadBlocks::Fault, const char*> faults[] = {
       {BadBlocks::Fault::no_memory, "returned no memory"},
       {BadBlocks::Fault::misaligned, "not a multiple of"},
@@ -373,7 +373,7 @@ TEST(HostsDeviceMemory, UnusableBlock_IsRefusedAndFreed) {
   }
 }
 
-TEST(HostsDeviceMemory, HalfAnAllocatorIsRefused) {
+TEST(HostsDeviceMemory, HalfAnAllocatorIsRejected) {
   NullHost host;
   dermis_context_desc desc = host.context_desc();
   dermis_device_allocator allocator = DERMIS_DEVICE_ALLOCATOR_INIT;

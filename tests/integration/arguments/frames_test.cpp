@@ -100,7 +100,7 @@ TEST_F(Frames, ColumnMajorMatrix_IsReported) {
   EXPECT_EQ(dermis_view_record(dermis_graph_view(host.graph), &frame), DERMIS_OK) << dermis_last_error();
 }
 
-TEST_F(Frames, ContradictingHandedness_IsRefused) {
+TEST_F(Frames, ContradictingHandedness_IsRejected) {
   const float perspective[16] = {2, 0, 0, 0, 0, -2, 0, 0, 0, 0, -1, -0.1f, 0, 0, -1, 0};
   const float orthographic[16] = {2, 0, 0, 0, 0, -2, 0, 0, 0, 0, -1, 0, 0, 0, 0, 1};
   using Matrix = const float(&)[16];
@@ -210,7 +210,7 @@ TEST(IncludedFiles, Unreadable_AreErrorsOfTheGraph) {
 
 // ---- Pass types of the host
 
-TEST(HostsPassTypes, TooManyPassTypes_AreRefused) {
+TEST(HostsPassTypes, TooManyPassTypes_AreRejected) {
   NullHost host;
   ASSERT_EQ(host.make_context(host.context_desc()), DERMIS_OK) << dermis_last_error();
   dermis_port port = DERMIS_PORT_INIT;

@@ -103,7 +103,7 @@ TEST_F(QueueFamilies, TransfersReachFamilyZeroAndSpecialFamilies) {
   EXPECT_TRUE(transfers().empty()) << "no transfer within one family";
 }
 
-TEST_F(QueueFamilies, InvalidFamilies_AreRefusedByName) {
+TEST_F(QueueFamilies, InvalidFamilies_AreRejectedByName) {
   make(false);
   const std::tuple<const char*, uint32_t, uint32_t> wrong[] = {
       {"bindings[0].after ('lighting'): queue_family is 2 and transfer 0; set transfer to 1", 2, 0},

@@ -42,7 +42,7 @@ struct SharedImages : RecordedFrame {
   }
 };
 
-TEST_F(SharedImages, LayoutChange_IsRefusedNamingBothSlots) {
+TEST_F(SharedImages, LayoutChange_IsRejectedNamingBothSlots) {
   slot("albedo").image = slot("scatter_scale").image;
   rejected("'albedo'", "'scatter_scale'"); // Read in another layout than that of the states.
   slot("albedo").image = slot("lighting").image;

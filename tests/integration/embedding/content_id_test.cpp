@@ -59,7 +59,7 @@ TEST_F(ContentId, DistinguishesImagesWithEqualHandles) {
   }
 }
 
-TEST_F(ContentId, TooManyImages_AreRefusedOnlyWhileInUse) {
+TEST_F(ContentId, TooManyImages_AreRejectedOnlyWhileInUse) {
   const dermis_graph graph = make_accumulating();
   Camera camera = make_camera(graph, 1);
   // A new image in each frame, three frames in flight.

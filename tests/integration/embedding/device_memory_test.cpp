@@ -227,7 +227,7 @@ TEST_F(DeviceMemory, TransientsAndHistories_AreReportedPerBlock) {
   EXPECT_EQ(dermis_graph_heaps(nullptr, &count, nullptr), DERMIS_ERROR_ARGUMENT);
 }
 
-TEST_F(DeviceMemory, HostRefuses_IsReportedAndNothingLeaks) {
+TEST_F(DeviceMemory, HostRejects_IsReportedAndNothingLeaks) {
   use_arena();
   dermis_graph graph = nullptr;
   uint64_t refusals = 0;

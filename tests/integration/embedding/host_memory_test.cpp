@@ -303,7 +303,7 @@ TEST_F(HostMemory, RecordingAFrame_AllocatesNothing) {
   EXPECT_EQ(heap.calls, 0u);
 }
 
-TEST_F(HostMemory, HalfAnAllocatorIsRefused) {
+TEST_F(HostMemory, HalfAnAllocatorIsRejected) {
   host.destroy();
   allocator.free = nullptr;
   EXPECT_EQ(host.make_context(with_heap()), DERMIS_ERROR_ARGUMENT);

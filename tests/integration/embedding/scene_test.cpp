@@ -177,7 +177,7 @@ TEST_F(SceneBindings, AreAcquiredAndReleasedByBarriers) {
   EXPECT_EQ(call->ports[2].structure, nullptr);
 }
 
-TEST_F(SceneBindings, WrongBindings_AreRefusedByName) {
+TEST_F(SceneBindings, WrongBindings_AreRejectedByName) {
   struct Wrong {
     const char* says;
     std::function<void(SceneBindings&, dermis_frame&)> change;

@@ -243,7 +243,7 @@ TEST_F(Settings, ViewSettings_SurviveAReloadThatAcceptsThem) {
   EXPECT_EQ(weight_of_view("one"), 0.5);
 }
 
-TEST_F(Settings, GraphSetting_IsRefusedForAView) {
+TEST_F(Settings, GraphSetting_IsRejectedForAView) {
   make_with_view();
   for (const char* name : {"on", "count", "how", "radius", "both", "threshold"}) {
     EXPECT_EQ(dermis_view_set_setting(view, name, "1", nullptr), DERMIS_ERROR_ARGUMENT) << name;

@@ -108,7 +108,7 @@ TEST_F(Allocation, RecordingAllocatesNothing) {
   }
 }
 
-TEST_F(Allocation, RefusedFrameAllocatesNothing) {
+TEST_F(Allocation, RejectedFrameAllocatesNothing) {
   dermis_frame frame = DERMIS_FRAME_INIT;
   frame.command_buffer = host.device.command_buffer();
   frame.frame_index = host.last_frame + 1;
@@ -126,7 +126,7 @@ TEST_F(Allocation, EachFailureInAReloadIsReported) {
             [&](uint64_t number) { ASSERT_EQ(host.record(), DERMIS_OK) << "allocation " << number; });
 }
 
-TEST_F(Allocation, HostAllocatorIsRefused) {
+TEST_F(Allocation, HostAllocatorIsRejected) {
   dermis_allocator allocator = DERMIS_ALLOCATOR_INIT;
   allocator.allocate = [](void*, size_t, size_t) -> void* { return nullptr; };
   allocator.free = [](void*, void*, size_t, size_t) {};

@@ -225,7 +225,7 @@ TEST_F(Shaders, OpenOnlyFilesOfTheirFolder) {
   expect_unchanged_picture(graph);
 }
 
-TEST_F(Shaders, RecursiveInclude_IsRefused) {
+TEST_F(Shaders, RecursiveInclude_IsRejected) {
   const dermis_graph graph = make();
   folder.changed["common/half.glsl"] = "#include \"common/half.glsl\"\n";
   Said said;
@@ -240,7 +240,7 @@ TEST_F(Shaders, RecursiveInclude_IsRefused) {
   expect_unchanged_picture(graph);
 }
 
-TEST_F(Shaders, SignatureMismatch_IsRefused) {
+TEST_F(Shaders, SignatureMismatch_IsRejected) {
   const dermis_graph graph = make();
   folder.change(combine, "void main() {",
                 "layout(set = 0, binding = 30) buffer stranger { float data[]; } other;\n"

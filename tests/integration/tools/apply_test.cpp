@@ -198,7 +198,7 @@ TEST_F(Captures, MissingProfileIsNamed) {
   EXPECT_THAT(files("out"), IsEmpty());
 }
 
-TEST_F(Captures, AFolderWithoutFramesIsRefused) {
+TEST_F(Captures, AFolderWithoutFramesIsRejected) {
   std::filesystem::create_directories(path("capture"));
   const Outcome outcome = apply();
   EXPECT_EQ(outcome.exit_code, 1);

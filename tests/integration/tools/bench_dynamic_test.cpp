@@ -44,7 +44,7 @@ TEST(BenchDynamic, DistancesFileIsValidAndHasCameras) {
     EXPECT_TRUE(scene.camera.has_value()) << scene.framing;
 }
 
-TEST(BenchDynamic, UnknownEntry_IsRefusedWithThePlace) {
+TEST(BenchDynamic, UnknownEntry_IsRejectedWithThePlace) {
   Diagnostics diagnostics;
   EXPECT_FALSE(read_dynamic(root + "/tests/benchmark/shapes.json", diagnostics));
   EXPECT_TRUE(diagnostics.has_errors());

@@ -38,7 +38,7 @@ TEST(BenchRestirFile, ShippedFileIsValidAndNamesExistingFiles) {
   EXPECT_TRUE(techniques.contains("sap"));
 }
 
-TEST(BenchRestirFile, UnknownEntry_IsRefusedWithThePlace) {
+TEST(BenchRestirFile, UnknownEntry_IsRejectedWithThePlace) {
   Diagnostics diagnostics;
   EXPECT_FALSE(read_restir(sources + "/tests/benchmark/dynamic.json", diagnostics));
   EXPECT_TRUE(diagnostics.has_errors());

@@ -80,7 +80,7 @@ TEST_F(BenchStability, TestsOnlyTheOutputsOfATechnique) {
   EXPECT_EQ(requested["afis_guided ccv"], of_all);
 }
 
-TEST_F(BenchStability, UnknownNames_AreRefused) {
+TEST_F(BenchStability, UnknownNames_AreRejected) {
   const Outcome outcome =
       run({"bench", "stability", "--techniques", "none", "--cases", "none", "--updates", "1000"});
   EXPECT_EQ(outcome.exit_code, 2);

@@ -60,7 +60,7 @@ TEST_F(Choice, CalibrateWritesAFileForValidateAndRender) {
   EXPECT_EQ(used.exit_code, 0) << used.err;
 }
 
-TEST_F(Choice, InvalidCalibration_IsRefusedWithItsPlace) {
+TEST_F(Choice, InvalidCalibration_IsRejectedWithItsPlace) {
   const std::string file =
       write("calibration.json", "{ \"dermis_calibration\": 2,\n \"devise\": \"d\", \"costs\": [] }");
   const Outcome outcome = run({"render", scene, "--graph", graph, "--size", "64x36", "--frames", "1",

@@ -140,7 +140,7 @@ TEST_F(Compare, SummarisesAFolderAndDescribesTheMap) {
   EXPECT_THAT(with_heat_map.out, ::testing::AllOf(HasSubstr(path("heat.png")), HasSubstr("1e-4")));
 }
 
-TEST_F(Compare, RefusesIncomparablePictures) {
+TEST_F(Compare, RejectsIncomparablePictures) {
   const std::string a = png("a.png", 100, 100), light = exr("light.exr", 1);
   EXPECT_THAT(run({"compare", a, light}).err, HasSubstr("16x16"));
   EXPECT_EQ(run({"compare", a, path("none.png")}).exit_code, 1);

@@ -99,7 +99,7 @@ TEST_F(PassTypes, DisabledPass_DoesNotPreventRendering) {
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
 }
 
-TEST_F(PassTypes, EnabledPass_IsRefusedByName) {
+TEST_F(PassTypes, EnabledPass_IsRejectedByName) {
   const std::string side_effects = write("effects.json", R"({ "dermis_pass_types": 2, "pass_types": [
   { "name": "studio.look", "side_effects": true, "ports": [ { "name": "light", "usage": "sampled_image" } ] } ] })");
   const std::string look = write("look.json", R"({ "dermis_overlay": 2, "edits": [

@@ -70,7 +70,7 @@ TEST_F(PlanFiles, AsyncPasses_GetAQueueOnRequest) {
   EXPECT_THAT(run({"plan", "diff", path("two.plan"), graph}).out, HasSubstr("single queue"));
 }
 
-TEST_F(PlanFiles, ADamagedPlanIsRefusedWithTheByte) {
+TEST_F(PlanFiles, ADamagedPlanIsRejectedWithTheByte) {
   ASSERT_EQ(run({"plan", "save", burley, "--out", path("a.plan")}).exit_code, 0);
   const std::string whole = contents(path("a.plan"));
   const std::string cut = write("cut.plan", whole.substr(0, whole.size() - 9));

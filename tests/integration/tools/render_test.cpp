@@ -64,7 +64,7 @@ TEST_F(Render, DebugPicturesShowSkippedTiles) {
   }
 }
 
-TEST_F(Render, DebugSamples_NotExported_IsRefused) {
+TEST_F(Render, DebugSamples_NotExported_IsRejected) {
   const Outcome outcome = render(bust, burley, {"--frames", "1", "--debug", "samples"});
   EXPECT_EQ(outcome.exit_code, 2);
   EXPECT_THAT(outcome.err, HasSubstr("afis_guided.json, sap_blend.json and sap_residual.json do"));

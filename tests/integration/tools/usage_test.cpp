@@ -71,7 +71,7 @@ TEST_F(Usage, UnknownSetting_SuggestsTheNearest) {
   EXPECT_THAT(outcome.err, HasSubstr("no setting 'sample'; did you mean 'samples'?"));
 }
 
-TEST_F(Usage, SettingOutOfRangeOrOfWrongType_IsRefused) {
+TEST_F(Usage, SettingOutOfRangeOrOfWrongType_IsRejected) {
   const Outcome range = run({"explain", burley, "--set", "samples=1"});
   EXPECT_EQ(range.exit_code, 2);
   EXPECT_THAT(range.err, HasSubstr("setting 'samples': 1 is outside 4 .. 4096"));

@@ -42,7 +42,7 @@ TEST_F(View, FileContentsCannotEndAnElement) {
   EXPECT_EQ(count(hostile.out, "hurt_the_reader"), 0u);
 }
 
-TEST_F(View, InvalidReport_IsRefusedWithItsPlace) {
+TEST_F(View, InvalidReport_IsRejectedWithItsPlace) {
   const std::string report = write("report.json", "{\n  \"passes\": [ { \"pass\": \"classify\" } ] }");
   const Outcome outcome =
       run({"graph", "configs/graphs/burley.json", "--html", path("view.html"), "--frame", report});

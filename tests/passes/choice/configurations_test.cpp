@@ -164,7 +164,7 @@ TEST_F(Configurations, CostsGrowWithTheListedTiles) {
   EXPECT_GT(many, few + 4 * 1e-4 * 3400); // Setup, two passes and combine run over listed tiles.
 }
 
-TEST_F(Configurations, TooManyConfigurations_AreRefusedAtTheChoice) {
+TEST_F(Configurations, TooManyConfigurations_AreRejectedAtTheChoice) {
   EXPECT_FALSE(
       configurations_of("\"technique\": { \"choice\": [\"separable\", \"b\", \"c\", \"d\", \"e\", \"f\", "
                         "\"g\", \"h\"], \"by\": \"budget\", "
@@ -202,7 +202,7 @@ TEST(Units, LeaveTwoDeviationsOfTheBudgetFree) {
   EXPECT_EQ(units_within(configuration, costs, {}, budget_ms, false), UINT32_MAX);
 }
 
-TEST_F(Configurations, CurvesThatDoNotIncreaseAreRefused) {
+TEST_F(Configurations, CurvesThatDoNotIncreaseAreRejected) {
   Diagnostics other;
   const auto document = parse_document("errors.json",
                                        "{ \"dermis_errors\": 2, \"scenes\": \"s\", \"techniques\": "

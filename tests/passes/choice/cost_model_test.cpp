@@ -127,7 +127,7 @@ TEST(Calibration, ReadsBackFromItsFile) {
   EXPECT_NEAR(again.estimate(again.add("a"), 500).ms, model.estimate(a, 500).ms, 1e-9);
 }
 
-TEST(Calibration, InvalidEntries_AreRefusedWithTheirPlace) {
+TEST(Calibration, InvalidEntries_AreRejectedWithTheirPlace) {
   Diagnostics diagnostics;
   const auto document = parse_document("c.json",
                                        "{\"dermis_calibration\": 2, \"device\": \"d\", \"costs\": [\n"

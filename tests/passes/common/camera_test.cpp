@@ -79,7 +79,7 @@ Matrix4 transposed(const Matrix4& m) {
 
 // Half of all engines store matrices by columns, and a perspective on its side looks like a
 // perspective with another field of view.
-TEST(Camera, ColumnMajorMatrix_IsRefused) {
+TEST(Camera, ColumnMajorMatrix_IsRejected) {
   const Matrix4 forward{2, 0, 0.1, 0, 0, -2, 0, 0, 0, 0, -1, -0.1, 0, 0, -1, 0};
   const Matrix4 reversed{2, 0, 0, 0, 0, -2, 0, 0, 0, 0, 0, 1, 0, 0, -1, 0}; // Near plane at 1 unit.
   const Matrix4 flat{2, 0, 0, 0.5, 0, -2, 0, 0, 0, 0, -0.1, -0.1, 0, 0, 0, 1};
@@ -145,7 +145,7 @@ TEST(Camera, AcceptsBothHandednesses) {
     EXPECT_FALSE(text_of(static_cast<CameraFault>(i)).empty()) << i;
 }
 
-TEST(Camera, NotAnAxisAlignedProjection_IsRefused) {
+TEST(Camera, NotAnAxisAlignedProjection_IsRejected) {
   const Matrix4 good = perspective(1, 1, 0, 0.1);
   Matrix4 m = good;
   m[1] = 0.1; // Sheared.

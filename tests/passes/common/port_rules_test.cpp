@@ -67,7 +67,7 @@ struct PortRules : ::testing::Test {
   }
 };
 
-TEST_F(PortRules, LightWithMissingChannelsIsRefused) {
+TEST_F(PortRules, LightWithMissingChannelsIsRejected) {
   replace(R"("light": { "format": "rgba16f")", R"("light": { "format": "r16f")");
   read();
   EXPECT_FALSE(graph);
@@ -163,7 +163,7 @@ TEST_F(PortRules, OwnTexelsAreReadAtTheTexelThatIsWritten) {
   EXPECT_EQ(ports, 8u);
 }
 
-TEST_F(PortRules, CombineWithoutLight_IsRefused) {
+TEST_F(PortRules, CombineWithoutLight_IsRejected) {
   replace(R"("read": { "scattered": "scattered", "material": "material", "albedo": "albedo",
                 "tiles")",
           R"("read": { "material": "material", "albedo": "albedo",
@@ -185,7 +185,7 @@ TEST_F(PortRules, CopiedLightIsAccepted) {
 }
 
 // The file binds both ports, but these settings disable both producers; expects one diagnostic.
-TEST_F(PortRules, NoProducerOfAnySuchPort_IsRefused) {
+TEST_F(PortRules, NoProducerOfAnySuchPort_IsRejected) {
   replace(R"("samples": { "int": 32)", R"("on": { "bool": false }, "samples": { "int": 32)");
   replace(R"("type": "subsurface.burley",)", R"("type": "subsurface.burley", "when": "on",)");
   replace(R"("scattered": "scattered", "material": "material", "albedo": "albedo",

@@ -188,7 +188,7 @@ TEST(ProfileModels, MeanFreePathInside_MatchesTheScaling) {
   EXPECT_NEAR(diffuse->d_mm[0], 1 / 1.10, 1e-12);
 }
 
-TEST(ProfileModels, NumbersOfAnotherModel_AreRefused) {
+TEST(ProfileModels, NumbersOfAnotherModel_AreRejected) {
   Diagnostics diagnostics;
   EXPECT_FALSE(parse("{\"dermis_profile\": 1, \"name\": \"p\", \"source\": \"t\",\n"
                      " \"dmfp_mm\": [1, 2, 3], \"albedo\": [1, 1, 1],\n \"falloff\": [1, 1, 1]}",
@@ -203,7 +203,7 @@ TEST(ProfileModels, NumbersOfAnotherModel_AreRefused) {
   EXPECT_NE(one.text.find("burley"), std::string::npos);
 }
 
-TEST(ProfileModels, OneLengthGivenTwiceIsRefusedOnce) {
+TEST(ProfileModels, OneLengthGivenTwiceIsRejectedOnce) {
   for (const char* text : {R"("dmfp_mm": [1, 2, 3], "mfp_mm": [1, 2, 3])",
                            R"("dmfp_mm": [1, 2, 3], "scaling": "searchlight")"}) {
     Diagnostics diagnostics;

@@ -45,7 +45,7 @@ TEST(Profile, AMeanFreePathOfZeroMeansNoScattering) {
     EXPECT_EQ(d, 0.0);
 }
 
-TEST(Profile, InvalidValuesAndKeys_AreRefusedWithTheirPlace) {
+TEST(Profile, InvalidValuesAndKeys_AreRejectedWithTheirPlace) {
   Diagnostics diagnostics;
   EXPECT_FALSE(
       parsed("{\"dermis_profile\": 1, \"name\": \"p\",\n \"dmfp_mm\": [-1, 0, 0],\n \"albedo\": [0, 2, 0],\n"
@@ -119,7 +119,7 @@ TEST(Environment, FrameConstantsReconstructViewPositions) {
   EXPECT_NEAR((constants.ray_scale[1] * pixel[1] + constants.ray_offset[1]) * depth, 5000.0f, 0.1f);
 }
 
-TEST(Environment, NotAProjection_IsRefused) {
+TEST(Environment, NotAProjection_IsRejected) {
   FrameInput input;
   input.rect_width = input.rect_height = 8;
   FrameConstants constants{};

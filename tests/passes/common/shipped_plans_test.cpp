@@ -112,7 +112,7 @@ Plan without_batch_mates(const Plan& plan, uint32_t barrier) {
   return out;
 }
 
-TEST_F(ShippedPlans, DroppedBarrier_IsRefused) {
+TEST_F(ShippedPlans, DroppedBarrier_IsRejected) {
   for_each_plan([](const Graph&, const CompiledPlan& compiled, Bound) {
     for (uint32_t b = 0; b < compiled.plan.barriers.size(); ++b) {
       if (!verify(without_barrier(compiled.plan, b)).violations.empty()) continue;
@@ -122,7 +122,7 @@ TEST_F(ShippedPlans, DroppedBarrier_IsRefused) {
   });
 }
 
-TEST_F(ShippedPlans, Mutants_AreRefusedIfHazardous) {
+TEST_F(ShippedPlans, Mutants_AreRejectedIfHazardous) {
   Tally tally;
   for_each_plan([&](const Graph&, const CompiledPlan& compiled, Bound bound) {
     // The oracle is slow: it checks the widest plan of each graph, and in full mode the narrowest,

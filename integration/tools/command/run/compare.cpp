@@ -113,6 +113,7 @@ std::vector<Pair> pairs_of(const std::string& a, const std::string& b, std::stri
   return pairs;
 }
 
+// Reads RGB, or the only channel of an .exr file.
 std::optional<Image> read_picture(const fs::path& path, std::string& problem) {
   if (path.extension() == ".png") return read_png(path, problem);
   if (path.extension() == ".exr")

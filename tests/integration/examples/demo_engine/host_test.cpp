@@ -81,7 +81,7 @@ TEST_F(Host, FloatsRoundTripThroughEveryFormat) {
   }
 }
 
-TEST_F(Host, ImagesBeyondDeviceLimitsAreRefusedByName) {
+TEST_F(Host, ImagesBeyondDeviceLimitsAreRejectedByName) {
   auto none = create_image(
       *host,
       {.format = VK_FORMAT_R8_UINT, .width = 0, .height = 4, .usage = VK_IMAGE_USAGE_TRANSFER_DST_BIT});

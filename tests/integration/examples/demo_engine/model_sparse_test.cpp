@@ -88,7 +88,7 @@ TEST_F(ModelSparse, IndicesAreReplaced) {
   EXPECT_THAT(beyond.error().text, ::testing::HasSubstr("there are 4 vertices"));
 }
 
-TEST_F(ModelSparse, InvalidSparseAccessorsAreRefused) {
+TEST_F(ModelSparse, InvalidSparseAccessorsAreRejected) {
   const struct {
     const char *from, *to, *says;
   } cases[] = {

@@ -99,7 +99,7 @@ std::string exchanged(std::string text, const std::string& from, const std::stri
   return text.replace(at, from.size(), to);
 }
 
-TEST_F(ModelFile, OtherVersionsAreRefusedByName) {
+TEST_F(ModelFile, OtherVersionsAreRejectedByName) {
   const std::string whole = text_of(triangle());
   const auto with_asset = [&](const std::string& asset) {
     return only(write("version.gltf", exchanged(whole, R"("version": "2.0")", asset)));
@@ -115,7 +115,7 @@ TEST_F(ModelFile, OtherVersionsAreRefusedByName) {
   EXPECT_TRUE(load_model(with_asset(R"("version": "2.1", "minVersion": "2.0")")));
 }
 
-TEST_F(ModelFile, RequiredExtensionsAreRefusedByName) {
+TEST_F(ModelFile, RequiredExtensionsAreRejectedByName) {
   const std::string whole = text_of(triangle());
   const auto with = [&](const std::string& more) {
     return only(write("required.gltf", exchanged(whole, R"("scene": 0)", R"("scene": 0, )" + more)));
@@ -234,7 +234,7 @@ TEST_F(ModelFile, PrimitiveWithoutNormals_ChangesNoOther) {
   }
 }
 
-TEST_F(ModelFile, SkinnedMeshesAreRefusedByName) {
+TEST_F(ModelFile, SkinnedMeshesAreRejectedByName) {
   const std::string path =
       triangle("[0, 1, 2]", "", R"([{ "mesh": 0, "skin": 0, "name": "torso" }, { "name": "joint" }])");
   const std::string whole =
@@ -243,23 +243,23 @@ TEST_F(ModelFile, SkinnedMeshesAreRefusedByName) {
               testing::AllOf(HasSubstr("node 0 'torso'"), HasSubstr("skin")));
 }
 
-TEST_F(ModelFile, IndicesBeyondTheVerticesAreRefused) {
+TEST_F(ModelFile, IndicesBeyondTheVerticesAreRejected) {
   EXPECT_THAT(rejected(only(triangle("[0, 1, 3]"))).text, HasSubstr("holds index 3; there are 3 vertices"));
 }
 
-TEST_F(ModelFile, AccessorsBeyondTheirBufferAreRefused) {
+TEST_F(ModelFile, AccessorsBeyondTheirBufferAreRejected) {
   EXPECT_THAT(rejected(only(triangle("[0, 1, 2]", R"(, "byteOffset": 8)"))).text,
               HasSubstr("beyond the end"));
   EXPECT_THAT(rejected(only(triangle("[0, 1, 2]", R"(, "byteOffset": 18446744073709551600)"))).kind,
               ErrorKind::input);
 }
 
-TEST_F(ModelFile, NodeCyclesAreRefused) {
+TEST_F(ModelFile, NodeCyclesAreRejected) {
   EXPECT_THAT(rejected(only(triangle("[0, 1, 2]", "", R"([{ "children": [1] }, { "children": [0] }])"))).text,
               HasSubstr("circle"));
 }
 
-TEST_F(ModelFile, ASceneWithoutTrianglesIsRefused) {
+TEST_F(ModelFile, ASceneWithoutTrianglesIsRejected) {
   EXPECT_THAT(rejected(only(triangle("[0, 1, 2]", "", R"([{ "name": "lamp" }])"))).text,
               HasSubstr("no triangles"));
 }
@@ -382,20 +382,20 @@ TEST_F(ModelFile, PicturesThatAreMissingAreNamed) {
               testing::ElementsAre(HasSubstr("KHR_texture_basisu")));
 }
 
-TEST_F(ModelFile, ChunksBeyondTheEndOfTheFileAreRefused) {
+TEST_F(ModelFile, ChunksBeyondTheEndOfTheFileAreRejected) {
   const std::string json = R"({ "asset": { "version": "2.0" }, "buffers": [{ "byteLength": 16 }] })";
   EXPECT_THAT(rejected(only(write("chunk.glb", binary(json, "12345678", 8)))).text,
               HasSubstr("second chunk reaches beyond its end"));
 }
 
-TEST_F(ModelFile, DeepNestingIsRefused) {
+TEST_F(ModelFile, DeepNestingIsRejected) {
   const std::string deep = std::string(1000000, '[') + std::string(1000000, ']');
   EXPECT_THAT(
       rejected(only(write("deep.gltf", R"({ "asset": { "version": "2.0" }, "extras": )" + deep + "}"))).text,
       HasSubstr("nested deeper than 64"));
 }
 
-TEST_F(ModelFile, DamagedFilesAreRefusedOrRead) {
+TEST_F(ModelFile, DamagedFilesAreRejectedOrRead) {
   std::ifstream stream(triangle(), std::ios::binary);
   const std::string text((std::istreambuf_iterator<char>(stream)), {});
   const float positions[9] = {0, 0, 0, 1, 0, 0, 0, 2, 0};
@@ -438,7 +438,7 @@ TEST(Texture, OtherFormatsAreNotParsed) {
   }
 }
 
-TEST_F(ModelFile, EveryTruncationOfAFileIsRefusedOrRead) {
+TEST_F(ModelFile, EveryTruncationOfAFileIsRejectedOrRead) {
   const std::string path = triangle();
   std::ifstream stream(path, std::ios::binary);
   const std::string whole((std::istreambuf_iterator<char>(stream)), {});

@@ -111,7 +111,7 @@ TEST_F(SceneFolders, SceneWithoutProject_ReadsInItsFolder) {
   EXPECT_TRUE(read("elsewhere", "../project/profiles/skin.json", {(top / "project").string() + "/"}));
 }
 
-TEST_F(SceneFolders, NonPortableNamesAreRefused) {
+TEST_F(SceneFolders, NonPortableNamesAreRejected) {
   EXPECT_FALSE(read("project/scenes", ""));
   ASSERT_FALSE(diagnostics.list.empty());
   EXPECT_EQ(diagnostics.list[0].id, dermis::DiagnosticId::outside_root);
@@ -166,7 +166,7 @@ TEST(SceneFile, KeyframesAscendAndASineStaysInRange) {
                   4, "swings");
 }
 
-TEST(SceneFile, TooManyShadowMapsAreRefused) {
+TEST(SceneFile, TooManyShadowMapsAreRejected) {
   std::string lights;
   for (int i = 0; i < 5; ++i)
     lights += std::string(i ? "," : "") + R"({ "type": "point", "position": [0, 1, 0], "intensity": 1 })";

@@ -225,7 +225,7 @@ TEST_F(Captures, FramesAreOrderedByName) {
     EXPECT_EQ(read_frame(frames[i], shipped, diagnostics)->description.frame_index, i);
 }
 
-TEST_F(Captures, EmptyOrMissingFoldersAreRefused) {
+TEST_F(Captures, EmptyOrMissingFoldersAreRejected) {
   EXPECT_TRUE(find_frames(root, diagnostics).empty());
   EXPECT_TRUE(find_frames(root / "none", diagnostics).empty());
   ASSERT_EQ(diagnostics.list.size(), 2u);
@@ -295,13 +295,13 @@ TEST_F(Captures, LightThatGraphsClampIsReported) {
   EXPECT_THAT(messages(), HasSubstr("light of 2 subsurface pixels is above 65504, at most 200000"));
 }
 
-TEST_F(Captures, PicturesOfAnotherSizeAreRefused) {
+TEST_F(Captures, PicturesOfAnotherSizeAreRejected) {
   const fs::path folder = write(sample());
   ASSERT_TRUE(write_exr(folder / "albedo.exr", Image::sized(5, 4, 3), {"R", "G", "B"}, error));
   expect_rejected(folder, DiagnosticId::capture_picture_size, "/width", "5 x 4");
 }
 
-TEST_F(Captures, PicturesWithOtherChannelsAreRefused) {
+TEST_F(Captures, PicturesWithOtherChannelsAreRejected) {
   const fs::path folder = write(sample());
   ASSERT_TRUE(write_exr(folder / "lighting.exr", Image::sized(6, 4, 1), {"Y"}, error));
   expect_rejected(folder, DiagnosticId::capture_picture, "", "R,G,B");
@@ -355,7 +355,7 @@ TEST_F(Captures, NothingOutsideTheirFolderIsRead) {
   }
 }
 
-TEST_F(Captures, LinksOutOfTheFolderAreRefused) {
+TEST_F(Captures, LinksOutOfTheFolderAreRejected) {
   const fs::path folder = write(sample()), other = write(sample(), "other");
   fs::remove(folder / "lighting.exr");
   fs::create_symlink(other / "lighting.exr", folder / "lighting.exr");
@@ -377,13 +377,13 @@ TEST_F(Captures, LinksOutOfTheFolderAreRefused) {
   EXPECT_EQ(find_frames(root / "capture", diagnostics, std::vector{(root / "other").string()}).size(), 2u);
 }
 
-TEST_F(Captures, DuplicateProfileIdIsRefused) {
+TEST_F(Captures, DuplicateProfileIdIsRejected) {
   const fs::path folder = write(sample());
   change(folder, "\"profiles\": [", "\"profiles\": [ { \"id\": 3, \"file\": \"skin\" },");
   expect_rejected(folder, DiagnosticId::capture_profile, "/profiles/1/id", "declared twice");
 }
 
-TEST_F(Captures, NotAProjectionIsRefused) {
+TEST_F(Captures, NotAProjectionIsRejected) {
   const fs::path folder = write(sample());
   change(folder, "[1.1, 0, 0, 0", "[1.1, 0.5, 0, 0");
   expect_rejected(folder, DiagnosticId::capture_projection, "/clip_from_view", "axis-aligned perspective");
@@ -447,7 +447,7 @@ TEST_F(Captures, LeftHandedFramesAreMirrored) {
   EXPECT_TRUE(diagnostics.list.empty()) << messages();
 }
 
-TEST_F(Captures, ContradictingViewSpacesAreRefused) {
+TEST_F(Captures, ContradictingViewSpacesAreRejected) {
   const auto declare = [&](const fs::path& frame, const char* projection, const char* space) {
     change(frame, std::string("\"") + projection + "\"",
            std::string("\"") + projection + "\", \"view_space\": \"" + space + "\"");
@@ -485,7 +485,7 @@ TEST_F(Captures, RectanglesStayInside) {
   expect_rejected(folder, DiagnosticId::capture_rectangle, "/render_rectangle", "inside 6 x 4");
 }
 
-TEST_F(Captures, UnknownKeysAreRefusedWithASuggestion) {
+TEST_F(Captures, UnknownKeysAreRejectedWithASuggestion) {
   const fs::path folder = write(sample());
   change(folder, "\"exposure\"", "\"exposur\"");
   expect_rejected(folder, DiagnosticId::unknown_key, "/exposur", "exposure");

@@ -151,7 +151,7 @@ TEST_F(Exr, DataWindowsArePlacedInDisplayWindows) {
         }
 }
 
-TEST_F(Exr, DisjointWindowsAreRefused) {
+TEST_F(Exr, DisjointWindowsAreRejected) {
   const Box2i far_away(V2i(100, 0), V2i(131, 23));
   expect_rejected(write(header_of(small, far_away, Imf::ZIP_COMPRESSION)), "outside of its display window");
 }
@@ -164,7 +164,7 @@ TEST_F(Exr, UnsupportedCompressionsAreNamed) {
   expect_rejected(change(path, key, 4, {200}), "its compression (number 200) is not read");
 }
 
-TEST_F(Exr, PartsAndDeepPixelsAreRefusedByName) {
+TEST_F(Exr, PartsAndDeepPixelsAreRejectedByName) {
   const fs::path path = write(header_of(small, small, Imf::ZIP_COMPRESSION));
   const std::string magic("\x76\x2f\x31\x01\x02", 5);
   expect_rejected(change(path, magic, 0, {0x10}), "several parts");
@@ -172,7 +172,7 @@ TEST_F(Exr, PartsAndDeepPixelsAreRefusedByName) {
   expect_rejected(change(path, magic, 0, {0x80}), "flags");
 }
 
-TEST_F(Exr, SubsampledChannelsAreRefused) {
+TEST_F(Exr, SubsampledChannelsAreRejected) {
   Imf::Header header = header_of(small, small, Imf::ZIP_COMPRESSION);
   header.channels().insert("Y", Imf::Channel(Imf::FLOAT, 2, 2));
   const std::vector<float> values = values_of(small);
@@ -204,7 +204,7 @@ TEST_F(Exr, SizesAreCheckedBeforeAllocation) {
   expect_rejected(change(path, data, 4, words({-2147483647, 0, 2147483647, 0})), "changed.exr");
 }
 
-TEST_F(Exr, AttributesBeyondTheFileAreRefused) {
+TEST_F(Exr, AttributesBeyondTheFileAreRejected) {
   const fs::path path = write(header_of(small, small, Imf::ZIP_COMPRESSION));
   for (const std::string& key :
        {std::string("channels\0chlist\0", 16), std::string("dataWindow\0box2i\0", 17),
@@ -213,7 +213,7 @@ TEST_F(Exr, AttributesBeyondTheFileAreRefused) {
       expect_rejected(change(path, key, 0, words({size})), "header is damaged or cut off");
 }
 
-TEST_F(Exr, HeadersWithoutWindowsAreRefused) {
+TEST_F(Exr, HeadersWithoutWindowsAreRejected) {
   const fs::path path = write(header_of(small, small, Imf::ZIP_COMPRESSION));
   expect_rejected(change(path, "dataWind", 0, {'o', 'x'}), "its header has no 'dataWindow'");
   expect_rejected(change(path, "displayWind", 0, {'o', 'x'}), "its header has no 'displayWindow'");

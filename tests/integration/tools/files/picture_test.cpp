@@ -83,14 +83,14 @@ TEST_F(Pictures, MissingChannelsAreNamed) {
   EXPECT_THAT(error, HasSubstr("a.exr"));
 }
 
-TEST_F(Pictures, MissingFilesAndFoldersAreRefused) {
+TEST_F(Pictures, MissingFilesAndFoldersAreRejected) {
   EXPECT_FALSE(read_exr(folder / "none.exr", rgb, error));
   EXPECT_THAT(error, HasSubstr("does not exist"));
   EXPECT_FALSE(read_exr(folder, rgb, error));
   EXPECT_THAT(error, HasSubstr("not a regular file"));
 }
 
-TEST_F(Pictures, TruncatedExrsAreRefusedAtEveryLength) {
+TEST_F(Pictures, TruncatedExrsAreRejectedAtEveryLength) {
   ASSERT_TRUE(write_exr(folder / "a.exr", sample(19, 23, 3), {"R", "G", "B"}, error));
   const std::vector<uint8_t> whole = bytes_of(folder / "a.exr");
   for (size_t length = 0; length < whole.size(); length += length < 400 ? 1 : 97) {
@@ -112,7 +112,7 @@ TEST_F(Pictures, DamagedExrsNeverCrash) {
   }
 }
 
-TEST_F(Pictures, ExrsOfHugeSizeAreRefusedBeforeDecoding) {
+TEST_F(Pictures, ExrsOfHugeSizeAreRejectedBeforeDecoding) {
   ASSERT_TRUE(write_exr(folder / "a.exr", sample(9, 7, 3), {"R", "G", "B"}, error));
   std::vector<uint8_t> bytes = bytes_of(folder / "a.exr");
   const std::string key("dataWindow\0box2i\0", 17);
@@ -244,7 +244,7 @@ TEST_F(Pictures, PngsOf16BitsKeepThem) {
     EXPECT_NEAR(srgb_encode(image->values[i]), float(values[i]) / 65535.0f, 0.5f / 65535) << i;
 }
 
-TEST_F(Pictures, BadPngsAreRefused) {
+TEST_F(Pictures, BadPngsAreRejected) {
   ASSERT_TRUE(write_text(folder / "a.png", "not a picture", error));
   EXPECT_FALSE(read_png(folder / "a.png", error));
   EXPECT_THAT(error, HasSubstr("not a PNG"));
