@@ -1,5 +1,5 @@
 // Tests versions, conditions, culling and order: which passes run, in which order, and which graphs
-// are refused.
+// are rejected.
 
 #include "tests/framegraph/graph_builder.hpp"
 

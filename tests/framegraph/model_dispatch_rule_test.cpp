@@ -36,7 +36,7 @@ TEST(DispatchRuleTest, CountsOfBuffersAndHostsAreUnknown) {
     EXPECT_EQ(group_count({.domain = domain}, 64, 64).total(), 0u);
 }
 
-TEST(DispatchRuleTest, OnlyGroupsWithOneInvocationPerPixelHaveTheCellsShape) {
+TEST(DispatchRuleTest, OnlyFullGroupsHaveTheShapeOfTheCells) {
   EXPECT_TRUE(DispatchRule{}.cell_shaped());
   EXPECT_FALSE((DispatchRule{.cell_side = 32}.cell_shaped()));
   EXPECT_TRUE((DispatchRule{.cell_side = 16, .invocations = 256}.cell_shaped()));

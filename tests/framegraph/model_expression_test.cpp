@@ -159,7 +159,7 @@ TEST(Expression, NestingAndLengthAreBounded) {
   expect_only(long_one.diagnostics, DiagnosticId::limit_exceeded, 2, 1);
 }
 
-// Random strings of the language's tokens are parsed and evaluated, or refused with one error.
+// Random strings of the language's tokens are parsed and evaluated, or rejected with one error.
 TEST(Expression, EveryStringIsParsedOrExplained) {
   const char* words[] = {"flag", "count", "mode", "'a'", "'q'", "1",  "2.5", "and", "or", "not", "in",
                          "[",    "]",     "(",    ")",   ",",   "==", "<",   ">=",  "!",  "'",   "zzz"};

@@ -120,7 +120,7 @@ TEST(Graph, ReaderMayPrecedeItsProducer) {
   EXPECT_TRUE(forward.graph) << all_messages(forward.diagnostics);
 }
 
-// Every deletion of one line or one token is refused with a diagnostic or accepted, and never
+// Every deletion of one line or one token is rejected with a diagnostic or accepted, and never
 // crashes.
 TEST(Graph, DamagedGraphsAreAcceptedOrExplained) {
   const std::string whole = whole_graph();

@@ -1,4 +1,4 @@
-// Mutation tests: the verifier refuses a modified plan exactly when the exhaustive oracle finds a
+// Mutation tests: the verifier rejects a modified plan exactly when the exhaustive oracle finds a
 // hazard.
 
 #include "tests/framegraph/graph_reference.hpp"

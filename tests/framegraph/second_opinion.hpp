@@ -12,7 +12,7 @@ struct Tally {
   uint64_t tried = 0, rejected = 0;
 };
 
-// Counts the mutant as tried, and as refused if the verifier refuses it. Adds a fatal failure to
+// Counts the mutant as tried, and as rejected if the verifier rejects it. Adds a fatal failure to
 // the running test if the oracle disagrees.
 void expect_same_verdict(const Plan& mutant, const std::string& what, Tally& tally);
 

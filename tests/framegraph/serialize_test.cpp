@@ -1,4 +1,4 @@
-// Saved plans read back as they were written; any other file is refused in bounded memory.
+// Saved plans read back as they were written; any other file is rejected in bounded memory.
 
 #include "framegraph/serialize/plan_file.hpp"
 #include "framegraph/verify/verify.hpp"

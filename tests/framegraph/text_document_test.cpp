@@ -259,7 +259,7 @@ TEST(Document, ManyRepeatedKeysGiveBoundedDiagnostics) {
   EXPECT_EQ(parsed.diagnostics.list.back().id, DiagnosticId::too_many_diagnostics);
 }
 
-// Every prefix and every single-byte change of a valid text is accepted or refused with a
+// Every prefix and every single-byte change of a valid text is accepted or rejected with a
 // diagnostic, without a crash.
 TEST(Document, DamagedTextsAreAcceptedOrExplained) {
   const std::string whole =

@@ -200,7 +200,7 @@ TEST(TwoQueues, VisibleByAWait_NeedsNoBarrierForOtherUsages) {
   }
 }
 
-// Each mutant is refused: by the verifier in every plan, and by the oracle in the first
+// Each mutant is rejected: by the verifier in every plan, and by the oracle in the first
 // `judged_twice` plans.
 template <class ForEachMutant>
 void expect_none_needless(uint64_t judged_twice, uint64_t quick, uint64_t full, uint64_t minimum,

@@ -1,4 +1,4 @@
-// The verifier refuses wrong plans: each mutation breaks one property of an accepted plan.
+// The verifier rejects wrong plans: each mutation breaks one property of an accepted plan.
 
 #include "framegraph/verify/verify.hpp"
 

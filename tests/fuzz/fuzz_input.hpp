@@ -1,6 +1,6 @@
 #pragma once
 // Shared by the fuzz targets. For any bytes a target has to terminate, stay within its memory, and
-// explain what it refuses.
+// explain what it rejects.
 
 #include "framegraph/text/diagnostic.hpp"
 
@@ -22,10 +22,10 @@ inline void demand(bool holds, const char* property) {
   std::abort();
 }
 
-// Checks that refused input has an error, and that its messages can be written. Returns 0, which
+// Checks that rejected input has an error, and that its messages can be written. Returns 0, which
 // keeps the input.
 inline int demand_error(const Diagnostics& diagnostics) {
-  demand(diagnostics.has_errors(), "refused without an error");
+  demand(diagnostics.has_errors(), "rejected without an error");
   demand(!format_for_people(diagnostics, diagnostics.list.front()).empty(), "an error without a text");
   demand(format_as_json(diagnostics).size() > 2, "an error that programs do not see");
   return 0;

@@ -216,7 +216,7 @@ void expect_agreement(const SchemaFile& schema, Reader reader, const std::vector
     rejected += accepted ? 0 : 1;
     if (accepted == errors.empty()) continue;
     ++wrong;
-    ADD_FAILURE() << "mutation " << i << ": the schema " << (accepted ? "accepts" : "refuses") << "\n"
+    ADD_FAILURE() << "mutation " << i << ": the schema " << (accepted ? "accepts" : "rejects") << "\n"
                   << schema.first_problem(damaged) << "the parser says:\n"
                   << errors << damaged.dump().substr(0, 3000);
   }

@@ -53,7 +53,7 @@ TEST_F(PlanSchema, AcceptsThePlanOfEveryShippedGraph) {
   EXPECT_GE(plans, 4u);
 }
 
-// Every object of a plan is closed and complete: the schema refuses a missing key and an additional
+// Every object of a plan is closed and complete: the schema rejects a missing key and an additional
 // key.
 void expect_closed(const SchemaFile& schema, const json& whole, json& part, const json& copy,
                    const std::string& where, uint32_t& tried) {

@@ -31,7 +31,7 @@ RecordResult check_slots(const State& state, const FrameInput& frame) {
     const auto number = static_cast<int32_t>(slot);
     const PlanResource& resource = state.plan.resources[state.slot_resource[slot]];
     if (resource.type == ResourceType::buffer) {
-      if (const RecordResult refused = check_buffer(state, frame, resource)) return refused;
+      if (const RecordResult rejected = check_buffer(state, frame, resource)) return rejected;
       continue;
     }
     if (resource.type == ResourceType::acceleration_structure) {
@@ -241,7 +241,7 @@ RecordResult Executor::record(const FrameInput& frame) noexcept {
   const Rectangle rectangle = frame.rectangle.width == 0
                                   ? Rectangle{0, 0, state.plan.view_width, state.plan.view_height}
                                   : frame.rectangle;
-  if (const RecordResult refused = check_frame(state, frame, rectangle)) return refused;
+  if (const RecordResult rejected = check_frame(state, frame, rectangle)) return rejected;
   state.commands = frame.commands == nullptr ? &state.device->vk : frame.commands;
   const VkCommandBuffer commands = frame.command_buffer;
   const auto frame_slot = static_cast<uint32_t>(frame.frame_index % state.frames_in_flight);

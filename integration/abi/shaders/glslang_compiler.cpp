@@ -146,7 +146,7 @@ std::vector<CompilerMessage> messages_in(std::string_view log, const std::string
     found.push_back({file->second, number, column, std::move(text)});
   }
   if (found.empty())
-    found.push_back({files.at(kernel), 0, 0, rest.empty() ? std::string("glslang refuses it") : rest});
+    found.push_back({files.at(kernel), 0, 0, rest.empty() ? std::string("glslang rejects it") : rest});
   return found;
 }
 

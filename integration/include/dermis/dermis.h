@@ -97,7 +97,7 @@ typedef enum dermis_result {
   DERMIS_ERROR_ARGUMENT = -1,  /* a pointer, size or range is wrong; nothing changed */
   DERMIS_ERROR_VERSION = -2,   /* the header is newer than the library and uses new fields */
   DERMIS_ERROR_CONFIG = -3,    /* errors in a graph or profile, see the report; nothing changed */
-  DERMIS_ERROR_SHADER = -4,    /* a kernel does not match its signature, or the device refused it */
+  DERMIS_ERROR_SHADER = -4,    /* a kernel does not match its signature, or the device rejected it */
   DERMIS_ERROR_UNSUPPORTED = -5, /* the device lacks something; the report lists all of it */
   DERMIS_ERROR_MEMORY = -6,    /* out of host memory; nothing changed */
   DERMIS_ERROR_DEVICE_MEMORY = -7, /* out of device memory; nothing changed */
@@ -660,7 +660,7 @@ typedef struct dermis_port {
   uint32_t optional; /* 1: a graph may omit it */
   /* 1: each invocation reads only the texel or element that only it writes, before the write.
    * Required for a port that reads what another port of the pass writes; without it such graphs are
-   * refused (D0232). Update ports do not need it for their own accesses. */
+   * rejected (D0232). Update ports do not need it for their own accesses. */
   uint32_t own_texels;
 } dermis_port;
 #define DERMIS_PORT_INIT {sizeof(dermis_port), NULL, NULL, DERMIS_PORT_SAMPLED_IMAGE, 0, 0}
@@ -985,7 +985,7 @@ DERMIS_API dermis_result DERMIS_CALL dermis_view_histories(
 DERMIS_API dermis_result DERMIS_CALL dermis_view_settings(
     dermis_view view, uint32_t* count, dermis_setting* settings);
 /* Gives this view its own value of a setting with per_frame 1, effective at its next record; json
- * NULL restores the graph's value. Settings with per_frame 0 are refused. Kept over reload and
+ * NULL restores the graph's value. Settings with per_frame 0 are rejected. Kept over reload and
  * resize. Costs: none. Thread: concurrent. Errors: ARGUMENT, CONFIG, MEMORY. */
 DERMIS_API dermis_result DERMIS_CALL dermis_view_set_setting(
     dermis_view view, const char* name, const char* json, dermis_report* report);

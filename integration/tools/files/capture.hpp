@@ -103,7 +103,7 @@ std::optional<CapturedFrame> read_description(const Document& document, const st
 bool complete_projection(FrameDescription& description, subsurface::PixelRays& rays);
 
 // Writes a capture atomically: into a temporary folder next to `folder`, which `finish` renames. An
-// existing capture is replaced; any other non-empty folder is refused. Without `finish` nothing is
+// existing capture is replaced; any other non-empty folder is rejected. Without `finish` nothing is
 // left on disk.
 class CaptureWriter {
 public:

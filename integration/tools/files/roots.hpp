@@ -9,7 +9,7 @@
 namespace dermis::tools {
 
 // Opens a name in the first of `roots` that holds a regular file of that name. Paths and links that
-// lead out of that folder are refused (place_file). Thread: any.
+// lead out of that folder are rejected (place_file). Thread: any.
 OpenFile open_below(std::vector<std::filesystem::path> roots);
 
 } // namespace dermis::tools

@@ -1,4 +1,4 @@
-// Tests that an executor refuses wrong frames and environments with the reason, and then runs the
+// Tests that an executor rejects wrong frames and environments with the reason, and then runs the
 // next correct frame.
 #include "tests/framegraph/vulkan/executor_fixture.hpp"
 

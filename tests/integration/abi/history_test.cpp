@@ -309,7 +309,7 @@ TEST_F(Histories, WrongArgumentsAreNamed) {
   rejected(dermis_view_histories(dermis_graph_view(nullptr), &count, nullptr), "view is NULL");
   rejected(dermis_view_histories(dermis_graph_view(graph), nullptr, nullptr), "count is NULL");
   rejected(dermis_view_histories(nullptr, &count, nullptr), "view is NULL");
-  // Every size below that of the first version is refused; bytes beyond the known size are filled
+  // Every size below that of the first version is rejected; bytes beyond the known size are filled
   // with zeros.
   for (size_t size = 0; size < sizeof(dermis_history); ++size) {
     dermis_history small = DERMIS_HISTORY_INIT;

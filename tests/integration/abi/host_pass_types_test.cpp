@@ -1,4 +1,4 @@
-// Tests host-recorded passes: the call's arguments, the call order, and every refused declaration.
+// Tests host-recorded passes: the call's arguments, the call order, and every rejected declaration.
 
 #include "tests/integration/abi/dermis_fixture.hpp"
 

@@ -238,7 +238,7 @@ TEST_F(StructSizes, SourcesProfilesAndFormats_FollowTheHeader) {
 }
 
 // A source that is a member of another struct, or that a member points to, never grows. A larger
-// size is always refused, even if all additional bytes are zero.
+// size is always rejected, even if all additional bytes are zero.
 TEST_F(StructSizes, NestedSources_AreExact) {
   const std::string text = read_text("configs/graphs/burley.json"),
                     skin = read_text("configs/profiles/skin.json");

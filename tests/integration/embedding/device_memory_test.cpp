@@ -245,7 +245,7 @@ TEST_F(DeviceMemory, HostRejects_IsReportedAndNothingLeaks) {
   dermis_graph_destroy(graph);
 }
 
-// ---- A device that refuses
+// ---- A device that rejects
 
 enum class Change { reload, resize, view };
 

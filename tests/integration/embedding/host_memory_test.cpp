@@ -14,7 +14,7 @@
 namespace dermis::abi_test {
 namespace {
 
-// Counts allocations, and refuses the requested one.
+// Counts allocations, and rejects the requested one.
 struct Heap {
   uint64_t blocks = 0, bytes = 0; // Alive.
   uint64_t calls = 0;
@@ -73,7 +73,7 @@ struct HostMemory : ::testing::Test {
     ASSERT_EQ(host.record(), DERMIS_OK) << dermis_last_error();
   }
 
-  // Calls `change` with its first allocation refused, then its second, until it succeeds: every one
+  // Calls `change` with its first allocation rejected, then its second, until it succeeds: every one
   // of the first 300, then every `step`-th.
   void reject_each(uint64_t step, const std::function<dermis_result()>& change,
                    const std::function<void()>& after) {
@@ -255,7 +255,7 @@ TEST_F(HostMemory, FailedCommandList_LeavesNoFrame) {
   }
 }
 
-// Queries change nothing; a refused query can be repeated.
+// Queries change nothing; a rejected query can be repeated.
 TEST_F(HostMemory, FailedQuery_CanBeRepeated) {
   make_graph();
   uint32_t count = 0;

@@ -79,7 +79,7 @@ TEST(ReloadStorm, BrokenReloadsChangeNothing) {
   EXPECT_EQ(rejected.summary.rejected_reloads, rejected.summary.reloads);
   EXPECT_EQ(mixed.summary.reloads, storm_frames * reloads_a_frame);
   EXPECT_EQ(mixed.summary.rejected_reloads, mixed.summary.reloads / 2);
-  EXPECT_TRUE(calm.colors == rejected.colors) << "a refused reload changed a picture";
+  EXPECT_TRUE(calm.colors == rejected.colors) << "a rejected reload changed a picture";
   EXPECT_TRUE(calm.colors == mixed.colors) << "a reload of the same graph lost history";
 }
 

@@ -174,7 +174,7 @@ TEST_F(Settings, ReadBackAsSet) {
   EXPECT_EQ(named(all, "count").default_value, 4.0);
   EXPECT_EQ(named(all, "how").value, 2.0);
   EXPECT_EQ(named(all, "weight").value, 0.125);
-  EXPECT_EQ(named(all, "radius").value, 0.25) << "a refused value is not stored";
+  EXPECT_EQ(named(all, "radius").value, 0.25) << "a rejected value is not stored";
   EXPECT_EQ(named(all, "weight").set, 1u);
   EXPECT_EQ(named(all, "radius").set, 0u);
 }

@@ -1,4 +1,4 @@
-// Tests a device that refuses any object or allocation: the call reports the failure, running
+// Tests a device that rejects any object or allocation: the call reports the failure, running
 // graphs continue, and nothing leaks.
 
 #include "integration/tools/command/bench/record/counted_host.hpp"

@@ -62,7 +62,7 @@ struct Soak : DermisTest {
     host_allocator = heap.allocator();
     device_allocator = memory->allocator();
     dermis_context_desc desc = context_desc();
-    desc.log = nullptr; // The test provokes refused reloads.
+    desc.log = nullptr; // The test provokes rejected reloads.
     desc.device_allocator = &device_allocator;
     desc.allocator = &host_allocator;
     desc.get_instance_proc_addr = counting_loader(*host);
@@ -185,7 +185,7 @@ struct Soak : DermisTest {
   }
 
   // Gives a view another value of a setting, or the graph's value again. Settings of the graph are
-  // refused.
+  // rejected.
   void set_for_a_view(Stage& stage) {
     const dermis_view view = stage.views.back().view;
     if (view == nullptr) return;
@@ -445,7 +445,7 @@ TEST_F(Soak, ManyFrames_NothingAccumulates) {
     rounds_alike += more == 0 && rests.size() > 1;
     EXPECT_EQ(rest.device_blocks, 0);
   }
-  fmt::print("{} frames, {} pictures: {} reloads, {} refused, {} resizes, {} settings, {} settings of "
+  fmt::print("{} frames, {} pictures: {} reloads, {} rejected, {} resizes, {} settings, {} settings of "
              "views, {} profiles, {} budgets, {} cuts, {} discarded, {} views, {} graphs; {} lights damaged, "
              "{} pictures judged as even\n",
              totals.frames, totals.pictures, totals.reloads, totals.rejected_reloads, totals.resizes,

@@ -1,4 +1,4 @@
-// Tests `dermis compare`: numbers computed by hand, and refused input.
+// Tests `dermis compare`: numbers computed by hand, and rejected input.
 #include "integration/tools/files/exr.hpp"
 #include "integration/tools/files/png.hpp"
 #include "tests/integration/tools/command_fixture.hpp"

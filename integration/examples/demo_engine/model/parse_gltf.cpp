@@ -175,7 +175,7 @@ bool keep_plus_signs(Json& file) {
 }
 
 // Gives fallback buffers for readers without meshoptimizer one byte: they may have no bytes, which
-// tinygltf 2.7 refuses, and are never read.
+// tinygltf 2.7 rejects, and are never read.
 bool fill_fallbacks(Json& file) {
   const auto buffers = file.find("buffers");
   if (!reads_meshopt || buffers == file.end() || !buffers->is_array()) return false;
@@ -193,7 +193,7 @@ bool fill_fallbacks(Json& file) {
   return changed;
 }
 
-// Removes the indices of compressed primitives: they have no view, which tinygltf 2.7 refuses, and
+// Removes the indices of compressed primitives: they have no view, which tinygltf 2.7 rejects, and
 // decompress replaces them.
 bool drop_packed_indices(Json& file) {
   const auto meshes = file.find("meshes");
@@ -212,7 +212,7 @@ bool drop_packed_indices(Json& file) {
   return changed;
 }
 
-// Rewrites parts that tinygltf would misread or refuse. Returns whether there were any.
+// Rewrites parts that tinygltf would misread or reject. Returns whether there were any.
 bool prepare(Json& file) {
   if (!file.is_object()) return false;
   const bool names = keep_plus_signs(file), fallbacks = fill_fallbacks(file),

@@ -158,7 +158,7 @@ float component_at(const Elements& elements, size_t element, uint32_t component)
     return signed_component(load<int8_t>(at + component), elements.normalized, 127.0f);
   case TINYGLTF_COMPONENT_TYPE_SHORT:
     return signed_component(load<int16_t>(at + 2 * component), elements.normalized, 32767.0f);
-  default: // read_floats refuses other types
+  default: // read_floats rejects other types
     return 0.0f;
   }
 }

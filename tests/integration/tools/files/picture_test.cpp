@@ -107,7 +107,7 @@ TEST_F(Pictures, DamagedExrsNeverCrash) {
     std::vector<uint8_t> damaged = whole;
     damaged[at] ^= static_cast<uint8_t>(1u << (at % 8));
     ASSERT_TRUE(write_bytes(folder / "b.exr", damaged, error));
-    // Reading returns, whether it refuses or reads the file.
+    // Reading returns, whether it rejects or reads the file.
     read_exr(folder / "b.exr", rgb, error);
   }
 }
