@@ -97,7 +97,7 @@ typedef enum dermis_result {
   DERMIS_ERROR_ARGUMENT = -1,  /* a pointer, size or range is wrong; nothing changed */
   DERMIS_ERROR_VERSION = -2,   /* the header is newer than the library and uses new fields */
   DERMIS_ERROR_CONFIG = -3,    /* errors in a graph or profile, see the report; nothing changed */
-  DERMIS_ERROR_SHADER = -4,    /* a kernel does not match its signature, or the device rejected it */
+  DERMIS_ERROR_SHADER = -4,    /* a kernel does not match its signature, or the device rejects it */
   DERMIS_ERROR_UNSUPPORTED = -5, /* the device lacks something; the report lists all of it */
   DERMIS_ERROR_MEMORY = -6,    /* out of host memory; nothing changed */
   DERMIS_ERROR_DEVICE_MEMORY = -7, /* out of device memory; nothing changed */
