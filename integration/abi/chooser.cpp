@@ -221,7 +221,7 @@ void remember(Chooser& chooser, const FrameChoice& frame, const choice::Decision
   chooser.decided_for = frame.compiled_graph;
 }
 
-void invalidate_history(Chooser& chooser, uint64_t frame_index) noexcept {
+void discard_prediction(Chooser& chooser, uint64_t frame_index) noexcept {
   FrameChoice& frame = place_of(chooser, frame_index);
   if (frame.frame_index == frame_index) frame = {};
 }

@@ -46,8 +46,9 @@ constexpr Port debug_tile_class_ports[] = {
     port::read_buffer("classes", "uint",
                       "output of subsurface.classify or subsurface.classify_uniform_light"),
     port::material,
-    port::optional(port::written(
-        "skips", "for tools: class of the pixel's tile, profile id of the pixel, 0, 1", port::light_formats)),
+    port::optional(port::written("tile_class",
+                                 "for tools: class of the pixel's tile, profile id of the pixel, 0, 1",
+                                 port::light_formats)),
 };
 
 } // namespace

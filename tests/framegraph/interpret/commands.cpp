@@ -12,7 +12,7 @@ namespace dermis {
 namespace {
 
 // One access of a command to one piece of memory.
-struct Access {
+struct PieceAccess {
   uint32_t command = 0;
   bool is_barrier = false;
   // For barriers: the stages waited for. For passes: the stages of the access.
@@ -22,11 +22,11 @@ struct Access {
   Queue queue = Queue::main;
 };
 
-bool same(const Access& a, const Access& b) {
+bool same(const PieceAccess& a, const PieceAccess& b) {
   return a.command == b.command && a.source == b.source && a.destination == b.destination;
 }
 
-bool waits(const Access& later, const Access& earlier) {
+bool waits(const PieceAccess& later, const PieceAccess& earlier) {
   if (later.queue != earlier.queue) return false;
   if (later.is_barrier && later.from_host) return earlier.is_barrier && earlier.to_host;
   if (later.is_barrier && earlier.is_barrier) return (earlier.destination & later.source) != 0;
@@ -35,11 +35,11 @@ bool waits(const Access& later, const Access& earlier) {
 }
 
 // Returns the accesses to each piece of memory, in command order.
-std::vector<std::vector<Access>> accesses_by_piece(const Plan& plan, const Memory& memory,
+std::vector<std::vector<PieceAccess>> accesses_by_piece(const Plan& plan, const Memory& memory,
                                                    const std::vector<Command>& commands) {
-  std::vector<std::vector<Access>> piece_accesses(memory.overlap.size());
+  std::vector<std::vector<PieceAccess>> piece_accesses(memory.overlap.size());
   // Adds at most one access per piece.
-  const auto add_access = [&](const auto& what, uint32_t frame, const Access& one) {
+  const auto add_access = [&](const auto& what, uint32_t frame, const PieceAccess& one) {
     for (const uint32_t own : memory.pieces(plan, what.resource, what.frames_back, frame, what.range))
       for (const uint32_t piece : memory.overlap[own])
         if (piece_accesses[piece].empty() || !same(piece_accesses[piece].back(), one))
@@ -148,7 +148,7 @@ std::vector<uint32_t> legal_order(const Plan& plan, const Memory& memory,
   std::iota(order.begin(), order.end(), 0u);
   if (seed == 0) return order;
   std::vector<std::vector<uint32_t>> followers(commands.size());
-  for (const std::vector<Access>& on_piece : accesses_by_piece(plan, memory, commands))
+  for (const std::vector<PieceAccess>& on_piece : accesses_by_piece(plan, memory, commands))
     for (size_t later = 0; later < on_piece.size(); ++later)
       for (size_t earlier = 0; earlier < later; ++earlier) {
         const uint32_t a = on_piece[earlier].command, b = on_piece[later].command;
