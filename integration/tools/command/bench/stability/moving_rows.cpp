@@ -65,7 +65,7 @@ StabilityRow closed_loop(std::string name, double spread, uint64_t updates) {
     const bool begun = loop.moments.begun;
     loop.count =
         begun ? subsurface::clamped_samples(
-                    subsurface::wanted_samples(loop.moments.variance, loop.mean_count, settings), settings)
+                    subsurface::required_samples(loop.moments.variance, loop.mean_count, settings), settings)
               : static_cast<int>(settings.min_samples);
     loop.samples += loop.count;
     loop.moments.add(1 + spread * draw / std::sqrt(double(loop.count)), settings.eta);
@@ -167,7 +167,7 @@ StabilityRow awakening(std::string name) {
   int count = 0;
   constexpr int even = 600;
   for (int i = 0; i < even + 2; ++i) {
-    count = subsurface::clamped_samples(subsurface::wanted_samples(moments.variance, mean_count, settings),
+    count = subsurface::clamped_samples(subsurface::required_samples(moments.variance, mean_count, settings),
                                         settings);
     moments.add(i < even ? 1 : 0.5, settings.eta);
     const double deviation = as_half(std::sqrt(moments.variance));
