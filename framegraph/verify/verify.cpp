@@ -175,11 +175,11 @@ struct Machine {
     for (uint32_t unchanged = 0, q = 0; unchanged < queues; q ^= 1u, ++unchanged) {
       const size_t other = q ^ 1u;
       if (event.ordered[q] == everything) continue;
-      int64_t wanted = event.ordered[other] != 0 ? event.since[other] : never;
-      if (index_of(event.queue) == other) wanted = std::min(wanted, event.at);
-      if (wanted == never || !waits[q].knows(wanted)) continue;
+      int64_t needed_time = event.ordered[other] != 0 ? event.since[other] : never;
+      if (index_of(event.queue) == other) needed_time = std::min(needed_time, event.at);
+      if (needed_time == never || !waits[q].knows(needed_time)) continue;
       event.ordered[q] = everything;
-      event.since[q] = std::min(event.since[q], waits[q].since(wanted));
+      event.since[q] = std::min(event.since[q], waits[q].since(needed_time));
       event.available = true;
       if (event.is_write) show(event, {static_cast<Queue>(q), everything, everything});
       unchanged = 0;
@@ -193,13 +193,13 @@ struct Machine {
   void wait(uint32_t point, const std::string& where) {
     if (point == no_point) return;
     const size_t other = index_of(other_than(queue));
-    const size_t wanted = points_before[other] + point;
-    if (wanted > reached[other].size())
+    const size_t awaited = points_before[other] + point;
+    if (awaited > reached[other].size())
       report_violation(fmt::format(
           "frame {}, {}: waits for point {} of the other queue, which is not signalled before the wait",
           frame, where, point));
-    else if (wanted > 0) // 0: frames before the first, which need no wait
-      waits[index_of(queue)].add(reached[other][wanted - 1], now);
+    else if (awaited > 0) // 0: frames before the first, which need no wait
+      waits[index_of(queue)].add(reached[other][awaited - 1], now);
   }
 
   void reach(uint32_t point, const std::string& where) {

@@ -94,7 +94,7 @@ inline constexpr double given_deviations = 2.0;
 // costs nothing.
 uint32_t units_within(const Configuration& configuration, const CostModel& costs, FrameLoad load,
                       double budget_ms, bool deterministic);
-// Returns the expected RMSE if `given` of the `wanted` units are taken: interpolates linearly
+// Returns the expected RMSE if `given` of the `demand` units are taken: interpolates linearly
 // between the mean squares without samples and with all samples. Units with the largest benefit
 // come first, so the result is an upper bound of the measured error.
 double expected_rmse(const ErrorModel& errors, const Configuration& configuration, double d_px,

@@ -1,4 +1,4 @@
-// Packing of a tile into the list, and folding of lists longer than a dispatch dimension into rows
+// Packs a tile into a list entry, and folds lists that are longer than a dispatch dimension into rows
 // of groups.
 #ifndef DERMIS_TILE_PACKING_GLSL
 #define DERMIS_TILE_PACKING_GLSL
