@@ -66,7 +66,7 @@ const Order orders[] = {
     {"framegraph/",
      {"text", "compose", "model", "schema", "compile", "verify", "serial", "explain", "vulkan"}},
     {"integration/tools/command/",
-     {"expect", "run", "bench", "inspect", "plan", "keep", "watch", "arguments"}},
+     {"expect", "run", "bench", "inspect", "plan", "capture", "watch", "arguments"}},
     {"integration/",
      {"include", "abi", "tools/references", "tools/files", "tools/null_device", "examples/demo_engine",
       "tools/viewer", "tools/command"}},

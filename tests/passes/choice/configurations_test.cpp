@@ -159,8 +159,10 @@ TEST_F(Configurations, CostsGrowWithTheListedTiles) {
   for (uint64_t groups = 200; groups <= 3600; groups += 200)
     for (const PassLoad& pass : all->configurations[0].passes)
       costs.observe(pass.cost, groups, 0.01 + 1e-4 * static_cast<double>(groups));
-  const double few = estimate(all->configurations[0], costs, {3600, 100}).ms;
-  const double many = estimate(all->configurations[0], costs, {3600, 3600}).ms;
+  const double few =
+      estimate(all->configurations[0], costs, {.width = 640, .height = 360, .listed_tiles = 100}).ms;
+  const double many =
+      estimate(all->configurations[0], costs, {.width = 640, .height = 360, .listed_tiles = 3600}).ms;
   EXPECT_GT(many, few + 4 * 1e-4 * 3400); // Setup, two passes and combine run over listed tiles.
 }
 
