@@ -189,7 +189,7 @@ demo::Result<> load_graphs(const SuiteRun& run, LoadedGraph& loaded, LoadedGraph
   if (auto overlay = parse_document("without flat light", without_uniform_light, diagnostics))
     overlays.push_back(std::move(*overlay));
   auto document = read_document(path, diagnostics);
-  auto part = document ? load_graph(std::move(*document), std::move(overlays), open_beside(path, {}),
+  auto part = document ? load_graph(std::move(*document), std::move(overlays), open_included(path, {}),
                                     diagnostics, run.pass_types().pass_types)
                        : std::nullopt;
   if (!part) return run.refuse(path, diagnostics);

@@ -55,7 +55,7 @@ bool SuiteRun::is_requested(const std::string& name, std::string_view word) cons
   return words.empty() || std::find(words.begin(), words.end(), word) != words.end();
 }
 
-GraphParts SuiteRun::pass_types() const {
+GraphInputs SuiteRun::pass_types() const {
   return {.overlays = {}, .roots = {}, .pass_types = list("pass-types")};
 }
 

@@ -61,7 +61,7 @@ struct SuiteRun {
   std::string file(const std::string& name = "file") const { return shipped(text(name)); }
   // Returns whether the list `name` has `word`; an empty list has every word.
   bool is_requested(const std::string& name, std::string_view word) const;
-  GraphParts pass_types() const;
+  GraphInputs pass_types() const;
 
   // Equal facts and equal notes are added once. A note names an omitted part and the reason.
   void add_fact(std::string name, std::string fact);
