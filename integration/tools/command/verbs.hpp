@@ -127,7 +127,7 @@ ExitCode schema(const Session& session, const SchemaOptions& options);
 
 struct KernelsOptions {
   std::vector<std::string> graphs; // files, or names of shipped graphs; empty: all shipped graphs
-  GraphInputs parts;
+  GraphInputs inputs;
   Size size{2560, 1440};
   std::vector<NamedValue> settings; // apply to the graphs that have them, like `unbound`
   std::vector<std::string> unbound; // optional imports and exports that the host does not bind

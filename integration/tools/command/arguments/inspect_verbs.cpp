@@ -211,7 +211,7 @@ void add_kernels_verb(CLI::App& app, Invocation& invocation) {
         add_size(verb, options.size);
         add_settings(verb, options.settings);
         add_unbound(verb, options.unbound);
-        add_graph_inputs(verb, options.parts);
+        add_graph_inputs(verb, options.inputs);
         verb.add_option("--device", options.device, "Part of the device's name [the first discrete GPU]")
             ->type_name("NAME");
         verb.add_option("--limits", options.limits,

@@ -127,7 +127,7 @@ public:
   }
 
   demo::Result<> add(const std::string& path) {
-    const std::optional<LoadedGraph> loaded = load_graph(path, options_.parts, diagnostics_);
+    const std::optional<LoadedGraph> loaded = load_graph(path, options_.inputs, diagnostics_);
     if (!loaded) return cannot_use(path);
     const std::string name = std::filesystem::path(path).stem().string();
     if (std::string why = lacking_features(*loaded); !why.empty()) {
