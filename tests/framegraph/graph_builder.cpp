@@ -12,7 +12,7 @@
 namespace dermis::testing {
 namespace {
 
-constexpr Format half4[] = {Format::rgba16f};
+constexpr Format one_half4[] = {Format::rgba16f};
 
 constexpr Port shade_ports[] = {{"a", Usage::sampled_image, true, "texture2D", ""},
                                 {"b", Usage::sampled_image, true, "texture2D", ""},
@@ -36,8 +36,8 @@ constexpr Port tiles_ports[] = {{"tiles", Usage::storage_buffer_read, true, "uin
                                 {"a", Usage::sampled_image, true, "texture2D", ""},
                                 {"out", Usage::storage_image_write, false, "image2D", ""}};
 constexpr Port probe_ports[] = {{"a", Usage::sampled_image, true, "texture2D", ""}};
-constexpr Port narrow_ports[] = {{"a", Usage::sampled_image, true, "texture2D", "", half4},
-                                 {"out", Usage::storage_image_write, false, "image2D", "", half4}};
+constexpr Port narrow_ports[] = {{"a", Usage::sampled_image, true, "texture2D", "", one_half4},
+                                 {"out", Usage::storage_image_write, false, "image2D", "", one_half4}};
 constexpr Port ids_ports[] = {{"ids", Usage::sampled_image, false, "utexture2D", ""},
                               {"out", Usage::storage_image_write, false, "image2D", ""}};
 
