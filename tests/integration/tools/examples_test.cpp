@@ -81,6 +81,8 @@ protected:
 TEST_F(Examples, OfEveryVerbRunUnchanged) {
   // Files that the examples expect.
   write("few.json", techniques_alone);
+  write("limits.json", R"({ "dermis_kernel_limits": 1, "rules": [
+    { "graph": "*", "max": { "dispatches": 64 } } ] })");
   ASSERT_EQ(
       shell("dermis capture configs/scenes/bust.json --out capture --size 64x36 --frames 2\n"
             "dermis plan save configs/graphs/burley.json --out before.plan\n"
