@@ -54,7 +54,7 @@ bool digest_file(const std::filesystem::path& path) {
 }
 
 bool digest_random(uint64_t seed) {
-  const testing::GraphBuilder builder = testing::random_graph(seed);
+  const dermis::testing::GraphBuilder builder = dermis::testing::random_graph(seed);
   CompileInput input = builder.input();
   input.packing = static_cast<PackingLevel>(seed % 3);
   input.order = static_cast<PassOrder>(seed / 3 % 3);

@@ -7,16 +7,12 @@
 
 #include "framegraph/compile/packer.hpp"
 #include "framegraph/verify/verify.hpp"
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
+#include "tests/support/matchers.hpp"
 
 #include <fmt/format.h>
 
 namespace dermis::testing {
 namespace {
-
-using ::testing::HasSubstr;
 
 bool aliases_history(const Plan& plan, const PlanResource& resource) {
   return resource.first_instance != no_instance && !plan.placements[resource.first_instance].persistent &&

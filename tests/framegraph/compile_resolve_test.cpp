@@ -5,16 +5,10 @@
 #include "framegraph/model/splitmix.hpp"
 #include "tests/framegraph/graph_builder.hpp"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <tuple>
 
 namespace dermis::testing {
 namespace {
-
-using ::testing::HasSubstr;
-using ::testing::SizeIs;
 
 // Builds light (import) -> middle -> result (export). The tests vary `middle`.
 struct Chain : GraphBuilder {
@@ -82,12 +76,9 @@ TEST(Sizes, CircularReference_IsRejectedWithTheCycle) {
     b.graph.resources[from].size.base = SizeExpression::Base::resource;
     b.graph.resources[from].size.resource = ResourceId{to};
   }
-  const auto errors = rejected(b);
-  ASSERT_THAT(errors, SizeIs(1));
-  EXPECT_EQ(errors[0].id, DiagnosticId::size_cycle);
-  EXPECT_THAT(errors[0].text, HasSubstr("'middle' -> 'result' -> 'middle'"));
-  EXPECT_EQ(errors[0].where.line, b.graph.resources[1].where.line);
-  EXPECT_EQ(errors[0].related[0].first.line, b.graph.resources[2].where.line);
+  const Diagnostic error = rejected_once(b, DiagnosticId::size_cycle, "'middle' -> 'result' -> 'middle'");
+  EXPECT_EQ(error.where.line, b.graph.resources[1].where.line);
+  EXPECT_EQ(error.related[0].first.line, b.graph.resources[2].where.line);
 }
 
 TEST(Sizes, BeyondTheDevice_IsRejectedOnce) {
@@ -95,18 +86,13 @@ TEST(Sizes, BeyondTheDevice_IsRejectedOnce) {
   b.middle().size.x = {1000, 1};
   b.graph.resources[2].size.base = SizeExpression::Base::resource;
   b.graph.resources[2].size.resource = ResourceId{1};
-  const auto errors = rejected(b);
-  ASSERT_THAT(errors, SizeIs(1));
-  EXPECT_EQ(errors[0].id, DiagnosticId::size_out_of_range);
-  EXPECT_THAT(errors[0].text, HasSubstr("'middle' is 64000x64 texels"));
+  rejected_once(b, DiagnosticId::size_out_of_range, "'middle' is 64000x64 texels");
   b.middle().size.x = {INT64_MAX, 1};
   EXPECT_EQ(rejected(b)[0].id, DiagnosticId::size_out_of_range);
 }
 
 TEST(Sizes, BuffersCountTilesAndExtraElements) {
-  GraphBuilder b;
-  b.buffer("tiles");
-  b.exported("result");
+  GraphBuilder b{"buffer tiles", "export result"};
   b.pass("list", "test.list", {}, {{"tiles", "tiles"}});
   b.pass("scatter", "test.tiles", {{"tiles", "tiles"}}, {{"out", "result"}});
   // ceil(65 / 8) * ceil(9 / 8) tiles and 4 more elements, of 4 bytes each.
@@ -143,9 +129,7 @@ TEST(Formats, FirstFormatUsableByPortsAndDeviceIsTaken) {
   EXPECT_THAT(reasons(b, whole, Reason::About::resource, 1),
               HasSubstr("port 'a' of pass 'second' does not support it"));
   b.middle().formats = {Format::r8_unorm};
-  const auto errors = rejected(b);
-  ASSERT_THAT(errors, SizeIs(1));
-  EXPECT_EQ(errors[0].id, DiagnosticId::no_usable_format);
+  rejected_once(b, DiagnosticId::no_usable_format);
 }
 
 TEST(Formats, ComponentTypeIsRespected) {
@@ -294,10 +278,7 @@ TEST(Packing, CommonBitsAreFoundOnEveryProcessor) {
 }
 
 TEST(Packing, IncompatibleMemoryTypesGetSeparateHeaps) {
-  GraphBuilder b;
-  b.buffer("tiles");
-  b.image("middle");
-  b.exported("result");
+  GraphBuilder b{"buffer tiles", "image middle", "export result"};
   b.pass("list", "test.list", {}, {{"tiles", "tiles"}});
   b.pass("scatter", "test.tiles", {{"tiles", "tiles"}}, {{"out", "middle"}});
   b.pass("finish", "test.need", {{"a", "middle"}}, {{"out", "result"}});
@@ -315,10 +296,7 @@ TEST(Packing, IncompatibleMemoryTypesGetSeparateHeaps) {
 }
 
 TEST(Packing, BuffersAndImagesInOneHeapKeepTheGranularity) {
-  GraphBuilder b;
-  b.buffer("tiles");
-  b.image("middle");
-  b.exported("result");
+  GraphBuilder b{"buffer tiles", "image middle", "export result"};
   b.pass("list", "test.list", {}, {{"tiles", "tiles"}});
   b.pass("scatter", "test.tiles", {{"tiles", "tiles"}}, {{"out", "middle"}});
   b.pass("finish", "test.need", {{"a", "middle"}}, {{"out", "result"}});

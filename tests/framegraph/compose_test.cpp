@@ -46,6 +46,11 @@ std::string overlay(const std::string& edits) {
   return "{ \"dermis_overlay\": 2, \"edits\": [\n" + edits + " ] }";
 }
 
+// Returns the whole graph after these edits.
+Composed edited(const std::string& edits) {
+  return put_together(whole_graph(), {overlay(edits)});
+}
+
 std::vector<std::string> pass_names(const Composed& composed) {
   std::vector<std::string> out;
   if (!composed.graph)
@@ -86,24 +91,18 @@ TEST(Compose, AGraphWithoutIncludesAndOverlaysIsLeftAsItIs) {
 TEST(Overlay, PassesAreInsertedReplacedAndRemovedByName) {
   const std::string fresh = R"({ "pass": "fresh", "type": "test.list", "read": { "mask": "material" }, )"
                             R"("write": { "tiles": "list" } })";
-  EXPECT_EQ(pass_names(put_together(whole_graph(), {overlay(R"({ "remove": "/passes/copy" },
+  EXPECT_EQ(pass_names(edited(R"({ "remove": "/passes/copy" },
       { "set": "/resources/fixed", "to": { "format": "rgba16f", "size": "view" } },
-      { "remove": "/exports/fixed" })")})),
+      { "remove": "/exports/fixed" })")),
             (std::vector<std::string>{"find", "blur", "mix"}));
-  EXPECT_EQ(
-      pass_names(put_together(
-          whole_graph(), {overlay(fmt::format(R"({{ "replace": "copy", "passes": [{}] }})", copy_pass))})),
-      (std::vector<std::string>{"find", "blur", "again", "mix"}));
+  EXPECT_EQ(pass_names(edited(fmt::format(R"({{ "replace": "copy", "passes": [{}] }})", copy_pass))),
+            (std::vector<std::string>{"find", "blur", "again", "mix"}));
   const std::string without_find = R"({ "remove": "/passes/copy/after" }, { "remove": "/passes/find" },)";
+  EXPECT_EQ(pass_names(edited(without_find +
+                              fmt::format(R"({{ "insert_before": "blur", "passes": [{}] }})", fresh))),
+            (std::vector<std::string>{"fresh", "blur", "copy", "mix"}));
   EXPECT_EQ(
-      pass_names(put_together(
-          whole_graph(),
-          {overlay(without_find + fmt::format(R"({{ "insert_before": "blur", "passes": [{}] }})", fresh))})),
-      (std::vector<std::string>{"fresh", "blur", "copy", "mix"}));
-  EXPECT_EQ(
-      pass_names(put_together(
-          whole_graph(),
-          {overlay(without_find + fmt::format(R"({{ "insert_after": "mix", "passes": [{}] }})", fresh))})),
+      pass_names(edited(without_find + fmt::format(R"({{ "insert_after": "mix", "passes": [{}] }})", fresh))),
       (std::vector<std::string>{"blur", "copy", "mix", "fresh"}));
 }
 
@@ -126,10 +125,9 @@ TEST(Overlay, StackInOrderAndTheLastOneWins) {
 }
 
 TEST(Overlay, ArrayElements_ByNameIndexOrDash) {
-  const Composed composed =
-      put_together(whole_graph(), {overlay(R"({ "set": "/imports/light/format/rgba32f", "to": "r32f" },
+  const Composed composed = edited(R"({ "set": "/imports/light/format/rgba32f", "to": "r32f" },
     { "set": "/resources/fixed/size/1", "to": 48 }, { "set": "/settings/style/enum/-", "to": "odd" },
-    { "set": "/passes/blur/set/radius", "to": 3 })")});
+    { "set": "/passes/blur/set/radius", "to": 3 })");
   ASSERT_TRUE(composed.graph) << all_messages(composed.diagnostics);
   EXPECT_EQ(composed.graph->resources[0].formats, (FormatList{Format::rgba16f, Format::r32f}));
   EXPECT_EQ(composed.graph->resources[5].size.y.numerator, 48);
@@ -138,32 +136,25 @@ TEST(Overlay, ArrayElements_ByNameIndexOrDash) {
 }
 
 TEST(Overlay, WrongValueIsReportedInTheFileThatSetIt) {
-  expect_one(put_together(whole_graph(), {overlay(R"({ "set": "/settings/samples/int", "to": 99 })")}),
-             Id::setting_range, "overlay0.json:2:41",
-             {"99", "graph.json:4:", "the maximum is declared here"});
-  expect_one(
-      put_together(whole_graph(), {overlay(R"({ "set": "/passes/blur/when", "to": "samples > qality" })")}),
-      Id::unknown_setting, "overlay0.json:2:48", {"'qality'"});
-  expect_one(
-      put_together(whole_graph(), {overlay(R"({ "set": "/resources/halff", "to": { "format": "r32f" } })")}),
-      Id::missing_key, "overlay0.json:2:36", {"'halff'"});
+  expect_one(edited(R"({ "set": "/settings/samples/int", "to": 99 })"), Id::setting_range,
+             "overlay0.json:2:41", {"99", "graph.json:4:", "the maximum is declared here"});
+  expect_one(edited(R"({ "set": "/passes/blur/when", "to": "samples > qality" })"), Id::unknown_setting,
+             "overlay0.json:2:48", {"'qality'"});
+  expect_one(edited(R"({ "set": "/resources/halff", "to": { "format": "r32f" } })"), Id::missing_key,
+             "overlay0.json:2:36", {"'halff'"});
 }
 
 TEST(Overlay, EditOfAMissingTarget_IsRejected) {
-  expect_one(put_together(whole_graph(), {overlay(R"({ "remove": "/passes/blurr" })")}), Id::edit_target,
-             "overlay0.json:2:13", {"'remove' of edit 1", "'blurr'", "did you mean 'blur'?"});
-  expect_one(put_together(whole_graph(), {overlay(R"({ "set": "/resource/half/mips", "to": 1 })")}),
-             Id::edit_target, "overlay0.json:2:10", {"'resource'", "did you mean 'resources'?"});
-  expect_one(put_together(whole_graph(), {overlay(R"({ "set": "name", "to": "x" })")}), Id::edit_target,
-             "overlay0.json:2:10", {"a path must begin with '/'"});
-  expect_one(put_together(whole_graph(), {overlay(R"({ "set": "/exports/7", "to": "x" })")}), Id::edit_target,
-             "overlay0.json:2:10", {"'7'"});
-  expect_one(put_together(whole_graph(), {overlay(R"({ "set": "/name/of", "to": "x" })")}), Id::edit_target,
-             "overlay0.json:2:10", {"'of'"});
-  expect_one(
-      put_together(whole_graph(),
-                   {overlay(fmt::format(R"({{ "insert_after": "mixx", "passes": [{}] }})", copy_pass))}),
-      Id::edit_target, "overlay0.json:2:19", {"did you mean 'mix'?"});
+  expect_one(edited(R"({ "remove": "/passes/blurr" })"), Id::edit_target, "overlay0.json:2:13",
+             {"'remove' of edit 1", "'blurr'", "did you mean 'blur'?"});
+  expect_one(edited(R"({ "set": "/resource/half/mips", "to": 1 })"), Id::edit_target, "overlay0.json:2:10",
+             {"'resource'", "did you mean 'resources'?"});
+  expect_one(edited(R"({ "set": "name", "to": "x" })"), Id::edit_target, "overlay0.json:2:10",
+             {"a path must begin with '/'"});
+  expect_one(edited(R"({ "set": "/exports/7", "to": "x" })"), Id::edit_target, "overlay0.json:2:10", {"'7'"});
+  expect_one(edited(R"({ "set": "/name/of", "to": "x" })"), Id::edit_target, "overlay0.json:2:10", {"'of'"});
+  expect_one(edited(fmt::format(R"({{ "insert_after": "mixx", "passes": [{}] }})", copy_pass)),
+             Id::edit_target, "overlay0.json:2:19", {"did you mean 'mix'?"});
 }
 
 TEST(Overlay, CanAddTheFirstSettingAndPassMembers) {
@@ -194,14 +185,12 @@ TEST(Overlay, EachOverlayErrorIsReportedOnce) {
              Id::unsupported_version, "overlay0.json:1:21", {});
   expect_one(put_together(whole_graph(), {"{ \"dermis_overlay\": 2, \"edit\": [] }"}), Id::unknown_key,
              "overlay0.json:1:24", {"did you mean 'edits'?"});
-  expect_one(put_together(whole_graph(), {overlay("{ \"sett\": \"/name\", \"to\": 1 }")}), Id::unknown_key,
-             "overlay0.json:2:3", {"did you mean 'set'?"});
-  expect_one(put_together(whole_graph(), {overlay("{ \"note\": \"n\" }")}), Id::missing_key,
-             "overlay0.json:2:1", {"'insert_before'"});
-  expect_one(put_together(whole_graph(), {overlay("{ \"remove\": \"/name\", \"to\": 1 }")}), Id::unknown_key,
-             "overlay0.json:2:22", {"'to'"});
-  expect_one(put_together(whole_graph(), {overlay("{ \"replace\": \"mix\", \"passes\": [1] }")}),
-             Id::wrong_type, "overlay0.json:2:32", {"a pass of edit 1"});
+  expect_one(edited("{ \"sett\": \"/name\", \"to\": 1 }"), Id::unknown_key, "overlay0.json:2:3",
+             {"did you mean 'set'?"});
+  expect_one(edited("{ \"note\": \"n\" }"), Id::missing_key, "overlay0.json:2:1", {"'insert_before'"});
+  expect_one(edited("{ \"remove\": \"/name\", \"to\": 1 }"), Id::unknown_key, "overlay0.json:2:22", {"'to'"});
+  expect_one(edited("{ \"replace\": \"mix\", \"passes\": [1] }"), Id::wrong_type, "overlay0.json:2:32",
+             {"a pass of edit 1"});
 }
 
 TEST(Overlay, NestingBuiltByEditsStaysWithinTheLimit) {
@@ -212,8 +201,7 @@ TEST(Overlay, NestingBuiltByEditsStaysWithinTheLimit) {
   for (int i = 0; i < 39; ++i)
     path += "/a";
   edits += fmt::format("\n{{ \"set\": \"{}\", \"to\": {} }}", path, deep);
-  expect_one(put_together(whole_graph(), {overlay(edits)}), Id::limit_exceeded, "overlay0.json:3:10",
-             {"64 deep"});
+  expect_one(edited(edits), Id::limit_exceeded, "overlay0.json:3:10", {"64 deep"});
 }
 
 constexpr const char* tiles_fragment = R"({ "dermis_fragment": 2, "note": "finds tiles",

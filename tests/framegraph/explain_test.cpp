@@ -7,24 +7,16 @@
 #include "framegraph/text/document.hpp"
 #include "framegraph/text/json_writer.hpp"
 #include "tests/framegraph/random_graph.hpp"
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
+#include "tests/support/matchers.hpp"
 
 #include <limits>
 
 namespace dermis::testing {
 namespace {
 
-using ::testing::HasSubstr;
-
 GraphBuilder sample() {
-  GraphBuilder b;
+  GraphBuilder b{"import light", "history sum", "image unused", "export result"};
   b.boolean("smooth", true);
-  b.import("light");
-  b.history("sum");
-  b.image("unused");
-  b.exported("result");
   b.pass("accumulate", "test.shade", {{"a", "light"}, {"b", "sum@-1"}}, {{"out", "sum"}}).when =
       b.when("smooth");
   b.pass("waste", "test.need", {{"a", "light"}}, {{"out", "unused"}});
@@ -51,31 +43,27 @@ TEST(PlanJson, IsValidJsonForEveryGraph) {
 TEST(PlanJson, NamesWhatRunsAndWhatDoesNotAndWhy) {
   const auto b = sample();
   const auto text = plan_json(b.graph, b.pass_types, compiled(b));
-  EXPECT_THAT(text, HasSubstr(R"("dermis_plan": 2)"));
-  EXPECT_THAT(text, HasSubstr(R"({ "name": "smooth", "type": "bool", "value": true })"));
-  EXPECT_THAT(text, HasSubstr(R"("mask": "0x100000000", "names": ["shader_sampled_read"])"));
-  EXPECT_THAT(text, HasSubstr(R"("layout_at_start": ["undefined", "shader_read_only"])"));
   EXPECT_THAT(
       text,
-      HasSubstr(
+      HasAll(
+          R"("dermis_plan": 2)", R"({ "name": "smooth", "type": "bool", "value": true })",
+          R"("mask": "0x100000000", "names": ["shader_sampled_read"])",
+          R"("layout_at_start": ["undefined", "shader_read_only"])",
           R"({ "about": "pass", "index": 1, "name": "waste", "text": "culled: no bound export needs 'unused'" })"));
 }
 
 TEST(PlanText, ShowsEveryPassBarrierAndPlacement) {
   const auto b = sample();
   const auto text = plan_text(b.graph, b.pass_types, compiled(b));
-  EXPECT_THAT(text, HasSubstr("2 of 3 passes run"));
-  EXPECT_THAT(text, HasSubstr("b <- sum@-1"));
-  EXPECT_THAT(text, HasSubstr("waste: culled"));
-  EXPECT_THAT(text, HasSubstr("of history, at least"));
-  EXPECT_THAT(text, HasSubstr("returns 'result' to the host"));
+  EXPECT_THAT(text, HasAll("2 of 3 passes run", "b <- sum@-1", "waste: culled", "of history, at least",
+                           "returns 'result' to the host"));
 }
 
 TEST(PlanText, SaysWhyAPassRunsAndWhyInThisOrder) {
   const auto b = sample();
   const auto text = plan_text(b.graph, b.pass_types, compiled(b));
-  EXPECT_THAT(text, HasSubstr("runs: 'show' reads its 'sum'"));
-  EXPECT_THAT(text, HasSubstr("file order: at most 0 B of transients are alive at once"));
+  EXPECT_THAT(text, HasAll("runs: 'show' reads its 'sum'",
+                           "file order: at most 0 B of transients are alive at once"));
   CompileInput input = b.input();
   input.order = PassOrder::program;
   EXPECT_THAT(plan_text(b.graph, b.pass_types, compiled(b, input)), HasSubstr("requested by the caller"));
@@ -91,12 +79,7 @@ TEST(PlanText, NamesTheSettingsThatSwitchAPassOff) {
 }
 
 TEST(PlanText, NamesThePassThatNeedsAnEarlierBarrier) {
-  GraphBuilder b;
-  b.import("light");
-  b.import("shade");
-  b.image("first");
-  b.image("second");
-  b.exported("result");
+  GraphBuilder b{"import light", "import shade", "image first", "image second", "export result"};
   b.pass("begin", "test.need", {{"a", "light"}}, {{"out", "first"}});
   b.pass("middle", "test.need", {{"a", "first"}}, {{"out", "second"}});
   b.pass("end", "test.shade", {{"a", "shade"}, {"b", "second"}}, {{"out", "result"}});
@@ -131,8 +114,8 @@ TEST(PlanText, RandomGraphs_EveryReasonHasText) {
     whole.cull = false;
     for (const CompileInput& input : {b.input(), in_random_order, whole}) {
       const auto json = plan_json(b.graph, b.pass_types, compiled(b, input));
-      EXPECT_THAT(json, ::testing::Not(HasSubstr("\"text\": \"\""))) << seed;
-      EXPECT_THAT(json, ::testing::Not(HasSubstr("unknown"))) << seed;
+      EXPECT_THAT(json, Not(HasSubstr("\"text\": \"\""))) << seed;
+      EXPECT_THAT(json, Not(HasSubstr("unknown"))) << seed;
     }
   }
 }
@@ -142,9 +125,7 @@ TEST(PlanDot, DrawsPassesAndResourcesAndEscapesNames) {
   b.graph.passes[0].name = "say \"hi\"";
   EXPECT_THAT(graph_dot(b.graph, b.pass_types), HasSubstr(R"(label="say \"hi\")"));
   const auto dot = plan_dot(b.graph, b.pass_types, compiled(b));
-  EXPECT_THAT(dot, HasSubstr("digraph \"test\" {"));
-  EXPECT_THAT(dot, HasSubstr("style=dashed"));
-  EXPECT_THAT(dot, HasSubstr("color=gray"));
+  EXPECT_THAT(dot, HasAll("digraph \"test\" {", "style=dashed", "color=gray"));
 }
 
 TEST(Names, UnknownBitsAreWrittenAsNumbers) {

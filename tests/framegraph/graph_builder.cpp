@@ -5,8 +5,6 @@
 
 #include "framegraph/verify/verify.hpp"
 
-#include <gtest/gtest.h>
-
 #include <array>
 
 namespace dermis::testing {
@@ -66,6 +64,21 @@ PassTypeRegistry test_pass_types() {
   probe.side_effects = true;
   pass_types.add(probe);
   return pass_types;
+}
+
+GraphBuilder::GraphBuilder(std::initializer_list<const char*> resources) : GraphBuilder() {
+  for (const std::string declared : resources) {
+    const size_t blank = declared.find(' ');
+    const std::string kind = declared.substr(0, blank), name = declared.substr(blank + 1);
+    if (kind == "buffer") {
+      buffer(name);
+      continue;
+    }
+    ResourceDeclaration& made = image(name);
+    if (kind == "import" || kind == "in_out") made.origin = Origin::imported;
+    made.exported = kind == "export" || kind == "in_out";
+    if (kind == "history") made.history.frames = 1;
+  }
 }
 
 SourceLocation GraphBuilder::next_line() {

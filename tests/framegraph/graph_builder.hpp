@@ -3,6 +3,7 @@
 // its own line number, in the order of the calls.
 
 #include "framegraph/compile/compile.hpp"
+#include "tests/support/matchers.hpp"
 
 #include <initializer_list>
 #include <string>
@@ -35,6 +36,9 @@ struct GraphBuilder {
   uint32_t line = 0;
 
   GraphBuilder() { graph.name = "test"; }
+  // Declares resources in this order: "import NAME", "image NAME", "export NAME", "history NAME",
+  // "buffer NAME", or "in_out NAME" for an import that is also exported.
+  explicit GraphBuilder(std::initializer_list<const char*> resources);
 
   SourceLocation next_line();
   ResourceDeclaration& import(const std::string& name);
@@ -67,6 +71,21 @@ CompiledPlan compiled(const GraphBuilder& builder, const CompileInput& input);
 // Compiles, expects errors and returns them.
 std::vector<Diagnostic> rejected(const GraphBuilder& builder);
 std::vector<Diagnostic> rejected(const GraphBuilder& builder, const CompileInput& input);
+
+// Compiles, expects one error with this id, all texts and matchers, and returns it.
+template <class... Texts>
+Diagnostic rejected_once(const GraphBuilder& builder, const CompileInput& input, DiagnosticId id,
+                         const Texts&... texts) {
+  const std::vector<Diagnostic> errors = rejected(builder, input);
+  EXPECT_THAT(errors, SizeIs(1));
+  EXPECT_EQ(errors.at(0).id, id);
+  EXPECT_THAT(errors.at(0).text, HasAll("", texts...));
+  return errors.at(0);
+}
+template <class... Texts>
+Diagnostic rejected_once(const GraphBuilder& builder, DiagnosticId id, const Texts&... texts) {
+  return rejected_once(builder, builder.input(), id, texts...);
+}
 
 // Returns the pass names of a plan in order, separated by spaces.
 std::string pass_names(const GraphBuilder& builder, const Plan& plan);

@@ -6,7 +6,7 @@
 #include "framegraph/explain/plan_text.hpp"
 #include "framegraph/serialize/plan_file.hpp"
 #include "framegraph/verify/verify.hpp"
-#include "tests/framegraph/text_support.hpp"
+#include "tests/framegraph/damaged_graph.hpp"
 
 #include "framegraph/model/read_graph.hpp"
 
@@ -56,13 +56,8 @@ constexpr std::string_view traced = R"({ "dermis": 2, "name": "traced",
       "read": { "light": "light" }, "write": { "target": "out" } } ],
   "exports": ["out"] })";
 
-struct HostRead {
-  Diagnostics diagnostics;
-  std::optional<Graph> graph;
-};
-
-HostRead read_with_host(std::string text) {
-  HostRead out;
+Read read_with_host(std::string text) {
+  Read out;
   const auto document = parse_document("graph.json", std::move(text), out.diagnostics);
   if (document) out.graph = read_graph(*document, pass_types_of_host(), out.diagnostics);
   return out;
@@ -75,103 +70,48 @@ std::string with(std::string_view from, std::string_view to) {
   return at == std::string::npos ? text : text.replace(at, from.size(), to);
 }
 
-struct Mistake {
-  const char* property;
-  const char *from, *to;
-  DiagnosticId id;
-  const char* at; // The diagnostic points at the first occurrence of this text.
-  std::vector<std::string> words;
-};
-
-void PrintTo(const Mistake& damage, std::ostream* out) {
-  *out << damage.to;
-}
-
-class DamagedHostResources : public ::testing::TestWithParam<Mistake> {};
+class DamagedHostResources : public ::testing::TestWithParam<Damage> {};
 
 TEST_P(DamagedHostResources, GiveOneDiagnosticAtTheDamage) {
-  const Mistake& damage = GetParam();
-  const std::string text = with(damage.from, damage.to);
-  const size_t at = text.find(damage.at);
-  ASSERT_NE(at, std::string::npos);
-  const std::string before = text.substr(0, at);
-  const auto line = static_cast<uint32_t>(1 + std::count(before.begin(), before.end(), '\n'));
-  const auto column = static_cast<uint32_t>(at - (before.rfind('\n') + 1) + 1);
-  const HostRead result = read_with_host(text);
+  const std::string text = with(GetParam().from, GetParam().to);
+  const Read result = read_with_host(text);
   EXPECT_FALSE(result.graph);
-  expect_only(result.diagnostics, damage.id, line, column, damage.words);
+  expect_damage(GetParam(), text, result.diagnostics);
 }
 
 INSTANTIATE_TEST_SUITE_P(
     Graph, DamagedHostResources,
-    ::testing::Values(Mistake{"AnAccelerationStructureIsOfTheTopLevel",
-                              "\"top_level\"",
-                              "\"bottom_level\"",
-                              Id::invalid_value,
-                              "\"bottom_level\"",
-                              {"top_level"}},
-                      Mistake{"NoGraphBuildsAnAccelerationStructure",
-                              "\"out\": { \"format\": \"rgba16f\", \"size\": \"view\" } }",
-                              "\"out\": { \"format\": \"rgba16f\", \"size\": \"view\" }, \"own\": { "
-                              "\"acceleration_structure\": \"top_level\" } }",
-                              Id::not_imported,
-                              "\"own\"",
-                              {"'own'", "a graph cannot own"}},
-                      Mistake{"AnAccelerationStructureIsNoImage",
-                              "{ \"light\": \"light\" }",
-                              "{ \"light\": \"scene\" }",
-                              Id::usage_mismatch,
-                              "\"scene\" }, \"write\"",
-                              {"expects an image", "'scene' is an acceleration structure"}},
-                      Mistake{"ABufferIsNoAccelerationStructure",
-                              "\"scene\": \"scene\"",
-                              "\"scene\": \"vertices\"",
-                              Id::usage_mismatch,
-                              "\"vertices\", \"vertices\"",
-                              {"expects an acceleration structure", "'vertices' is a buffer"}},
-                      Mistake{"AnImportedBufferHasAStride",
-                              "\"stride\": 16",
-                              "\"count\": 16",
-                              Id::missing_key,
-                              "{ \"count\": 16",
-                              {"buffer 'lights'", "'stride'"}},
-                      Mistake{"AnAccelerationStructureIsNotExported",
-                              "\"exports\": [\"out\"]",
-                              "\"exports\": [\"scene\", \"out\"]",
-                              Id::bad_export,
-                              "\"scene\", \"out\"",
-                              {"'scene' is an acceleration structure"}},
-                      Mistake{"ARequirementIsAFeatureOrAnImport",
-                              "\"ray_query\", \"scene\"]",
-                              "\"ray_querry\"]",
-                              Id::bad_option_requires,
-                              "\"ray_querry\"",
-                              {"did you mean 'ray_query'?"}},
-                      Mistake{"ARequiredImportIsOptional",
-                              "\"ray_query\", \"scene\"]",
-                              "\"light\"]",
-                              Id::bad_option_requires,
-                              "\"light\"]",
-                              {"not an optional import"}},
-                      Mistake{"OptionsThatRequireAreOptions",
-                              "\"requires\": { \"trace\"",
-                              "\"requires\": { \"trase\"",
-                              Id::bad_option_requires,
-                              "\"trase\"",
-                              {"did you mean 'trace'?"}},
-                      Mistake{"OneOptionRequiresNothing",
-                              "[\"ray_query\", \"scene\"] }",
-                              "[\"ray_query\"], \"copy\": [\"scene\"] }",
-                              Id::bad_option_requires,
-                              "\"requires\"",
-                              {"every option"}},
-                      Mistake{"AGraphRequiresFeaturesOnly",
-                              "\"name\": \"traced\"",
-                              "\"name\": \"traced\", \"requires\": [\"scene\"]",
-                              Id::invalid_value,
-                              "\"scene\"],\n",
-                              {"ray_query"}}),
-    [](const auto& one) { return one.param.property; });
+    ::testing::Values(
+        damage("AnAccelerationStructureIsOfTheTopLevel", R"("top_level")", R"("bottom_level")",
+               Id::invalid_value, R"("bottom_level")", {"top_level"}),
+        damage("NoGraphBuildsAnAccelerationStructure", R"("out": { "format": "rgba16f", "size": "view" } })",
+               R"("out": { "format": "rgba16f", "size": "view" }, "own": { )"
+               R"("acceleration_structure": "top_level" } })",
+               Id::not_imported, R"("own")", {"'own'", "a graph cannot own"}),
+        damage("AnAccelerationStructureIsNoImage", R"({ "light": "light" })", R"({ "light": "scene" })",
+               Id::usage_mismatch, R"("scene" }, "write")",
+               {"expects an image", "'scene' is an acceleration structure"}),
+        damage("ABufferIsNoAccelerationStructure", R"("scene": "scene")", R"("scene": "vertices")",
+               Id::usage_mismatch, R"("vertices", "vertices")",
+               {"expects an acceleration structure", "'vertices' is a buffer"}),
+        damage("AnImportedBufferHasAStride", R"("stride": 16)", R"("count": 16)", Id::missing_key,
+               R"({ "count": 16)", {"buffer 'lights'", "'stride'"}),
+        damage("AnAccelerationStructureIsNotExported", R"("exports": ["out"])",
+               R"("exports": ["scene", "out"])", Id::bad_export, R"("scene", "out")",
+               {"'scene' is an acceleration structure"}),
+        damage("ARequirementIsAFeatureOrAnImport", R"("ray_query", "scene"])", R"("ray_querry"])",
+               Id::bad_option_requires, R"("ray_querry")", {"did you mean 'ray_query'?"}),
+        damage("ARequiredImportIsOptional", R"("ray_query", "scene"])", R"("light"])",
+               Id::bad_option_requires, R"("light"])", {"not an optional import"}),
+        damage("OptionsThatRequireAreOptions", R"("requires": { "trace")", R"("requires": { "trase")",
+               Id::bad_option_requires, R"("trase")", {"did you mean 'trace'?"}),
+        damage("OneOptionRequiresNothing", R"(["ray_query", "scene"] })",
+               R"(["ray_query"], "copy": ["scene"] })", Id::bad_option_requires, R"("requires")",
+               {"every option"}),
+        damage("AGraphRequiresFeaturesOnly", R"("name": "traced")",
+               R"("name": "traced", "requires": ["scene"])", Id::invalid_value, "\"scene\"],\n",
+               {"ray_query"})),
+    property_of);
 
 struct Compiled {
   Diagnostics diagnostics;
@@ -203,7 +143,7 @@ std::string only_pass(const Graph& graph, const CompiledPlan& compiled) {
 }
 
 TEST(HostResources, AreAcquiredReadAndReleased) {
-  const HostRead loaded = read_with_host(std::string(traced));
+  const Read loaded = read_with_host(std::string(traced));
   ASSERT_TRUE(loaded.graph) << all_messages(loaded.diagnostics);
   const DeviceProfile device = generic_profile();
   const Compiled result = compiled(*loaded.graph, device);
@@ -242,7 +182,7 @@ TEST(HostResources, AreAcquiredReadAndReleased) {
 }
 
 TEST(HostResources, ArePartOfASavedPlan) {
-  const HostRead loaded = read_with_host(std::string(traced));
+  const Read loaded = read_with_host(std::string(traced));
   ASSERT_TRUE(loaded.graph);
   const DeviceProfile device = generic_profile();
   const Compiled result = compiled(*loaded.graph, device);
@@ -256,7 +196,7 @@ TEST(HostResources, ArePartOfASavedPlan) {
 }
 
 TEST(Options, UnavailableOnDevice_FallBack) {
-  const HostRead loaded = read_with_host(std::string(traced));
+  const Read loaded = read_with_host(std::string(traced));
   ASSERT_TRUE(loaded.graph);
   const DeviceProfile device = without_rays();
   Compiled result = compiled(*loaded.graph, device);
@@ -273,7 +213,7 @@ TEST(Options, UnavailableOnDevice_FallBack) {
 }
 
 TEST(Options, UnboundImport_FallBack) {
-  const HostRead loaded = read_with_host(std::string(traced));
+  const Read loaded = read_with_host(std::string(traced));
   ASSERT_TRUE(loaded.graph);
   const DeviceProfile device = generic_profile();
   std::vector<bool> bound(loaded.graph->resources.size(), true);
@@ -286,7 +226,7 @@ TEST(Options, UnboundImport_FallBack) {
 }
 
 TEST(Features, RequiredByTheGraph_MustBeAvailable) {
-  const HostRead loaded =
+  const Read loaded =
       read_with_host(with("\"name\": \"traced\"", "\"name\": \"traced\",\n  \"requires\": [\"ray_query\"]"));
   ASSERT_TRUE(loaded.graph) << all_messages(loaded.diagnostics);
   const DeviceProfile device = without_rays();
@@ -296,8 +236,7 @@ TEST(Features, RequiredByTheGraph_MustBeAvailable) {
 }
 
 TEST(Features, RequiredByAKernel_MustBeAvailable) {
-  const HostRead loaded =
-      read_with_host(with(", \"requires\": { \"trace\": [\"ray_query\", \"scene\"] }", ""));
+  const Read loaded = read_with_host(with(", \"requires\": { \"trace\": [\"ray_query\", \"scene\"] }", ""));
   ASSERT_TRUE(loaded.graph) << all_messages(loaded.diagnostics);
   const DeviceProfile device = without_rays();
   const Compiled result = compiled(*loaded.graph, device);

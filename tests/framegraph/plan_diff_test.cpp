@@ -5,9 +5,7 @@
 #include "framegraph/text/document.hpp"
 #include "tests/framegraph/random_graph.hpp"
 #include "tests/framegraph/saved_graph.hpp"
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
+#include "tests/support/matchers.hpp"
 
 #include <algorithm>
 #include <functional>
@@ -15,10 +13,6 @@
 
 namespace dermis::testing {
 namespace {
-
-using ::testing::AllOf;
-using ::testing::HasSubstr;
-using ::testing::IsEmpty;
 
 const PlanDiffSection& section(const PlanDiff& diff, std::string_view name) {
   static const PlanDiffSection none;
@@ -52,7 +46,7 @@ TEST(PlanDiff, EqualPlans_GiveAnEmptyDiff) {
     for (const PlanDiffSection& one : diff.sections)
       EXPECT_THAT(one.differences, IsEmpty()) << one.name;
     EXPECT_THAT(plan_diff_text(diff, "one", "two"),
-                AllOf(HasSubstr("A: one\nB: two\nthe plans are the same\n"), HasSubstr("\ntotals\n")));
+                HasAll("A: one\nB: two\nthe plans are the same\n", "\ntotals\n"));
     EXPECT_TRUE(is_json(plan_diff_json(diff, "one", "two")));
   }
 }

@@ -4,17 +4,13 @@
 #include "framegraph/verify/verify.hpp"
 #include "tests/framegraph/random_graph.hpp"
 #include "tests/framegraph/saved_graph.hpp"
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
+#include "tests/support/matchers.hpp"
 
 #include <random>
 #include <set>
 
 namespace dermis::testing {
 namespace {
-
-using ::testing::HasSubstr;
 
 std::string file_of(uint64_t seed) {
   const GraphBuilder builder = random_graph(seed);

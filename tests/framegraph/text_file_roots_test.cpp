@@ -1,23 +1,21 @@
 // Tests which paths a file may use to name other files.
 
 #include "framegraph/text/file_roots.hpp"
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
+#include "tests/support/matchers.hpp"
+#include "tests/support/test_folder.hpp"
 
 #include <filesystem>
 #include <fstream>
-#include <unistd.h>
 #include <vector>
 
 namespace dermis {
 namespace {
 
 namespace fs = std::filesystem;
-using ::testing::HasSubstr;
 
 struct FileRoots : ::testing::Test {
-  fs::path top = fs::canonical(::testing::TempDir()) / ("dermis_roots_" + std::to_string(getpid()));
+  const dermis::test::TestFolder temporary;
+  const fs::path top = fs::canonical(temporary.path());
   void SetUp() override {
     fs::create_directories(top / "root/in");
     fs::create_directories(top / "root_beside");
@@ -28,7 +26,6 @@ struct FileRoots : ::testing::Test {
     fs::create_symlink(top / "root/loop", top / "root/loop");
     fs::create_directory_symlink(top / "root", top / "entrance");
   }
-  void TearDown() override { fs::remove_all(top); }
   std::string problem(const fs::path& folder, const std::string& name, const fs::path& root) const {
     return place_file(folder, name, std::vector<fs::path>{root}).problem;
   }

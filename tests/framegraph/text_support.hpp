@@ -2,9 +2,9 @@
 // Parses a text in a test and finds the one expected diagnostic.
 
 #include "framegraph/text/document.hpp"
+#include "tests/support/matchers.hpp"
 
 #include <algorithm>
-#include <gtest/gtest.h>
 #include <string>
 #include <vector>
 
@@ -39,6 +39,14 @@ inline void expect_only(const Diagnostics& diagnostics, DiagnosticId id, uint32_
   const std::string whole = format_for_people(diagnostics, one);
   for (const std::string& word : words)
     EXPECT_NE(whole.find(word), std::string::npos) << word << "\n" << whole;
+}
+
+// Expects that the text is no document, for one reason as in expect_only().
+inline void expect_rejected(const std::string& text, DiagnosticId id, uint32_t line, uint32_t column,
+                            const std::vector<std::string>& words = {}) {
+  const Parsed parsed = parse(text);
+  EXPECT_FALSE(parsed.document);
+  expect_only(parsed.diagnostics, id, line, column, words);
 }
 
 } // namespace dermis::testing

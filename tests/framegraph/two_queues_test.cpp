@@ -11,9 +11,7 @@
 #include "framegraph/serialize/plan_file.hpp"
 #include "framegraph/verify/verify.hpp"
 #include "tests/framegraph/interpret/commands.hpp"
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
+#include "tests/support/matchers.hpp"
 
 #include <fmt/format.h>
 
@@ -22,8 +20,6 @@
 
 namespace dermis::testing {
 namespace {
-
-using ::testing::HasSubstr;
 
 constexpr uint32_t queue_frames = 5;
 

@@ -58,9 +58,7 @@ TEST_F(Afis, Mips_AddBiasAndReduceTheError) {
 
 // A step with a disc on it.
 Plane step_and_disc() {
-  Plane plane;
-  plane.width = plane.height = 144;
-  plane.d_px = {3, 3, 3};
+  Plane plane{.width = 144, .height = 144, .d_px = {3, 3, 3}};
   plane.light = [](double x, double y) {
     return (x < 72 ? 0.2f : 0.8f) + (std::hypot(x - 50, y - 80) < 25 ? 0.2f : 0.0f);
   };
@@ -116,9 +114,7 @@ TEST_F(Afis, ContinuedSequence_AveragesBetter) {
 }
 
 TEST_F(Afis, WhiteLightStaysWhiteWithEverySetting) {
-  Plane plane;
-  plane.width = 96;
-  plane.height = 70;
+  Plane plane{.width = 96, .height = 70};
   plane.profile = [](int x, int y) { return uint8_t(std::hypot(x - 40, y - 30) < 25 ? 0 : 1 + (x > 70)); };
   plane.depth_m = [](int x, int) { return x < 20 ? 1.0f : 1.02f; };
   const auto expect_white = [&](const char* graph, const Settings& settings) {
@@ -134,9 +130,7 @@ TEST_F(Afis, WhiteLightStaysWhiteWithEverySetting) {
 }
 
 TEST_F(Afis, NoLevelLeaksIntoOtherProfiles) {
-  Plane plane;
-  plane.width = plane.height = 128;
-  plane.d_px = {8, 4, 2};
+  Plane plane{.width = 128, .height = 128, .d_px = {8, 4, 2}};
   plane.profile = [](int x, int y) { return uint8_t(x + y / 3 < 80 ? 1 : 2); };
   plane.light = [](double x, double y) { return int(x) + int(y) / 3 < 80 ? 1.0f : 0.0f; };
   for (const char* samples : {"4", "16"}) {

@@ -17,10 +17,7 @@ INSTANTIATE_TEST_SUITE_P(Properties, Culling, ::testing::Values("base", "smooth"
 
 // An island with ragged borders, in a picture of its own size.
 Plane island() {
-  Plane plane;
-  plane.width = 160;
-  plane.height = 96;
-  plane.d_px = {12, 5, 2};
+  Plane plane{.width = 160, .height = 96, .d_px = {12, 5, 2}};
   plane.light = [](double x, double y) {
     return static_cast<float>(0.5 + 0.4 * std::sin(x * 0.31) * std::cos(y * 0.17));
   };

@@ -15,9 +15,7 @@ Settings with(const char* guidance, Settings more) {
 }
 
 Plane step() {
-  Plane plane;
-  plane.width = plane.height = 96;
-  plane.d_px = {3, 3, 3};
+  Plane plane{.width = 96, .height = 96, .d_px = {3, 3, 3}};
   plane.light = [](double x, double y) {
     return (x < 48 ? 0.2f : 0.8f) + (std::hypot(x - 30, y - 50) < 18 ? 0.2f : 0.0f);
   };
@@ -40,8 +38,7 @@ TEST_F(Guided, EqualSampleCounts_GiveEqualBits) {
 }
 
 TEST_F(Guided, WhiteLightStaysWhite) {
-  Plane plane;
-  plane.width = plane.height = 64;
+  Plane plane{.width = 64, .height = 64};
   for (const char* guidance : {"split_half", "ocv"})
     run_frames("afis_guided", plane, with(guidance, {}), 3, [&](const Picture& one) {
       for (const float value : one.rgb)

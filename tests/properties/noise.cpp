@@ -16,9 +16,7 @@ float noise(double x, double y) {
 }
 
 Plane noisy_plane(uint32_t side, double d) {
-  Plane plane;
-  plane.width = plane.height = side;
-  plane.d_px = {d, 0.38 * d, 0.19 * d};
+  Plane plane{.width = side, .height = side, .d_px = {d, 0.38 * d, 0.19 * d}};
   plane.light = noise;
   return plane;
 }

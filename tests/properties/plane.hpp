@@ -24,16 +24,16 @@ struct Plane {
   }; // Pixel centres are integers.
   std::function<uint8_t(int x, int y)> profile = [](int, int) { return uint8_t{1}; };
   // Profile of all frames except the last; empty: equal to `profile`.
-  std::function<uint8_t(int x, int y)> earlier_profile;
+  std::function<uint8_t(int x, int y)> earlier_profile = {};
   std::function<float(int x, int y)> depth_m = [](int, int) { return 1.0f; };
-  std::function<float(int x, int y)> scatter_scale; // Empty: not bound.
+  std::function<float(int x, int y)> scatter_scale = {}; // Empty: not bound.
   // Rectangle of the allocated size; width 0: all of it.
   std::array<uint32_t, 4> rectangle = {0, 0, 0, 0};
   // Empty: neither thickness nor back lighting is bound. Back lighting is 1.
-  std::function<float(int x, int y)> thickness_m;
-  std::string overlay; // Name in configs/overlays/ without .json; "": none.
+  std::function<float(int x, int y)> thickness_m = {};
+  std::string overlay = {}; // Name in configs/overlays/ without .json; "": none.
   // Text of a profile for both ids, in place of d_px; "": Burley with d_px.
-  std::string profile_file;
+  std::string profile_file = {};
 };
 
 struct Picture {

@@ -77,9 +77,7 @@ INSTANTIATE_TEST_SUITE_P(Properties, SurfaceTechnique,
 
 TEST_P(EveryTechnique, WhiteFurnaceStaysWhite) {
   for (const double d : {0.3, 1.0, 4.0, 16.0, 1000.0}) {
-    Plane plane;
-    plane.width = plane.height = 96;
-    plane.d_px = {d, 0.38 * d, 0.19 * d};
+    Plane plane{.width = 96, .height = 96, .d_px = {d, 0.38 * d, 0.19 * d}};
     const Picture picture = scatter(plane);
     for (const float value : picture.rgb)
       ASSERT_NEAR(value, 1.0f, 1e-3) << "d = " << d << " px"; // fp16 storage: 2^-11 at 1.
@@ -88,9 +86,7 @@ TEST_P(EveryTechnique, WhiteFurnaceStaysWhite) {
 
 TEST_P(EveryTechnique, FlatLightStaysFlatOnAnySurface) {
   for (const float value : {0.0123f, 0.7f, 37.3f}) {
-    Plane plane;
-    plane.width = 75;
-    plane.height = 52;
+    Plane plane{.width = 75, .height = 52};
     plane.light = [&](double, double) { return value; };
     plane.profile = [](int x, int y) { return static_cast<uint8_t>((x * 7 + y * 13) % 23 == 0 ? 0 : 1); };
     plane.depth_m = [](int x, int y) { return 1.0f + 0.002f * static_cast<float>((x / 9 + y / 5) % 4); };
@@ -103,10 +99,7 @@ TEST_P(EveryTechnique, FlatLightStaysFlatOnAnySurface) {
 }
 
 TEST_P(EveryTechnique, NoScattering_ReturnsTheInputBitForBit) {
-  Plane plane;
-  plane.width = 67; // Deliberately odd.
-  plane.height = 43;
-  plane.d_px = {0, 0, 0};
+  Plane plane{.width = 67, .height = 43, .d_px = {0, 0, 0}}; // Deliberately odd.
   plane.light = [](double x, double y) {
     return static_cast<float>(0.1 + 0.7 * std::fmod(x * 0.37 + y * 0.91, 1.0));
   };
@@ -118,9 +111,7 @@ TEST_P(EveryTechnique, NoScattering_ReturnsTheInputBitForBit) {
 }
 
 TEST_P(EveryTechnique, ChannelWithoutScattering_IsUnchangedBitForBit) {
-  Plane plane;
-  plane.width = plane.height = 64;
-  plane.d_px = {5, 2, 0};
+  Plane plane{.width = 64, .height = 64, .d_px = {5, 2, 0}};
   plane.light = [](double x, double) { return x < 31.5 ? 0.123456f : 0.9f; };
   const Picture picture = scatter(plane);
   for (uint32_t x = 0; x < plane.width; ++x)
@@ -129,8 +120,7 @@ TEST_P(EveryTechnique, ChannelWithoutScattering_IsUnchangedBitForBit) {
 }
 
 TEST_P(SurfaceTechnique, AdjacentMaterialsDoNotLeak) {
-  Plane plane;
-  plane.width = plane.height = 64;
+  Plane plane{.width = 64, .height = 64};
   plane.light = [](double x, double) { return x < 32 ? 1.0f : 0.0f; };
   plane.profile = [](int x, int) { return static_cast<uint8_t>(x < 32 ? 1 : 2); };
   const Picture picture = scatter(plane);
@@ -140,8 +130,7 @@ TEST_P(SurfaceTechnique, AdjacentMaterialsDoNotLeak) {
 }
 
 TEST_P(SurfaceTechnique, LargeDepthStepDoesNotLeak) {
-  Plane plane;
-  plane.width = plane.height = 64;
+  Plane plane{.width = 64, .height = 64};
   plane.light = [](double x, double) { return x < 32 ? 1.0f : 0.0f; };
   plane.depth_m = [](int x, int) { return x < 32 ? 1.0f : 1.4f; }; // 100 d of 4 mm.
   const Picture picture = scatter(plane);
@@ -151,8 +140,7 @@ TEST_P(SurfaceTechnique, LargeDepthStepDoesNotLeak) {
 }
 
 TEST_P(EveryTechnique, SinglePixelKeepsItsLight) {
-  Plane plane;
-  plane.width = plane.height = 32;
+  Plane plane{.width = 32, .height = 32};
   plane.light = [](double x, double y) { return x == 13 && y == 17 ? 0.75f : 0.25f; };
   plane.profile = [](int x, int y) { return static_cast<uint8_t>(x == 13 && y == 17 ? 1 : 0); };
   const Picture picture = scatter(plane);
@@ -161,8 +149,7 @@ TEST_P(EveryTechnique, SinglePixelKeepsItsLight) {
 }
 
 TEST_P(EveryTechnique, ScatterScale_ZeroIsDiffuseTwoDoublesTheRadius) {
-  Plane plane;
-  plane.width = plane.height = 96;
+  Plane plane{.width = 96, .height = 96};
   plane.light = [](double x, double) { return x < 47.5 ? 0.0f : 1.0f; };
   plane.scatter_scale = [](int, int) { return 0.0f; };
   const Picture diffuse = scatter(plane);
@@ -198,9 +185,7 @@ TEST_P(EveryTechnique, NaNLight_DoesNotSpread) {
 }
 
 TEST_P(EveryTechnique, RectangleInsideImages_MatchesItsOwnSize) {
-  Plane whole;
-  whole.width = 72;
-  whole.height = 56;
+  Plane whole{.width = 72, .height = 56};
   whole.light = [](double x, double y) { return x + y < 60 ? 0.2f : 0.8f; };
   const Picture expected = scatter(whole);
   Plane part = whole;
@@ -218,9 +203,7 @@ TEST_P(EveryTechnique, OddAndTinySizesWork) {
   std::vector<std::pair<uint32_t, uint32_t>> sizes = {{1, 1}, {9, 17}, {131, 3}};
   if (dermis::testing::seeds_to_try(0, 1) == 1) sizes.insert(sizes.end(), {{1, 7}, {7, 1}});
   for (const auto& [width, height] : sizes) {
-    Plane plane;
-    plane.width = width;
-    plane.height = height;
+    Plane plane{.width = width, .height = height};
     const Picture picture = scatter(plane);
     ASSERT_EQ(picture.rgb.size(), size_t{3} * width * height);
     for (const float value : picture.rgb)
@@ -239,10 +222,7 @@ EdgeError edge_error(const Technique& technique, double d_px, uint32_t channel_o
   // Columns near the border receive less light than the infinite half plane.
   constexpr uint32_t margin = 40;
   const std::array<double, 3> ratio = {1, 0.38, 0.19};
-  Plane plane;
-  plane.width = width;
-  plane.height = height;
-  plane.d_px = {d_px, ratio[1] * d_px, ratio[2] * d_px};
+  Plane plane{.width = width, .height = height, .d_px = {d_px, ratio[1] * d_px, ratio[2] * d_px}};
   plane.light = [](double x, double) { return x < width / 2 ? 0.0f : 1.0f; };
   const Picture picture = run(technique.graph, plane, technique.settings);
   EdgeError result;
@@ -288,10 +268,7 @@ TEST_F(Edge, PyramidMatchesTheReferenceUpToTheBorder) {
   // bound is 2e-3; fp16 storage adds less than 5e-4.
   namespace sss = dermis::subsurface;
   for (const double d : {2.0, 4.0}) {
-    Plane plane;
-    plane.width = 192;
-    plane.height = 96;
-    plane.d_px = {d, 0.38 * d, 0.19 * d};
+    Plane plane{.width = 192, .height = 96, .d_px = {d, 0.38 * d, 0.19 * d}};
     plane.light = [](double x, double) { return x < 96 ? 0.0f : 1.0f; };
     const Picture picture = run(sap_smooth.graph, plane, sap_smooth.settings);
     const size_t pixels = size_t{plane.width} * plane.height;
@@ -326,10 +303,7 @@ TEST_F(Edge, SinusoidContrastMatchesTheTransferFunction) {
   for (const double kd : {0.5, 1.0, 2.0}) {
     constexpr uint32_t width = 512, height = 160, margin = 120;
     const double k = kd / d;
-    Plane plane;
-    plane.width = width;
-    plane.height = height;
-    plane.d_px = {d, d, d};
+    Plane plane{.width = width, .height = height, .d_px = {d, d, d}};
     plane.light = [&](double x, double) { return static_cast<float>(0.5 + 0.5 * std::cos(k * (x - 256))); };
     const Picture picture = run("burley", plane, {{"samples", "128"}});
     // Least squares for a + b cos(k x) over the middle.

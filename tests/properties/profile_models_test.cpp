@@ -45,9 +45,7 @@ TEST_P(EveryModel, IsReproducedWithinTheTechniquesError) {
   const sss::Profile profile =
       read(std::string(DERMIS_SOURCE_DIR "/configs/profiles/") + one.profile + ".json");
   ASSERT_GT(profile.d_mm[0], 0);
-  Plane plane;
-  plane.width = 160;
-  plane.height = 96;
+  Plane plane{.width = 160, .height = 96};
   plane.light = discs;
   plane.pixel_pitch_m = profile.d_mm[static_cast<size_t>(profile.widest)] * 1e-3 / 3; // d = 3 px
   plane.profile_file =

@@ -58,9 +58,7 @@ TEST_F(Sampler, SelfNormalisationBiasFallsWithTheSamples) {
 
 TEST_F(Sampler, ErrorFallsFasterThanForIndependentSamples) {
   // Independent samples: n^-0.5. R2 on light with edges: about n^-0.7 over 8 to 64.
-  Plane plane;
-  plane.width = plane.height = 192;
-  plane.d_px = {3, 3, 3};
+  Plane plane{.width = 192, .height = 192, .d_px = {3, 3, 3}};
   plane.light = [](double x, double y) {
     return (x < 96 ? 0.2f : 0.8f) + (std::hypot(x - 60, y - 80) < 25 ? 0.2f : 0.0f);
   };

@@ -38,9 +38,7 @@ Settings with(const char* name, const char* value) {
 double height_kept(const Settings& settings) {
   constexpr uint32_t side = 160, first = 48, last = 112; // Two periods, far from the borders.
   constexpr double d = 2, period = 32, k = 2 * pi / period;
-  Plane plane;
-  plane.width = plane.height = side;
-  plane.d_px = {d, d, d};
+  Plane plane{.width = side, .height = side, .d_px = {d, d, d}};
   plane.light = [](double x, double) { return static_cast<float>(0.5 + 0.4 * std::cos(k * x)); };
   double height = 0, frames = 0;
   run_frames("fixed", plane, settings, 32, [&](const Picture& picture) {

@@ -38,10 +38,7 @@ TEST_P(FullStorage, FlatLightStaysFlatToTwoMillionths) {
       if (i != v && dermis::testing::seeds_to_try(0, 1) == 0) continue;
       const float value = values[v];
       const double d = distances[i];
-      Plane plane;
-      plane.width = 131; // Deliberately odd.
-      plane.height = 75;
-      plane.d_px = {d, 0.4 * d, 0.2 * d};
+      Plane plane{.width = 131, .height = 75, .d_px = {d, 0.4 * d, 0.2 * d}}; // Deliberately odd.
       plane.light = [&](double, double) { return value; };
       plane.profile = [](int x, int y) { return static_cast<uint8_t>((x * 7 + y * 13) % 23 == 0 ? 0 : 1); };
       plane.depth_m = [](int x, int y) { return 1.0f + 0.002f * static_cast<float>((x / 9 + y / 5) % 4); };

@@ -10,9 +10,7 @@ using namespace properties;
 class Transmission : public DeviceTest {
 protected:
   Plane slab(double thickness_in_d) {
-    Plane plane;
-    plane.width = plane.height = 40;
-    plane.d_px = {4, 2, 0};
+    Plane plane{.width = 40, .height = 40, .d_px = {4, 2, 0}};
     plane.light = [](double, double) { return 0.25f; };
     const auto metres = static_cast<float>(thickness_in_d * 4e-3); // d of red is 4 mm.
     plane.thickness_m = [metres](int, int) { return metres; };

@@ -132,27 +132,9 @@ void collect(json& value, std::vector<json*>& out) {
 json mutate(json document, uint32_t seed) {
   std::mt19937 random(seed);
   const auto below = [&](size_t count) { return static_cast<size_t>(random() % count); };
-  static const json values[] = {nullptr,
-                                true,
-                                0,
-                                1,
-                                3,
-                                -1,
-                                7.5,
-                                65,
-                                20000,
-                                1e20,
-                                -1e300,
-                                "",
-                                "view",
-                                "none",
-                                json::array(),
-                                json::object(),
-                                json::array({1, 2}),
-                                json::array({0.5, 0.5, 0.5}),
-                                json{{"note", 1}},
-                                json{{"keys", json::array({json::array({0, 1})})}},
-                                5000000000};
+  static const json values =
+      json::parse(R"([null, true, 0, 1, 3, -1, 7.5, 65, 20000, 1e20, -1e300, "", "view",
+      "none", [], {}, [1, 2], [0.5, 0.5, 0.5], { "note": 1 }, { "keys": [[0, 1]] }, 5000000000])");
   std::vector<json*> all;
   collect(document, all);
   json& at = *all[below(all.size())];
@@ -180,7 +162,7 @@ json mutate(json document, uint32_t seed) {
   case 2:
     if (at.is_object()) {
       const char* keys[] = {"note", "buffer", "bool", "sine", "file", "when", "colour"};
-      at[keys[below(std::size(keys))]] = values[below(std::size(values))];
+      at[keys[below(std::size(keys))]] = values[below(values.size())];
       break;
     }
     [[fallthrough]];
@@ -197,7 +179,7 @@ json mutate(json document, uint32_t seed) {
     }
     [[fallthrough]];
   default:
-    at = values[below(std::size(values))];
+    at = values[below(values.size())];
   }
   return document;
 }

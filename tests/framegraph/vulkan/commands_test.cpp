@@ -2,12 +2,8 @@
 #include "integration/tools/command/bench/record/allocation_count.hpp"
 #include "tests/framegraph/vulkan/executor_fixture.hpp"
 
-#include <gmock/gmock.h>
-
 namespace dermis::testing {
 namespace {
-
-using ::testing::ElementsAre;
 
 constexpr size_t max_barriers = 64;
 
@@ -73,9 +69,7 @@ protected:
     return executor->record(input);
   }
   SmallGraph update() const {
-    SmallGraph g;
-    g.import("light", Format::r32f).exported = true;
-    g.image("copy");
+    SmallGraph g{"in_out light", "image copy"};
     g.pass("add", "test.add", {{"a", "light"}}, {{"target", "copy"}});
     g.pass("back", "test.add", {{"a", "copy"}}, {{"target", "light"}});
     return g;
@@ -117,9 +111,7 @@ TEST_F(CommandsTest, OwnQueueFamily_NeedsNoTransfer) {
 }
 
 TEST_F(CommandsTest, NoBarrier_WithoutHostWorkAndLayoutChange) {
-  SmallGraph g;
-  g.import("light", Format::r32f);
-  g.exported("result");
+  SmallGraph g{"import light", "export result"};
   g.pass("add", "test.add", {{"a", "light"}}, {{"target", "result"}});
   make_executor(g, 16, 16);
   bind(g, "light", {});
@@ -151,8 +143,7 @@ TEST_F(CommandsTest, FirstFrameAfterAnotherPlan_WaitsForItsWrites) {
 }
 
 TEST_F(CommandsTest, AliasedMemory_UsesAGlobalBarrier) {
-  SmallGraph g;
-  g.import("light", Format::r32f).exported = true;
+  SmallGraph g{"in_out light"};
   for (const char* name : {"one", "two", "three"}) // The third image uses the memory of the first.
     g.image(name);
   g.pass("a", "test.add", {{"a", "light"}}, {{"target", "one"}});

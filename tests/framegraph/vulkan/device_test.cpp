@@ -4,13 +4,9 @@
 #include "tests/framegraph/vulkan/executor_fixture.hpp"
 
 #include <cstring>
-#include <gmock/gmock.h>
 
 namespace dermis::testing {
 namespace {
-
-using ::testing::HasSubstr;
-using ::testing::Not;
 
 TEST(Vocabulary, FormatsHaveVulkansNumbers) {
   const std::pair<Format, VkFormat> pairs[] = {

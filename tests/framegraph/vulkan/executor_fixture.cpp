@@ -49,6 +49,11 @@ void ExecutorTest::make_executor(const SmallGraph& graph, uint32_t width, uint32
   ASSERT_FALSE(error) << error.text;
 }
 
+TestImage ExecutorTest::start(const SmallGraph& graph, uint32_t width, uint32_t height) {
+  make_executor(graph, width, height);
+  return bind(graph, "result", {});
+}
+
 TestImage ExecutorTest::bind(const SmallGraph& graph, const std::string& slot,
                              const std::vector<float>& texels, VkImageLayout layout) {
   const TestImage image = make_image(VK_FORMAT_R32_SFLOAT, view_width, view_height,
@@ -94,6 +99,18 @@ vulkan::RecordResult ExecutorTest::frame(float time, vulkan::Rectangle rectangle
   const vulkan::RecordResult result = executor->record(input);
   submit(input.command_buffer);
   return result;
+}
+
+void ExecutorTest::run_frames(uint32_t count) {
+  for (uint32_t i = 0; i < count; ++i)
+    ASSERT_FALSE(frame());
+}
+
+void ExecutorTest::expect_frames(const TestImage& image, const std::vector<float>& values) {
+  for (size_t i = 0; i < values.size(); ++i) {
+    ASSERT_FALSE(frame());
+    EXPECT_THAT(read(image), Each(FloatEq(values[i]))) << "frame " << i;
+  }
 }
 
 std::vector<float> ExecutorTest::read(const TestImage& image, VkImageLayout layout) {

@@ -3,6 +3,7 @@
 
 #include "framegraph/vulkan/device_profile.hpp"
 #include "tests/framegraph/vulkan/small_graph.hpp"
+#include "tests/support/matchers.hpp"
 #include "tests/support/vulkan_fixture.hpp"
 
 #include <map>
@@ -19,6 +20,8 @@ protected:
                      const std::vector<std::string>& unbound = {});
   vulkan::Error try_executor(const SmallGraph& graph, const Plan& plan, const vulkan::Device& on,
                              std::unique_ptr<vulkan::Executor>& result);
+  // Makes the executor and binds a new image to the slot "result".
+  TestImage start(const SmallGraph& graph, uint32_t width, uint32_t height);
   // Makes an r32f image of the frame's size and binds it to the slot; `layout` is its state before
   // and after a frame.
   TestImage bind(const SmallGraph& graph, const std::string& slot, const std::vector<float>& texels,
@@ -27,6 +30,9 @@ protected:
                   VkImageLayout before, VkImageLayout after);
   // Records and submits the next frame, without waiting.
   vulkan::RecordResult frame(float time = 0.0f, vulkan::Rectangle rectangle = {}, bool reset_history = false);
+  void run_frames(uint32_t count);
+  // Runs one frame per value and expects it in every texel.
+  void expect_frames(const TestImage& image, const std::vector<float>& values);
   std::vector<float> read(const TestImage& image, VkImageLayout layout = VK_IMAGE_LAYOUT_GENERAL);
 
   vulkan::Device dermis_device;

@@ -1,26 +1,18 @@
 // Tests that the host's images contain the results of all passes after a frame.
 #include "tests/framegraph/vulkan/executor_fixture.hpp"
 
-#include <gmock/gmock.h>
-
 namespace dermis::testing {
 namespace {
-
-using ::testing::Each;
-using ::testing::FloatEq;
 
 constexpr uint32_t width = 21, height = 13; // Not multiples of the tile side.
 
 // Values below are small integers and quarters, exact in r32f, so the tests compare for equality.
 
 TEST_F(ExecutorTest, NextPassReadsTheWrite) {
-  SmallGraph g;
-  g.exported("result");
-  g.image("first");
+  SmallGraph g{"export result", "image first"};
   g.set(g.pass("fill", "test.fill", {}, {{"target", "first"}}), "slope", 2);
   g.set(g.pass("add", "test.add", {{"a", "first"}}, {{"target", "result"}}), "bias", 0.25);
-  make_executor(g, width, height);
-  const TestImage result = bind(g, "result", {});
+  const TestImage result = start(g, width, height);
   ASSERT_FALSE(frame(10.0f));
   const std::vector<float> texels = read(result);
   for (uint32_t y = 0; y < height; ++y)
@@ -29,8 +21,7 @@ TEST_F(ExecutorTest, NextPassReadsTheWrite) {
 }
 
 TEST_F(ExecutorTest, TransientsThatShareMemoryDoNotDisturbEachOther) {
-  SmallGraph g;
-  g.exported("result");
+  SmallGraph g{"export result"};
   for (const char* name : {"a", "b", "c", "d"})
     g.image(name);
   g.set(g.pass("fill", "test.fill", {}, {{"target", "a"}}), "value", 5);
@@ -48,28 +39,21 @@ TEST_F(ExecutorTest, TransientsThatShareMemoryDoNotDisturbEachOther) {
                  plan.placements[k].offset < plan.placements[i].offset + plan.placements[i].size;
   EXPECT_GT(sharing, 0u) << "the plan shares no memory, so this test proves nothing";
   const TestImage result = bind(g, "result", {});
-  for (int i = 0; i < 4; ++i)
-    ASSERT_FALSE(frame());
+  run_frames(4);
   EXPECT_THAT(read(result), Each(FloatEq(9.0f)));
 }
 
 TEST_F(ExecutorTest, AnImportIsUpdatedInPlace) {
-  SmallGraph g;
-  g.import("light", Format::r32f).exported = true;
-  g.image("copy");
+  SmallGraph g{"in_out light", "image copy"};
   g.set(g.pass("add", "test.add", {{"a", "light"}}, {{"target", "copy"}}), "bias", 3);
   g.pass("back", "test.add", {{"a", "copy"}}, {{"target", "light"}});
   make_executor(g, width, height);
   const TestImage light = bind(g, "light", std::vector<float>(width * height, 4.0f));
-  ASSERT_FALSE(frame());
-  EXPECT_THAT(read(light), Each(FloatEq(7.0f)));
-  ASSERT_FALSE(frame());
-  EXPECT_THAT(read(light), Each(FloatEq(10.0f)));
+  expect_frames(light, {7.0, 10.0});
 }
 
 TEST_F(ExecutorTest, ImagesAreReleasedInTheRequestedState) {
-  SmallGraph g;
-  g.import("light", Format::r32f);
+  SmallGraph g{"import light"};
   g.import("depth", Format::d32f);
   g.exported("result");
   g.pass("add", "test.add", {{"a", "light"}, {"b", "depth"}}, {{"target", "result"}});
@@ -97,8 +81,7 @@ TEST_F(ExecutorTest, ImagesAreReleasedInTheRequestedState) {
 }
 
 TEST_F(ExecutorTest, AnUnboundOptionalPortReadsZeroAndItsMaskBitIsClear) {
-  SmallGraph g;
-  g.import("light", Format::r32f);
+  SmallGraph g{"import light"};
   g.import("more", Format::r32f, true);
   g.import("ids", Format::r32_uint, true);
   g.exported("result");
@@ -112,8 +95,7 @@ TEST_F(ExecutorTest, AnUnboundOptionalPortReadsZeroAndItsMaskBitIsClear) {
 }
 
 TEST_F(ExecutorTest, ABoundOptionalPortIsRead) {
-  SmallGraph g;
-  g.import("light", Format::r32f);
+  SmallGraph g{"import light"};
   g.import("ids", Format::r8_uint, true);
   g.exported("result");
   g.exported("second", Format::rgba16f);
@@ -128,15 +110,13 @@ TEST_F(ExecutorTest, ABoundOptionalPortIsRead) {
   transition(second, VK_IMAGE_LAYOUT_GENERAL);
   bind_image(g, "second", second, VK_IMAGE_LAYOUT_GENERAL, VK_IMAGE_LAYOUT_GENERAL);
   const TestImage result = bind(g, "result", {});
-  ASSERT_FALSE(frame());
-  EXPECT_THAT(read(result), Each(FloatEq(11.0f)));
+  expect_frames(result, {11.0f});
   constexpr uint16_t minus_eleven = 0xc980; // fp16: -1.375 * 2^3.
   EXPECT_THAT(values_of<uint16_t>(download(second, VK_IMAGE_LAYOUT_GENERAL)), Each(minus_eleven));
 }
 
 TEST_F(ExecutorTest, OnlyTheRenderRectangleIsWritten) {
-  SmallGraph g;
-  g.import("light", Format::r32f).exported = true;
+  SmallGraph g{"in_out light"};
   g.set(g.pass("fill", "test.fill", {}, {{"target", "light"}}), "value", 2);
   make_executor(g, width, height);
   const TestImage light = bind(g, "light", std::vector<float>(width * height, -1.0f));
@@ -152,8 +132,7 @@ TEST_F(ExecutorTest, OnlyTheRenderRectangleIsWritten) {
 }
 
 TEST_F(ExecutorTest, AnIndirectDispatchRunsOverTheListedTiles) {
-  SmallGraph g;
-  g.import("light", Format::r32f).exported = true;
+  SmallGraph g{"in_out light"};
   g.buffer("classes", 0);
   g.buffer("tiles", 1);
   g.buffer("arguments", 3);
@@ -162,8 +141,7 @@ TEST_F(ExecutorTest, AnIndirectDispatchRunsOverTheListedTiles) {
   g.pass("mark", "test.mark", {{"tiles", "tiles"}, {"arguments", "arguments"}}, {{"target", "light"}});
   make_executor(g, 200, 72); // 25 x 9 tiles: four groups over the tile grid.
   const TestImage light = bind(g, "light", std::vector<float>(200 * 72, 0.0f));
-  for (int i = 1; i <= 2; ++i)
-    ASSERT_FALSE(frame());
+  run_frames(2);
   const std::vector<float> texels = read(light);
   for (uint32_t y = 0; y < 72; ++y)
     for (uint32_t x = 0; x < 200; ++x)
@@ -171,9 +149,7 @@ TEST_F(ExecutorTest, AnIndirectDispatchRunsOverTheListedTiles) {
 }
 
 TEST_F(ExecutorTest, AClearZeroesImagesAndBuffers) {
-  SmallGraph g;
-  g.exported("result");
-  g.import("light", Format::r32f);
+  SmallGraph g{"export result", "import light"};
   g.buffer("weights", 1);
   g.pass("clear", "test.clear", {}, {{"target", "light"}, {"buffer", "weights"}});
   g.set(g.pass("add", "test.add", {{"a", "light"}, {"weights", "weights"}}, {{"target", "result"}}), "bias",
@@ -181,18 +157,14 @@ TEST_F(ExecutorTest, AClearZeroesImagesAndBuffers) {
   make_executor(g, width, height);
   bind(g, "light", std::vector<float>(width * height, 8.0f));
   const TestImage result = bind(g, "result", {});
-  ASSERT_FALSE(frame());
-  EXPECT_THAT(read(result), Each(FloatEq(1.0f)));
+  expect_frames(result, {1.0f});
 }
 
 TEST_F(ExecutorTest, TheEnvironmentGivesTablesAndALinearSampler) {
-  SmallGraph g;
-  g.exported("result");
-  g.image("ramp");
+  SmallGraph g{"export result", "image ramp"};
   g.set(g.pass("fill", "test.fill", {}, {{"target", "ramp"}}), "slope", 4);
   g.pass("sample", "test.sample", {{"a", "ramp"}}, {{"target", "result"}});
-  make_executor(g, width, height);
-  const TestImage result = bind(g, "result", {});
+  const TestImage result = start(g, width, height);
   ASSERT_FALSE(frame());
   // Sampling a quarter of the way to the next texel, times table[1] = 2. Filter weights have at
   // least 4 fraction bits (subTexelPrecisionBits >= 4), so a quarter is exact.
@@ -206,29 +178,22 @@ TEST_F(ExecutorTest, ASettingOfTheHostIsEffectiveInTheNextFrame) {
   g.setting("strength", 3.0);
   g.exported("result");
   g.follow(g.pass("fill", "test.fill", {}, {{"target", "result"}}), "value", "strength");
-  make_executor(g, width, height);
-  const TestImage result = bind(g, "result", {});
-  ASSERT_FALSE(frame());
-  EXPECT_THAT(read(result), Each(FloatEq(3.0f)));
+  const TestImage result = start(g, width, height);
+  expect_frames(result, {3.0f});
   settings = {{SettingType::real, 0, 6.5}};
-  ASSERT_FALSE(frame());
-  EXPECT_THAT(read(result), Each(FloatEq(6.5f)));
+  expect_frames(result, {6.5f});
 }
 
 TEST_F(ExecutorTest, EveryPassHasATimeOfACompletedFrame) {
   if (!dermis_device.timings) GTEST_SKIP() << "the queue family writes no timestamps";
-  SmallGraph g;
-  g.exported("result");
-  g.image("first");
+  SmallGraph g{"export result", "image first"};
   g.pass("fill", "test.fill", {}, {{"target", "first"}});
   g.pass("add", "test.add", {{"a", "first"}}, {{"target", "result"}});
-  make_executor(g, 256, 256);
-  bind(g, "result", {});
+  start(g, 256, 256);
   std::vector<vulkan::PassTiming> timings(2);
   uint64_t timed = 0;
   EXPECT_FALSE(executor->read_timings(0, timed, timings)) << "nothing was recorded yet";
-  for (int i = 0; i < 3; ++i)
-    ASSERT_FALSE(frame());
+  run_frames(3);
   wait();
   ASSERT_TRUE(executor->read_timings(2, timed, timings));
   EXPECT_EQ(timed, 2u) << "frame 3 is not reported as complete";
@@ -244,8 +209,7 @@ TEST_F(ExecutorTest, EveryPassHasATimeOfACompletedFrame) {
 }
 
 TEST_F(ExecutorTest, AWrongFrameIsRejectedAndRecordsNothing) {
-  SmallGraph g;
-  g.import("light", Format::r32f).exported = true;
+  SmallGraph g{"in_out light"};
   g.pass("fill", "test.fill", {}, {{"target", "light"}});
   make_executor(g, width, height);
   const TestImage light = bind(g, "light", std::vector<float>(width * height, -1.0f));

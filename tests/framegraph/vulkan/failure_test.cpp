@@ -1,13 +1,9 @@
 // If any driver call fails, creation names the call, frees everything, and can be tried again.
 #include "tests/framegraph/vulkan/executor_fixture.hpp"
 
-#include <gmock/gmock.h>
-
 namespace dermis::testing {
 namespace {
 
-using ::testing::AllOf;
-using ::testing::HasSubstr;
 using vulkan::FunctionTable;
 
 // Vulkan functions have no user pointer, so their state is static; tests of this file run
@@ -48,9 +44,7 @@ void make_failing(FunctionTable& table) {
 class FailureTest : public ExecutorTest {
 protected:
   SmallGraph graph() const {
-    SmallGraph g;
-    g.exported("result");
-    g.history("count");
+    SmallGraph g{"export result", "history count"};
     g.buffer("weights", 1);
     g.pass("clear", "test.clear", {}, {{"buffer", "weights"}});
     g.pass("step", "test.add", {{"a", "count@-1"}, {"weights", "weights"}}, {{"target", "count"}});
@@ -132,8 +126,7 @@ TEST_F(FailureTest, BadInputsAreRejected) {
 }
 
 TEST_F(ExecutorTest, APlanOfTwoQueuesIsRejected) {
-  SmallGraph g;
-  g.exported("result");
+  SmallGraph g{"export result"};
   for (const char* name : {"first", "second"})
     g.image(name);
   g.pass("fill", "test.fill", {}, {{"target", "first"}});
@@ -143,7 +136,7 @@ TEST_F(ExecutorTest, APlanOfTwoQueuesIsRejected) {
   plan.passes[1].queue = Queue::async;
   const vulkan::Error error = try_executor(g, plan, dermis_device, executor);
   EXPECT_EQ(error.kind, vulkan::ErrorKind::unsupported);
-  EXPECT_THAT(error.text, AllOf(HasSubstr("'aside'"), HasSubstr("single queue")));
+  EXPECT_THAT(error.text, HasAll("'aside'", "single queue"));
 }
 
 } // namespace

@@ -2,20 +2,14 @@
 // validity are reported.
 #include "tests/framegraph/vulkan/executor_fixture.hpp"
 
-#include <gmock/gmock.h>
-
 namespace dermis::testing {
 namespace {
-
-using ::testing::Each;
-using ::testing::FloatEq;
 
 constexpr uint32_t side = 16;
 
 // Computes count = count@-1 + 1 and copies it to `result`.
 SmallGraph counter(uint32_t frames = 1) {
-  SmallGraph g;
-  g.exported("result");
+  SmallGraph g{"export result"};
   g.history("count", frames);
   g.set(g.pass("step", "test.add", {{"a", "count@-" + std::to_string(frames)}}, {{"target", "count"}}),
         "bias", 1);
@@ -27,52 +21,36 @@ class HistoryTest : public ExecutorTest {};
 
 TEST_F(HistoryTest, NewHistoryIsZero_FramesReadThePrevious) {
   const SmallGraph g = counter();
-  make_executor(g, side, side);
-  const TestImage result = bind(g, "result", {});
-  for (int i = 1; i <= 5; ++i)
-    ASSERT_FALSE(frame());
+  const TestImage result = start(g, side, side);
+  run_frames(5);
   EXPECT_THAT(read(result), Each(FloatEq(5.0f)));
 }
 
 TEST_F(HistoryTest, TwoFramesBack_ReadsTheRightFrame) {
   const SmallGraph g = counter(2); // Two interleaved counters.
-  make_executor(g, side, side);
-  const TestImage result = bind(g, "result", {});
-  const float expected[] = {1, 1, 2, 2, 3, 3, 4};
-  for (const float value : expected) {
-    ASSERT_FALSE(frame());
-    EXPECT_THAT(read(result), Each(FloatEq(value)));
-  }
+  const TestImage result = start(g, side, side);
+  expect_frames(result, {1, 1, 2, 2, 3, 3, 4});
 }
 
 TEST_F(HistoryTest, UpdatedInPlace_CountsAndRestartsAfterACut) {
-  SmallGraph g;
-  g.exported("result");
-  g.history("count");
-  g.image("copy");
+  SmallGraph g{"export result", "history count", "image copy"};
   g.pass("look", "test.add", {{"a", "count@-1"}}, {{"target", "copy"}});
   g.set(g.pass("step", "test.add", {{"a", "copy"}}, {{"target", "count"}}), "bias", 1);
   g.pass("show", "test.add", {{"a", "count"}}, {{"target", "result"}});
-  make_executor(g, side, side);
-  const TestImage result = bind(g, "result", {});
-  for (int i = 1; i <= 4; ++i)
-    ASSERT_FALSE(frame());
+  const TestImage result = start(g, side, side);
+  run_frames(4);
   EXPECT_THAT(read(result), Each(FloatEq(4.0f)));
   ASSERT_FALSE(frame(0.0f, {}, true));
   EXPECT_THAT(read(result), Each(FloatEq(1.0f)));
 }
 
 TEST_F(HistoryTest, InvalidHistory_PortReadsItsOtherwise) {
-  SmallGraph g;
-  g.exported("result");
-  g.history("count");
-  g.image("start");
+  SmallGraph g{"export result", "history count", "image start"};
   g.set(g.pass("begin", "test.fill", {}, {{"target", "start"}}), "value", 10);
   g.set(g.pass("step", "test.add", {{"a", "count@-1?start"}, {"b", "count@-1?"}}, {{"target", "count"}}),
         "bias", 1);
   g.pass("show", "test.add", {{"a", "count"}}, {{"target", "result"}});
-  make_executor(g, side, side);
-  const TestImage result = bind(g, "result", {});
+  const TestImage result = start(g, side, side);
   // Starts from 10 without history; each later frame doubles the previous frame and adds one.
   const float expected[] = {11, 23, 47, 11, 23};
   for (size_t i = 0; i < std::size(expected); ++i) {
@@ -82,25 +60,19 @@ TEST_F(HistoryTest, InvalidHistory_PortReadsItsOtherwise) {
 }
 
 TEST_F(HistoryTest, TwoFramesBack_IsValidFromTheThirdFrame) {
-  SmallGraph g;
-  g.exported("result");
+  SmallGraph g{"export result"};
   g.history("count", 2);
   g.image("start");
   g.set(g.pass("begin", "test.fill", {}, {{"target", "start"}}), "value", 10);
   g.set(g.pass("step", "test.add", {{"a", "count@-2?start"}}, {{"target", "count"}}), "bias", 1);
   g.pass("show", "test.add", {{"a", "count"}}, {{"target", "result"}});
-  make_executor(g, side, side);
-  const TestImage result = bind(g, "result", {});
-  for (const float expected : {11, 11, 12, 12, 13}) {
-    ASSERT_FALSE(frame());
-    EXPECT_THAT(read(result), Each(FloatEq(expected)));
-  }
+  const TestImage result = start(g, side, side);
+  expect_frames(result, {11, 11, 12, 12, 13});
 }
 
 TEST_F(HistoryTest, AgeGrowsEachFrame_CutGivesItsReason) {
   const SmallGraph g = counter();
-  make_executor(g, side, side);
-  const TestImage result = bind(g, "result", {});
+  const TestImage result = start(g, side, side);
   ASSERT_EQ(executor->history_count(), 1u);
   vulkan::HistoryState state = executor->history_state(0);
   EXPECT_EQ(state.resource, "count");
@@ -126,10 +98,8 @@ TEST_F(HistoryTest, OnCutKeep_SurvivesACut) {
   SmallGraph g = counter();
   for (ResourceDeclaration& resource : g.graph.resources)
     resource.history.on_cut = HistoryDeclaration::OnCut::keep;
-  make_executor(g, side, side);
-  const TestImage result = bind(g, "result", {});
-  for (int i = 1; i <= 3; ++i)
-    ASSERT_FALSE(frame());
+  const TestImage result = start(g, side, side);
+  run_frames(3);
   ASSERT_FALSE(frame(0.0f, {}, true));
   EXPECT_THAT(read(result), Each(FloatEq(4.0f)));
   EXPECT_EQ(executor->history_state(0).age, 4u);
@@ -146,17 +116,14 @@ protected:
 
 TEST_F(ReplacedHistory, SameGraph_KeepsCounting) {
   const SmallGraph g = counter(2);
-  make_executor(g, side, side);
-  const TestImage result = bind(g, "result", {});
-  for (int i = 1; i <= 5; ++i)
-    ASSERT_FALSE(frame());
+  const TestImage result = start(g, side, side);
+  run_frames(5);
   take_over(g, side, side);
   const vulkan::HistoryState state = executor->history_state(0, false, replaced.get());
   EXPECT_TRUE(state.valid);
   EXPECT_EQ(state.age, 5u);
   for (const float expected : {3, 4, 4}) {
-    ASSERT_FALSE(frame());
-    EXPECT_THAT(read(result), Each(FloatEq(expected)));
+    expect_frames(result, {expected});
     wait();
     replaced.reset(); // The executor is copied from only once.
   }
@@ -164,8 +131,7 @@ TEST_F(ReplacedHistory, SameGraph_KeepsCounting) {
 
 TEST_F(ReplacedHistory, SameGraph_KeepsBuffers) {
   // `light` counts one more in each tile that the previous frame listed.
-  SmallGraph g;
-  g.import("light", Format::r32f).exported = true;
+  SmallGraph g{"in_out light"};
   g.buffer("classes", 0).history.frames = 1;
   g.buffer("tiles", 1);
   g.buffer("arguments", 3);
@@ -204,16 +170,13 @@ TEST_F(ReplacedHistory, OtherSize_KeepsOnlyRescaledHistories) {
     SmallGraph g = counter();
     for (ResourceDeclaration& resource : g.graph.resources)
       if (rescale) resource.history.on_resize = HistoryDeclaration::OnResize::rescale;
-    make_executor(g, side, side);
-    bind(g, "result", {});
-    for (int i = 1; i <= 3; ++i)
-      ASSERT_FALSE(frame());
+    start(g, side, side);
+    run_frames(3);
     take_over(g, 2 * side + 5, side / 2);
     EXPECT_EQ(executor->previous_rectangle(replaced.get()).width, 2 * side + 5);
     EXPECT_EQ(executor->history_state(0, false, replaced.get()).valid, rescale);
     const TestImage result = bind(g, "result", {});
-    ASSERT_FALSE(frame());
-    EXPECT_THAT(read(result), Each(FloatEq(rescale ? 4.0f : 1.0f)));
+    expect_frames(result, {rescale ? 4.0f : 1.0f});
     wait();
     replaced.reset();
   }
@@ -223,10 +186,8 @@ TEST_F(ReplacedHistory, OtherSizeWithACut_StartsAnew) {
   SmallGraph g = counter();
   for (ResourceDeclaration& resource : g.graph.resources)
     resource.history.on_resize = HistoryDeclaration::OnResize::rescale;
-  make_executor(g, side, side);
-  bind(g, "result", {});
-  for (int i = 1; i <= 3; ++i)
-    ASSERT_FALSE(frame());
+  start(g, side, side);
+  run_frames(3);
   take_over(g, 2 * side + 5, side / 2);
   EXPECT_FALSE(executor->history_state(0, true, replaced.get()).valid);
   const TestImage result = bind(g, "result", {});
@@ -238,10 +199,7 @@ TEST_F(ReplacedHistory, OtherSizeWithACut_StartsAnew) {
 
 TEST_F(ReplacedHistory, OtherSize_TakesTheNearestTexel) {
   // Computes shown = kept@-1 and kept = source, a ramp.
-  SmallGraph g;
-  g.import("source", Format::r32f);
-  g.exported("result");
-  g.history("kept");
+  SmallGraph g{"import source", "export result", "history kept"};
   g.pass("show", "test.add", {{"a", "kept@-1"}}, {{"target", "result"}});
   g.pass("keep", "test.add", {{"a", "source"}}, {{"target", "kept"}});
   for (ResourceDeclaration& resource : g.graph.resources)
@@ -268,21 +226,16 @@ TEST_F(ReplacedHistory, OtherSize_TakesTheNearestTexel) {
 }
 
 TEST_F(ReplacedHistory, OtherPassType_StartsAnew) {
-  SmallGraph filled;
-  filled.exported("result");
-  filled.history("count");
+  SmallGraph filled{"export result", "history count"};
   filled.set(filled.pass("step", "test.fill", {}, {{"target", "count"}}), "value", 7);
   filled.pass("show", "test.add", {{"a", "count@-1"}}, {{"target", "result"}});
-  make_executor(filled, side, side);
-  bind(filled, "result", {});
-  for (int i = 1; i <= 3; ++i)
-    ASSERT_FALSE(frame());
+  start(filled, side, side);
+  run_frames(3);
   const SmallGraph g = counter();
   take_over(g, side, side);
   const TestImage result = bind(g, "result", {});
   EXPECT_FALSE(executor->history_state(0, false, replaced.get()).valid);
-  ASSERT_FALSE(frame());
-  EXPECT_THAT(read(result), Each(FloatEq(1.0f)));
+  expect_frames(result, {1.0f});
 }
 
 class DiscardedFrame : public HistoryTest {
@@ -299,8 +252,7 @@ protected:
 
 TEST_F(DiscardedFrame, LeavesNoEffect) {
   const SmallGraph g = counter(2);
-  make_executor(g, side, side);
-  const TestImage result = bind(g, "result", {});
+  const TestImage result = start(g, side, side);
   const float expected[] = {1, 1, 2, 2, 3, 3};
   for (size_t i = 0; i < std::size(expected); ++i) {
     const vulkan::HistoryState before = executor->history_state(0);
@@ -318,12 +270,10 @@ TEST_F(DiscardedFrame, LeavesNoEffect) {
 
 TEST_F(DiscardedFrame, OnlyTheLastFrameOnce) {
   const SmallGraph g = counter();
-  make_executor(g, side, side);
-  bind(g, "result", {});
+  start(g, side, side);
   EXPECT_FALSE(executor->discard_frame(0));
   EXPECT_FALSE(executor->discard_frame(1));
-  ASSERT_FALSE(frame());
-  ASSERT_FALSE(frame());
+  run_frames(2);
   wait();
   EXPECT_FALSE(executor->discard_frame(1));
   record_unsubmitted();
@@ -335,10 +285,8 @@ TEST_F(DiscardedFrame, OnlyTheLastFrameOnce) {
 TEST_F(DiscardedFrame, LeavesNoCounters) {
   const SmallGraph g = counter();
   counters = true;
-  make_executor(g, side, side);
-  bind(g, "result", {});
-  ASSERT_FALSE(frame());
-  ASSERT_FALSE(frame());
+  start(g, side, side);
+  run_frames(2);
   wait();
   uint32_t words[1];
   EXPECT_TRUE(executor->read_counters(1, words));

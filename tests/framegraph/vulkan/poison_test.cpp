@@ -2,8 +2,6 @@
 // undefined memory give NaN.
 #include "tests/framegraph/vulkan/executor_fixture.hpp"
 
-#include <gmock/gmock.h>
-
 #include <cmath>
 
 namespace dermis::testing {
@@ -29,8 +27,7 @@ protected:
 };
 
 TEST_F(PoisonTest, ResultsDoNotDependOnUndefinedMemory) {
-  SmallGraph g;
-  g.exported("result");
+  SmallGraph g{"export result"};
   g.image("parts").mips = 2;
   g.history("count");
   g.buffer("classes", 0);
@@ -53,9 +50,7 @@ TEST_F(PoisonTest, ResultsDoNotDependOnUndefinedMemory) {
 }
 
 TEST_F(PoisonTest, UndefinedMemoryIsNaN) {
-  SmallGraph g;
-  g.exported("result");
-  g.image("first");
+  SmallGraph g{"export result", "image first"};
   g.pass("fill", "test.fill", {}, {{"target", "first"}});
   // A quarter of the next texel.
   g.pass("blur", "test.sample", {{"a", "first"}}, {{"target", "result"}});
@@ -66,9 +61,7 @@ TEST_F(PoisonTest, UndefinedMemoryIsNaN) {
 }
 
 TEST_F(PoisonTest, NeedsAPlanCompiledForIt) {
-  SmallGraph g;
-  g.exported("result");
-  g.image("first");
+  SmallGraph g{"export result", "image first"};
   g.pass("fill", "test.fill", {}, {{"target", "first"}});
   g.pass("show", "test.add", {{"a", "first"}}, {{"target", "result"}});
   const Plan plan = g.compile(profile, wide, high);

@@ -3,14 +3,9 @@
 #include "tests/framegraph/vulkan/executor_fixture.hpp"
 
 #include <functional>
-#include <gmock/gmock.h>
 
 namespace dermis::testing {
 namespace {
-
-using ::testing::Each;
-using ::testing::FloatEq;
-using ::testing::HasSubstr;
 
 // The inputs of a frame, each of which a test can make wrong.
 struct Frame {
@@ -102,8 +97,7 @@ TEST_F(RejectedFrames, TooFewSettings_AreRejected) {
   two.pass("fill", "test.fill", {}, {{"target", "result"}});
   executor.reset();
   images.clear();
-  make_executor(two, side, side);
-  bind(two, "result", {});
+  start(two, side, side);
   const vulkan::RecordResult rejected = record([](Frame&) {});
   EXPECT_EQ(rejected.kind, vulkan::ErrorKind::argument);
   EXPECT_THAT(rejected.text, HasSubstr("settings has fewer values"));
@@ -119,8 +113,7 @@ TEST_F(RejectedFrames, WrongHostBuffer_IsRejectedWithSizeAndPlace) {
   with.pass("add", "test.add", {{"a", "black"}, {"weights", "weights"}}, {{"target", "result"}});
   executor.reset();
   images.clear();
-  make_executor(with, side, side);
-  bind(with, "result", {});
+  start(with, side, side);
   const auto slot = static_cast<size_t>(with.slot("weights"));
   const PlanResource* planned = nullptr;
   for (const PlanResource& one : executor->plan().resources)
@@ -151,8 +144,7 @@ TEST_F(RejectedFrames, WrongHostBuffer_IsRejectedWithSizeAndPlace) {
 }
 
 TEST_F(ExecutorTest, EnvironmentsThatNoDeviceCanBindAreRejected) {
-  SmallGraph g;
-  g.exported("result");
+  SmallGraph g{"export result"};
   g.pass("fill", "test.fill", {}, {{"target", "result"}});
   const Plan plan = g.compile(profile, 16, 16);
   static const std::byte table[8]{};

@@ -2,18 +2,15 @@
 // mismatch.
 #include "framegraph/vulkan/shader/signature_check.hpp"
 #include "tests/framegraph/vulkan/small_graph.hpp"
+#include "tests/support/matchers.hpp"
 
 #include <algorithm>
-#include <gmock/gmock.h>
 #include <random>
 
 namespace dermis::testing {
 namespace {
 
 using namespace dermis::vulkan;
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
-using ::testing::IsEmpty;
 
 std::span<const uint32_t> spirv(std::string_view shader) {
   for (const KernelCode& kernel : small_kernels())
@@ -116,14 +113,12 @@ TEST(Signature, APortOfAnotherTypeIsNamedWithBothSides) {
   ports.pop_back();
   changed.ports = ports;
   const std::string text = problems(changed, reflected("test_add"));
-  EXPECT_THAT(
-      text, HasSubstr("kernel 'test_add' of type 'test.add': port 'b' (set 0 binding 1) is a buffer block in "
-                      "the signature and a texture ('b') in the shader"));
-  EXPECT_THAT(
-      text,
-      HasSubstr("port 'ids' (set 0 binding 2) reads as float because of its type texture2D, but as uint"));
-  EXPECT_THAT(text, HasSubstr("port 'second' (set 0 binding 4) has usage clear and therefore no descriptor"));
-  EXPECT_THAT(text, HasSubstr("'weights_block' at set 0 binding 5, but the signature has only 5 ports"));
+  EXPECT_THAT(text,
+              HasAll("kernel 'test_add' of type 'test.add': port 'b' (set 0 binding 1) is a buffer block in "
+                     "the signature and a texture ('b') in the shader",
+                     "port 'ids' (set 0 binding 2) reads as float because of its type texture2D, but as uint",
+                     "port 'second' (set 0 binding 4) has usage clear and therefore no descriptor",
+                     "'weights_block' at set 0 binding 5, but the signature has only 5 ports"));
   EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 4) << text;
 }
 
@@ -133,9 +128,9 @@ TEST(Signature, PushConstantsMustFollowTheSettings) {
   std::swap(settings[0], settings[1]);
   changed.settings = settings;
   std::string text = problems(changed, reflected("test_fill"));
-  EXPECT_THAT(
-      text, HasSubstr("setting 'slope' is int or uint in the signature, but 'value' is float in the shader"));
-  EXPECT_THAT(text, HasSubstr("setting 'value' is float in the signature, but 'slope' is int in the shader"));
+  EXPECT_THAT(text,
+              HasAll("setting 'slope' is int or uint in the signature, but 'value' is float in the shader",
+                     "setting 'value' is float in the signature, but 'slope' is int in the shader"));
   settings.pop_back();
   changed.settings = settings;
   text = problems(changed, reflected("test_fill"));
@@ -149,11 +144,9 @@ TEST(Signature, EnvironmentMustHoldAllThatTheShaderReads) {
       {EnvironmentType::uniform_buffer, 8, {}},
   };
   const std::string text = problems(type("test.fill"), reflected("test_fill"), small);
-  EXPECT_THAT(text, HasSubstr("environment binding 0 has 16 bytes, but 'frame' in the shader needs 20"));
-  EXPECT_THAT(text,
-              HasSubstr("environment binding 1 is a uniform block in the signature and a buffer block"));
-  EXPECT_THAT(text,
-              HasSubstr("'linear_sampler' at set 1 binding 2, but the environment has only 2 bindings"));
+  EXPECT_THAT(text, HasAll("environment binding 0 has 16 bytes, but 'frame' in the shader needs 20",
+                           "environment binding 1 is a uniform block in the signature and a buffer block",
+                           "'linear_sampler' at set 1 binding 2, but the environment has only 2 bindings"));
 }
 
 TEST(Signature, TheWorkgroupMustFitTheDispatch) {

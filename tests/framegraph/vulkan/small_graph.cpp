@@ -63,30 +63,21 @@ constexpr Port clear_ports[] = {
 };
 
 PassTypeRegistry make_pass_types() {
+  using enum DispatchRule::Domain;
   PassTypeRegistry pass_types;
-  pass_types.add({"test.fill", "test_fill", "", fill_ports, fill_settings, DispatchRule{}, false});
-  pass_types.add({"test.add", "test_add", "", add_ports, add_settings, DispatchRule{}, false});
-  pass_types.add({"test.sample", "test_sample", "", sample_ports, {}, DispatchRule{}, false});
-  pass_types.add(
-      {"test.classes", "test_classes", "", classes_ports, {}, DispatchRule{.cells_per_group = 64}, false});
-  pass_types.add({"test.list",
-                  "test_list",
-                  "",
-                  list_ports,
-                  {},
-                  DispatchRule{.domain = DispatchRule::Domain::one},
-                  false});
-  pass_types.add({"test.mark",
-                  "test_mark",
-                  "",
-                  mark_ports,
-                  {},
-                  DispatchRule{.domain = DispatchRule::Domain::indirect},
-                  false});
-  pass_types.add({"test.stamp", "test_stamp", "", stamp_ports, stamp_settings, DispatchRule{}, false});
-  pass_types.add({"test.show", "test_show", "", show_ports, {}, DispatchRule{}, false});
-  pass_types.add(
-      {"test.clear", "", "", clear_ports, {}, DispatchRule{.domain = DispatchRule::Domain::none}, false});
+  const auto add = [&](std::string_view name, std::string_view kernel, std::span<const Port> ports,
+                       std::span<const PassTypeSetting> settings, DispatchRule rule = {}) {
+    pass_types.add({name, kernel, "", ports, settings, rule});
+  };
+  add("test.fill", "test_fill", fill_ports, fill_settings);
+  add("test.add", "test_add", add_ports, add_settings);
+  add("test.sample", "test_sample", sample_ports, {});
+  add("test.classes", "test_classes", classes_ports, {}, {.cells_per_group = 64});
+  add("test.list", "test_list", list_ports, {}, {.domain = one});
+  add("test.mark", "test_mark", mark_ports, {}, {.domain = indirect});
+  add("test.stamp", "test_stamp", stamp_ports, stamp_settings);
+  add("test.show", "test_show", show_ports, {});
+  add("test.clear", "", clear_ports, {}, {.domain = none});
   return pass_types;
 }
 
@@ -105,6 +96,17 @@ std::span<const vulkan::KernelCode> small_kernels() {
       {"test_show", test_show_spirv},     {"test_stamp", test_stamp_spirv},
   };
   return kernels;
+}
+
+SmallGraph::SmallGraph(std::initializer_list<const char*> images) {
+  for (const std::string declared : images) {
+    const size_t blank = declared.find(' ');
+    const std::string kind = declared.substr(0, blank);
+    ResourceDeclaration& made = image(declared.substr(blank + 1));
+    if (kind == "import" || kind == "in_out") made.origin = Origin::imported;
+    made.exported = kind == "export" || kind == "in_out";
+    if (kind == "history") made.history.frames = 1;
+  }
 }
 
 ResourceDeclaration& SmallGraph::resource(const std::string& name, Format format) {

@@ -27,6 +27,11 @@ struct SmallGraph {
   using Ports = std::vector<std::pair<std::string, std::string>>;
   Graph graph;
 
+  SmallGraph() = default;
+  // Declares r32f images in this order: "import NAME", "image NAME", "export NAME", "history NAME",
+  // or "in_out NAME" for an import that is also exported.
+  explicit SmallGraph(std::initializer_list<const char*> images);
+
   ResourceDeclaration& import(const std::string& name, Format format, bool optional = false);
   ResourceDeclaration& exported(const std::string& name, Format format = Format::r32f);
   ResourceDeclaration& image(const std::string& name, Format format = Format::r32f);

@@ -2,13 +2,8 @@
 // it names.
 #include "tests/framegraph/vulkan/executor_fixture.hpp"
 
-#include <gmock/gmock.h>
-
 namespace dermis::testing {
 namespace {
-
-using ::testing::Each;
-using ::testing::FloatEq;
 
 constexpr uint32_t whole = 16, half = 8;
 
@@ -17,8 +12,7 @@ class PartsTest : public ExecutorTest {};
 // Builds two layers of two mips, each filled with a different number. The frame has the size of mip
 // 1, half the texels.
 SmallGraph filled() {
-  SmallGraph g;
-  g.exported("result");
+  SmallGraph g{"export result"};
   ResourceDeclaration& image = g.image("image");
   image.mips = image.layers = 2;
   const std::pair<const char*, double> parts[] = {
@@ -36,8 +30,7 @@ TEST_F(PartsTest, PortReadsTheNamedMipAndLayer) {
   for (const auto& [ports, sum] : cases) {
     SmallGraph g = filled();
     g.pass("add", "test.add", {{"a", ports.first}, {"b", ports.second}}, {{"target", "result"}});
-    make_executor(g, whole, whole);
-    const TestImage result = bind(g, "result", {});
+    const TestImage result = start(g, whole, whole);
     for (int i = 0; i < 3; ++i)
       ASSERT_FALSE(frame(0.0f, {0, 0, half, half}));
     const std::vector<float> texels = read(result);
@@ -54,16 +47,14 @@ TEST_F(PartsTest, ClearingAPartLeavesTheOthers) {
   // The clear overwrites that part, so its fill would be culled; the test removes the fill pass.
   g.graph.passes.erase(g.graph.passes.begin());
   g.pass("add", "test.add", {{"a", "image#0[0]"}, {"b", "image#0[1]"}}, {{"target", "result"}});
-  make_executor(g, whole, whole);
-  const TestImage result = bind(g, "result", {});
+  const TestImage result = start(g, whole, whole);
   ASSERT_FALSE(frame(0.0f, {0, 0, half, half}));
   EXPECT_EQ(read(result)[0], 10.0f);
 }
 
 // Mip 0 counts frames; mip 1 sums mip 0 of all frames.
 SmallGraph two_histories_in_one() {
-  SmallGraph g;
-  g.exported("result");
+  SmallGraph g{"export result"};
   g.history("kept", 1).mips = 2;
   g.set(g.pass("count", "test.add", {{"a", "kept#0@-1"}}, {{"target", "kept#0"}}), "bias", 1);
   g.pass("sum", "test.add", {{"a", "kept#1@-1"}, {"b", "kept#0"}}, {{"target", "kept#1"}});
@@ -73,8 +64,7 @@ SmallGraph two_histories_in_one() {
 TEST_F(PartsTest, HistoryMipsComeFromTheRequestedFrame) {
   SmallGraph g = two_histories_in_one();
   g.pass("show", "test.add", {{"a", "kept#1"}, {"b", "kept#0@-1"}}, {{"target", "result"}});
-  make_executor(g, whole, whole);
-  const TestImage result = bind(g, "result", {});
+  const TestImage result = start(g, whole, whole);
   for (const float expected : {1.0f + 0, 3.0f + 1, 6.0f + 2, 10.0f + 3, 15.0f + 4}) {
     ASSERT_FALSE(frame(0.0f, {0, 0, half, half}));
     EXPECT_EQ(read(result)[0], expected);
@@ -86,8 +76,7 @@ TEST_F(PartsTest, HistoryMipsComeFromTheRequestedFrame) {
 TEST_F(PartsTest, HistoryMipsKeepSeparateLayouts) {
   SmallGraph g = two_histories_in_one();
   g.pass("show", "test.add", {{"a", "kept#1@-1"}}, {{"target", "result"}});
-  make_executor(g, whole, whole);
-  const TestImage result = bind(g, "result", {});
+  const TestImage result = start(g, whole, whole);
   for (const float expected : {0.0f, 1.0f, 3.0f, 6.0f, 10.0f}) {
     ASSERT_FALSE(frame(0.0f, {0, 0, half, half}));
     EXPECT_EQ(read(result)[0], expected);

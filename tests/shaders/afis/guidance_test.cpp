@@ -6,8 +6,7 @@
 #include "tests/shaders/common/kernel_fixture.hpp"
 
 #include "test_guidance.spv.h"
-
-#include <gmock/gmock.h>
+#include "tests/support/matchers.hpp"
 
 #include <cmath>
 #include <limits>
@@ -96,8 +95,7 @@ TEST_F(GuidanceKernel, SampleNumbersEqualTheReference) {
     // Both results are equal unless the bound contains a value halfway between two integers.
     const int low = clamped_samples(required - bound, settings),
               high = clamped_samples(required + bound, settings);
-    EXPECT_THAT(at(i, 0, 1), ::testing::AllOf(::testing::Ge(low), ::testing::Le(high)))
-        << i << ": " << required;
+    EXPECT_THAT(at(i, 0, 1), AllOf(::testing::Ge(low), ::testing::Le(high))) << i << ": " << required;
     whole += low == high ? 1 : 0;
   }
   EXPECT_GT(whole, cases * 95 / 100) << "number of compared decisions";
