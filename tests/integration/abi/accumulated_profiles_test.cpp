@@ -14,14 +14,12 @@ constexpr uint32_t border = 32; // In 64 columns: profile 1 to its left, profile
 
 struct AccumulatedProfiles : DermisTest {
   dermis_graph make() {
-    GraphOptions options;
-    options.text = read_text("configs/graphs/burley.json");
+    GraphOptions options = shipped_options("configs/graphs/burley.json");
     options.overlays = {read_text("configs/overlays/accumulate.json")};
     options.formats.emplace_back("lighting", VK_FORMAT_R32G32B32A32_SFLOAT);
     options.profile_count = 2;
     const dermis_graph graph = make_graph(options);
-    EXPECT_EQ(dermis_graph_set_setting(graph, "accumulate_clip", "0", nullptr), DERMIS_OK)
-        << dermis_last_error();
+    EXPECT_OK(dermis_graph_set_setting(graph, "accumulate_clip", "0", nullptr));
     make_images(graph);
     fill("material", [](uint32_t x, uint32_t) { return x < border ? 1.0f : 2.0f; });
     fill("velocity", [](uint32_t, uint32_t) { return 0.5f; });
@@ -33,13 +31,12 @@ struct AccumulatedProfiles : DermisTest {
     fill("lighting", [](uint32_t x, uint32_t y) {
       return x < border ? 1.0f : ((x ^ y) & 1) != 0 ? 2000.0f : 0.0f;
     });
-    const auto bound = bindings(graph);
-    dermis_frame one = frame(bound);
+    dermis_frame one = bound_frame(graph);
     for (float* from_world : {one.view_from_world, one.previous_view_from_world})
       for (size_t i = 0; i < 16; i += 5)
         from_world[i] = 1.0f;
     std::copy(std::begin(one.clip_from_view), std::end(one.clip_from_view), one.previous_clip_from_view);
-    ASSERT_EQ(record(graph, one), DERMIS_OK) << dermis_last_error();
+    ASSERT_OK(record(graph, one));
   }
 };
 

@@ -15,28 +15,18 @@
 namespace dermis::abi_test {
 namespace {
 
-using testing::HasSubstr;
-
 struct Choice : DermisTest {
   dermis_graph graph = nullptr;
 
-  void make() {
-    GraphOptions options;
-    options.text = read_text("configs/graphs/skin.json");
-    graph = make_graph(options);
-    ASSERT_NE(graph, nullptr);
-    make_images(graph);
-  }
+  void make() { graph = make_bound_graph(shipped_options("configs/graphs/skin.json")); }
 
   void set_budget(float ms, uint32_t flags = DERMIS_BUDGET_DETERMINISTIC) {
     const std::string text = invented_times;
     const dermis_source calibration = source_of(text, "invented");
-    dermis_budget budget = DERMIS_BUDGET_INIT;
-    budget.milliseconds = ms;
-    budget.flags = flags;
+    dermis_budget budget = budget_of(ms, flags);
     budget.calibration = &calibration;
     dermis_report report = nullptr;
-    ASSERT_EQ(dermis_graph_set_budget(graph, &budget, &report), DERMIS_OK) << take(report).all;
+    ASSERT_OK(dermis_graph_set_budget(graph, &budget, &report)) << take(report).all;
     dermis_report_destroy(report);
   }
 
@@ -71,7 +61,7 @@ TEST_F(Choice, EachBudgetGetsTheSmallestErrorThatFits) {
 
 TEST_F(Choice, SettingsOfTheHostAreNotChosen) {
   make();
-  ASSERT_EQ(dermis_graph_set_setting(graph, "technique", "\"separable\"", nullptr), DERMIS_OK);
+  ASSERT_OK(dermis_graph_set_setting(graph, "technique", "\"separable\"", nullptr));
   make_images(graph);
   for (const float budget : {30.0f, 0.5f}) {
     set_budget(budget);
@@ -118,13 +108,11 @@ struct KeptHistory : Choice {
   // Makes a graph that accumulates light of both techniques: its history is one resource in both
   // plans.
   void make_accumulating() {
-    GraphOptions options;
-    options.text = read_text("configs/graphs/skin.json");
+    GraphOptions options = shipped_options("configs/graphs/skin.json");
     options.overlays = {read_text("configs/overlays/accumulate.json")};
     options.unbound.emplace_back("velocity");
     graph = make_graph(options);
-    ASSERT_NE(graph, nullptr);
-    ASSERT_EQ(dermis_graph_set_setting(graph, "accumulate_clip", "0", nullptr), DERMIS_OK);
+    ASSERT_OK(dermis_graph_set_setting(graph, "accumulate_clip", "0", nullptr));
     make_images(graph);
   }
   // One frame lit from one side, because light that is the same everywhere is copied. Two pixels in the
@@ -134,32 +122,22 @@ struct KeptHistory : Choice {
     fill("lighting", [&](uint32_t x, uint32_t y) {
       return 0.75f + 0.5f * (float(x) + 0.5f) / 64 + (y == 32 && (x == 31 || x == 32) ? spot : 0.0f);
     });
-    const auto bound = bindings(graph);
-    dermis_frame one = frame(bound);
+    dermis_frame one = bound_frame(graph);
     one.flags |= flags;
-    for (size_t i = 0; i < 16; ++i) // The camera is at rest.
-      one.view_from_world[i] = one.previous_view_from_world[i] = i % 5 == 0 ? 1.0f : 0.0f;
-    std::copy(std::begin(one.clip_from_view), std::end(one.clip_from_view),
-              std::begin(one.previous_clip_from_view));
-    EXPECT_EQ(record(graph, one), DERMIS_OK) << dermis_last_error();
-    demo::ReportedFrame choice;
-    EXPECT_EQ(demo::read_reported(dermis_graph_view(graph), last_frame, choice), DERMIS_OK)
-        << dermis_last_error();
-    return choice;
+    rest(one);
+    return record_and_read(graph, one);
   }
   // Records a frame in the previous frame's light and discards it without submission.
   void lost_frame(uint32_t flags = 0) {
-    const auto bound = bindings(graph);
-    dermis_frame one = frame(bound);
+    dermis_frame one = bound_frame(graph);
     one.flags |= flags;
     const auto ran = demo::run_commands(*host, [&](VkCommandBuffer commands) -> demo::Result<> {
       one.command_buffer = commands;
-      EXPECT_EQ(dermis_view_record(dermis_graph_view(graph), &one), DERMIS_OK) << dermis_last_error();
+      EXPECT_OK(dermis_view_record(dermis_graph_view(graph), &one));
       return demo::Error{demo::ErrorKind::internal, "not to be submitted"};
     });
     EXPECT_FALSE(ran);
-    EXPECT_EQ(dermis_view_discard(dermis_graph_view(graph), one.frame_index), DERMIS_OK)
-        << dermis_last_error();
+    EXPECT_OK(dermis_view_discard(dermis_graph_view(graph), one.frame_index));
     EXPECT_EQ(dermis_view_discard(dermis_graph_view(graph), one.frame_index), DERMIS_ERROR_ARGUMENT)
         << "once";
   }
@@ -222,8 +200,7 @@ TEST_F(KeptHistory, ReloadedGraph_ReadsItsHistory) {
     lit_frame(2, DERMIS_FRAME_RESET_HISTORY);
     for (int i = 0; i < 6; ++i) {
       if (reload && i % 2 == 0) {
-        const dermis_source source = source_of(text, "skin.json");
-        EXPECT_EQ(reload_text(graph, source), DERMIS_OK) << dermis_last_error();
+        EXPECT_OK(reload_text(graph, source_of(text, "skin.json")));
       }
       EXPECT_EQ(lit_frame(float(i + 1) / 8).skips & DERMIS_SKIP_HISTORY, 0u) << "frame " << i;
     }
@@ -243,8 +220,7 @@ TEST_F(KeptHistory, DiscardedFrame_HasNoEffect) {
       if (i == 2) set_budget(0.5f); // The first frame of another plan.
       if (i == 4) set_budget(0);
       if (i == 6) { // The first frame of a recreated graph.
-        const dermis_source source = source_of(text, "skin.json");
-        EXPECT_EQ(reload_text(graph, source), DERMIS_OK) << dermis_last_error();
+        EXPECT_OK(reload_text(graph, source_of(text, "skin.json")));
       }
       if (lose) lost_frame(i % 3 == 0 ? DERMIS_FRAME_RESET_HISTORY : 0);
       lit_frame(float(i + 1) / 8);
@@ -280,28 +256,19 @@ TEST_F(Choice, ReportsTilesAndScatteringDistance) {
 struct TransmissionStats : Choice {
   // Options of a host that gives no scene.
   static GraphOptions without_scene() {
-    GraphOptions options;
-    options.text = read_text("configs/graphs/papers/restir.json");
+    GraphOptions options = shipped_options("configs/graphs/papers/restir.json");
     options.unbound = {"albedo",   "scatter_scale", "velocity",  "normal", "scene",
                        "vertices", "indices",       "instances", "lights", "scattered_light"};
     return options;
   }
-  void make() {
-    graph = make_graph(without_scene());
-    ASSERT_NE(graph, nullptr);
-    make_images(graph);
-  }
+  void make() { graph = make_bound_graph(without_scene()); }
   // Returns the measured transmission of a slab on the left half of the picture.
   double counted(float thickness_m, float light, float exposure = 1) {
     fill("thickness", [&](uint32_t x, uint32_t) { return x < 32 ? thickness_m : 0.1f; });
     fill("back_lighting", [&](uint32_t, uint32_t) { return light; });
-    const auto bound = bindings(graph);
-    dermis_frame one = frame(bound);
+    dermis_frame one = bound_frame(graph);
     one.exposure = exposure;
-    EXPECT_EQ(record(graph, one), DERMIS_OK) << dermis_last_error();
-    demo::ReportedFrame choice;
-    EXPECT_EQ(demo::read_reported(dermis_graph_view(graph), last_frame, choice), DERMIS_OK)
-        << dermis_last_error();
+    const demo::ReportedFrame choice = record_and_read(graph, one);
     return double(choice.transmitted_rms);
   }
 };
@@ -334,11 +301,11 @@ TEST_F(TransmissionStats, NoThicknessBound_AreUnknown) {
   GraphOptions options = without_scene();
   options.unbound.emplace_back("thickness");
   dermis_report report = nullptr;
-  ASSERT_EQ(create_graph(options, &graph, &report), DERMIS_OK);
+  ASSERT_OK(create_graph(options, &graph, &report));
   graphs.push_back(graph);
   const Said said = take(report);
-  EXPECT_THAT(said.all, HasSubstr("does not offer 'counted': 'thickness' is not bound"));
-  EXPECT_THAT(said.all, HasSubstr("does not offer 'restir': "));
+  EXPECT_THAT(said.all,
+              HasAll("does not offer 'counted': 'thickness' is not bound", "does not offer 'restir': "));
   make_images(graph);
   EXPECT_EQ(run_frame().transmitted_rms, 0);
 }
@@ -349,11 +316,9 @@ TEST_F(TransmissionStats, AddErrorToTechniquesWithoutTransmission) {
     "unscattered": [[1, 0.001]], "unscattered_through": 2,
     "techniques": [{ "name": "smooth", "pass_types": [{ "type": "subsurface.sap_gather" }], "rmse": [[1, 0.003]], "through": 0.5 }] })";
   const dermis_source errors = source_of(table, "invented");
-  dermis_budget budget = DERMIS_BUDGET_INIT;
-  budget.milliseconds = 1e3f;
-  budget.flags = DERMIS_BUDGET_DETERMINISTIC;
+  dermis_budget budget = budget_of(1e3f, DERMIS_BUDGET_DETERMINISTIC);
   budget.errors = &errors;
-  ASSERT_EQ(dermis_graph_set_budget(graph, &budget, nullptr), DERMIS_OK) << dermis_last_error();
+  ASSERT_OK(dermis_graph_set_budget(graph, &budget, nullptr));
   const double through = counted(0.8e-3f, 0.5f);
   EXPECT_NEAR(double(run_frame().predicted_rmse), std::hypot(0.003, 0.5 * through), 1e-6);
 }
@@ -364,29 +329,27 @@ TEST_F(Choice, LearnsAndExportsTheDevicesTimes) {
   for (int i = 0; i < 8; ++i)
     run_frame();
   size_t size = 0;
-  ASSERT_EQ(dermis_graph_calibration(graph, &size, nullptr), DERMIS_OK);
+  ASSERT_OK(dermis_graph_calibration(graph, &size, nullptr));
   std::string text(size, ' ');
   size_t small = 3;
   EXPECT_EQ(dermis_graph_calibration(graph, &small, text.data()), DERMIS_INCOMPLETE);
-  ASSERT_EQ(dermis_graph_calibration(graph, &size, text.data()), DERMIS_OK);
+  ASSERT_OK(dermis_graph_calibration(graph, &size, text.data()));
   text.resize(size - 1);
   EXPECT_THAT(text, HasSubstr("subsurface.sap_gather variant=smooth storage=half"));
   const dermis_source calibration = source_of(text, "learned");
   dermis_budget budget = DERMIS_BUDGET_INIT;
   budget.calibration = &calibration;
-  EXPECT_EQ(dermis_graph_set_budget(graph, &budget, nullptr), DERMIS_OK) << dermis_last_error();
+  EXPECT_OK(dermis_graph_set_budget(graph, &budget, nullptr));
 }
 
 TEST_F(Choice, ConfigurationsShareTheLargestMemory) {
   make();
   dermis_memory all = DERMIS_MEMORY_INIT, one = DERMIS_MEMORY_INIT;
-  ASSERT_EQ(dermis_graph_memory(graph, &all), DERMIS_OK);
-  GraphOptions options;
-  options.text = read_text("configs/graphs/papers/hybrid.json");
+  ASSERT_OK(dermis_graph_memory(graph, &all));
+  GraphOptions options = shipped_options("configs/graphs/papers/hybrid.json");
   options.unbound = {"albedo", "scatter_scale", "scattered_light", "importance"};
   const dermis_graph hybrid = make_graph(options);
-  ASSERT_NE(hybrid, nullptr);
-  ASSERT_EQ(dermis_graph_memory(hybrid, &one), DERMIS_OK);
+  ASSERT_OK(dermis_graph_memory(hybrid, &one));
   // The largest plan is the pyramid with samples.
   EXPECT_GE(all.transient_bytes, one.transient_bytes);
   EXPECT_LT(all.transient_bytes, one.transient_bytes + one.transient_bytes / 100);
@@ -396,8 +359,8 @@ TEST_F(Choice, UnfinishedFrame_IsNotReady) {
   make();
   demo::ReportedFrame choice;
   EXPECT_EQ(demo::read_reported(dermis_graph_view(graph), 0, choice), DERMIS_NOT_READY);
-  EXPECT_EQ(demo::read_reported(dermis_graph_view(graph), 5, choice), DERMIS_ERROR_ARGUMENT);
-  EXPECT_THAT(dermis_last_error(), HasSubstr("completed_frame_index"));
+  EXPECT_THAT(demo::read_reported(dermis_graph_view(graph), 5, choice),
+              Fails(DERMIS_ERROR_ARGUMENT, "completed_frame_index"));
 }
 
 TEST_F(Choice, WrongBudgetsAreRejectedAndChangeNothing) {

@@ -36,8 +36,7 @@ struct Composite : DermisTest {
 
   // Returns the red channel of the host's picture, by texel; albedo is 0.5 and specular light 0.25.
   std::vector<float> shown(bool bind_albedo, const std::string& result) {
-    GraphOptions options;
-    options.text = read_text("configs/graphs/burley.json");
+    GraphOptions options = shipped_options("configs/graphs/burley.json");
     // Setting of the combine pass.
     const std::string set = R"("set": { "texturing": "$texturing" } })";
     const size_t at = options.text.rfind(set);
@@ -56,7 +55,7 @@ struct Composite : DermisTest {
     const auto bound = bindings(graph);
     last_frame = 0;
     dermis_frame one = frame(bound);
-    EXPECT_EQ(record(graph, one), DERMIS_OK) << dermis_last_error();
+    EXPECT_OK(record(graph, one));
     const demo::Image albedo = make_image(VK_FORMAT_R32G32B32A32_SFLOAT, 0.5f),
                       specular = make_image(VK_FORMAT_R32G32B32A32_SFLOAT, 0.25f);
     images.insert_or_assign("shown", make_image(VK_FORMAT_R32G32B32A32_SFLOAT, 0.0f));

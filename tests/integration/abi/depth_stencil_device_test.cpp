@@ -28,7 +28,7 @@ protected:
     dermis_context_desc desc = context_desc();
     desc.flags |= flags;
     dermis_context made = nullptr;
-    EXPECT_EQ(dermis_context_create(&desc, &made), DERMIS_OK) << dermis_last_error();
+    EXPECT_OK(dermis_context_create(&desc, &made));
     return made;
   }
 
@@ -150,7 +150,7 @@ protected:
     GraphOptions options;
     options.formats = {{"depth", format}};
     dermis_graph graph = nullptr;
-    ASSERT_EQ(create_graph(options, &graph), DERMIS_OK) << dermis_last_error();
+    ASSERT_OK(create_graph(options, &graph));
     make_images(graph, "depth");
     images.insert_or_assign("depth", make_depth(format));
     const VkImage image = images.at("depth").image;
@@ -168,7 +168,7 @@ protected:
         }
       dermis_frame one = frame(bound);
       one.depth_kind = DERMIS_DEPTH_DEVICE;
-      ASSERT_EQ(record(graph, one), DERMIS_OK) << dermis_last_error();
+      ASSERT_OK(record(graph, one));
     }
     const std::vector<std::byte> stencil = read_stencil(images.at("depth"), layouts.after, stencil_rest);
     EXPECT_TRUE(std::all_of(stencil.begin(), stencil.end(),
@@ -177,7 +177,7 @@ protected:
     dermis_context_destroy(context);
     context = usual;
     images.clear();
-    EXPECT_THAT(host->log.messages, testing::IsEmpty());
+    EXPECT_THAT(host->log.messages, IsEmpty());
   }
 };
 

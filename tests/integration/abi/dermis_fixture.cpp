@@ -1,6 +1,9 @@
 #include "tests/integration/abi/dermis_fixture.hpp"
 #include "integration/examples/demo_engine/render/reported_frame.hpp"
 
+#include <algorithm>
+#include <stdexcept>
+
 namespace dermis::abi_test {
 namespace {
 
@@ -32,7 +35,7 @@ Said take(dermis_report report) {
   Said said;
   for (uint32_t i = 0; i < dermis_report_count(report); ++i) {
     dermis_message message = DERMIS_MESSAGE_INIT;
-    EXPECT_EQ(dermis_report_message(report, i, &message), DERMIS_OK);
+    EXPECT_OK(dermis_report_message(report, i, &message));
     said.names.emplace_back(message.code_name);
     said.texts.emplace_back(message.text);
     said.places.emplace_back(message.line, message.column);
@@ -54,7 +57,7 @@ void DermisTest::TearDownTestSuite() {
 void DermisTest::SetUp() {
   if (!host) GTEST_SKIP() << "no Vulkan device with the validation layer";
   const dermis_context_desc desc = context_desc();
-  ASSERT_EQ(dermis_context_create(&desc, &context), DERMIS_OK) << dermis_last_error();
+  ASSERT_OK(dermis_context_create(&desc, &context));
 }
 
 void DermisTest::TearDown() {
@@ -63,7 +66,7 @@ void DermisTest::TearDown() {
   dermis_context_destroy(context);
   images.clear();
   if (!host) return;
-  EXPECT_THAT(host->log.messages, testing::IsEmpty());
+  EXPECT_THAT(host->log.messages, IsEmpty());
   host->log.messages.clear();
 }
 
@@ -96,12 +99,8 @@ template <class Use> dermis_result described(const GraphOptions& options, Use us
   for (const std::string& name : options.unbound)
     unbound.push_back(name.c_str());
   std::vector<dermis_slot_format> formats;
-  for (const auto& [name, format] : options.formats) {
-    dermis_slot_format item = DERMIS_SLOT_FORMAT_INIT;
-    item.name = name.c_str();
-    item.format = format;
-    formats.push_back(item);
-  }
+  for (const auto& [name, format] : options.formats)
+    formats.push_back(slot_format(name.c_str(), format));
   dermis_graph_desc desc = DERMIS_GRAPH_DESC_INIT;
   desc.source = source_of(text, "graph.json");
   desc.width = options.width;
@@ -139,8 +138,14 @@ dermis_result DermisTest::reload_graph(dermis_graph graph, const GraphOptions& o
 
 dermis_graph DermisTest::make_graph(const GraphOptions& options) {
   dermis_graph graph = nullptr;
-  EXPECT_EQ(create_graph(options, &graph), DERMIS_OK) << dermis_last_error();
-  if (graph != nullptr) graphs.push_back(graph);
+  if (create_graph(options, &graph) != DERMIS_OK) throw std::runtime_error(last_error());
+  graphs.push_back(graph);
+  return graph;
+}
+
+dermis_graph DermisTest::make_bound_graph(const GraphOptions& options) {
+  const dermis_graph graph = make_graph(options);
+  make_images(graph);
   return graph;
 }
 
@@ -228,13 +233,33 @@ dermis_result DermisTest::record(dermis_graph graph, dermis_frame& frame) {
 }
 
 demo::ReportedFrame DermisTest::run_frame(dermis_graph graph) {
-  const auto bound = bindings(graph);
-  dermis_frame one = frame(bound);
-  EXPECT_EQ(record(graph, one), DERMIS_OK) << dermis_last_error();
+  dermis_frame one = bound_frame(graph);
+  return record_and_read(graph, one);
+}
+
+dermis_frame DermisTest::bound_frame(dermis_graph graph, uint32_t width, uint32_t height) {
+  return frame(bound_.emplace_back(bindings(graph)), width, height);
+}
+
+demo::ReportedFrame DermisTest::record_and_read(dermis_graph graph, dermis_frame& frame) {
+  EXPECT_OK(record(graph, frame));
   demo::ReportedFrame choice;
-  EXPECT_EQ(demo::read_reported(dermis_graph_view(graph), last_frame, choice), DERMIS_OK)
-      << dermis_last_error();
+  EXPECT_OK(demo::read_reported(dermis_graph_view(graph), last_frame, choice));
   return choice;
+}
+
+void rest(dermis_frame& frame) {
+  for (size_t i = 0; i < 16; ++i)
+    frame.view_from_world[i] = frame.previous_view_from_world[i] = i % 5 == 0 ? 1.0f : 0.0f;
+  std::ranges::copy(frame.clip_from_view, frame.previous_clip_from_view);
+}
+
+void expect_equal_rgb(const std::vector<float>& texels, const std::vector<float>& expected) {
+  ASSERT_EQ(texels.size(), expected.size());
+  for (size_t i = 0; i < texels.size(); ++i)
+    if (i % 4 != 3) {
+      ASSERT_EQ(texels[i], expected[i]) << i;
+    }
 }
 
 std::vector<float> DermisTest::texels(const std::string& slot) {

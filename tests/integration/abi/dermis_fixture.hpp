@@ -6,11 +6,8 @@
 #include "integration/examples/demo_engine/vulkan_image.hpp"
 #include "tests/integration/abi/sources.hpp"
 
-#include <dermis/dermis.h>
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <array>
+#include <deque>
 #include <functional>
 #include <map>
 #include <memory>
@@ -40,6 +37,22 @@ struct GraphOptions {
   std::string profile;        // JSON text; empty: configs/profiles/skin.json.
 };
 
+// Returns the options of a shipped graph.
+inline GraphOptions shipped_options(const std::string& path) {
+  GraphOptions options;
+  options.text = read_text(path);
+  return options;
+}
+
+// Returns the options of a graph with only required slots, in formats that it declares once.
+inline GraphOptions own_graph(const std::string& text) {
+  GraphOptions options;
+  options.text = text;
+  options.unbound.clear();
+  options.formats.clear();
+  return options;
+}
+
 struct DermisTest : ::testing::Test {
   static void SetUpTestSuite();
   static void TearDownTestSuite();
@@ -51,9 +64,9 @@ struct DermisTest : ::testing::Test {
                              dermis_report* report = nullptr);
   dermis_result reload_graph(dermis_graph graph, const GraphOptions& options,
                              dermis_report* report = nullptr);
-  dermis_graph
-  // Fails the test on an error; TearDown destroys the graph.
-  make_graph(const GraphOptions& options = {});
+  // Throws on an error; TearDown destroys the graph.
+  dermis_graph make_graph(const GraphOptions& options = {});
+  dermis_graph make_bound_graph(const GraphOptions& options = {}); // With images at every slot.
 
   // Makes images for every bound slot: light on the left half, profile 1 everywhere, 0.5 m away.
   // `but` is a slot without an image.
@@ -63,8 +76,12 @@ struct DermisTest : ::testing::Test {
   // the last frame's.
   dermis_frame frame(const std::vector<dermis_image_binding>& bound, uint32_t width = 64,
                      uint32_t height = 64);
-  dermis_result record(dermis_graph graph, dermis_frame& frame); // records, submits and waits
-  demo::ReportedFrame run_frame(dermis_graph graph); // one frame of what is bound, and what was chosen for it
+  // Returns a frame with the present images, whose bindings live as long as the test.
+  dermis_frame bound_frame(dermis_graph graph, uint32_t width = 64, uint32_t height = 64);
+  dermis_result record(dermis_graph graph, dermis_frame& frame); // Records, submits and waits.
+  // Records a frame and returns its report.
+  demo::ReportedFrame record_and_read(dermis_graph graph, dermis_frame& frame);
+  demo::ReportedFrame run_frame(dermis_graph graph); // Does both with the present images.
   // Gives an image new contents: `value(x, y)` in every channel.
   void upload(const std::string& slot, const std::vector<float>& values); // Channel by channel.
   void fill(const std::string& slot, const std::function<float(uint32_t, uint32_t)>& value);
@@ -76,7 +93,16 @@ struct DermisTest : ::testing::Test {
   std::map<std::string, demo::Image> images; // By slot.
   std::vector<std::string> logged;           // Texts of the log callback.
   uint64_t last_frame = 0;
+
+private:
+  std::deque<std::vector<dermis_image_binding>> bound_; // By frame.
 };
+
+// Sets matrices of a camera at rest.
+void rest(dermis_frame& frame);
+
+// Compares all channels except the fourth.
+void expect_equal_rgb(const std::vector<float>& texels, const std::vector<float>& expected);
 
 inline constexpr double pitch_m = 0.0005; // 0.5 mm per pixel: skin's red d is about two pixels.
 

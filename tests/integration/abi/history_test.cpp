@@ -9,8 +9,6 @@
 namespace dermis::abi_test {
 namespace {
 
-using testing::HasSubstr;
-
 struct Histories : DermisTest {
   dermis_graph graph = nullptr;
 
@@ -26,33 +24,22 @@ struct Histories : DermisTest {
                       pass + R"("when": ")" + when + R"(", "otherwise": { "accumulated": "scattered" },)");
       overlay.replace(overlay.find(clear), clear.size(), clear + R"("when": ")" + when + R"(",)");
     }
-    GraphOptions options;
-    options.text = read_text(dermis::shipped::graph_file(graph_name));
+    GraphOptions options = shipped_options(dermis::shipped::graph_file(graph_name));
     options.overlays = {overlay};
     options.unbound.emplace_back("velocity");
     return options;
   }
-  void make(const GraphOptions& options) {
-    graph = make_graph(options);
-    ASSERT_NE(graph, nullptr);
-    make_images(graph);
-  }
+  void make(const GraphOptions& options) { graph = make_bound_graph(options); }
   void run(int frames, uint32_t flags = 0) {
     for (int i = 0; i < frames; ++i) {
       const auto bound = bindings(graph);
       dermis_frame one = frame(bound, images.at("depth").width, images.at("depth").height);
       one.flags = flags;
-      ASSERT_EQ(record(graph, one), DERMIS_OK) << dermis_last_error();
+      ASSERT_OK(record(graph, one));
     }
   }
   static std::vector<dermis_history> reported(dermis_graph graph) {
-    uint32_t count = 0;
-    EXPECT_EQ(dermis_view_histories(dermis_graph_view(graph), &count, nullptr), DERMIS_OK)
-        << dermis_last_error();
-    std::vector<dermis_history> all(count, dermis_history DERMIS_HISTORY_INIT);
-    EXPECT_EQ(dermis_view_histories(dermis_graph_view(graph), &count, all.data()), DERMIS_OK)
-        << dermis_last_error();
-    return all;
+    return list_of(dermis_history DERMIS_HISTORY_INIT, dermis_view_histories, dermis_graph_view(graph));
   }
   static dermis_history named(const std::vector<dermis_history>& all, const char* name) {
     const auto found = std::ranges::find_if(
@@ -89,12 +76,11 @@ TEST_F(Histories, SurviveReloadAndRescale) {
   make(keeping("burley"));
   run(2);
   const std::string text = read_text("configs/graphs/burley.json");
-  const dermis_source source = source_of(text, "graph.json");
-  ASSERT_EQ(reload_text(graph, source), DERMIS_OK) << dermis_last_error();
+  ASSERT_OK(reload_text(graph, source_of(text, "graph.json")));
   expect(2, DERMIS_HISTORY_NEVER_WRITTEN, "valid since its first frame");
   run(1);
   expect(3, DERMIS_HISTORY_NEVER_WRITTEN, "valid since its first frame");
-  ASSERT_EQ(dermis_graph_resize(graph, 48, 40, nullptr), DERMIS_OK) << dermis_last_error();
+  ASSERT_OK(dermis_graph_resize(graph, 48, 40, nullptr));
   expect(3, DERMIS_HISTORY_NEVER_WRITTEN, "valid since its first frame");
   make_images(graph);
   run(1);
@@ -102,7 +88,7 @@ TEST_F(Histories, SurviveReloadAndRescale) {
 
   make(keeping("burley", "invalidate"));
   run(2);
-  ASSERT_EQ(dermis_graph_resize(graph, 48, 40, nullptr), DERMIS_OK) << dermis_last_error();
+  ASSERT_OK(dermis_graph_resize(graph, 48, 40, nullptr));
   expect(0, DERMIS_HISTORY_RESIZED, "resized");
   make_images(graph);
   run(1);
@@ -113,11 +99,11 @@ TEST_F(Histories, Surviving_AreNotReportedAsRestarted) {
   make(keeping("burley"));
   run(2);
   dermis_report report = nullptr;
-  ASSERT_EQ(dermis_graph_resize(graph, 48, 40, &report), DERMIS_OK) << dermis_last_error();
-  EXPECT_THAT(take(report).names, testing::Not(testing::Contains("history_restarts")));
+  ASSERT_OK(dermis_graph_resize(graph, 48, 40, &report));
+  EXPECT_THAT(take(report).names, Not(Contains("history_restarts")));
   make(keeping("burley", "invalidate"));
   run(2);
-  ASSERT_EQ(dermis_graph_resize(graph, 48, 40, &report), DERMIS_OK) << dermis_last_error();
+  ASSERT_OK(dermis_graph_resize(graph, 48, 40, &report));
   const Said said = take(report);
   EXPECT_EQ(std::count(said.names.begin(), said.names.end(), "history_restarts"), 2);
 }
@@ -137,8 +123,8 @@ TEST_F(Histories, Reload_ReportsOnlyRestartedOnes) {
   make(keeping("burley"));
   run(2);
   dermis_report report = nullptr;
-  ASSERT_EQ(reload_graph(graph, keeping("burley"), &report), DERMIS_OK) << dermis_last_error();
-  EXPECT_THAT(restarted(take(report)), testing::IsEmpty());
+  ASSERT_OK(reload_graph(graph, keeping("burley"), &report));
+  EXPECT_THAT(restarted(take(report)), IsEmpty());
   GraphOptions changed = keeping("burley");
   std::string& overlay = changed.overlays.front();
   const std::string past =
@@ -147,13 +133,13 @@ TEST_F(Histories, Reload_ReportsOnlyRestartedOnes) {
   ASSERT_NE(overlay.find(past), std::string::npos);
   overlay.replace(overlay.find(past), past.size(),
                   R"("size": "view", "border": 1, "history": { "frames": 1, "on_resize": "invalidate" })");
-  ASSERT_EQ(reload_graph(graph, changed, &report), DERMIS_OK) << dermis_last_error();
-  EXPECT_THAT(restarted(take(report)), testing::ElementsAre("past"));
-  ASSERT_EQ(reload_graph(graph, changed, &report), DERMIS_OK) << dermis_last_error();
-  EXPECT_THAT(restarted(take(report)), testing::ElementsAre("past")) << "nothing was recorded in between";
+  ASSERT_OK(reload_graph(graph, changed, &report));
+  EXPECT_THAT(restarted(take(report)), ElementsAre("past"));
+  ASSERT_OK(reload_graph(graph, changed, &report));
+  EXPECT_THAT(restarted(take(report)), ElementsAre("past")) << "nothing was recorded in between";
   run(1);
-  ASSERT_EQ(reload_graph(graph, changed, &report), DERMIS_OK) << dermis_last_error();
-  EXPECT_THAT(restarted(take(report)), testing::IsEmpty());
+  ASSERT_OK(reload_graph(graph, changed, &report));
+  EXPECT_THAT(restarted(take(report)), IsEmpty());
 }
 
 TEST_F(Histories, SettingThatKeepsThePasses_KeepsAll) {
@@ -161,8 +147,8 @@ TEST_F(Histories, SettingThatKeepsThePasses_KeepsAll) {
   run(2);
   for (const auto& [name, value] : {std::pair{"samples", "8"}, {"texturing", "\"pre_post\""}}) {
     dermis_report report = nullptr;
-    ASSERT_EQ(dermis_graph_set_setting(graph, name, value, &report), DERMIS_OK) << dermis_last_error();
-    EXPECT_THAT(restarted(take(report)), testing::IsEmpty()) << name;
+    ASSERT_OK(dermis_graph_set_setting(graph, name, value, &report));
+    EXPECT_THAT(restarted(take(report)), IsEmpty()) << name;
     run(1);
   }
   expect(4, DERMIS_HISTORY_NEVER_WRITTEN, "valid since its first frame");
@@ -174,8 +160,8 @@ TEST_F(Histories, OtherProfile_KeepsAll) {
   const std::string wax = read_text("configs/profiles/wax.json");
   const dermis_source source = source_of(wax, "wax.json");
   dermis_report report = nullptr;
-  ASSERT_EQ(dermis_graph_set_profile(graph, 1, &source, &report), DERMIS_OK) << dermis_last_error();
-  EXPECT_THAT(restarted(take(report)), testing::IsEmpty());
+  ASSERT_OK(dermis_graph_set_profile(graph, 1, &source, &report));
+  EXPECT_THAT(restarted(take(report)), IsEmpty());
   run(1);
   expect(3, DERMIS_HISTORY_NEVER_WRITTEN, "valid since its first frame");
 }
@@ -186,7 +172,7 @@ TEST_F(Histories, ReenabledPasses_RestartTheirHistories) {
   for (const auto& [value, names] : {std::pair<const char*, std::vector<std::string>>{"\"separable\"", {}},
                                      {"\"sap\"", {"past", "past_place"}}}) {
     dermis_report report = nullptr;
-    ASSERT_EQ(dermis_graph_set_setting(graph, "technique", value, &report), DERMIS_OK) << dermis_last_error();
+    ASSERT_OK(dermis_graph_set_setting(graph, "technique", value, &report));
     EXPECT_THAT(restarted(take(report)), testing::UnorderedElementsAreArray(names)) << value;
     run(1);
   }
@@ -198,14 +184,14 @@ TEST_F(Histories, RemovingTheLastProfile_DropsThem) {
   const std::string skin = read_text("configs/profiles/skin.json");
   const dermis_source source = source_of(skin, "skin.json");
   dermis_report report = nullptr;
-  ASSERT_EQ(dermis_graph_set_profile(graph, 1, nullptr, &report), DERMIS_OK) << dermis_last_error();
-  EXPECT_THAT(restarted(take(report)), testing::IsEmpty()) << "nothing needs a history";
-  ASSERT_EQ(dermis_graph_set_profile(graph, 1, &source, &report), DERMIS_OK) << dermis_last_error();
-  EXPECT_THAT(restarted(take(report)), testing::IsEmpty()) << "nothing was recorded in between";
+  ASSERT_OK(dermis_graph_set_profile(graph, 1, nullptr, &report));
+  EXPECT_THAT(restarted(take(report)), IsEmpty()) << "nothing needs a history";
+  ASSERT_OK(dermis_graph_set_profile(graph, 1, &source, &report));
+  EXPECT_THAT(restarted(take(report)), IsEmpty()) << "nothing was recorded in between";
   expect(2, DERMIS_HISTORY_NEVER_WRITTEN, "valid since its first frame");
-  ASSERT_EQ(dermis_graph_set_profile(graph, 1, nullptr, nullptr), DERMIS_OK) << dermis_last_error();
+  ASSERT_OK(dermis_graph_set_profile(graph, 1, nullptr, nullptr));
   run(1);
-  ASSERT_EQ(dermis_graph_set_profile(graph, 1, &source, &report), DERMIS_OK) << dermis_last_error();
+  ASSERT_OK(dermis_graph_set_profile(graph, 1, &source, &report));
   EXPECT_THAT(restarted(take(report)), testing::UnorderedElementsAre("past", "past_place"));
 }
 
@@ -221,8 +207,7 @@ TEST_F(Histories, NewAfterAReload_AreReportedAsNew) {
                      "back_lighting", "scattered_light", "sampling"};
   make(options);
   run(2);
-  const dermis_source source = source_of(text, "graph.json");
-  ASSERT_EQ(reload_text(graph, source), DERMIS_OK) << dermis_last_error();
+  ASSERT_OK(reload_text(graph, source_of(text, "graph.json")));
   const auto before = reported(graph);
   ASSERT_EQ(before.size(), 2u); // Ratio and position.
   EXPECT_EQ(named(before, "ratio").valid, 0u);
@@ -250,15 +235,13 @@ TEST_F(Histories, OfAPlanThatDidNotRun_AreInvalid) {
   expect(0, DERMIS_HISTORY_NEVER_WRITTEN, "nothing has been recorded");
   run(2);
   expect(2, DERMIS_HISTORY_NEVER_WRITTEN, "valid since its first frame");
-  dermis_budget budget = DERMIS_BUDGET_INIT;
   // Too little for anything: the fastest configuration runs, which stores no light.
-  budget.milliseconds = 1e-4f;
-  budget.flags = DERMIS_BUDGET_DETERMINISTIC;
-  ASSERT_EQ(dermis_graph_set_budget(graph, &budget, nullptr), DERMIS_OK) << dermis_last_error();
+  dermis_budget budget = budget_of(1e-4f, DERMIS_BUDGET_DETERMINISTIC);
+  ASSERT_OK(dermis_graph_set_budget(graph, &budget, nullptr));
   run(1);
   expect(0, DERMIS_HISTORY_OTHER_PLAN, "another plan");
   budget.milliseconds = 0;
-  ASSERT_EQ(dermis_graph_set_budget(graph, &budget, nullptr), DERMIS_OK) << dermis_last_error();
+  ASSERT_OK(dermis_graph_set_budget(graph, &budget, nullptr));
   run(1);
   expect(1, DERMIS_HISTORY_OTHER_PLAN, "another plan");
 }
@@ -266,24 +249,22 @@ TEST_F(Histories, OfAPlanThatDidNotRun_AreInvalid) {
 TEST_F(Histories, DiscardedFrame_HasNoEffect) {
   make(keeping("burley"));
   run(2);
-  const auto bound = bindings(graph);
-  dermis_frame one = frame(bound);
+  dermis_frame one = bound_frame(graph);
   one.flags = DERMIS_FRAME_RESET_HISTORY;
   const auto ran = demo::run_commands(*host, [&](VkCommandBuffer commands) -> demo::Result<> {
     one.command_buffer = commands;
-    EXPECT_EQ(dermis_view_record(dermis_graph_view(graph), &one), DERMIS_OK) << dermis_last_error();
+    EXPECT_OK(dermis_view_record(dermis_graph_view(graph), &one));
     return demo::Error{demo::ErrorKind::internal, "not to be submitted"};
   });
   EXPECT_FALSE(ran);
   expect(1, DERMIS_HISTORY_CUT, "camera cut");
-  ASSERT_EQ(dermis_view_discard(dermis_graph_view(graph), one.frame_index), DERMIS_OK) << dermis_last_error();
+  ASSERT_OK(dermis_view_discard(dermis_graph_view(graph), one.frame_index));
   expect(2, DERMIS_HISTORY_NEVER_WRITTEN, "valid since its first frame");
 }
 
 TEST_F(Histories, ViewsHaveSeparateHistories) {
   make(keeping("burley"));
-  dermis_view view = nullptr;
-  ASSERT_EQ(dermis_view_create(graph, nullptr, &view, nullptr), DERMIS_OK) << dermis_last_error();
+  dermis_view view = view_of(graph);
   run(2);
   uint32_t count = 1;
   dermis_history first = DERMIS_HISTORY_INIT;
@@ -303,8 +284,7 @@ TEST_F(Histories, WrongArgumentsAreNamed) {
   make(keeping("burley"));
   uint32_t count = 2;
   const auto rejected = [](dermis_result result, const char* named) {
-    EXPECT_EQ(result, DERMIS_ERROR_ARGUMENT);
-    EXPECT_THAT(dermis_last_error(), HasSubstr(named));
+    EXPECT_THAT(result, Fails(DERMIS_ERROR_ARGUMENT, named));
   };
   rejected(dermis_view_histories(dermis_graph_view(nullptr), &count, nullptr), "view is NULL");
   rejected(dermis_view_histories(dermis_graph_view(graph), nullptr, nullptr), "count is NULL");
@@ -323,8 +303,7 @@ TEST_F(Histories, WrongArgumentsAreNamed) {
   std::memset(newer, 0xff, sizeof newer);
   newer[0].known.struct_size = sizeof(Newer);
   count = 2;
-  ASSERT_EQ(dermis_view_histories(dermis_graph_view(graph), &count, &newer[0].known), DERMIS_OK)
-      << dermis_last_error();
+  ASSERT_OK(dermis_view_histories(dermis_graph_view(graph), &count, &newer[0].known));
   for (const Newer& one : newer) {
     EXPECT_EQ(one.known.struct_size, sizeof(Newer));
     EXPECT_GE(one.known.settles_after, 1u);

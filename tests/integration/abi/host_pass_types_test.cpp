@@ -5,9 +5,6 @@
 namespace dermis::abi_test {
 namespace {
 
-using testing::ElementsAre;
-using testing::HasSubstr;
-
 struct Call {
   std::string pass;
   std::vector<dermis_pass_port> ports;
@@ -29,14 +26,6 @@ void DERMIS_CALL keep(void* user, const dermis_pass_call* call) {
   static_cast<std::vector<Call>*>(user)->push_back(kept);
 }
 
-dermis_port port(const char* name, dermis_port_usage usage, bool optional = false) {
-  dermis_port made = DERMIS_PORT_INIT;
-  made.name = name;
-  made.usage = usage;
-  made.optional = optional ? 1 : 0;
-  return made;
-}
-
 const std::string graph_text = R"({
   "dermis": 2, "name": "bloom",
   "settings": { "level": { "real": 0.5, "min": 0, "max": 4 } },
@@ -52,30 +41,22 @@ struct HostPassTypes : DermisTest {
   void SetUp() override {
     DermisTest::SetUp();
     if (IsSkipped()) return;
-    threshold_ports = {
-        port("light", DERMIS_PORT_SAMPLED_IMAGE), port("bright", DERMIS_PORT_STORAGE_IMAGE_WRITE),
-        port("sums", DERMIS_PORT_STORAGE_BUFFER_WRITE), port("mask", DERMIS_PORT_SAMPLED_IMAGE, true)};
-    add_ports = {port("bright", DERMIS_PORT_SAMPLED_IMAGE), port("sums", DERMIS_PORT_STORAGE_BUFFER_READ),
-                 port("onto", DERMIS_PORT_STORAGE_IMAGE_UPDATE)};
-    dermis_pass_setting level = DERMIS_PASS_SETTING_INIT, taps = DERMIS_PASS_SETTING_INIT;
-    level.name = "level";
-    level.type = DERMIS_PASS_SETTING_REAL;
-    level.maximum = 4.0;
+    threshold_ports = {port_of("light"), port_of("bright", DERMIS_PORT_STORAGE_IMAGE_WRITE),
+                       port_of("sums", DERMIS_PORT_STORAGE_BUFFER_WRITE),
+                       port_of("mask", DERMIS_PORT_SAMPLED_IMAGE, true)};
+    add_ports = {port_of("bright", DERMIS_PORT_SAMPLED_IMAGE),
+                 port_of("sums", DERMIS_PORT_STORAGE_BUFFER_READ),
+                 port_of("onto", DERMIS_PORT_STORAGE_IMAGE_UPDATE)};
+    dermis_pass_setting taps = DERMIS_PASS_SETTING_INIT;
     taps.name = "taps";
     taps.type = DERMIS_PASS_SETTING_INT;
     taps.default_value = taps.minimum = 3;
     taps.maximum = 25;
-    settings = {level, taps};
+    settings = {real_setting("level", 4), taps};
   }
 
   dermis_pass_type type(const char* name, const std::vector<dermis_port>& ports) {
-    dermis_pass_type made = DERMIS_PASS_TYPE_INIT;
-    made.name = name;
-    made.ports = ports.data();
-    made.port_count = static_cast<uint32_t>(ports.size());
-    made.record = keep;
-    made.user = &calls;
-    return made;
+    return pass_type_of(name, ports, keep, &calls);
   }
 
   void register_both() {
@@ -83,29 +64,20 @@ struct HostPassTypes : DermisTest {
     threshold.settings = settings.data();
     threshold.setting_count = 2;
     const dermis_pass_type add = type("studio.add", add_ports);
-    ASSERT_EQ(dermis_register_pass_type(context, &threshold), DERMIS_OK) << dermis_last_error();
-    ASSERT_EQ(dermis_register_pass_type(context, &add), DERMIS_OK) << dermis_last_error();
+    ASSERT_OK(dermis_register_pass_type(context, &threshold));
+    ASSERT_OK(dermis_register_pass_type(context, &add));
   }
 
-  dermis_graph bloom() {
-    GraphOptions options;
-    options.text = graph_text;
-    options.unbound = {};
-    options.formats = {};
-    return make_graph(options);
-  }
+  dermis_graph bloom() { return make_graph(own_graph(graph_text)); }
 
   dermis_graph bloom_with_images() {
-    const dermis_graph graph = bloom();
-    if (graph == nullptr) return nullptr;
-    make_images(graph);
+    const dermis_graph graph = make_bound_graph(own_graph(graph_text));
     bound = bindings(graph);
     return graph;
   }
 
   void expect_rejected(const dermis_pass_type& wrong, const char* why) {
-    EXPECT_EQ(dermis_register_pass_type(context, &wrong), DERMIS_ERROR_ARGUMENT);
-    EXPECT_THAT(dermis_last_error(), HasSubstr(why));
+    EXPECT_THAT(dermis_register_pass_type(context, &wrong), Fails(DERMIS_ERROR_ARGUMENT, why));
   }
 
   std::vector<dermis_port> threshold_ports, add_ports;
@@ -117,9 +89,8 @@ struct HostPassTypes : DermisTest {
 TEST_F(HostPassTypes, AreCalledInPlanOrderWithTheirBindings) {
   register_both();
   const dermis_graph graph = bloom_with_images();
-  ASSERT_NE(graph, nullptr);
   dermis_frame one = frame(bound);
-  ASSERT_EQ(record(graph, one), DERMIS_OK) << dermis_last_error();
+  ASSERT_OK(record(graph, one));
   ASSERT_EQ(calls.size(), 2u);
   const Call& threshold = calls[0];
   EXPECT_EQ(threshold.pass, "threshold");
@@ -148,24 +119,21 @@ TEST_F(HostPassTypes, AreCalledInPlanOrderWithTheirBindings) {
 TEST_F(HostPassTypes, SeeASettingChangeAtTheNextRecord) {
   register_both();
   const dermis_graph graph = bloom_with_images();
-  ASSERT_NE(graph, nullptr);
-  ASSERT_EQ(dermis_graph_set_setting(graph, "level", "2.5", nullptr), DERMIS_OK);
+  ASSERT_OK(dermis_graph_set_setting(graph, "level", "2.5", nullptr));
   dermis_frame one = frame(bound);
-  ASSERT_EQ(record(graph, one), DERMIS_OK) << dermis_last_error();
+  ASSERT_OK(record(graph, one));
   EXPECT_THAT(calls.at(0).settings, ElementsAre(2.5, 5.0));
 }
 
 TEST_F(HostPassTypes, AreTimedLikeAllPasses) {
   register_both();
   const dermis_graph graph = bloom_with_images();
-  ASSERT_NE(graph, nullptr);
   dermis_frame one = frame(bound);
-  ASSERT_EQ(record(graph, one), DERMIS_OK) << dermis_last_error();
+  ASSERT_OK(record(graph, one));
   std::array<dermis_pass_timing, 4> timings;
   timings.fill(DERMIS_PASS_TIMING_INIT);
   uint32_t count = 4;
-  ASSERT_EQ(dermis_view_timings(dermis_graph_view(graph), one.frame_index, &count, timings.data()),
-            DERMIS_OK);
+  ASSERT_OK(dermis_view_timings(dermis_graph_view(graph), one.frame_index, &count, timings.data()));
   ASSERT_EQ(count, 2u);
   EXPECT_STREQ(timings[1].pass, "add");
 }
@@ -173,13 +141,11 @@ TEST_F(HostPassTypes, AreTimedLikeAllPasses) {
 TEST_F(HostPassTypes, SurviveAReload) {
   register_both();
   const dermis_graph graph = bloom_with_images();
-  ASSERT_NE(graph, nullptr);
   dermis_frame one = frame(bound);
-  ASSERT_EQ(record(graph, one), DERMIS_OK) << dermis_last_error();
-  const dermis_source source = source_of(graph_text, "bloom.json");
-  ASSERT_EQ(reload_text(graph, source), DERMIS_OK) << dermis_last_error();
+  ASSERT_OK(record(graph, one));
+  ASSERT_OK(reload_text(graph, source_of(graph_text, "bloom.json")));
   dermis_frame two = frame(bound);
-  ASSERT_EQ(record(graph, two), DERMIS_OK) << dermis_last_error();
+  ASSERT_OK(record(graph, two));
   EXPECT_EQ(calls.size(), 4u);
 }
 
@@ -189,7 +155,7 @@ TEST_F(HostPassTypes, UnregisteredType_IsAnErrorOfTheGraph) {
   GraphOptions options;
   options.text = graph_text;
   EXPECT_EQ(create_graph(options, &graph, &report), DERMIS_ERROR_CONFIG);
-  EXPECT_THAT(take(report).names, testing::Contains("unknown_pass_type"));
+  EXPECT_THAT(take(report).names, Contains("unknown_pass_type"));
 }
 
 TEST_F(HostPassTypes, WrongField_IsNamed) {
@@ -236,52 +202,46 @@ TEST_F(HostPassTypes, WrongField_IsNamed) {
 TEST_F(HostPassTypes, MustBeRegisteredOnceBeforeTheFirstGraph) {
   register_both();
   expect_rejected(type("studio.add", add_ports), "there is a pass type 'studio.add' already");
-  ASSERT_NE(bloom(), nullptr);
+  bloom();
   expect_rejected(type("studio.late", add_ports), "has graphs already");
 }
 
 TEST_F(HostPassTypes, AreExportedForTools) {
   register_both();
   size_t size = 0;
-  ASSERT_EQ(dermis_export_pass_types(context, &size, nullptr), DERMIS_OK);
+  ASSERT_OK(dermis_export_pass_types(context, &size, nullptr));
   std::string text(size, '?');
   size_t less = size - 1;
   EXPECT_EQ(dermis_export_pass_types(context, &less, text.data()), DERMIS_INCOMPLETE);
   EXPECT_EQ(less, size);
-  ASSERT_EQ(dermis_export_pass_types(context, &size, text.data()), DERMIS_OK);
-  EXPECT_THAT(text, HasSubstr("\"studio.threshold\""));
-  EXPECT_THAT(text, HasSubstr("storage_buffer_write"));
+  ASSERT_OK(dermis_export_pass_types(context, &size, text.data()));
+  EXPECT_THAT(text, HasAll("\"studio.threshold\"", "storage_buffer_write"));
   EXPECT_EQ(dermis_export_pass_types(context, nullptr, nullptr), DERMIS_ERROR_ARGUMENT);
   EXPECT_EQ(dermis_export_pass_types(nullptr, &size, nullptr), DERMIS_ERROR_ARGUMENT);
 }
 
 TEST_F(HostPassTypes, UpdateInPlaceNeedsOwnTexels) {
-  std::vector<dermis_port> ports = {port("light", DERMIS_PORT_SAMPLED_IMAGE),
-                                    port("result", DERMIS_PORT_STORAGE_IMAGE_WRITE)};
+  std::vector<dermis_port> ports = {port_of("light"), port_of("result", DERMIS_PORT_STORAGE_IMAGE_WRITE)};
   const dermis_pass_type blur = type("studio.blur", ports);
-  ASSERT_EQ(dermis_register_pass_type(context, &blur), DERMIS_OK) << dermis_last_error();
+  ASSERT_OK(dermis_register_pass_type(context, &blur));
   ports[0].own_texels = 1;
   const dermis_pass_type fade = type("studio.fade", ports);
-  ASSERT_EQ(dermis_register_pass_type(context, &fade), DERMIS_OK) << dermis_last_error();
+  ASSERT_OK(dermis_register_pass_type(context, &fade));
   const auto options_of = [](const std::string& name) {
-    GraphOptions options;
-    options.unbound = {};
-    options.formats = {};
-    options.text = R"({ "dermis": 2, "name": "g",
+    return own_graph(R"({ "dermis": 2, "name": "g",
       "imports": { "lighting": { "format": "rgba16f", "size": "view" } }, "passes": [
         { "pass": "change", "type": ")" +
-                   name + R"(", "read": { "light": "lighting" }, "write": { "result": "lighting" } } ],
-      "exports": ["lighting"] })";
-    return options;
+                     name + R"(", "read": { "light": "lighting" }, "write": { "result": "lighting" } } ],
+      "exports": ["lighting"] })");
   };
   dermis_graph rejected = nullptr;
   EXPECT_NE(create_graph(options_of("studio.blur"), &rejected), DERMIS_OK);
   EXPECT_THAT(dermis_last_error(), HasSubstr("D0232"));
   EXPECT_NE(make_graph(options_of("studio.fade")), nullptr);
   size_t size = 0;
-  ASSERT_EQ(dermis_export_pass_types(context, &size, nullptr), DERMIS_OK);
+  ASSERT_OK(dermis_export_pass_types(context, &size, nullptr));
   std::string text(size, '?');
-  ASSERT_EQ(dermis_export_pass_types(context, &size, text.data()), DERMIS_OK);
+  ASSERT_OK(dermis_export_pass_types(context, &size, text.data()));
   EXPECT_THAT(text, HasSubstr("\"own_texels\": true"));
 }
 

@@ -48,11 +48,10 @@ struct Hybrid : DermisTest {
 
   void set_units(uint32_t units) {
     const dermis_source calibration = source_of(times, "invented");
-    dermis_budget budget = DERMIS_BUDGET_INIT;
-    budget.milliseconds = (static_cast<float>(units) + 0.5f) / 1000 * float(choice::entry_margin);
-    budget.flags = DERMIS_BUDGET_DETERMINISTIC;
+    dermis_budget budget = budget_of((static_cast<float>(units) + 0.5f) / 1000 * float(choice::entry_margin),
+                                     DERMIS_BUDGET_DETERMINISTIC);
     budget.calibration = &calibration;
-    ASSERT_EQ(dermis_graph_set_budget(graph, &budget, nullptr), DERMIS_OK) << dermis_last_error();
+    ASSERT_OK(dermis_graph_set_budget(graph, &budget, nullptr));
   }
 
   const char* file = "configs/graphs/papers/hybrid.json";
@@ -61,12 +60,9 @@ struct Hybrid : DermisTest {
 
   // A stepped surface, for which the pyramid has low confidence.
   void make_hybrid() {
-    GraphOptions options;
-    options.text = read_text(file);
+    GraphOptions options = shipped_options(file);
     options.overlays = overlays;
-    graph = make_graph(options);
-    ASSERT_NE(graph, nullptr);
-    make_images(graph);
+    graph = make_bound_graph(options);
     paint();
     fill("importance", [](uint32_t, uint32_t) { return 1.0f; });
   }
@@ -93,14 +89,11 @@ struct Hybrid : DermisTest {
 };
 
 TEST_F(Hybrid, DeviceAllocatesSamplesLikeTheCpu) {
-  GraphOptions options;
-  options.text = read_text("configs/graphs/papers/hybrid.json");
+  GraphOptions options = shipped_options("configs/graphs/papers/hybrid.json");
   options.overlays = {painted};
   // Exporting the light keeps the samples alive.
   options.unbound = {"albedo", "scatter_scale", "importance"};
-  graph = make_graph(options);
-  ASSERT_NE(graph, nullptr);
-  make_images(graph);
+  graph = make_bound_graph(options);
   paint();
   // In units of 1/1024; a half float holds 1 - unmet / 1024 exactly.
   const auto unmet = [](uint32_t x, uint32_t y) {
@@ -142,16 +135,12 @@ TEST_F(Hybrid, NoUnits_ShowThePyramid) {
   const auto none = picture(0);
   const auto all = picture(100000);
   EXPECT_NE(none, all);
-  GraphOptions options;
-  options.text = read_text("configs/graphs/sap.json");
+  GraphOptions options = shipped_options("configs/graphs/sap.json");
   options.unbound = {"albedo", "scatter_scale", "scattered_light", "thickness", "back_lighting"};
-  graph = make_graph(options);
-  ASSERT_NE(graph, nullptr);
-  make_images(graph);
+  graph = make_bound_graph(options);
   paint();
-  const auto bound = bindings(graph);
-  dermis_frame one = frame(bound);
-  ASSERT_EQ(record(graph, one), DERMIS_OK);
+  dermis_frame one = bound_frame(graph);
+  ASSERT_OK(record(graph, one));
   EXPECT_EQ(texels("lighting"), none);
 }
 
@@ -246,10 +235,10 @@ TEST_F(Hybrid, PartialBudget_BuysSamplesAndReportsTheError) {
     return reported;
   };
   const demo::ReportedFrame all = run(100000);
-  EXPECT_THAT(all.configuration, testing::HasSubstr("technique=hybrid"));
+  EXPECT_THAT(all.configuration, HasSubstr("technique=hybrid"));
   ASSERT_GT(all.sample_demand, 100u);
   const demo::ReportedFrame some = run(all.sample_demand / 2);
-  EXPECT_THAT(some.configuration, testing::HasSubstr("technique=hybrid"));
+  EXPECT_THAT(some.configuration, HasSubstr("technique=hybrid"));
   EXPECT_EQ(some.sample_units, all.sample_demand / 2);
   const demo::ReportedFrame few = run(all.sample_demand / 8);
   EXPECT_GT(few.predicted_rmse, some.predicted_rmse);
@@ -290,12 +279,10 @@ TEST_F(Pair, NoUnits_ShowSeparable) {
   const auto all = picture(100000);
   EXPECT_NE(none, all);
   EXPECT_EQ(reported.sample_units, reported.sample_demand);
-  GraphOptions options;
-  options.text = read_text("configs/graphs/separable.json");
+  GraphOptions options = shipped_options("configs/graphs/separable.json");
   options.unbound = {"albedo", "scatter_scale", "scattered_light"};
   graph = make_graph(options);
-  ASSERT_NE(graph, nullptr);
-  ASSERT_EQ(dermis_graph_set_setting(graph, "taps", "\"25\"", nullptr), DERMIS_OK);
+  ASSERT_OK(dermis_graph_set_setting(graph, "taps", "\"25\"", nullptr));
   make_images(graph);
   paint();
   DermisTest::run_frame(graph);

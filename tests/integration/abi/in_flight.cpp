@@ -8,7 +8,7 @@ void InFlightTest::SetUp() {
   dermis_context_destroy(context);
   dermis_context_desc desc = context_desc();
   desc.frames_in_flight = frames;
-  ASSERT_EQ(dermis_context_create(&desc, &context), DERMIS_OK) << dermis_last_error();
+  ASSERT_OK(dermis_context_create(&desc, &context));
   auto allocate =
       demo::vulkan_struct<VkCommandBufferAllocateInfo>(VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO);
   allocate.commandPool = host->pool;

@@ -13,7 +13,7 @@ struct InFlight : InFlightTest {
     one.completed_frame_index = completed_before(index);
     submit(index, [&](VkCommandBuffer into) {
       one.command_buffer = into;
-      ASSERT_EQ(dermis_view_record(dermis_graph_view(graph), &one), DERMIS_OK) << dermis_last_error();
+      ASSERT_OK(dermis_view_record(dermis_graph_view(graph), &one));
     });
     last_frame = index;
   }
@@ -21,45 +21,35 @@ struct InFlight : InFlightTest {
 
 // Plans of one graph share memory. Without a wait in between, only their own barriers order them.
 TEST_F(InFlight, AlternatingPlans_WaitForTheSharedMemory) {
-  GraphOptions options;
-  options.text = read_text("configs/graphs/skin.json");
-  const dermis_graph graph = make_graph(options);
-  ASSERT_NE(graph, nullptr);
-  make_images(graph);
+  GraphOptions options = shipped_options("configs/graphs/skin.json");
+  const dermis_graph graph = make_bound_graph(options);
   const auto bound = bindings(graph);
   for (uint64_t index = 1; index <= 9; ++index) {
-    dermis_budget budget = DERMIS_BUDGET_INIT;
     // The fastest configuration, or the defaults.
-    budget.milliseconds = index % 2 == 0 ? 0.001f : 0;
-    budget.flags = DERMIS_BUDGET_DETERMINISTIC;
-    ASSERT_EQ(dermis_graph_set_budget(graph, &budget, nullptr), DERMIS_OK) << dermis_last_error();
+    dermis_budget budget = budget_of(index % 2 == 0 ? 0.001f : 0, DERMIS_BUDGET_DETERMINISTIC);
+    ASSERT_OK(dermis_graph_set_budget(graph, &budget, nullptr));
     run(graph, bound, index);
   }
   host->vk.vkDeviceWaitIdle(host->device);
   demo::ReportedFrame choice;
-  ASSERT_EQ(demo::read_reported(dermis_graph_view(graph), 9, choice), DERMIS_OK) << dermis_last_error();
+  ASSERT_OK(demo::read_reported(dermis_graph_view(graph), 9, choice));
   EXPECT_STREQ(choice.configuration, "technique=sap, variant=smooth");
   ASSERT_EQ(choice.frame_index, 9u);
 }
 
 TEST_F(InFlight, ReplacedPlan_LivesUntilItsFramesFinish) {
-  const dermis_graph graph = make_graph();
-  ASSERT_NE(graph, nullptr);
-  make_images(graph);
+  const dermis_graph graph = make_bound_graph();
   const auto bound = bindings(graph);
   const std::string text = read_text("configs/graphs/burley.json");
-  const dermis_source source = source_of(text, "burley.json");
   for (uint64_t index = 1; index <= 8; ++index) {
     run(graph, bound, index);
-    ASSERT_EQ(reload_text(graph, source), DERMIS_OK) << dermis_last_error();
+    ASSERT_OK(reload_text(graph, source_of(text, "burley.json")));
   }
   // In TearDown the validation layer reports objects that were destroyed while in use.
 }
 
 TEST_F(InFlight, TimesSurviveTheReuseOfTheirQueries) {
-  const dermis_graph graph = make_graph();
-  ASSERT_NE(graph, nullptr);
-  make_images(graph);
+  const dermis_graph graph = make_bound_graph();
   const auto bound = bindings(graph);
   std::array<dermis_pass_timing, 16> times{};
   times[0].struct_size = sizeof times[0];
@@ -69,16 +59,14 @@ TEST_F(InFlight, TimesSurviveTheReuseOfTheirQueries) {
     const uint64_t completed = completed_before(index);
     if (completed == 0) continue;
     uint32_t count = 16;
-    ASSERT_EQ(dermis_view_timings(dermis_graph_view(graph), completed, &count, times.data()), DERMIS_OK);
+    ASSERT_OK(dermis_view_timings(dermis_graph_view(graph), completed, &count, times.data()));
     EXPECT_EQ(times[0].frame_index, completed);
     EXPECT_GT(times[0].nanoseconds, 0u);
   }
 }
 
 TEST_F(InFlight, FramesFollowEachOtherWithoutWaiting) {
-  const dermis_graph graph = make_graph();
-  ASSERT_NE(graph, nullptr);
-  make_images(graph);
+  const dermis_graph graph = make_bound_graph();
   const auto bound = bindings(graph);
   for (uint64_t index = 1; index <= 6; ++index)
     run(graph, bound, index);
@@ -86,11 +74,9 @@ TEST_F(InFlight, FramesFollowEachOtherWithoutWaiting) {
   std::array<dermis_pass_timing, 16> times{};
   times[0].struct_size = sizeof times[0];
   uint32_t count = 16;
-  ASSERT_EQ(dermis_view_timings(dermis_graph_view(graph), 6, &count, times.data()), DERMIS_OK)
-      << dermis_last_error();
+  ASSERT_OK(dermis_view_timings(dermis_graph_view(graph), 6, &count, times.data()));
   EXPECT_EQ(times[0].frame_index, 6u);
-  ASSERT_EQ(dermis_view_timings(dermis_graph_view(graph), 5, &count, times.data()), DERMIS_OK)
-      << dermis_last_error();
+  ASSERT_OK(dermis_view_timings(dermis_graph_view(graph), 5, &count, times.data()));
   EXPECT_EQ(times[0].frame_index, 5u);
 }
 

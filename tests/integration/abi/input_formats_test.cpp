@@ -17,8 +17,7 @@ constexpr size_t image_pixels = size_t{image_side} * image_side;
 
 struct InputFormats : DermisTest {
   static GraphOptions options_of(const std::string& graph) {
-    GraphOptions options;
-    options.text = read_text(dermis::shipped::graph_file(graph));
+    GraphOptions options = shipped_options(dermis::shipped::graph_file(graph));
     options.unbound = {"albedo",   "scatter_scale", "scattered_light", "thickness", "back_lighting",
                        "velocity", "sampling",      "importance",      "normal"};
     return options;
@@ -28,9 +27,8 @@ struct InputFormats : DermisTest {
   // graphs use equal samples.
   std::vector<float> picture(dermis_graph graph) {
     last_frame = 0;
-    const auto bound = bindings(graph);
-    dermis_frame one = frame(bound);
-    EXPECT_EQ(record(graph, one), DERMIS_OK) << dermis_last_error();
+    dermis_frame one = bound_frame(graph);
+    EXPECT_OK(record(graph, one));
     const uint32_t channels = demo::find_pixel_format(images.at("lighting").format)->channels;
     const std::vector<float> all = texels("lighting");
     std::vector<float> rgb;
@@ -74,8 +72,7 @@ struct Demodulation : InputFormats, testing::WithParamInterface<const char*> {
     options.formats.emplace_back("albedo", VK_FORMAT_R32G32B32A32_SFLOAT);
     const dermis_graph graph = make_graph(options);
     const std::string json = '"' + std::string(texturing) + '"';
-    EXPECT_EQ(dermis_graph_set_setting(graph, "texturing", json.c_str(), nullptr), DERMIS_OK)
-        << dermis_last_error();
+    EXPECT_OK(dermis_graph_set_setting(graph, "texturing", json.c_str(), nullptr));
     make_images(graph);
     upload("albedo", image_of(albedo_at));
     return graph;
@@ -125,8 +122,7 @@ TEST_F(InputFormats, LightingMayBeB10g11r11) {
   for (const VkFormat format : {VK_FORMAT_R16G16B16A16_SFLOAT, VK_FORMAT_B10G11R11_UFLOAT_PACK32}) {
     GraphOptions options = options_of("sap");
     options.formats.emplace_back("lighting", format);
-    const dermis_graph graph = make_graph(options);
-    make_images(graph);
+    const dermis_graph graph = make_bound_graph(options);
     pictures.push_back(picture(graph));
   }
   // Values up to 1 have 5 fraction bits (blue) and may be truncated.
@@ -148,8 +144,7 @@ TEST_F(InputFormats, MaterialMayBeAnyUnsignedInteger) {
     for (const VkFormat format : {VK_FORMAT_R8_UINT, VK_FORMAT_R16_UINT, VK_FORMAT_R32_UINT}) {
       GraphOptions options = options_of(graph_name);
       options.formats.emplace_back("material", format);
-      const dermis_graph graph = make_graph(options);
-      make_images(graph);
+      const dermis_graph graph = make_bound_graph(options);
       upload("material", striped_ids());
       pictures.push_back(picture(graph));
     }

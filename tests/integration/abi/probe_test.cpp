@@ -19,12 +19,10 @@ struct Probe : DermisTest {
   using Light = float (*)(uint32_t x, uint32_t y);
 
   void make(const char* technique, bool probing = true) {
-    GraphOptions options;
-    options.text = read_text("configs/graphs/skin.json");
+    GraphOptions options = shipped_options("configs/graphs/skin.json");
     if (probing) options.overlays = {read_text("configs/overlays/probe.json")};
     graph = make_graph(options);
-    ASSERT_NE(graph, nullptr);
-    ASSERT_EQ(dermis_graph_set_setting(graph, "technique", technique, nullptr), DERMIS_OK);
+    ASSERT_OK(dermis_graph_set_setting(graph, "technique", technique, nullptr));
     make_images(graph);
   }
 

@@ -8,8 +8,6 @@
 namespace dermis::abi_test {
 namespace {
 
-using testing::HasSubstr;
-
 struct Reload : DermisTest {
   static const dermis_slot* slot(const std::vector<dermis_slot>& slots, std::string_view name) {
     const auto found = std::ranges::find_if(slots, [&](const dermis_slot& one) { return one.name == name; });
@@ -21,7 +19,7 @@ struct Reload : DermisTest {
     const auto bound = bindings(graph);
     last_frame = index - 1;
     dermis_frame one = frame(bound);
-    EXPECT_EQ(record(graph, one), DERMIS_OK) << dermis_last_error();
+    EXPECT_OK(record(graph, one));
     return texels("lighting");
   }
 };
@@ -31,12 +29,12 @@ TEST_F(Reload, ChangesWhichSlotsAreBoundAndTheirFormats) {
   GraphOptions options;
   options.unbound = {"scatter_scale", "scattered_light"};
   options.formats = {{"depth", VK_FORMAT_D32_SFLOAT}};
-  ASSERT_EQ(reload_graph(graph, options), DERMIS_OK) << dermis_last_error();
+  ASSERT_OK(reload_graph(graph, options));
   const auto slots = slots_of(graph);
   EXPECT_EQ(slot(slots, "albedo")->bound, 1u);
   EXPECT_EQ(slot(slots, "scatter_scale")->bound, 0u);
   EXPECT_EQ(slot(slots, "depth")->format, VK_FORMAT_D32_SFLOAT);
-  ASSERT_EQ(reload_graph(graph, {}), DERMIS_OK) << dermis_last_error();
+  ASSERT_OK(reload_graph(graph, {}));
   EXPECT_EQ(slot(slots_of(graph), "albedo")->bound, 0u);
   EXPECT_EQ(picture(graph, 1), picture(make_graph(), 1));
 }
@@ -48,15 +46,15 @@ TEST_F(Reload, ChangesProfilesAndOverlays_MatchesANewGraph) {
   marble.profile = read_text("configs/profiles/marble.json");
   marble.overlays = {read_text("configs/overlays/accumulate.json")};
   marble.unbound.emplace_back("velocity");
-  ASSERT_EQ(reload_graph(graph, marble), DERMIS_OK) << dermis_last_error();
+  ASSERT_OK(reload_graph(graph, marble));
   const std::vector<float> reloaded = picture(graph, 2);
   EXPECT_NE(reloaded, skin);
   EXPECT_EQ(reloaded, picture(make_graph(marble), 2));
   GraphOptions none;
   none.profiles = false;
-  ASSERT_EQ(reload_graph(graph, none), DERMIS_OK) << dermis_last_error();
+  ASSERT_OK(reload_graph(graph, none));
   EXPECT_EQ(picture(graph, 3), picture(make_graph(none), 3));
-  ASSERT_EQ(reload_graph(graph, GraphOptions{}), DERMIS_OK) << dermis_last_error();
+  ASSERT_OK(reload_graph(graph, GraphOptions{}));
   EXPECT_EQ(slots_of(graph).size(), slots_of(make_graph()).size()) << "the overlay and its slots are removed";
   EXPECT_EQ(picture(graph, 4), picture(make_graph(), 4));
 }
@@ -65,11 +63,11 @@ TEST_F(Reload, ChangesTheSizeOrKeepsIt) {
   const dermis_graph graph = make_graph();
   GraphOptions wide;
   wide.width = 96;
-  ASSERT_EQ(reload_graph(graph, wide), DERMIS_OK) << dermis_last_error();
+  ASSERT_OK(reload_graph(graph, wide));
   EXPECT_EQ(slot(slots_of(graph), "depth")->width, 96u);
   dermis_graph_desc all = DERMIS_GRAPH_DESC_INIT;
   all.keep = DERMIS_KEEP_ALL;
-  ASSERT_EQ(dermis_graph_reload(graph, &all, nullptr), DERMIS_OK) << dermis_last_error();
+  ASSERT_OK(dermis_graph_reload(graph, &all, nullptr));
   EXPECT_EQ(slot(slots_of(graph), "depth")->width, 96u);
   EXPECT_EQ(slot(slots_of(graph), "albedo")->bound, 0u);
 }
@@ -86,7 +84,7 @@ TEST_F(Reload, Failure_KeepsTheRunningGraphBitForBit) {
     for (const GraphOptions& options : wrong) {
       dermis_report report = nullptr;
       EXPECT_EQ(reload_graph(graph, options, &report), DERMIS_ERROR_CONFIG);
-      EXPECT_THAT(take(report).names, testing::Not(testing::IsEmpty()));
+      EXPECT_THAT(take(report).names, Not(IsEmpty()));
     }
     EXPECT_EQ(picture(graph, index), picture(untouched, index)) << "frame " << index;
   }

@@ -14,33 +14,30 @@ constexpr const char* without_uniform_light = R"({ "dermis_overlay": 2, "edits":
   { "remove": "/passes/classify_uniform_light" }, { "remove": "/passes/classify/write/light_range" },
   { "remove": "/passes/classify/write/light_cells" } ] })";
 
+// Reach of the light test in tiles: a pixel is 0.5 mm, skin's widest d is 3.67 / 3.5 mm.
+const auto reach = static_cast<uint32_t>(std::ceil(subsurface::uniform_reach_d * 3.67 / 3.5 / 0.5 / 8));
+
 struct Skip : DermisTest {
   dermis_graph graph = nullptr;
   bool handed_out = false; // Whether scattered_light is bound.
 
   void make(bool profiles = true, bool skips = true) {
-    GraphOptions options;
-    options.text = read_text("configs/graphs/skin.json");
+    GraphOptions options = skin();
     options.profiles = profiles;
     if (!skips) options.overlays = {without_uniform_light};
     if (handed_out) options.unbound = {"albedo", "scatter_scale"};
-    graph = make_graph(options);
-    ASSERT_NE(graph, nullptr);
-    make_images(graph);
+    graph = make_bound_graph(options);
     fill("lighting", [](uint32_t x, uint32_t y) { return float((x * 37 + y * 61) % 97) / 64.0f; });
   }
 
+  static GraphOptions skin() { return shipped_options("configs/graphs/skin.json"); }
+
   demo::ReportedFrame run_frame(uint32_t flags = 0, std::array<uint32_t, 4> bounds = {}) {
-    const auto bound = bindings(graph);
-    dermis_frame one = frame(bound);
+    dermis_frame one = bound_frame(graph);
     one.flags = flags;
     one.bounds_x = bounds[0], one.bounds_y = bounds[1];
     one.bounds_width = bounds[2], one.bounds_height = bounds[3];
-    EXPECT_EQ(record(graph, one), DERMIS_OK) << dermis_last_error();
-    demo::ReportedFrame choice;
-    EXPECT_EQ(demo::read_reported(dermis_graph_view(graph), last_frame, choice), DERMIS_OK)
-        << dermis_last_error();
-    return choice;
+    return record_and_read(graph, one);
   }
 
   void no_subsurface() {
@@ -56,8 +53,7 @@ TEST_F(Skip, NoProfile_EmptyPlanAndUnchangedLight) {
   EXPECT_EQ(choice.skips, DERMIS_SKIP_NO_MATERIAL);
   EXPECT_EQ(choice.dispatches, 0u);
   EXPECT_EQ(choice.groups, 0u);
-  dermis_memory memory = DERMIS_MEMORY_INIT;
-  ASSERT_EQ(dermis_graph_memory(graph, &memory), DERMIS_OK);
+  const dermis_memory memory = memory_of(graph);
   EXPECT_EQ(memory.transient_bytes, 0u);
   EXPECT_EQ(texels("lighting"), before);
 }
@@ -69,11 +65,7 @@ TEST_F(Skip, NoProfile_LightIsStillExported) {
   const auto before = texels("lighting");
   EXPECT_EQ(run_frame().dispatches, 1u);
   EXPECT_EQ(texels("lighting"), before);
-  const auto out = texels("scattered_light");
-  for (size_t i = 0; i < out.size(); ++i)
-    if (i % 4 != 3) {
-      ASSERT_EQ(out[i], before[i]) << i;
-    }
+  expect_equal_rgb(texels("scattered_light"), before);
 }
 
 TEST_F(Skip, EmptyBounds_LaunchNothing) {
@@ -92,11 +84,7 @@ TEST_F(Skip, EmptyBounds_LightIsStillExported) {
   const auto before = texels("lighting");
   // Outside of the picture.
   EXPECT_EQ(run_frame(DERMIS_FRAME_BOUNDS, {64, 0, 8, 8}).dispatches, 1u);
-  const auto out = texels("scattered_light");
-  for (size_t i = 0; i < out.size(); ++i)
-    if (i % 4 != 3) {
-      ASSERT_EQ(out[i], before[i]) << i;
-    }
+  expect_equal_rgb(texels("scattered_light"), before);
 }
 
 TEST_F(Skip, FrameAfterEmptyBounds_IsNormal) {
@@ -128,11 +116,9 @@ TEST_F(Skip, BoundsAroundAllSubsurfaceChangeNothing) {
 
 TEST_F(Skip, BoundsWithoutTheirFlagAreRejected) {
   make();
-  const auto bound = bindings(graph);
-  dermis_frame one = frame(bound);
+  dermis_frame one = bound_frame(graph);
   one.bounds_width = 8;
-  EXPECT_EQ(record(graph, one), DERMIS_ERROR_ARGUMENT);
-  EXPECT_THAT(dermis_last_error(), testing::HasSubstr("DERMIS_FRAME_BOUNDS"));
+  EXPECT_THAT(record(graph, one), Fails(DERMIS_ERROR_ARGUMENT, "DERMIS_FRAME_BOUNDS"));
 }
 
 TEST_F(Skip, NothingOnScreen_OnlyClassifiesTiles) {
@@ -172,33 +158,27 @@ TEST_F(Skip, FlatLight_IsExportedUnchanged) {
   fill("lighting", [](uint32_t, uint32_t) { return 0.75f; });
   EXPECT_EQ(run_frame().uniform_tiles, 64u);
   const auto out = texels("scattered_light");
-  for (size_t i = 0; i < out.size(); ++i)
-    if (i % 4 != 3) {
-      ASSERT_EQ(out[i], 0.75f) << i;
-    }
+  expect_equal_rgb(out, std::vector<float>(out.size(), 0.75f));
 }
 
 TEST_F(Skip, CopiedLight_IsEqualForEveryTexturing) {
   // Once from the lighting directly, and once through `scattered`, which passes of overlays need.
   for (const char* texturing : {"\"post\"", "\"pre_post\"", "\"pre\""}) {
     const auto picture = [&](bool through) {
-      GraphOptions options;
-      options.text = read_text("configs/graphs/skin.json");
+      GraphOptions options = skin();
       if (through)
         options.overlays = {R"({ "dermis_overlay": 2, "edits": [
           { "set": "/settings/copied", "to": { "enum": ["scattered"], "default": "scattered" } },
           { "set": "/passes/combine/set/copied", "to": "scattered" } ] })"};
       options.unbound = {"scatter_scale", "scattered_light"};
       graph = make_graph(options);
-      EXPECT_NE(graph, nullptr);
-      EXPECT_EQ(dermis_graph_set_setting(graph, "texturing", texturing, nullptr), DERMIS_OK);
+      EXPECT_OK(dermis_graph_set_setting(graph, "texturing", texturing, nullptr));
       make_images(graph);
       fill("lighting", [](uint32_t x, uint32_t y) { return float((x * 37 + y * 61) % 97) / 64.0f; });
       fill("albedo", [](uint32_t x, uint32_t y) { return float((x * 13 + y * 7) % 32) / 32.0f; });
-      const auto bound = bindings(graph);
-      dermis_frame one = frame(bound);
+      dermis_frame one = bound_frame(graph);
       one.metres_per_unit = 100; // All scattering is below a pixel.
-      EXPECT_EQ(record(graph, one), DERMIS_OK);
+      EXPECT_OK(record(graph, one));
       return texels("lighting");
     };
     EXPECT_EQ(picture(false), picture(true)) << texturing;
@@ -211,14 +191,12 @@ TEST_F(Skip, OneDifferentTile_IsSeenWithinTheReach) {
   const demo::ReportedFrame choice = run_frame();
   // Skin's d is two pixels here: 20 d are five tiles, and the picture has eight.
   EXPECT_EQ(choice.uniform_tiles + choice.scattering_tiles, 64u);
-  const auto reach = static_cast<uint32_t>(std::ceil(subsurface::uniform_reach_d * 3.67 / 3.5 / 0.5 / 8));
   EXPECT_EQ(choice.scattering_tiles, (reach + 1) * (reach + 1));
 }
 
 TEST_F(Skip, DifferenceInACell_IsSeenExactlyWithinTheReach) {
   // Cells of 4x4 tiles are tested first. Differing light in a cell is beyond the reach of some
   // neighbouring tiles.
-  const auto reach = static_cast<uint32_t>(std::ceil(subsurface::uniform_reach_d * 3.67 / 3.5 / 0.5 / 8));
   for (const uint32_t column : {0u, 1u, 2u, 3u}) {
     make();
     fill("lighting", [&](uint32_t x, uint32_t) { return x / 8 == column ? 1.0f : 0.5f; });
@@ -230,16 +208,12 @@ TEST_F(Skip, DifferenceInACell_IsSeenExactlyWithinTheReach) {
 }
 
 TEST_F(Skip, SubpixelScattering_LightIsNotTested) {
-  GraphOptions options;
-  options.text = read_text("configs/graphs/skin.json");
+  GraphOptions options = skin();
   options.unbound = {"albedo", "scattered_light"};
-  graph = make_graph(options);
-  ASSERT_NE(graph, nullptr);
-  make_images(graph);
+  graph = make_bound_graph(options);
   fill("lighting", [](uint32_t, uint32_t) { return 0.5f; });
   fill("scatter_scale", [](uint32_t x, uint32_t y) { return x < 8 && y < 8 ? 0.0f : 1.0f; });
   const demo::ReportedFrame choice = run_frame();
-  const auto reach = static_cast<uint32_t>(std::ceil(subsurface::uniform_reach_d * 3.67 / 3.5 / 0.5 / 8));
   EXPECT_EQ(choice.copied_tiles, 1u);
   EXPECT_EQ(choice.scattering_tiles, (reach + 1) * (reach + 1) - 1); // Its light is not tested.
 }
@@ -257,12 +231,9 @@ TEST_F(Skip, BoundsCanCutTiles) {
 }
 
 TEST_F(Skip, ToolsGetTheClassOfEachTile) {
-  GraphOptions options;
-  options.text = read_text("configs/graphs/skin.json");
+  GraphOptions options = skin();
   options.overlays = {read_text("configs/overlays/debug_tile_class.json")};
-  graph = make_graph(options);
-  ASSERT_NE(graph, nullptr);
-  make_images(graph);
+  graph = make_bound_graph(options);
   fill("material", [](uint32_t x, uint32_t) { return x < 32 ? 1.0f : 0.0f; });
   fill("lighting", [](uint32_t, uint32_t) { return 0.5f; });
   const demo::ReportedFrame choice = run_frame();
@@ -278,21 +249,14 @@ TEST_F(Skip, ToolsGetTheClassOfEachTile) {
 TEST_F(Skip, ScatteringBelowAPixelIsCopiedExactly) {
   make();
   const auto before = texels("lighting");
-  const auto bound = bindings(graph);
-  dermis_frame one = frame(bound);
+  dermis_frame one = bound_frame(graph);
   one.metres_per_unit = 100; // A pixel is 5 cm.
-  ASSERT_EQ(record(graph, one), DERMIS_OK);
-  demo::ReportedFrame choice;
-  ASSERT_EQ(demo::read_reported(dermis_graph_view(graph), last_frame, choice), DERMIS_OK);
+  const demo::ReportedFrame choice = record_and_read(graph, one);
   EXPECT_EQ(choice.copied_tiles, 64u);
   EXPECT_EQ(choice.skips, DERMIS_SKIP_SUBPIXEL);
   // Classes, uniform light, the list, and once over the listed tiles.
   EXPECT_EQ(choice.groups, 4u + 1 + 1 + 64);
-  const auto after = texels("lighting");
-  for (size_t i = 0; i < after.size(); ++i)
-    if (i % 4 != 3) {
-      ASSERT_EQ(after[i], before[i]) << i; // The input light consists of half floats.
-    }
+  expect_equal_rgb(texels("lighting"), before); // The input light consists of half floats.
 }
 
 } // namespace

@@ -5,28 +5,20 @@
 #include "tests/integration/abi/sources.hpp"
 #include "tests/integration/embedding/null_host.hpp"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <cstring>
 #include <functional>
 
 namespace dermis::abi_test {
 namespace {
 
-using testing::Each;
-using testing::HasSubstr;
-
 struct TwoCalls : ::testing::Test {
   NullHost host;
   dermis_view view = nullptr;
   void SetUp() override {
-    ASSERT_EQ(host.make_context(host.context_desc()), DERMIS_OK) << dermis_last_error();
-    ASSERT_EQ(host.make_graph(), DERMIS_OK) << dermis_last_error();
-    host.make_bindings();
-    ASSERT_EQ(dermis_view_create(host.graph, nullptr, &view, nullptr), DERMIS_OK) << dermis_last_error();
-    ASSERT_EQ(host.record(), DERMIS_OK) << dermis_last_error();
-    ASSERT_EQ(host.record(view, 1), DERMIS_OK) << dermis_last_error();
+    ASSERT_OK(host.start());
+    ASSERT_OK(dermis_view_create(host.graph, nullptr, &view, nullptr));
+    ASSERT_OK(host.record());
+    ASSERT_OK(host.record(view, 1));
   }
 };
 
@@ -39,11 +31,10 @@ template <class T> std::vector<std::byte> bytes_of(const T& value) {
 
 template <class T> void expect_array_property(const std::function<dermis_result(uint32_t*, T*)>& ask) {
   uint32_t count = 0;
-  ASSERT_EQ(ask(&count, nullptr), DERMIS_OK) << dermis_last_error();
+  ASSERT_OK(ask(&count, nullptr));
   ASSERT_GT(count, 0u);
   const uint32_t all = count;
-  EXPECT_EQ(ask(nullptr, nullptr), DERMIS_ERROR_ARGUMENT);
-  EXPECT_THAT(dermis_last_error(), HasSubstr("count is NULL"));
+  EXPECT_THAT(ask(nullptr, nullptr), Fails(DERMIS_ERROR_ARGUMENT, "count is NULL"));
   for (uint32_t space = 0; space <= all + 1; ++space) {
     std::vector<T> items(all + 1);
     std::memset(items.data(), untouched, items.size() * sizeof(T));
@@ -63,8 +54,7 @@ template <class T> void expect_array_property(const std::function<dermis_result(
   T item{};
   item.struct_size = sizeof(size_t);
   count = 1;
-  EXPECT_EQ(ask(&count, &item), DERMIS_ERROR_ARGUMENT);
-  EXPECT_THAT(dermis_last_error(), HasSubstr("struct_size"));
+  EXPECT_THAT(ask(&count, &item), Fails(DERMIS_ERROR_ARGUMENT, "struct_size"));
 }
 
 TEST_F(TwoCalls, FillAtMostTheCapacity) {
@@ -95,10 +85,9 @@ TEST_F(TwoCalls, FillAtMostTheCapacity) {
 }
 
 void expect_text_property(const std::function<dermis_result(size_t*, char*)>& ask) {
-  EXPECT_EQ(ask(nullptr, nullptr), DERMIS_ERROR_ARGUMENT);
-  EXPECT_THAT(dermis_last_error(), HasSubstr("size is NULL"));
+  EXPECT_THAT(ask(nullptr, nullptr), Fails(DERMIS_ERROR_ARGUMENT, "size is NULL"));
   size_t size = 0;
-  ASSERT_EQ(ask(&size, nullptr), DERMIS_OK) << dermis_last_error();
+  ASSERT_OK(ask(&size, nullptr));
   ASSERT_GT(size, 2u);
   const size_t all = size;
   for (const size_t space : {size_t{0}, size_t{1}, all - 1}) {
@@ -110,7 +99,7 @@ void expect_text_property(const std::function<dermis_result(size_t*, char*)>& as
   }
   std::string text(all + 1, static_cast<char>(untouched));
   size = all + 1;
-  ASSERT_EQ(ask(&size, text.data()), DERMIS_OK);
+  ASSERT_OK(ask(&size, text.data()));
   EXPECT_EQ(size, all);
   EXPECT_EQ(std::strlen(text.c_str()), all - 1) << "the final 0 is counted";
 }
@@ -130,12 +119,11 @@ TEST_F(TwoCalls, OnlyRecordedFramesCanBeQueried) {
   uint32_t count = 0;
   demo::ReportedFrame choice;
   for (const uint64_t later : {uint64_t{2}, ~uint64_t{0}}) {
-    EXPECT_EQ(dermis_view_timings(dermis_graph_view(host.graph), later, &count, nullptr),
-              DERMIS_ERROR_ARGUMENT);
-    EXPECT_THAT(dermis_last_error(), HasSubstr("the newest recorded frame is 1"));
+    EXPECT_THAT(dermis_view_timings(dermis_graph_view(host.graph), later, &count, nullptr),
+                Fails(DERMIS_ERROR_ARGUMENT, "the newest recorded frame is 1"));
     EXPECT_EQ(dermis_view_timings(view, later, &count, nullptr), DERMIS_ERROR_ARGUMENT);
-    EXPECT_EQ(demo::read_reported(dermis_graph_view(host.graph), later, choice), DERMIS_ERROR_ARGUMENT);
-    EXPECT_THAT(dermis_last_error(), HasSubstr("the newest recorded frame is 1"));
+    EXPECT_THAT(demo::read_reported(dermis_graph_view(host.graph), later, choice),
+                Fails(DERMIS_ERROR_ARGUMENT, "the newest recorded frame is 1"));
     EXPECT_EQ(demo::read_reported(view, later, choice), DERMIS_ERROR_ARGUMENT);
   }
 }

@@ -4,8 +4,6 @@
 #include "tests/integration/abi/sources.hpp"
 #include "tests/integration/embedding/null_host.hpp"
 
-#include <gtest/gtest.h>
-
 namespace dermis::abi_test {
 namespace {
 
@@ -37,8 +35,7 @@ protected:
     const dermis_frame frame = host.frame_at(index);
     uint32_t count = 0;
     const dermis_command* commands = nullptr;
-    EXPECT_EQ(dermis_view_commands(dermis_graph_view(host.graph), &frame, &count, &commands), DERMIS_OK)
-        << dermis_last_error();
+    EXPECT_OK(dermis_view_commands(dermis_graph_view(host.graph), &frame, &count, &commands));
     FrameCommands found;
     for (uint32_t i = 0; i < count; ++i) {
       found.dispatches += commands[i].type == DERMIS_COMMAND_DISPATCH ? 1 : 0;
@@ -53,26 +50,19 @@ protected:
 
 TEST_F(ComputeQueue, RescalesHistoriesByDispatches) {
   host.device.set_queue_flags(VK_QUEUE_COMPUTE_BIT | VK_QUEUE_TRANSFER_BIT);
-  ASSERT_EQ(host.make_context(host.context_desc()), DERMIS_OK) << dermis_last_error();
-  const std::string text = read_text("configs/graphs/papers/sap_residual.json"),
-                    skin = read_text("configs/profiles/skin.json");
-  dermis_profile profile = DERMIS_PROFILE_INIT;
-  profile.id = 1;
-  profile.source = source_of(skin, "skin.json");
-  dermis_slot_format depth = DERMIS_SLOT_FORMAT_INIT;
-  depth.name = "depth";
-  depth.format = VK_FORMAT_D32_SFLOAT;
-  dermis_graph_desc desc = DERMIS_GRAPH_DESC_INIT;
-  desc.source = source_of(text, "sap_residual.json");
-  desc.width = desc.height = 64;
+  ASSERT_OK(host.make_context(host.context_desc()));
+  const std::string text = read_text("configs/graphs/papers/sap_residual.json");
+  dermis_profile profile = skin_profile();
+  dermis_slot_format depth = slot_format("depth", VK_FORMAT_D32_SFLOAT);
+  dermis_graph_desc desc = graph_desc(text, "sap_residual.json", 64);
   desc.profiles = &profile;
   desc.formats = &depth;
   desc.profile_count = desc.format_count = 1;
-  ASSERT_EQ(dermis_graph_create(host.context, &desc, &host.graph, nullptr), DERMIS_OK) << dermis_last_error();
+  ASSERT_OK(dermis_graph_create(host.context, &desc, &host.graph, nullptr));
   host.make_bindings();
   record(1);
   const FrameCommands usual = record(2);
-  ASSERT_EQ(dermis_graph_resize(host.graph, 96, 48, nullptr), DERMIS_OK) << dermis_last_error();
+  ASSERT_OK(dermis_graph_resize(host.graph, 96, 48, nullptr));
   host.make_bindings();
   const FrameCommands resized = record(3), after = record(4);
   EXPECT_GT(resized.dispatches, usual.dispatches) << "histories are rescaled";

@@ -3,13 +3,8 @@
 #include "tests/integration/abi/sources.hpp"
 #include "tests/integration/embedding/null_host.hpp"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 namespace dermis::abi_test {
 namespace {
-
-using testing::Each;
 
 constexpr VkImageAspectFlags depth_only = VK_IMAGE_ASPECT_DEPTH_BIT,
                              both = VK_IMAGE_ASPECT_DEPTH_BIT | VK_IMAGE_ASPECT_STENCIL_BIT;
@@ -23,23 +18,16 @@ std::vector<VkImageAspectFlags> aspects(uint32_t flags, VkFormat depth_format, c
   NullHost host;
   dermis_context_desc context = host.context_desc();
   context.flags |= flags;
-  EXPECT_EQ(host.make_context(context), DERMIS_OK) << dermis_last_error();
-  const std::string text = read_text("configs/graphs/burley.json"),
-                    skin = read_text("configs/profiles/skin.json");
-  dermis_profile profile = DERMIS_PROFILE_INIT;
-  profile.id = 1;
-  profile.source = source_of(skin, "skin.json");
-  dermis_slot_format format = DERMIS_SLOT_FORMAT_INIT;
-  format.name = "depth";
-  format.format = depth_format;
-  dermis_graph_desc desc = DERMIS_GRAPH_DESC_INIT;
-  desc.source = source_of(text, "burley.json");
-  desc.width = desc.height = 64;
+  EXPECT_OK(host.make_context(context));
+  const std::string text = read_text("configs/graphs/burley.json");
+  dermis_profile profile = skin_profile();
+  dermis_slot_format format = slot_format("depth", depth_format);
+  dermis_graph_desc desc = graph_desc(text, "burley.json", 64);
   desc.profiles = &profile;
   desc.profile_count = 1;
   desc.formats = &format;
   desc.format_count = 1;
-  EXPECT_EQ(dermis_graph_create(host.context, &desc, &host.graph, nullptr), DERMIS_OK) << dermis_last_error();
+  EXPECT_OK(dermis_graph_create(host.context, &desc, &host.graph, nullptr));
   host.make_bindings();
   dermis_frame frame = host.frame_at(1);
   std::vector<dermis_image_binding> bindings(frame.bindings, frame.bindings + frame.binding_count);
@@ -53,8 +41,7 @@ std::vector<VkImageAspectFlags> aspects(uint32_t flags, VkFormat depth_format, c
   frame.bindings = bindings.data();
   uint32_t count = 0;
   const dermis_command* commands = nullptr;
-  EXPECT_EQ(dermis_view_commands(dermis_graph_view(host.graph), &frame, &count, &commands), DERMIS_OK)
-      << dermis_last_error();
+  EXPECT_OK(dermis_view_commands(dermis_graph_view(host.graph), &frame, &count, &commands));
   std::vector<VkImageAspectFlags> found;
   for (uint32_t i = 0; i < count; ++i)
     for (uint32_t b = 0;

@@ -4,17 +4,10 @@
 #include "tests/integration/abi/sources.hpp"
 #include "tests/integration/embedding/null_host.hpp"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <cstring>
 
 namespace dermis::abi_test {
 namespace {
-
-using testing::AllOf;
-using testing::HasSubstr;
-using testing::Not;
 
 // The null device with missing features. Vulkan functions have no user pointer, so the state is
 // static; tests of this file run sequentially.
@@ -106,21 +99,18 @@ struct PoorDevice : ::testing::Test {
   }
   std::vector<dermis_requirement> requirements() const {
     uint32_t count = 0;
-    EXPECT_EQ(
-        dermis_query_requirements(less, host.device.instance(), host.device.physical(), &count, nullptr),
-        DERMIS_OK);
+    EXPECT_OK(
+        dermis_query_requirements(less, host.device.instance(), host.device.physical(), &count, nullptr));
     std::vector<dermis_requirement> items(count, dermis_requirement DERMIS_REQUIREMENT_INIT);
-    EXPECT_EQ(
-        dermis_query_requirements(less, host.device.instance(), host.device.physical(), &count, items.data()),
-        DERMIS_OK);
+    EXPECT_OK(dermis_query_requirements(less, host.device.instance(), host.device.physical(), &count,
+                                        items.data()));
     return items;
   }
 };
 
 TEST_F(PoorDevice, OlderVulkan_IsRejectedWithoutNewerQueries) {
   lack.api_version = VK_API_VERSION_1_1;
-  EXPECT_EQ(create(), DERMIS_ERROR_UNSUPPORTED);
-  EXPECT_THAT(dermis_last_error(), AllOf(HasSubstr("VK_API_VERSION_1_2"), HasSubstr("synchronization2")));
+  EXPECT_THAT(create(), Fails(DERMIS_ERROR_UNSUPPORTED, "VK_API_VERSION_1_2", "synchronization2"));
   EXPECT_EQ(host.context, nullptr);
   for (const dermis_requirement& item : requirements())
     EXPECT_EQ(item.present, 0u) << item.name;
@@ -128,13 +118,11 @@ TEST_F(PoorDevice, OlderVulkan_IsRejectedWithoutNewerQueries) {
 
 TEST_F(PoorDevice, Vulkan12_NeedsTwoExtensions) {
   lack.api_version = VK_API_VERSION_1_2;
-  EXPECT_EQ(create(), DERMIS_ERROR_UNSUPPORTED);
-  EXPECT_THAT(dermis_last_error(), AllOf(HasSubstr(VK_KHR_SYNCHRONIZATION_2_EXTENSION_NAME),
-                                         HasSubstr(VK_KHR_MAINTENANCE_4_EXTENSION_NAME)));
+  EXPECT_THAT(create(), Fails(DERMIS_ERROR_UNSUPPORTED, VK_KHR_SYNCHRONIZATION_2_EXTENSION_NAME,
+                              VK_KHR_MAINTENANCE_4_EXTENSION_NAME));
   lack.extensions = {VK_KHR_SYNCHRONIZATION_2_EXTENSION_NAME};
-  EXPECT_EQ(create(), DERMIS_ERROR_UNSUPPORTED);
-  EXPECT_THAT(dermis_last_error(), AllOf(HasSubstr(VK_KHR_MAINTENANCE_4_EXTENSION_NAME),
-                                         Not(HasSubstr(VK_KHR_SYNCHRONIZATION_2_EXTENSION_NAME))));
+  EXPECT_THAT(create(), Fails(DERMIS_ERROR_UNSUPPORTED, VK_KHR_MAINTENANCE_4_EXTENSION_NAME,
+                              Not(HasSubstr(VK_KHR_SYNCHRONIZATION_2_EXTENSION_NAME))));
   lack.enumeration = VK_ERROR_OUT_OF_HOST_MEMORY;
   EXPECT_EQ(create(), DERMIS_ERROR_UNSUPPORTED) << "unqueryable features count as missing";
   lack.enumeration = VK_SUCCESS;
@@ -146,11 +134,10 @@ TEST_F(PoorDevice, Vulkan12_NeedsTwoExtensions) {
 TEST_F(PoorDevice, NoFeatureQuery_EverythingIsMissing) {
   for (const char* function : {"vkGetPhysicalDeviceProperties", "vkGetPhysicalDeviceFeatures2"}) {
     lack.function = function;
-    EXPECT_EQ(create(), DERMIS_ERROR_UNSUPPORTED) << function;
-    EXPECT_THAT(dermis_last_error(), HasSubstr("synchronization2"));
+    EXPECT_THAT(create(), Fails(DERMIS_ERROR_UNSUPPORTED, "synchronization2")) << function;
   }
   lack.function = "vkEnumerateDeviceExtensionProperties";
-  EXPECT_EQ(create(), DERMIS_OK) << "Vulkan 1.3 has all that is needed: " << dermis_last_error();
+  EXPECT_OK(create()) << "Vulkan 1.3 has all that is needed: ";
 }
 
 #define DERMIS_NAME(name) #name,
@@ -164,16 +151,14 @@ TEST_F(PoorDevice, MissingFunction_IsNamed) {
     if (std::string_view(name) == "vkGetPhysicalDeviceProperties")
       continue; // Without this function no feature is queried, as above.
     lack.function = name;
-    EXPECT_EQ(create(), DERMIS_ERROR_UNSUPPORTED) << name;
-    EXPECT_THAT(dermis_last_error(), HasSubstr(name));
+    EXPECT_THAT(create(), Fails(DERMIS_ERROR_UNSUPPORTED, name)) << name;
   }
   for (const char* name : device_functions) {
     lack.function = name;
-    EXPECT_EQ(create(), DERMIS_ERROR_UNSUPPORTED) << name;
-    EXPECT_THAT(dermis_last_error(), AllOf(HasSubstr("1 required function:"), HasSubstr(name)));
+    EXPECT_THAT(create(), Fails(DERMIS_ERROR_UNSUPPORTED, "1 required function:", name)) << name;
     lack.function = "";
     lack.renamed = name;
-    EXPECT_EQ(create(), DERMIS_OK) << name << " of an extension: " << dermis_last_error();
+    EXPECT_OK(create()) << name << " of an extension: ";
     host.destroy();
     lack.renamed = "";
   }
@@ -184,58 +169,51 @@ TEST_F(PoorDevice, OlderInstance_IsNamedAsTheCause) {
     for (const bool features_unknown : {false, true}) {
       lack.instance_version = version;
       lack.features_unknown = features_unknown && version == VK_API_VERSION_1_0;
-      EXPECT_EQ(create(), DERMIS_ERROR_UNSUPPORTED);
-      EXPECT_THAT(dermis_last_error(),
-                  AllOf(HasSubstr("VkApplicationInfo.apiVersion"), HasSubstr("VK_API_VERSION_1_3"),
-                        HasSubstr(VK_KHR_SYNCHRONIZATION_2_EXTENSION_NAME),
-                        HasSubstr(VK_KHR_MAINTENANCE_4_EXTENSION_NAME)));
-      EXPECT_THAT(dermis_last_error(), Not(HasSubstr("physical device lacks")));
-      EXPECT_THAT(dermis_last_error(), Not(HasSubstr("device does not provide")));
+      EXPECT_THAT(create(),
+                  Fails(DERMIS_ERROR_UNSUPPORTED, "VkApplicationInfo.apiVersion", "VK_API_VERSION_1_3",
+                        VK_KHR_SYNCHRONIZATION_2_EXTENSION_NAME, VK_KHR_MAINTENANCE_4_EXTENSION_NAME,
+                        Not(HasSubstr("physical device lacks")), Not(HasSubstr("device does not provide"))));
     }
 }
 
 TEST_F(PoorDevice, OlderInstanceWithExtensions_IsAccepted) {
   lack.instance_version = VK_API_VERSION_1_2;
   lack.extensions_enabled = true;
-  EXPECT_EQ(create(), DERMIS_OK) << dermis_last_error();
+  EXPECT_OK(create());
 }
 
 TEST_F(PoorDevice, Instance11WithExtensions_IsNamedAsTheCause) {
   for (const uint32_t version : {VK_API_VERSION_1_0, VK_API_VERSION_1_1}) {
     lack.instance_version = version;
     lack.extensions_enabled = true;
-    EXPECT_EQ(create(), DERMIS_ERROR_UNSUPPORTED);
-    EXPECT_THAT(dermis_last_error(), AllOf(HasSubstr("VkApplicationInfo.apiVersion"),
-                                           HasSubstr("VK_API_VERSION_1_2"), Not(HasSubstr("device lacks"))));
+    EXPECT_THAT(create(), Fails(DERMIS_ERROR_UNSUPPORTED, "VkApplicationInfo.apiVersion",
+                                "VK_API_VERSION_1_2", Not(HasSubstr("device lacks"))));
   }
 }
 
 TEST_F(PoorDevice, Vulkan12WithoutEnabledExtension_NamesIt) {
   lack.api_version = lack.instance_version = VK_API_VERSION_1_2;
   lack.extensions = {VK_KHR_SYNCHRONIZATION_2_EXTENSION_NAME, VK_KHR_MAINTENANCE_4_EXTENSION_NAME};
-  EXPECT_EQ(create(), DERMIS_ERROR_UNSUPPORTED);
-  EXPECT_THAT(dermis_last_error(),
-              AllOf(HasSubstr("ppEnabledExtensionNames"), HasSubstr(VK_KHR_SYNCHRONIZATION_2_EXTENSION_NAME),
-                    HasSubstr(VK_KHR_MAINTENANCE_4_EXTENSION_NAME), Not(HasSubstr("apiVersion"))));
+  EXPECT_THAT(create(), Fails(DERMIS_ERROR_UNSUPPORTED, "ppEnabledExtensionNames",
+                              VK_KHR_SYNCHRONIZATION_2_EXTENSION_NAME, VK_KHR_MAINTENANCE_4_EXTENSION_NAME,
+                              Not(HasSubstr("apiVersion"))));
 }
 
 TEST_F(PoorDevice, MissingLabels_AreAnErrorOnlyIfRequested) {
   for (const char* name : label_functions) {
     lack.function = name;
-    EXPECT_EQ(create(), DERMIS_OK) << dermis_last_error();
+    EXPECT_OK(create());
     host.destroy();
     dermis_context_desc desc = host.context_desc();
     desc.get_instance_proc_addr = less;
     desc.flags |= DERMIS_CONTEXT_LABELS;
-    EXPECT_EQ(host.make_context(desc), DERMIS_ERROR_UNSUPPORTED) << name;
-    EXPECT_THAT(dermis_last_error(), HasSubstr(name));
+    EXPECT_THAT(host.make_context(desc), Fails(DERMIS_ERROR_UNSUPPORTED, name)) << name;
   }
 }
 
 TEST_F(PoorDevice, QueueWithoutCompute_IsRejected) {
   lack.queue_flags = VK_QUEUE_GRAPHICS_BIT;
-  EXPECT_EQ(create(), DERMIS_ERROR_ARGUMENT);
-  EXPECT_THAT(dermis_last_error(), HasSubstr("queue family 0 does not support compute"));
+  EXPECT_THAT(create(), Fails(DERMIS_ERROR_ARGUMENT, "queue family 0 does not support compute"));
   EXPECT_EQ(host.context, nullptr);
 }
 
@@ -280,10 +258,10 @@ TEST(VulkanResults, MapToTheDocumentedResults) {
   };
   for (const Case& one : cases) {
     NullHost host;
-    ASSERT_EQ(host.make_context(host.context_desc()), DERMIS_OK);
+    ASSERT_OK(host.make_context(host.context_desc()));
     host.device.fail_creation(3, one.given);
     EXPECT_EQ(host.make_graph(), one.expected) << one.said;
-    EXPECT_THAT(dermis_last_error(), AllOf(HasSubstr(one.said), HasSubstr("failed ("))) << one.said;
+    EXPECT_THAT(dermis_last_error(), HasAll(one.said, "failed (")) << one.said;
     EXPECT_EQ(host.device.alive(), 0u) << one.said;
     EXPECT_EQ(host.graph, nullptr);
   }
@@ -291,21 +269,16 @@ TEST(VulkanResults, MapToTheDocumentedResults) {
 
 TEST(VulkanResults, FailedViewCreation_FrameCanBeRecordedAgain) {
   NullHost host;
-  ASSERT_EQ(host.make_context(host.context_desc()), DERMIS_OK);
-  ASSERT_EQ(host.make_graph(), DERMIS_OK);
-  host.make_bindings();
+  ASSERT_OK(host.start());
   host.give_up_views();
   for (uint64_t nth = 1; nth <= 2; ++nth) {
     host.device.fail_creation(nth, VK_ERROR_OUT_OF_DEVICE_MEMORY);
-    EXPECT_EQ(host.record(), DERMIS_ERROR_DEVICE_MEMORY);
-    EXPECT_THAT(dermis_last_error(), AllOf(HasSubstr("vkCreateImageView"), HasSubstr("bindings[")));
+    EXPECT_THAT(host.record(), Fails(DERMIS_ERROR_DEVICE_MEMORY, "vkCreateImageView", "bindings["));
     host.device.fail_creation(0, VK_SUCCESS);
   }
-  EXPECT_EQ(host.record(), DERMIS_OK) << dermis_last_error();
+  EXPECT_OK(host.record());
   NullHost lost;
-  ASSERT_EQ(lost.make_context(lost.context_desc()), DERMIS_OK);
-  ASSERT_EQ(lost.make_graph(), DERMIS_OK);
-  lost.make_bindings();
+  ASSERT_OK(lost.start());
   lost.give_up_views();
   lost.device.fail_creation(1, VK_ERROR_DEVICE_LOST);
   EXPECT_EQ(lost.record(), DERMIS_ERROR_DEVICE_LOST);
@@ -355,7 +328,7 @@ TEST(HostsDeviceMemory, UnusableBlock_IsRejectedAndFreed) {
       NullHost host;
       dermis_context_desc desc = host.context_desc();
       desc.device_allocator = &allocator;
-      ASSERT_EQ(host.make_context(desc), DERMIS_OK) << dermis_last_error();
+      ASSERT_OK(host.make_context(desc));
       const dermis_result result = host.make_graph();
       if (result == DERMIS_ERROR_VULKAN) {
         ++refusals;
@@ -363,7 +336,7 @@ TEST(HostsDeviceMemory, UnusableBlock_IsRejectedAndFreed) {
         // A block without memory is not freed.
         EXPECT_EQ(blocks.alive, fault == BadBlocks::Fault::no_memory ? 1u : 0u) << nth;
       } else {
-        EXPECT_EQ(result, DERMIS_OK) << dermis_last_error();
+        EXPECT_OK(result);
         host.destroy();
         EXPECT_EQ(blocks.alive, 0u) << nth;
       }
@@ -378,11 +351,10 @@ TEST(HostsDeviceMemory, HalfAnAllocatorIsRejected) {
   dermis_context_desc desc = host.context_desc();
   dermis_device_allocator allocator = DERMIS_DEVICE_ALLOCATOR_INIT;
   desc.device_allocator = &allocator;
-  EXPECT_EQ(host.make_context(desc), DERMIS_ERROR_ARGUMENT);
-  EXPECT_THAT(dermis_last_error(), HasSubstr("desc.device_allocator.allocate is NULL"));
+  EXPECT_THAT(host.make_context(desc),
+              Fails(DERMIS_ERROR_ARGUMENT, "desc.device_allocator.allocate is NULL"));
   allocator.allocate = BadBlocks::take;
-  EXPECT_EQ(host.make_context(desc), DERMIS_ERROR_ARGUMENT);
-  EXPECT_THAT(dermis_last_error(), HasSubstr("desc.device_allocator.free is NULL"));
+  EXPECT_THAT(host.make_context(desc), Fails(DERMIS_ERROR_ARGUMENT, "desc.device_allocator.free is NULL"));
 }
 
 } // namespace

@@ -6,16 +6,11 @@
 #include "tests/integration/abi/sources.hpp"
 #include "tests/integration/embedding/null_host.hpp"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <functional>
 
 namespace dermis::abi_test {
 namespace {
-
-using testing::HasSubstr;
 
 // A complete description and its arrays.
 struct Description {
@@ -52,9 +47,7 @@ struct Description {
 
 struct Fields : ::testing::Test {
   NullHost host;
-  void SetUp() override {
-    ASSERT_EQ(host.make_context(host.context_desc()), DERMIS_OK) << dermis_last_error();
-  }
+  void SetUp() override { ASSERT_OK(host.make_context(host.context_desc())); }
 };
 
 TEST_F(Fields, OfAGraph_WrongOnesAreNamed) {
@@ -87,18 +80,18 @@ TEST_F(Fields, OfAGraph_WrongOnesAreNamed) {
     Description wrong;
     change(wrong);
     auto made = reinterpret_cast<dermis_graph>(uintptr_t{8});
-    EXPECT_EQ(dermis_graph_create(host.context, &wrong.desc, &made, nullptr), DERMIS_ERROR_ARGUMENT) << said;
-    EXPECT_THAT(dermis_last_error(), HasSubstr(said));
+    EXPECT_THAT(dermis_graph_create(host.context, &wrong.desc, &made, nullptr),
+                Fails(DERMIS_ERROR_ARGUMENT, said))
+        << said;
     EXPECT_EQ(made, nullptr) << said;
     EXPECT_EQ(host.device.alive(), 0u) << said;
   }
   const Description right;
-  EXPECT_EQ(dermis_graph_create(host.context, &right.desc, &host.graph, nullptr), DERMIS_OK)
-      << dermis_last_error();
-  EXPECT_EQ(dermis_graph_create(host.context, nullptr, &host.graph, nullptr), DERMIS_ERROR_ARGUMENT);
-  EXPECT_THAT(dermis_last_error(), HasSubstr("desc is NULL"));
-  EXPECT_EQ(dermis_graph_create(host.context, &right.desc, nullptr, nullptr), DERMIS_ERROR_ARGUMENT);
-  EXPECT_THAT(dermis_last_error(), HasSubstr("graph is NULL"));
+  EXPECT_OK(dermis_graph_create(host.context, &right.desc, &host.graph, nullptr));
+  EXPECT_THAT(dermis_graph_create(host.context, nullptr, &host.graph, nullptr),
+              Fails(DERMIS_ERROR_ARGUMENT, "desc is NULL"));
+  EXPECT_THAT(dermis_graph_create(host.context, &right.desc, nullptr, nullptr),
+              Fails(DERMIS_ERROR_ARGUMENT, "graph is NULL"));
 }
 
 // Sources without a name are named by their role.
@@ -125,10 +118,9 @@ TEST_F(Fields, OfTexts_WrongOnesAreReportedWithTheirPlace) {
 }
 
 TEST_F(Fields, OfCallsOnAGraph_NullOnesAreNamed) {
-  ASSERT_EQ(host.make_graph(), DERMIS_OK) << dermis_last_error();
+  ASSERT_OK(host.make_graph());
   const auto rejected = [](dermis_result result, const char* said) {
-    EXPECT_EQ(result, DERMIS_ERROR_ARGUMENT) << said;
-    EXPECT_THAT(dermis_last_error(), HasSubstr(said));
+    EXPECT_THAT(result, Fails(DERMIS_ERROR_ARGUMENT, said)) << said;
   };
   rejected(dermis_graph_reload(host.graph, nullptr, nullptr), "dermis_graph_reload: desc is NULL");
   dermis_graph_desc empty = DERMIS_GRAPH_DESC_INIT;
@@ -164,7 +156,7 @@ TEST_F(Fields, OfCallsOnAGraph_NullOnesAreNamed) {
 }
 
 TEST_F(Fields, OfABudget_WrongTablesChangeNothing) {
-  ASSERT_EQ(host.make_graph(), DERMIS_OK) << dermis_last_error();
+  ASSERT_OK(host.make_graph());
   const std::string broken = "{ \"dermis_errors\": 2, }";
   const dermis_source bad = source_of(broken, nullptr);
   const dermis_source empty = DERMIS_SOURCE_INIT;
@@ -173,11 +165,11 @@ TEST_F(Fields, OfABudget_WrongTablesChangeNothing) {
     dermis_budget budget = DERMIS_BUDGET_INIT;
     budget.milliseconds = 1;
     budget.*table = &empty;
-    EXPECT_EQ(dermis_graph_set_budget(host.graph, &budget, nullptr), DERMIS_ERROR_ARGUMENT);
-    EXPECT_THAT(dermis_last_error(), HasSubstr("dermis_graph_set_budget: " + name + ".text is NULL"));
+    EXPECT_THAT(dermis_graph_set_budget(host.graph, &budget, nullptr),
+                Fails(DERMIS_ERROR_ARGUMENT, "dermis_graph_set_budget: " + name + ".text is NULL"));
     budget.*table = &bad;
-    EXPECT_EQ(dermis_graph_set_budget(host.graph, &budget, nullptr), DERMIS_ERROR_CONFIG);
-    EXPECT_THAT(dermis_last_error(), HasSubstr(name + ":1:"));
+    EXPECT_THAT(dermis_graph_set_budget(host.graph, &budget, nullptr),
+                Fails(DERMIS_ERROR_CONFIG, name + ":1:"));
   }
 }
 
@@ -188,12 +180,9 @@ TEST_F(Fields, OfSettings_OnlyTypeAndRangeAreAccepted) {
                   "share": { "real": 0.5, "min": 0, "max": 1 },
                   "how": { "enum": ["fast", "good"], "default": "fast" } },
     "imports": { "light": { "format": "rgba16f", "size": "view" } }, "passes": [], "exports": ["light"] })";
-  dermis_graph_desc desc = DERMIS_GRAPH_DESC_INIT;
-  desc.source = source_of(text, "settings.json");
-  desc.width = desc.height = 16;
+  dermis_graph_desc desc = graph_desc(text, "settings.json", 16);
   dermis_report report = nullptr;
-  ASSERT_EQ(dermis_graph_create(host.context, &desc, &host.graph, &report), DERMIS_OK)
-      << dermis_report_text(report);
+  ASSERT_OK(dermis_graph_create(host.context, &desc, &host.graph, &report)) << dermis_report_text(report);
   dermis_report_destroy(report);
   struct Case {
     const char *name, *json, *said; // `said` is null if the value is accepted.
@@ -223,8 +212,8 @@ TEST_F(Fields, OfSettings_OnlyTypeAndRangeAreAccepted) {
       EXPECT_THAT(dermis_last_error(), HasSubstr(one.said));
     }
   }
-  EXPECT_EQ(dermis_graph_set_setting(host.graph, "hwo", "1", nullptr), DERMIS_ERROR_ARGUMENT);
-  EXPECT_THAT(dermis_last_error(), HasSubstr("it has 'on', 'count', 'share', 'how'"));
+  EXPECT_THAT(dermis_graph_set_setting(host.graph, "hwo", "1", nullptr),
+              Fails(DERMIS_ERROR_ARGUMENT, "it has 'on', 'count', 'share', 'how'"));
 }
 
 } // namespace

@@ -2,13 +2,8 @@
 
 #include "tests/integration/embedding/recorded_frame.hpp"
 
-#include <gmock/gmock.h>
-
 namespace dermis::abi_test {
 namespace {
-
-using testing::AllOf;
-using testing::HasSubstr;
 
 struct SharedImages : RecordedFrame {
   dermis_frame frame = DERMIS_FRAME_INIT;
@@ -23,7 +18,7 @@ struct SharedImages : RecordedFrame {
   dermis_image_binding& slot(std::string_view name) {
     uint32_t count = 64;
     std::vector<dermis_slot> slots(count, dermis_slot DERMIS_SLOT_INIT);
-    EXPECT_EQ(dermis_graph_slots(host.graph, &count, slots.data()), DERMIS_OK);
+    EXPECT_OK(dermis_graph_slots(host.graph, &count, slots.data()));
     for (uint32_t i = 0; i < count; ++i)
       if (slots[i].name == name)
         for (dermis_image_binding& binding : bindings)
@@ -32,11 +27,11 @@ struct SharedImages : RecordedFrame {
     return bindings.front();
   }
   void rejected(const char* a, const char* b) {
-    EXPECT_EQ(dermis_view_record(dermis_graph_view(host.graph), &frame), DERMIS_ERROR_ARGUMENT);
-    EXPECT_THAT(dermis_last_error(), AllOf(HasSubstr(a), HasSubstr(b), HasSubstr("bound to the same")));
+    EXPECT_THAT(dermis_view_record(dermis_graph_view(host.graph), &frame),
+                Fails(DERMIS_ERROR_ARGUMENT, a, b, "bound to the same"));
   }
   void recorded() {
-    EXPECT_EQ(dermis_view_record(dermis_graph_view(host.graph), &frame), DERMIS_OK) << dermis_last_error();
+    EXPECT_OK(dermis_view_record(dermis_graph_view(host.graph), &frame));
     ++frame.frame_index;
     ++frame.completed_frame_index;
   }

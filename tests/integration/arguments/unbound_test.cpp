@@ -4,19 +4,12 @@
 #include "tests/integration/embedding/null_host.hpp"
 #include "tests/support/shipped_graphs.hpp"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <cstring>
 #include <filesystem>
 #include <set>
 
 namespace dermis::abi_test {
 namespace {
-
-using testing::AllOf;
-using testing::HasSubstr;
-using testing::Not;
 
 struct Message {
   dermis_severity severity;
@@ -65,18 +58,14 @@ struct UnboundNames : ::testing::Test {
     desc.get_instance_proc_addr = load_with_rays;
     desc.log = log;
     desc.log_user = this;
-    ASSERT_EQ(host.make_context(desc), DERMIS_OK) << dermis_last_error();
+    ASSERT_OK(host.make_context(desc));
   }
   dermis_graph create(const std::string& path, const std::vector<const char*>& unbound,
                       const std::vector<dermis_slot_format>& formats = {}) {
     logged.clear();
-    const std::string text = read_text(path), skin = read_text("configs/profiles/skin.json");
-    dermis_profile profile = DERMIS_PROFILE_INIT;
-    profile.id = 1;
-    profile.source = source_of(skin, "skin.json");
-    dermis_graph_desc desc = DERMIS_GRAPH_DESC_INIT;
-    desc.source = source_of(text, path.c_str());
-    desc.width = desc.height = 64;
+    const std::string text = read_text(path);
+    dermis_profile profile = skin_profile();
+    dermis_graph_desc desc = graph_desc(text, path.c_str(), 64);
     desc.profiles = &profile;
     desc.profile_count = 1;
     desc.unbound = unbound.data();
@@ -84,8 +73,7 @@ struct UnboundNames : ::testing::Test {
     desc.formats = formats.data();
     desc.format_count = static_cast<uint32_t>(formats.size());
     dermis_graph graph = nullptr;
-    EXPECT_EQ(dermis_graph_create(host.context, &desc, &graph, nullptr), DERMIS_OK)
-        << path << ": " << dermis_last_error();
+    EXPECT_OK(dermis_graph_create(host.context, &desc, &graph, nullptr)) << path;
     return graph;
   }
   std::vector<Message> about_slots() const {
@@ -121,21 +109,17 @@ TEST_F(UnboundNames, OneListForShippedGraphs_GivesNoWarning) {
 }
 
 TEST_F(UnboundNames, NamesWithoutSlot_AreOneNote) {
-  dermis_slot_format format = DERMIS_SLOT_FORMAT_INIT;
-  format.name = "importance";
-  format.format = VK_FORMAT_R8_UNORM;
+  dermis_slot_format format = slot_format("importance", VK_FORMAT_R8_UNORM);
   host.graph = create("configs/graphs/burley.json", {"albedo", "velocity", "sampling"}, {format});
   const std::vector<Message> said = about_slots();
   ASSERT_EQ(said.size(), 1u);
   EXPECT_EQ(said[0].severity, DERMIS_SEVERITY_NOTE);
-  EXPECT_THAT(said[0].text, AllOf(HasSubstr("'velocity'"), HasSubstr("'sampling'"), HasSubstr("'importance'"),
-                                  HasSubstr("'burley'"), HasSubstr("'lighting'"), HasSubstr("'albedo'")));
+  EXPECT_THAT(said[0].text,
+              HasAll("'velocity'", "'sampling'", "'importance'", "'burley'", "'lighting'", "'albedo'"));
 }
 
 TEST_F(UnboundNames, Misspelt_IsAWarningWithASuggestion) {
-  dermis_slot_format format = DERMIS_SLOT_FORMAT_INIT;
-  format.name = "Depth";
-  format.format = VK_FORMAT_R32_SFLOAT;
+  dermis_slot_format format = slot_format("Depth", VK_FORMAT_R32_SFLOAT);
   host.graph = create("configs/graphs/burley.json", {"albdo", "velocity"}, {format});
   std::string warnings;
   for (const Message& message : about_slots())

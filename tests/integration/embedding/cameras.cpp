@@ -15,7 +15,7 @@ GraphOptions CameraTest::accumulating() const {
 dermis_graph CameraTest::make_accumulating() {
   const dermis_graph graph = make_graph(accumulating());
   if (graph != nullptr) {
-    EXPECT_EQ(dermis_graph_set_setting(graph, "accumulate_clip", "0", nullptr), DERMIS_OK);
+    EXPECT_OK(dermis_graph_set_setting(graph, "accumulate_clip", "0", nullptr));
   }
   return graph;
 }

@@ -61,7 +61,7 @@ struct Commands : CameraTest {
       frame.command_buffer = into;
       const dermis_result result = view != nullptr ? dermis_view_record(view, &frame)
                                                    : dermis_view_record(dermis_graph_view(graph), &frame);
-      ASSERT_EQ(result, DERMIS_OK) << dermis_last_error();
+      ASSERT_OK(result);
       return;
     }
     uint32_t count = 0;
@@ -69,7 +69,7 @@ struct Commands : CameraTest {
     const dermis_result result = view != nullptr
                                      ? dermis_view_commands(view, &frame, &count, &list)
                                      : dermis_view_commands(dermis_graph_view(graph), &frame, &count, &list);
-    ASSERT_EQ(result, DERMIS_OK) << dermis_last_error();
+    ASSERT_OK(result);
     ASSERT_GT(count, 0u);
     for (uint32_t i = 0; i < count; ++i) {
       ASSERT_EQ(list[i].struct_size, sizeof(dermis_command));
@@ -84,23 +84,21 @@ struct Commands : CameraTest {
   std::vector<std::vector<float>> run(const GraphOptions& options) {
     const dermis_graph graph = make_graph(options);
     if (graph == nullptr) return {};
-    dermis_view view = nullptr;
-    EXPECT_EQ(dermis_view_create(graph, nullptr, &view, nullptr), DERMIS_OK) << dermis_last_error();
+    dermis_view view = view_of(graph);
     const Camera first = make_camera(graph, 1), second = make_camera(graph, 2);
     const std::string text = options.text.empty() ? read_text("configs/graphs/burley.json") : options.text;
     wait();
     for (uint64_t index = 1; index <= 8; ++index) {
-      const dermis_source source = source_of(text, "graph.json");
       if (index == 3) {
-        EXPECT_EQ(reload_text(graph, source), DERMIS_OK) << dermis_last_error();
+        EXPECT_OK(reload_text(graph, source_of(text, "graph.json")));
       }
       if (index == 5) {
-        EXPECT_EQ(dermis_graph_resize(graph, side - 7, side - 1, nullptr), DERMIS_OK) << dermis_last_error();
+        EXPECT_OK(dermis_graph_resize(graph, side - 7, side - 1, nullptr));
       }
       dermis_budget budget = DERMIS_BUDGET_INIT;
       budget.flags = DERMIS_BUDGET_DETERMINISTIC;
       budget.milliseconds = index >= 7 ? 0.001f : 0; // The cheapest configuration.
-      EXPECT_EQ(dermis_graph_set_budget(graph, &budget, nullptr), DERMIS_OK);
+      EXPECT_OK(dermis_graph_set_budget(graph, &budget, nullptr));
       submit(++submitted, [&](VkCommandBuffer into) {
         record(graph, nullptr, frame_of(first, index), into);
         record(graph, view, frame_of(second, index), into);
@@ -142,16 +140,14 @@ TEST_F(Commands, CanBeDiscardedLikeAFrame) {
   const dermis_frame frame = frame_of(camera, 1);
   uint32_t count = 0;
   const dermis_command* list = nullptr;
-  ASSERT_EQ(dermis_view_commands(dermis_graph_view(graph), &frame, &count, &list), DERMIS_OK)
-      << dermis_last_error();
+  ASSERT_OK(dermis_view_commands(dermis_graph_view(graph), &frame, &count, &list));
   EXPECT_EQ(dermis_view_commands(dermis_graph_view(graph), &frame, &count, &list), DERMIS_ERROR_ARGUMENT)
       << "it counts as recorded";
   EXPECT_EQ(count, 0u);
   EXPECT_EQ(list, nullptr);
-  ASSERT_EQ(dermis_view_discard(dermis_graph_view(graph), 1), DERMIS_OK) << dermis_last_error();
-  ASSERT_EQ(dermis_view_commands(dermis_graph_view(graph), &frame, &count, &list), DERMIS_OK)
-      << dermis_last_error();
-  ASSERT_EQ(dermis_view_discard(dermis_graph_view(graph), 1), DERMIS_OK);
+  ASSERT_OK(dermis_view_discard(dermis_graph_view(graph), 1));
+  ASSERT_OK(dermis_view_commands(dermis_graph_view(graph), &frame, &count, &list));
+  ASSERT_OK(dermis_view_discard(dermis_graph_view(graph), 1));
 }
 
 void DERMIS_CALL never(void*, const dermis_pass_call*) {
@@ -159,41 +155,23 @@ void DERMIS_CALL never(void*, const dermis_pass_call*) {
 }
 
 TEST_F(Commands, NameTheHostPassesToRecord) {
-  dermis_port ports[2] = {DERMIS_PORT_INIT, DERMIS_PORT_INIT};
-  ports[0].name = "light";
-  ports[1].name = "out";
-  ports[1].usage = DERMIS_PORT_STORAGE_IMAGE_WRITE;
-  dermis_pass_setting level = DERMIS_PASS_SETTING_INIT;
-  level.name = "level";
-  level.type = DERMIS_PASS_SETTING_REAL;
-  level.default_value = 0.25;
-  level.maximum = 1;
-  dermis_pass_type type = DERMIS_PASS_TYPE_INIT;
-  type.name = "test.tone";
-  type.ports = ports;
-  type.port_count = 2;
+  const dermis_port ports[] = {port_of("light"), port_of("out", DERMIS_PORT_STORAGE_IMAGE_WRITE)};
+  const dermis_pass_setting level = real_setting("level", 1, 0.25);
+  dermis_pass_type type = pass_type_of("test.tone", ports, never);
   type.settings = &level;
   type.setting_count = 1;
-  type.record = never;
-  ASSERT_EQ(dermis_register_pass_type(context, &type), DERMIS_OK) << dermis_last_error();
-  GraphOptions options;
-  options.width = options.height = side;
-  options.text = R"({ "dermis": 2, "name": "toned",
+  ASSERT_OK(dermis_register_pass_type(context, &type));
+  GraphOptions options = own_graph(R"({ "dermis": 2, "name": "toned",
     "imports": { "lighting": { "format": "rgba16f", "size": "view" } },
     "resources": { "toned": { "format": "rgba16f", "size": "view" } },
     "passes": [ { "pass": "tone", "type": "test.tone", "read": { "light": "lighting" }, "write": { "out": "toned" } } ],
-    "exports": ["toned"] })";
-  options.unbound.clear();
-  options.formats.clear();
-  const dermis_graph graph = make_graph(options);
-  ASSERT_NE(graph, nullptr);
-  make_images(graph);
-  const auto bound = bindings(graph);
-  dermis_frame frame = this->frame(bound, side, side);
+    "exports": ["toned"] })");
+  options.width = options.height = side;
+  const dermis_graph graph = make_bound_graph(options);
+  dermis_frame frame = bound_frame(graph, side, side);
   uint32_t count = 0;
   const dermis_command* list = nullptr;
-  ASSERT_EQ(dermis_view_commands(dermis_graph_view(graph), &frame, &count, &list), DERMIS_OK)
-      << dermis_last_error();
+  ASSERT_OK(dermis_view_commands(dermis_graph_view(graph), &frame, &count, &list));
   uint32_t calls = 0;
   for (uint32_t i = 0; i < count; ++i)
     if (list[i].type == DERMIS_COMMAND_HOST_PASS) {
@@ -210,7 +188,7 @@ TEST_F(Commands, NameTheHostPassesToRecord) {
       EXPECT_EQ(call.frame_index, frame.frame_index);
     }
   EXPECT_EQ(calls, 1u);
-  ASSERT_EQ(dermis_view_discard(dermis_graph_view(graph), frame.frame_index), DERMIS_OK);
+  ASSERT_OK(dermis_view_discard(dermis_graph_view(graph), frame.frame_index));
 }
 
 TEST_F(Commands, WrongArgumentsAreNamed) {
@@ -220,8 +198,7 @@ TEST_F(Commands, WrongArgumentsAreNamed) {
   uint32_t count = 0;
   const dermis_command* list = nullptr;
   const auto expect = [](dermis_result result, const char* named) {
-    EXPECT_EQ(result, DERMIS_ERROR_ARGUMENT);
-    EXPECT_THAT(dermis_last_error(), testing::HasSubstr(named));
+    EXPECT_THAT(result, Fails(DERMIS_ERROR_ARGUMENT, named));
   };
   expect(dermis_view_commands(dermis_graph_view(nullptr), &frame, &count, &list), "view is NULL");
   expect(dermis_view_commands(dermis_graph_view(graph), nullptr, &count, &list), "frame is NULL");

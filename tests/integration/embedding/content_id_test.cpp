@@ -13,7 +13,7 @@ struct ContentId : CameraTest {
     submit(++submitted, [&](VkCommandBuffer into) {
       dermis_frame frame = frame_of(camera, index);
       frame.command_buffer = into;
-      ASSERT_EQ(dermis_view_record(dermis_graph_view(graph), &frame), DERMIS_OK) << dermis_last_error();
+      ASSERT_OK(dermis_view_record(dermis_graph_view(graph), &frame));
     });
   }
   static void give_up_views(Camera& camera, uint64_t first_id) {
@@ -53,7 +53,7 @@ TEST_F(ContentId, DistinguishesImagesWithEqualHandles) {
     frame.flags |= DERMIS_FRAME_RESET_HISTORY;
     submit(++submitted, [&](VkCommandBuffer into) {
       frame.command_buffer = into;
-      ASSERT_EQ(dermis_view_record(dermis_graph_view(graph), &frame), DERMIS_OK) << dermis_last_error();
+      ASSERT_OK(dermis_view_record(dermis_graph_view(graph), &frame));
     });
     EXPECT_FALSE(before == light_of(camera)) << "the graph wrote this image";
   }
@@ -72,17 +72,14 @@ TEST_F(ContentId, TooManyImages_AreRejectedOnlyWhileInUse) {
 
 TEST(ContentIdOnTheNullDevice, CreatesAViewOnceAndDestroysIt) {
   NullHost host;
-  ASSERT_EQ(host.make_context(host.context_desc()), DERMIS_OK);
-  ASSERT_EQ(host.make_graph(), DERMIS_OK);
-  host.make_bindings();
+  ASSERT_OK(host.start());
   host.give_up_views();
   host.device.fail_creation(1, VK_ERROR_OUT_OF_DEVICE_MEMORY);
-  EXPECT_EQ(host.record(), DERMIS_ERROR_DEVICE_MEMORY);
-  EXPECT_THAT(dermis_last_error(), testing::HasSubstr("vkCreateImageView"));
-  ASSERT_EQ(host.record(), DERMIS_OK) << dermis_last_error();
+  EXPECT_THAT(host.record(), Fails(DERMIS_ERROR_DEVICE_MEMORY, "vkCreateImageView"));
+  ASSERT_OK(host.record());
   const uint64_t creations = host.device.creations();
   for (int i = 0; i < 5; ++i)
-    ASSERT_EQ(host.record(), DERMIS_OK);
+    ASSERT_OK(host.record());
   EXPECT_EQ(host.device.creations(), creations);
 }
 

@@ -106,7 +106,7 @@ struct DeviceMemory : CameraTest {
     dermis_context_desc desc = context_desc();
     desc.frames_in_flight = frames;
     desc.device_allocator = &allocator;
-    ASSERT_EQ(dermis_context_create(&desc, &context), DERMIS_OK) << dermis_last_error();
+    ASSERT_OK(dermis_context_create(&desc, &context));
   }
   void drop_graphs() {
     wait();
@@ -129,7 +129,7 @@ struct DeviceMemory : CameraTest {
       submit(++submitted, [&](VkCommandBuffer into) {
         dermis_frame frame = frame_of(camera, index);
         frame.command_buffer = into;
-        ASSERT_EQ(dermis_view_record(dermis_graph_view(graph), &frame), DERMIS_OK) << dermis_last_error();
+        ASSERT_OK(dermis_view_record(dermis_graph_view(graph), &frame));
       });
     return light_of(camera);
   }
@@ -142,8 +142,7 @@ TEST_F(DeviceMemory, HostHeaps_GiveEqualPictures) {
   use_arena();
   EXPECT_TRUE(own == light_after_five_frames());
   EXPECT_GT(arena->taken, 3u);
-  dermis_memory memory = DERMIS_MEMORY_INIT;
-  ASSERT_EQ(dermis_graph_memory(graphs.front(), &memory), DERMIS_OK);
+  const dermis_memory memory = memory_of(graphs.front());
   EXPECT_EQ(arena->alive_bytes[DERMIS_MEMORY_TRANSIENT], memory.transient_bytes);
   EXPECT_GE(arena->alive_bytes[DERMIS_MEMORY_HISTORY], memory.history_bytes);
   EXPECT_GE(arena->alive_bytes[DERMIS_MEMORY_CONSTANTS], memory.constant_bytes);
@@ -168,7 +167,7 @@ TEST_F(DeviceMemory, ViewsCanShareTransientMemory) {
     std::vector<dermis_view> views(cameras);
     std::vector<Camera> seen;
     for (uint32_t c = 0; c < cameras; ++c) {
-      EXPECT_EQ(dermis_view_create(graph, nullptr, &views[c], nullptr), DERMIS_OK) << dermis_last_error();
+      EXPECT_OK(dermis_view_create(graph, nullptr, &views[c], nullptr));
       seen.push_back(make_camera(graph, 11 + c));
     }
     wait();
@@ -178,7 +177,7 @@ TEST_F(DeviceMemory, ViewsCanShareTransientMemory) {
           dermis_frame frame = frame_of(seen[c], index);
           frame.command_buffer = into;
           barrier(into);
-          ASSERT_EQ(dermis_view_record(views[c], &frame), DERMIS_OK) << dermis_last_error();
+          ASSERT_OK(dermis_view_record(views[c], &frame));
         }
       });
     std::vector<std::vector<float>> out;
@@ -187,12 +186,9 @@ TEST_F(DeviceMemory, ViewsCanShareTransientMemory) {
     return out;
   };
   const auto apart = lights();
-  dermis_memory memory = DERMIS_MEMORY_INIT;
-  ASSERT_EQ(dermis_graph_memory(graphs.front(), &memory), DERMIS_OK);
-  uint32_t count = 0;
-  ASSERT_EQ(dermis_graph_heaps(graphs.front(), &count, nullptr), DERMIS_OK);
-  std::vector<dermis_memory_request> heaps(count, dermis_memory_request DERMIS_MEMORY_REQUEST_INIT);
-  ASSERT_EQ(dermis_graph_heaps(graphs.front(), &count, heaps.data()), DERMIS_OK);
+  const dermis_memory memory = memory_of(graphs.front());
+  const auto heaps =
+      list_of(dermis_memory_request DERMIS_MEMORY_REQUEST_INIT, dermis_graph_heaps, graphs.front());
   drop_graphs();
   use_arena();
   for (const dermis_memory_request& heap : heaps)
@@ -206,12 +202,11 @@ TEST_F(DeviceMemory, ViewsCanShareTransientMemory) {
 TEST_F(DeviceMemory, TransientsAndHistories_AreReportedPerBlock) {
   const dermis_graph graph = make_accumulating();
   uint32_t count = 0;
-  ASSERT_EQ(dermis_graph_heaps(graph, &count, nullptr), DERMIS_OK);
+  ASSERT_OK(dermis_graph_heaps(graph, &count, nullptr));
   ASSERT_GE(count, 2u);
   std::vector<dermis_memory_request> heaps(count, dermis_memory_request DERMIS_MEMORY_REQUEST_INIT);
-  ASSERT_EQ(dermis_graph_heaps(graph, &count, heaps.data()), DERMIS_OK);
-  dermis_memory memory = DERMIS_MEMORY_INIT;
-  ASSERT_EQ(dermis_graph_memory(graph, &memory), DERMIS_OK);
+  ASSERT_OK(dermis_graph_heaps(graph, &count, heaps.data()));
+  const dermis_memory memory = memory_of(graph);
   uint64_t transient = 0, history = 0;
   for (const dermis_memory_request& heap : heaps) {
     (heap.purpose == DERMIS_MEMORY_TRANSIENT ? transient : history) += heap.bytes;
@@ -238,7 +233,7 @@ TEST_F(DeviceMemory, HostRejects_IsReportedAndNothingLeaks) {
     if (result == DERMIS_OK) break;
     ASSERT_EQ(result, DERMIS_ERROR_DEVICE_MEMORY) << dermis_last_error();
     ASSERT_EQ(arena->alive, 0u);
-    ASSERT_THAT(dermis_last_error(), testing::HasSubstr("the host's allocator"));
+    ASSERT_THAT(dermis_last_error(), HasSubstr("the host's allocator"));
   }
   EXPECT_GE(refusals, 3u);
   arena->rejected = 0;
@@ -255,10 +250,8 @@ struct FailingNull : ::testing::TestWithParam<Change> {
   uint32_t calls = 0;
 
   void SetUp() override {
-    ASSERT_EQ(host.make_context(host.context_desc()), DERMIS_OK) << dermis_last_error();
-    ASSERT_EQ(host.make_graph(), DERMIS_OK) << dermis_last_error();
-    host.make_bindings();
-    ASSERT_EQ(host.record(), DERMIS_OK) << dermis_last_error();
+    ASSERT_OK(host.start());
+    ASSERT_OK(host.record());
   }
   dermis_result change() {
     switch (GetParam()) {
@@ -287,7 +280,7 @@ TEST_P(FailingNull, EachFailingCallIsReported_TheGraphRunsOn) {
     ASSERT_EQ(result, DERMIS_ERROR_DEVICE_MEMORY) << "call " << refusals + 1;
     ASSERT_EQ(host.device.alive(), alive) << "call " << refusals + 1;
     ASSERT_EQ(host.device.memory_bytes(), bytes) << "call " << refusals + 1;
-    ASSERT_EQ(host.record(), DERMIS_OK) << "call " << refusals + 1;
+    ASSERT_OK(host.record()) << "call " << refusals + 1;
   }
   EXPECT_GT(refusals, 10u);
 }
@@ -329,10 +322,8 @@ INSTANTIATE_TEST_SUITE_P(Changes, FailingNull, testing::Values(Change::reload, C
 TEST(LostDevice, LossInTimestamps_EndsTheContext) {
   for (const bool by_timings : {true, false}) {
     NullHost host;
-    ASSERT_EQ(host.make_context(host.context_desc()), DERMIS_OK);
-    ASSERT_EQ(host.make_graph(), DERMIS_OK);
-    host.make_bindings();
-    ASSERT_EQ(host.record(), DERMIS_OK);
+    ASSERT_OK(host.start());
+    ASSERT_OK(host.record());
     host.device.fail_queries(VK_ERROR_DEVICE_LOST);
     uint32_t count = 64;
     std::vector<dermis_pass_timing> times(count, dermis_pass_timing DERMIS_PASS_TIMING_INIT);
@@ -350,10 +341,10 @@ TEST(LostDevice, LossInTimestamps_EndsTheContext) {
 TEST(TwoContexts, TwoDevices_AreIndependent) {
   NullHost first, second;
   for (NullHost* host : {&first, &second}) {
-    ASSERT_EQ(host->make_context(host->context_desc()), DERMIS_OK);
-    ASSERT_EQ(host->make_graph(), DERMIS_OK);
+    ASSERT_OK(host->make_context(host->context_desc()));
+    ASSERT_OK(host->make_graph());
     host->make_bindings();
-    ASSERT_EQ(host->record(), DERMIS_OK);
+    ASSERT_OK(host->record());
   }
   const uint64_t alive = second.device.alive(), commands = second.device.commands();
   first.device.fail_creation(1, VK_ERROR_DEVICE_LOST);
@@ -362,22 +353,19 @@ TEST(TwoContexts, TwoDevices_AreIndependent) {
   first.destroy();
   EXPECT_EQ(second.device.alive(), alive);
   EXPECT_EQ(second.device.commands(), commands);
-  EXPECT_EQ(second.record(), DERMIS_OK) << "the loss of one device does not affect the other";
+  EXPECT_OK(second.record()) << "the loss of one device does not affect the other";
 }
 
 // ---- Reloads do not accumulate memory
 
 TEST(ManyReloads, ObjectsAndBytesStayConstant) {
   NullHost host;
-  ASSERT_EQ(host.make_context(host.context_desc()), DERMIS_OK);
-  ASSERT_EQ(host.make_graph(), DERMIS_OK);
-  host.make_bindings();
-  dermis_view view = nullptr;
-  ASSERT_EQ(dermis_view_create(host.graph, nullptr, &view, nullptr), DERMIS_OK);
+  ASSERT_OK(host.start());
+  dermis_view view = view_of(host.graph);
   const auto settle = [&] {
     for (int i = 0; i < 4; ++i) {
-      ASSERT_EQ(host.record(), DERMIS_OK);
-      ASSERT_EQ(host.record(view, host.last_frame), DERMIS_OK);
+      ASSERT_OK(host.record());
+      ASSERT_OK(host.record(view, host.last_frame));
     }
   };
   settle();
@@ -385,7 +373,7 @@ TEST(ManyReloads, ObjectsAndBytesStayConstant) {
   for (int i = 0; i < 500; ++i) {
     ASSERT_EQ(host.reload(i % 2 == 0 ? "" : "{ \"dermis\": 2"), i % 2 == 0 ? DERMIS_OK : DERMIS_ERROR_CONFIG);
     if (i % 3 == 0) {
-      ASSERT_EQ(host.record(), DERMIS_OK);
+      ASSERT_OK(host.record());
     }
   }
   settle();

@@ -10,8 +10,6 @@
 namespace dermis::abi_test {
 namespace {
 
-using ::testing::HasSubstr;
-
 // One frame as a host describes it.
 struct Shot {
   std::array<uint32_t, 4> rectangle{}; // x, y, width, height; zeros: all of the images.
@@ -38,10 +36,8 @@ std::string text_of(const demo::ReportedFrame& choice) {
 }
 
 std::string histories_of(dermis_graph graph) {
-  uint32_t count = 0;
-  EXPECT_EQ(dermis_view_histories(dermis_graph_view(graph), &count, nullptr), DERMIS_OK);
-  std::vector<dermis_history> histories(count, dermis_history DERMIS_HISTORY_INIT);
-  EXPECT_EQ(dermis_view_histories(dermis_graph_view(graph), &count, histories.data()), DERMIS_OK);
+  const auto histories =
+      list_of(dermis_history DERMIS_HISTORY_INIT, dermis_view_histories, dermis_graph_view(graph));
   std::ostringstream text;
   for (const dermis_history& one : histories)
     text << one.name << " valid " << one.valid << ", age " << one.age << ", reason " << one.reason << " ("
@@ -53,26 +49,21 @@ struct Discard : DermisTest {
   dermis_graph graph = nullptr;
 
   void make(const char* of = "configs/graphs/skin.json") {
-    GraphOptions options;
-    options.text = read_text(of);
+    GraphOptions options = shipped_options(of);
     options.overlays = {read_text("configs/overlays/accumulate.json")};
-    graph = make_graph(options);
-    ASSERT_NE(graph, nullptr);
-    make_images(graph);
+    graph = make_bound_graph(options);
     last_frame = 0;
     const std::string text = invented_times;
     const dermis_source calibration = source_of(text, "invented");
     dermis_budget budget = DERMIS_BUDGET_INIT;
     budget.flags = DERMIS_BUDGET_DETERMINISTIC;
     budget.calibration = &calibration;
-    ASSERT_EQ(dermis_graph_set_budget(graph, &budget, nullptr), DERMIS_OK) << dermis_last_error();
+    ASSERT_OK(dermis_graph_set_budget(graph, &budget, nullptr));
   }
 
   void set_budget(float ms) {
-    dermis_budget budget = DERMIS_BUDGET_INIT;
-    budget.milliseconds = ms;
-    budget.flags = DERMIS_BUDGET_DETERMINISTIC;
-    ASSERT_EQ(dermis_graph_set_budget(graph, &budget, nullptr), DERMIS_OK) << dermis_last_error();
+    dermis_budget budget = budget_of(ms, DERMIS_BUDGET_DETERMINISTIC);
+    ASSERT_OK(dermis_graph_set_budget(graph, &budget, nullptr));
   }
 
   dermis_frame frame_of(const Shot& shot, const std::vector<dermis_image_binding>& bound) {
@@ -85,10 +76,7 @@ struct Discard : DermisTest {
     one.jitter_y = shot.jitter[1];
     one.delta_seconds = shot.seconds;
     one.flags = shot.flags;
-    for (size_t i = 0; i < 16; ++i) // The camera is at rest.
-      one.view_from_world[i] = one.previous_view_from_world[i] = i % 5 == 0 ? 1.0f : 0.0f;
-    std::copy(std::begin(one.clip_from_view), std::end(one.clip_from_view),
-              std::begin(one.previous_clip_from_view));
+    rest(one);
     return one;
   }
 
@@ -98,10 +86,7 @@ struct Discard : DermisTest {
          [&](uint32_t x, uint32_t y) { return shot.light * float(16 + (x * 7 + y * 3) % 32) / 32; });
     const auto bound = bindings(graph);
     dermis_frame one = frame_of(shot, bound);
-    EXPECT_EQ(record(graph, one), DERMIS_OK) << dermis_last_error();
-    demo::ReportedFrame choice;
-    EXPECT_EQ(demo::read_reported(dermis_graph_view(graph), last_frame, choice), DERMIS_OK)
-        << dermis_last_error();
+    const demo::ReportedFrame choice = record_and_read(graph, one);
     return {texels("lighting"), text_of(choice), histories_of(graph)};
   }
 
@@ -111,12 +96,11 @@ struct Discard : DermisTest {
     dermis_frame one = frame_of(shot, bound);
     const auto ran = demo::run_commands(*host, [&](VkCommandBuffer commands) -> demo::Result<> {
       one.command_buffer = commands;
-      EXPECT_EQ(dermis_view_record(dermis_graph_view(graph), &one), DERMIS_OK) << dermis_last_error();
+      EXPECT_OK(dermis_view_record(dermis_graph_view(graph), &one));
       return demo::Error{demo::ErrorKind::internal, "not to be submitted"};
     });
     EXPECT_FALSE(ran);
-    EXPECT_EQ(dermis_view_discard(dermis_graph_view(graph), one.frame_index), DERMIS_OK)
-        << dermis_last_error();
+    EXPECT_OK(dermis_view_discard(dermis_graph_view(graph), one.frame_index));
   }
 };
 
@@ -148,11 +132,10 @@ TEST_F(Discard, LeavesNoVisibleTrace) {
     std::vector<Seen> seen;
     for (uint32_t i = 0; i < frames; ++i) {
       if (i == 8 || i == 20) {
-        const dermis_source source = source_of(text, "skin.json");
-        EXPECT_EQ(reload_text(graph, source, nullptr), DERMIS_OK) << dermis_last_error();
+        EXPECT_OK(reload_text(graph, source_of(text, "skin.json"), nullptr));
       }
       if (i == 14) {
-        EXPECT_EQ(dermis_graph_resize(graph, 72, 60, nullptr), DERMIS_OK) << dermis_last_error();
+        EXPECT_OK(dermis_graph_resize(graph, 72, 60, nullptr));
         make_images(graph);
       }
       for (uint32_t lost = 0; lossy && lost < 1 + i % 2; ++lost)
@@ -212,17 +195,16 @@ TEST_F(Discard, LeavesNoTimes) {
   const auto bound = bindings(graph);
   dermis_frame next = frame_of({}, bound);
   next.frame_index = 6;
-  ASSERT_EQ(record(graph, next), DERMIS_OK) << dermis_last_error();
+  ASSERT_OK(record(graph, next));
   std::vector<dermis_pass_timing> times(64, dermis_pass_timing DERMIS_PASS_TIMING_INIT);
   auto count = static_cast<uint32_t>(times.size());
   const dermis_result result = dermis_view_timings(dermis_graph_view(graph), 5, &count, times.data());
   EXPECT_TRUE(result == DERMIS_NOT_READY || (result == DERMIS_OK && times[0].frame_index <= 4))
       << result << ": times of frame " << times[0].frame_index << ", which never ran";
   demo::ReportedFrame choice;
-  ASSERT_EQ(demo::read_reported(dermis_graph_view(graph), 5, choice), DERMIS_OK) << dermis_last_error();
+  ASSERT_OK(demo::read_reported(dermis_graph_view(graph), 5, choice));
   EXPECT_EQ(choice.frame_index, 4u);
-  ASSERT_EQ(dermis_view_timings(dermis_graph_view(graph), 6, &count, times.data()), DERMIS_OK)
-      << dermis_last_error();
+  ASSERT_OK(dermis_view_timings(dermis_graph_view(graph), 6, &count, times.data()));
   EXPECT_EQ(times[0].frame_index, 6u);
 }
 
@@ -231,22 +213,20 @@ TEST_F(Discard, LeavesNoTimes) {
 TEST(DiscardOnANullDevice, NextFrameIsStillThePlansFirst) {
   const auto learned = [](bool lossy) {
     NullHost host;
-    EXPECT_EQ(host.make_context(host.context_desc()), DERMIS_OK) << dermis_last_error();
-    EXPECT_EQ(host.make_graph(), DERMIS_OK) << dermis_last_error();
+    EXPECT_OK(host.make_context(host.context_desc()));
+    EXPECT_OK(host.make_graph());
     host.make_bindings();
     if (lossy) {
-      EXPECT_EQ(host.record(), DERMIS_OK) << dermis_last_error();
-      EXPECT_EQ(dermis_view_discard(dermis_graph_view(host.graph), host.last_frame), DERMIS_OK)
-          << dermis_last_error();
+      EXPECT_OK(host.record());
+      EXPECT_OK(dermis_view_discard(dermis_graph_view(host.graph), host.last_frame));
       --host.last_frame;
     }
-    EXPECT_EQ(host.record(), DERMIS_OK) << dermis_last_error();
+    EXPECT_OK(host.record());
     demo::ReportedFrame choice;
-    EXPECT_EQ(demo::read_reported(dermis_graph_view(host.graph), host.last_frame, choice), DERMIS_OK)
-        << dermis_last_error();
+    EXPECT_OK(demo::read_reported(dermis_graph_view(host.graph), host.last_frame, choice));
     std::string text(1 << 16, ' ');
     size_t size = text.size();
-    EXPECT_EQ(dermis_graph_calibration(host.graph, &size, text.data()), DERMIS_OK) << dermis_last_error();
+    EXPECT_OK(dermis_graph_calibration(host.graph, &size, text.data()));
     text.resize(size - 1);
     return text;
   };

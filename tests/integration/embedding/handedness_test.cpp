@@ -86,8 +86,7 @@ struct Handedness : DermisTest {
     last_frame = 0;
     for (int i = 0; i < 4; ++i) {
       fill("lighting", [&](uint32_t x, uint32_t y) { return float((x / 8 + y / 8 + uint32_t(i)) % 2); });
-      const auto bound = bindings(graph);
-      dermis_frame one = frame(bound);
+      dermis_frame one = bound_frame(graph);
       one.depth_kind = view.depth;
       one.flags = view.left && view.lens == Lens::orthographic ? DERMIS_FRAME_LEFT_HANDED : 0;
       const auto jitter = [](int frame) { return frame % 2 == 0 ? 0.25f : -0.25f; };
@@ -97,7 +96,7 @@ struct Handedness : DermisTest {
       place(one.view_from_world, view, 0.0004f * float(i), 0.001f * float(i));
       place(one.previous_view_from_world, view, 0.0004f * float(i - 1) + view.past_error,
             0.001f * float(i - 1));
-      EXPECT_EQ(record(graph, one), DERMIS_OK) << dermis_last_error();
+      EXPECT_OK(record(graph, one));
     }
     std::vector<float> light = texels("lighting");
     dermis_graph_destroy(graph);

@@ -5,9 +5,6 @@
 #include "tests/integration/abi/sources.hpp"
 #include "tests/integration/embedding/null_host.hpp"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <cstdlib>
 #include <functional>
 
@@ -55,7 +52,7 @@ struct HostMemory : ::testing::Test {
     if (made == DERMIS_ERROR_UNSUPPORTED)
       GTEST_SKIP() << "with sanitizers the program's operator new serves the library: "
                    << dermis_last_error();
-    ASSERT_EQ(made, DERMIS_OK) << dermis_last_error();
+    ASSERT_OK(made);
   }
   dermis_context_desc with_heap() {
     dermis_context_desc desc = host.context_desc();
@@ -68,9 +65,9 @@ struct HostMemory : ::testing::Test {
     EXPECT_EQ(heap.bytes, 0u);
   }
   void make_graph() {
-    ASSERT_EQ(host.make_graph(), DERMIS_OK) << dermis_last_error();
+    ASSERT_OK(host.make_graph());
     host.make_bindings();
-    ASSERT_EQ(host.record(), DERMIS_OK) << dermis_last_error();
+    ASSERT_OK(host.record());
   }
 
   // Calls `change` with its first allocation rejected, then its second, until it succeeds: every one
@@ -110,7 +107,7 @@ TEST_F(HostMemory, AllOfItIsFreed) {
   EXPECT_GT(running, 100u) << "the graph uses the host's memory";
   const uint64_t calls = heap.calls;
   for (int i = 0; i < 4; ++i)
-    ASSERT_EQ(host.record(), DERMIS_OK);
+    ASSERT_OK(host.record());
   EXPECT_EQ(heap.calls, calls) << "recording allocates nothing";
   dermis_report report = nullptr;
   const std::string wrong = "{";
@@ -155,7 +152,7 @@ TEST_F(HostMemory, FailedShaderReload_KeepsTheGraph) {
   if (dermis_graph_reload_shaders(host.graph, open_kernel, &requested, nullptr) == DERMIS_ERROR_UNSUPPORTED)
     GTEST_SKIP() << "this library compiles no shaders; test_shared_shaders is the one that does";
   still_records();
-  ASSERT_EQ(dermis_graph_reload_shaders(host.graph, nullptr, nullptr, nullptr), DERMIS_OK);
+  ASSERT_OK(dermis_graph_reload_shaders(host.graph, nullptr, nullptr, nullptr));
   reject_each(
       step(), [&] { return dermis_graph_reload_shaders(host.graph, open_kernel, &requested, nullptr); },
       [&] { still_records(); });
@@ -184,14 +181,13 @@ TEST_F(HostMemory, FailedProfile_KeepsTheGraph) {
       1, [&] { return host.set_profile(marble); }, [&] { still_records(); });
   heap.calls = 0;
   for (int i = 0; i < 4; ++i)
-    ASSERT_EQ(host.record(), DERMIS_OK) << dermis_last_error();
+    ASSERT_OK(host.record());
   EXPECT_EQ(heap.calls, 0u) << "switching to the new tables allocates nothing";
 }
 
 TEST_F(HostMemory, FailedViewSetting_KeepsTheView) {
   make_graph();
-  dermis_view view = nullptr;
-  ASSERT_EQ(dermis_view_create(host.graph, nullptr, &view, nullptr), DERMIS_OK) << dermis_last_error();
+  dermis_view view = view_of(host.graph);
   uint64_t index = 0;
   reject_each(
       1, [&] { return dermis_view_set_setting(view, "accumulate_weight", "0.5", nullptr); },
@@ -201,9 +197,9 @@ TEST_F(HostMemory, FailedViewSetting_KeepsTheView) {
 TEST_F(HostMemory, FailedBudget_KeepsTheGraph) {
   make_graph();
   size_t size = 0;
-  ASSERT_EQ(dermis_graph_calibration(host.graph, &size, nullptr), DERMIS_OK);
+  ASSERT_OK(dermis_graph_calibration(host.graph, &size, nullptr));
   std::string text(size, '\0');
-  ASSERT_EQ(dermis_graph_calibration(host.graph, &size, text.data()), DERMIS_OK);
+  ASSERT_OK(dermis_graph_calibration(host.graph, &size, text.data()));
   dermis_source calibration = DERMIS_SOURCE_INIT;
   calibration.text = text.data();
   calibration.length = size - 1;
@@ -224,7 +220,7 @@ TEST_F(HostMemory, FailedView_LeaksNothing) {
         EXPECT_EQ(view, nullptr);
         still_records();
       });
-  EXPECT_EQ(host.record(view, 1), DERMIS_OK) << dermis_last_error();
+  EXPECT_OK(host.record(view, 1));
 }
 
 // A new view each time, because a list keeps its capacity.
@@ -232,8 +228,7 @@ TEST_F(HostMemory, FailedCommandList_LeavesNoFrame) {
   make_graph();
   const dermis_frame frame = host.frame_at(1);
   for (uint64_t number = 1;; ++number) {
-    dermis_view view = nullptr;
-    ASSERT_EQ(dermis_view_create(host.graph, nullptr, &view, nullptr), DERMIS_OK) << dermis_last_error();
+    dermis_view view = view_of(host.graph);
     uint32_t count = 1;
     const dermis_command* commands = nullptr;
     heap.calls = 0;
@@ -244,7 +239,7 @@ TEST_F(HostMemory, FailedCommandList_LeavesNoFrame) {
       ASSERT_EQ(result, DERMIS_ERROR_MEMORY) << "allocation " << number << ": " << dermis_last_error();
       EXPECT_EQ(count, 0u);
       EXPECT_EQ(commands, nullptr);
-      EXPECT_EQ(dermis_view_commands(view, &frame, &count, &commands), DERMIS_OK) << dermis_last_error();
+      EXPECT_OK(dermis_view_commands(view, &frame, &count, &commands));
     }
     EXPECT_GT(count, 10u);
     dermis_view_destroy(view);
@@ -293,25 +288,23 @@ TEST_F(HostMemory, RecordingAFrame_AllocatesNothing) {
   make_graph();
   heap.calls = 0;
   heap.rejected = 1;
-  EXPECT_EQ(host.record(), DERMIS_OK) << dermis_last_error();
+  EXPECT_OK(host.record());
   EXPECT_EQ(heap.calls, 0u);
   ASSERT_EQ(host.reload(), DERMIS_ERROR_MEMORY);
   heap.rejected = 0;
-  ASSERT_EQ(host.reload(), DERMIS_OK);
+  ASSERT_OK(host.reload());
   heap.calls = 0;
-  EXPECT_EQ(host.record(), DERMIS_OK) << "switching plans allocates nothing";
+  EXPECT_OK(host.record()) << "switching plans allocates nothing";
   EXPECT_EQ(heap.calls, 0u);
 }
 
 TEST_F(HostMemory, HalfAnAllocatorIsRejected) {
   host.destroy();
   allocator.free = nullptr;
-  EXPECT_EQ(host.make_context(with_heap()), DERMIS_ERROR_ARGUMENT);
-  EXPECT_THAT(dermis_last_error(), ::testing::HasSubstr("desc.allocator.free is NULL"));
+  EXPECT_THAT(host.make_context(with_heap()), Fails(DERMIS_ERROR_ARGUMENT, "desc.allocator.free is NULL"));
   allocator = heap.allocator();
   allocator.struct_size = 3;
-  EXPECT_EQ(host.make_context(with_heap()), DERMIS_ERROR_ARGUMENT);
-  EXPECT_THAT(dermis_last_error(), ::testing::HasSubstr("desc.allocator.struct_size"));
+  EXPECT_THAT(host.make_context(with_heap()), Fails(DERMIS_ERROR_ARGUMENT, "desc.allocator.struct_size"));
 }
 
 } // namespace

@@ -99,20 +99,19 @@ struct Inputs : DermisTest {
     const auto bound = bindings(graph);
     dermis_frame one = wall_frame(bound, direction);
     one.depth_kind = DERMIS_DEPTH_DEVICE;
-    EXPECT_EQ(record(graph, one), DERMIS_OK) << dermis_last_error();
+    EXPECT_OK(record(graph, one));
     return texels("lighting");
   }
   // Returns the same light with view distances in a float image.
   std::vector<float> wall_in_units(float metres) {
-    GraphOptions options;
-    options.text = read_text("configs/graphs/separable.json");
+    GraphOptions options = shipped_options("configs/graphs/separable.json");
     const dermis_graph graph = make_graph(options);
     if (graph == nullptr) return {};
     make_images(graph);
     fill("depth", [&](uint32_t, uint32_t) { return metres; });
     const auto bound = bindings(graph);
     dermis_frame one = wall_frame(bound, Direction::forward);
-    EXPECT_EQ(record(graph, one), DERMIS_OK) << dermis_last_error();
+    EXPECT_OK(record(graph, one));
     return texels("lighting");
   }
 };
@@ -150,8 +149,7 @@ TEST_F(Inputs, PreExposedLight_ScattersEqually) {
   uint32_t told_apart = 0;
   for (const char* name : {"separable", "sap_residual", "afis_guided"}) {
     const auto frames = [&](float light, float exposure) {
-      GraphOptions options;
-      options.text = read_text(dermis::shipped::graph_file(name));
+      GraphOptions options = shipped_options(dermis::shipped::graph_file(name));
       for (const char* unbound : {"velocity", "thickness", "back_lighting"})
         options.unbound.emplace_back(unbound);
       const dermis_graph graph = make_graph(options);
@@ -164,14 +162,13 @@ TEST_F(Inputs, PreExposedLight_ScattersEqually) {
         fill("lighting", [&](uint32_t x, uint32_t y) {
           return light * (0.125f + 0.25f * float((x / 8 + y / 8 + uint32_t(i)) % 2));
         });
-        const auto bound = bindings(graph);
-        dermis_frame one = frame(bound);
+        dermis_frame one = bound_frame(graph);
         one.exposure = exposure;
         for (const int diagonal : {0, 5, 10, 15}) // At rest: histories find their surfaces.
           one.view_from_world[diagonal] = 1;
         std::ranges::copy(one.clip_from_view, one.previous_clip_from_view);
         std::ranges::copy(one.view_from_world, one.previous_view_from_world);
-        EXPECT_EQ(record(graph, one), DERMIS_OK) << dermis_last_error();
+        EXPECT_OK(record(graph, one));
       }
       return texels("lighting");
     };

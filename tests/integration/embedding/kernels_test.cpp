@@ -11,11 +11,11 @@ constexpr uint64_t made_of_kernel = 4;    // Includes a shader module until the 
 TEST(SharedKernels, LaterGraph_CompilesNoSharedKernel) {
   dermis::abi_test::NullHost host;
   const dermis_context_desc desc = host.context_desc();
-  ASSERT_EQ(host.make_context(desc), DERMIS_OK);
+  ASSERT_OK(host.make_context(desc));
   const uint64_t before = host.device.alive();
   const auto make = [&] {
     const uint64_t start = host.device.creations();
-    EXPECT_EQ(host.make_graph(), DERMIS_OK);
+    EXPECT_OK(host.make_graph());
     return host.device.creations() - start;
   };
   const uint64_t first = make();
@@ -32,20 +32,20 @@ TEST(SharedKernels, LaterGraph_CompilesNoSharedKernel) {
 TEST(SharedKernels, FailedGraph_KeepsNoKernels) {
   dermis::abi_test::NullHost host;
   const dermis_context_desc desc = host.context_desc();
-  ASSERT_EQ(host.make_context(desc), DERMIS_OK);
+  ASSERT_OK(host.make_context(desc));
   const uint64_t before = host.device.alive(), start = host.device.creations();
-  ASSERT_EQ(host.make_graph(), DERMIS_OK);
+  ASSERT_OK(host.make_graph());
   const uint64_t last = host.device.creations() - start;
   dermis_graph_destroy(host.graph);
   host.graph = nullptr;
   const uint64_t kept = host.device.alive();
   dermis::abi_test::NullHost other;
   const dermis_context_desc other_desc = other.context_desc();
-  ASSERT_EQ(other.make_context(other_desc), DERMIS_OK);
+  ASSERT_OK(other.make_context(other_desc));
   other.device.fail_creation(last, VK_ERROR_OUT_OF_DEVICE_MEMORY);
   EXPECT_EQ(other.make_graph(), DERMIS_ERROR_DEVICE_MEMORY);
   EXPECT_EQ(other.device.alive(), before);
-  EXPECT_EQ(other.make_graph(), DERMIS_OK);
+  EXPECT_OK(other.make_graph());
   dermis_graph_destroy(other.graph);
   other.graph = nullptr;
   EXPECT_EQ(other.device.alive(), kept);
@@ -54,18 +54,18 @@ TEST(SharedKernels, FailedGraph_KeepsNoKernels) {
 TEST(SharedKernels, HostShaders_AreFreedWithTheLastGraph) {
   dermis::abi_test::NullHost host;
   const dermis_context_desc desc = host.context_desc();
-  ASSERT_EQ(host.make_context(desc), DERMIS_OK);
-  ASSERT_EQ(host.make_graph(), DERMIS_OK);
+  ASSERT_OK(host.make_context(desc));
+  ASSERT_OK(host.make_graph());
   dermis_graph_destroy(host.graph);
   const uint64_t kept = host.device.alive();
-  ASSERT_EQ(host.make_graph(), DERMIS_OK);
+  ASSERT_OK(host.make_graph());
   const uint64_t with_graph = host.device.alive();
   uint32_t requested = 0;
   const dermis_result result =
       dermis_graph_reload_shaders(host.graph, dermis::abi_test::open_kernel, &requested, nullptr);
   if (result == DERMIS_ERROR_UNSUPPORTED)
     GTEST_SKIP() << "this library compiles no shaders; test_shared_shaders is the one that does";
-  ASSERT_EQ(result, DERMIS_OK) << dermis_last_error();
+  ASSERT_OK(result);
   EXPECT_GT(host.device.alive(), with_graph);
   dermis_graph_destroy(host.graph);
   host.graph = nullptr;

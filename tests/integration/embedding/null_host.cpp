@@ -38,15 +38,10 @@ dermis_result NullHost::make_context(const dermis_context_desc& desc) {
 }
 
 dermis_result NullHost::make_graph(uint32_t side) {
-  static const std::string overlay_text = read_text("configs/overlays/accumulate.json"),
-                           skin = read_text("configs/profiles/skin.json");
-  dermis_profile profile = DERMIS_PROFILE_INIT;
-  profile.id = 1;
-  profile.source = source_of(skin, "skin.json");
+  static const std::string overlay_text = read_text("configs/overlays/accumulate.json");
+  dermis_profile profile = skin_profile();
   const dermis_source overlay = source_of(overlay_text, "accumulate.json");
-  dermis_graph_desc desc = DERMIS_GRAPH_DESC_INIT;
-  desc.source = source_of(own_graph(), "burley.json");
-  desc.width = desc.height = side;
+  dermis_graph_desc desc = graph_desc(own_graph(), "burley.json", side);
   desc.profiles = &profile;
   desc.profile_count = 1;
   desc.overlays = &overlay;
@@ -54,20 +49,30 @@ dermis_result NullHost::make_graph(uint32_t side) {
   return dermis_graph_create(context, &desc, &graph, nullptr);
 }
 
+dermis_result NullHost::start() {
+  dermis_result result = make_context(context_desc());
+  if (result == DERMIS_OK) result = make_graph();
+  if (result == DERMIS_OK) make_bindings();
+  return result;
+}
+
+dermis_image_binding NullHost::image_for(const dermis_slot& slot) {
+  dermis_image_binding binding = DERMIS_IMAGE_BINDING_INIT;
+  binding.slot = slot.id;
+  binding.format = slot.format;
+  binding.width = slot.width;
+  binding.height = slot.height;
+  binding.image = device.make_image();
+  binding.view = device.make_view();
+  binding.before = binding.after = {VK_IMAGE_LAYOUT_GENERAL, 0, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
+                                    VK_ACCESS_2_MEMORY_WRITE_BIT, 0};
+  return binding;
+}
+
 void NullHost::make_bindings() {
   bindings_.clear();
-  for (const dermis_slot& slot : slots_of(graph)) {
-    dermis_image_binding binding = DERMIS_IMAGE_BINDING_INIT;
-    binding.slot = slot.id;
-    binding.format = slot.format;
-    binding.width = slot.width;
-    binding.height = slot.height;
-    binding.image = device.make_image();
-    binding.view = device.make_view();
-    binding.before = binding.after = {VK_IMAGE_LAYOUT_GENERAL, 0, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
-                                      VK_ACCESS_2_MEMORY_WRITE_BIT, 0};
-    bindings_.push_back(binding);
-  }
+  for (const dermis_slot& slot : slots_of(graph))
+    bindings_.push_back(image_for(slot));
 }
 
 void NullHost::give_up_views() {
@@ -80,8 +85,7 @@ void NullHost::give_up_views() {
 
 // Allocates nothing itself, because tests count allocations.
 dermis_result NullHost::reload(const std::string& text) const {
-  const dermis_source source = source_of(text.empty() ? own_graph() : text, "burley.json");
-  return reload_text(graph, source);
+  return reload_text(graph, source_of(text.empty() ? own_graph() : text, "burley.json"));
 }
 
 dermis_result NullHost::set_profile(const std::string& text) const {

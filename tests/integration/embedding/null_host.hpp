@@ -3,7 +3,7 @@
 
 #include "integration/tools/null_device/null_device.hpp"
 
-#include <dermis/dermis.h>
+#include "tests/integration/abi/results.hpp"
 
 #include <string>
 #include <vector>
@@ -22,7 +22,11 @@ public:
   dermis_result make_context(const dermis_context_desc& desc);
   // Makes a graph of burley.json with accumulated light and one skin profile.
   dermis_result make_graph(uint32_t side = 64);
-  void make_bindings();                                     // Makes images for every slot.
+  // Returns a binding of a new image in general layout.
+  dermis_image_binding image_for(const dermis_slot& slot);
+  void make_bindings(); // Makes images for every slot.
+  // Makes the context, the graph and images.
+  dermis_result start();
   void give_up_views();                                     // Uses content_ids instead of views.
   dermis_result reload(const std::string& text = "") const; // "" means the graph's own text.
   dermis_result set_profile(const std::string& text) const; // Sets profile 1.

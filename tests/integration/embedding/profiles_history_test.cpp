@@ -24,8 +24,7 @@ struct ProfilesOfHistories : TwoViewsTest, ::testing::WithParamInterface<History
     fill("material", [&](uint32_t x, uint32_t y) { return profile_at(x, y, swapped); });
     fill("lighting",
          [&](uint32_t x, uint32_t y) { return float(index) * float(8 + (x * 7 + y * 3) % 32) / 64; });
-    const auto bound = bindings(graph);
-    dermis_frame one = frame(bound, side, side);
+    dermis_frame one = bound_frame(graph, side, side);
     one.flags = flags;
     rest(one);
     record_in(view, one, index);

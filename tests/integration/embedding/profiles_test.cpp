@@ -3,8 +3,6 @@
 #include "tests/integration/abi/sources.hpp"
 #include "tests/integration/embedding/null_host.hpp"
 
-#include <gtest/gtest.h>
-
 namespace dermis::abi_test {
 namespace {
 
@@ -14,14 +12,10 @@ struct Profiles : ::testing::Test {
   NullHost host;
   std::string skin = read_text("configs/profiles/skin.json"),
               marble = read_text("configs/profiles/marble.json");
-  void SetUp() override {
-    ASSERT_EQ(host.make_context(host.context_desc()), DERMIS_OK) << dermis_last_error();
-    ASSERT_EQ(host.make_graph(), DERMIS_OK) << dermis_last_error();
-    host.make_bindings();
-  }
+  void SetUp() override { ASSERT_OK(host.start()); }
   void record(uint32_t frames) {
     for (uint32_t i = 0; i < frames; ++i)
-      ASSERT_EQ(host.record(), DERMIS_OK) << dermis_last_error();
+      ASSERT_OK(host.record());
   }
 };
 
@@ -29,25 +23,23 @@ TEST_F(Profiles, Replaced_AreFreedAfterTheirFrames) {
   record(frames_in_flight);
   const uint64_t alive = host.device.alive(), bytes = host.device.memory_bytes();
   for (int round = 0; round < 4; ++round) {
-    ASSERT_EQ(host.set_profile(round % 2 == 0 ? marble : skin), DERMIS_OK) << dermis_last_error();
+    ASSERT_OK(host.set_profile(round % 2 == 0 ? marble : skin));
     EXPECT_GT(host.device.alive(), alive) << "frames in flight keep the old tables";
     record(frames_in_flight);
     EXPECT_EQ(host.device.alive(), alive);
     EXPECT_EQ(host.device.memory_bytes(), bytes);
   }
   for (int round = 0; round < 4; ++round) { // Faster than the frames.
-    ASSERT_EQ(host.set_profile(marble), DERMIS_OK) << dermis_last_error();
+    ASSERT_OK(host.set_profile(marble));
   }
   record(frames_in_flight);
   EXPECT_EQ(host.device.alive(), alive);
 }
 
 TEST_F(Profiles, ViewsShareOneBuffer) {
-  dermis_memory one = DERMIS_MEMORY_INIT, two = DERMIS_MEMORY_INIT;
-  ASSERT_EQ(dermis_graph_memory(host.graph, &one), DERMIS_OK);
-  dermis_view view = nullptr;
-  ASSERT_EQ(dermis_view_create(host.graph, nullptr, &view, nullptr), DERMIS_OK) << dermis_last_error();
-  ASSERT_EQ(dermis_graph_memory(host.graph, &two), DERMIS_OK);
+  const dermis_memory one = memory_of(host.graph);
+  view_of(host.graph);
+  const dermis_memory two = memory_of(host.graph);
   EXPECT_LT(two.constant_bytes - one.constant_bytes, 256u * 48u) << "less than a table of profiles";
 }
 

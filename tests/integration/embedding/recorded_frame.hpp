@@ -3,8 +3,6 @@
 
 #include "tests/integration/embedding/null_host.hpp"
 
-#include <gtest/gtest.h>
-
 namespace dermis::abi_test {
 
 struct RecordedFrame : ::testing::Test {

@@ -33,8 +33,7 @@ struct Rectangles : TwoViewsTest, ::testing::WithParamInterface<const char*> {
   std::vector<float> run(dermis_view view, const RenderedPart& rectangle, bool hostile, uint64_t first) {
     for (uint64_t i = 0; i < 2; ++i) {
       fill_around(rectangle, hostile);
-      const auto bound = bindings(graph);
-      dermis_frame one = frame(bound, rectangle.width, rectangle.height);
+      dermis_frame one = bound_frame(graph, rectangle.width, rectangle.height);
       one.rect_x = rectangle.x;
       one.rect_y = rectangle.y;
       one.rect_width = rectangle.width;

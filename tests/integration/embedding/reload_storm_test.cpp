@@ -55,7 +55,7 @@ Storm rendered(const std::function<std::vector<std::string>(uint32_t)>& reloads)
   auto done = demo::render(options, callbacks);
   EXPECT_TRUE(done) << done.error().text;
   if (done) storm.summary = done.take();
-  EXPECT_THAT(storm.summary.validation_messages, ::testing::IsEmpty());
+  EXPECT_THAT(storm.summary.validation_messages, IsEmpty());
   return storm;
 }
 
@@ -90,28 +90,26 @@ TEST_F(Sizes, CanChangeEachFrameWithThreeInFlight) {
   GraphOptions options = accumulating();
   options.width = options.height = largest;
   const dermis_graph graph = make_graph(options);
-  ASSERT_NE(graph, nullptr);
-  dermis_view view = nullptr;
-  ASSERT_EQ(dermis_view_create(graph, nullptr, &view, nullptr), DERMIS_OK) << dermis_last_error();
+  dermis_view view = view_of(graph);
   const Camera camera = make_camera(graph, 1), other = make_camera(graph, 2);
   dermis_memory before = DERMIS_MEMORY_INIT, after = DERMIS_MEMORY_INIT;
-  ASSERT_EQ(dermis_graph_memory(graph, &before), DERMIS_OK);
+  ASSERT_OK(dermis_graph_memory(graph, &before));
   for (uint64_t index = 1; index <= count; ++index) {
     const bool back = index == count;
     const auto width = back ? largest : static_cast<uint32_t>(1 + index * 37 % largest);
     const auto height = back ? largest : static_cast<uint32_t>(1 + index * 53 % largest);
-    ASSERT_EQ(dermis_graph_resize(graph, width, height, nullptr), DERMIS_OK) << dermis_last_error();
+    ASSERT_OK(dermis_graph_resize(graph, width, height, nullptr));
     submit(index, [&](VkCommandBuffer into) {
       dermis_frame first = frame_of(camera, index), second = frame_of(other, index);
       first.command_buffer = second.command_buffer = into;
-      ASSERT_EQ(dermis_view_record(dermis_graph_view(graph), &first), DERMIS_OK) << dermis_last_error();
+      ASSERT_OK(dermis_view_record(dermis_graph_view(graph), &first));
       if (index % 3 == 0) { // that many sizes are skipped by this one
-        ASSERT_EQ(dermis_view_record(view, &second), DERMIS_OK) << dermis_last_error();
+        ASSERT_OK(dermis_view_record(view, &second));
       }
     });
   }
   wait();
-  ASSERT_EQ(dermis_graph_memory(graph, &after), DERMIS_OK);
+  ASSERT_OK(dermis_graph_memory(graph, &after));
   EXPECT_EQ(after.history_bytes, before.history_bytes);
   EXPECT_EQ(after.transient_bytes, before.transient_bytes);
   EXPECT_EQ(after.constant_bytes, before.constant_bytes);

@@ -4,8 +4,6 @@
 #include "tests/integration/abi/sources.hpp"
 #include "tests/integration/embedding/null_host.hpp"
 
-#include <gmock/gmock.h>
-
 #include <algorithm>
 #include <cstring>
 #include <functional>
@@ -13,8 +11,6 @@
 
 namespace dermis::abi_test {
 namespace {
-
-using ::testing::HasSubstr;
 
 constexpr const char* traced = R"({ "dermis": 2, "name": "traced",
   "imports": { "scene": { "acceleration_structure": "top_level" },
@@ -49,48 +45,23 @@ struct SceneBindings : ::testing::Test {
   dermis_acceleration_structure_binding scene = DERMIS_ACCELERATION_STRUCTURE_BINDING_INIT;
 
   void SetUp() override {
-    ASSERT_EQ(host.make_context(host.context_desc()), DERMIS_OK);
-    dermis_port ports[] = {DERMIS_PORT_INIT, DERMIS_PORT_INIT, DERMIS_PORT_INIT, DERMIS_PORT_INIT};
-    ports[0].name = "scene";
-    ports[0].usage = DERMIS_PORT_ACCELERATION_STRUCTURE;
-    ports[1].name = "vertices";
-    ports[1].usage = DERMIS_PORT_STORAGE_BUFFER_READ;
-    ports[2].name = "light";
-    ports[3].name = "out";
-    ports[3].usage = DERMIS_PORT_STORAGE_IMAGE_WRITE;
-    dermis_pass_type type = DERMIS_PASS_TYPE_INIT;
-    type.name = "studio.trace";
-    type.ports = ports;
-    type.port_count = 4;
-    type.record = keep_ports;
-    type.user = &seen;
-    ASSERT_EQ(dermis_register_pass_type(host.context, &type), DERMIS_OK) << dermis_last_error();
-    dermis_graph_desc desc = DERMIS_GRAPH_DESC_INIT;
+    ASSERT_OK(host.make_context(host.context_desc()));
+    const dermis_port ports[] = {port_of("scene", DERMIS_PORT_ACCELERATION_STRUCTURE),
+                                 port_of("vertices", DERMIS_PORT_STORAGE_BUFFER_READ), port_of("light"),
+                                 port_of("out", DERMIS_PORT_STORAGE_IMAGE_WRITE)};
+    const dermis_pass_type type = pass_type_of("studio.trace", ports, keep_ports, &seen);
+    ASSERT_OK(dermis_register_pass_type(host.context, &type));
     const std::string text = traced;
-    desc.source = source_of(text, "traced.json");
-    desc.width = desc.height = 64;
+    dermis_graph_desc desc = graph_desc(text, "traced.json", 64);
     // Without a profile nothing is scattered.
-    const std::string skin = read_text("configs/profiles/skin.json");
-    dermis_profile profile = DERMIS_PROFILE_INIT;
-    profile.id = 1;
-    profile.source = source_of(skin, "skin.json");
+    dermis_profile profile = skin_profile();
     desc.profiles = &profile;
     desc.profile_count = 1;
-    ASSERT_EQ(dermis_graph_create(host.context, &desc, &host.graph, nullptr), DERMIS_OK)
-        << dermis_last_error();
+    ASSERT_OK(dermis_graph_create(host.context, &desc, &host.graph, nullptr));
     for (const dermis_slot& slot : slots_of(host.graph)) {
       if (slot.type == DERMIS_SLOT_BUFFER) vertices.slot = slot.id;
       if (slot.type == DERMIS_SLOT_ACCELERATION_STRUCTURE) scene.slot = slot.id;
-      if (slot.type != DERMIS_SLOT_IMAGE) continue;
-      dermis_image_binding& binding = images.emplace_back(dermis_image_binding DERMIS_IMAGE_BINDING_INIT);
-      binding.slot = slot.id;
-      binding.format = slot.format;
-      binding.width = slot.width;
-      binding.height = slot.height;
-      binding.image = host.device.make_image();
-      binding.view = host.device.make_view();
-      binding.before = binding.after = {VK_IMAGE_LAYOUT_GENERAL, 0, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
-                                        VK_ACCESS_2_MEMORY_WRITE_BIT, 0};
+      if (slot.type == DERMIS_SLOT_IMAGE) images.push_back(host.image_for(slot));
     }
     vertices.buffer = handle<VkBuffer>(0x51);
     vertices.offset = 256;
@@ -136,8 +107,7 @@ TEST_F(SceneBindings, AreAcquiredAndReleasedByBarriers) {
   const dermis_frame next = frame();
   uint32_t count = 0;
   const dermis_command* commands = nullptr;
-  ASSERT_EQ(dermis_view_commands(dermis_graph_view(host.graph), &next, &count, &commands), DERMIS_OK)
-      << dermis_last_error();
+  ASSERT_OK(dermis_view_commands(dermis_graph_view(host.graph), &next, &count, &commands));
   std::vector<VkMemoryBarrier2> memory;
   std::vector<VkBufferMemoryBarrier2> buffers;
   const dermis_pass_call* call = nullptr;
@@ -217,24 +187,23 @@ TEST_F(SceneBindings, WrongBindings_AreRejectedByName) {
     const auto kept_scene = scene;
     dermis_frame next = frame();
     wrong.change(*this, next);
-    EXPECT_EQ(dermis_view_record(dermis_graph_view(host.graph), &next), DERMIS_ERROR_ARGUMENT) << wrong.says;
-    EXPECT_THAT(dermis_last_error(), HasSubstr(wrong.says));
+    EXPECT_THAT(dermis_view_record(dermis_graph_view(host.graph), &next),
+                Fails(DERMIS_ERROR_ARGUMENT, wrong.says))
+        << wrong.says;
     images = kept_images;
     vertices = kept_vertices;
     scene = kept_scene;
   }
   const dermis_frame next = frame();
-  EXPECT_EQ(dermis_view_record(dermis_graph_view(host.graph), &next), DERMIS_OK)
-      << "nothing has changed: " << dermis_last_error();
+  EXPECT_OK(dermis_view_record(dermis_graph_view(host.graph), &next)) << "nothing has changed: ";
 }
 
 TEST_F(SceneBindings, RayQueryFlag_NeedsADeviceWithRayQueries) {
   dermis_context_desc desc = host.context_desc();
   desc.flags |= DERMIS_CONTEXT_RAY_QUERY;
   dermis_context other = nullptr;
-  EXPECT_EQ(dermis_context_create(&desc, &other), DERMIS_ERROR_UNSUPPORTED);
-  EXPECT_THAT(dermis_last_error(), HasSubstr("rayQuery"));
-  EXPECT_THAT(dermis_last_error(), HasSubstr(VK_KHR_ACCELERATION_STRUCTURE_EXTENSION_NAME));
+  EXPECT_THAT(dermis_context_create(&desc, &other),
+              Fails(DERMIS_ERROR_UNSUPPORTED, "rayQuery", VK_KHR_ACCELERATION_STRUCTURE_EXTENSION_NAME));
 }
 
 } // namespace

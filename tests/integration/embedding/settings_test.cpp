@@ -3,17 +3,11 @@
 #include "tests/integration/abi/sources.hpp"
 #include "tests/integration/embedding/null_host.hpp"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <map>
 
 namespace dermis::abi_test {
 namespace {
-
-using testing::ElementsAre;
-using testing::HasSubstr;
 
 // Stores the settings of the call's pass under its name.
 using Calls = std::map<std::string, std::vector<double>>;
@@ -23,25 +17,12 @@ void DERMIS_CALL keep(void* user, const dermis_pass_call* call) {
 
 // Registers two pass types of the host. Only "weight" of studio.mix can change per frame.
 dermis_result register_pass_types(dermis_context context, Calls& calls) {
-  dermis_port port = DERMIS_PORT_INIT;
-  port.name = "picture";
-  port.usage = DERMIS_PORT_STORAGE_IMAGE_UPDATE;
-  dermis_pass_setting values[2] = {DERMIS_PASS_SETTING_INIT, DERMIS_PASS_SETTING_INIT};
-  values[0].name = "weight";
+  dermis_port port = port_of("picture", DERMIS_PORT_STORAGE_IMAGE_UPDATE);
+  dermis_pass_setting values[2] = {real_setting("weight", 1), real_setting("radius", 1)};
   values[0].per_frame = 1;
-  values[1].name = "radius";
-  for (dermis_pass_setting& value : values) {
-    value.type = DERMIS_PASS_SETTING_REAL;
-    value.maximum = 1;
-  }
-  dermis_pass_type type = DERMIS_PASS_TYPE_INIT;
-  type.name = "studio.mix";
-  type.ports = &port;
+  dermis_pass_type type = pass_type_of("studio.mix", {&port, 1}, keep, &calls);
   type.settings = values;
-  type.port_count = 1;
   type.setting_count = 2;
-  type.record = keep;
-  type.user = &calls;
   return dermis_register_pass_type(context, &type);
 }
 
@@ -65,20 +46,10 @@ const std::string graph_text = R"({ "dermis": 2, "name": "settings",
   "exports": ["light"] })";
 
 std::vector<dermis_setting> settings_of(dermis_view view) {
-  uint32_t count = 0;
-  EXPECT_EQ(dermis_view_settings(view, &count, nullptr), DERMIS_OK) << dermis_last_error();
-  std::vector<dermis_setting> all(count, dermis_setting DERMIS_SETTING_INIT);
-  EXPECT_EQ(dermis_view_settings(view, &count, all.data()), DERMIS_OK) << dermis_last_error();
-  return all;
+  return list_of(dermis_setting DERMIS_SETTING_INIT, dermis_view_settings, view);
 }
 std::vector<dermis_setting> settings_of(dermis_graph graph) {
-  uint32_t count = 0;
-  EXPECT_EQ(dermis_view_settings(dermis_graph_view(graph), &count, nullptr), DERMIS_OK)
-      << dermis_last_error();
-  std::vector<dermis_setting> all(count, dermis_setting DERMIS_SETTING_INIT);
-  EXPECT_EQ(dermis_view_settings(dermis_graph_view(graph), &count, all.data()), DERMIS_OK)
-      << dermis_last_error();
-  return all;
+  return settings_of(dermis_graph_view(graph));
 }
 
 dermis_setting named(const std::vector<dermis_setting>& all, std::string_view name) {
@@ -91,45 +62,37 @@ struct Settings : ::testing::Test {
   Calls calls;
   NullHost host;
   dermis_view view = nullptr;
-  void SetUp() override {
-    ASSERT_EQ(host.make_context(host.context_desc()), DERMIS_OK) << dermis_last_error();
-  }
+  void SetUp() override { ASSERT_OK(host.make_context(host.context_desc())); }
   void make(const std::string& text) {
-    ASSERT_EQ(register_pass_types(host.context, calls), DERMIS_OK) << dermis_last_error();
-    dermis_graph_desc desc = DERMIS_GRAPH_DESC_INIT;
-    desc.source = source_of(text, "graph.json");
-    desc.width = desc.height = 16;
-    const std::string skin = read_text("configs/profiles/skin.json");
-    dermis_profile profile = DERMIS_PROFILE_INIT;
-    profile.id = 1;
-    profile.source = source_of(skin, "skin.json");
+    ASSERT_OK(register_pass_types(host.context, calls));
+    dermis_graph_desc desc = graph_desc(text, "graph.json", 16);
+    dermis_profile profile = skin_profile();
     desc.profiles = &profile;
     desc.profile_count = 1;
     dermis_report report = nullptr;
-    ASSERT_EQ(dermis_graph_create(host.context, &desc, &host.graph, &report), DERMIS_OK)
-        << dermis_report_text(report);
+    ASSERT_OK(dermis_graph_create(host.context, &desc, &host.graph, &report)) << dermis_report_text(report);
     dermis_report_destroy(report);
   }
   void make_with_view() {
     make(graph_text);
-    ASSERT_EQ(dermis_view_create(host.graph, nullptr, &view, nullptr), DERMIS_OK) << dermis_last_error();
+    ASSERT_OK(dermis_view_create(host.graph, nullptr, &view, nullptr));
     host.make_bindings();
   }
   // Returns the weight that passes of the next frame receive.
   double weight_of_graph(const char* pass) {
-    EXPECT_EQ(host.record(), DERMIS_OK) << dermis_last_error();
+    EXPECT_OK(host.record());
     return calls.at(pass).front();
   }
   double weight_of_view(const char* pass) {
-    EXPECT_EQ(host.record(view, ++view_frame), DERMIS_OK) << dermis_last_error();
+    EXPECT_OK(host.record(view, ++view_frame));
     return calls.at(pass).front();
   }
   void set_for_view(const char* name, const char* json) const {
-    ASSERT_EQ(dermis_view_set_setting(view, name, json, nullptr), DERMIS_OK) << dermis_last_error();
+    ASSERT_OK(dermis_view_set_setting(view, name, json, nullptr));
   }
   uint64_t view_frame = 0;
   void set(const char* name, const char* json) const {
-    ASSERT_EQ(dermis_graph_set_setting(host.graph, name, json, nullptr), DERMIS_OK) << dermis_last_error();
+    ASSERT_OK(dermis_graph_set_setting(host.graph, name, json, nullptr));
   }
 };
 
@@ -189,7 +152,7 @@ TEST_F(Settings, PerFrame_OnlyIfAllUsesArePerFrame) {
 }
 
 TEST_F(Settings, ShippedGraph_ReportsViewSettings) {
-  ASSERT_EQ(host.make_graph(), DERMIS_OK) << dermis_last_error();
+  ASSERT_OK(host.make_graph());
   const auto all = settings_of(host.graph);
   EXPECT_EQ(named(all, "accumulate_weight").per_frame, 1u);
   EXPECT_EQ(named(all, "accumulate_clip").per_frame, 1u);
@@ -228,7 +191,7 @@ TEST_F(Settings, PerFrame_ViewsHaveSeparateValues) {
 TEST_F(Settings, ViewSettings_SurviveAReloadThatAcceptsThem) {
   make_with_view();
   set_for_view("weight", "0.75");
-  ASSERT_EQ(host.reload(graph_text), DERMIS_OK) << dermis_last_error();
+  ASSERT_OK(host.reload(graph_text));
   EXPECT_EQ(weight_of_view("one"), 0.75);
   set("threshold", "0.05"); // Turns a pass off, so the graph is rebuilt.
   EXPECT_EQ(weight_of_view("one"), 0.75);
@@ -236,8 +199,7 @@ TEST_F(Settings, ViewSettings_SurviveAReloadThatAcceptsThem) {
   const std::string range = R"("weight": { "real": 0.5, "min": 0, "max": 1 })";
   lower.replace(lower.find(range), range.size(), R"("weight": { "real": 0.5, "min": 0, "max": 0.6 })");
   dermis_report report = nullptr;
-  ASSERT_EQ(reload_text(host.graph, source_of(lower, "graph.json"), &report), DERMIS_OK)
-      << dermis_last_error();
+  ASSERT_OK(reload_text(host.graph, source_of(lower, "graph.json"), &report));
   EXPECT_THAT(dermis_report_text(report), HasSubstr("setting 'weight' = 0.75 of a view is not carried over"));
   dermis_report_destroy(report);
   EXPECT_EQ(weight_of_view("one"), 0.5);
@@ -246,26 +208,27 @@ TEST_F(Settings, ViewSettings_SurviveAReloadThatAcceptsThem) {
 TEST_F(Settings, GraphSetting_IsRejectedForAView) {
   make_with_view();
   for (const char* name : {"on", "count", "how", "radius", "both", "threshold"}) {
-    EXPECT_EQ(dermis_view_set_setting(view, name, "1", nullptr), DERMIS_ERROR_ARGUMENT) << name;
-    EXPECT_THAT(dermis_last_error(), HasSubstr("setting '" + std::string(name) + "' belongs to the graph"));
-    EXPECT_THAT(dermis_last_error(), HasSubstr("A view can have its own value of 'weight'"));
+    EXPECT_THAT(dermis_view_set_setting(view, name, "1", nullptr),
+                Fails(DERMIS_ERROR_ARGUMENT, "setting '" + std::string(name) + "' belongs to the graph",
+                      "A view can have its own value of 'weight'"))
+        << name;
   }
-  EXPECT_EQ(dermis_view_set_setting(view, "wieght", "1", nullptr), DERMIS_ERROR_ARGUMENT);
-  EXPECT_THAT(dermis_last_error(), HasSubstr("has no setting 'wieght'"));
+  EXPECT_THAT(dermis_view_set_setting(view, "wieght", "1", nullptr),
+              Fails(DERMIS_ERROR_ARGUMENT, "has no setting 'wieght'"));
   EXPECT_EQ(dermis_view_set_setting(view, "weight", "1.5", nullptr), DERMIS_ERROR_CONFIG);
-  EXPECT_EQ(dermis_view_set_setting(view, nullptr, "1", nullptr), DERMIS_ERROR_ARGUMENT);
-  EXPECT_THAT(dermis_last_error(), HasSubstr("name is NULL"));
-  EXPECT_EQ(dermis_view_set_setting(nullptr, "weight", "1", nullptr), DERMIS_ERROR_ARGUMENT);
-  EXPECT_THAT(dermis_last_error(), HasSubstr("view is NULL"));
+  EXPECT_THAT(dermis_view_set_setting(view, nullptr, "1", nullptr),
+              Fails(DERMIS_ERROR_ARGUMENT, "name is NULL"));
+  EXPECT_THAT(dermis_view_set_setting(nullptr, "weight", "1", nullptr),
+              Fails(DERMIS_ERROR_ARGUMENT, "view is NULL"));
 }
 
 TEST_F(Settings, WrongArgumentsAreNamed) {
   make(graph_text);
   uint32_t count = 0;
-  EXPECT_EQ(dermis_view_settings(dermis_graph_view(nullptr), &count, nullptr), DERMIS_ERROR_ARGUMENT);
-  EXPECT_THAT(dermis_last_error(), HasSubstr("dermis_view_settings: view is NULL"));
-  EXPECT_EQ(dermis_view_settings(dermis_graph_view(host.graph), nullptr, nullptr), DERMIS_ERROR_ARGUMENT);
-  EXPECT_THAT(dermis_last_error(), HasSubstr("count is NULL"));
+  EXPECT_THAT(dermis_view_settings(dermis_graph_view(nullptr), &count, nullptr),
+              Fails(DERMIS_ERROR_ARGUMENT, "dermis_view_settings: view is NULL"));
+  EXPECT_THAT(dermis_view_settings(dermis_graph_view(host.graph), nullptr, nullptr),
+              Fails(DERMIS_ERROR_ARGUMENT, "count is NULL"));
 }
 
 } // namespace

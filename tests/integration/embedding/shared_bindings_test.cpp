@@ -4,16 +4,11 @@
 #include "tests/integration/abi/sources.hpp"
 #include "tests/integration/embedding/null_host.hpp"
 
-#include <gmock/gmock.h>
-
 #include <cstring>
 #include <map>
 
 namespace dermis::abi_test {
 namespace {
-
-using ::testing::AllOf;
-using ::testing::HasSubstr;
 
 constexpr const char* shared_graph = R"({ "dermis": 2, "name": "shared",
   "imports": { "first": { "buffer": { "stride": 16, "count": [4, 1] } },
@@ -48,23 +43,16 @@ struct SharedBindings : ::testing::Test {
   uint64_t frame_index = 0;
 
   void add_pass_type() {
-    const std::pair<const char*, dermis_port_usage> expected[] = {
-        {"first", DERMIS_PORT_STORAGE_BUFFER_READ},    {"second", DERMIS_PORT_STORAGE_BUFFER_READ},
-        {"scene", DERMIS_PORT_ACCELERATION_STRUCTURE}, {"shadows", DERMIS_PORT_ACCELERATION_STRUCTURE},
-        {"depth", DERMIS_PORT_SAMPLED_IMAGE},          {"marks", DERMIS_PORT_SAMPLED_IMAGE},
-        {"out", DERMIS_PORT_STORAGE_IMAGE_WRITE},      {"changed", DERMIS_PORT_STORAGE_BUFFER_UPDATE}};
-    std::vector<dermis_port> ports;
-    for (const auto& [name, usage] : expected) {
-      ports.push_back(dermis_port DERMIS_PORT_INIT);
-      ports.back().name = name;
-      ports.back().usage = usage;
-    }
-    dermis_pass_type type = DERMIS_PASS_TYPE_INIT;
-    type.name = "studio.read_all";
-    type.ports = ports.data();
-    type.port_count = static_cast<uint32_t>(ports.size());
-    type.record = ignore;
-    ASSERT_EQ(dermis_register_pass_type(host.context, &type), DERMIS_OK) << dermis_last_error();
+    const dermis_port ports[] = {port_of("first", DERMIS_PORT_STORAGE_BUFFER_READ),
+                                 port_of("second", DERMIS_PORT_STORAGE_BUFFER_READ),
+                                 port_of("scene", DERMIS_PORT_ACCELERATION_STRUCTURE),
+                                 port_of("shadows", DERMIS_PORT_ACCELERATION_STRUCTURE),
+                                 port_of("depth"),
+                                 port_of("marks"),
+                                 port_of("out", DERMIS_PORT_STORAGE_IMAGE_WRITE),
+                                 port_of("changed", DERMIS_PORT_STORAGE_BUFFER_UPDATE)};
+    const dermis_pass_type type = pass_type_of("studio.read_all", ports, ignore);
+    ASSERT_OK(dermis_register_pass_type(host.context, &type));
   }
 
   void bind_all() {
@@ -72,16 +60,7 @@ struct SharedBindings : ::testing::Test {
     for (const dermis_slot& slot : slots_of(host.graph)) {
       if (slot.type == DERMIS_SLOT_IMAGE) {
         place[slot.name] = images.size();
-        dermis_image_binding& one = images.emplace_back(dermis_image_binding DERMIS_IMAGE_BINDING_INIT);
-        one.slot = slot.id;
-        one.format = slot.format;
-        one.width = slot.width;
-        one.height = slot.height;
-        one.image = host.device.make_image();
-        one.view = host.device.make_view();
-        one.before = {VK_IMAGE_LAYOUT_GENERAL, 0, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
-                      VK_ACCESS_2_MEMORY_WRITE_BIT, 0};
-        one.after = one.before;
+        images.push_back(host.image_for(slot));
       } else if (slot.type == DERMIS_SLOT_BUFFER) {
         place[slot.name] = buffers.size();
         dermis_buffer_binding& one = buffers.emplace_back(dermis_buffer_binding DERMIS_BUFFER_BINDING_INIT);
@@ -105,19 +84,14 @@ struct SharedBindings : ::testing::Test {
   }
 
   void SetUp() override {
-    ASSERT_EQ(host.make_context(host.context_desc()), DERMIS_OK) << dermis_last_error();
+    ASSERT_OK(host.make_context(host.context_desc()));
     add_pass_type();
     const std::string text = shared_graph;
-    dermis_slot_format depth = DERMIS_SLOT_FORMAT_INIT;
-    depth.name = "depth";
-    depth.format = VK_FORMAT_D32_SFLOAT_S8_UINT;
-    dermis_graph_desc desc = DERMIS_GRAPH_DESC_INIT;
-    desc.source = source_of(text, "shared.json");
-    desc.width = desc.height = 64;
+    dermis_slot_format depth = slot_format("depth", VK_FORMAT_D32_SFLOAT_S8_UINT);
+    dermis_graph_desc desc = graph_desc(text, "shared.json", 64);
     desc.formats = &depth;
     desc.format_count = 1;
-    ASSERT_EQ(dermis_graph_create(host.context, &desc, &host.graph, nullptr), DERMIS_OK)
-        << dermis_last_error();
+    ASSERT_OK(dermis_graph_create(host.context, &desc, &host.graph, nullptr));
     bind_all();
   }
 
@@ -141,8 +115,7 @@ struct SharedBindings : ::testing::Test {
   }
   void recorded() { EXPECT_EQ(record(), DERMIS_OK) << dermis_last_error(); }
   void rejected(const char* a, const char* b) {
-    EXPECT_EQ(record(), DERMIS_ERROR_ARGUMENT);
-    EXPECT_THAT(dermis_last_error(), AllOf(HasSubstr(a), HasSubstr(b), HasSubstr("bound to the same")));
+    EXPECT_THAT(record(), Fails(DERMIS_ERROR_ARGUMENT, a, b, "bound to the same"));
   }
   dermis_buffer_binding& buffer(const char* name) { return buffers[place.at(name)]; }
   dermis_acceleration_structure_binding& structure(const char* name) { return structures[place.at(name)]; }

@@ -4,8 +4,6 @@
 #include "tests/integration/embedding/null_host.hpp"
 #include "tests/support/shipped_graphs.hpp"
 
-#include <gmock/gmock.h>
-
 #include <algorithm>
 #include <cstring>
 #include <filesystem>
@@ -94,8 +92,6 @@ template <class Handle> Handle invented(uint64_t number) {
   return out;
 }
 
-constexpr dermis_image_state anywhere{VK_IMAGE_LAYOUT_GENERAL, 0, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
-                                      VK_ACCESS_2_MEMORY_WRITE_BIT, 0};
 constexpr dermis_image_state no_image{VK_IMAGE_LAYOUT_UNDEFINED, 0, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
                                       VK_ACCESS_2_MEMORY_WRITE_BIT, 0};
 
@@ -105,7 +101,7 @@ void follow(const std::vector<TableRow>& table, const std::string& name, bool wi
   SCOPED_TRACE(name + (with_optional ? ", all slots" : ", required slots") + ", format " +
                std::to_string(choice));
   NullHost host;
-  ASSERT_EQ(host.make_context(host.context_desc()), DERMIS_OK) << dermis_last_error();
+  ASSERT_OK(host.make_context(host.context_desc()));
   std::vector<dermis_slot_format> formats;
   std::vector<const char*> unbound;
   std::map<std::string, std::string> bind; // Maps slots to types.
@@ -124,13 +120,8 @@ void follow(const std::vector<TableRow>& table, const std::string& name, bool wi
     format.format = format_named(names[choice % names.size()]);
   }
   const std::string text = read_text(dermis::shipped::graph_file(name));
-  const std::string skin = read_text("configs/profiles/skin.json");
-  dermis_profile profile = DERMIS_PROFILE_INIT;
-  profile.id = 1;
-  profile.source = source_of(skin, "skin.json");
-  dermis_graph_desc graph = DERMIS_GRAPH_DESC_INIT;
-  graph.source = source_of(text, "graph.json");
-  graph.width = graph.height = 64;
+  dermis_profile profile = skin_profile();
+  dermis_graph_desc graph = graph_desc(text, "graph.json", 64);
   graph.profiles = &profile;
   graph.profile_count = 1;
   graph.formats = formats.data();
@@ -138,10 +129,8 @@ void follow(const std::vector<TableRow>& table, const std::string& name, bool wi
   graph.unbound = unbound.data();
   graph.unbound_count = static_cast<uint32_t>(unbound.size());
   dermis_report report = nullptr;
-  ASSERT_EQ(dermis_graph_create(host.context, &graph, &host.graph, &report), DERMIS_OK)
-      << dermis_last_error() << dermis_report_text(report);
-  EXPECT_THAT(dermis_report_text(report), ::testing::Not(::testing::HasSubstr("D06")))
-      << "the graph knows every name of the table";
+  ASSERT_OK(dermis_graph_create(host.context, &graph, &host.graph, &report)) << dermis_report_text(report);
+  EXPECT_THAT(dermis_report_text(report), Not(HasSubstr("D06"))) << "the graph knows every name of the table";
   dermis_report_destroy(report);
 
   std::vector<dermis_image_binding> images;
@@ -167,15 +156,9 @@ void follow(const std::vector<TableRow>& table, const std::string& name, bool wi
       one.bytes = slot.bytes + uint64_t{slot.stride} * 16;
       one.before = one.after = no_image;
     } else {
-      auto& one = images.emplace_back(dermis_image_binding DERMIS_IMAGE_BINDING_INIT);
-      one.slot = slot.id;
+      auto& one = images.emplace_back(host.image_for(slot));
       const std::vector<std::string> names = names_in(reported->second);
       one.format = format_named(names[choice % names.size()]);
-      one.width = slot.width;
-      one.height = slot.height;
-      one.image = host.device.make_image();
-      one.view = host.device.make_view();
-      one.before = one.after = anywhere;
     }
   }
   EXPECT_EQ(bound, bind.size()) << "the table has slots that the graph does not have";
@@ -192,7 +175,7 @@ void follow(const std::vector<TableRow>& table, const std::string& name, bool wi
     const std::vector<std::string> names = names_in(depth->second);
     if (names[choice % names.size()].starts_with("d")) frame.depth_kind = DERMIS_DEPTH_DEVICE;
   }
-  EXPECT_EQ(dermis_view_record(dermis_graph_view(host.graph), &frame), DERMIS_OK) << dermis_last_error();
+  EXPECT_OK(dermis_view_record(dermis_graph_view(host.graph), &frame));
 }
 
 TEST(SlotTable, FollowingItBindsEveryShippedGraph) {

@@ -30,17 +30,8 @@ struct TwoViewsTest : DermisTest {
         options.unbound.emplace_back(name);
     if (!overlays.empty() && bound != "velocity") options.unbound.emplace_back("velocity");
     graph = make_graph(options);
-    ASSERT_NE(graph, nullptr);
     ASSERT_EQ(dermis_view_create(graph, nullptr, &other, nullptr), DERMIS_OK) << dermis_last_error();
     make_images(graph);
-  }
-
-  // Sets matrices of a camera at rest.
-  static void rest(dermis_frame& frame) {
-    for (size_t i = 0; i < 16; ++i)
-      frame.view_from_world[i] = frame.previous_view_from_world[i] = i % 5 == 0 ? 1.0f : 0.0f;
-    std::copy(std::begin(frame.clip_from_view), std::end(frame.clip_from_view),
-              std::begin(frame.previous_clip_from_view));
   }
 
   // Records frame `index` of a view, or of the graph's own view if `view` is null; submits and

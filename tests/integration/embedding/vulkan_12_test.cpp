@@ -23,14 +23,13 @@ struct Vulkan12 : CameraTest {
       const Camera camera = make_camera(graph, 1);
       for (uint64_t index = 1; index <= 5; ++index) {
         const std::string text = read_text("configs/graphs/burley.json");
-        const dermis_source source = source_of(text, "burley.json");
         if (index == 3) {
-          EXPECT_EQ(reload_text(graph, source), DERMIS_OK) << dermis_last_error();
+          EXPECT_OK(reload_text(graph, source_of(text, "burley.json")));
         }
         submit(index, [&](VkCommandBuffer into) {
           dermis_frame frame = frame_of(camera, index);
           frame.command_buffer = into;
-          ASSERT_EQ(dermis_view_record(dermis_graph_view(graph), &frame), DERMIS_OK) << dermis_last_error();
+          ASSERT_OK(dermis_view_record(dermis_graph_view(graph), &frame));
         });
       }
       out = light_of(camera);

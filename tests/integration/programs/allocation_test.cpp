@@ -4,8 +4,6 @@
 #include "tests/framegraph/test_scale.hpp"
 #include "tests/integration/embedding/recorded_frame.hpp"
 
-#include <gtest/gtest.h>
-
 #include <cstdlib>
 #include <fstream>
 #include <functional>
@@ -98,12 +96,12 @@ struct Allocation : RecordedFrame {};
 TEST_F(Allocation, RecordingAllocatesNothing) {
   for (int i = 0; i < 4; ++i) {
     if (i == 2) {
-      ASSERT_EQ(host.reload(), DERMIS_OK); // No history to copy remains.
+      ASSERT_OK(host.reload()); // No history to copy remains.
     }
     allocations = {true, 0, 0};
     const dermis_result result = host.record();
     allocations.counting = false;
-    EXPECT_EQ(result, DERMIS_OK) << dermis_last_error();
+    EXPECT_OK(result);
     EXPECT_EQ(allocations.count, 0u) << "frame " << i;
   }
 }

@@ -6,8 +6,6 @@
 #include "tests/integration/abi/sources.hpp"
 #include "tests/support/shipped_graphs.hpp"
 
-#include <gtest/gtest.h>
-
 #include <fstream>
 #include <functional>
 #include <sstream>
@@ -51,7 +49,7 @@ void fail_each_creation(tools::CountedHost& host, const std::function<dermis_res
     EXPECT_EQ(result, DERMIS_ERROR_DEVICE_MEMORY) << "creation " << nth;
     EXPECT_EQ(host.device().alive(), alive) << "creation " << nth;
     EXPECT_EQ(host.device().memory_bytes(), bytes) << "creation " << nth;
-    EXPECT_EQ(host.record_frame(), DERMIS_OK) << "creation " << nth;
+    EXPECT_OK(host.record_frame()) << "creation " << nth;
   }
   EXPECT_GT(failures, 10u);
   EXPECT_LT(failures, max_creations - 2);
@@ -75,7 +73,7 @@ TEST_P(FailingDevice, FailedGraph_LeaksNothing) {
 TEST_P(FailingDevice, FailedResize_KeepsTheGraph) {
   tools::CountedHost host;
   ASSERT_EQ(host.open(input(64, 48)), "");
-  ASSERT_EQ(host.record_frame(), DERMIS_OK);
+  ASSERT_OK(host.record_frame());
   uint32_t calls = 0; // The size changes each time, because a resize to the same size does nothing.
   fail_each_creation(host, [&] { return dermis_graph_resize(host.graph(), 48 + ++calls % 2, 48, nullptr); });
 }
@@ -84,7 +82,7 @@ TEST_P(FailingDevice, FailedReload_KeepsTheGraph) {
   tools::CountedHost host;
   const tools::CountedInput given = input(64, 48);
   ASSERT_EQ(host.open(given), "");
-  ASSERT_EQ(host.record_frame(), DERMIS_OK);
+  ASSERT_OK(host.record_frame());
   dermis_source source = DERMIS_SOURCE_INIT;
   source.name = given.name.c_str();
   source.text = given.graph.data();
@@ -96,16 +94,16 @@ TEST_P(FailingDevice, ReplacedObjects_AreFreedAfterTheirFrames) {
   tools::CountedHost host;
   const tools::CountedInput given = input(64, 48);
   ASSERT_EQ(host.open(given), "");
-  ASSERT_EQ(host.record_frame(), DERMIS_OK);
+  ASSERT_OK(host.record_frame());
   const uint64_t alive = host.device().alive(), bytes = host.device().memory_bytes();
   dermis_source source = DERMIS_SOURCE_INIT;
   source.name = given.name.c_str();
   source.text = given.graph.data();
   source.length = given.graph.size();
   for (uint32_t round = 0; round < 5; ++round) {
-    ASSERT_EQ(abi_test::reload_text(host.graph(), source), DERMIS_OK);
+    ASSERT_OK(abi_test::reload_text(host.graph(), source));
     for (uint32_t frame = 0; frame <= frames_in_flight; ++frame)
-      ASSERT_EQ(host.record_frame(), DERMIS_OK);
+      ASSERT_OK(host.record_frame());
     EXPECT_EQ(host.device().alive(), alive);
     EXPECT_EQ(host.device().memory_bytes(), bytes);
   }

@@ -11,14 +11,6 @@
 namespace dermis::abi_test {
 namespace {
 
-using testing::AllOf;
-using testing::Contains;
-using testing::Each;
-using testing::ElementsAre;
-using testing::HasSubstr;
-using testing::IsEmpty;
-using testing::Not;
-
 constexpr const char* combine = "common/subsurface_combine.comp"; // A kernel of burley.json.
 constexpr const char* store = "vec4(round_to_half(color), 1.0)";
 
@@ -67,16 +59,14 @@ struct Shaders : DermisTest {
     DermisTest::SetUp();
   }
   dermis_graph make() {
-    const dermis_graph graph = make_graph();
-    make_images(graph);
+    const dermis_graph graph = make_bound_graph();
     return graph;
   }
   // Runs one more frame in the first frame's light.
   std::vector<float> light(dermis_graph graph) {
     fill("lighting", [](uint32_t x, uint32_t) { return x < 32 ? 1.0f : 0.0f; });
-    const auto bound = bindings(graph);
-    dermis_frame one = frame(bound);
-    EXPECT_EQ(record(graph, one), DERMIS_OK) << dermis_last_error();
+    dermis_frame one = bound_frame(graph);
+    EXPECT_OK(record(graph, one));
     return texels("lighting");
   }
   dermis_result reload(dermis_graph graph, Said* said = nullptr) {
@@ -119,7 +109,7 @@ TEST(ShaderCompiler, UnchangedText_GivesTheBuildsWords) {
 TEST_F(Shaders, UnchangedText_GivesEqualLight) {
   const dermis_graph graph = make();
   light(graph);
-  ASSERT_EQ(reload(graph), DERMIS_OK) << dermis_last_error();
+  ASSERT_OK(reload(graph));
   EXPECT_THAT(folder.requested, AllOf(Contains(combine), Contains("common/environment.glsl")));
   EXPECT_THAT(folder.requested, Each(Not(HasSubstr("bindings"))))
       << "the library provides the bindings files";
@@ -130,13 +120,13 @@ TEST_F(Shaders, ChangedText_IsUsedUntilReset) {
   const dermis_graph graph = make();
   const auto whole = light(graph);
   folder.change(combine, store, "vec4(round_to_half(color * 0.5), 1.0)");
-  ASSERT_EQ(reload(graph), DERMIS_OK) << dermis_last_error();
+  ASSERT_OK(reload(graph));
   const uint64_t number = last_frame;
   const auto halved = light(graph);
-  ASSERT_EQ(dermis_graph_resize(graph, 64, 64, nullptr), DERMIS_OK);
+  ASSERT_OK(dermis_graph_resize(graph, 64, 64, nullptr));
   last_frame = number + 1;
   const auto resized = light(graph);
-  ASSERT_EQ(dermis_graph_reload_shaders(graph, nullptr, nullptr, nullptr), DERMIS_OK);
+  ASSERT_OK(dermis_graph_reload_shaders(graph, nullptr, nullptr, nullptr));
   last_frame = number;
   const dermis_graph untouched = make_graph();
   const auto expected = light(untouched);
@@ -158,9 +148,9 @@ TEST_F(Shaders, ChangedText_IsUsedUntilReset) {
 TEST_F(Shaders, TwoGraphs_HaveSeparateShaders) {
   const dermis_graph one = make(), other = make_graph();
   folder.change(combine, store, "vec4(round_to_half(color * 0.5), 1.0)");
-  ASSERT_EQ(reload(one), DERMIS_OK) << dermis_last_error();
+  ASSERT_OK(reload(one));
   folder.change(combine, store, "vec4(round_to_half(color * 0.25), 1.0)");
-  ASSERT_EQ(reload(other), DERMIS_OK) << dermis_last_error();
+  ASSERT_OK(reload(other));
   const uint64_t number = last_frame;
   const auto halved = light(one);
   last_frame = number;
@@ -183,11 +173,11 @@ TEST_F(Shaders, BrokenText_IsReportedAndChangesNothing) {
   EXPECT_EQ(reload(graph, &said), DERMIS_ERROR_SHADER);
   EXPECT_THAT(said.names, ElementsAre("shader_error")) << said.all;
   EXPECT_THAT(said.places, ElementsAre(place_in(text, "colour")));
-  EXPECT_THAT(said.all, AllOf(HasSubstr(std::string(combine) + ":"), HasSubstr("'colour'"), HasSubstr("^")));
+  EXPECT_THAT(said.all, HasAll(std::string(combine) + ":", "'colour'", "^"));
   EXPECT_THAT(dermis_last_error(), HasSubstr(combine));
   expect_unchanged_picture(graph);
   folder.changed.clear(); // The next good text is accepted.
-  EXPECT_EQ(reload(graph), DERMIS_OK);
+  EXPECT_OK(reload(graph));
 }
 
 TEST_F(Shaders, ErrorsAreReportedOncePerFile) {
@@ -198,8 +188,7 @@ TEST_F(Shaders, ErrorsAreReportedOncePerFile) {
   EXPECT_EQ(reload(graph, &said), DERMIS_ERROR_SHADER);
   EXPECT_EQ(std::ranges::count(said.names, "shader_error"), 2) << said.all;
   EXPECT_THAT(said.places, Contains(place_in(text, "flote "))) << said.all;
-  EXPECT_THAT(said.all,
-              AllOf(HasSubstr("common/half.glsl:"), HasSubstr("common/subsurface_tile_list.comp:")));
+  EXPECT_THAT(said.all, HasAll("common/half.glsl:", "common/subsurface_tile_list.comp:"));
   expect_unchanged_picture(graph);
 }
 
@@ -261,7 +250,7 @@ TEST_F(Shaders, NoFileFound_IsAnError_OthersStayBuiltIn) {
   folder.changed[combine] = "#version 460\n#extension GL_GOOGLE_include_directive : require\n"
                             "#include \"common/subsurface_combine.bindings.glsl\"\n"
                             "layout(local_size_x = 8, local_size_y = 8) in;\nvoid main() {}\n";
-  ASSERT_EQ(reload(graph, &said), DERMIS_OK) << said.all;
+  ASSERT_OK(reload(graph, &said)) << said.all;
   const auto untouched = light(graph);
   for (uint32_t x = 0; x < 64; ++x)
     EXPECT_EQ(untouched[size_t{x} * 4], x < 32 ? 1.0f : 0.0f);

@@ -5,8 +5,6 @@
 #include "tests/integration/abi/sources.hpp"
 #include "tests/integration/embedding/null_host.hpp"
 
-#include <gtest/gtest.h>
-
 #include <atomic>
 #include <functional>
 #include <thread>
@@ -21,11 +19,7 @@ struct Threads : ::testing::Test {
   NullHost host;
   std::string skin = read_text("configs/profiles/skin.json"),
               dipole = read_text("configs/profiles/skin_dipole.json");
-  void SetUp() override {
-    ASSERT_EQ(host.make_context(host.context_desc()), DERMIS_OK) << dermis_last_error();
-    ASSERT_EQ(host.make_graph(), DERMIS_OK) << dermis_last_error();
-    host.make_bindings();
-  }
+  void SetUp() override { ASSERT_OK(host.start()); }
   // Runs all jobs concurrently.
   static void run(const std::vector<std::function<void()>>& jobs) {
     std::vector<std::thread> threads;
@@ -37,43 +31,41 @@ struct Threads : ::testing::Test {
   void change(int number) const {
     switch (number % 8) {
     case 0:
-      EXPECT_EQ(host.reload(), DERMIS_OK);
+      EXPECT_OK(host.reload());
       break;
     case 1:
       EXPECT_EQ(host.reload("{ \"dermis\": 2"), DERMIS_ERROR_CONFIG);
       break;
     case 2:
-      EXPECT_EQ(dermis_graph_resize(host.graph, 33 + static_cast<uint32_t>(number) % 20, 40, nullptr),
-                DERMIS_OK);
+      EXPECT_OK(dermis_graph_resize(host.graph, 33 + static_cast<uint32_t>(number) % 20, 40, nullptr));
       break;
     case 3:
-      EXPECT_EQ(dermis_graph_set_setting(host.graph, "accumulate_weight", "0.25", nullptr), DERMIS_OK);
+      EXPECT_OK(dermis_graph_set_setting(host.graph, "accumulate_weight", "0.25", nullptr));
       break;
     case 4: {
       dermis_budget budget = DERMIS_BUDGET_INIT;
       budget.milliseconds = static_cast<float>(number % 3);
-      EXPECT_EQ(dermis_graph_set_budget(host.graph, &budget, nullptr), DERMIS_OK);
+      EXPECT_OK(dermis_graph_set_budget(host.graph, &budget, nullptr));
       break;
     }
     case 5:
-      EXPECT_EQ(host.set_profile(number % 3 == 0 ? skin : dipole), DERMIS_OK);
+      EXPECT_OK(host.set_profile(number % 3 == 0 ? skin : dipole));
       break;
     case 6: {
       const dermis_result removed = dermis_graph_set_profile(host.graph, 1, nullptr, nullptr);
       EXPECT_TRUE(removed == DERMIS_OK || removed == DERMIS_ERROR_ARGUMENT) << "another thread was first";
-      EXPECT_EQ(host.set_profile(skin), DERMIS_OK);
+      EXPECT_OK(host.set_profile(skin));
       break;
     }
     default: {
-      dermis_memory memory = DERMIS_MEMORY_INIT;
-      EXPECT_EQ(dermis_graph_memory(host.graph, &memory), DERMIS_OK);
+      memory_of(host.graph);
       uint32_t count = 0;
-      EXPECT_EQ(dermis_graph_slots(host.graph, &count, nullptr), DERMIS_OK);
-      EXPECT_EQ(dermis_view_settings(dermis_graph_view(host.graph), &count, nullptr), DERMIS_OK);
-      EXPECT_EQ(dermis_graph_heaps(host.graph, &count, nullptr), DERMIS_OK);
+      EXPECT_OK(dermis_graph_slots(host.graph, &count, nullptr));
+      EXPECT_OK(dermis_view_settings(dermis_graph_view(host.graph), &count, nullptr));
+      EXPECT_OK(dermis_graph_heaps(host.graph, &count, nullptr));
       size_t size = 0;
-      EXPECT_EQ(dermis_graph_describe(host.graph, DERMIS_DESCRIBE_TEXT, &size, nullptr), DERMIS_OK);
-      EXPECT_EQ(dermis_graph_calibration(host.graph, &size, nullptr), DERMIS_OK);
+      EXPECT_OK(dermis_graph_describe(host.graph, DERMIS_DESCRIBE_TEXT, &size, nullptr));
+      EXPECT_OK(dermis_graph_calibration(host.graph, &size, nullptr));
       break;
     }
     }
@@ -83,11 +75,11 @@ struct Threads : ::testing::Test {
 TEST_F(Threads, TwoGraphsOfOneContext_RecordConcurrently) {
   NullHost other; // Uses the context of the first host.
   other.context = host.context;
-  ASSERT_EQ(other.make_graph(48), DERMIS_OK) << dermis_last_error();
+  ASSERT_OK(other.make_graph(48));
   other.make_bindings();
   const auto record = [](NullHost& one) {
     for (uint64_t i = 0; i < frames; ++i)
-      ASSERT_EQ(one.record(), DERMIS_OK) << dermis_last_error();
+      ASSERT_OK(one.record());
   };
   run({[&] { record(host); }, [&] { record(other); }});
   dermis_graph_destroy(other.graph);
@@ -100,7 +92,7 @@ TEST_F(Threads, GraphChangesWhileAnotherThreadRecords) {
   run({[&] {
          uint64_t recorded = 0;
          while (changing || recorded < frames) {
-           ASSERT_EQ(host.record(), DERMIS_OK) << dermis_last_error();
+           ASSERT_OK(host.record());
            ++recorded;
          }
        },
@@ -109,21 +101,19 @@ TEST_F(Threads, GraphChangesWhileAnotherThreadRecords) {
            change(i);
          changing = false;
        }});
-  EXPECT_EQ(host.record(), DERMIS_OK);
+  EXPECT_OK(host.record());
 }
 
 TEST_F(Threads, ViewsRecordInThreadsWhileTheGraphChanges) {
   dermis_view views[2] = {nullptr, nullptr};
   for (dermis_view& view : views)
-    ASSERT_EQ(dermis_view_create(host.graph, nullptr, &view, nullptr), DERMIS_OK) << dermis_last_error();
+    ASSERT_OK(dermis_view_create(host.graph, nullptr, &view, nullptr));
   const auto record = [&](dermis_view view) {
     for (uint64_t index = 1; index <= frames; ++index) {
-      ASSERT_EQ(host.record(view, index), DERMIS_OK) << dermis_last_error();
+      ASSERT_OK(host.record(view, index));
       if (index % 16 == 0) {
-        ASSERT_EQ(
-            dermis_view_set_setting(view, "accumulate_weight", index % 32 == 0 ? "0.5" : nullptr, nullptr),
-            DERMIS_OK)
-            << dermis_last_error();
+        ASSERT_OK(
+            dermis_view_set_setting(view, "accumulate_weight", index % 32 == 0 ? "0.5" : nullptr, nullptr));
       }
       demo::ReportedFrame choice;
       ASSERT_GE(demo::read_reported(view, index - 1, choice), DERMIS_OK) << dermis_last_error();
@@ -142,9 +132,9 @@ TEST_F(Threads, GraphsAreCreatedAndDestroyedOnAllThreads) {
     for (int i = 0; i < 4; ++i) {
       NullHost other;
       other.context = host.context;
-      ASSERT_EQ(other.make_graph(32), DERMIS_OK) << dermis_last_error();
+      ASSERT_OK(other.make_graph(32));
       other.make_bindings();
-      ASSERT_EQ(other.record(), DERMIS_OK) << dermis_last_error();
+      ASSERT_OK(other.record());
       dermis_graph_destroy(other.graph);
       other.graph = nullptr;
       other.context = nullptr;
@@ -154,7 +144,7 @@ TEST_F(Threads, GraphsAreCreatedAndDestroyedOnAllThreads) {
   // A new context without kernels: several threads create equal kernels concurrently.
   host.destroy();
   const dermis_context_desc desc = host.context_desc();
-  ASSERT_EQ(host.make_context(desc), DERMIS_OK);
+  ASSERT_OK(host.make_context(desc));
   run({live, live, live});
 }
 

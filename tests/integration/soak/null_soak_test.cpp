@@ -4,29 +4,26 @@
 #include "tests/integration/embedding/null_host.hpp"
 #include "tests/integration/soak/memory_counts.hpp"
 
-#include <gtest/gtest.h>
-
 namespace dermis::abi_test {
 namespace {
 
 // Creates, runs, reloads, resizes and destroys a graph and its views.
 void live_once(NullHost& host) {
   constexpr uint32_t frames = 100, reload_every = 10, resize_every = 25, side = 64;
-  ASSERT_EQ(host.make_graph(side), DERMIS_OK) << dermis_last_error();
-  dermis_view view = nullptr;
-  ASSERT_EQ(dermis_view_create(host.graph, nullptr, &view, nullptr), DERMIS_OK) << dermis_last_error();
+  ASSERT_OK(host.make_graph(side));
+  dermis_view view = view_of(host.graph);
   host.last_frame = 0;
   for (uint32_t i = 1; i <= frames; ++i) {
     if (i % reload_every == 0) {
-      ASSERT_EQ(host.reload(), DERMIS_OK) << dermis_last_error();
+      ASSERT_OK(host.reload());
       ASSERT_EQ(host.reload("{ \"dermis\": 2 }"), DERMIS_ERROR_CONFIG);
     }
     if (i % resize_every == 0) { // Resizes back, too, because the host's images keep their size.
-      ASSERT_EQ(dermis_graph_resize(host.graph, side / 2, side / 4, nullptr), DERMIS_OK);
-      ASSERT_EQ(dermis_graph_resize(host.graph, side, side, nullptr), DERMIS_OK);
+      ASSERT_OK(dermis_graph_resize(host.graph, side / 2, side / 4, nullptr));
+      ASSERT_OK(dermis_graph_resize(host.graph, side, side, nullptr));
     }
-    ASSERT_EQ(host.record(), DERMIS_OK) << dermis_last_error();
-    ASSERT_EQ(host.record(view, i), DERMIS_OK) << dermis_last_error();
+    ASSERT_OK(host.record());
+    ASSERT_OK(host.record(view, i));
   }
   dermis_view_destroy(view);
   dermis_graph_destroy(host.graph);
@@ -40,8 +37,8 @@ TEST(NullSoak, MemoryDoesNotGrowOverManyFrames) {
   // Bytes; 3 KiB and 100 KiB were measured.
   constexpr int64_t heap_slack = 16 << 10, resident_slack = 1 << 20;
   NullHost host;
-  ASSERT_EQ(host.make_context(host.context_desc()), DERMIS_OK) << dermis_last_error();
-  ASSERT_EQ(host.make_graph(), DERMIS_OK) << dermis_last_error();
+  ASSERT_OK(host.make_context(host.context_desc()));
+  ASSERT_OK(host.make_graph());
   // Images of the null device live as long as the device, so they are created once.
   host.make_bindings();
   dermis_graph_destroy(host.graph);

@@ -72,7 +72,7 @@ struct Soak : DermisTest {
       desc.allocator = nullptr;
       made = dermis_context_create(&desc, &context);
     }
-    ASSERT_EQ(made, DERMIS_OK) << dermis_last_error();
+    ASSERT_OK(made);
   }
   void TearDown() override {
     drop();
@@ -128,12 +128,8 @@ struct Soak : DermisTest {
       sources.push_back(source_of(overlay, "overlay.json"));
     const char* unbound[] = {"albedo",   "scatter_scale", "importance",     "thickness",
                              "sampling", "back_lighting", "scattered_light"};
-    dermis_slot_format depth = DERMIS_SLOT_FORMAT_INIT;
-    depth.name = "depth";
-    depth.format = VK_FORMAT_R32_SFLOAT;
-    dermis_graph_desc out = DERMIS_GRAPH_DESC_INIT;
-    out.source = source_of(text, "graph.json");
-    out.width = out.height = soak_side;
+    dermis_slot_format depth = slot_format("depth", VK_FORMAT_R32_SFLOAT);
+    dermis_graph_desc out = graph_desc(text, "graph.json", soak_side);
     out.profiles = profiles;
     out.profile_count = 2;
     out.unbound = unbound;
@@ -142,7 +138,7 @@ struct Soak : DermisTest {
     out.format_count = 1;
     out.overlays = sources.data();
     out.overlay_count = static_cast<uint32_t>(sources.size());
-    ASSERT_EQ(dermis_graph_create(context, &out, &stage.graph, nullptr), DERMIS_OK) << dermis_last_error();
+    ASSERT_OK(dermis_graph_create(context, &out, &stage.graph, nullptr));
     stages.push_back(std::move(stage));
     add_view(stages.back(), nullptr);
     ++totals.graphs;
@@ -190,10 +186,7 @@ struct Soak : DermisTest {
     const dermis_view view = stage.views.back().view;
     if (view == nullptr) return;
     const auto& [name, values] = any(stage.desc.settings);
-    uint32_t count = 0;
-    ASSERT_EQ(dermis_view_settings(view, &count, nullptr), DERMIS_OK) << dermis_last_error();
-    std::vector<dermis_setting> settings(count, dermis_setting DERMIS_SETTING_INIT);
-    ASSERT_EQ(dermis_view_settings(view, &count, settings.data()), DERMIS_OK) << dermis_last_error();
+    const auto settings = list_of(dermis_setting DERMIS_SETTING_INIT, dermis_view_settings, view);
     const auto found = std::find_if(settings.begin(), settings.end(),
                                     [&](const dermis_setting& one) { return one.name == name; });
     ASSERT_NE(found, settings.end()) << name;
@@ -210,21 +203,19 @@ struct Soak : DermisTest {
       std::string text = text_of(stage.desc);
       const bool broken = chance(0.5);
       if (broken) text.resize(text.size() * (1 + random.below(98)) / 100);
-      const dermis_source source = source_of(text, "graph.json");
-      EXPECT_EQ(reload_text(stage.graph, source), broken ? DERMIS_ERROR_CONFIG : DERMIS_OK)
+      EXPECT_EQ(reload_text(stage.graph, source_of(text, "graph.json")),
+                broken ? DERMIS_ERROR_CONFIG : DERMIS_OK)
           << dermis_last_error();
       ++(broken ? totals.rejected_reloads : totals.reloads);
     }
     if (chance(0.02)) {
       std::tie(stage.width, stage.height) = any(sizes);
-      EXPECT_EQ(dermis_graph_resize(stage.graph, stage.width, stage.height, nullptr), DERMIS_OK)
-          << dermis_last_error();
+      EXPECT_OK(dermis_graph_resize(stage.graph, stage.width, stage.height, nullptr));
       ++totals.resizes;
     }
     if (chance(0.1)) {
       const auto& [name, values] = any(stage.desc.settings);
-      EXPECT_EQ(dermis_graph_set_setting(stage.graph, name.c_str(), any(values).c_str(), nullptr), DERMIS_OK)
-          << dermis_last_error();
+      EXPECT_OK(dermis_graph_set_setting(stage.graph, name.c_str(), any(values).c_str(), nullptr));
       ++totals.settings;
     }
     if (chance(0.05)) set_for_a_view(stage);
@@ -232,22 +223,18 @@ struct Soak : DermisTest {
       const std::string text =
           read_text(chance(0.5) ? "configs/profiles/wax.json" : "configs/profiles/jade.json");
       const dermis_source source = source_of(text, "profile.json");
-      EXPECT_EQ(
-          dermis_graph_set_profile(stage.graph, static_cast<uint32_t>(1 + random.below(2)), &source, nullptr),
-          DERMIS_OK)
-          << dermis_last_error();
+      EXPECT_OK(dermis_graph_set_profile(stage.graph, static_cast<uint32_t>(1 + random.below(2)), &source,
+                                         nullptr));
       ++totals.profiles;
     }
     if (chance(0.03)) {
-      dermis_budget budget = DERMIS_BUDGET_INIT;
-      budget.milliseconds = static_cast<float>(random.below(4)) * 0.5f;
-      budget.flags = chance(0.5) ? DERMIS_BUDGET_DETERMINISTIC : 0;
-      EXPECT_EQ(dermis_graph_set_budget(stage.graph, &budget, nullptr), DERMIS_OK) << dermis_last_error();
+      dermis_budget budget = budget_of(static_cast<float>(random.below(4)) * 0.5f,
+                                       chance(0.5) ? DERMIS_BUDGET_DETERMINISTIC : 0);
+      EXPECT_OK(dermis_graph_set_budget(stage.graph, &budget, nullptr));
       ++totals.budgets;
     }
     if (chance(0.01) && stage.views.size() < max_views) {
-      dermis_view view = nullptr;
-      ASSERT_EQ(dermis_view_create(stage.graph, nullptr, &view, nullptr), DERMIS_OK) << dermis_last_error();
+      dermis_view view = view_of(stage.graph);
       add_view(stage, view);
       ++totals.views;
     } else if (chance(0.01) && stage.views.size() > 1) {
@@ -304,14 +291,12 @@ struct Soak : DermisTest {
     const auto begin =
         demo::vulkan_struct<VkCommandBufferBeginInfo>(VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO);
     ASSERT_EQ(host->vk.vkBeginCommandBuffer(commands, &begin), VK_SUCCESS);
-    EXPECT_EQ(record(one, commands), DERMIS_OK) << dermis_last_error();
+    EXPECT_OK(record(one, commands));
     host->vk.vkEndCommandBuffer(commands);
     const dermis_view view = one.stage->views[one.view].view;
-    EXPECT_EQ(view != nullptr
+    EXPECT_OK(view != nullptr
                   ? dermis_view_discard(view, one.frame.frame_index)
-                  : dermis_view_discard(dermis_graph_view(one.stage->graph), one.frame.frame_index),
-              DERMIS_OK)
-        << dermis_last_error();
+                  : dermis_view_discard(dermis_graph_view(one.stage->graph), one.frame.frame_index));
     host->vk.vkFreeCommandBuffers(host->device, host->pool, 1, &commands);
     ++totals.discards;
   }
@@ -383,7 +368,7 @@ struct Soak : DermisTest {
     }
     const auto ran = demo::run_commands(*host, [&](VkCommandBuffer commands) -> demo::Result<> {
       for (const Recorded& one : all)
-        EXPECT_EQ(record(one, commands), DERMIS_OK) << dermis_last_error();
+        EXPECT_OK(record(one, commands));
       return demo::success();
     });
     ASSERT_TRUE(ran) << ran.error().text;

@@ -13,10 +13,6 @@
 namespace dermis::test {
 namespace {
 
-using ::testing::AllOf;
-using ::testing::HasSubstr;
-using ::testing::IsEmpty;
-
 class Captures : public CommandTest {
 protected:
   Outcome apply(const std::vector<std::string>& more = {}, const RunOptions& options = {}) const {
@@ -47,9 +43,7 @@ protected:
 
 TEST_F(Captures, EvenLightIsUnchanged) {
   write_plane(path("capture"));
-  const Outcome outcome = apply();
-  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
-  EXPECT_THAT(outcome.out, AllOf(HasSubstr("scatter"), HasSubstr("ms")));
+  ASSERT_THAT(apply(), Succeeds("scatter", "ms"));
   // 0.5 and its mean with any weights are exact in fp16; the remaining error is the division of two
   // sums in fp32.
   for (const float value : picture("scattered.exr").values)
@@ -84,8 +78,7 @@ TEST_F(Captures, NoScattering_ReturnsTheLightBitForBit) {
   for (size_t i = 0; i < plane.light.values.size(); ++i)
     plane.light.values[i] = std::sin(static_cast<float>(i)) + 1.1f;
   write_plane(path("capture"), plane);
-  const Outcome outcome = apply();
-  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  ASSERT_THAT(apply(), Succeeds());
   EXPECT_EQ(picture("scattered.exr").values, plane.light.values);
   // The colour is returned in half floats: 11 significant bits, rounded to nearest.
   const tools::Image combined = picture("combined.exr");
@@ -95,8 +88,7 @@ TEST_F(Captures, NoScattering_ReturnsTheLightBitForBit) {
 
 TEST_F(Captures, EvenLight_EqualsItsReference) {
   write_plane(path("capture"));
-  const Outcome outcome = reference();
-  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  ASSERT_THAT(reference(), Succeeds());
   for (const float value : picture("reference.exr").values)
     EXPECT_NEAR(value, 0.5f, 1e-6f);
 }
@@ -115,10 +107,8 @@ TEST_F(Captures, FramesAreComparedWithTheirReferences) {
         run({"reference", "--frames", path("capture"), "--out", path("truth" + subset), "--subset", subset})
             .exit_code,
         0);
-    const Outcome outcome = run({"compare", path("out"), path("truth" + subset), "--least-psnr", "35"});
-    EXPECT_EQ(outcome.exit_code, 0) << outcome.out << outcome.err;
-    EXPECT_THAT(outcome.out, AllOf(HasSubstr("frame_0000/scattered.exr"), HasSubstr("\nall "),
-                                   HasSubstr(subset == "0" ? "1024" : "100")));
+    EXPECT_THAT(run({"compare", path("out"), path("truth" + subset), "--least-psnr", "35"}),
+                Succeeds("frame_0000/scattered.exr", "\nall ", subset == "0" ? "1024" : "100"));
   }
   std::filesystem::remove_all(path("out/frame_0001"));
   EXPECT_THAT(run({"compare", path("out"), path("truth0")}).err, HasSubstr("frame_0001"));
@@ -126,8 +116,7 @@ TEST_F(Captures, FramesAreComparedWithTheirReferences) {
 
 TEST_F(Captures, SubsetHasAMaskOfItsPixels) {
   write_plane(path("capture"));
-  const Outcome outcome = reference({"--subset", "100"});
-  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  ASSERT_THAT(reference({"--subset", "100"}), Succeeds());
   const tools::Image mask = picture("mask.exr");
   EXPECT_EQ(std::count(mask.values.begin(), mask.values.end(), 1.0f), 100);
 }
@@ -154,8 +143,7 @@ TEST_F(Captures, TooBrightWithoutProfile_IsClampedToTheLargestFloat) {
   write_plane(path("capture"), plane);
   write_channel(path("capture"), "albedo", filled(plane.width, plane.height, 3, 65504));
   write_channel(path("capture"), "specular", filled(plane.width, plane.height, 3, maximum));
-  const Outcome outcome = apply();
-  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  ASSERT_THAT(apply(), Succeeds());
   for (const float value : picture("combined.exr").values)
     EXPECT_EQ(value, maximum);
 }
@@ -170,8 +158,7 @@ TEST_F(Captures, OutsideOfTheRectangle_LightIsUnchanged) {
   const std::string whole = "[0, 0, 32, 32]";
   text.replace(text.find(whole), whole.size(), "[3, 5, 17, 11]");
   write("capture/frame.json", text);
-  const Outcome outcome = apply();
-  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  ASSERT_THAT(apply(), Succeeds());
   for (const float value : picture("scattered.exr").values)
     EXPECT_NEAR(value, 0.25f, 1e-3f);
   for (const float value : picture("combined.exr").values)
@@ -181,9 +168,7 @@ TEST_F(Captures, OutsideOfTheRectangle_LightIsUnchanged) {
 TEST_F(Captures, ImageOfAnotherSize_IsNamed) {
   write_plane(path("capture"));
   write_channel(path("capture"), "depth", filled(31, 32, 1, 1.0f));
-  const Outcome outcome = apply();
-  EXPECT_EQ(outcome.exit_code, 1);
-  EXPECT_THAT(outcome.err, AllOf(HasSubstr("depth.exr"), HasSubstr("31"), HasSubstr("32")));
+  EXPECT_THAT(apply(), FailsWith(1, "depth.exr", "31", "32"));
   EXPECT_THAT(files("out"), IsEmpty());
 }
 
@@ -193,16 +178,14 @@ TEST_F(Captures, MissingProfileIsNamed) {
   write_plane(path("capture"), plane);
   for (const Outcome& outcome : {apply(), reference()}) {
     EXPECT_EQ(outcome.exit_code, 1);
-    EXPECT_THAT(outcome.err, AllOf(HasSubstr("frame.json:"), HasSubstr("skinn")));
+    EXPECT_THAT(outcome.err, HasAll("frame.json:", "skinn"));
   }
   EXPECT_THAT(files("out"), IsEmpty());
 }
 
 TEST_F(Captures, AFolderWithoutFramesIsRejected) {
   std::filesystem::create_directories(path("capture"));
-  const Outcome outcome = apply();
-  EXPECT_EQ(outcome.exit_code, 1);
-  EXPECT_THAT(outcome.err, HasSubstr("capture"));
+  EXPECT_THAT(apply(), FailsWith(1, "capture"));
 }
 
 TEST_F(Captures, UnwritableFolder_IsAnEnvironmentError) {
@@ -218,18 +201,13 @@ TEST_F(Captures, NoVulkanDriver_IsAnEnvironmentError) {
   write_plane(path("capture"));
   RunOptions options;
   options.environment = {"VK_ICD_FILENAMES=/nonexistent.json", "VK_DRIVER_FILES=/nonexistent.json"};
-  const Outcome outcome = apply({}, options);
-  EXPECT_EQ(outcome.exit_code, 3);
-  EXPECT_THAT(outcome.err, HasSubstr("Vulkan"));
+  EXPECT_THAT(apply({}, options), FailsWith(3, "Vulkan"));
   EXPECT_THAT(files("out"), IsEmpty());
 }
 
 TEST_F(Captures, JsonOutputIsOneDocument) {
   write_plane(path("capture"));
-  const Outcome good = apply({"--json", "--repeat", "2"});
-  EXPECT_EQ(good.exit_code, 0);
-  EXPECT_TRUE(is_json(good.out)) << good.out;
-  EXPECT_THAT(good.out, AllOf(HasSubstr("\"ok\": true"), HasSubstr("\"device_ms\"")));
+  EXPECT_THAT(apply({"--json", "--repeat", "2"}), Succeeds(IsJson(), "\"ok\": true", "\"device_ms\""));
   const Outcome bad =
       run({"apply", "--graph", burley, "--frames", path("none"), "--out", path("out"), "--json"});
   EXPECT_EQ(bad.exit_code, 1);

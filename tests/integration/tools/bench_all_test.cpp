@@ -10,28 +10,22 @@
 namespace dermis::test {
 namespace {
 
-using ::testing::HasSubstr;
-using ::testing::Not;
-
 class BenchAll : public CommandTest {};
 
 TEST_F(BenchAll, WritesPagesAndAnIndex_MeasuresNothingTwice) {
   const std::vector<std::string> arguments = {"bench", "all", "--out", path("out"), "--suites", "record"};
-  const Outcome first = run(arguments);
-  ASSERT_EQ(first.exit_code, 0) << first.err;
+  ASSERT_THAT(run(arguments), Succeeds());
   EXPECT_THAT(files("out"),
-              ::testing::ElementsAre("index.html", "index.json", "record.csv", "record.html", "record.json"));
+              ElementsAre("index.html", "index.json", "record.csv", "record.html", "record.json"));
   const std::string index = read("out/index.html");
-  EXPECT_THAT(index, HasSubstr("<a href='record.html'>"));
-  EXPECT_THAT(index, HasSubstr("dermis bench record --json record.json --csv record.csv --html record.html"));
-  EXPECT_THAT(index, HasSubstr("not measured")); // The other suites.
+  EXPECT_THAT(index, HasAll("<a href='record.html'>",
+                            "dermis bench record --json record.json --csv record.csv --html record.html",
+                            "not measured")); // The other suites.
   EXPECT_THAT(index, HasSubstr("<dt>processor"));
   EXPECT_THAT(read("out/record.html"), HasSubstr("chain of 100"));
 
   const auto written = std::filesystem::last_write_time(path("out/record.json"));
-  const Outcome second = run(arguments);
-  EXPECT_EQ(second.exit_code, 0);
-  EXPECT_THAT(second.out, HasSubstr("record is there from an earlier run"));
+  EXPECT_THAT(run(arguments), Succeeds("record is there from an earlier run"));
   EXPECT_EQ(std::filesystem::last_write_time(path("out/record.json")), written);
 
   // A suite is measured again if its page is missing or was made by another command line.
@@ -63,11 +57,9 @@ TEST_F(BenchAll, StoppedRun_ContinuesInItsMode) {
   stopped.interrupt_after = path("out/index.html"); // The index exists after the first suite.
   EXPECT_EQ(run(arguments, stopped).exit_code, 130);
   EXPECT_THAT(files("out"),
-              ::testing::ElementsAre("index.html", "index.json", "record.csv", "record.html", "record.json"));
+              ElementsAre("index.html", "index.json", "record.csv", "record.html", "record.json"));
 
-  const Outcome outcome = run(arguments);
-  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
-  EXPECT_THAT(outcome.out, HasSubstr("1 of 2: record is there from an earlier run"));
+  EXPECT_THAT(run(arguments), Succeeds("1 of 2: record is there from an earlier run"));
   EXPECT_THAT(read("out/index.html"), HasSubstr("dermis bench compile --quick --json"));
   EXPECT_THAT(read("out/compile.html"), HasSubstr("figures are meaningless"));
   // Every row of the whole suite, up to graphs of 10,000 passes.
@@ -87,10 +79,9 @@ TEST_F(BenchAll, StoppedRun_ContinuesInItsMode) {
 }
 
 TEST_F(BenchAll, UnknownSuite_IsAUsageError) {
-  const Outcome outcome = run({"bench", "all", "--out", path("out"), "--suites", "recrod"});
-  EXPECT_EQ(outcome.exit_code, 2);
-  EXPECT_THAT(outcome.err, HasSubstr("did you mean 'record'?"));
-  EXPECT_THAT(files(), ::testing::IsEmpty());
+  EXPECT_THAT(run({"bench", "all", "--out", path("out"), "--suites", "recrod"}),
+              FailsWith(2, "did you mean 'record'?"));
+  EXPECT_THAT(files(), IsEmpty());
 }
 
 TEST_F(BenchAll, ForeignIndex_IsIgnored) {

@@ -43,10 +43,8 @@ protected:
 TEST_F(BenchErrorTime, WritesARowPerSceneAndTechnique) {
   const std::string missing =
       R"({ "technique": "unheard_of", "setting": "", "graph": "configs/graphs/none.json" },)";
-  const Outcome outcome = run(arguments(bench_file(missing)));
-  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
-  EXPECT_THAT(outcome.out, HasSubstr("graph 'configs/graphs/none.json' does not exist"));
-  EXPECT_THAT(outcome.out, HasSubstr("no model is given (--head FOLDER)"));
+  ASSERT_THAT(run(arguments(bench_file(missing))), Succeeds("graph 'configs/graphs/none.json' does not exist",
+                                                            "no model is given (--head FOLDER)"));
   const std::string json = read(path("out.json"));
   EXPECT_TRUE(is_json(json));
   for (const char* key : {"scene", "d_px", "framing", "technique", "setting", "device_ms", "sampling_ms",
@@ -85,11 +83,8 @@ TEST_F(BenchErrorTime, ErrorsAreEqualWithAndWithoutTheCache) {
 TEST_F(BenchErrorTime, InvalidFile_IsReported) {
   const std::string file = write("bad.json", R"({ "dermis_benchmark": 1, "repetitions": 0,
   "scenes": [ { "scene": "nowhere", "framing": "close", "d_px": [1] } ] })");
-  const Outcome outcome = run({"bench", "error-time", "--file", file});
-  EXPECT_EQ(outcome.exit_code, 1);
-  EXPECT_THAT(outcome.err, HasSubstr("bad.json:1:"));
-  EXPECT_THAT(outcome.err, HasSubstr("'nowhere' is no generated scene"));
-  EXPECT_THAT(outcome.err, HasSubstr("repetitions"));
+  EXPECT_THAT(run({"bench", "error-time", "--file", file}),
+              FailsWith(1, "bad.json:1:", "'nowhere' is no generated scene", "repetitions"));
 }
 
 TEST_F(BenchErrorTime, NothingToMeasure_IsReported) {
@@ -100,19 +95,16 @@ TEST_F(BenchErrorTime, NothingToMeasure_IsReported) {
 }
 
 TEST_F(BenchErrorTime, ShippedFileIsValid) {
-  const Outcome outcome = run({"bench", "error-time", "--scenes", "edge", "--techniques", "burley", "--size",
-                               "16x16", "--csv", "-", "--cache", "", "--study"});
-  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
-  EXPECT_THAT(outcome.out, ::testing::StartsWith("scene,d_px,framing"));
+  ASSERT_THAT(run({"bench", "error-time", "--scenes", "edge", "--techniques", "burley", "--size", "16x16",
+                   "--csv", "-", "--cache", "", "--study"}),
+              Succeeds(::testing::StartsWith("scene,d_px,framing")));
 }
 
 TEST_F(BenchErrorTime, UnusableGraphOrSetting_IsReported) {
   const std::string wrong = R"({ "technique": "wrong", "setting": "", "graph": "configs/graphs/burley.json",
                                  "set": { "sample": 8 } },)";
-  const Outcome outcome = run({"bench", "error-time", "--file", bench_file(wrong), "--size", "32x32"});
-  EXPECT_EQ(outcome.exit_code, 1);
-  EXPECT_THAT(outcome.err, HasSubstr("configs/graphs/burley.json"));
-  EXPECT_THAT(outcome.err, HasSubstr("sample"));
+  EXPECT_THAT(run({"bench", "error-time", "--file", bench_file(wrong), "--size", "32x32"}),
+              FailsWith(1, "configs/graphs/burley.json", "sample"));
 }
 
 } // namespace

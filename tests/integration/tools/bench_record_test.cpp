@@ -8,14 +8,10 @@
 namespace dermis::test {
 namespace {
 
-using ::testing::HasSubstr;
-
 struct BenchRecord : CommandTest {};
 
 TEST_F(BenchRecord, RecordingAllocatesNothing) {
-  const Outcome outcome = run({"bench", "record", "--json", path("rows.json")});
-  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
-  EXPECT_THAT(outcome.out, HasSubstr("chain of 100"));
+  ASSERT_THAT(run({"bench", "record", "--json", path("rows.json")}), Succeeds("chain of 100"));
   std::ifstream stream(path("rows.json"));
   const nlohmann::json rows = nlohmann::json::parse(stream).at("rows");
   ASSERT_GE(rows.size(), 4u);
@@ -28,17 +24,12 @@ TEST_F(BenchRecord, RecordingAllocatesNothing) {
 }
 
 TEST_F(BenchRecord, AFolderWithoutGraphsIsNamed) {
-  const Outcome outcome = run({"bench", "record", "--graphs", path("none")});
-  EXPECT_EQ(outcome.exit_code, 1);
-  EXPECT_THAT(outcome.err, HasSubstr(path("none")));
-  EXPECT_THAT(outcome.err, HasSubstr("--graphs"));
+  EXPECT_THAT(run({"bench", "record", "--graphs", path("none")}), FailsWith(1, path("none"), "--graphs"));
 }
 
 TEST_F(BenchRecord, AGraphWithErrorsIsExplained) {
   write("broken.json", "{ \"dermis\": 2, \"nam\": \"x\" }");
-  const Outcome outcome = run({"bench", "record", "--graphs", path("")});
-  EXPECT_EQ(outcome.exit_code, 1);
-  EXPECT_THAT(outcome.err, HasSubstr("broken.json:1:16"));
+  EXPECT_THAT(run({"bench", "record", "--graphs", path("")}), FailsWith(1, "broken.json:1:16"));
 }
 
 } // namespace

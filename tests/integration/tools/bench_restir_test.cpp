@@ -15,8 +15,9 @@
 namespace dermis::tools {
 namespace {
 
+using test::FailsWith;
 using test::Outcome;
-using ::testing::HasSubstr;
+using test::Succeeds;
 
 const std::string sources = DERMIS_SOURCE_DIR;
 
@@ -60,9 +61,8 @@ TEST(RestirVariants, CoverEveryReuseWithEveryShift) {
   std::vector<std::string> found;
   for (const RestirVariant& one : variants_of(graph))
     found.push_back(one.reuse + " " + one.shift + (one.has_history() ? " with history" : ""));
-  EXPECT_THAT(found,
-              ::testing::ElementsAre("none ", "spatial reconnection", "spatial delayed",
-                                     "temporal reconnection with history", "temporal delayed with history"));
+  EXPECT_THAT(found, ElementsAre("none ", "spatial reconnection", "spatial delayed",
+                                 "temporal reconnection with history", "temporal delayed with history"));
 }
 
 TEST(RestirVariants, MorePathsInMoreTime_AreNotBetter) {
@@ -85,8 +85,8 @@ TEST(RestirRegions, FindTransmittedLight) {
   reference.light = {1, 1, 1, 2, 2, 2, 2, 2, 2};
   reference.population = 3;
   const RayRegions regions = split_by_light(reference, frame, 6);
-  EXPECT_THAT(regions.through.pixels, ::testing::ElementsAre(0u));
-  EXPECT_THAT(regions.rest.pixels, ::testing::ElementsAre(1u, 2u));
+  EXPECT_THAT(regions.through.pixels, ElementsAre(0u));
+  EXPECT_THAT(regions.rest.pixels, ElementsAre(1u, 2u));
   const std::vector<float> found = {0.25f, 0.25f, 0.25f, 2, 2, 2, 1, 1, 1};
   const LightError error = measure_light(found, regions);
   EXPECT_NEAR(error.through.light, 0.25, 1e-6);
@@ -141,22 +141,18 @@ TEST_F(BenchRestir, NoRayQueries_NamesTheDriverAndIsNoFailure) {
   const Outcome sequential = run({"bench", "restir", "--quick", "--cache", path("cache")});
   if (sequential.exit_code == 0) GTEST_SKIP() << "this device has ray queries";
   EXPECT_EQ(sequential.exit_code, 3);
-  EXPECT_THAT(sequential.err, HasSubstr("no ray queries"));
-  EXPECT_THAT(sequential.err, HasSubstr("tests/scripts/fetch_driver.sh"));
-  const Outcome all = run({"bench", "all", "--out", path("out"), "--suites", "restir", "--quick"});
-  EXPECT_EQ(all.exit_code, 0) << all.err;
-  EXPECT_THAT(all.out, HasSubstr("left out: "));
+  EXPECT_THAT(sequential.err, HasAll("no ray queries", "tests/scripts/fetch_driver.sh"));
+  EXPECT_THAT(run({"bench", "all", "--out", path("out"), "--suites", "restir", "--quick"}),
+              Succeeds("left out: "));
   EXPECT_THAT(read("out/index.html"), HasSubstr("left out: "));
-  EXPECT_THAT(files("out"), ::testing::ElementsAre("index.html", "index.json"));
+  EXPECT_THAT(files("out"), ElementsAre("index.html", "index.json"));
 }
 
 TEST_F(BenchRestirWithRayQueries, RayRenderingIsNotMeasuredInScreenSpace) {
-  const Outcome outcome =
-      run({"render", "configs/scenes/bust.json", "--graph", "configs/graphs/papers/restir.json", "--out",
-           path("out"), "--size", "32x24", "--frames", "1"},
-          with_rays());
-  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
-  EXPECT_THAT(outcome.out, HasSubstr("not measured, the technique traces rays"));
+  EXPECT_THAT(run({"render", "configs/scenes/bust.json", "--graph", "configs/graphs/papers/restir.json",
+                   "--out", path("out"), "--size", "32x24", "--frames", "1"},
+                  with_rays()),
+              Succeeds("not measured, the technique traces rays"));
 }
 
 TEST_F(BenchRestirWithRayQueries, WritesARowPerReuseAndTechnique) {
@@ -164,8 +160,7 @@ TEST_F(BenchRestirWithRayQueries, WritesARowPerReuseAndTechnique) {
                                               "back_lit",        "--shifts", "reconnection",    "--json",
                                               path("rows.json"), "--html",   path("page.html"), "--csv",
                                               path("rows.csv"),  "--cache",  path("cache")};
-  const Outcome first = run(arguments, with_rays());
-  ASSERT_EQ(first.exit_code, 0) << first.err;
+  ASSERT_THAT(run(arguments, with_rays()), Succeeds());
   const nlohmann::json found = rows("rows.json");
   for (const char* key : {"scene", "shift", "reuse", "samples", "device_ms", "mse",
                           "mse_ratio_to_none_at_equal_time", "light_through"})
@@ -183,7 +178,7 @@ TEST_F(BenchRestirWithRayQueries, WritesARowPerReuseAndTechnique) {
     }
   }
   EXPECT_THAT(read("page.html"), HasSubstr("back_lit, reference"));
-  EXPECT_THAT(files("cache"), ::testing::SizeIs(1));
+  EXPECT_THAT(files("cache"), SizeIs(1));
   const auto kept = std::filesystem::last_write_time(path("cache/" + files("cache").front()));
   ASSERT_EQ(run(arguments, with_rays()).exit_code, 0);
   EXPECT_EQ(std::filesystem::last_write_time(path("cache/" + files("cache").front())), kept);
@@ -193,9 +188,8 @@ TEST_F(BenchRestirWithRayQueries, WritesARowPerReuseAndTechnique) {
 }
 
 TEST_F(BenchRestirWithRayQueries, MissingScene_LeavesNothingToMeasure) {
-  const Outcome outcome = run({"bench", "restir", "--quick", "--scenes", "none"}, with_rays());
-  EXPECT_EQ(outcome.exit_code, 2);
-  EXPECT_THAT(outcome.err, HasSubstr("no scene is selected"));
+  EXPECT_THAT(run({"bench", "restir", "--quick", "--scenes", "none"}, with_rays()),
+              FailsWith(2, "no scene is selected"));
 }
 
 } // namespace

@@ -10,7 +10,6 @@
 namespace dermis::test {
 namespace {
 
-using ::testing::HasSubstr;
 class BenchStability : public CommandTest {};
 
 TEST_F(BenchStability, GivesARowForEachCaseAndTechnique) {
@@ -36,10 +35,10 @@ TEST_F(BenchStability, GivesARowForEachCaseAndTechnique) {
 
 TEST_F(BenchStability, UnevenRatio_DisturbsTheHistory) {
   const std::string rows = path("rows.json");
-  const Outcome outcome = run({"bench", "stability", "--techniques", "sap_residual", "--cases",
-                               "red_comes,velocity_in_stripes,velocity_of_depth_in_stripes", "--updates",
-                               "1000", "--json", rows});
-  EXPECT_EQ(outcome.exit_code, 0) << outcome.out << outcome.err;
+  EXPECT_THAT(run({"bench", "stability", "--techniques", "sap_residual", "--cases",
+                   "red_comes,velocity_in_stripes,velocity_of_depth_in_stripes", "--updates", "1000",
+                   "--json", rows}),
+              Succeeds());
   const nlohmann::json document = nlohmann::json::parse(std::ifstream(rows));
   ASSERT_EQ(document["rows"].size(), 3u);
   for (const auto& row : document["rows"]) {
@@ -59,12 +58,12 @@ TEST_F(BenchStability, TestsOnlyTheOutputsOfATechnique) {
     { "technique": "afis_guided", "setting": "ccv", "graph": "configs/graphs/papers/afis_guided.json",
       "set": { "guidance": "ccv" } } ] })");
   const std::string rows = path("rows.json");
-  const Outcome outcome = run({"bench", "stability", "--file", techniques, "--cases",
-                               "velocity_nan,samples_in_a_tile,samples_under_exposure_x16,"
-                               "depth_reversed_infinite_far,size_changes_every_frame,d_0_of_blue,"
-                               "anything_anywhere,anything_under_even_light",
-                               "--json", rows});
-  EXPECT_EQ(outcome.exit_code, 0) << outcome.out << outcome.err;
+  EXPECT_THAT(run({"bench", "stability", "--file", techniques, "--cases",
+                   "velocity_nan,samples_in_a_tile,samples_under_exposure_x16,"
+                   "depth_reversed_infinite_far,size_changes_every_frame,d_0_of_blue,"
+                   "anything_anywhere,anything_under_even_light",
+                   "--json", rows}),
+              Succeeds());
   const nlohmann::json document = nlohmann::json::parse(std::ifstream(rows));
   std::map<std::string, std::set<std::string>> requested;
   for (const auto& row : document["rows"]) {
@@ -81,10 +80,8 @@ TEST_F(BenchStability, TestsOnlyTheOutputsOfATechnique) {
 }
 
 TEST_F(BenchStability, UnknownNames_AreRejected) {
-  const Outcome outcome =
-      run({"bench", "stability", "--techniques", "none", "--cases", "none", "--updates", "1000"});
-  EXPECT_EQ(outcome.exit_code, 2);
-  EXPECT_THAT(outcome.err, HasSubstr("no case and technique has these names"));
+  EXPECT_THAT(run({"bench", "stability", "--techniques", "none", "--cases", "none", "--updates", "1000"}),
+              FailsWith(2, "no case and technique has these names"));
 }
 
 } // namespace

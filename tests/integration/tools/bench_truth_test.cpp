@@ -35,18 +35,14 @@ TEST_F(BenchReference, PrintsExpectedAndMeasured_FailureIsAProblem) {
 
 TEST_F(BenchReference, SucceedsIfAllPropertiesHold) {
   DERMIS_FULL_TESTS_ONLY();
-  const Outcome outcome =
-      run({"bench", "truth", "--file", property_file(R"({ "white_furnace": 0.001 })"), "--json", "-"});
-  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
-  EXPECT_TRUE(is_json(outcome.out));
-  EXPECT_THAT(outcome.out, ::testing::Not(HasSubstr(R"("holds": false)")));
+  EXPECT_THAT(
+      run({"bench", "truth", "--file", property_file(R"({ "white_furnace": 0.001 })"), "--json", "-"}),
+      Succeeds(IsJson(), ::testing::Not(HasSubstr(R"("holds": false)"))));
 }
 
 TEST_F(BenchReference, MisspeltProperty_SuggestsTheNearest) {
-  const Outcome outcome = run({"bench", "truth", "--file", property_file(R"({ "white_furnaces": 1 })")});
-  EXPECT_EQ(outcome.exit_code, 1);
-  EXPECT_THAT(outcome.err, HasSubstr("white_furnace"));
-  EXPECT_THAT(outcome.err, HasSubstr("laws.json:3:"));
+  EXPECT_THAT(run({"bench", "truth", "--file", property_file(R"({ "white_furnaces": 1 })")}),
+              FailsWith(1, "white_furnace", "laws.json:3:"));
 }
 
 } // namespace

@@ -8,7 +8,6 @@ namespace dermis::test {
 namespace {
 
 using nlohmann::json;
-using ::testing::HasSubstr;
 
 constexpr const char* graph = "configs/graphs/skin.json";
 constexpr const char* scene = "configs/scenes/bust.json";
@@ -35,57 +34,45 @@ TEST_F(Choice, FramesReportExpectedAndMeasured) {
 }
 
 TEST_F(Choice, TextOutputIsASentence) {
-  const Outcome outcome =
-      run({"render", scene, "--graph", graph, "--size", "64x36", "--frames", "2", "--subset", "0", "--budget",
-           "0.001", "--deterministic", "--out", path("out")});
-  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
-  EXPECT_THAT(outcome.out, HasSubstr("frame 1: technique=off"));
-  EXPECT_THAT(outcome.out, HasSubstr("budget 0.00; RMSE"));
-  EXPECT_THAT(outcome.out,
-              HasSubstr("(no configuration fits the budget: the fastest runs); next better technique="));
+  ASSERT_THAT(run({"render", scene, "--graph", graph, "--size", "64x36", "--frames", "2", "--subset", "0",
+                   "--budget", "0.001", "--deterministic", "--out", path("out")}),
+              Succeeds("frame 1: technique=off", "budget 0.00; RMSE",
+                       "(no configuration fits the budget: the fastest runs); next better technique="));
 }
 
 TEST_F(Choice, CalibrateWritesAFileForValidateAndRender) {
   const std::string file = path("calibration.json");
   const std::string overlay = write("few.json", techniques_alone);
-  const Outcome made =
-      run({"calibrate", graph, "--overlay", overlay, "--size", "64x36", "--frames", "2", "--out", file});
-  ASSERT_EQ(made.exit_code, 0) << made.err;
-  EXPECT_THAT(made.out, HasSubstr("holds the costs of"));
-  const Outcome checked = run({"validate", file});
-  EXPECT_EQ(checked.exit_code, 0) << checked.err;
-  EXPECT_THAT(checked.out, HasSubstr("calibration, no problems"));
-  const Outcome used = run({"render", scene, "--graph", graph, "--size", "64x36", "--frames", "2", "--subset",
-                            "0", "--calibration", file, "--budget", "5", "--out", path("out")});
-  EXPECT_EQ(used.exit_code, 0) << used.err;
+  ASSERT_THAT(
+      run({"calibrate", graph, "--overlay", overlay, "--size", "64x36", "--frames", "2", "--out", file}),
+      Succeeds("holds the costs of"));
+  EXPECT_THAT(run({"validate", file}), Succeeds("calibration, no problems"));
+  EXPECT_THAT(run({"render", scene, "--graph", graph, "--size", "64x36", "--frames", "2", "--subset", "0",
+                   "--calibration", file, "--budget", "5", "--out", path("out")}),
+              Succeeds());
 }
 
 TEST_F(Choice, InvalidCalibration_IsRejectedWithItsPlace) {
   const std::string file =
       write("calibration.json", "{ \"dermis_calibration\": 2,\n \"devise\": \"d\", \"costs\": [] }");
-  const Outcome outcome = run({"render", scene, "--graph", graph, "--size", "64x36", "--frames", "1",
-                               "--subset", "0", "--calibration", file, "--out", path("out")});
-  EXPECT_EQ(outcome.exit_code, 1);
-  EXPECT_THAT(outcome.err, HasSubstr("2:2"));
-  EXPECT_THAT(outcome.err, HasSubstr("did you mean 'device'?"));
+  EXPECT_THAT(run({"render", scene, "--graph", graph, "--size", "64x36", "--frames", "1", "--subset", "0",
+                   "--calibration", file, "--out", path("out")}),
+              FailsWith(1, "2:2", "did you mean 'device'?"));
 }
 
 TEST_F(Choice, ExplainDescribesAFrame) {
   const Outcome outcome = run({"explain", "configs/graphs/papers/hybrid.json", "--frame", "--size", "64x36",
                                "--budget", "1000", "--deterministic"});
-  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
-  EXPECT_THAT(outcome.out, HasSubstr("frame 5: "));
+  ASSERT_THAT(outcome, Succeeds("frame 5: "));
   // d is 0.2 px: no tile requests samples at this size.
-  EXPECT_THAT(outcome.out, HasSubstr("ms predicted"));
-  EXPECT_THAT(outcome.out, HasSubstr("budget 1000.00"));
+  EXPECT_THAT(outcome.out, HasAll("ms predicted", "budget 1000.00"));
   EXPECT_EQ(run({"explain", graph, "--budget", "2"}).exit_code, 2); // The frame is missing.
 }
 
 TEST_F(Choice, HistoriesAreReportedWithAgeAndReason) {
   constexpr const char* residual = "configs/graphs/papers/sap_residual.json";
-  const Outcome text = run({"explain", residual, "--frame", "--size", "64x36"});
-  ASSERT_EQ(text.exit_code, 0) << text.err;
-  EXPECT_THAT(text.out, ::testing::ContainsRegex("\nratio +6 frames +valid since its first frame\n"));
+  ASSERT_THAT(run({"explain", residual, "--frame", "--size", "64x36"}),
+              Succeeds(::testing::ContainsRegex("\nratio +6 frames +valid since its first frame\n")));
   const Outcome outcome = run({"render", "configs/scenes/bust.json", "--graph", residual, "--size", "64x36",
                                "--frames", "3", "--subset", "0", "--out", path("out"), "--json"});
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
@@ -103,7 +90,7 @@ TEST_F(Choice, HistoriesAreReportedWithAgeAndReason) {
     ++age;
   }
   const Outcome without = run({"explain", "configs/graphs/sap.json", "--frame", "--size", "64x36"});
-  EXPECT_THAT(without.out, ::testing::Not(HasSubstr("valid since")));
+  EXPECT_THAT(without.out, Not(HasSubstr("valid since")));
 }
 
 TEST_F(Choice, ExplainCountsReadsByTileClass) {
@@ -134,26 +121,23 @@ TEST_F(Choice, ExplainCountsReadsByTileClass) {
 TEST_F(Choice, BenchSkipGivesARowForEachCase) {
   DERMIS_FULL_TESTS_ONLY(); // BenchAll runs it, too.
   const std::string file = path("skip.json");
-  const Outcome outcome = run({"bench", "skip", "--size", "48x27", "--repetitions", "1", "--json", file});
-  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
-  EXPECT_THAT(outcome.out, HasSubstr("no_material"));
+  ASSERT_THAT(run({"bench", "skip", "--size", "48x27", "--repetitions", "1", "--json", file}),
+              Succeeds("no_material"));
 }
 
 TEST_F(Choice, BenchBudgetGivesARowForEachSceneAndBudget) {
   DERMIS_FULL_TESTS_ONLY(); // BudgetJudge tests the evaluation without a device.
   const std::string file = path("budget.json");
-  const Outcome outcome = run({"bench", "budget", "--size", "48x27", "--frames", "4", "--scenes", "flashing",
-                               "--repetitions", "1", "--cache", "", "--json", file});
-  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  ASSERT_THAT(run({"bench", "budget", "--size", "48x27", "--frames", "4", "--scenes", "flashing",
+                   "--repetitions", "1", "--cache", "", "--json", file}),
+              Succeeds());
 }
 
 TEST_F(Choice, BenchBudgetChecksAllScenesFirst) {
-  const Outcome missing = run({"bench", "budget", "--scenes", "flashing,no_such_scene"});
-  EXPECT_EQ(missing.exit_code, 2);
-  EXPECT_THAT(missing.err, HasSubstr("there is no scene 'no_such_scene'"));
-  const Outcome head = run({"bench", "budget", "--scenes", "flashing,head"});
-  EXPECT_EQ(head.exit_code, 2);
-  EXPECT_THAT(head.err, HasSubstr("scene head: no model is given (--head FOLDER)"));
+  EXPECT_THAT(run({"bench", "budget", "--scenes", "flashing,no_such_scene"}),
+              FailsWith(2, "there is no scene 'no_such_scene'"));
+  EXPECT_THAT(run({"bench", "budget", "--scenes", "flashing,head"}),
+              FailsWith(2, "scene head: no model is given (--head FOLDER)"));
 }
 
 } // namespace

@@ -46,6 +46,10 @@ void redirect(int target, const fs::path& path, int flags) {
 
 } // namespace
 
+void PrintTo(const Outcome& outcome, std::ostream* stream) {
+  *stream << fmt::format("exit code {}\n{}\n{}", outcome.exit_code, outcome.out, outcome.err);
+}
+
 std::string text_of(const fs::path& path) {
   std::ifstream stream(path, std::ios::binary);
   std::ostringstream text;

@@ -1,10 +1,8 @@
 #pragma once
 // Runs the built command in a temporary folder, as a shell would, and stores its output.
 
+#include "tests/support/matchers.hpp"
 #include "tests/support/test_folder.hpp"
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <filesystem>
 #include <string>
@@ -16,6 +14,8 @@ struct Outcome {
   int exit_code = -1; // 128 + signal if a signal ended the command.
   std::string out, err;
 };
+
+void PrintTo(const Outcome& outcome, std::ostream* stream); // for messages of GoogleTest
 
 struct RunOptions {
   std::vector<std::string> environment; // Additional variables, "NAME=value".
@@ -61,5 +61,21 @@ std::vector<std::string> verbs_of_help(const std::string& help);
 
 // Whether `text` is exactly one JSON document.
 bool is_json(const std::string& text);
+
+MATCHER(IsJson, "is one JSON document") {
+  return is_json(arg);
+}
+
+// Matches an outcome without an error whose output has all texts and satisfies all matchers.
+template <class... Texts> auto Succeeds(const Texts&... texts) {
+  return AllOf(::testing::Field("exit_code", &Outcome::exit_code, 0),
+               ::testing::Field("out", &Outcome::out, HasAll("", texts...)));
+}
+
+// Matches an outcome with this exit code whose messages have all texts and satisfy all matchers.
+template <class... Texts> auto FailsWith(int exit_code, const Texts&... texts) {
+  return AllOf(::testing::Field("exit_code", &Outcome::exit_code, exit_code),
+               ::testing::Field("err", &Outcome::err, HasAll("", texts...)));
+}
 
 } // namespace dermis::test

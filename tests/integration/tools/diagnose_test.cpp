@@ -15,10 +15,6 @@
 namespace dermis::test {
 namespace {
 
-using ::testing::AllOf;
-using ::testing::HasSubstr;
-using ::testing::Not;
-
 constexpr uint32_t side = 64;
 // Metres; `tangent` is that of half the view.
 constexpr double radius = 0.1, distance = 0.5, near_plane = 0.1, tangent = 0.25;
@@ -73,9 +69,7 @@ struct DiagnoseTest : CommandTest {
   }
 
   void expect_finding(const Mistake& mistake, const std::string& code, const std::string& text) {
-    const Outcome outcome = diagnose(mistake);
-    EXPECT_EQ(outcome.exit_code, 1) << outcome.out << outcome.err;
-    EXPECT_THAT(outcome.err, AllOf(HasSubstr(code), HasSubstr(text)));
+    EXPECT_THAT(diagnose(mistake), FailsWith(1, code, text));
   }
 };
 
@@ -83,7 +77,7 @@ TEST_F(DiagnoseTest, CorrectFrameHasNoFindings) {
   const Outcome outcome = diagnose({});
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_EQ(outcome.err, "");
-  EXPECT_THAT(outcome.out, AllOf(HasSubstr("d 0."), HasSubstr(" px (median)"), HasSubstr(" m (5th")));
+  EXPECT_THAT(outcome.out, HasAll("d 0.", " px (median)", " m (5th"));
 }
 
 TEST_F(DiagnoseTest, NothingScatters_NoPixelHasAProfile) {
@@ -209,19 +203,16 @@ TEST_F(DiagnoseTest, ReadsWhatTheExampleWrites) {
     ASSERT_EQ(std::system(line.c_str()), 0) << read("said");
     EXPECT_EQ(read("said"), "");
     const Outcome outcome = run({"validate", folder, "--diagnose"});
-    EXPECT_THAT(outcome.err, AllOf(HasSubstr("D0525"), HasSubstr("all pixels with a profile are at 0.5 m")));
+    EXPECT_THAT(outcome.err, HasAll("D0525", "all pixels with a profile are at 0.5 m"));
     for (const char* other : {"D0520", "D0521", "D0522", "D0524", "error["})
       EXPECT_THAT(outcome.err, Not(HasSubstr(other)));
-    const Outcome applied = run({"apply", "--graph", burley, "--frames", folder, "--out", path("out")});
-    EXPECT_EQ(applied.exit_code, 0) << applied.err;
+    EXPECT_THAT(run({"apply", "--graph", burley, "--frames", folder, "--out", path("out")}), Succeeds());
   }
 }
 #endif
 
 TEST_F(DiagnoseTest, NeedsCapturedFrames) {
-  const Outcome outcome = run({"validate", burley, "--diagnose"});
-  EXPECT_EQ(outcome.exit_code, 2);
-  EXPECT_THAT(outcome.err, HasSubstr("--diagnose needs captured frames"));
+  EXPECT_THAT(run({"validate", burley, "--diagnose"}), FailsWith(2, "--diagnose needs captured frames"));
 }
 
 } // namespace

@@ -8,7 +8,6 @@
 namespace dermis::test {
 namespace {
 
-using ::testing::HasSubstr;
 class DoctorVerb : public CommandTest {};
 
 TEST_F(DoctorVerb, NamesTheDeviceAndAllRequirements) {
@@ -38,9 +37,8 @@ TEST_F(DoctorVerb, NoDriver_SaysWhatToInstall) {
   RunOptions without;
   without.environment = {"VK_DRIVER_FILES=/nowhere.json", "VK_ICD_FILENAMES=/nowhere.json"};
   const Outcome text = run({"doctor"}, without);
-  EXPECT_EQ(text.exit_code, 3);
-  EXPECT_THAT(text.err, HasSubstr("mesa-vulkan-drivers"));
-  EXPECT_THAT(text.out, ::testing::AllOf(HasSubstr("ok       Dermis"), HasSubstr("missing  Vulkan device")));
+  EXPECT_THAT(text, FailsWith(3, "mesa-vulkan-drivers"));
+  EXPECT_THAT(text.out, HasAll("ok       Dermis", "missing  Vulkan device"));
 }
 
 } // namespace

@@ -10,13 +10,6 @@
 namespace dermis::test {
 namespace {
 
-using ::testing::AllOf;
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
-using ::testing::IsEmpty;
-using ::testing::Not;
-using ::testing::StartsWith;
-
 struct Expectations : CommandTest {
   // Writes the shipped burley.json into the test's folder, with these expectations next to it.
   std::string file_next_to_burley(const std::string& expectations) const {
@@ -41,19 +34,14 @@ TEST_F(Expectations, EveryShippedGraphMeetsItsExpectations) {
     EXPECT_TRUE(std::filesystem::exists(name.substr(0, name.size() - 5) + ".expect.json")) << name;
   }
   EXPECT_GE(graphs, 2u);
-  const Outcome outcome = run({"test", "configs/"});
-  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
-  EXPECT_THAT(outcome.out, HasSubstr("configs/graphs/burley.expect.json: 6 cases as expected"));
-  const Outcome graphs_alone = run({"test", "configs/graphs"});
-  EXPECT_EQ(graphs_alone.exit_code, 0) << "overlays are located next to the folder of graphs\n"
-                                       << graphs_alone.err;
+  EXPECT_THAT(run({"test", "configs/"}), Succeeds("configs/graphs/burley.expect.json: 6 cases as expected"));
+  EXPECT_THAT(run({"test", "configs/graphs"}), Succeeds())
+      << "overlays are located next to the folder of graphs\n";
 }
 
 TEST_F(Expectations, OnlyStatedFactsAreCompared) {
   file_next_to_burley(two_infos);
-  const Outcome outcome = run({"test", path("")});
-  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
-  EXPECT_THAT(outcome.out, HasSubstr("burley.expect.json: 1 case as expected"));
+  EXPECT_THAT(run({"test", path("")}), Succeeds("burley.expect.json: 1 case as expected"));
 }
 
 TEST_F(Expectations, DifferencesAreShownLineByLine) {
@@ -61,10 +49,8 @@ TEST_F(Expectations, DifferencesAreShownLineByLine) {
   wrong.replace(wrong.find("\"scatter\", "), 11, "\"sharpen\", ");
   const std::string file = file_next_to_burley(wrong);
   const Outcome outcome = run({"test", file});
-  EXPECT_EQ(outcome.exit_code, 1);
-  EXPECT_THAT(outcome.err,
-              AllOf(HasSubstr(file + ": case 'least'"), HasSubstr("-     \"sharpen\""),
-                    HasSubstr("+     \"scatter\""), HasSubstr("      \"setup\""), HasSubstr("--update")));
+  EXPECT_THAT(outcome, FailsWith(1, file + ": case 'least'", "-     \"sharpen\"", "+     \"scatter\"",
+                                 "      \"setup\"", "--update"));
   EXPECT_THAT(outcome.out, IsEmpty());
   EXPECT_EQ(text_of(file), wrong);
 }
@@ -86,21 +72,16 @@ TEST_F(Expectations, UpdateOfAnEmptyCaseStatesEverything) {
   const std::string file = file_next_to_burley(R"({ "dermis_expect": 1, "cases": [
   { "case": "new" },
   { "case": "too_large", "device": { "max_image_dimension": 16 } } ] })");
-  const Outcome before = run({"test", file});
-  EXPECT_EQ(before.exit_code, 1);
-  EXPECT_THAT(before.err, HasSubstr("case 'new': the case has no \"expect\""));
-  const Outcome update = run({"test", file, "--update"});
-  EXPECT_EQ(update.exit_code, 0) << update.err;
-  EXPECT_THAT(text_of(file), AllOf(HasSubstr("\"transient_bytes\""), HasSubstr("\"diagnostics\"")));
+  EXPECT_THAT(run({"test", file}), FailsWith(1, "case 'new': the case has no \"expect\""));
+  EXPECT_THAT(run({"test", file, "--update"}), Succeeds());
+  EXPECT_THAT(text_of(file), HasAll("\"transient_bytes\"", "\"diagnostics\""));
   EXPECT_EQ(run({"test", file}).exit_code, 0) << text_of(file);
 }
 
 TEST_F(Expectations, UnstatedMessagesAreShown) {
   const std::string file = file_next_to_burley(R"({ "dermis_expect": 1, "cases": [
   { "case": "small", "device": { "max_image_dimension": 16 }, "expect": {} } ] })");
-  const Outcome outcome = run({"test", file});
-  EXPECT_EQ(outcome.exit_code, 1);
-  EXPECT_THAT(outcome.err, AllOf(HasSubstr("+   \"diagnostics\": ["), HasSubstr("error[D03")));
+  EXPECT_THAT(run({"test", file}), FailsWith(1, "+   \"diagnostics\": [", "error[D03"));
 }
 
 TEST_F(Expectations, UnreadableGraph_HasOnlyMessages) {
@@ -115,9 +96,7 @@ TEST_F(Expectations, UnknownNamesAreReported) {
     const std::string file = file_next_to_burley("{ \"dermis_expect\": 1, \"cases\": [ { \"case\": \"a\", " +
                                                  inputs + ", \"expect\": {} } ] }");
     for (const char* flag : {"--quiet", "--update"}) {
-      const Outcome outcome = run({"test", file, flag});
-      EXPECT_EQ(outcome.exit_code, 1) << inputs;
-      EXPECT_THAT(outcome.err, HasSubstr(message));
+      EXPECT_THAT(run({"test", file, flag}), FailsWith(1, message)) << inputs;
     }
   };
   says(R"("set": { "sample": 8 })", "no setting 'sample'; did you mean 'samples'?");
@@ -129,9 +108,7 @@ TEST_F(Expectations, UnknownNamesAreReported) {
 TEST_F(Expectations, ErrorsInTheFileAreLocated) {
   const auto says = [&](const std::string& text, const std::string& message) {
     const std::string file = file_next_to_burley(text);
-    const Outcome outcome = run({"test", file});
-    EXPECT_EQ(outcome.exit_code, 1) << text;
-    EXPECT_THAT(outcome.err, AllOf(HasSubstr(file + ":"), HasSubstr(message)));
+    EXPECT_THAT(run({"test", file}), FailsWith(1, file + ":", message)) << text;
   };
   says(R"({ "dermis_expect": 2, "cases": [] })", ":1:20: error[D0110");
   says(R"({ "dermis_expect": 1, "cases": [] })", "D01");
@@ -154,9 +131,7 @@ TEST_F(Expectations, NothingToCompare_IsAFailure) {
   EXPECT_EQ(run({"test"}).exit_code, 2);
   const std::string lonely =
       write("lonely.expect.json", R"({ "dermis_expect": 1, "cases": [ { "case": "a" } ] })");
-  const Outcome outcome = run({"test", lonely, "--update"});
-  EXPECT_EQ(outcome.exit_code, 1);
-  EXPECT_THAT(outcome.err, HasSubstr("next to the expectation file does not exist"));
+  EXPECT_THAT(run({"test", lonely, "--update"}), FailsWith(1, "next to the expectation file does not exist"));
 }
 
 TEST_F(Expectations, ResultsAreWrittenAsJUnitAndJson) {
@@ -172,8 +147,7 @@ TEST_F(Expectations, ResultsAreWrittenAsJUnitAndJson) {
               AllOf(StartsWith("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites"),
                     HasSubstr("failures=\"1\""), HasSubstr("name=\"a&lt;b &amp; c\""),
                     HasSubstr("&quot;history_bytes&quot;: 5"), HasSubstr("burley.expect.json")));
-  const Outcome unwritable = run({"test", "configs", "--junit", path("no/such/results.xml")});
-  EXPECT_EQ(unwritable.exit_code, 3);
+  EXPECT_THAT(run({"test", "configs", "--junit", path("no/such/results.xml")}), FailsWith(3));
 }
 
 TEST_F(Expectations, OverlaysComeOnlyFromDeclaredFolders) {
@@ -184,10 +158,8 @@ TEST_F(Expectations, OverlaysComeOnlyFromDeclaredFolders) {
   const std::string overlay = R"({ "dermis_overlay": 2, "edits": [ { "remove": "/passes/combine" },
     { "set": "/passes/scatter/write/scattered", "to": "lighting" } ] })";
   write("other/changes/less.json", overlay);
-  const Outcome nowhere = run({"test", file});
-  EXPECT_EQ(nowhere.exit_code, 1);
-  EXPECT_THAT(nowhere.err, AllOf(HasSubstr("overlay 'changes/less.json': there is no such file in"),
-                                 HasSubstr("add folders with --root")));
+  EXPECT_THAT(run({"test", file}), FailsWith(1, "overlay 'changes/less.json': there is no such file in",
+                                             "add folders with --root"));
   const Outcome declared = run({"test", file, "--root", path("other")});
   EXPECT_THAT(declared.err, Not(HasSubstr("no such file")));
   std::filesystem::create_directories(path("changes"));
@@ -196,12 +168,10 @@ TEST_F(Expectations, OverlaysComeOnlyFromDeclaredFolders) {
   std::filesystem::remove(path("changes/less.json"));
   std::filesystem::create_symlink(DERMIS_SOURCE_DIR "/configs/overlays/full_precision.json",
                                   path("changes/less.json"));
-  const Outcome outside = run({"test", file});
-  EXPECT_EQ(outside.exit_code, 1);
-  EXPECT_THAT(outside.err, HasSubstr("outside the readable folders"));
+  EXPECT_THAT(run({"test", file}), FailsWith(1, "outside the readable folders"));
   const std::string escaping = file_next_to_burley(
       R"({ "dermis_expect": 1, "cases": [ { "case": "a", "overlays": ["../x.json"] } ] })");
-  EXPECT_THAT(run({"test", escaping}).err, AllOf(HasSubstr(escaping + ":1:"), HasSubstr("D0115")));
+  EXPECT_THAT(run({"test", escaping}).err, HasAll(escaping + ":1:", "D0115"));
 }
 
 } // namespace

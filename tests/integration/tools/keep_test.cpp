@@ -11,19 +11,17 @@ namespace dermis::test {
 namespace {
 
 using nlohmann::json;
-using ::testing::Contains;
-using ::testing::HasSubstr;
 
 class Keep : public CommandTest {};
 
 TEST_F(Keep, CapturedSceneIsValidAndCanBeApplied) {
-  const Outcome outcome = run({"capture", "configs/scenes/bust.json", "--out", path("capture"), "--size",
-                               "48x27", "--frames", "2", "--first", "3"});
-  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  ASSERT_THAT(run({"capture", "configs/scenes/bust.json", "--out", path("capture"), "--size", "48x27",
+                   "--frames", "2", "--first", "3"}),
+              Succeeds());
   EXPECT_EQ(run({"validate", path("capture")}).exit_code, 0);
-  const Outcome applied = run(
-      {"apply", "--graph", "configs/graphs/burley.json", "--frames", path("capture"), "--out", path("out")});
-  EXPECT_EQ(applied.exit_code, 0) << applied.err;
+  EXPECT_THAT(run({"apply", "--graph", "configs/graphs/burley.json", "--frames", path("capture"), "--out",
+                   path("out")}),
+              Succeeds());
   EXPECT_THAT(files("out"), Contains("frame_0001/scattered.exr"));
 }
 
@@ -59,10 +57,10 @@ TEST_F(Keep, BugReportIsCompleteAndReproducible) {
                     "overlays/0_full_precision.json --set samples=8");
   EXPECT_THAT(read("bug/README.txt"), HasSubstr(replay));
   // The line of the report, run from the test's working folder.
-  const Outcome again =
+  EXPECT_THAT(
       run({"apply", "--graph", path("bug/burley.json"), "--frames", path("bug/capture"), "--out",
-           path("replay"), "--overlay", path("bug/overlays/0_full_precision.json"), "--set", "samples=8"});
-  EXPECT_EQ(again.exit_code, 0) << again.err;
+           path("replay"), "--overlay", path("bug/overlays/0_full_precision.json"), "--set", "samples=8"}),
+      Succeeds());
   EXPECT_THAT(files("replay"), Contains("frame_0000/combined.exr"));
 }
 
@@ -87,29 +85,27 @@ TEST_F(Keep, BugReport_HasTheLastFrameAndIncludedFiles) {
         "tiles": "tiles", "arguments": "arguments" }, "write": { "light": "light" } },
       { "include": "parts/back.json" } ],
     "exports": ["lighting"] })");
-  const Outcome outcome =
-      run({"report-bug", graph, "--frames", path("capture"), "--size", "32x18", "--out", path("bug")});
-  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  ASSERT_THAT(
+      run({"report-bug", graph, "--frames", path("capture"), "--size", "32x18", "--out", path("bug")}),
+      Succeeds());
   EXPECT_THAT(files("bug"), Contains("parts/back.json"));
-  EXPECT_THAT(files("bug/capture"), ::testing::Not(Contains("frame_0001")));
+  EXPECT_THAT(files("bug/capture"), Not(Contains("frame_0001")));
   EXPECT_EQ(run({"validate", path("bug/main.json"), path("bug/capture")}).exit_code, 0);
 }
 
 TEST_F(Keep, BugReportCanBeAnArchive) {
-  const Outcome outcome = run({"report-bug", "configs/graphs/burley.json", "--size", "32x18", "--count", "1",
-                               "--out", path("bug.tar.gz")});
-  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
-  EXPECT_THAT(files(), ::testing::ElementsAre("bug.tar.gz"));
-  const Outcome there = run({"report-bug", "configs/graphs/burley.json", "--out", path("bug.tar.gz")});
-  EXPECT_EQ(there.exit_code, 3);
-  EXPECT_THAT(there.err, HasSubstr("exists: choose another name"));
-  const Outcome zip = run({"report-bug", "configs/graphs/burley.json", "--out", path("bug.zip")});
-  EXPECT_EQ(zip.exit_code, 2);
-  EXPECT_THAT(zip.err, HasSubstr(".tar.gz or .tgz"));
+  ASSERT_THAT(run({"report-bug", "configs/graphs/burley.json", "--size", "32x18", "--count", "1", "--out",
+                   path("bug.tar.gz")}),
+              Succeeds());
+  EXPECT_THAT(files(), ElementsAre("bug.tar.gz"));
+  EXPECT_THAT(run({"report-bug", "configs/graphs/burley.json", "--out", path("bug.tar.gz")}),
+              FailsWith(3, "exists: choose another name"));
+  EXPECT_THAT(run({"report-bug", "configs/graphs/burley.json", "--out", path("bug.zip")}),
+              FailsWith(2, ".tar.gz or .tgz"));
   ASSERT_EQ(std::system(("tar -xzf " + path("bug.tar.gz") + " -C " + path(".")).c_str()), 0);
-  const Outcome again = run({"apply", "--graph", path("bug/burley.json"), "--frames", path("bug/capture"),
-                             "--out", path("replay")});
-  EXPECT_EQ(again.exit_code, 0) << again.err;
+  EXPECT_THAT(run({"apply", "--graph", path("bug/burley.json"), "--frames", path("bug/capture"), "--out",
+                   path("replay")}),
+              Succeeds());
 }
 
 TEST_F(Keep, BugReport_IsWrittenCompletelyToANewFolder) {
@@ -119,7 +115,7 @@ TEST_F(Keep, BugReport_IsWrittenCompletelyToANewFolder) {
       run({"report-bug", "configs/graphs/burley.json", "--scene", path("none.json"), "--out", path("bug")})
           .exit_code,
       1);
-  EXPECT_THAT(files(), ::testing::ElementsAre("full", "full/file"));
+  EXPECT_THAT(files(), ElementsAre("full", "full/file"));
 }
 
 TEST_F(Keep, TraceHasEveryPassAndNestsPerfectly) {

@@ -5,9 +5,6 @@
 namespace dermis::test {
 namespace {
 
-using ::testing::HasSubstr;
-using ::testing::Not;
-
 constexpr const char* pass_types = R"({ "dermis_pass_types": 2, "pass_types": [
   { "name": "studio.tone", "ports": [ { "name": "light", "usage": "sampled_image" },
                                       { "name": "toned", "usage": "storage_image_write" } ],
@@ -23,31 +20,22 @@ class PassTypes : public CommandTest {};
 
 TEST_F(PassTypes, ExportedFile_LetsGraphsBeChecked) {
   const std::string kind_file = write("pass_types.json", pass_types), graph_file = write("tone.json", tone);
-  const Outcome without = run({"validate", graph_file});
-  EXPECT_EQ(without.exit_code, 1);
-  EXPECT_THAT(without.err, HasSubstr("studio.tone"));
-  const Outcome with = run({"validate", graph_file, "--pass-types", kind_file});
-  EXPECT_EQ(with.exit_code, 0) << with.err;
-  const Outcome explained = run({"explain", graph_file, "--pass-types", kind_file});
-  EXPECT_EQ(explained.exit_code, 0) << explained.err;
-  EXPECT_THAT(explained.out, HasSubstr("tone"));
+  EXPECT_THAT(run({"validate", graph_file}), FailsWith(1, "studio.tone"));
+  EXPECT_THAT(run({"validate", graph_file, "--pass-types", kind_file}), Succeeds());
+  EXPECT_THAT(run({"explain", graph_file, "--pass-types", kind_file}), Succeeds("tone"));
 }
 
 TEST_F(PassTypes, FileIsChecked) {
   EXPECT_EQ(run({"validate", write("pass_types.json", pass_types)}).exit_code, 0);
   std::string range = pass_types, own = pass_types;
   range.replace(range.find("\"default\": 1"), 12, "\"default\": 9");
-  const Outcome rejected = run({"validate", write("range.json", range)});
-  EXPECT_EQ(rejected.exit_code, 1);
-  EXPECT_THAT(rejected.err, HasSubstr("range.json:2:3"));
-  EXPECT_THAT(rejected.err, HasSubstr("settings[0]"));
+  EXPECT_THAT(run({"validate", write("range.json", range)}), FailsWith(1, "range.json:2:3", "settings[0]"));
   own.replace(own.find("studio"), 6, "subsurface");
   EXPECT_THAT(run({"validate", write("own.json", own)}).err, HasSubstr("are reserved for the library"));
   const std::string graph_file = write("tone.json", tone);
   const std::string kind_file = write("pass_types.json", pass_types);
-  const Outcome twice = run({"validate", graph_file, "--pass-types", kind_file, "--pass-types", kind_file});
-  EXPECT_EQ(twice.exit_code, 1);
-  EXPECT_THAT(twice.err, HasSubstr("there is a pass type 'studio.tone' already"));
+  EXPECT_THAT(run({"validate", graph_file, "--pass-types", kind_file, "--pass-types", kind_file}),
+              FailsWith(1, "there is a pass type 'studio.tone' already"));
 }
 
 // burley with a host pass after it, which a setting turns on.
@@ -79,8 +67,7 @@ TEST_F(PassTypes, ExpectationsKnowThem) {
   write("tone.json", tone);
   const std::string expectations = write("tone.expect.json", R"({ "dermis_expect": 1, "cases": [
   { "case": "as_it_is" } ] })");
-  const Outcome updated = run({"test", "--pass-types", kind_file, expectations, "--update"});
-  EXPECT_EQ(updated.exit_code, 0) << updated.err;
+  EXPECT_THAT(run({"test", "--pass-types", kind_file, expectations, "--update"}), Succeeds());
   EXPECT_EQ(run({"test", expectations, "--pass-types", kind_file}).exit_code, 0);
   EXPECT_EQ(run({"test", expectations}).exit_code, 1);
 }
@@ -95,8 +82,7 @@ TEST_F(PassTypes, DisabledPass_DoesNotPreventRendering) {
                                       "--size",       "32x24",
                                       "--frames",     "1",
                                       "--subset",     "0"};
-  const Outcome outcome = run(line);
-  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_THAT(run(line), Succeeds());
 }
 
 TEST_F(PassTypes, EnabledPass_IsRejectedByName) {
@@ -111,42 +97,38 @@ TEST_F(PassTypes, EnabledPass_IsRejectedByName) {
                                      "--frames", "1",
                                      "--subset", "0"};
   rendering.insert(rendering.end(), both.begin(), both.end());
-  const Outcome rendered = run(rendering);
-  EXPECT_EQ(rendered.exit_code, 1);
-  EXPECT_THAT(rendered.err,
-              HasSubstr("pass 'look' (studio.look) has no kernel here; embed Dermis or turn the "
-                        "pass off"));
-  EXPECT_THAT(files(), Not(::testing::Contains(HasSubstr("frame_"))));
+  EXPECT_THAT(run(rendering),
+              FailsWith(1, "pass 'look' (studio.look) has no kernel here; embed Dermis or turn the "
+                           "pass off"));
+  EXPECT_THAT(files(), Not(Contains(HasSubstr("frame_"))));
   ASSERT_EQ(run({"capture", "configs/scenes/bust.json", "--out", path("capture"), "--size", "32x24",
                  "--frames", "1"})
                 .exit_code,
             0);
   std::vector<std::string> applying{"apply", "--frames", path("capture"), "--out", path("applied")};
   applying.insert(applying.end(), both.begin(), both.end());
-  const Outcome applied = run(applying);
-  EXPECT_EQ(applied.exit_code, 1);
-  EXPECT_THAT(applied.err, HasSubstr("pass 'look' (studio.look) has no kernel here"));
+  EXPECT_THAT(run(applying), FailsWith(1, "pass 'look' (studio.look) has no kernel here"));
 }
 
 TEST_F(PassTypes, BugReportNamesThemInItsLine) {
   const std::string kind_file = write("pass_types.json", pass_types), overlay = write("toned.json", toned);
-  const Outcome outcome = run({"report-bug", burley, "--overlay", overlay, "--pass-types", kind_file,
-                               "--size", "32x18", "--count", "1", "--out", path("bug")});
-  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  ASSERT_THAT(run({"report-bug", burley, "--overlay", overlay, "--pass-types", kind_file, "--size", "32x18",
+                   "--count", "1", "--out", path("bug")}),
+              Succeeds());
   EXPECT_THAT(read("bug/README.txt"),
               HasSubstr("dermis apply --graph burley.json --frames capture --out replay --overlay "
                         "overlays/0_toned.json --pass-types pass_types/0_pass_types.json\n"));
-  const Outcome again = run({"apply", "--graph", path("bug/burley.json"), "--frames", path("bug/capture"),
-                             "--out", path("replay"), "--overlay", path("bug/overlays/0_toned.json"),
-                             "--pass-types", path("bug/pass_types/0_pass_types.json")});
-  EXPECT_EQ(again.exit_code, 0) << again.err;
+  EXPECT_THAT(run({"apply", "--graph", path("bug/burley.json"), "--frames", path("bug/capture"), "--out",
+                   path("replay"), "--overlay", path("bug/overlays/0_toned.json"), "--pass-types",
+                   path("bug/pass_types/0_pass_types.json")}),
+              Succeeds());
 }
 
 TEST_F(PassTypes, PageCreatesItsFolder) {
   const std::string page = path("pages/new/tone.html");
-  const Outcome outcome = run({"graph", "--pass-types", write("pass_types.json", pass_types),
-                               write("tone.json", tone), "--html", page});
-  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_THAT(run({"graph", "--pass-types", write("pass_types.json", pass_types), write("tone.json", tone),
+                   "--html", page}),
+              Succeeds());
   EXPECT_FALSE(read("pages/new/tone.html").empty());
 }
 

@@ -9,11 +9,6 @@
 namespace dermis::test {
 namespace {
 
-using ::testing::AllOf;
-using ::testing::HasSubstr;
-using ::testing::IsEmpty;
-using ::testing::Not;
-
 using PlanFiles = CommandTest;
 
 std::string contents(const std::string& path) {
@@ -23,24 +18,18 @@ std::string contents(const std::string& path) {
 
 TEST_F(PlanFiles, HelpOfEveryVerbShowsAnExample) {
   for (const std::string verb : {"diff", "save", "verify"}) {
-    const Outcome outcome = run({"plan", verb, "--help"});
-    EXPECT_EQ(outcome.exit_code, 0);
-    EXPECT_THAT(outcome.out, HasSubstr("Example:\n  dermis plan " + verb));
+    EXPECT_THAT(run({"plan", verb, "--help"}), Succeeds("Example:\n  dermis plan " + verb));
   }
   EXPECT_EQ(run({"plan"}).exit_code, 2);
 }
 
 TEST_F(PlanFiles, EqualGraphs_GiveEqualBytesThatVerify) {
   for (const char* file : {"a.plan", "b.plan"}) {
-    const Outcome outcome = run({"plan", "save", burley, "--size", "640x360", "--out", path(file)});
-    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
-    EXPECT_THAT(outcome.out, HasSubstr("passes"));
+    EXPECT_THAT(run({"plan", "save", burley, "--size", "640x360", "--out", path(file)}), Succeeds("passes"));
   }
   EXPECT_EQ(contents(path("a.plan")), contents(path("b.plan")));
-  EXPECT_THAT(files(), ::testing::ElementsAre("a.plan", "b.plan"));
-  const Outcome verified = run({"plan", "verify", path("a.plan")});
-  EXPECT_EQ(verified.exit_code, 0) << verified.err;
-  EXPECT_THAT(verified.out, HasSubstr("no hazard"));
+  EXPECT_THAT(files(), ElementsAre("a.plan", "b.plan"));
+  EXPECT_THAT(run({"plan", "verify", path("a.plan")}), Succeeds("no hazard"));
   const Outcome json = run({"plan", "save", burley, "--json", "--out", path("c.plan")});
   EXPECT_TRUE(is_json(json.out)) << json.out;
   EXPECT_THAT(json.out, HasSubstr("\"sha256\""));
@@ -62,9 +51,8 @@ TEST_F(PlanFiles, AsyncPasses_GetAQueueOnRequest) {
   const Outcome one = run({"explain", graph}), two = run({"explain", graph, "--two-queues"});
   EXPECT_EQ(two.exit_code, 0) << two.err;
   EXPECT_THAT(one.out, Not(HasSubstr("async queue")));
-  EXPECT_THAT(two.out, AllOf(HasSubstr("aside (subsurface.pyramid_down) on the async queue"),
-                             HasSubstr("the main queue signals point 1"),
-                             HasSubstr("waits for point 1 of the async queue")));
+  EXPECT_THAT(two.out, HasAll("aside (subsurface.pyramid_down) on the async queue",
+                              "the main queue signals point 1", "waits for point 1 of the async queue"));
   ASSERT_EQ(run({"plan", "save", graph, "--two-queues", "--out", path("two.plan")}).exit_code, 0);
   EXPECT_THAT(run({"plan", "verify", path("two.plan")}).out, HasSubstr("no hazard"));
   EXPECT_THAT(run({"plan", "diff", path("two.plan"), graph}).out, HasSubstr("single queue"));
@@ -74,10 +62,8 @@ TEST_F(PlanFiles, ADamagedPlanIsRejectedWithTheByte) {
   ASSERT_EQ(run({"plan", "save", burley, "--out", path("a.plan")}).exit_code, 0);
   const std::string whole = contents(path("a.plan"));
   const std::string cut = write("cut.plan", whole.substr(0, whole.size() - 9));
-  const Outcome outcome = run({"plan", "verify", cut});
-  EXPECT_EQ(outcome.exit_code, 1);
-  EXPECT_THAT(outcome.err, AllOf(HasSubstr("cut.plan"), HasSubstr("D0321 plan_file"), HasSubstr("byte "),
-                                 HasSubstr("the file ends inside")));
+  EXPECT_THAT(run({"plan", "verify", cut}),
+              FailsWith(1, "cut.plan", "D0321 plan_file", "byte ", "the file ends inside"));
   EXPECT_EQ(run({"plan", "diff", cut, burley}).exit_code, 1);
   EXPECT_THAT(run({"plan", "verify", burley}).err, HasSubstr("a saved plan must begin with DERMPLAN"));
   EXPECT_THAT(run({"plan", "verify", path("none.plan")}).err, HasSubstr("does not exist"));
@@ -94,9 +80,7 @@ TEST_F(PlanFiles, PlanWithAHazard_NamesPassAndResource) {
   ASSERT_NE(at, std::string::npos);
   std::string bad = whole;
   bad[at + 1] = '\0';
-  const Outcome outcome = run({"plan", "verify", write("bad.plan", bad)});
-  EXPECT_EQ(outcome.exit_code, 1);
-  EXPECT_THAT(outcome.err, AllOf(HasSubstr("D0322 plan_rejected"), HasSubstr("is '")));
+  EXPECT_THAT(run({"plan", "verify", write("bad.plan", bad)}), FailsWith(1, "D0322 plan_rejected", "is '"));
 }
 
 // Seventeen images with a million subresources together, which no graph can have.
@@ -125,24 +109,22 @@ TEST_F(PlanFiles, TooLargePlan_IsNotVerified) {
   }
   const std::string file = write("large.plan", write_plan(*saved));
   const Outcome outcome = run({"plan", "verify", file});
-  EXPECT_EQ(outcome.exit_code, 1);
-  EXPECT_THAT(outcome.err, AllOf(HasSubstr("D0327 plan_not_verified"), HasSubstr("the plan is not verified"),
+  EXPECT_THAT(outcome, FailsWith(1, "D0327 plan_not_verified", "the plan is not verified",
                                  Not(HasSubstr("defect")), Not(HasSubstr("report"))));
   EXPECT_THAT(outcome.out, IsEmpty());
 }
 
 TEST_F(PlanFiles, GraphEqualsItsSavedPlan) {
   ASSERT_EQ(run({"plan", "save", burley, "--out", path("a.plan")}).exit_code, 0);
-  const Outcome same = run({"plan", "diff", path("a.plan"), burley, "--exit-code"});
-  EXPECT_EQ(same.exit_code, 0) << same.out;
-  EXPECT_THAT(same.out, AllOf(HasSubstr("the plans are the same"), Not(HasSubstr("barriers\n"))));
+  EXPECT_THAT(run({"plan", "diff", path("a.plan"), burley, "--exit-code"}),
+              Succeeds("the plans are the same", Not(HasSubstr("barriers\n"))));
 }
 
 TEST_F(PlanFiles, GraphsDifferByTheirOwnPasses) {
   const Outcome diff = run({"plan", "diff", burley, "configs/graphs/separable.json"});
-  EXPECT_EQ(diff.exit_code, 0) << "differences are no failure unless requested";
-  EXPECT_THAT(diff.out, AllOf(HasSubstr("the plans differ"), HasSubstr("- scatter: subsurface.burley"),
-                              HasSubstr("+ "), HasSubstr("subsurface.separable"), HasSubstr("totals")));
+  EXPECT_THAT(diff, Succeeds("the plans differ", "- scatter: subsurface.burley", "+ ", "subsurface.separable",
+                             "totals"))
+      << "differences are no failure unless requested";
   EXPECT_EQ(run({"plan", "diff", burley, "configs/graphs/separable.json", "--exit-code"}).exit_code, 1);
   const Outcome json = run({"plan", "diff", burley, "configs/graphs/separable.json", "--json"});
   EXPECT_TRUE(is_json(json.out)) << json.out;
@@ -151,9 +133,8 @@ TEST_F(PlanFiles, GraphsDifferByTheirOwnPasses) {
 }
 
 TEST_F(PlanFiles, OneGraphWithTwoSetsOfOptions) {
-  const Outcome size = run({"plan", "diff", burley, "--b-size", "960x540"});
-  EXPECT_EQ(size.exit_code, 0) << size.err;
-  EXPECT_THAT(size.out, AllOf(HasSubstr("~ view: 1920x1080 -> 960x540"), HasSubstr("transients ")));
+  EXPECT_THAT(run({"plan", "diff", burley, "--b-size", "960x540"}),
+              Succeeds("~ view: 1920x1080 -> 960x540", "transients "));
   const Outcome set = run({"plan", "diff", burley, "--set", "samples=16", "--b-set", "samples=8"});
   EXPECT_THAT(set.out, HasSubstr("~ samples: 16 -> 8"));
   const Outcome overlay =
@@ -168,12 +149,9 @@ TEST_F(PlanFiles, OneGraphWithTwoSetsOfOptions) {
 TEST_F(PlanFiles, IncomparableFilesAreAUsageError) {
   EXPECT_THAT(run({"plan", "diff", burley}).err, HasSubstr("name two plans"));
   ASSERT_EQ(run({"plan", "save", burley, "--out", path("a.plan")}).exit_code, 0);
-  const Outcome saved = run({"plan", "diff", burley, path("a.plan"), "--b-set", "samples=8"});
-  EXPECT_EQ(saved.exit_code, 2);
-  EXPECT_THAT(saved.err, HasSubstr("is a saved plan"));
-  const Outcome unknown = run({"plan", "diff", burley, "--b-set", "sample=8"});
-  EXPECT_EQ(unknown.exit_code, 2);
-  EXPECT_THAT(unknown.err, HasSubstr("did you mean 'samples'?"));
+  EXPECT_THAT(run({"plan", "diff", burley, path("a.plan"), "--b-set", "samples=8"}),
+              FailsWith(2, "is a saved plan"));
+  EXPECT_THAT(run({"plan", "diff", burley, "--b-set", "sample=8"}), FailsWith(2, "did you mean 'samples'?"));
 }
 
 } // namespace

@@ -54,8 +54,7 @@ protected:
       if (arguments[i] == "--frames") arguments[i + 1] = "1";
       if (arguments[i] == "--out") arguments[i + 1] = path("out");
     }
-    const Outcome outcome = run(arguments);
-    EXPECT_EQ(outcome.exit_code, 0) << line << "\n" << outcome.err;
+    EXPECT_THAT(run(arguments), Succeeds()) << line << "\n";
   }
 };
 
@@ -82,12 +81,11 @@ bool contains(const json& whole, const json& part) {
 TEST_F(Readme, CompleteGraphRuns) {
   const std::string shown = complete_graph();
   const std::string graph = write("shown.json", shown);
-  const Outcome valid = run({"validate", graph});
-  EXPECT_EQ(valid.exit_code, 0) << valid.err;
-  const Outcome rendered = run({"render", "configs/scenes/bust.json", "--graph", graph, "--size", "64x36",
-                                "--frames", "1", "--out", path("out")});
-  EXPECT_EQ(rendered.exit_code, 0) << rendered.err;
-  EXPECT_THAT(shown, ::testing::HasSubstr("\"albedo\": \"albedo\"")) << "the line would render white plaster";
+  EXPECT_THAT(run({"validate", graph}), Succeeds());
+  EXPECT_THAT(run({"render", "configs/scenes/bust.json", "--graph", graph, "--size", "64x36", "--frames", "1",
+                   "--out", path("out")}),
+              Succeeds());
+  EXPECT_THAT(shown, HasSubstr("\"albedo\": \"albedo\"")) << "the line would render white plaster";
 }
 
 TEST_F(Readme, ExcerptIsPartOfTheCompleteGraph) {

@@ -7,16 +7,10 @@
 #include "integration/tools/files/capture_reference.hpp"
 #include "tests/integration/tools/command_fixture.hpp"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <cmath>
 
 namespace dermis::tools {
 namespace {
-
-using ::testing::HasSubstr;
-using ::testing::Not;
 
 Report small_report() {
   Report report;
@@ -33,8 +27,7 @@ Report small_report() {
 TEST(ReportFiles, JsonIsOneDocumentWithNullForUnmeasured) {
   const std::string text = report_as_json(small_report());
   EXPECT_TRUE(test::is_json(text));
-  EXPECT_THAT(text, HasSubstr(R"({ "name": "a,b \"c\"", "value": 0.1, "best": true })"));
-  EXPECT_THAT(text, HasSubstr(R"("value": null)"));
+  EXPECT_THAT(text, HasAll(R"({ "name": "a,b \"c\"", "value": 0.1, "best": true })", R"("value": null)"));
 }
 
 TEST(ReportFiles, CsvQuotesSpecialCharacters) {
@@ -44,10 +37,8 @@ TEST(ReportFiles, CsvQuotesSpecialCharacters) {
 
 TEST(ReportFiles, HtmlEscapesTextAndLoadsNothingFromElsewhere) {
   const std::string page = report_as_html(small_report());
-  EXPECT_THAT(page, HasSubstr("<h1>Title &lt;&amp;&gt;</h1>"));
-  EXPECT_THAT(page, HasSubstr("dermis &quot;x&quot;"));
-  EXPECT_THAT(page, HasSubstr("data:image/png;base64,iVBORw0KGgo"));
-  EXPECT_THAT(page, HasSubstr("prefers-color-scheme:dark"));
+  EXPECT_THAT(page, HasAll("<h1>Title &lt;&amp;&gt;</h1>", "dermis &quot;x&quot;",
+                           "data:image/png;base64,iVBORw0KGgo", "prefers-color-scheme:dark"));
   for (const char* loaded : {"http:", "https:", "<link", "src='/", "@import"})
     EXPECT_THAT(page, Not(HasSubstr(loaded)));
 }

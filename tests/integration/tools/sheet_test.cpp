@@ -8,10 +8,6 @@
 namespace dermis::test {
 namespace {
 
-using ::testing::AllOf;
-using ::testing::HasSubstr;
-using ::testing::Not;
-
 class Sheet : public CommandTest {
 protected:
   Outcome sheet(const std::vector<std::string>& more) const {
@@ -22,10 +18,8 @@ protected:
 };
 
 TEST_F(Sheet, HasARowPerGraphAndAColumnPerMaterial) {
-  const Outcome outcome =
-      sheet({"--graphs", "configs/graphs/sap.json", "--profiles", "skin,configs/profiles/milk.json"});
-  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
-  EXPECT_THAT(outcome.out, AllOf(HasSubstr("none, sap"), HasSubstr("skin, milk")));
+  ASSERT_THAT(sheet({"--graphs", "configs/graphs/sap.json", "--profiles", "skin,configs/profiles/milk.json"}),
+              Succeeds("none, sap", "skin, milk"));
   std::string problem;
   const auto picture = tools::read_png(path("sheet.png"), problem);
   ASSERT_TRUE(picture) << problem;
@@ -44,11 +38,9 @@ TEST_F(Sheet, HasARowPerGraphAndAColumnPerMaterial) {
 }
 
 TEST_F(Sheet, JsonOutputIsOneDocument) {
-  const Outcome outcome =
-      sheet({"--graphs", "configs/graphs/sap.json", "--profiles", "configs/profiles/skin.json", "--json"});
-  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
-  EXPECT_TRUE(is_json(outcome.out)) << outcome.out;
-  EXPECT_THAT(outcome.out, AllOf(HasSubstr("\"rows\""), HasSubstr("\"columns\"")));
+  ASSERT_THAT(
+      sheet({"--graphs", "configs/graphs/sap.json", "--profiles", "configs/profiles/skin.json", "--json"}),
+      Succeeds(IsJson(), "\"rows\"", "\"columns\""));
 }
 
 TEST_F(Sheet, AMissingProfileIsNamed) {
@@ -58,9 +50,7 @@ TEST_F(Sheet, AMissingProfileIsNamed) {
 }
 
 TEST_F(Sheet, TooManyPixels_AreAUsageError) {
-  const Outcome outcome = run({"sheet", "--out", path("sheet.png"), "--size", "8192x16"});
-  EXPECT_EQ(outcome.exit_code, 2);
-  EXPECT_THAT(outcome.err, HasSubstr("--size"));
+  EXPECT_THAT(run({"sheet", "--out", path("sheet.png"), "--size", "8192x16"}), FailsWith(2, "--size"));
 }
 
 } // namespace

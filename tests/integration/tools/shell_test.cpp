@@ -8,9 +8,6 @@
 namespace dermis::test {
 namespace {
 
-using ::testing::HasSubstr;
-using ::testing::Not;
-
 class Shell : public CommandTest {
 protected:
   // Returns the output of a shell line; `code` is its exit status.
@@ -67,8 +64,8 @@ TEST_F(Shell, OtherShellsAcceptTheirScripts) {
 
 TEST_F(Shell, OtherShellsCompleteSchemasAndCodes) {
   const std::string zsh = run({"completion", "zsh"}).out;
-  EXPECT_THAT(zsh, HasSubstr("'*:argument:(graph fragment "));
-  EXPECT_THAT(zsh, HasSubstr("'*:argument:_alternative \"files:file:_files\" \"words:word:(D0101 "));
+  EXPECT_THAT(zsh, HasAll("'*:argument:(graph fragment ",
+                          "'*:argument:_alternative \"files:file:_files\" \"words:word:(D0101 "));
   ASSERT_EQ(run({"completion", "fish", "--out", path("fish")}).exit_code, 0);
   if (!has("fish")) GTEST_SKIP() << "fish is not installed";
   int code = 0;
@@ -92,8 +89,7 @@ TEST_F(Shell, ScriptsAndManualNameEveryVerbOfTheHelp) {
     EXPECT_NE(manual.find(".SS \"" + escaped), std::string::npos) << verb;
   }
   EXPECT_GE(verbs.size(), 15u);
-  EXPECT_THAT(manual, HasSubstr("\\fB\\-\\-html\\fR \\fIFILE\\fR"));
-  EXPECT_THAT(manual, HasSubstr("dermis bench all \\-\\-out build/bench"));
+  EXPECT_THAT(manual, HasAll("\\fB\\-\\-html\\fR \\fIFILE\\fR", "dermis bench all \\-\\-out build/bench"));
 }
 
 TEST_F(Shell, ManualIsFormattedWithoutWarnings) {

@@ -10,10 +10,6 @@
 namespace dermis::test {
 namespace {
 
-using ::testing::AllOf;
-using ::testing::HasSubstr;
-using ::testing::Not;
-
 struct Upgrade : CommandTest {
   // Unpacks the old files into the test's folder and returns their paths.
   std::vector<std::string> unpack() const {
@@ -48,7 +44,7 @@ TEST_F(Upgrade, OldFiles_Validate_OneDiagnosticNamesTheVerb) {
   for (const std::string& file : old) {
     const Outcome outcome = run({"validate", file, "--json"});
     EXPECT_EQ(outcome.exit_code, 1) << file;
-    EXPECT_THAT(outcome.out, AllOf(HasSubstr("D0110"), HasSubstr("`dermis upgrade FILE`"))) << file;
+    EXPECT_THAT(outcome.out, HasAll("D0110", "`dermis upgrade FILE`")) << file;
     size_t diagnostics = 0;
     for (size_t at = 0; (at = outcome.out.find("\"id\": \"D", at)) != std::string::npos; ++at)
       ++diagnostics;
@@ -61,9 +57,7 @@ TEST_F(Upgrade, OldFiles_Upgrade_CommentsAndLinesStay) {
     const std::string before = text_of(file);
     EXPECT_EQ(run({"upgrade", "--check", file}).exit_code, 1) << file;
     EXPECT_EQ(text_of(file), before) << "--check writes nothing";
-    const Outcome outcome = run({"upgrade", file});
-    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
-    EXPECT_THAT(outcome.out, HasSubstr("upgraded to version 2"));
+    EXPECT_THAT(run({"upgrade", file}), Succeeds("upgraded to version 2"));
     const std::string after = text_of(file);
     EXPECT_EQ(lines_of(after).size(), lines_of(before).size()) << file;
     EXPECT_EQ(comments_of(after), comments_of(before)) << file;
@@ -77,8 +71,7 @@ TEST_F(Upgrade, OldShippedFiles_Upgrade_Compile) {
   for (const std::string& file : unpack())
     ASSERT_EQ(run({"upgrade", file}).exit_code, 0) << file;
   for (const std::string& name : files("graphs")) {
-    const Outcome outcome = run({"explain", path("graphs/" + name), "--json"});
-    EXPECT_EQ(outcome.exit_code, 0) << name << outcome.err;
+    EXPECT_THAT(run({"explain", path("graphs/" + name), "--json"}), Succeeds()) << name;
   }
   for (const char* name : {"overlays/accumulate.json", "overlays/skips.json", "overlays/probe.json"})
     EXPECT_EQ(run({"explain", path("graphs/sap.json"), "--overlay", path(name)}).exit_code, 0) << name;
@@ -151,8 +144,7 @@ TEST_F(Upgrade, Overlay_Upgrade_RenamesTargetsAndPaths) {
 TEST_F(Upgrade, UnwritableFile_Upgrade_FailsAndKeepsTheFile) {
   const std::string good = write("good.json", R"({ "dermis": 1, "name": "g", "passes": [], "exports": [] })");
   const std::string missing = path("none.json");
-  const Outcome outcome = run({"upgrade", missing, good});
-  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_THAT(run({"upgrade", missing, good}), FailsWith(1));
   EXPECT_THAT(text_of(good), HasSubstr("\"dermis\": 2")) << "other files are upgraded";
 }
 

@@ -8,8 +8,6 @@
 namespace dermis::test {
 namespace {
 
-using ::testing::HasSubstr;
-
 class View : public CommandTest {
 protected:
   // Skips if the command was built without the page.
@@ -44,17 +42,15 @@ TEST_F(View, FileContentsCannotEndAnElement) {
 
 TEST_F(View, InvalidReport_IsRejectedWithItsPlace) {
   const std::string report = write("report.json", "{\n  \"passes\": [ { \"pass\": \"classify\" } ] }");
-  const Outcome outcome =
-      run({"graph", "configs/graphs/burley.json", "--html", path("view.html"), "--frame", report});
-  EXPECT_EQ(outcome.exit_code, 1);
-  EXPECT_THAT(outcome.err, HasSubstr("report.json:2:13: error[D0104 wrong_type]"));
-  EXPECT_THAT(files(), ::testing::ElementsAre("report.json"));
+  EXPECT_THAT(run({"graph", "configs/graphs/burley.json", "--html", path("view.html"), "--frame", report}),
+              FailsWith(1, "report.json:2:13: error[D0104 wrong_type]"));
+  EXPECT_THAT(files(), ElementsAre("report.json"));
 }
 
 TEST_F(View, GraphWithErrors_HasNoPage) {
   const std::string graph = write("broken.json", R"({ "dermis": 2, "name": "broken", "passes": 3 })");
   EXPECT_EQ(run({"graph", graph, "--html", path("view.html")}).exit_code, 1);
-  EXPECT_THAT(files(), ::testing::ElementsAre("broken.json"));
+  EXPECT_THAT(files(), ElementsAre("broken.json"));
 }
 
 TEST_F(View, FrameWithoutPage_IsAUsageError) {

@@ -10,7 +10,6 @@
 namespace dermis::test {
 namespace {
 
-using ::testing::HasSubstr;
 using namespace std::chrono_literals;
 
 class Watch : public CommandTest {
@@ -47,8 +46,7 @@ TEST_F(Watch, ChangedGraph_ReportsPlanAndError) {
   const Outcome outcome = run(arguments(graph, "2"));
   editor.join();
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
-  EXPECT_THAT(outcome.out, HasSubstr("graph.json changed"));
-  EXPECT_THAT(outcome.out, HasSubstr("horizontal")); // A pass that burley does not have.
+  EXPECT_THAT(outcome.out, HasAll("graph.json changed", "horizontal")); // A pass that burley does not have.
   EXPECT_THAT(outcome.out, ::testing::ContainsRegex("PSNR [0-9.]+ dB \\([+-][0-9.]+\\)"));
 }
 

@@ -61,13 +61,11 @@ struct Engine : ::testing::Test {
   static std::vector<FrameOutputs> frames_of(const RenderOptions& options) {
     return rendered(options).frames;
   }
-  static Error rejected(const RenderOptions& options) {
+  static void expect_rejected(const RenderOptions& options, ErrorKind kind, const std::string& text) {
     const auto summary = render(options, {});
-    if (summary) {
-      ADD_FAILURE() << "it was rendered";
-      return {};
-    }
-    return summary.error();
+    ASSERT_FALSE(summary) << "it was rendered";
+    EXPECT_EQ(summary.error().kind, kind);
+    EXPECT_THAT(summary.error().text, HasSubstr(text));
   }
 
   const dermis::test::TestFolder folder;
@@ -185,33 +183,23 @@ TEST_F(Engine, GraphsOnlyChangePixelsThatScatter) {
 TEST_F(Engine, ErrorsHaveTheRightKindAndNameTheirSubject) {
   RenderOptions options = small();
   options.width = 0;
-  EXPECT_EQ(rejected(options).kind, ErrorKind::usage);
-  EXPECT_THAT(rejected(options).text, HasSubstr("0x45"));
-
+  expect_rejected(options, ErrorKind::usage, "0x45");
   options = small();
   options.frames = 0;
-  EXPECT_EQ(rejected(options).kind, ErrorKind::usage);
-
+  expect_rejected(options, ErrorKind::usage, "");
   options = small();
   options.scene = "no/such/scene.json";
-  EXPECT_EQ(rejected(options).kind, ErrorKind::input);
-  EXPECT_THAT(rejected(options).text, HasSubstr("no/such/scene.json"));
-
+  expect_rejected(options, ErrorKind::input, "no/such/scene.json");
   options = small();
   options.graph = "no/such/graph.json";
-  EXPECT_EQ(rejected(options).kind, ErrorKind::input);
-  EXPECT_THAT(rejected(options).text, HasSubstr("no/such/graph.json"));
-
+  expect_rejected(options, ErrorKind::input, "no/such/graph.json");
   options =
       small(R"({ "position": [0, 0, 1], "target": [0, 0, 0], "vertical_fov": 20 })", "no/such/profile.json");
   options.graph = shipped + "graphs/burley.json";
-  EXPECT_EQ(rejected(options).kind, ErrorKind::input);
-  EXPECT_THAT(rejected(options).text, HasSubstr("no/such/profile.json"));
-
+  expect_rejected(options, ErrorKind::input, "no/such/profile.json");
   options = small();
   options.scene = shipped + "scenes/head.json";
-  EXPECT_EQ(rejected(options).kind, ErrorKind::usage);
-  EXPECT_THAT(rejected(options).text, HasSubstr("--model"));
+  expect_rejected(options, ErrorKind::usage, "--model");
 }
 
 TEST_F(Engine, GraphWithUnsupportedInput_IsNamed) {
@@ -225,8 +213,7 @@ TEST_F(Engine, GraphWithUnsupportedInput_IsNamed) {
   std::ofstream(path) << text;
   RenderOptions options = small();
   options.graph = path;
-  EXPECT_EQ(rejected(options).kind, ErrorKind::input);
-  EXPECT_THAT(rejected(options).text, HasSubstr("scatter_scale"));
+  expect_rejected(options, ErrorKind::input, "scatter_scale");
 }
 
 // Mesa's software driver recompiles a kernel at each bind if a branch depends only on uniform
@@ -286,8 +273,7 @@ TEST_F(Engine, GraphSettingIsSetByName) {
   // The first has another name, the second is not a number.
   for (const char* name : {"sample", "samples"}) {
     options.settings = {{name, "\"many\""}};
-    EXPECT_EQ(rejected(options).kind, ErrorKind::usage);
-    EXPECT_THAT(rejected(options).text, HasSubstr(name));
+    expect_rejected(options, ErrorKind::usage, name);
   }
 }
 

@@ -1,9 +1,7 @@
 #include "integration/examples/demo_engine/model/load_model.hpp"
 #include "integration/examples/demo_engine/model/load_texture.hpp"
+#include "tests/support/matchers.hpp"
 #include "tests/support/test_folder.hpp"
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <cstring>
 #include <filesystem>
@@ -15,7 +13,8 @@
 namespace demo {
 namespace {
 
-using testing::HasSubstr;
+using dermis::HasAll;
+using dermis::HasSubstr;
 
 struct ModelFile : ::testing::Test {
   std::string write(const std::string& name, const std::string& bytes) const {
@@ -76,8 +75,7 @@ TEST_F(ModelFile, TriangleIsScaledAndCentred) {
 TEST_F(ModelFile, NotAGltf_IsReported) {
   const Error error = rejected(only(write("cat.glb", "\x89PNG and so on")));
   EXPECT_EQ(error.kind, ErrorKind::input);
-  EXPECT_THAT(error.text, HasSubstr("cat.glb"));
-  EXPECT_THAT(error.text, HasSubstr("not a glTF file"));
+  EXPECT_THAT(error.text, HasAll("cat.glb", "not a glTF file"));
   EXPECT_THAT(rejected(only(write("empty.glb", ""))).text, HasSubstr("not a glTF file"));
   EXPECT_THAT(rejected(only(write("short.glb", "glTF\x02"))).text, HasSubstr("damaged"));
   EXPECT_THAT(rejected(only(write("bad.gltf", "{ \"asset\": "))).text, HasSubstr("damaged"));
@@ -121,7 +119,7 @@ TEST_F(ModelFile, RequiredExtensionsAreRejectedByName) {
     return only(write("required.gltf", exchanged(whole, R"("scene": 0)", R"("scene": 0, )" + more)));
   };
   EXPECT_THAT(rejected(with(R"("extensionsRequired": ["KHR_texture_basisu", "ACME_spheres"])")).text,
-              testing::AllOf(HasSubstr("'KHR_texture_basisu'"), HasSubstr("'ACME_spheres'")));
+              HasAll("'KHR_texture_basisu'", "'ACME_spheres'"));
   EXPECT_TRUE(load_model(with(R"("extensionsUsed": ["ACME_spheres"])")));
 }
 
@@ -239,8 +237,7 @@ TEST_F(ModelFile, SkinnedMeshesAreRejectedByName) {
       triangle("[0, 1, 2]", "", R"([{ "mesh": 0, "skin": 0, "name": "torso" }, { "name": "joint" }])");
   const std::string whole =
       exchanged(text_of(path), R"("scene": 0)", R"("scene": 0, "skins": [{ "joints": [1] }])");
-  EXPECT_THAT(rejected(only(write("skin.gltf", whole))).text,
-              testing::AllOf(HasSubstr("node 0 'torso'"), HasSubstr("skin")));
+  EXPECT_THAT(rejected(only(write("skin.gltf", whole))).text, HasAll("node 0 'torso'", "skin"));
 }
 
 TEST_F(ModelFile, IndicesBeyondTheVerticesAreRejected) {
@@ -374,10 +371,10 @@ TEST_F(ModelFile, PicturesThatAreMissingAreNamed) {
     return model ? model->warnings : std::vector<std::string>{};
   };
   EXPECT_THAT(warnings(R"("source": 0)", "not%20there.png"),
-              testing::ElementsAre(testing::AllOf(HasSubstr("'not%20there.png'"), HasSubstr("not there,"))));
+              testing::ElementsAre(HasAll("'not%20there.png'", "not there,")));
   write("text+1.png", "no picture");
   EXPECT_THAT(warnings(R"("source": 0)", "text+1.png"),
-              testing::ElementsAre(testing::AllOf(HasSubstr("'text"), HasSubstr("not an image"))));
+              testing::ElementsAre(HasAll("'text", "not an image")));
   EXPECT_THAT(warnings(R"("extensions": { "KHR_texture_basisu": { "source": 0 } })", "text+1.png"),
               testing::ElementsAre(HasSubstr("KHR_texture_basisu")));
 }

@@ -1,18 +1,17 @@
 #include "integration/examples/demo_engine/scene/read_scene.hpp"
 #include "integration/examples/demo_engine/scene/scene_state.hpp"
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
+#include "tests/support/matchers.hpp"
+#include "tests/support/test_folder.hpp"
 
 #include <filesystem>
 #include <fstream>
 #include <string>
-#include <unistd.h>
 
 namespace demo {
 namespace {
 
-using testing::HasSubstr;
+using dermis::HasAll;
+using dermis::HasSubstr;
 
 // Returns a complete scene with one part replaced.
 std::string scene_with(const std::string& camera, const std::string& more = "") {
@@ -56,8 +55,8 @@ TEST(SceneFile, ProfilesAreFoundNextToTheScene) {
 
 // Folders next to a secret file, removed afterwards.
 struct SceneFolders : ::testing::Test {
-  std::filesystem::path top =
-      std::filesystem::path(testing::TempDir()) / ("dermis_scene_roots_" + std::to_string(getpid()));
+  const dermis::test::TestFolder temporary;
+  const std::filesystem::path& top = temporary.path();
   void SetUp() override {
     for (const char* folder : {"project/scenes", "project/profiles", "elsewhere"})
       std::filesystem::create_directories(top / folder);
@@ -66,7 +65,6 @@ struct SceneFolders : ::testing::Test {
     std::filesystem::create_symlink(top / "elsewhere", top / "project/scenes/link");
     std::filesystem::create_symlink(top / "project/profiles", top / "project/scenes/near");
   }
-  void TearDown() override { std::filesystem::remove_all(top); }
   // Returns a scene in `folder` with the profile `file`.
   static std::string scene_of(const std::string& file) {
     std::string text = scene_with(plain_camera);
@@ -97,8 +95,7 @@ TEST_F(SceneFolders, SceneReadsOnlyInsideItsProject) {
     EXPECT_EQ(one.where.line, 2u);
     EXPECT_EQ(one.where.column, 43u);
     EXPECT_EQ(one.where.pointer, "/profiles/0/file");
-    EXPECT_THAT(one.text, HasSubstr("outside the readable folders"));
-    EXPECT_THAT(one.text, HasSubstr((top / "project").string()));
+    EXPECT_THAT(one.text, HasAll("outside the readable folders", (top / "project").string()));
     EXPECT_THAT(dermis::format_for_people(diagnostics, one), HasSubstr("--root"));
   }
 }

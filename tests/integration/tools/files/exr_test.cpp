@@ -1,5 +1,7 @@
 #include "integration/tools/files/bytes.hpp"
 #include "integration/tools/files/exr.hpp"
+#include "tests/support/matchers.hpp"
+#include "tests/support/test_folder.hpp"
 
 #include <OpenEXR/ImfChannelList.h>
 #include <OpenEXR/ImfFrameBuffer.h>
@@ -7,8 +9,6 @@
 #include <OpenEXR/ImfOutputFile.h>
 #include <OpenEXR/ImfTileDescription.h>
 #include <OpenEXR/ImfTiledOutputFile.h>
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <cstring>
 #include <filesystem>
@@ -19,7 +19,6 @@ namespace {
 namespace fs = std::filesystem;
 using Imath::Box2i;
 using Imath::V2i;
-using ::testing::HasSubstr;
 
 const std::vector<ChannelNames> single = {{"*"}};
 
@@ -29,16 +28,9 @@ float value_at(int x, int y) {
 }
 
 struct Exr : ::testing::Test {
-  fs::path folder =
-      fs::path(::testing::TempDir()) /
-      ("dermis_exr_" + std::string(::testing::UnitTest::GetInstance()->current_test_info()->name()));
+  const dermis::test::TestFolder temporary;
+  const fs::path& folder = temporary.path();
   std::string error;
-
-  void SetUp() override {
-    fs::remove_all(folder);
-    fs::create_directories(folder);
-  }
-  void TearDown() override { fs::remove_all(folder); }
 
   static std::vector<float> values_of(const Box2i& window) {
     std::vector<float> values;

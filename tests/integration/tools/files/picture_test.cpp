@@ -1,9 +1,8 @@
 #include "integration/tools/files/bytes.hpp"
 #include "integration/tools/files/exr.hpp"
 #include "integration/tools/files/png.hpp"
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
+#include "tests/support/matchers.hpp"
+#include "tests/support/test_folder.hpp"
 
 #include <cmath>
 #include <cstring>
@@ -14,19 +13,11 @@ namespace dermis::tools {
 namespace {
 
 namespace fs = std::filesystem;
-using ::testing::HasSubstr;
 
 struct Pictures : ::testing::Test {
-  fs::path folder =
-      fs::path(::testing::TempDir()) /
-      ("dermis_pictures_" + std::string(::testing::UnitTest::GetInstance()->current_test_info()->name()));
+  const dermis::test::TestFolder temporary;
+  const fs::path& folder = temporary.path();
   std::string error;
-
-  void SetUp() override {
-    fs::remove_all(folder);
-    fs::create_directories(folder);
-  }
-  void TearDown() override { fs::remove_all(folder); }
 
   size_t files() const { return static_cast<size_t>(std::distance(fs::directory_iterator(folder), {})); }
   std::vector<uint8_t> bytes_of(const fs::path& path) {
@@ -71,16 +62,13 @@ TEST_F(Pictures, OnlyChannelIsAcceptedUnderAnyName) {
   EXPECT_TRUE(read_exr(folder / "one.exr", any, error));
   ASSERT_TRUE(write_exr(folder / "two.exr", sample(4, 4, 2), {"a", "b"}, error));
   EXPECT_FALSE(read_exr(folder / "two.exr", any, error));
-  EXPECT_THAT(error, HasSubstr("a,b"));
-  EXPECT_THAT(error, HasSubstr("a single channel"));
+  EXPECT_THAT(error, HasAll("a,b", "a single channel"));
 }
 
 TEST_F(Pictures, MissingChannelsAreNamed) {
   ASSERT_TRUE(write_exr(folder / "a.exr", sample(4, 4, 2), {"R", "G"}, error));
   EXPECT_FALSE(read_exr(folder / "a.exr", rgb, error));
-  EXPECT_THAT(error, HasSubstr("G,R"));
-  EXPECT_THAT(error, HasSubstr("R,G,B"));
-  EXPECT_THAT(error, HasSubstr("a.exr"));
+  EXPECT_THAT(error, HasAll("G,R", "R,G,B", "a.exr"));
 }
 
 TEST_F(Pictures, MissingFilesAndFoldersAreRejected) {
