@@ -20,6 +20,18 @@ inline constexpr uint32_t max_frames = 100000;
 // Allows repetition with one value each time, so that a positional may follow.
 CLI::Option* repeat(CLI::Option* option);
 
+// Adds an option whose value is the path of a file or, by `type`, of a folder.
+template <class Value>
+CLI::Option* add_path(CLI::App& verb, const char* name, Value& value, const char* what,
+                      const char* type = "FILE") {
+  return verb.add_option(name, value, what)->type_name(type);
+}
+
+// Adds --frames,-n.
+inline CLI::Option* add_frames(CLI::App& verb, uint32_t& frames, const char* what, uint32_t minimum = 1) {
+  return verb.add_option("--frames,-n", frames, what)->check(CLI::Range(minimum, max_frames));
+}
+
 CLI::Option* add_size(CLI::App& verb, Size& size, const char* name = "--size");
 void add_settings(CLI::App& verb, std::vector<NamedValue>& settings, const char* name = "--set");
 void add_root(CLI::App& verb, std::vector<std::string>& roots, const char* what);

@@ -22,23 +22,21 @@ void add_text_verbs(CLI::App& app, Invocation& invocation) {
       app, invocation, "validate", "Check graphs, profiles, scenes, expectations and captures",
       "dermis validate configs/graphs/burley.json\n  dermis validate capture/ --sarif results.sarif",
       validate, [](CLI::App& verb, ValidateOptions& options) {
-        verb.add_option("files", options.files, "Files to check; a folder means the captured frames in it")
-            ->required()
-            ->type_name("FILE");
-        verb.add_option("--profiles", options.profiles, "Folder of the captures' profiles [configs/profiles]")
-            ->type_name("DIR");
+        add_path(verb, "files", options.files, "Files to check; a folder means the captured frames in it")
+            ->required();
+        add_path(verb, "--profiles", options.profiles, "Folder of the captures' profiles [configs/profiles]",
+                 "DIR");
         verb.add_flag("--diagnose", options.diagnose,
                       "Report usual integration mistakes in captured frames; fail if one is found");
         add_graph_inputs(verb, options.inputs);
-        verb.add_option("--sarif", options.sarif,
-                        "Write the messages as SARIF 2.1.0 to this file, - for standard output")
-            ->type_name("FILE");
+        add_path(verb, "--sarif", options.sarif,
+                 "Write the messages as SARIF 2.1.0 to this file, - for standard output");
       });
   add_verb<UpgradeOptions>(
       app, invocation, "upgrade", "Convert files to the newest version of their format",
       "dermis upgrade configs/graphs/burley.json\n  dermis upgrade --check configs/graphs/*.json", upgrade,
       [](CLI::App& verb, UpgradeOptions& options) {
-        verb.add_option("files", options.files, "Files to upgrade in place")->required()->type_name("FILE");
+        add_path(verb, "files", options.files, "Files to upgrade in place")->required();
         verb.add_flag("--check", options.check, "Write nothing; fail if a file needs an upgrade");
       });
   add_verb<ExplainOptions>(
@@ -46,9 +44,7 @@ void add_text_verbs(CLI::App& app, Invocation& invocation) {
       "dermis explain configs/graphs/burley.json --size 1920x1080\n  dermis explain D0103", explain,
       [&invocation](CLI::App& verb, ExplainOptions& options) {
         const CLI::Option* graph =
-            verb.add_option("graph", options.graph, "Graph file, or the code of a message")
-                ->required()
-                ->type_name("FILE");
+            add_path(verb, "graph", options.graph, "Graph file, or the code of a message")->required();
         for (const DiagnosticInfo& info : all_diagnostic_infos())
           invocation.offered[graph].emplace_back(info.code);
         add_size(verb, options.size);
@@ -58,9 +54,8 @@ void add_text_verbs(CLI::App& app, Invocation& invocation) {
         add_graph_inputs(verb, options.inputs);
         CLI::Option* frame = verb.add_flag("--frame", options.frame,
                                            "Explain the library's choices for a frame instead of the plan");
-        verb.add_option("--scene", options.scene, "Scene of the frame [configs/scenes/bust.json]")
-            ->needs(frame)
-            ->type_name("FILE");
+        add_path(verb, "--scene", options.scene, "Scene of the frame [configs/scenes/bust.json]")
+            ->needs(frame);
         verb.add_option("--budget", options.budget_ms, "Device time budget of the frame, ms")
             ->needs(frame)
             ->check(CLI::PositiveNumber)
@@ -68,49 +63,43 @@ void add_text_verbs(CLI::App& app, Invocation& invocation) {
         verb.add_flag("--deterministic", options.deterministic,
                       "Judge the frame's times only by the calibration")
             ->needs(frame);
-        verb.add_option("--out,-o", options.out, "File to write, - for standard output [-]")
-            ->type_name("FILE");
+        add_path(verb, "--out,-o", options.out, "File to write, - for standard output [-]");
       });
   add_verb<GraphOptions>(
       app, invocation, "graph", "Write the graph and its plan as an HTML page, DOT or JSON",
       "dermis graph configs/graphs/skin.json --html skin.html\n"
       "  dermis graph configs/graphs/burley.json | dot -Tsvg > burley.svg",
       graph, [](CLI::App& verb, GraphOptions& options) {
-        verb.add_option("graph", options.graph, "Graph file")->required()->type_name("FILE");
+        add_path(verb, "graph", options.graph, "Graph file")->required();
         verb.add_flag_callback(
                 "--dot", [] {}, "Write DOT for Graphviz (default)")
             ->excludes("--json");
-        CLI::Option* html = verb.add_option("--html", options.html,
-                                            "Write a self-contained HTML page with graph, lifetimes, memory, "
-                                            "barriers and the plans of up to 64 combinations of choices")
+        CLI::Option* html = add_path(verb, "--html", options.html,
+                                     "Write a self-contained HTML page with graph, lifetimes, memory, "
+                                     "barriers and the plans of up to 64 combinations of choices")
                                 ->excludes("--json")
-                                ->excludes("--dot")
-                                ->type_name("FILE");
-        verb.add_option("--frame", options.frame, "Output of render --json; adds times and tiles to the page")
-            ->needs(html)
-            ->type_name("FILE");
+                                ->excludes("--dot");
+        add_path(verb, "--frame", options.frame, "Output of render --json; adds times and tiles to the page")
+            ->needs(html);
         add_size(verb, options.size);
         add_settings(verb, options.settings);
         add_unbound(verb, options.unbound);
         add_two_queues(verb, options.two_queues);
         add_graph_inputs(verb, options.inputs);
-        verb.add_option("--out,-o", options.out, "File to write, - for standard output [-]")
-            ->excludes(html)
-            ->type_name("FILE");
+        add_path(verb, "--out,-o", options.out, "File to write, - for standard output [-]")->excludes(html);
       });
   add_verb<TestOptions>(
       app, invocation, "test", "Compare graphs with the expectation files next to them",
       "dermis test configs/\n  dermis test configs/ --junit results.xml", test,
       [](CLI::App& verb, TestOptions& options) {
-        verb.add_option("paths", options.paths, "Expectation files (NAME.expect.json), or folders of them")
-            ->required()
-            ->type_name("PATH");
+        add_path(verb, "paths", options.paths, "Expectation files (NAME.expect.json), or folders of them",
+                 "PATH")
+            ->required();
         verb.add_flag("--update", options.update,
                       "Write the observed results to the files; review the changes before you commit them");
         add_root(verb, options.roots, "Additional folder of included files and overlays; may be repeated");
         add_pass_types(verb, options.pass_types);
-        verb.add_option("--junit", options.junit, "Write the results as JUnit XML to this file")
-            ->type_name("FILE");
+        add_path(verb, "--junit", options.junit, "Write the results as JUnit XML to this file");
       });
 }
 
@@ -124,12 +113,10 @@ void add_plan_verbs(CLI::App& app, Invocation& invocation) {
       "  dermis plan diff configs/graphs/burley.json --b-size 960x540 --b-unbound albedo\n"
       "  dermis plan diff before.plan configs/graphs/burley.json --exit-code",
       plan_diff, [](CLI::App& verb, PlanDiffOptions& options) {
-        verb.add_option(
-                "files", options.files,
-                "Two graphs or saved plans, A and B; or one graph for both, with --b-... options for B")
+        add_path(verb, "files", options.files,
+                 "Two graphs or saved plans, A and B; or one graph for both, with --b-... options for B")
             ->required()
-            ->expected(1, 2)
-            ->type_name("FILE");
+            ->expected(1, 2);
         add_graph_inputs(verb, options.inputs);
         add_size(verb, options.size);
         add_settings(verb, options.settings);
@@ -141,27 +128,25 @@ void add_plan_verbs(CLI::App& app, Invocation& invocation) {
         verb.get_option("--b-set")->group(group);
         add_unbound(verb, options.b_unbound, "--b-unbound");
         verb.get_option("--b-unbound")->group(group);
-        repeat(verb.add_option("--b-overlay", options.b_overlays,
-                               "Overlay to apply to the graph; may be repeated")
-                   ->type_name("FILE"))
+        repeat(add_path(verb, "--b-overlay", options.b_overlays,
+                        "Overlay to apply to the graph; may be repeated"))
             ->group(group);
       });
-  add_verb<PlanSaveOptions>(
-      plan, invocation, "save", "Compile a graph and write its plan to a file",
-      "dermis plan save configs/graphs/burley.json --size 1280x720 --out burley.plan", plan_save,
-      [](CLI::App& verb, PlanSaveOptions& options) {
-        verb.add_option("graph", options.graph, "Graph file")->required()->type_name("FILE");
-        add_graph_inputs(verb, options.inputs);
-        add_size(verb, options.size);
-        add_settings(verb, options.settings);
-        add_two_queues(verb, options.two_queues);
-        add_unbound(verb, options.unbound);
-        verb.add_option("--out,-o", options.out, "File to write")->required()->type_name("FILE");
-      });
+  add_verb<PlanSaveOptions>(plan, invocation, "save", "Compile a graph and write its plan to a file",
+                            "dermis plan save configs/graphs/burley.json --size 1280x720 --out burley.plan",
+                            plan_save, [](CLI::App& verb, PlanSaveOptions& options) {
+                              add_path(verb, "graph", options.graph, "Graph file")->required();
+                              add_graph_inputs(verb, options.inputs);
+                              add_size(verb, options.size);
+                              add_settings(verb, options.settings);
+                              add_two_queues(verb, options.two_queues);
+                              add_unbound(verb, options.unbound);
+                              add_path(verb, "--out,-o", options.out, "File to write")->required();
+                            });
   add_verb<PlanVerifyOptions>(
       plan, invocation, "verify", "Verify that saved plans are free of hazards, without their graphs",
       "dermis plan verify burley.plan", plan_verify, [](CLI::App& verb, PlanVerifyOptions& options) {
-        verb.add_option("files", options.files, "Saved plans")->required()->type_name("FILE");
+        add_path(verb, "files", options.files, "Saved plans")->required();
       });
 }
 
@@ -174,9 +159,8 @@ void add_schema_verb(CLI::App& app, Invocation& invocation) {
             verb.add_option("name", options.name, fmt::format("One of {} [all]", format_list(schema_names())))
                 ->type_name("NAME");
         invocation.offered[name] = schema_names();
-        verb.add_option("--out,-o", options.out,
-                        "File to write, - for standard output [-]; a folder if all are written")
-            ->type_name("PATH");
+        add_path(verb, "--out,-o", options.out,
+                 "File to write, - for standard output [-]; a folder if all are written", "PATH");
       });
 }
 
@@ -184,9 +168,8 @@ void add_docs_verb(CLI::App& app, Invocation& invocation) {
   add_verb<DocsOptions>(
       app, invocation, "docs", "Write the documentation generated from schemas, pass types and graphs",
       "dermis docs --out build/docs", docs, [](CLI::App& verb, DocsOptions& options) {
-        verb.add_option("--out,-o", options.out, "Folder of the pages [build/docs]")->type_name("DIR");
-        verb.add_option("--graphs", options.graphs, "Folder of graph files [configs/graphs]")
-            ->type_name("DIR");
+        add_path(verb, "--out,-o", options.out, "Folder of the pages [build/docs]", "DIR");
+        add_path(verb, "--graphs", options.graphs, "Folder of graph files [configs/graphs]", "DIR");
       });
 }
 

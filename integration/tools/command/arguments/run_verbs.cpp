@@ -22,17 +22,16 @@ void add_budget(CLI::App& verb, RenderOptions& options) {
   verb.add_flag("--deterministic", options.deterministic,
                 "Judge times only by the calibration, for equal choices on every machine")
       ->group(group);
-  verb.add_option("--calibration", options.calibration, "File of dermis calibrate for this device")
-      ->type_name("FILE")
+  add_path(verb, "--calibration", options.calibration, "File of dermis calibrate for this device")
       ->group(group);
 }
 
 void add_model(CLI::App& verb, ModelOptions& model) {
   const char* group = "Model, for scenes that use one";
-  verb.add_option("--model", model.model, "glTF file")->type_name("FILE")->group(group);
-  verb.add_option("--albedo", model.albedo, "Albedo image, sRGB")->type_name("FILE")->group(group);
-  verb.add_option("--normal", model.normal, "Tangent-space normal map")->type_name("FILE")->group(group);
-  verb.add_option("--specular", model.specular, "Specular image, linear")->type_name("FILE")->group(group);
+  add_path(verb, "--model", model.model, "glTF file")->group(group);
+  add_path(verb, "--albedo", model.albedo, "Albedo image, sRGB")->group(group);
+  add_path(verb, "--normal", model.normal, "Tangent-space normal map")->group(group);
+  add_path(verb, "--specular", model.specular, "Specular image, linear")->group(group);
   verb.add_option("--height", model.height, "Scale the model to this height, metres")
       ->check(CLI::Range(1e-3, 1e3))
       ->group(group);
@@ -62,25 +61,20 @@ void add_picture_verbs(CLI::App& app, Invocation& invocation) {
       "dermis render configs/scenes/bust.json --graph configs/graphs/burley.json --size 640x360 --frames 8 "
       "--out out/",
       render, [](CLI::App& verb, RenderOptions& options) {
-        verb.add_option("scene", options.scene, "Scene file")->required()->type_name("FILE");
-        verb.add_option("--graph,-g", options.graph, "Graph file, or none to render without Dermis")
-            ->required()
-            ->type_name("FILE");
-        verb.add_option("--out,-o", options.out, "Folder for images")->required()->type_name("DIR");
+        add_path(verb, "scene", options.scene, "Scene file")->required();
+        add_path(verb, "--graph,-g", options.graph, "Graph file, or none to render without Dermis")
+            ->required();
+        add_path(verb, "--out,-o", options.out, "Folder for images", "DIR")->required();
         add_size(verb, options.size);
-        verb.add_option("--frames,-n", options.frames, "Frames to render [8]")
-            ->check(CLI::Range(1u, max_frames));
-        verb.add_option("--capture", options.capture,
-                        "Also write the graph's inputs as a capture to this folder")
-            ->type_name("DIR");
-        verb.add_option("--trace", options.trace,
-                        "Write a Chrome trace of passes, host phases and choices, for ui.perfetto.dev or "
-                        "chrome://tracing")
-            ->type_name("FILE");
-        verb.add_option(
-                "--shaders", options.shaders,
-                "Folder of shaders, laid out like shaders/ of this project, that replace the built-in ones")
-            ->type_name("DIR");
+        add_frames(verb, options.frames, "Frames to render [8]");
+        add_path(verb, "--capture", options.capture,
+                 "Also write the graph's inputs as a capture to this folder", "DIR");
+        add_path(verb, "--trace", options.trace,
+                 "Write a Chrome trace of passes, host phases and choices, for ui.perfetto.dev or "
+                 "chrome://tracing");
+        add_path(verb, "--shaders", options.shaders,
+                 "Folder of shaders, laid out like shaders/ of this project, that replace the built-in ones",
+                 "DIR");
         verb.add_flag(
             "--taa", options.taa,
             "Use temporal anti-aliasing in the engine, after the graph, with sub-pixel jitter (Halton 2, 3)");
@@ -110,11 +104,10 @@ void add_picture_verbs(CLI::App& app, Invocation& invocation) {
       app, invocation, "capture", "Write the graph inputs of a scene as captured frames",
       "dermis capture configs/scenes/bust.json --out capture/", capture,
       [](CLI::App& verb, CaptureOptions& options) {
-        verb.add_option("scene", options.scene, "Scene file")->required()->type_name("FILE");
-        verb.add_option("--out,-o", options.out, "Folder for the frames")->required()->type_name("DIR");
+        add_path(verb, "scene", options.scene, "Scene file")->required();
+        add_path(verb, "--out,-o", options.out, "Folder for the frames", "DIR")->required();
         add_size(verb, options.size);
-        verb.add_option("--frames,-n", options.frames, "Frames to capture [8]")
-            ->check(CLI::Range(1u, max_frames));
+        add_frames(verb, options.frames, "Frames to capture [8]");
         verb.add_option("--first", options.first, "First frame of the scene [0]")
             ->check(CLI::Range(0u, max_frames));
         add_model(verb, options.model);
@@ -130,22 +123,18 @@ void add_picture_verbs(CLI::App& app, Invocation& invocation) {
       "build/release'",
       watch,
       [](CLI::App& verb, WatchOptions& options) {
-        verb.add_option("scene", options.scene, "Scene file")->required()->type_name("FILE");
-        verb.add_option("--graph,-g", options.graph, "Graph file")->required()->type_name("FILE");
-        verb.add_option("--out,-o", options.out, "Folder for the newest images")
-            ->required()
-            ->type_name("DIR");
+        add_path(verb, "scene", options.scene, "Scene file")->required();
+        add_path(verb, "--graph,-g", options.graph, "Graph file")->required();
+        add_path(verb, "--out,-o", options.out, "Folder for the newest images", "DIR")->required();
         add_size(verb, options.size);
-        verb.add_option("--frames,-n", options.frames, "Frames per rendering [4]")
-            ->check(CLI::Range(1u, max_frames));
+        add_frames(verb, options.frames, "Frames per rendering [4]");
         verb.add_option("--subset", options.subset, "Pixels compared with the reference; 0: none [1024]")
             ->check(CLI::Range(0u, max_subset));
         verb.add_option("--build", options.build,
                         "Command that rebuilds this program when a shader changes, instead of compiling "
                         "shaders at run time")
             ->type_name("LINE");
-        verb.add_option("--shaders", options.shaders, "Folder of the shaders to render with [shaders]")
-            ->type_name("DIR");
+        add_path(verb, "--shaders", options.shaders, "Folder of the shaders to render with [shaders]", "DIR");
         verb.add_option("--rounds", options.rounds, "Number of renderings; 0: until Ctrl-C [0]");
         add_settings(verb, options.settings);
         add_graph_inputs(verb, options.inputs);
@@ -156,16 +145,14 @@ void add_picture_verbs(CLI::App& app, Invocation& invocation) {
       "Pack graph, settings, device, plan and a frame, to reproduce a problem elsewhere",
       "dermis report-bug configs/graphs/sap.json --set variant=base --out bug.tar.gz", report_bug,
       [](CLI::App& verb, ReportBugOptions& options) {
-        verb.add_option("graph", options.graph, "Graph file")->required()->type_name("FILE");
-        verb.add_option("--out,-o", options.out, "Folder or archive (.tar.gz, .tgz) to write; must not exist")
-            ->required()
-            ->type_name("PATH");
+        add_path(verb, "graph", options.graph, "Graph file")->required();
+        add_path(verb, "--out,-o", options.out, "Folder or archive (.tar.gz, .tgz) to write; must not exist",
+                 "PATH")
+            ->required();
         CLI::Option* frames =
-            verb.add_option("--frames", options.frames, "Capture of an engine; the last frame is used")
-                ->type_name("DIR");
-        verb.add_option("--scene", options.scene, "Scene to capture a frame of [configs/scenes/bust.json]")
-            ->excludes(frames)
-            ->type_name("FILE");
+            add_path(verb, "--frames", options.frames, "Capture of an engine; the last frame is used", "DIR");
+        add_path(verb, "--scene", options.scene, "Scene to capture a frame of [configs/scenes/bust.json]")
+            ->excludes(frames);
         verb.add_option("--count,-n", options.count, "Number of the scene's frame, from 1 [8]")
             ->excludes(frames)
             ->check(CLI::Range(1u, max_frames));
@@ -176,35 +163,30 @@ void add_picture_verbs(CLI::App& app, Invocation& invocation) {
   add_verb<SheetOptions>(
       app, invocation, "sheet", "Render a scene with every technique and material into one image",
       "dermis sheet --out out/sheet.png", sheet, [](CLI::App& verb, SheetOptions& options) {
-        verb.add_option("scene", options.scene, "Scene file [configs/scenes/bust.json]")->type_name("FILE");
-        verb.add_option("--out,-o", options.out, "PNG file to write")->required()->type_name("FILE");
-        repeat(verb.add_option("--graphs", options.graphs,
-                               "Graph files, separated by commas; one row each, below a row without a graph "
-                               "[shipped graphs]")
-                   ->delimiter(',')
-                   ->type_name("FILE"));
+        add_path(verb, "scene", options.scene, "Scene file [configs/scenes/bust.json]");
+        add_path(verb, "--out,-o", options.out, "PNG file to write")->required();
+        repeat(add_path(verb, "--graphs", options.graphs,
+                        "Graph files, separated by commas; one row each, below a row without a graph "
+                        "[shipped graphs]")
+                   ->delimiter(','));
         add_pass_types(verb, options.pass_types);
-        repeat(verb.add_option("--profiles", options.profiles,
-                               "Profile files, separated by commas; one column each, used for all objects "
-                               "that scatter [skin, jade, marble, wax, ketchup, milk]")
-                   ->delimiter(',')
-                   ->type_name("FILE"));
+        repeat(add_path(verb, "--profiles", options.profiles,
+                        "Profile files, separated by commas; one column each, used for all objects "
+                        "that scatter [skin, jade, marble, wax, ketchup, milk]")
+                   ->delimiter(','));
         add_size(verb, options.size);
         add_root(verb, options.roots, "Additional folder that the scene may read from; may be repeated");
       });
   add_verb<CalibrateOptions>(
       app, invocation, "calibrate", "Measure the cost of a graph's passes on this device",
       "dermis calibrate --out calibration.json", calibrate, [](CLI::App& verb, CalibrateOptions& options) {
-        verb.add_option("graph", options.graph, "Graph file [configs/graphs/skin.json]")->type_name("FILE");
-        verb.add_option("--scene", options.scene, "Scene file [configs/scenes/bust.json]")->type_name("FILE");
-        verb.add_option("--out,-o", options.out, "File to write, - for standard output [-]")
-            ->type_name("FILE");
-        verb.add_option("--calibration", options.calibration,
-                        "Initial calibration; passes that this graph does not run are scaled like the "
-                        "measured ones [built-in]")
-            ->type_name("FILE");
-        verb.add_option("--frames,-n", options.frames, "Frames per combination of choices, near and far [16]")
-            ->check(CLI::Range(2u, max_frames));
+        add_path(verb, "graph", options.graph, "Graph file [configs/graphs/skin.json]");
+        add_path(verb, "--scene", options.scene, "Scene file [configs/scenes/bust.json]");
+        add_path(verb, "--out,-o", options.out, "File to write, - for standard output [-]");
+        add_path(verb, "--calibration", options.calibration,
+                 "Initial calibration; passes that this graph does not run are scaled like the "
+                 "measured ones [built-in]");
+        add_frames(verb, options.frames, "Frames per combination of choices, near and far [16]", 2);
         add_size(verb, options.size);
         add_graph_inputs(verb, options.inputs);
       });
@@ -212,11 +194,11 @@ void add_picture_verbs(CLI::App& app, Invocation& invocation) {
       app, invocation, "apply", "Run a graph on captured frames",
       "dermis apply --graph configs/graphs/burley.json --frames capture/ --out out/", apply,
       [](CLI::App& verb, ApplyOptions& options) {
-        verb.add_option("--graph,-g", options.graph, "Graph file")->required()->type_name("FILE");
-        verb.add_option("--frames", options.frames, "Capture folder")->required()->type_name("DIR");
-        verb.add_option("--out,-o", options.out, "Folder for EXR images")->required()->type_name("DIR");
-        verb.add_option("--profiles", options.profiles, "Folder of the frames' profiles [configs/profiles]")
-            ->type_name("DIR");
+        add_path(verb, "--graph,-g", options.graph, "Graph file")->required();
+        add_path(verb, "--frames", options.frames, "Capture folder", "DIR")->required();
+        add_path(verb, "--out,-o", options.out, "Folder for EXR images", "DIR")->required();
+        add_path(verb, "--profiles", options.profiles, "Folder of the frames' profiles [configs/profiles]",
+                 "DIR");
         verb.add_option("--repeat", options.repeat, "Runs per frame; times are medians [1]")
             ->check(CLI::Range(1u, max_repeat));
         add_settings(verb, options.settings);
@@ -226,10 +208,10 @@ void add_picture_verbs(CLI::App& app, Invocation& invocation) {
       app, invocation, "reference", "Compute the exact scattered light of captured frames",
       "dermis reference --frames capture/ --out truth/", reference,
       [](CLI::App& verb, ReferenceOptions& options) {
-        verb.add_option("--frames", options.frames, "Capture folder")->required()->type_name("DIR");
-        verb.add_option("--out,-o", options.out, "Folder for EXR images")->required()->type_name("DIR");
-        verb.add_option("--profiles", options.profiles, "Folder of the frames' profiles [configs/profiles]")
-            ->type_name("DIR");
+        add_path(verb, "--frames", options.frames, "Capture folder", "DIR")->required();
+        add_path(verb, "--out,-o", options.out, "Folder for EXR images", "DIR")->required();
+        add_path(verb, "--profiles", options.profiles, "Folder of the frames' profiles [configs/profiles]",
+                 "DIR");
         verb.add_option("--subset", options.subset, "Pixels per frame, evenly distributed; 0: all [0]")
             ->check(CLI::Range(0u, max_subset));
         add_root(verb, options.roots, "Additional folder that the capture may read from; may be repeated");
@@ -241,8 +223,7 @@ void add_picture_verbs(CLI::App& app, Invocation& invocation) {
       compare, [](CLI::App& verb, CompareOptions& options) {
         verb.add_option("a", options.a, "PNG, EXR, or a folder of them")->required()->type_name("A");
         verb.add_option("b", options.b, "Image or folder to compare with")->required()->type_name("B");
-        verb.add_option("--heat", options.heat, "Write an image of the differences to this PNG file")
-            ->type_name("FILE");
+        add_path(verb, "--heat", options.heat, "Write an image of the differences to this PNG file");
         repeat(verb.add_option_function<std::vector<std::string>>(
                        "--region",
                        [&options](const std::vector<std::string>& all) {
@@ -255,9 +236,8 @@ void add_picture_verbs(CLI::App& app, Invocation& invocation) {
             verb.add_flag("--flip", options.flip,
                           "Also compute FLIP, the perceived difference when A alternates with the reference "
                           "B; for EXR images over the exposures at which B can be displayed");
-        verb.add_option("--flip-map", options.flip_map, "Write an image of FLIP to this PNG file")
-            ->needs(flip)
-            ->type_name("FILE");
+        add_path(verb, "--flip-map", options.flip_map, "Write an image of FLIP to this PNG file")
+            ->needs(flip);
         verb.add_option("--pixels-per-degree", options.pixels_per_degree,
                         "Pixels per degree of the viewer's field of view [67]")
             ->needs(flip)
