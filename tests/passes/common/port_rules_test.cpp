@@ -144,9 +144,9 @@ constexpr const char* own_light =
     "pixel_light(lighting_image,albedo_image,has_albedo(),settings.texturing,texel)";
 
 TEST_F(PortRules, PixelLight_ReadsOnlyTheTexelOfItsCaller) {
-  const std::string text = without_spaces(shader_text("common/pixel_light.glsl"));
-  EXPECT_EQ(count(text, "texelFetch("),
-            count(text, "texelFetch(lighting,texel,0)") + count(text, "texelFetch(albedo,texel,0)"));
+  const std::string source = without_spaces(shader_text("common/pixel_light.glsl"));
+  EXPECT_EQ(count(source, "texelFetch("),
+            count(source, "texelFetch(lighting,texel,0)") + count(source, "texelFetch(albedo,texel,0)"));
 }
 
 TEST_F(PortRules, OwnTexelsAreReadAtTheTexelThatIsWritten) {
