@@ -78,7 +78,7 @@ Outcome read_passes(const char* passes) {
 #define BLUR_X(rest)                                                                                         \
   R"({ "pass": "blur", "type": "t.blur", "read": { "a": "x" }, "write": { "o": "light" })" rest R"( }, )"
 
-const Case rejected[] = {
+const Case rejected_cases[] = {
     {"Directly",
      R"({ "pass": "blur", "type": "t.blur", "read": { "a": "light" }, "write": { "o": "light" } }, )" SHOW(
          "light"),
@@ -134,7 +134,7 @@ const Case rejected[] = {
      DiagnosticId::format_mismatch},
 };
 
-const Case accepted[] = {
+const Case accepted_cases[] = {
     {"ItsOwnTexels",
      R"({ "pass": "blur", "type": "t.blur", "read": { "own": "light" }, "write": { "o": "light" } }, )" SHOW(
          "light")},
@@ -200,8 +200,8 @@ std::string name_of(const ::testing::TestParamInfo<Case>& one) {
   return one.param.name;
 }
 
-INSTANTIATE_TEST_SUITE_P(Rejected, InPlace, ::testing::ValuesIn(rejected), name_of);
-INSTANTIATE_TEST_SUITE_P(Accepted, InPlace, ::testing::ValuesIn(accepted), name_of);
+INSTANTIATE_TEST_SUITE_P(Rejected, InPlace, ::testing::ValuesIn(rejected_cases), name_of);
+INSTANTIATE_TEST_SUITE_P(Accepted, InPlace, ::testing::ValuesIn(accepted_cases), name_of);
 
 } // namespace
 } // namespace dermis::testing
