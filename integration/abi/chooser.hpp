@@ -31,7 +31,7 @@ struct FrameChoice {
   uint64_t frame_index = 0;    // 0: none
   uint64_t compiled_graph = 0; // CompiledGraph::serial
   uint32_t configuration = 0;  // into CompiledGraph::configurations
-  // into CompiledGraph::variants: the configuration's plan, or its replacement for empty bounds
+  // into CompiledGraph::plans: the configuration's plan, or its replacement for empty bounds
   uint32_t plan = 0;
   choice::Decision decision;
   uint32_t switches = 0; // since the graph was created

@@ -49,7 +49,7 @@ struct Unroller {
         for (uint32_t b = first; b < first + count; ++b) {
           const PlanBarrier& one = plan.barriers[b];
           if ((one.transfer == PlanBarrier::Transfer::release) != releases)
-            misplaced = "a release stands wrong";
+            misplaced = "a release is in the wrong place";
           Operation operation{Operation::What::barrier,
                               step++,
                               f,

@@ -13,7 +13,7 @@ trap 'rm -rf "$scratch"' EXIT
 # scene; a kernel defines them.
 declares_functions() { [ "$1" = restir/scene.glsl ] || [ "$1" = restir/surfaces.glsl ]; }
 
-# Prints why an include depends on its includer; prints nothing if it stands alone.
+# Prints why an include depends on its includer; prints nothing if it compiles without one.
 dependence() { # FOLDER NAME
   printf '#version 460\n#extension GL_GOOGLE_include_directive : require\n#include "%s"\nvoid main() {}\n' \
     "$2" > "$scratch/alone.comp"

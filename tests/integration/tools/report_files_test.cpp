@@ -95,7 +95,7 @@ TEST(ReportFiles, RowsThatMissTheirGoalsAreCountedAndMarked) {
   const GoalCount count = count_goals(report.table, Goal::required);
   EXPECT_EQ(count.missed, 2u);
   EXPECT_EQ(count.rows, 3u);
-  EXPECT_EQ(count_goals(report.table, Goal::wanted).rows, 0u);
+  EXPECT_EQ(count_goals(report.table, Goal::advisory).rows, 0u);
   const std::string page = report_as_html(report);
   EXPECT_THAT(page, HasSubstr("Marked rows miss their limits (column 'holds')."));
   EXPECT_THAT(page, HasSubstr("<tr class=bad><td data-v=0>no<td data-v=1>yes"));

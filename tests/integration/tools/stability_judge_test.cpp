@@ -12,7 +12,7 @@ StabilityCase white(Judged judged) {
   StabilityCase made;
   made.name = "white";
   made.given = [](uint32_t) { return sound_frame(); };
-  made.wanted = [](uint32_t) { return 1.0; };
+  made.expected = [](uint32_t) { return 1.0; };
   made.judged = judged;
   return made;
 }
@@ -79,7 +79,7 @@ TEST(StabilityJudge, ChecksOnlyItsChannelsInsideTheMargin) {
 
 TEST(StabilityJudge, NoExpectation_TheLightMustStay) {
   StabilityCase requested = white(Judged::light);
-  requested.wanted = nullptr;
+  requested.expected = nullptr;
   requested.given = [](uint32_t) { return textured_frame(); };
   StabilityAnswer found{textured_frame().lighting.values, {}};
   EXPECT_EQ(judge(requested, 0, found, nullptr).error, 0);

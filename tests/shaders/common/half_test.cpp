@@ -31,10 +31,10 @@ TEST_F(HalfKernel, RoundsToTheNearestHalfAndTiesToEven) {
       const float requested = std::bit_cast<float>(head << 13 | tails[c]);
       if (std::isnan(requested)) continue;
       ++judged;
-      const double wanted = requested == 0 ? 0 : nearest_half(requested);
-      if (double(answers[4 * size_t{head} + c]) == wanted) continue;
+      const double expected = requested == 0 ? 0 : nearest_half(requested);
+      if (double(answers[4 * size_t{head} + c]) == expected) continue;
       if (++wrong <= 5)
-        ADD_FAILURE() << requested << ": " << answers[4 * size_t{head} + c] << ", not " << wanted;
+        ADD_FAILURE() << requested << ": " << answers[4 * size_t{head} + c] << ", not " << expected;
     }
   EXPECT_EQ(wrong, 0u);
   EXPECT_EQ(judged, 4u * 512 * 1024 - 2 * 4 * 1024 + 2) << "all but NaN";

@@ -93,35 +93,36 @@ demo::Result<std::unique_ptr<TechniqueRun>> TechniqueRun::create(demo::VulkanHos
 }
 
 demo::Result<> TechniqueRun::prepare(const CapturedFrame& frame, const SlotChoice& slots, bool follows) {
-  DeviceGraphRequest wanted;
-  wanted.graph_name = request_.graph;
-  wanted.graph_text = text_;
-  wanted.overlays = loaded_.overlays;
-  wanted.width = frame.description.width;
-  wanted.height = frame.description.height;
-  wanted.profiles = profiles_;
-  wanted.settings = settings_as_json(loaded_.graph, request_.set);
-  wanted.unbound = slots.unbound;
+  DeviceGraphRequest device_request;
+  device_request.graph_name = request_.graph;
+  device_request.graph_text = text_;
+  device_request.overlays = loaded_.overlays;
+  device_request.width = frame.description.width;
+  device_request.height = frame.description.height;
+  device_request.profiles = profiles_;
+  device_request.settings = settings_as_json(loaded_.graph, request_.set);
+  device_request.unbound = slots.unbound;
   for (const auto& [slot, format] : slots.formats)
-    wanted.formats.emplace_back(slot, static_cast<VkFormat>(format_info(format).vulkan));
-  const bool same = device_ != nullptr && same_but_size(wanted, made_for_);
-  made_anew_ = !same || wanted.width != made_for_.width || wanted.height != made_for_.height;
+    device_request.formats.emplace_back(slot, static_cast<VkFormat>(format_info(format).vulkan));
+  const bool same = device_ != nullptr && same_but_size(device_request, made_for_);
+  made_anew_ = !same || device_request.width != made_for_.width || device_request.height != made_for_.height;
   if (!made_anew_) return demo::success();
   Diagnostics diagnostics;
   const CompileChoices choices = read_choices(loaded_.graph, request_.set, slots.unbound);
   if (!choices.problem.empty()) return input_error(request_.graph, choices.problem);
-  auto plan = compile_generic(loaded_, {wanted.width, wanted.height}, choices, diagnostics);
+  auto plan = compile_generic(loaded_, {device_request.width, device_request.height}, choices, diagnostics);
   if (!plan) return input_error(request_.graph, text_of(diagnostics));
   if (same && follows) {
-    if (auto resized = device_->resize(wanted.width, wanted.height); !resized) return resized.error();
+    if (auto resized = device_->resize(device_request.width, device_request.height); !resized)
+      return resized.error();
   } else {
     device_.reset();
-    auto device = DeviceGraph::create(host_, wanted);
+    auto device = DeviceGraph::create(host_, device_request);
     if (!device) return device.error();
     device_ = device.take();
   }
   plan_ = std::move(*plan);
-  made_for_ = std::move(wanted);
+  made_for_ = std::move(device_request);
   return demo::success();
 }
 

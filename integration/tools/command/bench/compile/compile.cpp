@@ -297,7 +297,7 @@ Suite compile_suite() {
        {"goal_met",
         "goal met",
         [](const Row& row) { return row.goal ? std::optional(row.ns->median <= *row.goal) : std::nullopt; },
-        {.goal = Goal::wanted}},
+        {.goal = Goal::advisory}},
        {"heap_bytes", "", &Row::heap_bytes},
        {"max_live_bytes", "", &Row::max_live_bytes},
        {"heap_mib", "heap, MiB", [](const Row& row) { return row.heap_bytes / mebibyte; }, {4}},

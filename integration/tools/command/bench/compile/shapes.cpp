@@ -158,16 +158,16 @@ void read_pair(BenchObject& object, std::string_view key, int64_t maximum, int64
   second = read_integer(object.document, nodes[1], what, 1, maximum, object.diagnostics).value_or(1);
 }
 
-void read_resource(BenchObject& object, DrawnResource& drawn) {
+void read_resource(BenchObject& object, RandomResource& resource) {
   std::string name;
-  object.count("percent", drawn.percent, 1, 100);
+  object.count("percent", resource.percent, 1, 100);
   object.text("format", name);
   const auto format = format_from_name(name);
   if (!format)
     object.diagnostics.add(DiagnosticId::invalid_value, object.document.where(object.reader.node()),
                            fmt::format("no format has the name '{}'", name));
-  drawn.format = format.value_or(Format::undefined);
-  read_pair(object, "scale", 64, drawn.scale.numerator, drawn.scale.denominator);
+  resource.format = format.value_or(Format::undefined);
+  read_pair(object, "scale", 64, resource.scale.numerator, resource.scale.denominator);
 }
 
 void read_shape(BenchObject& object, Shape& shape) {

@@ -11,7 +11,7 @@
 
 namespace dermis::tools {
 
-struct DrawnResource {
+struct RandomResource {
   uint32_t percent = 0;
   Format format = Format::undefined;
   Rational scale; // factor on the view
@@ -28,7 +28,7 @@ struct Shape {
 
 struct ShapeFile {
   uint32_t view_width = 0, view_height = 0;
-  std::vector<DrawnResource> resources;
+  std::vector<RandomResource> resources;
   std::vector<Shape> shapes;
 };
 

@@ -65,7 +65,7 @@ std::string cell(const ReportValue& value, const ReportColumn& column) {
 }
 
 bool misses(Goal goal, bool flag) {
-  return (goal == Goal::wanted || goal == Goal::required) && !flag;
+  return (goal == Goal::advisory || goal == Goal::required) && !flag;
 }
 
 std::string_view mark_of(const ReportTable& table, const std::vector<ReportValue>& row) {

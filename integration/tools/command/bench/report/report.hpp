@@ -33,8 +33,8 @@ struct ReportValue : ReportVariant {
 enum class Goal : uint8_t {
   none,
   best,     // true: marks the row as one of the best
-  wanted,   // false: marks the row, which misses its limits
-  required, // false: as `wanted`, and the suite fails
+  advisory, // false: marks the row, which misses its limits
+  required, // false: as `advisory`, and the suite fails
 };
 
 struct ColumnStyle {

@@ -39,10 +39,10 @@ struct StabilityCase {
   uint32_t frames = 1;
   std::function<CapturedFrame(uint32_t frame)> given = nullptr;
   // The required result is the first available of: the technique's own result for `same_as`, the
-  // value of `wanted` for pixels with a profile (all channels), the input light. Pixels without a
+  // value of `expected` for pixels with a profile (all channels), the input light. Pixels without a
   // profile keep their light.
   std::function<CapturedFrame(uint32_t frame)> same_as = nullptr;
-  std::function<double(uint32_t frame)> wanted = nullptr;
+  std::function<double(uint32_t frame)> expected = nullptr;
   Judged judged = Judged::light;
   Asked requested = Asked::all;
   double bound = 0;           // of the error, in units of `scale`
@@ -79,7 +79,7 @@ template <class Change> void for_pixels(const CapturedFrame& frame, Change chang
     for (uint32_t x = 0; x < frame.description.width; ++x, ++i)
       change(x, y, i);
 }
-// Required light of a white furnace, for StabilityCase::wanted.
+// Required light of a white furnace, for StabilityCase::expected.
 inline double white(uint32_t) {
   return 1;
 }

@@ -14,11 +14,11 @@ constexpr uint32_t beside = 4;  // columns on either side of the middle that cou
 // Returns the required light of a frame, 3 values per pixel.
 std::vector<float> wanted_light(const StabilityCase& requested, uint32_t t, const CapturedFrame& frame) {
   std::vector<float> light(frame.lighting.values);
-  if (requested.wanted)
+  if (requested.expected)
     for (size_t i = 0; i < frame.profile.size(); ++i)
       if (frame.profile[i] != 0)
         for (size_t c = 0; c < 3; ++c)
-          light[3 * i + c] = static_cast<float>(requested.wanted(t));
+          light[3 * i + c] = static_cast<float>(requested.expected(t));
   return light;
 }
 
@@ -118,7 +118,7 @@ Judgement judge(const StabilityCase& requested, uint32_t t, const StabilityAnswe
                 const StabilityAnswer* sound) {
   // The frame determines the judged pixels: those without a profile or depth are not judged.
   const CapturedFrame frame = requested.same_as ? requested.same_as(t) : requested.given(t);
-  const std::vector<float> wanted = sound != nullptr ? sound->light : wanted_light(requested, t, frame);
+  const std::vector<float> expected = sound != nullptr ? sound->light : wanted_light(requested, t, frame);
   Judgement judgement;
   LightErrors errors;
   const uint32_t width = frame.description.width, height = frame.description.height;
@@ -139,7 +139,7 @@ Judgement judge(const StabilityCase& requested, uint32_t t, const StabilityAnswe
         if (requested.judged == Judged::light_beyond)
           errors.add(x, y, beyond(double(found.light[3 * i + c]) / requested.scale));
         else
-          errors.add(x, y, (double(found.light[3 * i + c]) - double(wanted[3 * i + c])) / requested.scale);
+          errors.add(x, y, (double(found.light[3 * i + c]) - double(expected[3 * i + c])) / requested.scale);
     }
   switch (requested.judged) {
   case Judged::light:

@@ -31,7 +31,7 @@ std::function<CapturedFrame(uint32_t)> at_depth(float metres) {
 }
 
 StabilityCase far_plane(std::string_view name, float metres) {
-  return {.name = name, .given = at_depth(metres), .wanted = white, .bound = furnace};
+  return {.name = name, .given = at_depth(metres), .expected = white, .bound = furnace};
 }
 
 enum class View : uint8_t { perspective, orthographic };

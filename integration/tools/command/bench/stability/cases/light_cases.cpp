@@ -32,8 +32,9 @@ StabilityCase uniform(std::string_view name, float value, double bound) {
     fill_light(frame, value);
     return frame;
   };
-  const auto wanted = [taken](uint32_t) { return taken; };
-  return {.name = name, .given = given, .wanted = wanted, .bound = bound, .scale = std::max(1e-30, taken)};
+  const auto expected = [taken](uint32_t) { return taken; };
+  return {
+      .name = name, .given = given, .expected = expected, .bound = bound, .scale = std::max(1e-30, taken)};
 }
 
 // A white plane that scatters where `has_profile` is true.
@@ -44,7 +45,7 @@ template <class Mask> StabilityCase masked(std::string_view name, Mask has_profi
                [&](uint32_t x, uint32_t y, size_t i) { frame.profile[i] = has_profile(x, y) ? 1 : 0; });
     return frame;
   };
-  return {.name = name, .given = given, .wanted = white, .bound = furnace};
+  return {.name = name, .given = given, .expected = white, .bound = furnace};
 }
 
 // Half of the plane is dark and scatters. Light of the other half must reach the dark half.
@@ -72,7 +73,7 @@ StabilityCase glare_beside() {
     });
     return frame;
   };
-  return {.name = "glare_without_profile", .given = given, .wanted = white, .bound = furnace};
+  return {.name = "glare_without_profile", .given = given, .expected = white, .bound = furnace};
 }
 
 // The brightest light next to darkness, on pixels at many depths, so that dark pixels receive
@@ -104,7 +105,7 @@ StabilityCase trembling() {
   return {.name = "light_1000_within_a_step",
           .frames = 32,
           .given = given,
-          .wanted = [](uint32_t) { return 1000.0; },
+          .expected = [](uint32_t) { return 1000.0; },
           .bound = furnace,
           .scale = 1000};
 }

@@ -23,7 +23,7 @@ StabilityCase velocity(std::string_view name, float value) {
   return {.name = name,
           .frames = 4,
           .given = given,
-          .wanted = white,
+          .expected = white,
           .requested = Asked::with_history,
           .bound = furnace};
 }
@@ -72,7 +72,7 @@ StabilityCase red_comes() {
   return {.name = "red_comes",
           .frames = 16,
           .given = given,
-          .wanted = [](uint32_t) { return double(level); },
+          .expected = [](uint32_t) { return double(level); },
           .requested = Asked::with_history,
           .bound = largest_ratio - 1,
           .scale = level,

@@ -13,7 +13,7 @@ namespace {
 StabilityCase furnace_of(std::string_view name, std::function<CapturedFrame()> make) {
   return {.name = name,
           .given = [make = std::move(make)](uint32_t) { return make(); },
-          .wanted = white,
+          .expected = white,
           .bound = furnace};
 }
 
@@ -90,7 +90,8 @@ StabilityCase resized() {
     constexpr std::array<uint32_t, 4> widths{48, 31, 64, 17};
     return sound_frame(widths[frame % widths.size()], widths[(frame + 1) % widths.size()]);
   };
-  return {.name = "size_changes_every_frame", .frames = 8, .given = given, .wanted = white, .bound = furnace};
+  return {
+      .name = "size_changes_every_frame", .frames = 8, .given = given, .expected = white, .bound = furnace};
 }
 
 } // namespace

@@ -29,7 +29,7 @@ std::vector<StabilityCase> tile_cases() {
   // more tiles (66,048) than the maximum group count of many devices along one axis (65,535)
   const StabilityCase many{.name = "size_4096x1032",
                            .given = [](uint32_t) { return sound_frame(4096, 1032); },
-                           .wanted = white,
+                           .expected = white,
                            .bound = furnace,
                            .large = true};
   return {seams(), many};

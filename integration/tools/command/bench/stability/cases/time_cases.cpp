@@ -19,14 +19,15 @@ StabilityCase levels(std::string_view name, uint32_t frames, Level level, double
     fill_light(out, static_cast<float>(level(frame)));
     return out;
   };
-  return {.name = name, .frames = frames, .given = given, .wanted = level, .bound = furnace, .scale = scale};
+  return {
+      .name = name, .frames = frames, .given = given, .expected = level, .bound = furnace, .scale = scale};
 }
 
 // Frame 4 is all NaN.
 StabilityCase poisoned() {
   StabilityCase made = levels(
       "history_poisoned", 12, [](uint32_t frame) { return frame == 4 ? double(not_a_number) : 1.0; }, 1);
-  made.wanted = [](uint32_t frame) { return frame == 4 ? 0.0 : 1.0; };
+  made.expected = [](uint32_t frame) { return frame == 4 ? 0.0 : 1.0; };
   made.damage_ends = 5;
   return made;
 }
@@ -40,7 +41,7 @@ StabilityCase swapped_profiles() {
     });
     return out;
   };
-  return {.name = "profiles_change", .frames = 10, .given = given, .wanted = white, .bound = furnace};
+  return {.name = "profiles_change", .frames = 10, .given = given, .expected = white, .bound = furnace};
 }
 
 StabilityCase vanishing() {
@@ -50,13 +51,13 @@ StabilityCase vanishing() {
     return out;
   };
   return {
-      .name = "subsurface_comes_and_goes", .frames = 9, .given = given, .wanted = white, .bound = furnace};
+      .name = "subsurface_comes_and_goes", .frames = 9, .given = given, .expected = white, .bound = furnace};
 }
 
 StabilityCase exposed() {
   StabilityCase made = levels(
       "exposure_x16", 24, [](uint32_t frame) { return frame >= 8 && frame < 16 ? 16.0 : 1.0; }, 16);
-  made.given = [given = made.given, level = made.wanted](uint32_t frame) {
+  made.given = [given = made.given, level = made.expected](uint32_t frame) {
     CapturedFrame out = given(frame);
     out.description.exposure = 1 / level(frame);
     return out;
