@@ -249,7 +249,8 @@ typedef struct dermis_device_allocator {
 /* The device was created with separateDepthStencilLayouts. Of combined depth-stencil images only
  * the depth aspect then changes its layout. */
 #define DERMIS_CONTEXT_SEPARATE_DEPTH_STENCIL 0x8u
-/* Shape kernels for a GPU or for a driver on the CPU, for tests. Neither: by the device's type. */
+/* Use the kernels for GPUs, or those for drivers on the CPU, whatever the device's type is. At most
+ * one of them; for tests. */
 #define DERMIS_CONTEXT_GPU_KERNELS 0x10u
 #define DERMIS_CONTEXT_CPU_KERNELS 0x20u
 
