@@ -1,4 +1,5 @@
 // Creates and destroys an Executor.
+#include "framegraph/compile/written_size.hpp"
 #include "framegraph/vulkan/executor/state.hpp"
 
 #include <algorithm>
@@ -69,7 +70,8 @@ void make_passes(State& state, const ExecutorInput& input) {
     Pass& pass = state.passes[p];
     pass.name = input.graph->passes[planned.declared.value].name;
     if (type.dispatch.domain == DispatchRule::Domain::host) pass.host = planned.type;
-    pass.written = first_written_size(state.plan, planned, type);
+    const TexelSize written = first_written_size(state.plan, planned, type);
+    pass.written_groups = group_count(type.dispatch, written.width, written.height);
     pass.ports.resize(type.ports.size());
     for (uint32_t a = planned.first_access; a < planned.first_access + planned.access_count; ++a)
       bind_port(state.plan, pass, a);

@@ -118,8 +118,7 @@ void dispatch(State& state, const FrameInput& frame, const PlanPass& planned, co
     return vk.vkCmdDispatchIndirect(frame.command_buffer, indirect_buffer(state, pass, kernel),
                                     indirect_offset(state, frame, planned, pass, kernel));
   const bool by_image = kernel.dispatch.domain == DispatchRule::Domain::written_image;
-  const GroupCount groups = by_image ? group_count(kernel.dispatch, pass.written.width, pass.written.height)
-                                     : group_count(kernel.dispatch, r.width, r.height);
+  const GroupCount groups = by_image ? pass.written_groups : group_count(kernel.dispatch, r.width, r.height);
   if (groups.total() > 0)
     vk.vkCmdDispatch(frame.command_buffer, static_cast<uint32_t>(groups.x), static_cast<uint32_t>(groups.y),
                      static_cast<uint32_t>(groups.z));

@@ -2,7 +2,6 @@
 // Declares the parts of an Executor's state and the functions that create and use them. Internal to
 // vulkan/executor/. The destroy function of each part also handles partly created state.
 
-#include "framegraph/compile/written_size.hpp"
 #include "framegraph/vulkan/device_memory.hpp"
 #include "framegraph/vulkan/executor.hpp"
 #include "framegraph/vulkan/heap_pool.hpp"
@@ -152,7 +151,7 @@ struct Pass {
   std::vector<PortAccess> ports;
   uint32_t port_mask = 0;                      // ports that are bound in every frame
   std::vector<uint32_t> conditional_ports;     // ports that are bound in some frames
-  TexelSize written;                           // of the first image that the pass type writes
+  GroupCount written_groups;                   // for DispatchRule::Domain::written_image
   uint64_t indirect_entries = 1;               // number of entries in its indirect arguments
   std::vector<uint32_t> writable_placeholders; // into State::placeholders
 };
