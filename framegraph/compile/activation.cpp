@@ -26,7 +26,8 @@ bool acceptable(const SettingDeclaration& declared, const SettingValue& value) {
     return as_real >= declared.minimum && as_real <= declared.maximum;
   }
   case SettingType::real:
-    return std::isfinite(value.real) && value.real >= declared.minimum && value.real <= declared.maximum;
+    return std::isfinite(value.real) && value.real >= declared.minimum &&
+           value.real <= declared.maximum;
   case SettingType::enumeration:
   case SettingType::choice:
     return value.integer >= 0 && static_cast<uint64_t>(value.integer) < declared.options.size();
@@ -52,11 +53,12 @@ void check_features(const CompileInput& in, Report& report) {
   const Features missing = graph.features & ~in.device->features;
   if (missing == 0) return;
   report.diagnostics.add(DiagnosticId::device_feature, graph.requires_where,
-                         fmt::format("graph '{}' cannot run on '{}': {}", graph.name, in.device->name,
-                                     missing_text(graph, {missing, {}})));
+                         fmt::format("graph '{}' cannot run on '{}': {}", graph.name,
+                                     in.device->name, missing_text(graph, {missing, {}})));
 }
 
-// Returns `value`, or another option if the device or the bound slots do not allow the option in `value`.
+// Returns `value`, or another option if the device or the bound slots do not allow the option in
+// `value`.
 SettingValue available_value(const CompileInput& in, uint32_t setting, const SettingValue& value,
                              Report& report) {
   const SettingDeclaration& declared = in.graph->settings[setting];
@@ -88,7 +90,8 @@ void resolve_setting(const CompileInput& in, uint32_t setting, Activation& activ
 
 } // namespace
 
-const Activation& evaluate_conditions(const CompileInput& in, Report& report, ActivationScratch& scratch) {
+const Activation& evaluate_conditions(const CompileInput& in, Report& report,
+                                      ActivationScratch& scratch) {
   const Graph& graph = *in.graph;
   Activation& active = scratch.result;
   active.pass_types = in.pass_types;

@@ -4,8 +4,8 @@
 
 namespace dermis {
 
-MissingRequirements missing_requirements(const SettingDeclaration& setting, int64_t option, Features features,
-                                         const std::vector<bool>& bound) {
+MissingRequirements missing_requirements(const SettingDeclaration& setting, int64_t option,
+                                         Features features, const std::vector<bool>& bound) {
   MissingRequirements unmet;
   if (option < 0 || static_cast<size_t>(option) >= setting.needs.size()) return unmet;
   const OptionNeeds& needs = setting.needs[static_cast<size_t>(option)];
@@ -15,15 +15,16 @@ MissingRequirements missing_requirements(const SettingDeclaration& setting, int6
   return unmet;
 }
 
-SettingValue available_option(const SettingDeclaration& setting, const SettingValue& value, Features features,
-                              const std::vector<bool>& bound) {
+SettingValue available_option(const SettingDeclaration& setting, const SettingValue& value,
+                              Features features, const std::vector<bool>& bound) {
   const auto available = [&](int64_t option) {
     return !missing_requirements(setting, option, features, bound).any();
   };
   if (setting.needs.empty() || available(value.integer)) return value;
   if (available(setting.default_value.integer)) return setting.default_value;
   SettingValue instead = value;
-  for (instead.integer = 0; !available(instead.integer);) // read_graph requires one option without needs
+  for (instead.integer = 0;
+       !available(instead.integer);) // read_graph requires one option without needs
     ++instead.integer;
   return instead;
 }
@@ -35,12 +36,13 @@ std::string missing_text(const Graph& graph, const MissingRequirements& unmet) {
       text += fmt::format("{}the device lacks {}, or it is not enabled", text.empty() ? "" : "; ",
                           feature_name(static_cast<Feature>(f)));
   for (const ResourceId import : unmet.imports)
-    text += fmt::format("{}'{}' is not bound", text.empty() ? "" : "; ", graph.resources[import.value].name);
+    text += fmt::format("{}'{}' is not bound", text.empty() ? "" : "; ",
+                        graph.resources[import.value].name);
   return text;
 }
 
-void report_unavailable(const Graph& graph, const DeviceProfile& device, const std::vector<bool>& bound,
-                        Diagnostics& diagnostics) {
+void report_unavailable(const Graph& graph, const DeviceProfile& device,
+                        const std::vector<bool>& bound, Diagnostics& diagnostics) {
   for (const SettingDeclaration& setting : graph.settings)
     for (size_t option = 0; option < setting.needs.size(); ++option) {
       const MissingRequirements unmet =

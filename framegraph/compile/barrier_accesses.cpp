@@ -45,7 +45,8 @@ void BarrierWalk::unify_layouts(std::span<const Use> uses) {
     uint32_t before = invalid_index; // access of the use before
     for (size_t u = 0; u < uses.size(); ++u) {
       const uint32_t access = accesses.of_use[u];
-      if (access != invalid_index && before != invalid_index && uses[u].binding == uses[u - 1].binding &&
+      if (access != invalid_index && before != invalid_index &&
+          uses[u].binding == uses[u - 1].binding &&
           accesses.list[access].layout != accesses.list[before].layout) {
         accesses.list[access].layout = accesses.list[before].layout = Layout::general;
         again = true;
@@ -60,7 +61,8 @@ namespace {
 // Whether the pass writes the resource that `read` reads, in this frame or over an earlier one.
 bool writes_too(const Use& read, std::span<const Use> uses) {
   return std::any_of(uses.begin(), uses.end(), [&](const Use& other) {
-    return other.writes && other.resource == read.resource && other.bind_error == Use::BindError::none;
+    return other.writes && other.resource == read.resource &&
+           other.bind_error == Use::BindError::none;
   });
 }
 
@@ -69,10 +71,10 @@ void extend(SubresourceRange& range, const SubresourceRange& other) {
   const auto end = [](uint32_t first, uint32_t count, uint32_t other_first, uint32_t others) {
     return std::max(first + count, other_first + others);
   };
-  range.mips =
-      static_cast<uint16_t>(end(range.first_mip, range.mips, other.first_mip, other.mips) - range.first_mip);
-  range.layers = static_cast<uint16_t>(end(range.first_layer, range.layers, other.first_layer, other.layers) -
-                                       range.first_layer);
+  range.mips = static_cast<uint16_t>(end(range.first_mip, range.mips, other.first_mip, other.mips) -
+                                     range.first_mip);
+  range.layers = static_cast<uint16_t>(
+      end(range.first_layer, range.layers, other.first_layer, other.layers) - range.first_layer);
 }
 
 } // namespace
@@ -94,8 +96,9 @@ void BarrierWalk::add_accesses(PlanPass& pass, std::span<const Use> uses) {
     // A placeholder is read in every frame if its history has no version.
     const Use* history = history_of(use);
     const bool always = history && history->bind_error != Use::BindError::none;
-    plan.accesses.push_back({use.port, access.resource, use.frames_back, range, usage.stages, usage.access,
-                             access.layout, own_texels, always ? ReadWhen::always : use.when});
+    plan.accesses.push_back({use.port, access.resource, use.frames_back, range, usage.stages,
+                             usage.access, access.layout, own_texels,
+                             always ? ReadWhen::always : use.when});
   }
   pass.access_count = static_cast<uint32_t>(plan.accesses.size()) - pass.first_access;
 }

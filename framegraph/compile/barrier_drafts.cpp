@@ -1,4 +1,5 @@
-// Places barriers into batches, merges ranges, and drops barriers that the waits between queues cover.
+// Places barriers into batches, merges ranges, and drops barriers that the waits between queues
+// cover.
 
 #include "framegraph/compile/barrier_drafts.hpp"
 
@@ -10,7 +11,8 @@ namespace dermis {
 namespace {
 
 bool unite(SubresourceRange& a, const SubresourceRange& b) {
-  if (a.first_layer == b.first_layer && a.layers == b.layers && a.first_mip + a.mips == b.first_mip) {
+  if (a.first_layer == b.first_layer && a.layers == b.layers &&
+      a.first_mip + a.mips == b.first_mip) {
     a.mips = static_cast<uint16_t>(a.mips + b.mips);
     return true;
   }
@@ -21,20 +23,23 @@ bool unite(SubresourceRange& a, const SubresourceRange& b) {
   return false;
 }
 
-// Extends `a` by the range of `b` if the barriers differ only in their ranges, and those are adjacent.
+// Extends `a` by the range of `b` if the barriers differ only in their ranges, and those are
+// adjacent.
 bool merge(PlanBarrier& a, const PlanBarrier& b) {
   const auto all_but_range = [](const PlanBarrier& one) {
     return std::tuple(one.resource, one.frames_back, one.source_stages, one.destination_stages,
-                      one.source_access, one.destination_access, one.old_layout, one.new_layout, one.why,
-                      one.from_host, one.to_host, one.transfer);
+                      one.source_access, one.destination_access, one.old_layout, one.new_layout,
+                      one.why, one.from_host, one.to_host, one.transfer);
   };
   return all_but_range(a) == all_but_range(b) && unite(a.range, b.range);
 }
 
 // Removes the reasons of this phase for which remove(reason) holds.
-template <class Remove> void remove_reasons(std::vector<Reason>& reasons, size_t first, Remove remove) {
-  reasons.erase(std::remove_if(reasons.begin() + static_cast<std::ptrdiff_t>(first), reasons.end(), remove),
-                reasons.end());
+template <class Remove>
+void remove_reasons(std::vector<Reason>& reasons, size_t first, Remove remove) {
+  reasons.erase(
+      std::remove_if(reasons.begin() + static_cast<std::ptrdiff_t>(first), reasons.end(), remove),
+      reasons.end());
 }
 
 } // namespace
@@ -67,7 +72,8 @@ void BarrierDrafts::drop_covered(const QueueSync& queues, Report& report) {
     const PlanBarrier& barrier = barriers[i];
     const OwnQueueWait& wait = i < queues.draft_waits.size() ? queues.draft_waits[i] : no_wait;
     const bool changes_layout = barrier.old_layout != barrier.new_layout && !wait.layout_kept;
-    if (barrier.transfer != PlanBarrier::Transfer::none || barrier.from_host || changes_layout) continue;
+    if (barrier.transfer != PlanBarrier::Transfer::none || barrier.from_host || changes_layout)
+      continue;
     const FrameCounts& complete = queues.round_trips[batch_of[i]];
     bool covered = true;
     for (size_t back = 0; back < complete.size(); ++back)

@@ -1,6 +1,6 @@
 #pragma once
-// Barriers in the order in which the walk finds them, before they are sorted into batches. Internal to
-// compile/.
+// Barriers in the order in which the walk finds them, before they are sorted into batches. Internal
+// to compile/.
 
 #include "framegraph/compile/hardware.hpp"
 #include "framegraph/compile/queue_sync.hpp"
@@ -10,7 +10,8 @@
 namespace dermis {
 
 struct BarrierDrafts {
-  struct Deferred { // a barrier of a divided image, which is placed after all accesses of its pass are known
+  // A barrier of a divided image, which is placed after all accesses of its pass are known.
+  struct Deferred {
     uint32_t draft = 0;
     uint32_t predecessor = invalid_index; // position of the pass that it waits for
   };
@@ -36,8 +37,8 @@ struct BarrierDrafts {
     return index;
   }
 
-  // Places a barrier into a batch between the passes at `predecessor` and at `position`: into the last batch
-  // if that lies between them, else into a new batch before `position`.
+  // Places a barrier into a batch between the passes at `predecessor` and at `position`: into the
+  // last batch if that lies between them, else into a new batch before `position`.
   void place(uint32_t draft, uint32_t predecessor, uint32_t position) {
     if (two_queues) { // passes in between may be the other queue's
       batch_of[draft] = position;
@@ -52,14 +53,16 @@ struct BarrierDrafts {
   // Places the deferred barriers of one image into one batch, so that they can be merged.
   void place_deferred(uint32_t position);
 
-  // Drops barriers that change no layout and wait only for passes that the waits between queues cover: passes
-  // that ran on the other queue, or that the other queue waited for before this queue waited for it.
+  // Drops barriers that change no layout and wait only for passes that the waits between queues
+  // cover: passes that ran on the other queue, or that the other queue waited for before this queue
+  // waited for it.
   void drop_covered(const QueueSync& queues, Report& report);
 
   // Merges barriers of one batch that differ only in their subresource range, and their reasons.
   void merge_ranges(Report& report);
 
-  // Sorts the drafts into batches and gives the batches to the passes. Drafts of one batch keep their order.
+  // Sorts the drafts into batches and gives the batches to the passes. Drafts of one batch keep
+  // their order.
   void write_to_plan(bool in_order, Report& report, Plan& plan);
 };
 

@@ -1,5 +1,5 @@
-// First uses: which previous occupants of the memory a resource waits for, in this frame and in the frame
-// before.
+// First uses: which previous occupants of the memory a resource waits for, in this frame and in the
+// frame before.
 
 #include "framegraph/compile/barrier_walk.hpp"
 #include "framegraph/compile/hardware.hpp"
@@ -10,8 +10,8 @@
 namespace dermis {
 namespace {
 
-// Returns the first range that ends after `at`. Binary search without branches, then counting: the profile of
-// `dermis bench compile` shows mispredicted branches here otherwise.
+// Returns the first range that ends after `at`. Binary search without branches, then counting: the
+// profile of `dermis bench compile` shows mispredicted branches here otherwise.
 size_t first_ending_after(const std::vector<HeapRange>& ranges, uint64_t at) {
   constexpr size_t few = 16;
   size_t first = 0, left = ranges.size();
@@ -26,8 +26,8 @@ size_t first_ending_after(const std::vector<HeapRange>& ranges, uint64_t at) {
   return first + count;
 }
 
-// Replaces the ranges [first, last) by the bytes of `occupant`. Splits the first and the last range; empty
-// leftovers are overwritten.
+// Replaces the ranges [first, last) by the bytes of `occupant`. Splits the first and the last
+// range; empty leftovers are overwritten.
 void replace(std::vector<HeapRange>& ranges, size_t first, size_t last, const HeapRange& occupant) {
   HeapRange left = ranges[first], right = ranges[last - 1];
   const auto has_left = static_cast<size_t>(left.begin < occupant.begin);
@@ -57,11 +57,13 @@ void BarrierWalk::locate_resources() {
   memory.ranges.resize(std::max(memory.ranges.size(), plan.heaps.size()));
   for (uint32_t heap = 0; heap < plan.heaps.size(); ++heap)
     memory.ranges[heap].assign(1, {0, plan.heaps[heap].size, invalid_index, 0});
-  // The idle memory of histories: at the start of a frame the oldest frame occupies the second list.
+  // The idle memory of histories: at the start of a frame the oldest frame occupies the second
+  // list.
   auto next = static_cast<uint32_t>(plan.heaps.size());
   memory.idle_memory.assign(resources, invalid_index);
   for (const HistoryAlias& alias : aliases) {
-    if (alias.target == invalid_index || memory.idle_memory[alias.target] != invalid_index) continue;
+    if (alias.target == invalid_index || memory.idle_memory[alias.target] != invalid_index)
+      continue;
     memory.idle_memory[alias.target] = next;
     next += 2;
     memory.ranges.resize(std::max<size_t>(memory.ranges.size(), next));
@@ -77,17 +79,19 @@ void BarrierWalk::locate_resources() {
     MemoryLocation& location = memory.location[r];
     location = {placement.heap, placement.offset, 0};
     if (alias.target != invalid_index)
-      location = {memory.idle_memory[alias.target] + (alias.after_last_read ? 1 : 0), alias.offset, 0};
+      location = {memory.idle_memory[alias.target] + (alias.after_last_read ? 1 : 0), alias.offset,
+                  0};
     else if (memory.idle_memory[r] != invalid_index)
       location = {memory.idle_memory[r], 0, 0};
     location.end = location.begin + placement.size;
   }
 }
 
-inline uint32_t BarrierWalk::wait_for_occupant(const HeapRange& occupant, uint32_t resource, uint32_t barrier,
-                                               bool frame_before) {
+inline uint32_t BarrierWalk::wait_for_occupant(const HeapRange& occupant, uint32_t resource,
+                                               uint32_t barrier, bool frame_before) {
   const ResourceSyncInfo& of = info(occupant.resource);
-  const ObjectState* state = objects.states.data() + of.first_object + occupant.frames_back * of.ranges;
+  const ObjectState* state =
+      objects.states.data() + of.first_object + occupant.frames_back * of.ranges;
   PlanBarrier& draft = drafts.barriers[barrier];
   uint32_t end_of_last = 0;
   if (of.ranges == 1 && !queues.two_queues) { // the common case in the hottest loop of the phase
@@ -98,7 +102,8 @@ inline uint32_t BarrierWalk::wait_for_occupant(const HeapRange& occupant, uint32
   }
   const bool own = occupant.resource == resource;
   if (!own && info(resource).frames == 1) draft.why = PlanBarrier::ReasonKind::alias;
-  record_reason(barrier, own ? Reason::ReasonKind::after_last_use : Reason::ReasonKind::acquires_memory,
+  record_reason(barrier,
+                own ? Reason::ReasonKind::after_last_use : Reason::ReasonKind::acquires_memory,
                 occupant.resource, frame_before ? 1 : 0);
   return end_of_last;
 }
@@ -126,10 +131,11 @@ uint32_t BarrierWalk::acquire_memory(uint32_t resource, uint32_t barrier) {
   for (; last < ranges.size() && ranges[last].begin < own.end; ++last) {
     const HeapRange& before = ranges[last];
     if (before.resource == invalid_index)
-      memory.first_uses.push_back(
-          {std::max(own.begin, before.begin), std::min(own.end, before.end), own.memory, barrier, resource});
+      memory.first_uses.push_back({std::max(own.begin, before.begin), std::min(own.end, before.end),
+                                   own.memory, barrier, resource});
     else
-      end_of_predecessor = std::max(end_of_predecessor, wait_for_occupant(before, resource, barrier, false));
+      end_of_predecessor =
+          std::max(end_of_predecessor, wait_for_occupant(before, resource, barrier, false));
   }
   replace(ranges, first, last, {own.begin, own.end, resource, 0});
   return end_of_predecessor - 1; // invalid_index if there was none
@@ -153,12 +159,15 @@ void BarrierWalk::begin_lifetime(const PassAccess& access, const UsageSet& set, 
   } else if (of.frames > 1) { // a history: its oldest instance becomes this frame's
     const uint32_t oldest = of.oldest_object(access.range);
     const bool in_place = plan.resources[resource].instance_count < of.frames;
-    const ObjectState& before = in_place ? objects.states[oldest] : objects.states_at_frame_end[oldest];
+    const ObjectState& before =
+        in_place ? objects.states[oldest] : objects.states_at_frame_end[oldest];
     if (in_place && !before.carried) predecessor = before.last_pass;
-    if (memory.idle_memory[resource] != invalid_index) predecessor = acquire_memory(resource, draft);
+    if (memory.idle_memory[resource] != invalid_index)
+      predecessor = acquire_memory(resource, draft);
     add_scope(barrier, scope_of(before));
     if (queues.two_queues && before.accessed) {
-      QueueSyncPoint last = (in_place ? queues.last_access : queues.last_access_at_frame_end)[oldest].any;
+      QueueSyncPoint last =
+          (in_place ? queues.last_access : queues.last_access_at_frame_end)[oldest].any;
       if (!in_place) ++last.frames_back;
       queues.wait_on_own_queue(draft, last);
       queues.draft_wait(draft).layout_kept = in_place && before.layout == access.layout;
@@ -182,7 +191,8 @@ void BarrierWalk::begin_lifetime(const PassAccess& access, const UsageSet& set, 
 void BarrierWalk::wait_for_state(const ObjectState& state, uint32_t barrier, bool frame_before) {
   PlanBarrier& draft = drafts.barriers[barrier];
   if (!queues.two_queues || !state.accessed) return add_scope(draft, scope_of(state));
-  const uint32_t position = drafts.batch_of[barrier] == invalid_index ? current : drafts.batch_of[barrier];
+  const uint32_t position =
+      drafts.batch_of[barrier] == invalid_index ? current : drafts.batch_of[barrier];
   if (state.queue == queue_at(position)) {
     add_scope(draft, scope_of(state));
     return queues.wait_on_own_queue(barrier, {frame_before ? 1u : 0u, state.last_pass + 1});
@@ -202,16 +212,17 @@ void BarrierWalk::resolve_aliasing_barriers() {
     // In the frame before, idle memory of a history was that of the next instance.
     const bool idle = use.memory >= plan.heaps.size();
     const std::vector<HeapRange>& ranges = memory.ranges[use.memory + (idle ? 1 : 0)];
-    for (size_t i = first_ending_after(ranges, use.begin); i < ranges.size() && ranges[i].begin < use.end;
-         ++i)
+    for (size_t i = first_ending_after(ranges, use.begin);
+         i < ranges.size() && ranges[i].begin < use.end; ++i)
       if (ranges[i].resource != use.resource && ranges[i].resource != invalid_index)
         wait_for_occupant(ranges[i], use.resource, use.barrier, true);
   }
   resolve_divided_first_uses();
 }
 
-// Each range waits for the previous occupants of the resource's memory, and for its own last use in the frame
-// before. The barrier that acquired the memory is resolved last, because the others copy from it.
+// Each range waits for the previous occupants of the resource's memory, and for its own last use in
+// the frame before. The barrier that acquired the memory is resolved last, because the others copy
+// from it.
 void BarrierWalk::resolve_divided_first_uses() {
   for (size_t i = memory.divided_first_uses.size(); i-- > 0;) {
     const DividedFirstUse& use = memory.divided_first_uses[i];

@@ -36,13 +36,14 @@ struct BarrierWalk {
     return in.subresources.ranges[in.subresources.number(plan.resources[resource].declared, range)];
   }
   void record_reason(uint32_t barrier, Reason::ReasonKind why, uint32_t resource, uint32_t b = 0) {
-    report.record_reason(Reason::About::barrier, barrier, why, plan.resources[resource].declared.value, b);
+    report.record_reason(Reason::About::barrier, barrier, why,
+                         plan.resources[resource].declared.value, b);
   }
 
   // ---- barriers.cpp ----
 
-  // Starts a frame: the state of an earlier frame of a history is that of the frame one younger at the end of
-  // the frame before; all other objects have not been accessed.
+  // Starts a frame: the state of an earlier frame of a history is that of the frame one younger at
+  // the end of the frame before; all other objects have not been accessed.
   void begin_frame();
 
   // Walks frames without emitting barriers until the states at the end of a frame repeat.
@@ -60,14 +61,15 @@ struct BarrierWalk {
   }
 
   // Fills in the barrier that an access needs after the accesses in `state`.
-  void fill_dependency(const ObjectState& state, const UsageSet& set, Layout layout, bool needs_visibility,
-                       PlanBarrier& barrier) const;
+  void fill_dependency(const ObjectState& state, const UsageSet& set, Layout layout,
+                       bool needs_visibility, PlanBarrier& barrier) const;
 
   // Transfers the object with its contents from one queue to the other.
   void transfer_ownership(const PassAccess& access, const ObjectState& state, const UsageSet& set,
                           uint32_t position);
 
-  // Every slot is passed back in the state that the host requested, also a slot that no pass accesses.
+  // Every slot is passed back in the state that the host requested, also a slot that no pass
+  // accesses.
   void pass_to_host(uint32_t resource);
   void describe_histories();
 
@@ -90,22 +92,22 @@ struct BarrierWalk {
   // The first barrier of an object whose old contents do not count.
   void begin_lifetime(const PassAccess& access, const UsageSet& set, uint32_t position);
 
-  // The resource becomes the occupant of its bytes; the barrier waits for the occupants before it in this
-  // frame. Unoccupied bytes wait for the last occupants of the frame before: see resolve_aliasing_barriers.
-  // Older occupants need no wait, because the last occupant has waited for them. Returns the last pass of
-  // this frame that accessed the bytes, or invalid_index.
+  // The resource becomes the occupant of its bytes; the barrier waits for the occupants before it
+  // in this frame. Unoccupied bytes wait for the last occupants of the frame before: see
+  // resolve_aliasing_barriers. Older occupants need no wait, because the last occupant has waited
+  // for them. Returns the last pass of this frame that accessed the bytes, or invalid_index.
   uint32_t acquire_memory(uint32_t resource, uint32_t barrier);
 
   // Returns the position after the last pass that accessed the occupant.
   uint32_t wait_for_occupant(const HeapRange& occupant, uint32_t resource, uint32_t barrier,
                              bool frame_before);
-  uint32_t wait_for_ranges(const ResourceSyncInfo& occupant, const ObjectState* first, uint32_t barrier,
-                           bool frame_before);
+  uint32_t wait_for_ranges(const ResourceSyncInfo& occupant, const ObjectState* first,
+                           uint32_t barrier, bool frame_before);
   void wait_for_state(const ObjectState& state, uint32_t barrier, bool frame_before);
 
-  // Completes the first barriers with the occupants of the frame before, whose last accesses are known when
-  // the walk is over. A resource always waits for its own last use in the frame before, so that a plan whose
-  // placements are moved apart stays correct.
+  // Completes the first barriers with the occupants of the frame before, whose last accesses are
+  // known when the walk is over. A resource always waits for its own last use in the frame before,
+  // so that a plan whose placements are moved apart stays correct.
   void resolve_aliasing_barriers();
   void resolve_divided_first_uses();
 };

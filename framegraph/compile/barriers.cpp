@@ -1,23 +1,25 @@
-// Finds what must wait for what. Read this file first; barrier_walk.hpp lists the steps in other files.
+// Finds what must wait for what. Read this file first; barrier_walk.hpp lists the steps in other
+// files.
 //
-// The phase walks through the frame once, pass by pass. For each object (one subresource range of one frame
-// of a resource) it keeps the state after the last access. Each access of a pass is one of these cases:
+// The phase walks through the frame once, pass by pass. For each object (one subresource range of
+// one frame of a resource) it keeps the state after the last access. Each access of a pass is one
+// of these cases:
 //
 //   the contents are visible, in the right layout     no barrier
-//   the first access in this frame                    begin_lifetime: the memory's previous occupant, the
-//   host,
-//                                                     or the same history in the frame before
+//   the first access in this frame                    begin_lifetime: the memory's previous
+//                                                     occupant, the host, or the same history in
+//                                                     the frame before
 //   the last access was on the other queue            transfer_ownership: release, wait, acquire
 //   otherwise                                         one barrier from the last access to this one
 //
-// Objects of histories start as the frame before left them, so their states are computed first, by walking
-// without emitting barriers. The occupants that a frame's first uses wait for in the frame before are known
-// only at the end: resolve_aliasing_barriers.
+// Objects of histories start as the frame before left them, so their states are computed first, by
+// walking without emitting barriers. The occupants that a frame's first uses wait for in the frame
+// before are known only at the end: resolve_aliasing_barriers.
 //
-// Barriers share batches: a barrier may be recorded at any boundary between the pass that it waits for and
-// its own pass, and as few boundaries as possible get a batch. That is interval stabbing: in the order of
-// their ends, each interval takes the last chosen point if it contains that point, else its own end becomes a
-// point.
+// Barriers share batches: a barrier may be recorded at any boundary between the pass that it waits
+// for and its own pass, and as few boundaries as possible get a batch. That is interval stabbing:
+// in the order of their ends, each interval takes the last chosen point if it contains that point,
+// else its own end becomes a point.
 
 #include "framegraph/compile/barriers.hpp"
 #include "framegraph/compile/barrier_walk.hpp"
@@ -26,7 +28,8 @@
 
 namespace dermis {
 
-void SyncObjects::number(const Subresources& subresources, const Histories& histories, const Plan& plan) {
+void SyncObjects::number(const Subresources& subresources, const Histories& histories,
+                         const Plan& plan) {
   uint32_t count = 0;
   any_history = false;
   resources.resize(plan.resources.size());
@@ -47,8 +50,9 @@ void SyncObjects::number(const Subresources& subresources, const Histories& hist
   states.assign(count, {});
 }
 
-inline void BarrierWalk::fill_dependency(const ObjectState& state, const UsageSet& set, Layout layout,
-                                         bool needs_visibility, PlanBarrier& barrier) const {
+inline void BarrierWalk::fill_dependency(const ObjectState& state, const UsageSet& set,
+                                         Layout layout, bool needs_visibility,
+                                         PlanBarrier& barrier) const {
   const bool pending_write = state.source_access != 0;
   const SyncScope everything = scope_of(state);
   barrier.source_stages = everything.stages;
@@ -63,7 +67,8 @@ inline void BarrierWalk::fill_dependency(const ObjectState& state, const UsageSe
                                  : PlanBarrier::ReasonKind::write_after_write;
   } else if (needs_visibility) {
     barrier.why = PlanBarrier::ReasonKind::read_after_write;
-    barrier.source_stages = set.writes ? everything.stages | state.source_stages : state.source_stages;
+    barrier.source_stages =
+        set.writes ? everything.stages | state.source_stages : state.source_stages;
   } else {
     barrier.why = pending_write ? PlanBarrier::ReasonKind::write_after_write
                                 : PlanBarrier::ReasonKind::write_after_read;
@@ -92,11 +97,12 @@ inline void BarrierWalk::apply_access(const PassAccess& access, uint32_t positio
       barrier.frames_back = access.frames_back;
       barrier.range = range_of(access.resource, access.range);
       fill_dependency(state, set, layout, needs_visibility, barrier);
-      report.record_reason(Reason::About::barrier, draft, Reason::ReasonKind::dependency, state.last_pass,
-                           state.carried ? 1 : 0, position);
-      if (queues.two_queues) { // a barrier that only makes a write visible waits for no reader since then
-        const bool only_visible =
-            barrier.why == PlanBarrier::ReasonKind::read_after_write && !set.writes && layout == state.layout;
+      report.record_reason(Reason::About::barrier, draft, Reason::ReasonKind::dependency,
+                           state.last_pass, state.carried ? 1 : 0, position);
+      // A barrier that only makes a write visible waits for no reader since then.
+      if (queues.two_queues) {
+        const bool only_visible = barrier.why == PlanBarrier::ReasonKind::read_after_write &&
+                                  !set.writes && layout == state.layout;
         const LastAccess& last = queues.last_access[access.object];
         queues.wait_on_own_queue(draft, only_visible ? last.write : last.any);
       }
@@ -177,30 +183,32 @@ void BarrierWalk::find_states_at_frame_end() {
   begin_frame();
 }
 
-void BarrierWalk::transfer_ownership(const PassAccess& access, const ObjectState& state, const UsageSet& set,
-                                     uint32_t position) {
+void BarrierWalk::transfer_ownership(const PassAccess& access, const ObjectState& state,
+                                     const UsageSet& set, uint32_t position) {
   PlanBarrier release;
   release.resource = access.resource;
   release.frames_back = access.frames_back;
   release.range = range_of(access.resource, access.range);
   release.old_layout = state.layout;
   release.new_layout = access.layout;
-  release.why =
-      set.reads ? PlanBarrier::ReasonKind::read_after_write : PlanBarrier::ReasonKind::write_after_write;
+  release.why = set.reads ? PlanBarrier::ReasonKind::read_after_write
+                          : PlanBarrier::ReasonKind::write_after_write;
   PlanBarrier acquire = release;
   const SyncScope scope = scope_of(state);
   release.source_stages = scope.stages;
   release.source_access = scope.access;
   release.transfer = PlanBarrier::Transfer::release;
-  acquire.source_stages = acquire.destination_stages = set.stages; // the stages that wait for the point
+  acquire.source_stages = acquire.destination_stages =
+      set.stages; // the stages that wait for the point
   acquire.destination_access = set.access;
   acquire.transfer = PlanBarrier::Transfer::acquire;
   for (const PlanBarrier& half : {release, acquire}) {
     const uint32_t draft = drafts.add();
     drafts.barriers[draft] = half;
-    drafts.batch_of[draft] = half.transfer == PlanBarrier::Transfer::release ? state.last_pass : position;
-    report.record_reason(Reason::About::barrier, draft, Reason::ReasonKind::dependency, state.last_pass, 0,
-                         position);
+    drafts.batch_of[draft] =
+        half.transfer == PlanBarrier::Transfer::release ? state.last_pass : position;
+    report.record_reason(Reason::About::barrier, draft, Reason::ReasonKind::dependency,
+                         state.last_pass, 0, position);
   }
   queues.wait_for_pass(position, state.last_pass);
 }
@@ -238,16 +246,19 @@ void BarrierWalk::describe_histories() {
     plan.history_layouts.insert(plan.history_layouts.end(), resource.ranges, Layout::undefined);
     for (uint32_t back = 1; back < resource.frames; ++back)
       for (uint32_t range = 0; range < resource.ranges; ++range)
-        plan.history_layouts.push_back(objects.states_at_frame_end[resource.object(back - 1, range)].layout);
+        plan.history_layouts.push_back(
+            objects.states_at_frame_end[resource.object(back - 1, range)].layout);
     plan.histories.push_back(history);
   }
 }
 
-void emit_barriers(const CompileInput& in, const Activation& active, const Subresources& subresources,
-                   const Versions& versions, const QueueAssignment& queues, const ResourceMemory& memory,
-                   const Histories& histories, const Placements& placements, Report& report, Plan& plan,
-                   BarrierScratch& scratch) {
-  const BarrierInput input{*in.graph, active, subresources, versions, queues, memory, histories, placements};
+void emit_barriers(const CompileInput& in, const Activation& active,
+                   const Subresources& subresources, const Versions& versions,
+                   const QueueAssignment& queues, const ResourceMemory& memory,
+                   const Histories& histories, const Placements& placements, Report& report,
+                   Plan& plan, BarrierScratch& scratch) {
+  const BarrierInput input{*in.graph, active, subresources, versions,
+                           queues,    memory, histories,    placements};
   scratch.objects.number(subresources, histories, plan);
   scratch.accesses.begin(scratch.objects.states.size());
   scratch.queues.begin(queues.two(), scratch.objects.states.size(), plan.passes.size());

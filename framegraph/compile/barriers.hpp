@@ -1,6 +1,6 @@
 #pragma once
-// The barrier phase: accesses of each pass, barriers in batches, waits between queues. Start reading in
-// barriers.cpp. Internal to compile/.
+// The barrier phase: accesses of each pass, barriers in batches, waits between queues. Start
+// reading in barriers.cpp. Internal to compile/.
 
 #include "framegraph/compile/barrier_drafts.hpp"
 #include "framegraph/compile/queue_sync.hpp"
@@ -54,14 +54,17 @@ struct MemoryLocation {
 };
 
 struct MemoryOccupancy {
-  // One list for each heap, then two for each history with aliases: its idle memory before this frame's
-  // contents are first accessed, and after the last read of the oldest frame. The instance of the latter is
-  // that of the former in the next frame.
+  // One list for each heap, then two for each history with aliases: its idle memory before this
+  // frame's contents are first accessed, and after the last read of the oldest frame. The instance
+  // of the latter is that of the former in the next frame.
   std::vector<std::vector<HeapRange>> ranges;
   std::vector<MemoryLocation> location; // by plan resource
-  std::vector<uint32_t> idle_memory;    // by plan resource: into ranges, if it is the target of aliases
-  std::vector<uint32_t> first_barrier;  // by plan resource: draft of the first use, except host and histories
-  std::vector<uint32_t> predecessor; // by plan resource, if images are divided: last pass that had the bytes
+  std::vector<uint32_t>
+      idle_memory; // by plan resource: into ranges, if it is the target of aliases
+  std::vector<uint32_t>
+      first_barrier; // by plan resource: draft of the first use, except host and histories
+  std::vector<uint32_t>
+      predecessor; // by plan resource, if images are divided: last pass that had the bytes
   std::vector<FirstUse> first_uses;
   std::vector<DividedFirstUse> divided_first_uses;
 };
@@ -74,9 +77,10 @@ struct BarrierScratch {
   MemoryOccupancy memory;
 };
 // Fills accesses, barriers, waits between queues, and histories of the plan.
-void emit_barriers(const CompileInput& in, const Activation& active, const Subresources& subresources,
-                   const Versions& versions, const QueueAssignment& queues, const ResourceMemory& memory,
-                   const Histories& histories, const Placements& placements, Report& report, Plan& plan,
-                   BarrierScratch& scratch);
+void emit_barriers(const CompileInput& in, const Activation& active,
+                   const Subresources& subresources, const Versions& versions,
+                   const QueueAssignment& queues, const ResourceMemory& memory,
+                   const Histories& histories, const Placements& placements, Report& report,
+                   Plan& plan, BarrierScratch& scratch);
 
 } // namespace dermis

@@ -1,5 +1,5 @@
-// Reports bindings without a version: ports of live passes, and exports. Ports of passes that are culled may
-// lack one.
+// Reports bindings without a version: ports of live passes, and exports. Ports of passes that are
+// culled may lack one.
 
 #include "framegraph/compile/phases.hpp"
 #include "framegraph/model/image_range.hpp"
@@ -29,7 +29,8 @@ struct BindErrorReporter {
            next->bind_error == Use::BindError::none;
   }
 
-  // Whether the pass cannot run without the port. Of several alternative ports the first is reported.
+  // Whether the pass cannot run without the port. Of several alternative ports the first is
+  // reported.
   bool is_required(const Use& use) const {
     const PassType& type = active.type(use.pass);
     if (!type.ports[use.port].optional) return true;
@@ -48,57 +49,64 @@ struct BindErrorReporter {
                          use.bind_error == Use::BindError::unwritten ||
                          use.bind_error == Use::BindError::history_unwritten;
     if (has_placeholder(use)) {
-      report.record_reason(Reason::About::pass, use.pass.value, Reason::ReasonKind::always_otherwise,
-                           use.port, use.requested.value);
+      report.record_reason(Reason::About::pass, use.pass.value,
+                           Reason::ReasonKind::always_otherwise, use.port, use.requested.value);
       return;
     }
     if (missing && !is_required(use)) {
       if (first_of_binding(use))
-        report.record_reason(Reason::About::pass, use.pass.value, Reason::ReasonKind::port_unbound, use.port,
-                             use.requested.value);
+        report.record_reason(Reason::About::pass, use.pass.value, Reason::ReasonKind::port_unbound,
+                             use.port, use.requested.value);
       return;
     }
     if (reported[use.requested.value]) return;
     reported[use.requested.value] = 1;
     const auto report_error = [&](DiagnosticId id, std::string text) {
       auto& diagnostic = report.diagnostics.add(id, location_of(graph, use), std::move(text));
-      diagnostic.related.emplace_back(graph.resources[use.requested.value].where,
-                                      fmt::format("'{}' is declared here", name_of(graph, use.requested)));
+      diagnostic.related.emplace_back(
+          graph.resources[use.requested.value].where,
+          fmt::format("'{}' is declared here", name_of(graph, use.requested)));
       relate_producers(diagnostic, use);
     };
-    const std::string reader = fmt::format("pass '{}', port '{}'", name_of(graph, use.pass), port.name);
+    const std::string reader =
+        fmt::format("pass '{}', port '{}'", name_of(graph, use.pass), port.name);
     const std::string& resource = name_of(graph, use.requested);
     switch (use.bind_error) {
     case Use::BindError::none:
       break;
     case Use::BindError::unbound:
-      return report_error(DiagnosticId::unbound_import,
-                          fmt::format("{} needs '{}', which the host leaves unbound", reader, resource));
-    case Use::BindError::unwritten:
       return report_error(
-          DiagnosticId::read_before_write,
-          fmt::format("{} reads '{}', which no pass that is on writes before it", reader, seen_text(use)));
+          DiagnosticId::unbound_import,
+          fmt::format("{} needs '{}', which the host leaves unbound", reader, resource));
+    case Use::BindError::unwritten:
+      return report_error(DiagnosticId::read_before_write,
+                          fmt::format("{} reads '{}', which no pass that is on writes before it",
+                                      reader, seen_text(use)));
     case Use::BindError::ambiguous:
-      return report_error(DiagnosticId::ambiguous_version,
-                          fmt::format("{} reads '{}' before any pass wrote it, and several write it later",
-                                      reader, resource));
+      return report_error(
+          DiagnosticId::ambiguous_version,
+          fmt::format("{} reads '{}' before any pass wrote it, and several write it later", reader,
+                      resource));
     case Use::BindError::replaced:
       return report_error(
           DiagnosticId::replaced_update,
-          fmt::format("{} updates '{}' in place, but it stands for '{}' because its producer is off", reader,
-                      resource, name_of(graph, use.resource)));
+          fmt::format(
+              "{} updates '{}' in place, but it stands for '{}' because its producer is off",
+              reader, resource, name_of(graph, use.resource)));
     case Use::BindError::history_unwritten:
       return report_error(DiagnosticId::history_unwritten,
-                          fmt::format("{0} reads '{1}@-{2}', but no pass that is on writes '{1}'", reader,
-                                      seen_text(use), use.frames_back));
+                          fmt::format("{0} reads '{1}@-{2}', but no pass that is on writes '{1}'",
+                                      reader, seen_text(use), use.frames_back));
     case Use::BindError::partly_unwritten:
       return use.frames_back > 0
                  ? report_error(DiagnosticId::history_unwritten,
-                                fmt::format("{} reads '{}@-{}', but no pass that is on writes {}", reader,
-                                            seen_text(use), use.frames_back, unwritten_ranges(use)))
-                 : report_error(DiagnosticId::read_before_write,
-                                fmt::format("{} reads '{}', but no pass that is on writes {} before it",
-                                            reader, seen_text(use), unwritten_ranges(use)));
+                                fmt::format("{} reads '{}@-{}', but no pass that is on writes {}",
+                                            reader, seen_text(use), use.frames_back,
+                                            unwritten_ranges(use)))
+                 : report_error(
+                       DiagnosticId::read_before_write,
+                       fmt::format("{} reads '{}', but no pass that is on writes {} before it",
+                                   reader, seen_text(use), unwritten_ranges(use)));
     }
   }
 
@@ -164,8 +172,8 @@ struct BindErrorReporter {
       for (const PortBinding& binding : graph.writes(graph.passes[i]))
         if (binding.resource == resource && counts(binding))
           diagnostic.related.emplace_back(
-              graph.place_of(binding),
-              fmt::format("'{}' writes it and is {}", name_of(graph, PassId{i}), state_of(PassId{i})));
+              graph.place_of(binding), fmt::format("'{}' writes it and is {}",
+                                                   name_of(graph, PassId{i}), state_of(PassId{i})));
   }
 
   // Reports a bound export that no pass writes.
@@ -175,9 +183,9 @@ struct BindErrorReporter {
       report.record_reason(Reason::About::resource, i, Reason::ReasonKind::unwritten_export);
       return;
     }
-    auto& diagnostic =
-        report.diagnostics.add(DiagnosticId::export_unwritten, declared.where,
-                               fmt::format("no pass that is on writes the export '{}'", declared.name));
+    auto& diagnostic = report.diagnostics.add(
+        DiagnosticId::export_unwritten, declared.where,
+        fmt::format("no pass that is on writes the export '{}'", declared.name));
     relate_producers(diagnostic, ResourceId{i}, [](const PortBinding&) { return true; });
   }
 };
@@ -185,11 +193,12 @@ struct BindErrorReporter {
 } // namespace
 
 void report_bind_errors(const CompileInput& in, const Sizes& sizes, const Activation& active,
-                        const Subresources& subresources, const Versions& versions, const LiveSet& live,
-                        Report& report, BindErrorScratch& scratch) {
+                        const Subresources& subresources, const Versions& versions,
+                        const LiveSet& live, Report& report, BindErrorScratch& scratch) {
   const Graph& graph = *in.graph;
   scratch.reported.assign(graph.resources.size(), 0);
-  BindErrorReporter reporter{graph, sizes, active, subresources, versions, report, scratch.reported};
+  BindErrorReporter reporter{graph,    sizes,  active,          subresources,
+                             versions, report, scratch.reported};
   for (uint32_t i = 0; i < graph.resources.size(); ++i)
     if (sizes.info[i].exported && sizes.info[i].bound && versions.final_version[i] == invalid_index)
       reporter.report_export(i);

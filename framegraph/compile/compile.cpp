@@ -7,7 +7,8 @@
 namespace dermis {
 namespace {
 
-// Whether each list of the input is empty or has one entry per declaration, and the device supports the view.
+// Whether each list of the input is empty or has one entry per declaration, and the device supports
+// the view.
 bool acceptable(const CompileInput& input, Diagnostics& diagnostics) {
   const uint32_t errors = diagnostics.count(Severity::error);
   const auto report_input = [&](std::string text) {
@@ -18,9 +19,10 @@ bool acceptable(const CompileInput& input, Diagnostics& diagnostics) {
       report_input(fmt::format("{} {} given, the graph has {}", given, what, expected));
   };
   const uint32_t limit = input.device->max_image_dimension;
-  if (input.view_width < 1 || input.view_height < 1 || input.view_width > limit || input.view_height > limit)
-    report_input(fmt::format("the view is {}x{}; each side must be within 1 .. {}", input.view_width,
-                             input.view_height, limit));
+  if (input.view_width < 1 || input.view_height < 1 || input.view_width > limit ||
+      input.view_height > limit)
+    report_input(fmt::format("the view is {}x{}; each side must be within 1 .. {}",
+                             input.view_width, input.view_height, limit));
   check_length("setting values", input.settings.size(), input.graph->settings.size());
   check_length("bound flags", input.bound.size(), input.graph->resources.size());
   check_length("host formats", input.host_formats.size(), input.graph->resources.size());
@@ -47,8 +49,8 @@ void clear(CompiledPlan& out) {
   out.reasons.clear();
 }
 
-// Compilation from top to bottom. Each phase returns a value that later phases read; it stays valid until the
-// next compilation. Stops after a phase that reported errors.
+// Compilation from top to bottom. Each phase returns a value that later phases read; it stays valid
+// until the next compilation. Stops after a phase that reported errors.
 bool run_phases(const CompileInput& in, Report& report, Plan& plan, CompileScratch& scratch) {
   // Computes the size of each resource, and which slots the host binds.
   const Sizes& sizes = resolve_sizes(in, report, scratch.sizes);
@@ -59,11 +61,13 @@ bool run_phases(const CompileInput& in, Report& report, Plan& plan, CompileScrat
   if (report.failed()) return false;
 
   // Divides images into the subresource ranges that ports name.
-  const Subresources& subresources = split_subresources(in, sizes, active, report, scratch.subresources);
+  const Subresources& subresources =
+      split_subresources(in, sizes, active, report, scratch.subresources);
   if (report.failed()) return false;
 
   // Resolves which version of which resource each port accesses. No pass may read what it writes.
-  const Versions& versions = resolve_versions(in, sizes, active, subresources, report, scratch.versions);
+  const Versions& versions =
+      resolve_versions(in, sizes, active, subresources, report, scratch.versions);
   if (report.failed()) return false;
   report_races(in, active, versions, report);
   if (report.failed()) return false;
@@ -84,20 +88,21 @@ bool run_phases(const CompileInput& in, Report& report, Plan& plan, CompileScrat
   if (report.failed()) return false;
 
   // Orders the passes, and lists them with their settings.
-  const Schedule& schedule = schedule_passes(in, active, versions, live, memory, report, scratch.schedule);
+  const Schedule& schedule =
+      schedule_passes(in, active, versions, live, memory, report, scratch.schedule);
   if (report.failed()) return false;
   plan_passes(in, active, queues, schedule, report, plan, scratch.passes);
   if (report.failed()) return false;
 
   // Locates each resource in memory; transients and idle histories alias.
-  const Histories& histories =
-      analyze_histories(in, active, versions, usages, schedule, report, plan.resources, scratch.histories);
-  const Placements& placements = place_resources(in, sizes, subresources, queues, memory, schedule, histories,
-                                                 report, plan, scratch.placements);
+  const Histories& histories = analyze_histories(in, active, versions, usages, schedule, report,
+                                                 plan.resources, scratch.histories);
+  const Placements& placements = place_resources(in, sizes, subresources, queues, memory, schedule,
+                                                 histories, report, plan, scratch.placements);
 
   // Emits accesses, barriers and waits between queues.
-  emit_barriers(in, active, subresources, versions, queues, memory, histories, placements, report, plan,
-                scratch.barriers);
+  emit_barriers(in, active, subresources, versions, queues, memory, histories, placements, report,
+                plan, scratch.barriers);
 
   plan.graph = in.graph->name;
   plan.view_width = in.view_width;

@@ -11,7 +11,7 @@
 namespace dermis {
 
 enum class PassOrder : uint8_t {
-  memory,  // depth first if that lowers the maximum of bytes live at once, else the order of the file
+  memory,  // depth first if that lowers the maximum of bytes live at once, else as program
   program, // the order of the file wherever dependencies allow it
   random   // any legal order, randomly generated from CompileInput::order_seed: for tests
 };
@@ -28,10 +28,11 @@ struct CompileInput {
   const DeviceProfile* device = nullptr;
   uint32_t view_width = 0, view_height = 0; // allocated view size, 1 .. device->max_image_dimension
   std::vector<SettingValue> settings;       // one per Graph::settings; empty: the defaults
-  // One per Graph::resources: whether the host binds the optional import or export. Empty: all are bound.
-  // Required slots always count as bound.
+  // One per Graph::resources: whether the host binds the optional import or export. Empty: all are
+  // bound. Required slots always count as bound.
   std::vector<bool> bound;
-  // One per Graph::resources: the format that the host binds. Undefined or empty: the first declared format.
+  // One per Graph::resources: the format that the host binds. Undefined or empty: the first
+  // declared format.
   std::vector<Format> host_formats;
   bool reasons = true; // fill CompiledPlan::reasons
   PassOrder order = PassOrder::memory;
@@ -40,16 +41,17 @@ struct CompileInput {
   bool alias = true;        // false: no two transients share memory
   bool cull = true;         // false: every pass that is on and has what it needs runs
   bool single_queue = true; // false: passes that are declared `async` may run on the async queue
-  bool poison = false;      // true: the graph's own resources can be debug-filled: see ExecutorInput::poison
-  ResourceId keep_alive;    // valid: this transient shares memory with nothing
+  bool poison =
+      false; // true: the graph's own resources can be debug-filled: see ExecutorInput::poison
+  ResourceId keep_alive; // valid: this transient shares memory with nothing
 };
 
-// Returns the plan, or nullopt with errors in `diagnostics`. The same input gives the same bytes with every
-// compiler. Free-threaded.
+// Returns the plan, or nullopt with errors in `diagnostics`. The same input gives the same bytes
+// with every compiler. Free-threaded.
 std::optional<CompiledPlan> compile(const CompileInput& input, Diagnostics& diagnostics);
 
-// Compiles and reuses memory: after the first few graphs of a size nothing is allocated. One thread at a
-// time.
+// Compiles and reuses memory: after the first few graphs of a size nothing is allocated. One thread
+// at a time.
 class Compiler {
 public:
   Compiler();
@@ -57,8 +59,8 @@ public:
   Compiler(const Compiler&) = delete;
   Compiler& operator=(const Compiler&) = delete;
 
-  // Overwrites `out` and reuses its memory. Returns false if there are errors in `diagnostics`; `out` then
-  // holds no plan.
+  // Overwrites `out` and reuses its memory. Returns false if there are errors in `diagnostics`;
+  // `out` then holds no plan.
   bool compile(const CompileInput& input, Diagnostics& diagnostics, CompiledPlan& out);
 
 private:

@@ -1,5 +1,5 @@
-// Finds the passes that run: passes with side effects, passes that write a bound export, and the producers of
-// everything that live passes read.
+// Finds the passes that run: passes with side effects, passes that write a bound export, and the
+// producers of everything that live passes read.
 
 #include "framegraph/compile/hardware.hpp"
 #include "framegraph/compile/phases.hpp"
@@ -32,14 +32,14 @@ struct Culler {
       mark_live(versions[version].producer, why, a, b);
   }
 
-  // Same as mark_producer, for the hot loop. Marks `reader`, which is live already, if there is no producer:
-  // that avoids a branch.
+  // Same as mark_producer, for the hot loop. Marks `reader`, which is live already, if there is no
+  // producer: that avoids a branch.
   void mark_producer_of_read(uint32_t version, PassId reader, uint32_t resource) {
     if (versions.list.empty()) return;
     const PassId producer = versions[select(version != invalid_index, version, 0u)].producer;
     const bool exists = (int{version != invalid_index} & int{producer.valid()}) != 0;
-    mark_live(PassId{select(exists, producer.value, reader.value)}, Reason::ReasonKind::read_by, reader.value,
-              resource);
+    mark_live(PassId{select(exists, producer.value, reader.value)}, Reason::ReasonKind::read_by,
+              reader.value, resource);
   }
 
   void visit(PassId pass) {
@@ -50,17 +50,18 @@ struct Culler {
       }
       const uint32_t resource = use.resource.value;
       if (use.frames_back > 0)
-        mark_producer(versions.final_version[use.subresource], Reason::ReasonKind::read_later_by, pass.value,
-                      resource);
+        mark_producer(versions.final_version[use.subresource], Reason::ReasonKind::read_later_by,
+                      pass.value, resource);
       mark_producer_of_read(use.read_version, pass, resource);
       // A pass that writes in place may keep texels of the version before.
       if (versions.overwrites && use.write_version != invalid_index)
-        mark_producer(versions[use.write_version].previous, Reason::ReasonKind::overwritten_by, pass.value,
-                      resource);
+        mark_producer(versions[use.write_version].previous, Reason::ReasonKind::overwritten_by,
+                      pass.value, resource);
     }
   }
 
-  // Visits the last pass first: most passes are located after their producers, so one sweep usually suffices.
+  // Visits the last pass first: most passes are located after their producers, so one sweep usually
+  // suffices.
   void visit_all() {
     for (bool any = true; any;) {
       any = false;

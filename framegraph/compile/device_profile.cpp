@@ -5,8 +5,8 @@
 namespace dermis {
 namespace {
 
-constexpr uint64_t page = 64 * 1024;          // placement alignment of images on common desktop devices
-constexpr uint32_t storage_image_usage = 0x8; // VK_IMAGE_USAGE_STORAGE_BIT
+constexpr uint64_t page = 64 * 1024; // placement alignment of images on common desktop devices
+constexpr uint32_t storage_image_usage = 0x8;        // VK_IMAGE_USAGE_STORAGE_BIT
 constexpr uint32_t transfer_destination_usage = 0x2; // VK_IMAGE_USAGE_TRANSFER_DST_BIT
 
 MemoryNeeds whole_pages(uint64_t bytes) {
@@ -20,7 +20,8 @@ MemoryNeeds needs_of_image(const ImageDescription& image) {
   return whole_pages(texels * image.layers * format_info(image.format).bytes_per_texel);
 }
 
-// Depth and sRGB formats can be sampled but not stored. Depth is cleared as an attachment, not by a transfer.
+// Depth and sRGB formats can be sampled but not stored. Depth is cleared as an attachment, not by a
+// transfer.
 bool usable(Format format, uint32_t vk_usage) {
   if (format == Format::undefined || format >= Format::count) return false;
   const bool storable = !format_info(format).depth && format != Format::rgba8_srgb;

@@ -1,6 +1,6 @@
 #pragma once
-// The properties of a device that compilation needs, as a value. `generic_profile()` is for tools and tests
-// without a device; framegraph/vulkan/ fills a profile from a real device.
+// The properties of a device that compilation needs, as a value. `generic_profile()` is for tools
+// and tests without a device; framegraph/vulkan/ fills a profile from a real device.
 
 #include "framegraph/model/vocabulary.hpp"
 
@@ -30,7 +30,8 @@ struct DeviceProfile {
   std::string name = "generic";
   uint64_t buffer_image_granularity = 1;
   uint32_t max_image_dimension = 16384;
-  // maxImageArrayLayers and maxStorageBufferRange; the defaults are the minima that Vulkan guarantees.
+  // maxImageArrayLayers and maxStorageBufferRange; the defaults are the minima that Vulkan
+  // guarantees.
   uint32_t max_image_layers = 256;
   uint64_t max_storage_buffer_bytes = 1ull << 27;
   // Memory types that are device-local: each heap keeps one of them if its occupants allow that.
@@ -44,8 +45,8 @@ struct DeviceProfile {
   std::function<MemoryNeeds(const BufferDescription&)> buffer_needs;
 };
 
-// Returns a profile with memory needs rounded up to 64 KiB, one memory type, the formats that common devices
-// support, and every feature, so that all of a graph is checked.
+// Returns a profile with memory needs rounded up to 64 KiB, one memory type, the formats that
+// common devices support, and every feature, so that all of a graph is checked.
 DeviceProfile generic_profile();
 
 } // namespace dermis

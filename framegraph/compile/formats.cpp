@@ -13,18 +13,21 @@ namespace {
 
 struct FormatRejection { // why a format cannot be used for a resource
   bool exists = false;
-  uint32_t use = invalid_index; // use whose port cannot work with the format; invalid_index: the device
+  uint32_t use =
+      invalid_index; // use whose port cannot work with the format; invalid_index: the device
 };
 
 bool same_description(const PlanResource& a, const PlanResource& b) {
-  return a.width == b.width && a.height == b.height && a.format == b.format && a.vk_usage == b.vk_usage &&
-         a.mips == b.mips && a.layers == b.layers && a.bytes == b.bytes && a.type == b.type;
+  return a.width == b.width && a.height == b.height && a.format == b.format &&
+         a.vk_usage == b.vk_usage && a.mips == b.mips && a.layers == b.layers &&
+         a.bytes == b.bytes && a.type == b.type;
 }
 
 MemoryNeeds request_needs(const DeviceProfile& device, const PlanResource& resource) {
-  if (resource.type == ResourceType::buffer) return device.buffer_needs({resource.bytes, resource.vk_usage});
-  return device.image_needs(
-      {resource.format, resource.width, resource.height, resource.mips, resource.layers, resource.vk_usage});
+  if (resource.type == ResourceType::buffer)
+    return device.buffer_needs({resource.bytes, resource.vk_usage});
+  return device.image_needs({resource.format, resource.width, resource.height, resource.mips,
+                             resource.layers, resource.vk_usage});
 }
 
 struct FormatResolver {
@@ -57,8 +60,8 @@ struct FormatResolver {
       const FormatRejection why = violation(id, format);
       text += fmt::format("; not {}: ", format_info(format).name);
       if (why.use == invalid_index) {
-        text += fmt::format("the device '{}' does not support it with image usage {:#x}", in.device->name,
-                            usages.resources[id.value].vk_usage);
+        text += fmt::format("the device '{}' does not support it with image usage {:#x}",
+                            in.device->name, usages.resources[id.value].vk_usage);
       } else {
         const Use& use = versions.uses[why.use];
         text += fmt::format("port '{}' of pass '{}' cannot work with it",
@@ -79,28 +82,34 @@ struct FormatResolver {
         for (const Format format : candidates)
           list += fmt::format("{}{}", list.empty() ? "" : ", ", format_info(format).name);
         report.diagnostics.add(DiagnosticId::host_format, declared.where,
-                               fmt::format("the host binds '{}' as {}; declared are {}", declared.name,
-                                           format_info(bound).name, list));
+                               fmt::format("the host binds '{}' as {}; declared are {}",
+                                           declared.name, format_info(bound).name, list));
         return;
       }
       candidates = candidates.subspan(static_cast<size_t>(found - candidates.begin()), 1);
     }
-    const auto record_reason = [&](Reason::ReasonKind why, Format format, uint32_t b, uint32_t port = 0) {
-      report.record_reason(Reason::About::resource, id.value, why, static_cast<uint32_t>(format), b, port);
+    const auto record_reason = [&](Reason::ReasonKind why, Format format, uint32_t b,
+                                   uint32_t port = 0) {
+      report.record_reason(Reason::About::resource, id.value, why, static_cast<uint32_t>(format), b,
+                           port);
     };
     for (const Format format : candidates) {
       const FormatRejection why = violation(id, format);
       if (!why.exists) {
         chosen = format;
         const bool host = bound == format && sizes.info[id.value].host_owned;
-        record_reason(Reason::ReasonKind::format, format, host ? 2 : format == candidates.front() ? 0 : 1);
+        record_reason(Reason::ReasonKind::format, format,
+                      host                           ? 2
+                      : format == candidates.front() ? 0
+                                                     : 1);
         return;
       }
       if (why.use == invalid_index)
-        record_reason(Reason::ReasonKind::format_unsupported, format, usages.resources[id.value].vk_usage);
+        record_reason(Reason::ReasonKind::format_unsupported, format,
+                      usages.resources[id.value].vk_usage);
       else
-        record_reason(Reason::ReasonKind::format_not_ported, format, versions.uses[why.use].pass.value,
-                      versions.uses[why.use].port);
+        record_reason(Reason::ReasonKind::format_not_ported, format,
+                      versions.uses[why.use].pass.value, versions.uses[why.use].port);
     }
     report_formats(id, candidates);
   }
@@ -109,21 +118,22 @@ struct FormatResolver {
   MemoryNeeds needs_of(const PlanResource& resource) {
     const uint64_t mixed = (uint64_t{resource.width} * 31 + resource.height) * 31 + resource.bytes +
                            static_cast<uint64_t>(resource.format) * 5 + resource.vk_usage;
-    FormatScratch::DeviceAnswer& answer = scratch.answers[(mixed ^ mixed >> 7) % scratch.answers.size()];
+    FormatScratch::DeviceAnswer& answer =
+        scratch.answers[(mixed ^ mixed >> 7) % scratch.answers.size()];
     if (!answer.given || !same_description(answer.description, resource))
       answer = {true, resource, request_needs(*in.device, resource)};
     return answer.needs;
   }
 
-  // Chooses format and memory needs. Resources of one shape and one usage share the decision, unless the
-  // host, a port or a recorded reason makes a difference.
+  // Chooses format and memory needs. Resources of one shape and one usage share the decision,
+  // unless the host, a port or a recorded reason makes a difference.
   void find_format(PlanResource& resource) {
     const ResourceId id = resource.declared;
     const ResourceUsage& usage = usages.resources[id.value];
     const bool host_owned = sizes.info[id.value].host_owned;
     const uint32_t shape_index = sizes.shape_of[id.value];
-    const bool separate = host_owned || report.reasons_requested || usage.first_constraint != invalid_index ||
-                          shape_index == invalid_index;
+    const bool separate = host_owned || report.reasons_requested ||
+                          usage.first_constraint != invalid_index || shape_index == invalid_index;
     FormatScratch::ShapeFormat* shape = separate ? nullptr : &scratch.shapes[shape_index];
     if (shape && shape->decided && shape->vk_usage == usage.vk_usage) {
       resource.format = shape->format;
@@ -132,16 +142,19 @@ struct FormatResolver {
     }
     if (resource.type == ResourceType::image) choose_format(id, resource.format);
     memory.needs.push_back(host_owned ? MemoryNeeds{} : needs_of(resource));
-    if (!shape || (resource.type == ResourceType::image && resource.format == Format::undefined)) return;
+    if (!shape || (resource.type == ResourceType::image && resource.format == Format::undefined))
+      return;
     *shape = {true, usage.vk_usage, resource.format, memory.needs.back()};
   }
 };
 
 } // namespace
 
-const ResourceMemory& resolve_formats(const CompileInput& in, const Sizes& sizes, const Activation& active,
-                                      const Versions& versions, const Usages& usages, Report& report,
-                                      std::vector<PlanResource>& resources, FormatScratch& scratch) {
+const ResourceMemory& resolve_formats(const CompileInput& in, const Sizes& sizes,
+                                      const Activation& active, const Versions& versions,
+                                      const Usages& usages, Report& report,
+                                      std::vector<PlanResource>& resources,
+                                      FormatScratch& scratch) {
   const Graph& graph = *in.graph;
   const auto count = graph.resources.size();
   ResourceMemory& memory = scratch.result;

@@ -1,5 +1,5 @@
-// Finds when a history's oldest frame is read for the last time, and whether this frame's contents can
-// overwrite it in place.
+// Finds when a history's oldest frame is read for the last time, and whether this frame's contents
+// can overwrite it in place.
 
 #include "framegraph/compile/phases.hpp"
 
@@ -8,8 +8,8 @@
 namespace dermis {
 namespace {
 
-HistoryLifetime lifetime_of(const Activation& active, const Versions& versions, const Schedule& schedule,
-                            ResourceId id, uint32_t frames) {
+HistoryLifetime lifetime_of(const Activation& active, const Versions& versions,
+                            const Schedule& schedule, ResourceId id, uint32_t frames) {
   HistoryLifetime result;
   result.frames = frames;
   bool reads_only_own_texels = true; // of the pass that accesses this frame's contents first
@@ -33,10 +33,12 @@ HistoryLifetime lifetime_of(const Activation& active, const Versions& versions, 
 
 } // namespace
 
-// A history needs no instance beyond the frames that it keeps if the oldest frame is read before its memory
-// is written, or if only the writer reads it and each invocation reads only the texels that it writes.
-const Histories& analyze_histories(const CompileInput& in, const Activation& active, const Versions& versions,
-                                   const Usages& usages, const Schedule& schedule, Report& report,
+// A history needs no instance beyond the frames that it keeps if the oldest frame is read before
+// its memory is written, or if only the writer reads it and each invocation reads only the texels
+// that it writes.
+const Histories& analyze_histories(const CompileInput& in, const Activation& active,
+                                   const Versions& versions, const Usages& usages,
+                                   const Schedule& schedule, Report& report,
                                    std::vector<PlanResource>& resources, HistoryScratch& scratch) {
   Histories& histories = scratch.result;
   histories.by_resource.assign(resources.size(), {});

@@ -1,12 +1,13 @@
-// Aliases transients into idle history memory. A history that keeps N earlier frames in N + 1 instances has
-// two idle times: the instance that this frame writes is idle before this frame's contents are first
-// accessed, and the instance of the oldest frame is idle after its last read:
+// Aliases transients into idle history memory. A history that keeps N earlier frames in N + 1
+// instances has two idle times: the instance that this frame writes is idle before this frame's
+// contents are first accessed, and the instance of the oldest frame is idle after its last read:
 //
 //   frame f      |--- idle ---| this frame's contents ............................ |
 //   frame f + N  | read as the oldest frame ......... last read |------ idle ------|
 //
-// Transients whose lifetime lies within such a time may use that memory instead of a heap of their own. The
-// history's instances rotate from frame to frame, so an alias has one instance in each and rotates with them.
+// Transients whose lifetime lies within such a time may use that memory instead of a heap of their
+// own. The history's instances rotate from frame to frame, so an alias has one instance in each and
+// rotates with them.
 
 #include "framegraph/compile/placements.hpp"
 #include "framegraph/model/align_up.hpp"
@@ -25,11 +26,12 @@ constexpr uint32_t max_history_aliases = 64, max_alias_targets = 16;
 struct HistoryAliaser {
   const AliasInput& input;
   const Plan& plan;
-  std::vector<HistoryAlias>& aliases;                    // by plan resource
-  std::vector<int64_t> live_bytes = {};                  // by position: transients of one heap
-  std::vector<uint32_t> aliased_resources = {};          // plan resources with an alias
-  std::vector<uint32_t> targets = {};                    // plan resources with idle memory, the largest first
-  std::vector<std::pair<uint64_t, uint64_t>> taken = {}; // byte ranges that other aliases use, by begin
+  std::vector<HistoryAlias>& aliases;           // by plan resource
+  std::vector<int64_t> live_bytes = {};         // by position: transients of one heap
+  std::vector<uint32_t> aliased_resources = {}; // plan resources with an alias
+  std::vector<uint32_t> targets = {}; // plan resources with idle memory, the largest first
+  std::vector<std::pair<uint64_t, uint64_t>> taken =
+      {}; // byte ranges that other aliases use, by begin
 
   const Interval& life(uint32_t resource) const {
     return input.schedule.lifetimes[plan.resources[resource].declared.value];
@@ -38,7 +40,9 @@ struct HistoryAliaser {
     return plan.placements[plan.resources[resource].first_instance];
   }
 
-  const HistoryLifetime& history(uint32_t resource) const { return input.histories.by_resource[resource]; }
+  const HistoryLifetime& history(uint32_t resource) const {
+    return input.histories.by_resource[resource];
+  }
 
   bool is_target(uint32_t resource) const {
     const PlanResource& candidate = plan.resources[resource];
@@ -51,18 +55,21 @@ struct HistoryAliaser {
   bool may_alias(uint32_t resource) const {
     const PlanResource& candidate = plan.resources[resource];
     return candidate.first_instance != no_instance && !placement(resource).persistent &&
-           candidate.declared != input.in.keep_alive && !input.subresources.divided(candidate.declared) &&
+           candidate.declared != input.in.keep_alive &&
+           !input.subresources.divided(candidate.declared) &&
            aliases[resource].target == invalid_index;
   }
 
-  // Whether the transient fits into the target in an idle time and allows the memory types of its heap.
+  // Whether the transient fits into the target in an idle time and allows the memory types of its
+  // heap.
   bool can_alias(uint32_t resource, uint32_t target, bool after_last_read) const {
     const Placement &own = placement(resource), &there = placement(target);
     const bool in_time = after_last_read ? life(resource).first > history(target).last_read
                                          : life(resource).last < history(target).first_access;
     return in_time && plan.resources[resource].type == plan.resources[target].type &&
            own.size <= there.size && own.alignment <= there.alignment &&
-           (input.groups[there.heap].type_bits & ~input.memory.needs[resource].memory_type_bits) == 0;
+           (input.groups[there.heap].type_bits & ~input.memory.needs[resource].memory_type_bits) ==
+               0;
   }
 
   // Finds the lowest free offset in the target; returns false if there is none.
@@ -112,11 +119,11 @@ struct HistoryAliaser {
     std::stable_sort(items.begin(), items.end(),
                      [&](uint32_t a, uint32_t b) { return placement(a).size > placement(b).size; });
     for (bool again = true; again && aliased_resources.size() < max_history_aliases;) {
-      const auto peak =
-          static_cast<uint32_t>(std::max_element(live_bytes.begin(), live_bytes.end()) - live_bytes.begin());
+      const auto peak = static_cast<uint32_t>(
+          std::max_element(live_bytes.begin(), live_bytes.end()) - live_bytes.begin());
       const auto found = std::find_if(items.begin(), items.end(), [&](uint32_t r) {
-        return aliases[r].target == invalid_index && life(r).first <= peak && peak <= life(r).last &&
-               alias(r);
+        return aliases[r].target == invalid_index && life(r).first <= peak &&
+               peak <= life(r).last && alias(r);
       });
       again = found != items.end();
       for (uint32_t p = again ? life(*found).first : 1; again && p <= life(*found).last; ++p)

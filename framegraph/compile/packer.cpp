@@ -12,13 +12,14 @@
 namespace dermis {
 namespace {
 
-// Limits of comparisons of two items. A comparison takes about 1 ns, several in graphs larger than the
-// caches.
+// Limits of comparisons of two items. A comparison takes about 1 ns, several in graphs larger than
+// the caches.
 constexpr uint64_t tight_steps_per_item = 10'000;
 constexpr uint64_t max_tight_steps = 25'000'000;
 constexpr uint64_t optimize_steps = 1'000'000'000;
-constexpr uint32_t block_passes = 24;         // positions that share one list of live items: below 32
-constexpr uint32_t began_before = 0x80000000; // flag next to the bits of positions: live before the block
+constexpr uint32_t block_passes = 24; // positions that share one list of live items: below 32
+constexpr uint32_t began_before =
+    0x80000000; // flag next to the bits of positions: live before the block
 constexpr uint64_t unlimited = UINT64_MAX;
 
 uint64_t align_to_power_of_two(uint64_t value, uint64_t alignment) {
@@ -60,7 +61,8 @@ void Packer::find_bound(Packing& out) {
 void Packer::place_by_time(Packing& out) {
   const auto count = static_cast<uint32_t>(items_.size());
   const auto positions = static_cast<uint32_t>(change_.size());
-  counting_sort(count, positions, first_at_, by_first_, [&](uint32_t i) { return items_[i].first; });
+  counting_sort(count, positions, first_at_, by_first_,
+                [&](uint32_t i) { return items_[i].first; });
   counting_sort(count, positions, last_at_, by_last_, [&](uint32_t i) { return items_[i].last; });
   spans_.clear();
   uint64_t size = 0;
@@ -70,13 +72,16 @@ void Packer::place_by_time(Packing& out) {
     uint32_t end = begin;
     while (end < count && items_[by_first_[end]].first == now)
       ++end;
-    for (uint32_t i = begin + 1; i < end; ++i) // few begin together: insertion sort, the largest first
-      for (uint32_t at = i; at > begin && items_[by_first_[at]].size > items_[by_first_[at - 1]].size; --at)
+    for (uint32_t i = begin + 1; i < end;
+         ++i) // few begin together: insertion sort, the largest first
+      for (uint32_t at = i;
+           at > begin && items_[by_first_[at]].size > items_[by_first_[at - 1]].size; --at)
         std::swap(by_first_[at], by_first_[at - 1]);
     for (; over < count && items_[by_last_[over]].last < now; ++over) {
       const uint32_t ended = by_last_[over];
-      const auto at = std::lower_bound(spans_.begin(), spans_.end(), offsets_[ended],
-                                       [](const Span& span, uint64_t offset) { return span.begin < offset; });
+      const auto at =
+          std::lower_bound(spans_.begin(), spans_.end(), offsets_[ended],
+                           [](const Span& span, uint64_t offset) { return span.begin < offset; });
       spans_.erase(at);
     }
     for (; begin < end; ++begin) {
@@ -95,7 +100,8 @@ void Packer::place_by_time(Packing& out) {
         free_from = spans_[s].end;
       }
       if (best_slack == unlimited) place = align_to_power_of_two(free_from, item.alignment);
-      spans_.insert(spans_.begin() + static_cast<std::ptrdiff_t>(where), {place, place + item.size, i});
+      spans_.insert(spans_.begin() + static_cast<std::ptrdiff_t>(where),
+                    {place, place + item.size, i});
       offsets_[i] = place;
       size = std::max(size, place + item.size);
     }
@@ -107,8 +113,8 @@ void Packer::place_by_time(Packing& out) {
 
 namespace {
 
-// Finds the gap for one item among the ranges that overlap its lifetime, which are passed in ascending order.
-// Free of branches, because which gap fits is unpredictable.
+// Finds the gap for one item among the ranges that overlap its lifetime, which are passed in
+// ascending order. Free of branches, because which gap fits is unpredictable.
 struct GapFinder {
   static constexpr uint64_t no_gap =
       UINT64_MAX / 2; // sizes stay far below: a gap too small wraps to beyond it
@@ -131,8 +137,8 @@ struct GapFinder {
 
 constexpr uint32_t chunk = numbers_at_once; // placed items that are tested together
 
-// Returns one bit for each position of a block of the schedule at which the item is live, and began_before
-// if its lifetime began in an earlier block.
+// Returns one bit for each position of a block of the schedule at which the item is live, and
+// began_before if its lifetime began in an earlier block.
 uint32_t positions_in(uint32_t block, const PackItem& item) {
   const uint32_t begin = block * block_passes;
   const uint32_t first = std::max(item.first, begin) - begin;
@@ -162,8 +168,8 @@ void Packer::Block::insert(const Range& range, uint32_t positions) {
   when[at] = positions;
 }
 
-// Appends the ranges that are live in `positions` of the block to `to`, which has room for all; if `began`,
-// only ranges that begin in the block. Returns their number.
+// Appends the ranges that are live in `positions` of the block to `to`, which has room for all; if
+// `began`, only ranges that begin in the block. Returns their number.
 size_t Packer::gather(const Block& block, uint32_t positions, bool only_begun, Range* to) {
   steps_ += block.count;
   size_t count = 0;
@@ -211,8 +217,8 @@ uint64_t Packer::find_place(const PackItem& item, uint32_t first, uint32_t last,
   return gaps.place();
 }
 
-// Places items one by one in the given order and fills offsets_. Returns the size, or `limit` as soon as it
-// is reached.
+// Places items one by one in the given order and fills offsets_. Returns the size, or `limit` as
+// soon as it is reached.
 uint64_t Packer::place_in_order(std::span<const uint32_t> order, Fit fit, uint64_t limit) {
   const size_t blocks = change_.size() / block_passes + 1;
   for (size_t b = 0; b < blocks; ++b)
@@ -300,8 +306,9 @@ void Packer::try_orders(Packing& out) {
   try_sorted([&](uint32_t i) { return ~uint64_t{items_[i].first}; });
 }
 
-// Local search: moves an item, preferably one at the top of the heap, to another turn, and keeps orders that
-// are not worse. Restarts from a perturbed best order after `patience` moves without a gain.
+// Local search: moves an item, preferably one at the top of the heap, to another turn, and keeps
+// orders that are not worse. Restarts from a perturbed best order after `patience` moves without a
+// gain.
 void Packer::search(uint64_t steps, Packing& out) {
   constexpr uint32_t max_idle_moves = 200; // moves
   SplitMix64 random{items_.size()};
@@ -316,8 +323,8 @@ void Packer::search(uint64_t steps, Packing& out) {
     high.clear();
     for (uint32_t at = 0; at < current.size(); ++at)
       if (offsets_[current[at]] + items_[current[at]].size >= current_size) high.push_back(at);
-    size_t from =
-        high.empty() || random.below(4) == 0 ? random.below(current.size()) : high[random.below(high.size())];
+    size_t from = high.empty() || random.below(4) == 0 ? random.below(current.size())
+                                                       : high[random.below(high.size())];
     size_t to = random.below(current.size());
     if (from < to && random.below(4) != 0) std::swap(from, to);
     const auto move = [&](size_t source, size_t target) {
@@ -354,15 +361,17 @@ void Packer::search(uint64_t steps, Packing& out) {
   }
 }
 
-// Tries other orders if the first placement is far from the bound: among equal sizes the last end first, then
-// products of powers of size and time.
+// Tries other orders if the first placement is far from the bound: among equal sizes the last end
+// first, then products of powers of size and time.
 void Packer::try_again(Packing& out) {
-  // Worth a try if more than this fraction of the bound is wasted. Large graphs have a lower threshold, and
-  // profit from fewer orders.
+  // Worth a try if more than this fraction of the bound is wasted. Large graphs have a lower
+  // threshold, and profit from fewer orders.
   constexpr size_t many_items = 4096;
   const bool large = items_.size() >= many_items;
   const uint64_t wasted_fraction = large ? 16 : 11;
-  const auto worth_a_try = [&] { return out.size - out.lower_bound > out.lower_bound / wasted_fraction; };
+  const auto worth_a_try = [&] {
+    return out.size - out.lower_bound > out.lower_bound / wasted_fraction;
+  };
   if (!worth_a_try()) return;
   if (!large) {
     const auto count = static_cast<uint32_t>(items_.size());
@@ -387,7 +396,8 @@ void Packer::try_again(Packing& out) {
 
 // Sorts stably by descending size^a * time^b, starting from by_size_.
 void Packer::by_weight(uint32_t a, uint32_t b, std::vector<uint32_t>& sorted) {
-  // Sizes in pages of 64 KiB, times in passes. Products of doubles are the same with every compiler.
+  // Sizes in pages of 64 KiB, times in passes. Products of doubles are the same with every
+  // compiler.
   constexpr uint32_t page_bits = 16;
   weights_.clear();
   for (const PackItem& item : items_) {
@@ -412,11 +422,13 @@ void Packer::pack(std::span<const PackItem> items, PackingLevel level, Packing& 
   out.size = 0;
   find_bound(out);
   if (items.empty()) return;
-  if (blocks_.size() < change_.size() / block_passes + 1) blocks_.resize(change_.size() / block_passes + 1);
+  if (blocks_.size() < change_.size() / block_passes + 1)
+    blocks_.resize(change_.size() / block_passes + 1);
   offsets_.resize(items.size());
-  if (gathered_.size() < items.size() + 3) gathered_.resize(items.size() + 3); // and the ends of two lists
-  counting_sort(static_cast<uint32_t>(items.size()), static_cast<uint32_t>(change_.size()), first_at_,
-                by_first_, [&](uint32_t i) { return items_[i].first; });
+  if (gathered_.size() < items.size() + 3)
+    gathered_.resize(items.size() + 3); // and the ends of two lists
+  counting_sort(static_cast<uint32_t>(items.size()), static_cast<uint32_t>(change_.size()),
+                first_at_, by_first_, [&](uint32_t i) { return items_[i].first; });
   sort_by_size(by_first_, by_size_);
   out.size = unlimited;
   try_order(by_size_, Fit::tightest, out);

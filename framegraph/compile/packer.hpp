@@ -1,5 +1,6 @@
 #pragma once
-// Packs items with lifetimes into one range of bytes (dynamic storage allocation). Knows nothing of graphs.
+// Packs items with lifetimes into one range of bytes (dynamic storage allocation). Knows nothing of
+// graphs.
 
 #include "framegraph/compile/compile.hpp"
 
@@ -11,7 +12,7 @@ namespace dermis {
 
 struct PackItem {
   uint64_t size = 0, alignment = 1; // bytes; alignment a power of two
-  uint32_t first = 0, last = 0;     // inclusive interval of pass positions in which the item is live
+  uint32_t first = 0, last = 0; // inclusive interval of pass positions in which the item is live
 };
 
 struct Packing {
@@ -20,12 +21,13 @@ struct Packing {
   uint64_t lower_bound = 0;      // maximum of bytes live at once: no packing is smaller
 };
 
-// Items whose lifetimes overlap never share a byte. Every level stops if the lower bound is met. Equal items
-// keep their order and effort is counted in steps, so the result is the same on every machine.
+// Items whose lifetimes overlap never share a byte. Every level stops if the lower bound is met.
+// Equal items keep their order and effort is counted in steps, so the result is the same on every
+// machine.
 //
-// fast: tightest gap, largest first; up to four other orders if much is left to gain. O(n log n + n live).
-// tight: also the order of time, several orders with first and tightest gap, and a short search.
-// optimize: as tight, with a longer search.
+// fast: tightest gap, largest first; up to four other orders if much is left to gain. O(n log n + n
+// live). tight: also the order of time, several orders with first and tightest gap, and a short
+// search. optimize: as tight, with a longer search.
 class Packer {
 public:
   // Reuses the memory of `out` and of earlier calls.
@@ -41,7 +43,8 @@ private:
   };
   struct Block { // items that are placed and live in block_passes consecutive positions, by begin
     std::vector<Range> ranges;
-    std::vector<uint32_t> when; // positions of the block, as bits; same size as ranges, 0 from `count` on
+    std::vector<uint32_t>
+        when; // positions of the block, as bits; same size as ranges, 0 from `count` on
     size_t count = 0;
 
     void clear();

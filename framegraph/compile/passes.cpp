@@ -12,7 +12,8 @@ namespace {
 
 constexpr uint32_t push_constant_bytes = 4; // the port mask, and each setting
 
-void add_settings(const Graph& graph, const Activation& active, PassId pass, PlanPass& planned, Plan& plan) {
+void add_settings(const Graph& graph, const Activation& active, PassId pass, PlanPass& planned,
+                  Plan& plan) {
   const PassDeclaration& declared = graph.passes[pass.value];
   const PassType& type = active.type(pass);
   planned.first_setting = static_cast<uint32_t>(plan.settings.size());
@@ -66,8 +67,10 @@ void plan_passes(const CompileInput& in, const Activation& active, const QueueAs
     planned.type = active.type_of[pass.value];
     if (queues.two()) planned.queue = queues.by_pass[pass.value];
     add_settings(*in.graph, active, pass, planned, plan);
-    Fit& fit = scratch.fits[planned.type.value]; // every pass of a type that does not fit is reported
-    if (fit != Fit::yes) fit = check_limits(in, active.type(pass), pass, report) ? Fit::yes : Fit::no;
+    Fit& fit =
+        scratch.fits[planned.type.value]; // every pass of a type that does not fit is reported
+    if (fit != Fit::yes)
+      fit = check_limits(in, active.type(pass), pass, report) ? Fit::yes : Fit::no;
   }
 }
 

@@ -1,7 +1,7 @@
 #pragma once
-// The phases of compile() before placement and barriers. Each function returns its result by reference; the
-// result and the phase's private memory are located in the phase's scratch, which is reused between
-// compilations. No phase reads another phase's scratch. Internal to compile/.
+// The phases of compile() before placement and barriers. Each function returns its result by
+// reference; the result and the phase's private memory are located in the phase's scratch, which is
+// reused between compilations. No phase reads another phase's scratch. Internal to compile/.
 
 #include "framegraph/compile/values.hpp"
 
@@ -31,7 +31,8 @@ struct ActivationScratch {
   Activation result;
 };
 // Resolves the settings, and evaluates which passes are on.
-const Activation& evaluate_conditions(const CompileInput& in, Report& report, ActivationScratch& scratch);
+const Activation& evaluate_conditions(const CompileInput& in, Report& report,
+                                      ActivationScratch& scratch);
 
 // ---- subresources.cpp ----
 
@@ -41,8 +42,9 @@ struct SubresourceScratch {
   std::vector<std::array<std::vector<uint16_t>, 2>> cuts;
 };
 // Divides images into the subresource ranges that ports name.
-const Subresources& split_subresources(const CompileInput& in, const Sizes& sizes, const Activation& active,
-                                       Report& report, SubresourceScratch& scratch);
+const Subresources& split_subresources(const CompileInput& in, const Sizes& sizes,
+                                       const Activation& active, Report& report,
+                                       SubresourceScratch& scratch);
 
 // ---- versions.cpp, races.cpp ----
 
@@ -69,11 +71,13 @@ struct VersionScratch {
   std::vector<ForwardReference> forward_references;
 };
 // Resolves which version of which resource each port accesses, and applies `otherwise`.
-const Versions& resolve_versions(const CompileInput& in, const Sizes& sizes, const Activation& active,
-                                 const Subresources& subresources, Report& report, VersionScratch& scratch);
+const Versions& resolve_versions(const CompileInput& in, const Sizes& sizes,
+                                 const Activation& active, const Subresources& subresources,
+                                 Report& report, VersionScratch& scratch);
 
 // Reports passes that read what they write, with these settings.
-void report_races(const CompileInput& in, const Activation& active, const Versions& versions, Report& report);
+void report_races(const CompileInput& in, const Activation& active, const Versions& versions,
+                  Report& report);
 
 // ---- cull.cpp ----
 
@@ -92,8 +96,8 @@ struct BindErrorScratch {
 };
 // Reports ports of live passes and exports that resolve_versions could not bind.
 void report_bind_errors(const CompileInput& in, const Sizes& sizes, const Activation& active,
-                        const Subresources& subresources, const Versions& versions, const LiveSet& live,
-                        Report& report, BindErrorScratch& scratch);
+                        const Subresources& subresources, const Versions& versions,
+                        const LiveSet& live, Report& report, BindErrorScratch& scratch);
 
 // ---- queues.cpp ----
 
@@ -135,18 +139,21 @@ struct FormatScratch {
   std::array<DeviceAnswer, 32> answers{}; // at most one for each remainder of a hash
 };
 // Chooses formats and memory needs. Fills `resources`, which is Plan::resources.
-const ResourceMemory& resolve_formats(const CompileInput& in, const Sizes& sizes, const Activation& active,
-                                      const Versions& versions, const Usages& usages, Report& report,
+const ResourceMemory& resolve_formats(const CompileInput& in, const Sizes& sizes,
+                                      const Activation& active, const Versions& versions,
+                                      const Usages& usages, Report& report,
                                       std::vector<PlanResource>& resources, FormatScratch& scratch);
 
 // ---- schedule.cpp, schedule_backward.cpp ----
 
 struct ScheduleScratch {
   Schedule result;
-  std::vector<uint32_t> first_before, before;         // by pass, and one more: passes that must run before it
-  std::vector<std::pair<uint32_t, uint32_t>> readers; // pass that overwrites a version, pass that reads it
-  std::vector<uint32_t> overwriter;                   // by version: pass that overwrites it
-  std::vector<uint64_t> peak_bytes, output_bytes;     // by pass
+  std::vector<uint32_t> first_before,
+      before; // by pass, and one more: passes that must run before it
+  std::vector<std::pair<uint32_t, uint32_t>>
+      readers;                      // pass that overwrites a version, pass that reads it
+  std::vector<uint32_t> overwriter; // by version: pass that overwrites it
+  std::vector<uint64_t> peak_bytes, output_bytes; // by pass
   std::vector<uint32_t> depth_first, stack, cursors;
   std::vector<uint8_t> visited;
   std::vector<uint32_t> position;  // by pass
@@ -154,15 +161,17 @@ struct ScheduleScratch {
   std::vector<int64_t> changes;    // by position: bytes that become live less those that end
 };
 // Orders the live passes, and computes the lifetime of each resource. Reports cycles.
-const Schedule& schedule_passes(const CompileInput& in, const Activation& active, const Versions& versions,
-                                const LiveSet& live, const ResourceMemory& memory, Report& report,
+const Schedule& schedule_passes(const CompileInput& in, const Activation& active,
+                                const Versions& versions, const LiveSet& live,
+                                const ResourceMemory& memory, Report& report,
                                 ScheduleScratch& scratch);
 
-// Returns the live passes in the order of the file, dependencies before all. Only for graphs in which some
-// pass depends on a pass that is located after it. Reports cycles, also among the passes that are on but not
-// live.
+// Returns the live passes in the order of the file, dependencies before all. Only for graphs in
+// which some pass depends on a pass that is located after it. Reports cycles, also among the passes
+// that are on but not live.
 std::vector<PassId> sort_backward_graph(const Graph& graph, const Activation& active,
-                                        const Versions& versions, const LiveSet& live, Report& report);
+                                        const Versions& versions, const LiveSet& live,
+                                        Report& report);
 
 // ---- passes.cpp ----
 
@@ -181,8 +190,9 @@ struct HistoryScratch {
 };
 // Finds when a history's oldest frame is last read, and whether it is overwritten in place. Sets
 // PlanResource::instance_count of histories.
-const Histories& analyze_histories(const CompileInput& in, const Activation& active, const Versions& versions,
-                                   const Usages& usages, const Schedule& schedule, Report& report,
+const Histories& analyze_histories(const CompileInput& in, const Activation& active,
+                                   const Versions& versions, const Usages& usages,
+                                   const Schedule& schedule, Report& report,
                                    std::vector<PlanResource>& resources, HistoryScratch& scratch);
 
 } // namespace dermis

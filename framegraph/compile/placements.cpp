@@ -1,5 +1,6 @@
-// Gives every resource instance a heap and an offset. Transients alias each other if their lifetimes do not
-// overlap, and they alias idle memory of histories if that shrinks the transient heaps.
+// Gives every resource instance a heap and an offset. Transients alias each other if their
+// lifetimes do not overlap, and they alias idle memory of histories if that shrinks the transient
+// heaps.
 
 #include "framegraph/compile/placements.hpp"
 #include "framegraph/model/align_up.hpp"
@@ -20,8 +21,8 @@ struct Placer {
   PlacementScratch& scratch;
   Placements& placements = scratch.result;
 
-  // Returns the group for an instance. The instances of a heap are all persistent or all transient and have a
-  // memory type in common.
+  // Returns the group for an instance. The instances of a heap are all persistent or all transient
+  // and have a memory type in common.
   uint32_t group_of(bool persistent, uint32_t type_bits) {
     for (uint32_t g = 0; g < scratch.groups.size(); ++g)
       if (scratch.groups[g].persistent == persistent &&
@@ -47,7 +48,8 @@ struct Placer {
       const uint32_t index = group_of(persistent, needs.memory_type_bits);
       MemoryGroup& group = scratch.groups[index];
       group.type_bits &= needs.memory_type_bits;
-      (resource.type == ResourceType::buffer ? group.buffers : group.images) += resource.instance_count;
+      (resource.type == ResourceType::buffer ? group.buffers : group.images) +=
+          resource.instance_count;
       resource.first_instance = static_cast<uint32_t>(plan.placements.size());
       const bool whole_frame = persistent || shares_nothing(resource);
       for (uint32_t i = 0; i < resource.instance_count; ++i) {
@@ -63,8 +65,8 @@ struct Placer {
     }
   }
 
-  // Buffers and optimal images within one granule conflict. If a heap has both, every item gets whole
-  // granules (VkPhysicalDeviceLimits::bufferImageGranularity).
+  // Buffers and optimal images within one granule conflict. If a heap has both, every item gets
+  // whole granules (VkPhysicalDeviceLimits::bufferImageGranularity).
   uint64_t granule_of(const MemoryGroup& group) const {
     const bool mixed = group.buffers != 0 && group.images != 0;
     return mixed ? std::max<uint64_t>(in.device->buffer_image_granularity, 1) : 1;
@@ -106,8 +108,8 @@ struct Placer {
       place_group(g);
   }
 
-  // After all other placements: one instance of each alias for each instance of its target. Of n instances,
-  // frame f writes instance f mod n; the next instance has the oldest frame.
+  // After all other placements: one instance of each alias for each instance of its target. Of n
+  // instances, frame f writes instance f mod n; the next instance has the oldest frame.
   void place_aliases() {
     for (uint32_t r = 0; r < plan.resources.size(); ++r) {
       const HistoryAlias& history_alias = placements.history_aliases[r];

@@ -38,7 +38,8 @@ struct AliasInput {
   const Plan& plan; // placed without history aliases
   const std::vector<MemoryGroup>& groups;
 };
-// Chooses transients that move into idle history memory; `aliases` is by plan resource. False: none.
+// Chooses transients that move into idle history memory; `aliases` is by plan resource. False:
+// none.
 bool find_history_aliases(const AliasInput& input, std::vector<HistoryAlias>& aliases);
 
 } // namespace dermis

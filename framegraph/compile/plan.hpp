@@ -1,6 +1,7 @@
 #pragma once
-// The plan: ordered passes with resolved accesses, batched barriers, heaps with placements, histories. Flat
-// arrays without pointers; the same inputs give the same bytes. Reasons are a side table.
+// The plan: ordered passes with resolved accesses, batched barriers, heaps with placements,
+// histories. Flat arrays without pointers; the same inputs give the same bytes. Reasons are a side
+// table.
 
 #include "framegraph/model/graph.hpp"
 
@@ -23,8 +24,8 @@ struct SubresourceRange {
 
 // A physical image or buffer, or the host's acceleration structure. Number of instances:
 // - a transient: 1, or that of the history whose idle memory it aliases;
-// - a history of which N earlier frames are read: N + 1, or N if a frame is written over the oldest one.
-// In frame f (counted per view from 0), `frames_back` b of a resource is located in instance
+// - a history of which N earlier frames are read: N + 1, or N if a frame is written over the oldest
+// one. In frame f (counted per view from 0), `frames_back` b of a resource is located in instance
 // first_instance + (f - b) mod instance_count.
 struct PlanResource {
   ResourceId declared;
@@ -64,9 +65,10 @@ struct Heap {
 // async: a second queue of another family, which runs concurrently with the main queue.
 enum class Queue : uint8_t { main, async };
 
-// Timeline points, one sequence for each queue: a pass waits until the other queue has signalled a point, and
-// signals a point of its own queue when it is complete. Points count from 1 in each frame; 0 is the last
-// point of the frame before. Value of a timeline semaphore: frame * (points of a frame) + point.
+// Timeline points, one sequence for each queue: a pass waits until the other queue has signalled a
+// point, and signals a point of its own queue when it is complete. Points count from 1 in each
+// frame; 0 is the last point of the frame before. Value of a timeline semaphore: frame * (points of
+// a frame) + point.
 inline constexpr uint32_t no_point = 0xffffffffu;
 
 struct PlanAccess { // one bound port of one pass
@@ -77,19 +79,19 @@ struct PlanAccess { // one bound port of one pass
   Stage stages = 0;
   Access access = 0;
   Layout layout = Layout::undefined;
-  // A read of a resource that the pass writes, in this frame or over an earlier one, where each invocation
-  // reads only texels that it writes itself. See Port::own_texels.
+  // A read of a resource that the pass writes, in this frame or over an earlier one, where each
+  // invocation reads only texels that it writes itself. See Port::own_texels.
   bool own_texels = false;
-  // Reads only. history_valid: in frames in which the history of this access is valid. history_invalid: in
-  // the other frames; the access follows the history's access of the same port. Barriers are the same in
-  // every frame.
+  // Reads only. history_valid: in frames in which the history of this access is valid.
+  // history_invalid: in the other frames; the access follows the history's access of the same port.
+  // Barriers are the same in every frame.
   ReadWhen when = ReadWhen::always;
 };
 
-// One memory dependency on one resource: an image barrier over a range of mips and layers, or a buffer
-// barrier over all bytes (layouts undefined). Source masks include accesses of this frame and of earlier
-// frames on the same queue. Every slot that the host binds has one barrier with to_host in the final batch.
-// If no pass accesses the slot, that barrier has from_host, too.
+// One memory dependency on one resource: an image barrier over a range of mips and layers, or a
+// buffer barrier over all bytes (layouts undefined). Source masks include accesses of this frame
+// and of earlier frames on the same queue. Every slot that the host binds has one barrier with
+// to_host in the final batch. If no pass accesses the slot, that barrier has from_host, too.
 struct PlanBarrier {
   uint32_t resource = 0;
   uint32_t frames_back = 0;
@@ -110,9 +112,9 @@ struct PlanBarrier {
   } why = ReasonKind::first_use;
   bool from_host = false; // source scope and old layout come from the binding's `before`
   bool to_host = false;   // destination scope and new layout come from the binding's `after`
-  // Queue family ownership transfer in two halves with the same layouts: a release after a pass of one queue
-  // (no destination), and an acquire before a pass of the other queue (no source), which waits for a point
-  // after the release.
+  // Queue family ownership transfer in two halves with the same layouts: a release after a pass of
+  // one queue (no destination), and an acquire before a pass of the other queue (no source), which
+  // waits for a point after the release.
   enum class Transfer : uint8_t { none, release, acquire } transfer = Transfer::none;
 };
 
@@ -128,13 +130,14 @@ struct PlanPass {
   uint32_t first_barrier = 0, barrier_count = 0; // into Plan::barriers: one batch before the pass
   uint32_t first_setting = 0;                    // into Plan::settings, one per PassTypeSetting
   Queue queue = Queue::main;
-  uint32_t wait = no_point;   // for a point of the other queue, before the barriers
-  uint32_t release_count = 0; // barriers after the pass; they follow its first batch in Plan::barriers
-  uint32_t signal = 0;        // point that this queue signals after the releases; 0: none
+  uint32_t wait = no_point; // for a point of the other queue, before the barriers
+  uint32_t release_count =
+      0;               // barriers after the pass; they follow its first batch in Plan::barriers
+  uint32_t signal = 0; // point that this queue signals after the releases; 0: none
 };
 
-// An `after` of the graph whose two passes run: the later pass is recorded after the earlier one. On
-// different queues, the later pass waits for a point after the earlier one.
+// An `after` of the graph whose two passes run: the later pass is recorded after the earlier one.
+// On different queues, the later pass waits for a point after the earlier one.
 struct PlanOrdering { // positions in Plan::passes
   uint32_t earlier = 0, later = 0;
 
@@ -142,13 +145,15 @@ struct PlanOrdering { // positions in Plan::passes
   friend bool operator<(const PlanOrdering& a, const PlanOrdering& b) { return a.later < b.later; }
 };
 
-// A history as the executor keeps it. New or invalidated instances must be cleared, or transitioned with
-// their contents discarded, into their layout at the start of a frame before the first frame that reads them.
+// A history as the executor keeps it. New or invalidated instances must be cleared, or transitioned
+// with their contents discarded, into their layout at the start of a frame before the first frame
+// that reads them.
 struct PlanHistory {
   uint32_t resource = 0;                     // into Plan::resources
   uint32_t frames = 1;                       // deepest `@-N` this plan reads
   uint32_t first_range = 0, range_count = 1; // into Plan::history_ranges: subresource ranges
-  uint32_t first_layout = 0; // into Plan::history_layouts, `range_count` for each frames_back 0 .. frames
+  uint32_t first_layout =
+      0; // into Plan::history_layouts, `range_count` for each frames_back 0 .. frames
   HistoryDeclaration declaration;
 };
 
@@ -167,8 +172,8 @@ struct Plan {
   std::vector<PlanOrdering> orderings; // sorted by the later pass
   std::vector<PlanHistory> histories;
   std::vector<SubresourceRange> history_ranges;
-  // Layouts of the ranges of an instance at the start of a frame; undefined for the newest instance, whose
-  // old contents are discarded.
+  // Layouts of the ranges of an instance at the start of a frame; undefined for the newest
+  // instance, whose old contents are discarded.
   std::vector<Layout> history_layouts;
   // The batch after the last pass: to the host's `after` states.
   uint32_t first_final_barrier = 0, final_barrier_count = 0;
@@ -177,38 +182,39 @@ struct Plan {
   uint64_t transient_bytes = 0, history_bytes = 0; // heap bytes by kind
 };
 
-// The reason for one decision, outside the canonical bytes. Indices only; explain/ turns them into sentences.
-// Placements have no reasons: the plan shows which resources share memory.
+// The reason for one decision, outside the canonical bytes. Indices only; explain/ turns them into
+// sentences. Placements have no reasons: the plan shows which resources share memory.
 struct Reason {
   enum class About : uint8_t { pass, resource, barrier, choice, order };
   enum class ReasonKind : uint8_t {
     // of a pass; a, b: as stated here
-    off,                        // its `when` is false
-    read_by,                    // pass a reads its resource b
-    read_later_by,              // pass a reads its resource b in later frames
-    overwritten_by,             // pass a overwrites its resource b
-    writes_export,              // resource a
-    side_effects,               // of its pass type
-    culling_off,                // requested by the caller
-    async_queue,                // declared async, and on the async queue
-    after_pass,                 // runs after pass a, which its `after` number b names
-    not_async,                  // declared async, but resource a is the host's, a history, or divided
-    port_unbound,               // optional port a; no pass or binding provides resource b
-    always_otherwise,           // port a has no history b: it reads its `otherwise` in every frame
-    not_needed,                 // culled
+    off,              // its `when` is false
+    read_by,          // pass a reads its resource b
+    read_later_by,    // pass a reads its resource b in later frames
+    overwritten_by,   // pass a overwrites its resource b
+    writes_export,    // resource a
+    side_effects,     // of its pass type
+    culling_off,      // requested by the caller
+    async_queue,      // declared async, and on the async queue
+    after_pass,       // runs after pass a, which its `after` number b names
+    not_async,        // declared async, but resource a is the host's, a history, or divided
+    port_unbound,     // optional port a; no pass or binding provides resource b
+    always_otherwise, // port a has no history b: it reads its `otherwise` in every frame
+    not_needed,       // culled
     lacks_input_without_bounds, // in frames with empty bounds no pass writes its resource a
     // of a resource
-    unbound,              // the host does not bind this optional slot
-    replaced_by,          // readers get resource a, because pass b is off
-    unwritten_export,     // optional, and no pass that is on writes it
-    format,               // Format a; b: 0 first of the list, 1 first usable one, 2 bound by the host
-    format_not_ported,    // not Format a: port c of pass b cannot work with it
-    format_unsupported,   // not Format a: the device does not support image usage b
-    history_unused,       // no pass that runs uses it
-    history_unread,       // no pass that runs reads its earlier frames
-    history_read,         // earlier frames are read, down to a
-    overwritten_in_place, // frame a is read before this frame is written over it; b: 1 by the same pass
-    aliases_history, // of resource a; b: 0 before it is written, 1 after the last read of its oldest frame
+    unbound,            // the host does not bind this optional slot
+    replaced_by,        // readers get resource a, because pass b is off
+    unwritten_export,   // optional, and no pass that is on writes it
+    format,             // Format a; b: 0 first of the list, 1 first usable one, 2 bound by the host
+    format_not_ported,  // not Format a: port c of pass b cannot work with it
+    format_unsupported, // not Format a: the device does not support image usage b
+    history_unused,     // no pass that runs uses it
+    history_unread,     // no pass that runs reads its earlier frames
+    history_read,       // earlier frames are read, down to a
+    overwritten_in_place, // this frame overwrites frame a after its last read; b: 1 by the same
+                          // pass
+    aliases_history, // of resource a; b: 0 before its write, 1 after its oldest frame's last read
     // of a barrier; b: 1 if the earlier access was in the frame before
     from_host,       // the first access to resource a, which the host passed in
     oldest_instance, // of resource a becomes this frame's
@@ -220,8 +226,9 @@ struct Reason {
     // of a setting
     requested, // by the caller
     by_default,
-    not_available, // option a: the device lacks features b, or the host leaves import c unbound (0: features)
-    // of the order; a, b: KiB of transients live at once in this order, and in the other order that was tried
+    not_available, // option a: the device lacks features b, or (b: 0) import c is unbound
+    // of the order; a, b: KiB of transients live at once in this order, and in the other order that
+    // was tried
     order_of_file,
     depth_first,
     program_order, // requested by the caller
@@ -229,9 +236,11 @@ struct Reason {
   };
   About about = About::pass;
   ReasonKind why = ReasonKind::off;
-  // pass: PassId in the graph; resource: ResourceId; choice: SettingId; barrier: index in the plan; order: 0.
+  // pass: PassId in the graph; resource: ResourceId; choice: SettingId; barrier: index in the plan;
+  // order: 0.
   uint32_t index = 0;
-  uint32_t a = 0, b = 0, c = 0; // as stated at each ReasonKind; resources and passes are ids in the graph
+  uint32_t a = 0, b = 0,
+           c = 0; // as stated at each ReasonKind; resources and passes are ids in the graph
 };
 
 struct CompiledPlan {

@@ -24,14 +24,16 @@ void QueueSync::begin(bool two, size_t objects, size_t passes) {
 void QueueSync::wait_on_own_queue(uint32_t draft, const QueueSyncPoint& access) {
   if (!two_queues) return;
   FrameCounts& ends = draft_wait(draft).ends;
-  const size_t oldest = ends.size() - 1; // a wait for any pass of the oldest frame includes everything older
+  const size_t oldest =
+      ends.size() - 1; // a wait for any pass of the oldest frame includes everything older
   if (access.frames_back > oldest)
     ends[oldest] = std::max(ends[oldest], 1u);
   else
     ends[access.frames_back] = std::max(ends[access.frames_back], access.end);
 }
 
-void QueueSync::add_orderings(const Graph& graph, const Activation& active, Report& report, Plan& plan) {
+void QueueSync::add_orderings(const Graph& graph, const Activation& active, Report& report,
+                              Plan& plan) {
   if (!active.ordered) return;
   std::vector<uint32_t> position_of(graph.passes.size(), invalid_index);
   for (uint32_t position = 0; position < plan.passes.size(); ++position)
@@ -43,20 +45,21 @@ void QueueSync::add_orderings(const Graph& graph, const Activation& active, Repo
       const uint32_t earlier = position_of[after[i].after.value];
       if (earlier == invalid_index) continue; // does not run
       plan.orderings.push_back({earlier, later});
-      report.record_reason(Reason::About::pass, pass, Reason::ReasonKind::after_pass, after[i].after.value,
-                           i);
+      report.record_reason(Reason::About::pass, pass, Reason::ReasonKind::after_pass,
+                           after[i].after.value, i);
       if (plan.passes[earlier].queue != plan.passes[later].queue) wait_for_pass(later, earlier);
     }
   }
 }
 
 void QueueSync::assign_points(Plan& plan) {
-  // By queue, encoded as in `waits`: the last pass that the queue has waited for so far. That wait includes
-  // all earlier passes and the frame before.
+  // By queue, encoded as in `waits`: the last pass that the queue has waited for so far. That wait
+  // includes all earlier passes and the frame before.
   std::array<uint32_t, 2> waited{0, 0};
   uint32_t last_of_main = 0, last_of_async = 0; // that the next frame waits for
   std::vector<uint8_t> awaited(plan.passes.size(), 0);
-  uint32_t awaited_by_async = 0; // last pass of the main queue that the async queue waits for in a frame
+  uint32_t awaited_by_async =
+      0; // last pass of the main queue that the async queue waits for in a frame
   for (uint32_t position = 0; position < plan.passes.size(); ++position)
     if (plan.passes[position].queue == Queue::async)
       awaited_by_async = std::max(awaited_by_async, waits[position]);
@@ -82,8 +85,8 @@ void QueueSync::assign_points(Plan& plan) {
   // The next frame waits for the last point of this frame, whichever pass signals it.
   bool reached = last_of_main == 0;
   for (uint32_t position = 0; position < plan.passes.size(); ++position)
-    reached |=
-        awaited[position] && plan.passes[position].queue == Queue::main && position + 2 >= last_of_main;
+    reached |= awaited[position] && plan.passes[position].queue == Queue::main &&
+               position + 2 >= last_of_main;
   if (!reached) awaited[last_of_main - 2] = 1;
 
   std::array<uint32_t, 2> points{0, 0};
@@ -99,7 +102,8 @@ void QueueSync::assign_points(Plan& plan) {
 
 void QueueSync::find_round_trips(const Plan& plan) {
   const size_t count = plan.passes.size();
-  // By queue: number of positions, counted through three frames, whose passes on that queue are complete.
+  // By queue: number of positions, counted through three frames, whose passes on that queue are
+  // complete.
   using Complete = std::array<size_t, 2>;
   struct Point {
     size_t end = 0;      // positions up to and including the pass that signals the point
@@ -121,7 +125,8 @@ void QueueSync::find_round_trips(const Plan& plan) {
       const PlanPass& pass = plan.passes[position];
       const size_t own = queue_index(pass.queue);
       wait(pass.queue, pass.wait);
-      for (size_t back = 0; back < round_trips[position].size(); ++back) { // the third frame's values remain
+      for (size_t back = 0; back < round_trips[position].size();
+           ++back) { // the third frame's values remain
         const size_t first = begin - std::min(begin, back * count), complete = known[own][own];
         round_trips[position][back] =
             static_cast<uint32_t>(std::min(complete - std::min(complete, first), count));

@@ -1,6 +1,7 @@
 #pragma once
-// Synchronisation between the main queue and the async queue: which pass waits for which point of the other
-// queue, and what those waits imply. All vectors are empty in plans with one queue. Internal to compile/.
+// Synchronisation between the main queue and the async queue: which pass waits for which point of
+// the other queue, and what those waits imply. All vectors are empty in plans with one queue.
+// Internal to compile/.
 
 #include "framegraph/compile/values.hpp"
 
@@ -19,8 +20,8 @@ struct LastAccess { // of an object
   QueueSyncPoint any, write;
 };
 
-// By frames back, 0 .. 2: number of positions, counted from the first. Through the waits of both queues, a
-// wait for a pass includes everything older on the same queue.
+// By frames back, 0 .. 2: number of positions, counted from the first. Through the waits of both
+// queues, a wait for a pass includes everything older on the same queue.
 using FrameCounts = std::array<uint32_t, 3>;
 
 struct OwnQueueWait { // what a barrier waits for on its own queue
@@ -30,13 +31,13 @@ struct OwnQueueWait { // what a barrier waits for on its own queue
 
 struct QueueSync {
   bool two_queues = false;
-  // By position: position + 2 of the last pass of the other queue that the pass waits for, in this frame and
-  // in the frame before. 1: all of the frame before. 0: none.
+  // By position: position + 2 of the last pass of the other queue that the pass waits for, in this
+  // frame and in the frame before. 1: all of the frame before. 0: none.
   std::vector<uint32_t> waits, waits_frame_before;
   std::vector<LastAccess> last_access, last_access_at_frame_end; // by object
   std::vector<OwnQueueWait> draft_waits;                         // by draft
-  // By position: the passes of the same queue that are complete and visible because the other queue waited
-  // for them, and this queue waited for the other one afterwards.
+  // By position: the passes of the same queue that are complete and visible because the other queue
+  // waited for them, and this queue waited for the other one afterwards.
   std::vector<FrameCounts> round_trips;
 
   void begin(bool two, size_t objects, size_t passes);
@@ -53,11 +54,12 @@ struct QueueSync {
   // The draft waits for an access of its own queue.
   void wait_on_own_queue(uint32_t draft, const QueueSyncPoint& access);
 
-  // Lists in the plan which passes `after` orders, and waits where the two passes are on different queues.
+  // Lists in the plan which passes `after` orders, and waits where the two passes are on different
+  // queues.
   void add_orderings(const Graph& graph, const Activation& active, Report& report, Plan& plan);
 
-  // Gives every pass the point that it waits for and the point that it signals: as few as `waits` and
-  // `waits_frame_before` allow.
+  // Gives every pass the point that it waits for and the point that it signals: as few as `waits`
+  // and `waits_frame_before` allow.
   void assign_points(Plan& plan);
 
   // Computes round_trips from the points.

@@ -5,9 +5,11 @@
 namespace dermis {
 namespace {
 
-// Returns a resource that ties a pass to the main queue, or an invalid id. The host passes its resources to
-// one queue only; histories would change queues between frames; divided images are not supported.
-ResourceId tie_to_main(const Sizes& sizes, const Subresources& subresources, std::span<const Use> uses) {
+// Returns a resource that ties a pass to the main queue, or an invalid id. The host passes its
+// resources to one queue only; histories would change queues between frames; divided images are not
+// supported.
+ResourceId tie_to_main(const Sizes& sizes, const Subresources& subresources,
+                       std::span<const Use> uses) {
   for (const Use& use : uses) {
     if (use.bind_error != Use::BindError::none) continue;
     const ResourceInfo& info = sizes.info[use.resource.value];
@@ -30,9 +32,9 @@ const QueueAssignment& assign_queues(const CompileInput& in, const Sizes& sizes,
     if (!live.passes[pass] || !graph.passes[pass].async) continue;
     const ResourceId tie = tie_to_main(sizes, subresources, versions.uses_of(pass));
     if (!tie.valid()) queues.by_pass[pass] = Queue::async;
-    report.record_reason(Reason::About::pass, pass,
-                         tie.valid() ? Reason::ReasonKind::not_async : Reason::ReasonKind::async_queue,
-                         tie.value);
+    report.record_reason(
+        Reason::About::pass, pass,
+        tie.valid() ? Reason::ReasonKind::not_async : Reason::ReasonKind::async_queue, tie.value);
   }
   return queues;
 }

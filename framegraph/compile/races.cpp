@@ -1,5 +1,5 @@
-// Reports passes that read what they write, with these settings. read_graph checks all combinations of
-// settings; this phase covers graphs from other sources and graphs with too many combinations.
+// Reports passes that read what they write, with these settings. read_graph checks all combinations
+// of settings; this phase covers graphs from other sources and graphs with too many combinations.
 
 #include "framegraph/compile/phases.hpp"
 #include "framegraph/model/in_place.hpp"
@@ -10,7 +10,8 @@ namespace {
 bool is_race(const Activation& active, const Use& read, const Use& write) {
   if (!read.reads || read.writes || read.frames_back > 0 || read.bind_error != Use::BindError::none)
     return false;
-  if (read.resource != write.resource || active.type(read.pass).ports[read.port].own_texels) return false;
+  if (read.resource != write.resource || active.type(read.pass).ports[read.port].own_texels)
+    return false;
   return read.requested != read.resource ||
          read.subresource == write.subresource; // a placeholder is never divided
 }
@@ -22,7 +23,8 @@ void report_races(const CompileInput& in, const Activation& active, const Versio
   const Graph& graph = *in.graph;
   if (!versions.overwrites) return;
   for (const Use& write : versions.uses) {
-    if (write.write_version == invalid_index || versions[write.write_version].previous == invalid_index)
+    if (write.write_version == invalid_index ||
+        versions[write.write_version].previous == invalid_index)
       continue;
     for (const Use& read : versions.uses_of(write.pass)) {
       if (!is_race(active, read, write)) continue;

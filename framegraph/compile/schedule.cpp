@@ -1,6 +1,6 @@
-// Orders the live passes. The order of the file is kept unless a depth-first order has fewer bytes live at
-// once. Depth first, a pass's producers run in descending order of (peak bytes - output bytes), after Sethi
-// and Ullman 1970 with bytes in place of registers. O((n + e) log n).
+// Orders the live passes. The order of the file is kept unless a depth-first order has fewer bytes
+// live at once. Depth first, a pass's producers run in descending order of (peak bytes - output
+// bytes), after Sethi and Ullman 1970 with bytes in place of registers. O((n + e) log n).
 
 #include "framegraph/compile/hardware.hpp"
 #include "framegraph/compile/phases.hpp"
@@ -23,7 +23,8 @@ struct Scheduler {
   Schedule& schedule = scratch.result;
   uint32_t passes = static_cast<uint32_t>(graph.passes.size());
 
-  // Calls visit(before) for each pass that `pass` depends on, except the readers of versions it overwrites.
+  // Calls visit(before) for each pass that `pass` depends on, except the readers of versions it
+  // overwrites.
   template <class Visit> void for_each_before(uint32_t pass, Visit visit) const {
     for (const Use& use : versions.uses_of(pass)) {
       if (use.bind_error != Use::BindError::none) continue;
@@ -42,7 +43,8 @@ struct Scheduler {
     if (!versions.overwrites) return;
     scratch.overwriter.assign(versions.list.size(), invalid_index);
     for (const Version& version : versions.list)
-      if (version.previous != invalid_index) scratch.overwriter[version.previous] = version.producer.value;
+      if (version.previous != invalid_index)
+        scratch.overwriter[version.previous] = version.producer.value;
     for (const Use& use : versions.uses) {
       if (use.bind_error != Use::BindError::none || use.read_version == invalid_index) continue;
       const uint32_t overwriter = scratch.overwriter[use.read_version];
@@ -53,31 +55,35 @@ struct Scheduler {
     std::sort(scratch.readers.begin(), scratch.readers.end());
   }
 
-  // Collects dependencies; returns false if some pass that is on depends on a pass located after it.
+  // Collects dependencies; returns false if some pass that is on depends on a pass located after
+  // it.
   bool collect_dependencies() {
     const bool plain = !versions.overwrites && !active.ordered && !versions.list.empty();
     return plain ? collect_producers() : collect_all_dependencies();
   }
 
-  // For graphs in which passes depend on producers only. One loop over all uses, without unpredictable
-  // branches.
+  // For graphs in which passes depend on producers only. One loop over all uses, without
+  // unpredictable branches.
   bool collect_producers() {
     bool forward = true;
     uint32_t count = 0;
     scratch.before.resize(versions.uses.size() + 1);
     scratch.first_before.assign(size_t{passes} + 1, 0);
     for (const Use& use : versions.uses) {
-      const bool reads = (use.bind_error == Use::BindError::none) & (use.read_version != invalid_index);
+      const bool reads =
+          (use.bind_error == Use::BindError::none) & (use.read_version != invalid_index);
       const PassId other = versions[select(reads, use.read_version, 0u)].producer;
       const bool waits = (int{reads} & int{other.valid()} & int{other != use.pass}) != 0;
       forward &= !waits | (other < use.pass);
       scratch.before[count] = other.value;
-      count += static_cast<uint32_t>(waits) & live.passes[use.pass.value]; // the producer is live, too
+      count +=
+          static_cast<uint32_t>(waits) & live.passes[use.pass.value]; // the producer is live, too
       scratch.first_before[use.pass.value + 1] = count;
     }
     scratch.before.resize(count);
     for (uint32_t pass = 0; pass < passes; ++pass) // passes without uses
-      scratch.first_before[pass + 1] = std::max(scratch.first_before[pass + 1], scratch.first_before[pass]);
+      scratch.first_before[pass + 1] =
+          std::max(scratch.first_before[pass + 1], scratch.first_before[pass]);
     return forward;
   }
 
@@ -109,9 +115,10 @@ struct Scheduler {
       if (live.passes[pass]) schedule.order.push_back(PassId{pass});
   }
 
-  // Computes the lifetime of each resource if the passes run in `sequence`. The additional last entry
-  // collects uses that do not count, which avoids a branch.
-  template <class Sequence> void find_lifetimes(const Sequence& sequence, std::vector<Interval>& lifetimes) {
+  // Computes the lifetime of each resource if the passes run in `sequence`. The additional last
+  // entry collects uses that do not count, which avoids a branch.
+  template <class Sequence>
+  void find_lifetimes(const Sequence& sequence, std::vector<Interval>& lifetimes) {
     const auto nowhere = static_cast<uint32_t>(graph.resources.size());
     lifetimes.assign(size_t{nowhere} + 1, {});
     scratch.position.resize(passes);
@@ -119,7 +126,8 @@ struct Scheduler {
     for (const auto& item : sequence)
       scratch.position[number(item)] = position++;
     for (const Use& use : versions.uses) {
-      const bool counts = (use.bind_error == Use::BindError::none) & (live.passes[use.pass.value] != 0);
+      const bool counts =
+          (use.bind_error == Use::BindError::none) & (live.passes[use.pass.value] != 0);
       Interval& interval = lifetimes[counts ? use.resource.value : nowhere];
       const uint32_t at = scratch.position[use.pass.value];
       interval.first = std::min(interval.first, at);
@@ -144,8 +152,8 @@ struct Scheduler {
     return static_cast<uint64_t>(maximum);
   }
 
-  // Estimates peak and output bytes of each pass as if the dependencies were a tree, and sorts each pass's
-  // dependencies into the order that needs the least memory.
+  // Estimates peak and output bytes of each pass as if the dependencies were a tree, and sorts each
+  // pass's dependencies into the order that needs the least memory.
   void estimate_memory() {
     scratch.peak_bytes.assign(passes, 0);
     scratch.output_bytes.assign(size_t{passes} + 1, 0); // the last: versions without a producer
@@ -157,9 +165,11 @@ struct Scheduler {
     for (const PassId pass : schedule.order) {
       uint64_t running = 0, peak = 0;
       const auto gain = [&](uint32_t p) { return scratch.peak_bytes[p] - scratch.output_bytes[p]; };
-      const uint32_t first = scratch.first_before[pass.value], end = scratch.first_before[pass.value + 1];
+      const uint32_t first = scratch.first_before[pass.value],
+                     end = scratch.first_before[pass.value + 1];
       for (uint32_t i = first + 1; i < end; ++i) // few: insertion sort
-        for (uint32_t at = i; at > first && gain(scratch.before[at]) > gain(scratch.before[at - 1]); --at)
+        for (uint32_t at = i; at > first && gain(scratch.before[at]) > gain(scratch.before[at - 1]);
+             --at)
           std::swap(scratch.before[at], scratch.before[at - 1]);
       for (uint32_t i = first; i < end; ++i) {
         peak = std::max(peak, running + scratch.peak_bytes[scratch.before[i]]);
@@ -171,7 +181,8 @@ struct Scheduler {
 
   // Traverses depth first from the passes that no pass depends on, in file order.
   void find_depth_first_order() {
-    std::vector<uint8_t>& state = scratch.visited; // 1: some pass depends on it; 2: on the stack or done
+    std::vector<uint8_t>& state =
+        scratch.visited; // 1: some pass depends on it; 2: on the stack or done
     state.assign(passes, 0);
     for (const uint32_t before : scratch.before)
       state[before] = 1;
@@ -202,7 +213,8 @@ struct Scheduler {
 
   void record_reason(Reason::ReasonKind why, uint64_t bytes = 0, uint64_t other_bytes = 0) {
     constexpr uint64_t kib = 1024, maximum = invalid_index;
-    report.record_reason(Reason::About::order, 0, why, static_cast<uint32_t>(std::min(bytes / kib, maximum)),
+    report.record_reason(Reason::About::order, 0, why,
+                         static_cast<uint32_t>(std::min(bytes / kib, maximum)),
                          static_cast<uint32_t>(std::min(other_bytes / kib, maximum)));
   }
 
@@ -211,7 +223,8 @@ struct Scheduler {
     estimate_memory();
     find_depth_first_order();
     find_lifetimes(scratch.depth_first, scratch.lifetimes);
-    const uint64_t file = max_live_bytes(schedule.lifetimes), depth = max_live_bytes(scratch.lifetimes);
+    const uint64_t file = max_live_bytes(schedule.lifetimes),
+                   depth = max_live_bytes(scratch.lifetimes);
     if (depth >= file) return record_reason(Reason::ReasonKind::order_of_file, file, depth);
     record_reason(Reason::ReasonKind::depth_first, depth, file);
     schedule.lifetimes.swap(scratch.lifetimes);
@@ -226,7 +239,8 @@ struct Scheduler {
     std::vector<std::vector<uint32_t>> followers(passes);
     std::vector<uint32_t> waits(passes, 0), ready;
     for (const PassId pass : schedule.order)
-      for (uint32_t i = scratch.first_before[pass.value]; i < scratch.first_before[pass.value + 1]; ++i) {
+      for (uint32_t i = scratch.first_before[pass.value]; i < scratch.first_before[pass.value + 1];
+           ++i) {
         followers[scratch.before[i]].push_back(pass.value);
         ++waits[pass.value];
       }
@@ -246,8 +260,9 @@ struct Scheduler {
 
 } // namespace
 
-const Schedule& schedule_passes(const CompileInput& in, const Activation& active, const Versions& versions,
-                                const LiveSet& live, const ResourceMemory& memory, Report& report,
+const Schedule& schedule_passes(const CompileInput& in, const Activation& active,
+                                const Versions& versions, const LiveSet& live,
+                                const ResourceMemory& memory, Report& report,
                                 ScheduleScratch& scratch) {
   Schedule& schedule = scratch.result;
   Scheduler scheduler{in, *in.graph, active, versions, live, memory, report, scratch};

@@ -1,5 +1,5 @@
-// Sorts graphs in which some pass depends on a pass that is located after it in the file, with Kahn's
-// algorithm. Reports a cycle if the algorithm ends early.
+// Sorts graphs in which some pass depends on a pass that is located after it in the file, with
+// Kahn's algorithm. Reports a cycle if the algorithm ends early.
 
 #include "framegraph/compile/phases.hpp"
 
@@ -35,9 +35,11 @@ std::vector<Edge> find_dependencies(const Graph& graph, const Versions& versions
     if (use.read_version != invalid_index) {
       const Version& read = versions[use.read_version];
       add({read.producer, use.pass, Edge::Kind::reads, read.resource});
-      if (with_readers) add({use.pass, overwriter[use.read_version], Edge::Kind::overwritten, read.resource});
+      if (with_readers)
+        add({use.pass, overwriter[use.read_version], Edge::Kind::overwritten, read.resource});
     }
-    if (use.write_version != invalid_index && versions[use.write_version].previous != invalid_index) {
+    if (use.write_version != invalid_index &&
+        versions[use.write_version].previous != invalid_index) {
       const Version& previous = versions[versions[use.write_version].previous];
       add({previous.producer, use.pass, Edge::Kind::overwrites, previous.resource});
     }
@@ -54,10 +56,11 @@ std::string explain(const Graph& graph, const Edge& edge) {
   case Edge::Kind::reads:
     return fmt::format("'{}' reads '{}' from '{}'", after, name_of(graph, edge.resource), before);
   case Edge::Kind::overwritten:
-    return fmt::format("'{}' writes over '{}', which '{}' still reads", after, name_of(graph, edge.resource),
-                       before);
+    return fmt::format("'{}' writes over '{}', which '{}' still reads", after,
+                       name_of(graph, edge.resource), before);
   case Edge::Kind::overwrites:
-    return fmt::format("'{}' writes over '{}' from '{}'", after, name_of(graph, edge.resource), before);
+    return fmt::format("'{}' writes over '{}' from '{}'", after, name_of(graph, edge.resource),
+                       before);
   case Edge::Kind::ordered:
     break;
   }
@@ -65,9 +68,10 @@ std::string explain(const Graph& graph, const Edge& edge) {
                      graph.passes[edge.after.value].after[edge.ordering].reason);
 }
 
-// Kahn's algorithm, the smallest pass first. Passes on a cycle, or that depend on one, are missing from the
-// result.
-std::vector<PassId> sort_topologically(const std::vector<uint8_t>& included, const std::vector<Edge>& edges) {
+// Kahn's algorithm, the smallest pass first. Passes on a cycle, or that depend on one, are missing
+// from the result.
+std::vector<PassId> sort_topologically(const std::vector<uint8_t>& included,
+                                       const std::vector<Edge>& edges) {
   std::vector<uint32_t> waits(included.size(), 0);
   std::vector<std::vector<PassId>> followers(included.size());
   for (const Edge& edge : edges) {
@@ -88,18 +92,20 @@ std::vector<PassId> sort_topologically(const std::vector<uint8_t>& included, con
   return result;
 }
 
-// Follows edges backwards among the passes that could not be sorted. Each of them depends on another one, so
-// the path returns to a visited pass, and that section of the path is a cycle.
-void report_cycle(const Graph& graph, std::vector<uint8_t> unsorted, const std::vector<PassId>& done,
-                  const std::vector<Edge>& edges, Report& report) {
+// Follows edges backwards among the passes that could not be sorted. Each of them depends on
+// another one, so the path returns to a visited pass, and that section of the path is a cycle.
+void report_cycle(const Graph& graph, std::vector<uint8_t> unsorted,
+                  const std::vector<PassId>& done, const std::vector<Edge>& edges, Report& report) {
   for (const PassId pass : done)
     unsorted[pass.value] = 0;
-  std::vector<uint32_t> incoming(unsorted.size(), invalid_index); // by pass: one edge from an unsorted pass
+  std::vector<uint32_t> incoming(unsorted.size(),
+                                 invalid_index); // by pass: one edge from an unsorted pass
   for (uint32_t e = 0; e < edges.size(); ++e)
     if (unsorted[edges[e].before.value] && unsorted[edges[e].after.value] &&
         incoming[edges[e].after.value] == invalid_index)
       incoming[edges[e].after.value] = e;
-  const auto first = static_cast<uint32_t>(std::find(unsorted.begin(), unsorted.end(), 1) - unsorted.begin());
+  const auto first =
+      static_cast<uint32_t>(std::find(unsorted.begin(), unsorted.end(), 1) - unsorted.begin());
   std::vector<uint8_t> seen(unsorted.size(), 0);
   uint32_t at = first;
   while (!seen[at]) {
@@ -110,8 +116,8 @@ void report_cycle(const Graph& graph, std::vector<uint8_t> unsorted, const std::
   for (uint32_t start = at; cycle.empty() || at != start; at = cycle.back()->before.value)
     cycle.push_back(&edges[incoming[at]]);
   std::reverse(cycle.begin(), cycle.end());
-  // Rotates the cycle to its first pass in file order, so that the message does not depend on where the
-  // path began.
+  // Rotates the cycle to its first pass in file order, so that the message does not depend on where
+  // the path began.
   std::rotate(cycle.begin(),
               std::min_element(cycle.begin(), cycle.end(),
                                [](const Edge* a, const Edge* b) { return a->before < b->before; }),
@@ -119,9 +125,10 @@ void report_cycle(const Graph& graph, std::vector<uint8_t> unsorted, const std::
   std::string names;
   for (const Edge* edge : cycle)
     names += fmt::format("'{}' -> ", name_of(graph, edge->before));
-  auto& diagnostic = report.diagnostics.add(
-      DiagnosticId::pass_cycle, graph.passes[cycle.front()->before.value].where,
-      fmt::format("passes wait for each other: {}'{}'", names, name_of(graph, cycle.front()->before)));
+  auto& diagnostic = report.diagnostics.add(DiagnosticId::pass_cycle,
+                                            graph.passes[cycle.front()->before.value].where,
+                                            fmt::format("passes wait for each other: {}'{}'", names,
+                                                        name_of(graph, cycle.front()->before)));
   for (const Edge* edge : cycle)
     diagnostic.related.emplace_back(graph.passes[edge->after.value].where, explain(graph, *edge));
 }
@@ -129,7 +136,8 @@ void report_cycle(const Graph& graph, std::vector<uint8_t> unsorted, const std::
 } // namespace
 
 std::vector<PassId> sort_backward_graph(const Graph& graph, const Activation& active,
-                                        const Versions& versions, const LiveSet& live, Report& report) {
+                                        const Versions& versions, const LiveSet& live,
+                                        Report& report) {
   const auto sort_among = [&](const std::vector<uint8_t>& included, bool with_readers) {
     const std::vector<Edge> edges = find_dependencies(graph, versions, included, with_readers);
     std::vector<PassId> order = sort_topologically(included, edges);

@@ -96,13 +96,15 @@ struct SizeResolver {
   bool finish_image(const ResourceDeclaration& declared, Extent& extent) {
     const uint32_t limit = in.device->max_image_dimension;
     if (extent.width > limit || extent.height > limit) {
-      report_too_large(declared, fmt::format("is {}x{} texels; the device '{}' holds at most {} a side",
-                                             extent.width, extent.height, in.device->name, limit));
+      report_too_large(declared,
+                       fmt::format("is {}x{} texels; the device '{}' holds at most {} a side",
+                                   extent.width, extent.height, in.device->name, limit));
       return false;
     }
     if (declared.layers < 1 || declared.layers > in.device->max_image_layers) {
-      report_too_large(declared, fmt::format("has {} layers; the device '{}' holds 1 .. {}", declared.layers,
-                                             in.device->name, in.device->max_image_layers));
+      report_too_large(declared,
+                       fmt::format("has {} layers; the device '{}' holds 1 .. {}", declared.layers,
+                                   in.device->name, in.device->max_image_layers));
       return false;
     }
     const uint32_t full = full_chain(extent.width, extent.height);
@@ -120,9 +122,10 @@ struct SizeResolver {
     const uint64_t limit = in.device->max_storage_buffer_bytes;
     const uint64_t stride = std::max<uint32_t>(declared.stride, 1);
     if (elements > limit / stride || declared.extra_elements > limit / stride - elements) {
-      report_too_large(declared,
-                       fmt::format("has {} + {} elements of {} bytes; the device '{}' holds at most {} bytes",
-                                   elements, declared.extra_elements, stride, in.device->name, limit));
+      report_too_large(
+          declared,
+          fmt::format("has {} + {} elements of {} bytes; the device '{}' holds at most {} bytes",
+                      elements, declared.extra_elements, stride, in.device->name, limit));
       return false;
     }
     extent.bytes = (elements + declared.extra_elements) * stride;
@@ -134,12 +137,14 @@ bool same(Rational a, Rational b) {
   return a.numerator == b.numerator && a.denominator == b.denominator;
 }
 
-// Whether two declarations whose sizes follow no other resource have equal sizes and formats at every view.
+// Whether two declarations whose sizes follow no other resource have equal sizes and formats at
+// every view.
 bool alike(const ResourceDeclaration& a, const ResourceDeclaration& b) {
   return same(a.size.x, b.size.x) && same(a.size.y, b.size.y) && a.size.base == b.size.base &&
          a.size.rounding == b.size.rounding && a.size.align == b.size.align &&
-         a.size.border == b.size.border && a.type == b.type && a.mips == b.mips && a.layers == b.layers &&
-         a.stride == b.stride && a.extra_elements == b.extra_elements && a.formats == b.formats;
+         a.size.border == b.size.border && a.type == b.type && a.mips == b.mips &&
+         a.layers == b.layers && a.stride == b.stride && a.extra_elements == b.extra_elements &&
+         a.formats == b.formats;
 }
 
 // Graphs have few shapes: most resources share the shape of an earlier one.
@@ -148,9 +153,10 @@ void find_extent(SizeResolver& resolver, ResourceId id) {
   const SizeExpression& size = declared.size;
   SizeScratch& scratch = resolver.scratch;
   Sizes& sizes = scratch.result;
-  const uint64_t mixed = static_cast<uint64_t>(size.x.numerator) * 31 +
-                         static_cast<uint64_t>(size.x.denominator) * 7 + declared.mips +
-                         (declared.formats.empty() ? 0 : static_cast<uint64_t>(declared.formats.front()));
+  const uint64_t mixed =
+      static_cast<uint64_t>(size.x.numerator) * 31 + static_cast<uint64_t>(size.x.denominator) * 7 +
+      declared.mips +
+      (declared.formats.empty() ? 0 : static_cast<uint64_t>(declared.formats.front()));
   uint32_t& shape = scratch.last_shape_of[mixed % scratch.last_shape_of.size()];
   const bool known = shape != invalid_index &&
                      alike(resolver.graph.resources[scratch.first_of_shape[shape].value], declared);
@@ -172,7 +178,8 @@ void resolve_slot(const CompileInput& in, ResourceId id, ResourceInfo& info, Rep
   const ResourceDeclaration& declared = in.graph->resources[id.value];
   info.bound = !declared.optional || in.bound.empty() || in.bound[id.value];
   info.host_owned = info.imported || info.bound;
-  if (!info.bound) report.record_reason(Reason::About::resource, id.value, Reason::ReasonKind::unbound);
+  if (!info.bound)
+    report.record_reason(Reason::About::resource, id.value, Reason::ReasonKind::unbound);
   if (!info.history) return;
   report.diagnostics.add(
       DiagnosticId::history_of_host_memory, declared.where,

@@ -1,5 +1,6 @@
-// Divides images into subresource ranges. Ports that name mips or layers divide an image into rectangles of
-// mips and layers: the fewest for which every port accesses each rectangle as a whole or not at all.
+// Divides images into subresource ranges. Ports that name mips or layers divide an image into
+// rectangles of mips and layers: the fewest for which every port accesses each rectangle as a whole
+// or not at all.
 
 #include "framegraph/compile/phases.hpp"
 #include "framegraph/model/image_range.hpp"
@@ -27,7 +28,8 @@ struct SubresourceSplitter {
     const uint32_t has_layers = graph.resources[binding.resource.value].layers;
     const ImageRange& named = binding.range;
     const uint32_t end_mip = named.mips == 0 ? has_mips : named.first_mip + named.mips;
-    const uint32_t end_layer = named.layers == 0 ? has_layers : uint32_t{named.first_layer} + named.layers;
+    const uint32_t end_layer =
+        named.layers == 0 ? has_layers : uint32_t{named.first_layer} + named.layers;
     if (named.first_mip >= end_mip || end_mip > has_mips || named.first_layer >= end_layer ||
         end_layer > has_layers)
       return false;
@@ -41,10 +43,11 @@ struct SubresourceSplitter {
     const Extent& extent = sizes.extents[binding.resource.value];
     report.diagnostics
         .add(DiagnosticId::part_missing, graph.place_of(binding),
-             fmt::format("pass '{}' binds '{}{}', but at {}x{} texels '{}' has {} mip{} and {} layer{}",
-                         name_of(graph, pass), resource.name, image_range_text(binding.range), extent.width,
-                         extent.height, resource.name, extent.mips, extent.mips == 1 ? "" : "s",
-                         resource.layers, resource.layers == 1 ? "" : "s"))
+             fmt::format(
+                 "pass '{}' binds '{}{}', but at {}x{} texels '{}' has {} mip{} and {} layer{}",
+                 name_of(graph, pass), resource.name, image_range_text(binding.range), extent.width,
+                 extent.height, resource.name, extent.mips, extent.mips == 1 ? "" : "s",
+                 resource.layers, resource.layers == 1 ? "" : "s"))
         .related.emplace_back(resource.where, fmt::format("'{}' is declared here", resource.name));
   }
 
@@ -82,17 +85,17 @@ struct SubresourceSplitter {
     if (count > limits::image_ranges) {
       report.diagnostics.add(
           DiagnosticId::limit_exceeded, declared.where,
-          fmt::format("ports name {} different subresource ranges of '{}', at most {} are accepted", count,
-                      declared.name, limits::image_ranges));
+          fmt::format("ports name {} different subresource ranges of '{}', at most {} are accepted",
+                      count, declared.name, limits::image_ranges));
       return;
     }
     subresources.counts[id.value] = static_cast<uint32_t>(count);
     subresources.second[id.value] = static_cast<uint32_t>(subresources.ranges.size());
     for (size_t m = 0; m + 1 < cuts[mips].size(); ++m)
       for (size_t l = 0; l + 1 < cuts[layers].size(); ++l) {
-        const SubresourceRange range{cuts[mips][m], static_cast<uint16_t>(cuts[mips][m + 1] - cuts[mips][m]),
-                                     cuts[layers][l],
-                                     static_cast<uint16_t>(cuts[layers][l + 1] - cuts[layers][l])};
+        const SubresourceRange range{
+            cuts[mips][m], static_cast<uint16_t>(cuts[mips][m + 1] - cuts[mips][m]),
+            cuts[layers][l], static_cast<uint16_t>(cuts[layers][l + 1] - cuts[layers][l])};
         if (m == 0 && l == 0)
           subresources.ranges[id.value] = range;
         else
@@ -103,8 +106,9 @@ struct SubresourceSplitter {
 
 } // namespace
 
-const Subresources& split_subresources(const CompileInput& in, const Sizes& sizes, const Activation& active,
-                                       Report& report, SubresourceScratch& scratch) {
+const Subresources& split_subresources(const CompileInput& in, const Sizes& sizes,
+                                       const Activation& active, Report& report,
+                                       SubresourceScratch& scratch) {
   const Graph& graph = *in.graph;
   Subresources& subresources = scratch.result;
   subresources.counts.clear();

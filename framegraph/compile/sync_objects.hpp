@@ -1,6 +1,6 @@
 #pragma once
-// The objects of the barrier phase. An object is one subresource range of one frame of a plan resource.
-// Internal to compile/.
+// The objects of the barrier phase. An object is one subresource range of one frame of a plan
+// resource. Internal to compile/.
 
 #include "framegraph/compile/values.hpp"
 
@@ -13,7 +13,7 @@ struct ResourceSyncInfo {
   uint32_t first_object = 0; // objects are sorted by frames_back, then by range
   uint32_t frames = 1;       // frames that passes access, this one included
   uint32_t ranges = 1;       // subresource ranges
-  uint32_t own_frame = 0;    // frames_back of the objects that this frame overwrites in place; 0: none
+  uint32_t own_frame = 0; // frames_back of the objects that this frame overwrites in place; 0: none
   bool host_owned = false, image = true;
   SubresourceRange whole;
 
@@ -22,12 +22,15 @@ struct ResourceSyncInfo {
     return first_object + (frames_back == 0 ? own_frame : frames_back) * ranges + range;
   }
   // The object of the oldest frame.
-  uint32_t oldest_object(uint32_t range) const { return first_object + (frames - 1) * ranges + range; }
+  uint32_t oldest_object(uint32_t range) const {
+    return first_object + (frames - 1) * ranges + range;
+  }
 };
 
 // How an object was accessed so far.
 struct ObjectState {
-  Stage source_stages = 0;  // of the last write, or that the last layout transition was made visible to
+  Stage source_stages =
+      0; // of the last write, or that the last layout transition was made visible to
   Access source_access = 0; // 0 after that write was made available
   Stage readers = 0;        // stages that read since then
   Layout layout = Layout::undefined;
@@ -35,8 +38,9 @@ struct ObjectState {
   uint16_t visible = 0;               // usages that may read without another barrier
   Queue queue = Queue::main;          // of the last access
   bool accessed = false;
-  bool carried = false;     // the last access was in the frame before
-  bool always_read = false; // a reader runs in every frame: waiting for the readers includes the last write
+  bool carried = false; // the last access was in the frame before
+  bool always_read =
+      false; // a reader runs in every frame: waiting for the readers includes the last write
 };
 
 struct SyncScope { // first half of a memory dependency

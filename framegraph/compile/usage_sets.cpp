@@ -10,7 +10,8 @@ std::array<UsageSet, usage_sets> make_usage_sets() {
     for (uint32_t u = 0; u < usage_count; ++u) {
       if ((mask >> u & 1) == 0) continue;
       const UsageInfo& info = usage_info(static_cast<Usage>(u));
-      set.image_layout = set.stages == 0 || set.image_layout == info.layout ? info.layout : Layout::general;
+      set.image_layout =
+          set.stages == 0 || set.image_layout == info.layout ? info.layout : Layout::general;
       set.stages |= info.stages;
       set.access |= info.access;
       set.reads |= info.reads;

@@ -1,5 +1,5 @@
-// Gathers how the live passes use each resource: Vulkan usage, history depth, and ports that limit the
-// format.
+// Gathers how the live passes use each resource: Vulkan usage, history depth, and ports that limit
+// the format.
 
 #include "framegraph/compile/phases.hpp"
 
@@ -8,18 +8,21 @@
 namespace dermis {
 namespace {
 
-constexpr uint32_t transfer_source_usage = 0x1; // VK_IMAGE_USAGE_TRANSFER_SRC_BIT, the same bit for buffers
+constexpr uint32_t transfer_source_usage =
+    0x1; // VK_IMAGE_USAGE_TRANSFER_SRC_BIT, the same bit for buffers
 
-// Whether the port, which names no formats, works with every format that the resource may get. read_graph has
-// checked single formats, except those of a placeholder.
+// Whether the port, which names no formats, works with every format that the resource may get.
+// read_graph has checked single formats, except those of a placeholder.
 bool takes_all_formats(const Graph& graph, const Use& use, const Port& port) {
   const FormatList& formats = graph.resources[use.resource.value].formats;
   if (formats.size() <= 1 && use.resource == use.requested) return true;
-  return std::all_of(formats.begin(), formats.end(), [&](Format format) { return works_with(port, format); });
+  return std::all_of(formats.begin(), formats.end(),
+                     [&](Format format) { return works_with(port, format); });
 }
 
 // Adds use number `u` to the usage of its resource.
-void add_use(const Graph& graph, const Versions& versions, uint32_t u, const PassType& type, Usages& usages) {
+void add_use(const Graph& graph, const Versions& versions, uint32_t u, const PassType& type,
+             Usages& usages) {
   const Use& use = versions.uses[u];
   if (use.bind_error != Use::BindError::none) return;
   ResourceUsage& usage = usages.resources[use.resource.value];
@@ -39,7 +42,8 @@ void add_history_usages(const HistoryDeclaration& declared, ResourceUsage& usage
     usage.vk_usage |= usage_info(Usage::clear).vk_usage | transfer_source_usage;
   const uint32_t stored = usage_info(Usage::storage_image_write).vk_usage;
   if (declared.on_resize == HistoryDeclaration::OnResize::rescale && (usage.vk_usage & stored) != 0)
-    usage.vk_usage |= usage_info(Usage::sampled_image).vk_usage; // the rescaling kernel reads the old size
+    usage.vk_usage |=
+        usage_info(Usage::sampled_image).vk_usage; // the rescaling kernel reads the old size
 }
 
 void explain_history(uint32_t resource, const ResourceUsage& usage, Report& report) {

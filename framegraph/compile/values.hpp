@@ -1,6 +1,6 @@
 #pragma once
-// Values that the compile phases pass on. Each struct is the result of one phase; later phases only read it.
-// Internal to compile/.
+// Values that the compile phases pass on. Each struct is the result of one phase; later phases only
+// read it. Internal to compile/.
 
 #include "framegraph/compile/compile.hpp"
 
@@ -54,8 +54,8 @@ struct Extent {
 struct Sizes {
   std::vector<ResourceInfo> info; // by resource
   std::vector<Extent> extents;    // by resource
-  // By resource: number of its shape. Resources of one shape have equal sizes, mips, layers and formats.
-  // invalid_index: the size follows another resource's.
+  // By resource: number of its shape. Resources of one shape have equal sizes, mips, layers and
+  // formats. invalid_index: the size follows another resource's.
   std::vector<uint32_t> shape_of;
   uint32_t shape_count = 0;
 };
@@ -76,8 +76,9 @@ struct Activation {
 
 struct Use;
 
-// Subresource ranges of all images. The first range of a resource has the number of the resource; the others
-// are numbered after all resources. Without named ranges in the graph, all vectors are empty.
+// Subresource ranges of all images. The first range of a resource has the number of the resource;
+// the others are numbered after all resources. Without named ranges in the graph, all vectors are
+// empty.
 struct Subresources {
   std::vector<uint32_t> counts;         // by resource
   std::vector<uint32_t> second;         // by resource: number of its second range
@@ -94,7 +95,8 @@ struct Subresources {
 
 // Whether a port that names `seen` accesses some of the range.
 inline bool overlaps(const ImageRange& seen, const SubresourceRange& range) {
-  const auto meet = [](uint32_t first, uint32_t count, uint32_t other, uint32_t others) { // count 0: all
+  const auto meet = [](uint32_t first, uint32_t count, uint32_t other,
+                       uint32_t others) { // count 0: all
     return first < other + others && (count == 0 || other < first + count);
   };
   return meet(seen.first_mip, seen.mips, range.first_mip, range.mips) &&
@@ -111,7 +113,8 @@ struct Version {
   uint32_t previous = invalid_index; // the version that this one overwrites in place
 };
 
-// One bound port of one pass that is on; for a divided image, one subresource range that the port accesses.
+// One bound port of one pass that is on; for a divided image, one subresource range that the port
+// accesses.
 struct Use {
   enum class BindError : uint8_t {
     none,
@@ -150,7 +153,8 @@ struct Versions {
   std::span<const Use> uses_of(PassId pass) const { return uses_of(pass.value); }
   // Whether some pass writes what the use reads.
   bool is_written(const Use& use) const {
-    return (use.frames_back > 0 ? final_version[use.subresource] : use.read_version) != invalid_index;
+    return (use.frames_back > 0 ? final_version[use.subresource] : use.read_version) !=
+           invalid_index;
   }
 };
 
@@ -168,7 +172,8 @@ inline const SourceLocation& location_of(const Graph& graph, const Use& use) {
 }
 
 inline uint32_t Subresources::index_of(const Use& use) const {
-  return use.subresource == use.requested.value ? 0 : use.subresource - second[use.requested.value] + 1;
+  return use.subresource == use.requested.value ? 0
+                                                : use.subresource - second[use.requested.value] + 1;
 }
 
 // ---- LiveSet, QueueAssignment: see cull.cpp, queues.cpp ----
@@ -223,22 +228,23 @@ struct Schedule {
   std::vector<Interval> lifetimes; // by resource, and one more for uses that do not count
 };
 
-// When the oldest frame of a history is read for the last time, and when this frame's is first accessed.
+// When the oldest frame of a history is read for the last time, and when this frame's is first
+// accessed.
 struct HistoryLifetime {
   uint32_t frames = 0;                   // earlier frames that live passes read; 0: no history
   uint32_t last_read = 0;                // position
   uint32_t first_access = invalid_index; // position; invalid_index: not known, or never
-  bool oldest_updated = false;           // the pass that reads the oldest frame overwrites it in place
+  bool oldest_updated = false; // the pass that reads the oldest frame overwrites it in place
 };
 
 struct Histories {
   std::vector<HistoryLifetime> by_resource; // by plan resource
 };
 
-struct HistoryAlias {              // idle memory of a history that a transient uses: see history_aliasing.cpp
+struct HistoryAlias { // idle memory of a history that a transient uses: see history_aliasing.cpp
   uint32_t target = invalid_index; // plan resource of the history
-  bool after_last_read = false;    // of its oldest frame; false: before this frame's is first accessed
-  uint64_t offset = 0;             // bytes, in each of its instances
+  bool after_last_read = false; // of its oldest frame; false: before this frame's is first accessed
+  uint64_t offset = 0;          // bytes, in each of its instances
 };
 
 struct Placements {

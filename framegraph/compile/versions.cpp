@@ -1,5 +1,5 @@
-// Resolves which version of which resource each port accesses. Versions follow the order of the file. If a
-// pass is off, the names that it would have written refer to their `otherwise` instead.
+// Resolves which version of which resource each port accesses. Versions follow the order of the
+// file. If a pass is off, the names that it would have written refer to their `otherwise` instead.
 
 #include "framegraph/compile/phases.hpp"
 #include "framegraph/text/limits.hpp"
@@ -23,7 +23,7 @@ struct VersionResolver {
   VersionScratch& scratch;
   Versions& versions = scratch.result;
   const bool any_divided = subresources.any();
-  uint64_t divided_uses = 0;                          // uses of divided images, for limits::range_uses
+  uint64_t divided_uses = 0; // uses of divided images, for limits::range_uses
   std::pair<PassId, uint16_t> last_second_producer{}; // pass and port reported last
 
   void begin() {
@@ -62,9 +62,9 @@ struct VersionResolver {
     divided_uses += subresources.counts[use.requested.value];
   }
 
-  // Gives all uses of one binding the same bind error. A port whose ranges all lack a writer is unbound. A
-  // port with some written ranges is an error, unless the port is optional and the others lack only a
-  // profile.
+  // Gives all uses of one binding the same bind error. A port whose ranges all lack a writer is
+  // unbound. A port with some written ranges is an error, unless the port is optional and the
+  // others lack only a profile.
   void spread_bind_errors() {
     for (size_t first = 0; first < versions.uses.size();) {
       const Use& one = versions.uses[first];
@@ -77,7 +77,8 @@ struct VersionResolver {
     }
   }
 
-  // Whether all passes that would write what the use reads are off because the graph has no profile.
+  // Whether all passes that would write what the use reads are off because the graph has no
+  // profile.
   bool lacks_profile(const Use& use) const {
     bool unmet = false;
     for (const PassDeclaration& pass : graph.passes)
@@ -187,8 +188,9 @@ struct VersionResolver {
     const uint32_t before = scratch.current[use.subresource].version;
     const PassId producer = before == invalid_index ? PassId{} : versions[before].producer;
     const bool own = before != invalid_index && versions[before].resource == use.requested;
-    const bool second = own && (producer == use.pass || (!sizes.info[id].imported && producer.valid() &&
-                                                         !reads_too(use.pass, use.subresource)));
+    const bool second =
+        own && (producer == use.pass || (!sizes.info[id].imported && producer.valid() &&
+                                         !reads_too(use.pass, use.subresource)));
     if (second) return report_second(use, producer);
     const uint32_t previous = scratch.last_version[use.subresource];
     const uint32_t number = previous == invalid_index ? 1 : versions[previous].number + 1;
@@ -208,39 +210,44 @@ struct VersionResolver {
         producer == use.pass
             ? fmt::format("pass '{}' writes '{}' through two ports", name_of(graph, use.pass),
                           name_of(graph, use.requested))
-            : fmt::format("passes '{}' and '{}' both write '{}', and '{}' does not read what '{}' wrote",
-                          name_of(graph, producer), name_of(graph, use.pass), name_of(graph, use.requested),
-                          name_of(graph, use.pass), name_of(graph, producer)));
+            : fmt::format(
+                  "passes '{}' and '{}' both write '{}', and '{}' does not read what '{}' wrote",
+                  name_of(graph, producer), name_of(graph, use.pass), name_of(graph, use.requested),
+                  name_of(graph, use.pass), name_of(graph, producer)));
     diagnostic.related.emplace_back(graph.passes[producer.value].where,
                                     fmt::format("'{}' is declared here", name_of(graph, producer)));
   }
 
   void scan_otherwise(PassId pass) {
     versions.first_use.push_back(static_cast<uint32_t>(versions.uses.size()));
-    std::vector<std::pair<ResourceId, VersionScratch::Binding>> replaced; // bindings from before the pass
+    std::vector<std::pair<ResourceId, VersionScratch::Binding>>
+        replaced; // bindings from before the pass
     for (const PassThrough& through : graph.passes[pass.value].otherwise) {
-      if (graph.resources[through.output.value].type != graph.resources[through.instead.value].type) {
-        report.diagnostics.add(DiagnosticId::otherwise_mismatch, through.where,
-                               fmt::format("'{}' cannot stand in for '{}': one is {}, the other {}",
-                                           name_of(graph, through.instead), name_of(graph, through.output),
-                                           type_phrase(graph.resources[through.instead.value].type),
-                                           type_phrase(graph.resources[through.output.value].type)));
+      if (graph.resources[through.output.value].type !=
+          graph.resources[through.instead.value].type) {
+        report.diagnostics.add(
+            DiagnosticId::otherwise_mismatch, through.where,
+            fmt::format("'{}' cannot stand in for '{}': one is {}, the other {}",
+                        name_of(graph, through.instead), name_of(graph, through.output),
+                        type_phrase(graph.resources[through.instead.value].type),
+                        type_phrase(graph.resources[through.output.value].type)));
         continue;
       }
       if (subresources.divided(through.output) || subresources.divided(through.instead)) {
         report.diagnostics.add(
             DiagnosticId::otherwise_mismatch, through.where,
-            fmt::format(
-                "'{}' cannot stand in for '{}': ports name mips or layers of '{}'",
-                name_of(graph, through.instead), name_of(graph, through.output),
-                name_of(graph, subresources.divided(through.output) ? through.output : through.instead)));
+            fmt::format("'{}' cannot stand in for '{}': ports name mips or layers of '{}'",
+                        name_of(graph, through.instead), name_of(graph, through.output),
+                        name_of(graph, subresources.divided(through.output) ? through.output
+                                                                            : through.instead)));
         continue;
       }
       VersionScratch::Binding binding = scratch.current[through.instead.value];
-      if (binding.version == invalid_index && !binding.later.valid()) binding.later = through.instead;
+      if (binding.version == invalid_index && !binding.later.valid())
+        binding.later = through.instead;
       replaced.emplace_back(through.output, binding);
-      report.record_reason(Reason::About::resource, through.output.value, Reason::ReasonKind::replaced_by,
-                           through.instead.value, pass.value);
+      report.record_reason(Reason::About::resource, through.output.value,
+                           Reason::ReasonKind::replaced_by, through.instead.value, pass.value);
     }
     for (const auto& [output, binding] : replaced) {
       VersionScratch::ResourceDef& definition = scratch.definitions[output.value];
@@ -252,18 +259,20 @@ struct VersionResolver {
     }
   }
 
-  // A use before all writers in file order reads the version of the only producer. Follows `otherwise` at
-  // most once per resource.
+  // A use before all writers in file order reads the version of the only producer. Follows
+  // `otherwise` at most once per resource.
   void resolve_forward_reference(uint32_t index, uint32_t subresource) {
     Use& use = versions.uses[index];
     for (size_t step = 0; step <= scratch.definitions.size(); ++step) {
       const VersionScratch::ResourceDef& definition = scratch.definitions[subresource];
-      const bool writes_it = definition.first_version != invalid_index && writes(use.pass, subresource);
+      const bool writes_it =
+          definition.first_version != invalid_index && writes(use.pass, subresource);
       if (subresource < graph.resources.size() && unbound_import(ResourceId{subresource})) {
         use.bind_error = Use::BindError::unbound;
         return;
       }
-      if (definition.producers == 1 && !writes_it) return bind_version(use, definition.first_version);
+      if (definition.producers == 1 && !writes_it)
+        return bind_version(use, definition.first_version);
       if (definition.producers > 0) {
         use.bind_error = writes_it ? Use::BindError::unwritten : Use::BindError::ambiguous;
         return;
@@ -278,7 +287,8 @@ struct VersionResolver {
 
   bool writes(PassId pass, uint32_t subresource) const {
     for (uint32_t u = versions.first_use[pass.value]; u < versions.first_use[pass.value + 1]; ++u)
-      if (versions.uses[u].subresource == subresource && versions.uses[u].write_version != invalid_index)
+      if (versions.uses[u].subresource == subresource &&
+          versions.uses[u].write_version != invalid_index)
         return true;
     return false;
   }
@@ -290,15 +300,17 @@ struct VersionResolver {
       const uint32_t last = scratch.current[i].version;
       if (last == invalid_index) continue;
       // A divided image has no `otherwise`, so ranges numbered after all resources are their own.
-      if (i >= resources || versions[last].resource == ResourceId{i}) versions.final_version[i] = last;
+      if (i >= resources || versions[last].resource == ResourceId{i})
+        versions.final_version[i] = last;
     }
   }
 };
 
 } // namespace
 
-const Versions& resolve_versions(const CompileInput& in, const Sizes& sizes, const Activation& active,
-                                 const Subresources& subresources, Report& report, VersionScratch& scratch) {
+const Versions& resolve_versions(const CompileInput& in, const Sizes& sizes,
+                                 const Activation& active, const Subresources& subresources,
+                                 Report& report, VersionScratch& scratch) {
   const Graph& graph = *in.graph;
   Versions& versions = scratch.result;
   VersionResolver resolver{in, graph, sizes, active, subresources, report, scratch};
@@ -310,8 +322,9 @@ const Versions& resolve_versions(const CompileInput& in, const Sizes& sizes, con
     else
       resolver.scan_otherwise(PassId{i});
     if (resolver.divided_uses <= limits::range_uses) continue;
-    report.diagnostics.add(DiagnosticId::limit_exceeded, graph.passes[i].where,
-                           fmt::format("ports access more than {} subresource ranges", limits::range_uses));
+    report.diagnostics.add(
+        DiagnosticId::limit_exceeded, graph.passes[i].where,
+        fmt::format("ports access more than {} subresource ranges", limits::range_uses));
     return versions;
   }
   versions.first_use.push_back(static_cast<uint32_t>(versions.uses.size()));

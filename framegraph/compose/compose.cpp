@@ -32,7 +32,8 @@ bool has_includes(const Document& graph) {
   const NodeId passes = graph.find(graph.root(), "passes");
   if (!passes.valid()) return false;
   const std::vector<NodeId> entries = children(graph, passes);
-  return std::any_of(entries.begin(), entries.end(), [&](NodeId entry) { return is_include(graph, entry); });
+  return std::any_of(entries.begin(), entries.end(),
+                     [&](NodeId entry) { return is_include(graph, entry); });
 }
 
 } // namespace
@@ -44,15 +45,16 @@ std::string_view change_name(Change::What what) {
 
 std::string Provenance::place(const Change& change) const {
   const uint32_t file = change.where.file.value;
-  return fmt::format("{}:{}:{}", file < files.size() ? files[file].name : std::string(), change.where.line,
-                     change.where.column);
+  return fmt::format("{}:{}:{}", file < files.size() ? files[file].name : std::string(),
+                     change.where.line, change.where.column);
 }
 
 bool check_file_name(std::string_view name, std::string_view what, const SourceLocation& where,
                      Diagnostics& diagnostics) {
   std::string problem;
   if (name.empty() || name.size() > limits::file_name_bytes)
-    problem = fmt::format("the path has {} bytes; expected 1 .. {}", name.size(), limits::file_name_bytes);
+    problem = fmt::format("the path has {} bytes; expected 1 .. {}", name.size(),
+                          limits::file_name_bytes);
   else if (name.front() == '/')
     problem = "the path is absolute";
   else if (name.find_first_of("\\:") != std::string_view::npos)
@@ -81,19 +83,22 @@ bool add_document(Composer& composer, Document document, const SourceLocation& w
   else if (composer.nodes > limits::nodes)
     limit = fmt::format("{} values", limits::nodes);
   if (!limit.empty()) {
-    composer.error(DiagnosticId::limit_exceeded, where,
-                   fmt::format("the graph, with its includes and overlays, has more than {}", limit));
+    composer.error(
+        DiagnosticId::limit_exceeded, where,
+        fmt::format("the graph, with its includes and overlays, has more than {}", limit));
     return false;
   }
   composer.tree.documents.push_back(std::move(document));
   return true;
 }
 
-std::optional<Composition> compose(Document graph, std::vector<Document> overlays, const OpenFile& open,
-                                   Diagnostics& diagnostics) {
+std::optional<Composition> compose(Document graph, std::vector<Document> overlays,
+                                   const OpenFile& open, Diagnostics& diagnostics) {
   if (overlays.empty() && !has_includes(graph)) return Composition{std::move(graph), {}};
   if (!check_version(graph, "dermis", graph_format_version, diagnostics)) return std::nullopt;
-  const auto errors = [&] { return diagnostics.count(Severity::error) + diagnostics.dropped_errors; };
+  const auto errors = [&] {
+    return diagnostics.count(Severity::error) + diagnostics.dropped_errors;
+  };
   const uint64_t errors_before = errors();
   Composer composer{open, diagnostics};
   const SourceLocation root = graph.where(graph.root());
@@ -111,12 +116,14 @@ std::optional<Composition> compose(Document graph, std::vector<Document> overlay
 
 std::optional<Composition> compose_fragment(Document fragment, const OpenFile& open,
                                             Diagnostics& diagnostics) {
-  const auto errors = [&] { return diagnostics.count(Severity::error) + diagnostics.dropped_errors; };
+  const auto errors = [&] {
+    return diagnostics.count(Severity::error) + diagnostics.dropped_errors;
+  };
   const uint64_t errors_before = errors();
   const SourceLocation where = fragment.where(fragment.root());
-  auto graph =
-      parse_document("<graph of only the fragment>",
-                     R"({ "dermis": 2, "name": "fragment", "passes": [], "exports": [] })", diagnostics);
+  auto graph = parse_document("<graph of only the fragment>",
+                              R"({ "dermis": 2, "name": "fragment", "passes": [], "exports": [] })",
+                              diagnostics);
   Composer composer{open, diagnostics};
   if (!graph || !add_document(composer, std::move(*graph), where) ||
       !add_document(composer, std::move(fragment), where))

@@ -23,7 +23,8 @@ struct FileText {
 using OpenFile = std::function<FileText(std::string_view name)>;
 
 // Returns whether the name may be opened; else reports an error at `where`.
-bool check_file_name(std::string_view name, std::string_view what, const SourceLocation& where, Diagnostics&);
+bool check_file_name(std::string_view name, std::string_view what, const SourceLocation& where,
+                     Diagnostics&);
 
 // Records a change that a file other than the graph's made, in order.
 struct Change {
@@ -50,8 +51,8 @@ struct Composition {
 
 // Returns `graph` with its includes and `overlays` applied; unchanged if there are none. Returns
 // nullopt with errors in `diagnostics`. An empty `open` opens nothing. Free-threaded if `open` is.
-std::optional<Composition> compose(Document graph, std::vector<Document> overlays, const OpenFile& open,
-                                   Diagnostics& diagnostics);
+std::optional<Composition> compose(Document graph, std::vector<Document> overlays,
+                                   const OpenFile& open, Diagnostics& diagnostics);
 
 // Checks an overlay without a graph. Returns false with errors in `diagnostics`.
 bool check_overlay(const Document& document, Diagnostics& diagnostics);

@@ -28,7 +28,8 @@ std::optional<uint32_t> open_fragment(Composer& composer, const std::string& nam
   if (!composer.open) {
     composer.error(
         DiagnosticId::file_unreadable, where,
-        fmt::format("'{}' cannot be included: the caller provides no function that opens files", name));
+        fmt::format("'{}' cannot be included: the caller provides no function that opens files",
+                    name));
     return std::nullopt;
   }
   FileText file = composer.open(name);
@@ -37,8 +38,8 @@ std::optional<uint32_t> open_fragment(Composer& composer, const std::string& nam
                    fmt::format("'{}' cannot be included: {}", name, file.problem));
     return std::nullopt;
   }
-  auto document = parse_document(file.name.empty() ? name : std::move(file.name), std::move(file.text),
-                                 composer.diagnostics);
+  auto document = parse_document(file.name.empty() ? name : std::move(file.name),
+                                 std::move(file.text), composer.diagnostics);
   if (!document) return std::nullopt;
   if (!add_document(composer, std::move(*document), where)) return std::nullopt;
   return static_cast<uint32_t>(composer.tree.documents.size() - 1);
@@ -78,7 +79,8 @@ void join_exports(Composer& composer, uint32_t document, NodeId list) {
   for (const NodeId node : children(tree.documents[document], list)) {
     const ItemId fresh = tree.insert_copy(document, node);
     const std::vector<ItemId>& known = tree[into].children;
-    if (tree.kind(fresh) == NodeKind::string && std::any_of(known.begin(), known.end(), [&](ItemId one) {
+    if (tree.kind(fresh) == NodeKind::string &&
+        std::any_of(known.begin(), known.end(), [&](ItemId one) {
           return tree.kind(one) == NodeKind::string && tree.text(one) == tree.text(fresh);
         }))
       continue;
@@ -125,13 +127,15 @@ void include(Composer& composer, uint32_t document, NodeId entry, std::vector<It
 
 void join_fragment(Composer& composer, uint32_t document, std::vector<ItemId>& out) {
   const Document& fragment = composer.tree.documents[document];
-  if (!check_version(fragment, "dermis_fragment", graph_format_version, composer.diagnostics)) return;
+  if (!check_version(fragment, "dermis_fragment", graph_format_version, composer.diagnostics))
+    return;
   ObjectReader reader(fragment, fragment.root(), "the fragment", composer.diagnostics);
   reader.any("dermis_fragment");
   for (const std::string_view section : sections)
     if (const NodeId list = reader.object(section, Need::optional); list.valid())
       join_section(composer, section, document, list);
-  if (const NodeId list = reader.array("exports", 0, limits::resources, Need::optional); list.valid())
+  if (const NodeId list = reader.array("exports", 0, limits::resources, Need::optional);
+      list.valid())
     join_exports(composer, document, list);
   const NodeId passes = reader.array("passes", 0, limits::passes, Need::optional);
   if (reader.finish() && passes.valid())
@@ -145,11 +149,13 @@ bool is_include(const Document& document, NodeId entry) {
 
 void expand_pass(Composer& composer, uint32_t document, NodeId node, Change::What what,
                  std::vector<ItemId>& out) {
-  if (is_include(composer.tree.documents[document], node)) return include(composer, document, node, out);
+  if (is_include(composer.tree.documents[document], node))
+    return include(composer, document, node, out);
   const ItemId pass = composer.tree.insert_copy(document, node);
   const ItemId name = composer.tree.find(pass, "pass");
   composer.changes.push_back(
-      {what, fmt::format("/passes/{}", name.valid() ? composer.tree.text(name) : std::string_view()),
+      {what,
+       fmt::format("/passes/{}", name.valid() ? composer.tree.text(name) : std::string_view()),
        composer.tree.where(pass)});
   out.push_back(pass);
 }

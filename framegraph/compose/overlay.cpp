@@ -39,10 +39,11 @@ struct Edit {
     one.suggestion = std::move(suggestion);
     for (const Change& change : composer.changes) {
       const bool took = change.what == Change::What::remove || change.what == Change::What::replace;
-      const bool covers =
-          path.starts_with(change.at) && (path.size() == change.at.size() || path[change.at.size()] == '/');
+      const bool covers = path.starts_with(change.at) &&
+                          (path.size() == change.at.size() || path[change.at.size()] == '/');
       if (took && covers)
-        one.related.emplace_back(change.where, fmt::format("'{}' is removed here", shown(change.at)));
+        one.related.emplace_back(change.where,
+                                 fmt::format("'{}' is removed here", shown(change.at)));
     }
   }
 
@@ -56,8 +57,8 @@ struct Edit {
     const bool list = passes.valid() && tree().kind(passes) == NodeKind::array;
     const int at = list ? find_pass(tree(), passes, name) : -1;
     if (at < 0)
-      reject(fmt::format("{} names the pass '{}', which does not exist when this edit is applied", what,
-                         shown(name)),
+      reject(fmt::format("{} names the pass '{}', which does not exist when this edit is applied",
+                         what, shown(name)),
              list ? did_you_mean(name, steps_into(tree(), passes)) : std::string(),
              fmt::format("/passes/{}", name));
     return {passes, at};
@@ -119,8 +120,8 @@ struct Edit {
   }
 
   void missing(ItemId parent, std::string_view path, std::string_view step) const {
-    reject(fmt::format("{} names '{}', but '{}' does not exist when this edit is applied", what, shown(path),
-                       shown(step)),
+    reject(fmt::format("{} names '{}', but '{}' does not exist when this edit is applied", what,
+                       shown(path), shown(step)),
            did_you_mean(step, steps_into(tree(), parent)), path);
   }
 
@@ -147,13 +148,15 @@ struct Edit {
       return missing(parent, path, steps.back());
     const ItemId fresh = tree().insert_copy(overlay, value);
     if (depth + height_of(tree(), fresh) > limits::nesting) {
-      composer.error(DiagnosticId::limit_exceeded, target_place(),
-                     fmt::format("{} nests objects and arrays more than {} deep", what, limits::nesting));
+      composer.error(
+          DiagnosticId::limit_exceeded, target_place(),
+          fmt::format("{} nests objects and arrays more than {} deep", what, limits::nesting));
       return;
     }
     if (!array && steps.back().size() > limits::key_bytes) {
-      composer.error(DiagnosticId::limit_exceeded, target_place(),
-                     fmt::format("{} contains a key of more than {} bytes", what, limits::key_bytes));
+      composer.error(
+          DiagnosticId::limit_exceeded, target_place(),
+          fmt::format("{} contains a key of more than {} bytes", what, limits::key_bytes));
       return;
     }
     tree()[fresh].key = array ? std::string() : steps.back();
@@ -192,8 +195,8 @@ struct EditDeclaration {
   NodeId target, operand; // operand: passes, or the value to set; invalid for remove
 };
 
-std::optional<EditDeclaration> read_edit(const Document& document, NodeId node, const std::string& what,
-                                         Diagnostics& diagnostics) {
+std::optional<EditDeclaration> read_edit(const Document& document, NodeId node,
+                                         const std::string& what, Diagnostics& diagnostics) {
   ObjectReader reader(document, node, what, diagnostics);
   if (!reader.ok()) return std::nullopt;
   EditDeclaration edit;
@@ -210,7 +213,8 @@ std::optional<EditDeclaration> read_edit(const Document& document, NodeId node, 
     edit.operand = reader.array("passes", 1, limits::passes);
     if (edit.operand.valid())
       for (const NodeId pass : children(document, edit.operand))
-        ok &= expect_kind(document, pass, fmt::format("a pass of {}", what), NodeKind::object, diagnostics);
+        ok &= expect_kind(document, pass, fmt::format("a pass of {}", what), NodeKind::object,
+                          diagnostics);
   }
   return reader.finish() && ok ? std::optional(edit) : std::nullopt;
 }
@@ -221,7 +225,8 @@ std::string edit_name(size_t index) {
 
 // Returns the edits in order; edits with errors are nullopt. Empty if the overlay itself has
 // errors.
-std::vector<std::optional<EditDeclaration>> read_edits(const Document& document, Diagnostics& diagnostics) {
+std::vector<std::optional<EditDeclaration>> read_edits(const Document& document,
+                                                       Diagnostics& diagnostics) {
   std::vector<std::optional<EditDeclaration>> out;
   if (!check_version(document, "dermis_overlay", graph_format_version, diagnostics)) return out;
   ObjectReader reader(document, document.root(), "the overlay", diagnostics);
@@ -237,7 +242,9 @@ std::vector<std::optional<EditDeclaration>> read_edits(const Document& document,
 } // namespace
 
 bool check_overlay(const Document& document, Diagnostics& diagnostics) {
-  const auto errors = [&] { return diagnostics.count(Severity::error) + diagnostics.dropped_errors; };
+  const auto errors = [&] {
+    return diagnostics.count(Severity::error) + diagnostics.dropped_errors;
+  };
   const uint64_t before = errors();
   read_edits(document, diagnostics);
   return errors() == before;
@@ -256,8 +263,9 @@ void apply_overlay(Composer& composer, uint32_t overlay) {
     const EditDeclaration& declared = *edits[i];
     const std::string_view key = verbs[static_cast<size_t>(declared.verb)];
     const std::string_view target = document.text(declared.target);
-    const Edit edit{composer, overlay, declared.target, fmt::format("'{}' of {}", key, edit_name(i)),
-                    list,     nodes[i]};
+    const Edit edit{
+        composer, overlay, declared.target, fmt::format("'{}' of {}", key, edit_name(i)),
+        list,     nodes[i]};
     if (declared.verb == Verb::set)
       edit.set(target, declared.operand);
     else if (declared.verb == Verb::remove)

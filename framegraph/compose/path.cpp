@@ -21,7 +21,8 @@ std::vector<std::string> split_path(std::string_view path) {
   for (size_t i = 0; i < path.size(); ++i) {
     if (path[i] == '/') {
       steps.emplace_back();
-    } else if (path[i] == '~' && i + 1 < path.size() && (path[i + 1] == '0' || path[i + 1] == '1')) {
+    } else if (path[i] == '~' && i + 1 < path.size() &&
+               (path[i + 1] == '0' || path[i + 1] == '1')) {
       steps.back() += path[++i] == '0' ? '~' : '/';
     } else {
       steps.back() += path[i];

@@ -67,7 +67,8 @@ NodeKind EditTree::kind(ItemId id) const {
 
 std::string_view EditTree::text(ItemId id) const {
   const Item& item = items[id.value];
-  return kind(id) == NodeKind::string ? documents[item.document].text(item.node) : std::string_view();
+  return kind(id) == NodeKind::string ? documents[item.document].text(item.node)
+                                      : std::string_view();
 }
 
 ItemId EditTree::find(ItemId object, std::string_view key) const {
@@ -100,7 +101,8 @@ bool same_value(const EditTree& tree, ItemId a, ItemId b) {
   if (kind == NodeKind::string) return tree.text(a) == tree.text(b);
   if (kind == NodeKind::array)
     return std::equal(tree[a].children.begin(), tree[a].children.end(), tree[b].children.begin(),
-                      tree[b].children.end(), [&](ItemId x, ItemId y) { return same_value(tree, x, y); });
+                      tree[b].children.end(),
+                      [&](ItemId x, ItemId y) { return same_value(tree, x, y); });
   if (kind != NodeKind::object) return left.integer == right.integer && left.real == right.real;
   if (std::max(tree[a].children.size(), tree[b].children.size()) > max_compared) return false;
   const auto covers = [&](ItemId some, ItemId all) {

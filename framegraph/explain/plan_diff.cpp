@@ -50,20 +50,23 @@ Lines compiled_from(const SavedPlan& saved, const SavedPlan& other) {
   lines.add("device", key.device_profile);
   lines.add(
       "device limits",
-      fmt::format("granularity {} B, images {} px, {} layers, storage buffers {}, memory types {:#x}, {} "
-                  "work groups, push constants {} B",
-                  key.buffer_image_granularity, key.max_image_dimension, key.max_image_layers,
-                  bytes_text(key.max_storage_buffer_bytes), key.device_local_type_bits,
-                  key.max_workgroup_count, key.max_push_constants_bytes));
+      fmt::format(
+          "granularity {} B, images {} px, {} layers, storage buffers {}, memory types {:#x}, {} "
+          "work groups, push constants {} B",
+          key.buffer_image_granularity, key.max_image_dimension, key.max_image_layers,
+          bytes_text(key.max_storage_buffer_bytes), key.device_local_type_bits,
+          key.max_workgroup_count, key.max_push_constants_bytes));
   std::string features;
   for (uint32_t f = 0; f < static_cast<uint32_t>(Feature::count); ++f)
     if ((key.features & bit_of(static_cast<Feature>(f))) != 0)
-      features += (features.empty() ? "" : ", ") + std::string(feature_name(static_cast<Feature>(f)));
+      features +=
+          (features.empty() ? "" : ", ") + std::string(feature_name(static_cast<Feature>(f)));
   lines.add("device features", features.empty() ? "none" : features);
   std::string unbound, formats;
   for (size_t r = 0; r < key.bound.size(); ++r)
     if (key.bound[r] == 0)
-      unbound += (unbound.empty() ? "" : ", ") + declared_text(static_cast<uint32_t>(r), saved, other);
+      unbound +=
+          (unbound.empty() ? "" : ", ") + declared_text(static_cast<uint32_t>(r), saved, other);
   for (size_t r = 0; r < key.host_formats.size(); ++r)
     if (key.host_formats[r] != Format::undefined)
       formats += fmt::format("{}{}: {}", formats.empty() ? "" : ", ",
@@ -71,8 +74,9 @@ Lines compiled_from(const SavedPlan& saved, const SavedPlan& other) {
                              format_info(key.host_formats[r]).name);
   lines.add("unbound slots", unbound.empty() ? "none" : unbound);
   lines.add("host formats", formats.empty() ? "as declared" : formats);
-  lines.add("order", fmt::format("{}{}", orders[static_cast<size_t>(key.order)],
-                                 key.order == PassOrder::random ? fmt::format(" {}", key.order_seed) : ""));
+  lines.add("order",
+            fmt::format("{}{}", orders[static_cast<size_t>(key.order)],
+                        key.order == PassOrder::random ? fmt::format(" {}", key.order_seed) : ""));
   lines.add("packing", std::string(levels[static_cast<size_t>(key.packing)]));
   lines.add("aliasing", yes_no(key.alias));
   lines.add("culling", yes_no(key.cull));
@@ -96,8 +100,9 @@ std::string pass_text(const SavedPlan& saved, size_t p) {
   if (pass.queue == Queue::async) text += " async";
   if (pass.wait != no_point) text += fmt::format(" wait={}", pass.wait);
   if (pass.signal != 0) text += fmt::format(" signal={}", pass.signal);
-  const auto [first, last] = std::equal_range(saved.plan.orderings.begin(), saved.plan.orderings.end(),
-                                              PlanOrdering{0, static_cast<uint32_t>(p)});
+  const auto [first, last] =
+      std::equal_range(saved.plan.orderings.begin(), saved.plan.orderings.end(),
+                       PlanOrdering{0, static_cast<uint32_t>(p)});
   for (auto at = first; at != last; ++at)
     text += fmt::format(" after={}", saved.names.passes[at->earlier]);
   for (uint32_t a = pass.first_access; a < pass.first_access + pass.access_count; ++a) {
@@ -107,10 +112,12 @@ std::string pass_text(const SavedPlan& saved, size_t p) {
                         object_text(saved, access.resource, access.frames_back, access.range),
                         read_when_text(access.when));
   }
-  const size_t settings_end =
-      p + 1 < saved.plan.passes.size() ? saved.plan.passes[p + 1].first_setting : saved.plan.settings.size();
+  const size_t settings_end = p + 1 < saved.plan.passes.size()
+                                  ? saved.plan.passes[p + 1].first_setting
+                                  : saved.plan.settings.size();
   for (size_t s = pass.first_setting; s < settings_end; ++s)
-    text += fmt::format(" {}={}", saved.names.pass_settings[s].name, saved.names.pass_settings[s].text);
+    text +=
+        fmt::format(" {}={}", saved.names.pass_settings[s].name, saved.names.pass_settings[s].text);
   return text;
 }
 
@@ -125,15 +132,17 @@ Lines resources(const SavedPlan& saved) {
   Lines lines;
   for (size_t r = 0; r < saved.plan.resources.size(); ++r) {
     const PlanResource& resource = saved.plan.resources[r];
-    std::string text = resource.type == ResourceType::image
-                           ? fmt::format("{} {}", format_info(resource.format).name, shape_text(resource))
-                       : resource.type == ResourceType::buffer ? bytes_text(resource.bytes)
-                                                               : "acceleration structure";
+    std::string text =
+        resource.type == ResourceType::image
+            ? fmt::format("{} {}", format_info(resource.format).name, shape_text(resource))
+        : resource.type == ResourceType::buffer ? bytes_text(resource.bytes)
+                                                : "acceleration structure";
     if (resource.type != ResourceType::acceleration_structure)
       text += fmt::format(", used as {}", usage_text(resource.type, resource.vk_usage));
-    text += resource.first_instance == no_instance ? ", the host's"
-                                                   : fmt::format(", {} instance{}", resource.instance_count,
-                                                                 resource.instance_count == 1 ? "" : "s");
+    text += resource.first_instance == no_instance
+                ? ", the host's"
+                : fmt::format(", {} instance{}", resource.instance_count,
+                              resource.instance_count == 1 ? "" : "s");
     lines.add(saved.names.resources[r], std::move(text));
   }
   return lines;
@@ -145,9 +154,9 @@ Lines placements(const SavedPlan& saved) {
     lines.add(saved.names.resources[placement.resource],
               fmt::format("heap {} at {}, {}, {}", placement.heap, placement.offset,
                           bytes_text(placement.size),
-                          placement.persistent
-                              ? "always"
-                              : fmt::format("passes {} .. {}", placement.first_use, placement.last_use)));
+                          placement.persistent ? "always"
+                                               : fmt::format("passes {} .. {}", placement.first_use,
+                                                             placement.last_use)));
   return lines;
 }
 
@@ -160,7 +169,8 @@ Lines histories(const SavedPlan& saved) {
   return lines;
 }
 
-void add_batch(const SavedPlan& saved, std::string_view where, uint32_t first, uint32_t count, Lines& lines) {
+void add_batch(const SavedPlan& saved, std::string_view where, uint32_t first, uint32_t count,
+               Lines& lines) {
   for (uint32_t b = first; b < first + count; ++b) {
     const PlanBarrier& barrier = saved.plan.barriers[b];
     lines.add(fmt::format("{}: {}", where,
@@ -169,7 +179,8 @@ void add_batch(const SavedPlan& saved, std::string_view where, uint32_t first, u
                           barrier.from_host ? "host" : stage_text(barrier.source_stages),
                           access_text(barrier.source_access), layout_name(barrier.old_layout),
                           barrier.to_host ? "host" : stage_text(barrier.destination_stages),
-                          access_text(barrier.destination_access), layout_name(barrier.new_layout)));
+                          access_text(barrier.destination_access),
+                          layout_name(barrier.new_layout)));
   }
 }
 
@@ -182,7 +193,8 @@ Lines barriers(const SavedPlan& saved) {
     add_batch(saved, "after " + saved.names.passes[p],
               saved.plan.passes[p].first_barrier + saved.plan.passes[p].barrier_count,
               saved.plan.passes[p].release_count, lines);
-  add_batch(saved, "at the end", saved.plan.first_final_barrier, saved.plan.final_barrier_count, lines);
+  add_batch(saved, "at the end", saved.plan.first_final_barrier, saved.plan.final_barrier_count,
+            lines);
   return lines;
 }
 
@@ -222,8 +234,9 @@ std::vector<PlanDifference> moved(const SavedPlan& a, const SavedPlan& b) {
   // by length - 1: the common pass with the lowest place in b that ends a run of that length
   std::vector<size_t> tails;
   for (size_t i = 0; i < common.size(); ++i) {
-    const auto at = std::lower_bound(tails.begin(), tails.end(), common[i].in_b,
-                                     [&](size_t tail, size_t place) { return common[tail].in_b < place; });
+    const auto at =
+        std::lower_bound(tails.begin(), tails.end(), common[i].in_b,
+                         [&](size_t tail, size_t place) { return common[tail].in_b < place; });
     if (at != tails.begin()) common[i].before = *(at - 1);
     if (at == tails.end())
       tails.push_back(i);
@@ -241,8 +254,9 @@ std::vector<PlanDifference> moved(const SavedPlan& a, const SavedPlan& b) {
 }
 
 PlanTotals totals(const Plan& plan) {
-  PlanTotals totals{plan.passes.size(), plan.barriers.size(), plan.final_barrier_count > 0 ? 1u : 0u,
-                    plan.transient_bytes, plan.history_bytes};
+  PlanTotals totals{plan.passes.size(), plan.barriers.size(),
+                    plan.final_barrier_count > 0 ? 1u : 0u, plan.transient_bytes,
+                    plan.history_bytes};
   for (const PlanPass& pass : plan.passes)
     totals.batches += pass.barrier_count > 0 ? 1 : 0;
   return totals;

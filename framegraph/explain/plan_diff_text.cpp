@@ -10,8 +10,10 @@
 namespace dermis {
 namespace {
 
-void append_total(std::string& out, std::string_view what, const std::string& a, const std::string& b) {
-  out += a == b ? fmt::format("  {:<10} {}\n", what, a) : fmt::format("  {:<10} {} -> {}\n", what, a, b);
+void append_total(std::string& out, std::string_view what, const std::string& a,
+                  const std::string& b) {
+  out += a == b ? fmt::format("  {:<10} {}\n", what, a)
+                : fmt::format("  {:<10} {} -> {}\n", what, a, b);
 }
 
 std::string heading(std::string_view section) {
@@ -21,10 +23,13 @@ std::string heading(std::string_view section) {
   return text;
 }
 
-void write_side(JsonWriter& out, std::string_view key, std::string_view name, const PlanTotals& totals) {
+void write_side(JsonWriter& out, std::string_view key, std::string_view name,
+                const PlanTotals& totals) {
   out.key(key).open_object(true).member("name", name).member("passes", totals.passes);
   out.member("barriers", totals.barriers).member("batches", totals.batches);
-  out.member("transient_bytes", totals.transient_bytes).member("history_bytes", totals.history_bytes).close();
+  out.member("transient_bytes", totals.transient_bytes)
+      .member("history_bytes", totals.history_bytes)
+      .close();
 }
 
 void write_text(JsonWriter& out, std::string_view key, const std::string& text) {
@@ -56,8 +61,10 @@ std::string plan_diff_text(const PlanDiff& diff, std::string_view name_a, std::s
   append_total(out, "passes", count(diff.a.passes), count(diff.b.passes));
   append_total(out, "barriers", count(diff.a.barriers), count(diff.b.barriers));
   append_total(out, "batches", count(diff.a.batches), count(diff.b.batches));
-  append_total(out, "transients", bytes_text(diff.a.transient_bytes), bytes_text(diff.b.transient_bytes));
-  append_total(out, "histories", bytes_text(diff.a.history_bytes), bytes_text(diff.b.history_bytes));
+  append_total(out, "transients", bytes_text(diff.a.transient_bytes),
+               bytes_text(diff.b.transient_bytes));
+  append_total(out, "histories", bytes_text(diff.a.history_bytes),
+               bytes_text(diff.b.history_bytes));
   return out;
 }
 

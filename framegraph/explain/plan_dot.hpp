@@ -14,6 +14,7 @@ std::string graph_dot(const Graph& graph, const PassTypeRegistry& pass_types);
 
 // Shows the passes that run, numbered, and the resources they use with format and size. Passes that
 // do not run are grey, with the reason as a tooltip.
-std::string plan_dot(const Graph& graph, const PassTypeRegistry& pass_types, const CompiledPlan& compiled);
+std::string plan_dot(const Graph& graph, const PassTypeRegistry& pass_types,
+                     const CompiledPlan& compiled);
 
 } // namespace dermis

@@ -36,7 +36,11 @@ struct Exporter {
   }
 
   void mask(std::string_view key, uint64_t bits, const std::vector<std::string>& names) {
-    out.key(key).open_object(true).member("mask", fmt::format("{:#x}", bits)).key("names").open_array(true);
+    out.key(key)
+        .open_object(true)
+        .member("mask", fmt::format("{:#x}", bits))
+        .key("names")
+        .open_array(true);
     for (const std::string& one : names)
       out.value(one);
     out.close().close();
@@ -49,8 +53,9 @@ struct Exporter {
 
   // Options are written by name, other values as they are.
   template <class Options> void setting_value(const SettingValue& value, const Options& options) {
-    const bool named = (value.type == SettingType::enumeration || value.type == SettingType::choice) &&
-                       value.integer >= 0 && static_cast<size_t>(value.integer) < options.size();
+    const bool named =
+        (value.type == SettingType::enumeration || value.type == SettingType::choice) &&
+        value.integer >= 0 && static_cast<size_t>(value.integer) < options.size();
     out.key("value");
     if (named)
       out.value(std::string_view(options[static_cast<size_t>(value.integer)]));
@@ -66,7 +71,9 @@ struct Exporter {
     out.key("settings").open_array();
     for (size_t i = 0; i < graph.settings.size(); ++i) {
       const SettingDeclaration& setting = graph.settings[i];
-      out.open_object(true).member("name", setting.name).member("type", name_in(setting_types, setting.type));
+      out.open_object(true)
+          .member("name", setting.name)
+          .member("type", name_in(setting_types, setting.type));
       setting_value(plan.setting_values[i], setting.options);
       out.close();
     }
@@ -103,13 +110,20 @@ struct Exporter {
     out.key("heaps").open_array();
     for (const Heap& heap : plan.heaps) {
       out.open_object(true).member("size", heap.size).member("alignment", heap.alignment);
-      out.member("memory_type_bits", heap.memory_type_bits).member("max_live_bytes", heap.max_live_bytes);
-      out.member("optimal", heap.size == heap.max_live_bytes).member("persistent", heap.persistent).close();
+      out.member("memory_type_bits", heap.memory_type_bits)
+          .member("max_live_bytes", heap.max_live_bytes);
+      out.member("optimal", heap.size == heap.max_live_bytes)
+          .member("persistent", heap.persistent)
+          .close();
     }
     out.close().key("placements").open_array();
     for (const Placement& placement : plan.placements) {
-      out.open_object(true).member("resource", placement.resource).member("name", name(placement.resource));
-      out.member("heap", placement.heap).member("offset", placement.offset).member("size", placement.size);
+      out.open_object(true)
+          .member("resource", placement.resource)
+          .member("name", name(placement.resource));
+      out.member("heap", placement.heap)
+          .member("offset", placement.offset)
+          .member("size", placement.size);
       out.member("alignment", placement.alignment).member("first_use", placement.first_use);
       out.member("last_use", placement.last_use).member("persistent", placement.persistent).close();
     }
@@ -127,7 +141,9 @@ struct Exporter {
     for (uint32_t b = first; b < first + count; ++b) {
       const PlanBarrier& barrier = plan.barriers[b];
       out.open_object();
-      out.member("index", b).member("resource", barrier.resource).member("name", name(barrier.resource));
+      out.member("index", b)
+          .member("resource", barrier.resource)
+          .member("name", name(barrier.resource));
       out.member("frames_back", barrier.frames_back);
       subresources(barrier.range);
       out.member("why", why_name(barrier.why));
@@ -135,8 +151,10 @@ struct Exporter {
       out.member("transfer", transfer_name(barrier.transfer));
       mask("source_stages", barrier.source_stages, stage_names(barrier.source_stages));
       mask("source_access", barrier.source_access, access_names(barrier.source_access));
-      mask("destination_stages", barrier.destination_stages, stage_names(barrier.destination_stages));
-      mask("destination_access", barrier.destination_access, access_names(barrier.destination_access));
+      mask("destination_stages", barrier.destination_stages,
+           stage_names(barrier.destination_stages));
+      mask("destination_access", barrier.destination_access,
+           access_names(barrier.destination_access));
       layout("old_layout", barrier.old_layout);
       layout("new_layout", barrier.new_layout);
       out.close();
@@ -223,10 +241,14 @@ struct Exporter {
   void reasons() {
     out.key("reasons").open_array();
     for (const Reason& reason : compiled.reasons) {
-      out.open_object(true).member("about", name_in(subjects, reason.about)).member("index", reason.index);
+      out.open_object(true)
+          .member("about", name_in(subjects, reason.about))
+          .member("index", reason.index);
       if (reason.about == Reason::About::pass) out.member("name", graph.passes[reason.index].name);
-      if (reason.about == Reason::About::resource) out.member("name", graph.resources[reason.index].name);
-      if (reason.about == Reason::About::choice) out.member("name", graph.settings[reason.index].name);
+      if (reason.about == Reason::About::resource)
+        out.member("name", graph.resources[reason.index].name);
+      if (reason.about == Reason::About::choice)
+        out.member("name", graph.settings[reason.index].name);
       out.member("text", reason_text(graph, pass_types, plan, reason)).close();
     }
     if (!compiled.reasons.empty()) {
@@ -246,7 +268,8 @@ struct Exporter {
     for (const Change& change : provenance.changes) {
       const uint32_t file = change.where.file.value;
       out.open_object(true).member("did", change_name(change.what)).member("at", change.at);
-      out.member("file", file < provenance.files.size() ? provenance.files[file].name : std::string());
+      out.member("file",
+                 file < provenance.files.size() ? provenance.files[file].name : std::string());
       out.member("line", change.where.line).member("column", change.where.column).close();
     }
     out.close();
@@ -277,8 +300,8 @@ struct Exporter {
 
 } // namespace
 
-std::string plan_json(const Graph& graph, const PassTypeRegistry& pass_types, const CompiledPlan& compiled,
-                      const Provenance& provenance) {
+std::string plan_json(const Graph& graph, const PassTypeRegistry& pass_types,
+                      const CompiledPlan& compiled, const Provenance& provenance) {
   return Exporter{graph, pass_types, compiled, provenance}.whole();
 }
 

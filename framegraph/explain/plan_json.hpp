@@ -16,7 +16,7 @@ inline constexpr uint32_t plan_json_version = 2;
 // written as a hex string, because JSON numbers do not have 64 bits, and as names. The plan must
 // have been compiled from `graph` and `pass_types`; `provenance` lists what other files changed in
 // the graph. Equal plans give equal bytes.
-std::string plan_json(const Graph& graph, const PassTypeRegistry& pass_types, const CompiledPlan& compiled,
-                      const Provenance& provenance = {});
+std::string plan_json(const Graph& graph, const PassTypeRegistry& pass_types,
+                      const CompiledPlan& compiled, const Provenance& provenance = {});
 
 } // namespace dermis

@@ -20,19 +20,23 @@ struct TextExporter {
 
   void line(const std::string& text) { out += text + '\n'; }
 
-  std::string reason(Reason::About about, uint32_t index) const { return reasons.about(about, index); }
+  std::string reason(Reason::About about, uint32_t index) const {
+    return reasons.about(about, index);
+  }
 
-  std::string object(uint32_t resource, uint32_t frames_back, const std::string& range_suffix = {}) const {
-    const std::string name = graph.resources[plan.resources[resource].declared.value].name + range_suffix;
+  std::string object(uint32_t resource, uint32_t frames_back,
+                     const std::string& range_suffix = {}) const {
+    const std::string name =
+        graph.resources[plan.resources[resource].declared.value].name + range_suffix;
     return frames_back == 0 ? name : fmt::format("{}@-{}", name, frames_back);
   }
 
   void head() {
-    line(fmt::format("plan of graph '{}' for {}x{}, device profile '{}'", plan.graph, plan.view_width,
-                     plan.view_height, plan.device_profile));
-    line(fmt::format("{} of {} passes run, {} barriers, {} transient, {} history", plan.passes.size(),
-                     graph.passes.size(), plan.barriers.size(), bytes_text(plan.transient_bytes),
-                     bytes_text(plan.history_bytes)));
+    line(fmt::format("plan of graph '{}' for {}x{}, device profile '{}'", plan.graph,
+                     plan.view_width, plan.view_height, plan.device_profile));
+    line(fmt::format("{} of {} passes run, {} barriers, {} transient, {} history",
+                     plan.passes.size(), graph.passes.size(), plan.barriers.size(),
+                     bytes_text(plan.transient_bytes), bytes_text(plan.history_bytes)));
     if (!graph.settings.empty()) line("\nsettings");
     for (uint32_t i = 0; i < graph.settings.size(); ++i)
       line("  " + reason(Reason::About::choice, i));
@@ -61,16 +65,19 @@ struct TextExporter {
       if (plan.passes[p].queue == queue && plan.passes[p].signal != 0 &&
           (point == 0 || plan.passes[p].signal == point))
         found = p;
-    return found == plan.passes.size() ? std::string() : fmt::format(", after '{}'", pass_name(found));
+    return found == plan.passes.size() ? std::string()
+                                       : fmt::format(", after '{}'", pass_name(found));
   }
 
   // `position` is that of the pass that the barrier precedes.
   void barrier(uint32_t index, uint32_t position) {
     const PlanBarrier& one = plan.barriers[index];
     const std::string from =
-        one.from_host ? "host" : stage_text(one.source_stages) + "/" + access_text(one.source_access);
-    const std::string to =
-        one.to_host ? "host" : stage_text(one.destination_stages) + "/" + access_text(one.destination_access);
+        one.from_host ? "host"
+                      : stage_text(one.source_stages) + "/" + access_text(one.source_access);
+    const std::string to = one.to_host ? "host"
+                                       : stage_text(one.destination_stages) + "/" +
+                                             access_text(one.destination_access);
     std::string layouts;
     if (plan.resources[one.resource].type == ResourceType::image)
       layouts = fmt::format(", {} -> {}", one.from_host ? "host" : layout_name(one.old_layout),
@@ -78,11 +85,13 @@ struct TextExporter {
     const uint32_t by = user(one, position);
     const bool early = by != position && by < plan.passes.size() && !one.to_host &&
                        one.transfer != PlanBarrier::Transfer::release;
-    line(fmt::format("     | {}{}", reason(Reason::About::barrier, index),
-                     early ? fmt::format(" (for '{}': merged into this earlier batch)", pass_name(by)) : ""));
+    line(fmt::format(
+        "     | {}{}", reason(Reason::About::barrier, index),
+        early ? fmt::format(" (for '{}': merged into this earlier batch)", pass_name(by)) : ""));
     const std::string range_suffix = range_text(plan.resources[one.resource], one.range);
-    const std::string half =
-        one.transfer == PlanBarrier::Transfer::none ? "" : fmt::format("{}, ", transfer_name(one.transfer));
+    const std::string half = one.transfer == PlanBarrier::Transfer::none
+                                 ? ""
+                                 : fmt::format("{}, ", transfer_name(one.transfer));
     line(fmt::format("     |   {}{}{}: {} -> {}{}", half, why_name(one.why),
                      range_suffix.empty() ? "" : " of " + range_suffix, from, to, layouts));
   }
@@ -99,11 +108,12 @@ struct TextExporter {
     for (uint32_t position = 0; position < plan.passes.size(); ++position) {
       const PlanPass& pass = plan.passes[position];
       const PassType& type = pass_types[pass.type];
-      if (pass.wait != no_point) waits(pass.queue == Queue::main ? Queue::async : Queue::main, pass.wait);
+      if (pass.wait != no_point)
+        waits(pass.queue == Queue::main ? Queue::async : Queue::main, pass.wait);
       for (uint32_t b = 0; b < pass.barrier_count; ++b)
         barrier(pass.first_barrier + b, position);
-      line(fmt::format("{:4} {} ({}){}", position, graph.passes[pass.declared.value].name, type.name,
-                       pass.queue == Queue::main ? "" : " on the async queue"));
+      line(fmt::format("{:4} {} ({}){}", position, graph.passes[pass.declared.value].name,
+                       type.name, pass.queue == Queue::main ? "" : " on the async queue"));
       line("       " + reason(Reason::About::pass, pass.declared.value));
       for (uint32_t a = pass.first_access; a < pass.first_access + pass.access_count; ++a) {
         const PlanAccess& access = plan.accesses[a];
@@ -117,7 +127,8 @@ struct TextExporter {
       for (uint32_t b = 0; b < pass.release_count; ++b)
         barrier(pass.first_barrier + pass.barrier_count + b, position);
       if (pass.signal != 0)
-        line(fmt::format("     | the {} queue signals point {}", queue_name(pass.queue), pass.signal));
+        line(fmt::format("     | the {} queue signals point {}", queue_name(pass.queue),
+                         pass.signal));
     }
     if (plan.final_barrier_count > 0) line("   at the end");
     if (plan.final_wait != no_point) waits(Queue::async, plan.final_wait);
@@ -132,7 +143,8 @@ struct TextExporter {
     if (std::find(runs.begin(), runs.end(), false) == runs.end()) return;
     line("\npasses that do not run");
     for (uint32_t p = 0; p < graph.passes.size(); ++p)
-      if (!runs[p]) line(fmt::format("  {}: {}", graph.passes[p].name, reason(Reason::About::pass, p)));
+      if (!runs[p])
+        line(fmt::format("  {}: {}", graph.passes[p].name, reason(Reason::About::pass, p)));
   }
 
   void resources() {
@@ -151,7 +163,8 @@ struct TextExporter {
   void changes(const Provenance& provenance) {
     if (!provenance.changes.empty()) line("\nchanges by other files, in this order");
     for (const Change& change : provenance.changes)
-      line(fmt::format("  {:<8} {}  ({})", change_name(change.what), change.at, provenance.place(change)));
+      line(fmt::format("  {:<8} {}  ({})", change_name(change.what), change.at,
+                       provenance.place(change)));
   }
 
   void heap(uint32_t index) {
@@ -168,8 +181,9 @@ struct TextExporter {
     });
     for (const uint32_t i : inside) {
       const Placement& placement = plan.placements[i];
-      const std::string uses =
-          placement.persistent ? "all" : fmt::format("{}..{}", placement.first_use, placement.last_use);
+      const std::string uses = placement.persistent
+                                   ? "all"
+                                   : fmt::format("{}..{}", placement.first_use, placement.last_use);
       line(fmt::format("  {:>12} {:>12}  {:<9} {}", placement.offset, placement.size, uses,
                        object(placement.resource, 0)));
     }
@@ -178,8 +192,8 @@ struct TextExporter {
 
 } // namespace
 
-std::string plan_text(const Graph& graph, const PassTypeRegistry& pass_types, const CompiledPlan& compiled,
-                      const Provenance& provenance) {
+std::string plan_text(const Graph& graph, const PassTypeRegistry& pass_types,
+                      const CompiledPlan& compiled, const Provenance& provenance) {
   TextExporter exporter{graph, pass_types, compiled};
   exporter.head();
   exporter.passes();

@@ -12,7 +12,7 @@ namespace dermis {
 
 // Returns several lines with a newline at the end. `provenance` lists what other files changed in
 // the graph.
-std::string plan_text(const Graph& graph, const PassTypeRegistry& pass_types, const CompiledPlan& compiled,
-                      const Provenance& provenance = {});
+std::string plan_text(const Graph& graph, const PassTypeRegistry& pass_types,
+                      const CompiledPlan& compiled, const Provenance& provenance = {});
 
 } // namespace dermis

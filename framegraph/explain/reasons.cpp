@@ -20,7 +20,9 @@ struct ReasonFormatter {
 
   const std::string& pass(uint32_t id) const { return graph.passes[id].name; }
   const std::string& resource(uint32_t id) const { return graph.resources[id].name; }
-  const std::string& pass_at(uint32_t position) const { return pass(plan.passes[position].declared.value); }
+  const std::string& pass_at(uint32_t position) const {
+    return pass(plan.passes[position].declared.value);
+  }
   std::string_view port(uint32_t of_pass, uint32_t number) const {
     return pass_types[graph.passes[of_pass].type].ports[number].name;
   }
@@ -43,8 +45,8 @@ struct ReasonFormatter {
     MissingRequirements unmet{reason.b, {}};
     if (reason.b == 0) unmet.imports.push_back(ResourceId{reason.c});
     return fmt::format("{} instead of '{}', which is not available: {}",
-                       setting_text(declared, plan.setting_values[reason.index]), declared.options[reason.a],
-                       missing_text(graph, unmet));
+                       setting_text(declared, plan.setting_values[reason.index]),
+                       declared.options[reason.a], missing_text(graph, unmet));
   }
 
   // Names the values of the settings that `when` reads.
@@ -53,8 +55,9 @@ struct ReasonFormatter {
     if (declared.absence == PassDeclaration::Absence::no_profile)
       return "off: its pass type only serves scattering, and the graph has no profile";
     if (declared.absence == PassDeclaration::Absence::no_input)
-      return fmt::format("off: it reads '{}', whose producers are off because the graph has no profile",
-                         resource(declared.missing.value));
+      return fmt::format(
+          "off: it reads '{}', whose producers are off because the graph has no profile",
+          resource(declared.missing.value));
     std::vector<uint32_t> requested;
     std::vector<ExpressionId> left{graph.passes[reason.index].when};
     while (!left.empty()) {
@@ -83,8 +86,8 @@ struct ReasonFormatter {
   std::string chosen_format() const {
     if (graph.resources[reason.index].formats.size() == 1 && reason.b != 2)
       return fmt::format("format {}: the only declared format", format());
-    constexpr std::string_view how[] = {"first declared format", "first declared format that is usable",
-                                        "bound by the host"};
+    constexpr std::string_view how[] = {
+        "first declared format", "first declared format that is usable", "bound by the host"};
     return fmt::format("format {}: {}", format(), how[reason.b]);
   }
 
@@ -99,8 +102,9 @@ struct ReasonFormatter {
     const std::string& later = pass_at(reason.c);
     const std::string name = resource(plan.resources[barrier.resource].declared.value) +
                              range_text(plan.resources[barrier.resource], barrier.range);
-    const std::string what = barrier.frames_back == 0 ? fmt::format("'{}'", name)
-                                                      : fmt::format("'{}@-{}'", name, barrier.frames_back);
+    const std::string what = barrier.frames_back == 0
+                                 ? fmt::format("'{}'", name)
+                                 : fmt::format("'{}@-{}'", name, barrier.frames_back);
     const std::string last = fmt::format("'{}'{}", pass_at(reason.a), when());
     switch (barrier.why) {
     case PlanBarrier::ReasonKind::write_after_read:
@@ -131,20 +135,21 @@ struct ReasonFormatter {
     case Reason::ReasonKind::culling_off:
       return "runs: culling is disabled";
     case Reason::ReasonKind::port_unbound:
-      return fmt::format("optional port '{}' is unbound: nothing provides '{}'", port(reason.index, reason.a),
-                         resource(reason.b));
+      return fmt::format("optional port '{}' is unbound: nothing provides '{}'",
+                         port(reason.index, reason.a), resource(reason.b));
     case Reason::ReasonKind::async_queue:
       return "runs on the async queue";
     case Reason::ReasonKind::after_pass:
       return fmt::format("runs after '{}': {}", pass(reason.a),
                          graph.passes[reason.index].after[reason.b].reason);
     case Reason::ReasonKind::not_async:
-      return fmt::format(
-          "runs on the main queue: '{}' is owned by the host, kept across frames, or bound by mip or layer",
-          resource(reason.a));
+      return fmt::format("runs on the main queue: '{}' is owned by the host, kept across frames, "
+                         "or bound by mip or layer",
+                         resource(reason.a));
     case Reason::ReasonKind::always_otherwise:
-      return fmt::format("port '{}' reads its 'otherwise' in every frame: no enabled pass writes '{}'",
-                         port(reason.index, reason.a), resource(reason.b));
+      return fmt::format(
+          "port '{}' reads its 'otherwise' in every frame: no enabled pass writes '{}'",
+          port(reason.index, reason.a), resource(reason.b));
     case Reason::ReasonKind::lacks_input_without_bounds:
       return fmt::format(
           "skipped in frames with empty bounds: it reads '{}', which only scattering passes write",
@@ -154,7 +159,8 @@ struct ReasonFormatter {
     case Reason::ReasonKind::unbound:
       return "optional slot that the host does not bind";
     case Reason::ReasonKind::replaced_by:
-      return fmt::format("replaces '{}' after pass '{}', which is off", resource(reason.a), pass(reason.b));
+      return fmt::format("replaces '{}' after pass '{}', which is off", resource(reason.a),
+                         pass(reason.b));
     case Reason::ReasonKind::unwritten_export:
       return "unchanged: no enabled pass writes this optional export";
     case Reason::ReasonKind::format:
@@ -234,7 +240,8 @@ std::string reason_text(const Graph& graph, const PassTypeRegistry& pass_types, 
   return ReasonFormatter{graph, pass_types, plan, reason}.text();
 }
 
-ReasonIndex::ReasonIndex(const Graph& graph, const PassTypeRegistry& pass_types, const CompiledPlan& compiled)
+ReasonIndex::ReasonIndex(const Graph& graph, const PassTypeRegistry& pass_types,
+                         const CompiledPlan& compiled)
     : graph_(graph), pass_types_(pass_types), compiled_(compiled) {
   for (const Reason& reason : compiled.reasons)
     sorted_.push_back(&reason);
@@ -244,14 +251,16 @@ ReasonIndex::ReasonIndex(const Graph& graph, const PassTypeRegistry& pass_types,
 
 std::string ReasonIndex::about(Reason::About about, uint32_t index) const {
   const auto subject_key = std::tuple(about, index);
-  auto at = std::lower_bound(sorted_.begin(), sorted_.end(), subject_key,
-                             [](const Reason* one, const auto& key) { return subject(*one) < key; });
+  auto at =
+      std::lower_bound(sorted_.begin(), sorted_.end(), subject_key,
+                       [](const Reason* one, const auto& key) { return subject(*one) < key; });
   const auto first = at;
   std::string all;
   for (; at != sorted_.end() && subject(**at) == subject_key; ++at) {
     const Reason& one = **at;
     const auto alike = [&](const Reason* other) {
-      return one.why == Reason::ReasonKind::acquires_memory && other->why == one.why && other->b == one.b;
+      return one.why == Reason::ReasonKind::acquires_memory && other->why == one.why &&
+             other->b == one.b;
     };
     if (std::any_of(first, at, alike)) continue; // already named there
     all += (all.empty() ? "" : "; ") + reason_text(graph_, pass_types_, compiled_.plan, one);
@@ -279,8 +288,9 @@ std::vector<std::string> placement_reasons(const Graph& graph, const Plan& plan)
           std::any_of(plan.placements.begin(), plan.placements.end(), [&](const Placement& other) {
             return !other.persistent && other.heap == own.heap && share_bytes(own, other);
           });
-      text = is_aliased ? "kept across frames; transients alias its memory while it holds no contents"
-                        : "not aliased: kept across frames";
+      text = is_aliased
+                 ? "kept across frames; transients alias its memory while it holds no contents"
+                 : "not aliased: kept across frames";
       continue;
     }
     const size_t from = at > named_neighbours ? at - named_neighbours : 0;
@@ -293,8 +303,8 @@ std::vector<std::string> placement_reasons(const Graph& graph, const Plan& plan)
       if (share_bytes(own, other))
         shared += fmt::format("{}'{}'", shared.empty() ? "" : ", ", name);
       else if (overlap(own, other))
-        apart +=
-            fmt::format("{}'{}' [{}, {}]", apart.empty() ? "" : ", ", name, other.first_use, other.last_use);
+        apart += fmt::format("{}'{}' [{}, {}]", apart.empty() ? "" : ", ", name, other.first_use,
+                             other.last_use);
     }
     text = fmt::format("alive in passes [{}, {}]", own.first_use, own.last_use);
     if (!shared.empty()) text += "; aliases " + shared;

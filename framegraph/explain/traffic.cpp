@@ -14,7 +14,8 @@ double texels_of(const PlanResource& resource, const SubresourceRange& range) {
 
 class PassCounter {
 public:
-  PassCounter(const Plan& plan, const PassTypeRegistry& pass_types, const TrafficAssumptions& assumptions)
+  PassCounter(const Plan& plan, const PassTypeRegistry& pass_types,
+              const TrafficAssumptions& assumptions)
       : plan_(plan), pass_types_(pass_types), assumptions_(assumptions),
         view_pixels_(1.0 * plan.view_width * plan.view_height) {}
 
@@ -26,9 +27,10 @@ public:
     for (uint32_t a = pass.first_access; a < pass.first_access + pass.access_count; ++a) {
       const PlanAccess& access = plan_.accesses[a];
       const Port& port = type.ports[access.port];
-      if (access.when == ReadWhen::history_invalid || port.usage == Usage::indirect_arguments) continue;
-      const double bytes =
-          bytes_of(access, written_area) * fraction(type, port) / (assumptions_.covered * view_pixels_);
+      if (access.when == ReadWhen::history_invalid || port.usage == Usage::indirect_arguments)
+        continue;
+      const double bytes = bytes_of(access, written_area) * fraction(type, port) /
+                           (assumptions_.covered * view_pixels_);
       if (usage_info(port.usage).reads) traffic.read += bytes;
       if (usage_info(port.usage).writes) traffic.written += bytes;
     }
@@ -36,7 +38,8 @@ public:
   }
 
 private:
-  // Returns the texels of the largest image that the pass writes; those of the view if there is none.
+  // Returns the texels of the largest image that the pass writes; those of the view if there is
+  // none.
   double written_texels(const PlanPass& pass) const {
     double largest = 0.0;
     for (uint32_t a = pass.first_access; a < pass.first_access + pass.access_count; ++a) {
@@ -64,7 +67,8 @@ private:
   // Returns the fraction of the resource that the pass accesses at the port.
   double fraction(const PassType& type, const Port& port) const {
     const bool listed = type.dispatch.domain == DispatchRule::Domain::indirect;
-    const double covered = listed || port.touched != Touched::dispatched ? assumptions_.covered : 1.0;
+    const double covered =
+        listed || port.touched != Touched::dispatched ? assumptions_.covered : 1.0;
     return port.touched == Touched::flagged ? covered * assumptions_.flagged : covered;
   }
 

@@ -26,7 +26,8 @@ struct Search {
 
   void add_number(const SettingValue& value) {
     if (is_number(value.type))
-      numbers.push_back(value.type == SettingType::real ? value.real : static_cast<double>(value.integer));
+      numbers.push_back(value.type == SettingType::real ? value.real
+                                                        : static_cast<double>(value.integer));
   }
 
   void collect(ExpressionId id) {
@@ -39,7 +40,8 @@ struct Search {
         std::find(settings.begin(), settings.end(), node.setting) == settings.end()) {
       settings.push_back(node.setting);
       const SettingDeclaration& setting = graph.settings[node.setting.value];
-      if (is_number(setting.type)) numbers.insert(numbers.end(), {setting.minimum, setting.maximum});
+      if (is_number(setting.type))
+        numbers.insert(numbers.end(), {setting.minimum, setting.maximum});
     }
     collect(node.left);
     collect(node.right);
@@ -48,8 +50,9 @@ struct Search {
   // Adds candidates around and between the known numbers: as many whole numbers and as many
   // fractions as there are number settings, so that all settings can differ.
   void add_between() {
-    const auto count = std::count_if(settings.begin(), settings.end(),
-                                     [&](SettingId id) { return is_number(graph.settings[id.value].type); });
+    const auto count = std::count_if(settings.begin(), settings.end(), [&](SettingId id) {
+      return is_number(graph.settings[id.value].type);
+    });
     const auto sort = [&] {
       std::sort(numbers.begin(), numbers.end());
       numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
@@ -62,7 +65,8 @@ struct Search {
       }
     sort();
     for (size_t i = numbers.size() - std::min<size_t>(numbers.size(), 1); i-- > 0;) {
-      const double from = numbers[i], step = (numbers[i + 1] - from) / static_cast<double>(count + 1);
+      const double from = numbers[i],
+                   step = (numbers[i + 1] - from) / static_cast<double>(count + 1);
       for (std::ptrdiff_t k = 1; k <= count; ++k)
         numbers.push_back(from + step * static_cast<double>(k));
     }

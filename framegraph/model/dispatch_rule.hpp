@@ -27,8 +27,8 @@ struct DispatchRule {
   constexpr bool is_kernel() const { return domain != Domain::none && domain != Domain::host; }
   // A group with one invocation per pixel of its cell has the cell's shape.
   constexpr bool cell_shaped() const {
-    return (domain == Domain::rectangle || domain == Domain::written_image) && cells_per_group == 1 &&
-           uint64_t{cell_side} * cell_side == invocations;
+    return (domain == Domain::rectangle || domain == Domain::written_image) &&
+           cells_per_group == 1 && uint64_t{cell_side} * cell_side == invocations;
   }
   constexpr bool operator==(const DispatchRule&) const = default;
 };
@@ -45,7 +45,8 @@ constexpr GroupCount group_count(const DispatchRule& rule, uint64_t width, uint6
   switch (rule.domain) {
   case DispatchRule::Domain::rectangle:
   case DispatchRule::Domain::written_image: {
-    const uint64_t columns = ceil_div(width, rule.cell_side), rows = ceil_div(height, rule.cell_side);
+    const uint64_t columns = ceil_div(width, rule.cell_side),
+                   rows = ceil_div(height, rule.cell_side);
     if (rule.cells_per_group == 1) return {columns, rows, 1};
     return {ceil_div(columns * rows, rule.cells_per_group), 1, 1};
   }

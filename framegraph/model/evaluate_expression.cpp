@@ -44,7 +44,8 @@ bool is_listed(const Expression& node, const SettingValue& value) {
                      [&](const SettingValue& one) { return compare(value, one) == 0; });
 }
 
-SettingValue value_of(const Graph& graph, ExpressionId id, const std::vector<SettingValue>& values) {
+SettingValue value_of(const Graph& graph, ExpressionId id,
+                      const std::vector<SettingValue>& values) {
   const Expression& node = graph.expressions[id.value];
   switch (node.op) {
   case Expression::Op::literal:
@@ -60,8 +61,8 @@ SettingValue value_of(const Graph& graph, ExpressionId id, const std::vector<Set
   case Expression::Op::in:
     return reference(is_listed(node, value_of(graph, node.left, values)));
   default:
-    return reference(
-        holds(node.op, compare(value_of(graph, node.left, values), value_of(graph, node.right, values))));
+    return reference(holds(
+        node.op, compare(value_of(graph, node.left, values), value_of(graph, node.right, values))));
   }
 }
 
@@ -75,12 +76,15 @@ MaybeValue value_of(const Graph& graph, ExpressionId id, const PartialValues& va
   if (node.op == Expression::Op::literal) return node.literal;
   if (node.op == Expression::Op::setting) return values[node.setting.value];
   const MaybeValue left = value_of(graph, node.left, values);
-  if (node.op == Expression::Op::logical_not) return left ? MaybeValue(reference(left->integer == 0)) : left;
-  if (node.op == Expression::Op::in) return left ? MaybeValue(reference(is_listed(node, *left))) : left;
+  if (node.op == Expression::Op::logical_not)
+    return left ? MaybeValue(reference(left->integer == 0)) : left;
+  if (node.op == Expression::Op::in)
+    return left ? MaybeValue(reference(is_listed(node, *left))) : left;
   const MaybeValue right = value_of(graph, node.right, values);
   if (node.op == Expression::Op::logical_and && (is(left, false) || is(right, false)))
     return reference(false);
-  if (node.op == Expression::Op::logical_or && (is(left, true) || is(right, true))) return reference(true);
+  if (node.op == Expression::Op::logical_or && (is(left, true) || is(right, true)))
+    return reference(true);
   if (!left || !right) return std::nullopt;
   if (node.op == Expression::Op::logical_and) return reference(true);
   if (node.op == Expression::Op::logical_or) return reference(false);
@@ -93,7 +97,8 @@ bool evaluate(const Graph& graph, ExpressionId id, const std::vector<SettingValu
   return value_of(graph, id, values).integer != 0;
 }
 
-std::optional<bool> evaluate_partly(const Graph& graph, ExpressionId id, const PartialValues& values) {
+std::optional<bool> evaluate_partly(const Graph& graph, ExpressionId id,
+                                    const PartialValues& values) {
   const MaybeValue value = value_of(graph, id, values);
   return value ? std::optional(value->integer != 0) : std::nullopt;
 }

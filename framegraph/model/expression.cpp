@@ -84,12 +84,13 @@ private:
     const bool taken_for_setting = id == DiagnosticId::unknown_setting && !foreign.instead.empty();
     if ((id == DiagnosticId::bad_expression && !foreign.text.empty()) || taken_for_setting) {
       id = DiagnosticId::bad_expression;
-      text =
-          fmt::format("unknown operator '{}'; expected ==, !=, <, <=, >, >=, in, not, and, or", foreign.text);
+      text = fmt::format("unknown operator '{}'; expected ==, !=, <, <=, >, >=, in, not, and, or",
+                         foreign.text);
       if (!foreign.instead.empty()) suggestion = fmt::format("did you mean '{}'?", foreign.instead);
     }
     diagnostics_
-        .add(id, where_in_string(document_, node_, at, diagnostics_), fmt::format("{}: {}", what_, text))
+        .add(id, where_in_string(document_, node_, at, diagnostics_),
+             fmt::format("{}: {}", what_, text))
         .suggestion = std::move(suggestion);
     return std::nullopt;
   }
@@ -116,7 +117,8 @@ private:
   std::optional<Operand> either() { return chain("or", Op::logical_or, &Parser::both); }
   std::optional<Operand> both() { return chain("and", Op::logical_and, &Parser::negation); }
 
-  std::optional<Operand> chain(std::string_view word, Op op, std::optional<Operand> (Parser::*part)()) {
+  std::optional<Operand> chain(std::string_view word, Op op,
+                               std::optional<Operand> (Parser::*part)()) {
     auto left = (this->*part)();
     while (left && is_word(word)) {
       step();
@@ -144,7 +146,8 @@ private:
     if (is_word("in")) return membership(*left, false);
     if (is_word("not")) {
       step();
-      if (!is_word("in")) return fail(DiagnosticId::bad_expression, token_.at, "expected 'in' after 'not'");
+      if (!is_word("in"))
+        return fail(DiagnosticId::bad_expression, token_.at, "expected 'in' after 'not'");
       return membership(*left, true);
     }
     const auto op = token_.sort == Token::Sort::symbol ? comparison_of(token_.text) : std::nullopt;
@@ -166,7 +169,8 @@ private:
       return fail(DiagnosticId::expression_type, left.at,
                   "a quoted option cannot be the left side of 'in'; write the setting there");
     }
-    if (!is_symbol("[")) return fail(DiagnosticId::bad_expression, token_.at, "expected '[' after 'in'");
+    if (!is_symbol("["))
+      return fail(DiagnosticId::bad_expression, token_.at, "expected '[' after 'in'");
     Expression expression;
     expression.op = Op::in;
     expression.left = left.id;
@@ -197,11 +201,12 @@ private:
            fmt::format("{} is compared with {}", type_name(left.type), type_name(right.type)));
       return false;
     }
-    if (left.type == Type::option &&
-        graph_.settings[left.setting.value].options != graph_.settings[right.setting.value].options) {
+    if (left.type == Type::option && graph_.settings[left.setting.value].options !=
+                                         graph_.settings[right.setting.value].options) {
       fail(DiagnosticId::expression_type, right.at,
            fmt::format("the settings '{}' and '{}' have different options",
-                       graph_.settings[left.setting.value].name, graph_.settings[right.setting.value].name));
+                       graph_.settings[left.setting.value].name,
+                       graph_.settings[right.setting.value].name));
       return false;
     }
     return true;
@@ -218,8 +223,8 @@ private:
     }
     const std::vector<std::string_view> options(declared.options.begin(), declared.options.end());
     fail(DiagnosticId::expression_type, text.at,
-         fmt::format("'{}' is not an option of the setting '{}'; expected {}", text.text, declared.name,
-                     list_words(options)),
+         fmt::format("'{}' is not an option of the setting '{}'; expected {}", text.text,
+                     declared.name, list_words(options)),
          did_you_mean(text.text, options));
     return false;
   }
@@ -256,13 +261,15 @@ private:
       Expression expression;
       expression.op = Op::setting;
       expression.setting = {i};
-      const Type type = declared.type == SettingType::boolean ? Type::boolean
-                        : declared.type == SettingType::integer || declared.type == SettingType::real
-                            ? Type::number
-                            : Type::option;
+      const Type type =
+          declared.type == SettingType::boolean ? Type::boolean
+          : declared.type == SettingType::integer || declared.type == SettingType::real
+              ? Type::number
+              : Type::option;
       return append(std::move(expression), type, token.at, {i});
     }
-    return fail(DiagnosticId::unknown_setting, token.at, fmt::format("there is no setting '{}'", token.text),
+    return fail(DiagnosticId::unknown_setting, token.at,
+                fmt::format("there is no setting '{}'", token.text),
                 did_you_mean(token.text, names));
   }
 
@@ -315,12 +322,13 @@ private:
 
 } // namespace
 
-ExpressionId parse_expression(const Document& document, NodeId node, std::string_view what, Graph& graph,
-                              const std::vector<bool>& broken, Diagnostics& diagnostics) {
+ExpressionId parse_expression(const Document& document, NodeId node, std::string_view what,
+                              Graph& graph, const std::vector<bool>& broken,
+                              Diagnostics& diagnostics) {
   if (document.text(node).size() > limits::expression_bytes) {
     diagnostics.add(DiagnosticId::limit_exceeded, document.where(node),
-                    fmt::format("{} has {} bytes; at most {} are allowed", what, document.text(node).size(),
-                                limits::expression_bytes));
+                    fmt::format("{} has {} bytes; at most {} are allowed", what,
+                                document.text(node).size(), limits::expression_bytes));
     return {};
   }
   const size_t before = graph.expressions.size();

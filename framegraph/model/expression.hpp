@@ -27,8 +27,9 @@ namespace dermis {
 // Returns an invalid id after an error, which points into the string. Settings must already be
 // read. If the string names a setting marked in `broken` (by SettingId), the result is invalid
 // without a further error.
-ExpressionId parse_expression(const Document& document, NodeId node, std::string_view what, Graph& graph,
-                              const std::vector<bool>& broken, Diagnostics& diagnostics);
+ExpressionId parse_expression(const Document& document, NodeId node, std::string_view what,
+                              Graph& graph, const std::vector<bool>& broken,
+                              Diagnostics& diagnostics);
 
 // A `when` expression and its required value. An invalid `when` counts as true.
 struct Condition {
@@ -45,6 +46,7 @@ bool evaluate(const Graph& graph, ExpressionId id, const std::vector<SettingValu
 // Evaluates with only some settings known. Returns nullopt if the result depends on unknown
 // settings.
 using PartialValues = std::vector<std::optional<SettingValue>>;
-std::optional<bool> evaluate_partly(const Graph& graph, ExpressionId id, const PartialValues& values);
+std::optional<bool> evaluate_partly(const Graph& graph, ExpressionId id,
+                                    const PartialValues& values);
 
 } // namespace dermis

@@ -23,7 +23,8 @@ bool is_digit(char c) {
 } // namespace
 
 bool is_reserved_word(std::string_view word) {
-  return word == "and" || word == "or" || word == "not" || word == "in" || word == "true" || word == "false";
+  return word == "and" || word == "or" || word == "not" || word == "in" || word == "true" ||
+         word == "false";
 }
 
 ForeignOperator foreign_operator(std::string_view expression, size_t at) {

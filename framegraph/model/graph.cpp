@@ -16,8 +16,10 @@ std::string_view type_phrase(ResourceType type) {
                                         : "an acceleration structure";
 }
 
-void Graph::bind(PassDeclaration& pass, PortSide side, const PortBinding& binding, SourceLocation where) {
-  if (pass.read_count + pass.write_count == 0) pass.first_binding = static_cast<uint32_t>(bindings.size());
+void Graph::bind(PassDeclaration& pass, PortSide side, const PortBinding& binding,
+                 SourceLocation where) {
+  if (pass.read_count + pass.write_count == 0)
+    pass.first_binding = static_cast<uint32_t>(bindings.size());
   ++(side == PortSide::read ? pass.read_count : pass.write_count);
   names_ranges |= !binding.range.whole();
   bindings.push_back(binding);

@@ -110,7 +110,9 @@ struct ImageRange {
   uint8_t first_mip = 0, mips = 0;      // mips 0: to the last
   uint16_t first_layer = 0, layers = 0; // layers 0: to the last
 
-  constexpr bool whole() const { return first_mip == 0 && mips == 0 && first_layer == 0 && layers == 0; }
+  constexpr bool whole() const {
+    return first_mip == 0 && mips == 0 && first_layer == 0 && layers == 0;
+  }
 };
 
 // Says in which frames a pass reads the resource bound to a port. `name@-N` is valid once N

@@ -25,7 +25,9 @@ constexpr std::array<std::string_view, 2> scope_words{"graph", "frame"};
 
 bool is_name(std::string_view text) {
   if (text.empty() || text.size() > limits::name_bytes) return false;
-  const auto letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; };
+  const auto letter = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
+  };
   const auto digit = [](char c) { return c >= '0' && c <= '9'; };
   return letter(text[0]) &&
          std::all_of(text.begin(), text.end(), [&](char c) { return letter(c) || digit(c); });
@@ -33,32 +35,35 @@ bool is_name(std::string_view text) {
 
 bool is_pass_type_name(std::string_view text) {
   const size_t dot = text.find('.');
-  return dot != std::string_view::npos && is_name(text.substr(0, dot)) && is_name(text.substr(dot + 1));
+  return dot != std::string_view::npos && is_name(text.substr(0, dot)) &&
+         is_name(text.substr(dot + 1));
 }
 
 PassTypeProblem problem_of(const HostPassTypeSetting& setting, size_t i) {
   if (!is_name(setting.name))
-    return {
-        DiagnosticId::bad_name,
-        fmt::format("settings[{}].name is '{}', expected letters, digits and underscores", i, setting.name)};
+    return {DiagnosticId::bad_name,
+            fmt::format("settings[{}].name is '{}', expected letters, digits and underscores", i,
+                        setting.name)};
   const auto range = [](std::string text) {
     return PassTypeProblem{DiagnosticId::setting_range, std::move(text)};
   };
   if (setting.type == SettingType::boolean)
     return setting.default_value == 0.0 || setting.default_value == 1.0
                ? PassTypeProblem{}
-               : range(fmt::format("settings[{}].default_value is {}; expected 0 or 1 for a bool", i,
-                                   setting.default_value));
+               : range(fmt::format("settings[{}].default_value is {}; expected 0 or 1 for a bool",
+                                   i, setting.default_value));
   const double maximum = limits::host_pass_type_value;
   if (!(setting.minimum >= -maximum && setting.maximum <= maximum &&
         setting.minimum <= setting.default_value && setting.default_value <= setting.maximum))
-    return range(fmt::format("settings[{}]: expected {:g} <= minimum <= default_value <= maximum <= {:g}", i,
-                             -maximum, maximum));
-  const auto whole = [](double value) { return std::floor(value) == value; };
-  const bool whole_range = whole(setting.minimum) && whole(setting.maximum) && whole(setting.default_value);
-  if (setting.type == SettingType::integer && !whole_range)
     return range(
-        fmt::format("settings[{}] is an int; its minimum, default_value and maximum must be integers", i));
+        fmt::format("settings[{}]: expected {:g} <= minimum <= default_value <= maximum <= {:g}", i,
+                    -maximum, maximum));
+  const auto whole = [](double value) { return std::floor(value) == value; };
+  const bool whole_range =
+      whole(setting.minimum) && whole(setting.maximum) && whole(setting.default_value);
+  if (setting.type == SettingType::integer && !whole_range)
+    return range(fmt::format(
+        "settings[{}] is an int; its minimum, default_value and maximum must be integers", i));
   return {};
 }
 
@@ -113,7 +118,8 @@ HostPassTypeSetting read_setting(const Document& document, NodeId node, Diagnost
   return setting;
 }
 
-HostPassTypeDeclaration read_pass_type(const Document& document, NodeId node, Diagnostics& diagnostics) {
+HostPassTypeDeclaration read_pass_type(const Document& document, NodeId node,
+                                       Diagnostics& diagnostics) {
   const uint32_t errors = diagnostics.count(Severity::error);
   ObjectReader object(document, node, "kind", diagnostics);
   HostPassTypeDeclaration type;
@@ -124,7 +130,8 @@ HostPassTypeDeclaration read_pass_type(const Document& document, NodeId node, Di
   if (const NodeId ports = object.array("ports", 1, limits::host_pass_type_ports); ports.valid())
     for (const NodeId port : children(document, ports))
       type.ports.push_back(read_port(document, port, diagnostics));
-  if (const NodeId settings = object.array("settings", 0, limits::host_pass_type_settings, Need::optional);
+  if (const NodeId settings =
+          object.array("settings", 0, limits::host_pass_type_settings, Need::optional);
       settings.valid())
     for (const NodeId setting : children(document, settings))
       type.settings.push_back(read_setting(document, setting, diagnostics));
@@ -138,19 +145,21 @@ HostPassTypeDeclaration read_pass_type(const Document& document, NodeId node, Di
 } // namespace
 
 PassTypeProblem problem_of(const HostPassTypeDeclaration& type) {
-  const auto name = [](std::string text) { return PassTypeProblem{DiagnosticId::bad_name, std::move(text)}; };
+  const auto name = [](std::string text) {
+    return PassTypeProblem{DiagnosticId::bad_name, std::move(text)};
+  };
   const auto count = [](std::string text) {
     return PassTypeProblem{DiagnosticId::out_of_range, std::move(text)};
   };
   if (!is_pass_type_name(type.name))
-    return name(fmt::format("name is '{}'; expected two names separated by a dot, as in \"studio.bloom\"",
-                            type.name));
+    return name(fmt::format(
+        "name is '{}'; expected two names separated by a dot, as in \"studio.bloom\"", type.name));
   if (std::string_view(type.name).substr(0, own_prefix.size()) == own_prefix)
     return name(fmt::format("name is '{}'; names that begin with '{}' are reserved for the library",
                             type.name, own_prefix));
   if (type.ports.empty() || type.ports.size() > limits::host_pass_type_ports)
-    return count(
-        fmt::format("there are {} ports, expected 1..{}", type.ports.size(), limits::host_pass_type_ports));
+    return count(fmt::format("there are {} ports, expected 1..{}", type.ports.size(),
+                             limits::host_pass_type_ports));
   if (type.settings.size() > limits::host_pass_type_settings)
     return count(fmt::format("there are {} settings, expected 0..{}", type.settings.size(),
                              limits::host_pass_type_settings));
@@ -159,8 +168,10 @@ PassTypeProblem problem_of(const HostPassTypeDeclaration& type) {
       return name(fmt::format("ports[{}].name is '{}', expected letters, digits and underscores", i,
                               type.ports[i].name));
   for (size_t i = 0; i < type.settings.size(); ++i)
-    if (PassTypeProblem problem = problem_of(type.settings[i], i); !problem.text.empty()) return problem;
-  if (PassTypeProblem problem = duplicate_in(type.ports, "ports"); !problem.text.empty()) return problem;
+    if (PassTypeProblem problem = problem_of(type.settings[i], i); !problem.text.empty())
+      return problem;
+  if (PassTypeProblem problem = duplicate_in(type.ports, "ports"); !problem.text.empty())
+    return problem;
   return duplicate_in(type.settings, "settings");
 }
 
@@ -248,8 +259,9 @@ std::optional<std::vector<HostPassTypeDeclaration>> read_host_pass_types(const D
         return other.name == pass_types.back().name;
       };
       if (std::find_if(pass_types.begin(), pass_types.end() - 1, same) != pass_types.end() - 1)
-        diagnostics.add(DiagnosticId::duplicate_name, document.where(node),
-                        fmt::format("the pass type '{}' is declared twice", pass_types.back().name));
+        diagnostics.add(
+            DiagnosticId::duplicate_name, document.where(node),
+            fmt::format("the pass type '{}' is declared twice", pass_types.back().name));
     }
   root.finish();
   if (diagnostics.count(Severity::error) != errors) return std::nullopt;

@@ -52,7 +52,8 @@ int find_setting(const PassType& type, std::string_view name) {
 }
 
 bool is_one_of(const PassType& type, uint32_t port) {
-  return std::find(type.one_of.begin(), type.one_of.end(), type.ports[port].name) != type.one_of.end();
+  return std::find(type.one_of.begin(), type.one_of.end(), type.ports[port].name) !=
+         type.one_of.end();
 }
 
 } // namespace dermis

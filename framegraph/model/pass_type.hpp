@@ -96,7 +96,8 @@ struct PassType {
   DispatchRule dispatch = {};
   bool side_effects = false;      // never culled
   bool serves_scattering = false; // removed if nothing scatters
-  // For an indirect dispatch: name of the integer setting that selects the 16-byte entry of the arguments;
+  // For an indirect dispatch: name of the integer setting that selects the 16-byte entry of the
+  // arguments;
   // "": entry 0.
   std::string_view arguments_entry = "";
   // may name ports that the pass type lacks; a port without an entry accepts any size

@@ -15,7 +15,9 @@ std::string note_of(const Document& document, NodeId object) {
 std::optional<Graph> read_graph(const Document& document, const PassTypeRegistry& pass_types,
                                 Diagnostics& diagnostics) {
   if (!check_version(document, "dermis", graph_format_version, diagnostics)) return std::nullopt;
-  const auto errors = [&] { return diagnostics.count(Severity::error) + diagnostics.dropped_errors; };
+  const auto errors = [&] {
+    return diagnostics.count(Severity::error) + diagnostics.dropped_errors;
+  };
   const uint64_t errors_before = errors();
 
   GraphReader reader(document, pass_types, diagnostics);

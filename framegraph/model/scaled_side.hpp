@@ -12,7 +12,8 @@ namespace dermis {
 // Returns one side of a size: align_up(round(base * factor), align), at least 1, plus the border on
 // both sides. `factor` is size.x or size.y. Returns nullopt if the factor is negative or the result
 // exceeds 32 bits.
-inline std::optional<uint32_t> scaled_side(uint64_t base, Rational factor, const SizeExpression& size) {
+inline std::optional<uint32_t> scaled_side(uint64_t base, Rational factor,
+                                           const SizeExpression& size) {
   if (factor.numerator < 0 || factor.denominator <= 0) return std::nullopt;
   const auto numerator = static_cast<uint64_t>(factor.numerator);
   const auto denominator = static_cast<uint64_t>(factor.denominator);

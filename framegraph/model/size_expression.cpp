@@ -28,8 +28,8 @@ std::optional<int64_t> factor_of(std::string_view text) {
   return value;
 }
 
-std::optional<SizeExpression> parse_text(const Document& document, NodeId node, std::string_view what,
-                                         ResourceId owner,
+std::optional<SizeExpression> parse_text(const Document& document, NodeId node,
+                                         std::string_view what, ResourceId owner,
                                          const std::function<ResourceId(std::string_view)>& find,
                                          Diagnostics& diagnostics) {
   const std::string_view text = document.text(node);
@@ -57,14 +57,15 @@ std::optional<SizeExpression> parse_text(const Document& document, NodeId node, 
   out.base = SizeExpression::Base::resource;
   out.resource = find(base);
   if (!out.resource.valid()) return std::nullopt;
-  if (out.resource == owner) return reject(0, "the size of a resource cannot refer to the resource itself");
+  if (out.resource == owner)
+    return reject(0, "the size of a resource cannot refer to the resource itself");
   return out;
 }
 
 } // namespace
 
-std::optional<SizeExpression> parse_size(const Document& document, NodeId node, std::string_view what,
-                                         ResourceId owner, bool single,
+std::optional<SizeExpression> parse_size(const Document& document, NodeId node,
+                                         std::string_view what, ResourceId owner, bool single,
                                          const std::function<ResourceId(std::string_view)>& find,
                                          Diagnostics& diagnostics) {
   if (document[node].kind == NodeKind::string)
@@ -80,17 +81,19 @@ std::optional<SizeExpression> parse_size(const Document& document, NodeId node, 
   }
   if (document[node].kind != NodeKind::array || document[node].child_count != 2) {
     const bool list = document[node].kind == NodeKind::array;
-    diagnostics.add(DiagnosticId::wrong_type, document.where(node),
-                    fmt::format("{} must be a size: a string or [width, height]; found {}{}", what,
-                                kind_name(document[node].kind),
-                                list ? fmt::format(" of {} values", document[node].child_count) : ""));
+    diagnostics.add(
+        DiagnosticId::wrong_type, document.where(node),
+        fmt::format("{} must be a size: a string or [width, height]; found {}{}", what,
+                    kind_name(document[node].kind),
+                    list ? fmt::format(" of {} values", document[node].child_count) : ""));
     return std::nullopt;
   }
   const NodeId first = document[node].first_child;
-  const auto width =
-      read_integer(document, first, fmt::format("the width in {}", what), 1, limits::image_side, diagnostics);
-  const auto height = read_integer(document, document[first].next, fmt::format("the height in {}", what), 1,
-                                   limits::image_side, diagnostics);
+  const auto width = read_integer(document, first, fmt::format("the width in {}", what), 1,
+                                  limits::image_side, diagnostics);
+  const auto height =
+      read_integer(document, document[first].next, fmt::format("the height in {}", what), 1,
+                   limits::image_side, diagnostics);
   if (!width || !height) return std::nullopt;
   out.x = {*width, 1};
   out.y = {*height, 1};

@@ -14,8 +14,8 @@ namespace dermis {
 // means [n, 1], a buffer of n elements. `find` returns the resource with a name, or an invalid id
 // after reporting the error. `owner` may not be its own base. Rounding and alignment are separate
 // keys and keep their defaults.
-std::optional<SizeExpression> parse_size(const Document& document, NodeId node, std::string_view what,
-                                         ResourceId owner, bool single,
+std::optional<SizeExpression> parse_size(const Document& document, NodeId node,
+                                         std::string_view what, ResourceId owner, bool single,
                                          const std::function<ResourceId(std::string_view)>& find,
                                          Diagnostics& diagnostics);
 

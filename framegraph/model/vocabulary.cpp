@@ -35,14 +35,14 @@ constexpr std::array<UsageInfo, usage_count> usages{{
      sampled_image_usage, true, false, true, false},
     {"storage_image_write", stage::compute_shader, access::shader_storage_write, Layout::general,
      storage_image_usage, true, false, false, true},
-    {"storage_image_update", stage::compute_shader, storage_update, Layout::general, storage_image_usage,
-     true, false, true, true},
+    {"storage_image_update", stage::compute_shader, storage_update, Layout::general,
+     storage_image_usage, true, false, true, true},
     {"storage_buffer_read", stage::compute_shader, access::shader_storage_read, Layout::undefined,
      storage_buffer_usage, false, true, true, false},
     {"storage_buffer_write", stage::compute_shader, access::shader_storage_write, Layout::undefined,
      storage_buffer_usage, false, true, false, true},
-    {"storage_buffer_update", stage::compute_shader, storage_update, Layout::undefined, storage_buffer_usage,
-     false, true, true, true},
+    {"storage_buffer_update", stage::compute_shader, storage_update, Layout::undefined,
+     storage_buffer_usage, false, true, true, true},
     {"indirect_arguments", stage::draw_indirect, access::indirect_command_read, Layout::undefined,
      indirect_buffer_usage, false, true, true, false},
     // All transfer stages: vkCmdClearColorImage is a clear command, and some validation layers
@@ -50,8 +50,8 @@ constexpr std::array<UsageInfo, usage_count> usages{{
     // layout for buffers.
     {"clear", stage::all_transfer, access::transfer_write, Layout::transfer_destination,
      transfer_destination_usage, true, true, false, true},
-    {"acceleration_structure", stage::compute_shader, access::acceleration_structure_read, Layout::undefined,
-     0, false, false, true, false, true},
+    {"acceleration_structure", stage::compute_shader, access::acceleration_structure_read,
+     Layout::undefined, 0, false, false, true, false, true},
 }};
 
 constexpr std::array<std::string_view, static_cast<size_t>(Feature::count)> features{"ray_query"};

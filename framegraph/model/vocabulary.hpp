@@ -132,7 +132,8 @@ std::string_view feature_name(Feature feature); // as written in a graph file
 std::optional<Feature> feature_from_name(std::string_view name);
 
 inline constexpr Access all_write_access =
-    access::transfer_write | access::memory_write | access::shader_storage_write | 0x40 /* shader write */ |
-    0x100 /* colour attachment write */ | 0x400 /* depth stencil write */ | 0x4000 /* host write */;
+    access::transfer_write | access::memory_write | access::shader_storage_write |
+    0x40 /* shader write */ | 0x100 /* colour attachment write */ |
+    0x400 /* depth stencil write */ | 0x4000 /* host write */;
 
 } // namespace dermis

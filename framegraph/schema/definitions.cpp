@@ -51,7 +51,8 @@ std::string filled(std::string_view text, std::string_view pass_types = {}) {
   };
   std::string out(text);
   for (const auto& [word, value] : values) {
-    for (size_t at = out.find(word); at != std::string::npos; at = out.find(word, at + value.size()))
+    for (size_t at = out.find(word); at != std::string::npos;
+         at = out.find(word, at + value.size()))
       out.replace(at, word.size(), value);
   }
   return out;
@@ -62,8 +63,8 @@ constexpr std::string_view note =
 
 // A setting holds its default under the name of its type. If there are several, the first decides.
 std::string setting_definition() {
-  const std::string common =
-      fmt::format(R"("unit": {{ "type": "string", "description": "for readers; has no effect" }}, {})", note);
+  const std::string common = fmt::format(
+      R"("unit": {{ "type": "string", "description": "for readers; has no effect" }}, {})", note);
   const auto form = [&](std::string_view required, std::string_view properties) {
     return fmt::format(R"({{ "required": [{}], "additionalProperties": false,
         "properties": {{ {}, {} }} }})",
@@ -73,28 +74,33 @@ std::string setting_definition() {
       R"("type": "array", "minItems": 1, "maxItems": <options>, "items": { "type": "string", "maxLength": <name bytes> })";
   const std::string boolean =
       form(R"("bool")", R"("bool": { "type": "boolean", "description": "the default" })");
-  const std::string integer = form(R"("int", "min", "max")",
-                                   R"("int": { "$ref": "#/definitions/int", "description": "the default" },
+  const std::string integer =
+      form(R"("int", "min", "max")",
+           R"("int": { "$ref": "#/definitions/int", "description": "the default" },
         "min": { "$ref": "#/definitions/int" }, "max": { "$ref": "#/definitions/int" })");
-  const std::string real = form(R"("real", "min", "max")",
-                                R"("real": { "$ref": "#/definitions/real", "description": "the default" },
+  const std::string real =
+      form(R"("real", "min", "max")",
+           R"("real": { "$ref": "#/definitions/real", "description": "the default" },
         "min": { "$ref": "#/definitions/real" }, "max": { "$ref": "#/definitions/real" })");
-  const std::string enumeration =
-      form(R"("enum", "default")", R"("enum": { )" + options + R"( }, "default": { "type": "string" })");
+  const std::string enumeration = form(
+      R"("enum", "default")", R"("enum": { )" + options + R"( }, "default": { "type": "string" })");
   const std::string choice =
-      form(R"("choice", "default")", R"("choice": { )" + options + R"( }, "default": { "type": "string" },
+      form(R"("choice", "default")",
+           R"("choice": { )" + options + R"( }, "default": { "type": "string" },
         "by": { "enum": ["host", "budget"], "description": "who selects the option; budget: the library" },
         "requires": { "type": "object", "description": "requirements of each option; an option whose requirements are not met is not available",
           "additionalProperties": { "type": "array", "items": { "type": "string", "description": "device feature, or optional import that the host binds" } } })");
-  const auto branch = [](std::string_view key, const std::string& then, const std::string& otherwise) {
+  const auto branch = [](std::string_view key, const std::string& then,
+                         const std::string& otherwise) {
     return fmt::format(R"({{
       "if": {{ "required": ["{}"] }},
       "then": {},
       "else": {} }})",
                        key, then, otherwise);
   };
-  const std::string rest = branch(
-      "bool", boolean, branch("int", integer, branch("real", real, branch("enum", enumeration, choice))));
+  const std::string rest =
+      branch("bool", boolean,
+             branch("int", integer, branch("real", real, branch("enum", enumeration, choice))));
   return R"({ "type": "object", "description": "A value that the host can change at run time.", "allOf": [)" +
          rest + "] }";
 }
@@ -245,8 +251,11 @@ SchemaMembers graph_definitions(std::string_view pass_type_names) {
       {"name",
        with_note(
            R"({ "type": "string", "maxLength": <name bytes>, "description": "a letter or _, then letters, digits or _" })")},
-      {"int", with_note(R"({ "type": "integer", "minimum": <least int>, "maximum": <greatest int> })")},
-      {"real", with_note(R"({ "type": "number", "minimum": -<greatest real>, "maximum": <greatest real> })")},
+      {"int",
+       with_note(R"({ "type": "integer", "minimum": <least int>, "maximum": <greatest int> })")},
+      {"real",
+       with_note(
+           R"({ "type": "number", "minimum": -<greatest real>, "maximum": <greatest real> })")},
       {"format", with_note(R"({ "enum": [<formats>] })")},
       {"formats",
        with_note(

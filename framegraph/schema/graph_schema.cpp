@@ -26,7 +26,9 @@ void write_setting(JsonWriter& out, const PassTypeSetting& setting) {
     out.member("maximum", static_cast<int64_t>(setting.maximum));
     break;
   case SettingType::real:
-    out.member("type", "number").member("minimum", setting.minimum).member("maximum", setting.maximum);
+    out.member("type", "number")
+        .member("minimum", setting.minimum)
+        .member("maximum", setting.maximum);
     break;
   case SettingType::enumeration:
   case SettingType::choice:
@@ -53,7 +55,8 @@ bool write_ports(JsonWriter& out, const PassType& type, PortSide side) {
     if (!port.optional) required.push_back(port.name);
     out.key(port.name).open_object(true);
     out.member("$ref", side == PortSide::read ? "#/definitions/source" : "#/definitions/target");
-    out.member("description", fmt::format("{} ({})", port.doc, usage_info(port.usage).name)).close();
+    out.member("description", fmt::format("{} ({})", port.doc, usage_info(port.usage).name))
+        .close();
   }
   out.close();
   if (!required.empty()) {
@@ -67,7 +70,12 @@ bool write_ports(JsonWriter& out, const PassType& type, PortSide side) {
     if (side_of(type.ports[i]) != side || !is_one_of(type, i)) continue;
     if (!one_of) out.key("anyOf").open_array(true);
     one_of = true;
-    out.open_object(true).key("required").open_array(true).value(type.ports[i].name).close().close();
+    out.open_object(true)
+        .key("required")
+        .open_array(true)
+        .value(type.ports[i].name)
+        .close()
+        .close();
   }
   if (one_of) out.close();
   out.close();
@@ -123,10 +131,11 @@ std::string write_schema(const PassTypeRegistry& pass_types, std::string_view ti
 } // namespace
 
 std::string graph_schema(const PassTypeRegistry& pass_types) {
-  return write_schema(pass_types, "Dermis graph",
-                      "A graph: settings, images and buffers, passes, and the images returned to the host. "
-                      "docs/format.md describes every key.",
-                      graph_root_members());
+  return write_schema(
+      pass_types, "Dermis graph",
+      "A graph: settings, images and buffers, passes, and the images returned to the host. "
+      "docs/format.md describes every key.",
+      graph_root_members());
 }
 
 std::string fragment_schema(const PassTypeRegistry& pass_types) {

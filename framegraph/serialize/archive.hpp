@@ -27,7 +27,8 @@ public:
   template <class Number> void number(const char*, Number value) {
     using Bits = std::make_unsigned_t<Number>;
     for (size_t i = 0; i < sizeof(Number); ++i)
-      bytes_.push_back(static_cast<char>(static_cast<uint64_t>(static_cast<Bits>(value)) >> (8 * i)));
+      bytes_.push_back(
+          static_cast<char>(static_cast<uint64_t>(static_cast<Bits>(value)) >> (8 * i)));
   }
   void flag(const char* what, bool value) { number(what, static_cast<uint8_t>(value)); }
   void real(const char* what, double value) { number(what, std::bit_cast<uint64_t>(value)); }
@@ -96,7 +97,8 @@ public:
     const size_t bytes = count(what, 1, maximum);
     if (bytes == 0 || !take(what, bytes)) return;
     value = bytes_.substr(at_ - bytes, bytes);
-    if (find_invalid_utf8(value) != std::string_view::npos) fail(fmt::format("'{}' is not UTF-8", what));
+    if (find_invalid_utf8(value) != std::string_view::npos)
+      fail(fmt::format("'{}' is not UTF-8", what));
   }
   template <class T> void list(const char* what, std::vector<T>& values, size_t maximum) {
     Writer smallest; // with empty strings and lists, the minimum size of a T
@@ -109,7 +111,8 @@ public:
     }
   }
   void expect_end() {
-    if (at_ != bytes_.size()) fail(fmt::format("{} bytes remain after the last field", bytes_.size() - at_));
+    if (at_ != bytes_.size())
+      fail(fmt::format("{} bytes remain after the last field", bytes_.size() - at_));
   }
 
   const std::string& problem() const { return problem_; } // "byte 12: ..."; "": none
@@ -132,9 +135,10 @@ private:
     number(what, value);
     const size_t available = (bytes_.size() - at_) / bytes_each;
     if (value <= maximum && value <= available) return value;
-    fail(value > maximum ? fmt::format("'{}' has {} entries, at most {} are accepted", what, value, maximum)
-                         : fmt::format("'{}' has {} entries, but the rest of the file can hold only {}", what,
-                                       value, available));
+    fail(value > maximum
+             ? fmt::format("'{}' has {} entries, at most {} are accepted", what, value, maximum)
+             : fmt::format("'{}' has {} entries, but the rest of the file can hold only {}", what,
+                           value, available));
     return 0;
   }
 

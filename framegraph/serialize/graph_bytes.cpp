@@ -87,8 +87,9 @@ struct GraphWriter {
       index(binding.resource);
       number(binding.frames_back);
       word(binding.when);
-      for (const uint64_t side : {uint64_t{binding.range.first_mip}, uint64_t{binding.range.mips},
-                                  uint64_t{binding.range.first_layer}, uint64_t{binding.range.layers}})
+      for (const uint64_t side :
+           {uint64_t{binding.range.first_mip}, uint64_t{binding.range.mips},
+            uint64_t{binding.range.first_layer}, uint64_t{binding.range.layers}})
         number(side);
     });
   }

@@ -4,7 +4,8 @@
 
 namespace dermis {
 
-std::optional<CompiledPlan> compile(const CompileInput& input, PlanCache& cache, Diagnostics& diagnostics) {
+std::optional<CompiledPlan> compile(const CompileInput& input, PlanCache& cache,
+                                    Diagnostics& diagnostics) {
   std::string key = key_bytes(plan_key(input));
   key.push_back(input.reasons ? '\1' : '\0');
   const auto found = std::find_if(cache.entries.begin(), cache.entries.end(),

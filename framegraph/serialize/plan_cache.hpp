@@ -25,6 +25,7 @@ struct PlanCache {
 
 // Returns the result of compile(), from the cache if it has the whole key. Inputs that compile with
 // messages are not cached, so that each call reports the messages.
-std::optional<CompiledPlan> compile(const CompileInput& input, PlanCache& cache, Diagnostics& diagnostics);
+std::optional<CompiledPlan> compile(const CompileInput& input, PlanCache& cache,
+                                    Diagnostics& diagnostics);
 
 } // namespace dermis

@@ -57,7 +57,8 @@ std::string first_mismatch(const SavedPlan& saved) {
   const Plan& plan = saved.plan;
   const PlanNames& names = saved.names;
   if (names.passes.size() != plan.passes.size() || names.pass_types.size() != plan.passes.size() ||
-      names.resources.size() != plan.resources.size() || names.ports.size() != plan.accesses.size() ||
+      names.resources.size() != plan.resources.size() ||
+      names.ports.size() != plan.accesses.size() ||
       names.settings.size() != plan.setting_values.size() ||
       names.pass_settings.size() != plan.settings.size())
     return "the numbers of names and of objects in the plan differ";
@@ -68,14 +69,17 @@ std::string first_mismatch(const SavedPlan& saved) {
     return "key and plan were made for different views or devices";
   uint64_t accesses = 0, barriers = 0, settings = 0;
   for (const PlanPass& pass : plan.passes) {
-    if (pass.first_access != accesses || pass.first_barrier != barriers || pass.first_setting < settings)
+    if (pass.first_access != accesses || pass.first_barrier != barriers ||
+        pass.first_setting < settings)
       return "accesses, barriers and settings are not in the order of their passes";
-    if (pass.first_setting > plan.settings.size()) return "a pass refers to settings that do not exist";
+    if (pass.first_setting > plan.settings.size())
+      return "a pass refers to settings that do not exist";
     accesses += pass.access_count;
     barriers += uint64_t{pass.barrier_count} + pass.release_count;
     settings = pass.first_setting;
   }
-  if (plan.first_final_barrier != barriers || barriers + plan.final_barrier_count != plan.barriers.size() ||
+  if (plan.first_final_barrier != barriers ||
+      barriers + plan.final_barrier_count != plan.barriers.size() ||
       accesses != plan.accesses.size())
     return "accesses or barriers belong to no pass";
   for (const PlanSetting& setting : plan.settings)
@@ -119,21 +123,22 @@ std::optional<SavedPlan> read_plan(const std::string& name, std::string_view byt
   };
   if (!is_plan_file(bytes)) return reject(fmt::format("a saved plan must begin with {}", magic));
   if (bytes.size() > limits::file_bytes)
-    return reject(
-        fmt::format("the file has {} bytes; at most {} are accepted", bytes.size(), limits::file_bytes));
+    return reject(fmt::format("the file has {} bytes; at most {} are accepted", bytes.size(),
+                              limits::file_bytes));
   serial::Reader reader(bytes.substr(magic.size()), magic.size());
   uint32_t version = 0;
   reader.number("version", version);
   if (reader.problem().empty() && version != plan_file_version)
-    return reject(
-        fmt::format("the plan has version {}; this library reads version {}", version, plan_file_version));
+    return reject(fmt::format("the plan has version {}; this library reads version {}", version,
+                              plan_file_version));
   SavedPlan saved;
   serial::fields(reader, saved.key);
   serial::fields(reader, saved.names);
   serial::fields(reader, saved.plan);
   reader.expect_end();
   if (!reader.problem().empty()) return reject(reader.problem());
-  if (const std::string mismatch = first_mismatch(saved); !mismatch.empty()) return reject(mismatch);
+  if (const std::string mismatch = first_mismatch(saved); !mismatch.empty())
+    return reject(mismatch);
   if (const std::vector<std::string> violations = verify_structure(saved.plan); !violations.empty())
     return reject(violations.front());
   return saved;

@@ -50,6 +50,7 @@ bool is_plan_file(std::string_view bytes);
 // bytes: counts are checked before memory is allocated for them. A returned plan has passed
 // verify_structure(), so each of its indices can be followed; verify() checks it for hazards.
 // Free-threaded.
-std::optional<SavedPlan> read_plan(const std::string& name, std::string_view bytes, Diagnostics& diagnostics);
+std::optional<SavedPlan> read_plan(const std::string& name, std::string_view bytes,
+                                   Diagnostics& diagnostics);
 
 } // namespace dermis

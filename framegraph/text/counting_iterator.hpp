@@ -17,7 +17,14 @@ struct TextPosition {
   uint32_t line = 1, column = 1; // in bytes, from 1
 };
 
-enum class EarlyEnd : uint8_t { none, nul_byte, block_comment, long_string, long_number, deep_nesting };
+enum class EarlyEnd : uint8_t {
+  none,
+  nul_byte,
+  block_comment,
+  long_string,
+  long_number,
+  deep_nesting
+};
 
 // Scans just enough JSON to find token starts. Agrees with the parser while the text is valid; its
 // output is not used after the first error.

@@ -11,7 +11,7 @@ namespace dermis {
 namespace {
 
 // The code is 'D' and a number of four digits; the literals in diagnostics.def have three.
-#define DERMIS_DIAGNOSTIC(id, name, severity, hint)                                                          \
+#define DERMIS_DIAGNOSTIC(id, name, severity, hint)                                                \
   {DiagnosticId::name, "D0" #id, #name, Severity::severity, hint},
 constexpr DiagnosticInfo infos[] = {
 #include "framegraph/text/diagnostics.def"

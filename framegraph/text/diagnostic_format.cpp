@@ -48,7 +48,8 @@ bool is_continuation(char c) {
 
 // Appends "\n   12 | the line\n      |     ^", or nothing if the text is not available.
 void append_excerpt(std::string& out, const Diagnostics& all, const SourceLocation& where) {
-  if (!where.file.valid() || where.file.value >= all.files.size() || where.line == 0 || where.column == 0)
+  if (!where.file.valid() || where.file.value >= all.files.size() || where.line == 0 ||
+      where.column == 0)
     return;
   const std::string_view text = all.files[where.file.value].text;
   size_t begin = 0;
@@ -78,13 +79,14 @@ void append_excerpt(std::string& out, const Diagnostics& all, const SourceLocati
     append_printable(safe, columns, columns.size());
     return safe;
   };
-  const std::string before = (first > 0 ? "..." : "") + one_column_each(line.substr(first, column - first));
+  const std::string before =
+      (first > 0 ? "..." : "") + one_column_each(line.substr(first, column - first));
   const std::string after =
       one_column_each(line.substr(column, last - column)) + (last < line.size() ? "..." : "");
   const auto caret_column =
       std::count_if(before.begin(), before.end(), [](char c) { return !is_continuation(c); });
-  fmt::format_to(std::back_inserter(out), "\n{:>6} | {}{}\n       | {:{}}^", where.line, before, after, "",
-                 caret_column);
+  fmt::format_to(std::back_inserter(out), "\n{:>6} | {}{}\n       | {:{}}^", where.line, before,
+                 after, "", caret_column);
 }
 
 void append_json_string(std::string& out, std::string_view text) {
@@ -110,8 +112,8 @@ void append_json_string(std::string& out, std::string_view text) {
 void append_json_place(std::string& out, const Diagnostics& all, const SourceLocation& where) {
   out += "\"file\": ";
   append_json_string(out, file_name(all, where));
-  fmt::format_to(std::back_inserter(out), ", \"line\": {}, \"column\": {}, \"pointer\": ", where.line,
-                 where.column);
+  fmt::format_to(std::back_inserter(out),
+                 ", \"line\": {}, \"column\": {}, \"pointer\": ", where.line, where.column);
   append_json_string(out, where.pointer);
 }
 
@@ -121,7 +123,8 @@ std::string format_for_people(const Diagnostics& all, const Diagnostic& one, boo
   const DiagnosticInfo& info = diagnostic_info(one.id);
   std::string out;
   append_place(out, all, one.where);
-  fmt::format_to(std::back_inserter(out), "{}[{} {}]: ", severity_name(info.severity), info.code, info.name);
+  fmt::format_to(std::back_inserter(out), "{}[{} {}]: ", severity_name(info.severity), info.code,
+                 info.name);
   append_printable(out, one.text, longest_text);
   if (!one.suggestion.empty()) {
     out += "; ";
@@ -150,8 +153,8 @@ std::string format_as_json(const Diagnostics& all) {
     const Diagnostic& one = all.list[i];
     const DiagnosticInfo& info = diagnostic_info(one.id);
     fmt::format_to(std::back_inserter(out),
-                   "{}\n  {{ \"id\": \"{}\", \"name\": \"{}\", \"severity\": \"{}\", ", i == 0 ? "" : ",",
-                   info.code, info.name, severity_name(info.severity));
+                   "{}\n  {{ \"id\": \"{}\", \"name\": \"{}\", \"severity\": \"{}\", ",
+                   i == 0 ? "" : ",", info.code, info.name, severity_name(info.severity));
     append_json_place(out, all, one.where);
     out += ", \"text\": ";
     append_json_string(out, one.text);

@@ -27,7 +27,8 @@ std::string uri_of(std::string_view path) {
   constexpr std::string_view unreserved = "-._~/";
   std::string out = path.starts_with('/') ? "file://" : "";
   for (const char c : path) {
-    const bool alphanumeric = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
+    const bool alphanumeric =
+        (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
     if (alphanumeric || unreserved.find(c) != std::string_view::npos)
       out += c;
     else
@@ -71,7 +72,10 @@ void write_rule(JsonWriter& out, const DiagnosticInfo& info) {
   out.open_object().member("id", info.code).member("name", info.name);
   out.key("shortDescription").open_object(true).member("text", info.name).close();
   out.key("help").open_object(true).member("text", info.hint).close();
-  out.key("defaultConfiguration").open_object(true).member("level", level_of(info.severity)).close();
+  out.key("defaultConfiguration")
+      .open_object(true)
+      .member("level", level_of(info.severity))
+      .close();
   out.close();
 }
 
@@ -92,7 +96,11 @@ void write_result(JsonWriter& out, const Diagnostics& all, const Diagnostic& one
   for (size_t i = 0; i < one.related.size(); ++i) {
     out.open_object().member("id", static_cast<uint64_t>(i + 1));
     write_location(out, all, one.related[i].first);
-    out.key("message").open_object(true).member("text", printable(one.related[i].second)).close().close();
+    out.key("message")
+        .open_object(true)
+        .member("text", printable(one.related[i].second))
+        .close()
+        .close();
   }
   out.close().close();
 }

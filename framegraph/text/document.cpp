@@ -42,7 +42,8 @@ std::string_view Document::key(NodeId id) const {
 
 NodeId Document::find(NodeId object, std::string_view name) const {
   if (nodes[object.value].kind != NodeKind::object) return {};
-  for (NodeId child = nodes[object.value].first_child; child.valid(); child = nodes[child.value].next) {
+  for (NodeId child = nodes[object.value].first_child; child.valid();
+       child = nodes[child.value].next) {
     if (key(child) == name) return child;
   }
   return {};
@@ -88,7 +89,8 @@ SourceLocation Document::where_key(NodeId id) const {
   return {file, nodes[id.value].key_line, nodes[id.value].key_column, pointer(id)};
 }
 
-SourceLocation where_in_string(const Document& document, NodeId id, size_t decoded, const Diagnostics& all) {
+SourceLocation where_in_string(const Document& document, NodeId id, size_t decoded,
+                               const Diagnostics& all) {
   if (!document.origins.empty()) {
     const Document::Origin& origin = document.origins[id.value];
     return where_in_string(document.sources[origin.source], origin.node, decoded, all);
@@ -140,10 +142,12 @@ std::optional<Document> read_document(const std::string& path, Diagnostics& diag
     return reject(DiagnosticId::file_unreadable, "not a regular file");
   const uintmax_t size = std::filesystem::file_size(path, error);
   if (error)
-    return reject(DiagnosticId::file_unreadable, fmt::format("cannot read the file: {}", error.message()));
+    return reject(DiagnosticId::file_unreadable,
+                  fmt::format("cannot read the file: {}", error.message()));
   if (size > limits::file_bytes) {
-    return reject(DiagnosticId::limit_exceeded,
-                  fmt::format("the file has {} bytes; at most {} are read", size, limits::file_bytes));
+    return reject(
+        DiagnosticId::limit_exceeded,
+        fmt::format("the file has {} bytes; at most {} are read", size, limits::file_bytes));
   }
   std::string text(static_cast<size_t>(size), '\0');
   std::ifstream stream(path, std::ios::binary);

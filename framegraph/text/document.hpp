@@ -59,13 +59,15 @@ struct Document {
 
 // Returns the location of byte `decoded` of string `id` in the text, accounting for escapes. `all`
 // holds the text.
-SourceLocation where_in_string(const Document& document, NodeId id, size_t decoded, const Diagnostics& all);
+SourceLocation where_in_string(const Document& document, NodeId id, size_t decoded,
+                               const Diagnostics& all);
 
 // Registers `text` under `name` with `diagnostics` and parses strict JSON plus // comments. Returns
 // nullopt with an error for: syntax errors, duplicate keys, integers that do not fit in 64 signed
 // bits, numbers beyond the range of double, ill-formed UTF-8, U+0000, and anything that exceeds
 // limits.hpp. Free-threaded.
-std::optional<Document> parse_document(std::string name, std::string text, Diagnostics& diagnostics);
+std::optional<Document> parse_document(std::string name, std::string text,
+                                       Diagnostics& diagnostics);
 
 // Parses a regular file; `path` is used as its name.
 std::optional<Document> read_document(const std::string& path, Diagnostics& diagnostics);

@@ -11,7 +11,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr std::array<std::string_view, 4> project_folders = {"graphs", "overlays", "profiles", "scenes"};
+constexpr std::array<std::string_view, 4> project_folders = {"graphs", "overlays", "profiles",
+                                                             "scenes"};
 
 fs::path or_working_folder(const fs::path& folder) {
   return folder.empty() ? fs::path(".") : folder;
@@ -30,7 +31,8 @@ bool is_below(const fs::path& path, const fs::path& root) {
 
 } // namespace
 
-PlacedFile place_file(const fs::path& folder, std::string_view name, std::span<const fs::path> roots) {
+PlacedFile place_file(const fs::path& folder, std::string_view name,
+                      std::span<const fs::path> roots) {
   PlacedFile placed;
   if (name.empty() || name.find('\0') != std::string_view::npos) {
     placed.problem = "it is not a file name";
@@ -48,7 +50,8 @@ PlacedFile place_file(const fs::path& folder, std::string_view name, std::span<c
   for (const fs::path& root : roots) {
     const fs::path real_root = real_path(root, error);
     if (!error && is_below(placed.real, real_root)) return placed;
-    readable += fmt::format("{}'{}'", readable.empty() ? "" : ", ", or_working_folder(root).string());
+    readable +=
+        fmt::format("{}'{}'", readable.empty() ? "" : ", ", or_working_folder(root).string());
   }
   placed.problem = fmt::format("it is outside the readable folders {}", readable);
   return placed;

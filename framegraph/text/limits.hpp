@@ -38,7 +38,8 @@ inline constexpr uint32_t image_border = 64;  // texels on every side
 inline constexpr uint32_t image_mips = 15;    // full chain of image_side
 // usual minimum of VkPhysicalDeviceLimits::maxImageArrayLayers
 inline constexpr uint32_t image_layers = 2048;
-inline constexpr uint32_t image_ranges = 512; // subresource ranges of one image that ports distinguish
+inline constexpr uint32_t image_ranges =
+    512; // subresource ranges of one image that ports distinguish
 // subresource ranges, counted per port that accesses them
 inline constexpr uint32_t range_uses = 1u << 20;
 inline constexpr uint32_t buffer_stride = 65536; // bytes per element

@@ -37,7 +37,8 @@ public:
   using string_t = nlohmann::json::string_t;
   using binary_t = nlohmann::json::binary_t;
 
-  NodeBuilder(std::string_view text, const TextCursor& cursor, Document& document, Diagnostics& diagnostics)
+  NodeBuilder(std::string_view text, const TextCursor& cursor, Document& document,
+              Diagnostics& diagnostics)
       : text_(text), cursor_(cursor), document_(document), diagnostics_(diagnostics) {}
 
   bool null() { return add(NodeKind::null) != nullptr; }
@@ -98,7 +99,8 @@ private:
   };
 
   SourceLocation at(TextPosition position) const {
-    const std::string pointer = open_.empty() ? std::string() : document_.pointer(open_.back().node);
+    const std::string pointer =
+        open_.empty() ? std::string() : document_.pointer(open_.back().node);
     return {document_.file, position.line, position.column, pointer};
   }
   bool reject(DiagnosticId id, TextPosition position, std::string text) {
@@ -107,12 +109,14 @@ private:
     return false;
   }
   bool reject_integer() {
-    return reject(DiagnosticId::integer_precision, cursor_.value_position(),
-                  fmt::format("the integer {} does not fit in 64 signed bits", shown_token(number_token())));
+    return reject(
+        DiagnosticId::integer_precision, cursor_.value_position(),
+        fmt::format("the integer {} does not fit in 64 signed bits", shown_token(number_token())));
   }
   bool check_no_nul(std::string_view value) {
     if (value.find('\0') == std::string_view::npos) return true;
-    return reject(DiagnosticId::syntax, cursor_.value_position(), "strings may not contain \\u0000");
+    return reject(DiagnosticId::syntax, cursor_.value_position(),
+                  "strings may not contain \\u0000");
   }
   std::string_view number_token() const {
     const std::string_view rest = text_.substr(cursor_.value_position().offset);
@@ -176,9 +180,9 @@ Node* NodeBuilder::add(NodeKind kind) {
 bool NodeBuilder::key(string_t& value) {
   key_position_ = cursor_.value_position();
   if (value.size() > limits::key_bytes) {
-    return reject(
-        DiagnosticId::limit_exceeded, key_position_,
-        fmt::format("this key has {} bytes; at most {} are allowed", value.size(), limits::key_bytes));
+    return reject(DiagnosticId::limit_exceeded, key_position_,
+                  fmt::format("this key has {} bytes; at most {} are allowed", value.size(),
+                              limits::key_bytes));
   }
   if (!check_no_nul(value)) return false;
   key_begin_ = keep(value);
@@ -224,9 +228,9 @@ bool NodeBuilder::parse_error(size_t position, const std::string&,
   failed_ = true;
   if (cursor_.early_end() != EarlyEnd::none) return false; // the caller reports the limit
   if (exception.id == out_of_range_exception) {
-    return reject(
-        DiagnosticId::out_of_range, cursor_.value_position(),
-        fmt::format("the number {} is beyond the range of double precision", shown_token(number_token())));
+    return reject(DiagnosticId::out_of_range, cursor_.value_position(),
+                  fmt::format("the number {} is beyond the range of double precision",
+                              shown_token(number_token())));
   }
   // Format: "[json.exception...] parse error at line L, column C: syntax error while parsing W -
   // what; last read: '...'"
@@ -254,18 +258,20 @@ bool NodeBuilder::parse_error(size_t position, const std::string&,
     reason += "; remove the comma before it";
   else if ((where_in_grammar == "object" && reason.starts_with("unexpected string literal")) ||
            (where_in_grammar == "array" && !reason.starts_with("unexpected '}'") &&
-            !reason.starts_with("unexpected ':'") && !reason.starts_with("unexpected end of input")))
+            !reason.starts_with("unexpected ':'") &&
+            !reason.starts_with("unexpected end of input")))
     reason += "; add a comma before it";
   const bool unexpected = reason.rfind("unexpected", 0) == 0;
   const size_t last = position == 0 ? 0 : position - 1;
   TextPosition place = locate(text_, last);
   if (unexpected && last < text_.size()) place = cursor_.token_position_before(position);
-  return reject(
-      DiagnosticId::syntax, place,
-      fmt::format("malformed {}: {}", where_in_grammar.empty() ? "JSON" : where_in_grammar, reason));
+  return reject(DiagnosticId::syntax, place,
+                fmt::format("malformed {}: {}",
+                            where_in_grammar.empty() ? "JSON" : where_in_grammar, reason));
 }
 
-void report_early_end(const TextCursor& cursor, const Document& document, Diagnostics& diagnostics) {
+void report_early_end(const TextCursor& cursor, const Document& document,
+                      Diagnostics& diagnostics) {
   const TextPosition position = cursor.early_end_position();
   const SourceLocation where{document.file, position.line, position.column, ""};
   const auto limit = [&](std::string text) {
@@ -278,7 +284,8 @@ void report_early_end(const TextCursor& cursor, const Document& document, Diagno
     diagnostics.add(DiagnosticId::syntax, where, "the text contains a NUL byte");
     break;
   case EarlyEnd::block_comment:
-    diagnostics.add(DiagnosticId::syntax, where, "block comments are not allowed; begin each line with //");
+    diagnostics.add(DiagnosticId::syntax, where,
+                    "block comments are not allowed; begin each line with //");
     break;
   case EarlyEnd::long_string:
     limit(fmt::format("this string is longer than {} bytes", limits::string_bytes));
@@ -294,7 +301,8 @@ void report_early_end(const TextCursor& cursor, const Document& document, Diagno
 
 } // namespace
 
-std::optional<Document> parse_document(std::string name, std::string text, Diagnostics& diagnostics) {
+std::optional<Document> parse_document(std::string name, std::string text,
+                                       Diagnostics& diagnostics) {
   constexpr std::string_view byte_order_mark = "\xef\xbb\xbf";
   if (text.rfind(byte_order_mark, 0) == 0) text.erase(0, byte_order_mark.size());
   Document document;
@@ -303,8 +311,9 @@ std::optional<Document> parse_document(std::string name, std::string text, Diagn
   if (size > limits::file_bytes) text.clear();
   diagnostics.files.push_back({std::move(name), std::move(text)});
   if (size > limits::file_bytes) {
-    diagnostics.add(DiagnosticId::limit_exceeded, {document.file, 0, 0, ""},
-                    fmt::format("the text has {} bytes; at most {} are read", size, limits::file_bytes));
+    diagnostics.add(
+        DiagnosticId::limit_exceeded, {document.file, 0, 0, ""},
+        fmt::format("the text has {} bytes; at most {} are read", size, limits::file_bytes));
     return std::nullopt;
   }
   const std::string_view all = diagnostics.files.back().text;

@@ -19,20 +19,22 @@ bool expect_kind(const Document& document, NodeId node, std::string_view what, N
   return false;
 }
 
-std::optional<std::string_view> read_string(const Document& document, NodeId node, std::string_view what,
-                                            Diagnostics& diagnostics) {
+std::optional<std::string_view> read_string(const Document& document, NodeId node,
+                                            std::string_view what, Diagnostics& diagnostics) {
   if (!expect_kind(document, node, what, NodeKind::string, diagnostics)) return std::nullopt;
   return document.text(node);
 }
 
 bool check_name(std::string_view name, std::string_view what, const SourceLocation& where,
                 Diagnostics& diagnostics) {
-  const auto letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; };
+  const auto letter = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
+  };
   const auto digit = [](char c) { return c >= '0' && c <= '9'; };
   if (name.size() > limits::name_bytes) {
-    diagnostics.add(
-        DiagnosticId::limit_exceeded, where,
-        fmt::format("{} has {} bytes; a name has at most {}", what, name.size(), limits::name_bytes));
+    diagnostics.add(DiagnosticId::limit_exceeded, where,
+                    fmt::format("{} has {} bytes; a name has at most {}", what, name.size(),
+                                limits::name_bytes));
     return false;
   }
   if (!name.empty() && letter(name[0]) &&
@@ -40,13 +42,13 @@ bool check_name(std::string_view name, std::string_view what, const SourceLocati
     return true;
   }
   diagnostics.add(DiagnosticId::bad_name, where,
-                  fmt::format("{} is '{}'; a name is a letter or '_', then letters, digits or '_'", what,
-                              shown_token(name)));
+                  fmt::format("{} is '{}'; a name is a letter or '_', then letters, digits or '_'",
+                              what, shown_token(name)));
   return false;
 }
 
-std::optional<std::string_view> read_name(const Document& document, NodeId node, std::string_view what,
-                                          Diagnostics& diagnostics) {
+std::optional<std::string_view> read_name(const Document& document, NodeId node,
+                                          std::string_view what, Diagnostics& diagnostics) {
   const auto text = read_string(document, node, what, diagnostics);
   if (!text || !check_name(*text, what, document.where(node), diagnostics)) return std::nullopt;
   return text;
@@ -79,7 +81,8 @@ std::optional<double> read_number(const Document& document, NodeId node, std::st
 }
 
 std::optional<uint32_t> read_word(const Document& document, NodeId node, std::string_view what,
-                                  std::span<const std::string_view> words, Diagnostics& diagnostics) {
+                                  std::span<const std::string_view> words,
+                                  Diagnostics& diagnostics) {
   if (!expect_kind(document, node, what, NodeKind::string, diagnostics)) return std::nullopt;
   const std::string_view text = document.text(node);
   const auto found = std::find(words.begin(), words.end(), text);
@@ -91,8 +94,8 @@ std::optional<uint32_t> read_word(const Document& document, NodeId node, std::st
   return std::nullopt;
 }
 
-bool read_numbers(const Document& document, NodeId node, std::string_view what, std::span<double> out,
-                  double minimum, double maximum, Diagnostics& diagnostics) {
+bool read_numbers(const Document& document, NodeId node, std::string_view what,
+                  std::span<double> out, double minimum, double maximum, Diagnostics& diagnostics) {
   if (!expect_kind(document, node, what, NodeKind::array, diagnostics)) return false;
   if (document[node].child_count != out.size()) {
     diagnostics.add(DiagnosticId::wrong_type, document.where(node),
@@ -102,9 +105,9 @@ bool read_numbers(const Document& document, NodeId node, std::string_view what, 
   }
   std::vector<double> values;
   for (NodeId child : children(document, node)) {
-    const auto value =
-        read_number(document, child, fmt::format("number {} of {}", document[child].index + 1, what), minimum,
-                    maximum, diagnostics);
+    const auto value = read_number(document, child,
+                                   fmt::format("number {} of {}", document[child].index + 1, what),
+                                   minimum, maximum, diagnostics);
     if (value) values.push_back(*value);
   }
   if (values.size() != out.size()) return false;
@@ -145,18 +148,20 @@ NodeId find_other_type(const Document& document) {
 
 bool check_version(const Document& document, std::string_view key, int64_t supported,
                    Diagnostics& diagnostics) {
-  if (!expect_kind(document, document.root(), "the file", NodeKind::object, diagnostics)) return false;
+  if (!expect_kind(document, document.root(), "the file", NodeKind::object, diagnostics))
+    return false;
   const NodeId node = document.find(document.root(), key);
   if (!node.valid()) {
     if (const NodeId other = find_other_type(document); other.valid()) {
       if (key == "dermis_pass_types" && document.key(other) == "dermis_kinds") {
-        diagnostics.add(DiagnosticId::unsupported_version, document.where_key(other),
-                        "'dermis_kinds' is the key of version 1; `dermis upgrade FILE` converts the file");
+        diagnostics.add(
+            DiagnosticId::unsupported_version, document.where_key(other),
+            "'dermis_kinds' is the key of version 1; `dermis upgrade FILE` converts the file");
         return false;
       }
-      diagnostics.add(
-          DiagnosticId::other_kind_of_file, document.where_key(other),
-          fmt::format("the file has the key '{}' where '{}' is expected", document.key(other), key));
+      diagnostics.add(DiagnosticId::other_kind_of_file, document.where_key(other),
+                      fmt::format("the file has the key '{}' where '{}' is expected",
+                                  document.key(other), key));
       return false;
     }
     const NodeId misspelt = find_misspelt(document, document.root(), key);
@@ -175,12 +180,13 @@ bool check_version(const Document& document, std::string_view key, int64_t suppo
   if (version == supported) return true;
   const bool older = version >= 1 && version < supported;
   diagnostics.add(DiagnosticId::unsupported_version, document.where(node),
-                  fmt::format("'{}' is {}; this library reads version {}{}", key, version, supported,
-                              older ? "; `dermis upgrade FILE` converts the file" : ""));
+                  fmt::format("'{}' is {}; this library reads version {}{}", key, version,
+                              supported, older ? "; `dermis upgrade FILE` converts the file" : ""));
   return false;
 }
 
-ObjectReader::ObjectReader(const Document& document, NodeId node, std::string what, Diagnostics& diagnostics)
+ObjectReader::ObjectReader(const Document& document, NodeId node, std::string what,
+                           Diagnostics& diagnostics)
     : document_(document), diagnostics_(diagnostics), node_(node), what_(std::move(what)) {
   ok_ = expect_kind(document_, node_, what_, NodeKind::object, diagnostics_);
   requested_.push_back("note");
@@ -188,7 +194,8 @@ ObjectReader::ObjectReader(const Document& document, NodeId node, std::string wh
   if (!ok_) return;
   for (std::string_view key : requested_) {
     const NodeId child = document_.find(node_, key);
-    if (child.valid()) ok_ &= expect_kind(document_, child, describe(key), NodeKind::string, diagnostics_);
+    if (child.valid())
+      ok_ &= expect_kind(document_, child, describe(key), NodeKind::string, diagnostics_);
   }
 }
 
@@ -211,7 +218,8 @@ NodeId ObjectReader::find(std::string_view key, Need need) {
 
 NodeId ObjectReader::find(std::string_view key, Need need, NodeKind kind) {
   const NodeId child = find(key, need);
-  if (!child.valid() || expect_kind(document_, child, describe(key), kind, diagnostics_)) return child;
+  if (!child.valid() || expect_kind(document_, child, describe(key), kind, diagnostics_))
+    return child;
   ok_ = false;
   return {};
 }
@@ -232,9 +240,10 @@ NodeId ObjectReader::array(std::string_view key, size_t minimum, size_t maximum,
   const size_t count = document_[child].child_count;
   if (count >= minimum && count <= maximum) return child;
   ok_ = false;
-  diagnostics_.add(
-      count > maximum ? DiagnosticId::limit_exceeded : DiagnosticId::out_of_range, document_.where(child),
-      fmt::format("{} has {} entries; it must have {} .. {}", describe(key), count, minimum, maximum));
+  diagnostics_.add(count > maximum ? DiagnosticId::limit_exceeded : DiagnosticId::out_of_range,
+                   document_.where(child),
+                   fmt::format("{} has {} entries; it must have {} .. {}", describe(key), count,
+                               minimum, maximum));
   return {};
 }
 
@@ -267,7 +276,8 @@ std::optional<int64_t> ObjectReader::integer(std::string_view key, int64_t minim
   return value;
 }
 
-std::optional<double> ObjectReader::number(std::string_view key, double minimum, double maximum, Need need) {
+std::optional<double> ObjectReader::number(std::string_view key, double minimum, double maximum,
+                                           Need need) {
   const NodeId child = find(key, need);
   if (!child.valid()) return std::nullopt;
   const auto value = read_number(document_, child, describe(key), minimum, maximum, diagnostics_);
@@ -275,17 +285,18 @@ std::optional<double> ObjectReader::number(std::string_view key, double minimum,
   return value;
 }
 
-bool ObjectReader::numbers(std::string_view key, std::span<double> out, double minimum, double maximum,
-                           Need need) {
+bool ObjectReader::numbers(std::string_view key, std::span<double> out, double minimum,
+                           double maximum, Need need) {
   const NodeId child = find(key, need);
   if (!child.valid()) return false;
-  const bool read = read_numbers(document_, child, describe(key), out, minimum, maximum, diagnostics_);
+  const bool read =
+      read_numbers(document_, child, describe(key), out, minimum, maximum, diagnostics_);
   ok_ &= read;
   return read;
 }
 
-std::optional<uint32_t> ObjectReader::word(std::string_view key, std::span<const std::string_view> words,
-                                           Need need) {
+std::optional<uint32_t> ObjectReader::word(std::string_view key,
+                                           std::span<const std::string_view> words, Need need) {
   const NodeId child = find(key, need);
   if (!child.valid()) return std::nullopt;
   const auto value = read_word(document_, child, describe(key), words, diagnostics_);
@@ -302,8 +313,8 @@ bool ObjectReader::finish() {
     // a hostile object may have hundreds of thousands of unknown keys
     if (diagnostics_.full()) break;
     const std::string_view meant = nearest(key, requested_);
-    const auto missing =
-        std::find_if(missing_.begin(), missing_.end(), [&](const Missing& one) { return one.key == meant; });
+    const auto missing = std::find_if(missing_.begin(), missing_.end(),
+                                      [&](const Missing& one) { return one.key == meant; });
     Diagnostic fresh{DiagnosticId::unknown_key,
                      document_.where_key(child),
                      fmt::format("{} has no key '{}'", what_, shown_token(key)),

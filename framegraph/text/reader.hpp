@@ -77,8 +77,10 @@ private:
 };
 
 // Read single values; `what` names the value in messages ("'size' of import 'depth'").
-std::optional<std::string_view> read_string(const Document&, NodeId, std::string_view what, Diagnostics&);
-std::optional<std::string_view> read_name(const Document&, NodeId, std::string_view what, Diagnostics&);
+std::optional<std::string_view> read_string(const Document&, NodeId, std::string_view what,
+                                            Diagnostics&);
+std::optional<std::string_view> read_name(const Document&, NodeId, std::string_view what,
+                                          Diagnostics&);
 std::optional<bool> read_boolean(const Document&, NodeId, std::string_view what, Diagnostics&);
 std::optional<int64_t> read_integer(const Document&, NodeId, std::string_view what, int64_t minimum,
                                     int64_t maximum, Diagnostics&);
@@ -86,13 +88,14 @@ std::optional<double> read_number(const Document&, NodeId, std::string_view what
                                   double maximum, Diagnostics&);
 std::optional<uint32_t> read_word(const Document&, NodeId, std::string_view what,
                                   std::span<const std::string_view> words, Diagnostics&);
-bool read_numbers(const Document&, NodeId, std::string_view what, std::span<double> out, double minimum,
-                  double maximum, Diagnostics&);
+bool read_numbers(const Document&, NodeId, std::string_view what, std::span<double> out,
+                  double minimum, double maximum, Diagnostics&);
 bool expect_kind(const Document&, NodeId, std::string_view what, NodeKind kind, Diagnostics&);
 
 // Returns whether `name` is [A-Za-z_][A-Za-z0-9_]* with at most limits::name_bytes; else reports an
 // error at `where`.
-bool check_name(std::string_view name, std::string_view what, const SourceLocation& where, Diagnostics&);
+bool check_name(std::string_view name, std::string_view what, const SourceLocation& where,
+                Diagnostics&);
 
 // Returns the first member of `object` whose key resembles `key`; invalid if there is none.
 NodeId find_misspelt(const Document&, NodeId object, std::string_view key);

@@ -16,8 +16,10 @@ Memory::Memory(const Plan& plan) : plan_(plan), spaces_(plan.heaps.size()) {
     space[0].end = UINT64_MAX;
 }
 
-void Memory::add_instance(const Subresource& subresource, uint32_t count, uint32_t used_subresources) {
-  InstanceSubresources place{static_cast<uint32_t>(subresources.size()), count, used_subresources, 0};
+void Memory::add_instance(const Subresource& subresource, uint32_t count,
+                          uint32_t used_subresources) {
+  InstanceSubresources place{static_cast<uint32_t>(subresources.size()), count, used_subresources,
+                             0};
   if (subresource.placement != no_instance) {
     const Placement& memory = plan_.placements[subresource.placement];
     place.space = memory.heap;
@@ -46,7 +48,8 @@ SubresourceEvents* Memory::find(InstanceEvents& occupant, uint32_t subresource) 
   const auto found =
       std::lower_bound(occupant.subresources.begin(), occupant.subresources.end(), subresource,
                        [](const SubresourceEvents& a, uint32_t b) { return a.subresource < b; });
-  return found != occupant.subresources.end() && found->subresource == subresource ? &*found : nullptr;
+  return found != occupant.subresources.end() && found->subresource == subresource ? &*found
+                                                                                   : nullptr;
 }
 
 std::vector<Event>& Memory::events_of(ByteRange& range, uint32_t subresource) const {
@@ -55,8 +58,9 @@ std::vector<Event>& Memory::events_of(ByteRange& range, uint32_t subresource) co
                                [&](const InstanceEvents& one) { return one.instance == owner; });
   if (occupant == range.occupants.end())
     occupant = range.occupants.insert(range.occupants.end(), InstanceEvents{owner, {}});
-  const auto at = std::lower_bound(occupant->subresources.begin(), occupant->subresources.end(), subresource,
-                                   [](const SubresourceEvents& a, uint32_t b) { return a.subresource < b; });
+  const auto at =
+      std::lower_bound(occupant->subresources.begin(), occupant->subresources.end(), subresource,
+                       [](const SubresourceEvents& a, uint32_t b) { return a.subresource < b; });
   if (at != occupant->subresources.end() && at->subresource == subresource) return at->events;
   return occupant->subresources.insert(at, SubresourceEvents{subresource, {}})->events;
 }
@@ -64,7 +68,8 @@ std::vector<Event>& Memory::events_of(ByteRange& range, uint32_t subresource) co
 // The ranges of `place` must be isolated.
 template <class Visit> void Memory::for_each_range(const InstanceSubresources& place, Visit visit) {
   std::map<uint64_t, ByteRange>& space = spaces_[place.space];
-  for (auto range = space.lower_bound(place.begin); range != space.end() && range->first < place.end; ++range)
+  for (auto range = space.lower_bound(place.begin);
+       range != space.end() && range->first < place.end; ++range)
     visit(range->second);
 }
 
@@ -86,8 +91,8 @@ void Memory::add_read(uint32_t subresource, const Event& event) {
   for_each_range(instances[subresources[subresource].owner], [&](ByteRange& range) {
     std::vector<Event>& events = events_of(range, subresource);
     const auto same = std::find_if(events.rbegin(), events.rend(), [&](const Event& one) {
-      return one.is_write ||
-             (one.stages == event.stages && one.queue == event.queue && one.ordered == event.ordered);
+      return one.is_write || (one.stages == event.stages && one.queue == event.queue &&
+                              one.ordered == event.ordered);
     });
     if (same == events.rend() || same->is_write) {
       events.push_back(event);
@@ -109,11 +114,14 @@ void Memory::acquire(ByteRange& range, uint32_t owner, bool whole, const Event& 
       subresource.defined = false;
       if (subresource.written) --instances[other.instance].written_subresources;
       subresource.written = false;
-      if (whole) std::erase_if(left.events, [&](const Event& event) { return is_before(event, write); });
+      if (whole)
+        std::erase_if(left.events, [&](const Event& event) { return is_before(event, write); });
     }
-    std::erase_if(other.subresources, [](const SubresourceEvents& left) { return left.events.empty(); });
+    std::erase_if(other.subresources,
+                  [](const SubresourceEvents& left) { return left.events.empty(); });
   }
-  std::erase_if(range.occupants, [](const InstanceEvents& one) { return one.subresources.empty(); });
+  std::erase_if(range.occupants,
+                [](const InstanceEvents& one) { return one.subresources.empty(); });
 }
 
 void Memory::add_write(uint32_t subresource, const Event& event) {

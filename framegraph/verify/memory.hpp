@@ -44,8 +44,8 @@ public:
   // Marks a subresource as holding an earlier frame, as the executor left it.
   void set_kept(uint32_t subresource, int64_t of_frame, Layout layout);
 
-  // Calls visit(SubresourceEvents&, bool own) for the subresource itself and for each subresource of
-  // another instance that has events on some of the instance's bytes. Subresources of one image
+  // Calls visit(SubresourceEvents&, bool own) for the subresource itself and for each subresource
+  // of another instance that has events on some of the instance's bytes. Subresources of one image
   // share no byte.
   template <class Visit> void for_each_overlap(uint32_t subresource, Visit visit) {
     const uint32_t owner = subresources[subresource].owner;

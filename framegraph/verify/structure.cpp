@@ -33,7 +33,9 @@ struct Checker {
       violations.push_back(fmt::format("{} (index {})", what, index));
   }
 
-  static bool range_in(uint64_t first, uint64_t count, size_t size) { return first + count <= size; }
+  static bool range_in(uint64_t first, uint64_t count, size_t size) {
+    return first + count <= size;
+  }
 
   bool object_exists(uint32_t resource, uint32_t frames_back) const {
     return resource < plan.resources.size() && frames_back <= deepest[resource];
@@ -43,16 +45,16 @@ struct Checker {
   bool has(uint32_t number, const SubresourceRange& range) const {
     const PlanResource& resource = plan.resources[number];
     if (resource.first_instance == no_instance) return range == resource.whole();
-    return range.mips >= 1 && uint32_t{range.first_mip} + range.mips <= resource.mips && range.layers >= 1 &&
-           uint32_t{range.first_layer} + range.layers <= resource.layers;
+    return range.mips >= 1 && uint32_t{range.first_mip} + range.mips <= resource.mips &&
+           range.layers >= 1 && uint32_t{range.first_layer} + range.layers <= resource.layers;
   }
 
   void resources() {
     for (size_t i = 0; i < plan.resources.size(); ++i) {
       const PlanResource& resource = plan.resources[i];
       const bool buffer = resource.type != ResourceType::image;
-      expect(resource.mips >= 1 && resource.mips <= (buffer ? 1 : max_mips) && resource.layers >= 1 &&
-                 resource.layers <= (buffer ? 1 : limits::image_layers),
+      expect(resource.mips >= 1 && resource.mips <= (buffer ? 1 : max_mips) &&
+                 resource.layers >= 1 && resource.layers <= (buffer ? 1 : limits::image_layers),
              "a resource has no mips or layers, or too many", i);
       expect(resource.instance_count >= 1, "a resource has no instance", i);
       const bool host = resource.origin == Origin::imported || resource.exported;
@@ -60,15 +62,17 @@ struct Checker {
              "memory must belong to the host or to a heap, not to both", i);
       expect(host || resource.type != ResourceType::acceleration_structure,
              "an acceleration structure is not owned by the host", i);
-      expect(!host || resource.instance_count == 1, "a resource of the host must have exactly one instance",
-             i);
+      expect(!host || resource.instance_count == 1,
+             "a resource of the host must have exactly one instance", i);
       if (host) continue;
-      const bool inside = range_in(resource.first_instance, resource.instance_count, plan.placements.size());
+      const bool inside =
+          range_in(resource.first_instance, resource.instance_count, plan.placements.size());
       expect(inside, "a resource refers to placements that do not exist", i);
       for (uint32_t k = 0; inside && k < resource.instance_count; ++k) {
         const Placement& placement = plan.placements[resource.first_instance + k];
         expect(placement.resource == i, "a placement belongs to another resource", i);
-        expect(placement.persistent == (deepest[i] > 0), "only a history may be kept across frames", i);
+        expect(placement.persistent == (deepest[i] > 0), "only a history may be kept across frames",
+               i);
       }
     }
   }
@@ -175,8 +179,10 @@ struct Checker {
         expect(exists, "a pass accesses a resource or an earlier frame that does not exist", p);
         expect(!exists || has(access.resource, access.range),
                "a pass accesses mips or layers that do not exist", p);
-        if (!exists || plan.resources[access.resource].first_instance >= plan.placements.size()) continue;
-        const Placement& placement = plan.placements[plan.resources[access.resource].first_instance];
+        if (!exists || plan.resources[access.resource].first_instance >= plan.placements.size())
+          continue;
+        const Placement& placement =
+            plan.placements[plan.resources[access.resource].first_instance];
         expect(placement.first_use <= p && p <= placement.last_use,
                "a pass accesses memory outside its lifetime", p);
       }
@@ -198,7 +204,8 @@ struct Checker {
 
   void orderings() {
     for (size_t o = 0; o < plan.orderings.size(); ++o)
-      expect(plan.orderings[o].earlier < plan.passes.size() && plan.orderings[o].later < plan.passes.size(),
+      expect(plan.orderings[o].earlier < plan.passes.size() &&
+                 plan.orderings[o].later < plan.passes.size(),
              "an ordering names passes that do not exist", o);
     expect(std::is_sorted(plan.orderings.begin(), plan.orderings.end()),
            "orderings are not sorted by their passes", 0);
@@ -216,7 +223,8 @@ struct Checker {
       expect(history.frames >= 1 && history.range_count >= 1 && instances <= history.frames + 1 &&
                  instances >= history.frames &&
                  range_in(history.first_range, history.range_count, plan.history_ranges.size()) &&
-                 range_in(history.first_layout, (uint64_t{history.frames} + 1) * history.range_count,
+                 range_in(history.first_layout,
+                          (uint64_t{history.frames} + 1) * history.range_count,
                           plan.history_layouts.size()),
              "a history has the wrong number of instances, subresource ranges or layouts", h);
       const bool ranges_exist =
@@ -231,13 +239,13 @@ struct Checker {
       if (history.resource < plan.resources.size())
         maximum = std::max(maximum, plan.resources[history.resource].instance_count);
     for (size_t r = 0; r < plan.resources.size(); ++r)
-      expect(plan.resources[r].instance_count <= maximum, "a resource has more instances than any history",
-             r);
+      expect(plan.resources[r].instance_count <= maximum,
+             "a resource has more instances than any history", r);
     for (size_t r = 0; r < plan.resources.size(); ++r) {
       const uint32_t first = plan.resources[r].first_instance;
       const bool kept = first < plan.placements.size() && plan.placements[first].persistent;
-      expect(described[r] == (kept || deepest[r] > 0 ? 1u : 0u), "a history is not described exactly once",
-             r);
+      expect(described[r] == (kept || deepest[r] > 0 ? 1u : 0u),
+             "a history is not described exactly once", r);
     }
   }
 };

@@ -31,7 +31,8 @@ std::vector<SubresourceGrid> subresource_grids(const Plan& plan) {
   return grids;
 }
 
-std::vector<uint32_t> used_subresource_counts(const Plan& plan, const std::vector<SubresourceGrid>& grids) {
+std::vector<uint32_t> used_subresource_counts(const Plan& plan,
+                                              const std::vector<SubresourceGrid>& grids) {
   std::vector<uint32_t> used(grids.size(), 0);
   std::vector<std::vector<uint8_t>> seen(grids.size());
   const auto use = [&](uint32_t resource, const SubresourceRange& range) {

@@ -1,6 +1,6 @@
 #pragma once
-// Divides each image of a plan into the smallest number of subresources such that the range of every
-// access and barrier is a set of whole subresources.
+// Divides each image of a plan into the smallest number of subresources such that the range of
+// every access and barrier is a set of whole subresources.
 
 #include "framegraph/compile/plan.hpp"
 
@@ -32,7 +32,8 @@ private:
   static std::pair<uint32_t, uint32_t> between(const std::vector<uint16_t>& cuts, uint32_t first,
                                                uint32_t count) {
     const auto place = [&](uint32_t value) {
-      return static_cast<uint32_t>(std::lower_bound(cuts.begin(), cuts.end() - 1, value) - cuts.begin());
+      return static_cast<uint32_t>(std::lower_bound(cuts.begin(), cuts.end() - 1, value) -
+                                   cuts.begin());
     };
     return {place(first), place(first + count)};
   }
@@ -42,7 +43,8 @@ private:
 std::vector<SubresourceGrid> subresource_grids(const Plan& plan);
 
 // Returns for each resource how many of its subresources an access or barrier uses.
-std::vector<uint32_t> used_subresource_counts(const Plan& plan, const std::vector<SubresourceGrid>& grids);
+std::vector<uint32_t> used_subresource_counts(const Plan& plan,
+                                              const std::vector<SubresourceGrid>& grids);
 
 // Returns whether the two ranges have a mip of a layer in common.
 bool overlap(const SubresourceRange& a, const SubresourceRange& b);

@@ -35,7 +35,8 @@ struct Waits {
   bool knows(int64_t pass) const { return !until.empty() && until.back() >= pass; }
   // Returns the first pass that is ordered after `pass`.
   int64_t since(int64_t pass) const {
-    return at[static_cast<size_t>(std::lower_bound(until.begin(), until.end(), pass) - until.begin())];
+    return at[static_cast<size_t>(std::lower_bound(until.begin(), until.end(), pass) -
+                                  until.begin())];
   }
 };
 
@@ -64,14 +65,16 @@ struct Machine {
       for (uint32_t i = 0; i < resource.instance_count; ++i) {
         Subresource subresource;
         subresource.image = resource.type == ResourceType::image;
-        if (resource.first_instance != no_instance) subresource.placement = resource.first_instance + i;
+        if (resource.first_instance != no_instance)
+          subresource.placement = resource.first_instance + i;
         subresource.with_host = resource.first_instance == no_instance;
         memory.add_instance(subresource, grids[r].count(), used[r]);
       }
     }
     in_place.assign(plan.resources.size(), 0);
     for (const PlanHistory& history : plan.histories)
-      in_place[history.resource] = plan.resources[history.resource].instance_count == history.frames;
+      in_place[history.resource] =
+          plan.resources[history.resource].instance_count == history.frames;
     for_each_kept([&](const PlanHistory&, uint32_t back, Layout layout, uint32_t index) {
       memory.set_kept(index, -int64_t{back}, layout);
     });
@@ -82,11 +85,12 @@ struct Machine {
   template <class Visit> void for_each_kept(Visit visit) const {
     for (const PlanHistory& history : plan.histories)
       for (uint32_t i = history.range_count; i < (history.frames + 1) * history.range_count; ++i)
-        for_each_subresource(
-            history.resource, i / history.range_count,
-            plan.history_ranges[history.first_range + i % history.range_count], [&](uint32_t index) {
-              visit(history, i / history.range_count, plan.history_layouts[history.first_layout + i], index);
-            });
+        for_each_subresource(history.resource, i / history.range_count,
+                             plan.history_ranges[history.first_range + i % history.range_count],
+                             [&](uint32_t index) {
+                               visit(history, i / history.range_count,
+                                     plan.history_layouts[history.first_layout + i], index);
+                             });
   }
 
   uint32_t instance_of(uint32_t resource, uint32_t frames_back) const {
@@ -102,10 +106,11 @@ struct Machine {
     grids[resource].for_each_in(range, [&](uint32_t cell) { visit(first + cell); });
   }
 
-  void object(const std::string& what, uint32_t resource, uint32_t frames_back, const std::string& where) {
+  void object(const std::string& what, uint32_t resource, uint32_t frames_back,
+              const std::string& where) {
     if (violations.size() < max_violations)
-      violations.push_back(
-          fmt::format("frame {}, {}: resource {}@-{}: {}", frame, where, resource, frames_back, what));
+      violations.push_back(fmt::format("frame {}, {}: resource {}@-{}: {}", frame, where, resource,
+                                       frames_back, what));
   }
 
   // Returns whether the check has exceeded its work limit.
@@ -131,13 +136,14 @@ struct Machine {
       if (in_place[r] != 0) continue; // still holds the oldest frame
       for_each_subresource(r, 0, plan.resources[r].whole(), [&](uint32_t index) {
         Subresource& current = memory.subresources[index];
-        current.defined = current.placement == no_instance && plan.resources[r].origin == Origin::imported;
+        current.defined =
+            current.placement == no_instance && plan.resources[r].origin == Origin::imported;
       });
     }
     for_each_kept([&](const PlanHistory& history, uint32_t back, Layout layout, uint32_t index) {
       if (memory.subresources[index].layout != layout)
-        object("is not in the layout that the plan states for the start of a frame", history.resource, back,
-               "start");
+        object("is not in the layout that the plan states for the start of a frame",
+               history.resource, back, "start");
     });
   }
 
@@ -152,9 +158,11 @@ struct Machine {
   }
 
   static void show(Event& event, const Visible& to) {
-    const bool shown = std::any_of(event.visible.begin(), event.visible.end(), [&](const Visible& one) {
-      return one.queue == to.queue && (to.stages & ~one.stages) == 0 && (to.access & ~one.access) == 0;
-    });
+    const bool shown =
+        std::any_of(event.visible.begin(), event.visible.end(), [&](const Visible& one) {
+          return one.queue == to.queue && (to.stages & ~one.stages) == 0 &&
+                 (to.access & ~one.access) == 0;
+        });
     if (!shown) event.visible.push_back(to);
   }
 
@@ -165,7 +173,8 @@ struct Machine {
     order(event, barrier.destination_stages);
     if (!event.is_write) return;
     if (direct && (event.writes & ~barrier.source_access) == 0) event.available = true;
-    if (event.available) show(event, {queue, barrier.destination_stages, barrier.destination_access});
+    if (event.available)
+      show(event, {queue, barrier.destination_stages, barrier.destination_access});
   }
 
   // Applies waits: a wait orders and makes visible everything that the other queue had done, or had
@@ -195,9 +204,9 @@ struct Machine {
     const size_t other = index_of(other_than(queue));
     const size_t awaited = points_before[other] + point;
     if (awaited > reached[other].size())
-      report_violation(fmt::format(
-          "frame {}, {}: waits for point {} of the other queue, which is not signalled before the wait",
-          frame, where, point));
+      report_violation(fmt::format("frame {}, {}: waits for point {} of the other queue, which is "
+                                   "not signalled before the wait",
+                                   frame, where, point));
     else if (awaited > 0) // 0: frames before the first, which need no wait
       waits[index_of(queue)].add(reached[other][awaited - 1], now);
   }
@@ -206,7 +215,8 @@ struct Machine {
     if (point == 0) return;
     std::vector<int64_t>& own = reached[index_of(queue)];
     if (point != own.size() - points_before[index_of(queue)] + 1)
-      report_violation(fmt::format("frame {}, {}: signals point {} out of order", frame, where, point));
+      report_violation(
+          fmt::format("frame {}, {}: signals point {} out of order", frame, where, point));
     own.push_back(now);
   }
 
@@ -244,7 +254,8 @@ struct Machine {
     case PlanBarrier::Transfer::acquire:
       if (subresource.queue == queue || !subresource.in_transfer)
         wrong("is acquired without a release by the other queue");
-      if (subresource.released_old != barrier.old_layout || subresource.released_new != barrier.new_layout)
+      if (subresource.released_old != barrier.old_layout ||
+          subresource.released_new != barrier.new_layout)
         wrong("is acquired with different layouts than it was released with");
       subresource.queue = queue;
       subresource.in_transfer = false;
@@ -260,9 +271,12 @@ struct Machine {
   void run(const PlanBarrier& barrier, uint32_t index, const std::string& where) {
     if (is_over()) return;
     Subresource& subresource = memory.subresources[index];
-    const auto wrong = [&](const char* what) { object(what, barrier.resource, barrier.frames_back, where); };
+    const auto wrong = [&](const char* what) {
+      object(what, barrier.resource, barrier.frames_back, where);
+    };
     if (barrier.to_host) {
-      if (subresource.placement != no_instance) wrong("is returned to the host, which does not own it");
+      if (subresource.placement != no_instance)
+        wrong("is returned to the host, which does not own it");
       if (subresource.returned_to_host) wrong("is returned to the host twice");
       subresource.returned_to_host = true;
     }
@@ -295,7 +309,8 @@ struct Machine {
         if (!transition) continue;
         if (!starts_from(event, barrier.source_stages))
           wrong("changes layout before an earlier access is done");
-        if (event.is_write && !event.available) wrong("changes layout before an earlier write is available");
+        if (event.is_write && !event.available)
+          wrong("changes layout before an earlier write is available");
       }
     });
     if (!transition) return;
@@ -308,8 +323,8 @@ struct Machine {
     for (uint32_t b = 0; b < count; ++b) {
       if ((barriers[b].transfer == PlanBarrier::Transfer::release) != releases)
         report_violation(fmt::format(
-            "frame {}, {}: a release belongs after a pass, and all other barriers belong before it", frame,
-            where));
+            "frame {}, {}: a release belongs after a pass, and all other barriers belong before it",
+            frame, where));
       run(barriers[b], where);
     }
   }
@@ -328,8 +343,11 @@ struct Machine {
   void check(const PlanAccess& access, uint32_t index, const std::string& where) {
     if (is_over()) return;
     const Subresource& subresource = memory.subresources[index];
-    const auto wrong = [&](const char* what) { object(what, access.resource, access.frames_back, where); };
-    const Access as_read = access.access & ~all_write_access, as_write = access.access & all_write_access;
+    const auto wrong = [&](const char* what) {
+      object(what, access.resource, access.frames_back, where);
+    };
+    const Access as_read = access.access & ~all_write_access,
+                 as_write = access.access & all_write_access;
     const bool reads = as_read != 0, writes = as_write != 0;
     if (subresource.with_host) return wrong("is accessed while the host owns it");
     if (writes && access.frames_back > 0) wrong("is written, although it holds an earlier frame");
@@ -347,7 +365,8 @@ struct Machine {
       for (size_t e = there.events.size(); e-- > 0;) {
         const Event& event = there.events[e];
         const bool ordered = (access.stages & ~event.ordered[index_of(queue)]) == 0;
-        if ((event.is_write || writes) && !ordered) wrong("is accessed before an earlier access is done");
+        if ((event.is_write || writes) && !ordered)
+          wrong("is accessed before an earlier access is done");
         if (writes && event.is_write && !event.available)
           wrong("is written before an earlier write is available");
         if (reads && own && event.is_write && !visible(event, access.stages, as_read))
@@ -386,8 +405,9 @@ struct Machine {
       const bool known = plan.passes[at->earlier].queue == queue ||
                          waits[index_of(queue)].knows(frame_began + at->earlier + 1);
       if (at->earlier >= position || !known)
-        report_violation(fmt::format("frame {}, {}: does not run after pass {}, as the graph requires", frame,
-                                     where, at->earlier));
+        report_violation(
+            fmt::format("frame {}, {}: does not run after pass {}, as the graph requires", frame,
+                        where, at->earlier));
     }
   }
 
@@ -407,7 +427,8 @@ struct Machine {
     for (uint32_t a = 0; a < pass.access_count; ++a)
       for_each_subresource(accesses[a].resource, accesses[a].frames_back, accesses[a].range,
                            [&](uint32_t index) { record_access(accesses[a], index); });
-    run(plan.barriers.data() + pass.first_barrier + pass.barrier_count, pass.release_count, true, where);
+    run(plan.barriers.data() + pass.first_barrier + pass.barrier_count, pass.release_count, true,
+        where);
     reach(pass.signal, where);
   }
 
@@ -420,7 +441,8 @@ struct Machine {
     queue = Queue::main;
     ++now;
     wait(plan.final_wait, "final batch");
-    run(plan.barriers.data() + plan.first_final_barrier, plan.final_barrier_count, false, "final batch");
+    run(plan.barriers.data() + plan.first_final_barrier, plan.final_barrier_count, false,
+        "final batch");
     for (uint32_t r = 0; r < plan.resources.size(); ++r)
       if (plan.resources[r].first_instance == no_instance &&
           !memory.subresources[memory.instances[first_instance[r]].first].returned_to_host)
@@ -457,7 +479,8 @@ Verdict verify(const Plan& plan) {
     machine.run_frame();
   Verdict verdict{std::move(machine.violations), ""};
   if (machine.is_over())
-    verdict.not_verified = fmt::format("its accesses overlap in memory more than {} times", max_work);
+    verdict.not_verified =
+        fmt::format("its accesses overlap in memory more than {} times", max_work);
   return verdict;
 }
 

@@ -1,6 +1,6 @@
 #pragma once
-// Checks a plan independently of the compiler: a happens-before model that reads only the plan, sharing
-// no code with compile/. An accepted plan has no hazard that the model can express;
+// Checks a plan independently of the compiler: a happens-before model that reads only the plan,
+// sharing no code with compile/. An accepted plan has no hazard that the model can express;
 // subresources.hpp lists the rules.
 
 #include "framegraph/compile/plan.hpp"

@@ -12,7 +12,8 @@ uint32_t instance_of(const Plan& plan, const PlanAccess& access, uint32_t frame)
   return (frame % count + count - access.frames_back % count) % count;
 }
 
-bool lie_in_same_memory(const Plan& plan, const PlanAccess& a, const PlanAccess& b, uint32_t frame) {
+bool lie_in_same_memory(const Plan& plan, const PlanAccess& a, const PlanAccess& b,
+                        uint32_t frame) {
   const uint32_t first = plan.resources[a.resource].first_instance;
   const uint32_t second = plan.resources[b.resource].first_instance;
   // host memory: nothing else lies there
@@ -21,10 +22,13 @@ bool lie_in_same_memory(const Plan& plan, const PlanAccess& a, const PlanAccess&
                       plan.placements[second + instance_of(plan, b, frame)]);
 }
 
-const char* race_of(const Plan& plan, const PlanAccess& write, const PlanAccess& other, uint32_t frame) {
-  if (write.resource != other.resource || instance_of(plan, write, frame) != instance_of(plan, other, frame))
-    return lie_in_same_memory(plan, write, other, frame) ? "aliases memory that the same pass writes"
-                                                         : nullptr;
+const char* race_of(const Plan& plan, const PlanAccess& write, const PlanAccess& other,
+                    uint32_t frame) {
+  if (write.resource != other.resource ||
+      instance_of(plan, write, frame) != instance_of(plan, other, frame))
+    return lie_in_same_memory(plan, write, other, frame)
+               ? "aliases memory that the same pass writes"
+               : nullptr;
   const bool own = (other.access & all_write_access) == 0 && other.own_texels;
   if (own || !overlap(write.range, other.range)) return nullptr;
   return "is read without own_texels by the pass that writes it";

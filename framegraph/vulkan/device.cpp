@@ -27,12 +27,14 @@ Error read_queue_family(const DeviceInput& input, Device& device) {
   device.vk.vkGetPhysicalDeviceQueueFamilyProperties(device.physical, &count, families.data());
   if (input.queue_family >= count)
     return {ErrorKind::argument, VK_SUCCESS,
-            fmt::format("queue family {} does not exist; the device has {}", input.queue_family, count)};
+            fmt::format("queue family {} does not exist; the device has {}", input.queue_family,
+                        count)};
   const VkQueueFamilyProperties& family = families[input.queue_family];
   if ((family.queueFlags & VK_QUEUE_COMPUTE_BIT) == 0)
     return {ErrorKind::argument, VK_SUCCESS,
-            fmt::format("queue family {} does not support compute; use a family with VK_QUEUE_COMPUTE_BIT",
-                        input.queue_family)};
+            fmt::format(
+                "queue family {} does not support compute; use a family with VK_QUEUE_COMPUTE_BIT",
+                input.queue_family)};
   device.queue_family = input.queue_family;
   device.timestamp_valid_bits = family.timestampValidBits;
   return {};
@@ -43,8 +45,8 @@ Error read_queue_family(const DeviceInput& input, Device& device) {
 Error make_device(const DeviceInput& input, Device& device) {
   if (Error error = check_handles(input)) return error;
   device = {};
-  const std::vector<std::string> missing =
-      load_functions(input.get_instance_proc_addr, input.instance, input.device, input.labels, device.vk);
+  const std::vector<std::string> missing = load_functions(
+      input.get_instance_proc_addr, input.instance, input.device, input.labels, device.vk);
   device.instance = input.instance;
   device.physical = input.physical;
   device.device = input.device;
@@ -52,14 +54,17 @@ Error make_device(const DeviceInput& input, Device& device) {
   if (device.vk.vkGetPhysicalDeviceProperties != nullptr)
     device.vk.vkGetPhysicalDeviceProperties(device.physical, &device.properties);
   if (!missing.empty())
-    return {ErrorKind::unsupported, VK_SUCCESS, explain_missing(missing, device.properties.apiVersion)};
+    return {ErrorKind::unsupported, VK_SUCCESS,
+            explain_missing(missing, device.properties.apiVersion)};
   device.vk.vkGetPhysicalDeviceMemoryProperties(device.physical, &device.memory);
   const uint32_t version = device.properties.apiVersion;
   if (version < VK_API_VERSION_1_2)
     return {ErrorKind::unsupported, VK_SUCCESS,
-            fmt::format("the device {} supports Vulkan {}.{}; 1.2 is required", device.properties.deviceName,
-                        VK_API_VERSION_MAJOR(version), VK_API_VERSION_MINOR(version))};
-  if (std::string reason = explain_old_instance(device.vk.vkGetDeviceProcAddr, device.device, version);
+            fmt::format("the device {} supports Vulkan {}.{}; 1.2 is required",
+                        device.properties.deviceName, VK_API_VERSION_MAJOR(version),
+                        VK_API_VERSION_MINOR(version))};
+  if (std::string reason =
+          explain_old_instance(device.vk.vkGetDeviceProcAddr, device.device, version);
       !reason.empty())
     return {ErrorKind::unsupported, VK_SUCCESS, std::move(reason)};
   if (Error error = read_queue_family(input, device)) return error;
@@ -76,8 +81,8 @@ Error make_device(const DeviceInput& input, Device& device) {
 
 void name_object(const Device& device, VkObjectType type, uint64_t handle, const char* name) {
   if (!device.labels || handle == 0) return;
-  const VkDebugUtilsObjectNameInfoEXT info{VK_STRUCTURE_TYPE_DEBUG_UTILS_OBJECT_NAME_INFO_EXT, nullptr, type,
-                                           handle, name};
+  const VkDebugUtilsObjectNameInfoEXT info{VK_STRUCTURE_TYPE_DEBUG_UTILS_OBJECT_NAME_INFO_EXT,
+                                           nullptr, type, handle, name};
   // Names are a debugging aid, so a failure is ignored.
   static_cast<void>(device.vk.vkSetDebugUtilsObjectNameEXT(device.device, &info));
 }

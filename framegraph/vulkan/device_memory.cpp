@@ -30,8 +30,8 @@ std::optional<uint32_t> choose_type(const Device& device, const MemoryRequest& r
   return fallback;
 }
 
-Error take_from_host(const Device& device, const MemoryRequest& request, const std::string& subresource,
-                     MemoryBlock& block) {
+Error take_from_host(const Device& device, const MemoryRequest& request,
+                     const std::string& subresource, MemoryBlock& block) {
   MemoryBlock given;
   const VkResult result = device.host_memory.take(device.host_memory.user, request, given);
   if (result != VK_SUCCESS)
@@ -48,28 +48,32 @@ Error take_from_host(const Device& device, const MemoryRequest& request, const s
           fmt::format("{}: the host's allocator returned {}", subresource,
                       given.memory == VK_NULL_HANDLE ? std::string("no memory")
                       : unmapped                     ? std::string("memory that is not mapped")
-                                 : fmt::format("offset {}, which is not a multiple of {}", given.offset,
-                                               request.alignment))};
+                                 : fmt::format("offset {}, which is not a multiple of {}",
+                                               given.offset, request.alignment))};
 }
 
 } // namespace
 
-Error allocate_memory(const Device& device, const MemoryRequest& request, const std::string& subresource,
-                      MemoryBlock& block) {
-  if (device.host_memory.take != nullptr) return take_from_host(device, request, subresource, block);
+Error allocate_memory(const Device& device, const MemoryRequest& request,
+                      const std::string& subresource, MemoryBlock& block) {
+  if (device.host_memory.take != nullptr)
+    return take_from_host(device, request, subresource, block);
   const auto type = choose_type(device, request);
   if (!type)
     return {ErrorKind::unsupported, VK_SUCCESS,
-            fmt::format("{}: the device has no memory type among {:#x}", subresource, request.memory_types)};
+            fmt::format("{}: the device has no memory type among {:#x}", subresource,
+                        request.memory_types)};
   VkMemoryAllocateInfo info{};
   info.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO;
   info.allocationSize = request.bytes;
   info.memoryTypeIndex = *type;
   MemoryBlock taken;
-  VkResult result = device.vk.vkAllocateMemory(device.device, &info, device.allocator, &taken.memory);
+  VkResult result =
+      device.vk.vkAllocateMemory(device.device, &info, device.allocator, &taken.memory);
   if (result != VK_SUCCESS)
-    return call_error(result, "vkAllocateMemory",
-                      fmt::format("{}, {} bytes of memory type {}", subresource, request.bytes, *type));
+    return call_error(
+        result, "vkAllocateMemory",
+        fmt::format("{}, {} bytes of memory type {}", subresource, request.bytes, *type));
   if ((request.required & VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT) != 0) {
     result = device.vk.vkMapMemory(device.device, taken.memory, 0, VK_WHOLE_SIZE, 0, &taken.mapped);
     if (result != VK_SUCCESS) {
@@ -93,13 +97,15 @@ void give_back_memory(const Device& device, const MemoryBlock& block) {
 uint64_t heap_alignment(const Device& device, const Plan& plan, uint32_t heap) {
   uint64_t alignment = 1;
   for (const PlanResource& resource : plan.resources) {
-    if (resource.first_instance == no_instance || plan.placements[resource.first_instance].heap != heap)
+    if (resource.first_instance == no_instance ||
+        plan.placements[resource.first_instance].heap != heap)
       continue;
     VkMemoryRequirements2 needs{};
     needs.sType = VK_STRUCTURE_TYPE_MEMORY_REQUIREMENTS_2;
     if (resource.type == ResourceType::image) {
-      const VkImageCreateInfo info = image_create_info({resource.format, resource.width, resource.height,
-                                                        resource.mips, resource.layers, resource.vk_usage});
+      const VkImageCreateInfo info =
+          image_create_info({resource.format, resource.width, resource.height, resource.mips,
+                             resource.layers, resource.vk_usage});
       VkDeviceImageMemoryRequirements ask{};
       ask.sType = VK_STRUCTURE_TYPE_DEVICE_IMAGE_MEMORY_REQUIREMENTS;
       ask.pCreateInfo = &info;

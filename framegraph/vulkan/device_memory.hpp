@@ -16,8 +16,8 @@ namespace dermis::vulkan {
 // the preferred properties come first. `subresource` names the memory in messages. Errors:
 // unsupported (no such type), device_memory, host_memory, device_lost, vulkan; `block` is then
 // unchanged. Free-threaded.
-Error allocate_memory(const Device& device, const MemoryRequest& request, const std::string& subresource,
-                      MemoryBlock& block);
+Error allocate_memory(const Device& device, const MemoryRequest& request,
+                      const std::string& subresource, MemoryBlock& block);
 // Frees the block; does nothing if the block is empty. Free-threaded.
 void give_back_memory(const Device& device, const MemoryBlock& block);
 

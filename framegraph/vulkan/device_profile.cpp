@@ -28,8 +28,8 @@ bool supports(const Device& device, Format format, uint32_t vk_usage) {
 
 MemoryNeeds image_needs(const Device& device, const ImageDescription& image) {
   const VkImageCreateInfo create = image_create_info(image);
-  const VkDeviceImageMemoryRequirements query{VK_STRUCTURE_TYPE_DEVICE_IMAGE_MEMORY_REQUIREMENTS, nullptr,
-                                              &create, VK_IMAGE_ASPECT_NONE};
+  const VkDeviceImageMemoryRequirements query{VK_STRUCTURE_TYPE_DEVICE_IMAGE_MEMORY_REQUIREMENTS,
+                                              nullptr, &create, VK_IMAGE_ASPECT_NONE};
   VkMemoryRequirements2 requirements{};
   requirements.sType = VK_STRUCTURE_TYPE_MEMORY_REQUIREMENTS_2;
   device.vk.vkGetDeviceImageMemoryRequirements(device.device, &query, &requirements);
@@ -38,8 +38,8 @@ MemoryNeeds image_needs(const Device& device, const ImageDescription& image) {
 
 MemoryNeeds buffer_needs(const Device& device, const BufferDescription& buffer) {
   const VkBufferCreateInfo create = buffer_create_info(buffer);
-  const VkDeviceBufferMemoryRequirements query{VK_STRUCTURE_TYPE_DEVICE_BUFFER_MEMORY_REQUIREMENTS, nullptr,
-                                               &create};
+  const VkDeviceBufferMemoryRequirements query{VK_STRUCTURE_TYPE_DEVICE_BUFFER_MEMORY_REQUIREMENTS,
+                                               nullptr, &create};
   VkMemoryRequirements2 requirements{};
   requirements.sType = VK_STRUCTURE_TYPE_MEMORY_REQUIREMENTS_2;
   device.vk.vkGetDeviceBufferMemoryRequirements(device.device, &query, &requirements);
@@ -49,7 +49,8 @@ MemoryNeeds buffer_needs(const Device& device, const BufferDescription& buffer) 
 uint32_t device_local_types(const Device& device) {
   uint32_t bits = 0;
   for (uint32_t i = 0; i < device.memory.memoryTypeCount; ++i)
-    if (device.memory.memoryTypes[i].propertyFlags & VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT) bits |= 1u << i;
+    if (device.memory.memoryTypes[i].propertyFlags & VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT)
+      bits |= 1u << i;
   return bits;
 }
 
@@ -72,8 +73,12 @@ DeviceProfile device_profile(const Device& device) {
   profile.supports = [&device](Format format, uint32_t vk_usage) {
     return supports(device, format, vk_usage);
   };
-  profile.image_needs = [&device](const ImageDescription& image) { return image_needs(device, image); };
-  profile.buffer_needs = [&device](const BufferDescription& buffer) { return buffer_needs(device, buffer); };
+  profile.image_needs = [&device](const ImageDescription& image) {
+    return image_needs(device, image);
+  };
+  profile.buffer_needs = [&device](const BufferDescription& buffer) {
+    return buffer_needs(device, buffer);
+  };
   return profile;
 }
 

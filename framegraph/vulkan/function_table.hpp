@@ -41,7 +41,8 @@ struct FunctionTable {
 };
 
 // Fills `table` and returns the names of all missing functions, in table order. Free-threaded.
-std::vector<std::string> load_functions(PFN_vkGetInstanceProcAddr get_instance_proc_addr, VkInstance instance,
-                                        VkDevice device, bool labels, FunctionTable& table);
+std::vector<std::string> load_functions(PFN_vkGetInstanceProcAddr get_instance_proc_addr,
+                                        VkInstance instance, VkDevice device, bool labels,
+                                        FunctionTable& table);
 
 } // namespace dermis::vulkan

@@ -16,7 +16,9 @@ struct Group {
 };
 
 constexpr Group groups[] = {
-    {VK_KHR_BIND_MEMORY_2_EXTENSION_NAME, VK_API_VERSION_1_1, {"vkBindImageMemory2", "vkBindBufferMemory2"}},
+    {VK_KHR_BIND_MEMORY_2_EXTENSION_NAME,
+     VK_API_VERSION_1_1,
+     {"vkBindImageMemory2", "vkBindBufferMemory2"}},
     {VK_KHR_SYNCHRONIZATION_2_EXTENSION_NAME,
      VK_API_VERSION_1_3,
      {"vkCmdPipelineBarrier2", "vkCmdWriteTimestamp2"}},
@@ -45,7 +47,8 @@ void append(std::string& list, std::string_view separator, std::string_view name
 std::string explain_missing(std::span<const std::string> missing, uint32_t device_version) {
   std::string of_instance, of_extensions, extensions;
   std::vector<std::string> unexplained(missing.begin(), missing.end());
-  const bool can_judge = device_version >= VK_API_VERSION_1_2 && !contains(missing, "vkGetDeviceProcAddr");
+  const bool can_judge =
+      device_version >= VK_API_VERSION_1_2 && !contains(missing, "vkGetDeviceProcAddr");
   for (const Group& group : groups) {
     if (!can_judge || !is_absent(group, missing)) continue;
     if (group.core_version > VK_API_VERSION_1_2) append(extensions, " and ", group.extension);
@@ -56,12 +59,13 @@ std::string explain_missing(std::span<const std::string> missing, uint32_t devic
   }
   std::string text;
   if (!of_instance.empty())
-    text = fmt::format(
-        "the device supports Vulkan {}.{}, but the instance was created for an older version, which "
-        "hides {}; set VkApplicationInfo.apiVersion to VK_API_VERSION_1_3{}{}{}",
-        VK_API_VERSION_MAJOR(device_version), VK_API_VERSION_MINOR(device_version), of_instance,
-        extensions.empty() ? "" : ", or to VK_API_VERSION_1_2 and enable ", extensions,
-        extensions.empty() ? "" : " on the device");
+    text =
+        fmt::format("the device supports Vulkan {}.{}, but the instance was created for an older "
+                    "version, which "
+                    "hides {}; set VkApplicationInfo.apiVersion to VK_API_VERSION_1_3{}{}{}",
+                    VK_API_VERSION_MAJOR(device_version), VK_API_VERSION_MINOR(device_version),
+                    of_instance, extensions.empty() ? "" : ", or to VK_API_VERSION_1_2 and enable ",
+                    extensions, extensions.empty() ? "" : " on the device");
   if (!of_extensions.empty())
     append(text, "; ",
            fmt::format("the device was created without the functions {}; enable {} in "
@@ -81,7 +85,8 @@ std::string explain_old_instance(PFN_vkGetDeviceProcAddr get_device_proc_addr, V
       get_device_proc_addr(device, added_by_1_2) != nullptr)
     return "";
   return fmt::format(
-      "the device supports Vulkan {}.{}, but the instance was created for Vulkan 1.0 or 1.1, which does "
+      "the device supports Vulkan {}.{}, but the instance was created for Vulkan 1.0 or 1.1, which "
+      "does "
       "not allow the kernels' SPIR-V 1.5 and hides {}; set VkApplicationInfo.apiVersion to "
       "VK_API_VERSION_1_3, or to VK_API_VERSION_1_2 and enable {} and {} on the device",
       VK_API_VERSION_MAJOR(device_version), VK_API_VERSION_MINOR(device_version), added_by_1_2,

@@ -1,7 +1,7 @@
 #pragma once
-// Compiles the kernels of a plan and reads what the driver reports about the generated code. Creates
-// pipelines and their layouts only: no memory, image, buffer or command. Drivers that compile for
-// absent hardware can do no more.
+// Compiles the kernels of a plan and reads what the driver reports about the generated code.
+// Creates pipelines and their layouts only: no memory, image, buffer or command. Drivers that
+// compile for absent hardware can do no more.
 
 #include "framegraph/vulkan/executor.hpp"
 #include "framegraph/vulkan/kernel_store.hpp"

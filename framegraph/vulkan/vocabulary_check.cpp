@@ -22,15 +22,16 @@ static_assert(access::transfer_read == VK_ACCESS_2_TRANSFER_READ_BIT);
 static_assert(access::transfer_write == VK_ACCESS_2_TRANSFER_WRITE_BIT);
 static_assert(access::memory_read == VK_ACCESS_2_MEMORY_READ_BIT);
 static_assert(access::memory_write == VK_ACCESS_2_MEMORY_WRITE_BIT);
-static_assert(access::acceleration_structure_read == VK_ACCESS_2_ACCELERATION_STRUCTURE_READ_BIT_KHR);
+static_assert(access::acceleration_structure_read ==
+              VK_ACCESS_2_ACCELERATION_STRUCTURE_READ_BIT_KHR);
 static_assert(access::shader_sampled_read == VK_ACCESS_2_SHADER_SAMPLED_READ_BIT);
 static_assert(access::shader_storage_read == VK_ACCESS_2_SHADER_STORAGE_READ_BIT);
 static_assert(access::shader_storage_write == VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT);
 static_assert(all_write_access ==
               (VK_ACCESS_2_TRANSFER_WRITE_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT |
                VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT | VK_ACCESS_2_SHADER_WRITE_BIT |
-               VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT | VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT |
-               VK_ACCESS_2_HOST_WRITE_BIT));
+               VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT |
+               VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT | VK_ACCESS_2_HOST_WRITE_BIT));
 
 static_assert(static_cast<int>(Layout::undefined) == VK_IMAGE_LAYOUT_UNDEFINED);
 static_assert(static_cast<int>(Layout::general) == VK_IMAGE_LAYOUT_GENERAL);
@@ -38,8 +39,10 @@ static_assert(static_cast<int>(Layout::depth_stencil_attachment) ==
               VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL);
 static_assert(static_cast<int>(Layout::depth_stencil_read_only) ==
               VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL);
-static_assert(static_cast<int>(Layout::shader_read_only) == VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
+static_assert(static_cast<int>(Layout::shader_read_only) ==
+              VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
 static_assert(static_cast<int>(Layout::transfer_source) == VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
-static_assert(static_cast<int>(Layout::transfer_destination) == VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL);
+static_assert(static_cast<int>(Layout::transfer_destination) ==
+              VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL);
 
 } // namespace dermis::vulkan

@@ -29,15 +29,17 @@ dermis_result read_tables(const Log& log, const dermis_budget& budget, Tables& o
             read_source(log, "dermis_graph_set_budget: errors", *budget.errors, name, text);
         result != DERMIS_OK)
       return result;
-    const auto document = parse_document(name.empty() ? "errors" : name, std::move(text), diagnostics);
+    const auto document =
+        parse_document(name.empty() ? "errors" : name, std::move(text), diagnostics);
     if (document) out.errors = choice::read_error_model(*document, diagnostics);
   }
   if (budget.calibration != nullptr) {
-    if (const dermis_result result =
-            read_source(log, "dermis_graph_set_budget: calibration", *budget.calibration, name, text);
+    if (const dermis_result result = read_source(log, "dermis_graph_set_budget: calibration",
+                                                 *budget.calibration, name, text);
         result != DERMIS_OK)
       return result;
-    const auto document = parse_document(name.empty() ? "calibration" : name, std::move(text), diagnostics);
+    const auto document =
+        parse_document(name.empty() ? "calibration" : name, std::move(text), diagnostics);
     if (document) out.calibration = choice::read_calibration(*document, diagnostics);
   }
   return DERMIS_OK;
@@ -61,7 +63,8 @@ ViewTables tables_of(const dermis_view_t& view, const Tables& given) {
   ViewTables out;
   const Chooser& now = view.chooser;
   out.errors = given.errors ? *given.errors : now.errors;
-  out.found = given.errors ? choice::make_error_correction(out.errors.techniques.size()) : now.found;
+  out.found =
+      given.errors ? choice::make_error_correction(out.errors.techniques.size()) : now.found;
   out.calibration = given.calibration ? *given.calibration : now.calibration;
   out.costs = given.calibration ? choice::CostModel(out.calibration.costs) : now.costs;
   out.compiled_graphs[0].compiled_graph = view.running;
@@ -93,13 +96,15 @@ dermis_result set_budget(dermis_graph_t& graph, const dermis_budget* given, derm
     return bad_argument(log, "dermis_graph_set_budget: milliseconds is {}, expected 0..{}",
                         budget.milliseconds, largest_budget_ms);
   if ((budget.flags & ~DERMIS_BUDGET_DETERMINISTIC) != 0)
-    return bad_argument(log, "dermis_graph_set_budget: flags is {:#x}, known is {:#x}", budget.flags,
-                        DERMIS_BUDGET_DETERMINISTIC);
+    return bad_argument(log, "dermis_graph_set_budget: flags is {:#x}, known is {:#x}",
+                        budget.flags, DERMIS_BUDGET_DETERMINISTIC);
   Diagnostics diagnostics;
   Tables tables;
-  if (const dermis_result result = read_tables(log, budget, tables, diagnostics); result != DERMIS_OK)
+  if (const dermis_result result = read_tables(log, budget, tables, diagnostics);
+      result != DERMIS_OK)
     return result;
-  if (diagnostics.has_errors()) return conclude(log, DERMIS_ERROR_CONFIG, std::move(diagnostics), report);
+  if (diagnostics.has_errors())
+    return conclude(log, DERMIS_ERROR_CONFIG, std::move(diagnostics), report);
 
   const std::lock_guard changing(graph.changing);
   const bool rebuild_tables = tables.errors || tables.calibration;
@@ -126,7 +131,8 @@ uint32_t skips_of(const FrameChoice& frame, const CompiledGraph& compiled_graph)
   if (compiled_graph.without_material) return DERMIS_SKIP_NO_MATERIAL;
   if (frame.left_out) return DERMIS_SKIP_NO_BOUNDS;
   uint32_t skips = 0;
-  if (seen.scattering_tiles + seen.copied_tiles + seen.uniform_tiles == 0) skips |= DERMIS_SKIP_NOTHING_SEEN;
+  if (seen.scattering_tiles + seen.copied_tiles + seen.uniform_tiles == 0)
+    skips |= DERMIS_SKIP_NOTHING_SEEN;
   if (seen.copied_tiles > 0) skips |= DERMIS_SKIP_SUBPIXEL;
   if (seen.uniform_tiles > 0) skips |= DERMIS_SKIP_UNIFORM_LIGHT;
   if (frame.history_invalid) skips |= DERMIS_SKIP_HISTORY;
@@ -137,13 +143,17 @@ uint32_t skips_of(const FrameChoice& frame, const CompiledGraph& compiled_graph)
 const char* miss_of(const FrameChoice& frame) {
   constexpr double tolerance = 1.15; // times the budget, as in dermis bench budget
   constexpr double changed_by = 0.1; // fraction of the tiles
-  if (!frame.timed || frame.budget_ms <= 0 || frame.measured_ms <= tolerance * frame.budget_ms) return "";
-  if (frame.decision.why == choice::ReasonKind::nothing_fits) return "no configuration fits the budget";
+  if (!frame.timed || frame.budget_ms <= 0 || frame.measured_ms <= tolerance * frame.budget_ms)
+    return "";
+  if (frame.decision.why == choice::ReasonKind::nothing_fits)
+    return "no configuration fits the budget";
   const double expected = static_cast<double>(frame.expected_tiles);
-  const double seen = static_cast<double>(uint64_t{frame.counters.scattering_tiles} +
-                                          frame.counters.copied_tiles + frame.counters.uniform_tiles);
-  return std::abs(seen - expected) > changed_by * std::max(expected, 1.0) ? "the scene changed"
-                                                                          : "the times were not as learned";
+  const double seen =
+      static_cast<double>(uint64_t{frame.counters.scattering_tiles} + frame.counters.copied_tiles +
+                          frame.counters.uniform_tiles);
+  return std::abs(seen - expected) > changed_by * std::max(expected, 1.0)
+             ? "the scene changed"
+             : "the times were not as learned";
 }
 
 dermis_frame_report make_report(const Chooser& chooser, const CompiledGraph& compiled_graph) {
@@ -161,16 +171,19 @@ dermis_frame_report make_report(const Chooser& chooser, const CompiledGraph& com
   return out;
 }
 
-dermis_frame_statistics make_statistics(const Chooser& chooser, const CompiledGraph& compiled_graph) {
+dermis_frame_statistics make_statistics(const Chooser& chooser,
+                                        const CompiledGraph& compiled_graph) {
   const FrameChoice& frame = chooser.newest;
   const choice::Configuration& configuration = compiled_graph.configurations[frame.configuration];
   const bool better = frame.decision.next_better < compiled_graph.configurations.size();
   dermis_frame_statistics out = DERMIS_FRAME_STATISTICS_INIT;
   out.frame_index = frame.frame_index;
-  out.technique = configuration.technique < 0
-                      ? ""
-                      : chooser.errors.techniques[static_cast<size_t>(configuration.technique)].name.c_str();
-  out.next_better = better ? compiled_graph.configurations[frame.decision.next_better].name.c_str() : "";
+  out.technique =
+      configuration.technique < 0
+          ? ""
+          : chooser.errors.techniques[static_cast<size_t>(configuration.technique)].name.c_str();
+  out.next_better =
+      better ? compiled_graph.configurations[frame.decision.next_better].name.c_str() : "";
   out.next_better_missing_ms = static_cast<float>(frame.decision.missing_ms);
   out.predicted_spread_ms = static_cast<float>(frame.forecast.spread_ms);
   out.calibrated_ms = static_cast<float>(frame.calibrated_ms);
@@ -182,7 +195,8 @@ dermis_frame_statistics make_statistics(const Chooser& chooser, const CompiledGr
   out.scattering_tiles = frame.counters.scattering_tiles;
   out.copied_tiles = frame.counters.copied_tiles;
   out.uniform_tiles = frame.counters.uniform_tiles;
-  std::copy(frame.counters.sampled_tiles.begin(), frame.counters.sampled_tiles.end(), out.sampled_tiles);
+  std::copy(frame.counters.sampled_tiles.begin(), frame.counters.sampled_tiles.end(),
+            out.sampled_tiles);
   out.sample_units = frame.counters.sample_units;
   out.sample_demand = frame.counters.sample_demand;
   out.mean_d_px = static_cast<float>(subsurface::mean_d_px(frame.counters));
@@ -197,8 +211,8 @@ dermis_frame_statistics make_statistics(const Chooser& chooser, const CompiledGr
 
 // Writes make(chooser, program) of the newest frame whose counters are available to *out.
 template <class T, class Make>
-dermis_result write_newest(dermis_view_t& view, const char* function, const char* name, uint64_t completed,
-                           T* out, Make make) {
+dermis_result write_newest(dermis_view_t& view, const char* function, const char* name,
+                           uint64_t completed, T* out, Make make) {
   const Log& log = view.context->log;
   if (out == nullptr) return bad_argument(log, "{}: {} is NULL", function, name);
   const size_t size = stated_size(out);
@@ -206,12 +220,13 @@ dermis_result write_newest(dermis_view_t& view, const char* function, const char
     return rejected_size(log, read, function, name, size, sizeof(T));
   const std::lock_guard lock(view.mutex);
   if (completed > view.last_frame)
-    return bad_argument(log, "{}: completed_frame_index is {}, the newest recorded frame is {}", function,
-                        completed, view.last_frame);
+    return bad_argument(log, "{}: completed_frame_index is {}, the newest recorded frame is {}",
+                        function, completed, view.last_frame);
   if (!view.running) return DERMIS_NOT_READY;
   observe(view.chooser, *view.running, completed);
   if (const dermis_result loss = check_loss(view, function); loss != DERMIS_OK) return loss;
-  if (view.chooser.newest.frame_index == 0 || view.chooser.newest.compiled_graph != view.running->serial)
+  if (view.chooser.newest.frame_index == 0 ||
+      view.chooser.newest.compiled_graph != view.running->serial)
     return DERMIS_NOT_READY;
   write_sized(out, size, make(view.chooser, *view.running));
   return DERMIS_OK;
@@ -223,15 +238,18 @@ dermis_result get_report(dermis_view_t& view, uint64_t completed, dermis_frame_r
   return write_newest(view, "dermis_view_report", "report", completed, out, make_report);
 }
 
-dermis_result get_statistics(dermis_view_t& view, uint64_t completed, dermis_frame_statistics* out) {
-  return write_newest(view, "dermis_view_statistics", "statistics", completed, out, make_statistics);
+dermis_result get_statistics(dermis_view_t& view, uint64_t completed,
+                             dermis_frame_statistics* out) {
+  return write_newest(view, "dermis_view_statistics", "statistics", completed, out,
+                      make_statistics);
 }
 
 } // namespace dermis::abi
 
 using namespace dermis::abi;
 
-extern "C" dermis_result DERMIS_CALL dermis_graph_set_budget(dermis_graph graph, const dermis_budget* budget,
+extern "C" dermis_result DERMIS_CALL dermis_graph_set_budget(dermis_graph graph,
+                                                             const dermis_budget* budget,
                                                              dermis_report* report) {
   if (report != nullptr) *report = nullptr;
   if (graph == nullptr) return bad_argument({}, "dermis_graph_set_budget: graph is NULL");
@@ -242,7 +260,8 @@ extern "C" dermis_result DERMIS_CALL dermis_graph_set_budget(dermis_graph graph,
   });
 }
 
-extern "C" dermis_result DERMIS_CALL dermis_graph_calibration(dermis_graph graph, size_t* size, char* text) {
+extern "C" dermis_result DERMIS_CALL dermis_graph_calibration(dermis_graph graph, size_t* size,
+                                                              char* text) {
   if (graph == nullptr) return bad_argument({}, "dermis_graph_calibration: graph is NULL");
   const Log& log = graph->context->log;
   return guarded(log, "dermis_graph_calibration", [&] {

@@ -18,7 +18,8 @@ constexpr double ns_per_ms = 1e6;
 // Tests ensure that both built-in files read without errors.
 choice::ErrorModel default_errors() {
   Diagnostics diagnostics;
-  const auto document = parse_document("errors", std::string(choice::default_errors_text()), diagnostics);
+  const auto document =
+      parse_document("errors", std::string(choice::default_errors_text()), diagnostics);
   auto read = document ? choice::read_error_model(*document, diagnostics) : std::nullopt;
   return read ? std::move(*read) : choice::ErrorModel{"", {{1, 1}}, {}, 0};
 }
@@ -31,10 +32,11 @@ choice::Calibration default_calibration() {
   return read ? std::move(*read) : choice::Calibration{};
 }
 
-choice::FrameLoad load_of(const subsurface::FrameCounters& counters, const vulkan::Rectangle& rectangle) {
+choice::FrameLoad load_of(const subsurface::FrameCounters& counters,
+                          const vulkan::Rectangle& rectangle) {
   const uint64_t listed =
-      std::min<uint64_t>(tiles_of(rectangle), uint64_t{counters.scattering_tiles} + counters.copied_tiles +
-                                                  counters.uniform_tiles);
+      std::min<uint64_t>(tiles_of(rectangle), uint64_t{counters.scattering_tiles} +
+                                                  counters.copied_tiles + counters.uniform_tiles);
   return {rectangle.width, rectangle.height, listed, counters.scattering_tiles == 0 ? listed : 0,
           counters.sample_units};
 }
@@ -42,10 +44,11 @@ choice::FrameLoad load_of(const subsurface::FrameCounters& counters, const vulka
 uint64_t launched(const choice::PassLoad& pass, const choice::FrameLoad& load,
                   const subsurface::FrameCounters& counters) {
   if (pass.groups == choice::PassLoad::Groups::sample_units) // one group per tile
-    return uint64_t{counters.sampled_tiles[0]} + counters.sampled_tiles[1] + counters.sampled_tiles[2];
+    return uint64_t{counters.sampled_tiles[0]} + counters.sampled_tiles[1] +
+           counters.sampled_tiles[2];
   if (pass.level < 0) return groups_of(pass, load);
-  return counters
-      .level_groups[std::min<size_t>(static_cast<size_t>(pass.level), counters.level_groups.size() - 1)];
+  return counters.level_groups[std::min<size_t>(static_cast<size_t>(pass.level),
+                                                counters.level_groups.size() - 1)];
 }
 
 void count_groups(std::span<const choice::PassLoad> passes, std::span<const uint8_t> without_bounds,
@@ -102,12 +105,13 @@ void observe_frame(Chooser& chooser, CompiledGraph& compiled_graph, FrameChoice&
   if (counted) frame.counters = std::bit_cast<subsurface::FrameCounters>(words);
   uint64_t timed_frame = 0;
   const std::span times(chooser.times.data(), passes.size());
-  frame.timed =
-      executor.read_timings(frame.frame_index, timed_frame, times) && timed_frame == frame.frame_index;
+  frame.timed = executor.read_timings(frame.frame_index, timed_frame, times) &&
+                timed_frame == frame.frame_index;
   count_groups(passes, plan.left_out, frame);
   if (!frame.left_out)
     frame.calibrated_ms =
-        calibrated_estimate(configuration, chooser.costs, load_of(frame.counters, frame.rectangle)).ms;
+        calibrated_estimate(configuration, chooser.costs, load_of(frame.counters, frame.rectangle))
+            .ms;
   if (counted && frame.timed) learn(chooser, passes, frame);
   if (counted) learn_error(chooser, configuration, frame.counters);
   frame.observed = true;
@@ -134,31 +138,36 @@ Chooser make_chooser() {
 }
 
 void adopt(Chooser& chooser, const PassTypeRegistry& pass_types, CompiledGraph& compiled_graph) {
-  compiled_graph.configurations = described(pass_types, compiled_graph, chooser.errors, chooser.costs,
-                                            std::move(compiled_graph.configurations));
+  compiled_graph.configurations =
+      described(pass_types, compiled_graph, chooser.errors, chooser.costs,
+                std::move(compiled_graph.configurations));
   for (choice::Configuration empty : compiled_graph.configurations) {
     empty.plan = compiled_graph.plans[empty.plan].without_bounds;
     if (empty.plan == no_plan) continue;
     compiled_graph.plans[empty.plan].loads =
-        described(pass_types, compiled_graph, chooser.errors, chooser.costs, {empty}).front().passes;
+        described(pass_types, compiled_graph, chooser.errors, chooser.costs, {empty})
+            .front()
+            .passes;
   }
   size_t passes = chooser.times.size();
   for (const RunnablePlan& plan : compiled_graph.plans)
     passes = std::max(passes, plan.compiled->plan.passes.size());
   chooser.times.resize(passes);
-  chooser.forecasts.resize(std::max(chooser.forecasts.size(), compiled_graph.configurations.size()));
+  chooser.forecasts.resize(
+      std::max(chooser.forecasts.size(), compiled_graph.configurations.size()));
   compiled_graph.serial = ++chooser.compiled_graphs;
 }
 
-void observe(Chooser& chooser, CompiledGraph& compiled_graph, uint64_t completed_frame_index) noexcept {
+void observe(Chooser& chooser, CompiledGraph& compiled_graph,
+             uint64_t completed_frame_index) noexcept {
   for (FrameChoice& frame : chooser.frames)
     if (frame.frame_index != 0 && !frame.observed && frame.frame_index <= completed_frame_index &&
         frame.compiled_graph == compiled_graph.serial)
       observe_frame(chooser, compiled_graph, frame);
 }
 
-FrameChoice choose(const Chooser& chooser, const CompiledGraph& compiled_graph, uint64_t frame_index,
-                   double delta_seconds, const vulkan::Rectangle& rectangle,
+FrameChoice choose(const Chooser& chooser, const CompiledGraph& compiled_graph,
+                   uint64_t frame_index, double delta_seconds, const vulkan::Rectangle& rectangle,
                    std::span<choice::Forecast> forecasts, choice::DecisionState& state) noexcept {
   // Before any frame is counted, the whole view may scatter.
   const uint64_t view_tiles = tiles_of(rectangle);
@@ -177,21 +186,22 @@ FrameChoice choose(const Chooser& chooser, const CompiledGraph& compiled_graph, 
     if (scattering > 0) d_px = subsurface::mean_d_px(chooser.counters);
     through = subsurface::transmitted_rms(chooser.counters);
   }
-  const auto demand = static_cast<uint32_t>(expected_units(chooser.demand, d_px) * double(scattering));
+  const auto demand =
+      static_cast<uint32_t>(expected_units(chooser.demand, d_px) * double(scattering));
   const double filled_ms = chooser.budget_ms / choice::entry_margin;
   for (size_t i = 0; i < compiled_graph.configurations.size(); ++i) {
     const choice::Configuration& configuration = compiled_graph.configurations[i];
     load.sample_units = 0;
     if (configuration.takes_samples)
       load.sample_units = chooser.budget_ms > 0
-                              ? std::min(demand, units_within(configuration, chooser.costs, load, filled_ms,
-                                                              chooser.deterministic))
+                              ? std::min(demand, units_within(configuration, chooser.costs, load,
+                                                              filled_ms, chooser.deterministic))
                               : demand;
     const choice::Estimate cost = chooser.deterministic
                                       ? calibrated_estimate(configuration, chooser.costs, load)
                                       : estimate(configuration, chooser.costs, load);
-    const double rmse =
-        expected_rmse(chooser.errors, configuration, d_px, static_cast<uint32_t>(load.sample_units), demand);
+    const double rmse = expected_rmse(chooser.errors, configuration, d_px,
+                                      static_cast<uint32_t>(load.sample_units), demand);
     const double seen = rmse * error_factor(chooser.found, configuration.technique);
     const double missed = missed_rmse(chooser.errors, configuration.technique, through);
     forecasts[i] = {cost.ms, cost.spread_ms, std::hypot(seen, missed), missed};
@@ -202,20 +212,21 @@ FrameChoice choose(const Chooser& chooser, const CompiledGraph& compiled_graph, 
   frame.expected_tiles = load.listed_tiles;
   frame.budget_ms = chooser.budget_ms;
   if (chooser.budget_ms > 0)
-    frame.decision = decide(forecasts.first(compiled_graph.configurations.size()), chooser.budget_ms,
-                            delta_seconds, state);
+    frame.decision = decide(forecasts.first(compiled_graph.configurations.size()),
+                            chooser.budget_ms, delta_seconds, state);
   else
     frame.decision = {0, choice::ReasonKind::no_budget};
   frame.configuration = frame.decision.configuration;
   if (chooser.budget_ms > 0)
-    frame.sample_units = units_within(compiled_graph.configurations[frame.configuration], chooser.costs, load,
-                                      filled_ms, chooser.deterministic);
+    frame.sample_units = units_within(compiled_graph.configurations[frame.configuration],
+                                      chooser.costs, load, filled_ms, chooser.deterministic);
   frame.switches = state.switches;
   frame.forecast = forecasts[frame.configuration];
   return frame;
 }
 
-void remember(Chooser& chooser, const FrameChoice& frame, const choice::DecisionState& state) noexcept {
+void remember(Chooser& chooser, const FrameChoice& frame,
+              const choice::DecisionState& state) noexcept {
   place_of(chooser, frame.frame_index) = frame;
   chooser.state = state;
   chooser.decided_for = frame.compiled_graph;

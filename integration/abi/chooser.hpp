@@ -84,15 +84,17 @@ Chooser make_chooser();
 void adopt(Chooser& chooser, const PassTypeRegistry& pass_types, CompiledGraph& compiled_graph);
 
 // Learns from frames of `compiled_graph` that the device has finished. Allocates nothing.
-void observe(Chooser& chooser, CompiledGraph& compiled_graph, uint64_t completed_frame_index) noexcept;
+void observe(Chooser& chooser, CompiledGraph& compiled_graph,
+             uint64_t completed_frame_index) noexcept;
 
 // Returns the choice and forecast for frame `frame_index`, which renders `rectangle`.
 // `delta_seconds` is the time since the previous frame; 0: unknown. Call remember() once the frame
 // is recorded. Allocates nothing and does not change `chooser`.
-FrameChoice choose(const Chooser& chooser, const CompiledGraph& compiled_graph, uint64_t frame_index,
-                   double delta_seconds, const vulkan::Rectangle& rectangle,
+FrameChoice choose(const Chooser& chooser, const CompiledGraph& compiled_graph,
+                   uint64_t frame_index, double delta_seconds, const vulkan::Rectangle& rectangle,
                    std::span<choice::Forecast> forecasts, choice::DecisionState& state) noexcept;
-void remember(Chooser& chooser, const FrameChoice& frame, const choice::DecisionState& state) noexcept;
+void remember(Chooser& chooser, const FrameChoice& frame,
+              const choice::DecisionState& state) noexcept;
 // Forgets a frame that was never submitted, so that nothing is learned from it.
 void discard_prediction(Chooser& chooser, uint64_t frame_index) noexcept;
 

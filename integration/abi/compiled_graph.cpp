@@ -24,20 +24,22 @@ std::vector<SettingValue> settings_of(const Graph& graph, const std::vector<Host
   for (const SettingDeclaration& declared : graph.settings)
     values.push_back(declared.default_value);
   for (const HostSetting& setting : given) {
-    const auto at =
-        std::find_if(graph.settings.begin(), graph.settings.end(),
-                     [&](const SettingDeclaration& declared) { return declared.name == setting.name; });
+    const auto at = std::find_if(
+        graph.settings.begin(), graph.settings.end(),
+        [&](const SettingDeclaration& declared) { return declared.name == setting.name; });
     Diagnostics scratch; // the value fitted the previous graph, so it is no error of this graph
     std::optional<SettingValue> value;
     if (at != graph.settings.end()) value = read_setting(*at, setting.json, scratch);
     if (value)
       values[static_cast<size_t>(at - graph.settings.begin())] = *value;
     else
-      diagnostics.add(
-          DiagnosticId::setting_not_carried, at != graph.settings.end() ? at->where : SourceLocation{},
-          fmt::format("setting '{}' = {} is not carried over: {}", setting.name, setting.json,
-                      at == graph.settings.end() ? "the new graph declares none of that name"
-                                                 : "the new declaration does not accept the value"));
+      diagnostics.add(DiagnosticId::setting_not_carried,
+                      at != graph.settings.end() ? at->where : SourceLocation{},
+                      fmt::format("setting '{}' = {} is not carried over: {}", setting.name,
+                                  setting.json,
+                                  at == graph.settings.end()
+                                      ? "the new graph declares none of that name"
+                                      : "the new declaration does not accept the value"));
   }
   return values;
 }
@@ -48,7 +50,8 @@ std::vector<bool> pinned_settings(const Graph& graph, const std::vector<HostSett
   for (const SettingDeclaration& declared : graph.settings)
     pinned.push_back(std::any_of(given.begin(), given.end(), [&](const HostSetting& setting) {
       Diagnostics scratch; // a value that does not fit was already reported
-      return setting.name == declared.name && read_setting(declared, setting.json, scratch).has_value();
+      return setting.name == declared.name &&
+             read_setting(declared, setting.json, scratch).has_value();
     }));
   return pinned;
 }
@@ -99,7 +102,8 @@ vulkan::Error make_executors(dermis_context_t& context, CompiledGraphInput& inpu
     std::vector<const Plan*> plans;
     for (const RunnablePlan& plan : compiled_graph.plans)
       plans.push_back(&plan.compiled->plan);
-    if (vulkan::Error error = vulkan::HeapPool::create(context.device, plans, compiled_graph.heap_pool))
+    if (vulkan::Error error =
+            vulkan::HeapPool::create(context.device, plans, compiled_graph.heap_pool))
       return error;
   }
   executor.heap_pool = compiled_graph.heap_pool.get();
@@ -127,7 +131,8 @@ void name_options(CompiledGraph& compiled_graph) {
 
 // Merges the plans' requirements on images that the host must provide.
 std::vector<Slot> slots_of(const CompiledGraph& compiled_graph) {
-  std::vector<Slot> slots = make_slots(compiled_graph.graph, compiled_graph.plans.front().compiled->plan);
+  std::vector<Slot> slots =
+      make_slots(compiled_graph.graph, compiled_graph.plans.front().compiled->plan);
   for (const RunnablePlan& plan : compiled_graph.plans) {
     const std::vector<Slot> others = make_slots(compiled_graph.graph, plan.compiled->plan);
     for (size_t i = 0; i < slots.size(); ++i) {
@@ -142,10 +147,10 @@ std::vector<Slot> slots_of(const CompiledGraph& compiled_graph) {
 
 // Compiles the plan for frames with empty bounds that replaces plan `number`. Adds a reason for
 // each pass of `instead_of` that the new plan turns off.
-std::optional<CompiledPlan> compile_without_bounds(const CompileInput& input,
-                                                   const std::vector<choice::Configuration>& configurations,
-                                                   uint32_t number, PlanCache& cache,
-                                                   CompiledPlan& instead_of, Diagnostics& diagnostics) {
+std::optional<CompiledPlan>
+compile_without_bounds(const CompileInput& input,
+                       const std::vector<choice::Configuration>& configurations, uint32_t number,
+                       PlanCache& cache, CompiledPlan& instead_of, Diagnostics& diagnostics) {
   Graph graph = *input.graph;
   turn_scattering_off(graph, *input.pass_types);
   explain_lacking_inputs(graph, instead_of);
@@ -154,7 +159,9 @@ std::optional<CompiledPlan> compile_without_bounds(const CompileInput& input,
     if (resource.exported && resource.origin != Origin::imported) resource.optional = true;
   CompileInput one = input;
   one.graph = &graph;
-  const auto runs = [&](const choice::Configuration& configuration) { return configuration.plan == number; };
+  const auto runs = [&](const choice::Configuration& configuration) {
+    return configuration.plan == number;
+  };
   one.settings = std::find_if(configurations.begin(), configurations.end(), runs)->settings;
   Diagnostics reported; // warnings repeat those of the graph's own plans
   auto compiled = compile(one, cache, reported);
@@ -168,7 +175,8 @@ std::optional<CompiledPlan> compile_without_bounds(const CompileInput& input,
 
 } // namespace
 
-dermis_result rejected(dermis_context_t& context, const vulkan::Error& error, Diagnostics& diagnostics) {
+dermis_result rejected(dermis_context_t& context, const vulkan::Error& error,
+                       Diagnostics& diagnostics) {
   diagnostics.add(diagnostic_of(error.kind), {}, error.text);
   if (error.kind == vulkan::ErrorKind::device_lost) context.lost = true;
   // The library built the executor's input, so an argument error is a defect of the library.
@@ -177,10 +185,10 @@ dermis_result rejected(dermis_context_t& context, const vulkan::Error& error, Di
 
 vulkan::Error make_tables(dermis_context_t& context, const subsurface::TableUse& use,
                           CompiledGraphInput& input) {
-  auto tables =
-      std::make_shared<const subsurface::KernelTables>(subsurface::make_kernel_tables(use, input.profiles));
-  if (vulkan::Error error =
-          vulkan::EnvironmentTables::create(context.device, kernel_environment(*tables), input.device_tables))
+  auto tables = std::make_shared<const subsurface::KernelTables>(
+      subsurface::make_kernel_tables(use, input.profiles));
+  if (vulkan::Error error = vulkan::EnvironmentTables::create(
+          context.device, kernel_environment(*tables), input.device_tables))
     return error;
   input.tables = std::move(tables);
   return {};
@@ -188,7 +196,8 @@ vulkan::Error make_tables(dermis_context_t& context, const subsurface::TableUse&
 
 std::vector<choice::Configuration> described(const PassTypeRegistry& pass_types,
                                              const CompiledGraph& compiled_graph,
-                                             const choice::ErrorModel& errors, choice::CostModel& costs,
+                                             const choice::ErrorModel& errors,
+                                             choice::CostModel& costs,
                                              std::vector<choice::Configuration> configurations) {
   std::vector<const Plan*> plans;
   for (const RunnablePlan& plan : compiled_graph.plans)
@@ -211,7 +220,8 @@ std::vector<choice::Configuration> configurations_with(const CompiledGraph& comp
 dermis_result build_compiled_graph(dermis_context_t& context, CompiledGraphInput& input,
                                    vulkan::HistoryReason history, PlanCache& cache,
                                    const choice::ErrorModel& errors, choice::CostModel& costs,
-                                   Diagnostics& diagnostics, std::shared_ptr<CompiledGraph>& compiled_graph) {
+                                   Diagnostics& diagnostics,
+                                   std::shared_ptr<CompiledGraph>& compiled_graph) {
   auto composition = compose_sources(input, diagnostics);
   if (!composition) return DERMIS_ERROR_CONFIG;
   auto graph = read_graph(composition->document, context.pass_types, diagnostics);
@@ -240,8 +250,8 @@ dermis_result build_compiled_graph(dermis_context_t& context, CompiledGraphInput
     candidate->settings[i] = available_option(candidate->graph.settings[i], candidate->settings[i],
                                               context.profile.features, compile_input.bound);
   compile_input.settings = candidate->settings;
-  const auto combinations = choice::enumerate_combinations(compile_input, diagnostics,
-                                                           pinned_settings(candidate->graph, input.settings));
+  const auto combinations = choice::enumerate_combinations(
+      compile_input, diagnostics, pinned_settings(candidate->graph, input.settings));
   if (!combinations) return DERMIS_ERROR_CONFIG;
   std::vector<CompiledPlan> made;
   for (const uint32_t first : combinations->first) {
@@ -251,7 +261,8 @@ dermis_result build_compiled_graph(dermis_context_t& context, CompiledGraphInput
     if (!compiled) return DERMIS_ERROR_CONFIG;
     made.push_back(std::move(*compiled));
   }
-  if (diagnostics.has_errors()) return DERMIS_ERROR_CONFIG; // including errors of profiles and slots
+  if (diagnostics.has_errors())
+    return DERMIS_ERROR_CONFIG; // including errors of profiles and slots
   std::vector<const Plan*> made_plans;
   for (const CompiledPlan& one : made)
     made_plans.push_back(&one.plan);
@@ -263,8 +274,8 @@ dermis_result build_compiled_graph(dermis_context_t& context, CompiledGraphInput
     RunnablePlan plan;
     plan.left_out = left_out_without_bounds(context.pass_types, compiled.plan);
     if (!candidate->without_material && reads_what_is_left_out(context.pass_types, compiled.plan)) {
-      auto empty =
-          compile_without_bounds(compile_input, candidate->configurations, p, cache, compiled, diagnostics);
+      auto empty = compile_without_bounds(compile_input, candidate->configurations, p, cache,
+                                          compiled, diagnostics);
       if (!empty) return DERMIS_ERROR_CONFIG;
       plan.without_bounds = static_cast<uint32_t>(made.size() + empty_plans.size());
       empty_plans.push_back(std::move(*empty));
@@ -285,7 +296,8 @@ dermis_result build_compiled_graph(dermis_context_t& context, CompiledGraphInput
   candidate->kernels = std::make_unique<vulkan::KernelStore>(context.kernels);
   if (!compile_missing(input.shaders, candidate->graph, context.pass_types, diagnostics))
     return DERMIS_ERROR_SHADER;
-  if (const vulkan::Error error = make_executors(context, input, history, *candidate->kernels, *candidate))
+  if (const vulkan::Error error =
+          make_executors(context, input, history, *candidate->kernels, *candidate))
     return rejected(context, error, diagnostics);
   compiled_graph = std::move(candidate);
   return DERMIS_OK;
@@ -299,7 +311,8 @@ void share_kernels(CompiledGraph& compiled_graph) noexcept {
 
 dermis_result copy_compiled_graph(dermis_context_t& context, CompiledGraphInput& input,
                                   const CompiledGraph& of, vulkan::HistoryReason history,
-                                  Diagnostics& diagnostics, std::shared_ptr<CompiledGraph>& compiled_graph) {
+                                  Diagnostics& diagnostics,
+                                  std::shared_ptr<CompiledGraph>& compiled_graph) {
   auto candidate = std::make_shared<CompiledGraph>();
   candidate->without_material = of.without_material;
   candidate->graph = of.graph;
@@ -313,7 +326,8 @@ dermis_result copy_compiled_graph(dermis_context_t& context, CompiledGraphInput&
   candidate->slots = of.slots;
   reserve_bindings(*candidate);
   name_options(*candidate);
-  if (of.kernels == nullptr) candidate->kernels = std::make_unique<vulkan::KernelStore>(context.kernels);
+  if (of.kernels == nullptr)
+    candidate->kernels = std::make_unique<vulkan::KernelStore>(context.kernels);
   vulkan::KernelStore& kernels = of.kernels != nullptr ? *of.kernels : *candidate->kernels;
   if (const vulkan::Error error = make_executors(context, input, history, kernels, *candidate))
     return rejected(context, error, diagnostics);

@@ -76,8 +76,8 @@ struct RunnablePlan {
   std::shared_ptr<const CompiledPlan> compiled; // shared by all views
   std::unique_ptr<vulkan::Executor> executor;
   bool recorded = false; // at least once
-  // For frames with empty bounds: the plan that runs instead, as an index into CompiledGraph::plans,
-  // or no_plan; and by plan pass whether the pass of this plan is left out.
+  // For frames with empty bounds: the plan that runs instead, as an index into
+  // CompiledGraph::plans, or no_plan; and by plan pass whether the pass of this plan is left out.
   uint32_t without_bounds = no_plan;
   std::vector<uint8_t> left_out{};
   // by plan pass; only for plans of frames with empty bounds, others use Configuration::passes
@@ -98,9 +98,10 @@ struct CompiledGraph {
   std::unique_ptr<vulkan::HeapPool> heap_pool;
   // new kernels, until the context has them; then null
   std::unique_ptr<vulkan::KernelStore> kernels;
-  std::vector<RunnablePlan> plans;    // by Configuration::plan, then those of RunnablePlan::without_bounds
-  uint32_t configuration = 0;         // recorded last, or to be recorded first
-  uint32_t plan = 0;                  // recorded last, or to be recorded first
+  std::vector<RunnablePlan>
+      plans;                  // by Configuration::plan, then those of RunnablePlan::without_bounds
+  uint32_t configuration = 0; // recorded last, or to be recorded first
+  uint32_t plan = 0;          // recorded last, or to be recorded first
   std::vector<SettingValue> settings; // by Graph::settings: choices by budget at their defaults
   std::vector<std::vector<const char*>> option_names; // by Graph::settings, into `graph`
   std::vector<Slot> slots;
@@ -119,16 +120,18 @@ struct CompiledGraph {
 };
 
 // Parses, compiles and allocates. Plans come from `cache` if it has them, and are added
-// otherwise. On failure `diagnostics` says why and `compiled_graph` is unchanged. Stores files that the
-// host delivers and fitted tables in `input`, and adds new entries to `costs`. Call adopt() before
-// the first record. Thread: any.
+// otherwise. On failure `diagnostics` says why and `compiled_graph` is unchanged. Stores files that
+// the host delivers and fitted tables in `input`, and adds new entries to `costs`. Call adopt()
+// before the first record. Thread: any.
 dermis_result build_compiled_graph(dermis_context_t& context, CompiledGraphInput& input,
                                    vulkan::HistoryReason history, PlanCache& cache,
                                    const choice::ErrorModel& errors, choice::CostModel& costs,
-                                   Diagnostics& diagnostics, std::shared_ptr<CompiledGraph>& compiled_graph);
+                                   Diagnostics& diagnostics,
+                                   std::shared_ptr<CompiledGraph>& compiled_graph);
 
 // Adds the error to `diagnostics` and returns its result.
-dermis_result rejected(dermis_context_t& context, const vulkan::Error& error, Diagnostics& diagnostics);
+dermis_result rejected(dermis_context_t& context, const vulkan::Error& error,
+                       Diagnostics& diagnostics);
 
 // Fits the tables of input.profiles that passes `use`, and copies them to the device.
 vulkan::Error make_tables(dermis_context_t& context, const subsurface::TableUse& use,
@@ -141,13 +144,15 @@ void share_kernels(CompiledGraph& compiled_graph) noexcept;
 // Copies the program for another view. `input` must be the input that `of` was built from.
 dermis_result copy_compiled_graph(dermis_context_t& context, CompiledGraphInput& input,
                                   const CompiledGraph& of, vulkan::HistoryReason history,
-                                  Diagnostics& diagnostics, std::shared_ptr<CompiledGraph>& compiled_graph);
+                                  Diagnostics& diagnostics,
+                                  std::shared_ptr<CompiledGraph>& compiled_graph);
 
-// Returns `configurations` with the costs of their passes and their technique, according to the given
-// tables. Adds new entries to `costs`. Needed after a setting or a table changed.
+// Returns `configurations` with the costs of their passes and their technique, according to the
+// given tables. Adds new entries to `costs`. Needed after a setting or a table changed.
 std::vector<choice::Configuration> described(const PassTypeRegistry& pass_types,
                                              const CompiledGraph& compiled_graph,
-                                             const choice::ErrorModel& errors, choice::CostModel& costs,
+                                             const choice::ErrorModel& errors,
+                                             choice::CostModel& costs,
                                              std::vector<choice::Configuration> configurations);
 
 // Returns the described configurations with a new value of a setting that turns no pass on or off.
@@ -158,7 +163,7 @@ std::vector<choice::Configuration> configurations_with(const CompiledGraph& comp
                                                        const SettingValue& value);
 
 // Returns the value that `json` gives to a declared setting; nullopt with errors in `diagnostics`.
-std::optional<SettingValue> read_setting(const SettingDeclaration& declared, const std::string& json,
-                                         Diagnostics& diagnostics);
+std::optional<SettingValue> read_setting(const SettingDeclaration& declared,
+                                         const std::string& json, Diagnostics& diagnostics);
 
 } // namespace dermis::abi

@@ -61,9 +61,9 @@ dermis_result check_alive(const dermis_context_t& context, const char* function)
 
 namespace {
 
-constexpr uint32_t known_context_flags = DERMIS_CONTEXT_TIMINGS | DERMIS_CONTEXT_LABELS |
-                                         DERMIS_CONTEXT_RAY_QUERY | DERMIS_CONTEXT_SEPARATE_DEPTH_STENCIL |
-                                         DERMIS_CONTEXT_GPU_KERNELS | DERMIS_CONTEXT_CPU_KERNELS;
+constexpr uint32_t known_context_flags =
+    DERMIS_CONTEXT_TIMINGS | DERMIS_CONTEXT_LABELS | DERMIS_CONTEXT_RAY_QUERY |
+    DERMIS_CONTEXT_SEPARATE_DEPTH_STENCIL | DERMIS_CONTEXT_GPU_KERNELS | DERMIS_CONTEXT_CPU_KERNELS;
 
 dermis_result check_desc(const dermis_context_desc& desc, const Log& log) {
   const auto null = [&](const char* field) {
@@ -71,18 +71,19 @@ dermis_result check_desc(const dermis_context_desc& desc, const Log& log) {
   };
   if (desc.abi_version == 0 || desc.abi_version > DERMIS_ABI_VERSION)
     return fail(log, DERMIS_ERROR_VERSION, DiagnosticId::host_struct_version,
-                "dermis_context_create: desc.abi_version is {}, this library speaks 1..{}", desc.abi_version,
-                DERMIS_ABI_VERSION);
+                "dermis_context_create: desc.abi_version is {}, this library speaks 1..{}",
+                desc.abi_version, DERMIS_ABI_VERSION);
   if ((desc.flags & ~known_context_flags) != 0)
-    return bad_argument(log, "dermis_context_create: desc.flags is {:#x}, known bits are {:#x}", desc.flags,
-                        known_context_flags);
+    return bad_argument(log, "dermis_context_create: desc.flags is {:#x}, known bits are {:#x}",
+                        desc.flags, known_context_flags);
   constexpr uint32_t both_shapes = DERMIS_CONTEXT_GPU_KERNELS | DERMIS_CONTEXT_CPU_KERNELS;
   if ((desc.flags & both_shapes) == both_shapes)
     return bad_argument(log, "dermis_context_create: desc.flags has DERMIS_CONTEXT_GPU_KERNELS and "
                              "DERMIS_CONTEXT_CPU_KERNELS, expected at most one of them");
   if (desc.frames_in_flight > vulkan::max_frames_in_flight)
-    return bad_argument(log, "dermis_context_create: desc.frames_in_flight is {}, expected 0 (= {}) or 1..{}",
-                        desc.frames_in_flight, default_frames_in_flight, vulkan::max_frames_in_flight);
+    return bad_argument(
+        log, "dermis_context_create: desc.frames_in_flight is {}, expected 0 (= {}) or 1..{}",
+        desc.frames_in_flight, default_frames_in_flight, vulkan::max_frames_in_flight);
   if (desc.get_instance_proc_addr == nullptr) return null("get_instance_proc_addr");
   if (desc.instance == VK_NULL_HANDLE) return null("instance");
   if (desc.physical_device == VK_NULL_HANDLE) return null("physical_device");
@@ -94,7 +95,8 @@ dermis_result check_desc(const dermis_context_desc& desc, const Log& log) {
 dermis_result check_requirements(const dermis_context_desc& desc, const Log& log) {
   std::string missing;
   const bool rays = (desc.flags & DERMIS_CONTEXT_RAY_QUERY) != 0;
-  const auto all = requirements_of(desc.get_instance_proc_addr, desc.instance, desc.physical_device);
+  const auto all =
+      requirements_of(desc.get_instance_proc_addr, desc.instance, desc.physical_device);
   for (uint32_t i = 0; i < all.size(); ++i)
     if (const dermis_requirement& item = all[i];
         item.present == 0 && (item.required == 1 || (rays && i >= first_ray_requirement)))
@@ -109,8 +111,8 @@ dermis_result check_requirements(const dermis_context_desc& desc, const Log& log
   if (const std::string reason =
           vulkan::explain_old_instance(get_device_proc_addr, desc.device, properties.apiVersion);
       !reason.empty())
-    return fail(log, DERMIS_ERROR_UNSUPPORTED, DiagnosticId::device_unsupported, "dermis_context_create: {}",
-                reason);
+    return fail(log, DERMIS_ERROR_UNSUPPORTED, DiagnosticId::device_unsupported,
+                "dermis_context_create: {}", reason);
   return fail(log, DERMIS_ERROR_UNSUPPORTED, DiagnosticId::device_unsupported,
               "dermis_context_create: the physical device lacks {}", missing);
 }
@@ -127,17 +129,17 @@ dermis_result read_allocators(const dermis_context_desc& desc, const Log& log, H
       return bad_argument(log, "{}: desc.allocator.{} is NULL", function,
                           given.allocate == nullptr ? "allocate" : "free");
     if (!serves_host_allocator())
-      return fail(
-          log, DERMIS_ERROR_UNSUPPORTED, DiagnosticId::device_unsupported,
-          "{}: desc.allocator works only in the shared library; here operator new belongs to the program",
-          function);
+      return fail(log, DERMIS_ERROR_UNSUPPORTED, DiagnosticId::device_unsupported,
+                  "{}: desc.allocator works only in the shared library; here operator new belongs "
+                  "to the program",
+                  function);
     host = {given.allocate, given.free, given.user};
   }
   if (desc.device_allocator != nullptr) {
     dermis_device_allocator given = DERMIS_DEVICE_ALLOCATOR_INIT;
     if (const SizedRead read = read_sized(desc.device_allocator, given); read != SizedRead::ok)
-      return rejected_size(log, read, function, "desc.device_allocator", stated_size(desc.device_allocator),
-                           sizeof(dermis_device_allocator));
+      return rejected_size(log, read, function, "desc.device_allocator",
+                           stated_size(desc.device_allocator), sizeof(dermis_device_allocator));
     if (given.allocate == nullptr || given.free == nullptr)
       return bad_argument(log, "{}: desc.device_allocator.{} is NULL", function,
                           given.allocate == nullptr ? "allocate" : "free");
@@ -156,7 +158,8 @@ dermis_result create(const dermis_context_desc* given, dermis_context* out) {
                          sizeof(dermis_context_desc));
   Log log{desc.log, desc.log_user};
   if (const dermis_result result = check_desc(desc, log); result != DERMIS_OK) return result;
-  if (const dermis_result result = check_requirements(desc, log); result != DERMIS_OK) return result;
+  if (const dermis_result result = check_requirements(desc, log); result != DERMIS_OK)
+    return result;
 
   DeviceAllocator device_allocator;
   if (const dermis_result result = read_allocators(desc, log, log.memory, device_allocator);
@@ -176,22 +179,25 @@ dermis_result create(const dermis_context_desc* given, dermis_context* out) {
   input.labels = (desc.flags & DERMIS_CONTEXT_LABELS) != 0;
   if ((desc.flags & DERMIS_CONTEXT_RAY_QUERY) != 0) input.features |= bit_of(Feature::ray_query);
   input.separate_depth_stencil = (desc.flags & DERMIS_CONTEXT_SEPARATE_DEPTH_STENCIL) != 0;
-  if ((desc.flags & DERMIS_CONTEXT_GPU_KERNELS) != 0) input.kernel_shape = vulkan::KernelShape::texel;
-  if ((desc.flags & DERMIS_CONTEXT_CPU_KERNELS) != 0) input.kernel_shape = vulkan::KernelShape::block;
+  if ((desc.flags & DERMIS_CONTEXT_GPU_KERNELS) != 0)
+    input.kernel_shape = vulkan::KernelShape::texel;
+  if ((desc.flags & DERMIS_CONTEXT_CPU_KERNELS) != 0)
+    input.kernel_shape = vulkan::KernelShape::block;
   input.timings = (desc.flags & DERMIS_CONTEXT_TIMINGS) != 0;
   input.host_memory = host_memory_of(context->device_allocator);
   if (const vulkan::Error error = vulkan::make_device(input, context->device))
     return fail(log, result_of(error.kind), diagnostic_of(error.kind), "dermis_context_create: {}",
                 error.text);
-  context->device.vk.vkGetPhysicalDeviceQueueFamilyProperties(desc.physical_device,
-                                                              &context->queue_family_count, nullptr);
+  context->device.vk.vkGetPhysicalDeviceQueueFamilyProperties(
+      desc.physical_device, &context->queue_family_count, nullptr);
   context->has_foreign_queues =
       has_device_extension(desc.get_instance_proc_addr, desc.instance, desc.physical_device,
                            VK_EXT_QUEUE_FAMILY_FOREIGN_EXTENSION_NAME);
   context->profile = vulkan::device_profile(context->device);
   context->pass_types = subsurface::make_pass_types();
   context->pipeline_cache = desc.pipeline_cache;
-  context->frames_in_flight = desc.frames_in_flight == 0 ? default_frames_in_flight : desc.frames_in_flight;
+  context->frames_in_flight =
+      desc.frames_in_flight == 0 ? default_frames_in_flight : desc.frames_in_flight;
   *out = context.release();
   return DERMIS_OK;
 }
@@ -212,7 +218,8 @@ extern "C" void DERMIS_CALL dermis_context_destroy(dermis_context context) {
     const dermis_graph graph = context->graphs.back();
     dermis_message message = DERMIS_MESSAGE_INIT;
     message.severity = DERMIS_SEVERITY_WARNING;
-    const dermis::DiagnosticInfo& info = dermis::diagnostic_info(dermis::DiagnosticId::graph_leaked);
+    const dermis::DiagnosticInfo& info =
+        dermis::diagnostic_info(dermis::DiagnosticId::graph_leaked);
     message.code = static_cast<uint32_t>(info.id);
     message.code_name = info.name.data();
     message.file = "";

@@ -41,8 +41,8 @@ dermis_result fail(const Log& log, dermis_result result, DiagnosticId id,
                    fmt::format_string<Arguments...> format, Arguments&&... arguments) noexcept {
   std::array<char, failure_text_size> buffer;
   try {
-    const auto written =
-        fmt::format_to_n(buffer.data(), buffer.size(), format, std::forward<Arguments>(arguments)...);
+    const auto written = fmt::format_to_n(buffer.data(), buffer.size(), format,
+                                          std::forward<Arguments>(arguments)...);
     return fail_with(log, result, id, {buffer.data(), std::min(written.size, buffer.size())});
   } catch (...) {
     return fail_with(log, result, id, "the message could not be formatted");
@@ -57,37 +57,40 @@ dermis_result bad_argument(const Log& log, fmt::format_string<Arguments...> form
 }
 
 // Converts a rejected struct_size into its result. `what` names the function and the struct.
-inline dermis_result rejected_size(const Log& log, SizedRead why, std::string_view what, size_t stated,
-                                   size_t minimum) noexcept {
+inline dermis_result rejected_size(const Log& log, SizedRead why, std::string_view what,
+                                   size_t stated, size_t minimum) noexcept {
   if (why == SizedRead::unknown_fields)
     return fail(log, DERMIS_ERROR_VERSION, DiagnosticId::host_struct_version,
-                "{}: struct_size is {} and fields beyond those this library knows are not zero", what,
-                stated);
-  return bad_argument(log, "{}.struct_size is {}, expected {}..{}: use the struct's INIT macro", what, stated,
-                      minimum, largest_struct_size);
+                "{}: struct_size is {} and fields beyond those this library knows are not zero",
+                what, stated);
+  return bad_argument(log, "{}.struct_size is {}, expected {}..{}: use the struct's INIT macro",
+                      what, stated, minimum, largest_struct_size);
 }
 
-inline dermis_result rejected_size(const Log& log, SizedRead why, const char* function, const char* argument,
-                                   size_t stated, size_t minimum) {
+inline dermis_result rejected_size(const Log& log, SizedRead why, const char* function,
+                                   const char* argument, size_t stated, size_t minimum) {
   return rejected_size(log, why, fmt::format("{}: {}", function, argument), stated, minimum);
 }
 
 // Runs the body of an exported function with the host's allocator. Converts every exception, e.g.
 // of the standard library or fmt, into a result.
-template <class Body> dermis_result guarded(const Log& log, const char* function, Body&& body) noexcept {
+template <class Body>
+dermis_result guarded(const Log& log, const char* function, Body&& body) noexcept {
   const MemoryScope memory(log.memory);
   try {
     return body();
   } catch (const std::bad_alloc&) {
-    return fail(log, DERMIS_ERROR_MEMORY, DiagnosticId::host_memory, "{}: out of host memory", function);
-  } catch (const std::length_error&) {
-    return fail(log, DERMIS_ERROR_MEMORY, DiagnosticId::host_memory, "{}: a size is beyond the host's memory",
+    return fail(log, DERMIS_ERROR_MEMORY, DiagnosticId::host_memory, "{}: out of host memory",
                 function);
+  } catch (const std::length_error&) {
+    return fail(log, DERMIS_ERROR_MEMORY, DiagnosticId::host_memory,
+                "{}: a size is beyond the host's memory", function);
   } catch (const std::exception& exception) {
     return fail(log, DERMIS_ERROR_INTERNAL, DiagnosticId::internal_defect, "{}: {}", function,
                 exception.what());
   } catch (...) {
-    return fail(log, DERMIS_ERROR_INTERNAL, DiagnosticId::internal_defect, "{}: unknown exception", function);
+    return fail(log, DERMIS_ERROR_INTERNAL, DiagnosticId::internal_defect, "{}: unknown exception",
+                function);
   }
 }
 

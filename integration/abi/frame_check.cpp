@@ -24,33 +24,37 @@ dermis_result check_numbers(const dermis_view_t& view, const dermis_frame& frame
     return bad_argument(log, "{}: flags is {:#x}, known bits are {:#x}", function, frame.flags,
                         known_frame_flags);
   if (frame.frame_index <= view.last_frame)
-    return bad_argument(log, "{}: frame_index is {}, expected more than that of the frame before, {}",
+    return bad_argument(log,
+                        "{}: frame_index is {}, expected more than that of the frame before, {}",
                         function, frame.frame_index, view.last_frame);
   if (frame.completed_frame_index >= frame.frame_index)
-    return bad_argument(log, "{}: completed_frame_index is {}, expected less than frame_index, {}", function,
-                        frame.completed_frame_index, frame.frame_index);
+    return bad_argument(log, "{}: completed_frame_index is {}, expected less than frame_index, {}",
+                        function, frame.completed_frame_index, frame.frame_index);
   if (frame.frame_index - frame.completed_frame_index > in_flight)
-    return bad_argument(
-        log,
-        "{}: frame_index is {} and completed_frame_index {}: with {} frames in flight frame {} must "
-        "be complete",
-        function, frame.frame_index, frame.completed_frame_index, in_flight, frame.frame_index - in_flight);
+    return bad_argument(log,
+                        "{}: frame_index is {} and completed_frame_index {}: with {} frames in "
+                        "flight frame {} must "
+                        "be complete",
+                        function, frame.frame_index, frame.completed_frame_index, in_flight,
+                        frame.frame_index - in_flight);
   if (!std::isfinite(frame.delta_seconds) || frame.delta_seconds < 0)
-    return bad_argument(log, "{}: delta_seconds is {}, expected 0 or more", function, frame.delta_seconds);
+    return bad_argument(log, "{}: delta_seconds is {}, expected 0 or more", function,
+                        frame.delta_seconds);
   if (!std::isfinite(frame.metres_per_unit) || frame.metres_per_unit < 0)
-    return bad_argument(log, "{}: metres_per_unit is {}, expected more than 0, or 0 for 1", function,
-                        frame.metres_per_unit);
+    return bad_argument(log, "{}: metres_per_unit is {}, expected more than 0, or 0 for 1",
+                        function, frame.metres_per_unit);
   if (!std::isfinite(frame.exposure) || frame.exposure < 0)
     return bad_argument(log, "{}: exposure is {}, expected more than 0, or 0 for 1", function,
                         frame.exposure);
   if (!std::isfinite(frame.jitter_x) || !std::isfinite(frame.jitter_y))
-    return bad_argument(log, "{}: jitter is ({}, {}), expected finite pixels", function, frame.jitter_x,
-                        frame.jitter_y);
+    return bad_argument(log, "{}: jitter is ({}, {}), expected finite pixels", function,
+                        frame.jitter_x, frame.jitter_y);
   const int kind = static_cast<int>(frame.depth_kind);
   if (kind != DERMIS_DEPTH_DEVICE && kind != DERMIS_DEPTH_VIEW_UNITS)
     return bad_argument(log, "{}: depth_kind is {}, expected 0 or 1", function, kind);
   const auto finite = [](const float(&matrix)[16]) {
-    return std::all_of(std::begin(matrix), std::end(matrix), [](float x) { return std::isfinite(x); });
+    return std::all_of(std::begin(matrix), std::end(matrix),
+                       [](float x) { return std::isfinite(x); });
   };
   if (!finite(frame.view_from_world) || !finite(frame.previous_clip_from_view) ||
       !finite(frame.previous_view_from_world))
@@ -63,7 +67,8 @@ dermis_result check_rectangle(const Log& log, const char* function, const Plan& 
   if (frame.rect_width == 0) {
     if (frame.rect_x != 0 || frame.rect_y != 0 || frame.rect_height != 0)
       return bad_argument(
-          log, "{}: rect_width is 0 (the allocated size) and the rest of the rectangle is not", function);
+          log, "{}: rect_width is 0 (the allocated size) and the rest of the rectangle is not",
+          function);
     out = {0, 0, plan.view_width, plan.view_height};
     return DERMIS_OK;
   }
@@ -71,8 +76,9 @@ dermis_result check_rectangle(const Log& log, const char* function, const Plan& 
   const bool inside = out.height > 0 && uint64_t{out.x} + out.width <= plan.view_width &&
                       uint64_t{out.y} + out.height <= plan.view_height;
   if (inside) return DERMIS_OK;
-  return bad_argument(log, "{}: the rectangle {}x{} at ({}, {}) is not inside the allocated size {}x{}",
-                      function, out.width, out.height, out.x, out.y, plan.view_width, plan.view_height);
+  return bad_argument(
+      log, "{}: the rectangle {}x{} at ({}, {}) is not inside the allocated size {}x{}", function,
+      out.width, out.height, out.x, out.y, plan.view_width, plan.view_height);
 }
 
 // Clips `first` .. `first + size` to 0 .. `extent`, relative to `corner`.
@@ -86,8 +92,10 @@ std::pair<int32_t, int32_t> clip(uint32_t first, uint32_t size, uint32_t corner,
 dermis_result check_bounds(const Log& log, const char* function, const dermis_frame& frame,
                            const vulkan::Rectangle& rectangle, std::array<int32_t, 4>& out) {
   if ((frame.flags & DERMIS_FRAME_BOUNDS) == 0) {
-    if (frame.bounds_x != 0 || frame.bounds_y != 0 || frame.bounds_width != 0 || frame.bounds_height != 0)
-      return bad_argument(log, "{}: bounds are given, and flags is without DERMIS_FRAME_BOUNDS", function);
+    if (frame.bounds_x != 0 || frame.bounds_y != 0 || frame.bounds_width != 0 ||
+        frame.bounds_height != 0)
+      return bad_argument(log, "{}: bounds are given, and flags is without DERMIS_FRAME_BOUNDS",
+                          function);
     out = {0, 0, static_cast<int32_t>(rectangle.width), static_cast<int32_t>(rectangle.height)};
     return DERMIS_OK;
   }
@@ -102,20 +110,21 @@ std::string_view format_name(VkFormat format) {
   return known ? format_info(*known).name : "a format unknown to graphs";
 }
 
-dermis_result check_state(const dermis_view_t& view, uint32_t index, const Slot& slot, const char* which,
-                          const dermis_image_state& state) {
+dermis_result check_state(const dermis_view_t& view, uint32_t index, const Slot& slot,
+                          const char* which, const dermis_image_state& state) {
   const Log& log = view.context->log;
   const char* const function = "dermis_view_record";
   if (state.access != 0 && state.stages == 0)
-    return bad_argument(log, "{}: bindings[{}].{} ('{}') has access {:#x} but no stages", function, index,
-                        which, slot.name, state.access);
+    return bad_argument(log, "{}: bindings[{}].{} ('{}') has access {:#x} but no stages", function,
+                        index, which, slot.name, state.access);
   if (state.layout == VK_IMAGE_LAYOUT_MAX_ENUM)
-    return bad_argument(log, "{}: bindings[{}].{}.layout ('{}') is not a layout", function, index, which,
-                        slot.name);
+    return bad_argument(log, "{}: bindings[{}].{}.layout ('{}') is not a layout", function, index,
+                        which, slot.name);
   FamilyText text;
   const std::string_view problem = family_problem(*view.context, ResourceType::image, state, text);
   if (!problem.empty())
-    return bad_argument(log, "{}: bindings[{}].{} ('{}'): {}", function, index, which, slot.name, problem);
+    return bad_argument(log, "{}: bindings[{}].{} ('{}'): {}", function, index, which, slot.name,
+                        problem);
   return DERMIS_OK;
 }
 
@@ -123,31 +132,36 @@ dermis_result check_binding(const dermis_view_t& view, uint32_t index, const Slo
                             const dermis_image_binding& binding) {
   const Log& log = view.context->log;
   const char* const function = "dermis_view_record";
-  if (binding.image == VK_NULL_HANDLE || (binding.view == VK_NULL_HANDLE && binding.content_id == 0))
+  if (binding.image == VK_NULL_HANDLE ||
+      (binding.view == VK_NULL_HANDLE && binding.content_id == 0))
     return bad_argument(log, "{}: bindings[{}].{} ('{}') is null", function, index,
                         binding.image == VK_NULL_HANDLE ? "image" : "view", slot.name);
   if (static_cast<uint32_t>(binding.format) != format_info(slot.format).vulkan)
-    return bad_argument(
-        log,
-        "{}: bindings[{}].format ('{}') is {} (VkFormat {}), the graph was compiled for {}; name the "
-        "format in dermis_graph_desc.formats",
-        function, index, slot.name, format_name(binding.format), static_cast<uint32_t>(binding.format),
-        format_info(slot.format).name);
+    return bad_argument(log,
+                        "{}: bindings[{}].format ('{}') is {} (VkFormat {}), the graph was "
+                        "compiled for {}; name the "
+                        "format in dermis_graph_desc.formats",
+                        function, index, slot.name, format_name(binding.format),
+                        static_cast<uint32_t>(binding.format), format_info(slot.format).name);
   if (binding.width < slot.width || binding.height < slot.height)
-    return bad_argument(log, "{}: bindings[{}] ('{}') is {}x{}, the graph needs at least {}x{}", function,
-                        index, slot.name, binding.width, binding.height, slot.width, slot.height);
+    return bad_argument(log, "{}: bindings[{}] ('{}') is {}x{}, the graph needs at least {}x{}",
+                        function, index, slot.name, binding.width, binding.height, slot.width,
+                        slot.height);
   if (slot.read && binding.before.layout == VK_IMAGE_LAYOUT_UNDEFINED)
     return bad_argument(
-        log, "{}: bindings[{}].before.layout ('{}') is UNDEFINED, which discards what the graph reads",
+        log,
+        "{}: bindings[{}].before.layout ('{}') is UNDEFINED, which discards what the graph reads",
         function, index, slot.name);
   if (binding.after.layout == VK_IMAGE_LAYOUT_UNDEFINED ||
       binding.after.layout == VK_IMAGE_LAYOUT_PREINITIALIZED)
-    return bad_argument(log, "{}: bindings[{}].after.layout ('{}') is {}, to which no image can be brought",
-                        function, index, slot.name,
-                        binding.after.layout == VK_IMAGE_LAYOUT_UNDEFINED ? "UNDEFINED" : "PREINITIALIZED");
+    return bad_argument(
+        log, "{}: bindings[{}].after.layout ('{}') is {}, to which no image can be brought",
+        function, index, slot.name,
+        binding.after.layout == VK_IMAGE_LAYOUT_UNDEFINED ? "UNDEFINED" : "PREINITIALIZED");
   if (binding.layer > 0 && binding.layer_count == 0)
-    return bad_argument(log, "{}: bindings[{}].layer ('{}') is {} and layer_count 0, which means all layers",
-                        function, index, slot.name, binding.layer);
+    return bad_argument(
+        log, "{}: bindings[{}].layer ('{}') is {} and layer_count 0, which means all layers",
+        function, index, slot.name, binding.layer);
   if (const dermis_result result = check_state(view, index, slot, "before", binding.before);
       result != DERMIS_OK)
     return result;
@@ -155,8 +169,8 @@ dermis_result check_binding(const dermis_view_t& view, uint32_t index, const Slo
 }
 
 // Provides the image view of a binding without one.
-dermis_result make_view(dermis_view_t& view, uint32_t index, const Slot& slot, const dermis_frame& frame,
-                        dermis_image_binding& binding) {
+dermis_result make_view(dermis_view_t& view, uint32_t index, const Slot& slot,
+                        const dermis_frame& frame, dermis_image_binding& binding) {
   if (binding.view != VK_NULL_HANDLE) return DERMIS_OK;
   const Log& log = view.context->log;
   const char* const function = "dermis_view_record";
@@ -164,11 +178,12 @@ dermis_result make_view(dermis_view_t& view, uint32_t index, const Slot& slot, c
                          binding.image,
                          binding.content_id,
                          binding.format,
-                         format_info(slot.format).depth ? VkImageAspectFlags{VK_IMAGE_ASPECT_DEPTH_BIT}
-                                                        : VkImageAspectFlags{VK_IMAGE_ASPECT_COLOR_BIT},
+                         format_info(slot.format).depth
+                             ? VkImageAspectFlags{VK_IMAGE_ASPECT_DEPTH_BIT}
+                             : VkImageAspectFlags{VK_IMAGE_ASPECT_COLOR_BIT},
                          binding.layer};
-  const VkResult result =
-      find_image_view(view.image_views, key, frame.frame_index, frame.completed_frame_index, binding.view);
+  const VkResult result = find_image_view(view.image_views, key, frame.frame_index,
+                                          frame.completed_frame_index, binding.view);
   if (result == VK_SUCCESS) return DERMIS_OK;
   if (result == VK_ERROR_TOO_MANY_OBJECTS)
     return bad_argument(
@@ -184,7 +199,8 @@ dermis_result make_view(dermis_view_t& view, uint32_t index, const Slot& slot, c
 }
 
 // Reports all slots without a binding in one message.
-dermis_result check_complete(const Log& log, const char* function, const CompiledGraph& compiled_graph) {
+dermis_result check_complete(const Log& log, const char* function,
+                             const CompiledGraph& compiled_graph) {
   constexpr size_t rest_of_message = 256; // reserves space for the advice after a long list
   std::array<char, failure_text_size - rest_of_message> names;
   size_t used = 0;
@@ -196,34 +212,38 @@ dermis_result check_complete(const Log& log, const char* function, const Compile
     const Slot& slot = compiled_graph.slots[i];
     if (!slot.in_plan || given) continue;
     optional = optional || !slot.required;
-    const auto written =
-        fmt::format_to_n(names.data() + used, names.size() - used, "{}'{}' (slot {}, {})",
-                         used == 0 ? "" : ", ", slot.name, i, slot.required ? "required" : "optional");
+    const auto written = fmt::format_to_n(names.data() + used, names.size() - used,
+                                          "{}'{}' (slot {}, {})", used == 0 ? "" : ", ", slot.name,
+                                          i, slot.required ? "required" : "optional");
     used = std::min(names.size(), used + written.size);
   }
   if (used == 0) return DERMIS_OK;
-  return bad_argument(log, "{}: nothing is bound to {}{}", function, std::string_view{names.data(), used},
+  return bad_argument(log, "{}: nothing is bound to {}{}", function,
+                      std::string_view{names.data(), used},
                       optional ? "; bind an optional slot in every frame, or name it in "
                                  "dermis_graph_desc.unbound when the graph is created or reloaded"
                                : "");
 }
 
-dermis_result check_bindings(dermis_view_t& view, CompiledGraph& compiled_graph, const dermis_frame& frame) {
+dermis_result check_bindings(dermis_view_t& view, CompiledGraph& compiled_graph,
+                             const dermis_frame& frame) {
   const Log& log = view.context->log;
   const char* const function = "dermis_view_record";
   if (frame.binding_count > 0 && frame.bindings == nullptr)
-    return bad_argument(log, "{}: bindings is NULL and binding_count is {}", function, frame.binding_count);
+    return bad_argument(log, "{}: bindings is NULL and binding_count is {}", function,
+                        frame.binding_count);
   std::fill(compiled_graph.images.begin(), compiled_graph.images.end(), vulkan::HostImage{});
   const auto* at = reinterpret_cast<const std::byte*>(frame.bindings);
   const size_t step = frame.binding_count > 0 ? stated_size(at) : 0;
   for (uint32_t i = 0; i < frame.binding_count; ++i) {
     const std::byte* from = at + i * step;
     dermis_image_binding binding = DERMIS_IMAGE_BINDING_INIT;
-    const SizedRead read = stated_size(from) == step ? read_sized(from, binding) : SizedRead::too_small;
+    const SizedRead read =
+        stated_size(from) == step ? read_sized(from, binding) : SizedRead::too_small;
     if (read == SizedRead::unknown_fields)
       return fail(log, DERMIS_ERROR_VERSION, DiagnosticId::host_struct_version,
-                  "{}: bindings[{}] has fields beyond those this library knows that are not zero", function,
-                  i);
+                  "{}: bindings[{}] has fields beyond those this library knows that are not zero",
+                  function, i);
     if (read != SizedRead::ok)
       return bad_argument(
           log,
@@ -231,12 +251,12 @@ dermis_result check_bindings(dermis_view_t& view, CompiledGraph& compiled_graph,
           "DERMIS_IMAGE_BINDING_INIT",
           function, i, stated_size(from), step, sizeof(dermis_image_binding));
     if (binding.slot >= compiled_graph.slots.size())
-      return bad_argument(log, "{}: bindings[{}].slot is {}, the graph has slots 0..{}", function, i,
-                          binding.slot, static_cast<int64_t>(compiled_graph.slots.size()) - 1);
+      return bad_argument(log, "{}: bindings[{}].slot is {}, the graph has slots 0..{}", function,
+                          i, binding.slot, static_cast<int64_t>(compiled_graph.slots.size()) - 1);
     const Slot& slot = compiled_graph.slots[binding.slot];
     if (slot.type != ResourceType::image)
-      return bad_argument(log, "{}: bindings[{}] binds an image to slot {} ('{}'), which takes {}", function,
-                          i, binding.slot, slot.name, type_phrase(slot.type));
+      return bad_argument(log, "{}: bindings[{}] binds an image to slot {} ('{}'), which takes {}",
+                          function, i, binding.slot, slot.name, type_phrase(slot.type));
     if (!slot.in_plan) continue;
     vulkan::HostImage& image = compiled_graph.images[binding.slot];
     if (image.image != VK_NULL_HANDLE)
@@ -246,12 +266,15 @@ dermis_result check_bindings(dermis_view_t& view, CompiledGraph& compiled_graph,
       return result;
     if (const dermis_result result = make_view(view, i, slot, frame, binding); result != DERMIS_OK)
       return result;
-    image = {binding.image, binding.view,       host_state(binding.before), host_state(binding.after),
-             binding.layer, binding.layer_count};
+    image = {
+        binding.image, binding.view,       host_state(binding.before), host_state(binding.after),
+        binding.layer, binding.layer_count};
   }
-  if (const dermis_result result = check_memory_bindings(view, compiled_graph, frame); result != DERMIS_OK)
+  if (const dermis_result result = check_memory_bindings(view, compiled_graph, frame);
+      result != DERMIS_OK)
     return result;
-  if (const dermis_result result = check_complete(log, function, compiled_graph); result != DERMIS_OK)
+  if (const dermis_result result = check_complete(log, function, compiled_graph);
+      result != DERMIS_OK)
     return result;
   return check_shared_resources(view, compiled_graph);
 }
@@ -269,8 +292,10 @@ subsurface::Matrix4 matrix_of(const float (&elements)[16]) {
   return matrix;
 }
 
-subsurface::CameraFault fill_constants(const dermis_frame& frame, const CompiledGraph& compiled_graph,
-                                       const vulkan::Rectangle& previous, const vulkan::Rectangle& rectangle,
+subsurface::CameraFault fill_constants(const dermis_frame& frame,
+                                       const CompiledGraph& compiled_graph,
+                                       const vulkan::Rectangle& previous,
+                                       const vulkan::Rectangle& rectangle,
                                        const std::array<int32_t, 4>& bounds, bool history_invalid,
                                        subsurface::FrameConstants& constants) {
   subsurface::FrameInput input;
@@ -280,12 +305,14 @@ subsurface::CameraFault fill_constants(const dermis_frame& frame, const Compiled
   input.rect_width = rectangle.width;
   input.rect_height = rectangle.height;
   input.camera = {matrix_of(frame.clip_from_view), matrix_of(frame.view_from_world),
-                  matrix_of(frame.previous_clip_from_view), matrix_of(frame.previous_view_from_world)};
+                  matrix_of(frame.previous_clip_from_view),
+                  matrix_of(frame.previous_view_from_world)};
   remove_jitter(input.camera.clip_from_view, 0, frame.jitter_x, rectangle.width);
   remove_jitter(input.camera.clip_from_view, 1, frame.jitter_y, rectangle.height);
   std::optional<subsurface::Handedness> declared;
   if ((frame.flags & DERMIS_FRAME_LEFT_HANDED) != 0) declared = subsurface::Handedness::left;
-  const subsurface::CameraFault fault = subsurface::to_right_handed(input.camera, declared, input.handedness);
+  const subsurface::CameraFault fault =
+      subsurface::to_right_handed(input.camera, declared, input.handedness);
   if (fault != subsurface::CameraFault::none) return fault;
   input.jitter_px = {frame.jitter_x, frame.jitter_y};
   input.metres_per_unit = frame.metres_per_unit == 0 ? 1.0 : frame.metres_per_unit;
@@ -299,14 +326,15 @@ subsurface::CameraFault fill_constants(const dermis_frame& frame, const Compiled
   input.previous_width = previous.width;
   input.previous_height = previous.height;
   input.previous_jitter_px = compiled_graph.last_jitter_px;
-  return subsurface::fill_frame_constants(input, constants) ? subsurface::CameraFault::none
-                                                            : subsurface::CameraFault::no_projection;
+  return subsurface::fill_frame_constants(input, constants)
+             ? subsurface::CameraFault::none
+             : subsurface::CameraFault::no_projection;
 }
 
 // Returns advice on how to declare view space, if that may be the cause.
 std::string_view hint_of(subsurface::CameraFault fault) {
-  const bool of_handedness =
-      fault != subsurface::CameraFault::no_projection && fault != subsurface::CameraFault::stored_by_columns;
+  const bool of_handedness = fault != subsurface::CameraFault::no_projection &&
+                             fault != subsurface::CameraFault::stored_by_columns;
   return of_handedness ? "; the camera looks down -z, or along +z in an orthographic frame with "
                          "DERMIS_FRAME_LEFT_HANDED and in a perspective with w = z"
                        : "";
@@ -314,13 +342,14 @@ std::string_view hint_of(subsurface::CameraFault fault) {
 
 } // namespace
 
-dermis_result check_frame(dermis_view_t& view, CompiledGraph& compiled_graph, const dermis_frame& frame,
-                          CheckedFrame& checked) {
+dermis_result check_frame(dermis_view_t& view, CompiledGraph& compiled_graph,
+                          const dermis_frame& frame, CheckedFrame& checked) {
   const Log& log = view.context->log;
   const char* const function = "dermis_view_record";
   if (const dermis_result result = check_numbers(view, frame); result != DERMIS_OK) return result;
-  if (const dermis_result result = check_rectangle(log, function, compiled_graph.plans.front().compiled->plan,
-                                                   frame, checked.input.rectangle);
+  if (const dermis_result result =
+          check_rectangle(log, function, compiled_graph.plans.front().compiled->plan, frame,
+                          checked.input.rectangle);
       result != DERMIS_OK)
     return result;
   if (const dermis_result result =
@@ -330,8 +359,8 @@ dermis_result check_frame(dermis_view_t& view, CompiledGraph& compiled_graph, co
   return check_bindings(view, compiled_graph, frame);
 }
 
-dermis_result fill_frame(const dermis_view_t& view, const CompiledGraph& compiled_graph, const Chosen& chosen,
-                         const dermis_frame& frame, CheckedFrame& checked) {
+dermis_result fill_frame(const dermis_view_t& view, const CompiledGraph& compiled_graph,
+                         const Chosen& chosen, const dermis_frame& frame, CheckedFrame& checked) {
   const Log& log = view.context->log;
   const char* const function = "dermis_view_record";
   const RunnablePlan& plan = compiled_graph.plans[chosen.plan];
@@ -341,9 +370,9 @@ dermis_result fill_frame(const dermis_view_t& view, const CompiledGraph& compile
   bool history_invalid = false;
   for (uint32_t i = 0; i < executor.history_count(); ++i)
     history_invalid = history_invalid || !executor.history_state(i, reset, before).valid;
-  if (const subsurface::CameraFault fault =
-          fill_constants(frame, compiled_graph, executor.previous_rectangle(before), checked.input.rectangle,
-                         checked.bounds, history_invalid, checked.constants);
+  if (const subsurface::CameraFault fault = fill_constants(
+          frame, compiled_graph, executor.previous_rectangle(before), checked.input.rectangle,
+          checked.bounds, history_invalid, checked.constants);
       fault != subsurface::CameraFault::none)
     return bad_argument(log, "{}: {}{}", function, subsurface::text_of(fault), hint_of(fault));
   checked.constants.sample_units = chosen.sample_units;
@@ -355,7 +384,8 @@ dermis_result fill_frame(const dermis_view_t& view, const CompiledGraph& compile
   checked.input.settings = compiled_graph.configurations[chosen.configuration].settings;
   checked.input.frame_index = frame.frame_index;
   checked.input.reset_history = reset;
-  checked.input.memory_overwritten = before != nullptr && compiled_graph.last_frame > 0; // of the memory pool
+  checked.input.memory_overwritten =
+      before != nullptr && compiled_graph.last_frame > 0; // of the memory pool
   checked.input.before = before;
   checked.input.view_user = view.user;
   checked.history_invalid = history_invalid;

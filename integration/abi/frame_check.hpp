@@ -18,8 +18,8 @@ struct CheckedFrame {
 
 // Checks every field, and fills program.images and the parts of `checked` that do not depend on the
 // chosen configuration. Returns ARGUMENT or VERSION with a message that names the field.
-dermis_result check_frame(dermis_view_t& view, CompiledGraph& compiled_graph, const dermis_frame& frame,
-                          CheckedFrame& checked);
+dermis_result check_frame(dermis_view_t& view, CompiledGraph& compiled_graph,
+                          const dermis_frame& frame, CheckedFrame& checked);
 // The plan that records the frame.
 struct Chosen {
   uint32_t configuration = 0, plan = 0; // into the program
@@ -28,7 +28,7 @@ struct Chosen {
   uint32_t sample_units = 0; // see FrameConstants
 };
 // Fills the rest of `checked`.
-dermis_result fill_frame(const dermis_view_t& view, const CompiledGraph& compiled_graph, const Chosen& chosen,
-                         const dermis_frame& frame, CheckedFrame& checked);
+dermis_result fill_frame(const dermis_view_t& view, const CompiledGraph& compiled_graph,
+                         const Chosen& chosen, const dermis_frame& frame, CheckedFrame& checked);
 
 } // namespace dermis::abi

@@ -18,10 +18,11 @@ dermis_graph_t::~dermis_graph_t() {
 namespace dermis::abi {
 namespace {
 
-using Candidates = std::vector<std::shared_ptr<CompiledGraph>>; // by view, the graph's own view first
+using Candidates =
+    std::vector<std::shared_ptr<CompiledGraph>>; // by view, the graph's own view first
 
-// Reports each history of `compiled_graph` that cannot continue from the view's last frame. Requires the
-// view's mutex.
+// Reports each history of `compiled_graph` that cannot continue from the view's last frame.
+// Requires the view's mutex.
 void report_lost_histories(const dermis_view_t& view, const CompiledGraph& compiled_graph,
                            vulkan::HistoryReason reason, Diagnostics& diagnostics) {
   const CompiledGraph& last = *view.running;
@@ -32,15 +33,16 @@ void report_lost_histories(const dermis_view_t& view, const CompiledGraph& compi
     if (executor.history_state(h, false, &before).valid) continue;
     const ResourceDeclaration& declared =
         compiled_graph.graph.resources[plan.resources[plan.histories[h].resource].declared.value];
-    diagnostics.add(
-        DiagnosticId::history_restarts, declared.where,
-        fmt::format("history '{}' restarts: {}", declared.name, vulkan::history_reason_text(reason)));
+    diagnostics.add(DiagnosticId::history_restarts, declared.where,
+                    fmt::format("history '{}' restarts: {}", declared.name,
+                                vulkan::history_reason_text(reason)));
   }
 }
 
 // Builds a program for every view next to the running one. Changes nothing visible to the views.
-dermis_result build_candidates(dermis_graph_t& graph, CompiledGraphInput& input, vulkan::HistoryReason reason,
-                               Diagnostics& diagnostics, Candidates& candidates) {
+dermis_result build_candidates(dermis_graph_t& graph, CompiledGraphInput& input,
+                               vulkan::HistoryReason reason, Diagnostics& diagnostics,
+                               Candidates& candidates) {
   dermis_context_t& context = *graph.context;
   bool recorded = false;
   for_each_view(graph, [&](const dermis_view_t& view) {
@@ -56,10 +58,11 @@ dermis_result build_candidates(dermis_graph_t& graph, CompiledGraphInput& input,
     costs = graph.own.chooser.costs;
   }
   candidates.resize(1 + graph.others.size());
-  dermis_result result =
-      build_compiled_graph(context, input, history, graph.plans, errors, costs, diagnostics, candidates[0]);
+  dermis_result result = build_compiled_graph(context, input, history, graph.plans, errors, costs,
+                                              diagnostics, candidates[0]);
   for (size_t v = 1; v < candidates.size() && result == DERMIS_OK; ++v)
-    result = copy_compiled_graph(context, input, *candidates[0], history, diagnostics, candidates[v]);
+    result =
+        copy_compiled_graph(context, input, *candidates[0], history, diagnostics, candidates[v]);
   for (size_t v = 1; v < candidates.size() && result == DERMIS_OK; ++v)
     apply_own_settings(*graph.others[v - 1], *candidates[v], diagnostics);
   // the caller handles errors of profiles
@@ -98,8 +101,9 @@ dermis_result create(dermis_context context, const dermis_graph_desc* given, der
     return rejected_size(log, read, "dermis_graph_create: desc", stated_size(given),
                          sizeof(dermis_graph_desc));
   if (desc.keep != 0)
-    return bad_argument(log, "dermis_graph_create: desc.keep is {:#x}, expected 0: only a reload can keep",
-                        desc.keep);
+    return bad_argument(
+        log, "dermis_graph_create: desc.keep is {:#x}, expected 0: only a reload can keep",
+        desc.keep);
   auto graph = std::make_unique<dermis_graph_t>(context);
   Diagnostics diagnostics;
   if (const dermis_result result =
@@ -107,8 +111,8 @@ dermis_result create(dermis_context context, const dermis_graph_desc* given, der
       result != DERMIS_OK)
     return result;
   Candidates candidates;
-  dermis_result result =
-      build_candidates(*graph, graph->input, vulkan::HistoryReason::first_frame, diagnostics, candidates);
+  dermis_result result = build_candidates(*graph, graph->input, vulkan::HistoryReason::first_frame,
+                                          diagnostics, candidates);
   // error of a profile
   if (result == DERMIS_OK && diagnostics.has_errors()) result = DERMIS_ERROR_CONFIG;
   result = conclude(log, result, std::move(diagnostics), report);
@@ -135,7 +139,8 @@ dermis_result reload(dermis_graph_t& graph, const dermis_graph_desc* given, derm
     return result;
   const bool resized = input.width != graph.input.width || input.height != graph.input.height;
   return replace_compiled_graphs(graph, std::move(input),
-                                 resized ? vulkan::HistoryReason::resized : vulkan::HistoryReason::reloaded,
+                                 resized ? vulkan::HistoryReason::resized
+                                         : vulkan::HistoryReason::reloaded,
                                  report, std::move(diagnostics));
 }
 
@@ -158,7 +163,8 @@ dermis_result replace_compiled_graphs(dermis_graph_t& graph, CompiledGraphInput&
 using namespace dermis::abi;
 
 extern "C" dermis_result DERMIS_CALL dermis_graph_create(dermis_context context,
-                                                         const dermis_graph_desc* desc, dermis_graph* graph,
+                                                         const dermis_graph_desc* desc,
+                                                         dermis_graph* graph,
                                                          dermis_report* report) {
   if (graph != nullptr) *graph = nullptr;
   if (report != nullptr) *report = nullptr;
@@ -166,27 +172,30 @@ extern "C" dermis_result DERMIS_CALL dermis_graph_create(dermis_context context,
   return guarded(context->log, "dermis_graph_create", [&] {
     if (desc == nullptr) return bad_argument(context->log, "dermis_graph_create: desc is NULL");
     if (graph == nullptr) return bad_argument(context->log, "dermis_graph_create: graph is NULL");
-    if (const dermis_result alive = check_alive(*context, "dermis_graph_create"); alive != DERMIS_OK)
+    if (const dermis_result alive = check_alive(*context, "dermis_graph_create");
+        alive != DERMIS_OK)
       return alive;
     return create(context, desc, graph, report);
   });
 }
 
-extern "C" dermis_result DERMIS_CALL dermis_graph_reload(dermis_graph graph, const dermis_graph_desc* desc,
+extern "C" dermis_result DERMIS_CALL dermis_graph_reload(dermis_graph graph,
+                                                         const dermis_graph_desc* desc,
                                                          dermis_report* report) {
   if (report != nullptr) *report = nullptr;
   if (graph == nullptr) return bad_argument({}, "dermis_graph_reload: graph is NULL");
   const Log& log = graph->context->log;
   return guarded(log, "dermis_graph_reload", [&] {
     if (desc == nullptr) return bad_argument(log, "dermis_graph_reload: desc is NULL");
-    if (const dermis_result alive = check_alive(*graph->context, "dermis_graph_reload"); alive != DERMIS_OK)
+    if (const dermis_result alive = check_alive(*graph->context, "dermis_graph_reload");
+        alive != DERMIS_OK)
       return alive;
     return reload(*graph, desc, report);
   });
 }
 
-extern "C" dermis_result DERMIS_CALL dermis_graph_resize(dermis_graph graph, uint32_t width, uint32_t height,
-                                                         dermis_report* report) {
+extern "C" dermis_result DERMIS_CALL dermis_graph_resize(dermis_graph graph, uint32_t width,
+                                                         uint32_t height, dermis_report* report) {
   if (report != nullptr) *report = nullptr;
   if (graph == nullptr) return bad_argument({}, "dermis_graph_resize: graph is NULL");
   const Log& log = graph->context->log;
@@ -194,13 +203,15 @@ extern "C" dermis_result DERMIS_CALL dermis_graph_resize(dermis_graph graph, uin
     if (const dermis_result result = check_view_size(log, "dermis_graph_resize", width, height);
         result != DERMIS_OK)
       return result;
-    if (const dermis_result alive = check_alive(*graph->context, "dermis_graph_resize"); alive != DERMIS_OK)
+    if (const dermis_result alive = check_alive(*graph->context, "dermis_graph_resize");
+        alive != DERMIS_OK)
       return alive;
     const std::lock_guard changing(graph->changing);
     CompiledGraphInput input = graph->input;
     input.width = width;
     input.height = height;
-    return replace_compiled_graphs(*graph, std::move(input), dermis::vulkan::HistoryReason::resized, report);
+    return replace_compiled_graphs(*graph, std::move(input), dermis::vulkan::HistoryReason::resized,
+                                   report);
   });
 }
 

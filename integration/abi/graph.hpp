@@ -22,12 +22,14 @@ struct dermis_view_t {
   void* user = nullptr; // passed to host-recorded passes
   // the view's own values; guarded by graph->changing
   std::vector<dermis::abi::HostSetting> settings;
-  mutable std::mutex mutex;                            // guards all following members
-  std::shared_ptr<dermis::abi::CompiledGraph> running; // recorded last; null before the first record
-  std::shared_ptr<dermis::abi::CompiledGraph> next;    // takes over at the next record; null: none
+  mutable std::mutex mutex; // guards all following members
+  std::shared_ptr<dermis::abi::CompiledGraph>
+      running;                                      // recorded last; null before the first record
+  std::shared_ptr<dermis::abi::CompiledGraph> next; // takes over at the next record; null: none
   // Replaced programs, until their last recorded frame has completed. Each was replaced at a
   // different frame, and at most frames_in_flight frames are incomplete.
-  std::array<std::shared_ptr<dermis::abi::CompiledGraph>, dermis::vulkan::max_frames_in_flight + 1> retired;
+  std::array<std::shared_ptr<dermis::abi::CompiledGraph>, dermis::vulkan::max_frames_in_flight + 1>
+      retired;
   uint64_t last_frame = 0;
   // State before the last record, until that is discarded or another frame is recorded.
   struct Recorded {
@@ -89,8 +91,8 @@ template <class Use> void for_each_view(dermis_graph_t& graph, Use use) {
 
 // Returns the executor of the previous frame if it is not that of `plan`: another plan of this
 // program, or of the program that it replaces. Requires the view's mutex.
-const vulkan::Executor* recorded_before(const dermis_view_t& view, const CompiledGraph& compiled_graph,
-                                        uint32_t plan);
+const vulkan::Executor* recorded_before(const dermis_view_t& view,
+                                        const CompiledGraph& compiled_graph, uint32_t plan);
 
 // Builds programs for all views from `input`; they take over at the next record. On failure nothing
 // has changed. Requires graph.changing. `diagnostics` holds findings of reading `input`; an error
@@ -101,7 +103,8 @@ dermis_result replace_compiled_graphs(dermis_graph_t& graph, CompiledGraphInput&
 
 // Applies the view's own settings to a program that it will record. Reports settings that no longer
 // fit.
-void apply_own_settings(const dermis_view_t& view, CompiledGraph& compiled_graph, Diagnostics& diagnostics);
+void apply_own_settings(const dermis_view_t& view, CompiledGraph& compiled_graph,
+                        Diagnostics& diagnostics);
 
 // The functions of a view; `function` names the one that was called.
 dermis_result record_frame(dermis_view_t& view, const dermis_frame* frame);
@@ -110,8 +113,8 @@ dermis_result capture_frame(dermis_view_t& view, const char* function, const der
 dermis_result discard_frame(dermis_view_t& view, const char* function, uint64_t frame_index);
 dermis_result get_report(dermis_view_t& view, uint64_t completed, dermis_frame_report* out);
 dermis_result get_statistics(dermis_view_t& view, uint64_t completed, dermis_frame_statistics* out);
-dermis_result get_timings(dermis_view_t& view, const char* function, uint64_t completed, uint32_t* count,
-                          dermis_pass_timing* out);
+dermis_result get_timings(dermis_view_t& view, const char* function, uint64_t completed,
+                          uint32_t* count, dermis_pass_timing* out);
 dermis_result get_histories(const dermis_view_t& view, const char* function, uint32_t* count,
                             dermis_history* out);
 

@@ -21,10 +21,11 @@ dermis_result for_each(const Log& log, const char* function, const char* field, 
   for (uint32_t i = 0; i < count; ++i) {
     T item = defaults;
     const std::byte* from = at + i * step;
-    const SizedRead read = stated_size(from) == step ? read_sized(from, item) : SizedRead::too_small;
+    const SizedRead read =
+        stated_size(from) == step ? read_sized(from, item) : SizedRead::too_small;
     if (read != SizedRead::ok)
-      return rejected_size(log, read, fmt::format("{}: desc.{}[{}]", function, field, i), stated_size(from),
-                           std::max(i == 0 ? 0 : step, sizeof(T)));
+      return rejected_size(log, read, fmt::format("{}: desc.{}[{}]", function, field, i),
+                           stated_size(from), std::max(i == 0 ? 0 : step, sizeof(T)));
     if (const dermis_result result = use(i, item); result != DERMIS_OK) return result;
   }
   return DERMIS_OK;
@@ -37,22 +38,27 @@ dermis_result read_profiles(const Log& log, const char* function, const dermis_g
       [&](uint32_t i, const dermis_profile& profile) {
         const std::string field = fmt::format("{}: desc.profiles[{}]", function, i);
         if (profile.id == 0 || profile.id > largest_profile_id)
-          return bad_argument(log, "{}.id is {}, expected 1..{}", field, profile.id, largest_profile_id);
+          return bad_argument(log, "{}.id is {}, expected 1..{}", field, profile.id,
+                              largest_profile_id);
         for (const auto& other : input.profiles)
           if (other.id == profile.id)
-            return bad_argument(log, "{}.id is {}, which an earlier entry has already", field, profile.id);
+            return bad_argument(log, "{}.id is {}, which an earlier entry has already", field,
+                                profile.id);
         subsurface::NumberedProfile& added = input.profiles.emplace_back();
         added.id = profile.id;
-        return read_profile_source(log, (field + ".source").c_str(), profile.source, added, diagnostics);
+        return read_profile_source(log, (field + ".source").c_str(), profile.source, added,
+                                   diagnostics);
       });
 }
 
 dermis_result read_unbound(const Log& log, const char* function, const dermis_graph_desc& desc,
                            CompiledGraphInput& input) {
   if (desc.unbound_count > 0 && desc.unbound == nullptr)
-    return bad_argument(log, "{}: desc.unbound is NULL and its count is {}", function, desc.unbound_count);
+    return bad_argument(log, "{}: desc.unbound is NULL and its count is {}", function,
+                        desc.unbound_count);
   for (uint32_t i = 0; i < desc.unbound_count; ++i) {
-    if (desc.unbound[i] == nullptr) return bad_argument(log, "{}: desc.unbound[{}] is NULL", function, i);
+    if (desc.unbound[i] == nullptr)
+      return bad_argument(log, "{}: desc.unbound[{}] is NULL", function, i);
     input.unbound.emplace_back(desc.unbound[i]);
   }
   return DERMIS_OK;
@@ -60,16 +66,17 @@ dermis_result read_unbound(const Log& log, const char* function, const dermis_gr
 
 dermis_result read_overlays(const Log& log, const char* function, const dermis_graph_desc& desc,
                             CompiledGraphInput& input) {
-  return for_each<dermis_source>(log, function, "overlays", desc.overlays, desc.overlay_count,
-                                 DERMIS_SOURCE_INIT, [&](uint32_t i, const dermis_source& source) {
-                                   SourceText overlay;
-                                   const dermis_result result = read_source(
-                                       log, fmt::format("{}: desc.overlays[{}]", function, i).c_str(), source,
-                                       overlay.name, overlay.text);
-                                   if (overlay.name.empty()) overlay.name = fmt::format("overlay {}", i);
-                                   input.overlays.push_back(std::move(overlay));
-                                   return result;
-                                 });
+  return for_each<dermis_source>(
+      log, function, "overlays", desc.overlays, desc.overlay_count, DERMIS_SOURCE_INIT,
+      [&](uint32_t i, const dermis_source& source) {
+        SourceText overlay;
+        const dermis_result result =
+            read_source(log, fmt::format("{}: desc.overlays[{}]", function, i).c_str(), source,
+                        overlay.name, overlay.text);
+        if (overlay.name.empty()) overlay.name = fmt::format("overlay {}", i);
+        input.overlays.push_back(std::move(overlay));
+        return result;
+      });
 }
 
 dermis_result read_formats(const Log& log, const char* function, const dermis_graph_desc& desc,
@@ -77,11 +84,13 @@ dermis_result read_formats(const Log& log, const char* function, const dermis_gr
   return for_each<dermis_slot_format>(
       log, function, "formats", desc.formats, desc.format_count, DERMIS_SLOT_FORMAT_INIT,
       [&](uint32_t i, const dermis_slot_format& given) {
-        if (given.name == nullptr) return bad_argument(log, "{}: desc.formats[{}].name is NULL", function, i);
+        if (given.name == nullptr)
+          return bad_argument(log, "{}: desc.formats[{}].name is NULL", function, i);
         const auto format = format_from_vulkan(static_cast<uint32_t>(given.format));
         if (!format || *format == Format::undefined)
           return bad_argument(
-              log, "{}: desc.formats[{}].format is VkFormat {}, which no graph can declare (slot '{}')",
+              log,
+              "{}: desc.formats[{}].format is VkFormat {}, which no graph can declare (slot '{}')",
               function, i, static_cast<uint32_t>(given.format), given.name);
         input.formats.push_back({given.name, *format});
         return DERMIS_OK;
@@ -90,8 +99,8 @@ dermis_result read_formats(const Log& log, const char* function, const dermis_gr
 
 } // namespace
 
-dermis_result read_source(const Log& log, const char* what, const dermis_source& source, std::string& name,
-                          std::string& text) {
+dermis_result read_source(const Log& log, const char* what, const dermis_source& source,
+                          std::string& name, std::string& text) {
   if (source.struct_size != sizeof(dermis_source)) // a member of other structs, so it never grows
     return bad_argument(log, "{}.struct_size is {}, expected {}: use DERMIS_SOURCE_INIT", what,
                         source.struct_size, sizeof(dermis_source));
@@ -110,15 +119,16 @@ dermis_result read_profile_source(const Log& log, const char* what, const dermis
   std::string name, text;
   if (const dermis_result result = read_source(log, what, source, name, text); result != DERMIS_OK)
     return result;
-  const auto document =
-      parse_document(name.empty() ? fmt::format("profile {}", out.id) : name, std::move(text), diagnostics);
+  const auto document = parse_document(name.empty() ? fmt::format("profile {}", out.id) : name,
+                                       std::move(text), diagnostics);
   if (!document) return DERMIS_OK;
   if (auto read = subsurface::read_profile(*document, diagnostics)) out.profile = std::move(*read);
   return DERMIS_OK;
 }
 
 dermis_result check_view_size(const Log& log, const char* of, uint32_t width, uint32_t height) {
-  if (width >= 1 && width <= largest_view && height >= 1 && height <= largest_view) return DERMIS_OK;
+  if (width >= 1 && width <= largest_view && height >= 1 && height <= largest_view)
+    return DERMIS_OK;
   return bad_argument(log, "{}: the size is {}x{}, expected 1..{} pixels a side", of, width, height,
                       largest_view);
 }

@@ -37,7 +37,8 @@ struct KnownHistory {
 
 // Adds the histories of a plan that are not yet in `all`, as its next frame will find them.
 void add_histories(const PassTypeRegistry& pass_types, const CompiledGraph& compiled_graph,
-                   const RunnablePlan& plan, const vulkan::Executor* before, std::vector<KnownHistory>& all) {
+                   const RunnablePlan& plan, const vulkan::Executor* before,
+                   std::vector<KnownHistory>& all) {
   for (uint32_t i = 0; i < plan.executor->history_count(); ++i) {
     vulkan::HistoryState state = plan.executor->history_state(i, false, before);
     const auto same = [&](const KnownHistory& one) { return one.state.resource == state.resource; };
@@ -46,13 +47,15 @@ void add_histories(const PassTypeRegistry& pass_types, const CompiledGraph& comp
     if (!state.valid && !plan.recorded && own.lost == vulkan::HistoryReason::first_frame)
       state.lost = own.lost; // the plan never ran, so no other plan ran in between
     all.push_back(
-        {state, settling_frames(pass_types, plan.compiled->plan, i,
-                                compiled_graph.configurations[compiled_graph.configuration].settings)});
+        {state,
+         settling_frames(pass_types, plan.compiled->plan, i,
+                         compiled_graph.configurations[compiled_graph.configuration].settings)});
   }
 }
 
 // Lists the plan that ran last, or will run first, before the others.
-std::vector<KnownHistory> histories_of(const dermis_view_t& view, const CompiledGraph& compiled_graph) {
+std::vector<KnownHistory> histories_of(const dermis_view_t& view,
+                                       const CompiledGraph& compiled_graph) {
   const PassTypeRegistry& pass_types = view.context->pass_types;
   std::vector<KnownHistory> all;
   const uint32_t last = compiled_graph.plan;

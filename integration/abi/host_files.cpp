@@ -13,10 +13,11 @@ FileText ask_host(dermis_include_fn include, void* user, std::string_view name) 
   if (include(user, requested.c_str(), &source) != 1) return {"", "", "the host has no such file"};
   if (source.text == nullptr) return {"", "", "the host delivers no text"};
   if (source.length > limits::file_bytes)
-    return {
-        "", "",
-        fmt::format("the host delivers {} bytes, at most {} are read", source.length, limits::file_bytes)};
-  return {source.name != nullptr ? source.name : requested, std::string(source.text, source.length), ""};
+    return {"", "",
+            fmt::format("the host delivers {} bytes, at most {} are read", source.length,
+                        limits::file_bytes)};
+  return {source.name != nullptr ? source.name : requested, std::string(source.text, source.length),
+          ""};
 }
 
 } // namespace dermis::abi

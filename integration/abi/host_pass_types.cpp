@@ -27,33 +27,37 @@ constexpr std::array usages{Usage::sampled_image,         Usage::storage_image_w
                             Usage::acceleration_structure};
 constexpr std::array setting_types{SettingType::boolean, SettingType::integer, SettingType::real};
 
-dermis_result read_ports(const Log& log, const dermis_pass_type& given, HostPassTypeDeclaration& type) {
+dermis_result read_ports(const Log& log, const dermis_pass_type& given,
+                         HostPassTypeDeclaration& type) {
   if (given.port_count > 0 && given.ports == nullptr)
-    return bad_argument(log, "{}: kind.ports is NULL, port_count is {}", registering, given.port_count);
+    return bad_argument(log, "{}: kind.ports is NULL, port_count is {}", registering,
+                        given.port_count);
   for (uint32_t i = 0; i < given.port_count; ++i) {
     dermis_port port = DERMIS_PORT_INIT;
     if (const SizedRead read = read_sized(element(given.ports, i), port); read != SizedRead::ok)
-      return rejected_size(log, read, "dermis_register_pass_type: kind.ports", stated_size(given.ports),
-                           sizeof(dermis_port));
+      return rejected_size(log, read, "dermis_register_pass_type: kind.ports",
+                           stated_size(given.ports), sizeof(dermis_port));
     const auto usage = static_cast<size_t>(port.usage);
     if (usage >= usages.size())
       return bad_argument(log, "{}: kind.ports[{}].usage is {}, expected 0..{}", registering, i,
                           static_cast<int>(port.usage), usages.size() - 1);
-    type.ports.push_back(
-        {text_of(port.name), text_of(port.doc), usages[usage], port.optional != 0, port.own_texels != 0});
+    type.ports.push_back({text_of(port.name), text_of(port.doc), usages[usage], port.optional != 0,
+                          port.own_texels != 0});
   }
   return DERMIS_OK;
 }
 
-dermis_result read_settings(const Log& log, const dermis_pass_type& given, HostPassTypeDeclaration& type) {
+dermis_result read_settings(const Log& log, const dermis_pass_type& given,
+                            HostPassTypeDeclaration& type) {
   if (given.setting_count > 0 && given.settings == nullptr)
     return bad_argument(log, "{}: kind.settings is NULL, setting_count is {}", registering,
                         given.setting_count);
   for (uint32_t i = 0; i < given.setting_count; ++i) {
     dermis_pass_setting setting = DERMIS_PASS_SETTING_INIT;
-    if (const SizedRead read = read_sized(element(given.settings, i), setting); read != SizedRead::ok)
-      return rejected_size(log, read, "dermis_register_pass_type: kind.settings", stated_size(given.settings),
-                           sizeof(dermis_pass_setting));
+    if (const SizedRead read = read_sized(element(given.settings, i), setting);
+        read != SizedRead::ok)
+      return rejected_size(log, read, "dermis_register_pass_type: kind.settings",
+                           stated_size(given.settings), sizeof(dermis_pass_setting));
     const auto value_type = static_cast<size_t>(setting.type);
     if (value_type >= setting_types.size())
       return bad_argument(log, "{}: kind.settings[{}].type is {}, expected 0..{}", registering, i,
@@ -72,17 +76,20 @@ dermis_result add(dermis_context_t& context, const dermis_pass_type* given) {
     return rejected_size(log, read, "dermis_register_pass_type: kind", stated_size(given),
                          sizeof(dermis_pass_type));
   if (desc.record == nullptr) return bad_argument(log, "{}: kind.record is NULL", registering);
-  if (desc.port_count > limits::host_pass_type_ports || desc.setting_count > limits::host_pass_type_settings)
-    return bad_argument(log, "{}: kind.port_count is {} and setting_count {}, at most {} and {} are possible",
-                        registering, desc.port_count, desc.setting_count, limits::host_pass_type_ports,
-                        limits::host_pass_type_settings);
+  if (desc.port_count > limits::host_pass_type_ports ||
+      desc.setting_count > limits::host_pass_type_settings)
+    return bad_argument(
+        log, "{}: kind.port_count is {} and setting_count {}, at most {} and {} are possible",
+        registering, desc.port_count, desc.setting_count, limits::host_pass_type_ports,
+        limits::host_pass_type_settings);
   HostPassTypeDeclaration type;
   type.name = text_of(desc.name);
   type.doc = text_of(desc.doc);
   type.side_effects = desc.side_effects != 0;
   type.serves_scattering = desc.serves_scattering != 0;
   if (const dermis_result result = read_ports(log, desc, type); result != DERMIS_OK) return result;
-  if (const dermis_result result = read_settings(log, desc, type); result != DERMIS_OK) return result;
+  if (const dermis_result result = read_settings(log, desc, type); result != DERMIS_OK)
+    return result;
   return add_host_pass_type(context, std::move(type), desc.record, desc.user);
 }
 
@@ -150,8 +157,9 @@ void fill_host_pass(const vulkan::HostPass& call, HostPassCall& out) {
 
 void record_host_pass(void* host_passes, const vulkan::HostPass& call) {
   const auto& passes = *static_cast<const HostPasses*>(host_passes);
-  const auto found = std::find_if(passes.recorders.begin(), passes.recorders.end(),
-                                  [&](const HostPasses::Recorder& one) { return one.type == call.type; });
+  const auto found =
+      std::find_if(passes.recorders.begin(), passes.recorders.end(),
+                   [&](const HostPasses::Recorder& one) { return one.type == call.type; });
   HostPassCall whole;
   fill_host_pass(call, whole);
   found->record(found->user, &whole.call);
@@ -165,7 +173,8 @@ extern "C" dermis_result DERMIS_CALL dermis_register_pass_type(dermis_context co
                                                                const dermis_pass_type* type) {
   if (context == nullptr) return bad_argument({}, "dermis_register_pass_type: context is NULL");
   return guarded(context->log, registering, [&] {
-    if (type == nullptr) return bad_argument(context->log, "dermis_register_pass_type: kind is NULL");
+    if (type == nullptr)
+      return bad_argument(context->log, "dermis_register_pass_type: kind is NULL");
     return add(*context, type);
   });
 }
@@ -174,7 +183,8 @@ extern "C" dermis_result DERMIS_CALL dermis_export_pass_types(dermis_context con
                                                               char* text) {
   if (context == nullptr) return bad_argument({}, "dermis_export_pass_types: context is NULL");
   return guarded(context->log, "dermis_export_pass_types", [&] {
-    if (size == nullptr) return bad_argument(context->log, "dermis_export_pass_types: size is NULL");
+    if (size == nullptr)
+      return bad_argument(context->log, "dermis_export_pass_types: size is NULL");
     return fill_text(dermis::write_host_pass_types(context->host_passes.pass_types), size, text);
   });
 }

@@ -24,12 +24,14 @@ ImageViews::~ImageViews() {
 }
 
 void reserve(ImageViews& views, size_t slots) {
-  if (views.entries.size() < slots * image_views_a_slot) views.entries.resize(slots * image_views_a_slot);
+  if (views.entries.size() < slots * image_views_a_slot)
+    views.entries.resize(slots * image_views_a_slot);
 }
 
-VkResult find_image_view(ImageViews& views, const ImageViewKey& key, uint64_t frame_index, uint64_t completed,
-                         VkImageView& view) noexcept {
-  const auto slot = std::span(views.entries).subspan(key.slot * image_views_a_slot, image_views_a_slot);
+VkResult find_image_view(ImageViews& views, const ImageViewKey& key, uint64_t frame_index,
+                         uint64_t completed, VkImageView& view) noexcept {
+  const auto slot =
+      std::span(views.entries).subspan(key.slot * image_views_a_slot, image_views_a_slot);
   const auto known = std::find_if(slot.begin(), slot.end(), [&](const ImageViews::Entry& entry) {
     return entry.view != VK_NULL_HANDLE && entry.key == key;
   });
@@ -39,11 +41,12 @@ VkResult find_image_view(ImageViews& views, const ImageViewKey& key, uint64_t fr
     return VK_SUCCESS;
   }
   // Selects the least recently used entry; unused entries come first.
-  const auto oldest =
-      std::min_element(slot.begin(), slot.end(), [](const ImageViews::Entry& a, const ImageViews::Entry& b) {
-        return a.last_frame < b.last_frame;
-      });
-  if (oldest->view != VK_NULL_HANDLE && oldest->last_frame > completed) return VK_ERROR_TOO_MANY_OBJECTS;
+  const auto oldest = std::min_element(slot.begin(), slot.end(),
+                                       [](const ImageViews::Entry& a, const ImageViews::Entry& b) {
+                                         return a.last_frame < b.last_frame;
+                                       });
+  if (oldest->view != VK_NULL_HANDLE && oldest->last_frame > completed)
+    return VK_ERROR_TOO_MANY_OBJECTS;
   VkImageView made = VK_NULL_HANDLE;
   if (const VkResult result = create(views.device, key, made); result != VK_SUCCESS) return result;
   views.device.vk.vkDestroyImageView(views.device.device, oldest->view, views.device.allocator);

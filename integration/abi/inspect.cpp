@@ -40,7 +40,8 @@ BytesByTypes unaliased_bytes(const Plan& plan) {
   for (const Placement& placement : plan.placements) {
     if (placement.persistent) continue;
     const Heap& heap = plan.heaps[placement.heap];
-    sums[heap.memory_type_bits] += (placement.size + heap.alignment - 1) / heap.alignment * heap.alignment;
+    sums[heap.memory_type_bits] +=
+        (placement.size + heap.alignment - 1) / heap.alignment * heap.alignment;
   }
   return sums;
 }
@@ -90,14 +91,14 @@ std::vector<vulkan::MemoryRequest> heaps_of(const CompiledGraph& compiled_graph)
 
 } // namespace
 
-dermis_result get_timings(dermis_view_t& view, const char* function, uint64_t completed, uint32_t* count,
-                          dermis_pass_timing* out) {
+dermis_result get_timings(dermis_view_t& view, const char* function, uint64_t completed,
+                          uint32_t* count, dermis_pass_timing* out) {
   const Log& log = view.context->log;
   if (count == nullptr) return bad_argument(log, "{}: count is NULL", function);
   const std::lock_guard lock(view.mutex);
   if (completed > view.last_frame)
-    return bad_argument(log, "{}: completed_frame_index is {}, the newest recorded frame is {}", function,
-                        completed, view.last_frame);
+    return bad_argument(log, "{}: completed_frame_index is {}, the newest recorded frame is {}",
+                        function, completed, view.last_frame);
   CompiledGraph& compiled_graph = view.running ? *view.running : newest(view);
   const RunnablePlan& plan = compiled_graph.recorded();
   const auto passes = static_cast<uint32_t>(plan.compiled->plan.passes.size());
@@ -137,7 +138,8 @@ extern "C" dermis_result DERMIS_CALL dermis_graph_slots(dermis_graph graph, uint
   });
 }
 
-extern "C" dermis_result DERMIS_CALL dermis_graph_describe(dermis_graph graph, dermis_describe_format format,
+extern "C" dermis_result DERMIS_CALL dermis_graph_describe(dermis_graph graph,
+                                                           dermis_describe_format format,
                                                            size_t* size, char* text) {
   if (graph == nullptr) return bad_argument({}, "dermis_graph_describe: graph is NULL");
   const Log& log = graph->context->log;
@@ -147,7 +149,8 @@ extern "C" dermis_result DERMIS_CALL dermis_graph_describe(dermis_graph graph, d
     std::shared_ptr<const CompiledGraph> kept;
     std::shared_ptr<const dermis::CompiledPlan> plan;
     {
-      const std::lock_guard lock(graph->own.mutex); // the newest configuration changes with each frame
+      const std::lock_guard lock(
+          graph->own.mutex); // the newest configuration changes with each frame
       kept = graph->own.next ? graph->own.next : graph->own.running;
       plan = kept->current().compiled;
     }
@@ -175,7 +178,8 @@ extern "C" dermis_result DERMIS_CALL dermis_graph_describe(dermis_graph graph, d
   });
 }
 
-extern "C" dermis_result DERMIS_CALL dermis_graph_memory(dermis_graph graph, dermis_memory* memory) {
+extern "C" dermis_result DERMIS_CALL dermis_graph_memory(dermis_graph graph,
+                                                         dermis_memory* memory) {
   if (graph == nullptr) return bad_argument({}, "dermis_graph_memory: graph is NULL");
   const Log& log = graph->context->log;
   return guarded(log, "dermis_graph_memory", [&] {

@@ -21,7 +21,8 @@ public:
 
   bool has(uint32_t resource, const SubresourceRange& range) const {
     for (uint32_t mip = range.first_mip; mip < uint32_t{range.first_mip} + range.mips; ++mip)
-      for (uint32_t layer = range.first_layer; layer < uint32_t{range.first_layer} + range.layers;) {
+      for (uint32_t layer = range.first_layer;
+           layer < uint32_t{range.first_layer} + range.layers;) {
         const uint32_t next = end_of_known(resource, mip, layer);
         if (next == layer) return false;
         layer = next;
@@ -44,7 +45,8 @@ private:
   std::vector<std::vector<SubresourceRange>> ranges_; // by resource
 };
 
-SubresourceRange declared_range(const ResourceDeclaration& resource, const ImageRange& image_range) {
+SubresourceRange declared_range(const ResourceDeclaration& resource,
+                                const ImageRange& image_range) {
   const uint32_t mips = resource.mips == 0 ? limits::image_mips : resource.mips;
   SubresourceRange range;
   range.first_mip = image_range.first_mip;
@@ -52,10 +54,11 @@ SubresourceRange declared_range(const ResourceDeclaration& resource, const Image
                    ? static_cast<uint16_t>(mips - std::min<uint32_t>(mips, image_range.first_mip))
                    : image_range.mips;
   range.first_layer = image_range.first_layer;
-  range.layers = image_range.layers == 0
-                     ? static_cast<uint16_t>(resource.layers -
-                                             std::min<uint32_t>(resource.layers, image_range.first_layer))
-                     : image_range.layers;
+  range.layers =
+      image_range.layers == 0
+          ? static_cast<uint16_t>(resource.layers -
+                                  std::min<uint32_t>(resource.layers, image_range.first_layer))
+          : image_range.layers;
   return range;
 }
 
@@ -90,9 +93,9 @@ Subresources provided_subresources(const Graph& graph, const PassTypeRegistry& p
 bool turned_off_writer(const Graph& graph, ResourceId resource) {
   return std::any_of(graph.passes.begin(), graph.passes.end(), [&](const PassDeclaration& pass) {
     const auto writes = graph.writes(pass);
-    return is_off(pass) && std::any_of(writes.begin(), writes.end(), [&](const PortBinding& binding) {
-             return binding.resource == resource;
-           });
+    return is_off(pass) &&
+           std::any_of(writes.begin(), writes.end(),
+                       [&](const PortBinding& binding) { return binding.resource == resource; });
   });
 }
 
@@ -102,8 +105,10 @@ ResourceId missing_input(const Graph& graph, const Subresources& provided, const
                          const PassDeclaration& pass) {
   for (const PortBinding& binding : graph.bindings_of(pass)) {
     const Port& port = type.ports[binding.port];
-    if (port.optional || !usage_info(port.usage).reads || binding.when != ReadWhen::always) continue;
-    const SubresourceRange range = declared_range(graph.resources[binding.resource.value], binding.range);
+    if (port.optional || !usage_info(port.usage).reads || binding.when != ReadWhen::always)
+      continue;
+    const SubresourceRange range =
+        declared_range(graph.resources[binding.resource.value], binding.range);
     if (!provided.has(binding.resource.value, range) && turned_off_writer(graph, binding.resource))
       return binding.resource;
   }
@@ -111,7 +116,8 @@ ResourceId missing_input(const Graph& graph, const Subresources& provided, const
 }
 
 std::span<const PlanAccess> accesses_of(const Plan& plan, size_t pass) {
-  return std::span(plan.accesses).subspan(plan.passes[pass].first_access, plan.passes[pass].access_count);
+  return std::span(plan.accesses)
+      .subspan(plan.passes[pass].first_access, plan.passes[pass].access_count);
 }
 
 bool writes_needed(const Plan& plan, size_t pass, const std::vector<uint8_t>& needed) {
@@ -188,7 +194,8 @@ void explain_lacking_inputs(const Graph& without_scattering, CompiledPlan& compi
   for (const PlanPass& pass : compiled.plan.passes) {
     const PassDeclaration& declared = without_scattering.passes[pass.declared.value];
     if (declared.absence == PassDeclaration::Absence::no_input)
-      compiled.reasons.push_back({Reason::About::pass, Reason::ReasonKind::lacks_input_without_bounds,
+      compiled.reasons.push_back({Reason::About::pass,
+                                  Reason::ReasonKind::lacks_input_without_bounds,
                                   pass.declared.value, declared.missing.value, 0, 0});
   }
 }

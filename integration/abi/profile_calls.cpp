@@ -19,8 +19,8 @@ void add_settling(const PassTypeRegistry& pass_types, const CompiledGraph& compi
     const Plan& plan = runnable.compiled->plan;
     for (uint32_t h = 0; h < plan.histories.size(); ++h) {
       const ResourceId declared = plan.resources[plan.histories[h].resource].declared;
-      const uint32_t frames =
-          settling_frames(pass_types, plan, h, compiled_graph.configurations[configuration].settings);
+      const uint32_t frames = settling_frames(
+          pass_types, plan, h, compiled_graph.configurations[configuration].settings);
       if (frames <= 1 || std::find(known.begin(), known.end(), declared) != known.end()) continue;
       known.push_back(declared);
       const ResourceDeclaration& resource = compiled_graph.graph.resources[declared.value];
@@ -69,19 +69,22 @@ dermis_result set_profile(dermis_graph_t& graph, uint32_t id, const dermis_sourc
   subsurface::NumberedProfile profile{id, {}};
   Diagnostics diagnostics;
   if (source != nullptr)
-    if (const dermis_result result =
-            read_profile_source(log, "dermis_graph_set_profile: source", *source, profile, diagnostics);
+    if (const dermis_result result = read_profile_source(log, "dermis_graph_set_profile: source",
+                                                         *source, profile, diagnostics);
         result != DERMIS_OK)
       return result;
-  if (diagnostics.has_errors()) return conclude(log, DERMIS_ERROR_CONFIG, std::move(diagnostics), report);
+  if (diagnostics.has_errors())
+    return conclude(log, DERMIS_ERROR_CONFIG, std::move(diagnostics), report);
   const std::lock_guard changing(graph.changing);
   CompiledGraphInput input = graph.input;
-  const auto at = std::find_if(input.profiles.begin(), input.profiles.end(),
-                               [&](const subsurface::NumberedProfile& one) { return one.id == id; });
+  const auto at =
+      std::find_if(input.profiles.begin(), input.profiles.end(),
+                   [&](const subsurface::NumberedProfile& one) { return one.id == id; });
   if (source == nullptr) {
     if (at == input.profiles.end())
-      return bad_argument(log, "{}: source is NULL, which removes a profile, but the graph has no profile {}",
-                          function, id);
+      return bad_argument(
+          log, "{}: source is NULL, which removes a profile, but the graph has no profile {}",
+          function, id);
     input.profiles.erase(at);
   } else if (at == input.profiles.end()) {
     input.profiles.push_back(std::move(profile));
@@ -105,7 +108,8 @@ extern "C" dermis_result DERMIS_CALL dermis_graph_set_profile(dermis_graph graph
   if (report != nullptr) *report = nullptr;
   if (graph == nullptr) return bad_argument({}, "{}: graph is NULL", function);
   return guarded(graph->context->log, function, [&] {
-    if (const dermis_result alive = check_alive(*graph->context, function); alive != DERMIS_OK) return alive;
+    if (const dermis_result alive = check_alive(*graph->context, function); alive != DERMIS_OK)
+      return alive;
     return set_profile(*graph, id, source, report);
   });
 }

@@ -33,16 +33,19 @@ dermis_result discard(dermis_view_t& view, const char* function, uint64_t frame_
   const Log& log = view.context->log;
   dermis_view_t::Recorded& recorded = view.recorded;
   if (!recorded.known || frame_index != view.last_frame)
-    return bad_argument(
-        log, "{}: frame_index is {}, expected that of the frame recorded last, {}{}", function, frame_index,
-        view.last_frame,
-        recorded.known || view.last_frame == 0 ? "" : "; only that frame can be discarded, and only once");
-  if (recorded.took_over && view.next)
     return bad_argument(log,
-                        "{}: the graph was reloaded or resized since frame {}, which was the first of the "
-                        "graph before that: it "
-                        "can no longer be discarded",
-                        function, frame_index);
+                        "{}: frame_index is {}, expected that of the frame recorded last, {}{}",
+                        function, frame_index, view.last_frame,
+                        recorded.known || view.last_frame == 0
+                            ? ""
+                            : "; only that frame can be discarded, and only once");
+  if (recorded.took_over && view.next)
+    return bad_argument(
+        log,
+        "{}: the graph was reloaded or resized since frame {}, which was the first of the "
+        "graph before that: it "
+        "can no longer be discarded",
+        function, frame_index);
   CompiledGraph& compiled_graph = *view.running;
   if (!compiled_graph.plans[recorded.plan].executor->discard_frame(frame_index))
     return bad_argument(log, "{}: frame {} was not recorded", function, frame_index);
@@ -56,7 +59,8 @@ dermis_result discard(dermis_view_t& view, const char* function, uint64_t frame_
   view.chooser.decided_for = recorded.decided_for;
   if (recorded.took_over) {
     view.next = std::move(view.running);
-    if (recorded.retired < view.retired.size()) view.running = std::move(view.retired[recorded.retired]);
+    if (recorded.retired < view.retired.size())
+      view.running = std::move(view.retired[recorded.retired]);
   }
   view.last_frame = recorded.last_frame;
   recorded = {};
@@ -66,9 +70,11 @@ dermis_result discard(dermis_view_t& view, const char* function, uint64_t frame_
 // Returns the jitter of the previous frame, in pixels of the current view size.
 std::array<double, 2> rescaled_jitter(const dermis_view_t& view, const vulkan::Executor& executor,
                                       const vulkan::Executor& before) {
-  const vulkan::Rectangle was = before.previous_rectangle(), is = executor.previous_rectangle(&before);
+  const vulkan::Rectangle was = before.previous_rectangle(),
+                          is = executor.previous_rectangle(&before);
   const auto& jitter = view.running->last_jitter_px;
-  return {jitter[0] * is.width / std::max(was.width, 1u), jitter[1] * is.height / std::max(was.height, 1u)};
+  return {jitter[0] * is.width / std::max(was.width, 1u),
+          jitter[1] * is.height / std::max(was.height, 1u)};
 }
 
 uint32_t plan_of(const CompiledGraph& compiled_graph, uint32_t configuration, bool empty_bounds) {
@@ -81,22 +87,25 @@ uint32_t plan_of(const CompiledGraph& compiled_graph, uint32_t configuration, bo
 dermis_result record(dermis_view_t& view, const dermis_frame* given, Capture* capture) {
   const Log& log = view.context->log;
   const char* const function = "dermis_view_record";
-  if (const dermis_result alive = check_alive(*view.context, function); alive != DERMIS_OK) return alive;
+  if (const dermis_result alive = check_alive(*view.context, function); alive != DERMIS_OK)
+    return alive;
   dermis_frame frame = DERMIS_FRAME_INIT;
   if (const SizedRead read = read_sized(given, frame); read != SizedRead::ok)
     return rejected_size(log, read, function, "frame", stated_size(given), sizeof(dermis_frame));
   if (capture != nullptr) frame.command_buffer = handle_of(*capture);
   CompiledGraph& compiled_graph = newest(view);
   CheckedFrame checked;
-  if (const dermis_result result = check_frame(view, compiled_graph, frame, checked); result != DERMIS_OK)
+  if (const dermis_result result = check_frame(view, compiled_graph, frame, checked);
+      result != DERMIS_OK)
     return result;
   Chooser& chooser = view.chooser;
   if (view.running) observe(chooser, *view.running, frame.completed_frame_index);
   if (const dermis_result loss = check_loss(view, function); loss != DERMIS_OK) return loss;
   choice::DecisionState state =
       compiled_graph.serial == chooser.decided_for ? chooser.state : choice::DecisionState{};
-  FrameChoice chosen = choose(chooser, compiled_graph, frame.frame_index, double(frame.delta_seconds),
-                              checked.input.rectangle, chooser.forecasts, state);
+  FrameChoice chosen =
+      choose(chooser, compiled_graph, frame.frame_index, double(frame.delta_seconds),
+             checked.input.rectangle, chooser.forecasts, state);
   // decided for a view full of subsurface, so hysteresis must not keep it
   if (!chooser.counted) state = {};
   chosen.frame_index = frame.frame_index;
@@ -107,9 +116,11 @@ dermis_result record(dermis_view_t& view, const dermis_frame* given, Capture* ca
   const std::array<double, 2> jitter_before = compiled_graph.last_jitter_px;
   const bool replaces = compiled_graph.last_frame == 0 && before != nullptr;
   if (replaces)
-    compiled_graph.last_jitter_px = rescaled_jitter(view, *compiled_graph.plans[plan].executor, *before);
-  if (const dermis_result result = fill_frame(
-          view, compiled_graph, {chosen.configuration, plan, before, chosen.sample_units}, frame, checked);
+    compiled_graph.last_jitter_px =
+        rescaled_jitter(view, *compiled_graph.plans[plan].executor, *before);
+  if (const dermis_result result =
+          fill_frame(view, compiled_graph,
+                     {chosen.configuration, plan, before, chosen.sample_units}, frame, checked);
       result != DERMIS_OK)
     return result;
   chosen.left_out = checked.empty_bounds();
@@ -117,18 +128,21 @@ dermis_result record(dermis_view_t& view, const dermis_frame* given, Capture* ca
   if (chosen.left_out) chosen.forecast.ms = chosen.forecast.spread_ms = 0;
   collect(view, frame.completed_frame_index);
   if (capture != nullptr) capture_into(*capture, checked.input);
-  if (const vulkan::RecordResult error = compiled_graph.plans[plan].executor->record(checked.input)) {
+  if (const vulkan::RecordResult error =
+          compiled_graph.plans[plan].executor->record(checked.input)) {
     if (error.kind == vulkan::ErrorKind::device_lost) view.context->lost = true;
-    const bool has_slot = error.slot >= 0 && static_cast<size_t>(error.slot) < compiled_graph.slots.size();
-    return fail(log, result_of(error.kind), diagnostic_of(error.kind), "{}: {}{}{}{}", function, error.text,
-                has_slot ? " (slot '" : "",
+    const bool has_slot =
+        error.slot >= 0 && static_cast<size_t>(error.slot) < compiled_graph.slots.size();
+    return fail(log, result_of(error.kind), diagnostic_of(error.kind), "{}: {}{}{}{}", function,
+                error.text, has_slot ? " (slot '" : "",
                 has_slot ? compiled_graph.slots[static_cast<size_t>(error.slot)].name : "",
                 has_slot ? "')" : "");
   }
   if (capture != nullptr && capture->failed) {
     compiled_graph.plans[plan].executor->discard_frame(frame.frame_index);
     compiled_graph.last_jitter_px = jitter_before;
-    return fail(log, DERMIS_ERROR_MEMORY, DiagnosticId::host_memory, "{}: out of host memory", function);
+    return fail(log, DERMIS_ERROR_MEMORY, DiagnosticId::host_memory, "{}: out of host memory",
+                function);
   }
   view.recorded = {};
   view.recorded.known = true;
@@ -156,8 +170,8 @@ dermis_result record(dermis_view_t& view, const dermis_frame* given, Capture* ca
 
 } // namespace
 
-const vulkan::Executor* recorded_before(const dermis_view_t& view, const CompiledGraph& compiled_graph,
-                                        uint32_t plan) {
+const vulkan::Executor* recorded_before(const dermis_view_t& view,
+                                        const CompiledGraph& compiled_graph, uint32_t plan) {
   const bool first = compiled_graph.last_frame == 0;
   if (first && (!view.next || !view.running)) return nullptr;
   const CompiledGraph& other = first ? *view.running : compiled_graph;
@@ -174,7 +188,8 @@ dermis_result check_loss(const dermis_view_t& view, const char* function) {
 }
 
 dermis_result record_frame(dermis_view_t& view, const dermis_frame* frame) {
-  if (frame == nullptr) return bad_argument(view.context->log, "{}: frame is NULL", "dermis_view_record");
+  if (frame == nullptr)
+    return bad_argument(view.context->log, "{}: frame is NULL", "dermis_view_record");
   const std::lock_guard lock(view.mutex);
   return record(view, frame, nullptr);
 }

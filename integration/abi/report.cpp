@@ -39,7 +39,8 @@ dermis_message message_at(const dermis_report_t& report, size_t index) {
   return message;
 }
 
-dermis_result conclude(const Log& log, dermis_result result, Diagnostics&& diagnostics, dermis_report* out) {
+dermis_result conclude(const Log& log, dermis_result result, Diagnostics&& diagnostics,
+                       dermis_report* out) {
   auto report = std::make_unique<dermis_report_t>();
   report->diagnostics = std::move(diagnostics);
   const Diagnostics& all = report->diagnostics;
@@ -73,10 +74,12 @@ extern "C" dermis_result DERMIS_CALL dermis_report_message(dermis_report report,
     if (message == nullptr) return bad_argument({}, "dermis_report_message: message is NULL");
     const size_t count = report->diagnostics.list.size();
     if (index >= count)
-      return bad_argument({}, "dermis_report_message: index is {}, the report has {} messages", index, count);
+      return bad_argument({}, "dermis_report_message: index is {}, the report has {} messages",
+                          index, count);
     const size_t size = stated_size(message);
     if (const SizedRead read = check_size<dermis_message>(size); read != SizedRead::ok)
-      return rejected_size({}, read, "dermis_report_message: message", size, sizeof(dermis_message));
+      return rejected_size({}, read, "dermis_report_message: message", size,
+                           sizeof(dermis_message));
     write_sized(message, size, message_at(*report, index));
     return DERMIS_OK;
   });

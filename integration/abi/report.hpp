@@ -19,7 +19,8 @@ namespace dermis::abi {
 // Logs every message, stores the first error as the thread's last error, and returns the report in
 // `out` unless that is null. Returns `result`. May throw std::bad_alloc before the report is
 // returned.
-dermis_result conclude(const Log& log, dermis_result result, Diagnostics&& diagnostics, dermis_report* out);
+dermis_result conclude(const Log& log, dermis_result result, Diagnostics&& diagnostics,
+                       dermis_report* out);
 
 dermis_message message_at(const dermis_report_t& report, size_t index);
 

@@ -22,16 +22,18 @@ dermis_requirement requirement(dermis_requirement_type type, const char* name, b
 }
 
 template <class Function>
-Function load(PFN_vkGetInstanceProcAddr get_instance_proc_addr, VkInstance instance, const char* name) {
+Function load(PFN_vkGetInstanceProcAddr get_instance_proc_addr, VkInstance instance,
+              const char* name) {
   return reinterpret_cast<Function>(get_instance_proc_addr(instance, name));
 }
 
-std::vector<std::string> extensions_of(PFN_vkGetInstanceProcAddr get_instance_proc_addr, VkInstance instance,
-                                       VkPhysicalDevice physical_device) {
+std::vector<std::string> extensions_of(PFN_vkGetInstanceProcAddr get_instance_proc_addr,
+                                       VkInstance instance, VkPhysicalDevice physical_device) {
   const auto enumerate = load<PFN_vkEnumerateDeviceExtensionProperties>(
       get_instance_proc_addr, instance, "vkEnumerateDeviceExtensionProperties");
   uint32_t count = 0;
-  if (enumerate == nullptr || enumerate(physical_device, nullptr, &count, nullptr) != VK_SUCCESS) return {};
+  if (enumerate == nullptr || enumerate(physical_device, nullptr, &count, nullptr) != VK_SUCCESS)
+    return {};
   std::vector<VkExtensionProperties> properties(count);
   if (enumerate(physical_device, nullptr, &count, properties.data()) != VK_SUCCESS) return {};
   std::vector<std::string> names;
@@ -56,8 +58,8 @@ bool has_device_extension(PFN_vkGetInstanceProcAddr get_instance_proc_addr, VkIn
 std::array<dermis_requirement, requirement_count>
 requirements_of(PFN_vkGetInstanceProcAddr get_instance_proc_addr, VkInstance instance,
                 VkPhysicalDevice physical_device) {
-  const auto get_properties = load<PFN_vkGetPhysicalDeviceProperties>(get_instance_proc_addr, instance,
-                                                                      "vkGetPhysicalDeviceProperties");
+  const auto get_properties = load<PFN_vkGetPhysicalDeviceProperties>(
+      get_instance_proc_addr, instance, "vkGetPhysicalDeviceProperties");
   const auto get_features = load<PFN_vkGetPhysicalDeviceFeatures2>(get_instance_proc_addr, instance,
                                                                    "vkGetPhysicalDeviceFeatures2");
   uint32_t version = 0;
@@ -71,7 +73,8 @@ requirements_of(PFN_vkGetInstanceProcAddr get_instance_proc_addr, VkInstance ins
       extensions_of(get_instance_proc_addr, instance, physical_device);
   const bool rays = has(extensions, VK_KHR_ACCELERATION_STRUCTURE_EXTENSION_NAME) &&
                     has(extensions, VK_KHR_RAY_QUERY_EXTENSION_NAME);
-  const bool has_synchronization2 = core || has(extensions, VK_KHR_SYNCHRONIZATION_2_EXTENSION_NAME);
+  const bool has_synchronization2 =
+      core || has(extensions, VK_KHR_SYNCHRONIZATION_2_EXTENSION_NAME);
   const bool has_maintenance4 = core || has(extensions, VK_KHR_MAINTENANCE_4_EXTENSION_NAME);
   VkPhysicalDeviceFeatures2 features{};
   features.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2;
@@ -93,11 +96,12 @@ requirements_of(PFN_vkGetInstanceProcAddr get_instance_proc_addr, VkInstance ins
     queries.pNext = &structures;
     features.pNext = &queries;
   }
-  if (get_features != nullptr && version >= VK_API_VERSION_1_2) get_features(physical_device, &features);
+  if (get_features != nullptr && version >= VK_API_VERSION_1_2)
+    get_features(physical_device, &features);
 
-  dermis_requirement api =
-      requirement(DERMIS_REQUIREMENT_API_VERSION, "VK_API_VERSION_1_2", version >= VK_API_VERSION_1_2,
-                  "kernels are SPIR-V 1.5; with 1.3 the two extensions below are part of Vulkan");
+  dermis_requirement api = requirement(
+      DERMIS_REQUIREMENT_API_VERSION, "VK_API_VERSION_1_2", version >= VK_API_VERSION_1_2,
+      "kernels are SPIR-V 1.5; with 1.3 the two extensions below are part of Vulkan");
   api.version = VK_API_VERSION_1_2;
   const auto extension = [&](const char* name, bool present, const char* why) {
     dermis_requirement item = requirement(DERMIS_REQUIREMENT_DEVICE_EXTENSION, name, present, why);
@@ -111,36 +115,39 @@ requirements_of(PFN_vkGetInstanceProcAddr get_instance_proc_addr, VkInstance ins
     item.required = 0;
     return item;
   };
-  return {
-      api,
-      extension(VK_KHR_SYNCHRONIZATION_2_EXTENSION_NAME, has_synchronization2,
-                "of a device that is used as Vulkan 1.2: enable it there"),
-      extension(VK_KHR_MAINTENANCE_4_EXTENSION_NAME, has_maintenance4,
-                "of a device that is used as Vulkan 1.2: enable it there"),
-      feature("synchronization2", synchronization2.synchronization2,
-              "barriers are vkCmdPipelineBarrier2 with 64-bit masks"),
-      feature("maintenance4", maintenance4.maintenance4, "memory needs are asked before images exist"),
-      feature("shaderStorageImageWriteWithoutFormat", features.features.shaderStorageImageWriteWithoutFormat,
-              "a port accepts several image formats with one kernel"),
-      optional(requirement(DERMIS_REQUIREMENT_DEVICE_EXTENSION, VK_KHR_ACCELERATION_STRUCTURE_EXTENSION_NAME,
-                           has(extensions, VK_KHR_ACCELERATION_STRUCTURE_EXTENSION_NAME), why_rays)),
-      optional(requirement(DERMIS_REQUIREMENT_DEVICE_EXTENSION, VK_KHR_RAY_QUERY_EXTENSION_NAME,
-                           has(extensions, VK_KHR_RAY_QUERY_EXTENSION_NAME), why_rays)),
-      optional(feature("accelerationStructure", structures.accelerationStructure, why_rays)),
-      optional(feature("rayQuery", queries.rayQuery, why_rays))};
+  return {api,
+          extension(VK_KHR_SYNCHRONIZATION_2_EXTENSION_NAME, has_synchronization2,
+                    "of a device that is used as Vulkan 1.2: enable it there"),
+          extension(VK_KHR_MAINTENANCE_4_EXTENSION_NAME, has_maintenance4,
+                    "of a device that is used as Vulkan 1.2: enable it there"),
+          feature("synchronization2", synchronization2.synchronization2,
+                  "barriers are vkCmdPipelineBarrier2 with 64-bit masks"),
+          feature("maintenance4", maintenance4.maintenance4,
+                  "memory needs are asked before images exist"),
+          feature("shaderStorageImageWriteWithoutFormat",
+                  features.features.shaderStorageImageWriteWithoutFormat,
+                  "a port accepts several image formats with one kernel"),
+          optional(requirement(
+              DERMIS_REQUIREMENT_DEVICE_EXTENSION, VK_KHR_ACCELERATION_STRUCTURE_EXTENSION_NAME,
+              has(extensions, VK_KHR_ACCELERATION_STRUCTURE_EXTENSION_NAME), why_rays)),
+          optional(requirement(DERMIS_REQUIREMENT_DEVICE_EXTENSION, VK_KHR_RAY_QUERY_EXTENSION_NAME,
+                               has(extensions, VK_KHR_RAY_QUERY_EXTENSION_NAME), why_rays)),
+          optional(feature("accelerationStructure", structures.accelerationStructure, why_rays)),
+          optional(feature("rayQuery", queries.rayQuery, why_rays))};
 }
 
 } // namespace dermis::abi
 
 using namespace dermis::abi;
 
-extern "C" dermis_result DERMIS_CALL
-dermis_query_requirements(PFN_vkGetInstanceProcAddr get_instance_proc_addr, VkInstance instance,
-                          VkPhysicalDevice physical_device, uint32_t* count, dermis_requirement* items) {
+extern "C" dermis_result DERMIS_CALL dermis_query_requirements(
+    PFN_vkGetInstanceProcAddr get_instance_proc_addr, VkInstance instance,
+    VkPhysicalDevice physical_device, uint32_t* count, dermis_requirement* items) {
   return guarded({}, "dermis_query_requirements", [&] {
     if (get_instance_proc_addr == nullptr)
       return bad_argument({}, "dermis_query_requirements: get_instance_proc_addr is NULL");
-    if (instance == VK_NULL_HANDLE) return bad_argument({}, "dermis_query_requirements: instance is NULL");
+    if (instance == VK_NULL_HANDLE)
+      return bad_argument({}, "dermis_query_requirements: instance is NULL");
     if (physical_device == VK_NULL_HANDLE)
       return bad_argument({}, "dermis_query_requirements: physical_device is NULL");
     const auto all = requirements_of(get_instance_proc_addr, instance, physical_device);

@@ -27,11 +27,13 @@ dermis_setting_type type_of(SettingType type) {
 }
 
 bool is_set(const std::vector<HostSetting>& given, const std::string& name) {
-  return std::any_of(given.begin(), given.end(), [&](const HostSetting& one) { return one.name == name; });
+  return std::any_of(given.begin(), given.end(),
+                     [&](const HostSetting& one) { return one.name == name; });
 }
 
 // Returns the settings of the program that the view will record next.
-dermis_result get_settings(dermis_view_t& view, const char* function, uint32_t* count, dermis_setting* out) {
+dermis_result get_settings(dermis_view_t& view, const char* function, uint32_t* count,
+                           dermis_setting* out) {
   const Log& log = view.context->log;
   const std::lock_guard changing(view.graph->changing);
   const std::shared_ptr<CompiledGraph> kept = keep_newest(view);
@@ -42,29 +44,32 @@ dermis_result get_settings(dermis_view_t& view, const char* function, uint32_t* 
     values = kept->configurations[kept->configuration].settings;
   }
   const std::vector<uint8_t> per_frame = frame_settings(graph, view.context->pass_types);
-  return fill_array(log, function, count, out, static_cast<uint32_t>(values.size()), [&](uint32_t i) {
-    const SettingDeclaration& declared = graph.settings[i];
-    dermis_setting setting = DERMIS_SETTING_INIT;
-    setting.name = declared.name.c_str();
-    setting.type = type_of(declared.type);
-    setting.per_frame = per_frame[i];
-    setting.unit = declared.unit.c_str();
-    setting.note = declared.note.c_str();
-    const bool ranged = declared.type == SettingType::integer || declared.type == SettingType::real;
-    setting.minimum = ranged ? declared.minimum : 0;
-    setting.maximum = ranged                                  ? declared.maximum
-                      : declared.type == SettingType::boolean ? 1
-                                                              : double(declared.options.size()) - 1;
-    setting.default_value = number_of(declared.default_value);
-    setting.value = number_of(values[i]);
-    setting.set = is_set(view.settings, declared.name)                ? 2
-                  : is_set(view.graph->input.settings, declared.name) ? 1
-                                                                      : 0;
-    setting.chosen = declared.by_budget && setting.set == 0 ? 1 : 0;
-    setting.option_count = static_cast<uint32_t>(declared.options.size());
-    setting.options = declared.options.empty() ? nullptr : kept->option_names[i].data();
-    return setting;
-  });
+  return fill_array(
+      log, function, count, out, static_cast<uint32_t>(values.size()), [&](uint32_t i) {
+        const SettingDeclaration& declared = graph.settings[i];
+        dermis_setting setting = DERMIS_SETTING_INIT;
+        setting.name = declared.name.c_str();
+        setting.type = type_of(declared.type);
+        setting.per_frame = per_frame[i];
+        setting.unit = declared.unit.c_str();
+        setting.note = declared.note.c_str();
+        const bool ranged =
+            declared.type == SettingType::integer || declared.type == SettingType::real;
+        setting.minimum = ranged ? declared.minimum : 0;
+        setting.maximum = ranged ? declared.maximum
+                          : declared.type == SettingType::boolean
+                              ? 1
+                              : double(declared.options.size()) - 1;
+        setting.default_value = number_of(declared.default_value);
+        setting.value = number_of(values[i]);
+        setting.set = is_set(view.settings, declared.name)                ? 2
+                      : is_set(view.graph->input.settings, declared.name) ? 1
+                                                                          : 0;
+        setting.chosen = declared.by_budget && setting.set == 0 ? 1 : 0;
+        setting.option_count = static_cast<uint32_t>(declared.options.size());
+        setting.options = declared.options.empty() ? nullptr : kept->option_names[i].data();
+        return setting;
+      });
 }
 
 auto find_declared(const Graph& graph, const std::string& name) {
@@ -78,8 +83,8 @@ void add_unknown(const char* function, const Graph& graph, const std::string& na
   for (const SettingDeclaration& setting : graph.settings)
     known += fmt::format("{}'{}'", known.empty() ? "" : ", ", setting.name);
   diagnostics.add(DiagnosticId::host_argument, {},
-                  fmt::format("{}: graph '{}' has no setting '{}'; it has {}", function, graph.name, name,
-                              known.empty() ? "none" : known));
+                  fmt::format("{}: graph '{}' has no setting '{}'; it has {}", function, graph.name,
+                              name, known.empty() ? "none" : known));
 }
 
 void set_in(std::vector<HostSetting>& given, const std::string& name, const std::string& json) {
@@ -121,13 +126,15 @@ dermis_result set_setting(dermis_graph_t& graph, const std::string& name, const 
   set_in(input.settings, name, json);
   const auto index = static_cast<uint32_t>(at - declared.begin());
   if (at->by_budget || changes_passes(compiled_graph, values))
-    return replace_compiled_graphs(graph, std::move(input), vulkan::HistoryReason::reloaded, report);
+    return replace_compiled_graphs(graph, std::move(input), vulkan::HistoryReason::reloaded,
+                                   report);
   std::vector<std::vector<choice::Configuration>> configurations; // by view without its own value
   for_each_view(graph, [&](dermis_view_t& view) {
     if (is_set(view.settings, name)) return;
     const std::lock_guard lock(view.mutex);
-    configurations.push_back(configurations_with(newest(view), graph.context->pass_types, view.chooser.errors,
-                                                 view.chooser.costs, index, *value));
+    configurations.push_back(configurations_with(newest(view), graph.context->pass_types,
+                                                 view.chooser.errors, view.chooser.costs, index,
+                                                 *value));
   });
   const dermis_result result = conclude(log, DERMIS_OK, std::move(diagnostics), report);
   if (result != DERMIS_OK) return result;
@@ -162,12 +169,14 @@ dermis_result set_view_setting(dermis_view_t& view, const std::string& name, con
   if (per_frame[index] == 0) {
     std::string own;
     for (size_t i = 0; i < graph.settings.size(); ++i)
-      if (per_frame[i] != 0) own += fmt::format("{}'{}'", own.empty() ? "" : ", ", graph.settings[i].name);
+      if (per_frame[i] != 0)
+        own += fmt::format("{}'{}'", own.empty() ? "" : ", ", graph.settings[i].name);
     diagnostics.add(
         DiagnosticId::host_argument, {},
-        fmt::format("{}: setting '{}' belongs to the graph; dermis_graph_set_setting sets it for all "
-                    "views. A view can have its own value of {}",
-                    function, name, own.empty() ? "none" : own));
+        fmt::format(
+            "{}: setting '{}' belongs to the graph; dermis_graph_set_setting sets it for all "
+            "views. A view can have its own value of {}",
+            function, name, own.empty() ? "none" : own));
     return conclude(log, DERMIS_ERROR_ARGUMENT, std::move(diagnostics), report);
   }
   std::vector<HostSetting> settings = view.settings;
@@ -183,8 +192,8 @@ dermis_result set_view_setting(dermis_view_t& view, const std::string& name, con
   std::vector<choice::Configuration> configurations;
   {
     const std::lock_guard lock(view.mutex);
-    configurations = configurations_with(newest(view), view.context->pass_types, view.chooser.errors,
-                                         view.chooser.costs, index, *value);
+    configurations = configurations_with(newest(view), view.context->pass_types,
+                                         view.chooser.errors, view.chooser.costs, index, *value);
   }
   const dermis_result result = conclude(log, DERMIS_OK, std::move(diagnostics), report);
   if (result != DERMIS_OK) return result;
@@ -198,7 +207,8 @@ dermis_result set_view_setting(dermis_view_t& view, const std::string& name, con
 
 } // namespace
 
-void apply_own_settings(const dermis_view_t& view, CompiledGraph& compiled_graph, Diagnostics& diagnostics) {
+void apply_own_settings(const dermis_view_t& view, CompiledGraph& compiled_graph,
+                        Diagnostics& diagnostics) {
   if (view.settings.empty()) return;
   const Graph& graph = compiled_graph.graph;
   const std::vector<uint8_t> per_frame = frame_settings(graph, view.context->pass_types);
@@ -207,10 +217,12 @@ void apply_own_settings(const dermis_view_t& view, CompiledGraph& compiled_graph
     const auto index = static_cast<size_t>(at - graph.settings.begin());
     Diagnostics scratch; // the value fitted the previous graph, so it is no error of this graph
     std::optional<SettingValue> value;
-    if (at != graph.settings.end() && per_frame[index] != 0) value = read_setting(*at, own.json, scratch);
+    if (at != graph.settings.end() && per_frame[index] != 0)
+      value = read_setting(*at, own.json, scratch);
     if (!value) {
       diagnostics.add(
-          DiagnosticId::setting_not_carried, at != graph.settings.end() ? at->where : SourceLocation{},
+          DiagnosticId::setting_not_carried,
+          at != graph.settings.end() ? at->where : SourceLocation{},
           fmt::format("setting '{}' = {} of a view is not carried over: the new graph has no such "
                       "setting per frame, or does not accept the value",
                       own.name, own.json));
@@ -227,7 +239,8 @@ void apply_own_settings(const dermis_view_t& view, CompiledGraph& compiled_graph
 using namespace dermis::abi;
 
 extern "C" dermis_result DERMIS_CALL dermis_graph_set_setting(dermis_graph graph, const char* name,
-                                                              const char* json, dermis_report* report) {
+                                                              const char* json,
+                                                              dermis_report* report) {
   if (report != nullptr) *report = nullptr;
   if (graph == nullptr) return bad_argument({}, "dermis_graph_set_setting: graph is NULL");
   const Log& log = graph->context->log;
@@ -251,14 +264,16 @@ extern "C" dermis_result DERMIS_CALL dermis_view_settings(dermis_view view, uint
 }
 
 extern "C" dermis_result DERMIS_CALL dermis_view_set_setting(dermis_view view, const char* name,
-                                                             const char* json, dermis_report* report) {
+                                                             const char* json,
+                                                             dermis_report* report) {
   constexpr const char* function = "dermis_view_set_setting";
   if (report != nullptr) *report = nullptr;
   if (view == nullptr) return bad_argument({}, "{}: view is NULL", function);
   const Log& log = view->context->log;
   return guarded(log, function, [&] {
     if (name == nullptr) return bad_argument(log, "{}: name is NULL", function);
-    if (const dermis_result alive = check_alive(*view->context, function); alive != DERMIS_OK) return alive;
+    if (const dermis_result alive = check_alive(*view->context, function); alive != DERMIS_OK)
+      return alive;
     return set_view_setting(*view, name, json, report);
   });
 }

@@ -36,15 +36,17 @@ bool in_range(const SettingDeclaration& declared, double value) {
 
 } // namespace
 
-std::optional<SettingValue> read_setting(const SettingDeclaration& declared, const std::string& json,
-                                         Diagnostics& diagnostics) {
+std::optional<SettingValue> read_setting(const SettingDeclaration& declared,
+                                         const std::string& json, Diagnostics& diagnostics) {
   const auto document = parse_document(fmt::format("setting {}", declared.name), json, diagnostics);
   if (!document) return std::nullopt;
   const Node& node = (*document)[document->root()];
   SettingValue value{declared.type, 0, 0.0};
-  const auto reject = [&](DiagnosticId id, const std::string& expected) -> std::optional<SettingValue> {
-    diagnostics.add(id, document->where(document->root()),
-                    fmt::format("setting '{}' expects {}, found {}", declared.name, expected, json));
+  const auto reject = [&](DiagnosticId id,
+                          const std::string& expected) -> std::optional<SettingValue> {
+    diagnostics.add(
+        id, document->where(document->root()),
+        fmt::format("setting '{}' expects {}, found {}", declared.name, expected, json));
     return std::nullopt;
   };
   const std::string range =

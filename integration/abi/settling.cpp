@@ -23,7 +23,8 @@ uint32_t settling_frames(const PassTypeRegistry& pass_types, const Plan& plan, u
   double frames = 1;
   for (const PlanPass& pass : plan.passes) {
     const PassType& type = pass_types[pass.type];
-    for (const PlanAccess& access : std::span(plan.accesses).subspan(pass.first_access, pass.access_count)) {
+    for (const PlanAccess& access :
+         std::span(plan.accesses).subspan(pass.first_access, pass.access_count)) {
       if (access.resource != plan.histories[index].resource || access.frames_back != 0 ||
           (access.access & all_write_access) == 0)
         continue;
@@ -31,7 +32,8 @@ uint32_t settling_frames(const PassTypeRegistry& pass_types, const Plan& plan, u
         if (type.ports[access.port].name != mix.port) continue;
         const auto setting = static_cast<uint32_t>(find_setting(type, mix.setting));
         const PlanSetting& planned = plan.settings[pass.first_setting + setting];
-        const SettingValue& value = planned.from.valid() ? settings[planned.from.value] : planned.value;
+        const SettingValue& value =
+            planned.from.valid() ? settings[planned.from.value] : planned.value;
         frames = std::max(frames, frames_of(mix, value.real));
       }
     }

@@ -1,6 +1,6 @@
 #pragma once
-// Structs of the C interface start with `struct_size`. Reading accepts a struct of a newer header if the
-// part that this library does not know is zero.
+// Structs of the C interface start with `struct_size`. Reading accepts a struct of a newer header
+// if the part that this library does not know is zero.
 
 #include "integration/include/dermis/dermis.h"
 
@@ -11,7 +11,8 @@ namespace dermis::abi {
 
 enum class SizedRead { ok, too_small, too_large, unknown_fields };
 
-// No struct of the interface comes near; a larger size is uninitialised memory and must not be read through.
+// No struct of the interface comes near; a larger size is uninitialised memory and must not be read
+// through.
 inline constexpr size_t largest_struct_size = 4096;
 
 inline size_t stated_size(const void* structure) {
@@ -37,8 +38,8 @@ template <class T> SizedRead read_sized(const void* from, T& to) {
   return SizedRead::ok;
 }
 
-// Writes `value` to a struct of `size` bytes, at least sizeof(T); fields that this library does not know
-// become zero.
+// Writes `value` to a struct of `size` bytes, at least sizeof(T); fields that this library does not
+// know become zero.
 template <class T> void write_sized(void* to, size_t size, T value) {
   value.struct_size = size;
   auto* bytes = static_cast<std::byte*>(to);

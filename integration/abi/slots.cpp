@@ -25,7 +25,8 @@ constexpr size_t max_slips = 2;
 // Warns of a name that is probably a misspelt slot, and adds other names to `others`. A slot that
 // the list also names itself is not suggested.
 void check_name(const Graph& graph, const char* list, std::span<const std::string_view> names,
-                std::string_view name, std::vector<std::string_view>& others, Diagnostics& diagnostics) {
+                std::string_view name, std::vector<std::string_view>& others,
+                Diagnostics& diagnostics) {
   std::vector<std::string_view> slots;
   for (const ResourceDeclaration& declared : graph.resources) {
     if (!is_slot(declared)) continue;
@@ -41,7 +42,8 @@ void check_name(const Graph& graph, const char* list, std::span<const std::strin
   }
   diagnostics
       .add(DiagnosticId::host_names_no_slot, {},
-           fmt::format("{} names '{}', which is no import or export of graph '{}'", list, name, graph.name))
+           fmt::format("{} names '{}', which is no import or export of graph '{}'", list, name,
+                       graph.name))
       .suggestion = std::move(suggestion);
 }
 
@@ -49,7 +51,8 @@ void check_name(const Graph& graph, const char* list, std::span<const std::strin
 Layout first_layout(const Plan& plan, uint32_t resource) {
   for (const PlanPass& pass : plan.passes)
     for (uint32_t i = 0; i < pass.access_count; ++i)
-      if (const PlanAccess& access = plan.accesses[pass.first_access + i]; access.resource == resource)
+      if (const PlanAccess& access = plan.accesses[pass.first_access + i];
+          access.resource == resource)
         return access.layout;
   return Layout::undefined;
 }
@@ -94,8 +97,9 @@ void report_unknown_slots(const Graph& graph, std::span<const std::string> unbou
     if (is_slot(declared)) known += fmt::format("{}'{}'", known.empty() ? "" : ", ", declared.name);
   diagnostics.add(
       DiagnosticId::host_names_other_slots, {},
-      fmt::format("graph '{}' has no slot for '{}', which dermis_graph_desc names; its slots are {}",
-                  graph.name, fmt::join(others, "', '"), known));
+      fmt::format(
+          "graph '{}' has no slot for '{}', which dermis_graph_desc names; its slots are {}",
+          graph.name, fmt::join(others, "', '"), known));
 }
 
 std::vector<Slot> make_slots(const Graph& graph, const Plan& plan) {

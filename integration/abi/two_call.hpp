@@ -10,8 +10,8 @@ namespace dermis::abi {
 
 // `at(i)` returns item i. *count in: capacity of `items`; out: number of items.
 template <class T, class At>
-dermis_result fill_array(const Log& log, const char* what, uint32_t* count, T* items, uint32_t available,
-                         At at) {
+dermis_result fill_array(const Log& log, const char* what, uint32_t* count, T* items,
+                         uint32_t available, At at) {
   if (count == nullptr) return bad_argument(log, "{}: count is NULL", what);
   if (items == nullptr) {
     *count = available;

@@ -15,7 +15,8 @@ constexpr uint32_t validation_width = 1920, validation_height = 1080;
 dermis_result validate(const dermis_source* given, dermis_report* report) {
   dermis_source source = DERMIS_SOURCE_INIT;
   if (const SizedRead read = read_sized(given, source); read != SizedRead::ok)
-    return rejected_size({}, read, "dermis_validate: source", stated_size(given), sizeof(dermis_source));
+    return rejected_size({}, read, "dermis_validate: source", stated_size(given),
+                         sizeof(dermis_source));
   std::string name, text;
   if (const dermis_result result = read_source({}, "dermis_validate: source", source, name, text);
       result != DERMIS_OK)
@@ -46,7 +47,8 @@ dermis_result validate(const dermis_source* given, dermis_report* report) {
 
 using namespace dermis::abi;
 
-extern "C" dermis_result DERMIS_CALL dermis_validate(const dermis_source* source, dermis_report* report) {
+extern "C" dermis_result DERMIS_CALL dermis_validate(const dermis_source* source,
+                                                     dermis_report* report) {
   if (report != nullptr) *report = nullptr;
   return guarded({}, "dermis_validate", [&] {
     if (source == nullptr) return bad_argument({}, "dermis_validate: source is NULL");

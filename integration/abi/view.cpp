@@ -14,7 +14,8 @@ dermis_result create(dermis_graph_t& graph, const dermis_view_desc* given, dermi
   dermis_view_desc desc = DERMIS_VIEW_DESC_INIT;
   const SizedRead read = given == nullptr ? SizedRead::ok : read_sized(given, desc);
   if (read != SizedRead::ok)
-    return rejected_size(log, read, "dermis_view_create: desc", stated_size(given), sizeof(dermis_view_desc));
+    return rejected_size(log, read, "dermis_view_create: desc", stated_size(given),
+                         sizeof(dermis_view_desc));
   const std::lock_guard changing(graph.changing);
   auto view = std::make_unique<dermis_view_t>(graph.context, &graph, desc.user);
   {
@@ -47,7 +48,8 @@ dermis_result create(dermis_graph_t& graph, const dermis_view_desc* given, dermi
 
 using namespace dermis::abi;
 
-extern "C" dermis_result DERMIS_CALL dermis_view_create(dermis_graph graph, const dermis_view_desc* desc,
+extern "C" dermis_result DERMIS_CALL dermis_view_create(dermis_graph graph,
+                                                        const dermis_view_desc* desc,
                                                         dermis_view* view, dermis_report* report) {
   constexpr const char* function = "dermis_view_create";
   if (view != nullptr) *view = nullptr;
@@ -56,7 +58,8 @@ extern "C" dermis_result DERMIS_CALL dermis_view_create(dermis_graph graph, cons
   const Log& log = graph->context->log;
   return guarded(log, function, [&] {
     if (view == nullptr) return bad_argument(log, "{}: view is NULL", function);
-    if (const dermis_result alive = check_alive(*graph->context, function); alive != DERMIS_OK) return alive;
+    if (const dermis_result alive = check_alive(*graph->context, function); alive != DERMIS_OK)
+      return alive;
     return create(*graph, desc, view, report);
   });
 }
@@ -72,14 +75,17 @@ extern "C" void DERMIS_CALL dermis_view_destroy(dermis_view view) {
   std::erase_if(graph.others, [&](const auto& one) { return one.get() == view; });
 }
 
-extern "C" dermis_result DERMIS_CALL dermis_view_record(dermis_view view, const dermis_frame* frame) {
+extern "C" dermis_result DERMIS_CALL dermis_view_record(dermis_view view,
+                                                        const dermis_frame* frame) {
   constexpr const char* function = "dermis_view_record";
   if (view == nullptr) return bad_argument({}, "{}: view is NULL", function);
   return guarded(view->context->log, function, [&] { return record_frame(*view, frame); });
 }
 
-extern "C" dermis_result DERMIS_CALL dermis_view_commands(dermis_view view, const dermis_frame* frame,
-                                                          uint32_t* count, const dermis_command** commands) {
+extern "C" dermis_result DERMIS_CALL dermis_view_commands(dermis_view view,
+                                                          const dermis_frame* frame,
+                                                          uint32_t* count,
+                                                          const dermis_command** commands) {
   constexpr const char* function = "dermis_view_commands";
   if (view == nullptr) return bad_argument({}, "{}: view is NULL", function);
   return guarded(view->context->log, function,
@@ -89,10 +95,12 @@ extern "C" dermis_result DERMIS_CALL dermis_view_commands(dermis_view view, cons
 extern "C" dermis_result DERMIS_CALL dermis_view_discard(dermis_view view, uint64_t frame_index) {
   constexpr const char* function = "dermis_view_discard";
   if (view == nullptr) return bad_argument({}, "{}: view is NULL", function);
-  return guarded(view->context->log, function, [&] { return discard_frame(*view, function, frame_index); });
+  return guarded(view->context->log, function,
+                 [&] { return discard_frame(*view, function, frame_index); });
 }
 
-extern "C" dermis_result DERMIS_CALL dermis_view_report(dermis_view view, uint64_t completed_frame_index,
+extern "C" dermis_result DERMIS_CALL dermis_view_report(dermis_view view,
+                                                        uint64_t completed_frame_index,
                                                         dermis_frame_report* report) {
   constexpr const char* function = "dermis_view_report";
   if (view == nullptr) return bad_argument({}, "{}: view is NULL", function);
@@ -100,7 +108,8 @@ extern "C" dermis_result DERMIS_CALL dermis_view_report(dermis_view view, uint64
                  [&] { return get_report(*view, completed_frame_index, report); });
 }
 
-extern "C" dermis_result DERMIS_CALL dermis_view_statistics(dermis_view view, uint64_t completed_frame_index,
+extern "C" dermis_result DERMIS_CALL dermis_view_statistics(dermis_view view,
+                                                            uint64_t completed_frame_index,
                                                             dermis_frame_statistics* statistics) {
   constexpr const char* function = "dermis_view_statistics";
   if (view == nullptr) return bad_argument({}, "{}: view is NULL", function);
@@ -108,12 +117,15 @@ extern "C" dermis_result DERMIS_CALL dermis_view_statistics(dermis_view view, ui
                  [&] { return get_statistics(*view, completed_frame_index, statistics); });
 }
 
-extern "C" dermis_result DERMIS_CALL dermis_view_timings(dermis_view view, uint64_t completed_frame_index,
-                                                         uint32_t* count, dermis_pass_timing* timings) {
+extern "C" dermis_result DERMIS_CALL dermis_view_timings(dermis_view view,
+                                                         uint64_t completed_frame_index,
+                                                         uint32_t* count,
+                                                         dermis_pass_timing* timings) {
   constexpr const char* function = "dermis_view_timings";
   if (view == nullptr) return bad_argument({}, "{}: view is NULL", function);
-  return guarded(view->context->log, function,
-                 [&] { return get_timings(*view, function, completed_frame_index, count, timings); });
+  return guarded(view->context->log, function, [&] {
+    return get_timings(*view, function, completed_frame_index, count, timings);
+  });
 }
 
 extern "C" dermis_result DERMIS_CALL dermis_view_histories(dermis_view view, uint32_t* count,

@@ -33,15 +33,15 @@ static void headless_die(const char* what, const char* which) {
   exit(1);
 }
 
-#define HEADLESS_CHECK(call)                                                                                 \
-  do {                                                                                                       \
-    if ((call) != VK_SUCCESS) headless_die("failed", #call);                                                 \
+#define HEADLESS_CHECK(call)                                                                       \
+  do {                                                                                             \
+    if ((call) != VK_SUCCESS) headless_die("failed", #call);                                       \
   } while (0)
 /* Declares a Vulkan struct that is zero except for its type. No shorter form works in both C and
  * C++. */
-#define HEADLESS_STRUCT(type, name, s_type)                                                                  \
-  type name;                                                                                                 \
-  memset(&name, 0, sizeof name);                                                                             \
+#define HEADLESS_STRUCT(type, name, s_type)                                                        \
+  type name;                                                                                       \
+  memset(&name, 0, sizeof name);                                                                   \
   name.sType = VK_STRUCTURE_TYPE_##s_type
 
 /* Creates a device with the features that dermis_query_requirements lists. */
@@ -83,12 +83,14 @@ static headless headless_create(void) {
   return host;
 }
 
-static uint32_t headless_memory_type(const headless* host, uint32_t allowed, VkMemoryPropertyFlags required) {
+static uint32_t headless_memory_type(const headless* host, uint32_t allowed,
+                                     VkMemoryPropertyFlags required) {
   VkPhysicalDeviceMemoryProperties properties;
   uint32_t i;
   vkGetPhysicalDeviceMemoryProperties(host->gpu, &properties);
   for (i = 0; i < properties.memoryTypeCount; ++i)
-    if ((allowed & (1u << i)) && (properties.memoryTypes[i].propertyFlags & required) == required) return i;
+    if ((allowed & (1u << i)) && (properties.memoryTypes[i].propertyFlags & required) == required)
+      return i;
   headless_die("no memory type", "");
   return 0;
 }

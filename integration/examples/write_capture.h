@@ -31,8 +31,8 @@ static void capture_attribute(FILE* file, const char* name, const char* type, ui
 
 /* Writes an EXR file. `channels` are one-letter names in alphabetical order, "BGR" or "Y". `values`
  * are interleaved in that order, first row on top. */
-static void capture_write_exr(const char* path, uint32_t width, uint32_t height, const char* channels,
-                              const float* values) {
+static void capture_write_exr(const char* path, uint32_t width, uint32_t height,
+                              const char* channels, const float* values) {
   const uint32_t count = (uint32_t)strlen(channels);
   const uint32_t line_bytes = width * count * 4;
   static const char* const windows[] = {"dataWindow", "displayWindow"};
@@ -135,10 +135,11 @@ static uint32_t capture_texel_bytes(VkFormat format) {
 }
 
 /* Copies a 2-D image in layout GENERAL, created with TRANSFER_SRC, to host memory and writes it to
- * `path`. Submits and waits; records `host->commands` again. `decode` (may be NULL) maps each value,
- * for example depth values to metres. `channels`: "BGR", or "Y" for the first channel. */
-static void capture_image(headless* host, VkImage image, VkFormat format, uint32_t width, uint32_t height,
-                          const char* channels, float (*decode)(float), const char* path) {
+ * `path`. Submits and waits; records `host->commands` again. `decode` (may be NULL) maps each
+ * value, for example depth values to metres. `channels`: "BGR", or "Y" for the first channel. */
+static void capture_image(headless* host, VkImage image, VkFormat format, uint32_t width,
+                          uint32_t height, const char* channels, float (*decode)(float),
+                          const char* path) {
   HEADLESS_STRUCT(VkBufferCreateInfo, buffer_info, BUFFER_CREATE_INFO);
   HEADLESS_STRUCT(VkMemoryAllocateInfo, memory_info, MEMORY_ALLOCATE_INFO);
   HEADLESS_STRUCT(VkMemoryBarrier2, written, MEMORY_BARRIER_2);
@@ -217,15 +218,17 @@ static void capture_write_json(const char* path, uint32_t width, uint32_t height
   int i, j;
   FILE* file = fopen(path, "w");
   if (file == NULL) headless_die("cannot write", path);
-  fprintf(file, "{ \"dermis_capture\": 1, \"width\": %u, \"height\": %u,\n  \"projection\": \"%s\",\n", width,
-          height, perspective ? "perspective" : "orthographic");
+  fprintf(file,
+          "{ \"dermis_capture\": 1, \"width\": %u, \"height\": %u,\n  \"projection\": \"%s\",\n",
+          width, height, perspective ? "perspective" : "orthographic");
   for (i = 0; i < 2; ++i) {
     fprintf(file, "  \"%s\": [", names[i]);
     for (j = 0; j < 16; ++j)
       fprintf(file, "%s%.9g", j == 0 ? "" : ", ", (double)matrices[i][j]);
     fprintf(file, "],\n");
   }
-  fprintf(file, "  \"metres_per_unit\": %.9g,\n  \"profiles\": [ { \"id\": 1, \"file\": \"%s\" } ] }\n",
+  fprintf(file,
+          "  \"metres_per_unit\": %.9g,\n  \"profiles\": [ { \"id\": 1, \"file\": \"%s\" } ] }\n",
           (double)metres_per_unit, profile_file);
   if (ferror(file) || fclose(file) != 0) headless_die("cannot write", path);
 }

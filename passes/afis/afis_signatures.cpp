@@ -15,7 +15,8 @@ constexpr auto afis_ports = join(std::array{port::light, port::slope}, port::lev
 constexpr auto afis_tiles_ports =
     join(std::array{port::light, port::slope}, port::levels_1_to_8, surface,
          std::array{port::classes, port::samples_per_tile, port::tiles, port::arguments,
-                    port::updated("scattered", "scattered light of another technique; replaced in place")});
+                    port::updated("scattered",
+                                  "scattered light of another technique; replaced in place")});
 
 constexpr std::string_view sequence_options[] = {"continued", "hashed", "stratified"};
 constexpr std::string_view channels_options[] = {"widest", "mixture"};
@@ -26,55 +27,63 @@ constexpr std::string_view mips_options[] = {"trilinear", "whole", "none"};
 // Settings of the estimator, without the number of samples.
 constexpr std::array estimator_settings{
     setting::lod_bias(-1.0),
+    setting::choice("sequence", sequence_options,
+                    "sample sequence. continued: R2 continues from frame to frame; hashed: R2 "
+                    "restarts in each frame; "
+                    "stratified: stratified radii and golden angle, both shifted by R2 per frame"),
     setting::choice(
-        "sequence", sequence_options,
-        "sample sequence. continued: R2 continues from frame to frame; hashed: R2 restarts in each frame; "
-        "stratified: stratified radii and golden angle, both shifted by R2 per frame"),
-    setting::choice("channels", channels_options,
-                    "channels whose radii are sampled: widest: the widest channel; mixture: the mean of all "
-                    "channels, for Burley's profile"),
-    setting::choice("inverse", setting::inverse_options,
-                    "inverse of the widest channel's distribution: polynomial (error below 0.5 %), exact, or "
-                    "approximate (c = 2.5715)",
-                    1),
+        "channels", channels_options,
+        "channels whose radii are sampled: widest: the widest channel; mixture: the mean of all "
+        "channels, for Burley's profile"),
     setting::choice(
-        "weighting", setting::weighting_options,
-        "density that divides a sample: sampler: the sampler's own; profile: the profile's, as published"),
-    setting::choice(
-        "surface", surface_options,
-        "patch: profile at the 3-D distance times the area of the surface patch; distance: without the area"),
+        "inverse", setting::inverse_options,
+        "inverse of the widest channel's distribution: polynomial (error below 0.5 %), exact, or "
+        "approximate (c = 2.5715)",
+        1),
+    setting::choice("weighting", setting::weighting_options,
+                    "density that divides a sample: sampler: the sampler's own; profile: the "
+                    "profile's, as published"),
+    setting::choice("surface", surface_options,
+                    "patch: profile at the 3-D distance times the area of the surface patch; "
+                    "distance: without the area"),
     setting::choice("direct", setting::direct_options,
                     "radius within which the pixel's own light is used: inscribed in the pixel, "
                     "circumscribed about it, or none"),
-    setting::choice("estimator", estimator_options,
-                    "normalisation. self: divide by the sum of weights; centred: add the pixel's own light "
-                    "times (1 - sum of weights); none: no normalisation"),
-    setting::choice("mips", mips_options,
-                    "trilinear: interpolate between two levels; whole: round to one level; none: read only "
-                    "the pixel under the sample"),
+    setting::choice(
+        "estimator", estimator_options,
+        "normalisation. self: divide by the sum of weights; centred: add the pixel's own light "
+        "times (1 - sum of weights); none: no normalisation"),
+    setting::choice(
+        "mips", mips_options,
+        "trilinear: interpolate between two levels; whole: round to one level; none: read only "
+        "the pixel under the sample"),
 };
 
-constexpr auto afis_settings = join(
-    std::array{setting::samples(16, 1, "number of samples beyond the direct radius")}, estimator_settings);
+constexpr auto afis_settings =
+    join(std::array{setting::samples(16, 1, "number of samples beyond the direct radius")},
+         estimator_settings);
 
 constexpr Format guide_formats[] = {Format::rgba16f};
 constexpr Format place_formats[] = {Format::r16f};
-constexpr std::string_view guide_doc =
-    "standard deviation of one frame's exposed luminance; mean number of samples; depth in metres with "
-    "split_half, otherwise moving mean of the monitored value; profile id. 0 where nothing was written";
+constexpr std::string_view guide_doc = "standard deviation of one frame's exposed luminance; mean "
+                                       "number of samples; depth in metres with "
+                                       "split_half, otherwise moving mean of the monitored value; "
+                                       "profile id. 0 where nothing was written";
 constexpr std::string_view place_doc = "depth in metres; unused with split_half";
-constexpr std::string_view control_doc = "weight of the control variate, its standard deviation, means of "
-                                         "light and control variate; only with ocv";
+constexpr std::string_view control_doc =
+    "weight of the control variate, its standard deviation, means of "
+    "light and control variate; only with ocv";
 
 constexpr auto guided_ports =
     join(std::array{port::light, port::slope}, port::levels_1_to_8, surface,
-         std::array{
-             port::velocity, port::sampled("guide", guide_doc, guide_formats),
-             port::optional(port::sampled("place", place_doc, place_formats)),
-             port::optional(port::sampled("control", control_doc, port::light_formats)), port::tiles,
-             port::arguments, port::scattered, port::written_in_part("guide_out", guide_doc, guide_formats),
-             port::optional(port::written("place_out", place_doc, place_formats)),
-             port::optional(port::written("control_out", control_doc, port::light_formats)), port::sampling});
+         std::array{port::velocity, port::sampled("guide", guide_doc, guide_formats),
+                    port::optional(port::sampled("place", place_doc, place_formats)),
+                    port::optional(port::sampled("control", control_doc, port::light_formats)),
+                    port::tiles, port::arguments, port::scattered,
+                    port::written_in_part("guide_out", guide_doc, guide_formats),
+                    port::optional(port::written("place_out", place_doc, place_formats)),
+                    port::optional(port::written("control_out", control_doc, port::light_formats)),
+                    port::sampling});
 
 constexpr std::string_view guidance_options[] = {"split_half", "spvg", "ccv", "ocv"};
 constexpr auto guided_settings = join(
@@ -85,15 +94,19 @@ constexpr auto guided_settings = join(
             "value whose variance guides the number of samples. split_half: difference of two half "
             "sequences; spvg: luminance; ccv: luminance minus that of the pixel's own light; ocv: "
             "the same with an optimal weight"),
-        setting::integer("min_samples", 8, 2, 4096, "samples per pixel", "minimum number of samples"),
-        setting::integer("max_samples", 64, 2, 4096, "samples per pixel", "maximum number of samples"),
+        setting::integer("min_samples", 8, 2, 4096, "samples per pixel",
+                         "minimum number of samples"),
+        setting::integer("max_samples", 64, 2, 4096, "samples per pixel",
+                         "maximum number of samples"),
         setting::per_frame(setting::real("sigma2_target", 1e-4, 1e-12, 1e6, "",
                                          "target variance of one frame's exposed luminance")),
+        setting::per_frame(setting::real("kappa", 0.2, 0, 1, "",
+                                         "rate at which the number of samples follows a change")),
         setting::per_frame(
-            setting::real("kappa", 0.2, 0, 1, "", "rate at which the number of samples follows a change")),
-        setting::per_frame(setting::real("eta", 0.2, 0.001, 1, "", "weight of a new frame in moving means")),
-        setting::per_frame(setting::real("eta_cv", 0.005, 1e-7, 1, "",
-                                         "weight of a new frame in the covariance with the control variate")),
+            setting::real("eta", 0.2, 0.001, 1, "", "weight of a new frame in moving means")),
+        setting::per_frame(
+            setting::real("eta_cv", 0.005, 1e-7, 1, "",
+                          "weight of a new frame in the covariance with the control variate")),
         setting::per_frame(
             setting::real("eps_alpha", 1e-6, 1e-20, 1, "",
                           "prior of the control variate's weight [exposed luminance squared]")),
@@ -107,7 +120,8 @@ constexpr HistoryWeight guided_mixes[] = {{"guide_out", "eta"}, {"control_out", 
 const PassType afis_tiles_type{
     .name = "subsurface.afis_tiles",
     .shader = "afis/subsurface_afis_tiles",
-    .doc = "Filtered importance sampling in tiles that have samples: `samples` for the first step, twice as "
+    .doc = "Filtered importance sampling in tiles that have samples: `samples` for the first step, "
+           "twice as "
            "many for each further step.",
     .ports = afis_tiles_ports,
     .settings = afis_settings,
@@ -117,8 +131,8 @@ const PassType afis_tiles_type{
 const PassType guided_type{
     .name = "subsurface.guided",
     .shader = "afis/subsurface_guided",
-    .doc =
-        "Filtered importance sampling whose number of samples follows from the variance of earlier frames.",
+    .doc = "Filtered importance sampling whose number of samples follows from the variance of "
+           "earlier frames.",
     .ports = guided_ports,
     .settings = guided_settings,
     .dispatch = over_tiles,
@@ -128,7 +142,8 @@ const PassType guided_type{
 const PassType afis_type{
     .name = "subsurface.afis",
     .shader = "afis/subsurface_afis",
-    .doc = "Filtered importance sampling: each sample reads the level of a masked mip chain that matches the "
+    .doc = "Filtered importance sampling: each sample reads the level of a masked mip chain that "
+           "matches the "
            "sample density.",
     .ports = afis_ports,
     .settings = afis_settings,

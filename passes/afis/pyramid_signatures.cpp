@@ -16,8 +16,9 @@ constexpr Port setup_ports[] = {
 constexpr std::string_view profiles_options[] = {"merged", "apart"};
 constexpr PassTypeSetting setup_settings[] = {
     setting::texturing,
-    setting::choice("profiles", profiles_options,
-                    "apart: for subsurface.afis; masks are scaled and mark texels that mix profiles"),
+    setting::choice(
+        "profiles", profiles_options,
+        "apart: for subsurface.afis; masks are scaled and mark texels that mix profiles"),
 };
 
 constexpr Port down_ports[] = {
@@ -27,8 +28,9 @@ constexpr Port down_ports[] = {
 
 constexpr std::string_view halving_options[] = {"binomial", "box"};
 constexpr PassTypeSetting down_settings[] = {
-    setting::choice("halving", halving_options,
-                    "binomial: [1 3 3 1] with four filtered reads; box: mean of 2x2 texels with one read"),
+    setting::choice(
+        "halving", halving_options,
+        "binomial: [1 3 3 1] with four filtered reads; box: mean of 2x2 texels with one read"),
 };
 
 } // namespace
@@ -36,7 +38,8 @@ constexpr PassTypeSetting down_settings[] = {
 const PassType pyramid_setup_type{
     .name = "subsurface.pyramid_setup",
     .shader = "afis/subsurface_pyramid_setup",
-    .doc = "Writes level 0 of the plain pyramid: light times mask of every pixel, with a border of zeros.",
+    .doc = "Writes level 0 of the plain pyramid: light times mask of every pixel, with a border of "
+           "zeros.",
     .ports = setup_ports,
     .settings = setup_settings,
     .dispatch = over_written_image,
@@ -45,7 +48,8 @@ const PassType pyramid_setup_type{
 const PassType pyramid_down_type{
     .name = "subsurface.pyramid_down",
     .shader = "afis/subsurface_pyramid_down",
-    .doc = "Reduces a level of the plain pyramid to half its size, with a [1 3 3 1] or a box filter.",
+    .doc =
+        "Reduces a level of the plain pyramid to half its size, with a [1 3 3 1] or a box filter.",
     .ports = down_ports,
     .settings = down_settings,
     .dispatch = over_written_image,

@@ -45,7 +45,9 @@ std::string write_calibration(const Calibration& calibration) {
   for (const Cost& cost : calibration.costs) {
     json.open_object(true);
     json.member("work", std::string_view(cost.work));
-    json.member("base_us", cost.base_us).member("group_us", cost.group_us).member("spread", cost.spread);
+    json.member("base_us", cost.base_us)
+        .member("group_us", cost.group_us)
+        .member("spread", cost.spread);
     json.close();
   }
   json.close().close();

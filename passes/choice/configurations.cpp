@@ -60,7 +60,8 @@ PassLoad load_of(const Plan& plan, const PlanPass& pass, const PassType& type) {
                                                          : PassLoad::Groups::listed_tiles;
     break;
   case DispatchRule::Domain::written_image:
-    load.count = std::max<uint64_t>(group_count(type.dispatch, written.width, written.height).total(), 1);
+    load.count =
+        std::max<uint64_t>(group_count(type.dispatch, written.width, written.height).total(), 1);
     break;
   case DispatchRule::Domain::one:
   case DispatchRule::Domain::host:
@@ -81,7 +82,8 @@ int32_t level_of(const PassType& type, const std::vector<SettingValue>& values) 
 RunningPass running(const PassType& type, const std::vector<SettingValue>& values) {
   RunningPass out{type.name, {}};
   for (size_t i = 0; i < values.size(); ++i)
-    out.settings.push_back({std::string(type.settings[i].name), value_text(type.settings[i], values[i])});
+    out.settings.push_back(
+        {std::string(type.settings[i].name), value_text(type.settings[i], values[i])});
   return out;
 }
 
@@ -107,9 +109,10 @@ void describe(const PassTypeRegistry& pass_types, const Plan& plan, const ErrorM
 }
 
 bool same_work(const Configuration& a, const Configuration& b) {
-  return a.plan == b.plan &&
-         std::equal(a.passes.begin(), a.passes.end(), b.passes.begin(), b.passes.end(),
-                    [](const PassLoad& x, const PassLoad& y) { return x.cost.value == y.cost.value; });
+  return a.plan == b.plan && std::equal(a.passes.begin(), a.passes.end(), b.passes.begin(),
+                                        b.passes.end(), [](const PassLoad& x, const PassLoad& y) {
+                                          return x.cost.value == y.cost.value;
+                                        });
 }
 
 std::vector<bool> passes_on(const Graph& graph, const std::vector<SettingValue>& values) {
@@ -128,7 +131,8 @@ std::vector<uint32_t> choices_of(const Graph& graph) {
 
 // Advances `digits` like an odometer with one wheel per choice and one position per option. Returns
 // false after the last combination.
-bool count_up(const Graph& graph, const std::vector<uint32_t>& choices, std::vector<size_t>& digits) {
+bool count_up(const Graph& graph, const std::vector<uint32_t>& choices,
+              std::vector<size_t>& digits) {
   for (size_t i = choices.size(); i-- > 0;) {
     if (++digits[i] < graph.settings[choices[i]].options.size()) return true;
     digits[i] = 0;
@@ -139,13 +143,15 @@ bool count_up(const Graph& graph, const std::vector<uint32_t>& choices, std::vec
 bool refers_to(const Graph& graph, ExpressionId id, uint32_t setting) {
   if (!id.valid()) return false;
   const Expression& one = graph.expressions[id.value];
-  return (one.setting.valid() && one.setting.value == setting) || refers_to(graph, one.left, setting) ||
-         refers_to(graph, one.right, setting);
+  return (one.setting.valid() && one.setting.value == setting) ||
+         refers_to(graph, one.left, setting) || refers_to(graph, one.right, setting);
 }
 
 // Returns whether the setting decides which passes run, or sets a value of a running pass.
 bool matters(const Graph& graph, const Plan& plan, uint32_t setting) {
-  const auto decides = [&](const PassDeclaration& pass) { return refers_to(graph, pass.when, setting); };
+  const auto decides = [&](const PassDeclaration& pass) {
+    return refers_to(graph, pass.when, setting);
+  };
   const auto follows = [&](const PlanSetting& value) {
     return value.from.valid() && value.from.value == setting;
   };
@@ -174,7 +180,8 @@ std::string work_name(const PassType& type, std::span<const SettingValue> values
   return name;
 }
 
-std::optional<Combinations> enumerate_combinations(const CompileInput& input, Diagnostics& diagnostics,
+std::optional<Combinations> enumerate_combinations(const CompileInput& input,
+                                                   Diagnostics& diagnostics,
                                                    const std::vector<bool>& pinned) {
   const Graph& graph = *input.graph;
   std::vector<SettingValue> base = input.settings;
@@ -189,10 +196,11 @@ std::optional<Combinations> enumerate_combinations(const CompileInput& input, Di
   for (const uint32_t choice : open) {
     count *= graph.settings[choice].options.size();
     if (count <= max_configurations) continue;
-    diagnostics.add(DiagnosticId::too_many_configurations, graph.settings[choice].where,
-                    fmt::format("the options of the choices with \"by\": \"budget\" combine to more than {} "
-                                "configurations",
-                                max_configurations));
+    diagnostics.add(
+        DiagnosticId::too_many_configurations, graph.settings[choice].where,
+        fmt::format("the options of the choices with \"by\": \"budget\" combine to more than {} "
+                    "configurations",
+                    max_configurations));
     return std::nullopt;
   }
 
@@ -215,18 +223,20 @@ std::optional<Combinations> enumerate_combinations(const CompileInput& input, Di
     bool available = true;
     for (size_t i = 0; i < open.size(); ++i) {
       values[open[i]].integer = static_cast<int64_t>(digits[i]);
-      available = available && !missing_requirements(graph.settings[open[i]], values[open[i]].integer,
-                                                     input.device->features, input.bound)
-                                    .any();
+      available =
+          available && !missing_requirements(graph.settings[open[i]], values[open[i]].integer,
+                                             input.device->features, input.bound)
+                            .any();
     }
     if (available) add(std::move(values));
   } while (count_up(graph, open, digits));
   return out;
 }
 
-std::vector<Configuration> make_configurations(const CompileInput& input, const Combinations& combinations,
-                                               std::span<const Plan* const> plans, const ErrorModel& errors,
-                                               CostModel& costs) {
+std::vector<Configuration> make_configurations(const CompileInput& input,
+                                               const Combinations& combinations,
+                                               std::span<const Plan* const> plans,
+                                               const ErrorModel& errors, CostModel& costs) {
   const std::vector<uint32_t> choices = choices_of(*input.graph);
   std::vector<Configuration> out;
   for (size_t i = 0; i < combinations.settings.size(); ++i) {
@@ -235,8 +245,8 @@ std::vector<Configuration> make_configurations(const CompileInput& input, const 
     made.plan = combinations.plans[i];
     made.name = name_of(*input.graph, *plans[made.plan], choices, made.settings);
     describe(*input.pass_types, *plans[made.plan], errors, costs, made);
-    const bool twice = std::any_of(out.begin(), out.end(),
-                                   [&](const Configuration& other) { return same_work(other, made); });
+    const bool twice = std::any_of(
+        out.begin(), out.end(), [&](const Configuration& other) { return same_work(other, made); });
     if (!twice) out.push_back(std::move(made));
   }
   return out;
@@ -275,7 +285,8 @@ Estimate calibrated_estimate(const Configuration& configuration, const CostModel
   return sum;
 }
 
-Estimate estimate(const Configuration& configuration, const CostModel& costs, const FrameLoad& load) {
+Estimate estimate(const Configuration& configuration, const CostModel& costs,
+                  const FrameLoad& load) {
   Estimate sum{0, 0, true};
   double variance = 0;
   for (const PassLoad& pass : configuration.passes) {
@@ -306,7 +317,8 @@ uint32_t units_within(const Configuration& configuration, const CostModel& costs
     return static_cast<uint32_t>(std::clamp(left_ms / unit_ms, 0.0, double(UINT32_MAX)));
   };
   // Sample units deviate, too. Fewer units deviate by no more than the maximum does.
-  return units_beside(expected(std::min<uint64_t>(units_beside(without.spread_ms), many)).spread_ms);
+  return units_beside(
+      expected(std::min<uint64_t>(units_beside(without.spread_ms), many)).spread_ms);
 }
 
 double expected_rmse(const ErrorModel& errors, const Configuration& configuration, double d_px,

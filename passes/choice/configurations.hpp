@@ -1,6 +1,6 @@
 #pragma once
-// Configurations of a graph's choices by budget: a value for each choice, the resulting plan, its work
-// and its technique.
+// Configurations of a graph's choices by budget: a value for each choice, the resulting plan, its
+// work and its technique.
 
 #include "framegraph/compile/compile.hpp"
 #include "passes/choice/cost_model.hpp"
@@ -38,7 +38,8 @@ struct Configuration {
   std::vector<SettingValue> settings; // one per Graph::settings
   uint32_t plan = 0;                  // index into Combinations::first
   int32_t technique = -1;             // index into ErrorModel::techniques; -1: none runs
-  // Technique if no tile has samples; equal to `technique` if the configuration takes no samples by tile.
+  // Technique if no tile has samples; equal to `technique` if the configuration takes no samples by
+  // tile.
   int32_t without_samples = -1;
   bool takes_samples = false;   // takes samples by tile, as many as the budget allows
   std::vector<PassLoad> passes; // in plan order
@@ -58,17 +59,19 @@ std::string work_name(const PassType& type, std::span<const SettingValue> values
 // Enumerates the combinations. Other settings have the values in `input` (empty: the defaults). So
 // have choices that the host made itself, `pinned` (one per setting; empty: none). Returns nullopt
 // with an error in `diagnostics` if there are more than max_configurations.
-std::optional<Combinations> enumerate_combinations(const CompileInput& input, Diagnostics& diagnostics,
+std::optional<Combinations> enumerate_combinations(const CompileInput& input,
+                                                   Diagnostics& diagnostics,
                                                    const std::vector<bool>& pinned = {});
 
 // Returns the configurations of compiled combinations. `plans`: one per Combinations::first.
 // Combinations that run the same passes with the same values are merged. Adds costs to `costs`.
-std::vector<Configuration> make_configurations(const CompileInput& input, const Combinations& combinations,
-                                               std::span<const Plan* const> plans, const ErrorModel& errors,
-                                               CostModel& costs);
+std::vector<Configuration> make_configurations(const CompileInput& input,
+                                               const Combinations& combinations,
+                                               std::span<const Plan* const> plans,
+                                               const ErrorModel& errors, CostModel& costs);
 
-// Updates the passes and the technique of each configuration, after a change of a setting that turns no
-// pass on or off, or with other models. `plans` is indexed by Configuration::plan.
+// Updates the passes and the technique of each configuration, after a change of a setting that
+// turns no pass on or off, or with other models. `plans` is indexed by Configuration::plan.
 void describe_configurations(const PassTypeRegistry& pass_types, std::span<const Plan* const> plans,
                              const ErrorModel& errors, CostModel& costs,
                              std::span<Configuration> configurations);
@@ -84,14 +87,15 @@ uint64_t groups_of(const PassLoad& pass, const FrameLoad& load);
 // Returns the time by the calibration only, which is equal on all machines; no spread.
 Estimate calibrated_estimate(const Configuration& configuration, const CostModel& costs,
                              const FrameLoad& load);
-Estimate estimate(const Configuration& configuration, const CostModel& costs, const FrameLoad& load);
+Estimate estimate(const Configuration& configuration, const CostModel& costs,
+                  const FrameLoad& load);
 // Typical deviations of a budget that samples leave free when they fill it. One of twenty frames is
 // late by more than two (a mean deviation is 0.8 of a standard deviation). Work that runs in any
 // case needs one.
 inline constexpr double given_deviations = 2.0;
 // Returns the units of samples that fit into `budget_ms` in addition to all other work, with the
-// deviations of both. Returns UINT32_MAX if the configuration takes no samples by tile, or if a unit
-// costs nothing.
+// deviations of both. Returns UINT32_MAX if the configuration takes no samples by tile, or if a
+// unit costs nothing.
 uint32_t units_within(const Configuration& configuration, const CostModel& costs, FrameLoad load,
                       double budget_ms, bool deterministic);
 // Returns the expected RMSE if `given` of the `demand` units are taken: interpolates linearly

@@ -31,8 +31,8 @@ uint32_t fastest(std::span<const Forecast> forecasts) {
   return best;
 }
 
-// Returns the configuration with the least error among those for which `factor` times the bound fits the
-// budget. UINT32_MAX: none.
+// Returns the configuration with the least error among those for which `factor` times the bound
+// fits the budget. UINT32_MAX: none.
 uint32_t best_within(std::span<const Forecast> forecasts, double budget_ms, double factor) {
   uint32_t best = UINT32_MAX;
   for (uint32_t i = 0; i < forecasts.size(); ++i)
@@ -56,10 +56,12 @@ double seen_square(const Forecast& forecast) {
   return forecast.rmse * forecast.rmse - forecast.missed_rmse * forecast.missed_rmse;
 }
 
-bool decided_by_transmission(std::span<const Forecast> forecasts, double budget_ms, uint32_t configuration) {
+bool decided_by_transmission(std::span<const Forecast> forecasts, double budget_ms,
+                             uint32_t configuration) {
   const Forecast& now = forecasts[configuration];
   return std::any_of(forecasts.begin(), forecasts.end(), [&](const Forecast& other) {
-    return bound_ms(other) <= budget_ms && seen_square(other) < seen_square(now) && other.rmse > now.rmse;
+    return bound_ms(other) <= budget_ms && seen_square(other) < seen_square(now) &&
+           other.rmse > now.rmse;
   });
 }
 
@@ -117,10 +119,12 @@ const char* why_text(const Decision& decision) {
   return text_of(decision.why);
 }
 
-Decision decide(std::span<const Forecast> forecasts, double budget_ms, double seconds, DecisionState& state) {
+Decision decide(std::span<const Forecast> forecasts, double budget_ms, double seconds,
+                DecisionState& state) {
   Decision decision = choose(forecasts, budget_ms, state);
   find_next_better(forecasts, budget_ms, decision);
-  decision.transmission_stats = decided_by_transmission(forecasts, budget_ms, decision.configuration);
+  decision.transmission_stats =
+      decided_by_transmission(forecasts, budget_ms, decision.configuration);
   const bool first = state.configuration == UINT32_MAX;
   const bool switched = !first && decision.configuration != state.configuration;
   const double passed = seconds > 0 ? seconds : usual_frame;

@@ -1,6 +1,6 @@
 #pragma once
-// The controller decides which of a graph's configurations runs in the next frame: the least expected
-// error whose predicted time fits the budget, with hysteresis.
+// The controller decides which of a graph's configurations runs in the next frame: the least
+// expected error whose predicted time fits the budget, with hysteresis.
 
 #include <cstdint>
 #include <span>
@@ -22,12 +22,12 @@ enum class ReasonKind : uint8_t {
   better_fits,  // less error than the previous configuration, and fits
   over_budget,  // the previous configuration does not fit any more
   nothing_fits, // every configuration is over budget: the fastest
-  held,         // another configuration is better, but by too little, or the last switch is too recent
+  held, // another configuration is better, but by too little, or the last switch is too recent
 };
 
-// Factor on the bound of an configuration that must fit the budget before a switch to the configuration.
-// Configurations that fill a budget with samples leave the same margin, so that their own samples neither
-// prevent a switch to them nor force a switch away.
+// Factor on the bound of an configuration that must fit the budget before a switch to the
+// configuration. Configurations that fill a budget with samples leave the same margin, so that
+// their own samples neither prevent a switch to them nor force a switch away.
 inline constexpr double entry_margin = 1.05;
 
 struct Decision {
@@ -51,6 +51,7 @@ struct DecisionState {
 
 // Decides for a frame. budget_ms > 0; `seconds` since the last frame, 0: 1/60 s. Equal forecasts
 // and state give equal decisions. Allocates nothing.
-Decision decide(std::span<const Forecast> forecasts, double budget_ms, double seconds, DecisionState& state);
+Decision decide(std::span<const Forecast> forecasts, double budget_ms, double seconds,
+                DecisionState& state);
 
 } // namespace dermis::choice

@@ -61,7 +61,8 @@ CostId CostModel::add(std::string_view work) {
   line.work = work;
   line.spread = first_spread;
   if (const Line* like = placeholder_for(work)) {
-    const Coefficients at = like->has_prior ? Coefficients{like->prior[0], like->prior[1]} : solve(*like);
+    const Coefficients at =
+        like->has_prior ? Coefficients{like->prior[0], like->prior[1]} : solve(*like);
     line.prior[0] = at.base_ms;
     line.prior[1] = at.unit_ms;
     line.has_prior = line.placeholder = true;
@@ -130,7 +131,8 @@ void CostModel::observe(CostId id, uint64_t groups, double ms) {
     const Coefficients at = solve(line);
     const double expected = at.base_ms + at.unit_ms * x;
     const double off = std::abs(ms - expected) / std::max(expected, tiny_ms);
-    if (line.observations >= settled && off > outlier * line.spread) weight = outlier * line.spread / off;
+    if (line.observations >= settled && off > outlier * line.spread)
+      weight = outlier * line.spread / off;
     line.spread = spread_memory * line.spread + (1 - spread_memory) * std::min(off, 1.0);
   }
   const double calibrated = line.prior[0] + line.prior[1] * x;

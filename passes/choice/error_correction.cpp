@@ -20,7 +20,8 @@ ErrorCorrection::Line& line_of(ErrorCorrection& correction, int32_t technique) {
 double factor_of(const ErrorCorrection::Line& line) {
   if (line.newest <= 0) return 1;
   const double prior = prior_frames * line.newest; // weight of the table
-  return std::clamp(std::sqrt((line.probed + prior) / (line.expected + prior)), 1 / max_factor, max_factor);
+  return std::clamp(std::sqrt((line.probed + prior) / (line.expected + prior)), 1 / max_factor,
+                    max_factor);
 }
 
 } // namespace
@@ -30,8 +31,10 @@ ErrorCorrection make_error_correction(size_t techniques) {
 }
 
 void observe_error(ErrorCorrection& correction, int32_t technique, double probed, double expected) {
-  const bool known = technique >= -1 && static_cast<size_t>(technique + 1) < correction.lines.size();
-  if (!known || !std::isfinite(probed) || !std::isfinite(expected) || probed < 0 || expected <= 0) return;
+  const bool known =
+      technique >= -1 && static_cast<size_t>(technique + 1) < correction.lines.size();
+  if (!known || !std::isfinite(probed) || !std::isfinite(expected) || probed < 0 || expected <= 0)
+    return;
   ErrorCorrection::Line& line = line_of(correction, technique);
   const double maximum = wild * factor_of(line) * expected;
   const double found = std::min(probed, maximum);
@@ -46,7 +49,8 @@ void observe_error(ErrorCorrection& correction, int32_t technique, double probed
 
 double error_factor(const ErrorCorrection& correction, int32_t technique) {
   const auto index = static_cast<size_t>(technique + 1);
-  return technique >= -1 && index < correction.lines.size() ? factor_of(correction.lines[index]) : 1.0;
+  return technique >= -1 && index < correction.lines.size() ? factor_of(correction.lines[index])
+                                                            : 1.0;
 }
 
 } // namespace dermis::choice

@@ -14,8 +14,8 @@ constexpr size_t max_points = 64, max_techniques = 256, max_pass_types = 16;
 constexpr double largest_through = 10; // maximum error relative to the light that a slab transmits
 constexpr double min_d_px = 1e-3, largest_d_px = 1e4, min_rmse = 1e-9, largest_rmse = 1e3;
 
-std::vector<ErrorPoint> read_curve(const Document& document, ObjectReader& owner, std::string_view key,
-                                   Diagnostics& diagnostics) {
+std::vector<ErrorPoint> read_curve(const Document& document, ObjectReader& owner,
+                                   std::string_view key, Diagnostics& diagnostics) {
   std::vector<ErrorPoint> curve;
   const NodeId list = owner.array(key, 1, max_points);
   if (!list.valid()) return curve;
@@ -24,18 +24,20 @@ std::vector<ErrorPoint> read_curve(const Document& document, ObjectReader& owner
     if (!expect_kind(document, node, what, NodeKind::array, diagnostics)) continue;
     const std::vector<NodeId> pair = children(document, node);
     if (pair.size() != 2) {
-      diagnostics.add(DiagnosticId::out_of_range, document.where(node),
-                      fmt::format("{} has {} values; expected 2: d in pixels and RMSE", what, pair.size()));
+      diagnostics.add(
+          DiagnosticId::out_of_range, document.where(node),
+          fmt::format("{} has {} values; expected 2: d in pixels and RMSE", what, pair.size()));
       continue;
     }
-    const auto d_px = read_number(document, pair[0], "d of a " + what, min_d_px, largest_d_px, diagnostics);
+    const auto d_px =
+        read_number(document, pair[0], "d of a " + what, min_d_px, largest_d_px, diagnostics);
     const auto rmse =
         read_number(document, pair[1], "RMSE of a " + what, min_rmse, largest_rmse, diagnostics);
     if (!d_px || !rmse) continue;
     if (!curve.empty() && *d_px <= curve.back().d_px)
       diagnostics.add(DiagnosticId::error_curve, document.where(node),
-                      fmt::format("{} has d = {} after d = {}; d must increase from point to point", what,
-                                  *d_px, curve.back().d_px));
+                      fmt::format("{} has d = {} after d = {}; d must increase from point to point",
+                                  what, *d_px, curve.back().d_px));
     curve.push_back({*d_px, *rmse});
   }
   return curve;
@@ -140,15 +142,17 @@ double expected_rmse(const ErrorModel& model, int32_t technique, double d_px) {
   if (d_px <= curve.front().d_px) return curve.front().rmse;
   for (size_t i = 1; i < curve.size(); ++i) {
     if (d_px > curve[i].d_px) continue;
-    const double part = std::log(d_px / curve[i - 1].d_px) / std::log(curve[i].d_px / curve[i - 1].d_px);
+    const double part =
+        std::log(d_px / curve[i - 1].d_px) / std::log(curve[i].d_px / curve[i - 1].d_px);
     return curve[i - 1].rmse * std::pow(curve[i].rmse / curve[i - 1].rmse, part);
   }
   return curve.back().rmse;
 }
 
 double missed_rmse(const ErrorModel& model, int32_t technique, double transmitted_rms) {
-  return transmitted_rms * (technique < 0 ? model.unscattered_through
-                                          : model.techniques[static_cast<size_t>(technique)].through);
+  return transmitted_rms * (technique < 0
+                                ? model.unscattered_through
+                                : model.techniques[static_cast<size_t>(technique)].through);
 }
 
 } // namespace dermis::choice

@@ -22,8 +22,8 @@ uint32_t step_bin(uint32_t tile_error, int k, uint32_t before) {
       std::clamp(bits - allocation_first_bin, 0, static_cast<int32_t>(allocation_bins) - 1));
 }
 
-SampleAllocation allocate_samples(std::span<const uint32_t> tile_errors, std::span<const uint32_t> before,
-                                  uint32_t units) {
+SampleAllocation allocate_samples(std::span<const uint32_t> tile_errors,
+                                  std::span<const uint32_t> before, uint32_t units) {
   const auto bin_of = [&](size_t tile, int k) {
     return step_bin(tile_errors[tile], k, before.empty() ? 0 : before[tile]);
   };

@@ -39,7 +39,7 @@ struct SampleAllocation {
 };
 // Allocates samples. `tile_errors`: by tile, row by row. `before`: steps of the frame before by
 // tile, or empty. Spends at most `units`.
-SampleAllocation allocate_samples(std::span<const uint32_t> tile_errors, std::span<const uint32_t> before,
-                                  uint32_t units);
+SampleAllocation allocate_samples(std::span<const uint32_t> tile_errors,
+                                  std::span<const uint32_t> before, uint32_t units);
 
 } // namespace dermis::choice

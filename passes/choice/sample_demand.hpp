@@ -1,7 +1,7 @@
 #pragma once
-// Predicts the sample demand of an configuration with samples by tile in frames where it does not run,
-// from its last frame with a similar d on the screen. The demand depends on d: there is none far
-// away.
+// Predicts the sample demand of an configuration with samples by tile in frames where it does not
+// run, from its last frame with a similar d on the screen. The demand depends on d: there is none
+// far away.
 
 #include "passes/choice/sample_allocation.hpp"
 

@@ -11,7 +11,8 @@ std::array<double, 4> catmull_rom(double part) {
           0.5 * (t3 - t2)};
 }
 
-AccumulatedLight clip_to_neighbours(const AccumulatedLight& history, const std::array<double, 3>& mean,
+AccumulatedLight clip_to_neighbours(const AccumulatedLight& history,
+                                    const std::array<double, 3>& mean,
                                     const std::array<double, 3>& deviation, double reach) {
   double keep = 1;
   for (size_t c = 0; c < 3; ++c) {
@@ -37,7 +38,8 @@ AccumulatedLight add_frame(const AccumulatedLight& history, const std::array<dou
   return sum;
 }
 
-std::array<double, 3> remainder_of(const std::array<double, 3>& light, const std::array<double, 3>& near,
+std::array<double, 3> remainder_of(const std::array<double, 3>& light,
+                                   const std::array<double, 3>& near,
                                    const std::array<double, 3>& local_mean) {
   std::array<double, 3> remainder{};
   for (size_t c = 0; c < 3; ++c)

@@ -17,7 +17,8 @@ struct AccumulatedLight {
 
 // Variance clipping (Salvi 2016): moves history along the line to the mean of the neighbourhood
 // until history is within `reach` standard deviations. The frame count shrinks by the same factor.
-AccumulatedLight clip_to_neighbours(const AccumulatedLight& history, const std::array<double, 3>& mean,
+AccumulatedLight clip_to_neighbours(const AccumulatedLight& history,
+                                    const std::array<double, 3>& mean,
                                     const std::array<double, 3>& deviation, double reach);
 
 // Returns the weight of a new frame against `count` frames of history. All frames weigh the same
@@ -34,7 +35,8 @@ inline constexpr double accumulate_largest_remainder = 4.5;
 
 // Returns the part of a pixel's scattered light that history keeps: the light that the nearest
 // pixels (`near`) do not explain, divided by the mean light around.
-std::array<double, 3> remainder_of(const std::array<double, 3>& light, const std::array<double, 3>& near,
+std::array<double, 3> remainder_of(const std::array<double, 3>& light,
+                                   const std::array<double, 3>& near,
                                    const std::array<double, 3>& local_mean);
 bool can_be_kept(const std::array<double, 3>& remainder);
 // Returns the light that a remainder represents under the light of this frame; never below 0.

@@ -33,8 +33,10 @@ bool stored_by_columns(const Matrix4& m) {
 // (off-centre orthographic projection).
 Projection projection_of(const Matrix4& m) {
   if (!is_finite(m) || m[1] != 0 || m[4] != 0 || m[0] == 0 || m[5] == 0) return Projection::none;
-  const bool perspective = m[12] == 0 && m[13] == 0 && m[14] != 0 && m[15] == 0 && m[3] == 0 && m[7] == 0;
-  const bool orthographic = m[12] == 0 && m[13] == 0 && m[14] == 0 && m[15] > 0 && m[2] == 0 && m[6] == 0;
+  const bool perspective =
+      m[12] == 0 && m[13] == 0 && m[14] != 0 && m[15] == 0 && m[3] == 0 && m[7] == 0;
+  const bool orthographic =
+      m[12] == 0 && m[13] == 0 && m[14] == 0 && m[15] > 0 && m[2] == 0 && m[6] == 0;
   if ((perspective || !orthographic) && stored_by_columns(m)) return Projection::stored_by_columns;
   if (perspective) return m[14] < 0 ? Projection::right_perspective : Projection::left_perspective;
   return orthographic ? Projection::orthographic : Projection::none;
@@ -68,19 +70,22 @@ Matrix4 with_mirrored_view(const Matrix4& clip_from_view) {
   return m;
 }
 
-CameraFault to_right_handed(CameraMatrices& matrices, std::optional<Handedness> declared, Handedness& found) {
+CameraFault to_right_handed(CameraMatrices& matrices, std::optional<Handedness> declared,
+                            Handedness& found) {
   const Projection now = projection_of(matrices.clip_from_view);
   const Projection before = projection_of(matrices.previous_clip_from_view);
   if (now == Projection::none) return CameraFault::no_projection;
   if (now == Projection::stored_by_columns) return CameraFault::stored_by_columns;
-  if (now == Projection::right_perspective && declared == Handedness::left) return CameraFault::declared_left;
+  if (now == Projection::right_perspective && declared == Handedness::left)
+    return CameraFault::declared_left;
   if (now == Projection::left_perspective && declared == Handedness::right)
     return CameraFault::declared_right;
   const bool left = now == Projection::left_perspective ||
                     (now == Projection::orthographic && declared == Handedness::left);
   CameraMatrices right = matrices;
   if (left)
-    right = {with_mirrored_view(matrices.clip_from_view), with_mirrored_rows(matrices.view_from_world),
+    right = {with_mirrored_view(matrices.clip_from_view),
+             with_mirrored_rows(matrices.view_from_world),
              with_mirrored_view(matrices.previous_clip_from_view),
              with_mirrored_rows(matrices.previous_view_from_world)};
   // A near plane at 1 unit can look like a w row.
@@ -90,7 +95,8 @@ CameraFault to_right_handed(CameraMatrices& matrices, std::optional<Handedness> 
                : CameraFault::behind_camera;
   if (left && before == Projection::right_perspective) return CameraFault::previous_right;
   if (!left && before == Projection::left_perspective) return CameraFault::previous_left;
-  const bool judged = before == Projection::orthographic || before == Projection::right_perspective ||
+  const bool judged = before == Projection::orthographic ||
+                      before == Projection::right_perspective ||
                       before == Projection::left_perspective;
   if (judged && shows_what_is_behind(right.previous_clip_from_view))
     return CameraFault::previous_behind_camera;
@@ -107,14 +113,18 @@ std::string_view text_of(CameraFault fault) {
     return "clip_from_view (without the jitter) is not an axis-aligned perspective or orthographic "
            "projection with finite elements";
   case CameraFault::stored_by_columns:
-    return "clip_from_view is not a projection because it is stored column by column; store row r, column c "
+    return "clip_from_view is not a projection because it is stored column by column; store row r, "
+           "column c "
            "in element [r * 4 + c]";
   case CameraFault::declared_left:
-    return "view space is declared left-handed, but clip_from_view has w = -z, which is right-handed";
+    return "view space is declared left-handed, but clip_from_view has w = -z, which is "
+           "right-handed";
   case CameraFault::declared_right:
-    return "view space is declared right-handed, but clip_from_view has w = z, which is left-handed";
+    return "view space is declared right-handed, but clip_from_view has w = z, which is "
+           "left-handed";
   case CameraFault::previous_right:
-    return "the frame is left-handed, but previous_clip_from_view has w = -z, which is right-handed";
+    return "the frame is left-handed, but previous_clip_from_view has w = -z, which is "
+           "right-handed";
   case CameraFault::previous_left:
     return "the frame is right-handed, but previous_clip_from_view has w = z, which is left-handed";
   case CameraFault::behind_camera:
@@ -125,8 +135,8 @@ std::string_view text_of(CameraFault fault) {
   return "";
 }
 
-std::optional<PixelRays> pixel_rays(const Matrix4& m, uint32_t width, uint32_t height, double metres_per_unit,
-                                    std::array<double, 2> jitter_px) {
+std::optional<PixelRays> pixel_rays(const Matrix4& m, uint32_t width, uint32_t height,
+                                    double metres_per_unit, std::array<double, 2> jitter_px) {
   if (!std::isfinite(jitter_px[0]) || !std::isfinite(jitter_px[1]) || width == 0 || height == 0 ||
       !(metres_per_unit > 0) || !std::isfinite(metres_per_unit))
     return std::nullopt;

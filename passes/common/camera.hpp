@@ -40,7 +40,8 @@ enum class Handedness : uint8_t { right, left };
 // The host's matrices of a frame and of the frame before. Both clip_from_view exclude the jitter,
 // or both include it.
 struct CameraMatrices {
-  Matrix4 clip_from_view{}, view_from_world{}, previous_clip_from_view{}, previous_view_from_world{};
+  Matrix4 clip_from_view{}, view_from_world{}, previous_clip_from_view{},
+      previous_view_from_world{};
 };
 
 // The reason why a host's matrices cannot be used; text_of() describes it.
@@ -61,7 +62,8 @@ enum class CameraFault : uint8_t {
 // = -z: right, w = z: left). An orthographic projection has the handedness `declared`; nullopt
 // means right. An invalid previous projection is ignored. A fault leaves the matrices unchanged.
 // Allocates nothing. Thread: any.
-CameraFault to_right_handed(CameraMatrices& matrices, std::optional<Handedness> declared, Handedness& found);
+CameraFault to_right_handed(CameraMatrices& matrices, std::optional<Handedness> declared,
+                            Handedness& found);
 
 // Returns a static sentence without a full stop; "" for none.
 std::string_view text_of(CameraFault fault);

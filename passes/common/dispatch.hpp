@@ -10,16 +10,19 @@ inline constexpr uint32_t tile_side = 8; // pixels
 // One group per tile of the render rectangle.
 inline constexpr DispatchRule over_view{.name = "over_view", .cell_side = tile_side};
 // One group per listed tile.
-inline constexpr DispatchRule over_tiles{.name = "over_tiles", .domain = DispatchRule::Domain::indirect};
+inline constexpr DispatchRule over_tiles{.name = "over_tiles",
+                                         .domain = DispatchRule::Domain::indirect};
 // One invocation per tile of the render rectangle.
 inline constexpr DispatchRule over_tile_grid{
     .name = "over_tile_grid", .cell_side = tile_side, .cells_per_group = 64};
 // One group per 4x4 tiles of the render rectangle.
-inline constexpr DispatchRule over_tile_blocks{.name = "over_tile_blocks", .cell_side = 4 * tile_side};
+inline constexpr DispatchRule over_tile_blocks{.name = "over_tile_blocks",
+                                               .cell_side = 4 * tile_side};
 // One group per 8x8 texels of the first image that the pass type writes.
 inline constexpr DispatchRule over_written_image{.name = "over_written",
                                                  .domain = DispatchRule::Domain::written_image};
-inline constexpr DispatchRule single_group{.name = "single_group", .domain = DispatchRule::Domain::one};
+inline constexpr DispatchRule single_group{.name = "single_group",
+                                           .domain = DispatchRule::Domain::one};
 inline constexpr DispatchRule no_dispatch{.name = "none", .domain = DispatchRule::Domain::none};
 
 // Returns the number of tiles that cover `width` x `height` pixels.

@@ -28,11 +28,13 @@ bool fill_previous(const FrameInput& input, FrameConstants& out) {
   const auto world_from_view = invert_affine(input.camera.view_from_world);
   if (!rays || !world_from_view) return false;
   const Matrix4 moved = multiply(input.camera.previous_view_from_world, *world_from_view);
-  if (!std::all_of(moved.begin(), moved.end(), [](double x) { return std::isfinite(x); })) return false;
+  if (!std::all_of(moved.begin(), moved.end(), [](double x) { return std::isfinite(x); }))
+    return false;
   const double mm_per_unit = input.metres_per_unit * mm_per_metre;
   for (size_t r = 0; r < 3; ++r)
     for (size_t c = 0; c < 4; ++c)
-      out.previous_from_view[r][c] = static_cast<float>(moved[4 * r + c] * (c == 3 ? mm_per_unit : 1.0));
+      out.previous_from_view[r][c] =
+          static_cast<float>(moved[4 * r + c] * (c == 3 ? mm_per_unit : 1.0));
   const double ray_unit = rays->perspective ? 1.0 : mm_per_metre;
   out.previous_ray_scale[0] = static_cast<float>(rays->scale_x * ray_unit);
   out.previous_ray_scale[1] = static_cast<float>(rays->scale_y * ray_unit);
@@ -97,7 +99,8 @@ bool fill_frame_constants(const FrameInput& input, FrameConstants& out) {
   out.tiles[0] = tiles_of(input.rect_width);
   out.tiles[1] = tiles_of(input.rect_height);
   out.frame_index = static_cast<uint32_t>(input.frame_index);
-  out.flags = (rays->perspective ? 1u : 0u) | (input.depth_kind == DepthKind::view_units ? 2u : 0u) |
+  out.flags = (rays->perspective ? 1u : 0u) |
+              (input.depth_kind == DepthKind::view_units ? 2u : 0u) |
               (input.history_invalid ? 4u : 0u) | (input.handedness == Handedness::left ? 16u : 0u);
   out.ray_scale[0] = static_cast<float>(rays->scale_x * ray_unit);
   out.ray_scale[1] = static_cast<float>(rays->scale_y * ray_unit);
@@ -110,8 +113,8 @@ bool fill_frame_constants(const FrameInput& input, FrameConstants& out) {
   out.depth_unit = static_cast<float>(input.metres_per_unit * mm_per_metre);
   for (size_t r = 0; r < 3; ++r)
     for (size_t c = 0; c < 4; ++c)
-      out.view_from_world[r][c] =
-          static_cast<float>(input.camera.view_from_world[4 * r + c] * input.metres_per_unit * mm_per_metre);
+      out.view_from_world[r][c] = static_cast<float>(input.camera.view_from_world[4 * r + c] *
+                                                     input.metres_per_unit * mm_per_metre);
   out.exposure = input.exposure;
   out.sample_units = input.sample_units;
   out.jitter[0] = static_cast<float>(input.jitter_px[0]);
@@ -121,8 +124,11 @@ bool fill_frame_constants(const FrameInput& input, FrameConstants& out) {
 }
 
 double transmitted_rms(const FrameCounters& counters) {
-  const double tiles = double(counters.scattering_tiles) + counters.copied_tiles + counters.uniform_tiles;
-  return tiles > 0 ? std::sqrt(double(counters.through_steps) / (double(through_square_steps) * tiles)) : 0;
+  const double tiles =
+      double(counters.scattering_tiles) + counters.copied_tiles + counters.uniform_tiles;
+  return tiles > 0
+             ? std::sqrt(double(counters.through_steps) / (double(through_square_steps) * tiles))
+             : 0;
 }
 
 double mean_d_px(const FrameCounters& counters) {
@@ -132,7 +138,8 @@ double mean_d_px(const FrameCounters& counters) {
   return std::exp2(steps / double(counter_log2_steps) - double(counter_log2_shift));
 }
 
-std::vector<ProfileEntry> make_profile_table(std::span<const NumberedProfile> profiles, bool with_separable) {
+std::vector<ProfileEntry> make_profile_table(std::span<const NumberedProfile> profiles,
+                                             bool with_separable) {
   ProfileEntry none{};
   none.separable_row = no_separable_row;
   none.radial_row = no_radial_row;
@@ -149,7 +156,8 @@ std::vector<ProfileEntry> make_profile_table(std::span<const NumberedProfile> pr
         entry.direct[c] = static_cast<float>(numbered.profile.shape_mm[c].direct);
       }
       entry.d_max_mm = entry.d_mm[entry.widest];
-      if (with_separable) entry.separable_row = static_cast<uint32_t>(i) * separable_kernel_rows_per_profile;
+      if (with_separable)
+        entry.separable_row = static_cast<uint32_t>(i) * separable_kernel_rows_per_profile;
       if (other) {
         entry.radial_row = others * radial_rows_per_profile;
         entry.sap_table = sap_variant_count * (1 + 3 * others);
@@ -174,8 +182,8 @@ std::vector<RadialRow> make_radial_table(std::span<const NumberedProfile> profil
 std::vector<SeparableRow> make_separable_table(std::span<const NumberedProfile> profiles) {
   std::vector<SeparableRow> table;
   for (const NumberedProfile& numbered : profiles) {
-    for (const auto& rows :
-         {make_separable_rows(numbered.profile.shape_mm), make_jimenez_rows(numbered.profile.shape_mm)})
+    for (const auto& rows : {make_separable_rows(numbered.profile.shape_mm),
+                             make_jimenez_rows(numbered.profile.shape_mm)})
       table.insert(table.end(), rows.begin(), rows.end());
   }
   if (table.empty()) table.emplace_back();
@@ -190,8 +198,9 @@ bool uses_separable(const Graph& graph, const PassTypeRegistry& pass_types) {
 
 PyramidUse pyramid_use(const Graph& graph, const PassTypeRegistry& pass_types) {
   const auto has = [&](std::string_view type) {
-    return std::any_of(graph.passes.begin(), graph.passes.end(),
-                       [id = pass_types.find(type)](const PassDeclaration& pass) { return pass.type == id; });
+    return std::any_of(
+        graph.passes.begin(), graph.passes.end(),
+        [id = pass_types.find(type)](const PassDeclaration& pass) { return pass.type == id; });
   };
   const bool surface = has("subsurface.sap_gather") || has("subsurface.sap_up") ||
                        has("subsurface.sap_gather_half") || has("subsurface.sap_gather_layered") ||

@@ -151,7 +151,8 @@ struct NumberedProfile {
 // Returns profile_capacity entries. Ignores ids outside 1..255. Expects the tables of a profile at
 // the rows where make_separable_table, make_radial_table and make_sap_tables place them for the
 // same list.
-std::vector<ProfileEntry> make_profile_table(std::span<const NumberedProfile> profiles, bool with_separable);
+std::vector<ProfileEntry> make_profile_table(std::span<const NumberedProfile> profiles,
+                                             bool with_separable);
 // Returns, for each profile in order, the fitted rows (make_separable_rows), then the published
 // kernel's (make_jimenez_rows); one row of zeros without profiles. Takes about 0.1 s per profile.
 std::vector<SeparableRow> make_separable_table(std::span<const NumberedProfile> profiles);

@@ -24,7 +24,8 @@ template <size_t N> struct NormalEquations {
 // Solves for the unknowns in `used` (Cholesky); others are 0. A pivot that is negligible against
 // its diagonal means that the unknown depends on earlier ones: it gets 0.
 template <size_t N>
-std::array<double, N> solve_some(const NormalEquations<N>& equations, const std::array<double, N>& right,
+std::array<double, N> solve_some(const NormalEquations<N>& equations,
+                                 const std::array<double, N>& right,
                                  const std::array<bool, N>& used) {
   constexpr double singular = 1e-14; // relative to the diagonal: rounding of fp64 sums
   std::array<std::array<double, N>, N> factor{};

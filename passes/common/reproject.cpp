@@ -22,7 +22,8 @@ bool history_usable(const FrameConstants& frame) {
 PreviousPlace place_before(const FrameConstants& frame, double x, double y, double depth) {
   const double zoom = (frame.flags & 1) != 0 ? depth : 1;
   const double at[4] = {(double(frame.ray_scale[0]) * x + double(frame.ray_offset[0])) * zoom,
-                        (double(frame.ray_scale[1]) * y + double(frame.ray_offset[1])) * zoom, -depth, 1};
+                        (double(frame.ray_scale[1]) * y + double(frame.ray_offset[1])) * zoom,
+                        -depth, 1};
   double before[3] = {};
   for (size_t r = 0; r < 3; ++r)
     for (size_t c = 0; c < 4; ++c)
@@ -48,7 +49,8 @@ PreviousPlace place_before(const FrameConstants& frame, double x, double y, doub
     return snap(steady + double(frame.previous_jitter[axis]));
   };
   return {pixel(0, x), pixel(1, y),
-          still.depth > 0 ? std::max(still.depth - velocity[2] * double(frame.depth_unit), 0.0) : 0};
+          still.depth > 0 ? std::max(still.depth - velocity[2] * double(frame.depth_unit), 0.0)
+                          : 0};
 }
 
 double depth_tolerance(double depth, double rise) {
@@ -60,14 +62,16 @@ HistoryTaps find_history(const FrameConstants& frame, const PreviousPlace& place
   if (!(place.depth > 0) || !(std::abs(place.x) < reproject_largest_velocity) ||
       !(std::abs(place.y) < reproject_largest_velocity))
     return {};
-  HistoryTaps taps{static_cast<int>(std::floor(place.x)), static_cast<int>(std::floor(place.y)), {}};
+  HistoryTaps taps{
+      static_cast<int>(std::floor(place.x)), static_cast<int>(std::floor(place.y)), {}};
   const double px = place.x - taps.x, py = place.y - taps.y;
   taps.weight = {(1 - px) * (1 - py), px * (1 - py), (1 - px) * py, px * py};
   double total = 0;
   for (int i = 0; i < 4; ++i) {
     const int x = taps.x + (i & 1), y = taps.y + (i >> 1);
     double& weight = taps.weight[static_cast<size_t>(i)];
-    const bool inside = x >= 0 && y >= 0 && x < frame.previous_rect[2] && y < frame.previous_rect[3];
+    const bool inside =
+        x >= 0 && y >= 0 && x < frame.previous_rect[2] && y < frame.previous_rect[3];
     const SurfaceBefore surface = weight > 0 && inside ? at(x, y) : SurfaceBefore{};
     if (surface.id != id || !(std::abs(surface.depth - place.depth) <= tolerance)) weight = 0;
     total += weight;

@@ -32,23 +32,25 @@ std::string declare_port(const Port& port, uint32_t binding) {
   case Usage::sampled_image:
     return fmt::format("layout({}) uniform {} {}_image;\n", layout, port.glsl_type, port.name);
   case Usage::storage_image_write:
-    return fmt::format("layout({}) writeonly uniform {} {}_image;\n", layout, port.glsl_type, port.name);
+    return fmt::format("layout({}) writeonly uniform {} {}_image;\n", layout, port.glsl_type,
+                       port.name);
   // A load needs the format.
   case Usage::storage_image_update:
     if (port.glsl_type.substr(0, 9) == "writeonly")
       return fmt::format("layout({}) uniform {} {}_image;\n", layout, port.glsl_type, port.name);
-    return fmt::format("layout({}, rgba16f) uniform {} {}_image;\n", layout, port.glsl_type, port.name);
+    return fmt::format("layout({}, rgba16f) uniform {} {}_image;\n", layout, port.glsl_type,
+                       port.name);
   case Usage::acceleration_structure:
     return fmt::format("layout({}) uniform {} {}_structure;\n", layout, port.glsl_type, port.name);
   case Usage::storage_buffer_read:
     return fmt::format("layout(std430, {}) readonly buffer {}_block {{ {} {}_data[]; }};\n", layout,
                        port.name, port.glsl_type, port.name);
   case Usage::storage_buffer_write:
-    return fmt::format("layout(std430, {}) writeonly buffer {}_block {{ {} {}_data[]; }};\n", layout,
-                       port.name, port.glsl_type, port.name);
+    return fmt::format("layout(std430, {}) writeonly buffer {}_block {{ {} {}_data[]; }};\n",
+                       layout, port.name, port.glsl_type, port.name);
   case Usage::storage_buffer_update:
-    return fmt::format("layout(std430, {}) buffer {}_block {{ {} {}_data[]; }};\n", layout, port.name,
-                       port.glsl_type, port.name);
+    return fmt::format("layout(std430, {}) buffer {}_block {{ {} {}_data[]; }};\n", layout,
+                       port.name, port.glsl_type, port.name);
   default: // no descriptor
     return {};
   }
@@ -66,14 +68,15 @@ std::string header_of(const PassType& type) {
   out += "#include \"options.glsl\"\n\n";
   for (uint32_t i = 0; i < type.ports.size(); ++i)
     out += declare_port(type.ports[i], i);
-  out += "\nlayout(push_constant) uniform settings_block {\n  uint port_mask; // bit i: port i is bound\n";
+  out += "\nlayout(push_constant) uniform settings_block {\n  uint port_mask; // bit i: port i is "
+         "bound\n";
   for (const PassTypeSetting& setting : type.settings)
     out += declare_setting(setting);
   out += "} settings;\n\n";
   for (uint32_t i = 0; i < type.ports.size(); ++i)
     if (type.ports[i].optional)
-      out += fmt::format("bool has_{}() {{ return (settings.port_mask & {}u) != 0u; }}\n", type.ports[i].name,
-                         1u << i);
+      out += fmt::format("bool has_{}() {{ return (settings.port_mask & {}u) != 0u; }}\n",
+                         type.ports[i].name, 1u << i);
   return out;
 }
 
@@ -104,7 +107,8 @@ std::string shared_constants() {
       "const int uniform_max_reach = {};\n"
       "const uint uniform_cell_side = {}u;\n"
       "const int probe_max_reach = {}; // pass_types.hpp\n"
-      "const float allot_gain_0 = {}, allot_gain_1 = {}, allot_gain_2 = {}; // sample_allocation.hpp\n"
+      "const float allot_gain_0 = {}, allot_gain_1 = {}, allot_gain_2 = {}; // "
+      "sample_allocation.hpp\n"
       "const float allocation_stay = {};\n"
       "const int allocation_first_bin = {};\n"
       "const float min_patch_cosine = {}; // reference/surface.hpp\n"
@@ -138,15 +142,18 @@ std::string shared_constants() {
       subsurface::uniform_max_reach, subsurface::uniform_cell_side, subsurface::probe_max_reach,
       choice::allocation_gain[0], choice::allocation_gain[1], choice::allocation_gain[2],
       choice::allocation_stay, choice::allocation_first_bin, subsurface::min_patch_cosine,
-      subsurface::separable_nodes, subsurface::separable_first_log2_d, subsurface::separable_log2_d_step,
-      subsurface::separable_rows_per_profile, subsurface::sap_level_count, subsurface::sap_variant_count,
-      static_cast<int>(subsurface::SapVariant::half), static_cast<int>(subsurface::SapVariant::plain),
-      subsurface::sap_node_count, double(subsurface::sap_nodes_per_octave), subsurface::sap_log2_d_first,
-      subsurface::sap_tiles_per_group_first, subsurface::sap_tiles_per_group, subsurface::radial_nodes,
-      subsurface::radial_log2_r_first, subsurface::radial_nodes_per_octave,
-      subsurface::radial_inverse_nodes_per_unit, subsurface::reproject_snap_px,
-      subsurface::reproject_largest_velocity, subsurface::reproject_depth_fraction,
-      subsurface::reproject_slope_pixels, subsurface::reproject_min_weight, subsurface::accumulate_min_mean,
+      subsurface::separable_nodes, subsurface::separable_first_log2_d,
+      subsurface::separable_log2_d_step, subsurface::separable_rows_per_profile,
+      subsurface::sap_level_count, subsurface::sap_variant_count,
+      static_cast<int>(subsurface::SapVariant::half),
+      static_cast<int>(subsurface::SapVariant::plain), subsurface::sap_node_count,
+      double(subsurface::sap_nodes_per_octave), subsurface::sap_log2_d_first,
+      subsurface::sap_tiles_per_group_first, subsurface::sap_tiles_per_group,
+      subsurface::radial_nodes, subsurface::radial_log2_r_first,
+      subsurface::radial_nodes_per_octave, subsurface::radial_inverse_nodes_per_unit,
+      subsurface::reproject_snap_px, subsurface::reproject_largest_velocity,
+      subsurface::reproject_depth_fraction, subsurface::reproject_slope_pixels,
+      subsurface::reproject_min_weight, subsurface::accumulate_min_mean,
       subsurface::accumulate_largest_remainder, subsurface::counter_log2_shift,
       subsurface::counter_log2_steps, subsurface::through_square_steps);
 }

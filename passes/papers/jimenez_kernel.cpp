@@ -16,7 +16,8 @@ std::vector<double> jimenez_offsets(uint32_t taps) {
   return offsets;
 }
 
-std::vector<double> jimenez_weights(std::span<const double> offsets, double width, double strength) {
+std::vector<double> jimenez_weights(std::span<const double> offsets, double width,
+                                    double strength) {
   // A tap represents half the distance to each of its neighbours; the outermost taps have one
   // neighbour.
   std::vector<double> weights{offsets[0] * artist_R(0, width)};

@@ -11,9 +11,9 @@ constexpr Port tile_variance_ports[] = {
     port::tiles, port::arguments, port::writer_of(port::tile_errors),
 };
 constexpr PassTypeSetting tile_variance_settings[] = {
-    setting::per_frame(setting::real(
-        "min_contrast", 0.01, 0, 4, "",
-        "mean deviation of exposed luminance from the tile's mean, below which light counts as uniform")),
+    setting::per_frame(setting::real("min_contrast", 0.01, 0, 4, "",
+                                     "mean deviation of exposed luminance from the tile's mean, "
+                                     "below which light counts as uniform")),
 };
 
 } // namespace

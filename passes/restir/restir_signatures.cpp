@@ -8,9 +8,9 @@ namespace {
 
 constexpr std::string_view reservoirs_doc =
     "four elements per pixel of the render rectangle, row by row; see docs/restir.md";
-constexpr std::string_view domains_doc =
-    "two elements per pixel of the render rectangle, row by row: the part of its paths that the pixel "
-    "determines; 0 where nothing was written";
+constexpr std::string_view domains_doc = "two elements per pixel of the render rectangle, row by "
+                                         "row: the part of its paths that the pixel "
+                                         "determines; 0 where nothing was written";
 constexpr std::string_view kept_lights_doc = "copy of `lights`, as many as fit into the buffer";
 
 constexpr Port normal =
@@ -22,11 +22,11 @@ constexpr Port vertices = port::read_buffer(
     "vertices", "vec4",
     "two elements per vertex: position and normal in object space; the fourth component is unused");
 constexpr Port indices = port::read_buffer("indices", "uint", "three elements per triangle");
-constexpr Port instances = port::read_buffer(
-    "instances", "ray_instance",
-    "64 bytes each: three rows of the world-from-object matrix, first vertex, first index, profile id, 0");
-constexpr Port lights =
-    port::read_buffer("lights", "light_source", "64 bytes each, in the layout of shaders/restir/lights.glsl");
+constexpr Port instances = port::read_buffer("instances", "ray_instance",
+                                             "64 bytes each: three rows of the world-from-object "
+                                             "matrix, first vertex, first index, profile id, 0");
+constexpr Port lights = port::read_buffer(
+    "lights", "light_source", "64 bytes each, in the layout of shaders/restir/lights.glsl");
 constexpr std::array traced{scene, vertices, indices, instances, lights};
 constexpr std::array surface{port::material, port::depth, normal, port::scatter_scale};
 constexpr std::array tiles{port::tiles, port::arguments};
@@ -34,7 +34,8 @@ constexpr std::array tiles{port::tiles, port::arguments};
 constexpr Port reservoirs = port::read_buffer("reservoirs", "uvec4", reservoirs_doc);
 constexpr Port merged = port::written_buffer("merged", "uvec4", reservoirs_doc);
 
-constexpr auto initial_ports = join(surface, traced, tiles, std::array{port::writer_of(reservoirs)});
+constexpr auto initial_ports =
+    join(surface, traced, tiles, std::array{port::writer_of(reservoirs)});
 
 constexpr PassTypeSetting initial_settings[] = {
     setting::integer(
@@ -43,22 +44,22 @@ constexpr PassTypeSetting initial_settings[] = {
 };
 
 constexpr std::string_view shift_options[] = {"reconnection", "delayed", "hybrid", "sequential"};
-constexpr PassTypeSetting shift =
-    setting::choice("shift", shift_options, "mapping of a path of one pixel to a path of another pixel");
+constexpr PassTypeSetting shift = setting::choice(
+    "shift", shift_options, "mapping of a path of one pixel to a path of another pixel");
 
-constexpr auto temporal_ports =
-    join(surface, std::array{port::velocity}, traced,
-         std::array{reservoirs, port::read_buffer("reservoirs_before", "uvec4", reservoirs_doc),
-                    port::read_buffer("domains_before", "uvec4", domains_doc),
-                    port::read_buffer("lights_before", "light_source", kept_lights_doc)},
-         tiles,
-         std::array{merged, Port{"domains", Usage::storage_buffer_update, false, "uvec4", domains_doc},
-                    port::written_buffer("lights_kept", "light_source", kept_lights_doc)});
+constexpr auto temporal_ports = join(
+    surface, std::array{port::velocity}, traced,
+    std::array{reservoirs, port::read_buffer("reservoirs_before", "uvec4", reservoirs_doc),
+               port::read_buffer("domains_before", "uvec4", domains_doc),
+               port::read_buffer("lights_before", "light_source", kept_lights_doc)},
+    tiles,
+    std::array{merged, Port{"domains", Usage::storage_buffer_update, false, "uvec4", domains_doc},
+               port::written_buffer("lights_kept", "light_source", kept_lights_doc)});
 
 constexpr PassTypeSetting temporal_settings[] = {
     shift,
-    setting::per_frame(
-        setting::real("cap", 20, 0, 1000, "times the frame", "maximum confidence weight of the history")),
+    setting::per_frame(setting::real("cap", 20, 0, 1000, "times the frame",
+                                     "maximum confidence weight of the history")),
 };
 
 constexpr auto spatial_ports =
@@ -66,18 +67,19 @@ constexpr auto spatial_ports =
 
 constexpr PassTypeSetting spatial_settings[] = {
     shift,
-    setting::integer(
-        "pass", 0, 0, 1, "",
-        "index of the spatial pass; with the shift `sequential`, pass 0 reconnects and pass 1 replays"),
-    setting::integer("neighbours", 4, 1, 8, "pixels", "number of neighbouring pixels that are tested"),
+    setting::integer("pass", 0, 0, 1, "",
+                     "index of the spatial pass; with the shift `sequential`, pass 0 reconnects "
+                     "and pass 1 replays"),
+    setting::integer("neighbours", 4, 1, 8, "pixels",
+                     "number of neighbouring pixels that are tested"),
 };
 
-constexpr auto resolve_ports =
-    join(std::array{port::sampled(
-             "lighting", "diffuse irradiance before albedo, linear; used where light does not scatter",
-             port::color_formats)},
-         surface, std::array{port::albedo, vertices, indices, instances, reservoirs}, tiles,
-         std::array{port::scattered});
+constexpr auto resolve_ports = join(
+    std::array{port::sampled(
+        "lighting", "diffuse irradiance before albedo, linear; used where light does not scatter",
+        port::color_formats)},
+    surface, std::array{port::albedo, vertices, indices, instances, reservoirs}, tiles,
+    std::array{port::scattered});
 
 constexpr PassTypeSetting resolve_settings[] = {setting::texturing};
 
@@ -88,7 +90,8 @@ constexpr HistoryWeight temporal_mixes[] = {{"merged", "cap", HistoryWeight::By:
 const PassType restir_initial_type{
     .name = "restir.initial",
     .shader = "restir/restir_initial",
-    .doc = "Samples paths from each pixel through the object to a light with probe rays, and keeps one path.",
+    .doc = "Samples paths from each pixel through the object to a light with probe rays, and keeps "
+           "one path.",
     .ports = initial_ports,
     .settings = initial_settings,
     .dispatch = over_tiles,
@@ -119,7 +122,8 @@ const PassType restir_spatial_type{
 const PassType restir_resolve_type{
     .name = "restir.resolve",
     .shader = "restir/restir_resolve",
-    .doc = "Computes the light of each pixel's kept path; channels that do not scatter keep the pixel's own "
+    .doc = "Computes the light of each pixel's kept path; channels that do not scatter keep the "
+           "pixel's own "
            "light.",
     .ports = resolve_ports,
     .settings = resolve_settings,

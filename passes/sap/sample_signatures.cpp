@@ -11,10 +11,11 @@ constexpr PassTypeSetting below = setting::per_frame(
 
 constexpr Port tile_error_ports[] = {
     port::sap_scattered,
-    port::optional(port::sampled("light",
-                                 "light before scattering: light that scattering did not change counts less; "
-                                 "unbound: all light counts equally",
-                                 port::light_formats)),
+    port::optional(
+        port::sampled("light",
+                      "light before scattering: light that scattering did not change counts less; "
+                      "unbound: all light counts equally",
+                      port::light_formats)),
     port::material,
     port::importance,
     port::tiles,
@@ -34,8 +35,9 @@ constexpr Port allocate_samples_ports[] = {
 
 constexpr auto tile_refine_ports =
     join(port::sap_levels,
-         std::array{port::classes, port::samples_per_tile, port::tiles, port::arguments,
-                    port::updated("scattered", "rgb: scattered light; a: confidence; refined in place")});
+         std::array{
+             port::classes, port::samples_per_tile, port::tiles, port::arguments,
+             port::updated("scattered", "rgb: scattered light; a: confidence; refined in place")});
 constexpr PassTypeSetting tile_refine_settings[] = {
     setting::lod_bias(-1.5),
     below,
@@ -47,8 +49,9 @@ constexpr PassTypeSetting tile_refine_settings[] = {
 const PassType tile_error_estimate_type{
     .name = "subsurface.tile_error_estimate",
     .shader = "sap/subsurface_tile_error_estimate",
-    .doc = "Estimates the error of each tile: the confidence that the pyramid lacks, times light and "
-           "importance.",
+    .doc =
+        "Estimates the error of each tile: the confidence that the pyramid lacks, times light and "
+        "importance.",
     .ports = tile_error_ports,
     .settings = tile_error_settings,
     .dispatch = over_tiles,
@@ -57,7 +60,8 @@ const PassType tile_error_estimate_type{
 const PassType allocate_samples_type{
     .name = "subsurface.allocate_samples",
     .shader = "sap/subsurface_allocate_samples",
-    .doc = "Allocates samples to tiles in the order of error reduction per cost, until the frame's budget is "
+    .doc = "Allocates samples to tiles in the order of error reduction per cost, until the frame's "
+           "budget is "
            "spent.",
     .ports = allocate_samples_ports,
     .settings = {},

@@ -15,10 +15,12 @@ constexpr std::string_view variant_options[] = {"base", "smooth", "half"};
 constexpr std::string_view light_doc =
     "rgb: light; a: fourth root of the surface's area divided by its cross-section";
 constexpr std::string_view surface_doc =
-    "depth in mm (bits of a float); slope x, y (halves); factor on d, fraction of the texel's kernel on its "
+    "depth in mm (bits of a float); slope x, y (halves); factor on d, fraction of the texel's "
+    "kernel on its "
     "own surface (halves); profile id in bits 0-7 (0: no surface), bit 8: a second layer exists";
 constexpr std::string_view scattered_doc =
-    "scattered light of this level and coarser levels (3 halves), confidence (half), fraction of the kernel "
+    "scattered light of this level and coarser levels (3 halves), confidence (half), fraction of "
+    "the kernel "
     "on the surface (3 halves), 0; in full storage: light (bits of 3 floats), the fraction and the "
     "confidence (a byte each)";
 
@@ -29,43 +31,47 @@ constexpr PassTypeSetting written_level(double last = sap_level_count - 1) {
   return setting::integer("level", 1, 1, last, "", "level that the pass writes");
 }
 
-constexpr PassTypeSetting variant =
-    setting::choice("variant", variant_options,
-                    "tent filter. base: at levels 0 and 1; smooth: at every level, which hides the grid; "
-                    "half: at level 1, below subsurface.sap_gather_half",
-                    1);
+constexpr PassTypeSetting variant = setting::choice(
+    "variant", variant_options,
+    "tent filter. base: at levels 0 and 1; smooth: at every level, which hides the grid; "
+    "half: at level 1, below subsurface.sap_gather_half",
+    1);
 
 // Two layers at level 1 need a full first level, so `half` is not available.
-constexpr PassTypeSetting layered_variant =
-    setting::choice("variant", std::span(variant_options).first(2),
-                    "tent filter. base: at levels 0 and 1; smooth: at every level, which hides the grid", 1);
+constexpr PassTypeSetting layered_variant = setting::choice(
+    "variant", std::span(variant_options).first(2),
+    "tent filter. base: at levels 0 and 1; smooth: at every level, which hides the grid", 1);
 
 constexpr std::string_view storage_options[] = {"half", "full"};
-constexpr PassTypeSetting storage =
-    setting::choice("storage", storage_options,
-                    "precision of written light. half: half floats; full: floats, whose images need 32 bits "
-                    "per channel. All passes of a pyramid must use the same value");
+constexpr PassTypeSetting storage = setting::choice(
+    "storage", storage_options,
+    "precision of written light. half: half floats; full: floats, whose images need 32 bits "
+    "per channel. All passes of a pyramid must use the same value");
 
-constexpr Port level_tiles = port::read_buffer("level_tiles", "uvec2", "output of subsurface.sap_tiles");
+constexpr Port level_tiles =
+    port::read_buffer("level_tiles", "uvec2", "output of subsurface.sap_tiles");
 constexpr Port level_arguments{"level_arguments", Usage::indirect_arguments, false, "uint",
                                "output of subsurface.sap_tiles"};
 
 constexpr Port tiles_ports[] = {
     port::classes,
-    port::where_covered(port::written_buffer(
-        "level_tiles", "uvec2",
-        "for each level, the index of its first entry and the number of entries; then the entries: tile x in "
-        "bits 0-14, y in bits 15-29, bit 30: all pixels have subsurface, bit 31: copy only; then a mask of "
-        "the 3x3 tiles that can contain surface: bits 0-8 for the tiles of the finer level that the tile "
-        "reduces, bits 9-17 for the tiles around it")),
-    port::written_buffer(
-        "level_arguments", "uint",
-        "for each level, the group counts x, y, z of an indirect dispatch over its tiles, and x times y"),
+    port::where_covered(port::written_buffer("level_tiles", "uvec2",
+                                             "for each level, the index of its first entry and the "
+                                             "number of entries; then the entries: tile x in "
+                                             "bits 0-14, y in bits 15-29, bit 30: all pixels have "
+                                             "subsurface, bit 31: copy only; then a mask of "
+                                             "the 3x3 tiles that can contain surface: bits 0-8 for "
+                                             "the tiles of the finer level that the tile "
+                                             "reduces, bits 9-17 for the tiles around it")),
+    port::written_buffer("level_arguments", "uint",
+                         "for each level, the group counts x, y, z of an indirect dispatch over "
+                         "its tiles, and x times y"),
     port::where_covered(port::writer_of(port::tiles)),
     port::writer_of(port::arguments),
     port::optional(port::written_buffer(
         "copy_arguments", "uint",
-        "like 'arguments', but 0 groups if any tile scatters, because the pyramid then also copies the other "
+        "like 'arguments', but 0 groups if any tile scatters, because the pyramid then also copies "
+        "the other "
         "tiles. If the port is bound, the pyramid's lists are empty when no tile scatters")),
 };
 
@@ -83,7 +89,8 @@ constexpr Port read_surface(std::string_view name, std::string_view doc) {
 }
 
 // Ports that read the view, and the tiles of a level.
-constexpr std::array view{port::lighting, port::material, port::depth, port::scatter_scale, port::albedo};
+constexpr std::array view{port::lighting, port::material, port::depth, port::scatter_scale,
+                          port::albedo};
 constexpr std::array level{level_tiles, level_arguments};
 
 constexpr auto setup_ports =
@@ -94,7 +101,8 @@ constexpr PassTypeSetting setup_settings[] = {setting::texturing, storage};
 constexpr std::array coarse{written_light("coarse_light"), written_surface("coarse_surface")};
 
 constexpr auto setup_half_res_ports = join(view, level, coarse);
-constexpr PassTypeSetting setup_half_res_settings[] = {written_level(1), setting::texturing, storage};
+constexpr PassTypeSetting setup_half_res_settings[] = {written_level(1), setting::texturing,
+                                                       storage};
 
 constexpr std::array finer{read_light("light", "image of the finer level"),
                            read_surface("surface", "image of the finer level")};
@@ -103,9 +111,11 @@ constexpr PassTypeSetting down_settings[] = {written_level(), storage};
 
 // Ports of the second layer, for levels whose texels can have a second surface. Its images are
 // valid only at texels whose first surface has the flag.
-constexpr std::string_view second_doc = "image of the second layer, which holds surfaces apart from the "
-                                        "first layer; undefined where a texel has only one layer";
-constexpr Port second_coarse_surface = port::where_flagged(read_surface("second_coarse_surface", second_doc));
+constexpr std::string_view second_doc =
+    "image of the second layer, which holds surfaces apart from the "
+    "first layer; undefined where a texel has only one layer";
+constexpr Port second_coarse_surface =
+    port::where_flagged(read_surface("second_coarse_surface", second_doc));
 constexpr Port second_coarse_scattered =
     port::where_flagged(read_surface("second_coarse_scattered", second_doc));
 
@@ -114,7 +124,8 @@ constexpr std::array this_level{read_light("light", "image of this level"),
 constexpr std::string_view coarser_doc = "image of the coarser level; unbound at the last level";
 constexpr std::array coarser{port::optional(read_surface("coarse_surface", coarser_doc)),
                              port::optional(read_surface("coarse_scattered", coarser_doc)),
-                             port::optional(second_coarse_surface), port::optional(second_coarse_scattered)};
+                             port::optional(second_coarse_surface),
+                             port::optional(second_coarse_scattered)};
 constexpr std::array up_result{written_surface("scattered", scattered_doc)};
 constexpr auto up_ports = join(this_level, coarser, level, up_result);
 constexpr PassTypeSetting up_settings[] = {written_level(), variant, storage};
@@ -124,7 +135,8 @@ constexpr std::array level_0{read_light("light", "image of level 0"),
 constexpr std::array level_1{read_surface("coarse_surface", "image of level 1"),
                              read_surface("coarse_scattered", "image of level 1")};
 constexpr std::array gather_result{written_light(
-    "scattered", "rgb: scattered light where there is subsurface, undefined elsewhere; a: confidence")};
+    "scattered",
+    "rgb: scattered light where there is subsurface, undefined elsewhere; a: confidence")};
 constexpr auto gather_ports = join(level_0, level_1, level, gather_result);
 constexpr PassTypeSetting gather_settings[] = {variant, storage};
 
@@ -136,8 +148,9 @@ constexpr std::string_view second_finer_doc =
     "image of the second layer; unbound if the finer level has one layer";
 constexpr auto layered_down_ports =
     join(finer,
-         std::array{port::where_flagged(port::optional(read_light("second_light", second_finer_doc))),
-                    port::where_flagged(port::optional(read_surface("second_surface", second_finer_doc)))},
+         std::array{
+             port::where_flagged(port::optional(read_light("second_light", second_finer_doc))),
+             port::where_flagged(port::optional(read_surface("second_surface", second_finer_doc)))},
          level, coarse,
          std::array{port::where_flagged(written_light("second_coarse_light", second_doc)),
                     port::where_flagged(written_surface("second_coarse_surface", second_doc))});
@@ -150,14 +163,16 @@ constexpr auto layered_up_ports =
          std::array{port::where_flagged(written_surface("second_scattered", second_doc))});
 
 constexpr auto layered_gather_ports =
-    join(level_0, level_1, std::array{second_coarse_surface, second_coarse_scattered}, level, gather_result);
+    join(level_0, level_1, std::array{second_coarse_surface, second_coarse_scattered}, level,
+         gather_result);
 
 } // namespace
 
 const PassType sap_tiles_type{
     .name = "subsurface.sap_tiles",
     .shader = "sap/subsurface_sap_tiles",
-    .doc = "Lists the tiles of every level of the surface-aware pyramid that can contain surface, and writes "
+    .doc = "Lists the tiles of every level of the surface-aware pyramid that can contain surface, "
+           "and writes "
            "their indirect arguments, in one pass and in row order.",
     .ports = tiles_ports,
     .settings = {},
@@ -167,7 +182,8 @@ const PassType sap_tiles_type{
 const PassType sap_setup_type{
     .name = "subsurface.sap_setup",
     .shader = "sap/subsurface_sap_setup",
-    .doc = "Writes level 0 of the surface-aware pyramid: light and surface of every pixel of listed tiles.",
+    .doc = "Writes level 0 of the surface-aware pyramid: light and surface of every pixel of "
+           "listed tiles.",
     .ports = setup_ports,
     .settings = setup_settings,
     .dispatch = over_tiles,
@@ -176,7 +192,8 @@ const PassType sap_setup_type{
 const PassType sap_down_type{
     .name = "subsurface.sap_down",
     .shader = "sap/subsurface_sap_down",
-    .doc = "Reduces one level of the pyramid along the surface; stops at depth steps and other profiles.",
+    .doc = "Reduces one level of the pyramid along the surface; stops at depth steps and other "
+           "profiles.",
     .ports = down_ports,
     .settings = down_settings,
     .dispatch = over_tiles,
@@ -186,7 +203,8 @@ const PassType sap_down_type{
 const PassType sap_up_type{
     .name = "subsurface.sap_up",
     .shader = "sap/subsurface_sap_up",
-    .doc = "Blends one level of the pyramid with the coarser levels; if these have two layers, a texel reads "
+    .doc = "Blends one level of the pyramid with the coarser levels; if these have two layers, a "
+           "texel reads "
            "the layer nearer to its surface.",
     .ports = up_ports,
     .settings = up_settings,
@@ -206,7 +224,8 @@ const PassType sap_gather_type{
 const PassType sap_setup_half_res_type{
     .name = "subsurface.sap_setup_half_res",
     .shader = "sap/subsurface_sap_setup_half_res",
-    .doc = "Writes level 1 of the surface-aware pyramid directly from the view: 2x2 pixels of one surface "
+    .doc = "Writes level 1 of the surface-aware pyramid directly from the view: 2x2 pixels of one "
+           "surface "
            "per texel. Replaces subsurface.sap_setup and the first subsurface.sap_down.",
     .ports = setup_half_res_ports,
     .settings = setup_half_res_settings,
@@ -217,7 +236,8 @@ const PassType sap_setup_half_res_type{
 const PassType sap_gather_half_type{
     .name = "subsurface.sap_gather_half",
     .shader = "sap/subsurface_sap_gather_half",
-    .doc = "Like subsurface.sap_gather, after subsurface.sap_setup_half_res: a pixel's own light at full "
+    .doc = "Like subsurface.sap_gather, after subsurface.sap_setup_half_res: a pixel's own light "
+           "at full "
            "resolution, light from other pixels at half resolution.",
     .ports = half_gather_ports,
     .settings = setup_settings,
@@ -227,7 +247,8 @@ const PassType sap_gather_half_type{
 const PassType sap_down_layered_type{
     .name = "subsurface.sap_down_layered",
     .shader = "sap/subsurface_sap_down_layered",
-    .doc = "Like subsurface.sap_down, with a second layer per texel for surfaces apart from the first layer.",
+    .doc = "Like subsurface.sap_down, with a second layer per texel for surfaces apart from the "
+           "first layer.",
     .ports = layered_down_ports,
     .settings = down_settings,
     .dispatch = over_tiles,
@@ -237,7 +258,8 @@ const PassType sap_down_layered_type{
 const PassType sap_up_layered_type{
     .name = "subsurface.sap_up_layered",
     .shader = "sap/subsurface_sap_up_layered",
-    .doc = "Like subsurface.sap_up, for both layers: each layer reads the nearer layer of other texels.",
+    .doc = "Like subsurface.sap_up, for both layers: each layer reads the nearer layer of other "
+           "texels.",
     .ports = layered_up_ports,
     .settings = up_settings,
     .dispatch = over_tiles,

@@ -46,8 +46,9 @@ std::array<SapTileList, sap_level_count> list_sap_tiles(uint32_t width, uint32_t
     Flags own{tiles_along(width, level), tiles_along(height, level)};
     for (uint32_t y = 0; y < own.down; ++y)
       for (uint32_t x = 0; x < own.across; ++x)
-        own.set.push_back(level == 0 ? classes[size_t{y} * own.across + x] != 0
-                                     : any && finer.from(2 * int64_t{x} - 1, 2 * int64_t{y} - 1) != 0);
+        own.set.push_back(level == 0
+                              ? classes[size_t{y} * own.across + x] != 0
+                              : any && finer.from(2 * int64_t{x} - 1, 2 * int64_t{y} - 1) != 0);
     SapTileList& list = lists[level];
     list.across = own.across;
     list.down = own.down;

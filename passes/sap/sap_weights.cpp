@@ -40,7 +40,8 @@ std::vector<Frequency> make_frequencies() {
                                                   (double(ring) + 0.5) / double(ring_count));
     for (size_t angle = 0; angle < angle_count; ++angle) {
       const double theta = 0.25 * pi * (double(angle) + 0.5) / double(angle_count);
-      list.push_back({f * std::cos(theta), f * std::sin(theta), std::pow(f, 2 + spectrum_exponent)});
+      list.push_back(
+          {f * std::cos(theta), f * std::sin(theta), std::pow(f, 2 + spectrum_exponent)});
       total += list.back().weight;
     }
   }
@@ -65,7 +66,9 @@ double spline_axis(double f, double spacing) {
 SapWeights basis_at(const Frequency& f, SapVariant variant) {
   const bool plain = variant == SapVariant::plain;
   const bool half = variant == SapVariant::half;
-  SapWeights basis{1, plain ? spline_axis(f.x, 1) * spline_axis(f.y, 1) : half ? 0 : both_axes(f, 1, 2)};
+  SapWeights basis{1, plain  ? spline_axis(f.x, 1) * spline_axis(f.y, 1)
+                      : half ? 0
+                             : both_axes(f, 1, 2)};
   double chain = 1;
   for (uint32_t level = 1; level < sap_level_count; ++level) {
     const double spacing = std::ldexp(1.0, static_cast<int>(level));
@@ -96,15 +99,16 @@ std::vector<Folded> fold(const std::vector<Frequency>& frequencies) {
       all[i].sinc_x[at] = sinc(f.x + n);
       all[i].sinc_y[at] = sinc(f.y + n);
       for (int m = -folded_copies; m <= folded_copies; ++m)
-        all[i].k[at][static_cast<size_t>(m + folded_copies)] = 2 * pi * std::hypot(f.x + m, f.y + n);
+        all[i].k[at][static_cast<size_t>(m + folded_copies)] =
+            2 * pi * std::hypot(f.x + m, f.y + n);
     }
   return all;
 }
 
 // Returns the reference's transfer function at all frequencies, from the summed pixel-integrated
 // kernel or its closed form.
-std::vector<double> target_of(const std::vector<Frequency>& frequencies, const std::vector<Folded>& folded,
-                              const ChannelShape& shape) {
+std::vector<double> target_of(const std::vector<Frequency>& frequencies,
+                              const std::vector<Folded>& folded, const ChannelShape& shape) {
   std::vector<double> target;
   if (shape.d >= closed_form_from_d) {
     for (const Folded& f : folded) {
@@ -200,7 +204,8 @@ SapFit fit_sap_weights(SapVariant variant, const ChannelShape& shape) {
   return fit_sap_weights(std::span(&variant, 1), shape).front();
 }
 
-std::vector<SapFit> fit_sap_weights(std::span<const SapVariant> variants, const ChannelShape& shape) {
+std::vector<SapFit> fit_sap_weights(std::span<const SapVariant> variants,
+                                    const ChannelShape& shape) {
   const std::vector<Frequency> frequencies = make_frequencies();
   const std::vector<Folded> folded = fold(frequencies);
   std::vector<Problem> problems;
@@ -211,7 +216,8 @@ std::vector<SapFit> fit_sap_weights(std::span<const SapVariant> variants, const 
   }
   for (uint32_t k = 0; k < sap_node_count; ++k) {
     const double d_px = std::exp2(sap_log2_d_first + double(k) / sap_nodes_per_octave);
-    const std::vector<double> target = target_of(frequencies, folded, scaled(shape, d_px / shape.d));
+    const std::vector<double> target =
+        target_of(frequencies, folded, scaled(shape, d_px / shape.d));
     for (size_t v = 0; v < fits.size(); ++v) {
       fits[v].nodes[k].d_px = d_px;
       solve_node(problems[v], frequencies, target, shape.direct, fits[v].nodes[k]);

@@ -61,7 +61,8 @@ SapFit fit_sap_weights(SapVariant variant);
 // of light that never scatters is part of the centre's weight.
 SapFit fit_sap_weights(SapVariant variant, const ChannelShape& shape);
 // Fits several variants in little more time than one, because they have the same target.
-std::vector<SapFit> fit_sap_weights(std::span<const SapVariant> variants, const ChannelShape& shape);
+std::vector<SapFit> fit_sap_weights(std::span<const SapVariant> variants,
+                                    const ChannelShape& shape);
 
 // Weights for the kernels, as fractions of the remaining light at each level: out = mix(coarser,
 // level l, t_l). centre and tent are level 0's weights; fraction[l] = W_l / sum of W_k over k >= l

@@ -43,7 +43,8 @@ Aliases aliases_of(double fx, double fy) {
     aliases.sinc_x[at] = sinc(fx + m);
     aliases.sinc_y[at] = sinc(fy + m);
     for (int n = -Aliases::maximum; n <= Aliases::maximum; ++n)
-      aliases.k[at][static_cast<size_t>(n + Aliases::maximum)] = 2 * pi * std::hypot(fx + n, fy + m);
+      aliases.k[at][static_cast<size_t>(n + Aliases::maximum)] =
+          2 * pi * std::hypot(fx + n, fy + m);
   }
   return aliases;
 }
@@ -51,8 +52,8 @@ Aliases aliases_of(double fx, double fy) {
 double transfer_of(const ChannelShape& shape, const Aliases& aliases) {
   // Aliases fall as |f|^-1 (profile) times 1/f^2 (box); their sum converges to 1e-4 within 8
   // periods for d >= 1/16 px.
-  const int reach =
-      shape.d > 0 ? std::clamp(static_cast<int>(2 + 2 / shape.d), 2, Aliases::maximum) : Aliases::maximum;
+  const int reach = shape.d > 0 ? std::clamp(static_cast<int>(2 + 2 / shape.d), 2, Aliases::maximum)
+                                : Aliases::maximum;
   const auto first = static_cast<size_t>(Aliases::maximum - reach),
              last = static_cast<size_t>(Aliases::maximum + reach);
   double sum = 0;
@@ -94,7 +95,8 @@ std::vector<FitFrequency> with_targets(const Grid& grid, const ChannelShape& sha
 // Returns the transfer of the two taps at +-offset, read with linear interpolation between texels.
 double tap_transfer(double offset, double f) {
   const double below = std::floor(offset), part = offset - below;
-  return 2 * ((1 - part) * std::cos(2 * pi * f * below) + part * std::cos(2 * pi * f * (below + 1)));
+  return 2 *
+         ((1 - part) * std::cos(2 * pi * f * below) + part * std::cos(2 * pi * f * (below + 1)));
 }
 
 // Per axis: the transfer of every unknown of `a` at a frequency.
@@ -127,8 +129,9 @@ std::vector<Sample> make_samples(const std::vector<FitFrequency>& frequencies,
   return samples;
 }
 
-SeparableFit fit_to(const std::vector<FitFrequency>& frequencies, const std::vector<Sample>& samples,
-                    double d_px, std::span<const double> offsets) {
+SeparableFit fit_to(const std::vector<FitFrequency>& frequencies,
+                    const std::vector<Sample>& samples, double d_px,
+                    std::span<const double> offsets) {
   SeparableFit fit;
   const size_t taps = offsets.size() + 1;
 
@@ -182,8 +185,8 @@ SeparableFit fit_to(const std::vector<FitFrequency>& frequencies, const std::vec
   double error = 0, signal = 0;
   for (size_t i = 0; i < samples.size(); ++i) {
     const FitFrequency& f = frequencies[i];
-    const double model =
-        fit.centre + (1 - fit.centre) * dot(samples[i].x, fit.weights) * dot(samples[i].y, fit.weights);
+    const double model = fit.centre + (1 - fit.centre) * dot(samples[i].x, fit.weights) *
+                                          dot(samples[i].y, fit.weights);
     error += f.weight * (model - f.target) * (model - f.target);
     signal += f.weight * (1 - f.target) * (1 - f.target);
   }
@@ -210,8 +213,8 @@ std::vector<double> separable_offsets(double d_px, uint32_t taps) {
   std::vector<double> offsets(side);
   double last = 0;
   for (size_t i = 0; i < side; ++i) {
-    last =
-        std::max(last + 1, reach * std::pow(static_cast<double>(i + 1) / static_cast<double>(side), power));
+    last = std::max(
+        last + 1, reach * std::pow(static_cast<double>(i + 1) / static_cast<double>(side), power));
     offsets[i] = last;
   }
   return offsets;
@@ -224,11 +227,13 @@ SeparableFit fit_separable(double d_px, std::span<const double> offsets) {
 SeparableFit fit_separable(const ChannelShape& shape, std::span<const double> offsets) {
   if (!(shape.d > 0)) return {};
   const Grid grid = make_grid();
-  return fit_to(with_targets(grid, shape), make_samples(grid.frequencies, offsets), shape.d, offsets);
+  return fit_to(with_targets(grid, shape), make_samples(grid.frequencies, offsets), shape.d,
+                offsets);
 }
 
 std::vector<SeparableRow> make_separable_rows(const std::array<double, 3>& d) {
-  return make_separable_rows(ProfileShape{burley_shape(d[0]), burley_shape(d[1]), burley_shape(d[2])});
+  return make_separable_rows(
+      ProfileShape{burley_shape(d[0]), burley_shape(d[1]), burley_shape(d[2])});
 }
 
 std::vector<SeparableRow> make_separable_rows(const ProfileShape& shape) {
@@ -250,8 +255,9 @@ std::vector<SeparableRow> make_separable_rows(const ProfileShape& shape) {
       const std::vector<double> offsets = separable_offsets(d_px, taps);
       const std::vector<Sample> samples = make_samples(grid.frequencies, offsets);
       for (size_t c = 0; c < 3; ++c) {
-        const SeparableFit fit =
-            channels[c].d > 0 ? fit_to(frequencies[c], samples, channels[c].d, offsets) : SeparableFit{};
+        const SeparableFit fit = channels[c].d > 0
+                                     ? fit_to(frequencies[c], samples, channels[c].d, offsets)
+                                     : SeparableFit{};
         for (size_t i = 0; i <= offsets.size(); ++i)
           out[i][c] = static_cast<float>(fit.weights[i]);
         out[per_node - 1][c] = static_cast<float>(fit.centre);
@@ -264,7 +270,8 @@ std::vector<SeparableRow> make_separable_rows(const ProfileShape& shape) {
   return rows;
 }
 
-SeparableRow separable_row(std::span<const SeparableRow> rows, uint32_t choice, double d_px, uint32_t row) {
+SeparableRow separable_row(std::span<const SeparableRow> rows, uint32_t choice, double d_px,
+                           uint32_t row) {
   size_t first = 0;
   for (uint32_t i = 0; i < choice; ++i)
     first += size_t{separable_nodes} * separable_rows_per_node(separable_taps[i]);
@@ -280,7 +287,8 @@ SeparableRow separable_row(std::span<const SeparableRow> rows, uint32_t choice, 
   for (size_t i = 0; i < 4; ++i)
     result[i] = static_cast<float>(low[i] + part * (high[i] - low[i]));
   // Beyond the last node the kernel keeps its shape: offsets grow with d.
-  result[3] *= static_cast<float>(std::exp2(std::max(0.0, position - last_node) * separable_log2_d_step));
+  result[3] *=
+      static_cast<float>(std::exp2(std::max(0.0, position - last_node) * separable_log2_d_step));
   return result;
 }
 

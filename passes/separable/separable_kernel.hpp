@@ -75,6 +75,7 @@ inline constexpr uint32_t separable_kernel_rows_per_profile = 2 * separable_rows
 
 // Returns row `row` of a node for a widest channel of d_px, interpolated between nodes; `choice`
 // indexes separable_taps. shaders/separable/subsurface_separable.comp mirrors this function.
-SeparableRow separable_row(std::span<const SeparableRow> rows, uint32_t choice, double d_px, uint32_t row);
+SeparableRow separable_row(std::span<const SeparableRow> rows, uint32_t choice, double d_px,
+                           uint32_t row);
 
 } // namespace dermis::subsurface

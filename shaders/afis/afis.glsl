@@ -48,7 +48,8 @@ uvec2 sequence_offset(int sequence, ivec2 pixel, sample_set set) {
 vec2 sequence_point(int sequence, uvec2 offset, sample_set set, int i) {
   if (sequence == SEQUENCE_STRATIFIED) {
     vec2 unit = unit_from_fixed(offset);
-    return vec2((float(i) + unit.x) / float(set.count), float(i) * (golden_angle / two_pi) + unit.y);
+    return vec2((float(i) + unit.x) / float(set.count),
+                float(i) * (golden_angle / two_pi) + unit.y);
   }
   return unit_from_fixed(
       r2_point(offset, (sequence == SEQUENCE_CONTINUED ? set.first : 0u) + uint(i)));
@@ -66,7 +67,8 @@ vec3 scatter(afis_settings settings, sample_set set, scatter_point point, scatte
   vec3 direct = vec3(0.0);
   float beyond = 1.0;
   if (settings.direct != DIRECT_NONE) {
-    float r0 = settings.direct == DIRECT_INSCRIBED ? 0.5 * min(footprint.x, footprint.y) : 0.5 * length(footprint);
+    float r0 = settings.direct == DIRECT_INSCRIBED ? 0.5 * min(footprint.x, footprint.y)
+                                                   : 0.5 * length(footprint);
     vec3 survival = profile_survival(profile, r0);
     beyond = draws_mixture(settings, profile) ? dot(mixture_fractions(profile), survival)
                                               : survival[widest];
@@ -84,7 +86,8 @@ vec3 scatter(afis_settings settings, sample_set set, scatter_point point, scatte
   for (int i = 0; i < set.count; ++i) {
     vec2 unit = sequence_point(settings.sequence, offset, set, i);
     radial_sample radial = draw(settings, profile, unit.x * beyond);
-    vec2 at = vec2(point.pixel) + radial.r * vec2(cos(unit.y * two_pi), sin(unit.y * two_pi)) / footprint;
+    vec2 at =
+        vec2(point.pixel) + radial.r * vec2(cos(unit.y * two_pi), sin(unit.y * two_pi)) / footprint;
     surface_tap tap;
     if (!find_tap(material, depth, slope, point.id, at, tap))
       continue;
@@ -93,7 +96,8 @@ vec3 scatter(afis_settings settings, sample_set set, scatter_point point, scatte
     if (settings.surface == SURFACE_DISTANCE)
       weight /= nearest.a;
     if (settings.mips != MIPS_NONE) {
-      float lod = 0.5 * log2(max(pixels_per_sample * radial.r / radial.density, 1e-20)) + settings.lod_bias;
+      float lod =
+          0.5 * log2(max(pixels_per_sample * radial.r / radial.density, 1e-20)) + settings.lod_bias;
       if (lod > 0.0)
         seen = filtered_light(level_1, level_2, level_3, level_4, level_5, level_6, level_7,
                               level_8, settings.mips, at, lod, nearest.rgb);

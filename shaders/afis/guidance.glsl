@@ -28,7 +28,8 @@ struct moving_variance {
 // Equations 5 and 6 (A1, A2).
 moving_variance add_value(moving_variance moments, float x, float eta) {
   float delta = x - moments.mean;
-  return moving_variance(moments.mean + eta * delta, (1.0 - eta) * (moments.variance + eta * delta * delta));
+  return moving_variance(moments.mean + eta * delta,
+                         (1.0 - eta) * (moments.variance + eta * delta * delta));
 }
 
 struct moving_covariance {
@@ -45,7 +46,9 @@ moving_covariance add_values(moving_covariance moments, float f, float g, float 
 // Algorithm 2 (C10). The bound is not applied if the mean of g is 0.
 float control_weight(moving_covariance moments, float eps_alpha) {
   float weight = (moments.covariance + eps_alpha) / (moments.variance_g + eps_alpha);
-  return moments.mean_g > 0.0 ? clamp(weight, 0.0, (moments.mean_f + moments.mean_g) / moments.mean_g) : weight;
+  return moments.mean_g > 0.0
+             ? clamp(weight, 0.0, (moments.mean_f + moments.mean_g) / moments.mean_g)
+             : weight;
 }
 
 #endif

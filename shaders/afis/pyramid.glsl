@@ -25,7 +25,8 @@ bool spreads_mixed(float mask) { return mask > 2.0; }
 // Returns a filtered read of a level at texel coordinates. Integers are the centres of texels.
 vec4 pyramid_read(texture2D level, vec2 at) {
   vec2 size = vec2(textureSize(level, 0));
-  return textureLod(sampler2D(level, linear_sampler), (at + float(pyramid_border) + 0.5) / size, 0.0);
+  return textureLod(sampler2D(level, linear_sampler), (at + float(pyramid_border) + 0.5) / size,
+                    0.0);
 }
 
 #endif

@@ -31,7 +31,9 @@ void main() {
   vec4 light = texelFetch(light_image, texel, 0);
   float depth = view_depth(texelFetch(depth_image, texel, 0).r);
   if (!copy_only && depth > 0.0) {
-    float scale = has_scatter_scale() ? clean_scatter_scale(texelFetch(scatter_scale_image, texel, 0).r) : 1.0;
+    float scale = has_scatter_scale()
+                      ? clean_scatter_scale(texelFetch(scatter_scale_image, texel, 0).r)
+                      : 1.0;
     scatter_profile profile = find_profile(id, scale);
     if (projected_d(profile.d.w, depth) >= copy_below_d_px) {
       scatter_point point = scatter_point(pixel, id, depth, view_position(vec2(pixel), depth));

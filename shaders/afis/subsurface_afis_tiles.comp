@@ -36,7 +36,8 @@ void main() {
   float depth = view_depth(texelFetch(depth_image, texel, 0).r);
   if (id == 0u || steps == 0u || depth <= 0.0)
     return;
-  float scale = has_scatter_scale() ? clean_scatter_scale(texelFetch(scatter_scale_image, texel, 0).r) : 1.0;
+  float scale =
+      has_scatter_scale() ? clean_scatter_scale(texelFetch(scatter_scale_image, texel, 0).r) : 1.0;
   scatter_profile profile = find_profile(id, scale);
   if (projected_d(profile.d.w, depth) < copy_below_d_px)
     return;

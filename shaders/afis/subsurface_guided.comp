@@ -62,12 +62,14 @@ struct guide_state {
 };
 
 guide_state state_before(ivec2 pixel, float depth, uint id, float rise) {
-  guide_state state = guide_state(sqrt(settings.sigma2_target), first_count, 0.0, moving_covariance(0.0, 0.0, 0.0, 0.0), true);
+  guide_state state = guide_state(sqrt(settings.sigma2_target), first_count, 0.0,
+                                  moving_covariance(0.0, 0.0, 0.0, 0.0), true);
   if (!(history_usable() && depth > 0.0))
     return state;
-  previous_place place = has_velocity() && depth > 0.0
-                             ? place_before(vec2(pixel), depth, texelFetch(velocity_image, texel_of(pixel), 0).rgb)
-                             : place_before(vec2(pixel), depth);
+  previous_place place =
+      has_velocity() && depth > 0.0
+          ? place_before(vec2(pixel), depth, texelFetch(velocity_image, texel_of(pixel), 0).rgb)
+          : place_before(vec2(pixel), depth);
   history_taps taps = find_history(place, id, depth_tolerance(place.depth, rise));
   if (taps.weight == vec4(0.0))
     return state;
@@ -82,7 +84,8 @@ guide_state state_before(ivec2 pixel, float depth, uint id, float rise) {
   // The control image stores the weight, the sd of g and both means, because half floats can hold
   // these but not a covariance.
   float variance_g = control.g * control.g;
-  return guide_state(guide.r, guide.g, guide.b, moving_covariance(control.b, control.a, control.r * variance_g, variance_g),
+  return guide_state(guide.r, guide.g, guide.b,
+                     moving_covariance(control.b, control.a, control.r * variance_g, variance_g),
                      false);
 }
 
@@ -113,7 +116,8 @@ struct guided_pixel {
 // Samples twice with half of the samples each and returns the squared half difference, times the
 // number of samples.
 float sample_halves(inout guided_pixel at, int count, uint first) {
-  scatter_point point = scatter_point(at.pixel, at.id, at.depth, view_position(vec2(at.pixel), at.depth));
+  scatter_point point =
+      scatter_point(at.pixel, at.id, at.depth, view_position(vec2(at.pixel), at.depth));
   vec4 own = vec4(at.light, at.alpha);
   vec3 a = scatter_light(point, at.profile, own, sample_set(0u, count / 2, count, first));
   vec3 b = scatter_light(point, at.profile, own, sample_set(1u, count / 2, count, first));
@@ -124,7 +128,8 @@ float sample_halves(inout guided_pixel at, int count, uint first) {
 
 // Samples the pixel and updates the moments of the observed value (Algorithms 1 to 3).
 void sample_and_watch(inout guided_pixel at, inout guide_state state, int count, uint first) {
-  scatter_point point = scatter_point(at.pixel, at.id, at.depth, view_position(vec2(at.pixel), at.depth));
+  scatter_point point =
+      scatter_point(at.pixel, at.id, at.depth, view_position(vec2(at.pixel), at.depth));
   float g = exposed(at.light);
   vec4 own = vec4(at.light, at.alpha);
   at.light = scatter_light(point, at.profile, own, sample_set(0u, count, count, first));
@@ -165,7 +170,9 @@ void main() {
     at.alpha = light.a;
     at.depth = view_depth(texelFetch(depth_image, texel, 0).r);
     if (id != 0u && !copy_only && at.depth > 0.0) {
-      float scale = has_scatter_scale() ? clean_scatter_scale(texelFetch(scatter_scale_image, texel, 0).r) : 1.0;
+      float scale = has_scatter_scale()
+                        ? clean_scatter_scale(texelFetch(scatter_scale_image, texel, 0).r)
+                        : 1.0;
       at.profile = find_profile(id, scale);
       if (projected_d(at.profile.d.w, at.depth) >= copy_below_d_px)
         at.id = id;
@@ -174,7 +181,8 @@ void main() {
   float spread = 0.0;
   if (at.id != 0u) {
     vec2 footprint = pixel_footprint(at.depth);
-    state = state_before(at.pixel, at.depth, at.id, length(texelFetch(slope_image, texel, 0).rg * footprint));
+    state = state_before(at.pixel, at.depth, at.id,
+                         length(texelFetch(slope_image, texel, 0).rg * footprint));
     float required = required_samples(state.sd * state.sd, state.mean_count, guidance());
     count = clamped_samples(required, guidance());
     uint first = frame.frame_index * frame_stride;
@@ -189,24 +197,29 @@ void main() {
     spreads[gl_LocalInvocationIndex] = vec2(spread, float(at.id));
     barrier();
     if (at.id != 0u && !state.lost)
-      state.sd = sqrt(mix(state.sd * state.sd, pooled_spread(float(at.id)) / float(count), settings.eta));
+      state.sd =
+          sqrt(mix(state.sd * state.sd, pooled_spread(float(at.id)) / float(count), settings.eta));
   }
   if (!listed)
     return;
   if (at.id != 0u)
-    state.mean_count = state.lost ? float(count) : mix(state.mean_count, float(count), settings.eta);
+    state.mean_count =
+        state.lost ? float(count) : mix(state.mean_count, float(count), settings.eta);
   imageStore(scattered_image, texel, vec4(round_to_half(at.light), 1.0));
   float depth = at.depth / mm_per_metre;
-  imageStore(guide_out_image, texel,
-             round_to_half(vec4(state.sd, state.mean_count, splits() ? depth : state.mean, float(id))));
+  imageStore(
+      guide_out_image, texel,
+      round_to_half(vec4(state.sd, state.mean_count, splits() ? depth : state.mean, float(id))));
   if (has_place_out())
     imageStore(place_out_image, texel, vec4(round_to_half(depth), 0.0, 0.0, 0.0));
   if (has_control_out()) {
     float variance_g = state.moments.variance_g;
-    vec4 control = vec4(variance_g > 0.0 ? state.moments.covariance / variance_g : 1.0, sqrt(variance_g),
-                        state.moments.mean_f, state.moments.mean_g);
-    imageStore(control_out_image, texel, settings.full_precision != 0 ? control : round_to_half(control));
+    vec4 control = vec4(variance_g > 0.0 ? state.moments.covariance / variance_g : 1.0,
+                        sqrt(variance_g), state.moments.mean_f, state.moments.mean_g);
+    imageStore(control_out_image, texel,
+               settings.full_precision != 0 ? control : round_to_half(control));
   }
   if (has_sampling())
-    imageStore(sampling_image, texel, vec4(float(count), state.mean_count, state.sd, state.lost ? 1.0 : 0.0));
+    imageStore(sampling_image, texel,
+               vec4(float(count), state.mean_count, state.sd, state.lost ? 1.0 : 0.0));
 }

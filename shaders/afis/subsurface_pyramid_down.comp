@@ -19,9 +19,10 @@ void main() {
   if (settings.halving == HALVING_BOX)
     mean = pyramid_read(fine_image, centre);
   else
-    mean = 0.25 *
-           (pyramid_read(fine_image, centre + vec2(-0.75, -0.75)) + pyramid_read(fine_image, centre + vec2(0.75, -0.75)) +
-            pyramid_read(fine_image, centre + vec2(-0.75, 0.75)) + pyramid_read(fine_image, centre + vec2(0.75, 0.75)));
+    mean = 0.25 * (pyramid_read(fine_image, centre + vec2(-0.75, -0.75)) +
+                   pyramid_read(fine_image, centre + vec2(0.75, -0.75)) +
+                   pyramid_read(fine_image, centre + vec2(-0.75, 0.75)) +
+                   pyramid_read(fine_image, centre + vec2(0.75, 0.75)));
   if (spreads_mixed(mean.a))
     mean.a = mixed_mask;
   imageStore(coarse_image, address, round_to_half(mean));

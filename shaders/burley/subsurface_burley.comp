@@ -23,7 +23,8 @@ vec3 scatter(scatter_point point, scatter_profile profile, vec3 own) {
 
   vec3 sum = vec3(0.0), total = vec3(0.0);
   for (int i = 0; i < settings.samples; ++i, direction = turn * direction) {
-    radial_sample radial = profile_sample(profile, 1.0 - (float(i) + random.x) / float(settings.samples));
+    radial_sample radial =
+        profile_sample(profile, 1.0 - (float(i) + random.x) / float(settings.samples));
     vec2 at = vec2(point.pixel) + direction * radial.r * pixels_per_mm;
     surface_tap tap;
     if (!find_tap(material_image, depth_image, slope_image, point.id, at, tap))
@@ -33,7 +34,8 @@ vec3 scatter(scatter_point point, scatter_profile profile, vec3 own) {
     sum += weight * light.rgb;
     total += weight;
   }
-  bvec3 scattered = bvec3(uvec3(greaterThan(profile.d.rgb, vec3(0.0))) * uvec3(greaterThan(total, vec3(min_weight))));
+  bvec3 scattered = bvec3(uvec3(greaterThan(profile.d.rgb, vec3(0.0))) *
+                          uvec3(greaterThan(total, vec3(min_weight))));
   vec3 mean = mix(own, sum / max(total, vec3(min_weight)), scattered);
   return mix(mean, own, profile_direct(point.id));
 }
@@ -51,10 +53,13 @@ void main() {
   vec3 light = texelFetch(light_image, texel, 0).rgb;
   float depth = view_depth(texelFetch(depth_image, texel, 0).r);
   if (!copy_only && depth > 0.0) {
-    float scale = has_scatter_scale() ? clean_scatter_scale(texelFetch(scatter_scale_image, texel, 0).r) : 1.0;
+    float scale = has_scatter_scale()
+                      ? clean_scatter_scale(texelFetch(scatter_scale_image, texel, 0).r)
+                      : 1.0;
     scatter_profile profile = find_profile(id, scale);
     if (projected_d(profile.d.w, depth) >= copy_below_d_px)
-      light = scatter(scatter_point(pixel, id, depth, view_position(vec2(pixel), depth)), profile, light);
+      light = scatter(scatter_point(pixel, id, depth, view_position(vec2(pixel), depth)), profile,
+                      light);
   }
   imageStore(scattered_image, texel, vec4(round_to_half(light), 1.0));
 }

@@ -10,7 +10,8 @@
 // bilinear weights would blur more in each frame.
 vec4 catmull_rom(float part) {
   float t = part, t2 = t * t, t3 = t2 * t;
-  return 0.5 * vec4(-t3 + 2.0 * t2 - t, 3.0 * t3 - 5.0 * t2 + 2.0, -3.0 * t3 + 4.0 * t2 + t, t3 - t2);
+  return 0.5 *
+         vec4(-t3 + 2.0 * t2 - t, 3.0 * t3 - 5.0 * t2 + 2.0, -3.0 * t3 + 4.0 * t2 + t, t3 - t2);
 }
 
 // A value accumulated over frames, and the number of these frames.
@@ -21,7 +22,8 @@ struct accumulated_light {
 
 // Variance clipping (Salvi 2016): moves history along the line to the mean of the neighbourhood
 // until history is within `reach` standard deviations. The frame count shrinks by the same factor.
-accumulated_light clip_to_neighbours(accumulated_light history, vec3 mean, vec3 deviation, float reach) {
+accumulated_light clip_to_neighbours(accumulated_light history, vec3 mean, vec3 deviation,
+                                     float reach) {
   vec3 way = abs(history.light - mean), box_half = reach * deviation;
   float keep = 1.0;
   for (int c = 0; c < 3; ++c)
@@ -45,7 +47,9 @@ accumulated_light add_frame(accumulated_light history, vec3 light, float minimum
 vec3 remainder_of(vec3 light, vec3 near, vec3 local_mean) {
   return (light - near) / max(local_mean, vec3(accumulate_min_mean));
 }
-bool can_be_kept(vec3 remainder) { return all(lessThanEqual(abs(remainder), vec3(accumulate_largest_remainder))); }
+bool can_be_kept(vec3 remainder) {
+  return all(lessThanEqual(abs(remainder), vec3(accumulate_largest_remainder)));
+}
 
 // Returns the light that a remainder represents under the light of this frame.
 vec3 light_of_remainder(vec3 remainder, vec3 near, vec3 local_mean) {

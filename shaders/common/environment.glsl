@@ -57,23 +57,28 @@ bool is_perspective() { return (frame.flags & 1u) != 0u; }
 // that is uniform over the dispatch.
 float view_depth(float value) {
   float distance = value * frame.depth_unit;
-  float decoded =
-      (frame.depth_decode.x * value + frame.depth_decode.y) / (frame.depth_decode.z * value + frame.depth_decode.w);
+  float decoded = (frame.depth_decode.x * value + frame.depth_decode.y) /
+                  (frame.depth_decode.z * value + frame.depth_decode.w);
   float depth = (frame.flags & 2u) != 0u ? distance : decoded;
   return depth > 0.0 && depth < largest_depth_mm ? depth : 0.0; // NaN and Inf compare false
 }
 
 // Returns the size of a pixel across the view at a depth, in mm in x and y.
-vec2 pixel_footprint(float depth) { return abs(frame.ray_scale) * (is_perspective() ? depth : 1.0); }
+vec2 pixel_footprint(float depth) {
+  return abs(frame.ray_scale) * (is_perspective() ? depth : 1.0);
+}
 
 // Returns the view position in mm: x right, y up, the camera looks along -z. Integers are pixel
 // centres, counted from the rectangle's corner.
 vec3 view_position(vec2 pixel, float depth) {
-  return vec3((frame.ray_scale * pixel + frame.ray_offset) * (is_perspective() ? depth : 1.0), -depth);
+  return vec3((frame.ray_scale * pixel + frame.ray_offset) * (is_perspective() ? depth : 1.0),
+              -depth);
 }
 
 // Returns the normal in view space (as view_position) for a texel of the host's normal image.
-vec3 view_normal(vec3 stored) { return (frame.flags & 16u) != 0u ? vec3(stored.xy, -stored.z) : stored; }
+vec3 view_normal(vec3 stored) {
+  return (frame.flags & 16u) != 0u ? vec3(stored.xy, -stored.z) : stored;
+}
 
 bool inside_rect(ivec2 pixel) {
   return all(greaterThanEqual(pixel, ivec2(0))) && all(lessThan(pixel, frame.rect.zw));

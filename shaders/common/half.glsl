@@ -18,7 +18,9 @@ float round_to_half(float x) {
   precise float rounded = sum - shift;
   return rounded;
 }
-vec3 round_to_half(vec3 v) { return vec3(round_to_half(v.x), round_to_half(v.y), round_to_half(v.z)); }
+vec3 round_to_half(vec3 v) {
+  return vec3(round_to_half(v.x), round_to_half(v.y), round_to_half(v.z));
+}
 vec4 round_to_half(vec4 v) { return vec4(round_to_half(v.xyz), round_to_half(v.w)); }
 
 #endif

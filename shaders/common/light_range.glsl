@@ -7,8 +7,8 @@
 #include "constants.glsl"
 
 uvec4 pack_range(vec3 low, vec3 high, float d_px) {
-  return uvec4(packHalf2x16(vec2(low.r, high.r)), packHalf2x16(vec2(low.g, high.g)), packHalf2x16(vec2(low.b, high.b)),
-               floatBitsToUint(d_px));
+  return uvec4(packHalf2x16(vec2(low.r, high.r)), packHalf2x16(vec2(low.g, high.g)),
+               packHalf2x16(vec2(low.b, high.b)), floatBitsToUint(d_px));
 }
 
 // Returns a range that is not similar to any other light.

@@ -61,7 +61,8 @@ void store_near_texel(int i, uint id, float depth, vec3 light, vec3 scattered) {
 void finish_near_light() {
   barrier();
   for (int i = int(gl_LocalInvocationIndex); i < near_texels; i += 64) {
-    ivec2 from_edge = min(ivec2(i % near_side, i / near_side), near_side - 1 - ivec2(i % near_side, i / near_side));
+    ivec2 from_edge = min(ivec2(i % near_side, i / near_side),
+                          near_side - 1 - ivec2(i % near_side, i / near_side));
     if (min(from_edge.x, from_edge.y) > 0 && near_depth[i] > 0.0) {
       vec2 slope = near_rise(i) / max(pixel_footprint(near_depth[i]), vec2(1e-20));
       near_light[i].a = min(sqrt(1.0 + dot(slope, slope)), 1.0 / min_patch_cosine);
@@ -89,19 +90,23 @@ near_field find_near_field(ivec2 local, scatter_profile profile, vec3 direct) {
   float depth = near_depth[own];
   vec2 footprint = pixel_footprint(depth);
   float cross_section = footprint.x * footprint.y;
-  vec3 total = 1.0 - profile_survival(profile, sqrt(cross_section * near_light[own].a * inverse_pi));
+  vec3 total =
+      1.0 - profile_survival(profile, sqrt(cross_section * near_light[own].a * inverse_pi));
   vec3 sum = total * near_light[own].rgb;
   for (int y = -near_reach; y <= near_reach; ++y)
     for (int x = -near_reach; x <= near_reach; ++x) {
       int other = near_index(local + ivec2(x, y));
-      if ((x == 0 && y == 0) || near_profile[other] != near_profile[own] || !(near_depth[other] > 0.0))
+      if ((x == 0 && y == 0) || near_profile[other] != near_profile[own] ||
+          !(near_depth[other] > 0.0))
         continue;
       float r = length(vec3(vec2(x, y) * footprint, near_depth[other] - depth));
-      vec3 weight = profile_falloff(profile, r) * (0.5 * inverse_pi * cross_section * near_light[other].a);
+      vec3 weight =
+          profile_falloff(profile, r) * (0.5 * inverse_pi * cross_section * near_light[other].a);
       sum += weight * near_light[other].rgb;
       total += weight;
     }
-  bvec3 scatters = bvec3(uvec3(greaterThan(profile.d.rgb, vec3(0.0))) * uvec3(greaterThan(total, vec3(1e-30))));
+  bvec3 scatters =
+      bvec3(uvec3(greaterThan(profile.d.rgb, vec3(0.0))) * uvec3(greaterThan(total, vec3(1e-30))));
   vec3 light = mix(near_light[own].rgb, sum / max(total, vec3(1e-30)), scatters);
   vec4 around = vec4(0.0);
   for (int k = -near_mean_reach; k <= near_mean_reach; ++k)

@@ -32,8 +32,9 @@ surface_patch build_patch(ivec2 pixel, float depth, patch_neighbours around) {
   vec3 position = view_position(vec2(pixel), depth);
   vec3 ray = is_perspective() ? position / depth : vec3(0.0, 0.0, -1.0);
   vec3 viewer = -normalize(ray);
-  vec3 normal = cross(patch_tangent(pixel, ivec2(1, 0), around.before.x, around.after.x, depth, position),
-                      patch_tangent(pixel, ivec2(0, 1), around.before.y, around.after.y, depth, position));
+  vec3 normal =
+      cross(patch_tangent(pixel, ivec2(1, 0), around.before.x, around.after.x, depth, position),
+            patch_tangent(pixel, ivec2(0, 1), around.before.y, around.after.y, depth, position));
   float size = length(normal);
   normal = size > 0.0 ? normal / size : viewer;
   if (dot(normal, viewer) < 0.0)
@@ -44,7 +45,8 @@ surface_patch build_patch(ivec2 pixel, float depth, patch_neighbours around) {
     vec3 across = normal - viewer * cosine;
     float across_size = length(across);
     normal = across_size > 0.0
-                 ? across * (sqrt(1.0 - min_patch_cosine * min_patch_cosine) / across_size) + viewer * min_patch_cosine
+                 ? across * (sqrt(1.0 - min_patch_cosine * min_patch_cosine) / across_size) +
+                       viewer * min_patch_cosine
                  : viewer;
     cosine = max(dot(normal, viewer), min_patch_cosine);
   }
@@ -53,7 +55,8 @@ surface_patch build_patch(ivec2 pixel, float depth, patch_neighbours around) {
   // offset, -1). For an orthographic ray, x and y do not depend on depth, which gives the same
   // quotient.
   vec2 signs = sign(frame.ray_scale);
-  result.slope = is_perspective() ? -normal.xy * signs / dot(normal, ray) : normal.xy * signs / normal.z;
+  result.slope =
+      is_perspective() ? -normal.xy * signs / dot(normal, ray) : normal.xy * signs / normal.z;
   result.area = 1.0 / cosine;
   return result;
 }

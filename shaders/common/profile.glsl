@@ -43,7 +43,8 @@ vec3 profile_falloff(scatter_profile profile, float r) {
   float part;
   radial_place(radial_position(profile.d.w, r), low, part);
   low += int(profile.row);
-  return exp2(mix(radial_rows[low].rgb, radial_rows[low + 1].rgb, part)) / (profile.scale * profile.scale);
+  return exp2(mix(radial_rows[low].rgb, radial_rows[low + 1].rgb, part)) /
+         (profile.scale * profile.scale);
 }
 
 // Returns the fraction of the scattered energy beyond r.
@@ -76,7 +77,8 @@ radial_sample profile_sample_row(scatter_profile profile, float u) {
   radial_place(root * radial_inverse_nodes_per_unit, low, part);
   low += int(profile.row);
   float near = radial_rows[low].a * profile.scale, far = radial_rows[low + 1].a * profile.scale;
-  return radial_sample(mix(near, far, part), 2.0 * root * u * log(2.0) / ((far - near) * radial_inverse_nodes_per_unit));
+  return radial_sample(mix(near, far, part),
+                       2.0 * root * u * log(2.0) / ((far - near) * radial_inverse_nodes_per_unit));
 }
 
 radial_sample profile_sample(scatter_profile profile, float u) {

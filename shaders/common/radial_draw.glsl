@@ -15,7 +15,8 @@ radial_sample radial_draw(scatter_profile profile, float survival, int inverse, 
     return radial;
   }
   bool exact = inverse == INVERSE_EXACT;
-  float r = exact ? burley_inverse_survival(survival, profile.d.w) : burley_approximate_survival(survival, profile.d.w);
+  float r = exact ? burley_inverse_survival(survival, profile.d.w)
+                  : burley_approximate_survival(survival, profile.d.w);
   float density = burley_pdf(r, profile.d.w);
   if (!exact && weighting == WEIGHTING_SAMPLER)
     density /= burley_approximate_weight(survival);

@@ -25,7 +25,8 @@ previous_place place_before(vec2 pixel, float depth) {
   vec2 place = (before.xy / k - frame.previous_ray_offset) / frame.previous_ray_scale;
   // A static camera must not blur: steps below 0.001 pixel are rounding errors.
   vec2 whole = round(place);
-  return previous_place(mix(place, whole, lessThan(abs(place - whole), vec2(reproject_snap_px))), -before.z);
+  return previous_place(mix(place, whole, lessThan(abs(place - whole), vec2(reproject_snap_px))),
+                        -before.z);
 }
 
 // Returns the previous place of a point with a velocity. xy: position now - before in pixels of
@@ -35,10 +36,13 @@ previous_place place_before(vec2 pixel, float depth, vec3 velocity) {
   previous_place still = place_before(pixel, depth);
   if (!all(lessThan(abs(velocity), vec3(reproject_largest_velocity)))) // NaN compares false
     return previous_place(vec2(0.0), 0.0);
-  vec2 steady = (pixel - frame.jitter - velocity.xy + 0.5) * vec2(frame.previous_rect.zw) / vec2(frame.rect.zw) - 0.5;
+  vec2 steady = (pixel - frame.jitter - velocity.xy + 0.5) * vec2(frame.previous_rect.zw) /
+                    vec2(frame.rect.zw) -
+                0.5;
   vec2 place = steady + frame.previous_jitter, whole = round(place);
   return previous_place(mix(place, whole, lessThan(abs(place - whole), vec2(reproject_snap_px))),
-                        still.depth > 0.0 ? max(still.depth - velocity.z * frame.depth_unit, 0.0) : 0.0);
+                        still.depth > 0.0 ? max(still.depth - velocity.z * frame.depth_unit, 0.0)
+                                          : 0.0);
 }
 
 bool inside_previous(ivec2 pixel) {

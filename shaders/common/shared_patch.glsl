@@ -36,9 +36,10 @@ float depth_of_profile(ivec2 offset, uint id) {
 // Builds the patch of the invocation's own pixel; call share_patches first.
 surface_patch build_patch(ivec2 pixel) {
   uint id = own_profile();
-  return build_patch(pixel, own_depth(),
-                     patch_neighbours(vec2(depth_of_profile(ivec2(-1, 0), id), depth_of_profile(ivec2(0, -1), id)),
-                                      vec2(depth_of_profile(ivec2(1, 0), id), depth_of_profile(ivec2(0, 1), id))));
+  return build_patch(
+      pixel, own_depth(),
+      patch_neighbours(vec2(depth_of_profile(ivec2(-1, 0), id), depth_of_profile(ivec2(0, -1), id)),
+                       vec2(depth_of_profile(ivec2(1, 0), id), depth_of_profile(ivec2(0, 1), id))));
 }
 
 #endif

@@ -63,9 +63,10 @@ accumulated_light history_of(ivec2 pixel, float depth, uint id, float rise) {
   accumulated_light found = accumulated_light(vec3(0.0), 0.0);
   if (!(history_usable() && depth > 0.0))
     return found;
-  previous_place place = has_velocity() && depth > 0.0
-                             ? place_before(vec2(pixel), depth, texelFetch(velocity_image, texel_of(pixel), 0).rgb)
-                             : place_before(vec2(pixel), depth);
+  previous_place place =
+      has_velocity() && depth > 0.0
+          ? place_before(vec2(pixel), depth, texelFetch(velocity_image, texel_of(pixel), 0).rgb)
+          : place_before(vec2(pixel), depth);
   float tolerance = depth_tolerance(place.depth, rise);
   history_taps taps = find_history(place, id, tolerance);
   if (taps.weight == vec4(0.0) || sharp_history(place, id, tolerance, found))
@@ -109,7 +110,8 @@ near_field share_remainder(ivec2 first, ivec2 local) {
   if (near_profile[index] == 0u || !(near_depth[index] > 0.0))
     return near_field(vec3(0.0), vec3(0.0));
   ivec2 texel = texel_of(first + local);
-  float scale = has_scatter_scale() ? clean_scatter_scale(texelFetch(scatter_scale_image, texel, 0).r) : 1.0;
+  float scale =
+      has_scatter_scale() ? clean_scatter_scale(texelFetch(scatter_scale_image, texel, 0).r) : 1.0;
   uint id = near_profile[index];
   near_field near = find_near_field(local, find_profile(id, scale), profile_direct(id));
   shared_remainders[remainder_index(local)] =
@@ -119,7 +121,10 @@ near_field share_remainder(ivec2 first, ivec2 local) {
 
 // Returns the i-th of the 36 pixels around the group.
 ivec2 ring_pixel(int i) {
-  return i < 10 ? ivec2(i - 1, -1) : i < 20 ? ivec2(i - 11, 8) : i < 28 ? ivec2(-1, i - 20) : ivec2(8, i - 28);
+  return i < 10   ? ivec2(i - 1, -1)
+         : i < 20 ? ivec2(i - 11, 8)
+         : i < 28 ? ivec2(-1, i - 20)
+                  : ivec2(8, i - 28);
 }
 
 // Statistics over the 3x3 pixels that have the profile.
@@ -156,7 +161,8 @@ struct shown_and_kept {
   vec3 shown;
   accumulated_light kept;
 };
-shown_and_kept with_history(accumulated_light history, vec3 light, near_field near, vec3 now, neighbourhood around) {
+shown_and_kept with_history(accumulated_light history, vec3 light, near_field near, vec3 now,
+                            neighbourhood around) {
   bvec3 lit = greaterThan(near.local_mean, vec3(accumulate_min_mean));
   if (!any(lit)) // keeps history until light comes back
     return shown_and_kept(light, history);
@@ -165,12 +171,15 @@ shown_and_kept with_history(accumulated_light history, vec3 light, near_field ne
     return shown_and_kept(light, accumulated_light(vec3(0.0), 0.0));
   if (!(history.count > 0.0))
     return shown_and_kept(light, accumulated_light(now, 1.0));
-  history.light = clamp(history.light, vec3(-accumulate_largest_remainder), vec3(accumulate_largest_remainder));
+  history.light =
+      clamp(history.light, vec3(-accumulate_largest_remainder), vec3(accumulate_largest_remainder));
   if (settings.clip > 0.0)
-    history = clip_to_neighbours(history, mix(history.light, around.mean, lit), around.deviation, settings.clip);
+    history = clip_to_neighbours(history, mix(history.light, around.mean, lit), around.deviation,
+                                 settings.clip);
   accumulated_light sum = add_frame(history, now, settings.weight);
   vec3 shown = mix(light, light_of_remainder(sum.light, near.light, near.local_mean), lit);
-  return shown_and_kept(settings.clip > 0.0 ? clamp(shown, around.minimum, around.largest) : shown, sum);
+  return shown_and_kept(settings.clip > 0.0 ? clamp(shown, around.minimum, around.largest) : shown,
+                        sum);
 }
 
 void main() {
@@ -197,5 +206,6 @@ void main() {
                        shared_remainders[remainder_index(local)], look_around(first, local, light));
   imageStore(accumulated_image, texel, vec4(round_to_half(now.shown), 1.0));
   imageStore(past_out_image, texel, round_to_half(vec4(now.kept.light, now.kept.count)));
-  imageStore(place_out_image, texel, round_to_half(vec4(depth / mm_per_metre, scatters ? float(id) : 0.0, 0.0, 0.0)));
+  imageStore(place_out_image, texel,
+             round_to_half(vec4(depth / mm_per_metre, scatters ? float(id) : 0.0, 0.0, 0.0)));
 }

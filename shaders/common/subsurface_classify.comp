@@ -39,7 +39,8 @@ ivec2 run_pixel(ivec2 first, int i) { return first + ivec2(i & 7, i >> 3); }
 // Returns a bit for each pixel of the run that is inside the bounds of subsurface.
 uint run_inside(ivec2 first) {
   ivec2 from = clamp(frame.bounds.xy - first, ivec2(0), ivec2(8, 2));
-  ivec2 to = clamp(min(frame.bounds.xy + frame.bounds.zw, frame.rect.zw) - first, ivec2(0), ivec2(8, 2));
+  ivec2 to =
+      clamp(min(frame.bounds.xy + frame.bounds.zw, frame.rect.zw) - first, ivec2(0), ivec2(8, 2));
   uint row = ((1u << uint(to.x)) - 1u) & ~((1u << uint(from.x)) - 1u);
   return (from.y == 0 && to.y > 0 ? row : 0u) | (from.y < 2 && to.y == 2 ? row << 8 : 0u);
 }
@@ -60,7 +61,8 @@ uint look_at(ivec2 pixel) {
   // Reads the id again, because indexing the array of ids at run time would cost every pixel.
   uint id = texelFetch(material_image, texel, 0).r;
   float depth = view_depth(texelFetch(depth_image, texel, 0).r);
-  float scale = has_scatter_scale() ? clean_scatter_scale(texelFetch(scatter_scale_image, texel, 0).r) : 1.0;
+  float scale =
+      has_scatter_scale() ? clean_scatter_scale(texelFetch(scatter_scale_image, texel, 0).r) : 1.0;
   float d_px = depth > 0.0 ? projected_d(profiles[min(id, 255u)].d_mm.w * scale, depth) : 0.0;
   return d_px >= copy_below_d_px ? floatBitsToUint(d_px) : below_a_pixel;
 }
@@ -71,7 +73,8 @@ float find_nearest(ivec2 first, uint mask) {
   float nearest = largest_depth_mm;
   ivec2 last = texel_of(frame.rect.zw - 1);
   [[unroll]] for (int i = 0; i < run; ++i) {
-    float depth = view_depth(texelFetch(depth_image, min(texel_of(run_pixel(first, i)), last), 0).r);
+    float depth =
+        view_depth(texelFetch(depth_image, min(texel_of(run_pixel(first, i)), last), 0).r);
     nearest = depth > 0.0 && (mask >> uint(i) & 1u) != 0u ? min(nearest, depth) : nearest;
   }
   return nearest < largest_depth_mm ? nearest : 0.0;
@@ -158,9 +161,10 @@ void main() {
     // as uniform.
     if (ranged)
       light_range_data[index] =
-          own == below_a_pixel ? any_light()
-                               : pack_range(uintBitsToFloat(low_of[lane]), uintBitsToFloat(high_of[lane]),
-                                            own == 0u ? 0.0 : uintBitsToFloat(own));
+          own == below_a_pixel
+              ? any_light()
+              : pack_range(uintBitsToFloat(low_of[lane]), uintBitsToFloat(high_of[lane]),
+                           own == 0u ? 0.0 : uintBitsToFloat(own));
   }
   if (lane != 0u)
     return;

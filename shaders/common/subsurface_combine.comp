@@ -25,7 +25,8 @@ void main() {
   if (has_albedo() && (settings.result == RESULT_COLOR || settings.texturing != TEXTURING_POST))
     albedo = clean_albedo(texelFetch(albedo_image, texel, 0).rgb);
   vec3 color = vec3(0.0);
-  bool copies = has_unscattered() && (copy_only && settings.copied == COPIED_UNSCATTERED || !has_scattered());
+  bool copies =
+      has_unscattered() && (copy_only && settings.copied == COPIED_UNSCATTERED || !has_scattered());
   // Rounds as scattered light is rounded.
   if (copies) {
     color = clean_light(texelFetch(unscattered_image, texel, 0).rgb);

@@ -13,7 +13,8 @@ void main() {
   if (!inside_rect(pixel))
     return;
   ivec2 texel = texel_of(pixel);
-  uint tile_class = class_of_tile(classes_data[gl_WorkGroupID.y * uint(frame.tiles.x) + gl_WorkGroupID.x]);
+  uint tile_class =
+      class_of_tile(classes_data[gl_WorkGroupID.y * uint(frame.tiles.x) + gl_WorkGroupID.x]);
   uint id = texelFetch(material_image, texel, 0).r;
   imageStore(tile_class_image, texel, vec4(float(tile_class), float(id), 0.0, 1.0));
 }

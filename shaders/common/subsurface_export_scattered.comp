@@ -24,12 +24,15 @@ void main() {
     float depth = view_depth(texelFetch(depth_image, texel, 0).r);
     bool scatters = has_scattered() && depth > 0.0 && projected_d(d.w, depth) >= copy_below_d_px;
     if (has_classes())
-      scatters = scatters && class_of_tile(classes_data[(pixel.y >> 3) * frame.tiles.x + (pixel.x >> 3)]) == class_scatter;
+      scatters = scatters &&
+                 class_of_tile(classes_data[(pixel.y >> 3) * frame.tiles.x + (pixel.x >> 3)]) ==
+                     class_scatter;
     vec3 through = texture_light(albedo_image, has_albedo(), settings.texturing, texel, light);
     vec3 scattered = texelFetch(scattered_image, texel, 0).rgb;
-    light = scatters ? vec3(d.r > 0.0 ? scattered.r : through.r, d.g > 0.0 ? scattered.g : through.g,
-                            d.b > 0.0 ? scattered.b : through.b)
-                     : through;
+    light = scatters
+                ? vec3(d.r > 0.0 ? scattered.r : through.r, d.g > 0.0 ? scattered.g : through.g,
+                       d.b > 0.0 ? scattered.b : through.b)
+                : through;
   }
   imageStore(light_image, texel, vec4(light, 1.0));
 }

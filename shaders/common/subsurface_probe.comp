@@ -38,15 +38,17 @@ shared vec3 sums[lanes], weights[lanes];
 
 // Returns the depth of a pixel of the profile in mm, else 0.
 float depth_of(ivec2 pixel, uint id) {
-  if (!inside_rect(pixel) || !inside_bounds(pixel) || texelFetch(material_image, texel_of(pixel), 0).r != id)
+  if (!inside_rect(pixel) || !inside_bounds(pixel) ||
+      texelFetch(material_image, texel_of(pixel), 0).r != id)
     return 0.0;
   return view_depth(texelFetch(depth_image, texel_of(pixel), 0).r);
 }
 
 surface_patch patch_of(ivec2 pixel, uint id, float depth) {
-  return build_patch(pixel, depth,
-                     patch_neighbours(vec2(depth_of(pixel - ivec2(1, 0), id), depth_of(pixel - ivec2(0, 1), id)),
-                                      vec2(depth_of(pixel + ivec2(1, 0), id), depth_of(pixel + ivec2(0, 1), id))));
+  return build_patch(
+      pixel, depth,
+      patch_neighbours(vec2(depth_of(pixel - ivec2(1, 0), id), depth_of(pixel - ivec2(0, 1), id)),
+                       vec2(depth_of(pixel + ivec2(1, 0), id), depth_of(pixel + ivec2(0, 1), id))));
 }
 
 vec3 own_light(ivec2 texel) {
@@ -62,15 +64,18 @@ vec3 patch_point(ivec2 pixel, float depth, vec2 slope, vec2 offset) {
 
 // Returns K_c of a patch `q` at its distance from `p`: 2 pi times the profile, averaged over points
 // of the patch.
-vec3 kernel(scatter_profile profile, vec3 p, ivec2 pixel, ivec2 q, float depth, surface_patch surface) {
+vec3 kernel(scatter_profile profile, vec3 p, ivec2 pixel, ivec2 q, float depth,
+            surface_patch surface) {
   ivec2 apart = abs(q - pixel);
   if (max(apart.x, apart.y) > near_px)
-    return profile_falloff(profile, max(length(patch_point(q, depth, surface.slope, vec2(0.0)) - p), 1e-6));
+    return profile_falloff(profile,
+                           max(length(patch_point(q, depth, surface.slope, vec2(0.0)) - p), 1e-6));
   vec3 sum = vec3(0.0);
   float step = 1.0 / float(near_points);
   for (int i = 0; i < near_points * near_points; ++i) {
     vec2 offset = (vec2(i % near_points, i / near_points) + 0.5) * step - 0.5;
-    sum += profile_falloff(profile, max(length(patch_point(q, depth, surface.slope, offset) - p), 1e-6));
+    sum += profile_falloff(profile,
+                           max(length(patch_point(q, depth, surface.slope, offset) - p), 1e-6));
   }
   sum *= step * step;
   if (q == pixel) { // adds the part of the pole that the sum misses
@@ -89,10 +94,13 @@ float squared_error(ivec2 pixel, uint lane, bool copied) {
   bool inside = inside_rect(pixel) && inside_bounds(pixel);
   uint id = inside ? texelFetch(material_image, texel, 0).r : 0u;
   float depth = id != 0u ? depth_of(pixel, id) : 0.0;
-  float scale = has_scatter_scale() && inside ? clean_scatter_scale(texelFetch(scatter_scale_image, texel, 0).r) : 1.0;
+  float scale = has_scatter_scale() && inside
+                    ? clean_scatter_scale(texelFetch(scatter_scale_image, texel, 0).r)
+                    : 1.0;
   scatter_profile profile = find_profile(id, scale);
   float reach = depth > 0.0 ? uniform_reach_d * projected_d(profile.d.w, depth) : 0.0;
-  bool counts = depth > 0.0 && reach >= uniform_reach_d * copy_below_d_px && reach <= float(probe_max_reach);
+  bool counts =
+      depth > 0.0 && reach >= uniform_reach_d * copy_below_d_px && reach <= float(probe_max_reach);
   vec3 light = vec3(0.0), weight = vec3(0.0);
   if (counts) {
     vec3 p = view_position(vec2(pixel), depth);
@@ -135,10 +143,12 @@ void main() {
   // Fraction of the runs that are selected, which is the probability of selecting this run.
   float fraction = min(float(settings.tiles) / float(runs), 1.0);
   float start = unit_from_hash(pcg3d(uvec3(frame.frame_index, 0u, 0u))).x;
-  if (fraction < 1.0 && floor((float(run) + 1.0) * fraction + start) <= floor(float(run) * fraction + start))
+  if (fraction < 1.0 &&
+      floor((float(run) + 1.0) * fraction + start) <= floor(float(run) * fraction + start))
     return;
   uint tile = run * lanes + lane;
-  listed[lane] = tile < uint(frame.tiles.x * frame.tiles.y) ? class_of_tile(classes_data[tile]) : class_none;
+  listed[lane] =
+      tile < uint(frame.tiles.x * frame.tiles.y) ? class_of_tile(classes_data[tile]) : class_none;
   barrier();
   if (lane == 0u) {
     listed_count = 0u;
@@ -157,7 +167,8 @@ void main() {
   for (uint quarter = 0u; quarter < quarters; ++quarter) {
     uvec3 place = pcg3d(uvec3(frame.frame_index, chosen, 2u + quarter));
     ivec2 pixel = first + 4 * ivec2(quarter % 2u, quarter / 2u) + ivec2(place.xy >> 30);
-    float squared = squared_error(pixel, lane, class_of_tile(classes_data[chosen]) != class_scatter);
+    float squared =
+        squared_error(pixel, lane, class_of_tile(classes_data[chosen]) != class_scatter);
     barrier();
     if (squared >= 0.0) {
       errors += squared;
@@ -169,6 +180,7 @@ void main() {
   float stands_for = float(count) / fraction; // number of tiles that the selected tile represents
   uint place = atomicAdd(counters.probe_count, 1u);
   if (place < counters.probes.length()) {
-    counters.probes[place] = uvec2(floatBitsToUint(stands_for * errors), floatBitsToUint(stands_for * pixels));
+    counters.probes[place] =
+        uvec2(floatBitsToUint(stands_for * errors), floatBitsToUint(stands_for * pixels));
   }
 }

@@ -1,5 +1,5 @@
-// Packs a tile into a list entry, and folds lists that are longer than a dispatch dimension into rows
-// of groups.
+// Packs a tile into a list entry, and folds lists that are longer than a dispatch dimension into
+// rows of groups.
 #ifndef DERMIS_TILE_PACKING_GLSL
 #define DERMIS_TILE_PACKING_GLSL
 

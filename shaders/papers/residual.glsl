@@ -56,7 +56,8 @@ vec2 pattern_before(texture2D place_image, history_taps taps) {
 // Returns the deviation of a logarithm for a surface with squared deviation `stray`.
 // `common_tolerance` applies without such a deviation.
 float tolerance_of(float common_tolerance, float squared_deviation) {
-  return sqrt(common_tolerance * common_tolerance + deviation_width * deviation_width * squared_deviation);
+  return sqrt(common_tolerance * common_tolerance +
+              deviation_width * deviation_width * squared_deviation);
 }
 
 #endif

@@ -24,7 +24,8 @@ vec3 scatter(scatter_point point, scatter_profile profile, float area, vec3 own)
   vec3 direct = vec3(0.0);
   float beyond = 1.0;
   if (settings.direct != DIRECT_NONE) {
-    float r0 = settings.direct == DIRECT_INSCRIBED ? 0.5 * min(footprint.x, footprint.y) : 0.5 * length(footprint);
+    float r0 = settings.direct == DIRECT_INSCRIBED ? 0.5 * min(footprint.x, footprint.y)
+                                                   : 0.5 * length(footprint);
     beyond = profile_survival(profile, r0)[widest];
     r0 = radial_draw(profile, beyond, settings.inverse, settings.weighting).r;
     direct = 1.0 - profile_survival(profile, r0 * sqrt(area));
@@ -67,10 +68,13 @@ void main() {
   vec4 light = texelFetch(light_image, texel, 0);
   float depth = view_depth(texelFetch(depth_image, texel, 0).r);
   if (!copy_only && depth > 0.0) {
-    float scale = has_scatter_scale() ? clean_scatter_scale(texelFetch(scatter_scale_image, texel, 0).r) : 1.0;
+    float scale = has_scatter_scale()
+                      ? clean_scatter_scale(texelFetch(scatter_scale_image, texel, 0).r)
+                      : 1.0;
     scatter_profile profile = find_profile(id, scale);
     if (projected_d(profile.d.w, depth) >= copy_below_d_px)
-      light.rgb = scatter(scatter_point(pixel, id, depth, view_position(vec2(pixel), depth)), profile, light.a, light.rgb);
+      light.rgb = scatter(scatter_point(pixel, id, depth, view_position(vec2(pixel), depth)),
+                          profile, light.a, light.rgb);
   }
   imageStore(scattered_image, texel, vec4(round_to_half(light.rgb), 1.0));
 }

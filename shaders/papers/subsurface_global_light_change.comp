@@ -34,9 +34,9 @@ shared float squared_deviations[lanes * each];  // squared deviations in stable 
 shared bool known[lanes * each];
 shared vec2 sums[lanes];
 
-// Computes the logarithm of luminance of the surface at a pixel relative to the pattern that it learned, and
-// the squared deviation of its patterns. Returns false if the surface was not visible before, or is
-// dark.
+// Computes the logarithm of luminance of the surface at a pixel relative to the pattern that it
+// learned, and the squared deviation of its patterns. Returns false if the surface was not visible
+// before, or is dark.
 bool offset_of(ivec2 pixel, out float offset, out float squared_deviation) {
   offset = 0.0;
   squared_deviation = 0.0;
@@ -47,9 +47,9 @@ bool offset_of(ivec2 pixel, out float offset, out float squared_deviation) {
   vec3 light = texelFetch(scattered_image, texel, 0).rgb;
   if (own.id == 0u || !is_lit(light))
     return false;
-  previous_place place = has_velocity()
-                             ? place_before(vec2(pixel), own.depth, texelFetch(velocity_image, texel, 0).rgb)
-                             : place_before(vec2(pixel), own.depth);
+  previous_place place = has_velocity() ? place_before(vec2(pixel), own.depth,
+                                                       texelFetch(velocity_image, texel, 0).rgb)
+                                        : place_before(vec2(pixel), own.depth);
   float tolerance = depth_tolerance(place.depth, length(own.slope) * sap_footprint(own.depth));
   history_taps taps = find_history(place_image, place, own.id, tolerance);
   vec2 kept = pattern_before(place_image, taps);
@@ -137,7 +137,8 @@ void main() {
     squared_deviations[i] = squared_deviation;
   }
   float found = most_common(lane);
-  float tolerance = max(settings.tolerance, min(per_median * median_deviation(lane, found), max_tolerance));
+  float tolerance =
+      max(settings.tolerance, min(per_median * median_deviation(lane, found), max_tolerance));
   float odds = odds_of_agreement(lane, found, tolerance);
   if (lane == 0u)
     imageStore(luminance_change_image, ivec2(0), vec4(found, odds, tolerance, 0.0));

@@ -20,14 +20,18 @@ vec4 spline_read(texture2D level, vec2 at) {
   vec2 w3 = t * t * t / 6.0, w2 = 1.0 - w0 - w1 - w3;
   vec2 before = w0 + w1, after = w2 + w3;
   vec2 a = low - 1.0 + w1 / before, b = low + 1.0 + w3 / after;
-  return before.y * (before.x * pyramid_read(level, a) + after.x * pyramid_read(level, vec2(b.x, a.y))) +
-         after.y * (before.x * pyramid_read(level, vec2(a.x, b.y)) + after.x * pyramid_read(level, b));
+  return before.y *
+             (before.x * pyramid_read(level, a) + after.x * pyramid_read(level, vec2(b.x, a.y))) +
+         after.y *
+             (before.x * pyramid_read(level, vec2(a.x, b.y)) + after.x * pyramid_read(level, b));
 }
 
 // Adds a level's light and mask with its fraction of `left`. Returns the remaining fraction, never
 // below 0.
-vec3 add_level(texture2D level, int index, uint id, vec3 d_px, vec2 pixel, vec3 left, inout vec3 sum, inout vec3 total) {
-  vec3 fraction = index == 0 ? sap_lookup(id, sap_plain, 1, d_px) : left * sap_lookup(id, sap_plain, index + 1, d_px);
+vec3 add_level(texture2D level, int index, uint id, vec3 d_px, vec2 pixel, vec3 left,
+               inout vec3 sum, inout vec3 total) {
+  vec3 fraction = index == 0 ? sap_lookup(id, sap_plain, 1, d_px)
+                             : left * sap_lookup(id, sap_plain, index + 1, d_px);
   if (max(fraction.r, max(fraction.g, fraction.b)) >= min_fraction) {
     vec4 light = spline_read(level, (pixel + 0.5) * exp2(-float(index)) - 0.5);
     sum += fraction * light.rgb;
@@ -49,7 +53,9 @@ void main() {
   vec3 light = texelFetch(level_0_image, pixel + pyramid_border, 0).rgb;
   float depth = view_depth(texelFetch(depth_image, texel, 0).r);
   if (!copy_only && depth > 0.0) {
-    float scale = has_scatter_scale() ? clean_scatter_scale(texelFetch(scatter_scale_image, texel, 0).r) : 1.0;
+    float scale = has_scatter_scale()
+                      ? clean_scatter_scale(texelFetch(scatter_scale_image, texel, 0).r)
+                      : 1.0;
     vec3 d_px = profiles[min(id, 255u)].d_mm.rgb * (scale / sap_footprint(depth));
     vec3 centre = sap_lookup(id, sap_plain, 0, d_px);
     vec3 direct = profile_direct(id), left = 1.0 - centre;

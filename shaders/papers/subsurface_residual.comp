@@ -21,8 +21,10 @@ const float largest_kept = 8.0;  // maximum of a sampled ratio
 const float largest_ratio = 4.0; // maximum factor on light
 const float tile_error = 16.0;        // number of samples that weigh as much as the pyramid
 const float deviation_rate = 0.1;    // rate of the moving mean of the squared deviation
-const float max_squared_deviation = 0.3; // maximum deviation of a logarithm that counts in this mean
-const float new_light_factor = 0.5;       // factor on alpha where light has just appeared that may not stay
+const float max_squared_deviation =
+    0.3; // maximum deviation of a logarithm that counts in this mean
+const float new_light_factor =
+    0.5; // factor on alpha where light has just appeared that may not stay
 // Number of samples that a moving mean of weight alpha is worth, in n / alpha: (2 - alpha) / alpha.
 const float memory = 1.9;
 
@@ -36,9 +38,10 @@ float agreement_weight(float off, float tolerance, float odds) {
 }
 
 history_taps taps_of(ivec2 pixel, sap_texel own) {
-  previous_place place = has_velocity() && own.depth > 0.0
-                             ? place_before(vec2(pixel), own.depth, texelFetch(velocity_image, texel_of(pixel), 0).rgb)
-                             : place_before(vec2(pixel), own.depth);
+  previous_place place =
+      has_velocity() && own.depth > 0.0
+          ? place_before(vec2(pixel), own.depth, texelFetch(velocity_image, texel_of(pixel), 0).rgb)
+          : place_before(vec2(pixel), own.depth);
   float rise = length(own.slope) * sap_footprint(own.depth);
   return find_history(place_image, place, own.id, depth_tolerance(place.depth, rise));
 }
@@ -109,7 +112,8 @@ void main() {
       // them.
       uint index = (frame.frame_index >> 2) + (frame.frame_index & 3u) * 0x9e3779u;
       uvec2 offset = r2_point(offset_from_hash(pcg3d16(uvec3(pixel, 0u)).xy), index);
-      vec3 sampled = sap_sampled_light(pixel, own, texelFetch(light_image, texel, 0).rgb, offset, count, settings.lod_bias);
+      vec3 sampled = sap_sampled_light(pixel, own, texelFetch(light_image, texel, 0).rgb, offset,
+                                       count, settings.lod_bias);
       vec3 found = clamp(sampled / max(light.rgb, vec3(min_light)), vec3(0.0), vec3(largest_kept));
       found = mix(vec3(1.0), found, greaterThan(light.rgb, vec3(min_light)));
       float weight = max(alpha, float(count) / (ratio.a + float(count)));
@@ -117,12 +121,15 @@ void main() {
       kept.x = mix(kept.x, pattern, weight);
       ratio.a = min(ratio.a + float(count), memory * n / settings.alpha);
     }
-    float pattern_agreement = first ? 1.0 : agreement_weight(pattern - kept.x, tolerance_of(all.b, kept.y), all.g);
-    light.rgb *= 1.0 + pattern_agreement * ratio.a / (ratio.a + tile_error) * (min(ratio.rgb, vec3(largest_ratio)) - 1.0);
+    float pattern_agreement =
+        first ? 1.0 : agreement_weight(pattern - kept.x, tolerance_of(all.b, kept.y), all.g);
+    light.rgb *= 1.0 + pattern_agreement * ratio.a / (ratio.a + tile_error) *
+                           (min(ratio.rgb, vec3(largest_ratio)) - 1.0);
   }
   imageStore(refined_image, texel, round_to_half(light));
   imageStore(ratio_out_image, texel, round_to_half(ratio));
-  imageStore(place_out_image, texel, round_to_half(vec4(own.depth / mm_per_metre, float(own.id), kept)));
+  imageStore(place_out_image, texel,
+             round_to_half(vec4(own.depth / mm_per_metre, float(own.id), kept)));
   if (has_sampling())
     imageStore(sampling_image, texel, vec4(float(count), ratio.a, light.a, lost ? 1.0 : 0.0));
 }

@@ -33,7 +33,8 @@ void main() {
   barrier();
   if (counts) {
     uint mean = (light_sum + pixel_count / 2u) / pixel_count;
-    float matters = has_importance() ? clamp(texelFetch(importance_image, texel, 0).r, 0.0, 1.0) : 1.0;
+    float matters =
+        has_importance() ? clamp(texelFetch(importance_image, texel, 0).r, 0.0, 1.0) : 1.0;
     atomicAdd(contrast_sum, uint(float(max(seen, mean) - min(seen, mean)) * matters + 0.5));
   }
   barrier();

@@ -65,7 +65,9 @@ vec3 probe_axis(vec3 normal, uint axis) {
 
 // Returns the light that reaches x1 from this irradiance at distance r: diffuse light before
 // albedo.
-vec3 scattered(scatter_domain domain, float r, vec3 irradiance) { return scattering_profile(domain.d, r) * irradiance; }
+vec3 scattered(scatter_domain domain, float r, vec3 irradiance) {
+  return scattering_profile(domain.d, r) * irradiance;
+}
 
 // Maps a unit vector to a square by the faces of an octahedron (Cigolle et al. 2014, "A Survey of
 // Efficient Representations for Independent Unit Vectors").
@@ -89,7 +91,8 @@ packed_domain pack_domain(scatter_domain domain) {
   return packed;
 }
 scatter_domain unpack_domain(packed_domain packed) {
-  return scatter_domain(uintBitsToFloat(packed.words[0].xyz), unfold_normal(unpackSnorm2x16(packed.words[1].w)),
+  return scatter_domain(uintBitsToFloat(packed.words[0].xyz),
+                        unfold_normal(unpackSnorm2x16(packed.words[1].w)),
                         uintBitsToFloat(packed.words[1].xyz), packed.words[0].w);
 }
 

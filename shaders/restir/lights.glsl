@@ -17,7 +17,9 @@ struct light_source {
 
 const uint light_point = 0u, light_parallelogram = 1u, light_triangle = 2u, light_directional = 3u;
 
-bool light_has_area(light_source light) { return light.type == light_parallelogram || light.type == light_triangle; }
+bool light_has_area(light_source light) {
+  return light.type == light_parallelogram || light.type == light_triangle;
+}
 
 // Packs two coordinates on a light in 16 bits each.
 uint light_place(float u, float v) {
@@ -26,7 +28,9 @@ uint light_place(float u, float v) {
 }
 
 // Returns the density of selecting this light and a place on it, per unit area for area lights.
-float light_density(light_source light) { return light_has_area(light) ? light.fraction / light.area : light.fraction; }
+float light_density(light_source light) {
+  return light_has_area(light) ? light.fraction / light.area : light.fraction;
+}
 
 // Returns the end of shadow rays from `from`.
 vec3 light_target(light_source light, uint place, vec3 from) {

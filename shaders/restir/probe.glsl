@@ -34,7 +34,9 @@ struct probe_hits {
 uint scattering_channels(vec3 d) { return uint(d.r > 0.0) + uint(d.g > 0.0) + uint(d.b > 0.0); }
 
 // Returns the index of the selected hit of `count` > 0 hits.
-uint picked_hit(float pick, uint count) { return min(uint(max(pick, 0.0) * float(count)), count - 1u); }
+uint picked_hit(float pick, uint count) {
+  return min(uint(max(pick, 0.0) * float(count)), count - 1u);
+}
 
 // Maps four uniform numbers to axis and channel, radius, angle, and pick.
 probe_numbers draw_numbers(vec3 d, vec4 u) {
@@ -44,7 +46,8 @@ probe_numbers draw_numbers(vec3 d, vec4 u) {
   float below = 0.0;
   while (numbers.axis < 2u && u.x >= below + probe_axis_fraction[numbers.axis])
     below += probe_axis_fraction[numbers.axis++];
-  uint skip = picked_hit((u.x - below) / probe_axis_fraction[numbers.axis], max(1u, scattering_channels(d)));
+  uint skip = picked_hit((u.x - below) / probe_axis_fraction[numbers.axis],
+                         max(1u, scattering_channels(d)));
   for (uint c = 0u; c < 3u; ++c)
     if (d[c] > 0.0 && skip-- == 0u) {
       numbers.channel = c;
@@ -75,7 +78,8 @@ probe_ray probe_of(scatter_domain domain, probe_numbers numbers) {
   float reach = reach_in_d * d, phi = 2.0 * restir_pi * numbers.angle;
   float chord = sqrt(max(0.0, reach * reach - r * r));
   vec3 axis = probe_axis(domain.normal, numbers.axis);
-  vec3 point = domain.position + r * cos(phi) * probe_axis(domain.normal, (numbers.axis + 1u) % 3u) +
+  vec3 point = domain.position +
+               r * cos(phi) * probe_axis(domain.normal, (numbers.axis + 1u) % 3u) +
                r * sin(phi) * probe_axis(domain.normal, (numbers.axis + 2u) % 3u);
   return probe_ray(point + chord * axis, -axis, 2.0 * chord);
 }
@@ -87,14 +91,16 @@ vec2 on_probe_disc(scatter_domain domain, uint axis, vec3 offset) {
 
 // Returns the density per area for one axis and channel, including their probability but not the
 // choice among hits.
-float probe_technique_pdf(scatter_domain domain, uint axis, uint channel, vec3 position, vec3 normal) {
+float probe_technique_pdf(scatter_domain domain, uint axis, uint channel, vec3 position,
+                          vec3 normal) {
   float d = domain.d[channel];
   vec3 offset = position - domain.position;
   if (!(d > 0.0) || !(length(offset) <= reach_in_d * d))
     return 0.0;
   float r = max(length(on_probe_disc(domain, axis, offset)), min_radius_in_d * d);
   float cosine = abs(dot(normal, probe_axis(domain.normal, axis)));
-  return probe_axis_fraction[axis] / float(scattering_channels(domain.d)) * cosine * burley_R(r, d) / probe_fraction;
+  return probe_axis_fraction[axis] / float(scattering_channels(domain.d)) * cosine *
+         burley_R(r, d) / probe_fraction;
 }
 
 // Returns the density per area over all axes and channels.
@@ -108,7 +114,8 @@ float probe_pdf(scatter_domain domain, vec3 position, vec3 normal) {
 
 // Probabilistic inversion: finds numbers that lead to `position`. Returns false if no axis and
 // channel can. Sets `pick` to 0.
-bool invert_point(scatter_domain domain, vec3 position, vec3 normal, float u, inout probe_numbers numbers) {
+bool invert_point(scatter_domain domain, vec3 position, vec3 normal, float u,
+                  inout probe_numbers numbers) {
   float left = u * probe_pdf(domain, position, normal);
   bool found = false;
   for (uint technique = 0u; technique < 9u; ++technique) {

@@ -27,8 +27,8 @@ struct packed_reservoir {
 };
 
 reservoir no_reservoir(float confidence) {
-  return reservoir(no_instance, 0u, vec2(0.0), 0u, 0u, probe_numbers(0u, 0u, 1.0, 0.0, 0.0), 0u, 0.0, vec3(0.0), 0.0,
-                   confidence);
+  return reservoir(no_instance, 0u, vec2(0.0), 0u, 0u, probe_numbers(0u, 0u, 1.0, 0.0, 0.0), 0u,
+                   0.0, vec3(0.0), 0.0, confidence);
 }
 
 bool has_sample(reservoir r) { return r.instance != no_instance && r.weight > 0.0; }
@@ -38,9 +38,10 @@ bool is_usable(float x) { return x >= 0.0 && x < restir_largest; }
 
 reservoir sanitised(reservoir r) {
   r.confidence = r.confidence > 0.0 ? min(r.confidence, max_confidence) : 0.0;
-  bool good = is_usable(r.weight) && is_usable(r.density) && is_usable(r.irradiance.r) && is_usable(r.irradiance.g) &&
-              is_usable(r.irradiance.b);
-  float fractions[5] = float[5](r.barycentrics.x, r.barycentrics.y, r.numbers.survival, r.numbers.angle, r.numbers.pick);
+  bool good = is_usable(r.weight) && is_usable(r.density) && is_usable(r.irradiance.r) &&
+              is_usable(r.irradiance.g) && is_usable(r.irradiance.b);
+  float fractions[5] = float[5](r.barycentrics.x, r.barycentrics.y, r.numbers.survival,
+                                r.numbers.angle, r.numbers.pick);
   for (int i = 0; i < 5; ++i)
     good = good && fractions[i] >= 0.0 && fractions[i] <= 1.0;
   good = good && r.numbers.axis < 3u && r.numbers.channel < 3u &&
@@ -55,7 +56,8 @@ packed_reservoir pack_reservoir(reservoir r) {
   result.words[0] = uvec4(r.instance, r.primitive, floatBitsToUint(r.barycentrics));
   result.words[1] = uvec4(r.light, r.place, r.numbers.axis | r.numbers.channel << 2 | r.hits << 4,
                           floatBitsToUint(r.numbers.survival));
-  result.words[2] = uvec4(floatBitsToUint(vec4(r.numbers.angle, r.numbers.pick, r.density, r.irradiance.r)));
+  result.words[2] =
+      uvec4(floatBitsToUint(vec4(r.numbers.angle, r.numbers.pick, r.density, r.irradiance.r)));
   result.words[3] = uvec4(floatBitsToUint(vec4(r.irradiance.gb, r.weight, r.confidence)));
   return result;
 }
@@ -67,8 +69,9 @@ reservoir unpack_reservoir(packed_reservoir p) {
   r.barycentrics = uintBitsToFloat(p.words[0].zw);
   r.light = p.words[1].x;
   r.place = p.words[1].y;
-  r.numbers = probe_numbers(p.words[1].z & 3u, p.words[1].z >> 2 & 3u, uintBitsToFloat(p.words[1].w),
-                            uintBitsToFloat(p.words[2].x), uintBitsToFloat(p.words[2].y));
+  r.numbers =
+      probe_numbers(p.words[1].z & 3u, p.words[1].z >> 2 & 3u, uintBitsToFloat(p.words[1].w),
+                    uintBitsToFloat(p.words[2].x), uintBitsToFloat(p.words[2].y));
   r.hits = p.words[1].z >> 4 & 255u;
   r.density = uintBitsToFloat(p.words[2].z);
   r.irradiance = uintBitsToFloat(uvec3(p.words[2].w, p.words[3].xy));
@@ -87,8 +90,8 @@ reservoir_stream stream_begin() { return reservoir_stream(no_reservoir(0.0), 0.0
 
 // Adds a candidate. `weight` is MIS weight * target * contribution weight * Jacobian; u is uniform
 // in (0, 1).
-void stream_add(inout reservoir_stream stream, reservoir candidate, float target, float weight, float confidence,
-                float u) {
+void stream_add(inout reservoir_stream stream, reservoir candidate, float target, float weight,
+                float confidence, float u) {
   stream.confidence += confidence;
   if (!(weight > 0.0) || !(target > 0.0) || !is_usable(weight) || !is_usable(target))
     return;

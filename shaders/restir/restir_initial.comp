@@ -40,8 +40,10 @@ void main() {
   float fraction = 1.0 / float(settings.samples); // MIS weight of equal techniques
   for (int i = 0; i < settings.samples; ++i) {
     reservoir candidate = draw_initial(domain, random);
-    float target = has_sample(candidate) ? target_of(domain, surface_of(candidate), candidate) : 0.0;
-    stream_add(stream, candidate, target, fraction * target * candidate.weight, fraction, random_unit(random));
+    float target =
+        has_sample(candidate) ? target_of(domain, surface_of(candidate), candidate) : 0.0;
+    stream_add(stream, candidate, target, fraction * target * candidate.weight, fraction,
+               random_unit(random));
   }
   packed_reservoir packed = pack_reservoir(stream_end(stream));
   for (uint i = 0u; i < 4u; ++i)

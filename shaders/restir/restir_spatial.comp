@@ -56,7 +56,8 @@ void main() {
   scatter_domain domain = domain_of(pixel);
   uint stage = settings.pass == 0 ? stage_spatial_first : stage_spatial_second;
   random_state random = random_of(pixel, (1u + stage) * random_numbers_a_pass);
-  vec2 footprint = pixel_footprint(view_depth(texelFetch(depth_image, texel_of(pixel), 0).r)) / mm_per_world_unit();
+  vec2 footprint = pixel_footprint(view_depth(texelFetch(depth_image, texel_of(pixel), 0).r)) /
+                   mm_per_world_unit();
   float radius = search_radius(domain.d, min(footprint.x, footprint.y));
 
   ivec2 neighbours[max_neighbours];
@@ -69,10 +70,12 @@ void main() {
     neighbours[count++] = other;
     confidences += reservoir_of(other).confidence;
   }
-  reuse_settings reuse = reuse_settings(shift_of_stage(uint(settings.shift), stage), index_traced, confidence_cap);
+  reuse_settings reuse =
+      reuse_settings(shift_of_stage(uint(settings.shift), stage), index_traced, confidence_cap);
   spatial_merge spatial = spatial_begin(reuse, domain, reservoir_of(pixel), confidences, random);
   for (uint i = 0u; i < count; ++i)
-    spatial_add(reuse, domain, spatial, domain_of(neighbours[i]), reservoir_of(neighbours[i]), random);
+    spatial_add(reuse, domain, spatial, domain_of(neighbours[i]), reservoir_of(neighbours[i]),
+                random);
   packed_reservoir merged = pack_reservoir(spatial_end(spatial, random));
   for (uint i = 0u; i < 4u; ++i)
     merged_data[4u * element_of(pixel) + i] = merged.words[i];

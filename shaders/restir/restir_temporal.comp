@@ -41,7 +41,8 @@ void keep_lights() {
     return;
   for (uint i = gl_LocalInvocationIndex; i < uint(lights_kept_data.length()); i += 64u) {
     // a dark light
-    light_source light = light_source(vec3(0.0), light_point, vec3(0.0), 0.0, vec3(0.0), 1.0, vec3(0.0), 1.0);
+    light_source light =
+        light_source(vec3(0.0), light_point, vec3(0.0), 0.0, vec3(0.0), 1.0, vec3(0.0), 1.0);
     if (i < light_count())
       light = light_at(i);
     lights_kept_data[i] = light;
@@ -90,10 +91,12 @@ bool find_past(ivec2 pixel, uint id, float u, out ivec2 past) {
   if (!history_usable())
     return false;
   float depth = view_depth(texelFetch(depth_image, texel_of(pixel), 0).r);
-  previous_place place = has_velocity()
-                             ? place_before(vec2(pixel), depth, texelFetch(velocity_image, texel_of(pixel), 0).rgb)
-                             : place_before(vec2(pixel), depth);
-  history_taps taps = find_history(place, id, depth_tolerance(place.depth, rise_over_pixel(pixel, depth)));
+  previous_place place =
+      has_velocity()
+          ? place_before(vec2(pixel), depth, texelFetch(velocity_image, texel_of(pixel), 0).rgb)
+          : place_before(vec2(pixel), depth);
+  history_taps taps =
+      find_history(place, id, depth_tolerance(place.depth, rise_over_pixel(pixel, depth)));
   bool found = false;
   for (int i = 0; i < 4; ++i) {
     if (!(taps.weight[i] > 0.0))
@@ -127,9 +130,10 @@ void main() {
   if (domain.medium != 0u && find_past(pixel, domain.medium, random_unit(random), past)) {
     for (uint i = 0u; i < 4u; ++i)
       before.words[i] = reservoirs_before_data[4u * element_before(past) + i];
-    reuse_settings reuse = reuse_settings(shift_of_stage(uint(settings.shift), stage_temporal), index_traced, settings.cap);
-    own = pack_reservoir(merge_temporal(reuse, domain, unpack_reservoir(own), domain_before(past), unpack_reservoir(before),
-                                        random));
+    reuse_settings reuse = reuse_settings(shift_of_stage(uint(settings.shift), stage_temporal),
+                                          index_traced, settings.cap);
+    own = pack_reservoir(merge_temporal(reuse, domain, unpack_reservoir(own), domain_before(past),
+                                        unpack_reservoir(before), random));
   }
   for (uint i = 0u; i < 4u; ++i)
     merged_data[4u * element + i] = own.words[i];

@@ -36,9 +36,11 @@ reservoir draw_initial(scatter_domain domain, inout random_state random) {
   candidate.light = pick_light(u[4]);
   candidate.place = light_place(u[5], u[6]);
   light_source light = light_at(candidate.light);
-  candidate.irradiance = light_irradiance(light, candidate.place, x2.position, x2.normal, x2.shading);
+  candidate.irradiance =
+      light_irradiance(light, candidate.place, x2.position, x2.normal, x2.shading);
   candidate.weight = float(hits.count) / (candidate.density * light_density(light));
-  float target = luminance(scattered(domain, length(x2.position - domain.position), candidate.irradiance));
+  float target =
+      luminance(scattered(domain, length(x2.position - domain.position), candidate.irradiance));
   if (!(target > 0.0) || !visible(x2, light_target(light, candidate.place, x2.position)))
     return none;
   return sanitised(candidate);
@@ -77,7 +79,8 @@ void exchange_paths(reuse_settings settings, uint first, bool over_time, inout e
 
 // Merges frame and history by the generalised balance heuristic.
 reservoir merge_temporal(reuse_settings settings, scatter_domain domain, reservoir current,
-                         scatter_domain previous_domain, reservoir previous, inout random_state random) {
+                         scatter_domain previous_domain, reservoir previous,
+                         inout random_state random) {
   exchange both;
   both.domain = scatter_domain[2](domain, previous_domain);
   both.path = reservoir[2](sanitised(current), sanitised(previous));
@@ -88,13 +91,15 @@ reservoir merge_temporal(reuse_settings settings, scatter_domain domain, reservo
   reservoir_stream stream = stream_begin();
 
   float target = both.target[0];
-  float own_mis = restir_part(own.confidence * target, history.confidence * back.target * back.jacobian);
-  stream_add(stream, own, target, own_mis * target * own.weight, own.confidence, random_unit(random));
+  float own_mis =
+      restir_part(own.confidence * target, history.confidence * back.target * back.jacobian);
+  stream_add(stream, own, target, own_mis * target * own.weight, own.confidence,
+             random_unit(random));
 
   float there = here.jacobian > 0.0 ? both.target[1] / here.jacobian : 0.0;
   float mis = restir_part(history.confidence * there, own.confidence * here.target);
-  stream_add(stream, here.path, here.target, mis * here.target * history.weight * here.jacobian, history.confidence,
-             random_unit(random));
+  stream_add(stream, here.path, here.target, mis * here.target * history.weight * here.jacobian,
+             history.confidence, random_unit(random));
   return stream_end(stream);
 }
 
@@ -106,8 +111,8 @@ struct spatial_merge {
   float neighbours; // sum of the neighbours' confidences
 };
 
-spatial_merge spatial_begin(reuse_settings settings, scatter_domain domain, reservoir own, float neighbours,
-                            inout random_state random) {
+spatial_merge spatial_begin(reuse_settings settings, scatter_domain domain, reservoir own,
+                            float neighbours, inout random_state random) {
   spatial_merge spatial;
   spatial.stream = stream_begin();
   spatial.own = sanitised(own);
@@ -131,18 +136,21 @@ void spatial_add(reuse_settings settings, scatter_domain domain, inout spatial_m
   reservoir other = both.path[1];
   shifted_path back = both.image[0], here = both.image[1];
   float own_confidence = spatial.own.confidence;
-  float fraction = restir_part(other.confidence, own_confidence + spatial.neighbours - other.confidence);
+  float fraction =
+      restir_part(other.confidence, own_confidence + spatial.neighbours - other.confidence);
   spatial.own_mis += fraction * restir_part(own_confidence * spatial.own_target,
                                          spatial.neighbours * back.target * back.jacobian);
   float there = here.jacobian > 0.0 ? both.target[1] / here.jacobian : 0.0;
   float mis = fraction * restir_part(spatial.neighbours * there, own_confidence * here.target);
-  stream_add(spatial.stream, here.path, here.target, mis * here.target * other.weight * here.jacobian,
-             other.confidence, random_unit(random));
+  stream_add(spatial.stream, here.path, here.target,
+             mis * here.target * other.weight * here.jacobian, other.confidence,
+             random_unit(random));
 }
 
 reservoir spatial_end(inout spatial_merge spatial, inout random_state random) {
   stream_add(spatial.stream, spatial.own, spatial.own_target,
-             spatial.own_mis * spatial.own_target * spatial.own.weight, spatial.own.confidence, random_unit(random));
+             spatial.own_mis * spatial.own_target * spatial.own.weight, spatial.own.confidence,
+             random_unit(random));
   return stream_end(spatial.stream);
 }
 

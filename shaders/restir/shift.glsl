@@ -35,7 +35,8 @@ bool connectable(scatter_domain domain, vec3 position, vec3 normal) {
 }
 
 bool replays(uint shift, scatter_domain domain, surface_point x2) {
-  return shift == shift_delayed || (shift == shift_hybrid && !connectable(domain, x2.position, x2.normal));
+  return shift == shift_delayed ||
+         (shift == shift_hybrid && !connectable(domain, x2.position, x2.normal));
 }
 
 // Returns the Jacobian of replayed random numbers per area, including the choice among hits.
@@ -47,7 +48,9 @@ float replay_jacobian(float from_density, uint from_hits, float to_density, uint
   return is_usable(jacobian) ? jacobian : 0.0;
 }
 
-surface_point surface_of(reservoir path) { return surface_at(path.instance, path.primitive, path.barycentrics); }
+surface_point surface_of(reservoir path) {
+  return surface_at(path.instance, path.primitive, path.barycentrics);
+}
 
 vec3 contribution_of(scatter_domain domain, surface_point x2, reservoir path) {
   if (!has_sample(path))
@@ -116,7 +119,8 @@ void prepare(uint shift, uint index, scatter_domain domain, surface_point x2, in
     return;
   float technique = random_unit(random);
   float within = random_unit(random);
-  if (!replays(shift, domain, x2) || !invert_point(domain, x2.position, x2.normal, technique, path.numbers))
+  if (!replays(shift, domain, x2) ||
+      !invert_point(domain, x2.position, x2.normal, technique, path.numbers))
     return;
   path.density = probe_pdf(domain, x2.position, x2.normal);
   if (index == index_sampled) {

@@ -21,7 +21,8 @@ vec4 vertex_at(uint index);
 
 vec3 world_position(ray_instance one, uint vertex) {
   vec4 at = vec4(vertex_at(2u * (one.place.x + vertex)).xyz, 1.0);
-  return vec3(dot(one.world_from_object[0], at), dot(one.world_from_object[1], at), dot(one.world_from_object[2], at));
+  return vec3(dot(one.world_from_object[0], at), dot(one.world_from_object[1], at),
+              dot(one.world_from_object[2], at));
 }
 
 surface_point surface_at(uint instance, uint primitive, vec2 barycentrics) {
@@ -34,7 +35,8 @@ surface_point surface_at(uint instance, uint primitive, vec2 barycentrics) {
     normal += fraction[i] * vertex_at(2u * (one.place.x + vertex) + 1u).xyz;
   }
   vec3 geometric = normalize(cross(p[1] - p[0], p[2] - p[0]));
-  vec3 x = one.world_from_object[0].xyz, y = one.world_from_object[1].xyz, z = one.world_from_object[2].xyz;
+  vec3 x = one.world_from_object[0].xyz, y = one.world_from_object[1].xyz,
+       z = one.world_from_object[2].xyz;
   // multiplies by the matrix of cofactors
   vec3 shading = vec3(dot(cross(y, z), normal), dot(cross(z, x), normal), dot(cross(x, y), normal));
   if (dot(x, cross(y, z)) < 0.0) { // mirroring turns an object inside out
@@ -66,8 +68,9 @@ scatter_domain domain_of(utexture2D material, texture2D depth_texture, texture2D
   if (id == 0u || !(depth > 0.0) || !(square > 0.0))
     return scatter_domain(vec3(0.0), vec3(0.0, 0.0, 1.0), vec3(0.0), 0u);
   float scale = scale_bound ? clean_scatter_scale(texelFetch(scatter_scale, texel, 0).r) : 1.0;
-  vec3 from_eye = view_position(vec2(pixel), depth) -
-                  vec3(frame.view_from_world[0].w, frame.view_from_world[1].w, frame.view_from_world[2].w);
+  vec3 from_eye =
+      view_position(vec2(pixel), depth) -
+      vec3(frame.view_from_world[0].w, frame.view_from_world[1].w, frame.view_from_world[2].w);
   return scatter_domain(world_direction(from_eye) / mm_per_world_unit(),
                         normalize(world_direction(normal * inversesqrt(square))),
                         find_profile(id, scale).d.rgb / mm_per_world_unit(), id);

@@ -27,7 +27,8 @@ uint step_bin(uint tile_error, int k, uint before) {
   if (before > uint(k))
     // Makes a tile keep the samples that it had in the frame before.
     priority *= allocation_stay;
-  return uint(clamp(int(floatBitsToUint(priority) >> 20) - allocation_first_bin, 0, int(allocation_bins) - 1));
+  return uint(clamp(int(floatBitsToUint(priority) >> 20) - allocation_first_bin, 0,
+                    int(allocation_bins) - 1));
 }
 
 #endif

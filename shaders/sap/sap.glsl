@@ -36,7 +36,8 @@ const uint sap_second_bit = 0x100u;
 bool sap_has_second(uvec4 bits) { return (bits.w & sap_second_bit) != 0u; }
 
 uvec4 sap_pack(sap_texel t) {
-  return uvec4(floatBitsToUint(t.depth), packHalf2x16(t.slope), packHalf2x16(vec2(t.reach, t.mass)), t.id);
+  return uvec4(floatBitsToUint(t.depth), packHalf2x16(t.slope), packHalf2x16(vec2(t.reach, t.mass)),
+               t.id);
 }
 sap_texel sap_unpack(uvec4 bits) {
   vec2 pair = unpackHalf2x16(bits.z);
@@ -52,12 +53,13 @@ struct sap_scattered {
 };
 // All values must be representable as halves.
 uvec4 sap_pack_scattered(sap_scattered t) {
-  return uvec4(packHalf2x16(t.light.rg), packHalf2x16(vec2(t.light.b, t.confidence)), packHalf2x16(t.mass.rg),
-               packHalf2x16(vec2(t.mass.b, 0.0)));
+  return uvec4(packHalf2x16(t.light.rg), packHalf2x16(vec2(t.light.b, t.confidence)),
+               packHalf2x16(t.mass.rg), packHalf2x16(vec2(t.mass.b, 0.0)));
 }
 sap_scattered sap_unpack_scattered(uvec4 bits) {
   vec2 pair = unpackHalf2x16(bits.y);
-  return sap_scattered(vec3(unpackHalf2x16(bits.x), pair.x), pair.y, vec3(unpackHalf2x16(bits.z), unpackHalf2x16(bits.w).x));
+  return sap_scattered(vec3(unpackHalf2x16(bits.x), pair.x), pair.y,
+                       vec3(unpackHalf2x16(bits.z), unpackHalf2x16(bits.w).x));
 }
 
 // Packs light as floats and the other values as a byte each, for kernels with the setting
@@ -75,7 +77,9 @@ float sap_footprint(float depth) {
   return sqrt(abs(frame.ray_scale.x * frame.ray_scale.y)) * (is_perspective() ? depth : 1.0);
 }
 // Returns the rise of a texel's tangent plane at an offset in pixels, mm.
-float sap_rise(float depth, vec2 slope, vec2 offset) { return dot(slope, offset) * sap_footprint(depth); }
+float sap_rise(float depth, vec2 slope, vec2 offset) {
+  return dot(slope, offset) * sap_footprint(depth);
+}
 
 // Return the distance of a texel from another texel's surface in mm: the smaller of its distance
 // from the tangent plane and its difference in depth. sap_off_planes considers the planes of both
@@ -85,13 +89,15 @@ float sap_off_plane(sap_texel own, sap_texel tap, vec2 offset) {
   return sap_nearer(depth_step - sap_rise(own.depth, own.slope, offset), depth_step);
 }
 float sap_off_planes(sap_texel own, sap_texel tap, vec2 offset) {
-  return sap_nearer(sap_off_plane(own, tap, offset), tap.depth - own.depth - sap_rise(tap.depth, tap.slope, offset));
+  return sap_nearer(sap_off_plane(own, tap, offset),
+                    tap.depth - own.depth - sap_rise(tap.depth, tap.slope, offset));
 }
 ivec2 sap_level_size(int level) { return (frame.rect.zw + (1 << level) - 1) >> level; }
 // Levels from 1 on have a border of one texel; level 0 has the layout of the view.
 bool sap_inside(ivec2 at, int level) {
   int border = level > 0 ? 1 : 0;
-  return all(greaterThanEqual(at, ivec2(-border))) && all(lessThan(at, sap_level_size(level) + border));
+  return all(greaterThanEqual(at, ivec2(-border))) &&
+         all(lessThan(at, sap_level_size(level) + border));
 }
 // Returns the tile of the view that contains a pixel. Level 0 is written only in tiles with
 // subsurface. Coarser levels write the texels that contain such a pixel.
@@ -113,7 +119,8 @@ float sap_lookup(int table, int row, float d_px) {
 vec3 sap_lookup(uint id, int variant, int row, vec3 d_px) {
   int own = int(profiles[min(id, 255u)].sap_table);
   ivec3 table = own == 0 ? ivec3(variant) : own + 3 * variant + ivec3(0, 1, 2);
-  return vec3(sap_lookup(table.r, row, d_px.r), sap_lookup(table.g, row, d_px.g), sap_lookup(table.b, row, d_px.b));
+  return vec3(sap_lookup(table.r, row, d_px.r), sap_lookup(table.g, row, d_px.g),
+              sap_lookup(table.b, row, d_px.b));
 }
 
 #endif

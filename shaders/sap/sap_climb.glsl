@@ -10,7 +10,8 @@ const float min_fraction = 0.004; // the tent is not worth its time for a smalle
 
 // Returns the bits of the texel at `place`, blended with the values of the coarser level. `layers`:
 // number of layers to read.
-uvec4 climb(sap_place place, int level, sap_texel own, vec3 light, int layers, bool smooth_level, bool last) {
+uvec4 climb(sap_place place, int level, sap_texel own, vec3 light, int layers, bool smooth_level,
+            bool last) {
   vec3 fraction = last ? vec3(1.0) : sap_lookup(own.id, settings.variant, level + 1, sap_d_px(own));
   sap_sum here = sap_sum(light, vec3(own.mass));
   if (smooth_level && max(fraction.r, max(fraction.g, fraction.b)) >= min_fraction)
@@ -25,7 +26,8 @@ uvec4 climb(sap_place place, int level, sap_texel own, vec3 light, int layers, b
   float sure = mix(confidence, here.mass.r, widest);
   return settings.storage == STORAGE_FULL
              ? sap_pack_scattered_full(sap_scattered(blend.light, sure, blend.mass))
-             : sap_pack_scattered(sap_scattered(round_to_half(blend.light), round_to_half(sure), round_to_half(blend.mass)));
+             : sap_pack_scattered(sap_scattered(round_to_half(blend.light), round_to_half(sure),
+                                                round_to_half(blend.mass)));
 }
 
 #endif

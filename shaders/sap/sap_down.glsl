@@ -46,7 +46,8 @@ vec4 stored(vec4 light) { return settings.storage == STORAGE_FULL ? light : roun
 // The parents of a block share children.
 const int side = block_width * 2 + children_across - 2;
 int shared_child(int parent, int child) {
-  return (2 * (parent / block_width) + child / children_across) * side + 2 * (parent % block_width) + child % children_across;
+  return (2 * (parent / block_width) + child / children_across) * side +
+         2 * (parent % block_width) + child % children_across;
 }
 
 #ifndef SAP_BOX
@@ -159,7 +160,9 @@ vec4 light_of(sap_parent parent, int c, uint id) {
 
 vec2 offset_of(int child, float spacing) {
   int place = child % children_a_layer;
-  return (vec2(place % children_across, place / children_across) - 0.5 * float(children_across - 1)) * spacing;
+  return (vec2(place % children_across, place / children_across) -
+          0.5 * float(children_across - 1)) *
+         spacing;
 }
 float binomial(int child) {
 #ifdef SAP_BOX
@@ -169,14 +172,17 @@ float binomial(int child) {
 #endif
 }
 float at_parent(sap_texel child, vec2 offset) {
-  return max(child.depth - sap_rise(child.depth, child.slope, offset), nearest_fraction * child.depth);
+  return max(child.depth - sap_rise(child.depth, child.slope, offset),
+             nearest_fraction * child.depth);
 }
 
 // Returns the fraction of a child that lies on the surface of a seed. `depth_step` receives the
 // difference of their depths in sigmas.
-float kept_of(sap_texel seed, sap_texel child, vec2 offset, float per_sigma_mm, out float depth_step) {
+float kept_of(sap_texel seed, sap_texel child, vec2 offset, float per_sigma_mm,
+              out float depth_step) {
   depth_step = (child.depth - seed.depth) * per_sigma_mm;
-  float off = sap_nearer(depth_step - sap_rise(seed.depth, seed.slope, offset) * per_sigma_mm, depth_step);
+  float off =
+      sap_nearer(depth_step - sap_rise(seed.depth, seed.slope, offset) * per_sigma_mm, depth_step);
   return child.id == seed.id ? exp2(sap_factor(sap_depth_width) * off * off) : 0.0;
 }
 // Returns the fraction of a child that the layer with seed `before` has not used; 1 without such a
@@ -188,7 +194,8 @@ float left_of(sap_texel before, sap_texel child, vec2 offset, float spacing) {
   return 1.0 - kept_of(before, child, offset, per_sigma / sap_footprint(before.depth), depth_step);
 }
 bool may_seed(sap_parent parent, sap_texel before, sap_texel child, int c) {
-  return child.id != 0u && left_of(before, child, offset_of(c, parent.spacing), parent.spacing) >= min_seed_part;
+  return child.id != 0u &&
+         left_of(before, child, offset_of(c, parent.spacing), parent.spacing) >= min_seed_part;
 }
 
 // Returns the central child: 0 to 3 of the first layer, 4 to 7 of the second.
@@ -214,13 +221,16 @@ void consider_outer(sap_parent parent, sap_texel before, int c, inout seed_searc
 
 // Compares the plane of central child c with the best one so far. `near` and `may`: the central
 // children, and whether each can be a seed.
-void consider_central(sap_parent parent, int layers, sap_texel near[4 * max_layers], bool may[4 * max_layers], sap_texel seed,
-                      bool may_be_seed, int c, inout seed_search found) {
+void consider_central(sap_parent parent, int layers, sap_texel near[4 * max_layers],
+                      bool may[4 * max_layers], sap_texel seed, bool may_be_seed, int c,
+                      inout seed_search found) {
   seed.depth = at_parent(seed, offset_of(c, parent.spacing));
-  float per_sigma_mm = 1.0 / (sap_sigma * parent.spacing * sap_footprint(seed.depth)), support = 0.0;
+  float per_sigma_mm = 1.0 / (sap_sigma * parent.spacing * sap_footprint(seed.depth)),
+        support = 0.0;
   [[unroll]] for (int b = 0; b < 4 * layers; ++b) {
     float off = sap_off_plane(seed, near[b], offset_of(central(b), parent.spacing)) * per_sigma_mm;
-    support += near[b].id == seed.id && may[b] ? exp2(sap_factor(sap_depth_width) * off * off) : 0.0;
+    support +=
+        near[b].id == seed.id && may[b] ? exp2(sap_factor(sap_depth_width) * off * off) : 0.0;
   }
   if (may_be_seed && (found.best.id == 0u || support > hysteresis * found.maximum)) {
     found.best = seed;
@@ -243,7 +253,8 @@ sap_texel find_seed(sap_parent parent, int layers, sap_texel before) {
     int last = parent.two ? 8 : 4;
     [[dont_unroll]] for (int a = 0; a < last; ++a) {
       sap_texel seed = child_of(parent, central(a));
-      consider_central(parent, layers, near, may, seed, may_seed(parent, before, seed, central(a)), central(a), found);
+      consider_central(parent, layers, near, may, seed, may_seed(parent, before, seed, central(a)),
+                       central(a), found);
     }
   } else {
     [[unroll]] for (int a = 0; a < 4 * layers; ++a)
@@ -275,7 +286,8 @@ struct reduction {
 void add_child(sap_parent parent, sap_texel seed, sap_texel before, int c, inout reduction sum) {
   sap_texel child = child_of(parent, c);
   float spacing = parent.spacing;
-  float per_sigma = 1.0 / (sap_sigma * spacing), per_sigma_mm = per_sigma / sap_footprint(seed.depth);
+  float per_sigma = 1.0 / (sap_sigma * spacing),
+        per_sigma_mm = per_sigma / sap_footprint(seed.depth);
   vec2 offset = offset_of(c, spacing);
   float tilt = dot(seed.slope, offset) * per_sigma;
   if (c < children_a_layer)
@@ -295,7 +307,8 @@ void add_child(sap_parent parent, sap_texel seed, sap_texel before, int c, inout
   sum.mean_slope += flat_weight * child.slope;
   sum.mean_reach += flat_weight * child.reach;
 }
-void add_children(sap_parent parent, int layers, sap_texel seed, sap_texel before, inout reduction sum) {
+void add_children(sap_parent parent, int layers, sap_texel seed, sap_texel before,
+                  inout reduction sum) {
   if (texel_shape && max_layers > 1) { // small enough for the instruction cache
     [[dont_unroll]] for (int row = 0; row < 4; ++row)
       [[unroll]] for (int column = 0; column < 4; ++column)
@@ -327,9 +340,11 @@ sap_layer reduce(sap_parent parent, int layers, sap_texel before) {
   layer.remains = sum.remains;
   if (sum.total > sap_negligible) {
     layer.light = vec4(sum.light / sum.total, sum.total / sum.mass);
-    vec3 rounded = round_to_half(vec3(sum.mean_slope / sum.total_flat, sum.mean_reach / sum.total_flat));
-    layer.bits = sap_pack(sap_texel(max(sum.mean_depth / sum.total_flat, nearest_fraction * seed.depth), rounded.xy,
-                                    rounded.z, round_to_half(min(sum.mass / sum.all_weight, 1.0)), seed.id));
+    vec3 rounded =
+        round_to_half(vec3(sum.mean_slope / sum.total_flat, sum.mean_reach / sum.total_flat));
+    layer.bits = sap_pack(
+        sap_texel(max(sum.mean_depth / sum.total_flat, nearest_fraction * seed.depth), rounded.xy,
+                  rounded.z, round_to_half(min(sum.mass / sum.all_weight, 1.0)), seed.id));
   }
   return layer;
 }

@@ -13,7 +13,8 @@ vec4 gather(sap_place place, sap_texel own, vec4 centre_light) {
   vec3 light = centre_light.rgb;
   // a tilted pixel keeps more of its own light
   vec3 d_px = sap_d_px(own) * inversesqrt(centre_light.a);
-  vec3 centre = sap_lookup(own.id, settings.variant, 0, d_px), tent = sap_lookup(own.id, settings.variant, 1, d_px);
+  vec3 centre = sap_lookup(own.id, settings.variant, 0, d_px),
+       tent = sap_lookup(own.id, settings.variant, 1, d_px);
   sap_sum near = sap_sum(light, vec3(own.mass));
   if (max(tent.r, max(tent.g, tent.b)) >= min_fraction)
     near = sap_tent(place, 0, own, 1);
@@ -21,10 +22,13 @@ vec4 gather(sap_place place, sap_texel own, vec4 centre_light) {
   sap_sum rest = sap_from_coarser(place, 0, own, light, SAP_COARSE_LAYERS, confidence);
   rest.mass *= max(1.0 - centre - tent, vec3(0.0));
   uint widest = profiles[min(own.id, 255u)].widest;
-  confidence = mix(confidence, 1.0, centre[widest] + tent[widest]) - tent[widest] * (1.0 - near.mass.r);
+  confidence =
+      mix(confidence, 1.0, centre[widest] + tent[widest]) - tent[widest] * (1.0 - near.mass.r);
   // Light that never scatters needs no surface around.
   vec3 direct = profile_direct(own.id);
-  vec3 mean = sap_blend(max(centre - direct, vec3(0.0)) * own.mass, light, tent * near.mass, near.light, rest).light;
+  vec3 mean = sap_blend(max(centre - direct, vec3(0.0)) * own.mass, light, tent * near.mass,
+                        near.light, rest)
+                  .light;
   return vec4(mix(mean, light, direct), confidence);
 }
 
@@ -49,7 +53,8 @@ void gather_block() {
       take_corners(k);
       result = gather(place, own, light);
     }
-    imageStore(scattered_image, texel_of(place.at), settings.storage == STORAGE_FULL ? result : round_to_half(result));
+    imageStore(scattered_image, texel_of(place.at),
+               settings.storage == STORAGE_FULL ? result : round_to_half(result));
   }
 }
 

@@ -11,13 +11,17 @@
 
 // Returns the surface of a pixel at a depth above 0, and the fourth root of its area divided by its
 // cross-section.
-sap_texel sap_pixel_surface(ivec2 pixel, uint id, float depth, patch_neighbours around, out float area_root) {
+sap_texel sap_pixel_surface(ivec2 pixel, uint id, float depth, patch_neighbours around,
+                            out float area_root) {
   surface_patch patch_here = build_patch(pixel, depth, around);
   vec2 sides = pixel_footprint(depth);
-  float scale = has_scatter_scale() ? clean_scatter_scale(texelFetch(scatter_scale_image, texel_of(pixel), 0).r) : 1.0;
+  float scale = has_scatter_scale()
+                    ? clean_scatter_scale(texelFetch(scatter_scale_image, texel_of(pixel), 0).r)
+                    : 1.0;
   area_root = sqrt(sqrt(patch_here.area));
   float reach = min(inversesqrt(area_root) * scale, largest_half);
-  return sap_texel(depth, round_to_half(vec3(patch_here.slope * sides / sap_footprint(depth), 0.0)).xy,
+  return sap_texel(depth,
+                   round_to_half(vec3(patch_here.slope * sides / sap_footprint(depth), 0.0)).xy,
                    round_to_half(reach), 1.0, id);
 }
 

@@ -1,7 +1,7 @@
 // Pixels of the view, each read once; patches ignore pixels beyond a block of `pixels_across` x
 // `pixels_down`. For kernels that store no level 0. In the block shape an invocation has one block.
-// In the texel shape the `tile_pixels` x `tile_pixels` pixels of a tile are in shared memory. Include
-// after these three constants and sap_tiles.glsl.
+// In the texel shape the `tile_pixels` x `tile_pixels` pixels of a tile are in shared memory.
+// Include after these three constants and sap_tiles.glsl.
 #ifndef DERMIS_SAP_PIXEL_BLOCK_GLSL
 #define DERMIS_SAP_PIXEL_BLOCK_GLSL
 
@@ -21,7 +21,8 @@ float depth_at(int i) { return texel_shape ? tile_depth[i] : block_depth[i]; }
 
 void keep_pixel(int i, ivec2 pixel, bool with_profile, bool with_depth) {
   uint id = with_profile ? texelFetch(material_image, texel_of(pixel), 0).r : 0u;
-  float depth = id != 0u && with_depth ? view_depth(texelFetch(depth_image, texel_of(pixel), 0).r) : 0.0;
+  float depth =
+      id != 0u && with_depth ? view_depth(texelFetch(depth_image, texel_of(pixel), 0).r) : 0.0;
   if (texel_shape) {
     tile_profile[i] = id;
     tile_depth[i] = depth;
@@ -43,9 +44,9 @@ float depth_next_to(ivec2 place, ivec2 offset, uint id) {
 sap_texel surface_at(ivec2 pixel, ivec2 place, out float area_root) {
   int i = pixel_index(place);
   uint id = profile_at(i);
-  patch_neighbours around =
-      patch_neighbours(vec2(depth_next_to(place, ivec2(-1, 0), id), depth_next_to(place, ivec2(0, -1), id)),
-                       vec2(depth_next_to(place, ivec2(1, 0), id), depth_next_to(place, ivec2(0, 1), id)));
+  patch_neighbours around = patch_neighbours(
+      vec2(depth_next_to(place, ivec2(-1, 0), id), depth_next_to(place, ivec2(0, -1), id)),
+      vec2(depth_next_to(place, ivec2(1, 0), id), depth_next_to(place, ivec2(0, 1), id)));
   return sap_pixel_surface(pixel, id, depth_at(i), around, area_root);
 }
 

@@ -39,11 +39,13 @@ vec3 level_light(int level, ivec2 at) {
 float sap_area(sap_texel t, vec2 pixel) {
   vec2 rise = t.slope * sap_footprint(t.depth); // mm per pixel
   float zoom = is_perspective() ? t.depth : 1.0;
-  vec3 ray = mix(vec3(0.0, 0.0, -1.0), view_position(pixel, t.depth) / t.depth, bvec3(is_perspective()));
+  vec3 ray =
+      mix(vec3(0.0, 0.0, -1.0), view_position(pixel, t.depth) / t.depth, bvec3(is_perspective()));
   vec3 along_x = rise.x * ray + vec3(frame.ray_scale.x * zoom, 0.0, 0.0);
   vec3 along_y = rise.y * ray + vec3(0.0, frame.ray_scale.y * zoom, 0.0);
   float cross_section = abs(frame.ray_scale.x * frame.ray_scale.y) * zoom * zoom;
-  return clamp(length(cross(along_x, along_y)) * length(ray) / cross_section, 1.0, 1.0 / min_patch_cosine);
+  return clamp(length(cross(along_x, along_y)) * length(ray) / cross_section, 1.0,
+               1.0 / min_patch_cosine);
 }
 
 // Returns the factor on d of the pixel's scatter_scale, from its reach.
@@ -59,7 +61,8 @@ vec3 sample_light(ivec2 q, vec2 at, sap_texel tap, float lod) {
       sap_texel mean = sap_unpack(level_surface(level, address));
       vec2 offset = (vec2(texel) + 0.5) * float(1 << level) - 0.5 - vec2(q);
       float off = abs(mean.depth - tap.depth - sap_rise(tap.depth, tap.slope, offset));
-      if (mean.id == tap.id && off < on_surface * sap_sigma * float(1 << level) * sap_footprint(tap.depth))
+      if (mean.id == tap.id &&
+          off < on_surface * sap_sigma * float(1 << level) * sap_footprint(tap.depth))
         return level_light(level, address);
     }
   }
@@ -69,7 +72,8 @@ vec3 sample_light(ivec2 q, vec2 at, sap_texel tap, float lod) {
 // Returns the self-normalised mean of `count` samples. Light within the direct radius is the
 // pixel's own light. Radii are stratified and angles are multiples of the golden angle; `offset`
 // shifts both, in units of 2^-32.
-vec3 sap_sampled_light(ivec2 pixel, sap_texel own, vec3 light, uvec2 offset, int count, float lod_bias) {
+vec3 sap_sampled_light(ivec2 pixel, sap_texel own, vec3 light, uvec2 offset, int count,
+                       float lod_bias) {
   float area = sap_area(own, vec2(pixel));
   scatter_profile profile = find_profile(own.id, sap_scale(own, area));
   uint widest = profiles[min(own.id, 255u)].widest;

@@ -30,7 +30,8 @@ struct texel_block {
 // same tile.
 bool listed_block(int level, out texel_block block) {
   uint group = gl_WorkGroupID.y * tile_groups_per_row + gl_WorkGroupID.x;
-  uint index = group * uint(64 / invocations_per_tile) + gl_LocalInvocationIndex / uint(invocations_per_tile);
+  uint index = group * uint(64 / invocations_per_tile) +
+               gl_LocalInvocationIndex / uint(invocations_per_tile);
   uvec2 list = level_tiles_data[level];
   block = texel_block(ivec2(0), ivec2(0), false, 0u, 0u);
   if (index >= list.y)
@@ -39,7 +40,8 @@ bool listed_block(int level, out texel_block block) {
   int part = int(gl_LocalInvocationIndex) % invocations_per_tile;
   block.tile = ivec2(entry.x & 0x7fffu, (entry.x >> 15) & 0x7fffu);
   block.first = 8 * block.tile + (texel_shape ? ivec2(part % 8, part / 8)
-                                              : ivec2(part % blocks_across * block_width, part / blocks_across * block_height));
+                                              : ivec2(part % blocks_across * block_width,
+                                                      part / blocks_across * block_height));
   block.copy_only = (entry.x & tile_copy_bit) != 0u;
   block.children = entry.y & 0x1ffu;
   block.around = entry.y >> 9;
@@ -51,6 +53,8 @@ ivec2 block_offset(int k) { return ivec2(k % block_width, k / block_width); }
 
 // Returns whether a tile was written, by its offset of 0 to 2 from the first of the mask's 3x3
 // tiles.
-bool tile_written(uint mask, ivec2 offset) { return (mask >> uint(3 * offset.y + offset.x) & 1u) != 0u; }
+bool tile_written(uint mask, ivec2 offset) {
+  return (mask >> uint(3 * offset.y + offset.x) & 1u) != 0u;
+}
 
 #endif

@@ -44,7 +44,8 @@ ivec2 near_step(int n) { return ivec2(n % 3 - 1, n / 3 - 1); }
 const int ring_side = 10, coarse_side = 6 - border;
 #ifndef SAP_NO_RING
 shared uvec4 tile_surface[texel_shape ? ring_side * ring_side : 1];
-shared uvec2 tile_light[texel_shape ? ring_side * ring_side : 1]; // halves, exact unless `storage` is full
+shared uvec2
+    tile_light[texel_shape ? ring_side * ring_side : 1]; // halves, exact unless `storage` is full
 #endif
 shared uvec4 tile_coarse_surface[texel_shape ? coarse_side * coarse_side : 1];
 shared uvec4 tile_coarse_scattered[texel_shape ? coarse_side * coarse_side : 1];
@@ -82,7 +83,8 @@ uvec4 ring_surface[block_ring_width * block_ring_height];
 vec4 ring_light[block_ring_width * block_ring_height];
 
 bool is_written(texel_block block, ivec2 place, int level) {
-  return sap_inside(place - border, level) && tile_written(block.around, (place >> 3) - block.tile + 1);
+  return sap_inside(place - border, level) &&
+         tile_written(block.around, (place >> 3) - block.tile + 1);
 }
 // Reads the texels of the block or tile and, if requested, the ring around them.
 void read_ring(texel_block block, int level, bool with_ring) {
@@ -106,8 +108,10 @@ void read_ring(texel_block block, int level, bool with_ring) {
       bool inner = x >= 0 && y >= 0 && x < block_width && y < block_height;
       ivec2 place = block.first + ivec2(x, y);
       bool needed = (inner || with_ring) && is_written(block, place, level);
-      ring_surface[i] = needed ? texelFetch(surface_image, sap_address(place - border, level), 0) : uvec4(0u);
-      ring_light[i] = needed ? texelFetch(light_image, sap_address(place - border, level), 0) : vec4(0.0);
+      ring_surface[i] =
+          needed ? texelFetch(surface_image, sap_address(place - border, level), 0) : uvec4(0u);
+      ring_light[i] =
+          needed ? texelFetch(light_image, sap_address(place - border, level), 0) : vec4(0.0);
     }
   }
 }
@@ -132,12 +136,18 @@ void read_coarser(texel_block block, int level) {
     [[unroll]] for (int i = 0; i < coarse_texels; ++i) {
       ivec2 at = first + ivec2(i % coarse_width, i / coarse_width);
       bool needed = sap_inside(at, level + 1);
-      coarse_surface[i] = needed ? texelFetch(coarse_surface_image, sap_address(at, level + 1), 0) : uvec4(0u);
-      coarse_scattered[i] = needed ? texelFetch(coarse_scattered_image, sap_address(at, level + 1), 0) : uvec4(0u);
+      coarse_surface[i] =
+          needed ? texelFetch(coarse_surface_image, sap_address(at, level + 1), 0) : uvec4(0u);
+      coarse_scattered[i] =
+          needed ? texelFetch(coarse_scattered_image, sap_address(at, level + 1), 0) : uvec4(0u);
 #if SAP_COARSE_LAYERS > 1 && SAP_OWN_LAYERS == 1
       needed = needed && has_second_corner(coarse_surface[i]);
-      coarse_surface[coarse_texels + i] = needed ? texelFetch(second_coarse_surface_image, sap_address(at, level + 1), 0) : uvec4(0u);
-      coarse_scattered[coarse_texels + i] = needed ? texelFetch(second_coarse_scattered_image, sap_address(at, level + 1), 0) : uvec4(0u);
+      coarse_surface[coarse_texels + i] =
+          needed ? texelFetch(second_coarse_surface_image, sap_address(at, level + 1), 0)
+                 : uvec4(0u);
+      coarse_scattered[coarse_texels + i] =
+          needed ? texelFetch(second_coarse_scattered_image, sap_address(at, level + 1), 0)
+                 : uvec4(0u);
 #endif
     }
   }
@@ -153,7 +163,8 @@ sap_place place_of(texel_block block, int k) {
   if (texel_shape) {
     ivec2 local = block.first - 8 * block.tile, at = block.first - border;
     ivec2 corner = ((at - 1) >> 1) - ((8 * block.tile - border - 1) >> 1);
-    return sap_place(at, at & 1, (local.y + 1) * ring_side + local.x + 1, corner.y * coarse_side + corner.x);
+    return sap_place(at, at & 1, (local.y + 1) * ring_side + local.x + 1,
+                     corner.y * coarse_side + corner.x);
   }
   return sap_place(block.first - border + offset, (offset + border) & 1, 0, 0);
 }
@@ -181,7 +192,8 @@ uint take_corners(int k) {
     ivec2 at = block_offset(k) + border; // relative to an even texel
     ivec2 first = ((at - 1) >> 1) - ((border - 1) >> 1);
     [[unroll]] for (int n = 0; n < block_coarse_layers * corner_texels; ++n) {
-      int i = n / corner_texels * coarse_texels + (first.y + n % corner_texels / 2) * coarse_width + first.x + n % 2;
+      int i = n / corner_texels * coarse_texels + (first.y + n % corner_texels / 2) * coarse_width +
+              first.x + n % 2;
       corner_surface[n] = coarse_surface[i];
       corner_scattered[n] = coarse_scattered[i];
       bits |= coarse_surface[i].w;
@@ -199,8 +211,10 @@ void read_near(texel_block block, ivec2 place, int level, bool with_ring) {
     near_surface[n] = needed ? texelFetch(surface_image, sap_address(at, level), 0) : uvec4(0u);
     near_light[n] = needed ? texelFetch(light_image, sap_address(at, level), 0) : vec4(0.0);
     needed = needed && sap_has_second(near_surface[n]);
-    near_surface[near_texels + n] = needed ? texelFetch(second_surface_image, sap_address(at, level), 0) : uvec4(0u);
-    near_light[near_texels + n] = needed ? texelFetch(second_light_image, sap_address(at, level), 0) : vec4(0.0);
+    near_surface[near_texels + n] =
+        needed ? texelFetch(second_surface_image, sap_address(at, level), 0) : uvec4(0u);
+    near_light[near_texels + n] =
+        needed ? texelFetch(second_light_image, sap_address(at, level), 0) : vec4(0.0);
   }
 }
 // Block shape: reads both layers of the coarser texels under the texel.
@@ -208,19 +222,26 @@ void read_corners(ivec2 place, int level, bool there) {
   [[unroll]] for (int n = 0; n < corner_texels; ++n) {
     ivec2 at = ((place - 1) >> 1) + ivec2(n % 2, n / 2);
     bool needed = there && sap_inside(at, level + 1);
-    corner_surface[n] = needed ? texelFetch(coarse_surface_image, sap_address(at, level + 1), 0) : uvec4(0u);
-    corner_scattered[n] = needed ? texelFetch(coarse_scattered_image, sap_address(at, level + 1), 0) : uvec4(0u);
+    corner_surface[n] =
+        needed ? texelFetch(coarse_surface_image, sap_address(at, level + 1), 0) : uvec4(0u);
+    corner_scattered[n] =
+        needed ? texelFetch(coarse_scattered_image, sap_address(at, level + 1), 0) : uvec4(0u);
     needed = needed && has_second_corner(corner_surface[n]);
     int second = corner_texels + n;
-    corner_surface[second] = needed ? texelFetch(second_coarse_surface_image, sap_address(at, level + 1), 0) : uvec4(0u);
-    corner_scattered[second] = needed ? texelFetch(second_coarse_scattered_image, sap_address(at, level + 1), 0) : uvec4(0u);
+    corner_surface[second] =
+        needed ? texelFetch(second_coarse_surface_image, sap_address(at, level + 1), 0) : uvec4(0u);
+    corner_scattered[second] =
+        needed ? texelFetch(second_coarse_scattered_image, sap_address(at, level + 1), 0)
+               : uvec4(0u);
   }
 }
 #endif
 
 // Neighbour n of the texel (0 to 8, row by row): bits of its surface, and its light.
 #ifndef SAP_NO_RING
-int ring_place(sap_place place, int n) { return place.ring + ring_side * near_step(n).y + near_step(n).x; }
+int ring_place(sap_place place, int n) {
+  return place.ring + ring_side * near_step(n).y + near_step(n).x;
+}
 uvec4 near_bits(sap_place place, int n) {
   return texel_shape ? tile_surface[ring_place(place, n)] : near_surface[n];
 }
@@ -238,12 +259,14 @@ vec4 light_near(sap_place place, int level, int n) {
 }
 #if SAP_OWN_LAYERS > 1
 uvec4 second_near_bits(sap_place place, int level, int n) {
-  return texel_shape ? texelFetch(second_surface_image, sap_address(place.at + near_step(n), level), 0)
-                     : near_surface[near_texels + n];
+  return texel_shape
+             ? texelFetch(second_surface_image, sap_address(place.at + near_step(n), level), 0)
+             : near_surface[near_texels + n];
 }
 vec4 second_light_near(sap_place place, int level, int n) {
-  return texel_shape ? texelFetch(second_light_image, sap_address(place.at + near_step(n), level), 0)
-                     : near_light[near_texels + n];
+  return texel_shape
+             ? texelFetch(second_light_image, sap_address(place.at + near_step(n), level), 0)
+             : near_light[near_texels + n];
 }
 #endif
 #endif
@@ -271,7 +294,8 @@ uvec4 second_scattered_at_corner(sap_place place, int level, int n) {
 #endif
 
 // Returns whether to use the second of a texel's two layers.
-bool sap_takes_second(sap_texel own, sap_texel first, float first_off, sap_texel second, float second_off) {
+bool sap_takes_second(sap_texel own, sap_texel first, float first_off, sap_texel second,
+                      float second_off) {
   return second.id == own.id && (first.id != own.id || second_off < first_off);
 }
 
@@ -279,7 +303,8 @@ bool sap_takes_second(sap_texel own, sap_texel first, float first_off, sap_texel
 // Returns a 3x3 tent over the level's own light, over its first `layers` layers.
 sap_sum sap_tent(sap_place place, int level, sap_texel own, int layers) {
   float spacing = float(1 << level);
-  float per_sigma = 1.0 / (sap_sigma * spacing), per_sigma_mm = per_sigma / sap_footprint(own.depth);
+  float per_sigma = 1.0 / (sap_sigma * spacing),
+        per_sigma_mm = per_sigma / sap_footprint(own.depth);
   // Tilt in units of the tent's width: across, down, and along both diagonals. The tilt is
   // symmetric to both sides.
   vec2 tilt = own.slope * (spacing * per_sigma);
@@ -325,20 +350,22 @@ sap_sum sap_tent(sap_place place, int level, sap_texel own, int layers) {
 // their first `layers` layers, at the texel at `place`. `confidence` receives the fraction
 // that remains with stricter weights, which use the farther tangent plane: each texel must lie on
 // the plane of the other.
-sap_sum sap_from_coarser(sap_place place, int level, sap_texel own, vec3 fallback, int layers, out float confidence) {
+sap_sum sap_from_coarser(sap_place place, int level, sap_texel own, vec3 fallback, int layers,
+                         out float confidence) {
   float spacing = float(1 << level);
   float per_sigma_mm = 1.0 / (sap_sigma * spacing * sap_footprint(own.depth));
   vec3 sum = vec3(0.0), mass = vec3(0.0);
   confidence = 0.0;
   [[unroll]] for (int j = 0; j < 2; ++j)
     [[unroll]] for (int i = 0; i < 2; ++i) {
-      vec2 steps = vec2(2 * ((place.odd - 1) >> 1) + 2 * ivec2(i, j) - place.odd) + 0.5, offset = steps * spacing;
-      float bilinear = (abs(steps.x) < 1.0 ? 0.75 : 0.25) * (abs(steps.y) < 1.0 ? 0.75 : 0.25);
-      int n = 2 * j + i;
-      uvec4 bits = corner_bits(place, n);
-      sap_texel tap = sap_unpack(bits);
-      uvec4 handed_down = scattered_at_corner(place, n);
-      float off = sap_off_planes(own, tap, offset);
+    vec2 steps = vec2(2 * ((place.odd - 1) >> 1) + 2 * ivec2(i, j) - place.odd) + 0.5,
+         offset = steps * spacing;
+    float bilinear = (abs(steps.x) < 1.0 ? 0.75 : 0.25) * (abs(steps.y) < 1.0 ? 0.75 : 0.25);
+    int n = 2 * j + i;
+    uvec4 bits = corner_bits(place, n);
+    sap_texel tap = sap_unpack(bits);
+    uvec4 handed_down = scattered_at_corner(place, n);
+    float off = sap_off_planes(own, tap, offset);
 #if SAP_COARSE_LAYERS > 1
       if (layers > 1 && (!texel_shape || has_second_corner(bits))) {
         sap_texel second = sap_unpack(second_corner_bits(place, level, n));
@@ -352,8 +379,9 @@ sap_sum sap_from_coarser(sap_place place, int level, sap_texel own, vec3 fallbac
 #endif
       off *= per_sigma_mm;
       float kept = tap.id == own.id ? exp2(sap_factor(sap_depth_width) * off * off) : 0.0;
-      sap_scattered theirs = settings.storage == STORAGE_FULL ? sap_unpack_scattered_full(handed_down)
-                                                              : sap_unpack_scattered(handed_down);
+      sap_scattered theirs = settings.storage == STORAGE_FULL
+                                 ? sap_unpack_scattered_full(handed_down)
+                                 : sap_unpack_scattered(handed_down);
       vec3 tap_mass = bilinear * kept * theirs.mass;
       mass += tap_mass;
       sum += tap_mass * theirs.light;
@@ -378,7 +406,8 @@ vec3 sap_d_px(sap_texel own) {
 sap_sum sap_blend(vec3 weight_a, vec3 a, vec3 weight_b, vec3 b, sap_sum rest) {
   vec3 total = weight_a + weight_b + rest.mass;
   vec3 scale = 1.0 / max(total, vec3(sap_negligible));
-  vec3 mean = rest.light + weight_a * scale * (a - rest.light) + weight_b * scale * (b - rest.light);
+  vec3 mean =
+      rest.light + weight_a * scale * (a - rest.light) + weight_b * scale * (b - rest.light);
   return sap_sum(max(mean, vec3(0.0)), total);
 }
 

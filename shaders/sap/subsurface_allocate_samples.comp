@@ -19,7 +19,9 @@ shared uint counts[lanes];
 shared int last_bin;    // bins above are paid in full, bins below not at all
 shared uint last_units; // units for the tiles of this bin
 
-uint tile_error_of(uint tile) { return class_of_tile(classes_data[tile]) == class_scatter ? tile_errors_data[tile] : 0u; }
+uint tile_error_of(uint tile) {
+  return class_of_tile(classes_data[tile]) == class_scatter ? tile_errors_data[tile] : 0u;
+}
 uint steps_before(uint tile) { return has_before() ? before_data[tile] : 0u; }
 
 // Inclusive scan, Hillis & Steele 1986.

@@ -13,7 +13,8 @@
 
 // Block shape: reads both layers of the children of parent k.
 sap_parent read_children(texel_block block, int k, int finer) {
-  sap_parent parent = sap_parent(block.first - 1 + block_offset(k), finer, float(1 << finer), 0, true);
+  sap_parent parent =
+      sap_parent(block.first - 1 + block_offset(k), finer, float(1 << finer), 0, true);
   [[unroll]] for (int c = 0; c < children_a_layer; ++c) {
     ivec2 address = address_of_child(parent, c);
     bool needed = child_written(block, 2 * parent.at - 1 + ivec2(c & 3, c >> 2), finer);
@@ -22,7 +23,8 @@ sap_parent read_children(texel_block block, int k, int finer) {
     child_light[c] = needed ? texelFetch(light_image, address, 0) : vec4(0.0);
     needed = needed && sap_has_second(bits) && has_second_surface() && has_second_light();
     int second = children_a_layer + c;
-    children[second] = sap_unpack(needed ? texelFetch(second_surface_image, address, 0) : uvec4(0u));
+    children[second] =
+        sap_unpack(needed ? texelFetch(second_surface_image, address, 0) : uvec4(0u));
     child_light[second] = needed ? texelFetch(second_light_image, address, 0) : vec4(0.0);
   }
   return parent;

@@ -17,7 +17,8 @@ const int pixels_across = block_width, pixels_down = block_height, tile_pixels =
 void read_pixels(texel_block block) {
   [[unroll]] for (int k = 0; k < block_texels; ++k) {
     ivec2 pixel = block.first + block_offset(k);
-    keep_pixel(texel_shape ? int(gl_LocalInvocationIndex) : k, pixel, inside_rect(pixel), !block.copy_only);
+    keep_pixel(texel_shape ? int(gl_LocalInvocationIndex) : k, pixel, inside_rect(pixel),
+               !block.copy_only);
   }
 }
 
@@ -53,12 +54,14 @@ void main() {
     vec4 result = vec4(0.0, 0.0, 0.0, 1.0);
     int i = pixel_index(in_block);
     if (profile_at(i) != 0u) {
-      result.rgb = pixel_light(lighting_image, albedo_image, has_albedo(), settings.texturing, texel_of(place.at));
+      result.rgb = pixel_light(lighting_image, albedo_image, has_albedo(), settings.texturing,
+                               texel_of(place.at));
       if (depth_at(i) > 0.0) {
         take_corners(k);
         result = gather(place, in_block, result.rgb);
       }
     }
-    imageStore(scattered_image, texel_of(place.at), settings.storage == STORAGE_FULL ? result : round_to_half(result));
+    imageStore(scattered_image, texel_of(place.at),
+               settings.storage == STORAGE_FULL ? result : round_to_half(result));
   }
 }

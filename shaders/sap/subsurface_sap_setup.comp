@@ -9,7 +9,8 @@
 const int block_width = 4, block_height = 2;
 #include "sap/sap_tiles.glsl"
 
-const int ring_width = (texel_shape ? 8 : block_width) + 2, ring_height = (texel_shape ? 8 : block_height) + 2;
+const int ring_width = (texel_shape ? 8 : block_width) + 2,
+          ring_height = (texel_shape ? 8 : block_height) + 2;
 // mm; 0 if nothing is visible
 uint block_profile[(block_width + 2) * (block_height + 2)];
 float block_depth[(block_width + 2) * (block_height + 2)];
@@ -41,8 +42,8 @@ void read_pixel(ivec2 first, int i) {
 }
 void read_ring(texel_block block) {
   if (texel_shape) {
-    [[dont_unroll]] for (int i = int(gl_LocalInvocationIndex); i < ring_width * ring_height; i += 64)
-      read_pixel(8 * block.tile, i);
+    [[dont_unroll]] for (int i = int(gl_LocalInvocationIndex); i < ring_width * ring_height;
+                         i += 64) read_pixel(8 * block.tile, i);
     barrier();
   } else {
     [[unroll]] for (int i = 0; i < (block_width + 2) * (block_height + 2); ++i)

@@ -1,6 +1,7 @@
 #version 460
 // Computes level 1 of the surface-aware pyramid directly from the view, from those of 2x2 pixels
-// that lie on one surface. Level 0 is not stored. Patches ignore pixels beyond blocks of 4x4 pixels.
+// that lie on one surface. Level 0 is not stored. Patches ignore pixels beyond blocks of 4x4
+// pixels.
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 #include "sap/subsurface_sap_setup_half_res.bindings.glsl"
@@ -15,7 +16,8 @@ sap_texel block_children[side * side];
 vec4 block_light[side * side];
 
 void read_pixel(texel_block block, int i, ivec2 pixel) {
-  bool needed = inside_rect(pixel) && tile_written(block.children, (pixel >> 3) - 2 * block.tile + 1);
+  bool needed =
+      inside_rect(pixel) && tile_written(block.children, (pixel >> 3) - 2 * block.tile + 1);
   keep_pixel(i, pixel, needed, true);
 }
 // Texel shape: reads the pixels of the tile.
@@ -30,7 +32,8 @@ void compute_child(ivec2 pixel, ivec2 place, out sap_texel child, out vec4 light
   light = vec4(0.0);
   if (profile_at(i) != 0u && depth_at(i) > 0.0) {
     child = surface_at(pixel, place, light.a);
-    light.rgb = pixel_light(lighting_image, albedo_image, has_albedo(), settings.texturing, texel_of(pixel));
+    light.rgb = pixel_light(lighting_image, albedo_image, has_albedo(), settings.texturing,
+                            texel_of(pixel));
   }
 }
 // Block shape: reads the pixels of a block and computes all children.
@@ -59,7 +62,8 @@ void main() {
     [[unroll]] for (int c = 0; c < children_a_layer; ++c) {
       ivec2 child = ivec2(c % children_across, c / children_across);
       if (texel_shape) {
-        compute_child(2 * parent.at + child, 2 * (block.first - 8 * block.tile) + child, children[c], child_light[c]);
+        compute_child(2 * parent.at + child, 2 * (block.first - 8 * block.tile) + child,
+                      children[c], child_light[c]);
       } else {
         children[c] = block_children[shared_child(k, c)];
         child_light[c] = block_light[shared_child(k, c)];

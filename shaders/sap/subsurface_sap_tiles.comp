@@ -95,12 +95,15 @@ void main() {
     }
     uint at = next + counts[lane] - own;
     for (int word = first; word < last; ++word) {
-      uint bits = own == 0u ? 0u : fits(tiles) ? flags[level & 1][word] : find_word(level, word, tiles);
+      uint bits = own == 0u     ? 0u
+                  : fits(tiles) ? flags[level & 1][word]
+                                : find_word(level, word, tiles);
       while (bits != 0u) {
         int index = 32 * word + findLSB(bits);
         bits &= bits - 1u;
         ivec2 tile = ivec2(index % tiles.x, index / tiles.x);
-        uint place = level == 0 ? pack_tile(uvec2(tile), classes_data[index]) : uint(tile.x) | uint(tile.y) << 15;
+        uint place = level == 0 ? pack_tile(uvec2(tile), classes_data[index])
+                                : uint(tile.x) | uint(tile.y) << 15;
         if (level == 0)
           tiles_data[1u + at - next] = place;
         if (builds) {
@@ -123,11 +126,14 @@ void main() {
       arguments_data[2] = 1u;
     }
     if (lane == 0u && builds) {
-      uint per_group = texel_shape ? 1u : level == 0 ? sap_tiles_per_group_first : sap_tiles_per_group;
+      uint per_group = texel_shape  ? 1u
+                       : level == 0 ? sap_tiles_per_group_first
+                                    : sap_tiles_per_group;
       uint groups = (listed + per_group - 1u) / per_group;
       level_tiles_data[level] = uvec2(next, listed);
       level_arguments_data[4 * level] = min(groups, tile_groups_per_row);
-      level_arguments_data[4 * level + 1] = (groups + tile_groups_per_row - 1u) / tile_groups_per_row;
+      level_arguments_data[4 * level + 1] =
+          (groups + tile_groups_per_row - 1u) / tile_groups_per_row;
       level_arguments_data[4 * level + 2] = 1u;
       level_arguments_data[4 * level + 3] = groups;
       counters.level_groups[level] = groups;

@@ -15,7 +15,8 @@ void main() {
   texel_block block;
   if (!listed_block(level, block))
     return;
-  bool smooth_level = settings.variant == VARIANT_SMOOTH || level == 1, last = !has_coarse_scattered();
+  bool smooth_level = settings.variant == VARIANT_SMOOTH || level == 1,
+       last = !has_coarse_scattered();
   read_ring(block, level, smooth_level);
   if (!last)
     read_coarser(block, level);

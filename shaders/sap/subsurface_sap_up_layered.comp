@@ -40,7 +40,8 @@ void main() {
   texel_block block;
   if (!listed_block(level, block))
     return;
-  bool smooth_level = settings.variant == VARIANT_SMOOTH || level == 1, last = !has_coarse_scattered();
+  bool smooth_level = settings.variant == VARIANT_SMOOTH || level == 1,
+       last = !has_coarse_scattered();
   read_ring(block, level, smooth_level);
   if (!last)
     read_coarser(block, level);
@@ -63,7 +64,8 @@ void main() {
     uvec4 bits = uvec4(0u);
     sap_texel own = sap_unpack(near_bits(place, near_centre));
     if (own.id != 0u)
-      bits = climb(place, level, own, light_near(place, level, near_centre).rgb, 1, smooth_level, last);
+      bits = climb(place, level, own, light_near(place, level, near_centre).rgb, 1, smooth_level,
+                   last);
     imageStore(scattered_image, sap_address(place.at, level), bits);
   }
   if (layered != 0u)

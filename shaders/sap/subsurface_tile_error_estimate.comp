@@ -25,12 +25,15 @@ void main() {
     ivec2 texel = texel_of(pixel);
     if (texelFetch(material_image, texel, 0).r != 0u) {
       vec4 light = texelFetch(scattered_image, texel, 0);
-      float missing_confidence = clamp((settings.below - light.a) / max(settings.below, 1e-6), 0.0, 1.0);
+      float missing_confidence =
+          clamp((settings.below - light.a) / max(settings.below, 1e-6), 0.0, 1.0);
       float pixel_error = dot(light.rgb, luminance_weights);
       if (has_light())
-        pixel_error = abs(pixel_error - dot(texelFetch(light_image, texel, 0).rgb, luminance_weights));
+        pixel_error =
+            abs(pixel_error - dot(texelFetch(light_image, texel, 0).rgb, luminance_weights));
       float exposed_error = clamp(pixel_error * frame.exposure, 0.0, 4.0);
-      float importance = has_importance() ? clamp(texelFetch(importance_image, texel, 0).r, 0.0, 1.0) : 1.0;
+      float importance =
+          has_importance() ? clamp(texelFetch(importance_image, texel, 0).r, 0.0, 1.0) : 1.0;
       atomicAdd(sum, uint(missing_confidence * exposed_error * importance * error_steps + 0.5));
     }
   }

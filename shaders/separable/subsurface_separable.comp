@@ -15,7 +15,8 @@
 
 const int side_taps[3] = int[3](5, 8, 12); // for 11, 17, 25 taps
 const int rows_per_node[3] = int[3](5 + 2, 8 + 2, 12 + 2);
-const int first_row[3] = int[3](0, separable_nodes * rows_per_node[0], separable_nodes * (rows_per_node[0] + rows_per_node[1]));
+const int first_row[3] = int[3](0, separable_nodes* rows_per_node[0],
+                                separable_nodes*(rows_per_node[0] + rows_per_node[1]));
 
 struct kernel_place {
   int low;       // row 0 of the node below
@@ -37,7 +38,8 @@ kernel_place find_kernel(uint separable_row_start, int choice, float d_px) {
 }
 
 vec4 separable_row(kernel_place place, int row) {
-  vec4 value = mix(separable_rows[place.low + row], separable_rows[place.low + place.step + row], place.part);
+  vec4 value = mix(separable_rows[place.low + row], separable_rows[place.low + place.step + row],
+                   place.part);
   value.w *= place.stretch;
   return value;
 }
@@ -72,11 +74,13 @@ vec3 axis_pass(ivec2 pixel, uint id, float depth, scatter_profile profile, uint 
         continue;
       float across = distance_px * footprint;
       float rise = tap_depth - depth;
-      vec3 nearness = abs(rise) > 1e-4 * across ? profile_falloff(profile, sqrt(across * across + rise * rise)) /
-                                                      max(profile_falloff(profile, across), vec3(1e-37))
-                                                : vec3(1.0);
+      vec3 nearness = abs(rise) > 1e-4 * across
+                          ? profile_falloff(profile, sqrt(across * across + rise * rise)) /
+                                max(profile_falloff(profile, across), vec3(1e-37))
+                          : vec3(1.0);
       vec3 w = tap.rgb * fraction * nearness;
-      sum += w * (vertical ? texelFetch(blurred_image, texel, 0).rgb : texelFetch(light_image, texel, 0).rgb);
+      sum += w * (vertical ? texelFetch(blurred_image, texel, 0).rgb
+                           : texelFetch(light_image, texel, 0).rgb);
       total += w;
     }
   }
@@ -98,9 +102,11 @@ void main() {
   vec3 result = light;
   uint row = profiles[min(id, 255u)].separable_row;
   float depth = view_depth(texelFetch(depth_image, texel, 0).r);
-  float scale = has_scatter_scale() ? clean_scatter_scale(texelFetch(scatter_scale_image, texel, 0).r) : 1.0;
+  float scale =
+      has_scatter_scale() ? clean_scatter_scale(texelFetch(scatter_scale_image, texel, 0).r) : 1.0;
   scatter_profile profile = find_profile(id, scale);
-  if (!copy_only && depth > 0.0 && row != 0xffffffffu && projected_d(profile.d.w, depth) >= copy_below_d_px) {
+  if (!copy_only && depth > 0.0 && row != 0xffffffffu &&
+      projected_d(profile.d.w, depth) >= copy_below_d_px) {
     row += uint(settings.kernel * separable_rows_per_kernel);
     bool vertical = settings.axis == AXIS_VERTICAL;
     vec3 own = vertical && has_blurred() ? texelFetch(blurred_image, texel, 0).rgb : light;

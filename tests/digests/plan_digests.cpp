@@ -47,8 +47,9 @@ bool digest_file(const std::filesystem::path& path) {
   bool good = true;
   for (const bool bound : {true, false}) {
     input.bound.assign(graph->resources.size(), bound);
-    good =
-        print_digest(fmt::format("{} {}", path.stem().string(), bound ? "bound" : "unbound"), input) && good;
+    good = print_digest(fmt::format("{} {}", path.stem().string(), bound ? "bound" : "unbound"),
+                        input) &&
+           good;
   }
   return good;
 }

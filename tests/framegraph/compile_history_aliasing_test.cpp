@@ -15,7 +15,8 @@ namespace dermis::testing {
 namespace {
 
 bool aliases_history(const Plan& plan, const PlanResource& resource) {
-  return resource.first_instance != no_instance && !plan.placements[resource.first_instance].persistent &&
+  return resource.first_instance != no_instance &&
+         !plan.placements[resource.first_instance].persistent &&
          plan.heaps[plan.placements[resource.first_instance].heap].persistent;
 }
 
@@ -107,7 +108,8 @@ TEST(HistoryAliasing, Verifier_WrongInstance_IsRejected) {
           Plan mutant = plan;
           for (uint32_t i = 0; i < resource.instance_count; ++i)
             mutant.placements[resource.first_instance + i].offset =
-                plan.placements[resource.first_instance + (i + turn) % resource.instance_count].offset;
+                plan.placements[resource.first_instance + (i + turn) % resource.instance_count]
+                    .offset;
           expect_same_verdict(mutant, fmt::format("{} frames, turned by {}", frames, turn), tally);
         }
       }
@@ -131,7 +133,8 @@ TEST(HistoryAliasing, RandomGraphs_SaveMemoryWithEqualPixels) {
     without += bytes_without_history_aliasing(plan);
     const Interpretation reference = graph_reference(b.graph, b.pass_types, frames, seed);
     for (uint64_t order = 0; order < 3; ++order)
-      ASSERT_TRUE(agrees(interpret(plan, {frames, seed, order + 1, order, 0}), reference)) << "seed " << seed;
+      ASSERT_TRUE(agrees(interpret(plan, {frames, seed, order + 1, order, 0}), reference))
+          << "seed " << seed;
   }
   RecordProperty("aliased_resources", std::to_string(aliased_resources));
   RecordProperty("transient_bytes", std::to_string(with));

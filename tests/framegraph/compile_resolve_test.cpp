@@ -76,7 +76,8 @@ TEST(Sizes, CircularReference_IsRejectedWithTheCycle) {
     b.graph.resources[from].size.base = SizeExpression::Base::resource;
     b.graph.resources[from].size.resource = ResourceId{to};
   }
-  const Diagnostic error = rejected_once(b, DiagnosticId::size_cycle, "'middle' -> 'result' -> 'middle'");
+  const Diagnostic error =
+      rejected_once(b, DiagnosticId::size_cycle, "'middle' -> 'result' -> 'middle'");
   EXPECT_EQ(error.where.line, b.graph.resources[1].where.line);
   EXPECT_EQ(error.related[0].first.line, b.graph.resources[2].where.line);
 }
@@ -215,7 +216,8 @@ TEST(Formats, HostFormatMustBeDeclared) {
   input.host_formats[0] = Format::r8_unorm;
   const auto errors = rejected(b, input);
   EXPECT_EQ(errors[0].id, DiagnosticId::host_format);
-  EXPECT_THAT(errors[0].text, HasSubstr("binds 'light' as r8_unorm; declared are rgba16f, b10g11r11f"));
+  EXPECT_THAT(errors[0].text,
+              HasSubstr("binds 'light' as r8_unorm; declared are rgba16f, b10g11r11f"));
 }
 
 TEST(Limits, DeviceLimitsAreEnforced) {
@@ -249,7 +251,8 @@ TEST(Packing, ItemsAliveTogetherNeverOverlap) {
       const bool together = items[i].first <= items[k].last && items[k].first <= items[i].last;
       const bool apart = packing.offsets[i] + items[i].size <= packing.offsets[k] ||
                          packing.offsets[k] + items[k].size <= packing.offsets[i];
-      EXPECT_TRUE(!together || apart || items[i].size == 0 || items[k].size == 0) << i << " and " << k;
+      EXPECT_TRUE(!together || apart || items[i].size == 0 || items[k].size == 0)
+          << i << " and " << k;
     }
   }
   EXPECT_EQ(packing.lower_bound, 350u); // 100 + 50 + 200 are alive in pass 2.

@@ -23,7 +23,8 @@ GraphBuilder pyramid() {
   return b;
 }
 
-const PlanAccess& access_of(const GraphBuilder& b, const Plan& plan, const std::string& pass, uint32_t port) {
+const PlanAccess& access_of(const GraphBuilder& b, const Plan& plan, const std::string& pass,
+                            uint32_t port) {
   for (const PlanPass& one : plan.passes)
     for (uint32_t a = one.first_access; a < one.first_access + one.access_count; ++a)
       if (one.declared == b.pass_id(pass) && plan.accesses[a].port == port) return plan.accesses[a];
@@ -31,8 +32,8 @@ const PlanAccess& access_of(const GraphBuilder& b, const Plan& plan, const std::
   return plan.accesses.front();
 }
 
-std::vector<PlanBarrier> barriers_before(const GraphBuilder& b, const Plan& plan, const std::string& pass,
-                                         const std::string& resource) {
+std::vector<PlanBarrier> barriers_before(const GraphBuilder& b, const Plan& plan,
+                                         const std::string& pass, const std::string& resource) {
   std::vector<PlanBarrier> found;
   for (const PlanPass& one : plan.passes)
     for (uint32_t i = one.first_barrier; i < one.first_barrier + one.barrier_count; ++i)
@@ -51,8 +52,8 @@ TEST(ImageRange, ReferenceText_RoundTrips) {
   }
   EXPECT_TRUE(parse_image_range("")->whole());
   EXPECT_TRUE(parse_image_range("#0..[0..]")->whole());
-  for (const char* text : {"#", "#-1", "#15", "#3..1", "#1.2", "#1...2", "[", "[]", "[0", "0]", "[2048]",
-                           "[0]#1", "#1[0]x", " #1", "#1 ", "#99999999999", "#1..99"})
+  for (const char* text : {"#", "#-1", "#15", "#3..1", "#1.2", "#1...2", "[", "[]", "[0", "0]",
+                           "[2048]", "[0]#1", "#1[0]x", " #1", "#1 ", "#99999999999", "#1..99"})
     EXPECT_FALSE(parse_image_range(text)) << text;
 }
 
@@ -60,7 +61,8 @@ TEST(Subresources, OneMipIsReadWhileAnotherIsWritten) {
   const auto b = pyramid();
   const Plan plan = compiled(b).plan;
   EXPECT_EQ(pass_names(b, plan), "base down1 down2 gather");
-  const PlanAccess &read = access_of(b, plan, "down1", 0), &written = access_of(b, plan, "down1", 1);
+  const PlanAccess &read = access_of(b, plan, "down1", 0),
+                   &written = access_of(b, plan, "down1", 1);
   EXPECT_EQ(read.range, (SubresourceRange{0, 1, 0, 1}));
   EXPECT_EQ(read.layout, Layout::shader_read_only);
   EXPECT_EQ(written.range, (SubresourceRange{1, 1, 0, 1}));
@@ -88,10 +90,11 @@ TEST(Subresources, HistoryMipsKeepSeparateLayouts) {
   const Plan plan = compiled(kept_mips()).plan;
   ASSERT_EQ(plan.histories.size(), 1u);
   EXPECT_EQ(plan.histories[0].range_count, 2u);
-  EXPECT_THAT(plan.history_ranges, ElementsAre(SubresourceRange{0, 1, 0, 1}, SubresourceRange{1, 1, 0, 1}));
+  EXPECT_THAT(plan.history_ranges,
+              ElementsAre(SubresourceRange{0, 1, 0, 1}, SubresourceRange{1, 1, 0, 1}));
   // Mip 0 keeps the layout of its last read; mip 1 keeps the layout of its write.
-  EXPECT_THAT(plan.history_layouts,
-              ElementsAre(Layout::undefined, Layout::undefined, Layout::shader_read_only, Layout::general));
+  EXPECT_THAT(plan.history_layouts, ElementsAre(Layout::undefined, Layout::undefined,
+                                                Layout::shader_read_only, Layout::general));
 }
 
 TEST(Subresources, HistoryOfUnwrittenMip_IsRejected) {
@@ -99,7 +102,8 @@ TEST(Subresources, HistoryOfUnwrittenMip_IsRejected) {
   b.graph.resources[1].mips = 3;
   b.exported("late");
   b.pass("needs", "test.need", {{"a", "kept#2@-1"}}, {{"out", "late"}});
-  rejected_once(b, DiagnosticId::history_unwritten, "'kept#2@-1', but no pass that is on writes 'kept#2'");
+  rejected_once(b, DiagnosticId::history_unwritten,
+                "'kept#2@-1', but no pass that is on writes 'kept#2'");
 }
 
 // Expects the diagnostic for an optional port that reads a mip chain with unwritten mips.
@@ -119,8 +123,9 @@ TEST(Subresources, PartlyWrittenChain_AtOptionalPort_IsRejected) {
   b.pass("third", "test.need", {{"a", "light"}}, {{"out", "chain#2"}});
   b.pass("gather", "test.shade", {{"a", "chain"}}, {{"out", "result"}});
   const Diagnostic one = half_written(b);
-  EXPECT_THAT(one.text, HasSubstr("pass 'gather', port 'a' reads 'chain', but no pass that is on writes "
-                                  "'chain#1' or 'chain#3..6'"));
+  EXPECT_THAT(one.text,
+              HasSubstr("pass 'gather', port 'a' reads 'chain', but no pass that is on writes "
+                        "'chain#1' or 'chain#3..6'"));
   // The related place is the declaration, because no pass writes the missing mip.
   EXPECT_EQ(one.related.size(), 1u);
 }
@@ -157,7 +162,8 @@ TEST(Subresources, OptionalPort_NothingWritten_StaysUnbound) {
   for (uint32_t pass = 0; pass < 3; ++pass)
     b.graph.passes[pass].when = b.when("on");
   b.graph.passes.pop_back();
-  b.pass("maybe", "test.shade", {{"a", "chain"}, {"b", "light"}, {"c", "chain#1"}}, {{"out", "second"}});
+  b.pass("maybe", "test.shade", {{"a", "chain"}, {"b", "light"}, {"c", "chain#1"}},
+         {{"out", "second"}});
   b.pass("show", "test.need", {{"a", "second"}}, {{"out", "result"}});
   const auto plan = compiled(b);
   const std::string text = reasons(b, plan, Reason::About::pass, 3);

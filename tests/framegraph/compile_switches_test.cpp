@@ -43,7 +43,8 @@ TEST(Switches, AliasingOff_HeapIsTheSumOfTransients) {
     for (size_t i = 0; i < plan.placements.size(); ++i)
       for (size_t j = 0; j < i; ++j) {
         const Placement &a = plan.placements[i], &b = plan.placements[j];
-        EXPECT_TRUE(a.heap != b.heap || a.offset + a.size <= b.offset || b.offset + b.size <= a.offset);
+        EXPECT_TRUE(a.heap != b.heap || a.offset + a.size <= b.offset ||
+                    b.offset + b.size <= a.offset);
       }
     if (HasFailure()) return;
   }
@@ -82,7 +83,8 @@ TEST(Switches, ResourceKeptAlive_SharesNoMemory) {
     for (const Placement& kept : plan.placements) {
       if (plan.resources[kept.resource].declared != input.keep_alive) continue;
       for (const Placement& other : plan.placements)
-        EXPECT_TRUE(&other == &kept || other.heap != kept.heap || other.offset + other.size <= kept.offset ||
+        EXPECT_TRUE(&other == &kept || other.heap != kept.heap ||
+                    other.offset + other.size <= kept.offset ||
                     kept.offset + kept.size <= other.offset);
     }
   }

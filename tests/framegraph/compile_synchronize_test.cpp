@@ -10,7 +10,8 @@ namespace {
 
 using ReasonKind = PlanBarrier::ReasonKind;
 
-std::vector<PlanBarrier> barriers_before(const GraphBuilder& b, const Plan& plan, const std::string& pass) {
+std::vector<PlanBarrier> barriers_before(const GraphBuilder& b, const Plan& plan,
+                                         const std::string& pass) {
   for (const PlanPass& one : plan.passes)
     if (one.declared == b.pass_id(pass))
       return {plan.barriers.begin() + one.first_barrier,
@@ -61,11 +62,13 @@ TEST(Synchronize, ASecondReadInTheSameLayoutNeedsNoBarrier) {
 TEST(Synchronize, BufferReadAtTwoStagesGetsOneBarrier) {
   GraphBuilder b{"buffer tiles", "export result"};
   b.pass("list", "test.list", {}, {{"tiles", "tiles"}});
-  b.pass("scatter", "test.tiles", {{"tiles", "tiles"}, {"arguments", "tiles"}}, {{"out", "result"}});
+  b.pass("scatter", "test.tiles", {{"tiles", "tiles"}, {"arguments", "tiles"}},
+         {{"out", "result"}});
   const auto whole = compiled(b);
   const auto barrier = barrier_on(b, whole.plan, "scatter", "tiles");
   EXPECT_EQ(barrier.destination_stages, stage::compute_shader | stage::draw_indirect);
-  EXPECT_EQ(barrier.destination_access, access::shader_storage_read | access::indirect_command_read);
+  EXPECT_EQ(barrier.destination_access,
+            access::shader_storage_read | access::indirect_command_read);
   EXPECT_EQ(barrier.old_layout, Layout::undefined);
   EXPECT_EQ(barrier.new_layout, Layout::undefined);
 }
@@ -168,7 +171,8 @@ TEST(Aliasing, NewOccupantWaitsForAllOldOnesAndDiscards) {
 TEST(Aliasing, FirstOccupantWaitsForThePreviousFrame) {
   GraphBuilder b{"import light", "buffer tiles", "export result"};
   b.pass("list", "test.list", {}, {{"tiles", "tiles"}});
-  b.pass("scatter", "test.tiles", {{"tiles", "tiles"}, {"arguments", "tiles"}}, {{"out", "result"}});
+  b.pass("scatter", "test.tiles", {{"tiles", "tiles"}, {"arguments", "tiles"}},
+         {{"out", "result"}});
   const auto whole = compiled(b);
   const auto barrier = barrier_on(b, whole.plan, "list", "tiles");
   EXPECT_EQ(barrier.why, ReasonKind::first_use);
@@ -357,8 +361,8 @@ TEST(Verify, ConditionalReader_OrdersNoLaterWriter) {
     if (pass.declared != b.pass_id("count")) continue;
     plan.accesses[pass.first_access].access = access::shader_storage_write;
     ASSERT_EQ(pass.barrier_count, 1u);
-    plan.barriers[pass.first_barrier].source_access = plan.barriers[pass.first_barrier].destination_access =
-        0;
+    plan.barriers[pass.first_barrier].source_access =
+        plan.barriers[pass.first_barrier].destination_access = 0;
   }
   EXPECT_FALSE(verify(plan).violations.empty());
   EXPECT_NE(first_hazard(plan), "");

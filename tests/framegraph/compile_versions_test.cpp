@@ -24,7 +24,8 @@ TEST(Culling, UnneededPassAndItsProducersDoNotRun) {
   EXPECT_EQ(pass_names(b, plan.plan), "blur finish");
   EXPECT_THAT(reasons(b, plan, Reason::About::pass, b.pass_id("make_y").value),
               HasSubstr("culled: no bound export needs 'y'"));
-  EXPECT_THAT(reasons(b, plan, Reason::About::pass, b.pass_id("make_x").value), HasSubstr("culled"));
+  EXPECT_THAT(reasons(b, plan, Reason::About::pass, b.pass_id("make_x").value),
+              HasSubstr("culled"));
   EXPECT_THAT(reasons(b, plan, Reason::About::pass, b.pass_id("blur").value),
               HasSubstr("'finish' reads its 'blurred'"));
 }
@@ -142,7 +143,8 @@ TEST(Choice, ExclusiveProducersOfOneResourceAreFine) {
   GraphBuilder b{"import light", "image scattered", "export result"};
   b.boolean("fast", false);
   b.pass("fast_way", "test.shade", {{"a", "light"}}, {{"out", "scattered"}}).when = b.when("fast");
-  b.pass("slow_way", "test.shade", {{"a", "light"}}, {{"out", "scattered"}}).when = b.when("fast", false);
+  b.pass("slow_way", "test.shade", {{"a", "light"}}, {{"out", "scattered"}}).when =
+      b.when("fast", false);
   b.pass("finish", "test.need", {{"a", "scattered"}}, {{"out", "result"}});
   EXPECT_EQ(pass_names(b, compiled(b).plan), "slow_way finish");
   auto input = b.input();
@@ -153,8 +155,8 @@ TEST(Choice, ExclusiveProducersOfOneResourceAreFine) {
 TEST(Choice, TwoEnabledProducers_AreRejectedNamingBoth) {
   GraphBuilder b = chain();
   b.pass("blur_again", "test.shade", {{"a", "light"}}, {{"out", "blurred"}});
-  const Diagnostic error =
-      rejected_once(b, DiagnosticId::second_producer, "'blur' and 'blur_again' both write 'blurred'");
+  const Diagnostic error = rejected_once(b, DiagnosticId::second_producer,
+                                         "'blur' and 'blur_again' both write 'blurred'");
   EXPECT_EQ(error.related[0].first.line, b.graph.passes[0].where.line);
 }
 
@@ -262,7 +264,8 @@ TEST(Order, CycleIsRejectedWithThePlaceOfEachPass) {
   b.pass("first", "test.need", {{"a", "y"}}, {{"out", "x"}});
   b.pass("second", "test.need", {{"a", "x"}}, {{"out", "y"}});
   b.pass("third", "test.need", {{"a", "y"}}, {{"out", "z"}});
-  const Diagnostic error = rejected_once(b, DiagnosticId::pass_cycle, "'first' -> 'second' -> 'first'");
+  const Diagnostic error =
+      rejected_once(b, DiagnosticId::pass_cycle, "'first' -> 'second' -> 'first'");
   EXPECT_EQ(error.where.line, b.graph.passes[2].where.line);
   ASSERT_THAT(error.related, SizeIs(2));
   EXPECT_THAT(error.related[0].second, HasSubstr("'second' reads 'x' from 'first'"));

@@ -29,7 +29,8 @@ Composed put_together(const std::string& graph, const std::vector<std::string>& 
   std::vector<Document> read;
   auto document = parse_document("graph.json", graph, out.diagnostics);
   for (size_t i = 0; i < overlays.size(); ++i)
-    if (auto overlay = parse_document(fmt::format("overlay{}.json", i), overlays[i], out.diagnostics))
+    if (auto overlay =
+            parse_document(fmt::format("overlay{}.json", i), overlays[i], out.diagnostics))
       read.push_back(std::move(*overlay));
   EXPECT_TRUE(document && read.size() == overlays.size()) << all_messages(out.diagnostics);
   const OpenFile open = [&](std::string_view name) {
@@ -38,7 +39,8 @@ Composed put_together(const std::string& graph, const std::vector<std::string>& 
                                 : FileText{std::string(name), found->second, ""};
   };
   out.composition = compose(std::move(*document), std::move(read), open, out.diagnostics);
-  if (out.composition) out.graph = read_graph(out.composition->document, pass_types(), out.diagnostics);
+  if (out.composition)
+    out.graph = read_graph(out.composition->document, pass_types(), out.diagnostics);
   return out;
 }
 
@@ -89,20 +91,25 @@ TEST(Compose, AGraphWithoutIncludesAndOverlaysIsLeftAsItIs) {
 }
 
 TEST(Overlay, PassesAreInsertedReplacedAndRemovedByName) {
-  const std::string fresh = R"({ "pass": "fresh", "type": "test.list", "read": { "mask": "material" }, )"
-                            R"("write": { "tiles": "list" } })";
+  const std::string fresh =
+      R"({ "pass": "fresh", "type": "test.list", "read": { "mask": "material" }, )"
+      R"("write": { "tiles": "list" } })";
   EXPECT_EQ(pass_names(edited(R"({ "remove": "/passes/copy" },
       { "set": "/resources/fixed", "to": { "format": "rgba16f", "size": "view" } },
       { "remove": "/exports/fixed" })")),
             (std::vector<std::string>{"find", "blur", "mix"}));
-  EXPECT_EQ(pass_names(edited(fmt::format(R"({{ "replace": "copy", "passes": [{}] }})", copy_pass))),
-            (std::vector<std::string>{"find", "blur", "again", "mix"}));
-  const std::string without_find = R"({ "remove": "/passes/copy/after" }, { "remove": "/passes/find" },)";
-  EXPECT_EQ(pass_names(edited(without_find +
-                              fmt::format(R"({{ "insert_before": "blur", "passes": [{}] }})", fresh))),
-            (std::vector<std::string>{"fresh", "blur", "copy", "mix"}));
   EXPECT_EQ(
-      pass_names(edited(without_find + fmt::format(R"({{ "insert_after": "mix", "passes": [{}] }})", fresh))),
+      pass_names(edited(fmt::format(R"({{ "replace": "copy", "passes": [{}] }})", copy_pass))),
+      (std::vector<std::string>{"find", "blur", "again", "mix"}));
+  const std::string without_find =
+      R"({ "remove": "/passes/copy/after" }, { "remove": "/passes/find" },)";
+  EXPECT_EQ(
+      pass_names(edited(without_find +
+                        fmt::format(R"({{ "insert_before": "blur", "passes": [{}] }})", fresh))),
+      (std::vector<std::string>{"fresh", "blur", "copy", "mix"}));
+  EXPECT_EQ(
+      pass_names(edited(without_find +
+                        fmt::format(R"({{ "insert_after": "mix", "passes": [{}] }})", fresh))),
       (std::vector<std::string>{"blur", "copy", "mix", "fresh"}));
 }
 
@@ -121,7 +128,8 @@ TEST(Overlay, StackInOrderAndTheLastOneWins) {
   EXPECT_EQ(changes[0].at, "/settings/samples/int");
   EXPECT_EQ(change_name(changes[0].what), "set");
   EXPECT_EQ(file_of(composed, changes[2].where), "overlay1.json");
-  EXPECT_EQ(put_together(whole_graph(), {second, first}).graph->settings[1].default_value.integer, 20);
+  EXPECT_EQ(put_together(whole_graph(), {second, first}).graph->settings[1].default_value.integer,
+            20);
 }
 
 TEST(Overlay, ArrayElements_ByNameIndexOrDash) {
@@ -138,21 +146,23 @@ TEST(Overlay, ArrayElements_ByNameIndexOrDash) {
 TEST(Overlay, WrongValueIsReportedInTheFileThatSetIt) {
   expect_one(edited(R"({ "set": "/settings/samples/int", "to": 99 })"), Id::setting_range,
              "overlay0.json:2:41", {"99", "graph.json:4:", "the maximum is declared here"});
-  expect_one(edited(R"({ "set": "/passes/blur/when", "to": "samples > qality" })"), Id::unknown_setting,
-             "overlay0.json:2:48", {"'qality'"});
-  expect_one(edited(R"({ "set": "/resources/halff", "to": { "format": "r32f" } })"), Id::missing_key,
-             "overlay0.json:2:36", {"'halff'"});
+  expect_one(edited(R"({ "set": "/passes/blur/when", "to": "samples > qality" })"),
+             Id::unknown_setting, "overlay0.json:2:48", {"'qality'"});
+  expect_one(edited(R"({ "set": "/resources/halff", "to": { "format": "r32f" } })"),
+             Id::missing_key, "overlay0.json:2:36", {"'halff'"});
 }
 
 TEST(Overlay, EditOfAMissingTarget_IsRejected) {
   expect_one(edited(R"({ "remove": "/passes/blurr" })"), Id::edit_target, "overlay0.json:2:13",
              {"'remove' of edit 1", "'blurr'", "did you mean 'blur'?"});
-  expect_one(edited(R"({ "set": "/resource/half/mips", "to": 1 })"), Id::edit_target, "overlay0.json:2:10",
-             {"'resource'", "did you mean 'resources'?"});
+  expect_one(edited(R"({ "set": "/resource/half/mips", "to": 1 })"), Id::edit_target,
+             "overlay0.json:2:10", {"'resource'", "did you mean 'resources'?"});
   expect_one(edited(R"({ "set": "name", "to": "x" })"), Id::edit_target, "overlay0.json:2:10",
              {"a path must begin with '/'"});
-  expect_one(edited(R"({ "set": "/exports/7", "to": "x" })"), Id::edit_target, "overlay0.json:2:10", {"'7'"});
-  expect_one(edited(R"({ "set": "/name/of", "to": "x" })"), Id::edit_target, "overlay0.json:2:10", {"'of'"});
+  expect_one(edited(R"({ "set": "/exports/7", "to": "x" })"), Id::edit_target, "overlay0.json:2:10",
+             {"'7'"});
+  expect_one(edited(R"({ "set": "/name/of", "to": "x" })"), Id::edit_target, "overlay0.json:2:10",
+             {"'of'"});
   expect_one(edited(fmt::format(R"({{ "insert_after": "mixx", "passes": [{}] }})", copy_pass)),
              Id::edit_target, "overlay0.json:2:19", {"did you mean 'mix'?"});
 }
@@ -161,8 +171,8 @@ TEST(Overlay, CanAddTheFirstSettingAndPassMembers) {
   const std::string graph = R"({ "dermis": 2, "name": "plain",
   "resources": { "a": { "format": "rgba16f", "size": "view" } },
   "passes": [ { "pass": "copy", "type": "test.blur", "read": { "source": "light" }, "write": { "target": "a" } } ] })";
-  const Composed composed =
-      put_together(graph, {overlay(R"({ "set": "/settings/wide", "to": { "real": 3, "min": 0, "max": 8 } },
+  const Composed composed = put_together(
+      graph, {overlay(R"({ "set": "/settings/wide", "to": { "real": 3, "min": 0, "max": 8 } },
                          { "set": "/imports/light", "to": { "format": "rgba16f", "size": "view" } },
                          { "set": "/exports/-", "to": "a" },
                          { "set": "/passes/copy/set/radius", "to": "$wide" })")});
@@ -176,21 +186,24 @@ TEST(Overlay, EditOfARemovedTarget_NamesTheRemover) {
   const Composed composed =
       put_together(whole_graph(), {overlay(R"({ "remove": "/passes/copy" })"),
                                    overlay(R"({ "set": "/passes/copy/set/radius", "to": 1 })")});
-  expect_one(composed, Id::edit_target, "overlay1.json:2:10",
-             {"'copy' does not exist when", "overlay0.json:2:13", "'/passes/copy' is removed here"});
+  expect_one(
+      composed, Id::edit_target, "overlay1.json:2:10",
+      {"'copy' does not exist when", "overlay0.json:2:13", "'/passes/copy' is removed here"});
 }
 
 TEST(Overlay, EachOverlayErrorIsReportedOnce) {
   expect_one(put_together(whole_graph(), {"{ \"dermis_overlay\": 3, \"edits\": [] }"}),
              Id::unsupported_version, "overlay0.json:1:21", {});
-  expect_one(put_together(whole_graph(), {"{ \"dermis_overlay\": 2, \"edit\": [] }"}), Id::unknown_key,
-             "overlay0.json:1:24", {"did you mean 'edits'?"});
+  expect_one(put_together(whole_graph(), {"{ \"dermis_overlay\": 2, \"edit\": [] }"}),
+             Id::unknown_key, "overlay0.json:1:24", {"did you mean 'edits'?"});
   expect_one(edited("{ \"sett\": \"/name\", \"to\": 1 }"), Id::unknown_key, "overlay0.json:2:3",
              {"did you mean 'set'?"});
-  expect_one(edited("{ \"note\": \"n\" }"), Id::missing_key, "overlay0.json:2:1", {"'insert_before'"});
-  expect_one(edited("{ \"remove\": \"/name\", \"to\": 1 }"), Id::unknown_key, "overlay0.json:2:22", {"'to'"});
-  expect_one(edited("{ \"replace\": \"mix\", \"passes\": [1] }"), Id::wrong_type, "overlay0.json:2:32",
-             {"a pass of edit 1"});
+  expect_one(edited("{ \"note\": \"n\" }"), Id::missing_key, "overlay0.json:2:1",
+             {"'insert_before'"});
+  expect_one(edited("{ \"remove\": \"/name\", \"to\": 1 }"), Id::unknown_key, "overlay0.json:2:22",
+             {"'to'"});
+  expect_one(edited("{ \"replace\": \"mix\", \"passes\": [1] }"), Id::wrong_type,
+             "overlay0.json:2:32", {"a pass of edit 1"});
 }
 
 TEST(Overlay, NestingBuiltByEditsStaysWithinTheLimit) {
@@ -212,14 +225,16 @@ constexpr const char* tiles_fragment = R"({ "dermis_fragment": 2, "note": "finds
 // Returns whole_graph with its first pass and its buffer moved into a fragment.
 std::string including_graph(const std::string& include = R"({ "include": "parts/tiles.json" })") {
   std::string text = damaged(
-      ",\n    \"list\": { \"buffer\": { \"stride\": 4, \"count\": \"view/8\", \"extra\": 4 } } }", " }");
+      ",\n    \"list\": { \"buffer\": { \"stride\": 4, \"count\": \"view/8\", \"extra\": 4 } } }",
+      " }");
   const std::string pass =
       R"({ "pass": "find", "type": "test.list", "read": { "mask": "material" }, "write": { "tiles": "list" } })";
   return text.replace(text.find(pass), pass.size(), include);
 }
 
 TEST(Include, FragmentPassesAreInsertedAtTheInclude) {
-  const Composed composed = put_together(including_graph(), {}, {{"parts/tiles.json", tiles_fragment}});
+  const Composed composed =
+      put_together(including_graph(), {}, {{"parts/tiles.json", tiles_fragment}});
   EXPECT_EQ(pass_names(composed), (std::vector<std::string>{"find", "blur", "copy", "mix"}));
   EXPECT_EQ(composed.graph->resources.back().name, "list");
   EXPECT_EQ(file_of(composed, composed.graph->passes[0].where), "parts/tiles.json");
@@ -240,8 +255,8 @@ TEST(Include, SharedFileIsIncludedOnce) {
 TEST(Include, AMessageAboutAFragmentPointsIntoIt) {
   std::string wrong = tiles_fragment;
   wrong.replace(wrong.find("view/8"), 6, "vieww/8");
-  expect_one(put_together(including_graph(), {}, {{"parts/tiles.json", wrong}}), Id::unknown_resource,
-             "parts/tiles.json:3:", {"'vieww'"});
+  expect_one(put_together(including_graph(), {}, {{"parts/tiles.json", wrong}}),
+             Id::unknown_resource, "parts/tiles.json:3:", {"'vieww'"});
   expect_one(put_together(including_graph(), {}, {{"parts/tiles.json", "{ \"dermis\": 2 }"}}),
              Id::other_kind_of_file, "parts/tiles.json:1:3", {"dermis_fragment"});
 }
@@ -249,33 +264,36 @@ TEST(Include, AMessageAboutAFragmentPointsIntoIt) {
 TEST(Include, EqualDeclarationsMerge_DifferentAreRejected) {
   std::string other = tiles_fragment;
   other.replace(other.find("r8_uint"), 7, "r16_uint");
-  expect_one(put_together(including_graph(), {}, {{"parts/tiles.json", other}}), Id::duplicate_name,
-             "parts/tiles.json:2:16",
-             {"'material' of \"imports\"", "declared differently", "graph.json:", "first declared here"});
+  expect_one(
+      put_together(including_graph(), {}, {{"parts/tiles.json", other}}), Id::duplicate_name,
+      "parts/tiles.json:2:16",
+      {"'material' of \"imports\"", "declared differently", "graph.json:", "first declared here"});
 }
 
 TEST(Include, OverlaysSeeIncludesAndCanInclude) {
-  const Composed changed =
-      put_together(including_graph(), {overlay(R"({ "set": "/resources/list/buffer/extra", "to": 8 })")},
-                   {{"parts/tiles.json", tiles_fragment}});
+  const Composed changed = put_together(
+      including_graph(), {overlay(R"({ "set": "/resources/list/buffer/extra", "to": 8 })")},
+      {{"parts/tiles.json", tiles_fragment}});
   ASSERT_TRUE(changed.graph) << all_messages(changed.diagnostics);
   EXPECT_EQ(changed.graph->resources.back().extra_elements, 8u);
-  const Composed including =
-      put_together(including_graph(R"({ "pass": "gone", "type": "test.list" })"),
-                   {overlay(R"({ "replace": "gone", "passes": [{ "include": "parts/tiles.json" }] })")},
-                   {{"parts/tiles.json", tiles_fragment}});
+  const Composed including = put_together(
+      including_graph(R"({ "pass": "gone", "type": "test.list" })"),
+      {overlay(R"({ "replace": "gone", "passes": [{ "include": "parts/tiles.json" }] })")},
+      {{"parts/tiles.json", tiles_fragment}});
   EXPECT_EQ(pass_names(including), (std::vector<std::string>{"find", "blur", "copy", "mix"}));
 }
 
 TEST(Include, PathsOutsideTheRootsAreRejected) {
-  for (const char* name : {"/etc/passwd", "../x.json", "a/../../x.json", "a/./x.json", "a//x.json", "a/", "",
-                           "C:/x.json", "a\\\\x.json"}) {
+  for (const char* name : {"/etc/passwd", "../x.json", "a/../../x.json", "a/./x.json", "a//x.json",
+                           "a/", "", "C:/x.json", "a\\\\x.json"}) {
     Files files{{name, tiles_fragment}};
-    expect_one(put_together(including_graph(fmt::format(R"({{ "include": "{}" }})", name)), {}, files),
-               Id::bad_file_name, "graph.json:18:18", {"is not a valid file path"});
+    expect_one(
+        put_together(including_graph(fmt::format(R"({{ "include": "{}" }})", name)), {}, files),
+        Id::bad_file_name, "graph.json:18:18", {"is not a valid file path"});
   }
   expect_one(
-      put_together(including_graph(fmt::format(R"({{ "include": "{}" }})", std::string(257, 'a'))), {}),
+      put_together(including_graph(fmt::format(R"({{ "include": "{}" }})", std::string(257, 'a'))),
+                   {}),
       Id::bad_file_name, "graph.json:18:18", {"257 bytes"});
 }
 
@@ -296,22 +314,22 @@ TEST(Include, CyclesAreRejectedWithTheWholeChain) {
                           {{"a.json", including("b.json")}, {"b.json", including("a.json")}}),
              Id::include_cycle, "b.json:1:50",
              {"'a.json' includes 'b.json' includes 'a.json'", "graph.json:18:18"});
-  expect_one(
-      put_together(including_graph(R"({ "include": "a.json" })"), {}, {{"a.json", including("a.json")}}),
-      Id::include_cycle, "a.json:1:50", {"'a.json' includes 'a.json'"});
+  expect_one(put_together(including_graph(R"({ "include": "a.json" })"), {},
+                          {{"a.json", including("a.json")}}),
+             Id::include_cycle, "a.json:1:50", {"'a.json' includes 'a.json'"});
 }
 
 TEST(Include, DepthAndNumberOfFilesAreLimited) {
   Files chain, many;
   std::string includes;
   for (int i = 0; i < 70; ++i) {
-    chain[fmt::format("{}.json", i)] =
-        fmt::format(R"({{ "dermis_fragment": 2, "passes": [ {{ "include": "{}.json" }} ] }})", i + 1);
+    chain[fmt::format("{}.json", i)] = fmt::format(
+        R"({{ "dermis_fragment": 2, "passes": [ {{ "include": "{}.json" }} ] }})", i + 1);
     many[fmt::format("{}.json", i)] = R"({ "dermis_fragment": 2 })";
     includes += fmt::format("{}{{ \"include\": \"{}.json\" }}", i == 0 ? "" : ", ", i);
   }
-  expect_one(put_together(including_graph(R"({ "include": "0.json" })"), {}, chain), Id::limit_exceeded,
-             "7.json:1:50", {"8 deep"});
+  expect_one(put_together(including_graph(R"({ "include": "0.json" })"), {}, chain),
+             Id::limit_exceeded, "7.json:1:50", {"8 deep"});
   const Composed composed = put_together(including_graph(includes), {}, many);
   ASSERT_FALSE(composed.diagnostics.list.empty());
   EXPECT_EQ(composed.diagnostics.list[0].id, Id::limit_exceeded);
@@ -323,7 +341,8 @@ TEST(Include, FragmentCanBeCheckedOnItsOwn) {
   auto document = parse_document("tiles.json", tiles_fragment, diagnostics);
   const auto as_graph = compose_fragment(std::move(*document), {}, diagnostics);
   ASSERT_TRUE(as_graph) << all_messages(diagnostics);
-  EXPECT_TRUE(read_graph(as_graph->document, pass_types(), diagnostics)) << all_messages(diagnostics);
+  EXPECT_TRUE(read_graph(as_graph->document, pass_types(), diagnostics))
+      << all_messages(diagnostics);
 }
 
 } // namespace

@@ -16,8 +16,8 @@ struct Damage {
   std::vector<std::string> words;
 };
 
-inline Damage damage(const char* property, const char* from, const char* to, DiagnosticId id, const char* at,
-                     std::vector<std::string> words) {
+inline Damage damage(const char* property, const char* from, const char* to, DiagnosticId id,
+                     const char* at, std::vector<std::string> words) {
   return {property, from, to, id, at, std::move(words)};
 }
 
@@ -30,7 +30,8 @@ inline std::string property_of(const ::testing::TestParamInfo<Damage>& one) {
 }
 
 // Expects one diagnostic, where `damage.at` first occurs in `text`.
-inline void expect_damage(const Damage& damage, const std::string& text, const Diagnostics& diagnostics) {
+inline void expect_damage(const Damage& damage, const std::string& text,
+                          const Diagnostics& diagnostics) {
   const size_t at = text.find(damage.at);
   ASSERT_NE(at, std::string::npos);
   const std::string before = text.substr(0, at);

@@ -36,7 +36,8 @@ TEST(PlanJson, IsValidJsonForEveryGraph) {
   for (uint64_t seed = 0; seed < 50; ++seed) {
     const auto b = random_graph(seed);
     Diagnostics diagnostics;
-    EXPECT_TRUE(parse_document("plan", plan_json(b.graph, b.pass_types, compiled(b)), diagnostics)) << seed;
+    EXPECT_TRUE(parse_document("plan", plan_json(b.graph, b.pass_types, compiled(b)), diagnostics))
+        << seed;
   }
 }
 
@@ -55,8 +56,8 @@ TEST(PlanJson, NamesWhatRunsAndWhatDoesNotAndWhy) {
 TEST(PlanText, ShowsEveryPassBarrierAndPlacement) {
   const auto b = sample();
   const auto text = plan_text(b.graph, b.pass_types, compiled(b));
-  EXPECT_THAT(text, HasAll("2 of 3 passes run", "b <- sum@-1", "waste: culled", "of history, at least",
-                           "returns 'result' to the host"));
+  EXPECT_THAT(text, HasAll("2 of 3 passes run", "b <- sum@-1", "waste: culled",
+                           "of history, at least", "returns 'result' to the host"));
 }
 
 TEST(PlanText, SaysWhyAPassRunsAndWhyInThisOrder) {
@@ -66,7 +67,8 @@ TEST(PlanText, SaysWhyAPassRunsAndWhyInThisOrder) {
                            "file order: at most 0 B of transients are alive at once"));
   CompileInput input = b.input();
   input.order = PassOrder::program;
-  EXPECT_THAT(plan_text(b.graph, b.pass_types, compiled(b, input)), HasSubstr("requested by the caller"));
+  EXPECT_THAT(plan_text(b.graph, b.pass_types, compiled(b, input)),
+              HasSubstr("requested by the caller"));
 }
 
 TEST(PlanText, NamesTheSettingsThatSwitchAPassOff) {
@@ -84,7 +86,8 @@ TEST(PlanText, NamesThePassThatNeedsAnEarlierBarrier) {
   b.pass("middle", "test.need", {{"a", "first"}}, {{"out", "second"}});
   b.pass("end", "test.shade", {{"a", "shade"}, {"b", "second"}}, {{"out", "result"}});
   const auto text = plan_text(b.graph, b.pass_types, compiled(b));
-  EXPECT_THAT(text, HasSubstr("acquires 'shade' from the host (for 'end': merged into this earlier batch"));
+  EXPECT_THAT(
+      text, HasSubstr("acquires 'shade' from the host (for 'end': merged into this earlier batch"));
   CompileInput input = b.input();
   input.single_queue = false;
   b.graph.passes[1].async = true;
@@ -99,7 +102,8 @@ TEST(PlanText, ExplainsTheRequestedOptions) {
               HasSubstr("runs: its pass type has side effects"));
   CompileInput input = b.input();
   input.cull = false;
-  EXPECT_THAT(plan_text(b.graph, b.pass_types, compiled(b, input)), HasSubstr("runs: culling is disabled"));
+  EXPECT_THAT(plan_text(b.graph, b.pass_types, compiled(b, input)),
+              HasSubstr("runs: culling is disabled"));
   input = b.input();
   input.order = PassOrder::random;
   EXPECT_THAT(plan_text(b.graph, b.pass_types, compiled(b, input)), HasSubstr("random order"));
@@ -141,8 +145,9 @@ TEST(JsonWriter, EscapesNestsAndRejectsNonFiniteNumbers) {
   out.open_object().member("text", "a\"\\\n\x01").key("list").open_array(true).value(1).value(-2.5);
   out.value(std::numeric_limits<double>::infinity()).value(UINT64_MAX).close();
   out.key("empty").open_object().close().close();
-  EXPECT_EQ(std::move(out).finish(), "{\n  \"text\": \"a\\\"\\\\\\n\\u0001\",\n  \"list\": [1, -2.5, null, "
-                                     "18446744073709551615],\n  \"empty\": {}\n}\n");
+  EXPECT_EQ(std::move(out).finish(),
+            "{\n  \"text\": \"a\\\"\\\\\\n\\u0001\",\n  \"list\": [1, -2.5, null, "
+            "18446744073709551615],\n  \"empty\": {}\n}\n");
 }
 
 } // namespace

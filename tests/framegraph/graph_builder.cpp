@@ -34,8 +34,9 @@ constexpr Port tiles_ports[] = {{"tiles", Usage::storage_buffer_read, true, "uin
                                 {"a", Usage::sampled_image, true, "texture2D", ""},
                                 {"out", Usage::storage_image_write, false, "image2D", ""}};
 constexpr Port probe_ports[] = {{"a", Usage::sampled_image, true, "texture2D", ""}};
-constexpr Port narrow_ports[] = {{"a", Usage::sampled_image, true, "texture2D", "", one_half4},
-                                 {"out", Usage::storage_image_write, false, "image2D", "", one_half4}};
+constexpr Port narrow_ports[] = {
+    {"a", Usage::sampled_image, true, "texture2D", "", one_half4},
+    {"out", Usage::storage_image_write, false, "image2D", "", one_half4}};
 constexpr Port ids_ports[] = {{"ids", Usage::sampled_image, false, "utexture2D", ""},
                               {"out", Usage::storage_image_write, false, "image2D", ""}};
 
@@ -172,7 +173,8 @@ PortBinding GraphBuilder::reference(uint32_t port, const std::string& text) cons
   const auto image_range = parse_image_range(text.substr(end, at - end));
   EXPECT_TRUE(image_range) << text;
   if (image_range) binding.range = *image_range;
-  if (at != text.size()) binding.frames_back = static_cast<uint32_t>(std::stoul(text.substr(at + 2)));
+  if (at != text.size())
+    binding.frames_back = static_cast<uint32_t>(std::stoul(text.substr(at + 2)));
   return binding;
 }
 
@@ -214,7 +216,8 @@ PortBinding& GraphBuilder::written(uint32_t pass, uint32_t index) {
   return read(pass, graph.passes[pass].read_count + index);
 }
 
-void GraphBuilder::otherwise(PassDeclaration& pass, const std::string& output, const std::string& instead) {
+void GraphBuilder::otherwise(PassDeclaration& pass, const std::string& output,
+                             const std::string& instead) {
   pass.otherwise.push_back({resource(output), resource(instead), next_line()});
 }
 

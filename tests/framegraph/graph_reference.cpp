@@ -26,8 +26,8 @@ std::vector<size_t> numbers(const ResourceDeclaration& resource, const ImageRang
   for (uint32_t m = image_range.first_mip;
        m < (image_range.mips == 0 ? resource.mips : image_range.first_mip + image_range.mips); ++m)
     for (uint32_t l = image_range.first_layer;
-         l <
-         (image_range.layers == 0 ? resource.layers : uint32_t{image_range.first_layer} + image_range.layers);
+         l < (image_range.layers == 0 ? resource.layers
+                                      : uint32_t{image_range.first_layer} + image_range.layers);
          ++l)
       result.push_back(m * resource.layers + l);
   return result;
@@ -35,8 +35,8 @@ std::vector<size_t> numbers(const ResourceDeclaration& resource, const ImageRang
 
 } // namespace
 
-Interpretation graph_reference(const Graph& graph, const PassTypeRegistry& pass_types, uint32_t frames,
-                               uint64_t contents, uint64_t cuts) {
+Interpretation graph_reference(const Graph& graph, const PassTypeRegistry& pass_types,
+                               uint32_t frames, uint64_t contents, uint64_t cuts) {
   std::vector<SettingValue> settings;
   for (const SettingDeclaration& setting : graph.settings)
     settings.push_back(setting.default_value);
@@ -63,7 +63,8 @@ Interpretation graph_reference(const Graph& graph, const PassTypeRegistry& pass_
     const auto read = [&](const PortBinding& binding, std::vector<PlaceholderInput>& inputs) {
       const ResourceDeclaration& resource = graph.resources[binding.resource.value];
       if (!in_history(binding)) { // Histories start from zero.
-        inputs.insert(inputs.end(), numbers(resource, binding.range).size(), {binding.port, Pixels{}});
+        inputs.insert(inputs.end(), numbers(resource, binding.range).size(),
+                      {binding.port, Pixels{}});
         return;
       }
       const Contents& found = contents_of[binding.resource.value][frame - binding.frames_back];
@@ -95,9 +96,11 @@ Interpretation graph_reference(const Graph& graph, const PassTypeRegistry& pass_
         read(binding, inputs);
       }
       for (const PortBinding& binding : writes)
-        if (usage_info(pass_types[pass.type].ports[binding.port].usage).reads) read(binding, inputs);
-      std::stable_sort(inputs.begin(), inputs.end(),
-                       [](const PlaceholderInput& a, const PlaceholderInput& b) { return a.port < b.port; });
+        if (usage_info(pass_types[pass.type].ports[binding.port].usage).reads)
+          read(binding, inputs);
+      std::stable_sort(
+          inputs.begin(), inputs.end(),
+          [](const PlaceholderInput& a, const PlaceholderInput& b) { return a.port < b.port; });
       for (const PortBinding& binding : writes) {
         uint32_t image_range = 0;
         for (const size_t number : numbers(graph.resources[binding.resource.value], binding.range))
@@ -107,7 +110,8 @@ Interpretation graph_reference(const Graph& graph, const PassTypeRegistry& pass_
     }
     for (size_t r = 0; r < graph.resources.size(); ++r)
       if (is_slot(graph.resources[r]))
-        out[frame].push_back(graph.resources[r].exported ? contents_of[r][frame].front() : std::nullopt);
+        out[frame].push_back(graph.resources[r].exported ? contents_of[r][frame].front()
+                                                         : std::nullopt);
   }
   return out;
 }

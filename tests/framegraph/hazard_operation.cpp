@@ -65,7 +65,8 @@ struct Unroller {
         if (point == no_point) return;
         const size_t other = 1 - queue_index(queue);
         const size_t awaited = before[other] + point;
-        if (awaited > reached[other].size()) misplaced = "a point is waited for that is not reached";
+        if (awaited > reached[other].size())
+          misplaced = "a point is waited for that is not reached";
         if (awaited == 0 || awaited > reached[other].size()) return;
         Operation operation{Operation::What::wait, step++, f, no_instance, 0, nullptr, nullptr};
         operation.queue = queue;
@@ -79,7 +80,8 @@ struct Unroller {
         reached[queue_index(queue)].push_back(step++);
       };
       for (uint32_t r = 0; r < plan.resources.size(); ++r)
-        add({Operation::What::frame_begins, step++, f, r, instance_in_frame(plan, r, 0, f), nullptr, nullptr},
+        add({Operation::What::frame_begins, step++, f, r, instance_in_frame(plan, r, 0, f), nullptr,
+             nullptr},
             plan.resources[r].whole());
       std::vector<uint32_t> step_of; // Indexed by pass.
       for (const PlanPass& pass : plan.passes) {

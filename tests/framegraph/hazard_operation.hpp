@@ -49,7 +49,8 @@ inline size_t queue_index(Queue queue) {
 inline bool is_host_resource(const Plan& plan, uint32_t resource) {
   return plan.resources[resource].first_instance == no_instance;
 }
-inline uint32_t instance_in_frame(const Plan& plan, uint32_t resource, uint32_t frames_back, uint32_t frame) {
+inline uint32_t instance_in_frame(const Plan& plan, uint32_t resource, uint32_t frames_back,
+                                  uint32_t frame) {
   const uint32_t count = plan.resources[resource].instance_count;
   return (frame + count - frames_back) % count;
 }

@@ -26,14 +26,17 @@ struct Oracle {
     return instance_in_frame(plan, resource, frames_back, frame);
   }
   bool host(uint32_t resource) const { return is_host_resource(plan, resource); }
-  bool image(const Operation& o) const { return plan.resources[o.resource].type == ResourceType::image; }
+  bool image(const Operation& o) const {
+    return plan.resources[o.resource].type == ResourceType::image;
+  }
   bool overlap(const Operation& a, const Operation& b) const {
     if (a.heap != b.heap || std::max(a.begin, b.begin) >= std::min(a.end, b.end)) return false;
     return !same_instance(a, b) || same_subresource(a, b);
   }
   // Whether the operation covers this byte of the heap of `subresource`, or `subresource` itself.
   bool reaches(const Operation& o, const Operation& subresource, uint64_t byte) const {
-    return overlap(o, subresource) && (same_instance(o, subresource) || (o.begin <= byte && byte < o.end));
+    return overlap(o, subresource) &&
+           (same_instance(o, subresource) || (o.begin <= byte && byte < o.end));
   }
   // Returns one byte of each piece of the common range of two operations, cut where other
   // placements begin or end.
@@ -69,7 +72,8 @@ struct Oracle {
   };
 
   static void show(Path& p, const Operation& second, Queue queue, Stage stages, Access access) {
-    if (queue != second.queue || !p.available || !accesses(second) || (second.access->stages & ~stages) != 0)
+    if (queue != second.queue || !p.available || !accesses(second) ||
+        (second.access->stages & ~stages) != 0)
       return;
     p.visible |= (read(second) & ~access) == 0;
     p.visible_to_write |= (written(second) & ~access) == 0;
@@ -77,7 +81,8 @@ struct Oracle {
 
   static void reach(Path& p, const Operation& by, Stage stages) {
     p.ordered[queue_index(by.queue)] |= stages;
-    if (stages != 0) p.since[queue_index(by.queue)] = std::min(p.since[queue_index(by.queue)], by.step);
+    if (stages != 0)
+      p.since[queue_index(by.queue)] = std::min(p.since[queue_index(by.queue)], by.step);
   }
 
   Path path(size_t first, size_t second, uint64_t byte) const {
@@ -101,7 +106,8 @@ struct Oracle {
       }
       if (!is_barrier(o) || o.barrier->from_host || !reaches(o, a, byte)) continue;
       const PlanBarrier& b = *o.barrier;
-      const bool directly = accesses(a) && a.queue == o.queue && (a.access->stages & ~b.source_stages) == 0;
+      const bool directly =
+          accesses(a) && a.queue == o.queue && (a.access->stages & ~b.source_stages) == 0;
       if (!directly && (p.ordered[queue_index(o.queue)] & b.source_stages) == 0) continue;
       reach(p, o, b.destination_stages);
       p.available |= directly && (written(a) & ~b.source_access) == 0;
@@ -124,7 +130,8 @@ struct Oracle {
       const Operation& o = all[i];
       if (o.what == Operation::What::wait) continue;
       if (accesses(o) || is_barrier(o)) used_parts[o.resource].insert({o.mip, o.layer});
-      size_t& first = nearest.try_emplace({o.resource, o.instance, o.mip, o.layer}, all.size()).first->second;
+      size_t& first =
+          nearest.try_emplace({o.resource, o.instance, o.mip, o.layer}, all.size()).first->second;
       if (first < all.size()) next_write[i] = all[first].step != o.step ? first : next_write[first];
       if (writes(o)) first = i;
     }
@@ -132,8 +139,8 @@ struct Oracle {
 
   bool read_since(size_t first, size_t second) const {
     for (size_t k = first + 1; k < second; ++k)
-      if (accesses(all[k]) && all[k].access->when == ReadWhen::always && all[k].step != all[second].step &&
-          same_subresource(all[k], all[first]))
+      if (accesses(all[k]) && all[k].access->when == ReadWhen::always &&
+          all[k].step != all[second].step && same_subresource(all[k], all[first]))
         return true;
     return false;
   }
@@ -175,8 +182,10 @@ struct Oracle {
     const bool ordered = accesses(b) ? (b.access->stages & ~before) == 0
                                      : directly || (before & b.barrier->source_stages) != 0;
     if (!ordered) return "is not ordered behind an earlier operation";
-    const bool made_available = p.available || (directly && (written(a) & ~b.barrier->source_access) == 0);
-    if (writes(a) && writes(b) && !made_available) return "comes before an earlier write is available";
+    const bool made_available =
+        p.available || (directly && (written(a) & ~b.barrier->source_access) == 0);
+    if (writes(a) && writes(b) && !made_available)
+      return "comes before an earlier write is available";
     if (writes(a) && read(b) != 0 && same_subresource(a, b) && !p.visible)
       return "does not see the last write";
     // Two writes need availability. The last write must also be visible, unless it was read since.
@@ -226,7 +235,8 @@ struct Oracle {
   bool defined(size_t second) const {
     for (size_t k = second; k-- > 0;) {
       const Operation& o = all[k];
-      if (o.what == Operation::What::wait || o.step == all[second].step || !overlap(o, all[second])) continue;
+      if (o.what == Operation::What::wait || o.step == all[second].step || !overlap(o, all[second]))
+        continue;
       const bool own = same_subresource(o, all[second]);
       if (o.what == Operation::What::frame_begins) {
         if (own && !keeps_oldest(o.resource))
@@ -251,18 +261,21 @@ struct Oracle {
           same_subresource(all[k], subresource))
         return all[k].barrier->new_layout;
     for (const PlanHistory& history : plan.histories)
-      for (uint32_t back = 1; history.resource == subresource.resource && back <= history.frames; ++back)
+      for (uint32_t back = 1; history.resource == subresource.resource && back <= history.frames;
+           ++back)
         if (instance(subresource.resource, back, 0) == subresource.instance)
           return kept_layout(history, subresource, back);
     return Layout::undefined;
   }
 
   // Returns the layout that the plan states for this mip and layer at the start of a frame.
-  Layout kept_layout(const PlanHistory& history, const Operation& subresource, uint32_t back) const {
+  Layout kept_layout(const PlanHistory& history, const Operation& subresource,
+                     uint32_t back) const {
     for (uint32_t r = 0; r < history.range_count; ++r) {
       const SubresourceRange& range = plan.history_ranges[history.first_range + r];
       if (subresource.mip >= range.first_mip && subresource.mip - range.first_mip < range.mips &&
-          subresource.layer >= range.first_layer && subresource.layer - range.first_layer < range.layers)
+          subresource.layer >= range.first_layer &&
+          subresource.layer - range.first_layer < range.layers)
         return plan.history_layouts[history.first_layout + back * history.range_count + r];
     }
     return Layout::undefined;
@@ -297,7 +310,8 @@ struct Oracle {
       if (!is_barrier(o) || o.barrier->from_host) continue;
       if (o.barrier->transfer == PlanBarrier::Transfer::release) return {o.queue, o.barrier};
       const bool discards = image(o) && o.barrier->old_layout == Layout::undefined;
-      if (discards || o.barrier->transfer == PlanBarrier::Transfer::acquire) return {o.queue, nullptr};
+      if (discards || o.barrier->transfer == PlanBarrier::Transfer::acquire)
+        return {o.queue, nullptr};
     }
     return {};
   }
@@ -312,7 +326,8 @@ struct Oracle {
     }
     if (!is_barrier(o)) return "";
     const PlanBarrier& b = *o.barrier;
-    if ((b.from_host || b.to_host) && o.queue != Queue::main) return "is the host's on the async queue";
+    if ((b.from_host || b.to_host) && o.queue != Queue::main)
+      return "is the host's on the async queue";
     if (b.from_host) return "";
     switch (b.transfer) {
     case PlanBarrier::Transfer::none: {
@@ -351,17 +366,21 @@ struct Oracle {
           std::find_if(plan.passes.begin(), plan.passes.end(),
                        [&](const PlanPass& pass) {
                          const auto index = static_cast<uint32_t>(o.access - plan.accesses.data());
-                         return index >= pass.first_access && index - pass.first_access < pass.access_count;
+                         return index >= pass.first_access &&
+                                index - pass.first_access < pass.access_count;
                        }) -
           plan.passes.begin());
-      return position < memory.first_use || position > memory.last_use ? "has no memory at that time" : "";
+      return position < memory.first_use || position > memory.last_use
+                 ? "has no memory at that time"
+                 : "";
     }
     if (o.what == Operation::What::frame_begins) {
       for (const PlanHistory& history : plan.histories)
         for (uint32_t back = 1; history.resource == o.resource && back <= history.frames; ++back) {
           Operation past = o;
           past.instance = instance(o.resource, back, o.frame);
-          if (layout(past, at) != kept_layout(history, o, back)) return "starts a frame in another layout";
+          if (layout(past, at) != kept_layout(history, o, back))
+            return "starts a frame in another layout";
         }
       return host(o.resource) && !handed_back(at) ? "is not handed back" : "";
     }
@@ -382,9 +401,10 @@ struct Oracle {
         const Placement &m = plan.placements[i], &n = plan.placements[k];
         const bool disjoint =
             m.persistent != n.persistent || // A history alias: the content checks cover it.
-            (!m.persistent && !n.persistent && (m.last_use < n.first_use || n.last_use < m.first_use));
-        const bool bytes =
-            m.heap == n.heap && std::max(m.offset, n.offset) < std::min(m.offset + m.size, n.offset + n.size);
+            (!m.persistent && !n.persistent &&
+             (m.last_use < n.first_use || n.last_use < m.first_use));
+        const bool bytes = m.heap == n.heap && std::max(m.offset, n.offset) <
+                                                   std::min(m.offset + m.size, n.offset + n.size);
         if (bytes && !disjoint) return fmt::format("placements {} and {} share live memory", k, i);
       }
     return "";
@@ -419,8 +439,8 @@ std::string first_hazard(const Plan& plan) {
       if (oracle.writes(o)) writing.push_back(b);
     }
     if (!wrong.empty())
-      return fmt::format("frame {}, step {}: resource {}.{} {}", o.frame, o.step, o.resource, o.instance,
-                         wrong);
+      return fmt::format("frame {}, step {}: resource {}.{} {}", o.frame, o.step, o.resource,
+                         o.instance, wrong);
   }
   return "";
 }

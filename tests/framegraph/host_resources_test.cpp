@@ -84,12 +84,13 @@ INSTANTIATE_TEST_SUITE_P(
     ::testing::Values(
         damage("AnAccelerationStructureIsOfTheTopLevel", R"("top_level")", R"("bottom_level")",
                Id::invalid_value, R"("bottom_level")", {"top_level"}),
-        damage("NoGraphBuildsAnAccelerationStructure", R"("out": { "format": "rgba16f", "size": "view" } })",
+        damage("NoGraphBuildsAnAccelerationStructure",
+               R"("out": { "format": "rgba16f", "size": "view" } })",
                R"("out": { "format": "rgba16f", "size": "view" }, "own": { )"
                R"("acceleration_structure": "top_level" } })",
                Id::not_imported, R"("own")", {"'own'", "a graph cannot own"}),
-        damage("AnAccelerationStructureIsNoImage", R"({ "light": "light" })", R"({ "light": "scene" })",
-               Id::usage_mismatch, R"("scene" }, "write")",
+        damage("AnAccelerationStructureIsNoImage", R"({ "light": "light" })",
+               R"({ "light": "scene" })", Id::usage_mismatch, R"("scene" }, "write")",
                {"expects an image", "'scene' is an acceleration structure"}),
         damage("ABufferIsNoAccelerationStructure", R"("scene": "scene")", R"("scene": "vertices")",
                Id::usage_mismatch, R"("vertices", "vertices")",
@@ -103,8 +104,9 @@ INSTANTIATE_TEST_SUITE_P(
                Id::bad_option_requires, R"("ray_querry")", {"did you mean 'ray_query'?"}),
         damage("ARequiredImportIsOptional", R"("ray_query", "scene"])", R"("light"])",
                Id::bad_option_requires, R"("light"])", {"not an optional import"}),
-        damage("OptionsThatRequireAreOptions", R"("requires": { "trace")", R"("requires": { "trase")",
-               Id::bad_option_requires, R"("trase")", {"did you mean 'trace'?"}),
+        damage("OptionsThatRequireAreOptions", R"("requires": { "trace")",
+               R"("requires": { "trase")", Id::bad_option_requires, R"("trase")",
+               {"did you mean 'trace'?"}),
         damage("OneOptionRequiresNothing", R"(["ray_query", "scene"] })",
                R"(["ray_query"], "copy": ["scene"] })", Id::bad_option_requires, R"("requires")",
                {"every option"}),
@@ -152,10 +154,11 @@ TEST(HostResources, AreAcquiredReadAndReleased) {
   EXPECT_TRUE(verify(plan).violations.empty());
   EXPECT_EQ(only_pass(*loaded.graph, *result.plan), "trace");
   const auto barriers_of = [&](ResourceType type, bool from, bool to) {
-    return std::count_if(plan.barriers.begin(), plan.barriers.end(), [&](const PlanBarrier& barrier) {
-      return plan.resources[barrier.resource].type == type && barrier.from_host == from &&
-             barrier.to_host == to;
-    });
+    return std::count_if(plan.barriers.begin(), plan.barriers.end(),
+                         [&](const PlanBarrier& barrier) {
+                           return plan.resources[barrier.resource].type == type &&
+                                  barrier.from_host == from && barrier.to_host == to;
+                         });
   };
   EXPECT_EQ(barriers_of(ResourceType::acceleration_structure, true, false), 1);
   EXPECT_EQ(barriers_of(ResourceType::acceleration_structure, false, true), 1);
@@ -204,8 +207,9 @@ TEST(Options, UnavailableOnDevice_FallBack) {
   EXPECT_EQ(only_pass(*loaded.graph, *result.plan), "copy");
   EXPECT_EQ(result.plan->plan.setting_values[0].integer, 1);
   const std::string text = plan_text(*loaded.graph, pass_types_of_host(), *result.plan, {});
-  EXPECT_NE(text.find("'copy' instead of 'trace', which is not available: the device lacks ray_query"),
-            std::string::npos)
+  EXPECT_NE(
+      text.find("'copy' instead of 'trace', which is not available: the device lacks ray_query"),
+      std::string::npos)
       << text;
   report_unavailable(*loaded.graph, device, {}, result.diagnostics);
   ASSERT_EQ(result.diagnostics.list.size(), 1u);
@@ -226,8 +230,8 @@ TEST(Options, UnboundImport_FallBack) {
 }
 
 TEST(Features, RequiredByTheGraph_MustBeAvailable) {
-  const Read loaded =
-      read_with_host(with("\"name\": \"traced\"", "\"name\": \"traced\",\n  \"requires\": [\"ray_query\"]"));
+  const Read loaded = read_with_host(
+      with("\"name\": \"traced\"", "\"name\": \"traced\",\n  \"requires\": [\"ray_query\"]"));
   ASSERT_TRUE(loaded.graph) << all_messages(loaded.diagnostics);
   const DeviceProfile device = without_rays();
   const Compiled result = compiled(*loaded.graph, device);
@@ -236,7 +240,8 @@ TEST(Features, RequiredByTheGraph_MustBeAvailable) {
 }
 
 TEST(Features, RequiredByAKernel_MustBeAvailable) {
-  const Read loaded = read_with_host(with(", \"requires\": { \"trace\": [\"ray_query\", \"scene\"] }", ""));
+  const Read loaded =
+      read_with_host(with(", \"requires\": { \"trace\": [\"ray_query\", \"scene\"] }", ""));
   ASSERT_TRUE(loaded.graph) << all_messages(loaded.diagnostics);
   const DeviceProfile device = without_rays();
   const Compiled result = compiled(*loaded.graph, device);

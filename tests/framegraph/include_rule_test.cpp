@@ -14,15 +14,16 @@ namespace dermis {
 namespace {
 
 // Folders in include order. A file belongs to the folder with the longest matching prefix.
-constexpr std::string_view folders[] = {"framegraph/", "framegraph/vulkan/", "passes/", "integration/",
-                                        "tests/"};
+constexpr std::string_view folders[] = {"framegraph/", "framegraph/vulkan/", "passes/",
+                                        "integration/", "tests/"};
 
 // Returns an index into `folders`, or -1 for other files (system headers, shaders).
 int folder_of(std::string_view path) {
   int best = -1;
   for (int i = 0; i < static_cast<int>(std::size(folders)); ++i) {
     const std::string_view folder = folders[i];
-    if (path.substr(0, folder.size()) == folder && (best < 0 || folder.size() > folders[best].size()))
+    if (path.substr(0, folder.size()) == folder &&
+        (best < 0 || folder.size() > folders[best].size()))
       best = i;
   }
   return best;
@@ -68,8 +69,8 @@ const Order orders[] = {
     {"integration/tools/command/",
      {"expect", "run", "bench", "inspect", "plan", "capture", "watch", "arguments"}},
     {"integration/",
-     {"include", "abi", "tools/references", "tools/files", "tools/null_device", "examples/demo_engine",
-      "tools/viewer", "tools/command"}},
+     {"include", "abi", "tools/references", "tools/files", "tools/null_device",
+      "examples/demo_engine", "tools/viewer", "tools/command"}},
 };
 constexpr std::string_view techniques[] = {"separable", "burley", "sap", "afis", "restir"};
 
@@ -94,9 +95,10 @@ std::string_view technique_of(std::string_view path) {
 std::string violation_within(const std::string& path, const std::string& target) {
   for (const Order& order : orders) {
     const int from = place_of(order, path), to = place_of(order, target);
-    const bool base = from < 0 && path.starts_with(order.root) && order.root.ends_with("command/") &&
-                      !path.ends_with("main.cpp");
-    if (to > from && (from >= 0 || base)) return path + " includes " + target + ", whose folder comes later";
+    const bool base = from < 0 && path.starts_with(order.root) &&
+                      order.root.ends_with("command/") && !path.ends_with("main.cpp");
+    if (to > from && (from >= 0 || base))
+      return path + " includes " + target + ", whose folder comes later";
   }
   const std::string_view from = technique_of(path), to = technique_of(target);
   if (!from.empty() && !to.empty() && from != to)
@@ -135,7 +137,8 @@ TEST(IncludeRule, NoFileIncludesALaterFolder) {
 }
 
 TEST(IncludeRule, ForbiddenIncludesAreFound) {
-  EXPECT_EQ(included("  # include \"framegraph/text/document.hpp\" // x"), "framegraph/text/document.hpp");
+  EXPECT_EQ(included("  # include \"framegraph/text/document.hpp\" // x"),
+            "framegraph/text/document.hpp");
   EXPECT_EQ(included("#include <vulkan/vulkan.h>"), "vulkan/vulkan.h");
   EXPECT_EQ(included("// #include \"passes/x.hpp\""), "");
   EXPECT_NE(violation("framegraph/compile/packer.cpp", "passes/x.hpp"), "");
@@ -150,22 +153,25 @@ TEST(IncludeRule, ForbiddenIncludesAreFound) {
 
 TEST(IncludeRule, FoldersIncludeOnlyEarlierFolders) {
   EXPECT_NE(violation_within("framegraph/text/diagnostic.hpp", "framegraph/model/ids.hpp"), "");
-  EXPECT_NE(
-      violation_within("integration/tools/command/expect/a.cpp", "integration/tools/command/inspect/b.hpp"),
-      "");
-  EXPECT_NE(violation_within("integration/tools/command/run/a.cpp", "integration/tools/command/bench/b.hpp"),
+  EXPECT_NE(violation_within("integration/tools/command/expect/a.cpp",
+                             "integration/tools/command/inspect/b.hpp"),
             "");
-  EXPECT_NE(violation_within("integration/tools/command/session.hpp", "integration/tools/command/run/b.hpp"),
+  EXPECT_NE(violation_within("integration/tools/command/run/a.cpp",
+                             "integration/tools/command/bench/b.hpp"),
             "");
-  EXPECT_NE(violation_within("integration/abi/compiled_graph.hpp", "integration/abi/chooser.hpp"), "");
+  EXPECT_NE(violation_within("integration/tools/command/session.hpp",
+                             "integration/tools/command/run/b.hpp"),
+            "");
+  EXPECT_NE(violation_within("integration/abi/compiled_graph.hpp", "integration/abi/chooser.hpp"),
+            "");
   EXPECT_NE(violation_within("integration/abi/a.cpp", "integration/tools/files/exr.hpp"), "");
   EXPECT_NE(violation_within("passes/sap/a.cpp", "passes/separable/b.hpp"), "");
   EXPECT_NE(violation_within("passes/choice/a.cpp", "passes/sap/b.hpp"), "");
   EXPECT_EQ(violation_within("passes/papers/a.cpp", "passes/separable/b.hpp"), "");
   EXPECT_EQ(violation_within("framegraph/model/graph.hpp", "framegraph/text/index.hpp"), "");
-  EXPECT_EQ(
-      violation_within("integration/tools/command/main.cpp", "integration/tools/command/arguments/b.hpp"),
-      "");
+  EXPECT_EQ(violation_within("integration/tools/command/main.cpp",
+                             "integration/tools/command/arguments/b.hpp"),
+            "");
 }
 
 } // namespace

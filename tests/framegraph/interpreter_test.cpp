@@ -53,8 +53,10 @@ TEST(Interpreter, EveryPlanGivesTheReferencePixels) {
   uint64_t compared = 0;
   for (uint64_t seed = 0; seed < random_graphs(); ++seed) {
     const auto builder = random_graph(seed);
-    const Interpretation reference = graph_reference(builder.graph, builder.pass_types, frames, seed);
-    ASSERT_TRUE(agrees(interpret(compiled(builder).plan, options(seed)), reference)) << "seed " << seed;
+    const Interpretation reference =
+        graph_reference(builder.graph, builder.pass_types, frames, seed);
+    ASSERT_TRUE(agrees(interpret(compiled(builder).plan, options(seed)), reference))
+        << "seed " << seed;
     for (const auto& slot : reference.back())
       compared += slot.has_value();
   }
@@ -68,7 +70,8 @@ TEST(Interpreter, CutsChangeOnlyWhatIsRead) {
     const auto builder = random_graph(seed);
     const Plan plan = compiled(builder).plan;
     const uint64_t cuts = (seed % 31 + 1) << 1u; // Every set of the frames 1 .. 4.
-    const Interpretation reference = graph_reference(builder.graph, builder.pass_types, frames, seed, cuts);
+    const Interpretation reference =
+        graph_reference(builder.graph, builder.pass_types, frames, seed, cuts);
     InterpretOptions with_cuts = options(seed, seed, seed % orders);
     with_cuts.cuts = cuts;
     ASSERT_TRUE(agrees(interpret(plan, with_cuts), reference)) << "seed " << seed;
@@ -85,7 +88,8 @@ TEST(Interpreter, LegalOrdersAndUndefinedContentsChangeNothing) {
   for (uint64_t seed = 0; seed < random_graphs(); ++seed) {
     const auto builder = random_graph(seed);
     const Plan plan = compiled(builder).plan;
-    const Interpretation reference = graph_reference(builder.graph, builder.pass_types, frames, seed);
+    const Interpretation reference =
+        graph_reference(builder.graph, builder.pass_types, frames, seed);
     for (uint64_t order = 1; order <= orders; ++order)
       ASSERT_TRUE(agrees(interpret(plan, options(seed, order, order)), reference))
           << "seed " << seed << ", order " << order;
@@ -100,7 +104,8 @@ TEST(Interpreter, SeparateMemoryChangesNothing) {
     const auto builder = random_graph(seed);
     const Plan plan = compiled(builder).plan;
     const Plan apart = without_aliasing(plan);
-    const Interpretation reference = graph_reference(builder.graph, builder.pass_types, frames, seed);
+    const Interpretation reference =
+        graph_reference(builder.graph, builder.pass_types, frames, seed);
     ASSERT_TRUE(agrees(interpret(apart, options(seed, 2, seed + 1)), reference)) << "seed " << seed;
     for (size_t h = 0; h < plan.heaps.size(); ++h)
       shared += apart.heaps[h].size > plan.heaps[h].size;
@@ -112,7 +117,8 @@ TEST(Interpreter, CullingChangesNothingForTheHost) {
   uint64_t fewer = 0, more = 0;
   for (uint64_t seed = 0; seed < random_graphs(); ++seed) {
     GraphBuilder builder = random_graph(seed);
-    const Interpretation reference = graph_reference(builder.graph, builder.pass_types, frames, seed);
+    const Interpretation reference =
+        graph_reference(builder.graph, builder.pass_types, frames, seed);
     const size_t passes = compiled(builder).plan.passes.size();
 
     const auto all = with_all_images_needed(builder);
@@ -154,7 +160,8 @@ TEST(Interpreter, PixelsChange_WithoutBarriersOfAPass) {
   for (uint64_t seed = 0; seed < seeds_to_try(60, 300); ++seed) {
     const auto builder = random_graph(seed);
     const Plan plan = without_aliasing(compiled(builder).plan);
-    const Interpretation reference = graph_reference(builder.graph, builder.pass_types, frames, seed);
+    const Interpretation reference =
+        graph_reference(builder.graph, builder.pass_types, frames, seed);
     for (const PlanPass& pass : plan.passes) {
       Plan mutant = plan;
       bool reads = false;
@@ -181,7 +188,8 @@ TEST(Interpreter, PixelsChange_LiveMemoryIsShared) {
   for (uint64_t seed = 0; seed < seeds_to_try(100, 1000); ++seed) {
     const auto builder = random_graph(seed);
     Plan plan = compiled(builder).plan;
-    const Interpretation reference = graph_reference(builder.graph, builder.pass_types, frames, seed);
+    const Interpretation reference =
+        graph_reference(builder.graph, builder.pass_types, frames, seed);
     for (Placement& placement : plan.placements)
       placement.offset = 0;
     if (verify(plan).violations.empty()) continue;

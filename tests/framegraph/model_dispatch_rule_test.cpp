@@ -7,7 +7,8 @@ namespace {
 
 using Domain = DispatchRule::Domain;
 
-void expect_groups(const DispatchRule& rule, uint64_t width, uint64_t height, uint64_t x, uint64_t y) {
+void expect_groups(const DispatchRule& rule, uint64_t width, uint64_t height, uint64_t x,
+                   uint64_t y) {
   const GroupCount groups = group_count(rule, width, height);
   EXPECT_EQ(groups.x, x);
   EXPECT_EQ(groups.y, y);

@@ -34,7 +34,8 @@ struct Fixture {
   ExpressionId parse(const std::string& text, std::vector<bool> broken = std::vector<bool>(5)) {
     const auto document = parse_document("e.json", "[\n\"" + text + "\"]", diagnostics);
     EXPECT_TRUE(document) << text;
-    return document ? parse_expression(*document, {1}, "'when'", graph, broken, diagnostics) : ExpressionId();
+    return document ? parse_expression(*document, {1}, "'when'", graph, broken, diagnostics)
+                    : ExpressionId();
   }
 };
 
@@ -51,8 +52,9 @@ TEST(Expression, EvaluatesWithTheStatedPrecedence) {
         Case{"16 >= count", true}, Case{"count > -1", true}, Case{"scale == 1.5", true},
         Case{"scale < 2", true}, Case{"scale > 1e0", true}, Case{"mode == 'b'", true},
         Case{"'b' == mode", true}, Case{"mode != 'b'", false}, Case{"mode in ['a', 'c']", false},
-        Case{"mode in ['b']", true}, Case{"mode not in ['a', 'c']", true}, Case{"count in [1, 16]", true},
-        Case{"count in [1, 16.5]", false}, Case{"flag in [false]", false}, Case{"flag == true", true},
+        Case{"mode in ['b']", true}, Case{"mode not in ['a', 'c']", true},
+        Case{"count in [1, 16]", true}, Case{"count in [1, 16.5]", false},
+        Case{"flag in [false]", false}, Case{"flag == true", true},
         Case{"flag == (count == 16)", true},
         Case{"mode == 'a' and count == 1 or flag", true}, // `and` binds more tightly than `or`.
         Case{"mode == 'a' and (count == 1 or flag)", false}, Case{"flag or flag and false", true},
@@ -65,7 +67,8 @@ TEST(Expression, EvaluatesWithTheStatedPrecedence) {
     EXPECT_EQ(evaluate(fixture.graph, id, fixture.values), one.value) << one.text;
     for (uint32_t i = 0; i < fixture.graph.expressions.size(); ++i) {
       const Expression& node = fixture.graph.expressions[i];
-      EXPECT_TRUE(!node.left.valid() || node.left.value < i) << "children are stored before parents";
+      EXPECT_TRUE(!node.left.valid() || node.left.value < i)
+          << "children are stored before parents";
       EXPECT_TRUE(!node.right.valid() || node.right.value < i);
     }
   }
@@ -110,8 +113,10 @@ TEST(Expression, ErrorsPointIntoTheString) {
            Wrong{"count == 1e999", Id::bad_expression, 9, "'1e999'"},
            Wrong{"cuont == 1", Id::unknown_setting, 0, "did you mean 'count'?"},
            Wrong{"mode == 'd'", Id::expression_type, 8, "'a', 'b' or 'c'"},
-           Wrong{"mode in ['a', 'd']", Id::expression_type, 14, "'d' is not an option of the setting 'mode'"},
-           Wrong{"count == 'a'", Id::expression_type, 9, "a number is compared with a quoted option"},
+           Wrong{"mode in ['a', 'd']", Id::expression_type, 14,
+                 "'d' is not an option of the setting 'mode'"},
+           Wrong{"count == 'a'", Id::expression_type, 9,
+                 "a number is compared with a quoted option"},
            Wrong{"count == flag", Id::expression_type, 9, "a number is compared with a boolean"},
            Wrong{"'a' == 'a'", Id::expression_type, 7, "a quoted option"},
            Wrong{"'a' in ['a']", Id::expression_type, 0, "left side of 'in'"},
@@ -143,14 +148,17 @@ TEST(Expression, NestingAndLengthAreBounded) {
   Fixture deep;
   EXPECT_TRUE(deep.parse(std::string(maximum, '(') + "flag" + std::string(maximum, ')')).valid())
       << all_messages(deep.diagnostics);
-  EXPECT_FALSE(deep.parse(std::string(maximum + 1, '(') + "flag" + std::string(maximum + 1, ')')).valid());
-  expect_only(deep.diagnostics, DiagnosticId::limit_exceeded, 2, static_cast<uint32_t>(maximum + 2));
+  EXPECT_FALSE(
+      deep.parse(std::string(maximum + 1, '(') + "flag" + std::string(maximum + 1, ')')).valid());
+  expect_only(deep.diagnostics, DiagnosticId::limit_exceeded, 2,
+              static_cast<uint32_t>(maximum + 2));
   Fixture negated;
   std::string many;
   for (size_t i = 0; i <= maximum; ++i)
     many += "not ";
   EXPECT_FALSE(negated.parse(many + "flag").valid());
-  expect_only(negated.diagnostics, DiagnosticId::limit_exceeded, 2, static_cast<uint32_t>(4 * maximum + 2));
+  expect_only(negated.diagnostics, DiagnosticId::limit_exceeded, 2,
+              static_cast<uint32_t>(4 * maximum + 2));
   Fixture long_one;
   std::string text = "flag";
   while (text.size() <= limits::expression_bytes)
@@ -161,8 +169,9 @@ TEST(Expression, NestingAndLengthAreBounded) {
 
 // Random strings of the language's tokens are parsed and evaluated, or rejected with one error.
 TEST(Expression, EveryStringIsParsedOrExplained) {
-  const char* words[] = {"flag", "count", "mode", "'a'", "'q'", "1",  "2.5", "and", "or", "not", "in",
-                         "[",    "]",     "(",    ")",   ",",   "==", "<",   ">=",  "!",  "'",   "zzz"};
+  const char* words[] = {"flag", "count", "mode", "'a'", "'q'", "1",  "2.5", "and",
+                         "or",   "not",   "in",   "[",   "]",   "(",  ")",   ",",
+                         "==",   "<",     ">=",   "!",   "'",   "zzz"};
   uint32_t state = 1; // Linear congruential generator with the constants of Numerical Recipes.
   const auto next = [&] { return (state = state * 1664525u + 1013904223u) >> 16; };
   for (int round = 0; round < 20000; ++round) {
@@ -171,8 +180,9 @@ TEST(Expression, EveryStringIsParsedOrExplained) {
       text += std::string(words[next() % std::size(words)]) + " ";
     Fixture fixture;
     const ExpressionId id = fixture.parse(text);
-    EXPECT_EQ(fixture.diagnostics.list.size(), id.valid() ? 0u : 1u) << text << "\n"
-                                                                     << all_messages(fixture.diagnostics);
+    EXPECT_EQ(fixture.diagnostics.list.size(), id.valid() ? 0u : 1u)
+        << text << "\n"
+        << all_messages(fixture.diagnostics);
     if (id.valid()) evaluate(fixture.graph, id, fixture.values);
   }
 }
@@ -209,11 +219,12 @@ TEST(Expression, Conditions_CompatibilityMatchesExhaustiveSearch) {
   }
   const auto brute_force = [&](std::span<const Condition> conditions) {
     for (int64_t i = 0; i < 2 * 5 * 9 * 3 * 2; ++i) {
-      const std::vector<SettingValue> values{{SettingType::boolean, i % 2, 0.0},
-                                             {SettingType::integer, i / 2 % 5, 0.0},
-                                             {SettingType::real, 0, static_cast<double>(i / 10 % 9) / 4},
-                                             {SettingType::choice, i / 90 % 3, 0.0},
-                                             {SettingType::enumeration, i / 270, 0.0}};
+      const std::vector<SettingValue> values{
+          {SettingType::boolean, i % 2, 0.0},
+          {SettingType::integer, i / 2 % 5, 0.0},
+          {SettingType::real, 0, static_cast<double>(i / 10 % 9) / 4},
+          {SettingType::choice, i / 90 % 3, 0.0},
+          {SettingType::enumeration, i / 270, 0.0}};
       if (std::all_of(conditions.begin(), conditions.end(), [&](const Condition& one) {
             return evaluate(fixture.graph, one.when, values) == one.holds;
           }))

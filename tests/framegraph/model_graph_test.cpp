@@ -34,8 +34,8 @@ TEST(Graph, EveryDeclarationIsReadAndResolved) {
   EXPECT_TRUE(light.exported);
   EXPECT_EQ(light.formats, (FormatList{Format::rgba16f, Format::rgba32f}));
   EXPECT_TRUE(graph.resources[1].optional);
-  EXPECT_EQ(graph.resources[1].formats, (FormatList{Format::d32f, Format::d24, Format::d16, Format::d24s8,
-                                                    Format::d32fs8, Format::r32f}));
+  EXPECT_EQ(graph.resources[1].formats, (FormatList{Format::d32f, Format::d24, Format::d16,
+                                                    Format::d24s8, Format::d32fs8, Format::r32f}));
   const ResourceDeclaration& half = graph.resources[3];
   EXPECT_EQ(half.size.base, SizeExpression::Base::view);
   EXPECT_EQ(half.size.x.numerator, 3);
@@ -93,8 +93,8 @@ TEST(Graph, TheShortestGraphIsAccepted) {
 }
 
 TEST(Graph, ASecondPassMayUpdateWhatTheFirstWrote) {
-  const Read updated =
-      read(R"({ "dermis": 2, "name": "g", "imports": { "a": { "format": "rgba16f", "size": "view" } },
+  const Read updated = read(
+      R"({ "dermis": 2, "name": "g", "imports": { "a": { "format": "rgba16f", "size": "view" } },
     "resources": { "x": { "format": "rgba16f", "size": "view" } }, "passes": [
     { "pass": "one", "type": "test.blur", "read": { "source": "a" }, "write": { "target": "x" } },
     { "pass": "two", "type": "test.mix", "read": { "source": "a" }, "write": { "target": "x" } } ], "exports": ["x"] })");
@@ -102,8 +102,8 @@ TEST(Graph, ASecondPassMayUpdateWhatTheFirstWrote) {
 }
 
 TEST(Graph, PassesWithConditionsMayWriteTheSameResource) {
-  const Read exclusive =
-      read(R"({ "dermis": 2, "name": "g", "imports": { "a": { "format": "rgba16f", "size": "view" } },
+  const Read exclusive = read(
+      R"({ "dermis": 2, "name": "g", "imports": { "a": { "format": "rgba16f", "size": "view" } },
     "settings": { "on": { "bool": true } }, "resources": { "x": { "format": "rgba16f", "size": "view" } }, "passes": [
     { "pass": "one", "type": "test.blur", "when": "on", "read": { "source": "a" }, "write": { "target": "x" } },
     { "pass": "two", "type": "test.blur", "when": "not on", "read": { "source": "a" }, "write": { "target": "x" } } ],
@@ -112,8 +112,8 @@ TEST(Graph, PassesWithConditionsMayWriteTheSameResource) {
 }
 
 TEST(Graph, ReaderMayPrecedeItsProducer) {
-  const Read forward =
-      read(R"({ "dermis": 2, "name": "g", "imports": { "a": { "format": "rgba16f", "size": "view" } },
+  const Read forward = read(
+      R"({ "dermis": 2, "name": "g", "imports": { "a": { "format": "rgba16f", "size": "view" } },
     "resources": { "x": { "format": "rgba16f", "size": "view" } }, "passes": [
     { "pass": "late", "type": "test.mix", "read": { "source": "x" }, "write": { "target": "a" } },
     { "pass": "early", "type": "test.blur", "read": { "source": "a" }, "write": { "target": "x" } } ], "exports": ["a"] })");

@@ -70,13 +70,15 @@ Outcome read_passes(const char* passes) {
 }
 
 // The last pass, which only writes the export.
-#define SHOW(resource)                                                                                       \
-  R"({ "pass": "show", "type": "t.blur", "read": { "a": ")" resource R"(" }, "write": { "o": "out" } })"
-#define X_FROM_LIGHT(when)                                                                                   \
-  R"({ "pass": "make", "type": "t.blur", "when": ")" when                                                    \
+#define SHOW(resource)                                                                             \
+  R"({ "pass": "show", "type": "t.blur", "read": { "a": ")" resource                               \
+  R"(" }, "write": { "o": "out" } })"
+#define X_FROM_LIGHT(when)                                                                         \
+  R"({ "pass": "make", "type": "t.blur", "when": ")" when                                          \
   R"(", "read": { "a": "light" }, "write": { "o": "x" }, "otherwise": { "x": "light" } }, )"
-#define BLUR_X(rest)                                                                                         \
-  R"({ "pass": "blur", "type": "t.blur", "read": { "a": "x" }, "write": { "o": "light" })" rest R"( }, )"
+#define BLUR_X(rest)                                                                               \
+  R"({ "pass": "blur", "type": "t.blur", "read": { "a": "x" }, "write": { "o": "light" })" rest    \
+  R"( }, )"
 
 const Case rejected_cases[] = {
     {"Directly",
@@ -124,7 +126,8 @@ const Case rejected_cases[] = {
      X_FROM_LIGHT("n > 8 or r < 2") BLUR_X(R"(, "when": "n <= 8 and r > 1.9")") SHOW("light"),
      {"pass 'blur'"}},
     {"UnderOptionsThatMeet",
-     X_FROM_LIGHT("mode in ['low']") BLUR_X(R"(, "when": "mode != 'low' and mode != 'off'")") SHOW("light"),
+     X_FROM_LIGHT("mode in ['low']") BLUR_X(R"(, "when": "mode != 'low' and mode != 'off'")")
+         SHOW("light"),
      {"pass 'blur'"}},
     {"AStandInOfAnotherComponentType",
      R"({ "pass": "clear", "type": "t.clear", "when": "sharp", "write": { "target": "id" }, "otherwise": { "id": "mask" } },
@@ -157,10 +160,12 @@ const Case accepted_cases[] = {
         { "pass": "copy", "type": "t.blur", "read": { "a": "m#0[0]" }, "write": { "o": "m#0[1]" } }, )" SHOW(
          "m#0[1]")},
     {"AnotherFrame",
-     R"({ "pass": "keep", "type": "t.blur", "read": { "a": "h@-1" }, "write": { "o": "h" } }, )" SHOW("h")},
+     R"({ "pass": "keep", "type": "t.blur", "read": { "a": "h@-1" }, "write": { "o": "h" } }, )" SHOW(
+         "h")},
     {"UnderEqualConditions", X_FROM_LIGHT("sharp") BLUR_X(R"(, "when": "sharp")") SHOW("light")},
     {"UnderNumbersThatExcludeEachOther",
-     X_FROM_LIGHT("n > 4 or r <= 2.5") BLUR_X(R"(, "when": "n >= 5 and r > 2.5 or n == 5")") SHOW("light")},
+     X_FROM_LIGHT("n > 4 or r <= 2.5") BLUR_X(R"(, "when": "n >= 5 and r > 2.5 or n == 5")")
+         SHOW("light")},
     {"UnderOptionsThatExcludeEachOther",
      X_FROM_LIGHT("mode != 'off'") BLUR_X(R"(, "when": "mode in ['low', 'high'] and not sharp")")
          SHOW("light")},

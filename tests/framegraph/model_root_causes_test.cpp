@@ -28,7 +28,8 @@ TEST(GraphErrors, ResourceOnlyUpdated_HasNoContents) {
   const Read result = read(small_graph(R"(
 { "pass": "one", "type": "test.mix", "read": { "source": "a" }, "write": { "target": "x" } })"));
   EXPECT_FALSE(result.graph);
-  expect_only(result.diagnostics, Id::no_producer, 3, 86, {"pass 'one' updates 'x'", "only update"});
+  expect_only(result.diagnostics, Id::no_producer, 3, 86,
+              {"pass 'one' updates 'x'", "only update"});
 }
 
 TEST(GraphErrors, ResourceNeverWritten_CannotBeRead) {
@@ -36,7 +37,8 @@ TEST(GraphErrors, ResourceNeverWritten_CannotBeRead) {
 { "pass": "one", "type": "test.mix", "read": { "source": "x" }, "write": { "target": "a" } },
 { "pass": "two", "type": "test.mix", "read": { "source": "x" }, "write": { "target": "a" } })"));
   EXPECT_FALSE(result.graph);
-  expect_only(result.diagnostics, Id::no_producer, 3, 58, {"pass 'one' reads 'x'", "declared here"});
+  expect_only(result.diagnostics, Id::no_producer, 3, 58,
+              {"pass 'one' reads 'x'", "declared here"});
 }
 
 TEST(GraphErrors, OnlyRootCausesAreReportedInOneRun) {
@@ -83,7 +85,8 @@ TEST(GraphErrors, WrongSectionType_SuppressesReferenceErrors) {
     text.insert(at, "7, \"note_moved\": ");
     const Read result = read(text);
     EXPECT_FALSE(result.graph);
-    ASSERT_EQ(result.diagnostics.list.size(), 2u) << section << "\n" << all_messages(result.diagnostics);
+    ASSERT_EQ(result.diagnostics.list.size(), 2u) << section << "\n"
+                                                  << all_messages(result.diagnostics);
     EXPECT_EQ(result.diagnostics.list[0].id, Id::wrong_type);
     EXPECT_EQ(result.diagnostics.list[1].id, Id::unknown_key);
   }
@@ -103,8 +106,8 @@ TEST(GraphErrors, CountsBeyondTheLimitsAreRejected) {
   const std::string rest = "\"exports\": [], \"passes\": [],\n";
   expect_only(read(start + rest + "\"resources\": {" + many_resources + "} }").diagnostics,
               Id::limit_exceeded, 2, 14, {"4096"});
-  expect_only(read(start + rest + "\"settings\": {" + many_settings + "} }").diagnostics, Id::limit_exceeded,
-              2, 13, {"256"});
+  expect_only(read(start + rest + "\"settings\": {" + many_settings + "} }").diagnostics,
+              Id::limit_exceeded, 2, 13, {"256"});
 }
 
 } // namespace

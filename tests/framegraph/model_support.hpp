@@ -42,7 +42,8 @@ inline const PassTypeRegistry& pass_types() {
   static const PassTypeRegistry registry = [] {
     PassTypeRegistry out;
     out.add({"test.blur", "blur", "blurs", blur_ports, blur_settings});
-    static constexpr PortNeed list_needs[] = {{"tiles", 8, 4, 4}, {"mask", 1}, {"no_port", 1, 1000}};
+    static constexpr PortNeed list_needs[] = {
+        {"tiles", 8, 4, 4}, {"mask", 1}, {"no_port", 1, 1000}};
     PassType list{"test.list", "list", "lists tiles", list_ports, {}};
     list.needs = list_needs;
     out.add(list);

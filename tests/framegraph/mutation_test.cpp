@@ -18,7 +18,8 @@ namespace dermis::testing {
 namespace {
 
 template <class Visit> void for_random_plans(uint64_t quick, uint64_t full, Visit visit) {
-  for (uint64_t seed = 0; seed < seeds_to_try(quick, full) && !::testing::Test::HasFailure(); ++seed) {
+  for (uint64_t seed = 0; seed < seeds_to_try(quick, full) && !::testing::Test::HasFailure();
+       ++seed) {
     const auto builder = random_graph(seed);
     const Plan plan = compiled(builder).plan;
     visit(builder, plan, seed);
@@ -89,10 +90,12 @@ TEST(Mutation, FlippedHistorySlot_IsRejectedOrChangesPixels) {
   constexpr uint32_t frames = 14;
   Tally tally;
   for_random_plans(300, 3000, [&](const GraphBuilder& builder, const Plan& plan, uint64_t seed) {
-    if (std::any_of(plan.accesses.begin(), plan.accesses.end(),
-                    [](const PlanAccess& access) { return access.when == ReadWhen::history_invalid; }))
+    if (std::any_of(plan.accesses.begin(), plan.accesses.end(), [](const PlanAccess& access) {
+          return access.when == ReadWhen::history_invalid;
+        }))
       return;
-    const Interpretation reference = graph_reference(builder.graph, builder.pass_types, frames, seed);
+    const Interpretation reference =
+        graph_reference(builder.graph, builder.pass_types, frames, seed);
     for_each_flipped_slot(plan, [&](const Plan& mutant, const std::string& what) {
       if (HasFatalFailure()) return;
       expect_same_verdict(mutant, fmt::format("seed {}: {}", seed, what), tally);

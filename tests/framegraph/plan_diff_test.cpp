@@ -65,9 +65,11 @@ TEST(PlanDiff, IsSymmetric) {
       for (size_t s = 0; s < there.sections.size(); ++s)
         // Either of two swapped passes may be reported as moved.
         if (there.sections[s].name != "order") {
-          EXPECT_EQ(lines(there.sections[s], false), lines(back.sections[s], true)) << there.sections[s].name;
+          EXPECT_EQ(lines(there.sections[s], false), lines(back.sections[s], true))
+              << there.sections[s].name;
         }
-      EXPECT_EQ(section(there, "order").differences.size(), section(back, "order").differences.size());
+      EXPECT_EQ(section(there, "order").differences.size(),
+                section(back, "order").differences.size());
       EXPECT_TRUE(is_json(plan_diff_json(there, "a", "b")));
     }
   }
@@ -108,7 +110,8 @@ TEST(PlanDiff, NamesEachChange) {
       {"compiled_from", "view", [](auto& p) { ++p.key.view_width; }},
       {"compiled_from", "device", [](auto& p) { p.key.device_profile = "another"; }},
       {"compiled_from", "device limits", [](auto& p) { p.key.buffer_image_granularity = 7; }},
-      {"compiled_from", "device features", [](auto& p) { p.key.features ^= bit_of(Feature::ray_query); }},
+      {"compiled_from", "device features",
+       [](auto& p) { p.key.features ^= bit_of(Feature::ray_query); }},
       {"compiled_from", "unbound slots", [](auto& p) { p.key.bound[1] = 0; }},
       {"compiled_from", "host formats", [](auto& p) { p.key.host_formats[0] = Format::r32f; }},
       {"compiled_from", "order", [](auto& p) { p.key.order = PassOrder::random; }},
@@ -157,7 +160,8 @@ TEST(PlanDiff, ReportsTheFewestMovedPasses) {
   const GraphBuilder builder = sample();
   const SavedPlan plan = saved(builder.input());
   SavedPlan turned = plan;
-  std::rotate(turned.names.passes.begin(), turned.names.passes.begin() + 1, turned.names.passes.end());
+  std::rotate(turned.names.passes.begin(), turned.names.passes.begin() + 1,
+              turned.names.passes.end());
   const PlanDiff diff = diff_plans(plan, turned);
   const auto& moved = section(diff, "order").differences;
   ASSERT_EQ(moved.size(), 1u) << plan_diff_text(diff, "a", "b");

@@ -115,7 +115,8 @@ void for_each_swap(const Plan& plan, const VisitMutant& visit) {
 void for_each_moved_barrier(const Plan& plan, const VisitMutant& visit) {
   for (size_t p = 0; p + 1 < plan.passes.size(); ++p) {
     const PlanPass &first = plan.passes[p], &second = plan.passes[p + 1];
-    if (first.first_barrier + first.barrier_count != second.first_barrier || first.queue != second.queue)
+    if (first.first_barrier + first.barrier_count != second.first_barrier ||
+        first.queue != second.queue)
       continue;
     if (first.barrier_count > 0) {
       Plan mutant = plan;

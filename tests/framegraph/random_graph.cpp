@@ -29,7 +29,9 @@ struct Draft {
   std::map<std::string, uint32_t> divided = {};
 
   std::string fresh(const char* stem) { return fmt::format("{}{}", stem, count++); }
-  const std::string& any(const std::vector<std::string>& from) { return from[random.below(from.size())]; }
+  const std::string& any(const std::vector<std::string>& from) {
+    return from[random.below(from.size())];
+  }
 
   // Names a whole history, one mip, or one mip of its first layer.
   std::string some_of(const std::string& history) {
@@ -73,7 +75,9 @@ struct Draft {
   static bool may_meet(const std::string& source, const std::string& image) {
     // The otherwise value, or the whole source: npos + 1 is 0.
     const std::string now = source.substr(source.find('?') + 1);
-    const auto name = [](const std::string& text) { return text.substr(0, text.find_first_of("#[@")); };
+    const auto name = [](const std::string& text) {
+      return text.substr(0, text.find_first_of("#[@"));
+    };
     return now.find('@') == std::string::npos && name(now) == name(image);
   }
 
@@ -93,7 +97,8 @@ struct Draft {
     const auto frames = b.graph.resources[b.resource(history).value].history.frames;
     if (random.chance(40))
       b.pass(fresh("blend"), "test.blend",
-             {{"a", any(readable)}, {"own", fmt::format("{}@-{}", history, frames)}}, {{"out", history}});
+             {{"a", any(readable)}, {"own", fmt::format("{}@-{}", history, frames)}},
+             {{"out", history}});
     else
       b.pass(fresh("keep"), "test.shade", reads(3), {{"out", history}});
   }
@@ -110,18 +115,20 @@ struct Draft {
     declared.layers = 1 + random.below(2);
     const uint32_t mips = declared.mips, layers = declared.layers;
     if (random.chance(20)) b.pass(fresh("fill"), "test.fill", {}, {{"target", name}});
-    const bool filled =
-        b.graph.passes.size() > 0 && b.graph.writes(b.graph.passes.back())[0].resource == b.resource(name);
+    const bool filled = b.graph.passes.size() > 0 &&
+                        b.graph.writes(b.graph.passes.back())[0].resource == b.resource(name);
     for (uint32_t m = 0; m < mips; ++m) {
       const bool by_layer = random.chance(50);
       for (uint32_t l = 0; l < (by_layer ? layers : 1); ++l) {
         const auto part = fmt::format("{}#{}{}", name, m, by_layer ? fmt::format("[{}]", l) : "");
         auto inputs = reads(2);
         if (m > 0)
-          inputs.emplace_back("c", fmt::format("{}#{}{}", name, m - 1, random.chance(50) ? "" : "[0]"));
+          inputs.emplace_back("c",
+                              fmt::format("{}#{}{}", name, m - 1, random.chance(50) ? "" : "[0]"));
         if (filled) {
           b.pass(fresh("change"), "test.update",
-                 inputs.empty() ? Bindings{} : Bindings{{"a", inputs.back().second}}, {{"image", part}});
+                 inputs.empty() ? Bindings{} : Bindings{{"a", inputs.back().second}},
+                 {{"image", part}});
         } else {
           b.pass(fresh("mip"), "test.shade", inputs, {{"out", part}});
         }
@@ -148,10 +155,11 @@ struct Draft {
     } else if (kind == 2 && !buffers.empty()) {
       const auto out = new_image();
       const auto& tiles = any(buffers);
-      b.pass(
-          name, "test.tiles",
-          {{"tiles", tiles}, {"arguments", random.chance(70) ? tiles : any(buffers)}, {"a", any(readable)}},
-          {{"out", out}});
+      b.pass(name, "test.tiles",
+             {{"tiles", tiles},
+              {"arguments", random.chance(70) ? tiles : any(buffers)},
+              {"a", any(readable)}},
+             {{"out", out}});
       readable.push_back(out);
     } else if (kind == 3) {
       // Generated first: compilers evaluate arguments in different orders.
@@ -184,7 +192,8 @@ void draw_orders(GraphBuilder& builder, uint64_t seed) {
   Random random{seed};
   std::vector<PassDeclaration>& passes = builder.graph.passes;
   for (uint32_t later = 1; later < passes.size(); ++later)
-    if (random.chance(30)) passes[later].after.push_back({PassId{random.below(later)}, "drawn", {}});
+    if (random.chance(30))
+      passes[later].after.push_back({PassId{random.below(later)}, "drawn", {}});
 }
 
 GraphBuilder random_graph(uint64_t seed, Sizes sizes) {

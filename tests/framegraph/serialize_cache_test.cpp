@@ -55,7 +55,8 @@ TEST(PlanCache, DifferentInputs_NeverShareAPlan) {
   Diagnostics diagnostics;
   EXPECT_EQ(bytes(compile(builder.input(), cache, diagnostics)),
             bytes(compile(builder.input(), diagnostics)));
-  EXPECT_EQ(bytes(compile(other.input(), cache, diagnostics)), bytes(compile(other.input(), diagnostics)));
+  EXPECT_EQ(bytes(compile(other.input(), cache, diagnostics)),
+            bytes(compile(other.input(), diagnostics)));
   EXPECT_EQ(bytes(compile(builder.input(65, 64), cache, diagnostics)),
             bytes(compile(builder.input(65, 64), diagnostics)));
   EXPECT_EQ(cache.hits, 0u);

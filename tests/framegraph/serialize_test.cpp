@@ -28,10 +28,12 @@ std::string refusal(std::string_view bytes) {
 }
 
 TEST(Digest, MatchesTheStandard) { // FIPS 180-4 examples of zero, one and two blocks.
-  EXPECT_EQ(digest_text(sha256("abc")), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
+  EXPECT_EQ(digest_text(sha256("abc")),
+            "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
   EXPECT_EQ(digest_text(sha256("abcdbcdecdefdefgefghfghighijhijkijkljklmklmnlmnomnopnopq")),
             "248d6a61d20638b8e5c026930c3e6039a33ce45964ff2167f6ecedd419db06c1");
-  EXPECT_EQ(digest_text(sha256("")), "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
+  EXPECT_EQ(digest_text(sha256("")),
+            "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
 }
 
 TEST(SavedPlan, ReadsBackAsWritten) {
@@ -90,7 +92,8 @@ TEST(SavedPlan, ExcessiveCount_IsRejectedBeforeAllocation) {
   bytes.replace(layouts, 4, "\xff\xff\xff\xff");
   EXPECT_THAT(
       refusal(bytes),
-      HasSubstr("'history layouts' has 4294967295 entries, but the rest of the file can hold only 7"));
+      HasSubstr(
+          "'history layouts' has 4294967295 entries, but the rest of the file can hold only 7"));
 }
 
 TEST(SavedPlan, ChangedByte_IsRejectedOrAValidPlan) {
@@ -170,7 +173,8 @@ TEST(PlanKey, DiffersIfThePlanCanDiffer) {
   builder.graph.resources[0].where.line = 99;
   EXPECT_FALSE(is_new([](CompileInput&) {})) << "notes and places in the file are not";
   EXPECT_FALSE(is_new([](CompileInput& input) { input.reasons = false; }));
-  EXPECT_FALSE(is_new([](CompileInput& input) { input.order_seed = 4; })) << "no random number is used";
+  EXPECT_FALSE(is_new([](CompileInput& input) { input.order_seed = 4; }))
+      << "no random number is used";
 }
 
 TEST(PlanKey, FillsInDefaults) {

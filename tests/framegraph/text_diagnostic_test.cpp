@@ -17,20 +17,22 @@ Diagnostics with_text(std::string text) {
 
 TEST(Diagnostic, TextForm_HasPlaceIdExcerptCaretAndHint) {
   Diagnostics all = with_text("{\n  \"sise\": 1\n}");
-  all.add(DiagnosticId::unknown_key, {{0}, 2, 3, "/sise"}, "import 'depth' has no key 'sise'").suggestion =
-      "did you mean 'size'?";
-  EXPECT_EQ(format_for_people(all, all.list[0]), "a.json:2:3: error[D0103 unknown_key]: import 'depth' has "
-                                                 "no key 'sise'; did you mean 'size'? (at /sise)\n"
-                                                 "     2 |   \"sise\": 1\n"
-                                                 "       |   ^\n"
-                                                 "  Remove the key or correct its spelling.");
+  all.add(DiagnosticId::unknown_key, {{0}, 2, 3, "/sise"}, "import 'depth' has no key 'sise'")
+      .suggestion = "did you mean 'size'?";
+  EXPECT_EQ(format_for_people(all, all.list[0]),
+            "a.json:2:3: error[D0103 unknown_key]: import 'depth' has "
+            "no key 'sise'; did you mean 'size'? (at /sise)\n"
+            "     2 |   \"sise\": 1\n"
+            "       |   ^\n"
+            "  Remove the key or correct its spelling.");
 }
 
 TEST(Diagnostic, TheCaretCountsCodePointsAndTabsAsOneColumn) {
   Diagnostics all = with_text("\t\xc3\xa9\xc3\xa9 x");
   all.add(DiagnosticId::syntax, {{0}, 1, 7, ""}, "t");
-  EXPECT_NE(format_for_people(all, all.list[0]).find("     1 |  \xc3\xa9\xc3\xa9 x\n       |     ^\n"),
-            std::string::npos)
+  EXPECT_NE(
+      format_for_people(all, all.list[0]).find("     1 |  \xc3\xa9\xc3\xa9 x\n       |     ^\n"),
+      std::string::npos)
       << format_for_people(all, all.list[0]);
 }
 
@@ -55,8 +57,9 @@ TEST(Diagnostic, NothingUnprintableReachesTheTerminal) {
 }
 
 TEST(Diagnostic, PlacesOutsideTheTextGiveNoExcerptAndNoCrash) {
-  for (const SourceLocation& where : {SourceLocation{{0}, 9, 1, ""}, SourceLocation{{0}, 1, 99, ""},
-                                      SourceLocation{{7}, 1, 1, ""}, SourceLocation{{}, 0, 0, ""}}) {
+  for (const SourceLocation& where :
+       {SourceLocation{{0}, 9, 1, ""}, SourceLocation{{0}, 1, 99, ""},
+        SourceLocation{{7}, 1, 1, ""}, SourceLocation{{}, 0, 0, ""}}) {
     Diagnostics all = with_text("x");
     all.add(DiagnosticId::syntax, where, "t");
     EXPECT_EQ(format_for_people(all, all.list[0]).find('|'), std::string::npos);
@@ -75,7 +78,8 @@ TEST(Diagnostic, JsonIsValidForAnyText) {
   const NodeId first = (*document)[document->root()].first_child;
   EXPECT_EQ(document->text(document->find(first, "id")), "D0101");
   EXPECT_EQ(document->text(document->find(first, "file")), "quote\".json");
-  EXPECT_EQ(document->text(document->find(first, "text")), "line\nbreak \x01 \xef\xbf\xbd \xc3\xa9");
+  EXPECT_EQ(document->text(document->find(first, "text")),
+            "line\nbreak \x01 \xef\xbf\xbd \xc3\xa9");
   EXPECT_EQ((*document)[document->find(first, "related")].child_count, 1u);
   EXPECT_EQ(format_as_json(Diagnostics()), "[]");
 }

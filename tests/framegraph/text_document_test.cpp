@@ -21,7 +21,8 @@ std::string place(const SourceLocation& where) {
 }
 
 TEST(Document, EveryValueAndKeyKnowsLineColumnAndPointer) {
-  const Parsed parsed = parse("{ // first\n  \"a/b\": [1, -2.5, true,\n\tnull],\r\n \"c~\" :{\"d\":\"x\"} }");
+  const Parsed parsed =
+      parse("{ // first\n  \"a/b\": [1, -2.5, true,\n\tnull],\r\n \"c~\" :{\"d\":\"x\"} }");
   ASSERT_TRUE(parsed.document) << all_messages(parsed.diagnostics);
   const Document& document = *parsed.document;
   ASSERT_EQ(document.nodes.size(), 8u);
@@ -35,7 +36,8 @@ TEST(Document, EveryValueAndKeyKnowsLineColumnAndPointer) {
   EXPECT_EQ(document[list].child_count, 4u);
   const std::vector<std::string> places = {"2:11", "2:14", "2:20", "3:2"};
   size_t i = 0;
-  for (NodeId child = document[list].first_child; child.valid(); child = document[child].next, ++i) {
+  for (NodeId child = document[list].first_child; child.valid();
+       child = document[child].next, ++i) {
     EXPECT_EQ(place(document.where(child)), places[i]);
     EXPECT_EQ(document.pointer(child), "/a~1b/" + std::to_string(i));
   }
@@ -50,8 +52,8 @@ TEST(Document, EveryValueAndKeyKnowsLineColumnAndPointer) {
 }
 
 TEST(Document, ValuesAreReadExactly) {
-  const Parsed parsed =
-      parse("[9223372036854775807, -9223372036854775808, 0.1, 1e308, 5e-324, \"\\u00e9\\n\\\"\", false]");
+  const Parsed parsed = parse(
+      "[9223372036854775807, -9223372036854775808, 0.1, 1e308, 5e-324, \"\\u00e9\\n\\\"\", false]");
   ASSERT_TRUE(parsed.document) << all_messages(parsed.diagnostics);
   const Document& d = *parsed.document;
   EXPECT_EQ(d[{1}].integer, INT64_MAX);
@@ -140,12 +142,14 @@ TEST_P(MalformedText, IsRejectedWhereItGoesWrong) {
 INSTANTIATE_TEST_SUITE_P(
     Document, MalformedText,
     ::testing::Values(Malformed{"", 1, 1}, Malformed{"{", 1, 2}, Malformed{"[1,\n 2,, 3]", 2, 4},
-                      Malformed{"[1 2]", 1, 4}, Malformed{"[12,\n34 56]", 2, 4}, Malformed{"{\"a\" 1}", 1, 6},
-                      Malformed{"{\"a\": }", 1, 7}, Malformed{"{a: 1}", 1, 2}, Malformed{"[1] x", 1, 5},
-                      Malformed{"[tru]", 1, 5}, Malformed{"[\"a\\q\"]", 1, 5}, Malformed{"[\"a\nb\"]", 1, 4},
-                      Malformed{"[1,]", 1, 4}, Malformed{"[01]", 1, 2}, Malformed{"[\"\\ud800\"]", 1, 9},
-                      Malformed{"[1, /* no */ 2]", 1, 6}, Malformed{"[NaN]", 1, 2},
-                      Malformed{"[\"a\\u0000b\"]", 1, 2}, Malformed{"{\"\\u0000\": 1}", 1, 2}));
+                      Malformed{"[1 2]", 1, 4}, Malformed{"[12,\n34 56]", 2, 4},
+                      Malformed{"{\"a\" 1}", 1, 6}, Malformed{"{\"a\": }", 1, 7},
+                      Malformed{"{a: 1}", 1, 2}, Malformed{"[1] x", 1, 5}, Malformed{"[tru]", 1, 5},
+                      Malformed{"[\"a\\q\"]", 1, 5}, Malformed{"[\"a\nb\"]", 1, 4},
+                      Malformed{"[1,]", 1, 4}, Malformed{"[01]", 1, 2},
+                      Malformed{"[\"\\ud800\"]", 1, 9}, Malformed{"[1, /* no */ 2]", 1, 6},
+                      Malformed{"[NaN]", 1, 2}, Malformed{"[\"a\\u0000b\"]", 1, 2},
+                      Malformed{"{\"\\u0000\": 1}", 1, 2}));
 
 TEST(Document, TextAfterANulByteIsNotIgnored) {
   using namespace std::string_literals;
@@ -154,8 +158,8 @@ TEST(Document, TextAfterANulByteIsNotIgnored) {
 }
 
 TEST(Document, IntegersThatWouldBecomeDoublesAreRejected) {
-  for (const char* text :
-       {"[1,\n 9223372036854775808]", "[1,\n -9223372036854775809]", "[1,\n 99999999999999999999]"}) {
+  for (const char* text : {"[1,\n 9223372036854775808]", "[1,\n -9223372036854775809]",
+                           "[1,\n 99999999999999999999]"}) {
     expect_rejected(text, DiagnosticId::integer_precision, 2, 2, {"64"});
   }
 }
@@ -165,7 +169,8 @@ TEST(Document, NumbersBeyondDoubleAreRejected) {
 }
 
 TEST(Document, IllFormedUtf8IsRejectedAtItsPlace) {
-  for (const char* bytes : {"\xff", "\xc0\xaf", "\xe0\x80\x80", "\xed\xa0\x80", "\xf5\x80\x80\x80", "\xc3"}) {
+  for (const char* bytes :
+       {"\xff", "\xc0\xaf", "\xe0\x80\x80", "\xed\xa0\x80", "\xf5\x80\x80\x80", "\xc3"}) {
     expect_rejected(std::string("[\n\"ab") + bytes + "\"]", DiagnosticId::invalid_utf8, 2, 4);
   }
   expect_rejected("[] // \x80", DiagnosticId::invalid_utf8, 1, 7);
@@ -189,7 +194,8 @@ TEST(Document, AFileBeyondTheLimitIsRejectedBeforeItIsRead) {
 TEST(Document, UnreadableFileIsRejected) {
   Diagnostics missing;
   EXPECT_FALSE(read_document("/nonexistent/graph.json", missing));
-  expect_only(missing, DiagnosticId::file_unreadable, 0, 0, {"/nonexistent/graph.json", "does not exist"});
+  expect_only(missing, DiagnosticId::file_unreadable, 0, 0,
+              {"/nonexistent/graph.json", "does not exist"});
   Diagnostics folder;
   EXPECT_FALSE(read_document("/", folder));
   expect_only(folder, DiagnosticId::file_unreadable, 0, 0, {"not a regular file"});
@@ -213,8 +219,8 @@ TEST(Document, StringsBeyondTheLimitAreRejectedAtTheirStart) {
 }
 
 TEST(Document, KeysAndNumbersBeyondTheirLimitAreRejected) {
-  expect_rejected("{\"" + std::string(limits::key_bytes + 1, 'k') + "\": 1}", DiagnosticId::limit_exceeded, 1,
-                  2, {"key"});
+  expect_rejected("{\"" + std::string(limits::key_bytes + 1, 'k') + "\": 1}",
+                  DiagnosticId::limit_exceeded, 1, 2, {"key"});
   EXPECT_TRUE(parse("{\"" + std::string(limits::key_bytes, 'k') + "\": 1}").document);
   expect_rejected("[0." + std::string(1u << 20, '1') + "]", DiagnosticId::limit_exceeded, 1, 2);
 }
@@ -227,7 +233,8 @@ TEST(Document, MoreValuesThanTheLimitAreRejected) {
   EXPECT_FALSE(parsed.document);
   // The root is one value, so entry number `nodes` (counted from 1) is the first beyond the limit.
   // An entry is two bytes.
-  expect_only(parsed.diagnostics, DiagnosticId::limit_exceeded, 1, static_cast<uint32_t>(2 * limits::nodes));
+  expect_only(parsed.diagnostics, DiagnosticId::limit_exceeded, 1,
+              static_cast<uint32_t>(2 * limits::nodes));
 }
 
 TEST(Document, ManyRepeatedKeysGiveBoundedDiagnostics) {

@@ -19,8 +19,10 @@ std::string read_documentation(const char* name) {
 TEST(Documentation, EveryDiagnosticHasAnEntry) {
   const std::string text = read_documentation("diagnostics.md");
   for (const DiagnosticInfo& info : all_diagnostic_infos()) {
-    const std::string heading = "\n### " + std::string(info.code) + " " + std::string(info.name) + "\n\n";
-    EXPECT_NE(text.find(heading), std::string::npos) << "docs/diagnostics.md lacks the entry:" << heading;
+    const std::string heading =
+        "\n### " + std::string(info.code) + " " + std::string(info.name) + "\n\n";
+    EXPECT_NE(text.find(heading), std::string::npos)
+        << "docs/diagnostics.md lacks the entry:" << heading;
   }
 }
 
@@ -31,7 +33,8 @@ TEST(Documentation, TheWorkedExampleOfTheGraphFileIsAGraph) {
   ASSERT_NE(begin, std::string::npos);
   const size_t end = text.find("```", begin + fence.size());
   ASSERT_NE(end, std::string::npos);
-  const testing::Read example = testing::read(text.substr(begin + fence.size(), end - begin - fence.size()));
+  const testing::Read example =
+      testing::read(text.substr(begin + fence.size(), end - begin - fence.size()));
   EXPECT_TRUE(example.graph) << testing::all_messages(example.diagnostics);
 }
 

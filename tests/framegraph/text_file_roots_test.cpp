@@ -37,7 +37,8 @@ TEST_F(FileRoots, PathBelowARoot_IsAccepted) {
     EXPECT_EQ(problem(root, name, root), "") << name;
   EXPECT_EQ(problem(root / "in", "../other", root), "");
   EXPECT_EQ(problem(root, (root / "in/file").string(), root), "");
-  EXPECT_EQ(problem(top / "entrance", "in/file", root), "") << "a root that is reached through a link";
+  EXPECT_EQ(problem(top / "entrance", "in/file", root), "")
+      << "a root that is reached through a link";
   EXPECT_EQ(problem(root, "in/file", top / "entrance"), "");
   EXPECT_EQ(problem(root, "in/file", (root / "").string()), "") << "with a trailing slash";
   EXPECT_EQ(place_file(root, "inner/file", std::vector<fs::path>{root}).real, root / "in/file");
@@ -49,7 +50,8 @@ TEST_F(FileRoots, PathOutsideTheRoots_IsRejected) {
        {std::string("../root_beside/file"), std::string("out/file"), std::string("out"),
         std::string("in/../../root_beside/absent"), std::string("/etc/passwd"),
         (top / "root_beside/file").string(), std::string("..")})
-    EXPECT_THAT(problem(root, name, root), HasSubstr("outside the readable folders '" + root.string() + "'"))
+    EXPECT_THAT(problem(root, name, root),
+                HasSubstr("outside the readable folders '" + root.string() + "'"))
         << name;
   EXPECT_THAT(problem("", "../x", ""), HasSubstr("'.'"));
 }

@@ -16,8 +16,8 @@ using testing::Parsed;
 constexpr std::string_view colours[] = {"red", "green", "blue"};
 
 TEST(Reader, ReadsEveryTypeOfValue) {
-  Parsed parsed =
-      parse(R"({ "$schema": "s", "note": "n", "s": "text", "n": "name_1", "b": true, "i": -3, "x": 2,
+  Parsed parsed = parse(
+      R"({ "$schema": "s", "note": "n", "s": "text", "n": "name_1", "b": true, "i": -3, "x": 2,
     "v": [1, 2.5, -3], "w": "green", "o": {}, "a": [1, 2] })");
   ASSERT_TRUE(parsed.document);
   ObjectReader object(*parsed.document, parsed.document->root(), "thing", parsed.diagnostics);
@@ -92,7 +92,8 @@ TEST(Reader, AWrongTypeNamesBothTypes) {
     if (one.key == "o") object.object("k");
     if (one.key == "a") object.array("k", 0, 1);
     EXPECT_FALSE(object.finish());
-    expect_only(parsed.diagnostics, DiagnosticId::wrong_type, 1, 8, {"'k' of thing", std::string(one.words)});
+    expect_only(parsed.diagnostics, DiagnosticId::wrong_type, 1, 8,
+                {"'k' of thing", std::string(one.words)});
   }
   Parsed parsed = parse("{ \"k\": 1.0 }");
   ObjectReader object(*parsed.document, parsed.document->root(), "thing", parsed.diagnostics);
@@ -102,14 +103,17 @@ TEST(Reader, AWrongTypeNamesBothTypes) {
 
 TEST(Reader, ValuesOutOfRangeNameTheRange) {
   Parsed integer = parse("{ \"k\": 9 }");
-  EXPECT_FALSE(ObjectReader(*integer.document, {0}, "thing", integer.diagnostics).integer("k", 1, 8));
+  EXPECT_FALSE(
+      ObjectReader(*integer.document, {0}, "thing", integer.diagnostics).integer("k", 1, 8));
   expect_only(integer.diagnostics, DiagnosticId::out_of_range, 1, 8, {"9", "1 .. 8"});
   Parsed number = parse("{ \"k\": 0.5 }");
-  EXPECT_FALSE(ObjectReader(*number.document, {0}, "thing", number.diagnostics).number("k", 1.0, 8.0));
+  EXPECT_FALSE(
+      ObjectReader(*number.document, {0}, "thing", number.diagnostics).number("k", 1.0, 8.0));
   expect_only(number.diagnostics, DiagnosticId::out_of_range, 1, 8, {"0.5"});
   Parsed list = parse("{ \"k\": [1, 2,\n 30] }");
   std::array<double, 3> out{};
-  EXPECT_FALSE(ObjectReader(*list.document, {0}, "thing", list.diagnostics).numbers("k", out, 0, 10));
+  EXPECT_FALSE(
+      ObjectReader(*list.document, {0}, "thing", list.diagnostics).numbers("k", out, 0, 10));
   expect_only(list.diagnostics, DiagnosticId::out_of_range, 2, 2, {"number 3 of 'k' of thing"});
   EXPECT_EQ(out[0], 0.0) << "untouched on error";
 }
@@ -117,13 +121,15 @@ TEST(Reader, ValuesOutOfRangeNameTheRange) {
 TEST(Reader, ArraysOfAnotherLengthAreRejected) {
   Parsed numbers = parse("{ \"k\": [1, 2] }");
   std::array<double, 3> out{};
-  EXPECT_FALSE(ObjectReader(*numbers.document, {0}, "thing", numbers.diagnostics).numbers("k", out, 0, 10));
+  EXPECT_FALSE(
+      ObjectReader(*numbers.document, {0}, "thing", numbers.diagnostics).numbers("k", out, 0, 10));
   expect_only(numbers.diagnostics, DiagnosticId::wrong_type, 1, 8, {"3 numbers", "2 values"});
   Parsed few = parse("{ \"k\": [] }");
   EXPECT_FALSE(ObjectReader(*few.document, {0}, "thing", few.diagnostics).array("k", 1, 2).valid());
   expect_only(few.diagnostics, DiagnosticId::out_of_range, 1, 8, {"1 .. 2"});
   Parsed many = parse("{ \"k\": [1, 2, 3] }");
-  EXPECT_FALSE(ObjectReader(*many.document, {0}, "thing", many.diagnostics).array("k", 1, 2).valid());
+  EXPECT_FALSE(
+      ObjectReader(*many.document, {0}, "thing", many.diagnostics).array("k", 1, 2).valid());
   expect_only(many.diagnostics, DiagnosticId::limit_exceeded, 1, 8, {"3 entries"});
 }
 
@@ -135,8 +141,8 @@ TEST(Reader, AnUnlistedWordIsRejectedWithTheListAndASuggestion) {
 }
 
 TEST(Reader, NamesAreIdentifiersOfLimitedLength) {
-  for (const std::string& bad :
-       {std::string(), std::string("1a"), std::string("a b"), std::string("a-b"), std::string("é")}) {
+  for (const std::string& bad : {std::string(), std::string("1a"), std::string("a b"),
+                                 std::string("a-b"), std::string("é")}) {
     Parsed parsed = parse("{ \"k\": \"" + bad + "\" }");
     EXPECT_FALSE(ObjectReader(*parsed.document, {0}, "thing", parsed.diagnostics).name("k"));
     expect_only(parsed.diagnostics, DiagnosticId::bad_name, 1, 8);
@@ -167,10 +173,12 @@ TEST(Reader, TheVersionKeyIsRequiredAndChecked) {
               {"\"version\": 1", "did you mean 'version'?"});
   Parsed other = parse("{ \"name\": \"n\",\n  \"dermis_profile\": 1 }");
   EXPECT_FALSE(check_version(*other.document, "dermis", 1, other.diagnostics));
-  expect_only(other.diagnostics, DiagnosticId::other_kind_of_file, 2, 3, {"'dermis_profile'", "'dermis'"});
+  expect_only(other.diagnostics, DiagnosticId::other_kind_of_file, 2, 3,
+              {"'dermis_profile'", "'dermis'"});
   Parsed graph = parse("{ \"dermis\": 2 }");
   EXPECT_FALSE(check_version(*graph.document, "dermis_profile", 1, graph.diagnostics));
-  expect_only(graph.diagnostics, DiagnosticId::other_kind_of_file, 1, 3, {"'dermis'", "'dermis_profile'"});
+  expect_only(graph.diagnostics, DiagnosticId::other_kind_of_file, 1, 3,
+              {"'dermis'", "'dermis_profile'"});
   Parsed newer = parse("{ \"v\": 2 }");
   EXPECT_FALSE(check_version(*newer.document, "v", 1, newer.diagnostics));
   expect_only(newer.diagnostics, DiagnosticId::unsupported_version, 1, 8, {"version 1"});

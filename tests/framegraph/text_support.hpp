@@ -29,8 +29,8 @@ inline std::string all_messages(const Diagnostics& diagnostics) {
 }
 
 // Expects exactly one diagnostic, with this id and place, whose text contains each of `words`.
-inline void expect_only(const Diagnostics& diagnostics, DiagnosticId id, uint32_t line, uint32_t column,
-                        const std::vector<std::string>& words = {}) {
+inline void expect_only(const Diagnostics& diagnostics, DiagnosticId id, uint32_t line,
+                        uint32_t column, const std::vector<std::string>& words = {}) {
   ASSERT_EQ(diagnostics.list.size(), 1u) << all_messages(diagnostics);
   const Diagnostic& one = diagnostics.list[0];
   EXPECT_EQ(diagnostic_info(one.id).name, diagnostic_info(id).name) << all_messages(diagnostics);
@@ -42,8 +42,8 @@ inline void expect_only(const Diagnostics& diagnostics, DiagnosticId id, uint32_
 }
 
 // Expects that the text is no document, for one reason as in expect_only().
-inline void expect_rejected(const std::string& text, DiagnosticId id, uint32_t line, uint32_t column,
-                            const std::vector<std::string>& words = {}) {
+inline void expect_rejected(const std::string& text, DiagnosticId id, uint32_t line,
+                            uint32_t column, const std::vector<std::string>& words = {}) {
   const Parsed parsed = parse(text);
   EXPECT_FALSE(parsed.document);
   expect_only(parsed.diagnostics, id, line, column, words);

@@ -38,7 +38,8 @@ uint32_t async_passes(const Plan& plan) {
 
 template <class Visit>
 void for_random_plans(uint64_t quick, uint64_t full, Visit visit, Sizes sizes = Sizes::mixed) {
-  for (uint64_t seed = 0; seed < seeds_to_try(quick, full) && !::testing::Test::HasFailure(); ++seed) {
+  for (uint64_t seed = 0; seed < seeds_to_try(quick, full) && !::testing::Test::HasFailure();
+       ++seed) {
     auto builder = random_graph(seed, sizes);
     if (seed % 4 == 1) draw_orders(builder, seed);
     const Plan plan = compiled(builder, two_queues(builder)).plan;
@@ -90,7 +91,8 @@ TEST(TwoQueues, HostResourcesStayOnTheMainQueue) {
   b.graph.passes[0].async = true;
   const auto whole = compiled(b, two_queues(b));
   EXPECT_EQ(whole.plan.passes[0].queue, Queue::main);
-  EXPECT_THAT(reasons(b, whole, Reason::About::pass, 0), HasSubstr("runs on the main queue: 'light'"));
+  EXPECT_THAT(reasons(b, whole, Reason::About::pass, 0),
+              HasSubstr("runs on the main queue: 'light'"));
 }
 
 TEST(TwoQueues, AfterIsAPointBetweenPassesOfTwoQueues) {
@@ -141,7 +143,8 @@ TEST(TwoQueues, EveryLegalOrder_KeepsAfter) {
       for (const PlanOrdering& one : plan.orderings)
         for (uint32_t frame = 0; frame < 3; ++frame) {
           if (plan.passes[one.earlier].queue == plan.passes[one.later].queue) continue;
-          ASSERT_LT(place.at({frame, one.earlier}), place.at({frame, one.later})) << "seed " << seed;
+          ASSERT_LT(place.at({frame, one.earlier}), place.at({frame, one.later}))
+              << "seed " << seed;
           ++kept;
         }
     }
@@ -170,7 +173,8 @@ TEST(TwoQueues, WaitsForPreviousFrame_CoverEveryPass) {
 
 TEST(TwoQueues, EveryLegalOrder_GivesTheReferencePixels) {
   for_random_plans(1500, 10000, [&](const GraphBuilder& builder, const Plan& plan, uint64_t seed) {
-    const Interpretation reference = graph_reference(builder.graph, builder.pass_types, queue_frames, seed);
+    const Interpretation reference =
+        graph_reference(builder.graph, builder.pass_types, queue_frames, seed);
     for (uint64_t order = 0; order <= 3; ++order)
       ASSERT_TRUE(agrees(interpret(plan, {queue_frames, seed, order + 1, order}), reference))
           << "seed " << seed << ", order " << order;
@@ -233,7 +237,8 @@ TEST(TwoQueues, WeakerMask_IsRejectedIfHazardous) {
   Tally tally;
   for_random_plans(60, 600, [&](const GraphBuilder&, const Plan& plan, uint64_t seed) {
     for_each_weaker_mask(plan, [&](const Plan& mutant, const std::string& what) {
-      if (!HasFatalFailure()) expect_same_verdict(mutant, fmt::format("seed {}: {}", seed, what), tally);
+      if (!HasFatalFailure())
+        expect_same_verdict(mutant, fmt::format("seed {}: {}", seed, what), tally);
     });
   });
   EXPECT_GT(tally.rejected, 100u);

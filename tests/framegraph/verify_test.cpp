@@ -55,8 +55,9 @@ TEST(Verify, RejectsAliasedLiveMemory) {
 TEST(Verify, ThousandsOfPlacementsInTheSameBytes_GetAVerdict) {
   const auto b = everything();
   Plan plan = compiled(b).plan;
-  const auto transient = std::find_if(plan.placements.begin(), plan.placements.end(),
-                                      [](const Placement& placement) { return !placement.persistent; });
+  const auto transient =
+      std::find_if(plan.placements.begin(), plan.placements.end(),
+                   [](const Placement& placement) { return !placement.persistent; });
   ASSERT_NE(transient, plan.placements.end());
   const PlanResource like = plan.resources[transient->resource];
   Placement placement = *transient;
@@ -79,7 +80,8 @@ GraphBuilder chain(bool equal_sizes, bool forward, uint32_t mips) {
   GraphBuilder b;
   b.import("in");
   for (uint32_t i = 0; i < count; ++i) {
-    ResourceDeclaration& image = i + 1 == count ? b.exported("out") : b.image("r" + std::to_string(i));
+    ResourceDeclaration& image =
+        i + 1 == count ? b.exported("out") : b.image("r" + std::to_string(i));
     if (i + 1 == count) break;
     image.mips = mips;
     if (equal_sizes) continue;
@@ -154,9 +156,9 @@ TEST(Verify, TooManyAccesses_GivesUp) {
   Plan plan = compiled(b).plan;
   PlanPass& last = plan.passes.back();
   ASSERT_EQ(last.first_access + last.access_count, plan.accesses.size());
-  const auto read =
-      std::find_if(plan.accesses.begin() + last.first_access, plan.accesses.end(),
-                   [](const PlanAccess& access) { return (access.access & all_write_access) == 0; });
+  const auto read = std::find_if(
+      plan.accesses.begin() + last.first_access, plan.accesses.end(),
+      [](const PlanAccess& access) { return (access.access & all_write_access) == 0; });
   ASSERT_NE(read, plan.accesses.end());
   const PlanAccess again = *read;
   constexpr uint32_t more = 12000;
@@ -170,7 +172,8 @@ TEST(Verify, TooManyAccesses_GivesUp) {
 TEST(Verify, RejectsAWriteToAnEarlierFrame) {
   const auto redirect = [](Plan& plan) {
     for (PlanAccess& access : plan.accesses)
-      if ((access.access & all_write_access) != 0 && plan.resources[access.resource].instance_count > 1)
+      if ((access.access & all_write_access) != 0 &&
+          plan.resources[access.resource].instance_count > 1)
         access.frames_back = 1;
   };
   expect_rejected(redirect, "is written, although it holds an earlier frame");
@@ -268,7 +271,8 @@ TEST(Verify, RejectsAConditionOnAWriteOrOnNoHistory) {
   };
   for (const bool writes : {false, true})
     for (const ReadWhen when : {ReadWhen::history_valid, ReadWhen::history_invalid})
-      expect_rejected(set_all(when, writes), "does not name the history whose validity it depends on");
+      expect_rejected(set_all(when, writes),
+                      "does not name the history whose validity it depends on");
 }
 
 } // namespace

@@ -9,8 +9,10 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   Diagnostics diagnostics;
   const auto document = parse_document("frame.json", fuzz::text_of(data, size), diagnostics);
   if (!document) return fuzz::demand_error(diagnostics);
-  const auto frame = tools::read_description(*document, "no such folder", "no such folder", diagnostics);
+  const auto frame =
+      tools::read_description(*document, "no such folder", "no such folder", diagnostics);
   if (!frame) return fuzz::demand_error(diagnostics);
-  fuzz::demand(!tools::describe_frame(frame->description).empty(), "an accepted frame cannot be written");
+  fuzz::demand(!tools::describe_frame(frame->description).empty(),
+               "an accepted frame cannot be written");
   return 0;
 }

@@ -15,6 +15,7 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
                "the input has a file");
   const tools::ChannelNames accepted[] = {{"R", "G", "B"}, {"Y"}, {"Z"}};
   std::string error;
-  if (!tools::read_exr(path, accepted, error)) fuzz::demand(!error.empty(), "rejected without a reason");
+  if (!tools::read_exr(path, accepted, error))
+    fuzz::demand(!error.empty(), "rejected without a reason");
   return 0;
 }

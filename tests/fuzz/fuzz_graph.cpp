@@ -26,8 +26,10 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   input.view_height = 48;
   const auto plan = compile(input, diagnostics);
   if (!plan) return fuzz::demand_error(diagnostics);
-  fuzz::demand(verify(plan->plan).violations.empty(), "the verifier rejects a plan of the compiler");
-  fuzz::demand(!plan_json(*graph, pass_types, *plan).empty() && !plan_dot(*graph, pass_types, *plan).empty(),
+  fuzz::demand(verify(plan->plan).violations.empty(),
+               "the verifier rejects a plan of the compiler");
+  fuzz::demand(!plan_json(*graph, pass_types, *plan).empty() &&
+                   !plan_dot(*graph, pass_types, *plan).empty(),
                "a plan cannot be written");
   return 0;
 }

@@ -26,7 +26,8 @@ inline void demand(bool holds, const char* property) {
 // keeps the input.
 inline int demand_error(const Diagnostics& diagnostics) {
   demand(diagnostics.has_errors(), "rejected without an error");
-  demand(!format_for_people(diagnostics, diagnostics.list.front()).empty(), "an error without a text");
+  demand(!format_for_people(diagnostics, diagnostics.list.front()).empty(),
+         "an error without a text");
   demand(format_as_json(diagnostics).size() > 2, "an error that programs do not see");
   return 0;
 }

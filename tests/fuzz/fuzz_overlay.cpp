@@ -35,6 +35,7 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   if (!composition) return fuzz::demand_error(diagnostics);
   for (const Change& change : composition->changes)
     fuzz::demand(change.where.file.value < diagnostics.files.size(), "a change comes from no file");
-  if (!read_graph(composition->document, pass_types, diagnostics)) return fuzz::demand_error(diagnostics);
+  if (!read_graph(composition->document, pass_types, diagnostics))
+    return fuzz::demand_error(diagnostics);
   return 0;
 }

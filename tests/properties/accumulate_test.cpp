@@ -32,8 +32,10 @@ TEST_F(Accumulate, StaticScene_NoiseFallsLikeAMovingMean) {
   Judge judge{sequence};
   // Hashed frames are independent: a moving mean of weight 0.1 has 0.1 / 1.9 of the variance, a
   // gain of 12.8 dB. The first frame's weight is 0.9^30.
-  const std::vector<NamedValue> independent = {{"sequence", "hashed"}, {"mips", "none"}, {"samples", "8"}};
-  const SequenceRun single = run(judge, properties::request_of("afis", independent), {28, 29, 30, 31});
+  const std::vector<NamedValue> independent = {
+      {"sequence", "hashed"}, {"mips", "none"}, {"samples", "8"}};
+  const SequenceRun single =
+      run(judge, properties::request_of("afis", independent), {28, 29, 30, 31});
   const SequenceRun mean = run(judge, over_frames("afis", "0", independent), {28, 29, 30, 31});
   const SequenceRun clipped = run(judge, over_frames("afis", "1.5", independent), {28, 29, 30, 31});
   RecordProperty("single", std::to_string(single.mean_psnr_db));
@@ -86,8 +88,8 @@ protected:
   }
   static Sequence panning(double d_px, uint32_t first, uint32_t frames) {
     auto sequence = render_sequence(
-        {"pan", "", properties::root() + "/configs/scenes/pan.json", d_px, first, frames, false}, width,
-        height, {});
+        {"pan", "", properties::root() + "/configs/scenes/pan.json", d_px, first, frames, false},
+        width, height, {});
     EXPECT_TRUE(sequence) << sequence.error().text;
     return sequence ? sequence.take() : Sequence{};
   }
@@ -125,9 +127,11 @@ TEST_F(AccumulateInAPan, AtRest_GainsLikeAMeanOfTheLight) {
   const Sequence close = properties::standing_still(panning(properties::close_d_px, 40, 1), 32);
   for (const Row& row : rows()) {
     const auto [natural_now, natural_mean] = psnr_db(natural, row.graph, row.set);
-    EXPECT_GT(natural_mean, natural_now + row.gain_at_rest_natural - 0.3) << row.graph << ", natural framing";
+    EXPECT_GT(natural_mean, natural_now + row.gain_at_rest_natural - 0.3)
+        << row.graph << ", natural framing";
     const auto [close_now, close_mean] = psnr_db(close, row.graph, row.set);
-    EXPECT_GT(close_mean, close_now + row.gain_at_rest_close - 0.3) << row.graph << ", close framing";
+    EXPECT_GT(close_mean, close_now + row.gain_at_rest_close - 0.3)
+        << row.graph << ", close framing";
   }
 }
 
@@ -159,7 +163,8 @@ TEST_F(Accumulate, Disocclusion_RestartsOnlyNewPixels) {
       }
     return pixels > 0 ? double(equal) / double(pixels) : -1;
   };
-  const double left = same(0, 1), right = same(properties::sequence_width - 1, properties::sequence_width),
+  const double left = same(0, 1),
+               right = same(properties::sequence_width - 1, properties::sequence_width),
                middle = same(properties::sequence_width / 2, properties::sequence_width / 2 + 8);
   RecordProperty("left", std::to_string(left));
   RecordProperty("right", std::to_string(right));
@@ -184,7 +189,8 @@ TEST_F(Accumulate, FlashingLight_IsFollowedAndAveraged) {
   EXPECT_GT(clipped.mean_psnr_db, now.mean_psnr_db);
   // Noise of few samples averages over frames as in static light, because flashing light is dark as
   // often as bright.
-  const std::vector<NamedValue> independent = {{"sequence", "hashed"}, {"mips", "none"}, {"samples", "8"}};
+  const std::vector<NamedValue> independent = {
+      {"sequence", "hashed"}, {"mips", "none"}, {"samples", "8"}};
   const SequenceRun noisy = run(judge, properties::request_of("afis", independent), judged);
   const SequenceRun mean = run(judge, over_frames("afis", "1.5", independent), judged);
   RecordProperty("noisy", std::to_string(noisy.mean_psnr_db));

@@ -38,7 +38,8 @@ TEST_F(Afis, WithoutMips_MeanIsTheReferenceAtEveryPixel) {
 }
 
 Settings noise_settings(const char* mips) {
-  return quoted({{"samples", "8"}, {"sequence", "hashed"}, {"estimator", "centred"}, {"mips", mips}});
+  return quoted(
+      {{"samples", "8"}, {"sequence", "hashed"}, {"estimator", "centred"}, {"mips", mips}});
 }
 
 TEST_F(Afis, Mips_AddBiasAndReduceTheError) {
@@ -78,7 +79,8 @@ TEST_F(Afis, ErrorFallsFasterThanForIndependentSamples) {
   for (const char* sequence : {"continued", "stratified"}) {
     std::vector<double> logs;
     for (const char* samples : {"8", "16", "32", "64"}) {
-      const Picture picture = run("afis", plane, quoted({{"samples", samples}, {"sequence", sequence}}));
+      const Picture picture =
+          run("afis", plane, quoted({{"samples", samples}, {"sequence", sequence}}));
       logs.push_back(std::log2(rms_difference(picture.rgb, reference)));
     }
     // Least squares over four points one octave apart.
@@ -96,7 +98,8 @@ TEST_F(Afis, ContinuedSequence_AveragesBetter) {
   const std::vector<float> reference = run("fixed", plane, {{"samples", "2048"}}).rgb;
   const auto error = [&](const char* sequence) {
     std::vector<float> mean;
-    run_frames("afis", plane, quoted({{"samples", "8"}, {"lod_bias", "-1.5"}, {"sequence", sequence}}), 40,
+    run_frames("afis", plane,
+               quoted({{"samples", "8"}, {"lod_bias", "-1.5"}, {"sequence", sequence}}), 40,
                [&](const Picture& picture) {
                  if (mean.empty()) mean = picture.rgb;
                  for (size_t i = 0; i < mean.size(); ++i)
@@ -104,7 +107,8 @@ TEST_F(Afis, ContinuedSequence_AveragesBetter) {
                });
     return rms_difference(mean, reference);
   };
-  const double hashed = error("hashed"), continued = error("continued"), stratified = error("stratified");
+  const double hashed = error("hashed"), continued = error("continued"),
+               stratified = error("stratified");
   RecordProperty("hashed", std::to_string(hashed));
   RecordProperty("continued", std::to_string(continued));
   RecordProperty("stratified", std::to_string(stratified));
@@ -115,7 +119,9 @@ TEST_F(Afis, ContinuedSequence_AveragesBetter) {
 
 TEST_F(Afis, WhiteLightStaysWhiteWithEverySetting) {
   Plane plane{.width = 96, .height = 70};
-  plane.profile = [](int x, int y) { return uint8_t(std::hypot(x - 40, y - 30) < 25 ? 0 : 1 + (x > 70)); };
+  plane.profile = [](int x, int y) {
+    return uint8_t(std::hypot(x - 40, y - 30) < 25 ? 0 : 1 + (x > 70));
+  };
   plane.depth_m = [](int x, int) { return x < 20 ? 1.0f : 1.02f; };
   const auto expect_white = [&](const char* graph, const Settings& settings) {
     const Picture picture = run(graph, plane, settings);
@@ -125,7 +131,8 @@ TEST_F(Afis, WhiteLightStaysWhiteWithEverySetting) {
   for (const char* estimator : {"self", "centred"})
     for (const char* channels : {"widest", "mixture"})
       for (const char* mips : {"trilinear", "whole", "none"})
-        expect_white("afis", quoted({{"estimator", estimator}, {"channels", channels}, {"mips", mips}}));
+        expect_white("afis",
+                     quoted({{"estimator", estimator}, {"channels", channels}, {"mips", mips}}));
   expect_white("afis_seed", {{"samples", "16"}});
 }
 

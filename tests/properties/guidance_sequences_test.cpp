@@ -36,12 +36,14 @@ TEST_F(GuidedSequence, UnitsAndExposure_DoNotChangeSampleCounts) {
   Judge judge{same}, other_judge{other};
   for (const char* guidance : {"spvg", "split_half", "ccv", "ocv"}) {
     if (guidance == std::string_view("ccv") && dermis::testing::seeds_to_try(0, 1) == 0) break;
-    const SequenceRun one = run(judge, guided(guidance), {}), two = run(other_judge, guided(guidance), {});
+    const SequenceRun one = run(judge, guided(guidance), {}),
+                      two = run(other_judge, guided(guidance), {});
     ASSERT_EQ(one.samples.size(), frames);
     ASSERT_EQ(two.samples.size(), frames);
     for (uint32_t t = 0; t < frames; ++t)
       // Light below 1e-3 loses bits in half floats.
-      EXPECT_NEAR(two.samples[t], one.samples[t], 1e-3 * one.samples[t]) << guidance << ", frame " << t;
+      EXPECT_NEAR(two.samples[t], one.samples[t], 1e-3 * one.samples[t])
+          << guidance << ", frame " << t;
   }
 }
 

@@ -77,15 +77,16 @@ void HeadTest::show(const HeadFraming& framing, uint32_t width, uint32_t height,
     const char* named = std::getenv("DERMIS_HEAD");
     const std::string folder = named != nullptr ? named : root() + "/../shared/data/head";
     if (named == nullptr && !std::filesystem::exists(folder))
-      GTEST_SKIP() << "no scanned head: DERMIS_HEAD names no folder, and " << folder << " is not there";
+      GTEST_SKIP() << "no scanned head: DERMIS_HEAD names no folder, and " << folder
+                   << " is not there";
     options.model = {folder + "/LeePerrySmith.glb", folder + "/Map-COL.jpg",
                      folder + "/Infinite-Level_02_Tangent_SmoothUV.jpg", folder + "/Map-SPEC.jpg",
                      scan_height_m};
   }
   const std::string scene =
       root() + (framing.scan ? "/configs/scenes/head_study.json" : "/configs/scenes/bust.json");
-  auto subject =
-      render_subject({"head", framing.name, scene, framing.camera, {}, framing.scan, false}, options);
+  auto subject = render_subject(
+      {"head", framing.name, scene, framing.camera, {}, framing.scan, false}, options);
   ASSERT_TRUE(subject) << subject.error().text;
   frame_ = subject.take().frame;
   Session quiet;
@@ -115,7 +116,8 @@ double HeadTest::luminance_at(const std::vector<float>& light, size_t pixel) con
   return sum * reference_.exposure;
 }
 
-HeadErrors HeadTest::errors_of(const std::vector<float>& light, const std::vector<float>* confidence) const {
+HeadErrors HeadTest::errors_of(const std::vector<float>& light,
+                               const std::vector<float>* confidence) const {
   double all = 0, edge = 0, inner = 0, sure = 0;
   std::vector<double> at_edges;
   size_t sure_count = 0;
@@ -181,7 +183,8 @@ std::vector<float> HeadTest::scatter(const std::string& graph, const std::vector
   return found;
 }
 
-subsurface::SapResult<float> HeadTest::cpu_kernel(const CapturedFrame& frame, subsurface::SapVariant variant,
+subsurface::SapResult<float> HeadTest::cpu_kernel(const CapturedFrame& frame,
+                                                  subsurface::SapVariant variant,
                                                   uint32_t first_layered) {
   const std::vector<float> table = subsurface::make_sap_table(subsurface::fit_sap_weights(variant));
   const ReferenceFrame reference = make_reference_frame(frame);

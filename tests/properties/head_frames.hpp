@@ -36,11 +36,13 @@ class HeadTest : public DeviceTest {
 protected:
   // Skips the test if the scan's file does not exist. `maximum` limits the compared pixels.
   void show(const HeadFraming& framing, uint32_t width, uint32_t height, uint32_t maximum);
-  HeadErrors errors_of(const std::vector<float>& light, const std::vector<float>* confidence = nullptr) const;
+  HeadErrors errors_of(const std::vector<float>& light,
+                       const std::vector<float>* confidence = nullptr) const;
   double luminance_at(const std::vector<float>& light, size_t pixel) const;
   // Runs a shipped graph on the device, under validation, and returns the last of `frames` frames
   // of a head at rest. `samples` receives that frame's samples per subsurface pixel.
-  std::vector<float> scatter(const std::string& graph, const std::vector<dermis::tools::NamedValue>& set = {},
+  std::vector<float> scatter(const std::string& graph,
+                             const std::vector<dermis::tools::NamedValue>& set = {},
                              uint32_t frames = 1, double* samples = nullptr);
   // Runs the pyramid's CPU implementation.
   static dermis::subsurface::SapResult<float> cpu_kernel(const dermis::tools::CapturedFrame& frame,

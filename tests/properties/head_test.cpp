@@ -41,9 +41,10 @@ constexpr Bounds stated[] = {{{8.1, 9.6}, {8.5, 10.3}, 17, 95, 7.0, 0.58, 0.92, 
 // of sure pixels is bounded by the number stated for the scan. From the side, where the bust shows
 // a knot of folds (docs/limits.md), the bound is 0.175 of 32,768 pixels on two drivers (0.155 to
 // 0.195 of fewer pixels) and 15 % more.
-constexpr Bounds of_the_bust[] = {{{2.9, 3.05}, {3.3, 3.5}, 4.6, 12.1, 2.85, 0.5, 0.53, 0.60, 0.3, 0.5},
-                                  {{5.3, 5.4}, {5.7, 5.9}, 15.4, 48.5, 3.15, 0.27, 0.79, 0.20, 0.15, 0.3},
-                                  {{1.85, 1.88}, {1.85, 1.92}, 3.1, 14, 1.1, 0.21, 0.93, 0.5, 0.1, 0.25}};
+constexpr Bounds of_the_bust[] = {
+    {{2.9, 3.05}, {3.3, 3.5}, 4.6, 12.1, 2.85, 0.5, 0.53, 0.60, 0.3, 0.5},
+    {{5.3, 5.4}, {5.7, 5.9}, 15.4, 48.5, 3.15, 0.27, 0.79, 0.20, 0.15, 0.3},
+    {{1.85, 1.88}, {1.85, 1.92}, 3.1, 14, 1.1, 0.21, 0.93, 0.5, 0.1, 0.25}};
 
 // Regression bounds, too: ratios of two layers to one layer on the CPU implementation, from level 2
 // on (sap) and from level 1 on (sap_layered). The first bounds the whole picture's error where
@@ -65,15 +66,20 @@ protected:
   }
   // Whether the test is skipped here. The quick run only uses the bust from the side, which has
   // most folds and edges.
-  bool is_left_out() const { return !is_bust_profile() && dermis::testing::seeds_to_try(0, 1) == 0; }
+  bool is_left_out() const {
+    return !is_bust_profile() && dermis::testing::seeds_to_try(0, 1) == 0;
+  }
   bool is_bust_profile() const {
     return properties::head_framings()[GetParam()].name == std::string_view("bust_profile");
   }
   bool is_scan() const { return properties::head_framings()[GetParam()].scan; }
-  const Bounds& bounds() const { return is_scan() ? stated[GetParam()] : of_the_bust[GetParam() - 3]; }
+  const Bounds& bounds() const {
+    return is_scan() ? stated[GetParam()] : of_the_bust[GetParam() - 3];
+  }
 };
 
-INSTANTIATE_TEST_SUITE_P(Framings, OnAHead, ::testing::Range(size_t{0}, properties::head_framings().size()),
+INSTANTIATE_TEST_SUITE_P(Framings, OnAHead,
+                         ::testing::Range(size_t{0}, properties::head_framings().size()),
                          [](const auto& one) {
                            return std::string(properties::head_framings()[one.param].name);
                          });
@@ -119,10 +125,10 @@ TEST_P(OnAHead, TwoLayers_ReduceEdgeErrorsAndMatchTheCpu) {
     if (IsSkipped() || HasFatalFailure()) return;
     const std::vector<float> device = scatter("sap_layered"),
                              cpu = cpu_kernel(frame_, SapVariant::smooth, 1).light;
-    const properties::HeadErrors
-        two = errors_of(device),
-        few = errors_of(scatter("sap")),
-        one = errors_of(cpu_kernel(frame_, SapVariant::smooth, dermis::subsurface::sap_level_count).light);
+    const properties::HeadErrors two = errors_of(device), few = errors_of(scatter("sap")),
+                                 one = errors_of(cpu_kernel(frame_, SapVariant::smooth,
+                                                            dermis::subsurface::sap_level_count)
+                                                     .light);
     double squares = 0;
     for (const uint32_t pixel : reference_.pixels)
       squares += std::pow(luminance_at(device, pixel) - luminance_at(cpu, pixel), 2);
@@ -131,7 +137,8 @@ TEST_P(OnAHead, TwoLayers_ReduceEdgeErrorsAndMatchTheCpu) {
     RecordProperty("rmse_" + std::to_string(sizes()[i].width), std::to_string(two.rmse * 1e3));
     RecordProperty("edge_" + std::to_string(sizes()[i].width), std::to_string(two.edge * 1e3));
     RecordProperty("one_" + std::to_string(sizes()[i].width), std::to_string(one.rmse * 1e3));
-    RecordProperty("few_to_one_" + std::to_string(sizes()[i].width), std::to_string(few.rmse / one.rmse));
+    RecordProperty("few_to_one_" + std::to_string(sizes()[i].width),
+                   std::to_string(few.rmse / one.rmse));
     RecordProperty("few_edge_to_one_" + std::to_string(sizes()[i].width),
                    std::to_string(few.edge / one.edge));
     EXPECT_LE(two.rmse, one.rmse * worst_of_two_layers);
@@ -162,7 +169,8 @@ TEST_P(OnAHead, FlatLightIsExact_OtherLightStaysInRange) {
   for (size_t i = 0; i < frame_.profile.size(); ++i)
     for (size_t c = 0; c < 3 && frame_.profile[i] != 0; ++c) {
       // Light is stored in half floats, so it may exceed the brightest light by 2^-11 of its value.
-      ASSERT_TRUE(light[3 * i + c] >= minimum * 0.999f && light[3 * i + c] <= maximum * 1.0005f) << i;
+      ASSERT_TRUE(light[3 * i + c] >= minimum * 0.999f && light[3 * i + c] <= maximum * 1.0005f)
+          << i;
       // A mean of ones is 1 within fp32 rounding, and the nearest half float is 1.
       ASSERT_EQ(flat[3 * i + c], 1.0f) << i;
     }
@@ -210,7 +218,8 @@ TEST_P(OnAHead, WholePixelMotion_HardlyChangesThePicture) {
   // and columns.
   constexpr uint32_t shifts[][2] = {{0, 0}, {1, 0}, {2, 1}, {3, 5}, {4, 2}, {5, 7}, {6, 3}, {7, 6}};
   constexpr uint32_t maximum = 8, margin = 48; // Pixels; the pixels at the border change, too.
-  for (const auto& [variant, bound] : {std::pair{SapVariant::smooth, 2.4e-3}, {SapVariant::base, 4.5e-3}}) {
+  for (const auto& [variant, bound] :
+       {std::pair{SapVariant::smooth, 2.4e-3}, {SapVariant::base, 4.5e-3}}) {
     std::vector<double> sum(frame_.profile.size()), squares(frame_.profile.size());
     for (const auto& [x0, y0] : shifts) {
       CapturedFrame part = frame_;

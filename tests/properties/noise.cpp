@@ -66,10 +66,13 @@ struct Moments {
   uint32_t frames = 0;
 
   double mean(size_t i) const { return sum[i] / frames; }
-  double variance_of_mean(size_t i) const { return (square[i] / frames - mean(i) * mean(i)) / (frames - 1); }
+  double variance_of_mean(size_t i) const {
+    return (square[i] / frames - mean(i) * mean(i)) / (frames - 1);
+  }
 };
 
-Moments accumulate(const std::string& graph, const Plane& plane, const Settings& settings, uint32_t frames) {
+Moments accumulate(const std::string& graph, const Plane& plane, const Settings& settings,
+                   uint32_t frames) {
   Moments moments;
   const size_t values = size_t{3} * plane.width * plane.height;
   moments.sum.resize(values);
@@ -97,8 +100,8 @@ Bias bias_of(const std::string& graph, const Plane& plane, const std::vector<dou
       const double way = double(noise(x, y)) - reference[i];
       numerator += way * (moments.mean(i) - reference[i]);
       denominator += way * way;
-      squares +=
-          moments.square[i] / frames - 2 * moments.mean(i) * reference[i] + reference[i] * reference[i];
+      squares += moments.square[i] / frames - 2 * moments.mean(i) * reference[i] +
+                 reference[i] * reference[i];
       variance += way * way * moments.variance_of_mean(i);
     }
   return {numerator / denominator, numerator / std::sqrt(variance),
@@ -115,7 +118,9 @@ double expect_the_reference_in_the_mean(const std::string& graph, const Settings
   Plane plane = small;
   plane.width = plane.height = side * copies;
   const auto at = [](int v) { return static_cast<uint32_t>(v) / side; };
-  plane.depth_m = [&](int x, int y) { return 1.0f + 0.05f * static_cast<float>(at(y) * copies + at(x)); };
+  plane.depth_m = [&](int x, int y) {
+    return 1.0f + 0.05f * static_cast<float>(at(y) * copies + at(x));
+  };
   plane.light = [](double x, double y) { return noise(std::fmod(x, side), std::fmod(y, side)); };
   std::vector<double> sum(reference.size()), square(reference.size());
   run_frames(graph, plane, settings, frames, [&](const Picture& picture) {

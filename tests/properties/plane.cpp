@@ -25,7 +25,8 @@ std::string read_text(const std::string& path) {
 std::string profile_text(const Plane& plane) {
   if (!plane.profile_file.empty()) return plane.profile_file;
   auto dmfp = [&](size_t c) {
-    return plane.d_px[c] * plane.pixel_pitch_m * 1000 * dermis::subsurface::burley_scaling_dmfp(0.33);
+    return plane.d_px[c] * plane.pixel_pitch_m * 1000 *
+           dermis::subsurface::burley_scaling_dmfp(0.33);
   };
   return fmt::format(R"({{"dermis_profile": 1, "name": "plane", "source": "test",
                           "dmfp_mm": [{:.12g}, {:.12g}, {:.12g}], "albedo": [0.33, 0.33, 0.33]}})",
@@ -79,8 +80,8 @@ Picture run(const std::string& graph, const Plane& plane, const Settings& settin
   return result;
 }
 
-void run_frames(const std::string& graph, const Plane& plane, const Settings& settings, uint32_t frames,
-                const std::function<void(const Picture&)>& each) {
+void run_frames(const std::string& graph, const Plane& plane, const Settings& settings,
+                uint32_t frames, const std::function<void(const Picture&)>& each) {
   auto host = demo::create_vulkan_host({.validation = true, .device = ""});
   if (!host) {
     ADD_FAILURE() << host.error().text;
@@ -90,8 +91,8 @@ void run_frames(const std::string& graph, const Plane& plane, const Settings& se
   request.graph_name = graph + ".json";
   request.graph_text = read_text(DERMIS_SOURCE_DIR "/" + dermis::shipped::graph_file(graph));
   if (!plane.overlay.empty())
-    request.overlays = {{plane.overlay + ".json",
-                         read_text(DERMIS_SOURCE_DIR "/configs/overlays/" + plane.overlay + ".json")}};
+    request.overlays = {{plane.overlay + ".json", read_text(DERMIS_SOURCE_DIR "/configs/overlays/" +
+                                                            plane.overlay + ".json")}};
   request.width = plane.width;
   request.height = plane.height;
   request.profiles = {{1, "one", profile_text(plane)}, {2, "two", profile_text(plane)}};
@@ -144,7 +145,8 @@ void run_frames(const std::string& graph, const Plane& plane, const Settings& se
     frame.metres_per_unit = 1;
     frame.depth_kind = DERMIS_DEPTH_VIEW_UNITS;
     for (uint32_t i = 0; i < frames; ++i) {
-      if (plane.earlier_profile) upload("material", i + 1 < frames ? uploads.earlier_id : uploads.id, 1);
+      if (plane.earlier_profile)
+        upload("material", i + 1 < frames ? uploads.earlier_id : uploads.id, 1);
       // The graph has written scattered light there.
       if (i > 0) upload("lighting", uploads.light, 3);
       const auto ran = (*device)->run(frame);

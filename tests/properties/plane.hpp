@@ -40,7 +40,9 @@ struct Picture {
   uint32_t width = 0, height = 0;
   std::vector<float> rgb;
 
-  double at(uint32_t x, uint32_t y, uint32_t c) const { return rgb[3 * (size_t{y} * width + x) + c]; }
+  double at(uint32_t x, uint32_t y, uint32_t c) const {
+    return rgb[3 * (size_t{y} * width + x) + c];
+  }
 };
 
 using Settings = std::vector<std::pair<std::string, std::string>>; // Name, JSON text.
@@ -49,8 +51,8 @@ using Settings = std::vector<std::pair<std::string, std::string>>; // Name, JSON
 // the test on any error and on any validation message.
 Picture run(const std::string& graph, const Plane& plane, const Settings& settings);
 // Runs many frames, whose indices begin at 1; calls `each` with every picture.
-void run_frames(const std::string& graph, const Plane& plane, const Settings& settings, uint32_t frames,
-                const std::function<void(const Picture&)>& each);
+void run_frames(const std::string& graph, const Plane& plane, const Settings& settings,
+                uint32_t frames, const std::function<void(const Picture&)>& each);
 
 // Returns why tests of this folder cannot run here, or "" if they can. The result is cached.
 const std::string& missing();

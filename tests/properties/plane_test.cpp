@@ -41,20 +41,22 @@ const Technique sap_layered{"sap_layered", "sap_layered", {}};
 // Filtered reads compute their weights from coordinates over the image's size, which round.
 const Technique pyramid{"pyramid", "pyramid", {}, 1e-3};
 const Technique fixed_16{"fixed_16", "fixed", {{"samples", "16"}}};
-const Technique fixed_published{
-    "fixed_published",
-    "fixed",
-    {{"inverse", "\"approximate\""}, {"weighting", "\"profile\""}, {"direct", "\"circumscribed\""}}};
+const Technique fixed_published{"fixed_published",
+                                "fixed",
+                                {{"inverse", "\"approximate\""},
+                                 {"weighting", "\"profile\""},
+                                 {"direct", "\"circumscribed\""}}};
 const Technique jimenez_17{"jimenez_17", "separable_jimenez", {{"taps", "\"17\""}}};
 
 // Techniques that share their kernels with another technique here.
-constexpr std::array<std::string_view, 4> in_full_tests = {"separable_11", "separable_17", "sap_base",
-                                                           "fixed_published"};
+constexpr std::array<std::string_view, 4> in_full_tests = {"separable_11", "separable_17",
+                                                           "sap_base", "fixed_published"};
 
 class EveryTechnique : public DeviceTest, public ::testing::WithParamInterface<Technique> {
 protected:
   void SetUp() override {
-    if (std::find(in_full_tests.begin(), in_full_tests.end(), GetParam().name) != in_full_tests.end())
+    if (std::find(in_full_tests.begin(), in_full_tests.end(), GetParam().name) !=
+        in_full_tests.end())
       DERMIS_FULL_TESTS_ONLY();
     DeviceTest::SetUp();
   }
@@ -62,17 +64,18 @@ protected:
 };
 
 INSTANTIATE_TEST_SUITE_P(Properties, EveryTechnique,
-                         ::testing::Values(burley_64, separable_11, separable_17, separable_25, sap_base,
-                                           sap_smooth, sap_half, sap_layered, pyramid, fixed_16,
-                                           fixed_published, jimenez_17),
+                         ::testing::Values(burley_64, separable_11, separable_17, separable_25,
+                                           sap_base, sap_smooth, sap_half, sap_layered, pyramid,
+                                           fixed_16, fixed_published, jimenez_17),
                          [](const auto& one) { return std::string(one.param.name); });
 
 // All except the plain pyramid use profiles and depth.
 class SurfaceTechnique : public EveryTechnique {};
 
 INSTANTIATE_TEST_SUITE_P(Properties, SurfaceTechnique,
-                         ::testing::Values(burley_64, separable_11, separable_17, separable_25, sap_base,
-                                           sap_smooth, sap_half, sap_layered, fixed_16, jimenez_17),
+                         ::testing::Values(burley_64, separable_11, separable_17, separable_25,
+                                           sap_base, sap_smooth, sap_half, sap_layered, fixed_16,
+                                           jimenez_17),
                          [](const auto& one) { return std::string(one.param.name); });
 
 TEST_P(EveryTechnique, WhiteFurnaceStaysWhite) {
@@ -88,8 +91,12 @@ TEST_P(EveryTechnique, FlatLightStaysFlatOnAnySurface) {
   for (const float value : {0.0123f, 0.7f, 37.3f}) {
     Plane plane{.width = 75, .height = 52};
     plane.light = [&](double, double) { return value; };
-    plane.profile = [](int x, int y) { return static_cast<uint8_t>((x * 7 + y * 13) % 23 == 0 ? 0 : 1); };
-    plane.depth_m = [](int x, int y) { return 1.0f + 0.002f * static_cast<float>((x / 9 + y / 5) % 4); };
+    plane.profile = [](int x, int y) {
+      return static_cast<uint8_t>((x * 7 + y * 13) % 23 == 0 ? 0 : 1);
+    };
+    plane.depth_m = [](int x, int y) {
+      return 1.0f + 0.002f * static_cast<float>((x / 9 + y / 5) % 4);
+    };
     const Picture picture = scatter(plane);
     for (uint32_t y = 0; y < plane.height; ++y)
       for (uint32_t x = 0; x < plane.width; ++x)
@@ -171,7 +178,9 @@ TEST_P(EveryTechnique, NaNLight_DoesNotSpread) {
   const auto base = [](double x, double y) {
     return static_cast<float>(0.5 + 0.4 * std::sin(x * 0.2) * std::cos(y * 0.3));
   };
-  clean.light = [&](double x, double y) { return x == 20 && y >= 20 && y <= 22 ? 0.0f : base(x, y); };
+  clean.light = [&](double x, double y) {
+    return x == 20 && y >= 20 && y <= 22 ? 0.0f : base(x, y);
+  };
   plane.light = [&](double x, double y) {
     if (x == 20 && y == 20) return std::nanf("");
     if (x == 20 && y == 21) return -1.0f;
@@ -196,7 +205,8 @@ TEST_P(EveryTechnique, RectangleInsideImages_MatchesItsOwnSize) {
   const Picture picture = scatter(part);
   for (uint32_t y = 0; y < whole.height; ++y)
     for (uint32_t x = 0; x < whole.width; ++x)
-      ASSERT_NEAR(picture.at(x + 24, y + 17, 0), expected.at(x, y, 0), GetParam().placement) << x << " " << y;
+      ASSERT_NEAR(picture.at(x + 24, y + 17, 0), expected.at(x, y, 0), GetParam().placement)
+          << x << " " << y;
 }
 
 TEST_P(EveryTechnique, OddAndTinySizesWork) {
@@ -278,14 +288,15 @@ TEST_F(Edge, PyramidMatchesTheReferenceUpToTheBorder) {
     const std::vector<float> depth(pixels, 1.0f);
     const std::vector<uint8_t> profile(pixels, 1);
     const std::vector<sss::PerChannel> d_m = {{}, {d * 1e-3, 0.38 * d * 1e-3, 0.19 * d * 1e-3}};
-    const auto reference = sss::reference_everywhere({plane.width,
-                                                      plane.height,
-                                                      sss::orthographic_rays(plane.width, plane.height, 1e-3),
-                                                      light,
-                                                      depth,
-                                                      profile,
-                                                      {},
-                                                      d_m});
+    const auto reference =
+        sss::reference_everywhere({plane.width,
+                                   plane.height,
+                                   sss::orthographic_rays(plane.width, plane.height, 1e-3),
+                                   light,
+                                   depth,
+                                   profile,
+                                   {},
+                                   d_m});
     ASSERT_EQ(picture.rgb.size(), reference.size());
     for (size_t c = 0; c < 3; ++c) {
       double squares = 0;
@@ -304,7 +315,9 @@ TEST_F(Edge, SinusoidContrastMatchesTheTransferFunction) {
     constexpr uint32_t width = 512, height = 160, margin = 120;
     const double k = kd / d;
     Plane plane{.width = width, .height = height, .d_px = {d, d, d}};
-    plane.light = [&](double x, double) { return static_cast<float>(0.5 + 0.5 * std::cos(k * (x - 256))); };
+    plane.light = [&](double x, double) {
+      return static_cast<float>(0.5 + 0.5 * std::cos(k * (x - 256)));
+    };
     const Picture picture = run("burley", plane, {{"samples", "128"}});
     // Least squares for a + b cos(k x) over the middle.
     double n = 0, sc = 0, scc = 0, sy = 0, syc = 0;

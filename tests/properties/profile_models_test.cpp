@@ -26,7 +26,8 @@ void PrintTo(const Case& one, std::ostream* out) {
 sss::Profile read(const std::string& path) {
   dermis::Diagnostics diagnostics;
   const auto document = dermis::read_document(path, diagnostics);
-  return document ? sss::read_profile(*document, diagnostics).value_or(sss::Profile{}) : sss::Profile{};
+  return document ? sss::read_profile(*document, diagnostics).value_or(sss::Profile{})
+                  : sss::Profile{};
 }
 
 // Discs of many sizes over a step: all frequencies in a small picture.
@@ -64,16 +65,16 @@ TEST_P(EveryModel, IsReproducedWithinTheTechniquesError) {
     shapes[1][c] = sss::scaled(profile.shape_mm[c], 1e-3);
     d_m[1][c] = shapes[1][c].d;
   }
-  const sss::ReferenceInput input{.width = plane.width,
-                                  .height = plane.height,
-                                  .rays =
-                                      sss::orthographic_rays(plane.width, plane.height, plane.pixel_pitch_m),
-                                  .light = light,
-                                  .depth = depth,
-                                  .profile = id,
-                                  .scatter_scale = {},
-                                  .d_m = d_m,
-                                  .shapes = shapes};
+  const sss::ReferenceInput input{
+      .width = plane.width,
+      .height = plane.height,
+      .rays = sss::orthographic_rays(plane.width, plane.height, plane.pixel_pitch_m),
+      .light = light,
+      .depth = depth,
+      .profile = id,
+      .scatter_scale = {},
+      .d_m = d_m,
+      .shapes = shapes};
   const auto reference = sss::reference_everywhere(input);
   ASSERT_EQ(picture.rgb.size(), reference.size());
   double moved = 0;

@@ -39,13 +39,16 @@ bool before_the_resize_or_after(uint32_t t) {
 class Resize : public properties::SequenceTest {
 protected:
   static Sequence frames(Size size, uint32_t first, uint32_t count) {
-    auto sequence = render_sequence({"pan", "close", properties::root() + "/configs/scenes/pan.json",
-                                     close_d_px * size.height / before.height, first, count, false},
-                                    size.width, size.height, {});
+    auto sequence =
+        render_sequence({"pan", "close", properties::root() + "/configs/scenes/pan.json",
+                         close_d_px * size.height / before.height, first, count, false},
+                        size.width, size.height, {});
     EXPECT_TRUE(sequence) << sequence.error().text;
     return sequence ? sequence.take() : Sequence{};
   }
-  static Sequence still(Size size, uint32_t count) { return standing_still(frames(size, 40, 1), count); }
+  static Sequence still(Size size, uint32_t count) {
+    return standing_still(frames(size, 40, 1), count);
+  }
 
   // All are rendered before anything runs on the device.
   struct Case {
@@ -97,15 +100,18 @@ TEST_F(Resize, Guidance_KeepsItsSampleCounts) {
       const std::string name = one.name + "_" + guidance;
       RecordProperty(name + "_kept", std::to_string(kept.samples[learned]));
       RecordProperty(name + "_always", std::to_string(always.samples[learned]));
-      EXPECT_NEAR(kept.samples[learned], always.samples[learned], 0.05 * always.samples[learned]) << name;
-      EXPECT_EQ(restarted.samples[learned], 16) << name; // The sample count of a pixel without history.
+      EXPECT_NEAR(kept.samples[learned], always.samples[learned], 0.05 * always.samples[learned])
+          << name;
+      EXPECT_EQ(restarted.samples[learned], 16)
+          << name; // The sample count of a pixel without history.
     }
 }
 
 TEST_F(Resize, Accumulation_Continues) {
   // Independent frames without mips: a single frame is 12 dB noisier than their moving mean.
   TechniqueRequest request = properties::request_of(
-      "afis", {{"sequence", "hashed"}, {"mips", "none"}, {"samples", "8"}, {"accumulate_clip", "0"}});
+      "afis",
+      {{"sequence", "hashed"}, {"mips", "none"}, {"samples", "8"}, {"accumulate_clip", "0"}});
   request.overlays = {properties::root() + "/configs/overlays/accumulate.json"};
   for (const Case& one : cases()) {
     Judge judge{one.resized}, judge_always{one.always};
@@ -132,7 +138,8 @@ TEST_F(Resize, RepeatedResizesInAPan_LeaveNoTrail) {
     FrameDescription& now = sequence.frames[t].captured.description;
     // Computed for another camera; the matrices contain the motion, too.
     sequence.frames[t].captured.velocity = {};
-    if (t > 0) now.previous_clip_from_view = sequence.frames[t - 1].captured.description.clip_from_view;
+    if (t > 0)
+      now.previous_clip_from_view = sequence.frames[t - 1].captured.description.clip_from_view;
   }
   Judge judge{sequence};
   const Frames judged = {12, 13, 16, 17, 20, 21};

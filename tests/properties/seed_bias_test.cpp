@@ -44,10 +44,12 @@ double height_kept(const Settings& settings) {
   run_frames("fixed", plane, settings, 32, [&](const Picture& picture) {
     for (uint32_t y = first; y < last; ++y)
       for (uint32_t x = first; x < last; ++x)
-        height += picture.at(x, y, 0) * std::cos(k * x) * 2 / ((last - first) * (last - first) * 0.4);
+        height +=
+            picture.at(x, y, 0) * std::cos(k * x) * 2 / ((last - first) * (last - first) * 0.4);
     frames += 1;
   });
-  const double transfer = 0.25 / std::sqrt(1 + k * k * d * d) + 0.75 / std::sqrt(1 + 9 * k * k * d * d);
+  const double transfer =
+      0.25 / std::sqrt(1 + k * k * d * d) + 0.75 / std::sqrt(1 + 9 * k * k * d * d);
   return (height / frames - transfer) / (1 - transfer);
 }
 
@@ -66,8 +68,8 @@ TEST_F(SeedBias, ApproximateInverse_SamplesTooClose) {
 TEST_F(SeedBias, CircumscribedRadius_KeepsTooMuchOwnLight) {
   for (const auto& [name, d] : {std::pair{"half_pixel", 0.5}, std::pair{"two_pixels", 2.0}}) {
     const Bias ours = of(std::string(name) + "_inscribed", "fixed", d, exact),
-               theirs =
-                   of(std::string(name) + "_circumscribed", "fixed", d, with("direct", "\"circumscribed\""));
+               theirs = of(std::string(name) + "_circumscribed", "fixed", d,
+                           with("direct", "\"circumscribed\""));
     // Regression bound of the present implementation.
     EXPECT_GT(theirs.fraction, ours.fraction + 0.005) << name;
     EXPECT_GT(theirs.sigmas, 10) << name;

@@ -22,7 +22,8 @@ size_t in_picture(const FrameDescription& frame, uint32_t pixel) {
 }
 
 // Returns the mean of the red channel over pixels with a profile.
-double mean_where_scattering(const std::vector<float>& values, const std::vector<uint8_t>& profile) {
+double mean_where_scattering(const std::vector<float>& values,
+                             const std::vector<uint8_t>& profile) {
   double sum = 0, pixels = 0;
   for (size_t i = 0; i < profile.size() && !values.empty(); ++i)
     if (profile[i] != 0) {
@@ -55,7 +56,8 @@ const Reference& Judge::at(uint32_t frame) {
   Session quiet;
   quiet.quiet = true;
   return references
-      .emplace(frame, *make_reference(quiet, sequence.frames[frame].captured, "truth", reference_pixels, ""))
+      .emplace(frame, *make_reference(quiet, sequence.frames[frame].captured, "truth",
+                                      reference_pixels, ""))
       .first->second;
 }
 
@@ -76,9 +78,9 @@ void SequenceTest::TearDown() {
 }
 
 Sequence SequenceTest::frames_of(const std::string& scene, uint32_t first, uint32_t count) {
-  auto sequence = render_sequence(
-      {scene, "close", root() + "/configs/scenes/" + scene + ".json", close_d_px, first, count, false},
-      sequence_width, sequence_height, {});
+  auto sequence = render_sequence({scene, "close", root() + "/configs/scenes/" + scene + ".json",
+                                   close_d_px, first, count, false},
+                                  sequence_width, sequence_height, {});
   EXPECT_TRUE(sequence) << sequence.error().text;
   return sequence ? sequence.take() : Sequence{};
 }
@@ -93,8 +95,8 @@ SequenceRun SequenceTest::run(Judge& judge, const TechniqueRequest& request, con
     if (!made) return result;
     host_ = made.take();
   }
-  auto made =
-      TechniqueRun::create(*host_, request, judge.sequence.frames.front().captured.description.profiles, {});
+  auto made = TechniqueRun::create(*host_, request,
+                                   judge.sequence.frames.front().captured.description.profiles, {});
   EXPECT_TRUE(made) << made.error().text;
   if (!made) return result;
   std::vector<FrameLight> light;
@@ -117,7 +119,8 @@ SequenceRun SequenceTest::run(Judge& judge, const TechniqueRequest& request, con
     FrameLight one{{}, reference.light};
     for (const uint32_t pixel : reference.pixels)
       for (size_t c = 0; c < 3; ++c)
-        one.found.push_back(double((*found)[3 * in_picture(frame.captured.description, pixel) + c]));
+        one.found.push_back(
+            double((*found)[3 * in_picture(frame.captured.description, pixel) + c]));
     result.psnr_db[t] = sequence_figures({one}, 0, false, judge.sequence.exposure).psnr_db_frame;
     light.push_back(std::move(one));
     result.pictures[t] = found.take();

@@ -16,8 +16,8 @@ namespace {
 using namespace dermis;
 using namespace dermis::tools;
 
-constexpr uint32_t moves = 16, panned_width = 320, panned_height = 180, large_width = panned_width + moves,
-                   large_height = panned_height + moves;
+constexpr uint32_t moves = 16, panned_width = 320, panned_height = 180,
+                   large_width = panned_width + moves, large_height = panned_height + moves;
 // Pixels along the borders whose light changes with the contents of the picture.
 constexpr uint32_t margin = 32;
 
@@ -46,9 +46,10 @@ protected:
     double exposure = 1;
   };
   static Still picture() {
-    auto sequence = render_sequence({"pan", "close", properties::root() + "/configs/scenes/pan.json",
-                                     properties::close_d_px * large_height / panned_height, 40, 1, false},
-                                    large_width, large_height, {});
+    auto sequence =
+        render_sequence({"pan", "close", properties::root() + "/configs/scenes/pan.json",
+                         properties::close_d_px * large_height / panned_height, 40, 1, false},
+                        large_width, large_height, {});
     EXPECT_TRUE(sequence) << sequence.error().text;
     if (!sequence) return {};
     Still still{sequence->frames.front().captured, sequence->exposure};

@@ -40,10 +40,15 @@ TEST_P(FullStorage, FlatLightStaysFlatToTwoMillionths) {
       const double d = distances[i];
       Plane plane{.width = 131, .height = 75, .d_px = {d, 0.4 * d, 0.2 * d}}; // Deliberately odd.
       plane.light = [&](double, double) { return value; };
-      plane.profile = [](int x, int y) { return static_cast<uint8_t>((x * 7 + y * 13) % 23 == 0 ? 0 : 1); };
-      plane.depth_m = [](int x, int y) { return 1.0f + 0.002f * static_cast<float>((x / 9 + y / 5) % 4); };
+      plane.profile = [](int x, int y) {
+        return static_cast<uint8_t>((x * 7 + y * 13) % 23 == 0 ? 0 : 1);
+      };
+      plane.depth_m = [](int x, int y) {
+        return 1.0f + 0.002f * static_cast<float>((x / 9 + y / 5) % 4);
+      };
       plane.overlay = in_floats;
-      EXPECT_LE(furthest_from(run("sap", plane, variant).rgb, value), flatness) << value << ", d = " << d;
+      EXPECT_LE(furthest_from(run("sap", plane, variant).rgb, value), flatness)
+          << value << ", d = " << d;
       plane.overlay = "";
       // None of these values is a half float, so the test detects rounding to half floats.
       EXPECT_GT(furthest_from(run("sap", plane, variant).rgb, value), 20 * flatness);

@@ -71,9 +71,11 @@ struct Taa : properties::DeviceTest {
     constexpr uint32_t frames = 32, counted = 24;
     const Pictures reference = resolved("burley", {{"samples", "192"}}, resting, frames);
     const Figures sap = compare(resolved("sap", {}, resting, frames), reference, counted),
-                  residual = compare(resolved("sap_residual", {}, resting, frames), reference, counted),
-                  afis = compare(resolved("afis", {{"samples", "8"}, {"lod_bias", "-1.5"}}, resting, frames),
-                                 reference, counted);
+                  residual =
+                      compare(resolved("sap_residual", {}, resting, frames), reference, counted),
+                  afis = compare(
+                      resolved("afis", {{"samples", "8"}, {"lod_bias", "-1.5"}}, resting, frames),
+                      reference, counted);
     for (const auto& [name, figures] :
          {std::pair{"sap", sap}, std::pair{"sap_residual", residual}, std::pair{"afis_8", afis}}) {
       RecordProperty(std::string(name) + "_db", std::to_string(figures.psnr_db));

@@ -24,7 +24,8 @@ class Temporal : public properties::SequenceTest {
 protected:
   using properties::SequenceTest::run;
   SequenceRun run(Judge& judge, const std::string& graph, const Frames& judged,
-                  const std::vector<NamedValue>& set = {}, const properties::Follows& follows = {}) {
+                  const std::vector<NamedValue>& set = {},
+                  const properties::Follows& follows = {}) {
     return run(judge, properties::request_of(graph, set), judged, follows);
   }
 
@@ -33,7 +34,8 @@ protected:
     const Sequence sequence = frames_of("regular", first, 40);
     Judge judge{sequence};
     const Frames judged = range(20, 40);
-    const SequenceRun sap = run(judge, "sap", judged), residual = run(judge, "sap_residual", judged);
+    const SequenceRun sap = run(judge, "sap", judged),
+                      residual = run(judge, "sap_residual", judged);
     for (const uint32_t t : judged) {
       const double gain = residual.psnr_db.at(t) - sap.psnr_db.at(t);
       RecordProperty("gain_" + std::to_string(first + t), std::to_string(gain));
@@ -149,7 +151,8 @@ TEST_F(Temporal, FlashFromAnotherSide_KeepsTheRatio) {
   EXPECT_GT(residual.mean_psnr_db,
             sap.mean_psnr_db - 0.1); // Lit frames have nearly all of the error.
   for (const uint32_t t : judged)
-    RecordProperty("gain_" + std::to_string(t), std::to_string(residual.psnr_db.at(t) - sap.psnr_db.at(t)));
+    RecordProperty("gain_" + std::to_string(t),
+                   std::to_string(residual.psnr_db.at(t) - sap.psnr_db.at(t)));
   for (const uint32_t t : lit) {
     // Regression bound: measured 0.0 dB.
     EXPECT_GT(residual.psnr_db.at(t), sap.psnr_db.at(t) - 0.2) << t;
@@ -192,15 +195,18 @@ TEST_F(Temporal, Cut_ErrorRecoversWithinThreeFrames) {
   Judge judge{sequence};
   const Frames judged = {6, 7, 8, 9, 40, 42, 44};
   const SequenceRun signalled = run(judge, "sap_residual", judged);
-  const double steady = (signalled.psnr_db.at(40) + signalled.psnr_db.at(42) + signalled.psnr_db.at(44)) / 3;
+  const double steady =
+      (signalled.psnr_db.at(40) + signalled.psnr_db.at(42) + signalled.psnr_db.at(44)) / 3;
   for (uint32_t t = 6; t <= 9; ++t)
     RecordProperty("db_" + std::to_string(t - 6), std::to_string(signalled.psnr_db.at(t)));
   RecordProperty("steady", std::to_string(steady));
   EXPECT_GT(signalled.psnr_db.at(9), steady - 1);
   // A host that gives both cameras without signalling a cut: only equal surfaces are found.
   CapturedFrame& jumped = sequence.frames[6].captured;
-  jumped.description.previous_clip_from_view = sequence.frames[5].captured.description.clip_from_view;
-  jumped.description.previous_view_from_world = sequence.frames[5].captured.description.view_from_world;
+  jumped.description.previous_clip_from_view =
+      sequence.frames[5].captured.description.clip_from_view;
+  jumped.description.previous_view_from_world =
+      sequence.frames[5].captured.description.view_from_world;
   jumped.velocity = {};
   const SequenceRun silent = run(judge, "sap_residual", {9}, {}, [](uint32_t t) { return t > 0; });
   RecordProperty("silent_3", std::to_string(silent.psnr_db.at(9)));
@@ -218,18 +224,21 @@ CapturedFrame embedded(const CapturedFrame& small, uint32_t x0, uint32_t y0) {
   const auto put = [&](Image& image) {
     const Image from = image;
     if (from.values.empty()) return;
-    image = {width, height, from.channels, std::vector<float>(size_t{width} * height * from.channels)};
+    image = {width, height, from.channels,
+             std::vector<float>(size_t{width} * height * from.channels)};
     for (uint32_t y = 0; y < from.height; ++y)
       std::copy_n(from.values.begin() + std::ptrdiff_t(size_t{y} * from.width * from.channels),
                   from.width * from.channels,
-                  image.values.begin() + std::ptrdiff_t((size_t{y + y0} * width + x0) * from.channels));
+                  image.values.begin() +
+                      std::ptrdiff_t((size_t{y + y0} * width + x0) * from.channels));
   };
   for (Image* image : {&large.lighting, &large.depth, &large.velocity})
     put(*image);
   large.profile.assign(size_t{width} * height, 0);
   for (uint32_t y = 0; y < small.description.height; ++y)
     std::copy_n(small.profile.begin() + std::ptrdiff_t(size_t{y} * small.description.width),
-                small.description.width, large.profile.begin() + std::ptrdiff_t(size_t{y + y0} * width + x0));
+                small.description.width,
+                large.profile.begin() + std::ptrdiff_t(size_t{y + y0} * width + x0));
   return large;
 }
 
@@ -252,8 +261,10 @@ TEST_F(Temporal, ChangedRectangle_HistoryIsFound) {
   }
   Judge judge{sequence};
   const Frames judged = {27, 28, 29}; // Frame 28 is small.
-  const SequenceRun sap = run(judge, "sap", {27, 29}), residual = run(judge, "sap_residual", {27, 29}),
-                    small_sap = run(judge, "sap", {28}), small_residual = run(judge, "sap_residual", {28});
+  const SequenceRun sap = run(judge, "sap", {27, 29}),
+                    residual = run(judge, "sap_residual", {27, 29}),
+                    small_sap = run(judge, "sap", {28}),
+                    small_residual = run(judge, "sap_residual", {28});
   RecordProperty("sap", std::to_string(sap.mean_psnr_db));
   RecordProperty("residual", std::to_string(residual.mean_psnr_db));
   RecordProperty("small_sap", std::to_string(small_sap.mean_psnr_db));

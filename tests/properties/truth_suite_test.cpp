@@ -34,7 +34,8 @@ protected:
   // Returns the mean of `frames` frames of a technique.
   std::vector<float> scatter(const CapturedFrame& frame, const std::string& graph,
                              std::vector<NamedValue> set, uint32_t frames = 1) {
-    const TechniqueRequest request{graph, "", DERMIS_SOURCE_DIR "/" + dermis::shipped::graph_file(graph),
+    const TechniqueRequest request{graph, "",
+                                   DERMIS_SOURCE_DIR "/" + dermis::shipped::graph_file(graph),
                                    std::move(set), false};
     auto run = TechniqueRun::create(*host_, request, frame.description.profiles, {});
     if (!run) {
@@ -114,7 +115,8 @@ TEST_F(ReferenceSuite, Pyramid_MatchesAtEveryD) {
     const CapturedFrame frame = textured(320, 180, d_px);
     const Reference reference = reference_of(frame);
     const ErrorFigures sap = error_of(reference, scatter(frame, "sap", {{"variant", "smooth"}}));
-    const ErrorFigures separable = error_of(reference, scatter(frame, "separable", {{"taps", "25"}}));
+    const ErrorFigures separable =
+        error_of(reference, scatter(frame, "separable", {{"taps", "25"}}));
     EXPECT_LE(sap.rmse, 2e-3) << d_px;
     EXPECT_LE(sap.max_error, 1.5e-2) << d_px;
     // Regression bound of the present implementation.
@@ -130,7 +132,8 @@ TEST_F(ReferenceSuite, HalfResolutionPyramid_BeatsFewTaps) {
     const CapturedFrame frame = textured(320, 180, d_px);
     const Reference reference = reference_of(frame);
     const ErrorFigures half = error_of(reference, scatter(frame, "skin", {{"variant", "half"}}));
-    const ErrorFigures separable = error_of(reference, scatter(frame, "separable", {{"taps", "11"}}));
+    const ErrorFigures separable =
+        error_of(reference, scatter(frame, "separable", {{"taps", "11"}}));
     EXPECT_LE(half.rmse, 4e-3) << d_px;
     EXPECT_LE(half.max_error, 5e-2) << d_px;
     EXPECT_LE(half.rmse, 0.6 * separable.rmse) << d_px;
@@ -143,7 +146,8 @@ TEST_F(ReferenceSuite, PublishedSeparable_IsWithinItsDocumentedError) {
   for (const double d_px : {1.0, 2.0, 4.0, 8.0}) {
     const CapturedFrame frame = textured(320, 180, d_px);
     const Reference reference = reference_of(frame);
-    const double published = error_of(reference, scatter(frame, "separable_jimenez", {{"taps", "25"}})).rmse;
+    const double published =
+        error_of(reference, scatter(frame, "separable_jimenez", {{"taps", "25"}})).rmse;
     const double fitted = error_of(reference, scatter(frame, "separable", {{"taps", "25"}})).rmse;
     // Regression bounds of the present implementation.
     EXPECT_LE(published, 0.0174 * 1.2) << d_px;
@@ -157,7 +161,8 @@ TEST_F(ReferenceSuite, OddSizes_MatchUpToTheLastPixel) {
   const CapturedFrame frame = textured(width, height, 4);
   const Reference reference = reference_of(frame);
   // Regression bounds, except the bound of sap, which its documentation states.
-  for (const auto& [graph, maximum] : {std::pair{"sap", 2e-3}, {"separable", 1.2e-2}, {"burley", 1.5e-2}}) {
+  for (const auto& [graph, maximum] :
+       {std::pair{"sap", 2e-3}, {"separable", 1.2e-2}, {"burley", 1.5e-2}}) {
     const std::vector<float> light = scatter(frame, graph, {});
     EXPECT_LE(error_of(reference, light).rmse, maximum) << graph;
     for (const uint32_t y : {0u, height - 1})

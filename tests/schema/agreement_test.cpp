@@ -30,11 +30,14 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 
 constexpr DiagnosticId structural[] = {
-    DiagnosticId::unknown_key,         DiagnosticId::wrong_type,     DiagnosticId::missing_key,
-    DiagnosticId::out_of_range,        DiagnosticId::limit_exceeded, DiagnosticId::integer_precision,
-    DiagnosticId::unsupported_version, DiagnosticId::invalid_value,  DiagnosticId::unknown_pass_type,
-    DiagnosticId::unknown_port,        DiagnosticId::missing_port,   DiagnosticId::unknown_pass_setting,
-    DiagnosticId::port_direction,      DiagnosticId::profile_keys,   DiagnosticId::other_kind_of_file,
+    DiagnosticId::unknown_key,         DiagnosticId::wrong_type,
+    DiagnosticId::missing_key,         DiagnosticId::out_of_range,
+    DiagnosticId::limit_exceeded,      DiagnosticId::integer_precision,
+    DiagnosticId::unsupported_version, DiagnosticId::invalid_value,
+    DiagnosticId::unknown_pass_type,   DiagnosticId::unknown_port,
+    DiagnosticId::missing_port,        DiagnosticId::unknown_pass_setting,
+    DiagnosticId::port_direction,      DiagnosticId::profile_keys,
+    DiagnosticId::other_kind_of_file,
 };
 
 using Reader = void (*)(const std::string& text, Diagnostics& diagnostics);
@@ -53,7 +56,8 @@ void read_graph_text(const std::string& text, Diagnostics& diagnostics) {
 }
 void read_fragment_text(const std::string& text, Diagnostics& diagnostics) {
   if (auto document = parse_document("fragment.json", text, diagnostics))
-    read_composition(compose_fragment(std::move(*document), open_nothing, diagnostics), diagnostics);
+    read_composition(compose_fragment(std::move(*document), open_nothing, diagnostics),
+                     diagnostics);
 }
 void read_overlay_text(const std::string& text, Diagnostics& diagnostics) {
   if (const auto document = parse_document("overlay.json", text, diagnostics))
@@ -113,7 +117,8 @@ std::vector<fs::path> files_in(const char* folder, bool expectations = false) {
   std::vector<fs::path> out;
   for (const auto& entry : fs::recursive_directory_iterator(fs::path(DERMIS_SOURCE_DIR) / folder)) {
     const std::string name = entry.path().filename().string();
-    if (entry.path().extension() == ".json" && (name.find(".expect.") != std::string::npos) == expectations)
+    if (entry.path().extension() == ".json" &&
+        (name.find(".expect.") != std::string::npos) == expectations)
       out.push_back(entry.path());
   }
   std::sort(out.begin(), out.end(),
@@ -198,7 +203,8 @@ void expect_agreement(const SchemaFile& schema, Reader reader, const std::vector
     rejected += accepted ? 0 : 1;
     if (accepted == errors.empty()) continue;
     ++wrong;
-    ADD_FAILURE() << "mutation " << i << ": the schema " << (accepted ? "accepts" : "rejects") << "\n"
+    ADD_FAILURE() << "mutation " << i << ": the schema " << (accepted ? "accepts" : "rejects")
+                  << "\n"
                   << schema.first_problem(damaged) << "the parser says:\n"
                   << errors << damaged.dump().substr(0, 3000);
   }
@@ -213,7 +219,8 @@ std::vector<json> read_all(const char* folder, bool expectations = false) {
 }
 
 // Every feature of the language once, with the shipped pass types.
-constexpr const char* every_feature = R"({ "$schema": "x", "dermis": 2, "name": "whole", "note": "all of it",
+constexpr const char* every_feature =
+    R"({ "$schema": "x", "dermis": 2, "name": "whole", "note": "all of it",
   "settings": {
     "quality": { "choice": ["low", "high"], "by": "budget", "default": "high" },
     "samples": { "int": 16, "min": 4, "max": 64, "unit": "samples" },
@@ -241,8 +248,8 @@ constexpr const char* every_feature = R"({ "$schema": "x", "dermis": 2, "name": 
 TEST(Schema, OfGraphsAgreesWithTheParserOnMutatedFiles) {
   std::vector<json> files = read_all("configs/graphs");
   files.push_back(parse(every_feature));
-  expect_agreement(SchemaFile(parse(graph_schema(subsurface::make_pass_types()))), read_graph_text, files,
-                   static_cast<int>(dermis::testing::seeds_to_try(4000, 10000)));
+  expect_agreement(SchemaFile(parse(graph_schema(subsurface::make_pass_types()))), read_graph_text,
+                   files, static_cast<int>(dermis::testing::seeds_to_try(4000, 10000)));
 }
 
 TEST(Schema, OfFragmentsAgreesWithTheParserOnMutatedFiles) {
@@ -251,8 +258,8 @@ TEST(Schema, OfFragmentsAgreesWithTheParserOnMutatedFiles) {
   fragment.erase("name");
   fragment["dermis_fragment"] = 2;
   const json small = parse(R"({ "dermis_fragment": 2, "passes": [ { "include": "a.json" } ] })");
-  expect_agreement(SchemaFile(parse(fragment_schema(subsurface::make_pass_types()))), read_fragment_text,
-                   {fragment, small}, 3000);
+  expect_agreement(SchemaFile(parse(fragment_schema(subsurface::make_pass_types()))),
+                   read_fragment_text, {fragment, small}, 3000);
 }
 
 TEST(Schema, OfOverlaysAgreesWithTheParserOnMutatedFiles) {
@@ -267,21 +274,24 @@ TEST(Schema, OfOverlaysAgreesWithTheParserOnMutatedFiles) {
 
 TEST(Schema, OfExpectationsAgreesWithTheParserOnMutatedFiles) {
   std::vector<json> files = read_all("configs/graphs", true);
-  files.push_back(
-      parse(R"({ "$schema": "x", "dermis_expect": 1, "note": "n", "cases": [ { "case": "all", "note": "n",
+  files.push_back(parse(
+      R"({ "$schema": "x", "dermis_expect": 1, "note": "n", "cases": [ { "case": "all", "note": "n",
     "size": [640, 360], "overlays": ["a.json"], "set": { "a": true, "b": 1.5, "c": "x", "d": 3 }, "unbound": ["u"],
     "host_formats": { "x": "rgba16f" },
     "device": { "unsupported_formats": ["r32f"], "lacks": ["ray_query"], "max_image_dimension": 4096, "note": "n" },
     "expect": { "passes": ["p"], "culled": { "q": "why" }, "barriers": 1, "batches": 2, "transient_bytes": 3,
                 "history_bytes": 4, "diagnostics": ["D0301"], "note": "n" } } ] })"));
-  expect_agreement(schema_in("configs/schema/expectation.schema.json"), read_expectation_text, files, 6000);
+  expect_agreement(schema_in("configs/schema/expectation.schema.json"), read_expectation_text,
+                   files, 6000);
 }
 
 TEST(Schema, OfProfilesAgreesWithTheParserOnMutatedFiles) {
   std::vector<json> files = read_all("configs/profiles");
-  files.push_back(parse(R"({ "dermis_profile": 1, "name": "m", "source": "s", "model": "burley", "note": "n",
+  files.push_back(
+      parse(R"({ "dermis_profile": 1, "name": "m", "source": "s", "model": "burley", "note": "n",
     "mfp_mm": [1, 2, 3], "scaling": "diffuse_surface", "albedo": [0, 0.5, 1] })"));
-  files.push_back(parse(R"({ "dermis_profile": 1, "name": "d", "source": "s", "model": "dipole", "eta": 1.4,
+  files.push_back(
+      parse(R"({ "dermis_profile": 1, "name": "d", "source": "s", "model": "dipole", "eta": 1.4,
     "sigma_a_per_mm": [0.032, 0.17, 0.48], "sigma_s_prime_per_mm": [0.74, 0.88, 1.01] })"));
   files.push_back(parse(R"({ "dermis_profile": 1, "name": "a", "source": "s", "model": "artist",
     "falloff": [1, 0.37, 0.3], "strength": [0.48, 0.41, 0.28] })"));
@@ -290,7 +300,8 @@ TEST(Schema, OfProfilesAgreesWithTheParserOnMutatedFiles) {
 
 TEST(Schema, OfScenesAgreesWithTheParserOnMutatedFiles) {
   std::vector<json> files = read_all("configs/scenes");
-  files.push_back(parse(R"({ "dermis_scene": 1, "name": "s", "profiles": [ { "name": "skin", "file": "a" } ],
+  files.push_back(
+      parse(R"({ "dermis_scene": 1, "name": "s", "profiles": [ { "name": "skin", "file": "a" } ],
     "camera": { "projection": "orthographic", "position": { "keys": [[0, 0, 0, 1], [1, 0, 0, 2]] },
                 "target": [0, 0, 0], "height": { "sine": { "mean": 1, "amplitude": 0.5, "hertz": 2, "phase": 0 } } },
     "lights": [ { "type": "point", "position": [0, 1, 0], "intensity": { "keys": [[0, 1]] } },
@@ -319,7 +330,8 @@ TEST(Schema, OfCapturesAgreesWithTheParserOnMutatedFiles) {
 TEST(Schema, OfErrorTablesAgreesWithTheParserOnMutatedFiles) {
   const std::vector<json> files = {
       parse(text_of(fs::path(DERMIS_SOURCE_DIR) / "configs/choice/errors.json")),
-      parse(R"({ "dermis_errors": 2, "scenes": "s", "note": "n", "unscattered": [[1, 0.1]], "techniques": [
+      parse(
+          R"({ "dermis_errors": 2, "scenes": "s", "note": "n", "unscattered": [[1, 0.1]], "techniques": [
         { "name": "t", "note": "n", "rmse": [[1, 2], [2, 3]],
           "pass_types": [{ "type": "k", "set": { "a": 1, "b": true, "c": "x", "d": 1.5 }, "note": "n" }] } ] })")};
   expect_agreement(schema_in("configs/schema/errors.schema.json"), read_errors_text, files, 3000);
@@ -330,7 +342,8 @@ TEST(Schema, OfCalibrationsAgreesWithTheParserOnMutatedFiles) {
       parse(R"({ "$schema": "x", "dermis_calibration": 2, "device": "d", "note": "n", "costs": [
         { "work": "a", "base_us": 1, "group_us": 0.5, "spread": 0.1, "note": "n" },
         { "work": "b", "base_us": 0, "group_us": 0, "spread": 1 } ] })")};
-  expect_agreement(schema_in("configs/schema/calibration.schema.json"), read_calibration_text, files, 3000);
+  expect_agreement(schema_in("configs/schema/calibration.schema.json"), read_calibration_text,
+                   files, 3000);
 }
 
 TEST(Schema, OfPassTypesAgreesWithTheParserOnMutatedFiles) {
@@ -343,12 +356,14 @@ TEST(Schema, OfPassTypesAgreesWithTheParserOnMutatedFiles) {
                         { "name": "taps", "type": "int", "default": 3, "min": 1, "max": 9, "note": "n" },
                         { "name": "wide", "type": "bool", "default": 1 } ] },
         { "name": "studio.count", "ports": [ { "name": "sums", "usage": "storage_buffer_update" } ] } ] })")};
-  expect_agreement(schema_in("configs/schema/pass_types.schema.json"), read_pass_types_text, files, 3000);
+  expect_agreement(schema_in("configs/schema/pass_types.schema.json"), read_pass_types_text, files,
+                   3000);
 }
 
 TEST(Schema, NoSchemaHasAPattern) {
-  std::map<std::string, std::string> schemas = {{"graph", graph_schema(subsurface::make_pass_types())},
-                                                {"fragment", fragment_schema(subsurface::make_pass_types())}};
+  std::map<std::string, std::string> schemas = {
+      {"graph", graph_schema(subsurface::make_pass_types())},
+      {"fragment", fragment_schema(subsurface::make_pass_types())}};
   for (const fs::path& path : files_in("configs/schema"))
     schemas[path.string()] = text_of(path);
   for (const auto& [path, schema] : schemas) {
@@ -356,7 +371,8 @@ TEST(Schema, NoSchemaHasAPattern) {
     std::vector<json*> all;
     collect(text, all);
     for (const json* one : all) {
-      EXPECT_FALSE(one->is_object() && (one->contains("pattern") && !(*one)["pattern"].is_object())) << path;
+      EXPECT_FALSE(one->is_object() && (one->contains("pattern") && !(*one)["pattern"].is_object()))
+          << path;
       EXPECT_FALSE(one->is_object() && one->contains("patternProperties")) << path;
     }
   }

@@ -66,12 +66,13 @@ TEST(Outputs, SarifSchemaRejectsInvalidFiles) {
 // installed.
 int xmllint_says(const std::string& text) {
   if (std::system("command -v xmllint > /dev/null 2>&1") != 0) return -1;
-  const auto file =
-      std::filesystem::temp_directory_path() / ("dermis_junit_" + std::to_string(getpid()) + ".xml");
+  const auto file = std::filesystem::temp_directory_path() /
+                    ("dermis_junit_" + std::to_string(getpid()) + ".xml");
   std::ofstream(file) << text;
-  const int code = std::system(("xmllint --noout --schema " DERMIS_SOURCE_DIR "/tests/schema/junit.xsd '" +
-                                file.string() + "' > /dev/null 2>&1")
-                                   .c_str());
+  const int code =
+      std::system(("xmllint --noout --schema " DERMIS_SOURCE_DIR "/tests/schema/junit.xsd '" +
+                   file.string() + "' > /dev/null 2>&1")
+                      .c_str());
   std::filesystem::remove(file);
   return code == 0 ? 1 : 0;
 }

@@ -12,7 +12,8 @@ namespace dermis::testing {
 inline std::string radeon_driver() {
   std::error_code none;
   for (const auto& file : std::filesystem::directory_iterator("/usr/share/vulkan/icd.d", none))
-    if (file.path().extension() == ".json" && file.path().filename().string().starts_with("radeon_icd"))
+    if (file.path().extension() == ".json" &&
+        file.path().filename().string().starts_with("radeon_icd"))
       return file.path().string();
   return "";
 }

@@ -13,7 +13,8 @@ class TestFolder {
 public:
   TestFolder() {
     std::string name = (std::filesystem::temp_directory_path() / "dermis_test_XXXXXX").string();
-    if (mkdtemp(name.data()) == nullptr) throw std::runtime_error("no folder '" + name + "' can be made");
+    if (mkdtemp(name.data()) == nullptr)
+      throw std::runtime_error("no folder '" + name + "' can be made");
     place = name;
   }
   ~TestFolder() {

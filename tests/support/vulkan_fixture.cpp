@@ -78,7 +78,8 @@ struct VulkanTest::Parts {
 
   uint32_t memory_type(uint32_t bits, VkMemoryPropertyFlags required_flags) const {
     for (uint32_t i = 0; i < memory.memoryTypeCount; ++i)
-      if ((bits >> i & 1u) != 0 && (memory.memoryTypes[i].propertyFlags & required_flags) == required_flags)
+      if ((bits >> i & 1u) != 0 &&
+          (memory.memoryTypes[i].propertyFlags & required_flags) == required_flags)
         return i;
     return 0;
   }
@@ -93,10 +94,12 @@ void VulkanTest::SetUp() {
   if (p.loader == nullptr) GTEST_SKIP() << "there is no Vulkan loader (libvulkan.so.1)";
   get_instance_proc_addr =
       reinterpret_cast<PFN_vkGetInstanceProcAddr>(dlsym(p.loader, "vkGetInstanceProcAddr"));
-  const auto global = [&](const char* name) { return get_instance_proc_addr(VK_NULL_HANDLE, name); };
+  const auto global = [&](const char* name) {
+    return get_instance_proc_addr(VK_NULL_HANDLE, name);
+  };
 
-  const auto enumerate_layers =
-      reinterpret_cast<PFN_vkEnumerateInstanceLayerProperties>(global("vkEnumerateInstanceLayerProperties"));
+  const auto enumerate_layers = reinterpret_cast<PFN_vkEnumerateInstanceLayerProperties>(
+      global("vkEnumerateInstanceLayerProperties"));
   uint32_t count = 0;
   enumerate_layers(&count, nullptr);
   std::vector<VkLayerProperties> layers(count);
@@ -113,8 +116,8 @@ void VulkanTest::SetUp() {
          0);
   VkDebugUtilsMessengerCreateInfoEXT messenger{};
   messenger.sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT;
-  messenger.messageSeverity =
-      VK_DEBUG_UTILS_MESSAGE_SEVERITY_WARNING_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT;
+  messenger.messageSeverity = VK_DEBUG_UTILS_MESSAGE_SEVERITY_WARNING_BIT_EXT |
+                              VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT;
   messenger.messageType = VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT;
   messenger.pfnUserCallback = Parts::on_message;
   messenger.pUserData = &p;
@@ -125,7 +128,8 @@ void VulkanTest::SetUp() {
   features.pNext = &messenger;
   features.enabledValidationFeatureCount = 1;
   features.pEnabledValidationFeatures = enables;
-  const char* extensions[] = {VK_EXT_DEBUG_UTILS_EXTENSION_NAME, VK_EXT_VALIDATION_FEATURES_EXTENSION_NAME};
+  const char* extensions[] = {VK_EXT_DEBUG_UTILS_EXTENSION_NAME,
+                              VK_EXT_VALIDATION_FEATURES_EXTENSION_NAME};
   VkApplicationInfo application{};
   application.sType = VK_STRUCTURE_TYPE_APPLICATION_INFO;
   application.apiVersion = VK_API_VERSION_1_3;
@@ -145,7 +149,8 @@ void VulkanTest::SetUp() {
   }
   // A driver that stays loaded keeps its name in sanitizer reports, which identifies its own leaks.
   dlopen("libvulkan_lvp.so", RTLD_NOW | RTLD_NOLOAD | RTLD_NODELETE);
-#define TEST_LOAD(name) p.name = reinterpret_cast<PFN_##name>(get_instance_proc_addr(instance, #name));
+#define TEST_LOAD(name)                                                                            \
+  p.name = reinterpret_cast<PFN_##name>(get_instance_proc_addr(instance, #name));
   TEST_INSTANCE_FUNCTIONS(TEST_LOAD)
 #undef TEST_LOAD
   p.vkCreateDebugUtilsMessengerEXT(instance, &messenger, nullptr, &p.messenger);
@@ -161,7 +166,8 @@ void VulkanTest::SetUp() {
     std::vector<VkQueueFamilyProperties> family(families);
     p.vkGetPhysicalDeviceQueueFamilyProperties(candidate, &families, family.data());
     for (uint32_t i = 0; i < families && physical == VK_NULL_HANDLE; ++i)
-      if (properties.apiVersion >= VK_API_VERSION_1_3 && (family[i].queueFlags & VK_QUEUE_COMPUTE_BIT) != 0) {
+      if (properties.apiVersion >= VK_API_VERSION_1_3 &&
+          (family[i].queueFlags & VK_QUEUE_COMPUTE_BIT) != 0) {
         physical = candidate;
         queue_family = i;
       }
@@ -221,7 +227,8 @@ void VulkanTest::TearDown() {
     ADD_FAILURE() << message;
 }
 
-TestImage VulkanTest::make_image(VkFormat format, uint32_t width, uint32_t height, VkImageUsageFlags usage) {
+TestImage VulkanTest::make_image(VkFormat format, uint32_t width, uint32_t height,
+                                 VkImageUsageFlags usage) {
   Parts& p = *parts_;
   TestImage result;
   result.format = format;
@@ -252,8 +259,9 @@ TestImage VulkanTest::make_image(VkFormat format, uint32_t width, uint32_t heigh
   view.viewType = VK_IMAGE_VIEW_TYPE_2D;
   view.format = format;
   const bool depth = format == VK_FORMAT_D32_SFLOAT;
-  view.subresourceRange = {VkImageAspectFlags(depth ? VK_IMAGE_ASPECT_DEPTH_BIT : VK_IMAGE_ASPECT_COLOR_BIT),
-                           0, 1, 0, 1};
+  view.subresourceRange = {
+      VkImageAspectFlags(depth ? VK_IMAGE_ASPECT_DEPTH_BIT : VK_IMAGE_ASPECT_COLOR_BIT), 0, 1, 0,
+      1};
   EXPECT_EQ(p.vkCreateImageView(device, &view, nullptr, &result.view), VK_SUCCESS);
   p.images.push_back(result);
   return result;
@@ -273,15 +281,16 @@ VkImageMemoryBarrier2 full_barrier(const TestImage& image, VkImageLayout from, V
   barrier.image = image.image;
   const bool depth = image.format == VK_FORMAT_D32_SFLOAT;
   barrier.subresourceRange = {
-      VkImageAspectFlags(depth ? VK_IMAGE_ASPECT_DEPTH_BIT : VK_IMAGE_ASPECT_COLOR_BIT), 0, 1, 0, 1};
+      VkImageAspectFlags(depth ? VK_IMAGE_ASPECT_DEPTH_BIT : VK_IMAGE_ASPECT_COLOR_BIT), 0, 1, 0,
+      1};
   return barrier;
 }
 
 VkBufferImageCopy whole_copy(const TestImage& image) {
   VkBufferImageCopy copy{};
   const bool depth = image.format == VK_FORMAT_D32_SFLOAT;
-  copy.imageSubresource = {VkImageAspectFlags(depth ? VK_IMAGE_ASPECT_DEPTH_BIT : VK_IMAGE_ASPECT_COLOR_BIT),
-                           0, 0, 1};
+  copy.imageSubresource = {
+      VkImageAspectFlags(depth ? VK_IMAGE_ASPECT_DEPTH_BIT : VK_IMAGE_ASPECT_COLOR_BIT), 0, 0, 1};
   copy.imageExtent = {image.width, image.height, 1};
   return copy;
 }
@@ -298,8 +307,9 @@ template <class Parts> Staging make_staging(Parts& p, VkDevice device, uint64_t 
   VkMemoryAllocateInfo memory{};
   memory.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO;
   memory.allocationSize = needs.size;
-  memory.memoryTypeIndex = p.memory_type(needs.memoryTypeBits, VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT |
-                                                                   VK_MEMORY_PROPERTY_HOST_COHERENT_BIT);
+  memory.memoryTypeIndex =
+      p.memory_type(needs.memoryTypeBits,
+                    VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT);
   EXPECT_EQ(p.vkAllocateMemory(device, &memory, nullptr, &staging.memory), VK_SUCCESS);
   EXPECT_EQ(p.vkBindBufferMemory(device, staging.buffer, staging.memory, 0), VK_SUCCESS);
   void* mapped = nullptr;
@@ -326,16 +336,18 @@ void record_barrier(Parts& p, VkCommandBuffer commands, const TestImage& image, 
 
 } // namespace
 
-void VulkanTest::upload(const TestImage& image, std::span<const std::byte> texels, VkImageLayout layout) {
+void VulkanTest::upload(const TestImage& image, std::span<const std::byte> texels,
+                        VkImageLayout layout) {
   Parts& p = *parts_;
   ASSERT_EQ(texels.size(), uint64_t{image.width} * image.height * image.texel_bytes);
   const Staging staging = make_staging(p, device, texels.size());
   std::memcpy(staging.mapped, texels.data(), texels.size());
   const VkCommandBuffer commands = begin_commands();
-  record_barrier(p, commands, image, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL);
+  record_barrier(p, commands, image, VK_IMAGE_LAYOUT_UNDEFINED,
+                 VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL);
   const VkBufferImageCopy copy = whole_copy(image);
-  p.vkCmdCopyBufferToImage(commands, staging.buffer, image.image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1,
-                           &copy);
+  p.vkCmdCopyBufferToImage(commands, staging.buffer, image.image,
+                           VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &copy);
   record_barrier(p, commands, image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, layout);
   submit(commands);
   wait();
@@ -356,8 +368,8 @@ std::vector<std::byte> VulkanTest::download(const TestImage& image, VkImageLayou
   const VkCommandBuffer commands = begin_commands();
   record_barrier(p, commands, image, layout, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
   const VkBufferImageCopy copy = whole_copy(image);
-  p.vkCmdCopyImageToBuffer(commands, image.image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, staging.buffer, 1,
-                           &copy);
+  p.vkCmdCopyImageToBuffer(commands, image.image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
+                           staging.buffer, 1, &copy);
   record_barrier(p, commands, image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, layout);
   VkMemoryBarrier2 to_host{};
   to_host.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER_2;

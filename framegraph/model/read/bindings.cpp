@@ -32,7 +32,8 @@ public:
     if (!list.valid()) {
       // The error was reported, or will be as an unknown key; nothing is known about the section's
       // ports.
-      const bool mistyped = object_.has(key) || find_misspelt(reader_.document, object_.node(), key).valid();
+      const bool mistyped =
+          object_.has(key) || find_misspelt(reader_.document, object_.node(), key).valid();
       complete_ &= !mistyped;
       if (side == PortSide::write) writes_known_ &= !mistyped;
       return;
@@ -48,10 +49,11 @@ public:
       const Port& port = kind_->ports[i];
       if (bound_[i] || port.optional) continue;
       if (side_of(port) == PortSide::write) writes_known_ = false;
-      reader_.error(DiagnosticId::missing_port, pass_.where,
-                    fmt::format("{} of type '{}' needs a resource at the port '{}' under \"{}\" ({})",
-                                object_.what(), kind_->name, port.name,
-                                side_of(port) == PortSide::read ? "read" : "write", port.doc));
+      reader_.error(
+          DiagnosticId::missing_port, pass_.where,
+          fmt::format("{} of type '{}' needs a resource at the port '{}' under \"{}\" ({})",
+                      object_.what(), kind_->name, port.name,
+                      side_of(port) == PortSide::read ? "read" : "write", port.doc));
     }
     report_none_of();
   }
@@ -64,16 +66,18 @@ private:
     for (uint32_t i = 0; i < kind_->ports.size(); ++i)
       if (bound_[i] && is_one_of(*kind_, i)) return;
     const Port& first = kind_->ports[static_cast<size_t>(find_port(*kind_, kind_->one_of.front()))];
-    reader_.error(DiagnosticId::missing_port, pass_.where,
-                  fmt::format("{} of type '{}' needs a resource at one of its ports {} under \"{}\"",
-                              object_.what(), kind_->name, list_words(kind_->one_of),
-                              side_of(first) == PortSide::read ? "read" : "write"));
+    reader_.error(
+        DiagnosticId::missing_port, pass_.where,
+        fmt::format("{} of type '{}' needs a resource at one of its ports {} under \"{}\"",
+                    object_.what(), kind_->name, list_words(kind_->one_of),
+                    side_of(first) == PortSide::read ? "read" : "write"));
   }
 
   // Returns false if the binding could not be read.
   bool read_one(PortSide side, NodeId node) {
     const int port = find(side, node);
-    const std::string what = fmt::format("port '{}' of {}", reader_.document.key(node), object_.what());
+    const std::string what =
+        fmt::format("port '{}' of {}", reader_.document.key(node), object_.what());
     if (side == PortSide::read && reader_.document[node].kind == NodeKind::object)
       return read_condition(node, port, what);
     Found found;
@@ -93,7 +97,8 @@ private:
 
   void keep(PortSide side, const std::string& what, const Found& found) {
     reader_.graph.bind(pass_, side, found.binding, found.where);
-    if (found.binding.port != unknown_port && !reader_.broken_resources[found.binding.resource.value])
+    if (found.binding.port != unknown_port &&
+        !reader_.broken_resources[found.binding.resource.value])
       check(kind_->ports[found.binding.port], what, found);
   }
 
@@ -110,7 +115,8 @@ private:
     ok &= !otherwise.valid() ||
           read_reference(PortSide::read, otherwise, port, "'otherwise' of " + what, instead);
     if (!ok || !condition_fits(what, history, instead)) return false;
-    const HistoryDeclaration& declared = reader_.graph.resources[history.binding.resource.value].history;
+    const HistoryDeclaration& declared =
+        reader_.graph.resources[history.binding.resource.value].history;
     const bool zeros = !otherwise.valid() && declared.first == HistoryDeclaration::First::clear;
     history.binding.when = zeros ? ReadWhen::always : ReadWhen::history_valid;
     keep(PortSide::read, what, history);
@@ -125,33 +131,33 @@ private:
     const ResourceDeclaration& resource = reader_.graph.resources[history.binding.resource.value];
     const auto reject = [&](const SourceLocation& where, std::string text) {
       reader_.error(DiagnosticId::bad_requires, where, std::move(text))
-          .related.emplace_back(resource.where, fmt::format("'{}' is declared here", resource.name));
+          .related.emplace_back(resource.where,
+                                fmt::format("'{}' is declared here", resource.name));
       return false;
     };
     if (history.binding.frames_back == 0)
-      return reject(history.where, fmt::format("{} requires '{}' of the current frame to be valid; only "
-                                               "earlier frames (name@-1) can be required",
-                                               what, resource.name));
+      return reject(history.where,
+                    fmt::format("{} requires '{}' of the current frame to be valid; only "
+                                "earlier frames (name@-1) can be required",
+                                what, resource.name));
     if (instead.binding.frames_back > 0)
-      return reject(
-          instead.where,
-          fmt::format("{} reads an earlier frame if '{}@-{}' is invalid, and that frame may be invalid, too",
-                      what, resource.name, history.binding.frames_back));
+      return reject(instead.where, fmt::format("{} reads an earlier frame if '{}@-{}' is invalid, "
+                                               "and that frame may be invalid, too",
+                                               what, resource.name, history.binding.frames_back));
     if (history.binding.port == unknown_port) return true;
     const Port& port = kind_->ports[history.binding.port];
     if (port.usage == Usage::indirect_arguments)
-      return reject(
-          history.where,
-          fmt::format(
-              "{} provides the size of the dispatch, which every frame reads; the read cannot be conditional",
-              what));
+      return reject(history.where, fmt::format("{} provides the size of the dispatch, which every "
+                                               "frame reads; the read cannot be conditional",
+                                               what));
     const bool has_fallback = instead.binding.resource.valid() || port.optional ||
                               resource.history.first == HistoryDeclaration::First::clear;
     if (has_fallback) return true;
     return reject(
         history.where,
-        fmt::format("{} must be bound, but nothing is declared for frames in which '{}@-{}' is invalid", what,
-                    resource.name, history.binding.frames_back));
+        fmt::format(
+            "{} must be bound, but nothing is declared for frames in which '{}@-{}' is invalid",
+            what, resource.name, history.binding.frames_back));
   }
 
   int find(PortSide side, NodeId node) {
@@ -164,7 +170,8 @@ private:
     if (const int other = find_port(*kind_, name); other >= 0) {
       bound_[static_cast<size_t>(other)] = true; // reports only one error
       reader_.error(DiagnosticId::port_direction, reader_.document.where_key(node),
-                    fmt::format("the port '{}' of type '{}' {}; list it under \"{}\"", name, kind_->name,
+                    fmt::format("the port '{}' of type '{}' {}; list it under \"{}\"", name,
+                                kind_->name,
                                 usage_info(kind_->ports[static_cast<size_t>(other)].usage).writes
                                     ? "writes"
                                     : "only reads",
@@ -177,8 +184,8 @@ private:
     }
     Diagnostic& one = reader_.error(
         DiagnosticId::unknown_port, reader_.document.where_key(node),
-        fmt::format("{} is of type '{}', which has no port '{}' under \"{}\"{}", object_.what(), kind_->name,
-                    name, side == PortSide::read ? "read" : "write",
+        fmt::format("{} is of type '{}', which has no port '{}' under \"{}\"{}", object_.what(),
+                    kind_->name, name, side == PortSide::read ? "read" : "write",
                     names.empty() ? std::string() : fmt::format(", but {}", list_words(names))));
     one.suggestion = did_you_mean(name, names);
     // A misspelt port is not also reported as missing.
@@ -208,9 +215,10 @@ private:
     if (!image_range) {
       reader_.error(
           DiagnosticId::bad_reference, where,
-          fmt::format("{} names '{}'; mips are #0, #1..3, #1.., layers [0], [1..3], [1..]; at most {} "
-                      "mips and {} layers",
-                      what, text, limits::image_mips, limits::image_layers));
+          fmt::format(
+              "{} names '{}'; mips are #0, #1..3, #1.., layers [0], [1..3], [1..]; at most {} "
+              "mips and {} layers",
+              what, text, limits::image_mips, limits::image_layers));
       return false;
     }
     out.binding.range = *image_range;
@@ -230,7 +238,8 @@ private:
                      ? fmt::format("{} reads '{}', but an import has no history", what, text)
                      : fmt::format("{} reads '{}', but '{}' keeps {} earlier frames", what, text,
                                    resource.name, resource.history.frames))
-          .related.emplace_back(resource.where, fmt::format("'{}' is declared here", resource.name));
+          .related.emplace_back(resource.where,
+                                fmt::format("'{}' is declared here", resource.name));
       return false;
     }
     return out.binding.range.whole() || check_image_range(text, what, out);
@@ -250,10 +259,11 @@ private:
     else if (resource.origin == Origin::imported || resource.exported)
       problem = fmt::format("'{}' is bound by the host and cannot be divided", resource.name);
     else if (resource.mips != 0 && last_mip >= resource.mips)
-      problem = fmt::format("'{}' has {} mip{}", resource.name, resource.mips, resource.mips == 1 ? "" : "s");
+      problem = fmt::format("'{}' has {} mip{}", resource.name, resource.mips,
+                            resource.mips == 1 ? "" : "s");
     else if (last_layer >= resource.layers)
-      problem =
-          fmt::format("'{}' has {} layer{}", resource.name, resource.layers, resource.layers == 1 ? "" : "s");
+      problem = fmt::format("'{}' has {} layer{}", resource.name, resource.layers,
+                            resource.layers == 1 ? "" : "s");
     if (problem.empty()) return true;
     reader_
         .error(DiagnosticId::bad_subresource, found.where,
@@ -265,12 +275,13 @@ private:
   // Selects the single mip of a storage image: the first, unless another is named.
   bool choose_mip(const std::string& what, Found& found) {
     const ResourceDeclaration& resource = reader_.graph.resources[found.binding.resource.value];
-    if (found.binding.port == unknown_port || resource.type != ResourceType::image || resource.mips == 1 ||
-        resource.origin == Origin::imported || resource.exported)
+    if (found.binding.port == unknown_port || resource.type != ResourceType::image ||
+        resource.mips == 1 || resource.origin == Origin::imported || resource.exported)
       return true;
     const Usage usage = kind_->ports[found.binding.port].usage;
     if (usage != Usage::storage_image_write && usage != Usage::storage_image_update) return true;
-    if (found.binding.range.first_mip == 0 && found.binding.range.mips == 0) found.binding.range.mips = 1;
+    if (found.binding.range.first_mip == 0 && found.binding.range.mips == 0)
+      found.binding.range.mips = 1;
     if (found.binding.range.mips == 1) return true;
     reader_
         .error(DiagnosticId::bad_subresource, found.where,
@@ -294,9 +305,10 @@ private:
       const ResourceType expected = usage.image    ? ResourceType::image
                                     : usage.buffer ? ResourceType::buffer
                                                    : ResourceType::acceleration_structure;
-      declared_here(reader_.error(DiagnosticId::usage_mismatch, found.where,
-                                  fmt::format("{} expects {}; '{}' is {}", what, type_phrase(expected),
-                                              resource.name, type_phrase(resource.type))));
+      declared_here(
+          reader_.error(DiagnosticId::usage_mismatch, found.where,
+                        fmt::format("{} expects {}; '{}' is {}", what, type_phrase(expected),
+                                    resource.name, type_phrase(resource.type))));
       return;
     }
     if (!image || formats_fit(port, resource)) return;

@@ -20,8 +20,9 @@ std::string format_list(std::span<const Format> formats) {
 
 bool formats_fit(const Port& port, const ResourceDeclaration& resource) {
   const auto fits = [&](Format format) { return works_with(port, format); };
-  return may_be_host_owned(resource) ? std::all_of(resource.formats.begin(), resource.formats.end(), fits)
-                                     : std::any_of(resource.formats.begin(), resource.formats.end(), fits);
+  return may_be_host_owned(resource)
+             ? std::all_of(resource.formats.begin(), resource.formats.end(), fits)
+             : std::any_of(resource.formats.begin(), resource.formats.end(), fits);
 }
 
 std::string formats_taken(const Port& port) {
@@ -40,12 +41,14 @@ void report_formats(GraphReader& reader, ResourceId id, const SourceLocation& wh
     if (related.size() <= max_related) related.emplace_back(where, port);
     return;
   }
-  if (!reader.diagnostics.full()) reader.format_mismatches.emplace(id, reader.diagnostics.list.size());
+  if (!reader.diagnostics.full())
+    reader.format_mismatches.emplace(id, reader.diagnostics.list.size());
   const ResourceDeclaration& resource = reader.graph.resources[id.value];
   const bool each = may_be_host_owned(resource) && resource.formats.size() > 1;
   reader
       .error(DiagnosticId::format_mismatch, where,
-             fmt::format("{}; '{}' declares {}{}", port, resource.name, format_list(resource.formats),
+             fmt::format("{}; '{}' declares {}{}", port, resource.name,
+                         format_list(resource.formats),
                          each ? ", any of which the host may bind" : ""))
       .related.emplace_back(resource.where, fmt::format("'{}' is declared here", resource.name));
 }

@@ -95,7 +95,8 @@ bool formats_fit(const Port& port, const ResourceDeclaration& resource);
 std::string formats_taken(const Port& port);
 // Reports unsupported formats, with one message per resource for all ports. `port` describes the
 // port bound at `where`.
-void report_formats(GraphReader& reader, ResourceId id, const SourceLocation& where, const std::string& port);
+void report_formats(GraphReader& reader, ResourceId id, const SourceLocation& where,
+                    const std::string& port);
 
 // Returns "note" of an object; "" if there is none or it is no string (which the object's reader
 // reports).

@@ -66,8 +66,9 @@ private:
     uint32_t before = pass_.value; // only writes of earlier passes count
     for (size_t later = 0; later <= writes_.size();) {
       const std::vector<Write>& writes = writes_[resource.value];
-      const auto end = std::partition_point(writes.begin(), writes.end(),
-                                            [&](const Write& write) { return write.pass.value < before; });
+      const auto end = std::partition_point(writes.begin(), writes.end(), [&](const Write& write) {
+        return write.pass.value < before;
+      });
       const Write* replaced = nullptr;
       for (auto at = end; at != writes.begin() && !replaced;) {
         --at;
@@ -110,7 +111,8 @@ private:
     const PortBinding* written = port_->own_texels ? nullptr : written_too(resource);
     const ResourceDeclaration& declared = graph().resources[resource.value];
     const bool unusable = !steps_.empty() && declared.type == ResourceType::image &&
-                          !reader_.broken_resources[resource.value] && !formats_fit(*port_, declared);
+                          !reader_.broken_resources[resource.value] &&
+                          !formats_fit(*port_, declared);
     if (!written && !unusable) return false;
     conditions_.push_back({write ? graph().passes[write->pass.value].when : ExpressionId(), true});
     const bool possible = can_hold(graph(), conditions_);
@@ -123,7 +125,8 @@ private:
 
   const PortBinding* written_too(ResourceId resource) const {
     for (const PortBinding& binding : graph().writes(graph().passes[pass_.value]))
-      if (binding.resource == resource && binding.port != unknown_port && overlap(binding.range, seen_))
+      if (binding.resource == resource && binding.port != unknown_port &&
+          overlap(binding.range, seen_))
         return &binding;
     return nullptr;
   }
@@ -149,19 +152,20 @@ private:
   }
 
   void report_unusable(ResourceId resource) {
-    report_formats(reader_, resource, graph().place_of(*read_),
-                   fmt::format("port '{}' of pass '{}' reads the replacement of '{}' and supports {}",
-                               port_->name, graph().passes[pass_.value].name, name_of(*read_),
-                               formats_taken(*port_)));
+    report_formats(
+        reader_, resource, graph().place_of(*read_),
+        fmt::format("port '{}' of pass '{}' reads the replacement of '{}' and supports {}",
+                    port_->name, graph().passes[pass_.value].name, name_of(*read_),
+                    formats_taken(*port_)));
   }
 
   void relate_steps(Diagnostic& diagnostic) const {
     for (const Step& step : steps_)
-      diagnostic.related.emplace_back(step.replaced->where,
-                                      fmt::format("'{}' replaces '{}' if '{}' is off",
-                                                  graph().resources[step.replaced->instead.value].name,
-                                                  graph().resources[step.of.value].name,
-                                                  graph().passes[step.replaced->pass.value].name));
+      diagnostic.related.emplace_back(
+          step.replaced->where, fmt::format("'{}' replaces '{}' if '{}' is off",
+                                            graph().resources[step.replaced->instead.value].name,
+                                            graph().resources[step.of.value].name,
+                                            graph().passes[step.replaced->pass.value].name));
   }
 
   struct Step {

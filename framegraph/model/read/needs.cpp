@@ -64,14 +64,14 @@ std::string unmet(const ResourceDeclaration& resource, const PortNeed& need, con
   if (resource.type == ResourceType::image)
     return size.width >= columns && size.height >= rows
                ? ""
-               : fmt::format("{}x{} texels for a view of {}x{}; '{}' has {}x{}", columns, rows, view.width,
-                             view.height, resource.name, size.width, size.height);
+               : fmt::format("{}x{} texels for a view of {}x{}; '{}' has {}x{}", columns, rows,
+                             view.width, view.height, resource.name, size.width, size.height);
   const uint64_t required = columns * rows * need.bytes + need.more;
   const uint64_t elements = std::min(size.width * size.height, largest) + resource.extra_elements;
   const uint64_t bytes = elements * std::max<uint32_t>(resource.stride, 1);
   return bytes >= required ? ""
-                           : fmt::format("{} bytes for a view of {}x{}; '{}' has {}", required, view.width,
-                                         view.height, resource.name, bytes);
+                           : fmt::format("{} bytes for a view of {}x{}; '{}' has {}", required,
+                                         view.width, view.height, resource.name, bytes);
 }
 
 } // namespace
@@ -87,7 +87,8 @@ void check_needs(const GraphReader& reader) {
       for (const PortBinding& binding : graph.bindings_of(pass)) {
         const uint32_t r = binding.resource.value;
         const PortNeed* need = need_of(type, binding.port);
-        if (need == nullptr || reported[r] || binding.range.first_mip > 0 || sizes[r].width == 0) continue;
+        if (need == nullptr || reported[r] || binding.range.first_mip > 0 || sizes[r].width == 0)
+          continue;
         const std::string missing = unmet(graph.resources[r], *need, sizes[r], view);
         if (missing.empty()) continue;
         reported[r] = true;

@@ -49,8 +49,8 @@ std::string mismatch(const SettingDeclaration& from, const PassTypeSetting& to) 
       list_words(to.options));
 }
 
-bool read_reference(GraphReader& reader, NodeId node, const std::string& what, const PassTypeSetting& setting,
-                    SettingBinding& out) {
+bool read_reference(GraphReader& reader, NodeId node, const std::string& what,
+                    const PassTypeSetting& setting, SettingBinding& out) {
   const std::string_view name = reader.document.text(node).substr(1);
   const SourceLocation where = reader.document.where(node);
   const auto found = reader.setting_names.find(name);
@@ -74,8 +74,8 @@ bool read_reference(GraphReader& reader, NodeId node, const std::string& what, c
   return false;
 }
 
-bool read_text(GraphReader& reader, NodeId node, const std::string& what, const PassTypeSetting& setting,
-               SettingValue& out) {
+bool read_text(GraphReader& reader, NodeId node, const std::string& what,
+               const PassTypeSetting& setting, SettingValue& out) {
   const std::string_view text = reader.document.text(node);
   const auto found = std::find(setting.options.begin(), setting.options.end(), text);
   out.integer = found - setting.options.begin();
@@ -90,10 +90,11 @@ bool read_text(GraphReader& reader, NodeId node, const std::string& what, const 
   return false;
 }
 
-bool read_literal(GraphReader& reader, NodeId node, const std::string& what, const PassTypeSetting& setting,
-                  SettingValue& out) {
+bool read_literal(GraphReader& reader, NodeId node, const std::string& what,
+                  const PassTypeSetting& setting, SettingValue& out) {
   out.type = setting.type;
-  if (reader.document[node].kind == NodeKind::string) return read_text(reader, node, what, setting, out);
+  if (reader.document[node].kind == NodeKind::string)
+    return read_text(reader, node, what, setting, out);
   switch (setting.type) {
   case SettingType::boolean:
     if (const auto value = read_boolean(reader.document, node, what, reader.diagnostics)) {
@@ -102,15 +103,16 @@ bool read_literal(GraphReader& reader, NodeId node, const std::string& what, con
     }
     return false;
   case SettingType::integer:
-    if (const auto value = read_integer(reader.document, node, what, static_cast<int64_t>(setting.minimum),
-                                        static_cast<int64_t>(setting.maximum), reader.diagnostics)) {
+    if (const auto value =
+            read_integer(reader.document, node, what, static_cast<int64_t>(setting.minimum),
+                         static_cast<int64_t>(setting.maximum), reader.diagnostics)) {
       out.integer = *value;
       return true;
     }
     return false;
   case SettingType::real:
-    if (const auto value =
-            read_number(reader.document, node, what, setting.minimum, setting.maximum, reader.diagnostics)) {
+    if (const auto value = read_number(reader.document, node, what, setting.minimum,
+                                       setting.maximum, reader.diagnostics)) {
       out.real = *value;
       return true;
     }
@@ -139,9 +141,9 @@ void read_pass_settings(GraphReader& reader, ObjectReader& pass, PassDeclaration
       reader
           .error(DiagnosticId::unknown_pass_setting, reader.document.where_key(node),
                  fmt::format("{} is of type '{}', which has {}", pass.what(), type.name,
-                             names.empty()
-                                 ? fmt::format("no settings; '{}' is unknown", name)
-                                 : fmt::format("no setting '{}'; expected {}", name, list_words(names))))
+                             names.empty() ? fmt::format("no settings; '{}' is unknown", name)
+                                           : fmt::format("no setting '{}'; expected {}", name,
+                                                         list_words(names))))
           .suggestion = did_you_mean(name, names);
       continue;
     }
@@ -150,8 +152,8 @@ void read_pass_settings(GraphReader& reader, ObjectReader& pass, PassDeclaration
     SettingBinding binding;
     binding.setting = static_cast<uint32_t>(index);
     binding.where = reader.document.where(node);
-    const bool reference =
-        reader.document[node].kind == NodeKind::string && reader.document.text(node).substr(0, 1) == "$";
+    const bool reference = reader.document[node].kind == NodeKind::string &&
+                           reader.document.text(node).substr(0, 1) == "$";
     if (reference ? read_reference(reader, node, what, setting, binding)
                   : read_literal(reader, node, what, setting, binding.literal)) {
       out.settings.push_back(binding);

@@ -29,7 +29,8 @@ bool updates(const GraphReader& reader, const PassDeclaration& pass, const PortB
 
 bool reads_now(std::span<const PortBinding> reads, const PortBinding& written) {
   return std::any_of(reads.begin(), reads.end(), [&](const PortBinding& one) {
-    return one.resource == written.resource && one.frames_back == 0 && overlap(one.range, written.range);
+    return one.resource == written.resource && one.frames_back == 0 &&
+           overlap(one.range, written.range);
   });
 }
 
@@ -38,7 +39,8 @@ void check_written_once(GraphReader& reader, const PassDeclaration& pass) {
   const auto writes = reader.graph.writes(pass);
   for (size_t i = 0; i < writes.size(); ++i) {
     for (size_t j = 0; j < i; ++j) {
-      if (writes[i].resource != writes[j].resource || !overlap(writes[i].range, writes[j].range)) continue;
+      if (writes[i].resource != writes[j].resource || !overlap(writes[i].range, writes[j].range))
+        continue;
       reader
           .error(DiagnosticId::two_producers, reader.graph.place_of(writes[i]),
                  fmt::format("pass '{}' writes '{}' through two ports", pass.name,
@@ -54,12 +56,13 @@ void collect(GraphReader& reader, PassId id, std::vector<Producers>& all) {
   for (const PortBinding& binding : reader.graph.writes(pass)) {
     Producers& producers = all[binding.resource.value];
     const ResourceDeclaration& resource = reader.graph.resources[binding.resource.value];
-    const bool continues = updates(reader, pass, binding) || reads_now(reader.graph.reads(pass), binding);
+    const bool continues =
+        updates(reader, pass, binding) || reads_now(reader.graph.reads(pass), binding);
     producers.any = true;
     if (continues) continue;
     producers.fresh = true;
-    // Two producers are no error if one has a `when`, since they may exclude each other, or if its port is
-    // unknown, since that port may update the earlier contents.
+    // Two producers are no error if one has a `when`, since they may exclude each other, or if its
+    // port is unknown, since that port may update the earlier contents.
     const bool sometimes = reader.document.find(reader.pass_nodes[id.value], "when").valid();
     // The compiler checks ranges of images, because it knows how many mips and layers there are.
     if (sometimes || binding.port == unknown_port || resource.origin == Origin::imported ||
@@ -71,8 +74,9 @@ void collect(GraphReader& reader, PassId id, std::vector<Producers>& all) {
       const std::string& earlier = reader.graph.passes[producers.first.pass.value].name;
       reader
           .error(DiagnosticId::two_producers, reader.graph.place_of(binding),
-                 fmt::format("passes '{}' and '{}' both write '{}', and '{}' does not read what '{}' wrote",
-                             earlier, pass.name, resource.name, pass.name, earlier))
+                 fmt::format(
+                     "passes '{}' and '{}' both write '{}', and '{}' does not read what '{}' wrote",
+                     earlier, pass.name, resource.name, pass.name, earlier))
           .related.emplace_back(producers.first.where, fmt::format("'{}' writes it here", earlier));
     }
   }
@@ -82,7 +86,8 @@ void require_producer(GraphReader& reader, std::vector<Producers>& all, Resource
                       const SourceLocation& where, const std::string& who) {
   const ResourceDeclaration& resource = reader.graph.resources[id.value];
   Producers& producers = all[id.value];
-  if (resource.origin == Origin::imported || producers.fresh || reader.broken_resources[id.value]) return;
+  if (resource.origin == Origin::imported || producers.fresh || reader.broken_resources[id.value])
+    return;
   reader
       .error(DiagnosticId::no_producer, where,
              fmt::format("{} '{}', which {}", who, resource.name,
@@ -99,7 +104,8 @@ bool overlap(const ImageRange& a, const ImageRange& b) {
     return count != 0 && first + count <= other;
   };
   return !apart(a.first_mip, a.mips, b.first_mip) && !apart(b.first_mip, b.mips, a.first_mip) &&
-         !apart(a.first_layer, a.layers, b.first_layer) && !apart(b.first_layer, b.layers, a.first_layer);
+         !apart(a.first_layer, a.layers, b.first_layer) &&
+         !apart(b.first_layer, b.layers, a.first_layer);
 }
 
 void check_producers(GraphReader& reader) {

@@ -33,8 +33,9 @@ bool read_need(GraphReader& reader, NodeId node, const std::string& what, Option
     for (const std::string_view name : names_of(reader.resource_names))
       words.push_back(name);
     reader
-        .error(DiagnosticId::bad_option_requires, where,
-               fmt::format("{} is '{}', which is neither a device feature nor an import", what, *word))
+        .error(
+            DiagnosticId::bad_option_requires, where,
+            fmt::format("{} is '{}', which is neither a device feature nor an import", what, *word))
         .suggestion = did_you_mean(*word, words);
     return false;
   }
@@ -52,9 +53,10 @@ bool read_need(GraphReader& reader, NodeId node, const std::string& what, Option
 
 bool read_option_needs(GraphReader& reader, NodeId entry, SettingDeclaration& setting) {
   const std::string_view key = reader.document.key(entry);
-  const std::string what = fmt::format("a requirement of the option '{}' of setting '{}'", key, setting.name);
-  if (!expect_kind(reader.document, entry, fmt::format("'requires' of the option '{}'", key), NodeKind::array,
-                   reader.diagnostics))
+  const std::string what =
+      fmt::format("a requirement of the option '{}' of setting '{}'", key, setting.name);
+  if (!expect_kind(reader.document, entry, fmt::format("'requires' of the option '{}'", key),
+                   NodeKind::array, reader.diagnostics))
     return false;
   const auto option = std::find(setting.options.begin(), setting.options.end(), key);
   if (option == setting.options.end()) {
@@ -62,9 +64,10 @@ bool read_option_needs(GraphReader& reader, NodeId entry, SettingDeclaration& se
       (void)read_string(reader.document, node, what, reader.diagnostics);
     const std::vector<std::string_view> words(setting.options.begin(), setting.options.end());
     reader
-        .error(DiagnosticId::bad_option_requires, reader.document.where_key(entry),
-               fmt::format("'requires' of setting '{}' names '{}', which is not one of its options {}",
-                           setting.name, key, list_words(words)))
+        .error(
+            DiagnosticId::bad_option_requires, reader.document.where_key(entry),
+            fmt::format("'requires' of setting '{}' names '{}', which is not one of its options {}",
+                        setting.name, key, list_words(words)))
         .suggestion = did_you_mean(key, words);
     return false;
   }
@@ -85,12 +88,14 @@ void read_option_requirements(GraphReader& reader) {
     bool ok = true;
     for (const NodeId entry : children(reader.document, node))
       ok &= read_option_needs(reader, entry, setting);
-    const auto free = [](const OptionNeeds& needs) { return needs.features == 0 && needs.imports.empty(); };
+    const auto free = [](const OptionNeeds& needs) {
+      return needs.features == 0 && needs.imports.empty();
+    };
     if (!ok || std::any_of(setting.needs.begin(), setting.needs.end(), free)) continue;
-    reader.error(
-        DiagnosticId::bad_option_requires, reader.document.where_key(node),
-        fmt::format("every option of setting '{}' has requirements; at least one option must require nothing",
-                    setting.name));
+    reader.error(DiagnosticId::bad_option_requires, reader.document.where_key(node),
+                 fmt::format("every option of setting '{}' has requirements; at least one option "
+                             "must require nothing",
+                             setting.name));
   }
 }
 

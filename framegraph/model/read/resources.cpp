@@ -55,10 +55,10 @@ bool read_formats(GraphReader& reader, ObjectReader& object, FormatList& out) {
 // Reads "round" and "align", which may accompany "size" or "count".
 void read_rounding(ObjectReader& object, SizeExpression& size) {
   constexpr std::string_view words[] = {"ceil", "floor"};
-  size.rounding =
-      object.word("round", words, Need::optional).value_or(0) == 0 ? Rounding::ceil : Rounding::floor;
-  size.align =
-      static_cast<uint32_t>(object.integer("align", 1, limits::image_side, Need::optional).value_or(1));
+  size.rounding = object.word("round", words, Need::optional).value_or(0) == 0 ? Rounding::ceil
+                                                                               : Rounding::floor;
+  size.align = static_cast<uint32_t>(
+      object.integer("align", 1, limits::image_side, Need::optional).value_or(1));
 }
 
 // Returns false after an error. A buffer as base is an error.
@@ -71,8 +71,8 @@ bool read_size(GraphReader& reader, ObjectReader& object, std::string_view key, 
   const std::string what = fmt::format("'{}' of {}", key, object.what());
   const bool count = key == "count";
   if (!count)
-    rounding.border =
-        static_cast<uint32_t>(object.integer("border", 0, limits::image_border, Need::optional).value_or(0));
+    rounding.border = static_cast<uint32_t>(
+        object.integer("border", 0, limits::image_border, Need::optional).value_or(0));
   const auto find = [&](std::string_view name) {
     return find_resource(reader, name, what, reader.document.where(node));
   };
@@ -92,7 +92,8 @@ bool read_size(GraphReader& reader, ObjectReader& object, std::string_view key, 
   return false;
 }
 
-bool read_history(GraphReader& reader, ObjectReader& object, ResourceType type, HistoryDeclaration& out) {
+bool read_history(GraphReader& reader, ObjectReader& object, ResourceType type,
+                  HistoryDeclaration& out) {
   const NodeId node = object.object("history", Need::optional);
   if (!node.valid()) return object.ok();
   ObjectReader history(reader.document, node, fmt::format("the history of {}", object.what()),
@@ -100,22 +101,26 @@ bool read_history(GraphReader& reader, ObjectReader& object, ResourceType type, 
   constexpr std::string_view first[] = {"discard", "clear"};
   constexpr std::string_view on_cut[] = {"invalidate", "keep"};
   constexpr std::string_view on_resize[] = {"invalidate", "rescale"};
-  out.frames = static_cast<uint32_t>(history.integer("frames", 1, limits::history_frames).value_or(1));
-  out.first =
-      static_cast<HistoryDeclaration::First>(history.word("first", first, Need::optional).value_or(0));
-  out.on_cut =
-      static_cast<HistoryDeclaration::OnCut>(history.word("on_cut", on_cut, Need::optional).value_or(0));
+  out.frames =
+      static_cast<uint32_t>(history.integer("frames", 1, limits::history_frames).value_or(1));
+  out.first = static_cast<HistoryDeclaration::First>(
+      history.word("first", first, Need::optional).value_or(0));
+  out.on_cut = static_cast<HistoryDeclaration::OnCut>(
+      history.word("on_cut", on_cut, Need::optional).value_or(0));
   out.on_resize = static_cast<HistoryDeclaration::OnResize>(
       history.word("on_resize", on_resize, Need::optional).value_or(0));
   if (!history.finish()) return false;
-  if (out.on_resize != HistoryDeclaration::OnResize::rescale || type == ResourceType::image) return true;
-  reader.error(DiagnosticId::bad_history, reader.document.where(reader.document.find(node, "on_resize")),
+  if (out.on_resize != HistoryDeclaration::OnResize::rescale || type == ResourceType::image)
+    return true;
+  reader.error(DiagnosticId::bad_history,
+               reader.document.where(reader.document.find(node, "on_resize")),
                fmt::format("{} declares \"rescale\", which only images support", history.what()));
   return false;
 }
 
 bool read_buffer(GraphReader& reader, NodeId node, ResourceId id, ResourceDeclaration& out) {
-  ObjectReader buffer(reader.document, node, fmt::format("buffer '{}'", out.name), reader.diagnostics);
+  ObjectReader buffer(reader.document, node, fmt::format("buffer '{}'", out.name),
+                      reader.diagnostics);
   if (!buffer.ok()) return false;
   // Storage buffers are arrays of 32-bit words (vkCmdFillBuffer clears in units of 4 bytes).
   constexpr uint32_t word = 4;
@@ -123,15 +128,16 @@ bool read_buffer(GraphReader& reader, NodeId node, ResourceId id, ResourceDeclar
   bool ok = stride.has_value();
   if (stride && *stride % word != 0) {
     ok = false;
-    reader.error(
-        DiagnosticId::out_of_range, reader.document.where(reader.document.find(node, "stride")),
-        fmt::format("'stride' of {} is {}; it must be a multiple of {}", buffer.what(), *stride, word));
+    reader.error(DiagnosticId::out_of_range,
+                 reader.document.where(reader.document.find(node, "stride")),
+                 fmt::format("'stride' of {} is {}; it must be a multiple of {}", buffer.what(),
+                             *stride, word));
   }
   out.stride = static_cast<uint32_t>(stride.value_or(word));
   // hosts may bind any number
   const bool minimum = out.origin != Origin::imported || buffer.has("count");
-  out.extra_elements =
-      static_cast<uint64_t>(buffer.integer("extra", 0, limits::buffer_elements, Need::optional).value_or(0));
+  out.extra_elements = static_cast<uint64_t>(
+      buffer.integer("extra", 0, limits::buffer_elements, Need::optional).value_or(0));
   if (minimum)
     ok &= read_size(reader, buffer, "count", id, out.size);
   else
@@ -139,7 +145,8 @@ bool read_buffer(GraphReader& reader, NodeId node, ResourceId id, ResourceDeclar
   return buffer.finish() && ok;
 }
 
-bool read_image(GraphReader& reader, ObjectReader& object, ResourceId id, ResourceDeclaration& out) {
+bool read_image(GraphReader& reader, ObjectReader& object, ResourceId id,
+                ResourceDeclaration& out) {
   bool ok = read_formats(reader, object, out.formats);
   ok &= read_size(reader, object, "size", id, out.size);
   if (out.origin == Origin::imported) return ok;
@@ -148,20 +155,22 @@ bool read_image(GraphReader& reader, ObjectReader& object, ResourceId id, Resour
     constexpr std::string_view full[] = {"full"};
     if (object.word("mips", full)) out.mips = 0;
   } else {
-    out.mips =
-        static_cast<uint32_t>(object.integer("mips", 1, limits::image_mips, Need::optional).value_or(1));
+    out.mips = static_cast<uint32_t>(
+        object.integer("mips", 1, limits::image_mips, Need::optional).value_or(1));
   }
-  out.layers =
-      static_cast<uint32_t>(object.integer("layers", 1, limits::image_layers, Need::optional).value_or(1));
+  out.layers = static_cast<uint32_t>(
+      object.integer("layers", 1, limits::image_layers, Need::optional).value_or(1));
   return ok;
 }
 
-bool read_acceleration_structure(GraphReader& reader, ObjectReader& object, const ResourceDeclaration& out) {
+bool read_acceleration_structure(GraphReader& reader, ObjectReader& object,
+                                 const ResourceDeclaration& out) {
   constexpr std::string_view levels[] = {"top_level"};
   const bool ok = object.word("acceleration_structure", levels).has_value();
   if (out.origin == Origin::imported) return ok;
-  reader.error(DiagnosticId::not_imported, out.where,
-               fmt::format("'{}' is an acceleration structure, which a graph cannot own", out.name));
+  reader.error(
+      DiagnosticId::not_imported, out.where,
+      fmt::format("'{}' is an acceleration structure, which a graph cannot own", out.name));
   return false;
 }
 
@@ -169,7 +178,8 @@ bool read_resource(GraphReader& reader, ResourceId id) {
   ResourceDeclaration& out = reader.graph.resources[id.value];
   const NodeId node = reader.resource_nodes[id.value];
   const bool import = out.origin == Origin::imported;
-  ObjectReader object(reader.document, node, fmt::format("{} '{}'", import ? "import" : "resource", out.name),
+  ObjectReader object(reader.document, node,
+                      fmt::format("{} '{}'", import ? "import" : "resource", out.name),
                       reader.diagnostics);
   if (!object.ok()) return false;
   bool ok = true;
@@ -205,8 +215,9 @@ void declare_resources(GraphReader& reader, NodeId list, Origin origin) {
   if (!list.valid()) return;
   const std::vector<NodeId> nodes = children(reader.document, list);
   if (reader.graph.resources.size() + nodes.size() > limits::resources) {
-    reader.error(DiagnosticId::limit_exceeded, reader.document.where(list),
-                 fmt::format("the graph has more than {} imports and resources", limits::resources));
+    reader.error(
+        DiagnosticId::limit_exceeded, reader.document.where(list),
+        fmt::format("the graph has more than {} imports and resources", limits::resources));
     reader.unknown_resources = true;
     return;
   }
@@ -219,7 +230,8 @@ void declare_resources(GraphReader& reader, NodeId list, Origin origin) {
       declared.type = ResourceType::buffer;
     else if (reader.document.find(node, "acceleration_structure").valid())
       declared.type = ResourceType::acceleration_structure;
-    bool ok = check_name(declared.name, "the name of a resource", declared.where, reader.diagnostics);
+    bool ok =
+        check_name(declared.name, "the name of a resource", declared.where, reader.diagnostics);
     if (declared.name == "view") {
       ok = false;
       reader.error(DiagnosticId::bad_name, declared.where,
@@ -252,18 +264,21 @@ void read_exports(GraphReader& reader, NodeId exports) {
   bool all_known = exports.valid();
   for (NodeId node : exports.valid() ? children(reader.document, exports) : std::vector<NodeId>()) {
     const SourceLocation where = reader.document.where(node);
-    const auto name = read_string(reader.document, node, "an entry of 'exports'", reader.diagnostics);
+    const auto name =
+        read_string(reader.document, node, "an entry of 'exports'", reader.diagnostics);
     const ResourceId id = name ? find_resource(reader, *name, "'exports'", where) : ResourceId();
     all_known &= id.valid();
     if (!id.valid()) continue;
     ResourceDeclaration& resource = reader.graph.resources[id.value];
     if (const auto [first, added] = seen.emplace(id, node); !added) {
-      reader.error(DiagnosticId::duplicate_name, where, fmt::format("'{}' is exported twice", *name))
+      reader
+          .error(DiagnosticId::duplicate_name, where, fmt::format("'{}' is exported twice", *name))
           .related.emplace_back(reader.document.where(first->second), "first exported here");
     } else if (resource.type != ResourceType::image) {
       reader
           .error(DiagnosticId::bad_export, where,
-                 fmt::format("'{}' is {}; only images can be exported", *name, type_phrase(resource.type)))
+                 fmt::format("'{}' is {}; only images can be exported", *name,
+                             type_phrase(resource.type)))
           .related.emplace_back(resource.where, fmt::format("'{}' is declared here", *name));
     }
     resource.exported = true;
@@ -272,10 +287,11 @@ void read_exports(GraphReader& reader, NodeId exports) {
   for (uint32_t i = 0; i < reader.graph.resources.size(); ++i) {
     const ResourceDeclaration& resource = reader.graph.resources[i];
     if (!resource.optional || resource.exported || resource.origin == Origin::imported) continue;
-    reader.error(DiagnosticId::bad_export,
-                 reader.document.where(reader.document.find(reader.resource_nodes[i], "optional")),
-                 fmt::format("resource '{}' is optional, but not exported, so the host never binds it",
-                             resource.name));
+    reader.error(
+        DiagnosticId::bad_export,
+        reader.document.where(reader.document.find(reader.resource_nodes[i], "optional")),
+        fmt::format("resource '{}' is optional, but not exported, so the host never binds it",
+                    resource.name));
   }
 }
 

@@ -24,27 +24,27 @@ constexpr double max_real = std::numeric_limits<float>::max();
 
 // Checks minimum <= value <= maximum. The numbers are already valid individually.
 template <class Number>
-bool check_range(GraphReader& reader, const ObjectReader& object, std::string_view key, Number minimum,
-                 Number maximum, Number value) {
+bool check_range(GraphReader& reader, const ObjectReader& object, std::string_view key,
+                 Number minimum, Number maximum, Number value) {
   const auto where = [&](std::string_view which) {
     return reader.document.where(reader.document.find(object.node(), which));
   };
   if (minimum > maximum) {
     reader
         .error(DiagnosticId::setting_range, where("max"),
-               fmt::format("{} has the maximum {}, which is less than its minimum {}", object.what(), maximum,
-                           minimum))
+               fmt::format("{} has the maximum {}, which is less than its minimum {}",
+                           object.what(), maximum, minimum))
         .related.emplace_back(where("min"), "the minimum is declared here");
     return false;
   }
   if (value >= minimum && value <= maximum) return true;
   reader
       .error(DiagnosticId::setting_range, where(key),
-             fmt::format("the default of {} is {}, outside its own range {} .. {}", object.what(), value,
-                         minimum, maximum))
-      .related.emplace_back(where(value < minimum ? "min" : "max"), value < minimum
-                                                                        ? "the minimum is declared here"
-                                                                        : "the maximum is declared here");
+             fmt::format("the default of {} is {}, outside its own range {} .. {}", object.what(),
+                         value, minimum, maximum))
+      .related.emplace_back(where(value < minimum ? "min" : "max"),
+                            value < minimum ? "the minimum is declared here"
+                                            : "the maximum is declared here");
   return false;
 }
 
@@ -70,7 +70,8 @@ bool read_real_setting(GraphReader& reader, ObjectReader& object, SettingDeclara
   return check_range(reader, object, "real", *minimum, *maximum, *value);
 }
 
-bool read_default(GraphReader& reader, ObjectReader& object, std::string_view key, SettingDeclaration& out) {
+bool read_default(GraphReader& reader, ObjectReader& object, std::string_view key,
+                  SettingDeclaration& out) {
   const auto word = object.string("default", Need::optional);
   out.default_value = {out.type, 0, 0.0};
   if (!word) return object.ok();
@@ -78,10 +79,11 @@ bool read_default(GraphReader& reader, ObjectReader& object, std::string_view ke
   out.default_value.integer = found - out.options.begin();
   if (found != out.options.end()) return true;
   const std::vector<std::string_view> words(out.options.begin(), out.options.end());
-  Diagnostic& one = reader.error(DiagnosticId::setting_range,
-                                 reader.document.where(reader.document.find(object.node(), "default")),
-                                 fmt::format("the default of {} is '{}', which is not one of its options {}",
-                                             object.what(), *word, list_words(words)));
+  Diagnostic& one =
+      reader.error(DiagnosticId::setting_range,
+                   reader.document.where(reader.document.find(object.node(), "default")),
+                   fmt::format("the default of {} is '{}', which is not one of its options {}",
+                               object.what(), *word, list_words(words)));
   one.suggestion = did_you_mean(*word, words);
   one.related.emplace_back(reader.document.where(reader.document.find(object.node(), key)),
                            "the options are listed here");
@@ -89,17 +91,19 @@ bool read_default(GraphReader& reader, ObjectReader& object, std::string_view ke
 }
 
 // Reads a name or a whole number such as "25". Options are always quoted.
-std::optional<std::string_view> read_option(GraphReader& reader, NodeId node, std::string_view what) {
+std::optional<std::string_view> read_option(GraphReader& reader, NodeId node,
+                                            std::string_view what) {
   const auto text = read_string(reader.document, node, what, reader.diagnostics);
   if (!text) return std::nullopt;
   const bool number = !text->empty() && text->size() <= limits::name_bytes &&
                       text->find_first_not_of("0123456789") == std::string_view::npos;
-  if (number || check_name(*text, what, reader.document.where(node), reader.diagnostics)) return text;
+  if (number || check_name(*text, what, reader.document.where(node), reader.diagnostics))
+    return text;
   return std::nullopt;
 }
 
-void read_options(GraphReader& reader, ObjectReader& object, std::string_view key, SettingDeclaration& out,
-                  bool& ok) {
+void read_options(GraphReader& reader, ObjectReader& object, std::string_view key,
+                  SettingDeclaration& out, bool& ok) {
   object.any("default"); // marks the key as known, even if reading fails below
   const NodeId list = object.array(key, 1, limits::options);
   if (!list.valid()) return;
@@ -126,17 +130,20 @@ void report_untyped(GraphReader& reader, const ObjectReader& object) {
                                        object.what(), list_words(type_keys));
   for (const NodeId child : children(reader.document, object.node())) {
     const std::string_view key = reader.document.key(child);
-    const bool known = std::find(std::begin(other_keys), std::end(other_keys), key) != std::end(other_keys);
+    const bool known =
+        std::find(std::begin(other_keys), std::end(other_keys), key) != std::end(other_keys);
     const std::string suggestion = known ? std::string() : did_you_mean(key, type_keys);
     if (suggestion.empty()) continue;
-    reader.error(DiagnosticId::unknown_key, reader.document.where_key(child), text).suggestion = suggestion;
+    reader.error(DiagnosticId::unknown_key, reader.document.where_key(child), text).suggestion =
+        suggestion;
     return;
   }
   reader.error(DiagnosticId::missing_key, reader.document.where(object.node()), text);
 }
 
 bool read_setting(GraphReader& reader, NodeId node, SettingId id, SettingDeclaration& out) {
-  ObjectReader object(reader.document, node, fmt::format("setting '{}'", out.name), reader.diagnostics);
+  ObjectReader object(reader.document, node, fmt::format("setting '{}'", out.name),
+                      reader.diagnostics);
   if (!object.ok()) return false;
   size_t found = std::size(type_keys);
   for (size_t i = 0; i < std::size(type_keys); ++i) {
@@ -186,9 +193,9 @@ void read_settings(GraphReader& reader, NodeId settings) {
   if (!settings.valid()) return;
   const std::vector<NodeId> nodes = children(reader.document, settings);
   if (nodes.size() > limits::settings) {
-    reader.error(
-        DiagnosticId::limit_exceeded, reader.document.where(settings),
-        fmt::format("the graph has {} settings; at most {} are allowed", nodes.size(), limits::settings));
+    reader.error(DiagnosticId::limit_exceeded, reader.document.where(settings),
+                 fmt::format("the graph has {} settings; at most {} are allowed", nodes.size(),
+                             limits::settings));
     reader.unknown_settings = true;
     return;
   }

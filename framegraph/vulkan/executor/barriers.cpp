@@ -24,8 +24,8 @@ bool is_depth_only(VkImageLayout layout) {
 VkImageAspectFlags host_aspects(const Device& device, Format format, const HostImage& host) {
   const VkImageAspectFlags all = barrier_aspects(format);
   if ((all & VK_IMAGE_ASPECT_STENCIL_BIT) == 0) return all;
-  const bool separate =
-      device.separate_depth_stencil || is_depth_only(host.before.layout) || is_depth_only(host.after.layout);
+  const bool separate = device.separate_depth_stencil || is_depth_only(host.before.layout) ||
+                        is_depth_only(host.after.layout);
   return separate ? VkImageAspectFlags{VK_IMAGE_ASPECT_DEPTH_BIT} : all;
 }
 
@@ -92,7 +92,8 @@ bool is_redundant(const PlanBarrier& barrier, const Scopes& s) {
 // image, including mips and layers that the plan does not know.
 VkImageSubresourceRange subresources(const PlanResource& resource, const SubresourceRange& range) {
   const VkImageAspectFlags aspects = barrier_aspects(resource.format);
-  if (range == resource.whole()) return {aspects, 0, VK_REMAINING_MIP_LEVELS, 0, VK_REMAINING_ARRAY_LAYERS};
+  if (range == resource.whole())
+    return {aspects, 0, VK_REMAINING_MIP_LEVELS, 0, VK_REMAINING_ARRAY_LAYERS};
   return {aspects, range.first_mip, range.mips, range.first_layer, range.layers};
 }
 
@@ -112,7 +113,8 @@ VkImageMemoryBarrier2 image_barrier(VkImage image, VkImageAspectFlags aspects, c
 }
 
 // Restricts the barrier to the layers that the host binds.
-VkImageMemoryBarrier2 host_barrier(const HostImage& host, VkImageAspectFlags aspects, const Scopes& s) {
+VkImageMemoryBarrier2 host_barrier(const HostImage& host, VkImageAspectFlags aspects,
+                                   const Scopes& s) {
   VkImageMemoryBarrier2 out = image_barrier(host.image, aspects, s);
   out.subresourceRange.baseArrayLayer = host.first_layer;
   if (host.layers > 0) out.subresourceRange.layerCount = host.layers;
@@ -166,8 +168,8 @@ struct AliasBarrier {
   void add(Scopes& s) {
     if (s.source_stages == 0) return;
     if (s.source_access == 0)
-      s.source_access =
-          s.source_stages == compute ? VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT : VK_ACCESS_2_MEMORY_WRITE_BIT;
+      s.source_access = s.source_stages == compute ? VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT
+                                                   : VK_ACCESS_2_MEMORY_WRITE_BIT;
     scopes.source_stages |= s.source_stages;
     scopes.source_access |= s.source_access;
     scopes.destination_stages |= s.destination_stages;
@@ -197,7 +199,8 @@ void global_barrier(const State& state, VkCommandBuffer commands, const VkMemory
   state.commands->vkCmdPipelineBarrier2(commands, &info);
 }
 
-void record_alias_barrier(const State& state, VkCommandBuffer commands, AliasBarrier& alias_barrier) {
+void record_alias_barrier(const State& state, VkCommandBuffer commands,
+                          AliasBarrier& alias_barrier) {
   alias_barrier.scopes.destination_stages = all_commands;
   alias_barrier.scopes.destination_access = all_memory;
   if (alias_barrier.needed()) global_barrier(state, commands, memory_barrier(alias_barrier.scopes));
@@ -205,13 +208,13 @@ void record_alias_barrier(const State& state, VkCommandBuffer commands, AliasBar
 }
 
 // Adds a barrier for the resource that the host binds to the slot.
-void add_host_barrier(State& state, const FrameInput& frame, const PlanResource& resource, const Scopes& s,
-                      Batch& batch) {
+void add_host_barrier(State& state, const FrameInput& frame, const PlanResource& resource,
+                      const Scopes& s, Batch& batch) {
   const auto slot = static_cast<size_t>(resource.slot);
   switch (resource.type) {
   case ResourceType::image:
-    state.image_barriers[batch.images++] =
-        host_barrier(frame.images[slot], host_aspects(*state.device, resource.format, frame.images[slot]), s);
+    state.image_barriers[batch.images++] = host_barrier(
+        frame.images[slot], host_aspects(*state.device, resource.format, frame.images[slot]), s);
     break;
   case ResourceType::buffer:
     state.buffer_barriers[batch.buffers++] = host_barrier(frame.buffers[slot], s);
@@ -224,7 +227,8 @@ void add_host_barrier(State& state, const FrameInput& frame, const PlanResource&
 
 } // namespace
 
-uint32_t instance_of(const State& state, const PlanResource& resource, uint32_t frames_back) noexcept {
+uint32_t instance_of(const State& state, const PlanResource& resource,
+                     uint32_t frames_back) noexcept {
   const uint32_t count = resource.instance_count;
   const auto phase = static_cast<uint32_t>(state.frame_counter % count);
   return resource.first_instance + (phase + count - frames_back % count) % count;
@@ -268,10 +272,15 @@ void record_barriers(State& state, const FrameInput& frame, uint32_t first, uint
     else
       ++batch.buffers;
   }
-  if (alias_barrier.needed()) state.memory_barriers[batch.memory++] = memory_barrier(alias_barrier.scopes);
+  if (alias_barrier.needed())
+    state.memory_barriers[batch.memory++] = memory_barrier(alias_barrier.scopes);
   // Only the shader knows that it does not write to an unbound port, so its accesses are ordered.
-  constexpr Scopes in_order{
-      compute, compute, shader_write, shader_write, VK_IMAGE_LAYOUT_GENERAL, VK_IMAGE_LAYOUT_GENERAL};
+  constexpr Scopes in_order{compute,
+                            compute,
+                            shader_write,
+                            shader_write,
+                            VK_IMAGE_LAYOUT_GENERAL,
+                            VK_IMAGE_LAYOUT_GENERAL};
   for (const uint32_t index : writable_placeholders) {
     const Placeholder& placeholder = state.placeholders[index];
     if (placeholder.image != VK_NULL_HANDLE)
@@ -285,8 +294,8 @@ void record_barriers(State& state, const FrameInput& frame, uint32_t first, uint
 
 void record_memory_acquire(State& state, const FrameInput& frame) noexcept {
   global_barrier(state, frame.command_buffer,
-                 {VK_STRUCTURE_TYPE_MEMORY_BARRIER_2, nullptr, all_commands, VK_ACCESS_2_MEMORY_WRITE_BIT,
-                  all_commands, all_memory});
+                 {VK_STRUCTURE_TYPE_MEMORY_BARRIER_2, nullptr, all_commands,
+                  VK_ACCESS_2_MEMORY_WRITE_BIT, all_commands, all_memory});
 }
 
 void record_counters_in_order(State& state, const FrameInput& frame) noexcept {
@@ -299,15 +308,17 @@ void record_counters_in_order(State& state, const FrameInput& frame) noexcept {
 void record_counters_to_host(State& state, const FrameInput& frame) noexcept {
   if (state.environment.counters_bytes == 0) return;
   global_barrier(state, frame.command_buffer,
-                 {VK_STRUCTURE_TYPE_MEMORY_BARRIER_2, nullptr, compute, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT,
-                  VK_PIPELINE_STAGE_2_HOST_BIT, VK_ACCESS_2_HOST_READ_BIT});
+                 {VK_STRUCTURE_TYPE_MEMORY_BARRIER_2, nullptr, compute,
+                  VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT, VK_PIPELINE_STAGE_2_HOST_BIT,
+                  VK_ACCESS_2_HOST_READ_BIT});
 }
 
 namespace {
 
 // Records releases and acquires. The host's layouts do not change.
 template <class Pick>
-void record_transfers(State& state, const FrameInput& frame, bool acquire, const Scopes& scopes, Pick pick) {
+void record_transfers(State& state, const FrameInput& frame, bool acquire, const Scopes& scopes,
+                      Pick pick) {
   Batch batch;
   const uint32_t own = state.device->queue_family;
   for (size_t slot = 0; slot < state.slot_resource.size(); ++slot) {
@@ -339,7 +350,8 @@ void record_acquires(State& state, const FrameInput& frame) noexcept {
 }
 
 void record_releases(State& state, const FrameInput& frame) noexcept {
-  record_transfers(state, frame, false, {all_commands, 0, VK_ACCESS_2_MEMORY_WRITE_BIT, 0, kept, kept},
+  record_transfers(state, frame, false,
+                   {all_commands, 0, VK_ACCESS_2_MEMORY_WRITE_BIT, 0, kept, kept},
                    [](const HostStates& states) { return states.after; });
 }
 

@@ -7,8 +7,8 @@ namespace dermis::vulkan {
 namespace {
 
 constexpr VkClearColorValue zero{};
-constexpr VkImageSubresourceRange whole_image{VK_IMAGE_ASPECT_COLOR_BIT, 0, VK_REMAINING_MIP_LEVELS, 0,
-                                              VK_REMAINING_ARRAY_LAYERS};
+constexpr VkImageSubresourceRange whole_image{VK_IMAGE_ASPECT_COLOR_BIT, 0, VK_REMAINING_MIP_LEVELS,
+                                              0, VK_REMAINING_ARRAY_LAYERS};
 
 // Waits for all commands, because earlier frames may still use the memory and any later command may
 // use the zeros. Clears are rare.
@@ -26,14 +26,16 @@ void record_barrier(const FunctionTable& vk, VkCommandBuffer commands, const Tar
   image.sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2;
   image.srcStageMask =
       before_clear ? VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT : VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT;
-  image.srcAccessMask = before_clear ? VK_ACCESS_2_MEMORY_WRITE_BIT : VK_ACCESS_2_TRANSFER_WRITE_BIT;
+  image.srcAccessMask =
+      before_clear ? VK_ACCESS_2_MEMORY_WRITE_BIT : VK_ACCESS_2_TRANSFER_WRITE_BIT;
   image.dstStageMask = before_clear && target.clear ? VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT
                                                     : VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
   image.dstAccessMask = before_clear && target.clear
                             ? VK_ACCESS_2_TRANSFER_WRITE_BIT
                             : VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT;
   image.oldLayout = before_clear ? VK_IMAGE_LAYOUT_UNDEFINED : VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL;
-  image.newLayout = before_clear && target.clear ? VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL : target.layout;
+  image.newLayout =
+      before_clear && target.clear ? VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL : target.layout;
   image.srcQueueFamilyIndex = image.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
   image.image = target.image;
   image.subresourceRange = target.range;
@@ -61,7 +63,8 @@ void initialise(const FunctionTable& vk, VkCommandBuffer commands, const Target&
   if (target.image != VK_NULL_HANDLE)
     vk.vkCmdClearColorImage(commands, target.image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, &zero, 1,
                             &target.range);
-  if (target.buffer != VK_NULL_HANDLE) vk.vkCmdFillBuffer(commands, target.buffer, 0, VK_WHOLE_SIZE, 0);
+  if (target.buffer != VK_NULL_HANDLE)
+    vk.vkCmdFillBuffer(commands, target.buffer, 0, VK_WHOLE_SIZE, 0);
   record_barrier(vk, commands, target, false);
 }
 
@@ -89,7 +92,8 @@ void record_initialisation(State& state, VkCommandBuffer commands) noexcept {
                    {instance.image,
                     instance.buffer,
                     static_cast<VkImageLayout>(layout),
-                    {VK_IMAGE_ASPECT_COLOR_BIT, range.first_mip, range.mips, range.first_layer, range.layers},
+                    {VK_IMAGE_ASPECT_COLOR_BIT, range.first_mip, range.mips, range.first_layer,
+                     range.layers},
                     clear});
       }
       instance.ready = true;

@@ -17,8 +17,8 @@ Error check_input(const ExecutorInput& input) {
       input.plan == nullptr)
     return argument("device, graph, pass types and plan are required");
   if (input.frames_in_flight < 1 || input.frames_in_flight > max_frames_in_flight)
-    return argument(
-        fmt::format("{} frames in flight; expected 1 to {}", input.frames_in_flight, max_frames_in_flight));
+    return argument(fmt::format("{} frames in flight; expected 1 to {}", input.frames_in_flight,
+                                max_frames_in_flight));
   for (const PlanPass& pass : input.plan->passes)
     if (pass.queue != Queue::main)
       return {ErrorKind::unsupported, VK_SUCCESS,
@@ -28,7 +28,8 @@ Error check_input(const ExecutorInput& input) {
     return resource.first_instance == no_instance ||
            (resource.vk_usage & VK_IMAGE_USAGE_TRANSFER_DST_BIT) != 0;
   };
-  if (input.poison && !std::all_of(input.plan->resources.begin(), input.plan->resources.end(), fillable))
+  if (input.poison &&
+      !std::all_of(input.plan->resources.begin(), input.plan->resources.end(), fillable))
     return argument("poison is requested, but the plan was compiled without it");
   return {};
 }
@@ -103,20 +104,22 @@ Error check_passes(State& state, const PassTypeRegistry& pass_types) {
     const PassType& type = pass_types[planned.type];
     constexpr size_t mask_bits = 32;
     if (type.ports.size() > mask_bits)
-      return argument(fmt::format("pass type '{}' has {} ports; the port mask supports at most {}", type.name,
-                                  type.ports.size(), mask_bits));
+      return argument(fmt::format("pass type '{}' has {} ports; the port mask supports at most {}",
+                                  type.name, type.ports.size(), mask_bits));
     if (pass.kernel != no_index) {
       const Kernel& kernel = *state.kernels[pass.kernel];
       if (kernel.dispatch.domain == DispatchRule::Domain::indirect &&
           pass.ports[kernel.indirect_port].access == no_index)
-        return argument(fmt::format("pass '{}' dispatches indirectly, but its port '{}' is not bound",
-                                    pass.name, type.ports[kernel.indirect_port].name));
+        return argument(
+            fmt::format("pass '{}' dispatches indirectly, but its port '{}' is not bound",
+                        pass.name, type.ports[kernel.indirect_port].name));
       if (kernel.dispatch.domain == DispatchRule::Domain::indirect) {
         const PlanAccess& access = state.plan.accesses[pass.ports[kernel.indirect_port].access];
         pass.indirect_entries = state.plan.resources[access.resource].bytes / indirect_entry_bytes;
         if (pass.indirect_entries == 0)
-          return argument(fmt::format("the indirect arguments of pass '{}' have fewer than {} bytes",
-                                      pass.name, indirect_entry_bytes));
+          return argument(
+              fmt::format("the indirect arguments of pass '{}' have fewer than {} bytes", pass.name,
+                          indirect_entry_bytes));
       }
       continue;
     }
@@ -125,7 +128,8 @@ Error check_passes(State& state, const PassTypeRegistry& pass_types) {
       const PlanResource& resource = state.plan.resources[state.plan.accesses[a].resource];
       if (resource.type == ResourceType::image && format_info(resource.format).depth)
         return argument(fmt::format(
-            "pass '{}' clears an image with a depth format; only colour formats can be cleared", pass.name));
+            "pass '{}' clears an image with a depth format; only colour formats can be cleared",
+            pass.name));
     }
   }
   return {};
@@ -144,12 +148,15 @@ void make_slots(State& state) {
 void make_histories(State& state, const ExecutorInput& input) {
   for (const PlanHistory& history : state.plan.histories) {
     HistoryRecord& record = state.histories.emplace_back();
-    record.name = input.graph->resources[state.plan.resources[history.resource].declared.value].name;
-    invalidate_history(record,
-                       input.history == HistoryReason::valid ? HistoryReason::first_frame : input.history);
-    record.scales = can_rescale(*state.device, state.plan.resources[history.resource], history.declaration);
+    record.name =
+        input.graph->resources[state.plan.resources[history.resource].declared.value].name;
+    invalidate_history(record, input.history == HistoryReason::valid ? HistoryReason::first_frame
+                                                                     : input.history);
+    record.scales =
+        can_rescale(*state.device, state.plan.resources[history.resource], history.declaration);
     for (const PlanPass& planned : state.plan.passes)
-      for (uint32_t a = planned.first_access; a < planned.first_access + planned.access_count; ++a) {
+      for (uint32_t a = planned.first_access; a < planned.first_access + planned.access_count;
+           ++a) {
         const PlanAccess& access = state.plan.accesses[a];
         if (access.resource == history.resource && access.frames_back == 0 &&
             (access.access & all_write_access) != 0)
@@ -163,8 +170,8 @@ void reserve_for_recording(State& state) {
   size_t largest = std::max<size_t>(state.plan.final_barrier_count, state.slot_resource.size());
   size_t max_settings = 0;
   for (size_t p = 0; p < state.passes.size(); ++p)
-    largest =
-        std::max(largest, state.plan.passes[p].barrier_count + state.passes[p].writable_placeholders.size());
+    largest = std::max(largest, state.plan.passes[p].barrier_count +
+                                    state.passes[p].writable_placeholders.size());
   for (const auto& kernel : state.kernels)
     max_settings = std::max<size_t>(max_settings, kernel->push_bytes / sizeof(uint32_t));
   state.image_barriers.resize(largest);

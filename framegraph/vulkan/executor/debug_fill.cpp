@@ -43,7 +43,8 @@ bool discards(const Plan& plan, const PlanBarrier& barrier) noexcept {
   const PlanResource& resource = plan.resources[barrier.resource];
   if (resource.first_instance == no_instance) return false;
   if (resource.type == ResourceType::image) return barrier.old_layout == Layout::undefined;
-  return barrier.why == PlanBarrier::ReasonKind::first_use || barrier.why == PlanBarrier::ReasonKind::alias;
+  return barrier.why == PlanBarrier::ReasonKind::first_use ||
+         barrier.why == PlanBarrier::ReasonKind::alias;
 }
 
 void record_poison(State& state, VkCommandBuffer commands, const VkImageMemoryBarrier2& image,
@@ -57,12 +58,13 @@ void record_poison(State& state, VkCommandBuffer commands, const VkImageMemoryBa
     else
       value.float32[i] = std::numeric_limits<float>::quiet_NaN();
   record(state, commands, &before, nullptr);
-  state.commands->vkCmdClearColorImage(commands, image.image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, &value, 1,
-                                       &image.subresourceRange);
+  state.commands->vkCmdClearColorImage(commands, image.image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
+                                       &value, 1, &image.subresourceRange);
   record(state, commands, &after, nullptr);
 }
 
-void record_poison(State& state, VkCommandBuffer commands, const VkBufferMemoryBarrier2& buffer) noexcept {
+void record_poison(State& state, VkCommandBuffer commands,
+                   const VkBufferMemoryBarrier2& buffer) noexcept {
   const VkBufferMemoryBarrier2 before = until_fill(buffer), after = from_fill(buffer);
   record(state, commands, nullptr, &before);
   state.commands->vkCmdFillBuffer(commands, buffer.buffer, 0, VK_WHOLE_SIZE, poison_word);

@@ -21,8 +21,9 @@ void list_ports(State& state, const PassTypeRegistry& pass_types) {
       if ((pass.port_mask >> port & 1u) == 0) {
         const bool writes = usage_info(pass_types[kernel.type].ports[port].usage).writes;
         write.placeholder = placeholder_for(state, kernel.ports[port], writes);
-        if (writes && std::find(pass.writable_placeholders.begin(), pass.writable_placeholders.end(),
-                                write.placeholder) == pass.writable_placeholders.end())
+        if (writes &&
+            std::find(pass.writable_placeholders.begin(), pass.writable_placeholders.end(),
+                      write.placeholder) == pass.writable_placeholders.end())
           pass.writable_placeholders.push_back(write.placeholder);
       }
       state.descriptors.ports.push_back(write);
@@ -48,9 +49,10 @@ void prepare_writes(State& state) {
     write.pImageInfo = &d.images[i];
     write.pBufferInfo = &d.buffers[i];
     d.buffers[i] = {VK_NULL_HANDLE, 0, VK_WHOLE_SIZE};
-    d.structures[i] = {VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET_ACCELERATION_STRUCTURE_KHR, nullptr, 1,
-                       &d.handles[i]};
-    if (write.descriptorType == VK_DESCRIPTOR_TYPE_ACCELERATION_STRUCTURE_KHR) write.pNext = &d.structures[i];
+    d.structures[i] = {VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET_ACCELERATION_STRUCTURE_KHR, nullptr,
+                       1, &d.handles[i]};
+    if (write.descriptorType == VK_DESCRIPTOR_TYPE_ACCELERATION_STRUCTURE_KHR)
+      write.pNext = &d.structures[i];
   }
 }
 
@@ -77,7 +79,8 @@ Error create_sets(State& state) {
   pool.maxSets = static_cast<uint32_t>(layouts.size());
   pool.poolSizeCount = static_cast<uint32_t>(sizes.size());
   pool.pPoolSizes = sizes.data();
-  VkResult result = device.vk.vkCreateDescriptorPool(device.device, &pool, device.allocator, &d.pool);
+  VkResult result =
+      device.vk.vkCreateDescriptorPool(device.device, &pool, device.allocator, &d.pool);
   if (result != VK_SUCCESS) {
     d.pool = VK_NULL_HANDLE;
     return call_error(result, "vkCreateDescriptorPool", "ports");
@@ -130,7 +133,8 @@ void write_descriptors(State& state, uint32_t frame_slot, const FrameInput& fram
       const auto slot = static_cast<size_t>(resource.slot);
       if (resource.type == ResourceType::image) d.images[i].imageView = frame.images[slot].view;
       if (resource.type == ResourceType::buffer)
-        d.buffers[i] = {frame.buffers[slot].buffer, frame.buffers[slot].offset, frame.buffers[slot].bytes};
+        d.buffers[i] = {frame.buffers[slot].buffer, frame.buffers[slot].offset,
+                        frame.buffers[slot].bytes};
       if (resource.type == ResourceType::acceleration_structure)
         d.handles[i] = frame.structures[slot].structure;
       continue;
@@ -139,15 +143,16 @@ void write_descriptors(State& state, uint32_t frame_slot, const FrameInput& fram
     const Instance& instance = state.instances[number];
     const uint32_t first_view = state.view_of_access[index];
     const bool sampled = d.writes[i].descriptorType == VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE;
-    d.images[i].imageView = first_view != no_index
-                                ? state.subresource_views[first_view + number - resource.first_instance].view
-                            : sampled ? instance.all_mips
-                                      : instance.first_mip;
+    d.images[i].imageView =
+        first_view != no_index
+            ? state.subresource_views[first_view + number - resource.first_instance].view
+        : sampled ? instance.all_mips
+                  : instance.first_mip;
     d.buffers[i].buffer = instance.buffer;
   }
   if (!d.writes.empty())
-    state.device->vk.vkUpdateDescriptorSets(state.device->device, static_cast<uint32_t>(d.writes.size()),
-                                            d.writes.data(), 0, nullptr);
+    state.device->vk.vkUpdateDescriptorSets(
+        state.device->device, static_cast<uint32_t>(d.writes.size()), d.writes.data(), 0, nullptr);
 }
 
 } // namespace dermis::vulkan

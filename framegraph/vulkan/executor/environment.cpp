@@ -18,22 +18,25 @@ Error check_bindings(const Device& device, std::span<const EnvironmentBinding> b
   for (size_t i = 0; i < bindings.size(); ++i) {
     const EnvironmentBinding& binding = bindings[i];
     if (binding.type == EnvironmentType::linear_sampler) continue;
-    const uint64_t maximum = binding.type == EnvironmentType::uniform_buffer ? limits.maxUniformBufferRange
-                                                                             : limits.maxStorageBufferRange;
+    const uint64_t maximum = binding.type == EnvironmentType::uniform_buffer
+                                 ? limits.maxUniformBufferRange
+                                 : limits.maxStorageBufferRange;
     const bool second = binding.type == EnvironmentType::counters && ++counters > 1;
-    if (second || (binding.type == EnvironmentType::counters && binding.bytes % sizeof(uint32_t) != 0))
+    if (second ||
+        (binding.type == EnvironmentType::counters && binding.bytes % sizeof(uint32_t) != 0))
       return {ErrorKind::argument, VK_SUCCESS,
-              fmt::format("environment binding {}: counters need a size that is a multiple of 4 bytes, and "
-                          "only one binding can hold counters",
-                          i)};
+              fmt::format(
+                  "environment binding {}: counters need a size that is a multiple of 4 bytes, and "
+                  "only one binding can hold counters",
+                  i)};
     if (binding.bytes == 0 || binding.bytes > maximum)
-      return {
-          ErrorKind::argument, VK_SUCCESS,
-          fmt::format("environment binding {} has {} bytes; expected 1 to {}", i, binding.bytes, maximum)};
+      return {ErrorKind::argument, VK_SUCCESS,
+              fmt::format("environment binding {} has {} bytes; expected 1 to {}", i, binding.bytes,
+                          maximum)};
     if (binding.contents.size() > binding.bytes)
       return {ErrorKind::argument, VK_SUCCESS,
-              fmt::format("environment binding {} has {} bytes, but its contents have {}", i, binding.bytes,
-                          binding.contents.size())};
+              fmt::format("environment binding {} has {} bytes, but its contents have {}", i,
+                          binding.bytes, binding.contents.size())};
   }
   return {};
 }
@@ -80,7 +83,8 @@ Error create_sampler(State& state) {
 Error create_sets(State& state, std::span<const EnvironmentBinding> bindings) {
   const Device& device = *state.device;
   Environment& environment = state.environment;
-  if (Error error = create_environment_layout(device, bindings, environment.set_layout)) return error;
+  if (Error error = create_environment_layout(device, bindings, environment.set_layout))
+    return error;
   std::vector<VkDescriptorPoolSize> sizes;
   for (const EnvironmentBinding& binding : bindings)
     sizes.push_back({descriptor_type(binding.type), state.frames_in_flight});
@@ -115,8 +119,10 @@ void write_sets(State& state, std::span<const EnvironmentBinding> bindings,
       if (is_table(i, bindings[i])) continue;
       const bool counters = bindings[i].type == EnvironmentType::counters;
       const uint64_t stride = counters ? environment.counters_stride : environment.constants_stride;
-      const VkDescriptorBufferInfo buffer{environment.buffer, offsets[i] + slot * stride, bindings[i].bytes};
-      const VkDescriptorImageInfo sampler{environment.sampler, VK_NULL_HANDLE, VK_IMAGE_LAYOUT_UNDEFINED};
+      const VkDescriptorBufferInfo buffer{environment.buffer, offsets[i] + slot * stride,
+                                          bindings[i].bytes};
+      const VkDescriptorImageInfo sampler{environment.sampler, VK_NULL_HANDLE,
+                                          VK_IMAGE_LAYOUT_UNDEFINED};
       VkWriteDescriptorSet write{};
       write.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET;
       write.dstSet = environment.sets[slot];
@@ -141,7 +147,8 @@ Error create_environment_layout(const Device& device, std::span<const Environmen
                                 VkDescriptorSetLayout& layout) {
   std::vector<VkDescriptorSetLayoutBinding> slots;
   for (uint32_t i = 0; i < bindings.size(); ++i)
-    slots.push_back({i, descriptor_type(bindings[i].type), 1, VK_SHADER_STAGE_COMPUTE_BIT, nullptr});
+    slots.push_back(
+        {i, descriptor_type(bindings[i].type), 1, VK_SHADER_STAGE_COMPUTE_BIT, nullptr});
   VkDescriptorSetLayoutCreateInfo info{};
   info.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO;
   info.bindingCount = static_cast<uint32_t>(slots.size());
@@ -152,10 +159,10 @@ Error create_environment_layout(const Device& device, std::span<const Environmen
   return call_error(result, "vkCreateDescriptorSetLayout", "environment");
 }
 
-Error create_environment_buffer(const Device& device, uint64_t bytes, const char* name, VkBuffer& buffer,
-                                MemoryBlock& memory) {
-  const VkBufferCreateInfo info =
-      buffer_create_info({bytes, VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT | VK_BUFFER_USAGE_STORAGE_BUFFER_BIT});
+Error create_environment_buffer(const Device& device, uint64_t bytes, const char* name,
+                                VkBuffer& buffer, MemoryBlock& memory) {
+  const VkBufferCreateInfo info = buffer_create_info(
+      {bytes, VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT | VK_BUFFER_USAGE_STORAGE_BUFFER_BIT});
   VkResult result = device.vk.vkCreateBuffer(device.device, &info, device.allocator, &buffer);
   if (result != VK_SUCCESS) {
     buffer = VK_NULL_HANDLE;
@@ -166,12 +173,15 @@ Error create_environment_buffer(const Device& device, uint64_t bytes, const char
   device.vk.vkGetBufferMemoryRequirements(device.device, buffer, &needs);
   constexpr VkMemoryPropertyFlags visible =
       VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
-  const MemoryRequest request{
-      MemoryPurpose::constants,           needs.memoryTypeBits, needs.size, needs.alignment, visible,
-      VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT};
+  const MemoryRequest request{MemoryPurpose::constants,
+                              needs.memoryTypeBits,
+                              needs.size,
+                              needs.alignment,
+                              visible,
+                              VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT};
   if (Error error = allocate_memory(device, request, name, memory)) return error;
-  const VkBindBufferMemoryInfo bind{VK_STRUCTURE_TYPE_BIND_BUFFER_MEMORY_INFO, nullptr, buffer, memory.memory,
-                                    memory.offset};
+  const VkBindBufferMemoryInfo bind{VK_STRUCTURE_TYPE_BIND_BUFFER_MEMORY_INFO, nullptr, buffer,
+                                    memory.memory, memory.offset};
   result = device.vk.vkBindBufferMemory2(device.device, 1, &bind);
   if (result != VK_SUCCESS) return call_error(result, "vkBindBufferMemory2", name);
   std::memset(memory.mapped, 0, bytes);
@@ -185,8 +195,9 @@ Error create_environment(State& state, std::span<const EnvironmentBinding> bindi
   const std::vector<uint64_t> offsets = lay_out(state, bindings);
   Environment& environment = state.environment;
   if (environment.total_bytes > 0) {
-    if (Error error = create_environment_buffer(*state.device, environment.total_bytes, "environment",
-                                                environment.buffer, environment.memory))
+    if (Error error =
+            create_environment_buffer(*state.device, environment.total_bytes, "environment",
+                                      environment.buffer, environment.memory))
       return error;
     environment.mapped = static_cast<std::byte*>(environment.memory.mapped);
   }
@@ -195,7 +206,8 @@ Error create_environment(State& state, std::span<const EnvironmentBinding> bindi
   write_sets(state, bindings, offsets);
   environment.tables = tables;
   if (environment.tables == nullptr)
-    if (Error error = EnvironmentTables::create(*state.device, bindings, environment.tables)) return error;
+    if (Error error = EnvironmentTables::create(*state.device, bindings, environment.tables))
+      return error;
   environment.tables_of_slot.resize(state.frames_in_flight);
   for (uint32_t slot = 0; slot < state.frames_in_flight; ++slot)
     refresh_tables(state, slot);
@@ -215,7 +227,8 @@ void destroy_environment(State& state) {
 void clear_counters(State& state, uint32_t frame_slot) noexcept {
   const Environment& environment = state.environment;
   if (environment.counters_bytes > 0)
-    std::memset(environment.mapped + environment.counters_offset + frame_slot * environment.counters_stride,
+    std::memset(environment.mapped + environment.counters_offset +
+                    frame_slot * environment.counters_stride,
                 0, environment.counters_bytes);
 }
 
@@ -223,15 +236,18 @@ bool Executor::read_counters(uint64_t frame_index, std::span<uint32_t> counters)
   const State& state = *state_;
   const Environment& environment = state.environment;
   const auto frame_slot = static_cast<uint32_t>(frame_index % state.frames_in_flight);
-  if (environment.counters_bytes == 0 || frame_index == 0 || state.frame_of_slot[frame_slot] != frame_index)
+  if (environment.counters_bytes == 0 || frame_index == 0 ||
+      state.frame_of_slot[frame_slot] != frame_index)
     return false;
   std::memcpy(counters.data(),
-              environment.mapped + environment.counters_offset + frame_slot * environment.counters_stride,
+              environment.mapped + environment.counters_offset +
+                  frame_slot * environment.counters_stride,
               std::min<uint64_t>(counters.size_bytes(), environment.counters_bytes));
   return true;
 }
 
-void write_frame_constants(State& state, uint32_t frame_slot, std::span<const std::byte> constants) noexcept {
+void write_frame_constants(State& state, uint32_t frame_slot,
+                           std::span<const std::byte> constants) noexcept {
   const Environment& environment = state.environment;
   if (!constants.empty())
     std::memcpy(environment.mapped + frame_slot * environment.constants_stride, constants.data(),

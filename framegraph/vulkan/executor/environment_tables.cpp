@@ -23,7 +23,8 @@ uint64_t EnvironmentTables::bytes() const noexcept {
   return state_->bytes;
 }
 
-Error EnvironmentTables::create(const Device& device, std::span<const EnvironmentBinding> environment,
+Error EnvironmentTables::create(const Device& device,
+                                std::span<const EnvironmentBinding> environment,
                                 std::shared_ptr<const EnvironmentTables>& tables) {
   auto state = std::make_unique<State>(device);
   const uint64_t alignment = table_alignment(device);
@@ -34,8 +35,8 @@ Error EnvironmentTables::create(const Device& device, std::span<const Environmen
     state->bytes += (bytes + alignment - 1) / alignment * alignment;
   }
   if (state->bytes > 0) {
-    if (Error error = create_environment_buffer(device, state->bytes, "environment tables", state->buffer,
-                                                state->memory))
+    if (Error error = create_environment_buffer(device, state->bytes, "environment tables",
+                                                state->buffer, state->memory))
       return error;
     auto* const to = static_cast<std::byte*>(state->memory.mapped);
     for (const TableBinding& table : state->bindings)
@@ -48,7 +49,8 @@ Error EnvironmentTables::create(const Device& device, std::span<const Environmen
 
 void refresh_tables(State& state, uint32_t frame_slot) noexcept {
   Environment& environment = state.environment;
-  if (environment.tables_of_slot.empty() || environment.tables_of_slot[frame_slot] == environment.tables)
+  if (environment.tables_of_slot.empty() ||
+      environment.tables_of_slot[frame_slot] == environment.tables)
     return;
   const EnvironmentTables::State& tables = environment.tables->state();
   for (const TableBinding& table : tables.bindings) {

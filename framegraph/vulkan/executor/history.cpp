@@ -7,7 +7,8 @@ namespace {
 // Returns why no history was copied from another plan: the reason the executor was created for, if
 // it has never run, else `switched`.
 HistoryReason not_carried(const HistoryRecord& record) noexcept {
-  const bool replaced = record.reason == HistoryReason::reloaded || record.reason == HistoryReason::resized;
+  const bool replaced =
+      record.reason == HistoryReason::reloaded || record.reason == HistoryReason::resized;
   return replaced && record.age == 0 ? record.reason : HistoryReason::switched;
 }
 
@@ -54,7 +55,8 @@ const char* valid_since_text(HistoryReason lost) {
 
 uint32_t access_now(const State& state, const PortAccess& port) noexcept {
   if (port.history == no_index) return port.access;
-  const bool valid = state.histories[port.history].age >= state.plan.accesses[port.access].frames_back;
+  const bool valid =
+      state.histories[port.history].age >= state.plan.accesses[port.access].frames_back;
   return valid ? port.access : port.otherwise;
 }
 
@@ -95,13 +97,15 @@ HistoryState Executor::history_state(uint32_t index, bool reset_history,
 }
 
 Rectangle Executor::previous_rectangle(const Executor* before) const noexcept {
-  return before == nullptr ? state_->previous_rectangle : carried_rectangle(*state_, *before->state_);
+  return before == nullptr ? state_->previous_rectangle
+                           : carried_rectangle(*state_, *before->state_);
 }
 
 void remember_before_frame(State& state) noexcept {
   BeforeFrame& before = state.before_frame;
   for (size_t h = 0; h < state.histories.size(); ++h)
-    before.histories[h] = {state.histories[h].age, state.histories[h].reason, state.histories[h].lost};
+    before.histories[h] = {state.histories[h].age, state.histories[h].reason,
+                           state.histories[h].lost};
   for (size_t i = 0; i < state.instances.size(); ++i)
     before.ready[i] = state.instances[i].ready;
   before.placeholders_ready = state.placeholders_ready;

@@ -14,7 +14,8 @@ struct CopyScope {
 };
 constexpr CopyScope transfer{VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_READ_BIT,
                              VK_ACCESS_2_TRANSFER_WRITE_BIT};
-constexpr CopyScope rescaling{VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_SHADER_SAMPLED_READ_BIT,
+constexpr CopyScope rescaling{VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT,
+                              VK_ACCESS_2_SHADER_SAMPLED_READ_BIT,
                               VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT};
 
 // The number of kept frames may differ; the texel layout may not.
@@ -27,8 +28,8 @@ bool same_size(const PlanResource& a, const PlanResource& b) {
   return a.width == b.width && a.height == b.height && a.bytes == b.bytes;
 }
 
-VkImageMemoryBarrier2 layout_change(VkImage image, const VkImageSubresourceRange& range, VkImageLayout from,
-                                    VkImageLayout to) {
+VkImageMemoryBarrier2 layout_change(VkImage image, const VkImageSubresourceRange& range,
+                                    VkImageLayout from, VkImageLayout to) {
   VkImageMemoryBarrier2 out{};
   out.sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2;
   out.oldLayout = from;
@@ -78,7 +79,9 @@ struct HistoryFrame { // one frame of a history
   uint32_t frames_back = 0;
 
   const PlanResource& resource() const { return state.plan.resources[history.resource]; }
-  const Instance& instance() const { return state.instances[instance_of(state, resource(), frames_back)]; }
+  const Instance& instance() const {
+    return state.instances[instance_of(state, resource(), frames_back)];
+  }
 };
 
 // Changes the layout of each subresource range, because each range of a history has its own.
@@ -88,23 +91,25 @@ void change_layouts(const FunctionTable& vk, VkCommandBuffer commands, const Cop
     const Plan& plan = frame.state.plan;
     const SubresourceRange& range = plan.history_ranges[frame.history.first_range + number];
     const auto own = static_cast<VkImageLayout>(
-        plan.history_layouts[frame.history.first_layout + frame.frames_back * frame.history.range_count +
-                             number]);
-    VkImageMemoryBarrier2 change = layout_change(frame.instance().image,
-                                                 {barrier_aspects(frame.resource().format), range.first_mip,
-                                                  range.mips, range.first_layer, range.layers},
-                                                 before ? own : other, before ? other : own);
+        plan.history_layouts[frame.history.first_layout +
+                             frame.frames_back * frame.history.range_count + number]);
+    VkImageMemoryBarrier2 change =
+        layout_change(frame.instance().image,
+                      {barrier_aspects(frame.resource().format), range.first_mip, range.mips,
+                       range.first_layer, range.layers},
+                      before ? own : other, before ? other : own);
     submit(vk, commands, copy, &change, 1, before);
   }
 }
 
 // Discards the whole target image, because the copy replaces its contents.
-void discard(const FunctionTable& vk, VkCommandBuffer commands, const CopyScope& copy, const HistoryFrame& to,
-             VkImageLayout layout) {
-  VkImageMemoryBarrier2 change = layout_change(
-      to.instance().image,
-      {barrier_aspects(to.resource().format), 0, VK_REMAINING_MIP_LEVELS, 0, VK_REMAINING_ARRAY_LAYERS},
-      VK_IMAGE_LAYOUT_UNDEFINED, layout);
+void discard(const FunctionTable& vk, VkCommandBuffer commands, const CopyScope& copy,
+             const HistoryFrame& to, VkImageLayout layout) {
+  VkImageMemoryBarrier2 change =
+      layout_change(to.instance().image,
+                    {barrier_aspects(to.resource().format), 0, VK_REMAINING_MIP_LEVELS, 0,
+                     VK_REMAINING_ARRAY_LAYERS},
+                    VK_IMAGE_LAYOUT_UNDEFINED, layout);
   submit(vk, commands, copy, &change, 1, true);
 }
 
@@ -119,7 +124,8 @@ void copy_image(const FunctionTable& vk, VkCommandBuffer commands, const History
     const VkImageSubresourceLayers layers{barrier_aspects(size.format), mip, 0, size.layers};
     const VkExtent3D extent{std::max(size.width >> mip, 1u), std::max(size.height >> mip, 1u), 1};
     const VkImageCopy all{layers, {0, 0, 0}, layers, {0, 0, 0}, extent};
-    vk.vkCmdCopyImage(commands, from.instance().image, source, to.instance().image, target, 1, &all);
+    vk.vkCmdCopyImage(commands, from.instance().image, source, to.instance().image, target, 1,
+                      &all);
   }
   change_layouts(vk, commands, transfer, to, target, false);
 }
@@ -162,7 +168,8 @@ Rectangle carried_rectangle(const State& to, const State& from) noexcept {
   return out;
 }
 
-CarriedHistory carried_history(const State& to, uint32_t index, const State& from, bool reset) noexcept {
+CarriedHistory carried_history(const State& to, uint32_t index, const State& from,
+                               bool reset) noexcept {
   const PlanHistory& new_history = to.plan.histories[index];
   if (reset && new_history.declaration.on_cut == HistoryDeclaration::OnCut::invalidate) return {};
   for (uint32_t h = 0; h < from.plan.histories.size(); ++h) {
@@ -194,7 +201,8 @@ void record_carried(State& to, const State& from, VkCommandBuffer commands, uint
     const PlanHistory &new_history = to.plan.histories[h],
                       &old_history = from.plan.histories[carried.history];
     const PlanResource& resource = to.plan.resources[new_history.resource];
-    for (uint32_t back = 1; back <= std::min({new_history.frames, old_history.frames, carried.age}); ++back) {
+    for (uint32_t back = 1; back <= std::min({new_history.frames, old_history.frames, carried.age});
+         ++back) {
       Instance& instance = to.instances[instance_of(to, resource, back)];
       const HistoryFrame source{from, old_history, back}, target{to, new_history, back};
       if (resource.type == ResourceType::buffer) {

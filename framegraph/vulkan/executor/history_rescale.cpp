@@ -30,7 +30,8 @@ struct RescaleCode {
 
 RescaleCode rescale_code(bool unsigned_components) {
   if (unsigned_components)
-    return {PassTypeId{PassTypeId::none - 1}, "rescale_history_unsigned", rescale_history_unsigned_spirv};
+    return {PassTypeId{PassTypeId::none - 1}, "rescale_history_unsigned",
+            rescale_history_unsigned_spirv};
   return {PassTypeId{PassTypeId::none - 2}, "rescale_history_float", rescale_history_float_spirv};
 }
 
@@ -52,8 +53,8 @@ Error create_rescale_layouts(const Device& device, Kernel& kernel) {
   set.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO;
   set.bindingCount = static_cast<uint32_t>(bindings.size());
   set.pBindings = bindings.data();
-  VkResult result =
-      device.vk.vkCreateDescriptorSetLayout(device.device, &set, device.allocator, &kernel.set_layout);
+  VkResult result = device.vk.vkCreateDescriptorSetLayout(device.device, &set, device.allocator,
+                                                          &kernel.set_layout);
   if (result != VK_SUCCESS) {
     kernel.set_layout = VK_NULL_HANDLE;
     return call_error(result, "vkCreateDescriptorSetLayout", "rescaled histories");
@@ -80,16 +81,16 @@ Error find_rescale_kernel(State& state, const ExecutorInput& input, bool unsigne
   added->type = code.type;
   added->push_bytes = sizeof(RescalePush);
   if (Error error = create_rescale_layouts(*state.device, *added)) return error;
-  if (Error error =
-          create_pipeline(*state.device, code.name, code.name, code.spirv, {input.pipeline_cache}, *added))
+  if (Error error = create_pipeline(*state.device, code.name, code.name, code.spirv,
+                                    {input.pipeline_cache}, *added))
     return error;
   stored = added;
   if (input.kernel_store != nullptr) input.kernel_store->add(stored);
   return {};
 }
 
-Error create_array_view(State& state, const PlanResource& resource, VkImage image, uint32_t first_mip,
-                        uint32_t mips, const std::string& name) {
+Error create_array_view(State& state, const PlanResource& resource, VkImage image,
+                        uint32_t first_mip, uint32_t mips, const std::string& name) {
   VkImageViewCreateInfo info{};
   info.sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO;
   info.image = image;
@@ -97,8 +98,8 @@ Error create_array_view(State& state, const PlanResource& resource, VkImage imag
   info.format = vk_format(resource.format);
   info.subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, first_mip, mips, 0, resource.layers};
   VkImageView& view = state.rescaling.views.emplace_back(VK_NULL_HANDLE);
-  const VkResult result =
-      state.device->vk.vkCreateImageView(state.device->device, &info, state.device->allocator, &view);
+  const VkResult result = state.device->vk.vkCreateImageView(state.device->device, &info,
+                                                             state.device->allocator, &view);
   if (result != VK_SUCCESS) view = VK_NULL_HANDLE;
   return call_error(result, "vkCreateImageView", name);
 }
@@ -108,9 +109,11 @@ Error create_rescale_views(State& state, const PlanResource& resource, HistoryRe
   history.first_rescale_view = static_cast<uint32_t>(state.rescaling.views.size());
   for (uint32_t i = 0; i < resource.instance_count; ++i) {
     const VkImage image = state.instances[resource.first_instance + i].image;
-    if (Error error = create_array_view(state, resource, image, 0, resource.mips, history.name)) return error;
+    if (Error error = create_array_view(state, resource, image, 0, resource.mips, history.name))
+      return error;
     for (uint32_t mip = 0; mip < resource.mips; ++mip)
-      if (Error error = create_array_view(state, resource, image, mip, 1, history.name)) return error;
+      if (Error error = create_array_view(state, resource, image, mip, 1, history.name))
+        return error;
   }
   return {};
 }
@@ -126,7 +129,8 @@ Error create_rescale_sets(State& state, const std::vector<VkDescriptorSetLayout>
   pool.maxSets = count;
   pool.poolSizeCount = static_cast<uint32_t>(sizes.size());
   pool.pPoolSizes = sizes.data();
-  VkResult result = device.vk.vkCreateDescriptorPool(device.device, &pool, device.allocator, &rescaling.pool);
+  VkResult result =
+      device.vk.vkCreateDescriptorPool(device.device, &pool, device.allocator, &rescaling.pool);
   if (result != VK_SUCCESS) {
     rescaling.pool = VK_NULL_HANDLE;
     return call_error(result, "vkCreateDescriptorPool", "rescaled histories");
@@ -141,23 +145,27 @@ Error create_rescale_sets(State& state, const std::vector<VkDescriptorSetLayout>
   return call_error(result, "vkAllocateDescriptorSets", "rescaled histories");
 }
 
-void write_rescale_set(const Device& device, VkDescriptorSet set, VkImageView source, VkImageView target) {
+void write_rescale_set(const Device& device, VkDescriptorSet set, VkImageView source,
+                       VkImageView target) {
   const std::array<VkDescriptorImageInfo, 2> images{
-      {{VK_NULL_HANDLE, source, VK_IMAGE_LAYOUT_GENERAL}, {VK_NULL_HANDLE, target, VK_IMAGE_LAYOUT_GENERAL}}};
+      {{VK_NULL_HANDLE, source, VK_IMAGE_LAYOUT_GENERAL},
+       {VK_NULL_HANDLE, target, VK_IMAGE_LAYOUT_GENERAL}}};
   std::array<VkWriteDescriptorSet, 2> writes{};
   for (uint32_t i = 0; i < writes.size(); ++i) {
     writes[i].sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET;
     writes[i].dstSet = set;
     writes[i].dstBinding = i;
     writes[i].descriptorCount = 1;
-    writes[i].descriptorType = i == 0 ? VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE : VK_DESCRIPTOR_TYPE_STORAGE_IMAGE;
+    writes[i].descriptorType =
+        i == 0 ? VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE : VK_DESCRIPTOR_TYPE_STORAGE_IMAGE;
     writes[i].pImageInfo = &images[i];
   }
-  device.vk.vkUpdateDescriptorSets(device.device, static_cast<uint32_t>(writes.size()), writes.data(), 0,
-                                   nullptr);
+  device.vk.vkUpdateDescriptorSets(device.device, static_cast<uint32_t>(writes.size()),
+                                   writes.data(), 0, nullptr);
 }
 
-uint32_t rescale_view(const HistoryRecord& history, const PlanResource& resource, uint32_t instance) {
+uint32_t rescale_view(const HistoryRecord& history, const PlanResource& resource,
+                      uint32_t instance) {
   return history.first_rescale_view + (instance - resource.first_instance) * (1 + resource.mips);
 }
 
@@ -206,24 +214,30 @@ void destroy_rescaling(State& state) {
 void record_rescaling(State& to, const State& from, VkCommandBuffer commands,
                       const RescaledHistory& which) noexcept {
   const FunctionTable& vk = *to.commands;
-  const HistoryRecord &target = to.histories[which.history], &source = from.histories[which.source_history];
+  const HistoryRecord &target = to.histories[which.history],
+                      &source = from.histories[which.source_history];
   const PlanResource& new_size = to.plan.resources[to.plan.histories[which.history].resource];
-  const PlanResource& old_size = from.plan.resources[from.plan.histories[which.source_history].resource];
-  const uint32_t source_view = rescale_view(source, old_size, instance_of(from, old_size, which.frames_back));
-  const uint32_t target_view = rescale_view(target, new_size, instance_of(to, new_size, which.frames_back));
+  const PlanResource& old_size =
+      from.plan.resources[from.plan.histories[which.source_history].resource];
+  const uint32_t source_view =
+      rescale_view(source, old_size, instance_of(from, old_size, which.frames_back));
+  const uint32_t target_view =
+      rescale_view(target, new_size, instance_of(to, new_size, which.frames_back));
   const Kernel& kernel = *to.rescaling.kernels[has_unsigned_components(new_size.format) ? 1 : 0];
   vk.vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, kernel.pipeline);
   for (uint32_t mip = 0; mip < new_size.mips; ++mip) {
     const VkDescriptorSet set =
-        to.rescaling.sets[size_t{which.frame_slot} * to.rescaling.sets_per_slot + target.first_rescale_set +
-                          (which.frames_back - 1) * new_size.mips + mip];
+        to.rescaling.sets[size_t{which.frame_slot} * to.rescaling.sets_per_slot +
+                          target.first_rescale_set + (which.frames_back - 1) * new_size.mips + mip];
     write_rescale_set(*to.device, set, from.rescaling.views[source_view],
                       to.rescaling.views[target_view + 1 + mip]);
     const RescalePush push{mip_size(old_size, mip), mip_size(new_size, mip), mip};
-    vk.vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, kernel.layout, 0, 1, &set, 0,
-                               nullptr);
-    vk.vkCmdPushConstants(commands, kernel.layout, VK_SHADER_STAGE_COMPUTE_BIT, 0, sizeof push, &push);
-    const GroupCount groups = group_count(rescale_dispatch, push.target_size[0], push.target_size[1]);
+    vk.vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, kernel.layout, 0, 1, &set,
+                               0, nullptr);
+    vk.vkCmdPushConstants(commands, kernel.layout, VK_SHADER_STAGE_COMPUTE_BIT, 0, sizeof push,
+                          &push);
+    const GroupCount groups =
+        group_count(rescale_dispatch, push.target_size[0], push.target_size[1]);
     vk.vkCmdDispatch(commands, static_cast<uint32_t>(groups.x), static_cast<uint32_t>(groups.y),
                      new_size.layers);
   }

@@ -7,7 +7,8 @@
 namespace dermis::vulkan {
 namespace {
 
-HostPort port_now(const State& state, const FrameInput& frame, const PortAccess& bound, bool storage) {
+HostPort port_now(const State& state, const FrameInput& frame, const PortAccess& bound,
+                  bool storage) {
   const uint32_t index = access_now(state, bound);
   if (index == no_index) return {};
   const PlanAccess& access = state.plan.accesses[index];
@@ -67,9 +68,10 @@ Error check_host_passes(State& state, const ExecutorInput& input) {
   for (Pass& pass : state.passes) {
     if (!pass.host.valid()) continue;
     if (input.host_pass == nullptr)
-      return {ErrorKind::argument, VK_SUCCESS,
-              fmt::format("pass '{}' is recorded by the host, but the host provides no function for it",
-                          pass.name)};
+      return {
+          ErrorKind::argument, VK_SUCCESS,
+          fmt::format("pass '{}' is recorded by the host, but the host provides no function for it",
+                      pass.name)};
     const PassType& type = (*input.pass_types)[pass.host];
     pass.host_settings = static_cast<uint32_t>(type.settings.size());
     ports = std::max(ports, type.ports.size());
@@ -82,7 +84,8 @@ Error check_host_passes(State& state, const ExecutorInput& input) {
   return {};
 }
 
-void run_host_pass(State& state, const FrameInput& frame, size_t p, const Rectangle& rectangle) noexcept {
+void run_host_pass(State& state, const FrameInput& frame, size_t p,
+                   const Rectangle& rectangle) noexcept {
   const Pass& pass = state.passes[p];
   const PlanPass& planned = state.plan.passes[p];
   for (size_t port = 0; port < pass.ports.size(); ++port) {

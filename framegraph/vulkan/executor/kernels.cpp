@@ -15,7 +15,8 @@ namespace {
 // Returns the placeholder format of an unbound port: the format that the port or shader declares,
 // else any format with the same numeric type. Some drivers recompile a kernel for another format.
 VkFormat placeholder_format(const Port& port, const ShaderBinding& binding) {
-  if (port.usage == Usage::sampled_image && !port.formats.empty() && !format_info(port.formats.front()).depth)
+  if (port.usage == Usage::sampled_image && !port.formats.empty() &&
+      !format_info(port.formats.front()).depth)
     return vk_format(port.formats.front());
   // values of SPIR-V specification, 3.11 Image Format
   switch (binding.image_format) {
@@ -77,10 +78,11 @@ Error create_set_layout(const Device& device, const PassType& type, Kernel& kern
   info.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO;
   info.bindingCount = static_cast<uint32_t>(bindings.size());
   info.pBindings = bindings.data();
-  const VkResult result =
-      device.vk.vkCreateDescriptorSetLayout(device.device, &info, device.allocator, &kernel.set_layout);
+  const VkResult result = device.vk.vkCreateDescriptorSetLayout(
+      device.device, &info, device.allocator, &kernel.set_layout);
   if (result != VK_SUCCESS) kernel.set_layout = VK_NULL_HANDLE;
-  return call_error(result, "vkCreateDescriptorSetLayout", fmt::format("pass type '{}'", type.name));
+  return call_error(result, "vkCreateDescriptorSetLayout",
+                    fmt::format("pass type '{}'", type.name));
 }
 
 Error create_layout(const Device& device, VkDescriptorSetLayout environment, const PassType& type,
@@ -109,8 +111,8 @@ Error create_kernel(const KernelInput& input, PassTypeId id, Kernel& kernel) {
   const auto code = find_code(input, type);
   if (code == input.codes.end())
     return {ErrorKind::shader, VK_SUCCESS,
-            fmt::format("kernel '{}' of type '{}' is not among the {} provided kernels", type.shader,
-                        type.name, input.codes.size())};
+            fmt::format("kernel '{}' of type '{}' is not among the {} provided kernels",
+                        type.shader, type.name, input.codes.size())};
   std::string problem;
   const std::optional<Reflection> reflection = reflect(code->spirv, problem);
   if (!reflection)
@@ -122,8 +124,9 @@ Error create_kernel(const KernelInput& input, PassTypeId id, Kernel& kernel) {
   kernel.version = code->version;
   kernel.dispatch = type.dispatch;
   for (const ShaderBinding& binding : reflection->bindings)
-    kernel.counts = kernel.counts || (binding.set == 1 && binding.binding < input.environment.size() &&
-                                      input.environment[binding.binding].type == EnvironmentType::counters);
+    kernel.counts =
+        kernel.counts || (binding.set == 1 && binding.binding < input.environment.size() &&
+                          input.environment[binding.binding].type == EnvironmentType::counters);
   kernel.ports.resize(type.ports.size());
   for (uint32_t p = 0; p < type.ports.size(); ++p) {
     kernel.ports[p].type = descriptor_type(type.ports[p].usage);
@@ -135,16 +138,19 @@ Error create_kernel(const KernelInput& input, PassTypeId id, Kernel& kernel) {
       kernel.ports[p].placeholder = VK_FORMAT_R16G16B16A16_SFLOAT;
   }
   if (type.dispatch.domain == DispatchRule::Domain::indirect && kernel.indirect_port == no_index)
-    return {ErrorKind::shader, VK_SUCCESS,
-            fmt::format("pass type '{}' dispatches indirectly but has no port with usage indirect_arguments",
-                        type.name)};
+    return {
+        ErrorKind::shader, VK_SUCCESS,
+        fmt::format(
+            "pass type '{}' dispatches indirectly but has no port with usage indirect_arguments",
+            type.name)};
   if (!type.arguments_entry.empty())
     kernel.entry_setting = static_cast<uint32_t>(find_setting(type, type.arguments_entry));
   kernel.push_bytes = static_cast<uint32_t>(sizeof(uint32_t) * (1 + type.settings.size()));
   if (Error error = create_set_layout(input.device, type, kernel)) return error;
-  if (Error error = create_layout(input.device, input.environment_layout, type, kernel)) return error;
-  return create_pipeline(input.device, fmt::format("kernel '{}'", type.shader), std::string(type.name),
-                         code->spirv, {input.cache, input.flags}, kernel);
+  if (Error error = create_layout(input.device, input.environment_layout, type, kernel))
+    return error;
+  return create_pipeline(input.device, fmt::format("kernel '{}'", type.shader),
+                         std::string(type.name), code->spirv, {input.cache, input.flags}, kernel);
 }
 
 } // namespace
@@ -158,8 +164,9 @@ Kernel::~Kernel() {
 // constant_id in shaders/common/shape.glsl; kernels without the constant ignore it
 constexpr uint32_t shape_constant = 0;
 
-Error create_pipeline(const Device& device, const std::string& subresource, const std::string& label,
-                      std::span<const uint32_t> spirv, const PipelineOptions& options, Kernel& kernel) {
+Error create_pipeline(const Device& device, const std::string& subresource,
+                      const std::string& label, std::span<const uint32_t> spirv,
+                      const PipelineOptions& options, Kernel& kernel) {
   VkShaderModuleCreateInfo module_info{};
   module_info.sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO;
   std::vector<uint32_t> refined;
@@ -170,7 +177,8 @@ Error create_pipeline(const Device& device, const std::string& subresource, cons
   module_info.codeSize = spirv.size_bytes();
   module_info.pCode = spirv.data();
   VkShaderModule module = VK_NULL_HANDLE;
-  VkResult result = device.vk.vkCreateShaderModule(device.device, &module_info, device.allocator, &module);
+  VkResult result =
+      device.vk.vkCreateShaderModule(device.device, &module_info, device.allocator, &module);
   if (result != VK_SUCCESS) return call_error(result, "vkCreateShaderModule", subresource);
   VkComputePipelineCreateInfo info{};
   info.sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO;
@@ -184,14 +192,15 @@ Error create_pipeline(const Device& device, const std::string& subresource, cons
   info.stage.pSpecializationInfo = &constants;
   info.layout = kernel.layout;
   info.flags = options.flags;
-  result = device.vk.vkCreateComputePipelines(device.device, options.cache, 1, &info, device.allocator,
-                                              &kernel.pipeline);
+  result = device.vk.vkCreateComputePipelines(device.device, options.cache, 1, &info,
+                                              device.allocator, &kernel.pipeline);
   device.vk.vkDestroyShaderModule(device.device, module, device.allocator);
   if (result != VK_SUCCESS) {
     kernel.pipeline = VK_NULL_HANDLE;
     return call_error(result, "vkCreateComputePipelines", subresource);
   }
-  name_object(device, VK_OBJECT_TYPE_PIPELINE, reinterpret_cast<uint64_t>(kernel.pipeline), label.c_str());
+  name_object(device, VK_OBJECT_TYPE_PIPELINE, reinterpret_cast<uint64_t>(kernel.pipeline),
+              label.c_str());
   return {};
 }
 
@@ -202,7 +211,9 @@ Error create_kernels(const KernelInput& input, const Plan& plan, PlanKernels& ma
     if (!input.pass_types[type].dispatch.is_kernel()) continue;
     const auto code = find_code(input, input.pass_types[type]);
     const uint64_t version = code != input.codes.end() ? code->version : 0;
-    const auto runs = [&](const auto& kernel) { return kernel->type == type && kernel->version == version; };
+    const auto runs = [&](const auto& kernel) {
+      return kernel->type == type && kernel->version == version;
+    };
     const auto existing = std::find_if(made.kernels.begin(), made.kernels.end(), runs);
     made.of_pass[p] = static_cast<uint32_t>(existing - made.kernels.begin());
     if (existing != made.kernels.end()) continue;

@@ -30,8 +30,10 @@ Error create_heaps(State& state) {
                       heap_alignment(*state.device, state.plan, h),
                       0,
                       VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT};
-    const std::string subresource = fmt::format("{} heap {}", heap.persistent ? "history" : "transient", h);
-    if (Error error = allocate_memory(*state.device, memory.request, subresource, memory.block)) return error;
+    const std::string subresource =
+        fmt::format("{} heap {}", heap.persistent ? "history" : "transient", h);
+    if (Error error = allocate_memory(*state.device, memory.request, subresource, memory.block))
+      return error;
   }
   return {};
 }
@@ -45,11 +47,12 @@ Error check_needs(const State& state, const Placement& placement, const VkMemory
                     (heap.memory_type_bits & ~needs.memoryTypeBits) == 0;
   if (fits) return {};
   return {ErrorKind::argument, VK_SUCCESS,
-          fmt::format("'{}' needs {} bytes aligned to {} of memory types {:#x}; the plan provides {} bytes "
-                      "at {} of types "
-                      "{:#x}: compile it with the profile of this device",
-                      name, needs.size, needs.alignment, needs.memoryTypeBits, placement.size,
-                      placement.offset, heap.memory_type_bits)};
+          fmt::format(
+              "'{}' needs {} bytes aligned to {} of memory types {:#x}; the plan provides {} bytes "
+              "at {} of types "
+              "{:#x}: compile it with the profile of this device",
+              name, needs.size, needs.alignment, needs.memoryTypeBits, placement.size,
+              placement.offset, heap.memory_type_bits)};
 }
 
 Error create_view(const Device& device, const PlanResource& resource, VkImage image,
@@ -62,7 +65,8 @@ Error create_view(const Device& device, const PlanResource& resource, VkImage im
   const VkImageAspectFlags aspect =
       format_info(resource.format).depth ? VK_IMAGE_ASPECT_DEPTH_BIT : VK_IMAGE_ASPECT_COLOR_BIT;
   info.subresourceRange = {aspect, range.first_mip, range.mips, range.first_layer, range.layers};
-  const VkResult result = device.vk.vkCreateImageView(device.device, &info, device.allocator, &view);
+  const VkResult result =
+      device.vk.vkCreateImageView(device.device, &info, device.allocator, &view);
   if (result != VK_SUCCESS) view = VK_NULL_HANDLE;
   return call_error(result, "vkCreateImageView", name);
 }
@@ -70,20 +74,24 @@ Error create_view(const Device& device, const PlanResource& resource, VkImage im
 Error create_image(State& state, const PlanResource& resource, const Placement& placement,
                    const std::string& name, Instance& instance) {
   const Device& device = *state.device;
-  const VkImageCreateInfo info = image_create_info(
-      {resource.format, resource.width, resource.height, resource.mips, resource.layers, resource.vk_usage});
-  VkResult result = device.vk.vkCreateImage(device.device, &info, device.allocator, &instance.image);
+  const VkImageCreateInfo info =
+      image_create_info({resource.format, resource.width, resource.height, resource.mips,
+                         resource.layers, resource.vk_usage});
+  VkResult result =
+      device.vk.vkCreateImage(device.device, &info, device.allocator, &instance.image);
   if (result != VK_SUCCESS) {
     instance.image = VK_NULL_HANDLE;
     return call_error(result, "vkCreateImage", name);
   }
-  name_object(device, VK_OBJECT_TYPE_IMAGE, reinterpret_cast<uint64_t>(instance.image), name.c_str());
+  name_object(device, VK_OBJECT_TYPE_IMAGE, reinterpret_cast<uint64_t>(instance.image),
+              name.c_str());
   VkMemoryRequirements needs{};
   device.vk.vkGetImageMemoryRequirements(device.device, instance.image, &needs);
   if (Error error = check_needs(state, placement, needs, name)) return error;
   const HeapMemory& heap = state.heaps[placement.heap];
-  const VkBindImageMemoryInfo bind{VK_STRUCTURE_TYPE_BIND_IMAGE_MEMORY_INFO, nullptr, instance.image,
-                                   heap.block.memory, heap.block.offset + placement.offset};
+  const VkBindImageMemoryInfo bind{VK_STRUCTURE_TYPE_BIND_IMAGE_MEMORY_INFO, nullptr,
+                                   instance.image, heap.block.memory,
+                                   heap.block.offset + placement.offset};
   result = device.vk.vkBindImageMemory2(device.device, 1, &bind);
   if (result != VK_SUCCESS) return call_error(result, "vkBindImageMemory2", name);
   constexpr uint32_t viewable = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_STORAGE_BIT;
@@ -95,8 +103,8 @@ Error create_image(State& state, const PlanResource& resource, const Placement& 
   return create_view(device, resource, instance.image, range, name, instance.first_mip);
 }
 
-// Creates views for accesses to some mips or layers of an image. Accesses with equal ranges share their
-// views.
+// Creates views for accesses to some mips or layers of an image. Accesses with equal ranges share
+// their views.
 Error create_subresource_views(State& state, const Graph& graph) {
   constexpr Access viewed =
       access::shader_sampled_read | access::shader_storage_read | access::shader_storage_write;
@@ -117,9 +125,10 @@ Error create_subresource_views(State& state, const Graph& graph) {
       SubresourceView& subresource_view = state.subresource_views.emplace_back();
       subresource_view.instance = resource.first_instance + i;
       subresource_view.range = access.range;
-      if (Error error = create_view(*state.device, resource, state.instances[subresource_view.instance].image,
-                                    subresource_view.range, graph.resources[resource.declared.value].name,
-                                    subresource_view.view))
+      if (Error error =
+              create_view(*state.device, resource, state.instances[subresource_view.instance].image,
+                          subresource_view.range, graph.resources[resource.declared.value].name,
+                          subresource_view.view))
         return error;
     }
   }
@@ -130,18 +139,21 @@ Error create_buffer(State& state, const PlanResource& resource, const Placement&
                     const std::string& name, Instance& instance) {
   const Device& device = *state.device;
   const VkBufferCreateInfo info = buffer_create_info({resource.bytes, resource.vk_usage});
-  VkResult result = device.vk.vkCreateBuffer(device.device, &info, device.allocator, &instance.buffer);
+  VkResult result =
+      device.vk.vkCreateBuffer(device.device, &info, device.allocator, &instance.buffer);
   if (result != VK_SUCCESS) {
     instance.buffer = VK_NULL_HANDLE;
     return call_error(result, "vkCreateBuffer", name);
   }
-  name_object(device, VK_OBJECT_TYPE_BUFFER, reinterpret_cast<uint64_t>(instance.buffer), name.c_str());
+  name_object(device, VK_OBJECT_TYPE_BUFFER, reinterpret_cast<uint64_t>(instance.buffer),
+              name.c_str());
   VkMemoryRequirements needs{};
   device.vk.vkGetBufferMemoryRequirements(device.device, instance.buffer, &needs);
   if (Error error = check_needs(state, placement, needs, name)) return error;
   const HeapMemory& heap = state.heaps[placement.heap];
-  const VkBindBufferMemoryInfo bind{VK_STRUCTURE_TYPE_BIND_BUFFER_MEMORY_INFO, nullptr, instance.buffer,
-                                    heap.block.memory, heap.block.offset + placement.offset};
+  const VkBindBufferMemoryInfo bind{VK_STRUCTURE_TYPE_BIND_BUFFER_MEMORY_INFO, nullptr,
+                                    instance.buffer, heap.block.memory,
+                                    heap.block.offset + placement.offset};
   result = device.vk.vkBindBufferMemory2(device.device, 1, &bind);
   return call_error(result, "vkBindBufferMemory2", name);
 }
@@ -155,7 +167,9 @@ void mark_aliased_instances(State& state) {
     return std::tie(placements[a].heap, placements[a].offset) <
            std::tie(placements[b].heap, placements[b].offset);
   });
-  const auto end = [&](uint32_t index) { return placements[index].offset + placements[index].size; };
+  const auto end = [&](uint32_t index) {
+    return placements[index].offset + placements[index].size;
+  };
   // index in `order` of the instance with the highest end in this heap so far
   uint32_t furthest = 0;
   for (uint32_t at = 1; at < order.size(); ++at) {
@@ -178,11 +192,13 @@ Error create_memory(State& state, const Graph& graph) {
     const std::string& name = graph.resources[resource.declared.value].name;
     for (uint32_t i = 0; i < resource.instance_count; ++i) {
       const uint32_t index = resource.first_instance + i;
-      const std::string full_name = resource.instance_count > 1 ? fmt::format("{}#{}", name, i) : name;
+      const std::string full_name =
+          resource.instance_count > 1 ? fmt::format("{}#{}", name, i) : name;
       const Placement& placement = state.plan.placements[index];
-      Error error = resource.type == ResourceType::image
-                        ? create_image(state, resource, placement, full_name, state.instances[index])
-                        : create_buffer(state, resource, placement, full_name, state.instances[index]);
+      Error error =
+          resource.type == ResourceType::image
+              ? create_image(state, resource, placement, full_name, state.instances[index])
+              : create_buffer(state, resource, placement, full_name, state.instances[index]);
       if (error) return error;
     }
   }

@@ -15,7 +15,8 @@ struct StatisticFunctions {
   PFN_vkGetPipelineExecutableInternalRepresentationsKHR representations = nullptr;
 };
 
-template <class Function> void load_function(const Device& device, const char* name, Function& function) {
+template <class Function>
+void load_function(const Device& device, const char* name, Function& function) {
   function = reinterpret_cast<Function>(device.vk.vkGetDeviceProcAddr(device.device, name));
 }
 
@@ -23,7 +24,8 @@ StatisticFunctions load_statistic_functions(const Device& device) {
   StatisticFunctions functions;
   load_function(device, "vkGetPipelineExecutablePropertiesKHR", functions.properties);
   load_function(device, "vkGetPipelineExecutableStatisticsKHR", functions.statistics);
-  load_function(device, "vkGetPipelineExecutableInternalRepresentationsKHR", functions.representations);
+  load_function(device, "vkGetPipelineExecutableInternalRepresentationsKHR",
+                functions.representations);
   return functions;
 }
 
@@ -59,8 +61,8 @@ std::string read_assembly(const Device& device, const StatisticFunctions& vk,
   const auto query = [&](uint32_t* count, Representation* out) {
     return vk.representations(device.device, &info, count, out);
   };
-  auto all =
-      enumerate_all<Representation>(VK_STRUCTURE_TYPE_PIPELINE_EXECUTABLE_INTERNAL_REPRESENTATION_KHR, query);
+  auto all = enumerate_all<Representation>(
+      VK_STRUCTURE_TYPE_PIPELINE_EXECUTABLE_INTERNAL_REPRESENTATION_KHR, query);
   std::vector<std::string> texts(all.size());
   for (size_t i = 0; i < all.size(); ++i) {
     texts[i].resize(all[i].dataSize);
@@ -75,8 +77,8 @@ std::string read_assembly(const Device& device, const StatisticFunctions& vk,
   return "";
 }
 
-std::vector<PipelineExecutable> read_executables(const PipelinesInput& input, const StatisticFunctions& vk,
-                                                 VkPipeline pipeline) {
+std::vector<PipelineExecutable>
+read_executables(const PipelinesInput& input, const StatisticFunctions& vk, VkPipeline pipeline) {
   const VkDevice device = input.device->device;
   const VkPipelineInfoKHR of{VK_STRUCTURE_TYPE_PIPELINE_INFO_KHR, nullptr, pipeline};
   const auto programs = enumerate_all<VkPipelineExecutablePropertiesKHR>(
@@ -86,12 +88,13 @@ std::vector<PipelineExecutable> read_executables(const PipelinesInput& input, co
       });
   std::vector<PipelineExecutable> executables;
   for (uint32_t i = 0; i < programs.size(); ++i) {
-    const VkPipelineExecutableInfoKHR info{VK_STRUCTURE_TYPE_PIPELINE_EXECUTABLE_INFO_KHR, nullptr, pipeline,
-                                           i};
+    const VkPipelineExecutableInfoKHR info{VK_STRUCTURE_TYPE_PIPELINE_EXECUTABLE_INFO_KHR, nullptr,
+                                           pipeline, i};
     PipelineExecutable& executable = executables.emplace_back();
     executable.name = programs[i].name;
     executable.subgroup_size = programs[i].subgroupSize;
-    for (const VkPipelineExecutableStatisticKHR& one : enumerate_all<VkPipelineExecutableStatisticKHR>(
+    for (const VkPipelineExecutableStatisticKHR& one :
+         enumerate_all<VkPipelineExecutableStatisticKHR>(
              VK_STRUCTURE_TYPE_PIPELINE_EXECUTABLE_STATISTIC_KHR,
              [&](uint32_t*count, VkPipelineExecutableStatisticKHR*out) {
                return vk.statistics(device, &info, count, out);
@@ -108,7 +111,9 @@ struct EnvironmentLayout {
   const Device& device;
   VkDescriptorSetLayout layout = VK_NULL_HANDLE;
   explicit EnvironmentLayout(const Device& owner) : device(owner) {}
-  ~EnvironmentLayout() { device.vk.vkDestroyDescriptorSetLayout(device.device, layout, device.allocator); }
+  ~EnvironmentLayout() {
+    device.vk.vkDestroyDescriptorSetLayout(device.device, layout, device.allocator);
+  }
   EnvironmentLayout(const EnvironmentLayout&) = delete;
   EnvironmentLayout& operator=(const EnvironmentLayout&) = delete;
 };
@@ -119,7 +124,8 @@ Error compile_pipelines(const PipelinesInput& input, std::vector<CompiledPipelin
   const Device& device = *input.device;
   EnvironmentLayout environment(device);
   if (!input.environment.empty())
-    if (Error error = create_environment_layout(device, input.environment, environment.layout)) return error;
+    if (Error error = create_environment_layout(device, input.environment, environment.layout))
+      return error;
   VkPipelineCreateFlags flags = 0;
   if (input.statistics) flags |= VK_PIPELINE_CREATE_CAPTURE_STATISTICS_BIT_KHR;
   if (input.statistics && input.assembly)

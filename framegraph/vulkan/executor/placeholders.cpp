@@ -7,7 +7,8 @@
 namespace dermis::vulkan {
 namespace {
 
-constexpr uint64_t placeholder_buffer_bytes = 16; // the largest element a buffer block can start with
+constexpr uint64_t placeholder_buffer_bytes =
+    16; // the largest element a buffer block can start with
 
 MemoryRequest request_of(const VkMemoryRequirements& needs) {
   return {MemoryPurpose::constants,           needs.memoryTypeBits, needs.size, needs.alignment, 0,
@@ -20,7 +21,8 @@ Error create_image(const Device& device, Placeholder& placeholder) {
   info.format = placeholder.format;
   info.usage = VK_IMAGE_USAGE_TRANSFER_DST_BIT |
                (placeholder.storage ? VK_IMAGE_USAGE_STORAGE_BIT : VK_IMAGE_USAGE_SAMPLED_BIT);
-  VkResult result = device.vk.vkCreateImage(device.device, &info, device.allocator, &placeholder.image);
+  VkResult result =
+      device.vk.vkCreateImage(device.device, &info, device.allocator, &placeholder.image);
   if (result != VK_SUCCESS) {
     placeholder.image = VK_NULL_HANDLE;
     return call_error(result, "vkCreateImage", "placeholder of an unbound port");
@@ -29,10 +31,12 @@ Error create_image(const Device& device, Placeholder& placeholder) {
               "placeholder image");
   VkMemoryRequirements needs{};
   device.vk.vkGetImageMemoryRequirements(device.device, placeholder.image, &needs);
-  if (Error error = allocate_memory(device, request_of(needs), "placeholder image", placeholder.memory))
+  if (Error error =
+          allocate_memory(device, request_of(needs), "placeholder image", placeholder.memory))
     return error;
-  const VkBindImageMemoryInfo bind{VK_STRUCTURE_TYPE_BIND_IMAGE_MEMORY_INFO, nullptr, placeholder.image,
-                                   placeholder.memory.memory, placeholder.memory.offset};
+  const VkBindImageMemoryInfo bind{VK_STRUCTURE_TYPE_BIND_IMAGE_MEMORY_INFO, nullptr,
+                                   placeholder.image, placeholder.memory.memory,
+                                   placeholder.memory.offset};
   result = device.vk.vkBindImageMemory2(device.device, 1, &bind);
   if (result != VK_SUCCESS) return call_error(result, "vkBindImageMemory2", "placeholder image");
   VkImageViewCreateInfo view{};
@@ -47,19 +51,23 @@ Error create_image(const Device& device, Placeholder& placeholder) {
 }
 
 Error create_buffer(const Device& device, Placeholder& placeholder) {
-  const VkBufferCreateInfo info = buffer_create_info(
-      {placeholder_buffer_bytes, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT});
-  VkResult result = device.vk.vkCreateBuffer(device.device, &info, device.allocator, &placeholder.buffer);
+  const VkBufferCreateInfo info =
+      buffer_create_info({placeholder_buffer_bytes,
+                          VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT});
+  VkResult result =
+      device.vk.vkCreateBuffer(device.device, &info, device.allocator, &placeholder.buffer);
   if (result != VK_SUCCESS) {
     placeholder.buffer = VK_NULL_HANDLE;
     return call_error(result, "vkCreateBuffer", "placeholder of an unbound port");
   }
   VkMemoryRequirements needs{};
   device.vk.vkGetBufferMemoryRequirements(device.device, placeholder.buffer, &needs);
-  if (Error error = allocate_memory(device, request_of(needs), "placeholder buffer", placeholder.memory))
+  if (Error error =
+          allocate_memory(device, request_of(needs), "placeholder buffer", placeholder.memory))
     return error;
-  const VkBindBufferMemoryInfo bind{VK_STRUCTURE_TYPE_BIND_BUFFER_MEMORY_INFO, nullptr, placeholder.buffer,
-                                    placeholder.memory.memory, placeholder.memory.offset};
+  const VkBindBufferMemoryInfo bind{VK_STRUCTURE_TYPE_BIND_BUFFER_MEMORY_INFO, nullptr,
+                                    placeholder.buffer, placeholder.memory.memory,
+                                    placeholder.memory.offset};
   result = device.vk.vkBindBufferMemory2(device.device, 1, &bind);
   return call_error(result, "vkBindBufferMemory2", "placeholder buffer");
 }
@@ -72,7 +80,8 @@ uint32_t placeholder_for(State& state, const KernelPort& port, bool writes) {
   // Read-only and writable placeholders are separate, so that reads need no barriers.
   const bool storage = buffer ? writes : *port.type == VK_DESCRIPTOR_TYPE_STORAGE_IMAGE;
   for (uint32_t i = 0; i < state.placeholders.size(); ++i)
-    if (state.placeholders[i].format == format && state.placeholders[i].storage == storage) return i;
+    if (state.placeholders[i].format == format && state.placeholders[i].storage == storage)
+      return i;
   Placeholder& added = state.placeholders.emplace_back();
   added.format = format;
   added.storage = storage;
@@ -81,8 +90,9 @@ uint32_t placeholder_for(State& state, const KernelPort& port, bool writes) {
 
 Error create_placeholders(State& state) {
   for (Placeholder& placeholder : state.placeholders) {
-    Error error = placeholder.format == VK_FORMAT_UNDEFINED ? create_buffer(*state.device, placeholder)
-                                                            : create_image(*state.device, placeholder);
+    Error error = placeholder.format == VK_FORMAT_UNDEFINED
+                      ? create_buffer(*state.device, placeholder)
+                      : create_image(*state.device, placeholder);
     if (error) return error;
   }
   return {};

@@ -11,17 +11,20 @@ RecordResult reject(const char* text, int32_t slot = -1) {
   return {ErrorKind::argument, VK_SUCCESS, text, slot};
 }
 
-RecordResult check_buffer(const State& state, const FrameInput& frame, const PlanResource& resource) {
+RecordResult check_buffer(const State& state, const FrameInput& frame,
+                          const PlanResource& resource) {
   const auto slot = static_cast<size_t>(resource.slot);
   if (slot >= frame.buffers.size() || frame.buffers[slot].buffer == VK_NULL_HANDLE)
     return reject("the slot is not bound", resource.slot);
   const HostBuffer& bound = frame.buffers[slot];
   const VkPhysicalDeviceLimits& limits = state.device->properties.limits;
   if (bound.bytes < resource.bytes || bound.bytes > limits.maxStorageBufferRange)
-    return reject("the buffer has fewer bytes than the graph needs, or more than the device can bind",
-                  resource.slot);
+    return reject(
+        "the buffer has fewer bytes than the graph needs, or more than the device can bind",
+        resource.slot);
   if (bound.offset % std::max<VkDeviceSize>(limits.minStorageBufferOffsetAlignment, 1) != 0)
-    return reject("the buffer's offset is not a multiple of minStorageBufferOffsetAlignment", resource.slot);
+    return reject("the buffer's offset is not a multiple of minStorageBufferOffsetAlignment",
+                  resource.slot);
   return {};
 }
 
@@ -83,7 +86,8 @@ void push_settings(State& state, const FrameInput& frame, const PlanPass& planne
   const uint32_t words = kernel.push_bytes / static_cast<uint32_t>(sizeof(uint32_t));
   state.push_constants[0] = pass.port_mask;
   for (const uint32_t port : pass.conditional_ports)
-    if (access_now(state, pass.ports[port]) != no_index) state.push_constants[0] |= uint32_t{1} << port;
+    if (access_now(state, pass.ports[port]) != no_index)
+      state.push_constants[0] |= uint32_t{1} << port;
   for (uint32_t i = 1; i < words; ++i) {
     const SettingValue value = value_of(state, frame, planned, i - 1);
     const SettingType type = state.plan.settings[planned.first_setting + i - 1].value.type;
@@ -91,13 +95,15 @@ void push_settings(State& state, const FrameInput& frame, const PlanPass& planne
                                   ? std::bit_cast<uint32_t>(static_cast<float>(value.real))
                                   : static_cast<uint32_t>(static_cast<int32_t>(value.integer));
   }
-  state.commands->vkCmdPushConstants(frame.command_buffer, kernel.layout, VK_SHADER_STAGE_COMPUTE_BIT, 0,
-                                     kernel.push_bytes, state.push_constants.data());
+  state.commands->vkCmdPushConstants(frame.command_buffer, kernel.layout,
+                                     VK_SHADER_STAGE_COMPUTE_BIT, 0, kernel.push_bytes,
+                                     state.push_constants.data());
 }
 
 VkBuffer indirect_buffer(const State& state, const Pass& pass, const Kernel& kernel) {
   const PlanAccess& access = state.plan.accesses[pass.ports[kernel.indirect_port].access];
-  return state.instances[instance_of(state, state.plan.resources[access.resource], access.frames_back)]
+  return state
+      .instances[instance_of(state, state.plan.resources[access.resource], access.frames_back)]
       .buffer;
 }
 
@@ -118,10 +124,11 @@ void dispatch(State& state, const FrameInput& frame, const PlanPass& planned, co
     return vk.vkCmdDispatchIndirect(frame.command_buffer, indirect_buffer(state, pass, kernel),
                                     indirect_offset(state, frame, planned, pass, kernel));
   const bool by_image = kernel.dispatch.domain == DispatchRule::Domain::written_image;
-  const GroupCount groups = by_image ? pass.written_groups : group_count(kernel.dispatch, r.width, r.height);
+  const GroupCount groups =
+      by_image ? pass.written_groups : group_count(kernel.dispatch, r.width, r.height);
   if (groups.total() > 0)
-    vk.vkCmdDispatch(frame.command_buffer, static_cast<uint32_t>(groups.x), static_cast<uint32_t>(groups.y),
-                     static_cast<uint32_t>(groups.z));
+    vk.vkCmdDispatch(frame.command_buffer, static_cast<uint32_t>(groups.x),
+                     static_cast<uint32_t>(groups.y), static_cast<uint32_t>(groups.z));
 }
 
 void run_kernel(State& state, const FrameInput& frame, uint32_t frame_slot, size_t p,
@@ -133,7 +140,8 @@ void run_kernel(State& state, const FrameInput& frame, uint32_t frame_slot, size
   vk.vkCmdBindPipeline(frame.command_buffer, VK_PIPELINE_BIND_POINT_COMPUTE, kernel.pipeline);
   const bool environment = state.environment.set_layout != VK_NULL_HANDLE;
   const VkDescriptorSet sets[] = {state.descriptors.sets[frame_slot * state.passes.size() + p],
-                                  environment ? state.environment.sets[frame_slot] : VK_NULL_HANDLE};
+                                  environment ? state.environment.sets[frame_slot]
+                                              : VK_NULL_HANDLE};
   vk.vkCmdBindDescriptorSets(frame.command_buffer, VK_PIPELINE_BIND_POINT_COMPUTE, kernel.layout, 0,
                              environment ? 2 : 1, sets, 0, nullptr);
   push_settings(state, frame, state.plan.passes[p], pass, kernel);
@@ -157,17 +165,18 @@ void run_clear(State& state, const FrameInput& frame, size_t p) {
       vk.vkCmdFillBuffer(frame.command_buffer, to.buffer, to.offset, to.bytes, 0);
       continue;
     }
-    const HostImage* host = host_owned ? &frame.images[static_cast<size_t>(resource.slot)] : nullptr;
+    const HostImage* host =
+        host_owned ? &frame.images[static_cast<size_t>(resource.slot)] : nullptr;
     const VkImage image = host_owned ? host->image : instance.image;
     VkImageSubresourceRange range{VK_IMAGE_ASPECT_COLOR_BIT, 0, VK_REMAINING_MIP_LEVELS, 0,
                                   VK_REMAINING_ARRAY_LAYERS};
     if (host_owned) range.baseArrayLayer = host->first_layer;
     if (host_owned && host->layers > 0) range.layerCount = host->layers;
     if (access.range != resource.whole())
-      range = {VK_IMAGE_ASPECT_COLOR_BIT, access.range.first_mip, access.range.mips, access.range.first_layer,
-               access.range.layers};
-    vk.vkCmdClearColorImage(frame.command_buffer, image, static_cast<VkImageLayout>(access.layout), &zero, 1,
-                            &range);
+      range = {VK_IMAGE_ASPECT_COLOR_BIT, access.range.first_mip, access.range.mips,
+               access.range.first_layer, access.range.layers};
+    vk.vkCmdClearColorImage(frame.command_buffer, image, static_cast<VkImageLayout>(access.layout),
+                            &zero, 1, &range);
   }
 }
 
@@ -185,7 +194,8 @@ void invalidate_written(State& state, size_t p) {
       if (state.plan.histories[h].resource != access.resource) continue;
       invalidate_history(state.histories[h], HistoryReason::left_out);
       const PlanResource& resource = state.plan.resources[access.resource];
-      for (uint32_t i = 0; resource.first_instance != no_instance && i < resource.instance_count; ++i)
+      for (uint32_t i = 0; resource.first_instance != no_instance && i < resource.instance_count;
+           ++i)
         state.instances[resource.first_instance + i].ready = false;
     }
   }
@@ -209,7 +219,8 @@ bool labelled(const State& state) {
 
 void begin_label(const State& state, VkCommandBuffer commands, const char* name) {
   if (!labelled(state)) return;
-  const VkDebugUtilsLabelEXT label{VK_STRUCTURE_TYPE_DEBUG_UTILS_LABEL_EXT, nullptr, name, {0, 0, 0, 0}};
+  const VkDebugUtilsLabelEXT label{
+      VK_STRUCTURE_TYPE_DEBUG_UTILS_LABEL_EXT, nullptr, name, {0, 0, 0, 0}};
   state.commands->vkCmdBeginDebugUtilsLabelEXT(commands, &label);
 }
 
@@ -217,7 +228,8 @@ void end_label(const State& state, VkCommandBuffer commands) {
   if (labelled(state)) state.commands->vkCmdEndDebugUtilsLabelEXT(commands);
 }
 
-void finish_frame(State& state, const FrameInput& frame, uint32_t frame_slot, const Rectangle& rectangle) {
+void finish_frame(State& state, const FrameInput& frame, uint32_t frame_slot,
+                  const Rectangle& rectangle) {
   for (size_t h = 0; h < state.histories.size(); ++h) {
     HistoryRecord& history = state.histories[h];
     const PlanResource& resource = state.plan.resources[state.plan.histories[h].resource];
@@ -226,7 +238,8 @@ void finish_frame(State& state, const FrameInput& frame, uint32_t frame_slot, co
     history.age = history.written ? history.age + (history.age == UINT32_MAX ? 0 : 1) : 0;
     if (history.age > 0) history.reason = HistoryReason::valid;
   }
-  if (state.timestamps.pool != VK_NULL_HANDLE) state.timestamps.frame_of_slot[frame_slot] = frame.frame_index;
+  if (state.timestamps.pool != VK_NULL_HANDLE)
+    state.timestamps.frame_of_slot[frame_slot] = frame.frame_index;
   state.previous_rectangle = rectangle;
   state.last_frame_index = frame.frame_index;
   state.frame_of_slot[frame_slot] = frame.frame_index;

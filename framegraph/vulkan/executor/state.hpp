@@ -13,7 +13,8 @@ namespace dermis::vulkan {
 
 inline constexpr uint32_t no_index = 0xffffffffu;
 inline constexpr VkPipelineStageFlags2 all_commands = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
-inline constexpr VkAccessFlags2 all_memory = VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT;
+inline constexpr VkAccessFlags2 all_memory =
+    VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT;
 inline constexpr uint64_t indirect_entry_bytes = 16; // group counts x, y, z and one unused word
 
 // Memory of one plan heap.
@@ -212,8 +213,8 @@ struct Executor::State {
   std::vector<HeapMemory> heaps;
   std::vector<Instance> instances;
   std::vector<SubresourceView> subresource_views;
-  // By plan access: first of its subresource_views, one per instance; no_index: the whole image, or no
-  // view.
+  // By plan access: first of its subresource_views, one per instance; no_index: the whole image, or
+  // no view.
   std::vector<uint32_t> view_of_access;
   std::vector<Placeholder> placeholders;
   bool placeholders_ready = false;
@@ -243,7 +244,8 @@ struct Executor::State {
   Rectangle previous_rectangle;
   BeforeFrame before_frame;
 
-  explicit State(std::shared_ptr<const Plan> from) : shared_plan(std::move(from)), plan(*shared_plan) {}
+  explicit State(std::shared_ptr<const Plan> from)
+      : shared_plan(std::move(from)), plan(*shared_plan) {}
   State(const State&) = delete;
   State& operator=(const State&) = delete;
   ~State();
@@ -271,8 +273,8 @@ Error create_environment_layout(const Device& device, std::span<const Environmen
 uint64_t table_alignment(const Device& device); // of each binding's offset in a buffer
 // Allocates zeroed, host-visible memory for set 1. The caller frees `buffer` and `memory`, also on
 // an error.
-Error create_environment_buffer(const Device& device, uint64_t bytes, const char* name, VkBuffer& buffer,
-                                MemoryBlock& memory);
+Error create_environment_buffer(const Device& device, uint64_t bytes, const char* name,
+                                VkBuffer& buffer, MemoryBlock& memory);
 
 // ---- environment_tables.cpp
 // true: its buffer is the same in every frame
@@ -280,7 +282,8 @@ bool is_table(size_t binding, const EnvironmentBinding& given);
 // Points set 1 of a frame slot at the newest tables. No frame in flight may use the slot.
 void refresh_tables(State& state, uint32_t frame_slot) noexcept;
 void clear_counters(State& state, uint32_t frame_slot) noexcept;
-void write_frame_constants(State& state, uint32_t frame_slot, std::span<const std::byte> constants) noexcept;
+void write_frame_constants(State& state, uint32_t frame_slot,
+                           std::span<const std::byte> constants) noexcept;
 
 // ---- kernels.cpp
 // Describes what the kernels of plans are created from.
@@ -306,8 +309,9 @@ struct PipelineOptions {
 };
 // Creates `kernel.pipeline` from `kernel.layout`. `subresource` names it in errors, `label` in
 // debuggers.
-Error create_pipeline(const Device& device, const std::string& subresource, const std::string& label,
-                      std::span<const uint32_t> spirv, const PipelineOptions& options, Kernel& kernel);
+Error create_pipeline(const Device& device, const std::string& subresource,
+                      const std::string& label, std::span<const uint32_t> spirv,
+                      const PipelineOptions& options, Kernel& kernel);
 
 // ---- history.cpp
 void remember_before_frame(State& state) noexcept;
@@ -323,7 +327,8 @@ void write_descriptors(State& state, uint32_t frame_slot, const FrameInput& fram
 // ---- barriers.cpp
 // Returns the index of the instance that holds the resource as it was `frames_back` frames before
 // the current frame.
-uint32_t instance_of(const State& state, const PlanResource& resource, uint32_t frames_back) noexcept;
+uint32_t instance_of(const State& state, const PlanResource& resource,
+                     uint32_t frames_back) noexcept;
 // Records one batch: barriers first .. first + count of the plan, and barriers that order writes to
 // placeholders.
 void record_barriers(State& state, const FrameInput& frame, uint32_t first, uint32_t count,
@@ -354,7 +359,8 @@ struct CarriedHistory {
 // Returns which history of `from`, the previous frame's executor, history `index` of `to`
 // continues. Name, format and writing pass type must match; the size may differ if the history can
 // be rescaled. `reset`: the camera cut.
-CarriedHistory carried_history(const State& to, uint32_t index, const State& from, bool reset) noexcept;
+CarriedHistory carried_history(const State& to, uint32_t index, const State& from,
+                               bool reset) noexcept;
 // Returns the rectangle of the previous frame in pixels of `to`.
 Rectangle carried_rectangle(const State& to, const State& from) noexcept;
 // Must be called before anything is written for the frame.
@@ -382,7 +388,8 @@ void record_rescaling(State& to, const State& from, VkCommandBuffer commands,
 Error check_host_passes(State& state, const ExecutorInput& input);
 SettingValue value_of(const State& state, const FrameInput& frame, const PlanPass& planned,
                       uint32_t index) noexcept;
-void run_host_pass(State& state, const FrameInput& frame, size_t p, const Rectangle& rectangle) noexcept;
+void run_host_pass(State& state, const FrameInput& frame, size_t p,
+                   const Rectangle& rectangle) noexcept;
 
 // ---- clear.cpp
 // Clears placeholders and new or invalid history instances, and moves them to the layout that the
@@ -395,11 +402,13 @@ bool discards(const Plan& plan, const PlanBarrier& barrier) noexcept;
 // Records the barrier `image` or `buffer` in two halves, with the fill between them.
 void record_poison(State& state, VkCommandBuffer commands, const VkImageMemoryBarrier2& image,
                    Format format) noexcept;
-void record_poison(State& state, VkCommandBuffer commands, const VkBufferMemoryBarrier2& buffer) noexcept;
+void record_poison(State& state, VkCommandBuffer commands,
+                   const VkBufferMemoryBarrier2& buffer) noexcept;
 
 // ---- timestamps.cpp
 Error create_timestamps(State& state);
 void begin_timestamps(State& state, VkCommandBuffer commands, uint32_t frame_slot) noexcept;
-void write_timestamp(State& state, VkCommandBuffer commands, uint32_t frame_slot, uint32_t index) noexcept;
+void write_timestamp(State& state, VkCommandBuffer commands, uint32_t frame_slot,
+                     uint32_t index) noexcept;
 
 } // namespace dermis::vulkan

@@ -7,11 +7,12 @@
 namespace dermis::vulkan {
 namespace {
 
-VkResult read_ticks(const State& state, uint32_t frame_slot, std::vector<uint64_t>& ticks) noexcept {
+VkResult read_ticks(const State& state, uint32_t frame_slot,
+                    std::vector<uint64_t>& ticks) noexcept {
   const Timestamps& t = state.timestamps;
-  return state.device->vk.vkGetQueryPoolResults(state.device->device, t.pool, frame_slot * t.per_frame,
-                                                t.per_frame, t.per_frame * sizeof(uint64_t), ticks.data(),
-                                                sizeof(uint64_t), VK_QUERY_RESULT_64_BIT);
+  return state.device->vk.vkGetQueryPoolResults(
+      state.device->device, t.pool, frame_slot * t.per_frame, t.per_frame,
+      t.per_frame * sizeof(uint64_t), ticks.data(), sizeof(uint64_t), VK_QUERY_RESULT_64_BIT);
 }
 
 // Keeps the times of the slot's earlier frame, which the device has finished, so that they stay
@@ -41,7 +42,8 @@ Error create_timestamps(State& state) {
   info.sType = VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO;
   info.queryType = VK_QUERY_TYPE_TIMESTAMP;
   info.queryCount = t.per_frame * state.frames_in_flight;
-  const VkResult result = device.vk.vkCreateQueryPool(device.device, &info, device.allocator, &t.pool);
+  const VkResult result =
+      device.vk.vkCreateQueryPool(device.device, &info, device.allocator, &t.pool);
   if (result != VK_SUCCESS) t.pool = VK_NULL_HANDLE;
   return call_error(result, "vkCreateQueryPool", "timestamps");
 }
@@ -54,7 +56,8 @@ void begin_timestamps(State& state, VkCommandBuffer commands, uint32_t frame_slo
   write_timestamp(state, commands, frame_slot, 0);
 }
 
-void write_timestamp(State& state, VkCommandBuffer commands, uint32_t frame_slot, uint32_t index) noexcept {
+void write_timestamp(State& state, VkCommandBuffer commands, uint32_t frame_slot,
+                     uint32_t index) noexcept {
   const Timestamps& t = state.timestamps;
   if (t.pool == VK_NULL_HANDLE) return;
   state.commands->vkCmdWriteTimestamp2(commands, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, t.pool,

@@ -135,7 +135,8 @@ private:
     case op_member_decorate:
       if (o.at(1) >= max_members) break;
       if (o.at(2) == decoration_offset) member_slot(id(o.at(0)).member_offsets, o.at(1)) = o.at(3);
-      if (o.at(2) == decoration_matrix_stride) member_slot(id(o.at(0)).matrix_strides, o.at(1)) = o.at(3);
+      if (o.at(2) == decoration_matrix_stride)
+        member_slot(id(o.at(0)).matrix_strides, o.at(1)) = o.at(3);
       break;
     case op_constant:
     case op_spec_constant:
@@ -237,8 +238,9 @@ private:
       for (size_t i = 0; i < t.members.size(); ++i) {
         const Id& member = id(t.members[i]);
         // A column-major matrix has one stride per column.
-        const uint64_t bytes =
-            member.op == op_type_matrix ? uint64_t{t.matrix_strides[i]} * member.operands[1] : member.bytes;
+        const uint64_t bytes = member.op == op_type_matrix
+                                   ? uint64_t{t.matrix_strides[i]} * member.operands[1]
+                                   : member.bytes;
         t.bytes = std::max(t.bytes, t.member_offsets[i] + bytes);
       }
       break;
@@ -322,9 +324,10 @@ std::optional<Reflection> reflect(std::span<const uint32_t> spirv, std::string& 
     binding.name = variable.name.empty() ? type->name : variable.name;
     result.bindings.push_back(std::move(binding));
   }
-  std::stable_sort(result.bindings.begin(), result.bindings.end(), [](const auto& a, const auto& b) {
-    return a.set != b.set ? a.set < b.set : a.binding < b.binding;
-  });
+  std::stable_sort(result.bindings.begin(), result.bindings.end(),
+                   [](const auto& a, const auto& b) {
+                     return a.set != b.set ? a.set < b.set : a.binding < b.binding;
+                   });
   return result;
 }
 

@@ -17,7 +17,8 @@ struct Checker {
 
   void check_type(const ShaderBinding& binding, const std::string& place, BindingType expected) {
     if (binding.array)
-      mismatch("{} is an array of descriptors in the shader ('{}'), but the signature binds one descriptor",
+      mismatch("{} is an array of descriptors in the shader ('{}'), but the signature binds one "
+               "descriptor",
                place, binding.name);
     else if (binding.type != expected)
       mismatch("{} is a {} in the signature and a {} ('{}') in the shader", place,
@@ -26,22 +27,27 @@ struct Checker {
 
   void check_port(const ShaderBinding& binding) {
     if (binding.binding >= type.ports.size())
-      return mismatch("the shader has '{}' at set 0 binding {}, but the signature has only {} ports",
-                      binding.name, binding.binding, type.ports.size());
+      return mismatch(
+          "the shader has '{}' at set 0 binding {}, but the signature has only {} ports",
+          binding.name, binding.binding, type.ports.size());
     const Port& port = type.ports[binding.binding];
-    const std::string place = fmt::format("port '{}' (set 0 binding {})", port.name, binding.binding);
+    const std::string place =
+        fmt::format("port '{}' (set 0 binding {})", port.name, binding.binding);
     const auto descriptor = descriptor_type(port.usage);
     if (!descriptor)
-      return mismatch("{} has usage {} and therefore no descriptor, but the shader binds '{}' there", place,
-                      usage_info(port.usage).name, binding.name);
+      return mismatch(
+          "{} has usage {} and therefore no descriptor, but the shader binds '{}' there", place,
+          usage_info(port.usage).name, binding.name);
     const BindingType expected =
-        *descriptor == VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE                ? BindingType::sampled_image
-        : *descriptor == VK_DESCRIPTOR_TYPE_STORAGE_IMAGE              ? BindingType::storage_image
-        : *descriptor == VK_DESCRIPTOR_TYPE_ACCELERATION_STRUCTURE_KHR ? BindingType::acceleration_structure
-                                                                       : BindingType::storage_buffer;
+        *descriptor == VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE   ? BindingType::sampled_image
+        : *descriptor == VK_DESCRIPTOR_TYPE_STORAGE_IMAGE ? BindingType::storage_image
+        : *descriptor == VK_DESCRIPTOR_TYPE_ACCELERATION_STRUCTURE_KHR
+            ? BindingType::acceleration_structure
+            : BindingType::storage_buffer;
     check_type(binding, place, expected);
-    if (expected == BindingType::storage_buffer || expected == BindingType::acceleration_structure ||
-        binding.type != expected || port.glsl_type.empty())
+    if (expected == BindingType::storage_buffer ||
+        expected == BindingType::acceleration_structure || binding.type != expected ||
+        port.glsl_type.empty())
       return;
     const char first = port.glsl_type.front(); // utexture2D, itexture2D, texture2D
     const Numeric numeric = first == 'u'                          ? Numeric::unsigned_integer
@@ -49,14 +55,16 @@ struct Checker {
                             : first == 'i'                        ? Numeric::signed_integer
                                                                   : Numeric::real;
     if (numeric != binding.numeric)
-      mismatch("{} reads as {} because of its type {}, but as {} in the shader", place, numeric_name(numeric),
-               port.glsl_type, numeric_name(binding.numeric));
+      mismatch("{} reads as {} because of its type {}, but as {} in the shader", place,
+               numeric_name(numeric), port.glsl_type, numeric_name(binding.numeric));
   }
 
-  void check_environment(const ShaderBinding& binding, std::span<const EnvironmentBinding> environment) {
+  void check_environment(const ShaderBinding& binding,
+                         std::span<const EnvironmentBinding> environment) {
     if (binding.binding >= environment.size())
-      return mismatch("the shader has '{}' at set 1 binding {}, but the environment has only {} bindings",
-                      binding.name, binding.binding, environment.size());
+      return mismatch(
+          "the shader has '{}' at set 1 binding {}, but the environment has only {} bindings",
+          binding.name, binding.binding, environment.size());
     const EnvironmentBinding& given = environment[binding.binding];
     const std::string place = fmt::format("environment binding {}", binding.binding);
     check_type(binding, place,
@@ -73,17 +81,20 @@ struct Checker {
     const size_t expected = 1 + type.settings.size();
     if (!reflection.has_push_constants) {
       if (!type.settings.empty())
-        mismatch("the shader has no push constants, but the signature has {} settings", type.settings.size());
+        mismatch("the shader has no push constants, but the signature has {} settings",
+                 type.settings.size());
       return;
     }
     if (members.size() != expected)
-      return mismatch("the shader has {} push constants, but the signature has the port mask and {} settings",
-                      members.size(), type.settings.size());
+      return mismatch(
+          "the shader has {} push constants, but the signature has the port mask and {} settings",
+          members.size(), type.settings.size());
     for (size_t i = 0; i < members.size(); ++i) {
-      const std::string name = i == 0 ? "port mask" : fmt::format("setting '{}'", type.settings[i - 1].name);
+      const std::string name =
+          i == 0 ? "port mask" : fmt::format("setting '{}'", type.settings[i - 1].name);
       if (members[i].offset != 4 * i)
-        mismatch("{} is at byte {} of the push constants, but '{}' of the shader is at byte {}", name, 4 * i,
-                 members[i].name, members[i].offset);
+        mismatch("{} is at byte {} of the push constants, but '{}' of the shader is at byte {}",
+                 name, 4 * i, members[i].name, members[i].offset);
       const bool real = i > 0 && type.settings[i - 1].type == SettingType::real;
       const bool fits = real ? members[i].numeric == Numeric::real
                              : members[i].numeric == Numeric::signed_integer ||
@@ -99,11 +110,13 @@ struct Checker {
     const DispatchRule& rule = type.dispatch;
     const uint32_t side = rule.cell_side;
     const auto reject = [&](const std::string& needed) {
-      mismatch("its workgroup is {}x{}x{}, but this dispatch needs {}", size[0], size[1], size[2], needed);
+      mismatch("its workgroup is {}x{}x{}, but this dispatch needs {}", size[0], size[1], size[2],
+               needed);
     };
     if (!rule.is_kernel() || rule.domain == DispatchRule::Domain::one) return;
     if (rule.cell_shaped()) {
-      if (size[0] != side || size[1] != side || size[2] != 1) reject(fmt::format("{}x{}x1", side, side));
+      if (size[0] != side || size[1] != side || size[2] != 1)
+        reject(fmt::format("{}x{}x1", side, side));
     } else if (invocations != rule.invocations) {
       reject(fmt::format("{} invocations", rule.invocations));
     }
@@ -156,8 +169,9 @@ std::vector<std::string> check_signature(const PassType& type,
     else if (binding.set == 1)
       checker.check_environment(binding, environment);
     else
-      checker.mismatch("the shader has '{}' at set {}, but only sets 0 (ports) and 1 (environment) exist",
-                       binding.name, binding.set);
+      checker.mismatch(
+          "the shader has '{}' at set {}, but only sets 0 (ports) and 1 (environment) exist",
+          binding.name, binding.set);
   }
   checker.check_push_constants(reflection);
   checker.check_local_size(reflection.local_size);

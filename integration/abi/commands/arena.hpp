@@ -36,7 +36,8 @@ public:
   }
 
 private:
-  static constexpr size_t alignment = __STDCPP_DEFAULT_NEW_ALIGNMENT__, chunk_bytes = size_t{1} << 16;
+  static constexpr size_t alignment = __STDCPP_DEFAULT_NEW_ALIGNMENT__,
+                          chunk_bytes = size_t{1} << 16;
   struct Chunk {
     std::unique_ptr<std::byte[]> memory;
     size_t size = 0;

@@ -33,8 +33,10 @@ void VKAPI_CALL barrier(VkCommandBuffer commands, const VkDependencyInfo* info) 
   Capture& capture = capture_of(commands);
   VkDependencyInfo kept = *info;
   kept.pMemoryBarriers = keep(capture, info->pMemoryBarriers, info->memoryBarrierCount);
-  kept.pBufferMemoryBarriers = keep(capture, info->pBufferMemoryBarriers, info->bufferMemoryBarrierCount);
-  kept.pImageMemoryBarriers = keep(capture, info->pImageMemoryBarriers, info->imageMemoryBarrierCount);
+  kept.pBufferMemoryBarriers =
+      keep(capture, info->pBufferMemoryBarriers, info->bufferMemoryBarrierCount);
+  kept.pImageMemoryBarriers =
+      keep(capture, info->pImageMemoryBarriers, info->imageMemoryBarrierCount);
   add(capture, DERMIS_COMMAND_BARRIER).dependency = keep(capture, &kept, 1);
 }
 
@@ -42,16 +44,17 @@ void VKAPI_CALL bind_pipeline(VkCommandBuffer commands, VkPipelineBindPoint, VkP
   capture_of(commands).pipeline = pipeline;
 }
 
-void VKAPI_CALL bind_sets(VkCommandBuffer commands, VkPipelineBindPoint, VkPipelineLayout layout, uint32_t,
-                          uint32_t count, const VkDescriptorSet* sets, uint32_t, const uint32_t*) {
+void VKAPI_CALL bind_sets(VkCommandBuffer commands, VkPipelineBindPoint, VkPipelineLayout layout,
+                          uint32_t, uint32_t count, const VkDescriptorSet* sets, uint32_t,
+                          const uint32_t*) {
   Capture& capture = capture_of(commands);
   capture.layout = layout;
   capture.sets = keep(capture, sets, count);
   capture.set_count = count;
 }
 
-void VKAPI_CALL push_constants(VkCommandBuffer commands, VkPipelineLayout, VkShaderStageFlags, uint32_t,
-                               uint32_t bytes, const void* values) {
+void VKAPI_CALL push_constants(VkCommandBuffer commands, VkPipelineLayout, VkShaderStageFlags,
+                               uint32_t, uint32_t bytes, const void* values) {
   Capture& capture = capture_of(commands);
   capture.push_constants = keep(capture, static_cast<const std::byte*>(values), bytes);
   capture.push_bytes = bytes;
@@ -113,7 +116,8 @@ void VKAPI_CALL copy_buffer(VkCommandBuffer commands, VkBuffer from, VkBuffer to
 }
 
 dermis_command& add_transfer(Capture& capture, dermis_command_type type, VkImage from,
-                             VkImageLayout from_layout, VkImage to, VkImageLayout to_layout, uint32_t count) {
+                             VkImageLayout from_layout, VkImage to, VkImageLayout to_layout,
+                             uint32_t count) {
   dermis_command& command = add(capture, type);
   command.image = from;
   command.image_layout = from_layout;
@@ -123,22 +127,24 @@ dermis_command& add_transfer(Capture& capture, dermis_command_type type, VkImage
   return command;
 }
 
-void VKAPI_CALL copy_image(VkCommandBuffer commands, VkImage from, VkImageLayout from_layout, VkImage to,
-                           VkImageLayout to_layout, uint32_t count, const VkImageCopy* regions) {
+void VKAPI_CALL copy_image(VkCommandBuffer commands, VkImage from, VkImageLayout from_layout,
+                           VkImage to, VkImageLayout to_layout, uint32_t count,
+                           const VkImageCopy* regions) {
   Capture& capture = capture_of(commands);
-  add_transfer(capture, DERMIS_COMMAND_COPY_IMAGE, from, from_layout, to, to_layout, count).image_copies =
-      keep(capture, regions, count);
+  add_transfer(capture, DERMIS_COMMAND_COPY_IMAGE, from, from_layout, to, to_layout, count)
+      .image_copies = keep(capture, regions, count);
 }
 
-void VKAPI_CALL reset_queries(VkCommandBuffer commands, VkQueryPool pool, uint32_t first, uint32_t count) {
+void VKAPI_CALL reset_queries(VkCommandBuffer commands, VkQueryPool pool, uint32_t first,
+                              uint32_t count) {
   dermis_command& command = add(capture_of(commands), DERMIS_COMMAND_RESET_QUERIES);
   command.query_pool = pool;
   command.query = first;
   command.count = count;
 }
 
-void VKAPI_CALL write_timestamp(VkCommandBuffer commands, VkPipelineStageFlags2 stages, VkQueryPool pool,
-                                uint32_t query) {
+void VKAPI_CALL write_timestamp(VkCommandBuffer commands, VkPipelineStageFlags2 stages,
+                                VkQueryPool pool, uint32_t query) {
   dermis_command& command = add(capture_of(commands), DERMIS_COMMAND_WRITE_TIMESTAMP);
   command.stages = stages;
   command.query_pool = pool;

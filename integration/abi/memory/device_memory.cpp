@@ -3,7 +3,8 @@
 namespace dermis::abi {
 namespace {
 
-VkResult allocate_block(void* allocator, const vulkan::MemoryRequest& request, vulkan::MemoryBlock& block) {
+VkResult allocate_block(void* allocator, const vulkan::MemoryRequest& request,
+                        vulkan::MemoryBlock& block) {
   const auto& host = *static_cast<const DeviceAllocator*>(allocator);
   const dermis_memory_request host_request = request_of(request);
   dermis_memory_block given = DERMIS_MEMORY_BLOCK_INIT;

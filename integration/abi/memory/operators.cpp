@@ -44,7 +44,8 @@ void to_c_library(void* memory) {
 #endif
 
 void* allocate_bytes(size_t size, size_t requested_alignment) noexcept {
-  const size_t alignment = std::max(requested_alignment, min_alignment), front = header_space(alignment);
+  const size_t alignment = std::max(requested_alignment, min_alignment),
+               front = header_space(alignment);
   // aligned_alloc requires a multiple of the alignment
   const size_t total = (front + size + alignment - 1) / alignment * alignment;
   if (total < size) return nullptr;

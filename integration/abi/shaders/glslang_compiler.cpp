@@ -49,7 +49,8 @@ public:
     problem_.clear();
     if (depth > include_nesting)
       return reject(fmt::format("more than {} files include each other", include_nesting));
-    if (++count_ > includes) return reject(fmt::format("more than {} files are included", includes));
+    if (++count_ > includes)
+      return reject(fmt::format("more than {} files are included", includes));
     const std::string name = header;
     for (const GeneratedFile& file : generated_)
       if (file.name == name) return keep(name, {name, file.text, ""});
@@ -95,12 +96,14 @@ struct CompilerMessage {
 uint32_t column_of(std::string_view line, std::string_view message) {
   const size_t begin = message.find('\''), end = message.find('\'', begin + 1);
   const auto in_word = [&](size_t at) {
-    return at < line.size() && (std::isalnum(static_cast<unsigned char>(line[at])) != 0 || line[at] == '_');
+    return at < line.size() &&
+           (std::isalnum(static_cast<unsigned char>(line[at])) != 0 || line[at] == '_');
   };
   if (end != std::string_view::npos && end > begin + 1) {
     const std::string_view word = message.substr(begin + 1, end - begin - 1);
     for (size_t at = line.find(word); at != std::string_view::npos; at = line.find(word, at + 1))
-      if (!in_word(at + word.size()) && (at == 0 || !in_word(at - 1))) return static_cast<uint32_t>(at + 1);
+      if (!in_word(at + word.size()) && (at == 0 || !in_word(at - 1)))
+        return static_cast<uint32_t>(at + 1);
   }
   const size_t first = line.find_first_not_of(" \t");
   return static_cast<uint32_t>(first == std::string_view::npos ? 1 : first + 1);
@@ -146,7 +149,8 @@ std::vector<CompilerMessage> messages_in(std::string_view log, const std::string
     found.push_back({file->second, number, column, std::move(text)});
   }
   if (found.empty())
-    found.push_back({files.at(kernel), 0, 0, rest.empty() ? std::string("glslang rejects it") : rest});
+    found.push_back(
+        {files.at(kernel), 0, 0, rest.empty() ? std::string("glslang rejects it") : rest});
   return found;
 }
 
@@ -193,7 +197,8 @@ FileId file_id(const FileText& file, Diagnostics& diagnostics) {
 } // namespace
 
 std::string shader_compiler() {
-  return fmt::format("glslang {}.{}.{}", GLSLANG_VERSION_MAJOR, GLSLANG_VERSION_MINOR, GLSLANG_VERSION_PATCH);
+  return fmt::format("glslang {}.{}.{}", GLSLANG_VERSION_MAJOR, GLSLANG_VERSION_MINOR,
+                     GLSLANG_VERSION_PATCH);
 }
 
 bool compile_shaders(std::span<const std::string> shaders, const OpenFile& open,
@@ -215,13 +220,15 @@ bool compile_shaders(std::span<const std::string> shaders, const OpenFile& open,
     spirv.emplace_back(answer.spirv.begin(), answer.spirv.end());
     for (const CompilerMessage& one : answer.messages) {
       fine = false;
-      const bool again = std::any_of(reported.begin(), reported.end(), [&](const CompilerMessage* other) {
-        return other->file.name == one.file.name && other->line == one.line && other->text == one.text;
-      });
+      const bool again =
+          std::any_of(reported.begin(), reported.end(), [&](const CompilerMessage* other) {
+            return other->file.name == one.file.name && other->line == one.line &&
+                   other->text == one.text;
+          });
       if (again) continue;
       reported.push_back(&one);
-      diagnostics.add(DiagnosticId::shader_error, {file_id(one.file, diagnostics), one.line, one.column, ""},
-                      one.text);
+      diagnostics.add(DiagnosticId::shader_error,
+                      {file_id(one.file, diagnostics), one.line, one.column, ""}, one.text);
     }
   }
   return fine;

@@ -42,25 +42,29 @@ void use_shaders(RuntimeShaders& shaders, dermis_include_fn open, void* user) {
   shaders.kernels.clear();
 }
 
-bool compile_missing(RuntimeShaders& shaders, const Graph& graph, const PassTypeRegistry& pass_types,
-                     Diagnostics& diagnostics) {
+bool compile_missing(RuntimeShaders& shaders, const Graph& graph,
+                     const PassTypeRegistry& pass_types, Diagnostics& diagnostics) {
   if (shaders.open == nullptr) return true;
   std::vector<std::string> missing;
   for (const PassDeclaration& pass : graph.passes) {
     const PassType& type = pass_types[pass.type];
     const std::string shader(type.shader);
     if (!type.dispatch.is_kernel()) continue;
-    if (shaders.kernels.contains(shader) || std::ranges::find(missing, shader) != missing.end()) continue;
+    if (shaders.kernels.contains(shader) || std::ranges::find(missing, shader) != missing.end())
+      continue;
     missing.push_back(shader);
   }
   if (missing.empty()) return true;
-  const OpenFile open = [&](std::string_view name) { return ask_host(shaders.open, shaders.user, name); };
+  const OpenFile open = [&](std::string_view name) {
+    return ask_host(shaders.open, shaders.user, name);
+  };
   std::vector<std::vector<uint32_t>> spirv;
   if (!compile_shaders(missing, open, spirv, diagnostics)) return false;
   const auto is_empty = [](const std::vector<uint32_t>& words) { return words.empty(); };
   if (shaders.kernels.empty() && std::ranges::all_of(spirv, is_empty)) {
-    diagnostics.add(DiagnosticId::shader_error, {},
-                    fmt::format("the host has none of the graph's kernels: {}", list_files(missing)));
+    diagnostics.add(
+        DiagnosticId::shader_error, {},
+        fmt::format("the host has none of the graph's kernels: {}", list_files(missing)));
     return false;
   }
   for (size_t i = 0; i < missing.size(); ++i)

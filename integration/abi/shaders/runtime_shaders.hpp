@@ -33,8 +33,8 @@ void use_shaders(RuntimeShaders& shaders, dermis_include_fn open, void* user);
 
 // Compiles the kernels of all pass types that the graph names, except known kernels. Returns false
 // with errors in `diagnostics`.
-bool compile_missing(RuntimeShaders& shaders, const Graph& graph, const PassTypeRegistry& pass_types,
-                     Diagnostics& diagnostics);
+bool compile_missing(RuntimeShaders& shaders, const Graph& graph,
+                     const PassTypeRegistry& pass_types, Diagnostics& diagnostics);
 
 // Returns the kernels for an executor; valid while `shaders` is unchanged.
 std::vector<vulkan::KernelCode> kernel_codes(const RuntimeShaders& shaders);

@@ -26,8 +26,8 @@ ErrorKind kind_of(dermis_result result) {
 Error dermis_error(const char* call, dermis_result result, dermis_report report) {
   if (dermis_report_count(report) > 0) return {kind_of(result), dermis_report_text(report)};
   const char* detail = dermis_last_error();
-  return {kind_of(result), fmt::format("{}: {}{}{}", call, dermis_result_name(result), detail ? ": " : "",
-                                       detail ? detail : "")};
+  return {kind_of(result), fmt::format("{}: {}{}{}", call, dermis_result_name(result),
+                                       detail ? ": " : "", detail ? detail : "")};
 }
 
 dermis_source source_of(const std::string& name, const std::string& text) {

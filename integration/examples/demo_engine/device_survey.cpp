@@ -44,13 +44,13 @@ Result<std::vector<SurveyItem>> requirements_of(VkInstance instance, VkPhysicalD
   std::array<dermis_requirement, 16> requested;
   requested.fill(DERMIS_REQUIREMENT_INIT);
   auto count = static_cast<uint32_t>(requested.size());
-  if (dermis_query_requirements(vkGetInstanceProcAddr, instance, device, &count, requested.data()) !=
-      DERMIS_OK)
+  if (dermis_query_requirements(vkGetInstanceProcAddr, instance, device, &count,
+                                requested.data()) != DERMIS_OK)
     return Error{ErrorKind::internal, dermis_last_error()};
   std::vector<SurveyItem> items;
   for (uint32_t i = 0; i < count; ++i)
-    items.push_back(
-        {requested[i].name, requested[i].present != 0, requested[i].required != 0, requested[i].why});
+    items.push_back({requested[i].name, requested[i].present != 0, requested[i].required != 0,
+                     requested[i].why});
   return items;
 }
 
@@ -78,14 +78,15 @@ void add_optional(VkPhysicalDevice device, bool timestamps, std::vector<SurveyIt
     SurveyItem& item = items.emplace_back();
     item.name = format.name;
     item.present = (properties.optimalTilingFeatures & needed) == needed;
-    item.why = item.present ? std::string(format.use)
-                            : fmt::format("{}; graphs that name no other format do not compile", format.use);
+    item.why = item.present
+                   ? std::string(format.use)
+                   : fmt::format("{}; graphs that name no other format do not compile", format.use);
   }
 }
 
 Result<SurveyedDevice> survey(VkInstance instance, VkPhysicalDevice device) {
-  auto driver =
-      vulkan_struct<VkPhysicalDeviceDriverProperties>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DRIVER_PROPERTIES);
+  auto driver = vulkan_struct<VkPhysicalDeviceDriverProperties>(
+      VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DRIVER_PROPERTIES);
   auto properties =
       vulkan_struct<VkPhysicalDeviceProperties2>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2);
   vkGetPhysicalDeviceProperties(device, &properties.properties);
@@ -109,7 +110,8 @@ Result<SurveyedDevice> survey(VkInstance instance, VkPhysicalDevice device) {
   seen.items = required.take();
   bool timestamps = false;
   const bool compute = queue_fits(device, timestamps);
-  seen.items.push_back({"a queue family with compute", compute, true, "everything is a compute shader"});
+  seen.items.push_back(
+      {"a queue family with compute", compute, true, "everything is a compute shader"});
   add_optional(device, timestamps, seen.items);
   seen.fits = std::all_of(seen.items.begin(), seen.items.end(),
                           [](const SurveyItem& item) { return item.present || !item.required; });

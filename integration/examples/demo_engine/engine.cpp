@@ -27,12 +27,13 @@ Result<> check(const RenderOptions& options) {
   if (options.width < 1 || options.height < 1 || options.width > max_pixels_per_side ||
       options.height > max_pixels_per_side)
     return Error{ErrorKind::usage,
-                 fmt::format("the size is {}x{}; expected 1x1 to {}x{} pixels", options.width, options.height,
-                             max_pixels_per_side, max_pixels_per_side)};
+                 fmt::format("the size is {}x{}; expected 1x1 to {}x{} pixels", options.width,
+                             options.height, max_pixels_per_side, max_pixels_per_side)};
   if (options.frames < 1 || options.frames > max_frames || options.first_frame > max_frames)
-    return Error{ErrorKind::usage,
-                 fmt::format("{} frames from frame {} were requested; expected 1 to {}, from 0 to {}",
-                             options.frames, options.first_frame, max_frames, max_frames)};
+    return Error{
+        ErrorKind::usage,
+        fmt::format("{} frames from frame {} were requested; expected 1 to {}, from 0 to {}",
+                    options.frames, options.first_frame, max_frames, max_frames)};
   return success();
 }
 
@@ -51,7 +52,8 @@ FrameCamera camera_of(const Scene& scene, const SceneState& state) {
   camera.view_from_world = rows_of(state.now.view_from_world);
   camera.previous_clip_from_view = rows_of(state.previous.clip_from_view);
   camera.previous_view_from_world = rows_of(state.previous.view_from_world);
-  camera.jitter_pixels = {static_cast<float>(state.now.jitter.x), static_cast<float>(state.now.jitter.y)};
+  camera.jitter_pixels = {static_cast<float>(state.now.jitter.x),
+                          static_cast<float>(state.now.jitter.y)};
   return camera;
 }
 
@@ -79,8 +81,10 @@ Result<> read_inputs(VulkanHost& host, const Renderer& renderer, const SceneStat
   for (const Readback& one :
        {Readback{Target::lighting, 3, &inputs.lighting}, Readback{Target::depth, 1, &inputs.depth},
         Readback{Target::normal, 3, &inputs.normal}, Readback{Target::albedo, 3, &inputs.albedo},
-        Readback{Target::material, 1, &inputs.profile}, Readback{Target::velocity, 2, &inputs.velocity},
-        Readback{Target::specular, 3, &inputs.specular}, Readback{Target::thickness, 1, &inputs.thickness},
+        Readback{Target::material, 1, &inputs.profile},
+        Readback{Target::velocity, 2, &inputs.velocity},
+        Readback{Target::specular, 3, &inputs.specular},
+        Readback{Target::thickness, 1, &inputs.thickness},
         Readback{Target::back_lighting, 3, &inputs.back_lighting}})
     if (auto done = read(host, renderer[one.target], one.channels, *one.out); !done) return done;
   const float nothing = renderer.view.reversed_depth ? 0.0f : 1.0f;
@@ -242,12 +246,13 @@ Result<RenderSummary> render(const RenderOptions& options, const RenderCallbacks
   auto usage = kept_stage ? usage_for_keeping() : std::array<VkImageUsageFlags, target_count>{};
   DermisHandle dermis;
   if (!options.graph.empty()) {
-    auto made = create_dermis_host(host,
-                                   {options.graph, info.profiles, options.settings, options.width,
-                                    options.height, options.overlays, options.include, options.shaders,
-                                    options.budget_ms, options.deterministic, options.calibration,
-                                    options.sampling, options.tile_class, options.hooks},
-                                   &stage.slots);
+    auto made =
+        create_dermis_host(host,
+                           {options.graph, info.profiles, options.settings, options.width,
+                            options.height, options.overlays, options.include, options.shaders,
+                            options.budget_ms, options.deterministic, options.calibration,
+                            options.sampling, options.tile_class, options.hooks},
+                           &stage.slots);
     if (!made) return made.error();
     dermis = made.take();
     const auto of_graph = usage_for_graph(*dermis);

@@ -17,8 +17,8 @@ Result<std::vector<std::byte>> read_binary_file(const std::string& path, uint64_
   const uint64_t size = std::filesystem::file_size(path, problem);
   if (problem) return Error{ErrorKind::input, fmt::format("{}: {}", path, problem.message())};
   if (size > maximum)
-    return Error{ErrorKind::input,
-                 fmt::format("{}: the file has {} bytes; at most {} are read", path, size, maximum)};
+    return Error{ErrorKind::input, fmt::format("{}: the file has {} bytes; at most {} are read",
+                                               path, size, maximum)};
   std::ifstream stream(path, std::ios::binary);
   std::vector<std::byte> bytes(size);
   stream.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(size));

@@ -155,13 +155,15 @@ std::vector<std::byte> encode_texels(const PixelFormat& format, std::span<const 
         store_uint(out, size, unorm(value[c], largest));
         break;
       case Scalar::srgb:
-        store_uint(out, 1, unorm(c == 3 ? value[c] : srgb_from_linear(std::max(0.0f, value[c])), 255));
+        store_uint(out, 1,
+                   unorm(c == 3 ? value[c] : srgb_from_linear(std::max(0.0f, value[c])), 255));
         break;
       case Scalar::uint:
         store_uint(out, size,
-                   value[c] > 0.0f ? static_cast<uint32_t>(std::min(std::nearbyint(double{value[c]}),
-                                                                    static_cast<double>(largest)))
-                                   : 0u);
+                   value[c] > 0.0f
+                       ? static_cast<uint32_t>(std::min(std::nearbyint(double{value[c]}),
+                                                        static_cast<double>(largest)))
+                       : 0u);
         break;
       }
     }

@@ -16,8 +16,9 @@ struct ExtensionFeatures {
   VkPhysicalDeviceSynchronization2Features synchronization2 =
       vulkan_struct<VkPhysicalDeviceSynchronization2Features>(
           VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SYNCHRONIZATION_2_FEATURES);
-  VkPhysicalDeviceMaintenance4Features maintenance4 = vulkan_struct<VkPhysicalDeviceMaintenance4Features>(
-      VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MAINTENANCE_4_FEATURES);
+  VkPhysicalDeviceMaintenance4Features maintenance4 =
+      vulkan_struct<VkPhysicalDeviceMaintenance4Features>(
+          VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MAINTENANCE_4_FEATURES);
 };
 
 bool has_extensions(VkPhysicalDevice device, std::span<const char* const> required) {
@@ -35,7 +36,8 @@ constexpr const char* ray_extensions[] = {VK_KHR_ACCELERATION_STRUCTURE_EXTENSIO
                                           VK_KHR_RAY_QUERY_EXTENSION_NAME,
                                           VK_KHR_DEFERRED_HOST_OPERATIONS_EXTENSION_NAME};
 
-constexpr const char* statistics_extensions[] = {VK_KHR_PIPELINE_EXECUTABLE_PROPERTIES_EXTENSION_NAME};
+constexpr const char* statistics_extensions[] = {
+    VK_KHR_PIPELINE_EXECUTABLE_PROPERTIES_EXTENSION_NAME};
 
 Result<> create_queue_objects(VulkanHost& host) {
   host.vk.vkGetDeviceQueue(host.device, host.queue_family, 0, &host.queue);
@@ -52,13 +54,14 @@ Result<> create_queue_objects(VulkanHost& host) {
 
 Result<> create_device(VulkanHost& host, const HostOptions& options) {
   const bool as_vulkan_12 = options.as_vulkan_12;
-  auto features13 =
-      vulkan_struct<VkPhysicalDeviceVulkan13Features>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES);
-  auto features12 =
-      vulkan_struct<VkPhysicalDeviceVulkan12Features>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES);
-  auto features11 =
-      vulkan_struct<VkPhysicalDeviceVulkan11Features>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_1_FEATURES);
-  auto features = vulkan_struct<VkPhysicalDeviceFeatures2>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2);
+  auto features13 = vulkan_struct<VkPhysicalDeviceVulkan13Features>(
+      VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES);
+  auto features12 = vulkan_struct<VkPhysicalDeviceVulkan12Features>(
+      VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES);
+  auto features11 = vulkan_struct<VkPhysicalDeviceVulkan11Features>(
+      VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_1_FEATURES);
+  auto features =
+      vulkan_struct<VkPhysicalDeviceFeatures2>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2);
   features.pNext = &features11;
   features11.pNext = &features12;
   ExtensionFeatures extension_features;
@@ -77,8 +80,8 @@ Result<> create_device(VulkanHost& host, const HostOptions& options) {
     features13.pNext = &queries;
   }
   vkGetPhysicalDeviceFeatures2(host.physical_device, &features);
-  host.ray_query =
-      rays && structures.accelerationStructure && queries.rayQuery && features12.bufferDeviceAddress;
+  host.ray_query = rays && structures.accelerationStructure && queries.rayQuery &&
+                   features12.bufferDeviceAddress;
   if (!host.ray_query) features13.pNext = nullptr;
   auto statistics = vulkan_struct<VkPhysicalDevicePipelineExecutablePropertiesFeaturesKHR>(
       VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PIPELINE_EXECUTABLE_PROPERTIES_FEATURES_KHR);
@@ -92,10 +95,10 @@ Result<> create_device(VulkanHost& host, const HostOptions& options) {
   features.features.robustBufferAccess = VK_FALSE;
   features13.robustImageAccess = VK_FALSE;
   if (!options.separate_depth_stencil) features12.separateDepthStencilLayouts = VK_FALSE;
-  const bool fits =
-      as_vulkan_12 ? extension_features.synchronization2.synchronization2 &&
-                         extension_features.maintenance4.maintenance4
-                   : features13.synchronization2 && features13.dynamicRendering && features13.maintenance4;
+  const bool fits = as_vulkan_12 ? extension_features.synchronization2.synchronization2 &&
+                                       extension_features.maintenance4.maintenance4
+                                 : features13.synchronization2 && features13.dynamicRendering &&
+                                       features13.maintenance4;
   if (!fits) {
     return Error{ErrorKind::environment,
                  fmt::format("'{}' lacks one of synchronization2, dynamicRendering, maintenance4",
@@ -164,7 +167,8 @@ Result<std::unique_ptr<VulkanHost>> create_vulkan_host(const HostOptions& option
 }
 
 Result<> run_commands(VulkanHost& host, const std::function<Result<>(VkCommandBuffer)>& record) {
-  auto allocate = vulkan_struct<VkCommandBufferAllocateInfo>(VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO);
+  auto allocate =
+      vulkan_struct<VkCommandBufferAllocateInfo>(VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO);
   allocate.commandPool = host.pool;
   allocate.level = VK_COMMAND_BUFFER_LEVEL_PRIMARY;
   allocate.commandBufferCount = 1;
@@ -177,7 +181,8 @@ Result<> run_commands(VulkanHost& host, const std::function<Result<>(VkCommandBu
   Result<> recorded = record(commands);
   if (recorded) {
     result = host.vk.vkEndCommandBuffer(commands);
-    auto buffer = vulkan_struct<VkCommandBufferSubmitInfo>(VK_STRUCTURE_TYPE_COMMAND_BUFFER_SUBMIT_INFO);
+    auto buffer =
+        vulkan_struct<VkCommandBufferSubmitInfo>(VK_STRUCTURE_TYPE_COMMAND_BUFFER_SUBMIT_INFO);
     buffer.commandBuffer = commands;
     auto submit = vulkan_struct<VkSubmitInfo2>(VK_STRUCTURE_TYPE_SUBMIT_INFO_2);
     submit.commandBufferInfoCount = 1;
@@ -192,8 +197,8 @@ Result<> run_commands(VulkanHost& host, const std::function<Result<>(VkCommandBu
   return recorded;
 }
 
-uint32_t find_memory_type(const VulkanHost& host, uint32_t type_bits, VkMemoryPropertyFlags preferred,
-                          VkMemoryPropertyFlags required) {
+uint32_t find_memory_type(const VulkanHost& host, uint32_t type_bits,
+                          VkMemoryPropertyFlags preferred, VkMemoryPropertyFlags required) {
   for (const VkMemoryPropertyFlags flags : {preferred | required, required}) {
     for (uint32_t i = 0; i < host.memory.memoryTypeCount; ++i) {
       const bool allowed = (type_bits >> i) & 1u;

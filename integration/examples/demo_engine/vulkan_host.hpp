@@ -26,7 +26,7 @@ struct VulkanHost {
   VkCommandPool pool = VK_NULL_HANDLE;
   VkFence fence = VK_NULL_HANDLE;
   KernelShape kernels = KernelShape::by_device;
-  bool ray_query = false;      // VK_KHR_ray_query and VK_KHR_acceleration_structure are enabled
+  bool ray_query = false; // VK_KHR_ray_query and VK_KHR_acceleration_structure are enabled
   // VK_KHR_pipeline_executable_properties is enabled; only with HostOptions::compile_only
   bool pipeline_statistics = false;
   uint64_t timestamp_mask = 0; // 0: the queue has no timestamps
@@ -50,9 +50,9 @@ Result<std::unique_ptr<VulkanHost>> create_vulkan_host(const HostOptions& option
 // returns.
 Result<> run_commands(VulkanHost& host, const std::function<Result<>(VkCommandBuffer)>& record);
 
-// Returns the index of a memory type with all `preferred` flags, else with `required`; UINT32_MAX if
-// there is none.
-uint32_t find_memory_type(const VulkanHost& host, uint32_t type_bits, VkMemoryPropertyFlags preferred,
-                          VkMemoryPropertyFlags required);
+// Returns the index of a memory type with all `preferred` flags, else with `required`; UINT32_MAX
+// if there is none.
+uint32_t find_memory_type(const VulkanHost& host, uint32_t type_bits,
+                          VkMemoryPropertyFlags preferred, VkMemoryPropertyFlags required);
 
 } // namespace demo

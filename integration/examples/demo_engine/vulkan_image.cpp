@@ -25,7 +25,8 @@ VkResult create_view(VulkanHost& host, const Image& image, VkImageViewType type,
 
 // Records the computation of one mip from the next finer one. Both must be in TRANSFER_DST; the
 // finer mip ends in TRANSFER_SRC.
-void record_mip(const VulkanHost& host, VkCommandBuffer commands, const Image& image, uint32_t mip) {
+void record_mip(const VulkanHost& host, VkCommandBuffer commands, const Image& image,
+                uint32_t mip) {
   auto barrier = vulkan_struct<VkImageMemoryBarrier2>(VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2);
   barrier.srcStageMask = VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT;
   barrier.srcAccessMask = VK_ACCESS_2_TRANSFER_WRITE_BIT;
@@ -51,7 +52,8 @@ void record_mip(const VulkanHost& host, VkCommandBuffer commands, const Image& i
                          VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &blit, VK_FILTER_LINEAR);
 }
 
-template <typename Barrier> void set_scopes(Barrier& barrier, const ImageState& from, const ImageState& to) {
+template <typename Barrier>
+void set_scopes(Barrier& barrier, const ImageState& from, const ImageState& to) {
   barrier.srcStageMask = from.stages;
   barrier.srcAccessMask = from.access;
   barrier.dstStageMask = to.stages;
@@ -107,7 +109,8 @@ Image::~Image() {
   host->vk.vkFreeMemory(host->device, memory, nullptr);
 }
 
-Result<Buffer> create_buffer(VulkanHost& host, uint64_t size, VkBufferUsageFlags usage, bool host_visible) {
+Result<Buffer> create_buffer(VulkanHost& host, uint64_t size, VkBufferUsageFlags usage,
+                             bool host_visible) {
   Buffer buffer;
   buffer.host = &host;
   buffer.size = size;
@@ -121,12 +124,14 @@ Result<Buffer> create_buffer(VulkanHost& host, uint64_t size, VkBufferUsageFlags
   const uint32_t type =
       host_visible
           ? find_memory_type(host, needs.memoryTypeBits, VK_MEMORY_PROPERTY_HOST_CACHED_BIT,
-                             VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT)
+                             VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT |
+                                 VK_MEMORY_PROPERTY_HOST_COHERENT_BIT)
           : find_memory_type(host, needs.memoryTypeBits, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT, 0);
   auto allocate = vulkan_struct<VkMemoryAllocateInfo>(VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO);
   allocate.allocationSize = needs.size;
   allocate.memoryTypeIndex = type;
-  auto flags = vulkan_struct<VkMemoryAllocateFlagsInfo>(VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_FLAGS_INFO);
+  auto flags =
+      vulkan_struct<VkMemoryAllocateFlagsInfo>(VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_FLAGS_INFO);
   flags.flags = VK_MEMORY_ALLOCATE_DEVICE_ADDRESS_BIT;
   if ((usage & VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT) != 0) allocate.pNext = &flags;
   result = host.vk.vkAllocateMemory(host.device, &allocate, nullptr, &buffer.memory);
@@ -148,7 +153,8 @@ Result<Image> create_image(VulkanHost& host, const ImageDesc& desc) {
   }
   const PixelFormat* known = find_pixel_format(desc.format);
   if (!known)
-    return Error{ErrorKind::internal, fmt::format("unknown format {}", static_cast<int>(desc.format))};
+    return Error{ErrorKind::internal,
+                 fmt::format("unknown format {}", static_cast<int>(desc.format))};
   Image image;
   image.host = &host;
   image.format = desc.format;
@@ -183,9 +189,11 @@ Result<Image> create_image(VulkanHost& host, const ImageDesc& desc) {
                                        VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT |
                                        VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT;
   if ((desc.usage & viewed) == 0) return image;
-  result = create_view(host, image, desc.layers > 1 ? VK_IMAGE_VIEW_TYPE_2D_ARRAY : VK_IMAGE_VIEW_TYPE_2D,
+  result = create_view(host, image,
+                       desc.layers > 1 ? VK_IMAGE_VIEW_TYPE_2D_ARRAY : VK_IMAGE_VIEW_TYPE_2D,
                        whole(image), image.view);
-  for (uint32_t layer = 0; layer < desc.layers && desc.layers > 1 && result == VK_SUCCESS; ++layer) {
+  for (uint32_t layer = 0; layer < desc.layers && desc.layers > 1 && result == VK_SUCCESS;
+       ++layer) {
     VkImageView view = VK_NULL_HANDLE;
     result = create_view(host, image, VK_IMAGE_VIEW_TYPE_2D, {image.aspect, 0, 1, layer, 1}, view);
     if (result == VK_SUCCESS) image.layer_views.push_back(view);
@@ -194,8 +202,8 @@ Result<Image> create_image(VulkanHost& host, const ImageDesc& desc) {
   return image;
 }
 
-void transition(const VulkanHost& host, VkCommandBuffer commands, const Image& image, const ImageState& from,
-                const ImageState& to) {
+void transition(const VulkanHost& host, VkCommandBuffer commands, const Image& image,
+                const ImageState& from, const ImageState& to) {
   auto barrier = vulkan_struct<VkImageMemoryBarrier2>(VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2);
   set_scopes(barrier, from, to);
   barrier.oldLayout = from.layout;
@@ -220,8 +228,8 @@ void memory_barrier(const VulkanHost& host, VkCommandBuffer commands, const Imag
   host.vk.vkCmdPipelineBarrier2(commands, &dependency);
 }
 
-Result<> upload_image(VulkanHost& host, Image& image, std::span<const float> texels, uint32_t channels,
-                      const ImageState& after) {
+Result<> upload_image(VulkanHost& host, Image& image, std::span<const float> texels,
+                      uint32_t channels, const ImageState& after) {
   const PixelFormat* format = find_pixel_format(image.format);
   if (!format || texels.size() != uint64_t{image.width} * image.height * channels)
     return Error{ErrorKind::internal, "the texels do not fit the image they are uploaded to"};
@@ -237,13 +245,15 @@ Result<> upload_texels(VulkanHost& host, Image& image, std::span<const std::byte
   if (!staging) return staging.error();
   std::memcpy(staging->mapped, bytes.data(), bytes.size());
   return run_commands(host, [&](VkCommandBuffer commands) {
-    const ImageState target = {VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT,
+    const ImageState target = {VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
+                               VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT,
                                VK_ACCESS_2_TRANSFER_WRITE_BIT};
     transition(host, commands, image, {}, target);
     VkBufferImageCopy region{};
     region.imageSubresource = {image.aspect, 0, 0, 1};
     region.imageExtent = {image.width, image.height, 1};
-    host.vk.vkCmdCopyBufferToImage(commands, staging->buffer, image.image, target.layout, 1, &region);
+    host.vk.vkCmdCopyBufferToImage(commands, staging->buffer, image.image, target.layout, 1,
+                                   &region);
     for (uint32_t mip = 1; mip < image.mips; ++mip)
       record_mip(host, commands, image, mip);
     if (image.mips > 1) { // all mips except the last are in TRANSFER_SRC now
@@ -275,20 +285,23 @@ Result<> upload_texels(VulkanHost& host, Image& image, std::span<const std::byte
 Result<std::vector<float>> read_image(VulkanHost& host, const Image& image, const ImageState& state,
                                       uint32_t layer) {
   const PixelFormat* format = find_pixel_format(image.format);
-  if (!format || layer >= image.layers) return Error{ErrorKind::internal, "this image cannot be read back"};
+  if (!format || layer >= image.layers)
+    return Error{ErrorKind::internal, "this image cannot be read back"};
   const uint64_t size = uint64_t{image.width} * image.height * format->bytes;
   auto staging = create_buffer(host, size, VK_BUFFER_USAGE_TRANSFER_DST_BIT, true);
   if (!staging) return staging.error();
   auto done = run_commands(host, [&](VkCommandBuffer commands) {
-    const ImageState source = {VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT,
-                               VK_ACCESS_2_TRANSFER_READ_BIT};
+    const ImageState source = {VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
+                               VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_READ_BIT};
     transition(host, commands, image, state, source);
     VkBufferImageCopy region{};
     region.imageSubresource = {image.aspect, 0, layer, 1};
     region.imageExtent = {image.width, image.height, 1};
-    host.vk.vkCmdCopyImageToBuffer(commands, image.image, source.layout, staging->buffer, 1, &region);
+    host.vk.vkCmdCopyImageToBuffer(commands, image.image, source.layout, staging->buffer, 1,
+                                   &region);
     transition(host, commands, image, source, state);
-    memory_barrier(host, commands, {{}, VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT},
+    memory_barrier(host, commands,
+                   {{}, VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT},
                    {{}, VK_PIPELINE_STAGE_2_HOST_BIT, VK_ACCESS_2_HOST_READ_BIT});
     return success();
   });
@@ -296,7 +309,8 @@ Result<std::vector<float>> read_image(VulkanHost& host, const Image& image, cons
   return decode_texels(*format, {static_cast<const std::byte*>(staging->mapped), size});
 }
 
-Result<Buffer> upload_buffer(VulkanHost& host, std::span<const std::byte> bytes, VkBufferUsageFlags usage) {
+Result<Buffer> upload_buffer(VulkanHost& host, std::span<const std::byte> bytes,
+                             VkBufferUsageFlags usage) {
   auto staging = create_buffer(host, bytes.size(), VK_BUFFER_USAGE_TRANSFER_SRC_BIT, true);
   if (!staging) return staging.error();
   std::memcpy(staging->mapped, bytes.data(), bytes.size());
@@ -305,7 +319,8 @@ Result<Buffer> upload_buffer(VulkanHost& host, std::span<const std::byte> bytes,
   auto done = run_commands(host, [&](VkCommandBuffer commands) {
     const VkBufferCopy region = {0, 0, bytes.size()};
     host.vk.vkCmdCopyBuffer(commands, staging->buffer, buffer->buffer, 1, &region);
-    memory_barrier(host, commands, {{}, VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT},
+    memory_barrier(host, commands,
+                   {{}, VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT},
                    {{}, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_READ_BIT});
     return success();
   });

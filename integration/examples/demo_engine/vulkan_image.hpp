@@ -58,13 +58,14 @@ struct ImageState {
 
 // Creates a buffer, host-visible and mapped if `host_visible`, else in device memory. Errors:
 // environment.
-Result<Buffer> create_buffer(VulkanHost& host, uint64_t size, VkBufferUsageFlags usage, bool host_visible);
+Result<Buffer> create_buffer(VulkanHost& host, uint64_t size, VkBufferUsageFlags usage,
+                             bool host_visible);
 // Errors: usage (a size outside the device's limits), environment.
 Result<Image> create_image(VulkanHost& host, const ImageDesc& desc);
 
 // Records a barrier from one state to another for all mips and layers.
-void transition(const VulkanHost& host, VkCommandBuffer commands, const Image& image, const ImageState& from,
-                const ImageState& to);
+void transition(const VulkanHost& host, VkCommandBuffer commands, const Image& image,
+                const ImageState& from, const ImageState& to);
 
 // Records a barrier for all memory; layouts are ignored.
 void memory_barrier(const VulkanHost& host, VkCommandBuffer commands, const ImageState& from,
@@ -76,14 +77,15 @@ void memory_barrier(const VulkanHost& host, VkCommandBuffer commands, const Imag
 Result<> upload_texels(VulkanHost& host, Image& image, std::span<const std::byte> texels,
                        const ImageState& after);
 // Uploads `channels` floats per texel, converted to the image's format; otherwise as upload_texels.
-Result<> upload_image(VulkanHost& host, Image& image, std::span<const float> texels, uint32_t channels,
-                      const ImageState& after);
+Result<> upload_image(VulkanHost& host, Image& image, std::span<const float> texels,
+                      uint32_t channels, const ImageState& after);
 // Reads mip 0 of `layer` as find_pixel_format(image.format)->channels floats per texel. The image
 // must be in `state` and is left in it; needs TRANSFER_SRC. Waits for the device. Errors: internal,
 // environment.
 Result<std::vector<float>> read_image(VulkanHost& host, const Image& image, const ImageState& state,
                                       uint32_t layer = 0);
 // Creates a buffer in device memory with these bytes. Waits for the device. Errors: environment.
-Result<Buffer> upload_buffer(VulkanHost& host, std::span<const std::byte> bytes, VkBufferUsageFlags usage);
+Result<Buffer> upload_buffer(VulkanHost& host, std::span<const std::byte> bytes,
+                             VkBufferUsageFlags usage);
 
 } // namespace demo

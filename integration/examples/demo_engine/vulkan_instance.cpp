@@ -13,7 +13,8 @@ constexpr const char* validation_layer = "VK_LAYER_KHRONOS_validation";
 
 VKAPI_ATTR VkBool32 VKAPI_CALL on_message(VkDebugUtilsMessageSeverityFlagBitsEXT,
                                           VkDebugUtilsMessageTypeFlagsEXT,
-                                          const VkDebugUtilsMessengerCallbackDataEXT* data, void* user) {
+                                          const VkDebugUtilsMessengerCallbackDataEXT* data,
+                                          void* user) {
   auto& log = *static_cast<ValidationLog*>(user);
   const std::lock_guard lock(log.mutex);
   log.messages.push_back(fmt::format("{}: {}", data->pMessageIdName ? data->pMessageIdName : "",
@@ -80,8 +81,8 @@ Result<> create_instance(const HostOptions& options, ValidationLog& log, VulkanI
 
   auto messenger = vulkan_struct<VkDebugUtilsMessengerCreateInfoEXT>(
       VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT);
-  messenger.messageSeverity =
-      VK_DEBUG_UTILS_MESSAGE_SEVERITY_WARNING_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT;
+  messenger.messageSeverity = VK_DEBUG_UTILS_MESSAGE_SEVERITY_WARNING_BIT_EXT |
+                              VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT;
   messenger.messageType = VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT;
   messenger.pfnUserCallback = on_message;
   messenger.pUserData = &log;
@@ -91,13 +92,15 @@ Result<> create_instance(const HostOptions& options, ValidationLog& log, VulkanI
   features.enabledValidationFeatureCount = 1;
   features.pEnabledValidationFeatures = enables;
   features.pNext = &messenger;
-  const char* extensions[] = {VK_EXT_DEBUG_UTILS_EXTENSION_NAME, VK_EXT_VALIDATION_FEATURES_EXTENSION_NAME};
+  const char* extensions[] = {VK_EXT_DEBUG_UTILS_EXTENSION_NAME,
+                              VK_EXT_VALIDATION_FEATURES_EXTENSION_NAME};
   if (options.validation) {
     if (!validation_layer_is_there()) {
-      return Error{ErrorKind::environment,
-                   fmt::format("validation was requested, but the layer {} is not installed (Debian: "
-                               "vulkan-validationlayers)",
-                               validation_layer)};
+      return Error{
+          ErrorKind::environment,
+          fmt::format("validation was requested, but the layer {} is not installed (Debian: "
+                      "vulkan-validationlayers)",
+                      validation_layer)};
     }
     // The check across submissions is not part of VkValidationFeaturesEXT; the layer reads this
     // variable instead.
@@ -163,8 +166,9 @@ Result<ChosenDevice> choose_device(VkInstance instance, const HostOptions& optio
     seen += fmt::format("{}'{}'", seen.empty() ? "" : ", ", properties.deviceName);
     uint32_t timestamp_bits = 0;
     const uint32_t family = find_queue_family(device, timestamp_bits);
-    const bool named = options.device.empty() ||
-                       std::string_view(properties.deviceName).find(options.device) != std::string_view::npos;
+    const bool named =
+        options.device.empty() ||
+        std::string_view(properties.deviceName).find(options.device) != std::string_view::npos;
     if (properties.apiVersion < VK_API_VERSION_1_3 || family == UINT32_MAX || !named) continue;
     const bool better = properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU &&
                         chosen.properties.deviceType != VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU;
@@ -172,15 +176,17 @@ Result<ChosenDevice> choose_device(VkInstance instance, const HostOptions& optio
     chosen.device = device;
     chosen.properties = properties;
     chosen.queue_family = family;
-    chosen.timestamp_mask = timestamp_bits >= 64 ? ~uint64_t{0} : (uint64_t{1} << timestamp_bits) - 1;
+    chosen.timestamp_mask =
+        timestamp_bits >= 64 ? ~uint64_t{0} : (uint64_t{1} << timestamp_bits) - 1;
   }
   if (chosen.device != VK_NULL_HANDLE) return chosen;
   if (devices.empty()) return Error{ErrorKind::environment, "the Vulkan driver offers no device"};
-  return Error{ErrorKind::environment,
-               fmt::format("no device fits{}: Vulkan 1.3 and a queue for graphics and compute are needed; "
-                           "there are {}",
-                           options.device.empty() ? "" : fmt::format(" the name '{}'", options.device),
-                           seen)};
+  return Error{
+      ErrorKind::environment,
+      fmt::format("no device fits{}: Vulkan 1.3 and a queue for graphics and compute are needed; "
+                  "there are {}",
+                  options.device.empty() ? "" : fmt::format(" the name '{}'", options.device),
+                  seen)};
 }
 
 } // namespace demo

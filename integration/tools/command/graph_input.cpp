@@ -27,8 +27,9 @@ std::string read_standard_input() {
 }
 
 std::string_view without_quotes(std::string_view text) {
-  return text.size() >= 2 && text.front() == '"' && text.back() == '"' ? text.substr(1, text.size() - 2)
-                                                                       : text;
+  return text.size() >= 2 && text.front() == '"' && text.back() == '"'
+             ? text.substr(1, text.size() - 2)
+             : text;
 }
 
 template <class Number> bool parse_number(std::string_view text, Number& value) {
@@ -37,7 +38,8 @@ template <class Number> bool parse_number(std::string_view text, Number& value) 
 }
 
 // Parses `text` as a value of `setting`. Returns the problem, or "" after setting `value`.
-std::string parse_setting(const SettingDeclaration& setting, std::string_view text, SettingValue& value) {
+std::string parse_setting(const SettingDeclaration& setting, std::string_view text,
+                          SettingValue& value) {
   const auto out_of_range = [&] {
     return fmt::format("setting '{}': {} is outside {} .. {}", setting.name, text, setting.minimum,
                        setting.maximum);
@@ -71,7 +73,8 @@ std::string parse_setting(const SettingDeclaration& setting, std::string_view te
     return "";
   }
   const std::vector<std::string_view> words(setting.options.begin(), setting.options.end());
-  return fmt::format("setting '{}': expected {}, found '{}'", setting.name, list_words(words), word);
+  return fmt::format("setting '{}': expected {}, found '{}'", setting.name, list_words(words),
+                     word);
 }
 
 template <class Declarations> int find_by_name(const Declarations& all, std::string_view name) {
@@ -107,7 +110,8 @@ std::optional<LoadedGraph> read_composed(std::optional<Composition> composed,
 
 } // namespace
 
-std::optional<LoadedGraph> load_pass_types(std::span<const std::string> files, Diagnostics& diagnostics) {
+std::optional<LoadedGraph> load_pass_types(std::span<const std::string> files,
+                                           Diagnostics& diagnostics) {
   LoadedGraph loaded{subsurface::make_pass_types(), nullptr, {}, {}, {}};
   const auto host = std::make_shared<HostPassTypes>();
   const uint32_t errors = diagnostics.count(Severity::error);
@@ -123,7 +127,8 @@ std::optional<LoadedGraph> load_pass_types(std::span<const std::string> files, D
     }
   }
   loaded.host_pass_types = host;
-  return diagnostics.count(Severity::error) == errors ? std::optional(std::move(loaded)) : std::nullopt;
+  return diagnostics.count(Severity::error) == errors ? std::optional(std::move(loaded))
+                                                      : std::nullopt;
 }
 
 std::optional<Document> read_input(const std::string& path, Diagnostics& diagnostics) {
@@ -154,8 +159,8 @@ std::optional<LoadedGraph> load_graph(const std::string& path, const GraphInputs
                     diagnostics, inputs.pass_types);
 }
 
-std::optional<LoadedGraph> load_graph(Document document, std::vector<Document> overlays, const OpenFile& open,
-                                      Diagnostics& diagnostics,
+std::optional<LoadedGraph> load_graph(Document document, std::vector<Document> overlays,
+                                      const OpenFile& open, Diagnostics& diagnostics,
                                       std::span<const std::string> pass_type_files) {
   std::vector<std::pair<std::string, std::string>> texts;
   for (const Document& overlay : overlays) {
@@ -168,7 +173,8 @@ std::optional<LoadedGraph> load_graph(Document document, std::vector<Document> o
   return loaded;
 }
 
-std::optional<LoadedGraph> load_fragment(Document document, const OpenFile& open, Diagnostics& diagnostics,
+std::optional<LoadedGraph> load_fragment(Document document, const OpenFile& open,
+                                         Diagnostics& diagnostics,
                                          std::span<const std::string> pass_type_files) {
   return read_composed(compose_fragment(std::move(document), open, diagnostics), pass_type_files,
                        diagnostics);
@@ -227,16 +233,19 @@ CompileInput compile_input(const LoadedGraph& loaded, const DeviceProfile& devic
 }
 
 std::optional<CompiledPlan> compile_generic(const LoadedGraph& loaded, const Size& size,
-                                            const CompileChoices& choices, Diagnostics& diagnostics) {
+                                            const CompileChoices& choices,
+                                            Diagnostics& diagnostics) {
   const DeviceProfile device = generic_profile();
   return compile(compile_input(loaded, device, size, choices), diagnostics);
 }
 
-ExitCode fail_graph(const Session& session, const std::string& path, const Diagnostics& diagnostics) {
+ExitCode fail_graph(const Session& session, const std::string& path,
+                    const Diagnostics& diagnostics) {
   const uint32_t errors = diagnostics.count(Severity::error);
-  return fail(session, ExitCode::problems,
-              fmt::format("{}: {} error{}; the graph cannot be used", path, errors, errors == 1 ? "" : "s"),
-              &diagnostics);
+  return fail(
+      session, ExitCode::problems,
+      fmt::format("{}: {} error{}; the graph cannot be used", path, errors, errors == 1 ? "" : "s"),
+      &diagnostics);
 }
 
 } // namespace dermis::tools

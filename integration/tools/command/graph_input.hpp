@@ -28,15 +28,16 @@ inline constexpr Size default_size{1920, 1080}; // default of --size
 
 // Loads the library's pass types and those of the files, without a graph. Returns nullopt with
 // errors in `diagnostics`.
-std::optional<LoadedGraph> load_pass_types(std::span<const std::string> files, Diagnostics& diagnostics);
+std::optional<LoadedGraph> load_pass_types(std::span<const std::string> files,
+                                           Diagnostics& diagnostics);
 // Reads a document; `path` "-" is standard input. Returns nullopt with errors in `diagnostics`.
 std::optional<Document> read_input(const std::string& path, Diagnostics& diagnostics);
 // Opens files that graph files include: below the folder of `path`, then below each of `roots`.
 OpenFile open_included(const std::string& path, const std::vector<std::string>& roots);
 // Loads the graph of a document or file with its overlays and included files. `pass_type_files`
 // declare pass types of the host.
-std::optional<LoadedGraph> load_graph(Document document, std::vector<Document> overlays, const OpenFile& open,
-                                      Diagnostics& diagnostics,
+std::optional<LoadedGraph> load_graph(Document document, std::vector<Document> overlays,
+                                      const OpenFile& open, Diagnostics& diagnostics,
                                       std::span<const std::string> pass_type_files = {});
 // Reads overlay files. Returns nullopt if one of them cannot be read.
 std::optional<std::vector<Document>> read_overlays(const std::vector<std::string>& paths,
@@ -44,7 +45,8 @@ std::optional<std::vector<Document>> read_overlays(const std::vector<std::string
 std::optional<LoadedGraph> load_graph(const std::string& path, const GraphInputs& inputs,
                                       Diagnostics& diagnostics);
 // Loads a fragment as a graph of its own.
-std::optional<LoadedGraph> load_fragment(Document document, const OpenFile& open, Diagnostics& diagnostics,
+std::optional<LoadedGraph> load_fragment(Document document, const OpenFile& open,
+                                         Diagnostics& diagnostics,
                                          std::span<const std::string> pass_type_files = {});
 
 // Values of --set and --unbound, resolved for the graph. A non-empty `problem` is a usage error;
@@ -67,9 +69,11 @@ CompileInput compile_input(const LoadedGraph& loaded, const DeviceProfile& devic
 
 // Returns nullopt with errors in `diagnostics`.
 std::optional<CompiledPlan> compile_generic(const LoadedGraph& loaded, const Size& size,
-                                            const CompileChoices& choices, Diagnostics& diagnostics);
+                                            const CompileChoices& choices,
+                                            Diagnostics& diagnostics);
 
 // Prints the diagnostics and reports that the graph `path` cannot be used.
-ExitCode fail_graph(const Session& session, const std::string& path, const Diagnostics& diagnostics);
+ExitCode fail_graph(const Session& session, const std::string& path,
+                    const Diagnostics& diagnostics);
 
 } // namespace dermis::tools

@@ -15,9 +15,9 @@ using namespace dermis::tools;
 
 // Sends log lines to stderr, so that stdout holds only results.
 void set_up_log(const Session& session) {
-  auto log =
-      spdlog::stderr_color_st("dermis", use_color(session.color, STDERR_FILENO) ? spdlog::color_mode::always
-                                                                                : spdlog::color_mode::never);
+  auto log = spdlog::stderr_color_st("dermis", use_color(session.color, STDERR_FILENO)
+                                                   ? spdlog::color_mode::always
+                                                   : spdlog::color_mode::never);
   log->set_pattern("%n: %^%l%$: %v");
   log->set_level(session.quiet  ? spdlog::level::err
                  : session.json ? spdlog::level::warn
@@ -28,7 +28,8 @@ void set_up_log(const Session& session) {
 ExitCode run(int argc, char** argv) {
   const Invocation invocation = read_arguments(argc, argv);
   set_up_log(invocation.session);
-  if (!invocation.message.empty()) return fail(invocation.session, ExitCode::usage, invocation.message);
+  if (!invocation.message.empty())
+    return fail(invocation.session, ExitCode::usage, invocation.message);
   if (!invocation.help.empty()) {
     print(invocation.help);
     return ExitCode::ok;
@@ -45,9 +46,11 @@ int main(int argc, char** argv) {
   } catch (const std::bad_alloc&) {
     return static_cast<int>(fail({}, ExitCode::environment, "out of memory"));
   } catch (const std::exception& error) {
-    return static_cast<int>(fail({}, ExitCode::internal,
-                                 std::string("a defect of the program, please report it: ") + error.what()));
+    return static_cast<int>(
+        fail({}, ExitCode::internal,
+             std::string("a defect of the program, please report it: ") + error.what()));
   } catch (...) {
-    return static_cast<int>(fail({}, ExitCode::internal, "a defect of the program, please report it"));
+    return static_cast<int>(
+        fail({}, ExitCode::internal, "a defect of the program, please report it"));
   }
 }

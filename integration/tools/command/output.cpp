@@ -42,7 +42,8 @@ std::string deliver_page(const std::string& path, std::string_view text) {
   const files::path folder = files::path(path).parent_path();
   std::error_code problem;
   if (path != "-" && !folder.empty()) files::create_directories(folder, problem);
-  if (problem) return fmt::format("cannot make the folder '{}': {}", folder.string(), problem.message());
+  if (problem)
+    return fmt::format("cannot make the folder '{}': {}", folder.string(), problem.message());
   return deliver_text(path, text);
 }
 
@@ -54,11 +55,12 @@ std::string OutputFolder::open(const std::string& path) {
   path_ = path;
   std::error_code problem;
   files::path outermost = files::absolute(path, problem).lexically_normal();
-  for (files::path at = outermost; !problem && !files::exists(at, problem) && at.has_relative_path();
-       at = at.parent_path())
+  for (files::path at = outermost;
+       !problem && !files::exists(at, problem) && at.has_relative_path(); at = at.parent_path())
     outermost = at;
   const bool made = files::create_directories(path, problem);
-  if (problem) return fmt::format("cannot make the output folder '{}': {}", path, problem.message());
+  if (problem)
+    return fmt::format("cannot make the output folder '{}': {}", path, problem.message());
   if (made) first_made_ = outermost.string();
   const files::path probe = temporary_path(path_of("probe"));
   std::string rejected;
@@ -71,7 +73,8 @@ std::string OutputFolder::open(const std::string& path) {
 std::string OutputFolder::open_below(const std::string& name) {
   std::error_code problem;
   files::create_directories(path_of(name), problem);
-  return problem ? fmt::format("cannot make the output folder '{}': {}", path_of(name), problem.message())
+  return problem ? fmt::format("cannot make the output folder '{}': {}", path_of(name),
+                               problem.message())
                  : "";
 }
 

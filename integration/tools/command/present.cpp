@@ -17,8 +17,9 @@ constexpr uint64_t bar_cells = 24;
 
 // Counts characters of UTF-8 text: bytes other than continuation bytes.
 size_t characters(std::string_view text) {
-  return static_cast<size_t>(std::count_if(
-      text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xc0u) != 0x80u; }));
+  return static_cast<size_t>(std::count_if(text.begin(), text.end(), [](char c) {
+    return (static_cast<unsigned char>(c) & 0xc0u) != 0x80u;
+  }));
 }
 
 std::string pad(std::string_view text, size_t width, bool right_aligned) {
@@ -80,7 +81,10 @@ std::string format_table(const Table& table) {
 }
 
 std::string format_milliseconds(double milliseconds) {
-  return fmt::format("{:.{}f} ms", milliseconds, milliseconds < 1.0 ? 3 : milliseconds < 10.0 ? 2 : 1);
+  return fmt::format("{:.{}f} ms", milliseconds,
+                     milliseconds < 1.0    ? 3
+                     : milliseconds < 10.0 ? 2
+                                           : 1);
 }
 
 std::string format_duration(double seconds) {
@@ -121,7 +125,8 @@ ProgressStyle progress_style(bool quiet, bool json) {
 }
 
 Progress::Progress(ProgressStyle style, std::string what, std::string unit, uint64_t total)
-    : style_(style), what_(std::move(what)), unit_(std::move(unit)), total_(std::max<uint64_t>(total, 1)) {}
+    : style_(style), what_(std::move(what)), unit_(std::move(unit)),
+      total_(std::max<uint64_t>(total, 1)) {}
 
 Progress::~Progress() {
   if (bar_visible_) std::fputs("\r\x1b[K", stderr);
@@ -134,8 +139,11 @@ void Progress::update(uint64_t done) {
   const double elapsed = std::chrono::duration<double>(now - start_).count();
   const double expected =
       done > 0 ? elapsed * static_cast<double>(total_) / static_cast<double>(done) : elapsed;
-  const double interval = style_ == ProgressStyle::bar ? bar_interval_seconds : line_interval_seconds;
-  if (expected < quiet_seconds || std::chrono::duration<double>(now - last_drawn_).count() < interval) return;
+  const double interval =
+      style_ == ProgressStyle::bar ? bar_interval_seconds : line_interval_seconds;
+  if (expected < quiet_seconds ||
+      std::chrono::duration<double>(now - last_drawn_).count() < interval)
+    return;
   last_drawn_ = now;
   draw(std::min(done, total_), elapsed);
 }
@@ -143,8 +151,8 @@ void Progress::update(uint64_t done) {
 void Progress::draw(uint64_t done, double elapsed_seconds) {
   const double rate = elapsed_seconds > 0.0 ? static_cast<double>(done) / elapsed_seconds : 0.0;
   const double left = rate > 0.0 ? static_cast<double>(total_ - done) / rate : 0.0;
-  const std::string pace = fmt::format("{} of {} {}s, {:.3g} {}s/s, {} left", done, total_, unit_, rate,
-                                       unit_, format_duration(left));
+  const std::string pace = fmt::format("{} of {} {}s, {:.3g} {}s/s, {} left", done, total_, unit_,
+                                       rate, unit_, format_duration(left));
   if (style_ == ProgressStyle::lines) {
     fmt::print(stderr, "{}: {}\n", what_, pace);
     return;

@@ -21,7 +21,8 @@ std::string shipped(const std::string& path) {
 
 std::string shipped(std::string_view folder, std::string_view name) {
   const auto below = [&](std::string_view more) {
-    return shipped(std::string("configs/").append(folder).append(more).append(name).append(".json"));
+    return shipped(
+        std::string("configs/").append(folder).append(more).append(name).append(".json"));
   };
   std::error_code error;
   std::string found = below("/");
@@ -31,7 +32,8 @@ std::string shipped(std::string_view folder, std::string_view name) {
   return found;
 }
 
-std::vector<std::string> shipped_files(std::string_view folder, std::vector<std::string> names_or_paths) {
+std::vector<std::string> shipped_files(std::string_view folder,
+                                       std::vector<std::string> names_or_paths) {
   for (std::string& file : names_or_paths)
     if (file.find_first_of("./") == std::string::npos) file = shipped(folder, file);
   return names_or_paths;

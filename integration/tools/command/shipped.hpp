@@ -17,7 +17,8 @@ std::string shipped(const std::string& path);
 std::string shipped(std::string_view folder, std::string_view name);
 
 // Replaces plain names by files of a folder of configs; keeps paths, which contain '.' or '/'.
-std::vector<std::string> shipped_files(std::string_view folder, std::vector<std::string> names_or_paths);
+std::vector<std::string> shipped_files(std::string_view folder,
+                                       std::vector<std::string> names_or_paths);
 
 // Returns the graph files in a folder and below, sorted by file name; not the expectations.
 std::vector<std::string> graph_files(const std::string& folder);

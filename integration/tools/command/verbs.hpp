@@ -200,8 +200,8 @@ struct ReportBugOptions {
 ExitCode report_bug(const Session& session, const ReportBugOptions& options);
 
 struct CalibrateOptions {
-  std::string graph = shipped("configs/graphs/skin.json"), scene = shipped("configs/scenes/bust.json"),
-              out = "-";
+  std::string graph = shipped("configs/graphs/skin.json"),
+              scene = shipped("configs/scenes/bust.json"), out = "-";
   std::string calibration; // initial calibration file; "": the library's calibration
   GraphInputs inputs;
   Size size{640, 360};

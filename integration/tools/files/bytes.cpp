@@ -28,7 +28,8 @@ std::string last_error() {
 
 } // namespace
 
-std::optional<std::vector<uint8_t>> read_bytes(const fs::path& path, uint64_t limit, std::string& error) {
+std::optional<std::vector<uint8_t>> read_bytes(const fs::path& path, uint64_t limit,
+                                               std::string& error) {
   std::error_code code;
   if (!fs::is_regular_file(path, code)) {
     error = fmt::format("'{}' {}", path.string(),
@@ -37,8 +38,9 @@ std::optional<std::vector<uint8_t>> read_bytes(const fs::path& path, uint64_t li
   }
   const uint64_t size = fs::file_size(path, code);
   if (code || size > limit) {
-    error = code ? fmt::format("the size of '{}' cannot be read: {}", path.string(), code.message())
-                 : fmt::format("'{}' has {} bytes; at most {} are read", path.string(), size, limit);
+    error = code
+                ? fmt::format("the size of '{}' cannot be read: {}", path.string(), code.message())
+                : fmt::format("'{}' has {} bytes; at most {} are read", path.string(), size, limit);
     return std::nullopt;
   }
   const File file(std::fopen(path.c_str(), "rb"));

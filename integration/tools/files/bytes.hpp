@@ -18,7 +18,8 @@ std::optional<std::vector<uint8_t>> read_bytes(const std::filesystem::path& path
 // Writes a temporary file next to the target and renames it over the target (atomic on POSIX file
 // systems). On failure returns false, sets `error`, and leaves the target unchanged and no
 // temporary file.
-bool write_bytes(const std::filesystem::path& path, std::span<const uint8_t> bytes, std::string& error);
+bool write_bytes(const std::filesystem::path& path, std::span<const uint8_t> bytes,
+                 std::string& error);
 bool write_text(const std::filesystem::path& path, std::string_view text, std::string& error);
 
 // Returns a name next to `path` that no other call of any process uses at the same time.

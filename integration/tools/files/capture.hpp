@@ -83,18 +83,19 @@ using FileRoots = std::span<const std::string>;
 // Returns the frames of a capture sorted by name: subfolders that hold a frame.json, or the folder
 // itself. Returns an empty list and adds an error if there is no frame or a frame is a link out of
 // `folder`. Thread: any, if `diagnostics` is not shared.
-std::vector<std::filesystem::path> find_frames(const std::filesystem::path& folder, Diagnostics& diagnostics,
-                                               FileRoots roots = {});
+std::vector<std::filesystem::path> find_frames(const std::filesystem::path& folder,
+                                               Diagnostics& diagnostics, FileRoots roots = {});
 
 // Reads and checks one frame. A profile's "file" is relative to the folder of frame.json; a plain
 // name means <profile_folder>/<name>.json. Damaged values are repaired, counted and reported as a
 // warning. Returns nullopt and adds located errors if anything else is wrong.
 std::optional<CapturedFrame> read_frame(const std::filesystem::path& folder,
-                                        const std::filesystem::path& profile_folder, Diagnostics& diagnostics,
-                                        FileRoots roots = {});
+                                        const std::filesystem::path& profile_folder,
+                                        Diagnostics& diagnostics, FileRoots roots = {});
 
 // Reads only frame.json; the images stay empty. `folder` is the folder of the document.
-std::optional<CapturedFrame> read_description(const Document& document, const std::filesystem::path& folder,
+std::optional<CapturedFrame> read_description(const Document& document,
+                                              const std::filesystem::path& folder,
                                               const std::filesystem::path& profile_folder,
                                               Diagnostics& diagnostics, FileRoots roots = {});
 

@@ -29,10 +29,10 @@ std::optional<Image> read_sized(const fs::path& path, const std::vector<ChannelN
     return std::nullopt;
   }
   if (image->width != description.width || image->height != description.height) {
-    diagnostics.add(DiagnosticId::capture_picture_size,
-                    document.where(document.find(document.root(), "width")),
-                    fmt::format("'{}' is {} x {}; frame.json says {} x {}", path.string(), image->width,
-                                image->height, description.width, description.height));
+    diagnostics.add(
+        DiagnosticId::capture_picture_size, document.where(document.find(document.root(), "width")),
+        fmt::format("'{}' is {} x {}; frame.json says {} x {}", path.string(), image->width,
+                    image->height, description.width, description.height));
     return std::nullopt;
   }
   return image;
@@ -50,17 +50,18 @@ void take_profile_ids(const Image& image, const fs::path& path, const Document& 
       value = 0;
     }
     if (value < 0 || value > 255 || value != std::floor(value)) {
-      diagnostics.add(DiagnosticId::capture_profile,
-                      document.where(document.find(document.root(), "profiles")),
-                      fmt::format("'{}' holds {} at pixel ({}, {}); ids are whole numbers from 0 to 255",
-                                  path.string(), value, i % image.width, i / image.width));
+      diagnostics.add(
+          DiagnosticId::capture_profile, document.where(document.find(document.root(), "profiles")),
+          fmt::format("'{}' holds {} at pixel ({}, {}); ids are whole numbers from 0 to 255",
+                      path.string(), value, i % image.width, i / image.width));
       return;
     }
     frame.profile[i] = static_cast<uint8_t>(value);
   }
 }
 
-void check_profiles_known(const Document& document, const CapturedFrame& frame, Diagnostics& diagnostics) {
+void check_profiles_known(const Document& document, const CapturedFrame& frame,
+                          Diagnostics& diagnostics) {
   std::array<uint64_t, 256> pixels{};
   std::array<size_t, 256> first{};
   for (size_t i = 0; i < frame.profile.size(); ++i)
@@ -71,9 +72,10 @@ void check_profiles_known(const Document& document, const CapturedFrame& frame, 
     if (pixels[id] > 0)
       diagnostics.add(
           DiagnosticId::capture_profile, document.where(document.find(document.root(), "profiles")),
-          fmt::format("{} pixels have profile {}, which 'profiles' does not list; the first is at ({}, {})",
-                      pixels[id], id, first[id] % frame.description.width,
-                      first[id] / frame.description.width));
+          fmt::format(
+              "{} pixels have profile {}, which 'profiles' does not list; the first is at ({}, {})",
+              pixels[id], id, first[id] % frame.description.width,
+              first[id] / frame.description.width));
 }
 
 void refine_tiles(Image& image, bool signed_values, const std::vector<uint8_t>& profile,
@@ -127,8 +129,8 @@ void read_pictures(const fs::path& folder, const Document& document, CapturedFra
   std::vector<fs::path> readable(roots.begin(), roots.end());
   readable.insert(readable.begin(), folder);
   const fs::path profile_path = folder / "profile.exr";
-  const auto ids =
-      read_sized(profile_path, profile_channels(), document, frame.description, readable, diagnostics);
+  const auto ids = read_sized(profile_path, profile_channels(), document, frame.description,
+                              readable, diagnostics);
   if (ids) {
     take_profile_ids(*ids, profile_path, document, frame, diagnostics);
     check_profiles_known(document, frame, diagnostics);
@@ -137,7 +139,8 @@ void read_pictures(const fs::path& folder, const Document& document, CapturedFra
     const fs::path path = folder / (std::string(kind.name) + ".exr");
     std::error_code code;
     if (!kind.required && !fs::exists(path, code)) continue;
-    auto image = read_sized(path, kind.channels, document, frame.description, readable, diagnostics);
+    auto image =
+        read_sized(path, kind.channels, document, frame.description, readable, diagnostics);
     if (!image || !ids) continue;
     refine_tiles(*image, kind.signed_values, frame.profile, frame.sanitised);
     frame.*kind.image = std::move(*image);
@@ -147,21 +150,23 @@ void read_pictures(const fs::path& folder, const Document& document, CapturedFra
   if (thickness != fs::exists(folder / "back_lighting.exr", code))
     diagnostics.add(
         DiagnosticId::capture_picture, document.where(document.root()),
-        fmt::format("'thickness.exr' and 'back_lighting.exr' are only valid together; '{}' is missing",
-                    (folder / (thickness ? "back_lighting.exr" : "thickness.exr")).string()));
+        fmt::format(
+            "'thickness.exr' and 'back_lighting.exr' are only valid together; '{}' is missing",
+            (folder / (thickness ? "back_lighting.exr" : "thickness.exr")).string()));
   count_too_bright(frame, frame.sanitised);
   const SanitisedCounts& counts = frame.sanitised;
   if (counts.not_finite + counts.negative > 0)
     diagnostics.add(
         DiagnosticId::capture_sanitised, document.where(document.root()),
-        fmt::format("{} values of subsurface pixels were not finite and {} negative; they count as 0",
-                    counts.not_finite, counts.negative));
+        fmt::format(
+            "{} values of subsurface pixels were not finite and {} negative; they count as 0",
+            counts.not_finite, counts.negative));
   if (counts.too_bright > 0)
-    diagnostics.add(
-        DiagnosticId::capture_sanitised, document.where(document.root()),
-        fmt::format("light of {} subsurface pixels is above {}, at most {}; graphs clamp it to {}: scale the "
-                    "light down before it is captured (pre-exposure)",
-                    counts.too_bright, max_light, counts.brightest, max_light));
+    diagnostics.add(DiagnosticId::capture_sanitised, document.where(document.root()),
+                    fmt::format("light of {} subsurface pixels is above {}, at most {}; graphs "
+                                "clamp it to {}: scale the "
+                                "light down before it is captured (pre-exposure)",
+                                counts.too_bright, max_light, counts.brightest, max_light));
 }
 
 } // namespace dermis::tools

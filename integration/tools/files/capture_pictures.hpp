@@ -20,7 +20,7 @@ const std::vector<ChannelNames>& profile_channels();
 
 // Reads all images of `frame.description` from the folder. A file may be a link into the folder or
 // one of `roots`. Errors are located in frame.json.
-void read_pictures(const std::filesystem::path& folder, const Document& document, CapturedFrame& frame,
-                   Diagnostics& diagnostics, FileRoots roots = {});
+void read_pictures(const std::filesystem::path& folder, const Document& document,
+                   CapturedFrame& frame, Diagnostics& diagnostics, FileRoots roots = {});
 
 } // namespace dermis::tools

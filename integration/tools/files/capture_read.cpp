@@ -36,10 +36,11 @@ void read_rectangle(const Document& document, ObjectReader& reader, FrameDescrip
   if (!reader.numbers("render_rectangle", r, 0, limits::image_side)) return;
   const bool whole = std::all_of(r.begin(), r.end(), [](double v) { return v == std::floor(v); });
   if (!whole || r[2] < 1 || r[3] < 1 || r[0] + r[2] > frame.width || r[1] + r[3] > frame.height) {
-    diagnostics.add(DiagnosticId::capture_rectangle,
-                    document.where(document.find(reader.node(), "render_rectangle")),
-                    fmt::format("[{}, {}, {}, {}] is not a rectangle of whole pixels inside {} x {}", r[0],
-                                r[1], r[2], r[3], frame.width, frame.height));
+    diagnostics.add(
+        DiagnosticId::capture_rectangle,
+        document.where(document.find(reader.node(), "render_rectangle")),
+        fmt::format("[{}, {}, {}, {}] is not a rectangle of whole pixels inside {} x {}", r[0],
+                    r[1], r[2], r[3], frame.width, frame.height));
     return;
   }
   frame.render = {uint32_t(r[0]), uint32_t(r[1]), uint32_t(r[2]), uint32_t(r[3])};
@@ -51,13 +52,14 @@ subsurface::CameraMatrices read_matrices(ObjectReader& reader, bool has_pitch) {
   reader.numbers("clip_from_view", camera.clip_from_view, -largest_number, largest_number,
                  has_pitch ? Need::optional : Need::required);
   camera.view_from_world = identity;
-  reader.numbers("view_from_world", camera.view_from_world, -largest_number, largest_number, Need::optional);
+  reader.numbers("view_from_world", camera.view_from_world, -largest_number, largest_number,
+                 Need::optional);
   camera.previous_clip_from_view = camera.clip_from_view;
-  reader.numbers("previous_clip_from_view", camera.previous_clip_from_view, -largest_number, largest_number,
-                 Need::optional);
+  reader.numbers("previous_clip_from_view", camera.previous_clip_from_view, -largest_number,
+                 largest_number, Need::optional);
   camera.previous_view_from_world = camera.view_from_world;
-  reader.numbers("previous_view_from_world", camera.previous_view_from_world, -largest_number, largest_number,
-                 Need::optional);
+  reader.numbers("previous_view_from_world", camera.previous_view_from_world, -largest_number,
+                 largest_number, Need::optional);
   return camera;
 }
 
@@ -72,15 +74,17 @@ void read_projection(const Document& document, ObjectReader& reader, CapturedFra
     declared = *space == 1 ? subsurface::Handedness::left : subsurface::Handedness::right;
   constexpr double minimum = 1e-12, maximum = 1e12; // lengths, metres
   frame.pixel_pitch_m = reader.number("pixel_pitch_m", minimum, maximum, Need::optional);
-  frame.metres_per_unit = reader.number("metres_per_unit", minimum, maximum, Need::optional).value_or(1);
+  frame.metres_per_unit =
+      reader.number("metres_per_unit", minimum, maximum, Need::optional).value_or(1);
   reader.numbers("jitter_px", frame.jitter_px, -1, 1, Need::optional);
   subsurface::CameraMatrices camera = read_matrices(reader, frame.pixel_pitch_m.has_value());
   const auto reject = [&](std::string_view key, std::string text) {
-    diagnostics.add(DiagnosticId::capture_projection, document.where(document.find(reader.node(), key)),
-                    std::move(text));
+    diagnostics.add(DiagnosticId::capture_projection,
+                    document.where(document.find(reader.node(), key)), std::move(text));
   };
   if (frame.pixel_pitch_m && frame.perspective)
-    return reject("pixel_pitch_m", "'pixel_pitch_m' is for orthographic captures; this one is perspective");
+    return reject("pixel_pitch_m",
+                  "'pixel_pitch_m' is for orthographic captures; this one is perspective");
   if (frame.pixel_pitch_m && document.find(reader.node(), "clip_from_view").valid())
     return reject("pixel_pitch_m",
                   "'pixel_pitch_m' and 'clip_from_view' both describe the projection; give one");
@@ -102,15 +106,17 @@ void read_projection(const Document& document, ObjectReader& reader, CapturedFra
       captured.rays.perspective == frame.perspective)
     return;
   if (fault == subsurface::CameraFault::none || fault == subsurface::CameraFault::no_projection)
-    return reject("clip_from_view", fmt::format("'clip_from_view' is not an axis-aligned {} projection "
-                                                "(row-major, clip = M * view, Vulkan clip space)",
-                                                frame.perspective ? "perspective" : "orthographic"));
+    return reject("clip_from_view",
+                  fmt::format("'clip_from_view' is not an axis-aligned {} projection "
+                              "(row-major, clip = M * view, Vulkan clip space)",
+                              frame.perspective ? "perspective" : "orthographic"));
   const bool previous = fault == subsurface::CameraFault::previous_left ||
                         fault == subsurface::CameraFault::previous_right ||
                         fault == subsurface::CameraFault::previous_behind_camera;
-  reject(previous ? "previous_clip_from_view" : "clip_from_view",
-         fmt::format("{}; the camera looks down -z, or along +z with \"view_space\": \"left_handed\"",
-                     subsurface::text_of(fault)));
+  reject(
+      previous ? "previous_clip_from_view" : "clip_from_view",
+      fmt::format("{}; the camera looks down -z, or along +z with \"view_space\": \"left_handed\"",
+                  subsurface::text_of(fault)));
 }
 
 // Converts normals of a left-handed view space, which point the other way along z.
@@ -120,7 +126,8 @@ void mirror_normals(Image& normal) {
 }
 
 std::optional<subsurface::Profile> read_profile_file(const Document& document, NodeId key,
-                                                     const fs::path& folder, const fs::path& profile_folder,
+                                                     const fs::path& folder,
+                                                     const fs::path& profile_folder,
                                                      FileRoots roots, Diagnostics& diagnostics) {
   const fs::path name{std::string(document.text(key))};
   const bool plain = !name.has_parent_path() && name.extension().empty();
@@ -136,8 +143,9 @@ std::optional<subsurface::Profile> read_profile_file(const Document& document, N
   const std::string path = placed.path.string();
   std::error_code code;
   if (!fs::is_regular_file(path, code)) {
-    diagnostics.add(DiagnosticId::capture_profile, document.where(key),
-                    fmt::format("profile '{}' does not exist: there is no file '{}'", name.string(), path));
+    diagnostics.add(
+        DiagnosticId::capture_profile, document.where(key),
+        fmt::format("profile '{}' does not exist: there is no file '{}'", name.string(), path));
     return std::nullopt;
   }
   const auto profile = read_document(path, diagnostics);
@@ -165,7 +173,8 @@ void read_profiles(const Document& document, ObjectReader& reader, const fs::pat
       profile = subsurface::read_inline_profile(document, node, what, diagnostics);
     }
     if (!id_node.valid()) continue;
-    const auto id = read_integer(document, id_node, fmt::format("'id' of {}", what), 1, 255, diagnostics);
+    const auto id =
+        read_integer(document, id_node, fmt::format("'id' of {}", what), 1, 255, diagnostics);
     if (!id) continue;
     NodeId& first = taken[static_cast<size_t>(*id)];
     if (first.valid()) {
@@ -184,13 +193,16 @@ std::optional<CapturedFrame> read_view(const Document& document, const fs::path&
                                        const fs::path& profile_folder, Diagnostics& diagnostics,
                                        FileRoots roots, subsurface::Handedness& handedness) {
   const uint32_t errors = diagnostics.count(Severity::error);
-  if (!check_version(document, "dermis_capture", capture_format_version, diagnostics)) return std::nullopt;
+  if (!check_version(document, "dermis_capture", capture_format_version, diagnostics))
+    return std::nullopt;
   CapturedFrame frame;
   FrameDescription& description = frame.description;
   ObjectReader reader(document, document.root(), "frame", diagnostics);
   reader.has("dermis_capture");
-  description.width = static_cast<uint32_t>(reader.integer("width", 1, limits::image_side).value_or(0));
-  description.height = static_cast<uint32_t>(reader.integer("height", 1, limits::image_side).value_or(0));
+  description.width =
+      static_cast<uint32_t>(reader.integer("width", 1, limits::image_side).value_or(0));
+  description.height =
+      static_cast<uint32_t>(reader.integer("height", 1, limits::image_side).value_or(0));
   if (reader.ok()) read_rectangle(document, reader, description, diagnostics);
   read_projection(document, reader, frame, handedness, diagnostics);
   const int64_t index = reader.integer("frame_index", 0, INT64_MAX, Need::optional).value_or(0);
@@ -204,14 +216,16 @@ std::optional<CapturedFrame> read_view(const Document& document, const fs::path&
 
 } // namespace
 
-std::vector<fs::path> find_frames(const fs::path& folder, Diagnostics& diagnostics, FileRoots roots) {
+std::vector<fs::path> find_frames(const fs::path& folder, Diagnostics& diagnostics,
+                                  FileRoots roots) {
   std::vector<fs::path> frames, readable(roots.begin(), roots.end());
   readable.insert(readable.begin(), folder);
   std::error_code code;
   if (fs::is_regular_file(folder / "frame.json", code)) return {folder};
   for (fs::directory_iterator it(folder, code), end; !code && it != end; it.increment(code)) {
     std::error_code ignored;
-    if (it->path().filename().string()[0] != '.' && fs::is_regular_file(it->path() / "frame.json", ignored))
+    if (it->path().filename().string()[0] != '.' &&
+        fs::is_regular_file(it->path() / "frame.json", ignored))
       frames.push_back(it->path());
   }
   std::sort(frames.begin(), frames.end());
@@ -250,8 +264,9 @@ bool complete_projection(FrameDescription& frame, subsurface::PixelRays& rays) {
                             0,
                             1};
   }
-  const auto found = subsurface::pixel_rays(frame.clip_from_view, frame.render.width, frame.render.height,
-                                            frame.metres_per_unit, frame.jitter_px);
+  const auto found =
+      subsurface::pixel_rays(frame.clip_from_view, frame.render.width, frame.render.height,
+                             frame.metres_per_unit, frame.jitter_px);
   if (!found) return false;
   rays = *found;
   return true;
@@ -272,8 +287,8 @@ std::optional<CapturedFrame> read_frame(const fs::path& folder, const fs::path& 
 }
 
 std::optional<CapturedFrame> read_description(const Document& document, const fs::path& folder,
-                                              const fs::path& profile_folder, Diagnostics& diagnostics,
-                                              FileRoots roots) {
+                                              const fs::path& profile_folder,
+                                              Diagnostics& diagnostics, FileRoots roots) {
   subsurface::Handedness handedness = subsurface::Handedness::right;
   return read_view(document, folder, profile_folder, diagnostics, roots, handedness);
 }

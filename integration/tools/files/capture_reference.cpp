@@ -12,13 +12,16 @@ constexpr double thinnest_m = 1e-9;
 
 // Returns the values inside the rectangle.
 template <class T>
-std::vector<T> crop(const std::vector<T>& values, uint32_t width, const Rectangle& part, uint32_t channels) {
+std::vector<T> crop(const std::vector<T>& values, uint32_t width, const Rectangle& part,
+                    uint32_t channels) {
   std::vector<T> result;
   if (values.empty()) return result;
   result.reserve(size_t{part.width} * part.height * channels);
   for (uint32_t y = part.y; y < part.y + part.height; ++y) {
-    const auto first = values.begin() + static_cast<std::ptrdiff_t>((size_t{y} * width + part.x) * channels);
-    result.insert(result.end(), first, first + static_cast<std::ptrdiff_t>(size_t{part.width} * channels));
+    const auto first =
+        values.begin() + static_cast<std::ptrdiff_t>((size_t{y} * width + part.x) * channels);
+    result.insert(result.end(), first,
+                  first + static_cast<std::ptrdiff_t>(size_t{part.width} * channels));
   }
   return result;
 }
@@ -37,7 +40,8 @@ ReferenceFrame make_reference_frame(const CapturedFrame& frame) {
                         .rays = frame.rays,
                         .light = crop(frame.lighting.values, description.width, part, 3),
                         .depth = crop(frame.depth.values, description.width, part, 1),
-                        .scatter_scale = crop(frame.scatter_scale.values, description.width, part, 1),
+                        .scatter_scale =
+                            crop(frame.scatter_scale.values, description.width, part, 1),
                         .profile = crop(frame.profile, description.width, part, 1),
                         .d_m = std::vector<subsurface::PerChannel>(256),
                         .shapes = std::vector<subsurface::ProfileShape>(256)};
@@ -51,8 +55,10 @@ ReferenceFrame make_reference_frame(const CapturedFrame& frame) {
 
 void add_transmission(const CapturedFrame& frame, ReferenceFrame& reference) {
   const Rectangle& part = frame.description.render;
-  const std::vector<float> thickness = crop(frame.thickness.values, frame.description.width, part, 1);
-  const std::vector<float> behind = crop(frame.back_lighting.values, frame.description.width, part, 3);
+  const std::vector<float> thickness =
+      crop(frame.thickness.values, frame.description.width, part, 1);
+  const std::vector<float> behind =
+      crop(frame.back_lighting.values, frame.description.width, part, 3);
   if (thickness.empty() || behind.empty()) return;
   for (size_t i = 0; i < thickness.size(); ++i) {
     if (reference.profile[i] == 0) continue;
@@ -63,7 +69,8 @@ void add_transmission(const CapturedFrame& frame, ReferenceFrame& reference) {
       const subsurface::ChannelShape shape =
           subsurface::scaled(reference.shapes[reference.profile[i]][c], scale);
       const double through = (1 - shape.direct) * subsurface::shape_survival(shape, metres);
-      reference.light[3 * i + c] += static_cast<float>(through * static_cast<double>(behind[3 * i + c]));
+      reference.light[3 * i + c] +=
+          static_cast<float>(through * static_cast<double>(behind[3 * i + c]));
     }
   }
 }

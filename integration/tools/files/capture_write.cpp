@@ -36,17 +36,19 @@ bool may_replace(const fs::path& folder) {
 
 std::string describe_frame(const FrameDescription& f) {
   std::string text = "{\n";
-  text += fmt::format("  \"dermis_capture\": {},\n  \"width\": {}, \"height\": {},\n", capture_format_version,
-                      f.width, f.height);
-  text += fmt::format("  \"render_rectangle\": [{}, {}, {}, {}],\n", f.render.x, f.render.y, f.render.width,
-                      f.render.height);
-  text += fmt::format("  \"projection\": \"{}\",\n", f.perspective ? "perspective" : "orthographic");
+  text += fmt::format("  \"dermis_capture\": {},\n  \"width\": {}, \"height\": {},\n",
+                      capture_format_version, f.width, f.height);
+  text += fmt::format("  \"render_rectangle\": [{}, {}, {}, {}],\n", f.render.x, f.render.y,
+                      f.render.width, f.render.height);
+  text +=
+      fmt::format("  \"projection\": \"{}\",\n", f.perspective ? "perspective" : "orthographic");
   if (f.pixel_pitch_m)
     text += fmt::format("  \"pixel_pitch_m\": {},\n", *f.pixel_pitch_m);
   else
-    text += fmt::format(
-        "  \"clip_from_view\": {},\n  \"previous_clip_from_view\": {},\n  \"metres_per_unit\": {},\n",
-        matrix_text(f.clip_from_view), matrix_text(f.previous_clip_from_view), f.metres_per_unit);
+    text += fmt::format("  \"clip_from_view\": {},\n  \"previous_clip_from_view\": {},\n  "
+                        "\"metres_per_unit\": {},\n",
+                        matrix_text(f.clip_from_view), matrix_text(f.previous_clip_from_view),
+                        f.metres_per_unit);
   text += fmt::format("  \"view_from_world\": {},\n  \"previous_view_from_world\": {},\n",
                       matrix_text(f.view_from_world), matrix_text(f.previous_view_from_world));
   text += fmt::format(
@@ -83,7 +85,8 @@ bool CaptureWriter::add(const CapturedFrame& frame, std::string& error) {
   }
   Image ids = Image::sized(frame.description.width, frame.description.height, 1);
   if (frame.profile.size() != ids.values.size()) {
-    error = fmt::format("{} profile ids for {} x {} pixels", frame.profile.size(), ids.width, ids.height);
+    error = fmt::format("{} profile ids for {} x {} pixels", frame.profile.size(), ids.width,
+                        ids.height);
     return false;
   }
   ids.values.assign(frame.profile.begin(), frame.profile.end());
@@ -92,11 +95,12 @@ bool CaptureWriter::add(const CapturedFrame& frame, std::string& error) {
     const Image& image = frame.*kind.image;
     if (image.values.empty() && !kind.required) continue;
     if (image.width != ids.width || image.height != ids.height) {
-      error = fmt::format("'{}' is {} x {} in a frame of {} x {}", kind.name, image.width, image.height,
-                          ids.width, ids.height);
+      error = fmt::format("'{}' is {} x {} in a frame of {} x {}", kind.name, image.width,
+                          image.height, ids.width, ids.height);
       return false;
     }
-    if (!write_exr(folder / (std::string(kind.name) + ".exr"), image, kind.channels[0], error)) return false;
+    if (!write_exr(folder / (std::string(kind.name) + ".exr"), image, kind.channels[0], error))
+      return false;
   }
   ++frames_;
   return write_text(folder / "frame.json", describe_frame(frame.description), error);

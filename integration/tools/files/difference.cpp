@@ -29,7 +29,8 @@ using Plane = std::vector<double>;
 // Separable Gaussian. The window is cut at borders and its weights are renormalised.
 Plane blurred(const Plane& plane, uint32_t width, uint32_t height) {
   static const auto weights = window();
-  const auto pass = [&](const Plane& from, uint32_t along, uint32_t across, size_t step, size_t stride) {
+  const auto pass = [&](const Plane& from, uint32_t along, uint32_t across, size_t step,
+                        size_t stride) {
     Plane to(from.size());
     for (uint32_t line = 0; line < across; ++line)
       for (uint32_t i = 0; i < along; ++i) {
@@ -56,7 +57,8 @@ Plane product(const Plane& a, const Plane& b) {
 
 double mean_ssim(const Plane& a, const Plane& b, uint32_t width, uint32_t height) {
   const Plane ma = blurred(a, width, height), mb = blurred(b, width, height);
-  const Plane aa = blurred(product(a, a), width, height), bb = blurred(product(b, b), width, height);
+  const Plane aa = blurred(product(a, a), width, height),
+              bb = blurred(product(b, b), width, height);
   const Plane ab = blurred(product(a, b), width, height);
   double sum = 0;
   for (size_t i = 0; i < a.size(); ++i) {
@@ -95,12 +97,14 @@ double exposure_of(const Image& light, const Image* mask) {
   const Image plain = exposed_luminance(light, 1);
   ExposureMeter meter;
   for (size_t i = 0; i < plain.values.size(); ++i)
-    if (std::isfinite(plain.values[i]) && plain.values[i] > 0 && (mask == nullptr || mask->values[i] != 0))
+    if (std::isfinite(plain.values[i]) && plain.values[i] > 0 &&
+        (mask == nullptr || mask->values[i] != 0))
       meter.luminance.push_back(plain.values[i]);
   return meter.result();
 }
 
-Difference compare_pictures(const Image& a, const Image& b, const PixelRectangle& where, const Image* mask) {
+Difference compare_pictures(const Image& a, const Image& b, const PixelRectangle& where,
+                            const Image* mask) {
   Difference difference;
   const auto left_out = [&](uint32_t x, uint32_t y) {
     return mask != nullptr && mask->at(where.x + x, where.y + y, 0) == 0;
@@ -113,7 +117,8 @@ Difference compare_pictures(const Image& a, const Image& b, const PixelRectangle
       for (uint32_t x = 0; x < where.width; ++x) {
         if (left_out(x, y)) continue;
         if (c == 0) ++difference.pixels;
-        double va = double(a.at(where.x + x, where.y + y, c)), vb = double(b.at(where.x + x, where.y + y, c));
+        double va = double(a.at(where.x + x, where.y + y, c)),
+               vb = double(b.at(where.x + x, where.y + y, c));
         const size_t pixel = size_t{y} * where.width + x;
         if (!std::isfinite(va) || !std::isfinite(vb)) {
           difference.nonfinite += counted[pixel] ? 0 : 1;

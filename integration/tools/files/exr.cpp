@@ -66,7 +66,8 @@ public:
   }
   uint64_t tellg() override { return at_; }
   void seekg(uint64_t position) override {
-    if (position > bytes_.size()) throw std::runtime_error("a part of the file lies beyond its end");
+    if (position > bytes_.size())
+      throw std::runtime_error("a part of the file lies beyond its end");
     at_ = static_cast<size_t>(position);
   }
 
@@ -93,10 +94,13 @@ struct ByteReader {
   }
   uint32_t u32() {
     const auto b = take(4);
-    return b.empty() ? 0 : uint32_t{b[0]} | uint32_t{b[1]} << 8 | uint32_t{b[2]} << 16 | uint32_t{b[3]} << 24;
+    return b.empty()
+               ? 0
+               : uint32_t{b[0]} | uint32_t{b[1]} << 8 | uint32_t{b[2]} << 16 | uint32_t{b[3]} << 24;
   }
   std::string_view text() {
-    const auto end = std::find(bytes.begin() + static_cast<std::ptrdiff_t>(at), bytes.end(), uint8_t{0});
+    const auto end =
+        std::find(bytes.begin() + static_cast<std::ptrdiff_t>(at), bytes.end(), uint8_t{0});
     if (end == bytes.end()) {
       good = false;
       return {};
@@ -120,7 +124,8 @@ std::string check_attributes(std::span<const uint8_t> file, bool& tiled) {
   if (Imf::isMultiPart(flags)) return "it has several parts; save it as one part";
   if (Imf::isNonImage(flags)) return "it is deep; save it as flat scanlines or tiles";
   tiled = Imf::isTiled(flags);
-  std::vector<std::string_view> missing = {"channels", "compression", "dataWindow", "displayWindow"};
+  std::vector<std::string_view> missing = {"channels", "compression", "dataWindow",
+                                           "displayWindow"};
   while (in.good) {
     const std::string_view name = in.text();
     if (!in.good || name.empty()) break;
@@ -146,7 +151,8 @@ struct Window {
 };
 
 // Returns the reason to reject an image of these sizes, or "". Runs before pixels are allocated.
-std::string check_sizes(const Imf::Header& header, bool tiled, size_t read_channels, size_t file_bytes) {
+std::string check_sizes(const Imf::Header& header, bool tiled, size_t read_channels,
+                        size_t file_bytes) {
   const Window data(header.dataWindow()), display(header.displayWindow());
   for (const auto& [name, window] : {std::pair("data", data), std::pair("display", display)})
     if (window.width < 1 || window.height < 1 || window.width > max_image_side ||
@@ -178,20 +184,23 @@ std::string check_sizes(const Imf::Header& header, bool tiled, size_t read_chann
 }
 
 // Returns the first accepted set of names whose channels are all present, or an empty list.
-ChannelNames select_channels(const Imf::ChannelList& channels, std::span<const ChannelNames> accepted) {
+ChannelNames select_channels(const Imf::ChannelList& channels,
+                             std::span<const ChannelNames> accepted) {
   for (const ChannelNames& names : accepted) {
     if (names == ChannelNames{"*"}) {
       auto next = channels.begin();
       if (next != channels.end() && ++next == channels.end()) return {channels.begin().name()};
-    } else if (std::all_of(names.begin(), names.end(),
-                           [&](const std::string& name) { return channels.findChannel(name) != nullptr; })) {
+    } else if (std::all_of(names.begin(), names.end(), [&](const std::string& name) {
+                 return channels.findChannel(name) != nullptr;
+               })) {
       return names;
     }
   }
   return {};
 }
 
-std::string describe_mismatch(const Imf::ChannelList& channels, std::span<const ChannelNames> accepted) {
+std::string describe_mismatch(const Imf::ChannelList& channels,
+                              std::span<const ChannelNames> accepted) {
   std::vector<std::string> present, expected;
   for (auto c = channels.begin(); c != channels.end(); ++c)
     present.emplace_back(c.name());
@@ -218,10 +227,11 @@ struct Rows {
       values.resize(static_cast<size_t>((last - first + 1) * data.width) * names.size());
       Imf::FrameBuffer target;
       for (size_t c = 0; c < names.size(); ++c)
-        target.insert(names[c],
-                      Imf::Slice::Make(Imf::FLOAT, &values[c],
-                                       Imath::V2i(static_cast<int>(data.left), static_cast<int>(first)),
-                                       data.width, last - first + 1, names.size() * sizeof(float)));
+        target.insert(
+            names[c],
+            Imf::Slice::Make(Imf::FLOAT, &values[c],
+                             Imath::V2i(static_cast<int>(data.left), static_cast<int>(first)),
+                             data.width, last - first + 1, names.size() * sizeof(float)));
       decode(target, static_cast<int>(first), static_cast<int>(last));
     }
     return values.data() + static_cast<size_t>((y - first) * data.width) * names.size();
@@ -246,7 +256,8 @@ Image place(Rows& rows, const Window& display) {
     if (y >= data.top && y < data.top + data.height) {
       const float* from = rows.at(y) + static_cast<size_t>(left - data.left) * channels;
       image.values.resize(begin + static_cast<size_t>(left - display.left) * channels);
-      image.values.insert(image.values.end(), from, from + static_cast<size_t>(right - left) * channels);
+      image.values.insert(image.values.end(), from,
+                          from + static_cast<size_t>(right - left) * channels);
     }
     image.values.resize(begin + row);
   }
@@ -266,9 +277,11 @@ std::string decode(const std::string& name, std::span<const uint8_t> file,
   const ChannelNames names = select_channels(header.channels(), accepted);
   if (names.empty()) return describe_mismatch(header.channels(), accepted);
   for (const std::string& channel : names)
-    if (const Imf::Channel& one = header.channels()[channel]; one.xSampling != 1 || one.ySampling != 1)
+    if (const Imf::Channel& one = header.channels()[channel];
+        one.xSampling != 1 || one.ySampling != 1)
       return fmt::format("channel '{}' is subsampled", channel);
-  if (std::string why = check_sizes(header, tiled, names.size(), file.size()); !why.empty()) return why;
+  if (std::string why = check_sizes(header, tiled, names.size(), file.size()); !why.empty())
+    return why;
   const Window data(header.dataWindow()), display(header.displayWindow());
   if (!header.dataWindow().intersects(header.displayWindow()))
     return "its data window lies outside of its display window";
@@ -298,8 +311,8 @@ std::string decode(const std::string& name, std::span<const uint8_t> file,
 
 } // namespace
 
-std::optional<Image> read_exr(const std::filesystem::path& path, std::span<const ChannelNames> accepted,
-                              std::string& error) {
+std::optional<Image> read_exr(const std::filesystem::path& path,
+                              std::span<const ChannelNames> accepted, std::string& error) {
   try {
     const auto bytes = read_bytes(path, max_image_file_bytes, error);
     if (!bytes) return std::nullopt;

@@ -26,8 +26,8 @@ inline const ChannelNames rgb_names = {"R", "G", "B"};
 // Returns nullopt and sets `error` to one sentence with the file and the reason on failure:
 // missing, too large, malformed, incomplete, deep, multi-part, subsampled, unsupported compression,
 // or no accepted set of channels.
-std::optional<Image> read_exr(const std::filesystem::path& path, std::span<const ChannelNames> accepted,
-                              std::string& error);
+std::optional<Image> read_exr(const std::filesystem::path& path,
+                              std::span<const ChannelNames> accepted, std::string& error);
 
 // Writes all channels under the given names, which must be distinct, one per channel. Atomic;
 // bytes.hpp describes failures.

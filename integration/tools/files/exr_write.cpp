@@ -62,8 +62,8 @@ bool write_exr(const std::filesystem::path& path, const Image& image, const Chan
   if (!named || count == 0 || count != image.channels || image.width == 0 || image.height == 0 ||
       image.width > max_image_side || image.height > max_image_side ||
       image.values.size() != size_t{image.width} * image.height * count) {
-    error = fmt::format("'{}' cannot be written: {} names for {} channels of {} x {} pixels", path.string(),
-                        count, image.channels, image.width, image.height);
+    error = fmt::format("'{}' cannot be written: {} names for {} channels of {} x {} pixels",
+                        path.string(), count, image.channels, image.width, image.height);
     return false;
   }
   MemoryOutput out(path.filename().string());

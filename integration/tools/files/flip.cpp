@@ -20,8 +20,9 @@ struct Shape {
 };
 
 // sRGB primaries, D65 (IEC 61966-2-1).
-constexpr double xyz_from_rgb[3][3] = {
-    {0.4124564, 0.3575761, 0.1804375}, {0.2126729, 0.7151522, 0.0721750}, {0.0193339, 0.1191920, 0.9503041}};
+constexpr double xyz_from_rgb[3][3] = {{0.4124564, 0.3575761, 0.1804375},
+                                       {0.2126729, 0.7151522, 0.0721750},
+                                       {0.0193339, 0.1191920, 0.9503041}};
 constexpr double rgb_from_xyz[3][3] = {{3.2404542, -1.5371385, -0.4985314},
                                        {-0.9692660, 1.8760108, 0.0415560},
                                        {0.0556434, -0.2040259, 1.0572252}};
@@ -128,10 +129,12 @@ constexpr double widest = 0.04; // the largest b of the table
 Plane contrast_filtered(const Plane& plane, Shape shape, const Sensitivity& channel,
                         double pixels_per_degree) {
   const double pi = std::numbers::pi;
-  const int radius = static_cast<int>(std::ceil(3 * std::sqrt(widest / (2 * pi * pi)) * pixels_per_degree));
+  const int radius =
+      static_cast<int>(std::ceil(3 * std::sqrt(widest / (2 * pi * pi)) * pixels_per_degree));
   Plane out(plane.size());
   double total = 0;
-  for (const auto& [a, b] : {std::pair{channel.a1, channel.b1}, std::pair{channel.a2, channel.b2}}) {
+  for (const auto& [a, b] :
+       {std::pair{channel.a1, channel.b1}, std::pair{channel.a2, channel.b2}}) {
     if (!(a > 0)) continue;
     const Kernel kernel = make_kernel(radius, [&, width = b](double i) {
       const double x = i / pixels_per_degree;
@@ -151,7 +154,8 @@ Plane contrast_filtered(const Plane& plane, Shape shape, const Sensitivity& chan
 // Returns colour differences in 0..1 after removing detail that the eye does not resolve.
 Plane color_difference(const Planes& a, const Planes& b, Shape shape, double pixels_per_degree) {
   constexpr double exponent = 0.7, knee = 0.4, knee_value = 0.95; // q_c, p_c, p_t of the 2020 paper
-  const double largest = std::pow(hyab(hunt_lab_from_rgb({0, 1, 0}), hunt_lab_from_rgb({0, 0, 1})), exponent);
+  const double largest =
+      std::pow(hyab(hunt_lab_from_rgb({0, 1, 0}), hunt_lab_from_rgb({0, 0, 1})), exponent);
   Planes seen_a, seen_b;
   for (size_t c = 0; c < 3; ++c) {
     seen_a[c] = contrast_filtered(a[c], shape, sensitivities[c], pixels_per_degree);
@@ -166,9 +170,10 @@ Plane color_difference(const Planes& a, const Planes& b, Shape shape, double pix
   Plane out(a[0].size());
   for (size_t i = 0; i < out.size(); ++i) {
     const double error = std::pow(hyab(lab(seen_a, i), lab(seen_b, i)), exponent);
-    out[i] = error < knee * largest
-                 ? error * knee_value / (knee * largest)
-                 : knee_value + (error - knee * largest) / (largest - knee * largest) * (1 - knee_value);
+    out[i] =
+        error < knee * largest
+            ? error * knee_value / (knee * largest)
+            : knee_value + (error - knee * largest) / (largest - knee * largest) * (1 - knee_value);
   }
   return out;
 }
@@ -185,11 +190,13 @@ Plane feature_difference(const Plane& a, const Plane& b, Shape shape, double pix
   for (double& weight : smooth.weights)
     weight /= sum;
   Kernel edge = make_kernel(radius, [&](double i) { return -i * gauss(i); });
-  Kernel point = make_kernel(radius, [&](double i) { return (i * i / (sigma * sigma) - 1) * gauss(i); });
+  Kernel point =
+      make_kernel(radius, [&](double i) { return (i * i / (sigma * sigma) - 1) * gauss(i); });
   balance(edge);
   balance(point);
   const auto strength = [&](const Plane& plane, const Kernel& kernel) {
-    const Plane x = filtered(plane, shape, kernel, smooth), y = filtered(plane, shape, smooth, kernel);
+    const Plane x = filtered(plane, shape, kernel, smooth),
+                y = filtered(plane, shape, smooth, kernel);
     Plane out(plane.size());
     for (size_t i = 0; i < out.size(); ++i)
       out[i] = std::hypot(x[i], y[i]);
@@ -199,7 +206,8 @@ Plane feature_difference(const Plane& a, const Plane& b, Shape shape, double pix
   const Plane points_a = strength(a, point), points_b = strength(b, point);
   Plane out(a.size());
   for (size_t i = 0; i < out.size(); ++i) {
-    const double maximum = std::max(std::abs(edges_a[i] - edges_b[i]), std::abs(points_a[i] - points_b[i]));
+    const double maximum =
+        std::max(std::abs(edges_a[i] - edges_b[i]), std::abs(points_a[i] - points_b[i]));
     out[i] = std::pow(maximum / std::numbers::sqrt2, exponent);
   }
   return out;
@@ -232,7 +240,8 @@ std::vector<float> low_range(const std::vector<Color>& a, const std::vector<Colo
 
 // Filmic tone curve of Narkowicz 2016 as FLIP uses it (2021), with its factor of 0.6 on the input
 // folded in: (k0 x^2 + k1 x) / (k3 x^2 + k4 x + k5).
-constexpr double k0 = 0.6 * 0.6 * 2.51, k1 = 0.6 * 0.03, k3 = 0.6 * 0.6 * 2.43, k4 = 0.6 * 0.59, k5 = 0.14;
+constexpr double k0 = 0.6 * 0.6 * 2.51, k1 = 0.6 * 0.03, k3 = 0.6 * 0.6 * 2.43, k4 = 0.6 * 0.59,
+                 k5 = 0.14;
 
 double tone(double x) {
   return std::clamp((k0 * x * x + k1 * x) / (k3 * x * x + k4 * x + k5), 0.0, 1.0);
@@ -260,7 +269,8 @@ std::vector<Color> colors_of(const Image& image, double maximum) {
   for (size_t i = 0; i < colors.size(); ++i)
     for (size_t c = 0; c < 3; ++c) {
       const float value = image.values[i * image.channels + (image.channels == 3 ? c : 0)];
-      colors[i][c] = std::isfinite(value) ? std::clamp(static_cast<double>(value), 0.0, maximum) : 0.0;
+      colors[i][c] =
+          std::isfinite(value) ? std::clamp(static_cast<double>(value), 0.0, maximum) : 0.0;
     }
   return colors;
 }
@@ -288,7 +298,8 @@ std::vector<float> flip(const Image& reference, const Image& test, bool high_ran
   std::vector<float> worst(a.size());
   for (int i = 0; i < count; ++i) {
     const double stops = start + (stop - start) * i / (count - 1);
-    const std::vector<float> one = low_range(exposed(a, stops), exposed(b, stops), shape, pixels_per_degree);
+    const std::vector<float> one =
+        low_range(exposed(a, stops), exposed(b, stops), shape, pixels_per_degree);
     for (size_t k = 0; k < worst.size(); ++k)
       worst[k] = std::max(worst[k], one[k]);
   }

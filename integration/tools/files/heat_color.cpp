@@ -23,7 +23,8 @@ std::array<uint8_t, 3> heat_color(double error) {
   const size_t k = std::min(static_cast<size_t>(t), last - 1);
   std::array<uint8_t, 3> rgb{};
   for (size_t c = 0; c < 3; ++c)
-    rgb[c] = static_cast<uint8_t>(stops[k][c] + (t - double(k)) * (stops[k + 1][c] - stops[k][c]) + 0.5);
+    rgb[c] =
+        static_cast<uint8_t>(stops[k][c] + (t - double(k)) * (stops[k + 1][c] - stops[k][c]) + 0.5);
   return rgb;
 }
 

@@ -73,8 +73,10 @@ ErrorFigures measure_error(std::span<const float> image, std::span<const double>
 
   // Standard error of the mean of squares with finite-population correction; 1.96 of it each way is
   // the 95 % interval.
-  const double left_out = std::max(0.0, 1 - count / double(std::max<uint64_t>(population, pixels.size())));
-  const double variance = pixels.size() > 1 ? std::max(0.0, fourths / count - mse * mse) / (count - 1) : 0;
+  const double left_out =
+      std::max(0.0, 1 - count / double(std::max<uint64_t>(population, pixels.size())));
+  const double variance =
+      pixels.size() > 1 ? std::max(0.0, fourths / count - mse * mse) / (count - 1) : 0;
   const double margin = left_out > 0 ? 1.96 * std::sqrt(variance * left_out) : 0;
   figures.rmse_low = std::sqrt(std::max(0.0, mse - margin));
   figures.rmse_high = std::sqrt(mse + margin);

@@ -38,11 +38,11 @@ std::vector<uint8_t> encode_png(uint32_t width, uint32_t height, std::span<const
     return file;
   const auto append = [](void* target, void* data, int size) {
     const auto* first = static_cast<const uint8_t*>(data);
-    static_cast<std::vector<uint8_t>*>(target)->insert(static_cast<std::vector<uint8_t>*>(target)->end(),
-                                                       first, first + size);
+    static_cast<std::vector<uint8_t>*>(target)->insert(
+        static_cast<std::vector<uint8_t>*>(target)->end(), first, first + size);
   };
-  if (!stbi_write_png_to_func(append, &file, static_cast<int>(width), static_cast<int>(height), 3, rgb.data(),
-                              static_cast<int>(width * 3)))
+  if (!stbi_write_png_to_func(append, &file, static_cast<int>(width), static_cast<int>(height), 3,
+                              rgb.data(), static_cast<int>(width * 3)))
     file.clear();
   return file;
 }
@@ -51,8 +51,8 @@ bool write_png(const std::filesystem::path& path, uint32_t width, uint32_t heigh
                std::span<const uint8_t> rgb, std::string& error) {
   const std::vector<uint8_t> file = encode_png(width, height, rgb);
   if (!file.empty()) return write_bytes(path, file, error);
-  error = fmt::format("'{}' cannot be encoded: {} bytes for {} x {} pixels", path.string(), rgb.size(), width,
-                      height);
+  error = fmt::format("'{}' cannot be encoded: {} bytes for {} x {} pixels", path.string(),
+                      rgb.size(), width, height);
   return false;
 }
 
@@ -65,7 +65,8 @@ std::optional<Image> read_png(const std::filesystem::path& path, std::string& er
     error = fmt::format("'{}' is not a PNG picture", path.string());
     return std::nullopt;
   }
-  if (width < 1 || height < 1 || uint32_t(width) > max_image_side || uint32_t(height) > max_image_side) {
+  if (width < 1 || height < 1 || uint32_t(width) > max_image_side ||
+      uint32_t(height) > max_image_side) {
     error = fmt::format("'{}' is {} x {}; sides of 1 to {} are read", path.string(), width, height,
                         max_image_side);
     return std::nullopt;
@@ -80,7 +81,8 @@ std::optional<Image> read_png(const std::filesystem::path& path, std::string& er
   };
   const bool read =
       stbi_is_16_bit_from_memory(bytes->data(), size)
-          ? take(stbi_load_16_from_memory(bytes->data(), size, &width, &height, &channels, 3), 65535)
+          ? take(stbi_load_16_from_memory(bytes->data(), size, &width, &height, &channels, 3),
+                 65535)
           : take(stbi_load_from_memory(bytes->data(), size, &width, &height, &channels, 3), 255);
   if (!read) {
     error = fmt::format("'{}' is damaged: {}", path.string(), stbi_failure_reason());

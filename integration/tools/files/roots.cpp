@@ -19,7 +19,8 @@ FileText open_file(const std::vector<fs::path>& roots, std::string_view name) {
   std::string searched;
   for (const fs::path& root : roots) {
     const PlacedFile placed = place_file(root, name, std::span(&root, 1));
-    searched += fmt::format("{}'{}'", searched.empty() ? "" : ", ", root.empty() ? "." : root.string());
+    searched +=
+        fmt::format("{}'{}'", searched.empty() ? "" : ", ", root.empty() ? "." : root.string());
     std::error_code code;
     if (!fs::exists(placed.real, code)) continue;
     out.name = placed.path.string();

@@ -16,7 +16,8 @@ std::vector<uint8_t> zlib_deflate(std::span<const uint8_t> bytes) {
   // The encoder only reads, but its parameter is not const.
   std::vector<uint8_t> copy(bytes.begin(), bytes.end());
   int size = 0;
-  unsigned char* packed = stbi_zlib_compress(copy.data(), static_cast<int>(copy.size()), &size, effort);
+  unsigned char* packed =
+      stbi_zlib_compress(copy.data(), static_cast<int>(copy.size()), &size, effort);
   std::vector<uint8_t> result(packed, packed ? packed + size : packed);
   std::free(packed);
   return result;

@@ -6,7 +6,8 @@
 namespace dermis {
 namespace {
 
-template <class... Arguments> VKAPI_ATTR void VKAPI_CALL count(VkCommandBuffer commands, Arguments...) {
+template <class... Arguments>
+VKAPI_ATTR void VKAPI_CALL count(VkCommandBuffer commands, Arguments...) {
   ++state_of(commands).commands;
 }
 

@@ -23,8 +23,8 @@ VkMemoryRequirements needs_of(const VkBufferCreateInfo& info) {
 }
 
 template <class Info, class Handle>
-VKAPI_ATTR VkResult VKAPI_CALL create(VkDevice device, const Info* info, const VkAllocationCallbacks*,
-                                      Handle* handle) {
+VKAPI_ATTR VkResult VKAPI_CALL create(VkDevice device, const Info* info,
+                                      const VkAllocationCallbacks*, Handle* handle) {
   NullDeviceState& state = state_of(device);
   if (const VkResult result = count_creation(state); result != VK_SUCCESS) return result;
   uint64_t bytes = 0;
@@ -42,16 +42,19 @@ VKAPI_ATTR void VKAPI_CALL destroy(VkDevice device, Handle handle, const VkAlloc
 
 VKAPI_ATTR VkResult VKAPI_CALL create_pipelines(VkDevice device, VkPipelineCache, uint32_t count,
                                                 const VkComputePipelineCreateInfo*,
-                                                const VkAllocationCallbacks*, VkPipeline* pipelines) {
+                                                const VkAllocationCallbacks*,
+                                                VkPipeline* pipelines) {
   NullDeviceState& state = state_of(device);
   const VkResult result = count_creation(state);
   for (uint32_t i = 0; i < count; ++i)
-    pipelines[i] = result == VK_SUCCESS ? reinterpret_cast<VkPipeline>(add_object(state)) : VK_NULL_HANDLE;
+    pipelines[i] =
+        result == VK_SUCCESS ? reinterpret_cast<VkPipeline>(add_object(state)) : VK_NULL_HANDLE;
   return result;
 }
 
 // Set handles equal the handle of the pool, which owns the sets.
-VKAPI_ATTR VkResult VKAPI_CALL allocate_sets(VkDevice device, const VkDescriptorSetAllocateInfo* info,
+VKAPI_ATTR VkResult VKAPI_CALL allocate_sets(VkDevice device,
+                                             const VkDescriptorSetAllocateInfo* info,
                                              VkDescriptorSet* sets) {
   if (const VkResult result = count_creation(state_of(device)); result != VK_SUCCESS) return result;
   for (uint32_t i = 0; i < info->descriptorSetCount; ++i)
@@ -62,20 +65,24 @@ VKAPI_ATTR VkResult VKAPI_CALL allocate_sets(VkDevice device, const VkDescriptor
 VKAPI_ATTR void VKAPI_CALL update_sets(VkDevice, uint32_t, const VkWriteDescriptorSet*, uint32_t,
                                        const VkCopyDescriptorSet*) {}
 
-VKAPI_ATTR void VKAPI_CALL image_requirements(VkDevice, VkImage image, VkMemoryRequirements* needs) {
+VKAPI_ATTR void VKAPI_CALL image_requirements(VkDevice, VkImage image,
+                                              VkMemoryRequirements* needs) {
   *needs = object_of(image).needs;
 }
 
-VKAPI_ATTR void VKAPI_CALL buffer_requirements(VkDevice, VkBuffer buffer, VkMemoryRequirements* needs) {
+VKAPI_ATTR void VKAPI_CALL buffer_requirements(VkDevice, VkBuffer buffer,
+                                               VkMemoryRequirements* needs) {
   *needs = object_of(buffer).needs;
 }
 
-VKAPI_ATTR void VKAPI_CALL device_image_requirements(VkDevice, const VkDeviceImageMemoryRequirements* query,
+VKAPI_ATTR void VKAPI_CALL device_image_requirements(VkDevice,
+                                                     const VkDeviceImageMemoryRequirements* query,
                                                      VkMemoryRequirements2* needs) {
   needs->memoryRequirements = needs_of(*query->pCreateInfo);
 }
 
-VKAPI_ATTR void VKAPI_CALL device_buffer_requirements(VkDevice, const VkDeviceBufferMemoryRequirements* query,
+VKAPI_ATTR void VKAPI_CALL device_buffer_requirements(VkDevice,
+                                                      const VkDeviceBufferMemoryRequirements* query,
                                                       VkMemoryRequirements2* needs) {
   needs->memoryRequirements = needs_of(*query->pCreateInfo);
 }
@@ -84,8 +91,9 @@ template <class Info> VKAPI_ATTR VkResult VKAPI_CALL bind(VkDevice device, uint3
   return count_creation(state_of(device));
 }
 
-VKAPI_ATTR VkResult VKAPI_CALL map_memory(VkDevice device, VkDeviceMemory memory, VkDeviceSize offset,
-                                          VkDeviceSize, VkMemoryMapFlags, void** data) {
+VKAPI_ATTR VkResult VKAPI_CALL map_memory(VkDevice device, VkDeviceMemory memory,
+                                          VkDeviceSize offset, VkDeviceSize, VkMemoryMapFlags,
+                                          void** data) {
   if (const VkResult result = count_creation(state_of(device)); result != VK_SUCCESS) return result;
   NullObject& object = object_of(memory);
   if (!object.contents) object.contents = std::make_unique<std::byte[]>(object.bytes);

@@ -32,7 +32,8 @@ VKAPI_ATTR void VKAPI_CALL properties(VkPhysicalDevice, VkPhysicalDeviceProperti
   limits.nonCoherentAtomSize = 1;
 }
 
-VKAPI_ATTR void VKAPI_CALL memory_properties(VkPhysicalDevice, VkPhysicalDeviceMemoryProperties* out) {
+VKAPI_ATTR void VKAPI_CALL memory_properties(VkPhysicalDevice,
+                                             VkPhysicalDeviceMemoryProperties* out) {
   *out = {};
   out->memoryTypeCount = out->memoryHeapCount = 1;
   out->memoryTypes[0].propertyFlags = VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT |
@@ -60,13 +61,15 @@ VKAPI_ATTR void VKAPI_CALL format_properties(VkPhysicalDevice, VkFormat, VkForma
 VKAPI_ATTR VkResult VKAPI_CALL image_format_properties(VkPhysicalDevice,
                                                        const VkPhysicalDeviceImageFormatInfo2*,
                                                        VkImageFormatProperties2* out) {
-  out->imageFormatProperties = {{16384, 16384, 1}, 15, 2048, VK_SAMPLE_COUNT_1_BIT, VkDeviceSize{1} << 36};
+  out->imageFormatProperties = {
+      {16384, 16384, 1}, 15, 2048, VK_SAMPLE_COUNT_1_BIT, VkDeviceSize{1} << 36};
   return VK_SUCCESS;
 }
 
 VKAPI_ATTR void VKAPI_CALL features(VkPhysicalDevice, VkPhysicalDeviceFeatures2* out) {
   out->features.shaderStorageImageWriteWithoutFormat = VK_TRUE;
-  for (auto* next = static_cast<VkBaseOutStructure*>(out->pNext); next != nullptr; next = next->pNext) {
+  for (auto* next = static_cast<VkBaseOutStructure*>(out->pNext); next != nullptr;
+       next = next->pNext) {
     if (next->sType == VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SYNCHRONIZATION_2_FEATURES)
       reinterpret_cast<VkPhysicalDeviceSynchronization2Features*>(next)->synchronization2 = VK_TRUE;
     if (next->sType == VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MAINTENANCE_4_FEATURES)
@@ -74,8 +77,9 @@ VKAPI_ATTR void VKAPI_CALL features(VkPhysicalDevice, VkPhysicalDeviceFeatures2*
   }
 }
 
-VKAPI_ATTR VkResult VKAPI_CALL query_results(VkDevice device, VkQueryPool, uint32_t, uint32_t, size_t bytes,
-                                             void* data, VkDeviceSize, VkQueryResultFlags) {
+VKAPI_ATTR VkResult VKAPI_CALL query_results(VkDevice device, VkQueryPool, uint32_t, uint32_t,
+                                             size_t bytes, void* data, VkDeviceSize,
+                                             VkQueryResultFlags) {
   std::fill_n(static_cast<std::byte*>(data), bytes, std::byte{0});
   return state_of(device).query_failure;
 }

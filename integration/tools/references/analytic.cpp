@@ -38,7 +38,8 @@ double bessel_k0_integral(double z) {
 
 double burley_edge(double x, double d) {
   const double size = std::abs(x);
-  const double half = (bessel_k0_integral(size / d) + 3 * bessel_k0_integral(size / (3 * d))) / (4 * pi);
+  const double half =
+      (bessel_k0_integral(size / d) + 3 * bessel_k0_integral(size / (3 * d))) / (4 * pi);
   return x < 0 ? 0.5 - half : 0.5 + half;
 }
 
@@ -58,7 +59,8 @@ double burley_disc(double x, double rho, double d) {
     for (int i = 0; i < angles; ++i) {
       const double theta = 2 * pi * (i + 0.5) / angles;
       const double across = x * std::sin(theta);
-      sum += burley_cdf(-x * std::cos(theta) + std::sqrt(std::max(0.0, rho * rho - across * across)), d);
+      sum += burley_cdf(
+          -x * std::cos(theta) + std::sqrt(std::max(0.0, rho * rho - across * across)), d);
     }
     return sum / angles;
   }
@@ -68,7 +70,8 @@ double burley_disc(double x, double rho, double d) {
     const double phi = pi * ((i + 0.5) / angles - 0.5);
     const double cosine = std::sqrt(1 - ratio * ratio * std::sin(phi) * std::sin(phi));
     const double middle = std::abs(x) * cosine, half = rho * std::cos(phi);
-    sum += (burley_cdf(middle + half, d) - burley_cdf(middle - half, d)) * ratio * std::cos(phi) / cosine;
+    sum += (burley_cdf(middle + half, d) - burley_cdf(middle - half, d)) * ratio * std::cos(phi) /
+           cosine;
   }
   return sum / (2 * angles);
 }

@@ -12,7 +12,8 @@ double required_samples(double variance, double mean_count, const GuidanceSettin
 }
 
 int clamped_samples(double required, const GuidanceSettings& settings) {
-  return static_cast<int>(std::lround(std::clamp(required, settings.min_samples, settings.max_samples)));
+  return static_cast<int>(
+      std::lround(std::clamp(required, settings.min_samples, settings.max_samples)));
 }
 
 double control_weight(const MovingCovariance& moments, double eps_alpha) {

@@ -17,7 +17,8 @@ int64_t setting(const PassType& type, const ReadsQuestion& question, std::string
 }
 
 // Returns 1 if the optional port is bound, else 0.
-double one_if(const PassType& type, const ReadsQuestion& question, std::string_view port, PortSide side) {
+double one_if(const PassType& type, const ReadsQuestion& question, std::string_view port,
+              PortSide side) {
   const int index = find_port(type, port, side);
   return index >= 0 && question.bound[static_cast<size_t>(index)] ? 1 : 0;
 }
@@ -63,7 +64,8 @@ ImageReads none(const PassType&, const ReadsQuestion&) {
 // Lighting and its factors.
 double light_reads(const PassType& type, const ReadsQuestion& question) {
   const bool textured = setting(type, question, "texturing") != 0;
-  return 1 + scale_read(type, question) + (textured ? one_if(type, question, "albedo", PortSide::read) : 0);
+  return 1 + scale_read(type, question) +
+         (textured ? one_if(type, question, "albedo", PortSide::read) : 0);
 }
 
 // common/subsurface_setup.comp: light, patch.
@@ -134,7 +136,8 @@ ImageReads sap_up(const PassType& type, const ReadsQuestion& question) {
 // Only surface and light if no pixel scatters beyond itself.
 ImageReads sap_gather(const PassType&, const ReadsQuestion& question) {
   const double widest = std::max({question.d_px[0], question.d_px[1], question.d_px[2]});
-  return {widest < copy_below_d_px ? 2 : 2 * block_reads(6 * 4, 4, 2) + 2 * block_reads(4 * 3, 4, 2)};
+  return {widest < copy_below_d_px ? 2
+                                   : 2 * block_reads(6 * 4, 4, 2) + 2 * block_reads(4 * 3, 4, 2)};
 }
 
 // As fixed; each sample also reads its levels: two, one or none.
@@ -160,18 +163,19 @@ ImageReads afis_tiles(const PassType& type, const ReadsQuestion& question) {
 ImageReads guided(const PassType& type, const ReadsQuestion& question) {
   const double samples =
       question.sampled_fraction * static_cast<double>(setting(type, question, "max_samples"));
-  const double kept =
-      1 + one_if(type, question, "place", PortSide::read) + one_if(type, question, "control", PortSide::read);
+  const double kept = 1 + one_if(type, question, "place", PortSide::read) +
+                      one_if(type, question, "control", PortSide::read);
   constexpr double levels[] = {2, 1, 0}; // trilinear, nearest level, none
-  return {4 + scale_read(type, question) + one_if(type, question, "velocity", PortSide::read) + 4 * kept +
-              (4 + levels[setting(type, question, "mips")]) * samples,
+  return {4 + scale_read(type, question) + one_if(type, question, "velocity", PortSide::read) +
+              4 * kept + (4 + levels[setting(type, question, "mips")]) * samples,
           samples};
 }
 
 // Light; in pixels with low confidence surface and light, and per sample its surface and its
 // level's surface and light.
 ImageReads blend(const PassType& type, const ReadsQuestion& question) {
-  const double samples = question.sampled_fraction * static_cast<double>(setting(type, question, "samples"));
+  const double samples =
+      question.sampled_fraction * static_cast<double>(setting(type, question, "samples"));
   return {1 + 2 * question.sampled_fraction + 3 * samples, samples};
 }
 
@@ -247,7 +251,8 @@ ImageReads copy(const PassType& type, const ReadsQuestion& question) {
 // Lighting, material, depth, scattered light.
 ImageReads light(const PassType& type, const ReadsQuestion& question) {
   const bool textured = setting(type, question, "texturing") != 0;
-  return {4 + scale_read(type, question) + (textured ? one_if(type, question, "albedo", PortSide::read) : 0)};
+  return {4 + scale_read(type, question) +
+          (textured ? one_if(type, question, "albedo", PortSide::read) : 0)};
 }
 
 // Scattered light, material, importance.
@@ -278,7 +283,8 @@ ImageReads debug_tile_class(const PassType&, const ReadsQuestion&) {
 ImageReads probe(const PassType& type, const ReadsQuestion& question) {
   const double widest = std::max({question.d_px[0], question.d_px[1], question.d_px[2]});
   const double side = 2 * std::ceil(20 * widest) + 1, pixels = 4.0 / 64;
-  return {question.sampled_fraction * pixels * (light_reads(type, question) + 3 + side * side * 11)};
+  return {question.sampled_fraction * pixels *
+          (light_reads(type, question) + 3 + side * side * 11)};
 }
 
 // Material, depth, normal of the pixel. Rays and hits are in buffers; paths count as samples, not

@@ -26,8 +26,8 @@ double artist_width(double falloff) {
 }
 
 double artist_R(double r, double width) {
-  return over_gaussians(width,
-                        [&](double v) { return std::exp(-0.5 * r * r / v) / (2 * std::numbers::pi * v); });
+  return over_gaussians(
+      width, [&](double v) { return std::exp(-0.5 * r * r / v) / (2 * std::numbers::pi * v); });
 }
 
 double artist_pdf(double r, double width) {

@@ -9,7 +9,7 @@
 
 // Compiles the function a second time for processors with 256-bit vectors, if the loader can choose
 // between the versions. Both give the same bits.
-#if defined(__x86_64__) && defined(__ELF__) && defined(__GNUC__) && !defined(__clang__) &&                   \
+#if defined(__x86_64__) && defined(__ELF__) && defined(__GNUC__) && !defined(__clang__) &&         \
     !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
 #define DERMIS_WIDE_VECTORS __attribute__((target_clones("avx2", "default")))
 #else
@@ -26,7 +26,8 @@ namespace {
 inline double exp_of_negative(double x) {
   // adding this moves the integer part of a number to its lowest bits
   constexpr double to_integer = 0x1.8p52;
-  constexpr double factorials[] = {39916800, 3628800, 362880, 40320, 5040, 720, 120, 24, 6, 2, 1, 1};
+  constexpr double factorials[] = {39916800, 3628800, 362880, 40320, 5040, 720,
+                                   120,      24,      6,      2,     1,    1};
   const double shifted = x * std::numbers::log2e + to_integer;
   const double n = shifted - to_integer;
   // ln 2 in two parts: the product of n and the first part is exact.
@@ -34,7 +35,8 @@ inline double exp_of_negative(double x) {
   double sum = 1.0 / 479001600;
   for (const double factorial : factorials)
     sum = sum * f + 1 / factorial;
-  return std::bit_cast<double>(std::bit_cast<int64_t>(sum) + (std::bit_cast<int64_t>(shifted) << 52));
+  return std::bit_cast<double>(std::bit_cast<int64_t>(sum) +
+                               (std::bit_cast<int64_t>(shifted) << 52));
 }
 
 // Returns the smaller of two positive numbers, compared by their bits, because comparisons of

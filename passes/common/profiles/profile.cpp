@@ -35,8 +35,10 @@ std::string_view name_of(ProfileModel model) {
 }
 
 // Converts a mean free path inside the material to the one on the surface that gives the same d.
-void read_burley(const Document& document, ObjectReader& reader, Profile& profile, Diagnostics& diagnostics) {
-  const NodeId dmfp = document.find(reader.node(), "dmfp_mm"), mfp = document.find(reader.node(), "mfp_mm");
+void read_burley(const Document& document, ObjectReader& reader, Profile& profile,
+                 Diagnostics& diagnostics) {
+  const NodeId dmfp = document.find(reader.node(), "dmfp_mm"),
+               mfp = document.find(reader.node(), "mfp_mm");
   const NodeId scaling_key = document.find(reader.node(), "scaling");
   const bool inside = mfp.valid();
   std::array<double, 3> length{};
@@ -67,14 +69,16 @@ void read_burley(const Document& document, ObjectReader& reader, Profile& profil
 bool read_numbers_into(const Document& document, ObjectReader& reader, Profile& profile,
                        Diagnostics& diagnostics) {
   const uint32_t errors = diagnostics.count(Severity::error);
-  profile.model = static_cast<ProfileModel>(reader.word("model", model_names, Need::optional).value_or(0));
+  profile.model =
+      static_cast<ProfileModel>(reader.word("model", model_names, Need::optional).value_or(0));
   for (const ModelKey& known : model_keys) {
     const NodeId node = document.find(reader.node(), known.key);
     if (known.model == profile.model || !node.valid()) continue;
     reader.has(known.key);
-    diagnostics.add(DiagnosticId::profile_keys, document.where(node),
-                    fmt::format("'{}' belongs to the model \"{}\", but this profile's model is \"{}\"",
-                                known.key, name_of(known.model), name_of(profile.model)));
+    diagnostics.add(
+        DiagnosticId::profile_keys, document.where(node),
+        fmt::format("'{}' belongs to the model \"{}\", but this profile's model is \"{}\"",
+                    known.key, name_of(known.model), name_of(profile.model)));
   }
   switch (profile.model) {
   case ProfileModel::burley:
@@ -82,8 +86,10 @@ bool read_numbers_into(const Document& document, ObjectReader& reader, Profile& 
     break;
   case ProfileModel::dipole:
     reader.numbers("sigma_a_per_mm", profile.sigma_a, min_coefficient, largest_coefficient);
-    reader.numbers("sigma_s_prime_per_mm", profile.sigma_s_prime, min_coefficient, largest_coefficient);
-    profile.eta = reader.number("eta", 1.0, largest_eta, Need::optional).value_or(dipole_default_eta);
+    reader.numbers("sigma_s_prime_per_mm", profile.sigma_s_prime, min_coefficient,
+                   largest_coefficient);
+    profile.eta =
+        reader.number("eta", 1.0, largest_eta, Need::optional).value_or(dipole_default_eta);
     break;
   case ProfileModel::artist:
     reader.numbers("falloff", profile.falloff, 0.0, largest_falloff);
@@ -117,8 +123,8 @@ void derive(Profile& profile) {
     }
     profile.d_mm[c] = shape.d;
   }
-  profile.widest =
-      static_cast<int>(std::max_element(profile.d_mm.begin(), profile.d_mm.end()) - profile.d_mm.begin());
+  profile.widest = static_cast<int>(std::max_element(profile.d_mm.begin(), profile.d_mm.end()) -
+                                    profile.d_mm.begin());
 }
 
 std::optional<Profile> read_profile(const Document& document, Diagnostics& diagnostics) {
@@ -136,8 +142,8 @@ std::optional<Profile> read_profile(const Document& document, Diagnostics& diagn
   return profile;
 }
 
-std::optional<Profile> read_inline_profile(const Document& document, NodeId object, std::string what,
-                                           Diagnostics& diagnostics) {
+std::optional<Profile> read_inline_profile(const Document& document, NodeId object,
+                                           std::string what, Diagnostics& diagnostics) {
   Profile profile;
   ObjectReader reader(document, object, std::move(what), diagnostics);
   reader.any("id");
@@ -151,15 +157,17 @@ std::optional<Profile> read_inline_profile(const Document& document, NodeId obje
 std::string profile_members(const Profile& profile) {
   switch (profile.model) {
   case ProfileModel::dipole:
-    return fmt::format(R"("model": "dipole", "sigma_a_per_mm": {}, "sigma_s_prime_per_mm": {}, "eta": {})",
-                       three(profile.sigma_a), three(profile.sigma_s_prime), profile.eta);
+    return fmt::format(
+        R"("model": "dipole", "sigma_a_per_mm": {}, "sigma_s_prime_per_mm": {}, "eta": {})",
+        three(profile.sigma_a), three(profile.sigma_s_prime), profile.eta);
   case ProfileModel::artist:
-    return fmt::format(R"("model": "artist", "falloff": {}, "strength": {})", three(profile.falloff),
-                       three(profile.strength));
+    return fmt::format(R"("model": "artist", "falloff": {}, "strength": {})",
+                       three(profile.falloff), three(profile.strength));
   case ProfileModel::burley:
     break;
   }
-  return fmt::format(R"("dmfp_mm": {}, "albedo": {})", three(profile.dmfp_mm), three(profile.albedo));
+  return fmt::format(R"("dmfp_mm": {}, "albedo": {})", three(profile.dmfp_mm),
+                     three(profile.albedo));
 }
 
 std::string describe_profile(const Profile& profile) {

@@ -45,8 +45,8 @@ void derive(Profile& profile);
 std::optional<Profile> read_profile(const Document& document, Diagnostics& diagnostics);
 // Reads only the object's "model" and numbers, for files that contain a profile inline; `what`
 // names the profile in messages.
-std::optional<Profile> read_inline_profile(const Document& document, NodeId object, std::string what,
-                                           Diagnostics& diagnostics);
+std::optional<Profile> read_inline_profile(const Document& document, NodeId object,
+                                           std::string what, Diagnostics& diagnostics);
 
 // Returns the members of a JSON object with the profile's model and numbers, such as "dmfp_mm": [1,
 // 2, 3], "albedo": [0.5, 0.5, 0.5]. Reading restores the numbers bit for bit.

@@ -40,8 +40,8 @@ std::vector<RadialRow> make_radial_rows(const ProfileShape& shape, int widest) {
     RadialRow &first = rows[i], &second = rows[radial_nodes + i];
     for (size_t c = 0; c < 3; ++c) {
       const double value = shape[c].d > 0 ? 2 * std::numbers::pi * shape_R(shape[c], r) : 0.0;
-      first[c] =
-          static_cast<float>(value > 0 ? std::max(std::log2(value), radial_min_log2) : radial_min_log2);
+      first[c] = static_cast<float>(value > 0 ? std::max(std::log2(value), radial_min_log2)
+                                              : radial_min_log2);
       second[c] = static_cast<float>(shape_survival(shape[c], r));
     }
     const double root = i / radial_inverse_nodes_per_unit;

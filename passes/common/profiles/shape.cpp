@@ -20,7 +20,8 @@ ChannelShape burley_shape(double d) {
 }
 
 ChannelShape dipole_shape(double sigma_a, double sigma_s_prime, double eta) {
-  ChannelShape shape{.model = ProfileModel::dipole, .dipole = make_dipole(sigma_a, sigma_s_prime, eta)};
+  ChannelShape shape{.model = ProfileModel::dipole,
+                     .dipole = make_dipole(sigma_a, sigma_s_prime, eta)};
   shape.d = dipole_inverse_survival(anchor_survival, shape.dipole) / burley_anchor;
   return shape;
 }
@@ -137,7 +138,8 @@ double shape_reach(const ChannelShape& shape) {
 }
 
 double direct_radius(DirectRadius mode, double width, double height) {
-  return 0.5 * (mode == DirectRadius::inscribed ? std::min(width, height) : std::hypot(width, height));
+  return 0.5 *
+         (mode == DirectRadius::inscribed ? std::min(width, height) : std::hypot(width, height));
 }
 
 } // namespace dermis::subsurface

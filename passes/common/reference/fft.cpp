@@ -38,7 +38,8 @@ void transform_line(Complex* line, size_t n, const std::vector<Complex>& roots) 
   for (size_t half = 1; half < n; half *= 2)
     for (size_t first = 0; first < n; first += 2 * half)
       for (size_t k = 0; k < half; ++k) {
-        const Complex a = line[first + k], b = product(line[first + k + half], roots[k * (n / (2 * half))]);
+        const Complex a = line[first + k],
+                      b = product(line[first + k + half], roots[k * (n / (2 * half))]);
         line[first + k] = a + b;
         line[first + k + half] = a - b;
       }
@@ -47,8 +48,9 @@ void transform_line(Complex* line, size_t n, const std::vector<Complex>& roots) 
 void transform(ComplexImage& image, double sign, unsigned threads) {
   const std::vector<Complex> rows = roots_of_unity(image.width, sign),
                              columns = roots_of_unity(image.height, sign);
-  parallel_for(image.height, 16, threads,
-               [&](size_t y) { transform_line(&image.values[y * image.width], image.width, rows); });
+  parallel_for(image.height, 16, threads, [&](size_t y) {
+    transform_line(&image.values[y * image.width], image.width, rows);
+  });
   parallel_for(image.width, 16, threads, [&](size_t x) {
     std::vector<Complex> line(image.height);
     for (size_t y = 0; y < image.height; ++y)

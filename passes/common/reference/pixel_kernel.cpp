@@ -10,10 +10,10 @@ namespace dermis::subsurface {
 namespace {
 
 // Gauss-Legendre nodes, 8 points on [-1, 1] (positive half).
-constexpr std::array<double, 4> gauss_nodes = {0.1834346424956498, 0.5255324099163290, 0.7966664774136267,
-                                               0.9602898564975363};
-constexpr std::array<double, 4> gauss_weights = {0.3626837833783620, 0.3137066458778873, 0.2223810344533745,
-                                                 0.1012285362903763};
+constexpr std::array<double, 4> gauss_nodes = {0.1834346424956498, 0.5255324099163290,
+                                               0.7966664774136267, 0.9602898564975363};
+constexpr std::array<double, 4> gauss_weights = {0.3626837833783620, 0.3137066458778873,
+                                                 0.2223810344533745, 0.1012285362903763};
 
 // Adds the integral over theta in [a, b] of cdf(height / cos theta) / 2 pi.
 void add_wedge(double height, double a, double b, const ProfileShape& shape, PerChannel& sum) {
@@ -57,8 +57,9 @@ PerChannel patch_mean(const PixelRays& rays, const Patch& patch, double x, doubl
     constexpr double step = 1.0 / sub_points;
     for (int j = 0; j < sub_points; ++j)
       for (int i = 0; i < sub_points; ++i)
-        radii[count++] =
-            length(patch_point(rays, patch, x + (i + 0.5) * step - 0.5, y + (j + 0.5) * step - 0.5) - point);
+        radii[count++] = length(
+            patch_point(rays, patch, x + (i + 0.5) * step - 0.5, y + (j + 0.5) * step - 0.5) -
+            point);
   } else {
     radii[count++] = length(patch.position - point);
   }
@@ -72,10 +73,11 @@ PerChannel patch_mean(const PixelRays& rays, const Patch& patch, double x, doubl
 
 PerChannel centre_integral(const PixelRays& rays, const Patch& patch, double x, double y,
                            const ProfileShape& shape) {
-  const std::array<Vector3, 4> corners = {patch_point(rays, patch, x - 0.5, y - 0.5) - patch.position,
-                                          patch_point(rays, patch, x + 0.5, y - 0.5) - patch.position,
-                                          patch_point(rays, patch, x + 0.5, y + 0.5) - patch.position,
-                                          patch_point(rays, patch, x - 0.5, y + 0.5) - patch.position};
+  const std::array<Vector3, 4> corners = {
+      patch_point(rays, patch, x - 0.5, y - 0.5) - patch.position,
+      patch_point(rays, patch, x + 0.5, y - 0.5) - patch.position,
+      patch_point(rays, patch, x + 0.5, y + 0.5) - patch.position,
+      patch_point(rays, patch, x - 0.5, y + 0.5) - patch.position};
   PerChannel sum{};
   for (size_t i = 0; i < corners.size(); ++i)
     add_edge(corners[i], corners[(i + 1) % corners.size()], shape, sum);

@@ -39,17 +39,19 @@ std::array<Region, 256> find_regions(const ReferenceInput& input) {
 
 // One convolution computes light and mask, as real and imaginary part with a real kernel.
 void convolve_channel(const ReferenceInput& input, const Region& region, uint8_t id, size_t channel,
-                      double direct, const std::vector<PerChannel>& quadrant, size_t reach_x, size_t reach_y,
-                      unsigned threads, std::vector<double>& result) {
-  ComplexImage image{
-      power_of_two_from(region.width() + reach_x), power_of_two_from(region.height() + reach_y), {}};
+                      double direct, const std::vector<PerChannel>& quadrant, size_t reach_x,
+                      size_t reach_y, unsigned threads, std::vector<double>& result) {
+  ComplexImage image{power_of_two_from(region.width() + reach_x),
+                     power_of_two_from(region.height() + reach_y),
+                     {}};
   image.values.resize(image.width * image.height);
   ComplexImage kernel = image;
   auto each_pixel = [&](auto&& act) {
     for (size_t y = 0; y < region.height(); ++y)
       for (size_t x = 0; x < region.width(); ++x) {
         const size_t i = (region.y0 + y) * input.width + region.x0 + x;
-        if (is_surface(input, i) && input.profile[i] == id) act(i, image.values[y * image.width + x]);
+        if (is_surface(input, i) && input.profile[i] == id)
+          act(i, image.values[y * image.width + x]);
       }
   };
   double minimum = std::numeric_limits<double>::infinity(), maximum = -minimum;
@@ -84,22 +86,23 @@ double pixel_reach(const PixelRays& rays, double depth) {
   return 0.5 * std::hypot(rays.scale_x, rays.scale_y) * (rays.perspective ? depth : 1);
 }
 
-PerChannel planar_weight(double pitch_x, double pitch_y, int64_t dx, int64_t dy, const PerChannel& d) {
+PerChannel planar_weight(double pitch_x, double pitch_y, int64_t dx, int64_t dy,
+                         const PerChannel& d) {
   const ProfileShape shape = burley_shapes(d);
   const double radius = reach_of(shape) + 0.5 * std::hypot(pitch_x, pitch_y);
   return planar_weight(pitch_x, pitch_y, dx, dy, shape, radius);
 }
 
-PerChannel planar_weight(double pitch_x, double pitch_y, int64_t dx, int64_t dy, const ProfileShape& shape,
-                         double radius) {
+PerChannel planar_weight(double pitch_x, double pitch_y, int64_t dx, int64_t dy,
+                         const ProfileShape& shape, double radius) {
   const PixelRays rays{
       .scale_x = pitch_x, .offset_x = 0, .scale_y = -pitch_y, .offset_y = 0, .perspective = false};
   const double x = double(dx), y = double(dy), area = pitch_x * pitch_y;
   const Patch patch{pixel_position(rays, x, y, 0), {0, 0, 1}, area};
   if (dx == 0 && dy == 0) return centre_integral(rays, patch, 0, 0, shape);
   if (length(patch.position) > radius) return {};
-  PerChannel weight =
-      patch_mean(rays, patch, x, y, std::max(std::abs(dx), std::abs(dy)) <= near_pixels, {0, 0, 0}, shape);
+  PerChannel weight = patch_mean(
+      rays, patch, x, y, std::max(std::abs(dx), std::abs(dy)) <= near_pixels, {0, 0, 0}, shape);
   for (double& w : weight)
     w *= area;
   return weight;
@@ -126,8 +129,10 @@ std::vector<double> planar_reference(const ReferenceInput& input, unsigned threa
     const ProfileShape shape = input.shape_of(id);
     if (region.x0 > region.x1 || !(std::max({shape[0].d, shape[1].d, shape[2].d}) > 0)) continue;
     const double radius = reach_of(shape) + pixel_reach(input.rays, 1);
-    const auto reach_x = static_cast<size_t>(std::min(radius / pitch_x, double(region.width() - 1)));
-    const auto reach_y = static_cast<size_t>(std::min(radius / pitch_y, double(region.height() - 1)));
+    const auto reach_x =
+        static_cast<size_t>(std::min(radius / pitch_x, double(region.width() - 1)));
+    const auto reach_y =
+        static_cast<size_t>(std::min(radius / pitch_y, double(region.height() - 1)));
     std::vector<PerChannel> quadrant((reach_x + 1) * (reach_y + 1));
     parallel_for(quadrant.size(), 256, threads, [&](size_t i) {
       quadrant[i] = planar_weight(pitch_x, pitch_y, static_cast<int64_t>(i % (reach_x + 1)),
@@ -135,8 +140,8 @@ std::vector<double> planar_reference(const ReferenceInput& input, unsigned threa
     });
     for (size_t c = 0; c < 3; ++c)
       if (shape[c].d > 0)
-        convolve_channel(input, region, static_cast<uint8_t>(id), c, shape[c].direct, quadrant, reach_x,
-                         reach_y, threads, result);
+        convolve_channel(input, region, static_cast<uint8_t>(id), c, shape[c].direct, quadrant,
+                         reach_x, reach_y, threads, result);
   }
   return result;
 }

@@ -12,9 +12,10 @@ double pixel_reach(const PixelRays& rays, double depth);
 // the fraction of light that a pixel receives from there. 0 beyond the reference's radius. Pixel
 // pitches and d are in metres; d > 0 in some channel. The second form takes any profile and a
 // radius (at least reach_of plus half a diagonal).
-PerChannel planar_weight(double pitch_x, double pitch_y, int64_t dx, int64_t dy, const PerChannel& d);
-PerChannel planar_weight(double pitch_x, double pitch_y, int64_t dx, int64_t dy, const ProfileShape& shape,
-                         double radius);
+PerChannel planar_weight(double pitch_x, double pitch_y, int64_t dx, int64_t dy,
+                         const PerChannel& d);
+PerChannel planar_weight(double pitch_x, double pitch_y, int64_t dx, int64_t dy,
+                         const ProfileShape& shape, double radius);
 
 // reference_everywhere for an input with is_planar(): normalised convolution per profile and
 // channel, by FFT.

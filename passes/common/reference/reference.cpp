@@ -97,7 +97,8 @@ PerChannel scatter_at(const ReferenceInput& input, const Surface& surface, uint3
   const Patch& here = surface.patches[pixel];
   if (id == 0 || id >= input.d_m.size() || here.area == 0) return own;
   ProfileShape shape = input.shape_of(id);
-  const double scale = input.scatter_scale.empty() ? 1.0 : std::max(0.0f, input.scatter_scale[pixel]);
+  const double scale =
+      input.scatter_scale.empty() ? 1.0 : std::max(0.0f, input.scatter_scale[pixel]);
   for (ChannelShape& channel : shape)
     channel = scaled(channel, scale);
   if (!(std::max({shape[0].d, shape[1].d, shape[2].d}) > 0)) return own;
@@ -124,7 +125,8 @@ PerChannel scatter_at(const ReferenceInput& input, const Surface& surface, uint3
         gathered.add_far(std::sqrt(squared), patch.area, from);
         continue;
       }
-      PerChannel weight = patch_mean(input.rays, patch, double(x), double(y), true, here.position, shape);
+      PerChannel weight =
+          patch_mean(input.rays, patch, double(x), double(y), true, here.position, shape);
       for (double& w : weight)
         w *= patch.area;
       gathered.add(weight, from);
@@ -149,8 +151,8 @@ struct Pcg32 {
 
 std::vector<double> reference_at(const ReferenceInput& input, std::span<const uint32_t> pixels,
                                  ReferenceOptions options) {
-  const Surface surface =
-      build_surface(input.width, input.height, input.rays, input.depth, input.profile, options.threads);
+  const Surface surface = build_surface(input.width, input.height, input.rays, input.depth,
+                                        input.profile, options.threads);
   std::vector<double> result(3 * pixels.size());
   parallel_for(pixels.size(), 16, options.threads, [&](size_t i) {
     const PerChannel value = scatter_at(input, surface, pixels[i]);
@@ -166,8 +168,9 @@ std::vector<double> reference_everywhere(const ReferenceInput& input, ReferenceO
   return reference_at(input, pixels, options);
 }
 
-std::vector<uint32_t> stratified_subset(uint32_t width, uint32_t height, std::span<const uint8_t> profile,
-                                        uint32_t count, uint64_t seed) {
+std::vector<uint32_t> stratified_subset(uint32_t width, uint32_t height,
+                                        std::span<const uint8_t> profile, uint32_t count,
+                                        uint64_t seed) {
   constexpr uint32_t tile = 8;
   std::vector<uint32_t> candidates;
   for (uint32_t ty = 0; ty < height; ty += tile)
@@ -180,7 +183,8 @@ std::vector<uint32_t> stratified_subset(uint32_t width, uint32_t height, std::sp
     random.next();
     std::vector<uint32_t> chosen(count);
     for (uint64_t k = 0; k < count; ++k) {
-      const uint64_t first = k * candidates.size() / count, last = (k + 1) * candidates.size() / count;
+      const uint64_t first = k * candidates.size() / count,
+                     last = (k + 1) * candidates.size() / count;
       chosen[k] = candidates[first + random.next() % (last - first)];
     }
     candidates = std::move(chosen);

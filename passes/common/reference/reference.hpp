@@ -32,7 +32,9 @@ struct ReferenceInput {
   std::span<const ProfileShape> shapes{};
 
   // Returns the shape of an id below d_m.size().
-  ProfileShape shape_of(size_t id) const { return shapes.empty() ? burley_shapes(d_m[id]) : shapes[id]; }
+  ProfileShape shape_of(size_t id) const {
+    return shapes.empty() ? burley_shapes(d_m[id]) : shapes[id];
+  }
 };
 
 struct ReferenceOptions {
@@ -49,7 +51,8 @@ std::vector<double> reference_at(const ReferenceInput& input, std::span<const ui
 // Returns the reference at every pixel, 3 doubles per pixel. Captures that are orthographic,
 // fronto-parallel for each profile and without scatter_scale are convolved by FFT (seconds at any
 // d). Others cost about 20 ns per pair of pixels and thread.
-std::vector<double> reference_everywhere(const ReferenceInput& input, ReferenceOptions options = {});
+std::vector<double> reference_everywhere(const ReferenceInput& input,
+                                         ReferenceOptions options = {});
 
 // Returns whether reference_everywhere can use convolution: an orthographic view with all pixels of
 // a profile at one depth.
@@ -58,7 +61,8 @@ bool is_planar(const ReferenceInput& input);
 // Returns `count` pixels with a profile, one from each of `count` equal parts of the subsurface
 // pixels in order of 8x8 tiles; all of them if there are no more than `count`. Deterministic: pcg32
 // with the given seed. Sorted by index.
-std::vector<uint32_t> stratified_subset(uint32_t width, uint32_t height, std::span<const uint8_t> profile,
-                                        uint32_t count, uint64_t seed = 1);
+std::vector<uint32_t> stratified_subset(uint32_t width, uint32_t height,
+                                        std::span<const uint8_t> profile, uint32_t count,
+                                        uint64_t seed = 1);
 
 } // namespace dermis::subsurface

@@ -32,7 +32,8 @@ Vector3 limited(const Vector3& normal, const Vector3& viewer) {
   const double size = length(across);
   if (!(size > 0)) return viewer;
   const double k = std::sqrt(1 - min_patch_cosine * min_patch_cosine) / size;
-  return {across[0] * k + viewer[0] * min_patch_cosine, across[1] * k + viewer[1] * min_patch_cosine,
+  return {across[0] * k + viewer[0] * min_patch_cosine,
+          across[1] * k + viewer[1] * min_patch_cosine,
           across[2] * k + viewer[2] * min_patch_cosine};
 }
 
@@ -60,7 +61,8 @@ Vector3 tangent(const DepthImage& image, const PixelRays& rays, int64_t x, int64
   const auto here = pixel_position(rays, double(x), double(y), z);
   const bool after = image.holds(x + dx, y + dy, id), before = image.holds(x - dx, y - dy, id);
   int64_t side = after ? 1 : -1;
-  if (after && before && std::abs(image.at(x - dx, y - dy) - z) < std::abs(image.at(x + dx, y + dy) - z))
+  if (after && before &&
+      std::abs(image.at(x - dx, y - dy) - z) < std::abs(image.at(x + dx, y + dy) - z))
     side = -1;
   const double px = double(x + side * dx), py = double(y + side * dy);
   const double neighbour = after || before ? image.at(x + side * dx, y + side * dy) : z;
@@ -85,7 +87,8 @@ Patch build_patch(const DepthImage& image, const PixelRays& rays, uint32_t x, ui
 } // namespace
 
 Vector3 pixel_ray(const PixelRays& rays, double x, double y) {
-  return {rays.scale_x * x + rays.offset_x, rays.scale_y * y + rays.offset_y, rays.perspective ? -1.0 : 0.0};
+  return {rays.scale_x * x + rays.offset_x, rays.scale_y * y + rays.offset_y,
+          rays.perspective ? -1.0 : 0.0};
 }
 
 Vector3 pixel_position(const PixelRays& rays, double x, double y, double depth) {
@@ -108,8 +111,9 @@ Vector3 patch_point(const PixelRays& rays, const Patch& patch, double x, double 
   return {ray[0], ray[1], p[2] - rise};
 }
 
-Surface build_surface(uint32_t width, uint32_t height, const PixelRays& rays, std::span<const float> depth,
-                      std::span<const uint8_t> profile, unsigned threads) {
+Surface build_surface(uint32_t width, uint32_t height, const PixelRays& rays,
+                      std::span<const float> depth, std::span<const uint8_t> profile,
+                      unsigned threads) {
   Surface surface{width, height, rays, std::vector<Patch>(size_t{width} * height)};
   const DepthImage image{width, height, depth, profile};
   parallel_for(height, 8, threads, [&](size_t y) {

@@ -54,7 +54,8 @@ Vector3 patch_point(const PixelRays& rays, const Patch& patch, double x, double 
 
 // Builds all patches. `depth` in metres and `profile` hold width * height values. Pixels with
 // profile 0, or whose depth is not positive and finite, have area 0.
-Surface build_surface(uint32_t width, uint32_t height, const PixelRays& rays, std::span<const float> depth,
-                      std::span<const uint8_t> profile, unsigned threads);
+Surface build_surface(uint32_t width, uint32_t height, const PixelRays& rays,
+                      std::span<const float> depth, std::span<const uint8_t> profile,
+                      unsigned threads);
 
 } // namespace dermis::subsurface

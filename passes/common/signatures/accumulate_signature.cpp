@@ -8,9 +8,11 @@ namespace {
 
 constexpr Format past_formats[] = {Format::rgba16f};
 constexpr Format place_formats[] = {Format::rg16f};
-constexpr std::string_view past_doc = "scattered light minus the part that the nearest pixels explain, "
-                                      "divided by the local mean; number of accumulated frames";
-constexpr std::string_view place_doc = "view depth in metres, profile id; 0 where nothing was written";
+constexpr std::string_view past_doc =
+    "scattered light minus the part that the nearest pixels explain, "
+    "divided by the local mean; number of accumulated frames";
+constexpr std::string_view place_doc =
+    "view depth in metres, profile id; 0 where nothing was written";
 
 constexpr Port ports[] = {
     port::lighting,
@@ -31,9 +33,9 @@ constexpr Port ports[] = {
 
 constexpr PassTypeSetting settings[] = {
     setting::per_frame(setting::real("weight", 0.1, 0.001, 1, "", "minimum weight of a new frame")),
-    setting::per_frame(
-        setting::real("clip", 1.5, 0, 64, "standard deviations",
-                      "largest distance of the history from the mean of the 3x3 neighbourhood; 0: no limit")),
+    setting::per_frame(setting::real(
+        "clip", 1.5, 0, 64, "standard deviations",
+        "largest distance of the history from the mean of the 3x3 neighbourhood; 0: no limit")),
     setting::texturing,
 };
 

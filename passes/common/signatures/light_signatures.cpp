@@ -15,13 +15,14 @@ constexpr Port setup_ports[] = {
     port::albedo,
     port::tiles,
     port::arguments,
-    port::written("light",
-                  "rgb: light that can scatter; a: area of the pixel's surface patch divided by its "
-                  "projected area; 0 outside",
-                  port::light_formats),
-    port::optional(
-        port::written("slope", "change of depth from pixel to pixel divided by the pixel's size, in x and y",
-                      port::way_formats)),
+    port::written(
+        "light",
+        "rgb: light that can scatter; a: area of the pixel's surface patch divided by its "
+        "projected area; 0 outside",
+        port::light_formats),
+    port::optional(port::written(
+        "slope", "change of depth from pixel to pixel divided by the pixel's size, in x and y",
+        port::way_formats)),
 };
 constexpr PassTypeSetting texturing[] = {setting::texturing};
 
@@ -32,24 +33,28 @@ constexpr Port own_light(std::string_view name, std::string_view doc) {
 
 constexpr std::string_view copied_options[] = {"unscattered", "scattered"};
 constexpr Port combine_ports[] = {
-    own_light("scattered",
-              "scattered light; unbound: no light scatters, and all light comes from 'unscattered'"),
-    own_light("unscattered",
-              "diffuse irradiance before albedo, which copied tiles show. May be the image bound to "
-              "'lighting'; 'scattered' or 'unscattered' must be bound"),
+    own_light(
+        "scattered",
+        "scattered light; unbound: no light scatters, and all light comes from 'unscattered'"),
+    own_light(
+        "unscattered",
+        "diffuse irradiance before albedo, which copied tiles show. May be the image bound to "
+        "'lighting'; 'scattered' or 'unscattered' must be bound"),
     port::material,
     port::albedo,
     port::tiles,
     port::arguments,
-    port::written("lighting", "written where there is subsurface, with alpha 1; unchanged elsewhere",
+    port::written("lighting",
+                  "written where there is subsurface, with alpha 1; unchanged elsewhere",
                   port::color_formats),
 };
 constexpr std::string_view combined[] = {"scattered", "unscattered"};
 constexpr PassTypeSetting combine_settings[] = {
     setting::texturing,
-    setting::choice("result", result_options,
-                    "color: scattered light times albedo; light: only scattered light, for hosts that apply "
-                    "albedo later"),
+    setting::choice(
+        "result", result_options,
+        "color: scattered light times albedo; light: only scattered light, for hosts that apply "
+        "albedo later"),
     setting::choice("copied", copied_options,
                     "source of the light of copied tiles: unscattered (if bound) or scattered"),
 };
@@ -69,20 +74,22 @@ constexpr Port export_scattered_ports[] = {
     port::where_covered(port::depth),
     port::where_covered(port::scatter_scale),
     port::where_covered(port::albedo),
-    port::optional(port::read_buffer(
-        "classes", "uint",
-        "output of subsurface.classify: tiles that do not scatter keep their light. Unbound: 'scattered' "
-        "holds the light of these tiles")),
-    port::written("light",
-                  "scattered light before albedo; the input light where nothing scatters, in full precision",
-                  port::color_formats),
+    port::optional(port::read_buffer("classes", "uint",
+                                     "output of subsurface.classify: tiles that do not scatter "
+                                     "keep their light. Unbound: 'scattered' "
+                                     "holds the light of these tiles")),
+    port::written(
+        "light",
+        "scattered light before albedo; the input light where nothing scatters, in full precision",
+        port::color_formats),
 };
 
-constexpr Port back_lighting = port::sampled(
-    "back_lighting",
-    "irradiance on the far side, linear, from the light along whose direction thickness is measured",
-    port::color_formats);
-constexpr Port thickness = port::sampled("thickness", "path length of that light through the material [m]");
+constexpr Port back_lighting = port::sampled("back_lighting",
+                                             "irradiance on the far side, linear, from the light "
+                                             "along whose direction thickness is measured",
+                                             port::color_formats);
+constexpr Port thickness =
+    port::sampled("thickness", "path length of that light through the material [m]");
 constexpr Port transmission_stats_ports[] = {
     back_lighting, thickness, port::material, port::scatter_scale, port::tiles, port::arguments,
 };
@@ -100,7 +107,8 @@ constexpr Port transmission_ports[] = {
 const PassType setup_type{
     .name = "subsurface.setup",
     .shader = "common/subsurface_setup",
-    .doc = "Extracts the light that can scatter: sanitised, premultiplied by the subsurface mask, rounded to "
+    .doc = "Extracts the light that can scatter: sanitised, premultiplied by the subsurface mask, "
+           "rounded to "
            "nearest even.",
     .ports = setup_ports,
     .settings = texturing,
@@ -110,7 +118,8 @@ const PassType setup_type{
 const PassType transmission_type{
     .name = "subsurface.transmission",
     .shader = "common/subsurface_transmission",
-    .doc = "Adds light from the far side of thin parts: the fraction that the profile carries farther than "
+    .doc = "Adds light from the far side of thin parts: the fraction that the profile carries "
+           "farther than "
            "their "
            "thickness.",
     .ports = transmission_ports,
@@ -121,7 +130,8 @@ const PassType transmission_type{
 const PassType transmission_stats_type{
     .name = "subsurface.transmission_stats",
     .shader = "common/subsurface_transmission_stats",
-    .doc = "Measures the light transmitted through thin parts, which the choice uses to estimate the error "
+    .doc = "Measures the light transmitted through thin parts, which the choice uses to estimate "
+           "the error "
            "of screen-space techniques.",
     .ports = transmission_stats_ports,
     .settings = {},
@@ -142,7 +152,8 @@ const PassType combine_type{
 const PassType copy_tiles_type{
     .name = "subsurface.copy_tiles",
     .shader = "common/subsurface_copy_tiles",
-    .doc = "Copies light unchanged if no tile of the screen scatters, for passes that need all tiles in one "
+    .doc = "Copies light unchanged if no tile of the screen scatters, for passes that need all "
+           "tiles in one "
            "image.",
     .ports = copy_tiles_ports,
     .settings = texturing,
@@ -152,7 +163,8 @@ const PassType copy_tiles_type{
 const PassType export_scattered_type{
     .name = "subsurface.export_scattered",
     .shader = "common/subsurface_export_scattered",
-    .doc = "Exports scattered light before albedo for every pixel, for tools and for hosts that apply albedo "
+    .doc = "Exports scattered light before albedo for every pixel, for tools and for hosts that "
+           "apply albedo "
            "later.",
     .ports = export_scattered_ports,
     .settings = texturing,

@@ -28,7 +28,8 @@ inline constexpr Format color_formats[] = {Format::rgba16f, Format::rgba32f, For
 // Four channels, with areas above 1.
 inline constexpr Format light_formats[] = {Format::rgba16f, Format::rgba32f};
 // Two channels, with negative values.
-inline constexpr Format way_formats[] = {Format::rg16f, Format::rg32f, Format::rgba16f, Format::rgba32f};
+inline constexpr Format way_formats[] = {Format::rg16f, Format::rg32f, Format::rgba16f,
+                                         Format::rgba32f};
 // Images that a kernel loads and writes.
 inline constexpr Format updated_formats[] = {Format::rgba16f};
 inline constexpr Format surface_formats[] = {Format::rgba32_uint};
@@ -66,7 +67,8 @@ constexpr Port written_in_part(std::string_view name, std::string_view doc, Form
 constexpr Port read_buffer(std::string_view name, std::string_view element, std::string_view doc) {
   return {name, Usage::storage_buffer_read, false, element, doc};
 }
-constexpr Port written_buffer(std::string_view name, std::string_view element, std::string_view doc) {
+constexpr Port written_buffer(std::string_view name, std::string_view element,
+                              std::string_view doc) {
   return {name, Usage::storage_buffer_write, false, element, doc};
 }
 // Declares the port through which another pass writes the buffer that `port` reads.
@@ -104,14 +106,17 @@ inline constexpr Port scatter_scale =
     optional(sampled("scatter_scale", "factor on d per pixel; 0: diffuse; unbound: 1"));
 inline constexpr Port albedo =
     optional(sampled("albedo", "diffuse albedo, linear; unbound: 1", color_formats));
-inline constexpr Port velocity = optional(sampled(
-    "velocity",
-    "current minus previous position in pixels (right, down), without jitter; optional third channel: "
-    "change of view depth that camera motion does not explain, in world units. Unbound: the scene is "
-    "static",
-    way_formats));
-inline constexpr Port importance = optional(sampled(
-    "importance", "importance of errors to the host, 0 to 1; unbound: 1 everywhere", importance_formats));
+inline constexpr Port velocity =
+    optional(sampled("velocity",
+                     "current minus previous position in pixels (right, down), without jitter; "
+                     "optional third channel: "
+                     "change of view depth that camera motion does not explain, in world units. "
+                     "Unbound: the scene is "
+                     "static",
+                     way_formats));
+inline constexpr Port importance = optional(
+    sampled("importance", "importance of errors to the host, 0 to 1; unbound: 1 everywhere",
+            importance_formats));
 
 // Tiles of 8x8 pixels.
 inline constexpr Port classes = read_buffer("classes", "uint", "output of subsurface.classify");
@@ -121,21 +126,22 @@ inline constexpr Port tiles =
                 "bit 30: all pixels have subsurface, bit 31: copy only");
 inline constexpr Port arguments{"arguments", Usage::indirect_arguments, false, "uint",
                                 "group counts x, y, z of an indirect dispatch over the tiles"};
-inline constexpr Port tile_errors =
-    read_buffer("tile_errors", "uint", "per tile of the render rectangle: expected error; 0: no error");
+inline constexpr Port tile_errors = read_buffer(
+    "tile_errors", "uint", "per tile of the render rectangle: expected error; 0: no error");
 inline constexpr Port samples_per_tile = read_buffer(
     "samples_per_tile", "uint", "per tile of the render rectangle: allocated sample steps, 0 to 3");
 
 // Light before and after scattering.
 inline constexpr Port light = sampled("light", "output of subsurface.setup", light_formats);
 inline constexpr Port slope = sampled("slope", "output of subsurface.setup", way_formats);
-inline constexpr Port scattered =
-    written("scattered", "scattered light where there is subsurface; undefined elsewhere", color_formats);
-inline constexpr Port sampling = optional(written(
-    "sampling",
-    "for tools: samples of this frame; samples in the history or their mean number; confidence or standard "
-    "deviation; 1 where the history belongs to another surface",
-    light_formats));
+inline constexpr Port scattered = written(
+    "scattered", "scattered light where there is subsurface; undefined elsewhere", color_formats);
+inline constexpr Port sampling =
+    optional(written("sampling",
+                     "for tools: samples of this frame; samples in the history or their mean "
+                     "number; confidence or standard "
+                     "deviation; 1 where the history belongs to another surface",
+                     light_formats));
 inline constexpr Port burley_ports[] = {
     light, slope, material, depth, scatter_scale, tiles, arguments, scattered,
 };
@@ -159,12 +165,13 @@ constexpr Port sap_surface(std::string_view name) {
   return sampled_uint(name, sap_level_doc, surface_formats);
 }
 inline constexpr std::array sap_levels{
-    sap_light("light"),       sap_light("light_1"),     sap_light("light_2"),     sap_light("light_3"),
-    sap_light("light_4"),     sap_light("light_5"),     sap_surface("surface"),   sap_surface("surface_1"),
-    sap_surface("surface_2"), sap_surface("surface_3"), sap_surface("surface_4"), sap_surface("surface_5")};
+    sap_light("light"),       sap_light("light_1"),     sap_light("light_2"),
+    sap_light("light_3"),     sap_light("light_4"),     sap_light("light_5"),
+    sap_surface("surface"),   sap_surface("surface_1"), sap_surface("surface_2"),
+    sap_surface("surface_3"), sap_surface("surface_4"), sap_surface("surface_5")};
 // Result of the surface-aware pyramid.
-inline constexpr Port sap_scattered =
-    sampled("scattered", "output of the pyramid. rgb: scattered light; a: confidence", light_formats);
+inline constexpr Port sap_scattered = sampled(
+    "scattered", "output of the pyramid. rgb: scattered light; a: confidence", light_formats);
 
 } // namespace port
 } // namespace dermis::subsurface

@@ -7,10 +7,11 @@ namespace dermis::subsurface {
 namespace {
 
 constexpr Port probe_ports[] = {
-    port::optional(port::sampled("scattered",
-                                 "scattered light whose error is measured; tiles that do not scatter show "
-                                 "their own light, as do all tiles if the port is unbound",
-                                 port::color_formats)),
+    port::optional(
+        port::sampled("scattered",
+                      "scattered light whose error is measured; tiles that do not scatter show "
+                      "their own light, as do all tiles if the port is unbound",
+                      port::color_formats)),
     port::lighting,
     port::material,
     port::depth,
@@ -20,8 +21,9 @@ constexpr Port probe_ports[] = {
 };
 constexpr PassTypeSetting probe_settings[] = {
     setting::texturing,
-    setting::integer("tiles", 8, 1, 32, "tiles",
-                     "number of tiles per frame; the reference is computed at four pixels of each tile"),
+    setting::integer(
+        "tiles", 8, 1, 32, "tiles",
+        "number of tiles per frame; the reference is computed at four pixels of each tile"),
 };
 
 } // namespace
@@ -29,7 +31,8 @@ constexpr PassTypeSetting probe_settings[] = {
 const PassType probe_type{
     .name = "subsurface.probe",
     .shader = "common/subsurface_probe",
-    .doc = "Computes the reference at pixels of a few tiles, sampled with known probabilities, to estimate "
+    .doc = "Computes the reference at pixels of a few tiles, sampled with known probabilities, to "
+           "estimate "
            "the frame's error and its uncertainty.",
     .ports = probe_ports,
     .settings = probe_settings,

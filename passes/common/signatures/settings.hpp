@@ -1,12 +1,13 @@
 #pragma once
-// Settings that several pass types declare with the same meaning, and functions that declare others.
+// Settings that several pass types declare with the same meaning, and functions that declare
+// others.
 
 #include "framegraph/model/pass_type.hpp"
 
 namespace dermis::subsurface::setting {
 
-constexpr PassTypeSetting integer(std::string_view name, int64_t standard, double minimum, double maximum,
-                                  std::string_view unit, std::string_view doc) {
+constexpr PassTypeSetting integer(std::string_view name, int64_t standard, double minimum,
+                                  double maximum, std::string_view unit, std::string_view doc) {
   return {.name = name,
           .type = SettingType::integer,
           .default_value = {SettingType::integer, standard, 0},
@@ -16,8 +17,8 @@ constexpr PassTypeSetting integer(std::string_view name, int64_t standard, doubl
           .doc = doc};
 }
 
-constexpr PassTypeSetting real(std::string_view name, double standard, double minimum, double maximum,
-                               std::string_view unit, std::string_view doc) {
+constexpr PassTypeSetting real(std::string_view name, double standard, double minimum,
+                               double maximum, std::string_view unit, std::string_view doc) {
   return {.name = name,
           .type = SettingType::real,
           .default_value = {SettingType::real, 0, standard},
@@ -38,7 +39,8 @@ constexpr PassTypeSetting boolean(std::string_view name, std::string_view doc) {
 
 // Declares a choice among `options`; options[standard] is the default.
 constexpr PassTypeSetting choice(std::string_view name, std::span<const std::string_view> options,
-                                 std::string_view doc, int64_t standard = 0, std::string_view unit = "") {
+                                 std::string_view doc, int64_t standard = 0,
+                                 std::string_view unit = "") {
   return {.name = name,
           .type = SettingType::enumeration,
           .default_value = {SettingType::enumeration, standard, 0},
@@ -55,11 +57,11 @@ constexpr PassTypeSetting per_frame(PassTypeSetting setting) {
 
 // Albedo.
 inline constexpr std::string_view texturing_options[] = {"post", "pre_post", "pre", "demodulate"};
-inline constexpr PassTypeSetting texturing =
-    choice("texturing", texturing_options,
-           "where albedo is applied. post: after scattering (keeps texture detail); pre_post: its square "
-           "root before and after; pre: before; demodulate: lighting already contains albedo, which is "
-           "divided out before scattering and multiplied back after it");
+inline constexpr PassTypeSetting texturing = choice(
+    "texturing", texturing_options,
+    "where albedo is applied. post: after scattering (keeps texture detail); pre_post: its square "
+    "root before and after; pre: before; demodulate: lighting already contains albedo, which is "
+    "divided out before scattering and multiplied back after it");
 
 // Samples.
 constexpr PassTypeSetting samples(int64_t standard, double minimum, std::string_view doc) {

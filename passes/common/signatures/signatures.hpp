@@ -9,10 +9,11 @@
 namespace dermis::subsurface {
 
 // tile_signatures.cpp
-extern const PassType classify_type, classify_uniform_light_type, tile_list_type, debug_tile_class_type;
+extern const PassType classify_type, classify_uniform_light_type, tile_list_type,
+    debug_tile_class_type;
 // light_signatures.cpp
-extern const PassType setup_type, combine_type, export_scattered_type, copy_tiles_type, transmission_type,
-    transmission_stats_type;
+extern const PassType setup_type, combine_type, export_scattered_type, copy_tiles_type,
+    transmission_type, transmission_stats_type;
 // burley/burley_signature.cpp
 extern const PassType burley_type;
 // separable/separable_signature.cpp
@@ -42,6 +43,7 @@ extern const PassType accumulate_type;
 // clear_signature.cpp
 extern const PassType clear_type;
 // restir/restir_signatures.cpp
-extern const PassType restir_initial_type, restir_temporal_type, restir_spatial_type, restir_resolve_type;
+extern const PassType restir_initial_type, restir_temporal_type, restir_spatial_type,
+    restir_resolve_type;
 
 } // namespace dermis::subsurface

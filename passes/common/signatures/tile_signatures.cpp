@@ -7,9 +7,9 @@ namespace dermis::subsurface {
 
 namespace {
 
-constexpr Port light_range = port::read_buffer(
-    "light_range", "uvec4",
-    "per tile: minimum and maximum of the light that can scatter, and the widest d (light_range.glsl)");
+constexpr Port light_range = port::read_buffer("light_range", "uvec4",
+                                               "per tile: minimum and maximum of the light that "
+                                               "can scatter, and the widest d (light_range.glsl)");
 constexpr Port light_cells =
     port::read_buffer("light_cells", "uvec4", "light_range of each block of 4x4 tiles, row by row");
 
@@ -17,13 +17,14 @@ constexpr Port classify_ports[] = {
     port::material,
     port::where_covered(port::depth),
     port::where_covered(port::scatter_scale),
-    port::where_covered(port::optional(
-        port::sampled("lighting", "diffuse irradiance before albedo, linear; for light_range and light_cells",
-                      port::color_formats))),
+    port::where_covered(port::optional(port::sampled(
+        "lighting", "diffuse irradiance before albedo, linear; for light_range and light_cells",
+        port::color_formats))),
     port::where_covered(port::albedo),
     port::written_buffer(
         "classes", "uint",
-        "per tile of the render rectangle, row by row: 0: no subsurface; 1: scatters; 2: scattering below a "
+        "per tile of the render rectangle, row by row: 0: no subsurface; 1: scatters; 2: "
+        "scattering below a "
         "pixel (copy); 3: uniform light (copy); plus 4 if all 64 pixels have subsurface"),
     port::optional(port::writer_of(light_range)),
     port::optional(port::writer_of(light_cells)),
@@ -46,9 +47,9 @@ constexpr Port debug_tile_class_ports[] = {
     port::read_buffer("classes", "uint",
                       "output of subsurface.classify or subsurface.classify_uniform_light"),
     port::material,
-    port::optional(port::written("tile_class",
-                                 "for tools: class of the pixel's tile, profile id of the pixel, 0, 1",
-                                 port::light_formats)),
+    port::optional(port::written(
+        "tile_class", "for tools: class of the pixel's tile, profile id of the pixel, 0, 1",
+        port::light_formats)),
 };
 
 } // namespace
@@ -83,8 +84,9 @@ const PassType debug_tile_class_type{
 const PassType tile_list_type{
     .name = "subsurface.tile_list",
     .shader = "common/subsurface_tile_list",
-    .doc = "Compacts tile classes into a list in row order and its indirect arguments (a scan without "
-           "atomics, so that the list is deterministic).",
+    .doc =
+        "Compacts tile classes into a list in row order and its indirect arguments (a scan without "
+        "atomics, so that the list is deterministic).",
     .ports = tile_list_ports,
     .settings = {},
     .dispatch = single_group,

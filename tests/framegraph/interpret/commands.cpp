@@ -36,11 +36,12 @@ bool waits(const PieceAccess& later, const PieceAccess& earlier) {
 
 // Returns the accesses to each piece of memory, in command order.
 std::vector<std::vector<PieceAccess>> accesses_by_piece(const Plan& plan, const Memory& memory,
-                                                   const std::vector<Command>& commands) {
+                                                        const std::vector<Command>& commands) {
   std::vector<std::vector<PieceAccess>> piece_accesses(memory.overlap.size());
   // Adds at most one access per piece.
   const auto add_access = [&](const auto& what, uint32_t frame, const PieceAccess& one) {
-    for (const uint32_t own : memory.pieces(plan, what.resource, what.frames_back, frame, what.range))
+    for (const uint32_t own :
+         memory.pieces(plan, what.resource, what.frames_back, frame, what.range))
       for (const uint32_t piece : memory.overlap[own])
         if (piece_accesses[piece].empty() || !same(piece_accesses[piece].back(), one))
           piece_accesses[piece].push_back(one);
@@ -52,7 +53,8 @@ std::vector<std::vector<PieceAccess>> accesses_by_piece(const Plan& plan, const 
       const PlanPass& pass = plan.passes[command.index];
       for (uint32_t a = pass.first_access; a < pass.first_access + pass.access_count; ++a) {
         const PlanAccess& access = plan.accesses[a];
-        add_access(access, command.frame, {c, false, access.stages, 0, false, false, command.queue});
+        add_access(access, command.frame,
+                   {c, false, access.stages, 0, false, false, command.queue});
       }
     } else {
       const PlanBarrier& barrier = plan.barriers[command.index];
@@ -118,13 +120,15 @@ std::vector<Command> record(const Plan& plan, uint32_t first, uint32_t end) {
     ++batch;
   };
   const auto reach = [&](uint32_t point, Queue queue) {
-    if (point != 0) reached[static_cast<size_t>(queue)].push_back(static_cast<uint32_t>(commands.size() - 1));
+    if (point != 0)
+      reached[static_cast<size_t>(queue)].push_back(static_cast<uint32_t>(commands.size() - 1));
   };
   for (uint32_t frame = first; frame < end; ++frame) {
     const std::array<size_t, 2> before{reached[0].size(), reached[1].size()};
     const auto wait = [&](uint32_t point, Queue queue) {
       const size_t other = queue == Queue::main ? 1 : 0;
-      if (point == no_point || before[other] + point == 0 || before[other] + point > reached[other].size())
+      if (point == no_point || before[other] + point == 0 ||
+          before[other] + point > reached[other].size())
         return;
       commands.push_back({frame, false, 0, 0, queue, reached[other][before[other] + point - 1]});
     };
@@ -154,7 +158,8 @@ std::vector<uint32_t> legal_order(const Plan& plan, const Memory& memory,
         const uint32_t a = on_piece[earlier].command, b = on_piece[later].command;
         const bool one_batch =
             !commands[a].is_pass && !commands[b].is_pass && commands[a].batch == commands[b].batch;
-        if (a != b && !one_batch && waits(on_piece[later], on_piece[earlier])) followers[a].push_back(b);
+        if (a != b && !one_batch && waits(on_piece[later], on_piece[earlier]))
+          followers[a].push_back(b);
       }
   for (uint32_t w = 0; w < commands.size(); ++w) {
     if (commands[w].wait_until == no_wait) continue;

@@ -17,8 +17,8 @@ struct Memory {
   std::vector<std::vector<uint32_t>> overlap;
 
   // Returns the pieces of one instance in the range: by mip, then by layer.
-  std::vector<uint32_t> pieces(const Plan& plan, uint32_t resource, uint32_t frames_back, uint32_t frame,
-                               const SubresourceRange& range) const;
+  std::vector<uint32_t> pieces(const Plan& plan, uint32_t resource, uint32_t frames_back,
+                               uint32_t frame, const SubresourceRange& range) const;
 };
 
 // `plan` must pass verify_structure().

@@ -27,8 +27,8 @@ struct Interpreter {
   void prepare() {
     memory = memory_of(plan);
     for (const PlanResource& resource : plan.resources) {
-      const bool history =
-          resource.first_instance != no_instance && plan.placements[resource.first_instance].persistent;
+      const bool history = resource.first_instance != no_instance &&
+                           plan.placements[resource.first_instance].persistent;
       for (uint32_t i = 0; i < resource.instance_count * resource.mips * resource.layers; ++i)
         pieces.push_back(history ? Pixels{} : poison());
     }
@@ -73,7 +73,8 @@ struct Interpreter {
   }
 
   static bool cut_before(const PlanHistory& history, uint64_t cuts, uint32_t frame) {
-    return history.declaration.on_cut == HistoryDeclaration::OnCut::invalidate && (cuts >> frame & 1u) != 0;
+    return history.declaration.on_cut == HistoryDeclaration::OnCut::invalidate &&
+           (cuts >> frame & 1u) != 0;
   }
 
   // Whether enough frames were written since the history began.
@@ -103,9 +104,10 @@ struct Interpreter {
   // The executor clears these histories before such a frame, too.
   void restart_histories(uint32_t frame) {
     for (const PlanHistory& history : plan.histories)
-      for (uint32_t back = 1; cut_before(history, options.cuts, frame) && back <= history.frames; ++back)
-        for (const uint32_t piece :
-             memory.pieces(plan, history.resource, back, frame, plan.resources[history.resource].whole()))
+      for (uint32_t back = 1; cut_before(history, options.cuts, frame) && back <= history.frames;
+           ++back)
+        for (const uint32_t piece : memory.pieces(plan, history.resource, back, frame,
+                                                  plan.resources[history.resource].whole()))
           pieces[piece] = Pixels{};
   }
 
@@ -118,8 +120,9 @@ struct Interpreter {
           touch(piece, pass.queue);
           inputs.push_back({accesses[a].port, pieces[piece]});
         }
-    std::stable_sort(inputs.begin(), inputs.end(),
-                     [](const PlaceholderInput& a, const PlaceholderInput& b) { return a.port < b.port; });
+    std::stable_sort(
+        inputs.begin(), inputs.end(),
+        [](const PlaceholderInput& a, const PlaceholderInput& b) { return a.port < b.port; });
     for (uint32_t a = 0; a < pass.access_count; ++a) {
       if ((accesses[a].access & all_write_access) == 0) continue;
       uint32_t part = 0;

@@ -24,7 +24,8 @@ Pixels arbitrary_pixels(uint64_t seed, uint64_t stream) {
   return out;
 }
 
-Pixels placeholder(uint32_t pass, uint32_t port, uint32_t part, std::span<const PlaceholderInput> inputs) {
+Pixels placeholder(uint32_t pass, uint32_t port, uint32_t part,
+                   std::span<const PlaceholderInput> inputs) {
   Pixels out{};
   for (size_t i = 0; i < out.size(); ++i) {
     uint64_t sum = mix(mix(mix(pass, port), part), i);

@@ -24,6 +24,7 @@ Pixels arbitrary_pixels(uint64_t seed, uint64_t stream);
 // Returns the pixels that pass number `pass` writes to `port` from these inputs, in this order.
 // `part` is the index of the mip and layer among those of the port. Each pixel depends on several
 // pixels of every input. Settings have no effect.
-Pixels placeholder(uint32_t pass, uint32_t port, uint32_t part, std::span<const PlaceholderInput> inputs);
+Pixels placeholder(uint32_t pass, uint32_t port, uint32_t part,
+                   std::span<const PlaceholderInput> inputs);
 
 } // namespace dermis

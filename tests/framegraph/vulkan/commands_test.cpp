@@ -24,22 +24,24 @@ void make_recording(vulkan::FunctionTable& table) {
       recorded.dispatches_before_it = recorded.dispatches;
       ++recorded.all_memory_count;
     }
-    for (uint32_t i = 0; i < info->imageMemoryBarrierCount && recorded.barrier_count < max_barriers; ++i)
+    for (uint32_t i = 0; i < info->imageMemoryBarrierCount && recorded.barrier_count < max_barriers;
+         ++i)
       recorded.barriers[recorded.barrier_count++] = info->pImageMemoryBarriers[i];
   };
   table.vkCmdBindPipeline = [](VkCommandBuffer, VkPipelineBindPoint, VkPipeline) {};
-  table.vkCmdBindDescriptorSets = [](VkCommandBuffer, VkPipelineBindPoint, VkPipelineLayout, uint32_t,
-                                     uint32_t, const VkDescriptorSet*, uint32_t, const uint32_t*) {};
-  table.vkCmdPushConstants = [](VkCommandBuffer, VkPipelineLayout, VkShaderStageFlags, uint32_t, uint32_t,
-                                const void*) {};
+  table.vkCmdBindDescriptorSets = [](VkCommandBuffer, VkPipelineBindPoint, VkPipelineLayout,
+                                     uint32_t, uint32_t, const VkDescriptorSet*, uint32_t,
+                                     const uint32_t*) {};
+  table.vkCmdPushConstants = [](VkCommandBuffer, VkPipelineLayout, VkShaderStageFlags, uint32_t,
+                                uint32_t, const void*) {};
   table.vkCmdDispatch = [](VkCommandBuffer, uint32_t x, uint32_t y, uint32_t z) {
     ++recorded.dispatches;
     recorded.groups[0] = x;
     recorded.groups[1] = y;
     recorded.groups[2] = z;
   };
-  table.vkCmdClearColorImage = [](VkCommandBuffer, VkImage, VkImageLayout, const VkClearColorValue*, uint32_t,
-                                  const VkImageSubresourceRange*) {};
+  table.vkCmdClearColorImage = [](VkCommandBuffer, VkImage, VkImageLayout, const VkClearColorValue*,
+                                  uint32_t, const VkImageSubresourceRange*) {};
   table.vkCmdFillBuffer = [](VkCommandBuffer, VkBuffer, VkDeviceSize, VkDeviceSize, uint32_t) {};
   table.vkCmdResetQueryPool = [](VkCommandBuffer, VkQueryPool, uint32_t, uint32_t) {};
   table.vkCmdWriteTimestamp2 = [](VkCommandBuffer, VkPipelineStageFlags2, VkQueryPool, uint32_t) {};
@@ -139,7 +141,8 @@ TEST_F(CommandsTest, FirstFrameAfterAnotherPlan_WaitsForItsWrites) {
   EXPECT_EQ(recorded.all_memory.srcStageMask, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT);
   EXPECT_EQ(recorded.all_memory.dstStageMask, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT);
   EXPECT_EQ(recorded.all_memory.srcAccessMask, VK_ACCESS_2_MEMORY_WRITE_BIT);
-  EXPECT_EQ(recorded.all_memory.dstAccessMask, VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT);
+  EXPECT_EQ(recorded.all_memory.dstAccessMask,
+            VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT);
 }
 
 TEST_F(CommandsTest, AliasedMemory_UsesAGlobalBarrier) {
@@ -164,8 +167,9 @@ TEST_F(CommandsTest, AliasedMemory_UsesAGlobalBarrier) {
   // The validation layer needs image barriers that name the writes, even though 'one' was read.
   size_t memory_overwritten = 0;
   for (size_t i = 0; i < recorded.barrier_count; ++i)
-    memory_overwritten += recorded.barriers[i].oldLayout == VK_IMAGE_LAYOUT_UNDEFINED &&
-                          recorded.barriers[i].srcAccessMask == VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT;
+    memory_overwritten +=
+        recorded.barriers[i].oldLayout == VK_IMAGE_LAYOUT_UNDEFINED &&
+        recorded.barriers[i].srcAccessMask == VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT;
   EXPECT_EQ(memory_overwritten, 2u);
 }
 
@@ -183,8 +187,8 @@ TEST_F(CommandsTest, GroupsCoverTheRenderRectangleAndEveryPassHasALabel) {
 
 // The validation layer allocates memory when it reads queries back; only the library's allocations
 // count here.
-VkResult VKAPI_CALL read_no_queries(VkDevice, VkQueryPool, uint32_t, uint32_t, size_t, void*, VkDeviceSize,
-                                    VkQueryResultFlags) {
+VkResult VKAPI_CALL read_no_queries(VkDevice, VkQueryPool, uint32_t, uint32_t, size_t, void*,
+                                    VkDeviceSize, VkQueryResultFlags) {
   return VK_NOT_READY;
 }
 

@@ -42,8 +42,10 @@ TEST(Vocabulary, UsagesHaveVulkansBits) {
   EXPECT_EQ(usage_info(Usage::sampled_image).vk_usage, uint32_t{VK_IMAGE_USAGE_SAMPLED_BIT});
   EXPECT_EQ(usage_info(Usage::storage_image_write).vk_usage, uint32_t{VK_IMAGE_USAGE_STORAGE_BIT});
   EXPECT_EQ(usage_info(Usage::storage_image_update).vk_usage, uint32_t{VK_IMAGE_USAGE_STORAGE_BIT});
-  EXPECT_EQ(usage_info(Usage::storage_buffer_read).vk_usage, uint32_t{VK_BUFFER_USAGE_STORAGE_BUFFER_BIT});
-  EXPECT_EQ(usage_info(Usage::indirect_arguments).vk_usage, uint32_t{VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT});
+  EXPECT_EQ(usage_info(Usage::storage_buffer_read).vk_usage,
+            uint32_t{VK_BUFFER_USAGE_STORAGE_BUFFER_BIT});
+  EXPECT_EQ(usage_info(Usage::indirect_arguments).vk_usage,
+            uint32_t{VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT});
   EXPECT_EQ(usage_info(Usage::clear).vk_usage, uint32_t{VK_IMAGE_USAGE_TRANSFER_DST_BIT});
   EXPECT_EQ(usage_info(Usage::clear).vk_usage, uint32_t{VK_BUFFER_USAGE_TRANSFER_DST_BIT});
 }
@@ -80,9 +82,11 @@ TEST_F(DeviceTest, EveryMissingFunctionIsNamedAtOnce) {
   const vulkan::Error error = vulkan::make_device(in, made);
   EXPECT_EQ(error.kind, vulkan::ErrorKind::unsupported);
   EXPECT_THAT(error.text, HasSubstr("3 required functions"));
-  for (const char* name : {"vkCmdDispatch", "vkCmdPipelineBarrier2", "vkGetPhysicalDeviceFormatProperties2"})
+  for (const char* name :
+       {"vkCmdDispatch", "vkCmdPipelineBarrier2", "vkGetPhysicalDeviceFormatProperties2"})
     EXPECT_THAT(error.text, HasSubstr(name));
-  EXPECT_THAT(error.text, Not(HasSubstr("vkSetDebugUtilsObjectNameEXT"))) << "labels were not requested";
+  EXPECT_THAT(error.text, Not(HasSubstr("vkSetDebugUtilsObjectNameEXT")))
+      << "labels were not requested";
 }
 
 TEST_F(DeviceTest, NullHandlesAndUnknownQueueFamiliesAreRejected) {
@@ -102,13 +106,15 @@ TEST_F(DeviceTest, NullHandlesAndUnknownQueueFamiliesAreRejected) {
 
 TEST_F(DeviceTest, ProfileMatchesTheDriver) {
   EXPECT_EQ(profile.name, dermis_device.properties.deviceName);
-  EXPECT_TRUE(profile.supports(Format::rgba16f, VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_SAMPLED_BIT))
+  EXPECT_TRUE(
+      profile.supports(Format::rgba16f, VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_SAMPLED_BIT))
       << "required of every Vulkan device";
   EXPECT_TRUE(profile.supports(Format::d32f, VK_IMAGE_USAGE_SAMPLED_BIT));
   EXPECT_FALSE(profile.supports(Format::rgba8_srgb, VK_IMAGE_USAGE_STORAGE_BIT))
       << "no driver here stores sRGB";
   EXPECT_FALSE(profile.supports(Format::undefined, VK_IMAGE_USAGE_SAMPLED_BIT));
-  const MemoryNeeds image = profile.image_needs({Format::rgba16f, 100, 50, 1, 1, VK_IMAGE_USAGE_SAMPLED_BIT});
+  const MemoryNeeds image =
+      profile.image_needs({Format::rgba16f, 100, 50, 1, 1, VK_IMAGE_USAGE_SAMPLED_BIT});
   EXPECT_GE(image.size, 100u * 50u * 8u);
   EXPECT_NE(image.memory_type_bits, 0u);
   const MemoryNeeds buffer = profile.buffer_needs({1000, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT});

@@ -19,7 +19,8 @@ void ExecutorTest::TearDown() {
   VulkanTest::TearDown();
 }
 
-vulkan::Error ExecutorTest::try_executor(const SmallGraph& graph, const Plan& plan, const vulkan::Device& on,
+vulkan::Error ExecutorTest::try_executor(const SmallGraph& graph, const Plan& plan,
+                                         const vulkan::Device& on,
                                          std::unique_ptr<vulkan::Executor>& result) {
   static const float table[] = {0.0f, 2.0f};
   std::vector<vulkan::EnvironmentBinding> environment = {
@@ -66,8 +67,8 @@ TestImage ExecutorTest::bind(const SmallGraph& graph, const std::string& slot,
   return image;
 }
 
-void ExecutorTest::bind_image(const SmallGraph& graph, const std::string& slot, const TestImage& image,
-                              VkImageLayout before, VkImageLayout after) {
+void ExecutorTest::bind_image(const SmallGraph& graph, const std::string& slot,
+                              const TestImage& image, VkImageLayout before, VkImageLayout after) {
   const auto number = static_cast<size_t>(graph.slot(slot));
   if (images.size() <= number) images.resize(number + 1);
   constexpr VkPipelineStageFlags2 stages = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
@@ -78,10 +79,12 @@ void ExecutorTest::bind_image(const SmallGraph& graph, const std::string& slot, 
                     {after, VK_QUEUE_FAMILY_IGNORED, stages, access}};
 }
 
-vulkan::RecordResult ExecutorTest::frame(float time, vulkan::Rectangle rectangle, bool reset_history) {
+vulkan::RecordResult ExecutorTest::frame(float time, vulkan::Rectangle rectangle,
+                                         bool reset_history) {
   if (rectangle.width == 0) rectangle = {0, 0, view_width, view_height};
   const SmallFrame constants{{static_cast<int32_t>(rectangle.x), static_cast<int32_t>(rectangle.y),
-                              static_cast<int32_t>(rectangle.width), static_cast<int32_t>(rectangle.height)},
+                              static_cast<int32_t>(rectangle.width),
+                              static_cast<int32_t>(rectangle.height)},
                              time,
                              {}};
   vulkan::FrameInput input;

@@ -29,7 +29,8 @@ protected:
   void bind_image(const SmallGraph& graph, const std::string& slot, const TestImage& image,
                   VkImageLayout before, VkImageLayout after);
   // Records and submits the next frame, without waiting.
-  vulkan::RecordResult frame(float time = 0.0f, vulkan::Rectangle rectangle = {}, bool reset_history = false);
+  vulkan::RecordResult frame(float time = 0.0f, vulkan::Rectangle rectangle = {},
+                             bool reset_history = false);
   void run_frames(uint32_t count);
   // Runs one frame per value and expects it in every texel.
   void expect_frames(const TestImage& image, const std::vector<float>& values);

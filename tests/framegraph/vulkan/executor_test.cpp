@@ -17,7 +17,8 @@ TEST_F(ExecutorTest, NextPassReadsTheWrite) {
   const std::vector<float> texels = read(result);
   for (uint32_t y = 0; y < height; ++y)
     for (uint32_t x = 0; x < width; ++x)
-      ASSERT_EQ(texels[y * width + x], 1.0f + 2.0f * static_cast<float>(x) + 10.0f + 0.25f) << x << ' ' << y;
+      ASSERT_EQ(texels[y * width + x], 1.0f + 2.0f * static_cast<float>(x) + 10.0f + 0.25f)
+          << x << ' ' << y;
 }
 
 TEST_F(ExecutorTest, TransientsThatShareMemoryDoNotDisturbEachOther) {
@@ -27,7 +28,8 @@ TEST_F(ExecutorTest, TransientsThatShareMemoryDoNotDisturbEachOther) {
   g.set(g.pass("fill", "test.fill", {}, {{"target", "a"}}), "value", 5);
   const char* chain[] = {"a", "b", "c", "d", "result"};
   for (int i = 0; i < 4; ++i)
-    g.set(g.pass(std::string("add") + chain[i], "test.add", {{"a", chain[i]}}, {{"target", chain[i + 1]}}),
+    g.set(g.pass(std::string("add") + chain[i], "test.add", {{"a", chain[i]}},
+                 {{"target", chain[i + 1]}}),
           "bias", 1);
   make_executor(g, width, height);
   uint32_t sharing = 0;
@@ -85,7 +87,8 @@ TEST_F(ExecutorTest, AnUnboundOptionalPortReadsZeroAndItsMaskBitIsClear) {
   g.import("more", Format::r32f, true);
   g.import("ids", Format::r32_uint, true);
   g.exported("result");
-  g.pass("add", "test.add", {{"a", "light"}, {"b", "more"}, {"ids", "ids"}}, {{"target", "result"}});
+  g.pass("add", "test.add", {{"a", "light"}, {"b", "more"}, {"ids", "ids"}},
+         {{"target", "result"}});
   make_executor(g, width, height, {"more", "ids"});
   bind(g, "light", std::vector<float>(width * height, 4.0f));
   const TestImage result = bind(g, "result", {});
@@ -99,7 +102,8 @@ TEST_F(ExecutorTest, ABoundOptionalPortIsRead) {
   g.import("ids", Format::r8_uint, true);
   g.exported("result");
   g.exported("second", Format::rgba16f);
-  g.pass("add", "test.add", {{"a", "light"}, {"ids", "ids"}}, {{"target", "result"}, {"second", "second"}});
+  g.pass("add", "test.add", {{"a", "light"}, {"ids", "ids"}},
+         {{"target", "result"}, {"second", "second"}});
   make_executor(g, width, height);
   bind(g, "light", std::vector<float>(width * height, 4.0f));
   const TestImage ids = make_image(VK_FORMAT_R8_UINT, width, height, VK_IMAGE_USAGE_SAMPLED_BIT);
@@ -137,8 +141,10 @@ TEST_F(ExecutorTest, AnIndirectDispatchRunsOverTheListedTiles) {
   g.buffer("tiles", 1);
   g.buffer("arguments", 3);
   g.pass("classes", "test.classes", {}, {{"classes", "classes"}});
-  g.pass("list", "test.list", {{"classes", "classes"}}, {{"tiles", "tiles"}, {"arguments", "arguments"}});
-  g.pass("mark", "test.mark", {{"tiles", "tiles"}, {"arguments", "arguments"}}, {{"target", "light"}});
+  g.pass("list", "test.list", {{"classes", "classes"}},
+         {{"tiles", "tiles"}, {"arguments", "arguments"}});
+  g.pass("mark", "test.mark", {{"tiles", "tiles"}, {"arguments", "arguments"}},
+         {{"target", "light"}});
   make_executor(g, 200, 72); // 25 x 9 tiles: four groups over the tile grid.
   const TestImage light = bind(g, "light", std::vector<float>(200 * 72, 0.0f));
   run_frames(2);
@@ -152,8 +158,8 @@ TEST_F(ExecutorTest, AClearZeroesImagesAndBuffers) {
   SmallGraph g{"export result", "import light"};
   g.buffer("weights", 1);
   g.pass("clear", "test.clear", {}, {{"target", "light"}, {"buffer", "weights"}});
-  g.set(g.pass("add", "test.add", {{"a", "light"}, {"weights", "weights"}}, {{"target", "result"}}), "bias",
-        1);
+  g.set(g.pass("add", "test.add", {{"a", "light"}, {"weights", "weights"}}, {{"target", "result"}}),
+        "bias", 1);
   make_executor(g, width, height);
   bind(g, "light", std::vector<float>(width * height, 8.0f));
   const TestImage result = bind(g, "result", {});

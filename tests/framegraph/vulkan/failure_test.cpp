@@ -88,8 +88,9 @@ TEST_F(FailureTest, AMissingKernelIsNamed) {
   std::unique_ptr<vulkan::Executor> made;
   vulkan::Error error = vulkan::Executor::create(input, made);
   EXPECT_EQ(error.kind, vulkan::ErrorKind::shader);
-  EXPECT_THAT(error.text,
-              HasSubstr("kernel 'test_add' of type 'test.add' is not among the 0 provided kernels"));
+  EXPECT_THAT(
+      error.text,
+      HasSubstr("kernel 'test_add' of type 'test.add' is not among the 0 provided kernels"));
   input.kernels = small_kernels();
   error = vulkan::Executor::create(input, made);
   EXPECT_EQ(error.kind, vulkan::ErrorKind::shader) << "the kernels read a missing environment";
@@ -118,11 +119,13 @@ TEST_F(FailureTest, BadInputsAreRejected) {
   input.pass_types = &small_pass_types();
   input.plan = &plan;
   input.frames_in_flight = vulkan::max_frames_in_flight + 1;
-  EXPECT_THAT(vulkan::Executor::create(input, made).text, HasSubstr("9 frames in flight; expected 1 to 8"));
+  EXPECT_THAT(vulkan::Executor::create(input, made).text,
+              HasSubstr("9 frames in flight; expected 1 to 8"));
   input.frames_in_flight = 2;
   const vulkan::EnvironmentBinding empty[] = {{vulkan::EnvironmentType::uniform_buffer, 0, {}}};
   input.environment = empty;
-  EXPECT_THAT(vulkan::Executor::create(input, made).text, HasSubstr("environment binding 0 has 0 bytes"));
+  EXPECT_THAT(vulkan::Executor::create(input, made).text,
+              HasSubstr("environment binding 0 has 0 bytes"));
 }
 
 TEST_F(ExecutorTest, APlanOfTwoQueuesIsRejected) {

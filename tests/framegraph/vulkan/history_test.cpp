@@ -11,7 +11,8 @@ constexpr uint32_t side = 16;
 SmallGraph counter(uint32_t frames = 1) {
   SmallGraph g{"export result"};
   g.history("count", frames);
-  g.set(g.pass("step", "test.add", {{"a", "count@-" + std::to_string(frames)}}, {{"target", "count"}}),
+  g.set(g.pass("step", "test.add", {{"a", "count@-" + std::to_string(frames)}},
+               {{"target", "count"}}),
         "bias", 1);
   g.pass("show", "test.add", {{"a", "count"}}, {{"target", "result"}});
   return g;
@@ -47,7 +48,8 @@ TEST_F(HistoryTest, UpdatedInPlace_CountsAndRestartsAfterACut) {
 TEST_F(HistoryTest, InvalidHistory_PortReadsItsOtherwise) {
   SmallGraph g{"export result", "history count", "image start"};
   g.set(g.pass("begin", "test.fill", {}, {{"target", "start"}}), "value", 10);
-  g.set(g.pass("step", "test.add", {{"a", "count@-1?start"}, {"b", "count@-1?"}}, {{"target", "count"}}),
+  g.set(g.pass("step", "test.add", {{"a", "count@-1?start"}, {"b", "count@-1?"}},
+               {{"target", "count"}}),
         "bias", 1);
   g.pass("show", "test.add", {{"a", "count"}}, {{"target", "result"}});
   const TestImage result = start(g, side, side);
@@ -135,8 +137,10 @@ TEST_F(ReplacedHistory, SameGraph_KeepsBuffers) {
   g.buffer("classes", 0).history.frames = 1;
   g.buffer("tiles", 1);
   g.buffer("arguments", 3);
-  g.pass("list", "test.list", {{"classes", "classes@-1"}}, {{"tiles", "tiles"}, {"arguments", "arguments"}});
-  g.pass("mark", "test.mark", {{"tiles", "tiles"}, {"arguments", "arguments"}}, {{"target", "light"}});
+  g.pass("list", "test.list", {{"classes", "classes@-1"}},
+         {{"tiles", "tiles"}, {"arguments", "arguments"}});
+  g.pass("mark", "test.mark", {{"tiles", "tiles"}, {"arguments", "arguments"}},
+         {{"target", "light"}});
   g.pass("classes", "test.classes", {}, {{"classes", "classes"}});
   const auto first_tiles_show = [&](const TestImage& light, float expected) {
     const std::vector<float> texels = read(light);
@@ -203,7 +207,8 @@ TEST_F(ReplacedHistory, OtherSize_TakesTheNearestTexel) {
   g.pass("show", "test.add", {{"a", "kept@-1"}}, {{"target", "result"}});
   g.pass("keep", "test.add", {{"a", "source"}}, {{"target", "kept"}});
   for (ResourceDeclaration& resource : g.graph.resources)
-    if (resource.history.frames > 0) resource.history.on_resize = HistoryDeclaration::OnResize::rescale;
+    if (resource.history.frames > 0)
+      resource.history.on_resize = HistoryDeclaration::OnResize::rescale;
   make_executor(g, side, side);
   std::vector<float> ramp(size_t{side} * side);
   for (size_t i = 0; i < ramp.size(); ++i)
@@ -220,8 +225,9 @@ TEST_F(ReplacedHistory, OtherSize_TakesTheNearestTexel) {
     for (uint32_t x = 0; x < side / 2;
          // The centre of a texel of twice the width lies between two old texels; both are nearest.
          ++x)
-      EXPECT_THAT(shown[y * (side / 2) + x], ::testing::AnyOf(FloatEq(ramp[y / 2 * side + 2 * x]),
-                                                              FloatEq(ramp[y / 2 * side + 2 * x + 1])))
+      EXPECT_THAT(shown[y * (side / 2) + x],
+                  ::testing::AnyOf(FloatEq(ramp[y / 2 * side + 2 * x]),
+                                   FloatEq(ramp[y / 2 * side + 2 * x + 1])))
           << x << ", " << y;
 }
 

@@ -20,8 +20,8 @@ std::vector<uint32_t> module_of(std::initializer_list<uint32_t> words) {
 TEST(LoopHints, UnrollHintBecomesDontUnroll) {
   const auto before = module_of({4u << 16 | loop_merge, 1, 2, 1, 3u << 16 | store, 1, 1,
                                  4u << 16 | loop_merge, 3, 4, 0, 4u << 16 | loop_merge, 5, 6, 2});
-  const auto after = module_of({4u << 16 | loop_merge, 1, 2, 2, 3u << 16 | store, 1, 1, 4u << 16 | loop_merge,
-                                3, 4, 0, 4u << 16 | loop_merge, 5, 6, 2});
+  const auto after = module_of({4u << 16 | loop_merge, 1, 2, 2, 3u << 16 | store, 1, 1,
+                                4u << 16 | loop_merge, 3, 4, 0, 4u << 16 | loop_merge, 5, 6, 2});
   EXPECT_EQ(without_unrolling(before), after);
 }
 

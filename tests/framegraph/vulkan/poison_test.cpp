@@ -37,11 +37,14 @@ TEST_F(PoisonTest, ResultsDoNotDependOnUndefinedMemory) {
   g.image("sum");
   g.pass("fill", "test.fill", {}, {{"target", "parts#0"}});
   g.pass("small", "test.fill", {}, {{"target", "parts#1"}});
-  g.set(g.pass("step", "test.add", {{"a", "count@-1"}, {"b", "parts#0"}}, {{"target", "count"}}), "bias", 1);
+  g.set(g.pass("step", "test.add", {{"a", "count@-1"}, {"b", "parts#0"}}, {{"target", "count"}}),
+        "bias", 1);
   g.pass("classify", "test.classes", {}, {{"classes", "classes"}});
-  g.pass("list", "test.list", {{"classes", "classes"}}, {{"tiles", "tiles"}, {"arguments", "arguments"}});
+  g.pass("list", "test.list", {{"classes", "classes"}},
+         {{"tiles", "tiles"}, {"arguments", "arguments"}});
   g.pass("clear", "test.clear", {}, {{"target", "marked"}});
-  g.pass("mark", "test.mark", {{"tiles", "tiles"}, {"arguments", "arguments"}}, {{"target", "marked"}});
+  g.pass("mark", "test.mark", {{"tiles", "tiles"}, {"arguments", "arguments"}},
+         {{"target", "marked"}});
   g.pass("sum", "test.add", {{"a", "count"}, {"b", "marked"}}, {{"target", "sum"}});
   g.pass("show", "test.add", {{"a", "sum"}}, {{"target", "result"}});
   const std::vector<float> plain = run(g, false, {}), poisoned = run(g, true, {});

@@ -26,7 +26,8 @@ struct RejectedFrames : ExecutorTest {
     graph.setting("bias", 1);
     graph.import("light", Format::r32f);
     graph.exported("result");
-    graph.follow(graph.pass("add", "test.add", {{"a", "light"}}, {{"target", "result"}}), "bias", "bias");
+    graph.follow(graph.pass("add", "test.add", {{"a", "light"}}, {{"target", "result"}}), "bias",
+                 "bias");
     make_executor(graph, side, side);
     bind(graph, "light", std::vector<float>(side * side, 2.0f));
     result = bind(graph, "result", {});
@@ -71,12 +72,14 @@ TEST_F(RejectedFrames, ReasonIsGiven_ExecutorIsUnchanged) {
        [](Frame& f) {
          f.input.rectangle = {0, UINT32_MAX, 1, 2};
        }},
-      {"frame_constants has more bytes", [](Frame& f) { f.constants.resize(sizeof(SmallFrame) + 1); }},
+      {"frame_constants has more bytes",
+       [](Frame& f) { f.constants.resize(sizeof(SmallFrame) + 1); }},
       {"the slot is not bound", [=](Frame& f) { f.images[light].image = VK_NULL_HANDLE; }},
       {"the slot is not bound", [](Frame& f) { f.images.clear(); }},
       {"the binding has no view", [=](Frame& f) { f.images[light].view = VK_NULL_HANDLE; }},
       {"after.layout", [=](Frame& f) { f.images[out].after.layout = VK_IMAGE_LAYOUT_UNDEFINED; }},
-      {"after.layout", [=](Frame& f) { f.images[out].after.layout = VK_IMAGE_LAYOUT_PREINITIALIZED; }},
+      {"after.layout",
+       [=](Frame& f) { f.images[out].after.layout = VK_IMAGE_LAYOUT_PREINITIALIZED; }},
   };
   for (const auto& [said, change] : changes) {
     const vulkan::RecordResult rejected = record(change);
@@ -140,7 +143,8 @@ TEST_F(RejectedFrames, WrongHostBuffer_IsRejectedWithSizeAndPlace) {
     EXPECT_THAT(aside.text, HasSubstr("minStorageBufferOffsetAlignment"));
     EXPECT_EQ(aside.slot, static_cast<int32_t>(slot));
   }
-  EXPECT_THAT(record([](Frame& f) { f.settings.clear(); }).text, HasSubstr("the slot is not bound"));
+  EXPECT_THAT(record([](Frame& f) { f.settings.clear(); }).text,
+              HasSubstr("the slot is not bound"));
 }
 
 TEST_F(ExecutorTest, EnvironmentsThatNoDeviceCanBindAreRejected) {

@@ -20,7 +20,9 @@ struct RescaledImage {
 
 class RescaledHistory : public ExecutorTest {
 protected:
-  static uint32_t pattern(uint32_t x, uint32_t y, uint32_t seed) { return (3 * x + 5 * y + 7 * seed) % 32; }
+  static uint32_t pattern(uint32_t x, uint32_t y, uint32_t seed) {
+    return (3 * x + 5 * y + 7 * seed) % 32;
+  }
 
   static uint32_t seed_of(const RescaledImage& image, uint32_t mip, uint32_t layer) {
     return 1 + mip * image.layers + layer;
@@ -42,9 +44,10 @@ protected:
                           result = fmt::format("result{}{}", mip, layer);
         g.exported(result);
         g.pass("show " + part, "test.show",
-               {{ids ? "ids" : "a", fmt::format("kept{}@-{}", part, image.frames)}}, {{"target", result}});
-        g.set(g.pass("stamp " + part, "test.stamp", {}, {{ids ? "ids" : "target", "kept" + part}}), "seed",
-              seed_of(image, mip, layer));
+               {{ids ? "ids" : "a", fmt::format("kept{}@-{}", part, image.frames)}},
+               {{"target", result}});
+        g.set(g.pass("stamp " + part, "test.stamp", {}, {{ids ? "ids" : "target", "kept" + part}}),
+              "seed", seed_of(image, mip, layer));
       }
     return g;
   }
@@ -59,8 +62,8 @@ protected:
 
   static uint32_t extent(uint32_t side, uint32_t mip) { return std::max(side >> mip, 1u); }
 
-  void expect_nearest(const std::vector<float>& shown, RescaleSize from, RescaleSize to, uint32_t mip,
-                      uint32_t seed) {
+  void expect_nearest(const std::vector<float>& shown, RescaleSize from, RescaleSize to,
+                      uint32_t mip, uint32_t seed) {
     const RescaleSize before{extent(from.width, mip), extent(from.height, mip)},
         after{extent(to.width, mip), extent(to.height, mip)};
     for (uint32_t y = 0; y < after.height; ++y)
@@ -87,7 +90,8 @@ protected:
     ASSERT_FALSE(frame());
     for (uint32_t mip = 0; mip < image.mips; ++mip)
       for (uint32_t layer = 0; layer < image.layers; ++layer)
-        expect_nearest(read(results[mip * image.layers + layer]), from, to, mip, seed_of(image, mip, layer));
+        expect_nearest(read(results[mip * image.layers + layer]), from, to, mip,
+                       seed_of(image, mip, layer));
     wait();
     replaced.reset();
     executor.reset();
@@ -109,8 +113,9 @@ TEST_F(RescaledHistory, HasTheNearestTexelsInEveryFormat) {
 
 TEST_F(RescaledHistory, HasTheNearestTexelsInEveryMipAndLayer) {
   for (const Format format : {Format::rgba16f, Format::r16_uint})
-    for (const auto& [from, to] :
-         {std::pair<RescaleSize, RescaleSize>{{16, 16}, {29, 7}}, {{29, 7}, {16, 16}}, {{5, 64}, {64, 5}}}) {
+    for (const auto& [from, to] : {std::pair<RescaleSize, RescaleSize>{{16, 16}, {29, 7}},
+                                   {{29, 7}, {16, 16}},
+                                   {{5, 64}, {64, 5}}}) {
       SCOPED_TRACE(fmt::format("{} {}x{}", format_info(format).name, to.width, to.height));
       resize({format, 3, 2, 1}, from, to);
       resize({format, 1, 3, 1}, from, to);

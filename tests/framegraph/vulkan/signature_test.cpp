@@ -68,7 +68,8 @@ TEST(Reflection, ReadsBindingsPushConstantsAndLocalSize) {
 TEST(Reflection, TruncatedModule_IsRejectedOrRead) {
   const auto whole = spirv("test_add");
   for (size_t length = 0; length < whole.size(); ++length) {
-    const std::vector<uint32_t> cut(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(length));
+    const std::vector<uint32_t> cut(whole.begin(),
+                                    whole.begin() + static_cast<std::ptrdiff_t>(length));
     std::string error;
     const auto result = reflect(cut, error);
     EXPECT_EQ(result.has_value(), error.empty()) << length;
@@ -113,12 +114,14 @@ TEST(Signature, APortOfAnotherTypeIsNamedWithBothSides) {
   ports.pop_back();
   changed.ports = ports;
   const std::string text = problems(changed, reflected("test_add"));
-  EXPECT_THAT(text,
-              HasAll("kernel 'test_add' of type 'test.add': port 'b' (set 0 binding 1) is a buffer block in "
-                     "the signature and a texture ('b') in the shader",
-                     "port 'ids' (set 0 binding 2) reads as float because of its type texture2D, but as uint",
-                     "port 'second' (set 0 binding 4) has usage clear and therefore no descriptor",
-                     "'weights_block' at set 0 binding 5, but the signature has only 5 ports"));
+  EXPECT_THAT(
+      text,
+      HasAll(
+          "kernel 'test_add' of type 'test.add': port 'b' (set 0 binding 1) is a buffer block in "
+          "the signature and a texture ('b') in the shader",
+          "port 'ids' (set 0 binding 2) reads as float because of its type texture2D, but as uint",
+          "port 'second' (set 0 binding 4) has usage clear and therefore no descriptor",
+          "'weights_block' at set 0 binding 5, but the signature has only 5 ports"));
   EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 4) << text;
 }
 
@@ -128,14 +131,17 @@ TEST(Signature, PushConstantsMustFollowTheSettings) {
   std::swap(settings[0], settings[1]);
   changed.settings = settings;
   std::string text = problems(changed, reflected("test_fill"));
-  EXPECT_THAT(text,
-              HasAll("setting 'slope' is int or uint in the signature, but 'value' is float in the shader",
-                     "setting 'value' is float in the signature, but 'slope' is int in the shader"));
+  EXPECT_THAT(
+      text,
+      HasAll("setting 'slope' is int or uint in the signature, but 'value' is float in the shader",
+             "setting 'value' is float in the signature, but 'slope' is int in the shader"));
   settings.pop_back();
   changed.settings = settings;
   text = problems(changed, reflected("test_fill"));
   EXPECT_THAT(
-      text, HasSubstr("the shader has 3 push constants, but the signature has the port mask and 1 settings"));
+      text,
+      HasSubstr(
+          "the shader has 3 push constants, but the signature has the port mask and 1 settings"));
 }
 
 TEST(Signature, EnvironmentMustHoldAllThatTheShaderReads) {
@@ -144,9 +150,10 @@ TEST(Signature, EnvironmentMustHoldAllThatTheShaderReads) {
       {EnvironmentType::uniform_buffer, 8, {}},
   };
   const std::string text = problems(type("test.fill"), reflected("test_fill"), small);
-  EXPECT_THAT(text, HasAll("environment binding 0 has 16 bytes, but 'frame' in the shader needs 20",
-                           "environment binding 1 is a uniform block in the signature and a buffer block",
-                           "'linear_sampler' at set 1 binding 2, but the environment has only 2 bindings"));
+  EXPECT_THAT(
+      text, HasAll("environment binding 0 has 16 bytes, but 'frame' in the shader needs 20",
+                   "environment binding 1 is a uniform block in the signature and a buffer block",
+                   "'linear_sampler' at set 1 binding 2, but the environment has only 2 bindings"));
 }
 
 TEST(Signature, TheWorkgroupMustFitTheDispatch) {

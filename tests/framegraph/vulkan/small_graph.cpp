@@ -156,7 +156,8 @@ PortBinding SmallGraph::binding(const PassType& type, const std::string& port,
   PortBinding result;
   result.range = parse_image_range(text.substr(end, at - end)).value_or(ImageRange{});
   result.port = static_cast<uint32_t>(find_port(type, port));
-  result.frames_back = at == text.size() ? 0 : static_cast<uint32_t>(std::stoul(text.substr(at + 2)));
+  result.frames_back =
+      at == text.size() ? 0 : static_cast<uint32_t>(std::stoul(text.substr(at + 2)));
   for (uint32_t i = 0; i < graph.resources.size(); ++i)
     if (graph.resources[i].name == text.substr(0, end)) result.resource = ResourceId{i};
   EXPECT_TRUE(result.resource.valid()) << text;
@@ -178,8 +179,8 @@ std::vector<PortBinding> SmallGraph::bindings(const PassType& type, const Ports&
   return result;
 }
 
-PassDeclaration& SmallGraph::pass(const std::string& name, const std::string& type, const Ports& reads,
-                                  const Ports& writes) {
+PassDeclaration& SmallGraph::pass(const std::string& name, const std::string& type,
+                                  const Ports& reads, const Ports& writes) {
   PassDeclaration& added = graph.passes.emplace_back();
   added.name = name;
   added.type = small_pass_types().find(type);
@@ -207,7 +208,8 @@ SettingDeclaration& SmallGraph::setting(const std::string& name, double value) {
   return added;
 }
 
-void SmallGraph::follow(PassDeclaration& pass, const std::string& setting, const std::string& graph_setting) {
+void SmallGraph::follow(PassDeclaration& pass, const std::string& setting,
+                        const std::string& graph_setting) {
   SettingBinding& added = pass.settings.emplace_back();
   added.setting = static_cast<uint32_t>(find_setting(small_pass_types()[pass.type], setting));
   for (uint32_t i = 0; i < graph.settings.size(); ++i)

@@ -35,7 +35,8 @@ struct AccumulatedProfiles : DermisTest {
     for (float* from_world : {one.view_from_world, one.previous_view_from_world})
       for (size_t i = 0; i < 16; i += 5)
         from_world[i] = 1.0f;
-    std::copy(std::begin(one.clip_from_view), std::end(one.clip_from_view), one.previous_clip_from_view);
+    std::copy(std::begin(one.clip_from_view), std::end(one.clip_from_view),
+              one.previous_clip_from_view);
     ASSERT_OK(record(graph, one));
   }
 };

@@ -39,8 +39,9 @@ TEST_F(Choice, WithoutABudgetTheDefaultsRun) {
   EXPECT_STREQ(choice.configuration, "technique=sap, variant=smooth");
   EXPECT_STREQ(choice.technique, "sap smooth");
   EXPECT_EQ(choice.budget_ms, 0);
-  EXPECT_EQ(choice.configuration_count,
-            9u); // sap with three variants, hybrid with two, separable with three numbers of taps, off
+  EXPECT_EQ(
+      choice.configuration_count,
+      9u); // sap with three variants, hybrid with two, separable with three numbers of taps, off
 }
 
 TEST_F(Choice, EachBudgetGetsTheSmallestErrorThatFits) {
@@ -115,12 +116,13 @@ struct KeptHistory : Choice {
     ASSERT_OK(dermis_graph_set_setting(graph, "accumulate_clip", "0", nullptr));
     make_images(graph);
   }
-  // One frame lit from one side, because light that is the same everywhere is copied. Two pixels in the
-  // middle are brighter by `spot`, which scattering blurs and copying leaves: what history keeps shows which
-  // ran.
+  // One frame lit from one side, because light that is the same everywhere is copied. Two pixels in
+  // the middle are brighter by `spot`, which scattering blurs and copying leaves: what history
+  // keeps shows which ran.
   demo::ReportedFrame lit_frame(float spot, uint32_t flags = 0) {
     fill("lighting", [&](uint32_t x, uint32_t y) {
-      return 0.75f + 0.5f * (float(x) + 0.5f) / 64 + (y == 32 && (x == 31 || x == 32) ? spot : 0.0f);
+      return 0.75f + 0.5f * (float(x) + 0.5f) / 64 +
+             (y == 32 && (x == 31 || x == 32) ? spot : 0.0f);
     });
     dermis_frame one = bound_frame(graph);
     one.flags |= flags;
@@ -277,7 +279,8 @@ struct TransmissionStats : Choice {
 TEST_F(TransmissionStats, MatchTheTransmittedLight) {
   make();
   Diagnostics diagnostics;
-  const auto document = parse_document("skin", read_text("configs/profiles/skin.json"), diagnostics);
+  const auto document =
+      parse_document("skin", read_text("configs/profiles/skin.json"), diagnostics);
   const auto skin = subsurface::read_profile(*document, diagnostics);
   constexpr std::array luminance = {0.2126, 0.7152, 0.0722}; // Rec. 709
   constexpr double thickness_mm = 0.8, light = 0.5, exposure = 1.5;
@@ -304,8 +307,8 @@ TEST_F(TransmissionStats, NoThicknessBound_AreUnknown) {
   ASSERT_OK(create_graph(options, &graph, &report));
   graphs.push_back(graph);
   const Said said = take(report);
-  EXPECT_THAT(said.all,
-              HasAll("does not offer 'counted': 'thickness' is not bound", "does not offer 'restir': "));
+  EXPECT_THAT(said.all, HasAll("does not offer 'counted': 'thickness' is not bound",
+                               "does not offer 'restir': "));
   make_images(graph);
   EXPECT_EQ(run_frame().transmitted_rms, 0);
 }

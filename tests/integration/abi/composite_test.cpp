@@ -23,8 +23,8 @@ struct Composite : DermisTest {
     demo::ImageDesc desc;
     desc.format = format;
     desc.width = desc.height = shown_side;
-    desc.usage = VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT |
-                 VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
+    desc.usage = VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_SAMPLED_BIT |
+                 VK_IMAGE_USAGE_TRANSFER_DST_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
     auto image = demo::create_image(*host, desc);
     EXPECT_TRUE(image) << image.error().text;
     const demo::ImageState general{VK_IMAGE_LAYOUT_GENERAL, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
@@ -61,7 +61,8 @@ struct Composite : DermisTest {
     images.insert_or_assign("shown", make_image(VK_FORMAT_R32G32B32A32_SFLOAT, 0.0f));
     const int32_t applied = bind_albedo && result == "color" ? 1 : 0;
     run_example(*host, {composite_spirv,
-                        {images.at("lighting").view, images.at("material").view, albedo.view, specular.view},
+                        {images.at("lighting").view, images.at("material").view, albedo.view,
+                         specular.view},
                         &images.at("shown"),
                         std::as_bytes(std::span(&applied, 1))});
     std::vector<float> red;

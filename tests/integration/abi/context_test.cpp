@@ -11,11 +11,11 @@ struct Context : DermisTest {};
 
 TEST_F(Context, RequirementsAreListedWithTheirReasonAndPresence) {
   uint32_t count = 0;
-  ASSERT_OK(dermis_query_requirements(vkGetInstanceProcAddr, host->instance, host->physical_device, &count,
-                                      nullptr));
+  ASSERT_OK(dermis_query_requirements(vkGetInstanceProcAddr, host->instance, host->physical_device,
+                                      &count, nullptr));
   std::vector<dermis_requirement> items(count, dermis_requirement DERMIS_REQUIREMENT_INIT);
-  ASSERT_OK(dermis_query_requirements(vkGetInstanceProcAddr, host->instance, host->physical_device, &count,
-                                      items.data()));
+  ASSERT_OK(dermis_query_requirements(vkGetInstanceProcAddr, host->instance, host->physical_device,
+                                      &count, items.data()));
   ASSERT_EQ(items.size(), count);
   for (const dermis_requirement& item : items) {
     EXPECT_TRUE(item.required == 0 || item.present == 1) << item.name;
@@ -23,8 +23,8 @@ TEST_F(Context, RequirementsAreListedWithTheirReasonAndPresence) {
   }
   uint32_t capacity = count - 1;
   items.back().name = nullptr;
-  EXPECT_EQ(dermis_query_requirements(vkGetInstanceProcAddr, host->instance, host->physical_device, &capacity,
-                                      items.data()),
+  EXPECT_EQ(dermis_query_requirements(vkGetInstanceProcAddr, host->instance, host->physical_device,
+                                      &capacity, items.data()),
             DERMIS_INCOMPLETE);
   EXPECT_EQ(capacity, count);
   EXPECT_EQ(items.back().name, nullptr) << "no element beyond the capacity is written";
@@ -32,7 +32,8 @@ TEST_F(Context, RequirementsAreListedWithTheirReasonAndPresence) {
 
 // A loader that hides two functions, as by a host's mistake or an old driver.
 PFN_vkVoidFunction VKAPI_CALL hiding_device_proc_addr(VkDevice device, const char* name) {
-  if (std::strcmp(name, "vkCmdPipelineBarrier2") == 0 || std::strcmp(name, "vkCmdDispatchIndirect") == 0)
+  if (std::strcmp(name, "vkCmdPipelineBarrier2") == 0 ||
+      std::strcmp(name, "vkCmdDispatchIndirect") == 0)
     return nullptr;
   return vkGetDeviceProcAddr(device, name);
 }
@@ -82,7 +83,8 @@ TEST_F(Context, OutOfRangeFieldsAreNamed) {
            [](auto& desc) { desc.abi_version = DERMIS_ABI_VERSION + 1; });
   rejected(DERMIS_ERROR_VERSION, "abi_version", [](auto& desc) { desc.abi_version = 0; });
   rejected(DERMIS_ERROR_ARGUMENT, "flags", [](auto& desc) { desc.flags = 0x80000000u; });
-  rejected(DERMIS_ERROR_ARGUMENT, "frames_in_flight", [](auto& desc) { desc.frames_in_flight = 9; });
+  rejected(DERMIS_ERROR_ARGUMENT, "frames_in_flight",
+           [](auto& desc) { desc.frames_in_flight = 9; });
   rejected(DERMIS_ERROR_ARGUMENT, "queue family", [](auto& desc) { desc.queue_family = 1000; });
   rejected(DERMIS_ERROR_ARGUMENT, "struct_size", [](auto& desc) { desc.struct_size = 0; });
   rejected(DERMIS_ERROR_ARGUMENT, "struct_size", [](auto& desc) { desc.struct_size = 1; });

@@ -19,8 +19,8 @@ struct DepthLayouts {
 class DepthStencilImages : public DermisTest {
 protected:
   static void make_host(bool separate) {
-    auto made =
-        demo::create_vulkan_host({.validation = true, .device = "", .separate_depth_stencil = separate});
+    auto made = demo::create_vulkan_host(
+        {.validation = true, .device = "", .separate_depth_stencil = separate});
     if (made) host = made.take();
   }
 
@@ -62,11 +62,12 @@ protected:
   // Clears to depth 0.5 and the stencil mark, in the layouts of the host.
   void clear(VkImage image, VkImageLayout depth, VkImageLayout stencil) {
     const auto ran = demo::run_commands(*host, [&](VkCommandBuffer commands) -> demo::Result<> {
-      move(commands, image, both_aspects, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL);
+      move(commands, image, both_aspects, VK_IMAGE_LAYOUT_UNDEFINED,
+           VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL);
       const VkClearDepthStencilValue value{0.5f, marked};
       const VkImageSubresourceRange range{both_aspects, 0, 1, 0, 1};
-      host->vk.vkCmdClearDepthStencilImage(commands, image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, &value, 1,
-                                           &range);
+      host->vk.vkCmdClearDepthStencilImage(commands, image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
+                                           &value, 1, &range);
       move_aspects(commands, image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
                    VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, depth, stencil);
       return demo::success();
@@ -82,7 +83,8 @@ protected:
     move(commands, image, VK_IMAGE_ASPECT_STENCIL_BIT, stencil_from, stencil_to);
   }
 
-  std::vector<std::byte> read_stencil(const demo::Image& image, VkImageLayout depth, VkImageLayout stencil) {
+  std::vector<std::byte> read_stencil(const demo::Image& image, VkImageLayout depth,
+                                      VkImageLayout stencil) {
     auto buffer = demo::create_buffer(*host, uint64_t{image.width} * image.height,
                                       VK_BUFFER_USAGE_TRANSFER_DST_BIT, true);
     EXPECT_TRUE(buffer) << buffer.error().text;
@@ -161,8 +163,8 @@ protected:
       auto bound = bindings(graph);
       for (dermis_image_binding& binding : bound)
         if (binding.image == image) {
-          binding.before = {i == 0 ? layouts.before : layouts.after, 0, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
-                            VK_ACCESS_2_MEMORY_WRITE_BIT, 0};
+          binding.before = {i == 0 ? layouts.before : layouts.after, 0,
+                            VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_WRITE_BIT, 0};
           binding.after = {layouts.after, 0, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
                            VK_ACCESS_2_MEMORY_READ_BIT, 0};
         }
@@ -170,7 +172,8 @@ protected:
       one.depth_kind = DERMIS_DEPTH_DEVICE;
       ASSERT_OK(record(graph, one));
     }
-    const std::vector<std::byte> stencil = read_stencil(images.at("depth"), layouts.after, stencil_rest);
+    const std::vector<std::byte> stencil =
+        read_stencil(images.at("depth"), layouts.after, stencil_rest);
     EXPECT_TRUE(std::all_of(stencil.begin(), stencil.end(),
                             [](std::byte texel) { return texel == std::byte{marked}; }));
     dermis_graph_destroy(graph);
@@ -187,10 +190,10 @@ struct WithoutSeparateLayouts : DepthStencilImages {
 
 TEST_F(WithoutSeparateLayouts, BothAspectsMove) {
   constexpr DepthLayouts cases[] = {
-      {VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL, VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL,
-       false},
-      {VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL, VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL,
-       false},
+      {VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL,
+       VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL, false},
+      {VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL,
+       VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL, false},
       {VK_IMAGE_LAYOUT_GENERAL, VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL, false}};
   for (const VkFormat format : formats())
     for (const DepthLayouts& layouts : cases)

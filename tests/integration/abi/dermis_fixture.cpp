@@ -14,7 +14,8 @@ void DERMIS_CALL log_message(void* user, const dermis_message* message) {
   static_cast<DermisTest*>(user)->logged.emplace_back(message->text);
 }
 
-std::vector<float> contents(const std::string& slot, uint32_t width, uint32_t height, uint32_t channels) {
+std::vector<float> contents(const std::string& slot, uint32_t width, uint32_t height,
+                            uint32_t channels) {
   std::vector<float> texels(size_t{width} * height * channels, 0.0f);
   for (uint32_t y = 0; y < height; ++y)
     for (uint32_t x = 0; x < width; ++x)
@@ -87,7 +88,8 @@ namespace {
 
 // Calls use(desc) with the description of `options`.
 template <class Use> dermis_result described(const GraphOptions& options, Use use) {
-  const std::string text = options.text.empty() ? read_text("configs/graphs/burley.json") : options.text;
+  const std::string text =
+      options.text.empty() ? read_text("configs/graphs/burley.json") : options.text;
   const std::string skin =
       options.profile.empty() ? read_text("configs/profiles/skin.json") : options.profile;
   std::vector<dermis_profile> profiles(options.profile_count, dermis_profile DERMIS_PROFILE_INIT);
@@ -132,8 +134,9 @@ dermis_result DermisTest::create_graph(const GraphOptions& options, dermis_graph
 
 dermis_result DermisTest::reload_graph(dermis_graph graph, const GraphOptions& options,
                                        dermis_report* report) {
-  return described(options,
-                   [&](const dermis_graph_desc& desc) { return dermis_graph_reload(graph, &desc, report); });
+  return described(options, [&](const dermis_graph_desc& desc) {
+    return dermis_graph_reload(graph, &desc, report);
+  });
 }
 
 dermis_graph DermisTest::make_graph(const GraphOptions& options) {
@@ -169,7 +172,8 @@ void DermisTest::make_images(dermis_graph graph, std::string_view but) {
   }
 }
 
-void DermisTest::fill(const std::string& slot, const std::function<float(uint32_t, uint32_t)>& value) {
+void DermisTest::fill(const std::string& slot,
+                      const std::function<float(uint32_t, uint32_t)>& value) {
   const demo::Image& image = images.at(slot);
   const uint32_t channels = demo::find_pixel_format(image.format)->channels;
   std::vector<float> values;

@@ -28,8 +28,9 @@ void run_example(demo::VulkanHost& host, const ExampleShader& shader) {
   info.stage.pName = "main";
   info.layout = layout->layout.handle;
   VkPipeline pipeline = VK_NULL_HANDLE;
-  ASSERT_EQ(host.vk.vkCreateComputePipelines(host.device, VK_NULL_HANDLE, 1, &info, nullptr, &pipeline),
-            VK_SUCCESS);
+  ASSERT_EQ(
+      host.vk.vkCreateComputePipelines(host.device, VK_NULL_HANDLE, 1, &info, nullptr, &pipeline),
+      VK_SUCCESS);
   auto pool = demo::create_descriptor_pool(host, 1);
   ASSERT_TRUE(pool) << pool.error().text;
   auto set = demo::allocate_set(host, *pool, layout->sets[0]);
@@ -47,10 +48,12 @@ void run_example(demo::VulkanHost& host, const ExampleShader& shader) {
     demo::transition(host, commands, *shader.written, at_rest, written);
     host.vk.vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline);
     const VkDescriptorSet bound = *set;
-    host.vk.vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, info.layout, 0, 1, &bound, 0,
-                                    nullptr);
-    host.vk.vkCmdPushConstants(commands, info.layout, compute, 0, push_bytes, shader.push_constants.data());
-    host.vk.vkCmdDispatch(commands, (shader.written->width + 7) / 8, (shader.written->height + 7) / 8, 1);
+    host.vk.vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, info.layout, 0, 1,
+                                    &bound, 0, nullptr);
+    host.vk.vkCmdPushConstants(commands, info.layout, compute, 0, push_bytes,
+                               shader.push_constants.data());
+    host.vk.vkCmdDispatch(commands, (shader.written->width + 7) / 8,
+                          (shader.written->height + 7) / 8, 1);
     demo::transition(host, commands, *shader.written, written, at_rest);
     return demo::success();
   });

@@ -47,8 +47,8 @@ TEST(Validate, NamesFileLineAndColumnOfAnError) {
   const size_t at = text.find("\"exports\"");
   ASSERT_NE(at, std::string::npos);
   text.replace(at, 9, "\"exprots\"");
-  const auto line =
-      static_cast<uint32_t>(std::count(text.begin(), text.begin() + static_cast<ptrdiff_t>(at), '\n') + 1);
+  const auto line = static_cast<uint32_t>(
+      std::count(text.begin(), text.begin() + static_cast<ptrdiff_t>(at), '\n') + 1);
   const auto column = static_cast<uint32_t>(at - text.rfind('\n', at));
   const dermis_source source = source_of(text, "typo.json");
   dermis_report report = nullptr;
@@ -57,7 +57,8 @@ TEST(Validate, NamesFileLineAndColumnOfAnError) {
   const Said said = take(report);
   const auto found = std::find(said.names.begin(), said.names.end(), "unknown_key");
   ASSERT_NE(found, said.names.end()) << said.all;
-  EXPECT_EQ(said.places[static_cast<size_t>(found - said.names.begin())], std::make_pair(line, column));
+  EXPECT_EQ(said.places[static_cast<size_t>(found - said.names.begin())],
+            std::make_pair(line, column));
   EXPECT_THAT(said.all, HasAll(fmt::format("typo.json:{}:{}", line, column), "'exports'"));
   EXPECT_THAT(dermis_last_error(), HasSubstr("typo.json:"));
 }
@@ -159,7 +160,8 @@ TEST_F(GraphLife, DescriptionsAreCompleteOrNotWritten) {
   EXPECT_THAT(described(graph, DERMIS_DESCRIBE_TEXT), HasSubstr("scatter"));
   std::array<char, 4> small{'k', 'e', 'p', 't'};
   size_t size = small.size();
-  EXPECT_EQ(dermis_graph_describe(graph, DERMIS_DESCRIBE_TEXT, &size, small.data()), DERMIS_INCOMPLETE);
+  EXPECT_EQ(dermis_graph_describe(graph, DERMIS_DESCRIBE_TEXT, &size, small.data()),
+            DERMIS_INCOMPLETE);
   EXPECT_GT(size, small.size());
   EXPECT_EQ(std::string(small.data(), small.size()), "kept");
   EXPECT_EQ(dermis_graph_describe(graph, static_cast<dermis_describe_format>(3), &size, nullptr),
@@ -204,7 +206,8 @@ TEST_F(GraphLife, IncludedFilesAreOpenedOncePerCreationAndReload) {
   const size_t begin = burley.find("{ \"pass\": \"classify\"");
   const size_t end = burley.find("} }", begin) + 3;
   ASSERT_LT(end, burley.size());
-  Delivery delivery{"{ \"dermis_fragment\": 2, \"passes\": [ " + burley.substr(begin, end - begin) + " ] }"};
+  Delivery delivery{"{ \"dermis_fragment\": 2, \"passes\": [ " + burley.substr(begin, end - begin) +
+                    " ] }"};
   std::string including = burley;
   including.replace(begin, end - begin, "{ \"include\": \"parts/classify.json\" }");
   GraphOptions options;
@@ -309,7 +312,8 @@ TEST_F(GraphLife, Resize_StartsAtTheNextRecord) {
   ASSERT_OK(record(graph, one));
   ASSERT_OK(dermis_graph_resize(graph, 96, 40, nullptr));
   dermis_frame small = frame(bound, 96, 40);
-  EXPECT_THAT(record(graph, small), Fails(DERMIS_ERROR_ARGUMENT, "96x40")) << "images of the old size";
+  EXPECT_THAT(record(graph, small), Fails(DERMIS_ERROR_ARGUMENT, "96x40"))
+      << "images of the old size";
   make_images(graph);
   bound = bindings(graph);
   dermis_frame large = frame(bound, 96, 40);
@@ -319,9 +323,11 @@ TEST_F(GraphLife, Resize_StartsAtTheNextRecord) {
 
 TEST_F(GraphLife, SettingsAreCheckedAndNamed) {
   const dermis_graph graph = make_graph();
-  const auto rejected = [&](const char* name, const char* json, dermis_result result, const char* said) {
+  const auto rejected = [&](const char* name, const char* json, dermis_result result,
+                            const char* said) {
     dermis_report report = nullptr;
-    EXPECT_EQ(dermis_graph_set_setting(graph, name, json, &report), result) << name << " = " << json;
+    EXPECT_EQ(dermis_graph_set_setting(graph, name, json, &report), result)
+        << name << " = " << json;
     EXPECT_THAT(take(report).all, HasSubstr(said));
   };
   rejected("sample", "16", DERMIS_ERROR_ARGUMENT, "'samples'");
@@ -358,7 +364,8 @@ TEST_F(GraphLife, SettingFlippedBack_ReusesItsPlan) {
     EXPECT_OK(record(graph, one));
   }
   ASSERT_OK(dermis_graph_set_setting(graph, "samples", "64", nullptr));
-  EXPECT_EQ(plans.hits + plans.misses, 1u + flips) << "a setting without a `when` needs no new plan";
+  EXPECT_EQ(plans.hits + plans.misses, 1u + flips)
+      << "a setting without a `when` needs no new plan";
 }
 
 TEST_F(GraphLife, SettingIsInEffectAtTheNextRecord) {

@@ -16,12 +16,14 @@ struct Histories : DermisTest {
   GraphOptions keeping(const std::string& graph_name, const std::string& resize = "rescale",
                        const std::string& when = "") const {
     std::string overlay = read_text("configs/overlays/accumulate.json");
-    for (size_t at = 0; (at = overlay.find("\"rescale\"", at)) != std::string::npos; at += resize.size())
+    for (size_t at = 0; (at = overlay.find("\"rescale\"", at)) != std::string::npos;
+         at += resize.size())
       overlay.replace(at, 9, '"' + resize + '"');
     if (!when.empty()) {
       const std::string pass = R"("pass": "accumulate",)", clear = R"("pass": "forget_past",)";
       overlay.replace(overlay.find(pass), pass.size(),
-                      pass + R"("when": ")" + when + R"(", "otherwise": { "accumulated": "scattered" },)");
+                      pass + R"("when": ")" + when +
+                          R"(", "otherwise": { "accumulated": "scattered" },)");
       overlay.replace(overlay.find(clear), clear.size(), clear + R"("when": ")" + when + R"(",)");
     }
     GraphOptions options = shipped_options(dermis::shipped::graph_file(graph_name));
@@ -39,7 +41,8 @@ struct Histories : DermisTest {
     }
   }
   static std::vector<dermis_history> reported(dermis_graph graph) {
-    return list_of(dermis_history DERMIS_HISTORY_INIT, dermis_view_histories, dermis_graph_view(graph));
+    return list_of(dermis_history DERMIS_HISTORY_INIT, dermis_view_histories,
+                   dermis_graph_view(graph));
   }
   static dermis_history named(const std::vector<dermis_history>& all, const char* name) {
     const auto found = std::ranges::find_if(
@@ -131,8 +134,9 @@ TEST_F(Histories, Reload_ReportsOnlyRestartedOnes) {
       // Declaration of `past`.
       R"("size": "view", "history": { "frames": 1, "on_resize": "rescale" })";
   ASSERT_NE(overlay.find(past), std::string::npos);
-  overlay.replace(overlay.find(past), past.size(),
-                  R"("size": "view", "border": 1, "history": { "frames": 1, "on_resize": "invalidate" })");
+  overlay.replace(
+      overlay.find(past), past.size(),
+      R"("size": "view", "border": 1, "history": { "frames": 1, "on_resize": "invalidate" })");
   ASSERT_OK(reload_graph(graph, changed, &report));
   EXPECT_THAT(restarted(take(report)), ElementsAre("past"));
   ASSERT_OK(reload_graph(graph, changed, &report));
@@ -169,8 +173,9 @@ TEST_F(Histories, OtherProfile_KeepsAll) {
 TEST_F(Histories, ReenabledPasses_RestartTheirHistories) {
   make(keeping("skin", "rescale", "technique == 'sap'"));
   run(2);
-  for (const auto& [value, names] : {std::pair<const char*, std::vector<std::string>>{"\"separable\"", {}},
-                                     {"\"sap\"", {"past", "past_place"}}}) {
+  for (const auto& [value, names] :
+       {std::pair<const char*, std::vector<std::string>>{"\"separable\"", {}},
+        {"\"sap\"", {"past", "past_place"}}}) {
     dermis_report report = nullptr;
     ASSERT_OK(dermis_graph_set_setting(graph, "technique", value, &report));
     EXPECT_THAT(restarted(take(report)), testing::UnorderedElementsAreArray(names)) << value;
@@ -199,9 +204,10 @@ TEST_F(Histories, NewAfterAReload_AreReportedAsNew) {
   const std::string text = read_text("configs/graphs/papers/sap_residual.json");
   GraphOptions options;
   options.text = text;
-  for (const auto& [from, to] : {std::pair<std::string, std::string>{R"("ratio": {)", R"("mending": {)"},
-                                 {R"("ratio@-1")", R"("mending@-1")"},
-                                 {R"("ratio_out": "ratio")", R"("ratio_out": "mending")"}})
+  for (const auto& [from, to] :
+       {std::pair<std::string, std::string>{R"("ratio": {)", R"("mending": {)"},
+        {R"("ratio@-1")", R"("mending@-1")"},
+        {R"("ratio_out": "ratio")", R"("ratio_out": "mending")"}})
     options.text.replace(options.text.find(from), from.size(), to);
   options.unbound = {"albedo",        "scatter_scale",   "velocity", "thickness",
                      "back_lighting", "scattered_light", "sampling"};

@@ -8,7 +8,8 @@ namespace {
 void DERMIS_CALL keep_name(void* user, const dermis_pass_call* call) {
   std::string name = call->pass;
   for (uint32_t p = 0; p < call->port_count; ++p)
-    if (call->ports[p].image == VK_NULL_HANDLE && call->ports[p].buffer == VK_NULL_HANDLE) name += " -";
+    if (call->ports[p].image == VK_NULL_HANDLE && call->ports[p].buffer == VK_NULL_HANDLE)
+      name += " -";
   static_cast<std::vector<std::string>*>(user)->push_back(name);
 }
 
@@ -20,7 +21,8 @@ struct Way {
   uint32_t flags;
 };
 // Returns a pass of type studio.`name` that reads `from` and writes `out`.
-std::string pass(const std::string& name, const std::string& from, const std::string& out = "toned") {
+std::string pass(const std::string& name, const std::string& from,
+                 const std::string& out = "toned") {
   const std::string read = from.empty() ? "" : R"("read": { "from": ")" + from + R"(" }, )";
   return R"({ "pass": ")" + name + R"(", "type": "studio.)" + name + R"(", )" + read +
          R"("write": { "out": ")" + out + R"(" } })";
@@ -42,11 +44,12 @@ struct HostPassSkips : DermisTest {
     add("studio.change", {port_of("out", DERMIS_PORT_STORAGE_IMAGE_UPDATE)}, false);
     add("studio.scatter_list", {port_of("list", DERMIS_PORT_STORAGE_BUFFER_WRITE)}, true);
     add("studio.use_list", {port_of("list", DERMIS_PORT_STORAGE_BUFFER_READ), written}, false);
-    add("studio.remember", {port_of("from"), port_of("before", DERMIS_PORT_SAMPLED_IMAGE, true), written},
-        false);
+    add("studio.remember",
+        {port_of("from"), port_of("before", DERMIS_PORT_SAMPLED_IMAGE, true), written}, false);
   }
 
-  void add(const char* name, const std::vector<dermis_port>& ports, bool serves, bool side_effects = false) {
+  void add(const char* name, const std::vector<dermis_port>& ports, bool serves,
+           bool side_effects = false) {
     dermis_pass_type type = pass_type_of(name, ports, keep_name, &calls);
     type.serves_scattering = serves ? 1 : 0;
     type.side_effects = side_effects ? 1 : 0;
@@ -125,8 +128,9 @@ TEST_F(HostPassSkips, OtherwiseIsRead) {
         way);
     EXPECT_THAT(calls, ElementsAre("tone")) << way.profiles;
     if (way.profiles) continue;
-    EXPECT_THAT(described(),
-                HasSubstr("off: its pass type only serves scattering, and the graph has no profile"));
+    EXPECT_THAT(
+        described(),
+        HasSubstr("off: its pass type only serves scattering, and the graph has no profile"));
   }
 }
 
@@ -158,9 +162,10 @@ TEST_F(HostPassSkips, AnUpdateNeedsContents) {
   for (const Way& way : nothing_scatters) {
     run(scatter + change, way);
     EXPECT_THAT(calls, IsEmpty()) << way.profiles;
-    EXPECT_THAT(described(),
-                ::testing::AnyOf(HasSubstr("it reads 'toned', whose producers are off"),
-                                 HasSubstr("it reads 'toned', which only scattering passes write")));
+    EXPECT_THAT(
+        described(),
+        ::testing::AnyOf(HasSubstr("it reads 'toned', whose producers are off"),
+                         HasSubstr("it reads 'toned', which only scattering passes write")));
     run(pass("make", "") + ", " + change, way);
     EXPECT_THAT(calls, ElementsAre("make", "change")) << way.profiles;
   }
@@ -177,7 +182,8 @@ TEST_F(HostPassSkips, SkippedPass_SkipsItsReaders) {
 }
 
 TEST_F(HostPassSkips, MipsHaveSeparateWriters) {
-  const std::string chain = pass("make", "", "chain#0") + ", " + pass("scatter", "", "chain#1") + ", ";
+  const std::string chain =
+      pass("make", "", "chain#0") + ", " + pass("scatter", "", "chain#1") + ", ";
   run(chain + pass("tone", "chain#0"), {true, DERMIS_FRAME_BOUNDS});
   EXPECT_THAT(calls, ElementsAre("make", "tone"));
   run(chain + pass("maybe", "chain#1"), {true, DERMIS_FRAME_BOUNDS});
@@ -216,7 +222,8 @@ TEST_F(HostPassSkips, DiscardedFrame_IsRevertedInBothPlans) {
 
 TEST_F(HostPassSkips, AlternatingPlans_KeepTheHostsHistory) {
   run(remembering);
-  for (const uint32_t flags : {0u, uint32_t{DERMIS_FRAME_BOUNDS}, uint32_t{DERMIS_FRAME_BOUNDS}, 0u, 0u}) {
+  for (const uint32_t flags :
+       {0u, uint32_t{DERMIS_FRAME_BOUNDS}, uint32_t{DERMIS_FRAME_BOUNDS}, 0u, 0u}) {
     again(flags);
     const auto expected = flags == 0 ? std::vector<std::string>{"scatter", "remember", "tone"}
                                      : std::vector<std::string>{"remember", "tone"};

@@ -221,7 +221,8 @@ TEST_F(HostPassTypes, AreExportedForTools) {
 }
 
 TEST_F(HostPassTypes, UpdateInPlaceNeedsOwnTexels) {
-  std::vector<dermis_port> ports = {port_of("light"), port_of("result", DERMIS_PORT_STORAGE_IMAGE_WRITE)};
+  std::vector<dermis_port> ports = {port_of("light"),
+                                    port_of("result", DERMIS_PORT_STORAGE_IMAGE_WRITE)};
   const dermis_pass_type blur = type("studio.blur", ports);
   ASSERT_OK(dermis_register_pass_type(context, &blur));
   ports[0].own_texels = 1;
@@ -231,7 +232,8 @@ TEST_F(HostPassTypes, UpdateInPlaceNeedsOwnTexels) {
     return own_graph(R"({ "dermis": 2, "name": "g",
       "imports": { "lighting": { "format": "rgba16f", "size": "view" } }, "passes": [
         { "pass": "change", "type": ")" +
-                     name + R"(", "read": { "light": "lighting" }, "write": { "result": "lighting" } } ],
+                     name +
+                     R"(", "read": { "light": "lighting" }, "write": { "result": "lighting" } } ],
       "exports": ["lighting"] })");
   };
   dermis_graph rejected = nullptr;

@@ -48,8 +48,9 @@ struct Hybrid : DermisTest {
 
   void set_units(uint32_t units) {
     const dermis_source calibration = source_of(times, "invented");
-    dermis_budget budget = budget_of((static_cast<float>(units) + 0.5f) / 1000 * float(choice::entry_margin),
-                                     DERMIS_BUDGET_DETERMINISTIC);
+    dermis_budget budget =
+        budget_of((static_cast<float>(units) + 0.5f) / 1000 * float(choice::entry_margin),
+                  DERMIS_BUDGET_DETERMINISTIC);
     budget.calibration = &calibration;
     ASSERT_OK(dermis_graph_set_budget(graph, &budget, nullptr));
   }
@@ -67,7 +68,8 @@ struct Hybrid : DermisTest {
     fill("importance", [](uint32_t, uint32_t) { return 1.0f; });
   }
   virtual void paint() {
-    fill("depth", [](uint32_t x, uint32_t y) { return 0.5f + 0.002f * float((x / 3 * 7 + y / 5 * 3) % 4); });
+    fill("depth",
+         [](uint32_t x, uint32_t y) { return 0.5f + 0.002f * float((x / 3 * 7 + y / 5 * 3) % 4); });
     fill("lighting", [](uint32_t x, uint32_t y) { return float((x * 37 + y * 61) % 97) / 64.0f; });
   }
 
@@ -145,7 +147,8 @@ TEST_F(Hybrid, NoUnits_ShowThePyramid) {
 }
 
 // Returns the root mean square of the difference over columns first .. last - 1.
-double rms(const std::vector<float>& a, const std::vector<float>& b, uint32_t first, uint32_t last) {
+double rms(const std::vector<float>& a, const std::vector<float>& b, uint32_t first,
+           uint32_t last) {
   double sum = 0;
   for (uint32_t y = 0; y < side; ++y)
     for (uint32_t x = first; x < last; ++x)
@@ -218,7 +221,8 @@ void expect_no_seams(const std::vector<float>& none, const std::vector<float>& a
       for (int k = -3; k <= 3; ++k)
         if (k != 0) neighbours.push_back(energy(half, *pure, harmonic + static_cast<uint32_t>(k)));
       std::sort(neighbours.begin(), neighbours.end());
-      EXPECT_LE(energy(half, *pure, harmonic), 2 * 0.5 * (neighbours[2] + neighbours[3])) << harmonic;
+      EXPECT_LE(energy(half, *pure, harmonic), 2 * 0.5 * (neighbours[2] + neighbours[3]))
+          << harmonic;
     }
 }
 
@@ -252,8 +256,8 @@ struct Pair : Hybrid {
     times = R"({ "dermis_calibration": 2, "device": "invented", "costs": [
       { "work": "subsurface.allocate_samples", "base_us": 0, "group_us": 0, "spread": 0 },
       { "work": "subsurface.afis_tiles samples=16", "base_us": 0, "group_us": 1, "spread": 0 } ] })";
-    for (const char* kind : {"classify", "tile_list", "setup", "separable", "tile_variance", "pyramid_setup",
-                             "pyramid_down", "light", "combine"})
+    for (const char* kind : {"classify", "tile_list", "setup", "separable", "tile_variance",
+                             "pyramid_setup", "pyramid_down", "light", "combine"})
       times.insert(times.rfind("] }"), std::string(", { \"work\": \"subsurface.") + kind +
                                            "\", \"base_us\": 0, \"group_us\": 0, \"spread\": 0 } ");
   }
@@ -291,8 +295,9 @@ TEST_F(Pair, NoUnits_ShowSeparable) {
 
 TEST_F(Pair, TilesWithEvenLightGetNoSamples) {
   make_hybrid();
-  fill("lighting",
-       [](uint32_t x, uint32_t y) { return x < 32 ? 0.5f : float((x * 37 + y * 61) % 97) / 64.0f; });
+  fill("lighting", [](uint32_t x, uint32_t y) {
+    return x < 32 ? 0.5f : float((x * 37 + y * 61) % 97) / 64.0f;
+  });
   const demo::ReportedFrame choice = run_frame();
   EXPECT_EQ(choice.sampled_tiles[0] + choice.sampled_tiles[1] + choice.sampled_tiles[2], 32u);
   EXPECT_EQ(choice.sample_demand, 4 * 32u);

@@ -9,11 +9,12 @@ void InFlightTest::SetUp() {
   dermis_context_desc desc = context_desc();
   desc.frames_in_flight = frames;
   ASSERT_OK(dermis_context_create(&desc, &context));
-  auto allocate =
-      demo::vulkan_struct<VkCommandBufferAllocateInfo>(VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO);
+  auto allocate = demo::vulkan_struct<VkCommandBufferAllocateInfo>(
+      VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO);
   allocate.commandPool = host->pool;
   allocate.commandBufferCount = frames;
-  ASSERT_EQ(host->vk.vkAllocateCommandBuffers(host->device, &allocate, commands.data()), VK_SUCCESS);
+  ASSERT_EQ(host->vk.vkAllocateCommandBuffers(host->device, &allocate, commands.data()),
+            VK_SUCCESS);
   const auto fence = demo::vulkan_struct<VkFenceCreateInfo>(VK_STRUCTURE_TYPE_FENCE_CREATE_INFO);
   for (VkFence& made : fences)
     ASSERT_EQ(host->vk.vkCreateFence(host->device, &fence, nullptr, &made), VK_SUCCESS);
@@ -32,7 +33,8 @@ void InFlightTest::TearDown() {
 void InFlightTest::submit(uint64_t index, const std::function<void(VkCommandBuffer)>& record) {
   const size_t ring = index % frames;
   if (index > frames) {
-    ASSERT_EQ(host->vk.vkWaitForFences(host->device, 1, &fences[ring], VK_TRUE, UINT64_MAX), VK_SUCCESS);
+    ASSERT_EQ(host->vk.vkWaitForFences(host->device, 1, &fences[ring], VK_TRUE, UINT64_MAX),
+              VK_SUCCESS);
     ASSERT_EQ(host->vk.vkResetFences(host->device, 1, &fences[ring]), VK_SUCCESS);
   }
   const auto begin =

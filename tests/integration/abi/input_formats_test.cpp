@@ -83,7 +83,9 @@ struct Demodulation : InputFormats, testing::WithParamInterface<const char*> {
 // (2^-11 each).
 TEST_P(Demodulation, KeepsTextureUnderEvenLight) {
   const dermis_graph graph = graph_with_albedo("demodulate");
-  const auto textured = [](uint32_t x, uint32_t y, uint32_t c) { return 0.5f * albedo_at(x, y, c); };
+  const auto textured = [](uint32_t x, uint32_t y, uint32_t c) {
+    return 0.5f * albedo_at(x, y, c);
+  };
   upload("lighting", image_of(textured));
   const std::vector<float> shown = picture(graph);
   for (uint32_t y = 0, i = 0; y < image_side; ++y)
@@ -95,7 +97,9 @@ TEST_P(Demodulation, KeepsTextureUnderEvenLight) {
 
 // Lighting times albedo with `demodulate` equals irradiance with `post`.
 TEST_P(Demodulation, EqualsIrradianceTexturedAfterwards) {
-  const auto irradiance = [](uint32_t x, uint32_t, uint32_t) { return x < image_side / 2 ? 1.0f : 0.25f; };
+  const auto irradiance = [](uint32_t x, uint32_t, uint32_t) {
+    return x < image_side / 2 ? 1.0f : 0.25f;
+  };
   const auto albedo = [](uint32_t x, uint32_t y, uint32_t) { return albedo_at(x, y, 0); };
   dermis_graph graph = graph_with_albedo("post");
   upload("albedo", image_of(albedo));
@@ -103,8 +107,9 @@ TEST_P(Demodulation, EqualsIrradianceTexturedAfterwards) {
   const std::vector<float> expected = picture(graph);
   graph = graph_with_albedo("demodulate");
   upload("albedo", image_of(albedo));
-  upload("lighting",
-         image_of([&](uint32_t x, uint32_t y, uint32_t c) { return irradiance(x, y, c) * albedo(x, y, c); }));
+  upload("lighting", image_of([&](uint32_t x, uint32_t y, uint32_t c) {
+           return irradiance(x, y, c) * albedo(x, y, c);
+         }));
   EXPECT_LT(largest_gap(picture(graph), expected), 2 * 0x1p-10f);
 }
 
@@ -115,7 +120,8 @@ INSTANTIATE_TEST_SUITE_P(Graphs, Demodulation, testing::Values("burley", "pyrami
 
 TEST_F(InputFormats, LightingMayBeB10g11r11) {
   VkFormatProperties properties{};
-  vkGetPhysicalDeviceFormatProperties(host->physical_device, VK_FORMAT_B10G11R11_UFLOAT_PACK32, &properties);
+  vkGetPhysicalDeviceFormatProperties(host->physical_device, VK_FORMAT_B10G11R11_UFLOAT_PACK32,
+                                      &properties);
   if ((properties.optimalTilingFeatures & VK_FORMAT_FEATURE_STORAGE_IMAGE_BIT) == 0)
     GTEST_SKIP() << "this device cannot store to B10G11R11_UFLOAT_PACK32";
   std::vector<std::vector<float>> pictures;
@@ -157,8 +163,9 @@ TEST_F(InputFormats, MaterialMayBeAnyUnsignedInteger) {
 struct IdExtraction : InputFormats {
   void extract_ids(VkImageView source, int32_t first_bit, int32_t bits) {
     const std::array<int32_t, 2> field{first_bit, bits};
-    run_example(*host,
-                {material_ids_spirv, {source}, &images.at("material"), std::as_bytes(std::span(field))});
+    run_example(
+        *host,
+        {material_ids_spirv, {source}, &images.at("material"), std::as_bytes(std::span(field))});
   }
 
   // The host's own pass needs the image for `material` as a storage image, too.
@@ -167,8 +174,8 @@ struct IdExtraction : InputFormats {
     demo::ImageDesc desc;
     desc.format = VK_FORMAT_R8_UINT;
     desc.width = desc.height = image_side;
-    desc.usage = VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT |
-                 VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
+    desc.usage = VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_SAMPLED_BIT |
+                 VK_IMAGE_USAGE_TRANSFER_DST_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
     auto material = demo::create_image(*host, desc);
     ASSERT_TRUE(material) << material.error().text;
     images["material"] = material.take();
@@ -206,7 +213,8 @@ TEST_F(IdExtraction, FromStencil) {
   for (const VkFormat format : {VK_FORMAT_D24_UNORM_S8_UINT, VK_FORMAT_D32_SFLOAT_S8_UINT}) {
     VkFormatProperties properties{};
     vkGetPhysicalDeviceFormatProperties(host->physical_device, format, &properties);
-    if ((properties.optimalTilingFeatures & VK_FORMAT_FEATURE_SAMPLED_IMAGE_BIT) != 0) info.format = format;
+    if ((properties.optimalTilingFeatures & VK_FORMAT_FEATURE_SAMPLED_IMAGE_BIT) != 0)
+      info.format = format;
   }
   ASSERT_NE(info.format, VK_FORMAT_UNDEFINED) << "every device has one of these two";
   VkImage image = VK_NULL_HANDLE;
@@ -243,7 +251,8 @@ TEST_F(IdExtraction, FromStencil) {
     barrier.newLayout = VK_IMAGE_LAYOUT_GENERAL;
     barrier.srcQueueFamilyIndex = barrier.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
     barrier.image = image;
-    barrier.subresourceRange = {VK_IMAGE_ASPECT_DEPTH_BIT | VK_IMAGE_ASPECT_STENCIL_BIT, 0, 1, 0, 1};
+    barrier.subresourceRange = {VK_IMAGE_ASPECT_DEPTH_BIT | VK_IMAGE_ASPECT_STENCIL_BIT, 0, 1, 0,
+                                1};
     VkDependencyInfo dependency{};
     dependency.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO;
     dependency.imageMemoryBarrierCount = 1;
@@ -252,7 +261,8 @@ TEST_F(IdExtraction, FromStencil) {
     VkBufferImageCopy copy{};
     copy.imageSubresource = {VK_IMAGE_ASPECT_STENCIL_BIT, 0, 0, 1};
     copy.imageExtent = {image_side, image_side, 1};
-    host->vk.vkCmdCopyBufferToImage(commands, staging->buffer, image, VK_IMAGE_LAYOUT_GENERAL, 1, &copy);
+    host->vk.vkCmdCopyBufferToImage(commands, staging->buffer, image, VK_IMAGE_LAYOUT_GENERAL, 1,
+                                    &copy);
     barrier.srcStageMask = VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT;
     barrier.srcAccessMask = VK_ACCESS_2_TRANSFER_WRITE_BIT;
     barrier.dstStageMask = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;

@@ -4,7 +4,8 @@
 namespace dermis::abi_test {
 
 // Times of no real device: 1 ms per dispatch of the pyramid, less for all other passes.
-inline constexpr const char* invented_times = R"({ "dermis_calibration": 2, "device": "invented", "costs": [
+inline constexpr const char* invented_times =
+    R"({ "dermis_calibration": 2, "device": "invented", "costs": [
   { "work": "subsurface.sap_up level=1 variant=smooth storage=half", "base_us": 1000, "group_us": 0, "spread": 0 },
   { "work": "subsurface.sap_up level=1 variant=base storage=half", "base_us": 500, "group_us": 0, "spread": 0 },
   { "work": "subsurface.sap_up_layered level=2 variant=smooth storage=half", "base_us": 1000, "group_us": 0, "spread": 0 },

@@ -31,10 +31,12 @@ TEST(NullArguments, AreNamedByRequirements) {
   const auto device = any_handle<VkPhysicalDevice>();
   expect_argument_error(dermis_query_requirements(nullptr, instance, device, &count, nullptr),
                         "get_instance_proc_addr");
-  expect_argument_error(dermis_query_requirements(no_function, nullptr, device, &count, nullptr), "instance");
+  expect_argument_error(dermis_query_requirements(no_function, nullptr, device, &count, nullptr),
+                        "instance");
   expect_argument_error(dermis_query_requirements(no_function, instance, nullptr, &count, nullptr),
                         "physical_device");
-  expect_argument_error(dermis_query_requirements(no_function, instance, device, nullptr, nullptr), "count");
+  expect_argument_error(dermis_query_requirements(no_function, instance, device, nullptr, nullptr),
+                        "count");
 }
 
 TEST(NullArguments, AreNamedByContextCreationFieldByField) {
@@ -70,9 +72,11 @@ TEST(NullArguments, AreNamedByGraphFunctions) {
   dermis_frame frame = DERMIS_FRAME_INIT;
   expect_argument_error(dermis_graph_slots(nullptr, &count, nullptr), "graph");
   expect_argument_error(dermis_view_settings(dermis_graph_view(nullptr), &count, nullptr), "view");
-  expect_argument_error(dermis_graph_describe(nullptr, DERMIS_DESCRIBE_JSON, &size, nullptr), "graph");
+  expect_argument_error(dermis_graph_describe(nullptr, DERMIS_DESCRIBE_JSON, &size, nullptr),
+                        "graph");
   expect_argument_error(dermis_graph_memory(nullptr, &memory), "graph");
-  expect_argument_error(dermis_view_timings(dermis_graph_view(nullptr), 0, &count, nullptr), "view");
+  expect_argument_error(dermis_view_timings(dermis_graph_view(nullptr), 0, &count, nullptr),
+                        "view");
   expect_argument_error(dermis_view_histories(dermis_graph_view(nullptr), &count, nullptr), "view");
   expect_argument_error(dermis_view_histories(nullptr, &count, nullptr), "view");
   expect_argument_error(dermis_view_record(dermis_graph_view(nullptr), &frame), "view");

@@ -16,7 +16,8 @@ namespace fs = std::filesystem;
 // Returns the word at `at`, and moves `at` past it.
 std::string word(const std::string& text, size_t& at) {
   const size_t begin = at;
-  while (at < text.size() && (std::isalnum(static_cast<unsigned char>(text[at])) != 0 || text[at] == '_'))
+  while (at < text.size() &&
+         (std::isalnum(static_cast<unsigned char>(text[at])) != 0 || text[at] == '_'))
     ++at;
   return text.substr(begin, at - begin);
 }
@@ -38,7 +39,8 @@ void add_names(const std::string& text, const std::string& mark, const std::stri
 // Returns the names of all tests below tests/, of programs and of the build.
 std::set<std::string> all_tests() {
   std::set<std::string> found;
-  for (const auto& entry : fs::recursive_directory_iterator(fs::path(DERMIS_SOURCE_DIR) / "tests")) {
+  for (const auto& entry :
+       fs::recursive_directory_iterator(fs::path(DERMIS_SOURCE_DIR) / "tests")) {
     const bool build = entry.path().filename() == "CMakeLists.txt";
     if (!build && entry.path().extension() != ".cpp") continue;
     const std::string text = read_text(fs::relative(entry.path(), DERMIS_SOURCE_DIR).string());
@@ -63,7 +65,8 @@ void expect_tests_exist(const std::string& page, const std::string& heading, uin
   uint32_t count = 0;
   for (at = text.find('`', at); at != std::string::npos; at = text.find('`', at)) {
     const std::string suite = word(text, ++at);
-    if (suite.empty() || std::isupper(static_cast<unsigned char>(suite[0])) == 0 || text[at] != '.') continue;
+    if (suite.empty() || std::isupper(static_cast<unsigned char>(suite[0])) == 0 || text[at] != '.')
+      continue;
     const std::string name = suite + "." + word(text, ++at);
     const bool begins = text.compare(at, cut.size(), cut) == 0;
     if (!begins && text[at] != '`') continue;

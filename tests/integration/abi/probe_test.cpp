@@ -34,7 +34,8 @@ struct Probe : DermisTest {
   // Returns the mean squared luminance error of unscattered light, which needs no device.
   static double unscattered_error(Light light) {
     Diagnostics diagnostics;
-    const auto document = parse_document("skin", read_text("configs/profiles/skin.json"), diagnostics);
+    const auto document =
+        parse_document("skin", read_text("configs/profiles/skin.json"), diagnostics);
     const auto skin = subsurface::read_profile(*document, diagnostics);
     std::vector<float> lit;
     for (uint32_t y = 0; y < probed_side; ++y)
@@ -106,7 +107,8 @@ TEST_F(Probe, MeanOverFramesIsThePicturesError) {
     sum += found;
     squares += found * found;
   }
-  const double mean = sum / frames, deviation = std::sqrt((squares / frames - mean * mean) / (frames - 1));
+  const double mean = sum / frames,
+               deviation = std::sqrt((squares / frames - mean * mean) / (frames - 1));
   EXPECT_NEAR(mean, exact, 4 * deviation);
   EXPECT_LT(deviation, 0.2 * exact); // Otherwise the comparison means nothing.
 }
@@ -122,7 +124,8 @@ TEST_F(Probe, MeasuredErrorCorrectsTheExpectedError) {
   EXPECT_GT(std::abs(before - choice.probed_rmse),
             0.3f * choice.probed_rmse); // The light differs from the table's.
   // 4 of 27 frames follow the table; the factor is at most 4.
-  const double found = std::sqrt((23 * std::pow(choice.probed_rmse, 2) + 4 * std::pow(before, 2)) / 27);
+  const double found =
+      std::sqrt((23 * std::pow(choice.probed_rmse, 2) + 4 * std::pow(before, 2)) / 27);
   EXPECT_NEAR(choice.predicted_rmse, std::clamp(found, before / 4.0, before * 4.0), 0.05 * found);
 }
 

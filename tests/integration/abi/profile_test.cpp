@@ -42,8 +42,8 @@ struct SetProfile : DermisTest {
     return texels("lighting");
   }
   static uint32_t settles_after(dermis_graph graph, std::string_view history) {
-    const auto all =
-        list_of(dermis_history DERMIS_HISTORY_INIT, dermis_view_histories, dermis_graph_view(graph));
+    const auto all = list_of(dermis_history DERMIS_HISTORY_INIT, dermis_view_histories,
+                             dermis_graph_view(graph));
     for (const dermis_history& one : all)
       if (one.name == history) return one.settles_after;
     return 0;
@@ -74,7 +74,8 @@ TEST_F(SetProfile, MatchesTheNewGraphsPictures) {
 }
 
 TEST_F(SetProfile, RecordedFramesKeepTheirProfile) {
-  const dermis_graph graph = make_graph(with("burley", "skin")), skin = make_graph(with("burley", "skin")),
+  const dermis_graph graph = make_graph(with("burley", "skin")),
+                     skin = make_graph(with("burley", "skin")),
                      marble = make_graph(with("burley", "marble"));
   const std::vector<float> expected = picture(skin, 1), later = picture(marble, 2);
   make_images(graph);
@@ -155,7 +156,8 @@ TEST_F(SetProfile, FirstAndLastProfile_Recompile) {
 }
 
 TEST_F(SetProfile, IsKeptOverAReloadAndForNewViews) {
-  const dermis_graph graph = make_graph(with("sap", "skin")), marble = make_graph(with("sap", "marble"));
+  const dermis_graph graph = make_graph(with("sap", "skin")),
+                     marble = make_graph(with("sap", "marble"));
   ASSERT_OK(set_profile(graph, profile_text("marble")));
   EXPECT_EQ(picture(graph, 1), picture(marble, 1));
   const std::string text = read_text("configs/graphs/sap.json");
@@ -177,7 +179,8 @@ TEST_F(SetProfile, IsKeptOverAReloadAndForNewViews) {
 }
 
 TEST_F(SetProfile, WrongProfile_IsNamedAndChangesNothing) {
-  const dermis_graph graph = make_graph(with("burley", "skin")), skin = make_graph(with("burley", "skin"));
+  const dermis_graph graph = make_graph(with("burley", "skin")),
+                     skin = make_graph(with("burley", "skin"));
   const auto rejected = [](dermis_result result, const char* said) {
     EXPECT_THAT(result, Fails(DERMIS_ERROR_ARGUMENT, said)) << said;
   };
@@ -203,7 +206,8 @@ TEST(HistoryWeights, NamePortsAndSettingsOfTheirTypes) {
       EXPECT_GE(find_port(pass_types[PassTypeId{k}], mix.port, PortSide::write), 0) << mix.port;
       const int setting = find_setting(pass_types[PassTypeId{k}], mix.setting);
       ASSERT_GE(setting, 0) << mix.setting;
-      EXPECT_EQ(pass_types[PassTypeId{k}].settings[static_cast<size_t>(setting)].type, SettingType::real);
+      EXPECT_EQ(pass_types[PassTypeId{k}].settings[static_cast<size_t>(setting)].type,
+                SettingType::real);
     }
   EXPECT_GE(mixes, 4u);
 }

@@ -54,9 +54,10 @@ TEST_F(Record, ImagesAreReturnedInTheRequestedState) {
   ASSERT_OK(record(graph, one));
   // The validation layer reports a wrong layout or missing visibility.
   for (const auto& [name, image] : images) {
-    const auto read = demo::read_image(
-        *host, image,
-        {VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_READ_BIT});
+    const auto read =
+        demo::read_image(*host, image,
+                         {VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, VK_PIPELINE_STAGE_2_COPY_BIT,
+                          VK_ACCESS_2_TRANSFER_READ_BIT});
     EXPECT_TRUE(read) << name;
   }
 }
@@ -107,7 +108,8 @@ TEST_F(Record, TimesOfTheNewestCompletedFrameComeInPlanOrder) {
   std::array<dermis_pass_timing, 16> times{};
   times[0].struct_size = sizeof times[0];
   uint32_t count = 16;
-  EXPECT_EQ(dermis_view_timings(dermis_graph_view(graph), 0, &count, times.data()), DERMIS_NOT_READY);
+  EXPECT_EQ(dermis_view_timings(dermis_graph_view(graph), 0, &count, times.data()),
+            DERMIS_NOT_READY);
   for (int i = 0; i < 3; ++i) {
     dermis_frame one = frame(bound);
     ASSERT_OK(record(graph, one));
@@ -129,8 +131,8 @@ TEST_F(Record, EveryMissingSlotIsNamedAtOnce) {
   const dermis_graph graph = make_bound_graph();
   dermis_frame one = frame({});
   one.bindings = nullptr;
-  EXPECT_THAT(record(graph, one), Fails(DERMIS_ERROR_ARGUMENT, "'lighting'", "'depth'", "'material'",
-                                        Not(HasSubstr("'albedo'"))));
+  EXPECT_THAT(record(graph, one), Fails(DERMIS_ERROR_ARGUMENT, "'lighting'", "'depth'",
+                                        "'material'", Not(HasSubstr("'albedo'"))));
 }
 
 TEST_F(Record, EveryWrongFieldIsNamedAndNothingIsRecorded) {
@@ -172,7 +174,8 @@ TEST_F(Record, EveryWrongFieldIsNamedAndNothingIsRecorded) {
          f.rect_x = 0xffffffffu;
        }},
       {"rect_width", [](auto& f, auto&) { f.rect_height = 3; }},
-      {"clip_from_view", [](auto& f, auto&) { std::fill(f.clip_from_view, f.clip_from_view + 16, 0.0f); }},
+      {"clip_from_view",
+       [](auto& f, auto&) { std::fill(f.clip_from_view, f.clip_from_view + 16, 0.0f); }},
       {"clip_from_view", [](auto& f, auto&) { f.clip_from_view[0] = nan; }},
       {"matrix", [](auto& f, auto&) { f.view_from_world[3] = nan; }},
       {"jitter", [](auto& f, auto&) { f.jitter_x = nan; }},

@@ -10,7 +10,8 @@ namespace {
 
 struct Reload : DermisTest {
   static const dermis_slot* slot(const std::vector<dermis_slot>& slots, std::string_view name) {
-    const auto found = std::ranges::find_if(slots, [&](const dermis_slot& one) { return one.name == name; });
+    const auto found =
+        std::ranges::find_if(slots, [&](const dermis_slot& one) { return one.name == name; });
     return found == slots.end() ? nullptr : &*found;
   }
   // Returns the picture of frame `index` with new images. A frame's noise follows its number.
@@ -55,7 +56,8 @@ TEST_F(Reload, ChangesProfilesAndOverlays_MatchesANewGraph) {
   ASSERT_OK(reload_graph(graph, none));
   EXPECT_EQ(picture(graph, 3), picture(make_graph(none), 3));
   ASSERT_OK(reload_graph(graph, GraphOptions{}));
-  EXPECT_EQ(slots_of(graph).size(), slots_of(make_graph()).size()) << "the overlay and its slots are removed";
+  EXPECT_EQ(slots_of(graph).size(), slots_of(make_graph()).size())
+      << "the overlay and its slots are removed";
   EXPECT_EQ(picture(graph, 4), picture(make_graph(), 4));
 }
 

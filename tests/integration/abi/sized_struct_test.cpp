@@ -24,7 +24,8 @@ namespace {
 
 // Allocates exactly `size` bytes on the heap, so that the address sanitizer detects accesses beyond
 // them.
-std::unique_ptr<std::byte[]> structure(size_t allocated, size_t stated, std::byte tail = std::byte{0}) {
+std::unique_ptr<std::byte[]> structure(size_t allocated, size_t stated,
+                                       std::byte tail = std::byte{0}) {
   auto bytes = std::make_unique<std::byte[]>(std::max(allocated, sizeof(size_t)));
   for (size_t i = sizeof(size_t); i < allocated; ++i)
     bytes[i] = i < sizeof(Grown) ? std::byte{1} : tail;
@@ -45,7 +46,8 @@ TEST(SizedStruct, NewerCallersTail_IsAcceptedOnlyIfZero) {
     EXPECT_EQ(read_sized(structure(size, size).get(), read), SizedRead::ok) << size;
     EXPECT_EQ(read.second, 0x0101010101010101u);
     if (size > sizeof(Grown)) {
-      EXPECT_EQ(read_sized(structure(size, size, std::byte{1}).get(), read), SizedRead::unknown_fields)
+      EXPECT_EQ(read_sized(structure(size, size, std::byte{1}).get(), read),
+                SizedRead::unknown_fields)
           << size;
     }
   }
@@ -53,7 +55,8 @@ TEST(SizedStruct, NewerCallersTail_IsAcceptedOnlyIfZero) {
 
 TEST(SizedStruct, UninitialisedSize_IsRejectedBeforeReadingTheTail) {
   Grown read{};
-  EXPECT_EQ(read_sized(structure(sizeof(Grown), largest_struct_size + 1).get(), read), SizedRead::too_large);
+  EXPECT_EQ(read_sized(structure(sizeof(Grown), largest_struct_size + 1).get(), read),
+            SizedRead::too_large);
   EXPECT_EQ(read_sized(structure(sizeof(Grown), ~size_t{0}).get(), read), SizedRead::too_large);
 }
 

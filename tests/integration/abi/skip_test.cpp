@@ -15,7 +15,8 @@ constexpr const char* without_uniform_light = R"({ "dermis_overlay": 2, "edits":
   { "remove": "/passes/classify/write/light_cells" } ] })";
 
 // Reach of the light test in tiles: a pixel is 0.5 mm, skin's widest d is 3.67 / 3.5 mm.
-const auto reach = static_cast<uint32_t>(std::ceil(subsurface::uniform_reach_d * 3.67 / 3.5 / 0.5 / 8));
+const auto reach =
+    static_cast<uint32_t>(std::ceil(subsurface::uniform_reach_d * 3.67 / 3.5 / 0.5 / 8));
 
 struct Skip : DermisTest {
   dermis_graph graph = nullptr;
@@ -127,7 +128,8 @@ TEST_F(Skip, NothingOnScreen_OnlyClassifiesTiles) {
   const auto before = texels("lighting");
   const demo::ReportedFrame choice = run_frame();
   EXPECT_EQ(choice.skips, DERMIS_SKIP_NOTHING_SEEN);
-  EXPECT_EQ(choice.groups, 4u + 1 + 1); // Classes by 4x4 tiles, uniform light by 64 tiles, the list.
+  EXPECT_EQ(choice.groups,
+            4u + 1 + 1); // Classes by 4x4 tiles, uniform light by 64 tiles, the list.
   EXPECT_EQ(texels("lighting"), before);
 }
 
@@ -174,7 +176,8 @@ TEST_F(Skip, CopiedLight_IsEqualForEveryTexturing) {
       graph = make_graph(options);
       EXPECT_OK(dermis_graph_set_setting(graph, "texturing", texturing, nullptr));
       make_images(graph);
-      fill("lighting", [](uint32_t x, uint32_t y) { return float((x * 37 + y * 61) % 97) / 64.0f; });
+      fill("lighting",
+           [](uint32_t x, uint32_t y) { return float((x * 37 + y * 61) % 97) / 64.0f; });
       fill("albedo", [](uint32_t x, uint32_t y) { return float((x * 13 + y * 7) % 32) / 32.0f; });
       dermis_frame one = bound_frame(graph);
       one.metres_per_unit = 100; // All scattering is below a pixel.
@@ -201,7 +204,8 @@ TEST_F(Skip, DifferenceInACell_IsSeenExactlyWithinTheReach) {
     make();
     fill("lighting", [&](uint32_t x, uint32_t) { return x / 8 == column ? 1.0f : 0.5f; });
     const demo::ReportedFrame choice = run_frame();
-    const uint32_t scattering = std::min(column + reach, 7u) - (column > reach ? column - reach : 0u) + 1;
+    const uint32_t scattering =
+        std::min(column + reach, 7u) - (column > reach ? column - reach : 0u) + 1;
     EXPECT_EQ(choice.scattering_tiles, 8 * scattering) << column;
     EXPECT_EQ(choice.uniform_tiles, 64 - 8 * scattering) << column;
   }
@@ -220,11 +224,16 @@ TEST_F(Skip, SubpixelScattering_LightIsNotTested) {
 
 TEST_F(Skip, BoundsCanCutTiles) {
   // Pixels outside of the bounds count as having no subsurface, also in the middle of a tile.
-  for (const std::array<uint32_t, 4> bounds :
-       {std::array<uint32_t, 4>{3, 5, 1, 1}, {7, 7, 2, 2}, {0, 0, 64, 1}, {33, 0, 30, 64}, {8, 8, 8, 8}}) {
+  for (const std::array<uint32_t, 4> bounds : {std::array<uint32_t, 4>{3, 5, 1, 1},
+                                               {7, 7, 2, 2},
+                                               {0, 0, 64, 1},
+                                               {33, 0, 30, 64},
+                                               {8, 8, 8, 8}}) {
     make();
     const demo::ReportedFrame choice = run_frame(DERMIS_FRAME_BOUNDS, bounds);
-    const auto tiles = [](uint32_t first, uint32_t count) { return (first + count - 1) / 8 - first / 8 + 1; };
+    const auto tiles = [](uint32_t first, uint32_t count) {
+      return (first + count - 1) / 8 - first / 8 + 1;
+    };
     EXPECT_EQ(choice.scattering_tiles + choice.uniform_tiles,
               tiles(bounds[0], bounds[2]) * tiles(bounds[1], bounds[3]));
   }

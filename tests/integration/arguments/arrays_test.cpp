@@ -29,7 +29,8 @@ template <class T> std::vector<std::byte> bytes_of(const T& value) {
   return {bytes, bytes + sizeof value};
 }
 
-template <class T> void expect_array_property(const std::function<dermis_result(uint32_t*, T*)>& ask) {
+template <class T>
+void expect_array_property(const std::function<dermis_result(uint32_t*, T*)>& ask) {
   uint32_t count = 0;
   ASSERT_OK(ask(&count, nullptr));
   ASSERT_GT(count, 0u);
@@ -47,7 +48,8 @@ template <class T> void expect_array_property(const std::function<dermis_result(
       if (i < space && i < all) {
         EXPECT_EQ(items[i].struct_size, sizeof(T)) << i;
       } else if (i > 0) {
-        EXPECT_THAT(bytes_of(items[i]), Each(std::byte{untouched})) << i << ": the capacity is " << space;
+        EXPECT_THAT(bytes_of(items[i]), Each(std::byte{untouched}))
+            << i << ": the capacity is " << space;
       }
     }
   }
@@ -59,29 +61,33 @@ template <class T> void expect_array_property(const std::function<dermis_result(
 
 TEST_F(TwoCalls, FillAtMostTheCapacity) {
   expect_array_property<dermis_requirement>([&](uint32_t* count, dermis_requirement* items) {
-    return dermis_query_requirements(NullDevice::loader(), host.device.instance(), host.device.physical(),
-                                     count, items);
+    return dermis_query_requirements(NullDevice::loader(), host.device.instance(),
+                                     host.device.physical(), count, items);
   });
-  expect_array_property<dermis_slot>(
-      [&](uint32_t* count, dermis_slot* items) { return dermis_graph_slots(host.graph, count, items); });
+  expect_array_property<dermis_slot>([&](uint32_t* count, dermis_slot* items) {
+    return dermis_graph_slots(host.graph, count, items);
+  });
   expect_array_property<dermis_setting>([&](uint32_t* count, dermis_setting* items) {
     return dermis_view_settings(dermis_graph_view(host.graph), count, items);
   });
-  expect_array_property<dermis_setting>(
-      [&](uint32_t* count, dermis_setting* items) { return dermis_view_settings(view, count, items); });
+  expect_array_property<dermis_setting>([&](uint32_t* count, dermis_setting* items) {
+    return dermis_view_settings(view, count, items);
+  });
   expect_array_property<dermis_memory_request>([&](uint32_t* count, dermis_memory_request* items) {
     return dermis_graph_heaps(host.graph, count, items);
   });
   expect_array_property<dermis_pass_timing>([&](uint32_t* count, dermis_pass_timing* items) {
     return dermis_view_timings(dermis_graph_view(host.graph), 1, count, items);
   });
-  expect_array_property<dermis_pass_timing>(
-      [&](uint32_t* count, dermis_pass_timing* items) { return dermis_view_timings(view, 1, count, items); });
+  expect_array_property<dermis_pass_timing>([&](uint32_t* count, dermis_pass_timing* items) {
+    return dermis_view_timings(view, 1, count, items);
+  });
   expect_array_property<dermis_history>([&](uint32_t* count, dermis_history* items) {
     return dermis_view_histories(dermis_graph_view(host.graph), count, items);
   });
-  expect_array_property<dermis_history>(
-      [&](uint32_t* count, dermis_history* items) { return dermis_view_histories(view, count, items); });
+  expect_array_property<dermis_history>([&](uint32_t* count, dermis_history* items) {
+    return dermis_view_histories(view, count, items);
+  });
 }
 
 void expect_text_property(const std::function<dermis_result(size_t*, char*)>& ask) {
@@ -107,8 +113,9 @@ void expect_text_property(const std::function<dermis_result(size_t*, char*)>& as
 TEST_F(TwoCalls, TextIsWrittenCompletelyOrNotAtAll) {
   for (const dermis_describe_format format :
        {DERMIS_DESCRIBE_JSON, DERMIS_DESCRIBE_DOT, DERMIS_DESCRIBE_TEXT})
-    expect_text_property(
-        [&](size_t* size, char* text) { return dermis_graph_describe(host.graph, format, size, text); });
+    expect_text_property([&](size_t* size, char* text) {
+      return dermis_graph_describe(host.graph, format, size, text);
+    });
   expect_text_property(
       [&](size_t* size, char* text) { return dermis_graph_calibration(host.graph, size, text); });
   expect_text_property(

@@ -12,17 +12,20 @@ namespace {
 constexpr VkPipelineStageFlags2 compute_stages =
     VK_PIPELINE_STAGE_2_TOP_OF_PIPE_BIT | VK_PIPELINE_STAGE_2_DRAW_INDIRECT_BIT |
     VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT |
-    VK_PIPELINE_STAGE_2_COPY_BIT | VK_PIPELINE_STAGE_2_CLEAR_BIT | VK_PIPELINE_STAGE_2_BOTTOM_OF_PIPE_BIT |
-    VK_PIPELINE_STAGE_2_HOST_BIT | VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
+    VK_PIPELINE_STAGE_2_COPY_BIT | VK_PIPELINE_STAGE_2_CLEAR_BIT |
+    VK_PIPELINE_STAGE_2_BOTTOM_OF_PIPE_BIT | VK_PIPELINE_STAGE_2_HOST_BIT |
+    VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
 
 void expect_compute_stages(const VkDependencyInfo& info) {
   for (uint32_t i = 0; i < info.memoryBarrierCount; ++i)
-    EXPECT_EQ((info.pMemoryBarriers[i].srcStageMask | info.pMemoryBarriers[i].dstStageMask) & ~compute_stages,
-              0u);
-  for (uint32_t i = 0; i < info.imageMemoryBarrierCount; ++i)
-    EXPECT_EQ((info.pImageMemoryBarriers[i].srcStageMask | info.pImageMemoryBarriers[i].dstStageMask) &
+    EXPECT_EQ((info.pMemoryBarriers[i].srcStageMask | info.pMemoryBarriers[i].dstStageMask) &
                   ~compute_stages,
               0u);
+  for (uint32_t i = 0; i < info.imageMemoryBarrierCount; ++i)
+    EXPECT_EQ(
+        (info.pImageMemoryBarriers[i].srcStageMask | info.pImageMemoryBarriers[i].dstStageMask) &
+            ~compute_stages,
+        0u);
 }
 
 struct FrameCommands {
@@ -40,7 +43,8 @@ protected:
     for (uint32_t i = 0; i < count; ++i) {
       found.dispatches += commands[i].type == DERMIS_COMMAND_DISPATCH ? 1 : 0;
       found.image_copies += commands[i].type == DERMIS_COMMAND_COPY_IMAGE ? 1 : 0;
-      if (commands[i].type == DERMIS_COMMAND_BARRIER) expect_compute_stages(*commands[i].dependency);
+      if (commands[i].type == DERMIS_COMMAND_BARRIER)
+        expect_compute_stages(*commands[i].dependency);
     }
     return found;
   }

@@ -14,7 +14,8 @@ struct Layouts {
 };
 
 // Returns the aspects of all barriers on the depth image in one frame.
-std::vector<VkImageAspectFlags> aspects(uint32_t flags, VkFormat depth_format, const Layouts& layouts) {
+std::vector<VkImageAspectFlags> aspects(uint32_t flags, VkFormat depth_format,
+                                        const Layouts& layouts) {
   NullHost host;
   dermis_context_desc context = host.context_desc();
   context.flags |= flags;
@@ -44,8 +45,8 @@ std::vector<VkImageAspectFlags> aspects(uint32_t flags, VkFormat depth_format, c
   EXPECT_OK(dermis_view_commands(dermis_graph_view(host.graph), &frame, &count, &commands));
   std::vector<VkImageAspectFlags> found;
   for (uint32_t i = 0; i < count; ++i)
-    for (uint32_t b = 0;
-         commands[i].type == DERMIS_COMMAND_BARRIER && b < commands[i].dependency->imageMemoryBarrierCount;
+    for (uint32_t b = 0; commands[i].type == DERMIS_COMMAND_BARRIER &&
+                         b < commands[i].dependency->imageMemoryBarrierCount;
          ++b)
       if (const VkImageMemoryBarrier2& one = commands[i].dependency->pImageMemoryBarriers[b];
           one.image == depth)

@@ -29,14 +29,15 @@ template <class Function> Function full(const char* name) {
   return reinterpret_cast<Function>(NullDevice::loader()(nullptr, name));
 }
 
-VKAPI_ATTR void VKAPI_CALL less_properties(VkPhysicalDevice device, VkPhysicalDeviceProperties* out) {
+VKAPI_ATTR void VKAPI_CALL less_properties(VkPhysicalDevice device,
+                                           VkPhysicalDeviceProperties* out) {
   full<PFN_vkGetPhysicalDeviceProperties>("vkGetPhysicalDeviceProperties")(device, out);
   out->apiVersion = lack.api_version;
 }
 VKAPI_ATTR void VKAPI_CALL less_families(VkPhysicalDevice device, uint32_t* count,
                                          VkQueueFamilyProperties* out) {
-  full<PFN_vkGetPhysicalDeviceQueueFamilyProperties>("vkGetPhysicalDeviceQueueFamilyProperties")(device,
-                                                                                                 count, out);
+  full<PFN_vkGetPhysicalDeviceQueueFamilyProperties>("vkGetPhysicalDeviceQueueFamilyProperties")(
+      device, count, out);
   if (out != nullptr) out->queueFlags = lack.queue_flags;
 }
 VKAPI_ATTR VkResult VKAPI_CALL some_extensions(VkPhysicalDevice, const char*, uint32_t* count,
@@ -54,8 +55,9 @@ VKAPI_ATTR void VKAPI_CALL no_features(VkPhysicalDevice, VkPhysicalDeviceFeature
 uint32_t core_version_of(std::string_view name) {
   if (name.starts_with("vkBind") && name.ends_with("2")) return VK_API_VERSION_1_1;
   if (name == "vkResetQueryPool") return VK_API_VERSION_1_2;
-  for (const char* added : {"vkCmdPipelineBarrier2", "vkCmdWriteTimestamp2",
-                            "vkGetDeviceImageMemoryRequirements", "vkGetDeviceBufferMemoryRequirements"})
+  for (const char* added :
+       {"vkCmdPipelineBarrier2", "vkCmdWriteTimestamp2", "vkGetDeviceImageMemoryRequirements",
+        "vkGetDeviceBufferMemoryRequirements"})
     if (name == added) return VK_API_VERSION_1_3;
   return VK_API_VERSION_1_0;
 }
@@ -72,7 +74,8 @@ VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL less_of_device(VkDevice device, const c
   const bool extended =
       requested.ends_with("KHR") && requested.substr(0, requested.size() - 3) == lack.renamed;
   if (requested == lack.renamed) return nullptr;
-  return full<PFN_vkGetDeviceProcAddr>("vkGetDeviceProcAddr")(device, extended ? lack.renamed : name);
+  return full<PFN_vkGetDeviceProcAddr>("vkGetDeviceProcAddr")(device,
+                                                              extended ? lack.renamed : name);
 }
 VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL less(VkInstance instance, const char* name) {
   if (std::strcmp(name, lack.function) == 0) return nullptr;
@@ -99,11 +102,11 @@ struct PoorDevice : ::testing::Test {
   }
   std::vector<dermis_requirement> requirements() const {
     uint32_t count = 0;
-    EXPECT_OK(
-        dermis_query_requirements(less, host.device.instance(), host.device.physical(), &count, nullptr));
+    EXPECT_OK(dermis_query_requirements(less, host.device.instance(), host.device.physical(),
+                                        &count, nullptr));
     std::vector<dermis_requirement> items(count, dermis_requirement DERMIS_REQUIREMENT_INIT);
-    EXPECT_OK(dermis_query_requirements(less, host.device.instance(), host.device.physical(), &count,
-                                        items.data()));
+    EXPECT_OK(dermis_query_requirements(less, host.device.instance(), host.device.physical(),
+                                        &count, items.data()));
     return items;
   }
 };
@@ -169,10 +172,11 @@ TEST_F(PoorDevice, OlderInstance_IsNamedAsTheCause) {
     for (const bool features_unknown : {false, true}) {
       lack.instance_version = version;
       lack.features_unknown = features_unknown && version == VK_API_VERSION_1_0;
-      EXPECT_THAT(create(),
-                  Fails(DERMIS_ERROR_UNSUPPORTED, "VkApplicationInfo.apiVersion", "VK_API_VERSION_1_3",
-                        VK_KHR_SYNCHRONIZATION_2_EXTENSION_NAME, VK_KHR_MAINTENANCE_4_EXTENSION_NAME,
-                        Not(HasSubstr("physical device lacks")), Not(HasSubstr("device does not provide"))));
+      EXPECT_THAT(create(), Fails(DERMIS_ERROR_UNSUPPORTED, "VkApplicationInfo.apiVersion",
+                                  "VK_API_VERSION_1_3", VK_KHR_SYNCHRONIZATION_2_EXTENSION_NAME,
+                                  VK_KHR_MAINTENANCE_4_EXTENSION_NAME,
+                                  Not(HasSubstr("physical device lacks")),
+                                  Not(HasSubstr("device does not provide"))));
     }
 }
 
@@ -195,8 +199,8 @@ TEST_F(PoorDevice, Vulkan12WithoutEnabledExtension_NamesIt) {
   lack.api_version = lack.instance_version = VK_API_VERSION_1_2;
   lack.extensions = {VK_KHR_SYNCHRONIZATION_2_EXTENSION_NAME, VK_KHR_MAINTENANCE_4_EXTENSION_NAME};
   EXPECT_THAT(create(), Fails(DERMIS_ERROR_UNSUPPORTED, "ppEnabledExtensionNames",
-                              VK_KHR_SYNCHRONIZATION_2_EXTENSION_NAME, VK_KHR_MAINTENANCE_4_EXTENSION_NAME,
-                              Not(HasSubstr("apiVersion"))));
+                              VK_KHR_SYNCHRONIZATION_2_EXTENSION_NAME,
+                              VK_KHR_MAINTENANCE_4_EXTENSION_NAME, Not(HasSubstr("apiVersion"))));
 }
 
 TEST_F(PoorDevice, MissingLabels_AreAnErrorOnlyIfRequested) {
@@ -298,8 +302,8 @@ struct BadBlocks {
     static std::vector<std::byte> mapped(size_t{1} << 24);
     const bool bad = ++blocks.taken == blocks.bad_at;
     ++blocks.alive;
-    block->memory =
-        bad && blocks.fault == Fault::no_memory ? VK_NULL_HANDLE : reinterpret_cast<VkDeviceMemory>(8);
+    block->memory = bad && blocks.fault == Fault::no_memory ? VK_NULL_HANDLE
+                                                            : reinterpret_cast<VkDeviceMemory>(8);
     block->offset = bad && blocks.fault == Fault::misaligned ? request->alignment / 2 : 0;
     block->mapped = bad && blocks.fault == Fault::unmapped ? nullptr : mapped.data();
     return VK_SUCCESS;
@@ -354,7 +358,8 @@ TEST(HostsDeviceMemory, HalfAnAllocatorIsRejected) {
   EXPECT_THAT(host.make_context(desc),
               Fails(DERMIS_ERROR_ARGUMENT, "desc.device_allocator.allocate is NULL"));
   allocator.allocate = BadBlocks::take;
-  EXPECT_THAT(host.make_context(desc), Fails(DERMIS_ERROR_ARGUMENT, "desc.device_allocator.free is NULL"));
+  EXPECT_THAT(host.make_context(desc),
+              Fails(DERMIS_ERROR_ARGUMENT, "desc.device_allocator.free is NULL"));
 }
 
 } // namespace

@@ -14,7 +14,8 @@ namespace {
 
 // A complete description and its arrays.
 struct Description {
-  std::string graph = read_text("configs/graphs/burley.json"), skin = read_text("configs/profiles/skin.json"),
+  std::string graph = read_text("configs/graphs/burley.json"),
+              skin = read_text("configs/profiles/skin.json"),
               overlay = read_text("configs/overlays/accumulate.json");
   std::vector<dermis_profile> profiles{2, dermis_profile DERMIS_PROFILE_INIT};
   std::vector<dermis_slot_format> formats{1, dermis_slot_format DERMIS_SLOT_FORMAT_INIT};
@@ -62,8 +63,10 @@ TEST_F(Fields, OfAGraph_WrongOnesAreNamed) {
       {"desc.profiles is NULL and its count is 2", [](auto& d) { d.desc.profiles = nullptr; }},
       {"desc.profiles[1].id is 0", [](auto& d) { d.profiles[1].id = 0; }},
       {"desc.profiles[1].id is 256", [](auto& d) { d.profiles[1].id = 256; }},
-      {"desc.profiles[1].id is 1, which an earlier entry has", [](auto& d) { d.profiles[1].id = 1; }},
-      {"desc.profiles[0].source.text is NULL", [](auto& d) { d.profiles[0].source.text = nullptr; }},
+      {"desc.profiles[1].id is 1, which an earlier entry has",
+       [](auto& d) { d.profiles[1].id = 1; }},
+      {"desc.profiles[0].source.text is NULL",
+       [](auto& d) { d.profiles[0].source.text = nullptr; }},
       {"desc.profiles[1].struct_size", [](auto& d) { d.profiles[1].struct_size += 8; }},
       {"desc.unbound is NULL and its count is 2", [](auto& d) { d.desc.unbound = nullptr; }},
       {"desc.unbound[1] is NULL", [](auto& d) { d.unbound[1] = nullptr; }},
@@ -71,7 +74,8 @@ TEST_F(Fields, OfAGraph_WrongOnesAreNamed) {
       {"desc.formats[0].name is NULL", [](auto& d) { d.formats[0].name = nullptr; }},
       {"which no graph can declare (slot 'depth')",
        [](auto& d) { d.formats[0].format = VK_FORMAT_UNDEFINED; }},
-      {"which no graph can declare", [](auto& d) { d.formats[0].format = VK_FORMAT_ASTC_4x4_SRGB_BLOCK; }},
+      {"which no graph can declare",
+       [](auto& d) { d.formats[0].format = VK_FORMAT_ASTC_4x4_SRGB_BLOCK; }},
       {"desc.overlays is NULL and its count is 1", [](auto& d) { d.desc.overlays = nullptr; }},
       {"desc.overlays[0].text is NULL", [](auto& d) { d.overlays[0].text = nullptr; }},
       {"desc.overlays[0].struct_size", [](auto& d) { d.overlays[0].struct_size = 1; }},
@@ -100,7 +104,8 @@ TEST_F(Fields, OfTexts_WrongOnesAreReportedWithTheirPlace) {
   const std::pair<const char*, std::function<void(Description&)>> changes[] = {
       {"profile 2:1:", [&](auto& d) { d.profiles[1].source = source_of(broken, nullptr); }},
       {"profile 1:1:", [&](auto& d) { d.profiles[0].source = source_of(not_a_profile, nullptr); }},
-      {"mine.json:1:", [&](auto& d) { d.profiles[0].source = source_of(not_a_profile, "mine.json"); }},
+      {"mine.json:1:",
+       [&](auto& d) { d.profiles[0].source = source_of(not_a_profile, "mine.json"); }},
       {"overlay 0:1:", [&](auto& d) { d.overlays[0] = source_of(broken, nullptr); }},
       {"graph.json:1:", [&](auto& d) { d.desc.source = source_of(broken, "graph.json"); }},
   };
@@ -108,7 +113,8 @@ TEST_F(Fields, OfTexts_WrongOnesAreReportedWithTheirPlace) {
     Description wrong;
     change(wrong);
     dermis_report report = nullptr;
-    EXPECT_EQ(dermis_graph_create(host.context, &wrong.desc, &host.graph, &report), DERMIS_ERROR_CONFIG)
+    EXPECT_EQ(dermis_graph_create(host.context, &wrong.desc, &host.graph, &report),
+              DERMIS_ERROR_CONFIG)
         << place;
     EXPECT_THAT(dermis_report_text(report), HasSubstr(place));
     EXPECT_GT(dermis_report_count(report), 0u);
@@ -124,11 +130,14 @@ TEST_F(Fields, OfCallsOnAGraph_NullOnesAreNamed) {
   };
   rejected(dermis_graph_reload(host.graph, nullptr, nullptr), "dermis_graph_reload: desc is NULL");
   dermis_graph_desc empty = DERMIS_GRAPH_DESC_INIT;
-  rejected(dermis_graph_reload(host.graph, &empty, nullptr), "dermis_graph_reload: desc.source.text is NULL");
+  rejected(dermis_graph_reload(host.graph, &empty, nullptr),
+           "dermis_graph_reload: desc.source.text is NULL");
   empty.keep = DERMIS_KEEP_SOURCE;
-  rejected(dermis_graph_reload(host.graph, &empty, nullptr), "dermis_graph_reload: the size is 0x0");
+  rejected(dermis_graph_reload(host.graph, &empty, nullptr),
+           "dermis_graph_reload: the size is 0x0");
   empty.keep = DERMIS_KEEP_ALL + 1;
-  rejected(dermis_graph_reload(host.graph, &empty, nullptr), "desc.keep is 0x80, known bits are 0x7f");
+  rejected(dermis_graph_reload(host.graph, &empty, nullptr),
+           "desc.keep is 0x80, known bits are 0x7f");
   rejected(dermis_graph_resize(host.graph, 0, 1, nullptr), "dermis_graph_resize: the size is 0x1");
   rejected(dermis_graph_set_setting(host.graph, nullptr, "1", nullptr), "name is NULL");
   rejected(dermis_graph_set_setting(host.graph, "samples", nullptr, nullptr), "json is NULL");
@@ -160,7 +169,8 @@ TEST_F(Fields, OfABudget_WrongTablesChangeNothing) {
   const std::string broken = "{ \"dermis_errors\": 2, }";
   const dermis_source bad = source_of(broken, nullptr);
   const dermis_source empty = DERMIS_SOURCE_INIT;
-  for (const dermis_source* dermis_budget::*table : {&dermis_budget::errors, &dermis_budget::calibration}) {
+  for (const dermis_source* dermis_budget::*table :
+       {&dermis_budget::errors, &dermis_budget::calibration}) {
     const std::string name = table == &dermis_budget::errors ? "errors" : "calibration";
     dermis_budget budget = DERMIS_BUDGET_INIT;
     budget.milliseconds = 1;
@@ -182,7 +192,8 @@ TEST_F(Fields, OfSettings_OnlyTypeAndRangeAreAccepted) {
     "imports": { "light": { "format": "rgba16f", "size": "view" } }, "passes": [], "exports": ["light"] })";
   dermis_graph_desc desc = graph_desc(text, "settings.json", 16);
   dermis_report report = nullptr;
-  ASSERT_OK(dermis_graph_create(host.context, &desc, &host.graph, &report)) << dermis_report_text(report);
+  ASSERT_OK(dermis_graph_create(host.context, &desc, &host.graph, &report))
+      << dermis_report_text(report);
   dermis_report_destroy(report);
   struct Case {
     const char *name, *json, *said; // `said` is null if the value is accepted.
@@ -207,7 +218,8 @@ TEST_F(Fields, OfSettings_OnlyTypeAndRangeAreAccepted) {
   };
   for (const Case& one : cases) {
     const dermis_result result = dermis_graph_set_setting(host.graph, one.name, one.json, nullptr);
-    EXPECT_EQ(result, one.said == nullptr ? DERMIS_OK : DERMIS_ERROR_CONFIG) << one.name << " = " << one.json;
+    EXPECT_EQ(result, one.said == nullptr ? DERMIS_OK : DERMIS_ERROR_CONFIG)
+        << one.name << " = " << one.json;
     if (one.said != nullptr) {
       EXPECT_THAT(dermis_last_error(), HasSubstr(one.said));
     }

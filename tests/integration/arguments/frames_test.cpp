@@ -33,7 +33,8 @@ TEST_F(Frames, WrongField_IsNamed) {
       {"exposure", [](auto& f, auto&) { f.exposure = -2; }},
       {"jitter", [](auto& f, auto&) { f.jitter_x = nan_value; }},
       {"jitter", [](auto& f, auto&) { f.jitter_y = INFINITY; }},
-      {"depth_kind is -1", [](auto& f, auto&) { f.depth_kind = static_cast<dermis_depth_kind>(-1); }},
+      {"depth_kind is -1",
+       [](auto& f, auto&) { f.depth_kind = static_cast<dermis_depth_kind>(-1); }},
       {"a matrix has an element", [](auto& f, auto&) { f.view_from_world[15] = nan_value; }},
       {"a matrix has an element", [](auto& f, auto&) { f.previous_clip_from_view[0] = nan_value; }},
       {"a matrix has an element", [](auto& f, auto&) { f.previous_view_from_world[7] = INFINITY; }},
@@ -49,10 +50,13 @@ TEST_F(Frames, WrongField_IsNamed) {
       {"bounds are given", [](auto& f, auto&) { f.bounds_y = 1; }},
       {"bounds are given", [](auto& f, auto&) { f.bounds_width = 1; }},
       {"bounds are given", [](auto& f, auto&) { f.bounds_height = 1; }},
-      {"a format unknown to graphs", [](auto&, auto& b) { b[0].format = VK_FORMAT_ASTC_4x4_SRGB_BLOCK; }},
+      {"a format unknown to graphs",
+       [](auto&, auto& b) { b[0].format = VK_FORMAT_ASTC_4x4_SRGB_BLOCK; }},
       {"is 64x63, the graph needs at least 64x64", [](auto&, auto& b) { b[0].height = 63; }},
-      {"is PREINITIALIZED", [](auto&, auto& b) { b[0].after.layout = VK_IMAGE_LAYOUT_PREINITIALIZED; }},
-      {"is UNDEFINED, to which", [](auto&, auto& b) { b[0].after.layout = VK_IMAGE_LAYOUT_UNDEFINED; }},
+      {"is PREINITIALIZED",
+       [](auto&, auto& b) { b[0].after.layout = VK_IMAGE_LAYOUT_PREINITIALIZED; }},
+      {"is UNDEFINED, to which",
+       [](auto&, auto& b) { b[0].after.layout = VK_IMAGE_LAYOUT_UNDEFINED; }},
       {"before.layout", [](auto&, auto& b) { b[0].before.layout = VK_IMAGE_LAYOUT_MAX_ENUM; }},
       {"after.layout", [](auto&, auto& b) { b[0].after.layout = VK_IMAGE_LAYOUT_MAX_ENUM; }},
       {"but no stages", [](auto&, auto& b) { b[0].after.stages = 0; }},
@@ -72,7 +76,8 @@ TEST_F(Frames, WrongField_IsNamed) {
     Bindings bound(good.bindings, good.bindings + good.binding_count);
     change(frame, bound);
     frame.bindings = bound.data();
-    EXPECT_THAT(dermis_view_record(dermis_graph_view(host.graph), &frame), Fails(DERMIS_ERROR_ARGUMENT, said))
+    EXPECT_THAT(dermis_view_record(dermis_graph_view(host.graph), &frame),
+                Fails(DERMIS_ERROR_ARGUMENT, said))
         << said;
   }
   EXPECT_EQ(host.device.commands(), commands) << "nothing was recorded";
@@ -98,7 +103,8 @@ TEST_F(Frames, ContradictingHandedness_IsRejected) {
   const float perspective[16] = {2, 0, 0, 0, 0, -2, 0, 0, 0, 0, -1, -0.1f, 0, 0, -1, 0};
   const float orthographic[16] = {2, 0, 0, 0, 0, -2, 0, 0, 0, 0, -1, 0, 0, 0, 0, 1};
   using Matrix = const float(&)[16];
-  const auto frame_of = [&](Matrix now, bool now_left, Matrix before, bool before_left, uint32_t flags) {
+  const auto frame_of = [&](Matrix now, bool now_left, Matrix before, bool before_left,
+                            uint32_t flags) {
     dermis_frame frame = host.frame_at(2);
     for (size_t i = 0; i < 16; ++i) {
       frame.clip_from_view[i] = i % 4 == 2 && now_left ? -now[i] : now[i];
@@ -114,7 +120,8 @@ TEST_F(Frames, ContradictingHandedness_IsRejected) {
   };
   rejected(frame_of(perspective, false, perspective, false, DERMIS_FRAME_LEFT_HANDED),
            "declared left-handed, but clip_from_view has w = -z");
-  rejected(frame_of(perspective, true, perspective, false, 0), "previous_clip_from_view has w = -z");
+  rejected(frame_of(perspective, true, perspective, false, 0),
+           "previous_clip_from_view has w = -z");
   rejected(frame_of(perspective, false, perspective, true, 0), "previous_clip_from_view has w = z");
   rejected(frame_of(orthographic, false, perspective, true, 0), "the frame is right-handed");
   rejected(frame_of(orthographic, true, perspective, false, DERMIS_FRAME_LEFT_HANDED),
@@ -135,7 +142,8 @@ TEST_F(Frames, ContradictingHandedness_IsRejected) {
 
 TEST_F(Frames, Discard_WorksOnceAndNotAcrossAReload) {
   const auto rejected = [&](uint64_t index, const char* said) {
-    EXPECT_THAT(dermis_view_discard(dermis_graph_view(host.graph), index), Fails(DERMIS_ERROR_ARGUMENT, said))
+    EXPECT_THAT(dermis_view_discard(dermis_graph_view(host.graph), index),
+                Fails(DERMIS_ERROR_ARGUMENT, said))
         << said;
   };
   ASSERT_OK(host.record());
@@ -166,7 +174,8 @@ TEST(ThrowingHosts, ExceptionsBecomeResultCodes) {
   dermis_context_desc desc = host.context_desc();
   desc.device_allocator = &allocator;
   ASSERT_OK(host.make_context(desc));
-  EXPECT_THAT(host.make_graph(), Fails(DERMIS_ERROR_VULKAN, "the host's allocator failed (VK_ERROR_UNKNOWN"));
+  EXPECT_THAT(host.make_graph(),
+              Fails(DERMIS_ERROR_VULKAN, "the host's allocator failed (VK_ERROR_UNKNOWN"));
   EXPECT_EQ(host.device.alive(), 0u);
 }
 
@@ -214,7 +223,8 @@ TEST(HostsPassTypes, TooManyPassTypes_AreRejected) {
   type.port_count = 1;
   type.record = [](void*, const dermis_pass_call*) {};
   const auto rejected = [&](const char* said) {
-    EXPECT_THAT(dermis_register_pass_type(host.context, &type), Fails(DERMIS_ERROR_ARGUMENT, said)) << said;
+    EXPECT_THAT(dermis_register_pass_type(host.context, &type), Fails(DERMIS_ERROR_ARGUMENT, said))
+        << said;
   };
   type.setting_count = 1;
   rejected("kind.settings is NULL, setting_count is 1");
@@ -226,7 +236,8 @@ TEST(HostsPassTypes, TooManyPassTypes_AreRejected) {
   type.setting_count = 0;
   dermis_result result = DERMIS_OK;
   uint32_t taken = 0;
-  for (std::string name; result == DERMIS_OK && taken < 100000; taken += result == DERMIS_OK ? 1 : 0) {
+  for (std::string name; result == DERMIS_OK && taken < 100000;
+       taken += result == DERMIS_OK ? 1 : 0) {
     name = "studio.kind" + std::to_string(taken);
     type.name = name.c_str();
     result = dermis_register_pass_type(host.context, &type);
@@ -255,7 +266,8 @@ TEST_F(Frames, MissingBindings_NameOptionalSlotsAndCure) {
     return dermis_last_error();
   };
   const std::string required = rejected_without({"depth"});
-  EXPECT_THAT(required, HasSubstr("'depth' (slot " + std::to_string(number("depth")) + ", required)"));
+  EXPECT_THAT(required,
+              HasSubstr("'depth' (slot " + std::to_string(number("depth")) + ", required)"));
   EXPECT_THAT(required, Not(HasSubstr("unbound")));
   const std::string both = rejected_without({"depth", "albedo"});
   EXPECT_THAT(both, HasAll("'depth' (slot " + std::to_string(number("depth")) + ", required)",

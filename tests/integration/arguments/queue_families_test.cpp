@@ -13,7 +13,8 @@ constexpr uint32_t own_family = 1, family_count = 3;
 // Vulkan functions have no user pointer; tests of this file run sequentially.
 bool foreign_queues = false;
 
-VKAPI_ATTR void VKAPI_CALL three_families(VkPhysicalDevice, uint32_t* count, VkQueueFamilyProperties* out) {
+VKAPI_ATTR void VKAPI_CALL three_families(VkPhysicalDevice, uint32_t* count,
+                                          VkQueueFamilyProperties* out) {
   for (uint32_t i = 0; out != nullptr && i < *count; ++i)
     out[i] = {VK_QUEUE_COMPUTE_BIT, 1, 64, {1, 1, 1}};
   *count = family_count;
@@ -90,7 +91,8 @@ TEST_F(QueueFamilies, TransfersReachFamilyZeroAndSpecialFamilies) {
   for (const uint32_t family : {0u, 2u, VK_QUEUE_FAMILY_EXTERNAL, VK_QUEUE_FAMILY_FOREIGN_EXT}) {
     bindings[0].before.queue_family = bindings[0].after.queue_family = family;
     bindings[0].before.transfer = bindings[0].after.transfer = 1;
-    EXPECT_THAT(transfers(), ElementsAre(std::pair{family, own_family}, std::pair{own_family, family}));
+    EXPECT_THAT(transfers(),
+                ElementsAre(std::pair{family, own_family}, std::pair{own_family, family}));
   }
   bindings[0].before.queue_family = bindings[0].after.queue_family = own_family;
   EXPECT_TRUE(transfers().empty()) << "no transfer within one family";
@@ -110,7 +112,8 @@ TEST_F(QueueFamilies, InvalidFamilies_AreRejectedByName) {
   for (const auto& [text, family, transfer] : wrong) {
     bindings[0].after.queue_family = family;
     bindings[0].after.transfer = transfer;
-    EXPECT_THAT(dermis_view_record(dermis_graph_view(host.graph), &frame), Fails(DERMIS_ERROR_ARGUMENT, text))
+    EXPECT_THAT(dermis_view_record(dermis_graph_view(host.graph), &frame),
+                Fails(DERMIS_ERROR_ARGUMENT, text))
         << text;
   }
 }

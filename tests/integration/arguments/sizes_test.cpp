@@ -23,7 +23,9 @@ public:
   }
   void state(size_t size) { std::memcpy(bytes_, &size, sizeof size); }
   void tail(unsigned char value) { std::memset(bytes_ + sizeof(T), value, newer_by); }
-  std::vector<std::byte> read_tail() const { return {bytes_ + sizeof(T), bytes_ + sizeof(T) + newer_by}; }
+  std::vector<std::byte> read_tail() const {
+    return {bytes_ + sizeof(T), bytes_ + sizeof(T) + newer_by};
+  }
   T* get() { return reinterpret_cast<T*>(bytes_); }
 
 private:
@@ -64,7 +66,8 @@ template <class T> void expect_output_property(const T& value, const Call<T>& ca
   given.state(sizeof(T));
   given.tail(0xff);
   EXPECT_OK(call(given.get()));
-  EXPECT_THAT(given.read_tail(), Each(std::byte{0xff})) << "nothing is written after the stated size";
+  EXPECT_THAT(given.read_tail(), Each(std::byte{0xff}))
+      << "nothing is written after the stated size";
 }
 
 struct StructSizes : RecordedFrame {};
@@ -76,12 +79,13 @@ void* DERMIS_CALL take_nothing(void*, size_t, size_t) {
 void DERMIS_CALL release_nothing(void*, void*, size_t, size_t) {}
 
 TEST_F(StructSizes, Context_FollowsTheHeader) {
-  expect_input_property<dermis_context_desc>(host.context_desc(), [](const dermis_context_desc* desc) {
-    dermis_context made = nullptr;
-    const dermis_result result = dermis_context_create(desc, &made);
-    dermis_context_destroy(made);
-    return result;
-  });
+  expect_input_property<dermis_context_desc>(
+      host.context_desc(), [](const dermis_context_desc* desc) {
+        dermis_context made = nullptr;
+        const dermis_result result = dermis_context_create(desc, &made);
+        dermis_context_destroy(made);
+        return result;
+      });
 }
 
 TEST_F(StructSizes, GraphViewAndBudget_FollowTheHeader) {
@@ -93,12 +97,13 @@ TEST_F(StructSizes, GraphViewAndBudget_FollowTheHeader) {
     dermis_graph_destroy(made);
     return result;
   });
-  expect_input_property<dermis_view_desc>(DERMIS_VIEW_DESC_INIT, [&](const dermis_view_desc* given) {
-    dermis_view made = nullptr;
-    const dermis_result result = dermis_view_create(host.graph, given, &made, nullptr);
-    dermis_view_destroy(made);
-    return result;
-  });
+  expect_input_property<dermis_view_desc>(
+      DERMIS_VIEW_DESC_INIT, [&](const dermis_view_desc* given) {
+        dermis_view made = nullptr;
+        const dermis_result result = dermis_view_create(host.graph, given, &made, nullptr);
+        dermis_view_destroy(made);
+        return result;
+      });
   expect_input_property<dermis_budget>(DERMIS_BUDGET_INIT, [&](const dermis_budget* given) {
     return dermis_graph_set_budget(host.graph, given, nullptr);
   });
@@ -156,9 +161,11 @@ TEST_F(StructSizes, Allocators_FollowTheHeader) {
   dermis_allocator memory = DERMIS_ALLOCATOR_INIT;
   memory.allocate = take_nothing;
   memory.free = release_nothing;
-  Sized<dermis_allocator> given(memory); // with which nothing can be made: its own law stops at the refusals
+  Sized<dermis_allocator> given(
+      memory); // with which nothing can be made: its own law stops at the refusals
   desc.allocator = given.get();
-  expect_wrong_sizes_rejected<dermis_allocator>(given, [&](const dermis_allocator*) { return create(); });
+  expect_wrong_sizes_rejected<dermis_allocator>(given,
+                                                [&](const dermis_allocator*) { return create(); });
   given.state(sizeof(dermis_allocator) + newer_by);
   given.tail(1);
   EXPECT_EQ(create(), DERMIS_ERROR_VERSION);
@@ -266,8 +273,9 @@ TEST_F(StructSizes, NestedSources_AreExact) {
   };
   ASSERT_OK(create());
   for (const auto& [field, call] : nested)
-    for (const size_t size : {size_t{0}, sizeof(size_t), sizeof(dermis_source) - 1, sizeof(dermis_source) + 1,
-                              sizeof(dermis_source) + newer_by, abi::largest_struct_size, ~size_t{0}}) {
+    for (const size_t size :
+         {size_t{0}, sizeof(size_t), sizeof(dermis_source) - 1, sizeof(dermis_source) + 1,
+          sizeof(dermis_source) + newer_by, abi::largest_struct_size, ~size_t{0}}) {
       EXPECT_EQ(call(size), DERMIS_ERROR_ARGUMENT) << field << " = " << size;
       EXPECT_THAT(dermis_last_error(), HasAll(field, "DERMIS_SOURCE_INIT")) << size;
     }
@@ -278,14 +286,16 @@ TEST_F(StructSizes, OutputStructs_FollowTheHeader) {
       DERMIS_MEMORY_INIT, [&](dermis_memory* out) { return dermis_graph_memory(host.graph, out); });
   const dermis_view view = dermis_graph_view(host.graph);
   expect_output_property<dermis_frame_report>(
-      DERMIS_FRAME_REPORT_INIT, [&](dermis_frame_report* out) { return dermis_view_report(view, 1, out); });
+      DERMIS_FRAME_REPORT_INIT,
+      [&](dermis_frame_report* out) { return dermis_view_report(view, 1, out); });
   expect_output_property<dermis_frame_statistics>(
       DERMIS_FRAME_STATISTICS_INIT,
       [&](dermis_frame_statistics* out) { return dermis_view_statistics(view, 1, out); });
   dermis_report report = nullptr;
   ASSERT_EQ(dermis_graph_set_setting(host.graph, "nothing", "1", &report), DERMIS_ERROR_ARGUMENT);
-  expect_output_property<dermis_message>(
-      DERMIS_MESSAGE_INIT, [&](dermis_message* out) { return dermis_report_message(report, 0, out); });
+  expect_output_property<dermis_message>(DERMIS_MESSAGE_INIT, [&](dermis_message* out) {
+    return dermis_report_message(report, 0, out);
+  });
   dermis_report_destroy(report);
 }
 

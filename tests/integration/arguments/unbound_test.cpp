@@ -20,10 +20,11 @@ struct Message {
 VKAPI_ATTR void VKAPI_CALL all_features(VkPhysicalDevice device, VkPhysicalDeviceFeatures2* out) {
   reinterpret_cast<PFN_vkGetPhysicalDeviceFeatures2>(
       NullDevice::loader()(nullptr, "vkGetPhysicalDeviceFeatures2"))(device, out);
-  for (auto* next = static_cast<VkBaseOutStructure*>(out->pNext); next != nullptr; next = next->pNext) {
+  for (auto* next = static_cast<VkBaseOutStructure*>(out->pNext); next != nullptr;
+       next = next->pNext) {
     if (next->sType == VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_ACCELERATION_STRUCTURE_FEATURES_KHR)
-      reinterpret_cast<VkPhysicalDeviceAccelerationStructureFeaturesKHR*>(next)->accelerationStructure =
-          VK_TRUE;
+      reinterpret_cast<VkPhysicalDeviceAccelerationStructureFeaturesKHR*>(next)
+          ->accelerationStructure = VK_TRUE;
     if (next->sType == VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_RAY_QUERY_FEATURES_KHR)
       reinterpret_cast<VkPhysicalDeviceRayQueryFeaturesKHR*>(next)->rayQuery = VK_TRUE;
   }
@@ -114,8 +115,8 @@ TEST_F(UnboundNames, NamesWithoutSlot_AreOneNote) {
   const std::vector<Message> said = about_slots();
   ASSERT_EQ(said.size(), 1u);
   EXPECT_EQ(said[0].severity, DERMIS_SEVERITY_NOTE);
-  EXPECT_THAT(said[0].text,
-              HasAll("'velocity'", "'sampling'", "'importance'", "'burley'", "'lighting'", "'albedo'"));
+  EXPECT_THAT(said[0].text, HasAll("'velocity'", "'sampling'", "'importance'", "'burley'",
+                                   "'lighting'", "'albedo'"));
 }
 
 TEST_F(UnboundNames, Misspelt_IsAWarningWithASuggestion) {
@@ -124,8 +125,9 @@ TEST_F(UnboundNames, Misspelt_IsAWarningWithASuggestion) {
   std::string warnings;
   for (const Message& message : about_slots())
     if (message.severity == DERMIS_SEVERITY_WARNING) warnings += message.text + "\n";
-  EXPECT_THAT(warnings, AllOf(HasSubstr("'albdo'"), HasSubstr("did you mean 'albedo'?"), HasSubstr("'Depth'"),
-                              HasSubstr("did you mean 'depth'?"), Not(HasSubstr("velocity"))));
+  EXPECT_THAT(warnings,
+              AllOf(HasSubstr("'albdo'"), HasSubstr("did you mean 'albedo'?"), HasSubstr("'Depth'"),
+                    HasSubstr("did you mean 'depth'?"), Not(HasSubstr("velocity"))));
 }
 
 } // namespace

@@ -23,7 +23,8 @@ dermis_graph CameraTest::make_accumulating() {
 Camera CameraTest::make_camera(dermis_graph graph, uint32_t seed) {
   make_images(graph);
   SplitMix64 random{seed};
-  fill("lighting", [&](uint32_t, uint32_t) { return static_cast<float>(random.below(1024)) / 1024.0f; });
+  fill("lighting",
+       [&](uint32_t, uint32_t) { return static_cast<float>(random.below(1024)) / 1024.0f; });
   Camera camera;
   camera.bound = bindings(graph);
   camera.images.swap(images);
@@ -51,7 +52,8 @@ dermis_frame CameraTest::frame_of(const Camera& camera, uint64_t index) const {
 
 std::vector<float> CameraTest::light_of(const Camera& camera) const {
   wait();
-  const demo::ImageState state{camera.bound.front().before.layout, camera.bound.front().before.stages,
+  const demo::ImageState state{camera.bound.front().before.layout,
+                               camera.bound.front().before.stages,
                                camera.bound.front().before.access};
   auto read = demo::read_image(*host, camera.images.at("lighting"), state);
   EXPECT_TRUE(read) << read.error().text;

@@ -9,8 +9,8 @@ namespace {
 
 void play_dispatch(const VolkDeviceTable& vk, VkCommandBuffer into, const dermis_command& command) {
   vk.vkCmdBindPipeline(into, VK_PIPELINE_BIND_POINT_COMPUTE, command.pipeline);
-  vk.vkCmdBindDescriptorSets(into, VK_PIPELINE_BIND_POINT_COMPUTE, command.layout, 0, command.set_count,
-                             command.sets, 0, nullptr);
+  vk.vkCmdBindDescriptorSets(into, VK_PIPELINE_BIND_POINT_COMPUTE, command.layout, 0,
+                             command.set_count, command.sets, 0, nullptr);
   vk.vkCmdPushConstants(into, command.layout, VK_SHADER_STAGE_COMPUTE_BIT, 0, command.push_bytes,
                         command.push_constants);
   if (command.type == DERMIS_COMMAND_DISPATCH)
@@ -30,13 +30,14 @@ void play(const VolkDeviceTable& vk, VkCommandBuffer into, const dermis_command&
   case DERMIS_COMMAND_FILL_BUFFER:
     return vk.vkCmdFillBuffer(into, command.buffer, command.offset, command.bytes, command.value);
   case DERMIS_COMMAND_CLEAR_IMAGE:
-    return vk.vkCmdClearColorImage(into, command.image, command.image_layout, &command.color, command.count,
-                                   command.ranges);
+    return vk.vkCmdClearColorImage(into, command.image, command.image_layout, &command.color,
+                                   command.count, command.ranges);
   case DERMIS_COMMAND_COPY_BUFFER:
-    return vk.vkCmdCopyBuffer(into, command.buffer, command.to_buffer, command.count, command.buffer_copies);
+    return vk.vkCmdCopyBuffer(into, command.buffer, command.to_buffer, command.count,
+                              command.buffer_copies);
   case DERMIS_COMMAND_COPY_IMAGE:
-    return vk.vkCmdCopyImage(into, command.image, command.image_layout, command.to_image, command.to_layout,
-                             command.count, command.image_copies);
+    return vk.vkCmdCopyImage(into, command.image, command.image_layout, command.to_image,
+                             command.to_layout, command.count, command.image_copies);
   case DERMIS_COMMAND_RESET_QUERIES:
     return vk.vkCmdResetQueryPool(into, command.query_pool, command.query, command.count);
   case DERMIS_COMMAND_WRITE_TIMESTAMP:
@@ -59,23 +60,25 @@ struct Commands : CameraTest {
   void record(dermis_graph graph, dermis_view view, dermis_frame frame, VkCommandBuffer into) {
     if (!as_data) {
       frame.command_buffer = into;
-      const dermis_result result = view != nullptr ? dermis_view_record(view, &frame)
-                                                   : dermis_view_record(dermis_graph_view(graph), &frame);
+      const dermis_result result = view != nullptr
+                                       ? dermis_view_record(view, &frame)
+                                       : dermis_view_record(dermis_graph_view(graph), &frame);
       ASSERT_OK(result);
       return;
     }
     uint32_t count = 0;
     const dermis_command* list = nullptr;
-    const dermis_result result = view != nullptr
-                                     ? dermis_view_commands(view, &frame, &count, &list)
-                                     : dermis_view_commands(dermis_graph_view(graph), &frame, &count, &list);
+    const dermis_result result =
+        view != nullptr ? dermis_view_commands(view, &frame, &count, &list)
+                        : dermis_view_commands(dermis_graph_view(graph), &frame, &count, &list);
     ASSERT_OK(result);
     ASSERT_GT(count, 0u);
     for (uint32_t i = 0; i < count; ++i) {
       ASSERT_EQ(list[i].struct_size, sizeof(dermis_command));
       seen.insert(list[i].type);
       passes.insert(list[i].pass);
-      play(host->vk, into, list[i], [&](const dermis_pass_call& call) { host_calls.push_back(call); });
+      play(host->vk, into, list[i],
+           [&](const dermis_pass_call& call) { host_calls.push_back(call); });
     }
   }
 
@@ -86,7 +89,8 @@ struct Commands : CameraTest {
     if (graph == nullptr) return {};
     dermis_view view = view_of(graph);
     const Camera first = make_camera(graph, 1), second = make_camera(graph, 2);
-    const std::string text = options.text.empty() ? read_text("configs/graphs/burley.json") : options.text;
+    const std::string text =
+        options.text.empty() ? read_text("configs/graphs/burley.json") : options.text;
     wait();
     for (uint64_t index = 1; index <= 8; ++index) {
       if (index == 3) {
@@ -141,7 +145,8 @@ TEST_F(Commands, CanBeDiscardedLikeAFrame) {
   uint32_t count = 0;
   const dermis_command* list = nullptr;
   ASSERT_OK(dermis_view_commands(dermis_graph_view(graph), &frame, &count, &list));
-  EXPECT_EQ(dermis_view_commands(dermis_graph_view(graph), &frame, &count, &list), DERMIS_ERROR_ARGUMENT)
+  EXPECT_EQ(dermis_view_commands(dermis_graph_view(graph), &frame, &count, &list),
+            DERMIS_ERROR_ARGUMENT)
       << "it counts as recorded";
   EXPECT_EQ(count, 0u);
   EXPECT_EQ(list, nullptr);
@@ -203,7 +208,8 @@ TEST_F(Commands, WrongArgumentsAreNamed) {
   expect(dermis_view_commands(dermis_graph_view(nullptr), &frame, &count, &list), "view is NULL");
   expect(dermis_view_commands(dermis_graph_view(graph), nullptr, &count, &list), "frame is NULL");
   expect(dermis_view_commands(dermis_graph_view(graph), &frame, nullptr, &list), "count is NULL");
-  expect(dermis_view_commands(dermis_graph_view(graph), &frame, &count, nullptr), "commands is NULL");
+  expect(dermis_view_commands(dermis_graph_view(graph), &frame, &count, nullptr),
+         "commands is NULL");
   expect(dermis_view_commands(nullptr, &frame, &count, &list), "view is NULL");
 }
 

@@ -51,7 +51,8 @@ struct Arena {
     const size_t number = fractions ? arena.transients++ : 0;
     if (fractions && number >= arena.overlaid) {
       *out = arena.first_view[number % arena.overlaid];
-      EXPECT_EQ(reinterpret_cast<uintptr_t>(out->user), request->bytes) << "all views request equal memory";
+      EXPECT_EQ(reinterpret_cast<uintptr_t>(out->user), request->bytes)
+          << "all views request equal memory";
       ++arena.alive;
       return VK_SUCCESS;
     }
@@ -65,8 +66,8 @@ struct Arena {
               arena.host.vk.vkAllocateMemory(arena.host.device, &info, nullptr, &block.memory))
         return result;
       void* mapped = nullptr; // Every memory type of the software driver can be mapped.
-      if (const VkResult result =
-              arena.host.vk.vkMapMemory(arena.host.device, block.memory, 0, VK_WHOLE_SIZE, 0, &mapped))
+      if (const VkResult result = arena.host.vk.vkMapMemory(arena.host.device, block.memory, 0,
+                                                            VK_WHOLE_SIZE, 0, &mapped))
         return result;
       block.mapped = static_cast<std::byte*>(mapped);
     }
@@ -195,7 +196,8 @@ TEST_F(DeviceMemory, ViewsCanShareTransientMemory) {
     arena->overlaid += heap.purpose == DERMIS_MEMORY_TRANSIENT ? 1 : 0;
   ASSERT_GT(arena->overlaid, 0u);
   EXPECT_TRUE(apart == lights());
-  EXPECT_EQ(arena->transients, (1 + cameras) * arena->overlaid) << "the graph's own view has memory, too";
+  EXPECT_EQ(arena->transients, (1 + cameras) * arena->overlaid)
+      << "the graph's own view has memory, too";
   EXPECT_EQ(arena->alive_bytes[DERMIS_MEMORY_TRANSIENT] * (1 + cameras), memory.transient_bytes);
 }
 
@@ -300,7 +302,8 @@ TEST_P(FailingNull, DeviceLostAtAnyCall_IsKeptAndAllIsFreed) {
     ASSERT_EQ(dermis_view_create(host.graph, nullptr, &view, nullptr), DERMIS_ERROR_DEVICE_LOST);
     dermis_graph another = nullptr;
     const dermis_graph_desc desc = DERMIS_GRAPH_DESC_INIT;
-    ASSERT_EQ(dermis_graph_create(host.context, &desc, &another, nullptr), DERMIS_ERROR_DEVICE_LOST);
+    ASSERT_EQ(dermis_graph_create(host.context, &desc, &another, nullptr),
+              DERMIS_ERROR_DEVICE_LOST);
     const uint64_t images = host.device.alive();
     host.destroy();
     ASSERT_LT(host.device.alive(), images);
@@ -312,7 +315,8 @@ TEST_P(FailingNull, DeviceLostAtAnyCall_IsKeptAndAllIsFreed) {
   EXPECT_GT(losses, 10u);
 }
 
-INSTANTIATE_TEST_SUITE_P(Changes, FailingNull, testing::Values(Change::reload, Change::resize, Change::view),
+INSTANTIATE_TEST_SUITE_P(Changes, FailingNull,
+                         testing::Values(Change::reload, Change::resize, Change::view),
                          [](const auto& one) {
                            return std::string(one.param == Change::reload   ? "Reload"
                                               : one.param == Change::resize ? "Resize"
@@ -332,7 +336,8 @@ TEST(LostDevice, LossInTimestamps_EndsTheContext) {
       EXPECT_EQ(dermis_view_timings(dermis_graph_view(host.graph), 1, &count, times.data()),
                 DERMIS_ERROR_DEVICE_LOST);
     } else {
-      EXPECT_EQ(demo::read_reported(dermis_graph_view(host.graph), 1, choice), DERMIS_ERROR_DEVICE_LOST);
+      EXPECT_EQ(demo::read_reported(dermis_graph_view(host.graph), 1, choice),
+                DERMIS_ERROR_DEVICE_LOST);
     }
     EXPECT_EQ(host.record(), DERMIS_ERROR_DEVICE_LOST);
   }
@@ -371,7 +376,8 @@ TEST(ManyReloads, ObjectsAndBytesStayConstant) {
   settle();
   const uint64_t alive = host.device.alive(), bytes = host.device.memory_bytes();
   for (int i = 0; i < 500; ++i) {
-    ASSERT_EQ(host.reload(i % 2 == 0 ? "" : "{ \"dermis\": 2"), i % 2 == 0 ? DERMIS_OK : DERMIS_ERROR_CONFIG);
+    ASSERT_EQ(host.reload(i % 2 == 0 ? "" : "{ \"dermis\": 2"),
+              i % 2 == 0 ? DERMIS_OK : DERMIS_ERROR_CONFIG);
     if (i % 3 == 0) {
       ASSERT_OK(host.record());
     }

@@ -28,10 +28,11 @@ struct Seen {
 std::string text_of(const demo::ReportedFrame& choice) {
   std::ostringstream text;
   text << choice.frame_index << ": " << choice.configuration << "; " << choice.reason << "; "
-       << choice.switches << " switches, " << choice.budget_ms << " ms, predicted " << choice.predicted_ms
-       << ", deterministic " << choice.calibrated_ms << ", rmse " << choice.predicted_rmse << ", skips "
-       << choice.skips << ", tiles " << choice.scattering_tiles << " of " << choice.view_tiles << ", groups "
-       << choice.groups << ", units " << choice.sample_units;
+       << choice.switches << " switches, " << choice.budget_ms << " ms, predicted "
+       << choice.predicted_ms << ", deterministic " << choice.calibrated_ms << ", rmse "
+       << choice.predicted_rmse << ", skips " << choice.skips << ", tiles "
+       << choice.scattering_tiles << " of " << choice.view_tiles << ", groups " << choice.groups
+       << ", units " << choice.sample_units;
   return text.str();
 }
 
@@ -40,8 +41,8 @@ std::string histories_of(dermis_graph graph) {
       list_of(dermis_history DERMIS_HISTORY_INIT, dermis_view_histories, dermis_graph_view(graph));
   std::ostringstream text;
   for (const dermis_history& one : histories)
-    text << one.name << " valid " << one.valid << ", age " << one.age << ", reason " << one.reason << " ("
-         << one.text << "); ";
+    text << one.name << " valid " << one.valid << ", age " << one.age << ", reason " << one.reason
+         << " (" << one.text << "); ";
   return text.str();
 }
 
@@ -82,8 +83,9 @@ struct Discard : DermisTest {
 
   Seen submit(const Shot& shot) {
     set_budget(shot.budget_ms);
-    fill("lighting",
-         [&](uint32_t x, uint32_t y) { return shot.light * float(16 + (x * 7 + y * 3) % 32) / 32; });
+    fill("lighting", [&](uint32_t x, uint32_t y) {
+      return shot.light * float(16 + (x * 7 + y * 3) % 32) / 32;
+    });
     const auto bound = bindings(graph);
     dermis_frame one = frame_of(shot, bound);
     const demo::ReportedFrame choice = record_and_read(graph, one);
@@ -104,7 +106,8 @@ struct Discard : DermisTest {
   }
 };
 
-constexpr std::array<uint32_t, 4> small_rectangle = {9, 5, 30, 41}, other_rectangle = {16, 0, 44, 29};
+constexpr std::array<uint32_t, 4> small_rectangle = {9, 5, 30, 41},
+                                  other_rectangle = {16, 0, 44, 29};
 
 // Rectangles, jitter, cuts, budgets and times between frames all change, in kept and in discarded
 // frames. The discarded frames include the first frame of the graph, of a plan, and of a reloaded
@@ -161,7 +164,8 @@ TEST_F(Discard, RestoresThePreviousRectangle) {
     return submit({.rectangle = small_rectangle, .light = 1});
   };
   const Seen expected = run(false);
-  EXPECT_TRUE(run(true).lighting == expected.lighting) << "the history keeps the previous frame's rectangle";
+  EXPECT_TRUE(run(true).lighting == expected.lighting)
+      << "the history keeps the previous frame's rectangle";
 }
 
 // The first switch blocks other switches for a second; a discarded frame must not start this
@@ -184,7 +188,8 @@ TEST_F(Discard, RestoresTheLastDecision) {
   EXPECT_EQ(run({{.budget_ms = 30, .seconds = 5}}), expected) << "the time of the discarded frame";
   EXPECT_EQ(run({{.budget_ms = 30, .seconds = 5}, {.budget_ms = 30, .seconds = 5}}), expected)
       << "two consecutive frames";
-  EXPECT_EQ(run({{.budget_ms = 0.4f, .seconds = 0.1f}}), expected) << "the choice of the discarded frame";
+  EXPECT_EQ(run({{.budget_ms = 0.4f, .seconds = 0.1f}}), expected)
+      << "the choice of the discarded frame";
 }
 
 TEST_F(Discard, LeavesNoTimes) {
@@ -198,7 +203,8 @@ TEST_F(Discard, LeavesNoTimes) {
   ASSERT_OK(record(graph, next));
   std::vector<dermis_pass_timing> times(64, dermis_pass_timing DERMIS_PASS_TIMING_INIT);
   auto count = static_cast<uint32_t>(times.size());
-  const dermis_result result = dermis_view_timings(dermis_graph_view(graph), 5, &count, times.data());
+  const dermis_result result =
+      dermis_view_timings(dermis_graph_view(graph), 5, &count, times.data());
   EXPECT_TRUE(result == DERMIS_NOT_READY || (result == DERMIS_OK && times[0].frame_index <= 4))
       << result << ": times of frame " << times[0].frame_index << ", which never ran";
   demo::ReportedFrame choice;

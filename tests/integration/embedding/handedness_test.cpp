@@ -85,7 +85,8 @@ struct Handedness : DermisTest {
     fill("depth", [&](uint32_t x, uint32_t) { return stored(view, wall_m + 0.0005f * float(x)); });
     last_frame = 0;
     for (int i = 0; i < 4; ++i) {
-      fill("lighting", [&](uint32_t x, uint32_t y) { return float((x / 8 + y / 8 + uint32_t(i)) % 2); });
+      fill("lighting",
+           [&](uint32_t x, uint32_t y) { return float((x / 8 + y / 8 + uint32_t(i)) % 2); });
       dermis_frame one = bound_frame(graph);
       one.depth_kind = view.depth;
       one.flags = view.left && view.lens == Lens::orthographic ? DERMIS_FRAME_LEFT_HANDED : 0;

@@ -70,8 +70,8 @@ struct HostMemory : ::testing::Test {
     ASSERT_OK(host.record());
   }
 
-  // Calls `change` with its first allocation rejected, then its second, until it succeeds: every one
-  // of the first 300, then every `step`-th.
+  // Calls `change` with its first allocation rejected, then its second, until it succeeds: every
+  // one of the first 300, then every `step`-th.
   void reject_each(uint64_t step, const std::function<dermis_result()>& change,
                    const std::function<void()>& after) {
     constexpr uint64_t each_until = 300;
@@ -85,9 +85,10 @@ struct HostMemory : ::testing::Test {
       heap.rejected = 0;
       if (result == DERMIS_OK) break;
       ++refusals;
-      ASSERT_EQ(result, DERMIS_ERROR_MEMORY) << "allocation " << number << ": " << dermis_last_error();
-      ASSERT_GE(heap.blocks, blocks) << "allocation " << number
-                                     << ": caches may grow, but nothing may be freed";
+      ASSERT_EQ(result, DERMIS_ERROR_MEMORY)
+          << "allocation " << number << ": " << dermis_last_error();
+      ASSERT_GE(heap.blocks, blocks)
+          << "allocation " << number << ": caches may grow, but nothing may be freed";
       ASSERT_GE(heap.bytes, bytes) << "allocation " << number;
       ASSERT_EQ(host.device.alive(), alive) << "allocation " << number;
       ASSERT_EQ(host.device.memory_bytes(), device_bytes) << "allocation " << number;
@@ -149,12 +150,14 @@ TEST_F(HostMemory, FailedReload_KeepsTheGraph) {
 TEST_F(HostMemory, FailedShaderReload_KeepsTheGraph) {
   make_graph();
   uint32_t requested = 0;
-  if (dermis_graph_reload_shaders(host.graph, open_kernel, &requested, nullptr) == DERMIS_ERROR_UNSUPPORTED)
+  if (dermis_graph_reload_shaders(host.graph, open_kernel, &requested, nullptr) ==
+      DERMIS_ERROR_UNSUPPORTED)
     GTEST_SKIP() << "this library compiles no shaders; test_shared_shaders is the one that does";
   still_records();
   ASSERT_OK(dermis_graph_reload_shaders(host.graph, nullptr, nullptr, nullptr));
   reject_each(
-      step(), [&] { return dermis_graph_reload_shaders(host.graph, open_kernel, &requested, nullptr); },
+      step(),
+      [&] { return dermis_graph_reload_shaders(host.graph, open_kernel, &requested, nullptr); },
       [&] { still_records(); });
   EXPECT_GT(requested, 0u);
 }
@@ -236,7 +239,8 @@ TEST_F(HostMemory, FailedCommandList_LeavesNoFrame) {
     const dermis_result result = dermis_view_commands(view, &frame, &count, &commands);
     heap.rejected = 0;
     if (result != DERMIS_OK) {
-      ASSERT_EQ(result, DERMIS_ERROR_MEMORY) << "allocation " << number << ": " << dermis_last_error();
+      ASSERT_EQ(result, DERMIS_ERROR_MEMORY)
+          << "allocation " << number << ": " << dermis_last_error();
       EXPECT_EQ(count, 0u);
       EXPECT_EQ(commands, nullptr);
       EXPECT_OK(dermis_view_commands(view, &frame, &count, &commands));
@@ -278,7 +282,8 @@ TEST_F(HostMemory, FailedQuery_CanBeRepeated) {
       ASSERT_EQ(heap.blocks, blocks) << "allocation " << number;
       if (result == DERMIS_OK) break;
       ++refusals;
-      ASSERT_EQ(result, DERMIS_ERROR_MEMORY) << "allocation " << number << ": " << dermis_last_error();
+      ASSERT_EQ(result, DERMIS_ERROR_MEMORY)
+          << "allocation " << number << ": " << dermis_last_error();
     }
   EXPECT_GT(refusals, 50u);
   still_records();
@@ -301,10 +306,12 @@ TEST_F(HostMemory, RecordingAFrame_AllocatesNothing) {
 TEST_F(HostMemory, HalfAnAllocatorIsRejected) {
   host.destroy();
   allocator.free = nullptr;
-  EXPECT_THAT(host.make_context(with_heap()), Fails(DERMIS_ERROR_ARGUMENT, "desc.allocator.free is NULL"));
+  EXPECT_THAT(host.make_context(with_heap()),
+              Fails(DERMIS_ERROR_ARGUMENT, "desc.allocator.free is NULL"));
   allocator = heap.allocator();
   allocator.struct_size = 3;
-  EXPECT_THAT(host.make_context(with_heap()), Fails(DERMIS_ERROR_ARGUMENT, "desc.allocator.struct_size"));
+  EXPECT_THAT(host.make_context(with_heap()),
+              Fails(DERMIS_ERROR_ARGUMENT, "desc.allocator.struct_size"));
 }
 
 } // namespace

@@ -42,12 +42,13 @@ struct Inputs : DermisTest {
   }
   // Makes a depth buffer with one value, like a cleared one; the view has only the depth aspect.
   demo::Image depth_buffer(VkFormat format, VkImageUsageFlags usage, float value) {
-    const bool stencil = format == VK_FORMAT_D24_UNORM_S8_UINT || format == VK_FORMAT_D32_SFLOAT_S8_UINT;
+    const bool stencil =
+        format == VK_FORMAT_D24_UNORM_S8_UINT || format == VK_FORMAT_D32_SFLOAT_S8_UINT;
     demo::Image image;
     image.host = host.get();
     image.format = format;
-    image.aspect =
-        VK_IMAGE_ASPECT_DEPTH_BIT | (stencil ? VkImageAspectFlags{VK_IMAGE_ASPECT_STENCIL_BIT} : 0u);
+    image.aspect = VK_IMAGE_ASPECT_DEPTH_BIT |
+                   (stencil ? VkImageAspectFlags{VK_IMAGE_ASPECT_STENCIL_BIT} : 0u);
     image.width = image.height = 64;
     VkImageCreateInfo info{};
     info.sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO;
@@ -56,7 +57,8 @@ struct Inputs : DermisTest {
     info.extent = {64, 64, 1};
     info.mipLevels = info.arrayLayers = 1;
     info.samples = VK_SAMPLE_COUNT_1_BIT;
-    info.usage = usage | VK_IMAGE_USAGE_TRANSFER_DST_BIT | VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT;
+    info.usage =
+        usage | VK_IMAGE_USAGE_TRANSFER_DST_BIT | VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT;
     EXPECT_EQ(host->vk.vkCreateImage(host->device, &info, nullptr, &image.image), VK_SUCCESS);
     VkMemoryRequirements needs{};
     host->vk.vkGetImageMemoryRequirements(host->device, image.image, &needs);
@@ -64,7 +66,8 @@ struct Inputs : DermisTest {
     allocate.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO;
     allocate.allocationSize = needs.size;
     allocate.memoryTypeIndex = demo::find_memory_type(*host, needs.memoryTypeBits, 0, 0);
-    EXPECT_EQ(host->vk.vkAllocateMemory(host->device, &allocate, nullptr, &image.memory), VK_SUCCESS);
+    EXPECT_EQ(host->vk.vkAllocateMemory(host->device, &allocate, nullptr, &image.memory),
+              VK_SUCCESS);
     EXPECT_EQ(host->vk.vkBindImageMemory(host->device, image.image, image.memory, 0), VK_SUCCESS);
     VkImageViewCreateInfo view{};
     view.sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO;
@@ -77,7 +80,8 @@ struct Inputs : DermisTest {
       demo::transition(*host, commands, image, {}, resting);
       const VkClearDepthStencilValue to{value, 0};
       const VkImageSubresourceRange all{image.aspect, 0, 1, 0, 1};
-      host->vk.vkCmdClearDepthStencilImage(commands, image.image, VK_IMAGE_LAYOUT_GENERAL, &to, 1, &all);
+      host->vk.vkCmdClearDepthStencilImage(commands, image.image, VK_IMAGE_LAYOUT_GENERAL, &to, 1,
+                                           &all);
       return demo::success();
     });
     EXPECT_TRUE(cleared) << cleared.error().text;
@@ -126,10 +130,12 @@ double largest_difference(const std::vector<float>& a, const std::vector<float>&
 TEST_F(Inputs, DepthFormatsAndDirections_GiveEqualLight) {
   constexpr float metres = 0.5f;
   const auto expected = wall_in_units(metres);
-  EXPECT_GT(largest_difference(expected, wall_in_units(2 * metres)), 0.02) << "the distance matters";
+  EXPECT_GT(largest_difference(expected, wall_in_units(2 * metres)), 0.02)
+      << "the distance matters";
   uint32_t tried = 0;
-  for (const VkFormat format : {VK_FORMAT_D32_SFLOAT, VK_FORMAT_X8_D24_UNORM_PACK32, VK_FORMAT_D16_UNORM,
-                                VK_FORMAT_D24_UNORM_S8_UINT, VK_FORMAT_D32_SFLOAT_S8_UINT}) {
+  for (const VkFormat format :
+       {VK_FORMAT_D32_SFLOAT, VK_FORMAT_X8_D24_UNORM_PACK32, VK_FORMAT_D16_UNORM,
+        VK_FORMAT_D24_UNORM_S8_UINT, VK_FORMAT_D32_SFLOAT_S8_UINT}) {
     if (!can_be(format)) continue;
     ++tried;
     for (const Direction direction : {Direction::forward, Direction::reversed_infinite})
@@ -137,7 +143,8 @@ TEST_F(Inputs, DepthFormatsAndDirections_GiveEqualLight) {
       // 8e-5 of the distance and of a kernel's width; light changes by less. The rest is one
       // rounding to half floats after each of three passes, 2^-12 each where light is 1.
       EXPECT_LT(largest_difference(wall(format, direction, metres), expected), 8e-5 + 3.0 / 4096)
-          << "VkFormat " << format << (direction == Direction::forward ? ", forward" : ", reversed");
+          << "VkFormat " << format
+          << (direction == Direction::forward ? ", forward" : ", reversed");
   }
   EXPECT_GE(tried, 3u) << "the software driver has at least d32f, d24 and d16";
 }
@@ -178,7 +185,8 @@ TEST_F(Inputs, PreExposedLight_ScattersEqually) {
     ASSERT_FALSE(after.empty()) << name;
     double largest = 0;
     for (size_t i = 0; i < after.size(); ++i)
-      if (i % 4 != 3) largest = std::max(largest, std::abs(double(before[i]) / factor - double(after[i])));
+      if (i % 4 != 3)
+        largest = std::max(largest, std::abs(double(before[i]) / factor - double(after[i])));
     // The ratio compares logarithms of light, which round differently at another level: at most one
     // step of a half float between 0.25 and 0.5.
     EXPECT_LE(largest, std::string_view(name) == "sap_residual" ? 1.0 / 4096 : 0) << name;

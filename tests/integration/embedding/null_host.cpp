@@ -64,8 +64,9 @@ dermis_image_binding NullHost::image_for(const dermis_slot& slot) {
   binding.height = slot.height;
   binding.image = device.make_image();
   binding.view = device.make_view();
-  binding.before = binding.after = {VK_IMAGE_LAYOUT_GENERAL, 0, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
-                                    VK_ACCESS_2_MEMORY_WRITE_BIT, 0};
+  binding.before =
+      binding.after = {VK_IMAGE_LAYOUT_GENERAL, 0, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
+                       VK_ACCESS_2_MEMORY_WRITE_BIT, 0};
   return binding;
 }
 
@@ -119,9 +120,10 @@ dermis_result NullHost::record(dermis_view view, uint64_t index) const {
 }
 
 uint32_t DERMIS_CALL open_kernel(void* user, const char* name, dermis_source* source) {
-  static const std::string text = "#version 460\n#extension GL_GOOGLE_include_directive : require\n"
-                                  "#include \"common/subsurface_combine.bindings.glsl\"\n"
-                                  "layout(local_size_x = 8, local_size_y = 8) in;\nvoid main() {}\n";
+  static const std::string text =
+      "#version 460\n#extension GL_GOOGLE_include_directive : require\n"
+      "#include \"common/subsurface_combine.bindings.glsl\"\n"
+      "layout(local_size_x = 8, local_size_y = 8) in;\nvoid main() {}\n";
   if (std::string(name) != "common/subsurface_combine.comp") return 0;
   ++*static_cast<uint32_t*>(user);
   source->text = text.data();

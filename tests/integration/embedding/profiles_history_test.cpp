@@ -22,8 +22,9 @@ struct ProfilesOfHistories : TwoViewsTest, ::testing::WithParamInterface<History
 
   std::vector<float> run_frame(dermis_view view, uint64_t index, bool swapped, uint32_t flags) {
     fill("material", [&](uint32_t x, uint32_t y) { return profile_at(x, y, swapped); });
-    fill("lighting",
-         [&](uint32_t x, uint32_t y) { return float(index) * float(8 + (x * 7 + y * 3) % 32) / 64; });
+    fill("lighting", [&](uint32_t x, uint32_t y) {
+      return float(index) * float(8 + (x * 7 + y * 3) % 32) / 64;
+    });
     dermis_frame one = bound_frame(graph, side, side);
     one.flags = flags;
     rest(one);

@@ -22,15 +22,20 @@ struct Rectangles : TwoViewsTest, ::testing::WithParamInterface<const char*> {
   // contain values that must not be read.
   void fill_around(const RenderedPart& rectangle, bool hostile) {
     const auto put = [&](const std::string& slot, float outside, auto inside) {
-      fill(slot,
-           [&](uint32_t x, uint32_t y) { return hostile && !rectangle.has(x, y) ? outside : inside(x, y); });
+      fill(slot, [&](uint32_t x, uint32_t y) {
+        return hostile && !rectangle.has(x, y) ? outside : inside(x, y);
+      });
     };
-    put("lighting", glare, [](uint32_t x, uint32_t y) { return float(8 + (x * 7 + y * 3) % 32) / 32; });
-    put("depth", 0.4990234375f, [](uint32_t x, uint32_t y) { return 0.5f + float(x % 5 + y % 3) / 8192; });
-    put("material", 1, [](uint32_t x, uint32_t y) { return x % 13 == 0 && y % 11 == 0 ? 0.0f : 1.0f; });
+    put("lighting", glare,
+        [](uint32_t x, uint32_t y) { return float(8 + (x * 7 + y * 3) % 32) / 32; });
+    put("depth", 0.4990234375f,
+        [](uint32_t x, uint32_t y) { return 0.5f + float(x % 5 + y % 3) / 8192; });
+    put("material", 1,
+        [](uint32_t x, uint32_t y) { return x % 13 == 0 && y % 11 == 0 ? 0.0f : 1.0f; });
   }
   // Runs two frames, of which the second has a history, and returns the light.
-  std::vector<float> run(dermis_view view, const RenderedPart& rectangle, bool hostile, uint64_t first) {
+  std::vector<float> run(dermis_view view, const RenderedPart& rectangle, bool hostile,
+                         uint64_t first) {
     for (uint64_t i = 0; i < 2; ++i) {
       fill_around(rectangle, hostile);
       dermis_frame one = bound_frame(graph, rectangle.width, rectangle.height);
@@ -50,7 +55,8 @@ TEST_P(Rectangles, NothingOutsideIsReadOrWritten) {
   make(read_text(dermis::shipped::graph_file(GetParam())), {}, side);
   uint64_t index = 1;
   for (uint32_t rest_of_tile = 0; rest_of_tile < 8; ++rest_of_tile) {
-    const RenderedPart rectangle{.width = 16 + rest_of_tile, .height = 24 + (rest_of_tile * 3 + 7) % 8};
+    const RenderedPart rectangle{.width = 16 + rest_of_tile,
+                                 .height = 24 + (rest_of_tile * 3 + 7) % 8};
     const std::string where =
         std::to_string(rectangle.width) + "x" + std::to_string(rectangle.height) + " pixels, at ";
     const std::vector<float> plain = run(nullptr, rectangle, false, index);
@@ -76,9 +82,10 @@ TEST_P(Rectangles, NothingOutsideIsReadOrWritten) {
 }
 
 INSTANTIATE_TEST_SUITE_P(, Rectangles,
-                         ::testing::Values("burley", "afis", "afis_guided", "afis_seed", "fixed", "separable",
-                                           "separable_jimenez", "sap", "sap_layered", "sap_blend",
-                                           "sap_residual", "pyramid", "hybrid", "hybrid_afis_separable"),
+                         ::testing::Values("burley", "afis", "afis_guided", "afis_seed", "fixed",
+                                           "separable", "separable_jimenez", "sap", "sap_layered",
+                                           "sap_blend", "sap_residual", "pyramid", "hybrid",
+                                           "hybrid_afis_separable"),
                          [](const auto& of) { return std::string(of.param); });
 
 } // namespace

@@ -47,8 +47,8 @@ struct SceneBindings : ::testing::Test {
   void SetUp() override {
     ASSERT_OK(host.make_context(host.context_desc()));
     const dermis_port ports[] = {port_of("scene", DERMIS_PORT_ACCELERATION_STRUCTURE),
-                                 port_of("vertices", DERMIS_PORT_STORAGE_BUFFER_READ), port_of("light"),
-                                 port_of("out", DERMIS_PORT_STORAGE_IMAGE_WRITE)};
+                                 port_of("vertices", DERMIS_PORT_STORAGE_BUFFER_READ),
+                                 port_of("light"), port_of("out", DERMIS_PORT_STORAGE_IMAGE_WRITE)};
     const dermis_pass_type type = pass_type_of("studio.trace", ports, keep_ports, &seen);
     ASSERT_OK(dermis_register_pass_type(host.context, &type));
     const std::string text = traced;
@@ -71,7 +71,8 @@ struct SceneBindings : ::testing::Test {
     vertices.after = {VK_IMAGE_LAYOUT_UNDEFINED, 0, VK_PIPELINE_STAGE_2_VERTEX_SHADER_BIT,
                       VK_ACCESS_2_SHADER_STORAGE_READ_BIT, 0};
     scene.structure = handle<VkAccelerationStructureKHR>(0x52);
-    scene.before = {VK_IMAGE_LAYOUT_UNDEFINED, 0, VK_PIPELINE_STAGE_2_ACCELERATION_STRUCTURE_BUILD_BIT_KHR,
+    scene.before = {VK_IMAGE_LAYOUT_UNDEFINED, 0,
+                    VK_PIPELINE_STAGE_2_ACCELERATION_STRUCTURE_BUILD_BIT_KHR,
                     VK_ACCESS_2_ACCELERATION_STRUCTURE_WRITE_BIT_KHR, 0};
     scene.after = scene.before;
   }
@@ -156,10 +157,12 @@ TEST_F(SceneBindings, WrongBindings_AreRejectedByName) {
       {"nothing is bound to 'vertices'", [](auto&, auto& f) { f.buffer_count = 0; }},
       {"nothing is bound to 'scene'", [](auto&, auto& f) { f.structure_count = 0; }},
       {"buffers is NULL and its count is 1", [](auto&, auto& f) { f.buffers = nullptr; }},
-      {"buffers[0].buffer ('vertices') is null", [](auto& t, auto&) { t.vertices.buffer = VK_NULL_HANDLE; }},
+      {"buffers[0].buffer ('vertices') is null",
+       [](auto& t, auto&) { t.vertices.buffer = VK_NULL_HANDLE; }},
       {"buffers[0].bytes ('vertices') is 64, the graph needs at least 96",
        [](auto& t, auto&) { t.vertices.bytes = 64; }},
-      {"is 100, no multiple of the 32 bytes of an element", [](auto& t, auto&) { t.vertices.bytes = 100; }},
+      {"is 100, no multiple of the 32 bytes of an element",
+       [](auto& t, auto&) { t.vertices.bytes = 100; }},
       {"buffers[0].offset ('vertices') is 1, expected a multiple",
        [](auto& t, auto&) { t.vertices.offset = 1; }},
       {"binds a buffer to slot 0 ('scene'), which takes an acceleration structure",
@@ -170,7 +173,8 @@ TEST_F(SceneBindings, WrongBindings_AreRejectedByName) {
        [](auto& t, auto&) { t.images[0].slot = t.vertices.slot; }},
       {"structures[0].structure ('scene') is null",
        [](auto& t, auto&) { t.scene.structure = VK_NULL_HANDLE; }},
-      {"structures[0].slot is 9, the graph has slots 0..3", [](auto& t, auto&) { t.scene.slot = 9; }},
+      {"structures[0].slot is 9, the graph has slots 0..3",
+       [](auto& t, auto&) { t.scene.slot = 9; }},
       {"structures[0].before.layout ('scene') is 1, expected UNDEFINED",
        [](auto& t, auto&) { t.scene.before.layout = VK_IMAGE_LAYOUT_GENERAL; }},
       {"structures[0].after ('scene'): transfer is 1, expected 0",
@@ -202,8 +206,9 @@ TEST_F(SceneBindings, RayQueryFlag_NeedsADeviceWithRayQueries) {
   dermis_context_desc desc = host.context_desc();
   desc.flags |= DERMIS_CONTEXT_RAY_QUERY;
   dermis_context other = nullptr;
-  EXPECT_THAT(dermis_context_create(&desc, &other),
-              Fails(DERMIS_ERROR_UNSUPPORTED, "rayQuery", VK_KHR_ACCELERATION_STRUCTURE_EXTENSION_NAME));
+  EXPECT_THAT(
+      dermis_context_create(&desc, &other),
+      Fails(DERMIS_ERROR_UNSUPPORTED, "rayQuery", VK_KHR_ACCELERATION_STRUCTURE_EXTENSION_NAME));
 }
 
 } // namespace

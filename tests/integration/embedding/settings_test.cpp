@@ -12,7 +12,8 @@ namespace {
 // Stores the settings of the call's pass under its name.
 using Calls = std::map<std::string, std::vector<double>>;
 void DERMIS_CALL keep(void* user, const dermis_pass_call* call) {
-  (*static_cast<Calls*>(user))[call->pass].assign(call->settings, call->settings + call->setting_count);
+  (*static_cast<Calls*>(user))[call->pass].assign(call->settings,
+                                                  call->settings + call->setting_count);
 }
 
 // Registers two pass types of the host. Only "weight" of studio.mix can change per frame.
@@ -53,7 +54,8 @@ std::vector<dermis_setting> settings_of(dermis_graph graph) {
 }
 
 dermis_setting named(const std::vector<dermis_setting>& all, std::string_view name) {
-  const auto found = std::ranges::find_if(all, [&](const dermis_setting& one) { return one.name == name; });
+  const auto found =
+      std::ranges::find_if(all, [&](const dermis_setting& one) { return one.name == name; });
   EXPECT_NE(found, all.end()) << name;
   return found != all.end() ? *found : dermis_setting DERMIS_SETTING_INIT;
 }
@@ -70,7 +72,8 @@ struct Settings : ::testing::Test {
     desc.profiles = &profile;
     desc.profile_count = 1;
     dermis_report report = nullptr;
-    ASSERT_OK(dermis_graph_create(host.context, &desc, &host.graph, &report)) << dermis_report_text(report);
+    ASSERT_OK(dermis_graph_create(host.context, &desc, &host.graph, &report))
+        << dermis_report_text(report);
     dermis_report_destroy(report);
   }
   void make_with_view() {
@@ -197,10 +200,12 @@ TEST_F(Settings, ViewSettings_SurviveAReloadThatAcceptsThem) {
   EXPECT_EQ(weight_of_view("one"), 0.75);
   std::string lower = graph_text;
   const std::string range = R"("weight": { "real": 0.5, "min": 0, "max": 1 })";
-  lower.replace(lower.find(range), range.size(), R"("weight": { "real": 0.5, "min": 0, "max": 0.6 })");
+  lower.replace(lower.find(range), range.size(),
+                R"("weight": { "real": 0.5, "min": 0, "max": 0.6 })");
   dermis_report report = nullptr;
   ASSERT_OK(reload_text(host.graph, source_of(lower, "graph.json"), &report));
-  EXPECT_THAT(dermis_report_text(report), HasSubstr("setting 'weight' = 0.75 of a view is not carried over"));
+  EXPECT_THAT(dermis_report_text(report),
+              HasSubstr("setting 'weight' = 0.75 of a view is not carried over"));
   dermis_report_destroy(report);
   EXPECT_EQ(weight_of_view("one"), 0.5);
 }
@@ -209,7 +214,8 @@ TEST_F(Settings, GraphSetting_IsRejectedForAView) {
   make_with_view();
   for (const char* name : {"on", "count", "how", "radius", "both", "threshold"}) {
     EXPECT_THAT(dermis_view_set_setting(view, name, "1", nullptr),
-                Fails(DERMIS_ERROR_ARGUMENT, "setting '" + std::string(name) + "' belongs to the graph",
+                Fails(DERMIS_ERROR_ARGUMENT,
+                      "setting '" + std::string(name) + "' belongs to the graph",
                       "A view can have its own value of 'weight'"))
         << name;
   }

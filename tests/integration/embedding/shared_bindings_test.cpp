@@ -63,7 +63,8 @@ struct SharedBindings : ::testing::Test {
         images.push_back(host.image_for(slot));
       } else if (slot.type == DERMIS_SLOT_BUFFER) {
         place[slot.name] = buffers.size();
-        dermis_buffer_binding& one = buffers.emplace_back(dermis_buffer_binding DERMIS_BUFFER_BINDING_INIT);
+        dermis_buffer_binding& one =
+            buffers.emplace_back(dermis_buffer_binding DERMIS_BUFFER_BINDING_INIT);
         one.slot = slot.id;
         one.buffer = null_handle<VkBuffer>(++number);
         one.bytes = 64;
@@ -76,7 +77,8 @@ struct SharedBindings : ::testing::Test {
             dermis_acceleration_structure_binding DERMIS_ACCELERATION_STRUCTURE_BINDING_INIT);
         one.slot = slot.id;
         one.structure = null_handle<VkAccelerationStructureKHR>(++number);
-        one.before = {VK_IMAGE_LAYOUT_UNDEFINED, 0, VK_PIPELINE_STAGE_2_ACCELERATION_STRUCTURE_BUILD_BIT_KHR,
+        one.before = {VK_IMAGE_LAYOUT_UNDEFINED, 0,
+                      VK_PIPELINE_STAGE_2_ACCELERATION_STRUCTURE_BUILD_BIT_KHR,
                       VK_ACCESS_2_ACCELERATION_STRUCTURE_WRITE_BIT_KHR, 0};
         one.after = one.before;
       }
@@ -118,7 +120,9 @@ struct SharedBindings : ::testing::Test {
     EXPECT_THAT(record(), Fails(DERMIS_ERROR_ARGUMENT, a, b, "bound to the same"));
   }
   dermis_buffer_binding& buffer(const char* name) { return buffers[place.at(name)]; }
-  dermis_acceleration_structure_binding& structure(const char* name) { return structures[place.at(name)]; }
+  dermis_acceleration_structure_binding& structure(const char* name) {
+    return structures[place.at(name)];
+  }
   dermis_image_binding& image(const char* name) { return images[place.at(name)]; }
 };
 

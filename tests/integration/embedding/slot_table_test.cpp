@@ -62,24 +62,25 @@ std::string need_in(const TableRow& row, const std::string& graph) {
 }
 
 VkFormat format_named(const std::string& name) {
-  static const std::map<std::string, VkFormat> formats = {{"rgba16f", VK_FORMAT_R16G16B16A16_SFLOAT},
-                                                          {"rgba32f", VK_FORMAT_R32G32B32A32_SFLOAT},
-                                                          {"b10g11r11f", VK_FORMAT_B10G11R11_UFLOAT_PACK32},
-                                                          {"d32f", VK_FORMAT_D32_SFLOAT},
-                                                          {"d24", VK_FORMAT_X8_D24_UNORM_PACK32},
-                                                          {"d16", VK_FORMAT_D16_UNORM},
-                                                          {"d24s8", VK_FORMAT_D24_UNORM_S8_UINT},
-                                                          {"d32fs8", VK_FORMAT_D32_SFLOAT_S8_UINT},
-                                                          {"r32f", VK_FORMAT_R32_SFLOAT},
-                                                          {"r16f", VK_FORMAT_R16_SFLOAT},
-                                                          {"r8_unorm", VK_FORMAT_R8_UNORM},
-                                                          {"r8_uint", VK_FORMAT_R8_UINT},
-                                                          {"r16_uint", VK_FORMAT_R16_UINT},
-                                                          {"r32_uint", VK_FORMAT_R32_UINT},
-                                                          {"rgba8_srgb", VK_FORMAT_R8G8B8A8_SRGB},
-                                                          {"rgba8_unorm", VK_FORMAT_R8G8B8A8_UNORM},
-                                                          {"rg16f", VK_FORMAT_R16G16_SFLOAT},
-                                                          {"rg32f", VK_FORMAT_R32G32_SFLOAT}};
+  static const std::map<std::string, VkFormat> formats = {
+      {"rgba16f", VK_FORMAT_R16G16B16A16_SFLOAT},
+      {"rgba32f", VK_FORMAT_R32G32B32A32_SFLOAT},
+      {"b10g11r11f", VK_FORMAT_B10G11R11_UFLOAT_PACK32},
+      {"d32f", VK_FORMAT_D32_SFLOAT},
+      {"d24", VK_FORMAT_X8_D24_UNORM_PACK32},
+      {"d16", VK_FORMAT_D16_UNORM},
+      {"d24s8", VK_FORMAT_D24_UNORM_S8_UINT},
+      {"d32fs8", VK_FORMAT_D32_SFLOAT_S8_UINT},
+      {"r32f", VK_FORMAT_R32_SFLOAT},
+      {"r16f", VK_FORMAT_R16_SFLOAT},
+      {"r8_unorm", VK_FORMAT_R8_UNORM},
+      {"r8_uint", VK_FORMAT_R8_UINT},
+      {"r16_uint", VK_FORMAT_R16_UINT},
+      {"r32_uint", VK_FORMAT_R32_UINT},
+      {"rgba8_srgb", VK_FORMAT_R8G8B8A8_SRGB},
+      {"rgba8_unorm", VK_FORMAT_R8G8B8A8_UNORM},
+      {"rg16f", VK_FORMAT_R16G16_SFLOAT},
+      {"rg32f", VK_FORMAT_R32G32_SFLOAT}};
   const auto found = formats.find(name);
   EXPECT_NE(found, formats.end()) << name;
   return found == formats.end() ? VK_FORMAT_UNDEFINED : found->second;
@@ -92,12 +93,14 @@ template <class Handle> Handle invented(uint64_t number) {
   return out;
 }
 
-constexpr dermis_image_state no_image{VK_IMAGE_LAYOUT_UNDEFINED, 0, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
+constexpr dermis_image_state no_image{VK_IMAGE_LAYOUT_UNDEFINED, 0,
+                                      VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
                                       VK_ACCESS_2_MEMORY_WRITE_BIT, 0};
 
 // Runs one frame of configs/graphs/<name>.json with the table's bindings: each required slot, and
 // with `with_optional` the optional slots. `choice` counts through the formats of each slot.
-void follow(const std::vector<TableRow>& table, const std::string& name, bool with_optional, size_t choice) {
+void follow(const std::vector<TableRow>& table, const std::string& name, bool with_optional,
+            size_t choice) {
   SCOPED_TRACE(name + (with_optional ? ", all slots" : ", required slots") + ", format " +
                std::to_string(choice));
   NullHost host;
@@ -129,8 +132,10 @@ void follow(const std::vector<TableRow>& table, const std::string& name, bool wi
   graph.unbound = unbound.data();
   graph.unbound_count = static_cast<uint32_t>(unbound.size());
   dermis_report report = nullptr;
-  ASSERT_OK(dermis_graph_create(host.context, &graph, &host.graph, &report)) << dermis_report_text(report);
-  EXPECT_THAT(dermis_report_text(report), Not(HasSubstr("D06"))) << "the graph knows every name of the table";
+  ASSERT_OK(dermis_graph_create(host.context, &graph, &host.graph, &report))
+      << dermis_report_text(report);
+  EXPECT_THAT(dermis_report_text(report), Not(HasSubstr("D06")))
+      << "the graph knows every name of the table";
   dermis_report_destroy(report);
 
   std::vector<dermis_image_binding> images;

@@ -30,7 +30,8 @@ struct TwoViewsTest : DermisTest {
         options.unbound.emplace_back(name);
     if (!overlays.empty() && bound != "velocity") options.unbound.emplace_back("velocity");
     graph = make_graph(options);
-    ASSERT_EQ(dermis_view_create(graph, nullptr, &other, nullptr), DERMIS_OK) << dermis_last_error();
+    ASSERT_EQ(dermis_view_create(graph, nullptr, &other, nullptr), DERMIS_OK)
+        << dermis_last_error();
     make_images(graph);
   }
 

@@ -10,7 +10,9 @@ namespace {
 using Recorder = std::function<dermis_result(const dermis_frame*)>;
 
 Recorder recorder_of(dermis_graph graph) {
-  return [graph](const dermis_frame* frame) { return dermis_view_record(dermis_graph_view(graph), frame); };
+  return [graph](const dermis_frame* frame) {
+    return dermis_view_record(dermis_graph_view(graph), frame);
+  };
 }
 Recorder recorder_of(dermis_view view) {
   return [view](const dermis_frame* frame) { return dermis_view_record(view, frame); };
@@ -32,8 +34,9 @@ struct Views : CameraTest {
   using Change = std::function<void(dermis_graph, uint64_t)>;
   static void nothing(dermis_graph, uint64_t) {}
 
-  void run(dermis_graph graph, const std::vector<Recorder>& recorders, const std::vector<Camera>& cameras,
-           const std::vector<size_t>& numbers, uint64_t count, const Change& change) {
+  void run(dermis_graph graph, const std::vector<Recorder>& recorders,
+           const std::vector<Camera>& cameras, const std::vector<size_t>& numbers, uint64_t count,
+           const Change& change) {
     wait();
     for (uint64_t index = 1; index <= count; ++index) {
       change(graph, index);
@@ -105,7 +108,8 @@ TEST_F(Views, Reload_KeepsTheHistoryOfEach) {
   };
   const auto light = together(3, last, reload);
   for (size_t c = 0; c < light.size(); ++c)
-    EXPECT_TRUE(light[c] == rendered_alone(c, last, nothing)) << "camera " << c << " notices the reload";
+    EXPECT_TRUE(light[c] == rendered_alone(c, last, nothing))
+        << "camera " << c << " notices the reload";
 }
 
 TEST_F(Views, Resize_AppliesToAll) {
@@ -141,8 +145,8 @@ TEST_F(Views, DiscardedFrame_ChangesNoView) {
   for (uint64_t index = 1; index <= 6; ++index) {
     dermis_frame first = frame_of(cameras[0], index), second = frame_of(cameras[1], index);
     if (index == 4) { // Recorded and thrown away.
-      const auto begin =
-          demo::vulkan_struct<VkCommandBufferBeginInfo>(VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO);
+      const auto begin = demo::vulkan_struct<VkCommandBufferBeginInfo>(
+          VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO);
       VkCommandBuffer thrown = commands[index % frames];
       wait();
       ASSERT_EQ(host->vk.vkBeginCommandBuffer(thrown, &begin), VK_SUCCESS);
@@ -184,8 +188,8 @@ TEST_F(Views, CanBeCreatedAndDestroyedWhileOthersRun) {
         dermis_frame frame = frame_of(cameras[c], index);
         frame.command_buffer = into;
         if (c == 1 && view == nullptr) continue;
-        const dermis_result result =
-            c == 0 ? dermis_view_record(dermis_graph_view(graph), &frame) : dermis_view_record(view, &frame);
+        const dermis_result result = c == 0 ? dermis_view_record(dermis_graph_view(graph), &frame)
+                                            : dermis_view_record(view, &frame);
         ASSERT_OK(result);
       }
     });
@@ -205,8 +209,8 @@ TEST_F(Views, CanUseLayersOfOneImage) {
   desc.format = flat.format;
   desc.width = desc.height = side;
   desc.layers = 2;
-  desc.usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT |
-               VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
+  desc.usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_STORAGE_BIT |
+               VK_IMAGE_USAGE_TRANSFER_DST_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
   auto made = demo::create_image(*host, desc);
   ASSERT_TRUE(made) << made.error().text;
   demo::Image both = made.take();
@@ -228,8 +232,8 @@ TEST_F(Views, CanUseLayersOfOneImage) {
         binding.layer = bound == &left_bound ? 0 : 1;
         binding.view = both.layer_views[binding.layer];
         binding.layer_count = 1;
-        binding.after.layout =
-            bound == &left_bound ? VK_IMAGE_LAYOUT_GENERAL : VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
+        binding.after.layout = bound == &left_bound ? VK_IMAGE_LAYOUT_GENERAL
+                                                    : VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
       }
   for (uint64_t index = 1; index <= last; ++index)
     submit(index, [&](VkCommandBuffer into) {
@@ -246,7 +250,8 @@ TEST_F(Views, CanUseLayersOfOneImage) {
   wait();
   // read_image() needs all layers in one layout.
   const auto settled = demo::run_commands(*host, [&](VkCommandBuffer into) -> demo::Result<> {
-    auto barrier = demo::vulkan_struct<VkImageMemoryBarrier2>(VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2);
+    auto barrier =
+        demo::vulkan_struct<VkImageMemoryBarrier2>(VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2);
     barrier.srcStageMask = barrier.dstStageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
     barrier.srcAccessMask = barrier.dstAccessMask =
         VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT;
@@ -304,7 +309,8 @@ TEST_F(Views, ReportSeparateTimesAndChoices) {
   std::vector<dermis_pass_timing> times(count, dermis_pass_timing DERMIS_PASS_TIMING_INIT);
   ASSERT_OK(dermis_view_timings(view, 1, &count, times.data()));
   EXPECT_EQ(times[0].frame_index, 1u);
-  EXPECT_EQ(dermis_view_timings(dermis_graph_view(graph), 0, &count, times.data()), DERMIS_NOT_READY);
+  EXPECT_EQ(dermis_view_timings(dermis_graph_view(graph), 0, &count, times.data()),
+            DERMIS_NOT_READY);
 }
 
 TEST_F(Views, WrongArgumentsAreNamed) {

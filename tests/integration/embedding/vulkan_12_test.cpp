@@ -12,7 +12,8 @@ struct Vulkan12 : CameraTest {
   void TearDown() override {}
 
   std::vector<float> light(bool as_vulkan_12) {
-    auto made = demo::create_vulkan_host({.validation = true, .device = "", .as_vulkan_12 = as_vulkan_12});
+    auto made =
+        demo::create_vulkan_host({.validation = true, .device = "", .as_vulkan_12 = as_vulkan_12});
     EXPECT_TRUE(made) << made.error().text;
     if (!made) return {};
     host = made.take();

@@ -67,7 +67,8 @@ namespace dermis::abi_test {
 namespace {
 
 std::string shipped_graph() {
-  std::ifstream file(std::string(DERMIS_SOURCE_DIR) + "/configs/graphs/burley.json", std::ios::binary);
+  std::ifstream file(std::string(DERMIS_SOURCE_DIR) + "/configs/graphs/burley.json",
+                     std::ios::binary);
   std::stringstream text;
   text << file.rdbuf();
   return text.str();
@@ -75,7 +76,8 @@ std::string shipped_graph() {
 
 // Calls `change` with its first allocation failing, then its second, until it succeeds: every one
 // of the first 300, then some.
-void fail_each(const std::function<dermis_result()>& change, const std::function<void(uint64_t)>& after) {
+void fail_each(const std::function<dermis_result()>& change,
+               const std::function<void(uint64_t)>& after) {
   constexpr uint64_t each_until = 300;
   const uint64_t step = dermis::testing::seeds_to_try(61, 1);
   uint64_t failures = 0;
@@ -85,7 +87,8 @@ void fail_each(const std::function<dermis_result()>& change, const std::function
     allocations.counting = false;
     if (result == DERMIS_OK) break;
     ++failures;
-    ASSERT_EQ(result, DERMIS_ERROR_MEMORY) << "allocation " << number << ": " << dermis_last_error();
+    ASSERT_EQ(result, DERMIS_ERROR_MEMORY)
+        << "allocation " << number << ": " << dermis_last_error();
     after(number);
   }
   EXPECT_GT(failures, 50u);
@@ -120,8 +123,9 @@ TEST_F(Allocation, RejectedFrameAllocatesNothing) {
 
 // The null device allocates from the same heap; HostMemory counts leaked objects.
 TEST_F(Allocation, EachFailureInAReloadIsReported) {
-  fail_each([&] { return host.reload(); },
-            [&](uint64_t number) { ASSERT_EQ(host.record(), DERMIS_OK) << "allocation " << number; });
+  fail_each(
+      [&] { return host.reload(); },
+      [&](uint64_t number) { ASSERT_EQ(host.record(), DERMIS_OK) << "allocation " << number; });
 }
 
 TEST_F(Allocation, HostAllocatorIsRejected) {

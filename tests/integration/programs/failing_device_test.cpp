@@ -75,7 +75,8 @@ TEST_P(FailingDevice, FailedResize_KeepsTheGraph) {
   ASSERT_EQ(host.open(input(64, 48)), "");
   ASSERT_OK(host.record_frame());
   uint32_t calls = 0; // The size changes each time, because a resize to the same size does nothing.
-  fail_each_creation(host, [&] { return dermis_graph_resize(host.graph(), 48 + ++calls % 2, 48, nullptr); });
+  fail_each_creation(
+      host, [&] { return dermis_graph_resize(host.graph(), 48 + ++calls % 2, 48, nullptr); });
 }
 
 TEST_P(FailingDevice, FailedReload_KeepsTheGraph) {
@@ -109,7 +110,8 @@ TEST_P(FailingDevice, ReplacedObjects_AreFreedAfterTheirFrames) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(ShippedGraphs, FailingDevice, ::testing::Values("burley", "separable", "sap"),
+INSTANTIATE_TEST_SUITE_P(ShippedGraphs, FailingDevice,
+                         ::testing::Values("burley", "separable", "sap"),
                          [](const auto& one) { return std::string(one.param); });
 
 } // namespace

@@ -46,16 +46,17 @@ uint32_t DERMIS_CALL open_in(void* user, const char* name, dermis_source* source
 // Line, column.
 std::pair<uint32_t, uint32_t> place_in(const std::string& text, const std::string& what) {
   const size_t at = text.find(what);
-  return {
-      static_cast<uint32_t>(std::count(text.begin(), text.begin() + static_cast<ptrdiff_t>(at), '\n') + 1),
-      static_cast<uint32_t>(at - text.rfind('\n', at))};
+  return {static_cast<uint32_t>(
+              std::count(text.begin(), text.begin() + static_cast<ptrdiff_t>(at), '\n') + 1),
+          static_cast<uint32_t>(at - text.rfind('\n', at))};
 }
 
 struct Shaders : DermisTest {
   Folder folder;
 
   void SetUp() override {
-    if (abi::shader_compiler().empty()) GTEST_SKIP() << "built without glslang (package glslang-dev)";
+    if (abi::shader_compiler().empty())
+      GTEST_SKIP() << "built without glslang (package glslang-dev)";
     DermisTest::SetUp();
   }
   dermis_graph make() {
@@ -194,8 +195,9 @@ TEST_F(Shaders, ErrorsAreReportedOncePerFile) {
 
 TEST_F(Shaders, OpenOnlyFilesOfTheirFolder) {
   const dermis_graph graph = make();
-  for (const char* include : {"\"../secret.glsl\"", "\"/etc/passwd\"", "\"a/../../b.glsl\"",
-                              "\"C:\\\\b.glsl\"", "\"./half.glsl\"", "<half.glsl>", "\"not_there.glsl\""}) {
+  for (const char* include :
+       {"\"../secret.glsl\"", "\"/etc/passwd\"", "\"a/../../b.glsl\"", "\"C:\\\\b.glsl\"",
+        "\"./half.glsl\"", "<half.glsl>", "\"not_there.glsl\""}) {
     folder.requested.clear();
     const std::string text =
         folder.change(combine, "#include \"common/half.glsl\"", std::string("#include ") + include);

@@ -37,7 +37,8 @@ struct Threads : ::testing::Test {
       EXPECT_EQ(host.reload("{ \"dermis\": 2"), DERMIS_ERROR_CONFIG);
       break;
     case 2:
-      EXPECT_OK(dermis_graph_resize(host.graph, 33 + static_cast<uint32_t>(number) % 20, 40, nullptr));
+      EXPECT_OK(
+          dermis_graph_resize(host.graph, 33 + static_cast<uint32_t>(number) % 20, 40, nullptr));
       break;
     case 3:
       EXPECT_OK(dermis_graph_set_setting(host.graph, "accumulate_weight", "0.25", nullptr));
@@ -53,7 +54,8 @@ struct Threads : ::testing::Test {
       break;
     case 6: {
       const dermis_result removed = dermis_graph_set_profile(host.graph, 1, nullptr, nullptr);
-      EXPECT_TRUE(removed == DERMIS_OK || removed == DERMIS_ERROR_ARGUMENT) << "another thread was first";
+      EXPECT_TRUE(removed == DERMIS_OK || removed == DERMIS_ERROR_ARGUMENT)
+          << "another thread was first";
       EXPECT_OK(host.set_profile(skin));
       break;
     }
@@ -112,8 +114,8 @@ TEST_F(Threads, ViewsRecordInThreadsWhileTheGraphChanges) {
     for (uint64_t index = 1; index <= frames; ++index) {
       ASSERT_OK(host.record(view, index));
       if (index % 16 == 0) {
-        ASSERT_OK(
-            dermis_view_set_setting(view, "accumulate_weight", index % 32 == 0 ? "0.5" : nullptr, nullptr));
+        ASSERT_OK(dermis_view_set_setting(view, "accumulate_weight",
+                                          index % 32 == 0 ? "0.5" : nullptr, nullptr));
       }
       demo::ReportedFrame choice;
       ASSERT_GE(demo::read_reported(view, index - 1, choice), DERMIS_OK) << dermis_last_error();

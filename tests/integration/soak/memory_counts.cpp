@@ -30,11 +30,13 @@ void DERMIS_CALL release(void* user, void* memory, size_t size, size_t) {
   std::free(memory);
 }
 
-VkResult DERMIS_CALL take(void* user, const dermis_memory_request* request, dermis_memory_block* out) {
+VkResult DERMIS_CALL take(void* user, const dermis_memory_request* request,
+                          dermis_memory_block* out) {
   auto& counted = *static_cast<CountedDeviceMemory*>(user);
   VkPhysicalDeviceMemoryProperties properties;
   vkGetPhysicalDeviceMemoryProperties(counted.host.physical_device, &properties);
-  const VkMemoryPropertyFlags required_flags[] = {request->required | request->preferred, request->required};
+  const VkMemoryPropertyFlags required_flags[] = {request->required | request->preferred,
+                                                  request->required};
   for (const VkMemoryPropertyFlags flags : required_flags)
     for (uint32_t type = 0; type < properties.memoryTypeCount; ++type) {
       const VkMemoryPropertyFlags has = properties.memoryTypes[type].propertyFlags;
@@ -42,11 +44,12 @@ VkResult DERMIS_CALL take(void* user, const dermis_memory_request* request, derm
       auto info = demo::vulkan_struct<VkMemoryAllocateInfo>(VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO);
       info.allocationSize = request->bytes;
       info.memoryTypeIndex = type;
-      VkResult result = counted.host.vk.vkAllocateMemory(counted.host.device, &info, nullptr, &out->memory);
+      VkResult result =
+          counted.host.vk.vkAllocateMemory(counted.host.device, &info, nullptr, &out->memory);
       if (result != VK_SUCCESS) return result;
       if ((has & VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT) != 0)
-        result =
-            counted.host.vk.vkMapMemory(counted.host.device, out->memory, 0, VK_WHOLE_SIZE, 0, &out->mapped);
+        result = counted.host.vk.vkMapMemory(counted.host.device, out->memory, 0, VK_WHOLE_SIZE, 0,
+                                             &out->mapped);
       out->offset = 0;
       out->user = std::bit_cast<void*>(static_cast<uintptr_t>(request->bytes));
       ++counted.blocks;
@@ -99,9 +102,11 @@ ProcessMemory process_memory() {
 #endif
   std::ifstream maps("/proc/self/maps");
   for (std::string line; std::getline(maps, line);) {
-    if (line.find(" r-xp ") == std::string::npos || line.find_first_of("/[") != std::string::npos) continue;
+    if (line.find(" r-xp ") == std::string::npos || line.find_first_of("/[") != std::string::npos)
+      continue;
     const std::string end = line.substr(line.find('-') + 1);
-    out.compiled += static_cast<int64_t>(std::stoull(end, nullptr, 16) - std::stoull(line, nullptr, 16));
+    out.compiled +=
+        static_cast<int64_t>(std::stoull(end, nullptr, 16) - std::stoull(line, nullptr, 16));
   }
   return out;
 }

@@ -35,8 +35,8 @@ std::array<std::atomic<uint64_t>, kind_count> made{}, gone{};
 
 template <Kind kind, auto member> struct Counted;
 template <Kind kind, class Info, class Handle,
-          VkResult (VKAPI_PTR* VolkDeviceTable::*member)(VkDevice, const Info*, const VkAllocationCallbacks*,
-                                                         Handle*)>
+          VkResult (VKAPI_PTR* VolkDeviceTable::*member)(VkDevice, const Info*,
+                                                         const VkAllocationCallbacks*, Handle*)>
 struct Counted<kind, member> { // Creates an object.
   static VKAPI_ATTR VkResult VKAPI_CALL call(VkDevice device, const Info* info,
                                              const VkAllocationCallbacks* allocator, Handle* out) {
@@ -46,7 +46,8 @@ struct Counted<kind, member> { // Creates an object.
   }
 };
 template <Kind kind, class Handle,
-          void (VKAPI_PTR* VolkDeviceTable::*member)(VkDevice, Handle, const VkAllocationCallbacks*)>
+          void (VKAPI_PTR* VolkDeviceTable::*member)(VkDevice, Handle,
+                                                     const VkAllocationCallbacks*)>
 struct Counted<kind, member> { // Destroys an object.
   static VKAPI_ATTR void VKAPI_CALL call(VkDevice device, Handle handle,
                                          const VkAllocationCallbacks* allocator) {
@@ -55,10 +56,13 @@ struct Counted<kind, member> { // Destroys an object.
   }
 };
 
-VKAPI_ATTR VkResult VKAPI_CALL create_pipelines(VkDevice device, VkPipelineCache cache, uint32_t count,
+VKAPI_ATTR VkResult VKAPI_CALL create_pipelines(VkDevice device, VkPipelineCache cache,
+                                                uint32_t count,
                                                 const VkComputePipelineCreateInfo* infos,
-                                                const VkAllocationCallbacks* allocator, VkPipeline* out) {
-  const VkResult result = driver->vkCreateComputePipelines(device, cache, count, infos, allocator, out);
+                                                const VkAllocationCallbacks* allocator,
+                                                VkPipeline* out) {
+  const VkResult result =
+      driver->vkCreateComputePipelines(device, cache, count, infos, allocator, out);
   for (uint32_t i = 0; i < count; ++i)
     made[pass_type_pipeline] += out[i] != VK_NULL_HANDLE;
   return result;
@@ -70,10 +74,10 @@ template <class Function> PFN_vkVoidFunction untyped(Function function) {
 
 PFN_vkVoidFunction VKAPI_CALL counting_device_proc_addr(VkDevice device, const char* name) {
   const std::string_view requested = name;
-#define SOAK_FIND(name)                                                                                      \
-  if (requested == "vkCreate" #name)                                                                         \
-    return untyped(&Counted<kind_##name, &VolkDeviceTable::vkCreate##name>::call);                           \
-  if (requested == "vkDestroy" #name)                                                                        \
+#define SOAK_FIND(name)                                                                            \
+  if (requested == "vkCreate" #name)                                                               \
+    return untyped(&Counted<kind_##name, &VolkDeviceTable::vkCreate##name>::call);                 \
+  if (requested == "vkDestroy" #name)                                                              \
     return untyped(&Counted<kind_##name, &VolkDeviceTable::vkDestroy##name>::call);
   SOAK_OBJECTS(SOAK_FIND)
 #undef SOAK_FIND

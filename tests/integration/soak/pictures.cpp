@@ -39,7 +39,8 @@ Surface draw_surface(SplitMix64& random) {
         surface.depth[i] = x < at ? plane_m : plane_m + 0.02f;
         break;
       case 2: // A ball in front of nothing.
-        surface.depth[i] = inside > 0 ? static_cast<float>(plane_m - 0.02 * std::sqrt(inside)) : 0.0f;
+        surface.depth[i] =
+            inside > 0 ? static_cast<float>(plane_m - 0.02 * std::sqrt(inside)) : 0.0f;
         surface.material[i] = inside > 0 ? 1.0f : 0.0f;
         break;
       case 3: // Hairs.
@@ -58,7 +59,8 @@ Surface draw_surface(SplitMix64& random) {
         surface.depth[i] = static_cast<float>(plane_m + 0.05 * dx);
         break;
       default: // Invalid depth on one side.
-        surface.depth[i] = x < at ? plane_m : (at % 2 == 0 ? -1.0f : std::numeric_limits<float>::infinity());
+        surface.depth[i] =
+            x < at ? plane_m : (at % 2 == 0 ? -1.0f : std::numeric_limits<float>::infinity());
         break;
       }
     }

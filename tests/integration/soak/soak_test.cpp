@@ -85,8 +85,8 @@ struct Soak : DermisTest {
   // Mesa's software driver destroys pipelines on a separate thread when other work is submitted.
   void let_the_driver_clean_up() {
     for (int i = 0; i < 3; ++i) {
-      const auto ran =
-          demo::run_commands(*host, [](VkCommandBuffer) -> demo::Result<> { return demo::success(); });
+      const auto ran = demo::run_commands(
+          *host, [](VkCommandBuffer) -> demo::Result<> { return demo::success(); });
       ASSERT_TRUE(ran) << ran.error().text;
       std::this_thread::sleep_for(std::chrono::milliseconds(100));
     }
@@ -98,7 +98,9 @@ struct Soak : DermisTest {
   }
 
   bool chance(double fraction) { return unit(random) < fraction; }
-  template <class List> const auto& any(const List& list) { return list[random.below(list.size())]; }
+  template <class List> const auto& any(const List& list) {
+    return list[random.below(list.size())];
+  }
 
   // Few sizes per round, because a driver may recompile kernels for each.
   void draw_sizes() {
@@ -108,7 +110,9 @@ struct Soak : DermisTest {
       sizes.emplace_back(1 + random.below(soak_side), 1 + random.below(soak_side));
   }
 
-  std::string text_of(const StageDesc& desc) { return read_text(dermis::shipped::graph_file(desc.graph)); }
+  std::string text_of(const StageDesc& desc) {
+    return read_text(dermis::shipped::graph_file(desc.graph));
+  }
 
   void create(const StageDesc& desc) {
     Stage stage;
@@ -166,7 +170,8 @@ struct Soak : DermisTest {
     show(stage.views.back());
   }
 
-  void put(SoakView& view, const std::string& slot, const std::vector<float>& texels, uint32_t channels) {
+  void put(SoakView& view, const std::string& slot, const std::vector<float>& texels,
+           uint32_t channels) {
     const auto image = view.images.find(slot);
     if (image == view.images.end()) return;
     const auto done = demo::upload_image(*host, image->second, texels, channels, between);
@@ -191,9 +196,9 @@ struct Soak : DermisTest {
                                     [&](const dermis_setting& one) { return one.name == name; });
     ASSERT_NE(found, settings.end()) << name;
     const dermis_result expected = found->per_frame != 0 ? DERMIS_OK : DERMIS_ERROR_ARGUMENT;
-    EXPECT_EQ(
-        dermis_view_set_setting(view, name.c_str(), chance(0.3) ? nullptr : any(values).c_str(), nullptr),
-        expected)
+    EXPECT_EQ(dermis_view_set_setting(view, name.c_str(),
+                                      chance(0.3) ? nullptr : any(values).c_str(), nullptr),
+              expected)
         << name << ": " << dermis_last_error();
     ++totals.view_settings;
   }
@@ -223,8 +228,8 @@ struct Soak : DermisTest {
       const std::string text =
           read_text(chance(0.5) ? "configs/profiles/wax.json" : "configs/profiles/jade.json");
       const dermis_source source = source_of(text, "profile.json");
-      EXPECT_OK(dermis_graph_set_profile(stage.graph, static_cast<uint32_t>(1 + random.below(2)), &source,
-                                         nullptr));
+      EXPECT_OK(dermis_graph_set_profile(stage.graph, static_cast<uint32_t>(1 + random.below(2)),
+                                         &source, nullptr));
       ++totals.profiles;
     }
     if (chance(0.03)) {
@@ -260,7 +265,8 @@ struct Soak : DermisTest {
                    height = out.rect_width > 0 ? out.rect_height : stage.height;
     out.clip_from_view[0] = static_cast<float>(2.0 / (width * pitch_m));
     out.clip_from_view[5] = static_cast<float>(-2.0 / (height * pitch_m));
-    std::copy(std::begin(out.clip_from_view), std::end(out.clip_from_view), out.previous_clip_from_view);
+    std::copy(std::begin(out.clip_from_view), std::end(out.clip_from_view),
+              out.previous_clip_from_view);
     if (chance(0.03)) {
       out.flags |= DERMIS_FRAME_RESET_HISTORY;
       view.brightest_yet = view.light.brightest;
@@ -282,8 +288,8 @@ struct Soak : DermisTest {
 
   // Records a frame that is not submitted.
   void record_unsubmitted(const Recorded& one) {
-    auto allocate =
-        demo::vulkan_struct<VkCommandBufferAllocateInfo>(VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO);
+    auto allocate = demo::vulkan_struct<VkCommandBufferAllocateInfo>(
+        VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO);
     allocate.commandPool = host->pool;
     allocate.commandBufferCount = 1;
     VkCommandBuffer commands = VK_NULL_HANDLE;
@@ -294,9 +300,9 @@ struct Soak : DermisTest {
     EXPECT_OK(record(one, commands));
     host->vk.vkEndCommandBuffer(commands);
     const dermis_view view = one.stage->views[one.view].view;
-    EXPECT_OK(view != nullptr
-                  ? dermis_view_discard(view, one.frame.frame_index)
-                  : dermis_view_discard(dermis_graph_view(one.stage->graph), one.frame.frame_index));
+    EXPECT_OK(view != nullptr ? dermis_view_discard(view, one.frame.frame_index)
+                              : dermis_view_discard(dermis_graph_view(one.stage->graph),
+                                                    one.frame.frame_index));
     host->vk.vkFreeCommandBuffers(host->device, host->pool, 1, &commands);
     ++totals.discards;
   }
@@ -334,8 +340,8 @@ struct Soak : DermisTest {
           const double value = out[4 * i + c];
           if (!std::isfinite(value) || value < 0) {
             if (totals.not_finite++ < 5)
-              ADD_FAILURE() << stage.desc.name << ", frame " << totals.frames << ", pixel " << x << ", " << y
-                            << ": " << value;
+              ADD_FAILURE() << stage.desc.name << ", frame " << totals.frames << ", pixel " << x
+                            << ", " << y << ": " << value;
             continue;
           }
           brightest = std::max(brightest, value);
@@ -344,12 +350,14 @@ struct Soak : DermisTest {
       }
     double& maximum = totals.brightest[stage.desc.name];
     maximum = std::max(maximum, brightest / level);
-    EXPECT_LE(brightest / level, stage.desc.maximum) << stage.desc.name << ", frame " << totals.frames;
+    EXPECT_LE(brightest / level, stage.desc.maximum)
+        << stage.desc.name << ", frame " << totals.frames;
     if (stage.desc.keeps_history ? view.calm : view.light.even) {
       ++totals.even;
       double& worst = totals.even_error[stage.desc.name];
       worst = std::max(worst, off / level);
-      EXPECT_LE(off / level, stage.desc.even_error) << stage.desc.name << ", frame " << totals.frames;
+      EXPECT_LE(off / level, stage.desc.even_error)
+          << stage.desc.name << ", frame " << totals.frames;
     }
     ++totals.pictures;
   }
@@ -402,7 +410,8 @@ TEST_F(Soak, ManyFrames_NothingAccumulates) {
   std::vector<Rest> rests;
   uint32_t rounds_alike = 0;          // Rounds without a new kernel, whose memory is compared.
   constexpr uint64_t more_rounds = 4; // Additional rounds until one has no new kernel.
-  for (uint64_t round = 0; round < rounds + (rounds_alike == 0 ? more_rounds : 0) && !HasFailure(); ++round) {
+  for (uint64_t round = 0; round < rounds + (rounds_alike == 0 ? more_rounds : 0) && !HasFailure();
+       ++round) {
     draw_sizes();
     for (const StageDesc& desc : descs)
       ASSERT_NO_FATAL_FAILURE(create(desc));
@@ -412,14 +421,16 @@ TEST_F(Soak, ManyFrames_NothingAccumulates) {
     ASSERT_NO_FATAL_FAILURE(let_the_driver_clean_up());
     rests.push_back({heap.blocks, heap.bytes, memory->blocks, object_counts(), process_memory()});
     const Rest &rest = rests.back(), &before = rests[rests.size() < 2 ? 0 : rests.size() - 2];
-    fmt::print(
-        "{} frames: {} blocks of {} bytes on the heap, {} of the device's, {} of {} objects; process: {} MiB "
-        "resident, {} MiB on its heap, {} MiB of compiled kernels\n",
-        totals.frames, rest.heap_blocks, rest.heap_bytes, rest.device_blocks, rest.objects.alive,
-        rest.objects.made, rest.process.resident >> 20, rest.process.heap >> 20, rest.process.compiled >> 20);
+    fmt::print("{} frames: {} blocks of {} bytes on the heap, {} of the device's, {} of {} "
+               "objects; process: {} MiB "
+               "resident, {} MiB on its heap, {} MiB of compiled kernels\n",
+               totals.frames, rest.heap_blocks, rest.heap_bytes, rest.device_blocks,
+               rest.objects.alive, rest.objects.made, rest.process.resident >> 20,
+               rest.process.heap >> 20, rest.process.compiled >> 20);
     std::fflush(stdout);
     EXPECT_EQ(rest.objects.text,
-              fmt::format("{0} DescriptorSetLayouts, {0} PipelineLayouts, {0} Pipelines", rest.kernels()));
+              fmt::format("{0} DescriptorSetLayouts, {0} PipelineLayouts, {0} Pipelines",
+                          rest.kernels()));
     EXPECT_LE(rest.kernels(), max_kernels);
     const auto more = static_cast<int64_t>(rest.kernels() - before.kernels());
     EXPECT_GE(more, 0);
@@ -430,12 +441,14 @@ TEST_F(Soak, ManyFrames_NothingAccumulates) {
     rounds_alike += more == 0 && rests.size() > 1;
     EXPECT_EQ(rest.device_blocks, 0);
   }
-  fmt::print("{} frames, {} pictures: {} reloads, {} rejected, {} resizes, {} settings, {} settings of "
-             "views, {} profiles, {} budgets, {} cuts, {} discarded, {} views, {} graphs; {} lights damaged, "
-             "{} pictures judged as even\n",
-             totals.frames, totals.pictures, totals.reloads, totals.rejected_reloads, totals.resizes,
-             totals.settings, totals.view_settings, totals.profiles, totals.budgets, totals.cuts,
-             totals.discards, totals.views, totals.graphs, totals.damaged, totals.even);
+  fmt::print(
+      "{} frames, {} pictures: {} reloads, {} rejected, {} resizes, {} settings, {} settings of "
+      "views, {} profiles, {} budgets, {} cuts, {} discarded, {} views, {} graphs; {} lights "
+      "damaged, "
+      "{} pictures judged as even\n",
+      totals.frames, totals.pictures, totals.reloads, totals.rejected_reloads, totals.resizes,
+      totals.settings, totals.view_settings, totals.profiles, totals.budgets, totals.cuts,
+      totals.discards, totals.views, totals.graphs, totals.damaged, totals.even);
   for (const auto& [name, maximum] : totals.brightest)
     fmt::print("{}: brightest {:.5f} of the light, off even light {:.5f}\n", name, maximum,
                totals.even_error[name]);

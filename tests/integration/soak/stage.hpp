@@ -39,8 +39,8 @@ struct SoakView {
 
 struct SoakTotals {
   uint64_t frames = 0, pictures = 0, reloads = 0, rejected_reloads = 0, resizes = 0, settings = 0,
-           view_settings = 0, profiles = 0, budgets = 0, cuts = 0, discards = 0, views = 0, graphs = 0,
-           damaged = 0, even = 0, not_finite = 0;
+           view_settings = 0, profiles = 0, budgets = 0, cuts = 0, discards = 0, views = 0,
+           graphs = 0, damaged = 0, even = 0, not_finite = 0;
   std::map<std::string, double> brightest, even_error; // By stage, the worst.
 };
 

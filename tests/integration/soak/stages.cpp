@@ -53,7 +53,9 @@ std::vector<StageDesc> soak_stages() {
       {"by_tile",
        "hybrid_afis_separable",
        {},
-       {{"samples", samples}, {"min_contrast", {"0", "0.01", "4"}}, {"taps", {"\"11\"", "\"25\""}}}},
+       {{"samples", samples},
+        {"min_contrast", {"0", "0.01", "4"}},
+        {"taps", {"\"11\"", "\"25\""}}}},
       {"layered", "sap_layered", {}, {{"variant", {"\"base\"", "\"smooth\""}}}},
       {"blended", "sap_blend", {}, {{"variant", {"\"base\"", "\"smooth\""}}}},
   };

@@ -62,8 +62,8 @@ TEST_F(Captures, NoValidationMessages) {
   for (const char* graph :
        {burley, "configs/graphs/separable.json", "configs/graphs/papers/sap_residual.json",
         "configs/graphs/papers/afis_guided.json"}) {
-    const Outcome outcome = run({"apply", "--graph", graph, "--frames", path("capture"), "--out", path("out"),
-                                 "--json", "--repeat", "3"},
+    const Outcome outcome = run({"apply", "--graph", graph, "--frames", path("capture"), "--out",
+                                 path("out"), "--json", "--repeat", "3"},
                                 options);
     EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
     // A message of the layer would appear in the output.
@@ -103,10 +103,10 @@ TEST_F(Captures, FramesAreComparedWithTheirReferences) {
   write_plane(path("capture/frame_0001"), plane);
   ASSERT_EQ(apply({"--set", "samples=512"}).exit_code, 0);
   for (const std::string subset : {"0", "100"}) {
-    ASSERT_EQ(
-        run({"reference", "--frames", path("capture"), "--out", path("truth" + subset), "--subset", subset})
-            .exit_code,
-        0);
+    ASSERT_EQ(run({"reference", "--frames", path("capture"), "--out", path("truth" + subset),
+                   "--subset", subset})
+                  .exit_code,
+              0);
     EXPECT_THAT(run({"compare", path("out"), path("truth" + subset), "--least-psnr", "35"}),
                 Succeeds("frame_0000/scattered.exr", "\nall ", subset == "0" ? "1024" : "100"));
   }
@@ -207,7 +207,8 @@ TEST_F(Captures, NoVulkanDriver_IsAnEnvironmentError) {
 
 TEST_F(Captures, JsonOutputIsOneDocument) {
   write_plane(path("capture"));
-  EXPECT_THAT(apply({"--json", "--repeat", "2"}), Succeeds(IsJson(), "\"ok\": true", "\"device_ms\""));
+  EXPECT_THAT(apply({"--json", "--repeat", "2"}),
+              Succeeds(IsJson(), "\"ok\": true", "\"device_ms\""));
   const Outcome bad =
       run({"apply", "--graph", burley, "--frames", path("none"), "--out", path("out"), "--json"});
   EXPECT_EQ(bad.exit_code, 1);

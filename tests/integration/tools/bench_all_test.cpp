@@ -13,14 +13,16 @@ namespace {
 class BenchAll : public CommandTest {};
 
 TEST_F(BenchAll, WritesPagesAndAnIndex_MeasuresNothingTwice) {
-  const std::vector<std::string> arguments = {"bench", "all", "--out", path("out"), "--suites", "record"};
+  const std::vector<std::string> arguments = {"bench",     "all",      "--out",
+                                              path("out"), "--suites", "record"};
   ASSERT_THAT(run(arguments), Succeeds());
   EXPECT_THAT(files("out"),
               ElementsAre("index.html", "index.json", "record.csv", "record.html", "record.json"));
   const std::string index = read("out/index.html");
-  EXPECT_THAT(index, HasAll("<a href='record.html'>",
-                            "dermis bench record --json record.json --csv record.csv --html record.html",
-                            "not measured")); // The other suites.
+  EXPECT_THAT(index,
+              HasAll("<a href='record.html'>",
+                     "dermis bench record --json record.json --csv record.csv --html record.html",
+                     "not measured")); // The other suites.
   EXPECT_THAT(index, HasSubstr("<dt>processor"));
   EXPECT_THAT(read("out/record.html"), HasSubstr("chain of 100"));
 
@@ -65,12 +67,14 @@ TEST_F(BenchAll, StoppedRun_ContinuesInItsMode) {
   // Every row of the whole suite, up to graphs of 10,000 passes.
   const nlohmann::json rows = nlohmann::json::parse(read("out/compile.json"))["rows"];
   EXPECT_EQ(rows.size(), 50u);
-  EXPECT_EQ(std::count_if(rows.begin(), rows.end(), [](const auto& row) { return row["passes"] == 10000; }),
+  EXPECT_EQ(std::count_if(rows.begin(), rows.end(),
+                          [](const auto& row) { return row["passes"] == 10000; }),
             11);
 
   nlohmann::json state = nlohmann::json::parse(read("out/index.json"));
-  ASSERT_EQ(state["suites"][1]["line"],
-            "dermis bench compile --quick --json compile.json --csv compile.csv --html compile.html");
+  ASSERT_EQ(
+      state["suites"][1]["line"],
+      "dermis bench compile --quick --json compile.json --csv compile.csv --html compile.html");
   state["suites"][1]["line"] =
       // The command line of a whole run.
       "dermis bench compile --json compile.json --csv compile.csv --html compile.html";

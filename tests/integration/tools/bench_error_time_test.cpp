@@ -28,9 +28,10 @@ protected:
         { "technique": "separable", "setting": "taps=11", "graph": "configs/graphs/separable.json", "set": { "taps": "11" } } ] })");
   }
   std::vector<std::string> arguments(const std::string& file) const {
-    return {
-        "bench",       "error-time", "--file",         file,    "--size",        "48x32",  "--cache",
-        path("cache"), "--json",     path("out.json"), "--csv", path("out.csv"), "--html", path("out.html")};
+    return {"bench",  "error-time",     "--file",  file,
+            "--size", "48x32",          "--cache", path("cache"),
+            "--json", path("out.json"), "--csv",   path("out.csv"),
+            "--html", path("out.html")};
   }
   static std::string read(const std::string& path) {
     std::ifstream file(path, std::ios::binary);
@@ -43,13 +44,15 @@ protected:
 TEST_F(BenchErrorTime, WritesARowPerSceneAndTechnique) {
   const std::string missing =
       R"({ "technique": "unheard_of", "setting": "", "graph": "configs/graphs/none.json" },)";
-  ASSERT_THAT(run(arguments(bench_file(missing))), Succeeds("graph 'configs/graphs/none.json' does not exist",
-                                                            "no model is given (--head FOLDER)"));
+  ASSERT_THAT(run(arguments(bench_file(missing))),
+              Succeeds("graph 'configs/graphs/none.json' does not exist",
+                       "no model is given (--head FOLDER)"));
   const std::string json = read(path("out.json"));
   EXPECT_TRUE(is_json(json));
-  for (const char* key : {"scene", "d_px", "framing", "technique", "setting", "device_ms", "sampling_ms",
-                          "mean_spp", "reads_per_pixel", "rmse", "psnr_db", "max_error", "p99_error",
-                          "psnr_db_sdr8", "psnr_db_self", "transient_bytes", "dispatches", "on_pareto_front"})
+  for (const char* key :
+       {"scene", "d_px", "framing", "technique", "setting", "device_ms", "sampling_ms", "mean_spp",
+        "reads_per_pixel", "rmse", "psnr_db", "max_error", "p99_error", "psnr_db_sdr8",
+        "psnr_db_self", "transient_bytes", "dispatches", "on_pareto_front"})
     EXPECT_THAT(json, HasSubstr(std::string("\"") + key + "\": ")) << key;
   const std::string csv = read(path("out.csv"));
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 1 + 3 * 2);
@@ -95,13 +98,14 @@ TEST_F(BenchErrorTime, NothingToMeasure_IsReported) {
 }
 
 TEST_F(BenchErrorTime, ShippedFileIsValid) {
-  ASSERT_THAT(run({"bench", "error-time", "--scenes", "edge", "--techniques", "burley", "--size", "16x16",
-                   "--csv", "-", "--cache", "", "--study"}),
+  ASSERT_THAT(run({"bench", "error-time", "--scenes", "edge", "--techniques", "burley", "--size",
+                   "16x16", "--csv", "-", "--cache", "", "--study"}),
               Succeeds(::testing::StartsWith("scene,d_px,framing")));
 }
 
 TEST_F(BenchErrorTime, UnusableGraphOrSetting_IsReported) {
-  const std::string wrong = R"({ "technique": "wrong", "setting": "", "graph": "configs/graphs/burley.json",
+  const std::string wrong =
+      R"({ "technique": "wrong", "setting": "", "graph": "configs/graphs/burley.json",
                                  "set": { "sample": 8 } },)";
   EXPECT_THAT(run({"bench", "error-time", "--file", bench_file(wrong), "--size", "32x32"}),
               FailsWith(1, "configs/graphs/burley.json", "sample"));

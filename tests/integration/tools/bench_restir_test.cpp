@@ -61,8 +61,9 @@ TEST(RestirVariants, CoverEveryReuseWithEveryShift) {
   std::vector<std::string> found;
   for (const RestirVariant& one : variants_of(graph))
     found.push_back(one.reuse + " " + one.shift + (one.has_history() ? " with history" : ""));
-  EXPECT_THAT(found, ElementsAre("none ", "spatial reconnection", "spatial delayed",
-                                 "temporal reconnection with history", "temporal delayed with history"));
+  EXPECT_THAT(found,
+              ElementsAre("none ", "spatial reconnection", "spatial delayed",
+                          "temporal reconnection with history", "temporal delayed with history"));
 }
 
 TEST(RestirVariants, MorePathsInMoreTime_AreNotBetter) {
@@ -126,7 +127,9 @@ struct BenchRestir : test::CommandTest {
   static test::RunOptions with_rays() {
     return {{"VK_DRIVER_FILES=" + dermis::testing::driver_with_ray_queries()}, "", ""};
   }
-  nlohmann::json rows(const std::string& name) const { return nlohmann::json::parse(read(name)).at("rows"); }
+  nlohmann::json rows(const std::string& name) const {
+    return nlohmann::json::parse(read(name)).at("rows");
+  }
 };
 
 struct BenchRestirWithRayQueries : BenchRestir {
@@ -149,17 +152,18 @@ TEST_F(BenchRestir, NoRayQueries_NamesTheDriverAndIsNoFailure) {
 }
 
 TEST_F(BenchRestirWithRayQueries, RayRenderingIsNotMeasuredInScreenSpace) {
-  EXPECT_THAT(run({"render", "configs/scenes/bust.json", "--graph", "configs/graphs/papers/restir.json",
-                   "--out", path("out"), "--size", "32x24", "--frames", "1"},
-                  with_rays()),
-              Succeeds("not measured, the technique traces rays"));
+  EXPECT_THAT(
+      run({"render", "configs/scenes/bust.json", "--graph", "configs/graphs/papers/restir.json",
+           "--out", path("out"), "--size", "32x24", "--frames", "1"},
+          with_rays()),
+      Succeeds("not measured, the technique traces rays"));
 }
 
 TEST_F(BenchRestirWithRayQueries, WritesARowPerReuseAndTechnique) {
-  const std::vector<std::string> arguments = {"bench",           "restir",   "--quick",         "--scenes",
-                                              "back_lit",        "--shifts", "reconnection",    "--json",
-                                              path("rows.json"), "--html",   path("page.html"), "--csv",
-                                              path("rows.csv"),  "--cache",  path("cache")};
+  const std::vector<std::string> arguments = {
+      "bench",           "restir",       "--quick",        "--scenes",        "back_lit",
+      "--shifts",        "reconnection", "--json",         path("rows.json"), "--html",
+      path("page.html"), "--csv",        path("rows.csv"), "--cache",         path("cache")};
   ASSERT_THAT(run(arguments, with_rays()), Succeeds());
   const nlohmann::json found = rows("rows.json");
   for (const char* key : {"scene", "shift", "reuse", "samples", "device_ms", "mse",

@@ -14,10 +14,11 @@ class BenchStability : public CommandTest {};
 
 TEST_F(BenchStability, GivesARowForEachCaseAndTechnique) {
   const std::string rows = path("rows.json"), page = path("rows.html");
-  const Outcome outcome = run({"bench", "stability", "--techniques", "formula,sap,burley", "--cases",
-                               "light_nan,glare_in_the_dark,history_poisoned,size_1x7,velocity_nan,xi_1,"
-                               "guidance_updates_at_1",
-                               "--updates", "20000", "--json", rows, "--html", page});
+  const Outcome outcome =
+      run({"bench", "stability", "--techniques", "formula,sap,burley", "--cases",
+           "light_nan,glare_in_the_dark,history_poisoned,size_1x7,velocity_nan,xi_1,"
+           "guidance_updates_at_1",
+           "--updates", "20000", "--json", rows, "--html", page});
   EXPECT_EQ(outcome.exit_code, 0) << outcome.out << outcome.err;
   const nlohmann::json document = nlohmann::json::parse(std::ifstream(rows));
   // Four cases of two settings of sap and two of burley, and a fifth case for the one with a
@@ -36,8 +37,8 @@ TEST_F(BenchStability, GivesARowForEachCaseAndTechnique) {
 TEST_F(BenchStability, UnevenRatio_DisturbsTheHistory) {
   const std::string rows = path("rows.json");
   EXPECT_THAT(run({"bench", "stability", "--techniques", "sap_residual", "--cases",
-                   "red_comes,velocity_in_stripes,velocity_of_depth_in_stripes", "--updates", "1000",
-                   "--json", rows}),
+                   "red_comes,velocity_in_stripes,velocity_of_depth_in_stripes", "--updates",
+                   "1000", "--json", rows}),
               Succeeds());
   const nlohmann::json document = nlohmann::json::parse(std::ifstream(rows));
   ASSERT_EQ(document["rows"].size(), 3u);
@@ -51,7 +52,8 @@ TEST_F(BenchStability, UnevenRatio_DisturbsTheHistory) {
 
 // Only the overlay gives accumulated light a history; only guided samples have a sample count.
 TEST_F(BenchStability, TestsOnlyTheOutputsOfATechnique) {
-  const std::string techniques = write("techniques.json", R"({ "dermis_benchmark": 1, "techniques": [
+  const std::string techniques =
+      write("techniques.json", R"({ "dermis_benchmark": 1, "techniques": [
     { "technique": "burley", "setting": "alone", "graph": "configs/graphs/burley.json" },
     { "technique": "burley", "setting": "accumulated", "graph": "configs/graphs/burley.json",
       "overlays": ["configs/overlays/accumulate.json"] },
@@ -70,8 +72,8 @@ TEST_F(BenchStability, TestsOnlyTheOutputsOfATechnique) {
     EXPECT_TRUE(row["holds"]) << row;
     requested[row["technique"]].insert(row["case"]);
   }
-  std::set<std::string> of_all{"depth_reversed_infinite_far", "size_changes_every_frame", "d_0_of_blue",
-                               "anything_anywhere", "anything_under_even_light"};
+  std::set<std::string> of_all{"depth_reversed_infinite_far", "size_changes_every_frame",
+                               "d_0_of_blue", "anything_anywhere", "anything_under_even_light"};
   EXPECT_EQ(requested["burley alone"], of_all);
   of_all.insert("velocity_nan");
   EXPECT_EQ(requested["burley accumulated"], of_all);
@@ -80,8 +82,9 @@ TEST_F(BenchStability, TestsOnlyTheOutputsOfATechnique) {
 }
 
 TEST_F(BenchStability, UnknownNames_AreRejected) {
-  EXPECT_THAT(run({"bench", "stability", "--techniques", "none", "--cases", "none", "--updates", "1000"}),
-              FailsWith(2, "no case and technique has these names"));
+  EXPECT_THAT(
+      run({"bench", "stability", "--techniques", "none", "--cases", "none", "--updates", "1000"}),
+      FailsWith(2, "no case and technique has these names"));
 }
 
 } // namespace

@@ -106,7 +106,8 @@ TEST(BenchSuites, DeclareDistinctNamesOptionsAndColumns) {
     for (const SuiteOption& option : suite.options) {
       EXPECT_TRUE(options.insert(option.name).second) << suite.name << " --" << option.name;
       if (option.quick) {
-        EXPECT_EQ(option.quick->index(), option.value.index()) << suite.name << " --" << option.name;
+        EXPECT_EQ(option.quick->index(), option.value.index())
+            << suite.name << " --" << option.name;
       }
     }
     for (const ReportColumn& column : suite.columns)

@@ -10,18 +10,19 @@ using ::testing::HasSubstr;
 class BenchReference : public CommandTest {
 protected:
   std::string property_file(const std::string& tolerances) const {
-    return write("laws.json", R"({ "dermis_benchmark": 1, "truth": { "white_furnace": 1e-6 }, "techniques": [
+    return write("laws.json",
+                 R"({ "dermis_benchmark": 1, "truth": { "white_furnace": 1e-6 }, "techniques": [
       { "technique": "separable", "setting": "taps=11", "graph": "configs/graphs/separable.json",
         "set": { "taps": "11" }, "tolerances": )" +
-                                  tolerances + R"( },
+                     tolerances + R"( },
       { "technique": "unheard_of", "setting": "n=1", "graph": "configs/graphs/none.json", "tolerances": {} } ] })");
   }
 };
 
 TEST_F(BenchReference, PrintsExpectedAndMeasured_FailureIsAProblem) {
   const Outcome outcome =
-      run({"bench", "truth", "--file", property_file(R"({ "white_furnace": 0.001, "edge": 1e-9 })"), "--json",
-           path("out.json")}); // No fp16 picture is that exact.
+      run({"bench", "truth", "--file", property_file(R"({ "white_furnace": 0.001, "edge": 1e-9 })"),
+           "--json", path("out.json")}); // No fp16 picture is that exact.
   EXPECT_EQ(outcome.exit_code, 1);
   EXPECT_THAT(outcome.out, ::testing::Not(HasSubstr("\n0 of ")));
   EXPECT_THAT(outcome.out, HasSubstr("graph 'configs/graphs/none.json' does not exist"));
@@ -35,9 +36,9 @@ TEST_F(BenchReference, PrintsExpectedAndMeasured_FailureIsAProblem) {
 
 TEST_F(BenchReference, SucceedsIfAllPropertiesHold) {
   DERMIS_FULL_TESTS_ONLY();
-  EXPECT_THAT(
-      run({"bench", "truth", "--file", property_file(R"({ "white_furnace": 0.001 })"), "--json", "-"}),
-      Succeeds(IsJson(), ::testing::Not(HasSubstr(R"("holds": false)"))));
+  EXPECT_THAT(run({"bench", "truth", "--file", property_file(R"({ "white_furnace": 0.001 })"),
+                   "--json", "-"}),
+              Succeeds(IsJson(), ::testing::Not(HasSubstr(R"("holds": false)"))));
 }
 
 TEST_F(BenchReference, MisspeltProperty_SuggestsTheNearest) {

@@ -64,7 +64,8 @@ TEST(BudgetJudge, BestSingle_MayMissTheBudgetInOnePercent) {
 }
 
 TEST(BudgetJudge, BudgetsLieBetweenCheapestAndBest) {
-  const std::vector<Single> singles = {single(8, 0.3), single(4, 0.5), single(20, 0.1), single(40, 0.2)};
+  const std::vector<Single> singles = {single(8, 0.3), single(4, 0.5), single(20, 0.1),
+                                       single(40, 0.2)};
   EXPECT_DOUBLE_EQ(budget_at(singles, 0.25), 8);
   EXPECT_DOUBLE_EQ(budget_at(singles, 1), 20);
   EXPECT_DOUBLE_EQ(budget_at(singles, 2), 36);

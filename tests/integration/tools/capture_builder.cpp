@@ -15,21 +15,25 @@ tools::Image filled(uint32_t width, uint32_t height, uint32_t channels, float va
   return image;
 }
 
-void write_channel(const std::filesystem::path& folder, const std::string& name, const tools::Image& image) {
+void write_channel(const std::filesystem::path& folder, const std::string& name,
+                   const tools::Image& image) {
   const tools::ChannelNames rgb = {"R", "G", "B"}, single = {"Y"};
   std::string problem;
-  EXPECT_TRUE(tools::write_exr(folder / (name + ".exr"), image, image.channels == 3 ? rgb : single, problem))
+  EXPECT_TRUE(tools::write_exr(folder / (name + ".exr"), image, image.channels == 3 ? rgb : single,
+                               problem))
       << problem;
 }
 
 void write_plane(const std::filesystem::path& folder, const Plane& plane) {
   std::filesystem::create_directories(folder);
-  std::ofstream(folder / "frame.json") << fmt::format(
-      "{{ \"dermis_capture\": 1, \"width\": {0}, \"height\": {1}, \"render_rectangle\": [0, 0, {0}, {1}],\n"
-      "  \"projection\": \"orthographic\", \"pixel_pitch_m\": {2}, \"metres_per_unit\": 1, \"jitter_px\": "
-      "[0, 0],\n"
-      "  \"frame_index\": 1, \"exposure\": 1, \"profiles\": {3} }}\n",
-      plane.width, plane.height, plane.pixel_pitch_m, plane.profiles);
+  std::ofstream(folder / "frame.json")
+      << fmt::format("{{ \"dermis_capture\": 1, \"width\": {0}, \"height\": {1}, "
+                     "\"render_rectangle\": [0, 0, {0}, {1}],\n"
+                     "  \"projection\": \"orthographic\", \"pixel_pitch_m\": {2}, "
+                     "\"metres_per_unit\": 1, \"jitter_px\": "
+                     "[0, 0],\n"
+                     "  \"frame_index\": 1, \"exposure\": 1, \"profiles\": {3} }}\n",
+                     plane.width, plane.height, plane.pixel_pitch_m, plane.profiles);
   const auto given = [&](const tools::Image& image, uint32_t channels, float otherwise) {
     return image.values.empty() ? filled(plane.width, plane.height, channels, otherwise) : image;
   };

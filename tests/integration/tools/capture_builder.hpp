@@ -20,7 +20,8 @@ struct Plane {
 void write_plane(const std::filesystem::path& folder, const Plane& plane = {});
 
 // Replaces one image of the frame.
-void write_channel(const std::filesystem::path& folder, const std::string& name, const tools::Image& image);
+void write_channel(const std::filesystem::path& folder, const std::string& name,
+                   const tools::Image& image);
 tools::Image filled(uint32_t width, uint32_t height, uint32_t channels, float value);
 
 } // namespace dermis::test

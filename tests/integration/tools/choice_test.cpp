@@ -16,15 +16,16 @@ struct Choice : CommandTest {};
 
 TEST_F(Choice, FramesReportExpectedAndMeasured) {
   const Outcome outcome =
-      run({"render", scene, "--graph", graph, "--size", "64x36", "--frames", "4", "--subset", "0", "--budget",
-           "1000", "--deterministic", "--out", path("out"), "--json"});
+      run({"render", scene, "--graph", graph, "--size", "64x36", "--frames", "4", "--subset", "0",
+           "--budget", "1000", "--deterministic", "--out", path("out"), "--json"});
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   const json answer = json::parse(outcome.out);
   ASSERT_EQ(answer["choices"].size(), 4u);
   for (const json& frame : answer["choices"]) {
     // A second is enough for the smallest error: samples for all tiles, until tiles were counted
     // and none requested samples.
-    EXPECT_THAT(frame["technique"].get<std::string>(), ::testing::AnyOf("hybrid smooth", "sap base"));
+    EXPECT_THAT(frame["technique"].get<std::string>(),
+                ::testing::AnyOf("hybrid smooth", "sap base"));
     EXPECT_EQ(frame["budget_ms"], 1000);
     EXPECT_GT(frame["measured_ms"], 0);
     EXPECT_GT(frame["calibrated_ms"], 0);
@@ -34,35 +35,36 @@ TEST_F(Choice, FramesReportExpectedAndMeasured) {
 }
 
 TEST_F(Choice, TextOutputIsASentence) {
-  ASSERT_THAT(run({"render", scene, "--graph", graph, "--size", "64x36", "--frames", "2", "--subset", "0",
-                   "--budget", "0.001", "--deterministic", "--out", path("out")}),
-              Succeeds("frame 1: technique=off", "budget 0.00; RMSE",
-                       "(no configuration fits the budget: the fastest runs); next better technique="));
+  ASSERT_THAT(
+      run({"render", scene, "--graph", graph, "--size", "64x36", "--frames", "2", "--subset", "0",
+           "--budget", "0.001", "--deterministic", "--out", path("out")}),
+      Succeeds("frame 1: technique=off", "budget 0.00; RMSE",
+               "(no configuration fits the budget: the fastest runs); next better technique="));
 }
 
 TEST_F(Choice, CalibrateWritesAFileForValidateAndRender) {
   const std::string file = path("calibration.json");
   const std::string overlay = write("few.json", techniques_alone);
-  ASSERT_THAT(
-      run({"calibrate", graph, "--overlay", overlay, "--size", "64x36", "--frames", "2", "--out", file}),
-      Succeeds("holds the costs of"));
+  ASSERT_THAT(run({"calibrate", graph, "--overlay", overlay, "--size", "64x36", "--frames", "2",
+                   "--out", file}),
+              Succeeds("holds the costs of"));
   EXPECT_THAT(run({"validate", file}), Succeeds("calibration, no problems"));
-  EXPECT_THAT(run({"render", scene, "--graph", graph, "--size", "64x36", "--frames", "2", "--subset", "0",
-                   "--calibration", file, "--budget", "5", "--out", path("out")}),
+  EXPECT_THAT(run({"render", scene, "--graph", graph, "--size", "64x36", "--frames", "2",
+                   "--subset", "0", "--calibration", file, "--budget", "5", "--out", path("out")}),
               Succeeds());
 }
 
 TEST_F(Choice, InvalidCalibration_IsRejectedWithItsPlace) {
-  const std::string file =
-      write("calibration.json", "{ \"dermis_calibration\": 2,\n \"devise\": \"d\", \"costs\": [] }");
-  EXPECT_THAT(run({"render", scene, "--graph", graph, "--size", "64x36", "--frames", "1", "--subset", "0",
-                   "--calibration", file, "--out", path("out")}),
+  const std::string file = write(
+      "calibration.json", "{ \"dermis_calibration\": 2,\n \"devise\": \"d\", \"costs\": [] }");
+  EXPECT_THAT(run({"render", scene, "--graph", graph, "--size", "64x36", "--frames", "1",
+                   "--subset", "0", "--calibration", file, "--out", path("out")}),
               FailsWith(1, "2:2", "did you mean 'device'?"));
 }
 
 TEST_F(Choice, ExplainDescribesAFrame) {
-  const Outcome outcome = run({"explain", "configs/graphs/papers/hybrid.json", "--frame", "--size", "64x36",
-                               "--budget", "1000", "--deterministic"});
+  const Outcome outcome = run({"explain", "configs/graphs/papers/hybrid.json", "--frame", "--size",
+                               "64x36", "--budget", "1000", "--deterministic"});
   ASSERT_THAT(outcome, Succeeds("frame 5: "));
   // d is 0.2 px: no tile requests samples at this size.
   EXPECT_THAT(outcome.out, HasAll("ms predicted", "budget 1000.00"));
@@ -71,10 +73,12 @@ TEST_F(Choice, ExplainDescribesAFrame) {
 
 TEST_F(Choice, HistoriesAreReportedWithAgeAndReason) {
   constexpr const char* residual = "configs/graphs/papers/sap_residual.json";
-  ASSERT_THAT(run({"explain", residual, "--frame", "--size", "64x36"}),
-              Succeeds(::testing::ContainsRegex("\nratio +6 frames +valid since its first frame\n")));
-  const Outcome outcome = run({"render", "configs/scenes/bust.json", "--graph", residual, "--size", "64x36",
-                               "--frames", "3", "--subset", "0", "--out", path("out"), "--json"});
+  ASSERT_THAT(
+      run({"explain", residual, "--frame", "--size", "64x36"}),
+      Succeeds(::testing::ContainsRegex("\nratio +6 frames +valid since its first frame\n")));
+  const Outcome outcome =
+      run({"render", "configs/scenes/bust.json", "--graph", residual, "--size", "64x36", "--frames",
+           "3", "--subset", "0", "--out", path("out"), "--json"});
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   uint32_t age = 0;
   const json answer = json::parse(outcome.out);
@@ -94,8 +98,8 @@ TEST_F(Choice, HistoriesAreReportedWithAgeAndReason) {
 }
 
 TEST_F(Choice, ExplainCountsReadsByTileClass) {
-  const Outcome outcome = run({"explain", "configs/graphs/papers/hybrid_afis_separable.json", "--frame",
-                               "--size", "64x36", "--set", "taps=11", "--json"});
+  const Outcome outcome = run({"explain", "configs/graphs/papers/hybrid_afis_separable.json",
+                               "--frame", "--size", "64x36", "--set", "taps=11", "--json"});
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   const json frame = json::parse(outcome.out)[0];
   const json& classes = frame["tile_classes"];
@@ -110,9 +114,11 @@ TEST_F(Choice, ExplainCountsReadsByTileClass) {
   EXPECT_EQ(tiles, frame["scattering_tiles"].get<uint64_t>());
   const double each = frame["reads_per_sample"];
   for (size_t k = 2; k < 4; ++k) { // S(m) grows by M(d) per sample.
-    const double more =
-        classes[k]["reads_per_pixel"].get<double>() - classes[k - 1]["reads_per_pixel"].get<double>();
-    EXPECT_NEAR(more, each * (classes[k]["samples"].get<double>() - classes[k - 1]["samples"].get<double>()),
+    const double more = classes[k]["reads_per_pixel"].get<double>() -
+                        classes[k - 1]["reads_per_pixel"].get<double>();
+    EXPECT_NEAR(more,
+                each *
+                    (classes[k]["samples"].get<double>() - classes[k - 1]["samples"].get<double>()),
                 1e-3);
   }
   EXPECT_EQ(classes[1]["samples"], 16);

@@ -27,8 +27,8 @@ void redirect(int target, const fs::path& path, int flags) {
   if (file < 0 || dup2(file, target) < 0) _exit(127);
 }
 
-[[noreturn]] void become_command(const std::vector<std::string>& arguments, const RunOptions& options,
-                                 const TestFolder& streams) {
+[[noreturn]] void become_command(const std::vector<std::string>& arguments,
+                                 const RunOptions& options, const TestFolder& streams) {
   redirect(STDIN_FILENO, streams / "in", O_RDONLY);
   redirect(STDOUT_FILENO, streams / "out", O_WRONLY | O_CREAT);
   redirect(STDERR_FILENO, streams / "err", O_WRONLY | O_CREAT);

@@ -32,7 +32,8 @@ protected:
 
 TEST_F(Compare, OneDifferentPixel_GivesTheKnownNumbers) {
   const std::string a = png("a.png", 100, 151), b = png("b.png", 100, 100);
-  const Outcome outcome = run({"compare", a, b, "--region", "8,8,4x4", "--json", "--heat", path("heat.png")});
+  const Outcome outcome =
+      run({"compare", a, b, "--region", "8,8,4x4", "--json", "--heat", path("heat.png")});
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   const nlohmann::json rows = nlohmann::json::parse(outcome.out)["rows"];
   ASSERT_EQ(rows.size(), 2u);
@@ -61,8 +62,9 @@ TEST_F(Compare, FailsBelowTheRequestedPsnr) {
   const std::string a = png("a.png", 100, 151), b = png("b.png", 100, 100);
   EXPECT_THAT(run({"compare", a, b, "--least-psnr", "60"}), FailsWith(1, "60.00 dB"));
   EXPECT_EQ(run({"compare", a, b, "--least-psnr", "20"}).exit_code, 0);
-  EXPECT_THAT(run({"compare", exr("a.exr", std::numeric_limits<float>::quiet_NaN()), exr("b.exr", 1)}),
-              FailsWith(1, "not finite"));
+  EXPECT_THAT(
+      run({"compare", exr("a.exr", std::numeric_limits<float>::quiet_NaN()), exr("b.exr", 1)}),
+      FailsWith(1, "not finite"));
 }
 
 TEST_F(Compare, Folders_FilesInOnlyOneAreNamed) {
@@ -100,8 +102,9 @@ TEST_F(Compare, ComparesOnlyPixelsOfTheReferencesMask) {
   ASSERT_TRUE(tools::write_exr(path("truth/reference.exr"), reference, rgb, error)) << error;
   ASSERT_TRUE(tools::write_exr(path("truth/mask.exr"), mask, {"Y"}, error)) << error;
   ASSERT_TRUE(tools::write_exr(path("ours/scattered.exr"), ours, rgb, error)) << error;
-  for (const auto& [a, b] : {std::pair(path("ours"), path("truth")), std::pair(path("truth"), path("ours")),
-                             std::pair(path("ours/scattered.exr"), path("truth/reference.exr"))}) {
+  for (const auto& [a, b] :
+       {std::pair(path("ours"), path("truth")), std::pair(path("truth"), path("ours")),
+        std::pair(path("ours/scattered.exr"), path("truth/reference.exr"))}) {
     const Outcome outcome = run({"compare", a, b, "--json", "--region", "0,0,2x2"});
     ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
     const nlohmann::json rows = nlohmann::json::parse(outcome.out)["rows"];
@@ -153,9 +156,12 @@ TEST_F(Compare, FlipIsReportedOnRequest) {
   EXPECT_NEAR(rows[0]["flip"], 0.96738,
               1e-5); // Black against white: tests/integration/tools/files/flip_test.cpp.
   EXPECT_EQ(rows[1]["flip"], 0.0);
-  EXPECT_FALSE(nlohmann::json::parse(run({"compare", a, b, "--json"}).out)["rows"][0].contains("flip"));
-  EXPECT_EQ(run({"compare", path("one"), path("two"), "--flip", "--most-flip", "0.9"}).exit_code, 1);
-  EXPECT_EQ(run({"compare", path("one/b.png"), path("two/b.png"), "--flip", "--most-flip", "0"}).exit_code,
+  EXPECT_FALSE(
+      nlohmann::json::parse(run({"compare", a, b, "--json"}).out)["rows"][0].contains("flip"));
+  EXPECT_EQ(run({"compare", path("one"), path("two"), "--flip", "--most-flip", "0.9"}).exit_code,
+            1);
+  EXPECT_EQ(run({"compare", path("one/b.png"), path("two/b.png"), "--flip", "--most-flip", "0"})
+                .exit_code,
             0);
 }
 

@@ -22,8 +22,8 @@ constexpr double radius = 0.1, distance = 0.5, near_plane = 0.1, tangent = 0.25;
 // A sphere of skin in front of nothing, seen by a perspective camera with infinite depth. The frame
 // is correct; each test breaks one property.
 struct Mistake {
-  std::string projection =
-      fmt::format("[{0}, 0, 0, 0,  0, -{0}, 0, 0,  0, 0, -1, -{1},  0, 0, -1, 0]", 1 / tangent, near_plane);
+  std::string projection = fmt::format(
+      "[{0}, 0, 0, 0,  0, -{0}, 0, 0,  0, 0, -1, -{1},  0, 0, -1, 0]", 1 / tangent, near_plane);
   std::string view = "[1, 0, 0, 0.5,  0, 1, 0, 0,  0, 0, 1, 0,  0, 0, 0, 1]";
   std::string more; // More members of frame.json.
   // Depth value of a distance in metres; 0: no surface.
@@ -38,16 +38,18 @@ struct DiagnoseTest : CommandTest {
   Outcome diagnose(const Mistake& mistake) {
     const std::filesystem::path folder = path("frame");
     std::filesystem::create_directories(folder);
-    std::ofstream(folder / "frame.json") << fmt::format(
-        "{{ \"dermis_capture\": 1, \"width\": {0}, \"height\": {0}, \"projection\": \"perspective\",\n"
-        "  \"clip_from_view\": {1}, \"view_from_world\": {2}, {3}\n"
-        "  \"profiles\": [{{ \"id\": 1, \"file\": \"skin\" }}] }}\n",
-        side, mistake.projection, mistake.view, mistake.more);
+    std::ofstream(folder / "frame.json")
+        << fmt::format("{{ \"dermis_capture\": 1, \"width\": {0}, \"height\": {0}, \"projection\": "
+                       "\"perspective\",\n"
+                       "  \"clip_from_view\": {1}, \"view_from_world\": {2}, {3}\n"
+                       "  \"profiles\": [{{ \"id\": 1, \"file\": \"skin\" }}] }}\n",
+                       side, mistake.projection, mistake.view, mistake.more);
     tools::Image depth = filled(side, side, 1, 0), profile = depth;
     tools::Image light = filled(side, side, 3, 0), albedo = light;
     for (uint32_t y = 0; y < side; ++y)
       for (uint32_t x = 0; x < side; ++x) {
-        const double u = tangent * (2 * (x + 0.5) / side - 1), v = tangent * (2 * (y + 0.5) / side - 1);
+        const double u = tangent * (2 * (x + 0.5) / side - 1),
+                     v = tangent * (2 * (y + 0.5) / side - 1);
         // |(u, v, 1) d - (0, 0, distance)| = radius
         const double a = 1 + u * u + v * v,
                      under = distance * distance - a * (distance * distance - radius * radius);
@@ -94,8 +96,8 @@ TEST_F(DiagnoseTest, NothingScatters_UnknownId) {
 
 TEST_F(DiagnoseTest, NothingScatters_BelowAPixel) { // A distant surface: a note.
   Mistake mistake;
-  mistake.projection =
-      fmt::format("[{0}, 0, 0, 0,  0, -{0}, 0, 0,  0, 0, -1, -{1},  0, 0, -1, 0]", 1 / tangent, near_plane);
+  mistake.projection = fmt::format("[{0}, 0, 0, 0,  0, -{0}, 0, 0,  0, 0, -1, -{1},  0, 0, -1, 0]",
+                                   1 / tangent, near_plane);
   mistake.depth = [](double d) { return d * 20; };
   const Outcome outcome = diagnose(mistake);
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
@@ -137,8 +139,8 @@ TEST_F(DiagnoseTest, TooBright_AlbedoIsNotBound) { // A note: hosts may multiply
 
 TEST_F(DiagnoseTest, Stretched_ProjectionStoredByColumns) {
   Mistake mistake;
-  mistake.projection =
-      fmt::format("[{0}, 0, 0, 0,  0, -{0}, 0, 0,  0, 0, -1, -1,  0, 0, -{1}, 0]", 1 / tangent, near_plane);
+  mistake.projection = fmt::format("[{0}, 0, 0, 0,  0, -{0}, 0, 0,  0, 0, -1, -1,  0, 0, -{1}, 0]",
+                                   1 / tangent, near_plane);
   expect_finding(mistake, "D0504", "column by column");
 }
 
@@ -206,13 +208,15 @@ TEST_F(DiagnoseTest, ReadsWhatTheExampleWrites) {
     EXPECT_THAT(outcome.err, HasAll("D0525", "all pixels with a profile are at 0.5 m"));
     for (const char* other : {"D0520", "D0521", "D0522", "D0524", "error["})
       EXPECT_THAT(outcome.err, Not(HasSubstr(other)));
-    EXPECT_THAT(run({"apply", "--graph", burley, "--frames", folder, "--out", path("out")}), Succeeds());
+    EXPECT_THAT(run({"apply", "--graph", burley, "--frames", folder, "--out", path("out")}),
+                Succeeds());
   }
 }
 #endif
 
 TEST_F(DiagnoseTest, NeedsCapturedFrames) {
-  EXPECT_THAT(run({"validate", burley, "--diagnose"}), FailsWith(2, "--diagnose needs captured frames"));
+  EXPECT_THAT(run({"validate", burley, "--diagnose"}),
+              FailsWith(2, "--diagnose needs captured frames"));
 }
 
 } // namespace

@@ -12,9 +12,10 @@ class Docs : public CommandTest {};
 TEST_F(Docs, EveryPageIsWritten) {
   ASSERT_THAT(run({"docs", "--json", "--out", path("pages")}), Succeeds(IsJson()));
   EXPECT_THAT(files("pages"), ElementsAre("format_reference.md", "pass_types.md", "slots.md"));
-  EXPECT_THAT(read("pages/slots.md"),
-              HasAll("\n| `lighting` | in, out | `rgba16f`, ", " | required in all | ",
-                     "\n| `instances` | in | buffer, 64 bytes per element | optional in `restir` | "));
+  EXPECT_THAT(
+      read("pages/slots.md"),
+      HasAll("\n| `lighting` | in, out | `rgba16f`, ", " | required in all | ",
+             "\n| `instances` | in | buffer, 64 bytes per element | optional in `restir` | "));
   EXPECT_THAT(read("pages/pass_types.md"), HasSubstr("\n## subsurface.combine\n"));
 }
 
@@ -29,7 +30,8 @@ TEST_F(Docs, EveryLinkWithinAPageHasAHeading) {
     const std::string anchor = text.substr(at + 3, text.find(')', at) - at - 3); // name-format
     const size_t dash = anchor.rfind('-');
     ++links;
-    EXPECT_THAT(text, HasSubstr("### " + anchor.substr(0, dash) + " (" + anchor.substr(dash + 1) + ")\n"))
+    EXPECT_THAT(text,
+                HasSubstr("### " + anchor.substr(0, dash) + " (" + anchor.substr(dash + 1) + ")\n"))
         << anchor;
   }
   EXPECT_GT(links, 50u);

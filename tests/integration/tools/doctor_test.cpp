@@ -13,10 +13,11 @@ class DoctorVerb : public CommandTest {};
 TEST_F(DoctorVerb, NamesTheDeviceAndAllRequirements) {
   const Outcome text = run({"doctor"});
   EXPECT_EQ(text.exit_code, 0) << text.err;
-  for (const char* what : {"Vulkan loader", "shaders at run time", "synchronization2", "maintenance4",
-                           "timestamps", "render and apply use this one"})
+  for (const char* what : {"Vulkan loader", "shaders at run time", "synchronization2",
+                           "maintenance4", "timestamps", "render and apply use this one"})
     EXPECT_THAT(text.out, HasSubstr(what));
-  EXPECT_LE(std::count(text.out.begin(), text.out.end(), '\n'), 40) << "one screen, also with two devices";
+  EXPECT_LE(std::count(text.out.begin(), text.out.end(), '\n'), 40)
+      << "one screen, also with two devices";
 }
 
 TEST_F(DoctorVerb, JsonOutput) {

@@ -14,9 +14,10 @@ namespace {
 namespace fs = std::filesystem;
 
 // Suites that take minutes; their own tests run them small: bench_*_test.cpp, choice_test.cpp.
-const std::vector<std::string> too_long = {
-    "bench all",     "bench error-time", "bench budget",  "bench stability", "bench skip",  "bench truth",
-    "bench dynamic", "bench supplement", "bench compile", "bench record",    "bench restir"};
+const std::vector<std::string> too_long = {"bench all",       "bench error-time", "bench budget",
+                                           "bench stability", "bench skip",       "bench truth",
+                                           "bench dynamic",   "bench supplement", "bench compile",
+                                           "bench record",    "bench restir"};
 
 // Options that shorten an example, or let it end.
 const std::map<std::string, std::string> shortened = {
@@ -43,8 +44,8 @@ protected:
   int shell(const std::string& line) const {
     const std::string script = write("line.sh", "set -e -o pipefail\n" + line + "\n");
     const std::string words = "cd '" + path("") + "' && PATH='" +
-                              fs::path(DERMIS_COMMAND).parent_path().string() + "':$PATH bash '" + script +
-                              "' >'" + path("said") + "' 2>&1";
+                              fs::path(DERMIS_COMMAND).parent_path().string() + "':$PATH bash '" +
+                              script + "' >'" + path("said") + "' 2>&1";
     return std::system(words.c_str());
   }
 
@@ -83,13 +84,13 @@ TEST_F(Examples, OfEveryVerbRunUnchanged) {
   write("few.json", techniques_alone);
   write("limits.json", R"({ "dermis_kernel_limits": 1, "rules": [
     { "graph": "*", "max": { "dispatches": 64 } } ] })");
-  ASSERT_EQ(
-      shell("dermis capture configs/scenes/bust.json --out capture --size 64x36 --frames 2\n"
-            "dermis plan save configs/graphs/burley.json --out before.plan\n"
-            "cp before.plan burley.plan\n"
-            "for name in a b; do dermis render configs/scenes/bust.json --graph configs/graphs/sap.json "
-            "--size 64x36 --frames 8 --subset 0 --out out/$name; done"),
-      0)
+  ASSERT_EQ(shell("dermis capture configs/scenes/bust.json --out capture --size 64x36 --frames 2\n"
+                  "dermis plan save configs/graphs/burley.json --out before.plan\n"
+                  "cp before.plan burley.plan\n"
+                  "for name in a b; do dermis render configs/scenes/bust.json --graph "
+                  "configs/graphs/sap.json "
+                  "--size 64x36 --frames 8 --subset 0 --out out/$name; done"),
+            0)
       << read("said");
   std::vector<std::string> verbs;
   for (const std::string& verb : verbs_of_help(run({"--help"}).out)) {

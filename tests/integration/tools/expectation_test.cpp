@@ -34,7 +34,8 @@ TEST_F(Expectations, EveryShippedGraphMeetsItsExpectations) {
     EXPECT_TRUE(std::filesystem::exists(name.substr(0, name.size() - 5) + ".expect.json")) << name;
   }
   EXPECT_GE(graphs, 2u);
-  EXPECT_THAT(run({"test", "configs/"}), Succeeds("configs/graphs/burley.expect.json: 6 cases as expected"));
+  EXPECT_THAT(run({"test", "configs/"}),
+              Succeeds("configs/graphs/burley.expect.json: 6 cases as expected"));
   EXPECT_THAT(run({"test", "configs/graphs"}), Succeeds())
       << "overlays are located next to the folder of graphs\n";
 }
@@ -49,8 +50,8 @@ TEST_F(Expectations, DifferencesAreShownLineByLine) {
   wrong.replace(wrong.find("\"scatter\", "), 11, "\"sharpen\", ");
   const std::string file = file_next_to_burley(wrong);
   const Outcome outcome = run({"test", file});
-  EXPECT_THAT(outcome, FailsWith(1, file + ": case 'least'", "-     \"sharpen\"", "+     \"scatter\"",
-                                 "      \"setup\"", "--update"));
+  EXPECT_THAT(outcome, FailsWith(1, file + ": case 'least'", "-     \"sharpen\"",
+                                 "+     \"scatter\"", "      \"setup\"", "--update"));
   EXPECT_THAT(outcome.out, IsEmpty());
   EXPECT_EQ(text_of(file), wrong);
 }
@@ -61,8 +62,9 @@ TEST_F(Expectations, UpdateChangesOnlyTheFacts) {
   const std::string file = file_next_to_burley(wrong);
   EXPECT_EQ(run({"test", file, "--update"}).exit_code, 0);
   const std::string after = text_of(file);
-  EXPECT_THAT(after, AllOf(HasSubstr("// what the smallest host gets"), HasSubstr("\"history_bytes\": 0"),
-                           HasSubstr("\"size\": [64, 64]"), Not(HasSubstr("barriers"))));
+  EXPECT_THAT(after,
+              AllOf(HasSubstr("// what the smallest host gets"), HasSubstr("\"history_bytes\": 0"),
+                    HasSubstr("\"size\": [64, 64]"), Not(HasSubstr("barriers"))));
   EXPECT_EQ(run({"test", file}).exit_code, 0);
   EXPECT_EQ(run({"test", file, "--update"}).exit_code, 0);
   EXPECT_EQ(text_of(file), after);
@@ -93,8 +95,9 @@ TEST_F(Expectations, UnreadableGraph_HasOnlyMessages) {
 
 TEST_F(Expectations, UnknownNamesAreReported) {
   const auto says = [&](const std::string& inputs, const std::string& message) {
-    const std::string file = file_next_to_burley("{ \"dermis_expect\": 1, \"cases\": [ { \"case\": \"a\", " +
-                                                 inputs + ", \"expect\": {} } ] }");
+    const std::string file =
+        file_next_to_burley("{ \"dermis_expect\": 1, \"cases\": [ { \"case\": \"a\", " + inputs +
+                            ", \"expect\": {} } ] }");
     for (const char* flag : {"--quiet", "--update"}) {
       EXPECT_THAT(run({"test", file, flag}), FailsWith(1, message)) << inputs;
     }
@@ -112,16 +115,20 @@ TEST_F(Expectations, ErrorsInTheFileAreLocated) {
   };
   says(R"({ "dermis_expect": 2, "cases": [] })", ":1:20: error[D0110");
   says(R"({ "dermis_expect": 1, "cases": [] })", "D01");
-  says(R"({ "dermis_expect": 1, "cases": [ { "case": "a", "expects": {} } ] })", "did you mean 'expect'?");
+  says(R"({ "dermis_expect": 1, "cases": [ { "case": "a", "expects": {} } ] })",
+       "did you mean 'expect'?");
   says(R"({ "dermis_expect": 1, "cases": [ { "case": "a", "device": { "lacks": ["rays"] } } ] })",
        "there is no feature 'rays'");
   says(R"({ "dermis_expect": 1, "cases": [ { "case": "a" }, { "case": "a" } ] })",
        "two cases are called 'a'");
   says(R"({ "dermis_expect": 1, "cases": [ { "case": "a", "size": [0, 4] } ] })", "D0106");
-  says(R"({ "dermis_expect": 1, "cases": [ { "case": "a", "set": { "samples": [] } } ] })", "D0112");
-  says(R"({ "dermis_expect": 1, "cases": [ { "case": "a", "host_formats": { "lighting": "rgb" } } ] })",
-       "there is no format 'rgb'");
-  says(R"({ "dermis_expect": 1, "cases": [ { "case": "a", "expect": { "passes": [1] } } ] })", "D0104");
+  says(R"({ "dermis_expect": 1, "cases": [ { "case": "a", "set": { "samples": [] } } ] })",
+       "D0112");
+  says(
+      R"({ "dermis_expect": 1, "cases": [ { "case": "a", "host_formats": { "lighting": "rgb" } } ] })",
+      "there is no format 'rgb'");
+  says(R"({ "dermis_expect": 1, "cases": [ { "case": "a", "expect": { "passes": [1] } } ] })",
+       "D0104");
 }
 
 TEST_F(Expectations, NothingToCompare_IsAFailure) {
@@ -131,7 +138,8 @@ TEST_F(Expectations, NothingToCompare_IsAFailure) {
   EXPECT_EQ(run({"test"}).exit_code, 2);
   const std::string lonely =
       write("lonely.expect.json", R"({ "dermis_expect": 1, "cases": [ { "case": "a" } ] })");
-  EXPECT_THAT(run({"test", lonely, "--update"}), FailsWith(1, "next to the expectation file does not exist"));
+  EXPECT_THAT(run({"test", lonely, "--update"}),
+              FailsWith(1, "next to the expectation file does not exist"));
 }
 
 TEST_F(Expectations, ResultsAreWrittenAsJUnitAndJson) {
@@ -158,8 +166,9 @@ TEST_F(Expectations, OverlaysComeOnlyFromDeclaredFolders) {
   const std::string overlay = R"({ "dermis_overlay": 2, "edits": [ { "remove": "/passes/combine" },
     { "set": "/passes/scatter/write/scattered", "to": "lighting" } ] })";
   write("other/changes/less.json", overlay);
-  EXPECT_THAT(run({"test", file}), FailsWith(1, "overlay 'changes/less.json': there is no such file in",
-                                             "add folders with --root"));
+  EXPECT_THAT(run({"test", file}),
+              FailsWith(1, "overlay 'changes/less.json': there is no such file in",
+                        "add folders with --root"));
   const Outcome declared = run({"test", file, "--root", path("other")});
   EXPECT_THAT(declared.err, Not(HasSubstr("no such file")));
   std::filesystem::create_directories(path("changes"));

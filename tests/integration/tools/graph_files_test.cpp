@@ -32,7 +32,8 @@ TEST_F(GraphFiles, TheShippedFilesHaveNoProblems) {
              fmt::format("{}/configs/{}", DERMIS_SOURCE_DIR, folder)))
       if (entry.is_regular_file()) words.push_back(entry.path().string());
   EXPECT_THAT(run(words),
-              Succeeds("burley.json: graph, no problems", "burley.expect.json: expectations, no problems",
+              Succeeds("burley.json: graph, no problems",
+                       "burley.expect.json: expectations, no problems",
                        "skin.json: profile, no problems", "bust.json: scene, no problems"));
 }
 
@@ -57,16 +58,18 @@ TEST_F(GraphFiles, MissingImportIsNamedWithItsReader) {
 TEST_F(GraphFiles, CycleNamesItsPasses) {
   // `setup` reads the output of `scatter`, and `scatter` reads the output of `setup`.
   const std::string bad =
-      write("bad.json", burley_with("\"read\": { \"lighting\": \"lighting\", \"material\": \"material\", "
-                                    "\"depth\": \"depth\", \"albedo\": \"albedo\",",
-                                    "\"read\": { \"lighting\": \"scattered\", \"material\": \"material\", "
-                                    "\"depth\": \"depth\", \"albedo\": \"albedo\","));
+      write("bad.json",
+            burley_with("\"read\": { \"lighting\": \"lighting\", \"material\": \"material\", "
+                        "\"depth\": \"depth\", \"albedo\": \"albedo\",",
+                        "\"read\": { \"lighting\": \"scattered\", \"material\": \"material\", "
+                        "\"depth\": \"depth\", \"albedo\": \"albedo\","));
   EXPECT_THAT(run({"validate", bad}), FailsWith(1, bad + ":", "cycle", "'setup'", "'scatter'"));
 }
 
 TEST_F(GraphFiles, UnusableFormatIsNamedWithBothSides) {
-  const std::string bad = write(
-      "bad.json", burley_with(R"("format": ["r8_uint", "r16_uint", "r32_uint"])", R"("format": "rgba16f")"));
+  const std::string bad =
+      write("bad.json", burley_with(R"("format": ["r8_uint", "r16_uint", "r32_uint"])",
+                                    R"("format": "rgba16f")"));
   EXPECT_THAT(run({"validate", bad}), FailsWith(1, bad + ":", "'material'", "rgba16f"));
 }
 
@@ -183,9 +186,10 @@ TEST_F(GraphFiles, OverlaysApplyInOrder_ExplainNamesTheirFiles) {
                                "set      /settings/samples/int  (" + second + ":2:14)"));
   const Outcome json = run({"explain", burley, "--json", "--overlay", second, "--overlay", first});
   ASSERT_TRUE(is_json(json.out));
-  EXPECT_THAT(json.out, HasAll("\"name\": \"samples\", \"type\": \"int\", \"value\": 8",
-                               "{ \"did\": \"set\", \"at\": \"/settings/samples/int\", \"file\": \"" + first +
-                                   "\", \"line\": 2, \"column\": 14 }"));
+  EXPECT_THAT(json.out,
+              HasAll("\"name\": \"samples\", \"type\": \"int\", \"value\": 8",
+                     "{ \"did\": \"set\", \"at\": \"/settings/samples/int\", \"file\": \"" + first +
+                         "\", \"line\": 2, \"column\": 14 }"));
 }
 
 TEST_F(GraphFiles, OverlayError_IsReportedInTheOverlay) {
@@ -207,7 +211,8 @@ TEST_F(GraphFiles, IncludesAreReadBelowFolderAndRoots) {
   const std::string graph =
       write("graphs/mine.json", burley_with(classify, R"({ "include": "parts/classify.json" })"));
   EXPECT_THAT(run({"validate", graph}), FailsWith(1, "D0109", "there is no such file in"));
-  write("shared/parts/classify.json", "{ \"dermis_fragment\": 2, \"passes\": [ " + classify + " ] }");
+  write("shared/parts/classify.json",
+        "{ \"dermis_fragment\": 2, \"passes\": [ " + classify + " ] }");
   EXPECT_THAT(run({"validate", graph, "--root", path("shared")}), Succeeds());
   EXPECT_THAT(run({"validate", path("shared/parts/classify.json")}),
               FailsWith(1, "classify.json:2:29: error[D0203"))
@@ -220,11 +225,12 @@ TEST_F(GraphFiles, SceneProfilesAreReadInFolderAndRoots) {
   "profiles": [ { "name": "skin", "file": "../elsewhere/secret.json" } ],
   "camera": { "position": [0, 0, 1], "target": [0, 0, 0], "vertical_fov": 20 },
   "objects": [ { "shape": "sphere", "profile": "skin" } ] })");
-  for (const std::vector<std::string>& words : {std::vector<std::string>{"validate", scene},
-                                                {"render", scene, "--graph", "none", "--out", path("out")},
-                                                {"capture", scene, "--out", path("out")}}) {
-    EXPECT_THAT(run(words),
-                FailsWith(1, "scene.json:2:43: error[D0118", "outside the readable folders", "--root"))
+  for (const std::vector<std::string>& words :
+       {std::vector<std::string>{"validate", scene},
+        {"render", scene, "--graph", "none", "--out", path("out")},
+        {"capture", scene, "--out", path("out")}}) {
+    EXPECT_THAT(run(words), FailsWith(1, "scene.json:2:43: error[D0118",
+                                      "outside the readable folders", "--root"))
         << words[0];
     EXPECT_FALSE(std::filesystem::exists(path("out"))) << words[0];
   }

@@ -15,23 +15,24 @@ using nlohmann::json;
 class Keep : public CommandTest {};
 
 TEST_F(Keep, CapturedSceneIsValidAndCanBeApplied) {
-  ASSERT_THAT(run({"capture", "configs/scenes/bust.json", "--out", path("capture"), "--size", "48x27",
-                   "--frames", "2", "--first", "3"}),
+  ASSERT_THAT(run({"capture", "configs/scenes/bust.json", "--out", path("capture"), "--size",
+                   "48x27", "--frames", "2", "--first", "3"}),
               Succeeds());
   EXPECT_EQ(run({"validate", path("capture")}).exit_code, 0);
-  EXPECT_THAT(run({"apply", "--graph", "configs/graphs/burley.json", "--frames", path("capture"), "--out",
-                   path("out")}),
+  EXPECT_THAT(run({"apply", "--graph", "configs/graphs/burley.json", "--frames", path("capture"),
+                   "--out", path("out")}),
               Succeeds());
   EXPECT_THAT(files("out"), Contains("frame_0001/scattered.exr"));
 }
 
 TEST_F(Keep, CaptureMatchesTheCaptureOfARendering) {
-  ASSERT_EQ(
-      run({"capture", "configs/scenes/bust.json", "--out", path("a"), "--size", "48x27", "--frames", "1"})
-          .exit_code,
-      0);
-  ASSERT_EQ(run({"render", "configs/scenes/bust.json", "--graph", "configs/graphs/burley.json", "--capture",
-                 path("b"), "--out", path("out"), "--size", "48x27", "--frames", "1", "--subset", "0"})
+  ASSERT_EQ(run({"capture", "configs/scenes/bust.json", "--out", path("a"), "--size", "48x27",
+                 "--frames", "1"})
+                .exit_code,
+            0);
+  ASSERT_EQ(run({"render", "configs/scenes/bust.json", "--graph", "configs/graphs/burley.json",
+                 "--capture", path("b"), "--out", path("out"), "--size", "48x27", "--frames", "1",
+                 "--subset", "0"})
                 .exit_code,
             0);
   ASSERT_EQ(files("a"), files("b"));
@@ -40,12 +41,13 @@ TEST_F(Keep, CaptureMatchesTheCaptureOfARendering) {
 }
 
 TEST_F(Keep, BugReportIsCompleteAndReproducible) {
-  const Outcome outcome =
-      run({"report-bug", "configs/graphs/burley.json", "--overlay", "configs/overlays/full_precision.json",
-           "--set", "samples=8", "--size", "48x27", "--count", "1", "--out", path("bug"), "--json"});
+  const Outcome outcome = run({"report-bug", "configs/graphs/burley.json", "--overlay",
+                               "configs/overlays/full_precision.json", "--set", "samples=8",
+                               "--size", "48x27", "--count", "1", "--out", path("bug"), "--json"});
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
-  for (const char* file : {"burley.json", "overlays/0_full_precision.json", "settings.json", "plan.json",
-                           "graph.plan", "device.json", "README.txt", "capture/frame_0000/frame.json"})
+  for (const char* file :
+       {"burley.json", "overlays/0_full_precision.json", "settings.json", "plan.json", "graph.plan",
+        "device.json", "README.txt", "capture/frame_0000/frame.json"})
     EXPECT_THAT(files("bug"), Contains(file));
   EXPECT_EQ(json::parse(read("bug/settings.json"))["samples"], 8);
   EXPECT_TRUE(json::parse(read("bug/plan.json")).contains("reasons"));
@@ -57,10 +59,10 @@ TEST_F(Keep, BugReportIsCompleteAndReproducible) {
                     "overlays/0_full_precision.json --set samples=8");
   EXPECT_THAT(read("bug/README.txt"), HasSubstr(replay));
   // The line of the report, run from the test's working folder.
-  EXPECT_THAT(
-      run({"apply", "--graph", path("bug/burley.json"), "--frames", path("bug/capture"), "--out",
-           path("replay"), "--overlay", path("bug/overlays/0_full_precision.json"), "--set", "samples=8"}),
-      Succeeds());
+  EXPECT_THAT(run({"apply", "--graph", path("bug/burley.json"), "--frames", path("bug/capture"),
+                   "--out", path("replay"), "--overlay", path("bug/overlays/0_full_precision.json"),
+                   "--set", "samples=8"}),
+              Succeeds());
   EXPECT_THAT(files("replay"), Contains("frame_0000/combined.exr"));
 }
 
@@ -85,17 +87,17 @@ TEST_F(Keep, BugReport_HasTheLastFrameAndIncludedFiles) {
         "tiles": "tiles", "arguments": "arguments" }, "write": { "light": "light" } },
       { "include": "parts/back.json" } ],
     "exports": ["lighting"] })");
-  ASSERT_THAT(
-      run({"report-bug", graph, "--frames", path("capture"), "--size", "32x18", "--out", path("bug")}),
-      Succeeds());
+  ASSERT_THAT(run({"report-bug", graph, "--frames", path("capture"), "--size", "32x18", "--out",
+                   path("bug")}),
+              Succeeds());
   EXPECT_THAT(files("bug"), Contains("parts/back.json"));
   EXPECT_THAT(files("bug/capture"), Not(Contains("frame_0001")));
   EXPECT_EQ(run({"validate", path("bug/main.json"), path("bug/capture")}).exit_code, 0);
 }
 
 TEST_F(Keep, BugReportCanBeAnArchive) {
-  ASSERT_THAT(run({"report-bug", "configs/graphs/burley.json", "--size", "32x18", "--count", "1", "--out",
-                   path("bug.tar.gz")}),
+  ASSERT_THAT(run({"report-bug", "configs/graphs/burley.json", "--size", "32x18", "--count", "1",
+                   "--out", path("bug.tar.gz")}),
               Succeeds());
   EXPECT_THAT(files(), ElementsAre("bug.tar.gz"));
   EXPECT_THAT(run({"report-bug", "configs/graphs/burley.json", "--out", path("bug.tar.gz")}),
@@ -103,25 +105,26 @@ TEST_F(Keep, BugReportCanBeAnArchive) {
   EXPECT_THAT(run({"report-bug", "configs/graphs/burley.json", "--out", path("bug.zip")}),
               FailsWith(2, ".tar.gz or .tgz"));
   ASSERT_EQ(std::system(("tar -xzf " + path("bug.tar.gz") + " -C " + path(".")).c_str()), 0);
-  EXPECT_THAT(run({"apply", "--graph", path("bug/burley.json"), "--frames", path("bug/capture"), "--out",
-                   path("replay")}),
+  EXPECT_THAT(run({"apply", "--graph", path("bug/burley.json"), "--frames", path("bug/capture"),
+                   "--out", path("replay")}),
               Succeeds());
 }
 
 TEST_F(Keep, BugReport_IsWrittenCompletelyToANewFolder) {
   write("full/file", "x");
   EXPECT_EQ(run({"report-bug", "configs/graphs/burley.json", "--out", path("full")}).exit_code, 3);
-  EXPECT_EQ(
-      run({"report-bug", "configs/graphs/burley.json", "--scene", path("none.json"), "--out", path("bug")})
-          .exit_code,
-      1);
+  EXPECT_EQ(run({"report-bug", "configs/graphs/burley.json", "--scene", path("none.json"), "--out",
+                 path("bug")})
+                .exit_code,
+            1);
   EXPECT_THAT(files(), ElementsAre("full", "full/file"));
 }
 
 TEST_F(Keep, TraceHasEveryPassAndNestsPerfectly) {
-  const Outcome outcome = run({"render", "configs/scenes/bust.json", "--graph", "configs/graphs/skin.json",
-                               "--size", "48x27", "--frames", "3", "--subset", "0", "--budget", "1000",
-                               "--out", path("out"), "--trace", path("trace.json"), "--json"});
+  const Outcome outcome =
+      run({"render", "configs/scenes/bust.json", "--graph", "configs/graphs/skin.json", "--size",
+           "48x27", "--frames", "3", "--subset", "0", "--budget", "1000", "--out", path("out"),
+           "--trace", path("trace.json"), "--json"});
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   const json passes = json::parse(outcome.out)["passes"];
   const json trace = json::parse(read("trace.json"));

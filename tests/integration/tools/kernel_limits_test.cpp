@@ -18,10 +18,10 @@ vulkan::PipelineExecutable executable(std::vector<vulkan::PipelineStatistic> sta
 }
 
 TEST(KernelRows, StatisticsGetCommonNames) {
-  const auto rows = make_rows(
-      "sap/up",
-      std::vector{executable(
-          {{"VGPRs", "", 48}, {"Spilled VGPRs", "", 3}, {"LDS size", "", 512}, {"Latency", "", 77}})});
+  const auto rows = make_rows("sap/up", std::vector{executable({{"VGPRs", "", 48},
+                                                                {"Spilled VGPRs", "", 3},
+                                                                {"LDS size", "", 512},
+                                                                {"Latency", "", 77}})});
   ASSERT_THAT(rows, SizeIs(1));
   EXPECT_EQ(rows[0].kernel, "sap/up");
   EXPECT_EQ(rows[0].program, "");
@@ -54,11 +54,13 @@ TEST(KernelLimits, StarsInPatterns) {
   const struct {
     const char *pattern, *text;
     bool matches;
-  } cases[] = {{"sap", "sap", true},          {"sap", "sap2", false},        {"*", "", true},
-               {"sap/*", "sap/up", true},     {"sap/*", "burley/up", false}, {"*up", "sap/up_up", true},
-               {"s*p*d", "sap/down/d", true}, {"s*p*d", "sap/down", false},  {"", "a", false}};
+  } cases[] = {
+      {"sap", "sap", true},          {"sap", "sap2", false},        {"*", "", true},
+      {"sap/*", "sap/up", true},     {"sap/*", "burley/up", false}, {"*up", "sap/up_up", true},
+      {"s*p*d", "sap/down/d", true}, {"s*p*d", "sap/down", false},  {"", "a", false}};
   for (const auto& one : cases)
-    EXPECT_EQ(matches_pattern(one.pattern, one.text), one.matches) << one.pattern << " on " << one.text;
+    EXPECT_EQ(matches_pattern(one.pattern, one.text), one.matches)
+        << one.pattern << " on " << one.text;
 }
 
 struct Read {
@@ -81,13 +83,17 @@ TEST(KernelLimits, MistakesInTheFileHavePositions) {
       {R"({ "kernel": "*", "max": { "vgpr": 1 } })", "limits.json:2:27: error[D0103 unknown_key]"},
       {R"({ "kernel": "*", "max": { "vgpr": 1 } })", "did you mean 'vgprs'"},
       {R"({ "graph": "*", "max": { "vgprs": 1 } })", "a graph has no value 'vgprs'"},
-      {R"({ "kernel": "*", "graph": "*", "max": { "vgprs": 1 } })", "give one of 'kernel' and 'graph'"},
+      {R"({ "kernel": "*", "graph": "*", "max": { "vgprs": 1 } })",
+       "give one of 'kernel' and 'graph'"},
       {R"({ "kernel": "*" })", "a rule needs a limit"},
-      {R"({ "kernel": "*", "max": { "vgprs": "many" } })", "limits.json:2:36: error[D0104 wrong_type]"},
+      {R"({ "kernel": "*", "max": { "vgprs": "many" } })",
+       "limits.json:2:36: error[D0104 wrong_type]"},
       {R"({ "kernel": [], "max": { "vgprs": 1 } })", "has 0 patterns"},
       {R"({ "kernel": "*", "max": { "vgprs": { "goal": 80 } } })", "D0105 missing_key"},
-      {R"({ "kernel": "*", "max": { "vgprs": { "goal": 80, "now": 72 } } })", "'now' reaches the goal"},
-      {R"({ "kernel": "*", "min": { "occupancy": { "goal": 8, "now": 9 } } })", "'now' reaches the goal"},
+      {R"({ "kernel": "*", "max": { "vgprs": { "goal": 80, "now": 72 } } })",
+       "'now' reaches the goal"},
+      {R"({ "kernel": "*", "min": { "occupancy": { "goal": 8, "now": 9 } } })",
+       "'now' reaches the goal"},
       {R"({ "kernel": "*", "max": { "vgprs": 1 }, "colour": 1 })", "D0103 unknown_key"},
   };
   for (const auto& one : cases) {
@@ -121,7 +127,8 @@ LimitsCheck check(const std::string& rules, const std::vector<KernelRow>& kernel
   const Read read_back = read(rules);
   EXPECT_TRUE(read_back.rules) << rules;
   if (!read_back.rules) return {};
-  return check_limits(*read_back.rules, {"Null hardware (RADV NAVI21)", "radv Mesa 22.3.6"}, kernels, graphs);
+  return check_limits(*read_back.rules, {"Null hardware (RADV NAVI21)", "radv Mesa 22.3.6"},
+                      kernels, graphs);
 }
 
 TEST(KernelLimits, ExceededLimitsNameKernelValueAndLimit) {
@@ -145,9 +152,10 @@ TEST(KernelLimits, TheLastMatchingRuleDecides) {
 
 TEST(KernelLimits, PresentValuesAreAcceptedUntilTheGoal) {
   const std::string rule = R"({ "kernel": "*", "max": { "vgprs": { "goal": 80, "now": 200 } } })";
-  const LimitsCheck result =
-      check(rule, {row("worse", 201, 1), row("equal", 200, 1), row("better", 100, 1), row("there", 80, 1)});
-  EXPECT_THAT(texts(result.exceeded), ElementsAre("worse: vgprs is 201, at most 200 is allowed (goal 80)"));
+  const LimitsCheck result = check(rule, {row("worse", 201, 1), row("equal", 200, 1),
+                                          row("better", 100, 1), row("there", 80, 1)});
+  EXPECT_THAT(texts(result.exceeded),
+              ElementsAre("worse: vgprs is 201, at most 200 is allowed (goal 80)"));
   ASSERT_THAT(result.open, SizeIs(2));
   EXPECT_EQ(result.open[0].subject, "equal");
   EXPECT_EQ(result.open[1].subject, "better");
@@ -176,10 +184,12 @@ TEST(KernelLimits, GraphsHaveLimits) {
   graph.dispatches = 21;
   graph.read_bytes = 100;
   graph.written_bytes = 64;
-  const LimitsCheck result = check(R"({ "graph": "sap", "max": { "dispatches": 14, "bytes_per_pixel": 164 } },
+  const LimitsCheck result =
+      check(R"({ "graph": "sap", "max": { "dispatches": 14, "bytes_per_pixel": 164 } },
                                       { "graph": "burley", "max": { "dispatches": 1 } })",
-                                   {}, {graph});
-  EXPECT_THAT(texts(result.exceeded), ElementsAre("graph sap: dispatches is 21, at most 14 is allowed"));
+            {}, {graph});
+  EXPECT_THAT(texts(result.exceeded),
+              ElementsAre("graph sap: dispatches is 21, at most 14 is allowed"));
   EXPECT_EQ(result.checked, 2u);
 }
 

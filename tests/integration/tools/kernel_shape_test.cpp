@@ -75,8 +75,14 @@ const ShapeCase shape_cases[] = {
      "96x64",
      {"-g", "configs/graphs/papers/sap_layered.json"}},
     {"hybrid", "configs/scenes/dynamic.json", "96x64", {"-g", "configs/graphs/papers/hybrid.json"}},
-    {"residual", "configs/scenes/bust.json", "96x64", {"-g", "configs/graphs/papers/sap_residual.json"}},
-    {"smaller_than_two_tiles", "configs/scenes/bust.json", "9x7", {"-g", "configs/graphs/sap.json"}},
+    {"residual",
+     "configs/scenes/bust.json",
+     "96x64",
+     {"-g", "configs/graphs/papers/sap_residual.json"}},
+    {"smaller_than_two_tiles",
+     "configs/scenes/bust.json",
+     "9x7",
+     {"-g", "configs/graphs/sap.json"}},
 };
 INSTANTIATE_TEST_SUITE_P(Graphs, KernelShape, ::testing::ValuesIn(shape_cases),
                          [](const auto& one) { return std::string(one.param.name); });
@@ -88,11 +94,13 @@ TEST_F(KernelShapes, BrokenTexelShape_ChangesOnlyPicturesForGpus) {
   const Outcome has = run({"doctor", "--json"});
   if (has.out.find("\"shader_compiler\": \"\"") != std::string::npos)
     GTEST_SKIP() << "built without glslang (package glslang-dev)";
-  const ShapeCase smooth{"", "configs/scenes/bust.json", "96x64", {"-g", "configs/graphs/sap.json"}};
-  const ShapeCase half{"",
-                       "configs/scenes/bust.json",
-                       "96x64",
-                       {"-g", "configs/graphs/skin.json", "--set", "technique=sap", "--set", "variant=half"}};
+  const ShapeCase smooth{
+      "", "configs/scenes/bust.json", "96x64", {"-g", "configs/graphs/sap.json"}};
+  const ShapeCase half{
+      "",
+      "configs/scenes/bust.json",
+      "96x64",
+      {"-g", "configs/graphs/skin.json", "--set", "technique=sap", "--set", "variant=half"}};
   ASSERT_EQ(render(smooth, "cpu", "smooth").exit_code, 0);
   ASSERT_EQ(render(half, "cpu", "half").exit_code, 0);
   const std::filesystem::path copy = path("shaders");
@@ -104,8 +112,11 @@ TEST_F(KernelShapes, BrokenTexelShape_ChangesOnlyPicturesForGpus) {
     SCOPED_TRACE(kernel);
     const std::string file = std::string("shaders/sap/subsurface_sap_") + kernel + ".comp";
     write(file, broken(file));
-    const std::string reference = std::string(kernel).find("half") != std::string::npos ? "half" : "smooth";
-    ASSERT_EQ(render(reference == "half" ? half : smooth, "gpu", "gpu", {"--shaders", copy}).exit_code, 0);
+    const std::string reference =
+        std::string(kernel).find("half") != std::string::npos ? "half" : "smooth";
+    ASSERT_EQ(
+        render(reference == "half" ? half : smooth, "gpu", "gpu", {"--shaders", copy}).exit_code,
+        0);
     EXPECT_FALSE(read(reference + "/scattered_0001.exr") == read("gpu/scattered_0001.exr"));
     write(file, text_of(file));
   }

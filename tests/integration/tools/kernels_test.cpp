@@ -24,7 +24,8 @@ class KernelsOnNullHardware : public CommandTest {
 protected:
   void SetUp() override {
     if (testing::radeon_driver().empty())
-      GTEST_SKIP() << "no driver for AMD GPUs in /usr/share/vulkan/icd.d: install mesa-vulkan-drivers";
+      GTEST_SKIP()
+          << "no driver for AMD GPUs in /usr/share/vulkan/icd.d: install mesa-vulkan-drivers";
   }
   static Outcome run_on(const std::string& family, std::vector<std::string> arguments) {
     arguments.insert(arguments.begin(), "kernels");
@@ -45,16 +46,16 @@ TEST_F(KernelsVerb, WithoutStatisticsCountsRemain) {
   EXPECT_THAT(text.out, AllOf(HasSubstr("burley/subsurface_burley"), HasSubstr("barrier calls")));
   if (text.out.find("has no VK_KHR_pipeline") == std::string::npos)
     GTEST_SKIP() << "a driver with statistics";
-  const Outcome limited =
-      run({"kernels", "burley", "--limits", write("limits.json", R"({ "dermis_kernel_limits": 1, "rules": [
+  const Outcome limited = run({"kernels", "burley", "--limits",
+                               write("limits.json", R"({ "dermis_kernel_limits": 1, "rules": [
                                        { "kernel": "*", "max": { "vgprs": 1000 } } ] })")});
   EXPECT_EQ(limited.exit_code, 1);
   EXPECT_THAT(limited.err, HasSubstr("does not report vgprs"));
 }
 
 TEST_F(KernelsVerb, PlansAreCountedAsTheyAreRecorded) {
-  const Outcome outcome = run({"kernels", "burley", "--json", "--unbound", "scattered_light", "--unbound",
-                               "albedo,scatter_scale", "--size", "640x360"});
+  const Outcome outcome = run({"kernels", "burley", "--json", "--unbound", "scattered_light",
+                               "--unbound", "albedo,scatter_scale", "--size", "640x360"});
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   const json graph = json::parse(outcome.out).at("graphs").at(0);
   EXPECT_EQ(graph.at("graph"), "burley");
@@ -96,8 +97,9 @@ TEST_F(KernelsOnNullHardware, CompilerValuesAreReported) {
   EXPECT_THAT(document.at("device").get<std::string>(), HasSubstr("NAVI21"));
   const json kernel = kernel_of(document, "common/subsurface_combine");
   const json& values = kernel.at("values");
-  for (const char* key : {"vgprs", "sgprs", "spilled_vgprs", "spilled_sgprs", "scratch_bytes", "shared_bytes",
-                          "occupancy", "subgroup_size", "code_bytes", "instructions"})
+  for (const char* key :
+       {"vgprs", "sgprs", "spilled_vgprs", "spilled_sgprs", "scratch_bytes", "shared_bytes",
+        "occupancy", "subgroup_size", "code_bytes", "instructions"})
     EXPECT_TRUE(values.contains(key)) << key;
   EXPECT_GT(values.at("code_bytes"), 0);
   EXPECT_EQ(values.at("spilled_vgprs"), 0);
@@ -110,9 +112,9 @@ TEST_F(KernelsOnNullHardware, AnExceededLimitFails) {
     { "device": "*NAVI21*", "kernel": "common/*", "max": { "code_bytes": 8 }, "min": { "occupancy": 1 } } ] })");
   const Outcome text = run_on("navi21", {"burley", "--limits", limits});
   EXPECT_EQ(text.exit_code, 1);
-  EXPECT_THAT(text.err,
-              AllOf(HasSubstr("common/subsurface_combine: code_bytes is "), HasSubstr("at most 8 is allowed"),
-                    HasSubstr("limits.json:2"), Not(HasSubstr("burley/"))));
+  EXPECT_THAT(text.err, AllOf(HasSubstr("common/subsurface_combine: code_bytes is "),
+                              HasSubstr("at most 8 is allowed"), HasSubstr("limits.json:2"),
+                              Not(HasSubstr("burley/"))));
   const Outcome answer = run_on("navi21", {"burley", "--limits", limits, "--json"});
   EXPECT_EQ(answer.exit_code, 1);
   ASSERT_TRUE(is_json(answer.out));
@@ -127,14 +129,16 @@ TEST_F(KernelsOnNullHardware, AnExceededLimitFails) {
 TEST_F(KernelsOnNullHardware, GraphsThatNeedRaysAreSkippedByName) {
   const Outcome outcome = run_on("vega10", {"restir", "burley"});
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
-  EXPECT_THAT(outcome.out,
-              HasSubstr("restir: skipped, its default 'restir' needs ray_query, which the device lacks"));
+  EXPECT_THAT(
+      outcome.out,
+      HasSubstr("restir: skipped, its default 'restir' needs ray_query, which the device lacks"));
   EXPECT_THAT(outcome.out, HasSubstr("burley/subsurface_burley"));
 }
 
 TEST(CompilePipelines, NeedNoMemory) {
   Diagnostics diagnostics;
-  const auto loaded = tools::load_graph(DERMIS_SOURCE_DIR "/configs/graphs/burley.json", {}, diagnostics);
+  const auto loaded =
+      tools::load_graph(DERMIS_SOURCE_DIR "/configs/graphs/burley.json", {}, diagnostics);
   ASSERT_TRUE(loaded);
   NullDevice null;
   vulkan::DeviceInput input;
@@ -146,7 +150,8 @@ TEST(CompilePipelines, NeedNoMemory) {
   ASSERT_FALSE(vulkan::make_device(input, device));
   const DeviceProfile profile = vulkan::device_profile(device);
   const auto compiled = compile(
-      tools::compile_input(*loaded, profile, {640, 360}, tools::read_choices(loaded->graph)), diagnostics);
+      tools::compile_input(*loaded, profile, {640, 360}, tools::read_choices(loaded->graph)),
+      diagnostics);
   ASSERT_TRUE(compiled);
   const auto tables =
       subsurface::make_kernel_tables(subsurface::table_use(loaded->graph, loaded->pass_types), {});

@@ -19,7 +19,8 @@ constexpr const char* tone = R"({ "dermis": 2, "name": "tone",
 class PassTypes : public CommandTest {};
 
 TEST_F(PassTypes, ExportedFile_LetsGraphsBeChecked) {
-  const std::string kind_file = write("pass_types.json", pass_types), graph_file = write("tone.json", tone);
+  const std::string kind_file = write("pass_types.json", pass_types),
+                    graph_file = write("tone.json", tone);
   EXPECT_THAT(run({"validate", graph_file}), FailsWith(1, "studio.tone"));
   EXPECT_THAT(run({"validate", graph_file, "--pass-types", kind_file}), Succeeds());
   EXPECT_THAT(run({"explain", graph_file, "--pass-types", kind_file}), Succeeds("tone"));
@@ -29,9 +30,11 @@ TEST_F(PassTypes, FileIsChecked) {
   EXPECT_EQ(run({"validate", write("pass_types.json", pass_types)}).exit_code, 0);
   std::string range = pass_types, own = pass_types;
   range.replace(range.find("\"default\": 1"), 12, "\"default\": 9");
-  EXPECT_THAT(run({"validate", write("range.json", range)}), FailsWith(1, "range.json:2:3", "settings[0]"));
+  EXPECT_THAT(run({"validate", write("range.json", range)}),
+              FailsWith(1, "range.json:2:3", "settings[0]"));
   own.replace(own.find("studio"), 6, "subsurface");
-  EXPECT_THAT(run({"validate", write("own.json", own)}).err, HasSubstr("are reserved for the library"));
+  EXPECT_THAT(run({"validate", write("own.json", own)}).err,
+              HasSubstr("are reserved for the library"));
   const std::string graph_file = write("tone.json", tone);
   const std::string kind_file = write("pass_types.json", pass_types);
   EXPECT_THAT(run({"validate", graph_file, "--pass-types", kind_file, "--pass-types", kind_file}),
@@ -47,7 +50,8 @@ constexpr const char* toned = R"({ "dermis_overlay": 2, "edits": [
     "read": { "light": "lighting" }, "write": { "toned": "toned_light" } } ] } ] })";
 
 TEST_F(PassTypes, RepeatedOption_KeepsTheGraphArgument) {
-  const std::string kind_file = write("pass_types.json", pass_types), graph_file = write("tone.json", tone);
+  const std::string kind_file = write("pass_types.json", pass_types),
+                    graph_file = write("tone.json", tone);
   const std::vector<std::vector<std::string>> lines{
       {"explain", "--pass-types", kind_file, graph_file, "--size", "64x64"},
       {"explain", "--pass-types", kind_file, "--root", path(""), graph_file},
@@ -73,7 +77,8 @@ TEST_F(PassTypes, ExpectationsKnowThem) {
 }
 
 TEST_F(PassTypes, DisabledPass_DoesNotPreventRendering) {
-  const std::string kind_file = write("pass_types.json", pass_types), overlay = write("toned.json", toned);
+  const std::string kind_file = write("pass_types.json", pass_types),
+                    overlay = write("toned.json", toned);
   const std::vector<std::string> line{"render",       "configs/scenes/bust.json",
                                       "--graph",      burley,
                                       "--overlay",    overlay,
@@ -86,11 +91,13 @@ TEST_F(PassTypes, DisabledPass_DoesNotPreventRendering) {
 }
 
 TEST_F(PassTypes, EnabledPass_IsRejectedByName) {
-  const std::string side_effects = write("effects.json", R"({ "dermis_pass_types": 2, "pass_types": [
+  const std::string side_effects =
+      write("effects.json", R"({ "dermis_pass_types": 2, "pass_types": [
   { "name": "studio.look", "side_effects": true, "ports": [ { "name": "light", "usage": "sampled_image" } ] } ] })");
   const std::string look = write("look.json", R"({ "dermis_overlay": 2, "edits": [
   { "insert_before": "classify", "passes": [ { "pass": "look", "type": "studio.look", "read": { "light": "lighting" } } ] } ] })");
-  const std::vector<std::string> both{"--graph", burley, "--overlay", look, "--pass-types", side_effects};
+  const std::vector<std::string> both{"--graph", burley,         "--overlay",
+                                      look,      "--pass-types", side_effects};
   std::vector<std::string> rendering{"render",   "configs/scenes/bust.json",
                                      "--out",    path("out"),
                                      "--size",   "32x24",
@@ -111,23 +118,24 @@ TEST_F(PassTypes, EnabledPass_IsRejectedByName) {
 }
 
 TEST_F(PassTypes, BugReportNamesThemInItsLine) {
-  const std::string kind_file = write("pass_types.json", pass_types), overlay = write("toned.json", toned);
-  ASSERT_THAT(run({"report-bug", burley, "--overlay", overlay, "--pass-types", kind_file, "--size", "32x18",
-                   "--count", "1", "--out", path("bug")}),
+  const std::string kind_file = write("pass_types.json", pass_types),
+                    overlay = write("toned.json", toned);
+  ASSERT_THAT(run({"report-bug", burley, "--overlay", overlay, "--pass-types", kind_file, "--size",
+                   "32x18", "--count", "1", "--out", path("bug")}),
               Succeeds());
   EXPECT_THAT(read("bug/README.txt"),
               HasSubstr("dermis apply --graph burley.json --frames capture --out replay --overlay "
                         "overlays/0_toned.json --pass-types pass_types/0_pass_types.json\n"));
-  EXPECT_THAT(run({"apply", "--graph", path("bug/burley.json"), "--frames", path("bug/capture"), "--out",
-                   path("replay"), "--overlay", path("bug/overlays/0_toned.json"), "--pass-types",
-                   path("bug/pass_types/0_pass_types.json")}),
+  EXPECT_THAT(run({"apply", "--graph", path("bug/burley.json"), "--frames", path("bug/capture"),
+                   "--out", path("replay"), "--overlay", path("bug/overlays/0_toned.json"),
+                   "--pass-types", path("bug/pass_types/0_pass_types.json")}),
               Succeeds());
 }
 
 TEST_F(PassTypes, PageCreatesItsFolder) {
   const std::string page = path("pages/new/tone.html");
-  EXPECT_THAT(run({"graph", "--pass-types", write("pass_types.json", pass_types), write("tone.json", tone),
-                   "--html", page}),
+  EXPECT_THAT(run({"graph", "--pass-types", write("pass_types.json", pass_types),
+                   write("tone.json", tone), "--html", page}),
               Succeeds());
   EXPECT_FALSE(read("pages/new/tone.html").empty());
 }

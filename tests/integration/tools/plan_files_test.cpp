@@ -25,7 +25,8 @@ TEST_F(PlanFiles, HelpOfEveryVerbShowsAnExample) {
 
 TEST_F(PlanFiles, EqualGraphs_GiveEqualBytesThatVerify) {
   for (const char* file : {"a.plan", "b.plan"}) {
-    EXPECT_THAT(run({"plan", "save", burley, "--size", "640x360", "--out", path(file)}), Succeeds("passes"));
+    EXPECT_THAT(run({"plan", "save", burley, "--size", "640x360", "--out", path(file)}),
+                Succeeds("passes"));
   }
   EXPECT_EQ(contents(path("a.plan")), contents(path("b.plan")));
   EXPECT_THAT(files(), ElementsAre("a.plan", "b.plan"));
@@ -51,8 +52,9 @@ TEST_F(PlanFiles, AsyncPasses_GetAQueueOnRequest) {
   const Outcome one = run({"explain", graph}), two = run({"explain", graph, "--two-queues"});
   EXPECT_EQ(two.exit_code, 0) << two.err;
   EXPECT_THAT(one.out, Not(HasSubstr("async queue")));
-  EXPECT_THAT(two.out, HasAll("aside (subsurface.pyramid_down) on the async queue",
-                              "the main queue signals point 1", "waits for point 1 of the async queue"));
+  EXPECT_THAT(two.out,
+              HasAll("aside (subsurface.pyramid_down) on the async queue",
+                     "the main queue signals point 1", "waits for point 1 of the async queue"));
   ASSERT_EQ(run({"plan", "save", graph, "--two-queues", "--out", path("two.plan")}).exit_code, 0);
   EXPECT_THAT(run({"plan", "verify", path("two.plan")}).out, HasSubstr("no hazard"));
   EXPECT_THAT(run({"plan", "diff", path("two.plan"), graph}).out, HasSubstr("single queue"));
@@ -65,7 +67,8 @@ TEST_F(PlanFiles, ADamagedPlanIsRejectedWithTheByte) {
   EXPECT_THAT(run({"plan", "verify", cut}),
               FailsWith(1, "cut.plan", "D0321 plan_file", "byte ", "the file ends inside"));
   EXPECT_EQ(run({"plan", "diff", cut, burley}).exit_code, 1);
-  EXPECT_THAT(run({"plan", "verify", burley}).err, HasSubstr("a saved plan must begin with DERMPLAN"));
+  EXPECT_THAT(run({"plan", "verify", burley}).err,
+              HasSubstr("a saved plan must begin with DERMPLAN"));
   EXPECT_THAT(run({"plan", "verify", path("none.plan")}).err, HasSubstr("does not exist"));
   EXPECT_TRUE(is_json(run({"plan", "verify", cut, "--json"}).out));
 }
@@ -80,7 +83,8 @@ TEST_F(PlanFiles, PlanWithAHazard_NamesPassAndResource) {
   ASSERT_NE(at, std::string::npos);
   std::string bad = whole;
   bad[at + 1] = '\0';
-  EXPECT_THAT(run({"plan", "verify", write("bad.plan", bad)}), FailsWith(1, "D0322 plan_rejected", "is '"));
+  EXPECT_THAT(run({"plan", "verify", write("bad.plan", bad)}),
+              FailsWith(1, "D0322 plan_rejected", "is '"));
 }
 
 // Seventeen images with a million subresources together, which no graph can have.
@@ -122,10 +126,11 @@ TEST_F(PlanFiles, GraphEqualsItsSavedPlan) {
 
 TEST_F(PlanFiles, GraphsDifferByTheirOwnPasses) {
   const Outcome diff = run({"plan", "diff", burley, "configs/graphs/separable.json"});
-  EXPECT_THAT(diff, Succeeds("the plans differ", "- scatter: subsurface.burley", "+ ", "subsurface.separable",
-                             "totals"))
+  EXPECT_THAT(diff, Succeeds("the plans differ", "- scatter: subsurface.burley", "+ ",
+                             "subsurface.separable", "totals"))
       << "differences are no failure unless requested";
-  EXPECT_EQ(run({"plan", "diff", burley, "configs/graphs/separable.json", "--exit-code"}).exit_code, 1);
+  EXPECT_EQ(run({"plan", "diff", burley, "configs/graphs/separable.json", "--exit-code"}).exit_code,
+            1);
   const Outcome json = run({"plan", "diff", burley, "configs/graphs/separable.json", "--json"});
   EXPECT_TRUE(is_json(json.out)) << json.out;
   EXPECT_THAT(json.out, HasSubstr("\"same\": false"));
@@ -137,8 +142,8 @@ TEST_F(PlanFiles, OneGraphWithTwoSetsOfOptions) {
               Succeeds("~ view: 1920x1080 -> 960x540", "transients "));
   const Outcome set = run({"plan", "diff", burley, "--set", "samples=16", "--b-set", "samples=8"});
   EXPECT_THAT(set.out, HasSubstr("~ samples: 16 -> 8"));
-  const Outcome overlay =
-      run({"plan", "diff", burley, "--b-overlay", "configs/overlays/full_precision.json", "--exit-code"});
+  const Outcome overlay = run({"plan", "diff", burley, "--b-overlay",
+                               "configs/overlays/full_precision.json", "--exit-code"});
   EXPECT_EQ(overlay.exit_code, 1) << overlay.err;
   EXPECT_THAT(overlay.out, HasSubstr("rgba32f"));
   const Outcome slot = run({"plan", "diff", burley, "--b-unbound", "scatter_scale", "--exit-code"});
@@ -151,7 +156,8 @@ TEST_F(PlanFiles, IncomparableFilesAreAUsageError) {
   ASSERT_EQ(run({"plan", "save", burley, "--out", path("a.plan")}).exit_code, 0);
   EXPECT_THAT(run({"plan", "diff", burley, path("a.plan"), "--b-set", "samples=8"}),
               FailsWith(2, "is a saved plan"));
-  EXPECT_THAT(run({"plan", "diff", burley, "--b-set", "sample=8"}), FailsWith(2, "did you mean 'samples'?"));
+  EXPECT_THAT(run({"plan", "diff", burley, "--b-set", "sample=8"}),
+              FailsWith(2, "did you mean 'samples'?"));
 }
 
 } // namespace

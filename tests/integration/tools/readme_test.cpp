@@ -69,9 +69,11 @@ std::string complete_graph() {
 // Whether each member and element of `part` is in `whole`, at the same key.
 bool contains(const json& whole, const json& part) {
   const auto is_in_whole = [&](const json& one) {
-    return std::any_of(whole.begin(), whole.end(), [&](const json& other) { return contains(other, one); });
+    return std::any_of(whole.begin(), whole.end(),
+                       [&](const json& other) { return contains(other, one); });
   };
-  if (part.is_array() && whole.is_array()) return std::all_of(part.begin(), part.end(), is_in_whole);
+  if (part.is_array() && whole.is_array())
+    return std::all_of(part.begin(), part.end(), is_in_whole);
   if (!part.is_object() || !whole.is_object()) return part == whole;
   return std::all_of(part.items().begin(), part.items().end(), [&](const auto& item) {
     return whole.contains(item.key()) && contains(whole[item.key()], item.value());
@@ -82,8 +84,8 @@ TEST_F(Readme, CompleteGraphRuns) {
   const std::string shown = complete_graph();
   const std::string graph = write("shown.json", shown);
   EXPECT_THAT(run({"validate", graph}), Succeeds());
-  EXPECT_THAT(run({"render", "configs/scenes/bust.json", "--graph", graph, "--size", "64x36", "--frames", "1",
-                   "--out", path("out")}),
+  EXPECT_THAT(run({"render", "configs/scenes/bust.json", "--graph", graph, "--size", "64x36",
+                   "--frames", "1", "--out", path("out")}),
               Succeeds());
   EXPECT_THAT(shown, HasSubstr("\"albedo\": \"albedo\"")) << "the line would render white plaster";
 }
@@ -91,7 +93,9 @@ TEST_F(Readme, CompleteGraphRuns) {
 TEST_F(Readme, ExcerptIsPartOfTheCompleteGraph) {
   const auto shown = blocks(text, "jsonc");
   ASSERT_EQ(shown.size(), 1u);
-  const auto parsed = [](const std::string& jsonc) { return json::parse(jsonc, nullptr, false, true); };
+  const auto parsed = [](const std::string& jsonc) {
+    return json::parse(jsonc, nullptr, false, true);
+  };
   const json whole = parsed(complete_graph()), excerpt = parsed(shown[0]);
   ASSERT_TRUE(whole.is_object());
   ASSERT_TRUE(excerpt.is_object());
@@ -154,7 +158,8 @@ TEST_F(Readme, ShortCExamplesCompile) {
                        "void create(void); void choose(void);\n";
   source += "void create(void) {\n" + shown[0] + "}\nvoid choose(void) {\n" + choice[0] + "}\n";
   const std::string file = write("shown.c", source);
-  const std::string line = std::string(DERMIS_C_COMPILER) + " -std=c99 -fsyntax-only -Wno-unused-result -I " +
+  const std::string line = std::string(DERMIS_C_COMPILER) +
+                           " -std=c99 -fsyntax-only -Wno-unused-result -I " +
                            (repository / "integration/include").string() + " " + file;
   EXPECT_EQ(std::system(line.c_str()), 0) << source;
 }

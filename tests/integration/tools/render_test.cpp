@@ -24,8 +24,9 @@ protected:
 TEST_F(Render, WritesPicturesTimesAndErrors) {
   const Outcome outcome = render(bust, burley, {"--frames", "2", "--subset", "64"});
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
-  EXPECT_THAT(files("out"), ElementsAre("color_0000.exr", "color_0001.exr", "frame_0000.png",
-                                        "frame_0001.png", "scattered_0000.exr", "scattered_0001.exr"));
+  EXPECT_THAT(files("out"),
+              ElementsAre("color_0000.exr", "color_0001.exr", "frame_0000.png", "frame_0001.png",
+                          "scattered_0000.exr", "scattered_0001.exr"));
   EXPECT_THAT(outcome.out, HasAll("scatter", " ms", "PSNR", " dB", "RMSE", path("out")));
 }
 
@@ -38,7 +39,8 @@ TEST_F(Render, JsonOutputIsOneDocument) {
 TEST_F(Render, NoValidationMessages) {
   RunOptions options;
   options.environment = validation_environment();
-  const Outcome outcome = render(bust, burley, {"--frames", "3", "--subset", "0", "--json"}, options);
+  const Outcome outcome =
+      render(bust, burley, {"--frames", "3", "--subset", "0", "--json"}, options);
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
   // A message of the layer would appear in the output.
   EXPECT_TRUE(is_json(outcome.out)) << outcome.out;
@@ -46,7 +48,8 @@ TEST_F(Render, NoValidationMessages) {
 
 TEST_F(Render, DebugPicturesShowSkippedTiles) {
   for (const char* graph : {burley, "configs/graphs/skin.json"}) {
-    ASSERT_THAT(render(bust, graph, {"--frames", "1", "--subset", "0", "--debug", "tile_class"}), Succeeds());
+    ASSERT_THAT(render(bust, graph, {"--frames", "1", "--subset", "0", "--debug", "tile_class"}),
+                Succeeds());
     EXPECT_THAT(files("out"), Contains("debug_0000.png")) << graph;
   }
 }
@@ -81,10 +84,12 @@ TEST_F(Render, UnknownDebugPicture_IsAUsageError) {
 }
 
 TEST_F(Render, CapturedInputsCanBeAppliedAgain) {
-  ASSERT_THAT(render(bust, burley, {"--frames", "2", "--subset", "0", "--capture", path("capture")}),
-              Succeeds());
-  EXPECT_THAT(run({"apply", "--graph", burley, "--frames", path("capture"), "--out", path("again")}),
-              Succeeds());
+  ASSERT_THAT(
+      render(bust, burley, {"--frames", "2", "--subset", "0", "--capture", path("capture")}),
+      Succeeds());
+  EXPECT_THAT(
+      run({"apply", "--graph", burley, "--frames", path("capture"), "--out", path("again")}),
+      Succeeds());
   EXPECT_THAT(files("again"), Contains(HasSubstr("scattered.exr")));
 }
 
@@ -109,15 +114,16 @@ TEST_F(Render, GraphWithErrors_WritesNothing) {
 
 TEST_F(Render, ModelThatIsNotGltf_IsNamed) {
   const std::string model = write("model.glb", "this is no model");
-  EXPECT_THAT(render("configs/scenes/head.json", burley, {"--model", model}), FailsWith(1, "model.glb"));
+  EXPECT_THAT(render("configs/scenes/head.json", burley, {"--model", model}),
+              FailsWith(1, "model.glb"));
   EXPECT_THAT(files("out"), IsEmpty());
 }
 
 TEST_F(Render, UnwritableFolder_IsAnEnvironmentError) {
   const std::string file = write("file", "");
-  EXPECT_THAT(
-      run({"render", bust, "--graph", burley, "--size", "64x36", "--frames", "1", "--out", file + "/out"}),
-      FailsWith(3, "output folder", file + "/out"));
+  EXPECT_THAT(run({"render", bust, "--graph", burley, "--size", "64x36", "--frames", "1", "--out",
+                   file + "/out"}),
+              FailsWith(3, "output folder", file + "/out"));
 }
 
 TEST_F(Render, NoVulkanDriver_IsAnEnvironmentError) {
@@ -132,7 +138,8 @@ TEST_F(Render, CtrlC_StopsAtTheNextFrameWithCompleteFiles) {
   options.interrupt_after = path("out/frame_0000.png");
   EXPECT_THAT(render(bust, burley, {"--frames", "10000"}, options), FailsWith(130, "stopped"));
   const std::vector<std::string> left = files("out");
-  EXPECT_THAT(left, Each(::testing::AnyOf(::testing::EndsWith(".png"), ::testing::EndsWith(".exr"))));
+  EXPECT_THAT(left,
+              Each(::testing::AnyOf(::testing::EndsWith(".png"), ::testing::EndsWith(".exr"))));
   EXPECT_THAT(left, Not(Contains("frame_9999.png")));
 }
 

@@ -18,8 +18,10 @@ Report small_report() {
   report.title = "Title <&>";
   report.info = {{"command", "dermis \"x\""}};
   report.table.columns = {{"name", "name"}, {"value", "value"}, {"best", "best"}};
-  report.table.rows = {{std::string("a,b \"c\""), 0.1, true}, {std::string("plain"), ReportValue(), false}};
-  report.plots = {{"plot", "x", "y", {{"series", {{1, 2, "point", true}, {10, 1, "other", true}}}}}};
+  report.table.rows = {{std::string("a,b \"c\""), 0.1, true},
+                       {std::string("plain"), ReportValue(), false}};
+  report.plots = {
+      {"plot", "x", "y", {{"series", {{1, 2, "point", true}, {10, 1, "other", true}}}}}};
   report.pictures = {{"maps", "words", {{"one", 2, 1, {0, 0, 0, 255, 255, 255}}}}};
   return report;
 }
@@ -27,7 +29,8 @@ Report small_report() {
 TEST(ReportFiles, JsonIsOneDocumentWithNullForUnmeasured) {
   const std::string text = report_as_json(small_report());
   EXPECT_TRUE(test::is_json(text));
-  EXPECT_THAT(text, HasAll(R"({ "name": "a,b \"c\"", "value": 0.1, "best": true })", R"("value": null)"));
+  EXPECT_THAT(text,
+              HasAll(R"({ "name": "a,b \"c\"", "value": 0.1, "best": true })", R"("value": null)"));
 }
 
 TEST(ReportFiles, CsvQuotesSpecialCharacters) {
@@ -81,7 +84,9 @@ TEST(ReportFiles, TextHasRulesBetweenGroups) {
 }
 
 TEST(ReportFiles, NumbersHaveSignificantDigitsAndNoPowers) {
-  const auto text = [](double value, int digits) { return cell_text(value, {"key", "title", {digits}}); };
+  const auto text = [](double value, int digits) {
+    return cell_text(value, {"key", "title", {digits}});
+  };
   EXPECT_EQ(text(1234.5, 3), "1234");
   EXPECT_EQ(text(12.345, 4), "12.35");
   EXPECT_EQ(text(0.00012345, 3), "0.000123");

@@ -17,7 +17,8 @@ std::string side(const std::string& difference, char own) {
   std::string out;
   for (size_t at = 0; at < difference.size();) {
     const size_t end = difference.find('\n', at);
-    if (difference[at] == own || difference[at] == ' ') out += difference.substr(at + 2, end - at - 1);
+    if (difference[at] == own || difference[at] == ' ')
+      out += difference.substr(at + 2, end - at - 1);
     at = end + 1;
   }
   return out;

@@ -18,7 +18,8 @@ protected:
 };
 
 TEST_F(Sheet, HasARowPerGraphAndAColumnPerMaterial) {
-  ASSERT_THAT(sheet({"--graphs", "configs/graphs/sap.json", "--profiles", "skin,configs/profiles/milk.json"}),
+  ASSERT_THAT(sheet({"--graphs", "configs/graphs/sap.json", "--profiles",
+                     "skin,configs/profiles/milk.json"}),
               Succeeds("none, sap", "skin, milk"));
   std::string problem;
   const auto picture = tools::read_png(path("sheet.png"), problem);
@@ -29,7 +30,8 @@ TEST_F(Sheet, HasARowPerGraphAndAColumnPerMaterial) {
     std::vector<float> values;
     for (uint32_t y = 0; y < 27; ++y)
       for (uint32_t x = 0; x < 3 * 48; ++x)
-        values.push_back(picture->values[3 * (size_t{row * 31 + y} * picture->width + column * 52) + x]);
+        values.push_back(
+            picture->values[3 * (size_t{row * 31 + y} * picture->width + column * 52) + x]);
     return values;
   };
   EXPECT_EQ(tile(0, 0), tile(0, 1)); // Without a graph the material has no effect.
@@ -38,19 +40,21 @@ TEST_F(Sheet, HasARowPerGraphAndAColumnPerMaterial) {
 }
 
 TEST_F(Sheet, JsonOutputIsOneDocument) {
-  ASSERT_THAT(
-      sheet({"--graphs", "configs/graphs/sap.json", "--profiles", "configs/profiles/skin.json", "--json"}),
-      Succeeds(IsJson(), "\"rows\"", "\"columns\""));
+  ASSERT_THAT(sheet({"--graphs", "configs/graphs/sap.json", "--profiles",
+                     "configs/profiles/skin.json", "--json"}),
+              Succeeds(IsJson(), "\"rows\"", "\"columns\""));
 }
 
 TEST_F(Sheet, AMissingProfileIsNamed) {
-  const Outcome outcome = sheet({"--graphs", "configs/graphs/sap.json", "--profiles", "nowhere.json"});
+  const Outcome outcome =
+      sheet({"--graphs", "configs/graphs/sap.json", "--profiles", "nowhere.json"});
   EXPECT_NE(outcome.exit_code, 0);
   EXPECT_THAT(outcome.err, HasSubstr("nowhere.json"));
 }
 
 TEST_F(Sheet, TooManyPixels_AreAUsageError) {
-  EXPECT_THAT(run({"sheet", "--out", path("sheet.png"), "--size", "8192x16"}), FailsWith(2, "--size"));
+  EXPECT_THAT(run({"sheet", "--out", path("sheet.png"), "--size", "8192x16"}),
+              FailsWith(2, "--size"));
 }
 
 } // namespace

@@ -24,9 +24,10 @@ protected:
   // Returns bash's completions of these words.
   std::string offered(const std::string& words, int last) const {
     int code = 0;
-    return shell("bash -c 'source \"$0\"; COMP_WORDS=(" + words + "); COMP_CWORD=" + std::to_string(last) +
-                     "; _dermis; printf \"%s\\n\" \"${COMPREPLY[@]}\"' '" + path("dermis.bash") + "'",
-                 code);
+    return shell(
+        "bash -c 'source \"$0\"; COMP_WORDS=(" + words + "); COMP_CWORD=" + std::to_string(last) +
+            "; _dermis; printf \"%s\\n\" \"${COMPREPLY[@]}\"' '" + path("dermis.bash") + "'",
+        code);
   }
 };
 
@@ -89,7 +90,8 @@ TEST_F(Shell, ScriptsAndManualNameEveryVerbOfTheHelp) {
     EXPECT_NE(manual.find(".SS \"" + escaped), std::string::npos) << verb;
   }
   EXPECT_GE(verbs.size(), 15u);
-  EXPECT_THAT(manual, HasAll("\\fB\\-\\-html\\fR \\fIFILE\\fR", "dermis bench all \\-\\-out build/bench"));
+  EXPECT_THAT(manual,
+              HasAll("\\fB\\-\\-html\\fR \\fIFILE\\fR", "dermis bench all \\-\\-out build/bench"));
 }
 
 TEST_F(Shell, ManualIsFormattedWithoutWarnings) {

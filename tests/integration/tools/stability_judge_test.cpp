@@ -115,14 +115,16 @@ TEST(StabilityJudge, SamplesAreComparedByTheirMeans) {
   EXPECT_NEAR(judge(other, 0, white_answer(21), &sound).error, 0.05, 1e-12);
   StabilityAnswer uneven = white_answer(8);
   uneven.samples[index(20, 20)] = 64;
-  EXPECT_DOUBLE_EQ(judge(white(Judged::samples_in_tile), 0, uneven, nullptr).error, 64 / (8 + 56.0 / 64));
+  EXPECT_DOUBLE_EQ(judge(white(Judged::samples_in_tile), 0, uneven, nullptr).error,
+                   64 / (8 + 56.0 / 64));
 }
 
 TEST(StabilityJudge, MissingSamples_Fail) {
   StabilityAnswer none = white_answer();
   none.samples.clear();
   const StabilityAnswer zero = white_answer(0);
-  for (const Judged judged : {Judged::samples_at_edge, Judged::samples_in_tile, Judged::mean_samples})
+  for (const Judged judged :
+       {Judged::samples_at_edge, Judged::samples_in_tile, Judged::mean_samples})
     for (const StabilityAnswer& found : {none, zero})
       EXPECT_GT(judge(white(judged), 0, found, &zero).error, 1e30);
 }

@@ -74,7 +74,8 @@ TEST(SurfaceWarnings, DitheredSurfacesAreNamedForAnyPattern) {
   for (const auto& [name, in_front] : patterns)
     for (const double distance : {0.05, 0.003}) {
       const auto front = in_front;
-      EXPECT_EQ(warnings(seen([&](uint32_t x, uint32_t y) { return front(x, y) ? 0.5 - distance : 0.5; })),
+      EXPECT_EQ(warnings(seen(
+                    [&](uint32_t x, uint32_t y) { return front(x, y) ? 0.5 - distance : 0.5; })),
                 expected)
           << name << ", " << distance << " m";
     }
@@ -82,9 +83,12 @@ TEST(SurfaceWarnings, DitheredSurfacesAreNamedForAnyPattern) {
 
 TEST(SurfaceWarnings, SlopesStepsAndGapsAreNotDithered) {
   EXPECT_TRUE(warnings(seen(plane)).empty());
-  EXPECT_TRUE(warnings(seen([](uint32_t x, uint32_t) { return 0.5 + 0.01 * x; })).empty()) << "slope of 50";
-  EXPECT_TRUE(warnings(seen([](uint32_t x, uint32_t) { return x < 32 ? 0.5 : 0.45; })).empty()) << "step";
-  EXPECT_TRUE(warnings(seen([](uint32_t x, uint32_t y) { return 0.5 + 1e-4 * is_random(x, y); })).empty())
+  EXPECT_TRUE(warnings(seen([](uint32_t x, uint32_t) { return 0.5 + 0.01 * x; })).empty())
+      << "slope of 50";
+  EXPECT_TRUE(warnings(seen([](uint32_t x, uint32_t) { return x < 32 ? 0.5 : 0.45; })).empty())
+      << "step";
+  EXPECT_TRUE(
+      warnings(seen([](uint32_t x, uint32_t y) { return 0.5 + 1e-4 * is_random(x, y); })).empty())
       << "roughness";
   CapturedFrame holes = seen(plane); // Two profiles in a checkerboard: ids separate their light.
   for (size_t i = 0; i < holes.profile.size(); ++i)
@@ -108,10 +112,10 @@ TEST(SurfaceWarnings, SequenceIsWarnedAboutOnce) {
 TEST(SurfaceWarnings, ShippedScenesGiveNone) {
   for (const char* scene : {"pan", "dynamic", "regular"})
     for (const double d_px : {0.0, 4.0}) {
-      auto sequence =
-          render_sequence({scene, "", std::string(DERMIS_SOURCE_DIR) + "/configs/scenes/" + scene + ".json",
-                           d_px, 40, 1, false},
-                          240, 136, {});
+      auto sequence = render_sequence(
+          {scene, "", std::string(DERMIS_SOURCE_DIR) + "/configs/scenes/" + scene + ".json", d_px,
+           40, 1, false},
+          240, 136, {});
       ASSERT_TRUE(sequence) << sequence.error().text;
       EXPECT_TRUE(warnings(sequence->frames.front().captured).empty())
           << scene << " " << dithered_tiles(sequence->frames.front().captured);

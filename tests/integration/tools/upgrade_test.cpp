@@ -34,7 +34,8 @@ std::vector<std::string> lines_of(const std::string& text) {
 std::vector<std::string> comments_of(const std::string& text) {
   std::vector<std::string> comments;
   for (const std::string& line : lines_of(text))
-    if (const size_t at = line.find("// "); at != std::string::npos) comments.push_back(line.substr(at));
+    if (const size_t at = line.find("// "); at != std::string::npos)
+      comments.push_back(line.substr(at));
   return comments;
 }
 
@@ -73,8 +74,10 @@ TEST_F(Upgrade, OldShippedFiles_Upgrade_Compile) {
   for (const std::string& name : files("graphs")) {
     EXPECT_THAT(run({"explain", path("graphs/" + name), "--json"}), Succeeds()) << name;
   }
-  for (const char* name : {"overlays/accumulate.json", "overlays/skips.json", "overlays/probe.json"})
-    EXPECT_EQ(run({"explain", path("graphs/sap.json"), "--overlay", path(name)}).exit_code, 0) << name;
+  for (const char* name :
+       {"overlays/accumulate.json", "overlays/skips.json", "overlays/probe.json"})
+    EXPECT_EQ(run({"explain", path("graphs/sap.json"), "--overlay", path(name)}).exit_code, 0)
+        << name;
   EXPECT_EQ(run({"validate", path("choice/errors.json"), path("choice/calibration.json"),
                  path("cases/kinds.json"), path("cases/qa_kinds.json")})
                 .exit_code,
@@ -93,8 +96,9 @@ TEST_F(Upgrade, OldCases_Upgrade_StayAsValidAsBefore) {
     ASSERT_EQ(run({"upgrade", file}).exit_code, 0) << file;
   for (const std::string& name : files("cases")) {
     const bool valid = std::find(invalid.begin(), invalid.end(), name) == invalid.end();
-    const Outcome outcome = run({"validate", path("cases/" + name), "--pass-types", path("cases/kinds.json"),
-                                 "--pass-types", path("cases/qa_kinds.json")});
+    const Outcome outcome =
+        run({"validate", path("cases/" + name), "--pass-types", path("cases/kinds.json"),
+             "--pass-types", path("cases/qa_kinds.json")});
     EXPECT_EQ(outcome.exit_code, valid ? 0 : 1) << name << outcome.err;
     EXPECT_THAT(outcome.err, Not(HasSubstr("D0110"))) << name;
   }
@@ -142,7 +146,8 @@ TEST_F(Upgrade, Overlay_Upgrade_RenamesTargetsAndPaths) {
 }
 
 TEST_F(Upgrade, UnwritableFile_Upgrade_FailsAndKeepsTheFile) {
-  const std::string good = write("good.json", R"({ "dermis": 1, "name": "g", "passes": [], "exports": [] })");
+  const std::string good =
+      write("good.json", R"({ "dermis": 1, "name": "g", "passes": [], "exports": [] })");
   const std::string missing = path("none.json");
   EXPECT_THAT(run({"upgrade", missing, good}), FailsWith(1));
   EXPECT_THAT(text_of(good), HasSubstr("\"dermis\": 2")) << "other files are upgraded";

@@ -8,8 +8,8 @@ namespace {
 using Usage = CommandTest;
 
 TEST_F(Usage, HelpOfEveryVerbShowsAnExampleAndSucceeds) {
-  for (const std::string verb :
-       {"validate", "upgrade", "test", "explain", "graph", "render", "sheet", "apply", "reference"}) {
+  for (const std::string verb : {"validate", "upgrade", "test", "explain", "graph", "render",
+                                 "sheet", "apply", "reference"}) {
     const Outcome outcome = run({verb, "--help"});
     EXPECT_THAT(outcome, Succeeds("Example:\n  dermis " + verb, "Usage: dermis " + verb)) << verb;
     EXPECT_THAT(outcome.err, IsEmpty()) << verb;
@@ -42,9 +42,9 @@ TEST_F(Usage, AMissingRequiredOptionIsNamed) {
 TEST_F(Usage, InvalidSize_WritesNothing) {
   for (const std::string size :
        {"0x0", "0x360", "640", "640x", "x360", "640x360x3", "-1x5", "16385x10", "1e3x10"}) {
-    EXPECT_THAT(
-        run({"render", "configs/scenes/bust.json", "--graph", burley, "--size", size, "--out", path("out")}),
-        FailsWith(2, "640x360, each 1..16384, found '" + size + "'"))
+    EXPECT_THAT(run({"render", "configs/scenes/bust.json", "--graph", burley, "--size", size,
+                     "--out", path("out")}),
+                FailsWith(2, "640x360, each 1..16384, found '" + size + "'"))
         << size;
     EXPECT_THAT(files(), IsEmpty()) << size;
   }
@@ -65,12 +65,14 @@ TEST_F(Usage, SettingOutOfRangeOrOfWrongType_IsRejected) {
 }
 
 TEST_F(Usage, RequiredSlotCannotBeUnbound) {
-  EXPECT_THAT(run({"explain", burley, "--unbound", "depth"}), FailsWith(2, "'depth' is not optional"));
+  EXPECT_THAT(run({"explain", burley, "--unbound", "depth"}),
+              FailsWith(2, "'depth' is not optional"));
 }
 
 TEST_F(Usage, UsageErrorIsOneJsonDocument) {
   for (const std::vector<std::string>& words :
-       {std::vector<std::string>{"rendr", "--json"}, {"explain", burley, "--json", "--set", "sample=1"}}) {
+       {std::vector<std::string>{"rendr", "--json"},
+        {"explain", burley, "--json", "--set", "sample=1"}}) {
     const Outcome outcome = run(words);
     EXPECT_EQ(outcome.exit_code, 2);
     EXPECT_TRUE(is_json(outcome.out)) << outcome.out;

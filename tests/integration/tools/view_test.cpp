@@ -14,7 +14,8 @@ protected:
   void SetUp() override {
     const Outcome outcome =
         run({"graph", "configs/graphs/burley.json", "--html", path("view.html"), "--quiet"});
-    if (outcome.exit_code == 3 && outcome.err.find("this program has no viewer") != std::string::npos)
+    if (outcome.exit_code == 3 &&
+        outcome.err.find("this program has no viewer") != std::string::npos)
       GTEST_SKIP() << outcome.err;
     ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
     std::filesystem::remove(path("view.html"));
@@ -30,9 +31,9 @@ size_t count(const std::string& text, std::string_view what) {
 
 TEST_F(View, FileContentsCannotEndAnElement) {
   const std::string plain = run({"graph", "configs/graphs/burley.json", "--html", "-"}).out;
-  const std::string graph =
-      write("hostile.json",
-            R"({ "dermis": 2, "name": "hostile", "note": "</script><script>hurt_the_reader()</script>",
+  const std::string graph = write(
+      "hostile.json",
+      R"({ "dermis": 2, "name": "hostile", "note": "</script><script>hurt_the_reader()</script>",
     "imports": { "light": { "format": "rgba16f", "size": "view", "note": "</script>" } }, "passes": [], "exports": [] })");
   const Outcome hostile = run({"graph", graph, "--html", "-"});
   ASSERT_EQ(hostile.exit_code, 0) << hostile.err;
@@ -41,21 +42,25 @@ TEST_F(View, FileContentsCannotEndAnElement) {
 }
 
 TEST_F(View, InvalidReport_IsRejectedWithItsPlace) {
-  const std::string report = write("report.json", "{\n  \"passes\": [ { \"pass\": \"classify\" } ] }");
-  EXPECT_THAT(run({"graph", "configs/graphs/burley.json", "--html", path("view.html"), "--frame", report}),
-              FailsWith(1, "report.json:2:13: error[D0104 wrong_type]"));
+  const std::string report =
+      write("report.json", "{\n  \"passes\": [ { \"pass\": \"classify\" } ] }");
+  EXPECT_THAT(
+      run({"graph", "configs/graphs/burley.json", "--html", path("view.html"), "--frame", report}),
+      FailsWith(1, "report.json:2:13: error[D0104 wrong_type]"));
   EXPECT_THAT(files(), ElementsAre("report.json"));
 }
 
 TEST_F(View, GraphWithErrors_HasNoPage) {
-  const std::string graph = write("broken.json", R"({ "dermis": 2, "name": "broken", "passes": 3 })");
+  const std::string graph =
+      write("broken.json", R"({ "dermis": 2, "name": "broken", "passes": 3 })");
   EXPECT_EQ(run({"graph", graph, "--html", path("view.html")}).exit_code, 1);
   EXPECT_THAT(files(), ElementsAre("broken.json"));
 }
 
 TEST_F(View, FrameWithoutPage_IsAUsageError) {
   EXPECT_EQ(run({"graph", "configs/graphs/burley.json", "--frame", "report.json"}).exit_code, 2);
-  EXPECT_EQ(run({"graph", "configs/graphs/burley.json", "--html", "a.html", "--json"}).exit_code, 2);
+  EXPECT_EQ(run({"graph", "configs/graphs/burley.json", "--html", "a.html", "--json"}).exit_code,
+            2);
 }
 
 } // namespace

@@ -42,11 +42,13 @@ protected:
 
 TEST_F(Watch, ChangedGraph_ReportsPlanAndError) {
   const std::string graph = copy("configs/graphs/burley.json", "graph.json");
-  std::thread editor = after_the_first([&] { copy("configs/graphs/separable.json", "graph.json"); });
+  std::thread editor =
+      after_the_first([&] { copy("configs/graphs/separable.json", "graph.json"); });
   const Outcome outcome = run(arguments(graph, "2"));
   editor.join();
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
-  EXPECT_THAT(outcome.out, HasAll("graph.json changed", "horizontal")); // A pass that burley does not have.
+  EXPECT_THAT(outcome.out,
+              HasAll("graph.json changed", "horizontal")); // A pass that burley does not have.
   EXPECT_THAT(outcome.out, ::testing::ContainsRegex("PSNR [0-9.]+ dB \\([+-][0-9.]+\\)"));
 }
 
@@ -90,7 +92,8 @@ TEST_F(Watch, ChangedShader_IsRendered) {
     GTEST_SKIP() << "built without glslang (package glslang-dev)";
   std::filesystem::create_directories(path("."));
   std::filesystem::copy("shaders", path("shaders"), std::filesystem::copy_options::recursive);
-  const std::string kernel = "shaders/common/subsurface_combine.comp", store = "round_to_half(color)";
+  const std::string kernel = "shaders/common/subsurface_combine.comp",
+                    store = "round_to_half(color)";
   const auto change = [&](const std::string& to) {
     std::ifstream file(kernel, std::ios::binary);
     std::ostringstream read;
@@ -110,8 +113,9 @@ TEST_F(Watch, ChangedShader_IsRendered) {
   editor.join();
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_THAT(outcome.out, HasSubstr("common/subsurface_combine.comp changed"));
-  EXPECT_THAT(outcome.err, ::testing::ContainsRegex(
-                               "common/subsurface_combine.comp:[0-9]+:[0-9]+: error.D0615 shader_error"));
+  EXPECT_THAT(outcome.err,
+              ::testing::ContainsRegex(
+                  "common/subsurface_combine.comp:[0-9]+:[0-9]+: error.D0615 shader_error"));
   EXPECT_THAT(outcome.out, ::testing::ContainsRegex("PSNR [0-9.]+ dB \\([+-][0-9.]+\\)"));
 }
 

@@ -40,8 +40,10 @@ struct Configurations : ::testing::Test {
     errors = std::move(*model);
   }
 
-  std::optional<Compiled> configurations_of(const std::string& settings, const std::string& extra_set = "") {
-    const std::string common = R"("read": { "light": "light", "material": "material", "depth": "depth",
+  std::optional<Compiled> configurations_of(const std::string& settings,
+                                            const std::string& extra_set = "") {
+    const std::string common =
+        R"("read": { "light": "light", "material": "material", "depth": "depth",
       "tiles": "tiles", "arguments": "arguments")";
     const std::string text = R"({ "dermis": 2, "name": "g", "settings": {)" + settings + R"(},
     "imports": { "lighting": { "format": "rgba16f", "size": "view" }, "depth": { "format": "depth", "size": "view" },
@@ -147,7 +149,8 @@ TEST_F(Configurations, PartialSamples_InterpolateTheSquaredError) {
               std::sqrt(0.75 * none * none + 0.25 * all * all), 1e-12);
   // More samples than requested have no effect.
   EXPECT_NEAR(expected_rmse(errors, configuration, 4, 200, 100), all, 1e-12);
-  EXPECT_NEAR(expected_rmse(errors, configuration, 4, 5, 0), none, 1e-12); // No tile requests samples.
+  EXPECT_NEAR(expected_rmse(errors, configuration, 4, 5, 0), none,
+              1e-12); // No tile requests samples.
   configuration.takes_samples = false;
   EXPECT_NEAR(expected_rmse(errors, configuration, 4, 0, 100), all, 1e-12);
 }
@@ -160,19 +163,21 @@ TEST_F(Configurations, CostsGrowWithTheListedTiles) {
     for (const PassLoad& pass : all->configurations[0].passes)
       costs.observe(pass.cost, groups, 0.01 + 1e-4 * static_cast<double>(groups));
   const double few =
-      estimate(all->configurations[0], costs, {.width = 640, .height = 360, .listed_tiles = 100}).ms;
+      estimate(all->configurations[0], costs, {.width = 640, .height = 360, .listed_tiles = 100})
+          .ms;
   const double many =
-      estimate(all->configurations[0], costs, {.width = 640, .height = 360, .listed_tiles = 3600}).ms;
+      estimate(all->configurations[0], costs, {.width = 640, .height = 360, .listed_tiles = 3600})
+          .ms;
   EXPECT_GT(many, few + 4 * 1e-4 * 3400); // Setup, two passes and combine run over listed tiles.
 }
 
 TEST_F(Configurations, TooManyConfigurations_AreRejectedAtTheChoice) {
-  EXPECT_FALSE(
-      configurations_of("\"technique\": { \"choice\": [\"separable\", \"b\", \"c\", \"d\", \"e\", \"f\", "
-                        "\"g\", \"h\"], \"by\": \"budget\", "
-                        "\"default\": \"b\" },\n"
-                        "\"two\": { \"choice\": [\"a\", \"b\", \"c\", \"d\", \"e\", \"f\", \"g\", \"h\", "
-                        "\"i\"], \"by\": \"budget\", \"default\": \"a\" }"));
+  EXPECT_FALSE(configurations_of(
+      "\"technique\": { \"choice\": [\"separable\", \"b\", \"c\", \"d\", \"e\", \"f\", "
+      "\"g\", \"h\"], \"by\": \"budget\", "
+      "\"default\": \"b\" },\n"
+      "\"two\": { \"choice\": [\"a\", \"b\", \"c\", \"d\", \"e\", \"f\", \"g\", \"h\", "
+      "\"i\"], \"by\": \"budget\", \"default\": \"a\" }"));
   ASSERT_EQ(diagnostics.count(Severity::error), 1u) << format_as_json(diagnostics);
   EXPECT_EQ(diagnostics.list.back().id, DiagnosticId::too_many_configurations);
   EXPECT_EQ(diagnostics.list.back().where.line, 2u);

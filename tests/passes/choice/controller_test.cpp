@@ -63,8 +63,9 @@ TEST(Decide, TransmissionIsTheReasonIfItDecides) {
   const Decision later = decide(lit_behind, 5.0, 1.5, state);
   EXPECT_EQ(later.configuration, 1u);
   EXPECT_TRUE(later.transmission_stats);
-  EXPECT_STREQ(why_text(later),
-               "a configuration with less error now fits the budget, considering transmitted light");
+  EXPECT_STREQ(
+      why_text(later),
+      "a configuration with less error now fits the budget, considering transmitted light");
   const Decision again = decide(lit_behind, 5.0, 1.5, state);
   EXPECT_STREQ(why_text(again), "least error within the budget, considering transmitted light");
   // The rays do not fit, so transmission did not change the decision.

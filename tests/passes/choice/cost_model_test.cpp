@@ -129,10 +129,11 @@ TEST(Calibration, ReadsBackFromItsFile) {
 
 TEST(Calibration, InvalidEntries_AreRejectedWithTheirPlace) {
   Diagnostics diagnostics;
-  const auto document = parse_document("c.json",
-                                       "{\"dermis_calibration\": 2, \"device\": \"d\", \"costs\": [\n"
-                                       "{\"work\": \"w\", \"base_us\": -1, \"group_us\": 0, \"spred\": 0}]}",
-                                       diagnostics);
+  const auto document =
+      parse_document("c.json",
+                     "{\"dermis_calibration\": 2, \"device\": \"d\", \"costs\": [\n"
+                     "{\"work\": \"w\", \"base_us\": -1, \"group_us\": 0, \"spred\": 0}]}",
+                     diagnostics);
   ASSERT_TRUE(document);
   EXPECT_FALSE(read_calibration(*document, diagnostics));
   ASSERT_EQ(diagnostics.count(Severity::error), 2u) << format_as_json(diagnostics);

@@ -72,7 +72,8 @@ TEST(SampleAllocation, StepsOfATileComeInOrder) {
   for (const uint32_t tile_error : {1u, 17u, 4000u, 262144u})
     for (uint32_t before = 0; before <= 3; ++before)
       for (int k = 0; k + 1 < allocation_steps; ++k)
-        EXPECT_GT(step_bin(tile_error, k, before), step_bin(tile_error, k + 1, before)) << tile_error;
+        EXPECT_GT(step_bin(tile_error, k, before), step_bin(tile_error, k + 1, before))
+            << tile_error;
 }
 
 TEST(SampleAllocation, StepsCostTheirNumberOfSamples) {

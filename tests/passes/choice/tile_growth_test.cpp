@@ -12,7 +12,8 @@ TEST(TileGrowth, ApproachingCamera_IsExtrapolated) {
   TileGrowth growth_estimate;
   constexpr double step = 1.1;
   for (uint64_t frame = 1; frame <= 20; ++frame)
-    update_growth(growth_estimate, frame, static_cast<uint64_t>(1000 * std::pow(step, double(frame))));
+    update_growth(growth_estimate, frame,
+                  static_cast<uint64_t>(1000 * std::pow(step, double(frame))));
   EXPECT_NEAR(growth_estimate.growth, step, 1e-3); // Counts are whole tiles.
   EXPECT_NEAR(growth_until(growth_estimate, 22), step * step, 2e-3);
   EXPECT_EQ(growth_until(growth_estimate, 20), 1);
@@ -21,7 +22,8 @@ TEST(TileGrowth, ApproachingCamera_IsExtrapolated) {
 TEST(TileGrowth, SkippedFrames_GiveEqualGrowth) {
   TileGrowth growth_estimate;
   for (uint64_t frame = 3; frame <= 30; frame += 3)
-    update_growth(growth_estimate, frame, static_cast<uint64_t>(1000 * std::pow(1.1, double(frame))));
+    update_growth(growth_estimate, frame,
+                  static_cast<uint64_t>(1000 * std::pow(1.1, double(frame))));
   EXPECT_NEAR(growth_estimate.growth, 1.1, 1e-3);
 }
 

@@ -70,14 +70,16 @@ TEST(Accumulate, RemainderIsIndependentOfTheBrightness) {
         value *= factor;
       return values;
     };
-    const std::array<double, 3> bright = remainder_of(scaled(light), scaled(near_light), scaled(local_mean));
+    const std::array<double, 3> bright =
+        remainder_of(scaled(light), scaled(near_light), scaled(local_mean));
     for (size_t c = 0; c < 3; ++c)
       EXPECT_NEAR(bright[c], dim[c], 1e-12) << factor;
   }
 }
 
 TEST(Accumulate, LightOfARemainderIsNeverBelowZero) {
-  EXPECT_EQ(light_of_remainder({-4, -4, -4}, near_light, local_mean), (std::array<double, 3>{0, 0, 0}));
+  EXPECT_EQ(light_of_remainder({-4, -4, -4}, near_light, local_mean),
+            (std::array<double, 3>{0, 0, 0}));
 }
 
 TEST(Accumulate, ExcessiveRemaindersAreDiscarded) {

@@ -15,12 +15,13 @@ Matrix4 perspective(double scale_x, double scale_y, double centre_x, double near
 
 // Projects a view-space point: returns pixel coordinates (integers are centres) without jitter, and
 // the depth value.
-std::array<double, 3> project(const Matrix4& m, std::array<double, 3> p, double width, double height) {
+std::array<double, 3> project(const Matrix4& m, std::array<double, 3> p, double width,
+                              double height) {
   std::array<double, 4> clip{};
   for (size_t r = 0; r < 4; ++r)
     clip[r] = m[4 * r] * p[0] + m[4 * r + 1] * p[1] + m[4 * r + 2] * p[2] + m[4 * r + 3];
-  return {(clip[0] / clip[3] * 0.5 + 0.5) * width - 0.5, (clip[1] / clip[3] * 0.5 + 0.5) * height - 0.5,
-          clip[2] / clip[3]};
+  return {(clip[0] / clip[3] * 0.5 + 0.5) * width - 0.5,
+          (clip[1] / clip[3] * 0.5 + 0.5) * height - 0.5, clip[2] / clip[3]};
 }
 
 TEST(Camera, PerspectiveRaysInvertTheProjection) {
@@ -55,7 +56,8 @@ TEST(Camera, OrthographicRaysInvertTheProjection) {
 
 TEST(Camera, JitterMovesThePixelRays) {
   const Matrix4 m = perspective(1, 1, 0, 0.1);
-  const auto still = pixel_rays(m, 32, 32, 1, {0, 0}), moved = pixel_rays(m, 32, 32, 1, {0.25, -0.5});
+  const auto still = pixel_rays(m, 32, 32, 1, {0, 0}),
+             moved = pixel_rays(m, 32, 32, 1, {0.25, -0.5});
   // The picture moved right by a quarter, so pixel i shows the former position i - 0.25.
   EXPECT_NEAR(moved->offset_x, still->offset_x - 0.25 * still->scale_x, 1e-15);
   EXPECT_NEAR(moved->offset_y, still->offset_y + 0.5 * still->scale_y, 1e-15);
@@ -94,7 +96,8 @@ TEST(Camera, ColumnMajorMatrix_IsRejected) {
       EXPECT_EQ(found, left ? Handedness::left : Handedness::right);
       EXPECT_TRUE(pixel_rays(stored.clip_from_view, 64, 64, 1, {0, 0}));
       if (transposed(m) != m) {
-        EXPECT_EQ(to_right_handed(on_its_side, std::nullopt, found), CameraFault::stored_by_columns);
+        EXPECT_EQ(to_right_handed(on_its_side, std::nullopt, found),
+                  CameraFault::stored_by_columns);
       }
     }
 }
@@ -108,8 +111,8 @@ TEST(Camera, AcceptsBothHandednesses) {
   const Matrix4 mirrored_view{0.8, 0, -0.6, 1, 0, 1, 0, 2, -0.6, 0, -0.8, 3, 0, 0, 0, 1};
   for (const Matrix4& clip : {perspective_now, flat}) {
     const CameraMatrices right{clip, view, clip, view};
-    CameraMatrices same = right,
-                   left{with_mirrored_view(clip), mirrored_view, with_mirrored_view(clip), mirrored_view};
+    CameraMatrices same = right, left{with_mirrored_view(clip), mirrored_view,
+                                      with_mirrored_view(clip), mirrored_view};
     Handedness found = Handedness::left;
     EXPECT_EQ(to_right_handed(same, std::nullopt, found), CameraFault::none);
     EXPECT_EQ(found, Handedness::right);
@@ -122,7 +125,8 @@ TEST(Camera, AcceptsBothHandednesses) {
       EXPECT_EQ(one->previous_view_from_world, right.previous_view_from_world);
     }
   }
-  const auto fault = [&](const Matrix4& now, const Matrix4& before, std::optional<Handedness> declared) {
+  const auto fault = [&](const Matrix4& now, const Matrix4& before,
+                         std::optional<Handedness> declared) {
     CameraMatrices camera{now, view, before, view};
     const CameraMatrices kept = camera;
     Handedness found = Handedness::right;
@@ -130,7 +134,8 @@ TEST(Camera, AcceptsBothHandednesses) {
     EXPECT_EQ(camera.clip_from_view, kept.clip_from_view) << "a fault changes nothing";
     return result;
   };
-  const Matrix4 left_now = with_mirrored_view(perspective_now), left_flat = with_mirrored_view(flat);
+  const Matrix4 left_now = with_mirrored_view(perspective_now),
+                left_flat = with_mirrored_view(flat);
   EXPECT_EQ(fault(perspective_now, {}, Handedness::left), CameraFault::declared_left);
   EXPECT_EQ(fault(left_now, {}, Handedness::right), CameraFault::declared_right);
   EXPECT_EQ(fault(left_now, perspective_now, std::nullopt), CameraFault::previous_right);

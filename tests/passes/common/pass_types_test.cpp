@@ -73,7 +73,8 @@ TEST_F(PassTypes, TileDispatches_ReadTheListAndItsArguments) {
       const bool levels = find_port(type, "level_tiles") >= 0;
       EXPECT_GE(find_port(type, levels ? "level_tiles" : "tiles"), 0) << type.name;
       EXPECT_GE(find_port(type, levels ? "level_arguments" : "arguments"), 0) << type.name;
-      EXPECT_TRUE(type.arguments_entry.empty() || find_setting(type, type.arguments_entry) >= 0) << type.name;
+      EXPECT_TRUE(type.arguments_entry.empty() || find_setting(type, type.arguments_entry) >= 0)
+          << type.name;
     }
   }
 }
@@ -87,7 +88,8 @@ TEST_F(PassTypes, EveryBufferSizeIsChecked) {
       const auto need = std::find_if(type.needs.begin(), type.needs.end(),
                                      [&](const PortNeed& one) { return one.port == port.name; });
       ASSERT_NE(need, type.needs.end()) << type.name << "." << port.name;
-      EXPECT_GT(uint64_t{need->square} * need->bytes + need->more, 0u) << type.name << "." << port.name;
+      EXPECT_GT(uint64_t{need->square} * need->bytes + need->more, 0u)
+          << type.name << "." << port.name;
     }
   }
 }

@@ -61,7 +61,8 @@ struct PortRules : ::testing::Test {
     const size_t found = text.find(at);
     ASSERT_NE(found, std::string::npos) << at;
     ASSERT_EQ(text.find(at, found + 1), std::string::npos) << at << " is ambiguous";
-    const auto line = 1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(found), '\n');
+    const auto line =
+        1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(found), '\n');
     const size_t column = found - (text.rfind('\n', found) + 1) + 1;
     expect_only(diagnostics, id, static_cast<uint32_t>(line), static_cast<uint32_t>(column), words);
   }
@@ -88,7 +89,8 @@ TEST_F(PortRules, SlopesHaveTwoChannels) {
 
 // The first format of the list that fits every port is taken.
 TEST_F(PortRules, FormatWithTooFewChannelsIsSkipped) {
-  replace(R"("scattered": { "format": "rgba16f")", R"("scattered": { "format": ["r16f", "rgba16f"])");
+  replace(R"("scattered": { "format": "rgba16f")",
+          R"("scattered": { "format": ["r16f", "rgba16f"])");
   read();
   ASSERT_TRUE(graph) << all_messages(diagnostics);
   EXPECT_TRUE(compiles()) << all_messages(diagnostics);
@@ -116,7 +118,8 @@ TEST_F(PortRules, EveryPortOfSeveralChannelsNamesItsFormats) {
   const std::set<std::string_view> of_one_channel{"depth", "scatter_scale", "thickness"};
   for (uint32_t i = 0; i < pass_types.size(); ++i)
     for (const Port& port : pass_types[PassTypeId{i}].ports) {
-      if (!usage_info(port.usage).image || port.usage == Usage::clear || port.glsl_type.front() == 'u')
+      if (!usage_info(port.usage).image || port.usage == Usage::clear ||
+          port.glsl_type.front() == 'u')
         continue;
       EXPECT_EQ(port.formats.empty(), of_one_channel.contains(port.name))
           << pass_types[PassTypeId{i}].name << "." << port.name;
@@ -145,8 +148,8 @@ constexpr const char* own_light =
 
 TEST_F(PortRules, PixelLight_ReadsOnlyTheTexelOfItsCaller) {
   const std::string source = without_spaces(shader_text("common/pixel_light.glsl"));
-  EXPECT_EQ(count(source, "texelFetch("),
-            count(source, "texelFetch(lighting,texel,0)") + count(source, "texelFetch(albedo,texel,0)"));
+  EXPECT_EQ(count(source, "texelFetch("), count(source, "texelFetch(lighting,texel,0)") +
+                                              count(source, "texelFetch(albedo,texel,0)"));
 }
 
 TEST_F(PortRules, OwnTexelsAreReadAtTheTexelThatIsWritten) {
@@ -165,7 +168,8 @@ TEST_F(PortRules, OwnTexelsAreReadAtTheTexelThatIsWritten) {
       EXPECT_NE(shader.find("ivec2texel=texel_of(pixel);"), std::string::npos) << type.name;
       for (const Port& written : type.ports) {
         if (written.usage != Usage::storage_image_write) continue;
-        EXPECT_NE(shader.find("imageStore(" + std::string(written.name) + "_image,texel,"), std::string::npos)
+        EXPECT_NE(shader.find("imageStore(" + std::string(written.name) + "_image,texel,"),
+                  std::string::npos)
             << type.name << "." << written.name;
       }
       ++ports;
@@ -199,9 +203,10 @@ TEST_F(PortRules, CopiedLightIsAccepted) {
 TEST_F(PortRules, NoProducerOfAnySuchPort_IsRejected) {
   replace(R"("samples": { "int": 32)", R"("on": { "bool": false }, "samples": { "int": 32)");
   replace(R"("type": "subsurface.burley",)", R"("type": "subsurface.burley", "when": "on",)");
-  replace(R"("scattered": "scattered", "material": "material", "albedo": "albedo",
+  replace(
+      R"("scattered": "scattered", "material": "material", "albedo": "albedo",
                 "tiles")",
-          R"("scattered": "scattered", "unscattered": "behind", "material": "material", "albedo": "albedo",
+      R"("scattered": "scattered", "unscattered": "behind", "material": "material", "albedo": "albedo",
                 "tiles")");
   replace(R"("scatter_scale": { "format")",
           R"("behind": { "format": "rgba16f", "size": "view", "optional": true },

@@ -54,7 +54,8 @@ TEST_P(EveryShape, CdfIsTheIntegralOfTheDensity) {
         simpson([&](double x) { return shape_pdf(shape, std::max(x, 1e-12 * end)); }, 0, end, 4000);
     EXPECT_NEAR(shape_cdf(shape, end), integral, 1e-9) << r;
     EXPECT_NEAR(shape_cdf(shape, end) + shape_survival(shape, end), 1, 1e-14);
-    EXPECT_NEAR(shape_pdf(shape, end), 2 * std::numbers::pi * end * shape_R(shape, end), 1e-14 / shape.d);
+    EXPECT_NEAR(shape_pdf(shape, end), 2 * std::numbers::pi * end * shape_R(shape, end),
+                1e-14 / shape.d);
   }
   EXPECT_EQ(shape_cdf(shape, 0), 0);
   EXPECT_NEAR(shape_cdf(shape, 400 * shape.d), 1, 1e-9); // The total is 1.
@@ -174,16 +175,18 @@ std::optional<Profile> parse(const std::string& text, Diagnostics& diagnostics) 
 
 TEST(ProfileModels, MeanFreePathInside_MatchesTheScaling) {
   Diagnostics diagnostics;
-  const auto searchlight = parse(R"({"dermis_profile": 1, "name": "p", "source": "t", "mfp_mm": [1, 2, 0],
+  const auto searchlight =
+      parse(R"({"dermis_profile": 1, "name": "p", "source": "t", "mfp_mm": [1, 2, 0],
                                      "albedo": [0.8, 0.33, 1]})",
-                                 diagnostics);
+            diagnostics);
   ASSERT_TRUE(searchlight) << format_as_json(diagnostics);
   EXPECT_NEAR(searchlight->d_mm[0], 1 / 1.05, 1e-12);
   EXPECT_NEAR(searchlight->d_mm[1], 2 / burley_scaling_searchlight(0.33), 1e-12);
   EXPECT_EQ(searchlight->d_mm[2], 0);
-  const auto diffuse = parse(R"({"dermis_profile": 1, "name": "p", "source": "t", "mfp_mm": [1, 2, 0],
+  const auto diffuse =
+      parse(R"({"dermis_profile": 1, "name": "p", "source": "t", "mfp_mm": [1, 2, 0],
                                  "scaling": "diffuse_surface", "albedo": [0.8, 0.33, 1]})",
-                             diagnostics);
+            diagnostics);
   ASSERT_TRUE(diffuse);
   EXPECT_NEAR(diffuse->d_mm[0], 1 / 1.10, 1e-12);
 }
@@ -207,24 +210,25 @@ TEST(ProfileModels, OneLengthGivenTwiceIsRejectedOnce) {
   for (const char* text : {R"("dmfp_mm": [1, 2, 3], "mfp_mm": [1, 2, 3])",
                            R"("dmfp_mm": [1, 2, 3], "scaling": "searchlight")"}) {
     Diagnostics diagnostics;
-    EXPECT_FALSE(
-        parse(std::string(R"({"dermis_profile": 1, "name": "p", "source": "t", "albedo": [1, 1, 1], )") +
-                  text + "}",
-              diagnostics));
+    EXPECT_FALSE(parse(
+        std::string(R"({"dermis_profile": 1, "name": "p", "source": "t", "albedo": [1, 1, 1], )") +
+            text + "}",
+        diagnostics));
     ASSERT_EQ(diagnostics.count(Severity::error), 1u) << format_as_json(diagnostics);
     EXPECT_EQ(diagnostics.list[0].id, DiagnosticId::profile_keys);
   }
 }
 
 TEST(ProfileModels, ReadsBackBitForBit) {
-  for (const auto& entry : std::filesystem::directory_iterator(DERMIS_SOURCE_DIR "/configs/profiles")) {
+  for (const auto& entry :
+       std::filesystem::directory_iterator(DERMIS_SOURCE_DIR "/configs/profiles")) {
     Diagnostics diagnostics;
     const auto document = read_document(entry.path().string(), diagnostics);
     const auto profile = read_profile(*document, diagnostics);
     ASSERT_TRUE(profile) << entry.path();
-    const auto again =
-        parse(R"({"dermis_profile": 1, "name": "p", "source": "t", )" + profile_members(*profile) + "}",
-              diagnostics);
+    const auto again = parse(R"({"dermis_profile": 1, "name": "p", "source": "t", )" +
+                                 profile_members(*profile) + "}",
+                             diagnostics);
     ASSERT_TRUE(again) << format_as_json(diagnostics);
     EXPECT_EQ(again->d_mm, profile->d_mm);
     EXPECT_EQ(again->model, profile->model);

@@ -47,10 +47,10 @@ TEST(Profile, AMeanFreePathOfZeroMeansNoScattering) {
 
 TEST(Profile, InvalidValuesAndKeys_AreRejectedWithTheirPlace) {
   Diagnostics diagnostics;
-  EXPECT_FALSE(
-      parsed("{\"dermis_profile\": 1, \"name\": \"p\",\n \"dmfp_mm\": [-1, 0, 0],\n \"albedo\": [0, 2, 0],\n"
-             " \"sorce\": \"t\"}",
-             diagnostics));
+  EXPECT_FALSE(parsed("{\"dermis_profile\": 1, \"name\": \"p\",\n \"dmfp_mm\": [-1, 0, 0],\n "
+                      "\"albedo\": [0, 2, 0],\n"
+                      " \"sorce\": \"t\"}",
+                      diagnostics));
   ASSERT_EQ(diagnostics.count(Severity::error), 3u) << format_as_json(diagnostics);
   EXPECT_EQ(diagnostics.list[0].id, DiagnosticId::out_of_range);
   EXPECT_EQ(diagnostics.list[0].where.line, 2u);
@@ -62,7 +62,8 @@ TEST(Profile, InvalidValuesAndKeys_AreRejectedWithTheirPlace) {
 
 TEST(Profile, EveryShippedProfileReadsAndNamesItsSource) {
   int seen = 0;
-  for (const auto& entry : std::filesystem::directory_iterator(DERMIS_SOURCE_DIR "/configs/profiles")) {
+  for (const auto& entry :
+       std::filesystem::directory_iterator(DERMIS_SOURCE_DIR "/configs/profiles")) {
     Diagnostics diagnostics;
     const auto document = read_document(entry.path().string(), diagnostics);
     ASSERT_TRUE(document) << entry.path();
@@ -115,7 +116,8 @@ TEST(Environment, FrameConstantsReconstructViewPositions) {
   const float depth = (constants.depth_decode[0] * value + constants.depth_decode[1]) /
                       (constants.depth_decode[2] * value + constants.depth_decode[3]);
   EXPECT_NEAR(depth, 20000.0f, 0.1f); // 2 units = 20 m
-  EXPECT_NEAR((constants.ray_scale[0] * pixel[0] + constants.ray_offset[0]) * depth, 10000.0f, 0.1f);
+  EXPECT_NEAR((constants.ray_scale[0] * pixel[0] + constants.ray_offset[0]) * depth, 10000.0f,
+              0.1f);
   EXPECT_NEAR((constants.ray_scale[1] * pixel[1] + constants.ray_offset[1]) * depth, 5000.0f, 0.1f);
 }
 

@@ -45,16 +45,16 @@ protected:
   float d = static_cast<float>(shape[0].d);
 };
 
-INSTANTIATE_TEST_SUITE_P(Profiles, RadialTable,
-                         ::testing::Values(Tabled{"dipole",
-                                                  {dipole_shape(0.032, 0.74), dipole_shape(0.17, 0.88),
-                                                   dipole_shape(0.48, 1.01)},
-                                                  mean_square(make_dipole(0.032, 0.74))},
-                                           Tabled{"artist",
-                                                  {artist_shape(1.001, 0.48), artist_shape(0.371, 0.41),
-                                                   artist_shape(0.301, 0.28)},
-                                                  artist_mean_square(1.001)}),
-                         [](const auto& one) { return std::string(one.param.name); });
+INSTANTIATE_TEST_SUITE_P(
+    Profiles, RadialTable,
+    ::testing::Values(
+        Tabled{"dipole",
+               {dipole_shape(0.032, 0.74), dipole_shape(0.17, 0.88), dipole_shape(0.48, 1.01)},
+               mean_square(make_dipole(0.032, 0.74))},
+        Tabled{"artist",
+               {artist_shape(1.001, 0.48), artist_shape(0.371, 0.41), artist_shape(0.301, 0.28)},
+               artist_mean_square(1.001)}),
+    [](const auto& one) { return std::string(one.param.name); });
 
 TEST_P(RadialTable, ReturnsDensityAndSurvivalOfEveryChannel) {
   for (const double in_d : {1e-3, 0.01, 0.1, 0.5, 1.0, 3.0, 8.0, 15.0}) {

@@ -21,8 +21,8 @@ struct Seen {
   std::vector<PerChannel> d;
 
   Seen(uint32_t w, uint32_t h, PerChannel d_m)
-      : width(w), height(h), rays(orthographic_rays(w, h, 1e-3)), light(3 * w * h, 1.0f), depth(w * h, 0.5f),
-        profile(w * h, 1), d{{0, 0, 0}, d_m} {}
+      : width(w), height(h), rays(orthographic_rays(w, h, 1e-3)), light(3 * w * h, 1.0f),
+        depth(w * h, 0.5f), profile(w * h, 1), d{{0, 0, 0}, d_m} {}
 
   ReferenceInput input() const { return {width, height, rays, light, depth, profile, scale, d}; }
   size_t at(uint32_t x, uint32_t y) const { return size_t{y} * width + x; }
@@ -97,7 +97,8 @@ TEST(Reference, HalfPlaneFollowsTheExactEdge) {
   const auto result = reference_at(view.input(), row);
   for (size_t i = 0; i < row.size(); ++i)
     for (size_t c = 0; c < 3; ++c)
-      EXPECT_NEAR(result[3 * i + c], burley_edge(double(row[i] % 340) + 0.5 - 170, view.d[1][c] * 1e3), 1e-3)
+      EXPECT_NEAR(result[3 * i + c],
+                  burley_edge(double(row[i] % 340) + 0.5 - 170, view.d[1][c] * 1e3), 1e-3)
           << row[i] % 340 << " " << c;
 }
 
@@ -254,7 +255,8 @@ TEST(Reference, GrazingPatches_TiltIsCapped) {
       for (const Patch& patch : surface.patches) {
         const double tilt = std::hypot(patch.normal[0], patch.normal[1]) / patch.normal[2];
         EXPECT_NEAR(tilt, expected, 1e-4 * expected) << slope;
-        const double x = -view.rays.offset_x / view.rays.scale_x, y = -view.rays.offset_y / view.rays.scale_y;
+        const double x = -view.rays.offset_x / view.rays.scale_x,
+                     y = -view.rays.offset_y / view.rays.scale_y;
         const Vector3 here = patch_point(view.rays, patch, x, y),
                       next = patch_point(view.rays, patch, x + (down ? 0 : 1), y + (down ? 1 : 0));
         EXPECT_NEAR(std::abs(next[2] - here[2]), expected * 1e-3, 1e-4 * expected * 1e-3) << slope;

@@ -150,7 +150,8 @@ TEST(Reproject, MovingObjectIsFoundByItsVelocity) {
   for (const Point& point : points()) {
     const Point earlier = {point[0] - moved[0], point[1] - moved[1], point[2] - moved[2]};
     const PreviousPlace here = now.see(point), there = before.see(earlier);
-    const PreviousPlace here_steady = now.see(point, true), there_steady = before.see(earlier, true);
+    const PreviousPlace here_steady = now.see(point, true),
+                        there_steady = before.see(earlier, true);
     const PreviousPlace still = place_before(constants, here.x, here.y, here.depth);
     const double own_z = (still.depth - there.depth) / 1000; // World units are metres.
     const PreviousPlace found =
@@ -189,14 +190,18 @@ TEST(Reproject, TapsOfOtherSurfacesAreRejected) {
   EXPECT_NEAR(all.weight[0], 0.75 * 0.5, 1e-12);
   EXPECT_NEAR(all.weight[1], 0.25 * 0.5, 1e-12);
   // 2 % of 800 mm.
-  for (const auto& [depth, valid] : {std::pair{815.9, true}, {816.1, false}, {784.1, true}, {783.9, false}}) {
+  for (const auto& [depth, valid] :
+       {std::pair{815.9, true}, {816.1, false}, {784.1, true}, {783.9, false}}) {
     const HistoryTaps taps = taps_where([&, d = depth](int x, int) {
       return SurfaceBefore{x == 100 ? 800 : d, 3};
     });
     EXPECT_NEAR(taps.weight[0], valid ? 0.375 : 0.5, 1e-12) << depth;
-    EXPECT_NEAR(taps.weight[0] + taps.weight[1] + taps.weight[2] + taps.weight[3], 1, 1e-12) << depth;
+    EXPECT_NEAR(taps.weight[0] + taps.weight[1] + taps.weight[2] + taps.weight[3], 1, 1e-12)
+        << depth;
   }
-  const HistoryTaps other = taps_where([](int x, int) { return SurfaceBefore{800, x == 100 ? 3u : 4u}; });
+  const HistoryTaps other = taps_where([](int x, int) {
+    return SurfaceBefore{800, x == 100 ? 3u : 4u};
+  });
   EXPECT_EQ(other.weight[1], 0);
   EXPECT_NEAR(other.weight[2], 0.5, 1e-12);
   // Only half of the column with a quarter of the weight is left: an eighth is too little.
@@ -231,7 +236,8 @@ TEST(Reproject, OutsideOrBehindTheCamera_HasNoHistory) {
 
 TEST(Reproject, NaNOrHugeVelocity_HasNoHistory) {
   const FrameConstants constants = constants_of({}, {});
-  const double nan = std::numeric_limits<double>::quiet_NaN(), inf = std::numeric_limits<double>::infinity();
+  const double nan = std::numeric_limits<double>::quiet_NaN(),
+               inf = std::numeric_limits<double>::infinity();
   for (const std::array<double, 3>& velocity :
        {std::array{nan, 0.0, 0.0}, {0.0, inf, 0.0}, {1e30, 0.0, 0.0}, {0.0, 0.0, nan}}) {
     const PreviousPlace place = place_before(constants, 100, 50, 800, velocity);

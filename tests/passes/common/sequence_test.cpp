@@ -29,7 +29,8 @@ double discrepancy(uint32_t first, uint32_t count) {
       uint32_t inside = 0;
       for (uint32_t k = 0; k < count; ++k) {
         const auto point = r2_point({0, 0}, first + k);
-        inside += uint64_t{point[0]} < (uint64_t{i} << 27) && uint64_t{point[1]} < (uint64_t{j} << 27);
+        inside +=
+            uint64_t{point[0]} < (uint64_t{i} << 27) && uint64_t{point[1]} < (uint64_t{j} << 27);
       }
       largest = std::max(largest, std::abs(inside / double(count) - i * j / 1024.0));
     }

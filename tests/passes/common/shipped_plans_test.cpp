@@ -117,7 +117,8 @@ TEST_F(ShippedPlans, DroppedBarrier_IsRejected) {
     for (uint32_t b = 0; b < compiled.plan.barriers.size(); ++b) {
       if (!verify(without_barrier(compiled.plan, b)).violations.empty()) continue;
       EXPECT_TRUE(takes_over_memory(compiled.plan, b)) << "barrier " << b;
-      EXPECT_FALSE(verify(without_batch_mates(compiled.plan, b)).violations.empty()) << "barrier " << b;
+      EXPECT_FALSE(verify(without_batch_mates(compiled.plan, b)).violations.empty())
+          << "barrier " << b;
     }
   });
 }

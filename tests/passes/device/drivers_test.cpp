@@ -76,8 +76,8 @@ protected:
 TEST_F(BetweenDrivers, RandomGraphs_MatchPicturesOfAnotherDriver) {
   const KeptPictures kept = kept_pictures();
   if (kept.folder.empty())
-    GTEST_SKIP()
-        << "DERMIS_PICTURES names no folder with light of another driver (tests/scripts/run_on_drivers.sh)";
+    GTEST_SKIP() << "DERMIS_PICTURES names no folder with light of another driver "
+                    "(tests/scripts/run_on_drivers.sh)";
   const FuzzSeeds seeds = fuzz_seeds(24);
   constexpr double rounding = 1.0 / 2048;
   std::vector<double> all;
@@ -104,7 +104,8 @@ TEST_F(BetweenDrivers, RandomGraphs_MatchPicturesOfAnotherDriver) {
   if (kept.keep) return;
   std::sort(all.begin(), all.end());
   std::printf("pictures\t%s\t%llu random graphs\t%s\n", driver().c_str(),
-              static_cast<unsigned long long>(seeds.end - seeds.begin), reported_percentiles(all).c_str());
+              static_cast<unsigned long long>(seeds.end - seeds.begin),
+              reported_percentiles(all).c_str());
   EXPECT_LE(percentile(all, 0.999), 4 * rounding * max_parts);
 }
 

@@ -27,8 +27,8 @@ struct Decisions {
 };
 
 struct Totals {
-  uint64_t graphs = 0, passes = 0, plans = 0, other_plans = 0, frames = 0, pictures = 0, aliased = 0,
-           shared = 0, cuts = 0, references = 0;
+  uint64_t graphs = 0, passes = 0, plans = 0, other_plans = 0, frames = 0, pictures = 0,
+           aliased = 0, shared = 0, cuts = 0, references = 0;
 };
 
 bool is_aliased(const Plan& plan, uint32_t history) {
@@ -58,7 +58,8 @@ bool whole(const Graph& graph, const Show& show) {
 
 class DeviceFuzz : public DevicePlayer {
 protected:
-  std::optional<Plan> plan_of(const RealGraph& graph, const Show& show, const Decisions& decisions) const {
+  std::optional<Plan> plan_of(const RealGraph& graph, const Show& show,
+                              const Decisions& decisions) const {
     CompileInput input = compile_input(graph, show);
     input.order = decisions.order;
     input.order_seed = decisions.order_seed;
@@ -77,14 +78,16 @@ protected:
   }
 
   // The first entry is the baseline: nothing is aliased or reordered.
-  std::vector<Decisions> decisions_of(const RealGraph& graph, const Show& show, uint64_t seed) const {
+  std::vector<Decisions> decisions_of(const RealGraph& graph, const Show& show,
+                                      uint64_t seed) const {
     std::vector<Decisions> all = {
         {"nothing shared, order of the file", PassOrder::program, 0, PackingLevel::fast, false},
         {"as it ships"},
         {"packed fast, poison", PassOrder::memory, 0, PackingLevel::fast, true, true, true},
         {"another order", PassOrder::random, 2 * seed + 1},
         {"a third order, packed fast", PassOrder::random, 2 * seed + 2, PackingLevel::fast},
-        {"another order, nothing culled", PassOrder::random, 2 * seed + 1, PackingLevel::tight, true, false},
+        {"another order, nothing culled", PassOrder::random, 2 * seed + 1, PackingLevel::tight,
+         true, false},
         {"another order, nothing shared, nothing culled", PassOrder::random, 2 * seed + 1,
          PackingLevel::tight, false, false}};
     // The best packing level searches for up to half a minute.
@@ -124,7 +127,8 @@ protected:
         first = played;
         meant = interpreted;
         if (whole(graph->graph, show)) {
-          EXPECT_TRUE(agrees(meant, graph_reference(graph->graph, pass_types, random_frames, seed)));
+          EXPECT_TRUE(
+              agrees(meant, graph_reference(graph->graph, pass_types, random_frames, seed)));
           ++totals.references;
         }
         totals.passes += first_plan->passes.size();
@@ -140,7 +144,8 @@ protected:
       EXPECT_TRUE(agrees(interpreted, meant)) << decisions.name;
       for (size_t f = 0; f < first.size() && f < played.size(); ++f)
         for (const auto& [slot, texels] : first[f])
-          EXPECT_TRUE(same(slot, texels, played[f])) << decisions.name << ": " << slot << ", frame " << f;
+          EXPECT_TRUE(same(slot, texels, played[f]))
+              << decisions.name << ": " << slot << ", frame " << f;
     }
     ++totals.graphs;
     for (const ShownFrame& frame : show.frames)
@@ -162,12 +167,15 @@ TEST_F(DeviceFuzz, CompilerOptions_GiveEqualBits) {
   Totals totals;
   for (uint64_t seed = seeds.begin; seed < seeds.end && !HasFailure(); ++seed)
     try_graph(seed, totals);
-  const std::string reported = fmt::format(
-      "{} graphs of {} passes, {} interpreted against what they mean; {} plans, {} of them unlike the "
-      "first, {} with shared memory, {} without a loan; {} frames, {} cuts; {} pictures compared with "
-      "those of each other plan; {}",
-      totals.graphs, totals.passes, totals.references, totals.plans, totals.other_plans, totals.shared,
-      totals.aliased, totals.frames, totals.cuts, totals.pictures, HasFailure() ? "a finding" : "no finding");
+  const std::string reported =
+      fmt::format("{} graphs of {} passes, {} interpreted against what they mean; {} plans, {} of "
+                  "them unlike the "
+                  "first, {} with shared memory, {} without a loan; {} frames, {} cuts; {} "
+                  "pictures compared with "
+                  "those of each other plan; {}",
+                  totals.graphs, totals.passes, totals.references, totals.plans, totals.other_plans,
+                  totals.shared, totals.aliased, totals.frames, totals.cuts, totals.pictures,
+                  HasFailure() ? "a finding" : "no finding");
   RecordProperty("totals", reported);
   std::printf("%s\n", reported.c_str());
   EXPECT_EQ(totals.graphs, seeds.end - seeds.begin);

@@ -47,8 +47,8 @@ std::vector<float> light_of(const Played& played) {
   for (const auto& frame : played)
     for (const auto& [slot, texels] : frame) {
       const bool halves = slot == "lighting";
-      const auto* format =
-          demo::find_pixel_format(halves ? VK_FORMAT_R16G16B16A16_SFLOAT : VK_FORMAT_R32G32B32A32_SFLOAT);
+      const auto* format = demo::find_pixel_format(halves ? VK_FORMAT_R16G16B16A16_SFLOAT
+                                                          : VK_FORMAT_R32G32B32A32_SFLOAT);
       const std::vector<float> values = demo::decode_texels(*format, texels);
       for (size_t i = 0; i < values.size(); ++i)
         if (i % 4 != 3) out.push_back(values[i]);
@@ -68,14 +68,15 @@ std::string golden_drivers() {
   return out;
 }
 
-void keep_golden_hash(const std::string& driver, const std::string& graph, const std::string& hash) {
+void keep_golden_hash(const std::string& driver, const std::string& graph,
+                      const std::string& hash) {
   Table all = read_table();
   all[driver][graph] = hash;
   std::ofstream file(table);
-  file
-      << "# SHA-256 of golden frames (golden_show) by driver and graph. DERMIS_GOLDEN_UPDATE=1\n"
-         "# build/release/tests/test_passes_device --gtest_filter='Graphs/Golden.FramesMatchTheStoredHash*'\n"
-         "# adds or replaces those of the driver it runs on.\n";
+  file << "# SHA-256 of golden frames (golden_show) by driver and graph. DERMIS_GOLDEN_UPDATE=1\n"
+          "# build/release/tests/test_passes_device "
+          "--gtest_filter='Graphs/Golden.FramesMatchTheStoredHash*'\n"
+          "# adds or replaces those of the driver it runs on.\n";
   for (const auto& [name, of_graphs] : all)
     for (const auto& [one, of_frames] : of_graphs)
       file << name << '\t' << one << '\t' << of_frames << '\n';

@@ -64,8 +64,8 @@ TEST_P(Golden, AnyThreadCount_GivesEqualBits) {
   const std::string expected = line(hash_of(frames()));
   for (const int threads : {1, 2}) {
     const std::string command = fmt::format(
-        "LP_NUM_THREADS={} /proc/{}/exe --gtest_filter=Graphs/Golden.FramesMatchTheStoredHash*/{}", threads,
-        getpid(), GetParam());
+        "LP_NUM_THREADS={} /proc/{}/exe --gtest_filter=Graphs/Golden.FramesMatchTheStoredHash*/{}",
+        threads, getpid(), GetParam());
     FILE* const child = popen(command.c_str(), "r");
     ASSERT_NE(child, nullptr);
     std::string reported;
@@ -86,8 +86,8 @@ TEST_P(Golden, AnyThreadCount_GivesEqualBits) {
 TEST_P(Golden, FramesMatchPicturesOfAnotherDriver) {
   const KeptPictures kept = kept_pictures();
   if (kept.folder.empty())
-    GTEST_SKIP()
-        << "DERMIS_PICTURES names no folder with frames of another driver (tests/scripts/run_on_drivers.sh)";
+    GTEST_SKIP() << "DERMIS_PICTURES names no folder with frames of another driver "
+                    "(tests/scripts/run_on_drivers.sh)";
   constexpr double rounding = 1.0 / 2048, contrast = 0.625, samples = 16;
   const std::string path = fmt::format("{}/{}.floats", kept.folder, GetParam());
   const std::vector<float> here = light_of(frames());

@@ -51,8 +51,9 @@ double percentile(const std::vector<double>& sorted, double fraction) {
 }
 
 std::string reported_percentiles(const std::vector<double>& sorted) {
-  return fmt::format("median {:.2g}\tp99 {:.2g}\tp99.9 {:.2g}\tmost {:.2g}", percentile(sorted, 0.5),
-                     percentile(sorted, 0.99), percentile(sorted, 0.999), sorted.back());
+  return fmt::format("median {:.2g}\tp99 {:.2g}\tp99.9 {:.2g}\tmost {:.2g}",
+                     percentile(sorted, 0.5), percentile(sorted, 0.99), percentile(sorted, 0.999),
+                     sorted.back());
 }
 
 } // namespace dermis::testing

@@ -89,7 +89,8 @@ void DevicePlayer::SetUp() {
   for (uint32_t i = 0; i < std::size(profile_files); ++i) {
     Diagnostics diagnostics;
     const auto document = read_document(
-        fmt::format("{}/configs/profiles/{}.json", DERMIS_SOURCE_DIR, profile_files[i]), diagnostics);
+        fmt::format("{}/configs/profiles/{}.json", DERMIS_SOURCE_DIR, profile_files[i]),
+        diagnostics);
     ASSERT_TRUE(document);
     const auto read = subsurface::read_profile(*document, diagnostics);
     ASSERT_TRUE(read);
@@ -172,8 +173,9 @@ Played DevicePlayer::play(const RealGraph& graph, const Show& show, const Plan& 
     slot.name = graph.graph.resources[resource.declared.value].name;
     slot.import = resource.origin == Origin::imported;
     slot.written = writes(plan, r);
-    TestImage& image = images_[fmt::format("{} {} {} {} {}", slot.name, static_cast<int>(resource.format),
-                                           resource.vk_usage, show.width, show.height)];
+    TestImage& image =
+        images_[fmt::format("{} {} {} {} {}", slot.name, static_cast<int>(resource.format),
+                            resource.vk_usage, show.width, show.height)];
     if (image.image == VK_NULL_HANDLE) {
       image = make_image(vulkan::vk_format(resource.format), resource.width, resource.height,
                          // Sampled usage allows a view of an otherwise unused image.

@@ -29,7 +29,8 @@ Json read_shipped(const std::string& name) {
   return Json::parse(file, nullptr, true, true);
 }
 
-std::optional<RealGraph> made(std::string name, std::string text, const PassTypeRegistry& pass_types) {
+std::optional<RealGraph> made(std::string name, std::string text,
+                              const PassTypeRegistry& pass_types) {
   Diagnostics diagnostics;
   auto document = parse_document(name, text, diagnostics);
   auto graph = document ? read_graph(*document, pass_types, diagnostics) : std::nullopt;
@@ -100,7 +101,8 @@ struct Draft {
     return out;
   }
 
-  void rename_pass(Json& pass, const std::string& prefix, const Names& resources, const Names& settings) {
+  void rename_pass(Json& pass, const std::string& prefix, const Names& resources,
+                   const Names& settings) {
     pass["pass"] = prefix + std::string(pass["pass"]);
     for (const char* side : {"read", "write"})
       if (pass.contains(side))
@@ -171,7 +173,8 @@ std::vector<std::string> graphs_of_images() {
   return names;
 }
 
-std::optional<RealGraph> shipped_graph(const std::string& name, const PassTypeRegistry& pass_types) {
+std::optional<RealGraph> shipped_graph(const std::string& name,
+                                       const PassTypeRegistry& pass_types) {
   std::ifstream file(DERMIS_SOURCE_DIR "/" + shipped::graph_file(name));
   std::stringstream text;
   text << file.rdbuf();

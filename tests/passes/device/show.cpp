@@ -84,11 +84,12 @@ Show random_show(uint64_t seed, const Graph& graph) {
   for (const ResourceDeclaration& resource : graph.resources) {
     // Transmission needs both.
     const bool transmission = resource.name == "thickness" || resource.name == "back_lighting";
-    const bool left_out =
-        is_bound_by_host(resource) && resource.optional && !all && !transmission && random.below(100) < 30;
+    const bool left_out = is_bound_by_host(resource) && resource.optional && !all &&
+                          !transmission && random.below(100) < 30;
     show.bound.push_back(!left_out);
     show.formats.push_back(Format::undefined);
-    if (const auto formats = usable_formats(resource); is_bound_by_host(resource) && !formats.empty())
+    if (const auto formats = usable_formats(resource);
+        is_bound_by_host(resource) && !formats.empty())
       show.formats.back() = formats[random.below(formats.size())];
   }
   abi_test::Surface surface = abi_test::draw_surface(random);
@@ -123,7 +124,8 @@ Show golden_show(const Graph& graph) {
   show.height = golden_height;
   for (const ResourceDeclaration& resource : graph.resources) {
     const bool light = resource.name == "lighting" || resource.name == "scattered_light";
-    show.bound.push_back(!is_bound_by_host(resource) || resource.origin == Origin::imported || light);
+    show.bound.push_back(!is_bound_by_host(resource) || resource.origin == Origin::imported ||
+                         light);
     const auto formats = usable_formats(resource);
     show.formats.push_back(is_bound_by_host(resource) && !formats.empty() ? formats.front()
                                                                           : Format::undefined);

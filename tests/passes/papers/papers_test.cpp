@@ -140,14 +140,15 @@ TEST(MovingMoments, TheMatrixFormHoldsTheControlsWeight) {
     if (t == 0) mean = z;
     for (size_t r = 0; r < 2; ++r) // Equation 33, with the means of the previous frame.
       for (size_t c = 0; c < 2; ++c)
-        sigma[r][c] = (1 - eta) * sigma[r][c] + eta * (1 - eta) * (z[r] - mean[r]) * (z[c] - mean[c]);
+        sigma[r][c] =
+            (1 - eta) * sigma[r][c] + eta * (1 - eta) * (z[r] - mean[r]) * (z[c] - mean[c]);
     for (size_t r = 0; r < 2; ++r)
       mean[r] = (1 - eta) * mean[r] + eta * z[r];
     moments.add(f, g, eta);
     if (t < 2) continue;
     const double of_the_matrix = sigma[1][0] / sigma[1][1];
-    EXPECT_NEAR(control_weight(moments, 0), std::clamp(of_the_matrix, 0.0, (mean[0] + mean[1]) / mean[1]),
-                1e-11)
+    EXPECT_NEAR(control_weight(moments, 0),
+                std::clamp(of_the_matrix, 0.0, (mean[0] + mean[1]) / mean[1]), 1e-11)
         << t;
   }
 }
@@ -159,8 +160,8 @@ double scattered_at(const ChannelShape& shape, double x, double r0) {
   double sum = 0, total = 0;
   for (int i = 0; i < steps; ++i) {
     const double r = std::exp(from + (to - from) * (i + 0.5) / steps);
-    const double lit =
-        r < std::abs(x) ? (x < 0 ? 1 : 0) : std::acos(std::clamp(x / r, -1.0, 1.0)) / std::numbers::pi;
+    const double lit = r < std::abs(x) ? (x < 0 ? 1 : 0)
+                                       : std::acos(std::clamp(x / r, -1.0, 1.0)) / std::numbers::pi;
     const double weight = shape_pdf(shape, r) * r;
     sum += weight * lit;
     total += weight;
@@ -199,7 +200,8 @@ size_t lines_of_a_tile(int samples, double d, double bias) {
   constexpr double r0 = 0.5;
   const double beyond = 1 - burley_cdf(r0, d);
   const auto touch = [&](int level, double x, double y) {
-    const double scale = std::exp2(-level), u = (x + 0.5) * scale - 0.5, v = (y + 0.5) * scale - 0.5;
+    const double scale = std::exp2(-level), u = (x + 0.5) * scale - 0.5,
+                 v = (y + 0.5) * scale - 0.5;
     const int taps = level == 0 ? 1 : 2; // Bilinear above level 0.
     for (int j = 0; j < taps; ++j)
       for (int i = 0; i < taps; ++i) {
@@ -212,7 +214,8 @@ size_t lines_of_a_tile(int samples, double d, double bias) {
     for (uint32_t x = 0; x < 8; ++x) {
       const auto hash = pcg3d16({x, y, 0});
       for (int i = 0; i < samples; ++i) {
-        const auto point = r2_point({offset_from_hash(hash[0]), offset_from_hash(hash[1])}, uint32_t(i));
+        const auto point =
+            r2_point({offset_from_hash(hash[0]), offset_from_hash(hash[1])}, uint32_t(i));
         const double xi = point[0] * 0x1p-32, angle = 2 * std::numbers::pi * point[1] * 0x1p-32;
         const double r = burley_inverse_survival(beyond * (1 - xi), d);
         const double density = burley_pdf(r, d) / (2 * std::numbers::pi * r * beyond);

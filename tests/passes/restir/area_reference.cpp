@@ -24,7 +24,8 @@ std::vector<LitPoint> draw_points(const TriangleScene& scene, uint32_t medium, u
   const Scene access = scene.access();
   std::vector<LitPoint> result;
   for (uint32_t i = 0; i < points; ++i) {
-    const auto at = std::upper_bound(until.begin(), until.end(), random_unit(random) * area) - until.begin();
+    const auto at =
+        std::upper_bound(until.begin(), until.end(), random_unit(random) * area) - until.begin();
     const Triangle& t = scene.triangles[std::min(static_cast<size_t>(at), until.size() - 1)];
     double u = random_unit(random), v = random_unit(random);
     if (u + v > 1) {
@@ -34,9 +35,10 @@ std::vector<LitPoint> draw_points(const TriangleScene& scene, uint32_t medium, u
     const SurfacePoint x2 = {t.corner + u * t.edge_1 + v * t.edge_2, t.normal, t.normal, t.medium};
     const size_t which = static_cast<size_t>(random_unit(random) * double(scene.lights.size()));
     const Light& light = scene.lights[which];
-    const Vector3 x3 = light.type == LightType::point ? light.position
-                                                      : light.position + random_unit(random) * light.edge_u +
-                                                            random_unit(random) * light.edge_v;
+    const Vector3 x3 = light.type == LightType::point
+                           ? light.position
+                           : light.position + random_unit(random) * light.edge_u +
+                                 random_unit(random) * light.edge_v;
     const Vector3 way = x3 - x2.position, direction = normalize(way);
     double factor = dot(direction, t.normal) / dot(way, way);
     if (light.type == LightType::parallelogram)
@@ -44,7 +46,8 @@ std::vector<LitPoint> draw_points(const TriangleScene& scene, uint32_t medium, u
           // The product contains the area.
           std::max(0.0, -dot(direction, cross(light.edge_u, light.edge_v)));
     if (!(factor > 0) || !access.visible(access.of, x2, x3)) continue;
-    result.push_back({x2.position, factor * area * double(scene.lights.size()) / points * light.emission});
+    result.push_back(
+        {x2.position, factor * area * double(scene.lights.size()) / points * light.emission});
   }
   return result;
 }
@@ -65,9 +68,10 @@ Regions regions_of(const std::vector<Pixel>& pixels) {
   return regions;
 }
 
-std::vector<std::vector<double>> area_reference(const TriangleScene& scene, const std::vector<Pixel>& pixels,
-                                                const Regions& regions, uint32_t batches, uint32_t points,
-                                                uint32_t seed) {
+std::vector<std::vector<double>> area_reference(const TriangleScene& scene,
+                                                const std::vector<Pixel>& pixels,
+                                                const Regions& regions, uint32_t batches,
+                                                uint32_t points, uint32_t seed) {
   std::vector<std::vector<double>> means(regions.pixels.size(), std::vector<double>(batches));
   subsurface::parallel_for(batches, 1, 0, [&](size_t batch) {
     std::vector<std::vector<LitPoint>> lit(scene.d.size());
@@ -80,7 +84,8 @@ std::vector<std::vector<double>> area_reference(const TriangleScene& scene, cons
       for (const uint32_t pixel : regions.pixels[r]) {
         const Domain& domain = pixels[pixel].domain;
         for (const LitPoint& point : lit[domain.medium])
-          sum += luminance(scattered(domain, length(point.position - domain.position), point.light));
+          sum +=
+              luminance(scattered(domain, length(point.position - domain.position), point.light));
       }
       means[r][batch] = sum / double(regions.pixels[r].size());
     }

@@ -18,8 +18,9 @@ Regions regions_of(const std::vector<Pixel>& pixels);
 
 // Returns the mean luminance of each region for `batches` independent batches of `points` samples
 // per medium; all pixels of a batch use equal samples. Indexed [region][batch].
-std::vector<std::vector<double>> area_reference(const TriangleScene& scene, const std::vector<Pixel>& pixels,
-                                                const Regions& regions, uint32_t batches, uint32_t points,
-                                                uint32_t seed);
+std::vector<std::vector<double>> area_reference(const TriangleScene& scene,
+                                                const std::vector<Pixel>& pixels,
+                                                const Regions& regions, uint32_t batches,
+                                                uint32_t points, uint32_t seed);
 
 } // namespace dermis::restir::testing

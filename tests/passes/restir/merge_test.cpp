@@ -36,11 +36,13 @@ TEST_F(Merge, EqualEstimates_AreKept) {
       const ReuseSettings settings{shift, Index::traced, confidence_cap};
       const Reservoir own = sample_with_estimate(domain, light),
                       history = sample_with_estimate(domain, light);
-      const Reservoir merged = merge_temporal(scene, settings, domain, own, domain, history, random);
+      const Reservoir merged =
+          merge_temporal(scene, settings, domain, own, domain, history, random);
       EXPECT_NEAR(luminance(resolve(scene, domain, merged)), light, 1e-6);
       EXPECT_NEAR(merged.confidence, own.confidence + history.confidence, 1e-9);
 
-      const Reservoir others[] = {sample_with_estimate(domain, light), sample_with_estimate(domain, light),
+      const Reservoir others[] = {sample_with_estimate(domain, light),
+                                  sample_with_estimate(domain, light),
                                   sample_with_estimate(domain, light)};
       double confidences = 0;
       for (const Reservoir& other : others)
@@ -81,7 +83,9 @@ TEST_F(Merge, CountsEachPathOnce) {
       Reservoir no_own = nothing, no_other = nothing;
       no_own.confidence = own.confidence;
       no_other.confidence = other.confidence;
-      const auto light = [&](const Reservoir& merged) { return luminance(resolve(scene, domain, merged)); };
+      const auto light = [&](const Reservoir& merged) {
+        return luminance(resolve(scene, domain, merged));
+      };
 
       const double temporal =
           light(merge_temporal(scene, settings, domain, own, neighbour, no_other, random)) +
@@ -106,10 +110,12 @@ TEST_F(Merge, WithNothingKeepsTheOwnSample) {
     if (pixel.domain.medium == 0) continue;
     const Reservoir own = sample_with_estimate(pixel.domain, 3);
     const ReuseSettings settings;
-    const Reservoir merged = merge_temporal(scene, settings, pixel.domain, own, pixel.domain, {}, random);
+    const Reservoir merged =
+        merge_temporal(scene, settings, pixel.domain, own, pixel.domain, {}, random);
     EXPECT_NEAR(luminance(resolve(scene, pixel.domain, merged)), 3, 1e-9);
     Spatial without_neighbours = spatial_begin(scene, settings, pixel.domain, own, 0, random);
-    EXPECT_NEAR(luminance(resolve(scene, pixel.domain, spatial_end(without_neighbours, random))), 3, 1e-9);
+    EXPECT_NEAR(luminance(resolve(scene, pixel.domain, spatial_end(without_neighbours, random))), 3,
+                1e-9);
     break;
   }
 }
@@ -117,11 +123,13 @@ TEST_F(Merge, WithNothingKeepsTheOwnSample) {
 TEST_F(Merge, CapsTheConfidenceOfHistory) {
   for (const testing::Pixel& pixel : pixels) {
     if (pixel.domain.medium == 0) continue;
-    Reservoir own = sample_with_estimate(pixel.domain, 3), history = sample_with_estimate(pixel.domain, 3);
+    Reservoir own = sample_with_estimate(pixel.domain, 3),
+              history = sample_with_estimate(pixel.domain, 3);
     own.confidence = 2;
     for (const double huge : {41.0, 1e6, 1e300, std::numeric_limits<double>::infinity()}) {
       history.confidence = huge;
-      const Reservoir merged = merge_temporal(scene, {}, pixel.domain, own, pixel.domain, history, random);
+      const Reservoir merged =
+          merge_temporal(scene, {}, pixel.domain, own, pixel.domain, history, random);
       EXPECT_EQ(merged.confidence, 2 + 2 * confidence_cap);
       EXPECT_NEAR(luminance(resolve(scene, pixel.domain, merged)), 3, 1e-9);
     }

@@ -47,7 +47,8 @@ TEST(Profile, WholePlaneOfLight_IsOne) {
   constexpr int steps = 200000; // Midpoints in sqrt(r), in which 2 pi r R dr is smooth.
   for (int i = 0; i < steps; ++i) {
     const double q = (i + 0.5) / steps * std::sqrt(reach), r = q * q;
-    sum = sum + 2 * std::numbers::pi * r * 2 * q * std::sqrt(reach) / steps * scattering_profile(d, r);
+    sum = sum +
+          2 * std::numbers::pi * r * 2 * q * std::sqrt(reach) / steps * scattering_profile(d, r);
   }
   for (const double one : sum)
     EXPECT_NEAR(one, 1, 1e-6);
@@ -77,7 +78,8 @@ TEST(Probe, ChoiceFrequencyMatchesTheFractions) {
       axes[numbers.axis] += 1.0 / draws;
       channels[numbers.channel] += 1.0 / draws;
     }
-    const double scattering = double(std::count_if(d.begin(), d.end(), [](double x) { return x > 0; }));
+    const double scattering =
+        double(std::count_if(d.begin(), d.end(), [](double x) { return x > 0; }));
     for (size_t i = 0; i < 3; ++i) {
       EXPECT_NEAR(axes[i], probe_axis_fraction[i], 0.006);
       EXPECT_NEAR(channels[i], d[i] > 0 ? 1 / scattering : 0, 0.006);
@@ -102,14 +104,16 @@ TEST(Probe, WeightsMeasureAreas) {
       scene.trace_probe(scene.of, probe_of(domain, numbers), 1, hits);
       if (hits.count == 0) continue;
       const ProbeHit& hit = hits.hit[picked_hit(numbers.pick, hits.count)];
-      const SurfacePoint x2 = scene.surface_at(scene.of, hit.instance, hit.primitive, hit.barycentrics);
+      const SurfacePoint x2 =
+          scene.surface_at(scene.of, hit.instance, hit.primitive, hit.barycentrics);
       if (length(x2.position - domain.position) < 1.5)
         sum += hits.count / probe_pdf(domain, x2.position, x2.normal) / draws;
     }
     values.push_back(sum);
   }
   const testing::Mean mean = testing::mean_of(values);
-  EXPECT_NEAR(mean.mean, std::numbers::pi * 1.5 * 1.5, testing::three_sigma_limit(63, 1) * mean.sigma);
+  EXPECT_NEAR(mean.mean, std::numbers::pi * 1.5 * 1.5,
+              testing::three_sigma_limit(63, 1) * mean.sigma);
   EXPECT_LT(mean.sigma, 0.02 * mean.mean);
 }
 
@@ -127,7 +131,8 @@ TEST(Inversion, RecoversThePoint) {
     scene.trace_probe(scene.of, probe_of(domain, probe_numbers), domain.medium, hits);
     if (hits.count == 0) continue;
     const ProbeHit& hit = hits.hit[picked_hit(probe_numbers.pick, hits.count)];
-    const SurfacePoint x2 = scene.surface_at(scene.of, hit.instance, hit.primitive, hit.barycentrics);
+    const SurfacePoint x2 =
+        scene.surface_at(scene.of, hit.instance, hit.primitive, hit.barycentrics);
     ProbeNumbers again;
     ASSERT_TRUE(invert_point(domain, x2.position, x2.normal, random_unit(random), again));
     ProbeHits seen;
@@ -135,12 +140,13 @@ TEST(Inversion, RecoversThePoint) {
     // A probe that grazes an edge or a face may miss by rounding, so cosines below 1e-6 are
     // skipped.
     if (std::abs(dot(x2.normal, probe_axis(domain.normal, again.axis))) < 1e-6) continue;
-    const double edge =
-        std::min({hit.barycentrics[0], hit.barycentrics[1], 1 - hit.barycentrics[0] - hit.barycentrics[1]});
+    const double edge = std::min(
+        {hit.barycentrics[0], hit.barycentrics[1], 1 - hit.barycentrics[0] - hit.barycentrics[1]});
     if (edge < 1e-9) continue;
     ASSERT_TRUE(invert_pick(seen, hit.instance, hit.primitive, random_unit(random), again.pick));
     const ProbeHit& back = seen.hit[picked_hit(again.pick, seen.count)];
-    const SurfacePoint y2 = scene.surface_at(scene.of, back.instance, back.primitive, back.barycentrics);
+    const SurfacePoint y2 =
+        scene.surface_at(scene.of, back.instance, back.primitive, back.barycentrics);
     EXPECT_EQ(back.instance, hit.instance);
     EXPECT_EQ(back.primitive, hit.primitive);
     // 1e-15 of the scene over the minimum cosine.
@@ -168,7 +174,8 @@ TEST(Inversion, FindsUniformNumbers) {
     if (hits.count == 0) continue;
     ASSERT_EQ(hits.count, 1u);
     const ProbeHit& hit = hits.hit[0];
-    const SurfacePoint x2 = scene.surface_at(scene.of, hit.instance, hit.primitive, hit.barycentrics);
+    const SurfacePoint x2 =
+        scene.surface_at(scene.of, hit.instance, hit.primitive, hit.barycentrics);
     ProbeNumbers found;
     ASSERT_TRUE(invert_point(domain, x2.position, x2.normal, random_unit(random), found));
     ASSERT_TRUE(invert_pick(hits, hit.instance, hit.primitive, random_unit(random), found.pick));
@@ -177,7 +184,8 @@ TEST(Inversion, FindsUniformNumbers) {
     double below = 0;
     for (uint32_t a = 0; a < found.axis; ++a)
       below += probe_axis_fraction[a];
-    techniques.push_back(below + probe_axis_fraction[found.axis] * (found.channel + random_unit(random)) / 3);
+    techniques.push_back(below + probe_axis_fraction[found.axis] *
+                                     (found.channel + random_unit(random)) / 3);
     radii.push_back((1 - found.survival) / (1 - min_survival));
     angles.push_back(found.angle);
     picks.push_back(found.pick);

@@ -28,8 +28,9 @@ Reservoir some_reservoir() {
 }
 
 bool is_clean(const Reservoir& r) {
-  return std::isfinite(r.weight) && r.weight >= 0 && std::isfinite(r.confidence) && r.confidence >= 0 &&
-         r.confidence <= max_confidence && std::isfinite(r.density) && std::isfinite(luminance(r.irradiance));
+  return std::isfinite(r.weight) && r.weight >= 0 && std::isfinite(r.confidence) &&
+         r.confidence >= 0 && r.confidence <= max_confidence && std::isfinite(r.density) &&
+         std::isfinite(luminance(r.irradiance));
 }
 
 TEST(Reservoir, PackingRoundTripIsExact) {

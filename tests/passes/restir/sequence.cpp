@@ -14,21 +14,25 @@ struct Frame {
 
 // Returns `pixel` moved by (x, y), or no_pixel outside of the picture or on another medium.
 const uint32_t no_pixel = 0xffffffff;
-uint32_t moved(const SequenceSettings& s, const Frame& frame, uint32_t medium, uint32_t pixel, int x, int y) {
+uint32_t moved(const SequenceSettings& s, const Frame& frame, uint32_t medium, uint32_t pixel,
+               int x, int y) {
   const int u = static_cast<int>(pixel % s.width) + x, v = static_cast<int>(pixel / s.width) + y;
-  if (u < 0 || v < 0 || u >= static_cast<int>(s.width) || v >= static_cast<int>(s.height)) return no_pixel;
+  if (u < 0 || v < 0 || u >= static_cast<int>(s.width) || v >= static_cast<int>(s.height))
+    return no_pixel;
   const uint32_t other = static_cast<uint32_t>(v) * s.width + static_cast<uint32_t>(u);
   return frame.pixels[other].domain.medium == medium ? other : no_pixel;
 }
 
-std::vector<Reservoir> spatial_pass(const Scene& scene, const SequenceSettings& s, const ReuseSettings& reuse,
-                                    const Frame& frame, uint32_t neighbours, uint32_t stage, uint32_t key) {
+std::vector<Reservoir> spatial_pass(const Scene& scene, const SequenceSettings& s,
+                                    const ReuseSettings& reuse, const Frame& frame,
+                                    uint32_t neighbours, uint32_t stage, uint32_t key) {
   std::vector<Reservoir> result(frame.pixels.size());
   for (uint32_t i = 0; i < frame.pixels.size(); ++i) {
     const Domain& domain = frame.pixels[i].domain;
     if (domain.medium == 0) continue;
     Random random{i, key, stage * random_numbers_a_pass};
-    const double radius = std::min(search_radius(domain.d, pixel_footprint(s.width)), s.width / 4.0);
+    const double radius =
+        std::min(search_radius(domain.d, pixel_footprint(s.width)), s.width / 4.0);
     std::vector<uint32_t> others;
     double confidences = 0;
     for (uint32_t n = 0; n < neighbours; ++n) {
@@ -40,7 +44,8 @@ std::vector<Reservoir> spatial_pass(const Scene& scene, const SequenceSettings& 
     }
     Spatial spatial = spatial_begin(scene, reuse, domain, frame.reservoirs[i], confidences, random);
     for (const uint32_t other : others)
-      spatial_add(scene, reuse, domain, spatial, frame.pixels[other].domain, frame.reservoirs[other], random);
+      spatial_add(scene, reuse, domain, spatial, frame.pixels[other].domain,
+                  frame.reservoirs[other], random);
     result[i] = spatial_end(spatial, random);
   }
   return result;
@@ -48,9 +53,9 @@ std::vector<Reservoir> spatial_pass(const Scene& scene, const SequenceSettings& 
 
 } // namespace
 
-SequenceResult run_sequence(const TriangleScene& triangles, const SequenceSettings& s, const Regions& regions,
-                            const std::vector<double>& reference, uint32_t seed,
-                            const std::vector<Light>& lights) {
+SequenceResult run_sequence(const TriangleScene& triangles, const SequenceSettings& s,
+                            const Regions& regions, const std::vector<double>& reference,
+                            uint32_t seed, const std::vector<Light>& lights) {
   Scene scene = triangles.access();
   SequenceResult result;
   result.region_mean.assign(regions.pixels.size(), 0);
@@ -80,8 +85,9 @@ SequenceResult run_sequence(const TriangleScene& triangles, const SequenceSettin
       const uint32_t past = moved(s, before, domain.medium, i, 0, 0);
       random.count = random_numbers_a_pass;
       if (past != no_pixel)
-        frame.reservoirs[i] = merge_temporal(scene, settings(Stage::temporal), domain, frame.reservoirs[i],
-                                             before.pixels[past].domain, before.reservoirs[past], random);
+        frame.reservoirs[i] =
+            merge_temporal(scene, settings(Stage::temporal), domain, frame.reservoirs[i],
+                           before.pixels[past].domain, before.reservoirs[past], random);
     }
     // The next frame keeps the temporal result without neighbours, in packed form.
     Frame kept = frame;

@@ -30,7 +30,7 @@ struct SequenceResult {
 // lights unless it is empty. Regions and `reference` (luminance per pixel, or empty) belong to even
 // frames.
 SequenceResult run_sequence(const TriangleScene& scene, const SequenceSettings& settings,
-                            const Regions& regions, const std::vector<double>& reference, uint32_t seed,
-                            const std::vector<Light>& lights = {});
+                            const Regions& regions, const std::vector<double>& reference,
+                            uint32_t seed, const std::vector<Light>& lights = {});
 
 } // namespace dermis::restir::testing

@@ -47,18 +47,21 @@ struct Place {
 
 // Maps x2 of `at` in `from`, moved by e; returns null if the image leaves the faces and choices of
 // `image`.
-std::optional<Extended> replayed(const Scene& scene, const Domain& from, const Domain& to, const Place& at,
-                                 const Extended& e, uint32_t hits, std::optional<Place>& image) {
+std::optional<Extended> replayed(const Scene& scene, const Domain& from, const Domain& to,
+                                 const Place& at, const Extended& e, uint32_t hits,
+                                 std::optional<Place>& image) {
   const auto axes = along(at.normal);
   const Vector3 x2 = at.position + e.a * axes[0] + e.b * axes[1];
-  const auto technique_pdf = [&](const Domain& domain, uint32_t t, const Vector3& p, const Vector3& n) {
+  const auto technique_pdf = [&](const Domain& domain, uint32_t t, const Vector3& p,
+                                 const Vector3& n) {
     return probe_technique_pdf(domain, t / 3, t % 3, p, n);
   };
   ProbeNumbers numbers;
   double below = 0;
   for (uint32_t t = 0; t < at.technique; ++t)
     below += technique_pdf(from, t, x2, at.normal);
-  const double own = technique_pdf(from, at.technique, x2, at.normal), sum = probe_pdf(from, x2, at.normal);
+  const double own = technique_pdf(from, at.technique, x2, at.normal),
+               sum = probe_pdf(from, x2, at.normal);
   const double u = (e.gamma_1 * sum - below) / own; // Within the interval of the choice.
   if (u < 0 || u >= 1) return {};
   // invert_point picks the technique whose interval contains gamma_1.
@@ -72,8 +75,10 @@ std::optional<Extended> replayed(const Scene& scene, const Domain& from, const D
   const uint32_t index = picked_hit(pick, seen.count);
   const ProbeHit& hit = seen.hit[index];
   const SurfacePoint y2 = scene.surface_at(scene.of, hit.instance, hit.primitive, hit.barycentrics);
-  if (!image) image = Place{hit.instance, hit.primitive, at.technique, index, y2.position, y2.normal};
-  if (image->instance != hit.instance || image->primitive != hit.primitive || image->hit != index) return {};
+  if (!image)
+    image = Place{hit.instance, hit.primitive, at.technique, index, y2.position, y2.normal};
+  if (image->instance != hit.instance || image->primitive != hit.primitive || image->hit != index)
+    return {};
   double before = 0;
   for (uint32_t t = 0; t < at.technique; ++t)
     before += technique_pdf(to, t, y2.position, y2.normal);
@@ -81,7 +86,8 @@ std::optional<Extended> replayed(const Scene& scene, const Domain& from, const D
   const auto image_axes = along(image->normal);
   const Vector3 moved = y2.position - image->position;
   return Extended{dot(moved, image_axes[0]), dot(moved, image_axes[1]),
-                  (before + u * mine) / probe_pdf(to, y2.position, y2.normal), pick * seen.count - index};
+                  (before + u * mine) / probe_pdf(to, y2.position, y2.normal),
+                  pick * seen.count - index};
 }
 
 struct Pairs {
@@ -109,22 +115,25 @@ TEST(Jacobian, RandomReplay_MatchesFiniteDifferences) {
     Domain from, to;
     if (!pairs.next(from, to)) continue;
     Random& random = pairs.random;
-    const ProbeNumbers numbers = draw_numbers(
-        from.d, {random_unit(random), random_unit(random), random_unit(random), random_unit(random)});
+    const ProbeNumbers numbers = draw_numbers(from.d, {random_unit(random), random_unit(random),
+                                                       random_unit(random), random_unit(random)});
     ProbeHits hits;
     scene.trace_probe(scene.of, probe_of(from, numbers), from.medium, hits);
     if (hits.count == 0) continue;
     Place at;
     at.hit = picked_hit(numbers.pick, hits.count);
     const ProbeHit& hit = hits.hit[at.hit];
-    const SurfacePoint x2 = scene.surface_at(scene.of, hit.instance, hit.primitive, hit.barycentrics);
-    at = {hit.instance, hit.primitive, numbers.axis * 3 + numbers.channel, at.hit, x2.position, x2.normal};
+    const SurfacePoint x2 =
+        scene.surface_at(scene.of, hit.instance, hit.primitive, hit.barycentrics);
+    at = {hit.instance, hit.primitive, numbers.axis * 3 + numbers.channel,
+          at.hit,       x2.position,   x2.normal};
     // Close to x1 the profile changes within a step, and grazing faces magnify the change.
     if (length(x2.position - from.position) < 0.05) continue;
     double below = 0;
     for (uint32_t t = 0; t < at.technique; ++t)
       below += probe_technique_pdf(from, t / 3, t % 3, x2.position, x2.normal);
-    const double own = probe_technique_pdf(from, numbers.axis, numbers.channel, x2.position, x2.normal);
+    const double own =
+        probe_technique_pdf(from, numbers.axis, numbers.channel, x2.position, x2.normal);
     const double density = probe_pdf(from, x2.position, x2.normal);
     const Extended middle = {0, 0, (below + random_unit(random) * own) / density,
                              numbers.pick * hits.count - at.hit};
@@ -171,8 +180,10 @@ TEST(Jacobian, Reconnection_MatchesFiniteDifferences) {
   Random random{19, 0, 0};
   const auto number = [&] { return 4 * random_unit(random) - 2; };
   for (int i = 0; i < 1000; ++i) {
-    const Vector3 x = {number(), number(), 3 + number() / 2}, y = {number(), number(), 3 + number() / 2};
-    const Vector3 v = {number(), number(), 0}, normal = normalize(Vector3{number() / 8, number() / 8, 1});
+    const Vector3 x = {number(), number(), 3 + number() / 2},
+                  y = {number(), number(), 3 + number() / 2};
+    const Vector3 v = {number(), number(), 0},
+                  normal = normalize(Vector3{number() / 8, number() / 8, 1});
     const Vector3 from = normalize(v - x), to = normalize(v - y);
     if (std::abs(dot(from, normal)) < 0.2 || std::abs(dot(to, normal)) < 0.2) continue;
     std::array<std::array<double, 4>, 4> rows{};
@@ -226,9 +237,10 @@ TEST(Shift, InverseIsTheIdentity) {
         ASSERT_GT(back.jacobian, 0) << static_cast<int>(shift);
         EXPECT_EQ(back.path.instance, path.instance);
         EXPECT_EQ(back.path.primitive, path.primitive);
-        const SurfacePoint x2 = scene.surface_at(scene.of, path.instance, path.primitive, path.barycentrics);
-        const SurfacePoint y2 =
-            scene.surface_at(scene.of, back.path.instance, back.path.primitive, back.path.barycentrics);
+        const SurfacePoint x2 =
+            scene.surface_at(scene.of, path.instance, path.primitive, path.barycentrics);
+        const SurfacePoint y2 = scene.surface_at(scene.of, back.path.instance, back.path.primitive,
+                                                 back.path.barycentrics);
         EXPECT_LT(length(x2.position - y2.position), 1e-6);
         EXPECT_NEAR(there.jacobian * back.jacobian, 1, 1e-6);
         replayed_paths += there.path.hits > 0;

@@ -16,7 +16,8 @@ const TriangleScene& scene_of(const void* of) {
 }
 
 // Moeller & Trumbore 1997.
-bool meets(const Triangle& t, const Vector3& origin, const Vector3& direction, double maximum, Hit& hit) {
+bool meets(const Triangle& t, const Vector3& origin, const Vector3& direction, double maximum,
+           Hit& hit) {
   const Vector3 p = cross(direction, t.edge_2);
   const double determinant = dot(t.edge_1, p);
   if (determinant == 0) return false;
@@ -32,7 +33,8 @@ bool meets(const Triangle& t, const Vector3& origin, const Vector3& direction, d
 bool meets(const BoxNode& box, const Vector3& origin, const Vector3& inverse, double maximum) {
   double near = 0, far = maximum;
   for (size_t i = 0; i < 3; ++i) {
-    const double a = (box.low[i] - origin[i]) * inverse[i], b = (box.high[i] - origin[i]) * inverse[i];
+    const double a = (box.low[i] - origin[i]) * inverse[i],
+                 b = (box.high[i] - origin[i]) * inverse[i];
     near = std::max(near, std::min(a, b)); // 0 * inf is NaN, which min and max skip here.
     far = std::min(far, std::max(a, b));
   }
@@ -42,8 +44,8 @@ bool meets(const BoxNode& box, const Vector3& origin, const Vector3& inverse, do
 // Calls found(hit) for each hit within `maximum`, which `found` may reduce; stops if it returns
 // false.
 template <class Found>
-void for_hits(const TriangleScene& scene, const Vector3& origin, const Vector3& direction, double& maximum,
-              Found&& found) {
+void for_hits(const TriangleScene& scene, const Vector3& origin, const Vector3& direction,
+              double& maximum, Found&& found) {
   const Vector3 inverse = {1 / direction[0], 1 / direction[1], 1 / direction[2]};
   uint32_t stack[64], depth = 0;
   stack[depth++] = 0;
@@ -81,7 +83,8 @@ void trace_probe(const void* of, const ProbeRay& ray, uint32_t medium, ProbeHits
   });
 }
 
-SurfacePoint surface_at(const void* of, uint32_t instance, uint32_t primitive, const Barycentrics& b) {
+SurfacePoint surface_at(const void* of, uint32_t instance, uint32_t primitive,
+                        const Barycentrics& b) {
   const TriangleScene& scene = scene_of(of);
   const Triangle& t = scene.triangles[scene.rows[instance - first_instance][primitive]];
   return {t.corner + b[0] * t.edge_1 + b[1] * t.edge_2, t.normal, t.normal, t.medium};
@@ -92,7 +95,8 @@ bool visible(const void* of, const SurfacePoint& from, const Vector3& target) {
   const double distance = length(way);
   double maximum = distance - lift;
   bool is_free = true;
-  for_hits(scene_of(of), origin, 1 / distance * way, maximum, [&](const Hit&) { return is_free = false; });
+  for_hits(scene_of(of), origin, 1 / distance * way, maximum,
+           [&](const Hit&) { return is_free = false; });
   return is_free;
 }
 
@@ -109,7 +113,8 @@ void split(TriangleScene& scene, uint32_t node, uint32_t first, uint32_t count) 
       }
   }
   const Vector3 size = box.high - box.low;
-  const size_t axis = static_cast<size_t>(std::max_element(size.begin(), size.end()) - size.begin());
+  const size_t axis =
+      static_cast<size_t>(std::max_element(size.begin(), size.end()) - size.begin());
   box.first = first;
   box.count = count;
   if (count > max_in_box) {
@@ -131,7 +136,8 @@ void split(TriangleScene& scene, uint32_t node, uint32_t first, uint32_t count) 
 using Corners = std::vector<Vector3>;
 
 // Adds four corners, counterclockwise from outside.
-void add_quad(Corners& corners, const Vector3& a, const Vector3& b, const Vector3& c, const Vector3& d) {
+void add_quad(Corners& corners, const Vector3& a, const Vector3& b, const Vector3& c,
+              const Vector3& d) {
   for (const Vector3& p : {a, b, c, a, c, d})
     corners.push_back(p);
 }
@@ -140,8 +146,8 @@ Corners sphere(const Vector3& centre, double radius, int rings) {
   Corners corners;
   const auto point = [&](int ring, int step) {
     const double theta = std::numbers::pi * ring / rings, phi = std::numbers::pi * step / rings;
-    return centre + radius * Vector3{std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi),
-                                     std::cos(theta)};
+    return centre + radius * Vector3{std::sin(theta) * std::cos(phi),
+                                     std::sin(theta) * std::sin(phi), std::cos(theta)};
   };
   for (int i = 0; i < rings; ++i)
     for (int j = 0; j < 2 * rings; ++j)
@@ -209,8 +215,8 @@ void finish(TriangleScene& scene) {
   share_lights(scene.lights);
 }
 
-bool nearest_hit(const TriangleScene& scene, const Vector3& origin, const Vector3& direction, double maximum,
-                 Hit& hit) {
+bool nearest_hit(const TriangleScene& scene, const Vector3& origin, const Vector3& direction,
+                 double maximum, Hit& hit) {
   bool found = false;
   for_hits(scene, origin, direction, maximum, [&](const Hit& one) {
     hit = one;
@@ -228,11 +234,11 @@ TriangleScene ear_scene() {
                  return Vector3{-3.6 + 5.4 * p[0], -2.6 + 1.6 * p[1], -1.5 + 2 * p[2]};
                }));
   // A sheet 0.2 thick, bent about an upright axis in front of it.
-  add_instance(
-      scene, 2, cube(6, [](const Vector3& p) {
-        const double turn = 1.6 * (p[0] - 0.5), radius = 1.6 + 0.2 * (1 - p[2]);
-        return Vector3{2.1 + radius * std::sin(turn), -2.2 + 4.6 * p[1], 1.5 - radius * std::cos(turn)};
-      }));
+  add_instance(scene, 2, cube(6, [](const Vector3& p) {
+                 const double turn = 1.6 * (p[0] - 0.5), radius = 1.6 + 0.2 * (1 - p[2]);
+                 return Vector3{2.1 + radius * std::sin(turn), -2.2 + 4.6 * p[1],
+                                1.5 - radius * std::cos(turn)};
+               }));
   Light behind;
   behind.position = {2.6, 0.6, -3};
   behind.emission = {12, 10, 8};
@@ -253,14 +259,16 @@ double pixel_footprint(uint32_t width) {
   return 2 * view_half / width;
 }
 
-std::vector<Pixel> look_at(const TriangleScene& scene, uint32_t width, uint32_t height, double shift) {
+std::vector<Pixel> look_at(const TriangleScene& scene, uint32_t width, uint32_t height,
+                           double shift) {
   std::vector<Pixel> pixels(size_t{width} * height);
   const Scene access = scene.access();
   const double step = pixel_footprint(width);
   for (uint32_t y = 0; y < height; ++y)
     for (uint32_t x = 0; x < width; ++x) {
       Hit hit;
-      const Vector3 origin = {-view_half + step * (x + 0.5 + shift), view_half - step * (y + 0.5), 10};
+      const Vector3 origin = {-view_half + step * (x + 0.5 + shift), view_half - step * (y + 0.5),
+                              10};
       if (!nearest_hit(scene, origin, {0, 0, -1}, 100, hit)) continue;
       const Triangle& t = scene.triangles[hit.triangle];
       const SurfacePoint x1 = surface_at(&scene, t.instance, t.primitive, hit.barycentrics);
@@ -269,9 +277,10 @@ std::vector<Pixel> look_at(const TriangleScene& scene, uint32_t width, uint32_t 
       pixel.instance = t.instance - first_instance;
       constexpr uint32_t middle = 0x80008000u; // The middle of a light.
       for (const Light& light : scene.lights)
-        pixel.lit = pixel.lit ||
-                    (luminance(light_irradiance(light, middle, x1.position, x1.normal, x1.shading)) > 0 &&
-                     access.visible(access.of, x1, light_target(light, middle, x1.position)));
+        pixel.lit =
+            pixel.lit ||
+            (luminance(light_irradiance(light, middle, x1.position, x1.normal, x1.shading)) > 0 &&
+             access.visible(access.of, x1, light_target(light, middle, x1.position)));
     }
   return pixels;
 }

@@ -47,8 +47,8 @@ struct Hit {
   Barycentrics barycentrics{};
 };
 // Finds the nearest hit from `origin` in (0, maximum); returns false if none exists.
-bool nearest_hit(const TriangleScene& scene, const Vector3& origin, const Vector3& direction, double maximum,
-                 Hit& hit);
+bool nearest_hit(const TriangleScene& scene, const Vector3& origin, const Vector3& direction,
+                 double maximum, Hit& hit);
 
 TriangleScene ear_scene();
 
@@ -59,7 +59,8 @@ struct Pixel {
   uint32_t instance = 0; // Counts from 0.
   bool lit = false;      // Whether the pixel faces the middle of a light without occlusion.
 };
-std::vector<Pixel> look_at(const TriangleScene& scene, uint32_t width, uint32_t height, double shift = 0);
+std::vector<Pixel> look_at(const TriangleScene& scene, uint32_t width, uint32_t height,
+                           double shift = 0);
 double pixel_footprint(uint32_t width);
 
 } // namespace dermis::restir::testing

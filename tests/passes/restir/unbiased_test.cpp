@@ -48,7 +48,8 @@ std::vector<Mean> restarted(const TriangleScene& scene, const SequenceSettings& 
                             const testing::Regions& regions) {
   std::vector<std::vector<double>> values(regions.pixels.size(), std::vector<double>(restarts));
   subsurface::parallel_for(restarts, 1, 0, [&](size_t restart) {
-    const auto result = run_sequence(scene, settings, regions, {}, static_cast<uint32_t>(restart + 1));
+    const auto result =
+        run_sequence(scene, settings, regions, {}, static_cast<uint32_t>(restart + 1));
     for (size_t r = 0; r < values.size(); ++r)
       values[r][restart] = result.region_mean[r];
   });
@@ -77,7 +78,8 @@ protected:
     const SequenceSettings settings = settings_of(Shift::reconnection, Reuse::none);
     pixels = look_at(scene, settings.width, settings.height);
     regions = testing::regions_of(pixels);
-    reference = means_of(area_reference(scene, pixels, regions, batches, quality(20000, 40000), 99));
+    reference =
+        means_of(area_reference(scene, pixels, regions, batches, quality(20000, 40000), 99));
     ASSERT_GE(regions.pixels.size(), 5u);
   }
 
@@ -97,8 +99,8 @@ protected:
 };
 
 TEST_F(Unbiased, SamplesWithoutReuse) {
-  expect_no_bias(settings_of(Shift::reconnection, Reuse::none), static_cast<int>(regions.pixels.size()),
-                 "none");
+  expect_no_bias(settings_of(Shift::reconnection, Reuse::none),
+                 static_cast<int>(regions.pixels.size()), "none");
 }
 
 TEST_F(Unbiased, EveryShiftWithEveryReuse) {
@@ -109,8 +111,8 @@ TEST_F(Unbiased, EveryShiftWithEveryReuse) {
     for (const Reuse reuse : {Reuse::temporal, Reuse::spatial, Reuse::spatiotemporal}) {
       // Equal to reconnection.
       if (shift == Shift::sequential && reuse == Reuse::temporal) continue;
-      const std::string name =
-          std::string(shifts[static_cast<size_t>(shift)]) + " " + reuses[static_cast<size_t>(reuse)];
+      const std::string name = std::string(shifts[static_cast<size_t>(shift)]) + " " +
+                               reuses[static_cast<size_t>(reuse)];
       expect_no_bias(settings_of(shift, reuse), tests, name.c_str());
     }
 }
@@ -139,7 +141,8 @@ TEST_F(Unbiased, InTheFrameAfterLightsMoved) {
     });
     const Judged judged = judge(means_of(values), moved);
     std::printf("lights moved, shift %u: %.2f sigma, %.2f %% off, 1 sigma is %.2f %%\n",
-                static_cast<unsigned>(shift), judged.worst, 100 * judged.largest, 100 * judged.spread);
+                static_cast<unsigned>(shift), judged.worst, 100 * judged.largest,
+                100 * judged.spread);
     EXPECT_LT(judged.worst, testing::three_sigma_limit(restarts - 1, tests));
   }
 }
@@ -172,16 +175,18 @@ TEST_F(Unbiased, Reuse_ReducesTheError) {
     std::vector<double> squares(16);
     subsurface::parallel_for(squares.size(), 1, 0, [&](size_t restart) {
       squares[restart] =
-          run_sequence(scene, settings, regions, light, static_cast<uint32_t>(restart + 101)).last_square;
+          run_sequence(scene, settings, regions, light, static_cast<uint32_t>(restart + 101))
+              .last_square;
     });
     return testing::mean_of(squares).mean;
   };
   const double none = error(Shift::reconnection, Reuse::none);
   double parts[4] = {};
-  for (const Shift shift : {Shift::reconnection, Shift::delayed, Shift::hybrid, Shift::sequential}) {
+  for (const Shift shift :
+       {Shift::reconnection, Shift::delayed, Shift::hybrid, Shift::sequential}) {
     const double spatial = error(shift, Reuse::spatial), both = error(shift, Reuse::spatiotemporal);
-    std::printf("shift %u: mse %.4f alone, %.4f spatial, %.4f spatiotemporal\n", static_cast<unsigned>(shift),
-                none, spatial, both);
+    std::printf("shift %u: mse %.4f alone, %.4f spatial, %.4f spatiotemporal\n",
+                static_cast<unsigned>(shift), none, spatial, both);
     EXPECT_LT(spatial, none);
     EXPECT_LT(both, spatial);
     parts[static_cast<size_t>(shift)] = both;

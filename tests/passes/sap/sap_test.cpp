@@ -43,11 +43,13 @@ struct Scene {
 
 // Edges, discs of all sizes and a checkerboard: contrasts at every scale.
 float texture(uint32_t x, uint32_t y) {
-  float value =
-      0.2f + 0.3f * hashed(x / 32, y / 32) + 0.2f * hashed(x / 8 + 77, y / 8) + 0.1f * hashed(x, y + 99);
+  float value = 0.2f + 0.3f * hashed(x / 32, y / 32) + 0.2f * hashed(x / 8 + 77, y / 8) +
+                0.1f * hashed(x, y + 99);
   for (uint32_t i = 0; i < 60; ++i) {
-    const float cx = 256 * hashed(i, 1), cy = 192 * hashed(i, 2), r = 3 + 30 * hashed(i, 3) * hashed(i, 4);
-    if ((float(x) - cx) * (float(x) - cx) + (float(y) - cy) * (float(y) - cy) < r * r) value = hashed(i, 5);
+    const float cx = 256 * hashed(i, 1), cy = 192 * hashed(i, 2),
+                r = 3 + 30 * hashed(i, 3) * hashed(i, 4);
+    if ((float(x) - cx) * (float(x) - cx) + (float(y) - cy) * (float(y) - cy) < r * r)
+      value = hashed(i, 5);
   }
   return x < 80 && y > 96 ? float(((x / 20) + (y / 20)) % 2) : value;
 }
@@ -79,7 +81,8 @@ Error error_of(const std::vector<float>& light, const std::vector<double>& refer
 TEST(Sap, Plane_SecondLayerIsEmpty) {
   Scene scene(128, 96, {6, 3, 1});
   scene.paint(texture);
-  const auto one = sap_scatter<float>(scene.input(), smooth_table(), {.first_layered = sap_level_count});
+  const auto one =
+      sap_scatter<float>(scene.input(), smooth_table(), {.first_layered = sap_level_count});
   for (const uint32_t first : {1u, 2u}) {
     const auto two = sap_scatter<float>(scene.input(), smooth_table(), {.first_layered = first});
     EXPECT_EQ(one.light, two.light);
@@ -94,19 +97,21 @@ TEST(Sap, SecondLayer_SeparatesFenceAndWall) {
     scene.depth[i] = i % scene.width / 10 % 2 == 0 ? 0.48f : 0.5f;
   scene.paint([](uint32_t x, uint32_t) { return x / 10 % 2 == 0 ? 1.0f : 0.0f; });
   const auto scattered = [&](uint32_t first_layered) {
-    return sap_scatter<float>(scene.input(), smooth_table(), {.first_layered = first_layered}).light;
+    return sap_scatter<float>(scene.input(), smooth_table(), {.first_layered = first_layered})
+        .light;
   };
   const std::vector<double> reference = reference_everywhere(scene.input());
   const double one = error_of(scattered(sap_level_count), reference).rmse,
-               few = error_of(scattered(2), reference).rmse, two = error_of(scattered(1), reference).rmse;
+               few = error_of(scattered(2), reference).rmse,
+               two = error_of(scattered(1), reference).rmse;
   RecordProperty("one", std::to_string(one));
   RecordProperty("few", std::to_string(few));
   RecordProperty("two", std::to_string(two));
   // Regression bound of the present implementation.
   EXPECT_LE(few, 0.8 * one);
   EXPECT_LE(two,
-            // Regression bound: measured 0.25, and 0.74 if a child with half of its weight left is a
-            // seed.
+            // Regression bound: measured 0.25, and 0.74 if a child with half of its weight left is
+            // a seed.
             0.3 * one);
   for (const float value : {0.0123f, 0.7f}) {
     scene.paint([&](uint32_t, uint32_t) { return value; });
@@ -121,7 +126,8 @@ TEST(Sap, TexturedPlaneMatchesTheReference) {
     Scene scene(256, 192, {d, d, d});
     scene.paint(texture);
     const auto reference = reference_everywhere(scene.input());
-    const Error error = error_of(sap_scatter<float>(scene.input(), smooth_table(), {}).light, reference);
+    const Error error =
+        error_of(sap_scatter<float>(scene.input(), smooth_table(), {}).light, reference);
     EXPECT_LT(error.rmse, 2.0e-3) << d; // The documented error bound of this variant.
     EXPECT_LT(error.max, 1.5e-2) << d;
   }
@@ -148,7 +154,8 @@ TEST(Sap, HolesMatchTheReference) {
       if ((int(x) - 150) * (int(x) - 150) + (int(y) - 90) * (int(y) - 90) > 70 * 70)
         scene.profile[y * 256 + x] = 0;
   const auto reference = reference_everywhere(scene.input());
-  const Error error = error_of(sap_scatter<float>(scene.input(), smooth_table(), {}).light, reference);
+  const Error error =
+      error_of(sap_scatter<float>(scene.input(), smooth_table(), {}).light, reference);
   // Regression bounds of the present implementation.
   EXPECT_LT(error.rmse, 3.0e-3);
   EXPECT_LT(error.max, 2.5e-2);
@@ -211,10 +218,12 @@ TEST(Sap, LightAcrossAFoldMatchesTheReference) {
   for (uint32_t i = 0; i < scene.depth.size(); ++i)
     scene.depth[i] = 0.5f - 1.7e-3f * std::abs(float(i % 128) - 63.5f);
   const auto reference = reference_everywhere(scene.input());
-  const Error error = error_of(sap_scatter<float>(scene.input(), smooth_table(), {}).light, reference);
-  EXPECT_LT(error.rmse,
-            // Regression bound: measured 0.031, and 0.050 with only the distance from the tangent plane.
-            0.035);
+  const Error error =
+      error_of(sap_scatter<float>(scene.input(), smooth_table(), {}).light, reference);
+  EXPECT_LT(
+      error.rmse,
+      // Regression bound: measured 0.031, and 0.050 with only the distance from the tangent plane.
+      0.035);
 }
 
 TEST(Sap, ScatterScaleActsAsAnotherD) {

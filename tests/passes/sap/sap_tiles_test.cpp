@@ -61,7 +61,8 @@ TEST(SapTiles, ParentsOfListedTilesAreListed) {
             const int at_x = x - border, at_y = y - border;
             // Addresses.
             const int px = ((at_x - 1) >> 1) + k % 2 + 1, py = ((at_y - 1) >> 1) + k / 2 + 1;
-            if (px / 8 >= int(lists[level + 1].across) || py / 8 >= int(lists[level + 1].down)) continue;
+            if (px / 8 >= int(lists[level + 1].across) || py / 8 >= int(lists[level + 1].down))
+              continue;
             ASSERT_TRUE(parent[size_t(py / 8) * lists[level + 1].across + size_t(px / 8)])
                 << level << ": " << x << " " << y;
           }

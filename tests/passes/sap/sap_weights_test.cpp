@@ -38,7 +38,9 @@ TEST_P(SapWeightsOf, MatchTheReferenceUpToTheWidestLevel) {
   //   worst from 4 px on.
   const bool half = GetParam() == SapVariant::half;
   const double last = GetParam() == SapVariant::smooth ? 45.3 : 32.1;
-  const auto floor = [&](double d_px) { return !half || d_px > 4.1 ? 1.9e-3 : d_px > 0.9 ? 9e-3 : 15e-3; };
+  const auto floor = [&](double d_px) {
+    return !half || d_px > 4.1 ? 1.9e-3 : d_px > 0.9 ? 9e-3 : 15e-3;
+  };
   for (const SapNode& node : fit_sap_weights(GetParam()).nodes)
     if (node.d_px < last) {
       EXPECT_LT(node.residual, floor(node.d_px)) << node.d_px;
@@ -46,7 +48,8 @@ TEST_P(SapWeightsOf, MatchTheReferenceUpToTheWidestLevel) {
 }
 
 TEST_P(SapWeightsOf, AreDeterministic) {
-  EXPECT_EQ(make_sap_table(fit_sap_weights(GetParam())), make_sap_table(fit_sap_weights(GetParam())));
+  EXPECT_EQ(make_sap_table(fit_sap_weights(GetParam())),
+            make_sap_table(fit_sap_weights(GetParam())));
 }
 
 TEST_P(SapWeightsOf, FractionsAndWeightsAgree) {

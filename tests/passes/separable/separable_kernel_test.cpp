@@ -10,8 +10,9 @@ namespace {
 using namespace dermis::subsurface;
 
 // The arithmetic of the shader's two passes, on a plane without borders (wrapping).
-std::vector<double> run(const std::vector<double>& image, int size, std::span<const SeparableRow> rows,
-                        uint32_t choice, double d_px, int channel) {
+std::vector<double> run(const std::vector<double>& image, int size,
+                        std::span<const SeparableRow> rows, uint32_t choice, double d_px,
+                        int channel) {
   const uint32_t side = (separable_taps[choice] - 1) / 2;
   auto pass = [&](const std::vector<double>& in, bool vertical) {
     std::vector<double> out(in.size());
@@ -115,7 +116,8 @@ TEST(SeparableKernel, FlatLightStaysFlatAndEnergyIsKept) {
   spot[size * size / 2 + size / 2] = 1.0;
   for (uint32_t choice = 0; choice < 3; ++choice)
     for (const double d : {0.7, 1.9, 3.3}) {
-      const std::vector<double> flat = run(std::vector<double>(size * size, 1.0), size, rows, choice, d, 1);
+      const std::vector<double> flat =
+          run(std::vector<double>(size * size, 1.0), size, rows, choice, d, 1);
       EXPECT_NEAR(flat[17], 1.0, 1e-6);
       double sum = 0;
       for (const double x : run(spot, size, rows, choice, d, 0))

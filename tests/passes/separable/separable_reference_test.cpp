@@ -15,7 +15,9 @@ namespace {
 std::vector<float> picture(uint32_t side, uint32_t seed) {
   std::vector<float> values(size_t{side} * side, -1.0f);
   uint32_t state = seed;
-  auto random = [&] { return state = state * 1664525u + 1013904223u, double(state >> 8) / 16777216.0; };
+  auto random = [&] {
+    return state = state * 1664525u + 1013904223u, double(state >> 8) / 16777216.0;
+  };
   for (int disc = 0; disc < 6000; ++disc) {
     const double r = 2 / std::sqrt(1 - random() * (1 - 4.0 / (80.0 * 80.0)));
     const double x0 = random() * side, y0 = random() * side, grey = random();
@@ -53,8 +55,8 @@ std::vector<double> blur(const std::vector<float>& light, int side, const Taps& 
   auto pass = [&](const auto& source, int dx, int dy) {
     std::vector<double> out(source.size());
     auto at = [&](int x, int y) {
-      return double(
-          source[size_t(std::clamp(y, 0, side - 1)) * size_t(side) + size_t(std::clamp(x, 0, side - 1))]);
+      return double(source[size_t(std::clamp(y, 0, side - 1)) * size_t(side) +
+                           size_t(std::clamp(x, 0, side - 1))]);
     };
     for (int y = 0; y < side; ++y)
       for (int x = 0; x < side; ++x) {
@@ -124,8 +126,8 @@ TEST(SeparableFloor, StaysWithinTheDocumentedErrors) {
     const auto errors = floors({one.d, 0.38 * one.d, 0.19 * one.d}, 256, 24);
     for (size_t variant = 0; variant < 3; ++variant)
       EXPECT_LT(errors[variant][0], 1.05e-3 * one.floor[variant])
-          << one.d << " px, " << separable_taps[variant] << " taps, narrower channels " << errors[variant][1]
-          << " " << errors[variant][2];
+          << one.d << " px, " << separable_taps[variant] << " taps, narrower channels "
+          << errors[variant][1] << " " << errors[variant][2];
   }
 }
 
@@ -137,9 +139,9 @@ TEST(SeparableFloor, KeepsAnEdgeWithinTheDocumentedErrors) {
     double d;
     PerChannel largest, rmse;
   };
-  for (const Case& one :
-       {Case{1, {28.4, 22.5, 21.2}, {14.4, 9.5, 8.9}}, Case{4, {53.9, 47.3, 41.6}, {20.8, 15.7, 14.7}},
-        Case{8, {77.3, 71.8, 58.2}, {21.9, 18.8, 16.6}}})
+  for (const Case& one : {Case{1, {28.4, 22.5, 21.2}, {14.4, 9.5, 8.9}},
+                          Case{4, {53.9, 47.3, 41.6}, {20.8, 15.7, 14.7}},
+                          Case{8, {77.3, 71.8, 58.2}, {21.9, 18.8, 16.6}}})
     for (uint32_t variant = 0; variant < 3; ++variant) {
       const Taps taps = look_up(table, variant, one.d);
       const int reach = int(10 * one.d);
@@ -151,7 +153,8 @@ TEST(SeparableFloor, KeepsAnEdgeWithinTheDocumentedErrors) {
           const int o = int(taps.rows[k][3]);
           const double part = double{taps.rows[k][3]} - o;
           for (const int sign : {-1, 1})
-            sum += taps.rows[k][0] * ((1 - part) * light(x + sign * o) + part * light(x + sign * (o + 1)));
+            sum += taps.rows[k][0] *
+                   ((1 - part) * light(x + sign * o) + part * light(x + sign * (o + 1)));
         }
         const double value = taps.delta[0] * light(x) + (1 - taps.delta[0]) * sum;
         const double error = std::abs(value - burley_edge(x + 0.5, one.d));

@@ -45,18 +45,19 @@ std::vector<Case> make_cases() {
   const auto octaves = [&](double low, double high) { return std::exp2(between(low, high)); };
   std::vector<Case> made;
   for (uint32_t i = 0; i < cases; ++i) {
-    const float minimum = std::floor(between(1, 16)), maximum = minimum + std::floor(between(0, 100));
+    const float minimum = std::floor(between(1, 16)),
+                maximum = minimum + std::floor(between(0, 100));
     const float variance_g = i % 5 == 0 ? 0 : octaves(-24, 4);
     // Some requested numbers are outside of the range; none is halfway between two integers, which
     // GLSL lets a driver round either way.
     const float requested = std::round(between(-20, 140)) + (i % 3 == 0   ? 0.499f
                                                              : i % 3 == 1 ? -0.499f
                                                                           : 0.0f);
-    made.push_back({octaves(-20, -6), i % 7 == 0 ? 0 : between(0, 1), between(0.01, 1), octaves(-24, -14),
-                    minimum, maximum, i % 11 == 0 ? 0 : octaves(-24, 0), between(1, 128),
-                    i % 13 == 0 ? 0 : octaves(-8, 8), i % 6 == 0 ? 0 : octaves(-8, 8),
-                    between(-1, 1) * octaves(-16, 4), variance_g, octaves(-8, 8), octaves(-8, 8),
-                    between(0.001, 1), requested});
+    made.push_back({octaves(-20, -6), i % 7 == 0 ? 0 : between(0, 1), between(0.01, 1),
+                    octaves(-24, -14), minimum, maximum, i % 11 == 0 ? 0 : octaves(-24, 0),
+                    between(1, 128), i % 13 == 0 ? 0 : octaves(-8, 8),
+                    i % 6 == 0 ? 0 : octaves(-8, 8), between(-1, 1) * octaves(-16, 4), variance_g,
+                    octaves(-8, 8), octaves(-8, 8), between(0.001, 1), requested});
   }
   made[0].mean_f = made[0].mean_g = made[0].covariance = made[0].variance_g = 0; // All is dark.
   return made;
@@ -88,14 +89,16 @@ TEST_F(GuidanceKernel, SampleNumbersEqualTheReference) {
     // Two quotients and seven sums and products.
     const double ratio = double(one.variance) / settings.sigma2_target;
     const double magnitude =
-        settings.kappa * (ratio + 1) * one.mean_count * (2 / settings.eta + 2) + ratio * one.mean_count;
+        settings.kappa * (ratio + 1) * one.mean_count * (2 / settings.eta + 2) +
+        ratio * one.mean_count;
     const double bound = (2 * 2.5 + 7) * ulp * magnitude;
     EXPECT_NEAR(at(i, 0, 0), required, bound) << i;
     EXPECT_EQ(at(i, 0, 2), clamped_samples(one.requested, settings)) << i << ": " << one.requested;
     // Both results are equal unless the bound contains a value halfway between two integers.
     const int low = clamped_samples(required - bound, settings),
               high = clamped_samples(required + bound, settings);
-    EXPECT_THAT(at(i, 0, 1), AllOf(::testing::Ge(low), ::testing::Le(high))) << i << ": " << required;
+    EXPECT_THAT(at(i, 0, 1), AllOf(::testing::Ge(low), ::testing::Le(high)))
+        << i << ": " << required;
     whole += low == high ? 1 : 0;
   }
   EXPECT_GT(whole, cases * 95 / 100) << "number of compared decisions";

@@ -32,8 +32,8 @@ vulkan::EnvironmentBinding buffer(std::span<const std::byte> bytes) {
 
 } // namespace
 
-std::vector<float> KernelTest::answers_of(const vulkan::KernelCode& kernel, uint32_t width, uint32_t height,
-                                          const KernelTables& tables) {
+std::vector<float> KernelTest::answers_of(const vulkan::KernelCode& kernel, uint32_t width,
+                                          uint32_t height, const KernelTables& tables) {
   std::vector<float> answers;
   run(kernel, width, height, tables, answers);
   return answers;

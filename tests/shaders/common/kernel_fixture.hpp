@@ -28,8 +28,8 @@ protected:
                                 const KernelTables& tables = {});
 
 private:
-  void run(const vulkan::KernelCode& kernel, uint32_t width, uint32_t height, const KernelTables& tables,
-           std::vector<float>& answers);
+  void run(const vulkan::KernelCode& kernel, uint32_t width, uint32_t height,
+           const KernelTables& tables, std::vector<float>& answers);
 };
 
 } // namespace dermis::testing

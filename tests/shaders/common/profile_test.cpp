@@ -84,11 +84,13 @@ TEST_F(ProfileKernel, InversesInvertTheCdf) {
         // Burley: a polynomial within 0.52 %, and exact weights. Tables: within a thousandth of d.
         i == 0;
     for (uint32_t x = 1; x < width; ++x) {
-      const double r = at(i, 2, x, 0), reference = shape_inverse_survival(shape, requested_survival(x));
+      const double r = at(i, 2, x, 0),
+                   reference = shape_inverse_survival(shape, requested_survival(x));
       EXPECT_NEAR(r, reference, (burley ? 5.2e-3 * reference : 0) + 1e-3 * shape.d)
           << files[i] << " " << requested_survival(x);
       // The density is the sampler's own density, within a few percent of the profile.
-      EXPECT_NEAR(at(i, 2, x, 1) / shape_pdf(shape, r), 1, 0.05) << files[i] << " " << requested_survival(x);
+      EXPECT_NEAR(at(i, 2, x, 1) / shape_pdf(shape, r), 1, 0.05)
+          << files[i] << " " << requested_survival(x);
     }
   }
 }

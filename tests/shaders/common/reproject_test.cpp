@@ -36,8 +36,9 @@ std::vector<Texel> make_texels() {
   for (uint32_t i = 0; i < texels * texels; ++i) {
     const uint32_t hash = (i + 1) * 2654435761u >> 16;
     // Two adjacent profiles at equal depths; depths differ by a tolerance or a little more.
-    made.push_back(
-        {512.0f + 8 * float(hash % 3) + (hash / 4 % 8 == 0 ? 0.125f : 0), 1 + float(hash / 32 % 8 == 0), {}});
+    made.push_back({512.0f + 8 * float(hash % 3) + (hash / 4 % 8 == 0 ? 0.125f : 0),
+                    1 + float(hash / 32 % 8 == 0),
+                    {}});
   }
   return made;
 }
@@ -47,7 +48,9 @@ std::vector<Case> make_cases(const FrameConstants& frame) {
   const auto between = [&](double low, double high) {
     return static_cast<float>(std::uniform_real_distribution<double>(low, high)(random));
   };
-  const auto steps = [&](double low, double high) { return std::floor(64 * between(low, high)) / 64; };
+  const auto steps = [&](double low, double high) {
+    return std::floor(64 * between(low, high)) / 64;
+  };
   const int width = frame.previous_rect[2], height = frame.previous_rect[3];
   std::vector<Case> made;
   for (uint32_t i = 0; i < cases; ++i) {
@@ -135,7 +138,8 @@ PlaceBounds still_bounds(const FrameConstants& frame, const Case& one) {
   const double zoom = (frame.flags & 1) != 0 ? one.depth : 1, requested[] = {one.x, one.y};
   double at[4] = {0, 0, -double(one.depth), 1}, size[4] = {0, 0, one.depth, 1};
   for (size_t axis = 0; axis < 2; ++axis) {
-    const double scaled = double(frame.ray_scale[axis]) * requested[axis], offset = frame.ray_offset[axis];
+    const double scaled = double(frame.ray_scale[axis]) * requested[axis],
+                 offset = frame.ray_offset[axis];
     at[axis] = (scaled + offset) * zoom;
     size[axis] = (std::abs(scaled) + std::abs(offset)) * zoom;
   }
@@ -152,7 +156,8 @@ PlaceBounds still_bounds(const FrameConstants& frame, const Case& one) {
   for (size_t axis = 0; axis < 2; ++axis) {
     const double offset = frame.previous_ray_offset[axis], scale = frame.previous_ray_scale[axis];
     const double divided = before[axis].value / k.value;
-    double bound = before[axis].bound / k.value + std::abs(divided) * (k.bound / k.value + 2.5 * ulp);
+    double bound =
+        before[axis].bound / k.value + std::abs(divided) * (k.bound / k.value + 2.5 * ulp);
     bound += ulp * (std::abs(divided) + std::abs(offset));
     const double place = (divided - offset) / scale;
     out.pixel[axis] = {place, bound / std::abs(scale) + 2.5 * ulp * std::abs(place)};
@@ -166,8 +171,9 @@ PlaceBounds moving_bounds(const FrameConstants& frame, const Case& one) {
     const double jitter = frame.jitter[axis],
                  ratio = double(frame.previous_rect[2 + axis]) / frame.rect[2 + axis];
     const double steady = (requested[axis] - jitter - one.velocity[axis] + 0.5) * ratio - 0.5;
-    const double size = (requested[axis] + std::abs(jitter) + std::abs(one.velocity[axis]) + 0.5) * ratio +
-                        0.5 + std::abs(frame.previous_jitter[axis]);
+    const double size =
+        (requested[axis] + std::abs(jitter) + std::abs(one.velocity[axis]) + 0.5) * ratio + 0.5 +
+        std::abs(frame.previous_jitter[axis]);
     // Five sums, a product, a quotient.
     out.pixel[axis] = {steady + frame.previous_jitter[axis], (5 + 1 + 2.5) * ulp * size};
   }
@@ -191,7 +197,8 @@ protected:
     Answers out{constants_of(scene), {}, {}};
     out.requested = make_cases(out.frame);
     std::vector<std::byte> questions;
-    for (const auto bytes : {std::as_bytes(std::span(out.requested)), std::as_bytes(std::span(before))})
+    for (const auto bytes :
+         {std::as_bytes(std::span(out.requested)), std::as_bytes(std::span(before))})
       questions.insert(questions.end(), bytes.begin(), bytes.end());
     out.values = answers_of({"test_reproject", test_reproject_spirv}, cases, rows,
                             {.questions = questions, .frame = &out.frame});
@@ -200,8 +207,8 @@ protected:
   }
   HistoryTaps reference_taps(const FrameConstants& frame, const Case& one) const {
     return find_history(
-        frame, {one.place_x, one.place_y, one.place_depth}, static_cast<uint32_t>(one.id), one.tolerance,
-        [&](int x, int y) {
+        frame, {one.place_x, one.place_y, one.place_depth}, static_cast<uint32_t>(one.id),
+        one.tolerance, [&](int x, int y) {
           const Texel& texel =
               before[size_t((y + frame.previous_rect[1]) * texels + x + frame.previous_rect[0])];
           return SurfaceBefore{texel.depth, static_cast<uint32_t>(texel.id)};
@@ -216,7 +223,8 @@ void expect_place(const Bounded& place, double reference, double device, const s
   const double whole = std::round(place.value);
   const bool either = std::abs(std::abs(place.value - whole) - reproject_snap_px) <= place.bound;
   if (either && device == whole) return;
-  EXPECT_NEAR(device, either ? place.value : reference, reference == whole && !either ? 0 : place.bound)
+  EXPECT_NEAR(device, either ? place.value : reference,
+              reference == whole && !either ? 0 : place.bound)
       << where;
 }
 
@@ -231,9 +239,11 @@ TEST_F(ReprojectKernel, PlacesEqualTheReference) {
       EXPECT_EQ(answers.at(i, 0, 3), history_usable(answers.frame) ? 1 : 0) << where;
       const PreviousPlace still = place_before(answers.frame, one.x, one.y, one.depth);
       const PlaceBounds bounds = still_bounds(answers.frame, one);
-      const PreviousPlace moving = place_before(answers.frame, one.x, one.y, one.depth,
-                                                {one.velocity[0], one.velocity[1], one.velocity[2]});
-      const double steep = std::max(reproject_depth_fraction * one.depth, reproject_slope_pixels * one.rise);
+      const PreviousPlace moving =
+          place_before(answers.frame, one.x, one.y, one.depth,
+                       {one.velocity[0], one.velocity[1], one.velocity[2]});
+      const double steep =
+          std::max(reproject_depth_fraction * one.depth, reproject_slope_pixels * one.rise);
       // A constant and a product.
       EXPECT_NEAR(answers.at(i, 1, 3), steep, 2 * ulp * steep) << where;
       EXPECT_EQ(answers.at(i, 0, 2) > 0, still.depth > 0) << where;
@@ -270,7 +280,8 @@ TEST_F(ReprojectKernel, TapsEqualTheReference) {
   for (size_t i = 0; i < cases; ++i) {
     const Case& one = answers.requested[i];
     const HistoryTaps taps = reference_taps(answers.frame, one);
-    const auto used = std::count_if(taps.weight.begin(), taps.weight.end(), [](double w) { return w > 0; });
+    const auto used =
+        std::count_if(taps.weight.begin(), taps.weight.end(), [](double w) { return w > 0; });
     const std::string where = "case " + std::to_string(i);
     EXPECT_EQ(answers.at(i, 2, 2), double(used)) << where;
     EXPECT_EQ(answers.at(i, 2, 0), taps.x) << where;
@@ -278,7 +289,8 @@ TEST_F(ReprojectKernel, TapsEqualTheReference) {
     for (size_t t = 0; t < 4; ++t) {
       EXPECT_EQ(answers.at(i, 3, t) > 0, taps.weight[t] > 0) << where << ", tap " << t;
       // Positions are multiples of 1/64: products and their sum are exact, the quotient is not.
-      EXPECT_NEAR(answers.at(i, 3, t), taps.weight[t], 2.5 * ulp * taps.weight[t]) << where << ", tap " << t;
+      EXPECT_NEAR(answers.at(i, 3, t), taps.weight[t], 2.5 * ulp * taps.weight[t])
+          << where << ", tap " << t;
     }
     (used == 0 ? none : used == 4 ? all : some) += 1;
   }

@@ -14,5 +14,7 @@ void main() {
   if (any(greaterThanEqual(pixel, frame.rect.zw)))
     return;
   uint head = uint(pixel.y * frame.rect.z + pixel.x) << 13;
-  imageStore(target, pixel, round_to_half(uintBitsToFloat(uvec4(head, head | 0xfffu, head | 0x1000u, head | 0x1001u))));
+  imageStore(
+      target, pixel,
+      round_to_half(uintBitsToFloat(uvec4(head, head | 0xfffu, head | 0x1000u, head | 0x1001u))));
 }

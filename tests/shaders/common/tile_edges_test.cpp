@@ -116,7 +116,8 @@ TEST_F(TileEdgesKernel, AdjacentPixelsDifferByAtMostTheRamp) {
       for (int x = 0; x + 1 < across * side; ++x)
         for (size_t r = 0; r < std::size(ramps); ++r)
           for (const auto& [dx, dy] : {std::pair{1, 0}, {0, 1}, {1, 1}})
-            ASSERT_LE(std::abs(weight(a, x, y, r) - weight(a, x + dx, y + dy, r)), 1.5 / ramps[r] + 1e-6)
+            ASSERT_LE(std::abs(weight(a, x, y, r) - weight(a, x + dx, y + dy, r)),
+                      1.5 / ramps[r] + 1e-6)
                 << "arrangement " << a << ", pixel " << x << " " << y << " to " << dx << " " << dy
                 << ", ramp " << ramps[r];
 }

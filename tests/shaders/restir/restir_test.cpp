@@ -27,14 +27,18 @@ void trace_sheets(const void*, const ProbeRay& ray, uint32_t, ProbeHits& hits) {
     const double way = (sheets[sheet] - ray.origin[2]) / ray.direction[2];
     if (!(way > 0 && way < ray.length)) continue;
     const Vector3 place = ray.origin + way * ray.direction;
-    hits.hit[hits.count++] = {
-        sheet_instance + sheet, 0xfffffff0, {place[0] / sheet_size + 0.5, place[1] / sheet_size + 0.5}, way};
+    hits.hit[hits.count++] = {sheet_instance + sheet,
+                              0xfffffff0,
+                              {place[0] / sheet_size + 0.5, place[1] / sheet_size + 0.5},
+                              way};
   }
 }
 SurfacePoint point_on_sheet(const void*, uint32_t instance, uint32_t, const Barycentrics& b) {
   const Vector3 up = {0, 0, instance == sheet_instance ? 1.0 : -1.0};
-  return {
-      {(b[0] - 0.5) * sheet_size, (b[1] - 0.5) * sheet_size, sheets[instance - sheet_instance]}, up, up, 1};
+  return {{(b[0] - 0.5) * sheet_size, (b[1] - 0.5) * sheet_size, sheets[instance - sheet_instance]},
+          up,
+          up,
+          1};
 }
 bool seen_from_sheet(const void*, const SurfacePoint& from, const Vector3& to) {
   return from.position[0] * to[0] < 9;
@@ -125,16 +129,19 @@ TEST_F(RestirKernel, ProbesAreEqual) {
     const Question q = question(x);
     const ProbeNumbers numbers = draw_numbers(q.domain.d, q.u);
     const ProbeRay ray = probe_of(q.domain, numbers);
-    expect_near(x, 9, {double(numbers.axis), double(numbers.channel), numbers.survival, numbers.angle}, 0,
+    expect_near(x, 9,
+                {double(numbers.axis), double(numbers.channel), numbers.survival, numbers.angle}, 0,
                 relative);
     // Positions are sums of parts as long as the reach.
     expect_near(x, 10, {ray.origin[0], ray.origin[1], ray.origin[2], ray.length},
                 scattering_reach(q.domain.d), relative);
-    expect_near(x, 11,
-                {ray.direction[0], ray.direction[1], ray.direction[2], double(picked_hit(numbers.pick, 5))},
-                1, relative);
+    expect_near(
+        x, 11,
+        {ray.direction[0], ray.direction[1], ray.direction[2], double(picked_hit(numbers.pick, 5))},
+        1, relative);
     const Vector3 tangent = probe_axis(q.domain.normal, 1);
-    expect_near(x, 16, {tangent[0], tangent[1], tangent[2], search_radius(q.domain.d, 0.05 * q.u[0])}, 1,
+    expect_near(x, 16,
+                {tangent[0], tangent[1], tangent[2], search_radius(q.domain.d, 0.05 * q.u[0])}, 1,
                 relative);
   }
 }
@@ -190,8 +197,8 @@ TEST_F(RestirKernel, LightingIsEqual) {
         length(q.light.emission) / (q.light.type == LightType::directional ? 1 : dot(way, way));
     expect_near(x, 14, {irradiance[0], irradiance[1], irradiance[2], light_density(q.light)}, scale,
                 relative);
-    expect_near(x, 15, {target[0], target[1], target[2], double(connectable(q.domain, q.x2, q.n2))}, 1,
-                relative);
+    expect_near(x, 15, {target[0], target[1], target[2], double(connectable(q.domain, q.x2, q.n2))},
+                1, relative);
   }
   EXPECT_GT(lit, static_cast<int>(cases) / 10);
 }
@@ -201,16 +208,18 @@ TEST_F(RestirKernel, MergedPathsAreEqual) {
   int same = 0, with_samples = 0, chosen_elsewhere = 0;
   for (uint32_t x = 0; x < cases; ++x) {
     Random random{x, 2, 0};
-    const ReuseSettings settings{static_cast<Shift>(x % 3), static_cast<Index>(x / 3 % 2), confidence_cap};
+    const ReuseSettings settings{static_cast<Shift>(x % 3), static_cast<Index>(x / 3 % 2),
+                                 confidence_cap};
     const Domain here = pixel_on_sheet(random), there = pixel_on_sheet(random),
                  neighbour = pixel_on_sheet(random);
     const Reservoir own = draw_initial(sheet_scene, here, random);
     Reservoir history = draw_initial(sheet_scene, there, random);
     const Reservoir other = draw_initial(sheet_scene, neighbour, random);
     history.confidence = 30;
-    const Reservoir merged = merge_temporal(sheet_scene, settings, here, own, there, history, random);
-    Spatial spatial =
-        spatial_begin(sheet_scene, settings, here, merged, history.confidence + other.confidence, random);
+    const Reservoir merged =
+        merge_temporal(sheet_scene, settings, here, own, there, history, random);
+    Spatial spatial = spatial_begin(sheet_scene, settings, here, merged,
+                                    history.confidence + other.confidence, random);
     spatial_add(sheet_scene, settings, here, spatial, there, history, random);
     spatial_add(sheet_scene, settings, here, spatial, neighbour, other, random);
     const Reservoir last = spatial_end(spatial, random);
@@ -219,7 +228,8 @@ TEST_F(RestirKernel, MergedPathsAreEqual) {
     bool agrees = true;
     const auto compare = [&](uint32_t row, const std::array<double, 4>& reference) {
       for (size_t c = 0; c < 4; ++c)
-        agrees = agrees && std::abs(at(x, row, c) - reference[c]) <= 2e-4 * std::abs(reference[c]) + 1e-7;
+        agrees = agrees &&
+                 std::abs(at(x, row, c) - reference[c]) <= 2e-4 * std::abs(reference[c]) + 1e-7;
     };
     const auto path_of = [&](const Reservoir& r) {
       const double sheet = has_sample(r) ? double(r.instance - (sheet_instance - 1)) : 0;
@@ -284,7 +294,8 @@ TEST_F(RestirKernel, PackedDomainsAreEqual) {
     const Domain domain = question(x).domain;
     const PackedDomain words = pack_domain(domain);
     const auto word_of = [&](uint32_t row, size_t first) {
-      return static_cast<uint32_t>(at(x, row, first)) | static_cast<uint32_t>(at(x, row, first + 1)) << 16;
+      return static_cast<uint32_t>(at(x, row, first)) | static_cast<uint32_t>(at(x, row, first + 1))
+                                                            << 16;
     };
     EXPECT_EQ(word_of(33, 0), words[0]);
     EXPECT_EQ(word_of(33, 2), words[3]);

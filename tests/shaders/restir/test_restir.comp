@@ -21,21 +21,24 @@ void trace_probe(probe_ray ray, uint medium, out probe_hits hits) {
     if (!(way > 0.0 && way < ray.reach))
       continue;
     vec2 place = ray.origin.xy + way * ray.direction.xy;
-    hits.hit[hits.count] = probe_hit(16777217u + uint(sheet), 0xfffffff0u, place / sheet_size + 0.5, way);
+    hits.hit[hits.count] =
+        probe_hit(16777217u + uint(sheet), 0xfffffff0u, place / sheet_size + 0.5, way);
     ++hits.count;
   }
 }
 surface_point surface_at(uint instance, uint primitive, vec2 barycentrics) {
   vec3 up = vec3(0.0, 0.0, instance == 16777217u ? 1.0 : -1.0);
-  return surface_point(vec3((barycentrics - 0.5) * sheet_size, sheets[instance - 16777217u]), up, up, 1u);
+  return surface_point(vec3((barycentrics - 0.5) * sheet_size, sheets[instance - 16777217u]), up,
+                       up, 1u);
 }
 bool visible(surface_point from, vec3 to) { return from.position.x * to.x < 9.0; }
 uint light_count() { return 2u; }
 light_source light_at(uint index) {
   if (index == 0u)
-    return light_source(vec3(3.0, 2.0, 5.0), light_point, vec3(0.0), 0.5, vec3(0.0), 1.0, vec3(8.0, 9.0, 10.0), 0.5);
-  return light_source(vec3(1.0, 1.0, -4.0), light_parallelogram, vec3(2.0, 0.0, 0.0), 0.5, vec3(0.0, 2.0, 0.0), 4.0,
-                      vec3(4.0, 3.0, 2.0), 1.0);
+    return light_source(vec3(3.0, 2.0, 5.0), light_point, vec3(0.0), 0.5, vec3(0.0), 1.0,
+                        vec3(8.0, 9.0, 10.0), 0.5);
+  return light_source(vec3(1.0, 1.0, -4.0), light_parallelogram, vec3(2.0, 0.0, 0.0), 0.5,
+                      vec3(0.0, 2.0, 0.0), 4.0, vec3(4.0, 3.0, 2.0), 1.0);
 }
 
 light_source previous_light_at(uint index) {
@@ -53,7 +56,8 @@ vec3 three(inout random_state random) {
 // Returns a pixel that sees the first sheet, oblique to its axes.
 scatter_domain pixel_on_sheet(inout random_state random) {
   vec3 at = three(random), tilt = three(random);
-  return scatter_domain(vec3(4.0 * at.xy - 2.0, 0.0), normalize(vec3(tilt.xy - 0.5, 0.5)), vec3(1.0, 0.5, 0.25), 1u);
+  return scatter_domain(vec3(4.0 * at.xy - 2.0, 0.0), normalize(vec3(tilt.xy - 0.5, 0.5)),
+                        vec3(1.0, 0.5, 0.25), 1u);
 }
 
 vec4 halves(uint a, uint b) { return vec4(a & 0xffffu, a >> 16, b & 0xffffu, b >> 16); }
@@ -117,14 +121,16 @@ void main() {
   if (row == 11)
     result = vec4(ray.direction, picked_hit(numbers.pick, 5u));
   if (row == 12)
-    result = vec4(scattering_profile(domain.d, length(x2 - domain.position)), probe_pdf(domain, x2, n2));
+    result =
+        vec4(scattering_profile(domain.d, length(x2 - domain.position)), probe_pdf(domain, x2, n2));
   if (row == 13) {
     probe_numbers found = numbers;
     bool good = invert_point(domain, x2, n2, u_invert, found);
     result = good ? vec4(found.axis, found.channel, found.survival, found.angle) : vec4(-1.0);
   }
   if (row == 14)
-    result = vec4(light_irradiance(light, place, x2, n2, normalize(n2 + vec3(0.1, 0.2, 0.3))), light_density(light));
+    result = vec4(light_irradiance(light, place, x2, n2, normalize(n2 + vec3(0.1, 0.2, 0.3))),
+                  light_density(light));
   if (row == 15)
     result = vec4(light_target(light, place, x2), connectable(domain, x2, n2));
   if (row == 16)
@@ -134,11 +140,14 @@ void main() {
   random = random_state(uint(pixel.x), 2u, 0u);
   uint shift = uint(pixel.x) % 3u;
   reuse_settings settings = reuse_settings(shift, uint(pixel.x) / 3u % 2u, confidence_cap);
-  scatter_domain here = pixel_on_sheet(random), there = pixel_on_sheet(random), neighbour = pixel_on_sheet(random);
-  reservoir own = draw_initial(here, random), history = draw_initial(there, random), other = draw_initial(neighbour, random);
+  scatter_domain here = pixel_on_sheet(random), there = pixel_on_sheet(random),
+                 neighbour = pixel_on_sheet(random);
+  reservoir own = draw_initial(here, random), history = draw_initial(there, random),
+            other = draw_initial(neighbour, random);
   history.confidence = 30.0;
   reservoir merged = merge_temporal(settings, here, own, there, history, random);
-  spatial_merge spatial = spatial_begin(settings, here, merged, history.confidence + other.confidence, random);
+  spatial_merge spatial =
+      spatial_begin(settings, here, merged, history.confidence + other.confidence, random);
   spatial_add(settings, here, spatial, there, history, random);
   spatial_add(settings, here, spatial, neighbour, other, random);
   reservoir last = spatial_end(spatial, random);
@@ -147,19 +156,21 @@ void main() {
   if (row == 18)
     result = vec4(own.irradiance, own.density);
   if (row == 19)
-    result = vec4(has_sample(merged) ? merged.instance - 16777216u : 0u, merged.barycentrics, merged.weight);
+    result = vec4(has_sample(merged) ? merged.instance - 16777216u : 0u, merged.barycentrics,
+                  merged.weight);
   if (row == 20)
     result = vec4(resolve(here, merged), merged.confidence);
   if (row == 21)
-    result = vec4(has_sample(last) ? last.instance - 16777216u : 0u, last.barycentrics, last.weight);
+    result =
+        vec4(has_sample(last) ? last.instance - 16777216u : 0u, last.barycentrics, last.weight);
   if (row == 22)
     result = vec4(resolve(here, last), last.confidence);
   if (row == 23)
     result = vec4(random_unit(random), random.count, 0.0, 0.0);
 
   // Words of a reservoir, and the result of unpacking arbitrary words.
-  reservoir r = reservoir(16777217u + uint(pixel.x), 0xfffffffeu - uint(pixel.x), u.xy, 0xfedcba98u, place, numbers, 16u,
-                          u.z, light.emission, u.w, light.area);
+  reservoir r = reservoir(16777217u + uint(pixel.x), 0xfffffffeu - uint(pixel.x), u.xy, 0xfedcba98u,
+                          place, numbers, 16u, u.z, light.emission, u.w, light.area);
   if (row >= 24 && row < 32) {
     uvec4 words = pack_reservoir(unpack_reservoir(pack_reservoir(r))).words[(row - 24) / 2];
     result = (row & 1) == 0 ? halves(words.x, words.y) : halves(words.z, words.w);
@@ -180,7 +191,8 @@ void main() {
   // The packed form of a pixel, and the offset of a neighbour.
   if (row == 33 || row == 34 || row == 35) {
     packed_domain kept = pack_domain(domain);
-    result = row == 33 ? halves(kept.words[0].x, kept.words[0].w) : halves(kept.words[1].x, kept.words[1].w);
+    result = row == 33 ? halves(kept.words[0].x, kept.words[0].w)
+                       : halves(kept.words[1].x, kept.words[1].w);
     if (row == 35)
       result = vec4(unpack_domain(kept).normal, unpack_domain(kept).medium);
   }

@@ -32,7 +32,8 @@ float skull(const vec3& q) {
   d = soft_union(d, ellipsoid(q, vec3(0.0f, -3.6f, 2.0f), vec3(6.2f, 7.0f, 6.3f)), 2.5f); // face
   d = soft_union(d, round_cone(q, vec3(5.0f, -2.6f, -0.6f), vec3(4.6f, -6.9f, 0.6f), 1.6f, 1.4f),
                  2.4f); // jaw
-  d = soft_union(d, round_cone(q, vec3(4.6f, -6.9f, 0.6f), vec3(1.3f, -10.2f, 6.0f), 1.5f, 1.5f), 2.4f);
+  d = soft_union(d, round_cone(q, vec3(4.6f, -6.9f, 0.6f), vec3(1.3f, -10.2f, 6.0f), 1.5f, 1.5f),
+                 2.4f);
   d = soft_union(d, ellipsoid(q, vec3(0.0f, -10.4f, 6.7f), vec3(1.8f, 1.4f, 1.5f)), 1.8f); // chin
   // cheekbone
   d = soft_union(d, ellipsoid(q, vec3(4.3f, -2.5f, 4.9f), vec3(1.7f, 1.3f, 1.9f)), 2.6f);
@@ -44,7 +45,8 @@ float skull(const vec3& q) {
 
 float with_eyes(float d, const vec3& q) {
   // brow
-  d = soft_union(d, round_cone(q, vec3(1.2f, 2.0f, 7.9f), vec3(4.9f, 2.3f, 6.1f), 0.75f, 0.6f), 1.6f);
+  d = soft_union(d, round_cone(q, vec3(1.2f, 2.0f, 7.9f), vec3(4.9f, 2.3f, 6.1f), 0.75f, 0.6f),
+                 1.6f);
   // socket
   d = soft_difference(d, ellipsoid(q, vec3(3.1f, 0.3f, 8.8f), vec3(2.1f, 1.35f, 1.9f)), 1.2f);
   // Closed lids over the ball. They meet below its middle in a line that falls towards the outer
@@ -53,11 +55,12 @@ float with_eyes(float d, const vec3& q) {
   d = soft_union(d, ellipsoid(e, vec3(0.0f), vec3(1.60f, 1.32f, 1.40f)), 0.5f);
   const float line = -0.46f - 0.05f * e.x + 0.085f * e.x * e.x;
   d = soft_difference(
-      d, ellipsoid(vec3(e.x, e.y - line, e.z - 1.30f), vec3(0.0f), vec3(1.62f, 0.055f, 0.30f)), 0.14f);
+      d, ellipsoid(vec3(e.x, e.y - line, e.z - 1.30f), vec3(0.0f), vec3(1.62f, 0.055f, 0.30f)),
+      0.14f);
   // The upper lid protrudes slightly over the lower lid.
   d = soft_union(d,
-                 ellipsoid(vec3(e.x, e.y - line - 0.13f, e.z - 1.17f + 0.16f * e.x * e.x), vec3(0.0f),
-                           vec3(1.40f, 0.11f, 0.14f)),
+                 ellipsoid(vec3(e.x, e.y - line - 0.13f, e.z - 1.17f + 0.16f * e.x * e.x),
+                           vec3(0.0f), vec3(1.40f, 0.11f, 0.14f)),
                  0.12f);
   const float fold =
       torus(e, vec3(0.0f, 0.10f, 0.10f), glm::normalize(vec3(0.0f, 0.86f, -0.50f)), 1.52f, 0.05f);
@@ -67,23 +70,28 @@ float with_eyes(float d, const vec3& q) {
 
 float with_nose(float d, const vec3& q) {
   // Bridge and back form one wedge: a ridge in front, with flanks that run into the cheeks.
-  d = soft_union(d, round_cone(q, vec3(0.0f, 1.9f, 7.7f), vec3(0.0f, -3.2f, 8.0f), 0.9f, 1.5f), 1.5f);
+  d = soft_union(d, round_cone(q, vec3(0.0f, 1.9f, 7.7f), vec3(0.0f, -3.2f, 8.0f), 0.9f, 1.5f),
+                 1.5f);
   float nose = round_cone(q, vec3(0.0f, 1.2f, 8.25f), vec3(0.0f, -3.85f, 10.65f), 0.62f, 0.86f);
   // tip
-  nose = soft_union(nose, ellipsoid(q, vec3(0.40f, -4.0f, 10.70f), vec3(0.62f, 0.64f, 0.66f)), 0.5f);
   nose =
-      soft_union(nose, round_cone(q, vec3(0.0f, -4.55f, 10.6f), vec3(0.0f, -5.05f, 8.9f), 0.42f, 0.5f), 0.5f);
+      soft_union(nose, ellipsoid(q, vec3(0.40f, -4.0f, 10.70f), vec3(0.62f, 0.64f, 0.66f)), 0.5f);
+  nose = soft_union(
+      nose, round_cone(q, vec3(0.0f, -4.55f, 10.6f), vec3(0.0f, -5.05f, 8.9f), 0.42f, 0.5f), 0.5f);
   // wing
-  nose = soft_union(nose, ellipsoid(q, vec3(1.25f, -4.40f, 9.35f), vec3(0.74f, 0.76f, 1.15f)), 0.7f);
+  nose =
+      soft_union(nose, ellipsoid(q, vec3(1.25f, -4.40f, 9.35f), vec3(0.74f, 0.76f, 1.15f)), 0.7f);
   d = soft_union(d, nose, 1.0f);
-  d = soft_difference(
-      d, ellipsoid(turned_z(q - vec3(0.76f, -5.08f, 9.8f), 0.35f), vec3(0.0f), vec3(0.34f, 0.5f, 0.7f)),
-      0.25f); // nostril
+  d = soft_difference(d,
+                      ellipsoid(turned_z(q - vec3(0.76f, -5.08f, 9.8f), 0.35f), vec3(0.0f),
+                                vec3(0.34f, 0.5f, 0.7f)),
+                      0.25f); // nostril
   return d;
 }
 
 float upper_lip(const vec3& q) {
-  return ellipsoid(turned_z(q - vec3(0.85f, -6.93f, 8.28f), 0.20f), vec3(0.0f), vec3(1.45f, 0.46f, 0.62f));
+  return ellipsoid(turned_z(q - vec3(0.85f, -6.93f, 8.28f), 0.20f), vec3(0.0f),
+                   vec3(1.45f, 0.46f, 0.62f));
 }
 
 float lower_lip(const vec3& q) {
@@ -97,8 +105,8 @@ float mouth_line(float x) {
 
 float with_mouth(float d, const vec3& q) {
   d = soft_union(d, ellipsoid(q, vec3(0.0f, -7.0f, 6.1f), vec3(3.3f, 2.7f, 2.55f)), 1.8f);
-  d = soft_difference(d, round_cone(q, vec3(0.0f, -5.6f, 9.45f), vec3(0.0f, -6.3f, 9.30f), 0.34f, 0.38f),
-                      0.5f);
+  d = soft_difference(
+      d, round_cone(q, vec3(0.0f, -5.6f, 9.45f), vec3(0.0f, -6.3f, 9.30f), 0.34f, 0.38f), 0.5f);
   d = soft_union(d, soft_union(upper_lip(q), lower_lip(q), 0.15f), 0.8f);
   const vec3 slit(q.x, q.y - mouth_line(q.x), q.z - 9.0f + 0.10f * q.x * q.x);
   d = soft_difference(d, ellipsoid(slit, vec3(0.0f), vec3(2.40f, 0.06f, 0.42f)), 0.30f);
@@ -135,13 +143,15 @@ float ear(const vec3& q) {
 
 float torso(const vec3& q) {
   float d = round_cone(q, vec3(0.0f, -7.0f, -2.6f), vec3(0.0f, -18.0f, -4.0f), 5.1f, 5.7f); // neck
-  d = soft_union(d, round_cone(q, vec3(5.2f, -6.0f, -2.6f), vec3(1.3f, -18.2f, 1.6f), 1.1f, 0.9f), 1.6f);
+  d = soft_union(d, round_cone(q, vec3(5.2f, -6.0f, -2.6f), vec3(1.3f, -18.2f, 1.6f), 1.1f, 0.9f),
+                 1.6f);
   d = soft_union(d, sphere(q, vec3(0.0f, -12.9f, 2.4f), 0.9f), 1.2f); // larynx
   float chest = ellipsoid(q, vec3(0.0f, -29.0f, -4.2f), vec3(17.5f, 12.0f, 9.2f));
   // shoulder
   chest = soft_union(chest, ellipsoid(q, vec3(15.5f, -24.0f, -4.8f), vec3(5.6f, 5.2f, 5.4f)), 4.0f);
-  chest = soft_union(chest, round_cone(q, vec3(3.0f, -14.5f, -6.0f), vec3(13.0f, -20.5f, -5.5f), 3.2f, 3.0f),
-                     3.5f);
+  chest = soft_union(
+      chest, round_cone(q, vec3(3.0f, -14.5f, -6.0f), vec3(13.0f, -20.5f, -5.5f), 3.2f, 3.0f),
+      3.5f);
   // breast
   chest = soft_union(chest, ellipsoid(q, vec3(6.0f, -28.0f, 2.2f), vec3(7.0f, 5.5f, 3.2f)), 3.0f);
   d = soft_union(d, chest, 3.2f);
@@ -175,8 +185,8 @@ struct Paint {
 
 Paint paint_at(const vec3& p) {
   const vec3 q(std::abs(p.x), p.y, p.z);
-  const float on_lip =
-      smooth_step(0.16f, -0.02f, std::min(upper_lip(q), lower_lip(q)) + 0.05f) * smooth_step(7.6f, 8.1f, q.z);
+  const float on_lip = smooth_step(0.16f, -0.02f, std::min(upper_lip(q), lower_lip(q)) + 0.05f) *
+                       smooth_step(7.6f, 8.1f, q.z);
   const float red = 0.55f * mark(q, vec3(4.2f, -3.2f, 7.0f), vec3(2.3f, 1.9f, 3.0f)) +
                     0.50f * mark(q, vec3(0.0f, -4.3f, 11.0f), vec3(1.9f, 1.4f, 1.6f)) +
                     0.70f * mark(q, vec3(7.8f, -0.8f, -1.5f), vec3(1.3f, 3.6f, 2.6f)) +
@@ -187,7 +197,8 @@ Paint paint_at(const vec3& p) {
   const float brow = round_cone(q, vec3(1.5f, 2.05f, 8.6f), vec3(4.8f, 2.55f, 6.6f), 0.28f, 0.12f);
   tint = glm::mix(tint, vec3(0.50f, 0.42f, 0.38f), 0.85f * smooth_step(0.40f, 0.0f, brow));
   const vec3 e = q - vec3(3.15f, 0.0f, 6.3f);
-  const float lash = std::abs(e.y + 0.46f + 0.05f * e.x - 0.085f * e.x * e.x) / 0.12f + std::abs(e.x) / 1.9f;
+  const float lash =
+      std::abs(e.y + 0.46f + 0.05f * e.x - 0.085f * e.x * e.x) / 0.12f + std::abs(e.x) / 1.9f;
   tint = glm::mix(tint, vec3(0.45f, 0.36f, 0.33f),
                   0.8f * smooth_step(1.0f, 0.3f, lash) * smooth_step(0.6f, 1.0f, e.z));
   return {tint, 1.0f + 1.2f * on_lip};

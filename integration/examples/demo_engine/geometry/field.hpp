@@ -24,7 +24,8 @@ inline float ellipsoid(const glm::vec3& p, const glm::vec3& center, const glm::v
 }
 
 // Returns the distance to a cone between two balls; a capsule for equal radii.
-inline float round_cone(const glm::vec3& p, const glm::vec3& a, const glm::vec3& b, float ra, float rb) {
+inline float round_cone(const glm::vec3& p, const glm::vec3& a, const glm::vec3& b, float ra,
+                        float rb) {
   const glm::vec3 ab = b - a;
   const float t = std::clamp(glm::dot(p - a, ab) / glm::dot(ab, ab), 0.0f, 1.0f);
   return glm::length(p - a - ab * t) - (ra + (rb - ra) * t);

@@ -61,7 +61,8 @@ void compute_tangents(Mesh& mesh) {
     const float length = glm::length(flat);
     const glm::vec3 tangent =
         length > 0.0f && std::isfinite(length) ? flat / length : any_perpendicular(vertex.normal);
-    const float sign = glm::dot(glm::cross(vertex.normal, tangent), along_v[i]) > 0.0f ? -1.0f : 1.0f;
+    const float sign =
+        glm::dot(glm::cross(vertex.normal, tangent), along_v[i]) > 0.0f ? -1.0f : 1.0f;
     vertex.tangent = glm::vec4(tangent, sign);
   }
 }

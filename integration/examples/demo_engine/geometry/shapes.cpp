@@ -51,7 +51,8 @@ glm::vec3 trefoil(float u) {
 Mesh make_sphere() {
   Mesh mesh = sweep(96, 48, [](float u, float v) {
     const float polar = (1.0f - v) * tau * 0.5f, around = -tau * u;
-    return glm::vec3(std::sin(polar) * std::cos(around), std::cos(polar), std::sin(polar) * std::sin(around));
+    return glm::vec3(std::sin(polar) * std::cos(around), std::cos(polar),
+                     std::sin(polar) * std::sin(around));
   });
   for (Vertex& vertex : mesh.vertices)
     vertex.normal = glm::normalize(vertex.position);
@@ -60,7 +61,8 @@ Mesh make_sphere() {
 
 Mesh make_plane() {
   Mesh mesh;
-  for (const glm::vec2 corner : {glm::vec2(-1, -1), glm::vec2(1, -1), glm::vec2(1, 1), glm::vec2(-1, 1)}) {
+  for (const glm::vec2 corner :
+       {glm::vec2(-1, -1), glm::vec2(1, -1), glm::vec2(1, 1), glm::vec2(-1, 1)}) {
     Vertex vertex;
     vertex.position = {corner.x, 0.0f, corner.y};
     vertex.uv = corner * 0.5f + 0.5f;
@@ -88,7 +90,8 @@ Mesh make_box() {
         vertex.uv = corner * 0.5f + 0.5f;
         mesh.vertices.push_back(vertex);
       }
-      mesh.indices.insert(mesh.indices.end(), {first, first + 1, first + 2, first, first + 2, first + 3});
+      mesh.indices.insert(mesh.indices.end(),
+                          {first, first + 1, first + 2, first, first + 2, first + 3});
     }
   }
   return mesh;
@@ -120,10 +123,11 @@ Mesh make_knot() {
 Mesh make_candle() {
   // Outline from the foot up the outside, over the rim, down into the hollow: radius and height in
   // metres.
-  constexpr glm::vec2 outline[] = {
-      {0.0f, 0.0f},      {0.030f, 0.0f},    {0.032f, 0.002f},   {0.032f, 0.03f},    {0.0315f, 0.07f},
-      {0.0312f, 0.105f}, {0.0308f, 0.124f}, {0.0298f, 0.1295f}, {0.0282f, 0.1300f}, {0.0268f, 0.127f},
-      {0.0250f, 0.117f}, {0.0215f, 0.107f}, {0.0150f, 0.1020f}, {0.0070f, 0.1005f}, {0.0f, 0.1000f}};
+  constexpr glm::vec2 outline[] = {{0.0f, 0.0f},       {0.030f, 0.0f},     {0.032f, 0.002f},
+                                   {0.032f, 0.03f},    {0.0315f, 0.07f},   {0.0312f, 0.105f},
+                                   {0.0308f, 0.124f},  {0.0298f, 0.1295f}, {0.0282f, 0.1300f},
+                                   {0.0268f, 0.127f},  {0.0250f, 0.117f},  {0.0215f, 0.107f},
+                                   {0.0150f, 0.1020f}, {0.0070f, 0.1005f}, {0.0f, 0.1000f}};
   constexpr uint32_t count = sizeof(outline) / sizeof(outline[0]);
   Mesh mesh = sweep(128, (count - 1) * 8, [&](float u, float v) {
     // Catmull-Rom spline through the outline.
@@ -132,8 +136,9 @@ Mesh make_candle() {
     const float t = s - static_cast<float>(k);
     const glm::vec2 a = outline[k == 0 ? 0 : k - 1], b = outline[k], c = outline[k + 1];
     const glm::vec2 d = outline[std::min(k + 2, count - 1)];
-    glm::vec2 point = 0.5f * (2.0f * b + (c - a) * t + (2.0f * a - 5.0f * b + 4.0f * c - d) * t * t +
-                              (3.0f * b - a - 3.0f * c + d) * t * t * t);
+    glm::vec2 point =
+        0.5f * (2.0f * b + (c - a) * t + (2.0f * a - 5.0f * b + 4.0f * c - d) * t * t +
+                (3.0f * b - a - 3.0f * c + d) * t * t * t);
     point.x = std::max(point.x, 0.0f);
     const float angle = -tau * u;
     // Wax that has run down on two sides, and an uneven rim.

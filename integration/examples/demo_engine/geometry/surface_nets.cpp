@@ -45,8 +45,8 @@ void sample_layer(Grid& grid, const Field& field, uint32_t layer) {
     for (uint32_t x0 = 0; x0 < grid.nx; x0 += block) {
       const uint32_t y1 = std::min(y0 + block, grid.ny), x1 = std::min(x0 + block, grid.nx);
       const glm::vec3 low = grid.position(x0, y0, z0);
-      const glm::vec3 high =
-          grid.position(std::min(x1, grid.nx - 1), std::min(y1, grid.ny - 1), std::min(z1, grid.nz - 1));
+      const glm::vec3 high = grid.position(std::min(x1, grid.nx - 1), std::min(y1, grid.ny - 1),
+                                           std::min(z1, grid.nz - 1));
       const float center = field((low + high) * 0.5f);
       const bool far = std::abs(center) > slack * 0.5f * glm::length(high - low);
       for (uint32_t z = z0; z < z1; ++z)
@@ -83,7 +83,8 @@ glm::vec3 crossing_mean(const Grid& grid, uint32_t x, uint32_t y, uint32_t z) {
 bool cell_is_crossed(const Grid& grid, uint32_t x, uint32_t y, uint32_t z) {
   const bool inside = grid.value[grid.at(x, y, z)] < 0.0f;
   for (uint32_t c = 1; c < 8; ++c)
-    if ((grid.value[grid.at(x + (c & 1u), y + ((c >> 1) & 1u), z + (c >> 2))] < 0.0f) != inside) return true;
+    if ((grid.value[grid.at(x + (c & 1u), y + ((c >> 1) & 1u), z + (c >> 2))] < 0.0f) != inside)
+      return true;
   return false;
 }
 
@@ -137,7 +138,8 @@ Mesh mesh_field(const Field& field, const GridPlanes& planes, float occlusion_re
             static_cast<uint32_t>(planes.z.size()),
             {}};
   grid.value.resize(size_t{grid.nx} * grid.ny * grid.nz);
-  in_parallel((grid.nz + block - 1) / block, [&](uint32_t layer) { sample_layer(grid, field, layer); });
+  in_parallel((grid.nz + block - 1) / block,
+              [&](uint32_t layer) { sample_layer(grid, field, layer); });
 
   Mesh mesh;
   std::vector<uint32_t> vertex_of(grid.value.size(), no_vertex);
@@ -164,13 +166,16 @@ Mesh mesh_field(const Field& field, const GridPlanes& planes, float occlusion_re
           return vertex_of[grid.at(cx, cy, cz)];
         };
         if (y > 0 && z > 0 && inside != (grid.value[grid.at(x + 1, y, z)] < 0.0f))
-          add_quad(mesh, {cell(x, y - 1, z - 1), cell(x, y, z - 1), cell(x, y, z), cell(x, y - 1, z)},
+          add_quad(mesh,
+                   {cell(x, y - 1, z - 1), cell(x, y, z - 1), cell(x, y, z), cell(x, y - 1, z)},
                    !inside);
         if (x > 0 && z > 0 && inside != (grid.value[grid.at(x, y + 1, z)] < 0.0f))
-          add_quad(mesh, {cell(x - 1, y, z - 1), cell(x - 1, y, z), cell(x, y, z), cell(x, y, z - 1)},
+          add_quad(mesh,
+                   {cell(x - 1, y, z - 1), cell(x - 1, y, z), cell(x, y, z), cell(x, y, z - 1)},
                    !inside);
         if (x > 0 && y > 0 && inside != (grid.value[grid.at(x, y, z + 1)] < 0.0f))
-          add_quad(mesh, {cell(x - 1, y - 1, z), cell(x, y - 1, z), cell(x, y, z), cell(x - 1, y, z)},
+          add_quad(mesh,
+                   {cell(x - 1, y - 1, z), cell(x, y - 1, z), cell(x, y, z), cell(x - 1, y, z)},
                    !inside);
       }
 

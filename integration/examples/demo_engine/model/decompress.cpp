@@ -56,8 +56,9 @@ size_t number_of(const tinygltf::Value& extension, const char* key, size_t other
   const tinygltf::Value& value = extension.Get(key);
   if (!value.IsNumber()) return SIZE_MAX;
   const double number = value.GetNumberAsDouble();
-  return number >= 0.0 && number <= static_cast<double>(max_model_bytes) ? static_cast<size_t>(number)
-                                                                         : SIZE_MAX;
+  return number >= 0.0 && number <= static_cast<double>(max_model_bytes)
+             ? static_cast<size_t>(number)
+             : SIZE_MAX;
 }
 
 std::string text_of(const tinygltf::Value& extension, const char* key, const char* otherwise) {
@@ -72,13 +73,15 @@ Result<> decode_view(Decoding& decoding, size_t index, const tinygltf::Value& ex
   const size_t length = number_of(extension, "byteLength", SIZE_MAX);
   const size_t stride = number_of(extension, "byteStride", SIZE_MAX);
   const size_t count = number_of(extension, "count", SIZE_MAX);
-  const std::string mode = text_of(extension, "mode", "none"), filter = text_of(extension, "filter", "NONE");
-  const unsigned char* from =
-      decoding.range(number_of(extension, "buffer", SIZE_MAX), number_of(extension, "byteOffset", 0), length);
+  const std::string mode = text_of(extension, "mode", "none"),
+                    filter = text_of(extension, "filter", "NONE");
+  const unsigned char* from = decoding.range(number_of(extension, "buffer", SIZE_MAX),
+                                             number_of(extension, "byteOffset", 0), length);
   if (from == nullptr) return decoding.reject(what, "reaches beyond the end of its buffer");
   const bool vertices = mode == "ATTRIBUTES", triangles = mode == "TRIANGLES";
   if (!vertices && !triangles && mode != "INDICES")
-    return decoding.reject(what, "mode is '" + mode + "'; expected ATTRIBUTES, TRIANGLES or INDICES");
+    return decoding.reject(what,
+                           "mode is '" + mode + "'; expected ATTRIBUTES, TRIANGLES or INDICES");
   const bool stride_fits =
       vertices ? stride > 0 && stride <= 256 && stride % 4 == 0 : stride == 2 || stride == 4;
   if (!stride_fits)
@@ -89,14 +92,16 @@ Result<> decode_view(Decoding& decoding, size_t index, const tinygltf::Value& ex
     return decoding.reject(what, "count is not a number of elements that can be read");
   const bool octahedral = filter == "OCTAHEDRAL", quaternion = filter == "QUATERNION";
   const bool exponential = filter == "EXPONENTIAL";
-  if ((!octahedral && !quaternion && !exponential && filter != "NONE") || (!vertices && filter != "NONE") ||
-      (octahedral && stride != 4 && stride != 8) || (quaternion && stride != 8))
+  if ((!octahedral && !quaternion && !exponential && filter != "NONE") ||
+      (!vertices && filter != "NONE") || (octahedral && stride != 4 && stride != 8) ||
+      (quaternion && stride != 8))
     return decoding.reject(what, "filter '" + filter + "' does not fit its mode and byteStride");
 
   std::vector<unsigned char> data(count * stride);
-  const int failed = vertices    ? meshopt_decodeVertexBuffer(data.data(), count, stride, from, length)
-                     : triangles ? meshopt_decodeIndexBuffer(data.data(), count, stride, from, length)
-                                 : meshopt_decodeIndexSequence(data.data(), count, stride, from, length);
+  const int failed = vertices ? meshopt_decodeVertexBuffer(data.data(), count, stride, from, length)
+                     : triangles
+                         ? meshopt_decodeIndexBuffer(data.data(), count, stride, from, length)
+                         : meshopt_decodeIndexSequence(data.data(), count, stride, from, length);
   if (failed != 0) return decoding.reject(what, "the compressed bytes are damaged");
   if (octahedral) meshopt_decodeFilterOct(data.data(), count, stride);
   if (quaternion) meshopt_decodeFilterQuat(data.data(), count, stride);
@@ -111,7 +116,8 @@ Result<> decode_view(Decoding& decoding, size_t index, const tinygltf::Value& ex
 #endif
 
 #ifdef DEMO_DRACO
-int add_accessor(Decoding& decoding, std::vector<unsigned char> data, size_t count, int type, int component) {
+int add_accessor(Decoding& decoding, std::vector<unsigned char> data, size_t count, int type,
+                 int component) {
   tinygltf::BufferView view;
   view.byteLength = data.size();
   view.buffer = decoding.add_buffer(std::move(data));
@@ -131,8 +137,8 @@ Result<int> decode_attribute(Decoding& decoding, const std::string& what, const 
   const draco::PointAttribute* attribute =
       id < UINT32_MAX ? mesh.GetAttributeByUniqueId(static_cast<uint32_t>(id)) : nullptr;
   if (attribute == nullptr)
-    return decoding.reject(what,
-                           fmt::format("{} is attribute {}, which the compressed mesh lacks", name, id));
+    return decoding.reject(
+        what, fmt::format("{} is attribute {}, which the compressed mesh lacks", name, id));
   const int width = name.starts_with("TEXCOORD_") ? 2 : name == "TANGENT" ? 4 : 3;
   const size_t points = mesh.num_points();
   if (!decoding.has_space(points * static_cast<uint64_t>(width) * sizeof(float)))
@@ -148,32 +154,36 @@ Result<int> decode_attribute(Decoding& decoding, const std::string& what, const 
     std::memcpy(data.data() + i * static_cast<size_t>(width) * sizeof(float), values,
                 static_cast<size_t>(width) * sizeof(float));
   }
-  const int type = width == 2 ? TINYGLTF_TYPE_VEC2 : width == 3 ? TINYGLTF_TYPE_VEC3 : TINYGLTF_TYPE_VEC4;
+  const int type = width == 2   ? TINYGLTF_TYPE_VEC2
+                   : width == 3 ? TINYGLTF_TYPE_VEC3
+                                : TINYGLTF_TYPE_VEC4;
   return add_accessor(decoding, std::move(data), points, type, TINYGLTF_COMPONENT_TYPE_FLOAT);
 }
 
-Result<> decode_primitive(Decoding& decoding, const std::string& what, tinygltf::Primitive& primitive,
-                          const tinygltf::Value& extension) {
+Result<> decode_primitive(Decoding& decoding, const std::string& what,
+                          tinygltf::Primitive& primitive, const tinygltf::Value& extension) {
   const size_t view_index = number_of(extension, "bufferView", SIZE_MAX);
   if (view_index >= decoding.model.bufferViews.size())
     return decoding.reject(what, "refers to a buffer view that does not exist");
   const tinygltf::BufferView& view = decoding.model.bufferViews[view_index];
-  const unsigned char* from =
-      view.buffer < 0 ? nullptr
-                      : decoding.range(static_cast<size_t>(view.buffer), view.byteOffset, view.byteLength);
+  const unsigned char* from = view.buffer < 0 ? nullptr
+                                              : decoding.range(static_cast<size_t>(view.buffer),
+                                                               view.byteOffset, view.byteLength);
   if (from == nullptr) return decoding.reject(what, "reaches beyond the end of its buffer");
   draco::DecoderBuffer buffer;
   buffer.Init(reinterpret_cast<const char*>(from), view.byteLength);
   draco::Decoder decoder;
   auto decoded = decoder.DecodeMeshFromBuffer(&buffer);
   if (!decoded.ok() || decoded.value() == nullptr)
-    return decoding.reject(
-        what, fmt::format("the compressed mesh is damaged: {}", decoded.status().error_msg_string()));
+    return decoding.reject(what, fmt::format("the compressed mesh is damaged: {}",
+                                             decoded.status().error_msg_string()));
   const draco::Mesh& mesh = *decoded.value();
   const tinygltf::Value& attributes = extension.Get("attributes");
-  if (!attributes.IsObject() || !attributes.Has("POSITION")) return decoding.reject(what, "has no positions");
+  if (!attributes.IsObject() || !attributes.Has("POSITION"))
+    return decoding.reject(what, "has no positions");
   for (const std::string& name : attributes.Keys()) {
-    if (name != "POSITION" && name != "NORMAL" && name != "TANGENT" && !name.starts_with("TEXCOORD_"))
+    if (name != "POSITION" && name != "NORMAL" && name != "TANGENT" &&
+        !name.starts_with("TEXCOORD_"))
       continue; // other attributes are not rendered
     auto accessor =
         decode_attribute(decoding, what, mesh, name, number_of(attributes, name.c_str(), SIZE_MAX));
@@ -181,7 +191,8 @@ Result<> decode_primitive(Decoding& decoding, const std::string& what, tinygltf:
     primitive.attributes[name] = *accessor;
   }
   const size_t indices = size_t{mesh.num_faces()} * 3;
-  if (!decoding.has_space(indices * sizeof(uint32_t))) return decoding.reject(what, "the mesh is too large");
+  if (!decoding.has_space(indices * sizeof(uint32_t)))
+    return decoding.reject(what, "the mesh is too large");
   std::vector<unsigned char> data(indices * sizeof(uint32_t));
   for (uint32_t face = 0; face < mesh.num_faces(); ++face)
     for (uint32_t corner = 0; corner < 3; ++corner) {
@@ -197,7 +208,8 @@ Result<> decode_primitive(Decoding& decoding, const std::string& what, tinygltf:
 
 } // namespace
 
-Result<> decompress([[maybe_unused]] tinygltf::Model& model, [[maybe_unused]] const std::string& path) {
+Result<> decompress([[maybe_unused]] tinygltf::Model& model,
+                    [[maybe_unused]] const std::string& path) {
 #if defined(DEMO_MESHOPT) || defined(DEMO_DRACO)
   Decoding decoding{model, path};
 #endif
@@ -215,7 +227,8 @@ Result<> decompress([[maybe_unused]] tinygltf::Model& model, [[maybe_unused]] co
       const auto found = primitive.extensions.find(draco_extension);
       if (found == primitive.extensions.end()) continue;
       const std::string what = fmt::format("{} of mesh {}, primitive {}", draco_extension, m, p);
-      if (auto done = decode_primitive(decoding, what, primitive, found->second); !done) return done;
+      if (auto done = decode_primitive(decoding, what, primitive, found->second); !done)
+        return done;
     }
 #endif
   return success();

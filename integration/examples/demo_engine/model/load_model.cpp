@@ -19,15 +19,16 @@ namespace {
 constexpr size_t max_vertices = size_t{1} << 25;
 constexpr uint32_t deepest_node = 256;
 constexpr std::string_view head_scan = "LeePerrySmith";
-constexpr const char* head_scan_credit =
-    "\"Infinite, 3D Head Scan\" by Lee Perry-Smith (www.triplegangers.com), licensed under CC BY 3.0";
+constexpr const char* head_scan_credit = "\"Infinite, 3D Head Scan\" by Lee Perry-Smith "
+                                         "(www.triplegangers.com), licensed under CC BY 3.0";
 
 glm::dmat4 local_matrix(const tinygltf::Node& node) {
   if (node.matrix.size() == 16) return glm::make_mat4(node.matrix.data());
   glm::dmat4 m(1.0);
   if (node.translation.size() == 3) m = glm::translate(m, glm::make_vec3(node.translation.data()));
   if (node.rotation.size() == 4)
-    m *= glm::mat4_cast(glm::dquat(node.rotation[3], node.rotation[0], node.rotation[1], node.rotation[2]));
+    m *= glm::mat4_cast(
+        glm::dquat(node.rotation[3], node.rotation[0], node.rotation[1], node.rotation[2]));
   if (node.scale.size() == 3) m = glm::scale(m, glm::make_vec3(node.scale.data()));
   return m;
 }
@@ -77,7 +78,8 @@ struct MapPlace {
   glm::vec2 operator()(const glm::vec2& uv) const {
     const glm::dvec2 scaled = scale * glm::dvec2(uv);
     const double c = std::cos(rotation), s = std::sin(rotation);
-    return glm::vec2(c * scaled.x + s * scaled.y + offset.x, c * scaled.y - s * scaled.x + offset.y);
+    return glm::vec2(c * scaled.x + s * scaled.y + offset.x,
+                     c * scaled.y - s * scaled.x + offset.y);
   }
 };
 
@@ -87,7 +89,8 @@ template <class TextureInfo> MapPlace place_of(const TextureInfo& info) {
   const auto found = info.extensions.find("KHR_texture_transform");
   if (found == info.extensions.end()) return place;
   const auto number = [](const tinygltf::Value& value, double& out) {
-    if (value.IsNumber() && std::isfinite(value.GetNumberAsDouble())) out = value.GetNumberAsDouble();
+    if (value.IsNumber() && std::isfinite(value.GetNumberAsDouble()))
+      out = value.GetNumberAsDouble();
   };
   const auto pair = [&](const char* key, glm::dvec2& out) {
     const tinygltf::Value& value = found->second.Get(key);
@@ -98,7 +101,8 @@ template <class TextureInfo> MapPlace place_of(const TextureInfo& info) {
   pair("offset", place.offset);
   pair("scale", place.scale);
   number(found->second.Get("rotation"), place.rotation);
-  if (found->second.Get("texCoord").IsInt()) place.set = found->second.Get("texCoord").GetNumberAsInt();
+  if (found->second.Get("texCoord").IsInt())
+    place.set = found->second.Get("texCoord").GetNumberAsInt();
   return place;
 }
 
@@ -121,7 +125,8 @@ struct Gathering {
   // the base colour's map, else that of the normal map.
   MapPlace place_of_maps() const {
     const tinygltf::Material* from = first_material();
-    if (from == nullptr || !options.albedo.empty() || !options.normal.empty() || !options.specular.empty())
+    if (from == nullptr || !options.albedo.empty() || !options.normal.empty() ||
+        !options.specular.empty())
       return {};
     const tinygltf::TextureInfo& base = from->pbrMetallicRoughness.baseColorTexture;
     return base.index >= 0 ? place_of(base) : place_of(from->normalTexture);
@@ -130,8 +135,9 @@ struct Gathering {
   Result<> add_primitive(const tinygltf::Primitive& primitive, const glm::dmat4& place) {
     const int mode = primitive.mode == -1 ? TINYGLTF_MODE_TRIANGLES : primitive.mode;
     if (mode < TINYGLTF_MODE_POINTS || mode > TINYGLTF_MODE_TRIANGLE_FAN)
-      return Error{ErrorKind::input,
-                   fmt::format("{}: a mesh has the primitive mode {}; expected 0 to 6", path, mode)};
+      return Error{
+          ErrorKind::input,
+          fmt::format("{}: a mesh has the primitive mode {}; expected 0 to 6", path, mode)};
     if (mode < TINYGLTF_MODE_TRIANGLES) {
       ++skipped;
       return success();
@@ -153,8 +159,8 @@ struct Gathering {
       auto values = read_floats(file, path, attribute(name), type, width);
       if (!values) return values.error();
       if (values->size() != count * width)
-        return Error{ErrorKind::input, fmt::format("{}: a mesh has {} positions and {} of {}", path, count,
-                                                   values->size() / width, name)};
+        return Error{ErrorKind::input, fmt::format("{}: a mesh has {} positions and {} of {}", path,
+                                                   count, values->size() / width, name)};
       out = values.take();
       return success();
     };
@@ -162,8 +168,8 @@ struct Gathering {
     if (auto done = optional_floats("NORMAL", TINYGLTF_TYPE_VEC3, 3, normals); !done) return done;
     if (material < 0) material = primitive.material;
     const MapPlace map_place = place_of_maps();
-    if (auto done =
-            optional_floats(fmt::format("TEXCOORD_{}", map_place.set).c_str(), TINYGLTF_TYPE_VEC2, 2, uvs);
+    if (auto done = optional_floats(fmt::format("TEXCOORD_{}", map_place.set).c_str(),
+                                    TINYGLTF_TYPE_VEC2, 2, uvs);
         !done)
       return done;
     if (auto done = optional_floats("TANGENT", TINYGLTF_TYPE_VEC4, 4, tangents); !done) return done;
@@ -186,8 +192,12 @@ struct Gathering {
       model.mesh.vertices.push_back(vertex);
     }
     // glTF requires that tangents without normals are ignored.
-    Part part{
-        first, count, model.mesh.indices.size(), 0, !normals.empty(), !normals.empty() && !tangents.empty()};
+    Part part{first,
+              count,
+              model.mesh.indices.size(),
+              0,
+              !normals.empty(),
+              !normals.empty() && !tangents.empty()};
     if (auto done = add_indices(primitive, mode, part, mirrored); !done) return done;
     parts.push_back(part);
     return success();
@@ -195,7 +205,8 @@ struct Gathering {
 
   // A mirrored triangle would face the other way, so two of its corners are swapped.
   Result<> add_indices(const tinygltf::Primitive& primitive, int mode, Part& part, bool mirrored) {
-    const auto first = static_cast<uint32_t>(part.first_vertex), count = static_cast<uint32_t>(part.vertices);
+    const auto first = static_cast<uint32_t>(part.first_vertex),
+               count = static_cast<uint32_t>(part.vertices);
     std::vector<uint32_t> indices(count);
     for (uint32_t i = 0; i < count; ++i)
       indices[i] = i;
@@ -218,8 +229,9 @@ struct Gathering {
     if (index < 0 || static_cast<size_t>(index) >= file.nodes.size())
       return Error{ErrorKind::input, fmt::format("{}: node {} does not exist", path, index)};
     if (depth > deepest_node)
-      return Error{ErrorKind::input,
-                   fmt::format("{}: nodes are nested deeper than {}, or in a circle", path, deepest_node)};
+      return Error{
+          ErrorKind::input,
+          fmt::format("{}: nodes are nested deeper than {}, or in a circle", path, deepest_node)};
     const tinygltf::Node& node = file.nodes[static_cast<size_t>(index)];
     const glm::dmat4 place = parent * local_matrix(node);
     if (node.mesh >= 0) {
@@ -228,9 +240,10 @@ struct Gathering {
       if (node.skin >= 0)
         return Error{
             ErrorKind::input,
-            fmt::format("{}: node {}{} has a skin, and skinned meshes are not posed; export the model "
-                        "with its pose applied and without a skin",
-                        path, index, node.name.empty() ? "" : " '" + node.name + "'")};
+            fmt::format(
+                "{}: node {}{} has a skin, and skinned meshes are not posed; export the model "
+                "with its pose applied and without a skin",
+                path, index, node.name.empty() ? "" : " '" + node.name + "'")};
       const tinygltf::Mesh& mesh = file.meshes[static_cast<size_t>(node.mesh)];
       is_head_scan = is_head_scan || mesh.name == head_scan;
       for (const tinygltf::Primitive& primitive : mesh.primitives)
@@ -254,16 +267,18 @@ Texture own_map(Gathering& gathering, int texture) {
     return without(fmt::format("texture {} does not exist; its map is left out", texture));
   const tinygltf::Texture& from = file.textures[static_cast<size_t>(texture)];
   if (from.source < 0 || static_cast<size_t>(from.source) >= file.images.size())
-    return without(fmt::format("texture {} has no picture that can be read{}{}; its map is left out", texture,
-                               from.extensions.empty() ? "" : " without ",
-                               from.extensions.empty() ? "" : from.extensions.begin()->first));
+    return without(
+        fmt::format("texture {} has no picture that can be read{}{}; its map is left out", texture,
+                    from.extensions.empty() ? "" : " without ",
+                    from.extensions.empty() ? "" : from.extensions.begin()->first));
   const tinygltf::Image& image = file.images[static_cast<size_t>(from.source)];
   const std::string& name = image.uri.empty() ? image.name : image.uri;
-  const std::string called = fmt::format("image {}{}", from.source, name.empty() ? "" : " '" + name + "'");
+  const std::string called =
+      fmt::format("image {}{}", from.source, name.empty() ? "" : " '" + name + "'");
   if (image.image.empty() && !image.uri.empty())
     return without(called + " is not there, is empty or cannot be read; its map is left out");
-  auto decoded =
-      decode_texture(fmt::format("{}: {}", gathering.path, called), std::as_bytes(std::span(image.image)));
+  auto decoded = decode_texture(fmt::format("{}: {}", gathering.path, called),
+                                std::as_bytes(std::span(image.image)));
   if (decoded) return decoded.take();
   gathering.model.warnings.push_back(decoded.error().text);
   return {};
@@ -274,13 +289,15 @@ Result<> read_maps(Gathering& gathering, const ModelOptions& options) {
   if (const tinygltf::Material* from = gathering.first_material(); from != nullptr) {
     const tinygltf::Material& material = *from;
     const std::vector<double>& factor = material.pbrMetallicRoughness.baseColorFactor;
-    if (factor.size() >= 3) model.albedo_factor = glm::clamp(glm::make_vec3(factor.data()), 0.0, 1.0);
+    if (factor.size() >= 3)
+      model.albedo_factor = glm::clamp(glm::make_vec3(factor.data()), 0.0, 1.0);
     const auto own = [&](const auto& info, const char* which) -> Texture {
       if (info.index < 0 || place_of(info) == gathering.place_of_maps())
         return own_map(gathering, info.index);
-      model.warnings.push_back(fmt::format("{}: the {} map has other coordinates or another "
-                                           "KHR_texture_transform than the other maps and is ignored",
-                                           gathering.path, which));
+      model.warnings.push_back(
+          fmt::format("{}: the {} map has other coordinates or another "
+                      "KHR_texture_transform than the other maps and is ignored",
+                      gathering.path, which));
       return {};
     };
     if (options.albedo.empty())
@@ -291,8 +308,9 @@ Result<> read_maps(Gathering& gathering, const ModelOptions& options) {
     const std::string& path;
     Texture& texture;
   };
-  for (const Beside& one : {Beside{options.albedo, model.albedo}, Beside{options.normal, model.normal},
-                            Beside{options.specular, model.specular}}) {
+  for (const Beside& one :
+       {Beside{options.albedo, model.albedo}, Beside{options.normal, model.normal},
+        Beside{options.specular, model.specular}}) {
     if (one.path.empty()) continue;
     auto texture = load_texture(one.path);
     if (!texture) return texture.error();
@@ -312,7 +330,8 @@ Result<> place_in_middle(Mesh& mesh, const ModelOptions& options) {
   const float height = bounds.high.y - bounds.low.y;
   if (!(height > 0.0f) || !std::isfinite(height))
     return Error{ErrorKind::input, fmt::format("{}: the model has no height", options.mesh)};
-  const float scale = options.height_metres > 0.0 ? static_cast<float>(options.height_metres) / height : 1.0f;
+  const float scale =
+      options.height_metres > 0.0 ? static_cast<float>(options.height_metres) / height : 1.0f;
   const glm::vec3 middle = 0.5f * (bounds.low + bounds.high);
   for (Vertex& vertex : mesh.vertices)
     vertex.position = (vertex.position - middle) * scale;
@@ -323,7 +342,8 @@ Result<> place_in_middle(Mesh& mesh, const ModelOptions& options) {
 
 Result<Model> load_model(const ModelOptions& options, const std::vector<std::string>& roots) {
   constexpr double tallest = 1000.0;
-  if (!std::isfinite(options.height_metres) || options.height_metres < 0.0 || options.height_metres > tallest)
+  if (!std::isfinite(options.height_metres) || options.height_metres < 0.0 ||
+      options.height_metres > tallest)
     return Error{ErrorKind::usage,
                  fmt::format("the model's height is {}; expected more than 0 and at most {} metres",
                              options.height_metres, tallest)};
@@ -337,7 +357,8 @@ Result<Model> load_model(const ModelOptions& options, const std::vector<std::str
     for (const int node : file->scenes[scene].nodes)
       if (auto done = gathering.add_node(node, glm::dmat4(1.0), 0); !done) return done.error();
   if (gathering.model.mesh.indices.empty())
-    return Error{ErrorKind::input, fmt::format("{}: the default scene has no triangles", options.mesh)};
+    return Error{ErrorKind::input,
+                 fmt::format("{}: the default scene has no triangles", options.mesh)};
   if (auto done = read_maps(gathering, options); !done) return done.error();
   if (auto done = place_in_middle(gathering.model.mesh, options); !done) return done.error();
   for (const Part& part : gathering.parts) {
@@ -345,8 +366,8 @@ Result<Model> load_model(const ModelOptions& options, const std::vector<std::str
     if (!part.has_tangents) compute_in(gathering.model.mesh, part, compute_tangents);
   }
   if (gathering.skipped > 0)
-    gathering.model.warnings.push_back(
-        fmt::format("{}: {} meshes of points or lines were left out", options.mesh, gathering.skipped));
+    gathering.model.warnings.push_back(fmt::format("{}: {} meshes of points or lines were left out",
+                                                   options.mesh, gathering.skipped));
   if (!file->asset.copyright.empty()) gathering.model.credits.push_back(file->asset.copyright);
   if (gathering.is_head_scan) gathering.model.credits.emplace_back(head_scan_credit);
   return std::move(gathering.model);

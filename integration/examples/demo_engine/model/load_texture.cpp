@@ -40,15 +40,18 @@ Result<Texture> decode_texture(const std::string& name, std::span<const std::byt
   int width = 0, height = 0, channels = 0;
   if (bytes.empty() || bytes.size() > INT_MAX || other_format(bytes) ||
       stbi_info_from_memory(data, size, &width, &height, &channels) == 0)
-    return Error{ErrorKind::input,
-                 fmt::format("{}: this is not an image that can be read (PNG, JPEG, TGA, BMP)", name)};
+    return Error{
+        ErrorKind::input,
+        fmt::format("{}: this is not an image that can be read (PNG, JPEG, TGA, BMP)", name)};
   if (width < 1 || height < 1 || width > max_texels_per_side || height > max_texels_per_side)
-    return Error{ErrorKind::input, fmt::format("{}: the image is {}x{}; maps may be 1x1 to {}x{}", name,
-                                               width, height, max_texels_per_side, max_texels_per_side)};
+    return Error{ErrorKind::input,
+                 fmt::format("{}: the image is {}x{}; maps may be 1x1 to {}x{}", name, width,
+                             height, max_texels_per_side, max_texels_per_side)};
   constexpr int rgba = 4;
   stbi_uc* texels = stbi_load_from_memory(data, size, &width, &height, &channels, rgba);
   if (texels == nullptr)
-    return Error{ErrorKind::input, fmt::format("{}: the image is damaged: {}", name, stbi_failure_reason())};
+    return Error{ErrorKind::input,
+                 fmt::format("{}: the image is damaged: {}", name, stbi_failure_reason())};
   Texture texture{static_cast<uint32_t>(width), static_cast<uint32_t>(height), {}};
   texture.texels.resize(size_t{texture.width} * texture.height * rgba);
   std::memcpy(texture.texels.data(), texels, texture.texels.size());
@@ -61,7 +64,8 @@ void flip_rows(Texture& texture) {
   for (uint32_t y = 0; y < texture.height / 2; ++y)
     std::swap_ranges(texture.texels.begin() + static_cast<ptrdiff_t>(y * row),
                      texture.texels.begin() + static_cast<ptrdiff_t>((y + 1) * row),
-                     texture.texels.begin() + static_cast<ptrdiff_t>((texture.height - 1 - y) * row));
+                     texture.texels.begin() +
+                         static_cast<ptrdiff_t>((texture.height - 1 - y) * row));
 }
 
 } // namespace demo

@@ -34,8 +34,8 @@ bool file_exists(const std::string& name, void* user) {
   const dermis::PlacedFile placed = dermis::place_file(files.folder, name, files.roots);
   if (!placed.problem.empty()) {
     if (files.rejected.empty())
-      files.rejected =
-          fmt::format("'{}' is not read: {}; --root declares further folders", name, placed.problem);
+      files.rejected = fmt::format("'{}' is not read: {}; --root declares further folders", name,
+                                   placed.problem);
     return false;
   }
   std::error_code ignored;
@@ -46,7 +46,8 @@ std::string as_it_is(const std::string& name, void*) {
   return name;
 }
 
-bool read_whole(std::vector<unsigned char>* out, std::string* error, const std::string& name, void* user) {
+bool read_whole(std::vector<unsigned char>* out, std::string* error, const std::string& name,
+                void* user) {
   const auto& files = *static_cast<const GltfFiles*>(user);
   const dermis::PlacedFile placed = dermis::place_file(files.folder, name, files.roots);
   auto bytes = read_binary_file(placed.path.string(), max_model_bytes);
@@ -68,7 +69,8 @@ bool keep_encoded(tinygltf::Image* image, const int, std::string*, std::string*,
   if (image->bufferView >= 0) {
     const tinygltf::BufferView& view = model.bufferViews[static_cast<size_t>(image->bufferView)];
     const size_t held = model.buffers[static_cast<size_t>(view.buffer)].data.size();
-    if (view.byteLength > INT_MAX || view.byteOffset > held || view.byteLength > held - view.byteOffset)
+    if (view.byteLength > INT_MAX || view.byteOffset > held ||
+        view.byteLength > held - view.byteOffset)
       return true;
   }
   image->image.assign(bytes, bytes + size);
@@ -115,7 +117,8 @@ using Json = nlohmann::json;
 
 bool is_read(std::string_view extension) {
   return extension == "KHR_mesh_quantization" || extension == "KHR_texture_transform" ||
-         (reads_meshopt && extension == meshopt_extension) || (reads_draco && extension == draco_extension);
+         (reads_meshopt && extension == meshopt_extension) ||
+         (reads_draco && extension == draco_extension);
 }
 
 // Returns "" for a supported version of glTF, else the fault in `asset`.
@@ -128,12 +131,14 @@ std::string wrong_version(const Json& file) {
     if (found == asset->end()) continue;
     if (!found->is_string()) return fmt::format("asset.{} is no text; expected \"2.0\"", key);
     const std::string& text = found->get_ref<const std::string&>();
-    const bool digits = text.size() > 2 && text.find_first_not_of("0123456789", 2) == std::string::npos;
+    const bool digits =
+        text.size() > 2 && text.find_first_not_of("0123456789", 2) == std::string::npos;
     const bool read = text.starts_with("2.") && digits;
     const bool needs_more = key == std::string_view("minVersion") && text != "2.0";
     if (!read || needs_more)
-      return fmt::format("asset.{} is '{}', which is not read; expected 2.0: export the model as glTF 2.0",
-                         key, text);
+      return fmt::format(
+          "asset.{} is '{}', which is not read; expected 2.0: export the model as glTF 2.0", key,
+          text);
   }
   return "";
 }
@@ -151,8 +156,8 @@ std::string unknown_extensions(const Json& file) {
     unknown += fmt::format("{}'{}'", unknown.empty() ? "" : ", ", text);
   }
   if (unknown.empty()) return "";
-  return fmt::format("the file requires {}, which this build does not read; export the model without it",
-                     unknown);
+  return fmt::format(
+      "the file requires {}, which this build does not read; export the model without it", unknown);
 }
 
 // Escapes '+' in names, which tinygltf 2.7 decodes as a space; this is correct only for web forms.
@@ -221,8 +226,8 @@ bool prepare(Json& file) {
 }
 
 // Returns the file with `json` in place of its own JSON.
-std::vector<std::byte> with_json(std::span<const std::byte> bytes, const Json& json, size_t old_size,
-                                 bool binary) {
+std::vector<std::byte> with_json(std::span<const std::byte> bytes, const Json& json,
+                                 size_t old_size, bool binary) {
   std::string text = json.dump();
   std::vector<std::byte> out;
   const auto append = [&](std::span<const std::byte> more) {
@@ -256,7 +261,8 @@ Result<tinygltf::Model> parse_gltf(const std::string& path, std::span<const std:
   while (first < text.size() && std::isspace(static_cast<unsigned char>(text[first])) != 0)
     ++first;
   if (!binary && (first == text.size() || text[first] != '{'))
-    return reject("this is not a glTF file: it starts neither with 'glTF' (binary) nor with '{' (JSON)");
+    return reject(
+        "this is not a glTF file: it starts neither with 'glTF' (binary) nor with '{' (JSON)");
   if (binary) {
     uint32_t version = 2;
     if (bytes.size() >= 8) std::memcpy(&version, bytes.data() + 4, sizeof version);
@@ -268,12 +274,14 @@ Result<tinygltf::Model> parse_gltf(const std::string& path, std::span<const std:
     text = text.substr(20, json_size);
   }
   if (nesting_of(text) > dermis::limits::nesting)
-    return reject(fmt::format("objects and arrays are nested deeper than {}", dermis::limits::nesting));
+    return reject(
+        fmt::format("objects and arrays are nested deeper than {}", dermis::limits::nesting));
 
   Json json = Json::parse(text, nullptr, false);
   if (json.is_object()) { // otherwise tinygltf reports the fault
     if (const std::string wrong = wrong_version(json); !wrong.empty()) return reject(wrong);
-    if (const std::string unknown = unknown_extensions(json); !unknown.empty()) return reject(unknown);
+    if (const std::string unknown = unknown_extensions(json); !unknown.empty())
+      return reject(unknown);
   }
   std::vector<std::byte> changed;
   if (prepare(json)) {
@@ -292,11 +300,12 @@ Result<tinygltf::Model> parse_gltf(const std::string& path, std::span<const std:
   bool loaded = false;
   try {
     // The folder is empty, so that callbacks receive names as in the file.
-    loaded = binary
-                 ? loader.LoadBinaryFromMemory(&model, &error, &warning,
-                                               reinterpret_cast<const unsigned char*>(bytes.data()), size, "")
-                 : loader.LoadASCIIFromString(&model, &error, &warning,
-                                              reinterpret_cast<const char*>(bytes.data()), size, "");
+    loaded =
+        binary ? loader.LoadBinaryFromMemory(&model, &error, &warning,
+                                             reinterpret_cast<const unsigned char*>(bytes.data()),
+                                             size, "")
+               : loader.LoadASCIIFromString(&model, &error, &warning,
+                                            reinterpret_cast<const char*>(bytes.data()), size, "");
   } catch (const std::exception& problem) {
     error = problem.what();
   }
@@ -304,7 +313,8 @@ Result<tinygltf::Model> parse_gltf(const std::string& path, std::span<const std:
     error.pop_back();
   if (!files.rejected.empty()) return reject(files.rejected);
   if (!loaded)
-    return reject(fmt::format("the glTF file is damaged: {}", error.empty() ? "no reason given" : error));
+    return reject(
+        fmt::format("the glTF file is damaged: {}", error.empty() ? "no reason given" : error));
   try {
     if (auto done = decompress(model, path); !done) return done.error();
   } catch (const std::exception& problem) {

@@ -45,8 +45,8 @@ struct Range {
   const unsigned char* first = nullptr;
   size_t stride = 0;
 };
-Result<Range> find_range(const tinygltf::Model& model, const std::string& file, int index, int buffer_view,
-                         size_t offset, size_t element, size_t count) {
+Result<Range> find_range(const tinygltf::Model& model, const std::string& file, int index,
+                         int buffer_view, size_t offset, size_t element, size_t count) {
   if (buffer_view < 0 || static_cast<size_t>(buffer_view) >= model.bufferViews.size())
     return reject(file, index, "refers to a buffer view that does not exist");
   const tinygltf::BufferView& view = model.bufferViews[static_cast<size_t>(buffer_view)];
@@ -63,7 +63,8 @@ Result<Range> find_range(const tinygltf::Model& model, const std::string& file, 
   return Range{data.data() + view.byteOffset + offset, stride};
 }
 
-Result<uint32_t> unsigned_at(const unsigned char* at, int component, const std::string& file, int index) {
+Result<uint32_t> unsigned_at(const unsigned char* at, int component, const std::string& file,
+                             int index) {
   switch (component) {
   case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
     return uint32_t{*at};
@@ -77,12 +78,13 @@ Result<uint32_t> unsigned_at(const unsigned char* at, int component, const std::
 }
 
 // Finds the elements that a sparse accessor replaces, each of `element` bytes.
-Result<> find_replaced(const tinygltf::Model& model, const std::string& file, int index, size_t element,
-                       Elements& elements) {
+Result<> find_replaced(const tinygltf::Model& model, const std::string& file, int index,
+                       size_t element, Elements& elements) {
   const auto& sparse = model.accessors[static_cast<size_t>(index)].sparse;
   if (sparse.count < 1 || static_cast<size_t>(sparse.count) > elements.count)
-    return reject(file, index,
-                  fmt::format("replaces {} elements; expected 1 to {}", sparse.count, elements.count));
+    return reject(
+        file, index,
+        fmt::format("replaces {} elements; expected 1 to {}", sparse.count, elements.count));
   if (sparse.indices.byteOffset < 0 || sparse.values.byteOffset < 0)
     return reject(file, index, "begins before its buffer view");
   const int type = sparse.indices.componentType;
@@ -103,7 +105,8 @@ Result<> find_replaced(const tinygltf::Model& model, const std::string& file, in
     const auto one = unsigned_at(where->first + i * where->stride, type, file, index);
     if (!one) return one.error();
     if (*one >= elements.count)
-      return reject(file, index, fmt::format("replaces element {}; there are {}", *one, elements.count));
+      return reject(file, index,
+                    fmt::format("replaces element {}; there are {}", *one, elements.count));
     if (i > 0 && *one <= elements.replaced.back())
       return reject(file, index, "replaces elements that are not in ascending order");
     elements.replaced.push_back(*one);
@@ -111,16 +114,19 @@ Result<> find_replaced(const tinygltf::Model& model, const std::string& file, in
   return success();
 }
 
-Result<Elements> find_elements(const tinygltf::Model& model, const std::string& file, int index, int type) {
+Result<Elements> find_elements(const tinygltf::Model& model, const std::string& file, int index,
+                               int type) {
   if (index < 0 || static_cast<size_t>(index) >= model.accessors.size())
     return reject(file, index, fmt::format("does not exist; there are {}", model.accessors.size()));
   const tinygltf::Accessor& accessor = model.accessors[static_cast<size_t>(index)];
-  if (accessor.type != type) return reject(file, index, "has another element type than its use needs");
+  if (accessor.type != type)
+    return reject(file, index, "has another element type than its use needs");
   if (accessor.count == 0 || accessor.count > max_elements)
     return reject(file, index,
                   fmt::format("has {} elements; expected 1 to {}", accessor.count, max_elements));
   const int components = tinygltf::GetNumComponentsInType(static_cast<uint32_t>(type));
-  const int bytes = tinygltf::GetComponentSizeInBytes(static_cast<uint32_t>(accessor.componentType));
+  const int bytes =
+      tinygltf::GetComponentSizeInBytes(static_cast<uint32_t>(accessor.componentType));
   if (components <= 0 || bytes <= 0) return reject(file, index, "has an unknown component type");
   Elements elements;
   elements.count = accessor.count;
@@ -128,14 +134,15 @@ Result<Elements> find_elements(const tinygltf::Model& model, const std::string& 
   elements.normalized = accessor.normalized;
   const size_t element = static_cast<size_t>(components) * static_cast<size_t>(bytes);
   if (accessor.bufferView >= 0) {
-    const auto range =
-        find_range(model, file, index, accessor.bufferView, accessor.byteOffset, element, elements.count);
+    const auto range = find_range(model, file, index, accessor.bufferView, accessor.byteOffset,
+                                  element, elements.count);
     if (!range) return range.error();
     elements.first = range->first;
     elements.stride = range->stride;
   }
   if (accessor.sparse.isSparse)
-    if (const auto found = find_replaced(model, file, index, element, elements); !found) return found.error();
+    if (const auto found = find_replaced(model, file, index, element, elements); !found)
+      return found.error();
   return elements;
 }
 
@@ -153,7 +160,8 @@ float component_at(const Elements& elements, size_t element, uint32_t component)
   case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
     return static_cast<float>(at[component]) / (elements.normalized ? 255.0f : 1.0f);
   case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
-    return static_cast<float>(load<uint16_t>(at + 2 * component)) / (elements.normalized ? 65535.0f : 1.0f);
+    return static_cast<float>(load<uint16_t>(at + 2 * component)) /
+           (elements.normalized ? 65535.0f : 1.0f);
   case TINYGLTF_COMPONENT_TYPE_BYTE:
     return signed_component(load<int8_t>(at + component), elements.normalized, 127.0f);
   case TINYGLTF_COMPONENT_TYPE_SHORT:
@@ -178,28 +186,29 @@ bool holds_floats(int component_type) {
 
 } // namespace
 
-Result<std::vector<float>> read_floats(const tinygltf::Model& model, const std::string& file, int index,
-                                       int type, uint32_t width) {
+Result<std::vector<float>> read_floats(const tinygltf::Model& model, const std::string& file,
+                                       int index, int type, uint32_t width) {
   auto elements = find_elements(model, file, index, type);
   if (!elements) return elements.error();
   if (!holds_floats(elements->component))
-    return reject(
-        file, index,
-        fmt::format("has the component type {}; expected floats, bytes or shorts", elements->component));
+    return reject(file, index,
+                  fmt::format("has the component type {}; expected floats, bytes or shorts",
+                              elements->component));
   std::vector<float> values(elements->count * width);
   for (size_t i = 0; i < elements->count; ++i) {
     for (uint32_t c = 0; c < width; ++c) {
       const float value = component_at(*elements, i, c);
       if (!std::isfinite(value))
-        return reject(file, index, fmt::format("holds a number that is not finite at element {}", i));
+        return reject(file, index,
+                      fmt::format("holds a number that is not finite at element {}", i));
       values[i * width + c] = value;
     }
   }
   return values;
 }
 
-Result<std::vector<uint32_t>> read_indices(const tinygltf::Model& model, const std::string& file, int index,
-                                           uint32_t limit) {
+Result<std::vector<uint32_t>> read_indices(const tinygltf::Model& model, const std::string& file,
+                                           int index, uint32_t limit) {
   auto elements = find_elements(model, file, index, TINYGLTF_TYPE_SCALAR);
   if (!elements) return elements.error();
   std::vector<uint32_t> values(elements->count);
@@ -210,7 +219,8 @@ Result<std::vector<uint32_t>> read_indices(const tinygltf::Model& model, const s
       values[i] = *value;
     }
     if (values[i] >= limit)
-      return reject(file, index, fmt::format("holds index {}; there are {} vertices", values[i], limit));
+      return reject(file, index,
+                    fmt::format("holds index {}; there are {} vertices", values[i], limit));
   }
   return values;
 }

@@ -35,7 +35,8 @@ constexpr uint32_t frames_in_flight = 2;
 
 std::optional<Target> target_of(std::string_view slot) {
   for (size_t i = 0; i < target_count; ++i)
-    if (!slot.empty() && target_info(static_cast<Target>(i)).slot == slot) return static_cast<Target>(i);
+    if (!slot.empty() && target_info(static_cast<Target>(i)).slot == slot)
+      return static_cast<Target>(i);
   return std::nullopt;
 }
 
@@ -142,7 +143,8 @@ Result<> build_graph(DermisHost& host, const DermisDesc& desc, const Sources& so
   info.include_user = &includes;
   Report report;
   dermis_graph graph = nullptr;
-  const dermis_result result = dermis_graph_create(host.context.get(), &info, &graph, &report.handle);
+  const dermis_result result =
+      dermis_graph_create(host.context.get(), &info, &graph, &report.handle);
   if (result != DERMIS_OK) return dermis_error("dermis_graph_create", result, report.handle);
   host.warnings.clear();
   for (uint32_t i = 0; i < dermis_report_count(report.handle); ++i) {
@@ -176,12 +178,14 @@ Result<> use_shaders(DermisHost& host, const DermisDesc& desc) {
   const dermis_result result =
       dermis_graph_reload_shaders(host.graph, deliver, &host.shaders, &report.handle);
   host.shaders.delivered.clear();
-  if (result != DERMIS_OK) return dermis_error("dermis_graph_reload_shaders", result, report.handle);
+  if (result != DERMIS_OK)
+    return dermis_error("dermis_graph_reload_shaders", result, report.handle);
   return success();
 }
 
 // Returns the slots that this engine does not fill. Errors: input (the graph requires one of them).
-Result<std::vector<std::string>> find_unbound(const DermisHost& host, const DermisDesc& desc, bool rays) {
+Result<std::vector<std::string>> find_unbound(const DermisHost& host, const DermisDesc& desc,
+                                              bool rays) {
   std::vector<std::string> unbound;
   for (const dermis_slot& slot : host.slots) {
     if (rays && is_rays(slot)) continue;
@@ -192,10 +196,11 @@ Result<std::vector<std::string>> find_unbound(const DermisHost& host, const Derm
     if (slot.required)
       return Error{
           ErrorKind::input,
-          fmt::format("graph '{}' wants '{}' bound, which the demo engine does not make; it offers "
-                      "lighting, depth, normal, material, albedo, velocity, thickness, back_lighting and "
-                      "scattered_light",
-                      desc.graph_file, slot.name)};
+          fmt::format(
+              "graph '{}' wants '{}' bound, which the demo engine does not make; it offers "
+              "lighting, depth, normal, material, albedo, velocity, thickness, back_lighting and "
+              "scattered_light",
+              desc.graph_file, slot.name)};
     unbound.emplace_back(slot.name);
   }
   return unbound;
@@ -208,11 +213,13 @@ void DermisHostDeleter::operator()(DermisHost* host) const {
   delete host;
 }
 
-Result<DermisHandle> create_dermis_host(VulkanHost& vulkan, const DermisDesc& desc, KnownSlots* known) {
+Result<DermisHandle> create_dermis_host(VulkanHost& vulkan, const DermisDesc& desc,
+                                        KnownSlots* known) {
   auto sources = read_sources(desc);
   if (!sources) return sources.error();
   DermisHandle host(new DermisHost);
-  if (auto ready = make_context(vulkan, frames_in_flight, true, vulkan.engine_context, desc.hooks); !ready)
+  if (auto ready = make_context(vulkan, frames_in_flight, true, vulkan.engine_context, desc.hooks);
+      !ready)
     return ready.error();
   host->context = vulkan.engine_context;
   host->recorded = desc.hooks.recorded;
@@ -308,7 +315,8 @@ namespace {
 
 // Binds a part of the ray scene. This engine waits for its uploads and builds, so no further wait
 // is needed.
-void bind_rays(const dermis_slot& slot, const RayScene& rays, std::vector<dermis_buffer_binding>& buffers,
+void bind_rays(const dermis_slot& slot, const RayScene& rays,
+               std::vector<dermis_buffer_binding>& buffers,
                dermis_acceleration_structure_binding& structure) {
   const RayPart part = ray_part_of(slot);
   if (part == RayPart::structure) {
@@ -322,7 +330,8 @@ void bind_rays(const dermis_slot& slot, const RayScene& rays, std::vector<dermis
                          : part == RayPart::indices   ? rays.indices
                          : part == RayPart::instances ? rays.instances
                                                       : rays.lights;
-  dermis_buffer_binding& binding = buffers.emplace_back(dermis_buffer_binding DERMIS_BUFFER_BINDING_INIT);
+  dermis_buffer_binding& binding =
+      buffers.emplace_back(dermis_buffer_binding DERMIS_BUFFER_BINDING_INIT);
   binding.slot = slot.id;
   binding.buffer = buffer.buffer;
   binding.bytes = buffer.size / slot.stride * slot.stride;
@@ -391,11 +400,13 @@ Result<> record_graph(DermisHost& host, const Renderer& renderer, const SceneSta
 
 std::vector<PassTime> graph_times(DermisHost& host, uint64_t frame_index) {
   uint32_t count = 0;
-  if (dermis_view_timings(dermis_graph_view(host.graph), frame_index, &count, nullptr) != DERMIS_OK ||
+  if (dermis_view_timings(dermis_graph_view(host.graph), frame_index, &count, nullptr) !=
+          DERMIS_OK ||
       count == 0)
     return {};
   std::vector<dermis_pass_timing> timings(count, dermis_pass_timing DERMIS_PASS_TIMING_INIT);
-  if (dermis_view_timings(dermis_graph_view(host.graph), frame_index, &count, timings.data()) != DERMIS_OK)
+  if (dermis_view_timings(dermis_graph_view(host.graph), frame_index, &count, timings.data()) !=
+      DERMIS_OK)
     return {};
   std::vector<PassTime> times;
   for (const dermis_pass_timing& one : timings)
@@ -428,7 +439,8 @@ Result<FrameChoice> graph_choice(DermisHost& host, uint64_t frame_index) {
   out.uniform_tiles = choice.uniform_tiles;
   out.dispatches = choice.dispatches;
   out.groups = choice.groups;
-  std::copy(std::begin(choice.sampled_tiles), std::end(choice.sampled_tiles), out.sampled_tiles.begin());
+  std::copy(std::begin(choice.sampled_tiles), std::end(choice.sampled_tiles),
+            out.sampled_tiles.begin());
   out.sample_units = choice.sample_units;
   out.sample_demand = choice.sample_demand;
   out.probed_tiles = choice.probed_tiles;

@@ -29,7 +29,8 @@ struct FrameData {
   glm::mat4 shadow_from_view[max_shadow_layers];
 };
 static_assert(offsetof(FrameData, lights) == 5 * 64 + 7 * 16);
-static_assert(sizeof(LightData) == 64 && sizeof(FrameData) == 432 + max_lights * 64 + max_shadow_layers * 64);
+static_assert(sizeof(LightData) == 64 &&
+              sizeof(FrameData) == 432 + max_lights * 64 + max_shadow_layers * 64);
 
 struct ObjectData {
   glm::vec4 world[3], previous[3]; // rows

@@ -25,6 +25,7 @@ std::array<VkImageUsageFlags, target_count> usage_for_keeping();
 // before and after. Waits for the device. Errors: environment.
 Result<> keep_frame(KeptFrames& kept, const Renderer& renderer, uint32_t frame);
 // Replaces record_scene for a kept frame.
-void record_kept(const KeptFrames& kept, const Renderer& renderer, VkCommandBuffer commands, uint32_t frame);
+void record_kept(const KeptFrames& kept, const Renderer& renderer, VkCommandBuffer commands,
+                 uint32_t frame);
 
 } // namespace demo

@@ -19,8 +19,8 @@ Result<OwnedShader> create_shader(VulkanHost& host, std::span<const uint32_t> co
 }
 
 VkPipelineShaderStageCreateInfo stage(VkShaderStageFlagBits flag, VkShaderModule shader) {
-  auto info =
-      vulkan_struct<VkPipelineShaderStageCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO);
+  auto info = vulkan_struct<VkPipelineShaderStageCreateInfo>(
+      VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO);
   info.stage = flag;
   info.module = shader;
   info.pName = "main";
@@ -31,7 +31,8 @@ constexpr std::array vertex_attributes = {
     VkVertexInputAttributeDescription{0, 0, VK_FORMAT_R32G32B32_SFLOAT, offsetof(Vertex, position)},
     VkVertexInputAttributeDescription{1, 0, VK_FORMAT_R32G32B32_SFLOAT, offsetof(Vertex, normal)},
     VkVertexInputAttributeDescription{2, 0, VK_FORMAT_R32G32_SFLOAT, offsetof(Vertex, uv)},
-    VkVertexInputAttributeDescription{3, 0, VK_FORMAT_R32G32B32A32_SFLOAT, offsetof(Vertex, tangent)},
+    VkVertexInputAttributeDescription{3, 0, VK_FORMAT_R32G32B32A32_SFLOAT,
+                                      offsetof(Vertex, tangent)},
     VkVertexInputAttributeDescription{4, 0, VK_FORMAT_R32G32B32_SFLOAT, offsetof(Vertex, tint)},
     VkVertexInputAttributeDescription{5, 0, VK_FORMAT_R32G32_SFLOAT, offsetof(Vertex, openness)},
 };
@@ -46,17 +47,19 @@ Result<ProgramLayout> create_layout(VulkanHost& host, const std::vector<std::vec
     std::vector<VkDescriptorSetLayoutBinding> bindings;
     for (uint32_t i = 0; i < set.size(); ++i)
       bindings.push_back({i, set[i].type, 1, set[i].stages, nullptr});
-    auto info =
-        vulkan_struct<VkDescriptorSetLayoutCreateInfo>(VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO);
+    auto info = vulkan_struct<VkDescriptorSetLayoutCreateInfo>(
+        VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO);
     info.bindingCount = static_cast<uint32_t>(bindings.size());
     info.pBindings = bindings.data();
     VkDescriptorSetLayout handle = VK_NULL_HANDLE;
-    const VkResult result = host.vk.vkCreateDescriptorSetLayout(host.device, &info, nullptr, &handle);
+    const VkResult result =
+        host.vk.vkCreateDescriptorSetLayout(host.device, &info, nullptr, &handle);
     if (result != VK_SUCCESS) return vulkan_error("vkCreateDescriptorSetLayout", result);
     layout.sets.emplace_back(host, handle);
     handles.push_back(handle);
   }
-  auto info = vulkan_struct<VkPipelineLayoutCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO);
+  auto info =
+      vulkan_struct<VkPipelineLayoutCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO);
   info.setLayoutCount = static_cast<uint32_t>(handles.size());
   info.pSetLayouts = handles.data();
   const VkPushConstantRange push = {push_stages, 0, push_bytes};
@@ -75,7 +78,8 @@ Result<Program> create_compute(VulkanHost& host, std::span<const uint32_t> code,
   if (!layout) return layout.error();
   auto shader = create_shader(host, code);
   if (!shader) return shader.error();
-  auto info = vulkan_struct<VkComputePipelineCreateInfo>(VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO);
+  auto info =
+      vulkan_struct<VkComputePipelineCreateInfo>(VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO);
   info.stage = stage(VK_SHADER_STAGE_COMPUTE_BIT, shader->handle);
   info.layout = layout->layout.handle;
   VkPipeline pipeline = VK_NULL_HANDLE;
@@ -89,7 +93,8 @@ Result<OwnedPipeline> create_graphics(VulkanHost& host, const GraphicsDesc& desc
                                       const ProgramLayout& layout) {
   auto vertex = create_shader(host, desc.vertex);
   if (!vertex) return vertex.error();
-  std::vector<VkPipelineShaderStageCreateInfo> stages = {stage(VK_SHADER_STAGE_VERTEX_BIT, vertex->handle)};
+  std::vector<VkPipelineShaderStageCreateInfo> stages = {
+      stage(VK_SHADER_STAGE_VERTEX_BIT, vertex->handle)};
   OwnedShader fragment;
   if (!desc.fragment.empty()) {
     auto made = create_shader(host, desc.fragment);
@@ -108,8 +113,8 @@ Result<OwnedPipeline> create_graphics(VulkanHost& host, const GraphicsDesc& desc
   auto assembly = vulkan_struct<VkPipelineInputAssemblyStateCreateInfo>(
       VK_STRUCTURE_TYPE_PIPELINE_INPUT_ASSEMBLY_STATE_CREATE_INFO);
   assembly.topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST;
-  auto viewport =
-      vulkan_struct<VkPipelineViewportStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_VIEWPORT_STATE_CREATE_INFO);
+  auto viewport = vulkan_struct<VkPipelineViewportStateCreateInfo>(
+      VK_STRUCTURE_TYPE_PIPELINE_VIEWPORT_STATE_CREATE_INFO);
   viewport.viewportCount = 1;
   viewport.scissorCount = 1;
   auto raster = vulkan_struct<VkPipelineRasterizationStateCreateInfo>(
@@ -138,16 +143,17 @@ Result<OwnedPipeline> create_graphics(VulkanHost& host, const GraphicsDesc& desc
   blend.attachmentCount = static_cast<uint32_t>(attachments.size());
   blend.pAttachments = attachments.data();
   const VkDynamicState dynamics[] = {VK_DYNAMIC_STATE_VIEWPORT, VK_DYNAMIC_STATE_SCISSOR};
-  auto dynamic =
-      vulkan_struct<VkPipelineDynamicStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_DYNAMIC_STATE_CREATE_INFO);
+  auto dynamic = vulkan_struct<VkPipelineDynamicStateCreateInfo>(
+      VK_STRUCTURE_TYPE_PIPELINE_DYNAMIC_STATE_CREATE_INFO);
   dynamic.dynamicStateCount = 2;
   dynamic.pDynamicStates = dynamics;
-  auto rendering =
-      vulkan_struct<VkPipelineRenderingCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_RENDERING_CREATE_INFO);
+  auto rendering = vulkan_struct<VkPipelineRenderingCreateInfo>(
+      VK_STRUCTURE_TYPE_PIPELINE_RENDERING_CREATE_INFO);
   rendering.colorAttachmentCount = static_cast<uint32_t>(desc.colors.size());
   rendering.pColorAttachmentFormats = desc.colors.data();
   rendering.depthAttachmentFormat = desc.depth;
-  auto info = vulkan_struct<VkGraphicsPipelineCreateInfo>(VK_STRUCTURE_TYPE_GRAPHICS_PIPELINE_CREATE_INFO);
+  auto info =
+      vulkan_struct<VkGraphicsPipelineCreateInfo>(VK_STRUCTURE_TYPE_GRAPHICS_PIPELINE_CREATE_INFO);
   info.pNext = &rendering;
   info.stageCount = static_cast<uint32_t>(stages.size());
   info.pStages = stages.data();
@@ -173,8 +179,9 @@ Result<OwnedSampler> create_sampler(VulkanHost& host, Sampling sampling) {
   info.magFilter = nearest ? VK_FILTER_NEAREST : VK_FILTER_LINEAR;
   info.minFilter = info.magFilter;
   info.mipmapMode = nearest ? VK_SAMPLER_MIPMAP_MODE_NEAREST : VK_SAMPLER_MIPMAP_MODE_LINEAR;
-  const VkSamplerAddressMode address =
-      sampling == Sampling::smooth ? VK_SAMPLER_ADDRESS_MODE_REPEAT : VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE;
+  const VkSamplerAddressMode address = sampling == Sampling::smooth
+                                           ? VK_SAMPLER_ADDRESS_MODE_REPEAT
+                                           : VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE;
   info.addressModeU = address;
   info.addressModeV = address;
   info.addressModeW = address;
@@ -194,7 +201,8 @@ Result<OwnedDescriptorPool> create_descriptor_pool(VulkanHost& host, uint32_t se
                                         {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, sets * each},
                                         {VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, sets * each},
                                         {VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, sets * each}};
-  auto info = vulkan_struct<VkDescriptorPoolCreateInfo>(VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO);
+  auto info =
+      vulkan_struct<VkDescriptorPoolCreateInfo>(VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO);
   info.maxSets = sets;
   info.poolSizeCount = 4;
   info.pPoolSizes = sizes;
@@ -206,7 +214,8 @@ Result<OwnedDescriptorPool> create_descriptor_pool(VulkanHost& host, uint32_t se
 
 Result<VkDescriptorSet> allocate_set(VulkanHost& host, const OwnedDescriptorPool& pool,
                                      const OwnedSetLayout& layout) {
-  auto info = vulkan_struct<VkDescriptorSetAllocateInfo>(VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO);
+  auto info =
+      vulkan_struct<VkDescriptorSetAllocateInfo>(VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO);
   info.descriptorPool = pool.handle;
   info.descriptorSetCount = 1;
   info.pSetLayouts = &layout.handle;

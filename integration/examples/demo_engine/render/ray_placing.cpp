@@ -29,7 +29,8 @@ Result<> place_rays(Renderer& renderer, const SceneState& state) {
   }
   std::vector<RayInstance> instances;
   for (size_t i = 0; i < renderer.scene->objects.size(); ++i)
-    instances.push_back({renderer.gpu.mesh_of[i], renderer.scene->objects[i].profile, state.world[i]});
+    instances.push_back(
+        {renderer.gpu.mesh_of[i], renderer.scene->objects[i].profile, state.world[i]});
   std::vector<RayLight> lights;
   for (const Light& light : renderer.scene->lights)
     lights.push_back(ray_light(light, state.seconds));

@@ -17,7 +17,8 @@ struct InstanceData { // mirrors restir/instances.glsl
 static_assert(sizeof(InstanceData) == 64);
 
 VkDeviceAddress address_of(const VulkanHost& host, const Buffer& buffer) {
-  auto info = vulkan_struct<VkBufferDeviceAddressInfo>(VK_STRUCTURE_TYPE_BUFFER_DEVICE_ADDRESS_INFO);
+  auto info =
+      vulkan_struct<VkBufferDeviceAddressInfo>(VK_STRUCTURE_TYPE_BUFFER_DEVICE_ADDRESS_INFO);
   info.buffer = buffer.buffer;
   return host.vk.vkGetBufferDeviceAddress(host.device, &info);
 }
@@ -57,9 +58,9 @@ Result<RayStructure> build(VulkanHost& host, VkAccelerationStructureTypeKHR type
   }
   // minAccelerationStructureScratchOffsetAlignment is at most this.
   constexpr uint64_t scratch_alignment = 256;
-  auto scratch =
-      create_buffer(host, std::max<uint64_t>(sizes.buildScratchSize, 1) + scratch_alignment,
-                    VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT, false);
+  auto scratch = create_buffer(
+      host, std::max<uint64_t>(sizes.buildScratchSize, 1) + scratch_alignment,
+      VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT, false);
   if (!scratch) return scratch.error();
   info.dstAccelerationStructure = made.handle;
   info.scratchData.deviceAddress =
@@ -107,7 +108,8 @@ std::vector<RayLight> make_ray_lights(std::vector<RayLight> lights) {
   float sum = 0;
   for (RayLight& light : lights) {
     if (light.type == 1 || light.type == 2)
-      light.area = glm::length(glm::cross(light.edge_u, light.edge_v)) * (light.type == 2 ? 0.5f : 1.0f);
+      light.area =
+          glm::length(glm::cross(light.edge_u, light.edge_v)) * (light.type == 2 ? 0.5f : 1.0f);
     sum += power_of(light);
   }
   float until = 0;
@@ -149,7 +151,8 @@ Result<RayScene> create_ray_scene(VulkanHost& host, std::span<const Mesh> meshes
         address_of(host, scene.vertices) + scene.first[m].x * triangles.vertexStride;
     triangles.maxVertex = static_cast<uint32_t>(std::max<size_t>(meshes[m].vertices.size(), 1) - 1);
     triangles.indexType = VK_INDEX_TYPE_UINT32;
-    triangles.indexData.deviceAddress = address_of(host, scene.indices) + scene.first[m].y * sizeof(uint32_t);
+    triangles.indexData.deviceAddress =
+        address_of(host, scene.indices) + scene.first[m].y * sizeof(uint32_t);
     auto made = build(host, VK_ACCELERATION_STRUCTURE_TYPE_BOTTOM_LEVEL_KHR, geometry,
                       static_cast<uint32_t>(meshes[m].indices.size() / 3));
     if (!made) return made.error();

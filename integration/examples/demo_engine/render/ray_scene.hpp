@@ -1,5 +1,6 @@
 #pragma once
-// The scene for ray queries: acceleration structures, and the buffers that graphs import in addition
+// The scene for ray queries: acceleration structures, and the buffers that graphs import in
+// addition
 // (`dermis docs`: pass_types.md, restir.initial). Made only where the device has VK_KHR_ray_query.
 
 #include "integration/examples/demo_engine/geometry/mesh.hpp"

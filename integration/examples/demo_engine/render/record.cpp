@@ -78,7 +78,9 @@ void draw_object(Renderer& renderer, VkCommandBuffer commands, const ProgramLayo
 
 void record_shadows(Renderer& renderer, VkCommandBuffer commands, const SceneState& state) {
   // Maps stay valid while neither lights nor objects move; changed intensities do not matter.
-  if (state.shadow_from_world == renderer.rendered_shadows && state.world == renderer.rendered_world) return;
+  if (state.shadow_from_world == renderer.rendered_shadows &&
+      state.world == renderer.rendered_world)
+    return;
   renderer.rendered_shadows = state.shadow_from_world;
   renderer.rendered_world = state.world;
   const VulkanHost& host = *renderer.host;
@@ -87,10 +89,11 @@ void record_shadows(Renderer& renderer, VkCommandBuffer commands, const SceneSta
     auto depth = attachment(renderer.shadow_maps.layer_views[layer], depth_target.layout);
     depth.clearValue.depthStencil.depth = 1.0f;
     begin_drawing(host, commands, {shadow_map_size, shadow_map_size}, {}, depth);
-    host.vk.vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, renderer.shadow_pipeline.handle);
+    host.vk.vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS,
+                              renderer.shadow_pipeline.handle);
     host.vk.vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS,
-                                    renderer.shadow_layout.layout.handle, 0, 1, &renderer.shadow_set, 0,
-                                    nullptr);
+                                    renderer.shadow_layout.layout.handle, 0, 1,
+                                    &renderer.shadow_set, 0, nullptr);
     for (uint32_t i = 0; i < renderer.scene->objects.size(); ++i)
       if (renderer.scene->objects[i].casts_shadow)
         draw_object(renderer, commands, renderer.shadow_layout, VK_SHADER_STAGE_VERTEX_BIT, i,
@@ -111,7 +114,8 @@ void record_gbuffer(Renderer& renderer, VkCommandBuffer commands, const SceneSta
   auto depth = attachment(renderer[Target::depth].view, depth_target.layout);
   depth.clearValue.depthStencil.depth = renderer.view.reversed_depth ? 0.0f : 1.0f;
   begin_drawing(host, commands, {renderer.view.width, renderer.view.height}, colors, depth);
-  host.vk.vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, renderer.gbuffer_pipeline.handle);
+  host.vk.vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS,
+                            renderer.gbuffer_pipeline.handle);
   constexpr VkShaderStageFlags stages = VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT;
   for (uint32_t i = 0; i < renderer.scene->objects.size(); ++i) {
     const VkDescriptorSet sets[] = {renderer.gbuffer_set, renderer.gpu.maps_of[i]};
@@ -125,23 +129,27 @@ void record_gbuffer(Renderer& renderer, VkCommandBuffer commands, const SceneSta
   transition(host, commands, renderer[Target::depth], depth_target, resting);
 }
 
-void dispatch(Renderer& renderer, VkCommandBuffer commands, const Program& program, VkDescriptorSet set) {
+void dispatch(Renderer& renderer, VkCommandBuffer commands, const Program& program,
+              VkDescriptorSet set) {
   constexpr uint32_t tile = 8; // local size of both kernels
   const VulkanHost& host = *renderer.host;
   host.vk.vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, program.pipeline.handle);
-  host.vk.vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, program.layout.layout.handle, 0,
-                                  1, &set, 0, nullptr);
+  host.vk.vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE,
+                                  program.layout.layout.handle, 0, 1, &set, 0, nullptr);
   host.vk.vkCmdDispatch(commands, (renderer.view.width + tile - 1) / tile,
                         (renderer.view.height + tile - 1) / tile, 1);
 }
 
 LightData light_data(const Light& light, const SceneState& state, uint32_t first_layer) {
-  const glm::dvec3 from = value_at(light.position, state.seconds), to = value_at(light.target, state.seconds);
+  const glm::dvec3 from = value_at(light.position, state.seconds),
+                   to = value_at(light.target, state.seconds);
   const glm::dmat4& view = state.now.view_from_world;
   LightData data{};
   const glm::dvec3 along = to - from;
-  const glm::dvec3 direction = glm::length(along) > 0.0 ? glm::normalize(along) : glm::dvec3(0, 0, -1);
-  data.position = glm::vec4(glm::vec3(view * glm::dvec4(from, 1.0)), static_cast<float>(light.type));
+  const glm::dvec3 direction =
+      glm::length(along) > 0.0 ? glm::normalize(along) : glm::dvec3(0, 0, -1);
+  data.position =
+      glm::vec4(glm::vec3(view * glm::dvec4(from, 1.0)), static_cast<float>(light.type));
   const double outer = glm::radians(0.5 * light.angle);
   const double inner = glm::radians(std::max(0.0, 0.5 * light.angle - light.penumbra));
   data.direction =
@@ -159,7 +167,8 @@ void set_frame(Renderer& renderer, const SceneState& state, Scattering scatterin
   const glm::dmat4 clip_from_world = state.now.clip_from_view * state.now.view_from_world;
   FrameData data{};
   data.clip_from_world = glm::mat4(clip_from_world);
-  data.clip_from_world_steady = glm::mat4(state.now.clip_from_view_steady * state.now.view_from_world);
+  data.clip_from_world_steady =
+      glm::mat4(state.now.clip_from_view_steady * state.now.view_from_world);
   data.previous_clip_from_world =
       glm::mat4(state.previous.clip_from_view_steady * state.previous.view_from_world);
   data.view_from_world = glm::mat4(state.now.view_from_world);
@@ -170,10 +179,11 @@ void set_frame(Renderer& renderer, const SceneState& state, Scattering scatterin
   data.up = glm::vec4(state.now.view_from_world * glm::dvec4(0, 1, 0, 0));
   const glm::vec2 size(renderer.view.width, renderer.view.height);
   data.size = glm::vec4(size, 1.0f / size);
-  data.misc = glm::vec4(renderer.view.reversed_depth ? 0.0f : 1.0f, static_cast<float>(scene.exposure),
-                        1.0f / shadow_map_size, scene.camera.orthographic ? 1.0f : 0.0f);
-  data.counts =
-      glm::uvec4(static_cast<uint32_t>(scene.lights.size()), static_cast<uint32_t>(scattering), 0u, 0u);
+  data.misc =
+      glm::vec4(renderer.view.reversed_depth ? 0.0f : 1.0f, static_cast<float>(scene.exposure),
+                1.0f / shadow_map_size, scene.camera.orthographic ? 1.0f : 0.0f);
+  data.counts = glm::uvec4(static_cast<uint32_t>(scene.lights.size()),
+                           static_cast<uint32_t>(scattering), 0u, 0u);
   for (size_t i = 0; i < scene.lights.size(); ++i)
     data.lights[i] = light_data(scene.lights[i], state, state.first_layer[i]);
   const glm::dmat4 world_from_view = glm::inverse(state.now.view_from_world);

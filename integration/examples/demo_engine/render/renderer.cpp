@@ -11,8 +11,9 @@
 namespace demo {
 namespace {
 
-constexpr VkImageUsageFlags attachment_usage =
-    VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
+constexpr VkImageUsageFlags attachment_usage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT |
+                                               VK_IMAGE_USAGE_SAMPLED_BIT |
+                                               VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
 constexpr VkImageUsageFlags stored =
     VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
 constexpr VkImageUsageFlags tested = VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT |
@@ -41,7 +42,8 @@ constexpr VkDescriptorType storage = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
 constexpr VkDescriptorType texture = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
 constexpr VkDescriptorType image = VK_DESCRIPTOR_TYPE_STORAGE_IMAGE;
 constexpr VkShaderStageFlags vertex_stage = VK_SHADER_STAGE_VERTEX_BIT;
-constexpr VkShaderStageFlags both_stages = VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT;
+constexpr VkShaderStageFlags both_stages =
+    VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT;
 constexpr VkShaderStageFlags fragment_stage = VK_SHADER_STAGE_FRAGMENT_BIT;
 constexpr VkShaderStageFlags compute_stage = VK_SHADER_STAGE_COMPUTE_BIT;
 
@@ -72,8 +74,8 @@ Result<> create_targets(Renderer& renderer, const RendererDesc& desc) {
   auto frame = create_buffer(host, sizeof(FrameData), VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT, true);
   if (!frame) return frame.error();
   renderer.frame_buffer = frame.take();
-  auto shadow =
-      create_buffer(host, sizeof(glm::mat4) * max_shadow_layers, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, true);
+  auto shadow = create_buffer(host, sizeof(glm::mat4) * max_shadow_layers,
+                              VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, true);
   if (!shadow) return shadow.error();
   renderer.shadow_buffer = shadow.take();
   return run_commands(host, [&](VkCommandBuffer commands) {
@@ -97,18 +99,18 @@ Result<> create_pipelines(Renderer& renderer) {
   if (!shadow_pipeline) return shadow_pipeline.error();
   renderer.shadow_pipeline = shadow_pipeline.take();
 
-  auto gbuffer =
-      create_layout(host,
-                    {{{uniform, both_stages}, {storage, fragment_stage}},
-                     {{texture, fragment_stage}, {texture, fragment_stage}, {texture, fragment_stage}}},
-                    sizeof(ObjectData), both_stages);
+  auto gbuffer = create_layout(
+      host,
+      {{{uniform, both_stages}, {storage, fragment_stage}},
+       {{texture, fragment_stage}, {texture, fragment_stage}, {texture, fragment_stage}}},
+      sizeof(ObjectData), both_stages);
   if (!gbuffer) return gbuffer.error();
   renderer.gbuffer_layout = gbuffer.take();
   GraphicsDesc drawing;
   drawing.vertex = gbuffer_vert;
   drawing.fragment = gbuffer_frag;
-  for (const Target target :
-       {Target::normal, Target::shading, Target::albedo, Target::material, Target::finish, Target::velocity})
+  for (const Target target : {Target::normal, Target::shading, Target::albedo, Target::material,
+                              Target::finish, Target::velocity})
     drawing.colors.push_back(target_info(target).format);
   drawing.compare = renderer.view.reversed_depth ? VK_COMPARE_OP_GREATER : VK_COMPARE_OP_LESS;
   auto gbuffer_pipeline = create_graphics(host, drawing, renderer.gbuffer_layout);
@@ -140,11 +142,15 @@ Result<> create_sets(Renderer& renderer) {
     return success();
   };
   if (auto done = allocate(renderer.shadow_layout.sets[0], renderer.shadow_set); !done) return done;
-  if (auto done = allocate(renderer.gbuffer_layout.sets[0], renderer.gbuffer_set); !done) return done;
-  if (auto done = allocate(renderer.lighting.layout.sets[0], renderer.lighting_set); !done) return done;
-  if (auto done = allocate(renderer.composite.layout.sets[0], renderer.composite_set); !done) return done;
+  if (auto done = allocate(renderer.gbuffer_layout.sets[0], renderer.gbuffer_set); !done)
+    return done;
+  if (auto done = allocate(renderer.lighting.layout.sets[0], renderer.lighting_set); !done)
+    return done;
+  if (auto done = allocate(renderer.composite.layout.sets[0], renderer.composite_set); !done)
+    return done;
   write_buffer(host, renderer.shadow_set, 0, storage, renderer.shadow_buffer);
-  for (const VkDescriptorSet set : {renderer.gbuffer_set, renderer.lighting_set, renderer.composite_set})
+  for (const VkDescriptorSet set :
+       {renderer.gbuffer_set, renderer.lighting_set, renderer.composite_set})
     write_buffer(host, set, 0, uniform, renderer.frame_buffer);
   write_buffer(host, renderer.gbuffer_set, 1, storage, renderer.gpu.materials);
 
@@ -153,7 +159,8 @@ Result<> create_sets(Renderer& renderer) {
                 renderer.texel_sampler.handle);
   };
   const auto write = [&](VkDescriptorSet set, uint32_t binding, Target target) {
-    write_image(host, set, binding, image, renderer[target].view, VK_IMAGE_LAYOUT_GENERAL, VK_NULL_HANDLE);
+    write_image(host, set, binding, image, renderer[target].view, VK_IMAGE_LAYOUT_GENERAL,
+                VK_NULL_HANDLE);
   };
   read(renderer.lighting_set, 1, Target::depth);
   read(renderer.lighting_set, 2, Target::normal);
@@ -197,8 +204,8 @@ const TargetInfo& target_info(Target target) {
   return target_infos[static_cast<size_t>(target)];
 }
 
-Result<std::unique_ptr<Renderer>> create_renderer(VulkanHost& host, const Scene& scene, const Model& model,
-                                                  const RendererDesc& desc) {
+Result<std::unique_ptr<Renderer>> create_renderer(VulkanHost& host, const Scene& scene,
+                                                  const Model& model, const RendererDesc& desc) {
   auto renderer = std::make_unique<Renderer>();
   renderer->host = &host;
   renderer->scene = &scene;
@@ -239,7 +246,8 @@ double elapsed_ms(Renderer& renderer, Timestamp from, Timestamp to) {
                                       VK_QUERY_RESULT_64_BIT) != VK_SUCCESS)
       return 0.0;
   const uint64_t passed = (ticks[1] - ticks[0]) & host.timestamp_mask;
-  return static_cast<double>(passed) * static_cast<double>(host.properties.limits.timestampPeriod) * 1e-6;
+  return static_cast<double>(passed) * static_cast<double>(host.properties.limits.timestampPeriod) *
+         1e-6;
 }
 
 } // namespace demo

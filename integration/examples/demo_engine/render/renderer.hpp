@@ -42,7 +42,8 @@ struct TargetInfo {
 };
 const TargetInfo& target_info(Target target);
 
-inline constexpr ImageState storage_target = {VK_IMAGE_LAYOUT_GENERAL, VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT,
+inline constexpr ImageState storage_target = {VK_IMAGE_LAYOUT_GENERAL,
+                                              VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT,
                                               VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT};
 // State of each target between the passes of this engine and the graph.
 inline constexpr ImageState resting = {VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL,
@@ -54,7 +55,14 @@ struct RendererDesc {
   std::array<VkImageUsageFlags, target_count> more_usage{}; // usage that the graph needs
 };
 
-enum Timestamp : uint32_t { at_start, after_shadows, after_gbuffer, after_lighting, at_composite, at_end };
+enum Timestamp : uint32_t {
+  at_start,
+  after_shadows,
+  after_gbuffer,
+  after_lighting,
+  at_composite,
+  at_end
+};
 inline constexpr uint32_t timestamp_count = 6;
 
 // Belongs to one thread; must be destroyed before its host.
@@ -82,8 +90,8 @@ struct Renderer {
 };
 
 // `scene` must outlive the renderer. Errors: usage, environment.
-Result<std::unique_ptr<Renderer>> create_renderer(VulkanHost& host, const Scene& scene, const Model& model,
-                                                  const RendererDesc& desc);
+Result<std::unique_ptr<Renderer>> create_renderer(VulkanHost& host, const Scene& scene,
+                                                  const Model& model, const RendererDesc& desc);
 
 // Fills the frame's constants. The device must be idle.
 void set_frame(Renderer& renderer, const SceneState& state, Scattering scattering);

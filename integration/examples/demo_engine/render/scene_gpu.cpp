@@ -14,7 +14,8 @@ namespace demo {
 namespace {
 
 constexpr ImageState sampled = {VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL,
-                                VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT, VK_ACCESS_2_SHADER_SAMPLED_READ_BIT};
+                                VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT,
+                                VK_ACCESS_2_SHADER_SAMPLED_READ_BIT};
 
 Mesh make(Shape shape, const Model& model) {
   switch (shape) {
@@ -39,8 +40,8 @@ Mesh make(Shape shape, const Model& model) {
 }
 
 Result<GpuMesh> upload(VulkanHost& host, const Mesh& mesh) {
-  auto vertices =
-      upload_buffer(host, std::as_bytes(std::span(mesh.vertices)), VK_BUFFER_USAGE_VERTEX_BUFFER_BIT);
+  auto vertices = upload_buffer(host, std::as_bytes(std::span(mesh.vertices)),
+                                VK_BUFFER_USAGE_VERTEX_BUFFER_BIT);
   if (!vertices) return vertices.error();
   auto indices =
       upload_buffer(host, std::as_bytes(std::span(mesh.indices)), VK_BUFFER_USAGE_INDEX_BUFFER_BIT);
@@ -49,9 +50,10 @@ Result<GpuMesh> upload(VulkanHost& host, const Mesh& mesh) {
 }
 
 Result<Image> upload(VulkanHost& host, const Texture& texture, VkFormat format) {
-  const uint32_t mips = static_cast<uint32_t>(std::bit_width(std::max(texture.width, texture.height)));
-  constexpr VkImageUsageFlags usage =
-      VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
+  const uint32_t mips =
+      static_cast<uint32_t>(std::bit_width(std::max(texture.width, texture.height)));
+  constexpr VkImageUsageFlags usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT |
+                                      VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
   ImageDesc desc;
   desc.format = format;
   desc.width = texture.width;
@@ -81,7 +83,8 @@ MaterialData material_of(const Object& object, const Model& model) {
 } // namespace
 
 Result<SceneGpu> load_scene(VulkanHost& host, const Scene& scene, const Model& model,
-                            const OwnedDescriptorPool& pool, const OwnedSetLayout& maps, VkSampler sampler) {
+                            const OwnedDescriptorPool& pool, const OwnedSetLayout& maps,
+                            VkSampler sampler) {
   SceneGpu gpu;
   const Texture white = single_texel(255, 255, 255), flat = single_texel(128, 128, 255);
   const auto or_else = [](const Texture& texture, const Texture& other) {
@@ -91,12 +94,13 @@ Result<SceneGpu> load_scene(VulkanHost& host, const Scene& scene, const Model& m
     Texture texture;
     VkFormat format;
   };
-  const std::array<Maps, 6> textures = {{{white, VK_FORMAT_R8G8B8A8_UNORM},
-                                         {flat, VK_FORMAT_R8G8B8A8_UNORM},
-                                         {white, VK_FORMAT_R8G8B8A8_UNORM},
-                                         {or_else(model.albedo, white), VK_FORMAT_R8G8B8A8_SRGB},
-                                         {or_else(model.normal, flat), VK_FORMAT_R8G8B8A8_UNORM},
-                                         {or_else(model.specular, white), VK_FORMAT_R8G8B8A8_UNORM}}};
+  const std::array<Maps, 6> textures = {
+      {{white, VK_FORMAT_R8G8B8A8_UNORM},
+       {flat, VK_FORMAT_R8G8B8A8_UNORM},
+       {white, VK_FORMAT_R8G8B8A8_UNORM},
+       {or_else(model.albedo, white), VK_FORMAT_R8G8B8A8_SRGB},
+       {or_else(model.normal, flat), VK_FORMAT_R8G8B8A8_UNORM},
+       {or_else(model.specular, white), VK_FORMAT_R8G8B8A8_UNORM}}};
   for (const Maps& one : textures) {
     auto image = upload(host, one.texture, one.format);
     if (!image) return image.error();
@@ -108,8 +112,8 @@ Result<SceneGpu> load_scene(VulkanHost& host, const Scene& scene, const Model& m
     if (!set) return set.error();
     sets[s] = *set;
     for (uint32_t i = 0; i < 3; ++i)
-      write_image(host, sets[s], i, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, gpu.images[s * 3 + i].view,
-                  sampled.layout, sampler);
+      write_image(host, sets[s], i, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
+                  gpu.images[s * 3 + i].view, sampled.layout, sampler);
   }
 
   std::array<std::optional<uint32_t>, 8> made{}; // by shape
@@ -133,7 +137,8 @@ Result<SceneGpu> load_scene(VulkanHost& host, const Scene& scene, const Model& m
     gpu.triangles += gpu.meshes[*index].index_count / 3;
     materials.push_back(material_of(object, model));
   }
-  auto buffer = upload_buffer(host, std::as_bytes(std::span(materials)), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
+  auto buffer =
+      upload_buffer(host, std::as_bytes(std::span(materials)), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
   if (!buffer) return buffer.error();
   gpu.materials = buffer.take();
   return gpu;

@@ -43,6 +43,7 @@ struct SceneGpu {
 // Builds each shape once. `maps` is the layout of the set with albedo, normal and specular map.
 // Errors: usage (a shape "model" without a model), environment.
 Result<SceneGpu> load_scene(VulkanHost& host, const Scene& scene, const Model& model,
-                            const OwnedDescriptorPool& pool, const OwnedSetLayout& maps, VkSampler sampler);
+                            const OwnedDescriptorPool& pool, const OwnedSetLayout& maps,
+                            VkSampler sampler);
 
 } // namespace demo

@@ -24,7 +24,9 @@ Result<Scene> read(const std::string& path, const std::vector<std::string>& root
 
 // Replaces the bust by the model in scenes that contain no model.
 void put_in_place(Scene& scene) {
-  const auto is = [](Shape shape) { return [shape](const Object& object) { return object.shape == shape; }; };
+  const auto is = [](Shape shape) {
+    return [shape](const Object& object) { return object.shape == shape; };
+  };
   if (std::any_of(scene.objects.begin(), scene.objects.end(), is(Shape::model))) return;
   const auto bust = std::find_if(scene.objects.begin(), scene.objects.end(), is(Shape::bust));
   if (bust == scene.objects.end()) return;
@@ -52,8 +54,9 @@ void zoom_in(Camera& camera, double zoom) {
 
 bool same_stage(const RenderOptions& a, const RenderOptions& b) {
   const auto of = [](const RenderOptions& o) {
-    return std::tie(o.scene, o.model, o.roots, o.width, o.height, o.frames_per_second, o.reversed_depth,
-                    o.jitter, o.taa, o.validation, o.device, o.kernels, o.camera, o.zoom);
+    return std::tie(o.scene, o.model, o.roots, o.width, o.height, o.frames_per_second,
+                    o.reversed_depth, o.jitter, o.taa, o.validation, o.device, o.kernels, o.camera,
+                    o.zoom);
   };
   return of(a) == of(b);
 }
@@ -98,8 +101,9 @@ Result<> prepare_stage(Stage& stage, const RenderOptions& options,
   if (fits) return success();
   stage.kept = {};
   stage.renderer.reset();
-  stage.desc = {{options.width, options.height, options.reversed_depth, options.jitter || options.taa},
-                usage};
+  stage.desc = {
+      {options.width, options.height, options.reversed_depth, options.jitter || options.taa},
+      usage};
   auto renderer = create_renderer(*stage.host, *stage.scene, stage.model, stage.desc);
   if (!renderer) return renderer.error();
   stage.renderer = renderer.take();

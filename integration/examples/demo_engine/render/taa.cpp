@@ -20,7 +20,8 @@ Result<> create_images(Taa& taa, const Renderer& renderer) {
   desc.format = target_info(Target::color).format;
   desc.width = renderer.view.width;
   desc.height = renderer.view.height;
-  desc.usage = VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
+  desc.usage =
+      VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
   for (Image& image : taa.resolved) {
     auto made = create_image(host, desc);
     if (!made) return made.error();
@@ -63,14 +64,16 @@ Result<std::unique_ptr<Taa>> create_taa(const Renderer& renderer) {
     const VkImageView read[] = {renderer[Target::color].view, renderer[Target::velocity].view,
                                 taa->resolved[1 - i].view};
     for (uint32_t b = 0; b < std::size(read); ++b)
-      write_image(host, *set, 1 + b, texture, read[b], resting.layout, renderer.texel_sampler.handle);
+      write_image(host, *set, 1 + b, texture, read[b], resting.layout,
+                  renderer.texel_sampler.handle);
     write_image(host, *set, 4, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, taa->resolved[i].view,
                 VK_IMAGE_LAYOUT_GENERAL, VK_NULL_HANDLE);
   }
   return taa;
 }
 
-void record_taa(Taa& taa, const Renderer& renderer, VkCommandBuffer commands, const SceneState& state) {
+void record_taa(Taa& taa, const Renderer& renderer, VkCommandBuffer commands,
+                const SceneState& state) {
   const VulkanHost& host = *renderer.host;
   const TaaData data = {glm::vec2(state.now.jitter), !taa.begun || state.cut ? 1u : 0u, 0u};
   std::memcpy(taa.constants.mapped, &data, sizeof(data));
@@ -80,8 +83,9 @@ void record_taa(Taa& taa, const Renderer& renderer, VkCommandBuffer commands, co
   const Image& out = taa.resolved[taa.newest];
   transition(host, commands, out, resting, storage_target);
   host.vk.vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, taa.program.pipeline.handle);
-  host.vk.vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, taa.program.layout.layout.handle,
-                                  0, 1, &taa.sets[taa.newest], 0, nullptr);
+  host.vk.vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE,
+                                  taa.program.layout.layout.handle, 0, 1, &taa.sets[taa.newest], 0,
+                                  nullptr);
   host.vk.vkCmdDispatch(commands, (renderer.view.width + tile - 1) / tile,
                         (renderer.view.height + tile - 1) / tile, 1);
   transition(host, commands, out, storage_target, resting);

@@ -26,7 +26,8 @@ Result<std::unique_ptr<Taa>> create_taa(const Renderer& renderer);
 
 // Records the pass after record_composite. All images are in the resting state before and after.
 // The device must be idle. After a cut, and in the first frame, the picture is the frame's own.
-void record_taa(Taa& taa, const Renderer& renderer, VkCommandBuffer commands, const SceneState& state);
+void record_taa(Taa& taa, const Renderer& renderer, VkCommandBuffer commands,
+                const SceneState& state);
 
 // Returns the picture of the last frame.
 const Image& taa_result(const Taa& taa);

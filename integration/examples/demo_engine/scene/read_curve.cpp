@@ -48,16 +48,19 @@ template <class T> bool read_keys(const Reading& reading, ObjectReader& object, 
     const double minimum = std::min(reading.range.minimum, 0.0);
     const double maximum = std::max(reading.range.maximum, longest_seconds);
     const std::string what = fmt::format("keyframe {} of {}", keys.size(), reading.what);
-    if (!dermis::read_numbers(reading.document, row, what, numbers, minimum, maximum, reading.diagnostics))
+    if (!dermis::read_numbers(reading.document, row, what, numbers, minimum, maximum,
+                              reading.diagnostics))
       return false;
     const auto reject = [&](DiagnosticId id, std::string text) {
       reading.diagnostics.add(id, reading.document.where(row), std::move(text));
       return false;
     };
-    const std::string at =
-        fmt::format("{} is at {} s; times ascend from 0 to {} s", what, numbers[0], longest_seconds);
-    if (numbers[0] < 0.0 || numbers[0] > longest_seconds) return reject(DiagnosticId::out_of_range, at);
-    if (!keys.empty() && numbers[0] <= keys.back().seconds) return reject(DiagnosticId::scene_range, at);
+    const std::string at = fmt::format("{} is at {} s; times ascend from 0 to {} s", what,
+                                       numbers[0], longest_seconds);
+    if (numbers[0] < 0.0 || numbers[0] > longest_seconds)
+      return reject(DiagnosticId::out_of_range, at);
+    if (!keys.empty() && numbers[0] <= keys.back().seconds)
+      return reject(DiagnosticId::scene_range, at);
     for (size_t i = 1; i < numbers.size(); ++i)
       if (numbers[i] < reading.range.minimum || numbers[i] > reading.range.maximum)
         return reject(DiagnosticId::out_of_range,
@@ -108,21 +111,23 @@ void read_any(ObjectReader& object, std::string_view key, const ValueRange& rang
               const Document& document, Diagnostics& diagnostics, Curve<T>& curve) {
   const NodeId node = object.any(key, need);
   if (!node.valid()) return;
-  const Reading reading{document, diagnostics, range, fmt::format("'{}' of {}", key, object.what())};
+  const Reading reading{document, diagnostics, range,
+                        fmt::format("'{}' of {}", key, object.what())};
   if (document[node].kind == NodeKind::object) {
     ObjectReader inner(document, node, reading.what, diagnostics);
-    const bool done = inner.has("sine") ? read_sine(reading, inner, curve) : read_keys(reading, inner, curve);
+    const bool done =
+        inner.has("sine") ? read_sine(reading, inner, curve) : read_keys(reading, inner, curve);
     if (done) inner.finish();
     return;
   }
   std::array<double, width_of(T{})> numbers{};
   if constexpr (width_of(T{}) == 1) {
-    const auto number =
-        dermis::read_number(document, node, reading.what, range.minimum, range.maximum, diagnostics);
+    const auto number = dermis::read_number(document, node, reading.what, range.minimum,
+                                            range.maximum, diagnostics);
     if (!number) return;
     numbers[0] = *number;
-  } else if (!dermis::read_numbers(document, node, reading.what, numbers, range.minimum, range.maximum,
-                                   diagnostics)) {
+  } else if (!dermis::read_numbers(document, node, reading.what, numbers, range.minimum,
+                                   range.maximum, diagnostics)) {
     return;
   }
   T value(0.0);

@@ -18,10 +18,10 @@ struct ValueRange {
 // Read a curve. They leave `curve` unchanged if the key is absent and optional, or wrong (then they
 // add an error).
 void read_curve(dermis::ObjectReader& object, std::string_view key, const ValueRange& range,
-                dermis::Need need, const dermis::Document& document, dermis::Diagnostics& diagnostics,
-                Curve<double>& curve);
+                dermis::Need need, const dermis::Document& document,
+                dermis::Diagnostics& diagnostics, Curve<double>& curve);
 void read_curve(dermis::ObjectReader& object, std::string_view key, const ValueRange& range,
-                dermis::Need need, const dermis::Document& document, dermis::Diagnostics& diagnostics,
-                Curve<glm::dvec3>& curve);
+                dermis::Need need, const dermis::Document& document,
+                dermis::Diagnostics& diagnostics, Curve<glm::dvec3>& curve);
 
 } // namespace demo

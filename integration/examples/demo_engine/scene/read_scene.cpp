@@ -31,7 +31,8 @@ constexpr std::array<string_view, 2> projections = {"perspective", "orthographic
 constexpr std::array<string_view, 3> light_types = {"directional", "point", "spot"};
 constexpr std::array<string_view, 8> shapes = {"bust",   "ear",   "knot", "candle",
                                                "sphere", "plane", "box",  "model"};
-constexpr std::array<string_view, 6> patterns = {"plain", "skin", "jade", "wax", "plaster", "checker"};
+constexpr std::array<string_view, 6> patterns = {"plain", "skin",    "jade",
+                                                 "wax",   "plaster", "checker"};
 
 struct SceneReader {
   const Document& document;
@@ -40,20 +41,23 @@ struct SceneReader {
   std::filesystem::path folder;
   std::vector<std::filesystem::path> roots; // folders below which profiles may be read
 
-  void curve(ObjectReader& object, string_view key, const ValueRange& range, Need need, auto& out) const {
+  void curve(ObjectReader& object, string_view key, const ValueRange& range, Need need,
+             auto& out) const {
     read_curve(object, key, range, need, document, diagnostics, out);
   }
   static void color(ObjectReader& object, string_view key, double maximum, glm::dvec3& out) {
     std::array<double, 3> rgb{};
     if (object.numbers(key, rgb, 0.0, maximum, Need::optional)) out = {rgb[0], rgb[1], rgb[2]};
   }
-  static void number(ObjectReader& object, string_view key, double minimum, double maximum, double& out) {
+  static void number(ObjectReader& object, string_view key, double minimum, double maximum,
+                     double& out) {
     if (const auto value = object.number(key, minimum, maximum, Need::optional)) out = *value;
   }
 
   void read_profiles(NodeId list) {
     for (const NodeId node : dermis::children(document, list)) {
-      ObjectReader object(document, node, fmt::format("profile {}", scene.profiles.size()), diagnostics);
+      ObjectReader object(document, node, fmt::format("profile {}", scene.profiles.size()),
+                          diagnostics);
       const auto name = object.name("name");
       const auto file = object.string("file");
       SceneProfile profile;
@@ -85,19 +89,22 @@ struct SceneReader {
     number(object, "near", 1e-4, 100.0, camera.near_plane);
     number(object, "far", 1e-3, 1e5, camera.far_plane);
     if (object.finish() && camera.near_plane >= camera.far_plane)
-      diagnostics.add(DiagnosticId::scene_range, document.where(node),
-                      fmt::format("the camera's near plane ({} m) must be nearer than its far plane ({} m)",
-                                  camera.near_plane, camera.far_plane));
+      diagnostics.add(
+          DiagnosticId::scene_range, document.where(node),
+          fmt::format("the camera's near plane ({} m) must be nearer than its far plane ({} m)",
+                      camera.near_plane, camera.far_plane));
   }
 
   void read_cuts(NodeId list) {
     for (const NodeId node : dermis::children(document, list)) {
-      const auto seconds = dermis::read_number(document, node, fmt::format("cut {}", scene.cuts.size()), 0.0,
-                                               longest_seconds, diagnostics);
+      const auto seconds =
+          dermis::read_number(document, node, fmt::format("cut {}", scene.cuts.size()), 0.0,
+                              longest_seconds, diagnostics);
       if (!seconds) return;
       if (!scene.cuts.empty() && *seconds <= scene.cuts.back())
-        diagnostics.add(DiagnosticId::scene_range, document.where(node),
-                        fmt::format("cut {} is at {} s; times ascend", scene.cuts.size(), *seconds));
+        diagnostics.add(
+            DiagnosticId::scene_range, document.where(node),
+            fmt::format("cut {} is at {} s; times ascend", scene.cuts.size(), *seconds));
       scene.cuts.push_back(*seconds);
     }
   }
@@ -107,7 +114,8 @@ struct SceneReader {
     Light light;
     light.type = static_cast<LightType>(object.word("type", light_types).value_or(0));
     curve(object, "position", places, Need::required, light.position);
-    if (light.type != LightType::point) curve(object, "target", places, Need::required, light.target);
+    if (light.type != LightType::point)
+      curve(object, "target", places, Need::required, light.target);
     color(object, "color", 1.0, light.color);
     curve(object, "intensity", intensities, Need::required, light.intensity);
     if (light.type == LightType::spot) {
@@ -121,7 +129,8 @@ struct SceneReader {
   }
 
   void read_object(NodeId node) {
-    ObjectReader object(document, node, fmt::format("object {}", scene.objects.size()), diagnostics);
+    ObjectReader object(document, node, fmt::format("object {}", scene.objects.size()),
+                        diagnostics);
     Object subresource;
     if (const auto name = object.name("name", Need::optional)) subresource.name = *name;
     subresource.shape = static_cast<Shape>(object.word("shape", shapes).value_or(0));
@@ -134,7 +143,8 @@ struct SceneReader {
     number(object, "roughness", 0.05, 1.0, subresource.roughness);
     number(object, "reflectance", 0.0, 1.0, subresource.reflectance);
     number(object, "emission", 0.0, 16.0, subresource.emission);
-    subresource.pattern = static_cast<Pattern>(object.word("pattern", patterns, Need::optional).value_or(0));
+    subresource.pattern =
+        static_cast<Pattern>(object.word("pattern", patterns, Need::optional).value_or(0));
     subresource.casts_shadow = object.boolean("shadow", Need::optional).value_or(true);
     if (const auto name = object.string("profile", Need::optional)) {
       for (uint32_t i = 0; i < scene.profiles.size(); ++i)
@@ -179,21 +189,26 @@ struct SceneReader {
     if (layers > max_shadow_layers)
       diagnostics.add(
           DiagnosticId::scene_range, document.where(lights),
-          fmt::format("the lights need {} shadow maps (6 a point light, 1 each other); at most {} fit",
-                      layers, max_shadow_layers));
+          fmt::format(
+              "the lights need {} shadow maps (6 a point light, 1 each other); at most {} fit",
+              layers, max_shadow_layers));
     if (objects.valid())
       for (const NodeId node : dermis::children(document, objects))
         read_object(node);
   }
 };
 
-std::optional<Scene> interpret(const std::string& name, const Document& document, Diagnostics& diagnostics,
-                               std::span<const std::string> roots) {
-  if (!dermis::check_version(document, "dermis_scene", format_version, diagnostics)) return std::nullopt;
+std::optional<Scene> interpret(const std::string& name, const Document& document,
+                               Diagnostics& diagnostics, std::span<const std::string> roots) {
+  if (!dermis::check_version(document, "dermis_scene", format_version, diagnostics))
+    return std::nullopt;
   const uint32_t errors = diagnostics.count(dermis::Severity::error);
   Scene scene;
-  SceneReader reader{
-      document, diagnostics, scene, std::filesystem::path(name).parent_path(), {dermis::home_of(name)}};
+  SceneReader reader{document,
+                     diagnostics,
+                     scene,
+                     std::filesystem::path(name).parent_path(),
+                     {dermis::home_of(name)}};
   reader.roots.insert(reader.roots.end(), roots.begin(), roots.end());
   reader.read_root();
   if (diagnostics.count(dermis::Severity::error) != errors) return std::nullopt;
@@ -208,8 +223,8 @@ std::optional<Scene> read_scene(const std::string& path, Diagnostics& diagnostic
   return document ? interpret(path, *document, diagnostics, roots) : std::nullopt;
 }
 
-std::optional<Scene> parse_scene(const std::string& name, std::string text, Diagnostics& diagnostics,
-                                 std::span<const std::string> roots) {
+std::optional<Scene> parse_scene(const std::string& name, std::string text,
+                                 Diagnostics& diagnostics, std::span<const std::string> roots) {
   const auto document = dermis::parse_document(name, std::move(text), diagnostics);
   return document ? interpret(name, *document, diagnostics, roots) : std::nullopt;
 }

@@ -19,7 +19,8 @@ std::optional<Scene> read_scene(const std::string& path, dermis::Diagnostics& di
                                 std::span<const std::string> roots = {});
 
 // Reads a scene from a text; `name` takes the role of the path.
-std::optional<Scene> parse_scene(const std::string& name, std::string text, dermis::Diagnostics& diagnostics,
+std::optional<Scene> parse_scene(const std::string& name, std::string text,
+                                 dermis::Diagnostics& diagnostics,
                                  std::span<const std::string> roots = {});
 
 } // namespace demo

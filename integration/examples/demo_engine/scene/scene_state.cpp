@@ -19,7 +19,8 @@ glm::dmat4 look(const glm::dvec3& from, const glm::dvec3& to) {
 
 // Returns a projection. `extent` is the tangent of half the vertical angle (perspective) or half
 // the height (orthographic).
-glm::dmat4 project(bool orthographic, double extent, double aspect, double near, double far, bool reversed) {
+glm::dmat4 project(bool orthographic, double extent, double aspect, double near, double far,
+                   bool reversed) {
   glm::dmat4 m(0.0); // m[column][row]
   m[0][0] = 1.0 / (extent * aspect);
   m[1][1] = -1.0 / extent;
@@ -52,8 +53,8 @@ ViewState view_at(const Camera& camera, double seconds, uint32_t frame, const Vi
   const double extent = camera.orthographic
                             ? 0.5 * value_at(camera.height, seconds)
                             : std::tan(0.5 * glm::radians(value_at(camera.vertical_fov, seconds)));
-  view.clip_from_view_steady =
-      project(camera.orthographic, extent, aspect, camera.near_plane, camera.far_plane, desc.reversed_depth);
+  view.clip_from_view_steady = project(camera.orthographic, extent, aspect, camera.near_plane,
+                                       camera.far_plane, desc.reversed_depth);
   view.clip_from_view = view.clip_from_view_steady;
   if (!desc.jitter) return view;
   constexpr uint32_t period = 8;
@@ -126,8 +127,8 @@ SceneState state_at(const Scene& scene, uint32_t frame, const ViewDesc& desc) {
   }
   for (const Light& light : scene.lights) {
     const bool fits = state.shadow_from_world.size() + shadow_layers_of(light) <= max_shadow_layers;
-    state.first_layer.push_back(light.shadow && fits ? static_cast<uint32_t>(state.shadow_from_world.size())
-                                                     : no_layer);
+    state.first_layer.push_back(
+        light.shadow && fits ? static_cast<uint32_t>(state.shadow_from_world.size()) : no_layer);
     if (light.shadow && fits) add_shadow_layers(light, state.seconds, state.shadow_from_world);
   }
   return state;

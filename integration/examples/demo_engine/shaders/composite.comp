@@ -28,7 +28,8 @@ void main() {
     vec3 albedo = texelFetch(albedo_image, pixel, 0).rgb;
     vec3 diffuse = texelFetch(lighting_image, pixel, 0).rgb;
     bool scatters = texelFetch(material_image, pixel, 0).r != 0u;
-    if (scatters && frame.counts.y == scattering_apart) diffuse = texelFetch(scattered_image, pixel, 0).rgb;
+    if (scatters && frame.counts.y == scattering_apart)
+      diffuse = texelFetch(scattered_image, pixel, 0).rgb;
     if (!scatters || frame.counts.y != scattering_in_place) diffuse *= albedo;
     color = diffuse + texelFetch(specular_image, pixel, 0).rgb +
             albedo * texelFetch(finish_image, pixel, 0).a * largest_emission;

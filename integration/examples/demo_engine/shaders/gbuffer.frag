@@ -50,7 +50,8 @@ void paint(uint pattern, vec3 p, inout vec3 albedo, inout float roughness, inout
     vec3 broad = noise3(p * 90.0), fine = noise3(p * 420.0 + 7.0);
     albedo *= mix(vec3(0.93, 0.90, 0.88), vec3(1.05, 1.06, 1.07), 0.6 * broad.x + 0.4 * fine.x);
     vec2 spot = speckle(p * 230.0);
-    float freckle = smoothstep(0.34, 0.10, spot.x) * step(0.45, spot.y) * smoothstep(0.45, 0.65, broad.y);
+    float freckle =
+        smoothstep(0.34, 0.10, spot.x) * step(0.45, spot.y) * smoothstep(0.45, 0.65, broad.y);
     albedo *= mix(vec3(1.0), vec3(0.78, 0.64, 0.54), 0.7 * freckle);
     bump = (fine - 0.5) * 0.13 + (noise3(p * 900.0) - 0.5) * 0.12;
     roughness *= 0.9 + 0.25 * fine.z;
@@ -78,7 +79,8 @@ void main() {
   vec3 n = normalize(world_normal);
   // Back faces show the other side of a sheet; interpolated normals may point slightly away at a
   // silhouette.
-  vec3 to_viewer = frame.misc.w > 0.0 ? vec3(0.0, 0.0, 1.0) : -view_position(gl_FragCoord.xy, gl_FragCoord.z);
+  vec3 to_viewer =
+      frame.misc.w > 0.0 ? vec3(0.0, 0.0, 1.0) : -view_position(gl_FragCoord.xy, gl_FragCoord.z);
   if (dot(view * n, normalize(to_viewer)) < -0.2) n = -n;
   vec3 t = world_tangent.xyz - n * dot(n, world_tangent.xyz);
   t = dot(t, t) > 0.0 ? normalize(t) : vec3(0.0);
@@ -101,5 +103,6 @@ void main() {
   out_material = material.kind.x;
   out_finish = vec4(clamp(roughness, 0.05, 1.0), reflectance, surface_finish.x,
                     material.finish.y / largest_emission);
-  out_velocity = (clip_now.xy / clip_now.z - clip_previous.xy / clip_previous.z) * 0.5 * frame.size.xy;
+  out_velocity =
+      (clip_now.xy / clip_now.z - clip_previous.xy / clip_previous.z) * 0.5 * frame.size.xy;
 }

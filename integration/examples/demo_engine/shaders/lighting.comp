@@ -50,7 +50,8 @@ float way_through(Light light, vec3 p, vec3 to_light) {
     for (int x = -1; x <= 1; ++x) {
       vec2 at = place.xy + 2.0 * vec2(x, y) / float(side);
       ivec2 texel = clamp(ivec2((at * 0.5 + 0.5) * float(side)), ivec2(0), ivec2(side - 1));
-      vec4 entry = view_from_shadow * vec4(at, texelFetch(shadow_depths, ivec3(texel, layer), 0).r, 1.0);
+      vec4 entry =
+          view_from_shadow * vec4(at, texelFetch(shadow_depths, ivec3(texel, layer), 0).r, 1.0);
       sum += max(0.0, dot(entry.xyz / entry.w - p, to_light));
     }
   return sum / 9.0;
@@ -86,7 +87,8 @@ vec3 reflect_light(vec3 n, vec3 v, vec3 l, float roughness, float reflectance) {
   float a2 = roughness * roughness * roughness * roughness;
   float q = nh * nh * (a2 - 1.0) + 1.0;
   float d = a2 / (pi * q * q);
-  float g = 0.5 / max(nl * sqrt(nv * nv * (1.0 - a2) + a2) + nv * sqrt(nl * nl * (1.0 - a2) + a2), 1e-5);
+  float g =
+      0.5 / max(nl * sqrt(nv * nv * (1.0 - a2) + a2) + nv * sqrt(nl * nl * (1.0 - a2) + a2), 1e-5);
   float f = reflectance + (1.0 - reflectance) * pow(1.0 - max(dot(v, h), 0.0), 5.0);
   return vec3(pi * d * g * f * nl);
 }
@@ -105,7 +107,8 @@ void main() {
     vec4 finish = texelFetch(finish_image, pixel, 0);
 
     vec3 around = mix(frame.ground.rgb, frame.sky.rgb, 0.5 + 0.5 * dot(s, frame.up.xyz));
-    vec3 bounced = mix(frame.ground.rgb, frame.sky.rgb, 0.5 + 0.5 * dot(reflect(-v, s), frame.up.xyz));
+    vec3 bounced =
+        mix(frame.ground.rgb, frame.sky.rgb, 0.5 + 0.5 * dot(reflect(-v, s), frame.up.xyz));
     float rim = pow(1.0 - max(dot(s, v), 0.0), 5.0);
     lighting = around * finish.z;
     specular = bounced * finish.z * mix(finish.y, 1.0, rim * (1.0 - finish.x));

@@ -22,13 +22,15 @@ const float snap = 1.0 / 256.0;   // pixels; a static camera must not blur
 // Converts to luma and two chromas, in which the box around colours is smaller than in red, green
 // and blue.
 vec3 to_ycocg(vec3 c) {
-  return vec3(0.25 * c.r + 0.5 * c.g + 0.25 * c.b, 0.5 * c.r - 0.5 * c.b, -0.25 * c.r + 0.5 * c.g - 0.25 * c.b);
+  return vec3(0.25 * c.r + 0.5 * c.g + 0.25 * c.b, 0.5 * c.r - 0.5 * c.b,
+              -0.25 * c.r + 0.5 * c.g - 0.25 * c.b);
 }
 vec3 from_ycocg(vec3 c) { return vec3(c.x + c.y - c.z, c.x + c.z, c.x - c.y - c.z); }
 
 vec4 catmull_rom(float t) {
   float t2 = t * t, t3 = t2 * t;
-  return 0.5 * vec4(-t3 + 2.0 * t2 - t, 3.0 * t3 - 5.0 * t2 + 2.0, -3.0 * t3 + 4.0 * t2 + t, t3 - t2);
+  return 0.5 *
+         vec4(-t3 + 2.0 * t2 - t, 3.0 * t3 - 5.0 * t2 + 2.0, -3.0 * t3 + 4.0 * t2 + t, t3 - t2);
 }
 
 vec4 history_at(vec2 place, ivec2 size) {
@@ -40,7 +42,8 @@ vec4 history_at(vec2 place, ivec2 size) {
   for (int y = 0; y < 4; ++y)
     for (int x = 0; x < 4; ++x)
       if (across[x] * down[y] != 0.0)
-        sum += across[x] * down[y] * texelFetch(history_image, clamp(first + ivec2(x, y) - 1, ivec2(0), size - 1), 0);
+        sum += across[x] * down[y] *
+               texelFetch(history_image, clamp(first + ivec2(x, y) - 1, ivec2(0), size - 1), 0);
   return max(sum, vec4(0.0));
 }
 
@@ -79,7 +82,8 @@ void main() {
   bool seen = all(greaterThan(place, vec2(-0.5))) && all(lessThan(place, vec2(size) - 0.5));
   if (constants.begins == 0u && seen) {
     vec4 found = history_at(place, size);
-    vec3 history = to_ycocg(found.rgb), way = abs(history - mean), box_half = clip_deviations * deviation;
+    vec3 history = to_ycocg(found.rgb), way = abs(history - mean),
+         box_half = clip_deviations * deviation;
     float keep = 1.0;
     for (int c = 0; c < 3; ++c)
       if (way[c] > box_half[c]) keep = min(keep, box_half[c] / way[c]);
@@ -87,5 +91,6 @@ void main() {
     frames = found.a;
     color = mix(history, filtered, max(new_fraction, 1.0 / (frames + 1.0)));
   }
-  imageStore(resolved_image, pixel, vec4(max(from_ycocg(color), vec3(0.0)), min(frames + 1.0, 1.0 / new_fraction)));
+  imageStore(resolved_image, pixel,
+             vec4(max(from_ycocg(color), vec3(0.0)), min(frames + 1.0, 1.0 / new_fraction)));
 }

@@ -21,7 +21,9 @@ std::string check_named_value(const std::string& text) {
 } // namespace
 
 CLI::Option* repeat(CLI::Option* option) {
-  return option->expected(1)->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)->allow_extra_args(false);
+  return option->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+      ->allow_extra_args(false);
 }
 
 CLI::Option* add_size(CLI::App& verb, Size& size, const char* name) {
@@ -60,9 +62,10 @@ void add_graph_inputs(CLI::App& verb, GraphInputs& inputs) {
 }
 
 void add_pass_types(CLI::App& verb, std::vector<std::string>& pass_types) {
-  repeat(verb.add_option("--pass-types", pass_types,
-                         "File of the host's pass types (dermis_export_pass_types); may be repeated")
-             ->type_name("FILE"));
+  repeat(
+      verb.add_option("--pass-types", pass_types,
+                      "File of the host's pass types (dermis_export_pass_types); may be repeated")
+          ->type_name("FILE"));
 }
 
 void add_common(CLI::App& verb, Session& session, bool json_is_file) {
@@ -70,7 +73,8 @@ void add_common(CLI::App& verb, Session& session, bool json_is_file) {
       {"auto", ColorMode::automatic}, {"always", ColorMode::always}, {"never", ColorMode::never}};
   const char* group = "Common options";
   if (!json_is_file)
-    verb.add_flag("--json", session.json, "Print one JSON document to standard output")->group(group);
+    verb.add_flag("--json", session.json, "Print one JSON document to standard output")
+        ->group(group);
   verb.add_flag("--quiet,-q", session.quiet, "Print only errors")->group(group);
   add_choice(verb, "--color", session.color, modes, "Colour: auto, always or never [auto]")
       ->type_name("MODE")

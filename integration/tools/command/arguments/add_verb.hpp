@@ -28,7 +28,8 @@ CLI::Option* add_path(CLI::App& verb, const char* name, Value& value, const char
 }
 
 // Adds --frames,-n.
-inline CLI::Option* add_frames(CLI::App& verb, uint32_t& frames, const char* what, uint32_t minimum = 1) {
+inline CLI::Option* add_frames(CLI::App& verb, uint32_t& frames, const char* what,
+                               uint32_t minimum = 1) {
   return verb.add_option("--frames,-n", frames, what)->check(CLI::Range(minimum, max_frames));
 }
 
@@ -55,8 +56,9 @@ CLI::App& add_group(CLI::App& app, const char* name, const char* what, const cha
 
 // The callback owns the verb's options and runs work(session, options).
 template <class Options, class Work, class Declare>
-void add_verb(CLI::App& app, Invocation& invocation, const std::string& name, const std::string& what,
-              const std::string& example, Work work, Declare declare, bool json_is_file = false) {
+void add_verb(CLI::App& app, Invocation& invocation, const std::string& name,
+              const std::string& what, const std::string& example, Work work, Declare declare,
+              bool json_is_file = false) {
   CLI::App& verb = *app.add_subcommand(name, what);
   verb.footer(fmt::format("Example:\n  {}", example));
   auto options = std::make_shared<Options>();

@@ -68,12 +68,13 @@ Invocation read_arguments(int argc, const char* const* argv) {
   Invocation invocation;
   CLI::App app("Frame graphs for subsurface scattering.\n", "dermis");
   app.require_subcommand(1);
-  app.set_version_flag("--version", fmt::format("dermis {}.{}.{}", DERMIS_VERSION_MAJOR, DERMIS_VERSION_MINOR,
-                                                DERMIS_VERSION_PATCH));
-  app.footer("Example:\n"
-             "  dermis render configs/scenes/bust.json --graph configs/graphs/sap.json --out out/\n\n"
-             "Exit codes: 0 success; 1 the input has problems; 2 bad option or value; 3 no driver,\n"
-             "unwritable output or missing package; 4 a defect of the program; 130 stopped by Ctrl-C.");
+  app.set_version_flag("--version", fmt::format("dermis {}.{}.{}", DERMIS_VERSION_MAJOR,
+                                                DERMIS_VERSION_MINOR, DERMIS_VERSION_PATCH));
+  app.footer(
+      "Example:\n"
+      "  dermis render configs/scenes/bust.json --graph configs/graphs/sap.json --out out/\n\n"
+      "Exit codes: 0 success; 1 the input has problems; 2 bad option or value; 3 no driver,\n"
+      "unwritable output or missing package; 4 a defect of the program; 130 stopped by Ctrl-C.");
   add_text_verbs(app, invocation);
   add_plan_verbs(app, invocation);
   add_schema_verb(app, invocation);

@@ -5,8 +5,8 @@
 namespace dermis::tools {
 namespace {
 
-constexpr const char* quick_help =
-    "Smoke test with small images and few repetitions, scenes or techniques; figures are meaningless";
+constexpr const char* quick_help = "Smoke test with small images and few repetitions, scenes or "
+                                   "techniques; figures are meaningless";
 
 // Returns the default for the help text, or "".
 std::string default_of(const OptionValue& value) {
@@ -25,8 +25,8 @@ CLI::Option* add_suite_option(CLI::App& verb, const SuiteOption& option, OptionV
     return verb.add_option(name, *number, help)->check(CLI::Range(option.minimum, option.maximum));
   if (auto* text = std::get_if<std::string>(&value))
     return verb.add_option(name, *text, help)->type_name(option.type);
-  CLI::Option* list =
-      repeat(verb.add_option(name, std::get<std::vector<std::string>>(value), help)->type_name(option.type));
+  CLI::Option* list = repeat(verb.add_option(name, std::get<std::vector<std::string>>(value), help)
+                                 ->type_name(option.type));
   return option.type == "NAME" ? list->delimiter(',') : list;
 }
 
@@ -49,9 +49,12 @@ void add_suite(CLI::App& bench, Invocation& invocation, const Suite& suite) {
           CLI::Option* added = add_suite_option(verb, option, request.options.at(option.name));
           if (option.quick) quick->excludes(added);
         }
-        add_file(verb, "--json", request.json, "Write the rows as JSON to this file, - for standard output");
-        add_file(verb, "--csv", request.csv, "Write the rows as CSV to this file, - for standard output");
-        add_file(verb, "--html", request.html, "Write a page with the rows, plots and images to this file");
+        add_file(verb, "--json", request.json,
+                 "Write the rows as JSON to this file, - for standard output");
+        add_file(verb, "--csv", request.csv,
+                 "Write the rows as CSV to this file, - for standard output");
+        add_file(verb, "--html", request.html,
+                 "Write a page with the rows, plots and images to this file");
       },
       true);
 }
@@ -64,17 +67,22 @@ void add_bench_verbs(CLI::App& app, Invocation& invocation) {
   for (const Suite& suite : bench_suites())
     add_suite(bench, invocation, suite);
   add_verb<BenchAllOptions>(
-      bench, invocation, "all", "Run every suite and write pages with an index; continues an interrupted run",
+      bench, invocation, "all",
+      "Run every suite and write pages with an index; continues an interrupted run",
       "dermis bench all --out build/bench", bench_all,
       [&invocation](CLI::App& verb, BenchAllOptions& options) {
-        verb.add_option("--out,-o", options.out, "Folder for pages and rows")->required()->type_name("DIR");
-        const CLI::Option* suites = repeat(verb.add_option("--suites", options.suites,
-                                                           fmt::format("Only these, separated by commas: {}",
-                                                                       format_list(bench_suite_names())))
-                                               ->type_name("NAME")
-                                               ->delimiter(','));
+        verb.add_option("--out,-o", options.out, "Folder for pages and rows")
+            ->required()
+            ->type_name("DIR");
+        const CLI::Option* suites =
+            repeat(verb.add_option("--suites", options.suites,
+                                   fmt::format("Only these, separated by commas: {}",
+                                               format_list(bench_suite_names())))
+                       ->type_name("NAME")
+                       ->delimiter(','));
         invocation.offered[suites] = bench_suite_names();
-        verb.add_option("--head", options.head, "Folder of the head scan, for suites that support it")
+        verb.add_option("--head", options.head,
+                        "Folder of the head scan, for suites that support it")
             ->type_name("DIR");
         verb.add_flag("--again", options.again,
                       "Repeat suites that an earlier run into this folder measured");

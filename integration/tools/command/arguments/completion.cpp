@@ -72,15 +72,17 @@ std::string bash(const std::vector<DeclaredVerb>& verbs) {
       const Takes takes = takes_of(option);
       const std::string reply = takes == Takes::file     ? "-f"
                                 : takes == Takes::folder ? "-d"
-                                : takes == Takes::word   ? fmt::format("-W '{}'", joined(option.offered, " "))
-                                                         : "-W ''";
+                                : takes == Takes::word
+                                    ? fmt::format("-W '{}'", joined(option.offered, " "))
+                                    : "-W ''";
       if (takes != Takes::nothing)
-        values += fmt::format("    {}) mapfile -t COMPREPLY < <(compgen {} -- \"$current\"); return ;;\n",
-                              patterns, reply);
+        values +=
+            fmt::format("    {}) mapfile -t COMPREPLY < <(compgen {} -- \"$current\"); return ;;\n",
+                        patterns, reply);
     }
     offers += fmt::format("    '{}') words='{}' options='{}' files={} ;;\n", verb.name,
-                          joined(verb.verbs.empty() ? operands.words : verb.verbs, " "), joined(options, " "),
-                          operands.files ? "-f" : "");
+                          joined(verb.verbs.empty() ? operands.words : verb.verbs, " "),
+                          joined(options, " "), operands.files ? "-f" : "");
   }
   return fmt::format(R"(# Completion of dermis for bash, made by: dermis completion bash
 _dermis() {{
@@ -129,7 +131,8 @@ std::string zsh_action(const DeclaredOption& option) {
 std::string zsh_operand(const Operands& operands) {
   const std::string words = fmt::format("({})", joined(operands.words, " "));
   if (operands.words.empty()) return operands.files ? "_files" : " ";
-  return operands.files ? fmt::format(R"(_alternative "files:file:_files" "words:word:{}")", words) : words;
+  return operands.files ? fmt::format(R"(_alternative "files:file:_files" "words:word:{}")", words)
+                        : words;
 }
 
 std::string zsh_function(const std::string& verb) {
@@ -137,7 +140,8 @@ std::string zsh_function(const std::string& verb) {
 }
 
 std::string zsh(const std::vector<DeclaredVerb>& verbs) {
-  std::string text = "#compdef dermis\n# Completion of dermis for zsh, made by: dermis completion zsh\n";
+  std::string text =
+      "#compdef dermis\n# Completion of dermis for zsh, made by: dermis completion zsh\n";
   for (const DeclaredVerb& verb : verbs) {
     text += fmt::format("\n{}() {{\n", zsh_function(verb.name));
     std::string specifications;
@@ -145,8 +149,9 @@ std::string zsh(const std::vector<DeclaredVerb>& verbs) {
       if (option.positional) continue;
       for (const std::string& name : option.names) {
         const bool value = takes_of(option) != Takes::nothing;
-        specifications += fmt::format(" \\\n    '*{}[{}]{}'", name, zsh_text(option.text),
-                                      value ? fmt::format(":{}:{}", option.type, zsh_action(option)) : "");
+        specifications +=
+            fmt::format(" \\\n    '*{}[{}]{}'", name, zsh_text(option.text),
+                        value ? fmt::format(":{}:{}", option.type, zsh_action(option)) : "");
       }
     }
     if (verb.verbs.empty()) {
@@ -154,10 +159,11 @@ std::string zsh(const std::vector<DeclaredVerb>& verbs) {
                           zsh_operand(operands_of(verb)));
       continue;
     }
-    text += fmt::format("  local state line\n  local -a verbs\n  _arguments -C -s{} \\\n    '1:verb:->verb' "
-                        "'*::argument:->rest'\n"
-                        "  case $state in\n    verb)\n      verbs=(",
-                        specifications);
+    text += fmt::format(
+        "  local state line\n  local -a verbs\n  _arguments -C -s{} \\\n    '1:verb:->verb' "
+        "'*::argument:->rest'\n"
+        "  case $state in\n    verb)\n      verbs=(",
+        specifications);
     std::string calls;
     for (const std::string& below : verb.verbs) {
       const std::string whole = verb.name.empty() ? below : verb.name + " " + below;
@@ -166,9 +172,9 @@ std::string zsh(const std::vector<DeclaredVerb>& verbs) {
       text += fmt::format("\n        '{}:{}'", below, zsh_text(at->text));
       calls += fmt::format("        {}) {} ;;\n", below, zsh_function(whole));
     }
-    text += fmt::format(
-        ")\n      _describe verb verbs ;;\n    rest)\n      case $line[1] in\n{}      esac ;;\n  esac\n}}\n",
-        calls);
+    text += fmt::format(")\n      _describe verb verbs ;;\n    rest)\n      case $line[1] in\n{}   "
+                        "   esac ;;\n  esac\n}}\n",
+                        calls);
   }
   return text + "\n_dermis \"$@\"\n";
 }
@@ -183,7 +189,8 @@ std::string fish_condition(const DeclaredVerb& verb) {
                              verb.name.substr(at, end == std::string::npos ? end : end - at));
     at = end == std::string::npos ? end : end + 1;
   }
-  if (!verb.verbs.empty()) condition += "; and not __fish_seen_subcommand_from " + joined(verb.verbs, " ");
+  if (!verb.verbs.empty())
+    condition += "; and not __fish_seen_subcommand_from " + joined(verb.verbs, " ");
   return condition;
 }
 
@@ -198,12 +205,12 @@ std::string fish(const std::vector<DeclaredVerb>& verbs) {
       const std::string whole = verb.name.empty() ? below : verb.name + " " + below;
       const auto at = std::find_if(verbs.begin(), verbs.end(),
                                    [&](const DeclaredVerb& one) { return one.name == whole; });
-      text +=
-          fmt::format("complete -c dermis -f -n '{}' -a {} -d '{}'\n", condition, below, quoted(at->text));
+      text += fmt::format("complete -c dermis -f -n '{}' -a {} -d '{}'\n", condition, below,
+                          quoted(at->text));
     }
     if (const Operands operands = operands_of(verb); !operands.words.empty())
-      text += fmt::format("complete -c dermis{} -n '{}' -a '{}'\n", operands.files ? "" : " -f", condition,
-                          joined(operands.words, " "));
+      text += fmt::format("complete -c dermis{} -n '{}' -a '{}'\n", operands.files ? "" : " -f",
+                          condition, joined(operands.words, " "));
     for (const DeclaredOption& option : verb.options) {
       if (option.positional) continue;
       std::string names;
@@ -225,7 +232,10 @@ std::string fish(const std::vector<DeclaredVerb>& verbs) {
 } // namespace
 
 std::string completion_script(const std::vector<DeclaredVerb>& verbs, std::string_view shell) {
-  return shell == "bash" ? bash(verbs) : shell == "zsh" ? zsh(verbs) : shell == "fish" ? fish(verbs) : "";
+  return shell == "bash"   ? bash(verbs)
+         : shell == "zsh"  ? zsh(verbs)
+         : shell == "fish" ? fish(verbs)
+                           : "";
 }
 
 } // namespace dermis::tools

@@ -54,14 +54,15 @@ void add_option(std::string& page, const DeclaredOption& option) {
 } // namespace
 
 std::string manual_page(const std::vector<DeclaredVerb>& verbs, std::string_view version) {
-  std::string page =
-      fmt::format(".\\\" Made by: dermis man\n.TH DERMIS 1 \"\" \"dermis {}\" \"Dermis\"\n.SH NAME\n"
-                  "dermis \\- {}\n.SH SYNOPSIS\n.B dermis\nverb [options]\n.SH DESCRIPTION\n"
-                  "{}\nEach verb explains itself with \\fB\\-\\-help\\fR.\n.SH VERBS\n",
-                  version, "frame graphs that scatter light under the skin", roff(verbs.front().text));
+  std::string page = fmt::format(
+      ".\\\" Made by: dermis man\n.TH DERMIS 1 \"\" \"dermis {}\" \"Dermis\"\n.SH NAME\n"
+      "dermis \\- {}\n.SH SYNOPSIS\n.B dermis\nverb [options]\n.SH DESCRIPTION\n"
+      "{}\nEach verb explains itself with \\fB\\-\\-help\\fR.\n.SH VERBS\n",
+      version, "frame graphs that scatter light under the skin", roff(verbs.front().text));
   for (const DeclaredVerb& verb : verbs) {
     if (verb.name.empty() || !verb.verbs.empty()) continue;
-    page += fmt::format(".SS \"{}\"\n{}.PP\n{}.\n", roff(verb.name), synopsis(verb), roff(verb.text));
+    page +=
+        fmt::format(".SS \"{}\"\n{}.PP\n{}.\n", roff(verb.name), synopsis(verb), roff(verb.text));
     for (const DeclaredOption& option : verb.options)
       add_option(page, option);
     if (!verb.examples.empty()) page += ".PP\nExample:\n.PP\n.nf\n";
@@ -69,13 +70,14 @@ std::string manual_page(const std::vector<DeclaredVerb>& verbs, std::string_view
       page += "    " + roff(line) + "\n";
     if (!verb.examples.empty()) page += ".fi\n";
   }
-  page +=
-      ".SH EXIT STATUS\n.TP\n0\nDone.\n.TP\n1\nThe input has problems: a file, the graph, the data.\n.TP\n2\n"
-      "A bad option or value.\n.TP\n3\nNo driver, output that cannot be written, or a missing "
-      "package.\n.TP\n4\n"
-      "A defect of the program.\n.TP\n130\nStopped by Ctrl-C.\n.SH ENVIRONMENT\n.TP\n\\fBNO_COLOR\\fR\nNo "
-      "colour, unless it is asked "
-      "for.\n";
+  page += ".SH EXIT STATUS\n.TP\n0\nDone.\n.TP\n1\nThe input has problems: a file, the graph, the "
+          "data.\n.TP\n2\n"
+          "A bad option or value.\n.TP\n3\nNo driver, output that cannot be written, or a missing "
+          "package.\n.TP\n4\n"
+          "A defect of the program.\n.TP\n130\nStopped by Ctrl-C.\n.SH "
+          "ENVIRONMENT\n.TP\n\\fBNO_COLOR\\fR\nNo "
+          "colour, unless it is asked "
+          "for.\n";
   return page;
 }
 

@@ -25,7 +25,8 @@ void add_text_verb(CLI::App& app, Invocation& invocation, const char* name, cons
         ->required()
         ->check(CLI::IsMember({"bash", "zsh", "fish"}))
         ->type_name("SHELL");
-  verb.add_option("--out,-o", options->out, "File to write, - for standard output [-]")->type_name("FILE");
+  verb.add_option("--out,-o", options->out, "File to write, - for standard output [-]")
+      ->type_name("FILE");
   verb.callback([&invocation, options, text = std::move(text)] {
     invocation.run = [options, made = text(options->shell)](const Session& session) {
       const std::string problem = deliver_text(options->out, made);
@@ -38,15 +39,16 @@ void add_text_verb(CLI::App& app, Invocation& invocation, const char* name, cons
 
 void add_shell_verbs(CLI::App& app, Invocation& invocation) {
   add_text_verb(app, invocation, "completion", "Write a completion script for a shell",
-                "source <(dermis completion bash)", true, [&app, &invocation](const std::string& shell) {
+                "source <(dermis completion bash)", true,
+                [&app, &invocation](const std::string& shell) {
                   return completion_script(declared_verbs(app, invocation.offered), shell);
                 });
   add_text_verb(app, invocation, "man", "Write the manual page",
                 "dermis man --out dermis.1 && man ./dermis.1", false,
                 [&app, &invocation](const std::string&) {
                   return manual_page(declared_verbs(app, invocation.offered),
-                                     fmt::format("{}.{}.{}", DERMIS_VERSION_MAJOR, DERMIS_VERSION_MINOR,
-                                                 DERMIS_VERSION_PATCH));
+                                     fmt::format("{}.{}.{}", DERMIS_VERSION_MAJOR,
+                                                 DERMIS_VERSION_MINOR, DERMIS_VERSION_PATCH));
                 });
 }
 

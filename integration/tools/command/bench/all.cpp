@@ -57,7 +57,9 @@ std::vector<Outcome> read_index(const std::string& file) {
     const NodeId name = document->find(one, "suite"), line = document->find(one, "line"),
                  code = document->find(one, "exit_code"), seconds = document->find(one, "seconds"),
                  written = document->find(one, "written");
-    const auto is = [&](NodeId id, NodeKind kind) { return id.valid() && (*document)[id].kind == kind; };
+    const auto is = [&](NodeId id, NodeKind kind) {
+      return id.valid() && (*document)[id].kind == kind;
+    };
     if (is(name, NodeKind::string) && is(line, NodeKind::string) && is(code, NodeKind::integer) &&
         seconds.valid())
       found.push_back({std::string(document->text(name)), std::string(document->text(line)),
@@ -85,31 +87,36 @@ std::string index_json(const std::vector<Outcome>& outcomes) {
 
 std::string state_text(const Outcome& one) {
   if (!one.left_out.empty()) return "left out: " + one.left_out;
-  return !one.written ? "failed" : one.exit_code == 0 ? "done" : "done; some rows miss their limits";
+  return !one.written         ? "failed"
+         : one.exit_code == 0 ? "done"
+                              : "done; some rows miss their limits";
 }
 
 std::string index_html(const Session& session, const std::vector<Outcome>& outcomes) {
-  std::string body =
-      "<h1>Measurements of Dermis</h1><p>Each suite has a page, and its rows as JSON or CSV.</p><dl>\n";
+  std::string body = "<h1>Measurements of Dermis</h1><p>Each suite has a page, and its rows as "
+                     "JSON or CSV.</p><dl>\n";
   for (const auto& [name, text] : machine_info(session.command, ""))
     body += fmt::format("<dt>{}<dd>{}\n", html_text(name), html_text(text));
-  body += "</dl><div class=wide><table><thead><tr><th class=t>suite<th class=t>what<th class=t>rows<th "
-          "class=t>state"
-          "<th>time<th class=t>made by</thead><tbody>\n";
+  body +=
+      "</dl><div class=wide><table><thead><tr><th class=t>suite<th class=t>what<th class=t>rows<th "
+      "class=t>state"
+      "<th>time<th class=t>made by</thead><tbody>\n";
   for (const Suite& suite : bench_suites()) {
     const auto at = std::find_if(outcomes.begin(), outcomes.end(),
                                  [&](const Outcome& one) { return one.suite == suite.name; });
     if (at == outcomes.end() || !at->written) {
-      body += fmt::format(
-          "<tr><td class=t>{}<td class=t>{}<td class=t><td class=t>{}<td data-v=''>&ndash;<td class=t>\n",
-          suite.name, suite.what, at == outcomes.end() ? "not measured" : html_text(state_text(*at)));
+      body += fmt::format("<tr><td class=t>{}<td class=t>{}<td class=t><td class=t>{}<td "
+                          "data-v=''>&ndash;<td class=t>\n",
+                          suite.name, suite.what,
+                          at == outcomes.end() ? "not measured" : html_text(state_text(*at)));
       continue;
     }
-    body += fmt::format("<tr><td class=t><a href='{0}.html'>{0}</a><td class=t>{1}<td class=t><a href='"
-                        "{0}.json'>JSON</a> <a href='{0}.csv'>CSV</a><td class=t>{2}<td data-v={3:.1f}>{4}"
-                        "<td class='t wrap'>{5}\n",
-                        suite.name, suite.what, state_text(*at), at->seconds, format_duration(at->seconds),
-                        html_text(at->line));
+    body += fmt::format(
+        "<tr><td class=t><a href='{0}.html'>{0}</a><td class=t>{1}<td class=t><a href='"
+        "{0}.json'>JSON</a> <a href='{0}.csv'>CSV</a><td class=t>{2}<td data-v={3:.1f}>{4}"
+        "<td class='t wrap'>{5}\n",
+        suite.name, suite.what, state_text(*at), at->seconds, format_duration(at->seconds),
+        html_text(at->line));
   }
   return html_page("Measurements of Dermis", body + "</tbody></table></div>\n");
 }
@@ -168,8 +175,8 @@ ExitCode bench_all(const Session& session, const BenchAllOptions& options) {
   std::vector<Outcome> outcomes = read_index(out.path_of("index.json"));
   std::vector<Suite> suites = bench_suites();
   std::erase_if(suites, [&](const Suite& suite) {
-    return !options.suites.empty() &&
-           std::find(options.suites.begin(), options.suites.end(), suite.name) == options.suites.end();
+    return !options.suites.empty() && std::find(options.suites.begin(), options.suites.end(),
+                                                suite.name) == options.suites.end();
   });
   ExitCode worst = ExitCode::ok;
   for (size_t i = 0; i < suites.size(); ++i) {
@@ -179,10 +186,10 @@ ExitCode bench_all(const Session& session, const BenchAllOptions& options) {
     Outcome outcome{suite.name, line_of(suite, options)};
     const auto before = std::find_if(outcomes.begin(), outcomes.end(),
                                      [&](const Outcome& one) { return one.suite == suite.name; });
-    if (before != outcomes.end() && before->line == outcome.line && !options.again && before->written &&
-        are_there(request)) {
-      say(session,
-          fmt::format("{} of {}: {} is there from an earlier run\n", i + 1, suites.size(), suite.name));
+    if (before != outcomes.end() && before->line == outcome.line && !options.again &&
+        before->written && are_there(request)) {
+      say(session, fmt::format("{} of {}: {} is there from an earlier run\n", i + 1, suites.size(),
+                               suite.name));
       worst = std::max(worst, static_cast<ExitCode>(before->exit_code));
       continue;
     }
@@ -194,7 +201,8 @@ ExitCode bench_all(const Session& session, const BenchAllOptions& options) {
     if (before != outcomes.end()) outcomes.erase(before);
     outcomes.push_back(outcome);
     std::string problem = deliver_text(out.path_of("index.json"), index_json(outcomes));
-    if (problem.empty()) problem = deliver_text(out.path_of("index.html"), index_html(session, outcomes));
+    if (problem.empty())
+      problem = deliver_text(out.path_of("index.html"), index_html(session, outcomes));
     if (!problem.empty()) return fail(session, ExitCode::environment, problem);
   }
   say(session, fmt::format("{}\n", out.path_of("index.html")));

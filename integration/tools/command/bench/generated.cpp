@@ -73,18 +73,21 @@ double shade(double slope_x, double slope_y) {
 
 void paint_edge(Painter& painter) {
   const double middle = 0.5 * painter.columns();
-  painter.light([&](Place p) { return p.x - middle > (p.y - 0.5 * painter.height) / 3 ? 1.0 : 0.1; });
+  painter.light(
+      [&](Place p) { return p.x - middle > (p.y - 0.5 * painter.height) / 3 ? 1.0 : 0.1; });
 }
 
 void paint_disc(Painter& painter) {
   struct Disc {
     double x, y, radius; // picture heights
   };
-  constexpr Disc discs[] = {{.35, .5, .25},   {.80, .30, .11},   {.82, .74, .055}, {1.05, .5, .028},
-                            {1.2, .25, .014}, {1.22, .72, .007}, {1.42, .4, .16},  {1.45, .82, .0035}};
+  constexpr Disc discs[] = {{.35, .5, .25},   {.80, .30, .11},   {.82, .74, .055},
+                            {1.05, .5, .028}, {1.2, .25, .014},  {1.22, .72, .007},
+                            {1.42, .4, .16},  {1.45, .82, .0035}};
   painter.light([&](Place p) {
     for (const Disc& one : discs)
-      if (std::hypot(p.x / painter.height - one.x, p.y / painter.height - one.y) < one.radius) return 1.0;
+      if (std::hypot(p.x / painter.height - one.x, p.y / painter.height - one.y) < one.radius)
+        return 1.0;
     return 0.0;
   });
 }
@@ -124,8 +127,8 @@ void paint_sphere(Painter& painter) {
 double texture(Place p) {
   const auto x = static_cast<uint32_t>(std::max(0.0, p.x + 0.5)),
              y = static_cast<uint32_t>(std::max(0.0, p.y + 0.5));
-  double value = 0.2 + 0.3 * double(hashed(x / 32, y / 32)) + 0.2 * double(hashed(x / 8 + 77, y / 8)) +
-                 0.1 * double(hashed(x, y + 99));
+  double value = 0.2 + 0.3 * double(hashed(x / 32, y / 32)) +
+                 0.2 * double(hashed(x / 8 + 77, y / 8)) + 0.1 * double(hashed(x, y + 99));
   // One disc per cell of 80 pixels, of random brightness and a radius of up to half the cell.
   const uint32_t cx = x / 80, cy = y / 80;
   const double radius = 4 + 34 * double(hashed(cx, cy + 3)) * double(hashed(cx + 5, cy));
@@ -144,7 +147,8 @@ void paint_depth_step(Painter& painter) {
   constexpr double steps_in_d[] = {0, 0.5, 2, 5, 20};
   const double band = painter.columns() / double(std::size(steps_in_d));
   const auto band_of = [&](double x) {
-    return std::min<size_t>(static_cast<size_t>(std::max(0.0, x + 0.5) / band), std::size(steps_in_d) - 1);
+    return std::min<size_t>(static_cast<size_t>(std::max(0.0, x + 0.5) / band),
+                            std::size(steps_in_d) - 1);
   };
   painter.rise([&](Place p) {
     double above = 0;
@@ -152,7 +156,8 @@ void paint_depth_step(Painter& painter) {
       above -= steps_in_d[i] * painter.d_px;
     return above;
   });
-  painter.light([&](Place p) { return (band_of(p.x) % 2 == 0 ? 1.0 : 0.25) * (0.6 + 0.4 * texture(p)); });
+  painter.light(
+      [&](Place p) { return (band_of(p.x) % 2 == 0 ? 1.0 : 0.25) * (0.6 + 0.4 * texture(p)); });
 }
 
 // Framing "mixed": one material under several ids, in cells as wide as a kernel, to measure the
@@ -194,8 +199,8 @@ CapturedFrame generate_scene(const std::string& scene, const std::string& framin
     if (one.scene == scene) one.paint(painter);
   if (framing == "mixed")
     for (size_t i = 0; i < frame.profile.size(); ++i)
-      frame.profile[i] =
-          static_cast<uint8_t>(1 + (i % width / mixed_cell + i / width / mixed_cell * 2) % mixed_profiles);
+      frame.profile[i] = static_cast<uint8_t>(
+          1 + (i % width / mixed_cell + i / width / mixed_cell * 2) % mixed_profiles);
   if (framing == "varying") {
     frame.scatter_scale = Image::sized(width, height, 1);
     for (size_t i = 0; i < frame.scatter_scale.values.size(); ++i)

@@ -18,8 +18,8 @@ demo::ModelOptions head_model(const std::string& folder) {
   if (folder.empty()) return {};
   const std::filesystem::path head = folder;
   return {(head / mesh_name).string(), (head / "Map-COL.jpg").string(),
-          (head / "Infinite-Level_02_Tangent_SmoothUV.jpg").string(), (head / "Map-SPEC.jpg").string(),
-          head_height};
+          (head / "Infinite-Level_02_Tangent_SmoothUV.jpg").string(),
+          (head / "Map-SPEC.jpg").string(), head_height};
 }
 
 std::string why_no_head(const std::string& folder) {

@@ -20,7 +20,8 @@ std::filesystem::path path_of(const std::string& cache, const Hash& hash) {
 
 } // namespace
 
-std::optional<std::vector<double>> read_kept(const std::string& cache, const Hash& hash, size_t count) {
+std::optional<std::vector<double>> read_kept(const std::string& cache, const Hash& hash,
+                                             size_t count) {
   if (cache.empty()) return std::nullopt;
   std::string ignored;
   const auto bytes = read_bytes(path_of(cache, hash), max_kept_bytes, ignored);
@@ -30,7 +31,8 @@ std::optional<std::vector<double>> read_kept(const std::string& cache, const Has
       std::memcmp(bytes->data() + magic.size(), &hash.value, sizeof hash.value) != 0)
     return std::nullopt;
   std::vector<double> values(count);
-  std::memcpy(values.data(), bytes->data() + magic.size() + sizeof hash.value, count * sizeof(double));
+  std::memcpy(values.data(), bytes->data() + magic.size() + sizeof hash.value,
+              count * sizeof(double));
   return values;
 }
 

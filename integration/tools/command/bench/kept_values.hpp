@@ -25,7 +25,8 @@ struct Hash {
 };
 
 // Reads from the folder `cache`; "" disables the cache. Also returns nullopt for an invalid file.
-std::optional<std::vector<double>> read_kept(const std::string& cache, const Hash& hash, size_t count);
+std::optional<std::vector<double>> read_kept(const std::string& cache, const Hash& hash,
+                                             size_t count);
 // Writes to the cache. Failures are ignored, since they do not affect the measurement.
 void keep(const std::string& cache, const Hash& hash, std::span<const double> values);
 

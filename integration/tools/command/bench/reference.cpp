@@ -13,7 +13,8 @@ constexpr uint64_t definition_version = 1;
 Hash hash_of(const ReferenceFrame& frame, std::span<const uint32_t> pixels) {
   Hash hash;
   const uint64_t sizes[] = {definition_version, frame.width, frame.height, frame.rays.perspective};
-  const double rays[] = {frame.rays.scale_x, frame.rays.offset_x, frame.rays.scale_y, frame.rays.offset_y};
+  const double rays[] = {frame.rays.scale_x, frame.rays.offset_x, frame.rays.scale_y,
+                         frame.rays.offset_y};
   hash.add(std::span<const uint64_t>(sizes));
   hash.add(std::span<const double>(rays));
   hash.add(frame.light);
@@ -26,8 +27,8 @@ Hash hash_of(const ReferenceFrame& frame, std::span<const uint32_t> pixels) {
 }
 
 std::optional<std::vector<double>> compute(const Session& session, const ReferenceFrame& frame,
-                                           const std::string& what, std::span<const uint32_t> pixels,
-                                           bool planar) {
+                                           const std::string& what,
+                                           std::span<const uint32_t> pixels, bool planar) {
   const subsurface::ReferenceInput input = frame.input();
   if (!planar) return run_reference(session, what, input, pixels);
   const std::vector<double> everywhere = subsurface::reference_everywhere(input);
@@ -42,7 +43,8 @@ std::optional<std::vector<double>> compute(const Session& session, const Referen
 } // namespace
 
 std::optional<Reference> make_reference(const Session& session, const CapturedFrame& frame,
-                                        const std::string& what, uint32_t subset, const std::string& cache) {
+                                        const std::string& what, uint32_t subset,
+                                        const std::string& cache) {
   const ReferenceFrame source = make_reference_frame(frame);
   const bool planar = subsurface::is_planar(source.input());
   Reference reference;

@@ -26,6 +26,7 @@ struct Reference {
 // pixels (0: all). `cache` is a folder for results by a hash of all inputs; "" disables the cache.
 // Invalid cached files are recomputed. Returns nullopt if interrupted.
 std::optional<Reference> make_reference(const Session& session, const CapturedFrame& frame,
-                                        const std::string& what, uint32_t subset, const std::string& cache);
+                                        const std::string& what, uint32_t subset,
+                                        const std::string& cache);
 
 } // namespace dermis::tools

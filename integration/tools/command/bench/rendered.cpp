@@ -51,9 +51,11 @@ demo::Result<Subject> render_subject(const SceneRequest& request, const SubjectO
   auto subject = render_once(request, options, camera);
   if (!subject || request.d_px.empty() || !camera) return subject;
   const double target_d_px = request.d_px.front();
-  for (int i = 0;
-       i < max_zooms && subject->d_px > 0 && std::abs(subject->d_px / target_d_px - 1) > close_enough; ++i) {
-    const double half = std::tan(camera->vertical_fov * half_a_degree) * subject->d_px / target_d_px;
+  for (int i = 0; i < max_zooms && subject->d_px > 0 &&
+                  std::abs(subject->d_px / target_d_px - 1) > close_enough;
+       ++i) {
+    const double half =
+        std::tan(camera->vertical_fov * half_a_degree) * subject->d_px / target_d_px;
     camera->vertical_fov = std::clamp(std::atan(half) / half_a_degree, 1.0, 150.0);
     subject = render_once(request, options, camera);
     if (!subject) return subject;

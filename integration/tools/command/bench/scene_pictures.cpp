@@ -27,14 +27,15 @@ ReportPicture picture_of(const Subject& subject) {
             sum += double(light.at(x * side + i, y * side + j, c));
         small.texels.push_back(static_cast<float>(sum * exposure / (side * side)));
       }
-  return {fmt::format("{} {}, d = {:.2f} px", subject.scene, subject.framing, subject.d_px), small.width,
-          small.height, demo::tonemap(small)};
+  return {fmt::format("{} {}, d = {:.2f} px", subject.scene, subject.framing, subject.d_px),
+          small.width, small.height, demo::tonemap(small)};
 }
 
 } // namespace
 
 ReportPictures scene_pictures(std::span<const Subject> subjects) {
-  ReportPictures group{"Scenes", "Light before scattering and before albedo, exposed and tonemapped.", {}};
+  ReportPictures group{
+      "Scenes", "Light before scattering and before albedo, exposed and tonemapped.", {}};
   for (const Subject& subject : subjects)
     if (subject.frame.lighting.width > 0 && subject.frame.lighting.height > 0)
       group.pictures.push_back(picture_of(subject));

@@ -38,14 +38,15 @@ double sdr8_mse(std::span<const double> light, std::span<const double> reference
 StillError still_error(std::span<const float> light, const Reference& reference) {
   StillError error;
   error.population = reference.population;
-  error.figures =
-      measure_error(light, reference.light, reference.pixels, reference.exposure, reference.population);
+  error.figures = measure_error(light, reference.light, reference.pixels, reference.exposure,
+                                reference.population);
   error.psnr_db_sdr8 =
       psnr_from_mse(sdr8_mse(at_pixels(light, reference), reference.light, reference.exposure));
   return error;
 }
 
-double psnr_between(std::span<const float> light, std::span<const float> other, const Reference& reference) {
+double psnr_between(std::span<const float> light, std::span<const float> other,
+                    const Reference& reference) {
   return measure_error(light, at_pixels(other, reference), reference.pixels, reference.exposure,
                        reference.population)
       .psnr_db;
@@ -55,8 +56,10 @@ CapturedFrame window_of(const CapturedFrame& frame, uint32_t side) {
   CapturedFrame window = frame;
   FrameDescription& description = window.description;
   if (side == 0) return window;
-  const uint32_t width = std::min(side, description.width), height = std::min(side, description.height);
-  description.render = {(description.width - width) / 2, (description.height - height) / 2, width, height};
+  const uint32_t width = std::min(side, description.width),
+                 height = std::min(side, description.height);
+  description.render = {(description.width - width) / 2, (description.height - height) / 2, width,
+                        height};
   return window;
 }
 
@@ -66,7 +69,8 @@ Reference inside(const CapturedFrame& frame, const Reference& whole) {
   part.exposure = whole.exposure;
   for (const uint32_t pixel : whole.pixels) {
     const uint32_t x = pixel % frame.description.width, y = pixel / frame.description.width;
-    if (x >= render.x && x < render.x + render.width && y >= render.y && y < render.y + render.height)
+    if (x >= render.x && x < render.x + render.width && y >= render.y &&
+        y < render.y + render.height)
       part.pixels.push_back(pixel);
   }
   return part;

@@ -20,7 +20,8 @@ StillError still_error(std::span<const float> light, const Reference& reference)
 
 // Returns the PSNR of `light` against another image instead of the reference's light, at the
 // reference's pixels and exposure.
-double psnr_between(std::span<const float> light, std::span<const float> other, const Reference& reference);
+double psnr_between(std::span<const float> light, std::span<const float> other,
+                    const Reference& reference);
 
 // Returns the frame with a render rectangle of `side` pixels in its middle, or unchanged if `side`
 // is 0. 4,096 samples per pixel are too slow for whole images. Pixels outside do not take part.

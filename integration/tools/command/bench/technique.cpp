@@ -34,10 +34,12 @@ double invocations_per_pixel(const Plan& plan, const PlanPass& pass, const PassT
   for (uint32_t i = 0; i < pass.access_count; ++i) {
     const PlanAccess& access = plan.accesses[pass.first_access + i];
     const PlanResource& resource = plan.resources[access.resource];
-    if (type.ports[access.port].usage != Usage::storage_image_write || resource.type != ResourceType::image)
+    if (type.ports[access.port].usage != Usage::storage_image_write ||
+        resource.type != ResourceType::image)
       continue;
     const uint32_t mip = access.range.first_mip;
-    const double texels = double(std::max(resource.width >> mip, 1u)) * std::max(resource.height >> mip, 1u);
+    const double texels =
+        double(std::max(resource.width >> mip, 1u)) * std::max(resource.height >> mip, 1u);
     return texels / (double(plan.view_width) * plan.view_height);
   }
   return 1;
@@ -63,7 +65,8 @@ subsurface::PerChannel d_of(const CapturedFrame& frame, double d_px) {
   std::array<uint64_t, 256> count{};
   for (const uint8_t id : frame.profile)
     count[id] += id != 0;
-  const auto maximum = static_cast<uint32_t>(std::max_element(count.begin(), count.end()) - count.begin());
+  const auto maximum =
+      static_cast<uint32_t>(std::max_element(count.begin(), count.end()) - count.begin());
   for (const CaptureProfile& one : frame.description.profiles)
     if (one.id == maximum) {
       const auto& d = one.profile.d_mm;
@@ -73,13 +76,12 @@ subsurface::PerChannel d_of(const CapturedFrame& frame, double d_px) {
   return {d_px, d_px, d_px};
 }
 
-demo::Result<std::unique_ptr<TechniqueRun>> TechniqueRun::create(demo::VulkanHost& host,
-                                                                 const TechniqueRequest& request,
-                                                                 std::span<const CaptureProfile> profiles,
-                                                                 std::span<const float> sap_tables) {
+demo::Result<std::unique_ptr<TechniqueRun>>
+TechniqueRun::create(demo::VulkanHost& host, const TechniqueRequest& request,
+                     std::span<const CaptureProfile> profiles, std::span<const float> sap_tables) {
   Diagnostics diagnostics;
-  std::optional<LoadedGraph> loaded =
-      load_graph(request.graph, {.overlays = request.overlays, .roots = {}, .pass_types = {}}, diagnostics);
+  std::optional<LoadedGraph> loaded = load_graph(
+      request.graph, {.overlays = request.overlays, .roots = {}, .pass_types = {}}, diagnostics);
   if (!loaded) return input_error(request.graph, text_of(diagnostics));
   const CompileChoices choices = read_choices(loaded->graph, request.set);
   if (!choices.problem.empty()) return input_error(request.graph, choices.problem);
@@ -92,7 +94,8 @@ demo::Result<std::unique_ptr<TechniqueRun>> TechniqueRun::create(demo::VulkanHos
   return made;
 }
 
-demo::Result<> TechniqueRun::prepare(const CapturedFrame& frame, const SlotChoice& slots, bool follows) {
+demo::Result<> TechniqueRun::prepare(const CapturedFrame& frame, const SlotChoice& slots,
+                                     bool follows) {
   DeviceGraphRequest device_request;
   device_request.graph_name = request_.graph;
   device_request.graph_text = text_;
@@ -105,12 +108,14 @@ demo::Result<> TechniqueRun::prepare(const CapturedFrame& frame, const SlotChoic
   for (const auto& [slot, format] : slots.formats)
     device_request.formats.emplace_back(slot, static_cast<VkFormat>(format_info(format).vulkan));
   const bool same = device_ != nullptr && same_but_size(device_request, made_for_);
-  made_anew_ = !same || device_request.width != made_for_.width || device_request.height != made_for_.height;
+  made_anew_ =
+      !same || device_request.width != made_for_.width || device_request.height != made_for_.height;
   if (!made_anew_) return demo::success();
   Diagnostics diagnostics;
   const CompileChoices choices = read_choices(loaded_.graph, request_.set, slots.unbound);
   if (!choices.problem.empty()) return input_error(request_.graph, choices.problem);
-  auto plan = compile_generic(loaded_, {device_request.width, device_request.height}, choices, diagnostics);
+  auto plan =
+      compile_generic(loaded_, {device_request.width, device_request.height}, choices, diagnostics);
   if (!plan) return input_error(request_.graph, text_of(diagnostics));
   if (same && follows) {
     if (auto resized = device_->resize(device_request.width, device_request.height); !resized)
@@ -133,9 +138,11 @@ demo::Result<std::vector<float>> TechniqueRun::scatter(const CapturedFrame& fram
   if (auto ready = prepare(frame, slots, follows); !ready) return ready.error();
   if (depth == DepthGiven::depth_buffer)
     for (SlotData& data : slots.data)
-      if (data.slot == "depth") data.texels = depth_buffer_of(data.texels, frame.description.clip_from_view);
+      if (data.slot == "depth")
+        data.texels = depth_buffer_of(data.texels, frame.description.clip_from_view);
   for (const SlotData& data : slots.data)
-    if (auto given = device_->upload(data.slot, data.texels, data.channels); !given) return given.error();
+    if (auto given = device_->upload(data.slot, data.texels, data.channels); !given)
+      return given.error();
   device_->skip_to(std::exchange(next_frame_index_, 0));
   frame_ = c_frame(frame.description);
   if (depth == DepthGiven::depth_buffer) frame_.depth_kind = DERMIS_DEPTH_DEVICE;
@@ -166,16 +173,19 @@ demo::Result<TechniqueTimes> TechniqueRun::times() {
   TechniqueTimes times;
   const std::vector<DeviceGraph::PassTime> all = device_->times();
   if (all.empty())
-    return demo::Error{demo::ErrorKind::environment, "the device has no timestamps; nothing can be compared"};
+    return demo::Error{demo::ErrorKind::environment,
+                       "the device has no timestamps; nothing can be compared"};
   for (const DeviceGraph::PassTime& one : all) {
     const auto pass =
         std::find_if(plan_.plan.passes.begin(), plan_.plan.passes.end(), [&](const PlanPass& each) {
           return loaded_.graph.passes[each.declared.value].name == one.pass;
         });
-    const std::string_view type = pass != plan_.plan.passes.end() ? loaded_.pass_types[pass->type].name : "";
+    const std::string_view type =
+        pass != plan_.plan.passes.end() ? loaded_.pass_types[pass->type].name : "";
     if (type == export_scattered_type) continue;
     times.device += one.milliseconds;
-    if (std::find(common_pass_types.begin(), common_pass_types.end(), type) == common_pass_types.end())
+    if (std::find(common_pass_types.begin(), common_pass_types.end(), type) ==
+        common_pass_types.end())
       times.sampling += one.milliseconds;
   }
   return times;

@@ -15,8 +15,8 @@
 
 namespace dermis::tools {
 
-// Type of the pass that exports light for tools and for hosts that apply albedo later; not part of a
-// technique.
+// Type of the pass that exports light for tools and for hosts that apply albedo later; not part of
+// a technique.
 inline constexpr std::string_view export_scattered_type = "subsurface.export_scattered";
 
 struct TechniqueTimes { // milliseconds per run
@@ -46,10 +46,9 @@ subsurface::PerChannel d_of(const CapturedFrame& frame, double d_px);
 class TechniqueRun {
 public:
   // Errors: input (a graph that cannot be read or compiled, an unknown setting).
-  static demo::Result<std::unique_ptr<TechniqueRun>> create(demo::VulkanHost& host,
-                                                            const TechniqueRequest& request,
-                                                            std::span<const CaptureProfile> profiles,
-                                                            std::span<const float> sap_tables);
+  static demo::Result<std::unique_ptr<TechniqueRun>>
+  create(demo::VulkanHost& host, const TechniqueRequest& request,
+         std::span<const CaptureProfile> profiles, std::span<const float> sap_tables);
 
   // Uploads the frame, runs once and returns the scattered light before albedo, 3 values per pixel.
   // If `follows`, the frame follows the last scattered frame and histories continue, also after a

@@ -1,8 +1,8 @@
 // dermis capture: writes the graph inputs of a scene as captured frames.
 #include "integration/tools/files/capture.hpp"
 #include "framegraph/text/json_writer.hpp"
-#include "integration/tools/command/interrupt.hpp"
 #include "integration/tools/command/capture/capture_scene.hpp"
+#include "integration/tools/command/interrupt.hpp"
 #include "integration/tools/command/run/rendered_frame.hpp"
 
 #include <fmt/format.h>
@@ -14,8 +14,8 @@ demo::Result<> capture_scene(const Session& session, const CaptureOptions& optio
   demo::RenderOptions engine;
   engine.scene = options.scene;
   engine.roots = options.roots;
-  engine.model = {options.model.model, options.model.albedo, options.model.normal, options.model.specular,
-                  options.model.height};
+  engine.model = {options.model.model, options.model.albedo, options.model.normal,
+                  options.model.specular, options.model.height};
   engine.width = options.size.width;
   engine.height = options.size.height;
   engine.first_frame = options.first;
@@ -25,7 +25,8 @@ demo::Result<> capture_scene(const Session& session, const CaptureOptions& optio
   std::vector<CaptureProfile> profiles;
   std::string problem;
   uint32_t done = 0;
-  Progress progress(progress_style(session.quiet, session.json), "capture", "frame", options.frames);
+  Progress progress(progress_style(session.quiet, session.json), "capture", "frame",
+                    options.frames);
   demo::RenderCallbacks callbacks;
   callbacks.on_start = [&](const demo::RenderInfo& info) -> demo::Result<> {
     for (const std::string& warning : info.warnings)
@@ -55,7 +56,8 @@ demo::Result<> capture_scene(const Session& session, const CaptureOptions& optio
 ExitCode capture(const Session& session, const CaptureOptions& options) {
   const auto captured = capture_scene(session, options);
   if (interrupted()) return fail(session, ExitCode::interrupted, "stopped");
-  if (!captured) return fail(session, static_cast<ExitCode>(captured.error().kind), captured.error().text);
+  if (!captured)
+    return fail(session, static_cast<ExitCode>(captured.error().kind), captured.error().text);
   say(session, fmt::format("{} in {}\n", format_count(options.frames, "frame", true), options.out));
   if (session.json) {
     JsonWriter answer;

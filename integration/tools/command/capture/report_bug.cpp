@@ -47,9 +47,10 @@ struct BugReport {
     fs::path made = part;
     if (!archived.empty()) {
       made = part / "archive";
-      const auto tar = run_child({"tar", "--create", "--gzip", "--file", made.string(), "--directory",
-                                  part.string(), "--owner=0", "--group=0", "--sort=name", "--", archived},
-                                 problem);
+      const auto tar =
+          run_child({"tar", "--create", "--gzip", "--file", made.string(), "--directory",
+                     part.string(), "--owner=0", "--group=0", "--sort=name", "--", archived},
+                    problem);
       if (tar && tar->exit_code != 0) problem = fmt::format("'tar' ended with {}", tar->exit_code);
       if (!problem.empty()) return false;
     }
@@ -70,7 +71,8 @@ std::string folder_in(const fs::path& target) {
 
 // Quotes a word for a shell.
 std::string word(const std::string& text) {
-  if (text.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./=,") ==
+  if (text.find_first_not_of(
+          "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./=,") ==
       std::string::npos)
     return text;
   std::string quoted = "'";
@@ -87,8 +89,8 @@ struct GraphFiles {
 
 // Adds graph, overlays, pass types and included files. File names are chosen so that references
 // resolve.
-bool add_graph(BugReport& bug_report, const ReportBugOptions& options, const Diagnostics& diagnostics,
-               GraphFiles& files) {
+bool add_graph(BugReport& bug_report, const ReportBugOptions& options,
+               const Diagnostics& diagnostics, GraphFiles& files) {
   files.graph = options.graph == "-" ? "graph.json" : fs::path(options.graph).filename().string();
   bool good = bug_report.add(files.graph, diagnostics.files.front().text);
   const auto add_all = [&](const char* folder, const std::vector<std::string>& paths,
@@ -96,8 +98,8 @@ bool add_graph(BugReport& bug_report, const ReportBugOptions& options, const Dia
     for (size_t i = 0; i < paths.size() && good; ++i) {
       const auto bytes = read_bytes(paths[i], limits::file_bytes, bug_report.problem);
       names.push_back(fmt::format("{}/{}_{}", folder, i, fs::path(paths[i]).filename().string()));
-      good = bytes &&
-             bug_report.add(names.back(), {reinterpret_cast<const char*>(bytes->data()), bytes->size()});
+      good = bytes && bug_report.add(names.back(),
+                                     {reinterpret_cast<const char*>(bytes->data()), bytes->size()});
     }
   };
   add_all("overlays", options.inputs.overlays, files.overlays);
@@ -107,7 +109,8 @@ bool add_graph(BugReport& bug_report, const ReportBugOptions& options, const Dia
   return good;
 }
 
-std::string settings_json(const LoadedGraph& loaded, const CompileChoices& choices, const SavedPlan& saved) {
+std::string settings_json(const LoadedGraph& loaded, const CompileChoices& choices,
+                          const SavedPlan& saved) {
   JsonWriter out;
   out.open_object();
   for (size_t i = 0; i < loaded.graph.settings.size() && i < choices.settings.size(); ++i)
@@ -125,7 +128,8 @@ std::string device_json() {
 }
 
 // Adds the last frame of the given capture, or a frame of the scene.
-demo::Result<> add_frame(const Session& session, const ReportBugOptions& options, BugReport& bug_report) {
+demo::Result<> add_frame(const Session& session, const ReportBugOptions& options,
+                         BugReport& bug_report) {
   const std::string folder = (bug_report.folder() / "capture").string();
   if (options.frames.empty()) {
     Session quiet = session;
@@ -140,10 +144,11 @@ demo::Result<> add_frame(const Session& session, const ReportBugOptions& options
     return capture_scene(quiet, one);
   }
   Diagnostics diagnostics;
-  const std::vector<fs::path> frames = find_frames(options.frames, diagnostics, options.inputs.roots);
-  const auto frame = frames.empty()
-                         ? std::nullopt
-                         : read_frame(frames.back(), profiles_folder(""), diagnostics, options.inputs.roots);
+  const std::vector<fs::path> frames =
+      find_frames(options.frames, diagnostics, options.inputs.roots);
+  const auto frame = frames.empty() ? std::nullopt
+                                    : read_frame(frames.back(), profiles_folder(""), diagnostics,
+                                                 options.inputs.roots);
   if (!frame) {
     print_diagnostics(session, diagnostics);
     return demo::Error{demo::ErrorKind::input,
@@ -157,7 +162,8 @@ demo::Result<> add_frame(const Session& session, const ReportBugOptions& options
 }
 
 std::string replay_line(const ReportBugOptions& options, const GraphFiles& files) {
-  std::string line = fmt::format("dermis apply --graph {} --frames capture --out replay", word(files.graph));
+  std::string line =
+      fmt::format("dermis apply --graph {} --frames capture --out replay", word(files.graph));
   for (const std::string& overlay : files.overlays)
     line += " --overlay " + word(overlay);
   for (const std::string& pass_types : files.pass_types)
@@ -168,13 +174,13 @@ std::string replay_line(const ReportBugOptions& options, const GraphFiles& files
 }
 
 std::string about(const Session& session, const std::string& replay) {
-  return fmt::format("Made by dermis {}.{}.{}: {}\n\nTo reproduce the problem, run in this folder:\n\n  "
-                     "{}\n\nsettings.json  values that the plan was compiled with\nplan.json      the plan "
-                     "with its reasons (dermis explain --json), for the generic device\ngraph.plan     the "
-                     "plan for dermis plan verify and dermis plan diff\ndevice.json    properties of the "
-                     "machine (dermis doctor --json)\ncapture/       inputs of one frame\n",
-                     DERMIS_VERSION_MAJOR, DERMIS_VERSION_MINOR, DERMIS_VERSION_PATCH, session.command,
-                     replay);
+  return fmt::format(
+      "Made by dermis {}.{}.{}: {}\n\nTo reproduce the problem, run in this folder:\n\n  "
+      "{}\n\nsettings.json  values that the plan was compiled with\nplan.json      the plan "
+      "with its reasons (dermis explain --json), for the generic device\ngraph.plan     the "
+      "plan for dermis plan verify and dermis plan diff\ndevice.json    properties of the "
+      "machine (dermis doctor --json)\ncapture/       inputs of one frame\n",
+      DERMIS_VERSION_MAJOR, DERMIS_VERSION_MINOR, DERMIS_VERSION_PATCH, session.command, replay);
 }
 
 } // namespace
@@ -184,13 +190,15 @@ ExitCode report_bug(const Session& session, const ReportBugOptions& options) {
   const fs::path target = fs::absolute(options.out, error).lexically_normal();
   const fs::path named = target.has_filename() ? target : target.parent_path();
   const std::string archived = folder_in(named);
-  for (const std::string_view ending : {".zip", ".tar", ".gz", ".bz2", ".xz", ".zst", ".7z", ".rar"})
+  for (const std::string_view ending :
+       {".zip", ".tar", ".gz", ".bz2", ".xz", ".zst", ".7z", ".rar"})
     if (archived.empty() && named.extension() == ending)
       return fail(
           session, ExitCode::usage,
-          fmt::format("'{}': archives are written as .tar.gz or .tgz; a name without such an ending is "
-                      "a folder's",
-                      options.out));
+          fmt::format(
+              "'{}': archives are written as .tar.gz or .tgz; a name without such an ending is "
+              "a folder's",
+              options.out));
   if (fs::exists(named, error) && (!archived.empty() || !fs::is_empty(named, error)))
     return fail(session, ExitCode::environment,
                 fmt::format("'{}' exists{}: choose another name", options.out,
@@ -206,16 +214,18 @@ ExitCode report_bug(const Session& session, const ReportBugOptions& options) {
         if (file.problem.empty()) files.included[std::string(name)] = file.text;
         return file;
       };
-  const auto loaded = document && overlays ? load_graph(std::move(*document), std::move(*overlays), recorded,
-                                                        diagnostics, options.inputs.pass_types)
-                                           : std::nullopt;
+  const auto loaded = document && overlays
+                          ? load_graph(std::move(*document), std::move(*overlays), recorded,
+                                       diagnostics, options.inputs.pass_types)
+                          : std::nullopt;
   if (!loaded) return fail_graph(session, options.graph, diagnostics);
   const CompileChoices choices = read_choices(loaded->graph, options.settings);
   if (!choices.problem.empty()) return fail(session, ExitCode::usage, choices.problem);
   const auto compiled = compile_generic(*loaded, options.size, choices, diagnostics);
   if (!compiled) return fail_graph(session, options.graph, diagnostics);
   const DeviceProfile generic = generic_profile();
-  const SavedPlan saved = saved_plan(compile_input(*loaded, generic, options.size, choices), compiled->plan);
+  const SavedPlan saved =
+      saved_plan(compile_input(*loaded, generic, options.size, choices), compiled->plan);
 
   BugReport bug_report{named, temporary_path(named), archived};
   bool good = add_graph(bug_report, options, diagnostics, files) &&
@@ -228,12 +238,14 @@ ExitCode report_bug(const Session& session, const ReportBugOptions& options) {
   if (!good) return fail(session, ExitCode::environment, bug_report.problem);
   const auto captured = add_frame(session, options, bug_report);
   if (interrupted()) return fail(session, ExitCode::interrupted, "stopped");
-  if (!captured) return fail(session, static_cast<ExitCode>(captured.error().kind), captured.error().text);
+  if (!captured)
+    return fail(session, static_cast<ExitCode>(captured.error().kind), captured.error().text);
   if (archived.empty()) fs::remove(named, error); // the target may be an empty folder
   if (!bug_report.finish()) return fail(session, ExitCode::environment, bug_report.problem);
-  say(session, fmt::format("{}: attach this file to your report; its README.txt has the command that "
-                           "reproduces the problem:\n  {}\n",
-                           options.out, replay_line(options, files)));
+  say(session,
+      fmt::format("{}: attach this file to your report; its README.txt has the command that "
+                  "reproduces the problem:\n  {}\n",
+                  options.out, replay_line(options, files)));
   if (session.json) {
     JsonWriter answer;
     answer.open_object()

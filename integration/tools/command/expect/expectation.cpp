@@ -73,8 +73,8 @@ struct CaseReader {
       else if (value.kind == NodeKind::real)
         out.emplace_back(name, fmt::format("{}", value.real));
       else
-        reject(node, fmt::format("setting '{}': expected a bool, a number or a string, found {}", name,
-                                 kind_name(value.kind)));
+        reject(node, fmt::format("setting '{}': expected a bool, a number or a string, found {}",
+                                 name, kind_name(value.kind)));
     }
     return out;
   }
@@ -95,21 +95,24 @@ struct CaseReader {
     if (!list.valid()) return;
     for (const NodeId node : children(document, list)) {
       const auto name = read_string(document, node, "the name of an overlay", diagnostics);
-      ok &= name && check_file_name(*name, fmt::format("'{}'", *name), document.where(node), diagnostics);
+      ok &= name &&
+            check_file_name(*name, fmt::format("'{}'", *name), document.where(node), diagnostics);
       if (name) out.overlays.emplace_back(*name);
     }
   }
 
   void device(NodeId node, ExpectedCase& out) {
     if (!node.valid()) return;
-    ObjectReader object(document, node, fmt::format("'device' of case '{}'", out.name), diagnostics);
+    ObjectReader object(document, node, fmt::format("'device' of case '{}'", out.name),
+                        diagnostics);
     const NodeId formats =
         object.array("unsupported_formats", 0, static_cast<size_t>(Format::count), Need::optional);
     if (formats.valid())
       for (const NodeId one : children(document, formats))
         if (const auto found = format(one, "'unsupported_formats'"))
           out.unsupported_formats.push_back(*found);
-    if (const NodeId unmet = object.array("lacks", 0, static_cast<size_t>(Feature::count), Need::optional);
+    if (const NodeId unmet =
+            object.array("lacks", 0, static_cast<size_t>(Feature::count), Need::optional);
         unmet.valid())
       for (const NodeId one : children(document, unmet))
         feature(one, out);
@@ -132,15 +135,16 @@ struct CaseReader {
       }
     }
     const auto count = [&](std::string_view key, std::optional<uint64_t>& into) {
-      const auto value = object.integer(key, 0, std::numeric_limits<int64_t>::max(), Need::optional);
+      const auto value =
+          object.integer(key, 0, std::numeric_limits<int64_t>::max(), Need::optional);
       if (value) into = static_cast<uint64_t>(*value);
     };
     count("barriers", out.barriers);
     count("batches", out.batches);
     count("transient_bytes", out.transient_bytes);
     count("history_bytes", out.history_bytes);
-    out.diagnostics =
-        strings(object.array("diagnostics", 0, max_names, Need::optional), "the id of a diagnostic");
+    out.diagnostics = strings(object.array("diagnostics", 0, max_names, Need::optional),
+                              "the id of a diagnostic");
     ok &= object.finish();
     return out;
   }

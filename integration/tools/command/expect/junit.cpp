@@ -42,16 +42,18 @@ std::string junit_xml(const std::vector<TestSuite>& suites) {
     failures += failures_of(suite);
   }
   std::string out = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n";
-  out += fmt::format("<testsuites name=\"dermis test\" tests=\"{}\" failures=\"{}\">\n", tests, failures);
+  out += fmt::format("<testsuites name=\"dermis test\" tests=\"{}\" failures=\"{}\">\n", tests,
+                     failures);
   for (const TestSuite& suite : suites) {
     const std::string name = xml_text(suite.name);
-    out += fmt::format("  <testsuite name=\"{}\" tests=\"{}\" failures=\"{}\">\n", name, suite.results.size(),
-                       failures_of(suite));
+    out += fmt::format("  <testsuite name=\"{}\" tests=\"{}\" failures=\"{}\">\n", name,
+                       suite.results.size(), failures_of(suite));
     for (const TestResult& one : suite.results) {
       out += fmt::format("    <testcase classname=\"{}\" name=\"{}\"", name, xml_text(one.name));
-      out += one.ok ? "/>\n"
-                    : fmt::format(">\n      <failure message=\"{}\">{}</failure>\n    </testcase>\n",
-                                  xml_text(one.message), xml_text(one.details));
+      out += one.ok
+                 ? "/>\n"
+                 : fmt::format(">\n      <failure message=\"{}\">{}</failure>\n    </testcase>\n",
+                               xml_text(one.message), xml_text(one.details));
     }
     out += "  </testsuite>\n";
   }

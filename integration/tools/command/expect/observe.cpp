@@ -14,20 +14,23 @@ DeviceProfile device_of(const ExpectedCase& inputs) {
   DeviceProfile device = generic_profile();
   device.features &= ~inputs.unmet;
   if (inputs.max_image_dimension) device.max_image_dimension = *inputs.max_image_dimension;
-  device.supports = [all = device.supports, without = inputs.unsupported_formats](Format format,
-                                                                                  uint32_t vk_usage) {
-    return std::find(without.begin(), without.end(), format) == without.end() && all(format, vk_usage);
+  device.supports = [all = device.supports,
+                     without = inputs.unsupported_formats](Format format, uint32_t vk_usage) {
+    return std::find(without.begin(), without.end(), format) == without.end() &&
+           all(format, vk_usage);
   };
   return device;
 }
 
 // Returns one format per resource of the graph. Sets `problem` to an unknown resource.
-std::vector<Format> host_formats(const Graph& graph, const ExpectedCase& inputs, std::string& problem) {
+std::vector<Format> host_formats(const Graph& graph, const ExpectedCase& inputs,
+                                 std::string& problem) {
   std::vector<Format> out(graph.resources.size(), Format::undefined);
   for (const auto& binding : inputs.host_formats) {
     const std::string& name = binding.first;
-    const auto found = std::find_if(graph.resources.begin(), graph.resources.end(),
-                                    [&](const ResourceDeclaration& one) { return one.name == name; });
+    const auto found =
+        std::find_if(graph.resources.begin(), graph.resources.end(),
+                     [&](const ResourceDeclaration& one) { return one.name == name; });
     if (found == graph.resources.end())
       problem = fmt::format("'host_formats': the graph has no resource '{}'", name);
     else
@@ -36,7 +39,8 @@ std::vector<Format> host_formats(const Graph& graph, const ExpectedCase& inputs,
   return out;
 }
 
-MachineInfo facts_of(const Graph& graph, const PassTypeRegistry& pass_types, const CompiledPlan& compiled) {
+MachineInfo facts_of(const Graph& graph, const PassTypeRegistry& pass_types,
+                     const CompiledPlan& compiled) {
   const Plan& plan = compiled.plan;
   MachineInfo info;
   info.passes.emplace();

@@ -29,8 +29,8 @@ void append(std::string& out, const char* mark, std::string_view line) {
 
 // Computes a longest common subsequence with a table of lengths (Wagner and Fischer 1974,
 // insertions and deletions only), over lines [first, end) of both.
-void diff_middle(const Lines& before, const Lines& after, size_t first, size_t before_end, size_t after_end,
-                 std::string& out) {
+void diff_middle(const Lines& before, const Lines& after, size_t first, size_t before_end,
+                 size_t after_end, std::string& out) {
   const size_t rows = before_end - first, columns = after_end - first;
   const bool too_long = rows > max_lines || columns > max_lines;
   std::vector<uint16_t> common(too_long ? 0 : (rows + 1) * (columns + 1), 0);
@@ -61,7 +61,8 @@ std::string diff_lines(std::string_view before_text, std::string_view after_text
   size_t head = 0, tail = 0;
   while (head < shorter && before[head] == after[head])
     ++head;
-  while (tail < shorter - head && before[before.size() - 1 - tail] == after[after.size() - 1 - tail])
+  while (tail < shorter - head &&
+         before[before.size() - 1 - tail] == after[after.size() - 1 - tail])
     ++tail;
   std::string out;
   for (size_t i = 0; i < head; ++i)

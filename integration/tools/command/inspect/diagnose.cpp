@@ -46,27 +46,31 @@ public:
     check_matrices();
     if (figures_.profile_pixels == 0) {
       add(DiagnosticId::first_frame_no_subsurface,
-          fmt::format("all {} pixels of 'profile.exr' in the render rectangle are 0: nothing scatters",
-                      uint64_t{render().width} * render().height));
+          fmt::format(
+              "all {} pixels of 'profile.exr' in the render rectangle are 0: nothing scatters",
+              uint64_t{render().width} * render().height));
       return "no pixel has a profile";
     }
     if (frame_.albedo.values.empty())
-      add(DiagnosticId::first_frame_no_albedo, "'albedo.exr' is missing: scattered light is shown as if "
-                                               "every surface were white");
+      add(DiagnosticId::first_frame_no_albedo,
+          "'albedo.exr' is missing: scattered light is shown as if "
+          "every surface were white");
     check_albedo_in_lighting();
     check_pixel_shape();
     if (figures_.depth_pixels < min_samples) {
-      add(DiagnosticId::first_frame_depth, fmt::format("{} of {} pixels with a profile have a depth above 0",
-                                                       figures_.depth_pixels, figures_.profile_pixels));
+      add(DiagnosticId::first_frame_depth,
+          fmt::format("{} of {} pixels with a profile have a depth above 0", figures_.depth_pixels,
+                      figures_.profile_pixels));
       return fmt::format("{} pixels have a profile", figures_.profile_pixels);
     }
     check_units();
     check_depth_range();
     check_depth_direction();
-    return fmt::format("{} pixels have a profile; d {:.3g} px (median); depth {:.3g}, {:.3g}, {:.3g} m (5th, "
-                       "50th, 95th percentile); a pixel is {:.3g} mm wide",
-                       figures_.profile_pixels, figures_.median_d_px, figures_.near_m, figures_.median_m,
-                       figures_.far_m, 1000 * figures_.pixel_m);
+    return fmt::format(
+        "{} pixels have a profile; d {:.3g} px (median); depth {:.3g}, {:.3g}, {:.3g} m (5th, "
+        "50th, 95th percentile); a pixel is {:.3g} mm wide",
+        figures_.profile_pixels, figures_.median_d_px, figures_.near_m, figures_.median_m,
+        figures_.far_m, 1000 * figures_.pixel_m);
   }
 
 private:
@@ -105,7 +109,8 @@ private:
       ++figures_.profile_pixels;
       if (!(depth(p) > 0)) return;
       depths.push_back(depth(p));
-      const double scale = frame_.scatter_scale.values.empty() ? 1 : double{frame_.scatter_scale.values[p]};
+      const double scale =
+          frame_.scatter_scale.values.empty() ? 1 : double{frame_.scatter_scale.values[p]};
       d_px.push_back(scale * widest_d_m(frame_.profile[p]) / pixel_side(depth(p)));
     });
     figures_.depth_pixels = depths.size();
@@ -125,8 +130,9 @@ private:
     if (!translation_in_row) return;
     const bool column_empty = m[3] == 0 && m[7] == 0 && m[11] == 0;
     add(DiagnosticId::first_frame_matrix,
-        fmt::format("the last row of '{}' is {:g} {:g} {:g} {:g}, expected 0 0 0 1{}", name, m[12], m[13],
-                    m[14], m[15], column_empty ? ": the matrix is stored column by column" : ""));
+        fmt::format("the last row of '{}' is {:g} {:g} {:g} {:g}, expected 0 0 0 1{}", name, m[12],
+                    m[13], m[14], m[15],
+                    column_empty ? ": the matrix is stored column by column" : ""));
   }
   void check_matrices() {
     check_matrix("view_from_world", frame_.description.view_from_world);
@@ -153,9 +159,10 @@ private:
     const double slope = quantile(slopes, 0.5);
     if (slope > contained_from)
       add(DiagnosticId::first_frame_albedo_in_lighting,
-          fmt::format("'lighting.exr' changes with 'albedo.exr' (median exponent {:.2f} over {} steps of "
-                      "albedo, 0 expected): it already contains albedo",
-                      slope, slopes.size()));
+          fmt::format(
+              "'lighting.exr' changes with 'albedo.exr' (median exponent {:.2f} over {} steps of "
+              "albedo, 0 expected): it already contains albedo",
+              slope, slopes.size()));
   }
 
   void check_pixel_shape() {
@@ -163,9 +170,10 @@ private:
     const double ratio = std::abs(frame_.rays.scale_x / frame_.rays.scale_y);
     if (std::abs(ratio - 1) > square_within)
       add(DiagnosticId::first_frame_matrix,
-          fmt::format("'clip_from_view' makes pixels {:.3f} times as wide as high in a render rectangle of "
-                      "{} x {}",
-                      ratio, render().width, render().height));
+          fmt::format(
+              "'clip_from_view' makes pixels {:.3f} times as wide as high in a render rectangle of "
+              "{} x {}",
+              ratio, render().width, render().height));
   }
 
   void check_units() {
@@ -173,9 +181,10 @@ private:
     constexpr double large_m = 10, small_m = 2e-3;
     constexpr double narrow_px = 0.2, wide_px = 60;
     const FrameFigures& f = figures_;
-    const std::string measured = fmt::format("pixels with a profile cover {:.3g} m at {:.3g} m, and d is "
-                                             "{:.3g} px",
-                                             f.extent_m, f.median_m, f.median_d_px);
+    const std::string measured =
+        fmt::format("pixels with a profile cover {:.3g} m at {:.3g} m, and d is "
+                    "{:.3g} px",
+                    f.extent_m, f.median_m, f.median_d_px);
     if (f.median_d_px < narrow_px && f.extent_m > large_m)
       add(DiagnosticId::first_frame_units,
           fmt::format("{}: lengths seem to be {}, but are read as metres", measured,
@@ -185,7 +194,8 @@ private:
           fmt::format("{}: lengths seem larger than the values read", measured));
     else if (f.median_d_px < subsurface::copy_below_d_px)
       add(DiagnosticId::first_frame_below_pixel,
-          fmt::format("d is {:.3g} px (median): below {} px light is copied, and nothing is seen to scatter",
+          fmt::format("d is {:.3g} px (median): below {} px light is copied, and nothing is seen "
+                      "to scatter",
                       f.median_d_px, subsurface::copy_below_d_px));
   }
 
@@ -207,27 +217,31 @@ private:
     };
     if (above == 0 && many(ones) && figures_.median_m < 1)
       add(DiagnosticId::first_frame_depth,
-          fmt::format("no depth is above 1, and {} pixels without profile have exactly 1: 'depth.exr' looks "
+          fmt::format("no depth is above 1, and {} pixels without profile have exactly 1: "
+                      "'depth.exr' looks "
                       "like a depth buffer, expected metres along the view axis",
                       ones));
     else if (many(nearer))
       add(DiagnosticId::first_frame_depth,
-          fmt::format("{} of {} depths are nearer than the near plane of 'clip_from_view' ({:.3g} m): "
-                      "'depth.exr' looks like a depth buffer, or 'metres_per_unit' is wrong",
-                      nearer, valid, near_plane));
-    else if (frame_.rays.perspective && figures_.far_m - figures_.near_m < one_distance * figures_.near_m)
+          fmt::format(
+              "{} of {} depths are nearer than the near plane of 'clip_from_view' ({:.3g} m): "
+              "'depth.exr' looks like a depth buffer, or 'metres_per_unit' is wrong",
+              nearer, valid, near_plane));
+    else if (frame_.rays.perspective &&
+             figures_.far_m - figures_.near_m < one_distance * figures_.near_m)
       add(DiagnosticId::first_frame_depth,
-          fmt::format("all pixels with a profile are at {:.4g} m: right only for a plane that faces the "
-                      "camera",
-                      figures_.median_m));
+          fmt::format(
+              "all pixels with a profile are at {:.4g} m: right only for a plane that faces the "
+              "camera",
+              figures_.median_m));
   }
 
   // Returns the depth of the nearer end of the depth range, metres. Returns 0 for orthographic
   // cameras, whose range may lie anywhere.
   double near_plane_m() const {
     if (!frame_.rays.perspective) return 0;
-    const subsurface::DepthDecode decode =
-        subsurface::depth_decode(frame_.description.clip_from_view, frame_.description.metres_per_unit);
+    const subsurface::DepthDecode decode = subsurface::depth_decode(
+        frame_.description.clip_from_view, frame_.description.metres_per_unit);
     double nearest = 0;
     for (const double value : {0.0, 1.0}) {
       const double d = (decode.a * value + decode.b) / (decode.c * value + decode.e);
@@ -256,9 +270,10 @@ private:
     const double edge = quantile(outline, 0.5);
     if (edge < figures_.median_m - clear_fraction * relief)
       add(DiagnosticId::first_frame_depth,
-          fmt::format("outlines are nearer ({:.4g} m) than their interior ({:.4g} m): depth seems to be "
-                      "flipped (near and far exchanged)",
-                      edge, figures_.median_m));
+          fmt::format(
+              "outlines are nearer ({:.4g} m) than their interior ({:.4g} m): depth seems to be "
+              "flipped (near and far exchanged)",
+              edge, figures_.median_m));
   }
 
   const CapturedFrame& frame_;

@@ -31,10 +31,11 @@ const char* state_of(const demo::SurveyItem& item) {
 
 void add_device(const demo::SurveyedDevice& device, Table& table) {
   table.rows.emplace_back();
-  table.rows.push_back({device.fits ? "ok" : "missing", device.name,
-                        fmt::format("{}, {}, Vulkan {}, {}{}", device.type, device.driver,
-                                    version_text(device.api_version), format_bytes(device.memory_bytes),
-                                    device.chosen ? "; render and apply use this one" : "")});
+  table.rows.push_back(
+      {device.fits ? "ok" : "missing", device.name,
+       fmt::format("{}, {}, Vulkan {}, {}{}", device.type, device.driver,
+                   version_text(device.api_version), format_bytes(device.memory_bytes),
+                   device.chosen ? "; render and apply use this one" : "")});
   for (const demo::SurveyItem& item : device.items)
     table.rows.push_back({state_of(item), "  " + item.name, item.why});
 }
@@ -43,10 +44,11 @@ std::string screen(const demo::DeviceSurvey& survey) {
   Table table{{{""}, {"what"}, {"for"}}, {}};
   table.rows.push_back({"ok", "Dermis", library_version()});
   table.rows.push_back({"ok", "Vulkan loader", version_text(survey.loader_version)});
-  table.rows.push_back({survey.validation_layer ? "ok" : "degraded", "Khronos validation layer",
-                        survey.validation_layer
-                            ? "used by every device test"
-                            : "not installed (Debian: vulkan-validationlayers); required by tests"});
+  table.rows.push_back(
+      {survey.validation_layer ? "ok" : "degraded", "Khronos validation layer",
+       survey.validation_layer
+           ? "used by every device test"
+           : "not installed (Debian: vulkan-validationlayers); required by tests"});
   const std::string compiler = abi::shader_compiler();
   table.rows.push_back(
       {compiler.empty() ? "degraded" : "ok", "shaders at run time",
@@ -77,7 +79,8 @@ std::string survey_as_json(const demo::DeviceSurvey& survey) {
         .member("name", device.name)
         .member("type", device.type)
         .member("driver", device.driver);
-    json.member("vulkan", version_text(device.api_version)).member("memory_bytes", device.memory_bytes);
+    json.member("vulkan", version_text(device.api_version))
+        .member("memory_bytes", device.memory_bytes);
     json.member("fits", device.fits).member("used", device.chosen).key("items").open_array();
     for (const demo::SurveyItem& item : device.items)
       json.open_object(true)
@@ -94,8 +97,8 @@ std::string survey_as_json(const demo::DeviceSurvey& survey) {
 // Returns the report for a machine without a loader or driver.
 std::string screen_without_devices() {
   const char* why = "validate, explain, plan, test, graph and compare work without a device";
-  return format_table(
-      {{{""}, {"what"}, {"for"}}, {{"ok", "Dermis", library_version()}, {"missing", "Vulkan device", why}}});
+  return format_table({{{""}, {"what"}, {"for"}},
+                       {{"ok", "Dermis", library_version()}, {"missing", "Vulkan device", why}}});
 }
 
 ExitCode doctor(const Session& session, const DoctorOptions&) {

@@ -23,15 +23,16 @@ namespace {
 std::string code_in(std::string_view text) {
   constexpr size_t digits = 4; // also in the format below
   if (text.starts_with('D') || text.starts_with('d')) text.remove_prefix(1);
-  if (text.empty() || text.size() > digits || text.find_first_not_of("0123456789") != std::string_view::npos)
+  if (text.empty() || text.size() > digits ||
+      text.find_first_not_of("0123456789") != std::string_view::npos)
     return "";
   return fmt::format("D{:0>4}", text);
 }
 
 const DiagnosticInfo* find_code(std::string_view code) {
   const auto all = all_diagnostic_infos();
-  const auto found =
-      std::find_if(all.begin(), all.end(), [&](const DiagnosticInfo& one) { return one.code == code; });
+  const auto found = std::find_if(all.begin(), all.end(),
+                                  [&](const DiagnosticInfo& one) { return one.code == code; });
   return found == all.end() ? nullptr : &*found;
 }
 
@@ -57,7 +58,8 @@ ExitCode deliver(const Session& session, const std::string& path, std::string_vi
 }
 
 // Renders some frames of a scene, so that times and counts are known, and explains the newest.
-ExitCode explain_frame(const Session& session, const ExplainOptions& options, const LoadedGraph& loaded) {
+ExitCode explain_frame(const Session& session, const ExplainOptions& options,
+                       const LoadedGraph& loaded) {
   constexpr uint32_t frames = 6;
   demo::RenderOptions engine;
   engine.scene = options.scene;
@@ -74,7 +76,8 @@ ExitCode explain_frame(const Session& session, const ExplainOptions& options, co
   engine.include = [open = open_included(options.graph, options.inputs.roots)](
                        const std::string& name) -> std::optional<demo::NamedText> {
     const FileText file = open(name);
-    return file.problem.empty() ? std::optional(demo::NamedText{file.name, file.text}) : std::nullopt;
+    return file.problem.empty() ? std::optional(demo::NamedText{file.name, file.text})
+                                : std::nullopt;
   };
   HostPasses host_passes(loaded.host_pass_types);
   engine.hooks = host_passes.hooks();
@@ -89,7 +92,8 @@ ExitCode explain_frame(const Session& session, const ExplainOptions& options, co
   };
   const auto summary = demo::render(engine, callbacks);
   if (interrupted()) return fail(session, ExitCode::interrupted, "stopped");
-  if (!summary) return fail(session, static_cast<ExitCode>(summary.error().kind), summary.error().text);
+  if (!summary)
+    return fail(session, static_cast<ExitCode>(summary.error().kind), summary.error().text);
   if (!session.json) return deliver(session, options.out, report.text());
   JsonWriter answer;
   report.write(answer);
@@ -101,9 +105,10 @@ ExitCode explain_frame(const Session& session, const ExplainOptions& options, co
 ExitCode explain(const Session& session, const ExplainOptions& options) {
   if (const std::string code = code_in(options.graph); !code.empty()) {
     const DiagnosticInfo* info = find_code(code);
-    return info != nullptr ? deliver(session, options.out, describe_code(*info, session.json))
-                           : fail(session, ExitCode::usage,
-                                  fmt::format("there is no message {}; docs/diagnostics.md lists all", code));
+    return info != nullptr
+               ? deliver(session, options.out, describe_code(*info, session.json))
+               : fail(session, ExitCode::usage,
+                      fmt::format("there is no message {}; docs/diagnostics.md lists all", code));
   }
 
   Diagnostics diagnostics;
@@ -113,14 +118,15 @@ ExitCode explain(const Session& session, const ExplainOptions& options) {
   choices.two_queues = options.two_queues;
   if (!choices.problem.empty()) return fail(session, ExitCode::usage, choices.problem);
   if (options.frame) return explain_frame(session, options, *loaded);
-  const std::optional<CompiledPlan> compiled = compile_generic(*loaded, options.size, choices, diagnostics);
+  const std::optional<CompiledPlan> compiled =
+      compile_generic(*loaded, options.size, choices, diagnostics);
   if (!compiled) return fail_graph(session, options.graph, diagnostics);
   print_diagnostics(session, diagnostics);
-  return deliver(
-      session, options.out,
-      session.json
-          ? plan_json(loaded->graph, loaded->pass_types, *compiled, {loaded->changes, diagnostics.files})
-          : plan_text(loaded->graph, loaded->pass_types, *compiled, {loaded->changes, diagnostics.files}));
+  return deliver(session, options.out,
+                 session.json ? plan_json(loaded->graph, loaded->pass_types, *compiled,
+                                          {loaded->changes, diagnostics.files})
+                              : plan_text(loaded->graph, loaded->pass_types, *compiled,
+                                          {loaded->changes, diagnostics.files}));
 }
 
 } // namespace dermis::tools

@@ -24,7 +24,8 @@ std::span<const FileKind> file_kinds() {
 
 FileKindId file_kind_of(const Document& document) {
   for (size_t i = 0; i < std::size(kinds); ++i)
-    if (document.find(document.root(), kinds[i].version_key).valid()) return static_cast<FileKindId>(i);
+    if (document.find(document.root(), kinds[i].version_key).valid())
+      return static_cast<FileKindId>(i);
   // Key of pass type files in version 1.
   if (document.find(document.root(), "dermis_kinds").valid()) return FileKindId::pass_types;
   return FileKindId::graph;

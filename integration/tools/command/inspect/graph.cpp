@@ -21,8 +21,8 @@ ExitCode write_view(const Session& session, const GraphOptions& options, const L
   const std::string problem = deliver_page(options.html, view.page);
   if (!problem.empty()) return fail(session, ExitCode::environment, problem);
   if (options.html != "-")
-    say(session,
-        fmt::format("{}: {}; open the page in a browser\n", options.html, format_bytes(view.page.size())));
+    say(session, fmt::format("{}: {}; open the page in a browser\n", options.html,
+                             format_bytes(view.page.size())));
   return ExitCode::ok;
 }
 
@@ -36,13 +36,14 @@ ExitCode graph(const Session& session, const GraphOptions& options) {
   choices.two_queues = options.two_queues;
   if (!choices.problem.empty()) return fail(session, ExitCode::usage, choices.problem);
   if (!options.html.empty()) return write_view(session, options, *loaded, choices, diagnostics);
-  const std::optional<CompiledPlan> compiled = compile_generic(*loaded, options.size, choices, diagnostics);
+  const std::optional<CompiledPlan> compiled =
+      compile_generic(*loaded, options.size, choices, diagnostics);
   if (!compiled) return fail_graph(session, options.graph, diagnostics);
   print_diagnostics(session, diagnostics);
-  const std::string problem =
-      deliver_text(options.out, session.json ? plan_json(loaded->graph, loaded->pass_types, *compiled,
-                                                         {loaded->changes, diagnostics.files})
-                                             : plan_dot(loaded->graph, loaded->pass_types, *compiled));
+  const std::string problem = deliver_text(
+      options.out, session.json ? plan_json(loaded->graph, loaded->pass_types, *compiled,
+                                            {loaded->changes, diagnostics.files})
+                                : plan_dot(loaded->graph, loaded->pass_types, *compiled));
   return problem.empty() ? ExitCode::ok : fail(session, ExitCode::environment, problem);
 }
 

@@ -45,7 +45,8 @@ ExitCode write_all(const Session& session, const std::string& path) {
 }
 
 // Returns all graphs below a folder, sorted by file name, or nullopt with errors in `diagnostics`.
-std::optional<std::vector<NamedGraph>> graphs_in(const std::string& folder, Diagnostics& diagnostics) {
+std::optional<std::vector<NamedGraph>> graphs_in(const std::string& folder,
+                                                 Diagnostics& diagnostics) {
   std::vector<std::filesystem::path> files;
   std::error_code ignored;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(folder, ignored))
@@ -74,9 +75,9 @@ std::vector<std::string> schema_names() {
 ExitCode schema(const Session& session, const SchemaOptions& options) {
   if (options.name.empty()) {
     if (options.out != "-") return write_all(session, options.out);
-    return fail(
-        session, ExitCode::usage,
-        fmt::format("name one of {}, or a folder for all of them with --out", format_list(schema_names())));
+    return fail(session, ExitCode::usage,
+                fmt::format("name one of {}, or a folder for all of them with --out",
+                            format_list(schema_names())));
   }
   std::vector<std::string_view> names;
   const auto all = all_schemas();
@@ -87,9 +88,10 @@ ExitCode schema(const Session& session, const SchemaOptions& options) {
     return problem.empty() ? ExitCode::ok : fail(session, ExitCode::environment, problem);
   }
   const std::string suggestion = did_you_mean(options.name, names);
-  return fail(session, ExitCode::usage,
-              fmt::format("there is no schema '{}'; {}", options.name,
-                          suggestion.empty() ? "schemas: " + format_list(schema_names()) : suggestion));
+  return fail(
+      session, ExitCode::usage,
+      fmt::format("there is no schema '{}'; {}", options.name,
+                  suggestion.empty() ? "schemas: " + format_list(schema_names()) : suggestion));
 }
 
 ExitCode docs(const Session& session, const DocsOptions& options) {

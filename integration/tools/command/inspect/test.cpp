@@ -21,7 +21,8 @@ namespace files = std::filesystem;
 constexpr std::string_view suffix = ".expect.json";
 
 bool is_expectation(const files::path& path) {
-  return path.filename().string().ends_with(suffix) && path.filename().string().size() > suffix.size();
+  return path.filename().string().ends_with(suffix) &&
+         path.filename().string().size() > suffix.size();
 }
 
 // Returns the expectation files that `paths` name, without duplicates; files of a folder are
@@ -41,7 +42,8 @@ std::vector<std::string> find_files(const std::vector<std::string>& paths, std::
         if (entry->is_regular_file(error) && is_expectation(entry->path()))
           found.push_back(entry->path().lexically_normal().string());
       if (error) problem = fmt::format("cannot list the folder '{}': {}", path, error.message());
-      if (!error && found.empty()) problem = fmt::format("there is no file NAME{} in '{}'", suffix, path);
+      if (!error && found.empty())
+        problem = fmt::format("there is no file NAME{} in '{}'", suffix, path);
     }
     if (!problem.empty()) return {};
     std::sort(found.begin(), found.end());
@@ -74,10 +76,12 @@ TestResult judge(const ExpectedCase& expected, const Observation& observed, bool
   if (!observed.violations.empty())
     return {expected.name, false, "the verifier rejects the plan: this is a defect of the compiler",
             joined(observed.violations)};
-  const std::string note =
-      observed.not_verified.empty() ? "" : fmt::format("the plan is not verified: {}", observed.not_verified);
+  const std::string note = observed.not_verified.empty()
+                               ? ""
+                               : fmt::format("the plan is not verified: {}", observed.not_verified);
   if (!expected.info) {
-    if (!update) return {expected.name, false, "the case has no \"expect\"; --update writes one", ""};
+    if (!update)
+      return {expected.name, false, "the case has no \"expect\"; --update writes one", ""};
     fresh = observed.info;
     return {expected.name, true, note, ""};
   }
@@ -96,14 +100,17 @@ TestResult judge(const ExpectedCase& expected, const Observation& observed, bool
 }
 
 // Loads the graph with the overlays of a case. Returns nullopt and fills `observation` on failure.
-std::optional<LoadedGraph> load_case(const std::string& path, const ExpectedCase& one, const OpenFile& open,
-                                     const std::vector<std::string>& pass_types, Observation& observation) {
+std::optional<LoadedGraph> load_case(const std::string& path, const ExpectedCase& one,
+                                     const OpenFile& open,
+                                     const std::vector<std::string>& pass_types,
+                                     Observation& observation) {
   Diagnostics diagnostics;
   std::optional<Document> graph = read_document(path, diagnostics);
   std::vector<Document> overlays;
   for (const std::string& name : one.overlays) {
     FileText file = open(name);
-    if (!file.problem.empty()) observation.problem = fmt::format("overlay '{}': {}", name, file.problem);
+    if (!file.problem.empty())
+      observation.problem = fmt::format("overlay '{}': {}", name, file.problem);
     if (!file.problem.empty()) return std::nullopt;
     if (auto overlay = parse_document(file.name, std::move(file.text), diagnostics))
       overlays.push_back(std::move(*overlay));
@@ -115,7 +122,8 @@ std::optional<LoadedGraph> load_case(const std::string& path, const ExpectedCase
   return loaded;
 }
 
-TestRun run_file(const std::string& path, const TestOptions& options, const std::vector<std::string>& roots) {
+TestRun run_file(const std::string& path, const TestOptions& options,
+                 const std::vector<std::string>& roots) {
   TestRun run;
   run.suite.name = path;
   const std::optional<Document> document = read_document(path, run.diagnostics);
@@ -137,7 +145,8 @@ TestRun run_file(const std::string& path, const TestOptions& options, const std:
     if (!files::is_regular_file(graph_path, ignored))
       observed.problem =
           fmt::format("the graph '{}' next to the expectation file does not exist", graph_path);
-    else if (const auto loaded = load_case(graph_path, (*cases)[i], open, options.pass_types, observed))
+    else if (const auto loaded =
+                 load_case(graph_path, (*cases)[i], open, options.pass_types, observed))
       observed = observe(*loaded, (*cases)[i]);
     run.suite.results.push_back(judge((*cases)[i], observed, options.update, fresh[i]));
     run.updated += fresh[i].has_value();
@@ -149,8 +158,9 @@ TestRun run_file(const std::string& path, const TestOptions& options, const std:
 }
 
 bool good(const TestRun& run) {
-  return !run.diagnostics.has_errors() && std::all_of(run.suite.results.begin(), run.suite.results.end(),
-                                                      [](const TestResult& one) { return one.ok; });
+  return !run.diagnostics.has_errors() &&
+         std::all_of(run.suite.results.begin(), run.suite.results.end(),
+                     [](const TestResult& one) { return one.ok; });
 }
 
 std::string answer_json(const std::vector<TestRun>& runs, bool all_good) {
@@ -177,12 +187,14 @@ void print_result(const Session& session, const TestRun& run) {
   if (session.json) return;
   for (const TestResult& one : run.suite.results)
     if (!one.message.empty())
-      fmt::print(stderr, "{}: case '{}': {}\n{}", run.suite.name, one.name, one.message, one.details);
+      fmt::print(stderr, "{}: case '{}': {}\n{}", run.suite.name, one.name, one.message,
+                 one.details);
   const size_t count = run.suite.results.size();
   if (run.updated > 0)
     say(session, fmt::format("{}: {} of {} cases updated\n", run.suite.name, run.updated, count));
   else if (good(run))
-    say(session, fmt::format("{}: {} case{} as expected\n", run.suite.name, count, count == 1 ? "" : "s"));
+    say(session,
+        fmt::format("{}: {} case{} as expected\n", run.suite.name, count, count == 1 ? "" : "s"));
 }
 
 // An unreadable file is also a result, so that a CI server shows it.
@@ -191,7 +203,8 @@ std::vector<TestSuite> suites_of(const std::vector<TestRun>& runs) {
   for (const TestRun& run : runs) {
     suites.push_back(run.suite);
     if (run.diagnostics.has_errors())
-      suites.back().results.push_back({"(the file itself)", false, "the expectations cannot be read",
+      suites.back().results.push_back({"(the file itself)", false,
+                                       "the expectations cannot be read",
                                        joined(observe_messages(run.diagnostics).messages)});
   }
   return suites;
@@ -216,7 +229,8 @@ ExitCode test(const Session& session, const TestOptions& options) {
   }
   if (!options.junit.empty()) problem = deliver_text(options.junit, junit_xml(suites_of(runs)));
   if (!problem.empty()) return fail(session, ExitCode::environment, problem);
-  const auto bad = std::count_if(runs.begin(), runs.end(), [](const TestRun& run) { return !good(run); });
+  const auto bad =
+      std::count_if(runs.begin(), runs.end(), [](const TestRun& run) { return !good(run); });
   if (session.json) {
     print(answer_json(runs, bad == 0));
     return bad == 0 ? ExitCode::ok : ExitCode::problems;
@@ -224,8 +238,9 @@ ExitCode test(const Session& session, const TestOptions& options) {
   if (bad == 0) return ExitCode::ok;
   return fail(
       session, ExitCode::problems,
-      fmt::format("{} of {} expectation files fail; if the change is intended, update them with --update",
-                  bad, runs.size()));
+      fmt::format(
+          "{} of {} expectation files fail; if the change is intended, update them with --update",
+          bad, runs.size()));
 }
 
 } // namespace dermis::tools

@@ -33,15 +33,16 @@ Upgraded upgrade_file(const std::string& path, Diagnostics& diagnostics) {
   const FileKind& kind = file_kinds()[static_cast<size_t>(id)];
   const bool old =
       version_of(*document, kind.version_key) == 1 || version_of(*document, old_pass_type_key) == 1;
-  if (kind.version > 1 && old) return {path, kind.name, kind.version, upgraded_text(*document, id, text)};
+  if (kind.version > 1 && old)
+    return {path, kind.name, kind.version, upgraded_text(*document, id, text)};
   const bool known = check_version(*document, kind.version_key, kind.version, diagnostics);
   return {path, kind.name, known ? kind.version : 0, std::nullopt};
 }
 
 std::string answer(const Upgraded& one, bool check) {
   if (!one.text)
-    return fmt::format("{}: {}, version {} is the newest: nothing to {}\n", one.path, one.kind, one.version,
-                       check ? "upgrade" : "do");
+    return fmt::format("{}: {}, version {} is the newest: nothing to {}\n", one.path, one.kind,
+                       one.version, check ? "upgrade" : "do");
   return fmt::format("{}: {}, {} version {}\n", one.path, one.kind,
                      check ? "can be upgraded to" : "upgraded to", one.version);
 }
@@ -58,7 +59,8 @@ ExitCode upgrade(const Session& session, const UpgradeOptions& options) {
   for (const Upgraded& one : files) {
     good = good && one.version > 0 && !(options.check && one.text);
     if (options.check || !one.text || !unwritten.empty()) continue;
-    if (const std::string problem = deliver_text(one.path, *one.text); !problem.empty()) unwritten = problem;
+    if (const std::string problem = deliver_text(one.path, *one.text); !problem.empty())
+      unwritten = problem;
   }
   print_diagnostics(session, diagnostics);
   if (!unwritten.empty()) return fail(session, ExitCode::environment, unwritten);

@@ -38,7 +38,8 @@ std::string_view new_name(std::initializer_list<std::string_view> path) {
 std::string_view new_name_in_any_type(std::string_view group, std::string_view name) {
   for (const NodeId type : children(renames(), entry({"pass_types"})))
     if (const NodeId names = renames().find(type, group); names.valid())
-      if (const NodeId found = renames().find(names, name); found.valid()) return renames().text(found);
+      if (const NodeId found = renames().find(names, name); found.valid())
+        return renames().text(found);
   return {};
 }
 
@@ -106,8 +107,10 @@ public:
         const size_t next = std::min(old.find(' ', at + 1), old.size());
         const std::string_view word = old.substr(at + 1, next - at - 1);
         const size_t equals = std::min(word.find('='), word.size());
-        const std::string_view name = new_name({"pass_types", type, "settings", word.substr(0, equals)});
-        text += fmt::format(" {}{}", name.empty() ? word.substr(0, equals) : name, word.substr(equals));
+        const std::string_view name =
+            new_name({"pass_types", type, "settings", word.substr(0, equals)});
+        text +=
+            fmt::format(" {}{}", name.empty() ? word.substr(0, equals) : name, word.substr(equals));
         at = next;
       }
       if (text != old) rename(work, text);
@@ -121,7 +124,8 @@ public:
   }
 
   std::string result() {
-    std::sort(edits_.begin(), edits_.end(), [](const Edit& a, const Edit& b) { return a.begin < b.begin; });
+    std::sort(edits_.begin(), edits_.end(),
+              [](const Edit& a, const Edit& b) { return a.begin < b.begin; });
     std::string out;
     size_t at = 0;
     for (const Edit& edit : edits_) {
@@ -137,7 +141,9 @@ private:
     std::string text;
   };
 
-  bool is_array(NodeId node) const { return node.valid() && document_[node].kind == NodeKind::array; }
+  bool is_array(NodeId node) const {
+    return node.valid() && document_[node].kind == NodeKind::array;
+  }
 
   // Returns the objects of the array `key` of the root.
   std::vector<NodeId> objects_of(std::string_view key) const {
@@ -215,7 +221,8 @@ private:
         if (to.valid() && document_[to].kind == NodeKind::string)
           rename(to, new_name({"pass_types", document_.text(to), "type"}));
         take(steps[2], new_name({"pass_keys", "kind"}));
-      } else if (steps.size() >= 4 && (steps[2] == "/read" || steps[2] == "/write" || steps[2] == "/set")) {
+      } else if (steps.size() >= 4 &&
+                 (steps[2] == "/read" || steps[2] == "/write" || steps[2] == "/set")) {
         take(steps[3], new_name_in_any_type(group, std::string_view(steps[3]).substr(1)));
       }
     }
@@ -233,7 +240,8 @@ private:
 
 } // namespace
 
-std::optional<std::string> upgraded_text(const Document& document, FileKindId kind, std::string_view text) {
+std::optional<std::string> upgraded_text(const Document& document, FileKindId kind,
+                                         std::string_view text) {
   Upgrade upgrade(document, text);
   switch (kind) {
   case FileKindId::graph:
@@ -255,8 +263,9 @@ std::optional<std::string> upgraded_text(const Document& document, FileKindId ki
   default:
     return std::nullopt;
   }
-  const std::string_view key =
-      kind == FileKindId::pass_types ? "dermis_kinds" : file_kinds()[static_cast<size_t>(kind)].version_key;
+  const std::string_view key = kind == FileKindId::pass_types
+                                   ? "dermis_kinds"
+                                   : file_kinds()[static_cast<size_t>(kind)].version_key;
   upgrade.version(key);
   return upgrade.result();
 }

@@ -28,11 +28,13 @@ bool check_graph(const Document& document, const std::string& path, const GraphI
                  Diagnostics& diagnostics, bool& verified) {
   auto overlays = read_overlays(inputs.overlays, diagnostics);
   if (!overlays) return false;
-  const std::optional<LoadedGraph> loaded = load_graph(
-      document, std::move(*overlays), open_included(path, inputs.roots), diagnostics, inputs.pass_types);
+  const std::optional<LoadedGraph> loaded =
+      load_graph(document, std::move(*overlays), open_included(path, inputs.roots), diagnostics,
+                 inputs.pass_types);
   if (!loaded) return false;
   const CompileChoices choices = read_choices(loaded->graph);
-  const std::optional<CompiledPlan> compiled = compile_generic(*loaded, default_size, choices, diagnostics);
+  const std::optional<CompiledPlan> compiled =
+      compile_generic(*loaded, default_size, choices, diagnostics);
   if (!compiled) return false;
   const Verdict verdict = verify(compiled->plan);
   for (const std::string& violation : verdict.violations)
@@ -46,12 +48,14 @@ bool check_graph(const Document& document, const std::string& path, const GraphI
 }
 
 bool check_profile(const Document& document, Diagnostics& diagnostics, std::string& about) {
-  const std::optional<subsurface::Profile> profile = subsurface::read_profile(document, diagnostics);
+  const std::optional<subsurface::Profile> profile =
+      subsurface::read_profile(document, diagnostics);
   if (profile) about = subsurface::describe_profile(*profile);
   return profile.has_value();
 }
 
-bool check_scene(const Document& document, const std::vector<std::string>& roots, Diagnostics& diagnostics) {
+bool check_scene(const Document& document, const std::vector<std::string>& roots,
+                 Diagnostics& diagnostics) {
   const SourceFile file = diagnostics.files[document.file.value];
   return demo::parse_scene(file.name, file.text, diagnostics, roots).has_value();
 }
@@ -68,13 +72,13 @@ struct CheckedFile {
   bool verified = true;   // of a graph's plan; false: the verifier gave up
 };
 
-void check_capture(const Document& document, const ValidateOptions& options, Diagnostics& diagnostics,
-                   CheckedFile& checked) {
+void check_capture(const Document& document, const ValidateOptions& options,
+                   Diagnostics& diagnostics, CheckedFile& checked) {
   const std::filesystem::path folder = std::filesystem::path(checked.path).parent_path();
   const uint32_t errors = diagnostics.count(Severity::error);
   const uint32_t warnings = diagnostics.count(Severity::warning);
-  std::optional<CapturedFrame> frame = read_description(document, folder, profiles_folder(options.profiles),
-                                                        diagnostics, options.inputs.roots);
+  std::optional<CapturedFrame> frame = read_description(
+      document, folder, profiles_folder(options.profiles), diagnostics, options.inputs.roots);
   if (frame) read_pictures(folder, document, *frame, diagnostics, options.inputs.roots);
   checked.good = diagnostics.count(Severity::error) == errors;
   if (!checked.good || !options.diagnose) return;
@@ -82,7 +86,8 @@ void check_capture(const Document& document, const ValidateOptions& options, Dia
   checked.good = diagnostics.count(Severity::warning) == warnings;
 }
 
-CheckedFile check_file(const std::string& path, const ValidateOptions& options, Diagnostics& diagnostics) {
+CheckedFile check_file(const std::string& path, const ValidateOptions& options,
+                       Diagnostics& diagnostics) {
   const std::optional<Document> document = read_input(path, diagnostics);
   if (!document) return {path};
   const FileKindId kind = file_kind_of(*document);
@@ -128,7 +133,8 @@ CheckedFile check_file(const std::string& path, const ValidateOptions& options, 
 std::vector<CheckedFile> check_path(const std::string& path, const ValidateOptions& options,
                                     Diagnostics& diagnostics) {
   std::error_code ignored;
-  if (!std::filesystem::is_directory(path, ignored)) return {check_file(path, options, diagnostics)};
+  if (!std::filesystem::is_directory(path, ignored))
+    return {check_file(path, options, diagnostics)};
   std::vector<CheckedFile> checked;
   for (const std::filesystem::path& frame : find_frames(path, diagnostics, options.inputs.roots))
     checked.push_back(check_file((frame / "frame.json").string(), options, diagnostics));
@@ -140,7 +146,8 @@ std::vector<CheckedFile> check_path(const std::string& path, const ValidateOptio
 
 ExitCode validate(const Session& session, const ValidateOptions& options) {
   if (session.json && options.sarif == "-")
-    return fail(session, ExitCode::usage, "--json and --sarif - both write to standard output; name a file");
+    return fail(session, ExitCode::usage,
+                "--json and --sarif - both write to standard output; name a file");
   Diagnostics diagnostics;
   std::vector<CheckedFile> files;
   for (const std::string& path : options.files)
@@ -153,13 +160,13 @@ ExitCode validate(const Session& session, const ValidateOptions& options) {
     if (!problem.empty()) return fail(session, ExitCode::environment, problem, &diagnostics);
   }
   const std::string_view graph_kind = file_kinds()[static_cast<size_t>(FileKindId::graph)].name;
-  const bool has_graph =
-      std::any_of(files.begin(), files.end(), [&](const CheckedFile& one) { return one.kind == graph_kind; });
+  const bool has_graph = std::any_of(
+      files.begin(), files.end(), [&](const CheckedFile& one) { return one.kind == graph_kind; });
   if (!options.inputs.overlays.empty() && !has_graph && !diagnostics.has_errors())
     return fail(session, ExitCode::usage, "--overlay needs a graph among the files");
   const auto capture = file_kinds()[static_cast<size_t>(FileKindId::capture)].name;
-  const bool has_capture =
-      std::any_of(files.begin(), files.end(), [&](const CheckedFile& one) { return one.kind == capture; });
+  const bool has_capture = std::any_of(files.begin(), files.end(),
+                                       [&](const CheckedFile& one) { return one.kind == capture; });
   if (options.diagnose && !has_capture && !diagnostics.has_errors())
     return fail(session, ExitCode::usage, "--diagnose needs captured frames among the files");
   const bool all_good =
@@ -174,7 +181,10 @@ ExitCode validate(const Session& session, const ValidateOptions& options) {
     JsonWriter answer;
     answer.open_object().member("ok", all_good).key("files").open_array();
     for (const CheckedFile& one : files) {
-      answer.open_object(true).member("file", one.path).member("kind", one.kind).member("ok", one.good);
+      answer.open_object(true)
+          .member("file", one.path)
+          .member("kind", one.kind)
+          .member("ok", one.good);
       if (!one.verified) answer.member("verified", false);
       if (!one.about.empty()) answer.member("about", one.about);
       answer.close();

@@ -22,7 +22,8 @@ std::vector<std::string> values_of(const SettingDeclaration& setting) {
 std::string value_text(const SettingDeclaration& setting, const SettingValue& value) {
   const std::vector<std::string> names = values_of(setting);
   if (!names.empty()) return names[static_cast<size_t>(value.integer)];
-  return setting.type == SettingType::real ? fmt::format("{}", value.real) : fmt::format("{}", value.integer);
+  return setting.type == SettingType::real ? fmt::format("{}", value.real)
+                                           : fmt::format("{}", value.integer);
 }
 
 std::vector<uint32_t> switched_settings(const Graph& graph) {
@@ -48,7 +49,8 @@ public:
     uint32_t first = 0, count = 0;
     while (!text.empty()) {
       const size_t end = std::min(text.find('\n'), text.size());
-      const auto [at, is_new] = numbers_.try_emplace(std::string(text.substr(0, end)), numbers_.size());
+      const auto [at, is_new] =
+          numbers_.try_emplace(std::string(text.substr(0, end)), numbers_.size());
       if (is_new) lines_.push_back(&at->first);
       text.remove_prefix(std::min(end + 1, text.size()));
       if (count > 0 && at->second == first + count) {
@@ -111,15 +113,16 @@ bool check_report(const Document& report, Diagnostics& diagnostics) {
   const NodeId passes = report.find(report.root(), "passes");
   bool whole = passes.valid() && report[passes].kind == NodeKind::array;
   if (whole)
-    for (NodeId pass = report[passes].first_child; pass.valid() && whole; pass = report[pass].next) {
+    for (NodeId pass = report[passes].first_child; pass.valid() && whole;
+         pass = report[pass].next) {
       const NodeId name = report.find(pass, "pass"), time = report.find(pass, "milliseconds");
       whole = name.valid() && report[name].kind == NodeKind::string && time.valid() &&
               (report[time].kind == NodeKind::real || report[time].kind == NodeKind::integer);
     }
   if (!whole)
-    diagnostics.add(
-        DiagnosticId::wrong_type, report.where(passes.valid() ? passes : report.root()),
-        "expected the output of 'dermis render --json': \"passes\", each with \"pass\" and \"milliseconds\"");
+    diagnostics.add(DiagnosticId::wrong_type, report.where(passes.valid() ? passes : report.root()),
+                    "expected the output of 'dermis render --json': \"passes\", each with \"pass\" "
+                    "and \"milliseconds\"");
   return whole;
 }
 
@@ -144,7 +147,9 @@ struct View {
       out.open_object(true).member("name", file.name).member("text", file.text).close();
     out.close().key("passes").open_array();
     for (const PassDeclaration& pass : graph.passes) {
-      out.open_object(true).member("name", pass.name).member("kind", loaded.pass_types[pass.type].name);
+      out.open_object(true)
+          .member("name", pass.name)
+          .member("kind", loaded.pass_types[pass.type].name);
       place(pass.where);
       out.member("note", pass.note).close();
     }
@@ -159,7 +164,8 @@ struct View {
       const SettingDeclaration& setting = graph.settings[i];
       const auto at = std::find(switched.begin(), switched.end(), i);
       out.open_object(true).member("name", setting.name).member("by_budget", setting.by_budget);
-      out.member("note", setting.note).member("value", value_text(setting, options.chosen.settings[i]));
+      out.member("note", setting.note)
+          .member("value", value_text(setting, options.chosen.settings[i]));
       out.key("switched");
       at == switched.end() ? out.null() : out.value(static_cast<uint32_t>(at - switched.begin()));
       out.key("values").open_array(true);
@@ -175,7 +181,8 @@ struct View {
   bool next(CompileChoices& choices) const {
     for (size_t i = switched.size(); i-- > 0;) {
       SettingValue& value = choices.settings[switched[i]];
-      const auto values = static_cast<int64_t>(values_of(loaded.graph.settings[switched[i]]).size());
+      const auto values =
+          static_cast<int64_t>(values_of(loaded.graph.settings[switched[i]]).size());
       value.integer = (value.integer + 1) % values;
       if (value.integer != options.chosen.settings[switched[i]].integer) return true;
     }
@@ -193,7 +200,8 @@ struct View {
     uint32_t count = 0;
     do {
       Diagnostics found; // of this configuration; errors of the first are errors of the page
-      const auto compiled = compile_generic(loaded, options.size, choices, count == 0 ? diagnostics : found);
+      const auto compiled =
+          compile_generic(loaded, options.size, choices, count == 0 ? diagnostics : found);
       if (!compiled && list_is_empty_) return false;
       list_is_empty_ = false;
       list.open_object(true).key("values").open_array(true);
@@ -202,8 +210,8 @@ struct View {
       list.close().key("plan");
       if (compiled) {
         list.value(count++);
-        lines.add(runs,
-                  plan_json(loaded.graph, loaded.pass_types, *compiled, {loaded.changes, diagnostics.files}));
+        lines.add(runs, plan_json(loaded.graph, loaded.pass_types, *compiled,
+                                  {loaded.changes, diagnostics.files}));
       } else {
         list.null().member("problem", found.list.empty() ? "" : found.list.front().text);
       }
@@ -212,7 +220,10 @@ struct View {
     runs.close();
     list.close();
     lines.write(out.key("lines"));
-    out.key("plans").json(std::move(runs).finish()).key("configurations").json(std::move(list).finish());
+    out.key("plans")
+        .json(std::move(runs).finish())
+        .key("configurations")
+        .json(std::move(list).finish());
     return true;
   }
 
@@ -221,12 +232,14 @@ struct View {
 
 } // namespace
 
-ViewAnswer make_view(const LoadedGraph& loaded, const ViewOptions& options, Diagnostics& diagnostics) {
+ViewAnswer make_view(const LoadedGraph& loaded, const ViewOptions& options,
+                     Diagnostics& diagnostics) {
   const ViewerPage page = viewer_page();
   if (!page.missing.empty())
-    return {"", fmt::format("this program has no viewer: {}; configure and build it again with nodejs, npm "
-                            "and a network, or use --dot",
-                            page.missing)};
+    return {"", fmt::format(
+                    "this program has no viewer: {}; configure and build it again with nodejs, npm "
+                    "and a network, or use --dot",
+                    page.missing)};
 
   std::optional<Document> report;
   const size_t files = diagnostics.files.size(); // the report is not a file of the graph

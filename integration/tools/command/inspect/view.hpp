@@ -23,8 +23,9 @@ struct ViewAnswer {
 };
 
 // Builds the page. Switchable settings are the choices by budget, then booleans and enumerations,
-// in file order, as long as they have at most `max_view_configurations` combinations. Other settings keep
-// their values.
-ViewAnswer make_view(const LoadedGraph& loaded, const ViewOptions& options, Diagnostics& diagnostics);
+// in file order, as long as they have at most `max_view_configurations` combinations. Other
+// settings keep their values.
+ViewAnswer make_view(const LoadedGraph& loaded, const ViewOptions& options,
+                     Diagnostics& diagnostics);
 
 } // namespace dermis::tools

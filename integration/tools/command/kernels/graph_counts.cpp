@@ -22,7 +22,8 @@ HostBindings bind_all(NullDevice& device, const Plan& plan) {
                                   VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT,
                                   VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT};
   const vulkan::HostState read{VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, VK_QUEUE_FAMILY_IGNORED,
-                               VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT, VK_ACCESS_2_SHADER_SAMPLED_READ_BIT};
+                               VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT,
+                               VK_ACCESS_2_SHADER_SAMPLED_READ_BIT};
   HostBindings bindings;
   for (const PlanResource& resource : plan.resources) {
     if (resource.slot < 0 || resource.first_instance != no_instance) continue;
@@ -35,7 +36,8 @@ HostBindings bind_all(NullDevice& device, const Plan& plan) {
     const VkImage image = device.make_image(); // handles of the null device are interchangeable
     bindings.images[slot] = {image, device.make_view(), written, read, 0, 0};
     bindings.buffers[slot] = {reinterpret_cast<VkBuffer>(image), 0, enough, written, read};
-    bindings.structures[slot] = {reinterpret_cast<VkAccelerationStructureKHR>(image), written, read};
+    bindings.structures[slot] = {reinterpret_cast<VkAccelerationStructureKHR>(image), written,
+                                 read};
   }
   return bindings;
 }
@@ -43,7 +45,8 @@ HostBindings bind_all(NullDevice& device, const Plan& plan) {
 } // namespace
 
 std::span<const std::string_view> GraphCounts::keys() {
-  static constexpr std::string_view all[] = {"pipelines", "dispatches", "barriers", "bytes_per_pixel"};
+  static constexpr std::string_view all[] = {"pipelines", "dispatches", "barriers",
+                                             "bytes_per_pixel"};
   return all;
 }
 
@@ -76,7 +79,8 @@ DeviceProfile CountingDevice::profile_for(const vulkan::Device& real) const {
 }
 
 std::string CountingDevice::count_commands(const Graph& graph, const PassTypeRegistry& pass_types,
-                                           const Plan& plan, std::span<const vulkan::KernelCode> kernels,
+                                           const Plan& plan,
+                                           std::span<const vulkan::KernelCode> kernels,
                                            std::span<const vulkan::EnvironmentBinding> environment,
                                            GraphCounts& counts) {
   vulkan::ExecutorInput input;

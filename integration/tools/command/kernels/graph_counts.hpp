@@ -43,9 +43,10 @@ public:
 
   // Records a frame in a steady state: histories are valid, and the host binds every slot of the
   // plan. Returns the problem, or "".
-  std::string count_commands(const Graph& graph, const PassTypeRegistry& pass_types, const Plan& plan,
-                             std::span<const vulkan::KernelCode> kernels,
-                             std::span<const vulkan::EnvironmentBinding> environment, GraphCounts& counts);
+  std::string count_commands(const Graph& graph, const PassTypeRegistry& pass_types,
+                             const Plan& plan, std::span<const vulkan::KernelCode> kernels,
+                             std::span<const vulkan::EnvironmentBinding> environment,
+                             GraphCounts& counts);
 
 private:
   NullDevice null_;

@@ -42,19 +42,21 @@ ExitCode kernels(const Session& session, const KernelsOptions& options) {
     const std::optional<Document> document = read_document(options.limits, diagnostics);
     if (document) rules = read_limits(*document, diagnostics);
     if (!rules)
-      return fail(session, ExitCode::problems, fmt::format("{}: the limits cannot be used", options.limits),
-                  &diagnostics);
+      return fail(session, ExitCode::problems,
+                  fmt::format("{}: the limits cannot be used", options.limits), &diagnostics);
   }
   const demo::Result<KernelSurvey> survey = survey_kernels(options, session, diagnostics);
   if (interrupted()) return fail(session, ExitCode::interrupted, "stopped");
   if (!survey)
-    return fail(session, static_cast<ExitCode>(survey.error().kind), survey.error().text, &diagnostics);
+    return fail(session, static_cast<ExitCode>(survey.error().kind), survey.error().text,
+                &diagnostics);
   print_diagnostics(session, diagnostics);
   if (!options.assembly.empty())
     if (const std::string problem = write_assembly(options.assembly, *survey); !problem.empty())
       return fail(session, ExitCode::environment, problem);
   std::optional<LimitsCheck> check;
-  if (rules) check = check_limits(*rules, {survey->device, survey->driver}, survey->kernels, survey->graphs);
+  if (rules)
+    check = check_limits(*rules, {survey->device, survey->driver}, survey->kernels, survey->graphs);
   const bool good = !check || (check->device_known && check->exceeded.empty());
   if (session.json) {
     print(kernels_as_json(*survey, options, check, diagnostics));
@@ -66,7 +68,8 @@ ExitCode kernels(const Session& session, const KernelsOptions& options) {
   if (good) return ExitCode::ok;
   if (!check->device_known)
     return fail(session, ExitCode::problems,
-                fmt::format("{} has no rule for {} with {}", options.limits, survey->device, survey->driver));
+                fmt::format("{} has no rule for {} with {}", options.limits, survey->device,
+                            survey->driver));
   return fail(session, ExitCode::problems,
               fmt::format("{} of {} exceeded:\n{}", format_count(check->exceeded.size(), "limit"),
                           options.limits, findings_as_text(check->exceeded, diagnostics)));

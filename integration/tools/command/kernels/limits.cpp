@@ -25,12 +25,14 @@ public:
     rule.devices = patterns(object, "device");
     rule.drivers = patterns(object, "driver");
     const bool has_kernel = object.has("kernel"), has_graph = object.has("graph");
-    const NodeId limits[] = {object.object("max", Need::optional), object.object("min", Need::optional)};
+    const NodeId limits[] = {object.object("max", Need::optional),
+                             object.object("min", Need::optional)};
     const bool complete = object.finish();
     ok_ &= complete;
     if (has_kernel == has_graph) {
       if (complete)
-        refuse(node, "a rule is either about kernels or about graphs: give one of 'kernel' and 'graph'");
+        refuse(node,
+               "a rule is either about kernels or about graphs: give one of 'kernel' and 'graph'");
       return rule;
     }
     rule.of_graphs = has_graph;
@@ -39,7 +41,8 @@ public:
       if (limits[minimum].valid())
         for (const NodeId value : children(document_, limits[minimum]))
           add_limit(value, minimum != 0, rule);
-    if (rule.limits.empty() && complete && ok_) refuse(node, "a rule needs a limit in 'max' or 'min'");
+    if (rule.limits.empty() && complete && ok_)
+      refuse(node, "a rule needs a limit in 'max' or 'min'");
     return rule;
   }
 
@@ -63,7 +66,8 @@ private:
     }
     const std::vector<NodeId> all = children(document_, node);
     if (all.empty() || all.size() > max_patterns)
-      refuse(node, fmt::format("{} has {} patterns; 1 to {} are possible", what, all.size(), max_patterns));
+      refuse(node, fmt::format("{} has {} patterns; 1 to {} are possible", what, all.size(),
+                               max_patterns));
     for (const NodeId one : all)
       add_pattern(one, what, out);
     return out;
@@ -85,9 +89,10 @@ private:
         keys.push_back(info.key);
     if (std::find(keys.begin(), keys.end(), key) != keys.end()) return true;
     const std::string suggestion = did_you_mean(key, keys);
-    diagnostics_.add(DiagnosticId::unknown_key, document_.where_key(node),
-                     fmt::format("a {} has no value '{}'; {}", rule.of_graphs ? "graph" : "kernel", key,
-                                 suggestion.empty() ? "the values are " + list_words(keys) : suggestion));
+    diagnostics_.add(
+        DiagnosticId::unknown_key, document_.where_key(node),
+        fmt::format("a {} has no value '{}'; {}", rule.of_graphs ? "graph" : "kernel", key,
+                    suggestion.empty() ? "the values are " + list_words(keys) : suggestion));
     ok_ = false;
     return false;
   }
@@ -106,8 +111,8 @@ private:
       const bool good = object.finish();
       ok_ &= good;
       if (good && (minimum ? limit.now >= limit.goal : limit.now <= limit.goal))
-        refuse(node, fmt::format("{}: 'now' reaches the goal; write {} without 'goal' and 'now'", what,
-                                 limit.goal));
+        refuse(node, fmt::format("{}: 'now' reaches the goal; write {} without 'goal' and 'now'",
+                                 what, limit.goal));
     } else {
       const auto value = read_number(document_, node, what, 0, largest_limit, diagnostics_);
       ok_ &= value.has_value();
@@ -122,9 +127,9 @@ private:
 };
 
 bool matches_any(const std::vector<std::string>& patterns, std::string_view text) {
-  return patterns.empty() || std::any_of(patterns.begin(), patterns.end(), [&](const std::string& pattern) {
-           return matches_pattern(pattern, text);
-         });
+  return patterns.empty() ||
+         std::any_of(patterns.begin(), patterns.end(),
+                     [&](const std::string& pattern) { return matches_pattern(pattern, text); });
 }
 
 bool is_about(const LimitRule& rule, const LimitedDevice& device) {
@@ -141,7 +146,8 @@ public:
 
   // `value_of` returns the value of a key.
   template <class ValueOf>
-  void check(bool of_graphs, const std::string& name, const std::string& subject, ValueOf value_of) {
+  void check(bool of_graphs, const std::string& name, const std::string& subject,
+             ValueOf value_of) {
     std::map<std::pair<std::string, bool>, const Limit*> limits; // the last rule decides
     for (const LimitRule* rule : rules_)
       if (rule->of_graphs == of_graphs && matches_any(rule->names, name))
@@ -190,7 +196,8 @@ bool matches_pattern(std::string_view pattern, std::string_view text) {
   return pattern.find_first_not_of('*', p) == std::string_view::npos;
 }
 
-std::optional<std::vector<LimitRule>> read_limits(const Document& document, Diagnostics& diagnostics) {
+std::optional<std::vector<LimitRule>> read_limits(const Document& document,
+                                                  Diagnostics& diagnostics) {
   if (!check_version(document, "dermis_kernel_limits", 1, diagnostics)) return std::nullopt;
   ObjectReader object(document, document.root(), "the limits file", diagnostics);
   object.any("dermis_kernel_limits");
@@ -204,18 +211,21 @@ std::optional<std::vector<LimitRule>> read_limits(const Document& document, Diag
 }
 
 std::string LimitFinding::text() const {
-  if (!value) return fmt::format("{}: the driver does not report {}, which is limited", subject, key);
+  if (!value)
+    return fmt::format("{}: the driver does not report {}, which is limited", subject, key);
   return fmt::format("{}: {} is {:g}, at {} {:g} is allowed{}", subject, key, *value,
                      limit.minimum ? "least" : "most", limit.now,
                      limit.now != limit.goal ? fmt::format(" (goal {:g})", limit.goal) : "");
 }
 
 LimitsCheck check_limits(const std::vector<LimitRule>& rules, const LimitedDevice& device,
-                         const std::vector<KernelRow>& kernels, const std::vector<GraphCounts>& graphs) {
+                         const std::vector<KernelRow>& kernels,
+                         const std::vector<GraphCounts>& graphs) {
   Checker checker(rules, device);
   for (const KernelRow& row : kernels)
     checker.check(false, row.kernel,
-                  row.program.empty() ? row.kernel : fmt::format("{} ({})", row.kernel, row.program),
+                  row.program.empty() ? row.kernel
+                                      : fmt::format("{} ({})", row.kernel, row.program),
                   [&](const std::string& key) { return row.value(*find_kernel_value(key)); });
   for (const GraphCounts& graph : graphs)
     checker.check(true, graph.graph, "graph " + graph.graph,

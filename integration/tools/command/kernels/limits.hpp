@@ -42,7 +42,8 @@ struct LimitRule {
 };
 
 // Returns nullopt with errors in `diagnostics`.
-std::optional<std::vector<LimitRule>> read_limits(const Document& document, Diagnostics& diagnostics);
+std::optional<std::vector<LimitRule>> read_limits(const Document& document,
+                                                  Diagnostics& diagnostics);
 
 struct LimitFinding {
   std::string subject; // "sap/subsurface_sap_up", "sap.json"
@@ -66,6 +67,7 @@ struct LimitedDevice {
 };
 
 LimitsCheck check_limits(const std::vector<LimitRule>& rules, const LimitedDevice& device,
-                         const std::vector<KernelRow>& kernels, const std::vector<GraphCounts>& graphs);
+                         const std::vector<KernelRow>& kernels,
+                         const std::vector<GraphCounts>& graphs);
 
 } // namespace dermis::tools

@@ -25,8 +25,8 @@ std::string pair_cell(const KernelRow& row, KernelValue first, KernelValue secon
 Table kernel_table(const KernelSurvey& survey) {
   Table table;
   table.columns = {{"kernel"}};
-  for (const char* title :
-       {"VGPR/SGPR", "spilled", "scratch B", "shared B", "occupancy", "subgroup", "code B", "instructions"})
+  for (const char* title : {"VGPR/SGPR", "spilled", "scratch B", "shared B", "occupancy",
+                            "subgroup", "code B", "instructions"})
     table.columns.push_back({title, true});
   table.columns.push_back({"graphs"});
   for (const KernelRow& row : survey.kernels) {
@@ -34,9 +34,12 @@ Table kernel_table(const KernelSurvey& survey) {
     table.rows.push_back(
         {name, pair_cell(row, KernelValue::vgprs, KernelValue::sgprs),
          pair_cell(row, KernelValue::spilled_vgprs, KernelValue::spilled_sgprs),
-         bytes_cell(row.value(KernelValue::scratch_bytes)), bytes_cell(row.value(KernelValue::shared_bytes)),
-         value_cell(row.value(KernelValue::occupancy)), value_cell(row.value(KernelValue::subgroup_size)),
-         bytes_cell(row.value(KernelValue::code_bytes)), bytes_cell(row.value(KernelValue::instructions)),
+         bytes_cell(row.value(KernelValue::scratch_bytes)),
+         bytes_cell(row.value(KernelValue::shared_bytes)),
+         value_cell(row.value(KernelValue::occupancy)),
+         value_cell(row.value(KernelValue::subgroup_size)),
+         bytes_cell(row.value(KernelValue::code_bytes)),
+         bytes_cell(row.value(KernelValue::instructions)),
          row.graphs.size() > 1 ? format_count(row.graphs.size(), "graph") : row.graphs.front()});
   }
   return table;
@@ -45,13 +48,14 @@ Table kernel_table(const KernelSurvey& survey) {
 Table graph_table(const KernelSurvey& survey) {
   Table table;
   table.columns = {{"graph"}};
-  for (const char* title :
-       {"configurations", "pipelines", "dispatches", "barrier calls", "B read", "B written", "B/pixel"})
+  for (const char* title : {"configurations", "pipelines", "dispatches", "barrier calls", "B read",
+                            "B written", "B/pixel"})
     table.columns.push_back({title, true});
   for (const GraphCounts& graph : survey.graphs)
-    table.rows.push_back({graph.graph, std::to_string(graph.configurations), std::to_string(graph.pipelines),
-                          std::to_string(graph.dispatches), std::to_string(graph.barriers),
-                          fmt::format("{:.1f}", graph.read_bytes), fmt::format("{:.1f}", graph.written_bytes),
+    table.rows.push_back({graph.graph, std::to_string(graph.configurations),
+                          std::to_string(graph.pipelines), std::to_string(graph.dispatches),
+                          std::to_string(graph.barriers), fmt::format("{:.1f}", graph.read_bytes),
+                          fmt::format("{:.1f}", graph.written_bytes),
                           fmt::format("{:.1f}", graph.read_bytes + graph.written_bytes)});
   return table;
 }
@@ -84,7 +88,8 @@ void write_graphs(const KernelSurvey& survey, JsonWriter& json) {
   for (const GraphCounts& graph : survey.graphs) {
     json.open_object().member("graph", graph.graph).member("configurations", graph.configurations);
     json.member("pipelines", graph.pipelines).member("dispatches", graph.dispatches);
-    json.member("barriers", graph.barriers).member("bytes_per_pixel", graph.read_bytes + graph.written_bytes);
+    json.member("barriers", graph.barriers)
+        .member("bytes_per_pixel", graph.read_bytes + graph.written_bytes);
     json.member("read_bytes_per_pixel", graph.read_bytes);
     json.member("written_bytes_per_pixel", graph.written_bytes).key("passes").open_array();
     for (const PassCounts& pass : graph.passes) {
@@ -96,8 +101,8 @@ void write_graphs(const KernelSurvey& survey, JsonWriter& json) {
   json.close();
 }
 
-void write_findings(std::string_view key, const std::vector<LimitFinding>& findings, const Diagnostics& files,
-                    JsonWriter& json) {
+void write_findings(std::string_view key, const std::vector<LimitFinding>& findings,
+                    const Diagnostics& files, JsonWriter& json) {
   json.key(key).open_array();
   for (const LimitFinding& finding : findings) {
     json.open_object(true).member("subject", finding.subject).member("value", finding.key);
@@ -120,11 +125,13 @@ std::string kernels_as_text(const KernelSurvey& survey, const KernelsOptions& op
   std::string text =
       fmt::format("{}, {}\n\n{}", survey.device, survey.driver, format_table(kernel_table(survey)));
   if (!survey.statistics)
-    text += "The driver has no VK_KHR_pipeline_executable_properties: values of kernels are not known.\n";
-  text += fmt::format("\nper frame at {}x{}; bytes per covered pixel, with {:g} of the view covered and {:g} "
-                      "of the texels flagged\n\n{}",
-                      options.size.width, options.size.height, options.assumptions.covered,
-                      options.assumptions.flagged, format_table(graph_table(survey)));
+    text += "The driver has no VK_KHR_pipeline_executable_properties: values of kernels are not "
+            "known.\n";
+  text += fmt::format(
+      "\nper frame at {}x{}; bytes per covered pixel, with {:g} of the view covered and {:g} "
+      "of the texels flagged\n\n{}",
+      options.size.width, options.size.height, options.assumptions.covered,
+      options.assumptions.flagged, format_table(graph_table(survey)));
   for (const SkippedGraph& skipped : survey.skipped)
     text += fmt::format("{}: skipped, {}\n", skipped.graph, skipped.why);
   return text;
@@ -154,7 +161,8 @@ std::string kernels_as_json(const KernelSurvey& survey, const KernelsOptions& op
   json.member("device", survey.device).member("driver", survey.driver);
   json.member("statistics", survey.statistics);
   json.member("width", options.size.width).member("height", options.size.height);
-  json.member("covered", options.assumptions.covered).member("flagged", options.assumptions.flagged);
+  json.member("covered", options.assumptions.covered)
+      .member("flagged", options.assumptions.flagged);
   write_kernels(survey, json);
   write_graphs(survey, json);
   json.key("skipped").open_array();
@@ -163,7 +171,8 @@ std::string kernels_as_json(const KernelSurvey& survey, const KernelsOptions& op
   json.close();
   if (check) {
     json.key("limits").open_object().member("file", options.limits);
-    json.member("device_known", check->device_known).member("checked", static_cast<uint64_t>(check->checked));
+    json.member("device_known", check->device_known)
+        .member("checked", static_cast<uint64_t>(check->checked));
     write_findings("exceeded", check->exceeded, files, json);
     write_findings("open", check->open, files, json);
     write_findings("loose", check->loose, files, json);

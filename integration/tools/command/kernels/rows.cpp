@@ -71,7 +71,8 @@ std::vector<KernelRow> make_rows(std::string_view kernel,
       row.values[static_cast<size_t>(KernelValue::subgroup_size)] = executable.subgroup_size;
     for (const vulkan::PipelineStatistic& statistic : executable.statistics)
       for (const DriverName& known : driver_names)
-        if (known.name == statistic.name) row.values[static_cast<size_t>(known.value)] = statistic.value;
+        if (known.name == statistic.name)
+          row.values[static_cast<size_t>(known.value)] = statistic.value;
   }
   if (rows.empty()) rows.emplace_back().kernel = kernel;
   return rows;

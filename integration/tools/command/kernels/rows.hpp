@@ -44,7 +44,9 @@ struct KernelRow {
   std::vector<vulkan::PipelineStatistic> statistics; // all, as the driver reports them
   std::string assembly;
 
-  std::optional<double> value(KernelValue which) const { return values[static_cast<size_t>(which)]; }
+  std::optional<double> value(KernelValue which) const {
+    return values[static_cast<size_t>(which)];
+  }
 };
 
 // Returns the rows of a pipeline; one row without values if the driver reports nothing.

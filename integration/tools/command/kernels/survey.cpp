@@ -46,8 +46,8 @@ struct ShaderFolder {
 std::string driver_of(VkPhysicalDevice physical) {
   auto driver = demo::vulkan_struct<VkPhysicalDeviceDriverProperties>(
       VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DRIVER_PROPERTIES);
-  auto properties =
-      demo::vulkan_struct<VkPhysicalDeviceProperties2>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2);
+  auto properties = demo::vulkan_struct<VkPhysicalDeviceProperties2>(
+      VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2);
   properties.pNext = &driver;
   vkGetPhysicalDeviceProperties2(physical, &properties);
   return fmt::format("{} {}", driver.driverName, driver.driverInfo);
@@ -63,8 +63,9 @@ std::string feature_names(Features features) {
 
 // Returns the combinations of settings whose plans are surveyed: those of all choices by budget,
 // and each value of each other switch or enumeration that --set leaves open.
-std::vector<std::vector<SettingValue>>
-settings_of_plans(const CompileInput& input, const std::vector<bool>& pinned, Diagnostics& diagnostics) {
+std::vector<std::vector<SettingValue>> settings_of_plans(const CompileInput& input,
+                                                         const std::vector<bool>& pinned,
+                                                         Diagnostics& diagnostics) {
   const auto combinations = choice::enumerate_combinations(input, diagnostics, pinned);
   if (!combinations) return {};
   std::vector<std::vector<SettingValue>> all = combinations->settings;
@@ -77,7 +78,8 @@ settings_of_plans(const CompileInput& input, const std::vector<bool>& pinned, Di
       std::vector<SettingValue> values = input.settings;
       if (values[s].integer == option) continue;
       values[s].integer = option;
-      const SettingValue offered = available_option(declared, values[s], input.device->features, input.bound);
+      const SettingValue offered =
+          available_option(declared, values[s], input.device->features, input.bound);
       if (offered.integer == option) all.push_back(std::move(values));
     }
   }
@@ -139,8 +141,8 @@ public:
     const CompileInput input = compile_input(*loaded, profile_, options_.size, choices);
     if (!abi::compile_missing(shaders_, loaded->graph, loaded->pass_types, diagnostics_))
       return cannot_use(path);
-    const subsurface::KernelTables tables =
-        subsurface::make_kernel_tables(subsurface::table_use(loaded->graph, loaded->pass_types), {});
+    const subsurface::KernelTables tables = subsurface::make_kernel_tables(
+        subsurface::table_use(loaded->graph, loaded->pass_types), {});
     const abi::KernelEnvironment environment = abi::kernel_environment(tables);
     GraphCounts counts;
     counts.graph = name;
@@ -171,7 +173,8 @@ private:
   std::string lacking_features(const LoadedGraph& loaded) const {
     for (const SettingDeclaration& setting : loaded.graph.settings) {
       const Features lacking =
-          missing_requirements(setting, setting.default_value.integer, device_.features, {}).features;
+          missing_requirements(setting, setting.default_value.integer, device_.features, {})
+              .features;
       if (lacking != 0)
         return fmt::format("its default {} needs {}, which the device lacks",
                            setting_text(setting, setting.default_value), feature_names(lacking));
@@ -187,15 +190,17 @@ private:
     if (compiled)
       for (const PlanPass& pass : compiled->plan.passes)
         lacking |= loaded.pass_types[pass.type].features & ~device_.features;
-    return lacking == 0 ? "" : fmt::format("it needs {}, which the device lacks", feature_names(lacking));
+    return lacking == 0
+               ? ""
+               : fmt::format("it needs {}, which the device lacks", feature_names(lacking));
   }
 
   CompileChoices choices_for(const LoadedGraph& loaded) {
     const Graph& graph = loaded.graph;
-    const auto settings =
-        known_entries(options_.settings, graph.settings, [](const NamedValue& entry) { return entry.first; });
-    const auto unbound =
-        known_entries(options_.unbound, graph.resources, [](const std::string& name) { return name; });
+    const auto settings = known_entries(options_.settings, graph.settings,
+                                        [](const NamedValue& entry) { return entry.first; });
+    const auto unbound = known_entries(options_.unbound, graph.resources,
+                                       [](const std::string& name) { return name; });
     pinned_.assign(graph.settings.size(), false);
     for (size_t s = 0; s < graph.settings.size(); ++s)
       for (const auto& [name, value] : settings)
@@ -214,7 +219,8 @@ private:
                            const abi::KernelEnvironment& environment, GraphCounts& counts) {
     const std::vector<vulkan::KernelCode> codes = abi::kernel_codes(shaders_);
     std::set<const vulkan::Kernel*> used;
-    for (const std::vector<SettingValue>& settings : settings_of_plans(input, pinned_, diagnostics_)) {
+    for (const std::vector<SettingValue>& settings :
+         settings_of_plans(input, pinned_, diagnostics_)) {
       if (interrupted()) return demo::Error{demo::ErrorKind::environment, "stopped"};
       CompileInput one = input;
       one.settings = settings;
@@ -223,8 +229,8 @@ private:
       const Plan& plan = compiled->plan;
       if (counts.configurations++ == 0) {
         count_bytes(loaded.graph, loaded.pass_types, plan, options_.assumptions, counts);
-        const std::string problem =
-            counter_.count_commands(loaded.graph, loaded.pass_types, plan, codes, environment, counts);
+        const std::string problem = counter_.count_commands(loaded.graph, loaded.pass_types, plan,
+                                                            codes, environment, counts);
         if (!problem.empty()) return graph_error(fmt::format("{}: {}", counts.graph, problem));
       }
       std::vector<vulkan::CompiledPipeline> pipelines;
@@ -237,7 +243,8 @@ private:
                                            .assembly = !options_.assembly.empty(),
                                            .store = kernels_.get()};
       if (const vulkan::Error error = vulkan::compile_pipelines(request, pipelines))
-        return demo::Error{demo::ErrorKind::environment, fmt::format("{}: {}", counts.graph, error.text)};
+        return demo::Error{demo::ErrorKind::environment,
+                           fmt::format("{}: {}", counts.graph, error.text)};
       for (const vulkan::CompiledPipeline& pipeline : pipelines) {
         if (!used.insert(pipeline.kernel.get()).second) continue;
         ++counts.pipelines;
@@ -247,7 +254,8 @@ private:
     return demo::success();
   }
 
-  void add_rows(const PassType& type, const vulkan::CompiledPipeline& pipeline, const std::string& graph) {
+  void add_rows(const PassType& type, const vulkan::CompiledPipeline& pipeline,
+                const std::string& graph) {
     const auto known = std::find_if(rows_of_.begin(), rows_of_.end(),
                                     [&](const auto& one) { return one.kernel == pipeline.kernel; });
     if (known != rows_of_.end()) {
@@ -286,8 +294,9 @@ private:
 
 demo::Result<KernelSurvey> survey_kernels(const KernelsOptions& options, const Session& session,
                                           Diagnostics& diagnostics) {
-  const std::vector<std::string> graphs = options.graphs.empty() ? graph_files(shipped("configs/graphs"))
-                                                                 : shipped_files("graphs", options.graphs);
+  const std::vector<std::string> graphs = options.graphs.empty()
+                                              ? graph_files(shipped("configs/graphs"))
+                                              : shipped_files("graphs", options.graphs);
   if (graphs.empty()) return graph_error("there are no graph files in configs/graphs");
   Survey survey(options, diagnostics);
   if (auto opened = survey.open(); !opened) return opened.error();

@@ -21,10 +21,12 @@ bool sides_differ(const PlanDiffOptions& options) {
 
 ExitCode plan_diff(const Session& session, const PlanDiffOptions& options) {
   if (options.files.size() == 1 && !sides_differ(options))
-    return fail(session, ExitCode::usage,
-                "name two plans, or set differences of the second plan with --b-set, --b-size, --b-unbound "
-                "or --b-overlay");
-  const PlanSource a{options.files.front(), options.inputs, options.size, options.settings, options.unbound};
+    return fail(
+        session, ExitCode::usage,
+        "name two plans, or set differences of the second plan with --b-set, --b-size, --b-unbound "
+        "or --b-overlay");
+  const PlanSource a{options.files.front(), options.inputs, options.size, options.settings,
+                     options.unbound};
   PlanSource b = a;
   b.file = options.files.back();
   append(b.inputs.overlays, options.b_overlays);

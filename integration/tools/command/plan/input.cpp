@@ -40,7 +40,8 @@ std::optional<std::string> read_plan_bytes(const std::string& path, Diagnostics&
   return std::nullopt;
 }
 
-std::optional<NamedPlan> load_plan(const PlanSource& source, Diagnostics& diagnostics, std::string& problem) {
+std::optional<NamedPlan> load_plan(const PlanSource& source, Diagnostics& diagnostics,
+                                   std::string& problem) {
   if (holds_plan(source.file)) {
     const auto bytes = read_plan_bytes(source.file, diagnostics);
     auto saved = bytes ? read_plan(source.file, *bytes, diagnostics) : std::nullopt;

@@ -33,6 +33,7 @@ std::optional<std::string> read_plan_bytes(const std::string& path, Diagnostics&
 
 // Returns nullopt with errors in `diagnostics`, or with a usage error in `problem` for a name that
 // the graph does not declare.
-std::optional<NamedPlan> load_plan(const PlanSource& source, Diagnostics& diagnostics, std::string& problem);
+std::optional<NamedPlan> load_plan(const PlanSource& source, Diagnostics& diagnostics,
+                                   std::string& problem);
 
 } // namespace dermis::tools

@@ -11,12 +11,13 @@ namespace dermis::tools {
 ExitCode plan_save(const Session& session, const PlanSaveOptions& options) {
   Diagnostics diagnostics;
   std::string problem;
-  const auto plan = load_plan(
-      {options.graph, options.inputs, options.size, options.settings, options.unbound, options.two_queues},
-      diagnostics, problem);
+  const auto plan = load_plan({options.graph, options.inputs, options.size, options.settings,
+                               options.unbound, options.two_queues},
+                              diagnostics, problem);
   if (!problem.empty()) return fail(session, ExitCode::usage, problem);
   if (!plan) return fail_graph(session, options.graph, diagnostics);
-  if (!plan->from_graph) return fail(session, ExitCode::usage, options.graph + ": is already a saved plan");
+  if (!plan->from_graph)
+    return fail(session, ExitCode::usage, options.graph + ": is already a saved plan");
   print_diagnostics(session, diagnostics);
   const std::string bytes = write_plan(plan->saved);
   if (session.json && options.out == "-")
@@ -29,8 +30,8 @@ ExitCode plan_save(const Session& session, const PlanSaveOptions& options) {
     answer.member("sha256", digest_text(sha256(bytes))).close();
     print(std::move(answer).finish());
   } else if (options.out != "-") {
-    say(session,
-        fmt::format("{}: {} passes, {} bytes\n", options.out, plan->saved.plan.passes.size(), bytes.size()));
+    say(session, fmt::format("{}: {} passes, {} bytes\n", options.out,
+                             plan->saved.plan.passes.size(), bytes.size()));
   }
   return ExitCode::ok;
 }

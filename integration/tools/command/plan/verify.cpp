@@ -17,9 +17,11 @@ std::string with_names(const SavedPlan& saved, const std::string& violation) {
     if (at == std::string::npos) return;
     size_t index = 0, digits = 0;
     for (size_t i = at + word.size();
-         i < violation.size() && violation[i] >= '0' && violation[i] <= '9' && digits < 9; ++i, ++digits)
+         i < violation.size() && violation[i] >= '0' && violation[i] <= '9' && digits < 9;
+         ++i, ++digits)
       index = index * 10 + static_cast<size_t>(violation[i] - '0');
-    if (digits > 0 && index < names.size()) text += fmt::format("; {}{} is '{}'", word, index, names[index]);
+    if (digits > 0 && index < names.size())
+      text += fmt::format("; {}{} is '{}'", word, index, names[index]);
   };
   append_name("pass ", saved.names.passes);
   append_name("resource ", saved.names.resources);
@@ -44,8 +46,8 @@ ExitCode plan_verify(const Session& session, const PlanVerifyOptions& options) {
       diagnostics.add(DiagnosticId::plan_not_verified, where,
                       fmt::format("the plan is not verified: {}", verdict.not_verified));
     if (verdict.proven())
-      say(session, fmt::format("{}: {} passes, {} barriers: no hazard\n", file, saved->plan.passes.size(),
-                               saved->plan.barriers.size()));
+      say(session, fmt::format("{}: {} passes, {} barriers: no hazard\n", file,
+                               saved->plan.passes.size(), saved->plan.barriers.size()));
   }
   if (session.json) {
     print(format_as_json(diagnostics));

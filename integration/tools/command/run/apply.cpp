@@ -54,7 +54,8 @@ demo::Result<> prepare(ApplyRun& run, const CapturedFrame& frame, const SlotChoi
   for (const auto& one : frame.description.profiles)
     request.profiles.push_back({one.id, one.profile.name, profile_as_json(one.profile)});
   if (run.device != nullptr && same_but_size(request, run.request)) {
-    if (request.width == run.request.width && request.height == run.request.height) return demo::success();
+    if (request.width == run.request.width && request.height == run.request.height)
+      return demo::success();
     run.request = std::move(request);
     return run.device->resize(run.request.width, run.request.height);
   }
@@ -90,7 +91,8 @@ Image combine(const CapturedFrame& frame, const std::vector<float>& lighting) {
     const float albedo =
         frame.albedo.values.empty() || is_colour ? 1.0f : std::min(frame.albedo.values[i], 1.0f);
     const float specular = frame.specular.values.empty() ? 0.0f : frame.specular.values[i];
-    combined.values[i] = std::min(lighting[i] * albedo + specular, std::numeric_limits<float>::max());
+    combined.values[i] =
+        std::min(lighting[i] * albedo + specular, std::numeric_limits<float>::max());
   }
   return combined;
 }
@@ -101,7 +103,8 @@ demo::Result<> write_frame(const CapturedFrame& frame, const std::string& name, 
     return demo::Error{demo::ErrorKind::environment, problem};
   const auto write = [&](const char* file, const Image& image) -> demo::Result<> {
     std::string problem;
-    if (write_exr(out.path_of(name + "/" + file), image, rgb_names, problem)) return demo::success();
+    if (write_exr(out.path_of(name + "/" + file), image, rgb_names, problem))
+      return demo::success();
     return demo::Error{demo::ErrorKind::environment, problem};
   };
   auto lighting = device.read_rgb("lighting");
@@ -122,7 +125,8 @@ demo::Result<> apply_frame(ApplyRun& run, const CapturedFrame& frame, const std:
     if (interrupted()) return demo::Error{demo::ErrorKind::environment, "stopped"};
     // also on repeats, since the graph may write into its inputs
     for (const SlotData& data : slots.data)
-      if (auto given = run.device->upload(data.slot, data.texels, data.channels); !given) return given;
+      if (auto given = run.device->upload(data.slot, data.texels, data.channels); !given)
+        return given;
     if (auto ran = run.device->run(c_frame(frame.description)); !ran) return ran;
     // the first of several runs only warms caches
     if (run.runs++ == 0 && run.all_runs > 1) continue;
@@ -132,16 +136,19 @@ demo::Result<> apply_frame(ApplyRun& run, const CapturedFrame& frame, const std:
   return write_frame(frame, name, *run.device, out);
 }
 
-ExitCode report(const ApplyRun& run, const CapturedSequence& sequence, const Diagnostics& surfaces) {
+ExitCode report(const ApplyRun& run, const CapturedSequence& sequence,
+                const Diagnostics& surfaces) {
   if (!run.times.empty())
-    say(run.session, format_times(run.times, run.all_runs == 1 ? std::string("pass") + first_frame : "pass"));
-  say(run.session,
-      fmt::format("{} in {}\n", format_count(sequence.folders.size(), "frame", true), run.options.out));
+    say(run.session,
+        format_times(run.times, run.all_runs == 1 ? std::string("pass") + first_frame : "pass"));
+  say(run.session, fmt::format("{} in {}\n", format_count(sequence.folders.size(), "frame", true),
+                               run.options.out));
   if (run.session.json) {
     JsonWriter answer;
     answer.open_object().member("ok", true).member("graph", run.options.graph);
     answer.member("device", std::string_view(run.host.properties.deviceName));
-    answer.member("frames", static_cast<uint64_t>(sequence.folders.size())).member("out", run.options.out);
+    answer.member("frames", static_cast<uint64_t>(sequence.folders.size()))
+        .member("out", run.options.out);
     answer.member("sanitised_values", sequence.sanitised_values).key("passes");
     write_times(answer, run.times);
     answer.member("device_ms", run.times.total());
@@ -173,7 +180,8 @@ ExitCode apply(const Session& session, const ApplyOptions& options) {
   ApplyRun run{session, options, *loaded, diagnostics.files.front().text, **host, nullptr, {}, {}};
   run.hooks = host_passes.hooks();
   run.all_runs = sequence->folders.size() * uint64_t{options.repeat};
-  Progress progress(progress_style(session.quiet, session.json), "apply", "frame", sequence->folders.size());
+  Progress progress(progress_style(session.quiet, session.json), "apply", "frame",
+                    sequence->folders.size());
   Diagnostics surfaces; // warnings of the sequence, each once
   for (size_t i = 0; i < sequence->folders.size(); ++i) {
     const std::optional<CapturedFrame> frame = load_frame(*sequence, i);

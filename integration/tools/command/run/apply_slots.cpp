@@ -87,7 +87,8 @@ SlotChoice choose_slots(const Graph& graph, const CapturedFrame& frame) {
     SlotData data = data_of(frame, declared.name);
     if (imported && data.texels.empty()) {
       if (!declared.optional) {
-        choice.problem = fmt::format("the graph requires '{}', which the capture lacks", declared.name);
+        choice.problem =
+            fmt::format("the graph requires '{}', which the capture lacks", declared.name);
         return choice;
       }
       choice.unbound.push_back(declared.name);
@@ -97,8 +98,9 @@ SlotChoice choose_slots(const Graph& graph, const CapturedFrame& frame) {
       const auto format = std::find_first_of(known->formats.begin(), known->formats.end(),
                                              declared.formats.begin(), declared.formats.end());
       if (format == known->formats.end()) {
-        choice.problem = fmt::format("the graph accepts '{}' as {}, but a captured frame provides {}",
-                                     declared.name, names_of(declared.formats), names_of(known->formats));
+        choice.problem =
+            fmt::format("the graph accepts '{}' as {}, but a captured frame provides {}",
+                        declared.name, names_of(declared.formats), names_of(known->formats));
         return choice;
       }
       choice.formats.emplace_back(declared.name, *format);

@@ -38,7 +38,8 @@ ExitCode calibrate(const Session& session, const CalibrateOptions& options) {
   request.include = [open = open_included(options.graph, options.inputs.roots)](
                         const std::string& name) -> std::optional<demo::NamedText> {
     const FileText file = open(name);
-    return file.problem.empty() ? std::optional(demo::NamedText{file.name, file.text}) : std::nullopt;
+    return file.problem.empty() ? std::optional(demo::NamedText{file.name, file.text})
+                                : std::nullopt;
   };
   Progress progress(progress_style(session.quiet, session.json), "calibrate", "run",
                     count_cost_runs(request));

@@ -12,7 +12,8 @@ namespace {
 
 // Shifts the image by `sign` times the frame's jitter: clip x and y, in units of half the
 // rectangle, times w.
-subsurface::Matrix4 shifted(const subsurface::Matrix4& matrix, const FrameDescription& frame, double sign) {
+subsurface::Matrix4 shifted(const subsurface::Matrix4& matrix, const FrameDescription& frame,
+                            double sign) {
   subsurface::Matrix4 out = matrix;
   for (size_t column = 0; column < 4; ++column) {
     out[column] += sign * 2.0 * frame.jitter_px[0] / frame.render.width * matrix[12 + column];
@@ -22,7 +23,8 @@ subsurface::Matrix4 shifted(const subsurface::Matrix4& matrix, const FrameDescri
 }
 
 void copy(const subsurface::Matrix4& from, float* to) {
-  std::transform(from.begin(), from.end(), to, [](double value) { return static_cast<float>(value); });
+  std::transform(from.begin(), from.end(), to,
+                 [](double value) { return static_cast<float>(value); });
 }
 
 } // namespace
@@ -43,10 +45,12 @@ std::optional<CapturedSequence> check_sequence(const Session& session, const std
     const auto frame = read_frame(one, sequence.profiles, diagnostics, roots);
     if (frame) sequence.sanitised_values += frame->sanitised.not_finite + frame->sanitised.negative;
     // A folder that is itself a frame has no frame name.
-    sequence.names.push_back(one == std::filesystem::path(folder) ? "frame_0000" : one.filename().string());
+    sequence.names.push_back(one == std::filesystem::path(folder) ? "frame_0000"
+                                                                  : one.filename().string());
   }
   if (diagnostics.has_errors()) {
-    fail(session, ExitCode::problems, fmt::format("the capture '{}' cannot be used", folder), &diagnostics);
+    fail(session, ExitCode::problems, fmt::format("the capture '{}' cannot be used", folder),
+         &diagnostics);
     return std::nullopt;
   }
   print_diagnostics(session, diagnostics);
@@ -85,11 +89,13 @@ dermis_frame c_frame(const FrameDescription& frame) {
   return out;
 }
 
-subsurface::Matrix4 with_jitter(const subsurface::Matrix4& clip_from_view, const FrameDescription& frame) {
+subsurface::Matrix4 with_jitter(const subsurface::Matrix4& clip_from_view,
+                                const FrameDescription& frame) {
   return shifted(clip_from_view, frame, 1.0);
 }
 
-subsurface::Matrix4 without_jitter(const subsurface::Matrix4& clip_from_view, const FrameDescription& frame) {
+subsurface::Matrix4 without_jitter(const subsurface::Matrix4& clip_from_view,
+                                   const FrameDescription& frame) {
   return shifted(clip_from_view, frame, -1.0);
 }
 

@@ -42,7 +42,9 @@ dermis_frame c_frame(const FrameDescription& frame);
 
 // Add or remove the jitter. Captures store matrices without jitter; the C interface takes matrices
 // with jitter.
-subsurface::Matrix4 with_jitter(const subsurface::Matrix4& clip_from_view, const FrameDescription& frame);
-subsurface::Matrix4 without_jitter(const subsurface::Matrix4& clip_from_view, const FrameDescription& frame);
+subsurface::Matrix4 with_jitter(const subsurface::Matrix4& clip_from_view,
+                                const FrameDescription& frame);
+subsurface::Matrix4 without_jitter(const subsurface::Matrix4& clip_from_view,
+                                   const FrameDescription& frame);
 
 } // namespace dermis::tools

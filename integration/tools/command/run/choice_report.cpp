@@ -24,23 +24,25 @@ std::string describe_choice(const demo::FrameChoice& choice) {
   if (choice.uniform_tiles > 0) text += fmt::format(", flat {}", choice.uniform_tiles);
   text += fmt::format(", copied {}, skipped {}: {:.2f} ms predicted", choice.copied_tiles,
                       choice.view_tiles - std::min(choice.view_tiles, listed), choice.predicted_ms);
-  text += choice.measured_ms < 0 ? ", not timed" : fmt::format(", {:.2f} measured", choice.measured_ms);
+  text +=
+      choice.measured_ms < 0 ? ", not timed" : fmt::format(", {:.2f} measured", choice.measured_ms);
   if (choice.budget_ms > 0) text += fmt::format(", budget {:.2f}", choice.budget_ms);
   if (choice.budget_ms > 0)
-    text +=
-        fmt::format("; RMSE {:.1e} of the scattered light expected ({})", choice.predicted_rmse, choice.why);
+    text += fmt::format("; RMSE {:.1e} of the scattered light expected ({})", choice.predicted_rmse,
+                        choice.why);
   if (choice.probed_tiles > 0)
-    text += choice.probed_tiles > 1 ? fmt::format(", {:.1e} probed ({:.1e} to {:.1e})", choice.probed_rmse,
-                                                  choice.probed_rmse_low, choice.probed_rmse_high)
-                                    : fmt::format(", {:.1e} probed in one tile", choice.probed_rmse);
+    text += choice.probed_tiles > 1
+                ? fmt::format(", {:.1e} probed ({:.1e} to {:.1e})", choice.probed_rmse,
+                              choice.probed_rmse_low, choice.probed_rmse_high)
+                : fmt::format(", {:.1e} probed in one tile", choice.probed_rmse);
   if (choice.transmitted_rms > 0)
     text += fmt::format(", {:.2f} of light through thin parts", choice.transmitted_rms);
   if (!choice.next_better.empty())
     text += fmt::format("; next better {} would need {:.2f} ms more", choice.next_better,
                         choice.next_better_missing_ms);
   if (choice.sample_units < choice.sample_demand)
-    text += fmt::format("; {} of {} requested samples per tile pixel fit the budget", 8 * choice.sample_units,
-                        8 * choice.sample_demand);
+    text += fmt::format("; {} of {} requested samples per tile pixel fit the budget",
+                        8 * choice.sample_units, 8 * choice.sample_demand);
   if (!choice.miss.empty()) text += fmt::format("; over the budget: {}", choice.miss);
   return text;
 }
@@ -82,7 +84,8 @@ void ChoiceReport::write(JsonWriter& writer) const {
       writer.value(choice.measured_ms);
     writer.member("calibrated_ms", choice.calibrated_ms);
     writer.member("predicted_rmse", choice.predicted_rmse).member("mean_d_px", choice.mean_d_px);
-    writer.member("view_tiles", choice.view_tiles).member("scattering_tiles", choice.scattering_tiles);
+    writer.member("view_tiles", choice.view_tiles)
+        .member("scattering_tiles", choice.scattering_tiles);
     writer.member("copied_tiles", choice.copied_tiles).member("switches", choice.switches);
     writer.member("uniform_tiles", choice.uniform_tiles).member("dispatches", choice.dispatches);
     writer.member("groups", choice.groups).member("sample_units", choice.sample_units);
@@ -105,7 +108,8 @@ void ChoiceReport::write(JsonWriter& writer) const {
             .member("reads_per_pixel", one.reads)
             .close();
       writer.close().member("reads_per_sample", frame.costs.reads_per_sample);
-      writer.member("reads_per_view", frame.costs.reads_per_view).member("reads", frame.costs.total());
+      writer.member("reads_per_view", frame.costs.reads_per_view)
+          .member("reads", frame.costs.total());
     }
     write_histories(writer.key("histories"), frame.histories);
     writer.member("miss", std::string_view(choice.miss));

@@ -14,8 +14,8 @@ namespace dermis::tools {
 class ChoiceReport {
 public:
   // `histories` is the state after the frame.
-  void add(uint32_t frame, const demo::FrameChoice& choice, std::vector<demo::FrameHistory> histories,
-           TileCosts costs = {});
+  void add(uint32_t frame, const demo::FrameChoice& choice,
+           std::vector<demo::FrameHistory> histories, TileCosts costs = {});
   bool empty() const { return frames_.empty(); }
 
   // Returns how many frames used each configuration, the choice of the newest frame, and its

@@ -34,7 +34,8 @@ std::vector<std::vector<NamedValue>> choice_sets(const LoadedGraph& loaded, cons
       if (setting.by_budget)
         set.emplace_back(
             setting.name,
-            fmt::format("\"{}\"", setting.options[static_cast<size_t>(configuration.settings[i].integer)]));
+            fmt::format("\"{}\"",
+                        setting.options[static_cast<size_t>(configuration.settings[i].integer)]));
     }
   }
   return sets;

@@ -28,7 +28,8 @@ struct Pair {
 };
 
 // Output of `apply` and `reference` for one light.
-constexpr const char *scattered = "scattered.exr", *reference = "reference.exr", *mask_name = "mask.exr";
+constexpr const char *scattered = "scattered.exr", *reference = "reference.exr",
+                     *mask_name = "mask.exr";
 
 struct Loaded {
   Image a, b;                // values with peak 1
@@ -55,7 +56,8 @@ bool is_mask(const fs::path& path) {
 std::vector<std::string> pictures_below(const fs::path& folder) {
   std::vector<std::string> names;
   std::error_code error;
-  for (fs::recursive_directory_iterator at(folder, error), end; !error && at != end; at.increment(error))
+  for (fs::recursive_directory_iterator at(folder, error), end; !error && at != end;
+       at.increment(error))
     if (at->is_regular_file(error) && is_picture(at->path()) && !is_mask(at->path()))
       names.push_back(fs::relative(at->path(), folder).string());
   std::sort(names.begin(), names.end());
@@ -63,10 +65,12 @@ std::vector<std::string> pictures_below(const fs::path& folder) {
 }
 
 // Returns the frame folders, such as "frame_0000/", that contain a picture named `file`.
-std::vector<std::string> frames_with(const std::vector<std::string>& pictures, const std::string& file) {
+std::vector<std::string> frames_with(const std::vector<std::string>& pictures,
+                                     const std::string& file) {
   std::vector<std::string> frames;
   for (const std::string& name : pictures)
-    if (fs::path(name).filename() == file) frames.push_back((fs::path(name).parent_path() / "").string());
+    if (fs::path(name).filename() == file)
+      frames.push_back((fs::path(name).parent_path() / "").string());
   return frames;
 }
 
@@ -81,14 +85,15 @@ std::vector<Pair> pairs_of(const std::string& a, const std::string& b, std::stri
     }
   const bool folder = fs::is_directory(a, ignored);
   if (folder != fs::is_directory(b, ignored)) {
-    problem = fmt::format("'{}' is a folder, '{}' is a file: name two images or two folders", folder ? a : b,
-                          folder ? b : a);
+    problem = fmt::format("'{}' is a folder, '{}' is a file: name two images or two folders",
+                          folder ? a : b, folder ? b : a);
     return {};
   }
   if (!folder) return {{fs::path(a).filename().string(), a, b}};
   std::vector<std::string> in_a = pictures_below(a), in_b = pictures_below(b);
   // Output of apply and of reference: compare the scattered light of each frame.
-  const auto are = [](const std::vector<std::string>& first, const std::vector<std::string>& second) {
+  const auto are = [](const std::vector<std::string>& first,
+                      const std::vector<std::string>& second) {
     return !frames_with(first, scattered).empty() && !frames_with(second, reference).empty() &&
            frames_with(first, reference).empty();
   };
@@ -101,13 +106,19 @@ std::vector<Pair> pairs_of(const std::string& a, const std::string& b, std::stri
   std::set_symmetric_difference(in_a.begin(), in_a.end(), in_b.begin(), in_b.end(),
                                 std::back_inserter(unmatched));
   if (!unmatched.empty())
-    problem = fmt::format("'{}' is only in one of the folders{}", unmatched.front(),
-                          unmatched.size() > 1 ? fmt::format(", and {} more", unmatched.size() - 1) : "");
-  if (in_a.empty() && in_b.empty()) problem = fmt::format("there are no .png or .exr files below '{}'", a);
+    problem =
+        fmt::format("'{}' is only in one of the folders{}", unmatched.front(),
+                    unmatched.size() > 1 ? fmt::format(", and {} more", unmatched.size() - 1) : "");
+  if (in_a.empty() && in_b.empty())
+    problem = fmt::format("there are no .png or .exr files below '{}'", a);
   std::vector<Pair> pairs;
   for (const std::string& name : in_a) {
-    const std::string of_a = a_is_applied ? name + scattered : b_is_applied ? name + reference : name;
-    const std::string of_b = b_is_applied ? name + scattered : a_is_applied ? name + reference : name;
+    const std::string of_a = a_is_applied   ? name + scattered
+                             : b_is_applied ? name + reference
+                                            : name;
+    const std::string of_b = b_is_applied   ? name + scattered
+                             : a_is_applied ? name + reference
+                                            : name;
     pairs.push_back({of_a, fs::path(a) / of_a, fs::path(b) / of_b});
   }
   return pairs;
@@ -124,7 +135,8 @@ std::optional<Image> read_picture(const fs::path& path, std::string& problem) {
 
 // Reads the mask next to either image if the image is output of `reference`. Returns false and sets
 // `problem` on failure.
-bool read_mask(const Pair& pair, const Image& like, std::optional<Image>& mask, std::string& problem) {
+bool read_mask(const Pair& pair, const Image& like, std::optional<Image>& mask,
+               std::string& problem) {
   for (const fs::path& picture : {pair.b, pair.a}) {
     const fs::path path = picture.parent_path() / mask_name;
     std::error_code ignored;
@@ -141,23 +153,24 @@ bool read_mask(const Pair& pair, const Image& like, std::optional<Image>& mask, 
 
 // Reads both images as values with peak 1: the values of a PNG, or the luminance of an EXR with the
 // exposure of B.
-bool read_both(const Pair& pair, const CompareOptions& options, Loaded& loaded, std::string& problem) {
+bool read_both(const Pair& pair, const CompareOptions& options, Loaded& loaded,
+               std::string& problem) {
   const auto first = read_picture(pair.a, problem);
   const auto second = first ? read_picture(pair.b, problem) : std::nullopt;
   if (!second) return false;
   if (first->width != second->width || first->height != second->height ||
       first->channels != second->channels) {
-    problem = fmt::format("'{}' is {}x{} with {} channels, '{}' {}x{} with {}", pair.a.string(), first->width,
-                          first->height, first->channels, pair.b.string(), second->width, second->height,
-                          second->channels);
+    problem = fmt::format("'{}' is {}x{} with {} channels, '{}' {}x{} with {}", pair.a.string(),
+                          first->width, first->height, first->channels, pair.b.string(),
+                          second->width, second->height, second->channels);
     return false;
   }
   const bool is_png = pair.a.extension() == ".png";
   if (!read_mask(pair, *second, loaded.mask, problem)) return false;
   if (options.flip && loaded.mask) {
-    problem = fmt::format(
-        "FLIP needs whole images, but the mask next to '{}' excludes pixels; run reference without --subset",
-        pair.b.string());
+    problem = fmt::format("FLIP needs whole images, but the mask next to '{}' excludes pixels; run "
+                          "reference without --subset",
+                          pair.b.string());
     return false;
   }
   if (options.flip) loaded.seen = flip(*second, *first, !is_png, options.pixels_per_degree);
@@ -207,7 +220,8 @@ Compared compare_region(const std::string& name, const std::string& region, cons
                         const PixelRectangle& where) {
   const Image& a = loaded.a;
   const std::vector<float>& seen = loaded.seen;
-  Compared row{name, region, compare_pictures(a, loaded.b, where, loaded.mask ? &*loaded.mask : nullptr)};
+  Compared row{name, region,
+               compare_pictures(a, loaded.b, where, loaded.mask ? &*loaded.mask : nullptr)};
   if (seen.empty()) return row;
   row.flip = 0;
   for (uint32_t y = where.y; y < where.y + where.height; ++y)
@@ -289,8 +303,9 @@ std::string as_table(std::vector<Compared> rows, bool several) {
     const bool of_all = several && &row == &rows.back();
     if (of_all) table.rows.emplace_back();
     table.rows.push_back(
-        {row.name, row.region, format_decibels(d.psnr_db), d.ssim ? fmt::format("{:.4f}", *d.ssim) : "-",
-         fmt::format("{:.5f}", d.rmse), fmt::format("{:.4f}", d.max_error),
+        {row.name, row.region, format_decibels(d.psnr_db),
+         d.ssim ? fmt::format("{:.4f}", *d.ssim) : "-", fmt::format("{:.5f}", d.rmse),
+         fmt::format("{:.4f}", d.max_error),
          d.max_error > 0 && !of_all ? fmt::format("{},{}", d.worst_x, d.worst_y) : "",
          fmt::format("{}", d.pixels), d.nonfinite > 0 ? fmt::format("{}", d.nonfinite) : ""});
     auto& cells = table.rows.back();
@@ -308,11 +323,13 @@ ExitCode compare(const Session& session, const CompareOptions& options) {
   if ((!options.heat.empty() || !options.flip_map.empty()) && pairs.size() > 1)
     return fail(session, ExitCode::usage,
                 "--heat and --flip-map write one image; name two files instead of folders");
-  Progress progress(progress_style(session.quiet, session.json), "compare", "picture", pairs.size());
+  Progress progress(progress_style(session.quiet, session.json), "compare", "picture",
+                    pairs.size());
   std::vector<Compared> rows;
   for (const Pair& pair : pairs) {
     Loaded loaded;
-    if (!read_both(pair, options, loaded, problem)) return fail(session, ExitCode::problems, problem);
+    if (!read_both(pair, options, loaded, problem))
+      return fail(session, ExitCode::problems, problem);
     const Image& a = loaded.a;
     rows.push_back(compare_region(pair.name, "", loaded, {0, 0, a.width, a.height}));
     if (interrupted()) return fail(session, ExitCode::interrupted, "stopped");
@@ -321,13 +338,14 @@ ExitCode compare(const Session& session, const CompareOptions& options) {
       if (uint64_t{region.x} + region.size.width > a.width ||
           uint64_t{region.y} + region.size.height > a.height)
         return fail(session, ExitCode::usage,
-                    fmt::format("the region {} is not inside of the {}x{} pixels of '{}'", region.text,
-                                a.width, a.height, pair.name));
+                    fmt::format("the region {} is not inside of the {}x{} pixels of '{}'",
+                                region.text, a.width, a.height, pair.name));
       rows.push_back(compare_region(pair.name, region.text, loaded,
                                     {region.x, region.y, region.size.width, region.size.height}));
     }
     if (!options.heat.empty()) problem = write_heat(options.heat, loaded);
-    if (problem.empty() && !options.flip_map.empty()) problem = write_flip(options.flip_map, a, loaded.seen);
+    if (problem.empty() && !options.flip_map.empty())
+      problem = write_flip(options.flip_map, a, loaded.seen);
     if (!problem.empty()) return fail(session, ExitCode::environment, problem);
   }
   const bool ok = std::all_of(rows.begin(), rows.end(), [&](const Compared& row) {
@@ -336,9 +354,10 @@ ExitCode compare(const Session& session, const CompareOptions& options) {
   });
   say(session, as_table(rows, pairs.size() > 1));
   if (!options.heat.empty())
-    say(session, fmt::format("\n{}: RMS error of a pixel's channels, logarithmic; dark blue 1e-4 or less, "
-                             "light yellow 0.1 or more\n",
-                             options.heat));
+    say(session,
+        fmt::format("\n{}: RMS error of a pixel's channels, logarithmic; dark blue 1e-4 or less, "
+                    "light yellow 0.1 or more\n",
+                    options.heat));
   if (!options.flip_map.empty())
     say(session, fmt::format("{}{}: FLIP of a pixel, dark blue 0, light yellow 1\n",
                              options.heat.empty() ? "\n" : "", options.flip_map));

@@ -17,7 +17,8 @@ uint32_t count_cost_runs(const CostsRequest& request) {
   return static_cast<uint32_t>(request.sets.size() * std::size(places));
 }
 
-demo::Result<DeviceCosts> measure_costs(const CostsRequest& request, const std::function<void()>& on_run) {
+demo::Result<DeviceCosts> measure_costs(const CostsRequest& request,
+                                        const std::function<void()>& on_run) {
   const demo::Error stopped = {demo::ErrorKind::environment, "stopped"};
   DeviceCosts costs{{}, request.calibration.text};
   const demo::StageHandle stage = demo::make_stage();
@@ -32,7 +33,8 @@ demo::Result<DeviceCosts> measure_costs(const CostsRequest& request, const std::
   engine.height = request.size.height;
   engine.frames = request.frames;
   engine.pictures_of = [](uint32_t) { return false; };
-  engine.calibration.name = request.calibration.text.empty() ? "calibration" : request.calibration.name;
+  engine.calibration.name =
+      request.calibration.text.empty() ? "calibration" : request.calibration.name;
   demo::RenderCallbacks callbacks;
   callbacks.on_start = [&](const demo::RenderInfo& info) {
     costs.device = info.device;

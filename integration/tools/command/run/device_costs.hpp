@@ -34,6 +34,7 @@ struct DeviceCosts {
 
 // Calls `on_run` after each run. Errors: those of demo::render; environment "stopped" if
 // interrupted.
-demo::Result<DeviceCosts> measure_costs(const CostsRequest& request, const std::function<void()>& on_run);
+demo::Result<DeviceCosts> measure_costs(const CostsRequest& request,
+                                        const std::function<void()>& on_run);
 
 } // namespace dermis::tools

@@ -13,7 +13,8 @@ namespace {
 // Returns the state of an image between frames, valid for the graph, an upload and a readback.
 demo::ImageState resting_state(VkImageLayout layout) {
   return {layout == VK_IMAGE_LAYOUT_UNDEFINED ? VK_IMAGE_LAYOUT_GENERAL : layout,
-          VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT};
+          VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
+          VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT};
 }
 
 // Keeps delivered texts alive until the call that requests them returns.
@@ -77,8 +78,10 @@ demo::Result<dermis_graph> create_graph(dermis_context context, const DeviceGrap
 demo::Result<> set_settings(dermis_graph graph, const DeviceGraphRequest& request) {
   for (const auto& [name, json] : request.settings) {
     demo::Report report;
-    const dermis_result result = dermis_graph_set_setting(graph, name.c_str(), json.c_str(), &report.handle);
-    if (result != DERMIS_OK) return demo::dermis_error("dermis_graph_set_setting", result, report.handle);
+    const dermis_result result =
+        dermis_graph_set_setting(graph, name.c_str(), json.c_str(), &report.handle);
+    if (result != DERMIS_OK)
+      return demo::dermis_error("dermis_graph_set_setting", result, report.handle);
   }
   return demo::success();
 }
@@ -156,7 +159,8 @@ bool DeviceGraph::has(std::string_view slot) const {
   return false;
 }
 
-demo::Result<> DeviceGraph::upload(std::string_view slot, std::span<const float> texels, uint32_t channels) {
+demo::Result<> DeviceGraph::upload(std::string_view slot, std::span<const float> texels,
+                                   uint32_t channels) {
   Slot* target = find(slot);
   if (target == nullptr) return demo::success();
   target->state = resting_state(target->slot.best_layout);
@@ -213,7 +217,8 @@ std::vector<DeviceGraph::PassTime> DeviceGraph::times() {
       count == 0)
     return {};
   std::vector<dermis_pass_timing> timings(count, dermis_pass_timing DERMIS_PASS_TIMING_INIT);
-  if (dermis_view_timings(dermis_graph_view(graph_), frame_index_, &count, timings.data()) != DERMIS_OK)
+  if (dermis_view_timings(dermis_graph_view(graph_), frame_index_, &count, timings.data()) !=
+      DERMIS_OK)
     return {};
   std::vector<PassTime> times;
   for (const dermis_pass_timing& timing : timings)
@@ -223,7 +228,8 @@ std::vector<DeviceGraph::PassTime> DeviceGraph::times() {
 
 std::optional<demo::ReportedFrame> DeviceGraph::choice() {
   demo::ReportedFrame choice;
-  if (demo::read_reported(dermis_graph_view(graph_), frame_index_, choice) != DERMIS_OK) return std::nullopt;
+  if (demo::read_reported(dermis_graph_view(graph_), frame_index_, choice) != DERMIS_OK)
+    return std::nullopt;
   return choice;
 }
 

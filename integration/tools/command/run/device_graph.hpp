@@ -74,8 +74,8 @@ public:
   // Returns the times of the last frame in plan order. Empty if the device has no timestamps.
   std::vector<PassTime> times();
   dermis_memory memory();
-  // Returns the choice of the last frame, whose strings live as long as the graph. Returns nullopt if
-  // nothing was counted.
+  // Returns the choice of the last frame, whose strings live as long as the graph. Returns nullopt
+  // if nothing was counted.
   std::optional<demo::ReportedFrame> choice();
 
 private:

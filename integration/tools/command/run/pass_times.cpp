@@ -16,8 +16,8 @@ double median(std::vector<double> values) {
 } // namespace
 
 void PassTimes::add(std::string_view pass, double milliseconds) {
-  auto found =
-      std::find_if(samples_.begin(), samples_.end(), [&](const Samples& one) { return one.pass == pass; });
+  auto found = std::find_if(samples_.begin(), samples_.end(),
+                            [&](const Samples& one) { return one.pass == pass; });
   if (found == samples_.end()) found = samples_.insert(found, {std::string(pass), {}});
   found->milliseconds.push_back(milliseconds);
 }
@@ -44,7 +44,8 @@ std::string format_times(const PassTimes& times, const std::string& title) {
   Table table;
   const std::vector<PassTimes::Row> rows = times.rows();
   const size_t frames = rows.empty() ? 0 : rows.front().frames;
-  table.columns = {{fmt::format("{}, median of {}", title, frames)}, {"device time", true}, {"share", true}};
+  table.columns = {
+      {fmt::format("{}, median of {}", title, frames)}, {"device time", true}, {"share", true}};
   for (const PassTimes::Row& row : rows)
     table.rows.push_back({row.pass, format_milliseconds(row.median), fraction(row.median)});
   table.rows.push_back({});

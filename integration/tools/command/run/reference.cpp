@@ -25,7 +25,8 @@ struct Answer {
 };
 
 std::vector<uint32_t> chosen_pixels(const ReferenceFrame& frame, uint32_t subset) {
-  if (subset > 0) return subsurface::stratified_subset(frame.width, frame.height, frame.profile, subset);
+  if (subset > 0)
+    return subsurface::stratified_subset(frame.width, frame.height, frame.profile, subset);
   std::vector<uint32_t> all;
   for (uint32_t i = 0; i < frame.profile.size(); ++i)
     if (frame.profile[i] != 0) all.push_back(i);
@@ -33,7 +34,8 @@ std::vector<uint32_t> chosen_pixels(const ReferenceFrame& frame, uint32_t subset
 }
 
 std::optional<std::vector<double>> solve(const Session& session, const ReferenceFrame& frame,
-                                         const std::string& name, const std::vector<uint32_t>& pixels) {
+                                         const std::string& name,
+                                         const std::vector<uint32_t>& pixels) {
   const subsurface::ReferenceInput input = frame.input();
   if (!subsurface::is_planar(input)) return run_reference(session, name, input, pixels);
   // by FFT, takes seconds
@@ -45,8 +47,8 @@ std::optional<std::vector<double>> solve(const Session& session, const Reference
   return chosen;
 }
 
-std::optional<Answer> answer(const Session& session, const CapturedFrame& captured, const std::string& name,
-                             uint32_t subset) {
+std::optional<Answer> answer(const Session& session, const CapturedFrame& captured,
+                             const std::string& name, uint32_t subset) {
   const ReferenceFrame frame = make_reference_frame(captured);
   const std::vector<uint32_t> pixels = chosen_pixels(frame, subset);
   const auto reference = solve(session, frame, name, pixels);
@@ -63,11 +65,14 @@ std::optional<Answer> answer(const Session& session, const CapturedFrame& captur
   return made;
 }
 
-std::string write_answer(const Answer& made, const std::string& name, bool with_mask, OutputFolder& out) {
+std::string write_answer(const Answer& made, const std::string& name, bool with_mask,
+                         OutputFolder& out) {
   std::string problem = out.open_below(name);
   if (!problem.empty()) return problem;
-  if (!write_exr(out.path_of(name + "/reference.exr"), made.light, {"R", "G", "B"}, problem)) return problem;
-  if (with_mask && !write_exr(out.path_of(name + "/mask.exr"), made.mask, {"Y"}, problem)) return problem;
+  if (!write_exr(out.path_of(name + "/reference.exr"), made.light, {"R", "G", "B"}, problem))
+    return problem;
+  if (with_mask && !write_exr(out.path_of(name + "/mask.exr"), made.mask, {"Y"}, problem))
+    return problem;
   return "";
 }
 
@@ -84,20 +89,25 @@ ExitCode reference(const Session& session, const ReferenceOptions& options) {
   uint64_t pixels = 0;
   for (size_t i = 0; i < sequence->folders.size(); ++i) {
     const std::optional<CapturedFrame> captured = load_frame(*sequence, i);
-    if (!captured) return fail(session, ExitCode::problems, "the capture changed while it was read");
-    const std::optional<Answer> made = answer(session, *captured, sequence->names[i], options.subset);
+    if (!captured)
+      return fail(session, ExitCode::problems, "the capture changed while it was read");
+    const std::optional<Answer> made =
+        answer(session, *captured, sequence->names[i], options.subset);
     if (!made || interrupted()) return fail(session, ExitCode::interrupted, "stopped");
     const std::string problem = write_answer(*made, sequence->names[i], options.subset > 0, out);
     if (!problem.empty()) return fail(session, ExitCode::environment, problem);
     pixels += made->pixels;
   }
-  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  const double seconds =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   say(session, fmt::format("{}, {} pixels in {}; the reference is in {}\n",
-                           format_count(sequence->folders.size(), "frame"), pixels, format_duration(seconds),
-                           options.out));
+                           format_count(sequence->folders.size(), "frame"), pixels,
+                           format_duration(seconds), options.out));
   if (session.json) {
     JsonWriter answer;
-    answer.open_object().member("ok", true).member("frames", static_cast<uint64_t>(sequence->folders.size()));
+    answer.open_object()
+        .member("ok", true)
+        .member("frames", static_cast<uint64_t>(sequence->folders.size()));
     answer.member("pixels", pixels).member("seconds", seconds).member("out", options.out);
     answer.member("sanitised_values", sequence->sanitised_values).close();
     print(std::move(answer).finish());

@@ -40,8 +40,10 @@ double median_d_px(const subsurface::ReferenceInput& input) {
     const uint8_t id = input.profile[i];
     if (id == 0 || id >= input.d_m.size() || !(input.depth[i] > 0.0f)) continue;
     const auto& d = input.d_m[id];
-    const double scale = input.scatter_scale.empty() ? 1.0 : static_cast<double>(input.scatter_scale[i]);
-    const double footprint = pixel * (input.rays.perspective ? static_cast<double>(input.depth[i]) : 1.0);
+    const double scale =
+        input.scatter_scale.empty() ? 1.0 : static_cast<double>(input.scatter_scale[i]);
+    const double footprint =
+        pixel * (input.rays.perspective ? static_cast<double>(input.depth[i]) : 1.0);
     all.push_back(*std::max_element(d.begin(), d.end()) * scale / footprint);
   }
   if (all.empty()) return 0.0;
@@ -62,18 +64,22 @@ std::string format_error(const ErrorFigures& figures, const std::string& where, 
   table.rows = {
       {"PSNR (linear luminance, peak 1)", format_decibels(figures.psnr_db)},
       {"RMSE", fmt::format("{:.5f}", figures.rmse)},
-      {"RMSE, 95 % confidence", fmt::format("{:.5f} .. {:.5f}", figures.rmse_low, figures.rmse_high)},
-      {"RMSE of red, green, blue",
-       fmt::format("{:.5f} {:.5f} {:.5f}", figures.rmse_rgb[0], figures.rmse_rgb[1], figures.rmse_rgb[2])},
-      {"99th percentile, largest", fmt::format("{:.5f}, {:.5f}", figures.p99_error, figures.max_error)},
-      {"pixels measured, of all subsurface pixels", fmt::format("{} of {}", figures.pixels, population)},
+      {"RMSE, 95 % confidence",
+       fmt::format("{:.5f} .. {:.5f}", figures.rmse_low, figures.rmse_high)},
+      {"RMSE of red, green, blue", fmt::format("{:.5f} {:.5f} {:.5f}", figures.rmse_rgb[0],
+                                               figures.rmse_rgb[1], figures.rmse_rgb[2])},
+      {"99th percentile, largest",
+       fmt::format("{:.5f}, {:.5f}", figures.p99_error, figures.max_error)},
+      {"pixels measured, of all subsurface pixels",
+       fmt::format("{} of {}", figures.pixels, population)},
       {"d of the widest channel, median", fmt::format("{:.2f} px", d_px)},
       {"exposure of these figures", fmt::format("{:.4f}", exposure)},
   };
   return format_table(table);
 }
 
-std::string error_as_json(const ErrorFigures& figures, uint64_t population, double exposure, double d_px) {
+std::string error_as_json(const ErrorFigures& figures, uint64_t population, double exposure,
+                          double d_px) {
   JsonWriter answer;
   answer.open_object(true).member("psnr_db", figures.psnr_db).member("rmse", figures.rmse);
   answer.member("rmse_low", figures.rmse_low).member("rmse_high", figures.rmse_high);

@@ -27,6 +27,7 @@ uint64_t subsurface_pixels(std::span<const uint8_t> profile);
 // Format an error figure as a table and as JSON; `where` names the measured frame ("frame 7").
 std::string format_error(const ErrorFigures& figures, const std::string& where, uint64_t population,
                          double exposure, double d_px);
-std::string error_as_json(const ErrorFigures& figures, uint64_t population, double exposure, double d_px);
+std::string error_as_json(const ErrorFigures& figures, uint64_t population, double exposure,
+                          double d_px);
 
 } // namespace dermis::tools

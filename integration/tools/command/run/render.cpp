@@ -90,7 +90,8 @@ std::vector<uint8_t> sampling_picture(const demo::FrameOutputs& frame) {
       rgb[3 * i + c] = static_cast<uint8_t>(dim * static_cast<float>(frame.display[3 * i + c]));
     // The square root makes a single sample visible.
     if (sampled[0] > 0)
-      rgb[3 * i + 1] = static_cast<uint8_t>(255 * std::sqrt(std::min(sampled[0] / max_samples, 1.0f)));
+      rgb[3 * i + 1] =
+          static_cast<uint8_t>(255 * std::sqrt(std::min(sampled[0] / max_samples, 1.0f)));
     if (sampled[3] > 0.5f) rgb[3 * i] = 255;
   }
   return rgb;
@@ -104,11 +105,12 @@ std::vector<uint8_t> skips_picture(const demo::FrameOutputs& frame) {
   constexpr float minimum = 64; // of 255, keeps dark tiles distinguishable
   std::vector<uint8_t> rgb(frame.display.size());
   for (size_t i = 0; i < rgb.size() / 3; ++i) {
-    const auto tile = std::min(static_cast<size_t>(frame.tile_class.texels[2 * i]), tints.size() - 1);
+    const auto tile =
+        std::min(static_cast<size_t>(frame.tile_class.texels[2 * i]), tints.size() - 1);
     const float floor = tile == 0 ? 0 : minimum;
     for (size_t c = 0; c < 3; ++c)
-      rgb[3 * i + c] = static_cast<uint8_t>(tints[tile][c] *
-                                            (floor + (255 - floor) / 255 * float(frame.display[3 * i + c])));
+      rgb[3 * i + c] = static_cast<uint8_t>(
+          tints[tile][c] * (floor + (255 - floor) / 255 * float(frame.display[3 * i + c])));
   }
   return rgb;
 }
@@ -118,27 +120,32 @@ demo::Result<> write_pictures(RenderRun& run, const demo::FrameOutputs& frame) {
   const auto name = [&](const char* what, const char* extension) {
     return run.out.path_of(fmt::format("{}_{:04}.{}", what, frame.frame, extension));
   };
-  if (!write_png(name("frame", "png"), frame.color.width, frame.color.height, frame.display, problem) ||
+  if (!write_png(name("frame", "png"), frame.color.width, frame.color.height, frame.display,
+                 problem) ||
       !write_exr(name("color", "exr"), to_image(frame.color), rgb_names, problem))
     return cannot_write(problem);
   if (!frame.scattered.texels.empty() &&
       !write_exr(name("scattered", "exr"), to_image(frame.scattered), rgb_names, problem))
     return cannot_write(problem);
-  if (!frame.sampling.texels.empty() && !write_png(name("debug", "png"), frame.color.width,
-                                                   frame.color.height, sampling_picture(frame), problem))
+  if (!frame.sampling.texels.empty() &&
+      !write_png(name("debug", "png"), frame.color.width, frame.color.height,
+                 sampling_picture(frame), problem))
     return cannot_write(problem);
   if (!frame.tile_class.texels.empty() &&
-      !write_png(name("debug", "png"), frame.color.width, frame.color.height, skips_picture(frame), problem))
+      !write_png(name("debug", "png"), frame.color.width, frame.color.height, skips_picture(frame),
+                 problem))
     return cannot_write(problem);
   return demo::success();
 }
 
 bool scatters_by_rays(const std::string& technique) {
   Diagnostics ignored;
-  const auto document = parse_document("errors", std::string(choice::default_errors_text()), ignored);
+  const auto document =
+      parse_document("errors", std::string(choice::default_errors_text()), ignored);
   const auto errors = document ? choice::read_error_model(*document, ignored) : std::nullopt;
-  return errors && std::any_of(errors->techniques.begin(), errors->techniques.end(),
-                               [&](const auto& one) { return one.by_rays && one.name == technique; });
+  return errors &&
+         std::any_of(errors->techniques.begin(), errors->techniques.end(),
+                     [&](const auto& one) { return one.by_rays && one.name == technique; });
 }
 
 demo::Result<> take_frame(RenderRun& run, const demo::FrameOutputs& frame) {
@@ -148,7 +155,8 @@ demo::Result<> take_frame(RenderRun& run, const demo::FrameOutputs& frame) {
   if (!captured) return captured.error();
   warn_of_surfaces(*captured, run.surfaces);
   std::string problem;
-  if (!run.options.capture.empty() && !run.capture.add(*captured, problem)) return cannot_write(problem);
+  if (!run.options.capture.empty() && !run.capture.add(*captured, problem))
+    return cannot_write(problem);
 
   // The first of several frames only warms caches.
   if (frame.frame > 0 || run.options.frames == 1) {
@@ -195,7 +203,8 @@ std::string why_no_error(const RenderRun& run) {
   if (run.textured_before) return "the reference needs 'texturing' = 'post'";
   if (run.options.graph == no_graph) return "rendered without a graph";
   if (run.by_rays)
-    return "the technique traces rays, to which the screen-space reference does not apply; use 'dermis bench "
+    return "the technique traces rays, to which the screen-space reference does not apply; use "
+           "'dermis bench "
            "restir'";
   if (run.options.subset == 0) return "not requested (--subset 0)";
   if (run.last_scattered.empty()) return "the graph does not export 'scattered_light'";
@@ -206,8 +215,10 @@ std::string why_no_error(const RenderRun& run) {
 ExitCode report(RenderRun& run) {
   std::string text, error_json = "null";
   const std::string cold = run.options.frames == 1 ? first_frame : "";
-  if (!run.graph_times.empty()) text += format_times(run.graph_times, "pass of the graph" + cold) + '\n';
-  if (!run.host_times.empty()) text += format_times(run.host_times, "pass of the engine" + cold) + '\n';
+  if (!run.graph_times.empty())
+    text += format_times(run.graph_times, "pass of the graph" + cold) + '\n';
+  if (!run.host_times.empty())
+    text += format_times(run.host_times, "pass of the engine" + cold) + '\n';
   if (!run.choices.empty()) text += run.choices.text() + '\n';
   const std::string no_error = why_no_error(run);
   if (no_error.empty()) {
@@ -219,9 +230,11 @@ ExitCode report(RenderRun& run) {
     if (!reference) return fail(run.session, ExitCode::interrupted, "stopped");
     const double exposure = run.exposure.result();
     const uint64_t population = subsurface_pixels(last.profile);
-    const ErrorFigures figures = measure_error(run.last_scattered, *reference, pixels, exposure, population);
+    const ErrorFigures figures =
+        measure_error(run.last_scattered, *reference, pixels, exposure, population);
     const double d_px = median_d_px(input);
-    text += format_error(figures, fmt::format("frame {}", run.frames - 1), population, exposure, d_px);
+    text +=
+        format_error(figures, fmt::format("frame {}", run.frames - 1), population, exposure, d_px);
     error_json = error_as_json(figures, population, exposure, d_px);
   } else {
     text += fmt::format("error of the scattered light: not measured, {}\n", no_error);
@@ -234,8 +247,12 @@ ExitCode report(RenderRun& run) {
         .member("ok", true)
         .member("scene", run.info.scene)
         .member("graph", run.options.graph);
-    answer.member("device", run.info.device).member("frames", run.frames).member("out", run.options.out);
-    answer.member("width", run.options.size.width).member("height", run.options.size.height).key("passes");
+    answer.member("device", run.info.device)
+        .member("frames", run.frames)
+        .member("out", run.options.out);
+    answer.member("width", run.options.size.width)
+        .member("height", run.options.size.height)
+        .key("passes");
     write_times(answer, run.graph_times);
     write_times(answer.key("engine_passes"), run.host_times);
     answer.member("device_ms", run.graph_times.total()).key("error").json(error_json);
@@ -255,8 +272,8 @@ ExitCode render(const Session& session, const RenderOptions& options) {
   demo::RenderOptions engine;
   engine.scene = options.scene;
   engine.roots = options.inputs.roots;
-  engine.model = {options.model.model, options.model.albedo, options.model.normal, options.model.specular,
-                  options.model.height};
+  engine.model = {options.model.model, options.model.albedo, options.model.normal,
+                  options.model.specular, options.model.height};
   engine.width = options.size.width;
   engine.height = options.size.height;
   engine.frames = options.frames;
@@ -269,8 +286,9 @@ ExitCode render(const Session& session, const RenderOptions& options) {
   GraphInputs inputs = options.inputs;
   constexpr const char* overlay = "debug_tile_class.json"; // not added again if already given
   if (engine.tile_class &&
-      std::none_of(inputs.overlays.begin(), inputs.overlays.end(),
-                   [&](const std::string& one) { return std::filesystem::path(one).filename() == overlay; }))
+      std::none_of(inputs.overlays.begin(), inputs.overlays.end(), [&](const std::string& one) {
+        return std::filesystem::path(one).filename() == overlay;
+      }))
     inputs.overlays.push_back(shipped(std::string("configs/overlays/") + overlay));
   if (!options.calibration.empty()) {
     auto text = demo::read_text_file(options.calibration);
@@ -303,7 +321,8 @@ ExitCode render(const Session& session, const RenderOptions& options) {
     const auto files_of = [](OpenFile open) {
       return [open = std::move(open)](const std::string& name) -> std::optional<demo::NamedText> {
         const FileText file = open(name);
-        return file.problem.empty() ? std::optional(demo::NamedText{file.name, file.text}) : std::nullopt;
+        return file.problem.empty() ? std::optional(demo::NamedText{file.name, file.text})
+                                    : std::nullopt;
       };
     };
     engine.include = files_of(open_included(options.graph, options.inputs.roots));
@@ -313,13 +332,14 @@ ExitCode render(const Session& session, const RenderOptions& options) {
     transmission = transmits(loaded->graph, choices);
   } else if (!options.settings.empty() || !options.inputs.overlays.empty() ||
              !options.inputs.pass_types.empty() || !options.shaders.empty()) {
-    return fail(session, ExitCode::usage, "--set, --overlay, --pass-types and --shaders need a graph");
+    return fail(session, ExitCode::usage,
+                "--set, --overlay, --pass-types and --shaders need a graph");
   }
 
   RenderRun run{.session = session,
                 .options = options,
-                .progress =
-                    Progress(progress_style(session.quiet, session.json), "render", "frame", options.frames),
+                .progress = Progress(progress_style(session.quiet, session.json), "render", "frame",
+                                     options.frames),
                 .textured_before = textured,
                 .transmission = transmission};
   demo::RenderCallbacks callbacks;
@@ -327,7 +347,8 @@ ExitCode render(const Session& session, const RenderOptions& options) {
   callbacks.on_frame = [&](const demo::FrameOutputs& frame) { return take_frame(run, frame); };
   const auto summary = demo::render(engine, callbacks);
   if (interrupted()) return fail(session, ExitCode::interrupted, "stopped");
-  if (!summary) return fail(session, static_cast<ExitCode>(summary.error().kind), summary.error().text);
+  if (!summary)
+    return fail(session, static_cast<ExitCode>(summary.error().kind), summary.error().text);
   std::string problem;
   if (!options.capture.empty() && !run.capture.finish(problem))
     return fail(session, ExitCode::environment, problem);

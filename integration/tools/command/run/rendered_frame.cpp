@@ -10,7 +10,8 @@ Image to_image(const demo::FloatImage& image) {
   return {image.width, image.height, image.channels, image.texels};
 }
 
-demo::Result<std::vector<CaptureProfile>> read_profiles(std::span<const demo::ScatteringProfile> profiles) {
+demo::Result<std::vector<CaptureProfile>>
+read_profiles(std::span<const demo::ScatteringProfile> profiles) {
   std::vector<CaptureProfile> all;
   Diagnostics diagnostics;
   for (const demo::ScatteringProfile& one : profiles) {

@@ -22,7 +22,8 @@ namespace {
 constexpr uint32_t gap = 4;              // pixels between images
 constexpr uint32_t longest_side = 16384; // of the sheet, pixels
 
-std::vector<std::string> all_shipped(std::string_view folder, std::initializer_list<std::string_view> names) {
+std::vector<std::string> all_shipped(std::string_view folder,
+                                     std::initializer_list<std::string_view> names) {
   std::vector<std::string> files;
   for (const std::string_view name : names)
     files.push_back(shipped(folder, name));
@@ -49,8 +50,8 @@ struct Sheet {
   void put(size_t row, size_t column, const std::vector<uint8_t>& picture) {
     for (size_t y = 0; y < one.height; ++y) {
       const size_t at = (row * (one.height + gap) + y) * width + column * (one.width + gap);
-      std::copy_n(picture.begin() + static_cast<std::ptrdiff_t>(3 * y * one.width), 3 * size_t{one.width},
-                  rgb.begin() + static_cast<std::ptrdiff_t>(3 * at));
+      std::copy_n(picture.begin() + static_cast<std::ptrdiff_t>(3 * y * one.width),
+                  3 * size_t{one.width}, rgb.begin() + static_cast<std::ptrdiff_t>(3 * at));
     }
   }
 };
@@ -59,20 +60,23 @@ struct Sheet {
 
 ExitCode sheet(const Session& session, const SheetOptions& options) {
   const std::vector<std::string> profiles =
-      options.profiles.empty() ? all_shipped("profiles", {"skin", "jade", "marble", "wax", "ketchup", "milk"})
-                               : shipped_files("profiles", options.profiles);
+      options.profiles.empty()
+          ? all_shipped("profiles", {"skin", "jade", "marble", "wax", "ketchup", "milk"})
+          : shipped_files("profiles", options.profiles);
   const std::vector<std::string> graphs =
-      options.graphs.empty()
-          ? all_shipped("graphs", {"separable_jimenez", "separable", "pyramid", "fixed", "burley", "sap"})
-          : shipped_files("graphs", options.graphs);
+      options.graphs.empty() ? all_shipped("graphs", {"separable_jimenez", "separable", "pyramid",
+                                                      "fixed", "burley", "sap"})
+                             : shipped_files("graphs", options.graphs);
   const size_t rows = graphs.size() + 1, columns = profiles.size();
   if (columns * (options.size.width + gap) > longest_side ||
       rows * (options.size.height + gap) > longest_side)
     return fail(session, ExitCode::usage,
-                fmt::format("the sheet exceeds {} pixels along a side; use a smaller --size", longest_side));
+                fmt::format("the sheet exceeds {} pixels along a side; use a smaller --size",
+                            longest_side));
   Diagnostics diagnostics;
   const std::optional<LoadedGraph> known = load_pass_types(options.pass_types, diagnostics);
-  if (!known) return fail(session, ExitCode::problems, "the pass types cannot be used", &diagnostics);
+  if (!known)
+    return fail(session, ExitCode::problems, "the pass types cannot be used", &diagnostics);
   Sheet sheet(options.size, rows, columns);
   Progress progress(progress_style(session.quiet, session.json), "sheet", "picture",
                     static_cast<uint32_t>(rows * columns));
@@ -100,14 +104,16 @@ ExitCode sheet(const Session& session, const SheetOptions& options) {
       };
       const auto summary = demo::render(engine, callbacks);
       if (interrupted()) return fail(session, ExitCode::interrupted, "stopped");
-      if (!summary) return fail(session, static_cast<ExitCode>(summary.error().kind), summary.error().text);
+      if (!summary)
+        return fail(session, static_cast<ExitCode>(summary.error().kind), summary.error().text);
       progress.update(static_cast<uint32_t>(row * columns + column + 1));
     }
   std::string problem;
   if (!write_png(options.out, sheet.width, sheet.height, sheet.rgb, problem))
     return fail(session, ExitCode::environment, problem);
-  say(session, fmt::format("{}\nrows from the top: none, {}\ncolumns from the left: {}\n", options.out,
-                           fmt::join(stems(graphs), ", "), fmt::join(stems(profiles), ", ")));
+  say(session,
+      fmt::format("{}\nrows from the top: none, {}\ncolumns from the left: {}\n", options.out,
+                  fmt::join(stems(graphs), ", "), fmt::join(stems(profiles), ", ")));
   if (session.json) {
     JsonWriter answer;
     answer.open_object().member("ok", true).member("out", options.out);

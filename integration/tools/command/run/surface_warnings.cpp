@@ -31,10 +31,12 @@ struct DepthPicture {
       return false;
     const uint8_t id = frame.profile[size_t{y} * frame.description.width + x];
     if (!holds(x - dx, y - dy, id) || !holds(x + dx, y + dy, id)) return false;
-    const double depth = at(x, y), before = at(x - dx, y - dy) - depth, after = at(x + dx, y + dy) - depth;
-    const double side =
-        std::abs(dx > 0 ? frame.rays.scale_x : frame.rays.scale_y) * (frame.rays.perspective ? depth : 1.0);
-    return before * after > 0 && std::min(std::abs(before), std::abs(after)) > steepest_slope * side;
+    const double depth = at(x, y), before = at(x - dx, y - dy) - depth,
+                 after = at(x + dx, y + dy) - depth;
+    const double side = std::abs(dx > 0 ? frame.rays.scale_x : frame.rays.scale_y) *
+                        (frame.rays.perspective ? depth : 1.0);
+    return before * after > 0 &&
+           std::min(std::abs(before), std::abs(after)) > steepest_slope * side;
   }
 };
 
@@ -81,17 +83,18 @@ bool warn_of_surfaces(const CapturedFrame& frame, Diagnostics& diagnostics) {
       aspect > largest_square_aspect && !holds(diagnostics, DiagnosticId::pixels_not_square))
     diagnostics.add(
         DiagnosticId::pixels_not_square, {},
-        of_frame(fmt::format("pixels are {:.2f} times as {} as in the other direction; techniques expect "
-                             "square pixels, and scatter too far along the longer side",
-                             aspect,
-                             std::abs(frame.rays.scale_x) > std::abs(frame.rays.scale_y) ? "wide" : "high")));
+        of_frame(fmt::format(
+            "pixels are {:.2f} times as {} as in the other direction; techniques expect "
+            "square pixels, and scatter too far along the longer side",
+            aspect,
+            std::abs(frame.rays.scale_x) > std::abs(frame.rays.scale_y) ? "wide" : "high")));
   if (!holds(diagnostics, DiagnosticId::surface_dithered))
     if (const double tiles = dithered_tiles(frame); tiles > largest_folded_tiles)
-      diagnostics.add(
-          DiagnosticId::surface_dithered, {},
-          of_frame(fmt::format("{:.0f} % of the tiles with subsurface alternate between two depths "
-                               "from pixel to pixel, as dithered surfaces do; light mixes between them",
-                               100 * tiles)));
+      diagnostics.add(DiagnosticId::surface_dithered, {},
+                      of_frame(fmt::format(
+                          "{:.0f} % of the tiles with subsurface alternate between two depths "
+                          "from pixel to pixel, as dithered surfaces do; light mixes between them",
+                          100 * tiles)));
   return diagnostics.list.size() > before;
 }
 

@@ -27,7 +27,8 @@ void add_configuration(const Graph& graph, std::string_view configuration,
       const std::string name(configuration.substr(0, equals));
       if (std::any_of(graph.settings.begin(), graph.settings.end(),
                       [&](const SettingDeclaration& one) { return one.name == name; }))
-        settings.emplace_back(name, std::string(configuration.substr(equals + 1, end - equals - 1)));
+        settings.emplace_back(name,
+                              std::string(configuration.substr(equals + 1, end - equals - 1)));
     }
     configuration.remove_prefix(std::min(end + 2, configuration.size()));
   }
@@ -36,13 +37,14 @@ void add_configuration(const Graph& graph, std::string_view configuration,
 } // namespace
 
 double TileCosts::total() const {
-  return std::accumulate(
-      classes.begin(), classes.end(), reads_per_view,
-      [](double sum, const TileClass& one) { return sum + tile_pixels * double(one.tiles) * one.reads; });
+  return std::accumulate(classes.begin(), classes.end(), reads_per_view,
+                         [](double sum, const TileClass& one) {
+                           return sum + tile_pixels * double(one.tiles) * one.reads;
+                         });
 }
 
-TileCosts tile_costs(const LoadedGraph& loaded, const Size& size, std::span<const NamedValue> settings,
-                     const demo::FrameChoice& choice) {
+TileCosts tile_costs(const LoadedGraph& loaded, const Size& size,
+                     std::span<const NamedValue> settings, const demo::FrameChoice& choice) {
   std::vector<NamedValue> values(settings.begin(), settings.end());
   add_configuration(loaded.graph, choice.configuration, values);
   Diagnostics scratch; // not reported: the frame ran, so the graph compiles
@@ -63,7 +65,8 @@ TileCosts tile_costs(const LoadedGraph& loaded, const Size& size, std::span<cons
       own.push_back(plan.settings[pass.first_setting + i].value);
       if (type.settings[i].name == "level") finer = std::exp2(2.0 * double(own.back().integer));
     }
-    subsurface::ReadsQuestion question{own, std::vector<bool>(type.ports.size(), false), {d, d, d}, tables};
+    subsurface::ReadsQuestion question{
+        own, std::vector<bool>(type.ports.size(), false), {d, d, d}, tables};
     for (uint32_t a = 0; a < pass.access_count; ++a)
       question.bound[plan.accesses[pass.first_access + a].port] = true;
     const auto reads = subsurface::image_reads(type, question);
@@ -88,11 +91,12 @@ TileCosts tile_costs(const LoadedGraph& loaded, const Size& size, std::span<cons
   const uint64_t sampled =
       std::accumulate(choice.sampled_tiles.begin(), choice.sampled_tiles.end(), uint64_t{0});
   out.classes.push_back(
-      {0, choice.scattering_tiles - std::min<uint64_t>(choice.scattering_tiles, sampled), everywhere});
+      {0, choice.scattering_tiles - std::min<uint64_t>(choice.scattering_tiles, sampled),
+       everywhere});
   for (size_t k = 0; k < choice.sampled_tiles.size(); ++k) {
     const auto samples = static_cast<uint32_t>(first_step) << k;
-    out.classes.push_back(
-        {samples, choice.sampled_tiles[k], everywhere + per_step + double(samples) * out.reads_per_sample});
+    out.classes.push_back({samples, choice.sampled_tiles[k],
+                           everywhere + per_step + double(samples) * out.reads_per_sample});
   }
   return out;
 }
@@ -105,12 +109,14 @@ std::string describe_tile_costs(const TileCosts& costs) {
                    {"S(m), reads per pixel", true},
                    {"w S(m), M reads", true}};
   for (const TileClass& one : costs.classes)
-    table.rows.push_back({fmt::format("{}", one.samples), fmt::format("{}", one.tiles),
-                          fmt::format("{:.1f}", one.reads),
-                          fmt::format("{:.3f}", tile_pixels * double(one.tiles) * one.reads * 1e-6)});
+    table.rows.push_back(
+        {fmt::format("{}", one.samples), fmt::format("{}", one.tiles),
+         fmt::format("{:.1f}", one.reads),
+         fmt::format("{:.3f}", tile_pixels * double(one.tiles) * one.reads * 1e-6)});
   return format_table(table) +
-         fmt::format("M(d) = {:.1f} reads per sample, O(n) = {:.3f} M reads, T'(n) = {:.3f} M reads\n",
-                     costs.reads_per_sample, costs.reads_per_view * 1e-6, costs.total() * 1e-6);
+         fmt::format(
+             "M(d) = {:.1f} reads per sample, O(n) = {:.3f} M reads, T'(n) = {:.3f} M reads\n",
+             costs.reads_per_sample, costs.reads_per_view * 1e-6, costs.total() * 1e-6);
 }
 
 } // namespace dermis::tools

@@ -27,10 +27,11 @@ struct TileCosts {
   double total() const;        // T'(n), texels
 };
 
-// Returns the costs of a frame that ran `choice.configuration` of the graph. `settings` are those of
+// Returns the costs of a frame that ran `choice.configuration` of the graph. `settings` are those
+// of
 // --set. Reads are counted from the kernels' source (image_reads.hpp), not measured.
-TileCosts tile_costs(const LoadedGraph& loaded, const Size& size, std::span<const NamedValue> settings,
-                     const demo::FrameChoice& choice);
+TileCosts tile_costs(const LoadedGraph& loaded, const Size& size,
+                     std::span<const NamedValue> settings, const demo::FrameChoice& choice);
 // Formats the costs as text, or "" if there are no classes.
 std::string describe_tile_costs(const TileCosts& costs);
 

@@ -26,7 +26,11 @@ void begin_event(JsonWriter& out, std::string_view name, std::string_view phase,
 }
 
 void name_track(JsonWriter& out, std::string_view what, uint32_t track, std::string_view name) {
-  out.open_object(true).member("name", what).member("ph", "M").member("pid", process).member("tid", track);
+  out.open_object(true)
+      .member("name", what)
+      .member("ph", "M")
+      .member("pid", process)
+      .member("tid", track);
   out.key("args").open_object().member("name", name).close().close();
 }
 
@@ -35,10 +39,11 @@ void name_track(JsonWriter& out, std::string_view what, uint32_t track, std::str
 void Trace::add(const demo::FrameOutputs& frame) {
   if (frame.phases.empty()) return;
   const double begin = frame.phases.front().begin_ms;
-  spans_.push_back(
-      {false, fmt::format("frame {}", frame.frame), begin, frame.phases.back().end_ms - begin, frame.frame});
+  spans_.push_back({false, fmt::format("frame {}", frame.frame), begin,
+                    frame.phases.back().end_ms - begin, frame.frame});
   for (const demo::HostPhase& phase : frame.phases)
-    spans_.push_back({false, phase.name, phase.begin_ms, phase.end_ms - phase.begin_ms, frame.frame});
+    spans_.push_back(
+        {false, phase.name, phase.begin_ms, phase.end_ms - phase.begin_ms, frame.frame});
 
   const auto run = [&](std::span<const demo::PassTime> passes, double from) {
     device_free_ms_ = std::max(device_free_ms_, from);
@@ -64,7 +69,8 @@ std::string Trace::json(const std::string& command, const std::string& device) c
   name_track(out, "thread_name", host_track, "host");
   for (const Span& span : spans_) {
     begin_event(out, span.name, "X", span.begin_ms);
-    out.member("dur", us_per_ms * span.duration_ms).member("cat", span.on_device ? "device" : "host");
+    out.member("dur", us_per_ms * span.duration_ms)
+        .member("cat", span.on_device ? "device" : "host");
     out.member("tid", span.on_device ? device_track : host_track);
     out.key("args").open_object().member("frame", span.frame).close().close();
   }

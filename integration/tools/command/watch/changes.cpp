@@ -31,7 +31,8 @@ std::vector<std::string> Changes::look(const std::vector<std::string>& files) {
   return changed;
 }
 
-std::vector<std::string> files_below(const std::string& folder, const std::vector<std::string>& extensions) {
+std::vector<std::string> files_below(const std::string& folder,
+                                     const std::vector<std::string>& extensions) {
   std::vector<std::string> found;
   std::error_code error;
   for (std::filesystem::recursive_directory_iterator at(folder, error), end; !error && at != end;

@@ -25,6 +25,7 @@ private:
 };
 
 // Returns the files below a folder whose names end in one of `extensions`, sorted.
-std::vector<std::string> files_below(const std::string& folder, const std::vector<std::string>& extensions);
+std::vector<std::string> files_below(const std::string& folder,
+                                     const std::vector<std::string>& extensions);
 
 } // namespace dermis::tools

@@ -41,7 +41,8 @@ std::string list_files(const std::vector<std::string>& files) {
   std::string text;
   for (size_t i = 0; i < std::min(files.size(), maximum); ++i)
     text += (i == 0 ? "" : ", ") + files[i];
-  return files.size() > maximum ? fmt::format("{} and {} more", text, files.size() - maximum) : text;
+  return files.size() > maximum ? fmt::format("{} and {} more", text, files.size() - maximum)
+                                : text;
 }
 
 // Updates the list of watched files: graph, overlays, included files, scene and profiles, as far as
@@ -76,7 +77,8 @@ std::vector<std::string> shader_files(const Watch& watch) {
 // Returns whether `dermis render` compiles the shader files itself (--shaders): there is a shader
 // compiler, and no build command that would compile them.
 bool compiles_shaders(const Watch& watch) {
-  return watch.options.build.empty() && !abi::shader_compiler().empty() && !shader_files(watch).empty();
+  return watch.options.build.empty() && !abi::shader_compiler().empty() &&
+         !shader_files(watch).empty();
 }
 
 std::vector<std::string> render_line(const Watch& watch) {
@@ -142,7 +144,8 @@ std::string figures_text(const Figures& now, const Figures& before) {
   std::string text;
   if (now.psnr_db >= 0)
     text += fmt::format("PSNR {}{}, RMSE {:.6f}{}, ", format_decibels(now.psnr_db),
-                        change(now.psnr_db, before.psnr_db, 2), now.rmse, change(now.rmse, before.rmse, 6));
+                        change(now.psnr_db, before.psnr_db, 2), now.rmse,
+                        change(now.rmse, before.rmse, 6));
   return text + fmt::format("{}{}\n", format_milliseconds(now.device_ms),
                             change(now.device_ms, before.device_ms, 2));
 }
@@ -157,8 +160,8 @@ bool render_once(Watch& watch) {
     const PlanDiff diff = diff_plans(*watch.plan, *plan);
     say(watch.session, diff.same ? "plan: unchanged\n" : plan_diff_text(diff, "before", "now"));
   } else {
-    say(watch.session,
-        fmt::format("plan: {} passes, {} barriers\n", plan->plan.passes.size(), plan->plan.barriers.size()));
+    say(watch.session, fmt::format("plan: {} passes, {} barriers\n", plan->plan.passes.size(),
+                                   plan->plan.barriers.size()));
   }
   watch.plan = plan;
   std::string problem;
@@ -181,9 +184,10 @@ void take_shaders(const Watch& watch, const std::vector<std::string>& shaders) {
     return;
   }
   if (watch.options.build.empty()) {
-    spdlog::warn("{} changed: this program was built without a shader compiler; use --build LINE to rebuild "
-                 "it",
-                 list_files(shaders));
+    spdlog::warn(
+        "{} changed: this program was built without a shader compiler; use --build LINE to rebuild "
+        "it",
+        list_files(shaders));
     return;
   }
   say(watch.session, fmt::format("{} changed: {}\n", list_files(shaders), watch.options.build));
@@ -191,8 +195,9 @@ void take_shaders(const Watch& watch, const std::vector<std::string>& shaders) {
   const auto answer = run_child({"/bin/sh", "-c", watch.options.build}, problem);
   if (!answer || answer->exit_code != 0) {
     if (answer) print(answer->out);
-    spdlog::error("{}",
-                  answer ? fmt::format("the build failed with exit code {}", answer->exit_code) : problem);
+    spdlog::error("{}", answer
+                            ? fmt::format("the build failed with exit code {}", answer->exit_code)
+                            : problem);
   }
 }
 
@@ -202,9 +207,11 @@ ExitCode watch(const Session& session, const WatchOptions& options) {
   std::error_code error;
   Watch state{session, options, std::filesystem::read_symlink("/proc/self/exe", error).string()};
   if (error)
-    return fail(session, ExitCode::environment, "cannot find this program's own file: " + error.message());
+    return fail(session, ExitCode::environment,
+                "cannot find this program's own file: " + error.message());
   state.files = {options.scene, options.graph};
-  state.files.insert(state.files.end(), options.inputs.overlays.begin(), options.inputs.overlays.end());
+  state.files.insert(state.files.end(), options.inputs.overlays.begin(),
+                     options.inputs.overlays.end());
   state.changes.add(state.files);
   Changes shaders;
   shaders.add(shader_files(state));

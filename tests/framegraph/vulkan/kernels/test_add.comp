@@ -18,9 +18,11 @@ void main() {
   if (any(greaterThanEqual(pixel, frame.rect.zw))) return;
   pixel += frame.rect.xy;
   float sum = texelFetch(a, pixel, 0).x + bias;
-  bool has_b = (port_mask & 2u) != 0u, has_ids = (port_mask & 4u) != 0u, has_weights = (port_mask & 32u) != 0u;
+  bool has_b = (port_mask & 2u) != 0u, has_ids = (port_mask & 4u) != 0u,
+       has_weights = (port_mask & 32u) != 0u;
   sum += has_b ? texelFetch(b, pixel, 0).x : -1000.0 * texelFetch(b, ivec2(0), 0).x;
-  sum += has_ids ? float(texelFetch(ids, pixel, 0).x) : -1000.0 * float(texelFetch(ids, ivec2(0), 0).x);
+  sum += has_ids ? float(texelFetch(ids, pixel, 0).x)
+                 : -1000.0 * float(texelFetch(ids, ivec2(0), 0).x);
   sum += has_weights ? 0.0 : -1000.0 * weights[0];
   imageStore(target, pixel, vec4(sum, 0, 0, 0));
   if ((port_mask & 16u) != 0u) imageStore(second, pixel, vec4(-sum));

@@ -9,5 +9,6 @@ layout(push_constant) uniform push_block { uint port_mask; float value; int slop
 void main() {
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
   if (any(greaterThanEqual(pixel, frame.rect.zw))) return;
-  imageStore(target, frame.rect.xy + pixel, vec4(value + float(slope * pixel.x) + frame.time, 0, 0, 0));
+  imageStore(target, frame.rect.xy + pixel,
+             vec4(value + float(slope * pixel.x) + frame.time, 0, 0, 0));
 }

@@ -14,7 +14,8 @@ void main() {
   if (any(greaterThanEqual(pixel, frame.rect.zw))) return;
   bool has_ids = (port_mask & 2u) != 0u;
   float value = -1.0;
-  if (has_ids && all(lessThan(pixel, textureSize(ids, 0)))) value = float(texelFetch(ids, pixel, 0).x) / 32.0;
+  if (has_ids && all(lessThan(pixel, textureSize(ids, 0))))
+    value = float(texelFetch(ids, pixel, 0).x) / 32.0;
   if (!has_ids && all(lessThan(pixel, textureSize(a, 0)))) value = texelFetch(a, pixel, 0).x;
   imageStore(target, pixel, vec4(value));
 }

@@ -28,7 +28,8 @@ uint64_t generated_code_bytes() {
     char dash = 0;
     std::string access, offset, device, inode;
     fields >> std::hex >> begin >> dash >> end >> access >> offset >> device >> inode;
-    if (access.size() == 4 && access[2] == 'x' && inode == "0" && line.find('[') == std::string::npos)
+    if (access.size() == 4 && access[2] == 'x' && inode == "0" &&
+        line.find('[') == std::string::npos)
       bytes += end - begin;
   }
   return bytes;
@@ -36,9 +37,9 @@ uint64_t generated_code_bytes() {
 
 // Renders a ball in front of a wall from `camera`, in a temporary folder.
 struct Engine : ::testing::Test {
-  RenderOptions
-  small(const std::string& camera = R"({ "position": [0, 0, 1], "target": [0, 0, 0], "vertical_fov": 20 })",
-        const std::string& profile_file = shipped + "profiles/skin.json") const {
+  RenderOptions small(const std::string& camera =
+                          R"({ "position": [0, 0, 1], "target": [0, 0, 0], "vertical_fov": 20 })",
+                      const std::string& profile_file = shipped + "profiles/skin.json") const {
     const std::string path = (folder / "scene.json").string();
     std::ofstream(path) << R"({ "dermis_scene": 1, "name": "small", "sky": [0.1, 0.1, 0.1],
       "profiles": [ { "name": "skin", "file": ")"
@@ -61,7 +62,8 @@ struct Engine : ::testing::Test {
   static std::vector<FrameOutputs> frames_of(const RenderOptions& options) {
     return rendered(options).frames;
   }
-  static void expect_rejected(const RenderOptions& options, ErrorKind kind, const std::string& text) {
+  static void expect_rejected(const RenderOptions& options, ErrorKind kind,
+                              const std::string& text) {
     const auto summary = render(options, {});
     ASSERT_FALSE(summary) << "it was rendered";
     EXPECT_EQ(summary.error().kind, kind);
@@ -193,8 +195,8 @@ TEST_F(Engine, ErrorsHaveTheRightKindAndNameTheirSubject) {
   options = small();
   options.graph = "no/such/graph.json";
   expect_rejected(options, ErrorKind::input, "no/such/graph.json");
-  options =
-      small(R"({ "position": [0, 0, 1], "target": [0, 0, 0], "vertical_fov": 20 })", "no/such/profile.json");
+  options = small(R"({ "position": [0, 0, 1], "target": [0, 0, 0], "vertical_fov": 20 })",
+                  "no/such/profile.json");
   options.graph = shipped + "graphs/burley.json";
   expect_rejected(options, ErrorKind::input, "no/such/profile.json");
   options = small();
@@ -206,7 +208,8 @@ TEST_F(Engine, GraphWithUnsupportedInput_IsNamed) {
   const std::string path = (folder / "graph.json").string();
   std::ifstream shipped_graph(shipped + "graphs/burley.json");
   std::string text((std::istreambuf_iterator<char>(shipped_graph)), {});
-  const std::string optional = "\"size\": \"view\", \"optional\": true, \"note\": \"factor on the scattering";
+  const std::string optional =
+      "\"size\": \"view\", \"optional\": true, \"note\": \"factor on the scattering";
   ASSERT_NE(text.find(optional), std::string::npos);
   text.replace(text.find(optional), optional.size(),
                "\"size\": \"view\", \"note\": \"factor on the scattering");

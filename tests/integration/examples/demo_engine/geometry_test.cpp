@@ -42,7 +42,9 @@ size_t open_edges(const Mesh& mesh) {
 }
 
 TEST(SurfaceNets, MeshedBallIsClosedAndOnTheSurface) {
-  const auto ball = [](const glm::vec3& p) { return sphere(p, glm::vec3(0.1f, -0.2f, 0.05f), 1.0f); };
+  const auto ball = [](const glm::vec3& p) {
+    return sphere(p, glm::vec3(0.1f, -0.2f, 0.05f), 1.0f);
+  };
   GridPlanes planes;
   planes.x = place_planes(-1.5f, 1.5f, [](float) { return 0.11f; });
   planes.y = place_planes(-1.6f, 1.4f, [](float at) { return 0.05f + 0.05f * std::abs(at); });
@@ -130,7 +132,8 @@ TEST(Mesh, TangentsFollowTheTexture) {
   compute_tangents(mesh);
   for (const Vertex& vertex : mesh.vertices) {
     EXPECT_NEAR(vertex.tangent.x, 1.0f, 1e-6f); // u runs along x.
-    const glm::vec3 across = glm::cross(vertex.normal, glm::vec3(vertex.tangent)) * vertex.tangent.w;
+    const glm::vec3 across =
+        glm::cross(vertex.normal, glm::vec3(vertex.tangent)) * vertex.tangent.w;
     EXPECT_LT(across.z, 0.0f); // v runs along z; the bitangent points against v, as in glTF.
   }
 }

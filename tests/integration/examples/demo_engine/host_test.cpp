@@ -60,12 +60,14 @@ TEST_F(Host, FloatsRoundTripThroughEveryFormat) {
   constexpr uint32_t width = 5, height = 3;
   for (const VkFormat format :
        {VK_FORMAT_R8_UINT, VK_FORMAT_R8_UNORM, VK_FORMAT_R8G8B8A8_UNORM, VK_FORMAT_R8G8B8A8_SRGB,
-        VK_FORMAT_R16_SFLOAT, VK_FORMAT_R16G16_SFLOAT, VK_FORMAT_R16G16B16A16_SFLOAT, VK_FORMAT_R32_SFLOAT,
-        VK_FORMAT_R32G32B32A32_SFLOAT, VK_FORMAT_B10G11R11_UFLOAT_PACK32, VK_FORMAT_D32_SFLOAT}) {
+        VK_FORMAT_R16_SFLOAT, VK_FORMAT_R16G16_SFLOAT, VK_FORMAT_R16G16B16A16_SFLOAT,
+        VK_FORMAT_R32_SFLOAT, VK_FORMAT_R32G32B32A32_SFLOAT, VK_FORMAT_B10G11R11_UFLOAT_PACK32,
+        VK_FORMAT_D32_SFLOAT}) {
     const PixelFormat* known = find_pixel_format(format);
     ASSERT_NE(known, nullptr);
     VkImageUsageFlags usage = VK_IMAGE_USAGE_TRANSFER_DST_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
-    auto image = create_image(*host, {.format = format, .width = width, .height = height, .usage = usage});
+    auto image =
+        create_image(*host, {.format = format, .width = width, .height = height, .usage = usage});
     ASSERT_TRUE(image) << known->name << ": " << image.error().text;
     std::vector<float> texels(width * height * known->channels);
     for (size_t i = 0; i < texels.size(); ++i)
@@ -82,9 +84,10 @@ TEST_F(Host, FloatsRoundTripThroughEveryFormat) {
 }
 
 TEST_F(Host, ImagesBeyondDeviceLimitsAreRejectedByName) {
-  auto none = create_image(
-      *host,
-      {.format = VK_FORMAT_R8_UINT, .width = 0, .height = 4, .usage = VK_IMAGE_USAGE_TRANSFER_DST_BIT});
+  auto none = create_image(*host, {.format = VK_FORMAT_R8_UINT,
+                                   .width = 0,
+                                   .height = 4,
+                                   .usage = VK_IMAGE_USAGE_TRANSFER_DST_BIT});
   ASSERT_FALSE(none);
   EXPECT_EQ(none.error().kind, ErrorKind::usage);
   EXPECT_THAT(none.error().text, testing::HasSubstr("0x4"));

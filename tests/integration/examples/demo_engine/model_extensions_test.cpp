@@ -39,16 +39,17 @@ struct ModelExtensions : ::testing::Test {
 TEST_F(ModelExtensions, QuantisedPositionsAreRead) {
   const int16_t shorts[] = {-32767, -32768, 0, 0, 32767, -32767, 0, 0, -32767, 32767, 0, 0};
   const int8_t bytes[] = {-127, -128, 0, 0, 127, -127, 0, 0, -127, 127, 0, 0};
-  const auto quantised = [&](const void* data, size_t size, int type, const std::string& normalized) {
+  const auto quantised = [&](const void* data, size_t size, int type,
+                             const std::string& normalized) {
     write("quantised.bin", {static_cast<const char*>(data), size});
-    const auto model = load_model(
-        only(write("quantised.gltf",
-                   R"({ "asset": { "version": "2.0" }, "extensionsRequired": ["KHR_mesh_quantization"],
+    const auto model = load_model(only(write(
+        "quantised.gltf",
+        R"({ "asset": { "version": "2.0" }, "extensionsRequired": ["KHR_mesh_quantization"],
           "buffers": [{ "uri": "quantised.bin", "byteLength": )" +
-                       std::to_string(size) + R"( }], "bufferViews": [{ "buffer": 0, "byteLength": )" +
-                       std::to_string(size) + R"(, "byteStride": )" + std::to_string(size / 3) +
-                       R"( }], "accessors": [{ "bufferView": 0, "componentType": )" + std::to_string(type) +
-                       R"(, "count": 3, "type": "VEC3", "normalized": )" + normalized + R"( }],
+            std::to_string(size) + R"( }], "bufferViews": [{ "buffer": 0, "byteLength": )" +
+            std::to_string(size) + R"(, "byteStride": )" + std::to_string(size / 3) +
+            R"( }], "accessors": [{ "bufferView": 0, "componentType": )" + std::to_string(type) +
+            R"(, "count": 3, "type": "VEC3", "normalized": )" + normalized + R"( }],
           "meshes": [{ "primitives": [{ "attributes": { "POSITION": 0 } }] }],
           "nodes": [{ "mesh": 0 }], "scenes": [{ "nodes": [0] }] })")));
     EXPECT_TRUE(model) << model.error().text;
@@ -61,11 +62,13 @@ TEST_F(ModelExtensions, QuantisedPositionsAreRead) {
 }
 
 TEST_F(ModelExtensions, TextureTransformsMoveCoordinates) {
-  const float rows[] = {0, 0, 0, 1, 0, 0, 0, 2, 0, 0, 0, 1, 0, 0, 1, 0.5f, 0.5f, 0.5f, 0.5f, 0.5f, 0.5f};
+  const float rows[] = {0, 0, 0, 1, 0,    0,    0,    2,    0,    0,   0,
+                        1, 0, 0, 1, 0.5f, 0.5f, 0.5f, 0.5f, 0.5f, 0.5f};
   write("uv.bin", {reinterpret_cast<const char*>(rows), sizeof(rows)});
   const auto uv = [&](const std::string& transform, const std::string& normal = "") {
     const auto model = load_model(only(
-        write("uv.gltf", R"({ "asset": { "version": "2.0" }, "extensionsRequired": ["KHR_texture_transform"],
+        write("uv.gltf",
+              R"({ "asset": { "version": "2.0" }, "extensionsRequired": ["KHR_texture_transform"],
           "buffers": [{ "uri": "uv.bin", "byteLength": 84 }],
           "bufferViews": [{ "buffer": 0, "byteLength": 84 }], "accessors": [
           { "bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3" },
@@ -74,7 +77,7 @@ TEST_F(ModelExtensions, TextureTransformsMoveCoordinates) {
           "images": [{ "uri": "none.png" }], "textures": [{ "source": 0 }],
           "materials": [{ "pbrMetallicRoughness": { "baseColorTexture": { "index": 0, "extensions":
             { "KHR_texture_transform": )" +
-                             transform + "} } }" + normal + R"( }],
+                  transform + "} } }" + normal + R"( }],
           "meshes": [{ "primitives": [{ "material": 0, "attributes":
             { "POSITION": 0, "TEXCOORD_0": 1, "TEXCOORD_1": 2 } }] }],
           "nodes": [{ "mesh": 0 }], "scenes": [{ "nodes": [0] }] })")));
@@ -107,18 +110,19 @@ TEST_F(ModelExtensions, MeshoptBuffersAreDecoded) {
   const auto load = [&](const std::string& whole, const std::string& count) {
     write("packed.bin", whole);
     const std::string size = std::to_string(vertices.size());
-    return load_model(only(write(
-        "packed.gltf", R"({ "asset": { "version": "2.0" }, "extensionsRequired": ["EXT_meshopt_compression"],
+    return load_model(only(
+        write("packed.gltf",
+              R"({ "asset": { "version": "2.0" }, "extensionsRequired": ["EXT_meshopt_compression"],
           "buffers": [{ "uri": "packed.bin", "byteLength": )" +
-                           std::to_string(whole.size()) + R"( },
+                  std::to_string(whole.size()) + R"( },
           { "byteLength": 60, "extensions": { "EXT_meshopt_compression": { "fallback": true } } }],
           "bufferViews": [{ "buffer": 1, "byteLength": 48, "extensions": { "EXT_meshopt_compression":
             { "buffer": 0, "byteLength": )" +
-                           size + R"(, "byteStride": 12, "mode": "ATTRIBUTES", "count": )" + count +
-                           R"( } } }, { "buffer": 1, "byteOffset": 48, "byteLength": 12, "extensions":
+                  size + R"(, "byteStride": 12, "mode": "ATTRIBUTES", "count": )" + count +
+                  R"( } } }, { "buffer": 1, "byteOffset": 48, "byteLength": 12, "extensions":
             { "EXT_meshopt_compression": { "buffer": 0, "byteOffset": )" +
-                           size + R"(, "byteLength": )" + std::to_string(triangles.size()) +
-                           R"(, "byteStride": 2, "mode": "TRIANGLES", "count": 6 } } }],
+                  size + R"(, "byteLength": )" + std::to_string(triangles.size()) +
+                  R"(, "byteStride": 2, "mode": "TRIANGLES", "count": 6 } } }],
           "accessors": [{ "bufferView": 0, "componentType": 5126, "count": 4, "type": "VEC3" },
             { "bufferView": 1, "componentType": 5123, "count": 6, "type": "SCALAR" }],
           "meshes": [{ "primitives": [{ "attributes": { "POSITION": 0 }, "indices": 1 }] }],
@@ -135,7 +139,8 @@ TEST_F(ModelExtensions, MeshoptBuffersAreDecoded) {
     EXPECT_TRUE(read || read.error().kind == ErrorKind::input) << at;
   }
   bytes[0] = 0;
-  for (const auto& wrong : {load(bytes, "4"), load(bytes, "0"), load(bytes, "-1"), load(bytes, "1e9")}) {
+  for (const auto& wrong :
+       {load(bytes, "4"), load(bytes, "0"), load(bytes, "-1"), load(bytes, "1e9")}) {
     ASSERT_FALSE(wrong);
     EXPECT_THAT(wrong.error().text, testing::HasSubstr("EXT_meshopt_compression of buffer view 0"));
   }
@@ -144,10 +149,12 @@ TEST_F(ModelExtensions, MeshoptBuffersAreDecoded) {
 
 #ifdef DEMO_DRACO
 TEST_F(ModelExtensions, DracoMeshesAreDecoded) {
-  const float corners[2][3][3] = {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{1, 0, 0}, {1, 1, 0}, {0, 1, 0}}};
+  const float corners[2][3][3] = {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}},
+                                  {{1, 0, 0}, {1, 1, 0}, {0, 1, 0}}};
   draco::TriangleSoupMeshBuilder builder;
   builder.Start(2);
-  const int attribute = builder.AddAttribute(draco::GeometryAttribute::POSITION, 3, draco::DT_FLOAT32);
+  const int attribute =
+      builder.AddAttribute(draco::GeometryAttribute::POSITION, 3, draco::DT_FLOAT32);
   for (uint32_t i = 0; i < 2; ++i)
     builder.SetAttributeValuesForFace(attribute, draco::FaceIndex(i), corners[i][0], corners[i][1],
                                       corners[i][2]);
@@ -159,16 +166,16 @@ TEST_F(ModelExtensions, DracoMeshesAreDecoded) {
   const auto load = [&](const std::string& id) {
     write("packed.bin", bytes);
     const std::string size = std::to_string(bytes.size());
-    return load_model(
-        only(write("packed.gltf",
-                   R"({ "asset": { "version": "2.0" }, "extensionsRequired": ["KHR_draco_mesh_compression"],
+    return load_model(only(write(
+        "packed.gltf",
+        R"({ "asset": { "version": "2.0" }, "extensionsRequired": ["KHR_draco_mesh_compression"],
           "buffers": [{ "uri": "packed.bin", "byteLength": )" +
-                       size + R"( }], "bufferViews": [{ "buffer": 0, "byteLength": )" + size +
-                       R"( }], "accessors": [{ "componentType": 5126, "count": 4, "type": "VEC3" },
+            size + R"( }], "bufferViews": [{ "buffer": 0, "byteLength": )" + size +
+            R"( }], "accessors": [{ "componentType": 5126, "count": 4, "type": "VEC3" },
             { "componentType": 5123, "count": 6, "type": "SCALAR" }],
           "meshes": [{ "primitives": [{ "attributes": { "POSITION": 0 }, "indices": 1, "extensions":
             { "KHR_draco_mesh_compression": { "bufferView": 0, "attributes": { "POSITION": )" +
-                       id + R"( } } } }] }], "nodes": [{ "mesh": 0 }], "scenes": [{ "nodes": [0] }] })")));
+            id + R"( } } } }] }], "nodes": [{ "mesh": 0 }], "scenes": [{ "nodes": [0] }] })")));
   };
   const std::string id = std::to_string(mesh->attribute(attribute)->unique_id());
   const auto model = load(id);
@@ -188,7 +195,8 @@ TEST_F(ModelExtensions, DracoMeshesAreDecoded) {
   bytes.assign(bytes.size(), '\0');
   const auto wrong = load(id);
   ASSERT_FALSE(wrong);
-  EXPECT_THAT(wrong.error().text, testing::HasSubstr("KHR_draco_mesh_compression of mesh 0, primitive 0"));
+  EXPECT_THAT(wrong.error().text,
+              testing::HasSubstr("KHR_draco_mesh_compression of mesh 0, primitive 0"));
 }
 #endif
 

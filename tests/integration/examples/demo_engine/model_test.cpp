@@ -28,7 +28,8 @@ struct ModelFile : ::testing::Test {
     const float positions[] = {0, 0, 0, 1, 0, 0, 0, 2, 0};
     std::string buffer(reinterpret_cast<const char*>(positions), sizeof(positions));
     for (const char digit : indices)
-      if (digit >= '0' && digit <= '9') buffer += std::string(1, static_cast<char>(digit - '0')) + '\0';
+      if (digit >= '0' && digit <= '9')
+        buffer += std::string(1, static_cast<char>(digit - '0')) + '\0';
     write("triangle.bin", buffer);
     return write("triangle.gltf", R"({ "asset": { "version": "2.0", "copyright": "by nobody" },
       "buffers": [{ "uri": "triangle.bin", "byteLength": )" +
@@ -102,12 +103,18 @@ TEST_F(ModelFile, OtherVersionsAreRejectedByName) {
   const auto with_asset = [&](const std::string& asset) {
     return only(write("version.gltf", exchanged(whole, R"("version": "2.0")", asset)));
   };
-  EXPECT_THAT(rejected(with_asset(R"("version": "1.0")")).text, HasSubstr("asset.version is '1.0'"));
-  EXPECT_THAT(rejected(with_asset(R"("version": "3.0")")).text, HasSubstr("asset.version is '3.0'"));
-  EXPECT_THAT(rejected(with_asset(R"("version": "20.0")")).text, HasSubstr("asset.version is '20.0'"));
-  EXPECT_THAT(rejected(with_asset(R"("version": 2.0)")).text, HasSubstr("asset.version is no text"));
-  EXPECT_THAT(rejected(with_asset(R"("generator": "a")")).text, HasSubstr("asset.version is missing"));
-  EXPECT_THAT(rejected(with_asset(R"("version": "3.1", "minVersion": "3.0")")).text, HasSubstr("3.1"));
+  EXPECT_THAT(rejected(with_asset(R"("version": "1.0")")).text,
+              HasSubstr("asset.version is '1.0'"));
+  EXPECT_THAT(rejected(with_asset(R"("version": "3.0")")).text,
+              HasSubstr("asset.version is '3.0'"));
+  EXPECT_THAT(rejected(with_asset(R"("version": "20.0")")).text,
+              HasSubstr("asset.version is '20.0'"));
+  EXPECT_THAT(rejected(with_asset(R"("version": 2.0)")).text,
+              HasSubstr("asset.version is no text"));
+  EXPECT_THAT(rejected(with_asset(R"("generator": "a")")).text,
+              HasSubstr("asset.version is missing"));
+  EXPECT_THAT(rejected(with_asset(R"("version": "3.1", "minVersion": "3.0")")).text,
+              HasSubstr("3.1"));
   EXPECT_THAT(rejected(with_asset(R"("version": "2.1", "minVersion": "3.0")")).text,
               HasSubstr("asset.minVersion is '3.0'"));
   EXPECT_TRUE(load_model(with_asset(R"("version": "2.1", "minVersion": "2.0")")));
@@ -116,10 +123,12 @@ TEST_F(ModelFile, OtherVersionsAreRejectedByName) {
 TEST_F(ModelFile, RequiredExtensionsAreRejectedByName) {
   const std::string whole = text_of(triangle());
   const auto with = [&](const std::string& more) {
-    return only(write("required.gltf", exchanged(whole, R"("scene": 0)", R"("scene": 0, )" + more)));
+    return only(
+        write("required.gltf", exchanged(whole, R"("scene": 0)", R"("scene": 0, )" + more)));
   };
-  EXPECT_THAT(rejected(with(R"("extensionsRequired": ["KHR_texture_basisu", "ACME_spheres"])")).text,
-              HasAll("'KHR_texture_basisu'", "'ACME_spheres'"));
+  EXPECT_THAT(
+      rejected(with(R"("extensionsRequired": ["KHR_texture_basisu", "ACME_spheres"])")).text,
+      HasAll("'KHR_texture_basisu'", "'ACME_spheres'"));
   EXPECT_TRUE(load_model(with(R"("extensionsUsed": ["ACME_spheres"])")));
 }
 
@@ -134,20 +143,21 @@ struct Pieces {
 
 Mesh mesh_of(const ModelFile& test, const Pieces& pieces) {
   const std::string size = std::to_string(pieces.floats.size() * sizeof(float));
-  test.write("pieces.bin",
-             {reinterpret_cast<const char*>(pieces.floats.data()), pieces.floats.size() * sizeof(float)});
+  test.write("pieces.bin", {reinterpret_cast<const char*>(pieces.floats.data()),
+                            pieces.floats.size() * sizeof(float)});
   std::string accessors;
   for (size_t at = 0; at + 3 * pieces.vertices <= pieces.floats.size(); at += 3 * pieces.vertices)
-    accessors +=
-        (at == 0 ? "" : ",") +
-        (R"({ "bufferView": 0, "componentType": 5126, "type": "VEC3", "byteOffset": )" +
-         std::to_string(at * sizeof(float)) + R"(, "count": )" + std::to_string(pieces.vertices) + "}");
+    accessors += (at == 0 ? "" : ",") +
+                 (R"({ "bufferView": 0, "componentType": 5126, "type": "VEC3", "byteOffset": )" +
+                  std::to_string(at * sizeof(float)) + R"(, "count": )" +
+                  std::to_string(pieces.vertices) + "}");
   const auto model = load_model(ModelFile::only(test.write(
-      "pieces.gltf", R"({ "asset": { "version": "2.0" }, "buffers": [{ "uri": "pieces.bin", "byteLength": )" +
-                         size + R"( }], "bufferViews": [{ "buffer": 0, "byteLength": )" + size +
-                         R"( }], "accessors": [)" + accessors + R"(], "meshes": [{ "primitives": )" +
-                         pieces.primitives + R"( }], "nodes": )" + pieces.nodes +
-                         R"(, "scenes": [{ "nodes": [0] }] })")));
+      "pieces.gltf",
+      R"({ "asset": { "version": "2.0" }, "buffers": [{ "uri": "pieces.bin", "byteLength": )" +
+          size + R"( }], "bufferViews": [{ "buffer": 0, "byteLength": )" + size +
+          R"( }], "accessors": [)" + accessors + R"(], "meshes": [{ "primitives": )" +
+          pieces.primitives + R"( }], "nodes": )" + pieces.nodes +
+          R"(, "scenes": [{ "nodes": [0] }] })")));
   if (model) return model->mesh;
   ADD_FAILURE() << model.error().text;
   return {};
@@ -172,7 +182,8 @@ float facing(const Mesh& mesh) {
   for (size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
     const Vertex &a = mesh.vertices[mesh.indices[i]], &b = mesh.vertices[mesh.indices[i + 1]],
                  &c = mesh.vertices[mesh.indices[i + 2]];
-    const glm::vec3 face = glm::normalize(glm::cross(b.position - a.position, c.position - a.position));
+    const glm::vec3 face =
+        glm::normalize(glm::cross(b.position - a.position, c.position - a.position));
     for (const Vertex* vertex : {&a, &b, &c})
       worst = std::min(worst, glm::dot(face, vertex->normal));
   }
@@ -191,7 +202,8 @@ TEST_F(ModelFile, MirroredNodesKeepTheirFacing) {
       EXPECT_NEAR(mesh.vertices[0].normal.z, 1.0f, 1e-6f) << attributes << scale;
     }
   // A mirror in the parent and a mirror in the child cancel.
-  pieces.nodes = R"([{ "children": [1], "scale": [-1, 1, 1] }, { "mesh": 0, "scale": [-1, 1, 1] }])";
+  pieces.nodes =
+      R"([{ "children": [1], "scale": [-1, 1, 1] }, { "mesh": 0, "scale": [-1, 1, 1] }])";
   EXPECT_GT(facing(mesh_of(*this, pieces)), 0.99f);
 }
 
@@ -201,19 +213,20 @@ TEST_F(ModelFile, MirroredTangentsKeepTheirBitangent) {
   write("triangle.bin", {reinterpret_cast<const char*>(rows), sizeof(rows)});
   for (const bool mirrored : {false, true}) {
     const std::string scale = mirrored ? "-1" : "1";
-    const auto model = load_model(
-        only(write("tangents.gltf", R"({ "asset": { "version": "2.0" }, "buffers": [{ "uri": "triangle.bin",
+    const auto model = load_model(only(write(
+        "tangents.gltf", R"({ "asset": { "version": "2.0" }, "buffers": [{ "uri": "triangle.bin",
         "byteLength": 120 }], "bufferViews": [{ "buffer": 0, "byteLength": 120 }], "accessors": [
         { "bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3" },
         { "bufferView": 0, "byteOffset": 36, "componentType": 5126, "count": 3, "type": "VEC3" },
         { "bufferView": 0, "byteOffset": 72, "componentType": 5126, "count": 3, "type": "VEC4" }],
         "meshes": [{ "primitives": [{ "attributes": { "POSITION": 0, "NORMAL": 1, "TANGENT": 2 } }] }],
         "nodes": [{ "mesh": 0, "scale": [)" +
-                                        scale + R"(, 1, 1] }], "scenes": [{ "nodes": [0] }] })")));
+                             scale + R"(, 1, 1] }], "scenes": [{ "nodes": [0] }] })")));
     ASSERT_TRUE(model) << model.error().text;
     const Vertex& vertex = model->mesh.vertices[0];
     EXPECT_EQ(vertex.tangent.x, mirrored ? -1.0f : 1.0f);
-    const glm::vec3 bitangent = vertex.tangent.w * glm::cross(vertex.normal, glm::vec3(vertex.tangent));
+    const glm::vec3 bitangent =
+        vertex.tangent.w * glm::cross(vertex.normal, glm::vec3(vertex.tangent));
     EXPECT_NEAR(bitangent.y, 1.0f, 1e-6f) << mirrored;
   }
 }
@@ -233,15 +246,16 @@ TEST_F(ModelFile, PrimitiveWithoutNormals_ChangesNoOther) {
 }
 
 TEST_F(ModelFile, SkinnedMeshesAreRejectedByName) {
-  const std::string path =
-      triangle("[0, 1, 2]", "", R"([{ "mesh": 0, "skin": 0, "name": "torso" }, { "name": "joint" }])");
+  const std::string path = triangle(
+      "[0, 1, 2]", "", R"([{ "mesh": 0, "skin": 0, "name": "torso" }, { "name": "joint" }])");
   const std::string whole =
       exchanged(text_of(path), R"("scene": 0)", R"("scene": 0, "skins": [{ "joints": [1] }])");
   EXPECT_THAT(rejected(only(write("skin.gltf", whole))).text, HasAll("node 0 'torso'", "skin"));
 }
 
 TEST_F(ModelFile, IndicesBeyondTheVerticesAreRejected) {
-  EXPECT_THAT(rejected(only(triangle("[0, 1, 3]"))).text, HasSubstr("holds index 3; there are 3 vertices"));
+  EXPECT_THAT(rejected(only(triangle("[0, 1, 3]"))).text,
+              HasSubstr("holds index 3; there are 3 vertices"));
 }
 
 TEST_F(ModelFile, AccessorsBeyondTheirBufferAreRejected) {
@@ -252,8 +266,10 @@ TEST_F(ModelFile, AccessorsBeyondTheirBufferAreRejected) {
 }
 
 TEST_F(ModelFile, NodeCyclesAreRejected) {
-  EXPECT_THAT(rejected(only(triangle("[0, 1, 2]", "", R"([{ "children": [1] }, { "children": [0] }])"))).text,
-              HasSubstr("circle"));
+  EXPECT_THAT(
+      rejected(only(triangle("[0, 1, 2]", "", R"([{ "children": [1] }, { "children": [0] }])")))
+          .text,
+      HasSubstr("circle"));
 }
 
 TEST_F(ModelFile, ASceneWithoutTrianglesIsRejected) {
@@ -296,8 +312,9 @@ TEST_F(ModelFile, FilesAreOnlyReadInTheModelsFolder) {
     EXPECT_THAT(rejected(only(model)).text, HasSubstr("outside the readable folders")) << outside;
     EXPECT_THAT(rejected(only(model)).text, HasSubstr("--root")) << outside;
   }
-  const auto declared = load_model(only(write("models/a.gltf", with_buffer(whole, "../triangle.bin"))),
-                                   {folder.path().string()});
+  const auto declared =
+      load_model(only(write("models/a.gltf", with_buffer(whole, "../triangle.bin"))),
+                 {folder.path().string()});
   EXPECT_TRUE(declared) << declared.error().text;
   const auto inside = load_model(only(write("models/b.gltf", with_buffer(whole, "here.bin"))));
   EXPECT_TRUE(inside) << inside.error().text;
@@ -306,8 +323,9 @@ TEST_F(ModelFile, FilesAreOnlyReadInTheModelsFolder) {
   std::filesystem::current_path(folder.path());
   EXPECT_THAT(rejected(only(write("models/c.gltf", whole))).text, HasSubstr("triangle.bin"));
   std::filesystem::current_path(before);
-  EXPECT_THAT(rejected(only(write("models/d.gltf", with_buffer(whole, std::string(5000, 'a'))))).text,
-              HasSubstr("too long"));
+  EXPECT_THAT(
+      rejected(only(write("models/d.gltf", with_buffer(whole, std::string(5000, 'a'))))).text,
+      HasSubstr("too long"));
 }
 
 TEST_F(ModelFile, FileNamesAreReadLiterally) {
@@ -334,8 +352,8 @@ std::string binary(std::string json, const std::string& chunk, uint32_t more = 0
     const auto narrow = static_cast<uint32_t>(value);
     return std::string(reinterpret_cast<const char*>(&narrow), 4);
   };
-  return "glTF" + word(2) + word(28 + json.size() + chunk.size()) + word(json.size()) + "JSON" + json +
-         word(chunk.size() + more) + std::string("BIN\0", 4) + chunk;
+  return "glTF" + word(2) + word(28 + json.size() + chunk.size()) + word(json.size()) + "JSON" +
+         json + word(chunk.size() + more) + std::string("BIN\0", 4) + chunk;
 }
 
 TEST_F(ModelFile, PicturesBeyondTheirBufferAreNotRead) {
@@ -349,8 +367,9 @@ TEST_F(ModelFile, PicturesBeyondTheirBufferAreNotRead) {
       "nodes": [{ "mesh": 0 }], "scenes": [{ "nodes": [0] }], "scene": 0 })";
   const float positions[12] = {0, 0, 0, 1, 0, 0, 0, 2, 0};
   const std::string chunk(reinterpret_cast<const char*>(positions), sizeof(positions));
-  for (const char* view : {R"(36, "byteLength": 100000)", R"(100000, "byteLength": 12)",
-                           R"(36, "byteLength": 18446744073709551615)", R"(36, "byteLength": 4294967295)"}) {
+  for (const char* view :
+       {R"(36, "byteLength": 100000)", R"(100000, "byteLength": 12)",
+        R"(36, "byteLength": 18446744073709551615)", R"(36, "byteLength": 4294967295)"}) {
     const auto model = load_model(only(write("view.glb", binary(begin + view + end, chunk))));
     if (!model) continue; // Refusal is accepted, too.
     ASSERT_EQ(model->warnings.size(), 1u) << view;
@@ -363,8 +382,8 @@ TEST_F(ModelFile, PicturesThatAreMissingAreNamed) {
       exchanged(text_of(triangle()), R"("indices": 1)", R"("indices": 1, "material": 0)");
   const auto warnings = [&](const std::string& texture, const std::string& uri) {
     const auto model = load_model(
-        only(write("picture.gltf",
-                   exchanged(whole, R"("scene": 0)", R"("scene": 0, "images": [{ "uri": ")" + uri + R"(" }],
+        only(write("picture.gltf", exchanged(whole, R"("scene": 0)",
+                                             R"("scene": 0, "images": [{ "uri": ")" + uri + R"(" }],
           "textures": [{ )" + texture + R"( }], "materials": [{ "pbrMetallicRoughness":
           { "baseColorTexture": { "index": 0 } } }])"))));
     EXPECT_TRUE(model) << model.error().text;
@@ -380,16 +399,18 @@ TEST_F(ModelFile, PicturesThatAreMissingAreNamed) {
 }
 
 TEST_F(ModelFile, ChunksBeyondTheEndOfTheFileAreRejected) {
-  const std::string json = R"({ "asset": { "version": "2.0" }, "buffers": [{ "byteLength": 16 }] })";
+  const std::string json =
+      R"({ "asset": { "version": "2.0" }, "buffers": [{ "byteLength": 16 }] })";
   EXPECT_THAT(rejected(only(write("chunk.glb", binary(json, "12345678", 8)))).text,
               HasSubstr("second chunk reaches beyond its end"));
 }
 
 TEST_F(ModelFile, DeepNestingIsRejected) {
   const std::string deep = std::string(1000000, '[') + std::string(1000000, ']');
-  EXPECT_THAT(
-      rejected(only(write("deep.gltf", R"({ "asset": { "version": "2.0" }, "extras": )" + deep + "}"))).text,
-      HasSubstr("nested deeper than 64"));
+  EXPECT_THAT(rejected(only(write("deep.gltf",
+                                  R"({ "asset": { "version": "2.0" }, "extras": )" + deep + "}")))
+                  .text,
+              HasSubstr("nested deeper than 64"));
 }
 
 TEST_F(ModelFile, DamagedFilesAreRejectedOrRead) {

@@ -15,9 +15,13 @@ namespace demo {
 struct Motion {
   uint32_t period = 6;
   std::function<glm::dvec3(uint32_t)> camera = [](uint32_t) { return glm::dvec3(0, 0, 0.3); };
-  std::function<glm::dvec3(uint32_t)> light = [](uint32_t) { return glm::dvec3(0.02, 0.03, -0.15); };
+  std::function<glm::dvec3(uint32_t)> light = [](uint32_t) {
+    return glm::dvec3(0.02, 0.03, -0.15);
+  };
   std::function<double(uint32_t)> intensity = [](uint32_t) { return 0.03; };
-  std::function<glm::dvec3(uint32_t)> lobe = [](uint32_t) { return glm::dvec3(-0.022, -0.012, 0.004); };
+  std::function<glm::dvec3(uint32_t)> lobe = [](uint32_t) {
+    return glm::dvec3(-0.022, -0.012, 0.004);
+  };
   // Far above the sheet.
   std::function<glm::dvec3(uint32_t)> shield = [](uint32_t) { return glm::dvec3(0, 5, 0); };
 };

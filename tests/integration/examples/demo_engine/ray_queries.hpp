@@ -19,7 +19,8 @@ struct WithRayQueries : ::testing::Test {
   void SetUp() override {
     if (const char* own = std::getenv("VK_DRIVER_FILES")) before = own;
     const std::string driver = dermis::testing::driver_with_ray_queries();
-    if (driver.empty()) GTEST_SKIP() << "no driver in build/drivers: run tests/scripts/fetch_driver.sh";
+    if (driver.empty())
+      GTEST_SKIP() << "no driver in build/drivers: run tests/scripts/fetch_driver.sh";
     setenv("VK_DRIVER_FILES", driver.c_str(), 1);
   }
   void TearDown() override {

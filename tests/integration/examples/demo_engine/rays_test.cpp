@@ -23,15 +23,18 @@ namespace {
 namespace restir = dermis::restir;
 
 RenderOptions back_lit(const std::string& technique, uint32_t samples, uint32_t frames) {
-  return by_rays(
-      source + "/configs/scenes/back_lit.json", 64, frames,
-      {{"technique", "\"" + technique + "\""}, {"samples", std::to_string(samples)}, {"reuse", "\"none\""}});
+  return by_rays(source + "/configs/scenes/back_lit.json", 64, frames,
+                 {{"technique", "\"" + technique + "\""},
+                  {"samples", std::to_string(samples)},
+                  {"reuse", "\"none\""}});
 }
 
 bool withheld(const Rendering& rendering) {
-  return std::any_of(rendering.warnings.begin(), rendering.warnings.end(), [](const std::string& warning) {
-    return warning.find("does not offer 'restir': the device lacks ray_query") != std::string::npos;
-  });
+  return std::any_of(rendering.warnings.begin(), rendering.warnings.end(),
+                     [](const std::string& warning) {
+                       return warning.find("does not offer 'restir': the device lacks ray_query") !=
+                              std::string::npos;
+                     });
 }
 
 TEST(WithoutRayQueries, FallsBackToThePyramidAndReportsIt) {
@@ -57,7 +60,8 @@ restir::testing::TriangleScene triangles_of_scene(const restir::Vector3& d_mm) {
     world = glm::scale(world, 1000.0 * scale);
     std::vector<restir::Vector3> corners;
     for (const uint32_t index : ball.indices)
-      corners.push_back(vector_of(glm::dvec3(world * glm::dvec4(ball.vertices[index].position, 1.0))));
+      corners.push_back(
+          vector_of(glm::dvec3(world * glm::dvec4(ball.vertices[index].position, 1.0))));
     restir::testing::add_instance(scene, 1, corners);
   };
   add({0.012, 0, 0}, 12, {0.024, 0.034, 0.0014});
@@ -75,7 +79,8 @@ restir::testing::TriangleScene triangles_of_scene(const restir::Vector3& d_mm) {
 }
 
 // Returns the graph's input pixels for the reference.
-std::vector<restir::testing::Pixel> pixels_of(const FrameOutputs& frame, const restir::Vector3& d_mm) {
+std::vector<restir::testing::Pixel> pixels_of(const FrameOutputs& frame,
+                                              const restir::Vector3& d_mm) {
   std::vector<restir::testing::Pixel> pixels(frame.inputs.depth.texels.size());
   const auto& clip = frame.camera.clip_from_view;
   const auto& view = frame.camera.view_from_world;
@@ -92,7 +97,8 @@ std::vector<restir::testing::Pixel> pixels_of(const FrameOutputs& frame, const r
       if (frame.inputs.profile.texels[i] == 0 || !(depth > 0)) continue;
       const double across = (2.0 * (x + 0.5) / width - 1.0) * depth / double(clip[0]);
       const double up = (2.0 * (y + 0.5) / height - 1.0) * depth / double(clip[5]);
-      const glm::dvec3 from_eye = glm::dvec3(across, up, -depth) - glm::dvec3(view[3], view[7], view[11]);
+      const glm::dvec3 from_eye =
+          glm::dvec3(across, up, -depth) - glm::dvec3(view[3], view[7], view[11]);
       const float* n = frame.inputs.normal.texels.data() + 3 * i;
       restir::testing::Pixel& pixel = pixels[i];
       pixel.domain = {vector_of(1000.0 * to_world(from_eye)),
@@ -107,9 +113,11 @@ restir::Vector3 skin_d() {
   text << file.rdbuf();
   dermis::Diagnostics diagnostics;
   const auto document = dermis::parse_document("skin.json", text.str(), diagnostics);
-  const auto profile = document ? dermis::subsurface::read_profile(*document, diagnostics) : std::nullopt;
+  const auto profile =
+      document ? dermis::subsurface::read_profile(*document, diagnostics) : std::nullopt;
   EXPECT_TRUE(profile);
-  return profile ? restir::Vector3{profile->d_mm[0], profile->d_mm[1], profile->d_mm[2]} : restir::Vector3{};
+  return profile ? restir::Vector3{profile->d_mm[0], profile->d_mm[1], profile->d_mm[2]}
+                 : restir::Vector3{};
 }
 
 TEST_F(WithRayQueries, TransmissionMatchesTheReference) {
@@ -131,7 +139,8 @@ TEST_F(WithRayQueries, TransmissionMatchesTheReference) {
   for (uint32_t i = 0; i < pixels.size(); ++i)
     if (pixels[i].domain.medium != 0) regions.pixels[i % width < width / 4 ? 1 : 0].push_back(i);
   constexpr uint32_t batches = 16, points = 20000;
-  const auto reference = restir::testing::area_reference(scene, pixels, regions, batches, points, 7);
+  const auto reference =
+      restir::testing::area_reference(scene, pixels, regions, batches, points, 7);
 
   const Rendering pyramid = rendered(back_lit("sap", 1, 1));
   ASSERT_EQ(pyramid.frames.size(), 1u);
@@ -157,7 +166,8 @@ TEST_F(WithRayQueries, TransmissionMatchesTheReference) {
     const double noise = 3 * std::hypot(measured.sigma, expected.sigma);
     EXPECT_NEAR(measured.mean, expected.mean, noise + 0.02 * expected.mean)
         << "region " << r << ", sap " << flat;
-    EXPECT_TRUE(r != 0 || flat < 0.5 * measured.mean) << "screen space has no light from behind the sheet";
+    EXPECT_TRUE(r != 0 || flat < 0.5 * measured.mean)
+        << "screen space has no light from behind the sheet";
   }
 }
 

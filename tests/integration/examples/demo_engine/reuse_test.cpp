@@ -78,8 +78,9 @@ double mean_over(const FloatImage& light, const std::vector<size_t>& pixels) {
 }
 
 // Returns the light of each region in the checked frames, by period.
-std::vector<std::vector<double>> lights_of(const std::vector<FrameOutputs>& frames, const Motion& motion,
-                                           uint32_t judged_from, uint32_t judged_to) {
+std::vector<std::vector<double>> lights_of(const std::vector<FrameOutputs>& frames,
+                                           const Motion& motion, uint32_t judged_from,
+                                           uint32_t judged_to) {
   std::vector<std::vector<double>> values(5);
   for (size_t first = 0; first < frames.size(); first += motion.period) {
     std::vector<double> sums(5);
@@ -121,7 +122,9 @@ double square_of(const FrameOutputs& frame, const std::vector<double>& reference
 
 Motion walking_camera() {
   Motion motion;
-  motion.camera = [](uint32_t phase) { return glm::dvec3(0.002 * phase - 0.006, 0.0003 * phase, 0.3); };
+  motion.camera = [](uint32_t phase) {
+    return glm::dvec3(0.002 * phase - 0.006, 0.0003 * phase, 0.3);
+  };
   return motion;
 }
 
@@ -130,12 +133,13 @@ const Way no_reuse = {"none", "reconnection"};
 
 // Expects deviations below 3 sigma over all tests, and a sigma small enough to detect a bias.
 void expect_no_bias(const std::vector<std::vector<double>>& found,
-                    const std::vector<std::vector<double>>& reference, int tests, const std::string& name) {
+                    const std::vector<std::vector<double>>& reference, int tests,
+                    const std::string& name) {
   const Judged judged = judge(found, reference);
   std::printf("%-32s %.2f sigma, %.2f %% off, 1 sigma is %.2f %%\n", name.c_str(), judged.worst,
               100 * judged.largest, 100 * judged.spread);
-  EXPECT_LT(judged.worst,
-            dermis::restir::testing::three_sigma_limit(static_cast<int>(reference_periods) - 1, tests))
+  EXPECT_LT(judged.worst, dermis::restir::testing::three_sigma_limit(
+                              static_cast<int>(reference_periods) - 1, tests))
       << name;
   EXPECT_LT(judged.spread, 0.06) << name;
 }
@@ -148,25 +152,28 @@ TEST_F(ReuseWithRayQueries, MovingCamera_NoBiasWithAnyShift) {
   std::vector<double> last(size_t{side} * side); // The reference of the last frame of a period.
   for (size_t first = 0; first < reference_frames.size(); first += motion.period)
     for (size_t i = 0; i < last.size(); ++i)
-      last[i] += luminance(reference_frames[first + motion.period - 1].scattered, i) / reference_periods;
+      last[i] +=
+          luminance(reference_frames[first + motion.period - 1].scattered, i) / reference_periods;
 
   std::vector<Way> ways = {no_reuse};
   for (const char* shift : {"reconnection", "delayed", "hybrid", "sequential"})
     for (const char* reuse : {"temporal", "spatial", "spatiotemporal"})
-      if (quality(0, 1) != 0 || reuse == std::string("spatiotemporal") || shift == std::string("delayed"))
+      if (quality(0, 1) != 0 || reuse == std::string("spatiotemporal") ||
+          shift == std::string("delayed"))
         ways.push_back({reuse, shift});
   const uint32_t periods = quality(10, 40);
   double error_without_reuse = 0;
   for (const Way& way : ways) {
     const auto frames = frames_of(motion, way, periods);
     ASSERT_EQ(frames.size(), periods * motion.period);
-    expect_no_bias(lights_of(frames, motion, 0, motion.period), reference, static_cast<int>(5 * ways.size()),
-                   way.shift + " " + way.reuse);
+    expect_no_bias(lights_of(frames, motion, 0, motion.period), reference,
+                   static_cast<int>(5 * ways.size()), way.shift + " " + way.reuse);
     double error = 0;
     for (size_t first = 0; first < frames.size(); first += motion.period)
       error += square_of(frames[first + motion.period - 1], last) / periods;
     if (way.reuse == "none") error_without_reuse = error;
-    std::printf("  mse of the last frame %.3g, %.2f of that alone\n", error, error / error_without_reuse);
+    std::printf("  mse of the last frame %.3g, %.2f of that alone\n", error,
+                error / error_without_reuse);
     EXPECT_TRUE(way.reuse != "spatiotemporal" || error < error_without_reuse) << way.shift;
   }
 }
@@ -217,12 +224,12 @@ TEST_F(ReuseWithRayQueries, MovedLight_IsFollowedAtOnce) {
 TEST_F(ReuseWithRayQueries, MovingObject_NoBias) {
   Motion motion;
   motion.lobe = [](uint32_t phase) { return glm::dvec3(-0.022 + 0.003 * phase, -0.012, 0.012); };
-  const auto reference =
-      lights_of(frames_of(motion, no_reuse, reference_periods, reference_samples), motion, 0, motion.period);
+  const auto reference = lights_of(
+      frames_of(motion, no_reuse, reference_periods, reference_samples), motion, 0, motion.period);
   for (const std::string& shift : shifts())
-    expect_no_bias(
-        lights_of(frames_of(motion, {"spatiotemporal", shift}, quality(10, 40)), motion, 0, motion.period),
-        reference, 20, "object moves, " + shift);
+    expect_no_bias(lights_of(frames_of(motion, {"spatiotemporal", shift}, quality(10, 40)), motion,
+                             0, motion.period),
+                   reference, 20, "object moves, " + shift);
 }
 
 // Only new paths see that the shield is gone. The history has no such paths, counts for at most
@@ -243,14 +250,15 @@ TEST_F(ReuseWithRayQueries, RemovedShadow_FadesAsTheCapAllows) {
     for (const FrameOutputs& frame : reference)
       lights.push_back(mean_over(frame.scattered, region));
     const double whole = mean_of(lights).mean;
-    EXPECT_LT(mean_over(frames[shaded - 1].scattered, region), 0.2 * whole) << "the region is shaded";
+    EXPECT_LT(mean_over(frames[shaded - 1].scattered, region), 0.2 * whole)
+        << "the region is shaded";
     double sum = 0;
     constexpr uint32_t last = 10; // Frames that are averaged to reduce the noise.
     for (uint32_t f = lit - last; f < lit; ++f)
       sum += mean_over(frames[shaded + f].scattered, region) / last;
     const double left = std::pow(confidence_cap / (confidence_cap + 1), lit - last);
-    std::printf("%s: %.3f of the light is back, the cap lets %.3f be missing\n", shift.c_str(), sum / whole,
-                left);
+    std::printf("%s: %.3f of the light is back, the cap lets %.3f be missing\n", shift.c_str(),
+                sum / whole, left);
     EXPECT_GT(sum / whole, 1 - left - 0.1) << shift;
     EXPECT_LT(sum / whole, 1.1) << shift;
   }

@@ -22,7 +22,8 @@ std::string scene_with(const std::string& camera, const std::string& more = "") 
   "objects": [ { "shape": "sphere", "profile": "skin" )" +
          more + " } ] }";
 }
-const std::string plain_camera = R"({ "position": [0, 0, 2], "target": [0, 0, 0], "vertical_fov": 30 })";
+const std::string plain_camera =
+    R"({ "position": [0, 0, 2], "target": [0, 0, 0], "vertical_fov": 30 })";
 
 void expect_rejected(const std::string& text, dermis::DiagnosticId id, uint32_t line,
                      const std::string& words) {
@@ -105,7 +106,8 @@ TEST_F(SceneFolders, SceneWithoutProject_ReadsInItsFolder) {
   EXPECT_FALSE(read("elsewhere", "../project/profiles/skin.json"));
   ASSERT_FALSE(diagnostics.list.empty());
   EXPECT_EQ(diagnostics.list[0].id, dermis::DiagnosticId::outside_root);
-  EXPECT_TRUE(read("elsewhere", "../project/profiles/skin.json", {(top / "project").string() + "/"}));
+  EXPECT_TRUE(
+      read("elsewhere", "../project/profiles/skin.json", {(top / "project").string() + "/"}));
 }
 
 TEST_F(SceneFolders, NonPortableNamesAreRejected) {
@@ -124,15 +126,18 @@ TEST(SceneFile, ErrorsAreReportedWithTheirPlace) {
   using dermis::DiagnosticId;
   expect_rejected("{", DiagnosticId::syntax, 1, "");
   expect_rejected(R"({ "name": "s" })", DiagnosticId::missing_key, 1, "dermis_scene");
-  expect_rejected(scene_with(plain_camera, R"(, "colour": [1, 1, 1])"), DiagnosticId::unknown_key, 4,
-                  "colour");
-  expect_rejected(scene_with(plain_camera, R"(, "pattern": "wood")"), DiagnosticId::invalid_value, 4, "wood");
+  expect_rejected(scene_with(plain_camera, R"(, "colour": [1, 1, 1])"), DiagnosticId::unknown_key,
+                  4, "colour");
+  expect_rejected(scene_with(plain_camera, R"(, "pattern": "wood")"), DiagnosticId::invalid_value,
+                  4, "wood");
   expect_rejected(scene_with(R"({ "position": [0, 0], "target": [0, 0, 0], "vertical_fov": 30 })"),
                   DiagnosticId::wrong_type, 3, "position");
-  expect_rejected(scene_with(R"({ "position": [0, 0, 1], "target": [0, 0, 0], "vertical_fov": 0 })"),
-                  DiagnosticId::out_of_range, 3, "vertical_fov");
   expect_rejected(
-      scene_with(R"({ "position": [0, 0, 1], "target": [0, 0, 0], "vertical_fov": 30, "near": 30 })"),
+      scene_with(R"({ "position": [0, 0, 1], "target": [0, 0, 0], "vertical_fov": 0 })"),
+      DiagnosticId::out_of_range, 3, "vertical_fov");
+  expect_rejected(
+      scene_with(
+          R"({ "position": [0, 0, 1], "target": [0, 0, 0], "vertical_fov": 30, "near": 30 })"),
       DiagnosticId::scene_range, 3, "near plane");
   expect_rejected(scene_with(plain_camera, R"(, "profile": "skim")").replace(0, 0, ""),
                   DiagnosticId::duplicate_key, 4, "profile");
@@ -148,25 +153,28 @@ TEST(SceneFile, KeyframesAscendAndASineStaysInRange) {
   using dermis::DiagnosticId;
   const auto lit = [](const std::string& intensity) {
     std::string text = scene_with(plain_camera);
-    text.insert(text.rfind('}'), R"(, "lights": [ { "type": "point", "position": [0, 1, 0], "intensity": )" +
-                                     intensity + " } ]");
+    text.insert(text.rfind('}'),
+                R"(, "lights": [ { "type": "point", "position": [0, 1, 0], "intensity": )" +
+                    intensity + " } ]");
     return text;
   };
   dermis::Diagnostics diagnostics;
-  const auto scene = parse_scene("scenes/s.json", lit(R"({ "keys": [[0, 1], [2, 3]] })"), diagnostics);
+  const auto scene =
+      parse_scene("scenes/s.json", lit(R"({ "keys": [[0, 1], [2, 3]] })"), diagnostics);
   ASSERT_TRUE(scene) << dermis::format_as_json(diagnostics);
   EXPECT_DOUBLE_EQ(value_at(scene->lights[0].intensity, 0.5), 1.5);
   EXPECT_DOUBLE_EQ(value_at(scene->lights[0].intensity, 9.0), 3.0);
   expect_rejected(lit(R"({ "keys": [[1, 1], [1, 3]] })"), DiagnosticId::scene_range, 4, "ascend");
   expect_rejected(lit(R"({ "keys": [[0, -1]] })"), DiagnosticId::out_of_range, 4, "-1");
-  expect_rejected(lit(R"({ "sine": { "mean": 1, "amplitude": 2, "hertz": 5 } })"), DiagnosticId::scene_range,
-                  4, "swings");
+  expect_rejected(lit(R"({ "sine": { "mean": 1, "amplitude": 2, "hertz": 5 } })"),
+                  DiagnosticId::scene_range, 4, "swings");
 }
 
 TEST(SceneFile, TooManyShadowMapsAreRejected) {
   std::string lights;
   for (int i = 0; i < 5; ++i)
-    lights += std::string(i ? "," : "") + R"({ "type": "point", "position": [0, 1, 0], "intensity": 1 })";
+    lights +=
+        std::string(i ? "," : "") + R"({ "type": "point", "position": [0, 1, 0], "intensity": 1 })";
   std::string text = scene_with(plain_camera);
   text.insert(text.rfind('}'), ", \"lights\": [" + lights + "]");
   expect_rejected(text, dermis::DiagnosticId::scene_range, 4, "30 shadow maps");
@@ -191,7 +199,8 @@ TEST(SceneState, DepthConvertsToMetresForEveryProjection) {
         // fp64; the division by w loses at most far / near of its 53 bits.
         EXPECT_NEAR(view_depth(state.now.clip_from_view, clip.z / clip.w), metres, 1e-9);
       }
-      const glm::dvec4 near = state.now.clip_from_view * glm::dvec4(0, 0, -scene.camera.near_plane, 1.0);
+      const glm::dvec4 near =
+          state.now.clip_from_view * glm::dvec4(0, 0, -scene.camera.near_plane, 1.0);
       EXPECT_NEAR(near.z / near.w, reversed ? 1.0 : 0.0, 1e-12);
     }
   }

@@ -18,7 +18,8 @@ struct KeptStage : ::testing::Test {
     std::ofstream(options.scene)
         << R"({ "dermis_scene": 1, "name": "small", "sky": [0.1, 0.1, 0.1], "cuts": [0.3],
       "frames_per_second": 10,
-      "profiles": [ { "name": "skin", "file": ")" DERMIS_SOURCE_DIR R"(/configs/profiles/skin.json" } ],
+      "profiles": [ { "name": "skin", "file": ")" DERMIS_SOURCE_DIR
+           R"(/configs/profiles/skin.json" } ],
       "camera": { "position": { "keys": [[0, -0.2, 0, 1], [1, 0.2, 0, 1]] }, "target": [0, 0, 0], "vertical_fov": 20 },
       "lights": [ { "type": "spot", "position": { "keys": [[0, -0.5, 0.5, 0.8], [1, 0.5, 0.5, 0.8]] },
                     "target": [0, 0, 0], "intensity": )"
@@ -41,20 +42,23 @@ void expect_same(const std::vector<FrameOutputs>& a, const std::vector<FrameOutp
   ASSERT_EQ(a.size(), b.size());
   for (size_t i = 0; i < a.size(); ++i) {
     const GraphInputs &x = a[i].inputs, &y = b[i].inputs;
-    for (const auto& part : {&GraphInputs::lighting, &GraphInputs::depth, &GraphInputs::normal,
-                             &GraphInputs::albedo, &GraphInputs::profile, &GraphInputs::velocity,
-                             &GraphInputs::specular, &GraphInputs::thickness, &GraphInputs::back_lighting})
+    for (const auto& part :
+         {&GraphInputs::lighting, &GraphInputs::depth, &GraphInputs::normal, &GraphInputs::albedo,
+          &GraphInputs::profile, &GraphInputs::velocity, &GraphInputs::specular,
+          &GraphInputs::thickness, &GraphInputs::back_lighting})
       EXPECT_EQ((x.*part).texels, (y.*part).texels) << "frame " << i;
     EXPECT_EQ(a[i].scattered.texels, b[i].scattered.texels) << "frame " << i;
     EXPECT_EQ(a[i].color.texels, b[i].color.texels) << "frame " << i;
-    EXPECT_EQ(a[i].camera.previous_clip_from_view, b[i].camera.previous_clip_from_view) << "frame " << i;
+    EXPECT_EQ(a[i].camera.previous_clip_from_view, b[i].camera.previous_clip_from_view)
+        << "frame " << i;
     EXPECT_EQ(a[i].cut, b[i].cut) << "frame " << i;
   }
 }
 
 size_t rendered_frames(const std::vector<FrameOutputs>& frames) {
-  return static_cast<size_t>(std::count_if(
-      frames.begin(), frames.end(), [](const FrameOutputs& frame) { return !frame.host_times.empty(); }));
+  return static_cast<size_t>(
+      std::count_if(frames.begin(), frames.end(),
+                    [](const FrameOutputs& frame) { return !frame.host_times.empty(); }));
 }
 
 TEST_F(KeptStage, ReproducesFramesBitForBit) {

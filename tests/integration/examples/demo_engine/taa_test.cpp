@@ -17,9 +17,10 @@ struct TemporalAntiAliasing : ::testing::Test {
   // jumps at 0.5 s.
   RenderOptions options(const std::string& camera, uint32_t width, uint32_t height) const {
     const std::string path = (folder / "scene.json").string();
-    std::ofstream(path) << R"({ "dermis_scene": 1, "name": "small", "sky": [0.1, 0.1, 0.1], "cuts": [0.5],
+    std::ofstream(path)
+        << R"({ "dermis_scene": 1, "name": "small", "sky": [0.1, 0.1, 0.1], "cuts": [0.5],
       "frames_per_second": 20, "camera": )"
-                        << camera << R"(,
+        << camera << R"(,
       "lights": [ { "type": "directional", "position": [1, 1, 1], "target": [0, 0, 0], "intensity": 0.8 } ],
       "objects": [ { "shape": "sphere", "scale": [0.1, 0.1, 0.1], "albedo": [0.9, 0.8, 0.7] },
                    { "shape": "plane", "position": [0, 0, -0.3], "rotation": [90, 0, 0], "albedo": [0.1, 0.1, 0.1] } ] })";
@@ -50,7 +51,8 @@ struct TemporalAntiAliasing : ::testing::Test {
   const dermis::test::TestFolder folder;
 };
 
-const std::string resting_camera = R"({ "position": [0, 0, 1], "target": [0, 0, 0], "vertical_fov": 20 })";
+const std::string resting_camera =
+    R"({ "position": [0, 0, 1], "target": [0, 0, 0], "vertical_fov": 20 })";
 const std::string going_camera =
     R"({ "position": { "keys": [[0, -0.1, 0, 1], [1, 0.1, 0, 1]] }, "target": [0, 0, 0], "vertical_fov": 20 })";
 

@@ -82,7 +82,8 @@ TEST_F(WithRayQueries, FrontLight_TheBudgetBuysNoRays) {
   const FrameChoice& choice = rendering.frames.back().choice.value();
   EXPECT_EQ(choice.configurations, 2u);
   EXPECT_EQ(choice.configuration, "technique=sap");
-  EXPECT_THAT(choice.why, AllOf(HasSubstr("least error within the budget"), Not(HasSubstr("transmitted"))));
+  EXPECT_THAT(choice.why,
+              AllOf(HasSubstr("least error within the budget"), Not(HasSubstr("transmitted"))));
   EXPECT_LT(choice.transmitted_rms, 0.05);
 }
 

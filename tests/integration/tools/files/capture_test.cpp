@@ -122,16 +122,17 @@ TEST_F(Captures, RoundTripIsBitForBit) {
   EXPECT_EQ(back->rays.offset_x, frame.rays.offset_x);
   EXPECT_EQ(back->profile, frame.profile);
   for (Image CapturedFrame::*image :
-       {&CapturedFrame::lighting, &CapturedFrame::depth, &CapturedFrame::albedo, &CapturedFrame::normal,
-        &CapturedFrame::velocity, &CapturedFrame::scatter_scale, &CapturedFrame::specular,
-        &CapturedFrame::thickness, &CapturedFrame::back_lighting})
+       {&CapturedFrame::lighting, &CapturedFrame::depth, &CapturedFrame::albedo,
+        &CapturedFrame::normal, &CapturedFrame::velocity, &CapturedFrame::scatter_scale,
+        &CapturedFrame::specular, &CapturedFrame::thickness, &CapturedFrame::back_lighting})
     EXPECT_EQ(((*back).*image).values, (frame.*image).values);
 }
 
 TEST_F(Captures, ThicknessAndBackLightingComeTogether) {
   const fs::path frame = write(sample());
   fs::remove(frame / "back_lighting.exr");
-  expect_rejected(frame, DiagnosticId::capture_picture, "", "'thickness.exr' and 'back_lighting.exr'");
+  expect_rejected(frame, DiagnosticId::capture_picture, "",
+                  "'thickness.exr' and 'back_lighting.exr'");
   EXPECT_EQ(diagnostics.count(Severity::error), 1u);
 }
 
@@ -307,7 +308,8 @@ TEST_F(Captures, ProfileIdsAreWholeNumbers) {
 
 TEST_F(Captures, ProfilesCanBeFiles) {
   const fs::path folder = write(sample());
-  const std::string inline_profile = "\"dmfp_mm\": [3.67, 1.37, 0.68], \"albedo\": [0.44, 0.22, 0.13]";
+  const std::string inline_profile =
+      "\"dmfp_mm\": [3.67, 1.37, 0.68], \"albedo\": [0.44, 0.22, 0.13]";
   change(folder, inline_profile, "\"file\": \"skin\"");
   auto frame = read_frame(folder, shipped, diagnostics);
   ASSERT_TRUE(frame) << messages();
@@ -323,16 +325,18 @@ TEST_F(Captures, ProfilesCanBeFiles) {
 
 TEST_F(Captures, NothingOutsideTheirFolderIsRead) {
   const fs::path folder = write(sample());
-  const std::string inline_profile = "\"dmfp_mm\": [3.67, 1.37, 0.68], \"albedo\": [0.44, 0.22, 0.13]";
+  const std::string inline_profile =
+      "\"dmfp_mm\": [3.67, 1.37, 0.68], \"albedo\": [0.44, 0.22, 0.13]";
   fs::copy_file(shipped / "wax.json", root / "wax.json");
   std::string before = inline_profile;
-  for (const std::string& outside :
-       {std::string("../../wax.json"), (root / "wax.json").string(), std::string("link/wax.json")}) {
+  for (const std::string& outside : {std::string("../../wax.json"), (root / "wax.json").string(),
+                                     std::string("link/wax.json")}) {
     diagnostics = {};
     if (outside.starts_with("link")) fs::create_directory_symlink(root, folder / "link");
     change(folder, before, "\"file\": \"" + outside + "\"");
     before = "\"file\": \"" + outside + "\"";
-    expect_rejected(folder, DiagnosticId::outside_root, "/profiles/0/file", "outside the readable folders");
+    expect_rejected(folder, DiagnosticId::outside_root, "/profiles/0/file",
+                    "outside the readable folders");
     diagnostics = {};
     EXPECT_TRUE(read_frame(folder, shipped, diagnostics, std::vector{root.string()})) << messages();
   }
@@ -344,7 +348,8 @@ TEST_F(Captures, LinksOutOfTheFolderAreRejected) {
   fs::create_symlink(other / "lighting.exr", folder / "lighting.exr");
   expect_rejected(folder, DiagnosticId::outside_root, "", "lighting.exr");
   diagnostics = {};
-  EXPECT_TRUE(read_frame(folder, shipped, diagnostics, std::vector{(root / "other").string()})) << messages();
+  EXPECT_TRUE(read_frame(folder, shipped, diagnostics, std::vector{(root / "other").string()}))
+      << messages();
   fs::rename(folder / "albedo.exr", folder / "here.exr");
   fs::create_symlink("here.exr", folder / "albedo.exr"); // The link's target is inside.
   fs::remove(folder / "lighting.exr");
@@ -357,7 +362,9 @@ TEST_F(Captures, LinksOutOfTheFolderAreRejected) {
   EXPECT_TRUE(find_frames(root / "capture", diagnostics).empty());
   ASSERT_EQ(diagnostics.list.size(), 1u);
   EXPECT_EQ(diagnostics.list[0].id, DiagnosticId::outside_root);
-  EXPECT_EQ(find_frames(root / "capture", diagnostics, std::vector{(root / "other").string()}).size(), 2u);
+  EXPECT_EQ(
+      find_frames(root / "capture", diagnostics, std::vector{(root / "other").string()}).size(),
+      2u);
 }
 
 // Returns the frame in a left-handed view space: z of every view position and normal has the other
@@ -465,11 +472,12 @@ const WrongFrame wrong_frames[] = {
      DiagnosticId::capture_projection, "/clip_from_view", "axis-aligned orthographic"},
     {"PixelPitchAndMatrix", R"("perspective")", R"("orthographic", "pixel_pitch_m": 0.001)",
      DiagnosticId::capture_projection, "/pixel_pitch_m", "give one"},
-    {"RectangleOutside", "[1, 0, 5, 4]", "[2, 0, 5, 4]", DiagnosticId::capture_rectangle, "/render_rectangle",
-     "inside 6 x 4"},
-    {"UnknownKey", R"("exposure")", R"("exposur")", DiagnosticId::unknown_key, "/exposur", "exposure"},
-    {"NewerVersion", R"("dermis_capture": 1)", R"("dermis_capture": 2)", DiagnosticId::unsupported_version,
-     "/dermis_capture", "2"},
+    {"RectangleOutside", "[1, 0, 5, 4]", "[2, 0, 5, 4]", DiagnosticId::capture_rectangle,
+     "/render_rectangle", "inside 6 x 4"},
+    {"UnknownKey", R"("exposure")", R"("exposur")", DiagnosticId::unknown_key, "/exposur",
+     "exposure"},
+    {"NewerVersion", R"("dermis_capture": 1)", R"("dermis_capture": 2)",
+     DiagnosticId::unsupported_version, "/dermis_capture", "2"},
     {"NoWidth", R"("width": 6)", R"("width": 0)", DiagnosticId::out_of_range, "/width", "width"},
 };
 INSTANTIATE_TEST_SUITE_P(Captures, WrongFrames, ::testing::ValuesIn(wrong_frames),

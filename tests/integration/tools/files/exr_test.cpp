@@ -39,7 +39,8 @@ struct Exr : ::testing::Test {
         values.push_back(value_at(x, y));
     return values;
   }
-  static Imf::Header header_of(const Box2i& display, const Box2i& data, Imf::Compression compression) {
+  static Imf::Header header_of(const Box2i& display, const Box2i& data,
+                               Imf::Compression compression) {
     Imf::Header header(display, data);
     header.compression() = compression;
     header.channels().insert("Y", Imf::Channel(Imf::FLOAT));
@@ -56,7 +57,8 @@ struct Exr : ::testing::Test {
       for (int level_y = 0; level_y < file.numYLevels(); ++level_y)
         for (int level_x = 0; level_x < file.numXLevels(); ++level_x)
           if (file.isValidLevel(level_x, level_y))
-            file.writeTiles(0, file.numXTiles(level_x) - 1, 0, file.numYTiles(level_y) - 1, level_x, level_y);
+            file.writeTiles(0, file.numXTiles(level_x) - 1, 0, file.numYTiles(level_y) - 1, level_x,
+                            level_y);
     } else {
       Imf::OutputFile file(path.c_str(), header);
       file.setFrameBuffer(source);
@@ -145,13 +147,15 @@ TEST_F(Exr, DataWindowsArePlacedInDisplayWindows) {
 
 TEST_F(Exr, DisjointWindowsAreRejected) {
   const Box2i far_away(V2i(100, 0), V2i(131, 23));
-  expect_rejected(write(header_of(small, far_away, Imf::ZIP_COMPRESSION)), "outside of its display window");
+  expect_rejected(write(header_of(small, far_away, Imf::ZIP_COMPRESSION)),
+                  "outside of its display window");
 }
 
 TEST_F(Exr, UnsupportedCompressionsAreNamed) {
   const fs::path path = write(header_of(small, small, Imf::ZIP_COMPRESSION));
   const std::string key("compression\0compression\0", 24);
-  expect_rejected(change(path, key, 4, {10}), "its compression HTJ2K256 is not read; save it with ZIP");
+  expect_rejected(change(path, key, 4, {10}),
+                  "its compression HTJ2K256 is not read; save it with ZIP");
   expect_rejected(change(path, key, 4, {11}), "HTJ2K32");
   expect_rejected(change(path, key, 4, {200}), "its compression (number 200) is not read");
 }
@@ -191,8 +195,10 @@ TEST_F(Exr, SizesAreCheckedBeforeAllocation) {
   const std::string data("dataWindow\0box2i\0", 17), display("displayWindow\0box2i\0", 20);
   expect_rejected(change(path, data, 4, words({0, 0, 32767, 32767})), "channels hold more than");
   expect_rejected(change(path, data, 4, words({0, 0, 32768, 0})), "data window measures 32769 x 1");
-  expect_rejected(change(path, display, 4, words({0, 0, 32767, 32767})), "display window holds more than");
-  expect_rejected(change(path, display, 4, words({0, 0, 0, 70000})), "display window measures 1 x 70001");
+  expect_rejected(change(path, display, 4, words({0, 0, 32767, 32767})),
+                  "display window holds more than");
+  expect_rejected(change(path, display, 4, words({0, 0, 0, 70000})),
+                  "display window measures 1 x 70001");
   expect_rejected(change(path, data, 4, words({-2147483647, 0, 2147483647, 0})), "changed.exr");
 }
 

@@ -76,7 +76,8 @@ TEST(Flip, BlackAgainstWhiteMatchesTheEquations) {
 TEST(Flip, GrowsWithTheDifference) {
   double before = 0;
   for (const float step : {0.01f, 0.03f, 0.1f, 0.3f, 0.8f}) {
-    const double now = mean(flip(even(0.2f, 0.2f, 0.2f), even(0.2f + step, 0.2f + step, 0.2f + step), false));
+    const double now =
+        mean(flip(even(0.2f, 0.2f, 0.2f), even(0.2f + step, 0.2f + step, 0.2f + step), false));
     EXPECT_GT(now, before);
     before = now;
   }

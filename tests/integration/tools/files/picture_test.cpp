@@ -19,7 +19,9 @@ struct Pictures : ::testing::Test {
   const fs::path& folder = temporary.path();
   std::string error;
 
-  size_t files() const { return static_cast<size_t>(std::distance(fs::directory_iterator(folder), {})); }
+  size_t files() const {
+    return static_cast<size_t>(std::distance(fs::directory_iterator(folder), {}));
+  }
   std::vector<uint8_t> bytes_of(const fs::path& path) {
     return read_bytes(path, max_image_file_bytes, error).value_or(std::vector<uint8_t>{});
   }
@@ -114,13 +116,16 @@ TEST_F(Pictures, ExrsOfHugeSizeAreRejectedBeforeDecoding) {
 
 // Returns a file of one 4 x 2 picture without compression or with RLE, byte by byte: half "H", uint
 // "U".
-std::vector<uint8_t> hand_made(uint8_t compression, const std::vector<std::vector<uint8_t>>& lines) {
+std::vector<uint8_t> hand_made(uint8_t compression,
+                               const std::vector<std::vector<uint8_t>>& lines) {
   std::vector<uint8_t> out;
   auto u32 = [&](uint32_t v) {
     for (int i = 0; i < 4; ++i)
       out.push_back(static_cast<uint8_t>(v >> (8 * i)));
   };
-  auto text = [&](const std::string& s) { out.insert(out.end(), s.c_str(), s.c_str() + s.size() + 1); };
+  auto text = [&](const std::string& s) {
+    out.insert(out.end(), s.c_str(), s.c_str() + s.size() + 1);
+  };
   u32(20000630);
   u32(2);
   text("channels"), text("chlist"), u32(37);

@@ -118,7 +118,8 @@ TEST(Guidance, SampleCountIsAnIntegerInItsRange) {
 
 TEST(Guidance, ControlWeightIsBoundedAndOneInTheDark) {
   EXPECT_EQ(control_weight({}, 1e-6), 1);
-  MovingCovariance moments{.mean_f = 0.2, .mean_g = 0.1, .covariance = 1, .variance_g = 1e-9, .begun = true};
+  MovingCovariance moments{
+      .mean_f = 0.2, .mean_g = 0.1, .covariance = 1, .variance_g = 1e-9, .begun = true};
   EXPECT_NEAR(control_weight(moments, 1e-6), 3, 1e-12);
   moments.covariance = -1;
   EXPECT_EQ(control_weight(moments, 1e-6), 0);

@@ -25,7 +25,8 @@ ImageReads reads_of(std::string_view kind_name, std::string_view setting = "", i
     settings.push_back(one.default_value);
     if (one.name == setting) settings.back().integer = value;
   }
-  const auto reads = image_reads(type, {settings, std::vector<bool>(type.ports.size(), true), d_px, tables});
+  const auto reads =
+      image_reads(type, {settings, std::vector<bool>(type.ports.size(), true), d_px, tables});
   EXPECT_TRUE(reads.has_value()) << kind_name;
   return reads.value_or(ImageReads{});
 }
@@ -34,8 +35,9 @@ TEST(ImageReads, EveryTypeThatSamplesAnImageIsCounted) {
   const std::vector<std::string_view> known = pass_types_with_known_reads();
   for (uint32_t i = 0; i < pass_types().size(); ++i) {
     const PassType& type = pass_types()[PassTypeId{i}];
-    const bool samples = std::any_of(type.ports.begin(), type.ports.end(),
-                                     [](const Port& port) { return port.usage == Usage::sampled_image; });
+    const bool samples = std::any_of(type.ports.begin(), type.ports.end(), [](const Port& port) {
+      return port.usage == Usage::sampled_image;
+    });
     EXPECT_TRUE(!samples || std::count(known.begin(), known.end(), type.name) == 1)
         << "count the reads of " << type.name << " in integration/tools/references/image_reads.cpp";
   }
@@ -46,8 +48,9 @@ TEST(ImageReads, EveryTypeThatSamplesAnImageIsCounted) {
 TEST(ImageReads, NoSampledImage_NoReads) {
   for (const std::string_view name : pass_types_with_known_reads()) {
     const PassType& type = pass_types()[pass_types().find(name)];
-    const bool samples = std::any_of(type.ports.begin(), type.ports.end(),
-                                     [](const Port& port) { return port.usage == Usage::sampled_image; });
+    const bool samples = std::any_of(type.ports.begin(), type.ports.end(), [](const Port& port) {
+      return port.usage == Usage::sampled_image;
+    });
     EXPECT_EQ(reads_of(name).per_invocation > 0, samples) << name;
   }
 }
@@ -73,7 +76,8 @@ TEST(ImageReads, FirstTent_EndsAtZeroWeight) {
 
 TEST(ImageReads, PlainPyramid_ReadsFourPerLevel) {
   const double wide = reads_of("subsurface.pyramid_gather", "", 0, {8, 8, 8}).per_invocation;
-  const double narrow = reads_of("subsurface.pyramid_gather", "", 0, {0.1, 0.1, 0.1}).per_invocation;
+  const double narrow =
+      reads_of("subsurface.pyramid_gather", "", 0, {0.1, 0.1, 0.1}).per_invocation;
   EXPECT_LT(narrow, wide);
   EXPECT_LE(wide, 4 + 9 * 4);
 }

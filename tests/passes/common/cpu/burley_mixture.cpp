@@ -42,8 +42,8 @@ double burley_mixture_inverse(double u, const PerChannel& d) {
   double r = std::max(burley_inverse_survival(u, narrowest), 1e-6 * narrowest);
   for (int i = 0; i < mixture_steps; ++i) {
     const double survival = burley_mixture_survival(r, d);
-    r = std::clamp(r + survival * std::log(survival / u) / burley_mixture_pdf(r, d), 1e-6 * narrowest,
-                   50 * widest);
+    r = std::clamp(r + survival * std::log(survival / u) / burley_mixture_pdf(r, d),
+                   1e-6 * narrowest, 50 * widest);
   }
   return r;
 }

@@ -53,7 +53,8 @@ Vector3 probe_axis(const Vector3& normal, uint32_t axis) {
 }
 
 std::array<double, 2> fold_normal(const Vector3& n) {
-  const double sum = std::abs(n[0]) + std::abs(n[1]) + std::abs(n[2]), x = n[0] / sum, y = n[1] / sum;
+  const double sum = std::abs(n[0]) + std::abs(n[1]) + std::abs(n[2]), x = n[0] / sum,
+               y = n[1] / sum;
   if (n[2] >= 0) return {x, y};
   return {(1 - std::abs(y)) * sign_of(x), (1 - std::abs(x)) * sign_of(y)};
 }
@@ -61,7 +62,8 @@ std::array<double, 2> fold_normal(const Vector3& n) {
 Vector3 unfold_normal(const std::array<double, 2>& p) {
   const double up = 1 - std::abs(p[0]) - std::abs(p[1]);
   if (up >= 0) return normalize(Vector3{p[0], p[1], up});
-  return normalize(Vector3{(1 - std::abs(p[1])) * sign_of(p[0]), (1 - std::abs(p[0])) * sign_of(p[1]), up});
+  return normalize(
+      Vector3{(1 - std::abs(p[1])) * sign_of(p[0]), (1 - std::abs(p[0])) * sign_of(p[1]), up});
 }
 
 PackedDomain pack_domain(const Domain& domain) {

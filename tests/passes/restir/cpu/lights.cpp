@@ -18,8 +18,8 @@ void share_lights(std::span<Light> lights) {
   for (Light& light : lights) {
     light.fraction = 0;
     if (has_area(light)) {
-      light.area =
-          length(cross(light.edge_u, light.edge_v)) * (light.type == LightType::triangle ? 0.5 : 1.0);
+      light.area = length(cross(light.edge_u, light.edge_v)) *
+                   (light.type == LightType::triangle ? 0.5 : 1.0);
       // A diffuse light with one side.
       light.fraction = std::numbers::pi * light.area * luminance(light.emission);
     } else if (light.type == LightType::point) {
@@ -71,8 +71,8 @@ Vector3 light_target(const Light& light, uint32_t place, const Vector3& from) {
   return light.position + u * light.edge_u + v * light.edge_v;
 }
 
-Vector3 light_irradiance(const Light& light, uint32_t place, const Vector3& position, const Vector3& normal,
-                         const Vector3& shading) {
+Vector3 light_irradiance(const Light& light, uint32_t place, const Vector3& position,
+                         const Vector3& normal, const Vector3& shading) {
   const Vector3 way = light_target(light, place, position) - position;
   const double square = dot(way, way);
   if (!(square > 0)) return {};

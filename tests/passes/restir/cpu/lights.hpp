@@ -43,7 +43,7 @@ Vector3 light_target(const Light& light, uint32_t place, const Vector3& from);
 // Returns the irradiance at a surface from this place of the light without occlusion; for area
 // lights per unit of area. `normal` is the geometric normal, `shading` the shading normal; light
 // from behind either normal gives 0.
-Vector3 light_irradiance(const Light& light, uint32_t place, const Vector3& position, const Vector3& normal,
-                         const Vector3& shading);
+Vector3 light_irradiance(const Light& light, uint32_t place, const Vector3& position,
+                         const Vector3& normal, const Vector3& shading);
 
 } // namespace dermis::restir

@@ -56,16 +56,16 @@ uint32_t picked_hit(double pick, uint32_t count) {
   return std::min(static_cast<uint32_t>(std::max(pick, 0.0) * count), count - 1);
 }
 
-double probe_technique_pdf(const Domain& domain, uint32_t axis, uint32_t channel, const Vector3& position,
-                           const Vector3& normal) {
+double probe_technique_pdf(const Domain& domain, uint32_t axis, uint32_t channel,
+                           const Vector3& position, const Vector3& normal) {
   const double d = domain.d[channel];
   const Vector3 offset = position - domain.position;
   if (!(d > 0) || !(length(offset) <= reach_in_d() * d)) return 0;
   const auto place = on_disc(domain, axis, offset);
   const double r = std::max(std::hypot(place[0], place[1]), min_radius_in_d * d);
   const double cosine = std::abs(dot(normal, probe_axis(domain.normal, axis)));
-  return probe_axis_fraction[axis] / scattering_channels(domain.d) * cosine * subsurface::burley_R(r, d) /
-         probe_fraction;
+  return probe_axis_fraction[axis] / scattering_channels(domain.d) * cosine *
+         subsurface::burley_R(r, d) / probe_fraction;
 }
 
 double probe_pdf(const Domain& domain, const Vector3& position, const Vector3& normal) {
@@ -100,7 +100,8 @@ bool invert_point(const Domain& domain, const Vector3& position, const Vector3& 
   return true;
 }
 
-bool invert_pick(const ProbeHits& hits, uint32_t instance, uint32_t primitive, double u, double& pick) {
+bool invert_pick(const ProbeHits& hits, uint32_t instance, uint32_t primitive, double u,
+                 double& pick) {
   for (uint32_t i = 0; i < hits.count; ++i)
     if (hits.hit[i].instance == instance && hits.hit[i].primitive == primitive) {
       pick = (i + u) / hits.count;

@@ -55,8 +55,8 @@ uint32_t picked_hit(double pick, uint32_t count);
 
 // Returns the density per area of x2 by one axis and channel, including their probability but not
 // the choice among hits.
-double probe_technique_pdf(const Domain& domain, uint32_t axis, uint32_t channel, const Vector3& position,
-                           const Vector3& normal);
+double probe_technique_pdf(const Domain& domain, uint32_t axis, uint32_t channel,
+                           const Vector3& position, const Vector3& normal);
 // Returns the density over all axes and channels. Multiplied by one over the hit count of the
 // traced probe, the density is the divisor of the estimate (the balance heuristic over axes and
 // channels: each weight is alpha_t p_t / sum, without the other probes' hits).
@@ -69,6 +69,7 @@ bool invert_point(const Domain& domain, const Vector3& position, const Vector3& 
                   ProbeNumbers& numbers);
 // Returns the number that picks the hit on this primitive: (index + u) / count, with `u` uniform in
 // [0, 1). Returns false if the probe misses the primitive.
-bool invert_pick(const ProbeHits& hits, uint32_t instance, uint32_t primitive, double u, double& pick);
+bool invert_pick(const ProbeHits& hits, uint32_t instance, uint32_t primitive, double u,
+                 double& pick);
 
 } // namespace dermis::restir

@@ -22,7 +22,8 @@ inline constexpr uint32_t random_numbers_a_pass = 1024;
 
 // Returns a uniform number in (0, 1) with 24 bits: the middle of a cell, so never 0 or 1.
 constexpr double random_unit(Random& random) {
-  return ((subsurface::pcg3d({random.pixel, random.frame, random.count++})[0] >> 8) + 0.5) / 16777216.0;
+  return ((subsurface::pcg3d({random.pixel, random.frame, random.count++})[0] >> 8) + 0.5) /
+         16777216.0;
 }
 
 } // namespace dermis::restir

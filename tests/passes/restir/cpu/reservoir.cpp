@@ -71,8 +71,8 @@ Reservoir unpack_reservoir(const PackedReservoir& w) {
   return sanitised(r);
 }
 
-void stream_add(Stream& stream, const Reservoir& candidate, double target, double weight, double confidence,
-                double u) {
+void stream_add(Stream& stream, const Reservoir& candidate, double target, double weight,
+                double confidence, double u) {
   stream.confidence += confidence;
   if (!(weight > 0) || !(target > 0) || !std::isfinite(weight) || !std::isfinite(target)) return;
   stream.sum += weight;

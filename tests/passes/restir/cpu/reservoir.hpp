@@ -47,8 +47,8 @@ struct Stream {
 };
 // `weight` is MIS weight * target * contribution weight * Jacobian. Candidates without a positive,
 // finite weight and target are skipped, but their confidence is added. u is uniform in (0, 1).
-void stream_add(Stream& stream, const Reservoir& candidate, double target, double weight, double confidence,
-                double u);
+void stream_add(Stream& stream, const Reservoir& candidate, double target, double weight,
+                double confidence, double u);
 // Returns the chosen candidate with weight sum / target.
 Reservoir stream_end(const Stream& stream);
 

@@ -15,17 +15,22 @@ double part(double x, double y) {
 }
 
 // Updates a shifted path to these lights.
-void relight(const Scene& scene, std::span<const Light> lights, const Domain& domain, Shifted& shifted) {
+void relight(const Scene& scene, std::span<const Light> lights, const Domain& domain,
+             Shifted& shifted) {
   Reservoir& path = shifted.path;
   if (!(shifted.jacobian > 0)) return;
   path.irradiance = {};
   shifted.target = 0;
   if (path.light >= lights.size()) return;
-  const SurfacePoint x2 = scene.surface_at(scene.of, path.instance, path.primitive, path.barycentrics);
+  const SurfacePoint x2 =
+      scene.surface_at(scene.of, path.instance, path.primitive, path.barycentrics);
   const Light& light = lights[path.light];
-  const Vector3 irradiance = light_irradiance(light, path.place, x2.position, x2.normal, x2.shading);
-  const double target = luminance(scattered(domain, length(x2.position - domain.position), irradiance));
-  if (!(target > 0) || !scene.visible(scene.of, x2, light_target(light, path.place, x2.position))) return;
+  const Vector3 irradiance =
+      light_irradiance(light, path.place, x2.position, x2.normal, x2.shading);
+  const double target =
+      luminance(scattered(domain, length(x2.position - domain.position), irradiance));
+  if (!(target > 0) || !scene.visible(scene.of, x2, light_target(light, path.place, x2.position)))
+    return;
   path.irradiance = irradiance;
   shifted.target = target;
 }
@@ -35,9 +40,9 @@ void relight(const Scene& scene, std::span<const Light> lights, const Domain& do
 Reservoir draw_initial(const Scene& scene, const Domain& domain, Random& random) {
   Reservoir none;
   none.confidence = 1;
-  const double technique = random_unit(random), radius = random_unit(random), angle = random_unit(random),
-               pick = random_unit(random), which = random_unit(random), u = random_unit(random),
-               v = random_unit(random);
+  const double technique = random_unit(random), radius = random_unit(random),
+               angle = random_unit(random), pick = random_unit(random), which = random_unit(random),
+               u = random_unit(random), v = random_unit(random);
   if (!(scattering_reach(domain.d) > 0) || scene.lights.empty()) return none;
   Reservoir candidate = none;
   candidate.numbers = draw_numbers(domain.d, {technique, radius, angle, pick});
@@ -54,18 +59,20 @@ Reservoir draw_initial(const Scene& scene, const Domain& domain, Random& random)
   candidate.light = pick_light(scene.lights, which);
   candidate.place = light_place(u, v);
   const Light& light = scene.lights[candidate.light];
-  candidate.irradiance = light_irradiance(light, candidate.place, x2.position, x2.normal, x2.shading);
+  candidate.irradiance =
+      light_irradiance(light, candidate.place, x2.position, x2.normal, x2.shading);
   candidate.weight = hits.count / (candidate.density * light_density(light));
   const double target =
       luminance(scattered(domain, length(x2.position - domain.position), candidate.irradiance));
-  if (!(target > 0) || !scene.visible(scene.of, x2, light_target(light, candidate.place, x2.position)))
+  if (!(target > 0) ||
+      !scene.visible(scene.of, x2, light_target(light, candidate.place, x2.position)))
     return none;
   return sanitised(candidate);
 }
 
 Reservoir merge_temporal(const Scene& scene, const ReuseSettings& settings, const Domain& domain,
-                         const Reservoir& current, const Domain& previous_domain, const Reservoir& previous,
-                         Random& random) {
+                         const Reservoir& current, const Domain& previous_domain,
+                         const Reservoir& previous, Random& random) {
   Reservoir own = sanitised(current), history = sanitised(previous);
   history.confidence = std::min(history.confidence, settings.cap * own.confidence);
   prepare(scene, settings.shift, settings.index, domain, own, random);
@@ -75,12 +82,15 @@ Reservoir merge_temporal(const Scene& scene, const ReuseSettings& settings, cons
   const double target = target_of(scene, domain, own);
   Shifted back = shift_path(scene, settings.shift, domain, previous_domain, own);
   if (!scene.previous_lights.empty()) relight(scene, scene.previous_lights, previous_domain, back);
-  const double own_mis = part(own.confidence * target, history.confidence * back.target * back.jacobian);
-  stream_add(stream, own, target, own_mis * target * own.weight, own.confidence, random_unit(random));
+  const double own_mis =
+      part(own.confidence * target, history.confidence * back.target * back.jacobian);
+  stream_add(stream, own, target, own_mis * target * own.weight, own.confidence,
+             random_unit(random));
 
   Shifted here = shift_path(scene, settings.shift, previous_domain, domain, history);
   if (!scene.previous_lights.empty()) relight(scene, scene.lights, domain, here);
-  const double there = here.jacobian > 0 ? target_of(scene, previous_domain, history) / here.jacobian : 0;
+  const double there =
+      here.jacobian > 0 ? target_of(scene, previous_domain, history) / here.jacobian : 0;
   const double mis = part(history.confidence * there, own.confidence * here.target);
   stream_add(stream, here.path, here.target, mis * here.target * history.weight * here.jacobian,
              history.confidence, random_unit(random));
@@ -98,22 +108,26 @@ Spatial spatial_begin(const Scene& scene, const ReuseSettings& settings, const D
   return spatial;
 }
 
-void spatial_add(const Scene& scene, const ReuseSettings& settings, const Domain& domain, Spatial& spatial,
-                 const Domain& neighbour_domain, const Reservoir& neighbour, Random& random) {
+void spatial_add(const Scene& scene, const ReuseSettings& settings, const Domain& domain,
+                 Spatial& spatial, const Domain& neighbour_domain, const Reservoir& neighbour,
+                 Random& random) {
   Reservoir other = sanitised(neighbour);
   const double own_confidence = spatial.own.confidence;
-  const double fraction = part(other.confidence, own_confidence + spatial.neighbours - other.confidence);
+  const double fraction =
+      part(other.confidence, own_confidence + spatial.neighbours - other.confidence);
   prepare(scene, settings.shift, settings.index, neighbour_domain, other, random);
 
   const Shifted back = shift_path(scene, settings.shift, domain, neighbour_domain, spatial.own);
-  spatial.own_mis +=
-      fraction * part(own_confidence * spatial.own_target, spatial.neighbours * back.target * back.jacobian);
+  spatial.own_mis += fraction * part(own_confidence * spatial.own_target,
+                                     spatial.neighbours * back.target * back.jacobian);
 
   const Shifted here = shift_path(scene, settings.shift, neighbour_domain, domain, other);
-  const double there = here.jacobian > 0 ? target_of(scene, neighbour_domain, other) / here.jacobian : 0;
+  const double there =
+      here.jacobian > 0 ? target_of(scene, neighbour_domain, other) / here.jacobian : 0;
   const double mis = fraction * part(spatial.neighbours * there, own_confidence * here.target);
-  stream_add(spatial.stream, here.path, here.target, mis * here.target * other.weight * here.jacobian,
-             other.confidence, random_unit(random));
+  stream_add(spatial.stream, here.path, here.target,
+             mis * here.target * other.weight * here.jacobian, other.confidence,
+             random_unit(random));
 }
 
 Reservoir spatial_end(Spatial& spatial, Random& random) {

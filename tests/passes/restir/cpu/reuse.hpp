@@ -23,8 +23,8 @@ struct ReuseSettings {
 // the frame's confidence. If the lights changed, each path is evaluated with the lights of the
 // frame in question: removed lights disappear at once and new lights appear at once.
 Reservoir merge_temporal(const Scene& scene, const ReuseSettings& settings, const Domain& domain,
-                         const Reservoir& current, const Domain& previous_domain, const Reservoir& previous,
-                         Random& random);
+                         const Reservoir& current, const Domain& previous_domain,
+                         const Reservoir& previous, Random& random);
 
 // Defensive pairwise MIS (Lin et al. 2022, section 7.1.3, with confidences; Bitterli 2022): each
 // neighbour is only weighted against the own sample. With the confidences c_c of the own sample and
@@ -41,8 +41,9 @@ struct Spatial {
 // depend on it.
 Spatial spatial_begin(const Scene& scene, const ReuseSettings& settings, const Domain& domain,
                       const Reservoir& own, double neighbours, Random& random);
-void spatial_add(const Scene& scene, const ReuseSettings& settings, const Domain& domain, Spatial& spatial,
-                 const Domain& neighbour_domain, const Reservoir& neighbour, Random& random);
+void spatial_add(const Scene& scene, const ReuseSettings& settings, const Domain& domain,
+                 Spatial& spatial, const Domain& neighbour_domain, const Reservoir& neighbour,
+                 Random& random);
 Reservoir spatial_end(Spatial& spatial, Random& random);
 
 // Returns the pixel's estimate: scattered diffuse light before albedo.

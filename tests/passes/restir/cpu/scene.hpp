@@ -23,7 +23,8 @@ struct Scene {
   const void* of = nullptr;
   // Finds all hits with surfaces of the medium, front and back, in order of distance; at most the
   // nearest max_probe_hits.
-  void (*trace_probe)(const void* of, const ProbeRay& ray, uint32_t medium, ProbeHits& hits) = nullptr;
+  void (*trace_probe)(const void* of, const ProbeRay& ray, uint32_t medium,
+                      ProbeHits& hits) = nullptr;
   SurfacePoint (*surface_at)(const void* of, uint32_t instance, uint32_t primitive,
                              const Barycentrics& barycentrics) = nullptr;
   // Whether the segment from the surface to the target is free; ray origins are lifted off the

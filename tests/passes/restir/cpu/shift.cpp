@@ -15,7 +15,8 @@ SurfacePoint surface_of(const Scene& scene, const Reservoir& path) {
 }
 
 bool replays(Shift shift, const Domain& domain, const SurfacePoint& x2) {
-  return shift == Shift::delayed || (shift == Shift::hybrid && !connectable(domain, x2.position, x2.normal));
+  return shift == Shift::delayed ||
+         (shift == Shift::hybrid && !connectable(domain, x2.position, x2.normal));
 }
 
 Shifted reconnect(const Domain& to, const SurfacePoint& x2, const Reservoir& path) {
@@ -47,7 +48,8 @@ Shifted replay(const Scene& scene, Shift shift, const Domain& to, const Reservoi
   const Light& light = scene.lights[path.light];
   y.irradiance = light_irradiance(light, path.place, y2.position, y2.normal, y2.shading);
   result.target = luminance(scattered(to, length(y2.position - to.position), y.irradiance));
-  if (result.target > 0 && !scene.visible(scene.of, y2, light_target(light, path.place, y2.position))) {
+  if (result.target > 0 &&
+      !scene.visible(scene.of, y2, light_target(light, path.place, y2.position))) {
     y.irradiance = {};
     result.target = 0;
   }
@@ -67,7 +69,8 @@ bool connectable(const Domain& domain, const Vector3& position, const Vector3& n
          length(position - domain.position) >= connectable_distance_in_d * maximum;
 }
 
-double reconnection_jacobian(const Vector3& x, const Vector3& y, const Vector3& v, const Vector3& normal) {
+double reconnection_jacobian(const Vector3& x, const Vector3& y, const Vector3& v,
+                             const Vector3& normal) {
   const Vector3 from = v - x, to = v - y;
   const double from_square = dot(from, from), to_square = dot(to, to);
   const double from_cosine = std::abs(dot(from, normal)) / std::sqrt(from_square);
@@ -76,7 +79,8 @@ double reconnection_jacobian(const Vector3& x, const Vector3& y, const Vector3& 
   return std::isfinite(jacobian) ? jacobian : 0;
 }
 
-double replay_jacobian(double from_density, uint32_t from_hits, double to_density, uint32_t to_hits) {
+double replay_jacobian(double from_density, uint32_t from_hits, double to_density,
+                       uint32_t to_hits) {
   if (!(from_density > 0) || !(to_density > 0) || from_hits == 0 || to_hits == 0) return 0;
   const double hits = from_hits == assumed_hits ? 1 : double(to_hits) / from_hits;
   const double jacobian = from_density / to_density * hits;
@@ -85,7 +89,8 @@ double replay_jacobian(double from_density, uint32_t from_hits, double to_densit
 
 Vector3 contribution_of(const Scene& scene, const Domain& domain, const Reservoir& path) {
   if (!has_sample(path)) return {};
-  return scattered(domain, length(surface_of(scene, path).position - domain.position), path.irradiance);
+  return scattered(domain, length(surface_of(scene, path).position - domain.position),
+                   path.irradiance);
 }
 
 double target_of(const Scene& scene, const Domain& domain, const Reservoir& path) {
@@ -97,7 +102,8 @@ void prepare(const Scene& scene, Shift shift, Index index, const Domain& domain,
   if (!has_sample(path) || path.hits > 0) return;
   const SurfacePoint x2 = surface_of(scene, path);
   const double technique = random_unit(random), within = random_unit(random);
-  if (!replays(shift, domain, x2) || !invert_point(domain, x2.position, x2.normal, technique, path.numbers))
+  if (!replays(shift, domain, x2) ||
+      !invert_point(domain, x2.position, x2.normal, technique, path.numbers))
     return;
   path.density = probe_pdf(domain, x2.position, x2.normal);
   if (index == Index::sampled) {
@@ -107,7 +113,8 @@ void prepare(const Scene& scene, Shift shift, Index index, const Domain& domain,
   }
   ProbeHits hits;
   scene.trace_probe(scene.of, probe_of(domain, path.numbers), domain.medium, hits);
-  if (invert_pick(hits, path.instance, path.primitive, within, path.numbers.pick)) path.hits = hits.count;
+  if (invert_pick(hits, path.instance, path.primitive, within, path.numbers.pick))
+    path.hits = hits.count;
 }
 
 Shifted shift_path(const Scene& scene, Shift shift, const Domain& from, const Domain& to,

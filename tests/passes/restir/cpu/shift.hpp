@@ -23,10 +23,12 @@ bool connectable(const Domain& domain, const Vector3& position, const Vector3& n
 
 // Returns the Jacobian of reconnection per solid angle (eq. 2): directions x -> v become y -> v;
 // `normal` is at v. Per area the Jacobian is 1.
-double reconnection_jacobian(const Vector3& x, const Vector3& y, const Vector3& v, const Vector3& normal);
+double reconnection_jacobian(const Vector3& x, const Vector3& y, const Vector3& v,
+                             const Vector3& normal);
 // Returns the Jacobian of replayed random numbers per area (eq. 6), including the choice among
 // hits.
-double replay_jacobian(double from_density, uint32_t from_hits, double to_density, uint32_t to_hits);
+double replay_jacobian(double from_density, uint32_t from_hits, double to_density,
+                       uint32_t to_hits);
 
 // Returns the target: luminance of the whole integrand, including visibility. Returns 0 without a
 // sample.

@@ -56,7 +56,8 @@ template <class Real> struct SapClimb {
       for (int i = -1; i <= 1; ++i) {
         const Real ox = Real(i) * level.spacing, oy = Real(j) * level.spacing;
         const Real tilt = own.slope(ox, oy) * per_sigma;
-        Real weight = Real((2 - std::abs(i)) * (2 - std::abs(j))) * sap_falloff(tilt, sap_tilt_width_tent);
+        Real weight =
+            Real((2 - std::abs(i)) * (2 - std::abs(j))) * sap_falloff(tilt, sap_tilt_width_tent);
         all_weight += weight;
         const auto off = [&](const SapTexel<Real>& tap) { return off_plane(own, tap, ox, oy); };
         const size_t layer = nearer_layer(level, x + i, y + j, own.id, off);
@@ -85,7 +86,8 @@ template <class Real> struct SapClimb {
     for (int j = 0; j < 2; ++j)
       for (int i = 0; i < 2; ++i) {
         const int qx = ((x - 1) >> 1) + i, qy = ((y - 1) >> 1) + j;
-        const Real ox = (Real(2 * qx - x) + Real(.5)) * spacing, oy = (Real(2 * qy - y) + Real(.5)) * spacing;
+        const Real ox = (Real(2 * qx - x) + Real(.5)) * spacing,
+                   oy = (Real(2 * qy - y) + Real(.5)) * spacing;
         const Real bilinear =
             Real(std::abs(ox) < spacing ? .75 : .25) * Real(std::abs(oy) < spacing ? .75 : .25);
         const auto off = [&](const SapTexel<Real>& tap) { return off_planes(own, tap, ox, oy); };
@@ -94,8 +96,8 @@ template <class Real> struct SapClimb {
         const SapTexel<Real>* tap = coarse.find(layer, qx, qy, own.id);
         const Real step = tap->depth - own.depth;
         const Real kept = sap_falloff(off(*tap) * per_metre, sap_depth_width);
-        const Real further =
-            std::max(std::abs(step - pyramid.rise(own, ox, oy)), std::abs(step - pyramid.rise(*tap, ox, oy)));
+        const Real further = std::max(std::abs(step - pyramid.rise(own, ox, oy)),
+                                      std::abs(step - pyramid.rise(*tap, ox, oy)));
         const Scattered<Real>& theirs = scattered[layer][fine + 1][coarse.index(qx, qy)];
         for (size_t c = 0; c < 3; ++c) {
           const Real mass = bilinear * kept * theirs.mass[c];
@@ -125,7 +127,8 @@ template <class Real> struct SapClimb {
     }
     Scattered<Real> here{own.light, {own.mass, own.mass, own.mass}, 0};
     const Real minimum = Real(l == 0 ? min_fraction_fine : min_fraction_coarse);
-    if (l <= sap_last_tent(variant) && *std::max_element(fraction.begin(), fraction.end()) >= minimum)
+    if (l <= sap_last_tent(variant) &&
+        *std::max_element(fraction.begin(), fraction.end()) >= minimum)
       here = tent(pyramid.levels[l], x, y, own);
     const Scattered<Real> rest =
         last ? Scattered<Real>{here.light, {}, 0} : from_coarser(l, x, y, own, here.light);
@@ -158,14 +161,17 @@ SapResult<Real> sap_scatter(const ReferenceInput& input, std::span<const float> 
     const SapLevel<Real>& level = climb.pyramid.levels[l];
     for (size_t layer = 0; layer < level.layers.size(); ++layer)
       climb.scattered[layer][l].resize(level.layers[layer].size());
-    parallel_for(static_cast<size_t>(level.height + 2 * level.border), 4, options.threads, [&](size_t row) {
-      const int y = static_cast<int>(row) - level.border;
-      for (int x = -level.border; x < level.width + level.border; ++x)
-        for (size_t layer = 0; layer < level.layers.size() && !level.layers[layer].empty(); ++layer) {
-          const SapTexel<Real>& own = level.layers[layer][level.index(x, y)];
-          if (own.id != 0) climb.scattered[layer][l][level.index(x, y)] = climb.climb(l, x, y, own);
-        }
-    });
+    parallel_for(static_cast<size_t>(level.height + 2 * level.border), 4, options.threads,
+                 [&](size_t row) {
+                   const int y = static_cast<int>(row) - level.border;
+                   for (int x = -level.border; x < level.width + level.border; ++x)
+                     for (size_t layer = 0;
+                          layer < level.layers.size() && !level.layers[layer].empty(); ++layer) {
+                       const SapTexel<Real>& own = level.layers[layer][level.index(x, y)];
+                       if (own.id != 0)
+                         climb.scattered[layer][l][level.index(x, y)] = climb.climb(l, x, y, own);
+                     }
+                 });
   }
   SapResult<Real> result{{input.light.begin(), input.light.end()},
                          std::vector<Real>(size_t{input.width} * input.height, 1)};
@@ -174,7 +180,8 @@ SapResult<Real> sap_scatter(const ReferenceInput& input, std::span<const float> 
     if (own.id == 0) continue;
     const PerChannel& d = input.d_m[own.id];
     const double widest = *std::max_element(d.begin(), d.end());
-    const double scale = input.scatter_scale.empty() ? 1.0 : double(std::max(0.0f, input.scatter_scale[i]));
+    const double scale =
+        input.scatter_scale.empty() ? 1.0 : double(std::max(0.0f, input.scatter_scale[i]));
     if (widest * scale < copy_below_d_px * double(climb.pyramid.smallest_side(own.depth))) continue;
     for (size_t c = 0; c < 3; ++c)
       if (d[c] > 0) result.light[3 * i + c] = climb.scattered[0][0][i].light[c];

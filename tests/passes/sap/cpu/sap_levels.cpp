@@ -47,13 +47,15 @@ SapTexel<Real> plane_at_parent(const SapPyramid<Real>& pyramid, const Children<R
 
 // Returns the child whose plane most of the central children support; without a central child, the
 // outer child with the largest weight; no_child if no child is left.
-template <class Real> size_t find_seed(const SapPyramid<Real>& pyramid, const Children<Real>& children) {
+template <class Real>
+size_t find_seed(const SapPyramid<Real>& pyramid, const Children<Real>& children) {
   size_t best = no_child;
   Real maximum = 0;
   for (const size_t a : central) {
     if (!children.may_seed(a)) continue;
     const SapTexel<Real> plane = plane_at_parent(pyramid, children, a);
-    const Real per_metre = 1 / (Real(sap_sigma) * children.spacing * pyramid.footprint(plane.depth));
+    const Real per_metre =
+        1 / (Real(sap_sigma) * children.spacing * pyramid.footprint(plane.depth));
     Real support = 0;
     for (const size_t b : central) {
       const SapTexel<Real>* child = children.texels[b];
@@ -69,7 +71,8 @@ template <class Real> size_t find_seed(const SapPyramid<Real>& pyramid, const Ch
   }
   if (best != no_child) return best;
   for (size_t a = 0; a < no_child; ++a) {
-    const Real weight = children.may_seed(a) ? binomial<Real>(a) * children.texels[a]->mass : Real(0);
+    const Real weight =
+        children.may_seed(a) ? binomial<Real>(a) * children.texels[a]->mass : Real(0);
     if (weight > Real(hysteresis) * maximum) {
       best = a;
       maximum = weight;
@@ -79,7 +82,8 @@ template <class Real> size_t find_seed(const SapPyramid<Real>& pyramid, const Ch
 }
 
 // Builds one layer of a parent, and subtracts the used part from what the children have left.
-template <class Real> SapTexel<Real> reduce(const SapPyramid<Real>& pyramid, Children<Real>& children) {
+template <class Real>
+SapTexel<Real> reduce(const SapPyramid<Real>& pyramid, Children<Real>& children) {
   const size_t seed = find_seed(pyramid, children);
   if (seed == no_child) return {};
   const SapTexel<Real> plane = plane_at_parent(pyramid, children, seed);
@@ -90,7 +94,8 @@ template <class Real> SapTexel<Real> reduce(const SapPyramid<Real>& pyramid, Chi
   for (size_t k = 0; k < no_child; ++k) {
     const Real x = children.x(k), y = children.y(k);
     const Real tilt = plane.slope(x, y) * per_sigma;
-    if (k < children_a_layer) all_weight += binomial<Real>(k) * sap_falloff(tilt, sap_tilt_width_down);
+    if (k < children_a_layer)
+      all_weight += binomial<Real>(k) * sap_falloff(tilt, sap_tilt_width_down);
     const SapTexel<Real>* child = children.texels[k];
     if (!child || child->id != plane.id) continue;
     const Real step = (child->depth - plane.depth) * per_metre;
@@ -124,34 +129,39 @@ template <class Real> SapTexel<Real> reduce(const SapPyramid<Real>& pyramid, Chi
   return parent;
 }
 
-template <class Real> SapTexel<Real> first_texel(const ReferenceInput& input, const Patch& patch, size_t i) {
+template <class Real>
+SapTexel<Real> first_texel(const ReferenceInput& input, const Patch& patch, size_t i) {
   const double x = double(i % input.width), y = double(i / input.width);
   const Vector3 ray = input.rays.perspective ? pixel_ray(input.rays, x, y) : Vector3{0, 0, -1};
   const double cosine = -dot(patch.normal, ray) / length(ray);
   // The plane dot(normal, P) = const, differentiated by pixel, as in shaders/common/patch.glsl.
   const double turn = input.rays.perspective ? -1 / dot(patch.normal, ray) : 1 / patch.normal[2];
   const double mean = std::sqrt(std::abs(input.rays.scale_x * input.rays.scale_y));
-  const double scale = input.scatter_scale.empty() ? 1.0 : double(std::max(0.0f, input.scatter_scale[i]));
+  const double scale =
+      input.scatter_scale.empty() ? 1.0 : double(std::max(0.0f, input.scatter_scale[i]));
   return {.depth = Real(input.depth[i]),
           .slope_x = Real(patch.normal[0] * turn * input.rays.scale_x / mean),
           .slope_y = Real(patch.normal[1] * turn * input.rays.scale_y / mean),
           .reach = Real(std::pow(cosine, sap_reach_power) * scale),
           .mass = 1,
           .area = Real(std::pow(cosine, -sap_area_power)),
-          .light = {Real(input.light[3 * i]), Real(input.light[3 * i + 1]), Real(input.light[3 * i + 2])},
+          .light = {Real(input.light[3 * i]), Real(input.light[3 * i + 1]),
+                    Real(input.light[3 * i + 2])},
           .id = input.profile[i]};
 }
 
 } // namespace
 
 template <class Real>
-SapPyramid<Real> build_sap_pyramid(const ReferenceInput& input, uint32_t first_layered, unsigned threads) {
+SapPyramid<Real> build_sap_pyramid(const ReferenceInput& input, uint32_t first_layered,
+                                   unsigned threads) {
   SapPyramid<Real> pyramid{.side_x = Real(std::abs(input.rays.scale_x)),
                            .side_y = Real(std::abs(input.rays.scale_y)),
                            .perspective = input.rays.perspective};
   const Surface surface =
       build_surface(input.width, input.height, input.rays, input.depth, input.profile, threads);
-  SapLevel<Real> level{.width = static_cast<int>(input.width), .height = static_cast<int>(input.height)};
+  SapLevel<Real> level{.width = static_cast<int>(input.width),
+                       .height = static_cast<int>(input.height)};
   level.layers[0].resize(surface.patches.size());
   parallel_for(level.layers[0].size(), 4096, threads, [&](size_t i) {
     if (surface.patches[i].area > 0 && input.profile[i] < input.d_m.size())

@@ -81,8 +81,12 @@ template <class Real> struct SapPyramid {
   std::vector<SapLevel<Real>> levels{};
 
   // Return the geometric mean of a pixel's sides at a depth, and its smaller side, in metres.
-  Real footprint(Real depth) const { return std::sqrt(side_x * side_y) * (perspective ? depth : Real(1)); }
-  Real smallest_side(Real depth) const { return std::min(side_x, side_y) * (perspective ? depth : Real(1)); }
+  Real footprint(Real depth) const {
+    return std::sqrt(side_x * side_y) * (perspective ? depth : Real(1));
+  }
+  Real smallest_side(Real depth) const {
+    return std::min(side_x, side_y) * (perspective ? depth : Real(1));
+  }
   // Returns the rise of a texel's tangent plane at an offset in pixels, in metres.
   Real rise(const SapTexel<Real>& texel, Real x, Real y) const {
     return texel.slope(x, y) * footprint(texel.depth);
@@ -92,6 +96,7 @@ template <class Real> struct SapPyramid {
 // Builds all levels; levels from `first_layered` (1 or more) have two layers per texel.
 // Deterministic for any number of threads. Real: float or double.
 template <class Real>
-SapPyramid<Real> build_sap_pyramid(const ReferenceInput& input, uint32_t first_layered, unsigned threads);
+SapPyramid<Real> build_sap_pyramid(const ReferenceInput& input, uint32_t first_layered,
+                                   unsigned threads);
 
 } // namespace dermis::subsurface

@@ -82,7 +82,8 @@ demo::Result<std::vector<Single>> measure_singles(BudgetBench& bench) {
 std::string name_of(const Single& single) {
   std::string name;
   for (const auto& [setting, value] : single.set)
-    name += fmt::format("{}{}={}", name.empty() ? "" : " ", setting, value.substr(1, value.size() - 2));
+    name +=
+        fmt::format("{}{}={}", name.empty() ? "" : " ", setting, value.substr(1, value.size() - 2));
   return name;
 }
 
@@ -138,8 +139,9 @@ std::string why_no_scenes(const SuiteRun& run) {
   for (const std::string& name : run.list("scenes")) {
     const std::string file = file_of(name);
     if (!std::filesystem::exists(file))
-      return fmt::format("there is no scene '{}': '{}' is missing (--scenes takes names in configs/scenes)",
-                         name, file);
+      return fmt::format(
+          "there is no scene '{}': '{}' is missing (--scenes takes names in configs/scenes)", name,
+          file);
     Diagnostics diagnostics;
     const auto scene = demo::read_scene(file, diagnostics);
     if (!scene) return format_for_people(diagnostics, diagnostics.list.front());
@@ -194,10 +196,10 @@ demo::Result<> measure_budget(SuiteRun& run, const Emit<BudgetRow>& emit) {
   if (const std::string problem = why_no_scenes(run); !problem.empty())
     return demo::Error{demo::ErrorKind::usage, problem};
   const uint64_t frames = run.number("frames"), repetitions = run.number("repetitions");
-  run.report.summary =
-      fmt::format("{} judged frames after {}; over: more than {} of the budget by timestamps, {} by the "
-                  "meter; times: median of {}",
-                  frames, unjudged_frames, measured_tolerance, model_tolerance, repetitions);
+  run.report.summary = fmt::format(
+      "{} judged frames after {}; over: more than {} of the budget by timestamps, {} by the "
+      "meter; times: median of {}",
+      frames, unjudged_frames, measured_tolerance, model_tolerance, repetitions);
   const uint64_t runs = sets.size() + (1 + repetitions) * std::size(fractions);
   Progress progress = run.progress("run", run.list("scenes").size() * runs);
   BudgetBench bench{run, std::move(request), std::move(sets), progress};
@@ -229,7 +231,8 @@ Suite budget_suite() {
                     List{"flashing", "regular", "dynamic", "dolly", "cut"}, "NAME",
                     List{"flashing", "dolly"}}, // changing light, and changing size
                    {"frames", "Judged frames per run", 32u, "", 4u, 4},
-                   {"repetitions", "Timed runs per budget; results are medians", 3u, "", 1u, 1, 100},
+                   {"repetitions", "Timed runs per budget; results are medians", 3u, "", 1u, 1,
+                    100},
                    head_option(),
                    cache_option()}},
       {{"scene", "scene", &Row::scene, {.groups = true}},
@@ -242,7 +245,8 @@ Suite budget_suite() {
        {"mean_rmse", "RMSE", &Row::rmse},
        {"best_single_rmse_within_budget", "best single RMSE", &Row::single_rmse},
        {"best_single", "best single", &Row::single},
-       {"switches", "switches", [](const Row& row) { return int64_t(median_of(row.timed).switches); }}},
+       {"switches", "switches",
+        [](const Row& row) { return int64_t(median_of(row.timed).switches); }}},
       measure_budget);
 }
 

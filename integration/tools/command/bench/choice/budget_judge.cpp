@@ -35,7 +35,8 @@ Single single_of(const SceneRun& run, std::vector<NamedValue> set) {
 const Single* best_within(const std::vector<Single>& singles, double budget_ms) {
   const Single* best = nullptr;
   for (const Single& one : singles)
-    if (one.metered_at(within) <= model_tolerance * budget_ms && (best == nullptr || one.rmse < best->rmse))
+    if (one.metered_at(within) <= model_tolerance * budget_ms &&
+        (best == nullptr || one.rmse < best->rmse))
       best = &one;
   return best;
 }
@@ -44,8 +45,9 @@ double budget_at(const std::vector<Single>& singles, double fraction) {
   double floor_ms = singles.front().metered_at(within);
   for (const Single& single : singles)
     floor_ms = std::min(floor_ms, single.metered_at(within));
-  const auto best = std::min_element(singles.begin(), singles.end(),
-                                     [](const Single& a, const Single& b) { return a.rmse < b.rmse; });
+  const auto best =
+      std::min_element(singles.begin(), singles.end(),
+                       [](const Single& a, const Single& b) { return a.rmse < b.rmse; });
   return floor_ms + fraction * (best->metered_at(within) - floor_ms);
 }
 
@@ -70,15 +72,16 @@ TimedFigures median_of(const std::vector<TimedFigures>& runs) {
       values.push_back(run.*figure);
     return median(values);
   };
-  return {middle(&TimedFigures::mean_ms), middle(&TimedFigures::p95_ms), middle(&TimedFigures::over),
-          middle(&TimedFigures::switches)};
+  return {middle(&TimedFigures::mean_ms), middle(&TimedFigures::p95_ms),
+          middle(&TimedFigures::over), middle(&TimedFigures::switches)};
 }
 
 double fraction_over_model(const SceneRun& run, double budget_ms) {
   double over = 0;
   const auto frames = judged_frames(run);
   for (const RunFrame& frame : frames)
-    over += frame.choice.calibrated_ms > model_tolerance * budget_ms ? 1 / double(frames.size()) : 0;
+    over +=
+        frame.choice.calibrated_ms > model_tolerance * budget_ms ? 1 / double(frames.size()) : 0;
   return over;
 }
 

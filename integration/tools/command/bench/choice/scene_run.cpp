@@ -27,7 +27,9 @@ demo::Result<SceneRun> run_scene(const Session& session, const SceneRunRequest& 
     return request.error_every > 0 && frame % request.error_every == request.error_every - 1;
   };
   engine.pictures_of = compared;
-  engine.inputs_of = [&](uint32_t frame) { return compared(frame) && !shared.references.contains(frame); };
+  engine.inputs_of = [&](uint32_t frame) {
+    return compared(frame) && !shared.references.contains(frame);
+  };
   SceneRun run;
   std::vector<CaptureProfile> profiles;
   demo::RenderCallbacks callbacks;
@@ -47,15 +49,16 @@ demo::Result<SceneRun> run_scene(const Session& session, const SceneRunRequest& 
     if (known == shared.references.end()) {
       const auto captured = captured_frame(frame, profiles);
       if (!captured) return captured.error();
-      auto made = make_reference(session, *captured, fmt::format("{} frame {}", request.scene, frame.frame),
-                                 request.subset, request.cache);
+      auto made =
+          make_reference(session, *captured, fmt::format("{} frame {}", request.scene, frame.frame),
+                         request.subset, request.cache);
       if (!made) return stopped();
       known = shared.references.emplace(frame.frame, std::move(*made)).first;
     }
     const Reference& reference = known->second;
     if (reference.population > 0)
-      out.rmse = measure_error(frame.scattered.texels, reference.light, reference.pixels, reference.exposure,
-                               reference.population)
+      out.rmse = measure_error(frame.scattered.texels, reference.light, reference.pixels,
+                               reference.exposure, reference.population)
                      .rmse;
     return demo::success();
   };

@@ -46,6 +46,7 @@ struct SceneRun {
 };
 
 // Errors: those of demo::render; environment "stopped" if interrupted.
-demo::Result<SceneRun> run_scene(const Session& session, const SceneRunRequest& request, SharedScene& shared);
+demo::Result<SceneRun> run_scene(const Session& session, const SceneRunRequest& request,
+                                 SharedScene& shared);
 
 } // namespace dermis::tools

@@ -70,7 +70,8 @@ demo::Result<> prepare_frame(SkipBench& bench, SkipCase from) {
   if (!one.from.skips) request.overlays.emplace_back("without flat light", without_uniform_light);
   if (!one.from.no_profiles)
     for (const CaptureProfile& profile : bench.profiles)
-      request.profiles.push_back({profile.id, profile.profile.name, profile_as_json(profile.profile)});
+      request.profiles.push_back(
+          {profile.id, profile.profile.name, profile_as_json(profile.profile)});
   for (const auto& [slot, format] : one.slots.formats)
     if (slot != "scattered_light")
       request.formats.emplace_back(slot, static_cast<VkFormat>(format_info(format).vulkan));
@@ -95,7 +96,8 @@ demo::Result<> prepare_frame(SkipBench& bench, SkipCase from) {
 // Uploads light for each run, since the graph scatters in place.
 demo::Result<> run_once(SkipFrame& one, bool timed) {
   for (const SlotData& data : one.slots.data)
-    if (auto given = one.device->upload(data.slot, data.texels, data.channels); !given) return given.error();
+    if (auto given = one.device->upload(data.slot, data.texels, data.channels); !given)
+      return given.error();
   if (auto ran = one.device->run(one.frame); !ran) return ran.error();
   if (const auto choice = one.device->choice()) one.choice = *choice;
   double sum = 0;
@@ -152,8 +154,8 @@ double reads_of(const SkipBench& bench, const SkipFrame& one, std::span<const fl
           (double(one.choice.scattering_tiles) + one.choice.uniform_tiles) / one.choice.view_tiles;
     }
     const auto reads = subsurface::image_reads(type, question);
-    const bool over_all =
-        type.dispatch.domain == DispatchRule::Domain::rectangle && type.dispatch.cells_per_group == 1;
+    const bool over_all = type.dispatch.domain == DispatchRule::Domain::rectangle &&
+                          type.dispatch.cells_per_group == 1;
     const double tiles = over_all ? double(one.choice.view_tiles) : listed;
     if (reads) sum += reads->per_invocation * pixels_per_tile * tiles / finer;
   }
@@ -179,7 +181,8 @@ struct SkipRow {
 };
 
 // Loads the graph and the same without the detection of uniform light.
-demo::Result<> load_graphs(const SuiteRun& run, LoadedGraph& loaded, LoadedGraph& plain, std::string& text) {
+demo::Result<> load_graphs(const SuiteRun& run, LoadedGraph& loaded, LoadedGraph& plain,
+                           std::string& text) {
   const std::string path = run.file("graph");
   Diagnostics diagnostics;
   auto whole = load_graph(path, run.pass_types(), diagnostics);
@@ -189,9 +192,10 @@ demo::Result<> load_graphs(const SuiteRun& run, LoadedGraph& loaded, LoadedGraph
   if (auto overlay = parse_document("without flat light", without_uniform_light, diagnostics))
     overlays.push_back(std::move(*overlay));
   auto document = read_document(path, diagnostics);
-  auto part = document ? load_graph(std::move(*document), std::move(overlays), open_included(path, {}),
-                                    diagnostics, run.pass_types().pass_types)
-                       : std::nullopt;
+  auto part = document
+                  ? load_graph(std::move(*document), std::move(overlays), open_included(path, {}),
+                               diagnostics, run.pass_types().pass_types)
+                  : std::nullopt;
   if (!part) return run.refuse(path, diagnostics);
   loaded = std::move(*whole);
   plain = std::move(*part);
@@ -204,7 +208,8 @@ demo::Result<> measure_skip(SuiteRun& run, const Emit<SkipRow>& emit) {
   if (auto done = load_graphs(run, loaded, plain, text); !done) return done;
   Diagnostics diagnostics;
   const auto profile_text = read_document(run.file("profile"), diagnostics);
-  const auto profile = profile_text ? subsurface::read_profile(*profile_text, diagnostics) : std::nullopt;
+  const auto profile =
+      profile_text ? subsurface::read_profile(*profile_text, diagnostics) : std::nullopt;
   if (!profile) return run.refuse(run.file("profile"), diagnostics);
 
   HostPasses host_passes(loaded.host_pass_types); // outlives the device's context
@@ -221,14 +226,16 @@ demo::Result<> measure_skip(SuiteRun& run, const Emit<SkipRow>& emit) {
                                    run.file("graph"), run.size().width, run.size().height, d_px,
                                    format_count(run.number("repetitions"), "frame"));
   run.add_fact("full", "the whole image scatters and nothing is skipped");
-  run.add_fact("reads", "texels read by the groups that ran, counted from the kernels' source for an "
-                        "environment that scatters");
+  run.add_fact("reads",
+               "texels read by the groups that ran, counted from the kernels' source for an "
+               "environment that scatters");
   const std::vector<float> sap_tables = subsurface::make_sap_tables({true, true}, {});
   const double full_ms = median(bench.cases.front().device_ms);
   for (const SkipFrame& one : bench.cases)
     emit({one.from.name, one.choice.dispatches, one.choice.groups,
-          static_cast<uint64_t>(reads_of(bench, one, sap_tables)), one.device->memory().transient_bytes,
-          median(one.device_ms), full_ms, largest_difference(bench, one)});
+          static_cast<uint64_t>(reads_of(bench, one, sap_tables)),
+          one.device->memory().transient_bytes, median(one.device_ms), full_ms,
+          largest_difference(bench, one)});
   return demo::success();
 }
 
@@ -236,7 +243,8 @@ demo::Result<> measure_skip(SuiteRun& run, const Emit<SkipRow>& emit) {
 
 Suite skip_suite() {
   using Row = SkipRow;
-  SuiteOption size = size_option({1280, 720}); // in a smaller view, fixed costs are a large fraction
+  SuiteOption size =
+      size_option({1280, 720}); // in a smaller view, fixed costs are a large fraction
   return make_suite<Row>(
       {.name = "skip",
        .what = "Measure frames that do not need all of a graph",
@@ -253,7 +261,8 @@ Suite skip_suite() {
        {"transient_bytes", "transient bytes", &Row::transient_bytes},
        {"device_ms", "device, ms", &Row::device_ms},
        {"full_device_ms", "full, ms", &Row::full_ms},
-       {"share", "of full", [](const Row& row) { return row.full_ms > 0 ? row.device_ms / row.full_ms : 0; }},
+       {"share", "of full",
+        [](const Row& row) { return row.full_ms > 0 ? row.device_ms / row.full_ms : 0; }},
        {"max_difference", "largest difference", &Row::max_difference}},
       measure_skip);
 }

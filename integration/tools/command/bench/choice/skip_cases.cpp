@@ -35,7 +35,8 @@ std::vector<SkipCase> make_skip_cases(uint32_t width, uint32_t height, double d_
   CapturedFrame plane = plane_frame(width, height, d_px, profiles);
   CapturedFrame flat = plane; // light 1 everywhere
   paint_noise(plane);
-  CapturedFrame nothing = plane, far = plane_frame(width, height, subpixel_d_px, profiles), disc = plane;
+  CapturedFrame nothing = plane, far = plane_frame(width, height, subpixel_d_px, profiles),
+                disc = plane;
   std::fill(nothing.profile.begin(), nothing.profile.end(), uint8_t{0});
   paint_noise(far);
   cut_disc(disc, covered);

@@ -37,7 +37,10 @@ constexpr std::string_view order_names[] = {"memory", "program", "random"};
 double time_goal(std::string_view shape, uint32_t passes, PackingLevel level, bool reasons) {
   if (shape == "chain" || shape == "given" || level == PackingLevel::optimize) return 0.0;
   if (level == PackingLevel::tight) return 20'000.0;
-  const double plain = passes == 100 ? 500.0 : passes == 1000 ? 600.0 : passes == 10000 ? 900.0 : 0.0;
+  const double plain = passes == 100     ? 500.0
+                       : passes == 1000  ? 600.0
+                       : passes == 10000 ? 900.0
+                                         : 0.0;
   return reasons ? 2.0 * plain : plain;
 }
 
@@ -63,7 +66,8 @@ struct CompileRow {
   std::optional<size_t> samples; // not set: not timed, as the times
   std::optional<Spread> ns;      // per pass
   std::optional<double> goal;    // of the median
-  double heap_bytes = 0.0, max_live_bytes = 0.0, ratio = 0.0, worst_ratio = 0.0, batches_per_pass = 0.0;
+  double heap_bytes = 0.0, max_live_bytes = 0.0, ratio = 0.0, worst_ratio = 0.0,
+         batches_per_pass = 0.0;
   uint32_t optimal = 0;                   // graphs whose heap equals the lower bound
   double mean_ms = 0.0, slowest_ms = 0.0; // CPU time per graph, each compiled once
 };
@@ -85,16 +89,18 @@ CompileInput input_of(const GraphSet& set, const Graph& graph, const DeviceProfi
 double batches_per_pass(const Plan& plan) {
   const auto batches = std::count_if(plan.passes.begin(), plan.passes.end(),
                                      [](const PlanPass& pass) { return pass.barrier_count != 0; });
-  return static_cast<double>(batches) / static_cast<double>(std::max<size_t>(plan.passes.size(), 1));
+  return static_cast<double>(batches) /
+         static_cast<double>(std::max<size_t>(plan.passes.size(), 1));
 }
 
 // Measures memory and order of each graph once, which also warms up the compiler. Returns false if
 // a graph is rejected.
-bool measure_memory(Compiler& compiler, const GraphSet& set, const DeviceProfile& device, CompiledPlan& plan,
-                    CompileRow& row, Diagnostics& diagnostics) {
+bool measure_memory(Compiler& compiler, const GraphSet& set, const DeviceProfile& device,
+                    CompiledPlan& plan, CompileRow& row, Diagnostics& diagnostics) {
   for (const Graph& graph : set.graphs) {
     const uint64_t began = thread_nanoseconds();
-    if (!compiler.compile(input_of(set, graph, device, row.options), diagnostics, plan)) return false;
+    if (!compiler.compile(input_of(set, graph, device, row.options), diagnostics, plan))
+      return false;
     const double ms = static_cast<double>(thread_nanoseconds() - began) / ns_per_ms;
     row.mean_ms += ms;
     row.slowest_ms = std::max(row.slowest_ms, ms);
@@ -112,13 +118,15 @@ bool measure_memory(Compiler& compiler, const GraphSet& set, const DeviceProfile
     row.optimal += size == bound;
   }
   const auto count = static_cast<double>(set.graphs.size());
-  for (double* mean : {&row.heap_bytes, &row.max_live_bytes, &row.ratio, &row.batches_per_pass, &row.mean_ms})
+  for (double* mean :
+       {&row.heap_bytes, &row.max_live_bytes, &row.ratio, &row.batches_per_pass, &row.mean_ms})
     *mean /= count;
   return true;
 }
 
-void measure_time(Compiler& compiler, const GraphSet& set, const DeviceProfile& device, CompiledPlan& plan,
-                  uint64_t time_per_row, CompileRow& row, Diagnostics& diagnostics) {
+void measure_time(Compiler& compiler, const GraphSet& set, const DeviceProfile& device,
+                  CompiledPlan& plan, uint64_t time_per_row, CompileRow& row,
+                  Diagnostics& diagnostics) {
   std::vector<CompileInput> inputs;
   uint64_t passes = 0;
   for (const Graph& graph : set.graphs) {
@@ -161,7 +169,8 @@ struct CompileTask {
 };
 
 CompileTask task_of(const ShapeFile& file, const PassTypeRegistry& pass_types, const Shape& shape,
-                    uint32_t passes, uint32_t count, std::vector<CompileOptions> options, bool timed) {
+                    uint32_t passes, uint32_t count, std::vector<CompileOptions> options,
+                    bool timed) {
   const auto make = [&file, &pass_types, &shape, passes, count] {
     GraphSet set{shape.name, passes, file.view_width, file.view_height, &pass_types, {}};
     for (uint32_t seed = 0; seed < count; ++seed)
@@ -191,7 +200,8 @@ void add_memory(std::vector<CompileTask>& tasks, const Effort& effort, const Sha
     if (shape.kind == Shape::Kind::random && shape.dead_percent == 0) {
       std::vector<CompileOptions> options = {fast_options, tight_options};
       if (optimize) options.push_back({PackingLevel::optimize});
-      tasks.push_back(task_of(file, pass_types, shape, memory_passes, effort.memory_seeds, options, false));
+      tasks.push_back(
+          task_of(file, pass_types, shape, memory_passes, effort.memory_seeds, options, false));
     }
     if (shape.kind != Shape::Kind::fan) continue;
     for (const uint32_t passes : pass_counts)
@@ -201,8 +211,8 @@ void add_memory(std::vector<CompileTask>& tasks, const Effort& effort, const Sha
 }
 
 // Returns false if a graph cannot be used. `loaded` owns the graphs' pass types.
-bool add_given(std::vector<CompileTask>& tasks, const SuiteRun& run, std::vector<LoadedGraph>& loaded,
-               Diagnostics& diagnostics) {
+bool add_given(std::vector<CompileTask>& tasks, const SuiteRun& run,
+               std::vector<LoadedGraph>& loaded, Diagnostics& diagnostics) {
   const std::vector<std::string> files = graph_files(run.text("graphs"));
   for (const std::string& file : files) {
     std::optional<LoadedGraph> graph = load_graph(file, run.pass_types(), diagnostics);
@@ -212,8 +222,12 @@ bool add_given(std::vector<CompileTask>& tasks, const SuiteRun& run, std::vector
   for (size_t i = 0; i < loaded.size(); ++i) {
     const auto passes = static_cast<uint32_t>(loaded[i].graph.passes.size());
     const auto make = [&loaded, i, passes, name = std::filesystem::path(files[i]).stem().string()] {
-      return GraphSet{
-          name, passes, default_size.width, default_size.height, &loaded[i].pass_types, {loaded[i].graph}};
+      return GraphSet{name,
+                      passes,
+                      default_size.width,
+                      default_size.height,
+                      &loaded[i].pass_types,
+                      {loaded[i].graph}};
     };
     tasks.push_back({make, {fast_options, fast_with_reasons}});
   }
@@ -222,10 +236,12 @@ bool add_given(std::vector<CompileTask>& tasks, const SuiteRun& run, std::vector
 
 void add_point(Plot& plot, const CompileRow& row) {
   if (!row.ns || row.options.reasons || row.options.level != PackingLevel::fast) return;
-  if (plot.series.empty() || plot.series.back().name != row.shape) plot.series.push_back({row.shape, {}});
+  if (plot.series.empty() || plot.series.back().name != row.shape)
+    plot.series.push_back({row.shape, {}});
   plot.series.back().points.push_back(
       {double(row.passes), row.ns->median,
-       fmt::format("{} of {} passes: {:.0f} ns a pass", row.shape, row.passes, row.ns->median), false});
+       fmt::format("{} of {} passes: {:.0f} ns a pass", row.shape, row.passes, row.ns->median),
+       false});
 }
 
 demo::Result<> measure_compile(SuiteRun& run, const Emit<CompileRow>& emit) {
@@ -278,10 +294,12 @@ Suite compile_suite() {
        .what = "Measure time and memory of compiling random graphs or given graphs",
        .title = "Cost of compiling a graph",
        .summary = "CPU time of the compiling thread, and memory efficiency of the heaps.",
-       .options = {{"shapes", "Description of the random graphs", "tests/benchmark/shapes.json", "FILE"},
+       .options = {{"shapes", "Description of the random graphs", "tests/benchmark/shapes.json",
+                    "FILE"},
                    {"graphs", "Measure the graph files of a folder instead", "", "DIR"},
                    pass_types_option(),
-                   {"optimize", "Also measure the packing level that takes seconds per graph", false}}},
+                   {"optimize", "Also measure the packing level that takes seconds per graph",
+                    false}}},
       {{"shape", "shape", &Row::shape, {.groups = true}},
        {"passes", "passes", &Row::passes},
        {"rotating", "graphs", &Row::rotating},
@@ -296,7 +314,9 @@ Suite compile_suite() {
        {"goal_ns_per_pass", "goal", &Row::goal},
        {"goal_met",
         "goal met",
-        [](const Row& row) { return row.goal ? std::optional(row.ns->median <= *row.goal) : std::nullopt; },
+        [](const Row& row) {
+          return row.goal ? std::optional(row.ns->median <= *row.goal) : std::nullopt;
+        },
         {.goal = Goal::advisory}},
        {"heap_bytes", "", &Row::heap_bytes},
        {"max_live_bytes", "", &Row::max_live_bytes},

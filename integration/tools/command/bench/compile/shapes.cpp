@@ -149,13 +149,15 @@ struct Draft {
 };
 
 // Reads two integers.
-void read_pair(BenchObject& object, std::string_view key, int64_t maximum, int64_t& first, int64_t& second) {
+void read_pair(BenchObject& object, std::string_view key, int64_t maximum, int64_t& first,
+               int64_t& second) {
   const NodeId list = object.reader.array(key, 2, 2);
   if (!list.valid()) return;
   const std::vector<NodeId> nodes = children(object.document, list);
   const std::string what = fmt::format("'{}' of {}", key, object.reader.what());
   first = read_integer(object.document, nodes[0], what, 1, maximum, object.diagnostics).value_or(1);
-  second = read_integer(object.document, nodes[1], what, 1, maximum, object.diagnostics).value_or(1);
+  second =
+      read_integer(object.document, nodes[1], what, 1, maximum, object.diagnostics).value_or(1);
 }
 
 void read_resource(BenchObject& object, RandomResource& resource) {
@@ -173,7 +175,8 @@ void read_resource(BenchObject& object, RandomResource& resource) {
 void read_shape(BenchObject& object, Shape& shape) {
   constexpr std::string_view kinds[] = {"chain", "fan", "random"}; // in the order of Shape::Kind
   object.name("name", shape.name);
-  if (const auto kind = object.reader.word("kind", kinds)) shape.kind = static_cast<Shape::Kind>(*kind);
+  if (const auto kind = object.reader.word("kind", kinds))
+    shape.kind = static_cast<Shape::Kind>(*kind);
   if (shape.kind == Shape::Kind::fan) {
     read_pair(object, "readers", 64, shape.readers.numerator, shape.readers.denominator);
     object.count("arity", shape.arity, 2, max_reads);

@@ -52,15 +52,16 @@ struct Past {
 
 // Interpolates cubically if all neighbouring texels show the surface, otherwise bilinearly over
 // those that do, as common/subsurface_accumulate.comp.
-AccumulatedLight find_light(const FrameConstants& frame, const Past& past, const PreviousPlace& place,
-                            uint32_t id, double tolerance) {
+AccumulatedLight find_light(const FrameConstants& frame, const Past& past,
+                            const PreviousPlace& place, uint32_t id, double tolerance) {
   const HistoryTaps taps = find_history(frame, place, id, tolerance, [&](int x, int y) {
     const size_t i = past.index(x, y);
     return SurfaceBefore{double(past.depth[i]), past.profile[i]};
   });
   AccumulatedLight sum{};
   if (taps.weight == std::array<double, 4>{}) return sum;
-  const std::array<double, 4> across = catmull_rom(place.x - taps.x), down = catmull_rom(place.y - taps.y);
+  const std::array<double, 4> across = catmull_rom(place.x - taps.x),
+                              down = catmull_rom(place.y - taps.y);
   bool sharp = true;
   for (int k = 0; k < 16 && sharp; ++k) {
     const double fraction = across[size_t(k & 3)] * down[size_t(k >> 2)];
@@ -82,8 +83,8 @@ AccumulatedLight find_light(const FrameConstants& frame, const Past& past, const
 }
 
 // Returns the smaller depth step to both sides in x and in y, mm.
-double rise_of(const std::vector<float>& depth, const std::vector<uint8_t>& profile, int width, int height,
-               int x, int y) {
+double rise_of(const std::vector<float>& depth, const std::vector<uint8_t>& profile, int width,
+               int height, int x, int y) {
   const auto i = [&](int at_x, int at_y) { return size_t(at_y) * size_t(width) + size_t(at_x); };
   const size_t own = i(x, y);
   double steps[2] = {0, 0};
@@ -101,8 +102,8 @@ double rise_of(const std::vector<float>& depth, const std::vector<uint8_t>& prof
 
 } // namespace
 
-const std::vector<AccumulatedLight>& Accumulation::add(const CapturedFrame& frame,
-                                                       const std::vector<float>& light, bool follows) {
+const std::vector<AccumulatedLight>&
+Accumulation::add(const CapturedFrame& frame, const std::vector<float>& light, bool follows) {
   const int width = int(frame.description.width), height = int(frame.description.height);
   std::vector<float> depth = frame.depth.values;
   for (float& value : depth)
@@ -124,12 +125,15 @@ const std::vector<AccumulatedLight>& Accumulation::add(const CapturedFrame& fram
         if (moves)
           for (size_t c = 0; c < 2; ++c)
             velocity[c] = double(frame.velocity.at(uint32_t(x), uint32_t(row), uint32_t(c)));
-        const PreviousPlace place = moves ? place_before(constants, x, y, double(depth[i]), velocity)
-                                          : place_before(constants, x, y, double(depth[i]));
-        before = find_light(constants, past, place, id,
-                            depth_tolerance(place.depth, rise_of(depth, frame.profile, width, height, x, y)));
+        const PreviousPlace place = moves
+                                        ? place_before(constants, x, y, double(depth[i]), velocity)
+                                        : place_before(constants, x, y, double(depth[i]));
+        before = find_light(
+            constants, past, place, id,
+            depth_tolerance(place.depth, rise_of(depth, frame.profile, width, height, x, y)));
       }
-      now[i] = add_frame(before, {double(light[3 * i]), double(light[3 * i + 1]), double(light[3 * i + 2])},
+      now[i] = add_frame(before,
+                         {double(light[3 * i]), double(light[3 * i + 1]), double(light[3 * i + 2])},
                          weight);
     }
   });

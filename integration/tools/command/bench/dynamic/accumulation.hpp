@@ -13,8 +13,8 @@ class Accumulation {
 public:
   // Adds a frame's light (3 values per pixel) and returns the mean so far. If `follows` is false,
   // the frame does not follow the last added frame and the mean restarts.
-  const std::vector<subsurface::AccumulatedLight>& add(const CapturedFrame& frame,
-                                                       const std::vector<float>& light, bool follows);
+  const std::vector<subsurface::AccumulatedLight>&
+  add(const CapturedFrame& frame, const std::vector<float>& light, bool follows);
 
 private:
   std::vector<subsurface::AccumulatedLight> mean_;

@@ -15,7 +15,8 @@ constexpr double little_light = 3.0 / 2048;
 std::vector<float> light_of(const ReferenceFrame& frame) {
   std::vector<float> light;
   for (size_t i = 0; i < frame.profile.size(); ++i)
-    if (frame.profile[i] != 0) light.insert(light.end(), &frame.light[3 * i], &frame.light[3 * i] + 3);
+    if (frame.profile[i] != 0)
+      light.insert(light.end(), &frame.light[3 * i], &frame.light[3 * i] + 3);
   return light;
 }
 
@@ -50,7 +51,8 @@ std::optional<Reference> make_reference_of_still(const Session& session, const C
     for (size_t i = 0; i < reference.size(); ++i)
       reference[i] += fraction.back() * one.reference[i];
   }
-  if (!known.known.empty() && comparable && double(largest(rest)) <= little_light * double(brightest)) {
+  if (!known.known.empty() && comparable &&
+      double(largest(rest)) <= little_light * double(brightest)) {
     Reference combined = known.first;
     combined.light = std::move(reference);
     combined.exposure = frame.description.exposure;

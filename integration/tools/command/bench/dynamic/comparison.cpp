@@ -53,10 +53,14 @@ struct Published {
 };
 // Xie et al. 2021, table 3: 1440p on a GeForce RTX 2080 Ti, PSNR of 8-bit images.
 constexpr Published published[] = {
-    {"flashing", "spvg", "AS", 61.97, 1.47, 51.19},    {"flashing", "ocv", "AS+OCV", 29.58, 0.80, 49.55},
-    {"flashing", "ccv", "AS+CCV", 26.88, 0.75, 49.43}, {"regular", "spvg", "AS", 26.51, 3.39, 47.85},
-    {"regular", "ocv", "AS+OCV", 18.32, 2.55, 47.57},  {"regular", "ccv", "AS+CCV", 17.82, 2.58, 47.55},
-    {"dynamic", "spvg", "AS", 22.01, 2.02, 50.62},     {"dynamic", "ocv", "AS+OCV", 14.70, 1.54, 49.11},
+    {"flashing", "spvg", "AS", 61.97, 1.47, 51.19},
+    {"flashing", "ocv", "AS+OCV", 29.58, 0.80, 49.55},
+    {"flashing", "ccv", "AS+CCV", 26.88, 0.75, 49.43},
+    {"regular", "spvg", "AS", 26.51, 3.39, 47.85},
+    {"regular", "ocv", "AS+OCV", 18.32, 2.55, 47.57},
+    {"regular", "ccv", "AS+CCV", 17.82, 2.58, 47.55},
+    {"dynamic", "spvg", "AS", 22.01, 2.02, 50.62},
+    {"dynamic", "ocv", "AS+OCV", 14.70, 1.54, 49.11},
     {"dynamic", "ccv", "AS+CCV", 14.13, 1.52, 49.11},
 };
 
@@ -71,14 +75,16 @@ void add_comparisons(Report& report, std::span<const DynamicRow> rows) {
     report.info.emplace_back("ocv against spvg, flashing",
                              fmt::format("samples x {:.3f}", ocv->mean_spp / spvg->mean_spp));
   if (const DynamicRow* split = find_row(rows, "regular", "afis", "split_half"))
-    report.info.emplace_back("split_half, regular", fmt::format("maximum samples x {:.3f} of the mean",
-                                                                split->peak_spp / split->mean_spp));
+    report.info.emplace_back(
+        "split_half, regular",
+        fmt::format("maximum samples x {:.3f} of the mean", split->peak_spp / split->mean_spp));
 }
 
 void add_published(Report& report, std::span<const DynamicRow> rows) {
   report.more_title = "Comparison with the paper's table 3";
-  report.more_text = "Theirs: Xie et al. 2021, 2560x1440 on a GeForce RTX 2080 Ti, 300 frames, PSNR of 8-bit "
-                     "video. Ours: this run. Scenes, device and size differ, so only ratios are comparable.";
+  report.more_text =
+      "Theirs: Xie et al. 2021, 2560x1440 on a GeForce RTX 2080 Ti, 300 frames, PSNR of 8-bit "
+      "video. Ours: this run. Scenes, device and size differ, so only ratios are comparable.";
   report.more.columns = {{"scene", "scene"},
                          {"guidance", "guidance"},
                          {"their_spp", "their samples", {4}},

@@ -58,8 +58,9 @@ double mean_samples(const std::vector<float>& sampling, const std::vector<uint8_
   return count > 0 ? sum / double(count) : 0;
 }
 
-demo::Result<> measure_frame(const DynamicBench& bench, const Sequence& sequence, size_t t, TechniqueRun& run,
-                             const Reference& reference, MeasuredSequence& measured) {
+demo::Result<> measure_frame(const DynamicBench& bench, const Sequence& sequence, size_t t,
+                             TechniqueRun& run, const Reference& reference,
+                             MeasuredSequence& measured) {
   const SequenceFrame& frame = sequence.frames[t];
   auto light = run.scatter(frame.captured, t > 0 && !frame.cut);
   if (!light) return light.error();
@@ -70,7 +71,8 @@ demo::Result<> measure_frame(const DynamicBench& bench, const Sequence& sequence
   if (!sequence.request.still) {
     const auto& mean = measured.accumulation.add(frame.captured, *light, t > 0 && !frame.cut);
     for (const uint32_t pixel : reference.pixels)
-      chosen.accumulated.insert(chosen.accumulated.end(), mean[pixel].light.begin(), mean[pixel].light.end());
+      chosen.accumulated.insert(chosen.accumulated.end(), mean[pixel].light.begin(),
+                                mean[pixel].light.end());
   }
   measured.light.push_back(std::move(chosen));
   const auto times = run.times();
@@ -90,24 +92,30 @@ demo::Result<> measure_frame(const DynamicBench& bench, const Sequence& sequence
 }
 
 Plot frames_plot(const SequenceRequest& request, const char* what, const char* axis) {
-  return {
-      fmt::format("{} {}, {} of each frame", request.scene, request.framing, what), "frame", axis, {}, true};
+  return {fmt::format("{} {}, {} of each frame", request.scene, request.framing, what),
+          "frame",
+          axis,
+          {},
+          true};
 }
 
 // Returns a series over frames. `point` returns a frame's value and its text.
-template <class Point> PlotSeries series_of(const DynamicTechnique& technique, size_t frames, Point point) {
-  PlotSeries series{technique.technique + " " + technique.guidance, {}, is_baseline(technique.technique)};
+template <class Point>
+PlotSeries series_of(const DynamicTechnique& technique, size_t frames, Point point) {
+  PlotSeries series{
+      technique.technique + " " + technique.guidance, {}, is_baseline(technique.technique)};
   for (size_t t = 0; t < frames; ++t) {
     const auto [value, text] = point(t);
     series.points.push_back({double(t), value,
-                             fmt::format("{} {} {}, frame {}: {}", technique.technique, technique.guidance,
-                                         technique.setting, t, text),
+                             fmt::format("{} {} {}, frame {}: {}", technique.technique,
+                                         technique.guidance, technique.setting, t, text),
                              false});
   }
   return series;
 }
 
-void add_plots(DynamicBench& bench, const Sequence& sequence, const std::vector<MeasuredSequence>& all) {
+void add_plots(DynamicBench& bench, const Sequence& sequence,
+               const std::vector<MeasuredSequence>& all) {
   Plot errors = frames_plot(sequence.request, "error", "RMSE of linear luminance");
   Plot samples = frames_plot(sequence.request, "samples", "samples a pixel");
   for (size_t i = 0; i < all.size(); ++i) {
@@ -126,8 +134,8 @@ void add_plots(DynamicBench& bench, const Sequence& sequence, const std::vector<
   if (!samples.series.empty()) bench.run.report.plots.push_back(std::move(samples));
 }
 
-DynamicRow row_of(const Sequence& sequence, const DynamicTechnique& technique, const MeasuredSequence& one,
-                  uint32_t counted) {
+DynamicRow row_of(const Sequence& sequence, const DynamicTechnique& technique,
+                  const MeasuredSequence& one, uint32_t counted) {
   DynamicRow row{sequence.request.scene, sequence.request.framing, sequence.d_px, technique};
   row.mean_spp = one.spp.empty() ? one.counts.mean_spp : mean_of(one.spp, counted);
   row.peak_spp = one.spp.empty() ? one.counts.mean_spp : largest_of(one.spp, counted);
@@ -144,14 +152,16 @@ DynamicRow row_of(const Sequence& sequence, const DynamicTechnique& technique, c
 demo::Result<> measure_sequence(DynamicBench& bench, SequenceRequest request) {
   SuiteRun& run = bench.run;
   if (const uint64_t frames = run.number("frames"); frames > 0) request.frames = uint32_t(frames);
-  auto rendered = render_sequence(request, run.size().width, run.size().height, head_model(run.text("head")));
+  auto rendered =
+      render_sequence(request, run.size().width, run.size().height, head_model(run.text("head")));
   if (!rendered) return rendered.error();
   const Sequence sequence = rendered.take();
 
   std::vector<std::unique_ptr<TechniqueRun>> runs;
   for (const DynamicTechnique& technique : bench.techniques) {
     auto made = TechniqueRun::create(bench.host, technique,
-                                     sequence.frames.front().captured.description.profiles, bench.sap_tables);
+                                     sequence.frames.front().captured.description.profiles,
+                                     bench.sap_tables);
     if (!made) return made.error();
     runs.push_back(made.take());
   }
@@ -162,17 +172,20 @@ demo::Result<> measure_sequence(DynamicBench& bench, SequenceRequest request) {
   for (size_t t = 0; t < sequence.frames.size(); ++t) {
     progress.update(t);
     const CapturedFrame& frame = sequence.frames[t].captured;
-    const std::string what = fmt::format("reference of {}, frame {}", name, t), cache = run.text("cache");
+    const std::string what = fmt::format("reference of {}, frame {}", name, t),
+                      cache = run.text("cache");
     const uint32_t subset = bench.file.subset;
-    const auto reference = request.still
-                               ? make_reference_of_still(run.session, frame, what, subset, cache, known)
-                               : make_reference(run.session, frame, what, subset, cache);
+    const auto reference =
+        request.still ? make_reference_of_still(run.session, frame, what, subset, cache, known)
+                      : make_reference(run.session, frame, what, subset, cache);
     if (!reference || interrupted()) return stopped();
     for (size_t i = 0; i < runs.size(); ++i)
-      if (auto done = measure_frame(bench, sequence, t, *runs[i], *reference, all[i]); !done) return done;
+      if (auto done = measure_frame(bench, sequence, t, *runs[i], *reference, all[i]); !done)
+        return done;
   }
   for (size_t i = 0; i < all.size(); ++i) {
-    all[i].figures = sequence_figures(all[i].light, bench.file.counted, request.still, sequence.exposure);
+    all[i].figures =
+        sequence_figures(all[i].light, bench.file.counted, request.still, sequence.exposure);
     bench.rows.push_back(row_of(sequence, bench.techniques[i], all[i], bench.file.counted));
   }
   add_plots(bench, sequence, all);
@@ -197,7 +210,8 @@ demo::Result<> measure_dynamic(SuiteRun& run, const Emit<DynamicRow>& emit) {
   if (!techniques) return techniques.error();
   const auto host = run.open_device();
   if (!host) return host.error();
-  DynamicBench bench{run, file, **host, techniques.take(), subsurface::make_sap_tables({true, true}, {})};
+  DynamicBench bench{run, file, **host, techniques.take(),
+                     subsurface::make_sap_tables({true, true}, {})};
   for (const SequenceRequest& request : file.scenes)
     if (run.is_requested("scenes", request.scene) && run.is_requested("framings", request.framing))
       if (auto done = measure_sequence(bench, request); !done) return done;
@@ -224,13 +238,16 @@ template <auto Figure> ReportValue figure_of(const DynamicRow& row) {
 
 Suite dynamic_suite() {
   using Row = DynamicRow;
-  const ColumnStyle page{.in_text = false}, four{.digits = 4}, four_on_page{.digits = 4, .in_text = false};
+  const ColumnStyle page{.in_text = false}, four{.digits = 4},
+      four_on_page{.digits = 4, .in_text = false};
   return make_suite<Row>(
       {.name = "dynamic",
        .what = "Measure samples, time, error and flicker with changing light, camera or objects",
        .title = "Changing light, cameras and objects",
-       .summary = "Error of the scattered light before albedo against the fp64 truth of each frame: linear "
-                  "Rec.709 luminance, the sequence's 99.9th percentile of light at 1. Samples are counted on "
+       .summary = "Error of the scattered light before albedo against the fp64 truth of each "
+                  "frame: linear "
+                  "Rec.709 luminance, the sequence's 99.9th percentile of light at 1. Samples are "
+                  "counted on "
                   "the device.",
        .options = {size_option({320, 180}),
                    {"frames", "Frames per sequence; 0: as in the file", 0u, "", 0u, 0, 3600},
@@ -254,7 +271,8 @@ Suite dynamic_suite() {
        {"max_ms", "longest ms", &Row::max_ms, four_on_page},
        {"sampling_ms", "scattering ms", &Row::sampling_ms, four_on_page},
        {"psnr_db_frame", "PSNR dB", figure_of<&SequenceFigures::psnr_db_frame>, four},
-       {"psnr_db_accumulated", "accumulated dB", figure_of<&SequenceFigures::psnr_db_accumulated>, four},
+       {"psnr_db_accumulated", "accumulated dB", figure_of<&SequenceFigures::psnr_db_accumulated>,
+        four},
        {"psnr_db_sdr8", "8-bit dB", figure_of<&SequenceFigures::psnr_db_sdr8>, four_on_page},
        {"flicker", "flicker", &Row::flicker},
        {"history_bytes", "history bytes", &Row::history_bytes, page}},

@@ -8,7 +8,8 @@ void read_sequence(BenchObject& entry, SequenceRequest& request) {
   entry.name("scene", request.scene);
   entry.name("framing", request.framing);
   entry.file("file", request.file);
-  if (const auto d = entry.reader.number("d_px", min_d_px, max_d_px, Need::optional)) request.d_px = *d;
+  if (const auto d = entry.reader.number("d_px", min_d_px, max_d_px, Need::optional))
+    request.d_px = *d;
   entry.camera(request.camera);
   entry.count("first", request.first, 0, max_sequence_frames, Need::optional);
   entry.count("frames", request.frames, 1, max_sequence_frames);
@@ -29,8 +30,9 @@ std::optional<DynamicFile> read_dynamic(const std::string& path, Diagnostics& di
     root.count("subset", file.subset, 1, 1 << 24);
     root.entries("scenes", "scene", 1,
                  [&](BenchObject& entry) { read_sequence(entry, file.scenes.emplace_back()); });
-    root.entries("techniques", "technique", 1,
-                 [&](BenchObject& entry) { read_guided_technique(entry, file.techniques.emplace_back()); });
+    root.entries("techniques", "technique", 1, [&](BenchObject& entry) {
+      read_guided_technique(entry, file.techniques.emplace_back());
+    });
   });
 }
 

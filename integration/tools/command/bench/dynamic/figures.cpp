@@ -30,8 +30,8 @@ struct MeanSquare {
 
 } // namespace
 
-SequenceFigures sequence_figures(const std::vector<FrameLight>& frames, uint32_t counted, bool still,
-                                 double exposure) {
+SequenceFigures sequence_figures(const std::vector<FrameLight>& frames, uint32_t counted,
+                                 bool still, double exposure) {
   SequenceFigures figures;
   double frame_sum = 0, shown_sum = 0, accumulated_sum = 0;
   uint32_t used = 0;
@@ -60,7 +60,8 @@ SequenceFigures sequence_figures(const std::vector<FrameLight>& frames, uint32_t
     shown_sum += sdr8_mse(now.found, now.reference, exposure);
     MeanSquare accumulated;
     for (size_t i = 0; !still && i < now.accumulated.size() / 3; ++i)
-      accumulated.add_square(exposure * (luminance(now.accumulated, i) - luminance(now.reference, i)));
+      accumulated.add_square(exposure *
+                             (luminance(now.accumulated, i) - luminance(now.reference, i)));
     for (size_t i = 0; still && i < pixels; ++i) {
       accumulated.add_square(exposure * (luminance(found_mean, i) - luminance(reference_mean, i)));
       if (t == 0) continue;
@@ -73,7 +74,8 @@ SequenceFigures sequence_figures(const std::vector<FrameLight>& frames, uint32_t
   if (used == 0) return figures;
   figures.psnr_db_frame = psnr_from_mse(frame_sum / used);
   figures.psnr_db_sdr8 = psnr_from_mse(shown_sum / used);
-  if (still || accumulated_sum > 0) figures.psnr_db_accumulated = psnr_from_mse(accumulated_sum / used);
+  if (still || accumulated_sum > 0)
+    figures.psnr_db_accumulated = psnr_from_mse(accumulated_sum / used);
   if (still) figures.flicker = std::sqrt(flicker.value());
   return figures;
 }

@@ -27,7 +27,7 @@ struct SequenceFigures {
 // `counted` is the first counted frame. `still` means that frames share their pixels; otherwise
 // flicker stays 0, and psnr_db_accumulated stays 0 for frames without accumulated light. `exposure`
 // is a factor on all light.
-SequenceFigures sequence_figures(const std::vector<FrameLight>& frames, uint32_t counted, bool still,
-                                 double exposure);
+SequenceFigures sequence_figures(const std::vector<FrameLight>& frames, uint32_t counted,
+                                 bool still, double exposure);
 
 } // namespace dermis::tools

@@ -48,8 +48,8 @@ demo::Result<Sequence> render_frames(const SequenceRequest& request, demo::Rende
 
 } // namespace
 
-demo::Result<Sequence> render_sequence(const SequenceRequest& request, uint32_t width, uint32_t height,
-                                       const demo::ModelOptions& model) {
+demo::Result<Sequence> render_sequence(const SequenceRequest& request, uint32_t width,
+                                       uint32_t height, const demo::ModelOptions& model) {
   demo::RenderOptions options;
   options.scene = request.file;
   options.model = model;

@@ -36,7 +36,7 @@ struct Sequence {
 };
 
 // Errors: those of demo::render.
-demo::Result<Sequence> render_sequence(const SequenceRequest& request, uint32_t width, uint32_t height,
-                                       const demo::ModelOptions& model);
+demo::Result<Sequence> render_sequence(const SequenceRequest& request, uint32_t width,
+                                       uint32_t height, const demo::ModelOptions& model);
 
 } // namespace dermis::tools

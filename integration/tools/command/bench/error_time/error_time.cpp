@@ -56,9 +56,10 @@ void adopt_profiles(ErrorTimeBench& bench, CapturedFrame& frame) {
   std::array<uint8_t, 256> renumbered{};
   std::vector<CaptureProfile> own;
   for (const CaptureProfile& one : frame.description.profiles) {
-    auto known = std::find_if(bench.profiles.begin(), bench.profiles.end(), [&](const CaptureProfile& other) {
-      return other.profile.name == one.profile.name && other.profile.d_mm == one.profile.d_mm;
-    });
+    auto known = std::find_if(
+        bench.profiles.begin(), bench.profiles.end(), [&](const CaptureProfile& other) {
+          return other.profile.name == one.profile.name && other.profile.d_mm == one.profile.d_mm;
+        });
     if (known == bench.profiles.end()) {
       bench.profiles.push_back({static_cast<uint32_t>(bench.profiles.size() + 1), one.profile});
       known = bench.profiles.end() - 1;
@@ -149,8 +150,9 @@ demo::Result<std::optional<std::vector<float>>> self_reference(ErrorTimeBench& b
                                                                const CapturedFrame& window) {
   const ErrorTimeFile& file = bench.file;
   TechniqueRequest request = technique.request();
-  auto samples = std::find_if(request.set.begin(), request.set.end(),
-                              [&](const NamedValue& one) { return one.first == file.self_setting; });
+  auto samples = std::find_if(request.set.begin(), request.set.end(), [&](const NamedValue& one) {
+    return one.first == file.self_setting;
+  });
   const std::string name = subject.scene + "/" + subject.framing;
   if (samples == request.set.end() ||
       std::find(file.self_scenes.begin(), file.self_scenes.end(), name) == file.self_scenes.end())
@@ -163,8 +165,10 @@ demo::Result<std::optional<std::vector<float>>> self_reference(ErrorTimeBench& b
   return std::optional<std::vector<float>>(light.take());
 }
 
-void add_times(ErrorTimeRow& row, const TechniqueTimes& times, std::chrono::steady_clock::time_point start) {
-  row.spent_ms += std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+void add_times(ErrorTimeRow& row, const TechniqueTimes& times,
+               std::chrono::steady_clock::time_point start) {
+  row.spent_ms +=
+      std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
   row.device_ms.push_back(times.device);
   row.sampling_ms.push_back(times.sampling);
 }
@@ -212,9 +216,9 @@ demo::Result<> measure_subject(ErrorTimeBench& bench, const Subject& subject, Pr
     one.error = still_error(*light, *reference);
     one.counts = technique.counts(fraction, d_px);
     if (technique.request().heat_map)
-      bench.maps.pictures.push_back(heat_map(fmt::format("{}, {}", name, name_of(technique.request())),
-                                             *light, *reference, subject.frame.description.width,
-                                             subject.frame.profile));
+      bench.maps.pictures.push_back(
+          heat_map(fmt::format("{}, {}", name, name_of(technique.request())), *light, *reference,
+                   subject.frame.description.width, subject.frame.profile));
     bench.measured.push_back(std::move(one));
   }
   for (uint32_t round = 1; round < bench.file.warm_up + bench.file.repetitions; ++round)
@@ -249,7 +253,8 @@ Plot plot_of(const Subject& subject, std::span<const ErrorTimeRow> rows) {
     if (plot.series.empty() || plot.series.back().name != technique)
       plot.series.push_back({technique, {}, is_baseline(technique)});
     plot.series.back().points.push_back(
-        {ms, rmse, fmt::format("{}: {:.2f} ms, RMSE {:.5f}", name_of(*row.request), ms, rmse), row.on_front});
+        {ms, rmse, fmt::format("{}: {:.2f} ms, RMSE {:.5f}", name_of(*row.request), ms, rmse),
+         row.on_front});
   }
   return plot;
 }
@@ -290,12 +295,15 @@ void add_error_time_report(const ErrorTimeBench& bench) {
   SuiteRun& run = bench.run;
   const ErrorTimeFile& file = bench.file;
   run.add_fact("size", fmt::format("{}x{} pixels", run.size().width, run.size().height));
-  run.add_fact("repetitions", fmt::format("median of {} after {} to warm up, all techniques in turn{}",
-                                          file.repetitions, file.warm_up, early_end(file)));
-  run.add_fact("truth", fmt::format("everywhere on planes, else at {} stratified pixels", file.subset));
-  run.add_fact("reads a pixel",
-               "counted from the kernels' source (integration/tools/references/image_reads.cpp) times the "
-               "texels each pass computes for a pixel of the view");
+  run.add_fact("repetitions",
+               fmt::format("median of {} after {} to warm up, all techniques in turn{}",
+                           file.repetitions, file.warm_up, early_end(file)));
+  run.add_fact("truth",
+               fmt::format("everywhere on planes, else at {} stratified pixels", file.subset));
+  run.add_fact(
+      "reads a pixel",
+      "counted from the kernels' source (integration/tools/references/image_reads.cpp) times the "
+      "texels each pass computes for a pixel of the view");
   run.add_fact("baseline", fmt::format("{} {}", file.baseline_technique, file.baseline_setting));
   run.report.pictures = {scene_pictures(bench.subjects), bench.maps};
   for (const Subject& subject : bench.subjects)
@@ -324,8 +332,8 @@ demo::Result<> measure_error_time(SuiteRun& run, const Emit<ErrorTimeRow>& emit)
     if (auto measured = measure_subject(bench, subject, progress, done); !measured) return measured;
   for (const ErrorTimeRow& one : bench.measured)
     if (!one.counts.unknown_pass_type.empty())
-      run.add_note(fmt::format("reads_per_pixel of {}: the reads of '{}' are unknown", one.request->graph,
-                               one.counts.unknown_pass_type));
+      run.add_note(fmt::format("reads_per_pixel of {}: the reads of '{}' are unknown",
+                               one.request->graph, one.counts.unknown_pass_type));
   complete_rows(bench);
   add_error_time_report(bench);
   for (const ErrorTimeRow& row : bench.measured)
@@ -346,14 +354,17 @@ template <size_t Channel> ReportValue rmse_of(const ErrorTimeRow& row) {
 Suite error_time_suite() {
   using Row = ErrorTimeRow;
   using Figures = ErrorFigures;
-  const ColumnStyle page{.in_text = false}, four{.digits = 4}, four_on_page{.digits = 4, .in_text = false};
+  const ColumnStyle page{.in_text = false}, four{.digits = 4},
+      four_on_page{.digits = 4, .in_text = false};
   return make_suite<Row>(
       {.name = "error-time",
        .what = "Measure run time and error of every technique on every still scene",
        .title = "Run time and error",
-       .summary = "Error of the scattered light before albedo against the fp64 truth: linear Rec.709 "
-                  "luminance, the scene's 99.9th percentile of light at 1. Time is the sum of the device's "
-                  "timestamps over all passes of a technique.",
+       .summary =
+           "Error of the scattered light before albedo against the fp64 truth: linear Rec.709 "
+           "luminance, the scene's 99.9th percentile of light at 1. Time is the sum of the "
+           "device's "
+           "timestamps over all passes of a technique.",
        .options = {size_option({640, 360}),
                    head_option(),
                    {"study", "Also measure the framings that study one head", false},
@@ -363,16 +374,21 @@ Suite error_time_suite() {
                    cache_option()}},
       {{"scene", "scene", [](const Row& row) { return row.subject->scene; }, {.groups = true}},
        {"d_px", "d, px", [](const Row& row) { return row.subject->d_px; }, {.groups = true}},
-       {"framing", "framing", [](const Row& row) { return row.subject->framing; }, {.groups = true}},
+       {"framing",
+        "framing",
+        [](const Row& row) { return row.subject->framing; },
+        {.groups = true}},
        {"technique", "technique", [](const Row& row) { return row.request->technique; }},
        {"setting", "setting", [](const Row& row) { return row.request->setting; }},
        {"device_ms", "ms", [](const Row& row) { return row.device.median; }, four},
        {"device_ms_low", "", [](const Row& row) { return row.device.p10; }},
        {"device_ms_high", "", [](const Row& row) { return row.device.p90; }},
        {"repetitions", "", [](const Row& row) { return row.device_ms.size(); }},
-       {"sampling_ms", "scattering ms", [](const Row& row) { return median(row.sampling_ms); }, four_on_page},
+       {"sampling_ms", "scattering ms", [](const Row& row) { return median(row.sampling_ms); },
+        four_on_page},
        {"mean_spp", "samples", [](const Row& row) { return row.counts.mean_spp; }, page},
-       {"reads_per_pixel", "reads a pixel", [](const Row& row) { return row.counts.reads_per_pixel; }},
+       {"reads_per_pixel", "reads a pixel",
+        [](const Row& row) { return row.counts.reads_per_pixel; }},
        {"rmse", "RMSE", error_of<&Figures::rmse>},
        {"rmse_low", "", error_of<&Figures::rmse_low>},
        {"rmse_high", "", error_of<&Figures::rmse_high>},
@@ -382,9 +398,11 @@ Suite error_time_suite() {
        {"psnr_db", "PSNR dB", error_of<&Figures::psnr_db>, four},
        {"max_error", "largest", error_of<&Figures::max_error>},
        {"p99_error", "99 %", error_of<&Figures::p99_error>, page},
-       {"psnr_db_sdr8", "8-bit dB", [](const Row& row) { return row.error.psnr_db_sdr8; }, four_on_page},
+       {"psnr_db_sdr8", "8-bit dB", [](const Row& row) { return row.error.psnr_db_sdr8; },
+        four_on_page},
        {"psnr_db_self", "self dB", &Row::psnr_db_self, four_on_page},
-       {"transient_bytes", "bytes", [](const Row& row) { return row.counts.transient_bytes; }, page},
+       {"transient_bytes", "bytes", [](const Row& row) { return row.counts.transient_bytes; },
+        page},
        {"dispatches", "dispatches", [](const Row& row) { return row.counts.dispatches; }, page},
        {"time_ratio", "ms / baseline", &Row::time_ratio, page},
        {"rmse_ratio", "RMSE / baseline", &Row::rmse_ratio, page},

@@ -16,12 +16,13 @@ SceneRequest read_scene(BenchObject& entry) {
                                          generated ? Need::required : Need::optional);
   if (list.valid())
     for (const NodeId one : children(entry.document, list))
-      if (const auto d = read_number(entry.document, one, "'d_px' of " + entry.reader.what(), min_d_px,
-                                     max_d_px, entry.diagnostics))
+      if (const auto d = read_number(entry.document, one, "'d_px' of " + entry.reader.what(),
+                                     min_d_px, max_d_px, entry.diagnostics))
         request.d_px.push_back(*d);
   if (entry.reader.ok() && generated && !is_generated(request.scene))
     entry.diagnostics.add(
-        DiagnosticId::invalid_value, entry.document.where(entry.document.find(entry.reader.node(), "scene")),
+        DiagnosticId::invalid_value,
+        entry.document.where(entry.document.find(entry.reader.node(), "scene")),
         fmt::format("'{}' is no generated scene; another scene needs a 'file'", request.scene));
   return request;
 }
@@ -49,7 +50,8 @@ void read_error_time_root(BenchObject& root, ErrorTimeFile& file) {
     baseline.text("setting", file.baseline_setting);
   });
   root.object("self", Need::required, [&](BenchObject& self) { read_self(self, file); });
-  root.entries("scenes", "scene", 1, [&](BenchObject& entry) { file.scenes.push_back(read_scene(entry)); });
+  root.entries("scenes", "scene", 1,
+               [&](BenchObject& entry) { file.scenes.push_back(read_scene(entry)); });
   root.entries("techniques", "technique", 1,
                [&](BenchObject& entry) { entry.technique(file.techniques.emplace_back()); });
 }

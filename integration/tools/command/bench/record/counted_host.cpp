@@ -77,7 +77,8 @@ std::vector<dermis_slot> CountedHost::slots() const {
   uint32_t count = 0;
   if (dermis_graph_slots(graph_, &count, nullptr) != DERMIS_OK) return {};
   std::vector<dermis_slot> slots(count, dermis_slot DERMIS_SLOT_INIT);
-  return dermis_graph_slots(graph_, &count, slots.data()) == DERMIS_OK ? slots : std::vector<dermis_slot>();
+  return dermis_graph_slots(graph_, &count, slots.data()) == DERMIS_OK ? slots
+                                                                       : std::vector<dermis_slot>();
 }
 
 std::string CountedHost::bind() {
@@ -95,8 +96,9 @@ std::string CountedHost::bind() {
       binding.view = device_.make_view();
       binding.before = {VK_IMAGE_LAYOUT_GENERAL, 0, VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT,
                         VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT, 0};
-      binding.after = {VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, 0, VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT,
-                       VK_ACCESS_2_SHADER_SAMPLED_READ_BIT, 0};
+      binding.after = {VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, 0,
+                       VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT, VK_ACCESS_2_SHADER_SAMPLED_READ_BIT,
+                       0};
       set.push_back(binding);
     }
   frame_.command_buffer = device_.command_buffer();
@@ -115,8 +117,8 @@ dermis_result CountedHost::record_frame() {
 
 uint32_t CountedHost::passes() const {
   uint32_t count = 0;
-  return dermis_view_timings(dermis_graph_view(graph_), frame_.completed_frame_index, &count, nullptr) ==
-                 DERMIS_OK
+  return dermis_view_timings(dermis_graph_view(graph_), frame_.completed_frame_index, &count,
+                             nullptr) == DERMIS_OK
              ? count
              : 0;
 }

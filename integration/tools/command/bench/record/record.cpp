@@ -93,7 +93,8 @@ demo::Result<RecordRow> measure_graph(const CountedInput& input, uint32_t sample
     const uint64_t begin = thread_nanoseconds();
     for (uint32_t i = 0; i < frames_per_sample; ++i)
       good = host.record_frame() == DERMIS_OK && good;
-    times.push_back(static_cast<double>(thread_nanoseconds() - begin) / (1000.0 * frames_per_sample));
+    times.push_back(static_cast<double>(thread_nanoseconds() - begin) /
+                    (1000.0 * frames_per_sample));
   }
   const uint64_t allocated = allocations_of_this_thread() - allocations;
   const std::string name = std::filesystem::path(input.name).stem().string();
@@ -137,13 +138,15 @@ demo::Result<> measure_record(SuiteRun& run, const Emit<RecordRow>& emit) {
   if (const std::string problem = read_sources(run, graphs, profile); !problem.empty())
     return input_problem(problem);
   Diagnostics diagnostics;
-  const std::optional<LoadedGraph> known = load_pass_types(run.pass_types().pass_types, diagnostics);
+  const std::optional<LoadedGraph> known =
+      load_pass_types(run.pass_types().pass_types, diagnostics);
   if (!known) {
     print_diagnostics(run.session, diagnostics);
     return input_problem("the pass types cannot be used");
   }
   const uint32_t samples = run.quick ? few_samples : all_samples;
-  run.report.constants = {{"clock", "CPU time of the thread"}, {"frames_per_sample", frames_per_sample}};
+  run.report.constants = {{"clock", "CPU time of the thread"},
+                          {"frames_per_sample", frames_per_sample}};
   run.add_fact("repetitions", fmt::format("{} samples of {} frames", samples, frames_per_sample));
   run.report.plots = {{"time of a frame", "passes", "µs", {{"graphs", {}}}}};
   run.report.plots_title = "Over passes";
@@ -155,9 +158,9 @@ demo::Result<> measure_record(SuiteRun& run, const Emit<RecordRow>& emit) {
                              run.size().width, run.size().height, host_passes.hooks()};
     const auto row = measure_graph(input, samples);
     if (!row) return row.error();
-    run.report.plots[0].series[0].points.push_back({double(row->passes), row->us.median,
-                                                    fmt::format("{}: {:.2f} µs", row->graph, row->us.median),
-                                                    false});
+    run.report.plots[0].series[0].points.push_back(
+        {double(row->passes), row->us.median,
+         fmt::format("{}: {:.2f} µs", row->graph, row->us.median), false});
     emit(*row);
   }
   return demo::success();
@@ -181,7 +184,10 @@ Suite record_suite() {
        {"commands_per_frame", "commands a frame", &Row::commands},
        {"barriers_per_frame", "barriers a frame", &Row::barriers},
        {"allocations_per_frame", "allocations a frame", &Row::allocations},
-       {"us_per_frame.median", "µs a frame, median", [](const Row& row) { return row.us.median; }, {4}},
+       {"us_per_frame.median",
+        "µs a frame, median",
+        [](const Row& row) { return row.us.median; },
+        {4}},
        {"us_per_frame.lowest", "", [](const Row& row) { return row.us.lowest; }},
        {"us_per_frame.p10", "10 %", [](const Row& row) { return row.us.p10; }, {4}},
        {"us_per_frame.p90", "90 %", [](const Row& row) { return row.us.p90; }, {4}},

@@ -29,8 +29,9 @@ struct Cells {
 
 } // namespace
 
-ReportPicture heat_map(std::string caption, std::span<const float> light, const Reference& reference,
-                       uint32_t width, std::span<const uint8_t> profile) {
+ReportPicture heat_map(std::string caption, std::span<const float> light,
+                       const Reference& reference, uint32_t width,
+                       std::span<const uint8_t> profile) {
   const uint32_t side = reference.everywhere ? 2 : 8;
   const auto height = static_cast<uint32_t>(profile.size() / width);
   Cells cells{(width + side - 1) / side, (height + side - 1) / side, {}, {}, {}};
@@ -46,7 +47,8 @@ ReportPicture heat_map(std::string caption, std::span<const float> light, const 
   for (size_t i = 0; i < reference.pixels.size(); ++i) {
     double error = 0;
     for (size_t c = 0; c < 3; ++c)
-      error += rec709[c] * (double(light[size_t{3} * reference.pixels[i] + c]) - reference.light[3 * i + c]);
+      error += rec709[c] *
+               (double(light[size_t{3} * reference.pixels[i] + c]) - reference.light[3 * i + c]);
     error *= reference.exposure;
     cells.squares[cell_of(reference.pixels[i])] += error * error;
     cells.count[cell_of(reference.pixels[i])] += 1;
@@ -66,9 +68,11 @@ ReportPicture heat_map(std::string caption, std::span<const float> light, const 
 }
 
 std::string heat_map_explanation() {
-  return "Error of linear luminance, root mean square over cells of 2x2 pixels (8x8 where the truth is known "
+  return "Error of linear luminance, root mean square over cells of 2x2 pixels (8x8 where the "
+         "truth is known "
          "at a subset "
-         "of the pixels), logarithmic: black 0.0001 and below, violet 0.0004, red 0.002, orange 0.01, yellow "
+         "of the pixels), logarithmic: black 0.0001 and below, violet 0.0004, red 0.002, orange "
+         "0.01, yellow "
          "0.04, nearly "
          "white 0.1 and above. Grey: no subsurface.";
 }

@@ -57,7 +57,8 @@ std::string cell(const ReportValue& value, const ReportColumn& column) {
   const std::string text = html_text(cell_text(value, column));
   if (const auto* flag = std::get_if<bool>(&value))
     return fmt::format("<td data-v={}>{}", *flag ? 1 : 0, text);
-  if (const auto* whole = std::get_if<int64_t>(&value)) return fmt::format("<td data-v={}>{}", *whole, text);
+  if (const auto* whole = std::get_if<int64_t>(&value))
+    return fmt::format("<td data-v={}>{}", *whole, text);
   if (const auto* number = std::get_if<double>(&value); number != nullptr && std::isfinite(*number))
     return fmt::format("<td data-v={}>{}", *number, text);
   if (std::holds_alternative<std::string>(value)) return "<td class=t>" + text;
@@ -84,7 +85,8 @@ std::string_view mark_of(const ReportTable& table, const std::vector<ReportValue
 std::string marks_text(const ReportTable& table) {
   std::string text;
   for (const ReportColumn& column : table.columns) {
-    if (column.style.goal == Goal::none || count_goals(table, column.style.goal).rows == 0) continue;
+    if (column.style.goal == Goal::none || count_goals(table, column.style.goal).rows == 0)
+      continue;
     text += column.style.goal == Goal::best
                 ? " Marked rows are on the front."
                 : fmt::format(" Marked rows miss their limits (column '{}').", column.title);
@@ -114,25 +116,27 @@ void add_plots(std::string& page, const Report& report) {
   std::vector<SeriesName> names;
   for (const Plot& plot : plots)
     for (const PlotSeries& series : plot.series)
-      if (place_of(names, series.name) == names.size()) names.push_back({series.name, series.baseline});
+      if (place_of(names, series.name) == names.size())
+        names.push_back({series.name, series.baseline});
   const bool frames = plots.front().over_frames;
   const std::string title = !report.plots_title.empty() ? report.plots_title
                             : frames                    ? "Frame by frame"
                                                         : "Time against error";
-  const std::string text = !report.plots_text.empty() ? report.plots_text
-                           : frames ? "Point at a frame to see its value. Baselines are grey."
-                                    : "Filled points are on the Pareto front: no other point is both faster "
-                                      "and more exact. Point at a point to see its name. Baselines are grey.";
+  const std::string text =
+      !report.plots_text.empty() ? report.plots_text
+      : frames                   ? "Point at a frame to see its value. Baselines are grey."
+               : "Filled points are on the Pareto front: no other point is both faster "
+                 "and more exact. Point at a point to see its name. Baselines are grey.";
   page += fmt::format("<h2>{}</h2><p>{}</p><div class=legend>", html_text(title), html_text(text));
   for (size_t i = 0; i < names.size(); ++i)
-    page +=
-        fmt::format("<span class='{}'><svg viewBox='0 0 34 14'>{}<circle cx=17 cy=7 r={} /></svg> {}</span>",
-                    series_class(names, i), frames ? "<path class=line d='M1 7H33' />" : "", frames ? 2 : 5,
-                    html_text(names[i].name));
+    page += fmt::format(
+        "<span class='{}'><svg viewBox='0 0 34 14'>{}<circle cx=17 cy=7 r={} /></svg> {}</span>",
+        series_class(names, i), frames ? "<path class=line d='M1 7H33' />" : "", frames ? 2 : 5,
+        html_text(names[i].name));
   page += "</div><div class=plots>\n";
   for (const Plot& plot : plots)
-    page += fmt::format("<figure>{}<figcaption>{}</figcaption></figure>\n", plot_as_svg(plot, names),
-                        html_text(plot.title));
+    page += fmt::format("<figure>{}<figcaption>{}</figcaption></figure>\n",
+                        plot_as_svg(plot, names), html_text(plot.title));
   page += "</div>\n";
 }
 
@@ -140,10 +144,10 @@ void add_pictures(std::string& page, const ReportPictures& group) {
   page += fmt::format("<h2>{}</h2><p>{}</p><div class=maps>\n", html_text(group.title),
                       html_text(group.explanation));
   for (const ReportPicture& picture : group.pictures)
-    page += fmt::format("<figure><img alt='{0}' src='data:image/png;base64,{1}'><figcaption>{0}</figcaption>"
-                        "</figure>\n",
-                        html_text(picture.caption),
-                        base64(encode_png(picture.width, picture.height, picture.rgb)));
+    page += fmt::format(
+        "<figure><img alt='{0}' src='data:image/png;base64,{1}'><figcaption>{0}</figcaption>"
+        "</figure>\n",
+        html_text(picture.caption), base64(encode_png(picture.width, picture.height, picture.rgb)));
   page += "</div>\n";
 }
 
@@ -183,7 +187,8 @@ std::string html_page(std::string_view title, std::string_view body) {
 }
 
 std::string base64(std::span<const uint8_t> bytes) {
-  constexpr std::string_view letters = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  constexpr std::string_view letters =
+      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
   std::string text;
   text.reserve((bytes.size() + 2) / 3 * 4);
   for (size_t i = 0; i < bytes.size(); i += 3) {
@@ -199,7 +204,8 @@ std::string base64(std::span<const uint8_t> bytes) {
 
 std::string report_as_html(const Report& report) {
   std::string page;
-  page += fmt::format("<h1>{}</h1><p>{}</p><dl>\n", html_text(report.title), html_text(report.summary));
+  page +=
+      fmt::format("<h1>{}</h1><p>{}</p><dl>\n", html_text(report.title), html_text(report.summary));
   for (const auto& [name, text] : report.info)
     page += fmt::format("<dt>{}<dd>{}\n", html_text(name), html_text(text));
   page += "</dl>\n";
@@ -209,10 +215,12 @@ std::string report_as_html(const Report& report) {
   if (!report.notes.empty()) page += "</ul>\n";
   add_plots(page, report);
   if (!report.more.rows.empty()) {
-    page += fmt::format("<h2>{}</h2><p>{}</p>\n", html_text(report.more_title), html_text(report.more_text));
+    page += fmt::format("<h2>{}</h2><p>{}</p>\n", html_text(report.more_title),
+                        html_text(report.more_text));
     add_table(page, report.more);
   }
-  page += fmt::format("<h2>All rows</h2><p>Click a title to sort.{}</p>\n", marks_text(report.table));
+  page +=
+      fmt::format("<h2>All rows</h2><p>Click a title to sort.{}</p>\n", marks_text(report.table));
   add_table(page, report.table);
   for (const ReportPictures& group : report.pictures)
     add_pictures(page, group);

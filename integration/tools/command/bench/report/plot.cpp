@@ -64,7 +64,10 @@ std::vector<double> ticks(const Axis& axis) {
   }
   constexpr double mantissas[] = {1, 2, 5, 3, 7, 1.5, 4, 6, 8};
   const double decades = axis.high - axis.low;
-  const size_t count = decades > 3.5 ? 1 : decades > 1 ? 3 : decades > 0.6 ? 5 : std::size(mantissas);
+  const size_t count = decades > 3.5   ? 1
+                       : decades > 1   ? 3
+                       : decades > 0.6 ? 5
+                                       : std::size(mantissas);
   std::vector<double> all;
   for (int decade = static_cast<int>(std::floor(axis.low)); decade <= axis.high; ++decade)
     for (size_t i = 0; i < count; ++i) {
@@ -76,15 +79,17 @@ std::vector<double> ticks(const Axis& axis) {
 
 void add_axes(std::string& svg, const Plot& plot, const Axis& x, const Axis& y) {
   for (const double tick : ticks(x))
-    svg += fmt::format("<line class=grid x1={0:.1f} x2={0:.1f} y1={1} y2={2} /><text x={0:.1f} y={3} "
-                       "text-anchor=middle>{4}</text>",
-                       x.place(tick), top, height - bottom, height - bottom + 15, number(tick));
+    svg +=
+        fmt::format("<line class=grid x1={0:.1f} x2={0:.1f} y1={1} y2={2} /><text x={0:.1f} y={3} "
+                    "text-anchor=middle>{4}</text>",
+                    x.place(tick), top, height - bottom, height - bottom + 15, number(tick));
   for (const double tick : ticks(y))
-    svg += fmt::format("<line class=grid x1={1} x2={2} y1={0:.1f} y2={0:.1f} /><text x={3} y={4:.1f} "
-                       "text-anchor=end>{5}</text>",
-                       y.place(tick), left, width - right, left - 5, y.place(tick) + 4, number(tick));
-  svg += fmt::format("<text x={} y={} text-anchor=middle>{}</text>", (left + width - right) / 2, height - 8,
-                     html_text(plot.x_title));
+    svg +=
+        fmt::format("<line class=grid x1={1} x2={2} y1={0:.1f} y2={0:.1f} /><text x={3} y={4:.1f} "
+                    "text-anchor=end>{5}</text>",
+                    y.place(tick), left, width - right, left - 5, y.place(tick) + 4, number(tick));
+  svg += fmt::format("<text x={} y={} text-anchor=middle>{}</text>", (left + width - right) / 2,
+                     height - 8, html_text(plot.x_title));
   svg += fmt::format("<text transform='translate(13 {}) rotate(-90)' text-anchor=middle>{}</text>",
                      (top + height - bottom) / 2, html_text(plot.y_title));
 }
@@ -94,7 +99,8 @@ void add_front(std::string& svg, const Plot& plot, const Axis& x, const Axis& y)
   for (const PlotSeries& series : plot.series)
     for (const PlotPoint& point : series.points)
       if (point.on_front) front.push_back(point);
-  std::sort(front.begin(), front.end(), [](const PlotPoint& a, const PlotPoint& b) { return a.x < b.x; });
+  std::sort(front.begin(), front.end(),
+            [](const PlotPoint& a, const PlotPoint& b) { return a.x < b.x; });
   if (front.size() < 2) return;
   svg += "<polyline class=front points='";
   for (const PlotPoint& point : front)
@@ -105,16 +111,17 @@ void add_front(std::string& svg, const Plot& plot, const Axis& x, const Axis& y)
 } // namespace
 
 size_t place_of(const std::vector<SeriesName>& names, std::string_view name) {
-  const auto at =
-      std::find_if(names.begin(), names.end(), [&](const SeriesName& one) { return one.name == name; });
+  const auto at = std::find_if(names.begin(), names.end(),
+                               [&](const SeriesName& one) { return one.name == name; });
   return static_cast<size_t>(at - names.begin());
 }
 
 std::string series_class(const std::vector<SeriesName>& names, size_t place) {
   constexpr std::ptrdiff_t lines = 6; // line styles for baselines
   if (!names[place].baseline) return fmt::format("s{}", place);
-  const auto before = std::count_if(names.begin(), names.begin() + static_cast<std::ptrdiff_t>(place),
-                                    [](const SeriesName& one) { return one.baseline; });
+  const auto before =
+      std::count_if(names.begin(), names.begin() + static_cast<std::ptrdiff_t>(place),
+                    [](const SeriesName& one) { return one.baseline; });
   return fmt::format("s{} base b{}", place, before % lines);
 }
 
@@ -122,8 +129,8 @@ std::string plot_as_svg(const Plot& plot, const std::vector<SeriesName>& names) 
   const Axis x = plot.over_frames ? frames_axis(plot, left, width - right)
                                   : axis_over(plot, &PlotPoint::x, left, width - right);
   const Axis y = axis_over(plot, &PlotPoint::y, height - bottom, top);
-  std::string svg =
-      fmt::format("<svg viewBox='0 0 {} {}' role=img aria-label='{}'>", width, height, html_text(plot.title));
+  std::string svg = fmt::format("<svg viewBox='0 0 {} {}' role=img aria-label='{}'>", width, height,
+                                html_text(plot.title));
   add_axes(svg, plot, x, y);
   add_front(svg, plot, x, y);
   for (const PlotSeries& series : plot.series) {
@@ -135,9 +142,9 @@ std::string plot_as_svg(const Plot& plot, const std::vector<SeriesName>& names) 
       svg += "' />";
     }
     for (const PlotPoint& point : series.points)
-      svg += fmt::format("<circle cx={:.1f} cy={:.1f} r={}{}><title>{}</title></circle>", x.place(point.x),
-                         y.place(point.y), plot.over_frames ? 1.5 : 5.0, point.on_front ? "" : " class=open",
-                         html_text(point.label));
+      svg += fmt::format("<circle cx={:.1f} cy={:.1f} r={}{}><title>{}</title></circle>",
+                         x.place(point.x), y.place(point.y), plot.over_frames ? 1.5 : 5.0,
+                         point.on_front ? "" : " class=open", html_text(point.label));
     svg += "</g>";
   }
   return svg + "</svg>";

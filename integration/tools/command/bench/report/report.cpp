@@ -107,8 +107,9 @@ std::string cell_text(const ReportValue& value, const ReportColumn& column) {
 }
 
 bool is_text(const ReportTable& table, size_t column) {
-  return std::any_of(table.rows.begin(), table.rows.end(),
-                     [&](const auto& row) { return std::holds_alternative<std::string>(row[column]); });
+  return std::any_of(table.rows.begin(), table.rows.end(), [&](const auto& row) {
+    return std::holds_alternative<std::string>(row[column]);
+  });
 }
 
 GoalCount count_goals(const ReportTable& table, Goal goal) {
@@ -194,9 +195,11 @@ std::string report_as_csv(const Report& report) {
 std::string deliver_report(const Report& report, const std::string& json, const std::string& csv,
                            const std::string& html) {
   if (!json.empty())
-    if (std::string problem = deliver_text(json, report_as_json(report)); !problem.empty()) return problem;
+    if (std::string problem = deliver_text(json, report_as_json(report)); !problem.empty())
+      return problem;
   if (!csv.empty())
-    if (std::string problem = deliver_text(csv, report_as_csv(report)); !problem.empty()) return problem;
+    if (std::string problem = deliver_text(csv, report_as_csv(report)); !problem.empty())
+      return problem;
   return html.empty() ? "" : deliver_page(html, report_as_html(report));
 }
 

@@ -11,8 +11,8 @@ constexpr double chance = 1.1;
 
 // Returns the row with equal number of paths and this reuse and shift, or null if it was not
 // measured.
-const RestirRow* find_row(std::span<const RestirRow> rows, const RestirRow& like, std::string_view reuse,
-                          std::string_view shift) {
+const RestirRow* find_row(std::span<const RestirRow> rows, const RestirRow& like,
+                          std::string_view reuse, std::string_view shift) {
   const auto found = std::find_if(rows.begin(), rows.end(), [&](const RestirRow& row) {
     return row.samples == like.samples && row.variant.reuse == reuse && row.variant.shift == shift;
   });
@@ -32,14 +32,17 @@ std::optional<double> limit_of(std::span<const RestirRow> rows, const RestirRow&
   if (variant.reuse == "spatial") return chance * none->error.all.mse;
   const RestirRow* spatial = find_row(rows, row, "spatial", variant.shift);
   const bool both = variant.reuse == "spatiotemporal" && spatial != nullptr;
-  return much * (both ? std::min(none->error.all.mse, spatial->error.all.mse) : none->error.all.mse);
+  return much *
+         (both ? std::min(none->error.all.mse, spatial->error.all.mse) : none->error.all.mse);
 }
 
 } // namespace
 
 std::string expectation_text() {
-  return "for equal numbers of frames: spatial reuse has at most the error of no reuse, plus 10 % for "
-         "chance; reuse with history at most half of that, and half of the error of only spatial reuse; a "
+  return "for equal numbers of frames: spatial reuse has at most the error of no reuse, plus 10 % "
+         "for "
+         "chance; reuse with history at most half of that, and half of the error of only spatial "
+         "reuse; a "
          "sequential shift at most the larger error of its parts";
 }
 

@@ -12,8 +12,9 @@ double device_ms_of(const demo::FrameOutputs& frame, const LoadedGraph& loaded) 
   double sum = 0;
   for (const demo::PassTime& one : frame.dermis_times) {
     const auto& passes = loaded.graph.passes;
-    const auto pass = std::find_if(passes.begin(), passes.end(),
-                                   [&](const PassDeclaration& each) { return each.name == one.pass; });
+    const auto pass = std::find_if(passes.begin(), passes.end(), [&](const PassDeclaration& each) {
+      return each.name == one.pass;
+    });
     if (pass == passes.end() || loaded.pass_types[pass->type].name != export_scattered_type)
       sum += one.milliseconds;
   }
@@ -45,7 +46,8 @@ scatter_by_rays(const RayRequest& request, const SceneRequest& scene, const Subj
     if (frame.dermis_times.empty())
       return demo::Error{demo::ErrorKind::environment,
                          "the device has no timestamps; nothing can be compared"};
-    const double slab_rms = frame.choice ? frame.choice->transmitted_rms / double(frame.exposure) : 0;
+    const double slab_rms =
+        frame.choice ? frame.choice->transmitted_rms / double(frame.exposure) : 0;
     auto done = on_frame({frame.scattered.texels, device_ms_of(frame, request.loaded), slab_rms});
     if (done && request.step) request.step();
     return done;

@@ -15,8 +15,8 @@ constexpr uint64_t ray_definition_version = 0x7261790000000001u;
 
 Hash hash_of(const RayReferenceSize& size, const std::string& scene, const CapturedFrame& frame) {
   Hash hash;
-  const uint64_t sizes[] = {ray_definition_version, size.samples, size.frames, frame.description.width,
-                            frame.description.height};
+  const uint64_t sizes[] = {ray_definition_version, size.samples, size.frames,
+                            frame.description.width, frame.description.height};
   hash.add(std::span<const uint64_t>(sizes));
   hash.add(std::span<const char>(scene.data(), scene.size()));
   hash.add(std::span<const double>(frame.description.clip_from_view));
@@ -39,9 +39,10 @@ struct Sums {
 
 } // namespace
 
-demo::Result<RayReference> make_ray_reference(const RayReferenceSize& size, const RayRequest& request,
-                                              const SceneRequest& scene, const Subject& subject,
-                                              const SubjectOptions& options, const std::string& cache) {
+demo::Result<RayReference> make_ray_reference(const RayReferenceSize& size,
+                                              const RayRequest& request, const SceneRequest& scene,
+                                              const Subject& subject, const SubjectOptions& options,
+                                              const std::string& cache) {
   const CapturedFrame& frame = subject.frame;
   auto text = demo::read_text_file(scene.file);
   if (!text) return text.error();
@@ -52,7 +53,8 @@ demo::Result<RayReference> make_ray_reference(const RayReferenceSize& size, cons
     if (frame.profile[i] != 0) reference.pixels.push_back(i);
   reference.population = reference.pixels.size();
   if (reference.pixels.empty())
-    return demo::Error{demo::ErrorKind::input, fmt::format("no pixel of '{}' has a profile", scene.file)};
+    return demo::Error{demo::ErrorKind::input,
+                       fmt::format("no pixel of '{}' has a profile", scene.file)};
 
   const Hash hash = hash_of(size, *text, frame);
   const size_t count = 3 * reference.pixels.size();

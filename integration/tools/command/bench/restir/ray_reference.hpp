@@ -17,8 +17,9 @@ struct RayReference {
 
 // Cached in `cache` by a hash of the scene's file, of the camera's view and of the reference's
 // size.
-demo::Result<RayReference> make_ray_reference(const RayReferenceSize& size, const RayRequest& request,
-                                              const SceneRequest& scene, const Subject& subject,
-                                              const SubjectOptions& options, const std::string& cache);
+demo::Result<RayReference> make_ray_reference(const RayReferenceSize& size,
+                                              const RayRequest& request, const SceneRequest& scene,
+                                              const Subject& subject, const SubjectOptions& options,
+                                              const std::string& cache);
 
 } // namespace dermis::tools

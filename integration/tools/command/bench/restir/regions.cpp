@@ -27,7 +27,8 @@ RegionError measure(std::span<const float> light, const Reference& region) {
 RayRegions split_by_light(const Reference& reference, const CapturedFrame& frame, double thin_mm) {
   RayRegions regions{reference, {}, {}};
   for (size_t i = 0; i < reference.pixels.size(); ++i) {
-    Reference& part = comes_through(frame, reference.pixels[i], thin_mm) ? regions.through : regions.rest;
+    Reference& part =
+        comes_through(frame, reference.pixels[i], thin_mm) ? regions.through : regions.rest;
     part.pixels.push_back(reference.pixels[i]);
     part.light.insert(part.light.end(), &reference.light[3 * i], &reference.light[3 * i] + 3);
   }
@@ -40,7 +41,8 @@ RayRegions split_by_light(const Reference& reference, const CapturedFrame& frame
 }
 
 LightError measure_light(std::span<const float> light, const RayRegions& regions) {
-  return {measure(light, regions.all), measure(light, regions.through), measure(light, regions.rest)};
+  return {measure(light, regions.all), measure(light, regions.through),
+          measure(light, regions.rest)};
 }
 
 LightError mean_of(std::span<const LightError> frames) {

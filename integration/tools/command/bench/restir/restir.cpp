@@ -47,7 +47,8 @@ uint32_t settle_of(const RestirFile& file, const RestirVariant& variant) {
 demo::Result<RestirRow> measure_variant(RestirBench& bench, const SceneRequest& scene,
                                         const RayRegions& regions, const RestirVariant& variant,
                                         uint32_t samples, double& slab_rms, Steps& steps) {
-  RestirRow row{"restir", samples == 1 ? "1 path" : fmt::format("{} paths", samples), variant, samples};
+  RestirRow row{"restir", samples == 1 ? "1 path" : fmt::format("{} paths", samples), variant,
+                samples};
   RayRequest request = request_of(bench, variant);
   request.step = [&] { steps.reach(steps.done + 1); };
   request.set.emplace_back("samples", fmt::format("{}", samples));
@@ -56,15 +57,15 @@ demo::Result<RestirRow> measure_variant(RestirBench& bench, const SceneRequest& 
   std::vector<LightError> errors;
   std::vector<double> times;
   uint32_t frame = 0;
-  auto done =
-      scatter_by_rays(request, scene, bench.subject_options, [&](const RayFrame& one) -> demo::Result<> {
-        if (frame++ < settle) return demo::success();
-        slab_rms = one.slab_rms;
-        errors.push_back(measure_light(one.light, regions));
-        times.push_back(one.device_ms);
-        row.light = one.light;
-        return demo::success();
-      });
+  auto done = scatter_by_rays(request, scene, bench.subject_options,
+                              [&](const RayFrame& one) -> demo::Result<> {
+                                if (frame++ < settle) return demo::success();
+                                slab_rms = one.slab_rms;
+                                errors.push_back(measure_light(one.light, regions));
+                                times.push_back(one.device_ms);
+                                row.light = one.light;
+                                return demo::success();
+                              });
   if (!done) return done.error();
   for (const std::string& credit : *done)
     bench.run.add_fact("credit", credit);
@@ -77,7 +78,8 @@ demo::Result<RestirRow> measure_in_screen_space(RestirBench& bench, const Techni
                                                 const Subject& subject, const RayRegions& regions,
                                                 std::span<const float> sap_tables) {
   RestirRow row{request.technique, request.setting};
-  auto run = TechniqueRun::create(bench.host, request, subject.frame.description.profiles, sap_tables);
+  auto run =
+      TechniqueRun::create(bench.host, request, subject.frame.description.profiles, sap_tables);
   if (!run) return run.error();
   auto light = (*run)->scatter(subject.frame);
   if (!light) return light.error();
@@ -98,7 +100,8 @@ demo::Result<RestirRow> measure_in_screen_space(RestirBench& bench, const Techni
 void choose_pictures(std::vector<RestirRow>& rows) {
   RestirRow* nearest = &rows.front();
   for (RestirRow& row : rows)
-    if (row.samples == rows.front().samples && row.error.all.mse < nearest->error.all.mse) nearest = &row;
+    if (row.samples == rows.front().samples && row.error.all.mse < nearest->error.all.mse)
+      nearest = &row;
   rows.front().heat_map = nearest->heat_map = true;
 }
 
@@ -116,17 +119,19 @@ demo::Result<> measure_ray_scene(RestirBench& bench, const SceneRequest& request
   if (!reference) return reference.error();
   steps.reach(after_reference);
   scene.reference = reference.take();
-  scene.regions = split_by_light(scene.reference.reference, scene.subject.frame, bench.file.thin_mm);
+  scene.regions =
+      split_by_light(scene.reference.reference, scene.subject.frame, bench.file.thin_mm);
   for (const uint32_t samples : bench.file.samples) {
     const size_t first = scene.rows.size();
     for (const RestirVariant& variant : bench.variants) {
-      auto row = measure_variant(bench, request, scene.regions, variant, samples, scene.slab_rms, steps);
+      auto row =
+          measure_variant(bench, request, scene.regions, variant, samples, scene.slab_rms, steps);
       if (!row) return row.error();
       scene.rows.push_back(row.take());
       const RestirRow& base = scene.rows[first];
       RestirRow& last = scene.rows.back();
-      last.ratio_to_none =
-          ratio_at_equal_time(last.error.all.mse, last.device_ms, base.error.all.mse, base.device_ms);
+      last.ratio_to_none = ratio_at_equal_time(last.error.all.mse, last.device_ms,
+                                               base.error.all.mse, base.device_ms);
     }
   }
   scene.slab_rms *= scene.reference.reference.exposure;
@@ -201,12 +206,15 @@ demo::Result<> measure_restir(SuiteRun& run, const Emit<RestirRow>& emit) {
   const std::vector<RestirVariant> variants = variants_of(loaded->graph);
   bench.reuses = variants.size() > 1;
   for (const RestirVariant& variant : variants)
-    if (variant.shift.empty() || run.is_requested("shifts", variant.shift)) bench.variants.push_back(variant);
+    if (variant.shift.empty() || run.is_requested("shifts", variant.shift))
+      bench.variants.push_back(variant);
   if (bench.reuses && bench.variants.size() == 1)
-    return demo::Error{demo::ErrorKind::usage, fmt::format("'{}' has none of these shifts", file.graph)};
+    return demo::Error{demo::ErrorKind::usage,
+                       fmt::format("'{}' has none of these shifts", file.graph)};
   start_restir_report(run, file);
   if (auto done = measure_scenes(bench, emit); !done) return done;
-  if (!bench.reuses) run.add_note(fmt::format("reuse: '{}' has no settings 'reuse' and 'shift'", file.graph));
+  if (!bench.reuses)
+    run.add_note(fmt::format("reuse: '{}' has no settings 'reuse' and 'shift'", file.graph));
   return demo::success();
 }
 

@@ -21,7 +21,8 @@ void read_restir_root(BenchObject& root, RestirFile& file) {
   if (const auto mm = root.reader.number("thin_mm", 0, max_thin_mm)) file.thin_mm = *mm;
   if (const NodeId list = root.reader.array("samples", 1, max_bench_entries); list.valid())
     for (const NodeId node : children(root.document, list))
-      if (const auto n = read_integer(root.document, node, "'samples'", 1, max_paths, root.diagnostics))
+      if (const auto n =
+              read_integer(root.document, node, "'samples'", 1, max_paths, root.diagnostics))
         file.samples.push_back(uint32_t(*n));
   root.object("reference", Need::required, [&](BenchObject& reference) {
     reference.count("samples", file.reference.samples, 1, max_paths);

@@ -23,7 +23,8 @@ ReportPicture picture_of(const std::string& caption, const CapturedFrame& frame,
                          const std::function<float(size_t)>& value) {
   demo::FloatImage image{frame.description.width, frame.description.height, 3, {}};
   for (size_t i = 0; i < 3 * frame.profile.size(); ++i)
-    image.texels.push_back(frame.profile[i / 3] != 0 ? value(i) * static_cast<float>(exposure) : 0.0f);
+    image.texels.push_back(frame.profile[i / 3] != 0 ? value(i) * static_cast<float>(exposure)
+                                                     : 0.0f);
   return {caption, image.width, image.height, demo::tonemap(image)};
 }
 
@@ -48,15 +49,17 @@ void add_pictures(Report& report, const RestirScene& scene) {
   const Reference& reference = scene.reference.reference;
   std::vector<float> everywhere(3 * frame.profile.size());
   for (size_t i = 0; i < reference.light.size(); ++i)
-    everywhere[size_t{3} * reference.pixels[i / 3] + i % 3] = static_cast<float>(reference.light[i]);
-  light.pictures.push_back(picture_of(scene.subject.scene + ", reference", frame, reference.exposure,
-                                      [&](size_t i) { return everywhere[i]; }));
+    everywhere[size_t{3} * reference.pixels[i / 3] + i % 3] =
+        static_cast<float>(reference.light[i]);
+  light.pictures.push_back(picture_of(scene.subject.scene + ", reference", frame,
+                                      reference.exposure, [&](size_t i) { return everywhere[i]; }));
   for (const RestirRow& row : scene.rows) {
     if (!row.heat_map) continue;
     const std::string caption = fmt::format("{}, {}", scene.subject.scene, row_name(row));
     light.pictures.push_back(
         picture_of(caption, frame, reference.exposure, [&](size_t i) { return row.light[i]; }));
-    maps.pictures.push_back(heat_map(caption, row.light, reference, frame.description.width, frame.profile));
+    maps.pictures.push_back(
+        heat_map(caption, row.light, reference, frame.description.width, frame.profile));
   }
 }
 
@@ -65,11 +68,12 @@ void start_restir_report(SuiteRun& run, const RestirFile& file) {
                fmt::format("the same kernels without reuse, {} paths a pixel in each of {} frames",
                            file.reference.samples, file.reference.frames));
   run.add_fact("expected", expectation_text());
-  run.add_fact("frames",
-               fmt::format("{} counted, after {} where there is history", file.frames, file.settle));
-  run.add_fact("through",
-               fmt::format("pixels with more back light than front light, and a thickness of at most {} mm",
-                           file.thin_mm));
+  run.add_fact("frames", fmt::format("{} counted, after {} where there is history", file.frames,
+                                     file.settle));
+  run.add_fact(
+      "through",
+      fmt::format("pixels with more back light than front light, and a thickness of at most {} mm",
+                  file.thin_mm));
   run.add_fact("size", fmt::format("{}x{} pixels", run.size().width, run.size().height));
   run.report.pictures = {{"Light", "Scattered light before albedo, exposed and tonemapped.", {}},
                          {"Error maps", heat_map_explanation(), {}}};
@@ -87,15 +91,22 @@ Suite restir_suite() {
        .title = "Ray-traced light and screen-space techniques",
        .summary =
            "Error of the scattered light before albedo against a reference by rays: linear Rec.709 "
-           "luminance, the 99.9th percentile of the reference's own light at 1 (what falls on the side that "
-           "is seen says little where light comes from behind). At equal time: mean square error times "
-           "device time, over the same without reuse at as many samples, since the error of independent "
-           "samples falls as one over their number; below 1 is better. Light: mean over the reference's "
+           "luminance, the 99.9th percentile of the reference's own light at 1 (what falls on the "
+           "side that "
+           "is seen says little where light comes from behind). At equal time: mean square error "
+           "times "
+           "device time, over the same without reuse at as many samples, since the error of "
+           "independent "
+           "samples falls as one over their number; below 1 is better. Light: mean over the "
+           "reference's "
            "mean, 1 where nothing is missing.",
        .options = {size, head_option(), only_option("scenes"), only_option("shifts"),
                    file_option("tests/benchmark/restir.json"), cache_option()},
        .why_not = why_no_rays},
-      {{"scene", "scene", [](const Row& row) { return row.scene->subject.scene; }, {.groups = true}},
+      {{"scene",
+        "scene",
+        [](const Row& row) { return row.scene->subject.scene; },
+        {.groups = true}},
        {"d_px", "d, px", [](const Row& row) { return row.scene->subject.d_px; }, page},
        {"technique", "technique", &Row::technique},
        {"setting", "setting", &Row::setting},
@@ -112,7 +123,8 @@ Suite restir_suite() {
        {"holds",
         "holds",
         [](const Row& row) {
-          return row.mse_at_most ? std::optional(row.error.all.mse <= *row.mse_at_most) : std::nullopt;
+          return row.mse_at_most ? std::optional(row.error.all.mse <= *row.mse_at_most)
+                                 : std::nullopt;
         },
         {.goal = Goal::required}},
        {"rmse_through", "RMSE through",
@@ -125,16 +137,18 @@ Suite restir_suite() {
         [](const Row& row) { return light_if(row.scene->regions.rest, row.error.rest); }},
        {"mse_of_reference", "MSE of the reference",
         [](const Row& row) { return row.scene->reference.own_mse; }, page},
-       {"pixels", "pixels", [](const Row& row) { return row.scene->regions.all.pixels.size(); }, page},
+       {"pixels", "pixels", [](const Row& row) { return row.scene->regions.all.pixels.size(); },
+        page},
        {"pixels_through", "pixels through",
         [](const Row& row) { return row.scene->regions.through.pixels.size(); }, page},
-       {"slab_rms", "light that slabs let through, RMS", [](const Row& row) { return row.scene->slab_rms; },
-        page},
+       {"slab_rms", "light that slabs let through, RMS",
+        [](const Row& row) { return row.scene->slab_rms; }, page},
        {"rmse_of_slab", "RMSE / light that slabs let through",
         [](const Row& row) {
           const double slab_rms = row.scene->slab_rms;
-          return row.samples == 0 && slab_rms > 0 ? ReportValue(std::sqrt(row.error.all.mse) / slab_rms)
-                                                  : ReportValue();
+          return row.samples == 0 && slab_rms > 0
+                     ? ReportValue(std::sqrt(row.error.all.mse) / slab_rms)
+                     : ReportValue();
         },
         page}},
       measure_restir);

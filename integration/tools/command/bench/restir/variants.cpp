@@ -7,8 +7,9 @@ namespace {
 
 const std::vector<std::string>& options_of(const Graph& graph, std::string_view setting) {
   static const std::vector<std::string> none;
-  const auto found = std::find_if(graph.settings.begin(), graph.settings.end(),
-                                  [&](const SettingDeclaration& one) { return one.name == setting; });
+  const auto found =
+      std::find_if(graph.settings.begin(), graph.settings.end(),
+                   [&](const SettingDeclaration& one) { return one.name == setting; });
   return found == graph.settings.end() ? none : found->options;
 }
 

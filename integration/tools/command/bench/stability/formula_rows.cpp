@@ -23,14 +23,14 @@ StabilityRow radii(std::string name, std::span<const double> survivals) {
   double error = 0;
   bool finite = true;
   for (const double survival : survivals) {
-    for (const double r :
-         {subsurface::burley_inverse_survival(survival, 1), subsurface::burley_sample_survival(survival, 1),
-          subsurface::burley_approximate_survival(survival, 1)}) {
+    for (const double r : {subsurface::burley_inverse_survival(survival, 1),
+                           subsurface::burley_sample_survival(survival, 1),
+                           subsurface::burley_approximate_survival(survival, 1)}) {
       finite = finite && std::isfinite(r);
       error = std::max({error, -r, r - furthest_d});
     }
-    for (const double weight :
-         {subsurface::burley_sample_weight(survival), subsurface::burley_approximate_weight(survival)})
+    for (const double weight : {subsurface::burley_sample_weight(survival),
+                                subsurface::burley_approximate_weight(survival)})
       finite = finite && std::isfinite(weight) && weight >= 0;
   }
   return formula_row(std::move(name), error, 0, finite);
@@ -55,8 +55,9 @@ std::vector<double> any_floats() {
 StabilityRow tail(std::string name, double r) {
   const double survival = std::exp(-r) / 4 + 3 * std::exp(-r / 3) / 4;
   const double density = subsurface::burley_pdf(r, 1);
-  return formula_row(std::move(name), std::abs(subsurface::burley_inverse_survival(survival, 1) / r - 1),
-                     1e-12, std::isfinite(density) && density > 0);
+  return formula_row(std::move(name),
+                     std::abs(subsurface::burley_inverse_survival(survival, 1) / r - 1), 1e-12,
+                     std::isfinite(density) && density > 0);
 }
 
 // Beyond the largest sampled radius densities must be finite and monotonically fall to 0, also for
@@ -66,7 +67,8 @@ StabilityRow beyond_tail(std::string name, double from, double to) {
   bool finite = true;
   for (const double d : {1.0, 1e-3})
     for (double r = from; r < to; r *= 1.25) {
-      const double here = subsurface::burley_pdf(r, d), further = subsurface::burley_pdf(1.25 * r, d);
+      const double here = subsurface::burley_pdf(r, d),
+                   further = subsurface::burley_pdf(1.25 * r, d);
       finite = finite && std::isfinite(here) && here >= 0;
       error = std::max(error, further - here);
     }
@@ -75,19 +77,22 @@ StabilityRow beyond_tail(std::string name, double from, double to) {
 
 StabilityRow albedo(std::string name, double albedo, double clamped) {
   double error = 0;
-  for (const auto& scaling : {subsurface::burley_scaling_dmfp, subsurface::burley_scaling_searchlight,
-                              subsurface::burley_scaling_diffuse})
+  for (const auto& scaling :
+       {subsurface::burley_scaling_dmfp, subsurface::burley_scaling_searchlight,
+        subsurface::burley_scaling_diffuse})
     error = std::max(error, std::abs(scaling(albedo) - scaling(clamped)));
   return formula_row(std::move(name), error, 0);
 }
 
 StabilityRow dmfp(std::string name, double dmfp, double d) {
-  return formula_row(std::move(name), std::abs(subsurface::burley_d_from_dmfp(dmfp, 0.33) - d), 1e-40);
+  return formula_row(std::move(name), std::abs(subsurface::burley_d_from_dmfp(dmfp, 0.33) - d),
+                     1e-40);
 }
 
-StabilityRow weight_of(std::string name, const subsurface::MovingCovariance& moments, double expected,
-                       double bound) {
-  return formula_row(std::move(name), std::abs(subsurface::control_weight(moments, 1e-6) - expected), bound);
+StabilityRow weight_of(std::string name, const subsurface::MovingCovariance& moments,
+                       double expected, double bound) {
+  return formula_row(std::move(name),
+                     std::abs(subsurface::control_weight(moments, 1e-6) - expected), bound);
 }
 
 } // namespace

@@ -12,7 +12,8 @@ constexpr uint32_t period = 16; // two tiles, so that seams of groups of 16 are 
 constexpr uint32_t beside = 4;  // columns on either side of the middle that count as the edge
 
 // Returns the required light of a frame, 3 values per pixel.
-std::vector<float> wanted_light(const StabilityCase& requested, uint32_t t, const CapturedFrame& frame) {
+std::vector<float> wanted_light(const StabilityCase& requested, uint32_t t,
+                                const CapturedFrame& frame) {
   std::vector<float> light(frame.lighting.values);
   if (requested.expected)
     for (size_t i = 0; i < frame.profile.size(); ++i)
@@ -87,8 +88,8 @@ double samples_in_tile(const CapturedFrame& frame, const StabilityAnswer& answer
       const double mean =
           samples_of(frame, answer, [&](uint32_t i, uint32_t j) {
             if (i / tile != x / tile || j / tile != y / tile) return false;
-            maximum =
-                std::max(maximum, double(answer.samples[3 * (size_t{j} * frame.description.width + i)]));
+            maximum = std::max(
+                maximum, double(answer.samples[3 * (size_t{j} * frame.description.width + i)]));
             return true;
           }).value();
       if (mean > 0) worst = std::max(worst, maximum / mean);
@@ -96,15 +97,16 @@ double samples_in_tile(const CapturedFrame& frame, const StabilityAnswer& answer
   return worst > 0 ? worst : infinity;
 }
 
-double mean_samples(const CapturedFrame& frame, const StabilityAnswer& found, const StabilityAnswer& sound) {
+double mean_samples(const CapturedFrame& frame, const StabilityAnswer& found,
+                    const StabilityAnswer& sound) {
   const auto all = [](uint32_t, uint32_t) { return true; };
   const double difference =
       std::abs(samples_of(frame, found, all).value() / samples_of(frame, sound, all).value() - 1);
   return std::isfinite(difference) ? difference : infinity; // NaN would compare as within the bound
 }
 
-double samples_error(const StabilityCase& requested, const CapturedFrame& frame, const StabilityAnswer& found,
-                     const StabilityAnswer* sound) {
+double samples_error(const StabilityCase& requested, const CapturedFrame& frame,
+                     const StabilityAnswer& found, const StabilityAnswer* sound) {
   // the graph does not export samples
   if (found.samples.size() != frame.lighting.values.size()) return infinity;
   if (requested.judged == Judged::samples_at_edge) return samples_at_edge(frame, found);
@@ -118,7 +120,8 @@ Judgement judge(const StabilityCase& requested, uint32_t t, const StabilityAnswe
                 const StabilityAnswer* sound) {
   // The frame determines the judged pixels: those without a profile or depth are not judged.
   const CapturedFrame frame = requested.same_as ? requested.same_as(t) : requested.given(t);
-  const std::vector<float> expected = sound != nullptr ? sound->light : wanted_light(requested, t, frame);
+  const std::vector<float> expected =
+      sound != nullptr ? sound->light : wanted_light(requested, t, frame);
   Judgement judgement;
   LightErrors errors;
   const uint32_t width = frame.description.width, height = frame.description.height;
@@ -132,14 +135,16 @@ Judgement judge(const StabilityCase& requested, uint32_t t, const StabilityAnswe
       }
       judgement.nonfinite += finite ? 0 : 1;
       judgement.negative += finite && negative ? 1 : 0;
-      const bool inside = x >= requested.margin && x + requested.margin < width && y >= requested.margin &&
-                          y + requested.margin < height;
+      const bool inside = x >= requested.margin && x + requested.margin < width &&
+                          y >= requested.margin && y + requested.margin < height;
       if (!finite || requested.finite_only || frame.profile[i] == 0 || !inside) continue;
       for (size_t c = requested.first_channel; c < 3; ++c)
         if (requested.judged == Judged::light_beyond)
           errors.add(x, y, beyond(double(found.light[3 * i + c]) / requested.scale));
         else
-          errors.add(x, y, (double(found.light[3 * i + c]) - double(expected[3 * i + c])) / requested.scale);
+          errors.add(x, y,
+                     (double(found.light[3 * i + c]) - double(expected[3 * i + c])) /
+                         requested.scale);
     }
   switch (requested.judged) {
   case Judged::light:

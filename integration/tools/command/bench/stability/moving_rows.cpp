@@ -34,7 +34,8 @@ StabilityRow moving(std::string name, double level, uint64_t updates) {
     if (i == 0) mean = as_half(x);
     const double step = x - double(mean);
     mean = as_half(double(mean) + eta * step);
-    deviation = as_half(std::sqrt((1 - eta) * (double(deviation) * double(deviation) + eta * step * step)));
+    deviation =
+        as_half(std::sqrt((1 - eta) * (double(deviation) * double(deviation) + eta * step * step)));
     finite = finite && std::isfinite(mean) && std::isfinite(deviation);
     if (i >= updates - updates / 10) {
       squares += double(deviation) * double(deviation);
@@ -43,8 +44,8 @@ StabilityRow moving(std::string name, double level, uint64_t updates) {
   }
   // Each rounding of the mean adds at most half a step to the next deviation, which is 2 % of the
   // mean or more.
-  StabilityRow made =
-      formula_row(std::move(name), std::abs(std::sqrt(squares / cpu_kernel_squares) - 1), 0.02, finite);
+  StabilityRow made = formula_row(
+      std::move(name), std::abs(std::sqrt(squares / cpu_kernel_squares) - 1), 0.02, finite);
   made.frames = updates;
   return made;
 }
@@ -65,7 +66,8 @@ StabilityRow closed_loop(std::string name, double spread, uint64_t updates) {
     const bool begun = loop.moments.begun;
     loop.count =
         begun ? subsurface::clamped_samples(
-                    subsurface::required_samples(loop.moments.variance, loop.mean_count, settings), settings)
+                    subsurface::required_samples(loop.moments.variance, loop.mean_count, settings),
+                    settings)
               : static_cast<int>(settings.min_samples);
     loop.samples += loop.count;
     loop.moments.add(1 + spread * draw / std::sqrt(double(loop.count)), settings.eta);
@@ -82,8 +84,8 @@ StabilityRow closed_loop(std::string name, double spread, uint64_t updates) {
     frame(kept, draw, true);
     frame(cpu_kernel, draw, false);
   }
-  StabilityRow made = formula_row(std::move(name), std::abs(kept.samples / cpu_kernel.samples - 1), 0.02,
-                                  std::isfinite(kept.samples));
+  StabilityRow made = formula_row(std::move(name), std::abs(kept.samples / cpu_kernel.samples - 1),
+                                  0.02, std::isfinite(kept.samples));
   made.frames = updates;
   return made;
 }
@@ -130,7 +132,8 @@ double in_float(double value) {
 // Compares the control's weight as stored by shaders/afis/subsurface_guided.comp (weight, deviation
 // and both means) with fp64. Half of the control's change, of at most `swing`, is also in the
 // controlled value. Error: difference of the weights over the last tenth.
-StabilityRow control_over_frames(std::string name, double swing, double eta, double eps_alpha, Store store) {
+StabilityRow control_over_frames(std::string name, double swing, double eta, double eps_alpha,
+                                 Store store) {
   constexpr uint64_t frames = 36000; // ten minutes at 60 Hz
   subsurface::MovingCovariance cpu_kernel, kept;
   SplitMix64 random{13};
@@ -167,8 +170,8 @@ StabilityRow awakening(std::string name) {
   int count = 0;
   constexpr int even = 600;
   for (int i = 0; i < even + 2; ++i) {
-    count = subsurface::clamped_samples(subsurface::required_samples(moments.variance, mean_count, settings),
-                                        settings);
+    count = subsurface::clamped_samples(
+        subsurface::required_samples(moments.variance, mean_count, settings), settings);
     moments.add(i < even ? 1 : 0.5, settings.eta);
     const double deviation = as_half(std::sqrt(moments.variance));
     moments.variance = deviation * deviation;

@@ -21,13 +21,15 @@ struct StabilityRow {
   // Frames after the last damaged frame; nullopt: no damage to recover from.
   std::optional<uint32_t> recovered_after_frames;
 
-  bool holds() const { return nonfinite_pixels == 0 && negative_pixels == 0 && max_abs_error <= bound; }
+  bool holds() const {
+    return nonfinite_pixels == 0 && negative_pixels == 0 && max_abs_error <= bound;
+  }
 };
 
 // Runs one case on one technique. Returns nullopt if the case needs a history that the technique
 // lacks. Errors: those of the run.
-demo::Result<std::optional<StabilityRow>> run_case(TechniqueRun& run, const StabilityCase& requested,
-                                                   const std::string& name);
+demo::Result<std::optional<StabilityRow>>
+run_case(TechniqueRun& run, const StabilityCase& requested, const std::string& name);
 
 // Returns a row of technique "formula".
 StabilityRow formula_row(std::string name, double error, double bound, bool finite = true);

@@ -18,13 +18,14 @@ bool is_guided(const TechniqueRequest& request) {
 }
 
 // Returns one result per frame: light, or the kernels' sampling data.
-demo::Result<std::vector<StabilityAnswer>> run_all(TechniqueRun& run, const StabilityCase& requested,
-                                                   bool reference) {
+demo::Result<std::vector<StabilityAnswer>> run_all(TechniqueRun& run,
+                                                   const StabilityCase& requested, bool reference) {
   std::vector<StabilityAnswer> all;
   if (requested.same_as) run.start_anew(); // equal frame numbers give equal samples
   for (uint32_t t = 0; t < requested.frames; ++t) {
     if (t == 0 && !reference && requested.frame_index > 0) run.skip_to(requested.frame_index);
-    auto light = run.scatter((reference ? requested.same_as : requested.given)(t), t > 0 && requested.follows,
+    auto light = run.scatter((reference ? requested.same_as : requested.given)(t),
+                             t > 0 && requested.follows,
                              reference ? DepthGiven::view_distance : requested.depth);
     if (!light) return light.error();
     StabilityAnswer answer{light.take(), {}};
@@ -40,9 +41,10 @@ demo::Result<std::vector<StabilityAnswer>> run_all(TechniqueRun& run, const Stab
 
 } // namespace
 
-demo::Result<std::optional<StabilityRow>> run_case(TechniqueRun& run, const StabilityCase& requested,
-                                                   const std::string& name) {
-  if (requested.requested == Asked::guided && !is_guided(run.request())) return std::optional<StabilityRow>();
+demo::Result<std::optional<StabilityRow>>
+run_case(TechniqueRun& run, const StabilityCase& requested, const std::string& name) {
+  if (requested.requested == Asked::guided && !is_guided(run.request()))
+    return std::optional<StabilityRow>();
   if (requested.requested == Asked::of_profile && run.request().technique == "separable_jimenez")
     return std::optional<StabilityRow>();
   if (requested.requested == Asked::with_history) {
@@ -63,10 +65,12 @@ demo::Result<std::optional<StabilityRow>> run_case(TechniqueRun& run, const Stab
   row.frames = requested.frames;
   row.bound = requested.bound;
   for (uint32_t t = 0; t < requested.frames; ++t) {
-    const Judgement judgement = judge(requested, t, (*found)[t], requested.same_as ? &sound[t] : nullptr);
+    const Judgement judgement =
+        judge(requested, t, (*found)[t], requested.same_as ? &sound[t] : nullptr);
     row.nonfinite_pixels = std::max(row.nonfinite_pixels, judgement.nonfinite);
     row.negative_pixels = std::max(row.negative_pixels, judgement.negative);
-    if (t >= requested.first_judged) row.max_abs_error = std::max(row.max_abs_error, judgement.error);
+    if (t >= requested.first_judged)
+      row.max_abs_error = std::max(row.max_abs_error, judgement.error);
     if (requested.damage_ends > 0 && t >= requested.damage_ends && !row.recovered_after_frames &&
         judgement.error <= requested.bound)
       row.recovered_after_frames = t - requested.damage_ends + 1;

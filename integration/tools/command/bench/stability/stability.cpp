@@ -16,10 +16,11 @@ namespace {
 using Techniques = std::vector<TechniqueRequest>;
 
 std::optional<Techniques> read_techniques(const std::string& path, Diagnostics& diagnostics) {
-  return read_bench_file<Techniques>(path, diagnostics, [](BenchObject& root, Techniques& techniques) {
-    root.entries("techniques", "technique", 1,
-                 [&](BenchObject& entry) { entry.technique(techniques.emplace_back()); });
-  });
+  return read_bench_file<Techniques>(
+      path, diagnostics, [](BenchObject& root, Techniques& techniques) {
+        root.entries("techniques", "technique", 1,
+                     [&](BenchObject& entry) { entry.technique(techniques.emplace_back()); });
+      });
 }
 
 std::vector<StabilityCase> requested_cases(const SuiteRun& run) {
@@ -27,7 +28,8 @@ std::vector<StabilityCase> requested_cases(const SuiteRun& run) {
   for (const auto& list : {light_cases(), shape_cases(), depth_cases(), tile_cases(), time_cases(),
                            motion_cases(), guidance_cases(), random_cases()})
     for (const StabilityCase& one : list)
-      if (run.is_requested("cases", one.name) && !(run.quick && one.large)) requested.push_back(one);
+      if (run.is_requested("cases", one.name) && !(run.quick && one.large))
+        requested.push_back(one);
   return requested;
 }
 
@@ -49,15 +51,17 @@ std::string summary_of(const std::vector<StabilityRow>& rows) {
       all = all && other.holds();
       if (other.max_abs_error > worst->max_abs_error) worst = &other;
     }
-    table.rows.push_back({row.name, fmt::format("{}", count), fmt::format("{:.2g}", worst->max_abs_error),
-                          fmt::format("{:.2g}", worst->bound), worst->technique, all ? "yes" : "NO"});
+    table.rows.push_back(
+        {row.name, fmt::format("{}", count), fmt::format("{:.2g}", worst->max_abs_error),
+         fmt::format("{:.2g}", worst->bound), worst->technique, all ? "yes" : "NO"});
   }
   std::string text = format_table(table);
   for (const StabilityRow& row : rows)
     if (!row.holds())
-      text += fmt::format(
-          "does not hold: {} with {}: {} pixels not finite, {} below 0, error {:.3g}, bound {:.3g}\n",
-          row.name, row.technique, row.nonfinite_pixels, row.negative_pixels, row.max_abs_error, row.bound);
+      text += fmt::format("does not hold: {} with {}: {} pixels not finite, {} below 0, error "
+                          "{:.3g}, bound {:.3g}\n",
+                          row.name, row.technique, row.nonfinite_pixels, row.negative_pixels,
+                          row.max_abs_error, row.bound);
   return text;
 }
 
@@ -70,7 +74,8 @@ demo::Result<> measure_stability(SuiteRun& run, const Emit<StabilityRow>& emit) 
   const auto host = run.open_device();
   if (!host) return host.error();
   std::vector<StabilityRow> rows;
-  for (std::vector<StabilityRow>& list : std::array{formula_rows(), moving_rows(run.number("updates"))})
+  for (std::vector<StabilityRow>& list :
+       std::array{formula_rows(), moving_rows(run.number("updates"))})
     for (StabilityRow& row : list)
       if (run.is_requested("cases", row.name) && run.is_requested("techniques", row.technique))
         rows.push_back(std::move(row));
@@ -94,7 +99,8 @@ demo::Result<> measure_stability(SuiteRun& run, const Emit<StabilityRow>& emit) 
       if (*row) rows.push_back(**row);
     }
   }
-  if (rows.empty()) return demo::Error{demo::ErrorKind::usage, "no case and technique has these names"};
+  if (rows.empty())
+    return demo::Error{demo::ErrorKind::usage, "no case and technique has these names"};
   for (const StabilityRow& row : rows)
     emit(row);
   run.report.text = summary_of(rows);
@@ -111,13 +117,14 @@ Suite stability_suite() {
       {.name = "stability",
        .what = "Test every technique with damaged and extreme inputs",
        .title = "Numerical stability",
-       .summary = "Damaged light, depth, masks, velocities and histories; sizes, radii, slopes and frame "
-                  "numbers at their limits. Errors are relative to the brightest light of a case.",
+       .summary =
+           "Damaged light, depth, masks, velocities and histories; sizes, radii, slopes and frame "
+           "numbers at their limits. Errors are relative to the brightest light of a case.",
        .options = {file_option("tests/benchmark/stability.json", "Techniques"),
                    only_option("cases"),
                    techniques,
-                   {"updates", "Updates of moving averages in half floats", 1000000u, "", 1000u, 1000,
-                    uint64_t{1} << 40}}},
+                   {"updates", "Updates of moving averages in half floats", 1000000u, "", 1000u,
+                    1000, uint64_t{1} << 40}}},
       {{"case", "case", &Row::name},
        {"technique", "technique", &Row::technique},
        {"frames", "frames", &Row::frames},

@@ -18,8 +18,10 @@ void BenchObject::flag(std::string_view key, bool& value) {
   if (const auto found = reader.boolean(key, Need::optional)) value = *found;
 }
 
-void BenchObject::count(std::string_view key, uint32_t& value, int64_t minimum, int64_t maximum, Need need) {
-  if (const auto found = reader.integer(key, minimum, maximum, need)) value = static_cast<uint32_t>(*found);
+void BenchObject::count(std::string_view key, uint32_t& value, int64_t minimum, int64_t maximum,
+                        Need need) {
+  if (const auto found = reader.integer(key, minimum, maximum, need))
+    value = static_cast<uint32_t>(*found);
 }
 
 void BenchObject::camera(std::optional<demo::CameraPlace>& place) {
@@ -37,9 +39,11 @@ void BenchObject::technique(TechniqueRequest& request) {
   file("graph", request.graph);
   flag("heat_map", request.heat_map);
   const std::string& what = reader.what();
-  if (const NodeId list = reader.array("overlays", 1, max_bench_entries, Need::optional); list.valid())
+  if (const NodeId list = reader.array("overlays", 1, max_bench_entries, Need::optional);
+      list.valid())
     for (const NodeId one : children(document, list))
-      if (const auto path = read_string(document, one, fmt::format("an overlay of {}", what), diagnostics))
+      if (const auto path =
+              read_string(document, one, fmt::format("an overlay of {}", what), diagnostics))
         request.overlays.push_back(shipped(std::string(*path)));
   const NodeId set = reader.object("set", Need::optional);
   if (!set.valid()) return;

@@ -53,7 +53,8 @@ struct BenchObject {
     inner.reader.finish();
   }
   // Calls read(BenchObject&) for each object of a list.
-  template <class Read> void entries(std::string_view key, std::string_view what, size_t minimum, Read read) {
+  template <class Read>
+  void entries(std::string_view key, std::string_view what, size_t minimum, Read read) {
     const NodeId list = reader.array(key, minimum, max_bench_entries);
     if (!list.valid()) return;
     size_t number = 0;
@@ -69,7 +70,8 @@ struct BenchObject {
 template <class File, class Read>
 std::optional<File> read_bench_file(const std::string& path, Diagnostics& diagnostics, Read read) {
   const auto document = read_document(path, diagnostics);
-  if (!document || !check_version(*document, "dermis_benchmark", 1, diagnostics)) return std::nullopt;
+  if (!document || !check_version(*document, "dermis_benchmark", 1, diagnostics))
+    return std::nullopt;
   File file;
   BenchObject root(*document, document->root(), "the bench file", diagnostics);
   root.reader.integer("dermis_benchmark", 1, 1);

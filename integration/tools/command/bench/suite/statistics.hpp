@@ -7,7 +7,8 @@
 
 namespace dermis::tools {
 
-// Returns the value at a fraction of the sorted values, by nearest rank. `values` must not be empty.
+// Returns the value at a fraction of the sorted values, by nearest rank. `values` must not be
+// empty.
 inline double quantile(std::vector<double> values, double fraction) {
   std::sort(values.begin(), values.end());
   return values[static_cast<size_t>(fraction * static_cast<double>(values.size() - 1) + 0.5)];

@@ -18,8 +18,10 @@ void complete_facts(SuiteRun& run, double seconds) {
   std::vector<std::pair<std::string, std::string>>& own = run.report.info;
   own.insert(own.begin(), facts.begin(), facts.end());
   if (run.quick)
-    run.add_fact("quick", "a smoke test with small images and few repetitions, scenes or techniques; figures "
-                          "are meaningless");
+    run.add_fact(
+        "quick",
+        "a smoke test with small images and few repetitions, scenes or techniques; figures "
+        "are meaningless");
   run.add_fact("took", format_duration(seconds));
 }
 
@@ -38,7 +40,8 @@ SuiteOption head_option(std::string help) {
 }
 
 SuiteOption cache_option() {
-  return {"cache", "Folder of cached references; \"\": references are not kept", "build/bench_truth", "DIR"};
+  return {"cache", "Folder of cached references; \"\": references are not kept",
+          "build/bench_truth", "DIR"};
 }
 
 SuiteOption pass_types_option() {
@@ -47,7 +50,8 @@ SuiteOption pass_types_option() {
 }
 
 SuiteOption only_option(const std::string& kind) {
-  return {kind, fmt::format("Only these {}, separated by commas", kind), std::vector<std::string>(), "NAME"};
+  return {kind, fmt::format("Only these {}, separated by commas", kind), std::vector<std::string>(),
+          "NAME"};
 }
 
 bool SuiteRun::is_requested(const std::string& name, std::string_view word) const {
@@ -112,7 +116,8 @@ ExitCode run_suite(const Session& session, const Suite& suite, const SuiteReques
   const auto done = suite.run(run);
   if (interrupted()) return fail(session, ExitCode::interrupted, "stopped");
   if (!done) return fail(session, static_cast<ExitCode>(done.error().kind), done.error().text);
-  complete_facts(run, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+  complete_facts(run,
+                 std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
 
   const GoalCount goals = count_goals(report.table, Goal::required);
   const std::string verdict =

@@ -24,18 +24,19 @@ inline constexpr uint32_t quick_subset = 64; // pixels per frame with a referenc
 using OptionValue = std::variant<bool, uint64_t, Size, std::string, std::vector<std::string>>;
 
 struct SuiteOption {
-  std::string name;                      // "size": --size
-  std::string help;                      // without the default
-  OptionValue value;                     // default; determines the type of the option
-  std::string type = {};                 // of text, for help: "FILE"; a list of "NAME" is separated by commas
-  std::optional<OptionValue> quick = {}; // value with --quick, which then excludes the option
+  std::string name;      // "size": --size
+  std::string help;      // without the default
+  OptionValue value;     // default; determines the type of the option
+  std::string type = {}; // of text, for help: "FILE"; a list of "NAME" is separated by commas
+  std::optional<OptionValue> quick = {};  // value with --quick, which then excludes the option
   uint64_t minimum = 0, maximum = 100000; // of a number
 };
 
 // Options that several suites share.
 SuiteOption file_option(std::string path, std::string help = "Description of the benchmark");
 SuiteOption size_option(Size size);
-SuiteOption head_option(std::string help = "Folder of the head scan (LeePerrySmith.glb and its maps)");
+SuiteOption
+head_option(std::string help = "Folder of the head scan (LeePerrySmith.glb and its maps)");
 SuiteOption cache_option();
 SuiteOption pass_types_option();
 // Restricts the suite to some names of a kind ("scenes").
@@ -49,7 +50,9 @@ struct SuiteRun {
   Report report = {};      // facts, notes, plots and images; rows are emitted
   std::string device = {}; // for the facts; set by open_device()
 
-  template <class T> const T& option(const std::string& name) const { return std::get<T>(options.at(name)); }
+  template <class T> const T& option(const std::string& name) const {
+    return std::get<T>(options.at(name));
+  }
   const std::string& text(const std::string& name) const { return option<std::string>(name); }
   bool flag(const std::string& name) const { return option<bool>(name); }
   const std::vector<std::string>& list(const std::string& name) const {

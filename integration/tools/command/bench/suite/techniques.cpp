@@ -15,7 +15,8 @@ bool is_usable(SuiteRun& run, const TechniqueRequest& technique) {
   if (run.options.contains("techniques") && !run.is_requested("techniques", technique.technique))
     return false;
   if (std::filesystem::exists(technique.graph)) return true;
-  run.add_note(fmt::format("technique {}: graph '{}' does not exist", name_of(technique), technique.graph));
+  run.add_note(
+      fmt::format("technique {}: graph '{}' does not exist", name_of(technique), technique.graph));
   return false;
 }
 
@@ -27,7 +28,8 @@ bool is_one_of_few(std::string_view technique) {
 demo::Error no_technique(std::vector<std::string> known) {
   std::sort(known.begin(), known.end());
   known.erase(std::unique(known.begin(), known.end()), known.end());
-  return {demo::ErrorKind::usage, fmt::format("no technique is selected; available: {}", format_list(known))};
+  return {demo::ErrorKind::usage,
+          fmt::format("no technique is selected; available: {}", format_list(known))};
 }
 
 } // namespace dermis::tools

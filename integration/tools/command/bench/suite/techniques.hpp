@@ -30,7 +30,8 @@ template <class Request> void keep_few(std::vector<Request>& all) {
 
 // Returns the usable techniques. Errors: usage (there is none).
 template <class Request>
-demo::Result<std::vector<Request>> select_techniques(SuiteRun& run, const std::vector<Request>& all) {
+demo::Result<std::vector<Request>> select_techniques(SuiteRun& run,
+                                                     const std::vector<Request>& all) {
   std::vector<Request> selected;
   std::vector<std::string> known;
   for (const Request& one : all) {

@@ -9,8 +9,8 @@
 
 namespace dermis::tools {
 
-inline constexpr std::array<std::string_view, 6> residual_names = {"res_f", "sf",       "sf_ema",
-                                                                   "emcm",  "emcm_hat", "ground_truth"};
+inline constexpr std::array<std::string_view, 6> residual_names = {
+    "res_f", "sf", "sf_ema", "emcm", "emcm_hat", "ground_truth"};
 
 // Returns the weight of the control with the smallest variance of the residual, in closed form: 12
 // (2 ln 2 - 1 - ln 2 / 2) (static) or 2 ln 2 (dynamic).

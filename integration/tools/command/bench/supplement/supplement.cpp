@@ -49,8 +49,9 @@ demo::Result<> measure_residuals(const Emit<SupplementRow>& emit, bool dynamic, 
                       medians[dynamic][k],
                       printed[dynamic][k]};
     constexpr double half_a_digit = 0.5e-4;
-    row.holds = std::abs(row.value - row.expected) <= median_tolerance * row.expected + half_a_digit &&
-                std::abs(row.paper / row.value - 1) <= printed_tolerance;
+    row.holds =
+        std::abs(row.value - row.expected) <= median_tolerance * row.expected + half_a_digit &&
+        std::abs(row.paper / row.value - 1) <= printed_tolerance;
     emit(row);
   }
   return demo::success();
@@ -87,9 +88,9 @@ Suite supplement_suite() {
       {.name = "supplement",
        .what = "Reproduce table 1 of the supplement on control variates from many runs",
        .title = "Control variates: table 1 of the supplement",
-       .summary =
-           "Mean over frames 25 to 100 of the root of the moving variance of six residuals, and the best "
-           "weight of the control. The printed values are those of one run.",
+       .summary = "Mean over frames 25 to 100 of the root of the moving variance of six residuals, "
+                  "and the best "
+                  "weight of the control. The printed values are those of one run.",
        .options = {{.name = "runs",
                     .help = "Runs of 100 frames",
                     .value = 4096u,

@@ -27,7 +27,8 @@ struct Rows {
 };
 
 void add_profile(Rows& rows) {
-  constexpr double r[] = {.5, 1, 2, 3, 5, 10}, cdf[] = {.213506, .370632, .581103, .711644, .856659, .973233};
+  constexpr double r[] = {.5, 1, 2, 3, 5, 10},
+                   cdf[] = {.213506, .370632, .581103, .711644, .856659, .973233};
   for (size_t i = 0; i < std::size(r); ++i)
     rows.add(fmt::format("cdf({} d)", r[i]), cdf[i], subsurface::burley_cdf(r[i], 1), six_digits);
   constexpr double xi[] = {.5, .9, .99, .997, .999},
@@ -46,7 +47,8 @@ void add_sampler(Rows& rows) {
   double r1 = 0, r2 = 0, exact1 = 0, exact2 = 0, weight = 0, furthest = 0;
   for (int i = 0; i < n; ++i) {
     const double u = (i + 0.5) / n;
-    const double w = subsurface::burley_sample_weight(u), r = subsurface::burley_sample_survival(u, 1);
+    const double w = subsurface::burley_sample_weight(u),
+                 r = subsurface::burley_sample_survival(u, 1);
     const double exact = subsurface::burley_inverse_survival(u, 1);
     weight += w / n;
     r1 += w * r / n;
@@ -67,14 +69,17 @@ void add_plane(Rows& rows) {
   constexpr double x[] = {.1, .25, .5, 1, 2, 4, 8};
   constexpr double edge[] = {.563178, .621756, .689769, .776990, .870563, .947619, .989248};
   for (size_t i = 0; i < std::size(x); ++i)
-    rows.add(fmt::format("edge at {} d", x[i]), edge[i], subsurface::burley_edge(x[i], 1), six_digits);
+    rows.add(fmt::format("edge at {} d", x[i]), edge[i], subsurface::burley_edge(x[i], 1),
+             six_digits);
   constexpr double k[] = {.1, .5, 1, 2, 5}, mtf[] = {.967129, .639632, .413948, .235103, .098918};
   for (size_t i = 0; i < std::size(k); ++i)
-    rows.add(fmt::format("contrast of a sinusoid, k d = {}", k[i]), mtf[i], subsurface::burley_mtf(k[i], 1),
-             six_digits);
+    rows.add(fmt::format("contrast of a sinusoid, k d = {}", k[i]), mtf[i],
+             subsurface::burley_mtf(k[i], 1), six_digits);
   rows.add("centre of a disc, radius 2 d", .581103, subsurface::burley_disc(0, 2, 1), six_digits);
-  rows.add("centre of a Gaussian, s = .5 d", .247374, subsurface::burley_gaussian_centre(.5, 1), six_digits);
-  rows.add("centre of a Gaussian, s = 2 d", .605886, subsurface::burley_gaussian_centre(2, 1), six_digits);
+  rows.add("centre of a Gaussian, s = .5 d", .247374, subsurface::burley_gaussian_centre(.5, 1),
+           six_digits);
+  rows.add("centre of a Gaussian, s = 2 d", .605886, subsurface::burley_gaussian_centre(2, 1),
+           six_digits);
 }
 
 // Tests the fraction of a pixel's light that stays in the pixel at d = 3 px, and the radii of
@@ -84,8 +89,8 @@ void add_centre(Rows& rows) {
   const double exact = subsurface::planar_weight(1, 1, 0, 0, {d, d, d})[0];
   // polar quadrature, 1e5 steps
   rows.add("fraction that stays in a pixel, d = 3 px", 0.0879216, exact, six_digits / 10);
-  rows.add("disc of equal area, relative to that", 1, subsurface::burley_cdf(std::sqrt(1 / pi), d) / exact,
-           0.006);
+  rows.add("disc of equal area, relative to that", 1,
+           subsurface::burley_cdf(std::sqrt(1 / pi), d) / exact, 0.006);
   rows.add("disc with half the diagonal as radius, relative to that", 1.24,
            subsurface::burley_cdf(std::sqrt(0.5), d) / exact, 0.006);
 }

@@ -30,7 +30,8 @@ void paint(CapturedFrame& frame, const Light& light, uint32_t samples = samples_
       double sum = 0;
       for (uint32_t j = 0; j < samples; ++j)
         for (uint32_t i = 0; i < samples; ++i)
-          sum += light(x + (i + 0.5) / samples - 0.5 - middle_x, y + (j + 0.5) / samples - 0.5 - middle_y);
+          sum += light(x + (i + 0.5) / samples - 0.5 - middle_x,
+                       y + (j + 0.5) / samples - 0.5 - middle_y);
       for (uint32_t c = 0; c < 3; ++c)
         frame.lighting.at(x, y, c) = static_cast<float>(sum / (samples * samples));
     }
@@ -169,8 +170,8 @@ void disc(Probe& probe) {
     CapturedFrame frame = plane(d);
     paint(frame, [&](double x, double y) { return std::hypot(x, y) < rho * d ? 1.0 : 0.0; });
     if (!probe.scatter(frame)) return;
-    probe.add("disc", fmt::format("centre, radius {} d", rho), subsurface::burley_disc(0, rho * d, d),
-              probe.at(0, 0));
+    probe.add("disc", fmt::format("centre, radius {} d", rho),
+              subsurface::burley_disc(0, rho * d, d), probe.at(0, 0));
     if (rho == 4.0)
       for (const int x : {8, 16, 24})
         probe.add("disc", fmt::format("{} d from the centre, radius 4 d", x / d),
@@ -184,10 +185,11 @@ void gaussian(Probe& probe) {
     const double d_px = s < 1 ? 2 * d : d; // averaging over pixels widens the light: sigma^2 + 1/12
     CapturedFrame frame = plane(d_px);
     const double sigma = s * d_px;
-    paint(frame, [&](double x, double y) { return std::exp(-(x * x + y * y) / (2 * sigma * sigma)); });
+    paint(frame,
+          [&](double x, double y) { return std::exp(-(x * x + y * y) / (2 * sigma * sigma)); });
     if (!probe.scatter(frame)) return;
-    probe.add("gaussian", fmt::format("centre, s = {} d", s), subsurface::burley_gaussian_centre(sigma, d_px),
-              probe.at(0, 0));
+    probe.add("gaussian", fmt::format("centre, s = {} d", s),
+              subsurface::burley_gaussian_centre(sigma, d_px), probe.at(0, 0));
   }
 }
 
@@ -228,8 +230,8 @@ void tilted_edge(Probe& probe) {
       const double error = mean - edge_of_columns(x, d, stretch);
       squares += error * error;
     }
-    probe.add(degrees < 45 ? "tilted_edge_30" : "tilted_edge_60", "RMSE of columns, in surface distance", 0,
-              std::sqrt(squares / 65));
+    probe.add(degrees < 45 ? "tilted_edge_30" : "tilted_edge_60",
+              "RMSE of columns, in surface distance", 0, std::sqrt(squares / 65));
   }
 }
 
@@ -239,7 +241,8 @@ double sphere_pole(const Light& of_cosine, double radius, double d_px) {
   constexpr int steps = 4000; // even
   double light = 0, all = 0;
   for (int i = 0; i <= steps; ++i) {
-    const double r = std::sqrt(2.0) * radius * i / steps, cosine = 1 - r * r / (2 * radius * radius);
+    const double r = std::sqrt(2.0) * radius * i / steps,
+                 cosine = 1 - r * r / (2 * radius * radius);
     const double weight = (i == 0 || i == steps ? 1
                            : i % 2 == 1         ? 4
                                                 : 2) *
@@ -259,11 +262,12 @@ void sphere(Probe& probe) {
     for (uint32_t x = 0; x < property_width; ++x) {
       const double rho = std::hypot(x - middle_x, y - middle_y);
       frame.profile[size_t{y} * property_width + x] = rho < radius ? 1 : 0;
-      frame.depth.at(x, y, 0) =
-          static_cast<float>(1 + pitch * (radius - std::sqrt(std::max(0.0, radius * radius - rho * rho))));
+      frame.depth.at(x, y, 0) = static_cast<float>(
+          1 + pitch * (radius - std::sqrt(std::max(0.0, radius * radius - rho * rho))));
     }
-  const std::pair<int, Light> harmonics[] = {{1, [](double c, double) { return c; }},
-                                             {2, [](double c, double) { return 1.5 * c * c - 0.5; }}};
+  const std::pair<int, Light> harmonics[] = {
+      {1, [](double c, double) { return c; }},
+      {2, [](double c, double) { return 1.5 * c * c - 0.5; }}};
   for (const auto& [degree, harmonic] : harmonics) {
     const Light light = [&of = harmonic](double c, double) { return 0.5 + 0.5 * of(c, 0); };
     paint(
@@ -284,7 +288,8 @@ double leak(const Probe& probe) {
     for (uint32_t x = 0; x < property_width; ++x) {
       if (!is_looked_at(x, y)) continue;
       const double expected = x < property_width / 2 ? 1 : 0;
-      worst = std::max(worst, std::abs(double(probe.light[3 * (size_t{y} * property_width + x)]) - expected));
+      worst = std::max(
+          worst, std::abs(double(probe.light[3 * (size_t{y} * property_width + x)]) - expected));
     }
   return worst;
 }
@@ -331,7 +336,8 @@ void scale_invariance(Probe& probe) {
       squares += (mean - of(first, x, y)) * (mean - of(first, x, y));
       ++count;
     }
-  probe.add("scale_invariance", "RMS difference of one scene at two sizes", 0, std::sqrt(squares / count));
+  probe.add("scale_invariance", "RMS difference of one scene at two sizes", 0,
+            std::sqrt(squares / count));
 }
 
 struct Property {

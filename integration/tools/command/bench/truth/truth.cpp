@@ -33,7 +33,8 @@ demo::Result<std::vector<float>> scatter_exactly(const CapturedFrame& frame) {
 }
 
 Scatter until_interrupted(Scatter scatter) {
-  return [scatter = std::move(scatter)](const CapturedFrame& frame) -> demo::Result<std::vector<float>> {
+  return [scatter =
+              std::move(scatter)](const CapturedFrame& frame) -> demo::Result<std::vector<float>> {
     if (interrupted()) return stopped();
     return scatter(frame);
   };
@@ -56,7 +57,8 @@ demo::Result<> measure_truth(SuiteRun& run, const Emit<PropertyRow>& emit) {
   for (const PropertyRow& row : formula_properties())
     emit(row);
   Progress progress = run.progress("technique", file.techniques.size() + 1);
-  if (auto done = measure({"truth", until_interrupted(scatter_exactly), file.reference}); !done) return done;
+  if (auto done = measure({"truth", until_interrupted(scatter_exactly), file.reference}); !done)
+    return done;
   uint64_t done = 1;
   const std::vector<CaptureProfile> profiles = property_profiles();
   for (const PropertyTechnique& technique : file.techniques) {
@@ -65,7 +67,8 @@ demo::Result<> measure_truth(SuiteRun& run, const Emit<PropertyRow>& emit) {
     const auto made = TechniqueRun::create(**host, technique, profiles, {});
     if (!made) return made.error();
     const Scatter scatter = [&](const CapturedFrame& frame) { return (*made)->scatter(frame); };
-    if (auto measured = measure({name_of(technique), until_interrupted(scatter), technique.tolerances});
+    if (auto measured =
+            measure({name_of(technique), until_interrupted(scatter), technique.tolerances});
         !measured)
       return measured;
   }
@@ -80,7 +83,8 @@ Suite truth_suite() {
       {.name = "truth",
        .what = "Compare every technique with known results",
        .title = "Known results",
-       .summary = "Required and measured results of planes, edges, discs and steps. Rows without a tolerance "
+       .summary = "Required and measured results of planes, edges, discs and steps. Rows without a "
+                  "tolerance "
                   "are only reported.",
        .options = {file_option("tests/benchmark/truth.json", "Techniques and tolerances")}},
       {{"law", "law", &Row::property},

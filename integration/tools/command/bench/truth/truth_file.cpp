@@ -23,9 +23,9 @@ Tolerances read_tolerances(BenchObject& object, std::string_view key) {
           .suggestion = did_you_mean(property, properties);
       continue;
     }
-    if (const auto value =
-            read_number(object.document, one, fmt::format("'{}' of {}", property, object.reader.what()), 0,
-                        10, object.diagnostics))
+    if (const auto value = read_number(object.document, one,
+                                       fmt::format("'{}' of {}", property, object.reader.what()), 0,
+                                       10, object.diagnostics))
       tolerances.emplace_back(property, *value);
   }
   return tolerances;
@@ -34,14 +34,15 @@ Tolerances read_tolerances(BenchObject& object, std::string_view key) {
 } // namespace
 
 std::optional<PropertyFile> read_property_file(const std::string& path, Diagnostics& diagnostics) {
-  return read_bench_file<PropertyFile>(path, diagnostics, [](BenchObject& root, PropertyFile& file) {
-    file.reference = read_tolerances(root, "truth");
-    root.entries("techniques", "technique", 1, [&](BenchObject& entry) {
-      PropertyTechnique& technique = file.techniques.emplace_back();
-      entry.technique(technique);
-      technique.tolerances = read_tolerances(entry, "tolerances");
-    });
-  });
+  return read_bench_file<PropertyFile>(
+      path, diagnostics, [](BenchObject& root, PropertyFile& file) {
+        file.reference = read_tolerances(root, "truth");
+        root.entries("techniques", "technique", 1, [&](BenchObject& entry) {
+          PropertyTechnique& technique = file.techniques.emplace_back();
+          entry.technique(technique);
+          technique.tolerances = read_tolerances(entry, "tolerances");
+        });
+      });
 }
 
 } // namespace dermis::tools

@@ -22,11 +22,13 @@ struct SchemaPage {
   std::vector<Row> rows = {};
 
   NodeId at(NodeId object, std::string_view key) const {
-    return object.valid() && schema[object].kind == NodeKind::object ? schema.find(object, key) : NodeId{};
+    return object.valid() && schema[object].kind == NodeKind::object ? schema.find(object, key)
+                                                                     : NodeId{};
   }
   std::string text_at(NodeId object, std::string_view key) const {
     const NodeId found = at(object, key);
-    return found.valid() && schema[found].kind == NodeKind::string ? std::string(schema.text(found)) : "";
+    return found.valid() && schema[found].kind == NodeKind::string ? std::string(schema.text(found))
+                                                                   : "";
   }
   std::string value(NodeId id) const {
     const Node& node = schema[id];
@@ -92,7 +94,8 @@ struct SchemaPage {
     if (kind == "integer" || kind == "number") return kind + range(of, "minimum", "maximum");
     if (kind == "array") {
       const NodeId items = at(of, "items");
-      return "array" + range(of, "minItems", "maxItems") + (items.valid() ? ", each " + type_of(items) : "");
+      return "array" + range(of, "minItems", "maxItems") +
+             (items.valid() ? ", each " + type_of(items) : "");
     }
     if (kind == "object")
       if (const NodeId more = at(of, "additionalProperties");
@@ -117,7 +120,8 @@ struct SchemaPage {
       each(required, [&](NodeId one) { row.required = row.required || schema.text(one) == key; });
       add(std::move(row));
       add_keys(property, before + key + ".");
-      if (const NodeId items = at(property, "items"); items.valid() && schema[items].kind == NodeKind::object)
+      if (const NodeId items = at(property, "items");
+          items.valid() && schema[items].kind == NodeKind::object)
         add_keys(items, before + key + "[].");
     });
     for (const char* form : {"then", "else"})
@@ -142,7 +146,8 @@ struct SchemaPage {
 
   std::string page() {
     const NodeId root = schema.root();
-    std::string out = fmt::format("## {}\n\n{}\n\n", name, text_at(root, "description")) + table_of(root);
+    std::string out =
+        fmt::format("## {}\n\n{}\n\n", name, text_at(root, "description")) + table_of(root);
     each(at(root, "definitions"), [&](NodeId one) {
       const std::string_view key = schema.key(one);
       if (key == "pass_of_a_kind") return; // documented in pass_types.md
@@ -150,7 +155,8 @@ struct SchemaPage {
       const std::string text = text_at(one, "description");
       // the heading includes the format, since formats share names of definitions
       out += fmt::format("### {} ({})\n\n", key, name);
-      if (table.empty()) out += fmt::format("{}{}{}\n\n", cell(type_of(one)), text.empty() ? "" : ": ", text);
+      if (table.empty())
+        out += fmt::format("{}{}{}\n\n", cell(type_of(one)), text.empty() ? "" : ": ", text);
       if (!table.empty() && !text.empty()) out += text + "\n\n";
       out += table;
     });

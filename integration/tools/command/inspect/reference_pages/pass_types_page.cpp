@@ -56,7 +56,8 @@ std::string range_text(const PassTypeSetting& setting) {
 std::string need_text(const PassType& type, const Port& port) {
   for (const PortNeed& need : type.needs) {
     if (need.port != port.name) continue;
-    const std::string square = need.square == 1 ? "pixel" : fmt::format("{0}x{0} pixels", need.square);
+    const std::string square =
+        need.square == 1 ? "pixel" : fmt::format("{0}x{0} pixels", need.square);
     if (need.bytes == 0 && need.more == 0) return fmt::format("; one texel per {}", square);
     if (need.square == 0) return fmt::format("; {} bytes", need.more);
     return fmt::format("; {} bytes per {}{}", need.bytes, square,
@@ -68,28 +69,32 @@ std::string need_text(const PassType& type, const Port& port) {
 } // namespace
 
 std::string pass_types_page(const PassTypeRegistry& pass_types) {
-  std::string out =
-      "# Pass types\n\nPorts: `read` or `write`, then the usage, which decides stages, accesses and layouts, "
-      "then the smallest size (D0229).\n*Own texels*: each invocation reads only what it writes, so that the "
-      "pass may write the same resource.\n*Per frame*: the setting may differ between views of a graph.\n";
+  std::string out = "# Pass types\n\nPorts: `read` or `write`, then the usage, which decides "
+                    "stages, accesses and layouts, "
+                    "then the smallest size (D0229).\n*Own texels*: each invocation reads only "
+                    "what it writes, so that the "
+                    "pass may write the same resource.\n*Per frame*: the setting may differ "
+                    "between views of a graph.\n";
   for (uint32_t k = 0; k < pass_types.size(); ++k) {
     const PassType& type = pass_types[PassTypeId{k}];
-    out += fmt::format("\n## {}\n\n{} Runs {}{}.\n", type.name, type.doc, dispatch_text(type.dispatch),
-                       type.side_effects ? "; never culled" : "");
+    out += fmt::format("\n## {}\n\n{} Runs {}{}.\n", type.name, type.doc,
+                       dispatch_text(type.dispatch), type.side_effects ? "; never culled" : "");
     for (const std::string_view port : type.one_of)
-      out += fmt::format("{}`{}`",
-                         port == type.one_of.front() ? "\nAt least one of these ports must be bound: " : ", ",
-                         port);
+      out += fmt::format(
+          "{}`{}`",
+          port == type.one_of.front() ? "\nAt least one of these ports must be bound: " : ", ",
+          port);
     if (!type.one_of.empty()) out += ".\n";
     out += "\n| port | | | |\n|---|---|---|---|\n";
     for (const Port& port : type.ports) {
       std::string formats;
       for (const Format format : port.formats)
         formats += fmt::format("{}{}", formats.empty() ? "; " : ", ", format_info(format).name);
-      out += fmt::format("| `{}` | {}{}{} | {}{}{} | {} |\n", port.name,
-                         side_of(port) == PortSide::read ? "read" : "write",
-                         port.optional ? ", optional" : "", port.own_texels ? ", own texels" : "",
-                         usage_info(port.usage).name, formats, need_text(type, port), cell(port.doc));
+      out +=
+          fmt::format("| `{}` | {}{}{} | {}{}{} | {} |\n", port.name,
+                      side_of(port) == PortSide::read ? "read" : "write",
+                      port.optional ? ", optional" : "", port.own_texels ? ", own texels" : "",
+                      usage_info(port.usage).name, formats, need_text(type, port), cell(port.doc));
     }
     if (type.settings.empty()) continue;
     out += "\n| setting | default | | |\n|---|---|---|---|\n";

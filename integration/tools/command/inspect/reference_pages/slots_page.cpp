@@ -11,7 +11,8 @@ namespace {
 
 std::string type_text(const ResourceDeclaration& slot) {
   if (slot.type == ResourceType::acceleration_structure) return "acceleration structure";
-  if (slot.type == ResourceType::buffer) return fmt::format("buffer, {} bytes per element", slot.stride);
+  if (slot.type == ResourceType::buffer)
+    return fmt::format("buffer, {} bytes per element", slot.stride);
   std::string formats;
   for (const Format format : slot.formats)
     formats += fmt::format("{}`{}`", formats.empty() ? "" : ", ", format_info(format).name);
@@ -27,8 +28,8 @@ std::string direction_text(const ResourceDeclaration& slot) {
 class TextOfGraphs {
 public:
   void add(std::string_view graph, std::string_view text) {
-    auto same =
-        std::find_if(entries_.begin(), entries_.end(), [&](const Entry& e) { return e.text == text; });
+    auto same = std::find_if(entries_.begin(), entries_.end(),
+                             [&](const Entry& e) { return e.text == text; });
     if (same == entries_.end()) same = entries_.insert(same, {std::string(text), {}, 0});
     same->graphs += fmt::format("{}`{}`", same->graphs.empty() ? "" : ", ", graph);
     ++same->count;
@@ -70,8 +71,8 @@ std::string slots_page(std::span<const NamedGraph> graphs) {
   for (const NamedGraph& one : graphs)
     for (const ResourceDeclaration& slot : one.graph.resources) {
       if (slot.origin != Origin::imported && !slot.exported) continue;
-      auto row =
-          std::find_if(rows.begin(), rows.end(), [&](const SlotRow& r) { return r.name == slot.name; });
+      auto row = std::find_if(rows.begin(), rows.end(),
+                              [&](const SlotRow& r) { return r.name == slot.name; });
       if (row == rows.end()) {
         row = rows.insert(row, SlotRow{});
         row->name = slot.name;
@@ -81,11 +82,11 @@ std::string slots_page(std::span<const NamedGraph> graphs) {
       row->need.add(one.name, slot.optional ? "optional" : "required");
       row->meaning.add(one.name, slot.note);
     }
-  std::string out =
-      "# Slots of the shipped graphs\n\n| slot | | type or formats | needed | is |\n|---|---|---|---|---|\n";
+  std::string out = "# Slots of the shipped graphs\n\n| slot | | type or formats | needed | is "
+                    "|\n|---|---|---|---|---|\n";
   for (const SlotRow& row : rows)
-    out += fmt::format("| `{}` | {} | {} | {} | {} |\n", row.name, row.direction.say(), row.type.say(),
-                       row.need.say_in(graphs.size()), cell(row.meaning.say()));
+    out += fmt::format("| `{}` | {} | {} | {} | {} |\n", row.name, row.direction.say(),
+                       row.type.say(), row.need.say_in(graphs.size()), cell(row.meaning.say()));
   return out;
 }
 

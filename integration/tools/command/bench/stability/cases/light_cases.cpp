@@ -33,16 +33,20 @@ StabilityCase uniform(std::string_view name, float value, double bound) {
     return frame;
   };
   const auto expected = [taken](uint32_t) { return taken; };
-  return {
-      .name = name, .given = given, .expected = expected, .bound = bound, .scale = std::max(1e-30, taken)};
+  return {.name = name,
+          .given = given,
+          .expected = expected,
+          .bound = bound,
+          .scale = std::max(1e-30, taken)};
 }
 
 // A white plane that scatters where `has_profile` is true.
 template <class Mask> StabilityCase masked(std::string_view name, Mask has_profile) {
   const auto given = [has_profile](uint32_t) {
     CapturedFrame frame = sound_frame();
-    for_pixels(frame,
-               [&](uint32_t x, uint32_t y, size_t i) { frame.profile[i] = has_profile(x, y) ? 1 : 0; });
+    for_pixels(frame, [&](uint32_t x, uint32_t y, size_t i) {
+      frame.profile[i] = has_profile(x, y) ? 1 : 0;
+    });
     return frame;
   };
   return {.name = name, .given = given, .expected = white, .bound = furnace};
@@ -59,7 +63,8 @@ StabilityCase black_half() {
       return frame;
     };
   };
-  return {.name = "black_subsurface", .given = with(0.0f), .same_as = with(1e-6f), .bound = furnace};
+  return {
+      .name = "black_subsurface", .given = with(0.0f), .same_as = with(1e-6f), .bound = furnace};
 }
 
 // Half of the image has no profile and 1000 times the light. None of that light may leak.
@@ -170,24 +175,25 @@ void fill_light(CapturedFrame& frame, float value) {
 }
 
 std::vector<StabilityCase> light_cases() {
-  return {damaged_light("light_nan", not_a_number, 0),
-          damaged_light("light_negative", -1, 0),
-          damaged_light("light_minus_infinity", -infinity, 0),
-          damaged_light("light_infinity", infinity, largest_half),
-          damaged_light("light_beyond_half", 1e30f, largest_half),
-          uniform("light_denormal", 1e-40f, 1e30), // may become 0
-          uniform("light_faint", 1e-4f, 4e-3),     // half floats are 6e-8 apart below 6e-5
-          uniform("light_brightest", 6e4f, furnace),
-          uniform("light_too_bright", 1e6f, furnace),
-          trembling(),
-          glare_beside(),
-          glare_in_the_dark(),
-          wrong_albedo(),
-          black_half(),
-          masked("isolated_pixel", [](uint32_t x, uint32_t y) { return x == 13 && y == 17; }),
-          masked("hair_thin_holes", [](uint32_t x, uint32_t y) { return x % 7 != 3 && y % 11 != 5; }),
-          masked("checkerboard_mask", [](uint32_t x, uint32_t y) { return (x + y) % 2 == 0; }),
-          masked("empty_mask", [](uint32_t, uint32_t) { return false; })};
+  return {
+      damaged_light("light_nan", not_a_number, 0),
+      damaged_light("light_negative", -1, 0),
+      damaged_light("light_minus_infinity", -infinity, 0),
+      damaged_light("light_infinity", infinity, largest_half),
+      damaged_light("light_beyond_half", 1e30f, largest_half),
+      uniform("light_denormal", 1e-40f, 1e30), // may become 0
+      uniform("light_faint", 1e-4f, 4e-3),     // half floats are 6e-8 apart below 6e-5
+      uniform("light_brightest", 6e4f, furnace),
+      uniform("light_too_bright", 1e6f, furnace),
+      trembling(),
+      glare_beside(),
+      glare_in_the_dark(),
+      wrong_albedo(),
+      black_half(),
+      masked("isolated_pixel", [](uint32_t x, uint32_t y) { return x == 13 && y == 17; }),
+      masked("hair_thin_holes", [](uint32_t x, uint32_t y) { return x % 7 != 3 && y % 11 != 5; }),
+      masked("checkerboard_mask", [](uint32_t x, uint32_t y) { return (x + y) % 2 == 0; }),
+      masked("empty_mask", [](uint32_t, uint32_t) { return false; })};
 }
 
 } // namespace dermis::tools

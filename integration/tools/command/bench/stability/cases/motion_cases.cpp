@@ -82,13 +82,14 @@ StabilityCase red_comes() {
 } // namespace
 
 std::vector<StabilityCase> motion_cases() {
-  return {
-      velocity("velocity_nan", not_a_number),
-      velocity("velocity_infinity", infinity),
-      velocity("velocity_1e6_px", 1e6f),
-      striped("velocity_in_stripes", {{{not_a_number, 0, 0}, {infinity, -infinity, 0}, {0x1p31f, 1e30f, 0}}}),
-      striped("velocity_of_depth_in_stripes", {{{0, 0, -infinity}, {0, 0, not_a_number}, {0, 0, -1e30f}}}),
-      red_comes()};
+  return {velocity("velocity_nan", not_a_number),
+          velocity("velocity_infinity", infinity),
+          velocity("velocity_1e6_px", 1e6f),
+          striped("velocity_in_stripes",
+                  {{{not_a_number, 0, 0}, {infinity, -infinity, 0}, {0x1p31f, 1e30f, 0}}}),
+          striped("velocity_of_depth_in_stripes",
+                  {{{0, 0, -infinity}, {0, 0, not_a_number}, {0, 0, -1e30f}}}),
+          red_comes()};
 }
 
 } // namespace dermis::tools

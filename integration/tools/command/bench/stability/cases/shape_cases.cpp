@@ -21,7 +21,8 @@ StabilityCase furnace_of(std::string_view name, std::function<CapturedFrame()> m
 StabilityCase grazing(std::string_view name, double degrees) {
   return furnace_of(name, [degrees] {
     CapturedFrame frame = sound_frame();
-    const double slope = std::tan(degrees * 3.14159265358979323846 / 180) * *frame.description.pixel_pitch_m;
+    const double slope =
+        std::tan(degrees * 3.14159265358979323846 / 180) * *frame.description.pixel_pitch_m;
     for_pixels(frame, [&](uint32_t x, uint32_t y, size_t) {
       frame.depth.at(x, y, 0) = static_cast<float>(1 + slope * x);
     });
@@ -71,8 +72,8 @@ StabilityCase begins_to_scatter() {
   // weight of one of 16 samples if all radii are sampled, as in burley
   constexpr double sample = 1.0 / 16.0;
   const auto given = [](uint32_t) {
-    CapturedFrame frame =
-        with_scale(sound_frame(), static_cast<float>(1.001 * subsurface::copy_below_d_px / stability_d_px));
+    CapturedFrame frame = with_scale(
+        sound_frame(), static_cast<float>(1.001 * subsurface::copy_below_d_px / stability_d_px));
     for_pixels(frame, [&](uint32_t x, uint32_t y, size_t) {
       set_light(frame, x, y, (x + y) % 2 == 0 ? 1.0f : 0.0f);
     });
@@ -90,14 +91,18 @@ StabilityCase resized() {
     constexpr std::array<uint32_t, 4> widths{48, 31, 64, 17};
     return sound_frame(widths[frame % widths.size()], widths[(frame + 1) % widths.size()]);
   };
-  return {
-      .name = "size_changes_every_frame", .frames = 8, .given = given, .expected = white, .bound = furnace};
+  return {.name = "size_changes_every_frame",
+          .frames = 8,
+          .given = given,
+          .expected = white,
+          .bound = furnace};
 }
 
 } // namespace
 
 std::vector<StabilityCase> shape_cases() {
-  StabilityCase widest = sized("size_16384x64", 16384, 64), odd = sized("size_1919x1079", 1919, 1079);
+  StabilityCase widest = sized("size_16384x64", 16384, 64),
+                odd = sized("size_1919x1079", 1919, 1079);
   odd.large = true;
   // at the border of images, the last columns do not fit on the device
   widest.may_be_rejected = true;
@@ -125,8 +130,9 @@ std::vector<StabilityCase> shape_cases() {
           without_scattering("scatter_scale_negative", -1),
           without_scattering("scatter_scale_nan", not_a_number),
           furnace_of("scatter_scale_infinity", [] { return with_scale(sound_frame(), infinity); }),
-          furnace_of("d_1e4_px",
-                     [] { return with_scale(sound_frame(), static_cast<float>(1e4 / stability_d_px)); })};
+          furnace_of("d_1e4_px", [] {
+            return with_scale(sound_frame(), static_cast<float>(1e4 / stability_d_px));
+          })};
 }
 
 } // namespace dermis::tools

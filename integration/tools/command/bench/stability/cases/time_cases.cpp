@@ -19,14 +19,19 @@ StabilityCase levels(std::string_view name, uint32_t frames, Level level, double
     fill_light(out, static_cast<float>(level(frame)));
     return out;
   };
-  return {
-      .name = name, .frames = frames, .given = given, .expected = level, .bound = furnace, .scale = scale};
+  return {.name = name,
+          .frames = frames,
+          .given = given,
+          .expected = level,
+          .bound = furnace,
+          .scale = scale};
 }
 
 // Frame 4 is all NaN.
 StabilityCase poisoned() {
   StabilityCase made = levels(
-      "history_poisoned", 12, [](uint32_t frame) { return frame == 4 ? double(not_a_number) : 1.0; }, 1);
+      "history_poisoned", 12,
+      [](uint32_t frame) { return frame == 4 ? double(not_a_number) : 1.0; }, 1);
   made.expected = [](uint32_t frame) { return frame == 4 ? 0.0 : 1.0; };
   made.damage_ends = 5;
   return made;
@@ -41,7 +46,8 @@ StabilityCase swapped_profiles() {
     });
     return out;
   };
-  return {.name = "profiles_change", .frames = 10, .given = given, .expected = white, .bound = furnace};
+  return {
+      .name = "profiles_change", .frames = 10, .given = given, .expected = white, .bound = furnace};
 }
 
 StabilityCase vanishing() {
@@ -50,8 +56,11 @@ StabilityCase vanishing() {
     if (frame % 3 == 1) std::fill(out.profile.begin(), out.profile.end(), uint8_t{0});
     return out;
   };
-  return {
-      .name = "subsurface_comes_and_goes", .frames = 9, .given = given, .expected = white, .bound = furnace};
+  return {.name = "subsurface_comes_and_goes",
+          .frames = 9,
+          .given = given,
+          .expected = white,
+          .bound = furnace};
 }
 
 StabilityCase exposed() {
@@ -74,7 +83,8 @@ StabilityCase frame_number(std::string_view name, uint64_t index) {
           .given = textured,
           .same_as = textured,
           .judged = Judged::light_rms,
-          // For light in 0.1..0.9: noise of two frames with 16 samples, 0.057 for the noisiest technique.
+          // For light in 0.1..0.9: noise of two frames with 16 samples, 0.057 for the noisiest
+          // technique.
           .bound = 0.08,
           .frame_index = index};
 }
@@ -90,20 +100,21 @@ std::vector<StabilityCase> time_cases() {
   StabilityCase cuts = levels(
       "cut_every_frame", 6, [](uint32_t frame) { return frame % 2 == 0 ? 1.0 : 0.25; }, 1);
   cuts.follows = false;
-  return {poisoned(),
-          levels(
-              "dark_then_flash", 34, [](uint32_t frame) { return frame < 30 ? 0.0 : 1.0; }, 1),
-          levels(
-              "bright_then_black", 34, [](uint32_t frame) { return frame < 30 ? 1000.0 : 0.0; }, 1000),
-          levels("jitter_2_percent", 40, jitter, 1),
-          exposed(),
-          swapped_profiles(),
-          vanishing(),
-          cuts,
-          frame_number("frame_index_2^24", (1ull << 24) - 1),
-          frame_number("frame_index_2^31", (1ull << 31) - 1),
-          frame_number("frame_index_2^32", (1ull << 32) - 2),
-          frame_number("frame_index_2^40", 1ull << 40)};
+  return {
+      poisoned(),
+      levels(
+          "dark_then_flash", 34, [](uint32_t frame) { return frame < 30 ? 0.0 : 1.0; }, 1),
+      levels(
+          "bright_then_black", 34, [](uint32_t frame) { return frame < 30 ? 1000.0 : 0.0; }, 1000),
+      levels("jitter_2_percent", 40, jitter, 1),
+      exposed(),
+      swapped_profiles(),
+      vanishing(),
+      cuts,
+      frame_number("frame_index_2^24", (1ull << 24) - 1),
+      frame_number("frame_index_2^31", (1ull << 31) - 1),
+      frame_number("frame_index_2^32", (1ull << 32) - 2),
+      frame_number("frame_index_2^40", 1ull << 40)};
 }
 
 } // namespace dermis::tools
