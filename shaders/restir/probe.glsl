@@ -1,9 +1,10 @@
 // BSSRDF importance sampling by probe rays, its density and its inversion.
 // tests/passes/restir/cpu/probe.cpp mirrors and documents these functions in fp64 under the same
-// names.
+// names. The CPU functions keep all hits of a probe; on a device, hits.glsl finds one of them.
 #ifndef DERMIS_RESTIR_PROBE_GLSL
 #define DERMIS_RESTIR_PROBE_GLSL
 
+#extension GL_EXT_control_flow_attributes : require
 #include "restir/domain.glsl"
 
 const vec3 probe_axis_fraction = vec3(0.5, 0.25, 0.25); // probabilities of normal, tangents
@@ -26,10 +27,22 @@ struct probe_hit {
   vec2 barycentrics; // of the second and third vertex
   float distance;
 };
-struct probe_hits {
-  uint count;
-  probe_hit hit[max_probe_hits];
+// The hit to find: the hit that a number picks, or the hit on a primitive.
+struct hit_choice {
+  bool by_primitive;
+  float pick;
+  uint instance, primitive;
 };
+struct chosen_hit {
+  uint count; // number of hits of the probe, at most max_probe_hits
+  uint index; // by distance; equal to `count` if no hit was found
+  probe_hit hit;
+};
+
+hit_choice hit_by_pick(float pick) { return hit_choice(false, pick, 0u, 0u); }
+hit_choice hit_on_primitive(uint instance, uint primitive) {
+  return hit_choice(true, 0.0, instance, primitive);
+}
 
 uint scattering_channels(vec3 d) { return uint(d.r > 0.0) + uint(d.g > 0.0) + uint(d.b > 0.0); }
 
@@ -106,8 +119,8 @@ float probe_technique_pdf(scatter_domain domain, uint axis, uint channel, vec3 p
 // Returns the density per area over all axes and channels.
 float probe_pdf(scatter_domain domain, vec3 position, vec3 normal) {
   float sum = 0.0;
-  for (uint axis = 0u; axis < 3u; ++axis)
-    for (uint channel = 0u; channel < 3u; ++channel)
+  [[dont_unroll]] for (uint axis = 0u; axis < 3u; ++axis)
+    [[dont_unroll]] for (uint channel = 0u; channel < 3u; ++channel)
       sum += probe_technique_pdf(domain, axis, channel, position, normal);
   return sum;
 }
@@ -118,7 +131,7 @@ bool invert_point(scatter_domain domain, vec3 position, vec3 normal, float u,
                   inout probe_numbers numbers) {
   float left = u * probe_pdf(domain, position, normal);
   bool found = false;
-  for (uint technique = 0u; technique < 9u; ++technique) {
+  [[dont_unroll]] for (uint technique = 0u; technique < 9u; ++technique) {
     float pdf = probe_technique_pdf(domain, technique / 3u, technique % 3u, position, normal);
     if (!(pdf > 0.0))
       continue;
@@ -140,15 +153,7 @@ bool invert_point(scatter_domain domain, vec3 position, vec3 normal, float u,
   return true;
 }
 
-// Finds the number that picks the hit on this primitive. Returns false if the probe does not hit
-// the primitive.
-bool invert_pick(probe_hits hits, uint instance, uint primitive, float u, inout float pick) {
-  for (uint i = 0u; i < hits.count; ++i)
-    if (hits.hit[i].instance == instance && hits.hit[i].primitive == primitive) {
-      pick = (float(i) + u) / float(hits.count);
-      return true;
-    }
-  return false;
-}
+// Returns the number that picks the hit with this index.
+float invert_pick(uint index, uint count, float u) { return (float(index) + u) / float(count); }
 
 #endif

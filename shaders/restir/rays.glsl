@@ -4,35 +4,39 @@
 
 #extension GL_EXT_ray_query : require
 
+#include "restir/hits.glsl"
 #include "restir/surfaces.glsl"
 
 const uint ray_any = 0xffu; // instance mask that accepts all instances
 
+// A kernel passes the same `query` to both functions, because some drivers reserve memory for the
+// traversal of each variable.
+
 // As trace_probe of scene.glsl, through an acceleration structure.
-void trace_probe(accelerationStructureEXT scene, probe_ray ray, uint medium, out probe_hits hits) {
-  hits.count = 0u;
+chosen_hit trace_probe(accelerationStructureEXT scene, rayQueryEXT query, probe_ray ray,
+                       uint medium, hit_choice choice) {
+  chosen_hit chosen = chosen_hit(0u, 0u, no_hit());
   if (!(ray.reach > 0.0))
-    return;
-  rayQueryEXT query;
-  rayQueryInitializeEXT(query, scene, gl_RayFlagsNoOpaqueEXT, ray_any, ray.origin, 0.0,
-                        ray.direction, ray.reach);
-  // No intersection is confirmed, so every triangle is a candidate.
-  while (rayQueryProceedEXT(query)) {
-    probe_hit met;
-    met.instance = uint(rayQueryGetIntersectionInstanceCustomIndexEXT(query, false));
-    if (instance_at(met.instance).place.z != medium)
-      continue;
-    met.primitive = uint(rayQueryGetIntersectionPrimitiveIndexEXT(query, false));
-    met.barycentrics = rayQueryGetIntersectionBarycentricsEXT(query, false);
-    met.distance = rayQueryGetIntersectionTEXT(query, false);
-    uint at = min(hits.count, max_probe_hits - 1u);
-    if (hits.count == max_probe_hits && met.distance >= hits.hit[at].distance)
-      continue;
-    for (; at > 0u && hits.hit[at - 1u].distance > met.distance; --at)
-      hits.hit[at] = hits.hit[at - 1u];
-    hits.hit[at] = met;
-    hits.count = min(hits.count + 1u, max_probe_hits);
+    return chosen;
+  hit_pass pass = first_pass();
+  // The loop has no call in its condition, because Mesa 22.3 compiles such a loop wrongly.
+  for (bool ended = false; !ended;) {
+    rayQueryInitializeEXT(query, scene, gl_RayFlagsNoOpaqueEXT, ray_any, ray.origin, 0.0,
+                          ray.direction, ray.reach);
+    // No intersection is confirmed, so every triangle is a candidate.
+    while (rayQueryProceedEXT(query)) {
+      probe_hit met;
+      met.instance = uint(rayQueryGetIntersectionInstanceCustomIndexEXT(query, false));
+      if (instance_at(met.instance).place.z != medium)
+        continue;
+      met.primitive = uint(rayQueryGetIntersectionPrimitiveIndexEXT(query, false));
+      met.barycentrics = rayQueryGetIntersectionBarycentricsEXT(query, false);
+      met.distance = rayQueryGetIntersectionTEXT(query, false);
+      add_hit(pass, met);
+    }
+    ended = choose_hit(pass, choice, chosen);
   }
+  return chosen;
 }
 
 // Offset of a ray's origin above the surface, relative to 1 plus the distance to the world's
@@ -40,10 +44,9 @@ void trace_probe(accelerationStructureEXT scene, probe_ray ray, uint medium, out
 const float ray_lift = 2e-5;
 
 // As visible of scene.glsl, through an acceleration structure.
-bool visible(accelerationStructureEXT scene, surface_point from, vec3 target) {
+bool visible(accelerationStructureEXT scene, rayQueryEXT query, surface_point from, vec3 target) {
   float size = 1.0 + max(abs(from.position.x), max(abs(from.position.y), abs(from.position.z)));
   vec3 origin = from.position + ray_lift * size * from.normal;
-  rayQueryEXT query;
   rayQueryInitializeEXT(query, scene, gl_RayFlagsOpaqueEXT | gl_RayFlagsTerminateOnFirstHitEXT,
                         ray_any, origin, 0.0, target - origin, 1.0 - ray_lift);
   while (rayQueryProceedEXT(query))

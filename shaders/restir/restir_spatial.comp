@@ -19,17 +19,18 @@ uint light_count() { return uint(lights_data.length()); }
 light_source light_at(uint index) { return lights_data[index]; }
 // Paths to neighbours keep their light or are lit by the lights of this frame.
 light_source previous_light_at(uint index) { return light_at(index); }
-void trace_probe(probe_ray ray, uint medium, out probe_hits hits) {
-  trace_probe(scene_structure, ray, medium, hits);
+rayQueryEXT query;
+chosen_hit trace_probe(probe_ray ray, uint medium, hit_choice choice) {
+  return trace_probe(scene_structure, query, ray, medium, choice);
 }
-bool visible(surface_point from, vec3 target) { return visible(scene_structure, from, target); }
+bool visible(surface_point from, vec3 target) {
+  return visible(scene_structure, query, from, target);
+}
 
 scatter_domain domain_of(ivec2 pixel) {
   return domain_of(material_image, depth_image, normal_image, scatter_scale_image,
                    has_scatter_scale(), pixel);
 }
-
-const uint max_neighbours = 8u;
 
 reservoir reservoir_of(ivec2 pixel) {
   packed_reservoir packed;
@@ -40,11 +41,24 @@ reservoir reservoir_of(ivec2 pixel) {
 
 // Returns whether the pixel wrote a reservoir of the same profile in this frame.
 bool is_neighbour(ivec2 pixel, uint medium) {
-  if (!inside_rect(pixel))
+  if (medium == 0u || !inside_rect(pixel))
     return false;
   ivec2 tile = pixel >> 3;
   return class_of_tile(classes_data[tile.y * frame.tiles.x + tile.x]) != class_none &&
          texelFetch(material_image, texel_of(pixel), 0).r == medium;
+}
+
+// Tests pixels around `pixel` until one is a neighbour. `tested` counts them; at most
+// settings.neighbours are tested.
+bool next_neighbour(ivec2 pixel, uint medium, float radius, inout int tested,
+                    inout random_state random, out ivec2 neighbour) {
+  while (tested < settings.neighbours) {
+    ++tested;
+    neighbour = pixel + neighbour_offset(radius, random);
+    if (neighbour != pixel && is_neighbour(neighbour, medium))
+      return true;
+  }
+  return false;
 }
 
 void main() {
@@ -60,22 +74,26 @@ void main() {
                    mm_per_world_unit();
   float radius = search_radius(domain.d, min(footprint.x, footprint.y));
 
-  ivec2 neighbours[max_neighbours];
-  uint count = 0u;
+  // The neighbours are found twice instead of kept in an array.
+  random_state again = random;
+  ivec2 other;
   float confidences = 0.0;
-  for (int i = 0; i < settings.neighbours && domain.medium != 0u; ++i) {
-    ivec2 other = pixel + neighbour_offset(radius, random);
-    if (other == pixel || !is_neighbour(other, domain.medium))
-      continue;
-    neighbours[count++] = other;
-    confidences += reservoir_of(other).confidence;
-  }
+  int tested = 0;
+  while (tested < settings.neighbours)
+    if (next_neighbour(pixel, domain.medium, radius, tested, random, other))
+      confidences += reservoir_of(other).confidence;
   reuse_settings reuse =
       reuse_settings(shift_of_stage(uint(settings.shift), stage), index_traced, confidence_cap);
-  spatial_merge spatial = spatial_begin(reuse, domain, reservoir_of(pixel), confidences, random);
-  for (uint i = 0u; i < count; ++i)
-    spatial_add(reuse, domain, spatial, domain_of(neighbours[i]), reservoir_of(neighbours[i]),
-                random);
+  spatial_merge spatial = spatial_begin(domain, reservoir_of(pixel), confidences);
+  tested = 0;
+  for (bool ended = false; !ended;) {
+    spatial_move(reuse, spatial, random);
+    if (spatial.move == move_back) {
+      ended = !next_neighbour(pixel, domain.medium, radius, tested, again, other);
+      if (!ended)
+        spatial_neighbour(spatial, domain_of(other), reservoir_of(other));
+    }
+  }
   packed_reservoir merged = pack_reservoir(spatial_end(spatial, random));
   for (uint i = 0u; i < 4u; ++i)
     merged_data[4u * element_of(pixel) + i] = merged.words[i];

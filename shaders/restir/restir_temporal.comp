@@ -26,10 +26,13 @@ light_source previous_light_at(uint index) {
     light = lights_before_data[index];
   return light;
 }
-void trace_probe(probe_ray ray, uint medium, out probe_hits hits) {
-  trace_probe(scene_structure, ray, medium, hits);
+rayQueryEXT query;
+chosen_hit trace_probe(probe_ray ray, uint medium, hit_choice choice) {
+  return trace_probe(scene_structure, query, ray, medium, choice);
 }
-bool visible(surface_point from, vec3 target) { return visible(scene_structure, from, target); }
+bool visible(surface_point from, vec3 target) {
+  return visible(scene_structure, query, from, target);
+}
 
 scatter_domain domain_of(ivec2 pixel) {
   return domain_of(material_image, depth_image, normal_image, scatter_scale_image,

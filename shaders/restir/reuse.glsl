@@ -1,6 +1,6 @@
 // Passes over reservoirs: initial sample, temporal reuse, spatial reuse, and resolve.
 // tests/passes/restir/cpu/reuse.cpp mirrors and documents these functions in fp64 under the same
-// names.
+// names; its spatial_add is spatial_neighbour and two calls of spatial_move here.
 #ifndef DERMIS_RESTIR_REUSE_GLSL
 #define DERMIS_RESTIR_REUSE_GLSL
 
@@ -22,23 +22,23 @@ reservoir draw_initial(scatter_domain domain, inout random_state random) {
   if (!(scattering_reach(domain.d) > 0.0) || light_count() == 0u)
     return none;
   candidate.numbers = draw_numbers(domain.d, vec4(u[0], u[1], u[2], u[3]));
-  probe_hits hits;
-  trace_probe(probe_of(domain, candidate.numbers), domain.medium, hits);
-  if (hits.count == 0u)
+  chosen_hit chosen =
+      trace_probe(probe_of(domain, candidate.numbers), domain.medium, hit_by_pick(u[3]));
+  if (chosen.index >= chosen.count)
     return none;
-  probe_hit hit = hits.hit[picked_hit(u[3], hits.count)];
+  probe_hit hit = chosen.hit;
   surface_point x2 = surface_at(hit.instance, hit.primitive, hit.barycentrics);
   candidate.instance = hit.instance;
   candidate.primitive = hit.primitive;
   candidate.barycentrics = hit.barycentrics;
-  candidate.hits = hits.count;
+  candidate.hits = chosen.count;
   candidate.density = probe_pdf(domain, x2.position, x2.normal);
   candidate.light = pick_light(u[4]);
   candidate.place = light_place(u[5], u[6]);
   light_source light = light_at(candidate.light);
   candidate.irradiance =
       light_irradiance(light, candidate.place, x2.position, x2.normal, x2.shading);
-  candidate.weight = float(hits.count) / (candidate.density * light_density(light));
+  candidate.weight = float(chosen.count) / (candidate.density * light_density(light));
   float target =
       luminance(scattered(domain, length(x2.position - domain.position), candidate.irradiance));
   if (!(target > 0.0) || !visible(x2, light_target(light, candidate.place, x2.position)))
@@ -49,107 +49,142 @@ reservoir draw_initial(scatter_domain domain, inout random_state random) {
 // Returns x / (x + y) for densities; 0 if both are 0.
 float restir_part(float x, float y) { return x > 0.0 ? x / (x + y) : 0.0; }
 
-// Two paths, each with its pixel's domain and target there, and their images in each other's
-// domain. A loop over both, because a driver then compiles the body only once.
-struct exchange {
-  scatter_domain domain[2];
-  reservoir path[2];
-  float target[2];
-  shifted_path image[2]; // path i in domain 1 - i
+// A path and its pixel.
+struct pixel_path {
+  scatter_domain domain;
+  reservoir path;
 };
 
-// `first`: index of the first path that must be prepared, 0 or 1.
-void exchange_paths(reuse_settings settings, uint first, bool over_time, inout exchange both,
-                    inout random_state random) {
-  for (uint i = 0u; i < 2u; ++i) {
-    both.target[i] = 0.0;
-    both.image[i] = shifted_path(both.path[i], 0.0, 0.0);
-    if (!has_sample(both.path[i]))
-      continue;
-    surface_point x2 = surface_of(both.path[i]);
-    if (i >= first)
-      prepare(settings.shift, settings.index, both.domain[i], x2, both.path[i], random);
-    both.target[i] = target_of(both.domain[i], x2, both.path[i]);
-    // Over time, path 0 moves to the frame before.
-    uint lights = !over_time ? lights_kept : i == 0u ? lights_before : lights_now;
-    both.image[i] =
-        shift_path(settings.shift, lights, both.domain[i], both.domain[1u - i], x2, both.path[i]);
-  }
+void swap_paths(inout pixel_path a, inout pixel_path b) {
+  pixel_path kept = a;
+  a = b;
+  b = kept;
 }
 
-// Merges frame and history by the generalised balance heuristic.
+struct moved_path {
+  float target; // of the path in its own pixel
+  shifted_path image;
+};
+
+// Finds the path's image in the pixel `to`. The path gets its random numbers if `prepares` and the
+// shift replays.
+moved_path move_path(reuse_settings settings, bool prepares, uint lights, inout pixel_path moving,
+                     scatter_domain to, inout random_state random) {
+  moved_path moved = moved_path(0.0, shifted_path(moving.path, 0.0, 0.0));
+  if (!has_sample(moving.path))
+    return moved;
+  surface_point x2 = surface_of(moving.path);
+  if (prepares)
+    prepare(settings.shift, settings.index, moving.domain, x2, moving.path, random);
+  moved.target = target_of(moving.domain, x2, moving.path);
+  moved.image = shift_path(settings.shift, lights, moving.domain, to, x2, moving.path);
+  return moved;
+}
+
+// Merges frame and history by the generalised balance heuristic. Both paths move in a loop that
+// swaps them, because a driver then compiles the body only once and no array is indexed.
 reservoir merge_temporal(reuse_settings settings, scatter_domain domain, reservoir current,
                          scatter_domain previous_domain, reservoir previous,
                          inout random_state random) {
-  exchange both;
-  both.domain = scatter_domain[2](domain, previous_domain);
-  both.path = reservoir[2](sanitised(current), sanitised(previous));
-  both.path[1].confidence = min(both.path[1].confidence, settings.cap * both.path[0].confidence);
-  exchange_paths(settings, 0u, true, both, random);
-  reservoir own = both.path[0], history = both.path[1];
-  shifted_path back = both.image[0], here = both.image[1];
+  pixel_path own = pixel_path(domain, sanitised(current)),
+             history = pixel_path(previous_domain, sanitised(previous));
+  history.path.confidence = min(history.path.confidence, settings.cap * own.path.confidence);
+  float target = 0.0, back_target = 0.0, back_jacobian = 0.0;
+  moved_path moved;
+  for (uint i = 0u; i < 2u; ++i) {
+    // The own path moves to the frame before.
+    moved = move_path(settings, true, i == 0u ? lights_before : lights_now, own, history.domain,
+                      random);
+    if (i == 0u) {
+      target = moved.target;
+      back_target = moved.image.target;
+      back_jacobian = moved.image.jacobian;
+    }
+    swap_paths(own, history);
+  }
   reservoir_stream stream = stream_begin();
 
-  float target = both.target[0];
-  float own_mis =
-      restir_part(own.confidence * target, history.confidence * back.target * back.jacobian);
-  stream_add(stream, own, target, own_mis * target * own.weight, own.confidence,
+  float own_mis = restir_part(own.path.confidence * target,
+                              history.path.confidence * back_target * back_jacobian);
+  stream_add(stream, own.path, target, own_mis * target * own.path.weight, own.path.confidence,
              random_unit(random));
 
-  float there = here.jacobian > 0.0 ? both.target[1] / here.jacobian : 0.0;
-  float mis = restir_part(history.confidence * there, own.confidence * here.target);
-  stream_add(stream, here.path, here.target, mis * here.target * history.weight * here.jacobian,
-             history.confidence, random_unit(random));
+  shifted_path here = moved.image;
+  float there = here.jacobian > 0.0 ? moved.target / here.jacobian : 0.0;
+  float mis = restir_part(history.path.confidence * there, own.path.confidence * here.target);
+  stream_add(stream, here.path, here.target,
+             mis * here.target * history.path.weight * here.jacobian, history.path.confidence,
+             random_unit(random));
   return stream_end(stream);
 }
 
-// Defensive pairwise MIS: spatial_begin, spatial_add for each neighbour, spatial_end.
+// Defensive pairwise MIS. The pixel's own path moves to a neighbour, and the neighbour's path moves
+// to the pixel. A kernel calls spatial_move once after spatial_begin and twice after each
+// spatial_neighbour, in one loop for all moves, because a driver then compiles the move only once.
 struct spatial_merge {
   reservoir_stream stream;
-  reservoir own; // with its random numbers if the shift replays
+  uint move;                // the next move
+  pixel_path moving, other; // one of them is the pixel's own path
   float own_target, own_mis;
   float neighbours; // sum of the neighbours' confidences
 };
+const uint move_none = 0u; // prepares the own path
+const uint move_back = 1u; // own path to the neighbour of spatial_neighbour
+const uint move_here = 2u; // the neighbour's path to the pixel
 
-spatial_merge spatial_begin(reuse_settings settings, scatter_domain domain, reservoir own,
-                            float neighbours, inout random_state random) {
+spatial_merge spatial_begin(scatter_domain domain, reservoir own, float neighbours) {
   spatial_merge spatial;
   spatial.stream = stream_begin();
-  spatial.own = sanitised(own);
-  spatial.neighbours = max(neighbours, 0.0);
+  spatial.move = move_none;
+  spatial.moving = pixel_path(domain, sanitised(own));
+  spatial.other = spatial.moving;
+  spatial.other.domain.medium = 0u; // no path has an image there
   spatial.own_target = 0.0;
-  if (has_sample(spatial.own)) {
-    surface_point x2 = surface_of(spatial.own);
-    prepare(settings.shift, settings.index, domain, x2, spatial.own, random);
-    spatial.own_target = target_of(domain, x2, spatial.own);
-  }
-  spatial.own_mis = restir_part(spatial.own.confidence, spatial.neighbours);
+  spatial.neighbours = max(neighbours, 0.0);
+  spatial.own_mis = restir_part(spatial.moving.path.confidence, spatial.neighbours);
   return spatial;
 }
 
-void spatial_add(reuse_settings settings, scatter_domain domain, inout spatial_merge spatial,
-                 scatter_domain neighbour_domain, reservoir neighbour, inout random_state random) {
-  exchange both;
-  both.domain = scatter_domain[2](domain, neighbour_domain);
-  both.path = reservoir[2](spatial.own, sanitised(neighbour));
-  exchange_paths(settings, 1u, false, both, random);
-  reservoir other = both.path[1];
-  shifted_path back = both.image[0], here = both.image[1];
-  float own_confidence = spatial.own.confidence;
-  float fraction =
-      restir_part(other.confidence, own_confidence + spatial.neighbours - other.confidence);
-  spatial.own_mis += fraction * restir_part(own_confidence * spatial.own_target,
-                                         spatial.neighbours * back.target * back.jacobian);
-  float there = here.jacobian > 0.0 ? both.target[1] / here.jacobian : 0.0;
-  float mis = fraction * restir_part(spatial.neighbours * there, own_confidence * here.target);
-  stream_add(spatial.stream, here.path, here.target,
-             mis * here.target * other.weight * here.jacobian, other.confidence,
-             random_unit(random));
+void spatial_neighbour(inout spatial_merge spatial, scatter_domain domain, reservoir neighbour) {
+  spatial.other = pixel_path(domain, sanitised(neighbour));
+}
+
+void spatial_move(reuse_settings settings, inout spatial_merge spatial,
+                  inout random_state random) {
+  moved_path moved = move_path(settings, spatial.move != move_back, lights_kept, spatial.moving,
+                               spatial.other.domain, random);
+  if (spatial.move == move_none) {
+    spatial.own_target = moved.target;
+    spatial.move = move_back;
+    return;
+  }
+  bool back = spatial.move == move_back;
+  float own = spatial.other.path.confidence, other = spatial.moving.path.confidence;
+  if (back) {
+    own = spatial.moving.path.confidence;
+    other = spatial.other.path.confidence;
+  }
+  shifted_path image = moved.image;
+  float fraction = restir_part(other, own + spatial.neighbours - other);
+  if (back) {
+    spatial.own_mis += fraction * restir_part(own * spatial.own_target, spatial.neighbours *
+                                                                            image.target *
+                                                                            image.jacobian);
+  } else {
+    float there = image.jacobian > 0.0 ? moved.target / image.jacobian : 0.0;
+    float mis = fraction * restir_part(spatial.neighbours * there, own * image.target);
+    stream_add(spatial.stream, image.path, image.target,
+               mis * image.target * spatial.moving.path.weight * image.jacobian, other,
+               random_unit(random));
+  }
+  swap_paths(spatial.moving, spatial.other);
+  spatial.move = back ? move_here : move_back;
 }
 
 reservoir spatial_end(inout spatial_merge spatial, inout random_state random) {
-  stream_add(spatial.stream, spatial.own, spatial.own_target,
-             spatial.own_mis * spatial.own_target * spatial.own.weight, spatial.own.confidence,
+  reservoir own = spatial.moving.path;
+  stream_add(spatial.stream, own, spatial.own_target,
+             spatial.own_mis * spatial.own_target * own.weight, own.confidence,
              random_unit(random));
   return stream_end(spatial.stream);
 }

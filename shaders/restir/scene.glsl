@@ -14,10 +14,9 @@ struct surface_point {
   uint medium;
 };
 
-// Returns all hits with surfaces of the medium, front and back, sorted by distance; at most the
-// nearest max_probe_hits. Implementations must sort, because a ray query returns candidates in any
-// order.
-void trace_probe(probe_ray ray, uint medium, out probe_hits hits);
+// Returns one of the hits with surfaces of the medium, front and back, of which the nearest
+// max_probe_hits count.
+chosen_hit trace_probe(probe_ray ray, uint medium, hit_choice choice);
 surface_point surface_at(uint instance, uint primitive, vec2 barycentrics);
 // Returns whether the segment from the surface (with the ray's origin lifted off it) to the target
 // is free.

@@ -74,18 +74,18 @@ shifted_path replay(uint shift, scatter_domain to, reservoir path, inout surface
   shifted_path result = shifted_path(path, 0.0, 0.0);
   if (path.hits == 0u)
     return result;
-  probe_hits hits;
-  trace_probe(probe_of(to, path.numbers), to.medium, hits);
-  if (hits.count == 0u)
+  chosen_hit chosen =
+      trace_probe(probe_of(to, path.numbers), to.medium, hit_by_pick(path.numbers.pick));
+  if (chosen.index >= chosen.count)
     return result;
-  probe_hit hit = hits.hit[picked_hit(path.numbers.pick, hits.count)];
+  probe_hit hit = chosen.hit;
   x2 = surface_at(hit.instance, hit.primitive, hit.barycentrics);
   // the inverse shift would reconnect
   if (shift == shift_hybrid && connectable(to, x2.position, x2.normal))
     return result;
   result.path.density = probe_pdf(to, x2.position, x2.normal);
-  result.jacobian = replay_jacobian(path.density, path.hits, result.path.density, hits.count);
-  result.path.hits = hits.count;
+  result.jacobian = replay_jacobian(path.density, path.hits, result.path.density, chosen.count);
+  result.path.hits = chosen.count;
   result.path.instance = hit.instance;
   result.path.primitive = hit.primitive;
   result.path.barycentrics = hit.barycentrics;
@@ -128,10 +128,12 @@ void prepare(uint shift, uint index, scatter_domain domain, surface_point x2, in
     path.hits = assumed_hits;
     return;
   }
-  probe_hits hits;
-  trace_probe(probe_of(domain, path.numbers), domain.medium, hits);
-  if (invert_pick(hits, path.instance, path.primitive, within, path.numbers.pick))
-    path.hits = hits.count;
+  chosen_hit chosen = trace_probe(probe_of(domain, path.numbers), domain.medium,
+                                  hit_on_primitive(path.instance, path.primitive));
+  if (chosen.index >= chosen.count)
+    return;
+  path.numbers.pick = invert_pick(chosen.index, chosen.count, within);
+  path.hits = chosen.count;
 }
 
 // Shifts a path. `shift` must not be shift_sequential: call shift_of_stage first.

@@ -29,9 +29,19 @@ with_driver() { # manifest, command...
   VK_DRIVER_FILES=$1 VK_ICD_FILENAMES=$1 MESA_SHADER_CACHE_DISABLE=true "${@:2}"
 }
 
+# Shaders in which one ray query takes the place of restir_initial. Other kernels are built in.
+one_ray_query=$out/one_ray_query
+mkdir -p "$one_ray_query/restir"
+cp shaders/restir/instances.glsl shaders/restir/lights.glsl "$one_ray_query/restir"
+cp tests/gpu/one_ray_query.comp "$one_ray_query/restir/restir_initial.comp"
+
 compile_for() { # family, manifest
   local json=$out/$1.json log=$out/$1.log begin=$SECONDS rc=0
-  with_driver "$2" env RADV_FORCE_FAMILY="$1" "$dermis" kernels --limits $limits >"$log" 2>&1 || rc=1
+  local one=$out/$1.one_ray_query.json own=$out/$1.limits.json # with the lines of $limits
+  with_driver "$2" env RADV_FORCE_FAMILY="$1" "$dermis" kernels restir --shaders "$one_ray_query" --json \
+    >"$one" 2>"$log" || { cat "$log" "$one"; failed=1; return; }
+  python3 -B tests/gpu/device_limits.py $limits "$one" >"$own"
+  with_driver "$2" env RADV_FORCE_FAMILY="$1" "$dermis" kernels --limits "$own" >"$log" 2>&1 || rc=1
   with_driver "$2" env RADV_FORCE_FAMILY="$1" "$dermis" kernels --json >"$json" 2>>"$log" || rc=1
   echo "kernels on $1 ($(sed -n '/Null hardware/{s/.*, //p;q}' "$log")): $(grep -h ' checked: ' "$log" || echo failed), $((SECONDS - begin)) s"
   grep -h ': skipped, ' "$log" || true

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Tests the model of GPU times, the count of instructions and the present values of limits."""
+"""Tests the model of GPU times, the count of instructions, and the scripts for limits."""
 import json
 import pathlib
 import subprocess
@@ -7,6 +7,7 @@ import sys
 import tempfile
 import unittest
 
+import device_limits
 import gpu_model
 import instruction_mix
 
@@ -84,6 +85,11 @@ class InstructionMix(unittest.TestCase):
 
 
 class WriteLimits(unittest.TestCase):
+    def write_one_ray_query(self, *scratch):
+        rows = [{"kernel": "restir/restir_initial", "values": {"scratch_bytes": one}} for one in scratch]
+        rows.append({"kernel": "restir/restir_resolve", "values": {"scratch_bytes": 7}})
+        (self.folder / "values.one_ray_query.json").write_text(json.dumps({"kernels": rows}), encoding="utf-8")
+
     def rewrite(self, vgprs, *options):
         values = {"device": "Null hardware (RADV NAVI21)", "driver": "radv Mesa 22.3.6",
                   "kernels": [{"kernel": "a/k", "values": {"vgprs": one}} for one in vgprs]}
@@ -108,6 +114,21 @@ class WriteLimits(unittest.TestCase):
     def test_the_worst_pipeline_of_a_kernel_counts(self):
         self.assertEqual(self.rewrite([90, 96, 70]).returncode, 0)
         self.assertIn('"max": {"vgprs": {"goal": 80, "now": 96}}', self.present())
+
+    def test_limits_relative_to_one_ray_query(self):
+        text = '{ "max": { "scratch_bytes": "1.1 * one_ray_query" } }'
+        for scratch, limit in (((19456,), 21401), ((0,), 0), ((), 0)):
+            self.write_one_ray_query(*scratch)
+            self.assertEqual(device_limits.for_device(text, self.folder / "values.one_ray_query.json"),
+                             '{ "max": { "scratch_bytes": %d } }' % limit)
+
+    def test_present_values_of_relative_limits(self):
+        limits = self.folder / "limits.json"
+        limits.write_text(self.present().replace("80", '"1.5 * one_ray_query"'), encoding="utf-8")
+        self.write_one_ray_query(60)
+        self.assertEqual(self.rewrite([91]).returncode, 0)
+        self.assertIn('"max": {"vgprs": {"goal": 90, "now": 91}}', self.present())
+        self.assertIn('"1.5 * one_ray_query"', self.present())
 
     def test_reached_goals_disappear(self):
         self.rewrite([96])

@@ -3,7 +3,8 @@
 
 usage: write_limits.py [--worse] LIMITS VALUES...
   LIMITS   the limits file; its rules without "now" are the goals
-  VALUES   output of `dermis kernels --json`, one file per device (check_kernels.sh writes them)
+  VALUES   output of `dermis kernels --json`, one file per device (check_kernels.sh writes them); if a
+           limit is relative, FAMILY.one_ray_query.json belongs to FAMILY.json (device_limits.py)
   --worse  also accept values that are worse than the file's present values
 
 Values beyond a goal get a rule with "goal" and "now"; all other rules with "now" are removed.
@@ -13,6 +14,8 @@ import fnmatch
 import json
 import re
 import sys
+
+import device_limits
 
 HEADING = "    // Present values beyond their goals, written by write_limits.py."
 DRIVERS = {
@@ -71,12 +74,13 @@ def main():
     parser.add_argument("values", nargs="+")
     options = parser.parse_args()
     text = open(options.limits, encoding="utf-8").read()
-    rules = json.loads(without_comments(text))["rules"]
-    goals = [rule for rule in rules if not is_present(rule)]
-    before = [rule for rule in rules if is_present(rule)]
     lines, worse = [], []
     for name in options.values:
         values = json.load(open(name, encoding="utf-8"))
+        own = device_limits.for_device(text, re.sub(r"\.json$", ".one_ray_query.json", name))
+        rules = json.loads(without_comments(own))["rules"]
+        goals = [rule for rule in rules if not is_present(rule)]
+        before = [rule for rule in rules if is_present(rule)]
         family = next((one for one in DRIVERS if one in values["device"]), None)
         if family is None:
             sys.exit(f"{name}: '{values['device']}' is none of {', '.join(DRIVERS)}")

@@ -5,7 +5,9 @@
 
 #include "test_restir.spv.h"
 
+#include <algorithm>
 #include <bit>
+#include <tuple>
 
 namespace dermis::restir {
 namespace {
@@ -306,6 +308,46 @@ TEST_F(RestirKernel, PackedDomainsAreEqual) {
     EXPECT_LT(length(found - domain.normal), 1e-4) << "case " << x;
     EXPECT_EQ(at(x, 35, 3), domain.medium);
   }
+}
+
+// The hits of find_listed in test_restir.comp.
+ProbeHits listed_hits(uint32_t list) {
+  std::vector<ProbeHit> all;
+  for (uint32_t i = 0; i < list % 25; ++i)
+    all.push_back({i % 3, i, {double(i), 0}, double((7 * i + list) % 11)});
+  std::sort(all.begin(), all.end(), [](const ProbeHit& a, const ProbeHit& b) {
+    return std::tie(a.distance, a.instance, a.primitive) <
+           std::tie(b.distance, b.instance, b.primitive);
+  });
+  ProbeHits hits;
+  hits.count = std::min<uint32_t>(max_probe_hits, static_cast<uint32_t>(all.size()));
+  std::copy_n(all.begin(), hits.count, hits.hit.begin());
+  return hits;
+}
+
+TEST_F(RestirKernel, HitsAreFoundByDistance) {
+  ASSERT_FALSE(answers.empty());
+  uint32_t found_primitives = 0, more_than_limit = 0;
+  for (uint32_t x = 0; x < cases; ++x) {
+    const ProbeHits hits = listed_hits(x);
+    more_than_limit += x % 25 > max_probe_hits;
+    EXPECT_EQ(at(x, 37, 0), hits.count);
+    EXPECT_EQ(at(x, 38, 0), hits.count);
+    if (hits.count == 0) continue;
+    const std::array<double, 4> u = question(x).u;
+    const uint32_t picked = picked_hit(u[3], hits.count);
+    EXPECT_EQ(at(x, 37, 1), picked) << "case " << x;
+    EXPECT_EQ(at(x, 37, 2), hits.hit[picked].primitive) << "case " << x;
+    EXPECT_EQ(at(x, 37, 3), hits.hit[picked].barycentrics[0]) << "case " << x;
+    double pick = 0;
+    const auto instance = static_cast<uint32_t>(u[0] * 3),
+               primitive = static_cast<uint32_t>(u[1] * 20);
+    const bool found = invert_pick(hits, instance, primitive, 0.5, pick);
+    found_primitives += found;
+    EXPECT_EQ(at(x, 38, 1), found ? picked_hit(pick, hits.count) : hits.count) << "case " << x;
+  }
+  EXPECT_GT(found_primitives, 50u);
+  EXPECT_GT(more_than_limit, 100u);
 }
 
 TEST_F(RestirKernel, NeighbourOffsetsAreEqual) {

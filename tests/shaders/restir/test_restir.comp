@@ -4,6 +4,7 @@
 // surface.
 #extension GL_GOOGLE_include_directive : require
 #include "common/environment.glsl"
+#include "restir/hits.glsl"
 #include "restir/reuse.glsl"
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(set = 0, binding = 0, rgba32f) uniform writeonly image2D target;
@@ -13,18 +14,20 @@ layout(push_constant) uniform push_block { uint port_mask; };
 const float sheets[3] = float[3](0.0, -0.4, -1.0);
 const float sheet_size = 64.0;
 
-void trace_probe(probe_ray ray, uint medium, out probe_hits hits) {
-  hits.count = 0u;
-  for (int i = 0; i < 3; ++i) {
-    int sheet = ray.direction.z < 0.0 ? i : 2 - i;
-    float way = (sheets[sheet] - ray.origin.z) / ray.direction.z;
-    if (!(way > 0.0 && way < ray.reach))
-      continue;
-    vec2 place = ray.origin.xy + way * ray.direction.xy;
-    hits.hit[hits.count] =
-        probe_hit(16777217u + uint(sheet), 0xfffffff0u, place / sheet_size + 0.5, way);
-    ++hits.count;
+chosen_hit trace_probe(probe_ray ray, uint medium, hit_choice choice) {
+  hit_pass pass = first_pass();
+  chosen_hit chosen;
+  for (bool ended = false; !ended;) {
+    for (int sheet = 0; sheet < 3; ++sheet) {
+      float way = (sheets[sheet] - ray.origin.z) / ray.direction.z;
+      if (!(way > 0.0 && way < ray.reach))
+        continue;
+      vec2 place = ray.origin.xy + way * ray.direction.xy;
+      add_hit(pass, probe_hit(16777217u + uint(sheet), 0xfffffff0u, place / sheet_size + 0.5, way));
+    }
+    ended = choose_hit(pass, choice, chosen);
   }
+  return chosen;
 }
 surface_point surface_at(uint instance, uint primitive, vec2 barycentrics) {
   vec3 up = vec3(0.0, 0.0, instance == 16777217u ? 1.0 : -1.0);
@@ -58,6 +61,18 @@ scatter_domain pixel_on_sheet(inout random_state random) {
   vec3 at = three(random), tilt = three(random);
   return scatter_domain(vec3(4.0 * at.xy - 2.0, 0.0), normalize(vec3(tilt.xy - 0.5, 0.5)),
                         vec3(1.0, 0.5, 0.25), 1u);
+}
+
+// Finds one hit among up to 24, with a few different distances, in no order.
+chosen_hit find_listed(uint list, hit_choice choice) {
+  hit_pass pass = first_pass();
+  chosen_hit chosen;
+  for (bool ended = false; !ended;) {
+    for (uint i = 0u; i < list % 25u; ++i)
+      add_hit(pass, probe_hit(i % 3u, i, vec2(i, 0.0), float((7u * i + list) % 11u)));
+    ended = choose_hit(pass, choice, chosen);
+  }
+  return chosen;
 }
 
 vec4 halves(uint a, uint b) { return vec4(a & 0xffffu, a >> 16, b & 0xffffu, b >> 16); }
@@ -146,10 +161,14 @@ void main() {
             other = draw_initial(neighbour, random);
   history.confidence = 30.0;
   reservoir merged = merge_temporal(settings, here, own, there, history, random);
-  spatial_merge spatial =
-      spatial_begin(settings, here, merged, history.confidence + other.confidence, random);
-  spatial_add(settings, here, spatial, there, history, random);
-  spatial_add(settings, here, spatial, neighbour, other, random);
+  spatial_merge spatial = spatial_begin(here, merged, history.confidence + other.confidence);
+  for (int i = 0; i < 5; ++i) {
+    if (i == 1)
+      spatial_neighbour(spatial, there, history);
+    if (i == 3)
+      spatial_neighbour(spatial, neighbour, other);
+    spatial_move(settings, spatial, random);
+  }
   reservoir last = spatial_end(spatial, random);
   if (row == 17)
     result = vec4(has_sample(own) ? own.instance - 16777216u : 0u, own.barycentrics, own.weight);
@@ -195,6 +214,15 @@ void main() {
                        : halves(kept.words[1].x, kept.words[1].w);
     if (row == 35)
       result = vec4(unpack_domain(kept).normal, unpack_domain(kept).medium);
+  }
+  if (row == 37 || row == 38) {
+    hit_choice choice = hit_by_pick(u.w);
+    if (row == 38)
+      choice = hit_on_primitive(uint(u.x * 3.0), uint(u.y * 20.0));
+    chosen_hit chosen = find_listed(uint(pixel.x), choice);
+    result = vec4(chosen.count, chosen.index, 0.0, 0.0);
+    if (chosen.index < chosen.count)
+      result.zw = vec2(chosen.hit.primitive, chosen.hit.barycentrics.x);
   }
   if (row == 36) {
     random = random_state(uint(pixel.x), 3u, 0u);

@@ -1,6 +1,7 @@
 #pragma once
 // Queries of a scene: probes, surfaces, visibility, lights. On a device the kernel that includes
-// shaders/restir/scene.glsl defines equal functions over its acceleration structure.
+// shaders/restir/scene.glsl defines equal functions over its acceleration structure; trace_probe
+// there returns only one of the hits.
 
 #include "tests/passes/restir/cpu/lights.hpp"
 #include "tests/passes/restir/cpu/probe.hpp"
