@@ -113,27 +113,36 @@ struct guided_pixel {
   float alpha;
 };
 
-// Samples twice with half of the samples each and returns the squared half difference, times the
-// number of samples.
-float sample_halves(inout guided_pixel at, int count, uint first) {
+struct sampled_light {
+  vec3 first, last; // of both halves of the samples; equal to each other if they are not split
+};
+
+// A loop over the halves, because a driver then compiles the samples only once.
+sampled_light sample_light(guided_pixel at, int count, uint first) {
   scatter_point point =
       scatter_point(at.pixel, at.id, at.depth, view_position(vec2(at.pixel), at.depth));
   vec4 own = vec4(at.light, at.alpha);
-  vec3 a = scatter_light(point, at.profile, own, sample_set(0u, count / 2, count, first));
-  vec3 b = scatter_light(point, at.profile, own, sample_set(1u, count / 2, count, first));
-  at.light = 0.5 * (a + b);
-  float half_way = 0.5 * (exposed(a) - exposed(b));
+  uint parts = splits() ? 2u : 1u;
+  sampled_light light;
+  for (uint part = 0u; part < parts; ++part) {
+    light.last = scatter_light(point, at.profile, own,
+                               sample_set(part, count / int(parts), count, first));
+    if (part == 0u)
+      light.first = light.last;
+  }
+  return light;
+}
+
+// Returns the squared half difference of both halves, times the number of samples.
+float spread_of(sampled_light light, int count) {
+  float half_way = 0.5 * (exposed(light.first) - exposed(light.last));
   return half_way * half_way * float(count);
 }
 
-// Samples the pixel and updates the moments of the observed value (Algorithms 1 to 3).
-void sample_and_watch(inout guided_pixel at, inout guide_state state, int count, uint first) {
-  scatter_point point =
-      scatter_point(at.pixel, at.id, at.depth, view_position(vec2(at.pixel), at.depth));
-  float g = exposed(at.light);
-  vec4 own = vec4(at.light, at.alpha);
-  at.light = scatter_light(point, at.profile, own, sample_set(0u, count, count, first));
-  float f = exposed(at.light);
+// Updates the moments of the observed value (Algorithms 1 to 3). `before` is the light that was not
+// scattered.
+void watch(vec3 before, vec3 light, inout guide_state state) {
+  float g = exposed(before), f = exposed(light);
   if (state.lost)
     state.moments = moving_covariance(f, g, 0.0, 0.0);
   float weight = settings.guidance == GUIDANCE_SPVG ? 0.0 : 1.0;
@@ -185,12 +194,15 @@ void main() {
                          length(texelFetch(slope_image, texel, 0).rg * footprint));
     float required = required_samples(state.sd * state.sd, state.mean_count, guidance());
     count = clamped_samples(required, guidance());
-    uint first = frame.frame_index * frame_stride;
-    if (splits()) {
+    if (splits())
       count += count & 1;
-      spread = sample_halves(at, count, first);
+    sampled_light light = sample_light(at, count, frame.frame_index * frame_stride);
+    if (splits()) {
+      spread = spread_of(light, count);
+      at.light = 0.5 * (light.first + light.last);
     } else {
-      sample_and_watch(at, state, count, first);
+      watch(at.light, light.last, state);
+      at.light = light.last;
     }
   }
   if (splits()) {
