@@ -31,7 +31,6 @@ const float min_chance = 0.01;
 
 shared float offsets[lanes * each]; // logarithms
 shared float squared_deviations[lanes * each];  // squared deviations in stable light
-shared bool known[lanes * each];
 shared vec2 sums[lanes];
 
 // Computes the logarithm of luminance of the surface at a pixel relative to the pattern that it
@@ -71,7 +70,7 @@ vec2 summed(vec2 own) {
 
 // Returns the most common change: the mean first, then iterations with weights that fall with the
 // distance from the result.
-float most_common(uint lane) {
+float most_common(uint lane, uint known) {
   float found = 0.0;
   for (int turn = 0; turn < turns; ++turn) {
     vec2 sum = vec2(0.0);
@@ -79,7 +78,7 @@ float most_common(uint lane) {
       uint i = k * lanes + lane;
       float off = (offsets[i] - found) / width;
       float weight = turn == 0 ? 1.0 : 1.0 / (1.0 + off * off);
-      if (known[i])
+      if ((known >> k & 1u) != 0u)
         sum += weight * vec2(offsets[i], 1.0);
     }
     sum = summed(sum);
@@ -89,14 +88,14 @@ float most_common(uint lane) {
 }
 
 // Returns the median deviation from `found`, at most max_tolerance.
-float median_deviation(uint lane, float found) {
+float median_deviation(uint lane, uint known, float found) {
   float below = 0.0, above = max_tolerance;
   for (int halving = 0; halving < halvings; ++halving) {
     float middle = 0.5 * (below + above);
     vec2 sum = vec2(0.0);
     for (uint k = 0u; k < each; ++k) {
       uint i = k * lanes + lane;
-      if (known[i])
+      if ((known >> k & 1u) != 0u)
         sum += vec2(abs(offsets[i] - found) < middle ? 1.0 : 0.0, 1.0);
     }
     sum = summed(sum);
@@ -111,12 +110,12 @@ float median_deviation(uint lane, float found) {
 // Returns the odds that the light of a surface with the common change is unchanged, rather than in
 // agreement by chance. The density of agreement by chance is that in the ring from two to four
 // tolerances.
-float odds_of_agreement(uint lane, float found, float tolerance) {
+float odds_of_agreement(uint lane, uint known, float found, float tolerance) {
   vec2 sum = vec2(0.0);
   for (uint k = 0u; k < each; ++k) {
     uint i = k * lanes + lane;
     float off = abs(offsets[i] - found) / tolerance_of(tolerance, squared_deviations[i]);
-    if (known[i])
+    if ((known >> k & 1u) != 0u)
       sum += vec2(off < 2.0 ? 1.0 : 0.0, off >= 2.0 && off < 4.0 ? 1.0 : 0.0);
   }
   sum = summed(sum);
@@ -128,18 +127,20 @@ float odds_of_agreement(uint lane, float found, float tolerance) {
 void main() {
   uint lane = gl_LocalInvocationIndex, tiles = uint(frame.tiles.x * frame.tiles.y);
   uint stride = max((tiles + lanes * each - 1u) / (lanes * each), 1u);
+  uint known = 0u; // bit k: pixel k of the lane has an offset
   for (uint k = 0u; k < each; ++k) {
     uint i = k * lanes + lane, tile = i * stride;
     ivec2 pixel = ivec2(tile % uint(frame.tiles.x), tile / uint(frame.tiles.x)) * 8 + 3;
     float offset = 0.0, squared_deviation = 0.0;
-    known[i] = history_usable() && tile < tiles && offset_of(pixel, offset, squared_deviation);
+    if (history_usable() && tile < tiles && offset_of(pixel, offset, squared_deviation))
+      known |= 1u << k;
     offsets[i] = offset;
     squared_deviations[i] = squared_deviation;
   }
-  float found = most_common(lane);
-  float tolerance =
-      max(settings.tolerance, min(per_median * median_deviation(lane, found), max_tolerance));
-  float odds = odds_of_agreement(lane, found, tolerance);
+  float found = most_common(lane, known);
+  float median = median_deviation(lane, known, found);
+  float tolerance = max(settings.tolerance, min(per_median * median, max_tolerance));
+  float odds = odds_of_agreement(lane, known, found, tolerance);
   if (lane == 0u)
     imageStore(luminance_change_image, ivec2(0), vec4(found, odds, tolerance, 0.0));
 }
