@@ -24,10 +24,10 @@ choice::ErrorModel default_errors() {
   return read ? std::move(*read) : choice::ErrorModel{"", {{1, 1}}, {}, 0};
 }
 
-choice::Calibration default_calibration() {
+choice::Calibration default_calibration(choice::DeviceClass device) {
   Diagnostics diagnostics;
-  const auto document =
-      parse_document("calibration", std::string(choice::default_calibration_text()), diagnostics);
+  const auto document = parse_document(
+      "calibration", std::string(choice::default_calibration_text(device)), diagnostics);
   auto read = document ? choice::read_calibration(*document, diagnostics) : std::nullopt;
   return read ? std::move(*read) : choice::Calibration{};
 }
@@ -128,11 +128,22 @@ void observe_frame(Chooser& chooser, CompiledGraph& compiled_graph, FrameChoice&
 
 } // namespace
 
-Chooser make_chooser() {
+choice::DeviceClass device_class(VkPhysicalDeviceType type) {
+  switch (type) {
+  case VK_PHYSICAL_DEVICE_TYPE_CPU:
+    return choice::DeviceClass::cpu;
+  case VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU:
+    return choice::DeviceClass::large_gpu;
+  default:
+    return choice::DeviceClass::small_gpu;
+  }
+}
+
+Chooser make_chooser(choice::DeviceClass device) {
   Chooser chooser;
   chooser.errors = default_errors();
   chooser.found = choice::make_error_correction(chooser.errors.techniques.size());
-  chooser.calibration = default_calibration();
+  chooser.calibration = default_calibration(device);
   chooser.costs = choice::CostModel(chooser.calibration.costs);
   return chooser;
 }

@@ -7,6 +7,7 @@
 #include "passes/choice/calibration.hpp"
 #include "passes/choice/configurations.hpp"
 #include "passes/choice/controller.hpp"
+#include "passes/choice/defaults.hpp"
 #include "passes/choice/error_correction.hpp"
 #include "passes/choice/sample_allocation.hpp"
 #include "passes/choice/sample_demand.hpp"
@@ -76,8 +77,10 @@ struct Chooser {
   std::vector<vulkan::PassTiming> times;
 };
 
+// Returns the class of a device whose costs a chooser starts from. Only discrete GPUs are large.
+choice::DeviceClass device_class(VkPhysicalDeviceType type);
 // Returns a chooser with the library's built-in tables.
-Chooser make_chooser();
+Chooser make_chooser(choice::DeviceClass device);
 
 // Prepares a program for this chooser: allocates everything that deciding and observing need. Must
 // be called before the program's first record.

@@ -14,7 +14,9 @@
 // graph meanwhile: it builds without `mutex` and locks `mutex` only to hand over.
 struct dermis_view_t {
   dermis_view_t(dermis_context from, dermis_graph of, void* pointer)
-      : context(from), graph(of), user(pointer), chooser(dermis::abi::make_chooser()),
+      : context(from), graph(of), user(pointer),
+        chooser(dermis::abi::make_chooser(
+            dermis::abi::device_class(from->device.properties.deviceType))),
         image_views(from->device) {}
 
   dermis_context context = nullptr;

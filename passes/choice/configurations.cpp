@@ -46,8 +46,16 @@ bool samples_by_tile(const PassType& type) {
   return type.name == "subsurface.tile_refine" || type.name == "subsurface.afis_tiles";
 }
 
-PassLoad load_of(const Plan& plan, const PlanPass& pass, const PassType& type) {
+int32_t level_of(const PassType& type, const std::vector<SettingValue>& values) {
+  if (find_port(type, "level_tiles", PortSide::read) < 0) return -1;
+  const int level = find_setting(type, "level");
+  return level < 0 ? 0 : static_cast<int32_t>(values[static_cast<size_t>(level)].integer);
+}
+
+PassLoad load_of(const Plan& plan, const PlanPass& pass, const PassType& type,
+                 const std::vector<SettingValue>& values) {
   PassLoad load;
+  load.level = level_of(type, values);
   const TexelSize written = first_written_size(plan, pass, type);
   switch (type.dispatch.domain) {
   case DispatchRule::Domain::rectangle:
@@ -73,12 +81,6 @@ PassLoad load_of(const Plan& plan, const PlanPass& pass, const PassType& type) {
   return load;
 }
 
-int32_t level_of(const PassType& type, const std::vector<SettingValue>& values) {
-  if (find_port(type, "level_tiles", PortSide::read) < 0) return -1;
-  const int level = find_setting(type, "level");
-  return level < 0 ? 0 : static_cast<int32_t>(values[static_cast<size_t>(level)].integer);
-}
-
 RunningPass running(const PassType& type, const std::vector<SettingValue>& values) {
   RunningPass out{type.name, {}};
   for (size_t i = 0; i < values.size(); ++i)
@@ -95,9 +97,8 @@ void describe(const PassTypeRegistry& pass_types, const Plan& plan, const ErrorM
   for (const PlanPass& pass : plan.passes) {
     const PassType& type = pass_types[pass.type];
     const std::vector<SettingValue> values = values_of(plan, pass, type, configuration.settings);
-    PassLoad load = load_of(plan, pass, type);
+    PassLoad load = load_of(plan, pass, type, values);
     load.cost = costs.add(work_name(type, values));
-    load.level = level_of(type, values);
     configuration.passes.push_back(load);
     passes.push_back(running(type, values));
     const bool samples = load.groups == PassLoad::Groups::sample_units;
@@ -178,6 +179,17 @@ std::string work_name(const PassType& type, std::span<const SettingValue> values
   for (size_t i = 0; i < values.size(); ++i)
     name += fmt::format(" {}={}", type.settings[i].name, value_text(type.settings[i], values[i]));
   return name;
+}
+
+std::vector<Work> works_of(const PassTypeRegistry& pass_types, const Plan& plan,
+                           const std::vector<SettingValue>& settings) {
+  std::vector<Work> works;
+  for (const PlanPass& pass : plan.passes) {
+    const PassType& type = pass_types[pass.type];
+    const std::vector<SettingValue> values = values_of(plan, pass, type, settings);
+    works.push_back({work_name(type, values), load_of(plan, pass, type, values)});
+  }
+  return works;
 }
 
 std::optional<Combinations> enumerate_combinations(const CompileInput& input,

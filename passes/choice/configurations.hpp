@@ -56,6 +56,14 @@ struct Combinations {
 // per setting of the pass type.
 std::string work_name(const PassType& type, std::span<const SettingValue> values);
 
+struct Work {
+  std::string name; // work_name()
+  PassLoad load;    // without a cost
+};
+// Returns the work of each pass of a plan with these settings of the graph.
+std::vector<Work> works_of(const PassTypeRegistry& pass_types, const Plan& plan,
+                           const std::vector<SettingValue>& settings);
+
 // Enumerates the combinations. Other settings have the values in `input` (empty: the defaults). So
 // have choices that the host made itself, `pinned` (one per setting; empty: none). Returns nullopt
 // with an error in `diagnostics` if there are more than max_configurations.

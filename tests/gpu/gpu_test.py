@@ -10,6 +10,7 @@ import unittest
 import device_limits
 import gpu_model
 import instruction_mix
+import write_calibrations
 
 HERE = pathlib.Path(__file__).resolve().parent
 
@@ -66,6 +67,36 @@ class Model(unittest.TestCase):
                   for name in ("SAP shipped", "SAP as built")}
         self.assertAlmostEqual(gather["SAP as built"].bytes, 3 * model.covered)
         self.assertLess(gather["SAP as built"].seconds, gather["SAP shipped"].seconds)
+
+
+class WriteCalibrations(unittest.TestCase):
+    WORKS = [{"work": "subsurface.sap_gather variant=smooth", "kernel": "a/gather", "per": "listed_tiles",
+              "level": 0, "read": 32, "written": 8},
+             {"work": "subsurface.sap_gather variant=large", "kernel": "a/gather", "per": "listed_tiles",
+              "level": 0, "read": 320, "written": 80},
+             {"work": "subsurface.list", "kernel": "a/gather", "per": "fixed", "groups": 1, "read": 0, "written": 0}]
+    ROW = {"kernel": "a/gather", "values": {"occupancy": 16, "code_bytes": 5000}}
+
+    def costs(self, hardware):
+        return [write_calibrations.cost_of(gpu_model.Model(hardware), work, self.ROW, ASSEMBLY) for work in self.WORKS]
+
+    def test_costs_follow_work_and_hardware(self):
+        large, small = self.costs(gpu_model.RX_6800), self.costs(gpu_model.SMALL_RDNA2)
+        self.assertGreater(large[1][1], 5 * large[0][1])  # bound by memory
+        self.assertGreater(small[1][1], large[1][1])
+        self.assertGreaterEqual(large[0][0], gpu_model.RX_6800.fixed * 1e6)
+        self.assertEqual(large[2][1], 0)
+
+    def test_loops_run_as_often_as_the_setting_says(self):
+        few = write_calibrations.executed("subsurface.separable taps=11", ASSEMBLY)
+        many = write_calibrations.executed("subsurface.separable taps=25", ASSEMBLY)
+        self.assertAlmostEqual(many["quarter_rate"] / few["quarter_rate"], 25 / 11)
+
+    def test_files_say_that_they_are_modelled(self):
+        report = {"device": "d", "driver": "r"}
+        text = write_calibrations.text_of(gpu_model.RX_6800, report, [("w", 1.0, 0.5)])
+        self.assertTrue(text.startswith("// Modelled, not measured"))
+        self.assertIn(', modelled"', text)
 
 
 class InstructionMix(unittest.TestCase):

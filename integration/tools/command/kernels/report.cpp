@@ -101,6 +101,35 @@ void write_graphs(const KernelSurvey& survey, JsonWriter& json) {
   json.close();
 }
 
+std::string_view name_of(choice::PassLoad::Groups groups) {
+  using Groups = choice::PassLoad::Groups;
+  switch (groups) {
+  case Groups::rectangle:
+    return "rectangle";
+  case Groups::listed_tiles:
+    return "listed_tiles";
+  case Groups::copied_tiles:
+    return "copied_tiles";
+  case Groups::sample_units:
+    return "sample_units";
+  case Groups::fixed:
+    break;
+  }
+  return "fixed";
+}
+
+void write_works(const KernelSurvey& survey, JsonWriter& json) {
+  json.key("works").open_array();
+  for (const WorkRow& row : survey.works) {
+    json.open_object(true).member("work", row.work).member("kernel", row.kernel);
+    json.member("per", name_of(row.load.groups));
+    if (row.groups > 0) json.member("groups", row.groups);
+    if (row.load.level >= 0) json.member("level", static_cast<int64_t>(row.load.level));
+    json.member("read", row.traffic.read).member("written", row.traffic.written).close();
+  }
+  json.close();
+}
+
 void write_findings(std::string_view key, const std::vector<LimitFinding>& findings,
                     const Diagnostics& files, JsonWriter& json) {
   json.key(key).open_array();
@@ -165,6 +194,7 @@ std::string kernels_as_json(const KernelSurvey& survey, const KernelsOptions& op
       .member("flagged", options.assumptions.flagged);
   write_kernels(survey, json);
   write_graphs(survey, json);
+  write_works(survey, json);
   json.key("skipped").open_array();
   for (const SkippedGraph& skipped : survey.skipped)
     json.open_object(true).member("graph", skipped.graph).member("why", skipped.why).close();

@@ -233,6 +233,7 @@ private:
                                                             codes, environment, counts);
         if (!problem.empty()) return graph_error(fmt::format("{}: {}", counts.graph, problem));
       }
+      add_works(loaded.pass_types, plan, settings);
       std::vector<vulkan::CompiledPipeline> pipelines;
       const vulkan::PipelinesInput request{.device = &device_,
                                            .pass_types = &loaded.pass_types,
@@ -252,6 +253,20 @@ private:
       }
     }
     return demo::success();
+  }
+
+  void add_works(const PassTypeRegistry& pass_types, const Plan& plan,
+                 const std::vector<SettingValue>& settings) {
+    const std::vector<PassTraffic> traffic = count_traffic(plan, pass_types, options_.assumptions);
+    std::vector<choice::Work> works = choice::works_of(pass_types, plan, settings);
+    for (size_t p = 0; p < works.size(); ++p) {
+      if (!works[p].load.launches || !known_works_.insert(works[p].name).second) continue;
+      const uint64_t groups =
+          groups_of(works[p].load, {options_.size.width, options_.size.height, 0, 0, 0});
+      result.works.push_back({std::move(works[p].name),
+                              std::string(pass_types[plan.passes[p].type].shader), works[p].load,
+                              groups, traffic[p]});
+    }
   }
 
   void add_rows(const PassType& type, const vulkan::CompiledPipeline& pipeline,
@@ -285,7 +300,7 @@ private:
   ShaderFolder folder_;
   abi::RuntimeShaders shaders_;
   std::vector<bool> pinned_; // settings of the present graph that --set gives
-  std::set<std::string> known_names_;
+  std::set<std::string> known_names_, known_works_;
   std::unique_ptr<vulkan::KernelStore> kernels_; // declared after host_: destroyed before
   std::vector<RowsOfKernel> rows_of_;
 };
@@ -309,6 +324,8 @@ demo::Result<KernelSurvey> survey_kernels(const KernelsOptions& options, const S
     return demo::Error{demo::ErrorKind::usage, std::move(problem)};
   std::stable_sort(survey.result.kernels.begin(), survey.result.kernels.end(),
                    [](const KernelRow& a, const KernelRow& b) { return a.kernel < b.kernel; });
+  std::sort(survey.result.works.begin(), survey.result.works.end(),
+            [](const WorkRow& a, const WorkRow& b) { return a.work < b.work; });
   return std::move(survey.result);
 }
 

@@ -5,6 +5,7 @@
 #include "integration/tools/command/kernels/graph_counts.hpp"
 #include "integration/tools/command/kernels/rows.hpp"
 #include "integration/tools/command/verbs.hpp"
+#include "passes/choice/configurations.hpp"
 
 namespace dermis::tools {
 
@@ -12,11 +13,20 @@ struct SkippedGraph {
   std::string graph, why;
 };
 
+// Kinds of work as calibrations name them, over all configurations of all graphs.
+struct WorkRow {
+  std::string work, kernel;
+  choice::PassLoad load;
+  uint64_t groups = 0; // for a load that the view or the plan determines; else 0
+  PassTraffic traffic;
+};
+
 struct KernelSurvey {
   std::string device, driver;
   bool statistics = false; // the driver reports values of kernels
   std::vector<KernelRow> kernels;
   std::vector<GraphCounts> graphs;
+  std::vector<WorkRow> works; // sorted by name
   std::vector<SkippedGraph> skipped;
 };
 

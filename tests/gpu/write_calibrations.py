@@ -1,0 +1,138 @@
+#!/usr/bin/env python3
+"""Writes calibrations for classes of GPUs from kernel statistics and the model of GPU times.
+
+usage: write_calibrations.py KERNELS ASSEMBLY FOLDER
+  KERNELS   output of `dermis kernels skin hybrid --json --assembly ASSEMBLY` on navi21
+  ASSEMBLY  the folder with the assembly of these kernels
+  FOLDER    receives large_gpu.json and small_gpu.json
+
+No time is measured. Executed instructions are counted in the assembly: each loop runs as often as
+TRIPS says, and EXECUTED of the instructions of each block count, because subgroups skip branches.
+A budget starts from these costs and follows the timestamps of the device, so that their ratios matter most.
+"""
+import argparse
+import json
+import pathlib
+import re
+import sys
+
+import gpu_model
+import instruction_mix
+
+SHADERS = pathlib.Path(__file__).resolve().parents[2] / "shaders"
+CLASSES = {"large_gpu": gpu_model.RX_6800, "small_gpu": gpu_model.SMALL_RDNA2}
+EXECUTED = 0.75  # fraction of instructions
+SPREAD = 0.3  # assumed deviation of one frame
+UNITS = 4096  # sample units of the modelled frame
+# How often the loops of a kernel run; a name is a setting of the pass. Others run LOOP times.
+TRIPS = {"subsurface.separable": "taps", "subsurface.tile_refine": 8}
+LOOP = 4
+
+
+def settings_of(work):
+    return dict(word.split("=", 1) for word in work.split()[1:])
+
+
+def invocations(kernel):
+    """Returns the invocations per group, from the kernel's source and its includes."""
+    pending, seen = [SHADERS / f"{kernel}.comp"], set()
+    while pending:
+        path = pending.pop(0)
+        if path in seen or not path.exists():
+            continue
+        seen.add(path)
+        text = path.read_text(encoding="utf-8")
+        sizes = re.search(r"local_size_x = (\d+), local_size_y = (\d+)", text)
+        if sizes:
+            return int(sizes.group(1)) * int(sizes.group(2))
+        pending += [SHADERS / name for name in re.findall(r'#include "(.*?)"', text)]
+    return 64
+
+
+def executed(work, assembly):
+    blocks = instruction_mix.read_blocks(assembly.splitlines())
+    trips = TRIPS.get(work.split()[0], LOOP)
+    trips = float(settings_of(work).get(trips, LOOP)) if isinstance(trips, str) else trips
+    loops = instruction_mix.find_loops(blocks)
+    mix = instruction_mix.count(blocks, [trips] * len(loops))
+    return {kind: number * EXECUTED for kind, number in mix.items()}
+
+
+def wave_of(model, row, mix):
+    """Returns the clocks of a subgroup; RADV counts occupancy in subgroups of 32."""
+    values = row["values"]
+    return model.wave(valu=mix.get("valu", 0) + mix.get("scalar", 0) / 4,
+                      trans=mix.get("transcendental", 0), qmul=mix.get("quarter_rate", 0),
+                      img=mix.get("image_load", 0), st64=mix.get("image_store", 0),
+                      buf=mix.get("buffer_load", 0) + mix.get("buffer_store", 0),
+                      lds=4 * mix.get("shared", 0),
+                      vm=(mix.get("image_load", 0) + mix.get("buffer_load", 0)) / 4,
+                      lg=mix.get("shared", 0) / 4 + mix.get("scalar_load", 0) / 2,
+                      W=values["occupancy"] / 2, code=values["code_bytes"],
+                      scr=mix.get("scratch_load", 0) + mix.get("scratch_store", 0))
+
+
+def cost_of(model, work, row, assembly):
+    wave = wave_of(model, row, executed(work["work"], assembly))
+    bytes_moved = (work["read"] + work["written"]) * model.covered
+    per = work["per"]
+    if per in ("listed_tiles", "copied_tiles"):
+        counted = model.tiles[0]
+        launched = model.tiles[work.get("level", 0)]
+    elif per == "sample_units":
+        counted = launched = UNITS
+        bytes_moved = (work["read"] + work["written"]) * 64 * UNITS
+    else:
+        counted = launched = work["groups"]
+    subgroups = launched * max(1, invocations(work["kernel"]) / 64)
+    model.add(work["work"], work["work"], subgroups, wave, bytes_moved)
+    seconds = model.total(work["work"])
+    least = model.hardware.fixed + wave["lat"] / model.hardware.clock
+    base = seconds if per == "fixed" else min(seconds, least)
+    return base * 1e6, max(0.0, seconds - base) / counted * 1e6
+
+
+def costs_of(report, assembly_folder, hardware):
+    rows = {}
+    for row in report["kernels"]:
+        rows.setdefault(row["kernel"], row)
+    costs = []
+    for work in report["works"]:
+        name = work["kernel"].replace("/", "_") + ".txt"
+        assembly = (assembly_folder / name).read_text(encoding="utf-8")
+        model = gpu_model.Model(hardware)
+        costs.append((work["work"], *cost_of(model, work, rows[work["kernel"]], assembly)))
+    return costs
+
+
+def text_of(hardware, report, costs):
+    lines = [f"// Modelled, not measured: counts of {report['device']} with",
+             f"// {report['driver']}, and the model of tests/gpu/gpu_model.py.",
+             "// tests/gpu/write_calibrations.py writes this file.", "{",
+             '  "$schema": "../../schema/calibration.schema.json",', '  "dermis_calibration": 2,',
+             f'  "device": {json.dumps(hardware.name + ", modelled")},', '  "costs": [']
+    for i, (work, base, group) in enumerate(costs):
+        comma = "," if i + 1 < len(costs) else ""
+        lines.append(f'    {{ "work": {json.dumps(work)}, "base_us": {base:.3g}, '
+                     f'"group_us": {group:.3g}, "spread": {SPREAD} }}{comma}')
+    return "\n".join(lines + ["  ]", "}", ""])
+
+
+def main():
+    parser = argparse.ArgumentParser(usage=__doc__)
+    parser.add_argument("kernels")
+    parser.add_argument("assembly", type=pathlib.Path)
+    parser.add_argument("folder", type=pathlib.Path)
+    options = parser.parse_args()
+    with open(options.kernels, encoding="utf-8") as file:
+        report = json.load(file)
+    if not report["statistics"]:
+        sys.exit(f"{options.kernels}: {report['driver']} reports no statistics of kernels")
+    for name, hardware in CLASSES.items():
+        path = options.folder / f"{name}.json"
+        costs = costs_of(report, options.assembly, hardware)
+        path.write_text(text_of(hardware, report, costs), encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()
