@@ -78,7 +78,7 @@ TEST_F(Upgrade, OldShippedFiles_Upgrade_Compile) {
        {"overlays/accumulate.json", "overlays/skips.json", "overlays/probe.json"})
     EXPECT_EQ(run({"explain", path("graphs/sap.json"), "--overlay", path(name)}).exit_code, 0)
         << name;
-  EXPECT_EQ(run({"validate", path("choice/errors.json"), path("choice/calibrations/cpu.json"),
+  EXPECT_EQ(run({"validate", path("choice/errors.json"), path("choice/calibration.json"),
                  path("cases/kinds.json"), path("cases/qa_kinds.json")})
                 .exit_code,
             0);
