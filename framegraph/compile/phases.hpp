@@ -69,6 +69,7 @@ struct VersionScratch {
   std::vector<uint32_t> last_version;   // by subresource: the latest version in its own memory
   std::vector<ResourceDef> definitions; // by subresource
   std::vector<ForwardReference> forward_references;
+  std::vector<uint8_t> unneeded; // by resource: see find_unneeded in versions.cpp
 };
 // Resolves which version of which resource each port accesses, and applies `otherwise`.
 const Versions& resolve_versions(const CompileInput& in, const Sizes& sizes,

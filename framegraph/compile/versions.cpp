@@ -37,6 +37,7 @@ struct VersionResolver {
     scratch.current.assign(count, {});
     scratch.last_version.assign(count, invalid_index);
     scratch.definitions.assign(count, {});
+    find_unneeded();
     for (uint32_t i = 0; i < resources; ++i) {
       if (!sizes.info[i].imported || !sizes.info[i].bound) continue;
       scratch.current[i].version = add_version({ResourceId{i}, 0, PassId{}, invalid_index});
@@ -49,8 +50,36 @@ struct VersionResolver {
     return static_cast<uint32_t>(versions.list.size() - 1);
   }
 
+  // Finds the exports that the host leaves unbound and that only passes that write them read:
+  // nobody needs their contents, so optional ports are unbound too.
+  void find_unneeded() {
+    const auto unbound_export = [](const ResourceInfo& info) {
+      return info.exported && !info.imported && !info.bound && !info.history;
+    };
+    scratch.unneeded.clear();
+    if (std::none_of(sizes.info.begin(), sizes.info.end(), unbound_export)) return;
+    for (const ResourceInfo& info : sizes.info)
+      scratch.unneeded.push_back(unbound_export(info));
+    for (const PassDeclaration& pass : graph.passes) {
+      for (const PortBinding& read : graph.reads(pass)) {
+        const auto writes = graph.writes(pass);
+        if (std::none_of(writes.begin(), writes.end(), [&](const PortBinding& written) {
+              return written.resource == read.resource;
+            }))
+          scratch.unneeded[read.resource.value] = 0;
+      }
+      for (const PassThrough& through : pass.otherwise)
+        scratch.unneeded[through.instead.value] = 0;
+    }
+  }
+
   bool unbound_import(ResourceId id) const {
     return sizes.info[id.value].imported && !sizes.info[id.value].bound;
+  }
+  bool is_unbound(const Use& use) const {
+    return unbound_import(use.requested) ||
+           (!scratch.unneeded.empty() && scratch.unneeded[use.requested.value] != 0 &&
+            active.type(use.pass).ports[use.port].optional);
   }
 
   // Adds one use for each subresource range that the port accesses.
@@ -155,7 +184,7 @@ struct VersionResolver {
   void bind_read(Use& use, uint32_t index) {
     if (!use.reads || use.frames_back > 0) return;
     const VersionScratch::Binding& binding = scratch.current[use.subresource];
-    if (unbound_import(use.requested))
+    if (is_unbound(use))
       use.bind_error = Use::BindError::unbound;
     else if (binding.version != invalid_index)
       bind_version(use, binding.version);
@@ -180,7 +209,7 @@ struct VersionResolver {
 
   void bind_write(Use& use) {
     if (!use.writes) return;
-    if (unbound_import(use.requested)) {
+    if (is_unbound(use)) {
       use.bind_error = Use::BindError::unbound;
       return;
     }

@@ -50,7 +50,6 @@ bool fill_previous(const FrameInput& input, FrameConstants& out) {
   return true;
 }
 
-constexpr size_t sap_table_floats = size_t{sap_table_rows} * sap_node_count;
 using SapTables = std::array<float, sap_variant_count * sap_table_floats>; // by SapVariant
 
 // Tables of unused variants are 0.

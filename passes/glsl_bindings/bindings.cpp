@@ -119,7 +119,7 @@ std::string shared_constants() {
       "const int sap_levels = {}; // sap_weights.hpp\n"
       "const int sap_variants = {};\n"
       "const int sap_half = {}, sap_plain = {};\n"
-      "const int sap_nodes = {};\n"
+      "const int sap_nodes = {}, sap_table_pairs = {};\n"
       "const float sap_nodes_per_octave = {:.1f};\n"
       "const float sap_log2_d_first = {};\n"
       "const uint sap_tiles_per_group_first = {}u; // sap_tiles.hpp\n"
@@ -147,9 +147,9 @@ std::string shared_constants() {
       subsurface::sap_level_count, subsurface::sap_variant_count,
       static_cast<int>(subsurface::SapVariant::half),
       static_cast<int>(subsurface::SapVariant::plain), subsurface::sap_node_count,
-      double(subsurface::sap_nodes_per_octave), subsurface::sap_log2_d_first,
-      subsurface::sap_tiles_per_group_first, subsurface::sap_tiles_per_group,
-      subsurface::radial_nodes, subsurface::radial_log2_r_first,
+      subsurface::sap_table_pairs, double(subsurface::sap_nodes_per_octave),
+      subsurface::sap_log2_d_first, subsurface::sap_tiles_per_group_first,
+      subsurface::sap_tiles_per_group, subsurface::radial_nodes, subsurface::radial_log2_r_first,
       subsurface::radial_nodes_per_octave, subsurface::radial_inverse_nodes_per_unit,
       subsurface::reproject_snap_px, subsurface::reproject_largest_velocity,
       subsurface::reproject_depth_fraction, subsurface::reproject_slope_pixels,

@@ -134,15 +134,30 @@ constexpr std::array level_0{read_light("light", "image of level 0"),
                              read_surface("surface", "image of level 0")};
 constexpr std::array level_1{read_surface("coarse_surface", "image of level 1"),
                              read_surface("coarse_scattered", "image of level 1")};
-constexpr std::array gather_result{written_light(
+constexpr Port written_scattered = written_light(
     "scattered",
-    "rgb: scattered light where there is subsurface, undefined elsewhere; a: confidence")};
-constexpr auto gather_ports = join(level_0, level_1, level, gather_result);
-constexpr PassTypeSetting gather_settings[] = {variant, storage};
+    "rgb: scattered light where there is subsurface, undefined elsewhere; a: confidence");
+// The last step writes scattered light for other passes, or the work of subsurface.combine and
+// subsurface.export_scattered.
+constexpr std::array last_inputs{
+    port::albedo,
+    port::optional(port::own_texels(read_light(
+        "unscattered", "output of subsurface.export_scattered with leave_scattered; the image "
+                       "bound to 'scattered_light'")))};
+constexpr std::array last_results{
+    port::optional(written_scattered), port::optional(port::combined),
+    port::optional(written_light(
+        "scattered_light",
+        "scattered light before albedo where 'unscattered' has alpha 0; unchanged elsewhere"))};
+constexpr std::string_view last_one_of[] = {"scattered", "lighting"};
+constexpr auto gather_ports = join(level_0, level_1, level, last_inputs, last_results);
+constexpr PassTypeSetting gather_settings[] = {variant, storage, setting::texturing,
+                                               setting::result};
 
-constexpr auto half_gather_ports = join(view, level_1, level, gather_result);
+constexpr auto half_gather_ports = join(view, level_1, level, std::array{written_scattered});
 
-constexpr PassTypeSetting layered_gather_settings[] = {layered_variant, storage};
+constexpr PassTypeSetting layered_gather_settings[] = {layered_variant, storage, setting::texturing,
+                                                       setting::result};
 
 constexpr std::string_view second_finer_doc =
     "image of the second layer; unbound if the finer level has one layer";
@@ -164,7 +179,7 @@ constexpr auto layered_up_ports =
 
 constexpr auto layered_gather_ports =
     join(level_0, level_1, std::array{second_coarse_surface, second_coarse_scattered}, level,
-         gather_result);
+         last_inputs, last_results);
 
 } // namespace
 
@@ -215,10 +230,12 @@ const PassType sap_up_type{
 const PassType sap_gather_type{
     .name = "subsurface.sap_gather",
     .shader = "sap/subsurface_sap_gather",
-    .doc = "Writes level 0 of the upward traversal: the scattered light of every listed pixel.",
+    .doc = "Writes level 0 of the upward traversal: the scattered light of every listed pixel, or "
+           "directly the host's lighting.",
     .ports = gather_ports,
     .settings = gather_settings,
     .dispatch = over_tiles,
+    .one_of = last_one_of,
 };
 
 const PassType sap_setup_half_res_type{
@@ -273,6 +290,7 @@ const PassType sap_gather_layered_type{
     .ports = layered_gather_ports,
     .settings = layered_gather_settings,
     .dispatch = over_tiles,
+    .one_of = last_one_of,
 };
 
 } // namespace dermis::subsurface

@@ -237,19 +237,24 @@ SapFractions sap_fractions(const SapWeights& weights) {
 }
 
 std::vector<float> make_sap_table(const SapFit& fit) {
-  std::vector<float> table(size_t{sap_table_rows} * sap_node_count);
+  std::vector<float> table(sap_table_floats);
   for (uint32_t k = 0; k < sap_node_count; ++k) {
     const SapFractions fractions = sap_fractions(fit.nodes[k].weights);
-    table[k] = static_cast<float>(fractions.centre);
-    table[sap_node_count + k] = static_cast<float>(fractions.tent);
-    for (uint32_t level = 1; level < sap_level_count; ++level)
-      table[(level + 1) * sap_node_count + k] = static_cast<float>(fractions.fraction[level]);
+    for (uint32_t row = 0; row < sap_table_rows; ++row) {
+      const double value = row == 0   ? fractions.centre
+                           : row == 1 ? fractions.tent
+                                      : fractions.fraction[row - 1];
+      float* pair = &table[size_t{row / 2} * sap_node_count * 4 + row % 2];
+      pair[size_t{k} * 4] = static_cast<float>(value);
+      if (k > 0) pair[size_t{k - 1} * 4 + 2] = static_cast<float>(value);
+      if (k + 1 == sap_node_count) pair[size_t{k} * 4 + 2] = static_cast<float>(value);
+    }
   }
   return table;
 }
 
 template <class Real> Real sap_lookup(std::span<const float> table, uint32_t row, Real d_px) {
-  const float* values = &table[size_t{row} * sap_node_count];
+  const float* values = &table[size_t{row / 2} * sap_node_count * 4 + row % 2];
   const Real first = static_cast<Real>(std::exp2(sap_log2_d_first));
   if (!(d_px >= first)) {
     const Real fraction = std::max(Real(0), d_px) / first;
@@ -260,7 +265,7 @@ template <class Real> Real sap_lookup(std::span<const float> table, uint32_t row
                            Real(sap_node_count - 1));
   const auto k = std::min(static_cast<uint32_t>(at), sap_node_count - 2);
   const Real t = at - Real(k);
-  return (1 - t) * Real(values[k]) + t * Real(values[k + 1]);
+  return (1 - t) * Real(values[size_t{k} * 4]) + t * Real(values[size_t{k} * 4 + 2]);
 }
 template float sap_lookup<float>(std::span<const float>, uint32_t, float);
 template double sap_lookup<double>(std::span<const float>, uint32_t, double);

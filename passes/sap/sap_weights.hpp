@@ -73,9 +73,12 @@ struct SapFractions {
 };
 SapFractions sap_fractions(const SapWeights& weights);
 
-// The device's table: sap_table_rows rows (centre, tent, fraction[1] to fraction[8]) of
-// sap_node_count floats, so that a level reads only one row.
+// The device's table. Its rows are centre, tent, and fraction[1] to fraction[8]. For each pair of
+// rows and each node it has four floats: both rows at the node, then both rows at the next node
+// (the last node has itself as the next). A pixel thus reads all that it interpolates as one vec4.
 inline constexpr uint32_t sap_table_rows = sap_weight_count;
+inline constexpr uint32_t sap_table_pairs = sap_table_rows / 2;
+inline constexpr size_t sap_table_floats = size_t{sap_table_pairs} * sap_node_count * 4;
 std::vector<float> make_sap_table(const SapFit& fit);
 
 // Returns row `row` of the table at d px, linear in log2 d. Below the first node all weights except

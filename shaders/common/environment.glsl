@@ -41,7 +41,7 @@ struct profile_entry {
   vec4 direct;     // rgb: fraction of light that never scatters
 };
 layout(std430, set = 1, binding = 1) readonly buffer profile_block { profile_entry profiles[]; };
-layout(std430, set = 1, binding = 4) readonly buffer sap_block { float sap_table[]; };
+layout(std430, set = 1, binding = 4) readonly buffer sap_block { vec4 sap_table[]; };
 layout(std430, set = 1, binding = 5) readonly buffer radial_block { vec4 radial_rows[]; };
 layout(std430, set = 1, binding = 2) readonly buffer separable_block { vec4 separable_rows[]; };
 

@@ -5,9 +5,7 @@
 #include "common/subsurface_combine.bindings.glsl"
 #include "common/environment.glsl"
 #include "common/tiles.glsl"
-#include "common/half.glsl"
-#include "common/sanitise.glsl"
-#include "common/texturing.glsl"
+#include "common/combined_light.glsl"
 
 void main() {
   ivec2 pixel;
@@ -21,9 +19,8 @@ void main() {
     subsurface = texelFetch(material_image, texel, 0).r != 0u;
   if (!subsurface)
     return;
-  vec3 albedo = vec3(1.0);
-  if (has_albedo() && (settings.result == RESULT_COLOR || settings.texturing != TEXTURING_POST))
-    albedo = clean_albedo(texelFetch(albedo_image, texel, 0).rgb);
+  vec3 albedo =
+      combined_albedo(albedo_image, has_albedo(), settings.texturing, settings.result, texel);
   vec3 color = vec3(0.0);
   bool copies =
       has_unscattered() && (copy_only && settings.copied == COPIED_UNSCATTERED || !has_scattered());
@@ -34,7 +31,6 @@ void main() {
   } else {
     color = texelFetch(scattered_image, texel, 0).rgb;
   }
-  if (settings.result == RESULT_COLOR)
-    color = apply_albedo_after(settings.texturing, albedo, color);
-  imageStore(lighting_image, texel, vec4(round_to_half(color), 1.0));
+  imageStore(lighting_image, texel,
+             combined_light(settings.texturing, settings.result, albedo, color));
 }

@@ -44,6 +44,11 @@ sap_texel sap_unpack(uvec4 bits) {
   return sap_texel(uintBitsToFloat(bits.x), unpackHalf2x16(bits.y), pair.x, pair.y, bits.w & 0xffu);
 }
 
+// Level 0: the bits of a pixel with subsurface but without depth, whose light does not scatter. Mass
+// without an id marks the pixel.
+const uvec4 sap_flat = uvec4(0u, 0u, 0x3c000000u, 0u);
+bool sap_has_subsurface(sap_texel t) { return t.mass > 0.0; }
+
 // Values that a level passes to the finer one: light of its own and coarser levels, the fraction of
 // the kernel that hit the surface, and confidence.
 struct sap_scattered {
@@ -74,7 +79,9 @@ sap_scattered sap_unpack_scattered_full(uvec4 bits) {
 
 // Returns the geometric mean of a pixel's sides at a depth, mm.
 float sap_footprint(float depth) {
-  return sqrt(abs(frame.ray_scale.x * frame.ray_scale.y)) * (is_perspective() ? depth : 1.0);
+  float side = sqrt(abs(frame.ray_scale.x * frame.ray_scale.y));
+  // One operation per depth; the factors are uniform.
+  return depth * (is_perspective() ? side : 0.0) + (is_perspective() ? 0.0 : side);
 }
 // Returns the rise of a texel's tangent plane at an offset in pixels, mm.
 float sap_rise(float depth, vec2 slope, vec2 offset) {
@@ -104,23 +111,38 @@ bool sap_inside(ivec2 at, int level) {
 int sap_tile(ivec2 pixel) { return (pixel.y >> 3) * frame.tiles.x + (pixel.x >> 3); }
 ivec2 sap_address(ivec2 at, int level) { return level > 0 ? at + 1 : texel_of(at); }
 
-// Returns row `row` of a table at d px, as sap_lookup of passes/sap/sap_weights.cpp.
-float sap_lookup(int table, int row, float d_px) {
-  int first = (table * (sap_levels + 1) + row) * sap_nodes;
+// Returns rows 2 * pair and 2 * pair + 1 of a table at d px, as sap_lookup of
+// passes/sap/sap_weights.cpp.
+vec2 sap_lookup_pair(int table, int pair, float d_px) {
   float position = (log2(max(d_px, 1e-30)) - sap_log2_d_first) * sap_nodes_per_octave;
   float clamped = clamp(position, 0.0, float(sap_nodes - 1));
   int node = min(int(clamped), sap_nodes - 2);
-  float value = mix(sap_table[first + node], sap_table[first + node + 1], clamped - float(node));
+  vec4 nodes = sap_table[(table * sap_table_pairs + pair) * sap_nodes + node];
+  vec2 values = mix(nodes.xy, nodes.zw, clamped - float(node));
   // Below the first node, all weights except the centre's fade to 0.
   float fraction = position < 0.0 ? d_px / exp2(sap_log2_d_first) : 1.0;
-  return row == 0 ? 1.0 - fraction * (1.0 - value) : row == 1 ? fraction * value : value;
+  return pair == 0 ? vec2(1.0 - fraction * (1.0 - values.x), fraction * values.y) : values;
 }
-// Returns the value per channel; a profile with its own tables has one table per channel.
-vec3 sap_lookup(uint id, int variant, int row, vec3 d_px) {
+// A profile with its own tables has one table per channel.
+ivec3 sap_tables_of(uint id, int variant) {
   int own = int(profiles[min(id, 255u)].sap_table);
-  ivec3 table = own == 0 ? ivec3(variant) : own + 3 * variant + ivec3(0, 1, 2);
-  return vec3(sap_lookup(table.r, row, d_px.r), sap_lookup(table.g, row, d_px.g),
-              sap_lookup(table.b, row, d_px.b));
+  return own == 0 ? ivec3(variant) : own + 3 * variant + ivec3(0, 1, 2);
+}
+// Returns the value of a row per channel.
+vec3 sap_lookup(uint id, int variant, int row, vec3 d_px) {
+  ivec3 table = sap_tables_of(id, variant);
+  int pair = row / 2;
+  vec2 r = sap_lookup_pair(table.r, pair, d_px.r), g = sap_lookup_pair(table.g, pair, d_px.g),
+       b = sap_lookup_pair(table.b, pair, d_px.b);
+  return (row & 1) == 0 ? vec3(r.x, g.x, b.x) : vec3(r.y, g.y, b.y);
+}
+// Returns the weights of a pixel's own light and of the tent of level 0 per channel.
+void sap_weights_of_level_0(uint id, int variant, vec3 d_px, out vec3 centre, out vec3 tent) {
+  ivec3 table = sap_tables_of(id, variant);
+  vec2 r = sap_lookup_pair(table.r, 0, d_px.r), g = sap_lookup_pair(table.g, 0, d_px.g),
+       b = sap_lookup_pair(table.b, 0, d_px.b);
+  centre = vec3(r.x, g.x, b.x);
+  tent = vec3(r.y, g.y, b.y);
 }
 
 #endif

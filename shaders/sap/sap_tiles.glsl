@@ -30,16 +30,18 @@ struct texel_block {
 // same tile.
 bool listed_block(int level, out texel_block block) {
   uint group = gl_WorkGroupID.y * tile_groups_per_row + gl_WorkGroupID.x;
-  uint index = group * uint(64 / invocations_per_tile) +
-               gl_LocalInvocationIndex / uint(invocations_per_tile);
+  // In the texel shape the index is uniform, so that the entry is read once for the group.
+  uint index = texel_shape ? group
+                           : group * uint(64 / invocations_per_tile) +
+                                 gl_LocalInvocationIndex / uint(invocations_per_tile);
   uvec2 list = level_tiles_data[level];
   block = texel_block(ivec2(0), ivec2(0), false, 0u, 0u);
   if (index >= list.y)
     return false;
   uvec2 entry = level_tiles_data[list.x + index];
-  int part = int(gl_LocalInvocationIndex) % invocations_per_tile;
+  int part = int(gl_LocalInvocationIndex) & (invocations_per_tile - 1);
   block.tile = ivec2(entry.x & 0x7fffu, (entry.x >> 15) & 0x7fffu);
-  block.first = 8 * block.tile + (texel_shape ? ivec2(part % 8, part / 8)
+  block.first = 8 * block.tile + (texel_shape ? ivec2(part & 7, part >> 3)
                                               : ivec2(part % blocks_across * block_width,
                                                       part / blocks_across * block_height));
   block.copy_only = (entry.x & tile_copy_bit) != 0u;

@@ -86,21 +86,34 @@ bool is_written(texel_block block, ivec2 place, int level) {
   return sap_inside(place - border, level) &&
          tile_written(block.around, (place >> 3) - block.tile + 1);
 }
+// Texel shape: reads the texel at `offset` from the tile into shared memory, 0 unless `needed`.
+void read_into_ring(texel_block block, ivec2 offset, int level, bool needed) {
+  uvec4 bits = uvec4(0u);
+  vec4 light = vec4(0.0);
+  ivec2 at = 8 * block.tile + offset - border;
+  if (needed && sap_inside(at, level)) {
+    bits = texelFetch(surface_image, sap_address(at, level), 0);
+    light = texelFetch(light_image, sap_address(at, level), 0);
+  }
+  int i = (offset.y + 1) * ring_side + offset.x + 1;
+  tile_surface[i] = bits;
+  tile_light[i] = uvec2(packHalf2x16(light.rg), packHalf2x16(light.ba));
+}
+// Texel i of the ring around a tile, as an offset from the tile: the row above, the row below, then
+// both columns.
+ivec2 ring_offset(int i) {
+  return i < 2 * ring_side ? ivec2((i < ring_side ? i : i - ring_side) - 1, i < ring_side ? -1 : 8)
+                           : ivec2((i & 1) == 0 ? -1 : 8, (i >> 1) - ring_side);
+}
 // Reads the texels of the block or tile and, if requested, the ring around them.
 void read_ring(texel_block block, int level, bool with_ring) {
   if (texel_shape) {
-    [[dont_unroll]] for (int i = int(gl_LocalInvocationIndex); i < ring_side * ring_side; i += 64) {
-      int y = i / ring_side - 1, x = i % ring_side - 1;
-      bool inner = x >= 0 && y >= 0 && x < 8 && y < 8;
-      ivec2 place = 8 * block.tile + ivec2(x, y);
-      uvec4 bits = uvec4(0u);
-      vec4 light = vec4(0.0);
-      if ((inner || with_ring) && is_written(block, place, level)) {
-        bits = texelFetch(surface_image, sap_address(place - border, level), 0);
-        light = texelFetch(light_image, sap_address(place - border, level), 0);
-      }
-      tile_surface[i] = bits;
-      tile_light[i] = uvec2(packHalf2x16(light.rg), packHalf2x16(light.ba));
+    int i = int(gl_LocalInvocationIndex);
+    read_into_ring(block, block.first - 8 * block.tile, level, true);
+    if (i < ring_side * ring_side - 64) {
+      ivec2 offset = ring_offset(i);
+      read_into_ring(block, offset, level,
+                     with_ring && tile_written(block.around, (offset >> 3) + 1));
     }
   } else {
     [[unroll]] for (int i = 0; i < block_ring_width * block_ring_height; ++i) {
@@ -335,7 +348,7 @@ sap_sum sap_tent(sap_place place, int level, sap_texel own, int layers) {
       }
 #endif
       off *= per_sigma_mm;
-      weight *= exp2(sap_factor(sap_depth_width) * off * off) * tap.mass;
+      weight *= exp2(sap_factor(sap_depth_width) * off * off) * (level == 0 ? 1.0 : tap.mass);
       weight = tap.id == own.id ? weight : 0.0;
       mass += weight;
       total += weight * light.a;
@@ -354,13 +367,14 @@ sap_sum sap_from_coarser(sap_place place, int level, sap_texel own, vec3 fallbac
                          out float confidence) {
   float spacing = float(1 << level);
   float per_sigma_mm = 1.0 / (sap_sigma * spacing * sap_footprint(own.depth));
+  vec2 odd = vec2(place.odd), nearer = 0.25 + 0.5 * odd;
   vec3 sum = vec3(0.0), mass = vec3(0.0);
   confidence = 0.0;
   [[unroll]] for (int j = 0; j < 2; ++j)
     [[unroll]] for (int i = 0; i < 2; ++i) {
-    vec2 steps = vec2(2 * ((place.odd - 1) >> 1) + 2 * ivec2(i, j) - place.odd) + 0.5,
-         offset = steps * spacing;
-    float bilinear = (abs(steps.x) < 1.0 ? 0.75 : 0.25) * (abs(steps.y) < 1.0 ? 0.75 : 0.25);
+    // An odd texel is nearer to its first corner: distances 0.5 and 1.5; an even one to its second.
+    vec2 steps = odd - 1.5 + 2.0 * vec2(i, j), offset = steps * spacing;
+    float bilinear = (i == 0 ? nearer.x : 1.0 - nearer.x) * (j == 0 ? nearer.y : 1.0 - nearer.y);
     int n = 2 * j + i;
     uvec4 bits = corner_bits(place, n);
     sap_texel tap = sap_unpack(bits);

@@ -1,6 +1,6 @@
 #version 460
-// Computes level 0 of the surface-aware pyramid: every pixel of listed tiles, 0 if nothing
-// scatters. Patches need material and depth of a ring around the block or tile.
+// Computes level 0 of the surface-aware pyramid: every pixel of listed tiles, 0 without subsurface.
+// Patches need material and depth of a ring around the block or tile.
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 #include "sap/subsurface_sap_setup.bindings.glsl"
@@ -67,6 +67,7 @@ void main() {
     vec4 light = vec4(0.0);
     uvec4 bits = uvec4(0u);
     if (id != 0u) {
+      bits = sap_flat;
       light.rgb =
           pixel_light(lighting_image, albedo_image, has_albedo(), settings.texturing, texel);
       if (depth > 0.0) {

@@ -68,6 +68,35 @@ TEST(Culling, UnboundExportReadInside_BecomesTransient) {
     }
 }
 
+// A type whose optional ports extend an export that an earlier pass has begun.
+const Port extending_ports[] = {{"light", Usage::sampled_image, false, "texture2D", ""},
+                                {"before", Usage::sampled_image, true, "texture2D", "", {}, true},
+                                {"out", Usage::storage_image_write, false, "image2D", ""},
+                                {"debug", Usage::storage_image_write, true, "image2D", ""}};
+
+TEST(Culling, UnboundExportOnlyExtended_IsNotWritten) {
+  GraphBuilder b = chain();
+  PassType type;
+  type.name = "test.extend";
+  type.ports = extending_ports;
+  b.pass_types.add(type);
+  b.exported("debug").optional = true;
+  b.exported("second");
+  b.pass("draw_debug", "test.shade", {{"a", "blurred"}}, {{"out", "debug"}});
+  b.pass("extend", "test.extend", {{"light", "blurred"}, {"before", "debug"}},
+         {{"out", "second"}, {"debug", "debug"}});
+  auto input = b.input();
+  input.bound.assign(b.graph.resources.size(), true);
+  EXPECT_EQ(pass_names(b, compiled(b, input).plan), "blur finish draw_debug extend");
+  EXPECT_EQ(compiled(b, input).plan.passes.back().access_count, 4u);
+  input.bound[b.resource("debug").value] = false;
+  const auto plan = compiled(b, input);
+  EXPECT_EQ(pass_names(b, plan.plan), "blur finish extend");
+  EXPECT_EQ(plan.plan.passes.back().access_count, 2u);
+  EXPECT_THAT(reasons(b, plan, Reason::About::pass, b.pass_id("extend").value),
+              HasSubstr("optional port 'debug' is unbound"));
+}
+
 TEST(Culling, ARequiredPortOfALivePassNeedsItsImport) {
   GraphBuilder b = chain();
   b.import("mask").optional = true;

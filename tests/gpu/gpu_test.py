@@ -114,6 +114,25 @@ class InstructionMix(unittest.TestCase):
         self.assertEqual(total["vector"], (1 + 4) / 2)
         self.assertEqual(total["transcendental"], 0)
 
+    def test_longest_path_takes_one_side_of_a_uniform_branch(self):
+        either = instruction_mix.read_blocks("""
+BB0:
+\ts_cbranch_scc0 BB2                      ; bf840001
+BB1:
+\tv_add_f32_e32 v0, v1, v2                ; 06000501
+\ts_branch BB3                            ; bf820001
+BB2:
+\tv_add_f32_e32 v0, v1, v2                ; 06000501
+\tv_exp_f32_e32 v0, v0                    ; 7e004b00
+BB3:
+\tv_add_f32_e32 v0, v1, v2                ; 06000501
+\ts_endpgm                                ; bf810000
+""".splitlines())
+        self.assertEqual(instruction_mix.count(either)["vector"], 4)
+        self.assertEqual(instruction_mix.count(either, longest=True)["vector"], 3)
+        divergent = instruction_mix.count(self.blocks, [4], longest=True)
+        self.assertEqual(divergent["vector"], 2 + 4)
+
 
 class WriteLimits(unittest.TestCase):
     def write_one_ray_query(self, *scratch):

@@ -1,10 +1,14 @@
 #!/usr/bin/env python3
 """Counts the instructions that an invocation of a kernel executes, from the compiler's assembly.
 
-usage: instruction_mix.py [--trips N,N,...] [--skip BB3-BB7,BB9] [--texels N] [--json] FILE
+usage: instruction_mix.py [--trips N,N,...] [--skip BB3-BB7,BB9] [--longest] [--limit N]
+                          [--texels N] [--json] FILE
   FILE      assembly of RADV, from `dermis kernels --assembly DIR`
   --trips   how often each loop runs, in the order of their first blocks; default: once
   --skip    blocks that the counted path does not execute, as ranges of numbers in the file
+  --longest counts only the path with the most vector instructions: an upper limit that assumes
+            nothing about branches. Both sides of a divergent branch are on one path
+  --limit   exit code 1 if there are more vector instructions
   --texels  texels per invocation; counts are divided by it
   --blocks  also print each block's counts and targets, to choose --skip
 
@@ -48,6 +52,7 @@ class Block:
         self.number = number
         self.counts = {}
         self.targets = []
+        self.falls_through = True  # to the next block
 
 
 def read_blocks(lines):
@@ -62,6 +67,8 @@ def read_blocks(lines):
             kind = class_of(instruction.group(1), line)
             blocks[-1].counts[kind] = blocks[-1].counts.get(kind, 0) + 1
             blocks[-1].targets += [int(n) for n in re.findall(r"BB(\d+)", instruction.group(2))]
+            if instruction.group(1) in ("s_branch", "s_endpgm"):
+                blocks[-1].falls_through = False
     return blocks
 
 
@@ -84,17 +91,43 @@ def parse_ranges(text):
     return numbers
 
 
-def count(blocks, trips=(), skipped=frozenset(), texels=1):
+def vector_of(counts):
+    return sum(counts.get(kind, 0) for kind in VECTOR)
+
+
+def on_longest_path(blocks, weights):
+    """Returns for each block whether it is on the path with the most vector instructions. Branches
+    back to an earlier block are loops, whose blocks `weights` multiplies."""
+    position = {block.number: i for i, block in enumerate(blocks)}
+    best, following = [0.0] * len(blocks), [None] * len(blocks)
+    for i in reversed(range(len(blocks))):
+        next_ones = [position[target] for target in blocks[i].targets if position.get(target, 0) > i]
+        if blocks[i].falls_through and i + 1 < len(blocks):
+            next_ones.append(i + 1)
+        if next_ones:
+            following[i] = max(next_ones, key=lambda one: best[one])
+        best[i] = weights[i] * vector_of(blocks[i].counts) + (best[following[i]] if next_ones else 0.0)
+    path, at = [False] * len(blocks), 0
+    while at is not None:
+        path[at] = True
+        at = following[at]
+    return path
+
+
+def count(blocks, trips=(), skipped=frozenset(), texels=1, longest=False):
     """Returns the executed instructions by class, with the sum "vector"."""
     weights = [0.0 if block.number in skipped else 1.0 for block in blocks]
     for (first, last), trip in zip(find_loops(blocks), trips):
         for i in range(first, last + 1):
             weights[i] *= trip
+    if longest:
+        weights = [weight if used else 0.0
+                   for weight, used in zip(weights, on_longest_path(blocks, weights))]
     total = {}
     for block, weight in zip(blocks, weights):
         for kind, number in block.counts.items():
             total[kind] = total.get(kind, 0) + weight * number / texels
-    total["vector"] = sum(total.get(kind, 0) for kind in VECTOR)
+    total["vector"] = vector_of(total)
     return total
 
 
@@ -102,6 +135,8 @@ def main():
     parser = argparse.ArgumentParser(usage=__doc__)
     parser.add_argument("--trips", default="")
     parser.add_argument("--skip", default="")
+    parser.add_argument("--longest", action="store_true")
+    parser.add_argument("--limit", type=float)
     parser.add_argument("--texels", type=float, default=1)
     parser.add_argument("--json", action="store_true")
     parser.add_argument("--blocks", action="store_true")
@@ -112,7 +147,9 @@ def main():
     if not blocks:
         sys.exit(f"{options.file}: no blocks of instructions")
     trips = [float(trip) for trip in options.trips.split(",") if trip]
-    total = count(blocks, trips, parse_ranges(options.skip), options.texels)
+    total = count(blocks, trips, parse_ranges(options.skip), options.texels, options.longest)
+    if options.limit is not None and total["vector"] > options.limit:
+        sys.exit(f"{options.file}: {total['vector']:.0f} vector instructions, limit {options.limit:.0f}")
     if options.json:
         print(json.dumps(total, sort_keys=True))
         return

@@ -37,9 +37,9 @@ constexpr double patch_reads = shared_reads(10 * 10) * 2;
 
 // Returns the largest value of a row of the pyramid's table over the channels.
 double largest_fraction(const ReadsQuestion& question, int64_t variant, uint32_t row) {
-  constexpr size_t table = size_t{sap_table_rows} * sap_node_count;
-  if (question.sap_tables.size() < sap_variant_count * table) return 1;
-  const auto values = question.sap_tables.subspan(static_cast<size_t>(variant) * table, table);
+  if (question.sap_tables.size() < sap_variant_count * sap_table_floats) return 1;
+  const auto values = question.sap_tables.subspan(static_cast<size_t>(variant) * sap_table_floats,
+                                                  sap_table_floats);
   double largest = 0;
   for (const double d : question.d_px)
     largest = std::max(largest, sap_lookup<double>(values, row, d));
@@ -133,11 +133,17 @@ ImageReads sap_up(const PassType& type, const ReadsQuestion& question) {
   return {2 * block_reads(tent ? 4 * 4 : 2 * 2, 2, 2) + (last ? 0 : 2 * block_reads(2 * 2, 2, 2))};
 }
 
-// Only surface and light if no pixel scatters beyond itself.
-ImageReads sap_gather(const PassType&, const ReadsQuestion& question) {
+// Only surface and light if no pixel scatters beyond itself. Albedo and unscattered light of the
+// pixel if the step writes the host's images.
+ImageReads sap_gather(const PassType& type, const ReadsQuestion& question) {
   const double widest = std::max({question.d_px[0], question.d_px[1], question.d_px[2]});
-  return {widest < copy_below_d_px ? 2
-                                   : 2 * block_reads(6 * 4, 4, 2) + 2 * block_reads(4 * 3, 4, 2)};
+  const double own = one_if(type, question, "lighting", PortSide::write) *
+                         one_if(type, question, "albedo", PortSide::read) +
+                     one_if(type, question, "scattered_light", PortSide::write) *
+                         one_if(type, question, "unscattered", PortSide::read);
+  return {own + (widest < copy_below_d_px
+                     ? 2
+                     : 2 * block_reads(6 * 4, 4, 2) + 2 * block_reads(4 * 3, 4, 2))};
 }
 
 // As fixed; each sample also reads its levels: two, one or none.

@@ -6,8 +6,6 @@ namespace dermis::subsurface {
 
 namespace {
 
-constexpr std::string_view result_options[] = {"color", "light"};
-
 constexpr Port setup_ports[] = {
     port::lighting,
     port::material,
@@ -44,17 +42,12 @@ constexpr Port combine_ports[] = {
     port::albedo,
     port::tiles,
     port::arguments,
-    port::written("lighting",
-                  "written where there is subsurface, with alpha 1; unchanged elsewhere",
-                  port::color_formats),
+    port::combined,
 };
 constexpr std::string_view combined[] = {"scattered", "unscattered"};
 constexpr PassTypeSetting combine_settings[] = {
     setting::texturing,
-    setting::choice(
-        "result", result_options,
-        "color: scattered light times albedo; light: only scattered light, for hosts that apply "
-        "albedo later"),
+    setting::result,
     setting::choice("copied", copied_options,
                     "source of the light of copied tiles: unscattered (if bound) or scattered"),
 };
@@ -82,6 +75,13 @@ constexpr Port export_scattered_ports[] = {
         "light",
         "scattered light before albedo; the input light where nothing scatters, in full precision",
         port::color_formats),
+};
+
+constexpr PassTypeSetting export_settings[] = {
+    setting::texturing,
+    setting::boolean("leave_scattered",
+                     "writes alpha 0 where light scatters, for a later pass that replaces these "
+                     "texels ('scattered' is then not read)"),
 };
 
 constexpr Port back_lighting = port::sampled("back_lighting",
@@ -167,7 +167,7 @@ const PassType export_scattered_type{
            "apply albedo "
            "later.",
     .ports = export_scattered_ports,
-    .settings = texturing,
+    .settings = export_settings,
     .dispatch = over_view,
 };
 

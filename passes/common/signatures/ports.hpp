@@ -132,6 +132,9 @@ inline constexpr Port samples_per_tile = read_buffer(
     "samples_per_tile", "uint", "per tile of the render rectangle: allocated sample steps, 0 to 3");
 
 // Light before and after scattering.
+inline constexpr Port combined =
+    written("lighting", "written where there is subsurface, with alpha 1; unchanged elsewhere",
+            color_formats);
 inline constexpr Port light = sampled("light", "output of subsurface.setup", light_formats);
 inline constexpr Port slope = sampled("slope", "output of subsurface.setup", way_formats);
 inline constexpr Port scattered = written(

@@ -63,6 +63,12 @@ inline constexpr PassTypeSetting texturing = choice(
     "root before and after; pre: before; demodulate: lighting already contains albedo, which is "
     "divided out before scattering and multiplied back after it");
 
+inline constexpr std::string_view result_options[] = {"color", "light"};
+inline constexpr PassTypeSetting result = choice(
+    "result", result_options,
+    "color: scattered light times albedo; light: only scattered light, for hosts that apply albedo "
+    "later");
+
 // Samples.
 constexpr PassTypeSetting samples(int64_t standard, double minimum, std::string_view doc) {
   return integer("samples", standard, minimum, 4096, "samples per pixel", doc);
