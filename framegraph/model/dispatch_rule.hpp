@@ -23,6 +23,7 @@ struct DispatchRule {
   uint32_t cell_side = 8;       // pixels or texels; the domain is divided into square cells
   uint32_t cells_per_group = 1; // more than 1: groups in one dimension, cells in row order
   uint32_t invocations = 64;    // per group; not checked for `one`
+  uint32_t border = 0;          // pixels or texels that extend the domain, both sides together
 
   constexpr bool is_kernel() const { return domain != Domain::none && domain != Domain::host; }
   // A group with one invocation per pixel of its cell has the cell's shape.
@@ -45,8 +46,8 @@ constexpr GroupCount group_count(const DispatchRule& rule, uint64_t width, uint6
   switch (rule.domain) {
   case DispatchRule::Domain::rectangle:
   case DispatchRule::Domain::written_image: {
-    const uint64_t columns = ceil_div(width, rule.cell_side),
-                   rows = ceil_div(height, rule.cell_side);
+    const uint64_t columns = ceil_div(width + rule.border, rule.cell_side),
+                   rows = ceil_div(height + rule.border, rule.cell_side);
     if (rule.cells_per_group == 1) return {columns, rows, 1};
     return {ceil_div(columns * rows, rule.cells_per_group), 1, 1};
   }

@@ -41,6 +41,7 @@ struct GraphWriter {
     number(rule.cell_side);
     number(rule.cells_per_group);
     number(rule.invocations);
+    number(rule.border);
   }
 
   void setting(const SettingDeclaration& setting) {
