@@ -2,11 +2,14 @@
 
 #include "framegraph/text/document.hpp"
 #include "framegraph/text/limits.hpp"
+#include "passes/sap/sap_tiles.hpp"
 
 #include <algorithm>
 
 namespace dermis::abi {
 namespace {
+
+static_assert(largest_view <= subsurface::sap_max_view_side);
 
 // Calls `use(i, element)` for each element of a caller's array, whose stride is the first element's
 // struct_size.

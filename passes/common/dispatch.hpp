@@ -18,6 +18,16 @@ inline constexpr DispatchRule over_tile_grid{
 // One group per 4x4 tiles of the render rectangle.
 inline constexpr DispatchRule over_tile_blocks{.name = "over_tile_blocks",
                                                .cell_side = 4 * tile_side};
+// One group per run of tiles of the render rectangle, row by row.
+inline constexpr uint32_t tiles_per_run_group = 1024;
+inline constexpr DispatchRule over_tile_runs{.name = "over_tile_runs",
+                                             .cell_side = tile_side,
+                                             .cells_per_group = tiles_per_run_group,
+                                             .invocations = 128};
+// One group per tile of level 4 of the surface-aware pyramid, whose border has one texel of 16
+// pixels on each side.
+inline constexpr DispatchRule over_tile_regions{
+    .name = "over_tile_regions", .cell_side = 16 * tile_side, .invocations = 128, .border = 2 * 16};
 // One group per 8x8 texels of the first image that the pass type writes.
 inline constexpr DispatchRule over_written_image{.name = "over_written",
                                                  .domain = DispatchRule::Domain::written_image};

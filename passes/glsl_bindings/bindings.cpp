@@ -2,6 +2,7 @@
 
 #include "passes/choice/sample_allocation.hpp"
 #include "passes/common/accumulate.hpp"
+#include "passes/common/dispatch.hpp"
 #include "passes/common/pass_types.hpp"
 #include "passes/common/profiles/radial_table.hpp"
 #include "passes/common/reference/surface.hpp"
@@ -124,6 +125,8 @@ std::string shared_constants() {
       "const float sap_log2_d_first = {};\n"
       "const uint sap_tiles_per_group_first = {}u; // sap_tiles.hpp\n"
       "const uint sap_tiles_per_group = {}u;\n"
+      "const int sap_coarse_words = {};\n"
+      "const uint tiles_per_run_group = {}u; // dispatch.hpp\n"
       "const int radial_nodes = {}; // profiles/radial_table.hpp\n"
       "const float radial_log2_r_first = {:.1f};\n"
       "const float radial_nodes_per_octave = {:.1f};\n"
@@ -149,7 +152,8 @@ std::string shared_constants() {
       static_cast<int>(subsurface::SapVariant::plain), subsurface::sap_node_count,
       subsurface::sap_table_pairs, double(subsurface::sap_nodes_per_octave),
       subsurface::sap_log2_d_first, subsurface::sap_tiles_per_group_first,
-      subsurface::sap_tiles_per_group, subsurface::radial_nodes, subsurface::radial_log2_r_first,
+      subsurface::sap_tiles_per_group, subsurface::sap_coarse_words(subsurface::sap_max_view_side),
+      subsurface::tiles_per_run_group, subsurface::radial_nodes, subsurface::radial_log2_r_first,
       subsurface::radial_nodes_per_octave, subsurface::radial_inverse_nodes_per_unit,
       subsurface::reproject_snap_px, subsurface::reproject_largest_velocity,
       subsurface::reproject_depth_fraction, subsurface::reproject_slope_pixels,

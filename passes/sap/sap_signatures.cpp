@@ -55,9 +55,11 @@ constexpr Port level_arguments{"level_arguments", Usage::indirect_arguments, fal
 
 constexpr Port tiles_ports[] = {
     port::classes,
+    port::list_state,
     port::where_covered(port::written_buffer("level_tiles", "uvec2",
                                              "for each level, the index of its first entry and the "
-                                             "number of entries; then the entries: tile x in "
+                                             "number of entries; then the entries, with space for "
+                                             "all tiles of each level: tile x in "
                                              "bits 0-14, y in bits 15-29, bit 30: all pixels have "
                                              "subsurface, bit 31: copy only; then a mask of "
                                              "the 3x3 tiles that can contain surface: bits 0-8 for "
@@ -187,11 +189,10 @@ const PassType sap_tiles_type{
     .name = "subsurface.sap_tiles",
     .shader = "sap/subsurface_sap_tiles",
     .doc = "Lists the tiles of every level of the surface-aware pyramid that can contain surface, "
-           "and writes "
-           "their indirect arguments, in one pass and in row order.",
+           "and writes their indirect arguments. The order of a list varies.",
     .ports = tiles_ports,
     .settings = {},
-    .dispatch = single_group,
+    .dispatch = over_tile_regions,
 };
 
 const PassType sap_setup_type{

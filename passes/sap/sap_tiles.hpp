@@ -1,6 +1,6 @@
 #pragma once
-// Lists the 8x8 tiles of each level of the surface-aware pyramid that can hold surface, as the
-// kernel sap/subsurface_sap_tiles.comp does, on the CPU.
+// Lists the 8x8 tiles of each level of the surface-aware pyramid that can hold surface, on the CPU.
+// The kernel sap/subsurface_sap_tiles.comp lists the same tiles in an order that varies.
 
 #include "passes/sap/sap_weights.hpp"
 
@@ -15,6 +15,18 @@ namespace dermis::subsurface {
 inline constexpr uint32_t sap_tiles_per_group_first = 8;
 inline constexpr uint32_t sap_tiles_per_group = 4; // other levels: blocks of 2x2 texels
 
+inline constexpr uint32_t sap_max_view_side = 16384; // pixels
+// Returns the words for the flags of the tiles of levels 4 to 8 of a square view. A level has three
+// more rows and columns of flags than of tiles.
+constexpr uint32_t sap_coarse_words(uint32_t view_side) {
+  uint32_t words = 0;
+  for (uint32_t level = 4; level < sap_level_count; ++level) {
+    const uint32_t texels = ((view_side + (1u << level) - 1) >> level) + 2;
+    const uint32_t flags = (texels + 7) / 8 + 3;
+    words += (flags + 31) / 32 * flags;
+  }
+  return words;
+}
 struct SapTile {
   uint32_t x = 0, y = 0;
   // bit i: tile i of the 3x3 of the finer level from (2x - 1, 2y - 1) on is listed

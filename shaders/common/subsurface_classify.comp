@@ -13,6 +13,7 @@
 #include "common/counters.glsl"
 #include "common/half.glsl"
 #include "common/light_range.glsl"
+#include "common/list_state.glsl"
 #include "common/pixel_light.glsl"
 #include "common/radius.glsl"
 #include "common/sanitise.glsl"
@@ -130,6 +131,8 @@ void main() {
   ivec2 first = 8 * block + ivec2(8u * column, 2u * row_pair);
   uint tile_of_run = row_pair / uniform_cell_side * uniform_cell_side + column;
   bool ranged = has_light_range() && has_light_cells() && has_lighting();
+  if (has_list_state() && gl_WorkGroupID.xy == uvec2(0) && lane < uint(state_words))
+    list_state_data[lane] = 0u;
 
   if (lane < block_tiles) {
     widest_of[lane] = 0u;

@@ -1,47 +1,68 @@
 #version 460
-// One group scans all tile classes and writes the list in row order, without atomics, so that equal
-// classes give equal lists. Each invocation owns a run of consecutive tiles.
+// Lists the tiles with subsurface and writes the arguments of indirect dispatches over them. An
+// invocation appends a run of consecutive tiles, and a group all its runs with one atomic
+// operation.
 #extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_control_flow_attributes : require
 #include "common/subsurface_tile_list.bindings.glsl"
 #include "common/environment.glsl"
+#include "constants.glsl"
+#include "common/list_state.glsl"
 #include "common/tile_packing.glsl"
 
-const uint lanes = 256u;
-layout(local_size_x = 256, local_size_y = 1, local_size_z = 1) in;
+const uint run = tiles_per_run_group / 128u;
+layout(local_size_x = 128, local_size_y = 1, local_size_z = 1) in;
 
-shared uint counts[lanes];
+shared uint listed; // tiles of the group
+shared uint base;   // index of the first of them in the list
+shared bool is_last;
+
+// Returns, to all invocations, whether this group is the last to call the function. Then all other
+// groups' atomic operations on `list_state` are visible.
+bool last_group() {
+  memoryBarrierBuffer();
+  barrier();
+  if (gl_LocalInvocationIndex == 0u)
+    is_last = atomicAdd(list_state_data[state_ended], 1u) + 1u == list_groups();
+  barrier();
+  memoryBarrierBuffer();
+  return is_last;
+}
 
 void main() {
   uint lane = gl_LocalInvocationIndex;
   uint total = uint(frame.tiles.x * frame.tiles.y);
-  uint run = (total + lanes - 1u) / lanes;
-  uint first = min(lane * run, total), last = min(first + run, total);
-
+  uint first = gl_WorkGroupID.x * tiles_per_run_group + lane * run;
+  if (lane == 0u)
+    listed = 0u;
+  uint entries[run];
   uint own = 0u;
-  for (uint i = first; i < last; ++i)
-    own += class_of_tile(classes_data[i]) != class_none ? 1u : 0u;
-  counts[lane] = own;
+  [[unroll]] for (uint i = 0u; i < run; ++i) {
+    uint entry = classes_data[min(first + i, total - 1u)];
+    entries[i] = first + i < total ? entry : class_none;
+    own += class_of_tile(entries[i]) != class_none ? 1u : 0u;
+  }
   barrier();
-  for (uint stride = 1u; stride < lanes; stride *= 2u) { // inclusive scan, Hillis & Steele 1986
-    uint before = lane >= stride ? counts[lane - stride] : 0u;
-    barrier();
-    counts[lane] += before;
-    barrier();
-  }
-
-  uint at = counts[lane] - own;
-  for (uint i = first; i < last; ++i) {
-    uint entry = classes_data[i];
-    if (class_of_tile(entry) == class_none)
+  uint at = own > 0u ? atomicAdd(listed, own) : 0u;
+  barrier();
+  if (lane == 0u && listed > 0u)
+    base = atomicAdd(list_state_data[0], listed);
+  barrier();
+  at += base;
+  [[unroll]] for (uint i = 0u; i < run; ++i) {
+    if (class_of_tile(entries[i]) == class_none)
       continue;
-    uvec2 tile = uvec2(i % uint(frame.tiles.x), i / uint(frame.tiles.x));
-    tiles_data[1u + at++] = pack_tile(tile, entry);
+    uint index = first + i, across = uint(frame.tiles.x);
+    tiles_data[1u + at++] = pack_tile(uvec2(index % across, index / across), entries[i]);
   }
-  if (lane == lanes - 1u) {
-    uint listed = counts[lane];
-    tiles_data[0] = listed;
-    arguments_data[0] = min(listed, tile_groups_per_row);
-    arguments_data[1] = (listed + tile_groups_per_row - 1u) / tile_groups_per_row;
+  if (!last_group())
+    return;
+  if (lane == 0u) {
+    uint all = atomicExchange(list_state_data[0], 0u);
+    list_state_data[state_ended] = 0u;
+    tiles_data[0] = all;
+    arguments_data[0] = min(all, tile_groups_per_row);
+    arguments_data[1] = (all + tile_groups_per_row - 1u) / tile_groups_per_row;
     arguments_data[2] = 1u;
   }
 }

@@ -5,7 +5,7 @@
 namespace dermis::subsurface {
 namespace {
 
-constexpr uint32_t pixel = 1, tile = 8, cell = 32;                    // sides of squares
+constexpr uint32_t pixel = 1, tile = 8, cell = 32, region = 64;       // sides of squares
 constexpr uint32_t word = 4, range = 16, reservoir = 64, domain = 32; // bytes
 // dispatch: VkDispatchIndirectCommand and one word; level_heads: bytes.
 constexpr uint32_t dispatch = 16, levels = 9, level_heads = 1024;
@@ -30,6 +30,8 @@ constexpr PortNeed needs[] = {
     {"lights", 0, 0, 64},
     {"light_range", tile, range},
     {"light_cells", cell, range},
+    // 8 words, and a word per tile of level 4 of the pyramid: at most one per 64x64 pixels.
+    {"list_state", region, word, 8 * word},
     // Two entries per tile hold all levels, which together have a third more tiles.
     {"level_tiles", tile, range, level_heads},
     {"arguments", 0, 0, dispatch},
@@ -92,7 +94,7 @@ constexpr PortNeed needs[] = {
     {"surface_4", 16},
     {"surface_5", 32},
 };
-constexpr size_t buffers = 22;
+constexpr size_t buffers = 23;
 static_assert(needs[buffers].port == "lighting");
 
 } // namespace

@@ -126,6 +126,10 @@ inline constexpr Port tiles =
                 "bit 30: all pixels have subsurface, bit 31: copy only");
 inline constexpr Port arguments{"arguments", Usage::indirect_arguments, false, "uint",
                                 "group counts x, y, z of an indirect dispatch over the tiles"};
+inline constexpr Port list_state{
+    "list_state", Usage::storage_buffer_update, false, "uint",
+    "state of the groups that append to a list: subsurface.classify sets its first 8 words to 0, "
+    "and a list leaves them at 0"};
 inline constexpr Port tile_errors = read_buffer(
     "tile_errors", "uint", "per tile of the render rectangle: expected error; 0: no error");
 inline constexpr Port samples_per_tile = read_buffer(

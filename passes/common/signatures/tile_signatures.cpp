@@ -28,6 +28,7 @@ constexpr Port classify_ports[] = {
         "pixel (copy); 3: uniform light (copy); plus 4 if all 64 pixels have subsurface"),
     port::optional(port::writer_of(light_range)),
     port::optional(port::writer_of(light_cells)),
+    port::optional(port::writer_of(port::list_state)),
 };
 constexpr PassTypeSetting classify_settings[] = {setting::texturing};
 
@@ -39,6 +40,7 @@ constexpr Port uniform_light_ports[] = {
 
 constexpr Port tile_list_ports[] = {
     port::classes,
+    port::list_state,
     port::where_covered(port::writer_of(port::tiles)),
     port::writer_of(port::arguments),
 };
@@ -84,12 +86,12 @@ const PassType debug_tile_class_type{
 const PassType tile_list_type{
     .name = "subsurface.tile_list",
     .shader = "common/subsurface_tile_list",
-    .doc =
-        "Compacts tile classes into a list in row order and its indirect arguments (a scan without "
-        "atomics, so that the list is deterministic).",
+    .doc = "Compacts tile classes into a list and its indirect arguments. Equal classes give equal "
+           "sets "
+           "of tiles, in an order that varies.",
     .ports = tile_list_ports,
     .settings = {},
-    .dispatch = single_group,
+    .dispatch = over_tile_runs,
 };
 
 } // namespace dermis::subsurface

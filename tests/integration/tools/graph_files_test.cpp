@@ -207,7 +207,7 @@ TEST_F(GraphFiles, OverlayError_IsReportedInTheOverlay) {
 TEST_F(GraphFiles, IncludesAreReadBelowFolderAndRoots) {
   const std::string classify = R"({ "pass": "classify", "type": "subsurface.classify",
       "read": { "material": "material", "depth": "depth", "scatter_scale": "scatter_scale" },
-      "write": { "classes": "classes" } })";
+      "write": { "classes": "classes", "list_state": "list_state" } })";
   const std::string graph =
       write("graphs/mine.json", burley_with(classify, R"({ "include": "parts/classify.json" })"));
   EXPECT_THAT(run({"validate", graph}), FailsWith(1, "D0109", "there is no such file in"));

@@ -133,6 +133,24 @@ TEST_F(Upgrade, Ports_Upgrade_RenamedOnlyInTheirTypes) {
   { "pass": "m", "type": "mine.x", "write": { "brightness": "skips" } } ], "exports": ["skips"] })");
 }
 
+TEST_F(Upgrade, NewPorts_Upgrade_AreAddedWithTheirResource) {
+  const std::string graph = write("list.json", R"({ "dermis": 1, "name": "g",
+  "resources": { "classes": 1 }, "passes": [
+  { "pass": "c", "kind": "subsurface.classify", "write": { "classes": "classes" } }, // classes
+  { "pass": "l", "kind": "subsurface.tile_list", "write": {} } ], "exports": [] })");
+  EXPECT_EQ(run({"upgrade", graph}).exit_code, 0);
+  EXPECT_EQ(text_of(graph), R"({ "dermis": 2, "name": "g",
+  "resources": { "list_state": { "buffer": { "stride": 4, "count": "view/64", "extra": 8 } }, "classes": 1 }, "passes": [
+  { "pass": "c", "type": "subsurface.classify", "write": { "list_state": "list_state", "classes": "classes" } }, // classes
+  { "pass": "l", "type": "subsurface.tile_list", "write": { "list_state": "list_state" } } ], "exports": [] })");
+  const std::string part = write("part.json", R"({ "dermis_fragment": 1, "passes": [
+  { "pass": "l", "kind": "subsurface.sap_tiles", "read": { "classes": "props" }, "write": { "tiles": "tiles" } } ] })");
+  EXPECT_EQ(run({"upgrade", part}).exit_code, 0);
+  EXPECT_THAT(text_of(part),
+              HasAll("{ \"resources\": { \"list_state_of_props\": { ",
+                     "\"write\": { \"list_state\": \"list_state_of_props\", \"tiles\""));
+}
+
 TEST_F(Upgrade, Overlay_Upgrade_RenamesTargetsAndPaths) {
   const std::string overlay = write("overlay.json", R"({ "dermis_overlay": 1, "edits": [
   { "insert_before": "hand_out", "passes": [ { "pass": "p", "kind": "subsurface.copy" } ] },

@@ -140,7 +140,7 @@ Played DevicePlayer::play(const RealGraph& graph, const Show& show, const Plan& 
       buffer(table_bytes(tables.radial)),
       {EnvironmentType::counters, sizeof(subsurface::FrameCounters), {}},
   };
-  std::vector<vulkan::KernelCode> kernels;
+  std::vector<vulkan::KernelCode> kernels = more_kernels;
   for (const Kernel& kernel : embedded_kernels())
     kernels.push_back({kernel.shader, kernel.spirv});
   vulkan::ExecutorInput input;
@@ -190,6 +190,7 @@ Played DevicePlayer::play(const RealGraph& graph, const Show& show, const Plan& 
   }
 
   Played played;
+  counters.assign(show.frames.size(), {});
   for (const ShownFrame& shown : show.frames) {
     for (const Slot& slot : slots) {
       if (!slot.import) continue;
@@ -217,6 +218,9 @@ Played DevicePlayer::play(const RealGraph& graph, const Show& show, const Plan& 
     EXPECT_FALSE(result) << result.text;
     submit(frame.command_buffer);
     wait();
+    auto* words = reinterpret_cast<uint32_t*>(&counters[played.size()]);
+    EXPECT_TRUE(executor->read_counters(
+        index, {words, sizeof(subsurface::FrameCounters) / sizeof(uint32_t)}));
     auto& out = played.emplace_back();
     for (const Slot& slot : slots) {
       if (!slot.written) continue;

@@ -6,6 +6,7 @@
 #include "framegraph/vulkan/device_profile.hpp"
 #include "framegraph/vulkan/executor.hpp"
 #include "framegraph/vulkan/kernel_store.hpp"
+#include "passes/common/environment.hpp"
 #include "passes/common/kernel_tables.hpp"
 #include "tests/passes/device/real_graph.hpp"
 #include "tests/passes/device/show.hpp"
@@ -36,6 +37,8 @@ protected:
   vulkan::Device dermis_device;
   DeviceProfile profile;
   PassTypeRegistry pass_types;
+  std::vector<vulkan::KernelCode> more_kernels;    // For pass types of the test.
+  std::vector<subsurface::FrameCounters> counters; // By frame of the last play.
 
 private:
   const subsurface::KernelTables& tables_for(const Graph& graph);

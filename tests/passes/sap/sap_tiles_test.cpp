@@ -1,8 +1,12 @@
 // Properties of the tile lists that the surface-aware pyramid runs over.
 #include "passes/sap/sap_tiles.hpp"
 
+#include "passes/common/dispatch.hpp"
+
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace dermis::subsurface {
@@ -69,22 +73,63 @@ TEST(SapTiles, ParentsOfListedTilesAreListed) {
   }
 }
 
-TEST(SapTiles, ListsFitTheDeclaredBuffer) {
-  // configs/graphs/sap.json: (view/8 + 64) elements of two entries; the first nine are the heads of
-  // the lists.
+// Views with the tiles of each level.
+struct LevelTiles {
+  uint32_t width = 0, height = 0;
+  std::array<SapTileList, sap_level_count> lists = {};
+};
+std::vector<LevelTiles> views() {
+  std::vector<LevelTiles> views;
   for (const auto& [width, height] : {std::pair{1u, 1u},
                                       {1u, 7u},
                                       {16u, 16u},
                                       {17u, 9u},
+                                      {96u, 97u},
+                                      {128u, 128u},
                                       {1u, 16384u},
                                       {16384u, 9u},
                                       {129u, 67u},
-                                      {640u, 360u}}) {
-    size_t entries = sap_level_count;
+                                      {640u, 360u},
+                                      {7680u, 4320u}}) {
     const std::vector<uint32_t> classes(size_t{along(width)} * along(height), 1);
-    for (const SapTileList& list : list_sap_tiles(width, height, classes))
+    views.push_back({width, height, list_sap_tiles(width, height, classes)});
+  }
+  return views;
+}
+
+TEST(SapTiles, ListsFitTheDeclaredBuffer) {
+  // configs/graphs/sap.json: (view/8 + 64) elements of two entries; the first nine are the heads of
+  // the lists.
+  for (const LevelTiles& view : views()) {
+    size_t entries = sap_level_count;
+    for (const SapTileList& list : view.lists)
       entries += list.tiles.size();
-    EXPECT_LE(entries, 2 * (classes.size() + 64)) << width << "x" << height;
+    EXPECT_LE(entries, 2 * (view.lists[0].tiles.size() + 64)) << view.width << "x" << view.height;
+  }
+}
+
+// A group of the kernel has one tile of level 4, and one word of `list_state` per group.
+TEST(SapTiles, RegionsCoverEveryLevel) {
+  for (const LevelTiles& view : views()) {
+    const GroupCount groups = group_count(over_tile_regions, view.width, view.height);
+    EXPECT_EQ(groups.x, view.lists[4].across) << view.width;
+    EXPECT_EQ(groups.y, view.lists[4].down) << view.height;
+    EXPECT_LE(groups.total(), ceil_div(view.width, 64) * ceil_div(view.height, 64));
+    EXPECT_LE(groups.total(), 4096u) << "one group reads all words up to 7680x4320";
+    for (uint32_t level = 0; level < 4; ++level) {
+      EXPECT_LE(view.lists[level].across, groups.x << (4 - level)) << view.width;
+      EXPECT_LE(view.lists[level].down, groups.y << (4 - level)) << view.height;
+    }
+  }
+}
+
+TEST(SapTiles, CoarseFlagsFitTheSharedMemory) {
+  static_assert(sap_coarse_words(sap_max_view_side) * sizeof(uint32_t) < 4096);
+  for (const LevelTiles& view : views()) {
+    size_t words = 0;
+    for (size_t level = 4; level < sap_level_count; ++level)
+      words += ceil_div(view.lists[level].across + 3, 32) * (view.lists[level].down + 3);
+    EXPECT_LE(words, sap_coarse_words(std::max(view.width, view.height)));
   }
 }
 

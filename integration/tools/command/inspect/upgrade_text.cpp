@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <map>
 #include <vector>
 
 namespace dermis::tools {
@@ -63,6 +64,21 @@ public:
     if (!is_array(list)) return;
     for (const NodeId pass : children(document_, list))
       if (document_[pass].kind == NodeKind::object) upgrade_pass(pass);
+  }
+
+  // Declares the resources of the ports that passes of the file write in addition.
+  void add_resources() {
+    const NodeId resources = document_.find(document_.root(), "resources");
+    const bool declared = resources.valid() && document_[resources].kind == NodeKind::object;
+    std::string members;
+    for (const auto& [name, port] : added_)
+      members += fmt::format("{}\"{}\": {}", members.empty() ? "" : ", ", name,
+                             new_name({"added_ports", "resources", port}));
+    if (members.empty()) return;
+    if (declared)
+      add_member(resources, members);
+    else
+      add_member(document_.root(), fmt::format("\"resources\": {{ {} }}", members));
   }
 
   void overlay_edits() {
@@ -179,6 +195,34 @@ private:
     if (!text.empty()) replace_string(line_begins_[node.key_line - 1] + node.key_column - 1, text);
   }
 
+  void add_member(NodeId object, std::string_view member) {
+    const size_t begin = document_[object].offset + 1;
+    const bool empty = children(document_, object).empty();
+    replace(begin, begin, fmt::format(" {}{}", member, empty ? " " : ","));
+  }
+
+  // Returns the resource at the port `classes` of a pass; "classes" without such a port.
+  std::string_view classes_of(NodeId pass) const {
+    for (const char* side : {"read", "write"})
+      if (const NodeId ports = document_.find(pass, side);
+          ports.valid() && document_[ports].kind == NodeKind::object)
+        if (const NodeId classes = string_at(ports, "classes"); classes.valid())
+          return document_.text(classes);
+    return "classes";
+  }
+
+  // Adds the port that version 2 of the pass type `type` writes in addition.
+  void add_port(NodeId pass, std::string_view type) {
+    const std::string_view port = new_name({"added_ports", "pass_types", type});
+    const NodeId written = document_.find(pass, "write");
+    if (port.empty() || !written.valid() || document_[written].kind != NodeKind::object) return;
+    const std::string_view classes = classes_of(pass);
+    const std::string resource =
+        classes == "classes" ? std::string(port) : fmt::format("{}_of_{}", port, classes);
+    add_member(written, fmt::format("\"{}\": \"{}\"", port, resource));
+    added_.emplace(resource, port);
+  }
+
   void rename_names(NodeId object, std::string_view type, std::string_view group) {
     if (!object.valid() || document_[object].kind != NodeKind::object) return;
     for (const NodeId value : children(document_, object))
@@ -195,6 +239,7 @@ private:
     for (const char* side : {"read", "write"})
       rename_names(document_.find(pass, side), old, "ports");
     rename_names(document_.find(pass, "set"), old, "settings");
+    add_port(pass, old);
     const NodeId name = string_at(pass, "pass");
     if (name.valid() && new_name({"shipped_passes", document_.text(name), "type"}) == old)
       rename(name, new_name({"shipped_passes", document_.text(name), "pass"}));
@@ -236,6 +281,7 @@ private:
   std::string_view text_;
   std::vector<size_t> line_begins_;
   std::vector<Edit> edits_;
+  std::map<std::string, std::string_view> added_; // by resource: the added port
 };
 
 } // namespace
@@ -247,6 +293,7 @@ std::optional<std::string> upgraded_text(const Document& document, FileKindId ki
   case FileKindId::graph:
   case FileKindId::fragment:
     upgrade.passes(document.find(document.root(), "passes"));
+    upgrade.add_resources();
     break;
   case FileKindId::overlay:
     upgrade.overlay_edits();

@@ -56,14 +56,15 @@ std::string chain_graph() {
   "imports": {{ "lighting": {{ "format": "rgba16f", "size": "view" }}, "depth": {{ "format": "depth", "size": "view" }},
                "material": {{ "format": "r8_uint", "size": "view" }} }},
   "resources": {{ "classes": {{ "buffer": {{ "stride": 4, "count": "view/8" }} }},
+                 "list_state": {{ "buffer": {{ "stride": 4, "count": "view/64", "extra": 8 }} }},
                  "tiles": {{ "buffer": {{ "stride": 4, "count": "view/8", "extra": 1 }} }},
                  "arguments": {{ "buffer": {{ "stride": 4, "count": [4, 1] }} }},
                  "light": {{ "format": "rgba16f", "size": "view" }}{0} }},
   "passes": [
     {{ "pass": "classify", "type": "subsurface.classify", "read": {{ "material": "material", "depth": "depth" }},
-      "write": {{ "classes": "classes" }} }},
+      "write": {{ "classes": "classes", "list_state": "list_state" }} }},
     {{ "pass": "list", "type": "subsurface.tile_list", "read": {{ "classes": "classes" }},
-      "write": {{ "tiles": "tiles", "arguments": "arguments" }} }},
+      "write": {{ "list_state": "list_state", "tiles": "tiles", "arguments": "arguments" }} }},
     {{ "pass": "setup", "type": "subsurface.setup", "read": {{ "lighting": "lighting", "material": "material",
       "depth": "depth", "tiles": "tiles", "arguments": "arguments" }}, "write": {{ "light": "light" }} }},
     {1}
