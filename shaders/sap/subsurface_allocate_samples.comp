@@ -11,8 +11,8 @@
 #include "common/tile_packing.glsl"
 #include "sap/sample_allocation.glsl"
 
-const uint lanes = 256u;
-layout(local_size_x = 256, local_size_y = 1, local_size_z = 1) in;
+const uint lanes = 128u;
+layout(local_size_x = 128, local_size_y = 1, local_size_z = 1) in;
 
 shared uint cost_of_bin[allocation_bins];
 shared uint counts[lanes];
@@ -76,7 +76,8 @@ void main() {
   uint run = (total + lanes - 1u) / lanes;
   uint first = min(lane * run, total), last = min(first + run, total);
 
-  cost_of_bin[lane] = 0u;
+  for (uint bin = lane; bin < allocation_bins; bin += lanes)
+    cost_of_bin[bin] = 0u;
   barrier();
   for (uint i = first; i < last; ++i)
     for (int k = 0; k < allocation_steps; ++k) {

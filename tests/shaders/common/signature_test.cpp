@@ -35,6 +35,17 @@ TEST(Kernels, EveryKernelMatchesItsSignature) {
   }
 }
 
+// maxComputeWorkGroupInvocations is at least 128 on every device.
+TEST(Kernels, EveryKernelFitsTheGuaranteedGroupSize) {
+  for (const Kernel& kernel : embedded_kernels()) {
+    std::string error;
+    const auto reflection = vulkan::reflect(kernel.spirv, error);
+    ASSERT_TRUE(reflection) << kernel.shader << ": " << error;
+    const auto [x, y, z] = reflection->local_size;
+    EXPECT_LE(uint64_t{x} * y * z, 128u) << kernel.shader;
+  }
+}
+
 TEST(Kernels, TheFrameConstantsOfCppAndGlslHaveOneSize) {
   for (const Kernel& kernel : embedded_kernels()) {
     std::string error;
