@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 """Models the time of techniques on GPUs from counts of instructions, bytes and dispatches.
 
-usage: gpu_model.py [--kernels FILE] [--sensitivity]
-  --kernels      adds a row "SAP as built", whose bytes, occupancy and code size come from
-                 `dermis kernels sap --unbound scattered_light,albedo,scatter_scale --json` on navi21;
-                 executed instructions are those of SAP_AS_BUILT below
+usage: gpu_model.py [--kernels FILE --assembly DIR] [--sensitivity]
+  --kernels      adds rows of graphs as they are built, whose bytes, occupancy and code size come from
+                 `dermis kernels sap separable --unbound scattered_light,albedo,scatter_scale --json
+                 --assembly DIR` on navi21; executed instructions are counted in DIR
   --sensitivity  also prints the totals with other latencies, cache misses and fixed costs
 
 No time was measured. Formulas, hardware rows and the assumed fractions of layered work stay fixed,
@@ -17,7 +17,11 @@ import argparse
 import dataclasses
 import json
 import math
+import pathlib
+import re
 import sys
+
+import instruction_mix
 
 COVERED = 0.5  # fraction of the view
 TILE_FILL = 0.95  # fraction of the pixels of listed tiles that are covered
@@ -191,7 +195,6 @@ TEXELS = Pyramid(
     gather=dict(valu=730, trans=35, qmul=10, img=1.6, img128=1.6 + 1.2, st64=1, buf=12, vm=8, lg=39, W=7,
                 lds=9 * 12 + 8 * 8 + 2 * 12),
     slow_down=texel_slow_down, slow_up=texel_slow_up)
-SAP_AS_BUILT = BLOCKS  # the shape of the kernels in shaders/sap
 
 
 def serial_tile_list(model):
@@ -269,35 +272,24 @@ def add_rivals(model):
     frame("afis 16", 13 + 12, mips + [("scatter", tiles0, model.wave(**AFIS), n * 30)])
 
 
-def add_pyramid(model, technique, counts, list_clocks, layered=True, built=None):
-    """`built` (of `dermis kernels`) replaces bytes, occupancy and code size of the kernels."""
+def add_pyramid(model, technique, counts, list_clocks, layered=True):
     n, tiles = model.covered, model.tiles
-
-    def wave(counts_of_kernel, name):
-        return model.wave(**{**counts_of_kernel, **(built.of_kernel(name) if built else {})})
-
-    def moved(name, computed):
-        return n * built.bytes_of(name) if built else computed
-
-    model.add(technique, "classify", model.view_tiles / 16, model.wave(**CLASSIFY),
-              moved("classify", 1 * model.pixels + 5 * n))
+    model.add(technique, "classify", model.view_tiles / 16, model.wave(**CLASSIFY), 1 * model.pixels + 5 * n)
     model.add_serial(technique, "lists", list_clocks)
-    model.add(technique, "setup", tiles[0] / counts.texels_setup, wave(counts.setup, "setup"),
-              moved("setup", n * (13 + 24)))
+    model.add(technique, "setup", tiles[0] / counts.texels_setup, model.wave(**counts.setup), n * (13 + 24))
     for name, levels, fast, slow in (("down", range(1, 9), counts.down, counts.slow_down),
                                      ("up", range(8, 0, -1), counts.up, counts.slow_up)):
         for level in levels:
             of_level = n / 4**level
             fraction = layered_fraction(level) if layered else 0.0
-            clocks = wave(fast, name)
+            clocks = model.wave(**fast)
             if fraction:
-                clocks = mix(clocks, wave(slow(level), name + "_layered"), fraction)
+                clocks = mix(clocks, model.wave(**slow(level)), fraction)
             computed = of_level * (4 * 24 + 24) if name == "down" else of_level * (24 + 32 / 4 + 16)
             model.add(technique, f"{name}_{level}", max(1, tiles[level] / counts.texels), clocks,
-                      moved(f"{name}_{level}", computed * (1.5 if layered and level >= 2 else 1)))
-    model.add(technique, "gather", tiles[0] / counts.texels_setup, wave(counts.gather, "gather"),
-              moved("gather", n * (24 + 8 + 8)))
-    model.add(technique, "combine", tiles[0], model.wave(**COMBINE), moved("combine", n * 17))
+                      computed * (1.5 if layered and level >= 2 else 1))
+    model.add(technique, "gather", tiles[0] / counts.texels_setup, model.wave(**counts.gather), n * (24 + 8 + 8))
+    model.add(technique, "combine", tiles[0], model.wave(**COMBINE), n * 17)
 
 
 def add_target(model):
@@ -324,26 +316,60 @@ def add_target(model):
     model.add(technique, "gather and combine", tiles[0], gather, n * (16 + 8 + 4 + 8))
 
 
+# How often the loops of a kernel run, in the order of the assembly, for subgroups with one layer;
+# those of layered kernels for subgroups with two. Loops over outer seeds are rare: 0.
+TRIPS = {"sap_setup": [2], "sap_down": [6, 0], "sap_down_layered": [6, 0, 4, 2, 8, 0, 4, 16],
+         "sap_up_layered": [2]}
+ONE_LAYER = {"sap_down_layered": "sap_down", "sap_up_layered": "sap_up"}  # kernels of the same work
+COARSE_LEVEL = 5  # the first level of the coarse passes, which compute COARSE_LEVELS one after another
+COARSE_LEVELS = 4
+
+
 class Built:
-    """What `dermis kernels --json` reports of sap."""
+    """What `dermis kernels --json --assembly` reports."""
 
-    def __init__(self, report):
+    def __init__(self, report, assembly):
         self.kernels = {row["kernel"]: row["values"] for row in report["kernels"]}
-        graph = next(graph for graph in report["graphs"] if graph["graph"] == "sap")
-        self.passes = {one["pass"]: one["read"] + one["written"] for one in graph["passes"]}
+        self.graphs = {graph["graph"]: graph["passes"] for graph in report["graphs"]}
+        self.assembly = pathlib.Path(assembly)
 
-    def bytes_of(self, name):
-        """Bytes per covered pixel. The model has no memory traffic for lists, so classify has theirs."""
-        if name == "classify":
-            return self.passes["classify"] + self.passes["list"]
-        return self.passes[name]
+    def wave(self, model, kernel):
+        """Returns the clocks of a subgroup on its longest path. Image loads are taken as half 64 and
+        half 128 bits. RADV counts occupancy in subgroups of 32."""
+        folder = next(path for path in self.kernels if path.endswith("/subsurface_" + kernel))
+        values = self.kernels[folder]
+        with open(self.assembly / (folder.replace("/", "_") + ".txt"), encoding="utf-8") as lines:
+            blocks = instruction_mix.read_blocks(lines)
+        mix_of = instruction_mix.count(blocks, TRIPS.get(kernel, []), longest=True)
+        get = lambda kind: mix_of.get(kind, 0)
+        return model.wave(valu=get("valu"), trans=get("transcendental"), qmul=get("quarter_rate"),
+                          img=get("image_load") / 2, img128=get("image_load") / 2,
+                          st64=get("image_store") / 2, st128=get("image_store") / 2, buf=get("buffer_load"),
+                          lds=8 * get("shared"), vm=get("memory_wait"), lg=get("shared_wait"),
+                          W=values["occupancy"] / 2, code=values["code_bytes"],
+                          scr=get("scratch_load") + get("scratch_store"))
 
-    def of_kernel(self, name):
-        values = self.kernels.get(f"sap/subsurface_sap_{name}")
-        if values is None:
-            return {}
-        # RADV counts occupancy in subgroups of 32.
-        return {"W": values["occupancy"] / 2, "code": values["code_bytes"]}
+
+def add_built(model, technique, built, graph):
+    """The passes of a graph as they are built."""
+    for one in built.graphs[graph]:
+        kernel = re.sub(".*/subsurface_", "", one["kernel"])
+        bytes_moved = model.covered * (one["read"] + one["written"])
+        level = re.search(r"_(\d)$", one["pass"])
+        tiles = model.tiles[int(level.group(1)) if level else 0]
+        if kernel == "classify":
+            model.add(technique, one["pass"], model.view_tiles / 16, model.wave(**CLASSIFY), bytes_moved)
+        elif kernel in ("sap_tiles", "tile_list"):
+            model.add_serial(technique, one["pass"], lists_by_region(model))
+        elif "coarse" in one["pass"]:
+            wave = built.wave(model, kernel)
+            model.add(technique, one["pass"], model.tiles[COARSE_LEVEL], wave, bytes_moved)
+        elif kernel in ONE_LAYER:
+            wave = mix(built.wave(model, ONE_LAYER[kernel]), built.wave(model, kernel),
+                       layered_fraction(int(level.group(1))))
+            model.add(technique, one["pass"], tiles, wave, bytes_moved)
+        else:
+            model.add(technique, one["pass"], tiles, built.wave(model, kernel), bytes_moved)
 
 
 def run(hardware, factors=Factors(), width=2560, height=1440, built=None):
@@ -354,8 +380,8 @@ def run(hardware, factors=Factors(), width=2560, height=1440, built=None):
     add_pyramid(model, "SAP prototype", TEXELS, serial_parallel_tiles(model))
     add_pyramid(model, "SAP prototype, 1 layer", TEXELS, serial_parallel_tiles(model), layered=False)
     add_target(model)
-    if built:
-        add_pyramid(model, "SAP as built", SAP_AS_BUILT, lists_by_region(model), built=built)
+    for graph in built.graphs if built else ():
+        add_built(model, f"{graph} as built", built, graph)
     return model
 
 
@@ -385,12 +411,13 @@ def print_model(model, width, height):
 def main():
     parser = argparse.ArgumentParser(usage=__doc__)
     parser.add_argument("--kernels")
+    parser.add_argument("--assembly")
     parser.add_argument("--sensitivity", action="store_true")
     options = parser.parse_args()
     built = None
     if options.kernels:
         with open(options.kernels, encoding="utf-8") as file:
-            built = Built(json.load(file))
+            built = Built(json.load(file), options.assembly)
     for hardware in (RX_6800, NVIDIA_LIKE, SMALL_RDNA2):
         for width, height in ((2560, 1440), (1920, 1080)):
             print_model(run(hardware, width=width, height=height, built=built), width, height)

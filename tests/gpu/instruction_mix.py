@@ -13,7 +13,8 @@ usage: instruction_mix.py [--trips N,N,...] [--skip BB3-BB7,BB9] [--longest] [--
   --blocks  also print each block's counts and targets, to choose --skip
 
 A subgroup executes an instruction for all of its invocations at once, so counts per subgroup are
-counts per invocation. "vector" is the sum of vector arithmetic: valu, transcendental and quarter
+counts per invocation. "memory_wait" and "shared_wait" are waits for loads that were issued since the
+last such wait: of memory, and of shared or scalar memory. "vector" is the sum of vector arithmetic: valu, transcendental and quarter
 rate.
 """
 import argparse
@@ -57,7 +58,13 @@ class Block:
 
 def read_blocks(lines):
     """Returns the blocks in order. An instruction's line ends in its encoding, after a ';'."""
-    blocks = []
+    blocks, pending = [], {"memory_wait": False, "shared_wait": False}
+
+    def note_wait(kind, counter):
+        if pending[kind] and counter:
+            blocks[-1].counts[kind] = blocks[-1].counts.get(kind, 0) + 1
+            pending[kind] = False
+
     for line in lines:
         label = re.match(r"BB(\d+):", line)
         if label:
@@ -66,6 +73,11 @@ def read_blocks(lines):
         if instruction and blocks:
             kind = class_of(instruction.group(1), line)
             blocks[-1].counts[kind] = blocks[-1].counts.get(kind, 0) + 1
+            pending["memory_wait"] |= kind in ("image_load", "buffer_load", "scratch_load")
+            pending["shared_wait"] |= kind in ("shared", "scalar_load")
+            if kind == "wait":
+                note_wait("memory_wait", re.search(r"vmcnt|loadcnt|samplecnt", line))
+                note_wait("shared_wait", re.search(r"lgkmcnt|dscnt|kmcnt", line))
             blocks[-1].targets += [int(n) for n in re.findall(r"BB(\d+)", instruction.group(2))]
             if instruction.group(1) in ("s_branch", "s_endpgm"):
                 blocks[-1].falls_through = False
