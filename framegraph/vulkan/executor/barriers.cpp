@@ -225,6 +225,16 @@ void add_host_barrier(State& state, const FrameInput& frame, const PlanResource&
   }
 }
 
+Scopes counter_scopes(CountersTo readers) {
+  const bool host = readers == CountersTo::host;
+  return {compute,
+          host ? VK_PIPELINE_STAGE_2_HOST_BIT : compute,
+          VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT,
+          host ? VK_ACCESS_2_HOST_READ_BIT : shader_write,
+          VK_IMAGE_LAYOUT_UNDEFINED,
+          VK_IMAGE_LAYOUT_UNDEFINED};
+}
+
 } // namespace
 
 uint32_t instance_of(const State& state, const PlanResource& resource,
@@ -234,11 +244,10 @@ uint32_t instance_of(const State& state, const PlanResource& resource,
   return resource.first_instance + (phase + count - frames_back % count) % count;
 }
 
-void record_barriers(State& state, const FrameInput& frame, uint32_t first, uint32_t count,
-                     std::span<const uint32_t> writable_placeholders) noexcept {
+void record_barriers(State& state, const FrameInput& frame, const BarrierBatch& of) noexcept {
   Batch batch;
   AliasBarrier alias_barrier;
-  for (uint32_t i = first; i < first + count; ++i) {
+  for (uint32_t i = of.first; i < of.first + of.count; ++i) {
     const PlanBarrier& barrier = state.plan.barriers[i];
     const PlanResource& resource = state.plan.resources[barrier.resource];
     const bool host_owned = resource.first_instance == no_instance;
@@ -274,6 +283,8 @@ void record_barriers(State& state, const FrameInput& frame, uint32_t first, uint
   }
   if (alias_barrier.needed())
     state.memory_barriers[batch.memory++] = memory_barrier(alias_barrier.scopes);
+  if (of.counters != CountersTo::nobody)
+    state.memory_barriers[batch.memory++] = memory_barrier(counter_scopes(of.counters));
   // Only the shader knows that it does not write to an unbound port, so its accesses are ordered.
   constexpr Scopes in_order{compute,
                             compute,
@@ -281,7 +292,7 @@ void record_barriers(State& state, const FrameInput& frame, uint32_t first, uint
                             shader_write,
                             VK_IMAGE_LAYOUT_GENERAL,
                             VK_IMAGE_LAYOUT_GENERAL};
-  for (const uint32_t index : writable_placeholders) {
+  for (const uint32_t index : of.writable_placeholders) {
     const Placeholder& placeholder = state.placeholders[index];
     if (placeholder.image != VK_NULL_HANDLE)
       state.image_barriers[batch.images++] =
@@ -296,21 +307,6 @@ void record_memory_acquire(State& state, const FrameInput& frame) noexcept {
   global_barrier(state, frame.command_buffer,
                  {VK_STRUCTURE_TYPE_MEMORY_BARRIER_2, nullptr, all_commands,
                   VK_ACCESS_2_MEMORY_WRITE_BIT, all_commands, all_memory});
-}
-
-void record_counters_in_order(State& state, const FrameInput& frame) noexcept {
-  constexpr VkAccessFlags2 counted =
-      VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT;
-  global_barrier(state, frame.command_buffer,
-                 {VK_STRUCTURE_TYPE_MEMORY_BARRIER_2, nullptr, compute, counted, compute, counted});
-}
-
-void record_counters_to_host(State& state, const FrameInput& frame) noexcept {
-  if (state.environment.counters_bytes == 0) return;
-  global_barrier(state, frame.command_buffer,
-                 {VK_STRUCTURE_TYPE_MEMORY_BARRIER_2, nullptr, compute,
-                  VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT, VK_PIPELINE_STAGE_2_HOST_BIT,
-                  VK_ACCESS_2_HOST_READ_BIT});
 }
 
 namespace {

@@ -174,9 +174,11 @@ void reserve_for_recording(State& state) {
                                     state.passes[p].writable_placeholders.size());
   for (const auto& kernel : state.kernels)
     max_settings = std::max<size_t>(max_settings, kernel->push_bytes / sizeof(uint32_t));
+  reserve_clear_targets(state);
+  largest = std::max(largest, state.clear_targets.capacity());
   state.image_barriers.resize(largest);
   state.buffer_barriers.resize(largest);
-  state.memory_barriers.resize(largest + 1); // plus the global barrier of aliased memory
+  state.memory_barriers.resize(largest + 2); // plus those of aliased memory and counters
   state.push_constants.resize(max_settings);
   state.before_frame.histories.resize(state.histories.size());
   state.before_frame.ready.resize(state.instances.size());

@@ -136,7 +136,6 @@ void run_kernel(State& state, const FrameInput& frame, uint32_t frame_slot, size
   const FunctionTable& vk = *state.commands;
   const Pass& pass = state.passes[p];
   const Kernel& kernel = *state.kernels[pass.kernel];
-  if (kernel.counts) record_counters_in_order(state, frame);
   vk.vkCmdBindPipeline(frame.command_buffer, VK_PIPELINE_BIND_POINT_COMPUTE, kernel.pipeline);
   const bool environment = state.environment.set_layout != VK_NULL_HANDLE;
   const VkDescriptorSet sets[] = {state.descriptors.sets[frame_slot * state.passes.size() + p],
@@ -182,6 +181,11 @@ void run_clear(State& state, const FrameInput& frame, size_t p) {
 
 bool is_left_out(const FrameInput& frame, size_t p) {
   return p < frame.left_out.size() && frame.left_out[p] != 0;
+}
+
+bool uses_counters(const State& state, size_t p) {
+  const uint32_t kernel = state.passes[p].kernel;
+  return kernel != no_index && state.kernels[kernel]->counts;
 }
 
 // Invalidates the histories that pass `p` writes, because the pass did not run.
@@ -272,17 +276,25 @@ RecordResult Executor::record(const FrameInput& frame) noexcept {
   begin_timestamps(state, commands, frame_slot);
   record_acquires(state, frame);
   record_initialisation(state, commands);
+  bool counted = false; // by an earlier pass of the frame
   for (size_t p = 0; p < state.passes.size(); ++p) {
     const PlanPass& planned = state.plan.passes[p];
+    const bool counts = !is_left_out(frame, p) && uses_counters(state, p);
     begin_label(state, commands, state.passes[p].name.c_str());
-    record_barriers(state, frame, planned.first_barrier, planned.barrier_count,
-                    state.passes[p].writable_placeholders);
+    record_barriers(state, frame,
+                    {planned.first_barrier, planned.barrier_count,
+                     state.passes[p].writable_placeholders,
+                     counts && counted ? CountersTo::kernel : CountersTo::nobody});
     if (!is_left_out(frame, p)) run_pass(state, frame, frame_slot, p, rectangle);
+    counted = counted || counts;
     end_label(state, commands);
     write_timestamp(state, commands, frame_slot, static_cast<uint32_t>(p) + 1);
   }
-  record_barriers(state, frame, state.plan.first_final_barrier, state.plan.final_barrier_count, {});
-  record_counters_to_host(state, frame);
+  record_barriers(state, frame,
+                  {state.plan.first_final_barrier,
+                   state.plan.final_barrier_count,
+                   {},
+                   counted ? CountersTo::host : CountersTo::nobody});
   record_releases(state, frame);
   finish_frame(state, frame, frame_slot, rectangle);
   for (size_t p = 0; p < state.passes.size(); ++p)

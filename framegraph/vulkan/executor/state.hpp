@@ -204,6 +204,15 @@ struct BeforeFrame {
   uint64_t last_frame_index = 0;
 };
 
+// Subresource that is cleared before it is read.
+struct ClearTarget {
+  VkImage image = VK_NULL_HANDLE;
+  VkBuffer buffer = VK_NULL_HANDLE;
+  VkImageLayout layout = VK_IMAGE_LAYOUT_UNDEFINED; // layout after the clear
+  VkImageSubresourceRange range{};
+  bool clear = true; // false: created without transfer usage, contents stay undefined
+};
+
 struct Executor::State {
   const Device* device = nullptr;
   std::shared_ptr<const Plan> shared_plan;
@@ -232,6 +241,7 @@ struct Executor::State {
   std::vector<VkImageMemoryBarrier2> image_barriers; // sized for the largest batch
   std::vector<VkBufferMemoryBarrier2> buffer_barriers;
   std::vector<VkMemoryBarrier2> memory_barriers;
+  std::vector<ClearTarget> clear_targets; // of the frame that is recorded
   std::vector<uint32_t> push_constants;
   const FunctionTable* commands = nullptr; // functions that the frame is recorded with
   HostPassFunction host_pass = nullptr;
@@ -329,17 +339,19 @@ void write_descriptors(State& state, uint32_t frame_slot, const FrameInput& fram
 // the current frame.
 uint32_t instance_of(const State& state, const PlanResource& resource,
                      uint32_t frames_back) noexcept;
-// Records one batch: barriers first .. first + count of the plan, and barriers that order writes to
-// placeholders.
-void record_barriers(State& state, const FrameInput& frame, uint32_t first, uint32_t count,
-                     std::span<const uint32_t> writable_placeholders) noexcept;
+// The accesses that counters written earlier in the frame are made visible to.
+enum class CountersTo : uint8_t { nobody, kernel, host };
+// One vkCmdPipelineBarrier2 call.
+struct BarrierBatch {
+  uint32_t first = 0, count = 0;                        // into Plan::barriers
+  std::span<const uint32_t> writable_placeholders = {}; // whose writes are ordered
+  CountersTo counters = CountersTo::nobody;
+};
+// Records nothing if the batch is empty.
+void record_barriers(State& state, const FrameInput& frame, const BarrierBatch& of) noexcept;
 // Makes all earlier writes visible to all later commands, because other commands used the same
 // memory.
 void record_memory_acquire(State& state, const FrameInput& frame) noexcept;
-// Makes counters that earlier passes wrote visible to this pass, which also counts.
-void record_counters_in_order(State& state, const FrameInput& frame) noexcept;
-// Makes counters visible to the host. Does nothing without counters.
-void record_counters_to_host(State& state, const FrameInput& frame) noexcept;
 // queue family transfers from the host
 void record_acquires(State& state, const FrameInput& frame) noexcept;
 // queue family transfers to the host
@@ -392,6 +404,7 @@ void run_host_pass(State& state, const FrameInput& frame, size_t p,
                    const Rectangle& rectangle) noexcept;
 
 // ---- clear.cpp
+void reserve_clear_targets(State& state); // so that recording does not allocate
 // Clears placeholders and new or invalid history instances, and moves them to the layout that the
 // plan expects.
 void record_initialisation(State& state, VkCommandBuffer commands) noexcept;

@@ -173,6 +173,40 @@ TEST_F(CommandsTest, AliasedMemory_UsesAGlobalBarrier) {
   EXPECT_EQ(memory_overwritten, 2u);
 }
 
+TEST_F(CommandsTest, ClearsOfAFrameShareTwoBarrierCalls) {
+  SmallGraph g{"export result", "history first", "history second"};
+  for (const std::string name : {"first", "second"})
+    g.pass(name, "test.add", {{"a", name + "@-1"}}, {{"target", name}});
+  g.pass("show", "test.add", {{"a", "first"}, {"b", "second"}}, {{"target", "result"}});
+  make_executor(g, 16, 16);
+  bind(g, "result", {});
+  // the placeholders of unbound ports, and both histories
+  constexpr size_t for_clears = 2, of_passes = 4;
+  ASSERT_FALSE(record());
+  EXPECT_EQ(recorded.batches, for_clears + of_passes);
+  recorded = {};
+  ASSERT_FALSE(record());
+  EXPECT_EQ(recorded.batches, of_passes) << "before each pass, and after the last";
+}
+
+TEST_F(CommandsTest, CountersShareTheBarrierCallsOfPasses) {
+  counters = true;
+  SmallGraph g{"export first", "export second", "export third"};
+  for (const char* name : {"first", "second", "third"})
+    g.pass(name, "test.count", {}, {{"target", name}});
+  make_executor(g, 16, 16);
+  for (const char* name : {"first", "second", "third"})
+    bind(g, name, {});
+  ASSERT_FALSE(record());
+  EXPECT_EQ(recorded.batches, 4u) << "one before each pass, one after the last";
+  EXPECT_EQ(recorded.all_memory_count, 3u) << "the first pass follows no other that counts";
+  EXPECT_EQ(recorded.dispatches_before_it, 3u);
+  EXPECT_EQ(recorded.all_memory.srcStageMask, VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT);
+  EXPECT_EQ(recorded.all_memory.srcAccessMask, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT);
+  EXPECT_EQ(recorded.all_memory.dstStageMask, VK_PIPELINE_STAGE_2_HOST_BIT);
+  EXPECT_EQ(recorded.all_memory.dstAccessMask, VK_ACCESS_2_HOST_READ_BIT);
+}
+
 TEST_F(CommandsTest, GroupsCoverTheRenderRectangleAndEveryPassHasALabel) {
   const SmallGraph g = update();
   make_executor(g, 100, 50);

@@ -179,6 +179,25 @@ TEST_F(ExecutorTest, TheEnvironmentGivesTablesAndALinearSampler) {
   EXPECT_FLOAT_EQ(texels[width - 1], 2.0f * (1.0f + 4.0f * 20.0f)); // Clamped to the edge.
 }
 
+TEST_F(ExecutorTest, PassesCountInOrder) {
+  counters = true;
+  SmallGraph g{"export first", "export second", "export third"};
+  for (const char* name : {"first", "second", "third"})
+    g.pass(name, "test.count", {}, {{"target", name}});
+  make_executor(g, width, height);
+  bind(g, "first", {});
+  bind(g, "second", {});
+  const TestImage third = bind(g, "third", {});
+  uint32_t words[1];
+  for (uint64_t index = 1; index <= 3; ++index) {
+    ASSERT_FALSE(frame());
+    wait();
+    ASSERT_TRUE(executor->read_counters(index, words));
+    EXPECT_EQ(words[0], 7u) << "frame " << index;
+  }
+  EXPECT_EQ(read(third).front(), 7.0f);
+}
+
 TEST_F(ExecutorTest, ASettingOfTheHostIsEffectiveInTheNextFrame) {
   SmallGraph g;
   g.setting("strength", 3.0);

@@ -30,6 +30,7 @@ const EnvironmentBinding environment[] = {
     {EnvironmentType::uniform_buffer, 32, {}},
     {EnvironmentType::storage_buffer, 8, {}},
     {EnvironmentType::linear_sampler, 0, {}},
+    {EnvironmentType::counters, 4, {}},
 };
 
 std::string problems(const PassType& type, const Reflection& reflection,

@@ -6,6 +6,7 @@
 
 #include "test_add.spv.h"
 #include "test_classes.spv.h"
+#include "test_count.spv.h"
 #include "test_fill.spv.h"
 #include "test_list.spv.h"
 #include "test_mark.spv.h"
@@ -77,6 +78,7 @@ PassTypeRegistry make_pass_types() {
   add("test.mark", "test_mark", mark_ports, {}, {.domain = indirect});
   add("test.stamp", "test_stamp", stamp_ports, stamp_settings);
   add("test.show", "test_show", show_ports, {});
+  add("test.count", "test_count", fill_ports, {}, {.domain = one}); // needs counters
   add("test.clear", "", clear_ports, {}, {.domain = none});
   return pass_types;
 }
@@ -94,6 +96,7 @@ std::span<const vulkan::KernelCode> small_kernels() {
       {"test_sample", test_sample_spirv}, {"test_classes", test_classes_spirv},
       {"test_list", test_list_spirv},     {"test_mark", test_mark_spirv},
       {"test_show", test_show_spirv},     {"test_stamp", test_stamp_spirv},
+      {"test_count", test_count_spirv},
   };
   return kernels;
 }
