@@ -165,6 +165,9 @@ struct HostImage {
   HostState before, after;
   // layers of the image that barriers apply to; 0 layers: all from first_layer
   uint32_t first_layer = 0, layers = 0;
+  // Equal numbers and handles in two frames: the image and its view are the same objects, because
+  // Vulkan reuses handles. content_id 0: not known.
+  uint64_t content_id = 0, view_id = 0;
 };
 
 // Describes a buffer range of the host. HostState::layout is ignored.

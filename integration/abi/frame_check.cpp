@@ -168,9 +168,11 @@ dermis_result check_binding(const dermis_view_t& view, uint32_t index, const Slo
   return check_state(view, index, slot, "after", binding.after);
 }
 
-// Provides the image view of a binding without one.
-dermis_result make_view(dermis_view_t& view, uint32_t index, const Slot& slot,
-                        const dermis_frame& frame, dermis_image_binding& binding) {
+// Returns the image view of a binding: the host's, or one that the library keeps.
+dermis_result find_view(dermis_view_t& view, uint32_t index, const Slot& slot,
+                        const dermis_frame& frame, const dermis_image_binding& binding,
+                        KnownView& found) {
+  found = {binding.view, 0};
   if (binding.view != VK_NULL_HANDLE) return DERMIS_OK;
   const Log& log = view.context->log;
   const char* const function = "dermis_view_record";
@@ -182,8 +184,8 @@ dermis_result make_view(dermis_view_t& view, uint32_t index, const Slot& slot,
                              ? VkImageAspectFlags{VK_IMAGE_ASPECT_DEPTH_BIT}
                              : VkImageAspectFlags{VK_IMAGE_ASPECT_COLOR_BIT},
                          binding.layer};
-  const VkResult result = find_image_view(view.image_views, key, frame.frame_index,
-                                          frame.completed_frame_index, binding.view);
+  const VkResult result =
+      find_image_view(view.image_views, key, frame.frame_index, frame.completed_frame_index, found);
   if (result == VK_SUCCESS) return DERMIS_OK;
   if (result == VK_ERROR_TOO_MANY_OBJECTS)
     return bad_argument(
@@ -264,11 +266,13 @@ dermis_result check_bindings(dermis_view_t& view, CompiledGraph& compiled_graph,
                           binding.slot, slot.name);
     if (const dermis_result result = check_binding(view, i, slot, binding); result != DERMIS_OK)
       return result;
-    if (const dermis_result result = make_view(view, i, slot, frame, binding); result != DERMIS_OK)
+    KnownView known;
+    if (const dermis_result result = find_view(view, i, slot, frame, binding, known);
+        result != DERMIS_OK)
       return result;
     image = {
-        binding.image, binding.view,       host_state(binding.before), host_state(binding.after),
-        binding.layer, binding.layer_count};
+        binding.image, known.view,          host_state(binding.before), host_state(binding.after),
+        binding.layer, binding.layer_count, binding.content_id,         known.id};
   }
   if (const dermis_result result = check_memory_bindings(view, compiled_graph, frame);
       result != DERMIS_OK)

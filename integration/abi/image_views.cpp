@@ -29,7 +29,7 @@ void reserve(ImageViews& views, size_t slots) {
 }
 
 VkResult find_image_view(ImageViews& views, const ImageViewKey& key, uint64_t frame_index,
-                         uint64_t completed, VkImageView& view) noexcept {
+                         uint64_t completed, KnownView& view) noexcept {
   const auto slot =
       std::span(views.entries).subspan(key.slot * image_views_a_slot, image_views_a_slot);
   const auto known = std::find_if(slot.begin(), slot.end(), [&](const ImageViews::Entry& entry) {
@@ -37,7 +37,7 @@ VkResult find_image_view(ImageViews& views, const ImageViewKey& key, uint64_t fr
   });
   if (known != slot.end()) {
     known->last_frame = frame_index;
-    view = known->view;
+    view = {known->view, known->id};
     return VK_SUCCESS;
   }
   // Selects the least recently used entry; unused entries come first.
@@ -50,8 +50,8 @@ VkResult find_image_view(ImageViews& views, const ImageViewKey& key, uint64_t fr
   VkImageView made = VK_NULL_HANDLE;
   if (const VkResult result = create(views.device, key, made); result != VK_SUCCESS) return result;
   views.device.vk.vkDestroyImageView(views.device.device, oldest->view, views.device.allocator);
-  *oldest = {key, made, frame_index};
-  view = made;
+  *oldest = {key, made, frame_index, ++views.last_id};
+  view = {made, oldest->id};
   return VK_SUCCESS;
 }
 

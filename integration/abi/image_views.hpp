@@ -31,18 +31,25 @@ struct ImageViews {
     ImageViewKey key;
     VkImageView view = VK_NULL_HANDLE;
     uint64_t last_frame = 0; // last frame that used the view
+    uint64_t id = 0;         // of the view; unlike the handle, never reused
   };
   const vulkan::Device& device;
   std::vector<Entry> entries; // entries of one slot are adjacent
+  uint64_t last_id = 0;
 };
 
 // Allocates entries for `slots` slots. May throw std::bad_alloc; then nothing has changed.
 void reserve(ImageViews& views, size_t slots);
 
+struct KnownView {
+  VkImageView view = VK_NULL_HANDLE;
+  uint64_t id = 0;
+};
+
 // Returns the view for `key`, for use by frame `frame_index`. Replaces views that no frame after
 // `completed` uses. Errors: those of vkCreateImageView; VK_ERROR_TOO_MANY_OBJECTS if more images
 // alternate than there are entries. Allocates no host memory of the library.
 VkResult find_image_view(ImageViews& views, const ImageViewKey& key, uint64_t frame_index,
-                         uint64_t completed, VkImageView& view) noexcept;
+                         uint64_t completed, KnownView& view) noexcept;
 
 } // namespace dermis::abi

@@ -138,7 +138,7 @@ void run_kernel(State& state, const FrameInput& frame, uint32_t frame_slot, size
   const Kernel& kernel = *state.kernels[pass.kernel];
   vk.vkCmdBindPipeline(frame.command_buffer, VK_PIPELINE_BIND_POINT_COMPUTE, kernel.pipeline);
   const bool environment = state.environment.set_layout != VK_NULL_HANDLE;
-  const VkDescriptorSet sets[] = {state.descriptors.sets[frame_slot * state.passes.size() + p],
+  const VkDescriptorSet sets[] = {state.descriptors.sets[set_index(state, p, frame_slot)],
                                   environment ? state.environment.sets[frame_slot]
                                               : VK_NULL_HANDLE};
   vk.vkCmdBindDescriptorSets(frame.command_buffer, VK_PIPELINE_BIND_POINT_COMPUTE, kernel.layout, 0,

@@ -116,23 +116,50 @@ struct Environment {
   std::vector<std::shared_ptr<const EnvironmentTables>> tables_of_slot;
 };
 
-// One descriptor, written in every frame.
+// One descriptor of a pass.
 struct PortWrite {
-  uint32_t pass = 0, port = 0;
+  uint32_t port = 0;
+  VkDescriptorType type = VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE;
   // into State::placeholders; used while the port is unbound
   uint32_t placeholder = no_index;
 };
 
-// Descriptor sets 0, by frame slot and pass.
+// The object that a descriptor refers to.
+struct BoundPort {
+  VkImageView view = VK_NULL_HANDLE;
+  VkImageLayout layout = VK_IMAGE_LAYOUT_UNDEFINED;
+  VkBuffer buffer = VK_NULL_HANDLE;
+  VkDeviceSize offset = 0, bytes = VK_WHOLE_SIZE;
+  VkAccelerationStructureKHR structure = VK_NULL_HANDLE;
+  uint64_t content_id = 0, view_id = 0; // of a HostImage
+  // false: another object may have the same handles, so the descriptor is written again
+  bool comparable = true;
+  bool operator==(const BoundPort&) const = default;
+};
+
+// Descriptor sets of one pass, by frame slot and phase. The phase is the frame counter modulo
+// `phases`, a multiple of the instances that the pass alternates between.
+struct PassSets {
+  uint32_t phases = 1;
+  uint32_t first_set = 0;                  // into Descriptors::sets
+  uint32_t first_port = 0, port_count = 0; // into Descriptors::ports
+  uint32_t checked_count = 0;              // the first of the ports: compared in each frame
+  uint32_t first_bound = 0;                // into Descriptors::bound
+};
+
+// Descriptor sets 0.
 struct Descriptors {
   VkDescriptorPool pool = VK_NULL_HANDLE;
-  std::vector<VkDescriptorSet> sets; // [frame slot * passes + pass]; null for passes without kernel
+  std::vector<PassSets> passes; // by pass; passes without a kernel have no sets
+  std::vector<VkDescriptorSet> sets;
+  std::vector<uint8_t> is_written; // by set
   std::vector<PortWrite> ports;
-  std::vector<VkWriteDescriptorSet> writes; // parallel to `ports`; refer to the next two members
+  std::vector<BoundPort> bound; // by set: what its checked ports refer to
+  // Memory for the writes of one frame. Entry i of `writes` refers to entry i of the others.
+  std::vector<VkWriteDescriptorSet> writes;
   std::vector<VkDescriptorImageInfo> images;
   std::vector<VkDescriptorBufferInfo> buffers;
-  // entry i refers to `handles[i]`
-  std::vector<VkWriteDescriptorSetAccelerationStructureKHR> structures;
+  std::vector<VkWriteDescriptorSetAccelerationStructureKHR> structures; // refer to `handles`
   std::vector<VkAccelerationStructureKHR> handles;
 };
 
@@ -332,6 +359,8 @@ uint32_t access_now(const State& state, const PortAccess& port) noexcept;
 // ---- descriptors.cpp
 Error create_descriptors(State& state, const PassTypeRegistry& pass_types);
 void destroy_descriptors(State& state);
+// Returns the set of the pass in the current frame, as an index into Descriptors::sets.
+uint32_t set_index(const State& state, size_t pass, uint32_t frame_slot) noexcept;
 void write_descriptors(State& state, uint32_t frame_slot, const FrameInput& frame) noexcept;
 
 // ---- barriers.cpp

@@ -30,6 +30,7 @@ struct VulkanHost {
   // VK_KHR_pipeline_executable_properties is enabled; only with HostOptions::compile_only
   bool pipeline_statistics = false;
   uint64_t timestamp_mask = 0; // 0: the queue has no timestamps
+  uint64_t last_image = 0;     // Image::id
   ValidationLog log;
   // Contexts shared by the graphs of the engine and by the graphs of tools; null until first
   // created.

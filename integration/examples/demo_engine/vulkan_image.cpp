@@ -97,6 +97,7 @@ Image& Image::operator=(Image&& other) noexcept {
   std::swap(height, other.height);
   std::swap(mips, other.mips);
   std::swap(layers, other.layers);
+  std::swap(id, other.id);
   return *this;
 }
 
@@ -156,6 +157,7 @@ Result<Image> create_image(VulkanHost& host, const ImageDesc& desc) {
     return Error{ErrorKind::internal,
                  fmt::format("unknown format {}", static_cast<int>(desc.format))};
   Image image;
+  image.id = ++host.last_image;
   image.host = &host;
   image.format = desc.format;
   image.aspect = known->aspect;

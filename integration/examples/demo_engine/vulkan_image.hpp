@@ -34,6 +34,7 @@ struct Image {
   VkFormat format = VK_FORMAT_UNDEFINED;
   VkImageAspectFlags aspect = 0;
   uint32_t width = 0, height = 0, mips = 1, layers = 1;
+  uint64_t id = 0; // never reused on the host, unlike the handles
 
   Image() = default;
   Image(Image&& other) noexcept;

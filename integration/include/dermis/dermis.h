@@ -786,15 +786,17 @@ typedef struct dermis_image_binding {
   VkFormat format;
   VkImage image; /* 2-D, one sample, created with dermis_slot.usage */
   /* View of mip 0 and one layer; for depth formats of the depth aspect. May be null with a
-   * content_id: then the library creates a view and keeps it while the same image returns. */
+   * content_id: then the library creates a view and keeps it while the same image returns. A view
+   * that takes the place of a destroyed one needs a new content_id. */
   VkImageView view;
   uint32_t width, height; /* extent of mip 0 */
   dermis_image_state before, after;
   uint32_t layer;       /* first layer that is bound; 0 if layer_count is 0 */
   uint32_t layer_count; /* layers in these states; others are not accessed. 0: all layers */
   /* Your unique number of this image, never reused: Vulkan may give the handle of a destroyed image
-   * to a new one. 0: none; then nothing is kept from frame to frame. At most 8 images may alternate
-   * in a slot within the frames in flight. */
+   * to a new one. Descriptors are written only when it or the view changes. 0: none; then nothing is
+   * kept from frame to frame. At most 8 images may alternate in a slot within the frames in
+   * flight. */
   uint64_t content_id;
 } dermis_image_binding;
 #define DERMIS_IMAGE_BINDING_INIT \

@@ -31,12 +31,13 @@ public:
   VkImage make_image();
   VkImageView make_view();
 
-  uint64_t commands() const;     // number of vkCmd... calls
-  uint64_t barriers() const;     // number of vkCmdPipelineBarrier2 calls
-  uint64_t dispatches() const;   // number of vkCmdDispatch and vkCmdDispatchIndirect calls
-  uint64_t alive() const;        // objects created through the functions and not yet destroyed
-  uint64_t memory_bytes() const; // device memory allocated and not yet freed, bytes
-  uint64_t creations() const;    // calls that create an object or allocate, including failed calls
+  uint64_t commands() const;          // number of vkCmd... calls
+  uint64_t barriers() const;          // number of vkCmdPipelineBarrier2 calls
+  uint64_t dispatches() const;        // number of vkCmdDispatch and vkCmdDispatchIndirect calls
+  uint64_t descriptor_writes() const; // number of descriptors that vkUpdateDescriptorSets wrote
+  uint64_t alive() const;             // objects created through the functions and not yet destroyed
+  uint64_t memory_bytes() const;      // device memory allocated and not yet freed, bytes
+  uint64_t creations() const; // calls that create an object or allocate, including failed calls
 
   // Sets the capabilities of the queue family. Default: graphics, compute and transfer.
   void set_queue_flags(VkQueueFlags flags);

@@ -62,8 +62,12 @@ VKAPI_ATTR VkResult VKAPI_CALL allocate_sets(VkDevice device,
   return VK_SUCCESS;
 }
 
-VKAPI_ATTR void VKAPI_CALL update_sets(VkDevice, uint32_t, const VkWriteDescriptorSet*, uint32_t,
-                                       const VkCopyDescriptorSet*) {}
+VKAPI_ATTR void VKAPI_CALL update_sets(VkDevice device, uint32_t count,
+                                       const VkWriteDescriptorSet* writes, uint32_t,
+                                       const VkCopyDescriptorSet*) {
+  for (uint32_t i = 0; i < count; ++i)
+    state_of(device).descriptor_writes += writes[i].descriptorCount;
+}
 
 VKAPI_ATTR void VKAPI_CALL image_requirements(VkDevice, VkImage image,
                                               VkMemoryRequirements* needs) {

@@ -33,6 +33,13 @@ TEST_F(HistoryTest, TwoFramesBack_ReadsTheRightFrame) {
   expect_frames(result, {1, 1, 2, 2, 3, 3, 4});
 }
 
+// More instances than the descriptor sets of a pass have phases.
+TEST_F(HistoryTest, EightFramesBack_ReadsTheRightFrame) {
+  const SmallGraph g = counter(8);
+  const TestImage result = start(g, side, side);
+  expect_frames(result, {1, 1, 1, 1, 1, 1, 1, 1, 2, 2, 2, 2, 2, 2, 2, 2, 3});
+}
+
 TEST_F(HistoryTest, UpdatedInPlace_CountsAndRestartsAfterACut) {
   SmallGraph g{"export result", "history count", "image copy"};
   g.pass("look", "test.add", {{"a", "count@-1"}}, {{"target", "copy"}});

@@ -204,6 +204,7 @@ std::vector<dermis_image_binding> DermisTest::bindings(dermis_graph graph) {
     binding.height = image->second.height;
     binding.before = {sampled.layout, 0, sampled.stages, sampled.access, 0};
     binding.after = binding.before;
+    binding.content_id = image->second.id;
     bound.push_back(binding);
   }
   return bound;

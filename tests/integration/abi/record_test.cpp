@@ -188,7 +188,11 @@ TEST_F(Record, EveryWrongFieldIsNamedAndNothingIsRecorded) {
       {"bindings[0].slot is 99", [](auto&, auto& b) { b[0].slot = 99; }},
       {"a second time", [](auto&, auto& b) { b[1] = b[0]; }},
       {"bindings[0].image", [](auto&, auto& b) { b[0].image = VK_NULL_HANDLE; }},
-      {"bindings[0].view", [](auto&, auto& b) { b[0].view = VK_NULL_HANDLE; }},
+      {"bindings[0].view",
+       [](auto&, auto& b) {
+         b[0].view = VK_NULL_HANDLE;
+         b[0].content_id = 0;
+       }},
       {"r32f", [](auto&, auto& b) { b[0].format = VK_FORMAT_R32_SFLOAT; }},
       {"63x64", [](auto&, auto& b) { b[0].width = 63; }},
       {"before.layout", [](auto&, auto& b) { b[0].before.layout = VK_IMAGE_LAYOUT_UNDEFINED; }},

@@ -83,5 +83,94 @@ TEST(ContentIdOnTheNullDevice, CreatesAViewOnceAndDestroysIt) {
   EXPECT_EQ(host.device.creations(), creations);
 }
 
+// Descriptors that recording writes, on a device that counts them.
+struct DescriptorWrites : ::testing::Test {
+  static constexpr uint64_t warm_frames = 8;
+  NullHost host;
+
+  void start(uint32_t frames_in_flight) {
+    dermis_context_desc desc = host.context_desc();
+    desc.frames_in_flight = frames_in_flight;
+    ASSERT_OK(host.make_context(desc));
+    ASSERT_OK(host.make_graph());
+    host.make_bindings();
+  }
+  // Records a frame and returns the number of descriptors that it wrote.
+  uint64_t writes_of_a_frame() {
+    const uint64_t before = host.device.descriptor_writes();
+    EXPECT_OK(host.record());
+    return host.device.descriptor_writes() - before;
+  }
+  // Returns the writes of each of `count` frames.
+  std::vector<uint64_t> writes_of_frames(size_t count) {
+    std::vector<uint64_t> writes;
+    for (size_t i = 0; i < count; ++i)
+      writes.push_back(writes_of_a_frame());
+    return writes;
+  }
+};
+
+// The graph has histories: their images alternate in step with two frames in flight only.
+TEST_F(DescriptorWrites, OfUnchangedImages_AreNone) {
+  for (const uint32_t frames : {1u, 2u, 3u}) {
+    ASSERT_NO_FATAL_FAILURE(start(frames));
+    host.number_images();
+    EXPECT_GT(writes_of_a_frame(), 20u) << "the first frame writes all";
+    writes_of_frames(warm_frames);
+    EXPECT_EQ(writes_of_frames(6), std::vector<uint64_t>(6, 0)) << frames << " frames in flight";
+    host.give_up_views();
+    EXPECT_GT(writes_of_a_frame(), 0u) << "views of the library";
+    writes_of_frames(warm_frames);
+    EXPECT_EQ(writes_of_frames(6), std::vector<uint64_t>(6, 0)) << frames << " frames in flight";
+    host.destroy();
+    host.last_frame = 0;
+  }
+}
+
+TEST_F(DescriptorWrites, WithoutIds_AreThoseOfTheHostsImages) {
+  ASSERT_NO_FATAL_FAILURE(start(2));
+  const uint64_t all = writes_of_a_frame();
+  writes_of_frames(warm_frames);
+  const uint64_t each = writes_of_a_frame();
+  EXPECT_GT(each, 0u) << "the handles may be those of other images";
+  EXPECT_LT(each, all / 2);
+  host.number_images();
+  EXPECT_EQ(writes_of_frames(3), (std::vector<uint64_t>{each, each, 0}));
+}
+
+TEST_F(DescriptorWrites, OfAChangedImage_AreThoseOfItsPorts) {
+  ASSERT_NO_FATAL_FAILURE(start(2));
+  host.number_images();
+  writes_of_frames(warm_frames);
+  host.number_images();
+  const uint64_t of_all = writes_of_a_frame();
+  writes_of_a_frame();
+  uint64_t sum = 0, id = 1000;
+  for (dermis_image_binding& binding : host.bindings()) {
+    const auto expect_written = [&](const char* what) {
+      const std::vector<uint64_t> writes = writes_of_frames(3);
+      EXPECT_GT(writes[0], 0u) << what;
+      EXPECT_EQ(writes, (std::vector<uint64_t>{writes[0], writes[0], 0})) << what;
+      return writes[0];
+    };
+    binding.content_id = ++id;
+    sum += expect_written("another image with equal handles");
+    binding.view = host.device.make_view();
+    expect_written("another view of the image");
+  }
+  EXPECT_EQ(sum, of_all);
+}
+
+TEST_F(DescriptorWrites, SurviveADiscardedFrame) {
+  ASSERT_NO_FATAL_FAILURE(start(2));
+  host.number_images();
+  writes_of_frames(warm_frames);
+  host.number_images();
+  const uint64_t changed = writes_of_a_frame();
+  ASSERT_OK(dermis_view_discard(dermis_graph_view(host.graph), host.last_frame));
+  --host.last_frame;
+  EXPECT_EQ(writes_of_frames(3), (std::vector<uint64_t>{0, changed, 0}));
+}
+
 } // namespace
 } // namespace dermis::abi_test

@@ -76,12 +76,15 @@ void NullHost::make_bindings() {
     bindings_.push_back(image_for(slot));
 }
 
+void NullHost::number_images() {
+  for (dermis_image_binding& binding : bindings_)
+    binding.content_id = ++last_id_;
+}
+
 void NullHost::give_up_views() {
-  uint64_t id = 0;
-  for (dermis_image_binding& binding : bindings_) {
+  number_images();
+  for (dermis_image_binding& binding : bindings_)
     binding.view = VK_NULL_HANDLE;
-    binding.content_id = ++id;
-  }
 }
 
 // Allocates nothing itself, because tests count allocations.

@@ -25,8 +25,10 @@ public:
   // Returns a binding of a new image in general layout.
   dermis_image_binding image_for(const dermis_slot& slot);
   void make_bindings(); // Makes images for every slot.
+  std::vector<dermis_image_binding>& bindings() { return bindings_; }
   // Makes the context, the graph and images.
   dermis_result start();
+  void number_images();                                     // Gives each image a new content_id.
   void give_up_views();                                     // Uses content_ids instead of views.
   dermis_result reload(const std::string& text = "") const; // "" means the graph's own text.
   dermis_result set_profile(const std::string& text) const; // Sets profile 1.
@@ -43,6 +45,7 @@ public:
 
 private:
   std::vector<dermis_image_binding> bindings_;
+  uint64_t last_id_ = 0; // dermis_image_binding.content_id
 };
 
 // Callback for dermis_graph_reload_shaders: returns one kernel of the graph that does nothing.

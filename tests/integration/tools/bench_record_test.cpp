@@ -17,6 +17,7 @@ TEST_F(BenchRecord, RecordingAllocatesNothing) {
   ASSERT_GE(rows.size(), 4u);
   for (const nlohmann::json& row : rows) {
     EXPECT_EQ(row.at("allocations_per_frame"), 0.0) << row;
+    EXPECT_EQ(row.at("descriptor_writes_per_frame"), 0.0) << row;
     EXPECT_GE(row.at("commands_per_frame").get<double>(), 4.0 * row.at("passes").get<double>())
         << row;
     EXPECT_GT(row.at("us_per_frame").at("median").get<double>(), 0.0) << row;

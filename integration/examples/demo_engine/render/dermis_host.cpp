@@ -361,6 +361,7 @@ Result<> record_graph(DermisHost& host, const Renderer& renderer, const SceneSta
     binding.height = image.height;
     binding.before = rests;
     binding.after = rests;
+    binding.content_id = image.id;
     bindings.push_back(binding);
   }
   std::vector<dermis_buffer_binding> buffers;

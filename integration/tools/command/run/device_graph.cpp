@@ -197,6 +197,7 @@ demo::Result<> DeviceGraph::run(dermis_frame frame) {
     binding.before = c_state(slot.state);
     slot.state = resting_state(slot.slot.best_layout);
     binding.after = c_state(slot.state);
+    binding.content_id = slot.image.id;
     bindings.push_back(binding);
   }
   frame.bindings = bindings.data();

@@ -94,6 +94,7 @@ std::string CountedHost::bind() {
       binding.height = slot.height;
       binding.image = device_.make_image();
       binding.view = device_.make_view();
+      binding.content_id = ++last_image_;
       binding.before = {VK_IMAGE_LAYOUT_GENERAL, 0, VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT,
                         VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT, 0};
       binding.after = {VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, 0,

@@ -48,6 +48,7 @@ private:
   dermis_context context_ = nullptr;
   dermis_graph graph_ = nullptr;
   std::vector<dermis_image_binding> bindings_[image_sets];
+  uint64_t last_image_ = 0; // dermis_image_binding.content_id
   dermis_frame frame_ = DERMIS_FRAME_INIT;
 };
 

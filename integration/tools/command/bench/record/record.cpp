@@ -28,8 +28,9 @@ constexpr double goal_per_pass = 0.5; // microseconds
 struct RecordRow {
   std::string graph;
   uint32_t passes = 0, samples = 0;
-  double commands = 0.0, barriers = 0.0, allocations = 0.0; // per frame
-  Spread us;                                                // microseconds per frame
+  // per frame
+  double commands = 0.0, barriers = 0.0, descriptor_writes = 0.0, allocations = 0.0;
+  Spread us; // microseconds per frame
 
   double us_per_pass() const { return us.median / passes; }
   double goal() const { return goal_per_pass; }
@@ -88,7 +89,8 @@ demo::Result<RecordRow> measure_graph(const CountedInput& input, uint32_t sample
     if (auto run = input.hooks.recorded(); !run) return input_problem(run.error().text);
   std::vector<double> times;
   times.reserve(samples);
-  const uint64_t commands = host.device().commands(), barriers = host.device().barriers();
+  const uint64_t commands = host.device().commands(), barriers = host.device().barriers(),
+                 descriptor_writes = host.device().descriptor_writes();
   const uint64_t allocations = allocations_of_this_thread();
   for (uint32_t s = 0; s < samples && good; ++s) {
     const uint64_t begin = thread_nanoseconds();
@@ -106,6 +108,8 @@ demo::Result<RecordRow> measure_graph(const CountedInput& input, uint32_t sample
                    samples,
                    static_cast<double>(host.device().commands() - commands) / frames,
                    static_cast<double>(host.device().barriers() - barriers) / frames,
+                   static_cast<double>(host.device().descriptor_writes() - descriptor_writes) /
+                       frames,
                    static_cast<double>(allocated) / frames,
                    spread_of(times)};
 }
@@ -184,6 +188,7 @@ Suite record_suite() {
        {"passes", "passes", &Row::passes},
        {"commands_per_frame", "commands a frame", &Row::commands},
        {"barriers_per_frame", "barriers a frame", &Row::barriers},
+       {"descriptor_writes_per_frame", "descriptor writes a frame", &Row::descriptor_writes},
        {"allocations_per_frame", "allocations a frame", &Row::allocations},
        {"us_per_frame.median",
         "µs a frame, median",
