@@ -87,6 +87,14 @@ Error allocate_memory(const Device& device, const MemoryRequest& request,
   return {};
 }
 
+bool has_memory_type(const Device& device, uint32_t memory_types,
+                     VkMemoryPropertyFlags properties) {
+  MemoryRequest request;
+  request.memory_types = memory_types;
+  request.required = properties;
+  return choose_type(device, request).has_value();
+}
+
 void give_back_memory(const Device& device, const MemoryBlock& block) {
   if (device.host_memory.take == nullptr)
     device.vk.vkFreeMemory(device.device, block.memory, device.allocator); // unmaps

@@ -18,6 +18,8 @@ namespace dermis::vulkan {
 // unchanged. Free-threaded.
 Error allocate_memory(const Device& device, const MemoryRequest& request,
                       const std::string& subresource, MemoryBlock& block);
+// Returns whether a memory type among `memory_types` has all of the properties. Free-threaded.
+bool has_memory_type(const Device& device, uint32_t memory_types, VkMemoryPropertyFlags properties);
 // Frees the block; does nothing if the block is empty. Free-threaded.
 void give_back_memory(const Device& device, const MemoryBlock& block);
 

@@ -43,9 +43,9 @@ struct EnvironmentBinding {
   std::span<const std::byte> contents{};
 };
 
-// Holds the static buffers of an environment on the device: all except frame constants, counters
-// and samplers. Executors of one environment share the tables. The tables live as long as an
-// executor, or a frame in flight, uses them.
+// Holds the static buffers of an environment: all except frame constants, counters and samplers.
+// The memory is host-visible, and device-local if the device has memory that is both. All views of
+// an environment share the tables.
 class EnvironmentTables {
 public:
   // Creates tables. `device` must outlive them. Errors: host_memory, device_memory, device_lost,
@@ -62,6 +62,29 @@ public:
 
 private:
   explicit EnvironmentTables(std::unique_ptr<State> state);
+  std::unique_ptr<State> state_;
+};
+
+// The tables as the kernels of one view read them: `source` itself if that is device-local,
+// otherwise a copy in device-local memory, which the first recorded frame fills. Shared by the
+// executors of one view, whose frames must run in the order in which they were recorded. Lives as
+// long as an executor, or a frame in flight, uses it.
+class ViewTables {
+public:
+  // Creates tables. The device of `source` must outlive them. Errors: as EnvironmentTables;
+  // `tables` is then unchanged. May throw std::bad_alloc. Free-threaded.
+  static Error create(std::shared_ptr<const EnvironmentTables> source,
+                      std::shared_ptr<ViewTables>& tables);
+  ~ViewTables();
+  uint64_t bytes() const noexcept; // of device memory for the copy; 0: no copy
+
+  ViewTables(const ViewTables&) = delete;
+  ViewTables& operator=(const ViewTables&) = delete;
+  struct State; // internal
+  State& state() noexcept { return *state_; }
+
+private:
+  explicit ViewTables(std::unique_ptr<State> state);
   std::unique_ptr<State> state_;
 };
 
@@ -128,7 +151,7 @@ struct ExecutorInput {
   std::span<const KernelCode> kernels;             // at least those of the plan's pass types
   std::span<const EnvironmentBinding> environment; // may be empty
   // made from `environment`; null: the executor makes its own
-  std::shared_ptr<const EnvironmentTables> tables = nullptr;
+  std::shared_ptr<ViewTables> tables = nullptr;
   uint32_t frames_in_flight = 2;                   // 1 to max_frames_in_flight
   VkPipelineCache pipeline_cache = VK_NULL_HANDLE; // may be null
   // Must have been made for a set of plans that includes this one. The executor's transients use
@@ -255,7 +278,7 @@ public:
   // Makes the next recorded frame read `tables`, which must have the same bindings as the tables
   // before. Frames in flight keep the tables that they were recorded with. One thread at a time per
   // executor.
-  void set_tables(const std::shared_ptr<const EnvironmentTables>& tables) noexcept;
+  void set_tables(const std::shared_ptr<ViewTables>& tables) noexcept;
   // Releases tables that only frames up to `completed_frame_index` read. One thread at a time per
   // executor.
   void release_tables(uint64_t completed_frame_index) noexcept;

@@ -91,7 +91,9 @@ vulkan::Error make_executors(dermis_context_t& context, CompiledGraphInput& inpu
   executor.pass_types = &context.pass_types;
   executor.kernels = codes;
   executor.environment = environment;
-  executor.tables = input.device_tables;
+  if (vulkan::Error error = vulkan::ViewTables::create(input.device_tables, compiled_graph.tables))
+    return error;
+  executor.tables = compiled_graph.tables;
   executor.frames_in_flight = context.frames_in_flight;
   executor.pipeline_cache = context.pipeline_cache;
   executor.kernel_store = &kernels;

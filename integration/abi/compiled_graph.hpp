@@ -50,7 +50,7 @@ struct CompiledGraphInput {
   RuntimeShaders shaders;
   // of `profiles`, for the last program; may be null
   std::shared_ptr<const subsurface::KernelTables> tables;
-  // `tables` on the device, shared by all views; may be null
+  // `tables` in device memory, shared by all views; may be null
   std::shared_ptr<const vulkan::EnvironmentTables> device_tables;
 };
 
@@ -96,6 +96,7 @@ struct CompiledGraph {
   std::vector<choice::Configuration> configurations;
   // for the transients of all variants; null if there is only one
   std::unique_ptr<vulkan::HeapPool> heap_pool;
+  std::shared_ptr<vulkan::ViewTables> tables; // of all executors
   // new kernels, until the context has them; then null
   std::unique_ptr<vulkan::KernelStore> kernels;
   std::vector<RunnablePlan>
@@ -133,7 +134,7 @@ dermis_result build_compiled_graph(dermis_context_t& context, CompiledGraphInput
 dermis_result rejected(dermis_context_t& context, const vulkan::Error& error,
                        Diagnostics& diagnostics);
 
-// Fits the tables of input.profiles that passes `use`, and copies them to the device.
+// Fits the tables of input.profiles that passes `use`, and writes them to device memory.
 vulkan::Error make_tables(dermis_context_t& context, const subsurface::TableUse& use,
                           CompiledGraphInput& input);
 

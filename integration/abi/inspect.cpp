@@ -59,6 +59,7 @@ dermis_memory describe_view_memory(const CompiledGraph& compiled_graph) {
   }
   for (const auto& [types, bytes] : maximum)
     out.transient_unaliased_bytes += bytes;
+  out.constant_bytes += compiled_graph.tables->bytes();
   if (compiled_graph.heap_pool) out.transient_bytes = compiled_graph.heap_pool->bytes();
   return out;
 }

@@ -33,12 +33,25 @@ void add_settling(const PassTypeRegistry& pass_types, const CompiledGraph& compi
   }
 }
 
+// Writes the tables of `input` to device memory, and creates those of each view.
+vulkan::Error make_all_tables(dermis_graph_t& graph, CompiledGraphInput& input,
+                              std::vector<std::shared_ptr<vulkan::ViewTables>>& of_views) {
+  if (vulkan::Error error = make_tables(*graph.context, graph.input.tables->use, input))
+    return error;
+  vulkan::Error error;
+  for_each_view(graph, [&](const dermis_view_t&) {
+    if (!error) error = vulkan::ViewTables::create(input.device_tables, of_views.emplace_back());
+  });
+  return error;
+}
+
 // Replaces the tables after `input.profiles` has changed. Passes and plans stay unchanged.
 dermis_result replace_tables(dermis_graph_t& graph, CompiledGraphInput&& input, uint32_t id,
                              dermis_report* report) {
   dermis_context_t& context = *graph.context;
   Diagnostics diagnostics;
-  if (const vulkan::Error error = make_tables(context, graph.input.tables->use, input)) {
+  std::vector<std::shared_ptr<vulkan::ViewTables>> of_views;
+  if (const vulkan::Error error = make_all_tables(graph, input, of_views)) {
     const dermis_result result = rejected(context, error, diagnostics);
     return conclude(context.log, result, std::move(diagnostics), report);
   }
@@ -49,13 +62,17 @@ dermis_result replace_tables(dermis_graph_t& graph, CompiledGraphInput&& input, 
   }
   const dermis_result result = conclude(context.log, DERMIS_OK, std::move(diagnostics), report);
   if (result != DERMIS_OK) return result;
+  size_t number = 0;
   for_each_view(graph, [&](dermis_view_t& view) { // nothing fails from here on
+    const std::shared_ptr<vulkan::ViewTables>& tables = of_views[number++];
     const std::lock_guard lock(view.mutex);
     for (const std::shared_ptr<CompiledGraph>& compiled_graph :
          {std::cref(view.running), std::cref(view.next)})
-      if (compiled_graph)
+      if (compiled_graph) {
+        compiled_graph->tables = tables;
         for (const RunnablePlan& plan : compiled_graph->plans)
-          plan.executor->set_tables(input.device_tables);
+          plan.executor->set_tables(tables);
+      }
   });
   graph.input = std::move(input);
   return result;

@@ -1,5 +1,5 @@
 // Manages descriptor set 1: a host-visible buffer with frame constants and counters of every frame
-// in flight, the shared tables, and a linear sampler.
+// in flight, the view's tables, and a linear sampler.
 #include "framegraph/model/align_up.hpp"
 #include "framegraph/vulkan/create_infos.hpp"
 #include "framegraph/vulkan/executor/state.hpp"
@@ -159,10 +159,10 @@ Error create_environment_layout(const Device& device, std::span<const Environmen
   return call_error(result, "vkCreateDescriptorSetLayout", "environment");
 }
 
-Error create_environment_buffer(const Device& device, uint64_t bytes, const char* name,
+Error create_environment_buffer(const Device& device, const EnvironmentBuffer& description,
                                 VkBuffer& buffer, MemoryBlock& memory) {
-  const VkBufferCreateInfo info = buffer_create_info(
-      {bytes, VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT | VK_BUFFER_USAGE_STORAGE_BUFFER_BIT});
+  const char* const name = description.name;
+  const VkBufferCreateInfo info = buffer_create_info({description.bytes, description.usage});
   VkResult result = device.vk.vkCreateBuffer(device.device, &info, device.allocator, &buffer);
   if (result != VK_SUCCESS) {
     buffer = VK_NULL_HANDLE;
@@ -171,32 +171,28 @@ Error create_environment_buffer(const Device& device, uint64_t bytes, const char
   name_object(device, VK_OBJECT_TYPE_BUFFER, reinterpret_cast<uint64_t>(buffer), name);
   VkMemoryRequirements needs{};
   device.vk.vkGetBufferMemoryRequirements(device.device, buffer, &needs);
-  constexpr VkMemoryPropertyFlags visible =
-      VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
-  const MemoryRequest request{MemoryPurpose::constants,
-                              needs.memoryTypeBits,
-                              needs.size,
-                              needs.alignment,
-                              visible,
-                              VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT};
+  const MemoryRequest request{
+      MemoryPurpose::constants, needs.memoryTypeBits, needs.size,
+      needs.alignment,          description.required, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT};
   if (Error error = allocate_memory(device, request, name, memory)) return error;
   const VkBindBufferMemoryInfo bind{VK_STRUCTURE_TYPE_BIND_BUFFER_MEMORY_INFO, nullptr, buffer,
                                     memory.memory, memory.offset};
   result = device.vk.vkBindBufferMemory2(device.device, 1, &bind);
   if (result != VK_SUCCESS) return call_error(result, "vkBindBufferMemory2", name);
-  std::memset(memory.mapped, 0, bytes);
+  if ((description.required & VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT) != 0)
+    std::memset(memory.mapped, 0, description.bytes);
   return {};
 }
 
 Error create_environment(State& state, std::span<const EnvironmentBinding> bindings,
-                         const std::shared_ptr<const EnvironmentTables>& tables) {
+                         const std::shared_ptr<ViewTables>& tables) {
   if (bindings.empty()) return {};
   if (Error error = check_bindings(*state.device, bindings)) return error;
   const std::vector<uint64_t> offsets = lay_out(state, bindings);
   Environment& environment = state.environment;
   if (environment.total_bytes > 0) {
     if (Error error =
-            create_environment_buffer(*state.device, environment.total_bytes, "environment",
+            create_environment_buffer(*state.device, {"environment", environment.total_bytes},
                                       environment.buffer, environment.memory))
       return error;
     environment.mapped = static_cast<std::byte*>(environment.memory.mapped);
@@ -205,9 +201,11 @@ Error create_environment(State& state, std::span<const EnvironmentBinding> bindi
   if (Error error = create_sets(state, bindings)) return error;
   write_sets(state, bindings, offsets);
   environment.tables = tables;
-  if (environment.tables == nullptr)
-    if (Error error = EnvironmentTables::create(*state.device, bindings, environment.tables))
-      return error;
+  if (environment.tables == nullptr) {
+    std::shared_ptr<const EnvironmentTables> source;
+    if (Error error = EnvironmentTables::create(*state.device, bindings, source)) return error;
+    if (Error error = ViewTables::create(std::move(source), environment.tables)) return error;
+  }
   environment.tables_of_slot.resize(state.frames_in_flight);
   for (uint32_t slot = 0; slot < state.frames_in_flight; ++slot)
     refresh_tables(state, slot);

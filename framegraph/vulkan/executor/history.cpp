@@ -109,6 +109,7 @@ void remember_before_frame(State& state) noexcept {
   for (size_t i = 0; i < state.instances.size(); ++i)
     before.ready[i] = state.instances[i].ready;
   before.placeholders_ready = state.placeholders_ready;
+  before.copied_tables.reset();
   before.previous_rectangle = state.previous_rectangle;
   before.last_frame_index = state.last_frame_index;
   before.known = true;
@@ -127,6 +128,8 @@ bool Executor::discard_frame(uint64_t frame_index) noexcept {
   for (size_t i = 0; i < state.instances.size(); ++i)
     state.instances[i].ready = before.ready[i] != 0;
   state.placeholders_ready = before.placeholders_ready;
+  if (before.copied_tables != nullptr) before.copied_tables->state().is_copied = false;
+  before.copied_tables.reset();
   state.previous_rectangle = before.previous_rectangle;
   state.last_frame_index = before.last_frame_index;
   state.frame_of_slot[frame_slot] = 0; // recording cleared the counters of the slot's earlier frame

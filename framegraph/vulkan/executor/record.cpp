@@ -271,6 +271,7 @@ RecordResult Executor::record(const FrameInput& frame) noexcept {
   clear_counters(state, frame_slot);
   write_descriptors(state, frame_slot, frame);
   if (frame.memory_overwritten) record_memory_acquire(state, frame);
+  record_table_copy(state, commands);
   if (frame.before != nullptr)
     record_carried(state, *frame.before->state_, commands, frame_slot, frame.reset_history);
   begin_timestamps(state, commands, frame_slot);

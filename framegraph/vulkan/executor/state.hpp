@@ -88,10 +88,23 @@ struct EnvironmentTables::State {
   const Device& device;
   std::vector<TableBinding> bindings;
   uint64_t bytes = 0;
+  bool device_local = false;
   VkBuffer buffer = VK_NULL_HANDLE;
   MemoryBlock memory;
 
   explicit State(const Device& owner) : device(owner) {}
+  State(const State&) = delete;
+  State& operator=(const State&) = delete;
+  ~State();
+};
+
+struct ViewTables::State {
+  std::shared_ptr<const EnvironmentTables> source;
+  VkBuffer copy = VK_NULL_HANDLE; // null: kernels read `source`
+  MemoryBlock memory;
+  bool is_copied = false; // a recorded frame fills `copy`
+
+  explicit State(std::shared_ptr<const EnvironmentTables> from) : source(std::move(from)) {}
   State(const State&) = delete;
   State& operator=(const State&) = delete;
   ~State();
@@ -110,10 +123,10 @@ struct Environment {
   VkSampler sampler = VK_NULL_HANDLE;
   VkDescriptorSetLayout set_layout = VK_NULL_HANDLE; // null: no environment
   VkDescriptorPool pool = VK_NULL_HANDLE;
-  std::vector<VkDescriptorSet> sets;               // by frame slot
-  std::shared_ptr<const EnvironmentTables> tables; // tables of the next frame
+  std::vector<VkDescriptorSet> sets;  // by frame slot
+  std::shared_ptr<ViewTables> tables; // tables of the next frame
   // tables that `sets` refer to
-  std::vector<std::shared_ptr<const EnvironmentTables>> tables_of_slot;
+  std::vector<std::shared_ptr<ViewTables>> tables_of_slot;
 };
 
 // One descriptor of a pass.
@@ -225,8 +238,9 @@ struct BeforeFrame {
   };
   bool known = false;
   bool placeholders_ready = false;
-  std::vector<History> histories; // by history
-  std::vector<uint8_t> ready;     // by instance
+  std::shared_ptr<ViewTables> copied_tables; // that the frame fills; null: none
+  std::vector<History> histories;            // by history
+  std::vector<uint8_t> ready;                // by instance
   Rectangle previous_rectangle;
   uint64_t last_frame_index = 0;
 };
@@ -302,15 +316,25 @@ void destroy_placeholders(State& state);
 
 // ---- environment.cpp
 Error create_environment(State& state, std::span<const EnvironmentBinding> bindings,
-                         const std::shared_ptr<const EnvironmentTables>& tables);
+                         const std::shared_ptr<ViewTables>& tables);
 void destroy_environment(State& state);
 // Creates the layout of set 1. `layout` is null after an error.
 Error create_environment_layout(const Device& device, std::span<const EnvironmentBinding> bindings,
                                 VkDescriptorSetLayout& layout);
 uint64_t table_alignment(const Device& device); // of each binding's offset in a buffer
-// Allocates zeroed, host-visible memory for set 1. The caller frees `buffer` and `memory`, also on
-// an error.
-Error create_environment_buffer(const Device& device, uint64_t bytes, const char* name,
+inline constexpr VkMemoryPropertyFlags host_memory_properties =
+    VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
+// A buffer that set 1 refers to.
+struct EnvironmentBuffer {
+  const char* name = "";
+  uint64_t bytes = 0;
+  VkBufferUsageFlags usage =
+      VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT | VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
+  VkMemoryPropertyFlags required = host_memory_properties;
+};
+// Creates the buffer and allocates its memory, which is zeroed if it is host-visible. The caller
+// frees `buffer` and `memory`, also on an error.
+Error create_environment_buffer(const Device& device, const EnvironmentBuffer& description,
                                 VkBuffer& buffer, MemoryBlock& memory);
 
 // ---- environment_tables.cpp
@@ -318,6 +342,8 @@ Error create_environment_buffer(const Device& device, uint64_t bytes, const char
 bool is_table(size_t binding, const EnvironmentBinding& given);
 // Points set 1 of a frame slot at the newest tables. No frame in flight may use the slot.
 void refresh_tables(State& state, uint32_t frame_slot) noexcept;
+// Records the copy of the newest tables to device-local memory, unless an earlier frame did.
+void record_table_copy(State& state, VkCommandBuffer commands) noexcept;
 void clear_counters(State& state, uint32_t frame_slot) noexcept;
 void write_frame_constants(State& state, uint32_t frame_slot,
                            std::span<const std::byte> constants) noexcept;

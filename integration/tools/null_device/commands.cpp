@@ -24,6 +24,13 @@ VKAPI_ATTR void VKAPI_CALL count_dispatch(VkCommandBuffer commands, Arguments...
   ++state.dispatches;
 }
 
+VKAPI_ATTR void VKAPI_CALL count_buffer_copy(VkCommandBuffer commands, VkBuffer, VkBuffer, uint32_t,
+                                             const VkBufferCopy*) {
+  NullDeviceState& state = state_of(commands);
+  ++state.commands;
+  ++state.buffer_copies;
+}
+
 template <class Function> NullEntry command(const char* name) {
   const Function function = &count; // deduces the arguments from Function
   return entry(name, function);
@@ -40,7 +47,7 @@ PFN_vkVoidFunction command_function(const char* name) {
       entry<PFN_vkCmdDispatch>("vkCmdDispatch", &count_dispatch),
       entry<PFN_vkCmdDispatchIndirect>("vkCmdDispatchIndirect", &count_dispatch),
       command<PFN_vkCmdFillBuffer>("vkCmdFillBuffer"),
-      command<PFN_vkCmdCopyBuffer>("vkCmdCopyBuffer"),
+      entry("vkCmdCopyBuffer", &count_buffer_copy),
       command<PFN_vkCmdCopyImage>("vkCmdCopyImage"),
       command<PFN_vkCmdClearColorImage>("vkCmdClearColorImage"),
       command<PFN_vkCmdResetQueryPool>("vkCmdResetQueryPool"),

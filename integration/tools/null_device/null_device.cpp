@@ -105,6 +105,14 @@ uint64_t NullDevice::barriers() const {
   return state_->barriers;
 }
 
+uint64_t NullDevice::buffer_copies() const {
+  return state_->buffer_copies;
+}
+
+void NullDevice::make_discrete() {
+  state_->discrete = true;
+}
+
 uint64_t NullDevice::descriptor_writes() const {
   return state_->descriptor_writes;
 }

@@ -34,11 +34,14 @@ public:
   uint64_t commands() const;          // number of vkCmd... calls
   uint64_t barriers() const;          // number of vkCmdPipelineBarrier2 calls
   uint64_t dispatches() const;        // number of vkCmdDispatch and vkCmdDispatchIndirect calls
+  uint64_t buffer_copies() const;     // number of vkCmdCopyBuffer calls
   uint64_t descriptor_writes() const; // number of descriptors that vkUpdateDescriptorSets wrote
   uint64_t alive() const;             // objects created through the functions and not yet destroyed
   uint64_t memory_bytes() const;      // device memory allocated and not yet freed, bytes
   uint64_t creations() const; // calls that create an object or allocate, including failed calls
 
+  // Makes device-local memory invisible to the host. Call it before contexts are created.
+  void make_discrete();
   // Sets the capabilities of the queue family. Default: graphics, compute and transfer.
   void set_queue_flags(VkQueueFlags flags);
   // Makes the creation call number `creation` from now (1 is the next) fail with `result`. 0

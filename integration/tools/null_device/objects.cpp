@@ -7,19 +7,26 @@
 namespace dermis {
 namespace {
 
-constexpr uint64_t image_alignment = 65536, buffer_alignment = 256; // bytes, as on desktop devices
-constexpr uint32_t all_memory_types = 1;
+// bytes, as on desktop devices
+constexpr uint64_t image_alignment = 65536, buffer_alignment = 256;
 constexpr uint64_t largest_texel = 16; // bytes: four 32-bit channels
 
 // Upper bound: the largest texel, and a mip chain as a third more.
 VkMemoryRequirements needs_of(const VkImageCreateInfo& info) {
   const uint64_t texels = uint64_t{info.extent.width} * info.extent.height * info.arrayLayers;
   const uint64_t bytes = texels * largest_texel * (info.mipLevels > 1 ? 4 : 3) / 3;
-  return {align_up(bytes, image_alignment), image_alignment, all_memory_types};
+  return {align_up(bytes, image_alignment), image_alignment, 0};
 }
 
 VkMemoryRequirements needs_of(const VkBufferCreateInfo& info) {
-  return {align_up(info.size, buffer_alignment), buffer_alignment, all_memory_types};
+  return {align_up(info.size, buffer_alignment), buffer_alignment, 0};
+}
+
+template <class Info>
+VkMemoryRequirements needs_on(const NullDeviceState& state, const Info& info) {
+  VkMemoryRequirements needs = needs_of(info);
+  needs.memoryTypeBits = memory_types(state);
+  return needs;
 }
 
 template <class Info, class Handle>
@@ -30,7 +37,9 @@ VKAPI_ATTR VkResult VKAPI_CALL create(VkDevice device, const Info* info,
   uint64_t bytes = 0;
   if constexpr (requires { info->allocationSize; }) bytes = info->allocationSize;
   NullObject* object = add_object(state, bytes);
-  if constexpr (requires { needs_of(*info); }) object->needs = needs_of(*info);
+  if constexpr (requires { needs_of(*info); }) object->needs = needs_on(state, *info);
+  if constexpr (requires { info->memoryTypeIndex; })
+    object->host_visible = !state.discrete || info->memoryTypeIndex == host_memory_type;
   *handle = reinterpret_cast<Handle>(object);
   return VK_SUCCESS;
 }
@@ -79,16 +88,16 @@ VKAPI_ATTR void VKAPI_CALL buffer_requirements(VkDevice, VkBuffer buffer,
   *needs = object_of(buffer).needs;
 }
 
-VKAPI_ATTR void VKAPI_CALL device_image_requirements(VkDevice,
+VKAPI_ATTR void VKAPI_CALL device_image_requirements(VkDevice device,
                                                      const VkDeviceImageMemoryRequirements* query,
                                                      VkMemoryRequirements2* needs) {
-  needs->memoryRequirements = needs_of(*query->pCreateInfo);
+  needs->memoryRequirements = needs_on(state_of(device), *query->pCreateInfo);
 }
 
-VKAPI_ATTR void VKAPI_CALL device_buffer_requirements(VkDevice,
+VKAPI_ATTR void VKAPI_CALL device_buffer_requirements(VkDevice device,
                                                       const VkDeviceBufferMemoryRequirements* query,
                                                       VkMemoryRequirements2* needs) {
-  needs->memoryRequirements = needs_of(*query->pCreateInfo);
+  needs->memoryRequirements = needs_on(state_of(device), *query->pCreateInfo);
 }
 
 template <class Info> VKAPI_ATTR VkResult VKAPI_CALL bind(VkDevice device, uint32_t, const Info*) {
@@ -100,6 +109,7 @@ VKAPI_ATTR VkResult VKAPI_CALL map_memory(VkDevice device, VkDeviceMemory memory
                                           void** data) {
   if (const VkResult result = count_creation(state_of(device)); result != VK_SUCCESS) return result;
   NullObject& object = object_of(memory);
+  if (!object.host_visible) return VK_ERROR_MEMORY_MAP_FAILED;
   if (!object.contents) object.contents = std::make_unique<std::byte[]>(object.bytes);
   *data = object.contents.get() + offset;
   return VK_SUCCESS;

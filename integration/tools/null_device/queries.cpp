@@ -32,9 +32,18 @@ VKAPI_ATTR void VKAPI_CALL properties(VkPhysicalDevice, VkPhysicalDeviceProperti
   limits.nonCoherentAtomSize = 1;
 }
 
-VKAPI_ATTR void VKAPI_CALL memory_properties(VkPhysicalDevice,
+VKAPI_ATTR void VKAPI_CALL memory_properties(VkPhysicalDevice physical,
                                              VkPhysicalDeviceMemoryProperties* out) {
   *out = {};
+  if (state_of(physical).discrete) {
+    out->memoryTypeCount = out->memoryHeapCount = 2;
+    out->memoryTypes[device_memory_type] = {VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT, 0};
+    out->memoryTypes[host_memory_type] = {
+        VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT, 1};
+    out->memoryHeaps[0] = {VkDeviceSize{1} << 40, VK_MEMORY_HEAP_DEVICE_LOCAL_BIT};
+    out->memoryHeaps[1] = {VkDeviceSize{1} << 40, 0};
+    return;
+  }
   out->memoryTypeCount = out->memoryHeapCount = 1;
   out->memoryTypes[0].propertyFlags = VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT |
                                       VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT |

@@ -15,23 +15,32 @@ namespace dermis {
 struct NullObject {
   VkMemoryRequirements needs{};          // images and buffers
   uint64_t bytes = 0;                    // memory objects
+  bool host_visible = true;              // memory objects
   std::unique_ptr<std::byte[]> contents; // mapped memory
 };
 
 struct NullDeviceState {
   // First member: loaders store a pointer here and layers read that pointer.
   void* dispatch = nullptr;
-  std::atomic<uint64_t> commands = 0, barriers = 0, dispatches = 0, descriptor_writes = 0;
+  std::atomic<uint64_t> commands = 0, barriers = 0, dispatches = 0, descriptor_writes = 0,
+                        buffer_copies = 0;
   std::atomic<VkResult> query_failure = VK_SUCCESS;
   std::atomic<VkQueueFlags> queue_flags =
       VK_QUEUE_GRAPHICS_BIT | VK_QUEUE_COMPUTE_BIT | VK_QUEUE_TRANSFER_BIT;
-  std::mutex mutex; // guards all following members
+  std::atomic<bool> discrete = false; // device-local memory is not host-visible
+  std::mutex mutex;                   // guards all following members
   uint64_t memory_bytes = 0, creations = 0;
   uint64_t failing_creation = 0;
   VkResult failure = VK_SUCCESS;
   std::unordered_set<NullObject*> alive;
   ~NullDeviceState();
 };
+
+// Memory types of a device whose device-local memory is not host-visible.
+inline constexpr uint32_t device_memory_type = 0, host_memory_type = 1;
+inline uint32_t memory_types(const NullDeviceState& state) {
+  return state.discrete ? 1u << device_memory_type | 1u << host_memory_type : 1u;
+}
 
 template <class Handle> NullDeviceState& state_of(Handle dispatchable) {
   return *reinterpret_cast<NullDeviceState*>(dispatchable);

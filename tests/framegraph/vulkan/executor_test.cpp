@@ -179,7 +179,7 @@ TEST_F(ExecutorTest, TheEnvironmentGivesTablesAndALinearSampler) {
   EXPECT_FLOAT_EQ(texels[width - 1], 2.0f * (1.0f + 4.0f * 20.0f)); // Clamped to the edge.
 }
 
-TEST_F(ExecutorTest, PassesCountInOrder) {
+TEST_F(ExecutorTest, CountersAreZeroAtTheStartOfAFrame) {
   counters = true;
   SmallGraph g{"export first", "export second", "export third"};
   for (const char* name : {"first", "second", "third"})
