@@ -49,7 +49,8 @@ PassTypeRegistry make_pass_types() {
                                &restir_initial_type,
                                &restir_resolve_type,
                                &restir_temporal_type,
-                               &restir_spatial_type}) {
+                               &restir_spatial_type,
+                               &sample_demand_type}) {
     PassType known = *type;
     known.needs = needs_of(known.name);
     known.serves_scattering =

@@ -24,10 +24,27 @@ constexpr Port tile_error_ports[] = {
 };
 constexpr PassTypeSetting tile_error_settings[] = {below};
 
+constexpr Port before =
+    port::optional(port::read_buffer("before", "uint", "samples_per_tile of the previous frame"));
+constexpr Port demand = port::read_buffer(
+    "demand", "uint",
+    "per run of 1,024 tiles in row order: the cost of the steps of samples that its tiles can "
+    "take, by bin of error reduction per cost (256 bins)");
+
+constexpr Port sample_demand_ports[] = {
+    port::classes,
+    port::tile_errors,
+    before,
+    port::writer_of(demand),
+};
+
 constexpr Port allocate_samples_ports[] = {
     port::classes,
     port::tile_errors,
-    port::optional(port::read_buffer("before", "uint", "samples_per_tile of the previous frame")),
+    before,
+    // Unbound: each group sums the costs of all tiles, which is slow on a GPU.
+    port::optional(demand),
+    port::list_state,
     port::writer_of(port::samples_per_tile),
     port::writer_of(port::tiles),
     port::writer_of(port::arguments),
@@ -57,6 +74,16 @@ const PassType tile_error_estimate_type{
     .dispatch = over_tiles,
 };
 
+const PassType sample_demand_type{
+    .name = "subsurface.sample_demand",
+    .shader = "sap/subsurface_sample_demand",
+    .doc = "Sums the cost of the steps of samples that tiles can take, for "
+           "subsurface.allocate_samples.",
+    .ports = sample_demand_ports,
+    .settings = {},
+    .dispatch = over_tile_runs,
+};
+
 const PassType allocate_samples_type{
     .name = "subsurface.allocate_samples",
     .shader = "sap/subsurface_allocate_samples",
@@ -65,7 +92,7 @@ const PassType allocate_samples_type{
            "spent.",
     .ports = allocate_samples_ports,
     .settings = {},
-    .dispatch = single_group,
+    .dispatch = over_tile_runs,
 };
 
 const PassType tile_refine_type{

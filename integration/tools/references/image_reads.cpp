@@ -356,6 +356,7 @@ constexpr Entry entries[] = {
     {"subsurface.residual", residual},
     {"subsurface.accumulate", accumulate},
     {"subsurface.tile_error_estimate", tile_error},
+    {"subsurface.sample_demand", none},
     {"subsurface.allocate_samples", none},
     {"subsurface.tile_refine", refine_tiles},
     {"subsurface.tile_variance", contrast},

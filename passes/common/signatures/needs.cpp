@@ -8,6 +8,7 @@ namespace {
 constexpr uint32_t pixel = 1, tile = 8, cell = 32, region = 64;       // sides of squares
 constexpr uint32_t word = 4, range = 16, reservoir = 64, domain = 32; // bytes
 // dispatch: VkDispatchIndirectCommand and one word; level_heads: bytes.
+constexpr uint32_t demand_run = 256, demand_bytes = 1024;
 constexpr uint32_t dispatch = 16, levels = 9, level_heads = 1024;
 
 constexpr PortNeed needs[] = {
@@ -16,6 +17,7 @@ constexpr PortNeed needs[] = {
     {"tiles", tile, word, word},
     {"tile_errors", tile, word},
     {"samples_per_tile", tile, word},
+    {"demand", demand_run, demand_bytes}, // 1,024 tiles cover at least as much
     {"before", tile, word},
     {"reservoirs", pixel, reservoir},
     {"reservoirs_before", pixel, reservoir},
@@ -94,7 +96,7 @@ constexpr PortNeed needs[] = {
     {"surface_4", 16},
     {"surface_5", 32},
 };
-constexpr size_t buffers = 23;
+constexpr size_t buffers = 24;
 static_assert(needs[buffers].port == "lighting");
 
 } // namespace

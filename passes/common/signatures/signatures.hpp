@@ -33,7 +33,8 @@ extern const PassType sap_tiles_type, sap_setup_type, sap_down_type, sap_up_type
 // papers/residual_signatures.cpp
 extern const PassType refine_type, global_light_change_type, residual_type;
 // sap/sample_signatures.cpp
-extern const PassType tile_error_estimate_type, allocate_samples_type, tile_refine_type;
+extern const PassType tile_error_estimate_type, sample_demand_type, allocate_samples_type,
+    tile_refine_type;
 // papers/tile_variance_signature.cpp
 extern const PassType tile_variance_type;
 // probe_signature.cpp

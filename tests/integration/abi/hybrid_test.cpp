@@ -27,6 +27,7 @@ constexpr const char* unit_times = R"({ "dermis_calibration": 2, "device": "inve
   { "work": "subsurface.sap_up_layered level=2 variant=smooth storage=half", "base_us": 0, "group_us": 0, "spread": 0 },
   { "work": "subsurface.sap_gather variant=smooth storage=half", "base_us": 0, "group_us": 0, "spread": 0 },
   { "work": "subsurface.tile_error_estimate below=0.8", "base_us": 0, "group_us": 0, "spread": 0 },
+  { "work": "subsurface.sample_demand", "base_us": 0, "group_us": 0, "spread": 0 },
   { "work": "subsurface.allocate_samples", "base_us": 0, "group_us": 0, "spread": 0 },
   { "work": "subsurface.export_scattered texturing=post", "base_us": 0, "group_us": 0, "spread": 0 },
   { "work": "subsurface.combine texturing=post result=color", "base_us": 0, "group_us": 0, "spread": 0 } ] })";
@@ -257,7 +258,7 @@ struct Pair : Hybrid {
       { "work": "subsurface.allocate_samples", "base_us": 0, "group_us": 0, "spread": 0 },
       { "work": "subsurface.afis_tiles samples=16", "base_us": 0, "group_us": 1, "spread": 0 } ] })";
     for (const char* kind : {"classify", "tile_list", "setup", "separable", "tile_variance",
-                             "pyramid_setup", "pyramid_down", "light", "combine"})
+                             "sample_demand", "pyramid_setup", "pyramid_down", "light", "combine"})
       times.insert(times.rfind("] }"), std::string(", { \"work\": \"subsurface.") + kind +
                                            "\", \"base_us\": 0, \"group_us\": 0, \"spread\": 0 } ");
   }

@@ -2,16 +2,8 @@
 // sets: the order of a list varies.
 #include "passes/sap/sap_tiles.hpp"
 
-#include "framegraph/compile/compile.hpp"
-#include "framegraph/model/read_graph.hpp"
-#include "framegraph/text/diagnostic.hpp"
-#include "framegraph/vulkan/device_profile.hpp"
-#include "framegraph/vulkan/executor.hpp"
 #include "passes/common/dispatch.hpp"
-#include "passes/common/environment.hpp"
-#include "passes/common/kernels.hpp"
-#include "passes/common/pass_types.hpp"
-#include "tests/support/vulkan_fixture.hpp"
+#include "tests/shaders/sap/buffer_graph.hpp"
 
 #include "test_tile_classes.spv.h"
 #include "test_tile_lists.spv.h"
@@ -25,10 +17,10 @@
 namespace dermis::subsurface::tile_lists {
 namespace {
 
-using testing::TestImage;
+using testing::answer_columns;
 using vulkan::KernelShape;
+using Texel = testing::BufferTexel;
 
-constexpr uint32_t answer_columns = 1024;
 constexpr uint32_t scatters = 1, copies = 2, full_bit = 4;
 constexpr uint32_t groups_per_row = 32768;
 
@@ -88,102 +80,31 @@ std::string graph_text(uint32_t rows, bool with_copies) {
       copy_resource, answer_columns, rows, copy_write);
 }
 
-using Texel = std::array<uint32_t, 4>;
-
 struct Answers {
   std::vector<Texel> arguments, lists;
   FrameCounters counters;
 };
 
-class TileLists : public testing::VulkanTest {
+class TileLists : public testing::BufferGraphTest {
 protected:
   // Runs both list kernels on classes of the tiles of a view.
   void run(View view, const std::vector<uint32_t>& classes, bool with_copies, KernelShape shape,
            Answers& answers) {
-    auto host = device_input<vulkan::DeviceInput>();
-    host.kernel_shape = shape;
-    vulkan::Device dermis_device;
-    const vulkan::Error made = vulkan::make_device(host, dermis_device);
-    ASSERT_FALSE(made) << made.text;
-    PassTypeRegistry pass_types = make_pass_types();
-    pass_types.add({"test.classes", "test_tile_classes", "", classes_ports, {}, over_tile_grid});
-    pass_types.add({"test.lists", "test_tile_lists", "", lists_ports, {}, over_written_image});
-    const size_t entries = 2 * (classes.size() + 64);
-    const auto rows = static_cast<uint32_t>(1 + ceil_div(entries, answer_columns));
-    Diagnostics diagnostics;
-    const auto document = parse_document("lists.json", graph_text(rows, with_copies), diagnostics);
-    ASSERT_TRUE(document);
-    const auto graph = read_graph(*document, pass_types, diagnostics);
-    ASSERT_TRUE(graph) << format_as_json(diagnostics);
-    const DeviceProfile profile = vulkan::device_profile(dermis_device);
-    CompileInput compiled;
-    compiled.graph = &*graph;
-    compiled.pass_types = &pass_types;
-    compiled.device = &profile;
-    compiled.view_width = view.width;
-    compiled.view_height = view.height;
-    compiled.bound.assign(graph->resources.size(), true);
-    const auto plan = compile(compiled, diagnostics);
-    ASSERT_TRUE(plan) << format_as_json(diagnostics);
-
-    std::vector<vulkan::KernelCode> kernels = {{"test_tile_classes", test_tile_classes_spirv},
-                                               {"test_tile_lists", test_tile_lists_spirv}};
-    for (const Kernel& kernel : embedded_kernels())
-      kernels.push_back({kernel.shader, kernel.spirv});
-    std::vector<float> questions(classes.begin(), classes.end());
-    questions.resize(std::max<size_t>(ceil_div(questions.size(), 4) * 4, 64));
-    using vulkan::EnvironmentType;
-    constexpr std::byte zeros[256] = {};
-    const auto buffer = [](std::span<const std::byte> bytes) {
-      return vulkan::EnvironmentBinding{EnvironmentType::storage_buffer, bytes.size(), bytes};
-    };
-    const vulkan::EnvironmentBinding environment[] = {
-        {EnvironmentType::uniform_buffer, sizeof(FrameConstants), {}},
-        buffer(zeros),
-        buffer(testing::bytes_of(questions)),
-        {EnvironmentType::linear_sampler, 0, {}},
-        buffer(zeros),
-        buffer(zeros),
-        {EnvironmentType::counters, sizeof(FrameCounters), {}},
-    };
-    vulkan::ExecutorInput input;
-    input.device = &dermis_device;
-    input.graph = &*graph;
-    input.pass_types = &pass_types;
-    input.plan = &plan->plan;
-    input.kernels = kernels;
-    input.environment = environment;
-    std::unique_ptr<vulkan::Executor> executor;
-    const vulkan::Error error = vulkan::Executor::create(input, executor);
-    ASSERT_FALSE(error) << error.text;
-
-    const TestImage image =
-        make_image(VK_FORMAT_R32G32B32A32_UINT, answer_columns, rows, VK_IMAGE_USAGE_STORAGE_BIT);
-    transition(image, VK_IMAGE_LAYOUT_GENERAL);
-    constexpr vulkan::HostState at_rest{VK_IMAGE_LAYOUT_GENERAL, VK_QUEUE_FAMILY_IGNORED,
-                                        VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
-                                        VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT};
-    const vulkan::HostImage bound[] = {{image.image, image.view, at_rest, at_rest}};
-    FrameConstants constants{};
-    constants.rect[2] = static_cast<int32_t>(view.width);
-    constants.rect[3] = static_cast<int32_t>(view.height);
-    constants.tiles[0] = static_cast<int32_t>(view.across());
-    constants.tiles[1] = static_cast<int32_t>(view.down());
-    vulkan::FrameInput frame;
-    frame.command_buffer = begin_commands();
-    frame.images = bound;
-    frame.frame_constants = std::as_bytes(std::span(&constants, 1));
-    frame.rectangle = {0, 0, view.width, view.height};
-    frame.frame_index = 1;
-    const vulkan::RecordResult result = executor->record(frame);
-    ASSERT_FALSE(result) << result.text;
-    submit(frame.command_buffer);
-    const auto texels = testing::values_of<Texel>(download(image, VK_IMAGE_LAYOUT_GENERAL));
-    wait();
-    answers.arguments.assign(texels.begin(), texels.begin() + answer_columns);
-    answers.lists.assign(texels.begin() + answer_columns, texels.end());
-    ASSERT_TRUE(executor->read_counters(1, {reinterpret_cast<uint32_t*>(&answers.counters),
-                                            sizeof(FrameCounters) / sizeof(uint32_t)}));
+    testing::BufferGraph input{view.width, view.height};
+    input.rows = static_cast<uint32_t>(1 + ceil_div(2 * (classes.size() + 64), answer_columns));
+    input.text = graph_text(input.rows, with_copies);
+    input.questions.assign(classes.begin(), classes.end());
+    input.shape = shape;
+    input.own = {
+        {{"test.classes", "classes", "", classes_ports, {}, over_tile_grid},
+         test_tile_classes_spirv},
+        {{"test.lists", "lists", "", lists_ports, {}, over_written_image}, test_tile_lists_spirv}};
+    testing::BufferGraphAnswers found;
+    run_graph(input, found);
+    if (HasFatalFailure()) return;
+    answers.arguments.assign(found.texels.begin(), found.texels.begin() + answer_columns);
+    answers.lists.assign(found.texels.begin() + answer_columns, found.texels.end());
+    answers.counters = found.counters;
   }
 };
 
