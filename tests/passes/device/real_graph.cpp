@@ -140,8 +140,9 @@ struct Draft {
     for (Json& pass : part["passes"]) {
       const std::string type = pass["type"];
       if (type == "subsurface.combine" && !puts_back) continue;
-      // If the part writes light back, light is the host's image.
-      rename_pass(pass, prefix, type == "subsurface.combine" ? resources : redirected, settings);
+      // If a pass writes light back, light is the host's image.
+      const bool writes_light = pass.contains("write") && pass["write"].contains("lighting");
+      rename_pass(pass, prefix, writes_light ? resources : redirected, settings);
       if (!graph["passes"].empty() && chance(10)) {
         const Json& earlier = graph["passes"][random.below(graph["passes"].size())];
         pass["after"] = Json::array({{{"pass", earlier["pass"]}, {"reason", "drawn"}}});
