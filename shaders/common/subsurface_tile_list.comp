@@ -49,11 +49,12 @@ void main() {
     base = atomicAdd(list_state_data[0], listed);
   barrier();
   at += base;
+  uint across = uint(frame.tiles.x);
+  uvec2 tile = uvec2(first % across, first / across);
   [[unroll]] for (uint i = 0u; i < run; ++i) {
-    if (class_of_tile(entries[i]) == class_none)
-      continue;
-    uint index = first + i, across = uint(frame.tiles.x);
-    tiles_data[1u + at++] = pack_tile(uvec2(index % across, index / across), entries[i]);
+    if (class_of_tile(entries[i]) != class_none)
+      tiles_data[1u + at++] = pack_tile(tile, entries[i]);
+    tile = tile.x + 1u < across ? tile + uvec2(1u, 0u) : uvec2(0u, tile.y + 1u);
   }
   if (!last_group())
     return;

@@ -182,11 +182,13 @@ void main() {
     atomicAdd(counters.sampled_tiles[lane], tiles_by_steps[lane]);
   barrier();
   at += base;
-  [[unroll]] for (uint i = 0u; i < run; ++i)
-    if (steps_by_tile[i] > 0u) {
-      uint tile = first + i, across = uint(frame.tiles.x);
-      tiles_data[1u + at++] = tile % across | (tile / across) << 15;
-    }
+  uint across = uint(frame.tiles.x);
+  uvec2 tile = uvec2(first % across, first / across);
+  [[unroll]] for (uint i = 0u; i < run; ++i) {
+    if (steps_by_tile[i] > 0u)
+      tiles_data[1u + at++] = tile.x | tile.y << 15;
+    tile = tile.x + 1u < across ? tile + uvec2(1u, 0u) : uvec2(0u, tile.y + 1u);
+  }
   if (last_group() && lane == 0u)
     write_arguments();
 }

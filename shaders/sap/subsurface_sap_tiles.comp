@@ -76,8 +76,11 @@ void append_region(ivec2 region) {
 void list_coarse_levels() {
   for (int i = lane(); i < sap_coarse_words; i += lanes)
     coarse_flags[i] = 0u;
+  uint word = lane() < state_words ? state_word(lane()) : 0u;
   if (lane() < sap_levels)
-    listed[lane()] = lane() < region_levels ? state_word(lane()) : 0u;
+    listed[lane()] = lane() < region_levels ? word : 0u;
+  if (lane() == state_scatters)
+    scatters = word;
   barrier();
   ivec2 tiles = sap_level_tiles(coarse_level);
   for (int i = lane(); i < tiles.x * tiles.y; i += lanes)
@@ -164,8 +167,6 @@ void main() {
   }
   if (!last_group())
     return;
-  if (lane() == 0)
-    scatters = state_word(state_scatters);
   list_coarse_levels();
   if (lane() == 0)
     write_arguments();

@@ -227,7 +227,11 @@ def serial_parallel_tiles(model):
 # sap_tiles with one group per region, from ACO's assembly of navi21: a region's lists, and levels 4
 # to 8 by the group that ends last. The regions' subgroups run at once, so both take one latency.
 LIST_REGION = dict(valu=720, buf=21, vm=6, lg=35, W=13)
-LIST_COARSE = dict(valu=1400, buf=6, vm=7, lg=70, W=13)
+LIST_COARSE = dict(valu=1400, buf=5, vm=6, lg=70, W=13)
+
+
+# tile_list, whose last group only writes the arguments.
+LIST_RUN = dict(valu=236, trans=1, qmul=3, buf=18, vm=5, lg=20, W=16)
 
 
 def lists_by_region(model):
@@ -359,8 +363,10 @@ def add_built(model, technique, built, graph):
         tiles = model.tiles[int(level.group(1)) if level else 0]
         if kernel == "classify":
             model.add(technique, one["pass"], model.view_tiles / 16, model.wave(**CLASSIFY), bytes_moved)
-        elif kernel in ("sap_tiles", "tile_list"):
+        elif kernel == "sap_tiles":
             model.add_serial(technique, one["pass"], lists_by_region(model))
+        elif kernel == "tile_list":
+            model.add_serial(technique, one["pass"], model.wave(**LIST_RUN)["lat"])
         elif "coarse" in one["pass"]:
             wave = built.wave(model, kernel)
             model.add(technique, one["pass"], model.tiles[COARSE_LEVEL], wave, bytes_moved)
