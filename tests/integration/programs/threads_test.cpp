@@ -19,7 +19,10 @@ struct Threads : ::testing::Test {
   NullHost host;
   std::string skin = read_text("configs/profiles/skin.json"),
               dipole = read_text("configs/profiles/skin_dipole.json");
-  void SetUp() override { ASSERT_OK(host.start()); }
+  void SetUp() override {
+    host.device.make_discrete(); // views copy tables
+    ASSERT_OK(host.start());
+  }
   // Runs all jobs concurrently.
   static void run(const std::vector<std::function<void()>>& jobs) {
     std::vector<std::thread> threads;
