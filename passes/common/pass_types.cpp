@@ -11,6 +11,7 @@ PassTypeRegistry make_pass_types() {
                                &tile_list_type,
                                &setup_type,
                                &burley_type,
+                               &separable_setup_type,
                                &separable_type,
                                &combine_type,
                                &export_scattered_type,

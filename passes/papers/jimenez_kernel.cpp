@@ -58,6 +58,10 @@ std::vector<SeparableRow> make_jimenez_rows(const ProfileShape& shape) {
           out[i][c] = static_cast<float>(weights[c][i]);
         if (i > 0) out[i][3] = static_cast<float>(offsets[i - 1] * d_px / d_of_red);
       }
+      ProfileShape in_pixels;
+      for (size_t c = 0; c < 3; ++c)
+        in_pixels[c] = scaled(shape[c], widest > 0 ? d_px / widest : 0.0);
+      fill_separable_ends(in_pixels, std::span(out, per_node));
     }
     first += size_t{separable_nodes} * per_node;
   }

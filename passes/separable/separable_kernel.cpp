@@ -213,8 +213,9 @@ std::vector<double> separable_offsets(double d_px, uint32_t taps) {
   std::vector<double> offsets(side);
   double last = 0;
   for (size_t i = 0; i < side; ++i) {
-    last = std::max(
-        last + 1, reach * std::pow(static_cast<double>(i + 1) / static_cast<double>(side), power));
+    const double part = static_cast<double>(i + 1) / static_cast<double>(side);
+    const double offset = reach * std::pow(part, power);
+    last = std::max(last + 1, taps >= separable_whole_taps ? std::round(offset) : offset);
     offsets[i] = last;
   }
   return offsets;
@@ -260,14 +261,55 @@ std::vector<SeparableRow> make_separable_rows(const ProfileShape& shape) {
                                      : SeparableFit{};
         for (size_t i = 0; i <= offsets.size(); ++i)
           out[i][c] = static_cast<float>(fit.weights[i]);
-        out[per_node - 1][c] = static_cast<float>(fit.centre);
+        out[separable_centre_row(taps)][c] = static_cast<float>(fit.centre);
       }
       for (size_t i = 0; i < offsets.size(); ++i)
         out[i + 1][3] = static_cast<float>(offsets[i]);
+      fill_separable_ends(channels, std::span(out, per_node));
       first += size_t{separable_nodes} * per_node;
     }
   }
   return rows;
+}
+
+double make_separable_decay(const ProfileShape& shape, double offset) {
+  constexpr std::array luminance = {0.2126, 0.7152, 0.0722}; // Rec. 709
+  double sum = 0, weight = 0;
+  for (size_t c = 0; c < 3; ++c) {
+    const double d = shape[c].d;
+    if (!(d > 0)) continue;
+    // Beyond a few hundred d, where shape_R is 0, the decay stays as it is there.
+    const double near = std::clamp(offset, 1e-3 * d, 100 * d);
+    const double far = near + std::max((std::numbers::sqrt2 - 1) * near, d);
+    double ratio = shape_R(shape[c], near) / shape_R(shape[c], far);
+    if (shape[c].model == ProfileModel::burley) ratio *= near / far;
+    sum += luminance[c] * std::log2(std::max(ratio, 1.0)) / (far - near);
+    weight += luminance[c];
+  }
+  // Above 0, so that an infinite rise gives a weight of 0.
+  return weight > 0 ? std::max(sum / weight, 1e-6) : 1.0;
+}
+
+void fill_separable_ends(const ProfileShape& shape, std::span<SeparableRow> node) {
+  const auto chosen = std::ranges::find_if(
+      separable_taps, [&](uint32_t taps) { return separable_rows_per_node(taps) == node.size(); });
+  const uint32_t taps = *chosen, side = (taps - 1) / 2;
+  SeparableEnds ends;
+  while (ends.dense < side && node[ends.dense + 1][3] == float(ends.dense + 1))
+    ++ends.dense;
+  std::array<double, 3> tail{};
+  for (uint32_t i = side; i > 0 && ends.used == 0; --i)
+    for (size_t c = 0; c < 3; ++c) {
+      tail[c] += 2 * double{node[i][c]};
+      if (tail[c] >= separable_min_tail) ends.used = i;
+    }
+  const bool burley = std::ranges::all_of(
+      shape, [](const ChannelShape& one) { return one.model == ProfileModel::burley; });
+  ends.core = burley ? 0 : separable_flat_core;
+  node[separable_ends_row(taps)] = {float(ends.dense), float(ends.used), float(ends.core), 0};
+  for (uint32_t i = 0; i < side; ++i)
+    node[separable_decay_row(taps) + i / 4][i % 4] =
+        static_cast<float>(make_separable_decay(shape, double{node[i + 1][3]}));
 }
 
 SeparableRow separable_row(std::span<const SeparableRow> rows, uint32_t choice, double d_px,

@@ -20,6 +20,10 @@ namespace dermis::subsurface {
 // choices, in the order of the pass setting
 inline constexpr uint32_t separable_taps[] = {11, 17, 25};
 inline constexpr uint32_t separable_max_side = 12; // maximum number of taps on one side
+// With this number of taps or more, offsets are whole pixels, and a tap reads the nearest pixel.
+// With fewer taps it interpolates between two pixels, because few taps at whole pixels have more
+// error.
+inline constexpr uint32_t separable_whole_taps = 25;
 
 // Nodes over log2 of the widest channel's d in pixels. Below the first node, its kernel is mixed
 // with the delta in proportion to d. Above the last node, offsets grow with d.
@@ -54,17 +58,54 @@ double pixel_kernel_transfer(double d_px, double fx, double fy);
 // that never scatters.
 double pixel_kernel_transfer(const ChannelShape& shape, double fx, double fy);
 
-// Returns the device rows of a profile for all choices of taps: separable_rows_per_profile rows {r,
-// g, b, offset px}. For each choice of taps in order and each node there are (taps - 1) / 2 + 2
-// rows: the weight at 0, the weights at each +-offset, then {centre r, g, b, 0}. `d` is per
-// channel, in any unit: only the ratios count. Takes about 0.1 s. Thread: any.
+// Returns the device rows of a profile for all choices of taps: separable_rows_per_profile rows.
+// For each choice of taps in order, each node has the rows
+//
+//   0                        weight at 0 {r, g, b, 0}
+//   1 .. side                weight at each +-offset {r, g, b, offset px}
+//   separable_centre_row     weight of the delta {r, g, b, 0}
+//   separable_ends_row       {dense, used, core, 0}, see SeparableEnds
+//   separable_decay_row ..   decay of each tap, four per row
+//
+// with side = (taps - 1) / 2. `d` is per channel, in any unit: only the ratios count. Takes about
+// 0.1 s. Thread: any.
 using SeparableRow = std::array<float, 4>;
 std::vector<SeparableRow> make_separable_rows(const std::array<double, 3>& d);
 // Returns the rows of any profile.
 std::vector<SeparableRow> make_separable_rows(const ProfileShape& shape);
 
+// A tap whose surface is deeper or nearer than the pixel's has the weight of its offset o times
+// (o + core) / (r + core) * 2^(-decay (r - o)) at the distance r in space, with the decay of
+// make_separable_decay.
+struct SeparableEnds {
+  uint32_t dense = 0; // taps of a side whose offsets are 1, 2, 3 ... px
+  uint32_t used = 0;  // taps of a side; the others together have less than separable_min_tail
+  double core = 0;    // px
+};
+inline constexpr double separable_min_tail = 1.0 / 4096; // of the kernel's sum, for every channel
+// Stands for an infinite core, of profiles that are flat at the centre.
+inline constexpr double separable_flat_core = 1e6;
+
+// Fills the rows of a node after separable_centre_row from the rows before. `shape` in pixels.
+void fill_separable_ends(const ProfileShape& shape, std::span<SeparableRow> node);
+
+// Returns the decay, log2 per pixel, of a tap at an offset in pixels: the mean of the channels'
+// decays, weighted by luminance. A channel's decay is that of its profile from the offset to a
+// larger distance: sqrt(2) times the offset (a slope of 45 degrees), or d more.
+double make_separable_decay(const ProfileShape& shape, double offset);
+
 constexpr uint32_t separable_rows_per_node(uint32_t taps) {
+  const uint32_t side = (taps - 1) / 2;
+  return side + 3 + (side + 3) / 4;
+}
+constexpr uint32_t separable_centre_row(uint32_t taps) {
+  return (taps - 1) / 2 + 1;
+}
+constexpr uint32_t separable_ends_row(uint32_t taps) {
   return (taps - 1) / 2 + 2;
+}
+constexpr uint32_t separable_decay_row(uint32_t taps) {
+  return (taps - 1) / 2 + 3;
 }
 inline constexpr uint32_t separable_rows_per_profile =
     separable_nodes *
@@ -74,7 +115,8 @@ inline constexpr uint32_t separable_rows_per_profile =
 inline constexpr uint32_t separable_kernel_rows_per_profile = 2 * separable_rows_per_profile;
 
 // Returns row `row` of a node for a widest channel of d_px, interpolated between nodes; `choice`
-// indexes separable_taps. shaders/separable/subsurface_separable.comp mirrors this function.
+// indexes separable_taps. shaders/separable/kernel.glsl mirrors this function.
+// Meaningless for separable_ends_row.
 SeparableRow separable_row(std::span<const SeparableRow> rows, uint32_t choice, double d_px,
                            uint32_t row);
 

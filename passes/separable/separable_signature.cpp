@@ -1,4 +1,4 @@
-// The separable kernel: one pass per axis.
+// The separable kernel: setup, then one pass per axis.
 
 #include "passes/common/signatures/signatures.hpp"
 
@@ -9,17 +9,24 @@ namespace {
 constexpr std::string_view axis_options[] = {"horizontal", "vertical"};
 constexpr std::string_view taps_options[] = {"11", "17", "25"};
 constexpr std::string_view kernel_options[] = {"fitted", "jimenez"};
+constexpr Format view_depth_formats[] = {Format::r32f};
+constexpr std::string_view light_doc = "rgb: light that can scatter; a: profile id";
+constexpr std::string_view view_depth_doc =
+    "view depth in mm; infinite where no subsurface is visible";
+
 constexpr Port separable_ports[] = {
-    port::light,
+    port::sampled("light", "output of subsurface.separable_setup", port::light_formats),
     port::optional(port::sampled("blurred",
                                  "result of the horizontal pass; bound for the vertical pass",
-                                 port::color_formats)),
-    port::material,
-    port::depth,
+                                 port::light_formats)),
+    port::sampled("view_depth", "output of subsurface.separable_setup", view_depth_formats),
     port::scatter_scale,
     port::tiles,
     port::arguments,
-    port::scattered,
+    port::written("scattered",
+                  "scattered light where there is subsurface, undefined elsewhere; a: profile id "
+                  "after the horizontal pass, 1 after the vertical pass",
+                  port::color_formats),
 };
 constexpr PassTypeSetting separable_settings[] = {
     setting::choice("axis", axis_options,
@@ -31,7 +38,27 @@ constexpr PassTypeSetting separable_settings[] = {
         "artist-friendly kernel"),
 };
 
+constexpr Port setup_ports[] = {
+    port::where_covered(port::lighting),
+    port::where_covered(port::material),
+    port::where_covered(port::depth),
+    port::where_covered(port::albedo),
+    port::classes,
+    port::where_covered(port::written("light", light_doc, port::light_formats)),
+    port::written("view_depth", view_depth_doc, view_depth_formats),
+};
+constexpr PassTypeSetting setup_settings[] = {setting::texturing};
+
 } // namespace
+
+const PassType separable_setup_type{
+    .name = "subsurface.separable_setup",
+    .shader = "separable/subsurface_separable_setup",
+    .doc = "Writes light and view depth for subsurface.separable.",
+    .ports = setup_ports,
+    .settings = setup_settings,
+    .dispatch = over_view,
+};
 
 const PassType separable_type{
     .name = "subsurface.separable",

@@ -135,6 +135,9 @@ SETUP = dict(valu=260, trans=13, img=5, st64=2, vm=3, lg=20, W=16, lds=40)
 SEPARABLE = dict(valu=130 + 12 * 13 + 48 * 85, trans=12 + 48 * 16, qmul=3, img=3 + 144, buf=26, st64=1,
                  vm=3 + 144, vml=140, lg=12, W=9)
 SEPARABLE_TUNED = dict(valu=90 + 25 * 14, trans=6 + 25, img=2 + 25, st64=1, vm=2 + 5, vml=250, lg=10, W=12)
+# 25 taps at d = 4 px: 7 taps of each side in shared memory, 5 read light and depth
+SEPARABLE_BUILT = dict(valu=688, trans=82, qmul=1, img=30, buf=6, st64=1, vm=17, vml=260, lg=55, W=7, lds=340)
+SEPARABLE_BUILT_SETUP = dict(valu=100, trans=3, img=3, st64=2, vm=3, lg=15, W=16)
 BURLEY = dict(valu=100 + 32 * 115, trans=10 + 32 * 18, img=4, scat=32 * 4, st64=1, vm=3 + 96, vml=260, lg=40,
               W=10)
 FIXED = dict(valu=260 + 16 * 150, trans=35 + 16 * 32, img=4, scat=16 * 4, st64=1, vm=3 + 48, vml=260, lg=30,
@@ -254,26 +257,33 @@ def mix(fast, slow, fraction):
 def add_rivals(model):
     n, tiles0 = model.covered, model.tiles[0]
     material = 1 * model.pixels + 5 * n
-    setup, combine = model.wave(**SETUP), model.wave(**COMBINE)
+    combine = model.wave(**COMBINE)
+    setup, setup_with_slope = ((tiles0, model.wave(**SETUP), n * (13 + written)) for written in (8, 12))
 
-    def frame(technique, setup_bytes, passes):
+    def frame(technique, setup, passes, as_built=False):
         model.add(technique, "classify", model.view_tiles / 16, model.wave(**CLASSIFY), material)
-        model.add_serial(technique, "tile_list", serial_tile_list(model))
-        model.add(technique, "setup", tiles0, setup, n * setup_bytes)
+        # As built, the list of tiles takes at most as long as one of the regions of sap_tiles.
+        model.add_serial(technique, "tile_list", model.wave(**LIST_REGION)["lat"] if as_built else serial_tile_list(model))
+        model.add(technique, "setup", *setup)
         for one in passes:
             model.add(technique, *one)
         model.add(technique, "combine", tiles0, combine, n * 17)
 
     separable, tuned = model.wave(**SEPARABLE), model.wave(**SEPARABLE_TUNED)
-    frame("separable 25", 13 + 8, [("horizontal", tiles0, separable, n * 21), ("vertical", tiles0, separable, n * 29)])
-    frame("separable tuned*", 13 + 8, [("horizontal", tiles0, tuned, n * 24), ("vertical", tiles0, tuned, n * 24)])
-    frame("burley 32", 13 + 12, [("scatter", tiles0, model.wave(**BURLEY), n * 25)])
-    frame("fixed 16", 13 + 12, [("scatter", tiles0, model.wave(**FIXED), n * 25)])
+    frame("separable 25", setup, [("horizontal", tiles0, separable, n * 21), ("vertical", tiles0, separable, n * 29)])
+    frame("separable tuned*", setup, [("horizontal", tiles0, tuned, n * 24), ("vertical", tiles0, tuned, n * 24)])
+    built = model.wave(**SEPARABLE_BUILT)
+    # Light of covered pixels, and depth of all pixels.
+    frame("separable 25 as built", (model.view_tiles, model.wave(**SEPARABLE_BUILT_SETUP), n * (13 + 8) + model.pixels * 4),
+          [("horizontal", tiles0, built, n * 20), ("vertical", tiles0, built, n * 28)], as_built=True)
+    for suffix in ("", " as built"):
+        frame("burley 32" + suffix, setup_with_slope, [("scatter", tiles0, model.wave(**BURLEY), n * 25)], bool(suffix))
+        frame("fixed 16" + suffix, setup_with_slope, [("scatter", tiles0, model.wave(**FIXED), n * 25)], bool(suffix))
     mips = [("mip_setup", model.pixels / 64, model.wave(**AFIS_MIP_SETUP), model.pixels * 13)]
     for level in range(1, 9):
         mips.append((f"mip_down_{level}", max(1, model.pixels / 64 / 4**level), model.wave(**AFIS_MIP_DOWN),
                      model.pixels / 4**level * (8 * 4 + 8)))
-    frame("afis 16", 13 + 12, mips + [("scatter", tiles0, model.wave(**AFIS), n * 30)])
+    frame("afis 16", setup_with_slope, mips + [("scatter", tiles0, model.wave(**AFIS), n * 30)])
 
 
 def add_pyramid(model, technique, counts, list_clocks, layered=True):

@@ -95,14 +95,27 @@ ImageReads fixed(const PassType& type, const ReadsQuestion& question) {
   return burley(type, question);
 }
 
-// Material, light, depth and, on the second axis, the first axis's result. Each offset has two
-// sides, each interpolated between two texels (the second has weight 0 at whole offsets), with
-// material, depth and light per texel. Offsets are those of the table node below d.
+// separable/subsurface_separable_setup.comp: material, light, depth.
+ImageReads separable_setup(const PassType& type, const ReadsQuestion& question) {
+  return {2 + light_reads(type, question)};
+}
+
+// Light and depth of the pixel and of 4 pixels of the window that the tile shares; on the second
+// axis the pixel's light before the first. Taps that are not in the window read light and depth on
+// both sides, of one pixel or of the two that they interpolate.
 ImageReads separable(const PassType& type, const ReadsQuestion& question) {
   const uint32_t taps = separable_taps[static_cast<size_t>(setting(type, question, "taps"))];
-  const double sides = double(taps - 1) / 2;
-  return {3 + scale_read(type, question) + one_if(type, question, "blurred", PortSide::read) +
-          sides * 2 * 2 * 3};
+  const double d_px = std::max({question.d_px[0], question.d_px[1], question.d_px[2]});
+  const bool fitted = setting(type, question, "kernel") == 0;
+  double beyond = double(taps - 1) / 2;
+  if (fitted) {
+    double next = 1;
+    for (const double offset : separable_offsets(d_px, taps))
+      beyond -= offset == next++ ? 1 : 0;
+  }
+  const double pixels = fitted && taps >= separable_whole_taps ? 1 : 2;
+  return {2 + scale_read(type, question) + one_if(type, question, "blurred", PortSide::read) +
+          2 * 4 + 2 * 2 * pixels * beyond};
 }
 
 // sap/subsurface_sap_setup_half_res.comp: material, depth and light of the 4x4 pixels of 2x2
@@ -331,6 +344,7 @@ constexpr Entry entries[] = {
     {"subsurface.setup", setup},
     {"subsurface.burley", burley},
     {"subsurface.separable", separable},
+    {"subsurface.separable_setup", separable_setup},
     {"subsurface.sap_tiles", none},
     {"subsurface.sap_setup", sap_setup},
     {"subsurface.sap_down", sap_down},

@@ -57,6 +57,7 @@ constexpr PortNeed needs[] = {
     {"scattered", pixel},
     {"unscattered", pixel},
     {"blurred", pixel},
+    {"view_depth", pixel},
     {"blended", pixel},
     {"refined", pixel},
     {"accumulated", pixel},

@@ -17,7 +17,7 @@ extern const PassType setup_type, combine_type, export_scattered_type, copy_tile
 // burley/burley_signature.cpp
 extern const PassType burley_type;
 // separable/separable_signature.cpp
-extern const PassType separable_type;
+extern const PassType separable_setup_type, separable_type;
 // papers/fixed_signature.cpp
 extern const PassType fixed_type;
 // afis/afis_signatures.cpp

@@ -41,11 +41,11 @@ struct Taps {
 };
 
 Taps look_up(const std::vector<SeparableRow>& table, uint32_t choice, double d_px) {
-  const uint32_t rows = separable_rows_per_node(separable_taps[choice]);
+  const uint32_t centre = separable_centre_row(separable_taps[choice]);
   Taps taps;
-  for (uint32_t row = 0; row + 1 < rows; ++row)
+  for (uint32_t row = 0; row < centre; ++row)
     taps.rows.push_back(separable_row(table, choice, d_px, row));
-  const SeparableRow last = separable_row(table, choice, d_px, rows - 1);
+  const SeparableRow last = separable_row(table, choice, d_px, centre);
   taps.delta = {last[0], last[1], last[2]};
   return taps;
 }
