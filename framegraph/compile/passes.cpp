@@ -10,8 +10,6 @@
 namespace dermis {
 namespace {
 
-constexpr uint32_t push_constant_bytes = 4; // the port mask, and each setting
-
 void add_settings(const Graph& graph, const Activation& active, PassId pass, PlanPass& planned,
                   Plan& plan) {
   const PassDeclaration& declared = graph.passes[pass.value];
@@ -43,7 +41,7 @@ bool check_limits(const CompileInput& in, const PassType& type, PassId pass, Rep
     report.diagnostics.add(DiagnosticId::device_feature, graph.passes[pass.value].where,
                            fmt::format("pass '{}' cannot run on '{}': {}", name_of(graph, pass),
                                        in.device->name, missing_text(graph, {missing, {}})));
-  const uint64_t push_bytes = push_constant_bytes * (1 + uint64_t{type.settings.size()});
+  const uint32_t push_bytes = push_constant_bytes(type);
   if (push_bytes > in.device->max_push_constants_bytes)
     report_limit(fmt::format("needs {} bytes of push constants; the limit is {}", push_bytes,
                              in.device->max_push_constants_bytes));

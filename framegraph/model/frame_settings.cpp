@@ -17,4 +17,13 @@ std::vector<uint8_t> frame_settings(const Graph& graph, const PassTypeRegistry& 
   return followed;
 }
 
+bool selects_pipelines(const Graph& graph, const PassTypeRegistry& pass_types, SettingId setting) {
+  for (const PassDeclaration& pass : graph.passes)
+    for (const SettingBinding& binding : pass.settings)
+      if (binding.from.valid() && binding.from.value == setting.value &&
+          is_constant(pass_types[pass.type].settings[binding.setting]))
+        return true;
+  return false;
+}
+
 } // namespace dermis

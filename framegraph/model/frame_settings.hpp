@@ -1,5 +1,6 @@
 #pragma once
-// Finds the settings of a graph that may differ between its views.
+// Finds the settings of a graph that may differ between its views, and those that kernels are
+// compiled for.
 
 #include "framegraph/model/graph.hpp"
 
@@ -10,5 +11,9 @@ namespace dermis {
 // that follow are declared per frame (PassTypeSetting::per_frame). A plan does not depend on the
 // setting's value. Thread: any.
 std::vector<uint8_t> frame_settings(const Graph& graph, const PassTypeRegistry& pass_types);
+
+// Returns whether a pass setting that is a constant of kernels follows the graph setting. Thread:
+// any.
+bool selects_pipelines(const Graph& graph, const PassTypeRegistry& pass_types, SettingId setting);
 
 } // namespace dermis

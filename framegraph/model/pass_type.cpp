@@ -21,6 +21,11 @@ bool works_with(const Port& port, Format format) {
   return has_unsigned_components(format) == (port.glsl_type.front() == 'u');
 }
 
+bool is_constant(const PassTypeSetting& setting) {
+  return !setting.per_frame && setting.type != SettingType::integer &&
+         setting.type != SettingType::real;
+}
+
 PassTypeId PassTypeRegistry::add(const PassType& type) {
   if (find(type.name).valid()) return {};
   pass_types_.push_back(type);
@@ -49,6 +54,12 @@ int find_port(const PassType& type, std::string_view name, PortSide side) {
 
 int find_setting(const PassType& type, std::string_view name) {
   return index_of(type.settings, name);
+}
+
+uint32_t push_constant_bytes(const PassType& type) {
+  const auto constants = std::ranges::count_if(type.settings, is_constant);
+  return static_cast<uint32_t>(sizeof(uint32_t) *
+                               (1 + type.settings.size() - static_cast<size_t>(constants)));
 }
 
 bool is_one_of(const PassType& type, uint32_t port) {

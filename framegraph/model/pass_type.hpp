@@ -65,6 +65,19 @@ struct PassTypeSetting {
   bool per_frame = false;
 };
 
+// Returns whether the setting is a specialisation constant of the kernel: a switch or an
+// enumeration that no frame changes. All others are push constants, because a number has too many
+// values for a pipeline each.
+bool is_constant(const PassTypeSetting& setting);
+
+// Values of constant_id in kernels. Ids that are not listed are free for other constants.
+namespace constant_id {
+inline constexpr uint32_t texel_shape = 0; // shaders/common/shape.glsl
+// Masks of optional ports, bit i for port i: bound in every frame, bound in some frames.
+inline constexpr uint32_t bound_ports = 1, changing_ports = 2;
+inline constexpr uint32_t first_setting = 16; // PassType::settings[i] has the id first_setting + i
+} // namespace constant_id
+
 // Minimum size of the resource at one port, independent of the number of passes. Image: one texel
 // per square of `square` x `square` pixels of the view. Buffer: `bytes` per such square, plus
 // `more` bytes.
@@ -91,7 +104,8 @@ struct PassType {
   std::string_view shader;
   std::string_view doc;
   std::span<const Port> ports; // in binding order: port i is binding i of set 0
-  // push constants: uint port_mask, then 4 bytes per setting in this order
+  // Specialisation constants if is_constant(). Push constants: uint port_mask, then 4 bytes for
+  // each other setting in this order.
   std::span<const PassTypeSetting> settings;
   DispatchRule dispatch = {};
   bool side_effects = false;      // never culled
@@ -131,6 +145,9 @@ PortSide side_of(const Port& port);
 int find_port(const PassType& type, std::string_view name);
 int find_port(const PassType& type, std::string_view name, PortSide side);
 int find_setting(const PassType& type, std::string_view name);
+
+// Returns the size of the push constants of the pass type's kernel.
+uint32_t push_constant_bytes(const PassType& type);
 
 // Returns whether the port is listed in PassType::one_of.
 bool is_one_of(const PassType& type, uint32_t port);

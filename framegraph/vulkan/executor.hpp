@@ -107,6 +107,7 @@ const char* valid_since_text(HistoryReason lost);
 class HeapPool;
 class KernelStore;
 class Executor;
+struct PlanPipelines; // internal: the pipelines of a plan
 
 struct Rectangle { // pixels, inside the allocated view size.
   uint32_t x = 0, y = 0, width = 0, height = 0;
@@ -162,6 +163,10 @@ struct ExecutorInput {
   std::shared_ptr<const Plan> kept_plan = nullptr;
   // null: the executor compiles all kernels itself
   KernelStore* kernel_store = nullptr;
+  // Values that FrameInput::settings may have, one per Graph::settings each: the executor creates
+  // their pipelines. Settings that are no constants of kernels may also differ. Empty: only the
+  // plan's values.
+  std::span<const std::vector<SettingValue>> settings{};
   HistoryReason history = HistoryReason::first_frame; // why histories start invalid
   // required if the plan has host-recorded passes; called by record()
   HostPassFunction host_pass = nullptr;
@@ -214,8 +219,9 @@ struct FrameInput {
   std::span<const HostBuffer> buffers;        // by slot number, as for images
   std::span<const HostStructure> structures;  // by slot number, as for images
   std::span<const std::byte> frame_constants; // for set 1 binding 0; at most its size
-  std::span<const SettingValue> settings;     // one per Graph::settings; empty: the plan's values
-  Rectangle rectangle;                        // width 0: the allocated view size
+  // one per Graph::settings; empty: the plan's values; see ExecutorInput::settings
+  std::span<const SettingValue> settings;
+  Rectangle rectangle; // width 0: the allocated view size
   // must increase; frame `frame_index - frames_in_flight` must be finished
   uint64_t frame_index = 1;
   // True: other plans recorded frames since the last record, so the pool's memory was overwritten.
@@ -274,6 +280,19 @@ public:
   // Records the whole plan. On an error nothing is recorded and nothing changes. Allocates no host
   // memory, throws nothing, and never submits or waits. One thread at a time per executor.
   RecordResult record(const FrameInput& frame) noexcept;
+
+  // Creates the pipelines of the plan for other values of settings. Uses pass_types, kernels,
+  // pipeline_cache, kernel_store and settings of `input`; the first four must be those of create().
+  // Another thread may record meanwhile. Errors: as create(); `pipelines` is then unchanged. May
+  // throw std::bad_alloc.
+  Error make_pipelines(const ExecutorInput& input,
+                       std::shared_ptr<const PlanPipelines>& pipelines) const;
+  // Makes the next recorded frame use `pipelines`, which this executor made. Frames in flight keep
+  // theirs. One thread at a time per executor.
+  void set_pipelines(const std::shared_ptr<const PlanPipelines>& pipelines) noexcept;
+  // Releases pipelines that only frames up to `completed_frame_index` use. One thread at a time per
+  // executor.
+  void release_pipelines(uint64_t completed_frame_index) noexcept;
 
   // Makes the next recorded frame read `tables`, which must have the same bindings as the tables
   // before. Frames in flight keep the tables that they were recorded with. One thread at a time per

@@ -23,8 +23,11 @@ struct PipelineExecutable {
 };
 
 struct CompiledPipeline {
-  std::shared_ptr<const Kernel> kernel; // equal for equal pipelines of one KernelStore
+  std::shared_ptr<const Pipeline> pipeline; // equal for equal pipelines of one KernelStore
   PassTypeId type;
+  // Values of its specialisation constants, such as "storage=half variant=smooth guide=bound". A
+  // port is bound, unbound or changing; "": the kernel has no constants.
+  std::string constants;
   std::vector<uint32_t> passes;                // positions in Plan::passes
   std::vector<PipelineExecutable> executables; // empty: see PipelinesInput::statistics
 };

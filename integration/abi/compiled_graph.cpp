@@ -76,6 +76,18 @@ std::optional<Composition> compose_sources(CompiledGraphInput& input, Diagnostic
   return compose(std::move(*graph), std::move(overlays), open, diagnostics);
 }
 
+// Returns the values that settings have in frames of a plan.
+std::vector<std::vector<SettingValue>>
+settings_of_plan(const CompiledGraph& compiled_graph,
+                 std::span<const choice::Configuration> configurations, uint32_t plan) {
+  std::vector<std::vector<SettingValue>> settings;
+  for (const choice::Configuration& configuration : configurations)
+    if (configuration.plan == plan ||
+        compiled_graph.plans[configuration.plan].without_bounds == plan)
+      settings.push_back(configuration.settings);
+  return settings;
+}
+
 // Creates one executor per plan. If there are several plans, their transients share memory.
 vulkan::Error make_executors(dermis_context_t& context, CompiledGraphInput& input,
                              vulkan::HistoryReason history, vulkan::KernelStore& kernels,
@@ -109,7 +121,10 @@ vulkan::Error make_executors(dermis_context_t& context, CompiledGraphInput& inpu
       return error;
   }
   executor.heap_pool = compiled_graph.heap_pool.get();
-  for (RunnablePlan& plan : compiled_graph.plans) {
+  for (uint32_t p = 0; p < compiled_graph.plans.size(); ++p) {
+    RunnablePlan& plan = compiled_graph.plans[p];
+    const auto settings = settings_of_plan(compiled_graph, compiled_graph.configurations, p);
+    executor.settings = settings;
     executor.plan = &plan.compiled->plan;
     executor.kept_plan = {plan.compiled, executor.plan};
     if (vulkan::Error error = vulkan::Executor::create(executor, plan.executor)) return error;
@@ -217,6 +232,27 @@ std::vector<choice::Configuration> configurations_with(const CompiledGraph& comp
   for (choice::Configuration& configuration : configurations)
     configuration.settings[setting] = value;
   return described(pass_types, compiled_graph, errors, costs, std::move(configurations));
+}
+
+vulkan::Error make_pipelines(dermis_context_t& context, const CompiledGraphInput& input,
+                             const CompiledGraph& compiled_graph,
+                             std::span<const choice::Configuration> configurations,
+                             vulkan::KernelStore& kernels, NewPipelines& pipelines) {
+  const std::vector<vulkan::KernelCode> codes = kernel_codes(input.shaders);
+  vulkan::ExecutorInput executor;
+  executor.pass_types = &context.pass_types;
+  executor.kernels = codes;
+  executor.pipeline_cache = context.pipeline_cache;
+  executor.kernel_store = &kernels;
+  pipelines.resize(compiled_graph.plans.size());
+  for (uint32_t p = 0; p < compiled_graph.plans.size(); ++p) {
+    const auto settings = settings_of_plan(compiled_graph, configurations, p);
+    executor.settings = settings;
+    if (vulkan::Error error =
+            compiled_graph.plans[p].executor->make_pipelines(executor, pipelines[p]))
+      return error;
+  }
+  return {};
 }
 
 dermis_result build_compiled_graph(dermis_context_t& context, CompiledGraphInput& input,

@@ -163,6 +163,16 @@ std::vector<choice::Configuration> configurations_with(const CompiledGraph& comp
                                                        choice::CostModel& costs, uint32_t setting,
                                                        const SettingValue& value);
 
+// Pipelines by plan; see vulkan::Executor::make_pipelines.
+using NewPipelines = std::vector<std::shared_ptr<const vulkan::PlanPipelines>>;
+
+// Creates the pipelines that `configurations` need. Changes neither the program nor its executors,
+// so that frames may be recorded meanwhile. New pipelines are added to `kernels`.
+vulkan::Error make_pipelines(dermis_context_t& context, const CompiledGraphInput& input,
+                             const CompiledGraph& compiled_graph,
+                             std::span<const choice::Configuration> configurations,
+                             vulkan::KernelStore& kernels, NewPipelines& pipelines);
+
 // Returns the value that `json` gives to a declared setting; nullopt with errors in `diagnostics`.
 std::optional<SettingValue> read_setting(const SettingDeclaration& declared,
                                          const std::string& json, Diagnostics& diagnostics);

@@ -11,8 +11,10 @@ void collect(dermis_view_t& view, uint64_t completed) {
   for (auto& old : view.retired)
     if (old && old->last_frame <= completed) old.reset();
   if (view.running)
-    for (const RunnablePlan& plan : view.running->plans)
+    for (const RunnablePlan& plan : view.running->plans) {
       plan.executor->release_tables(completed);
+      plan.executor->release_pipelines(completed);
+    }
 }
 
 void take_over(dermis_view_t& view) {

@@ -105,6 +105,27 @@ bool changes_passes(const CompiledGraph& compiled_graph, const std::vector<Setti
   return false;
 }
 
+// A new value of a setting in one view.
+struct ViewChange {
+  std::vector<choice::Configuration> configurations;
+  NewPipelines pipelines; // empty: those of before
+};
+
+// Creates the pipelines of all views in `changes`: those without their own value of the setting.
+vulkan::Error make_pipelines_of_views(dermis_graph_t& graph, const std::string& name,
+                                      vulkan::KernelStore& kernels,
+                                      std::vector<ViewChange>& changes) {
+  vulkan::Error error;
+  size_t v = 0;
+  for_each_view(graph, [&](dermis_view_t& view) {
+    if (error || is_set(view.settings, name)) return;
+    ViewChange& change = changes[v++];
+    error = make_pipelines(*graph.context, graph.input, *keep_newest(view), change.configurations,
+                           kernels, change.pipelines);
+  });
+  return error;
+}
+
 dermis_result set_setting(dermis_graph_t& graph, const std::string& name, const std::string& json,
                           dermis_report* report) {
   const Log& log = graph.context->log;
@@ -128,23 +149,34 @@ dermis_result set_setting(dermis_graph_t& graph, const std::string& name, const 
   if (at->by_budget || changes_passes(compiled_graph, values))
     return replace_compiled_graphs(graph, std::move(input), vulkan::HistoryReason::reloaded,
                                    report);
-  std::vector<std::vector<choice::Configuration>> configurations; // by view without its own value
+  std::vector<ViewChange> changes; // by view without its own value
   for_each_view(graph, [&](dermis_view_t& view) {
     if (is_set(view.settings, name)) return;
     const std::lock_guard lock(view.mutex);
-    configurations.push_back(configurations_with(newest(view), graph.context->pass_types,
-                                                 view.chooser.errors, view.chooser.costs, index,
-                                                 *value));
+    changes.push_back({configurations_with(newest(view), graph.context->pass_types,
+                                           view.chooser.errors, view.chooser.costs, index, *value),
+                       {}});
   });
+  vulkan::KernelStore kernels(graph.context->kernels);
+  if (selects_pipelines(compiled_graph.graph, graph.context->pass_types, {index})) {
+    if (const vulkan::Error error = make_pipelines_of_views(graph, name, kernels, changes)) {
+      const dermis_result failed = rejected(*graph.context, error, diagnostics);
+      return conclude(log, failed, std::move(diagnostics), report);
+    }
+  }
   const dermis_result result = conclude(log, DERMIS_OK, std::move(diagnostics), report);
   if (result != DERMIS_OK) return result;
+  kernels.hand_over();
   size_t v = 0; // nothing fails from here on
   for_each_view(graph, [&](dermis_view_t& view) {
     if (is_set(view.settings, name)) return;
+    ViewChange& change = changes[v++];
     const std::lock_guard lock(view.mutex);
     CompiledGraph& changed = newest(view);
     changed.settings[index] = *value;
-    changed.configurations.swap(configurations[v++]);
+    changed.configurations.swap(change.configurations);
+    for (size_t p = 0; p < change.pipelines.size(); ++p)
+      changed.plans[p].executor->set_pipelines(change.pipelines[p]);
   });
   graph.input = std::move(input);
   return result;

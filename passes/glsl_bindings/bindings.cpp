@@ -57,11 +57,63 @@ std::string declare_port(const Port& port, uint32_t binding) {
   }
 }
 
-std::string declare_setting(const PassTypeSetting& setting) {
-  const char* type = setting.type == SettingType::real ? "float" : "int";
-  std::string out = fmt::format("  {} {}; // {}{}{}\n", type, setting.name, setting.doc,
-                                setting.unit.empty() ? "" : "; ", setting.unit);
+const char* glsl_type(const PassTypeSetting& setting) {
+  return setting.type == SettingType::real ? "float" : "int";
+}
+
+std::string comment_on(const PassTypeSetting& setting) {
+  return fmt::format(" // {}{}{}\n", setting.doc, setting.unit.empty() ? "" : "; ", setting.unit);
+}
+
+// Declares the specialisation constants. A kernel that is compiled without values for them reads
+// the presence of its ports from the push constants.
+std::string declare_constants(const PassType& type) {
+  std::string out;
+  if (std::ranges::any_of(type.ports, &Port::optional))
+    out +=
+        fmt::format("layout(constant_id = {}) const uint bound_ports = 0u; // bit i: port i is "
+                    "bound in every frame\n"
+                    "layout(constant_id = {}) const uint changing_ports = 0xffffffffu; // bit i: "
+                    "port i is bound in some frames\n",
+                    constant_id::bound_ports, constant_id::changing_ports);
+  for (uint32_t i = 0; i < type.settings.size(); ++i)
+    if (const PassTypeSetting& setting = type.settings[i]; is_constant(setting))
+      out += fmt::format("layout(constant_id = {}) const int constant_{} = {};{}",
+                         constant_id::first_setting + i, setting.name,
+                         setting.default_value.integer, comment_on(setting));
   return out;
+}
+
+std::string declare_push_constants(const PassType& type) {
+  std::string out = "layout(push_constant) uniform push_constant_block {\n"
+                    "  uint port_mask; // bit i: port i is bound in this frame\n";
+  for (const PassTypeSetting& setting : type.settings)
+    if (!is_constant(setting))
+      out += fmt::format("  {} {};{}", glsl_type(setting), setting.name, comment_on(setting));
+  return out + "} push_constants;\n";
+}
+
+// Declares `settings`, so that a kernel reads each setting in one way.
+std::string declare_settings(const PassType& type) {
+  if (type.settings.empty()) return {};
+  std::string members;
+  std::vector<std::string> values;
+  for (const PassTypeSetting& setting : type.settings) {
+    members += fmt::format("  {} {};\n", glsl_type(setting), setting.name);
+    values.push_back(
+        fmt::format("{}{}", is_constant(setting) ? "constant_" : "push_constants.", setting.name));
+  }
+  return fmt::format("\nstruct settings_values {{\n{}}};\n"
+                     "settings_values settings = settings_values({});\n",
+                     members, fmt::join(values, ", "));
+}
+
+std::string declare_presence(const Port& port, uint32_t bit) {
+  return fmt::format(
+      "bool has_{}() {{\n"
+      "  return (bound_ports & {}u) != 0u ||\n"
+      "         ((changing_ports & {}u) != 0u && (push_constants.port_mask & {}u) != 0u);\n}}\n",
+      port.name, bit, bit, bit);
 }
 
 std::string header_of(const PassType& type) {
@@ -69,15 +121,13 @@ std::string header_of(const PassType& type) {
   out += "#include \"options.glsl\"\n\n";
   for (uint32_t i = 0; i < type.ports.size(); ++i)
     out += declare_port(type.ports[i], i);
-  out += "\nlayout(push_constant) uniform settings_block {\n  uint port_mask; // bit i: port i is "
-         "bound\n";
-  for (const PassTypeSetting& setting : type.settings)
-    out += declare_setting(setting);
-  out += "} settings;\n\n";
+  out += "\n";
+  out += declare_constants(type);
+  out += declare_push_constants(type);
+  out += declare_settings(type);
+  out += "\n";
   for (uint32_t i = 0; i < type.ports.size(); ++i)
-    if (type.ports[i].optional)
-      out += fmt::format("bool has_{}() {{ return (settings.port_mask & {}u) != 0u; }}\n",
-                         type.ports[i].name, 1u << i);
+    if (type.ports[i].optional) out += declare_presence(type.ports[i], 1u << i);
   return out;
 }
 

@@ -1,6 +1,6 @@
 #pragma once
-// Generated GLSL: one header per kernel with bindings and push constants from its signature, the
-// values of the options of settings, and the constants that C++ and GLSL share.
+// Generated GLSL: one header per kernel with bindings, constants and settings from its signature,
+// the values of the options of settings, and the constants that C++ and GLSL share.
 
 #include <string>
 #include <vector>

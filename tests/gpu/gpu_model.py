@@ -343,7 +343,9 @@ class Built:
     """What `dermis kernels --json --assembly` reports."""
 
     def __init__(self, report, assembly):
-        self.kernels = {row["kernel"]: row["values"] for row in report["kernels"]}
+        # The model runs the pipeline with the most code of each kernel.
+        rows = sorted(report["kernels"], key=lambda row: row["values"]["code_bytes"])
+        self.kernels = {row["kernel"]: row for row in rows}
         self.graphs = {graph["graph"]: graph["passes"] for graph in report["graphs"]}
         self.assembly = pathlib.Path(assembly)
 
@@ -351,8 +353,8 @@ class Built:
         """Returns the clocks of a subgroup on its longest path. Image loads are taken as half 64 and
         half 128 bits. RADV counts occupancy in subgroups of 32."""
         folder = next(path for path in self.kernels if path.endswith("/subsurface_" + kernel))
-        values = self.kernels[folder]
-        with open(self.assembly / (folder.replace("/", "_") + ".txt"), encoding="utf-8") as lines:
+        values = self.kernels[folder]["values"]
+        with open(self.assembly / self.kernels[folder]["assembly"], encoding="utf-8") as lines:
             blocks = instruction_mix.read_blocks(lines)
         mix_of = instruction_mix.count(blocks, TRIPS.get(kernel, []), longest=True)
         get = lambda kind: mix_of.get(kind, 0)

@@ -64,7 +64,9 @@ class Model(unittest.TestCase):
             with tempfile.TemporaryDirectory() as folder:
                 (pathlib.Path(folder) / (kernel.replace("/", "_") + ".txt")).write_text(text, encoding="utf-8")
                 passes = [{"pass": "gather", "kernel": kernel, "read": 1, "written": 2}]
-                report = {"kernels": [{"kernel": kernel, "values": {"occupancy": occupancy, "code_bytes": 100}}],
+                row = {"kernel": kernel, "assembly": kernel.replace("/", "_") + ".txt",
+                       "values": {"occupancy": occupancy, "code_bytes": 100}}
+                report = {"kernels": [row],
                           "graphs": [{"graph": "sap", "passes": passes}]}
                 model = gpu_model.run(gpu_model.RX_6800, built=gpu_model.Built(report, folder))
                 return model.techniques["sap as built"][0], model

@@ -43,22 +43,16 @@ uint32_t history_of(const Plan& plan, uint32_t resource) {
 void bind_port(const Plan& plan, Pass& pass, uint32_t index) {
   const PlanAccess& access = plan.accesses[index];
   PortAccess& port = pass.ports[access.port];
-  const uint32_t bit = uint32_t{1} << access.port;
   switch (access.when) {
   case ReadWhen::always:
     port.access = index;
-    pass.port_mask |= bit;
     break;
   case ReadWhen::history_valid:
     port.access = index;
     port.history = history_of(plan, access.resource);
-    pass.conditional_ports.push_back(access.port);
     break;
-  // A fallback follows the conditional access of its port, so the port is bound in every frame.
   case ReadWhen::history_invalid:
     port.otherwise = index;
-    pass.port_mask |= bit;
-    pass.conditional_ports.pop_back();
     break;
   }
 }
@@ -76,19 +70,32 @@ void make_passes(State& state, const ExecutorInput& input) {
     pass.ports.resize(type.ports.size());
     for (uint32_t a = planned.first_access; a < planned.first_access + planned.access_count; ++a)
       bind_port(state.plan, pass, a);
+    const PortMasks masks = port_masks(state.plan, planned);
+    pass.port_mask = masks.bound;
+    for (uint32_t port = 0; port < type.ports.size(); ++port)
+      if ((masks.changing >> port & 1u) != 0) pass.conditional_ports.push_back(port);
   }
+}
+
+KernelInput kernel_input(const State& state, const ExecutorInput& input) {
+  return {.device = *state.device,
+          .pass_types = *input.pass_types,
+          .codes = input.kernels,
+          .environment = input.environment,
+          .environment_layout = state.environment.set_layout,
+          .cache = input.pipeline_cache,
+          .store = input.kernel_store,
+          .settings = input.settings};
 }
 
 Error add_kernels(State& state, const ExecutorInput& input) {
   PlanKernels made;
-  const KernelInput kernels{.device = *state.device,
-                            .pass_types = *input.pass_types,
-                            .codes = input.kernels,
-                            .environment = input.environment,
-                            .environment_layout = state.environment.set_layout,
-                            .cache = input.pipeline_cache,
-                            .store = input.kernel_store};
+  const KernelInput kernels = kernel_input(state, input);
   if (Error error = create_kernels(kernels, state.plan, made)) return error;
+  auto pipelines = std::make_shared<PlanPipelines>();
+  if (Error error = create_pipelines(kernels, state.plan, made, *pipelines)) return error;
+  state.pipelines = std::move(pipelines);
+  state.pipelines_of_slot.assign(state.frames_in_flight, state.pipelines);
   state.kernels = std::move(made.kernels);
   for (size_t p = 0; p < state.passes.size(); ++p)
     state.passes[p].kernel = made.of_pass[p];
@@ -180,6 +187,8 @@ void reserve_for_recording(State& state) {
   state.buffer_barriers.resize(largest);
   state.memory_barriers.resize(largest + 2); // plus those of aliased memory and counters
   state.push_constants.resize(max_settings);
+  state.chosen_pipelines.resize(state.passes.size());
+  state.chosen_settings.reserve(state.plan.setting_values.size());
   state.before_frame.histories.resize(state.histories.size());
   state.before_frame.ready.resize(state.instances.size());
 }
@@ -220,6 +229,31 @@ Error Executor::create(const ExecutorInput& input, std::unique_ptr<Executor>& ex
   reserve_for_recording(*state);
   executor.reset(new Executor(std::move(state)));
   return {};
+}
+
+Error Executor::make_pipelines(const ExecutorInput& input,
+                               std::shared_ptr<const PlanPipelines>& pipelines) const {
+  const State& state = *state_;
+  PlanKernels kernels{.kernels = state.kernels, .of_pass = {}};
+  for (const Pass& pass : state.passes)
+    kernels.of_pass.push_back(pass.kernel);
+  auto made = std::make_shared<PlanPipelines>();
+  if (Error error = create_pipelines(kernel_input(state, input), state.plan, kernels, *made))
+    return error;
+  pipelines = std::move(made);
+  return {};
+}
+
+void Executor::set_pipelines(const std::shared_ptr<const PlanPipelines>& pipelines) noexcept {
+  state_->pipelines = pipelines;
+  state_->chosen = false;
+  release_pipelines(0); // updates slots in which no frame was recorded
+}
+
+void Executor::release_pipelines(uint64_t completed_frame_index) noexcept {
+  for (uint32_t slot = 0; slot < state_->frames_in_flight; ++slot)
+    if (state_->frame_of_slot[slot] <= completed_frame_index)
+      state_->pipelines_of_slot[slot] = state_->pipelines;
 }
 
 Executor::Executor(std::unique_ptr<State> state) : state_(std::move(state)) {}

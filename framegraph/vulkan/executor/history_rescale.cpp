@@ -71,16 +71,17 @@ Error create_rescale_layouts(const Device& device, Kernel& kernel) {
   return call_error(result, "vkCreatePipelineLayout", "rescaled histories");
 }
 
-Error find_rescale_kernel(State& state, const ExecutorInput& input, bool unsigned_components) {
-  std::shared_ptr<const Kernel>& stored = state.rescaling.kernels[unsigned_components ? 1 : 0];
+Error find_rescale_pipeline(State& state, const ExecutorInput& input, bool unsigned_components) {
+  std::shared_ptr<const Pipeline>& stored = state.rescaling.pipelines[unsigned_components ? 1 : 0];
   if (stored != nullptr) return {};
   const RescaleCode code = rescale_code(unsigned_components);
-  if (input.kernel_store != nullptr) stored = input.kernel_store->find(code.type, 0);
+  if (input.kernel_store != nullptr) stored = input.kernel_store->find(code.type, 0, {});
   if (stored != nullptr) return {};
-  const auto added = std::make_shared<Kernel>(*state.device);
-  added->type = code.type;
-  added->push_bytes = sizeof(RescalePush);
-  if (Error error = create_rescale_layouts(*state.device, *added)) return error;
+  const auto kernel = std::make_shared<Kernel>(*state.device);
+  kernel->type = code.type;
+  kernel->push_bytes = sizeof(RescalePush);
+  if (Error error = create_rescale_layouts(*state.device, *kernel)) return error;
+  const auto added = std::make_shared<Pipeline>(kernel);
   if (Error error = create_pipeline(*state.device, code.name, code.name, code.spirv,
                                     {input.pipeline_cache}, *added))
     return error;
@@ -190,11 +191,11 @@ Error create_rescaling(State& state, const ExecutorInput& input) {
     if (!history.scales) continue;
     const PlanResource& resource = state.plan.resources[state.plan.histories[h].resource];
     const bool unsigned_components = has_unsigned_components(resource.format);
-    if (Error error = find_rescale_kernel(state, input, unsigned_components)) return error;
+    if (Error error = find_rescale_pipeline(state, input, unsigned_components)) return error;
     if (Error error = create_rescale_views(state, resource, history)) return error;
     history.first_rescale_set = static_cast<uint32_t>(layouts.size());
     layouts.insert(layouts.end(), size_t{state.plan.histories[h].frames} * resource.mips,
-                   state.rescaling.kernels[unsigned_components ? 1 : 0]->set_layout);
+                   state.rescaling.pipelines[unsigned_components ? 1 : 0]->kernel->set_layout);
   }
   state.rescaling.sets_per_slot = static_cast<uint32_t>(layouts.size());
   if (layouts.empty()) return {};
@@ -223,8 +224,10 @@ void record_rescaling(State& to, const State& from, VkCommandBuffer commands,
       rescale_view(source, old_size, instance_of(from, old_size, which.frames_back));
   const uint32_t target_view =
       rescale_view(target, new_size, instance_of(to, new_size, which.frames_back));
-  const Kernel& kernel = *to.rescaling.kernels[has_unsigned_components(new_size.format) ? 1 : 0];
-  vk.vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, kernel.pipeline);
+  const Pipeline& pipeline =
+      *to.rescaling.pipelines[has_unsigned_components(new_size.format) ? 1 : 0];
+  const Kernel& kernel = *pipeline.kernel;
+  vk.vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline.handle);
   for (uint32_t mip = 0; mip < new_size.mips; ++mip) {
     const VkDescriptorSet set =
         to.rescaling.sets[size_t{which.frame_slot} * to.rescaling.sets_per_slot +

@@ -56,13 +56,6 @@ HostPort port_now(const State& state, const FrameInput& frame, const PortAccess&
 
 } // namespace
 
-SettingValue value_of(const State& state, const FrameInput& frame, const PlanPass& planned,
-                      uint32_t index) noexcept {
-  const PlanSetting& setting = state.plan.settings[planned.first_setting + index];
-  const bool live = setting.from.valid() && setting.from.value < frame.settings.size();
-  return live ? frame.settings[setting.from.value] : setting.value;
-}
-
 Error check_host_passes(State& state, const ExecutorInput& input) {
   size_t ports = 0, settings = 0;
   for (Pass& pass : state.passes) {
@@ -95,7 +88,7 @@ void run_host_pass(State& state, const FrameInput& frame, size_t p,
     state.host_ports[port] = port_now(state, frame, pass.ports[port], storage);
   }
   for (uint32_t i = 0; i < pass.host_settings; ++i)
-    state.host_settings[i] = value_of(state, frame, planned, i);
+    state.host_settings[i] = value_of(state.plan, planned, i, frame.settings);
   HostPass call;
   call.type = pass.host;
   call.pass = pass.name.c_str();

@@ -1,5 +1,5 @@
-// Creates pipelines for the plan's pass types. Layouts follow the signature and are checked against
-// the kernel's SPIR-V.
+// Creates kernels and pipelines for the plan's passes. Layouts follow the signature and are checked
+// against the kernel's SPIR-V.
 #include "framegraph/vulkan/create_infos.hpp"
 #include "framegraph/vulkan/executor/state.hpp"
 #include "framegraph/vulkan/kernel_store.hpp"
@@ -7,6 +7,7 @@
 #include "framegraph/vulkan/shader/signature_check.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <fmt/format.h>
 
 namespace dermis::vulkan {
@@ -106,13 +107,16 @@ auto find_code(const KernelInput& input, const PassType& type) {
                       [&](const KernelCode& candidate) { return candidate.shader == type.shader; });
 }
 
+Error missing_code(const KernelInput& input, const PassType& type) {
+  return {ErrorKind::shader, VK_SUCCESS,
+          fmt::format("kernel '{}' of type '{}' is not among the {} provided kernels", type.shader,
+                      type.name, input.codes.size())};
+}
+
 Error create_kernel(const KernelInput& input, PassTypeId id, Kernel& kernel) {
   const PassType& type = input.pass_types[id];
   const auto code = find_code(input, type);
-  if (code == input.codes.end())
-    return {ErrorKind::shader, VK_SUCCESS,
-            fmt::format("kernel '{}' of type '{}' is not among the {} provided kernels",
-                        type.shader, type.name, input.codes.size())};
+  if (code == input.codes.end()) return missing_code(input, type);
   std::string problem;
   const std::optional<Reflection> reflection = reflect(code->spirv, problem);
   if (!reflection)
@@ -145,28 +149,88 @@ Error create_kernel(const KernelInput& input, PassTypeId id, Kernel& kernel) {
             type.name)};
   if (!type.arguments_entry.empty())
     kernel.entry_setting = static_cast<uint32_t>(find_setting(type, type.arguments_entry));
-  kernel.push_bytes = static_cast<uint32_t>(sizeof(uint32_t) * (1 + type.settings.size()));
+  kernel.push_bytes = push_constant_bytes(type);
+  for (uint32_t s = 0; s < type.settings.size(); ++s)
+    if (!is_constant(type.settings[s])) kernel.pushed_settings.push_back(s);
+  for (const SpecialisationConstant& constant : reflection->constants) {
+    if (constant.id == constant_id::bound_ports || constant.id == constant_id::changing_ports)
+      kernel.constants.push_back({constant.id, no_index});
+    if (constant.id >= constant_id::first_setting)
+      kernel.constants.push_back({constant.id, constant.id - constant_id::first_setting});
+  }
   if (Error error = create_set_layout(input.device, type, kernel)) return error;
-  if (Error error = create_layout(input.device, input.environment_layout, type, kernel))
-    return error;
-  return create_pipeline(input.device, fmt::format("kernel '{}'", type.shader),
-                         std::string(type.name), code->spirv, {input.cache, input.flags}, kernel);
+  return create_layout(input.device, input.environment_layout, type, kernel);
+}
+
+// Returns the constants of a pass's kernel in frames with `settings` (empty: the plan's values).
+std::vector<uint32_t> constants_of(const PassType& type, const Kernel& kernel, const Plan& plan,
+                                   const PlanPass& pass, std::span<const SettingValue> settings) {
+  uint32_t optional = 0; // the presence of other ports is no difference
+  for (uint32_t p = 0; p < type.ports.size(); ++p)
+    if (type.ports[p].optional) optional |= uint32_t{1} << p;
+  const PortMasks masks = port_masks(plan, pass);
+  std::vector<uint32_t> values;
+  for (const KernelConstant& constant : kernel.constants)
+    values.push_back(
+        constant.setting != no_index
+            ? kernel_word(value_of(plan, pass, constant.setting, settings))
+            : (constant.id == constant_id::bound_ports ? masks.bound : masks.changing) & optional);
+  return values;
 }
 
 } // namespace
 
 Kernel::~Kernel() {
-  device->vk.vkDestroyPipeline(device->device, pipeline, device->allocator);
   device->vk.vkDestroyPipelineLayout(device->device, layout, device->allocator);
   device->vk.vkDestroyDescriptorSetLayout(device->device, set_layout, device->allocator);
 }
 
-// constant_id in shaders/common/shape.glsl; kernels without the constant ignore it
-constexpr uint32_t shape_constant = 0;
+Pipeline::~Pipeline() {
+  const Device& device = *kernel->device;
+  device.vk.vkDestroyPipeline(device.device, handle, device.allocator);
+}
+
+PortMasks port_masks(const Plan& plan, const PlanPass& pass) {
+  PortMasks masks;
+  for (uint32_t a = pass.first_access; a < pass.first_access + pass.access_count; ++a) {
+    const PlanAccess& access = plan.accesses[a];
+    const uint32_t bit = uint32_t{1} << access.port;
+    if (access.when == ReadWhen::history_valid)
+      masks.changing |= bit;
+    else
+      masks.bound |= bit;
+  }
+  // A fallback makes the port bound in every frame.
+  masks.changing &= ~masks.bound;
+  return masks;
+}
+
+SettingValue value_of(const Plan& plan, const PlanPass& pass, uint32_t index,
+                      std::span<const SettingValue> settings) noexcept {
+  const PlanSetting& setting = plan.settings[pass.first_setting + index];
+  const bool live = setting.from.valid() && setting.from.value < settings.size();
+  return live ? settings[setting.from.value] : setting.value;
+}
+
+uint32_t kernel_word(const SettingValue& value) {
+  return value.type == SettingType::real
+             ? std::bit_cast<uint32_t>(static_cast<float>(value.real))
+             : static_cast<uint32_t>(static_cast<int32_t>(value.integer));
+}
 
 Error create_pipeline(const Device& device, const std::string& subresource,
                       const std::string& label, std::span<const uint32_t> spirv,
-                      const PipelineOptions& options, Kernel& kernel) {
+                      const PipelineOptions& options, Pipeline& pipeline) {
+  // Kernels ignore constants that they do not declare.
+  std::vector<uint32_t> values{device.texel_shape ? VK_TRUE : VK_FALSE};
+  std::vector<VkSpecializationMapEntry> entries{{constant_id::texel_shape, 0, sizeof(uint32_t)}};
+  for (size_t i = 0; i < pipeline.constants.size(); ++i) {
+    entries.push_back({pipeline.kernel->constants[i].id,
+                       static_cast<uint32_t>(sizeof(uint32_t) * values.size()), sizeof(uint32_t)});
+    values.push_back(pipeline.constants[i]);
+  }
+  const VkSpecializationInfo constants{static_cast<uint32_t>(entries.size()), entries.data(),
+                                       sizeof(uint32_t) * values.size(), values.data()};
   VkShaderModuleCreateInfo module_info{};
   module_info.sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO;
   std::vector<uint32_t> refined;
@@ -186,20 +250,17 @@ Error create_pipeline(const Device& device, const std::string& subresource,
   info.stage.stage = VK_SHADER_STAGE_COMPUTE_BIT;
   info.stage.module = module;
   info.stage.pName = "main";
-  const VkBool32 texel_shape = device.texel_shape ? VK_TRUE : VK_FALSE;
-  const VkSpecializationMapEntry shape{shape_constant, 0, sizeof texel_shape};
-  const VkSpecializationInfo constants{1, &shape, sizeof texel_shape, &texel_shape};
   info.stage.pSpecializationInfo = &constants;
-  info.layout = kernel.layout;
+  info.layout = pipeline.kernel->layout;
   info.flags = options.flags;
   result = device.vk.vkCreateComputePipelines(device.device, options.cache, 1, &info,
-                                              device.allocator, &kernel.pipeline);
+                                              device.allocator, &pipeline.handle);
   device.vk.vkDestroyShaderModule(device.device, module, device.allocator);
   if (result != VK_SUCCESS) {
-    kernel.pipeline = VK_NULL_HANDLE;
+    pipeline.handle = VK_NULL_HANDLE;
     return call_error(result, "vkCreateComputePipelines", subresource);
   }
-  name_object(device, VK_OBJECT_TYPE_PIPELINE, reinterpret_cast<uint64_t>(kernel.pipeline),
+  name_object(device, VK_OBJECT_TYPE_PIPELINE, reinterpret_cast<uint64_t>(pipeline.handle),
               label.c_str());
   return {};
 }
@@ -218,14 +279,54 @@ Error create_kernels(const KernelInput& input, const Plan& plan, PlanKernels& ma
     made.of_pass[p] = static_cast<uint32_t>(existing - made.kernels.begin());
     if (existing != made.kernels.end()) continue;
     std::shared_ptr<const Kernel> kernel;
-    if (input.store != nullptr) kernel = input.store->find(type, version);
+    if (input.store != nullptr) kernel = input.store->find_kernel(type, version);
     if (kernel == nullptr) {
       const auto added = std::make_shared<Kernel>(input.device);
       if (Error error = create_kernel(input, type, *added)) return error;
       kernel = added;
-      if (input.store != nullptr) input.store->add(kernel);
     }
     made.kernels.push_back(std::move(kernel));
+  }
+  return {};
+}
+
+Error create_pipelines(const KernelInput& input, const Plan& plan, const PlanKernels& kernels,
+                       PlanPipelines& made) {
+  const std::vector<SettingValue> values_of_plan;
+  const std::span<const std::vector<SettingValue>> settings =
+      input.settings.empty() ? std::span(&values_of_plan, 1) : input.settings;
+  made.of_pass.resize(plan.passes.size());
+  for (uint32_t p = 0; p < plan.passes.size(); ++p) {
+    if (kernels.of_pass[p] == no_index) continue;
+    const std::shared_ptr<const Kernel>& kernel = kernels.kernels[kernels.of_pass[p]];
+    const PassType& type = input.pass_types[kernel->type];
+    for (const std::vector<SettingValue>& values : settings) {
+      const std::vector<uint32_t> constants =
+          constants_of(type, *kernel, plan, plan.passes[p], values);
+      const auto existing = std::ranges::find_if(made.all, [&](const auto& one) {
+        return one->kernel->type == kernel->type && one->constants == constants;
+      });
+      const auto index = static_cast<uint32_t>(existing - made.all.begin());
+      if (std::ranges::find(made.of_pass[p], index) == made.of_pass[p].end())
+        made.of_pass[p].push_back(index);
+      if (existing != made.all.end()) continue;
+      std::shared_ptr<const Pipeline> pipeline;
+      if (input.store != nullptr)
+        pipeline = input.store->find(kernel->type, kernel->version, constants);
+      if (pipeline == nullptr) {
+        const auto code = find_code(input, type);
+        if (code == input.codes.end()) return missing_code(input, type);
+        const auto added = std::make_shared<Pipeline>(kernel);
+        added->constants = constants;
+        if (Error error = create_pipeline(input.device, fmt::format("kernel '{}'", type.shader),
+                                          std::string(type.name), code->spirv,
+                                          {input.cache, input.flags}, *added))
+          return error;
+        pipeline = added;
+        if (input.store != nullptr) input.store->add(pipeline);
+      }
+      made.all.push_back(std::move(pipeline));
+    }
   }
   return {};
 }

@@ -3,6 +3,7 @@
 #include "framegraph/vulkan/executor/state.hpp"
 
 #include <algorithm>
+#include <fmt/format.h>
 #include <string_view>
 
 namespace dermis::vulkan {
@@ -106,6 +107,35 @@ read_executables(const PipelinesInput& input, const StatisticFunctions& vk, VkPi
   return executables;
 }
 
+std::string setting_text(const PassTypeSetting& setting, uint32_t value) {
+  if (setting.type == SettingType::boolean)
+    return fmt::format("{}={}", setting.name, value != 0 ? "true" : "false");
+  return value < setting.options.size() ? fmt::format("{}={}", setting.name, setting.options[value])
+                                        : fmt::format("{}={}", setting.name, value);
+}
+
+std::string constants_text(const PassType& type, const Pipeline& pipeline) {
+  std::vector<std::string> words;
+  PortMasks masks;
+  bool has_masks = false;
+  for (size_t i = 0; i < pipeline.constants.size(); ++i) {
+    const KernelConstant& constant = pipeline.kernel->constants[i];
+    if (constant.setting != no_index)
+      words.push_back(setting_text(type.settings[constant.setting], pipeline.constants[i]));
+    else
+      (constant.id == constant_id::bound_ports ? masks.bound : masks.changing) =
+          pipeline.constants[i];
+    has_masks = has_masks || constant.setting == no_index;
+  }
+  for (uint32_t p = 0; has_masks && p < type.ports.size(); ++p)
+    if (type.ports[p].optional)
+      words.push_back(fmt::format("{}={}", type.ports[p].name,
+                                  (masks.bound >> p & 1u) != 0      ? "bound"
+                                  : (masks.changing >> p & 1u) != 0 ? "changing"
+                                                                    : "unbound"));
+  return fmt::format("{}", fmt::join(words, " "));
+}
+
 // Layout of set 1, which pipelines need only while they are created.
 struct EnvironmentLayout {
   const Device& device;
@@ -130,30 +160,34 @@ Error compile_pipelines(const PipelinesInput& input, std::vector<CompiledPipelin
   if (input.statistics) flags |= VK_PIPELINE_CREATE_CAPTURE_STATISTICS_BIT_KHR;
   if (input.statistics && input.assembly)
     flags |= VK_PIPELINE_CREATE_CAPTURE_INTERNAL_REPRESENTATIONS_BIT_KHR;
-  PlanKernels made;
-  const KernelInput kernels{.device = device,
-                            .pass_types = *input.pass_types,
-                            .codes = input.kernels,
-                            .environment = input.environment,
-                            .environment_layout = environment.layout,
-                            .flags = flags,
-                            .store = input.store};
-  if (Error error = create_kernels(kernels, *input.plan, made)) return error;
+  PlanKernels kernels;
+  PlanPipelines made;
+  const KernelInput source{.device = device,
+                           .pass_types = *input.pass_types,
+                           .codes = input.kernels,
+                           .environment = input.environment,
+                           .environment_layout = environment.layout,
+                           .flags = flags,
+                           .store = input.store};
+  if (Error error = create_kernels(source, *input.plan, kernels)) return error;
+  if (Error error = create_pipelines(source, *input.plan, kernels, made)) return error;
   const size_t first = pipelines.size();
-  for (std::shared_ptr<const Kernel>& kernel : made.kernels) {
+  for (std::shared_ptr<const Pipeline>& one : made.all) {
     CompiledPipeline& pipeline = pipelines.emplace_back();
-    pipeline.type = kernel->type;
-    pipeline.kernel = std::move(kernel);
+    pipeline.type = one->kernel->type;
+    pipeline.constants = constants_text((*input.pass_types)[pipeline.type], *one);
+    pipeline.pipeline = std::move(one);
   }
   for (uint32_t p = 0; p < made.of_pass.size(); ++p)
-    if (made.of_pass[p] != no_index) pipelines[first + made.of_pass[p]].passes.push_back(p);
+    for (const uint32_t index : made.of_pass[p])
+      pipelines[first + index].passes.push_back(p);
   if (!input.statistics) return {};
   const StatisticFunctions functions = load_statistic_functions(device);
   if (functions.properties == nullptr || functions.statistics == nullptr)
     return {ErrorKind::unsupported, VK_SUCCESS,
             "functions of VK_KHR_pipeline_executable_properties are missing"};
   for (size_t i = first; i < pipelines.size(); ++i)
-    pipelines[i].executables = read_executables(input, functions, pipelines[i].kernel->pipeline);
+    pipelines[i].executables = read_executables(input, functions, pipelines[i].pipeline->handle);
   return {};
 }
 

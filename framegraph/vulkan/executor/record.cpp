@@ -2,7 +2,6 @@
 #include "framegraph/vulkan/executor/state.hpp"
 
 #include <algorithm>
-#include <bit>
 
 namespace dermis::vulkan {
 namespace {
@@ -68,6 +67,50 @@ RecordResult check_frame(const State& state, const FrameInput& frame, const Rect
   return check_slots(state, frame);
 }
 
+// Returns whether the pipeline has the constants that the pass has in this frame. Masks of ports
+// are equal in all pipelines of a pass.
+bool is_for_frame(const State& state, const FrameInput& frame, const PlanPass& planned,
+                  const Pipeline& pipeline) {
+  for (size_t i = 0; i < pipeline.constants.size(); ++i)
+    if (const uint32_t setting = pipeline.kernel->constants[i].setting;
+        setting != no_index &&
+        pipeline.constants[i] !=
+            kernel_word(value_of(state.plan, planned, setting, frame.settings)))
+      return false;
+  return true;
+}
+
+// Returns the settings of the frame that a plan can follow; empty: the plan's values.
+std::span<const SettingValue> followed_settings(const State& state, const FrameInput& frame) {
+  return frame.settings.first(std::min(frame.settings.size(), state.plan.setting_values.size()));
+}
+
+// Chooses the pipelines of all passes. Most frames have the settings of the frame before.
+RecordResult choose_pipelines(State& state, const FrameInput& frame) {
+  const auto is_same = [](const SettingValue& a, const SettingValue& b) {
+    return a.integer == b.integer && a.real == b.real;
+  };
+  const std::span<const SettingValue> settings = followed_settings(state, frame);
+  if (state.chosen && std::ranges::equal(settings, state.chosen_settings, is_same)) return {};
+  state.chosen = false;
+  for (size_t p = 0; p < state.passes.size(); ++p) {
+    if (state.passes[p].kernel == no_index) continue;
+    const Pipeline* chosen = nullptr;
+    for (const uint32_t index : state.pipelines->of_pass[p]) {
+      const Pipeline& pipeline = *state.pipelines->all[index];
+      if (!is_for_frame(state, frame, state.plan.passes[p], pipeline)) continue;
+      chosen = &pipeline;
+      break;
+    }
+    if (chosen == nullptr)
+      return reject("no pipelines were created for these values of the settings");
+    state.chosen_pipelines[p] = chosen->handle;
+  }
+  state.chosen_settings.assign(settings.begin(), settings.end());
+  state.chosen = true;
+  return {};
+}
+
 void invalidate_for_cut(State& state) {
   for (size_t h = 0; h < state.histories.size(); ++h) {
     const PlanHistory& history = state.plan.histories[h];
@@ -83,18 +126,13 @@ void invalidate_for_cut(State& state) {
 
 void push_settings(State& state, const FrameInput& frame, const PlanPass& planned, const Pass& pass,
                    const Kernel& kernel) {
-  const uint32_t words = kernel.push_bytes / static_cast<uint32_t>(sizeof(uint32_t));
   state.push_constants[0] = pass.port_mask;
   for (const uint32_t port : pass.conditional_ports)
     if (access_now(state, pass.ports[port]) != no_index)
       state.push_constants[0] |= uint32_t{1} << port;
-  for (uint32_t i = 1; i < words; ++i) {
-    const SettingValue value = value_of(state, frame, planned, i - 1);
-    const SettingType type = state.plan.settings[planned.first_setting + i - 1].value.type;
-    state.push_constants[i] = type == SettingType::real
-                                  ? std::bit_cast<uint32_t>(static_cast<float>(value.real))
-                                  : static_cast<uint32_t>(static_cast<int32_t>(value.integer));
-  }
+  for (size_t i = 0; i < kernel.pushed_settings.size(); ++i)
+    state.push_constants[1 + i] =
+        kernel_word(value_of(state.plan, planned, kernel.pushed_settings[i], frame.settings));
   state.commands->vkCmdPushConstants(frame.command_buffer, kernel.layout,
                                      VK_SHADER_STAGE_COMPUTE_BIT, 0, kernel.push_bytes,
                                      state.push_constants.data());
@@ -112,7 +150,7 @@ VkBuffer indirect_buffer(const State& state, const Pass& pass, const Kernel& ker
 uint64_t indirect_offset(const State& state, const FrameInput& frame, const PlanPass& planned,
                          const Pass& pass, const Kernel& kernel) {
   if (kernel.entry_setting == no_index) return 0;
-  const int64_t entry = value_of(state, frame, planned, kernel.entry_setting).integer;
+  const int64_t entry = value_of(state.plan, planned, kernel.entry_setting, frame.settings).integer;
   return indirect_entry_bytes *
          std::min(static_cast<uint64_t>(std::max(entry, int64_t{0})), pass.indirect_entries - 1);
 }
@@ -136,7 +174,8 @@ void run_kernel(State& state, const FrameInput& frame, uint32_t frame_slot, size
   const FunctionTable& vk = *state.commands;
   const Pass& pass = state.passes[p];
   const Kernel& kernel = *state.kernels[pass.kernel];
-  vk.vkCmdBindPipeline(frame.command_buffer, VK_PIPELINE_BIND_POINT_COMPUTE, kernel.pipeline);
+  vk.vkCmdBindPipeline(frame.command_buffer, VK_PIPELINE_BIND_POINT_COMPUTE,
+                       state.chosen_pipelines[p]);
   const bool environment = state.environment.set_layout != VK_NULL_HANDLE;
   const VkDescriptorSet sets[] = {state.descriptors.sets[set_index(state, p, frame_slot)],
                                   environment ? state.environment.sets[frame_slot]
@@ -258,9 +297,11 @@ RecordResult Executor::record(const FrameInput& frame) noexcept {
                                   ? Rectangle{0, 0, state.plan.view_width, state.plan.view_height}
                                   : frame.rectangle;
   if (const RecordResult rejected = check_frame(state, frame, rectangle)) return rejected;
+  if (const RecordResult rejected = choose_pipelines(state, frame)) return rejected;
   state.commands = frame.commands == nullptr ? &state.device->vk : frame.commands;
   const VkCommandBuffer commands = frame.command_buffer;
   const auto frame_slot = static_cast<uint32_t>(frame.frame_index % state.frames_in_flight);
+  state.pipelines_of_slot[frame_slot] = state.pipelines;
   remember_before_frame(state);
   if (frame.reset_history) invalidate_for_cut(state);
 

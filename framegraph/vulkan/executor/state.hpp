@@ -55,6 +55,12 @@ struct KernelPort {
   VkFormat placeholder = VK_FORMAT_UNDEFINED; // image format to bind if the port is unbound
 };
 
+// Specialisation constant that a kernel declares.
+struct KernelConstant {
+  uint32_t id = 0;             // see constant_id
+  uint32_t setting = no_index; // into PassType::settings; no_index: a mask of ports
+};
+
 // One per pass type that dispatches; shared by the executors that run it.
 struct Kernel {
   const Device* device = nullptr;
@@ -67,14 +73,34 @@ struct Kernel {
   std::vector<KernelPort> ports;
   bool counts = false; // true: uses the environment's counters
   uint32_t push_bytes = 0;
+  std::vector<uint32_t> pushed_settings; // into PassType::settings
+  std::vector<KernelConstant> constants;
   VkDescriptorSetLayout set_layout = VK_NULL_HANDLE;
   VkPipelineLayout layout = VK_NULL_HANDLE;
-  VkPipeline pipeline = VK_NULL_HANDLE;
 
   explicit Kernel(const Device& owner) : device(&owner) {}
   ~Kernel();
   Kernel(const Kernel&) = delete;
   Kernel& operator=(const Kernel&) = delete;
+};
+
+// A kernel compiled for one value of each of its constants; shared like the kernel.
+struct Pipeline {
+  std::shared_ptr<const Kernel> kernel;
+  std::vector<uint32_t> constants; // by Kernel::constants
+  VkPipeline handle = VK_NULL_HANDLE;
+
+  explicit Pipeline(std::shared_ptr<const Kernel> of) : kernel(std::move(of)) {}
+  ~Pipeline();
+  Pipeline(const Pipeline&) = delete;
+  Pipeline& operator=(const Pipeline&) = delete;
+};
+
+// The pipelines of a plan, for all values that the settings of a frame may have.
+struct PlanPipelines {
+  std::vector<std::shared_ptr<const Pipeline>> all; // each once
+  // by plan pass: into `all`, one per combination of constants
+  std::vector<std::vector<uint32_t>> of_pass;
 };
 
 // Binding of descriptor set 1, in the buffer of the tables.
@@ -212,7 +238,7 @@ struct HistoryRecord {
 // Copies histories from an executor of another size.
 struct Rescaling {
   // float, unsigned; null: no history has the type
-  std::array<std::shared_ptr<const Kernel>, 2> kernels;
+  std::array<std::shared_ptr<const Pipeline>, 2> pipelines;
   // By rescaled history and instance: a view of all mips to read, then one per mip to write.
   std::vector<VkImageView> views;
   VkDescriptorPool pool = VK_NULL_HANDLE;
@@ -270,6 +296,12 @@ struct Executor::State {
   bool placeholders_ready = false;
   bool poison = false; // ExecutorInput::poison
   std::vector<std::shared_ptr<const Kernel>> kernels;
+  std::shared_ptr<const PlanPipelines> pipelines; // of the next frame
+  // by frame slot: pipelines that its frame was recorded with
+  std::vector<std::shared_ptr<const PlanPipelines>> pipelines_of_slot;
+  std::vector<VkPipeline> chosen_pipelines;  // of the current frame, by plan pass
+  std::vector<SettingValue> chosen_settings; // that `chosen_pipelines` were chosen for
+  bool chosen = false;                       // both are up to date with `pipelines`
   Environment environment;
   Descriptors descriptors;
   std::vector<Pass> passes;
@@ -349,6 +381,17 @@ void write_frame_constants(State& state, uint32_t frame_slot,
                            std::span<const std::byte> constants) noexcept;
 
 // ---- kernels.cpp
+// Ports of a pass, bit i for port i.
+struct PortMasks {
+  uint32_t bound = 0;    // in every frame
+  uint32_t changing = 0; // in some frames: those in which a history is valid
+};
+PortMasks port_masks(const Plan& plan, const PlanPass& pass);
+// Returns setting `index` of a pass in frames with `settings` (empty: the plan's values).
+SettingValue value_of(const Plan& plan, const PlanPass& pass, uint32_t index,
+                      std::span<const SettingValue> settings) noexcept;
+// Returns a setting's value as kernels read it.
+uint32_t kernel_word(const SettingValue& value);
 // Describes what the kernels of plans are created from.
 struct KernelInput {
   const Device& device;
@@ -359,22 +402,26 @@ struct KernelInput {
   VkPipelineCache cache = VK_NULL_HANDLE;                    // may be null
   VkPipelineCreateFlags flags = 0;
   KernelStore* store = nullptr; // null: the kernels are shared with no other plan
+  std::span<const std::vector<SettingValue>> settings{}; // ExecutorInput::settings
 };
 struct PlanKernels {
   std::vector<std::shared_ptr<const Kernel>> kernels;
   std::vector<uint32_t> of_pass; // by plan pass: into `kernels`; no_index: the pass has no kernel
 };
-// Creates the kernels of a plan. Needs no memory, image or buffer of the device.
+// Creates the kernels of a plan, without pipelines. Needs no memory, image or buffer of the device.
 Error create_kernels(const KernelInput& input, const Plan& plan, PlanKernels& made);
+// Creates the pipelines of a plan's kernels. Equal kernels with equal constants share a pipeline.
+Error create_pipelines(const KernelInput& input, const Plan& plan, const PlanKernels& kernels,
+                       PlanPipelines& made);
 struct PipelineOptions {
   VkPipelineCache cache = VK_NULL_HANDLE;
   VkPipelineCreateFlags flags = 0;
 };
-// Creates `kernel.pipeline` from `kernel.layout`. `subresource` names it in errors, `label` in
-// debuggers.
+// Creates `pipeline.handle` for its kernel and constants. `subresource` names it in errors, `label`
+// in debuggers.
 Error create_pipeline(const Device& device, const std::string& subresource,
                       const std::string& label, std::span<const uint32_t> spirv,
-                      const PipelineOptions& options, Kernel& kernel);
+                      const PipelineOptions& options, Pipeline& pipeline);
 
 // ---- history.cpp
 void remember_before_frame(State& state) noexcept;
@@ -453,8 +500,6 @@ void record_rescaling(State& to, const State& from, VkCommandBuffer commands,
 // ---- host_pass.cpp
 // also allocates memory for their calls
 Error check_host_passes(State& state, const ExecutorInput& input);
-SettingValue value_of(const State& state, const FrameInput& frame, const PlanPass& planned,
-                      uint32_t index) noexcept;
 void run_host_pass(State& state, const FrameInput& frame, size_t p,
                    const Rectangle& rectangle) noexcept;
 

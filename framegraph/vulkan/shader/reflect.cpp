@@ -24,13 +24,15 @@ struct Id {
   std::vector<uint32_t> member_offsets; // by decoration
   std::vector<uint32_t> matrix_strides;
   std::vector<std::string> member_names;
-  uint32_t array_stride = 0, set = 0, binding = 0;
-  bool has_set = false, has_binding = false, buffer_block = false, workgroup_size = false;
+  uint32_t array_stride = 0, set = 0, binding = 0, spec_id = 0;
+  bool has_spec_id = false, has_set = false, has_binding = false, buffer_block = false,
+       workgroup_size = false;
 };
 
 struct Module {
   std::vector<Id> ids;
   std::vector<uint32_t> variables; // ids
+  std::vector<uint32_t> constants; // ids of specialisation constants
   bool has_entry = false;
   uint32_t entry = 0;
   std::array<uint32_t, 3> local_size{1, 1, 1};
@@ -38,7 +40,8 @@ struct Module {
   std::string error;
 };
 
-constexpr size_t max_members = 4096; // of a block; limits the cost of hostile member numbers
+constexpr uint64_t boolean_bytes = 4; // of a specialisation constant: VkBool32
+constexpr size_t max_members = 4096;  // of a block; limits the cost of hostile member numbers
 
 // Holds the operands of one instruction. Reading past the end returns 0 and sets `cut`.
 struct Operands {
@@ -141,6 +144,11 @@ private:
     case op_constant:
     case op_spec_constant:
       id(o.at(1)).operands[0] = o.at(2);
+      specialisation_constant(op, o);
+      break;
+    case op_spec_constant_true:
+    case op_spec_constant_false:
+      specialisation_constant(op, o);
       break;
     case op_constant_composite:
     case op_spec_constant_composite:
@@ -158,9 +166,23 @@ private:
     }
   }
 
+  // Types and decorations come before the constant.
+  void specialisation_constant(uint32_t op, Operands& o) {
+    Id& constant = id(o.at(1));
+    if (op == op_constant || !constant.has_spec_id) return;
+    const Id& type = id(o.at(0));
+    constant.numeric = type.numeric;
+    constant.bytes = type.numeric == Numeric::none ? boolean_bytes : type.bytes;
+    module.constants.push_back(o.at(1));
+  }
+
   void decorate(Operands& o) {
     Id& target = id(o.at(0));
     switch (o.at(1)) {
+    case decoration_spec_id:
+      target.spec_id = o.at(2);
+      target.has_spec_id = true;
+      break;
     case decoration_buffer_block:
       target.buffer_block = true;
       break;
@@ -298,6 +320,11 @@ std::optional<Reflection> reflect(std::span<const uint32_t> spirv, std::string& 
   for (size_t axis = 0; axis < 3; ++axis)
     if (module.local_size_ids[axis] != 0)
       result.local_size[axis] = known(module.local_size_ids[axis]).operands[0];
+  for (const uint32_t number : module.constants) {
+    const Id& constant = known(number);
+    result.constants.push_back({constant.spec_id, constant.numeric, constant.bytes, constant.name});
+  }
+  std::ranges::stable_sort(result.constants, {}, &SpecialisationConstant::id);
   for (const uint32_t number : module.variables) {
     const Id& variable = known(number);
     const Id& pointer = known(variable.operands[0]);

@@ -1,5 +1,5 @@
 #pragma once
-// Reads the bindings, push constants and workgroup size of a SPIR-V compute module. The input is
+// Reads the bindings, constants and workgroup size of a SPIR-V compute module. The input is
 // untrusted: every word read is checked against the end of the module.
 
 #include <array>
@@ -40,10 +40,18 @@ struct PushMember {
   std::string name;
 };
 
+struct SpecialisationConstant {
+  uint32_t id = 0;                 // constant_id
+  Numeric numeric = Numeric::none; // none: a boolean
+  uint64_t bytes = 4;              // size of a value for it
+  std::string name;
+};
+
 struct Reflection {
   std::vector<ShaderBinding> bindings; // by set and binding
   bool has_push_constants = false;
-  std::vector<PushMember> push_members; // in block order
+  std::vector<PushMember> push_members;          // in block order
+  std::vector<SpecialisationConstant> constants; // by id
   std::array<uint32_t, 3> local_size{1, 1, 1};
 };
 

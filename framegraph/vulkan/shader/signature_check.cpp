@@ -76,26 +76,69 @@ struct Checker {
                binding.bytes);
   }
 
-  void check_push_constants(const Reflection& reflection) {
-    const auto& members = reflection.push_members;
-    const size_t expected = 1 + type.settings.size();
-    if (!reflection.has_push_constants) {
-      if (!type.settings.empty())
-        mismatch("the shader has no push constants, but the signature has {} settings",
-                 type.settings.size());
+  // A kernel need not declare constants that it does not use.
+  void check_constant(const SpecialisationConstant& constant) {
+    if (constant.id == constant_id::bound_ports || constant.id == constant_id::changing_ports) {
+      if (!has_type(constant, false) || constant.numeric == Numeric::signed_integer)
+        mismatch("constant {} is a mask of ports, but '{}' is {} in the shader; expected uint",
+                 constant.id, constant.name, constant_type(constant));
       return;
     }
-    if (members.size() != expected)
-      return mismatch(
-          "the shader has {} push constants, but the signature has the port mask and {} settings",
-          members.size(), type.settings.size());
+    if (constant.id < constant_id::first_setting) return;
+    const uint32_t index = constant.id - constant_id::first_setting;
+    if (index >= type.settings.size())
+      return mismatch("the shader has the constant '{}' with id {}, but the signature has only {} "
+                      "settings, from id {} on",
+                      constant.name, constant.id, type.settings.size(), constant_id::first_setting);
+    const PassTypeSetting& setting = type.settings[index];
+    const bool boolean = setting.type == SettingType::boolean;
+    if (!is_constant(setting))
+      mismatch("setting '{}' is a push constant, but '{}' is a specialisation constant in the "
+               "shader",
+               setting.name, constant.name);
+    else if (!has_type(constant, boolean))
+      mismatch("setting '{}' is {} in the signature, but '{}' is {} in the shader", setting.name,
+               boolean ? "bool, int or uint" : "int or uint", constant.name,
+               constant_type(constant));
+  }
+
+  // Returns whether the constant is an integer of 32 bits, or, if allowed, a boolean.
+  static bool has_type(const SpecialisationConstant& constant, bool boolean_allowed) {
+    const bool integer = constant.numeric == Numeric::signed_integer ||
+                         constant.numeric == Numeric::unsigned_integer;
+    return integer ? constant.bytes == sizeof(uint32_t)
+                   : boolean_allowed && constant.numeric == Numeric::none;
+  }
+
+  static std::string constant_type(const SpecialisationConstant& constant) {
+    if (constant.numeric == Numeric::none) return "bool";
+    return constant.bytes == sizeof(uint32_t)
+               ? numeric_name(constant.numeric)
+               : fmt::format("{} with {} bytes", numeric_name(constant.numeric), constant.bytes);
+  }
+
+  void check_push_constants(const Reflection& reflection) {
+    const auto& members = reflection.push_members;
+    std::vector<const PassTypeSetting*> settings;
+    for (const PassTypeSetting& setting : type.settings)
+      if (!is_constant(setting)) settings.push_back(&setting);
+    if (!reflection.has_push_constants) {
+      if (!settings.empty())
+        mismatch("the shader has no push constants, but the signature has {} settings that are",
+                 settings.size());
+      return;
+    }
+    if (members.size() != 1 + settings.size())
+      return mismatch("the shader has {} push constants, but the signature has the port mask and "
+                      "{} settings that are push constants",
+                      members.size(), settings.size());
     for (size_t i = 0; i < members.size(); ++i) {
       const std::string name =
-          i == 0 ? "port mask" : fmt::format("setting '{}'", type.settings[i - 1].name);
+          i == 0 ? "port mask" : fmt::format("setting '{}'", settings[i - 1]->name);
       if (members[i].offset != 4 * i)
         mismatch("{} is at byte {} of the push constants, but '{}' of the shader is at byte {}",
                  name, 4 * i, members[i].name, members[i].offset);
-      const bool real = i > 0 && type.settings[i - 1].type == SettingType::real;
+      const bool real = i > 0 && settings[i - 1]->type == SettingType::real;
       const bool fits = real ? members[i].numeric == Numeric::real
                              : members[i].numeric == Numeric::signed_integer ||
                                    members[i].numeric == Numeric::unsigned_integer;
@@ -173,6 +216,8 @@ std::vector<std::string> check_signature(const PassType& type,
           "the shader has '{}' at set {}, but only sets 0 (ports) and 1 (environment) exist",
           binding.name, binding.set);
   }
+  for (const SpecialisationConstant& constant : reflection.constants)
+    checker.check_constant(constant);
   checker.check_push_constants(reflection);
   checker.check_local_size(reflection.local_size);
   return std::move(checker.found);

@@ -1,5 +1,5 @@
 #pragma once
-// Checks a kernel against its declared signature: bindings, push constants and workgroup size.
+// Checks a kernel against its declared signature: bindings, constants and workgroup size.
 
 #include "framegraph/model/pass_type.hpp"
 #include "framegraph/vulkan/executor.hpp"

@@ -29,6 +29,8 @@ enum Op : uint32_t {
   op_type_pointer = 32,
   op_constant = 43,
   op_constant_composite = 44,
+  op_spec_constant_true = 48,
+  op_spec_constant_false = 49,
   op_spec_constant = 50,
   op_spec_constant_composite = 51,
   op_function = 54,
@@ -41,6 +43,7 @@ enum Op : uint32_t {
 };
 
 enum Decoration : uint32_t {
+  decoration_spec_id = 1,
   decoration_block = 2,
   decoration_buffer_block = 3,
   decoration_array_stride = 6,

@@ -536,8 +536,9 @@ typedef struct dermis_setting {
 #define DERMIS_SETTING_INIT \
   {sizeof(dermis_setting), NULL, DERMIS_SETTING_BOOL, 0, NULL, NULL, 0, 0, 0, 0, 0, 0, NULL, 0}
 /* Sets a setting for all views from JSON text ("16", "true", "\"post\""), effective at the next
- * record. A value that changes which passes run compiles a plan here. Costs: pipelines, memory,
- * time. Thread: concurrent. Errors: ARGUMENT, CONFIG, and those of dermis_graph_create. */
+ * record. A value that changes which passes run compiles a plan here; a new value of a switch or an
+ * option creates pipelines. Costs: pipelines, memory, time. Thread: concurrent. Errors: ARGUMENT,
+ * CONFIG, and those of dermis_graph_create. */
 DERMIS_API dermis_result DERMIS_CALL dermis_graph_set_setting(
     dermis_graph graph, const char* name, const char* json, dermis_report* report);
 

@@ -117,6 +117,10 @@ uint64_t NullDevice::descriptor_writes() const {
   return state_->descriptor_writes;
 }
 
+uint64_t NullDevice::pipelines() const {
+  return state_->pipelines;
+}
+
 uint64_t NullDevice::alive() const {
   const std::lock_guard lock(state_->mutex);
   return state_->alive.size();

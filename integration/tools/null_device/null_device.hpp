@@ -36,6 +36,7 @@ public:
   uint64_t dispatches() const;        // number of vkCmdDispatch and vkCmdDispatchIndirect calls
   uint64_t buffer_copies() const;     // number of vkCmdCopyBuffer calls
   uint64_t descriptor_writes() const; // number of descriptors that vkUpdateDescriptorSets wrote
+  uint64_t pipelines() const;         // number of pipelines created so far
   uint64_t alive() const;             // objects created through the functions and not yet destroyed
   uint64_t memory_bytes() const;      // device memory allocated and not yet freed, bytes
   uint64_t creations() const; // calls that create an object or allocate, including failed calls

@@ -55,6 +55,7 @@ VKAPI_ATTR VkResult VKAPI_CALL create_pipelines(VkDevice device, VkPipelineCache
                                                 VkPipeline* pipelines) {
   NullDeviceState& state = state_of(device);
   const VkResult result = count_creation(state);
+  if (result == VK_SUCCESS) state.pipelines += count;
   for (uint32_t i = 0; i < count; ++i)
     pipelines[i] =
         result == VK_SUCCESS ? reinterpret_cast<VkPipeline>(add_object(state)) : VK_NULL_HANDLE;

@@ -23,7 +23,7 @@ struct NullDeviceState {
   // First member: loaders store a pointer here and layers read that pointer.
   void* dispatch = nullptr;
   std::atomic<uint64_t> commands = 0, barriers = 0, dispatches = 0, descriptor_writes = 0,
-                        buffer_copies = 0;
+                        buffer_copies = 0, pipelines = 0;
   std::atomic<VkResult> query_failure = VK_SUCCESS;
   std::atomic<VkQueueFlags> queue_flags =
       VK_QUEUE_GRAPHICS_BIT | VK_QUEUE_COMPUTE_BIT | VK_QUEUE_TRANSFER_BIT;

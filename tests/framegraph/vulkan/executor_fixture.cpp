@@ -38,6 +38,7 @@ vulkan::Error ExecutorTest::try_executor(const SmallGraph& graph, const Plan& pl
   input.environment = environment;
   input.frames_in_flight = test_frames_in_flight;
   input.poison = poison;
+  input.settings = prepared;
   return vulkan::Executor::create(input, result);
 }
 

@@ -142,7 +142,51 @@ TEST(Signature, PushConstantsMustFollowTheSettings) {
   EXPECT_THAT(
       text,
       HasSubstr(
-          "the shader has 3 push constants, but the signature has the port mask and 1 settings"));
+          "the shader has 3 push constants, but the signature has the port mask and 1 settings "
+          "that are push constants"));
+}
+
+TEST(Reflection, ReadsSpecialisationConstants) {
+  const Reflection constant = reflected("test_constant");
+  ASSERT_EQ(constant.constants.size(), 4u);
+  EXPECT_EQ(constant.constants[0].id, 1u);
+  EXPECT_EQ(constant.constants[0].numeric, Numeric::unsigned_integer);
+  EXPECT_EQ(constant.constants[2].name, "mode");
+  EXPECT_EQ(constant.constants[2].numeric, Numeric::signed_integer);
+  EXPECT_EQ(constant.constants[3].id, 18u);
+  EXPECT_EQ(constant.constants[3].numeric, Numeric::none);
+  EXPECT_THAT(reflected("test_add").constants, IsEmpty());
+}
+
+TEST(Signature, ConstantsMustFollowTheSettings) {
+  PassType changed = type("test.constant");
+  std::vector<PassTypeSetting> settings(changed.settings.begin(), changed.settings.end());
+  std::swap(settings[1], settings[2]);
+  changed.settings = settings;
+  EXPECT_THAT(
+      problems(changed, reflected("test_constant")),
+      HasSubstr("setting 'mode' is int or uint in the signature, but 'negate' is bool in the "
+                "shader"));
+  settings[1].per_frame = true;
+  changed.settings = settings;
+  EXPECT_THAT(problems(changed, reflected("test_constant")),
+              HasAll("setting 'negate' is a push constant, but 'mode' is a specialisation constant",
+                     "has 2 push constants, but the signature has the port mask and 2 settings"));
+  settings.pop_back();
+  changed.settings = settings;
+  EXPECT_THAT(problems(changed, reflected("test_constant")),
+              HasSubstr("the shader has the constant 'negate' with id 18, but the signature has "
+                        "only 2 settings, from id 16 on"));
+}
+
+TEST(Signature, ConstantsMustHaveFourBytes) {
+  Reflection constant = reflected("test_constant");
+  constant.constants[0].numeric = Numeric::signed_integer;
+  constant.constants[2].bytes = 8;
+  EXPECT_THAT(problems(type("test.constant"), constant),
+              HasAll("constant 1 is a mask of ports, but 'bound_ports' is int in the shader",
+                     "setting 'mode' is int or uint in the signature, but 'mode' is int with 8 "
+                     "bytes in the shader"));
 }
 
 TEST(Signature, EnvironmentMustHoldAllThatTheShaderReads) {

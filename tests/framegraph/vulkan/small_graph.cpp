@@ -6,6 +6,7 @@
 
 #include "test_add.spv.h"
 #include "test_classes.spv.h"
+#include "test_constant.spv.h"
 #include "test_count.spv.h"
 #include "test_fill.spv.h"
 #include "test_list.spv.h"
@@ -58,6 +59,23 @@ constexpr Port show_ports[] = {
     {"ids", Usage::sampled_image, true, "utexture2D", "", {}},
     target,
 };
+constexpr Port constant_ports[] = {
+    {"more", Usage::sampled_image, true, "texture2D", "", {}},
+    target,
+};
+constexpr std::string_view mode_options[] = {"low", "mid", "high"};
+constexpr PassTypeSetting constant_settings[] = {
+    {"bias", SettingType::real, {SettingType::real, 0, 0.0}, -1e6, 1e6, {}, "", ""},
+    {"mode",
+     SettingType::enumeration,
+     {SettingType::enumeration, 1, 0},
+     0,
+     0,
+     mode_options,
+     "",
+     ""},
+    {"negate", SettingType::boolean, {SettingType::boolean, 0, 0}, 0, 0, {}, "", ""},
+};
 constexpr Port clear_ports[] = {
     {"target", Usage::clear, true, "", "", {}},
     {"buffer", Usage::clear, true, "", "", {}},
@@ -79,6 +97,7 @@ PassTypeRegistry make_pass_types() {
   add("test.stamp", "test_stamp", stamp_ports, stamp_settings);
   add("test.show", "test_show", show_ports, {});
   add("test.count", "test_count", fill_ports, {}, {.domain = one}); // needs counters
+  add("test.constant", "test_constant", constant_ports, constant_settings);
   add("test.clear", "", clear_ports, {}, {.domain = none});
   return pass_types;
 }
@@ -96,7 +115,7 @@ std::span<const vulkan::KernelCode> small_kernels() {
       {"test_sample", test_sample_spirv}, {"test_classes", test_classes_spirv},
       {"test_list", test_list_spirv},     {"test_mark", test_mark_spirv},
       {"test_show", test_show_spirv},     {"test_stamp", test_stamp_spirv},
-      {"test_count", test_count_spirv},
+      {"test_count", test_count_spirv},   {"test_constant", test_constant_spirv},
   };
   return kernels;
 }

@@ -12,7 +12,7 @@
 namespace dermis::testing {
 
 // Returns test.fill, test.add, test.sample, test.classes, test.list, test.mark, test.stamp,
-// test.show and test.clear; their ports are those of kernels/*.comp.
+// test.show, test.constant and test.clear; their ports are those of kernels/*.comp.
 const PassTypeRegistry& small_pass_types();
 std::span<const vulkan::KernelCode> small_kernels();
 

@@ -164,9 +164,9 @@ TEST_F(HostMemory, FailedShaderReload_KeepsTheGraph) {
 
 TEST_F(HostMemory, FailedResize_KeepsTheGraph) {
   make_graph();
-  uint32_t calls = 0;
+  uint32_t calls = 0; // few sizes, so that the cache of plans drops none
   reject_each(
-      step(), [&] { return dermis_graph_resize(host.graph, 32 + ++calls % 7, 32, nullptr); },
+      step(), [&] { return dermis_graph_resize(host.graph, 32 + ++calls % 3, 32, nullptr); },
       [&] { still_records(); });
 }
 
@@ -175,6 +175,17 @@ TEST_F(HostMemory, FailedSetting_KeepsTheGraph) {
   reject_each(
       1, [&] { return dermis_graph_set_setting(host.graph, "accumulate_clip", "2", nullptr); },
       [&] { still_records(); });
+}
+
+TEST_F(HostMemory, FailedPipelines_KeepTheGraph) {
+  make_graph();
+  reject_each(
+      1, [&] { return dermis_graph_set_setting(host.graph, "texturing", "\"pre\"", nullptr); },
+      [&] { still_records(); });
+  heap.calls = 0;
+  for (int i = 0; i < 4; ++i)
+    ASSERT_OK(host.record());
+  EXPECT_EQ(heap.calls, 0u) << "switching to the new pipelines allocates nothing";
 }
 
 TEST_F(HostMemory, FailedProfile_KeepsTheGraph) {

@@ -103,7 +103,11 @@ TEST_F(KernelsOnNullHardware, CompilerValuesAreReported) {
   EXPECT_GT(values.at("code_bytes"), 0);
   EXPECT_EQ(values.at("spilled_vgprs"), 0);
   EXPECT_TRUE(kernel.at("statistics").contains("VGPRs"));
+  EXPECT_THAT(kernel.at("constants").get<std::string>(),
+              HasSubstr("texturing=post result=color copied=unscattered scattered=bound"));
   EXPECT_THAT(read("assembly/common_subsurface_combine.txt"), HasSubstr("s_endpgm"));
+  EXPECT_EQ(kernel.at("assembly"), "common_subsurface_combine.txt");
+  EXPECT_THAT(read("assembly/sap_subsurface_sap_gather_2.txt"), HasSubstr("s_endpgm"));
 }
 
 TEST_F(KernelsOnNullHardware, AnExceededLimitFails) {
@@ -111,9 +115,9 @@ TEST_F(KernelsOnNullHardware, AnExceededLimitFails) {
     { "device": "*NAVI21*", "kernel": "common/*", "max": { "code_bytes": 8 }, "min": { "occupancy": 1 } } ] })");
   const Outcome text = run_on("navi21", {"burley", "--limits", limits});
   EXPECT_EQ(text.exit_code, 1);
-  EXPECT_THAT(text.err, AllOf(HasSubstr("common/subsurface_combine: code_bytes is "),
-                              HasSubstr("at most 8 is allowed"), HasSubstr("limits.json:2"),
-                              Not(HasSubstr("burley/"))));
+  EXPECT_THAT(text.err, AllOf(HasSubstr("common/subsurface_combine (texturing=post "),
+                              HasSubstr("): code_bytes is "), HasSubstr("at most 8 is allowed"),
+                              HasSubstr("limits.json:2"), Not(HasSubstr("burley/"))));
   const Outcome answer = run_on("navi21", {"burley", "--limits", limits, "--json"});
   EXPECT_EQ(answer.exit_code, 1);
   ASSERT_TRUE(is_json(answer.out));
@@ -174,7 +178,7 @@ TEST(CompilePipelines, NeedNoMemory) {
   EXPECT_EQ(null.creations() - before, 6 * 4 + 1);
   ASSERT_FALSE(vulkan::compile_pipelines(request, pipelines));
   ASSERT_EQ(pipelines.size(), 12u);
-  EXPECT_EQ(pipelines[6].kernel, pipelines[0].kernel) << "the store keeps the pipeline";
+  EXPECT_EQ(pipelines[6].pipeline, pipelines[0].pipeline) << "the store keeps the pipeline";
   EXPECT_EQ(null.creations() - before, 6 * 4 + 2);
 }
 

@@ -12,22 +12,29 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
+#include <string>
 
 namespace dermis::tools {
 namespace {
 
-// Writes one file per row: "sap_subsurface_sap_up.txt". Returns the problem, or "".
-std::string write_assembly(const std::string& path, const KernelSurvey& survey) {
+// Writes one file per row: "sap_subsurface_sap_up.txt", and "sap_subsurface_sap_up_2.txt" for a
+// second pipeline of the kernel. Returns the problem, or "".
+std::string write_assembly(const std::string& path, KernelSurvey& survey) {
   OutputFolder folder;
   if (std::string problem = folder.open(path); !problem.empty()) return problem;
   size_t written = 0;
-  for (const KernelRow& row : survey.kernels) {
+  std::map<std::string, size_t> files; // by kernel and program
+  for (KernelRow& row : survey.kernels) {
     if (row.assembly.empty()) continue;
-    std::string name = row.kernel + (row.program.empty() ? "" : "_" + row.program) + ".txt";
+    std::string name = row.kernel + (row.program.empty() ? "" : "_" + row.program);
     std::replace_if(
         name.begin(), name.end(), [](char c) { return c == '/' || c == ' '; }, '_');
+    const size_t number = ++files[name];
+    name += number > 1 ? fmt::format("_{}.txt", number) : ".txt";
     if (std::string problem = deliver_text(folder.path_of(name), row.assembly); !problem.empty())
       return problem;
+    row.assembly_file = name;
     ++written;
   }
   return written > 0 ? "" : fmt::format("{} delivers no assembly", survey.driver);
@@ -45,7 +52,7 @@ ExitCode kernels(const Session& session, const KernelsOptions& options) {
       return fail(session, ExitCode::problems,
                   fmt::format("{}: the limits cannot be used", options.limits), &diagnostics);
   }
-  const demo::Result<KernelSurvey> survey = survey_kernels(options, session, diagnostics);
+  demo::Result<KernelSurvey> survey = survey_kernels(options, session, diagnostics);
   if (interrupted()) return fail(session, ExitCode::interrupted, "stopped");
   if (!survey)
     return fail(session, static_cast<ExitCode>(survey.error().kind), survey.error().text,

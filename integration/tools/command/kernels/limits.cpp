@@ -174,6 +174,13 @@ private:
   std::vector<const LimitRule*> rules_;
 };
 
+std::string name_of(const KernelRow& row) {
+  const std::string details =
+      fmt::format("{}{}{}", row.constants, row.constants.empty() || row.program.empty() ? "" : ", ",
+                  row.program);
+  return details.empty() ? row.kernel : fmt::format("{} ({})", row.kernel, details);
+}
+
 } // namespace
 
 bool matches_pattern(std::string_view pattern, std::string_view text) {
@@ -223,9 +230,7 @@ LimitsCheck check_limits(const std::vector<LimitRule>& rules, const LimitedDevic
                          const std::vector<GraphCounts>& graphs) {
   Checker checker(rules, device);
   for (const KernelRow& row : kernels)
-    checker.check(false, row.kernel,
-                  row.program.empty() ? row.kernel
-                                      : fmt::format("{} ({})", row.kernel, row.program),
+    checker.check(false, row.kernel, name_of(row),
                   [&](const std::string& key) { return row.value(*find_kernel_value(key)); });
   for (const GraphCounts& graph : graphs)
     checker.check(true, graph.graph, "graph " + graph.graph,

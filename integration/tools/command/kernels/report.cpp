@@ -29,6 +29,7 @@ Table kernel_table(const KernelSurvey& survey) {
                             "subgroup", "code B", "instructions"})
     table.columns.push_back({title, true});
   table.columns.push_back({"graphs"});
+  table.columns.push_back({"constants"});
   for (const KernelRow& row : survey.kernels) {
     const std::string name = row.program.empty() ? row.kernel : row.kernel + " " + row.program;
     table.rows.push_back(
@@ -40,7 +41,8 @@ Table kernel_table(const KernelSurvey& survey) {
          value_cell(row.value(KernelValue::subgroup_size)),
          bytes_cell(row.value(KernelValue::code_bytes)),
          bytes_cell(row.value(KernelValue::instructions)),
-         row.graphs.size() > 1 ? format_count(row.graphs.size(), "graph") : row.graphs.front()});
+         row.graphs.size() > 1 ? format_count(row.graphs.size(), "graph") : row.graphs.front(),
+         row.constants});
   }
   return table;
 }
@@ -68,7 +70,9 @@ void write_kernels(const KernelSurvey& survey, JsonWriter& json) {
   json.key("kernels").open_array();
   for (const KernelRow& row : survey.kernels) {
     json.open_object().member("kernel", row.kernel);
+    if (!row.constants.empty()) json.member("constants", row.constants);
     if (!row.program.empty()) json.member("program", row.program);
+    if (!row.assembly_file.empty()) json.member("assembly", row.assembly_file);
     json.key("graphs").open_array(true);
     for (const std::string& graph : row.graphs)
       json.value(graph);

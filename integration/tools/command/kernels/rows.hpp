@@ -37,12 +37,14 @@ std::optional<KernelValue> find_kernel_value(std::string_view key);
 
 struct KernelRow {
   std::string kernel;              // PassType::shader: "sap/subsurface_sap_up"
+  std::string constants;           // CompiledPipeline::constants
   std::string program;             // the driver's name, if there are several programs; else ""
   std::vector<std::string> graphs; // that run the kernel
   // nullopt: the driver does not report the value
   std::array<std::optional<double>, kernel_value_count> values;
   std::vector<vulkan::PipelineStatistic> statistics; // all, as the driver reports them
   std::string assembly;
+  std::string assembly_file; // name of the file with `assembly`; "": not written
 
   std::optional<double> value(KernelValue which) const {
     return values[static_cast<size_t>(which)];

@@ -218,7 +218,7 @@ private:
   demo::Result<> add_plans(const LoadedGraph& loaded, const CompileInput& input,
                            const abi::KernelEnvironment& environment, GraphCounts& counts) {
     const std::vector<vulkan::KernelCode> codes = abi::kernel_codes(shaders_);
-    std::set<const vulkan::Kernel*> used;
+    std::set<const vulkan::Pipeline*> used;
     for (const std::vector<SettingValue>& settings :
          settings_of_plans(input, pinned_, diagnostics_)) {
       if (interrupted()) return demo::Error{demo::ErrorKind::environment, "stopped"};
@@ -247,7 +247,7 @@ private:
         return demo::Error{demo::ErrorKind::environment,
                            fmt::format("{}: {}", counts.graph, error.text)};
       for (const vulkan::CompiledPipeline& pipeline : pipelines) {
-        if (!used.insert(pipeline.kernel.get()).second) continue;
+        if (!used.insert(pipeline.pipeline.get()).second) continue;
         ++counts.pipelines;
         add_rows(loaded.pass_types[pipeline.type], pipeline, counts.graph);
       }
@@ -271,8 +271,9 @@ private:
 
   void add_rows(const PassType& type, const vulkan::CompiledPipeline& pipeline,
                 const std::string& graph) {
-    const auto known = std::find_if(rows_of_.begin(), rows_of_.end(),
-                                    [&](const auto& one) { return one.kernel == pipeline.kernel; });
+    const auto known = std::find_if(rows_of_.begin(), rows_of_.end(), [&](const auto& one) {
+      return one.pipeline == pipeline.pipeline;
+    });
     if (known != rows_of_.end()) {
       for (size_t row = known->first; row < known->end; ++row)
         result.kernels[row].graphs.push_back(graph);
@@ -280,14 +281,15 @@ private:
     }
     const size_t first = result.kernels.size();
     for (KernelRow& row : make_rows(type.shader, pipeline.executables)) {
+      row.constants = pipeline.constants;
       row.graphs.push_back(graph);
       result.kernels.push_back(std::move(row));
     }
-    rows_of_.push_back({pipeline.kernel, first, result.kernels.size()});
+    rows_of_.push_back({pipeline.pipeline, first, result.kernels.size()});
   }
 
-  struct RowsOfKernel {
-    std::shared_ptr<const vulkan::Kernel> kernel;
+  struct RowsOfPipeline {
+    std::shared_ptr<const vulkan::Pipeline> pipeline;
     size_t first = 0, end = 0; // into KernelSurvey::kernels
   };
 
@@ -302,7 +304,7 @@ private:
   std::vector<bool> pinned_; // settings of the present graph that --set gives
   std::set<std::string> known_names_, known_works_;
   std::unique_ptr<vulkan::KernelStore> kernels_; // declared after host_: destroyed before
-  std::vector<RowsOfKernel> rows_of_;
+  std::vector<RowsOfPipeline> rows_of_;
 };
 
 } // namespace
