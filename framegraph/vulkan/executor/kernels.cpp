@@ -168,7 +168,9 @@ std::vector<uint32_t> constants_of(const PassType& type, const Kernel& kernel, c
   uint32_t optional = 0; // the presence of other ports is no difference
   for (uint32_t p = 0; p < type.ports.size(); ++p)
     if (type.ports[p].optional) optional |= uint32_t{1} << p;
-  const PortMasks masks = port_masks(plan, pass);
+  PortMasks masks = port_masks(plan, pass);
+  // Drivers on the CPU compile slowly: there, one pipeline serves passes with different ports.
+  if (!kernel.device->texel_shape) masks = {.bound = 0, .changing = optional};
   std::vector<uint32_t> values;
   for (const KernelConstant& constant : kernel.constants)
     values.push_back(

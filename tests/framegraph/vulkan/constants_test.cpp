@@ -14,6 +14,10 @@ class ConstantsTest : public ExecutorTest {
 protected:
   SmallGraph graph{"export result"};
 
+  void SetUp() override {
+    ExecutorTest::SetUp();
+    dermis_device.texel_shape = true; // drivers on the CPU get fewer constants
+  }
   // Lets the setting "mode" of a pass follow a graph setting of that name.
   void make(const SmallGraph::Ports& reads = {}) {
     SettingDeclaration& mode = graph.setting("mode", 0);
@@ -92,6 +96,15 @@ TEST_F(ConstantsTest, UnboundPort_IsKnownToTheKernel) {
   make_executor(graph, constants_side, constants_side, {"light"});
   const TestImage result = bind(graph, "result", {});
   expect_frame(result, 101);
+}
+
+TEST_F(ConstantsTest, DriverOnTheCpu_ReadsPresenceAtRunTime) {
+  dermis_device.texel_shape = false;
+  graph.import("light", Format::r32f, true);
+  make({{"more", "light"}});
+  make_executor(graph, constants_side, constants_side, {"light"});
+  const TestImage result = bind(graph, "result", {});
+  expect_frame(result, 1);
 }
 
 TEST_F(ConstantsTest, PortOfAHistory_ChangesBetweenFrames) {
