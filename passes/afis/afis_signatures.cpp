@@ -9,11 +9,15 @@ namespace {
 
 constexpr std::array surface{port::material, port::depth, port::scatter_scale};
 
-constexpr auto afis_ports = join(std::array{port::light, port::slope}, port::levels_1_to_8, surface,
+constexpr Port levels = port::sampled(
+    "levels", "mip l - 1 is level l: rgb: light times mask; a: scaled mask, as pyramid_setup says",
+    port::light_formats);
+
+constexpr auto afis_ports = join(std::array{port::light, port::slope, levels}, surface,
                                  std::array{port::tiles, port::arguments, port::scattered});
 
 constexpr auto afis_tiles_ports =
-    join(std::array{port::light, port::slope}, port::levels_1_to_8, surface,
+    join(std::array{port::light, port::slope, levels}, surface,
          std::array{port::classes, port::samples_per_tile, port::tiles, port::arguments,
                     port::updated("scattered",
                                   "scattered light of another technique; replaced in place")});
@@ -75,7 +79,7 @@ constexpr std::string_view control_doc =
     "light and control variate; only with ocv";
 
 constexpr auto guided_ports =
-    join(std::array{port::light, port::slope}, port::levels_1_to_8, surface,
+    join(std::array{port::light, port::slope, levels}, surface,
          std::array{port::velocity, port::sampled("guide", guide_doc, guide_formats),
                     port::optional(port::sampled("place", place_doc, place_formats)),
                     port::optional(port::sampled("control", control_doc, port::light_formats)),
@@ -115,7 +119,29 @@ constexpr auto guided_settings = join(
 
 constexpr HistoryWeight guided_mixes[] = {{"guide_out", "eta"}, {"control_out", "eta_cv"}};
 
+constexpr auto published_ports = std::array{
+    port::sampled("chain", "mip l: light, with view depth in metres in alpha", port::light_formats),
+    port::material,
+    port::scatter_scale,
+    port::tiles,
+    port::arguments,
+    port::scattered};
+constexpr PassTypeSetting published_settings[] = {
+    setting::samples(16, 1, "number of samples beyond the direct radius"),
+    setting::lod_bias(-1.0),
+};
+
 } // namespace
+
+const PassType afis_published_type{
+    .name = "subsurface.afis_published",
+    .shader = "papers/subsurface_afis_published",
+    .doc = "Filtered importance sampling of a chain of mips with depth in alpha, as published: one "
+           "read per sample.",
+    .ports = published_ports,
+    .settings = published_settings,
+    .dispatch = over_tiles,
+};
 
 const PassType afis_tiles_type{
     .name = "subsurface.afis_tiles",

@@ -40,6 +40,7 @@ PassTypeRegistry make_pass_types() {
                                &clear_type,
                                &tile_variance_type,
                                &afis_tiles_type,
+                               &afis_published_type,
                                &sap_down_layered_type,
                                &sap_up_layered_type,
                                &sap_gather_layered_type,

@@ -59,8 +59,7 @@ vec2 sequence_point(int sequence, uvec2 offset, sample_set set, int i) {
 // textures are the ports of subsurface.afis.
 vec3 scatter(afis_settings settings, sample_set set, scatter_point point, scatter_profile profile,
              vec4 own, utexture2D material, texture2D depth, texture2D slope, texture2D light,
-             texture2D level_1, texture2D level_2, texture2D level_3, texture2D level_4,
-             texture2D level_5, texture2D level_6, texture2D level_7, texture2D level_8) {
+             texture2D levels) {
   vec2 footprint = pixel_footprint(point.depth);
   uint widest = profiles[min(point.id, 255u)].widest;
 
@@ -98,9 +97,7 @@ vec3 scatter(afis_settings settings, sample_set set, scatter_point point, scatte
     if (settings.mips != MIPS_NONE) {
       float lod =
           0.5 * log2(max(pixels_per_sample * radial.r / radial.density, 1e-20)) + settings.lod_bias;
-      if (lod > 0.0)
-        seen = filtered_light(level_1, level_2, level_3, level_4, level_5, level_6, level_7,
-                              level_8, settings.mips, at, lod, nearest.rgb);
+      seen = filtered_light(levels, settings.mips, at, lod, nearest.rgb);
     }
     sum += weight * seen;
     total += weight;

@@ -1,5 +1,5 @@
-// Images of the plain pyramid: level l has a texel every 2^l pixels of the rectangle and a border
-// of two texels.
+// Images of the plain pyramid: level l has a texel every 2^l pixels of the rectangle, and a border
+// of two texels unless the levels are mips of an image.
 #ifndef DERMIS_PYRAMID_GLSL
 #define DERMIS_PYRAMID_GLSL
 
@@ -13,20 +13,21 @@ const int pyramid_border = 2;
 
 // Chains that keep profiles apart store masks scaled by `apart_scale`. A pixel next to another
 // profile has `mixed_mask`, which spreads to every texel that the pixel contributes to. Filtered
-// reads have weights of at least 2^-16 (8 bits per axis), so that a texel with this mask is
-// detected above `mixed_above`, which no other mask reaches.
-const float apart_scale = 0.0625;
-const float mixed_mask = 65504.0; // the largest fp16
-const float mixed_above = 0.07;
+// reads between levels have weights of at least 2^-24 (8 bits per axis and between levels), so that
+// a texel with this mask is detected above `mixed_above`, which no other mask reaches.
+const float apart_scale = 0.001953125; // 2^-9: halves hold masks down to 1/32 in full precision
+const float mixed_mask = 65504.0;      // the largest fp16
+const float mixed_above = 0.003;
 // Returns whether one of the 4 or 16 finer texels of a texel has `mixed_mask`. The smallest weight
 // is 1/64.
 bool spreads_mixed(float mask) { return mask > 2.0; }
 
-// Returns a filtered read of a level at texel coordinates. Integers are the centres of texels.
-vec4 pyramid_read(texture2D level, vec2 at) {
+// Returns a filtered read of a level at texel coordinates. Integers are the centres of texels, 0 is
+// the first texel after the border.
+vec4 pyramid_read(texture2D level, vec2 at, int border) {
   vec2 size = vec2(textureSize(level, 0));
-  return textureLod(sampler2D(level, linear_sampler), (at + float(pyramid_border) + 0.5) / size,
-                    0.0);
+  return textureLod(sampler2D(level, linear_sampler), (at + float(border) + 0.5) / size, 0.0);
 }
+vec4 pyramid_read(texture2D level, vec2 at) { return pyramid_read(level, at, pyramid_border); }
 
 #endif

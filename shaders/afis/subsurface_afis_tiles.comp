@@ -20,8 +20,7 @@ vec3 scatter_light(scatter_point point, scatter_profile profile, vec4 own, sampl
                                        settings.inverse, settings.weighting, settings.surface,
                                        settings.direct, settings.estimator, settings.mips);
   return scatter(chosen, set, point, profile, own, material_image, depth_image, slope_image,
-                 light_image, level_1_image, level_2_image, level_3_image, level_4_image,
-                 level_5_image, level_6_image, level_7_image, level_8_image);
+                 light_image, levels_image);
 }
 
 void main() {

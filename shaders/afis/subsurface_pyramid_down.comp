@@ -10,20 +10,32 @@
 
 layout(local_size_x = 8, local_size_y = 8, local_size_z = 1) in;
 
+// Returns the part of a read along an axis that is inside an image without a border: a read at its
+// edge has a quarter of its weight outside, where the sampler repeats the edge.
+float part_inside(float at, int size) { return at < 0.0 || at > float(size - 1) ? 0.75 : 1.0; }
+
+vec4 read_fine(vec2 at, int border) {
+  vec4 mean = pyramid_read(fine_image, at, border);
+  ivec2 size = textureSize(fine_image, 0);
+  return border > 0 ? mean : mean * part_inside(at.x, size.x) * part_inside(at.y, size.y);
+}
+
 void main() {
   ivec2 address = ivec2(gl_GlobalInvocationID.xy), size = imageSize(coarse_image);
   if (any(greaterThanEqual(address, size)))
     return;
-  vec2 centre = 2.0 * vec2(address - pyramid_border) + 0.5; // in texels of the finer level
+  int fine_border = settings.borders == BORDERS_NONE ? 0 : pyramid_border;
+  int coarse_border = settings.borders == BORDERS_BOTH ? pyramid_border : 0;
+  vec2 centre = 2.0 * vec2(address - coarse_border) + 0.5; // in texels of the finer level
   vec4 mean;
   if (settings.halving == HALVING_BOX)
-    mean = pyramid_read(fine_image, centre);
+    mean = pyramid_read(fine_image, centre, fine_border);
   else
-    mean = 0.25 * (pyramid_read(fine_image, centre + vec2(-0.75, -0.75)) +
-                   pyramid_read(fine_image, centre + vec2(0.75, -0.75)) +
-                   pyramid_read(fine_image, centre + vec2(-0.75, 0.75)) +
-                   pyramid_read(fine_image, centre + vec2(0.75, 0.75)));
-  if (spreads_mixed(mean.a))
+    mean = 0.25 * (read_fine(centre + vec2(-0.75, -0.75), fine_border) +
+                   read_fine(centre + vec2(0.75, -0.75), fine_border) +
+                   read_fine(centre + vec2(-0.75, 0.75), fine_border) +
+                   read_fine(centre + vec2(0.75, 0.75), fine_border));
+  if (settings.alpha == ALPHA_MASK && spreads_mixed(mean.a))
     mean.a = mixed_mask;
   imageStore(coarse_image, address, round_to_half(mean));
 }

@@ -1,8 +1,10 @@
 #version 460
-// Computes level 0 of the plain pyramid: light times mask, and zeros outside the rectangle.
+// Computes level 0 of the plain pyramid: light with a mask or view depth, and zeros outside the
+// rectangle.
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 #include "afis/subsurface_pyramid_setup.bindings.glsl"
+#include "common/constants_math.glsl"
 #include "common/environment.glsl"
 #include "common/half.glsl"
 #include "common/pixel_light.glsl"
@@ -27,7 +29,7 @@ void main() {
   ivec2 address = ivec2(gl_GlobalInvocationID.xy);
   if (any(greaterThanEqual(address, imageSize(level_0_image))))
     return;
-  ivec2 pixel = address - pyramid_border;
+  ivec2 pixel = address - (settings.borders == BORDERS_NONE ? 0 : pyramid_border);
   vec4 light = vec4(0.0);
   if (inside_rect(pixel)) {
     ivec2 texel = texel_of(pixel);
@@ -38,6 +40,8 @@ void main() {
       light.a = 1.0;
       if (settings.profiles == PROFILES_APART)
         light.a = beside_another_profile(pixel, id) ? mixed_mask : apart_scale;
+      if (settings.alpha == ALPHA_DEPTH && has_depth())
+        light.a = view_depth(texelFetch(depth_image, texel, 0).r) / mm_per_metre;
     }
   }
   imageStore(level_0_image, address, round_to_half(light));

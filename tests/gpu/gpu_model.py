@@ -144,6 +144,11 @@ FIXED = dict(valu=260 + 16 * 150, trans=35 + 16 * 32, img=4, scat=16 * 4, st64=1
              W=9)
 AFIS = dict(valu=430 + 16 * 420, trans=60 + 16 * 80, img=6, scat=16 * 9, st64=1, vm=4 + 16 * 6, vml=260,
             lg=60, W=8)
+# One read of a mip chain per sample, as two reads: it interpolates between two mips.
+AFIS_BUILT = dict(valu=200 + 16 * 169, trans=45 + 16 * 30, qmul=7, img=4, scat=16 * 6, st64=1, vm=4 + 16 * 4,
+                  vml=260, lg=60, W=8)
+AFIS_PUBLISHED = dict(valu=125 + 16 * 91, trans=15 + 16 * 21, qmul=7, img=2, scat=16 * 2, st64=1, vm=3 + 16,
+                      vml=260, lg=40, W=10)
 AFIS_MIP_SETUP = dict(valu=170, img=4, img128=0, st64=1, vm=3, W=16)
 AFIS_MIP_DOWN = dict(valu=140, trans=2, img=9, st64=1, vm=2, W=16)
 
@@ -284,6 +289,11 @@ def add_rivals(model):
         mips.append((f"mip_down_{level}", max(1, model.pixels / 64 / 4**level), model.wave(**AFIS_MIP_DOWN),
                      model.pixels / 4**level * (8 * 4 + 8)))
     frame("afis 16", setup_with_slope, mips + [("scatter", tiles0, model.wave(**AFIS), n * 30)])
+    frame("afis 16 as built", setup_with_slope, mips + [("scatter", tiles0, model.wave(**AFIS_BUILT), n * 30)],
+          as_built=True)
+    # Mip 0 replaces light and slope.
+    frame("afis_published 16", mips[0][1:], mips[1:] + [("scatter", tiles0, model.wave(**AFIS_PUBLISHED), n * 22)],
+          as_built=True)
 
 
 def add_pyramid(model, technique, counts, list_clocks, layered=True):

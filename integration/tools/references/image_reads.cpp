@@ -162,9 +162,15 @@ ImageReads sap_gather(const PassType& type, const ReadsQuestion& question) {
 // As fixed; each sample also reads its levels: two, one or none.
 ImageReads afis(const PassType& type, const ReadsQuestion& question) {
   ImageReads reads = burley(type, question);
-  constexpr double levels[] = {2, 1, 0}; // trilinear, nearest level, none
+  constexpr double levels[] = {1, 1, 0}; // trilinear, nearest level, none
   reads.per_invocation += levels[setting(type, question, "mips")] * reads.samples;
   return reads;
+}
+
+// Material, own light and depth; per sample one filtered read.
+ImageReads afis_published(const PassType& type, const ReadsQuestion& question) {
+  const auto samples = static_cast<double>(setting(type, question, "samples"));
+  return {2 + scale_read(type, question) + samples, samples};
 }
 
 // In tiles with samples, twice the number of the first step: material, depth, light of both
@@ -178,13 +184,13 @@ ImageReads afis_tiles(const PassType& type, const ReadsQuestion& question) {
   return reads;
 }
 
-// Material, light, depth, slope; history at four positions; six texels per sample as in afis.
+// Material, light, depth, slope; history at four positions; per sample as in afis.
 ImageReads guided(const PassType& type, const ReadsQuestion& question) {
   const double samples =
       question.sampled_fraction * static_cast<double>(setting(type, question, "max_samples"));
   const double kept = 1 + one_if(type, question, "place", PortSide::read) +
                       one_if(type, question, "control", PortSide::read);
-  constexpr double levels[] = {2, 1, 0}; // trilinear, nearest level, none
+  constexpr double levels[] = {1, 1, 0}; // trilinear, nearest level, none
   return {4 + scale_read(type, question) + one_if(type, question, "velocity", PortSide::read) +
               4 * kept + (4 + levels[setting(type, question, "mips")]) * samples,
           samples};
@@ -364,6 +370,7 @@ constexpr Entry entries[] = {
     {"subsurface.transmission", transmission},
     {"subsurface.transmission_stats", transmission_stats},
     {"subsurface.afis", afis},
+    {"subsurface.afis_published", afis_published},
     {"subsurface.guided", guided},
     {"subsurface.refine", blend},
     {"subsurface.global_light_change", global_light_change},

@@ -74,6 +74,8 @@ constexpr PortNeed needs[] = {
     {"past", pixel},
     {"past_out", pixel},
     {"level_0", pixel},
+    {"levels", 2},
+    {"chain", pixel},
     {"coarse_surface", 2},
     {"coarse_scattered", 2},
     {"second_coarse_surface", 2},

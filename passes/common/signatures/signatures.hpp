@@ -21,7 +21,7 @@ extern const PassType separable_setup_type, separable_type;
 // papers/fixed_signature.cpp
 extern const PassType fixed_type;
 // afis/afis_signatures.cpp
-extern const PassType afis_type, guided_type, afis_tiles_type;
+extern const PassType afis_type, guided_type, afis_tiles_type, afis_published_type;
 // afis/pyramid_signatures.cpp
 extern const PassType pyramid_setup_type, pyramid_down_type;
 // papers/pyramid_gather_signature.cpp
