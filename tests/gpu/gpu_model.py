@@ -136,7 +136,7 @@ SEPARABLE = dict(valu=130 + 12 * 13 + 48 * 85, trans=12 + 48 * 16, qmul=3, img=3
                  vm=3 + 144, vml=140, lg=12, W=9)
 SEPARABLE_TUNED = dict(valu=90 + 25 * 14, trans=6 + 25, img=2 + 25, st64=1, vm=2 + 5, vml=250, lg=10, W=12)
 # 25 taps at d = 4 px: 7 taps of each side in shared memory, 5 read light and depth
-SEPARABLE_BUILT = dict(valu=688, trans=82, qmul=1, img=30, buf=6, st64=1, vm=17, vml=260, lg=55, W=7, lds=340)
+SEPARABLE_BUILT = dict(valu=605, trans=82, qmul=1, img=30, buf=6, st64=1, vm=14, vml=260, lg=50, W=7, lds=340)
 SEPARABLE_BUILT_SETUP = dict(valu=100, trans=3, img=3, st64=2, vm=3, lg=15, W=16)
 BURLEY = dict(valu=100 + 32 * 115, trans=10 + 32 * 18, img=4, scat=32 * 4, st64=1, vm=3 + 96, vml=260, lg=40,
               W=10)
