@@ -62,8 +62,11 @@ public:
 
   void passes(NodeId list) {
     if (!is_array(list)) return;
-    for (const NodeId pass : children(document_, list))
-      if (document_[pass].kind == NodeKind::object) upgrade_pass(pass);
+    std::vector<NodeId> objects = children(document_, list);
+    std::erase_if(objects, [&](NodeId node) { return document_[node].kind != NodeKind::object; });
+    for (const NodeId pass : objects)
+      upgrade_pass(pass);
+    upgrade_separable(objects);
   }
 
   // Declares the resources of the ports that passes of the file write in addition.
@@ -180,10 +183,7 @@ private:
 
   // Replaces the string that begins with the quote at `begin`.
   void replace_string(size_t begin, std::string_view text) {
-    size_t end = begin + 1;
-    while (text_[end] != '"')
-      end += text_[end] == '\\' ? 2 : 1;
-    replace(begin, end + 1, fmt::format("\"{}\"", text));
+    replace(begin, end_of_string(begin), fmt::format("\"{}\"", text));
   }
 
   void rename(NodeId string, std::string_view text) {
@@ -191,8 +191,7 @@ private:
   }
 
   void rename_key(NodeId value, std::string_view text) {
-    const Node& node = document_[value];
-    if (!text.empty()) replace_string(line_begins_[node.key_line - 1] + node.key_column - 1, text);
+    if (!text.empty()) replace_string(key_begin(value), text);
   }
 
   void add_member(NodeId object, std::string_view member) {
@@ -243,6 +242,129 @@ private:
     const NodeId name = string_at(pass, "pass");
     if (name.valid() && new_name({"shipped_passes", document_.text(name), "type"}) == old)
       rename(name, new_name({"shipped_passes", document_.text(name), "pass"}));
+  }
+
+  std::string_view type_of(NodeId pass) const {
+    const NodeId type = string_at(pass, "kind");
+    return type.valid() ? document_.text(type) : std::string_view();
+  }
+
+  // Returns the resource at a port of a pass; "" without the port.
+  std::string_view at_port(NodeId pass, std::string_view side, std::string_view port) const {
+    const NodeId ports = document_.find(pass, side);
+    if (!ports.valid() || document_[ports].kind != NodeKind::object) return {};
+    const NodeId value = string_at(ports, port);
+    return value.valid() ? document_.text(value) : std::string_view();
+  }
+
+  size_t key_begin(NodeId value) const {
+    return line_begins_[document_[value].key_line - 1] + document_[value].key_column - 1;
+  }
+
+  // Returns the place after the string whose opening quote is at `begin`.
+  size_t end_of_string(size_t begin) const {
+    size_t end = begin + 1;
+    while (text_[end] != '"')
+      end += text_[end] == '\\' ? 2 : 1;
+    return end + 1;
+  }
+
+  void replace_member(NodeId pass, std::string_view port, std::string member) {
+    const NodeId value = string_at(document_.find(pass, "read"), port);
+    replace(key_begin(value), end_of_string(document_[value].offset), std::move(member));
+  }
+
+  // Removes a port under "read" with one of the commas around it.
+  void remove_member(NodeId pass, std::string_view port) {
+    const NodeId value = string_at(document_.find(pass, "read"), port);
+    size_t begin = key_begin(value), end = end_of_string(document_[value].offset);
+    const size_t after = text_.find_first_not_of(" \n\r\t", end);
+    if (text_[after] == ',')
+      end = text_.find_first_not_of(" \n\r\t", after + 1);
+    else if (const size_t before = text_.find_last_not_of(" \n\r\t", begin - 1);
+             text_[before] == ',')
+      begin = before;
+    const auto lines = static_cast<size_t>(std::count(text_.begin() + std::ptrdiff_t(begin),
+                                                      text_.begin() + std::ptrdiff_t(end), '\n'));
+    replace(begin, end, std::string(lines, '\n'));
+  }
+
+  // Version 2 of subsurface.separable reads the light and the view depth that
+  // subsurface.separable_setup writes, in place of light, material and depth.
+  void upgrade_separable(const std::vector<NodeId>& passes) {
+    std::map<std::string_view, std::string> lights; // by old light: the light of version 2
+    for (const NodeId pass : passes) {
+      const std::string_view light = at_port(pass, "read", "light");
+      if (type_of(pass) != "subsurface.separable" || light.empty() ||
+          at_port(pass, "read", "material").empty() || at_port(pass, "read", "depth").empty())
+        continue;
+      const std::string view_depth = name_for("view_depth", light);
+      auto known = lights.find(light);
+      if (known == lights.end()) {
+        added_.emplace(view_depth, "view_depth");
+        known = lights.emplace(light, set_up_separable(passes, pass, view_depth)).first;
+      }
+      if (known->second != light)
+        replace_member(pass, "light", fmt::format("\"light\": \"{}\"", known->second));
+      replace_member(pass, "material", fmt::format("\"view_depth\": \"{}\"", view_depth));
+      remove_member(pass, "depth");
+    }
+  }
+
+  static std::string name_for(std::string_view what, std::string_view light) {
+    return light == "light" ? std::string(what) : fmt::format("{}_of_{}", what, light);
+  }
+
+  // Converts the setup pass of a separable pass, or inserts a new one if other passes read what it
+  // writes. Returns the resource with the light.
+  std::string set_up_separable(const std::vector<NodeId>& passes, NodeId separable,
+                               const std::string& view_depth) {
+    const std::string_view light = at_port(separable, "read", "light");
+    NodeId setup;
+    bool shared = false;
+    std::string_view classes = "classes";
+    for (const NodeId pass : passes) {
+      if (type_of(pass) == "subsurface.setup" && at_port(pass, "write", "light") == light)
+        setup = pass;
+      if (type_of(pass) == "subsurface.classify" &&
+          at_port(pass, "read", "material") == at_port(separable, "read", "material"))
+        classes = at_port(pass, "write", "classes");
+      if (const NodeId read = document_.find(pass, "read");
+          read.valid() && type_of(pass) != "subsurface.separable")
+        for (const NodeId value : children(document_, read))
+          shared = shared ||
+                   (document_[value].kind == NodeKind::string && document_.text(value) == light);
+    }
+    if (setup.valid() && !shared &&
+        children(document_, document_.find(setup, "write")).size() == 1 &&
+        !at_port(setup, "read", "tiles").empty() && !at_port(setup, "read", "arguments").empty()) {
+      rename(string_at(setup, "kind"), "subsurface.separable_setup");
+      replace_member(setup, "tiles", fmt::format("\"classes\": \"{}\"", classes));
+      remove_member(setup, "arguments");
+      add_member(document_.find(setup, "write"), fmt::format("\"view_depth\": \"{}\"", view_depth));
+      return std::string(light);
+    }
+    const std::string own_light = name_for("separable_light", light);
+    added_.emplace(own_light, "separable_light");
+    const std::string_view lighting = setup.valid() ? at_port(setup, "read", "lighting") : light;
+    const std::string_view albedo =
+        setup.valid() ? at_port(setup, "read", "albedo") : std::string_view();
+    const NodeId set = setup.valid() ? document_.find(setup, "set") : NodeId{};
+    const NodeId texturing = set.valid() ? string_at(set, "texturing") : NodeId{};
+    const size_t begin = document_[separable].offset;
+    replace(begin, begin,
+            fmt::format(
+                R"({{ "pass": "{}", "type": "subsurface.separable_setup", "read": )"
+                R"({{ "lighting": "{}", "material": "{}", "depth": "{}"{}, "classes": "{}" }}, )"
+                R"("write": {{ "light": "{}", "view_depth": "{}" }}{} }}, )",
+                name_for("separable_setup", light), lighting,
+                at_port(separable, "read", "material"), at_port(separable, "read", "depth"),
+                albedo.empty() ? "" : fmt::format(R"(, "albedo": "{}")", albedo), classes,
+                own_light, view_depth,
+                texturing.valid()
+                    ? fmt::format(R"(, "set": {{ "texturing": "{}" }})", document_.text(texturing))
+                    : ""));
+    return own_light;
   }
 
   // Upgrades "/passes/NAME/kind", "/passes/NAME/read/PORT", "/passes/NAME/set/SETTING" and the

@@ -48,8 +48,8 @@ std::string chain_graph() {
     const std::string before = i == 0 ? "light" : fmt::format("blur{}", i - 1);
     passes += fmt::format(
         R"({{ "pass": "blur{0}", "type": "subsurface.separable", "set": {{ "axis": "vertical", "taps": "11" }},
-        "read": {{ "light": "light", "blurred": "{1}", "material": "material", "depth": "depth",
-                  "tiles": "tiles", "arguments": "arguments" }}, "write": {{ "scattered": "blur{0}" }} }},)",
+        "read": {{ "light": "light", "blurred": "{1}", "view_depth": "view_depth", "tiles": "tiles",
+                  "arguments": "arguments" }}, "write": {{ "scattered": "blur{0}" }} }},)",
         i, before);
   }
   return fmt::format(
@@ -60,14 +60,15 @@ std::string chain_graph() {
                  "list_state": {{ "buffer": {{ "stride": 4, "count": "view/64", "extra": 8 }} }},
                  "tiles": {{ "buffer": {{ "stride": 4, "count": "view/8", "extra": 1 }} }},
                  "arguments": {{ "buffer": {{ "stride": 4, "count": [4, 1] }} }},
-                 "light": {{ "format": "rgba16f", "size": "view" }}{0} }},
+                 "light": {{ "format": "rgba16f", "size": "view" }},
+                 "view_depth": {{ "format": "r32f", "size": "view" }}{0} }},
   "passes": [
     {{ "pass": "classify", "type": "subsurface.classify", "read": {{ "material": "material", "depth": "depth" }},
       "write": {{ "classes": "classes", "list_state": "list_state" }} }},
     {{ "pass": "list", "type": "subsurface.tile_list", "read": {{ "classes": "classes" }},
       "write": {{ "list_state": "list_state", "tiles": "tiles", "arguments": "arguments" }} }},
-    {{ "pass": "setup", "type": "subsurface.setup", "read": {{ "lighting": "lighting", "material": "material",
-      "depth": "depth", "tiles": "tiles", "arguments": "arguments" }}, "write": {{ "light": "light" }} }},
+    {{ "pass": "setup", "type": "subsurface.separable_setup", "read": {{ "lighting": "lighting", "material": "material",
+      "depth": "depth", "classes": "classes" }}, "write": {{ "light": "light", "view_depth": "view_depth" }} }},
     {1}
     {{ "pass": "combine", "type": "subsurface.combine", "read": {{ "scattered": "blur{2}", "material": "material",
       "tiles": "tiles", "arguments": "arguments" }}, "write": {{ "lighting": "lighting" }} }} ],
