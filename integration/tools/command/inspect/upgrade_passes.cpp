@@ -23,7 +23,7 @@ std::string name_for(std::string_view what, std::string_view of, std::string_vie
   return of == usual ? std::string(what) : fmt::format("{}_of_{}", what, of);
 }
 
-// What a separable pass of version 1 reads, and the passes that write it.
+// Resources that a separable pass of version 1 reads, and the pass that writes them.
 struct SeparableInputs {
   NodeId setup;        // the pass that writes the light; invalid: none
   bool shared = false; // other passes read the light, too
