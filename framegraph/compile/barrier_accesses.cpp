@@ -26,12 +26,14 @@ void BarrierWalk::gather_accesses(std::span<const Use> uses) {
     uint32_t& last = accesses.last_number[object];
     if (last < accesses.first_number) { // the last access was by an earlier pass
       last = accesses.first_number + count;
-      list[count++] = {object, resource, use.frames_back, 0, false, range, Layout::undefined};
+      list[count++] = {object, resource, use.frames_back,   0,
+                       false,  range,    Layout::undefined, false};
     }
     of_use = last - accesses.first_number;
     PassAccess& access = list[of_use];
     access.usages = static_cast<uint16_t>(access.usages | 1u << static_cast<uint32_t>(use.usage));
     access.always |= use.when == ReadWhen::always;
+    access.internally_ordered |= in.active.type(use.pass).ports[use.port].internally_ordered;
     if (of.image) access.layout = sets[access.usages].image_layout;
   }
   accesses.count = count;
@@ -66,6 +68,11 @@ bool writes_too(const Use& read, std::span<const Use> uses) {
   });
 }
 
+// Returns the reads of what the pass itself writes through the port.
+Access own_reads(const Port& port) {
+  return port.internally_ordered ? access::shader_storage_read : access::none;
+}
+
 // Extends `range` to the smallest range that contains `other`, too.
 void extend(SubresourceRange& range, const SubresourceRange& other) {
   const auto end = [](uint32_t first, uint32_t count, uint32_t other_first, uint32_t others) {
@@ -97,7 +104,8 @@ void BarrierWalk::add_accesses(PlanPass& pass, std::span<const Use> uses) {
     const Use* history = history_of(use);
     const bool always = history && history->bind_error != Use::BindError::none;
     plan.accesses.push_back({use.port, access.resource, use.frames_back, range, usage.stages,
-                             usage.access, access.layout, own_texels,
+                             usage.access | own_reads(ports[use.port]), access.layout, own_texels,
+                             ports[use.port].internally_ordered,
                              always ? ReadWhen::always : use.when});
   }
   pass.access_count = static_cast<uint32_t>(plan.accesses.size()) - pass.first_access;

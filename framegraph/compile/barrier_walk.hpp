@@ -50,6 +50,7 @@ struct BarrierWalk {
   void find_states_at_frame_end();
 
   void run_pass(uint32_t position);
+  const UsageSet& set_of(const PassAccess& access, UsageSet& copy) const;
   void apply_access(const PassAccess& access, uint32_t position);
 
   // Places the barrier, or defers it if the image is divided.

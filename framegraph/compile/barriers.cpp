@@ -77,9 +77,20 @@ inline void BarrierWalk::fill_dependency(const ObjectState& state, const UsageSe
   }
 }
 
+// Returns the set of the access's usages. Of an internally ordered access it contains the read of
+// what the pass wrote, although it needs nothing earlier to be visible; `copy` holds it.
+inline const UsageSet& BarrierWalk::set_of(const PassAccess& access, UsageSet& copy) const {
+  const UsageSet& set = sets[access.usages];
+  if (!access.internally_ordered) return set;
+  copy = set;
+  copy.access |= access::shader_storage_read;
+  return copy;
+}
+
 inline void BarrierWalk::apply_access(const PassAccess& access, uint32_t position) {
   ObjectState& state = objects.states[access.object];
-  const UsageSet& set = sets[access.usages];
+  UsageSet ordered;
+  const UsageSet& set = set_of(access, ordered);
   const Layout layout = access.layout;
   bool waited = true;
   const bool other_queue = state.accessed && state.queue != queue_at(position);

@@ -17,6 +17,7 @@ struct PassAccess { // all accesses of one pass to one object
   bool always = false; // in every frame
   uint32_t range = 0;  // of the resource
   Layout layout = Layout::undefined;
+  bool internally_ordered = false; // also reads what it writes
 };
 
 struct PassAccesses {

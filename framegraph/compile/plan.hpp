@@ -82,6 +82,9 @@ struct PlanAccess { // one bound port of one pass
   // A read of a resource that the pass writes, in this frame or over an earlier one, where each
   // invocation reads only texels that it writes itself. See Port::own_texels.
   bool own_texels = false;
+  // A write whose kernel also reads what its dispatch wrote, and orders these accesses by itself:
+  // `access` contains the read, which needs no earlier contents. See Port::internally_ordered.
+  bool internally_ordered = false;
   // Reads only. history_valid: in frames in which the history of this access is valid.
   // history_invalid: in the other frames; the access follows the history's access of the same port.
   // Barriers are the same in every frame.

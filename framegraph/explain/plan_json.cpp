@@ -182,7 +182,9 @@ struct Exporter {
       mask("stages", access.stages, stage_names(access.stages));
       mask("access", access.access, access_names(access.access));
       layout("layout", access.layout);
-      out.member("own_texels", access.own_texels).member("when", read_when_name(access.when));
+      out.member("own_texels", access.own_texels)
+          .member("internally_ordered", access.internally_ordered)
+          .member("when", read_when_name(access.when));
       out.close();
     }
     out.close();

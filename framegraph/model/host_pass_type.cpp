@@ -96,6 +96,7 @@ HostPassTypePort read_port(const Document& document, NodeId node, Diagnostics& d
   port.usage = host_usages[object.word("usage", words).value_or(0)];
   port.optional = object.boolean("optional", Need::optional).value_or(false);
   port.own_texels = object.boolean("own_texels", Need::optional).value_or(false);
+  port.internally_ordered = object.boolean("internally_ordered", Need::optional).value_or(false);
   port.doc = object.string("doc", Need::optional).value_or("");
   object.finish();
   return port;
@@ -167,6 +168,12 @@ PassTypeProblem problem_of(const HostPassTypeDeclaration& type) {
     if (!is_name(type.ports[i].name))
       return name(fmt::format("ports[{}].name is '{}', expected letters, digits and underscores", i,
                               type.ports[i].name));
+  for (size_t i = 0; i < type.ports.size(); ++i)
+    if (type.ports[i].internally_ordered && !may_order_internally(type.ports[i].usage))
+      return {DiagnosticId::bad_internal_order,
+              fmt::format("ports[{}] ('{}') declares internally_ordered and has usage {}, expected "
+                          "storage_image_write or storage_buffer_write",
+                          i, type.ports[i].name, usage_info(type.ports[i].usage).name)};
   for (size_t i = 0; i < type.settings.size(); ++i)
     if (PassTypeProblem problem = problem_of(type.settings[i], i); !problem.text.empty())
       return problem;
@@ -185,6 +192,7 @@ PassTypeId HostPassTypes::add(HostPassTypeDeclaration type, PassTypeRegistry& re
     added.usage = port.usage;
     added.optional = port.optional;
     added.own_texels = port.own_texels;
+    added.internally_ordered = port.internally_ordered;
     added.doc = port.doc;
   }
   for (const HostPassTypeSetting& setting : kept.declared.settings) {
@@ -223,6 +231,7 @@ std::string write_host_pass_types(const HostPassTypes& pass_types) {
       json.open_object(true).member("name", port.name).member("usage", usage_info(port.usage).name);
       if (port.optional) json.member("optional", true);
       if (port.own_texels) json.member("own_texels", true);
+      if (port.internally_ordered) json.member("internally_ordered", true);
       if (!port.doc.empty()) json.member("doc", port.doc);
       json.close();
     }

@@ -16,7 +16,8 @@ struct HostPassTypePort {
   std::string name, doc;
   Usage usage = Usage::sampled_image;
   bool optional = false;
-  bool own_texels = false; // see Port::own_texels
+  bool own_texels = false;         // see Port::own_texels
+  bool internally_ordered = false; // see Port::internally_ordered
 };
 
 struct HostPassTypeSetting {

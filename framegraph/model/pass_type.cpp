@@ -26,6 +26,10 @@ bool is_constant(const PassTypeSetting& setting) {
          setting.type != SettingType::real;
 }
 
+bool may_order_internally(Usage usage) {
+  return usage == Usage::storage_image_write || usage == Usage::storage_buffer_write;
+}
+
 PassTypeId PassTypeRegistry::add(const PassType& type) {
   if (find(type.name).valid()) return {};
   pass_types_.push_back(type);

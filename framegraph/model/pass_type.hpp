@@ -37,11 +37,19 @@ struct Port {
   // flag for their own accesses.
   bool own_texels = false;
   Touched touched = Touched::dispatched;
+  // Only for usages that write without reading. True: the kernel also reads, through this port,
+  // what other invocations of the same dispatch wrote. It orders these accesses by itself, and
+  // reads nothing that was there before the dispatch. Other ports of the pass must not access the
+  // same texels or elements.
+  bool internally_ordered = false;
 };
 
 // Returns whether a kernel supports the format at the port: one of Port::formats, or, if that is
 // empty, any format whose components match `glsl_type`. Depth formats cannot be written.
 bool works_with(const Port& port, Format format);
+
+// Returns whether a port of the usage may declare Port::internally_ordered.
+bool may_order_internally(Usage usage);
 
 enum class SettingType : uint8_t { boolean, integer, real, enumeration, choice };
 
@@ -75,6 +83,7 @@ namespace constant_id {
 inline constexpr uint32_t texel_shape = 0; // shaders/common/shape.glsl
 // Masks of optional ports, bit i for port i: bound in every frame, bound in some frames.
 inline constexpr uint32_t bound_ports = 1, changing_ports = 2;
+inline constexpr uint32_t group_lanes = 3; // local_size_x of kernels with one shape
 inline constexpr uint32_t first_setting = 16; // PassType::settings[i] has the id first_setting + i
 } // namespace constant_id
 

@@ -103,6 +103,7 @@ struct GraphWriter {
       number(port.optional);
       all(port.formats, [&](Format format) { word(format); });
       number(port.own_texels);
+      number(port.internally_ordered);
     });
     all(type.settings, [&](const PassTypeSetting& setting) {
       text(setting.name);

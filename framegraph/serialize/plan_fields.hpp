@@ -114,6 +114,7 @@ template <class A> void fields(A& a, Of<A, PlanAccess>& access) {
   a.number("access", access.access);
   fields(a, access.layout);
   a.flag("own texels", access.own_texels);
+  a.flag("internally ordered", access.internally_ordered);
   a.word("when", access.when, ReadWhen::history_invalid);
 }
 

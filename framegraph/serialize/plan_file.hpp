@@ -13,7 +13,7 @@
 
 namespace dermis {
 
-inline constexpr uint32_t plan_file_version = 6; // raised with each change of the layout
+inline constexpr uint32_t plan_file_version = 7; // raised with each change of the layout
 
 struct NamedSettingValue {
   std::string name, text; // text: the value as a graph file would write it

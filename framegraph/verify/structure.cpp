@@ -176,6 +176,8 @@ struct Checker {
         const bool exists = object_exists(access.resource, access.frames_back);
         expect(condition_fits(pass, a),
                "a conditional read does not name the history whose validity it depends on", p);
+        expect(!access.internally_ordered || (access.access & all_write_access) != 0,
+               "an internally ordered access does not write", p);
         expect(exists, "a pass accesses a resource or an earlier frame that does not exist", p);
         expect(!exists || has(access.resource, access.range),
                "a pass accesses mips or layers that do not exist", p);

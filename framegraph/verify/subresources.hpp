@@ -19,7 +19,8 @@
 // - conditional read: A read that depends on the validity of a history counts as if it happened,
 //   but no other access may rely on it.
 // - read and write in one pass: A pass accesses what it writes in no other way, except to read the
-//   same texels (PlanAccess::own_texels). An access that reads and writes counts as one access.
+//   same texels (PlanAccess::own_texels). An access that reads and writes counts as one access. An
+//   access that reads what its own pass writes (PlanAccess::internally_ordered) counts as a write.
 // - layout: Equals the layout that the access was planned with. Transitions are writes; `undefined`
 //   discards the contents.
 // - queues: A barrier orders work on its own queue. A wait for a sync point orders everything that

@@ -348,7 +348,8 @@ struct Machine {
     };
     const Access as_read = access.access & ~all_write_access,
                  as_write = access.access & all_write_access;
-    const bool reads = as_read != 0, writes = as_write != 0;
+    // An internally ordered access reads only what its own pass writes.
+    const bool reads = as_read != 0 && !access.internally_ordered, writes = as_write != 0;
     if (subresource.with_host) return wrong("is accessed while the host owns it");
     if (writes && access.frames_back > 0) wrong("is written, although it holds an earlier frame");
     if (subresource.in_transfer || (subresource.queue != queue && (subresource.image || reads)))

@@ -1,6 +1,7 @@
 #pragma once
 // Finds races inside one pass. Its invocations run in no order, so no other access may use what one
-// access writes, except to read the same texels (PlanAccess::own_texels).
+// access writes, except to read the same texels (PlanAccess::own_texels). The kernel orders the
+// accesses of one port by itself (PlanAccess::internally_ordered).
 
 #include "framegraph/compile/plan.hpp"
 

@@ -42,7 +42,7 @@ dermis_result read_ports(const Log& log, const dermis_pass_type& given,
       return bad_argument(log, "{}: kind.ports[{}].usage is {}, expected 0..{}", registering, i,
                           static_cast<int>(port.usage), usages.size() - 1);
     type.ports.push_back({text_of(port.name), text_of(port.doc), usages[usage], port.optional != 0,
-                          port.own_texels != 0});
+                          port.own_texels != 0, port.internally_ordered != 0});
   }
   return DERMIS_OK;
 }

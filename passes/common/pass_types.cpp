@@ -52,7 +52,9 @@ PassTypeRegistry make_pass_types() {
                                &restir_resolve_type,
                                &restir_temporal_type,
                                &restir_spatial_type,
-                               &sample_demand_type}) {
+                               &sample_demand_type,
+                               &sap_coarse_down_type,
+                               &sap_coarse_up_type}) {
     PassType known = *type;
     known.needs = needs_of(known.name);
     known.serves_scattering =

@@ -27,12 +27,20 @@ std::string upper(std::string_view text) {
   return out;
 }
 
+// Returns the format of an image that a kernel also loads.
+std::string_view load_format(const Port& port) {
+  return port.glsl_type.front() == 'u' ? "rgba32ui" : "rgba16f";
+}
+
 std::string declare_port(const Port& port, uint32_t binding) {
   const std::string layout = fmt::format("set = 0, binding = {}", binding);
   switch (port.usage) {
   case Usage::sampled_image:
     return fmt::format("layout({}) uniform {} {}_image;\n", layout, port.glsl_type, port.name);
   case Usage::storage_image_write:
+    if (port.internally_ordered)
+      return fmt::format("layout({}, {}) coherent uniform {} {}_image;\n", layout,
+                         load_format(port), port.glsl_type, port.name);
     return fmt::format("layout({}) writeonly uniform {} {}_image;\n", layout, port.glsl_type,
                        port.name);
   // A load needs the format.
@@ -47,8 +55,9 @@ std::string declare_port(const Port& port, uint32_t binding) {
     return fmt::format("layout(std430, {}) readonly buffer {}_block {{ {} {}_data[]; }};\n", layout,
                        port.name, port.glsl_type, port.name);
   case Usage::storage_buffer_write:
-    return fmt::format("layout(std430, {}) writeonly buffer {}_block {{ {} {}_data[]; }};\n",
-                       layout, port.name, port.glsl_type, port.name);
+    return fmt::format("layout(std430, {}) {} buffer {}_block {{ {} {}_data[]; }};\n", layout,
+                       port.internally_ordered ? "coherent" : "writeonly", port.name,
+                       port.glsl_type, port.name);
   case Usage::storage_buffer_update:
     return fmt::format("layout(std430, {}) buffer {}_block {{ {} {}_data[]; }};\n", layout,
                        port.name, port.glsl_type, port.name);

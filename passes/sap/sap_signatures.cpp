@@ -163,21 +163,58 @@ constexpr PassTypeSetting layered_gather_settings[] = {layered_variant, storage,
 
 constexpr std::string_view second_finer_doc =
     "image of the second layer; unbound if the finer level has one layer";
+constexpr std::array second_finer{
+    port::where_flagged(port::optional(read_light("second_light", second_finer_doc))),
+    port::where_flagged(port::optional(read_surface("second_surface", second_finer_doc)))};
 constexpr auto layered_down_ports =
-    join(finer,
-         std::array{
-             port::where_flagged(port::optional(read_light("second_light", second_finer_doc))),
-             port::where_flagged(port::optional(read_surface("second_surface", second_finer_doc)))},
-         level, coarse,
+    join(finer, second_finer, level, coarse,
          std::array{port::where_flagged(written_light("second_coarse_light", second_doc)),
                     port::where_flagged(written_surface("second_coarse_surface", second_doc))});
 
+constexpr std::array second_of_level{
+    port::where_flagged(read_light("second_light", second_doc)),
+    port::where_flagged(read_surface("second_surface", second_doc))};
+constexpr std::array second_up_result{
+    port::where_flagged(written_surface("second_scattered", second_doc))};
 constexpr auto layered_up_ports =
-    join(this_level,
-         std::array{port::where_flagged(read_light("second_light", second_doc)),
-                    port::where_flagged(read_surface("second_surface", second_doc))},
-         coarser, level, up_result,
-         std::array{port::where_flagged(written_surface("second_scattered", second_doc))});
+    join(this_level, second_of_level, coarser, level, up_result, second_up_result);
+
+// Several levels in one dispatch.
+constexpr Format bits_formats[] = {Format::rgba32_uint};
+constexpr int first_of_levels = 5; // level; needs.cpp has the size of `computed_children`
+constexpr std::string_view levels_doc =
+    "levels from the first one on in array layers, four per level: surface, second surface, light, "
+    "second light. Light is stored as bits: 4 halves in 2 words, or 4 floats in full storage";
+constexpr auto coarse_down_ports =
+    join(finer, second_finer, level,
+         std::array{port::internally_ordered(Port{.name = "levels",
+                                                  .usage = Usage::storage_image_write,
+                                                  .glsl_type = "uimage2DArray",
+                                                  .doc = levels_doc,
+                                                  .formats = bits_formats}),
+                    port::optional(written_light("level_light", "light of the first level")),
+                    Port{.name = "computed_children",
+                         .usage = Usage::storage_buffer_update,
+                         .glsl_type = "uint",
+                         .doc = "0 before the pass; per tile of the second level and coarser "
+                                "levels: number of computed tiles of the finer level"}});
+constexpr PassTypeSetting coarse_down_settings[] = {
+    setting::integer("level", first_of_levels, first_of_levels, sap_level_count - 1, "",
+                     "first level that the pass writes"),
+    storage};
+
+constexpr auto coarse_up_ports =
+    join(this_level, second_of_level,
+         std::array{Port{.name = "levels",
+                         .usage = Usage::sampled_image,
+                         .glsl_type = "utexture2DArray",
+                         .doc = "output of subsurface.sap_coarse_down from the next level on",
+                         .formats = bits_formats}},
+         level, up_result, second_up_result);
+constexpr PassTypeSetting coarse_up_settings[] = {
+    setting::integer("level", first_of_levels - 1, first_of_levels - 1, sap_level_count - 2, "",
+                     "level that the pass writes"),
+    variant, storage};
 
 constexpr auto layered_gather_ports =
     join(level_0, level_1, std::array{second_coarse_surface, second_coarse_scattered}, level,
@@ -280,6 +317,31 @@ const PassType sap_up_layered_type{
            "texels.",
     .ports = layered_up_ports,
     .settings = up_settings,
+    .dispatch = over_tiles,
+    .arguments_entry = "level",
+};
+
+const PassType sap_coarse_down_type{
+    .name = "subsurface.sap_coarse_down",
+    .shader = "sap/subsurface_sap_coarse_down",
+    .doc = "Like subsurface.sap_down_layered, for all levels from one level on in one dispatch: a "
+           "group computes a tile of the first level, and a tile of the next level if it computed "
+           "the last of its children.",
+    .ports = coarse_down_ports,
+    .settings = coarse_down_settings,
+    .dispatch = over_tiles,
+    .arguments_entry = "level",
+};
+
+const PassType sap_coarse_up_type{
+    .name = "subsurface.sap_coarse_up",
+    .shader = "sap/subsurface_sap_coarse_up",
+    .doc =
+        "Like subsurface.sap_up_layered, for one level and all coarser levels in one dispatch: a "
+        "group also computes the texels of the coarser levels that its tile needs. These are not "
+        "written.",
+    .ports = coarse_up_ports,
+    .settings = coarse_up_settings,
     .dispatch = over_tiles,
     .arguments_entry = "level",
 };

@@ -3,8 +3,11 @@
 // second layer (SAP_SECOND); both layers are children of the next level. Works on one parent at a
 // time. In the block shape and for boxes its children are in `children` and `child_light`; in the
 // texel shape the children of a tile are in shared memory.
-// Include after bindings with `light` and `surface` (except for a box), `level_tiles` and, for two
-// layers, `second_light` and `second_surface`.
+// Include after bindings with `level_tiles`, and:
+// - for a box: nothing else;
+// - else: after bindings with `light` and `surface` and, for two layers, `second_light` and
+//   `second_surface`, or, in kernels that compute several levels (SAP_WINDOW), after functions with
+//   the names and arguments of finer_surface() to second_finer_light().
 #ifndef DERMIS_SAP_DOWN_GLSL
 #define DERMIS_SAP_DOWN_GLSL
 
@@ -51,6 +54,23 @@ int shared_child(int parent, int child) {
 }
 
 #ifndef SAP_BOX
+#ifndef SAP_WINDOW
+// Return the surface and light of a texel of the finer level at an address in its image.
+uvec4 finer_surface(ivec2 address, int finer) { return texelFetch(surface_image, address, 0); }
+vec4 finer_light(ivec2 address, int finer) { return texelFetch(light_image, address, 0); }
+#ifdef SAP_SECOND
+bool finer_has_second(uvec4 bits, int finer) {
+  return sap_has_second(bits) && has_second_surface() && has_second_light();
+}
+uvec4 second_finer_surface(ivec2 address, int finer) {
+  return texelFetch(second_surface_image, address, 0);
+}
+vec4 second_finer_light(ivec2 address, int finer) {
+  return texelFetch(second_light_image, address, 0);
+}
+#endif
+#endif
+
 uvec4 block_surface[side * side];
 vec4 block_light[side * side];
 
@@ -75,14 +95,15 @@ bool child_written(texel_block block, ivec2 at, int finer) {
 // Texel shape: reads the children of all parents of the tile.
 void read_tile(texel_block block, int finer) {
   ivec2 corner = 2 * (8 * block.tile - 1) - 1;
-  [[dont_unroll]] for (int i = int(gl_LocalInvocationIndex); i < tile_side * tile_side; i += 64) {
+  [[dont_unroll]] for (int i = int(gl_LocalInvocationIndex); i < tile_side * tile_side;
+                         i += int(group_lanes)) {
     int y = i / tile_side, x = i - y * tile_side;
     ivec2 at = corner + ivec2(x, y);
     uvec4 bits = uvec4(0u);
     vec4 light = vec4(0.0);
     if (child_written(block, at, finer)) {
-      bits = texelFetch(surface_image, sap_address(at, finer), 0);
-      light = texelFetch(light_image, sap_address(at, finer), 0);
+      bits = finer_surface(sap_address(at, finer), finer);
+      light = finer_light(sap_address(at, finer), finer);
     }
     int place = place_in_tile(x, y);
     tile_surface[place] = bits;
@@ -95,8 +116,8 @@ void read_block(texel_block block, ivec2 first, int finer) {
   [[unroll]] for (int i = 0; i < side * side; ++i) {
     ivec2 at = 2 * first - 1 + ivec2(i % side, i / side);
     bool needed = child_written(block, at, finer);
-    block_surface[i] = needed ? texelFetch(surface_image, sap_address(at, finer), 0) : uvec4(0u);
-    block_light[i] = needed ? texelFetch(light_image, sap_address(at, finer), 0) : vec4(0.0);
+    block_surface[i] = needed ? finer_surface(sap_address(at, finer), finer) : uvec4(0u);
+    block_light[i] = needed ? finer_light(sap_address(at, finer), finer) : vec4(0.0);
   }
 }
 // Prepares the children of parent k of the block.
@@ -130,8 +151,8 @@ sap_texel child_of(sap_parent parent, int c) {
     if (c < children_a_layer)
       return sap_unpack(bits);
 #ifdef SAP_SECOND
-    if (sap_has_second(bits) && has_second_surface() && has_second_light())
-      return sap_unpack(texelFetch(second_surface_image, address_of_child(parent, c), 0));
+    if (finer_has_second(bits, parent.finer))
+      return sap_unpack(second_finer_surface(address_of_child(parent, c), parent.finer));
 #endif
     return no_texel;
   }
@@ -148,9 +169,9 @@ vec4 light_of(sap_parent parent, int c, uint id) {
     } else if (id != 0u) {
 #ifdef SAP_SECOND
       if (c >= children_a_layer)
-        return texelFetch(second_light_image, address_of_child(parent, c), 0);
+        return second_finer_light(address_of_child(parent, c), parent.finer);
 #endif
-      light = texelFetch(light_image, address_of_child(parent, c), 0);
+      light = finer_light(address_of_child(parent, c), parent.finer);
     }
     return light;
   }

@@ -10,7 +10,10 @@
 #include "sap/sap_lists.glsl"
 #include "common/shape.glsl"
 
+#ifndef DERMIS_ONE_SHAPE
 layout(local_size_x = 64, local_size_y = 1, local_size_z = 1) in;
+#endif
+const uint group_lanes = gl_WorkGroupSize.x;
 
 const int blocks_across = 8 / block_width;
 const int blocks_per_tile = blocks_across * (8 / block_height);
@@ -26,27 +29,36 @@ struct texel_block {
   uint around;   // mask of written tiles among the 3x3 tiles around
 };
 
-// Returns false beyond the end of the list. In the texel shape, all invocations of a group have the
-// same tile.
-bool listed_block(int level, out texel_block block) {
-  uint group = gl_WorkGroupID.y * tile_groups_per_row + gl_WorkGroupID.x;
-  // In the texel shape the index is uniform, so that the entry is read once for the group.
-  uint index = texel_shape ? group
-                           : group * uint(64 / invocations_per_tile) +
-                                 gl_LocalInvocationIndex / uint(invocations_per_tile);
-  uvec2 list = level_tiles_data[level];
-  block = texel_block(ivec2(0), ivec2(0), false, 0u, 0u);
-  if (index >= list.y)
-    return false;
-  uvec2 entry = level_tiles_data[list.x + index];
-  int part = int(gl_LocalInvocationIndex) & (invocations_per_tile - 1);
-  block.tile = ivec2(entry.x & 0x7fffu, (entry.x >> 15) & 0x7fffu);
+ivec2 tile_of_entry(uvec2 entry) { return ivec2(entry.x & 0x7fffu, (entry.x >> 15) & 0x7fffu); }
+
+// Returns the block of invocation `part` of a listed tile.
+texel_block block_of_entry(uvec2 entry, int part) {
+  texel_block block;
+  block.tile = tile_of_entry(entry);
   block.first = 8 * block.tile + (texel_shape ? ivec2(part & 7, part >> 3)
                                               : ivec2(part % blocks_across * block_width,
                                                       part / blocks_across * block_height));
   block.copy_only = (entry.x & tile_copy_bit) != 0u;
   block.children = entry.y & 0x1ffu;
   block.around = entry.y >> 9;
+  return block;
+}
+
+uint dispatched_group() { return gl_WorkGroupID.y * tile_groups_per_row + gl_WorkGroupID.x; }
+
+// Returns false beyond the end of the list. In the texel shape, all invocations of a group have the
+// same tile.
+bool listed_block(int level, out texel_block block) {
+  // In the texel shape the index is uniform, so that the entry is read once for the group.
+  uint index = texel_shape ? dispatched_group()
+                           : dispatched_group() * uint(64 / invocations_per_tile) +
+                                 gl_LocalInvocationIndex / uint(invocations_per_tile);
+  uvec2 list = level_tiles_data[level];
+  block = texel_block(ivec2(0), ivec2(0), false, 0u, 0u);
+  if (index >= list.y)
+    return false;
+  block = block_of_entry(level_tiles_data[list.x + index],
+                         int(gl_LocalInvocationIndex) & (invocations_per_tile - 1));
   return true;
 }
 

@@ -21,7 +21,7 @@ sap_parent read_children(texel_block block, int k, int finer) {
     uvec4 bits = needed ? texelFetch(surface_image, address, 0) : uvec4(0u);
     children[c] = sap_unpack(bits);
     child_light[c] = needed ? texelFetch(light_image, address, 0) : vec4(0.0);
-    needed = needed && sap_has_second(bits) && has_second_surface() && has_second_light();
+    needed = needed && finer_has_second(bits, finer);
     int second = children_a_layer + c;
     children[second] =
         sap_unpack(needed ? texelFetch(second_surface_image, address, 0) : uvec4(0u));
@@ -30,33 +30,17 @@ sap_parent read_children(texel_block block, int k, int finer) {
   return parent;
 }
 
-void store(sap_parent parent, int level, sap_layer layer) {
-  imageStore(coarse_light_image, sap_address(parent.at, level), stored(layer.light));
-  imageStore(coarse_surface_image, sap_address(parent.at, level), layer.bits);
+void store_layer(sap_parent parent, int level, bool second, sap_layer layer) {
+  ivec2 address = sap_address(parent.at, level);
+  if (second) {
+    imageStore(second_coarse_light_image, address, stored(layer.light));
+    imageStore(second_coarse_surface_image, address, layer.bits);
+  } else {
+    imageStore(coarse_light_image, address, stored(layer.light));
+    imageStore(coarse_surface_image, address, layer.bits);
+  }
 }
-
-// Computes both layers of a parent. In the texel shape the first layer is known if no child has two
-// layers. The loop tests at its end, because some drivers execute the body of a loop before they
-// find that no invocation is active.
-void compute_both(sap_parent parent, int level, sap_layer first, bool computes) {
-  bool known = texel_shape && !parent.two;
-  sap_texel before = no_texel;
-  if (known)
-    before = first.seed;
-  int index = known ? 1 : 0, count = computes ? max_layers : 1;
-  [[dont_unroll]] do {
-    sap_layer layer = reduce(parent, max_layers, before);
-    before = layer.seed;
-    if (index == 0) {
-      first = layer;
-    } else if (layer.bits.w != 0u) {
-      first.bits.w |= sap_second_bit;
-      imageStore(second_coarse_light_image, sap_address(parent.at, level), stored(layer.light));
-      imageStore(second_coarse_surface_image, sap_address(parent.at, level), layer.bits);
-    }
-  } while (++index < count);
-  store(parent, level, first);
-}
+#include "sap/sap_down_layers.glsl"
 
 void main() {
   int level = settings.level, finer = level - 1;
@@ -65,16 +49,7 @@ void main() {
     return;
   if (texel_shape) {
     read_tile(block, finer);
-    sap_parent parent = take_parent(block, 0, finer);
-    if (!sap_inside(parent.at, level))
-      return;
-    sap_layer layer = sap_layer(vec4(0.0), uvec4(0u), no_texel, true);
-    if (!parent.two)
-      layer = reduce(parent, 1, no_texel);
-    if (layer.remains)
-      compute_both(parent, level, layer, true);
-    else
-      store(parent, level, layer);
+    compute_parent(take_parent(block, 0, finer), level);
     return;
   }
   read_block(block, block.first - 1, finer);
@@ -85,7 +60,7 @@ void main() {
       continue;
     sap_layer layer = reduce(parent, 1, no_texel);
     layered |= parent.two || layer.remains ? 1u << k : 0u;
-    store(parent, level, layer);
+    store_layer(parent, level, false, layer);
   }
   if (layered != 0u)
     do {

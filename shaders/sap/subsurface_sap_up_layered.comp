@@ -13,27 +13,13 @@
 #define SAP_SECOND_MAY_LACK
 #include "sap/sap_climb.glsl"
 
-// Computes the layers of the texel at `place`. The loop tests at its end, because some drivers
-// execute the body of a loop before they find that no invocation is active.
-void compute_layers(sap_place place, int level, bool smooth_level, bool last) {
-  uvec4 first = near_bits(place, near_centre);
-  sap_texel own = sap_unpack(first);
-  vec3 light = light_near(place, level, near_centre).rgb;
-  int layer = 0, layers = sap_has_second(first) ? 2 : 1;
-  [[dont_unroll]] do {
-    uvec4 bits = uvec4(0u);
-    if (own.id != 0u)
-      bits = climb(place, level, own, light, SAP_OWN_LAYERS, smooth_level, last);
-    if (layer == 0)
-      imageStore(scattered_image, sap_address(place.at, level), bits);
-    else
-      imageStore(second_scattered_image, sap_address(place.at, level), bits);
-    if (!texel_shape || layers > 1) {
-      own = sap_unpack(second_near_bits(place, level, near_centre));
-      light = second_light_near(place, level, near_centre).rgb;
-    }
-  } while (++layer < layers);
+void store_scattered(sap_place place, int level, int layer, uvec4 bits) {
+  if (layer == 0)
+    imageStore(scattered_image, sap_address(place.at, level), bits);
+  else
+    imageStore(second_scattered_image, sap_address(place.at, level), bits);
 }
+#include "sap/sap_up_layers.glsl"
 
 void main() {
   int level = settings.level;

@@ -237,6 +237,53 @@ TEST(InPlace, VerifierRejectsARaceInsideAPass) {
   EXPECT_NE(first_hazard(plan), "");
 }
 
+GraphBuilder levels() {
+  GraphBuilder b{"import light", "image pyramid", "export result"};
+  b.pass("down", "test.levels", {{"a", "light"}}, {{"out", "pyramid"}});
+  b.pass("show", "test.need", {{"a", "pyramid"}}, {{"out", "result"}});
+  return b;
+}
+
+TEST(InternalOrder, IsPlannedAsAWriteThatAlsoReads) {
+  const GraphBuilder b = levels();
+  const Plan plan = compiled(b).plan;
+  const Access update = access::shader_storage_read | access::shader_storage_write;
+  size_t ordered = 0, waits = 0;
+  for (const PlanAccess& access : plan.accesses) {
+    if (!access.internally_ordered) continue;
+    EXPECT_EQ(access.access, update);
+    ++ordered;
+  }
+  EXPECT_EQ(ordered, 1u);
+  for (const PlanBarrier& barrier : plan.barriers)
+    waits += barrier.destination_access == update;
+  EXPECT_EQ(waits, 1u);
+}
+
+TEST(InternalOrder, VerifierRejectsTheReadWithoutIt) {
+  Plan plan = compiled(levels()).plan;
+  EXPECT_THAT(verify(plan).violations, IsEmpty());
+  EXPECT_EQ(first_hazard(plan), "");
+  for (PlanAccess& access : plan.accesses)
+    access.internally_ordered = false;
+  EXPECT_THAT(verify(plan).violations, Contains(HasSubstr("its contents are not defined")));
+  EXPECT_NE(first_hazard(plan), "");
+}
+
+TEST(InternalOrder, VerifierRejectsItOnARead) {
+  Plan plan = compiled(levels()).plan;
+  for (PlanAccess& access : plan.accesses)
+    access.internally_ordered = (access.access & all_write_access) == 0;
+  EXPECT_THAT(verify(plan).violations,
+              Contains(HasSubstr("an internally ordered access does not write")));
+}
+
+TEST(InternalOrder, DoesNotCoverAnotherPort) {
+  GraphBuilder b{"in_out light"};
+  b.pass("down", "test.levels", {{"a", "light"}}, {{"out", "light"}});
+  EXPECT_EQ(rejected(b)[0].id, DiagnosticId::in_place_race);
+}
+
 const PlanResource& history_of(const Plan& plan) {
   return plan.resources[plan.histories.at(0).resource];
 }

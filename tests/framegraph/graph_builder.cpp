@@ -37,6 +37,12 @@ constexpr Port probe_ports[] = {{"a", Usage::sampled_image, true, "texture2D", "
 constexpr Port narrow_ports[] = {
     {"a", Usage::sampled_image, true, "texture2D", "", one_half4},
     {"out", Usage::storage_image_write, false, "image2D", "", one_half4}};
+constexpr Port levels_ports[] = {{"a", Usage::sampled_image, true, "texture2D", ""},
+                                 {.name = "out",
+                                  .usage = Usage::storage_image_write,
+                                  .glsl_type = "image2D",
+                                  .doc = "",
+                                  .internally_ordered = true}};
 constexpr Port ids_ports[] = {{"ids", Usage::sampled_image, false, "utexture2D", ""},
                               {"out", Usage::storage_image_write, false, "image2D", ""}};
 
@@ -61,6 +67,7 @@ PassTypeRegistry test_pass_types() {
   pass_types.add(type("test.narrow", narrow_ports));
   pass_types.add(type("test.blend", blend_ports));
   pass_types.add(type("test.ids", ids_ports));
+  pass_types.add(type("test.levels", levels_ports));
   PassType probe = type("test.probe", probe_ports);
   probe.side_effects = true;
   pass_types.add(probe);

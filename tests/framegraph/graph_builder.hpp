@@ -27,6 +27,7 @@ using Bindings = std::vector<std::pair<std::string, std::string>>;
 // - test.narrow (a -> out, only rgba16f)
 // - test.blend (a, own texel by texel -> out)
 // - test.ids (ids, whole numbers -> out)
+// - test.levels (a -> out, internally ordered)
 PassTypeRegistry test_pass_types();
 
 struct GraphBuilder {

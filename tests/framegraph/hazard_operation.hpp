@@ -39,8 +39,9 @@ inline bool accesses(const Operation& o) {
 inline Access written(const Operation& o) {
   return accesses(o) ? o.access->access & all_write_access : 0;
 }
+// An internally ordered access reads only what its own pass writes.
 inline Access read(const Operation& o) {
-  return accesses(o) ? o.access->access & ~all_write_access : 0;
+  return accesses(o) && !o.access->internally_ordered ? o.access->access & ~all_write_access : 0;
 }
 
 inline size_t queue_index(Queue queue) {

@@ -110,8 +110,8 @@ TEST(Mutation, FlippedHistorySlot_IsRejectedOrChangesPixels) {
 }
 
 // The declaration does not matter for a history whose frames have separate memory.
-TEST(Mutation, LostOwnTexels_IsRejectedIfHazardous) {
-  const Tally tally = compare_verdicts(300, 3000, for_each_lost_own_texels);
+TEST(Mutation, LostDeclaration_IsRejectedIfHazardous) {
+  const Tally tally = compare_verdicts(300, 3000, for_each_lost_declaration);
   EXPECT_GT(tally.rejected, 30u);
   EXPECT_GT(tally.tried, tally.rejected);
 }

@@ -80,12 +80,18 @@ void for_each_flipped_slot(const Plan& plan, const VisitMutant& visit) {
     }
 }
 
-void for_each_lost_own_texels(const Plan& plan, const VisitMutant& visit) {
+void for_each_lost_declaration(const Plan& plan, const VisitMutant& visit) {
   for (size_t a = 0; a < plan.accesses.size(); ++a) {
     if (!plan.accesses[a].own_texels) continue;
     Plan mutant = plan;
     mutant.accesses[a].own_texels = false;
     visit(mutant, fmt::format("access {} to texels of other invocations", a));
+  }
+  for (size_t a = 0; a < plan.accesses.size(); ++a) {
+    if (!plan.accesses[a].internally_ordered) continue;
+    Plan mutant = plan;
+    mutant.accesses[a].internally_ordered = false;
+    visit(mutant, fmt::format("access {} to what was there before", a));
   }
 }
 

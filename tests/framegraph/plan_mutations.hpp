@@ -23,7 +23,7 @@ void for_each_weaker_mask(const Plan& plan, const VisitMutant& visit);
 void for_each_shifted_placement(const Plan& plan, const VisitMutant& visit);
 // Makes an access read another old frame.
 void for_each_flipped_slot(const Plan& plan, const VisitMutant& visit);
-void for_each_lost_own_texels(const Plan& plan, const VisitMutant& visit);
+void for_each_lost_declaration(const Plan& plan, const VisitMutant& visit);
 // Redirects an access to a resource that its pass writes.
 void for_each_redirected_access(const Plan& plan, const VisitMutant& visit);
 void for_each_swap(const Plan& plan, const VisitMutant& visit); // Swaps two consecutive passes.

@@ -81,7 +81,7 @@ TEST(SavedPlan, TruncatedFile_IsRejected) {
 TEST(SavedPlan, OtherVersion_IsRejected) {
   std::string bytes = file_of(5);
   bytes[8] = 9;
-  EXPECT_EQ(refusal(bytes), "the plan has version 9; this library reads version 6");
+  EXPECT_EQ(refusal(bytes), "the plan has version 9; this library reads version 7");
   EXPECT_EQ(refusal("{}"), "a saved plan must begin with DERMPLAN");
 }
 

@@ -343,10 +343,11 @@ def add_target(model):
 # How often the loops of a kernel run, in the order of the assembly, for subgroups with one layer;
 # those of layered kernels for subgroups with two. Loops over outer seeds are rare: 0.
 TRIPS = {"sap_setup": [2], "sap_down": [6, 0], "sap_down_layered": [6, 0, 4, 2, 8, 0, 4, 16],
-         "sap_up_layered": [2]}
+         "sap_up_layered": [2],
+         "sap_coarse_down": [1, 4, 6, 1, 0, 4, 2, 8, 0, 4, 16, 1, 1],  # four levels, one after another
+         "sap_coarse_up": [1, 4, 2, 1, 5, 2, 1, 5, 2, 2, 1, 2]}  # five levels
 ONE_LAYER = {"sap_down_layered": "sap_down", "sap_up_layered": "sap_up"}  # kernels of the same work
-COARSE_LEVEL = 5  # the first level of the coarse passes, which compute COARSE_LEVELS one after another
-COARSE_LEVELS = 4
+COARSE_TILES = {"sap_coarse_down": 5, "sap_coarse_up": 4}  # the level whose tiles have a group each
 
 
 class Built:
@@ -379,6 +380,8 @@ class Built:
 def add_built(model, technique, built, graph):
     """The passes of a graph as they are built."""
     for one in built.graphs[graph]:
+        if not one["kernel"]:  # a clear of a small buffer, which nothing waits for at once
+            continue
         kernel = re.sub(".*/subsurface_", "", one["kernel"])
         bytes_moved = model.covered * (one["read"] + one["written"])
         level = re.search(r"_(\d)$", one["pass"])
@@ -389,9 +392,9 @@ def add_built(model, technique, built, graph):
             model.add_serial(technique, one["pass"], lists_by_region(model))
         elif kernel == "tile_list":
             model.add_serial(technique, one["pass"], model.wave(**LIST_RUN)["lat"])
-        elif "coarse" in one["pass"]:
-            wave = built.wave(model, kernel)
-            model.add(technique, one["pass"], model.tiles[COARSE_LEVEL], wave, bytes_moved)
+        elif kernel in COARSE_TILES:
+            model.add(technique, one["pass"], model.tiles[COARSE_TILES[kernel]], built.wave(model, kernel),
+                      bytes_moved)
         elif kernel in ONE_LAYER:
             wave = mix(built.wave(model, ONE_LAYER[kernel]), built.wave(model, kernel),
                        layered_fraction(int(level.group(1))))

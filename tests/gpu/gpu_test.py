@@ -101,6 +101,11 @@ class WriteCalibrations(unittest.TestCase):
         stated = write_calibrations.executed("subsurface.tile_refine", ASSEMBLY)
         self.assertAlmostEqual(stated["quarter_rate"] / others["quarter_rate"], 8 / 4)
 
+    def test_outer_loops_over_levels_have_their_own_counts(self):
+        usual = write_calibrations.executed("subsurface.list", ASSEMBLY)
+        outer = write_calibrations.executed("subsurface.sap_coarse_down level=5", ASSEMBLY)
+        self.assertAlmostEqual(usual["quarter_rate"] / outer["quarter_rate"], write_calibrations.LOOP)
+
     def test_files_say_that_they_are_modelled(self):
         report = {"device": "d", "driver": "r"}
         text = write_calibrations.text_of(gpu_model.RX_6800, report, [("w", 1.0, 0.5)])

@@ -28,6 +28,9 @@ UNITS = 4096  # sample units of the modelled frame
 # five times, the other only for pixels that do not share their tile's kernel.
 TRIPS = {"subsurface.separable": 2, "subsurface.tile_refine": 8}
 LOOP = 4
+# How often nested loops run, from outside in: tiles of a group, levels one after another, texels of
+# an invocation. Loops inside these run LOOP times.
+NESTED_TRIPS = {"subsurface.sap_coarse_down": (1, 4, 1), "subsurface.sap_coarse_up": (1, 5, 1)}
 
 
 def invocations(kernel):
@@ -50,7 +53,9 @@ def executed(work, assembly):
     blocks = instruction_mix.read_blocks(assembly.splitlines())
     trips = TRIPS.get(work.split()[0], LOOP)
     loops = instruction_mix.find_loops(blocks)
-    mix = instruction_mix.count(blocks, [trips] * len(loops))
+    nested = NESTED_TRIPS.get(work.split()[0], ())
+    depths = [sum(first <= loop[0] and loop[1] <= last for first, last in loops) - 1 for loop in loops]
+    mix = instruction_mix.count(blocks, [nested[depth] if depth < len(nested) else trips for depth in depths])
     return {kind: number * EXECUTED for kind, number in mix.items()}
 
 

@@ -351,7 +351,8 @@ TEST(Schema, OfPassTypesAgreesWithTheParserOnMutatedFiles) {
       parse(R"({ "$schema": "x", "dermis_pass_types": 2, "note": "n", "pass_types": [
         { "name": "studio.bloom", "doc": "d", "side_effects": true, "serves_scattering": true, "note": "n",
           "ports": [ { "name": "light", "usage": "sampled_image", "own_texels": true, "doc": "d", "note": "n" },
-                     { "name": "glow", "usage": "storage_image_write", "optional": true } ],
+                     { "name": "glow", "usage": "storage_image_write", "optional": true,
+                       "internally_ordered": true } ],
           "settings": [ { "name": "level", "type": "real", "default": 1, "min": 0, "max": 4.5, "per": "frame", "unit": "px", "doc": "d" },
                         { "name": "taps", "type": "int", "default": 3, "min": 1, "max": 9, "note": "n" },
                         { "name": "wide", "type": "bool", "default": 1 } ] },

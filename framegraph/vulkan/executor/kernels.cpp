@@ -220,12 +220,19 @@ uint32_t kernel_word(const SettingValue& value) {
              : static_cast<uint32_t>(static_cast<int32_t>(value.integer));
 }
 
+// Invocations per group of kernels with one shape. On the CPU one vector of lavapipe, which
+// executes the other vectors of a group even if their lanes are off.
+constexpr uint32_t lanes_on_cpu = 8, lanes_on_gpu = 64;
+
 Error create_pipeline(const Device& device, const std::string& subresource,
                       const std::string& label, std::span<const uint32_t> spirv,
                       const PipelineOptions& options, Pipeline& pipeline) {
   // Kernels ignore constants that they do not declare.
-  std::vector<uint32_t> values{device.texel_shape ? VK_TRUE : VK_FALSE};
-  std::vector<VkSpecializationMapEntry> entries{{constant_id::texel_shape, 0, sizeof(uint32_t)}};
+  std::vector<uint32_t> values{device.texel_shape ? VK_TRUE : VK_FALSE,
+                               device.texel_shape ? lanes_on_gpu : lanes_on_cpu};
+  std::vector<VkSpecializationMapEntry> entries{
+      {constant_id::texel_shape, 0, sizeof(uint32_t)},
+      {constant_id::group_lanes, sizeof(uint32_t), sizeof(uint32_t)}};
   for (size_t i = 0; i < pipeline.constants.size(); ++i) {
     entries.push_back({pipeline.kernel->constants[i].id,
                        static_cast<uint32_t>(sizeof(uint32_t) * values.size()), sizeof(uint32_t)});

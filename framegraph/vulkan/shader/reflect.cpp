@@ -27,6 +27,7 @@ struct Id {
   uint32_t array_stride = 0, set = 0, binding = 0, spec_id = 0;
   bool has_spec_id = false, has_set = false, has_binding = false, buffer_block = false,
        workgroup_size = false;
+  bool coherent = false; // of a variable, or of a member of a struct
 };
 
 struct Module {
@@ -140,6 +141,7 @@ private:
       if (o.at(2) == decoration_offset) member_slot(id(o.at(0)).member_offsets, o.at(1)) = o.at(3);
       if (o.at(2) == decoration_matrix_stride)
         member_slot(id(o.at(0)).matrix_strides, o.at(1)) = o.at(3);
+      if (o.at(2) == decoration_coherent) id(o.at(0)).coherent = true;
       break;
     case op_constant:
     case op_spec_constant:
@@ -185,6 +187,9 @@ private:
       break;
     case decoration_buffer_block:
       target.buffer_block = true;
+      break;
+    case decoration_coherent:
+      target.coherent = true;
       break;
     case decoration_array_stride:
       target.array_stride = o.at(2);
@@ -348,6 +353,7 @@ std::optional<Reflection> reflect(std::span<const uint32_t> spirv, std::string& 
     binding.numeric = type->numeric;
     binding.image_format = type->image_format;
     binding.bytes = type->bytes;
+    binding.coherent = variable.coherent || type->coherent;
     binding.name = variable.name.empty() ? type->name : variable.name;
     result.bindings.push_back(std::move(binding));
   }

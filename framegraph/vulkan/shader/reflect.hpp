@@ -29,6 +29,7 @@ struct ShaderBinding {
   Numeric numeric = Numeric::none; // images: component type of a texel read
   uint32_t image_format = 0;       // storage images: SPIR-V Image Format; 0: without format
   bool array = false;              // array of descriptors
+  bool coherent = false;           // writes are made visible to other workgroups
   // buffers: size of the block, without a run-time array at its end
   uint64_t bytes = 0;
   std::string name; // name of the variable or of its block

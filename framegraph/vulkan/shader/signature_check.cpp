@@ -45,6 +45,9 @@ struct Checker {
             ? BindingType::acceleration_structure
             : BindingType::storage_buffer;
     check_type(binding, place, expected);
+    if (port.internally_ordered && !binding.coherent)
+      mismatch("{} is internally ordered in the signature, but '{}' is not coherent in the shader",
+               place, binding.name);
     if (expected == BindingType::storage_buffer ||
         expected == BindingType::acceleration_structure || binding.type != expected ||
         port.glsl_type.empty())

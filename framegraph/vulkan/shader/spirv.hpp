@@ -49,6 +49,7 @@ enum Decoration : uint32_t {
   decoration_array_stride = 6,
   decoration_matrix_stride = 7,
   decoration_built_in = 11,
+  decoration_coherent = 23,
   decoration_binding = 33,
   decoration_descriptor_set = 34,
   decoration_offset = 35

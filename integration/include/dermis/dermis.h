@@ -664,8 +664,11 @@ typedef struct dermis_port {
    * Required for a port that reads what another port of the pass writes; without it such graphs are
    * rejected (D0232). Update ports do not need it for their own accesses. */
   uint32_t own_texels;
+  /* 1: the dispatch also reads through this port what its invocations wrote, and its shader orders
+   * these accesses. Only for usages that write without reading (D0233). */
+  uint32_t internally_ordered;
 } dermis_port;
-#define DERMIS_PORT_INIT {sizeof(dermis_port), NULL, NULL, DERMIS_PORT_SAMPLED_IMAGE, 0, 0}
+#define DERMIS_PORT_INIT {sizeof(dermis_port), NULL, NULL, DERMIS_PORT_SAMPLED_IMAGE, 0, 0, 0}
 
 typedef enum dermis_pass_setting_type {
   DERMIS_PASS_SETTING_BOOL = 0,

@@ -146,6 +146,30 @@ ImageReads sap_up(const PassType& type, const ReadsQuestion& question) {
   return {2 * block_reads(tent ? 4 * 4 : 2 * 2, 2, 2) + (last ? 0 : 2 * block_reads(2 * 2, 2, 2))};
 }
 
+// Surface and light of the 18x18 children of the tiles of all levels from the first one on, per
+// texel of the first level.
+ImageReads sap_coarse_down(const PassType& type, const ReadsQuestion& question) {
+  double texels = 0.0, per_texel = 1.0;
+  for (int64_t level = setting(type, question, "level"); level < sap_level_count; ++level) {
+    texels += per_texel * block_reads(18 * 18, 8, 8);
+    per_texel /= 4;
+  }
+  return {2 * texels};
+}
+
+// sap_window.glsl: surface and light of a tile and of its window in every coarser level, each with
+// a ring.
+ImageReads sap_coarse_up(const PassType& type, const ReadsQuestion& question) {
+  constexpr int with_ring[] = {10, 7, 6, 5};
+  double texels = 0.0;
+  size_t window = 0;
+  for (int64_t level = setting(type, question, "level"); level < sap_level_count; ++level) {
+    texels += with_ring[window] * with_ring[window];
+    window = std::min(window + 1, std::size(with_ring) - 1);
+  }
+  return {2 * block_reads(texels, 8, 8)};
+}
+
 // Only surface and light if no pixel scatters beyond itself. Albedo and unscattered light of the
 // pixel if the step writes the host's images.
 ImageReads sap_gather(const PassType& type, const ReadsQuestion& question) {
@@ -360,6 +384,8 @@ constexpr Entry entries[] = {
     {"subsurface.sap_gather_half", sap_gather_half},
     {"subsurface.sap_down_layered", sap_down},
     {"subsurface.sap_up_layered", sap_up},
+    {"subsurface.sap_coarse_down", sap_coarse_down},
+    {"subsurface.sap_coarse_up", sap_coarse_up},
     {"subsurface.sap_gather_layered", sap_gather},
     {"subsurface.combine", combine},
     {"subsurface.export_scattered", light},

@@ -39,6 +39,9 @@ constexpr PortNeed needs[] = {
     {"arguments", 0, 0, dispatch},
     {"copy_arguments", 0, 0, dispatch},
     {"level_arguments", 0, 0, levels* dispatch},
+    // A word per tile of levels 6 to 8. Such a tile has 512, 1024 or 2048 pixels; the border adds
+    // less than twice as many, so that each level has at most one tile per square.
+    {"computed_children", 256, 4 * word},
 
     {"lighting", pixel},
     {"depth", pixel},
@@ -99,7 +102,7 @@ constexpr PortNeed needs[] = {
     {"surface_4", 16},
     {"surface_5", 32},
 };
-constexpr size_t buffers = 24;
+constexpr size_t buffers = 25;
 static_assert(needs[buffers].port == "lighting");
 
 } // namespace
@@ -108,7 +111,8 @@ std::span<const PortNeed> needs_of(std::string_view kind) {
   if (kind == clear_type.name) return {};
   const bool step = kind == sap_setup_half_res_type.name || kind == sap_down_type.name ||
                     kind == sap_up_type.name || kind == pyramid_down_type.name ||
-                    kind == sap_down_layered_type.name || kind == sap_up_layered_type.name;
+                    kind == sap_down_layered_type.name || kind == sap_up_layered_type.name ||
+                    kind == sap_coarse_down_type.name || kind == sap_coarse_up_type.name;
   return std::span(needs).first(step ? buffers : std::size(needs));
 }
 

@@ -86,6 +86,12 @@ constexpr Port own_texels(Port port) {
   return port;
 }
 
+// See Port::internally_ordered.
+constexpr Port internally_ordered(Port port) {
+  port.internally_ordered = true;
+  return port;
+}
+
 // See Touched. Passes over a list need no where_covered.
 constexpr Port where_covered(Port port) {
   port.touched = Touched::covered;

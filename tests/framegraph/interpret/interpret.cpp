@@ -115,7 +115,8 @@ struct Interpreter {
     const PlanAccess* accesses = plan.accesses.data() + pass.first_access;
     std::vector<PlaceholderInput> inputs;
     for (uint32_t a = 0; a < pass.access_count; ++a)
-      if ((accesses[a].access & ~all_write_access) != 0 && happens(accesses, a, frame))
+      if ((accesses[a].access & ~all_write_access) != 0 && !accesses[a].internally_ordered &&
+          happens(accesses, a, frame))
         for (const uint32_t piece : pieces_of(accesses[a], frame)) {
           touch(piece, pass.queue);
           inputs.push_back({accesses[a].port, pieces[piece]});

@@ -126,6 +126,19 @@ TEST(Signature, APortOfAnotherTypeIsNamedWithBothSides) {
   EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 4) << text;
 }
 
+TEST(Signature, InternallyOrderedPortIsCoherent) {
+  PassType changed = type("test.add");
+  std::vector<Port> ports(changed.ports.begin(), changed.ports.end());
+  ports[4].internally_ordered = true;
+  changed.ports = ports;
+  Reflection reflection = reflected("test_add");
+  EXPECT_EQ(problems(changed, reflection),
+            "kernel 'test_add' of type 'test.add': port 'second' (set 0 binding 4) is internally "
+            "ordered in the signature, but 'second' is not coherent in the shader\n");
+  reflection.bindings[4].coherent = true;
+  EXPECT_EQ(problems(changed, reflection), "");
+}
+
 TEST(Signature, PushConstantsMustFollowTheSettings) {
   PassType changed = type("test.fill");
   std::vector<PassTypeSetting> settings(changed.settings.begin(), changed.settings.end());

@@ -247,5 +247,28 @@ TEST_F(HostPassTypes, UpdateInPlaceNeedsOwnTexels) {
   EXPECT_THAT(text, HasSubstr("\"own_texels\": true"));
 }
 
+TEST_F(HostPassTypes, OnlyWritersOrderInternally) {
+  for (const dermis_port_usage usage :
+       {DERMIS_PORT_SAMPLED_IMAGE, DERMIS_PORT_STORAGE_BUFFER_READ,
+        DERMIS_PORT_STORAGE_IMAGE_UPDATE, DERMIS_PORT_STORAGE_BUFFER_UPDATE}) {
+    std::vector<dermis_port> ports = {port_of("levels", usage)};
+    ports[0].internally_ordered = 1;
+    const dermis_pass_type wrong = type("studio.wrong", ports);
+    EXPECT_EQ(dermis_register_pass_type(context, &wrong), DERMIS_ERROR_ARGUMENT);
+    EXPECT_THAT(dermis_last_error(), HasSubstr("ports[0] ('levels') declares internally_ordered"));
+  }
+  std::vector<dermis_port> ports = {port_of("levels", DERMIS_PORT_STORAGE_IMAGE_WRITE),
+                                    port_of("sums", DERMIS_PORT_STORAGE_BUFFER_WRITE)};
+  for (dermis_port& port : ports)
+    port.internally_ordered = 1;
+  const dermis_pass_type right = type("studio.levels", ports);
+  ASSERT_OK(dermis_register_pass_type(context, &right));
+  size_t size = 0;
+  ASSERT_OK(dermis_export_pass_types(context, &size, nullptr));
+  std::string text(size, '?');
+  ASSERT_OK(dermis_export_pass_types(context, &size, text.data()));
+  EXPECT_THAT(text, HasSubstr("\"internally_ordered\": true"));
+}
+
 } // namespace
 } // namespace dermis::abi_test

@@ -35,6 +35,11 @@ TEST_F(PassTypes, FileIsChecked) {
   own.replace(own.find("studio"), 6, "subsurface");
   EXPECT_THAT(run({"validate", write("own.json", own)}).err,
               HasSubstr("are reserved for the library"));
+  std::string reads = pass_types;
+  const std::string sampled = "\"usage\": \"sampled_image\"";
+  reads.replace(reads.find(sampled), sampled.size(), sampled + ", \"internally_ordered\": true");
+  EXPECT_THAT(run({"validate", write("reads.json", reads)}),
+              FailsWith(1, "reads.json:2:3", "D0233", "has usage sampled_image"));
   const std::string graph_file = write("tone.json", tone);
   const std::string kind_file = write("pass_types.json", pass_types);
   EXPECT_THAT(run({"validate", graph_file, "--pass-types", kind_file, "--pass-types", kind_file}),

@@ -180,6 +180,17 @@ TEST_F(PortRules, OwnTexelsAreReadAtTheTexelThatIsWritten) {
   EXPECT_EQ(ports, 10u);
 }
 
+TEST_F(PortRules, OnlyWritersOrderInternally) {
+  size_t ports = 0;
+  for (uint32_t i = 0; i < pass_types.size(); ++i)
+    for (const Port& port : pass_types[PassTypeId{i}].ports) {
+      if (!port.internally_ordered) continue;
+      EXPECT_TRUE(may_order_internally(port.usage)) << pass_types[PassTypeId{i}].name;
+      ++ports;
+    }
+  EXPECT_EQ(ports, 1u);
+}
+
 TEST_F(PortRules, CombineWithoutLight_IsRejected) {
   replace(R"("read": { "scattered": "scattered", "material": "material", "albedo": "albedo",
                 "tiles")",

@@ -131,7 +131,7 @@ TEST_F(ShippedPlans, Mutants_AreRejectedIfHazardous) {
     if (bound != Bound::all && (bound == Bound::some || seeds_to_try(0, 1) == 0)) return;
     for (const auto for_each_mutant :
          {for_each_weaker_mask, for_each_shifted_placement, for_each_flipped_slot, for_each_swap,
-          for_each_moved_barrier, for_each_lost_own_texels})
+          for_each_moved_barrier, for_each_lost_declaration})
       for_each_mutant(compiled.plan, [&](const Plan& mutant, const std::string& what) {
         if (!HasFatalFailure()) expect_same_verdict(mutant, what, tally);
       });

@@ -71,12 +71,15 @@ std::string need_text(const PassType& type, const Port& port) {
 } // namespace
 
 std::string pass_types_page(const PassTypeRegistry& pass_types) {
-  std::string out = "# Pass types\n\nPorts: `read` or `write`, then the usage, which decides "
-                    "stages, accesses and layouts, "
-                    "then the smallest size (D0229).\n*Own texels*: each invocation reads only "
-                    "what it writes, so that the "
-                    "pass may write the same resource.\n*Per frame*: the setting may differ "
-                    "between views of a graph.\n";
+  std::string out =
+      "# Pass types\n\nPorts: `read` or `write`, then the usage, which decides "
+      "stages, accesses and layouts, "
+      "then the smallest size (D0229).\n*Own texels*: each invocation reads only "
+      "what it writes, so that the "
+      "pass may write the same resource.\n*Internally ordered*: the kernel also reads "
+      "what its dispatch wrote through the port, and orders these accesses.\n*Per frame*: the "
+      "setting may differ "
+      "between views of a graph.\n";
   for (uint32_t k = 0; k < pass_types.size(); ++k) {
     const PassType& type = pass_types[PassTypeId{k}];
     out += fmt::format("\n## {}\n\n{} Runs {}{}.\n", type.name, type.doc,
@@ -93,9 +96,10 @@ std::string pass_types_page(const PassTypeRegistry& pass_types) {
       for (const Format format : port.formats)
         formats += fmt::format("{}{}", formats.empty() ? "; " : ", ", format_info(format).name);
       out +=
-          fmt::format("| `{}` | {}{}{} | {}{}{} | {} |\n", port.name,
+          fmt::format("| `{}` | {}{}{}{} | {}{}{} | {} |\n", port.name,
                       side_of(port) == PortSide::read ? "read" : "write",
                       port.optional ? ", optional" : "", port.own_texels ? ", own texels" : "",
+                      port.internally_ordered ? ", internally ordered" : "",
                       usage_info(port.usage).name, formats, need_text(type, port), cell(port.doc));
     }
     if (type.settings.empty()) continue;

@@ -1,0 +1,292 @@
+// The neighbourhood of a texel on the way up. In the block shape an invocation reads its block, a
+// ring around the block and the coarser texels under it once into private arrays; in the texel
+// shape the group reads those of its tile into shared memory.
+// Include after bindings with `light`, `surface`, `coarse_surface`, `coarse_scattered` and
+// `level_tiles`, and after `block_width`, `block_height`, `coarse_width`, `coarse_height` (coarser
+// texels under a block), `border` (1 if the level has a border, so that the first texel of a tile
+// is odd; else 0) and the macros of sap_up.glsl.
+// - Second layers need `second_light`, `second_surface`, `second_coarse_surface` and
+//   `second_coarse_scattered`. With two own layers a block is read with one layer, and texels that
+//   involve a second layer are read one by one.
+// - SAP_SECOND_MAY_LACK: the second layer of the coarser level is optional.
+#ifndef DERMIS_SAP_NEIGHBOURS_GLSL
+#define DERMIS_SAP_NEIGHBOURS_GLSL
+
+// The texel that is computed.
+struct sap_place {
+  ivec2 at;   // texel of its level
+  ivec2 odd;  // parity of its position
+  int ring;   // texel shape: its index in the tile's ring
+  int corner; // texel shape: index of its first corner in the tile's coarser texels
+};
+
+const int corner_texels = 4, near_texels = 9, near_centre = 4;
+ivec2 near_step(int n) { return ivec2(n % 3 - 1, n / 3 - 1); }
+
+// Texel shape: the tile's texels with a ring around them, and the coarser texels under the tile.
+const int ring_side = 10, coarse_side = 6 - border;
+#ifndef SAP_NO_RING
+shared uvec4 tile_surface[texel_shape ? ring_side * ring_side : 1];
+shared uvec2
+    tile_light[texel_shape ? ring_side * ring_side : 1]; // halves, exact unless `storage` is full
+#endif
+shared uvec4 tile_coarse_surface[texel_shape ? coarse_side * coarse_side : 1];
+shared uvec4 tile_coarse_scattered[texel_shape ? coarse_side * coarse_side : 1];
+
+// Block shape: the neighbourhood of the current texel. The second layer follows the first.
+uvec4 corner_surface[SAP_COARSE_LAYERS * corner_texels];
+uvec4 corner_scattered[SAP_COARSE_LAYERS * corner_texels];
+#ifndef SAP_NO_RING
+uvec4 near_surface[SAP_OWN_LAYERS * near_texels];
+vec4 near_light[SAP_OWN_LAYERS * near_texels];
+#endif
+
+// Coarser texels of a block. Their second layers follow, unless the level itself has two layers.
+const int block_coarse_layers = SAP_OWN_LAYERS > 1 ? 1 : SAP_COARSE_LAYERS;
+const int coarse_texels = coarse_width * coarse_height;
+uvec4 coarse_surface[block_coarse_layers * coarse_texels];
+uvec4 coarse_scattered[block_coarse_layers * coarse_texels];
+
+// Returns whether the second layer of a texel of the coarser level can be read.
+bool has_second_corner(uvec4 bits) {
+#if SAP_COARSE_LAYERS > 1
+  bool there = sap_has_second(bits);
+#ifdef SAP_SECOND_MAY_LACK
+  there = there && has_second_coarse_surface() && has_second_coarse_scattered();
+#endif
+  return there;
+#else
+  return false;
+#endif
+}
+
+#ifndef SAP_NO_RING
+const int block_ring_width = block_width + 2, block_ring_height = block_height + 2;
+uvec4 ring_surface[block_ring_width * block_ring_height];
+vec4 ring_light[block_ring_width * block_ring_height];
+
+bool is_written(texel_block block, ivec2 place, int level) {
+  return sap_inside(place - border, level) &&
+         tile_written(block.around, (place >> 3) - block.tile + 1);
+}
+// Texel shape: reads the texel at `offset` from the tile into shared memory, 0 unless `needed`.
+void read_into_ring(texel_block block, ivec2 offset, int level, bool needed) {
+  uvec4 bits = uvec4(0u);
+  vec4 light = vec4(0.0);
+  ivec2 at = 8 * block.tile + offset - border;
+  if (needed && sap_inside(at, level)) {
+    bits = texelFetch(surface_image, sap_address(at, level), 0);
+    light = texelFetch(light_image, sap_address(at, level), 0);
+  }
+  int i = (offset.y + 1) * ring_side + offset.x + 1;
+  tile_surface[i] = bits;
+  tile_light[i] = uvec2(packHalf2x16(light.rg), packHalf2x16(light.ba));
+}
+// Texel i of the ring around a tile, as an offset from the tile: the row above, the row below, then
+// both columns.
+ivec2 ring_offset(int i) {
+  return i < 2 * ring_side ? ivec2((i < ring_side ? i : i - ring_side) - 1, i < ring_side ? -1 : 8)
+                           : ivec2((i & 1) == 0 ? -1 : 8, (i >> 1) - ring_side);
+}
+// Reads the texels of the block or tile and, if requested, the ring around them.
+void read_ring(texel_block block, int level, bool with_ring) {
+  if (texel_shape) {
+    int i = int(gl_LocalInvocationIndex);
+    read_into_ring(block, block.first - 8 * block.tile, level, true);
+    if (i < ring_side * ring_side - 64) {
+      ivec2 offset = ring_offset(i);
+      read_into_ring(block, offset, level,
+                     with_ring && tile_written(block.around, (offset >> 3) + 1));
+    }
+  } else {
+    [[unroll]] for (int i = 0; i < block_ring_width * block_ring_height; ++i) {
+      int x = i % block_ring_width - 1, y = i / block_ring_width - 1;
+      bool inner = x >= 0 && y >= 0 && x < block_width && y < block_height;
+      ivec2 place = block.first + ivec2(x, y);
+      bool needed = (inner || with_ring) && is_written(block, place, level);
+      ring_surface[i] =
+          needed ? texelFetch(surface_image, sap_address(place - border, level), 0) : uvec4(0u);
+      ring_light[i] =
+          needed ? texelFetch(light_image, sap_address(place - border, level), 0) : vec4(0.0);
+    }
+  }
+}
+#endif
+
+// Reads the coarser texels under the block or tile. They exist if a texel of it exists.
+void read_coarser(texel_block block, int level) {
+  ivec2 first = ((texel_shape ? 8 * block.tile : block.first) - border - 1) >> 1;
+  if (texel_shape) {
+    int i = int(gl_LocalInvocationIndex);
+    ivec2 at = first + ivec2(i % coarse_side, i / coarse_side);
+    if (i < coarse_side * coarse_side) {
+      uvec4 bits = uvec4(0u), scattered = uvec4(0u);
+      if (sap_inside(at, level + 1)) {
+        bits = texelFetch(coarse_surface_image, sap_address(at, level + 1), 0);
+        scattered = texelFetch(coarse_scattered_image, sap_address(at, level + 1), 0);
+      }
+      tile_coarse_surface[i] = bits;
+      tile_coarse_scattered[i] = scattered;
+    }
+  } else {
+    [[unroll]] for (int i = 0; i < coarse_texels; ++i) {
+      ivec2 at = first + ivec2(i % coarse_width, i / coarse_width);
+      bool needed = sap_inside(at, level + 1);
+      coarse_surface[i] =
+          needed ? texelFetch(coarse_surface_image, sap_address(at, level + 1), 0) : uvec4(0u);
+      coarse_scattered[i] =
+          needed ? texelFetch(coarse_scattered_image, sap_address(at, level + 1), 0) : uvec4(0u);
+#if SAP_COARSE_LAYERS > 1 && SAP_OWN_LAYERS == 1
+      needed = needed && has_second_corner(coarse_surface[i]);
+      coarse_surface[coarse_texels + i] =
+          needed ? texelFetch(second_coarse_surface_image, sap_address(at, level + 1), 0)
+                 : uvec4(0u);
+      coarse_scattered[coarse_texels + i] =
+          needed ? texelFetch(second_coarse_scattered_image, sap_address(at, level + 1), 0)
+                 : uvec4(0u);
+#endif
+    }
+  }
+}
+// Makes the reads of the group visible to all its invocations.
+void finish_reading() {
+  if (texel_shape)
+    barrier();
+}
+
+sap_place place_of(texel_block block, int k) {
+  ivec2 offset = block_offset(k);
+  if (texel_shape) {
+    ivec2 local = block.first - 8 * block.tile, at = block.first - border;
+    ivec2 corner = ((at - 1) >> 1) - ((8 * block.tile - border - 1) >> 1);
+    return sap_place(at, at & 1, (local.y + 1) * ring_side + local.x + 1,
+                     corner.y * coarse_side + corner.x);
+  }
+  return sap_place(block.first - border + offset, (offset + border) & 1, 0, 0);
+}
+
+#ifndef SAP_NO_RING
+// Selects the neighbourhood of texel k of the block. Returns the union of its surface bits.
+uint take_near(int k) {
+  uint bits = 0u;
+  if (!texel_shape) {
+    [[unroll]] for (int n = 0; n < near_texels; ++n) {
+      ivec2 at = block_offset(k) + 1 + near_step(n);
+      int i = at.y * block_ring_width + at.x;
+      near_surface[n] = ring_surface[i];
+      near_light[n] = ring_light[i];
+      bits |= ring_surface[i].w;
+    }
+  }
+  return bits;
+}
+#endif
+// Selects the coarser texels under texel k of the block. Returns the union of their surface bits.
+uint take_corners(int k) {
+  uint bits = 0u;
+  if (!texel_shape) {
+    ivec2 at = block_offset(k) + border; // relative to an even texel
+    ivec2 first = ((at - 1) >> 1) - ((border - 1) >> 1);
+    [[unroll]] for (int n = 0; n < block_coarse_layers * corner_texels; ++n) {
+      int i = n / corner_texels * coarse_texels + (first.y + n % corner_texels / 2) * coarse_width +
+              first.x + n % 2;
+      corner_surface[n] = coarse_surface[i];
+      corner_scattered[n] = coarse_scattered[i];
+      bits |= coarse_surface[i].w;
+    }
+  }
+  return bits;
+}
+
+#if SAP_OWN_LAYERS > 1
+// Block shape: reads both layers of a texel and, if requested, of its neighbours.
+void read_near(texel_block block, ivec2 place, int level, bool with_ring) {
+  [[unroll]] for (int n = 0; n < near_texels; ++n) {
+    ivec2 at = place - border + near_step(n);
+    bool needed = (n == near_centre || with_ring) && is_written(block, place + near_step(n), level);
+    near_surface[n] = needed ? texelFetch(surface_image, sap_address(at, level), 0) : uvec4(0u);
+    near_light[n] = needed ? texelFetch(light_image, sap_address(at, level), 0) : vec4(0.0);
+    needed = needed && sap_has_second(near_surface[n]);
+    near_surface[near_texels + n] =
+        needed ? texelFetch(second_surface_image, sap_address(at, level), 0) : uvec4(0u);
+    near_light[near_texels + n] =
+        needed ? texelFetch(second_light_image, sap_address(at, level), 0) : vec4(0.0);
+  }
+}
+// Block shape: reads both layers of the coarser texels under the texel.
+void read_corners(ivec2 place, int level, bool there) {
+  [[unroll]] for (int n = 0; n < corner_texels; ++n) {
+    ivec2 at = ((place - 1) >> 1) + ivec2(n % 2, n / 2);
+    bool needed = there && sap_inside(at, level + 1);
+    corner_surface[n] =
+        needed ? texelFetch(coarse_surface_image, sap_address(at, level + 1), 0) : uvec4(0u);
+    corner_scattered[n] =
+        needed ? texelFetch(coarse_scattered_image, sap_address(at, level + 1), 0) : uvec4(0u);
+    needed = needed && has_second_corner(corner_surface[n]);
+    int second = corner_texels + n;
+    corner_surface[second] =
+        needed ? texelFetch(second_coarse_surface_image, sap_address(at, level + 1), 0) : uvec4(0u);
+    corner_scattered[second] =
+        needed ? texelFetch(second_coarse_scattered_image, sap_address(at, level + 1), 0)
+               : uvec4(0u);
+  }
+}
+#endif
+
+// Neighbour n of the texel (0 to 8, row by row): bits of its surface, and its light.
+#ifndef SAP_NO_RING
+int ring_place(sap_place place, int n) {
+  return place.ring + ring_side * near_step(n).y + near_step(n).x;
+}
+uvec4 near_bits(sap_place place, int n) {
+  return texel_shape ? tile_surface[ring_place(place, n)] : near_surface[n];
+}
+vec4 light_near(sap_place place, int level, int n) {
+  if (!texel_shape)
+    return near_light[n];
+  vec4 light = vec4(0.0);
+  if (settings.storage != STORAGE_FULL) {
+    uvec2 bits = tile_light[ring_place(place, n)];
+    light = vec4(unpackHalf2x16(bits.x), unpackHalf2x16(bits.y));
+  } else if (n == near_centre || near_bits(place, n).w != 0u) {
+    light = texelFetch(light_image, sap_address(place.at + near_step(n), level), 0);
+  }
+  return light;
+}
+#if SAP_OWN_LAYERS > 1
+uvec4 second_near_bits(sap_place place, int level, int n) {
+  return texel_shape
+             ? texelFetch(second_surface_image, sap_address(place.at + near_step(n), level), 0)
+             : near_surface[near_texels + n];
+}
+vec4 second_light_near(sap_place place, int level, int n) {
+  return texel_shape
+             ? texelFetch(second_light_image, sap_address(place.at + near_step(n), level), 0)
+             : near_light[near_texels + n];
+}
+#endif
+#endif
+
+// Corner n of the texel (0 to 3, row by row): bits of its surface, and its values.
+int corner_place(sap_place place, int n) { return place.corner + n / 2 * coarse_side + n % 2; }
+uvec4 corner_bits(sap_place place, int n) {
+  return texel_shape ? tile_coarse_surface[corner_place(place, n)] : corner_surface[n];
+}
+uvec4 scattered_at_corner(sap_place place, int n) {
+  return texel_shape ? tile_coarse_scattered[corner_place(place, n)] : corner_scattered[n];
+}
+#if SAP_COARSE_LAYERS > 1
+ivec2 corner_address(sap_place place, int level, int n) {
+  return sap_address(((place.at - 1) >> 1) + ivec2(n % 2, n / 2), level + 1);
+}
+uvec4 second_corner_bits(sap_place place, int level, int n) {
+  return texel_shape ? texelFetch(second_coarse_surface_image, corner_address(place, level, n), 0)
+                     : corner_surface[corner_texels + n];
+}
+uvec4 second_scattered_at_corner(sap_place place, int level, int n) {
+  return texel_shape ? texelFetch(second_coarse_scattered_image, corner_address(place, level, n), 0)
+                     : corner_scattered[corner_texels + n];
+}
+#endif
+
+#endif
