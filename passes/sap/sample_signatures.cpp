@@ -9,13 +9,16 @@ namespace {
 constexpr PassTypeSetting below = setting::per_frame(
     setting::real("below", 0.8, 0, 2, "", "confidence below which a pixel may be sampled"));
 
+constexpr Format before_formats[] = {Format::rgba16f, Format::rgba32f, Format::rg16f};
 constexpr Port tile_error_ports[] = {
     port::sap_scattered,
     port::optional(
         port::sampled("light",
                       "light before scattering: light that scattering did not change counts less; "
                       "unbound: all light counts equally",
-                      port::light_formats)),
+                      before_formats)),
+    port::optional(port::sampled_uint(
+        "surface", "image of level 0, if 'light' is the image of level 0", port::surface_formats)),
     port::material,
     port::importance,
     port::tiles,

@@ -13,11 +13,14 @@ namespace {
 constexpr std::string_view variant_options[] = {"base", "smooth", "half"};
 
 constexpr std::string_view light_doc =
-    "rgb: light; a: fourth root of the surface's area divided by its cross-section";
+    "r, g of the light (the other channels are in the image of the surface); in full storage rgb: "
+    "light, a: fourth root of the surface's area divided by its cross-section";
 constexpr std::string_view surface_doc =
-    "depth in mm (bits of a float); slope x, y (halves); factor on d, fraction of the texel's "
-    "kernel on its "
-    "own surface (halves); profile id in bits 0-7 (0: no surface), bit 8: a second layer exists";
+    "depth in mm (bits of a float; sign: a second layer exists); slope x, y (halves); then bit by "
+    "bit: b of the light (half), fourth root of the surface's area divided by its cross-section "
+    "(11 bits), fraction of the texel's kernel on its own surface (14 bits), factor on d (15 "
+    "bits), "
+    "profile id (8 bits; 0: no surface)";
 constexpr std::string_view scattered_doc =
     "scattered light of this level and coarser levels (3 halves), confidence (half), fraction of "
     "the kernel "
@@ -25,6 +28,7 @@ constexpr std::string_view scattered_doc =
     "confidence (a byte each)";
 
 using port::light_formats;
+using port::sap_light_formats;
 using port::surface_formats;
 
 constexpr PassTypeSetting written_level(double last = sap_level_count - 1) {
@@ -78,13 +82,13 @@ constexpr Port tiles_ports[] = {
 };
 
 constexpr Port written_light(std::string_view name, std::string_view doc = light_doc) {
-  return port::written(name, doc, light_formats);
+  return port::written(name, doc, sap_light_formats);
 }
 constexpr Port written_surface(std::string_view name, std::string_view doc = surface_doc) {
   return port::written_uint(name, doc, surface_formats);
 }
 constexpr Port read_light(std::string_view name, std::string_view doc) {
-  return port::sampled(name, doc, light_formats);
+  return port::sampled(name, doc, sap_light_formats);
 }
 constexpr Port read_surface(std::string_view name, std::string_view doc) {
   return port::sampled_uint(name, doc, surface_formats);
@@ -136,21 +140,24 @@ constexpr std::array level_0{read_light("light", "image of level 0"),
                              read_surface("surface", "image of level 0")};
 constexpr std::array level_1{read_surface("coarse_surface", "image of level 1"),
                              read_surface("coarse_scattered", "image of level 1")};
-constexpr Port written_scattered = written_light(
+constexpr Port written_scattered = port::written(
     "scattered",
-    "rgb: scattered light where there is subsurface, undefined elsewhere; a: confidence");
+    "rgb: scattered light where there is subsurface, undefined elsewhere; a: confidence",
+    light_formats);
 // The last step writes scattered light for other passes, or the work of subsurface.combine and
 // subsurface.export_scattered.
 constexpr std::array last_inputs{
-    port::albedo,
-    port::optional(port::own_texels(read_light(
-        "unscattered", "output of subsurface.export_scattered with leave_scattered; the image "
-                       "bound to 'scattered_light'")))};
+    port::albedo, port::optional(port::own_texels(port::sampled(
+                      "unscattered",
+                      "output of subsurface.export_scattered with leave_scattered; the image "
+                      "bound to 'scattered_light'",
+                      light_formats)))};
 constexpr std::array last_results{
     port::optional(written_scattered), port::optional(port::combined),
-    port::optional(written_light(
+    port::optional(port::written(
         "scattered_light",
-        "scattered light before albedo where 'unscattered' has alpha 0; unchanged elsewhere"))};
+        "scattered light before albedo where 'unscattered' has alpha 0; unchanged elsewhere",
+        light_formats))};
 constexpr std::string_view last_one_of[] = {"scattered", "lighting"};
 constexpr auto gather_ports = join(level_0, level_1, level, last_inputs, last_results);
 constexpr PassTypeSetting gather_settings[] = {variant, storage, setting::texturing,

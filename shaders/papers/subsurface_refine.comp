@@ -25,7 +25,7 @@ void main() {
       count = 0;
     } else {
       uvec2 offset = r2_point(offset_from_hash(pcg3d16(uvec3(pixel, 0u)).xy), frame.frame_index);
-      vec3 sampled = sap_sampled_light(pixel, own, texelFetch(light_image, texel, 0).rgb, offset,
+      vec3 sampled = sap_sampled_light(pixel, own, pixel_light_of_level_0(texel), offset,
                                        count, settings.lod_bias);
       light.rgb = round_to_half(mix(light.rgb, sampled, settings.sample_weight));
     }

@@ -112,7 +112,7 @@ void main() {
       // them.
       uint index = (frame.frame_index >> 2) + (frame.frame_index & 3u) * 0x9e3779u;
       uvec2 offset = r2_point(offset_from_hash(pcg3d16(uvec3(pixel, 0u)).xy), index);
-      vec3 sampled = sap_sampled_light(pixel, own, texelFetch(light_image, texel, 0).rgb, offset,
+      vec3 sampled = sap_sampled_light(pixel, own, pixel_light_of_level_0(texel), offset,
                                        count, settings.lod_bias);
       vec3 found = clamp(sampled / max(light.rgb, vec3(min_light)), vec3(0.0), vec3(largest_kept));
       found = mix(vec3(1.0), found, greaterThan(light.rgb, vec3(min_light)));

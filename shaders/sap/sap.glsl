@@ -30,23 +30,51 @@ struct sap_texel {
   float mass;   // fraction of the texel's own kernel that hit the surface
   uint id;      // profile, 0: no surface
 };
-// Flag next to the id of a texel's first surface: the level has two layers and the texel a second
-// surface. The images of the second layer are valid only at such texels.
-const uint sap_second_bit = 0x100u;
-bool sap_has_second(uvec4 bits) { return (bits.w & sap_second_bit) != 0u; }
 
-uvec4 sap_pack(sap_texel t) {
-  return uvec4(floatBitsToUint(t.depth), packHalf2x16(t.slope), packHalf2x16(vec2(t.reach, t.mass)),
-               t.id);
+// A texel is stored in two images without loss, 20 bytes in total. Its light has four channels: rgb
+// and the fourth root of the surface's area divided by its cross-section (a, from 1 to below 4).
+// The image `light` holds r and g as halves. The image `surface` holds, from the lowest bit:
+//   x: depth (float, not negative). Sign bit: the texel has a second layer
+//   y: slope (halves)
+//   z: light.b (half, 16 bits), light.a (half minus the half 1, 11 bits), 5 low bits of the mass
+//   w: 9 high bits of the mass (a half below 2), reach (a half without its sign, 15 bits), profile
+//      id (8 bits)
+// With the setting `storage` = full, `light` holds all four channels as floats; light.a in
+// `surface` is then sap_light_elsewhere.
+const uint sap_second_bit = 0x80000000u;
+const uint sap_half_1 = 0x3c000000u, sap_light_elsewhere = 0x07ff0000u;
+bool sap_has_second(uvec4 bits) { return (bits.x & sap_second_bit) != 0u; }
+
+// Returns `surface` of a texel with one layer. All values must be representable as halves.
+uvec4 sap_pack(sap_texel t, uint light) {
+  uint halves = packHalf2x16(vec2(t.mass, t.reach)), mass = halves & 0x3fffu;
+  return uvec4(floatBitsToUint(t.depth), packHalf2x16(t.slope), light | mass << 27,
+               mass >> 5 | (halves >> 16) << 9 | t.id << 24);
+}
+// Returns the part of `surface` that holds light; `storage`: value of the setting.
+uint sap_pack_light(vec4 light, bool full) {
+  return full ? sap_light_elsewhere : packHalf2x16(vec2(light.b, max(light.a, 1.0))) - sap_half_1;
 }
 sap_texel sap_unpack(uvec4 bits) {
-  vec2 pair = unpackHalf2x16(bits.z);
-  return sap_texel(uintBitsToFloat(bits.x), unpackHalf2x16(bits.y), pair.x, pair.y, bits.w & 0xffu);
+  float mass = unpackHalf2x16(bits.z >> 27 | (bits.w & 0x1ffu) << 5).x;
+  float reach = unpackHalf2x16(bits.w >> 9 & 0x7fffu).x;
+  return sap_texel(abs(uintBitsToFloat(bits.x)), unpackHalf2x16(bits.y), reach, mass,
+                   bits.w >> 24);
+}
+// Returns light.b and light.a as halves, from `surface`.
+uint sap_light_ba(uvec4 bits) { return (bits.z & 0x07ffffffu) + sap_half_1; }
+// Returns the light of a texel from `surface` and its texel of `light`.
+vec4 sap_light(uvec4 bits, vec4 stored, bool full) {
+  return full ? stored : vec4(stored.rg, unpackHalf2x16(sap_light_ba(bits)));
+}
+// As sap_light, for kernels that do not know `storage`.
+vec4 sap_light(uvec4 bits, vec4 stored) {
+  return sap_light(bits, stored, (bits.z & sap_light_elsewhere) == sap_light_elsewhere);
 }
 
-// Level 0: the bits of a pixel with subsurface but without depth, whose light does not scatter. Mass
-// without an id marks the pixel.
-const uvec4 sap_flat = uvec4(0u, 0u, 0x3c000000u, 0u);
+// Level 0: a pixel with subsurface but without depth, whose light does not scatter. Mass without an
+// id marks the pixel.
+const sap_texel sap_flat = sap_texel(0.0, vec2(0.0), 0.0, 1.0, 0u);
 bool sap_has_subsurface(sap_texel t) { return t.mass > 0.0; }
 
 // Values that a level passes to the finer one: light of its own and coarser levels, the fraction of

@@ -44,8 +44,6 @@ struct sap_parent {
 };
 const sap_texel no_texel = sap_texel(0.0, vec2(0.0), 0.0, 0.0, 0u);
 
-vec4 stored(vec4 light) { return settings.storage == STORAGE_FULL ? light : round_to_half(light); }
-
 // The parents of a block share children.
 const int side = block_width * 2 + children_across - 2;
 int shared_child(int parent, int child) {
@@ -55,9 +53,12 @@ int shared_child(int parent, int child) {
 
 #ifndef SAP_BOX
 #ifndef SAP_WINDOW
-// Return the surface and light of a texel of the finer level at an address in its image.
+// Return the surface and light of a texel of the finer level at an address in its image. `bits`:
+// its surface.
 uvec4 finer_surface(ivec2 address, int finer) { return texelFetch(surface_image, address, 0); }
-vec4 finer_light(ivec2 address, int finer) { return texelFetch(light_image, address, 0); }
+vec4 finer_light(ivec2 address, int finer, uvec4 bits) {
+  return sap_light(bits, texelFetch(light_image, address, 0), settings.storage == STORAGE_FULL);
+}
 #ifdef SAP_SECOND
 bool finer_has_second(uvec4 bits, int finer) {
   return sap_has_second(bits) && has_second_surface() && has_second_light();
@@ -65,8 +66,9 @@ bool finer_has_second(uvec4 bits, int finer) {
 uvec4 second_finer_surface(ivec2 address, int finer) {
   return texelFetch(second_surface_image, address, 0);
 }
-vec4 second_finer_light(ivec2 address, int finer) {
-  return texelFetch(second_light_image, address, 0);
+vec4 second_finer_light(ivec2 address, int finer, uvec4 bits) {
+  return sap_light(bits, texelFetch(second_light_image, address, 0),
+                   settings.storage == STORAGE_FULL);
 }
 #endif
 #endif
@@ -75,10 +77,10 @@ uvec4 block_surface[side * side];
 vec4 block_light[side * side];
 
 // Children of the group's tile, in rows with the even columns first: invocations next to each other
-// read words next to each other. Light is kept as halves, which is exact unless `storage` is full.
+// read words next to each other.
 const int tile_side = 18;
 shared uvec4 tile_surface[texel_shape ? tile_side * tile_side : 1];
-shared uvec2 tile_light[texel_shape ? tile_side * tile_side : 1];
+shared uint tile_light[texel_shape ? tile_side * tile_side : 1]; // r, g unless `storage` is full
 
 int place_in_tile(int x, int y) { return y * tile_side + (x >> 1) + tile_side / 2 * (x & 1); }
 int place_of_child(sap_parent parent, int c) {
@@ -103,11 +105,11 @@ void read_tile(texel_block block, int finer) {
     vec4 light = vec4(0.0);
     if (child_written(block, at, finer)) {
       bits = finer_surface(sap_address(at, finer), finer);
-      light = finer_light(sap_address(at, finer), finer);
+      light = finer_light(sap_address(at, finer), finer, bits);
     }
     int place = place_in_tile(x, y);
     tile_surface[place] = bits;
-    tile_light[place] = uvec2(packHalf2x16(light.rg), packHalf2x16(light.ba));
+    tile_light[place] = packHalf2x16(light.rg);
   }
   barrier();
 }
@@ -117,7 +119,8 @@ void read_block(texel_block block, ivec2 first, int finer) {
     ivec2 at = 2 * first - 1 + ivec2(i % side, i / side);
     bool needed = child_written(block, at, finer);
     block_surface[i] = needed ? finer_surface(sap_address(at, finer), finer) : uvec4(0u);
-    block_light[i] = needed ? finer_light(sap_address(at, finer), finer) : vec4(0.0);
+    block_light[i] =
+        needed ? finer_light(sap_address(at, finer), finer, block_surface[i]) : vec4(0.0);
   }
 }
 // Prepares the children of parent k of the block.
@@ -128,13 +131,13 @@ sap_parent take_parent(texel_block block, int k, int finer) {
   if (texel_shape) {
     parent.base = place_in_tile(2 * in_tile.x, 2 * in_tile.y);
     [[unroll]] for (int c = 0; c < children_a_layer; ++c)
-      flags |= tile_surface[place_of_child(parent, c)].w;
+      flags |= tile_surface[place_of_child(parent, c)].x;
   } else {
     [[unroll]] for (int c = 0; c < children_a_layer; ++c) {
       int i = shared_child(k, c);
       children[c] = sap_unpack(block_surface[i]);
       child_light[c] = block_light[i];
-      flags |= block_surface[i].w;
+      flags |= block_surface[i].x;
     }
   }
   parent.two = (flags & sap_second_bit) != 0u;
@@ -163,15 +166,18 @@ vec4 light_of(sap_parent parent, int c, uint id) {
 #ifndef SAP_BOX
   if (texel_shape) {
     vec4 light = vec4(0.0);
+    int place = place_of_child(parent, c);
+    ivec2 address = address_of_child(parent, c);
     if (c < children_a_layer && settings.storage != STORAGE_FULL) {
-      uvec2 bits = tile_light[place_of_child(parent, c)];
-      light = vec4(unpackHalf2x16(bits.x), unpackHalf2x16(bits.y));
+      light = vec4(unpackHalf2x16(tile_light[place]),
+                   unpackHalf2x16(sap_light_ba(tile_surface[place])));
     } else if (id != 0u) {
 #ifdef SAP_SECOND
       if (c >= children_a_layer)
-        return second_finer_light(address_of_child(parent, c), parent.finer);
+        return second_finer_light(address, parent.finer,
+                                  second_finer_surface(address, parent.finer));
 #endif
-      light = finer_light(address_of_child(parent, c), parent.finer);
+      light = finer_light(address, parent.finer, tile_surface[place]);
     }
     return light;
   }
@@ -360,12 +366,13 @@ sap_layer reduce(sap_parent parent, int layers, sap_texel before) {
   add_children(parent, layers, seed, before, sum);
   layer.remains = sum.remains;
   if (sum.total > sap_negligible) {
-    layer.light = vec4(sum.light / sum.total, sum.total / sum.mass);
+    layer.light = sap_stored(vec4(sum.light / sum.total, sum.total / sum.mass));
     vec3 rounded =
         round_to_half(vec3(sum.mean_slope / sum.total_flat, sum.mean_reach / sum.total_flat));
     layer.bits = sap_pack(
         sap_texel(max(sum.mean_depth / sum.total_flat, nearest_fraction * seed.depth), rounded.xy,
-                  rounded.z, round_to_half(min(sum.mass / sum.all_weight, 1.0)), seed.id));
+                  rounded.z, round_to_half(min(sum.mass / sum.all_weight, 1.0)), seed.id),
+        sap_pack_light(layer.light, settings.storage == STORAGE_FULL));
   }
   return layer;
 }

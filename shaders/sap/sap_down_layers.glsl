@@ -18,7 +18,7 @@ void compute_both(sap_parent parent, int level, sap_layer first, bool computes) 
     if (index == 0) {
       first = layer;
     } else if (layer.bits.w != 0u) {
-      first.bits.w |= sap_second_bit;
+      first.bits.x |= sap_second_bit;
       store_layer(parent, level, true, layer);
     }
   } while (++index < count);

@@ -80,7 +80,7 @@ void read_into_ring(texel_block block, ivec2 offset, int level, bool needed) {
   }
   int i = (offset.y + 1) * ring_side + offset.x + 1;
   tile_surface[i] = bits;
-  tile_light[i] = uvec2(packHalf2x16(light.rg), packHalf2x16(light.ba));
+  tile_light[i] = uvec2(packHalf2x16(light.rg), sap_light_ba(bits));
 }
 // Texel i of the ring around a tile, as an offset from the tile: the row above, the row below, then
 // both columns.
@@ -106,8 +106,10 @@ void read_ring(texel_block block, int level, bool with_ring) {
       bool needed = (inner || with_ring) && is_written(block, place, level);
       ring_surface[i] =
           needed ? texelFetch(surface_image, sap_address(place - border, level), 0) : uvec4(0u);
-      ring_light[i] =
-          needed ? texelFetch(light_image, sap_address(place - border, level), 0) : vec4(0.0);
+      ring_light[i] = sap_light(
+          ring_surface[i],
+          needed ? texelFetch(light_image, sap_address(place - border, level), 0) : vec4(0.0),
+          settings.storage == STORAGE_FULL);
     }
   }
 }
@@ -166,7 +168,7 @@ sap_place place_of(texel_block block, int k) {
 }
 
 #ifndef SAP_NO_RING
-// Selects the neighbourhood of texel k of the block. Returns the union of its surface bits.
+// Selects the neighbourhood of texel k of the block. Returns the union of the words with flags.
 uint take_near(int k) {
   uint bits = 0u;
   if (!texel_shape) {
@@ -175,13 +177,13 @@ uint take_near(int k) {
       int i = at.y * block_ring_width + at.x;
       near_surface[n] = ring_surface[i];
       near_light[n] = ring_light[i];
-      bits |= ring_surface[i].w;
+      bits |= ring_surface[i].x;
     }
   }
   return bits;
 }
 #endif
-// Selects the coarser texels under texel k of the block. Returns the union of their surface bits.
+// Selects the coarser texels under texel k of the block. Returns the union of the words with flags.
 uint take_corners(int k) {
   uint bits = 0u;
   if (!texel_shape) {
@@ -192,7 +194,7 @@ uint take_corners(int k) {
               first.x + n % 2;
       corner_surface[n] = coarse_surface[i];
       corner_scattered[n] = coarse_scattered[i];
-      bits |= coarse_surface[i].w;
+      bits |= coarse_surface[i].x;
     }
   }
   return bits;
@@ -205,12 +207,16 @@ void read_near(texel_block block, ivec2 place, int level, bool with_ring) {
     ivec2 at = place - border + near_step(n);
     bool needed = (n == near_centre || with_ring) && is_written(block, place + near_step(n), level);
     near_surface[n] = needed ? texelFetch(surface_image, sap_address(at, level), 0) : uvec4(0u);
-    near_light[n] = needed ? texelFetch(light_image, sap_address(at, level), 0) : vec4(0.0);
+    bool full = settings.storage == STORAGE_FULL;
+    near_light[n] =
+        sap_light(near_surface[n],
+                  needed ? texelFetch(light_image, sap_address(at, level), 0) : vec4(0.0), full);
     needed = needed && sap_has_second(near_surface[n]);
     near_surface[near_texels + n] =
         needed ? texelFetch(second_surface_image, sap_address(at, level), 0) : uvec4(0u);
-    near_light[near_texels + n] =
-        needed ? texelFetch(second_light_image, sap_address(at, level), 0) : vec4(0.0);
+    near_light[near_texels + n] = sap_light(
+        near_surface[near_texels + n],
+        needed ? texelFetch(second_light_image, sap_address(at, level), 0) : vec4(0.0), full);
   }
 }
 // Block shape: reads both layers of the coarser texels under the texel.
@@ -261,7 +267,10 @@ uvec4 second_near_bits(sap_place place, int level, int n) {
 }
 vec4 second_light_near(sap_place place, int level, int n) {
   return texel_shape
-             ? texelFetch(second_light_image, sap_address(place.at + near_step(n), level), 0)
+             ? sap_light(second_near_bits(place, level, n),
+                         texelFetch(second_light_image,
+                                    sap_address(place.at + near_step(n), level), 0),
+                         settings.storage == STORAGE_FULL)
              : near_light[near_texels + n];
 }
 #endif

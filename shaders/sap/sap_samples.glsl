@@ -24,14 +24,18 @@ uvec4 level_surface(int level, ivec2 at) {
   default: return texelFetch(surface_5_image, at, 0);
   }
 }
-vec3 level_light(int level, ivec2 at) {
+vec4 level_light(int level, ivec2 at) {
   switch (level) {
-  case 1: return texelFetch(light_1_image, at, 0).rgb;
-  case 2: return texelFetch(light_2_image, at, 0).rgb;
-  case 3: return texelFetch(light_3_image, at, 0).rgb;
-  case 4: return texelFetch(light_4_image, at, 0).rgb;
-  default: return texelFetch(light_5_image, at, 0).rgb;
+  case 1: return texelFetch(light_1_image, at, 0);
+  case 2: return texelFetch(light_2_image, at, 0);
+  case 3: return texelFetch(light_3_image, at, 0);
+  case 4: return texelFetch(light_4_image, at, 0);
+  default: return texelFetch(light_5_image, at, 0);
   }
+}
+// Returns the light of a pixel from level 0.
+vec3 pixel_light_of_level_0(ivec2 texel) {
+  return sap_light(texelFetch(surface_image, texel, 0), texelFetch(light_image, texel, 0)).rgb;
 }
 
 // Returns the area of a pixel's patch divided by the area of the pixel's cross-section: 1 / cos of
@@ -58,15 +62,16 @@ vec3 sample_light(ivec2 q, vec2 at, sap_texel tap, float lod) {
     ivec2 texel = ivec2(floor((at + 0.5) * exp2(-float(level))));
     if (sap_inside(texel, level)) {
       ivec2 address = sap_address(texel, level);
-      sap_texel mean = sap_unpack(level_surface(level, address));
+      uvec4 bits = level_surface(level, address);
+      sap_texel mean = sap_unpack(bits);
       vec2 offset = (vec2(texel) + 0.5) * float(1 << level) - 0.5 - vec2(q);
       float off = abs(mean.depth - tap.depth - sap_rise(tap.depth, tap.slope, offset));
       if (mean.id == tap.id &&
           off < on_surface * sap_sigma * float(1 << level) * sap_footprint(tap.depth))
-        return level_light(level, address);
+        return sap_light(bits, level_light(level, address)).rgb;
     }
   }
-  return texelFetch(light_image, texel_of(q), 0).rgb;
+  return pixel_light_of_level_0(texel_of(q));
 }
 
 // Returns the self-normalised mean of `count` samples. Light within the direct radius is the

@@ -1,5 +1,7 @@
 // Iteration over the listed 8x8 tiles of a level of the surface-aware pyramid. Include after
-// bindings with `level_tiles`, and after `block_width` and `block_height`. Kernels have two shapes:
+// bindings with `level_tiles` and the setting `storage`, and after `block_width` and
+// `block_height`.
+// Kernels have two shapes:
 // - Texel shape, for GPUs: one texel per invocation and one tile per group. Texels that the group
 //   shares are in shared memory.
 // - Block shape, for drivers on the CPU: one block of texels per invocation. A block reads the
@@ -7,6 +9,8 @@
 #ifndef DERMIS_SAP_TILES_GLSL
 #define DERMIS_SAP_TILES_GLSL
 
+#include "common/half.glsl"
+#include "options.glsl"
 #include "sap/sap_lists.glsl"
 #include "common/shape.glsl"
 
@@ -60,6 +64,11 @@ bool listed_block(int level, out texel_block block) {
   block = block_of_entry(level_tiles_data[list.x + index],
                          int(gl_LocalInvocationIndex) & (invocations_per_tile - 1));
   return true;
+}
+
+// Rounds light as the setting `storage` says.
+vec4 sap_stored(vec4 light) {
+  return settings.storage == STORAGE_FULL ? light : round_to_half(light);
 }
 
 // Returns the position of texel k in the block.

@@ -84,8 +84,10 @@ vec4 level_light(ivec2 at, int window, int layer) {
   if (window > 0)
     return light_from_bits(texelFetch(
         levels_image, place_in_levels(address, window - 1, light_in_levels + layer), 0));
-  return layer == 0 ? texelFetch(light_image, address, 0)
-                    : texelFetch(second_light_image, address, 0);
+  return sap_light(level_surface(at, 0, layer),
+                   layer == 0 ? texelFetch(light_image, address, 0)
+                              : texelFetch(second_light_image, address, 0),
+                   settings.storage == STORAGE_FULL);
 }
 
 // Returns whether a texel of a window or of its ring was written.

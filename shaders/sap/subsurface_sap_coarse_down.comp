@@ -10,6 +10,7 @@
 #define DERMIS_ONE_SHAPE
 #define SAP_SECOND
 #define SAP_WINDOW
+#include "sap/sap.glsl"
 #include "sap/sap_levels.glsl"
 
 ivec3 written_place(ivec2 address, int level, int content) {
@@ -21,13 +22,13 @@ uvec4 finer_surface(ivec2 address, int finer) {
     return texelFetch(surface_image, address, 0);
   return imageLoad(levels_image, written_place(address, finer, surface_in_levels));
 }
-vec4 finer_light(ivec2 address, int finer) {
+vec4 finer_light(ivec2 address, int finer, uvec4 bits) {
   if (finer < settings.level)
-    return texelFetch(light_image, address, 0);
+    return sap_light(bits, texelFetch(light_image, address, 0), settings.storage == STORAGE_FULL);
   return light_from_bits(imageLoad(levels_image, written_place(address, finer, light_in_levels)));
 }
 bool finer_has_second(uvec4 bits, int finer) {
-  return (bits.w & 0x100u) != 0u &&
+  return sap_has_second(bits) &&
          (finer >= settings.level || has_second_surface() && has_second_light());
 }
 uvec4 second_finer_surface(ivec2 address, int finer) {
@@ -35,9 +36,10 @@ uvec4 second_finer_surface(ivec2 address, int finer) {
     return texelFetch(second_surface_image, address, 0);
   return imageLoad(levels_image, written_place(address, finer, surface_in_levels + 1));
 }
-vec4 second_finer_light(ivec2 address, int finer) {
+vec4 second_finer_light(ivec2 address, int finer, uvec4 bits) {
   if (finer < settings.level)
-    return texelFetch(second_light_image, address, 0);
+    return sap_light(bits, texelFetch(second_light_image, address, 0),
+                     settings.storage == STORAGE_FULL);
   return light_from_bits(
       imageLoad(levels_image, written_place(address, finer, light_in_levels + 1)));
 }
@@ -45,13 +47,12 @@ vec4 second_finer_light(ivec2 address, int finer) {
 
 void store_layer(sap_parent parent, int level, bool second, sap_layer layer) {
   ivec2 address = sap_address(parent.at, level);
-  vec4 light = stored(layer.light);
   int offset = second ? 1 : 0;
   imageStore(levels_image, written_place(address, level, surface_in_levels + offset), layer.bits);
   imageStore(levels_image, written_place(address, level, light_in_levels + offset),
-             light_to_bits(light));
+             light_to_bits(layer.light));
   if (has_level_light() && !second && level == settings.level)
-    imageStore(level_light_image, address, light);
+    imageStore(level_light_image, address, layer.light);
 }
 #include "sap/sap_down_layers.glsl"
 #include "sap/sap_layered_texels.glsl"

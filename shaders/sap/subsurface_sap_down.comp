@@ -21,7 +21,7 @@ void main() {
     if (!sap_inside(parent.at, level))
       continue;
     sap_layer layer = reduce(parent, 1, no_texel);
-    imageStore(coarse_light_image, sap_address(parent.at, level), stored(layer.light));
+    imageStore(coarse_light_image, sap_address(parent.at, level), layer.light);
     imageStore(coarse_surface_image, sap_address(parent.at, level), layer.bits);
   }
 }

@@ -20,12 +20,12 @@ sap_parent read_children(texel_block block, int k, int finer) {
     bool needed = child_written(block, 2 * parent.at - 1 + ivec2(c & 3, c >> 2), finer);
     uvec4 bits = needed ? texelFetch(surface_image, address, 0) : uvec4(0u);
     children[c] = sap_unpack(bits);
-    child_light[c] = needed ? texelFetch(light_image, address, 0) : vec4(0.0);
+    child_light[c] = needed ? finer_light(address, finer, bits) : vec4(0.0);
     needed = needed && finer_has_second(bits, finer);
     int second = children_a_layer + c;
-    children[second] =
-        sap_unpack(needed ? texelFetch(second_surface_image, address, 0) : uvec4(0u));
-    child_light[second] = needed ? texelFetch(second_light_image, address, 0) : vec4(0.0);
+    bits = needed ? second_finer_surface(address, finer) : uvec4(0u);
+    children[second] = sap_unpack(bits);
+    child_light[second] = needed ? second_finer_light(address, finer, bits) : vec4(0.0);
   }
   return parent;
 }
@@ -33,10 +33,10 @@ sap_parent read_children(texel_block block, int k, int finer) {
 void store_layer(sap_parent parent, int level, bool second, sap_layer layer) {
   ivec2 address = sap_address(parent.at, level);
   if (second) {
-    imageStore(second_coarse_light_image, address, stored(layer.light));
+    imageStore(second_coarse_light_image, address, layer.light);
     imageStore(second_coarse_surface_image, address, layer.bits);
   } else {
-    imageStore(coarse_light_image, address, stored(layer.light));
+    imageStore(coarse_light_image, address, layer.light);
     imageStore(coarse_surface_image, address, layer.bits);
   }
 }

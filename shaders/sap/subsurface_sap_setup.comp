@@ -67,17 +67,19 @@ void main() {
     vec4 light = vec4(0.0);
     uvec4 bits = uvec4(0u);
     if (id != 0u) {
-      bits = sap_flat;
+      sap_texel own = sap_flat;
       light.rgb =
           pixel_light(lighting_image, albedo_image, has_albedo(), settings.texturing, texel);
       if (depth > 0.0) {
         patch_neighbours around = patch_neighbours(
             vec2(depth_of_profile(here - 1, id), depth_of_profile(here - ring_width, id)),
             vec2(depth_of_profile(here + 1, id), depth_of_profile(here + ring_width, id)));
-        bits = sap_pack(sap_pixel_surface(pixel, id, depth, around, light.a));
+        own = sap_pixel_surface(pixel, id, depth, around, light.a);
       }
+      light = sap_stored(light);
+      bits = sap_pack(own, sap_pack_light(light, settings.storage == STORAGE_FULL));
     }
-    imageStore(light_image, texel, settings.storage == STORAGE_FULL ? light : round_to_half(light));
+    imageStore(light_image, texel, light);
     imageStore(surface_image, texel, bits);
   }
 }

@@ -70,7 +70,7 @@ void main() {
       }
     }
     sap_layer layer = reduce(parent, 1, no_texel);
-    imageStore(coarse_light_image, sap_address(parent.at, 1), stored(layer.light));
+    imageStore(coarse_light_image, sap_address(parent.at, 1), layer.light);
     imageStore(coarse_surface_image, sap_address(parent.at, 1), layer.bits);
   }
 }

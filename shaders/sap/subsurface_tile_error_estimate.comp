@@ -8,6 +8,7 @@
 #include "sap/subsurface_tile_error_estimate.bindings.glsl"
 #include "common/environment.glsl"
 #include "common/tiles.glsl"
+#include "sap/sap.glsl"
 
 const float error_steps = 1024.0; // steps for the error of one pixel under exposed light of 1
 
@@ -28,9 +29,12 @@ void main() {
       float missing_confidence =
           clamp((settings.below - light.a) / max(settings.below, 1e-6), 0.0, 1.0);
       float pixel_error = dot(light.rgb, luminance_weights);
-      if (has_light())
-        pixel_error =
-            abs(pixel_error - dot(texelFetch(light_image, texel, 0).rgb, luminance_weights));
+      if (has_light()) {
+        vec4 before = texelFetch(light_image, texel, 0);
+        if (has_surface())
+          before = sap_light(texelFetch(surface_image, texel, 0), before);
+        pixel_error = abs(pixel_error - dot(before.rgb, luminance_weights));
+      }
       float exposed_error = clamp(pixel_error * frame.exposure, 0.0, 4.0);
       float importance =
           has_importance() ? clamp(texelFetch(importance_image, texel, 0).r, 0.0, 1.0) : 1.0;

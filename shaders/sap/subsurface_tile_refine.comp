@@ -39,7 +39,7 @@ void main() {
   float fraction = settings.sample_weight * edge_weight(sampled_tiles, pixel, ramp_px) *
                    clamp((settings.below - light.a) / soft, 0.0, 1.0);
   uvec2 offset = r2_point(offset_from_hash(pcg3d16(uvec3(pixel, 0u)).xy), frame.frame_index);
-  vec3 sampled = sap_sampled_light(pixel, own, texelFetch(light_image, texel, 0).rgb, offset, count,
+  vec3 sampled = sap_sampled_light(pixel, own, pixel_light_of_level_0(texel), offset, count,
                                    settings.lod_bias);
   imageStore(scattered_image, texel,
              vec4(round_to_half(mix(light.rgb, sampled, fraction)), light.a));

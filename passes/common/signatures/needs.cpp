@@ -58,6 +58,7 @@ constexpr PortNeed needs[] = {
     {"slope", pixel},
     {"surface", pixel},
     {"scattered", pixel},
+    {"scattered_light", pixel},
     {"unscattered", pixel},
     {"blurred", pixel},
     {"view_depth", pixel},

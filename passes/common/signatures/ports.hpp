@@ -32,6 +32,8 @@ inline constexpr Format way_formats[] = {Format::rg16f, Format::rg32f, Format::r
                                          Format::rgba32f};
 // Images that a kernel loads and writes.
 inline constexpr Format updated_formats[] = {Format::rgba16f};
+// A level of the surface-aware pyramid: `surface` holds the channels that rg16f lacks.
+inline constexpr Format sap_light_formats[] = {Format::rg16f, Format::rgba32f};
 inline constexpr Format surface_formats[] = {Format::rgba32_uint};
 inline constexpr Format importance_formats[] = {Format::r8_unorm, Format::r16f, Format::r32f};
 
@@ -172,7 +174,7 @@ inline constexpr std::array levels_1_to_8{level("level_1"), level("level_2"), le
 // Levels 0 to 5 of the surface-aware pyramid.
 inline constexpr std::string_view sap_level_doc = "output of subsurface.sap_down";
 constexpr Port sap_light(std::string_view name) {
-  return sampled(name, sap_level_doc, light_formats);
+  return sampled(name, sap_level_doc, sap_light_formats);
 }
 constexpr Port sap_surface(std::string_view name) {
   return sampled_uint(name, sap_level_doc, surface_formats);
