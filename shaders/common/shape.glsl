@@ -4,14 +4,6 @@
 #ifndef DERMIS_SHAPE_GLSL
 #define DERMIS_SHAPE_GLSL
 
-#ifdef DERMIS_ONE_SHAPE
-// The kernel has the texel shape on every device. The constants say how lists are divided, and the
-// number of invocations of a group.
-layout(constant_id = 0) const bool texel_lists = true;
-const bool texel_shape = true;
-layout(local_size_x = 64, local_size_x_id = 3) in;
-#else
 layout(constant_id = 0) const bool texel_shape = true;
-#endif
 
 #endif

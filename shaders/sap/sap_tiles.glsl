@@ -12,11 +12,13 @@
 #include "common/half.glsl"
 #include "options.glsl"
 #include "sap/sap_lists.glsl"
+#ifdef DERMIS_ONE_SHAPE
+#include "sap/one_shape.glsl"
+#else
 #include "common/shape.glsl"
-
-#ifndef DERMIS_ONE_SHAPE
 layout(local_size_x = 64, local_size_y = 1, local_size_z = 1) in;
 #endif
+
 const uint group_lanes = gl_WorkGroupSize.x;
 
 const int blocks_across = 8 / block_width;

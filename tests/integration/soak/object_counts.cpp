@@ -110,6 +110,7 @@ ObjectCounts object_counts() {
                      names[kind]);
   }
   out.pipelines = made[pass_type_pipeline];
+  out.alive_pipelines = made[pass_type_pipeline] - gone[pass_type_pipeline];
   if (out.text.empty()) out.text = "none";
   return out;
 }

@@ -12,7 +12,8 @@ namespace dermis::abi_test {
 struct ObjectCounts {
   uint64_t made = 0, alive = 0; // Counts of all types.
   uint64_t pipelines = 0;       // Number of creations.
-  std::string text;             // "3 images, 2 pipelines" for live objects; "none".
+  uint64_t alive_pipelines = 0;
+  std::string text; // "3 images, 2 pipelines" for live objects; "none".
 };
 
 // Returns a loader for contexts of `host`, whose calls are counted from now on. One host at a time;

@@ -4,6 +4,7 @@
 // DERMIS_SOAK_FRAMES: number of frames (300; ./test.sh --full: 20 times 5,000). DERMIS_SOAK_SEED:
 // seed. DERMIS_SOAK_VALIDATION=0: without the validation layer.
 
+#include "framegraph/vulkan/kernel_store.hpp"
 #include "tests/integration/abi/sources.hpp"
 #include "tests/integration/soak/memory_counts.hpp"
 #include "tests/integration/soak/object_counts.hpp"
@@ -393,8 +394,9 @@ struct Soak : DermisTest {
 struct Rest {
   int64_t heap_blocks = 0, heap_bytes = 0, device_blocks = 0;
   ObjectCounts objects;
-  // Each kernel has a pipeline, a pipeline layout and a set layout.
-  uint64_t kernels() const { return objects.alive / 3; }
+  // Each kernel has a pipeline layout, a set layout, and a pipeline for each use of its constants.
+  uint64_t pipelines() const { return objects.alive_pipelines; }
+  uint64_t kernels() const { return (objects.alive - pipelines()) / 2; }
   // Only reported: drivers keep memory of each compiled kernel (null_soak_test.cpp checks process
   // memory).
   ProcessMemory process;
@@ -408,8 +410,8 @@ TEST_F(Soak, ManyFrames_NothingAccumulates) {
   const uint64_t rounds = std::max<uint64_t>(2, frames / frames_a_round);
   const std::vector<StageDesc> descs = soak_stages();
   std::vector<Rest> rests;
-  uint32_t rounds_alike = 0;          // Rounds without a new kernel, whose memory is compared.
-  constexpr uint64_t more_rounds = 4; // Additional rounds until one has no new kernel.
+  uint32_t rounds_alike = 0;          // Rounds without a new pipeline, whose memory is compared.
+  constexpr uint64_t more_rounds = 6; // Additional rounds until one has no new pipeline.
   for (uint64_t round = 0; round < rounds + (rounds_alike == 0 ? more_rounds : 0) && !HasFailure();
        ++round) {
     draw_sizes();
@@ -429,11 +431,12 @@ TEST_F(Soak, ManyFrames_NothingAccumulates) {
                rest.process.heap >> 20, rest.process.compiled >> 20);
     std::fflush(stdout);
     EXPECT_EQ(rest.objects.text,
-              fmt::format("{0} DescriptorSetLayouts, {0} PipelineLayouts, {0} Pipelines",
-                          rest.kernels()));
+              fmt::format("{0} DescriptorSetLayouts, {0} PipelineLayouts, {1} Pipelines",
+                          rest.kernels(), rest.pipelines()));
     EXPECT_LE(rest.kernels(), max_kernels);
-    const auto more = static_cast<int64_t>(rest.kernels() - before.kernels());
-    EXPECT_GE(more, 0);
+    EXPECT_LE(rest.pipelines(), rest.kernels() * vulkan::KernelStore::max_unused);
+    EXPECT_GE(rest.kernels(), before.kernels());
+    const auto more = static_cast<int64_t>(rest.objects.pipelines - before.objects.pipelines);
     if (more == 0) {
       EXPECT_EQ(rest.heap_blocks, before.heap_blocks);
       EXPECT_EQ(rest.heap_bytes, before.heap_bytes);

@@ -21,7 +21,7 @@ std::vector<StageDesc> soak_stages() {
         {"variant", {"\"base\"", "\"smooth\""}},
         {"taps", {"\"11\"", "\"17\"", "\"25\""}},
         {"below", {"0", "0.8", "2"}},
-        {"share", {"0", "0.5", "1"}},
+        {"sample_weight", {"0", "0.5", "1"}},
         {"lod_bias", {"-8", "-1.5", "4"}}}},
       {"residual",
        "sap_residual",

@@ -1,0 +1,10 @@
+// Takes the place of common/shape.glsl in kernels that have the texel shape on every device. The
+// constants say how lists are divided, and the number of invocations of a group.
+#ifndef DERMIS_ONE_SHAPE_GLSL
+#define DERMIS_ONE_SHAPE_GLSL
+
+layout(constant_id = 0) const bool texel_lists = true;
+const bool texel_shape = true;
+layout(local_size_x = 64, local_size_x_id = 3) in;
+
+#endif
