@@ -2,6 +2,7 @@
 
 #include "tests/integration/tools/command_fixture.hpp"
 
+#include <filesystem>
 #include <fmt/format.h>
 
 namespace dermis::test {
@@ -10,7 +11,7 @@ namespace {
 struct CoarseCase {
   const char* name;
   const char* graph; // file below configs/graphs
-  const char* scene;
+  const char* scene; // file below configs/scenes, without ".json"
   const char* size;
   std::vector<std::string> more = {};
   bool full = false; // storage
@@ -98,13 +99,24 @@ std::string separated(std::string text, const std::string& storage) {
 
 class CoarseLevels : public CommandTest, public ::testing::WithParamInterface<CoarseCase> {
 protected:
-  void render(const std::string& graph, const std::string& shape, const std::string& out,
-              const std::vector<std::string>& overlay = {}) const {
-    const CoarseCase& one = GetParam();
-    std::vector<std::string> words{"render",    one.scene, "--size",   one.size,
-                                   "-g",        graph,     "--out",    path(out),
-                                   "--frames",  "2",       "--subset", "0",
-                                   "--kernels", shape,     "--quiet",  "--deterministic"};
+  // Writes a scene whose light scatters so far that coarse levels matter, and returns its path.
+  std::string wide_scene(const std::string& name) const {
+    std::string text = text_of("configs/scenes/" + name + ".json");
+    const std::string folder = "../profiles/";
+    for (size_t at = text.find(folder); at != std::string::npos; at = text.find(folder))
+      text.erase(at, folder.size());
+    for (const char* profile : {"skin", "jade", "wax"})
+      write(std::string(profile) + ".json",
+            R"({ "dermis_profile": 1, "name": "wide", "dmfp_mm": [30, 15, 6],
+                  "albedo": [0.44, 0.22, 0.13], "source": "test" })");
+    return write(name + ".json", text);
+  }
+  void render(const CoarseCase& one, const std::string& graph, const std::string& shape,
+              const std::string& out, const std::vector<std::string>& overlay = {}) const {
+    const std::string scene = wide_scene(one.scene);
+    std::vector<std::string> words{
+        "render",   scene, "--size",   one.size, "-g",        graph, "--out",   path(out),
+        "--frames", "2",   "--subset", "0",      "--kernels", shape, "--quiet", "--deterministic"};
     words.insert(words.end(), one.more.begin(), one.more.end());
     words.insert(words.end(), overlay.begin(), overlay.end());
     RunOptions options;
@@ -127,9 +139,10 @@ TEST_P(CoarseLevels, EqualOnePassPerLevel) {
   const auto overlays = [&](const std::string& file) {
     return full ? std::vector<std::string>{"--overlay", file} : std::vector<std::string>{};
   };
-  render(path("separate.json"), "cpu", "separate", overlays(path("separate_full.json")));
+  render(GetParam(), path("separate.json"), "cpu", "separate",
+         overlays(path("separate_full.json")));
   for (const char* shape : {"cpu", "gpu"}) {
-    render(graph, shape, shape, overlays(overlay));
+    render(GetParam(), graph, shape, shape, overlays(overlay));
     size_t pictures = 0;
     for (const std::string& file : files("separate")) {
       if (!file.ends_with(".exr")) continue;
@@ -141,19 +154,45 @@ TEST_P(CoarseLevels, EqualOnePassPerLevel) {
   }
 }
 
-constexpr const char* bust = "configs/scenes/bust.json";
 const CoarseCase coarse_cases[] = {
-    {"two_layers", "sap.json", "configs/scenes/dynamic.json", "333x187"},
-    {"base", "sap.json", "configs/scenes/dolly.json", "96x64", {"--set", "variant=base"}},
-    {"full_storage", "sap.json", bust, "96x64", {}, true},
-    {"samples_read_level_5", "papers/sap_residual.json", bust, "161x97"},
-    {"one_texel_per_level", "sap.json", bust, "1x1"},
-    {"smaller_than_two_tiles", "sap.json", bust, "9x7"},
-    {"narrow", "sap.json", bust, "2x259"},
-    {"wide", "sap.json", bust, "513x3"},
+    {"two_layers", "sap.json", "dynamic", "333x187"},
+    {"base", "sap.json", "dolly", "96x64", {"--set", "variant=base"}},
+    {"full_storage", "sap.json", "bust", "96x64", {}, true},
+    {"samples_read_level_5", "papers/sap_residual.json", "bust", "161x97"},
+    {"one_texel_per_level", "sap.json", "bust", "1x1"},
+    {"smaller_than_two_tiles", "sap.json", "bust", "9x7"},
+    {"narrow", "sap.json", "bust", "2x259"},
+    {"wide", "sap.json", "bust", "513x3"},
 };
 INSTANTIATE_TEST_SUITE_P(Graphs, CoarseLevels, ::testing::ValuesIn(coarse_cases),
                          [](const auto& one) { return std::string(one.param.name); });
+
+using BrokenCoarseLevels = CoarseLevels;
+
+// Without this test, equal pictures could be pictures that do not depend on coarse levels.
+TEST_F(BrokenCoarseLevels, ChangePictures) {
+  const Outcome has = run({"doctor", "--json"});
+  if (has.out.find("\"shader_compiler\": \"\"") != std::string::npos)
+    GTEST_SKIP() << "built without glslang (package glslang-dev)";
+  const std::string graph = "configs/graphs/sap.json";
+  const CoarseCase one{"", "sap.json", "bust", "96x64"};
+  render(one, graph, "gpu", "whole");
+  const std::filesystem::path copy = path("shaders");
+  std::filesystem::copy("shaders", copy, std::filesystem::copy_options::recursive);
+  for (const char* kernel : {"coarse_down", "coarse_up"}) {
+    const std::string file = std::string("shaders/sap/subsurface_sap_") + kernel + ".comp";
+    const std::string begin = "void main() {";
+    std::string text = text_of(file);
+    text.insert(text.find(begin) + begin.size(), "\n  return;\n");
+    write(file, text);
+    for (const char* shape : {"cpu", "gpu"}) {
+      render(one, graph, shape, "broken", {"--shaders", copy});
+      EXPECT_FALSE(read("whole/scattered_0001.exr") == read("broken/scattered_0001.exr"))
+          << kernel << " for " << shape;
+    }
+    write(file, text_of(file));
+  }
+}
 
 } // namespace
 } // namespace dermis::test
