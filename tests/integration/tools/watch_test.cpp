@@ -93,7 +93,7 @@ TEST_F(Watch, ChangedShader_IsRendered) {
   std::filesystem::create_directories(path("."));
   std::filesystem::copy("shaders", path("shaders"), std::filesystem::copy_options::recursive);
   const std::string kernel = "shaders/common/subsurface_combine.comp",
-                    store = "round_to_half(color)";
+                    store = "settings.result, albedo, color)";
   const auto change = [&](const std::string& to) {
     std::ifstream file(kernel, std::ios::binary);
     std::ostringstream read;
@@ -103,9 +103,9 @@ TEST_F(Watch, ChangedShader_IsRendered) {
     write(kernel, text);
   };
   std::thread editor = after_the_first([&] {
-    change("round_to_half(colour)");
+    change("settings.result, albedo, colour)");
     std::this_thread::sleep_for(3s);
-    change("round_to_half(0.5 * color)");
+    change("settings.result, albedo, 0.5 * color)");
   });
   std::vector<std::string> words = arguments("configs/graphs/burley.json", "3");
   words.insert(words.end(), {"--shaders", path("shaders")});

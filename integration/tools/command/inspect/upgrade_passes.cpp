@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <set>
 
 namespace dermis::tools {
 namespace {
@@ -139,6 +140,22 @@ void upgrade_separable(TextEdits& edits, const std::vector<NodeId>& passes, Adde
     edits.replace_member(port_of(edits, pass, "read", "material"),
                          fmt::format(R"("view_depth": "{}")", view_depth));
     edits.remove_member(port_of(edits, pass, "read", "depth"));
+  }
+}
+
+void upgrade_level_light(TextEdits& edits, const std::vector<NodeId>& passes) {
+  const Document& document = edits.document;
+  std::set<std::string_view> images;
+  for (const NodeId pass : passes)
+    if (type_of(edits, pass).starts_with("subsurface.sap_"))
+      for (const char* side : {"read", "write"})
+        for (const char* port : {"light", "second_light", "coarse_light", "second_coarse_light"})
+          images.insert(edits.at_port(pass, side, port));
+  const NodeId resources = document.find(document.root(), "resources");
+  for (const std::string_view image : images) {
+    const NodeId declared = resources.valid() ? document.find(resources, image) : NodeId{};
+    const NodeId format = edits.string_at(declared, "format");
+    if (format.valid() && document.text(format) == "rgba16f") edits.rename(format, "rg16f");
   }
 }
 

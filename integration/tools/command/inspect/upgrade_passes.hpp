@@ -17,6 +17,8 @@ using AddedResources = std::map<std::string, std::string_view>;
 // subsurface.separable reads the light and the view depth that subsurface.separable_setup writes,
 // in place of light, material and depth. `passes`: the passes of the file, in order.
 void upgrade_separable(TextEdits& edits, const std::vector<NodeId>& passes, AddedResources& added);
+// The surface-aware pyramid keeps only r and g of a level's light in the image at its port `light`.
+void upgrade_level_light(TextEdits& edits, const std::vector<NodeId>& passes);
 // Filtered importance sampling reads levels 1 to 8 as mips of one image.
 void upgrade_levels(TextEdits& edits, const std::vector<NodeId>& passes, AddedResources& added);
 
