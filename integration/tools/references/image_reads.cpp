@@ -183,7 +183,7 @@ ImageReads sap_gather(const PassType& type, const ReadsQuestion& question) {
                      : 2 * block_reads(6 * 4, 4, 2) + 2 * block_reads(4 * 3, 4, 2))};
 }
 
-// As fixed; each sample also reads its levels: two, one or none.
+// As fixed; each sample also reads its level, or between two levels, or none: one read, or none.
 ImageReads afis(const PassType& type, const ReadsQuestion& question) {
   ImageReads reads = burley(type, question);
   constexpr double levels[] = {1, 1, 0}; // trilinear, nearest level, none

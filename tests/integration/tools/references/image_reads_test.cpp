@@ -62,9 +62,9 @@ TEST(ImageReads, SampledTechniques_ReadFourPerSample) {
   EXPECT_EQ(few.samples, 8);
 }
 
-TEST(ImageReads, FilteredSamples_ReadTwoMoreBetweenLevels) {
+TEST(ImageReads, FilteredSamples_ReadOneMoreFromLevels) {
   const double none = reads_of("subsurface.afis", "mips", 2).per_invocation;
-  EXPECT_EQ(reads_of("subsurface.afis", "mips", 0).per_invocation - none, 2 * 16);
+  EXPECT_EQ(reads_of("subsurface.afis", "mips", 0).per_invocation - none, 16);
   EXPECT_EQ(reads_of("subsurface.afis", "mips", 1).per_invocation - none, 16);
 }
 
