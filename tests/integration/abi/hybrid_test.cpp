@@ -260,8 +260,9 @@ struct Pair : Hybrid {
     times = R"({ "dermis_calibration": 2, "device": "invented", "costs": [
       { "work": "subsurface.allocate_samples", "base_us": 0, "group_us": 0, "spread": 0 },
       { "work": "subsurface.afis_tiles samples=16", "base_us": 0, "group_us": 1, "spread": 0 } ] })";
-    for (const char* kind : {"classify", "tile_list", "setup", "separable", "tile_variance",
-                             "sample_demand", "pyramid_setup", "pyramid_down", "light", "combine"})
+    for (const char* kind :
+         {"classify", "tile_list", "setup", "separable_setup", "separable", "tile_variance",
+          "sample_demand", "pyramid_setup", "pyramid_down", "export_scattered", "combine"})
       times.insert(times.rfind("] }"), std::string(", { \"work\": \"subsurface.") + kind +
                                            "\", \"base_us\": 0, \"group_us\": 0, \"spread\": 0 } ");
   }
