@@ -12,7 +12,7 @@ namespace dermis::abi_test {
 namespace {
 
 constexpr const char* combine = "common/subsurface_combine.comp"; // A kernel of burley.json.
-constexpr const char* store = "vec4(round_to_half(color), 1.0)";
+constexpr const char* store = "settings.result, albedo, color)";
 
 // The files of shaders/, some with another text.
 struct Folder {
@@ -120,7 +120,7 @@ TEST_F(Shaders, UnchangedText_GivesEqualLight) {
 TEST_F(Shaders, ChangedText_IsUsedUntilReset) {
   const dermis_graph graph = make();
   const auto whole = light(graph);
-  folder.change(combine, store, "vec4(round_to_half(color * 0.5), 1.0)");
+  folder.change(combine, store, "settings.result, albedo, color * 0.5)");
   ASSERT_OK(reload(graph));
   const uint64_t number = last_frame;
   const auto halved = light(graph);
@@ -148,9 +148,9 @@ TEST_F(Shaders, ChangedText_IsUsedUntilReset) {
 
 TEST_F(Shaders, TwoGraphs_HaveSeparateShaders) {
   const dermis_graph one = make(), other = make_graph();
-  folder.change(combine, store, "vec4(round_to_half(color * 0.5), 1.0)");
+  folder.change(combine, store, "settings.result, albedo, color * 0.5)");
   ASSERT_OK(reload(one));
-  folder.change(combine, store, "vec4(round_to_half(color * 0.25), 1.0)");
+  folder.change(combine, store, "settings.result, albedo, color * 0.25)");
   ASSERT_OK(reload(other));
   const uint64_t number = last_frame;
   const auto halved = light(one);
@@ -169,7 +169,8 @@ TEST_F(Shaders, TwoGraphs_HaveSeparateShaders) {
 TEST_F(Shaders, BrokenText_IsReportedAndChangesNothing) {
   const dermis_graph graph = make();
   light(graph);
-  const std::string text = folder.change(combine, store, "vec4(round_to_half(colour), 1.0)");
+  const std::string text =
+      folder.change(combine, "texel, 0).rgb;\n  }", "texel, 0).rgb + colour;\n  }");
   Said said;
   EXPECT_EQ(reload(graph, &said), DERMIS_ERROR_SHADER);
   EXPECT_THAT(said.names, ElementsAre("shader_error")) << said.all;
@@ -199,8 +200,8 @@ TEST_F(Shaders, OpenOnlyFilesOfTheirFolder) {
        {"\"../secret.glsl\"", "\"/etc/passwd\"", "\"a/../../b.glsl\"", "\"C:\\\\b.glsl\"",
         "\"./half.glsl\"", "<half.glsl>", "\"not_there.glsl\""}) {
     folder.requested.clear();
-    const std::string text =
-        folder.change(combine, "#include \"common/half.glsl\"", std::string("#include ") + include);
+    const std::string text = folder.change(combine, "#include \"common/combined_light.glsl\"",
+                                           std::string("#include ") + include);
     Said said;
     EXPECT_EQ(reload(graph, &said), DERMIS_ERROR_SHADER) << include;
     ASSERT_THAT(said.names, ElementsAre("shader_error")) << said.all;
