@@ -92,6 +92,10 @@ TEST_F(WithRayQueries, TooSmallBudget_ReportsTheMissingTime) {
   RenderOptions options = ear(folder, LightFrom::behind, 0);
   options.deterministic = true; // Equal on every machine.
   options.budget_ms = 20;
+  // Rays cost more than the budget; passes without a line cost as much per group as the last line.
+  options.calibration = {"invented", R"({ "dermis_calibration": 2, "device": "invented", "costs": [
+    { "work": "restir.initial", "base_us": 30000, "group_us": 0, "spread": 0 },
+    { "work": "others", "base_us": 0, "group_us": 0.001, "spread": 0 } ] })"};
   const Rendering rendering = rendered(options);
   ASSERT_EQ(rendering.frames.size(), 5u);
   const FrameChoice& choice = rendering.frames.back().choice.value();
