@@ -91,7 +91,7 @@ struct BindErrorReporter {
       return report_error(
           DiagnosticId::replaced_update,
           fmt::format(
-              "{} updates '{}' in place, but it stands for '{}' because its producer is off",
+              "{} updates '{}' in place, but it is replaced by '{}' because its producer is off",
               reader, resource, name_of(graph, use.resource)));
     case Use::BindError::history_unwritten:
       return report_error(DiagnosticId::history_unwritten,

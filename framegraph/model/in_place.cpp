@@ -5,12 +5,12 @@
 namespace dermis {
 
 std::string text_of(const InPlaceRace& race) {
-  const std::string stands =
+  const std::string replaced =
       race.placeholder.empty() ? "" : fmt::format(", which '{}' replaces,", race.placeholder);
   return fmt::format(
       "pass '{}' reads '{}'{} through its port '{}' and writes '{}' through '{}': an "
       "invocation may read what another invocation has already written",
-      race.pass, race.read, stands, race.reading_port, race.written, race.writing_port);
+      race.pass, race.read, replaced, race.reading_port, race.written, race.writing_port);
 }
 
 } // namespace dermis

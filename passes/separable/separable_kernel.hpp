@@ -83,7 +83,7 @@ struct SeparableEnds {
   double core = 0;    // px
 };
 inline constexpr double separable_min_tail = 1.0 / 4096; // of the kernel's sum, for every channel
-// Stands for an infinite core, of profiles that are flat at the centre.
+// Takes the place of an infinite core, of profiles that are flat at the centre.
 inline constexpr double separable_flat_core = 1e6;
 
 // Fills the rows of a node after separable_centre_row from the rows before. `shape` in pixels.

@@ -1,7 +1,7 @@
 #version 460
 // Filtered importance sampling in its published form: one chain of mips holds light and, in alpha,
-// view depth in metres. A sample is one read, whose depth stands for the surface; profiles and
-// patches are not known there, so light mixes over depth steps and between profiles.
+// view depth in metres. A sample is one read, whose depth is taken as that of the surface; profiles
+// and patches are not known there, so light mixes over depth steps and between profiles.
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 #include "papers/subsurface_afis_published.bindings.glsl"

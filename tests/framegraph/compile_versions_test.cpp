@@ -197,8 +197,9 @@ TEST(Choice, AReplacedResourceCannotBeUpdatedInPlace) {
   b.otherwise(blur, "blurred", "light");
   b.pass("sharpen", "test.update", {}, {{"image", "blurred"}});
   b.pass("finish", "test.need", {{"a", "blurred"}}, {{"out", "result"}});
-  rejected_once(b, DiagnosticId::replaced_update,
-                "'sharpen', port 'image' updates 'blurred' in place, but it stands for 'light'");
+  rejected_once(
+      b, DiagnosticId::replaced_update,
+      "'sharpen', port 'image' updates 'blurred' in place, but it is replaced by 'light'");
 }
 
 TEST(Choice, AnOtherwiseOfAnotherTypeIsRejected) {

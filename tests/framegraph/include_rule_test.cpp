@@ -50,7 +50,7 @@ std::string included(std::string_view line) {
 std::string violation(const std::string& path, const std::string& target) {
   const int from = folder_of(path), to = folder_of(target);
   if (from < 0) return {};
-  if (to > from) return path + " includes " + target + ", which stands below it in the house";
+  if (to > from) return path + " includes " + target + ", which is below it in the architecture";
   const bool vulkan_header =
       target.rfind("vulkan/", 0) == 0 || target.rfind("vk_", 0) == 0 || target == "volk.h";
   if (from == 0 && vulkan_header)

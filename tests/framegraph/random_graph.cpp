@@ -193,7 +193,7 @@ void draw_orders(GraphBuilder& builder, uint64_t seed) {
   std::vector<PassDeclaration>& passes = builder.graph.passes;
   for (uint32_t later = 1; later < passes.size(); ++later)
     if (random.chance(30))
-      passes[later].after.push_back({PassId{random.below(later)}, "drawn", {}});
+      passes[later].after.push_back({PassId{random.below(later)}, "random", {}});
 }
 
 GraphBuilder random_graph(uint64_t seed, Sizes sizes) {

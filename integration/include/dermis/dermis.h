@@ -249,8 +249,7 @@ typedef struct dermis_device_allocator {
 /* The device was created with separateDepthStencilLayouts. Of combined depth-stencil images only
  * the depth aspect then changes its layout. */
 #define DERMIS_CONTEXT_SEPARATE_DEPTH_STENCIL 0x8u
-/* Use the kernels for GPUs, or those for drivers on the CPU, whatever the device's type is. At most
- * one of them; for tests. */
+/* Use the kernels for GPUs, or those for drivers on the CPU, on any device. Not both; for tests. */
 #define DERMIS_CONTEXT_GPU_KERNELS 0x10u
 #define DERMIS_CONTEXT_CPU_KERNELS 0x20u
 
@@ -336,8 +335,7 @@ typedef struct dermis_slot_format {
 typedef uint32_t(DERMIS_CALL* dermis_include_fn)(
     void* user, const char* name, dermis_source* source);
 
-/* Parts that dermis_graph_reload keeps (dermis_graph_desc.keep). The matching fields are not
- * read. */
+/* Parts that dermis_graph_reload keeps (dermis_graph_desc.keep) and whose fields it ignores. */
 #define DERMIS_KEEP_SOURCE 0x1u
 #define DERMIS_KEEP_SIZE 0x2u
 #define DERMIS_KEEP_PROFILES 0x4u
@@ -544,8 +542,7 @@ DERMIS_API dermis_result DERMIS_CALL dermis_graph_set_setting(
 
 /* ---- the choice ------------------------------------------------------------------------------ */
 
-/* Uses only times of the calibration, never timestamps: the same frames give the same choices on
- * every machine. */
+/* Uses only times of the calibration, never timestamps: equal choices on every machine. */
 #define DERMIS_BUDGET_DETERMINISTIC 0x1u
 
 /* Device time that a frame of one view may take. Each record then chooses the settings declared
@@ -790,17 +787,15 @@ typedef struct dermis_image_binding {
   VkFormat format;
   VkImage image; /* 2-D, one sample, created with dermis_slot.usage */
   /* View of mip 0 and one layer; for depth formats of the depth aspect. May be null with a
-   * content_id: then the library creates a view and keeps it while the same image returns. A view
-   * that takes the place of a destroyed one needs a new content_id. */
+   * content_id: then the library makes and keeps one. A recreated view needs a new content_id. */
   VkImageView view;
   uint32_t width, height; /* extent of mip 0 */
   dermis_image_state before, after;
   uint32_t layer;       /* first layer that is bound; 0 if layer_count is 0 */
   uint32_t layer_count; /* layers in these states; others are not accessed. 0: all layers */
-  /* Your unique number of this image, never reused: Vulkan may give the handle of a destroyed image
-   * to a new one. Descriptors are written only when it or the view changes. 0: none; then nothing is
-   * kept from frame to frame. At most 8 images may alternate in a slot within the frames in
-   * flight. */
+  /* Your unique number of this image, never reused, because Vulkan reuses handles. Descriptors are
+   * written only when it or the view changes. 0: nothing is kept from frame to frame. At most 8
+   * images may alternate in a slot within the frames in flight. */
   uint64_t content_id;
 } dermis_image_binding;
 #define DERMIS_IMAGE_BINDING_INIT \
@@ -886,8 +881,7 @@ typedef struct dermis_frame {
 
 /* ---- a frame as data ------------------------------------------------------------------------- */
 
-/* For a host that records all commands itself. Each command stands for the Vulkan function of its
- * name with these arguments. */
+/* For a host that records all commands itself: calls of Vulkan functions with these arguments. */
 typedef enum dermis_command_type {
   DERMIS_COMMAND_BARRIER = 0,    /* vkCmdPipelineBarrier2: dependency */
   DERMIS_COMMAND_DISPATCH = 1,   /* bind pipeline and `sets` from set 0, push constants, dispatch */

@@ -44,7 +44,7 @@ std::optional<RealGraph> made(std::string name, std::string text,
 struct Draft {
   SplitMix64 random;
   Json graph = {{"dermis", 2},
-                {"name", "drawn"},
+                {"name", "random"},
                 {"settings", Json::object()},
                 {"imports", Json::object()},
                 {"resources", Json::object()},
@@ -145,7 +145,7 @@ struct Draft {
       rename_pass(pass, prefix, writes_light ? resources : redirected, settings);
       if (!graph["passes"].empty() && chance(10)) {
         const Json& earlier = graph["passes"][random.below(graph["passes"].size())];
-        pass["after"] = Json::array({{{"pass", earlier["pass"]}, {"reason", "drawn"}}});
+        pass["after"] = Json::array({{{"pass", earlier["pass"]}, {"reason", "random"}}});
       }
       graph["passes"].push_back(pass);
     }

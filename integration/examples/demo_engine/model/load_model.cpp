@@ -304,13 +304,13 @@ Result<> read_maps(Gathering& gathering, const ModelOptions& options) {
       model.albedo = own(material.pbrMetallicRoughness.baseColorTexture, "base colour");
     if (options.normal.empty()) model.normal = own(material.normalTexture, "normal");
   }
-  struct Beside {
+  struct SeparateMap {
     const std::string& path;
     Texture& texture;
   };
-  for (const Beside& one :
-       {Beside{options.albedo, model.albedo}, Beside{options.normal, model.normal},
-        Beside{options.specular, model.specular}}) {
+  for (const SeparateMap& one :
+       {SeparateMap{options.albedo, model.albedo}, SeparateMap{options.normal, model.normal},
+        SeparateMap{options.specular, model.specular}}) {
     if (one.path.empty()) continue;
     auto texture = load_texture(one.path);
     if (!texture) return texture.error();

@@ -23,7 +23,7 @@
 
 namespace dermis::tools {
 
-// Returns whether the whole text matches; '*' in the pattern stands for any characters.
+// Returns whether the whole text matches; '*' in the pattern matches any characters.
 bool matches_pattern(std::string_view pattern, std::string_view text);
 
 struct Limit {
