@@ -7,8 +7,8 @@ foreach(kernel ${kernels})
   get_filename_component(name ${kernel} NAME_WE)
   add_custom_command(
     OUTPUT ${kernel_headers}/${name}.spv.h
-    COMMAND ${DERMIS_GLSLANG} --target-env vulkan1.3 -V --quiet --vn ${name}_spirv -o ${kernel_headers}/${name}.spv.h
-            ${kernel}
+    COMMAND ${DERMIS_GLSLANG} --target-env vulkan1.3 -V --quiet
+            --vn ${name}_spirv -o ${kernel_headers}/${name}.spv.h ${kernel}
     DEPENDS ${kernel} ${kernel_sources}/frame.glsl
     COMMENT "Test kernel ${name}" VERBATIM)
   target_sources(test_framegraph_vulkan PRIVATE ${kernel_headers}/${name}.spv.h)
