@@ -9,12 +9,12 @@ cd "$root"
 source .ci/common.sh
 
 usage="usage: ./demo.sh [--head FOLDER]
-Builds the library and the dermis command into build/release and renders a bust with three graphs into
-out/. Prints device times and errors, then renders a sheet of every technique and material. On Debian, as
-root or with sudo, the script first installs missing packages; elsewhere they must be installed. The
-first run takes several minutes.
-  --head FOLDER   also render the head scan in FOLDER, which must contain LeePerrySmith.glb, Map-COL.jpg,
-                  Map-SPEC.jpg and Infinite-Level_02_Tangent_SmoothUV.jpg"
+Builds the library and the dermis command into build/release and renders a bust with three graphs
+into out/. Prints device times and errors, then renders a sheet of every technique and material. On
+Debian, as root or with sudo, the script first installs missing packages; elsewhere they must be
+installed. The first run takes several minutes.
+  --head FOLDER   also render the head scan in FOLDER, which must contain LeePerrySmith.glb,
+                  Map-COL.jpg, Map-SPEC.jpg and Infinite-Level_02_Tangent_SmoothUV.jpg"
 
 head=
 while [[ $# -gt 0 ]]; do
@@ -35,8 +35,8 @@ build_preset release --target dermis_command dermis_library integration/packagin
 
 render() { # scene, graph, folder, more options
   say
-  build/release/dermis render "configs/scenes/$1.json" --graph "configs/graphs/$2.json" --size 640x360 --frames 8 \
-    --out "out/$3" "${@:4}"
+  build/release/dermis render "configs/scenes/$1.json" --graph "configs/graphs/$2.json" \
+    --size 640x360 --frames 8 --out "out/$3" "${@:4}"
 }
 
 for graph in sap burley separable; do
@@ -45,7 +45,8 @@ done
 render bust sap bust_sap_through --set transmission=true
 say "With transmitted light (ears): out/bust_sap_through"
 say
-build/release/dermis render configs/scenes/bust.json --graph none --size 640x360 --frames 1 --out out/bust_without --quiet
+build/release/dermis render configs/scenes/bust.json --graph none --size 640x360 --frames 1 \
+  --out out/bust_without --quiet
 say "Without scattering, to compare: out/bust_without"
 say
 build/release/dermis sheet --size 240x135 --out out/sheet.png
@@ -57,8 +58,9 @@ elif [[ ! -f "$head/LeePerrySmith.glb" ]]; then
   say "Head scan: skipped, '$head' has no LeePerrySmith.glb."
 else
   for graph in sap burley separable; do
-    render head "$graph" "head_$graph" --model "$head/LeePerrySmith.glb" --height 0.24 --albedo "$head/Map-COL.jpg" \
-      --specular "$head/Map-SPEC.jpg" --normal "$head/Infinite-Level_02_Tangent_SmoothUV.jpg"
+    render head "$graph" "head_$graph" --model "$head/LeePerrySmith.glb" --height 0.24 \
+      --albedo "$head/Map-COL.jpg" --specular "$head/Map-SPEC.jpg" \
+      --normal "$head/Infinite-Level_02_Tangent_SmoothUV.jpg"
   done
 fi
 say "Images are in $root/out."

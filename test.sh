@@ -7,19 +7,23 @@ cd "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")"
 source .ci/common.sh
 
 usage="usage: ./test.sh [--full]
-  Runs the tests. Tests that need ray queries run on a second driver, if the driver can be fetched. Then
-  compiles the kernels for absent GPUs and checks their limits, and runs each fuzz target for 10 seconds, if
-  clang can be installed.
-  --full   run more cases per test, check kernels on more GPUs, and run each graph on the drivers of absent
-           GPUs. Then run code coverage (gcovr), the thread sanitizer, random graphs on a device, the device
-           tests on other drivers, every bench with --quick, and the suites that manage memory or use a device
-           with the address and undefined-behaviour sanitizers. Takes about
-           100 minutes on two cores. CONTRIBUTING.md lists the commands for longer runs."
+  Runs the tests. Tests that need ray queries run on a second driver, if the driver can be fetched.
+  Then compiles the kernels for absent GPUs and checks their limits, and runs each fuzz target for
+  10 seconds, if clang can be installed.
+  --full   run more cases per test, check kernels on more GPUs, and run each graph on the drivers
+           of absent GPUs. Then run code coverage (gcovr), the thread sanitizer, random graphs on a
+           device, the device tests on other drivers, every bench with --quick, and the suites that
+           manage memory or use a device with the address and undefined-behaviour sanitizers. Takes
+           about 100 minutes on two cores. CONTRIBUTING.md lists the commands for longer runs."
 
 full=no
 for argument in "$@"; do
   case "$argument" in
-    --full) full=yes; export DERMIS_TESTS_FULL=1; optional_packages+=("${windows_packages[@]}" "${coverage_packages[@]}") ;;
+    --full)
+      full=yes
+      export DERMIS_TESTS_FULL=1
+      optional_packages+=("${windows_packages[@]}" "${coverage_packages[@]}")
+      ;;
     -h | --help) say "$usage"; exit 0 ;;
     *) fail 2 "unknown option '$argument'"$'\n'"$usage" ;;
   esac
@@ -30,7 +34,8 @@ if can_fuzz; then
   fuzz=yes
   packages+=("${fuzz_packages[@]}")
 fi
-optional_packages+=("${interface_packages[@]}" chromium) # a test opens the viewer's page in chromium
+# A test opens the viewer's page in chromium.
+optional_packages+=("${interface_packages[@]}" chromium)
 install_packages
 
 # Runs one step: the function named like the step, with '_' for spaces. Exit code 77 means skipped.
@@ -64,7 +69,8 @@ quick() { (unset DERMIS_TESTS_FULL && "$@"); }
 asan() { quick run_tests asan -L "memory|device"; }
 tsan() {
   build_preset tsan --target test_integration_static_library
-  TSAN_OPTIONS=halt_on_error=1 build/tsan/tests/test_integration_static_library --gtest_filter='Threads.*'
+  TSAN_OPTIONS=halt_on_error=1 build/tsan/tests/test_integration_static_library \
+    --gtest_filter='Threads.*'
 }
 built() { build_preset release --target "$@" >/dev/null; }
 random_graphs() {
@@ -79,9 +85,13 @@ ray_queries() {
   tests/scripts/fetch_driver.sh >/dev/null || return 77
   built test_integration_examples_demo_engine test_integration_tools
   for program in integration_examples_demo_engine integration_tools; do
-    LP_NUM_THREADS=$(nproc) quick "build/release/tests/test_$program" --gtest_filter="*$ray_suites.*" || rc=1
+    LP_NUM_THREADS=$(nproc) quick "build/release/tests/test_$program" \
+      --gtest_filter="*$ray_suites.*" || rc=1
   done >"$log" 2>&1
-  [[ $rc -eq 0 ]] || { grep -B20 'FAILED' "$log" | tail -60; fail 1 "tests on ray queries failed; the log: $log"; }
+  if [[ $rc -ne 0 ]]; then
+    grep -B20 'FAILED' "$log" | tail -60
+    fail 1 "tests on ray queries failed; the log: $log"
+  fi
   if grep -q '^\[  SKIPPED \] ' "$log"; then
     grep -B3 '^\[  SKIPPED \] ' "$log"
     fail 1 "a driver with ray queries is present, but its tests were skipped; log: $log"
@@ -89,7 +99,8 @@ ray_queries() {
   local ran
   ran=$(grep -c '^\[       OK \]' "$log" || true)
   say "$ran tests ran on the driver with ray queries"
-  [[ $ran -gt 0 ]] || fail 1 "a driver with ray queries is present, but no test ran on it; log: $log"
+  [[ $ran -gt 0 ]] ||
+    fail 1 "a driver with ray queries is present, but no test ran on it; log: $log"
 }
 # Kernels of the shipped graphs on compilers of GPUs, which need no GPU.
 kernels() {
@@ -106,14 +117,16 @@ benches() {
 }
 fuzzers() { # also compares the plans of two compilers
   if [[ $fuzz == no ]]; then
-    say "skipped, these packages are not installed and this user cannot install them: ${fuzz_packages[*]}"
+    say "skipped, these packages are not installed and this user cannot install them:" \
+      "${fuzz_packages[*]}"
     return 77
   fi
   build_preset fuzz
   tests/digests/compare.sh || fail 1 "plans depend on the compiler"
   local seconds=10
   [[ $full == no ]] || seconds=60
-  tests/fuzz/run.sh "$seconds" || fail 1 "a fuzz target has a finding; it is kept in build/fuzz/findings"
+  tests/fuzz/run.sh "$seconds" ||
+    fail 1 "a fuzz target has a finding; it is kept in build/fuzz/findings"
 }
 
 steps=(release "ray queries" kernels fuzzers)

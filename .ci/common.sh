@@ -37,9 +37,10 @@ fail() { # exit code, message
 
 # Prints the given packages that are not installed, one per line.
 missing_packages() {
-  local package
+  local package status
   for package in "$@"; do
-    [[ "$(dpkg-query -W -f='${db:Status-Status}' "$package" 2>/dev/null || true)" == installed ]] || say "$package"
+    status=$(dpkg-query -W -f='${db:Status-Status}' "$package" 2>/dev/null || true)
+    [[ $status == installed ]] || say "$package"
   done
 }
 
@@ -58,7 +59,8 @@ can_fuzz() {
 # Installs `packages`, then those of `optional_packages` that are available, if this user may.
 install_packages() {
   if ! command -v dpkg-query >/dev/null; then
-    say "This is not Debian; assuming that the contents of these packages are installed: ${packages[*]}"
+    say "This is not Debian; assuming that the contents of these packages are installed:" \
+      "${packages[*]}"
     return
   fi
   local missing wanted=() become=()
@@ -82,7 +84,8 @@ install_packages() {
   local package
   for package in "${wanted[@]}"; do
     say "Installing $package"
-    if [[ $failed == yes ]] || ! "${apt[@]}" install -y --no-install-recommends "$package" >/dev/null; then
+    if [[ $failed == yes ]] ||
+      ! "${apt[@]}" install -y --no-install-recommends "$package" >/dev/null; then
       say "$package cannot be installed; features that need it are left out."
     fi
   done
@@ -93,6 +96,8 @@ build_preset() {
   local preset=$1
   shift
   say "Building $preset ..."
-  cmake --preset "$preset" --log-level=WARNING >/dev/null || fail 1 "configuring the preset '$preset' failed"
-  cmake --build --preset "$preset" -j "$(nproc)" "$@" || fail 1 "building the preset '$preset' failed"
+  cmake --preset "$preset" --log-level=WARNING >/dev/null ||
+    fail 1 "configuring the preset '$preset' failed"
+  cmake --build --preset "$preset" -j "$(nproc)" "$@" ||
+    fail 1 "building the preset '$preset' failed"
 }

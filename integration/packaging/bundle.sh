@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # Packs the command with its files and all libraries into one archive that runs on x86-64 Linux
 # without installing anything. A GPU needs only its own Vulkan driver.
-# usage: bundle.sh [BUILD] [ARCHIVE]; default: build/release, BUILD/dermis-VERSION-linux-x86_64.tar.gz
+# usage: bundle.sh [BUILD] [ARCHIVE]
+#   BUILD: default build/release; ARCHIVE: default BUILD/dermis-VERSION-linux-x86_64.tar.gz
 set -euo pipefail
 cd "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/../.."
 
@@ -39,7 +40,9 @@ loader=$(/sbin/ldconfig -p | sed -nE 's/.*libvulkan\.so\.1 .*x86-64.*=> (.*)/\1/
 for library in $(libraries "$build/dermis") $loader $(for l in $loader; do libraries "$l"; done); do
   copy_licence "$library"
   case $(basename "$library") in
-    libc.so.* | libm.so.* | libdl.so.* | libpthread.so.* | librt.so.*) cp -Lu "$library" "$root/libc/" ;;
+    libc.so.* | libm.so.* | libdl.so.* | libpthread.so.* | librt.so.*)
+      cp -Lu "$library" "$root/libc/"
+      ;;
     *) cp -Lu "$library" "$root/lib/" ;;
   esac
 done
@@ -50,10 +53,11 @@ cat >"$root/dermis" <<'LAUNCHER'
 # Runs the command with the libraries of this folder, and with the system's C library if that is new
 # enough.
 here=$(dirname "$(readlink -f "$0")")
-if LD_LIBRARY_PATH="$here/lib${LD_LIBRARY_PATH:+:$LD_LIBRARY_PATH}" "$here/bin/dermis" --version >/dev/null 2>&1; then
-  LD_LIBRARY_PATH="$here/lib${LD_LIBRARY_PATH:+:$LD_LIBRARY_PATH}" exec "$here/bin/dermis" "$@"
+inherited=${LD_LIBRARY_PATH:+:$LD_LIBRARY_PATH}
+if LD_LIBRARY_PATH="$here/lib$inherited" "$here/bin/dermis" --version >/dev/null 2>&1; then
+  LD_LIBRARY_PATH="$here/lib$inherited" exec "$here/bin/dermis" "$@"
 fi
-exec "$here/libc/ld-linux-x86-64.so.2" --library-path "$here/lib:$here/libc${LD_LIBRARY_PATH:+:$LD_LIBRARY_PATH}" \
+exec "$here/libc/ld-linux-x86-64.so.2" --library-path "$here/lib:$here/libc$inherited" \
   "$here/bin/dermis" "$@"
 LAUNCHER
 chmod +x "$root/dermis"

@@ -13,18 +13,19 @@ targets=("$@")
 findings=build/fuzz/findings dictionary=build/fuzz/keys.dict
 mkdir -p "$findings"
 # Every short quoted word of a schema or shipped file: the keys and values of all formats.
-grep -ohE '"[$A-Za-z0-9_./@-]{1,32}"' configs/{schema,graphs,overlays,profiles,scenes}/*.json | sort -u |
-  sed 's/^"\(.*\)"$/"\\"\1\\""/' >"$dictionary"
+grep -ohE '"[$A-Za-z0-9_./@-]{1,32}"' configs/{schema,graphs,overlays,profiles,scenes}/*.json |
+  sort -u | sed 's/^"\(.*\)"$/"\\"\1\\""/' >"$dictionary"
 run_one() { # target, seconds, folder of findings
-  local target=$1 seconds=$2 findings=$3 grown=build/fuzz/corpus/$1 log=build/fuzz/$1.log runs covered
+  local target=$1 seconds=$2 findings=$3 grown=build/fuzz/corpus/$1 log=build/fuzz/$1.log
+  local runs covered
   mkdir -p "$grown" # keeps the inputs of earlier runs
   local folders=("$grown" "tests/fuzz/corpus/$target")
   case $target in
     graph | overlay | profile | scene) folders+=("configs/${target}s") ;;
   esac
-  if build/fuzz/fuzz/fuzz_"$target" -max_total_time="$seconds" -timeout=5 -rss_limit_mb=2048 -max_len=65536 \
-    -dict="$dictionary" -artifact_prefix="$findings/$target-" -print_final_stats=1 -verbosity=1 \
-    "${folders[@]}" >"$log" 2>&1; then
+  if build/fuzz/fuzz/fuzz_"$target" -max_total_time="$seconds" -timeout=5 -rss_limit_mb=2048 \
+    -max_len=65536 -dict="$dictionary" -artifact_prefix="$findings/$target-" \
+    -print_final_stats=1 -verbosity=1 "${folders[@]}" >"$log" 2>&1; then
     runs=$(sed -n 's/^stat::number_of_executed_units: *//p' "$log")
     covered=$(grep -o 'cov: [0-9]*' "$log" | tail -n 1)
     printf 'fuzz %-10s %9s inputs, %s, no finding\n' "$target" "$runs" "$covered"
@@ -36,4 +37,5 @@ run_one() { # target, seconds, folder of findings
 }
 export -f run_one
 export dictionary
-printf '%s\n' "${targets[@]}" | xargs -P "$(nproc)" -I{} bash -c 'run_one "$@"' run {} "$seconds" "$findings" || exit 1
+printf '%s\n' "${targets[@]}" |
+  xargs -P "$(nproc)" -I{} bash -c 'run_one "$@"' run {} "$seconds" "$findings" || exit 1

@@ -21,8 +21,8 @@ measured_with="Mesa 22.3" # the limits hold for this version of the system's dri
 failed=0 compiled=0
 
 # Slots that an engine may leave out. The bytes per pixel of the documents are counted without them.
-"$dermis" kernels --quiet --unbound scattered_light,albedo,scatter_scale --limits tests/gpu/frame_limits.json ||
-  failed=1
+"$dermis" kernels --quiet --unbound scattered_light,albedo,scatter_scale \
+  --limits tests/gpu/frame_limits.json || failed=1
 
 # Runs a command with a driver's manifest. The compiler must run, so its cache is empty.
 with_driver() { # manifest, command...
@@ -38,12 +38,13 @@ cp tests/gpu/one_ray_query.comp "$one_ray_query/restir/restir_initial.comp"
 compile_for() { # family, manifest
   local json=$out/$1.json log=$out/$1.log begin=$SECONDS rc=0
   local one=$out/$1.one_ray_query.json own=$out/$1.limits.json # with the lines of $limits
-  with_driver "$2" env RADV_FORCE_FAMILY="$1" "$dermis" kernels restir --shaders "$one_ray_query" --json \
-    >"$one" 2>"$log" || { cat "$log" "$one"; failed=1; return; }
+  with_driver "$2" env RADV_FORCE_FAMILY="$1" "$dermis" kernels restir --shaders "$one_ray_query" \
+    --json >"$one" 2>"$log" || { cat "$log" "$one"; failed=1; return; }
   python3 -B tests/gpu/device_limits.py $limits "$one" >"$own"
   with_driver "$2" env RADV_FORCE_FAMILY="$1" "$dermis" kernels --limits "$own" >"$log" 2>&1 || rc=1
   with_driver "$2" env RADV_FORCE_FAMILY="$1" "$dermis" kernels --json >"$json" 2>>"$log" || rc=1
-  echo "kernels on $1 ($(sed -n '/Null hardware/{s/.*, //p;q}' "$log")): $(grep -h ' checked: ' "$log" || echo failed), $((SECONDS - begin)) s"
+  echo "kernels on $1 ($(sed -n '/Null hardware/{s/.*, //p;q}' "$log")):" \
+    "$(grep -h ' checked: ' "$log" || echo failed), $((SECONDS - begin)) s"
   grep -h ': skipped, ' "$log" || true
   [[ $rc -eq 0 ]] || { sed -n '/dermis: error/,$p' "$log"; failed=1; }
   compiled=$((compiled + 1))
@@ -52,22 +53,26 @@ compile_for() { # family, manifest
 shopt -s nullglob
 system=(/usr/share/vulkan/icd.d/radeon_icd*.json)
 if [[ ${#system[@]} -eq 0 ]]; then
-  echo "kernels on navi21 and vega10: skipped, no radeon_icd in /usr/share/vulkan/icd.d (Debian: mesa-vulkan-drivers)"
-elif ! version=$(with_driver "${system[0]}" env RADV_FORCE_FAMILY=navi21 "$dermis" kernels burley 2>/dev/null |
-  sed -n '1s/.*, //p') || [[ $version != *"$measured_with"* ]]; then
-  echo "kernels on navi21 and vega10: skipped, the limits are for $measured_with, but the driver is '$version'"
+  echo "kernels on navi21 and vega10: skipped, no radeon_icd in /usr/share/vulkan/icd.d" \
+    "(Debian: mesa-vulkan-drivers)"
+elif ! version=$(with_driver "${system[0]}" env RADV_FORCE_FAMILY=navi21 \
+  "$dermis" kernels burley 2>/dev/null | sed -n '1s/.*, //p') ||
+  [[ $version != *"$measured_with"* ]]; then
+  echo "kernels on navi21 and vega10: skipped, the limits are for $measured_with," \
+    "but the driver is '$version'"
 else
   for family in navi21 vega10; do
     compile_for $family "${system[0]}"
   done
   # The last step of the pyramid, which also combines: executed vector instructions per pixel.
   last_step=$out/last_step
-  if with_driver "${system[0]}" env RADV_FORCE_FAMILY=navi21 "$dermis" kernels configs/graphs/sap.json \
-    --set variant=smooth --set texturing=post --set last_step=fused --unbound scattered_light,scatter_scale \
-    --assembly "$last_step" >"$last_step.log" 2>&1; then
-    python3 tests/gpu/instruction_mix.py --longest --limit 600 "$last_step/sap_subsurface_sap_gather.txt" \
-      >>"$last_step.log" || failed=1
-    echo "last step on navi21: $(sed -n 's/^vector *//p' "$last_step.log") vector instructions per pixel, limit 600"
+  if with_driver "${system[0]}" env RADV_FORCE_FAMILY=navi21 "$dermis" kernels \
+    configs/graphs/sap.json --set variant=smooth --set texturing=post --set last_step=fused \
+    --unbound scattered_light,scatter_scale --assembly "$last_step" >"$last_step.log" 2>&1; then
+    python3 tests/gpu/instruction_mix.py --longest --limit 600 \
+      "$last_step/sap_subsurface_sap_gather.txt" >>"$last_step.log" || failed=1
+    echo "last step on navi21: $(sed -n 's/^vector *//p' "$last_step.log") vector instructions" \
+      "per pixel, limit 600"
   else
     cat "$last_step.log"
     failed=1
@@ -80,10 +85,11 @@ run_graph() { # family, graph file
   local log rc=0 complaints
   log=$out/run_$1_$(basename "$2" .json).log
   with_driver "$radeon" env AMDGPU_GPU_ID="$1" LD_PRELOAD="$shim" timeout 300 "$dermis" render \
-    configs/scenes/bust.json --graph "$2" --frames 2 --size 320x180 --subset 0 --quiet --out "$out/pictures" \
-    >"$log" 2>&1 || rc=$?
+    configs/scenes/bust.json --graph "$2" --frames 2 --size 320x180 --subset 0 --quiet \
+    --out "$out/pictures" >"$log" 2>&1 || rc=$?
   # The first line comes from the shim, the others from Mesa and concern every program.
-  complaints=$(grep -v -e '^DRM_IOCTL_GET_CAP: unhandled' -e 'not a conformant Vulkan implementation' \
+  complaints=$(grep -v -e '^DRM_IOCTL_GET_CAP: unhandled' \
+    -e 'not a conformant Vulkan implementation' \
     -e "output is based on invalid pci bus info" "$log" || true)
   [[ $rc -ne 0 || -n $complaints ]] || return 0
   echo "$(basename "$2" .json) on $1: exit code $rc, the driver's messages: ${complaints:-none}"
@@ -114,7 +120,8 @@ if [[ $full == yes ]]; then
       compiled=$((compiled + 1))
     done
   else
-    echo "graphs on navi21, navi31, vega10 and vangogh: skipped, there is no shim of the kernel's driver"
+    echo "graphs on navi21, navi31, vega10 and vangogh: skipped," \
+      "there is no shim of the kernel's driver"
   fi
 fi
 [[ $failed -eq 0 ]] || exit 1

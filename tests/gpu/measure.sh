@@ -13,14 +13,17 @@ cd "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")"
 dermis=${DERMIS:-./dermis}
 [[ -x $dermis ]] || dermis=build/release/dermis
 step=${1:-} out=${2:-}
-[[ $step =~ ^[123]$ && -n $out ]] || { sed -n '2,/^# DERMIS/s/^# //p' "${BASH_SOURCE[0]}" >&2; exit 2; }
+if [[ ! $step =~ ^[123]$ || -z $out ]]; then
+  sed -n '2,/^# DERMIS/s/^# //p' "${BASH_SOURCE[0]}" >&2
+  exit 2
+fi
 mkdir -p "$out"
 techniques=(sap separable burley papers/fixed papers/afis)
 failed=0
 
 render() { # technique, size, frames, folder, more options
-  "$dermis" render configs/scenes/bust.json --graph "configs/graphs/$1.json" --size "$2" --frames "$3" --deterministic \
-    --json --out "$4" "${@:5}"
+  "$dermis" render configs/scenes/bust.json --graph "configs/graphs/$1.json" --size "$2" \
+    --frames "$3" --deterministic --json --out "$4" "${@:5}"
 }
 
 case $step in
@@ -33,7 +36,8 @@ case $step in
         "$dermis" compare "$out/pictures/$name" "$PICTURES/$name" --least-psnr 60 || failed=1
       fi
       for size in ${SIZES:-1920x1080 2560x1440}; do
-        render "$technique" "$size" 40 "$out/frames" --subset 0 >"$out/times_${name}_$size.json" || failed=1
+        render "$technique" "$size" 40 "$out/frames" --subset 0 \
+          >"$out/times_${name}_$size.json" || failed=1
       done
     done
     rm -rf "$out/frames"

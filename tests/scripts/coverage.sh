@@ -14,9 +14,9 @@ if ! command -v gcovr >/dev/null; then
 fi
 # The longest suites run first, two at a time. Suites of kernels and of the command cover no
 # additional code.
-tests=(test_framegraph test_integration_abi test_integration_embedding test_schema test_framegraph_vulkan
-  test_shared_shaders test_integration_shaders test_integration_null_device test_integration_arguments
-  test_integration_static_library)
+tests=(test_framegraph test_integration_abi test_integration_embedding test_schema
+  test_framegraph_vulkan test_shared_shaders test_integration_shaders test_integration_null_device
+  test_integration_arguments test_integration_static_library)
 # Long repetitive tests without additional coverage: mutated files, and hundreds of reloads.
 left_out='Schema.OfGraphsAgreesWithTheParserOnMutatedFiles:ReloadStorm.*'
 build=build/coverage
@@ -48,9 +48,9 @@ fi
 failed=0
 for part in framegraph integration/abi; do
   out=$build/${part//\//_}
-  gcovr "$build/$part" --root . --exclude-throw-branches --exclude-unreachable-branches -j "$(nproc)" --filter "$part/" \
-    --json-summary "$out.json" --txt "$out.txt" --fail-under-line $least_lines --fail-under-branch $least_branches ||
-    failed=1
+  gcovr "$build/$part" --root . --exclude-throw-branches --exclude-unreachable-branches \
+    -j "$(nproc)" --filter "$part/" --json-summary "$out.json" --txt "$out.txt" \
+    --fail-under-line $least_lines --fail-under-branch $least_branches || failed=1
   python3 - "$part" "$out.json" <<'PYTHON'
 import json, os, sys
 part, total = sys.argv[1], json.load(open(sys.argv[2]))
@@ -62,7 +62,8 @@ for file in total["files"]:
         counts[i] += file[name]
 share = lambda covered, of: f"{100 * covered / of:5.1f} % of {of:5}" if of else "none"
 for name, (lines, of_lines, branches, of_branches) in sorted(folders.items()):
-    print(f"  {part}/{name:<12} {share(lines, of_lines)} lines, {share(branches, of_branches)} branches")
+    print(f"  {part}/{name:<12} {share(lines, of_lines)} lines, "
+          f"{share(branches, of_branches)} branches")
 print(f"coverage of {part}/: {total['line_percent']} % of {total['line_total']} lines, "
       f"{total['branch_percent']} % of {total['branch_total']} branches")
 PYTHON

@@ -43,8 +43,8 @@ prepare_apt() {
   [[ ! -e $keyring ]] || options="[signed-by=$keyring] "
   echo "deb $options$mirror $release-backports main" >"$folder/apt/sources.list"
   apt_options=(-o Dir::Etc::sourcelist="$folder/apt/sources.list" -o Dir::Etc::sourceparts=-
-    -o Dir::State::Lists="$folder/apt/lists" -o Dir::Cache="$folder/apt/cache" -o APT::Sandbox::User=root
-    -o APT::Update::Error-Mode=any -o Acquire::Retries=2)
+    -o Dir::State::Lists="$folder/apt/lists" -o Dir::Cache="$folder/apt/cache"
+    -o APT::Sandbox::User=root -o APT::Update::Error-Mode=any -o Acquire::Retries=2)
   log=$folder/apt/log
   apt-get "${apt_options[@]}" update >"$log" 2>&1 ||
     unavailable "the lists of $release-backports cannot be had: $(complaint)"
@@ -79,10 +79,14 @@ manifest_of() { # library, pattern of Mesa's manifest, name
     driver=$(find "$unpacked" -name "$1")
     [[ -n $driver ]] || unavailable "Mesa $version has no $1"
     lacking=$(ldd "$driver" | awk '/not found/ { print $1 }' | paste -sd' ')
-    [[ -z $lacking ]] || unavailable "$1 of Mesa $version needs libraries that are not installed: $lacking"
-    api=$(sed -n 's/.*"api_version": *"\([0-9.]*\)".*/\1/p' "$(dirname "$driver")"/../../share/vulkan/icd.d/$2)
-    printf '{ "file_format_version": "1.0.0", "ICD": { "library_path": "%s", "api_version": "%s" } }\n' \
-      "$driver" "$api" >"$manifest"
+    [[ -z $lacking ]] ||
+      unavailable "$1 of Mesa $version needs libraries that are not installed: $lacking"
+    # shellcheck disable=SC2086 # $2 is a pattern
+    api=$(sed -n 's/.*"api_version": *"\([0-9.]*\)".*/\1/p' \
+      "$(dirname "$driver")"/../../share/vulkan/icd.d/$2)
+    cat >"$manifest" <<MANIFEST
+{ "file_format_version": "1.0.0", "ICD": { "library_path": "$driver", "api_version": "$api" } }
+MANIFEST
   fi
   printf '%s\n' "$manifest"
 }
@@ -94,6 +98,7 @@ case $part in
   radeon) manifest_of libvulkan_radeon.so 'radeon_icd*.json' radeon ;;
   shim)
     unpack mesa-drm-shim shim
-    find "$unpacked" -name libamdgpu_noop_drm_shim.so | grep . || unavailable "the package has no shim for AMD GPUs"
+    find "$unpacked" -name libamdgpu_noop_drm_shim.so | grep . ||
+      unavailable "the package has no shim for AMD GPUs"
     ;;
 esac

@@ -12,27 +12,35 @@
 set -euo pipefail
 cd "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/../.."
 
+fail() { # message
+  printf 'run_on_drivers.sh: %s\n' "$1" >&2
+  exit 2
+}
+
 build=${1:-build/release}
 shift || true
 suites=("$@")
-[[ $# -gt 0 ]] || suites=(framegraph_vulkan shaders passes_device integration_abi integration_embedding
-  integration_examples_demo_engine)
+[[ $# -gt 0 ]] || suites=(framegraph_vulkan shaders passes_device integration_abi
+  integration_embedding integration_examples_demo_engine)
 for suite in "${suites[@]}"; do
   program=$build/tests/test_${suite%%:*}
-  [[ -x $program ]] || { echo "run_on_drivers.sh: there is no suite '$suite': $program is not built" >&2; exit 2; }
+  [[ -x $program ]] || fail "there is no suite '$suite': $program is not built"
   [[ $suite =~ ^[a-z_]+(:[1-9][0-9]*/[1-9][0-9]*)?$ ]] ||
-    { echo "run_on_drivers.sh: '$suite' is no suite, nor a part of one such as 'properties:2/8'" >&2; exit 2; }
+    fail "'$suite' is no suite, nor a part of one such as 'properties:2/8'"
 done
 seconds=1800       # per suite or part of a suite
 memory=$((8 << 20)) # KiB per suite; protects the machine from drivers that use too much memory
 swiftshader=/usr/lib/chromium/vk_swiftshader_icd.json
 
 drivers=()
-fetched=$(tests/scripts/fetch_driver.sh) && drivers+=("$(readlink -f "$fetched")") # tests change the working directory
-[[ -e $swiftshader ]] && drivers+=("$swiftshader") || echo "SwiftShader: skipped, chromium-common is not installed" >&2
+# The path is absolute because tests change the working directory.
+fetched=$(tests/scripts/fetch_driver.sh) && drivers+=("$(readlink -f "$fetched")")
+[[ -e $swiftshader ]] && drivers+=("$swiftshader") ||
+  echo "SwiftShader: skipped, chromium-common is not installed" >&2
 named=${DERMIS_DRIVERS:-}
 for manifest in ${named//:/ }; do
-  [[ -e $manifest ]] && drivers+=("$manifest") || echo "$manifest: skipped, there is no such file" >&2
+  [[ -e $manifest ]] && drivers+=("$manifest") ||
+    echo "$manifest: skipped, there is no such file" >&2
 done
 if [[ ${#drivers[@]} -eq 0 ]]; then
   echo "other drivers: skipped, there is none"
@@ -63,15 +71,16 @@ for manifest in "${drivers[@]}"; do
         part=${suite#*:}
         export GTEST_TOTAL_SHARDS=${part#*/} GTEST_SHARD_INDEX=$((${part%/*} - 1))
       fi
-      VK_DRIVER_FILES=$manifest VK_ICD_FILENAMES=$manifest DERMIS_PICTURES=$pictures timeout $seconds \
-        "$program" --gtest_filter="-$left_out"
+      VK_DRIVER_FILES=$manifest VK_ICD_FILENAMES=$manifest DERMIS_PICTURES=$pictures \
+        timeout $seconds "$program" --gtest_filter="-$left_out"
     ) >"$log" 2>&1 || rc=$?
     of_suite=0 # number of tests left out
     if [[ -n $left_out ]]; then
       of_suite=$("$program" --gtest_list_tests --gtest_filter="$left_out" | grep -c '^  ' || true)
     fi
-    printf '%-14s %-24s %4s passed, %2s failed, %2s skipped, %3s known, %4s s%s\n' "$name" "$suite" \
-      "$(grep -c '^\[       OK \]' "$log" || true)" "$(grep -c '^\[  FAILED  \].* (.* ms)$' "$log" || true)" \
+    printf '%-14s %-24s %4s passed, %2s failed, %2s skipped, %3s known, %4s s%s\n' \
+      "$name" "$suite" "$(grep -c '^\[       OK \]' "$log" || true)" \
+      "$(grep -c '^\[  FAILED  \].* (.* ms)$' "$log" || true)" \
       "$(grep -c '^\[  SKIPPED \].* (.* ms)$' "$log" || true)" "$of_suite" "$((SECONDS - begin))" \
       "$([[ $rc -eq 0 ]] || echo "; ended with $rc; the log: $log")"
     [[ $rc -eq 0 ]] || failed=1

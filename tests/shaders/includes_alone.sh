@@ -15,11 +15,13 @@ declares_functions() { [ "$1" = restir/scene.glsl ] || [ "$1" = restir/surfaces.
 
 # Prints why an include depends on its includer; prints nothing if it compiles without one.
 dependence() { # FOLDER NAME
-  printf '#version 460\n#extension GL_GOOGLE_include_directive : require\n#include "%s"\nvoid main() {}\n' \
-    "$2" > "$scratch/alone.comp"
-  "$glslang" --target-env vulkan1.2 -V --quiet -I"$1" -I"$shaders" -I"$generated" -o "$scratch/alone.spv" \
-    "$scratch/alone.comp" > "$scratch/out" 2>&1 || grep ERROR "$scratch/out" | head -n 1
-  grep -nE '^ *# *(if|ifdef|ifndef|elif)\b' "$1/$2" | grep -vE '#ifndef DERMIS_[A-Z_]+_GLSL$' || true
+  printf '%s\n' '#version 460' '#extension GL_GOOGLE_include_directive : require' \
+    "#include \"$2\"" 'void main() {}' > "$scratch/alone.comp"
+  "$glslang" --target-env vulkan1.2 -V --quiet -I"$1" -I"$shaders" -I"$generated" \
+    -o "$scratch/alone.spv" "$scratch/alone.comp" > "$scratch/out" 2>&1 ||
+    grep ERROR "$scratch/out" | head -n 1
+  grep -nE '^ *# *(if|ifdef|ifndef|elif)\b' "$1/$2" |
+    grep -vE '#ifndef DERMIS_[A-Z_]+_GLSL$' || true
   declares_functions "$2" || grep -nE '^[a-zA-Z_0-9]+ [a-z_0-9]+\([^)]*\);' "$1/$2" || true
 }
 
@@ -36,8 +38,10 @@ done
 # The check itself finds each kind of dependence.
 mkdir "$scratch/offenders"
 expect_found() { # NAME LINE
-  printf '#ifndef DERMIS_OFFENDER_GLSL\n#define DERMIS_OFFENDER_GLSL\n%s\n#endif\n' "$2" > "$scratch/offenders/$1.glsl"
-  [ -n "$(dependence "$scratch/offenders" "$1.glsl")" ] || { echo "a dependence on a $1 is not found"; failed=1; }
+  printf '#ifndef DERMIS_OFFENDER_GLSL\n#define DERMIS_OFFENDER_GLSL\n%s\n#endif\n' "$2" \
+    > "$scratch/offenders/$1.glsl"
+  [ -n "$(dependence "$scratch/offenders" "$1.glsl")" ] ||
+    { echo "a dependence on a $1 is not found"; failed=1; }
 }
 expect_found setting 'int twice() { return 2 * settings.samples; }'
 expect_found binding 'vec4 texel() { return imageLoad(light_image, ivec2(0)); }'

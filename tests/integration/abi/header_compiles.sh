@@ -32,20 +32,26 @@ size_t use(void) {
   dermis_pass_port pass_port = DERMIS_PASS_PORT_INIT;
   dermis_pass_call call = DERMIS_PASS_CALL_INIT;
   dermis_pass_type kind = DERMIS_PASS_TYPE_INIT;
-  return context_desc.struct_size + graph_desc.struct_size + binding.struct_size + source.struct_size +
-         profile.struct_size + slot_format.struct_size + message.struct_size + requirement.struct_size +
-         slot.struct_size + memory.struct_size + timing.struct_size + frame.struct_size + budget.struct_size +
-         report.struct_size + statistics.struct_size + port.struct_size + setting.struct_size + pass_port.struct_size + call.struct_size +
+  return context_desc.struct_size + graph_desc.struct_size + binding.struct_size +
+         source.struct_size + profile.struct_size + slot_format.struct_size + message.struct_size +
+         requirement.struct_size + slot.struct_size + memory.struct_size + timing.struct_size +
+         frame.struct_size + budget.struct_size + report.struct_size + statistics.struct_size +
+         port.struct_size + setting.struct_size + pass_port.struct_size + call.struct_size +
          kind.struct_size;
 }
 EOF
 cp "$scratch/alone.c" "$scratch/alone.cpp"
 { echo '#include <vulkan/vulkan.h>'; cat "$scratch/alone.c"; } > "$scratch/after_vulkan.c"
-{ echo '#define VK_NO_PROTOTYPES'; cat "$scratch/alone.c"; echo '#include <volk.h>'; } > "$scratch/with_volk.c"
+{
+  echo '#define VK_NO_PROTOTYPES'
+  cat "$scratch/alone.c"
+  echo '#include <volk.h>'
+} > "$scratch/with_volk.c"
 
 failed=0
 check() { # compiler standard file
-  if ! "$1" "-std=$2" -pedantic -Wall -Wextra -Werror -fsyntax-only -I"$include" "$3" > "$scratch/out" 2>&1; then
+  if ! "$1" "-std=$2" -pedantic -Wall -Wextra -Werror -fsyntax-only -I"$include" "$3" \
+       > "$scratch/out" 2>&1; then
     echo "$1 -std=$2 $(basename "$3"):"
     cat "$scratch/out"
     failed=1
@@ -55,7 +61,9 @@ checked=0
 for compiler in gcc clang; do
   command -v $compiler > /dev/null || continue
   for standard in c99 c11 c17; do
-    for file in alone.c after_vulkan.c with_volk.c; do check $compiler $standard "$scratch/$file"; done
+    for file in alone.c after_vulkan.c with_volk.c; do
+      check $compiler $standard "$scratch/$file"
+    done
   done
   checked=1
 done
@@ -65,9 +73,11 @@ for compiler in g++ clang++; do
 done
 # Other targets, only with clang and this machine's Vulkan headers.
 if command -v clang > /dev/null; then
-  for target in aarch64-linux-gnu riscv64-linux-gnu armv7-linux-gnueabihf i686-linux-gnu x86_64-w64-mingw32; do
-    if ! clang --target=$target -std=c11 -ffreestanding -nostdlibinc -idirafter /usr/include -Wall -Wextra -Werror \
-         -fsyntax-only -I"$include" "$scratch/alone.c" > "$scratch/out" 2>&1; then
+  for target in aarch64-linux-gnu riscv64-linux-gnu armv7-linux-gnueabihf i686-linux-gnu \
+    x86_64-w64-mingw32; do
+    if ! clang --target=$target -std=c11 -ffreestanding -nostdlibinc -idirafter /usr/include \
+         -Wall -Wextra -Werror -fsyntax-only -I"$include" "$scratch/alone.c" \
+         > "$scratch/out" 2>&1; then
       echo "$target:"
       cat "$scratch/out"
       failed=1

@@ -15,7 +15,8 @@ run() { # a host
 }
 
 if [[ ${3:-} == --subdirectory ]]; then
-  cmake -G Ninja -S "$source/tests/integration/packaging/subdirectory" -B "$scratch/build" -DDERMIS="$source" -DCMAKE_BUILD_TYPE=Release \
+  cmake -G Ninja -S "$source/tests/integration/packaging/subdirectory" -B "$scratch/build" \
+    -DDERMIS="$source" -DCMAKE_BUILD_TYPE=Release \
     ${DERMIS_LAUNCHER:+-DCMAKE_CXX_COMPILER_LAUNCHER="$DERMIS_LAUNCHER"} >/dev/null
   cmake --build "$scratch/build" >/dev/null
   run "$scratch/build/host_dermis"
@@ -29,7 +30,8 @@ prefix=$scratch/moved
 lib=$(dirname "$(find "$prefix" -name libdermis.so)")
 export LD_LIBRARY_PATH=$lib
 
-flags=(-std=c99 -Wall -Wextra -Werror -I"$source/integration/examples" "$source/integration/examples/minimal.c")
+flags=(-std=c99 -Wall -Wextra -Werror
+  -I"$source/integration/examples" "$source/integration/examples/minimal.c")
 cc "${flags[@]}" -I"$prefix/include" -o "$scratch/host_cc" -L"$lib" -ldermis -lvulkan
 run "$scratch/host_cc"
 
@@ -43,8 +45,9 @@ else
 fi
 
 for languages in C "C;CXX"; do # a C project must also find the C++ run time
-  cmake -G Ninja -S "$source/tests/integration/packaging/find_package" -B "$scratch/build_${languages/;/_}" -DCMAKE_PREFIX_PATH="$prefix" \
-    -DLANGUAGES="$languages" -DEXAMPLES="$source/integration/examples" -DCMAKE_BUILD_TYPE=Release >/dev/null
+  cmake -G Ninja -S "$source/tests/integration/packaging/find_package" \
+    -B "$scratch/build_${languages/;/_}" -DCMAKE_PREFIX_PATH="$prefix" -DLANGUAGES="$languages" \
+    -DEXAMPLES="$source/integration/examples" -DCMAKE_BUILD_TYPE=Release >/dev/null
   cmake --build "$scratch/build_${languages/;/_}" >/dev/null
   run "$scratch/build_${languages/;/_}/host_dermis"
   run "$scratch/build_${languages/;/_}/host_dermis_static"
@@ -53,29 +56,41 @@ done
 # Runs the commands of README.md, unchanged except for the folders.
 if command -v pkg-config >/dev/null; then
   sed -n '/^```console$/,/^```$/s/^\$ //p' "$source/README.md" | grep -v '^cmake --build' |
-    sed -e "s#\$PWD/out#out#g" -e "s#out/#$scratch/readme/#g" -e "s#build/release#$build#g" >"$scratch/lines"
-  [[ $(wc -l <"$scratch/lines") -eq 4 ]] || { echo "README.md has other lines than this test knows"; exit 1; }
+    sed -e "s#\$PWD/out#out#g" -e "s#out/#$scratch/readme/#g" -e "s#build/release#$build#g" \
+      >"$scratch/lines"
+  [[ $(wc -l <"$scratch/lines") -eq 4 ]] ||
+    { echo "README.md has other lines than this test knows"; exit 1; }
   echo "== README.md"
-  (cd "$source" && unset LD_LIBRARY_PATH && set -x && . "$scratch/lines") | grep -E '^scatter +[0-9.]+ ms$'
+  (cd "$source" && unset LD_LIBRARY_PATH && set -x && . "$scratch/lines") |
+    grep -E '^scatter +[0-9.]+ ms$'
 fi
 
 # Every document and example is installed, and links between installed documents resolve.
 documents=$(dirname "$(find "$prefix/share/doc" -name LICENSE)")
-for file in "$source"/docs/*.md "$source"/integration/examples/*.[ch] "$source"/integration/examples/*.comp; do
+for file in "$source"/docs/*.md "$source"/integration/examples/*.{[ch],comp}; do
   [[ -f $documents/${file#"$source/"} ]] || { echo "${file#"$source/"} is not installed"; exit 1; }
 done
-(cd "$documents/docs" && grep -oh '](\(\.\./integration/examples/\|[a-z_]*\.md\)[^)#]*' ./*.md | sed 's/^](//' | sort -u |
-  while read -r link; do [[ -e $link ]] || { echo "an installed document links to $link, which is not there"; exit 1; }; done)
+(cd "$documents/docs" &&
+  grep -oh '](\(\.\./integration/examples/\|[a-z_]*\.md\)[^)#]*' ./*.md | sed 's/^](//' | sort -u |
+  while read -r link; do
+    [[ -e $link ]] ||
+      { echo "an installed document links to $link, which is not there"; exit 1; }
+  done)
 
 # The installation is self-contained: the command finds its library, and graphs validate.
 unset LD_LIBRARY_PATH
 "$prefix/bin/dermis" validate "$prefix/share/dermis/graphs/sap.json"
 # Plain names of scenes, profiles and graphs resolve to installed files, from any folder.
-(cd "$scratch" && "$prefix/bin/dermis" report-bug "$prefix/share/dermis/graphs/sap.json" --size 32x18 --count 1 --out bug &&
+(cd "$scratch" &&
+  "$prefix/bin/dermis" report-bug "$prefix/share/dermis/graphs/sap.json" --size 32x18 --count 1 \
+    --out bug &&
   "$prefix/bin/dermis" sheet --graphs sap --profiles skin --size 32x18 --out sheet.png &&
   "$prefix/bin/dermis" bench stability --techniques burley --cases light_nan --quick --quiet)
 
 # The static library exports only the interface.
-others=$(nm -g --defined-only "$lib/libdermis.a" | awk 'NF == 3 { print $3 }' | grep -v '^dermis_' || true)
-[[ -z $others ]] || { echo "libdermis.a exports more than dermis_*:"; echo "$others" | head; exit 1; }
-readelf -d "$lib/libdermis.so" | grep -q 'SONAME.*libdermis\.so\.0\]' || { echo "the SONAME is not libdermis.so.0"; exit 1; }
+others=$(nm -g --defined-only "$lib/libdermis.a" | awk 'NF == 3 { print $3 }' |
+  grep -v '^dermis_' || true)
+[[ -z $others ]] ||
+  { echo "libdermis.a exports more than dermis_*:"; echo "$others" | head; exit 1; }
+readelf -d "$lib/libdermis.so" | grep -q 'SONAME.*libdermis\.so\.0\]' ||
+  { echo "the SONAME is not libdermis.so.0"; exit 1; }

@@ -8,5 +8,6 @@ here=$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")
 cd "$here/../../../.."
 [[ -x "$2" ]] || skip "there is no Node"
 [[ -d "$3/playwright-core" ]] || skip "playwright-core was not fetched"
-chromium=$(command -v chromium || command -v chromium-browser) || skip "there is no chromium (Debian: chromium)"
+chromium=$(command -v chromium || command -v chromium-browser) ||
+  skip "there is no chromium (Debian: chromium)"
 exec "$2" "$here/$1" "$3" "$chromium" "$4" "$5"
