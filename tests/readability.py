@@ -34,8 +34,12 @@ def text_of(root, name):
 
 
 def wide_markdown(text):
-    """Yields (line number, kind) of lines that are too wide, code blocks and lines that end in a link excepted."""
+    """Yields (line number, kind) of lines that are too wide.
+
+    Code blocks, and lines that are wide because of a link, are excepted.
+    """
     in_code = False
+    link = re.compile(r"\]\([^)]*\)|<https?://[^>]*>|!\[[^\]]*\]")
     for number, line in enumerate(text.splitlines(), 1):
         if re.match(r"\s*(```|~~~)", line):
             in_code = not in_code
@@ -44,7 +48,7 @@ def wide_markdown(text):
         elif line.lstrip().startswith("|"):
             if len(line) > TABLE_COLUMNS:
                 yield number, "table"
-        elif len(line) > PROSE_COLUMNS and len(re.sub(r"\]\([^)]*\)|<https?://[^>]*>|!\[[^\]]*\]", "]", line)) > PROSE_COLUMNS:
+        elif len(link.sub("]", line)) > PROSE_COLUMNS:
             yield number, "prose"
 
 
@@ -68,7 +72,10 @@ def comments(name, text):
 
 
 def largest_struct(root, names):
-    """Returns (members, name, file) of the struct or class below a folder `compile` with most members."""
+    """Returns (members, name, file) of the largest struct or class below a folder `compile`."""
+    end_of_signature = re.compile(r"\)\s*(const)?\s*(noexcept)?\s*(:.*)?$", re.S)
+    no_member = re.compile(r"^\s*(using|friend|static|typedef|enum|struct|class|template)\b|"
+                           r"\)\s*(const|noexcept|=|$)")
     best = (0, "none", "")
     for name in names:
         if "/compile/" not in name or not name.endswith((".hpp", ".cpp")):
@@ -83,12 +90,11 @@ def largest_struct(root, names):
                     depth -= 1
                     if depth == 0:
                         break
-                    if depth == 1 and re.search(r"\)\s*(const)?\s*(noexcept)?\s*(:.*)?$", statement, re.S):
+                    if depth == 1 and end_of_signature.search(statement):
                         statement = ""  # The body of a function ends without a semicolon.
                 elif depth == 1:
                     if char == ";":
-                        is_member = statement.strip() and not re.search(
-                            r"^\s*(using|friend|static|typedef|enum|struct|class|template)\b|\)\s*(const|noexcept|=|$)",
+                        is_member = statement.strip() and not no_member.search(
                             re.sub(r"=.*", "", statement, flags=re.S).strip() or "x")
                         members += (statement.count(",") + 1 if is_member and "<" not in statement
                                     and "(" not in statement else bool(is_member))
@@ -100,10 +106,12 @@ def largest_struct(root, names):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(description=__doc__,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--check", action="store_true")
     parser.add_argument("--list", action="store_true")
-    parser.add_argument("root", nargs="?", default=pathlib.Path(__file__).resolve().parent.parent, type=pathlib.Path)
+    parser.add_argument("root", nargs="?", type=pathlib.Path,
+                        default=pathlib.Path(__file__).resolve().parent.parent)
     arguments = parser.parse_args()
     root = arguments.root
     names = tracked(root)
@@ -113,10 +121,12 @@ def main():
     print(f"files: {len(names)}, lines: {sum(lines.values())}")
     for folder in TOP_LEVEL:
         inside = [name for name in names if name.startswith(folder + "/")]
-        print(f"  {folder + '/':<14}{len(inside):>5} files {sum(lines.get(name, 0) for name in inside):>7} lines")
+        print(f"  {folder + '/':<14}{len(inside):>5} files "
+              f"{sum(lines.get(name, 0) for name in inside):>7} lines")
     members, struct, file = largest_struct(root, names)
     print(f"members of the largest struct in compile/: {members} ({struct}, {file})")
-    print(f"lines of the public header: {sum(lines[name] for name in names if '/include/dermis/' in name)}")
+    print("lines of the public header: "
+          f"{sum(lines[name] for name in names if '/include/dermis/' in name)}")
     documents = [name for name in names if name.endswith(".md")]
     print(f"lines of documents: {sum(lines[name] for name in documents)} in {len(documents)} files")
 
@@ -134,7 +144,8 @@ def main():
         for number, line in enumerate(text.splitlines(), 1):
             if re.search(r"\bissue [0-9]", line):
                 findings["issue"].append(f"{name}:{number}")
-    for kind, title in (("prose", f"Markdown lines over {PROSE_COLUMNS} columns outside tables, code and links"),
+    for kind, title in (("prose", f"Markdown lines over {PROSE_COLUMNS} columns "
+                                  "outside tables, code and links"),
                         ("table", f"table rows over {TABLE_COLUMNS} columns"),
                         ("opener", "comments that begin with " + ", ".join(OPENERS)),
                         ("issue", "mentions of an issue by number")):

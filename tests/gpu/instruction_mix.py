@@ -13,9 +13,9 @@ usage: instruction_mix.py [--trips N,N,...] [--skip BB3-BB7,BB9] [--longest] [--
   --blocks  also print each block's counts and targets, to choose --skip
 
 A subgroup executes an instruction for all of its invocations at once, so counts per subgroup are
-counts per invocation. "memory_wait" and "shared_wait" are waits for loads that were issued since the
-last such wait: of memory, and of shared or scalar memory. "vector" is the sum of vector arithmetic: valu, transcendental and quarter
-rate.
+counts per invocation. "memory_wait" and "shared_wait" are waits for loads that were issued since
+the last such wait: of memory, and of shared or scalar memory. "vector" is the sum of vector
+arithmetic: valu, transcendental and quarter rate.
 """
 import argparse
 import json
@@ -113,12 +113,14 @@ def on_longest_path(blocks, weights):
     position = {block.number: i for i, block in enumerate(blocks)}
     best, following = [0.0] * len(blocks), [None] * len(blocks)
     for i in reversed(range(len(blocks))):
-        next_ones = [position[target] for target in blocks[i].targets if position.get(target, 0) > i]
+        next_ones = [position[target] for target in blocks[i].targets
+                     if position.get(target, 0) > i]
         if blocks[i].falls_through and i + 1 < len(blocks):
             next_ones.append(i + 1)
         if next_ones:
             following[i] = max(next_ones, key=lambda one: best[one])
-        best[i] = weights[i] * vector_of(blocks[i].counts) + (best[following[i]] if next_ones else 0.0)
+        best[i] = (weights[i] * vector_of(blocks[i].counts)
+                   + (best[following[i]] if next_ones else 0.0))
     path, at = [False] * len(blocks), 0
     while at is not None:
         path[at] = True
@@ -161,7 +163,8 @@ def main():
     trips = [float(trip) for trip in options.trips.split(",") if trip]
     total = count(blocks, trips, parse_ranges(options.skip), options.texels, options.longest)
     if options.limit is not None and total["vector"] > options.limit:
-        sys.exit(f"{options.file}: {total['vector']:.0f} vector instructions, limit {options.limit:.0f}")
+        sys.exit(f"{options.file}: {total['vector']:.0f} vector instructions, "
+                 f"limit {options.limit:.0f}")
     if options.json:
         print(json.dumps(total, sort_keys=True))
         return

@@ -8,7 +8,8 @@ usage: write_calibrations.py KERNELS ASSEMBLY FOLDER
 
 No time is measured. Executed instructions are counted in the assembly: each loop runs as often as
 TRIPS says, and EXECUTED of the instructions of each block count, because subgroups skip branches.
-A budget starts from these costs and follows the timestamps of the device, so that their ratios matter most.
+A budget starts from these costs and follows the timestamps of the device, so that their ratios
+matter most.
 """
 import argparse
 import json
@@ -24,8 +25,8 @@ CLASSES = {"large_gpu": gpu_model.RX_6800, "small_gpu": gpu_model.SMALL_RDNA2}
 EXECUTED = 0.75  # fraction of instructions
 SPREAD = 0.3  # assumed deviation of one frame
 UNITS = 4096  # sample units of the modelled frame
-# How often the loops of a kernel run. Others run LOOP times. Of the loops of separable one runs about
-# five times, the other only for pixels that do not share their tile's kernel.
+# How often the loops of a kernel run. Others run LOOP times. Of the loops of separable one runs
+# about five times, the other only for pixels that do not share their tile's kernel.
 TRIPS = {"subsurface.separable": 2, "subsurface.tile_refine": 8}
 LOOP = 4
 # How often nested loops run, from outside in: tiles of a group, levels one after another, texels of
@@ -54,8 +55,10 @@ def executed(work, assembly):
     trips = TRIPS.get(work.split()[0], LOOP)
     loops = instruction_mix.find_loops(blocks)
     nested = NESTED_TRIPS.get(work.split()[0], ())
-    depths = [sum(first <= loop[0] and loop[1] <= last for first, last in loops) - 1 for loop in loops]
-    mix = instruction_mix.count(blocks, [nested[depth] if depth < len(nested) else trips for depth in depths])
+    depths = [sum(first <= loop[0] and loop[1] <= last for first, last in loops) - 1
+              for loop in loops]
+    mix = instruction_mix.count(blocks, [nested[depth] if depth < len(nested) else trips
+                                         for depth in depths])
     return {kind: number * EXECUTED for kind, number in mix.items()}
 
 

@@ -3,8 +3,8 @@
 
 usage: write_limits.py [--worse] LIMITS VALUES...
   LIMITS   the limits file; its rules without "now" are the goals
-  VALUES   output of `dermis kernels --json`, one file per device (check_kernels.sh writes them); if a
-           limit is relative, FAMILY.one_ray_query.json belongs to FAMILY.json (device_limits.py)
+  VALUES   output of `dermis kernels --json`, one file per device (check_kernels.sh writes them); if
+           a limit is relative, FAMILY.one_ray_query.json belongs to FAMILY.json (device_limits.py)
   --worse  also accept values that are worse than the file's present values
 
 Values beyond a goal get a rule with "goal" and "now"; all other rules with "now" are removed.
