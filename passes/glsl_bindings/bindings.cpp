@@ -171,7 +171,7 @@ std::string shared_constants() {
       "sample_allocation.hpp\n"
       "const float allocation_stay = {};\n"
       "const int allocation_first_bin = {};\n"
-      "const float min_patch_cosine = {}; // reference/surface.hpp\n"
+      "const float min_patch_cosine = {}, max_patch_slope = {}; // reference/surface.hpp\n"
       "const int separable_nodes = {}; // separable_kernel.hpp\n"
       "const float separable_first_log2_d = {:.1f};\n"
       "const float separable_log2_d_step = {:.1f};\n"
@@ -204,7 +204,7 @@ std::string shared_constants() {
       subsurface::uniform_max_reach, subsurface::uniform_cell_side, subsurface::probe_max_reach,
       choice::allocation_gain[0], choice::allocation_gain[1], choice::allocation_gain[2],
       choice::allocation_stay, choice::allocation_first_bin, subsurface::min_patch_cosine,
-      subsurface::separable_nodes, subsurface::separable_first_log2_d,
+      subsurface::max_patch_slope, subsurface::separable_nodes, subsurface::separable_first_log2_d,
       subsurface::separable_log2_d_step, subsurface::separable_rows_per_profile,
       subsurface::sap_level_count, subsurface::sap_variant_count,
       static_cast<int>(subsurface::SapVariant::half),

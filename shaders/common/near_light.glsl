@@ -6,6 +6,7 @@
 
 #include "constants.glsl"
 #include "common/environment.glsl"
+#include "common/patch.glsl"
 #include "common/profile.glsl"
 
 const int near_reach = 2;                // pixels to each side that explain scattered light
@@ -31,17 +32,20 @@ shared vec4 near_rows[near_columns * near_side];
 int near_index(ivec2 local) { return (local.y + near_ring) * near_side + local.x + near_ring; }
 
 // Returns the smaller change of depth to either side along an axis, mm; 0 if no neighbour has the
-// profile.
-float near_rise(int index, int step) {
+// profile and a depth within `max_step`.
+float near_rise(int index, int step, float max_step) {
   float depth = near_depth[index], minimum = 1e30;
   for (int side = -1; side <= 1; side += 2) {
     int other = index + side * step;
     if (near_profile[other] == near_profile[index] && near_depth[other] > 0.0)
       minimum = min(minimum, abs(near_depth[other] - depth));
   }
-  return minimum < 1e30 ? minimum : 0.0;
+  return minimum <= max_step ? minimum : 0.0;
 }
-vec2 near_rise(int index) { return vec2(near_rise(index, 1), near_rise(index, near_side)); }
+vec2 near_rise(int index) {
+  vec2 max_step = max_patch_step(near_depth[index]);
+  return vec2(near_rise(index, 1, max_step.x), near_rise(index, near_side, max_step.y));
+}
 
 // Returns the pixel of texel i of the shared square around the group with first pixel `first`.
 ivec2 near_pixel(ivec2 first, int i) {

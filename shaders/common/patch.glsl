@@ -12,11 +12,19 @@ struct patch_neighbours {
   vec2 before, after; // x: along the row, y: along the column
 };
 
+// Returns the maximum difference in depth, along the row and the column, of neighbours on one
+// surface, mm.
+vec2 max_patch_step(float depth) { return max_patch_slope * pixel_footprint(depth); }
+
 // Returns the tangent along an axis, towards the neighbour of the same profile that is nearer in
-// depth. Without such a neighbour the tangent lies across the view.
-vec3 patch_tangent(ivec2 pixel, ivec2 axis, float before, float after, float depth, vec3 position) {
+// depth, if their depths differ by at most `max_step` (mm). Without such a neighbour the tangent
+// lies across the view.
+vec3 patch_tangent(ivec2 pixel, ivec2 axis, float before, float after, float depth, float max_step,
+                   vec3 position) {
   bool backwards = before > 0.0 && (after <= 0.0 || abs(before - depth) < abs(after - depth));
-  float neighbour = backwards ? before : (after > 0.0 ? after : depth);
+  float neighbour = backwards ? before : after;
+  if (neighbour <= 0.0 || abs(neighbour - depth) > max_step)
+    neighbour = depth;
   int side = backwards ? -1 : 1;
   return float(side) * (view_position(vec2(pixel + side * axis), neighbour) - position);
 }
@@ -32,9 +40,11 @@ surface_patch build_patch(ivec2 pixel, float depth, patch_neighbours around) {
   vec3 position = view_position(vec2(pixel), depth);
   vec3 ray = is_perspective() ? position / depth : vec3(0.0, 0.0, -1.0);
   vec3 viewer = -normalize(ray);
-  vec3 normal =
-      cross(patch_tangent(pixel, ivec2(1, 0), around.before.x, around.after.x, depth, position),
-            patch_tangent(pixel, ivec2(0, 1), around.before.y, around.after.y, depth, position));
+  vec2 max_step = max_patch_step(depth);
+  vec3 normal = cross(patch_tangent(pixel, ivec2(1, 0), around.before.x, around.after.x, depth,
+                                    max_step.x, position),
+                      patch_tangent(pixel, ivec2(0, 1), around.before.y, around.after.y, depth,
+                                    max_step.y, position));
   float size = length(normal);
   normal = size > 0.0 ? normal / size : viewer;
   if (dot(normal, viewer) < 0.0)

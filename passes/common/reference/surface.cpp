@@ -52,18 +52,23 @@ struct DepthImage {
   }
 };
 
-// Returns the tangent along one axis: the difference to the neighbour (of the same profile) that is
-// nearer in depth; straight across the view if neither exists.
+// Returns the tangent along one axis: the difference to the neighbour (of the same profile, within
+// max_patch_slope) that is nearer in depth; straight across the view if neither exists.
 Vector3 tangent(const DepthImage& image, const PixelRays& rays, int64_t x, int64_t y, int64_t dx,
                 int64_t dy) {
   const uint8_t id = image.profile[static_cast<size_t>(y) * image.width + static_cast<size_t>(x)];
   const double z = image.at(x, y);
   const auto here = pixel_position(rays, double(x), double(y), z);
-  const bool after = image.holds(x + dx, y + dy, id), before = image.holds(x - dx, y - dy, id);
-  int64_t side = after ? 1 : -1;
-  if (after && before &&
-      std::abs(image.at(x - dx, y - dy) - z) < std::abs(image.at(x + dx, y + dy) - z))
-    side = -1;
+  const double max_step = max_patch_slope * std::abs(dx != 0 ? rays.scale_x : rays.scale_y) *
+                          (rays.perspective ? z : 1);
+  const auto step_to = [&](int64_t side) {
+    return std::abs(image.at(x + side * dx, y + side * dy) - z);
+  };
+  const auto belongs = [&](int64_t side) {
+    return image.holds(x + side * dx, y + side * dy, id) && step_to(side) <= max_step;
+  };
+  const bool after = belongs(1), before = belongs(-1);
+  const int64_t side = after && !(before && step_to(-1) < step_to(1)) ? 1 : -1;
   const double px = double(x + side * dx), py = double(y + side * dy);
   const double neighbour = after || before ? image.at(x + side * dx, y + side * dy) : z;
   return scaled(pixel_position(rays, px, py, neighbour) - here, double(side));

@@ -24,9 +24,11 @@ inline double length(const Vector3& a) {
 }
 
 // The part of the surface covered by one pixel: the intersection of the pixel's footprint with the
-// tangent plane at its centre. The plane follows from depth differences to the neighbours of the
-// same profile (on each axis the neighbour that is nearer in depth), never from a shading normal.
-// Its tilt is limited: cos >= min_patch_cosine.
+// tangent plane at its centre. The plane follows from depth differences, never from a shading
+// normal: on each axis from the difference to the neighbour of the same profile that is nearer in
+// depth. A neighbour beyond max_patch_slope is on another surface; without a neighbour on its
+// surface the patch lies across the view on that axis. Its tilt is limited: cos >=
+// min_patch_cosine.
 struct Patch {
   Vector3 position{}; // view space, metres
   Vector3 normal{};   // unit length, towards the viewer
@@ -36,6 +38,9 @@ struct Patch {
 // 1/cos is capped at 1/0.15 (definition of the reference): a grazing patch counts for at most 6.7
 // footprints.
 inline constexpr double min_patch_cosine = 0.15;
+// Slope of a patch at this limit, 6.59: change of depth per pixel, in sides of the pixel along the
+// axis. A steeper step between two pixels cannot be one visible surface.
+inline const double max_patch_slope = std::sqrt(1 / (min_patch_cosine * min_patch_cosine) - 1);
 
 struct Surface {
   uint32_t width = 0, height = 0;

@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <functional>
 #include <set>
@@ -230,38 +231,85 @@ TEST(Reference, PixelsWithoutSurfaceKeepTheirLight) {
 TEST(Reference, GrazingPatches_AreaIsCapped) {
   Seen view(8, 8, {2e-3, 2e-3, 2e-3});
   for (uint32_t y = 0; y < 8; ++y)
-    for (uint32_t x = 0; x < 8; ++x)
-      view.depth[view.at(x, y)] = 0.5f + 0.1f * float(x);
+    for (uint32_t x = 0; x < 8; ++x) // Each axis is below the cap, both together are above.
+      view.depth[view.at(x, y)] = 0.5f + 6e-3f * float(x + y);
   const Surface surface = build_surface(8, 8, view.rays, view.depth, view.profile, 1);
   for (const Patch& patch : surface.patches)
     EXPECT_NEAR(patch.area, 1e-6 / min_patch_cosine, 1e-12);
 }
 
 // The slope of the cap is 6.591 pixel sides. A patch below the cap keeps its normal; a patch just
-// above is tilted back to the cap, so its plane rises no further. (cos = 0.15, so the slope is
-// sqrt(1 / 0.15^2 - 1).)
+// above, with neighbours within the cap on each axis, is tilted back to the cap, so its plane rises
+// no further. Along an axis beyond the cap no neighbour belongs to the patch.
 TEST(Reference, GrazingPatches_TiltIsCapped) {
-  const double largest_slope = std::sqrt(1 / (min_patch_cosine * min_patch_cosine) - 1);
-  for (const double slope : {6.0, 6.58, 6.6, 7.0, 100.0})
+  struct Case {
+    double slope_x, slope_y, tilt;
+  };
+  for (const Case& one : {Case{6, 0, 6}, Case{0, 6.58, 6.58}, Case{4, 4, std::hypot(4, 4)},
+                          Case{6.58, 1, max_patch_slope}, Case{5, -6, max_patch_slope},
+                          Case{6.6, 0, 0}, Case{0, 100, 0}, Case{2, 7, 2}}) {
+    Seen view(8, 8, {2e-3, 2e-3, 2e-3});
+    for (uint32_t y = 0; y < 8; ++y)
+      for (uint32_t x = 0; x < 8; ++x)
+        view.depth[view.at(x, y)] =
+            static_cast<float>(0.9 + 1e-3 * (one.slope_x * x + one.slope_y * y));
+    const Surface surface = build_surface(8, 8, view.rays, view.depth, view.profile, 1);
+    // Depths are floats: the error of a step of 1e-3 m at 1 m is up to 6e-8 / 1e-3 per pixel.
+    for (const Patch& patch : surface.patches) {
+      const double tilt = std::hypot(patch.normal[0], patch.normal[1]) / patch.normal[2];
+      EXPECT_NEAR(tilt, one.tilt, 5e-4) << one.slope_x << " " << one.slope_y;
+    }
+  }
+}
+
+// Returns the tilt of a patch along both axes: change of depth in metres per metre across the view.
+std::array<double, 2> tilt_of(const Patch& patch) {
+  return {patch.normal[0] / patch.normal[2], patch.normal[1] / patch.normal[2]};
+}
+
+TEST(Reference, IsolatedPixels_PatchesLieAcrossTheView) {
+  Seen view(9, 9, {2e-3, 2e-3, 2e-3});
+  for (uint32_t y = 0; y < 9; ++y)
+    for (uint32_t x = 0; x < 9; ++x) // Alternates between two planes 5 cm apart.
+      view.depth[view.at(x, y)] = (x + y) % 2 == 0 ? 0.5f : 0.55f;
+  const Surface surface = build_surface(9, 9, view.rays, view.depth, view.profile, 1);
+  for (const Patch& patch : surface.patches)
+    EXPECT_NEAR(patch.area, 1e-6, 1e-12);
+}
+
+TEST(Reference, NeighbourOnAnotherSurface_OtherSideCounts) {
+  // A plane with slope 1 ends at column 4; beyond it lies another surface.
+  Seen view(8, 8, {2e-3, 2e-3, 2e-3});
+  for (const float other : {0.2f, 0.9f}) {
+    for (uint32_t y = 0; y < 8; ++y)
+      for (uint32_t x = 0; x < 8; ++x)
+        view.depth[view.at(x, y)] = x <= 4 ? 0.5f + 1e-3f * float(x) : other;
+    const Surface surface = build_surface(8, 8, view.rays, view.depth, view.profile, 1);
+    for (uint32_t x = 0; x < 8; ++x) {
+      const auto [tilt_x, tilt_y] = tilt_of(surface.patches[view.at(x, 3)]);
+      EXPECT_NEAR(tilt_x, x <= 4 ? 1 : 0, 1e-3) << x;
+      EXPECT_NEAR(tilt_y, 0, 1e-6) << x;
+    }
+  }
+}
+
+TEST(Reference, PatchNeighbours_AreMeasuredInSidesOfTheirAxis) {
+  // Pixels of 1 mm x 4 mm. Steps of 10 mm are 10 sides along a row and 2.5 along a column.
+  for (const bool perspective : {false, true}) {
+    Seen view(8, 8, {2e-3, 2e-3, 2e-3});
+    const double distance = perspective ? 20 : 1;
+    view.rays = {1e-3 / distance, -3.5e-3 / distance, -4e-3 / distance, 14e-3 / distance,
+                 perspective};
     for (const bool down : {false, true}) {
-      Seen view(8, 8, {2e-3, 2e-3, 2e-3});
       for (uint32_t y = 0; y < 8; ++y)
         for (uint32_t x = 0; x < 8; ++x)
-          view.depth[view.at(x, y)] = static_cast<float>(0.5 + slope * 1e-3 * (down ? y : x));
+          view.depth[view.at(x, y)] = static_cast<float>(distance + 10e-3 * (down ? y : x));
       const Surface surface = build_surface(8, 8, view.rays, view.depth, view.profile, 1);
-      const double expected = std::min(slope, largest_slope);
-      // Depths are floats: the error of a step of 6e-3 m at 1.2 m is up to 6e-8 / 6e-3, 1e-5 of the
-      // slope.
-      for (const Patch& patch : surface.patches) {
-        const double tilt = std::hypot(patch.normal[0], patch.normal[1]) / patch.normal[2];
-        EXPECT_NEAR(tilt, expected, 1e-4 * expected) << slope;
-        const double x = -view.rays.offset_x / view.rays.scale_x,
-                     y = -view.rays.offset_y / view.rays.scale_y;
-        const Vector3 here = patch_point(view.rays, patch, x, y),
-                      next = patch_point(view.rays, patch, x + (down ? 0 : 1), y + (down ? 1 : 0));
-        EXPECT_NEAR(std::abs(next[2] - here[2]), expected * 1e-3, 1e-4 * expected * 1e-3) << slope;
-      }
+      const auto [tilt_x, tilt_y] = tilt_of(surface.patches[view.at(3, 3)]);
+      EXPECT_NEAR(std::abs(tilt_x), 0, 2e-2) << perspective << down;
+      EXPECT_NEAR(std::abs(tilt_y), down ? 2.5 : 0, 5e-2) << perspective << down;
     }
+  }
 }
 
 TEST(Reference, ResultIsIndependentOfTheThreadCount) {

@@ -1,5 +1,6 @@
 #include "integration/tools/command/run/surface_warnings.hpp"
 #include "passes/common/dispatch.hpp"
+#include "passes/common/reference/surface.hpp"
 
 #include <fmt/format.h>
 
@@ -23,7 +24,7 @@ struct DepthPicture {
     return double(frame.depth.values[size_t{y} * frame.description.width + x]);
   }
   // Returns whether both neighbours along the axis are nearer or both farther than the pixel, each
-  // beyond the steepest slope.
+  // beyond the slope of a patch.
   bool is_isolated(uint32_t x, uint32_t y, uint32_t dx, uint32_t dy) const {
     const Rectangle& render = frame.description.render;
     if (x < render.x + dx || y < render.y + dy || x + dx >= render.x + render.width ||
@@ -36,7 +37,7 @@ struct DepthPicture {
     const double side = std::abs(dx > 0 ? frame.rays.scale_x : frame.rays.scale_y) *
                         (frame.rays.perspective ? depth : 1.0);
     return before * after > 0 &&
-           std::min(std::abs(before), std::abs(after)) > steepest_slope * side;
+           std::min(std::abs(before), std::abs(after)) > subsurface::max_patch_slope * side;
   }
 };
 

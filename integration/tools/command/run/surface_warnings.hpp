@@ -15,10 +15,9 @@ inline constexpr double largest_square_aspect = 1.07;
 
 // Returns the fraction (0..1) of the 8x8 tiles with subsurface that show a dithered surface. In
 // such a tile at least an eighth of the pixels have two neighbours, along a row or a column, that
-// are both nearer or both farther by more than steepest_slope pixel sides. A screen door of a
+// are both nearer or both farther by more than max_patch_slope pixel sides. A screen door of a
 // quarter of the pixels reaches twice an eighth.
 double dithered_tiles(const CapturedFrame& frame);
-inline constexpr double steepest_slope = 6.6; // of one surface: the cap of its patches, cos 0.15
 // `sap` has an RMSE of 0.149 where a quarter of the pixels is 5 cm in front (docs/limits.md). This
 // fraction of such tiles on its own limits a frame to 0.149 * sqrt(0.02) = 0.021, 33.5 dB. Shipped
 // scenes have no such tile; thin parts and folds of heads flag a smaller fraction.
