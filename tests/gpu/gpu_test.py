@@ -157,6 +157,25 @@ BB3:
         divergent = instruction_mix.count(self.blocks, [4], longest=True)
         self.assertEqual(divergent["vector"], 2 + 4)
 
+    def test_longest_path_runs_through_loops(self):
+        # The first block of the loop leaves it; its second block only leads back.
+        blocks = instruction_mix.read_blocks("""
+BB0:
+\ts_mov_b32 s0, 0                         ; be800380
+BB1:
+\tv_add_f32_e32 v0, v1, v2                ; 06000501
+\ts_cbranch_scc1 BB3                      ; bf850001
+BB2:
+\tv_exp_f32_e32 v0, v0                    ; 7e004b00
+\ts_branch BB1                            ; bf820001
+BB3:
+\tv_add_f32_e32 v0, v1, v2                ; 06000501
+\tv_add_f32_e32 v0, v1, v2                ; 06000501
+\ts_endpgm                                ; bf810000
+""".splitlines())
+        total = instruction_mix.count(blocks, [4], longest=True)
+        self.assertEqual((total["transcendental"], total["valu"]), (4, 4 + 2))
+
 
 class WriteLimits(unittest.TestCase):
     def write_one_ray_query(self, *scratch):

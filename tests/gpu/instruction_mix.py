@@ -109,14 +109,25 @@ def vector_of(counts):
 
 def on_longest_path(blocks, weights):
     """Returns for each block whether it is on the path with the most vector instructions. Branches
-    back to an earlier block are loops, whose blocks `weights` multiplies."""
+    back to an earlier block are loops, whose blocks `weights` multiplies; the path then goes on
+    behind the loop."""
     position = {block.number: i for i, block in enumerate(blocks)}
+    loop_ends = dict(find_loops(blocks))
     best, following = [0.0] * len(blocks), [None] * len(blocks)
+
+    def next_of(i):
+        ones = [position[target] for target in blocks[i].targets if target in position]
+        return ones + [i + 1] if blocks[i].falls_through and i + 1 < len(blocks) else ones
+
+    def ends_of_loop(first):
+        """Returns the blocks behind a loop to which its blocks lead."""
+        last = loop_ends[first]
+        return [one for i in range(first, last + 1) for one in next_of(i) if one > last]
+
     for i in reversed(range(len(blocks))):
-        next_ones = [position[target] for target in blocks[i].targets
-                     if position.get(target, 0) > i]
-        if blocks[i].falls_through and i + 1 < len(blocks):
-            next_ones.append(i + 1)
+        next_ones = [one for one in next_of(i) if one > i]
+        for first in (one for one in next_of(i) if one <= i):
+            next_ones += ends_of_loop(first)
         if next_ones:
             following[i] = max(next_ones, key=lambda one: best[one])
         best[i] = (weights[i] * vector_of(blocks[i].counts)
