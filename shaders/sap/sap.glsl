@@ -105,12 +105,14 @@ sap_scattered sap_unpack_scattered_full(uvec4 bits) {
   return sap_scattered(uintBitsToFloat(bits.xyz), fractions.a, fractions.rgb);
 }
 
+// Values of the frame, read once per invocation and not again in every branch.
+float sap_side = sqrt(abs(frame.ray_scale.x * frame.ray_scale.y));
+float sap_side_per_depth = is_perspective() ? sap_side : 0.0;
+float sap_side_at_any_depth = is_perspective() ? 0.0 : sap_side;
+ivec2 sap_view_size = frame.rect.zw;
+
 // Returns the geometric mean of a pixel's sides at a depth, mm.
-float sap_footprint(float depth) {
-  float side = sqrt(abs(frame.ray_scale.x * frame.ray_scale.y));
-  // One operation per depth; the factors are uniform.
-  return depth * (is_perspective() ? side : 0.0) + (is_perspective() ? 0.0 : side);
-}
+float sap_footprint(float depth) { return depth * sap_side_per_depth + sap_side_at_any_depth; }
 // Returns the rise of a texel's tangent plane at an offset in pixels, mm.
 float sap_rise(float depth, vec2 slope, vec2 offset) {
   return dot(slope, offset) * sap_footprint(depth);
@@ -127,12 +129,12 @@ float sap_off_planes(sap_texel own, sap_texel tap, vec2 offset) {
   return sap_nearer(sap_off_plane(own, tap, offset),
                     tap.depth - own.depth - sap_rise(tap.depth, tap.slope, offset));
 }
-ivec2 sap_level_size(int level) { return (frame.rect.zw + (1 << level) - 1) >> level; }
+ivec2 sap_level_size(int level) { return (sap_view_size + (1 << level) - 1) >> level; }
 // Levels from 1 on have a border of one texel; level 0 has the layout of the view.
 bool sap_inside(ivec2 at, int level) {
   int border = level > 0 ? 1 : 0;
-  return all(greaterThanEqual(at, ivec2(-border))) &&
-         all(lessThan(at, sap_level_size(level) + border));
+  return all(bvec4(greaterThanEqual(at, ivec2(-border)),
+                   lessThan(at, sap_level_size(level) + border)));
 }
 // Returns the tile of the view that contains a pixel. Level 0 is written only in tiles with
 // subsurface. Coarser levels write the texels that contain such a pixel.

@@ -7,7 +7,7 @@
 // - for a box: nothing else;
 // - else: after bindings with `light` and `surface` and, for two layers, `second_light` and
 //   `second_surface`, or, in kernels that compute several levels (SAP_WINDOW), after functions with
-//   the names and arguments of finer_surface() to second_finer_light().
+//   the names and arguments of is_computed() to second_finer_light().
 #ifndef DERMIS_SAP_DOWN_GLSL
 #define DERMIS_SAP_DOWN_GLSL
 
@@ -42,6 +42,8 @@ struct sap_parent {
   int base;   // texel shape: place of the first child in shared memory
   bool two;   // a child has two layers
 };
+// Block shape: always true, because all children are in registers.
+bool has_second_children(sap_parent parent) { return parent.two || !texel_shape; }
 const sap_texel no_texel = sap_texel(0.0, vec2(0.0), 0.0, 0.0, 0u);
 
 // The parents of a block share children.
@@ -54,19 +56,22 @@ int shared_child(int parent, int child) {
 #ifndef SAP_BOX
 #ifndef SAP_WINDOW
 // Return the surface and light of a texel of the finer level at an address in its image. `bits`:
-// its surface.
-uvec4 finer_surface(ivec2 address, int finer) { return texelFetch(surface_image, address, 0); }
-vec4 finer_light(ivec2 address, int finer, uvec4 bits) {
+// its surface. `computed`: the same dispatch computes the finer level.
+bool is_computed(int finer) { return false; }
+uvec4 finer_surface(ivec2 address, int finer, bool computed) {
+  return texelFetch(surface_image, address, 0);
+}
+vec4 finer_light(ivec2 address, int finer, bool computed, uvec4 bits) {
   return sap_light(bits, texelFetch(light_image, address, 0), settings.storage == STORAGE_FULL);
 }
 #ifdef SAP_SECOND
-bool finer_has_second(uvec4 bits, int finer) {
+bool finer_has_second(uvec4 bits, bool computed) {
   return sap_has_second(bits) && has_second_surface() && has_second_light();
 }
-uvec4 second_finer_surface(ivec2 address, int finer) {
+uvec4 second_finer_surface(ivec2 address, int finer, bool computed) {
   return texelFetch(second_surface_image, address, 0);
 }
-vec4 second_finer_light(ivec2 address, int finer, uvec4 bits) {
+vec4 second_finer_light(ivec2 address, int finer, bool computed, uvec4 bits) {
   return sap_light(bits, texelFetch(second_light_image, address, 0),
                    settings.storage == STORAGE_FULL);
 }
@@ -77,12 +82,28 @@ uvec4 block_surface[side * side];
 vec4 block_light[side * side];
 
 // Children of the group's tile, in rows with the even columns first: invocations next to each other
-// read words next to each other.
-const int tile_side = 18;
-shared uvec4 tile_surface[texel_shape ? tile_side * tile_side : 1];
-shared uint tile_light[texel_shape ? tile_side * tile_side : 1]; // r, g unless `storage` is full
+// read words next to each other. With SAP_SECOND_IN_TILE their second layers follow.
+const int tile_side = 18, tile_texels = tile_side * tile_side;
+#ifdef SAP_SECOND_IN_TILE
+const int tile_layers = 2;
+#else
+const int tile_layers = 1;
+#endif
+shared uvec4 tile_surface[texel_shape ? tile_layers * tile_texels : 1];
+// r, g unless `storage` is full
+shared uint tile_light[texel_shape ? tile_layers * tile_texels : 1];
 
 int place_in_tile(int x, int y) { return y * tile_side + (x >> 1) + tile_side / 2 * (x & 1); }
+// Return the position of texel i of the tile, row by row, and its place. Division by 18 for
+// numbers below 512, because some GPUs multiply 32 bits slowly.
+ivec2 in_tile(int i) {
+  int y = (i & 511) * 57 >> 10;
+  return ivec2(i - (y << 4) - (y << 1), y);
+}
+int place_of_texel(int i) {
+  int x = in_tile(i).x;
+  return i - x + (x >> 1) + tile_side / 2 * (x & 1);
+}
 int place_of_child(sap_parent parent, int c) {
   return parent.base + (c >> 2 & 3) * tile_side + ((c & 3) >> 1) + tile_side / 2 * (c & 1);
 }
@@ -92,24 +113,51 @@ ivec2 address_of_child(sap_parent parent, int c) {
 
 bool child_written(texel_block block, ivec2 at, int finer) {
   ivec2 address = finer > 0 ? at + 1 : at;
-  return sap_inside(at, finer) && tile_written(block.children, (address >> 3) - 2 * block.tile + 1);
+  bool written = tile_written(block.children, (address >> 3) - 2 * block.tile + 1);
+  return all(bvec2(sap_inside(at, finer), written));
 }
-// Texel shape: reads the children of all parents of the tile.
-void read_tile(texel_block block, int finer) {
+// Texel shape: reads the children of all parents of the tile. An invocation first loads several
+// children, so that it waits for memory once; it does not branch around children that were not
+// written, but reads others instead.
+void read_tile(texel_block block, int finer, bool computed) {
+  const int batch = 3;
   ivec2 corner = 2 * (8 * block.tile - 1) - 1;
-  [[dont_unroll]] for (int i = int(gl_LocalInvocationIndex); i < tile_side * tile_side;
-                         i += int(group_lanes)) {
-    int y = i / tile_side, x = i - y * tile_side;
-    ivec2 at = corner + ivec2(x, y);
-    uvec4 bits = uvec4(0u);
-    vec4 light = vec4(0.0);
-    if (child_written(block, at, finer)) {
-      bits = finer_surface(sap_address(at, finer), finer);
-      light = finer_light(sap_address(at, finer), finer, bits);
+  [[dont_unroll]] for (int first = int(gl_LocalInvocationIndex); first < tile_texels;
+                       first += batch * int(group_lanes)) {
+    ivec2 address[batch];
+    bool needed[batch];
+    uvec4 bits[batch];
+    vec4 light[batch];
+    [[unroll]] for (int k = 0; k < batch; ++k) {
+      int i = first + k * int(group_lanes);
+      ivec2 at = corner + in_tile(i);
+      needed[k] = all(bvec2(i < tile_texels, child_written(block, at, finer)));
+      address[k] = needed[k] ? sap_address(at, finer) : ivec2(0);
+      bits[k] = finer_surface(address[k], finer, computed);
+      light[k] = finer_light(address[k], finer, computed, bits[k]);
     }
-    int place = place_in_tile(x, y);
-    tile_surface[place] = bits;
-    tile_light[place] = packHalf2x16(light.rg);
+    [[unroll]] for (int k = 0; k < batch; ++k) {
+      int i = first + k * int(group_lanes), place = place_of_texel(i);
+      if (i < tile_texels) {
+        tile_surface[place] = needed[k] ? bits[k] : uvec4(0u);
+        tile_light[place] = needed[k] ? packHalf2x16(light[k].rg) : 0u;
+      }
+    }
+#ifdef SAP_SECOND_IN_TILE
+    [[unroll]] for (int k = 0; k < batch; ++k) {
+      needed[k] = all(bvec2(needed[k], finer_has_second(bits[k], computed)));
+      address[k] = mix(ivec2(0), address[k], bvec2(needed[k]));
+      bits[k] = second_finer_surface(address[k], finer, computed);
+      light[k] = second_finer_light(address[k], finer, computed, bits[k]);
+    }
+    [[unroll]] for (int k = 0; k < batch; ++k) {
+      int i = first + k * int(group_lanes), place = tile_texels + place_of_texel(i);
+      if (i < tile_texels) {
+        tile_surface[place] = needed[k] ? bits[k] : uvec4(0u);
+        tile_light[place] = needed[k] ? packHalf2x16(light[k].rg) : 0u;
+      }
+    }
+#endif
   }
   barrier();
 }
@@ -118,9 +166,9 @@ void read_block(texel_block block, ivec2 first, int finer) {
   [[unroll]] for (int i = 0; i < side * side; ++i) {
     ivec2 at = 2 * first - 1 + ivec2(i % side, i / side);
     bool needed = child_written(block, at, finer);
-    block_surface[i] = needed ? finer_surface(sap_address(at, finer), finer) : uvec4(0u);
+    block_surface[i] = needed ? finer_surface(sap_address(at, finer), finer, false) : uvec4(0u);
     block_light[i] =
-        needed ? finer_light(sap_address(at, finer), finer, block_surface[i]) : vec4(0.0);
+        needed ? finer_light(sap_address(at, finer), finer, false, block_surface[i]) : vec4(0.0);
   }
 }
 // Prepares the children of parent k of the block.
@@ -145,51 +193,64 @@ sap_parent take_parent(texel_block block, int k, int finer) {
 }
 #endif
 
-// Return child c of the parent: 0 to 15 of the first layer, 16 to 31 of the second. The id is 0 if
-// there is none.
-sap_texel child_of(sap_parent parent, int c) {
+// Return child c of the parent, of its second layer if `second`. The id is 0 if there is none.
+sap_texel child_of(sap_parent parent, int c, bool second) {
 #ifndef SAP_BOX
   if (texel_shape) {
+#ifdef SAP_SECOND_IN_TILE
+    return sap_unpack(tile_surface[place_of_child(parent, c) + (second ? tile_texels : 0)]);
+#else
     uvec4 bits = tile_surface[place_of_child(parent, c)];
-    if (c < children_a_layer)
-      return sap_unpack(bits);
 #ifdef SAP_SECOND
-    if (finer_has_second(bits, parent.finer))
-      return sap_unpack(second_finer_surface(address_of_child(parent, c), parent.finer));
+    if (second) {
+      bool computed = is_computed(parent.finer), there = finer_has_second(bits, computed);
+      ivec2 address = mix(ivec2(0), address_of_child(parent, c), bvec2(there));
+      bits = second_finer_surface(address, parent.finer, computed);
+      bits = mix(uvec4(0u), bits, bvec4(there));
+    }
 #endif
-    return no_texel;
+    return sap_unpack(bits);
+#endif
   }
 #endif
-  return children[c];
+  return children[second ? children_a_layer + c : c];
 }
-vec4 light_of(sap_parent parent, int c, uint id) {
+vec4 light_of(sap_parent parent, int c, bool second, uint id) {
 #ifndef SAP_BOX
   if (texel_shape) {
     vec4 light = vec4(0.0);
     int place = place_of_child(parent, c);
     ivec2 address = address_of_child(parent, c);
-    if (c < children_a_layer && settings.storage != STORAGE_FULL) {
+    bool computed = is_computed(parent.finer);
+#ifdef SAP_SECOND_IN_TILE
+    place += second ? tile_texels : 0;
+    bool in_tile = settings.storage != STORAGE_FULL;
+#else
+    bool in_tile = !second && settings.storage != STORAGE_FULL;
+#endif
+    if (in_tile) {
       light = vec4(unpackHalf2x16(tile_light[place]),
                    unpackHalf2x16(sap_light_ba(tile_surface[place])));
-    } else if (id != 0u) {
+    } else {
+      address = mix(ivec2(0), address, bvec2(id != 0u));
 #ifdef SAP_SECOND
-      if (c >= children_a_layer)
-        return second_finer_light(address, parent.finer,
-                                  second_finer_surface(address, parent.finer));
+      if (second)
+        light = second_finer_light(address, parent.finer, computed,
+                                   second_finer_surface(address, parent.finer, computed));
+      else
 #endif
-      light = finer_light(address, parent.finer, tile_surface[place]);
+        light = finer_light(address, parent.finer, computed, tile_surface[place]);
+      light = mix(vec4(0.0), light, bvec4(id != 0u));
     }
     return light;
   }
 #endif
-  return child_light[c];
+  return child_light[second ? children_a_layer + c : c];
 }
 
 vec2 offset_of(int child, float spacing) {
-  int place = child % children_a_layer;
-  return (vec2(place % children_across, place / children_across) -
-          0.5 * float(children_across - 1)) *
-         spacing;
+  ivec2 place = ivec2(child, child / children_across) & (children_across - 1);
+  return (vec2(place) - 0.5 * float(children_across - 1)) * spacing;
 }
 float binomial(int child) {
 #ifdef SAP_BOX
@@ -215,10 +276,12 @@ float kept_of(sap_texel seed, sap_texel child, vec2 offset, float per_sigma_mm,
 // Returns the fraction of a child that the layer with seed `before` has not used; 1 without such a
 // layer (id 0).
 float left_of(sap_texel before, sap_texel child, vec2 offset, float spacing) {
-  if (before.id == 0u)
+  if (!texel_shape && before.id == 0u)
     return 1.0;
   float depth_step, per_sigma = 1.0 / (sap_sigma * spacing);
-  return 1.0 - kept_of(before, child, offset, per_sigma / sap_footprint(before.depth), depth_step);
+  float per_sigma_mm = per_sigma / sap_footprint(before.depth);
+  float left = 1.0 - kept_of(before, child, offset, per_sigma_mm, depth_step);
+  return before.id == 0u ? 1.0 : left;
 }
 bool may_seed(sap_parent parent, sap_texel before, sap_texel child, int c) {
   return child.id != 0u &&
@@ -230,7 +293,7 @@ int central(int i) {
 #ifdef SAP_BOX
   return i;
 #else
-  return 16 * (i / 4) + 5 + i % 2 + 4 * (i % 4 / 2);
+  return 5 + (i & 1) + 4 * (i >> 1 & 1);
 #endif
 }
 
@@ -239,13 +302,20 @@ struct seed_search {
   float maximum;
   int child;
 };
-void consider_outer(sap_parent parent, sap_texel before, int c, inout seed_search found) {
-  sap_texel child = child_of(parent, c);
+void consider_outer(sap_parent parent, sap_texel before, int c, bool second,
+                    inout seed_search found) {
+  sap_texel child = child_of(parent, c, second);
   float weight = may_seed(parent, before, child, c) ? binomial(c) * child.mass : 0.0;
   if (weight > hysteresis * found.maximum)
     found = seed_search(child, weight, c);
 }
 
+// Returns the support of a seed's plane by central child b.
+float support_of(sap_parent parent, sap_texel seed, sap_texel near, bool may, int b,
+                 float per_sigma_mm) {
+  float off = sap_off_plane(seed, near, offset_of(central(b), parent.spacing)) * per_sigma_mm;
+  return near.id == seed.id && may ? exp2(sap_factor(sap_depth_width) * off * off) : 0.0;
+}
 // Compares the plane of central child c with the best one so far. `near` and `may`: the central
 // children, and whether each can be a seed.
 void consider_central(sap_parent parent, int layers, sap_texel near[4 * max_layers],
@@ -254,11 +324,11 @@ void consider_central(sap_parent parent, int layers, sap_texel near[4 * max_laye
   seed.depth = at_parent(seed, offset_of(c, parent.spacing));
   float per_sigma_mm = 1.0 / (sap_sigma * parent.spacing * sap_footprint(seed.depth)),
         support = 0.0;
-  [[unroll]] for (int b = 0; b < 4 * layers; ++b) {
-    float off = sap_off_plane(seed, near[b], offset_of(central(b), parent.spacing)) * per_sigma_mm;
-    support +=
-        near[b].id == seed.id && may[b] ? exp2(sap_factor(sap_depth_width) * off * off) : 0.0;
-  }
+  [[unroll]] for (int b = 0; b < 4; ++b)
+    support += support_of(parent, seed, near[b], may[b], b, per_sigma_mm);
+  if (layers > 1 && has_second_children(parent))
+    [[unroll]] for (int b = 4; b < 4 * max_layers; ++b)
+      support += support_of(parent, seed, near[b], may[b], b, per_sigma_mm);
   if (may_be_seed && (found.best.id == 0u || support > hysteresis * found.maximum)) {
     found.best = seed;
     found.maximum = support;
@@ -271,18 +341,35 @@ void consider_central(sap_parent parent, int layers, sap_texel near[4 * max_laye
 sap_texel find_seed(sap_parent parent, int layers, sap_texel before) {
   sap_texel near[4 * max_layers];
   bool may[4 * max_layers];
-  [[unroll]] for (int b = 0; b < 4 * layers; ++b) {
-    near[b] = b < 4 || parent.two || !texel_shape ? child_of(parent, central(b)) : no_texel;
+  [[unroll]] for (int b = 0; b < 4; ++b) {
+    near[b] = child_of(parent, central(b), false);
     may[b] = may_seed(parent, before, near[b], central(b));
+  }
+  if (layers > 1) {
+    [[unroll]] for (int b = 4; b < 4 * max_layers; ++b) {
+      near[b] = no_texel;
+      may[b] = false;
+    }
+    if (has_second_children(parent)) {
+      [[unroll]] for (int b = 4; b < 4 * max_layers; ++b)
+        near[b] = child_of(parent, central(b), true);
+      [[unroll]] for (int b = 4; b < 4 * max_layers; ++b)
+        may[b] = may_seed(parent, before, near[b], central(b));
+    }
   }
   seed_search found = seed_search(no_texel, 0.0, 0);
   if (texel_shape && layers > 1) { // small enough for the instruction cache
-    int last = parent.two ? 8 : 4;
-    [[dont_unroll]] for (int a = 0; a < last; ++a) {
-      sap_texel seed = child_of(parent, central(a));
-      consider_central(parent, layers, near, may, seed, may_seed(parent, before, seed, central(a)),
-                       central(a), found);
+    [[dont_unroll]] for (int a = 0; a < 4; ++a) {
+      sap_texel seed = child_of(parent, central(a), false);
+      bool may_be_seed = may_seed(parent, before, seed, central(a));
+      consider_central(parent, layers, near, may, seed, may_be_seed, central(a), found);
     }
+    if (parent.two)
+      [[dont_unroll]] for (int a = 0; a < 4; ++a) {
+        sap_texel seed = child_of(parent, central(a), true);
+        bool may_be_seed = may_seed(parent, before, seed, central(a));
+        consider_central(parent, layers, near, may, seed, may_be_seed, central(a), found);
+      }
   } else {
     [[unroll]] for (int a = 0; a < 4 * layers; ++a)
       consider_central(parent, layers, near, may, near[a], may[a], central(a), found);
@@ -291,12 +378,14 @@ sap_texel find_seed(sap_parent parent, int layers, sap_texel before) {
   if (found.best.id != 0u)
     return found.best;
   if (texel_shape) {
-    int last = parent.two ? layers * children_a_layer : children_a_layer;
-    [[dont_unroll]] for (int c = 0; c < last; ++c)
-      consider_outer(parent, before, c, found);
+    [[dont_unroll]] for (int c = 0; c < children_a_layer; ++c)
+      consider_outer(parent, before, c, false, found);
+    if (layers > 1 && parent.two)
+      [[dont_unroll]] for (int c = 0; c < children_a_layer; ++c)
+        consider_outer(parent, before, c, true, found);
   } else {
     [[unroll]] for (int c = 0; c < layers * children_a_layer; ++c)
-      consider_outer(parent, before, c, found);
+      consider_outer(parent, before, c % children_a_layer, c >= children_a_layer, found);
   }
   found.best.depth = at_parent(found.best, offset_of(found.child, parent.spacing));
 #endif
@@ -310,21 +399,22 @@ struct reduction {
   vec3 light;
   bool remains; // a child can be the seed of another layer
 };
-void add_child(sap_parent parent, sap_texel seed, sap_texel before, int c, inout reduction sum) {
-  sap_texel child = child_of(parent, c);
+void add_child(sap_parent parent, sap_texel seed, sap_texel before, int c, bool second,
+               inout reduction sum) {
+  sap_texel child = child_of(parent, c, second);
   float spacing = parent.spacing;
   float per_sigma = 1.0 / (sap_sigma * spacing),
         per_sigma_mm = per_sigma / sap_footprint(seed.depth);
   vec2 offset = offset_of(c, spacing);
   float tilt = dot(seed.slope, offset) * per_sigma;
-  if (c < children_a_layer)
+  if (!second)
     sum.all_weight += binomial(c) * exp2(sap_factor(sap_tilt_width_down) * tilt * tilt);
   float depth_step, kept = kept_of(seed, child, offset, per_sigma_mm, depth_step);
   float along = sap_nearer(tilt, depth_step);
   float narrowing = exp2(sap_factor(sap_tilt_width_down) * along * along);
   float flat_weight = binomial(c) * kept * child.mass * left_of(before, child, offset, spacing);
   sum.remains = sum.remains || child.id != 0u && 1.0 - kept >= min_seed_part;
-  vec4 tap = light_of(parent, c, child.id);
+  vec4 tap = light_of(parent, c, second, child.id);
   float weight = flat_weight * narrowing * tap.a;
   sum.mass += flat_weight * narrowing;
   sum.total += weight;
@@ -339,13 +429,14 @@ void add_children(sap_parent parent, int layers, sap_texel seed, sap_texel befor
   if (texel_shape && max_layers > 1) { // small enough for the instruction cache
     [[dont_unroll]] for (int row = 0; row < 4; ++row)
       [[unroll]] for (int column = 0; column < 4; ++column)
-        add_child(parent, seed, before, 4 * row + column, sum);
+        add_child(parent, seed, before, 4 * row + column, false, sum);
     if (layers > 1 && parent.two)
-      [[dont_unroll]] for (int c = children_a_layer; c < 2 * children_a_layer; ++c)
-        add_child(parent, seed, before, c, sum);
+      [[dont_unroll]] for (int row = 0; row < 4; ++row)
+        [[unroll]] for (int column = 0; column < 4; ++column)
+          add_child(parent, seed, before, 4 * row + column, true, sum);
   } else {
     [[unroll]] for (int c = 0; c < layers * children_a_layer; ++c)
-      add_child(parent, seed, before, c, sum);
+      add_child(parent, seed, before, c % children_a_layer, c >= children_a_layer, sum);
   }
 }
 
@@ -355,11 +446,10 @@ struct sap_layer {
   sap_texel seed;
   bool remains;  // a child can be the seed of another layer
 };
-// Computes the layer of the parent that follows the layer with seed `before` (id 0: the first one),
-// from `layers` layers of children.
-sap_layer reduce(sap_parent parent, int layers, sap_texel before) {
-  sap_layer layer = sap_layer(vec4(0.0), uvec4(0u), find_seed(parent, layers, before), false);
-  sap_texel seed = layer.seed;
+// Computes the layer of the parent that has the seed `seed` and follows the layer with seed
+// `before` (id 0: the first one), from `layers` layers of children.
+sap_layer reduce_to(sap_parent parent, int layers, sap_texel seed, sap_texel before) {
+  sap_layer layer = sap_layer(vec4(0.0), uvec4(0u), seed, false);
   if (seed.id == 0u)
     return layer;
   reduction sum = reduction(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, vec2(0.0), vec3(0.0), false);
@@ -375,6 +465,10 @@ sap_layer reduce(sap_parent parent, int layers, sap_texel before) {
         sap_pack_light(layer.light, settings.storage == STORAGE_FULL));
   }
   return layer;
+}
+// Finds the seed, too.
+sap_layer reduce(sap_parent parent, int layers, sap_texel before) {
+  return reduce_to(parent, layers, find_seed(parent, layers, before), before);
 }
 
 #endif

@@ -102,14 +102,16 @@ sap_sum sap_from_coarser(sap_place place, int level, sap_texel own, vec3 fallbac
     float off = sap_off_planes(own, tap, offset);
 #if SAP_COARSE_LAYERS > 1
       if (layers > 1 && (!texel_shape || has_second_corner(bits))) {
-        sap_texel second = sap_unpack(second_corner_bits(place, level, n));
+        uvec4 second_bits = second_corner_bits(place, level, n);
+        sap_texel second = sap_unpack(second_bits);
         float second_off = sap_off_planes(own, second, offset);
         if (sap_takes_second(own, tap, off, second, second_off)) {
-          tap = second;
+          bits = second_bits;
           handed_down = second_scattered_at_corner(place, level, n);
           off = second_off;
         }
       }
+      tap = sap_unpack(bits); // only the bits stay in registers across the branch
 #endif
       off *= per_sigma_mm;
       float kept = tap.id == own.id ? exp2(sap_factor(sap_depth_width) * off * off) : 0.0;

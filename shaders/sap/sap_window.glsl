@@ -1,7 +1,7 @@
 // Neighbourhoods on the way up for a group that computes a tile of level `level` and, before, the
 // texels of all coarser levels on which the tile depends. These texels form a window in each level:
-// 8x8, 5x5, 4x4, then 3x3. The group reads every window with a ring of one texel into shared
-// memory, and passes the values of a window to the next finer one in shared memory.
+// 8x8, 5x5, 4x4, then 3x3. The group reads both layers of every window with a ring of one texel
+// into shared memory, and passes the values of a window to the next finer one in shared memory.
 // Include after bindings with `light`, `surface`, `second_light`, `second_surface`, `levels` and
 // `level_tiles`, and after `block_width` and `block_height`.
 #ifndef DERMIS_SAP_WINDOW_GLSL
@@ -18,8 +18,9 @@ const int tile_ring_texels = 10 * 10;
 const int max_window_texels = 5 * 5;
 const int max_ring_texels = tile_ring_texels + 7 * 7 + 6 * 6 + 2 * 5 * 5; // five levels
 const int max_windows = 5;
-shared uvec4 ring_surface[max_ring_texels];
-shared uvec2 ring_light[max_ring_texels]; // halves, exact unless `storage` is full
+// The second layers follow the first ones.
+shared uvec4 ring_surface[2 * max_ring_texels];
+shared uvec2 ring_light[2 * max_ring_texels]; // halves, exact unless `storage` is full
 // Values of both layers of the window of a level, by the parity of the level.
 shared uvec4 window_scattered[2][2][max_window_texels];
 // Tiles of the coarser levels that are listed: 2x2 tiles from the one of the ring's first texel on.
@@ -42,27 +43,33 @@ struct sap_window {
   int ring;    // index of the first texel of the ring
 };
 int window_side(int window) { return window == 0 ? 8 : max(6 - window, 3); }
+// Returns the index of the first texel of the ring of a window; for 5, the number of texels.
+int window_ring(int window) {
+  return window == 0   ? 0
+         : window == 1 ? 100
+         : window == 2 ? 149
+                       : 185 + (window - 3) * 5 * 5;
+}
 // Returns the window of the level that is `window` levels coarser than `level`.
 sap_window window_of(ivec2 tile, int window) {
-  sap_window found = sap_window(8 * tile - 1, 8, 0);
-  for (int w = 0; w < window; ++w) {
-    int with_ring = window_side(w) + 2;
-    found.ring += with_ring * with_ring;
-    found.first = (found.first - 1) >> 1;
-  }
-  found.side = window_side(window);
+  sap_window found = sap_window(8 * tile - 1, window_side(window), window_ring(window));
+  [[unroll]] for (int w = 1; w < max_windows; ++w)
+    found.first = w <= window ? (found.first - 1) >> 1 : found.first;
   return found;
 }
 
-// Finds the listed tiles of the coarser levels under the windows of a tile.
+// Finds the listed tiles of the coarser levels under the windows of a tile. The invocations divide
+// the levels among them, so that they wait for memory once.
 void find_listed_tiles(ivec2 tile, int windows) {
   if (gl_LocalInvocationIndex < uint(max_windows))
     listed_tiles[gl_LocalInvocationIndex] = 0u;
   barrier();
-  for (int w = 1; w < windows; ++w) {
+  const uint lanes = group_lanes / uint(max_windows - 1);
+  int w = 1 + int(gl_LocalInvocationIndex / lanes);
+  if (w < windows) {
     ivec2 first = window_of(tile, w).first >> 3; // address of the ring's first texel: first - 1 + 1
     uvec2 list = level_tiles_data[settings.level + w];
-    [[dont_unroll]] for (uint i = gl_LocalInvocationIndex; i < list.y; i += group_lanes) {
+    [[dont_unroll]] for (uint i = gl_LocalInvocationIndex % lanes; i < list.y; i += lanes) {
       ivec2 away = tile_of_entry(level_tiles_data[list.x + i]) - first;
       if (all(greaterThanEqual(away, ivec2(0))) && all(lessThan(away, ivec2(2))))
         atomicOr(listed_tiles[w], 1u << uint(2 * away.y + away.x));
@@ -71,55 +78,87 @@ void find_listed_tiles(ivec2 tile, int windows) {
   barrier();
 }
 
-uvec4 level_surface(ivec2 at, int window, int layer) {
-  ivec2 address = sap_address(at, settings.level + window);
+// Return the surface and light of a texel at an address. `bits`: its surface.
+uvec4 level_surface(ivec2 address, int window, int layer) {
   if (window > 0)
     return texelFetch(levels_image,
                       place_in_levels(address, window - 1, surface_in_levels + layer), 0);
   return layer == 0 ? texelFetch(surface_image, address, 0)
                     : texelFetch(second_surface_image, address, 0);
 }
-vec4 level_light(ivec2 at, int window, int layer) {
-  ivec2 address = sap_address(at, settings.level + window);
+vec4 level_light(ivec2 address, int window, int layer, uvec4 bits) {
   if (window > 0)
     return light_from_bits(texelFetch(
         levels_image, place_in_levels(address, window - 1, light_in_levels + layer), 0));
-  return sap_light(level_surface(at, 0, layer),
+  return sap_light(bits,
                    layer == 0 ? texelFetch(light_image, address, 0)
                               : texelFetch(second_light_image, address, 0),
                    settings.storage == STORAGE_FULL);
 }
 
-// Returns whether a texel of a window or of its ring was written.
-bool is_written(texel_block block, sap_window window, ivec2 at, int w) {
-  if (!sap_inside(at, settings.level + w))
-    return false;
-  ivec2 tile = (at + 1) >> 3;
-  if (w == 0)
-    return tile_written(block.around, tile - block.tile + 1);
-  ivec2 away = tile - (window.first >> 3);
-  return (listed_tiles[w] >> uint(2 * away.y + away.x) & 1u) != 0u;
+// A texel that an invocation reads into shared memory.
+struct ring_texel {
+  int window;
+  ivec2 address;
+  bool needed; // it was written
+};
+// Returns texel i of the rings of all windows.
+ring_texel ring_texel_of(texel_block block, int i, bool coarser) {
+  ring_texel texel;
+  texel.window = coarser ? 1 + int(i >= window_ring(2)) + int(i >= window_ring(3)) +
+                               int(i >= window_ring(4))
+                         : 0;
+  sap_window window = window_of(block.tile, texel.window);
+  int local = i - window.ring, across = window.side + 2;
+  // Division by 10, 7, 6 or 5, because GPUs divide integers slowly.
+  int y = local * (across == 10 ? 103 : across == 7 ? 147 : across == 6 ? 171 : 205) >> 10;
+  ivec2 at = window.first - 1 + ivec2(local - y * across, y);
+  ivec2 tile = (at + 1) >> 3, away = tile - (window.first >> 3);
+  bool written = coarser
+                     ? (listed_tiles[texel.window] >> uint(2 * away.y + away.x) & 1u) != 0u
+                     : tile_written(block.around, tile - block.tile + 1);
+  int level = settings.level + texel.window;
+  texel.needed = all(bvec2(written, sap_inside(at, level)));
+  texel.address = mix(ivec2(0), sap_address(at, level), bvec2(texel.needed));
+  return texel;
 }
 
-// Reads the windows of a tile and their rings.
-void read_windows(texel_block block, int windows) {
-  find_listed_tiles(block.tile, windows);
-  for (int w = 0; w < windows; ++w) {
-    sap_window window = window_of(block.tile, w);
-    int across = window.side + 2;
-    [[dont_unroll]] for (int i = int(gl_LocalInvocationIndex); i < across * across;
-                         i += int(group_lanes)) {
-      ivec2 at = window.first - 1 + ivec2(i % across, i / across);
-      uvec4 bits = uvec4(0u);
-      vec4 light = vec4(0.0);
-      if (is_written(block, window, at, w)) {
-        bits = level_surface(at, w, 0);
-        light = level_light(at, w, 0);
+// Reads both layers of texels `begin` to `end` of the rings of window 0 or of all coarser windows.
+// An invocation first loads several texels, so that it waits for memory once per layer; it does not
+// branch around texels that were not written, but reads others instead.
+void read_rings(texel_block block, int begin, int end, bool coarser) {
+  const int batch = 2;
+  [[dont_unroll]] for (int first = begin + int(gl_LocalInvocationIndex); first < end;
+                       first += batch * int(group_lanes)) {
+    ring_texel texel[batch];
+    uvec4 bits[batch];
+    vec4 light[batch];
+    [[unroll]] for (int k = 0; k < batch; ++k)
+      texel[k] = ring_texel_of(block, first + k * int(group_lanes), coarser);
+    [[unroll]] for (int layer = 0; layer < 2; ++layer) {
+      [[unroll]] for (int k = 0; k < batch; ++k) {
+        int window = coarser ? max(texel[k].window, 1) : 0;
+        bits[k] = level_surface(texel[k].address, window, layer);
+        light[k] = level_light(texel[k].address, window, layer, bits[k]);
       }
-      ring_surface[window.ring + i] = bits;
-      ring_light[window.ring + i] = uvec2(packHalf2x16(light.rg), packHalf2x16(light.ba));
+      [[unroll]] for (int k = 0; k < batch; ++k) {
+        int place = first + k * int(group_lanes);
+        if (place < end) {
+          place += layer * max_ring_texels;
+          uvec2 halves = uvec2(packHalf2x16(light[k].rg), packHalf2x16(light[k].ba));
+          ring_surface[place] = mix(uvec4(0u), bits[k], bvec4(texel[k].needed));
+          ring_light[place] = mix(uvec2(0u), halves, bvec2(texel[k].needed));
+        }
+        texel[k].needed = all(bvec2(texel[k].needed, sap_has_second(bits[k])));
+        texel[k].address = mix(ivec2(0), texel[k].address, bvec2(texel[k].needed));
+      }
     }
   }
+}
+void read_windows(texel_block block, int windows) {
+  find_listed_tiles(block.tile, windows);
+  read_rings(block, 0, window_ring(1), false);
+  read_rings(block, window_ring(1), window_ring(windows), true);
   barrier();
 }
 
@@ -135,28 +174,30 @@ sap_place place_in_window(sap_window window, sap_window coarser, int w, int i) {
 int ring_place(sap_place place, int n) {
   return place.ring + (window_side(place.window) + 2) * near_step(n).y + near_step(n).x;
 }
-uvec4 near_bits(sap_place place, int n) { return ring_surface[ring_place(place, n)]; }
-vec4 light_near(sap_place place, int level, int n) {
-  vec4 light = vec4(0.0);
+uvec4 layer_bits(sap_place place, int n, int layer) {
+  return ring_surface[layer * max_ring_texels + ring_place(place, n)];
+}
+vec4 layer_light(sap_place place, int n, int layer) {
   if (settings.storage != STORAGE_FULL) {
-    uvec2 bits = ring_light[ring_place(place, n)];
-    light = vec4(unpackHalf2x16(bits.x), unpackHalf2x16(bits.y));
-  } else if (n == near_centre || near_bits(place, n).w != 0u) {
-    light = level_light(place.at + near_step(n), place.window, 0);
+    uvec2 bits = ring_light[layer * max_ring_texels + ring_place(place, n)];
+    return vec4(unpackHalf2x16(bits.x), unpackHalf2x16(bits.y));
   }
-  return light;
+  uvec4 bits = layer_bits(place, n, layer);
+  if (n != near_centre && bits.w == 0u)
+    return vec4(0.0);
+  ivec2 address = sap_address(place.at + near_step(n), settings.level + place.window);
+  return level_light(address, place.window, layer, bits);
 }
-uvec4 second_near_bits(sap_place place, int level, int n) {
-  return level_surface(place.at + near_step(n), place.window, 1);
-}
-vec4 second_light_near(sap_place place, int level, int n) {
-  return level_light(place.at + near_step(n), place.window, 1);
-}
+uvec4 near_bits(sap_place place, int n) { return layer_bits(place, n, 0); }
+vec4 light_near(sap_place place, int level, int n) { return layer_light(place, n, 0); }
+uvec4 second_near_bits(sap_place place, int level, int n) { return layer_bits(place, n, 1); }
+vec4 second_light_near(sap_place place, int level, int n) { return layer_light(place, n, 1); }
 
 bool has_second_corner(uvec4 bits) { return sap_has_second(bits); }
-uvec4 corner_bits(sap_place place, int n) {
-  return ring_surface[place.corner + n / 2 * (window_side(place.window + 1) + 2) + n % 2];
+int corner_place(sap_place place, int n) {
+  return place.corner + n / 2 * (window_side(place.window + 1) + 2) + n % 2;
 }
+uvec4 corner_bits(sap_place place, int n) { return ring_surface[corner_place(place, n)]; }
 int handed_place(sap_place place, int n) {
   return place.handed + n / 2 * window_side(place.window + 1) + n % 2;
 }
@@ -164,7 +205,7 @@ uvec4 scattered_at_corner(sap_place place, int n) {
   return window_scattered[(settings.level + place.window + 1) & 1][0][handed_place(place, n)];
 }
 uvec4 second_corner_bits(sap_place place, int level, int n) {
-  return level_surface(((place.at - 1) >> 1) + ivec2(n % 2, n / 2), place.window + 1, 1);
+  return ring_surface[max_ring_texels + corner_place(place, n)];
 }
 uvec4 second_scattered_at_corner(sap_place place, int level, int n) {
   return window_scattered[(level + 1) & 1][1][handed_place(place, n)];

@@ -9,6 +9,7 @@
 #include "common/half.glsl"
 #define DERMIS_ONE_SHAPE
 #define SAP_SECOND
+#define SAP_SECOND_IN_TILE
 #define SAP_WINDOW
 #include "sap/sap.glsl"
 #include "sap/sap_levels.glsl"
@@ -17,31 +18,31 @@ ivec3 written_place(ivec2 address, int level, int content) {
   return place_in_levels(address, level - settings.level, content);
 }
 // Sources of the children: images of the finer level, or levels of this dispatch.
-uvec4 finer_surface(ivec2 address, int finer) {
-  if (finer < settings.level)
-    return texelFetch(surface_image, address, 0);
-  return imageLoad(levels_image, written_place(address, finer, surface_in_levels));
+bool is_computed(int finer) { return finer >= settings.level; }
+uvec4 finer_surface(ivec2 address, int finer, bool computed) {
+  if (computed)
+    return imageLoad(levels_image, written_place(address, finer, surface_in_levels));
+  return texelFetch(surface_image, address, 0);
 }
-vec4 finer_light(ivec2 address, int finer, uvec4 bits) {
-  if (finer < settings.level)
-    return sap_light(bits, texelFetch(light_image, address, 0), settings.storage == STORAGE_FULL);
-  return light_from_bits(imageLoad(levels_image, written_place(address, finer, light_in_levels)));
+vec4 finer_light(ivec2 address, int finer, bool computed, uvec4 bits) {
+  if (computed)
+    return light_from_bits(imageLoad(levels_image, written_place(address, finer, light_in_levels)));
+  return sap_light(bits, texelFetch(light_image, address, 0), settings.storage == STORAGE_FULL);
 }
-bool finer_has_second(uvec4 bits, int finer) {
-  return sap_has_second(bits) &&
-         (finer >= settings.level || has_second_surface() && has_second_light());
+bool finer_has_second(uvec4 bits, bool computed) {
+  return sap_has_second(bits) && (computed || has_second_surface() && has_second_light());
 }
-uvec4 second_finer_surface(ivec2 address, int finer) {
-  if (finer < settings.level)
-    return texelFetch(second_surface_image, address, 0);
-  return imageLoad(levels_image, written_place(address, finer, surface_in_levels + 1));
+uvec4 second_finer_surface(ivec2 address, int finer, bool computed) {
+  if (computed)
+    return imageLoad(levels_image, written_place(address, finer, surface_in_levels + 1));
+  return texelFetch(second_surface_image, address, 0);
 }
-vec4 second_finer_light(ivec2 address, int finer, uvec4 bits) {
-  if (finer < settings.level)
-    return sap_light(bits, texelFetch(second_light_image, address, 0),
-                     settings.storage == STORAGE_FULL);
-  return light_from_bits(
-      imageLoad(levels_image, written_place(address, finer, light_in_levels + 1)));
+vec4 second_finer_light(ivec2 address, int finer, bool computed, uvec4 bits) {
+  if (computed)
+    return light_from_bits(
+        imageLoad(levels_image, written_place(address, finer, light_in_levels + 1)));
+  return sap_light(bits, texelFetch(second_light_image, address, 0),
+                   settings.storage == STORAGE_FULL);
 }
 #include "sap/sap_down.glsl"
 
@@ -57,19 +58,20 @@ void store_layer(sap_parent parent, int level, bool second, sap_layer layer) {
 #include "sap/sap_down_layers.glsl"
 #include "sap/sap_layered_texels.glsl"
 
-// Tiles that the group still has to compute: level, and index in the level's list. The children of
-// at most 2x2 tiles of a level include a given tile.
-shared uvec2 pending[4 * sap_levels];
+// Tiles that the group still has to compute: entry in the list, and level. The children of at most
+// 2x2 tiles of a level include a given tile.
+shared uvec3 pending[4 * sap_levels];
 shared uint pending_count;
+shared uvec2 lists[sap_levels]; // index of the first entry of each level, and number of entries
 
 // Counts a computed tile in the tiles of the next level of which it is a child. Adds those to
 // `pending` whose last child it is. All its texels must be written.
 void count_in_parents(ivec2 tile, int level) {
   int parents = level + 1;
-  uvec2 list = level_tiles_data[parents];
+  uvec2 list = lists[parents];
   uint first = 0u; // counter of the first tile of the list
   for (int l = settings.level + 1; l < parents; ++l)
-    first += level_tiles_data[l].y;
+    first += lists[l].y;
   [[dont_unroll]] for (uint i = gl_LocalInvocationIndex; i < list.y; i += group_lanes) {
     uvec2 entry = level_tiles_data[list.x + i];
     ivec2 away = abs(tile - 2 * tile_of_entry(entry));
@@ -77,7 +79,7 @@ void count_in_parents(ivec2 tile, int level) {
       continue;
     uint computed = atomicAdd(computed_children_data[first + i], 1u) + 1u;
     if (computed == uint(bitCount(entry.y & 0x1ffu)))
-      pending[atomicAdd(pending_count, 1u)] = uvec2(parents, i);
+      pending[atomicAdd(pending_count, 1u)] = uvec3(entry, parents);
   }
 }
 
@@ -88,9 +90,7 @@ void compute_tile(uvec2 entry, int level) {
   [[dont_unroll]] for (int part = int(gl_LocalInvocationIndex); part < 8 * rows;
                        part += int(group_lanes)) {
     sap_parent parent = take_parent(block_of_entry(entry, part), 0, level - 1);
-    if (!collects_layered) {
-      compute_parent(parent, level);
-    } else if (sap_inside(parent.at, level)) {
+    if (sap_inside(parent.at, level)) {
       sap_layer layer = reduce(parent, 1, no_texel);
       if (parent.two || layer.remains)
         collect_layered_texel(part);
@@ -98,27 +98,61 @@ void compute_tile(uvec2 entry, int level) {
         store_layer(parent, level, false, layer);
     }
   }
-  if (collects_layered) {
-    barrier();
-    [[dont_unroll]] for (uint i = gl_LocalInvocationIndex; i < layered_count; i += group_lanes) {
-      texel_block block = block_of_entry(entry, int(layered_texels[i]));
-      compute_parent(take_parent(block, 0, level - 1), level);
+  barrier();
+  [[dont_unroll]] for (uint i = gl_LocalInvocationIndex; i < layered_count; i += group_lanes) {
+    texel_block block = block_of_entry(entry, int(layered_texels[i]));
+    compute_parent(take_parent(block, 0, level - 1), level);
+  }
+}
+
+// GPUs: an invocation computes one layer of a texel. A second layer needs only the seed of the
+// first, so both halves of the group compute at once.
+shared uint second_layers[2]; // bit i: texel i of the tile has a second layer
+void compute_layers_of_tile(uvec2 entry, int level) {
+  int part = int(gl_LocalInvocationIndex & 63u);
+  bool second = gl_LocalInvocationIndex > 63u;
+  sap_parent parent = take_parent(block_of_entry(entry, part), 0, level - 1);
+  bool inside = sap_inside(parent.at, level);
+  sap_layer layer = sap_layer(vec4(0.0), uvec4(0u), no_texel, false);
+  if (inside) {
+    sap_texel before = no_texel, seed = find_seed(parent, max_layers, no_texel);
+    if (second) {
+      before = seed;
+      seed = find_seed(parent, max_layers, before);
     }
+    layer = reduce_to(parent, max_layers, seed, before);
+    if (second && layer.bits.w != 0u) {
+      atomicOr(second_layers[part >> 5], 1u << uint(part & 31));
+      store_layer(parent, level, true, layer);
+    }
+  }
+  barrier();
+  if (inside && !second) {
+    if ((second_layers[part >> 5] >> uint(part & 31) & 1u) != 0u)
+      layer.bits.x |= sap_second_bit;
+    store_layer(parent, level, false, layer);
   }
 }
 
 // Computes the pending tiles and all tiles that these complete.
 void compute_pending() {
   [[dont_unroll]] while (pending_count > 0u) {
-    uvec2 next = pending[pending_count - 1u];
+    uvec3 next = pending[pending_count - 1u];
     barrier();
-    if (gl_LocalInvocationIndex == 0u)
+    if (gl_LocalInvocationIndex == 0u) {
       --pending_count;
-    int level = int(next.x);
-    uvec2 entry = level_tiles_data[level_tiles_data[level].x + next.y];
-    texel_block block = block_of_entry(entry, 0);
-    read_tile(block, level - 1);
-    compute_tile(entry, level);
+      second_layers = uint[](0u, 0u);
+    }
+    int level = int(next.z);
+    texel_block block = block_of_entry(next.xy, 0);
+    if (is_computed(level - 1))
+      read_tile(block, level - 1, true);
+    else
+      read_tile(block, level - 1, false);
+    if (texel_lists)
+      compute_layers_of_tile(next.xy, level);
+    else
+      compute_tile(next.xy, level);
     memoryBarrier(); // the texels are available before the tile counts
     barrier();
     if (level + 1 < sap_levels)
@@ -130,13 +164,16 @@ void compute_pending() {
 
 void main() {
   uint tiles = texel_lists ? 1u : sap_tiles_per_group;
+  [[dont_unroll]] for (uint l = gl_LocalInvocationIndex; l < uint(sap_levels); l += group_lanes)
+    lists[l] = level_tiles_data[l];
+  uvec2 list = level_tiles_data[settings.level];
   for (uint k = 0u; k < tiles; ++k) {
     uint index = dispatched_group() * tiles + k;
-    if (index >= level_tiles_data[settings.level].y)
+    if (index >= list.y)
       return;
     barrier(); // all invocations found that nothing is pending
     if (gl_LocalInvocationIndex == 0u) {
-      pending[0] = uvec2(settings.level, index);
+      pending[0] = uvec3(level_tiles_data[list.x + index], settings.level);
       pending_count = 1u;
     }
     barrier();

@@ -23,18 +23,38 @@ void store_scattered(sap_place place, int level, int layer, uvec4 bits) {
 }
 #include "sap/sap_up_layers.glsl"
 
+// Computes a layer of texel i of a window, 0 outside the level. GPUs: an invocation computes one
+// layer, because both halves of the group compute at once.
+void compute_layer(sap_place place, int level, int layer, bool smooth_level, bool last) {
+  uvec4 first = near_bits(place, near_centre);
+  if (layer > 0 && !sap_has_second(first))
+    return;
+  sap_texel own = sap_unpack(layer_bits(place, near_centre, layer));
+  uvec4 bits = uvec4(0u);
+  if (own.id != 0u)
+    bits = climb(place, level, own, layer_light(place, near_centre, layer).rgb, SAP_OWN_LAYERS,
+                 smooth_level, last);
+  store_scattered(place, level, layer, bits);
+}
+
 // Computes the texels of a window.
 void compute_window(ivec2 tile, int w, bool last) {
   sap_window window = window_of(tile, w), coarser = window_of(tile, last ? w : w + 1);
   int level = settings.level + w;
   bool smooth_level = settings.variant == VARIANT_SMOOTH;
-  [[dont_unroll]] for (int i = int(gl_LocalInvocationIndex); i < window.side * window.side;
-                       i += int(group_lanes)) {
+  uint begin = texel_lists ? gl_LocalInvocationIndex & 63u : gl_LocalInvocationIndex;
+  int layer = texel_lists ? int(gl_LocalInvocationIndex >> 6u) : 0;
+  [[dont_unroll]] for (int i = int(begin); i < window.side * window.side;
+                       i += texel_lists ? 64 : int(group_lanes)) {
     sap_place place = place_in_window(window, coarser, w, i);
-    if (sap_inside(place.at, level))
+    if (!sap_inside(place.at, level)) {
+      if (w > 0 && layer == 0)
+        store_scattered(place, level, 0, uvec4(0u));
+    } else if (texel_lists) {
+      compute_layer(place, level, layer, smooth_level, last);
+    } else {
       compute_layers(place, level, smooth_level, last);
-    else if (w > 0)
-      store_scattered(place, level, 0, uvec4(0u));
+    }
   }
 }
 

@@ -13,7 +13,7 @@ void main() {
   if (!listed_block(level, block))
     return;
   if (texel_shape)
-    read_tile(block, finer);
+    read_tile(block, finer, false);
   else
     read_block(block, block.first - 1, finer);
   [[unroll]] for (int k = 0; k < block_texels; ++k) {

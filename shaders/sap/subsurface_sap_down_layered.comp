@@ -20,12 +20,12 @@ sap_parent read_children(texel_block block, int k, int finer) {
     bool needed = child_written(block, 2 * parent.at - 1 + ivec2(c & 3, c >> 2), finer);
     uvec4 bits = needed ? texelFetch(surface_image, address, 0) : uvec4(0u);
     children[c] = sap_unpack(bits);
-    child_light[c] = needed ? finer_light(address, finer, bits) : vec4(0.0);
-    needed = needed && finer_has_second(bits, finer);
+    child_light[c] = needed ? finer_light(address, finer, false, bits) : vec4(0.0);
+    needed = needed && finer_has_second(bits, false);
     int second = children_a_layer + c;
-    bits = needed ? second_finer_surface(address, finer) : uvec4(0u);
+    bits = needed ? second_finer_surface(address, finer, false) : uvec4(0u);
     children[second] = sap_unpack(bits);
-    child_light[second] = needed ? second_finer_light(address, finer, bits) : vec4(0.0);
+    child_light[second] = needed ? second_finer_light(address, finer, false, bits) : vec4(0.0);
   }
   return parent;
 }
@@ -48,7 +48,7 @@ void main() {
   if (!listed_block(level, block))
     return;
   if (texel_shape) {
-    read_tile(block, finer);
+    read_tile(block, finer, false);
     compute_parent(take_parent(block, 0, finer), level);
     return;
   }
@@ -65,7 +65,7 @@ void main() {
   if (layered != 0u)
     do {
       sap_parent parent = read_children(block, findLSB(layered), finer);
-      compute_both(parent, level, sap_layer(vec4(0.0), uvec4(0u), no_texel, true), layered != 0u);
+      compute_both(parent, level, layered != 0u);
       layered &= layered - 1u;
     } while (layered != 0u);
 }

@@ -341,13 +341,16 @@ def add_target(model):
 
 
 # How often the loops of a kernel run, in the order of the assembly, for subgroups with one layer;
-# those of layered kernels for subgroups with two. Loops over outer seeds are rare: 0.
-TRIPS = {"sap_setup": [2], "sap_down": [6, 0], "sap_down_layered": [6, 0, 4, 2, 8, 0, 4, 16],
-         "sap_up_layered": [2],
-         "sap_coarse_down": [1, 4, 6, 1, 0, 4, 2, 8, 0, 4, 16, 1, 1],  # four levels, one after another
-         "sap_coarse_up": [1, 4, 2, 1, 5, 2, 1, 5, 2, 2, 1, 2]}  # five levels
+# those of layered kernels for subgroups with two. Loops over outer seeds are rare: 0, but the second
+# half of a group of sap_coarse_down searches the second layer of all texels.
+TRIPS = {"sap_setup": [2], "sap_down": [2, 0],
+         "sap_down_layered": [2, 4, 4, 0, 0, 4, 4, 4, 4, 0, 0, 4, 4], "sap_up_layered": [2],
+         # four levels, one after another; a tile is read by one of two loops
+         "sap_coarse_down": [1, 1, 4, 1, 1, 4, 4, 0, 0, 4, 4, 16, 16, 4, 4, 2, 1],
+         "sap_coarse_up": [1, 2, 1, 1, 5, 1]}  # five levels
 ONE_LAYER = {"sap_down_layered": "sap_down", "sap_up_layered": "sap_up"}  # kernels of the same work
 COARSE_TILES = {"sap_coarse_down": 5, "sap_coarse_up": 4}  # the level whose tiles have a group each
+COARSE_SUBGROUPS = 2  # per group
 
 
 class Built:
@@ -393,7 +396,8 @@ def add_built(model, technique, built, graph):
         elif kernel == "tile_list":
             model.add_serial(technique, one["pass"], model.wave(**LIST_RUN)["lat"])
         elif kernel in COARSE_TILES:
-            model.add(technique, one["pass"], model.tiles[COARSE_TILES[kernel]], built.wave(model, kernel),
+            groups = model.tiles[COARSE_TILES[kernel]]
+            model.add(technique, one["pass"], COARSE_SUBGROUPS * groups, built.wave(model, kernel),
                       bytes_moved)
         elif kernel in ONE_LAYER:
             wave = mix(built.wave(model, ONE_LAYER[kernel]), built.wave(model, kernel),

@@ -222,7 +222,7 @@ uint32_t kernel_word(const SettingValue& value) {
 
 // Invocations per group of kernels with one shape. On the CPU one vector of lavapipe, which
 // executes the other vectors of a group even if their lanes are off.
-constexpr uint32_t lanes_on_cpu = 8, lanes_on_gpu = 64;
+constexpr uint32_t lanes_on_cpu = 8, lanes_on_gpu = 128;
 
 Error create_pipeline(const Device& device, const std::string& subresource,
                       const std::string& label, std::span<const uint32_t> spirv,
