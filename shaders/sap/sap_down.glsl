@@ -188,7 +188,9 @@ sap_parent take_parent(texel_block block, int k, int finer) {
       flags |= block_surface[i].x;
     }
   }
-  parent.two = (flags & sap_second_bit) != 0u;
+#ifdef SAP_SECOND
+  parent.two = finer_has_second(uvec4(flags), is_computed(finer));
+#endif
   return parent;
 }
 #endif

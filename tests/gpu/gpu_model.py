@@ -344,7 +344,8 @@ def add_target(model):
 # those of layered kernels for subgroups with two. Loops over outer seeds are rare: 0, but the second
 # half of a group of sap_coarse_down searches the second layer of all texels.
 TRIPS = {"sap_setup": [2], "sap_down": [2, 0],
-         "sap_down_layered": [2, 4, 4, 0, 0, 4, 4, 4, 4, 0, 0, 4, 4], "sap_up_layered": [2],
+         "sap_down_layered": [2, 4, 4, 0, 0, 4, 4, 4, 4, 0, 0, 4, 4],
+         "sap_down_layered second_surface=unbound": [2, 4, 0, 4, 4, 0, 4], "sap_up_layered": [2],
          # four levels, one after another; a tile is read by one of two loops
          "sap_coarse_down": [1, 1, 4, 1, 1, 4, 4, 0, 0, 4, 4, 16, 16, 4, 4, 2, 1],
          "sap_coarse_up": [1, 2, 1, 1, 5, 1]}  # five levels
@@ -353,24 +354,33 @@ COARSE_TILES = {"sap_coarse_down": 5, "sap_coarse_up": 4}  # the level whose til
 COARSE_SUBGROUPS = 2  # per group
 
 
+def short_name(kernel):
+    return re.sub(".*/subsurface_", "", kernel)
+
+
 class Built:
     """What `dermis kernels --json --assembly` reports."""
 
     def __init__(self, report, assembly):
-        # The model runs the pipeline with the most code of each kernel.
-        rows = sorted(report["kernels"], key=lambda row: row["values"]["code_bytes"])
-        self.kernels = {row["kernel"]: row for row in rows}
+        self.rows = {(row["kernel"], row.get("constants", "")): row for row in report["kernels"]}
         self.graphs = {graph["graph"]: graph["passes"] for graph in report["graphs"]}
         self.assembly = pathlib.Path(assembly)
 
-    def wave(self, model, kernel):
+    def one_layer_of(self, kernel):
+        """Returns the pipeline with the most code of a kernel, which computes one layer."""
+        rows = [row for row in self.rows.values() if row["kernel"].endswith("/subsurface_" + kernel)]
+        return max(rows, key=lambda row: row["values"]["code_bytes"])
+
+    def wave(self, model, row):
         """Returns the clocks of a subgroup on its longest path. Image loads are taken as half 64 and
         half 128 bits. RADV counts occupancy in subgroups of 32."""
-        folder = next(path for path in self.kernels if path.endswith("/subsurface_" + kernel))
-        values = self.kernels[folder]["values"]
-        with open(self.assembly / self.kernels[folder]["assembly"], encoding="utf-8") as lines:
+        kernel = short_name(row["kernel"])
+        special = [key for key in TRIPS if key.split()[0] == kernel
+                   and set(key.split()[1:]) <= set(row.get("constants", "").split())]
+        values = row["values"]
+        with open(self.assembly / row["assembly"], encoding="utf-8") as lines:
             blocks = instruction_mix.read_blocks(lines)
-        mix_of = instruction_mix.count(blocks, TRIPS.get(kernel, []), longest=True)
+        mix_of = instruction_mix.count(blocks, TRIPS[max(special, key=len)] if special else [], longest=True)
         get = lambda kind: mix_of.get(kind, 0)
         return model.wave(valu=get("valu"), trans=get("transcendental"), qmul=get("quarter_rate"),
                           img=get("image_load") / 2, img128=get("image_load") / 2,
@@ -385,7 +395,7 @@ def add_built(model, technique, built, graph):
     for one in built.graphs[graph]:
         if not one["kernel"]:  # a clear of a small buffer, which nothing waits for at once
             continue
-        kernel = re.sub(".*/subsurface_", "", one["kernel"])
+        kernel, row = short_name(one["kernel"]), built.rows[one["kernel"], one.get("constants", "")]
         bytes_moved = model.covered * (one["read"] + one["written"])
         level = re.search(r"_(\d)$", one["pass"])
         tiles = model.tiles[int(level.group(1)) if level else 0]
@@ -397,14 +407,14 @@ def add_built(model, technique, built, graph):
             model.add_serial(technique, one["pass"], model.wave(**LIST_RUN)["lat"])
         elif kernel in COARSE_TILES:
             groups = model.tiles[COARSE_TILES[kernel]]
-            model.add(technique, one["pass"], COARSE_SUBGROUPS * groups, built.wave(model, kernel),
+            model.add(technique, one["pass"], COARSE_SUBGROUPS * groups, built.wave(model, row),
                       bytes_moved)
         elif kernel in ONE_LAYER:
-            wave = mix(built.wave(model, ONE_LAYER[kernel]), built.wave(model, kernel),
+            wave = mix(built.wave(model, built.one_layer_of(ONE_LAYER[kernel])), built.wave(model, row),
                        layered_fraction(int(level.group(1))))
             model.add(technique, one["pass"], tiles, wave, bytes_moved)
         else:
-            model.add(technique, one["pass"], tiles, built.wave(model, kernel), bytes_moved)
+            model.add(technique, one["pass"], tiles, built.wave(model, row), bytes_moved)
 
 
 def run(hardware, factors=Factors(), width=2560, height=1440, built=None):

@@ -68,10 +68,12 @@ class Model(unittest.TestCase):
             with tempfile.TemporaryDirectory() as folder:
                 file = kernel.replace("/", "_") + ".txt"
                 (pathlib.Path(folder) / file).write_text(text, encoding="utf-8")
-                passes = [{"pass": "gather", "kernel": kernel, "read": 1, "written": 2}]
-                row = {"kernel": kernel, "assembly": file,
+                passes = [{"pass": "gather", "kernel": kernel, "constants": "storage=half",
+                           "read": 1, "written": 2}]
+                row = {"kernel": kernel, "constants": "storage=half", "assembly": file,
                        "values": {"occupancy": occupancy, "code_bytes": 100}}
-                report = {"kernels": [row],
+                other = dict(row, constants="storage=full", assembly="none")  # of no pass
+                report = {"kernels": [row, other],
                           "graphs": [{"graph": "sap", "passes": passes}]}
                 model = gpu_model.run(gpu_model.RX_6800, built=gpu_model.Built(report, folder))
                 return model.techniques["sap as built"][0], model

@@ -10,6 +10,9 @@
 
 #include <nlohmann/json.hpp>
 
+#include <map>
+#include <set>
+
 namespace dermis::test {
 namespace {
 
@@ -68,6 +71,25 @@ TEST_F(KernelsVerb, PlansAreCountedAsTheyAreRecorded) {
   EXPECT_NEAR(graph.at("bytes_per_pixel").get<double>(), sum, 1e-9);
   // classify reads the material (1 B) of two pixels per covered pixel, and the depth of one
   EXPECT_NEAR(graph.at("passes").at(0).at("read").get<double>(), 2 * 1 + 4, 1e-9);
+}
+
+TEST_F(KernelsVerb, PassesNameTheirPipelines) {
+  const Outcome outcome = run({"kernels", "sap", "--json", "--size", "64x64"});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const json report = json::parse(outcome.out);
+  const auto pipeline_of = [](const json& one) {
+    return std::pair(one.at("kernel").get<std::string>(), one.value("constants", ""));
+  };
+  std::set<std::pair<std::string, std::string>> compiled;
+  for (const json& row : report.at("kernels"))
+    compiled.insert(pipeline_of(row));
+  std::map<std::string, std::string> constants; // by pass
+  for (const json& pass : report.at("graphs").at(0).at("passes")) {
+    EXPECT_TRUE(pass.at("kernel") == "" || compiled.contains(pipeline_of(pass))) << pass;
+    constants[pass.at("pass").get<std::string>()] = pass.value("constants", "");
+  }
+  EXPECT_THAT(constants.at("up_1"), HasSubstr("variant=smooth")); // the default
+  EXPECT_EQ(constants.at("clear_children"), "");
 }
 
 TEST_F(KernelsVerb, UnknownNamesAreUsageErrors) {

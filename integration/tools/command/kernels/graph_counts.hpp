@@ -17,6 +17,7 @@ namespace dermis::tools {
 struct PassCounts {
   std::string pass, kernel; // names; no kernel: ""
   PassTraffic traffic;
+  std::string constants{}; // of the pass's pipeline, as in KernelRow
 };
 
 struct GraphCounts {

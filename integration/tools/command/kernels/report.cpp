@@ -98,6 +98,7 @@ void write_graphs(const KernelSurvey& survey, JsonWriter& json) {
     json.member("written_bytes_per_pixel", graph.written_bytes).key("passes").open_array();
     for (const PassCounts& pass : graph.passes) {
       json.open_object(true).member("pass", pass.pass).member("kernel", pass.kernel);
+      if (!pass.constants.empty()) json.member("constants", pass.constants);
       json.member("read", pass.traffic.read).member("written", pass.traffic.written).close();
     }
     json.close().close();

@@ -227,7 +227,8 @@ private:
       const std::optional<CompiledPlan> compiled = compile(one, diagnostics_);
       if (!compiled) return demo::success(); // reported by the caller
       const Plan& plan = compiled->plan;
-      if (counts.configurations++ == 0) {
+      const bool is_default = counts.configurations++ == 0;
+      if (is_default) {
         count_bytes(loaded.graph, loaded.pass_types, plan, options_.assumptions, counts);
         const std::string problem = counter_.count_commands(loaded.graph, loaded.pass_types, plan,
                                                             codes, environment, counts);
@@ -247,6 +248,8 @@ private:
         return demo::Error{demo::ErrorKind::environment,
                            fmt::format("{}: {}", counts.graph, error.text)};
       for (const vulkan::CompiledPipeline& pipeline : pipelines) {
+        for (const uint32_t pass : pipeline.passes)
+          if (is_default) counts.passes[pass].constants = pipeline.constants;
         if (!used.insert(pipeline.pipeline.get()).second) continue;
         ++counts.pipelines;
         add_rows(loaded.pass_types[pipeline.type], pipeline, counts.graph);
