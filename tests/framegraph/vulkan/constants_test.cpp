@@ -1,5 +1,6 @@
 // Tests specialisation constants: kernels see settings and the presence of ports, and pipelines
 // exist before a frame needs them.
+#include "framegraph/vulkan/executor/kernels.hpp"
 #include "framegraph/vulkan/kernel_store.hpp"
 #include "tests/framegraph/vulkan/executor_fixture.hpp"
 
@@ -134,6 +135,32 @@ TEST_F(ConstantsTest, Store_FindsPipelinesByTheirConstants) {
   pipelines_for({{mode_mid}, {mode_low}, {mode_mid}}, &store);
   EXPECT_NE(stored(1), nullptr);
   EXPECT_EQ(stored(0), first) << "it is not compiled again";
+}
+
+TEST_F(ConstantsTest, Store_DropsTheOldestUnusedPipelines) {
+  const auto pipeline_of = [&](const char* name, uint32_t constant) {
+    const auto kernel = std::make_shared<vulkan::Kernel>(dermis_device);
+    kernel->type = small_pass_types().find(name);
+    const auto made = std::make_shared<vulkan::Pipeline>(kernel);
+    made->constants = {constant};
+    return made;
+  };
+  constexpr uint32_t count = vulkan::KernelStore::max_unused + 3;
+  vulkan::KernelStore shared, of_graph(shared);
+  const auto used = pipeline_of("test.constant", 0);
+  of_graph.add(used);
+  of_graph.add(pipeline_of("test.fill", 0));
+  for (uint32_t i = 1; i < count; ++i)
+    of_graph.add(pipeline_of("test.constant", i));
+  of_graph.hand_over();
+  const auto is_stored = [&](const char* name, uint32_t constant) {
+    const uint32_t constants[] = {constant};
+    return shared.find(small_pass_types().find(name), 0, constants) != nullptr;
+  };
+  EXPECT_TRUE(is_stored("test.constant", 0)) << "an executor uses it";
+  EXPECT_TRUE(is_stored("test.fill", 0)) << "each kernel has its own limit";
+  for (uint32_t i = 1; i < count; ++i)
+    EXPECT_EQ(is_stored("test.constant", i), i > 2) << i;
 }
 
 } // namespace
