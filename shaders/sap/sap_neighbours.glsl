@@ -24,14 +24,19 @@ const int corner_texels = 4, near_texels = 9, near_centre = 4;
 ivec2 near_step(int n) { return ivec2(n % 3 - 1, n / 3 - 1); }
 
 // Texel shape: the tile's texels with a ring around them, and the coarser texels under the tile.
-const int ring_side = 10, coarse_side = 6 - border;
+// The second layers follow the first.
+const int ring_side = 10, ring_texels = ring_side * ring_side;
+const int coarse_side = 6 - border, tile_coarse_texels = coarse_side * coarse_side;
+// Indices of texels, without multiplication, because some GPUs multiply 32 bits slowly.
+int ring_index(ivec2 at) { return (at.y << 3) + (at.y << 1) + at.x; }
+int coarse_index(ivec2 at) { return (at.y << 2) + (at.y << (border == 0 ? 1 : 0)) + at.x; }
 #ifndef SAP_NO_RING
-shared uvec4 tile_surface[texel_shape ? ring_side * ring_side : 1];
-shared uvec2
-    tile_light[texel_shape ? ring_side * ring_side : 1]; // halves, exact unless `storage` is full
+shared uvec4 tile_surface[texel_shape ? SAP_OWN_LAYERS * ring_texels : 1];
+// halves, exact unless `storage` is full
+shared uvec2 tile_light[texel_shape ? SAP_OWN_LAYERS * ring_texels : 1];
 #endif
-shared uvec4 tile_coarse_surface[texel_shape ? coarse_side * coarse_side : 1];
-shared uvec4 tile_coarse_scattered[texel_shape ? coarse_side * coarse_side : 1];
+shared uvec4 tile_coarse_surface[texel_shape ? SAP_COARSE_LAYERS * tile_coarse_texels : 1];
+shared uvec4 tile_coarse_scattered[texel_shape ? SAP_COARSE_LAYERS * tile_coarse_texels : 1];
 
 // Block shape: the neighbourhood of the current texel. The second layer follows the first.
 uvec4 corner_surface[SAP_COARSE_LAYERS * corner_texels];
@@ -69,35 +74,68 @@ bool is_written(texel_block block, ivec2 place, int level) {
   return sap_inside(place - border, level) &&
          tile_written(block.around, (place >> 3) - block.tile + 1);
 }
-// Texel shape: reads the texel at `offset` from the tile into shared memory, 0 unless `needed`.
-void read_into_ring(texel_block block, ivec2 offset, int level, bool needed) {
-  uvec4 bits = uvec4(0u);
-  vec4 light = vec4(0.0);
-  ivec2 at = 8 * block.tile + offset - border;
-  if (needed && sap_inside(at, level)) {
-    bits = texelFetch(surface_image, sap_address(at, level), 0);
-    light = texelFetch(light_image, sap_address(at, level), 0);
-  }
-  int i = (offset.y + 1) * ring_side + offset.x + 1;
-  tile_surface[i] = bits;
-  tile_light[i] = uvec2(packHalf2x16(light.rg), sap_light_ba(bits));
-}
 // Texel i of the ring around a tile, as an offset from the tile: the row above, the row below, then
 // both columns.
 ivec2 ring_offset(int i) {
   return i < 2 * ring_side ? ivec2((i < ring_side ? i : i - ring_side) - 1, i < ring_side ? -1 : 8)
                            : ivec2((i & 1) == 0 ? -1 : 8, (i >> 1) - ring_side);
 }
+// Texel shape: reads a texel of the tile and a texel of the ring. With two layers, waits for memory
+// once per layer: does not branch around texels that were not written, but reads others instead.
+void read_ring_of_tile(texel_block block, int level, bool with_ring) {
+  int i = int(gl_LocalInvocationIndex);
+  bool in_ring = i < ring_texels - 64;
+  ivec2 offset[2] = ivec2[](block.first - 8 * block.tile, ring_offset(in_ring ? i : 0));
+  bool needed[2] = bool[](
+      true, all(bvec3(in_ring, with_ring, tile_written(block.around, (offset[1] >> 3) + 1))));
+  int place[2];
+  ivec2 address[2];
+  uvec4 bits[2] = uvec4[](uvec4(0u), uvec4(0u));
+  vec4 light[2] = vec4[](vec4(0.0), vec4(0.0));
+  [[unroll]] for (int k = 0; k < 2; ++k) {
+    ivec2 at = 8 * block.tile + offset[k] - border;
+    needed[k] = all(bvec2(needed[k], sap_inside(at, level)));
+    place[k] = ring_index(offset[k] + 1);
+    address[k] = sap_address(at, level);
+#if SAP_OWN_LAYERS > 1
+    address[k] = mix(ivec2(0), address[k], bvec2(needed[k]));
+    bits[k] = texelFetch(surface_image, address[k], 0);
+    light[k] = texelFetch(light_image, address[k], 0);
+    bits[k] = mix(uvec4(0u), bits[k], bvec4(needed[k]));
+    light[k] = mix(vec4(0.0), light[k], bvec4(needed[k]));
+#else
+    if (needed[k]) {
+      bits[k] = texelFetch(surface_image, address[k], 0);
+      light[k] = texelFetch(light_image, address[k], 0);
+    }
+#endif
+  }
+  [[unroll]] for (int k = 0; k < 2; ++k)
+    if (k == 0 || in_ring) {
+      tile_surface[place[k]] = bits[k];
+      tile_light[place[k]] = uvec2(packHalf2x16(light[k].rg), sap_light_ba(bits[k]));
+    }
+#if SAP_OWN_LAYERS > 1
+  [[unroll]] for (int k = 0; k < 2; ++k) {
+    needed[k] = sap_has_second(bits[k]);
+    address[k] = mix(ivec2(0), address[k], bvec2(needed[k]));
+    bits[k] = texelFetch(second_surface_image, address[k], 0);
+    light[k] = texelFetch(second_light_image, address[k], 0);
+  }
+  [[unroll]] for (int k = 0; k < 2; ++k)
+    if (k == 0 || in_ring) {
+      bits[k] = mix(uvec4(0u), bits[k], bvec4(needed[k]));
+      light[k] = mix(vec4(0.0), light[k], bvec4(needed[k]));
+      tile_surface[ring_texels + place[k]] = bits[k];
+      tile_light[ring_texels + place[k]] =
+          uvec2(packHalf2x16(light[k].rg), sap_light_ba(bits[k]));
+    }
+#endif
+}
 // Reads the texels of the block or tile and, if requested, the ring around them.
 void read_ring(texel_block block, int level, bool with_ring) {
   if (texel_shape) {
-    int i = int(gl_LocalInvocationIndex);
-    read_into_ring(block, block.first - 8 * block.tile, level, true);
-    if (i < ring_side * ring_side - 64) {
-      ivec2 offset = ring_offset(i);
-      read_into_ring(block, offset, level,
-                     with_ring && tile_written(block.around, (offset >> 3) + 1));
-    }
+    read_ring_of_tile(block, level, with_ring);
   } else {
     [[unroll]] for (int i = 0; i < block_ring_width * block_ring_height; ++i) {
       int x = i % block_ring_width - 1, y = i / block_ring_width - 1;
@@ -120,15 +158,25 @@ void read_coarser(texel_block block, int level) {
   ivec2 first = ((texel_shape ? 8 * block.tile : block.first) - border - 1) >> 1;
   if (texel_shape) {
     int i = int(gl_LocalInvocationIndex);
-    ivec2 at = first + ivec2(i % coarse_side, i / coarse_side);
-    if (i < coarse_side * coarse_side) {
+    int row = i * (border == 0 ? 43 : 52) >> 8; // i / coarse_side
+    ivec2 at = first + ivec2(i - coarse_index(ivec2(0, row)), row);
+    if (i < tile_coarse_texels) {
       uvec4 bits = uvec4(0u), scattered = uvec4(0u);
+      ivec2 address = sap_address(at, level + 1);
       if (sap_inside(at, level + 1)) {
-        bits = texelFetch(coarse_surface_image, sap_address(at, level + 1), 0);
-        scattered = texelFetch(coarse_scattered_image, sap_address(at, level + 1), 0);
+        bits = texelFetch(coarse_surface_image, address, 0);
+        scattered = texelFetch(coarse_scattered_image, address, 0);
       }
       tile_coarse_surface[i] = bits;
       tile_coarse_scattered[i] = scattered;
+#if SAP_COARSE_LAYERS > 1
+      if (has_second_corner(bits)) {
+        tile_coarse_surface[tile_coarse_texels + i] =
+            texelFetch(second_coarse_surface_image, address, 0);
+        tile_coarse_scattered[tile_coarse_texels + i] =
+            texelFetch(second_coarse_scattered_image, address, 0);
+      }
+#endif
     }
   } else {
     [[unroll]] for (int i = 0; i < coarse_texels; ++i) {
@@ -161,8 +209,7 @@ sap_place place_of(texel_block block, int k) {
   if (texel_shape) {
     ivec2 local = block.first - 8 * block.tile, at = block.first - border;
     ivec2 corner = ((at - 1) >> 1) - ((8 * block.tile - border - 1) >> 1);
-    return sap_place(at, at & 1, (local.y + 1) * ring_side + local.x + 1,
-                     corner.y * coarse_side + corner.x);
+    return sap_place(at, at & 1, ring_index(local + 1), coarse_index(corner));
   }
   return sap_place(block.first - border + offset, (offset + border) & 1, 0, 0);
 }
@@ -247,31 +294,32 @@ int ring_place(sap_place place, int n) {
 uvec4 near_bits(sap_place place, int n) {
   return texel_shape ? tile_surface[ring_place(place, n)] : near_surface[n];
 }
-vec4 light_near(sap_place place, int level, int n) {
-  if (!texel_shape)
-    return near_light[n];
+// Texel shape: the light of a layer of neighbour n.
+vec4 light_in_tile(sap_place place, int level, int n, int layer) {
+  int i = layer * ring_texels + ring_place(place, n);
+  if (settings.storage != STORAGE_FULL)
+    return vec4(unpackHalf2x16(tile_light[i].x), unpackHalf2x16(tile_light[i].y));
+  ivec2 address = sap_address(place.at + near_step(n), level);
   vec4 light = vec4(0.0);
-  if (settings.storage != STORAGE_FULL) {
-    uvec2 bits = tile_light[ring_place(place, n)];
-    light = vec4(unpackHalf2x16(bits.x), unpackHalf2x16(bits.y));
-  } else if (n == near_centre || near_bits(place, n).w != 0u) {
-    light = texelFetch(light_image, sap_address(place.at + near_step(n), level), 0);
+  if (n == near_centre || tile_surface[i].w != 0u) {
+#if SAP_OWN_LAYERS > 1
+    if (layer > 0)
+      return texelFetch(second_light_image, address, 0);
+#endif
+    light = texelFetch(light_image, address, 0);
   }
   return light;
 }
+vec4 light_near(sap_place place, int level, int n) {
+  return texel_shape ? light_in_tile(place, level, n, 0) : near_light[n];
+}
 #if SAP_OWN_LAYERS > 1
 uvec4 second_near_bits(sap_place place, int level, int n) {
-  return texel_shape
-             ? texelFetch(second_surface_image, sap_address(place.at + near_step(n), level), 0)
-             : near_surface[near_texels + n];
+  return texel_shape ? tile_surface[ring_texels + ring_place(place, n)]
+                     : near_surface[near_texels + n];
 }
 vec4 second_light_near(sap_place place, int level, int n) {
-  return texel_shape
-             ? sap_light(second_near_bits(place, level, n),
-                         texelFetch(second_light_image,
-                                    sap_address(place.at + near_step(n), level), 0),
-                         settings.storage == STORAGE_FULL)
-             : near_light[near_texels + n];
+  return texel_shape ? light_in_tile(place, level, n, 1) : near_light[near_texels + n];
 }
 #endif
 #endif
@@ -285,15 +333,12 @@ uvec4 scattered_at_corner(sap_place place, int n) {
   return texel_shape ? tile_coarse_scattered[corner_place(place, n)] : corner_scattered[n];
 }
 #if SAP_COARSE_LAYERS > 1
-ivec2 corner_address(sap_place place, int level, int n) {
-  return sap_address(((place.at - 1) >> 1) + ivec2(n % 2, n / 2), level + 1);
-}
 uvec4 second_corner_bits(sap_place place, int level, int n) {
-  return texel_shape ? texelFetch(second_coarse_surface_image, corner_address(place, level, n), 0)
+  return texel_shape ? tile_coarse_surface[tile_coarse_texels + corner_place(place, n)]
                      : corner_surface[corner_texels + n];
 }
 uvec4 second_scattered_at_corner(sap_place place, int level, int n) {
-  return texel_shape ? texelFetch(second_coarse_scattered_image, corner_address(place, level, n), 0)
+  return texel_shape ? tile_coarse_scattered[tile_coarse_texels + corner_place(place, n)]
                      : corner_scattered[corner_texels + n];
 }
 #endif
