@@ -4,6 +4,7 @@
 #include "integration/abi/graph.hpp"
 #include "integration/abi/graph_desc.hpp"
 #include "integration/abi/report.hpp"
+#include "passes/choice/missing_rows.hpp"
 #include "passes/common/probe.hpp"
 
 #include <algorithm>
@@ -15,6 +16,10 @@ namespace dermis::abi {
 namespace {
 
 constexpr float largest_budget_ms = 1e6f;
+constexpr float min_percentile = 0.5f, max_percentile = 0.99f;
+constexpr float max_uncertainty = 100;
+constexpr uint32_t known_flags =
+    DERMIS_BUDGET_DETERMINISTIC | DERMIS_BUDGET_TRIALS_AT_CUTS | DERMIS_BUDGET_NO_TRIALS;
 
 struct Tables {
   std::optional<choice::ErrorModel> errors;
@@ -51,7 +56,7 @@ struct ViewTables {
   choice::ErrorModel errors;
   choice::ErrorCorrection found;
   choice::Calibration calibration;
-  choice::CostModel costs;
+  choice::CostEstimator costs;
   struct Described {
     std::shared_ptr<CompiledGraph> compiled_graph; // may be null
     std::vector<choice::Configuration> configurations;
@@ -66,7 +71,9 @@ ViewTables tables_of(const dermis_view_t& view, const Tables& given) {
   out.found =
       given.errors ? choice::make_error_correction(out.errors.techniques.size()) : now.found;
   out.calibration = given.calibration ? *given.calibration : now.calibration;
-  out.costs = given.calibration ? choice::CostModel(out.calibration.costs) : now.costs;
+  out.costs = given.calibration
+                  ? choice::CostEstimator(out.calibration.costs, out.calibration.uncertainty)
+                  : now.costs;
   out.compiled_graphs[0].compiled_graph = view.running;
   out.compiled_graphs[1].compiled_graph = view.next;
   for (auto& [compiled_graph, configurations] : out.compiled_graphs)
@@ -74,6 +81,18 @@ ViewTables tables_of(const dermis_view_t& view, const Tables& given) {
       configurations = described(view.context->pass_types, *compiled_graph, out.errors, out.costs,
                                  compiled_graph->configurations);
   return out;
+}
+
+// Reports what new tables lack for the program that the view will record next.
+void report_lacking(const dermis_view_t& view, const ViewTables& tables, Diagnostics& diagnostics) {
+  const auto& [running, next] = tables.compiled_graphs;
+  const ViewTables::Described& newest = next.compiled_graph ? next : running;
+  if (!newest.compiled_graph) return;
+  std::vector<const Plan*> plans;
+  for (const RunnablePlan& plan : newest.compiled_graph->plans)
+    plans.push_back(&plan.compiled->plan);
+  report_missing_rows(newest.compiled_graph->graph, view.context->pass_types, plans, tables.errors,
+                      tables.costs, newest.configurations, diagnostics);
 }
 
 void take_over(dermis_view_t& view, ViewTables& tables) noexcept {
@@ -85,19 +104,49 @@ void take_over(dermis_view_t& view, ViewTables& tables) noexcept {
     if (compiled_graph) compiled_graph->configurations.swap(configurations);
 }
 
+// Returns DERMIS_OK if all values are in range. The comparisons also reject NaN.
+dermis_result check_budget(const Log& log, const dermis_budget& budget) {
+  constexpr const char* function = "dermis_graph_set_budget";
+  if (!(budget.milliseconds >= 0 && budget.milliseconds <= largest_budget_ms))
+    return bad_argument(log, "{}: milliseconds is {}, expected 0..{}", function,
+                        budget.milliseconds, largest_budget_ms);
+  if ((budget.flags & ~known_flags) != 0)
+    return bad_argument(log, "{}: flags is {:#x}, known is {:#x}", function, budget.flags,
+                        known_flags);
+  if ((budget.flags & DERMIS_BUDGET_TRIALS_AT_CUTS) != 0 &&
+      (budget.flags & DERMIS_BUDGET_NO_TRIALS) != 0)
+    return bad_argument(log,
+                        "{}: flags has DERMIS_BUDGET_TRIALS_AT_CUTS and DERMIS_BUDGET_NO_TRIALS, "
+                        "expected at most one of them",
+                        function);
+  if (budget.percentile != 0 &&
+      !(budget.percentile >= min_percentile && budget.percentile <= max_percentile))
+    return bad_argument(log, "{}: percentile is {}, expected {}..{}, or 0 for 0.95", function,
+                        budget.percentile, min_percentile, max_percentile);
+  if (budget.uncertainty != 0 &&
+      !(budget.uncertainty >= 1 && budget.uncertainty <= max_uncertainty))
+    return bad_argument(log, "{}: uncertainty is {}, expected 1..{}, or 0 for the calibration's",
+                        function, budget.uncertainty, max_uncertainty);
+  return DERMIS_OK;
+}
+
+Budget budget_of(const dermis_budget& given) {
+  Budget budget;
+  budget.ms = static_cast<double>(given.milliseconds);
+  budget.deterministic = (given.flags & DERMIS_BUDGET_DETERMINISTIC) != 0;
+  if (given.percentile != 0) budget.percentile = static_cast<double>(given.percentile);
+  if ((given.flags & DERMIS_BUDGET_TRIALS_AT_CUTS) != 0) budget.trials = choice::Trials::cuts_only;
+  if ((given.flags & DERMIS_BUDGET_NO_TRIALS) != 0) budget.trials = choice::Trials::off;
+  return budget;
+}
+
 dermis_result set_budget(dermis_graph_t& graph, const dermis_budget* given, dermis_report* report) {
   const Log& log = graph.context->log;
   dermis_budget budget = DERMIS_BUDGET_INIT;
   if (const SizedRead read = read_sized(given, budget); read != SizedRead::ok)
     return rejected_size(log, read, "dermis_graph_set_budget: budget", stated_size(given),
                          sizeof(dermis_budget));
-  // The comparison also rejects NaN.
-  if (!(budget.milliseconds >= 0 && budget.milliseconds <= largest_budget_ms))
-    return bad_argument(log, "dermis_graph_set_budget: milliseconds is {}, expected 0..{}",
-                        budget.milliseconds, largest_budget_ms);
-  if ((budget.flags & ~DERMIS_BUDGET_DETERMINISTIC) != 0)
-    return bad_argument(log, "dermis_graph_set_budget: flags is {:#x}, known is {:#x}",
-                        budget.flags, DERMIS_BUDGET_DETERMINISTIC);
+  if (const dermis_result result = check_budget(log, budget); result != DERMIS_OK) return result;
   Diagnostics diagnostics;
   Tables tables;
   if (const dermis_result result = read_tables(log, budget, tables, diagnostics);
@@ -113,15 +162,19 @@ dermis_result set_budget(dermis_graph_t& graph, const dermis_budget* given, derm
     const std::lock_guard lock(view.mutex);
     if (rebuild_tables) views.push_back(tables_of(view, tables));
   });
+  if (rebuild_tables) report_lacking(graph.own, views.front(), diagnostics);
   if (const dermis_result result = conclude(log, DERMIS_OK, std::move(diagnostics), report);
       result != DERMIS_OK)
     return result;
   size_t v = 0; // nothing fails from here on
   for_each_view(graph, [&](dermis_view_t& view) {
     const std::lock_guard lock(view.mutex);
+    Chooser& chooser = view.chooser;
     if (rebuild_tables) take_over(view, views[v++]);
-    view.chooser.budget_ms = static_cast<double>(budget.milliseconds);
-    view.chooser.deterministic = (budget.flags & DERMIS_BUDGET_DETERMINISTIC) != 0;
+    if (tables.calibration) chooser.decided_for = 0; // decisions start anew
+    chooser.budget = budget_of(budget);
+    chooser.costs.set_uncertainty(budget.uncertainty != 0 ? double(budget.uncertainty)
+                                                          : chooser.calibration.uncertainty);
   });
   return DERMIS_OK;
 }
@@ -164,9 +217,9 @@ dermis_frame_report make_report(const Chooser& chooser, const CompiledGraph& com
   out.reason = choice::why_text(frame.decision);
   out.miss = miss_of(frame);
   out.budget_ms = static_cast<float>(frame.budget_ms);
-  out.predicted_ms = static_cast<float>(frame.forecast.ms);
+  out.predicted_ms = static_cast<float>(frame.decision.expected_ms);
   out.measured_ms = frame.timed ? static_cast<float>(frame.measured_ms) : -1.0f;
-  out.predicted_rmse = static_cast<float>(frame.forecast.rmse);
+  out.predicted_rmse = static_cast<float>(frame.decision.rmse);
   out.skips = skips_of(frame, compiled_graph);
   return out;
 }
@@ -185,7 +238,8 @@ dermis_frame_statistics make_statistics(const Chooser& chooser,
   out.next_better =
       better ? compiled_graph.configurations[frame.decision.next_better].name.c_str() : "";
   out.next_better_missing_ms = static_cast<float>(frame.decision.missing_ms);
-  out.predicted_spread_ms = static_cast<float>(frame.forecast.spread_ms);
+  out.predicted_margin_ms =
+      static_cast<float>(frame.decision.bound_ms - frame.decision.expected_ms);
   out.calibrated_ms = static_cast<float>(frame.calibrated_ms);
   out.configuration_count = static_cast<uint32_t>(compiled_graph.configurations.size());
   out.switches = frame.switches;
@@ -268,7 +322,8 @@ extern "C" dermis_result DERMIS_CALL dermis_graph_calibration(dermis_graph graph
     if (size == nullptr) return bad_argument(log, "dermis_graph_calibration: size is NULL");
     const std::lock_guard lock(graph->own.mutex);
     const std::string json = dermis::choice::write_calibration(
-        {graph->context->device.properties.deviceName, graph->own.chooser.costs.calibration()});
+        {graph->context->device.properties.deviceName, dermis::choice::same_device_uncertainty,
+         graph->own.chooser.costs.calibration()});
     const size_t capacity = *size;
     *size = json.size() + 1;
     if (text == nullptr) return DERMIS_OK;

@@ -65,15 +65,27 @@ FrameChoice& place_of(Chooser& chooser, uint64_t frame_index) {
   return chooser.frames[frame_index % chooser.frames.size()];
 }
 
-void learn(Chooser& chooser, std::span<const choice::PassLoad> passes, FrameChoice& frame) {
+void learn(Chooser& chooser, std::span<const choice::PassLoad> passes, choice::TimeMargins& margins,
+           FrameChoice& frame) {
   const choice::FrameLoad load = load_of(frame.counters, frame.rectangle);
   frame.measured_ms = 0;
+  chooser.pass_times.clear();
   for (size_t p = 0; p < passes.size(); ++p) {
     const double ms = static_cast<double>(chooser.times[p].nanoseconds) / ns_per_ms;
     frame.measured_ms += ms;
-    if (!frame.first_of_plan && !frame.left_out)
-      chooser.costs.observe(passes[p].cost, groups_of(passes[p], load), ms);
+    chooser.pass_times.push_back({passes[p].cost, groups_of(passes[p], load), ms});
   }
+  if (frame.first_of_plan || frame.left_out) return;
+  chooser.costs.observe(chooser.pass_times, chooser.state.clock_s);
+  // After a step of the device the times before do not count.
+  if (frame.decision.measured && !chooser.costs.device_stepped())
+    margins.observe(frame.configuration, frame.decision.expected_ms, frame.measured_ms,
+                    chooser.budget.percentile);
+}
+
+void reduce_optimism(choice::CostEstimator& costs, const choice::Configuration& configuration) {
+  for (const choice::PassLoad& pass : configuration.passes)
+    costs.reduce_optimism(pass.cost);
 }
 
 // Learns the ratio of the error that the probe measured to the error that the table predicts.
@@ -110,9 +122,10 @@ void observe_frame(Chooser& chooser, CompiledGraph& compiled_graph, FrameChoice&
   count_groups(passes, plan.left_out, frame);
   if (!frame.left_out)
     frame.calibrated_ms =
-        calibrated_estimate(configuration, chooser.costs, load_of(frame.counters, frame.rectangle))
-            .ms;
-  if (counted && frame.timed) learn(chooser, passes, frame);
+        calibrated_ms(configuration, chooser.costs, load_of(frame.counters, frame.rectangle));
+  if (counted && frame.timed) learn(chooser, passes, compiled_graph.margins, frame);
+  if (frame.decision.rejected != choice::no_configuration)
+    reduce_optimism(chooser.costs, compiled_graph.configurations[frame.decision.rejected]);
   if (counted) learn_error(chooser, configuration, frame.counters);
   frame.observed = true;
   if (frame.frame_index <= chooser.newest.frame_index) return;
@@ -124,6 +137,83 @@ void observe_frame(Chooser& chooser, CompiledGraph& compiled_graph, FrameChoice&
   update_growth(chooser.tile_growth, frame.frame_index, listed_tiles(frame.counters));
   chooser.counted = true;
   chooser.counters = frame.counters;
+}
+
+// Contents that a frame is expected to show.
+struct Content {
+  choice::FrameLoad load;
+  uint64_t scattering_tiles = 0;
+  double d_px = assumed_d_px;
+  double transmitted_rms = 0;
+};
+
+Content expected_content(const Chooser& chooser, const FrameRequest& request) {
+  // Before any frame is counted, the whole view may scatter.
+  const uint64_t view_tiles = tiles_of(request.rectangle);
+  Content out;
+  out.load = {request.rectangle.width, request.rectangle.height, view_tiles, 0, 0};
+  out.scattering_tiles = view_tiles;
+  if (!chooser.counted) return out;
+  const double growth = growth_until(chooser.tile_growth, request.index);
+  const auto grown = [&](uint64_t tiles) {
+    return std::min(view_tiles, static_cast<uint64_t>(std::lround(growth * double(tiles))));
+  };
+  out.load = load_of(chooser.counters, request.rectangle);
+  out.load.listed_tiles = grown(out.load.listed_tiles);
+  out.load.copied_tiles = grown(out.load.copied_tiles);
+  out.scattering_tiles = grown(chooser.counters.scattering_tiles);
+  if (out.scattering_tiles > 0) out.d_px = subsurface::mean_d_px(chooser.counters);
+  out.transmitted_rms = subsurface::transmitted_rms(chooser.counters);
+  return out;
+}
+
+std::span<choice::Forecast> forecast_all(Chooser& chooser, const CompiledGraph& compiled_graph,
+                                         const Content& content, double now_s) {
+  const bool deterministic = chooser.budget.deterministic;
+  const std::span<const choice::CostFactors> factors =
+      deterministic ? std::span<const choice::CostFactors>() : chooser.costs.predict(now_s);
+  const double demand =
+      std::floor(expected_units(chooser.demand, content.d_px) * double(content.scattering_tiles));
+  const size_t count = compiled_graph.configurations.size();
+  for (uint32_t i = 0; i < count; ++i) {
+    const choice::Configuration& configuration = compiled_graph.configurations[i];
+    const double correction = error_factor(chooser.found, configuration.technique);
+    const double missed =
+        missed_rmse(chooser.errors, configuration.technique, content.transmitted_rms);
+    const auto error_of = [&](int32_t technique) {
+      return std::hypot(expected_rmse(chooser.errors, technique, content.d_px) * correction,
+                        missed);
+    };
+    choice::Forecast& out = chooser.scratch.forecasts[i];
+    out = {};
+    out.time = forecast_time(configuration, chooser.costs, factors, content.load);
+    out.margin = deterministic ? choice::calibrated_margin : compiled_graph.margins.margin(i);
+    out.takes_samples = configuration.takes_samples;
+    out.demand = demand;
+    out.rmse = error_of(configuration.technique);
+    out.unsampled_rmse = error_of(configuration.without_samples);
+    out.missed_rmse = missed;
+  }
+  return std::span(chooser.scratch.forecasts).first(count);
+}
+
+choice::Decision without_budget(const choice::Forecast& forecast) {
+  choice::Decision decision;
+  decision.why = choice::ReasonKind::no_budget;
+  decision.units = forecast.takes_samples ? forecast.demand : 0;
+  decision.expected_ms = forecast.time.expected_ms + decision.units * forecast.time.unit_ms;
+  decision.bound_ms = decision.expected_ms * std::exp(forecast.margin);
+  decision.rmse = rmse_with(forecast, decision.units);
+  decision.measured = forecast.time.measured;
+  return decision;
+}
+
+// Returns the limit on the samples of tiles. Units above the demand that fit are allowed, because
+// the demand may grow.
+uint32_t units_of(const choice::Decision& decision, const choice::Forecast& forecast) {
+  return forecast.takes_samples
+             ? static_cast<uint32_t>(std::min(decision.max_units, double(UINT32_MAX)))
+             : UINT32_MAX;
 }
 
 } // namespace
@@ -144,7 +234,7 @@ Chooser make_chooser(choice::DeviceClass device) {
   chooser.errors = default_errors();
   chooser.found = choice::make_error_correction(chooser.errors.techniques.size());
   chooser.calibration = default_calibration(device);
-  chooser.costs = choice::CostModel(chooser.calibration.costs);
+  chooser.costs = choice::CostEstimator(chooser.calibration.costs, chooser.calibration.uncertainty);
   return chooser;
 }
 
@@ -164,8 +254,15 @@ void adopt(Chooser& chooser, const PassTypeRegistry& pass_types, CompiledGraph& 
   for (const RunnablePlan& plan : compiled_graph.plans)
     passes = std::max(passes, plan.compiled->plan.passes.size());
   chooser.times.resize(passes);
-  chooser.forecasts.resize(
-      std::max(chooser.forecasts.size(), compiled_graph.configurations.size()));
+  chooser.pass_times.reserve(passes);
+  const size_t configurations =
+      std::max(chooser.scratch.forecasts.size(), compiled_graph.configurations.size());
+  chooser.scratch.forecasts.resize(configurations);
+  chooser.scratch.assessments.resize(configurations);
+  for (choice::DecisionState* state :
+       {&chooser.state, &chooser.previous_state, &chooser.scratch.state})
+    state->configurations.reserve(configurations);
+  compiled_graph.margins.resize(compiled_graph.configurations.size());
   compiled_graph.serial = ++chooser.compiled_graphs;
 }
 
@@ -177,75 +274,53 @@ void observe(Chooser& chooser, CompiledGraph& compiled_graph,
       observe_frame(chooser, compiled_graph, frame);
 }
 
-FrameChoice choose(const Chooser& chooser, const CompiledGraph& compiled_graph,
-                   uint64_t frame_index, double delta_seconds, const vulkan::Rectangle& rectangle,
-                   std::span<choice::Forecast> forecasts, choice::DecisionState& state) noexcept {
-  // Before any frame is counted, the whole view may scatter.
-  const uint64_t view_tiles = tiles_of(rectangle);
-  choice::FrameLoad load{rectangle.width, rectangle.height, view_tiles, 0, 0};
-  double d_px = assumed_d_px, through = 0;
-  uint64_t scattering = view_tiles;
-  if (chooser.counted) {
-    load = load_of(chooser.counters, rectangle);
-    const double growth = growth_until(chooser.tile_growth, frame_index);
-    const auto grown = [&](uint64_t tiles) {
-      return std::min(view_tiles, static_cast<uint64_t>(std::lround(growth * double(tiles))));
-    };
-    load.listed_tiles = grown(load.listed_tiles);
-    load.copied_tiles = grown(load.copied_tiles);
-    scattering = grown(chooser.counters.scattering_tiles);
-    if (scattering > 0) d_px = subsurface::mean_d_px(chooser.counters);
-    through = subsurface::transmitted_rms(chooser.counters);
-  }
-  const auto demand =
-      static_cast<uint32_t>(expected_units(chooser.demand, d_px) * double(scattering));
-  const double filled_ms = chooser.budget_ms / choice::entry_margin;
-  for (size_t i = 0; i < compiled_graph.configurations.size(); ++i) {
-    const choice::Configuration& configuration = compiled_graph.configurations[i];
-    load.sample_units = 0;
-    if (configuration.takes_samples)
-      load.sample_units = chooser.budget_ms > 0
-                              ? std::min(demand, units_within(configuration, chooser.costs, load,
-                                                              filled_ms, chooser.deterministic))
-                              : demand;
-    const choice::Estimate cost = chooser.deterministic
-                                      ? calibrated_estimate(configuration, chooser.costs, load)
-                                      : estimate(configuration, chooser.costs, load);
-    const double rmse = expected_rmse(chooser.errors, configuration, d_px,
-                                      static_cast<uint32_t>(load.sample_units), demand);
-    const double seen = rmse * error_factor(chooser.found, configuration.technique);
-    const double missed = missed_rmse(chooser.errors, configuration.technique, through);
-    forecasts[i] = {cost.ms, cost.spread_ms, std::hypot(seen, missed), missed};
-  }
+FrameChoice choose(Chooser& chooser, const CompiledGraph& compiled_graph,
+                   const FrameRequest& request) noexcept {
+  const Content content = expected_content(chooser, request);
   FrameChoice frame;
+  frame.frame_index = request.index;
   frame.compiled_graph = compiled_graph.serial;
-  frame.rectangle = rectangle;
-  frame.expected_tiles = load.listed_tiles;
-  frame.budget_ms = chooser.budget_ms;
-  if (chooser.budget_ms > 0)
-    frame.decision = decide(forecasts.first(compiled_graph.configurations.size()),
-                            chooser.budget_ms, delta_seconds, state);
-  else
-    frame.decision = {0, choice::ReasonKind::no_budget};
+  frame.rectangle = request.rectangle;
+  frame.expected_tiles = content.load.listed_tiles;
+  frame.budget_ms = chooser.budget.ms;
+  choice::DecisionState& state = chooser.scratch.state;
+  state = chooser.state;
+  if (chooser.decided_for != compiled_graph.serial)
+    restart(state, compiled_graph.configurations.size(), chooser.costs.unmeasured());
+  const std::span<choice::Forecast> forecasts =
+      forecast_all(chooser, compiled_graph, content, state.clock_s);
+  choice::FrameInput input;
+  input.budget_ms = chooser.budget.ms;
+  input.seconds = request.seconds;
+  input.cut = request.cut;
+  input.provisional = !chooser.counted;
+  input.trials = chooser.budget.trials;
+  if (chooser.budget.ms > 0) {
+    frame.decision = decide(forecasts, input, state,
+                            std::span(chooser.scratch.assessments).first(forecasts.size()));
+    frame.sample_units = units_of(frame.decision, forecasts[frame.decision.configuration]);
+  } else {
+    frame.decision = without_budget(forecasts.front());
+    skip_frame(state, request.seconds);
+  }
   frame.configuration = frame.decision.configuration;
-  if (chooser.budget_ms > 0)
-    frame.sample_units = units_within(compiled_graph.configurations[frame.configuration],
-                                      chooser.costs, load, filled_ms, chooser.deterministic);
   frame.switches = state.switches;
-  frame.forecast = forecasts[frame.configuration];
   return frame;
 }
 
-void remember(Chooser& chooser, const FrameChoice& frame,
-              const choice::DecisionState& state) noexcept {
+void remember(Chooser& chooser, const FrameChoice& frame) noexcept {
   place_of(chooser, frame.frame_index) = frame;
-  chooser.state = state;
+  std::swap(chooser.previous_state, chooser.state);
+  std::swap(chooser.state, chooser.scratch.state);
+  chooser.previously_decided_for = chooser.decided_for;
   chooser.decided_for = frame.compiled_graph;
 }
 
-void discard_prediction(Chooser& chooser, uint64_t frame_index) noexcept {
+void discard_choice(Chooser& chooser, uint64_t frame_index) noexcept {
   FrameChoice& frame = place_of(chooser, frame_index);
   if (frame.frame_index == frame_index) frame = {};
+  std::swap(chooser.state, chooser.previous_state);
+  chooser.decided_for = chooser.previously_decided_for;
 }
 
 } // namespace dermis::abi

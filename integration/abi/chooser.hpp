@@ -4,14 +4,15 @@
 
 #include "framegraph/vulkan/executor.hpp"
 #include "integration/include/dermis/dermis.h"
+#include "passes/choice/budget_controller.hpp"
 #include "passes/choice/calibration.hpp"
 #include "passes/choice/configurations.hpp"
-#include "passes/choice/controller.hpp"
 #include "passes/choice/defaults.hpp"
 #include "passes/choice/error_correction.hpp"
 #include "passes/choice/sample_allocation.hpp"
 #include "passes/choice/sample_demand.hpp"
 #include "passes/choice/tile_growth.hpp"
+#include "passes/choice/time_margin.hpp"
 #include "passes/common/dispatch.hpp"
 #include "passes/common/environment.hpp"
 
@@ -37,7 +38,6 @@ struct FrameChoice {
   choice::Decision decision;
   uint32_t switches = 0; // since the graph was created
   double budget_ms = 0;  // 0: no budget
-  choice::Forecast forecast;
   vulkan::Rectangle rectangle;
   // drivers finish kernels at their first run, so such a frame is not learned from
   bool first_of_plan = false;
@@ -54,15 +54,31 @@ struct FrameChoice {
   subsurface::FrameCounters counters;
 };
 
+// Values of choose() for one frame.
+struct ChoiceScratch {
+  std::vector<choice::Forecast> forecasts; // by configuration
+  std::vector<choice::Assessment> assessments;
+  choice::DecisionState state; // becomes Chooser::state by remember()
+};
+
+// The values of dermis_budget without its tables.
+struct Budget {
+  double ms = 0;              // 0: choices keep their defaults
+  bool deterministic = false; // DERMIS_BUDGET_DETERMINISTIC
+  double percentile = 0.95;
+  choice::Trials trials = choice::Trials::on;
+};
+
 struct Chooser {
   choice::ErrorModel errors;
   choice::Calibration calibration; // initial values of `costs`
-  choice::CostModel costs;
+  choice::CostEstimator costs;
   choice::ErrorCorrection found; // measured by the error probe; corrects `errors`
-  double budget_ms = 0;          // 0: choices keep their defaults
-  bool deterministic = false;    // DERMIS_BUDGET_DETERMINISTIC
+  Budget budget;
   choice::DecisionState state;
-  uint64_t decided_for = 0;           // CompiledGraph::serial that `state` belongs to
+  choice::DecisionState previous_state; // before the last remember()
+  uint64_t decided_for = 0;             // CompiledGraph::serial that `state` belongs to
+  uint64_t previously_decided_for = 0;
   subsurface::FrameCounters counters; // of the newest observed frame
   bool counted = false;
   choice::TileGrowth tile_growth; // of tiles with subsurface
@@ -73,8 +89,9 @@ struct Chooser {
   // number of programs adopted so far
   uint64_t compiled_graphs = 0;
   // Preallocated by adopt(), so that recording allocates nothing.
-  std::vector<choice::Forecast> forecasts;
   std::vector<vulkan::PassTiming> times;
+  std::vector<choice::PassTime> pass_times;
+  ChoiceScratch scratch;
 };
 
 // Returns the class of a device whose costs a chooser starts from. Only discrete GPUs are large.
@@ -90,15 +107,20 @@ void adopt(Chooser& chooser, const PassTypeRegistry& pass_types, CompiledGraph& 
 void observe(Chooser& chooser, CompiledGraph& compiled_graph,
              uint64_t completed_frame_index) noexcept;
 
-// Returns the choice and forecast for frame `frame_index`, which renders `rectangle`.
-// `delta_seconds` is the time since the previous frame; 0: unknown. Call remember() once the frame
-// is recorded. Allocates nothing and does not change `chooser`.
-FrameChoice choose(const Chooser& chooser, const CompiledGraph& compiled_graph,
-                   uint64_t frame_index, double delta_seconds, const vulkan::Rectangle& rectangle,
-                   std::span<choice::Forecast> forecasts, choice::DecisionState& state) noexcept;
-void remember(Chooser& chooser, const FrameChoice& frame,
-              const choice::DecisionState& state) noexcept;
-// Forgets a frame that was never submitted, so that nothing is learned from it.
-void discard_prediction(Chooser& chooser, uint64_t frame_index) noexcept;
+// A frame as the choice sees it.
+struct FrameRequest {
+  uint64_t index = 0;
+  double seconds = 0; // since the previous frame; 0: unknown
+  bool cut = false;
+  vulkan::Rectangle rectangle;
+};
+// Returns the choice for a frame. Call remember() once the frame is recorded. Allocates nothing and
+// changes no decision or estimate.
+FrameChoice choose(Chooser& chooser, const CompiledGraph& compiled_graph,
+                   const FrameRequest& frame) noexcept;
+void remember(Chooser& chooser, const FrameChoice& frame) noexcept;
+// Forgets the frame remembered last, which was never submitted: nothing is learned from it, and
+// decisions continue as before it.
+void discard_choice(Chooser& chooser, uint64_t frame_index) noexcept;
 
 } // namespace dermis::abi

@@ -7,6 +7,7 @@
 #include "integration/abi/host_files.hpp"
 #include "integration/abi/kernel_environment.hpp"
 #include "integration/abi/slots.hpp"
+#include "passes/choice/missing_rows.hpp"
 #include "passes/common/pass_types.hpp"
 
 #include <fmt/format.h>
@@ -214,7 +215,7 @@ vulkan::Error make_tables(dermis_context_t& context, const subsurface::TableUse&
 std::vector<choice::Configuration> described(const PassTypeRegistry& pass_types,
                                              const CompiledGraph& compiled_graph,
                                              const choice::ErrorModel& errors,
-                                             choice::CostModel& costs,
+                                             choice::CostEstimator& costs,
                                              std::vector<choice::Configuration> configurations) {
   std::vector<const Plan*> plans;
   for (const RunnablePlan& plan : compiled_graph.plans)
@@ -226,7 +227,7 @@ std::vector<choice::Configuration> described(const PassTypeRegistry& pass_types,
 std::vector<choice::Configuration> configurations_with(const CompiledGraph& compiled_graph,
                                                        const PassTypeRegistry& pass_types,
                                                        const choice::ErrorModel& errors,
-                                                       choice::CostModel& costs, uint32_t setting,
+                                                       choice::CostEstimator& costs, uint32_t setting,
                                                        const SettingValue& value) {
   std::vector<choice::Configuration> configurations = compiled_graph.configurations;
   for (choice::Configuration& configuration : configurations)
@@ -257,7 +258,7 @@ vulkan::Error make_pipelines(dermis_context_t& context, const CompiledGraphInput
 
 dermis_result build_compiled_graph(dermis_context_t& context, CompiledGraphInput& input,
                                    vulkan::HistoryReason history, PlanCache& cache,
-                                   const choice::ErrorModel& errors, choice::CostModel& costs,
+                                   const choice::ErrorModel& errors, choice::CostEstimator& costs,
                                    Diagnostics& diagnostics,
                                    std::shared_ptr<CompiledGraph>& compiled_graph) {
   auto composition = compose_sources(input, diagnostics);
@@ -306,6 +307,8 @@ dermis_result build_compiled_graph(dermis_context_t& context, CompiledGraphInput
     made_plans.push_back(&one.plan);
   candidate->configurations =
       choice::make_configurations(compile_input, *combinations, made_plans, errors, costs);
+  report_missing_rows(candidate->graph, context.pass_types, made_plans, errors, costs,
+                      candidate->configurations, diagnostics);
   std::vector<CompiledPlan> empty_plans;
   for (uint32_t p = 0; p < made.size(); ++p) {
     CompiledPlan& compiled = made[p];

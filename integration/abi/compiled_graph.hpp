@@ -10,6 +10,7 @@
 #include "integration/abi/left_out.hpp"
 #include "integration/abi/shaders/runtime_shaders.hpp"
 #include "passes/choice/configurations.hpp"
+#include "passes/choice/time_margin.hpp"
 #include "passes/common/kernel_tables.hpp"
 
 #include <array>
@@ -94,6 +95,7 @@ struct CompiledGraph {
   std::vector<SourceFile> files; // files of the changes, without their texts
   // configurations of the choices by budget; first: the defaults
   std::vector<choice::Configuration> configurations;
+  choice::TimeMargins margins; // by configuration, learned
   // for the transients of all variants; null if there is only one
   std::unique_ptr<vulkan::HeapPool> heap_pool;
   std::shared_ptr<vulkan::ViewTables> tables; // of all executors
@@ -126,7 +128,7 @@ struct CompiledGraph {
 // before the first record. Thread: any.
 dermis_result build_compiled_graph(dermis_context_t& context, CompiledGraphInput& input,
                                    vulkan::HistoryReason history, PlanCache& cache,
-                                   const choice::ErrorModel& errors, choice::CostModel& costs,
+                                   const choice::ErrorModel& errors, choice::CostEstimator& costs,
                                    Diagnostics& diagnostics,
                                    std::shared_ptr<CompiledGraph>& compiled_graph);
 
@@ -153,14 +155,14 @@ dermis_result copy_compiled_graph(dermis_context_t& context, CompiledGraphInput&
 std::vector<choice::Configuration> described(const PassTypeRegistry& pass_types,
                                              const CompiledGraph& compiled_graph,
                                              const choice::ErrorModel& errors,
-                                             choice::CostModel& costs,
+                                             choice::CostEstimator& costs,
                                              std::vector<choice::Configuration> configurations);
 
 // Returns the described configurations with a new value of a setting that turns no pass on or off.
 std::vector<choice::Configuration> configurations_with(const CompiledGraph& compiled_graph,
                                                        const PassTypeRegistry& pass_types,
                                                        const choice::ErrorModel& errors,
-                                                       choice::CostModel& costs, uint32_t setting,
+                                                       choice::CostEstimator& costs, uint32_t setting,
                                                        const SettingValue& value);
 
 // Pipelines by plan; see vulkan::Executor::make_pipelines.

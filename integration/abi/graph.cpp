@@ -51,7 +51,7 @@ dermis_result build_candidates(dermis_graph_t& graph, CompiledGraphInput& input,
   });
   const vulkan::HistoryReason history = recorded ? reason : vulkan::HistoryReason::first_frame;
   choice::ErrorModel errors;
-  choice::CostModel costs;
+  choice::CostEstimator costs;
   { // recording may learn concurrently
     const std::lock_guard lock(graph.own.mutex);
     errors = graph.own.chooser.errors;

@@ -44,8 +44,6 @@ struct dermis_view_t {
     std::array<double, 2> last_jitter_px{};
     uint32_t configuration = 0, plan = 0, compiled_graph_plan = 0;
     bool plan_recorded = false;
-    dermis::choice::DecisionState decision;
-    uint64_t decided_for = 0; // see Chooser
   } recorded;
   dermis::abi::Chooser chooser;
   dermis::abi::ImageViews image_views;

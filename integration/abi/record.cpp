@@ -56,9 +56,7 @@ dermis_result discard(dermis_view_t& view, const char* function, uint64_t frame_
   compiled_graph.last_jitter_px = recorded.last_jitter_px;
   compiled_graph.configuration = recorded.configuration;
   compiled_graph.plan = recorded.compiled_graph_plan;
-  discard_prediction(view.chooser, frame_index);
-  view.chooser.state = recorded.decision;
-  view.chooser.decided_for = recorded.decided_for;
+  discard_choice(view.chooser, frame_index);
   if (recorded.took_over) {
     view.next = std::move(view.running);
     if (recorded.retired < view.retired.size())
@@ -103,14 +101,10 @@ dermis_result record(dermis_view_t& view, const dermis_frame* given, Capture* ca
   Chooser& chooser = view.chooser;
   if (view.running) observe(chooser, *view.running, frame.completed_frame_index);
   if (const dermis_result loss = check_loss(view, function); loss != DERMIS_OK) return loss;
-  choice::DecisionState state =
-      compiled_graph.serial == chooser.decided_for ? chooser.state : choice::DecisionState{};
+  const bool cut = (frame.flags & DERMIS_FRAME_RESET_HISTORY) != 0;
   FrameChoice chosen =
-      choose(chooser, compiled_graph, frame.frame_index, double(frame.delta_seconds),
-             checked.input.rectangle, chooser.forecasts, state);
-  // decided for a view full of subsurface, so hysteresis must not keep it
-  if (!chooser.counted) state = {};
-  chosen.frame_index = frame.frame_index;
+      choose(chooser, compiled_graph,
+             {frame.frame_index, double(frame.delta_seconds), cut, checked.input.rectangle});
   const uint32_t plan = plan_of(compiled_graph, chosen.configuration, checked.empty_bounds());
   chosen.plan = plan;
   chosen.first_of_plan = !compiled_graph.plans[plan].recorded;
@@ -127,7 +121,7 @@ dermis_result record(dermis_view_t& view, const dermis_frame* given, Capture* ca
     return result;
   chosen.left_out = checked.empty_bounds();
   chosen.history_invalid = checked.history_invalid;
-  if (chosen.left_out) chosen.forecast.ms = chosen.forecast.spread_ms = 0;
+  if (chosen.left_out) chosen.decision.expected_ms = chosen.decision.bound_ms = 0;
   collect(view, frame.completed_frame_index);
   if (capture != nullptr) capture_into(*capture, checked.input);
   if (const vulkan::RecordResult error =
@@ -155,8 +149,6 @@ dermis_result record(dermis_view_t& view, const dermis_frame* given, Capture* ca
   view.recorded.compiled_graph_plan = compiled_graph.plan;
   view.recorded.plan = plan;
   view.recorded.plan_recorded = compiled_graph.plans[plan].recorded;
-  view.recorded.decision = chooser.state;
-  view.recorded.decided_for = chooser.decided_for;
   // its histories are copied by this frame
   if (replaces) view.running->last_frame = frame.frame_index;
   compiled_graph.last_frame = frame.frame_index;
@@ -164,7 +156,7 @@ dermis_result record(dermis_view_t& view, const dermis_frame* given, Capture* ca
   compiled_graph.configuration = chosen.configuration;
   compiled_graph.plan = plan;
   compiled_graph.plans[plan].recorded = true;
-  remember(chooser, chosen, state);
+  remember(chooser, chosen);
   view.last_frame = frame.frame_index;
   take_over(view);
   return DERMIS_OK;

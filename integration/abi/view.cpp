@@ -24,8 +24,8 @@ dermis_result create(dermis_graph_t& graph, const dermis_view_desc* given, dermi
     view->chooser.errors = from.errors;
     view->chooser.calibration = from.calibration;
     view->chooser.costs = from.costs;
-    view->chooser.budget_ms = from.budget_ms;
-    view->chooser.deterministic = from.deterministic;
+    view->chooser.budget = from.budget;
+    view->chooser.state.clock_s = from.state.clock_s; // the clock of `costs`
   }
   Diagnostics diagnostics;
   std::shared_ptr<CompiledGraph> compiled_graph;

@@ -10,6 +10,7 @@ namespace {
 
 constexpr size_t max_costs = 4096;
 constexpr double max_us = 1e9;
+constexpr double max_uncertainty = 100;
 
 } // namespace
 
@@ -20,6 +21,8 @@ std::optional<Calibration> read_calibration(const Document& document, Diagnostic
   ObjectReader root(document, document.root(), "calibration", diagnostics);
   root.any("dermis_calibration");
   out.device = root.string("device").value_or("");
+  out.uncertainty = root.number("uncertainty", 1, max_uncertainty, Need::optional)
+                        .value_or(other_device_uncertainty);
   const NodeId costs = root.array("costs", 0, max_costs);
   if (costs.valid())
     for (const NodeId node : children(document, costs)) {
@@ -41,6 +44,7 @@ std::string write_calibration(const Calibration& calibration) {
   json.open_object();
   json.member("$schema", "../schema/calibration.schema.json").member("dermis_calibration", 2);
   json.member("device", std::string_view(calibration.device));
+  json.member("uncertainty", calibration.uncertainty);
   json.key("costs").open_array();
   for (const Cost& cost : calibration.costs) {
     json.open_object(true);

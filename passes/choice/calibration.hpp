@@ -3,7 +3,7 @@
 // start.
 
 #include "framegraph/text/document.hpp"
-#include "passes/choice/cost_model.hpp"
+#include "passes/choice/cost_estimator.hpp"
 
 #include <optional>
 #include <string>
@@ -13,6 +13,8 @@ namespace dermis::choice {
 
 struct Calibration {
   std::string device; // name for people
+  // factor >= 1 by which times may be wrong on the device that uses them
+  double uncertainty = other_device_uncertainty;
   std::vector<Cost> costs;
 };
 

@@ -41,11 +41,6 @@ std::vector<SettingValue> values_of(const Plan& plan, const PlanPass& pass, cons
   return out;
 }
 
-// Returns whether the pass runs over the tiles that subsurface.allocate_samples lists.
-bool samples_by_tile(const PassType& type) {
-  return type.name == "subsurface.tile_refine" || type.name == "subsurface.afis_tiles";
-}
-
 int32_t level_of(const PassType& type, const std::vector<SettingValue>& values) {
   if (find_port(type, "level_tiles", PortSide::read) < 0) return -1;
   const int level = find_setting(type, "level");
@@ -90,7 +85,7 @@ RunningPass running(const PassType& type, const std::vector<SettingValue>& value
 }
 
 void describe(const PassTypeRegistry& pass_types, const Plan& plan, const ErrorModel& errors,
-              CostModel& costs, Configuration& configuration) {
+              CostEstimator& costs, Configuration& configuration) {
   std::vector<RunningPass> passes, without_samples;
   configuration.passes.clear();
   configuration.takes_samples = false;
@@ -174,6 +169,10 @@ std::string name_of(const Graph& graph, const Plan& plan, const std::vector<uint
 
 } // namespace
 
+bool samples_by_tile(const PassType& type) {
+  return type.name == "subsurface.tile_refine" || type.name == "subsurface.afis_tiles";
+}
+
 std::string work_name(const PassType& type, std::span<const SettingValue> values) {
   std::string name(type.name);
   for (size_t i = 0; i < values.size(); ++i)
@@ -248,7 +247,7 @@ std::optional<Combinations> enumerate_combinations(const CompileInput& input,
 std::vector<Configuration> make_configurations(const CompileInput& input,
                                                const Combinations& combinations,
                                                std::span<const Plan* const> plans,
-                                               const ErrorModel& errors, CostModel& costs) {
+                                               const ErrorModel& errors, CostEstimator& costs) {
   const std::vector<uint32_t> choices = choices_of(*input.graph);
   std::vector<Configuration> out;
   for (size_t i = 0; i < combinations.settings.size(); ++i) {
@@ -265,7 +264,7 @@ std::vector<Configuration> make_configurations(const CompileInput& input,
 }
 
 void describe_configurations(const PassTypeRegistry& pass_types, std::span<const Plan* const> plans,
-                             const ErrorModel& errors, CostModel& costs,
+                             const ErrorModel& errors, CostEstimator& costs,
                              std::span<Configuration> configurations) {
   for (Configuration& configuration : configurations)
     describe(pass_types, *plans[configuration.plan], errors, costs, configuration);
@@ -289,48 +288,36 @@ uint64_t groups_of(const PassLoad& pass, const FrameLoad& load) {
   return pass.count;
 }
 
-Estimate calibrated_estimate(const Configuration& configuration, const CostModel& costs,
-                             const FrameLoad& load) {
-  Estimate sum;
+double calibrated_ms(const Configuration& configuration, const CostEstimator& costs,
+                     const FrameLoad& load) {
+  double sum = 0;
   for (const PassLoad& pass : configuration.passes)
-    sum.ms += costs.calibrated_ms(pass.cost, groups_of(pass, load));
+    sum += costs.calibrated_cost(pass.cost).ms(static_cast<double>(groups_of(pass, load)));
   return sum;
 }
 
-Estimate estimate(const Configuration& configuration, const CostModel& costs,
-                  const FrameLoad& load) {
-  Estimate sum{0, 0, true};
-  double variance = 0;
+TimeForecast forecast_time(const Configuration& configuration, const CostEstimator& costs,
+                           std::span<const CostFactors> factors, const FrameLoad& load) {
+  TimeForecast sum;
+  sum.measured = !factors.empty();
   for (const PassLoad& pass : configuration.passes) {
-    const Estimate one = costs.estimate(pass.cost, groups_of(pass, load));
-    sum.ms += one.ms;
-    variance += one.spread_ms * one.spread_ms;
-    sum.measured = sum.measured && one.measured;
+    const AffineCost& cost = costs.calibrated_cost(pass.cost);
+    const bool samples = pass.groups == PassLoad::Groups::sample_units;
+    const double ms = cost.ms(samples ? 0 : static_cast<double>(groups_of(pass, load)));
+    const double unit_ms = samples ? cost.group_ms : 0;
+    CostFactors factor; // all 1
+    if (!factors.empty()) factor = factors[pass.cost.value];
+    const double known_ms = factors.empty() ? ms : std::max(ms, min_calibrated_ms);
+    sum.expected_ms += factor.expected * known_ms;
+    sum.pessimistic_ms += factor.pessimistic * known_ms;
+    sum.optimistic_ms += factor.optimistic * known_ms;
+    sum.undisturbed_ms += factor.undisturbed * known_ms;
+    sum.unit_ms += factor.expected * unit_ms;
+    sum.undisturbed_unit_ms += factor.undisturbed * unit_ms;
+    // samples may be absent for long, because none fit
+    sum.measured = sum.measured && (samples || factor.measured);
   }
-  sum.spread_ms = std::sqrt(variance);
   return sum;
-}
-
-uint32_t units_within(const Configuration& configuration, const CostModel& costs, FrameLoad load,
-                      double budget_ms, bool deterministic) {
-  // large, so that rounding errors of the difference do not matter
-  constexpr uint64_t many = 1u << 16;
-  if (!configuration.takes_samples) return UINT32_MAX;
-  const auto expected = [&](uint64_t units) {
-    load.sample_units = units;
-    return deterministic ? calibrated_estimate(configuration, costs, load)
-                         : estimate(configuration, costs, load);
-  };
-  const Estimate without = expected(0);
-  const double unit_ms = (expected(many).ms - without.ms) / double(many);
-  if (!(unit_ms > 0)) return UINT32_MAX;
-  const auto units_beside = [&](double spread_ms) {
-    const double left_ms = budget_ms - without.ms - given_deviations * spread_ms;
-    return static_cast<uint32_t>(std::clamp(left_ms / unit_ms, 0.0, double(UINT32_MAX)));
-  };
-  // Sample units deviate, too. Fewer units deviate by no more than the maximum does.
-  return units_beside(
-      expected(std::min<uint64_t>(units_beside(without.spread_ms), many)).spread_ms);
 }
 
 double expected_rmse(const ErrorModel& errors, const Configuration& configuration, double d_px,

@@ -3,7 +3,8 @@
 // work and its technique.
 
 #include "framegraph/compile/compile.hpp"
-#include "passes/choice/cost_model.hpp"
+#include "passes/choice/budget_controller.hpp"
+#include "passes/choice/cost_estimator.hpp"
 #include "passes/choice/error_model.hpp"
 
 #include <optional>
@@ -52,6 +53,9 @@ struct Combinations {
   std::vector<uint32_t> first; // by plan: the first combination that needs the plan
 };
 
+// Returns whether the pass runs over the tiles that subsurface.allocate_samples lists.
+bool samples_by_tile(const PassType& type);
+
 // Returns the name of a work, such as "subsurface.separable axis=vertical taps=25". `values`: one
 // per setting of the pass type.
 std::string work_name(const PassType& type, std::span<const SettingValue> values);
@@ -76,12 +80,12 @@ std::optional<Combinations> enumerate_combinations(const CompileInput& input,
 std::vector<Configuration> make_configurations(const CompileInput& input,
                                                const Combinations& combinations,
                                                std::span<const Plan* const> plans,
-                                               const ErrorModel& errors, CostModel& costs);
+                                               const ErrorModel& errors, CostEstimator& costs);
 
 // Updates the passes and the technique of each configuration, after a change of a setting that
 // turns no pass on or off, or with other models. `plans` is indexed by Configuration::plan.
 void describe_configurations(const PassTypeRegistry& pass_types, std::span<const Plan* const> plans,
-                             const ErrorModel& errors, CostModel& costs,
+                             const ErrorModel& errors, CostEstimator& costs,
                              std::span<Configuration> configurations);
 
 // Properties of a frame that affect costs.
@@ -92,20 +96,13 @@ struct FrameLoad {
   uint64_t sample_units = 0;      // units that subsurface.allocate_samples spends
 };
 uint64_t groups_of(const PassLoad& pass, const FrameLoad& load);
-// Returns the time by the calibration only, which is equal on all machines; no spread.
-Estimate calibrated_estimate(const Configuration& configuration, const CostModel& costs,
-                             const FrameLoad& load);
-Estimate estimate(const Configuration& configuration, const CostModel& costs,
-                  const FrameLoad& load);
-// Typical deviations of a budget that samples leave free when they fill it. One of twenty frames is
-// late by more than two (a mean deviation is 0.8 of a standard deviation). Work that runs in any
-// case needs one.
-inline constexpr double given_deviations = 2.0;
-// Returns the units of samples that fit into `budget_ms` in addition to all other work, with the
-// deviations of both. Returns UINT32_MAX if the configuration takes no samples by tile, or if a
-// unit costs nothing.
-uint32_t units_within(const Configuration& configuration, const CostModel& costs, FrameLoad load,
-                      double budget_ms, bool deterministic);
+// Returns the time by the calibration only, which is equal on all machines.
+double calibrated_ms(const Configuration& configuration, const CostEstimator& costs,
+                     const FrameLoad& load);
+// Returns the time of a frame; load.sample_units does not matter. `factors`: by
+// CostEstimator::predict(); empty: the time by the calibration only.
+TimeForecast forecast_time(const Configuration& configuration, const CostEstimator& costs,
+                           std::span<const CostFactors> factors, const FrameLoad& load);
 // Returns the expected RMSE if `given` of the `demand` units are taken: interpolates linearly
 // between the mean squares without samples and with all samples. Units with the largest benefit
 // come first, so the result is an upper bound of the measured error.

@@ -339,7 +339,7 @@ TEST(Schema, OfErrorTablesAgreesWithTheParserOnMutatedFiles) {
 
 TEST(Schema, OfCalibrationsAgreesWithTheParserOnMutatedFiles) {
   const std::vector<json> files = {
-      parse(R"({ "$schema": "x", "dermis_calibration": 2, "device": "d", "note": "n", "costs": [
+      parse(R"({ "$schema": "x", "dermis_calibration": 2, "device": "d", "note": "n", "uncertainty": 2, "costs": [
         { "work": "a", "base_us": 1, "group_us": 0.5, "spread": 0.1, "note": "n" },
         { "work": "b", "base_us": 0, "group_us": 0, "spread": 1 } ] })")};
   expect_agreement(schema_in("configs/schema/calibration.schema.json"), read_calibration_text,

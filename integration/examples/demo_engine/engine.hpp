@@ -133,7 +133,7 @@ struct GraphInputs {
 struct FrameChoice {
   // next_better: the more accurate configuration that exceeds the budget by least time; "": none.
   std::string configuration, technique, why, next_better;
-  double budget_ms = 0, predicted_ms = 0, predicted_spread_ms = 0, measured_ms = -1,
+  double budget_ms = 0, predicted_ms = 0, predicted_margin_ms = 0, measured_ms = -1,
          calibrated_ms = 0, predicted_rmse = 0;
   double next_better_missing_ms = 0, mean_d_px = 0;
   uint32_t configurations = 1, view_tiles = 0, scattering_tiles = 0, copied_tiles = 0, switches = 0;

@@ -89,8 +89,7 @@ extern "C" {
 #define DERMIS_VERSION_MAJOR 0
 #define DERMIS_VERSION_MINOR 1
 #define DERMIS_VERSION_PATCH 0
-/* Version of the interface in this header, for dermis_context_desc.abi_version. */
-#define DERMIS_ABI_VERSION 1u
+#define DERMIS_ABI_VERSION 1u /* of this header, for dermis_context_desc.abi_version */
 
 typedef enum dermis_result {
   DERMIS_OK = 0,
@@ -140,7 +139,6 @@ typedef struct dermis_message {
 typedef void(DERMIS_CALL* dermis_log_fn)(void* user, const dermis_message* message);
 
 /* ---- version --------------------------------------------------------------------------------- */
-
 /* Returns major << 22 | minor << 12 | patch. Costs: none. Thread: any. */
 DERMIS_API uint32_t DERMIS_CALL dermis_version(void);
 /* Returns a static string, never NULL, also for unknown values. Costs: none. Thread: any. */
@@ -173,7 +171,6 @@ DERMIS_API dermis_result DERMIS_CALL dermis_query_requirements(
     VkPhysicalDevice physical_device, uint32_t* count, dermis_requirement* items);
 
 /* ---- memory of the host ---------------------------------------------------------------------- */
-
 /* Allocates host memory for calls with a context, a graph, a view or one of their reports.
  * `alignment` is a power of two, at least 16. Return NULL on failure; the call then fails with
  * DERMIS_ERROR_MEMORY. Called from any thread that is inside a Dermis call. Must not call Dermis or
@@ -239,10 +236,8 @@ typedef struct dermis_device_allocator {
 #define DERMIS_DEVICE_ALLOCATOR_INIT {sizeof(dermis_device_allocator), NULL, NULL, NULL}
 
 /* ---- context --------------------------------------------------------------------------------- */
-/* Writes timestamps around each pass. */
-#define DERMIS_CONTEXT_TIMINGS 0x1u
-/* Writes debug labels and object names; needs VK_EXT_debug_utils enabled. */
-#define DERMIS_CONTEXT_LABELS 0x2u
+#define DERMIS_CONTEXT_TIMINGS 0x1u /* writes timestamps around each pass */
+#define DERMIS_CONTEXT_LABELS 0x2u  /* labels and object names; needs VK_EXT_debug_utils enabled */
 /* The device was created with VK_KHR_ray_query, VK_KHR_acceleration_structure and their features.
  * Options that require "ray_query" are then available. */
 #define DERMIS_CONTEXT_RAY_QUERY 0x4u
@@ -541,22 +536,27 @@ DERMIS_API dermis_result DERMIS_CALL dermis_graph_set_setting(
     dermis_graph graph, const char* name, const char* json, dermis_report* report);
 
 /* ---- the choice ------------------------------------------------------------------------------ */
+#define DERMIS_BUDGET_DETERMINISTIC 0x1u /* no timestamps: equal choices on every machine */
+/* Trials run a configuration for a few frames to measure its time, and may exceed the budget.
+ * Without a flag at any time; or only in frames with DERMIS_FRAME_RESET_HISTORY; or never. */
+#define DERMIS_BUDGET_TRIALS_AT_CUTS 0x2u
+#define DERMIS_BUDGET_NO_TRIALS 0x4u
 
-/* Uses only times of the calibration, never timestamps: equal choices on every machine. */
-#define DERMIS_BUDGET_DETERMINISTIC 0x1u
-
-/* Device time that a frame of one view may take. Each record then chooses the settings declared
- * with "by": "budget": the least expected error whose expected time fits. All plans that this can
- * select exist from creation on, so changing between them allocates nothing. Times are measured
- * with DERMIS_CONTEXT_TIMINGS; otherwise they come from the calibration. */
+/* Device time that a frame of one view may take: a fixed part of your frame, never what other work
+ * leaves (docs/choice.md). Each record then chooses the settings declared with "by": "budget": the
+ * least expected error whose time fits. All plans that this can select exist from creation on, so
+ * changing between them allocates nothing. Times are measured with DERMIS_CONTEXT_TIMINGS;
+ * otherwise they come from the calibration. */
 typedef struct dermis_budget {
   size_t struct_size;
   float milliseconds; /* per frame, > 0; 0: no budget, choices take their defaults */
   uint32_t flags;     /* DERMIS_BUDGET_.. */
   const dermis_source* errors;      /* error table (docs/choice.md); NULL: unchanged */
   const dermis_source* calibration; /* drops measured times; NULL: unchanged */
+  float percentile;   /* fraction of frames that stay within the budget, 0.5..0.99; 0 = 0.95 */
+  float uncertainty;  /* factor by which calibrated times may be wrong, 1..100; 0: the file's */
 } dermis_budget;
-#define DERMIS_BUDGET_INIT {sizeof(dermis_budget), 0, 0, NULL, NULL}
+#define DERMIS_BUDGET_INIT {sizeof(dermis_budget), 0, 0, NULL, NULL, 0, 0}
 /* Sets the budget for all views, effective at the next record; kept over reload and resize. Costs:
  * time. Thread: concurrent. Errors: ARGUMENT, VERSION, CONFIG, MEMORY. */
 DERMIS_API dermis_result DERMIS_CALL dermis_graph_set_budget(
@@ -599,7 +599,7 @@ typedef struct dermis_frame_statistics {
   const char* technique;        /* name in the error table; "" if none runs */
   const char* next_better;      /* the next more accurate configuration; "" for none */
   float next_better_missing_ms; /* time by which next_better exceeds the budget */
-  float predicted_spread_ms;    /* typical deviation of one frame */
+  float predicted_margin_ms;    /* that dermis_budget.percentile of frames stay within */
   float calibrated_ms;          /* time by the calibration for the tiles that were counted */
   uint32_t configuration_count;
   uint32_t switches;   /* since the graph was created */
@@ -637,7 +637,6 @@ DERMIS_API dermis_result DERMIS_CALL dermis_graph_calibration(
     dermis_graph graph, size_t* size, char* text);
 
 /* ---- passes of the host ---------------------------------------------------------------------- */
-
 /* How a pass of the host uses what a graph binds to a port, always in compute shaders: the graph's
  * barriers wait for, and make visible to, VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT. */
 typedef enum dermis_port_usage {
@@ -760,7 +759,6 @@ DERMIS_API dermis_result DERMIS_CALL dermis_export_pass_types(
     dermis_context context, size_t* size, char* text);
 
 /* ---- each frame ------------------------------------------------------------------------------ */
-
 /* The state of an image, a buffer or an acceleration structure outside the recorded commands. With
  * `transfer` 1 the commands acquire it from `queue_family` (in `before`) or release it to that
  * family (in `after`). The host records the other half, with old and new layout both `layout`.
@@ -834,7 +832,7 @@ typedef enum dermis_depth_kind {
   DERMIS_DEPTH_KIND_FORCE_32BIT = 0x7fffffff
 } dermis_depth_kind;
 
-#define DERMIS_FRAME_RESET_HISTORY 0x1u /* camera cut, teleport, new level */
+#define DERMIS_FRAME_RESET_HISTORY 0x1u /* camera cut, teleport, new level; invites trials */
 #define DERMIS_FRAME_BOUNDS 0x2u        /* all subsurface is inside dermis_frame.bounds_... */
 #define DERMIS_FRAME_LEFT_HANDED 0x4u   /* the camera looks along +z; see dermis_frame */
 
@@ -880,7 +878,6 @@ typedef struct dermis_frame {
    DERMIS_DEPTH_DEVICE, 0, 0, 0, 0, NULL, NULL, 0, 0}
 
 /* ---- a frame as data ------------------------------------------------------------------------- */
-
 /* For a host that records all commands itself: calls of Vulkan functions with these arguments. */
 typedef enum dermis_command_type {
   DERMIS_COMMAND_BARRIER = 0,    /* vkCmdPipelineBarrier2: dependency */
@@ -930,7 +927,6 @@ typedef struct dermis_command {
    NULL, NULL, 0, VK_NULL_HANDLE, 0, NULL}
 
 /* ---- views ----------------------------------------------------------------------------------- */
-
 /* A view is a camera of a graph: an eye, a player of a split screen, a mirror. Each graph has one
  * (dermis_graph_view); dermis_view_create adds more. Views share the plan, pipelines, settings and
  * budget. Each view has its own histories, transient memory, frame numbers, measured times, and

@@ -375,9 +375,23 @@ TEST_F(Choice, WrongBudgetsAreRejectedAndChangeNothing) {
     EXPECT_EQ(dermis_graph_set_budget(graph, &budget, nullptr), DERMIS_ERROR_ARGUMENT) << ms;
   }
   budget.milliseconds = 1;
-  budget.flags = 8;
-  EXPECT_EQ(dermis_graph_set_budget(graph, &budget, nullptr), DERMIS_ERROR_ARGUMENT);
+  for (const uint32_t flags : {8u, DERMIS_BUDGET_TRIALS_AT_CUTS | DERMIS_BUDGET_NO_TRIALS}) {
+    budget.flags = flags;
+    EXPECT_EQ(dermis_graph_set_budget(graph, &budget, nullptr), DERMIS_ERROR_ARGUMENT) << flags;
+  }
   budget.flags = 0;
+  for (const float percentile : {0.4f, 0.999f, -1.0f, std::nanf("")}) {
+    budget.percentile = percentile;
+    EXPECT_EQ(dermis_graph_set_budget(graph, &budget, nullptr), DERMIS_ERROR_ARGUMENT)
+        << percentile;
+  }
+  budget.percentile = 0;
+  for (const float uncertainty : {0.5f, 101.0f, std::nanf("")}) {
+    budget.uncertainty = uncertainty;
+    EXPECT_EQ(dermis_graph_set_budget(graph, &budget, nullptr), DERMIS_ERROR_ARGUMENT)
+        << uncertainty;
+  }
+  budget.uncertainty = 0;
   const std::string text =
       "{ \"dermis_errors\": 2,\n \"scenes\": \"s\", \"unscatterd\": [[1, 1]], \"techniques\": [] }";
   const dermis_source errors = source_of(text, "errors.json");

@@ -2,8 +2,8 @@
 // host's importance.
 
 #include "integration/examples/demo_engine/render/reported_frame.hpp"
-#include "passes/choice/controller.hpp"
 #include "passes/choice/sample_allocation.hpp"
+#include "passes/choice/time_margin.hpp"
 #include "tests/integration/abi/dermis_fixture.hpp"
 
 #include <algorithm>
@@ -52,9 +52,9 @@ struct Hybrid : DermisTest {
 
   void set_units(uint32_t units) {
     const dermis_source calibration = source_of(times, "invented");
-    dermis_budget budget =
-        budget_of((static_cast<float>(units) + 0.5f) / 1000 * float(choice::entry_margin),
-                  DERMIS_BUDGET_DETERMINISTIC);
+    dermis_budget budget = budget_of((static_cast<float>(units) + 0.5f) / 1000 *
+                                         std::exp(static_cast<float>(choice::calibrated_margin)),
+                                     DERMIS_BUDGET_DETERMINISTIC);
     budget.calibration = &calibration;
     ASSERT_OK(dermis_graph_set_budget(graph, &budget, nullptr));
   }

@@ -1,5 +1,6 @@
 #include "framegraph/model/read_graph.hpp"
 #include "passes/choice/configurations.hpp"
+#include "passes/choice/missing_rows.hpp"
 #include "passes/common/pass_types.hpp"
 
 #include <gtest/gtest.h>
@@ -29,7 +30,7 @@ struct Configurations : ::testing::Test {
   DeviceProfile device = generic_profile();
   Diagnostics diagnostics;
   ErrorModel errors;
-  CostModel costs;
+  CostEstimator costs;
   std::optional<Graph> graph;
 
   void SetUp() override {
@@ -160,16 +161,57 @@ TEST_F(Configurations, CostsGrowWithTheListedTiles) {
   const auto all =
       configurations_of(R"("technique": { "enum": ["separable", "off"], "default": "separable" })");
   ASSERT_TRUE(all);
-  for (uint64_t groups = 200; groups <= 3600; groups += 200)
-    for (const PassLoad& pass : all->configurations[0].passes)
-      costs.observe(pass.cost, groups, 0.01 + 1e-4 * static_cast<double>(groups));
-  const double few =
-      estimate(all->configurations[0], costs, {.width = 640, .height = 360, .listed_tiles = 100})
-          .ms;
-  const double many =
-      estimate(all->configurations[0], costs, {.width = 640, .height = 360, .listed_tiles = 3600})
-          .ms;
-  EXPECT_GT(many, few + 3 * 1e-4 * 3400); // Two passes and combine run over listed tiles.
+  const auto ms = [&](uint64_t tiles) {
+    return calibrated_ms(all->configurations[0], costs,
+                         {.width = 640, .height = 360, .listed_tiles = tiles});
+  };
+  const double group_ms = costs.calibrated_cost(all->configurations[0].passes.back().cost).group_ms;
+  EXPECT_GT(group_ms, 0);
+  // Two passes and combine run over listed tiles.
+  EXPECT_NEAR(ms(3600) - ms(100), 3 * 3500 * group_ms, 1e-9);
+}
+
+// The choice names passes that neither table knows; `off` needs no row.
+TEST_F(Configurations, MissingRows_AreReportedAtTheChoice) {
+  const auto report = [&](const Compiled& all, const CostEstimator& known) {
+    std::vector<const Plan*> plans;
+    for (const CompiledPlan& one : all.plans)
+      plans.push_back(&one.plan);
+    Diagnostics reported;
+    report_missing_rows(*graph, pass_types, plans, errors, known, all.configurations, reported);
+    return reported;
+  };
+  std::vector<Cost> all_types;
+  for (const char* type : {"classify", "tile_list", "separable_setup", "separable", "combine"})
+    all_types.push_back({std::string("subsurface.") + type + " other=setting", 10, 1, 0.1});
+  costs = CostEstimator(all_types);
+  constexpr const char* choice =
+      R"(
+    "technique": { "choice": ["separable", "off"], "by": "budget", "default": "separable" })";
+  const auto all = configurations_of(choice);
+  ASSERT_TRUE(all) << format_as_json(diagnostics);
+  EXPECT_TRUE(report(*all, costs).list.empty());
+
+  errors.techniques.clear();
+  const auto without_row = configurations_of(choice);
+  const Diagnostics row = report(*without_row, costs);
+  ASSERT_EQ(row.list.size(), 1u) << format_as_json(row);
+  EXPECT_EQ(row.list[0].id, DiagnosticId::error_row_missing);
+  EXPECT_EQ(row.list[0].where.line, 2u);
+  EXPECT_NE(row.list[0].text.find("'subsurface.separable' of 'technique=separable'"),
+            std::string::npos)
+      << row.list[0].text;
+
+  SetUp(); // restores the error table
+  all_types.erase(all_types.begin() + 3);
+  costs = CostEstimator(all_types);
+  const auto without_cost = configurations_of(choice);
+  const Diagnostics cost = report(*without_cost, costs);
+  ASSERT_EQ(cost.list.size(), 1u) << format_as_json(cost);
+  EXPECT_EQ(cost.list[0].id, DiagnosticId::cost_missing);
+  EXPECT_NE(cost.list[0].text.find("'subsurface.separable', which 'technique=separable' runs"),
+            std::string::npos)
+      << cost.list[0].text;
 }
 
 TEST_F(Configurations, TooManyConfigurations_AreRejectedAtTheChoice) {
@@ -184,30 +226,31 @@ TEST_F(Configurations, TooManyConfigurations_AreRejectedAtTheChoice) {
   EXPECT_EQ(diagnostics.list.back().where.line, 2u);
 }
 
-// Fixed work takes 10 ms with a typical deviation of 0.1 of it; a unit of samples takes 1 us
-// without deviation.
-TEST(Units, LeaveTwoDeviationsOfTheBudgetFree) {
-  CostModel costs({{"fixed work", 10000, 0, 0.1}, {"samples", 0, 1, 0}});
+// Fixed work takes 10 ms, a dispatch of samples 0.1 ms, and a unit of samples 1 us.
+TEST(ForecastTime, SeparatesSamplesFromOtherWork) {
+  CostEstimator costs({{"fixed work", 10000, 0, 0.1}, {"samples", 100, 1, 0}});
   Configuration configuration;
-  configuration.takes_samples = true;
   PassLoad work, samples;
   work.cost = costs.add("fixed work");
   samples.cost = costs.add("samples");
   samples.groups = PassLoad::Groups::sample_units;
   configuration.passes = {work, samples};
-
-  const double budget_ms = 20;
   FrameLoad load;
-  load.sample_units = units_within(configuration, costs, load, budget_ms, false);
-  const Estimate filled = estimate(configuration, costs, load);
-  EXPECT_NEAR(filled.ms + 2 * filled.spread_ms, budget_ms, 0.002) << "to a unit: as many as fit";
-  EXPECT_NEAR(static_cast<double>(load.sample_units), 8000, 2);
-  // In deterministic mode the deviation is zero.
-  EXPECT_NEAR(units_within(configuration, costs, {}, budget_ms, true), 10000, 2);
-  // No samples fit if the other work takes the whole budget.
-  EXPECT_EQ(units_within(configuration, costs, {}, 11.9, false), 0u);
-  configuration.takes_samples = false;
-  EXPECT_EQ(units_within(configuration, costs, {}, budget_ms, false), UINT32_MAX);
+  load.sample_units = 500; // has no effect
+  const TimeForecast calibrated = forecast_time(configuration, costs, {}, load);
+  EXPECT_NEAR(calibrated.expected_ms, 10.1, 1e-9);
+  EXPECT_EQ(calibrated.pessimistic_ms, calibrated.expected_ms);
+  EXPECT_EQ(calibrated.optimistic_ms, calibrated.expected_ms);
+  EXPECT_NEAR(calibrated.unit_ms, 1e-3, 1e-12);
+  EXPECT_FALSE(calibrated.measured);
+
+  const PassTime frame[] = {{work.cost, 1, 20}, {samples.cost, 100, 0.6}};
+  for (int i = 1; i <= 10; ++i)
+    costs.observe(frame, i / 60.0);
+  const TimeForecast measured = forecast_time(configuration, costs, costs.predict(0.2), load);
+  EXPECT_NEAR(measured.expected_ms, 20.3, 0.01);
+  EXPECT_NEAR(measured.unit_ms, 3e-3, 1e-5);
+  EXPECT_TRUE(measured.measured);
 }
 
 TEST_F(Configurations, CurvesThatDoNotIncreaseAreRejected) {

@@ -426,7 +426,7 @@ Result<FrameChoice> graph_choice(DermisHost& host, uint64_t frame_index) {
   out.next_better = choice.next_better;
   out.budget_ms = choice.budget_ms;
   out.predicted_ms = choice.predicted_ms;
-  out.predicted_spread_ms = choice.predicted_spread_ms;
+  out.predicted_margin_ms = choice.predicted_margin_ms;
   out.measured_ms = choice.measured_ms;
   out.calibrated_ms = choice.calibrated_ms;
   out.predicted_rmse = choice.predicted_rmse;

@@ -77,7 +77,7 @@ void ChoiceReport::write(JsonWriter& writer) const {
     writer.member("technique", std::string_view(choice.technique))
         .member("why", std::string_view(choice.why));
     writer.member("budget_ms", choice.budget_ms).member("predicted_ms", choice.predicted_ms);
-    writer.member("predicted_spread_ms", choice.predicted_spread_ms).key("measured_ms");
+    writer.member("predicted_margin_ms", choice.predicted_margin_ms).key("measured_ms");
     if (choice.measured_ms < 0)
       writer.null();
     else

@@ -25,7 +25,7 @@ std::vector<std::vector<NamedValue>> choice_sets(const LoadedGraph& loaded, cons
   std::vector<const Plan*> plans;
   for (const CompiledPlan& one : compiled)
     plans.push_back(&one.plan);
-  choice::CostModel costs;
+  choice::CostEstimator costs;
   for (const choice::Configuration& configuration :
        choice::make_configurations(input, *combinations, plans, {"", {{1, 1}}, {}}, costs)) {
     std::vector<NamedValue>& set = sets.emplace_back();

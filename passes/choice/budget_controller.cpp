@@ -1,0 +1,348 @@
+#include "passes/choice/budget_controller.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace dermis::choice {
+namespace {
+
+// Logarithms of factors. Beyond this fraction of the margin, what runs is left: errors of estimates
+// must not do so.
+constexpr double leave_margin = 0.7;
+// A configuration that enters leaves a gap in addition to the margin: a minimum, and a fraction of
+// the margin.
+constexpr double min_gap = 0.02, gap_of_margin = 0.3;
+// A switch needs an error below this fraction of the running configuration's. Trials rank behind
+// known configurations by the same factor.
+constexpr double worth_a_switch = 0.98;
+// Token bucket: at most T + 1 switches in any T >= 1 seconds.
+constexpr double switches_per_second = 0.5, max_tokens = 2;
+constexpr double trial_tokens = 2, known_tokens = 1; // a trial needs another one to come back
+// Until the first seconds have passed, each pass may be tried.
+constexpr double first_s = 3, first_tokens_per_pass = 2;
+constexpr double trial_s = 1; // left sooner, a trial failed
+// A configuration that was left is not tried again for its back-off, which doubles each time, and
+// restarts after the configuration ran for this many back-offs.
+constexpr double first_backoff_s = 1, calm_backoffs = 10;
+// Without trials, disturbances count as over after this many back-offs.
+constexpr double forgotten_backoffs = 10;
+// A configuration that was not tried in the first seconds is not tried for this time.
+constexpr double untried_backoff_s = 300;
+// During its back-off, a configuration is tried only if it became cheaper by this logarithm.
+constexpr double changed = 0.10;
+constexpr double never_ms = 1e30;
+constexpr double usual_frame_s = 1.0 / 60; // if the host gives no time
+constexpr double min_ms = 1e-12;
+// Samples increase only by more than this factor and number, or if all fit.
+constexpr double units_factor = 1.05, units_step = 1;
+
+double seconds_of(double seconds) {
+  return seconds > 0 ? seconds : usual_frame_s;
+}
+
+double seen_square(const Forecast& forecast, double rmse) {
+  return rmse * rmse - forecast.missed_rmse * forecast.missed_rmse;
+}
+
+class Controller {
+public:
+  Controller(std::span<const Forecast> forecasts, const FrameInput& frame, DecisionState& state,
+             std::span<Assessment> scratch)
+      : forecasts_(forecasts), frame_(frame), state_(state), assessed_(scratch) {}
+
+  Decision decide() {
+    const bool first_seconds_end = advance();
+    for (uint32_t i = 0; i < forecasts_.size(); ++i)
+      assess(i);
+    Decision decision;
+    choose(decision);
+    if (first_seconds_end && frame_.trials == Trials::on) set_aside_untried();
+    enter(decision);
+    find_next_better(decision);
+    decision.transmission_stats = decided_by_transmission(decision);
+    return decision;
+  }
+
+private:
+  // Returns whether the first seconds end in this frame.
+  bool advance() {
+    const double seconds = seconds_of(frame_.seconds);
+    const double before = state_.clock_s - state_.started_s;
+    state_.clock_s += seconds;
+    const double after = state_.clock_s - state_.started_s;
+    if (after > first_s)
+      state_.tokens = std::min(max_tokens, state_.tokens + switches_per_second * seconds);
+    return before <= first_s && after > first_s;
+  }
+
+  bool may_try() const {
+    return frame_.trials == Trials::on || (frame_.trials == Trials::cuts_only && frame_.cut);
+  }
+
+  void assess(uint32_t i) {
+    const Forecast& forecast = forecasts_[i];
+    const TimeForecast& time = forecast.time;
+    const DecisionState::Configuration& kept = state_.configurations[i];
+    Assessment& out = assessed_[i];
+    const bool rested = state_.clock_s - kept.left_s > kept.backoff_s;
+    out.fill_ms = frame_.budget_ms * std::exp(-forecast.margin);
+    out.leave_ms = frame_.budget_ms * std::exp(-leave_margin * forecast.margin);
+    out.enter_ms = out.fill_ms * std::exp(-min_gap - gap_of_margin * forecast.margin);
+    out.trial = time.pessimistic_ms > out.enter_ms;
+    const bool barred =
+        !rested && time.expected_ms > kept.left_ratio * frame_.budget_ms * std::exp(-changed);
+    out.running_ms = rested ? time.undisturbed_ms : time.optimistic_ms;
+    const double entering_ms = may_try() ? out.running_ms : known_ms(time, kept);
+    out.entering_ms = barred ? never_ms : entering_ms;
+    out.units = out.entering_units = 0;
+    if (forecast.takes_samples && forecast.demand > 0) {
+      const double entering_unit_ms = rested && may_try() ? time.undisturbed_unit_ms : time.unit_ms;
+      out.units = units_within(out.fill_ms - time.expected_ms, time.unit_ms, forecast.demand);
+      out.entering_units =
+          units_within(out.enter_ms - entering_ms, entering_unit_ms, forecast.demand);
+    }
+    out.rmse = rmse_with(forecast, out.units);
+    out.entering_rmse = rmse_with(forecast, out.entering_units);
+  }
+
+  // Returns the time that decides about entering without a trial. Disturbances are forgotten.
+  double known_ms(const TimeForecast& time, const DecisionState::Configuration& kept) const {
+    const double disturbance_ms = time.optimistic_ms - time.undisturbed_ms;
+    const bool forgotten = state_.clock_s - kept.left_s > forgotten_backoffs * kept.backoff_s;
+    return time.expected_ms - (forgotten ? disturbance_ms : 0);
+  }
+
+  static double units_within(double ms, double unit_ms, double demand) {
+    return std::clamp(ms / std::max(unit_ms, min_ms), 0.0, demand);
+  }
+
+  template <class Fits> uint32_t best(Fits fits) const {
+    uint32_t found = no_configuration;
+    double least = 0;
+    for (uint32_t i = 0; i < assessed_.size(); ++i) {
+      const double rmse = assessed_[i].entering_rmse / (assessed_[i].trial ? worth_a_switch : 1);
+      if (!fits(i) || (found != no_configuration && rmse >= least)) continue;
+      found = i;
+      least = rmse;
+    }
+    return found;
+  }
+
+  // Chooses the least error that fits for certain; the fastest if nothing fits.
+  void choose_known(double Assessment::*limit, Decision& decision, ReasonKind why) const {
+    decision.why = why;
+    decision.configuration =
+        best([&](uint32_t i) { return forecasts_[i].time.pessimistic_ms <= assessed_[i].*limit; });
+    if (decision.configuration != no_configuration) return;
+    decision.why = ReasonKind::nothing_fits;
+    const auto faster = [](const Forecast& a, const Forecast& b) {
+      return a.time.pessimistic_ms < b.time.pessimistic_ms;
+    };
+    decision.configuration = static_cast<uint32_t>(
+        std::min_element(forecasts_.begin(), forecasts_.end(), faster) - forecasts_.begin());
+  }
+
+  // Leaves the running configuration, which exceeds the budget.
+  void choose_other(Decision& decision) const {
+    const bool tried = state_.clock_s - state_.entered_s < trial_s;
+    choose_known(tried ? &Assessment::fill_ms : &Assessment::enter_ms, decision,
+                 tried ? ReasonKind::trial_failed : ReasonKind::over_budget);
+    // Once the first trials are over, one that never ran may serve if it should fit.
+    const bool first_trials = state_.clock_s - state_.started_s <= first_s;
+    if (first_trials || tried || state_.tokens < trial_tokens || frame_.trials != Trials::on)
+      return;
+    const uint32_t expected = best([&](uint32_t i) {
+      return assessed_[i].entering_ms < never_ms &&
+             forecasts_[i].time.expected_ms <= assessed_[i].enter_ms;
+    });
+    if (expected != no_configuration &&
+        assessed_[expected].entering_rmse <
+            worth_a_switch * assessed_[decision.configuration].entering_rmse)
+      decision.configuration = expected;
+  }
+
+  void choose(Decision& decision) const {
+    const uint32_t now = state_.current;
+    if (now == no_configuration || state_.provisional)
+      return choose_known(&Assessment::enter_ms, decision, ReasonKind::first_frame);
+    decision.configuration = now;
+    if (assessed_[now].running_ms > assessed_[now].leave_ms) {
+      decision.why = ReasonKind::held;
+      if (state_.tokens >= known_tokens) choose_other(decision);
+      return;
+    }
+    const uint32_t better =
+        best([&](uint32_t i) { return assessed_[i].entering_ms <= assessed_[i].enter_ms; });
+    decision.why = ReasonKind::fits_best;
+    if (better == no_configuration || better == now ||
+        assessed_[better].entering_rmse >= assessed_[now].rmse)
+      return;
+    decision.why = ReasonKind::held;
+    const bool trial = assessed_[better].trial;
+    if (assessed_[better].entering_rmse > worth_a_switch * assessed_[now].rmse ||
+        state_.tokens < (trial ? trial_tokens : known_tokens))
+      return;
+    decision.configuration = better;
+    decision.why = trial && may_try() ? ReasonKind::trial : ReasonKind::better_fits;
+  }
+
+  // Configurations that do not fit at best are not tried because of noise.
+  void set_aside_untried() {
+    for (uint32_t i = 0; i < assessed_.size(); ++i) {
+      DecisionState::Configuration& kept = state_.configurations[i];
+      if (kept.ran || assessed_[i].entering_ms <= assessed_[i].enter_ms) continue;
+      kept.left_ratio = forecasts_[i].time.expected_ms / frame_.budget_ms;
+      kept.left_s = state_.clock_s;
+      kept.backoff_s = untried_backoff_s;
+    }
+  }
+
+  void enter(Decision& decision) {
+    const uint32_t before = state_.current, now = decision.configuration;
+    const bool switched = before != no_configuration && now != before;
+    if (switched && !state_.provisional) leave(before, decision);
+    if (switched && !state_.provisional) ++state_.switches;
+    if (switched || before == no_configuration) state_.entered_s = state_.clock_s;
+    state_.current = now;
+    state_.provisional = frame_.provisional;
+    DecisionState::Configuration& kept = state_.configurations[now];
+    kept.ran = true;
+    if (state_.clock_s - state_.entered_s > calm_backoffs * kept.backoff_s)
+      kept.backoff_s = first_backoff_s;
+    take_units(switched, decision);
+  }
+
+  void leave(uint32_t before, Decision& decision) {
+    state_.tokens -= 1;
+    const bool over = assessed_[before].running_ms > assessed_[before].leave_ms;
+    if (!over) return;
+    DecisionState::Configuration& kept = state_.configurations[before];
+    kept.left_ratio = forecasts_[before].time.pessimistic_ms / frame_.budget_ms;
+    kept.left_s = state_.clock_s;
+    kept.backoff_s *= 2;
+    decision.rejected = before;
+  }
+
+  void take_units(bool switched, Decision& decision) {
+    const Forecast& forecast = forecasts_[decision.configuration];
+    const TimeForecast& time = forecast.time;
+    const double fits = assessed_[decision.configuration].units;
+    const bool more = fits > units_factor * state_.units + units_step || fits >= forecast.demand;
+    if (switched || fits < state_.units || more) state_.units = fits;
+    decision.units = forecast.takes_samples ? state_.units : 0;
+    const double affordable = (assessed_[decision.configuration].fill_ms - time.expected_ms) /
+                              std::max(time.unit_ms, min_ms);
+    decision.max_units =
+        state_.units >= forecast.demand ? std::max(affordable, 0.0) : decision.units;
+    decision.expected_ms = time.pessimistic_ms + decision.units * time.unit_ms;
+    decision.bound_ms = decision.expected_ms * std::exp(forecast.margin);
+    decision.rmse = rmse_with(forecast, decision.units);
+    decision.measured = time.measured;
+  }
+
+  // Returns the budget that the configuration needs to be entered for certain.
+  double needed_ms(uint32_t i) const {
+    return forecasts_[i].time.pessimistic_ms * frame_.budget_ms / assessed_[i].enter_ms;
+  }
+
+  void find_next_better(Decision& decision) const {
+    for (uint32_t i = 0; i < forecasts_.size(); ++i) {
+      const double missing = needed_ms(i) - frame_.budget_ms;
+      if (assessed_[i].entering_rmse >= decision.rmse || missing <= 0) continue;
+      if (decision.next_better != no_configuration && missing >= decision.missing_ms) continue;
+      decision.next_better = i;
+      decision.missing_ms = missing;
+    }
+  }
+
+  bool decided_by_transmission(const Decision& decision) const {
+    const Forecast& now = forecasts_[decision.configuration];
+    for (uint32_t i = 0; i < forecasts_.size(); ++i) {
+      const double other = assessed_[i].entering_rmse;
+      if (needed_ms(i) <= frame_.budget_ms && other > decision.rmse &&
+          seen_square(forecasts_[i], other) < seen_square(now, decision.rmse))
+        return true;
+    }
+    return false;
+  }
+
+  std::span<const Forecast> forecasts_;
+  const FrameInput& frame_;
+  DecisionState& state_;
+  std::span<Assessment> assessed_;
+};
+
+const char* text_of(ReasonKind why) {
+  switch (why) {
+  case ReasonKind::no_budget:
+    return "no budget is set";
+  case ReasonKind::first_frame:
+    return "least error within the budget; first frame";
+  case ReasonKind::fits_best:
+    return "least error within the budget";
+  case ReasonKind::better_fits:
+    return "a configuration with less error now fits the budget";
+  case ReasonKind::over_budget:
+    return "the previous configuration exceeds the budget";
+  case ReasonKind::nothing_fits:
+    return "no configuration fits the budget: the fastest runs";
+  case ReasonKind::held:
+    return "kept, to switch less often";
+  case ReasonKind::trial:
+    return "tried, because it has less error and might fit the budget";
+  case ReasonKind::trial_failed:
+    return "the configuration that was tried exceeds the budget";
+  }
+  return "";
+}
+
+} // namespace
+
+const char* why_text(const Decision& decision) {
+  if (!decision.transmission_stats) return text_of(decision.why);
+  switch (decision.why) {
+  case ReasonKind::first_frame:
+    return "least error within the budget, considering transmitted light; first frame";
+  case ReasonKind::fits_best:
+    return "least error within the budget, considering transmitted light";
+  case ReasonKind::better_fits:
+    return "a configuration with less error now fits the budget, considering transmitted light";
+  case ReasonKind::no_budget:
+  case ReasonKind::over_budget:
+  case ReasonKind::nothing_fits:
+  case ReasonKind::held:
+  case ReasonKind::trial:
+  case ReasonKind::trial_failed:
+    break;
+  }
+  return text_of(decision.why);
+}
+
+double rmse_with(const Forecast& forecast, double units) {
+  if (!forecast.takes_samples) return forecast.rmse;
+  const double fraction = forecast.demand > 0 ? std::min(1.0, units / forecast.demand) : 0;
+  const double none = forecast.unsampled_rmse * forecast.unsampled_rmse;
+  return std::sqrt(none + fraction * (forecast.rmse * forecast.rmse - none));
+}
+
+void restart(DecisionState& state, size_t configurations, size_t unmeasured) {
+  state.configurations.assign(configurations, {});
+  state.current = no_configuration;
+  state.provisional = true;
+  state.units = 0;
+  state.started_s = state.entered_s = state.clock_s;
+  state.tokens = std::max(max_tokens, first_tokens_per_pass * double(unmeasured));
+  state.switches = 0;
+}
+
+void skip_frame(DecisionState& state, double seconds) {
+  state.clock_s += seconds_of(seconds);
+  state.current = no_configuration;
+}
+
+Decision decide(std::span<const Forecast> forecasts, const FrameInput& frame, DecisionState& state,
+                std::span<Assessment> scratch) {
+  return Controller(forecasts, frame, state, scratch).decide();
+}
+
+} // namespace dermis::choice

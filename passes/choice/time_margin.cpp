@@ -1,0 +1,30 @@
+#include "passes/choice/time_margin.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace dermis::choice {
+namespace {
+
+constexpr double step = 0.03; // a late frame widens the margin by at most this fraction
+constexpr double min_margin = 0.02, max_margin = 0.5;
+// Fraction of the late frames that are kept in reserve, for levels that drift.
+constexpr double reserve = 0.2;
+
+} // namespace
+
+double TimeMargins::margin(uint32_t configuration) const {
+  const double own = configuration < margins_.size() ? margins_[configuration] : 0;
+  return own > 0 ? own : last_;
+}
+
+void TimeMargins::observe(uint32_t configuration, double expected_ms, double measured_ms,
+                          double percentile) {
+  const double before = margin(configuration);
+  const double aim = percentile + reserve * (1 - percentile);
+  const bool late = measured_ms > expected_ms * std::exp(before);
+  last_ = std::clamp(before * (1 + step * (late ? aim : aim - 1)), min_margin, max_margin);
+  margins_[configuration] = last_;
+}
+
+} // namespace dermis::choice

@@ -1,0 +1,258 @@
+#include "passes/choice/budget_controller.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace {
+
+using namespace dermis::choice;
+
+constexpr double frame_seconds = 1.0 / 60;
+constexpr double margin = 0.05;
+
+Forecast known(double ms, double rmse, double missed_rmse = 0) {
+  Forecast forecast;
+  forecast.time.expected_ms = forecast.time.pessimistic_ms = forecast.time.optimistic_ms =
+      forecast.time.undisturbed_ms = ms;
+  forecast.time.measured = true;
+  forecast.margin = margin;
+  forecast.rmse = forecast.unsampled_rmse = rmse;
+  forecast.missed_rmse = missed_rmse;
+  return forecast;
+}
+
+// Never ran; takes 1/3 to 1.5 times `ms`.
+Forecast unknown(double ms, double rmse) {
+  Forecast forecast = known(ms, rmse);
+  forecast.time.pessimistic_ms *= 1.5;
+  forecast.time.optimistic_ms /= 3;
+  forecast.time.undisturbed_ms /= 3;
+  forecast.time.measured = false;
+  return forecast;
+}
+
+const std::vector<Forecast> three{known(1, 9e-3), known(2, 5e-3), known(4, 2e-3)};
+
+struct Decide : ::testing::Test {
+  DecisionState state;
+  FrameInput frame;
+
+  Decision decide(std::vector<Forecast> forecasts, double budget_ms,
+                  double seconds = frame_seconds) {
+    if (state.configurations.empty()) restart(state, forecasts.size(), 0);
+    frame.budget_ms = budget_ms;
+    frame.seconds = seconds;
+    std::vector<Assessment> scratch(forecasts.size());
+    return dermis::choice::decide(forecasts, frame, state, scratch);
+  }
+};
+
+TEST_F(Decide, TakesTheSmallestErrorThatFits) {
+  for (const auto& [budget, expected] : {std::pair{1.5, 0u}, {2.5, 1u}, {5.0, 2u}}) {
+    state = {};
+    EXPECT_EQ(decide(three, budget).configuration, expected) << budget;
+  }
+}
+
+TEST_F(Decide, MarginMustFitTheBudget) {
+  EXPECT_EQ(decide(three, 2.05).configuration, 0u); // 2.0 ms would fit without the margin
+}
+
+TEST_F(Decide, NothingFits_TheFastestRuns) {
+  const Decision decision = decide(three, 0.5);
+  EXPECT_EQ(decision.configuration, 0u);
+  EXPECT_EQ(decision.why, ReasonKind::nothing_fits);
+}
+
+TEST_F(Decide, ConfigurationOverBudget_IsLeftAtOnce) {
+  EXPECT_EQ(decide(three, 5.0).configuration, 2u);
+  const Decision decision = decide(three, 3.0);
+  EXPECT_EQ(decision.configuration, 1u);
+  EXPECT_EQ(decision.why, ReasonKind::trial_failed); // within a second of its start
+  EXPECT_EQ(decision.rejected, 2u);
+  EXPECT_EQ(state.switches, 1u);
+}
+
+TEST_F(Decide, OscillatingBudget_SwitchesAtMostOncePerTwoSeconds) {
+  constexpr int frames = 600; // ten seconds
+  for (int i = 0; i < frames; ++i)
+    decide(three, 4.4 + (i % 2 == 0 ? 0.6 : -0.6));
+  EXPECT_LE(state.switches, 2u + frames / 120);
+}
+
+// Between the limits of entering and leaving, the running configuration stays. Without hysteresis
+// it would change with each frame.
+TEST_F(Decide, TimesNearTheLimit_DoNotSwitch) {
+  const double limit = 4.2 * std::exp(-margin);
+  for (const bool dear_runs : {true, false}) {
+    state = {};
+    decide({known(1, 9e-3), known(dear_runs ? 3.0 : 9.0, 2e-3)}, 4.2);
+    const uint32_t first = state.current;
+    EXPECT_EQ(first, dear_runs ? 1u : 0u);
+    for (int i = 0; i < 3600; ++i) {
+      const double ms = limit * (i / 30 % 2 == 0 ? 0.985 : 1.012);
+      decide({known(1, 9e-3), known(ms, 2e-3)}, 4.2);
+    }
+    EXPECT_EQ(state.switches, 0u) << dear_runs;
+    EXPECT_EQ(state.current, first);
+  }
+}
+
+TEST_F(Decide, ErrorsAlmostEqual_DoNotSwitch) {
+  for (int i = 0; i < 3600; ++i)
+    decide({known(1, i / 30 % 2 == 0 ? 5.0e-3 : 4.95e-3), known(1, 4.97e-3)}, 3.0);
+  EXPECT_LE(state.switches, 0u);
+}
+
+// The second configuration includes transmission. The first has less error in views without
+// transmission.
+TEST_F(Decide, TransmissionIsTheReasonIfItDecides) {
+  const std::vector<Forecast> lit_in_front{known(1, 2e-3), known(4, 0.1)};
+  const std::vector<Forecast> lit_behind{known(1, 0.3, 0.2999), known(4, 0.1)};
+  const Decision front = decide(lit_in_front, 5.0);
+  EXPECT_EQ(front.configuration, 0u);
+  EXPECT_FALSE(front.transmission_stats);
+  EXPECT_STREQ(why_text(front), "least error within the budget; first frame");
+  const Decision behind = decide(lit_behind, 5.0, 1.5);
+  EXPECT_EQ(behind.configuration, 1u);
+  EXPECT_TRUE(behind.transmission_stats);
+  EXPECT_STREQ(
+      why_text(behind),
+      "a configuration with less error now fits the budget, considering transmitted light");
+  const Decision again = decide(lit_behind, 5.0, 1.5);
+  EXPECT_STREQ(why_text(again), "least error within the budget, considering transmitted light");
+  // The rays do not fit, so transmission did not change the decision.
+  const Decision dear = decide(lit_behind, 2.0, 1.5);
+  EXPECT_EQ(dear.configuration, 0u);
+  EXPECT_FALSE(dear.transmission_stats);
+  EXPECT_EQ(dear.next_better, 1u);
+}
+
+TEST_F(Decide, UnknownTime_IsTriedIfItMightFit) {
+  const std::vector<Forecast> forecasts{known(1, 9e-3), unknown(3, 2e-3)};
+  EXPECT_EQ(decide(forecasts, 2.5).configuration, 0u); // the first frame is no trial
+  const Decision tried = decide(forecasts, 2.5);
+  EXPECT_EQ(tried.configuration, 1u);
+  EXPECT_EQ(tried.why, ReasonKind::trial);
+  // Its time was measured and does not fit.
+  const std::vector<Forecast> measured{known(1, 9e-3), known(3, 2e-3)};
+  const Decision back = decide(measured, 2.5);
+  EXPECT_EQ(back.configuration, 0u);
+  EXPECT_EQ(back.why, ReasonKind::trial_failed);
+  EXPECT_EQ(back.rejected, 1u);
+  for (int i = 0; i < 3600; ++i)
+    EXPECT_EQ(decide(measured, 2.5).configuration, 0u) << i;
+}
+
+TEST_F(Decide, Trials_FollowTheHost) {
+  const std::vector<Forecast> forecasts{known(1, 9e-3), unknown(3, 2e-3)};
+  for (const Trials trials : {Trials::cuts_only, Trials::off}) {
+    state = {};
+    frame.trials = trials;
+    for (int i = 0; i < 600; ++i) {
+      frame.cut = i == 300;
+      decide(forecasts, 2.5);
+      EXPECT_EQ(state.current, i >= 300 && trials == Trials::cuts_only ? 1u : 0u) << i;
+    }
+  }
+}
+
+// A configuration that fits even at its pessimistic time needs no trial.
+TEST_F(Decide, TrialsOff_StillTakesWhatFits) {
+  frame.trials = Trials::off;
+  decide({known(1, 9e-3), unknown(3, 2e-3)}, 2.5);
+  EXPECT_EQ(decide({known(1, 9e-3), unknown(1.2, 2e-3)}, 2.5).configuration, 1u);
+}
+
+// A disturbed configuration is tried at its usual time after 2, 4, 8 ... s.
+TEST_F(Decide, DisturbedConfiguration_IsTriedWithBackOff) {
+  Forecast disturbed = known(5, 2e-3);
+  std::vector<double> tried_s;
+  decide({known(1, 9e-3), known(2, 2e-3)}, 2.5);
+  for (int i = 0; i < 60 * 60; ++i) {
+    const bool runs = state.current == 1;
+    disturbed.time.undisturbed_ms = runs ? 5 : 2;
+    disturbed.time.optimistic_ms = 5;
+    if (decide({known(1, 9e-3), disturbed}, 2.5).why == ReasonKind::trial)
+      tried_s.push_back(i * frame_seconds);
+  }
+  ASSERT_GE(tried_s.size(), 4u);
+  EXPECT_LE(tried_s.size(), 6u);
+  for (size_t i = 0; i + 2 < tried_s.size(); ++i)
+    EXPECT_NEAR((tried_s[i + 2] - tried_s[i + 1]) / (tried_s[i + 1] - tried_s[i]), 2, 0.2);
+}
+
+TEST_F(Decide, BetterConfiguration_IsTakenAtOnce) {
+  decide(three, 1.5);
+  EXPECT_EQ(decide(three, 9.0).configuration, 2u);
+}
+
+TEST_F(Decide, Provisional_IsReplacedWithoutASwitch) {
+  frame.provisional = true;
+  decide(three, 1.5); // the whole view may scatter
+  frame.provisional = false;
+  EXPECT_EQ(decide(three, 9.0).configuration, 2u);
+  EXPECT_EQ(state.switches, 0u);
+}
+
+TEST_F(Decide, ReportsTheTimeMissingForTheNextBetter) {
+  const Decision decision = decide(three, 2.5);
+  EXPECT_EQ(decision.next_better, 2u);
+  const double gap = 0.02 + 0.3 * margin;
+  EXPECT_NEAR(decision.missing_ms, 4 * std::exp(margin + gap) - 2.5, 1e-9);
+  state = {};
+  EXPECT_EQ(decide(three, 9).next_better, no_configuration);
+}
+
+// 2 ms, and 1 us per unit of samples.
+Forecast sampled(double demand) {
+  Forecast forecast = known(2, 2e-3);
+  forecast.takes_samples = true;
+  forecast.unsampled_rmse = 4e-3;
+  forecast.demand = demand;
+  forecast.time.unit_ms = forecast.time.undisturbed_unit_ms = 1e-3;
+  return forecast;
+}
+
+TEST_F(Decide, Samples_FillTheBudgetLessTheMargin) {
+  const double fit = (3 * std::exp(-margin) - 2) * 1000;
+  const Decision some = decide({sampled(5000)}, 3);
+  EXPECT_NEAR(some.units, fit, 1e-6);
+  EXPECT_NEAR(some.bound_ms, 3, 1e-9);
+  EXPECT_NEAR(some.rmse, 1e-3 * std::sqrt(16 + fit / 5000 * (4 - 16)), 1e-9);
+  // The spare budget may be taken if more is requested than expected.
+  const Decision all = decide({sampled(100)}, 3);
+  EXPECT_EQ(all.units, 100);
+  EXPECT_NEAR(all.max_units, fit, 1e-6);
+}
+
+TEST_F(Decide, NoSamplesForLong_ReturnWhenTheyFit) {
+  for (int i = 0; i < 600; ++i)
+    EXPECT_EQ(decide({sampled(5000)}, 2.05).units, 0);
+  EXPECT_GT(decide({sampled(5000)}, 3).units, 800);
+}
+
+TEST_F(Decide, SamplesIncreaseOnlyByMoreThanNoise) {
+  const double units = decide({sampled(5000)}, 3).units;
+  EXPECT_EQ(decide({sampled(5000)}, 3.02).units, units);
+  EXPECT_LT(decide({sampled(5000)}, 2.98).units, units);
+}
+
+TEST_F(Decide, CopiedState_GivesEqualDecisions) {
+  DecisionState copy;
+  for (int i = 0; i < 400; ++i) {
+    const double budget = 1.0 + (i * 37 % 50) * 0.1;
+    const uint32_t here = decide(three, budget).configuration;
+    if (i < 200) {
+      copy = state;
+      continue;
+    }
+    std::swap(copy, state);
+    EXPECT_EQ(decide(three, budget).configuration, here) << i;
+    std::swap(copy, state);
+  }
+  EXPECT_EQ(copy.switches, state.switches);
+}
+
+} // namespace

@@ -1,0 +1,223 @@
+#include "passes/choice/calibration.hpp"
+#include "passes/choice/cost_estimator.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace {
+
+using namespace dermis;
+using namespace dermis::choice;
+
+constexpr double frame_s = 1.0 / 60;
+
+// Adds `frames` frames of the passes, from `clock_s` on.
+void observe(CostEstimator& costs, const std::vector<PassTime>& passes, int frames,
+             double& clock_s) {
+  for (int i = 0; i < frames; ++i) {
+    clock_s += frame_s;
+    costs.observe(passes, clock_s);
+  }
+}
+
+double expected_ms(CostEstimator& costs, CostId id, uint64_t groups, double clock_s) {
+  return costs.predict(clock_s)[id.value].expected *
+         costs.calibrated_cost(id).ms(static_cast<double>(groups));
+}
+
+TEST(CostEstimator, FollowsADeviceThatBecameSlower) {
+  CostEstimator costs({{"a", 10, 1, 0.1}, {"b", 20, 2, 0.1}});
+  const CostId a = costs.add("a"), b = costs.add("b");
+  double clock_s = 0;
+  observe(costs, {{a, 1000, 1.01}, {b, 1000, 2.02}}, 100, clock_s);
+  EXPECT_NEAR(expected_ms(costs, a, 1000, clock_s), 1.01, 0.01);
+  observe(costs, {{a, 1000, 2.02}, {b, 1000, 4.04}}, 3, clock_s);
+  EXPECT_NEAR(expected_ms(costs, a, 1000, clock_s), 2.02, 0.1) << "a step within three frames";
+}
+
+TEST(CostEstimator, SingleLongFrame_ChangesLittle) {
+  CostEstimator costs({{"a", 10, 1, 0.1}});
+  const CostId a = costs.add("a");
+  double clock_s = 0;
+  observe(costs, {{a, 1000, 1.01}}, 100, clock_s);
+  observe(costs, {{a, 1000, 10.1}}, 1, clock_s);
+  EXPECT_NEAR(expected_ms(costs, a, 1000, clock_s), 1.01, 0.02);
+}
+
+// Passes that do not run follow the factor that all passes share.
+TEST(CostEstimator, AbsentWork_FollowsTheDevice) {
+  CostEstimator costs({{"shared", 10, 1, 0.1}, {"one", 10, 1, 0.1}, {"other", 10, 1, 0.1}});
+  const CostId shared = costs.add("shared"), one = costs.add("one"), other = costs.add("other");
+  double clock_s = 0;
+  observe(costs, {{shared, 1000, 1.01}, {one, 1000, 1.01}}, 100, clock_s);
+  observe(costs, {{shared, 1000, 1.01}, {other, 1000, 1.01}}, 100, clock_s);
+  observe(costs, {{shared, 1000, 2.02}, {other, 1000, 2.02}}, 30, clock_s);
+  EXPECT_NEAR(expected_ms(costs, one, 1000, clock_s), 2.02, 0.1);
+  observe(costs, {{shared, 1000, 1.01}, {other, 1000, 1.01}}, 100, clock_s);
+  EXPECT_NEAR(expected_ms(costs, one, 1000, clock_s), 1.01, 0.05) << "no ratchet";
+}
+
+TEST(CostEstimator, DisturbedWork_KeepsItsUsualTimeInMind) {
+  CostEstimator costs({{"shared", 10, 1, 0.1}, {"one", 10, 1, 0.1}});
+  const CostId shared = costs.add("shared"), one = costs.add("one");
+  double clock_s = 0;
+  observe(costs, {{shared, 1000, 1.01}, {one, 1000, 1.01}}, 100, clock_s);
+  observe(costs, {{shared, 1000, 1.01}, {one, 1000, 3.03}}, 20, clock_s); // only this pass
+  observe(costs, {{shared, 1000, 1.01}}, 60, clock_s);
+  const CostFactors factors = costs.predict(clock_s)[one.value];
+  EXPECT_GT(factors.expected, 2); // a part of the excess went to the device
+  EXPECT_LT(factors.expected, 3.1);
+  EXPECT_NEAR(factors.undisturbed, 1, 0.2);
+  EXPECT_FALSE(factors.measured);
+  // The first time after a break counts fully.
+  observe(costs, {{shared, 1000, 1.01}, {one, 1000, 1.01}}, 3, clock_s);
+  EXPECT_NEAR(costs.predict(clock_s)[one.value].expected, 1, 0.1);
+}
+
+TEST(CostEstimator, UnmeasuredWork_IsScaledTowardsTheOthers) {
+  CostEstimator costs({{"a", 10, 1, 0.1}, {"b", 10, 1, 0.1}, {"c", 20, 2, 0.1}});
+  const CostId a = costs.add("a"), b = costs.add("b"), c = costs.add("c");
+  EXPECT_NEAR(expected_ms(costs, c, 1000, 0), 2.02, 1e-9);
+  double clock_s = 0;
+  // Both passes take three times their calibrated time, which may be the device or the calibration.
+  observe(costs, {{a, 1000, 3.03}, {b, 1000, 3.03}}, 50, clock_s);
+  EXPECT_NEAR(expected_ms(costs, c, 1000, clock_s), 2.02 * std::pow(3, 2.0 / 3), 0.05);
+  const CostFactors factors = costs.predict(clock_s)[c.value];
+  EXPECT_LT(factors.optimistic, 1.0 / 3);
+  EXPECT_GT(factors.pessimistic, 3);
+}
+
+TEST(CostEstimator, Uncertainty_SetsTheRangeOfUnmeasuredWork) {
+  CostEstimator costs({{"a", 10, 1, 0.1}, {"b", 10, 1, 0.1}}, 1);
+  const CostId a = costs.add("a"), b = costs.add("b");
+  double clock_s = 0;
+  observe(costs, {{a, 1000, 1.01}}, 50, clock_s);
+  EXPECT_NEAR(costs.predict(clock_s)[b.value].optimistic, 1, 1e-3);
+  EXPECT_NEAR(costs.predict(clock_s)[b.value].pessimistic, 1, 1e-3);
+  costs.set_uncertainty(8);
+  EXPECT_NEAR(costs.predict(clock_s)[b.value].optimistic, 1.0 / 8, 1e-3);
+  EXPECT_NEAR(costs.predict(clock_s)[b.value].pessimistic, 2, 1e-3); // the cubic root
+}
+
+// After half an hour, work that does not run may have become cheaper.
+TEST(CostEstimator, UnseenWork_BecomesUncertain) {
+  CostEstimator costs({{"shared", 10, 1, 0.1}, {"one", 10, 1, 0.1}});
+  const CostId shared = costs.add("shared"), one = costs.add("one");
+  double clock_s = 0;
+  observe(costs, {{shared, 1000, 1.01}, {one, 1000, 1.01}}, 100, clock_s);
+  clock_s += 1800;
+  observe(costs, {{shared, 1000, 1.01}}, 1, clock_s);
+  EXPECT_NEAR(costs.predict(clock_s)[one.value].undisturbed, std::exp(-0.2), 0.01);
+}
+
+TEST(CostEstimator, WithoutTimestamps_NothingIsOptimistic) {
+  CostEstimator costs({{"a", 10, 1, 0.1}});
+  const CostId a = costs.add("a");
+  EXPECT_EQ(costs.predict(10)[a.value].optimistic, 1);
+}
+
+TEST(CostEstimator, RejectedWork_IsLessOptimistic) {
+  CostEstimator costs({{"shared", 10, 1, 0.1}, {"one", 10, 1, 0.1}});
+  const CostId shared = costs.add("shared"), one = costs.add("one");
+  double clock_s = 0;
+  observe(costs, {{shared, 1000, 1.01}, {one, 1000, 2.02}}, 5, clock_s); // tried
+  observe(costs, {{shared, 1000, 1.01}}, 60, clock_s);
+  const double before = costs.predict(clock_s)[one.value].undisturbed;
+  costs.reduce_optimism(one);
+  EXPECT_GT(costs.predict(clock_s)[one.value].undisturbed, 2 * before);
+}
+
+TEST(CostEstimator, EmptyDispatches_TeachNothing) {
+  CostEstimator costs({{"samples", 0, 1, 0.1}, {"a", 10, 1, 0.1}});
+  const CostId samples = costs.add("samples"), a = costs.add("a");
+  double clock_s = 0;
+  observe(costs, {{samples, 1000, 1}, {a, 1000, 1.01}}, 100, clock_s);
+  observe(costs, {{samples, 0, 0.002}, {a, 1000, 1.01}}, 1000, clock_s);
+  EXPECT_NEAR(expected_ms(costs, samples, 1000, clock_s), 1, 0.05);
+}
+
+TEST(CostEstimator, GuessFromSimilarWork_DoesNotScaleTheRest) {
+  CostEstimator costs({{"known a", 100, 1, 0.1}});
+  const CostId known = costs.add("known a");
+  const CostId strange[] = {costs.add("strange level=2"), costs.add("strange level=3")};
+  EXPECT_TRUE(costs.has_calibration(known));
+  EXPECT_FALSE(costs.has_calibration(strange[0]));
+  double clock_s = 0;
+  // The guess taken from similar work is 1.1 ms.
+  observe(costs, {{strange[0], 1000, 0.001}, {strange[1], 1000, 0.001}}, 40, clock_s);
+  EXPECT_NEAR(expected_ms(costs, known, 1000, clock_s), 1.1, 1e-3);
+}
+
+TEST(CostEstimator, UnknownWork_CostsLikeSimilarWorkAndNever0) {
+  CostEstimator costs({{"fixed inverse=exact samples=16", 10, 1, 0.1},
+                       {"fixed inverse=approximate samples=8", 10, 4, 0.1},
+                       {"heavy", 10, 9, 0.1}});
+  const CostId similar = costs.add("fixed inverse=exact samples=12");
+  const CostId unknown = costs.add("never heard of");
+  EXPECT_NEAR(expected_ms(costs, similar, 1000, 0), 1.01, 1e-9);
+  EXPECT_NEAR(expected_ms(costs, unknown, 1000, 0), 9.01, 1e-9);
+  CostEstimator empty;
+  EXPECT_GT(expected_ms(empty, empty.add("never heard of"), 1000, 0), 0);
+}
+
+TEST(CostEstimator, InvalidTimes_AreIgnored) {
+  CostEstimator costs({{"work", 10, 1, 0.1}});
+  const CostId id = costs.add("work");
+  double clock_s = 0;
+  observe(costs, {{id, 100, 1.0}}, 1, clock_s);
+  const double before = expected_ms(costs, id, 100, clock_s);
+  for (const double bad : {std::nan(""), double(INFINITY), -1.0})
+    observe(costs, {{id, 100, bad}}, 1, clock_s);
+  EXPECT_EQ(expected_ms(costs, id, 100, clock_s), before);
+}
+
+TEST(CostEstimator, WorkCalibratedAsFree_HasFiniteTimes) {
+  CostEstimator costs({{"work", 0, 0, 0}});
+  const CostId id = costs.add("work");
+  double clock_s = 0;
+  observe(costs, {{id, 100, 1.0}}, 200, clock_s);
+  EXPECT_NEAR(costs.predict(clock_s)[id.value].expected * min_calibrated_ms, 1.0, 0.01);
+}
+
+TEST(Calibration, ReadsBackFromItsFile) {
+  CostEstimator costs;
+  const CostId b = costs.add("b"), a = costs.add("a");
+  costs.add("never run");
+  double clock_s = 0;
+  for (uint64_t groups = 100; groups < 2000; groups += 100) {
+    const double ms = 0.05 + 0.0002 * static_cast<double>(groups);
+    observe(costs, {{a, groups, ms}, {b, groups, 2 * ms}}, 1, clock_s);
+  }
+  const Calibration out{"a device", same_device_uncertainty, costs.calibration()};
+  ASSERT_EQ(out.costs.size(), 2u);
+  EXPECT_EQ(out.costs[0].work, "a");         // Sorted by name.
+  EXPECT_NEAR(out.costs[0].base_us, 50, 10); // the cost of unknown work pulls
+  EXPECT_NEAR(out.costs[0].group_us, 0.2, 0.01);
+  const std::string text = write_calibration(out);
+  Diagnostics diagnostics;
+  const auto document = parse_document("calibration.json", text, diagnostics);
+  ASSERT_TRUE(document);
+  const auto back = read_calibration(*document, diagnostics);
+  ASSERT_TRUE(back) << format_as_json(diagnostics);
+  EXPECT_EQ(write_calibration(*back), text);
+  EXPECT_EQ(back->uncertainty, same_device_uncertainty);
+}
+
+TEST(Calibration, InvalidEntries_AreRejectedWithTheirPlace) {
+  Diagnostics diagnostics;
+  const auto document =
+      parse_document("c.json",
+                     "{\"dermis_calibration\": 2, \"device\": \"d\", \"costs\": [\n"
+                     "{\"work\": \"w\", \"base_us\": -1, \"group_us\": 0, \"spred\": 0}]}",
+                     diagnostics);
+  ASSERT_TRUE(document);
+  EXPECT_FALSE(read_calibration(*document, diagnostics));
+  ASSERT_EQ(diagnostics.count(Severity::error), 2u) << format_as_json(diagnostics);
+  EXPECT_EQ(diagnostics.list[0].id, DiagnosticId::out_of_range);
+  EXPECT_EQ(diagnostics.list[0].where.pointer, "/costs/0/base_us");
+  EXPECT_EQ(diagnostics.list[1].id, DiagnosticId::unknown_key);
+  EXPECT_EQ(diagnostics.list[1].where.line, 2u);
+}
+
+} // namespace
