@@ -178,7 +178,7 @@ TEST_F(GraphLife, OverlaysApplyAtCreationAndAtEachReload) {
   };
   EXPECT_GT(transient_bytes(wide), transient_bytes(narrow));
   EXPECT_THAT(described(wide, DERMIS_DESCRIBE_TEXT),
-              HasSubstr("set      /resources/light/format  (overlay.json:7:14)"));
+              HasSubstr("set      /resources/light/format  (overlay.json:8:14)"));
   EXPECT_OK(reload_text(wide, source_of(burley, "graph.json")));
   EXPECT_GT(transient_bytes(wide), transient_bytes(narrow));
 
