@@ -1,5 +1,6 @@
 // Scenes generated from functions of position: light, depth, profile.
 
+#include "integration/tools/command/bench/pattern.hpp"
 #include "integration/tools/command/bench/subject.hpp"
 
 #include <fmt/format.h>
@@ -15,18 +16,6 @@ namespace {
 constexpr double view_distance = 1.0; // metres, as in plane_frame
 using std::numbers::pi;
 constexpr uint32_t sub_samples = 4; // per side of a pixel, for light with edges
-
-float hashed(uint32_t x, uint32_t y) { // deterministic, in [0, 1)
-  uint32_t h = x * 0x9e3779b9u ^ (y + 0x7f4a7c15u) * 0x85ebca6bu;
-  h ^= h >> 15;
-  h *= 0x2c1b3c6du;
-  h ^= h >> 13;
-  return static_cast<float>(h >> 8) / 16777216.0f;
-}
-
-struct Place {
-  double x = 0, y = 0; // pixels, integers at pixel centres
-};
 
 struct Painter {
   CapturedFrame& frame;
@@ -61,15 +50,6 @@ struct Painter {
       }
   }
 };
-
-// Shades a white surface under a key light from the upper left and ambient light. Slopes are d rise
-// / d pixel.
-double shade(double slope_x, double slope_y) {
-  constexpr double to_light[3] = {-0.66, -0.42, 0.62}; // y points down, as in pixels
-  const double facing = (-slope_x * to_light[0] - slope_y * to_light[1] + to_light[2]) /
-                        std::sqrt(1 + slope_x * slope_x + slope_y * slope_y);
-  return 0.05 + 0.95 * std::max(0.0, facing);
-}
 
 void paint_edge(Painter& painter) {
   const double middle = 0.5 * painter.columns();
@@ -121,22 +101,6 @@ void paint_sphere(Painter& painter) {
     if (!(z2 > 1)) return 0.0;
     return shade(-x / std::sqrt(z2), -y / std::sqrt(z2));
   });
-}
-
-// Contrasts at every scale in pixels, independent of the image size.
-double texture(Place p) {
-  const auto x = static_cast<uint32_t>(std::max(0.0, p.x + 0.5)),
-             y = static_cast<uint32_t>(std::max(0.0, p.y + 0.5));
-  double value = 0.2 + 0.3 * double(hashed(x / 32, y / 32)) +
-                 0.2 * double(hashed(x / 8 + 77, y / 8)) + 0.1 * double(hashed(x, y + 99));
-  // One disc per cell of 80 pixels, of random brightness and a radius of up to half the cell.
-  const uint32_t cx = x / 80, cy = y / 80;
-  const double radius = 4 + 34 * double(hashed(cx, cy + 3)) * double(hashed(cx + 5, cy));
-  const double ox = cx * 80 + 40.0 + 20 * (double(hashed(cx + 11, cy)) - 0.5);
-  const double oy = cy * 80 + 40.0 + 20 * (double(hashed(cx, cy + 17)) - 0.5);
-  if (std::hypot(p.x - ox, p.y - oy) < radius) value = double(hashed(cx + 23, cy + 29));
-  // A checkerboard in one corner provides axis-aligned edges.
-  return x < 160 && y >= 240 && y < 360 ? double(((x / 20) + (y / 20)) % 2) : value;
 }
 
 void paint_texture(Painter& painter) {

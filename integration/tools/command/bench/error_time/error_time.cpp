@@ -1,14 +1,12 @@
 // dermis bench error-time: measures run time and error of every technique on every still scene in
 // one run.
 
-#include "integration/tools/command/bench/error_time/error_time_file.hpp"
+#include "integration/tools/command/bench/error_time/error_time_bench.hpp"
+#include "integration/tools/command/bench/family/family.hpp"
 #include "integration/tools/command/bench/report/heat_map.hpp"
 #include "integration/tools/command/bench/report/pareto.hpp"
-#include "integration/tools/command/bench/still_error.hpp"
-#include "integration/tools/command/bench/suite/statistics.hpp"
 #include "integration/tools/command/bench/suite/suites.hpp"
 #include "integration/tools/command/bench/suite/techniques.hpp"
-#include "integration/tools/command/bench/technique.hpp"
 #include "integration/tools/command/interrupt.hpp"
 #include "integration/tools/files/capture_reference.hpp"
 #include "passes/common/environment.hpp"
@@ -22,95 +20,10 @@
 namespace dermis::tools {
 namespace {
 
-// One technique on one subject.
-struct ErrorTimeRow {
-  const Subject* subject = nullptr;
-  const TechniqueRequest* request = nullptr;
-  double spent_ms = 0;  // duration of the timed runs, including host work
-  uint32_t to_warm = 0; // remaining runs that are not timed
-  StillError error = {};
-  TechniqueCounts counts = {};
-  std::vector<double> device_ms = {}, sampling_ms = {};
-  std::optional<double> psnr_db_self = {};
-  // set by complete_rows
-  Spread device = {};
-  std::optional<double> time_ratio = {}, rmse_ratio = {}; // to the baseline
-  bool on_front = false;
-};
+constexpr std::string_view family_file = "tests/benchmark/family.json";
 
-struct ErrorTimeBench {
-  SuiteRun& run;
-  const ErrorTimeFile& file;
-  demo::VulkanHost& host;
-  std::vector<Subject> subjects = {};
-  std::vector<CaptureProfile> profiles = {}; // of all subjects, renumbered
-  std::vector<std::unique_ptr<TechniqueRun>> techniques = {};
-  std::vector<float> sap_tables = {};
-  std::vector<ErrorTimeRow> measured = {}; // all techniques of a subject are neighbours
-  ReportPictures maps = {};
-};
-
-// Merges the frame's profiles into one list for all scenes, so that a technique's tables and
-// pipelines are created once.
-void adopt_profiles(ErrorTimeBench& bench, CapturedFrame& frame) {
-  std::array<uint8_t, 256> renumbered{};
-  std::vector<CaptureProfile> own;
-  for (const CaptureProfile& one : frame.description.profiles) {
-    auto known = std::find_if(
-        bench.profiles.begin(), bench.profiles.end(), [&](const CaptureProfile& other) {
-          return other.profile.name == one.profile.name && other.profile.d_mm == one.profile.d_mm;
-        });
-    if (known == bench.profiles.end()) {
-      bench.profiles.push_back({static_cast<uint32_t>(bench.profiles.size() + 1), one.profile});
-      known = bench.profiles.end() - 1;
-    }
-    renumbered[one.id] = static_cast<uint8_t>(known->id);
-    own.push_back(*known);
-  }
-  for (uint8_t& id : frame.profile)
-    id = renumbered[id];
-  frame.description.profiles = own;
-}
-
-// Returns the reason to leave the scene out, or "".
-std::string why_not(const ErrorTimeBench& bench, const SceneRequest& scene) {
-  if (scene.study && !bench.run.flag("study")) return "only with --study";
-  return scene.model ? why_no_head(bench.run.text("head")) : "";
-}
-
-demo::Result<> add_subjects(ErrorTimeBench& bench) {
-  Diagnostics diagnostics;
-  const auto document = read_document(bench.file.skin, diagnostics);
-  const auto skin = document ? subsurface::read_profile(*document, diagnostics) : std::nullopt;
-  if (!skin) return bench.run.refuse(bench.file.skin, diagnostics);
-  const SubjectOptions options{bench.run.size().width, bench.run.size().height,
-                               head_model(bench.run.text("head"))};
-  Progress progress = bench.run.progress("scene", bench.file.scenes.size(), "scenes");
-  uint64_t done = 0;
-  for (const SceneRequest& scene : bench.file.scenes) {
-    if (interrupted()) return stopped();
-    progress.update(done++);
-    if (!bench.run.is_requested("scenes", scene.scene)) continue;
-    if (const std::string reason = why_not(bench, scene); !reason.empty()) {
-      bench.run.add_note(fmt::format("scene {} {}: {}", scene.scene, scene.framing, reason));
-      continue;
-    }
-    if (scene.file.empty()) {
-      for (const double d_px : scene.d_px) {
-        CapturedFrame frame =
-            generate_scene(scene.scene, scene.framing, options.width, options.height, d_px, *skin);
-        bench.subjects.push_back({scene.scene, scene.framing, std::move(frame), d_px});
-      }
-    } else {
-      auto subject = render_subject(scene, options);
-      if (!subject) return subject.error();
-      bench.subjects.push_back(subject.take());
-    }
-  }
-  if (bench.subjects.empty()) return demo::Error{demo::ErrorKind::usage, "no scene is selected"};
-  for (Subject& subject : bench.subjects)
-    adopt_profiles(bench, subject.frame);
-  return demo::success();
+std::string name_of(const Subject& subject) {
+  return fmt::format("{} {} d {:.2f} px", subject.scene, subject.framing, subject.d_px);
 }
 
 demo::Result<> add_techniques(ErrorTimeBench& bench) {
@@ -173,62 +86,77 @@ void add_times(ErrorTimeRow& row, const TechniqueTimes& times,
   row.sampling_ms.push_back(times.sampling);
 }
 
-// The first runs measure the error, and also the time if the technique already ran at this size.
-// Then all techniques run in turn repeatedly, so that other load on the machine affects all of them
-// equally.
-demo::Result<> measure_subject(ErrorTimeBench& bench, const Subject& subject, Progress& progress,
-                               uint64_t& done) {
-  const auto name = fmt::format("{} {} d {:.2f} px", subject.scene, subject.framing, subject.d_px);
-  const auto reference = make_reference(bench.run.session, subject.frame, "reference of " + name,
-                                        bench.file.subset, bench.run.text("cache"));
-  if (!reference) return stopped();
-  const subsurface::PerChannel d_px = d_of(subject.frame, subject.d_px);
-  const double fraction = scattering_fraction(subject);
-  const size_t first = bench.measured.size();
-  const CapturedFrame window = window_of(subject.frame, bench.file.self_window);
-  const Reference in_window = inside(window, *reference);
-  std::optional<std::vector<float>> self;
-  std::string self_of; // graph of `self`, which settings of one technique share
-  for (size_t t = 0; t < bench.techniques.size(); ++t) {
+// Runs a technique on the subject's frame, and again --frames - 1 times if it has a history.
+demo::Result<std::vector<float>> scatter_frames(const ErrorTimeBench& bench,
+                                                TechniqueRun& technique, const Subject& subject) {
+  auto light = technique.scatter(subject.frame);
+  if (technique.history_bytes() == 0) return light;
+  for (uint64_t i = 1; light && i < bench.run.number("frames"); ++i) {
     if (interrupted()) return stopped();
-    TechniqueRun& technique = *bench.techniques[t];
-    ErrorTimeRow one{&subject, &technique.request()};
-    if (self_of != technique.request().graph) {
-      auto found = self_reference(bench, technique, subject, window);
-      if (!found) return found.error();
-      self = found.take();
-      self_of = technique.request().graph;
-    }
-    if (self && !in_window.pixels.empty()) { // the other size creates the graph twice more
-      const auto part = technique.scatter(window);
-      if (!part) return part.error();
-      one.psnr_db_self = psnr_between(*part, *self, in_window);
-    }
-    const auto start = std::chrono::steady_clock::now();
-    const auto light = technique.scatter(subject.frame);
+    light = technique.scatter(subject.frame, true);
+  }
+  return light;
+}
+
+// Appends rows of the pictures in the folders of --pictures. Returns the first folder's picture,
+// empty without folders.
+demo::Result<std::vector<float>> measure_pictures(ErrorTimeBench& bench, const Subject& subject,
+                                                  const Reference& reference) {
+  std::vector<float> first;
+  for (const TechniqueRequest& folder : bench.pictures) {
+    auto light = read_picture(folder.graph, subject.number, subject.frame.description.width,
+                              subject.frame.description.height);
     if (!light) return light.error();
+    ErrorTimeRow row{&subject, &folder};
+    row.error = still_error(*light, reference);
+    if (first.empty())
+      first = *light;
+    else
+      row.pictures_ratio = paired_ratio(*light, first, reference);
+    bench.measured.push_back(std::move(row));
+  }
+  return first;
+}
+
+// Measures the error, and also the time if the technique already ran at this size. `pictures` is a
+// picture of another build to compare with; empty: none.
+demo::Result<> measure_technique(ErrorTimeBench& bench, TechniqueRun& technique, ErrorTimeRow& row,
+                                 const Reference& reference, std::span<const float> pictures) {
+  const Subject& subject = *row.subject;
+  const auto start = std::chrono::steady_clock::now();
+  const auto light = scatter_frames(bench, technique, subject);
+  if (!light) return light.error();
+  if (bench.file.repetitions > 0) {
     const auto times = technique.times();
     if (!times) return times.error();
     if (technique.was_made_anew())
-      one.to_warm = bench.file.warm_up - 1;
+      row.to_warm = bench.file.warm_up - 1;
     else
-      add_times(one, *times, start);
-    one.error = still_error(*light, *reference);
-    one.counts = technique.counts(fraction, d_px);
-    if (technique.request().heat_map)
-      bench.maps.pictures.push_back(
-          heat_map(fmt::format("{}, {}", name, name_of(technique.request())), *light, *reference,
-                   subject.frame.description.width, subject.frame.profile));
-    bench.measured.push_back(std::move(one));
+      add_times(row, *times, start);
   }
-  for (uint32_t round = 1; round < bench.file.warm_up + bench.file.repetitions; ++round)
+  row.error = still_error(*light, reference);
+  if (!pictures.empty()) row.pictures_ratio = paired_ratio(*light, pictures, reference);
+  row.counts = technique.counts(scattering_fraction(subject), d_of(subject.frame, subject.d_px));
+  if (technique.request().heat_map)
+    bench.maps.pictures.push_back(
+        heat_map(fmt::format("{}, {}", name_of(subject), name_of(technique.request())), *light,
+                 reference, subject.frame.description.width, subject.frame.profile));
+  return demo::success();
+}
+
+// Runs all techniques in turn repeatedly, so that other load on the machine affects all of them
+// equally. `first` is the row of the first technique.
+demo::Result<> repeat_techniques(ErrorTimeBench& bench, size_t first, Progress& progress,
+                                 uint64_t& done) {
+  const ErrorTimeFile& file = bench.file;
+  for (uint32_t round = 1; round < file.warm_up + file.repetitions; ++round)
     for (size_t t = 0; t < bench.techniques.size(); ++t) {
       if (interrupted()) return stopped();
       progress.update(++done);
       ErrorTimeRow& row = bench.measured[first + t];
-      if (row.device_ms.size() >= bench.file.repetitions) continue;
-      if (bench.file.row_milliseconds > 0 && row.device_ms.size() >= bench.file.min_repetitions &&
-          row.spent_ms >= bench.file.row_milliseconds)
+      if (row.device_ms.size() >= file.repetitions) continue;
+      if (file.row_milliseconds > 0 && row.device_ms.size() >= file.min_repetitions &&
+          row.spent_ms >= file.row_milliseconds)
         continue;
       const auto start = std::chrono::steady_clock::now();
       const auto times = bench.techniques[t]->run_again();
@@ -241,14 +169,51 @@ demo::Result<> measure_subject(ErrorTimeBench& bench, const Subject& subject, Pr
   return demo::success();
 }
 
+demo::Result<> measure_subject(ErrorTimeBench& bench, const Subject& subject, Progress& progress,
+                               uint64_t& done) {
+  const auto reference =
+      make_reference(bench.run.session, subject.frame, "reference of " + name_of(subject),
+                     bench.file.subset, bench.run.text("cache"));
+  if (!reference) return stopped();
+  const auto pictures = measure_pictures(bench, subject, *reference);
+  if (!pictures) return pictures.error();
+  const size_t first = bench.measured.size();
+  const CapturedFrame window = window_of(subject.frame, bench.file.self_window);
+  const Reference in_window = inside(window, *reference);
+  std::optional<std::vector<float>> self;
+  std::string self_of; // graph of `self`, which settings of one technique share
+  for (const auto& technique : bench.techniques) {
+    if (interrupted()) return stopped();
+    ErrorTimeRow one{&subject, &technique->request()};
+    if (self_of != technique->request().graph) {
+      auto found = self_reference(bench, *technique, subject, window);
+      if (!found) return found.error();
+      self = found.take();
+      self_of = technique->request().graph;
+    }
+    if (self && !in_window.pixels.empty()) { // the other size creates the graph twice more
+      const auto part = technique->scatter(window);
+      if (!part) return part.error();
+      one.psnr_db_self = psnr_between(*part, *self, in_window);
+    }
+    if (auto measured = measure_technique(bench, *technique, one, *reference, *pictures); !measured)
+      return measured;
+    if (bench.file.repetitions == 0) progress.update(++done);
+    bench.measured.push_back(std::move(one));
+  }
+  return bench.file.repetitions > 0 ? repeat_techniques(bench, first, progress, done)
+                                    : demo::success();
+}
+
 Plot plot_of(const Subject& subject, std::span<const ErrorTimeRow> rows) {
   Plot plot{fmt::format("{} {}, d = {:.2f} px", subject.scene, subject.framing, subject.d_px),
             "device time, ms",
             "RMSE of linear luminance",
             {}};
   for (const ErrorTimeRow& row : rows) {
-    const double ms = row.device.median, rmse = row.error.figures.rmse;
-    if (row.subject != &subject || !(rmse > 0)) continue;
+    const double rmse = row.error.figures.rmse;
+    if (row.subject != &subject || !row.device || !(rmse > 0)) continue;
+    const double ms = row.device->median;
     const std::string& technique = row.request->technique;
     if (plot.series.empty() || plot.series.back().name != technique)
       plot.series.push_back({technique, {}, is_baseline(technique)});
@@ -265,28 +230,28 @@ std::string early_end(const ErrorTimeFile& file) {
                      file.row_milliseconds, file.min_repetitions);
 }
 
-// Sets medians, ratios to the baseline and the Pareto front of each subject.
-void complete_rows(ErrorTimeBench& bench) {
-  const size_t count = bench.techniques.size();
-  for (size_t first = 0; first < bench.measured.size(); first += count) {
-    const std::span<ErrorTimeRow> rows = std::span(bench.measured).subspan(first, count);
-    std::vector<Cost> costs;
-    const ErrorTimeRow* baseline = nullptr;
-    for (ErrorTimeRow& row : rows) {
+// Sets medians, ratios to the baseline and the Pareto front of the rows of one subject.
+void complete_rows(const ErrorTimeFile& file, std::span<ErrorTimeRow> rows) {
+  std::vector<Cost> costs;
+  const ErrorTimeRow* baseline = nullptr;
+  for (ErrorTimeRow& row : rows) {
+    if (!row.device_ms.empty()) {
       row.device = spread_of(row.device_ms);
-      costs.push_back({row.device.median, row.error.figures.rmse});
-      if (row.request->technique == bench.file.baseline_technique &&
-          row.request->setting == bench.file.baseline_setting)
-        baseline = &row;
+      costs.push_back({row.device->median, row.error.figures.rmse});
     }
-    const std::vector<bool> front = pareto_front(costs);
-    for (size_t i = 0; i < count; ++i) {
-      rows[i].on_front = front[i];
-      if (baseline == nullptr) continue;
-      rows[i].time_ratio = costs[i].time / baseline->device.median;
-      if (const double rmse = baseline->error.figures.rmse; rmse > 0)
-        rows[i].rmse_ratio = costs[i].error / rmse;
-    }
+    if (row.request->technique == file.baseline_technique &&
+        row.request->setting == file.baseline_setting)
+      baseline = &row;
+  }
+  const std::vector<bool> front = pareto_front(costs);
+  size_t timed = 0;
+  for (ErrorTimeRow& row : rows) {
+    if (row.device) row.on_front = front[timed++];
+    if (baseline == nullptr) continue;
+    if (row.device && baseline->device)
+      row.time_ratio = row.device->median / baseline->device->median;
+    if (const double rmse = baseline->error.figures.rmse; rmse > 0)
+      row.rmse_ratio = row.error.figures.rmse / rmse;
   }
 }
 
@@ -294,10 +259,11 @@ void complete_rows(ErrorTimeBench& bench) {
 void add_error_time_report(const ErrorTimeBench& bench) {
   SuiteRun& run = bench.run;
   const ErrorTimeFile& file = bench.file;
-  run.add_fact("size", fmt::format("{}x{} pixels", run.size().width, run.size().height));
-  run.add_fact("repetitions",
-               fmt::format("median of {} after {} to warm up, all techniques in turn{}",
-                           file.repetitions, file.warm_up, early_end(file)));
+  run.add_fact("size", fmt::format("{}x{} pixels", bench.size.width, bench.size.height));
+  if (file.repetitions > 0)
+    run.add_fact("repetitions",
+                 fmt::format("median of {} after {} to warm up, all techniques in turn{}",
+                             file.repetitions, file.warm_up, early_end(file)));
   run.add_fact("truth",
                fmt::format("everywhere on planes, else at {} stratified pixels", file.subset));
   run.add_fact(
@@ -306,36 +272,58 @@ void add_error_time_report(const ErrorTimeBench& bench) {
       "texels each pass computes for a pixel of the view");
   run.add_fact("baseline", fmt::format("{} {}", file.baseline_technique, file.baseline_setting));
   run.report.pictures = {scene_pictures(bench.subjects), bench.maps};
+  if (file.repetitions == 0) return;
   for (const Subject& subject : bench.subjects)
     run.report.plots.push_back(plot_of(subject, bench.measured));
 }
 
+// Measures all selected subjects and completes their rows.
+demo::Result<> measure_subjects(ErrorTimeBench& bench) {
+  const ErrorTimeFile& file = bench.file;
+  const uint64_t rounds = file.repetitions > 0 ? file.warm_up + file.repetitions - 1 : 1;
+  Progress progress =
+      bench.run.progress("run", rounds * bench.techniques.size() * bench.subjects.size());
+  uint64_t done = 0;
+  for (const Subject& subject : bench.subjects) {
+    const size_t first = bench.measured.size();
+    if (auto measured = measure_subject(bench, subject, progress, done); !measured) return measured;
+    complete_rows(file, std::span(bench.measured).subspan(first));
+  }
+  for (const ErrorTimeRow& one : bench.measured)
+    if (!one.counts.unknown_pass_type.empty())
+      bench.run.add_note(fmt::format("reads_per_pixel of {}: the reads of '{}' are unknown",
+                                     one.request->graph, one.counts.unknown_pass_type));
+  return demo::success();
+}
+
 demo::Result<> measure_error_time(SuiteRun& run, const Emit<ErrorTimeRow>& emit) {
+  if (run.flag("family")) run.options.at("file") = std::string(family_file);
   auto read = run.read(read_error_time);
   if (!read) return read.error();
   ErrorTimeFile file = read.take();
   if (run.quick) {
-    file.repetitions = file.warm_up = file.min_repetitions = 1;
+    file.repetitions = std::min(file.repetitions, 1u);
+    file.warm_up = file.min_repetitions = 1;
     file.subset = std::min(file.subset, quick_subset);
     file.self_scenes.clear();
   }
   const auto host = run.open_device();
   if (!host) return host.error();
-  ErrorTimeBench bench{run, file, **host};
+  const bool small = file.family && !run.quick;
+  ErrorTimeBench bench{run, file, **host, small ? Size{family_width, family_height} : run.size()};
   bench.maps = {"Error maps", heat_map_explanation(), {}};
+  for (const std::string& folder : run.list("pictures"))
+    bench.pictures.push_back({"pictures", folder, folder, {}});
   if (auto ready = add_subjects(bench); !ready) return ready;
+  if (const std::string& folder = run.text("write-captures"); !folder.empty()) {
+    if (bench.subjects.back().number + 1 != bench.subjects.size())
+      return demo::Error{demo::ErrorKind::usage, "--write-captures needs all scenes"};
+    return write_captures(folder, bench.subjects, bench.profiles);
+  }
   if (auto ready = add_techniques(bench); !ready) return ready;
-  const uint64_t rounds = file.warm_up + file.repetitions - 1;
-  Progress progress = run.progress("run", rounds * bench.techniques.size() * bench.subjects.size());
-  uint64_t done = 0;
-  for (const Subject& subject : bench.subjects)
-    if (auto measured = measure_subject(bench, subject, progress, done); !measured) return measured;
-  for (const ErrorTimeRow& one : bench.measured)
-    if (!one.counts.unknown_pass_type.empty())
-      run.add_note(fmt::format("reads_per_pixel of {}: the reads of '{}' are unknown",
-                               one.request->graph, one.counts.unknown_pass_type));
-  complete_rows(bench);
+  if (auto measured = measure_subjects(bench); !measured) return measured;
   add_error_time_report(bench);
+  if (file.family) add_family_summary(bench);
   for (const ErrorTimeRow& row : bench.measured)
     emit(row);
   return demo::success();
@@ -343,6 +331,14 @@ demo::Result<> measure_error_time(SuiteRun& run, const Emit<ErrorTimeRow>& emit)
 
 template <auto Figure> ReportValue error_of(const ErrorTimeRow& row) {
   return row.error.figures.*Figure;
+}
+
+template <auto Figure> ReportValue device_of(const ErrorTimeRow& row) {
+  return row.device ? ReportValue((*row.device).*Figure) : ReportValue();
+}
+
+template <auto Figure> ReportValue pictures_ratio_of(const ErrorTimeRow& row) {
+  return row.pictures_ratio ? ReportValue((*row.pictures_ratio).*Figure) : ReportValue();
 }
 
 template <size_t Channel> ReportValue rmse_of(const ErrorTimeRow& row) {
@@ -367,6 +363,21 @@ Suite error_time_suite() {
            "timestamps over all passes of a technique.",
        .options = {size_option({640, 360}),
                    head_option(),
+                   {"family",
+                    fmt::format("Measure the seeded family of scenes instead ({}); --scenes then "
+                                "also takes classes and halves",
+                                family_file),
+                    false},
+                   {"write-captures",
+                    "Only write the scenes as a capture, for `apply` of another build", "", "DIR"},
+                   {"pictures",
+                    "Folder that `apply` of another build wrote for that capture; may be repeated. "
+                    "Ratios are to the first",
+                    std::vector<std::string>(), "DIR"},
+                   {.name = "frames",
+                    .help = "Frames at rest per scene, for techniques with a history",
+                    .value = uint64_t{1},
+                    .minimum = 1},
                    {"study", "Also measure the framings that study one head", false},
                    only_option("scenes"),
                    only_option("techniques"),
@@ -380,11 +391,14 @@ Suite error_time_suite() {
         {.groups = true}},
        {"technique", "technique", [](const Row& row) { return row.request->technique; }},
        {"setting", "setting", [](const Row& row) { return row.request->setting; }},
-       {"device_ms", "ms", [](const Row& row) { return row.device.median; }, four},
-       {"device_ms_low", "", [](const Row& row) { return row.device.p10; }},
-       {"device_ms_high", "", [](const Row& row) { return row.device.p90; }},
+       {"device_ms", "ms", device_of<&Spread::median>, four},
+       {"device_ms_low", "", device_of<&Spread::p10>},
+       {"device_ms_high", "", device_of<&Spread::p90>},
        {"repetitions", "", [](const Row& row) { return row.device_ms.size(); }},
-       {"sampling_ms", "scattering ms", [](const Row& row) { return median(row.sampling_ms); },
+       {"sampling_ms", "scattering ms",
+        [](const Row& row) {
+          return row.sampling_ms.empty() ? ReportValue() : median(row.sampling_ms);
+        },
         four_on_page},
        {"mean_spp", "samples", [](const Row& row) { return row.counts.mean_spp; }, page},
        {"reads_per_pixel", "reads a pixel",
@@ -406,6 +420,12 @@ Suite error_time_suite() {
        {"dispatches", "dispatches", [](const Row& row) { return row.counts.dispatches; }, page},
        {"time_ratio", "ms / baseline", &Row::time_ratio, page},
        {"rmse_ratio", "RMSE / baseline", &Row::rmse_ratio, page},
+       {"pictures_ratio", "RMSE / pictures", pictures_ratio_of<&PairedRatio::ratio>, page},
+       {"pictures_ratio_low", "", pictures_ratio_of<&PairedRatio::low>},
+       {"pictures_ratio_high", "", pictures_ratio_of<&PairedRatio::high>},
+       {"class", "", [](const Row& row) { return row.subject->member.scene_class; }},
+       {"half", "", [](const Row& row) { return row.subject->member.half; }},
+       {"seed", "", [](const Row& row) { return row.subject->member.seed; }},
        {"pixels", "", error_of<&Figures::pixels>},
        {"population", "", [](const Row& row) { return row.error.population; }},
        {"on_pareto_front", "front", &Row::on_front, {.goal = Goal::best}}},

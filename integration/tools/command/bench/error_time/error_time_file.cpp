@@ -11,6 +11,14 @@ SceneRequest read_scene(BenchObject& entry) {
   entry.camera(request.camera);
   entry.flag("model", request.model);
   entry.flag("study", request.study);
+  if (entry.reader.has("class")) {
+    entry.name("class", request.member.scene_class);
+    entry.name("half", request.member.half);
+    if (request.member.half != "tuning" && request.member.half != "judging")
+      entry.diagnostics.add(DiagnosticId::invalid_value,
+                            entry.document.where(entry.document.find(entry.reader.node(), "half")),
+                            "'half' is \"tuning\" or \"judging\"");
+  }
   const bool generated = request.file.empty();
   const NodeId list = entry.reader.array("d_px", 1, generated ? max_bench_entries : 1,
                                          generated ? Need::required : Need::optional);
@@ -39,12 +47,13 @@ void read_self(BenchObject& self, ErrorTimeFile& file) {
 }
 
 void read_error_time_root(BenchObject& root, ErrorTimeFile& file) {
-  root.count("repetitions", file.repetitions, 1, 1000);
+  root.count("repetitions", file.repetitions, 0, 1000);
   root.count("warm_up", file.warm_up, 1, 100);
   root.count("row_milliseconds", file.row_milliseconds, 0, 1'000'000, Need::optional);
   root.count("least_repetitions", file.min_repetitions, 1, 1000, Need::optional);
   root.count("subset", file.subset, 1, 1 << 24);
   root.file("skin", file.skin);
+  root.flag("family", file.family);
   root.object("baseline", Need::required, [&](BenchObject& baseline) {
     baseline.name("technique", file.baseline_technique);
     baseline.text("setting", file.baseline_setting);

@@ -12,13 +12,15 @@
 namespace dermis::tools {
 
 struct ErrorTimeFile {
-  uint32_t repetitions = 15, warm_up = 2; // per technique and scene
+  // per technique and scene; 0 repetitions: times are not measured
+  uint32_t repetitions = 15, warm_up = 2;
   // Timed runs of a technique on a scene end early after this duration, but not before
   // min_repetitions.
   uint32_t row_milliseconds = 0; // 0: no limit
   uint32_t min_repetitions = 3;
   uint32_t subset = 4096; // pixels per scene with a reference, if it is not computed everywhere
   std::string skin;       // profile of the generated scenes
+  bool family = false;    // also measure the generated scenes of the family (family/family.hpp)
   std::string baseline_technique, baseline_setting; // denominator of ratios
   std::vector<SceneRequest> scenes;
   std::vector<TechniqueRequest> techniques;

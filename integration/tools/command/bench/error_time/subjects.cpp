@@ -1,0 +1,111 @@
+// The subjects of `dermis bench error-time`.
+
+#include "integration/tools/command/bench/error_time/error_time_bench.hpp"
+#include "integration/tools/command/bench/family/family.hpp"
+#include "integration/tools/command/interrupt.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+namespace dermis::tools {
+namespace {
+
+// Merges the frame's profiles into one list for all scenes, so that a technique's tables and
+// pipelines are created once.
+void adopt_profiles(ErrorTimeBench& bench, CapturedFrame& frame) {
+  std::array<uint8_t, 256> renumbered{};
+  std::vector<CaptureProfile> own;
+  for (const CaptureProfile& one : frame.description.profiles) {
+    auto known = std::find_if(
+        bench.profiles.begin(), bench.profiles.end(), [&](const CaptureProfile& other) {
+          return other.profile.name == one.profile.name && other.profile.d_mm == one.profile.d_mm;
+        });
+    if (known == bench.profiles.end()) {
+      bench.profiles.push_back({static_cast<uint32_t>(bench.profiles.size() + 1), one.profile});
+      known = bench.profiles.end() - 1;
+    }
+    renumbered[one.id] = static_cast<uint8_t>(known->id);
+    own.push_back(*known);
+  }
+  for (uint8_t& id : frame.profile)
+    id = renumbered[id];
+  frame.description.profiles = own;
+}
+
+// Returns the reason to leave the scene out, or "".
+std::string why_not(const ErrorTimeBench& bench, const SceneRequest& scene) {
+  if (scene.study && !bench.run.flag("study")) return "only with --study";
+  return scene.model ? why_no_head(bench.run.text("head")) : "";
+}
+
+// Returns whether --scenes requests a scene by its name, class or half.
+bool is_selected(const ErrorTimeBench& bench, const std::string& scene,
+                 const FamilyMember& member) {
+  return bench.run.is_requested("scenes", scene) ||
+         bench.run.is_requested("scenes", member.scene_class) ||
+         bench.run.is_requested("scenes", member.half);
+}
+
+// Numbers count all scenes, selected or not, so that pictures keep their numbers.
+void add_family(ErrorTimeBench& bench, size_t& number, const SubjectOptions& options,
+                const subsurface::Profile& skin) {
+  for (const FamilyScene& scene : bench.run.quick ? few_family_scenes() : family_scenes()) {
+    const size_t own = number++;
+    if (!is_selected(bench, scene.name, scene.member)) continue;
+    bench.subjects.push_back({scene.name, scene.parameters(),
+                              generate_family_scene(scene, options.width, options.height, skin),
+                              scene.d_px, scene.member, own});
+  }
+}
+
+demo::Result<> add_scene(ErrorTimeBench& bench, size_t& number, const SceneRequest& scene,
+                         const SubjectOptions& options, const subsurface::Profile& skin) {
+  const size_t first = number;
+  number += scene.file.empty() ? scene.d_px.size() : 1;
+  if (!is_selected(bench, scene.scene, scene.member)) return demo::success();
+  if (!scene.file.empty()) {
+    auto subject = render_subject(scene, options);
+    if (!subject) return subject.error();
+    bench.subjects.push_back(subject.take());
+    bench.subjects.back().member = scene.member;
+    bench.subjects.back().number = first;
+    return demo::success();
+  }
+  for (size_t i = 0; i < scene.d_px.size(); ++i)
+    bench.subjects.push_back({scene.scene, scene.framing,
+                              generate_scene(scene.scene, scene.framing, options.width,
+                                             options.height, scene.d_px[i], skin),
+                              scene.d_px[i], scene.member, first + i});
+  return demo::success();
+}
+
+} // namespace
+
+demo::Result<> add_subjects(ErrorTimeBench& bench) {
+  Diagnostics diagnostics;
+  const auto document = read_document(bench.file.skin, diagnostics);
+  const auto skin = document ? subsurface::read_profile(*document, diagnostics) : std::nullopt;
+  if (!skin) return bench.run.refuse(bench.file.skin, diagnostics);
+  const SubjectOptions options{bench.size.width, bench.size.height,
+                               head_model(bench.run.text("head"))};
+  size_t number = 0;
+  if (bench.file.family) add_family(bench, number, options, *skin);
+  Progress progress = bench.run.progress("scene", bench.file.scenes.size(), "scenes");
+  uint64_t done = 0;
+  for (const SceneRequest& scene : bench.file.scenes) {
+    if (interrupted()) return stopped();
+    progress.update(done++);
+    if (const std::string reason = why_not(bench, scene); !reason.empty())
+      bench.run.add_note(fmt::format("scene {} {}: {}", scene.scene, scene.framing, reason));
+    else if (auto added = add_scene(bench, number, scene, options, *skin); !added)
+      return added;
+  }
+  if (bench.subjects.empty()) return demo::Error{demo::ErrorKind::usage, "no scene is selected"};
+  for (Subject& subject : bench.subjects)
+    adopt_profiles(bench, subject.frame);
+  return demo::success();
+}
+
+} // namespace dermis::tools
