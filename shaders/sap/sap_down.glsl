@@ -122,25 +122,32 @@ bool child_written(texel_block block, ivec2 at, int finer) {
 void read_tile(texel_block block, int finer, bool computed) {
   const int batch = 3;
   ivec2 corner = 2 * (8 * block.tile - 1) - 1;
-  [[dont_unroll]] for (int first = int(gl_LocalInvocationIndex); first < tile_texels;
-                       first += batch * int(group_lanes)) {
+  int lane = int(gl_LocalInvocationIndex), lanes = int(group_lanes);
+  // Whole rows, so that the children of an invocation are in one column.
+  bool whole_rows = lanes >= tile_side;
+  int step = whole_rows ? lanes - lanes % tile_side : lanes;
+  [[dont_unroll]] for (int first = lane < step ? lane : tile_texels; first < tile_texels;
+                       first += batch * step) {
+    ivec2 start = in_tile(first);
+    int start_place = place_of_texel(first), place[batch];
     ivec2 address[batch];
     bool needed[batch];
     uvec4 bits[batch];
     vec4 light[batch];
     [[unroll]] for (int k = 0; k < batch; ++k) {
-      int i = first + k * int(group_lanes);
-      ivec2 at = corner + in_tile(i);
+      int i = first + k * step;
+      ivec2 offset = whole_rows ? start + ivec2(0, k * (step / tile_side)) : in_tile(i);
+      ivec2 at = corner + offset;
+      place[k] = whole_rows ? start_place + k * step : place_of_texel(i);
       needed[k] = all(bvec2(i < tile_texels, child_written(block, at, finer)));
       address[k] = needed[k] ? sap_address(at, finer) : ivec2(0);
       bits[k] = finer_surface(address[k], finer, computed);
       light[k] = finer_light(address[k], finer, computed, bits[k]);
     }
     [[unroll]] for (int k = 0; k < batch; ++k) {
-      int i = first + k * int(group_lanes), place = place_of_texel(i);
-      if (i < tile_texels) {
-        tile_surface[place] = needed[k] ? bits[k] : uvec4(0u);
-        tile_light[place] = needed[k] ? packHalf2x16(light[k].rg) : 0u;
+      if (first + k * step < tile_texels) {
+        tile_surface[place[k]] = needed[k] ? bits[k] : uvec4(0u);
+        tile_light[place[k]] = needed[k] ? packHalf2x16(light[k].rg) : 0u;
       }
     }
 #ifdef SAP_SECOND_IN_TILE
@@ -151,10 +158,9 @@ void read_tile(texel_block block, int finer, bool computed) {
       light[k] = second_finer_light(address[k], finer, computed, bits[k]);
     }
     [[unroll]] for (int k = 0; k < batch; ++k) {
-      int i = first + k * int(group_lanes), place = tile_texels + place_of_texel(i);
-      if (i < tile_texels) {
-        tile_surface[place] = needed[k] ? bits[k] : uvec4(0u);
-        tile_light[place] = needed[k] ? packHalf2x16(light[k].rg) : 0u;
+      if (first + k * step < tile_texels) {
+        tile_surface[tile_texels + place[k]] = needed[k] ? bits[k] : uvec4(0u);
+        tile_light[tile_texels + place[k]] = needed[k] ? packHalf2x16(light[k].rg) : 0u;
       }
     }
 #endif
