@@ -23,11 +23,19 @@ float sap_factor(float width) { return -0.5 * 1.44269504 / (width * width); }
 // distance from the tangent plane and its difference in depth.
 float sap_nearer(float a, float b) { return min(abs(a), abs(b)); }
 
+// A folded surface has more area within reach than its mean plane. From sap_first_area_level on,
+// mass counts this area, up to sap_max_mass.
+const int sap_first_area_level = 3;
+const float sap_max_mass = 1.5;
+// Returns the area of a surface divided by its cross-section, at most 2.
+float sap_area_of(vec2 slope) { return min(sqrt(1.0 + dot(slope, slope)), 2.0); }
+
 struct sap_texel {
   float depth;  // mm
   vec2 slope;   // change of depth per pixel, in footprints
   float reach;  // factor on d: cos^(1/8) to the viewer times the scatter scale
-  float mass;   // fraction of the texel's own kernel that hit the surface
+  float mass;   // fraction of the texel's own kernel that hit the surface; on folds up to
+                // sap_max_mass
   uint id;      // profile, 0: no surface
 };
 
@@ -96,13 +104,13 @@ sap_scattered sap_unpack_scattered(uvec4 bits) {
 }
 
 // Packs light as floats and the other values as a byte each, for kernels with the setting
-// `storage`.
+// `storage`. A byte holds a mass of 1 exactly.
 uvec4 sap_pack_scattered_full(sap_scattered t) {
-  return uvec4(floatBitsToUint(t.light), packUnorm4x8(vec4(t.mass, t.confidence)));
+  return uvec4(floatBitsToUint(t.light), packUnorm4x8(vec4(t.mass / sap_max_mass, t.confidence)));
 }
 sap_scattered sap_unpack_scattered_full(uvec4 bits) {
   vec4 fractions = unpackUnorm4x8(bits.w);
-  return sap_scattered(uintBitsToFloat(bits.xyz), fractions.a, fractions.rgb);
+  return sap_scattered(uintBitsToFloat(bits.xyz), fractions.a, sap_max_mass * fractions.rgb);
 }
 
 // Values of the frame, read once per invocation and not again in every branch.

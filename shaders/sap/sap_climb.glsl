@@ -23,7 +23,7 @@ uvec4 climb(sap_place place, int level, sap_texel own, vec3 light, int layers, b
   rest.mass *= max(1.0 - fraction, vec3(0.0));
   sap_sum blend = sap_blend(fraction * here.mass, here.light, vec3(0.0), here.light, rest);
   float widest = fraction[profiles[min(own.id, 255u)].widest];
-  float sure = mix(confidence, here.mass.r, widest);
+  float sure = mix(confidence, min(here.mass.r, 1.0), widest);
   return settings.storage == STORAGE_FULL
              ? sap_pack_scattered_full(sap_scattered(blend.light, sure, blend.mass))
              : sap_pack_scattered(sap_scattered(round_to_half(blend.light), round_to_half(sure),

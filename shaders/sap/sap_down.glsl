@@ -402,7 +402,7 @@ sap_texel find_seed(sap_parent parent, int layers, sap_texel before) {
 
 // Sums over the children on the surface of a seed.
 struct reduction {
-  float all_weight, mass, total, total_flat, mean_depth, mean_reach;
+  float all_weight, mass, area_mass, total, total_flat, mean_depth, mean_reach;
   vec2 mean_slope;
   vec3 light;
   bool remains; // a child can be the seed of another layer
@@ -425,6 +425,9 @@ void add_child(sap_parent parent, sap_texel seed, sap_texel before, int c, bool 
   vec4 tap = light_of(parent, c, second, child.id);
   float weight = flat_weight * narrowing * tap.a;
   sum.mass += flat_weight * narrowing;
+#ifdef SAP_SECOND
+  sum.area_mass += flat_weight * narrowing * sap_area_of(child.slope);
+#endif
   sum.total += weight;
   sum.total_flat += flat_weight;
   sum.light += weight * tap.rgb;
@@ -460,16 +463,23 @@ sap_layer reduce_to(sap_parent parent, int layers, sap_texel seed, sap_texel bef
   sap_layer layer = sap_layer(vec4(0.0), uvec4(0u), seed, false);
   if (seed.id == 0u)
     return layer;
-  reduction sum = reduction(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, vec2(0.0), vec3(0.0), false);
+  reduction sum = reduction(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, vec2(0.0), vec3(0.0), false);
   add_children(parent, layers, seed, before, sum);
   layer.remains = sum.remains;
   if (sum.total > sap_negligible) {
     layer.light = sap_stored(vec4(sum.light / sum.total, sum.total / sum.mass));
     vec3 rounded =
         round_to_half(vec3(sum.mean_slope / sum.total_flat, sum.mean_reach / sum.total_flat));
+    float mass = min(sum.mass / sum.all_weight, 1.0);
+#ifdef SAP_SECOND
+    if (parent.finer + 1 >= sap_first_area_level) {
+      float area = sap_area_of(sum.mean_slope / sum.total_flat);
+      mass = min(sum.area_mass / (area * sum.all_weight), sap_max_mass);
+    }
+#endif
     layer.bits = sap_pack(
         sap_texel(max(sum.mean_depth / sum.total_flat, nearest_fraction * seed.depth), rounded.xy,
-                  rounded.z, round_to_half(min(sum.mass / sum.all_weight, 1.0)), seed.id),
+                  rounded.z, round_to_half(mass), seed.id),
         sap_pack_light(layer.light, settings.storage == STORAGE_FULL));
   }
   return layer;

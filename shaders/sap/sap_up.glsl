@@ -23,7 +23,7 @@
 
 struct sap_sum {
   vec3 light;
-  vec3 mass; // fraction of the kernel that hit the surface
+  vec3 mass; // fraction of the kernel that hit the surface, as sap_texel
 };
 
 // Returns whether to use the second of a texel's two layers.

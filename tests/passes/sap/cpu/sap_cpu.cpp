@@ -142,7 +142,8 @@ template <class Real> struct SapClimb {
       result.light[c] = std::max(mean, Real(0)); // Differences may round below zero.
       result.mass[c] = total;
     }
-    result.confidence = centre[widest] * own.mass + fraction[widest] * here.mass[widest] +
+    result.confidence = centre[widest] * own.mass +
+                        fraction[widest] * std::min(here.mass[widest], Real(1)) +
                         (1 - centre[widest] - fraction[widest]) * rest.confidence;
     return result;
   }

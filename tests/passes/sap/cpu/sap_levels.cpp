@@ -82,15 +82,17 @@ size_t find_seed(const SapPyramid<Real>& pyramid, const Children<Real>& children
 }
 
 // Builds one layer of a parent, and subtracts the used part from what the children have left.
+// `mass_by_area`: see sap_first_area_level.
 template <class Real>
-SapTexel<Real> reduce(const SapPyramid<Real>& pyramid, Children<Real>& children) {
+SapTexel<Real> reduce(const SapPyramid<Real>& pyramid, Children<Real>& children,
+                      bool mass_by_area) {
   const size_t seed = find_seed(pyramid, children);
   if (seed == no_child) return {};
   const SapTexel<Real> plane = plane_at_parent(pyramid, children, seed);
   const Real per_sigma = 1 / (Real(sap_sigma) * children.spacing);
   const Real per_metre = per_sigma / pyramid.footprint(plane.depth);
   SapTexel<Real> sum;
-  Real all_weight = 0, total = 0, flat = 0;
+  Real all_weight = 0, total = 0, flat = 0, area_mass = 0;
   for (size_t k = 0; k < no_child; ++k) {
     const Real x = children.x(k), y = children.y(k);
     const Real tilt = plane.slope(x, y) * per_sigma;
@@ -106,6 +108,7 @@ SapTexel<Real> reduce(const SapPyramid<Real>& pyramid, Children<Real>& children)
     children.left[k] *= 1 - kept;
     const Real weight = flat_weight * narrowing * child->area;
     sum.mass += flat_weight * narrowing;
+    area_mass += flat_weight * narrowing * child->slope_area();
     total += weight;
     flat += flat_weight;
     for (size_t c = 0; c < 3; ++c)
@@ -124,6 +127,8 @@ SapTexel<Real> reduce(const SapPyramid<Real>& pyramid, Children<Real>& children)
                         .area = total / sum.mass,
                         .light = {},
                         .id = plane.id};
+  if (mass_by_area)
+    parent.mass = std::min(Real(sap_max_mass), area_mass / (parent.slope_area() * all_weight));
   for (size_t c = 0; c < 3; ++c)
     parent.light[c] = sum.light[c] / total;
   return parent;
@@ -175,6 +180,7 @@ SapPyramid<Real> build_sap_pyramid(const ReferenceInput& input, uint32_t first_l
                           .border = 1,
                           .spacing = 2 * fine.spacing};
     const size_t layers = pyramid.levels.size() < first_layered ? 1 : 2;
+    const bool mass_by_area = layers > 1 && pyramid.levels.size() >= sap_first_area_level;
     for (size_t layer = 0; layer < layers; ++layer)
       coarse.layers[layer].resize(coarse.index(coarse.width, coarse.height) + 1);
     parallel_for(static_cast<size_t>(coarse.height + 2), 4, threads, [&](size_t row) {
@@ -195,7 +201,7 @@ SapPyramid<Real> build_sap_pyramid(const ReferenceInput& input, uint32_t first_l
           children.left[k] = 1;
         }
         for (size_t layer = 0; layer < layers; ++layer)
-          coarse.layers[layer][coarse.index(x, y)] = reduce(pyramid, children);
+          coarse.layers[layer][coarse.index(x, y)] = reduce(pyramid, children, mass_by_area);
       }
     });
     pyramid.levels.push_back(std::move(coarse));

@@ -29,6 +29,10 @@ inline constexpr double sap_confidence_width = 0.87;
 // - d shrinks with the eighth root, and with the fourth root for level 0's own fractions, since a
 //   tilted pixel keeps more of its light.
 inline constexpr double sap_area_power = 0.25, sap_reach_power = 0.125;
+// A folded surface has more area within reach than its mean plane: from this level on, and where
+// texels can have two layers, mass counts the area of the children over that of the parent.
+inline constexpr int sap_first_area_level = 3;
+inline constexpr double sap_max_mass = 1.5, sap_max_area = 2;
 inline constexpr double sap_negligible = 1e-12;
 
 template <class Real> Real sap_falloff(Real x, double width) {
@@ -51,6 +55,10 @@ template <class Real> struct SapTexel {
   uint8_t id = 0; // Profile; 0: no surface.
 
   Real slope(Real x, Real y) const { return slope_x * x + slope_y * y; }
+  // Returns the area of the surface over its cross-section, from the slope.
+  Real slope_area() const {
+    return std::min(std::sqrt(1 + slope_x * slope_x + slope_y * slope_y), Real(sap_max_area));
+  }
 };
 
 // Level 0 has the view's texels; other levels have a border of one texel for the pixels beyond the
