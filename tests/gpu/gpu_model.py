@@ -10,8 +10,8 @@ usage: gpu_model.py [--kernels FILE --assembly DIR] [--sensitivity]
 No time was measured. Formulas, hardware rows and the assumed fractions of layered work stay fixed,
 so that tables of different dates can be compared; only counts change.
 Units: clocks per subgroup of 64 invocations. The time of a pass is the largest of issue or latency,
-texture unit, shared memory, memory and the latency of one subgroup, plus scratch traffic and a fixed
-cost per dispatch.
+texture unit, shared memory, memory and the latency of one subgroup, plus scratch traffic and a
+fixed cost per dispatch.
 """
 import argparse
 import dataclasses
@@ -22,6 +22,9 @@ import re
 import sys
 
 import instruction_mix
+from gpu_counts import (AFIS, AFIS_BUILT, AFIS_MIP_DOWN, AFIS_MIP_SETUP, AFIS_PUBLISHED, BLOCKS,
+                        BURLEY, CLASSIFY, COMBINE, FIXED, SEPARABLE, SEPARABLE_BUILT,
+                        SEPARABLE_BUILT_SETUP, SEPARABLE_TUNED, SETUP, TEXELS)
 
 COVERED = 0.5  # fraction of the view
 TILE_FILL = 0.95  # fraction of the pixels of listed tiles that are covered
@@ -43,13 +46,13 @@ class Hardware:
     cache_hits: float  # fraction
 
 
-RX_6800 = Hardware("RX 6800-class (60 CU, 2.1 GHz, 512 GB/s + 128 MB IC)", 60, 2.1e9, 120, 512e9, 1.1e12,
-                   1.6e12, 4e-6, 2, 8, 0.55)
+RX_6800 = Hardware("RX 6800-class (60 CU, 2.1 GHz, 512 GB/s + 128 MB IC)", 60, 2.1e9, 120,
+                   512e9, 1.1e12, 1.6e12, 4e-6, 2, 8, 0.55)
 # A transfer of AMD counts: 4 partitions per SM, integer and conversion work shares issue slots.
-NVIDIA_LIKE = Hardware("NVIDIA-like (46 SM, 1.7 GHz, 448 GB/s, 4 MB L2)", 46, 1.7e9, 184, 448e9, 448e9,
-                       1.4e12, 3.5e-6, 2 * 1.45, 2 * 8, 0.0)
-SMALL_RDNA2 = Hardware("small RDNA2 (28 CU, 2.3 GHz, 224 GB/s + 32 MB IC)", 28, 2.3e9, 56, 224e9, 0.5e12,
-                       0.8e12, 4e-6, 2, 8, 0.2)
+NVIDIA_LIKE = Hardware("NVIDIA-like (46 SM, 1.7 GHz, 448 GB/s, 4 MB L2)", 46, 1.7e9, 184,
+                       448e9, 448e9, 1.4e12, 3.5e-6, 2 * 1.45, 2 * 8, 0.0)
+SMALL_RDNA2 = Hardware("small RDNA2 (28 CU, 2.3 GHz, 224 GB/s + 32 MB IC)", 28, 2.3e9, 56,
+                       224e9, 0.5e12, 0.8e12, 4e-6, 2, 8, 0.2)
 
 
 @dataclasses.dataclass
@@ -88,8 +91,8 @@ class Model:
             levels.append(side * side)
         return levels
 
-    def wave(self, valu=0, trans=0, qmul=0, img=0, img128=0, scat=0, st64=0, st128=0, buf=0, lds=0, vm=0,
-             vml=400, lg=0, W=8, scr=0, code=8000):
+    def wave(self, valu=0, trans=0, qmul=0, img=0, img128=0, scat=0, st64=0, st128=0, buf=0,
+             lds=0, vm=0, vml=400, lg=0, W=8, scr=0, code=8000):
         """Returns the clocks of one subgroup.
 
         valu, trans, qmul: arithmetic, transcendental and quarter-rate instructions. img, img128,
@@ -103,106 +106,30 @@ class Model:
         if code > 32768:
             latency += code / 64 * factors.cache_miss
         texture = img * 16 + img128 * 32 + scat * 44 + st64 * 16 + st128 * 32 + buf * 16 + scr * 4
-        return {"simd": max(issue, trans * hardware.transcendental, latency / W), "tmu": texture, "lds": lds,
-                "lat": latency, "scr": scr * 256}
+        return {"simd": max(issue, trans * hardware.transcendental, latency / W), "tmu": texture,
+                "lds": lds, "lat": latency, "scr": scr * 256}
 
     def add(self, technique, name, waves, wave, bytes_moved):
         hardware, factors = self.hardware, self.factors
-        bandwidth = 1 / (hardware.cache_hits / hardware.cache + (1 - hardware.cache_hits) / hardware.dram)
+        hits = hardware.cache_hits
+        bandwidth = 1 / (hits / hardware.cache + (1 - hits) / hardware.dram)
         times = [(waves * wave["simd"] / hardware.simds / hardware.clock, "alu/lat"),
                  (waves * wave["tmu"] / hardware.compute_units / hardware.clock, "tmu"),
                  (waves * wave["lds"] / hardware.compute_units / hardware.clock, "lds"),
                  (bytes_moved / bandwidth, "mem"), (wave["lat"] / hardware.clock, "one wave")]
         seconds, limit = max(times)
-        seconds += waves * wave["scr"] / hardware.l2 * 0.5 * factors.spill + hardware.fixed * factors.fixed
+        seconds += (waves * wave["scr"] / hardware.l2 * 0.5 * factors.spill
+                    + hardware.fixed * factors.fixed)
         self.techniques.setdefault(technique, []).append(
             Pass(name, seconds, limit, bytes_moved, bytes_moved / bandwidth))
 
     def add_serial(self, technique, name, clocks):
-        seconds = clocks * self.factors.serial / self.hardware.clock + self.hardware.fixed * self.factors.fixed
+        hardware, factors = self.hardware, self.factors
+        seconds = clocks * factors.serial / hardware.clock + hardware.fixed * factors.fixed
         self.techniques.setdefault(technique, []).append(Pass(name, seconds, "serial", 0, 0))
 
     def total(self, technique):
         return sum(one.seconds for one in self.techniques[technique])
-
-
-# ---- counts of executed instructions per subgroup, from ACO's assembly of navi21; branches count
-# with their usual side, chosen by hand
-CLASSIFY = dict(valu=450, trans=15, img=34, vm=6, lg=15, W=12)
-COMBINE = dict(valu=80, trans=3, img=2, st64=1, vm=2, W=16)
-SETUP = dict(valu=260, trans=13, img=5, st64=2, vm=3, lg=20, W=16, lds=40)
-# 12 taps to each side of 4 texels
-SEPARABLE = dict(valu=130 + 12 * 13 + 48 * 85, trans=12 + 48 * 16, qmul=3, img=3 + 144, buf=26, st64=1,
-                 vm=3 + 144, vml=140, lg=12, W=9)
-SEPARABLE_TUNED = dict(valu=90 + 25 * 14, trans=6 + 25, img=2 + 25, st64=1, vm=2 + 5, vml=250, lg=10, W=12)
-# 25 taps at d = 4 px: 7 taps of each side in shared memory, 5 read light and depth
-SEPARABLE_BUILT = dict(valu=605, trans=82, qmul=1, img=30, buf=6, st64=1, vm=14, vml=260, lg=50, W=7, lds=340)
-SEPARABLE_BUILT_SETUP = dict(valu=100, trans=3, img=3, st64=2, vm=3, lg=15, W=16)
-BURLEY = dict(valu=100 + 32 * 115, trans=10 + 32 * 18, img=4, scat=32 * 4, st64=1, vm=3 + 96, vml=260, lg=40,
-              W=10)
-FIXED = dict(valu=260 + 16 * 150, trans=35 + 16 * 32, img=4, scat=16 * 4, st64=1, vm=3 + 48, vml=260, lg=30,
-             W=9)
-AFIS = dict(valu=430 + 16 * 420, trans=60 + 16 * 80, img=6, scat=16 * 9, st64=1, vm=4 + 16 * 6, vml=260,
-            lg=60, W=8)
-# One read of a mip chain per sample, as two reads: it interpolates between two mips.
-AFIS_BUILT = dict(valu=200 + 16 * 169, trans=45 + 16 * 30, qmul=7, img=4, scat=16 * 6, st64=1, vm=4 + 16 * 4,
-                  vml=260, lg=60, W=8)
-AFIS_PUBLISHED = dict(valu=125 + 16 * 91, trans=15 + 16 * 21, qmul=7, img=2, scat=16 * 2, st64=1, vm=3 + 16,
-                      vml=260, lg=40, W=10)
-AFIS_MIP_SETUP = dict(valu=170, img=4, img128=0, st64=1, vm=3, W=16)
-AFIS_MIP_DOWN = dict(valu=140, trans=2, img=9, st64=1, vm=2, W=16)
-
-
-@dataclasses.dataclass
-class Pyramid:
-    """Counts of one implementation. `slow_...(level)`: a subgroup with two layers; None: one layer."""
-    setup: dict
-    down: dict
-    up: dict
-    gather: dict
-    texels_setup: int = 1  # per invocation
-    texels: int = 1
-    slow_down: object = None
-    slow_up: object = None
-
-
-def blocks_slow_down(level):
-    k = 2 if level < 5 else 3  # parents with two layers in the slowest invocation
-    return dict(valu=5600 + k * (1019 + 2 * 2467), trans=300 + k * 320, img=36 + k * 32, img128=36 + k * 32,
-                st64=4, st128=4, vm=60 + k * 60, lg=322 + k * 430, W=2, scr=350 + k * 1000, code=84320)
-
-
-def blocks_slow_up(level):
-    k = 2 if level < 5 else 3
-    return dict(valu=2950 + k * (520 + 2 * 920), trans=150 + k * 78, img=16 + k * 18, img128=24 + k * 30,
-                st128=4, buf=25 + 12 * k, vm=30 + k * 40, lg=250 + k * 150, W=2, code=39804)
-
-
-def texel_slow_down(_):
-    return dict(valu=1175 + 2 * 2700, trans=75 + 2 * 230, img=5.1 + 8, img128=5.1 + 16, st64=2, st128=2,
-                vm=6 + 20, lg=62 + 2 * 70, W=4, lds=2 * 64 * 10 + 300)
-
-
-def texel_slow_up(_):
-    return dict(valu=200 + 2 * 1016, trans=78, img=10, img128=20, st128=2, buf=14, vm=30, lg=140, W=7, lds=400)
-
-
-BLOCKS = Pyramid(
-    setup=dict(valu=1900, trans=140, img=48, st64=8, st128=8, vm=65 * 0.5, lg=104, W=7),
-    down=dict(valu=5000, trans=270, img=36, img128=36, st64=4, st128=4, vm=49, lg=322, W=2, scr=345, code=47144),
-    up=dict(valu=3150, trans=140, img=16, img128=24, st128=4, buf=25, vm=29, lg=234, W=2, code=28980),
-    gather=dict(valu=5100, trans=260, img=24, img128=24 + 24, st64=8, buf=81, vm=126, vml=240, lg=253, W=2,
-                scr=191, code=42568),
-    texels_setup=8, texels=4, slow_down=blocks_slow_down, slow_up=blocks_slow_up)
-TEXELS = Pyramid(
-    setup=dict(valu=330, trans=18, img=4, st64=1, st128=1, vm=4, lg=20, W=16, lds=30),
-    down=dict(valu=1175, trans=75, qmul=12, img=5.1, img128=5.1, st64=1, st128=1, vm=6, lg=42 + 20, W=4,
-              lds=16 * 12 + 4 * 8 + 6 * 12),
-    up=dict(valu=900, trans=38, qmul=10, img=1.6, img128=1.6 + 0.8, st128=1, buf=8, vm=8, lg=45, W=8,
-            lds=9 * 12 + 8 * 8 + 2 * 12),
-    gather=dict(valu=730, trans=35, qmul=10, img=1.6, img128=1.6 + 1.2, st64=1, buf=12, vm=8, lg=39, W=7,
-                lds=9 * 12 + 8 * 8 + 2 * 12),
-    slow_down=texel_slow_down, slow_up=texel_slow_up)
 
 
 def serial_tile_list(model):
@@ -243,7 +170,8 @@ LIST_RUN = dict(valu=236, trans=1, qmul=3, buf=18, vm=5, lg=20, W=16)
 
 
 def lists_by_region(model):
-    steps = math.ceil(model.view_tiles / 256 / 128) - 1  # of the loop over tiles of level 4, beyond the first
+    # Steps of the loop over tiles of level 4, beyond the first.
+    steps = math.ceil(model.view_tiles / 256 / 128) - 1
     coarse = model.wave(**LIST_COARSE)["lat"] + steps * model.wave(valu=120, vm=2, lg=8)["lat"]
     return model.wave(**LIST_REGION)["lat"] + coarse
 
@@ -263,44 +191,53 @@ def add_rivals(model):
     n, tiles0 = model.covered, model.tiles[0]
     material = 1 * model.pixels + 5 * n
     combine = model.wave(**COMBINE)
-    setup, setup_with_slope = ((tiles0, model.wave(**SETUP), n * (13 + written)) for written in (8, 12))
+    setup, setup_with_slope = ((tiles0, model.wave(**SETUP), n * (13 + written))
+                               for written in (8, 12))
 
     def frame(technique, setup, passes, as_built=False):
         model.add(technique, "classify", model.view_tiles / 16, model.wave(**CLASSIFY), material)
         # As built, the list of tiles takes at most as long as one of the regions of sap_tiles.
-        model.add_serial(technique, "tile_list", model.wave(**LIST_REGION)["lat"] if as_built else serial_tile_list(model))
+        model.add_serial(technique, "tile_list",
+                         model.wave(**LIST_REGION)["lat"] if as_built else serial_tile_list(model))
         model.add(technique, "setup", *setup)
         for one in passes:
             model.add(technique, *one)
         model.add(technique, "combine", tiles0, combine, n * 17)
 
     separable, tuned = model.wave(**SEPARABLE), model.wave(**SEPARABLE_TUNED)
-    frame("separable 25", setup, [("horizontal", tiles0, separable, n * 21), ("vertical", tiles0, separable, n * 29)])
-    frame("separable tuned*", setup, [("horizontal", tiles0, tuned, n * 24), ("vertical", tiles0, tuned, n * 24)])
+    frame("separable 25", setup, [("horizontal", tiles0, separable, n * 21),
+                                  ("vertical", tiles0, separable, n * 29)])
+    frame("separable tuned*", setup, [("horizontal", tiles0, tuned, n * 24),
+                                      ("vertical", tiles0, tuned, n * 24)])
     built = model.wave(**SEPARABLE_BUILT)
     # Light of covered pixels, and depth of all pixels.
-    frame("separable 25 as built", (model.view_tiles, model.wave(**SEPARABLE_BUILT_SETUP), n * (13 + 8) + model.pixels * 4),
-          [("horizontal", tiles0, built, n * 20), ("vertical", tiles0, built, n * 28)], as_built=True)
+    setup_built = model.wave(**SEPARABLE_BUILT_SETUP)
+    frame("separable 25 as built", (model.view_tiles, setup_built, n * (13 + 8) + model.pixels * 4),
+          [("horizontal", tiles0, built, n * 20), ("vertical", tiles0, built, n * 28)],
+          as_built=True)
     for suffix in ("", " as built"):
-        frame("burley 32" + suffix, setup_with_slope, [("scatter", tiles0, model.wave(**BURLEY), n * 25)], bool(suffix))
-        frame("fixed 16" + suffix, setup_with_slope, [("scatter", tiles0, model.wave(**FIXED), n * 25)], bool(suffix))
+        for name, counts in (("burley 32", BURLEY), ("fixed 16", FIXED)):
+            frame(name + suffix, setup_with_slope,
+                  [("scatter", tiles0, model.wave(**counts), n * 25)], bool(suffix))
     mips = [("mip_setup", model.pixels / 64, model.wave(**AFIS_MIP_SETUP), model.pixels * 13)]
     for level in range(1, 9):
-        mips.append((f"mip_down_{level}", max(1, model.pixels / 64 / 4**level), model.wave(**AFIS_MIP_DOWN),
-                     model.pixels / 4**level * (8 * 4 + 8)))
+        mips.append((f"mip_down_{level}", max(1, model.pixels / 64 / 4**level),
+                     model.wave(**AFIS_MIP_DOWN), model.pixels / 4**level * (8 * 4 + 8)))
     frame("afis 16", setup_with_slope, mips + [("scatter", tiles0, model.wave(**AFIS), n * 30)])
-    frame("afis 16 as built", setup_with_slope, mips + [("scatter", tiles0, model.wave(**AFIS_BUILT), n * 30)],
-          as_built=True)
+    frame("afis 16 as built", setup_with_slope,
+          mips + [("scatter", tiles0, model.wave(**AFIS_BUILT), n * 30)], as_built=True)
     # Mip 0 replaces light and slope.
-    frame("afis_published 16", mips[0][1:], mips[1:] + [("scatter", tiles0, model.wave(**AFIS_PUBLISHED), n * 22)],
-          as_built=True)
+    frame("afis_published 16", mips[0][1:],
+          mips[1:] + [("scatter", tiles0, model.wave(**AFIS_PUBLISHED), n * 22)], as_built=True)
 
 
 def add_pyramid(model, technique, counts, list_clocks, layered=True):
     n, tiles = model.covered, model.tiles
-    model.add(technique, "classify", model.view_tiles / 16, model.wave(**CLASSIFY), 1 * model.pixels + 5 * n)
+    model.add(technique, "classify", model.view_tiles / 16, model.wave(**CLASSIFY),
+              1 * model.pixels + 5 * n)
     model.add_serial(technique, "lists", list_clocks)
-    model.add(technique, "setup", tiles[0] / counts.texels_setup, model.wave(**counts.setup), n * (13 + 24))
+    model.add(technique, "setup", tiles[0] / counts.texels_setup, model.wave(**counts.setup),
+              n * (13 + 24))
     for name, levels, fast, slow in (("down", range(1, 9), counts.down, counts.slow_down),
                                      ("up", range(8, 0, -1), counts.up, counts.slow_up)):
         for level in levels:
@@ -312,23 +249,29 @@ def add_pyramid(model, technique, counts, list_clocks, layered=True):
             computed = of_level * (4 * 24 + 24) if name == "down" else of_level * (24 + 32 / 4 + 16)
             model.add(technique, f"{name}_{level}", max(1, tiles[level] / counts.texels), clocks,
                       computed * (1.5 if layered and level >= 2 else 1))
-    model.add(technique, "gather", tiles[0] / counts.texels_setup, model.wave(**counts.gather), n * (24 + 8 + 8))
+    model.add(technique, "gather", tiles[0] / counts.texels_setup, model.wave(**counts.gather),
+              n * (24 + 8 + 8))
     model.add(technique, "combine", tiles[0], model.wave(**COMBINE), n * 17)
 
 
 def add_target(model):
-    """Lists in parallel, texels of 16 bytes, levels 5 to 8 in one dispatch, combine inside gather."""
+    """Lists in parallel, texels of 16 bytes, levels 5 to 8 in one dispatch, combine in gather."""
     technique, n, tiles = "SAP target", model.covered, model.tiles
-    model.add(technique, "classify", model.view_tiles / 16, model.wave(**CLASSIFY), 1 * model.pixels + 5 * n)
+    model.add(technique, "classify", model.view_tiles / 16, model.wave(**CLASSIFY),
+              1 * model.pixels + 5 * n)
     model.add_serial(technique, "lists", 8000)
     model.add(technique, "setup", tiles[0], model.wave(**TEXELS.setup), n * (13 + 16))
-    down = model.wave(valu=1000, trans=60, qmul=8, img=0, img128=5.1, st128=1, vm=6, lg=50, W=5, lds=16 * 8 + 6 * 8)
-    slow_down = model.wave(valu=1000 + 2 * 1500, trans=60 + 2 * 150, img128=5.1 + 16, st128=2, vm=14, lg=110,
-                           W=5, lds=700)
-    up = model.wave(valu=750, trans=38, qmul=8, img128=1.6 + 0.8, st128=1, buf=6, vm=6, lg=40, W=8, lds=130)
-    slow_up = model.wave(valu=200 + 2 * 800, trans=78, img128=12, st128=2, buf=12, vm=16, lg=90, W=8, lds=260)
+    down = model.wave(valu=1000, trans=60, qmul=8, img=0, img128=5.1, st128=1, vm=6, lg=50, W=5,
+                      lds=16 * 8 + 6 * 8)
+    slow_down = model.wave(valu=1000 + 2 * 1500, trans=60 + 2 * 150, img128=5.1 + 16, st128=2,
+                           vm=14, lg=110, W=5, lds=700)
+    up = model.wave(valu=750, trans=38, qmul=8, img128=1.6 + 0.8, st128=1, buf=6, vm=6, lg=40, W=8,
+                    lds=130)
+    slow_up = model.wave(valu=200 + 2 * 800, trans=78, img128=12, st128=2, buf=12, vm=16, lg=90,
+                         W=8, lds=260)
     for level in range(1, 5):
-        model.add(technique, f"down_{level}", tiles[level], mix(down, slow_down, layered_fraction(level)),
+        model.add(technique, f"down_{level}", tiles[level],
+                  mix(down, slow_down, layered_fraction(level)),
                   n / 4**level * (4 * 16 + 16) * (1.4 if level >= 2 else 1))
     tail = sum((math.ceil(tiles[level] / 32) * 0.6 + 0.4) * (slow_down["lat"] + slow_up["lat"])
                for level in range(5, 9))
@@ -336,7 +279,8 @@ def add_target(model):
     for level in range(4, 0, -1):
         model.add(technique, f"up_{level}", tiles[level], mix(up, slow_up, layered_fraction(level)),
                   n / 4**level * (16 + 32 / 4 + 16) * (1.4 if level >= 2 else 1))
-    gather = model.wave(valu=560, trans=32, qmul=6, img=1, img128=1.6 + 1.2, st64=1, buf=8, vm=6, lg=32, W=8, lds=130)
+    gather = model.wave(valu=560, trans=32, qmul=6, img=1, img128=1.6 + 1.2, st64=1, buf=8, vm=6,
+                        lg=32, W=8, lds=130)
     model.add(technique, "gather and combine", tiles[0], gather, n * (16 + 8 + 4 + 8))
 
 
@@ -384,8 +328,9 @@ class Built:
         get = lambda kind: mix_of.get(kind, 0)
         return model.wave(valu=get("valu"), trans=get("transcendental"), qmul=get("quarter_rate"),
                           img=get("image_load") / 2, img128=get("image_load") / 2,
-                          st64=get("image_store") / 2, st128=get("image_store") / 2, buf=get("buffer_load"),
-                          lds=8 * get("shared"), vm=get("memory_wait"), lg=get("shared_wait"),
+                          st64=get("image_store") / 2, st128=get("image_store") / 2,
+                          buf=get("buffer_load"), lds=8 * get("shared"),
+                          vm=get("memory_wait"), lg=get("shared_wait"),
                           W=values["occupancy"] / 2, code=values["code_bytes"],
                           scr=get("scratch_load") + get("scratch_store"))
 
@@ -400,7 +345,8 @@ def add_built(model, technique, built, graph):
         level = re.search(r"_(\d)$", one["pass"])
         tiles = model.tiles[int(level.group(1)) if level else 0]
         if kernel == "classify":
-            model.add(technique, one["pass"], model.view_tiles / 16, model.wave(**CLASSIFY), bytes_moved)
+            model.add(technique, one["pass"], model.view_tiles / 16, model.wave(**CLASSIFY),
+                      bytes_moved)
         elif kernel == "sap_tiles":
             model.add_serial(technique, one["pass"], lists_by_region(model))
         elif kernel == "tile_list":
@@ -423,7 +369,8 @@ def run(hardware, factors=Factors(), width=2560, height=1440, built=None):
     add_pyramid(model, "SAP shipped", BLOCKS, serial_sap_tiles(model))
     add_pyramid(model, "SAP shipped, 1 layer", BLOCKS, serial_sap_tiles(model), layered=False)
     add_pyramid(model, "SAP prototype", TEXELS, serial_parallel_tiles(model))
-    add_pyramid(model, "SAP prototype, 1 layer", TEXELS, serial_parallel_tiles(model), layered=False)
+    add_pyramid(model, "SAP prototype, 1 layer", TEXELS, serial_parallel_tiles(model),
+                layered=False)
     add_target(model)
     for graph in built.graphs if built else ():
         add_built(model, f"{graph} as built", built, graph)
@@ -444,13 +391,15 @@ SENSITIVITY = {
 
 
 def print_model(model, width, height):
-    print(f"\n{model.hardware.name}; {width}x{height}, {COVERED:.0%} covered: {model.covered / 1e6:.2f} Mpx")
+    print(f"\n{model.hardware.name}; {width}x{height}, {COVERED:.0%} covered: "
+          f"{model.covered / 1e6:.2f} Mpx")
     for technique, passes in model.techniques.items():
         moved = sum(one.bytes for one in passes)
-        slowest = sorted(passes, key=lambda one: -one.seconds)[:6]
+        memory = sum(one.memory_seconds for one in passes)
+        slowest = ", ".join(f"{one.name} {one.seconds * 1e6:.0f} us ({one.limit})"
+                            for one in sorted(passes, key=lambda one: -one.seconds)[:6])
         print(f"{technique:24} {model.total(technique) * 1e3:6.2f} ms | {len(passes):2} passes | "
-              f"{moved / model.covered:4.0f} B/px, memory alone {sum(one.memory_seconds for one in passes) * 1e3:5.2f} ms | "
-              + ", ".join(f"{one.name} {one.seconds * 1e6:.0f} us ({one.limit})" for one in slowest))
+              f"{moved / model.covered:4.0f} B/px, memory alone {memory * 1e3:5.2f} ms | {slowest}")
 
 
 def main():
