@@ -174,7 +174,8 @@ std::span<choice::Forecast> forecast_all(Chooser& chooser, const CompiledGraph& 
       deterministic ? std::span<const choice::CostFactors>() : chooser.costs.predict(now_s);
   const double demand =
       std::floor(expected_units(chooser.demand, content.d_px) * double(content.scattering_tiles));
-  const size_t count = compiled_graph.configurations.size();
+  // Without a budget, the defaults run.
+  const size_t count = chooser.budget.ms > 0 ? compiled_graph.configurations.size() : 1;
   for (uint32_t i = 0; i < count; ++i) {
     const choice::Configuration& configuration = compiled_graph.configurations[i];
     const double correction = error_factor(chooser.found, configuration.technique);

@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace dermis::tools {
 namespace {
 
@@ -62,6 +64,9 @@ std::string CountedHost::open(const CountedInput& input) {
     graph_ = nullptr;
     if (std::string problem = create(desc); !problem.empty()) return problem;
   }
+  dermis_budget budget = DERMIS_BUDGET_INIT;
+  budget.milliseconds = input.budget_ms;
+  if (dermis_graph_set_budget(graph_, &budget, nullptr) != DERMIS_OK) return dermis_last_error();
   return bind();
 }
 
@@ -114,6 +119,16 @@ dermis_result CountedHost::record_frame() {
   frame_.bindings = set.data();
   frame_.binding_count = static_cast<uint32_t>(set.size());
   return dermis_view_record(dermis_graph_view(graph_), &frame_);
+}
+
+bool CountedHost::chooses() const {
+  uint32_t count = 0;
+  const dermis_view view = dermis_graph_view(graph_);
+  if (dermis_view_settings(view, &count, nullptr) != DERMIS_OK || count == 0) return false;
+  std::vector<dermis_setting> settings(count, dermis_setting DERMIS_SETTING_INIT);
+  return dermis_view_settings(view, &count, settings.data()) == DERMIS_OK &&
+         std::any_of(settings.begin(), settings.end(),
+                     [](const dermis_setting& setting) { return setting.chosen != 0; });
 }
 
 uint32_t CountedHost::passes() const {

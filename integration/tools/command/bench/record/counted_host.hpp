@@ -16,6 +16,7 @@ struct CountedInput {
   std::string name, graph; // name for messages, JSON text
   std::string profile_name, profile;
   uint32_t width = 0, height = 0;
+  float budget_ms = 0; // 0: none
   demo::ContextHooks hooks = {};
 };
 
@@ -35,6 +36,8 @@ public:
 
   NullDevice& device() { return device_; }
   dermis_graph graph() const { return graph_; }
+  // Returns whether a budget chooses settings of the graph.
+  bool chooses() const;
   // Returns the number of passes of the plan.
   uint32_t passes() const;
 

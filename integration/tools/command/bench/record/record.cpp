@@ -24,6 +24,7 @@ constexpr uint32_t frames_per_sample = 64; // frames per clock reading
 constexpr uint32_t all_samples = 201, few_samples = 5;
 constexpr uint32_t chain_passes = 100;
 constexpr double goal_per_pass = 0.5; // microseconds
+constexpr float any_budget_ms = 4;    // the device reports no times, so decisions do not matter
 
 struct RecordRow {
   std::string graph;
@@ -80,9 +81,11 @@ demo::Error input_problem(std::string text) {
   return {demo::ErrorKind::input, std::move(text)};
 }
 
-demo::Result<RecordRow> measure_graph(const CountedInput& input, uint32_t samples) {
+// `chooses`: set to whether a budget chooses settings of the graph.
+demo::Result<RecordRow> measure_graph(const CountedInput& input, uint32_t samples, bool& chooses) {
   CountedHost host;
   if (std::string problem = host.open(input); !problem.empty()) return input_problem(problem);
+  chooses = host.chooses();
   bool good = true;
   for (uint32_t i = 0; i < warm_frames; ++i)
     good = good && host.record_frame() == DERMIS_OK;
@@ -101,7 +104,8 @@ demo::Result<RecordRow> measure_graph(const CountedInput& input, uint32_t sample
                     (1000.0 * frames_per_sample));
   }
   const uint64_t allocated = allocations_of_this_thread() - allocations;
-  const std::string name = std::filesystem::path(input.name).stem().string();
+  const std::string name =
+      std::filesystem::path(input.name).stem().string() + (input.budget_ms > 0 ? ", budget" : "");
   if (!good) return input_problem(fmt::format("{}: {}", name, dermis_last_error()));
   const double frames = double{frames_per_sample} * samples;
   return RecordRow{name,
@@ -159,15 +163,22 @@ demo::Result<> measure_record(SuiteRun& run, const Emit<RecordRow>& emit) {
   run.report.plots_text = "Point at a graph to see its name.";
   for (const Source& graph : graphs) {
     if (interrupted()) return stopped();
-    HostPasses host_passes(known->host_pass_types);
-    const CountedInput input{graph.name,       graph.text,        run.file("profile"), profile,
-                             run.size().width, run.size().height, host_passes.hooks()};
-    const auto row = measure_graph(input, samples);
-    if (!row) return row.error();
-    run.report.plots[0].series[0].points.push_back(
-        {double(row->passes), row->us.median,
-         fmt::format("{}: {:.2f} µs", row->graph, row->us.median), false});
-    emit(*row);
+    bool again = false; // within a budget
+    do {
+      HostPasses host_passes(known->host_pass_types);
+      CountedInput input{graph.name, graph.text,         run.file("profile"),
+                         profile,    run.size().width,   run.size().height,
+                         0,          host_passes.hooks()};
+      if (again) input.budget_ms = any_budget_ms;
+      bool chooses = false;
+      const auto row = measure_graph(input, samples, chooses);
+      if (!row) return row.error();
+      run.report.plots[0].series[0].points.push_back(
+          {double(row->passes), row->us.median,
+           fmt::format("{}: {:.2f} µs", row->graph, row->us.median), false});
+      emit(*row);
+      again = chooses && !again;
+    } while (again);
   }
   return demo::success();
 }
