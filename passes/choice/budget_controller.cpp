@@ -167,8 +167,10 @@ private:
       return choose_known(&Assessment::enter_ms, decision, ReasonKind::first_frame);
     decision.configuration = now;
     if (assessed_[now].running_ms > assessed_[now].leave_ms) {
+      choose_other(decision);
+      if (decision.configuration == now || state_.tokens >= known_tokens) return;
+      decision.configuration = now;
       decision.why = ReasonKind::held;
-      if (state_.tokens >= known_tokens) choose_other(decision);
       return;
     }
     const uint32_t better =

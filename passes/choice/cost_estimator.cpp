@@ -58,7 +58,7 @@ CostEstimator::CostEstimator(std::vector<Cost> calibration, double uncertainty) 
     line.has_prior = true;
   }
   factors_.resize(lines_.size());
-  timed_.reserve(lines_.size());
+  timed_.resize(lines_.size());
   set_uncertainty(uncertainty);
 }
 
@@ -83,9 +83,10 @@ CostId CostEstimator::add(std::string_view work) {
     line.has_prior = line.placeholder = true;
     line.guess = like->guess || words_alike(like->work, work) == 0;
   }
+  // first, so that a failure leaves enough elements for all lines
+  factors_.resize(lines_.size() + 1);
+  timed_.resize(lines_.size() + 1);
   lines_.push_back(std::move(line));
-  factors_.resize(lines_.size());
-  timed_.reserve(lines_.size());
   return {static_cast<uint32_t>(lines_.size() - 1)};
 }
 
@@ -159,12 +160,12 @@ void CostEstimator::observe(std::span<const PassTime> passes, double now_s) {
 
 // Sums the passes of each line, and restarts lines that did not run for a while.
 void CostEstimator::collect(std::span<const PassTime> passes, double now_s) {
-  timed_.clear();
+  timed_count_ = 0;
   for (const PassTime& pass : passes) {
     if (!std::isfinite(pass.ms) || pass.ms < 0 || pass.groups == 0) continue;
     Line& line = lines_[pass.cost.value];
     if (!line.in_frame) {
-      timed_.push_back(pass.cost.value);
+      timed_[timed_count_++] = pass.cost.value;
       line.in_frame = true;
       line.frame_ms = line.frame_measured_ms = 0;
     }
@@ -174,7 +175,7 @@ void CostEstimator::collect(std::span<const PassTime> passes, double now_s) {
                               line.prior.group_ms * device_factor_ * unmeasured_factor_};
     choice::observe(line.fit, prior, line.has_prior, static_cast<double>(pass.groups), pass.ms);
   }
-  for (const uint32_t l : timed_) {
+  for (const uint32_t l : timed()) {
     Line& line = lines_[l];
     line.in_frame = false;
     if (line.own.observations == 0 || now_s - line.seen_s <= absent_s) continue;
@@ -192,11 +193,11 @@ double CostEstimator::log_error(const Line& line) const {
 // Only a deviation that all lines share is one of the device: the smallest if all have one sign.
 void CostEstimator::follow_device() {
   double total_ms = 0;
-  for (const uint32_t l : timed_)
+  for (const uint32_t l : timed())
     total_ms += lines_[l].frame_ms * factor(lines_[l]);
   double smallest = 0, deviation = 0;
   bool agree = true, any = false;
-  for (const uint32_t l : timed_) {
+  for (const uint32_t l : timed()) {
     const Line& line = lines_[l];
     if (line.own.since_restart < even_after || line.own.deviation > even_deviation ||
         line.frame_ms * factor(line) < min_fraction * total_ms)
@@ -215,7 +216,7 @@ void CostEstimator::follow_device() {
 }
 
 void CostEstimator::follow_lines(double now_s) {
-  for (const uint32_t l : timed_) {
+  for (const uint32_t l : timed()) {
     Line& line = lines_[l];
     const double error = log_error(line);
     if (line.own.observations == 0) line.own.level = unmeasured_;
@@ -232,7 +233,7 @@ void CostEstimator::follow_lines(double now_s) {
 // Moves to the device what lines are off their usual levels by, in the mean.
 void CostEstimator::recenter() {
   double sum = 0, count = 0;
-  for (const uint32_t l : timed_)
+  for (const uint32_t l : timed())
     if (lines_[l].own.observations > usual_after) {
       sum += lines_[l].own.level - lines_[l].usual;
       ++count;
@@ -240,13 +241,13 @@ void CostEstimator::recenter() {
   if (count == 0) return;
   const double moved = recenter_gain * sum / count;
   device_.level += moved;
-  for (const uint32_t l : timed_)
+  for (const uint32_t l : timed())
     lines_[l].own.level -= moved;
 }
 
 void CostEstimator::update_factors() {
   device_factor_ = std::exp(device_.level);
-  for (const uint32_t l : timed_) {
+  for (const uint32_t l : timed()) {
     lines_[l].own_factor = std::exp(lines_[l].own.level);
     update_usual_ratio(lines_[l]);
   }

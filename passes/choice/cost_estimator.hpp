@@ -7,6 +7,7 @@
 #include "passes/choice/affine_fit.hpp"
 #include "passes/choice/level_tracker.hpp"
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -110,6 +111,7 @@ private:
     bool in_frame = false;
   };
   double factor(const Line& line) const; // on the calibrated time
+  std::span<const uint32_t> timed() const { return std::span(timed_).first(timed_count_); }
   double log_error(const Line& line) const;
   const Line* placeholder_for(std::string_view work) const;
   void collect(std::span<const PassTime> passes, double now_s);
@@ -121,7 +123,9 @@ private:
 
   std::vector<Line> lines_;
   std::vector<CostFactors> factors_; // by line
-  std::vector<uint32_t> timed_;      // lines of the frame that is being observed
+  // The first timed_count_: lines of the frame that is being observed. As long as lines_.
+  std::vector<uint32_t> timed_;
+  size_t timed_count_ = 0;
   LevelTracker device_;
   double device_factor_ = 1;
   double unmeasured_ = 0, unmeasured_factor_ = 1; // `own` of work that never ran

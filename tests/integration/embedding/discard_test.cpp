@@ -168,25 +168,26 @@ TEST_F(Discard, RestoresThePreviousRectangle) {
       << "the history keeps the previous frame's rectangle";
 }
 
-// The first switch blocks other switches for a second; a discarded frame must not start this
-// second.
+// After two switches the third waits for two seconds; the time of a discarded frame must not count.
 TEST_F(Discard, RestoresTheLastDecision) {
   const auto run = [&](const std::vector<Shot>& lost) {
     make();
     std::vector<std::string> choices;
-    for (const float budget : {30.0f, 0.5f, 30.0f, 30.0f})
+    submit({.budget_ms = 30, .seconds = 4}); // until the first seconds are over
+    for (const float budget : {30.0f, 0.5f, 30.0f, 0.5f})
       choices.push_back(submit({.budget_ms = budget, .seconds = 0.1f}).choice);
     for (const Shot& shot : lost)
       discard(shot);
     for (uint32_t i = 0; i < 12; ++i)
-      choices.push_back(submit({.budget_ms = 30, .seconds = 0.1f}).choice);
+      choices.push_back(submit({.budget_ms = 0.5f, .seconds = 0.2f}).choice);
     return choices;
   };
   const std::vector<std::string> expected = run({});
   EXPECT_THAT(expected[4], HasSubstr("kept, to switch less often"));
   EXPECT_THAT(expected.back(), Not(HasSubstr("kept, to switch less often")));
-  EXPECT_EQ(run({{.budget_ms = 30, .seconds = 5}}), expected) << "the time of the discarded frame";
-  EXPECT_EQ(run({{.budget_ms = 30, .seconds = 5}, {.budget_ms = 30, .seconds = 5}}), expected)
+  EXPECT_EQ(run({{.budget_ms = 0.5f, .seconds = 5}}), expected)
+      << "the time of the discarded frame";
+  EXPECT_EQ(run({{.budget_ms = 0.5f, .seconds = 5}, {.budget_ms = 0.5f, .seconds = 5}}), expected)
       << "two consecutive frames";
   EXPECT_EQ(run({{.budget_ms = 0.4f, .seconds = 0.1f}}), expected)
       << "the choice of the discarded frame";
