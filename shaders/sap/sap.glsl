@@ -139,6 +139,10 @@ float sap_off_planes(sap_texel own, sap_texel tap, vec2 offset) {
 }
 ivec2 sap_level_size(int level) { return (sap_view_size + (1 << level) - 1) >> level; }
 // Levels from 1 on have a border of one texel; level 0 has the layout of the view.
+// Returns whether a texel that is not in front of the level is inside it.
+bool sap_before_end(ivec2 at, int level) {
+  return all(lessThan(at, sap_level_size(level) + (level > 0 ? 1 : 0)));
+}
 bool sap_inside(ivec2 at, int level) {
   int border = level > 0 ? 1 : 0;
   return all(bvec4(greaterThanEqual(at, ivec2(-border)),

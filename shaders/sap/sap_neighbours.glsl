@@ -94,7 +94,7 @@ void read_ring_of_tile(texel_block block, int level, bool with_ring) {
   vec4 light[2] = vec4[](vec4(0.0), vec4(0.0));
   [[unroll]] for (int k = 0; k < 2; ++k) {
     ivec2 at = 8 * block.tile + offset[k] - border;
-    needed[k] = all(bvec2(needed[k], sap_inside(at, level)));
+    needed[k] = all(bvec2(needed[k], k == 0 ? sap_before_end(at, level) : sap_inside(at, level)));
     place[k] = ring_index(offset[k] + 1);
     address[k] = sap_address(at, level);
 #if SAP_OWN_LAYERS > 1
@@ -163,7 +163,7 @@ void read_coarser(texel_block block, int level) {
     if (i < tile_coarse_texels) {
       uvec4 bits = uvec4(0u), scattered = uvec4(0u);
       ivec2 address = sap_address(at, level + 1);
-      if (sap_inside(at, level + 1)) {
+      if (sap_before_end(at, level + 1)) {
         bits = texelFetch(coarse_surface_image, address, 0);
         scattered = texelFetch(coarse_scattered_image, address, 0);
       }
