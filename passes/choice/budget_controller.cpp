@@ -89,10 +89,15 @@ private:
     out.leave_ms = frame_.budget_ms * std::exp(-leave_margin * forecast.margin);
     out.enter_ms = out.fill_ms * std::exp(-min_gap - gap_of_margin * forecast.margin);
     out.trial = time.pessimistic_ms > out.enter_ms;
+    // Without trials, a configuration returns after a longer time.
+    const bool may_return =
+        state_.clock_s - kept.left_s > (may_try() ? 1 : forgotten_backoffs) * kept.backoff_s;
     const bool barred =
-        !rested && time.expected_ms > kept.left_ratio * frame_.budget_ms * std::exp(-changed);
+        !may_return && time.expected_ms > kept.left_ratio * frame_.budget_ms * std::exp(-changed);
     out.running_ms = rested ? time.undisturbed_ms : time.optimistic_ms;
-    const double entering_ms = may_try() ? out.running_ms : known_ms(time, kept);
+    const double disturbance_ms = time.optimistic_ms - time.undisturbed_ms;
+    const double entering_ms =
+        may_try() ? out.running_ms : time.expected_ms - (may_return ? disturbance_ms : 0);
     out.entering_ms = barred ? never_ms : entering_ms;
     out.units = out.entering_units = 0;
     if (forecast.takes_samples && forecast.demand > 0) {
@@ -103,13 +108,6 @@ private:
     }
     out.rmse = rmse_with(forecast, out.units);
     out.entering_rmse = rmse_with(forecast, out.entering_units);
-  }
-
-  // Returns the time that decides about entering without a trial. Disturbances are forgotten.
-  double known_ms(const TimeForecast& time, const DecisionState::Configuration& kept) const {
-    const double disturbance_ms = time.optimistic_ms - time.undisturbed_ms;
-    const bool forgotten = state_.clock_s - kept.left_s > forgotten_backoffs * kept.backoff_s;
-    return time.expected_ms - (forgotten ? disturbance_ms : 0);
   }
 
   static double units_within(double ms, double unit_ms, double demand) {

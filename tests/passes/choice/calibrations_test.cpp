@@ -4,6 +4,7 @@
 #include "passes/choice/calibration.hpp"
 #include "passes/choice/configurations.hpp"
 #include "passes/choice/defaults.hpp"
+#include "passes/choice/missing_rows.hpp"
 #include "passes/common/pass_types.hpp"
 #include "tests/support/shipped_graphs.hpp"
 
@@ -29,24 +30,34 @@ struct Calibrations : ::testing::TestWithParam<DeviceClass> {
     return read ? std::move(*read) : Calibration{};
   }
 
-  // Returns the work of all configurations of a shipped graph that launches kernels.
-  std::set<std::string> works_of_graph(const std::string& name) {
-    const PassTypeRegistry pass_types = subsurface::make_pass_types();
-    const DeviceProfile device = generic_profile();
+  PassTypeRegistry pass_types = subsurface::make_pass_types();
+  DeviceProfile device = generic_profile();
+  std::optional<Graph> graph;
+
+  // Returns the input that compiles a shipped graph; nullopt on failure.
+  std::optional<CompileInput> input_of(const std::string& name) {
     std::ifstream file(DERMIS_SOURCE_DIR "/" + shipped::graph_file(name));
     std::stringstream text;
     text << file.rdbuf();
     const auto document = parse_document(name, text.str(), diagnostics);
-    const auto graph = document ? read_graph(*document, pass_types, diagnostics) : std::nullopt;
+    graph = document ? read_graph(*document, pass_types, diagnostics) : std::nullopt;
     EXPECT_TRUE(graph) << format_as_json(diagnostics);
-    std::set<std::string> names;
-    if (!graph) return names;
+    if (!graph) return std::nullopt;
     CompileInput input;
     input.graph = &*graph;
     input.pass_types = &pass_types;
     input.device = &device;
     input.view_width = 640;
     input.view_height = 360;
+    return input;
+  }
+
+  // Returns the work of all configurations of a shipped graph that launches kernels.
+  std::set<std::string> works_of_graph(const std::string& name) {
+    std::set<std::string> names;
+    auto given = input_of(name);
+    if (!given) return names;
+    CompileInput& input = *given;
     const auto combinations = enumerate_combinations(input, diagnostics);
     EXPECT_TRUE(combinations);
     for (const auto& settings : combinations->settings) {
@@ -68,6 +79,32 @@ TEST_P(Calibrations, NameTheWorkOfTheBudgetsGraphs) {
   for (const char* graph : {"skin", "hybrid"})
     for (const std::string& work : works_of_graph(graph))
       EXPECT_TRUE(known.contains(work)) << graph << ": " << work;
+}
+
+TEST_P(Calibrations, ErrorsAndCosts_CoverTheBudgetsGraph) {
+  const auto document = parse_document("errors", std::string(default_errors_text()), diagnostics);
+  const auto errors = document ? read_error_model(*document, diagnostics) : std::nullopt;
+  ASSERT_TRUE(errors) << format_as_json(diagnostics);
+  const auto input = input_of("skin");
+  ASSERT_TRUE(input);
+  const auto combinations = enumerate_combinations(*input, diagnostics);
+  ASSERT_TRUE(combinations);
+  std::vector<CompiledPlan> compiled;
+  for (const uint32_t first : combinations->first) {
+    CompileInput one = *input;
+    one.settings = combinations->settings[first];
+    auto plan = compile(one, diagnostics);
+    ASSERT_TRUE(plan) << format_as_json(diagnostics);
+    compiled.push_back(std::move(*plan));
+  }
+  std::vector<const Plan*> plans;
+  for (const CompiledPlan& one : compiled)
+    plans.push_back(&one.plan);
+  CostEstimator costs(built_in().costs);
+  const auto configurations = make_configurations(*input, *combinations, plans, *errors, costs);
+  Diagnostics missing;
+  report_missing_rows(*graph, pass_types, plans, *errors, costs, configurations, missing);
+  EXPECT_TRUE(missing.list.empty()) << format_as_json(missing);
 }
 
 TEST_P(Calibrations, OfGpusAreLabelledAsModelled) {
