@@ -29,7 +29,7 @@ public:
       const Port& port = type.ports[access.port];
       if (access.when == ReadWhen::history_invalid || port.usage == Usage::indirect_arguments)
         continue;
-      const double bytes = bytes_of(access, written_area) * fraction(type, port) /
+      const double bytes = bytes_of(access, written_area) * fraction(type, port, access) /
                            (assumptions_.covered * view_pixels_);
       if (usage_info(port.usage).reads) traffic.read += bytes;
       if (usage_info(port.usage).writes) traffic.written += bytes;
@@ -65,11 +65,13 @@ private:
   }
 
   // Returns the fraction of the resource that the pass accesses at the port.
-  double fraction(const PassType& type, const Port& port) const {
+  double fraction(const PassType& type, const Port& port, const PlanAccess& access) const {
     const bool listed = type.dispatch.domain == DispatchRule::Domain::indirect;
     const double covered =
         listed || port.touched != Touched::dispatched ? assumptions_.covered : 1.0;
-    return port.touched == Touched::flagged ? covered * assumptions_.flagged : covered;
+    if (port.touched != Touched::flagged) return covered;
+    const bool fine = 4 * texels_of(plan_.resources[access.resource], access.range) >= view_pixels_;
+    return covered * (fine ? assumptions_.flagged_fine : assumptions_.flagged);
   }
 
   const Plan& plan_;

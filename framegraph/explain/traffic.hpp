@@ -11,6 +11,8 @@ namespace dermis {
 struct TrafficAssumptions {
   double covered = 0.5; // of the view's pixels: pixels to which the effect applies
   double flagged = 0.5; // of the texels of a port with Touched::flagged
+  // The same in images of at least a quarter of the view's texels, where fewer are next to edges.
+  double flagged_fine = 0.1;
 };
 
 struct PassTraffic { // bytes per covered pixel of the view

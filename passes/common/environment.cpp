@@ -202,8 +202,7 @@ PyramidUse pyramid_use(const Graph& graph, const PassTypeRegistry& pass_types) {
         [id = pass_types.find(type)](const PassDeclaration& pass) { return pass.type == id; });
   };
   const bool surface = has("subsurface.sap_gather") || has("subsurface.sap_up") ||
-                       has("subsurface.sap_gather_half") || has("subsurface.sap_gather_layered") ||
-                       has("subsurface.sap_up_layered") || has("subsurface.sap_coarse_up");
+                       has("subsurface.sap_gather_half") || has("subsurface.sap_coarse_up");
   return {surface, has("subsurface.pyramid_gather")};
 }
 

@@ -16,7 +16,8 @@ constexpr std::string_view light_doc =
     "r, g of the light (the other channels are in the image of the surface); in full storage rgb: "
     "light, a: fourth root of the surface's area divided by its cross-section";
 constexpr std::string_view surface_doc =
-    "depth in mm (bits of a float; sign: a second layer exists); slope x, y (halves); then bit by "
+    "depth in mm (bits of a float; sign: a second layer exists, or level 0 is next to another "
+    "surface); slope x, y (halves); then bit by "
     "bit: b of the light (half), fourth root of the surface's area divided by its cross-section "
     "(11 bits), fraction of the texel's kernel on its own surface (14 bits), factor on d (15 "
     "bits), "
@@ -40,11 +41,6 @@ constexpr PassTypeSetting variant = setting::choice(
     "tent filter. base: at levels 0 and 1; smooth: at every level, which hides the grid; "
     "half: at level 1, below subsurface.sap_gather_half",
     1);
-
-// Two layers at level 1 need a full first level, so `half` is not available.
-constexpr PassTypeSetting layered_variant = setting::choice(
-    "variant", std::span(variant_options).first(2),
-    "tent filter. base: at levels 0 and 1; smooth: at every level, which hides the grid", 1);
 
 constexpr std::string_view storage_options[] = {"half", "full"};
 constexpr PassTypeSetting storage = setting::choice(
@@ -112,7 +108,6 @@ constexpr PassTypeSetting setup_half_res_settings[] = {written_level(1), setting
 
 constexpr std::array finer{read_light("light", "image of the finer level"),
                            read_surface("surface", "image of the finer level")};
-constexpr auto down_ports = join(finer, level, coarse);
 constexpr PassTypeSetting down_settings[] = {written_level(), storage};
 
 // Ports of the second layer, for levels whose texels can have a second surface. Its images are
@@ -129,11 +124,10 @@ constexpr std::array this_level{read_light("light", "image of this level"),
                                 read_surface("surface", "image of this level")};
 constexpr std::string_view coarser_doc = "image of the coarser level; unbound at the last level";
 constexpr std::array coarser{port::optional(read_surface("coarse_surface", coarser_doc)),
-                             port::optional(read_surface("coarse_scattered", coarser_doc)),
-                             port::optional(second_coarse_surface),
-                             port::optional(second_coarse_scattered)};
+                             port::optional(read_surface("coarse_scattered", coarser_doc))};
+constexpr std::array second_coarser{port::optional(second_coarse_surface),
+                                    port::optional(second_coarse_scattered)};
 constexpr std::array up_result{written_surface("scattered", scattered_doc)};
-constexpr auto up_ports = join(this_level, coarser, level, up_result);
 constexpr PassTypeSetting up_settings[] = {written_level(), variant, storage};
 
 constexpr std::array level_0{read_light("light", "image of level 0"),
@@ -159,32 +153,28 @@ constexpr std::array last_results{
         "scattered light before albedo where 'unscattered' has alpha 0; unchanged elsewhere",
         light_formats))};
 constexpr std::string_view last_one_of[] = {"scattered", "lighting"};
-constexpr auto gather_ports = join(level_0, level_1, level, last_inputs, last_results);
+constexpr auto gather_ports =
+    join(level_0, level_1, second_coarser, level, last_inputs, last_results);
 constexpr PassTypeSetting gather_settings[] = {variant, storage, setting::texturing,
                                                setting::result};
 
 constexpr auto half_gather_ports = join(view, level_1, level, std::array{written_scattered});
 
-constexpr PassTypeSetting layered_gather_settings[] = {layered_variant, storage, setting::texturing,
-                                                       setting::result};
-
-constexpr std::string_view second_finer_doc =
-    "image of the second layer; unbound if the finer level has one layer";
-constexpr std::array second_finer{
-    port::where_flagged(port::optional(read_light("second_light", second_finer_doc))),
-    port::where_flagged(port::optional(read_surface("second_surface", second_finer_doc)))};
-constexpr auto layered_down_ports =
-    join(finer, second_finer, level, coarse,
+// Second layer of the finer level on the way down, and of the own level on the way up.
+constexpr std::string_view second_input_doc =
+    "image of the second layer; unbound if the level has one layer";
+constexpr std::array second_input{
+    port::optional(port::where_flagged(read_light("second_light", second_input_doc))),
+    port::optional(port::where_flagged(read_surface("second_surface", second_input_doc)))};
+constexpr auto down_ports =
+    join(finer, second_input, level, coarse,
          std::array{port::where_flagged(written_light("second_coarse_light", second_doc)),
                     port::where_flagged(written_surface("second_coarse_surface", second_doc))});
 
-constexpr std::array second_of_level{
-    port::where_flagged(read_light("second_light", second_doc)),
-    port::where_flagged(read_surface("second_surface", second_doc))};
-constexpr std::array second_up_result{
-    port::where_flagged(written_surface("second_scattered", second_doc))};
-constexpr auto layered_up_ports =
-    join(this_level, second_of_level, coarser, level, up_result, second_up_result);
+constexpr Port second_scattered =
+    port::where_flagged(written_surface("second_scattered", second_doc));
+constexpr auto up_ports = join(this_level, second_input, coarser, second_coarser, level, up_result,
+                               std::array{port::optional(second_scattered)});
 
 // Several levels in one dispatch.
 constexpr Format bits_formats[] = {Format::rgba32_uint};
@@ -193,7 +183,7 @@ constexpr std::string_view levels_doc =
     "levels from the first one on in array layers, four per level: surface, second surface, light, "
     "second light. Light is stored as bits: 4 halves in 2 words, or 4 floats in full storage";
 constexpr auto coarse_down_ports =
-    join(finer, second_finer, level,
+    join(finer, second_input, level,
          std::array{port::internally_ordered(Port{.name = "levels",
                                                   .usage = Usage::storage_image_write,
                                                   .glsl_type = "uimage2DArray",
@@ -211,21 +201,19 @@ constexpr PassTypeSetting coarse_down_settings[] = {
     storage};
 
 constexpr auto coarse_up_ports =
-    join(this_level, second_of_level,
+    join(this_level,
+         std::array{port::where_flagged(read_light("second_light", second_doc)),
+                    port::where_flagged(read_surface("second_surface", second_doc))},
          std::array{Port{.name = "levels",
                          .usage = Usage::sampled_image,
                          .glsl_type = "utexture2DArray",
                          .doc = "output of subsurface.sap_coarse_down from the next level on",
                          .formats = bits_formats}},
-         level, up_result, second_up_result);
+         level, up_result, std::array{second_scattered});
 constexpr PassTypeSetting coarse_up_settings[] = {
     setting::integer("level", first_of_levels - 1, first_of_levels - 1, sap_level_count - 2, "",
                      "level that the pass writes"),
     variant, storage};
-
-constexpr auto layered_gather_ports =
-    join(level_0, level_1, std::array{second_coarse_surface, second_coarse_scattered}, level,
-         last_inputs, last_results);
 
 } // namespace
 
@@ -247,29 +235,6 @@ const PassType sap_setup_type{
     .ports = setup_ports,
     .settings = setup_settings,
     .dispatch = over_tiles,
-};
-
-const PassType sap_down_type{
-    .name = "subsurface.sap_down",
-    .shader = "sap/subsurface_sap_down",
-    .doc = "Reduces one level of the pyramid along the surface; stops at depth steps and other "
-           "profiles.",
-    .ports = down_ports,
-    .settings = down_settings,
-    .dispatch = over_tiles,
-    .arguments_entry = "level",
-};
-
-const PassType sap_up_type{
-    .name = "subsurface.sap_up",
-    .shader = "sap/subsurface_sap_up",
-    .doc = "Blends one level of the pyramid with the coarser levels; if these have two layers, a "
-           "texel reads "
-           "the layer nearer to its surface.",
-    .ports = up_ports,
-    .settings = up_settings,
-    .dispatch = over_tiles,
-    .arguments_entry = "level",
 };
 
 const PassType sap_gather_type{
@@ -306,23 +271,26 @@ const PassType sap_gather_half_type{
     .dispatch = over_tiles,
 };
 
-const PassType sap_down_layered_type{
-    .name = "subsurface.sap_down_layered",
-    .shader = "sap/subsurface_sap_down_layered",
-    .doc = "Like subsurface.sap_down, with a second layer per texel for surfaces apart from the "
-           "first layer.",
-    .ports = layered_down_ports,
+const PassType sap_down_type{
+    .name = "subsurface.sap_down",
+    .shader = "sap/subsurface_sap_down",
+    .doc = "Reduces one level of the pyramid along the surface. A second layer per texel holds "
+           "surfaces "
+           "apart from the first layer, such as other profiles; at level 1 only next to pixels "
+           "that subsurface.sap_setup marks.",
+    .ports = down_ports,
     .settings = down_settings,
     .dispatch = over_tiles,
     .arguments_entry = "level",
 };
 
-const PassType sap_up_layered_type{
-    .name = "subsurface.sap_up_layered",
-    .shader = "sap/subsurface_sap_up_layered",
-    .doc = "Like subsurface.sap_up, for both layers: each layer reads the nearer layer of other "
-           "texels.",
-    .ports = layered_up_ports,
+const PassType sap_up_type{
+    .name = "subsurface.sap_up",
+    .shader = "sap/subsurface_sap_up",
+    .doc =
+        "Blends one level of the pyramid with the coarser levels: each of a texel's layers reads "
+        "the nearer layer of other texels.",
+    .ports = up_ports,
     .settings = up_settings,
     .dispatch = over_tiles,
     .arguments_entry = "level",
@@ -331,7 +299,7 @@ const PassType sap_up_layered_type{
 const PassType sap_coarse_down_type{
     .name = "subsurface.sap_coarse_down",
     .shader = "sap/subsurface_sap_coarse_down",
-    .doc = "Like subsurface.sap_down_layered, for all levels from one level on in one dispatch: a "
+    .doc = "Like subsurface.sap_down, for all levels from one level on in one dispatch: a "
            "group computes a tile of the first level, and a tile of the next level if it computed "
            "the last of its children.",
     .ports = coarse_down_ports,
@@ -344,23 +312,13 @@ const PassType sap_coarse_up_type{
     .name = "subsurface.sap_coarse_up",
     .shader = "sap/subsurface_sap_coarse_up",
     .doc =
-        "Like subsurface.sap_up_layered, for one level and all coarser levels in one dispatch: a "
+        "Like subsurface.sap_up, for one level and all coarser levels in one dispatch: a "
         "group also computes the texels of the coarser levels that its tile needs. These are not "
         "written.",
     .ports = coarse_up_ports,
     .settings = coarse_up_settings,
     .dispatch = over_tiles,
     .arguments_entry = "level",
-};
-
-const PassType sap_gather_layered_type{
-    .name = "subsurface.sap_gather_layered",
-    .shader = "sap/subsurface_sap_gather_layered",
-    .doc = "Like subsurface.sap_gather, with two layers at level 1.",
-    .ports = layered_gather_ports,
-    .settings = layered_gather_settings,
-    .dispatch = over_tiles,
-    .one_of = last_one_of,
 };
 
 } // namespace dermis::subsurface

@@ -19,6 +19,8 @@ const float sap_negligible = 1e-12;
 
 // exp(-x^2 / (2 width^2)) = exp2(factor * x^2)
 float sap_factor(float width) { return -0.5 * 1.44269504 / (width * width); }
+// The same as exp2(-(rate * x)^2), where the unit of x takes the rate.
+float sap_rate(float width) { return sqrt(0.5 * 1.44269504) / width; }
 // Returns the smaller absolute distance. A texel's distance from the surface is the smaller of its
 // distance from the tangent plane and its difference in depth.
 float sap_nearer(float a, float b) { return min(abs(a), abs(b)); }
@@ -42,7 +44,9 @@ struct sap_texel {
 // A texel is stored in two images without loss, 20 bytes in total. Its light has four channels: rgb
 // and the fourth root of the surface's area divided by its cross-section (a, from 1 to below 4).
 // The image `light` holds r and g as halves. The image `surface` holds, from the lowest bit:
-//   x: depth (float, not negative). Sign bit: the texel has a second layer
+//   x: depth (float, not negative). Sign bit: the texel has a second layer; at level 0, the pixel
+//      is next to another surface, and texels of level 1 that contain the pixel may have a second
+//      layer
 //   y: slope (halves)
 //   z: light.b (half, 16 bits), light.a (half minus the half 1, 11 bits), 5 low bits of the mass
 //   w: 9 high bits of the mass (a half below 2), reach (a half without its sign, 15 bits), profile

@@ -41,6 +41,7 @@ struct sap_parent {
   float spacing; // of the children, in pixels
   int base;   // texel shape: place of the first child in shared memory
   bool two;   // a child has two layers
+  bool splits; // the parent may have two layers
 };
 // Block shape: always true, because all children are in registers.
 bool has_second_children(sap_parent parent) { return parent.two || !texel_shape; }
@@ -52,6 +53,13 @@ int shared_child(int parent, int child) {
   return (2 * (parent / block_width) + child / children_across) * side +
          2 * (parent % block_width) + child % children_across;
 }
+
+// Returns whether texels of the finer level can have two layers.
+#ifdef SAP_BOX
+bool finer_has_layers() { return false; }
+#elif !defined(SAP_WINDOW)
+bool finer_has_layers() { return has_second_surface() && has_second_light(); }
+#endif
 
 #ifndef SAP_BOX
 #ifndef SAP_WINDOW
@@ -66,7 +74,7 @@ vec4 finer_light(ivec2 address, int finer, bool computed, uvec4 bits) {
 }
 #ifdef SAP_SECOND
 bool finer_has_second(uvec4 bits, bool computed) {
-  return sap_has_second(bits) && has_second_surface() && has_second_light();
+  return sap_has_second(bits) && finer_has_layers();
 }
 uvec4 second_finer_surface(ivec2 address, int finer, bool computed) {
   return texelFetch(second_surface_image, address, 0);
@@ -180,7 +188,8 @@ void read_block(texel_block block, ivec2 first, int finer) {
 // Prepares the children of parent k of the block.
 sap_parent take_parent(texel_block block, int k, int finer) {
   ivec2 offset = block_offset(k), in_tile = block.first - 8 * block.tile;
-  sap_parent parent = sap_parent(block.first - 1 + offset, finer, float(1 << finer), 0, false);
+  sap_parent parent =
+      sap_parent(block.first - 1 + offset, finer, float(1 << finer), 0, false, true);
   uint flags = 0u;
   if (texel_shape) {
     parent.base = place_in_tile(2 * in_tile.x, 2 * in_tile.y);
@@ -194,9 +203,8 @@ sap_parent take_parent(texel_block block, int k, int finer) {
       flags |= block_surface[i].x;
     }
   }
-#ifdef SAP_SECOND
   parent.two = finer_has_second(uvec4(flags), is_computed(finer));
-#endif
+  parent.splits = finer > 0 || sap_has_second(uvec4(flags));
   return parent;
 }
 #endif
@@ -425,9 +433,8 @@ void add_child(sap_parent parent, sap_texel seed, sap_texel before, int c, bool 
   vec4 tap = light_of(parent, c, second, child.id);
   float weight = flat_weight * narrowing * tap.a;
   sum.mass += flat_weight * narrowing;
-#ifdef SAP_SECOND
-  sum.area_mass += flat_weight * narrowing * sap_area_of(child.slope);
-#endif
+  if (finer_has_layers())
+    sum.area_mass += flat_weight * narrowing * sap_area_of(child.slope);
   sum.total += weight;
   sum.total_flat += flat_weight;
   sum.light += weight * tap.rgb;
@@ -437,7 +444,7 @@ void add_child(sap_parent parent, sap_texel seed, sap_texel before, int c, bool 
 }
 void add_children(sap_parent parent, int layers, sap_texel seed, sap_texel before,
                   inout reduction sum) {
-  if (texel_shape && max_layers > 1) { // small enough for the instruction cache
+  if (texel_shape && finer_has_layers()) { // small enough for the instruction cache
     [[dont_unroll]] for (int row = 0; row < 4; ++row)
       [[unroll]] for (int column = 0; column < 4; ++column)
         add_child(parent, seed, before, 4 * row + column, false, sum);
@@ -471,12 +478,10 @@ sap_layer reduce_to(sap_parent parent, int layers, sap_texel seed, sap_texel bef
     vec3 rounded =
         round_to_half(vec3(sum.mean_slope / sum.total_flat, sum.mean_reach / sum.total_flat));
     float mass = min(sum.mass / sum.all_weight, 1.0);
-#ifdef SAP_SECOND
-    if (parent.finer + 1 >= sap_first_area_level) {
+    if (finer_has_layers() && parent.finer + 1 >= sap_first_area_level) {
       float area = sap_area_of(sum.mean_slope / sum.total_flat);
       mass = min(sum.area_mass / (area * sum.all_weight), sap_max_mass);
     }
-#endif
     layer.bits = sap_pack(
         sap_texel(max(sum.mean_depth / sum.total_flat, nearest_fraction * seed.depth), rounded.xy,
                   rounded.z, round_to_half(mass), seed.id),

@@ -27,7 +27,7 @@ void compute_parent(sap_parent parent, int level) {
   if (!sap_inside(parent.at, level))
     return;
   sap_layer first = reduce(parent, max_layers, no_texel);
-  if (parent.two || first.remains) {
+  if (parent.two || first.remains && parent.splits) {
     sap_layer second = reduce(parent, max_layers, first.seed);
     if (second.bits.w != 0u) {
       first.bits.x |= sap_second_bit;

@@ -8,7 +8,6 @@
 // - Second layers need `second_light`, `second_surface`, `second_coarse_surface` and
 //   `second_coarse_scattered`. With two own layers a block is read with one layer, and texels that
 //   involve a second layer are read one by one.
-// - SAP_SECOND_MAY_LACK: the second layer of the coarser level is optional.
 #ifndef DERMIS_SAP_NEIGHBOURS_GLSL
 #define DERMIS_SAP_NEIGHBOURS_GLSL
 
@@ -55,15 +54,18 @@ uvec4 coarse_scattered[block_coarse_layers * coarse_texels];
 // Returns whether the second layer of a texel of the coarser level can be read.
 bool has_second_corner(uvec4 bits) {
 #if SAP_COARSE_LAYERS > 1
-  bool there = sap_has_second(bits);
-#ifdef SAP_SECOND_MAY_LACK
-  there = there && has_second_coarse_surface() && has_second_coarse_scattered();
-#endif
-  return there;
+  return sap_has_second(bits) && has_second_coarse_surface() && has_second_coarse_scattered();
 #else
   return false;
 #endif
 }
+
+#if SAP_OWN_LAYERS > 1
+// Returns whether the second layer of a texel of the level can be read.
+bool has_second_near(uvec4 bits) {
+  return sap_has_second(bits) && has_second_light() && has_second_surface();
+}
+#endif
 
 #ifndef SAP_NO_RING
 const int block_ring_width = block_width + 2, block_ring_height = block_height + 2;
@@ -116,20 +118,19 @@ void read_ring_of_tile(texel_block block, int level, bool with_ring) {
       tile_light[place[k]] = uvec2(packHalf2x16(light[k].rg), sap_light_ba(bits[k]));
     }
 #if SAP_OWN_LAYERS > 1
-  [[unroll]] for (int k = 0; k < 2; ++k) {
-    needed[k] = sap_has_second(bits[k]);
-    address[k] = mix(ivec2(0), address[k], bvec2(needed[k]));
-    bits[k] = texelFetch(second_surface_image, address[k], 0);
-    light[k] = texelFetch(second_light_image, address[k], 0);
-  }
-  [[unroll]] for (int k = 0; k < 2; ++k)
-    if (k == 0 || in_ring) {
-      bits[k] = mix(uvec4(0u), bits[k], bvec4(needed[k]));
-      light[k] = mix(vec4(0.0), light[k], bvec4(needed[k]));
-      tile_surface[ring_texels + place[k]] = bits[k];
-      tile_light[ring_texels + place[k]] =
-          uvec2(packHalf2x16(light[k].rg), sap_light_ba(bits[k]));
+  if (has_second_near(bits[0] | bits[1])) {
+    [[unroll]] for (int k = 0; k < 2; ++k) {
+      address[k] = mix(ivec2(0), address[k], bvec2(sap_has_second(bits[k])));
+      bits[k] = texelFetch(second_surface_image, address[k], 0);
+      light[k] = texelFetch(second_light_image, address[k], 0);
     }
+    [[unroll]] for (int k = 0; k < 2; ++k)
+      if (k == 0 || in_ring) {
+        tile_surface[ring_texels + place[k]] = bits[k];
+        tile_light[ring_texels + place[k]] =
+            uvec2(packHalf2x16(light[k].rg), sap_light_ba(bits[k]));
+      }
+  }
 #endif
 }
 // Reads the texels of the block or tile and, if requested, the ring around them.
@@ -258,7 +259,7 @@ void read_near(texel_block block, ivec2 place, int level, bool with_ring) {
     near_light[n] =
         sap_light(near_surface[n],
                   needed ? texelFetch(light_image, sap_address(at, level), 0) : vec4(0.0), full);
-    needed = needed && sap_has_second(near_surface[n]);
+    needed = needed && has_second_near(near_surface[n]);
     near_surface[near_texels + n] =
         needed ? texelFetch(second_surface_image, sap_address(at, level), 0) : uvec4(0u);
     near_light[near_texels + n] = sap_light(

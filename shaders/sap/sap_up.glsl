@@ -36,8 +36,8 @@ bool sap_takes_second(sap_texel own, sap_texel first, float first_off, sap_texel
 // Returns a 3x3 tent over the level's own light, over its first `layers` layers.
 sap_sum sap_tent(sap_place place, int level, sap_texel own, int layers) {
   float spacing = float(1 << level);
-  float per_sigma = 1.0 / (sap_sigma * spacing),
-        per_sigma_mm = per_sigma / sap_footprint(own.depth);
+  float per_sigma = 1.0 / (sap_sigma * spacing);
+  float off_unit = sap_rate(sap_depth_width) * per_sigma / sap_footprint(own.depth);
   // Tilt in units of the tent's width: across, down, and along both diagonals. The tilt is
   // symmetric to both sides.
   vec2 tilt = own.slope * (spacing * per_sigma);
@@ -57,7 +57,7 @@ sap_sum sap_tent(sap_place place, int level, sap_texel own, int layers) {
       vec4 light = light_near(place, level, n);
       float off = sap_off_plane(own, tap, offset);
 #if SAP_OWN_LAYERS > 1
-      if (layers > 1 && (!texel_shape || sap_has_second(bits))) {
+      if (layers > 1 && (!texel_shape || has_second_near(bits))) {
         sap_texel second = sap_unpack(second_near_bits(place, level, n));
         float second_off = sap_off_plane(own, second, offset);
         if (sap_takes_second(own, tap, off, second, second_off)) {
@@ -67,8 +67,8 @@ sap_sum sap_tent(sap_place place, int level, sap_texel own, int layers) {
         }
       }
 #endif
-      off *= per_sigma_mm;
-      weight *= exp2(sap_factor(sap_depth_width) * off * off) * (level == 0 ? 1.0 : tap.mass);
+      off *= off_unit;
+      weight *= exp2(-off * off) * (level == 0 ? 1.0 : tap.mass);
       weight = tap.id == own.id ? weight : 0.0;
       mass += weight;
       total += weight * light.a;
@@ -86,7 +86,8 @@ sap_sum sap_tent(sap_place place, int level, sap_texel own, int layers) {
 sap_sum sap_from_coarser(sap_place place, int level, sap_texel own, vec3 fallback, int layers,
                          out float confidence) {
   float spacing = float(1 << level);
-  float per_sigma_mm = 1.0 / (sap_sigma * spacing * sap_footprint(own.depth));
+  const float width = sap_depth_width;
+  float off_unit = sap_rate(width) / (sap_sigma * spacing * sap_footprint(own.depth));
   vec2 odd = vec2(place.odd), nearer = 0.25 + 0.5 * odd;
   vec3 sum = vec3(0.0), mass = vec3(0.0);
   confidence = 0.0;
@@ -113,8 +114,8 @@ sap_sum sap_from_coarser(sap_place place, int level, sap_texel own, vec3 fallbac
       }
       tap = sap_unpack(bits); // only the bits stay in registers across the branch
 #endif
-      off *= per_sigma_mm;
-      float kept = tap.id == own.id ? exp2(sap_factor(sap_depth_width) * off * off) : 0.0;
+      off *= off_unit;
+      float kept = tap.id == own.id ? exp2(-off * off) : 0.0;
       sap_scattered theirs = settings.storage == STORAGE_FULL
                                  ? sap_unpack_scattered_full(handed_down)
                                  : sap_unpack_scattered(handed_down);
@@ -123,8 +124,9 @@ sap_sum sap_from_coarser(sap_place place, int level, sap_texel own, vec3 fallbac
       sum += tap_mass * theirs.light;
       float depth_step = tap.depth - own.depth;
       float further = max(abs(depth_step - sap_rise(own.depth, own.slope, offset)),
-                          abs(depth_step - sap_rise(tap.depth, tap.slope, offset))) * per_sigma_mm;
-      float strictly = exp2(sap_factor(sap_confidence_width) * further * further);
+                          abs(depth_step - sap_rise(tap.depth, tap.slope, offset))) * off_unit;
+      float strictly = exp2(-further * further * (width * width) /
+                            (sap_confidence_width * sap_confidence_width));
       confidence += tap.id == own.id ? bilinear * strictly * theirs.confidence : 0.0;
     }
   vec3 found = vec3(greaterThan(mass, vec3(sap_negligible)));

@@ -9,7 +9,7 @@ void compute_layers(sap_place place, int level, bool smooth_level, bool last) {
   uvec4 first = near_bits(place, near_centre);
   sap_texel own = sap_unpack(first);
   vec3 light = light_near(place, level, near_centre).rgb;
-  int layer = 0, layers = sap_has_second(first) ? 2 : 1;
+  int layer = 0, layers = has_second_near(first) ? 2 : 1;
   [[dont_unroll]] do {
     uvec4 bits = uvec4(0u);
     if (own.id != 0u)

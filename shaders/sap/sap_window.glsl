@@ -193,6 +193,7 @@ vec4 light_near(sap_place place, int level, int n) { return layer_light(place, n
 uvec4 second_near_bits(sap_place place, int level, int n) { return layer_bits(place, n, 1); }
 vec4 second_light_near(sap_place place, int level, int n) { return layer_light(place, n, 1); }
 
+bool has_second_near(uvec4 bits) { return sap_has_second(bits); }
 bool has_second_corner(uvec4 bits) { return sap_has_second(bits); }
 int corner_place(sap_place place, int n) {
   return place.corner + n / 2 * (window_side(place.window + 1) + 2) + n % 2;

@@ -29,6 +29,7 @@ vec4 finer_light(ivec2 address, int finer, bool computed, uvec4 bits) {
     return light_from_bits(imageLoad(levels_image, written_place(address, finer, light_in_levels)));
   return sap_light(bits, texelFetch(light_image, address, 0), settings.storage == STORAGE_FULL);
 }
+bool finer_has_layers() { return true; }
 bool finer_has_second(uvec4 bits, bool computed) {
   return sap_has_second(bits) && (computed || has_second_surface() && has_second_light());
 }

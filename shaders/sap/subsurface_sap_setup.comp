@@ -1,6 +1,7 @@
 #version 460
 // Computes level 0 of the surface-aware pyramid: every pixel of listed tiles, 0 without subsurface.
-// Patches need material and depth of a ring around the block or tile.
+// Patches need material and depth of a ring around the block or tile. Marks the pixels next to
+// another surface.
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 #include "sap/subsurface_sap_setup.bindings.glsl"
@@ -51,6 +52,23 @@ void read_ring(texel_block block) {
   }
 }
 
+// Returns whether the pixel at `here` is next to another surface: one of another profile, or one
+// that is too far off in depth for a patch.
+bool is_at_edge(int here) {
+  uint id = profile_at(here);
+  float depth = depth_at(here);
+  vec2 max_step = max_patch_step(depth);
+  bool found = false;
+  [[unroll]] for (int i = 0; i < 4; ++i) {
+    bool along_row = i < 2;
+    int near = here + ((i & 1) == 0 ? -1 : 1) * (along_row ? 1 : ring_width);
+    bool apart = profile_at(near) != id ||
+                 abs(depth_at(near) - depth) > (along_row ? max_step.x : max_step.y);
+    found = found || depth_at(near) > 0.0 && apart;
+  }
+  return found;
+}
+
 void main() {
   texel_block block;
   if (!listed_block(0, block))
@@ -66,6 +84,7 @@ void main() {
     float depth = depth_at(here);
     vec4 light = vec4(0.0);
     uvec4 bits = uvec4(0u);
+    bool at_edge = false;
     if (id != 0u) {
       sap_texel own = sap_flat;
       light.rgb =
@@ -75,9 +94,11 @@ void main() {
             vec2(depth_of_profile(here - 1, id), depth_of_profile(here - ring_width, id)),
             vec2(depth_of_profile(here + 1, id), depth_of_profile(here + ring_width, id)));
         own = sap_pixel_surface(pixel, id, depth, around, light.a);
+        at_edge = is_at_edge(here);
       }
       light = sap_stored(light);
       bits = sap_pack(own, sap_pack_light(light, settings.storage == STORAGE_FULL));
+      bits.x |= at_edge ? sap_second_bit : 0u;
     }
     imageStore(light_image, texel, light);
     imageStore(surface_image, texel, bits);

@@ -56,7 +56,7 @@ void main() {
   else
     read_block(block, first);
   [[unroll]] for (int k = 0; k < block_texels; ++k) {
-    sap_parent parent = sap_parent(first + block_offset(k), 0, 1.0, 0, false);
+    sap_parent parent = sap_parent(first + block_offset(k), 0, 1.0, 0, false, false);
     if (!sap_inside(parent.at, 1))
       continue;
     [[unroll]] for (int c = 0; c < children_a_layer; ++c) {

@@ -9,7 +9,7 @@ namespace {
 constexpr DispatchRule whole_view{};
 constexpr DispatchRule listed{.name = "listed", .domain = DispatchRule::Domain::indirect};
 constexpr DispatchRule host{.name = "host", .domain = DispatchRule::Domain::host};
-constexpr TrafficAssumptions assumptions{.covered = 0.25, .flagged = 0.5};
+constexpr TrafficAssumptions assumptions{.covered = 0.25, .flagged = 0.5, .flagged_fine = 0.125};
 constexpr double tolerance = 1e-12; // sums of a few doubles near 1 to 100
 
 // A plan with one pass over a view of 64x64 pixels.
@@ -74,7 +74,15 @@ TEST_F(Traffic, PassesOverTheViewReadUncoveredPixels) {
   access(Usage::storage_image_write, image(Format::rgba16f, 64), Touched::flagged);
   const PassTraffic traffic = count(whole_view);
   EXPECT_NEAR(traffic.read, 1.0 / 0.25 + 4.0, tolerance);
-  EXPECT_NEAR(traffic.written, 8.0 * 0.5, tolerance);
+  EXPECT_NEAR(traffic.written, 8.0 * 0.125, tolerance);
+}
+
+TEST_F(Traffic, FlaggedTexels_DependOnTheResolution) {
+  access(Usage::sampled_image, image(Format::rgba16f, 32), Touched::flagged);
+  access(Usage::storage_image_write, image(Format::rgba16f, 31), Touched::flagged);
+  const PassTraffic traffic = count(listed);
+  EXPECT_NEAR(traffic.read, 8.0 / 4 * 0.125, tolerance);
+  EXPECT_NEAR(traffic.written, 8.0 * 31 * 31 / (64 * 64) * 0.5, tolerance);
 }
 
 TEST_F(Traffic, UpdatesCountInBothDirections) {

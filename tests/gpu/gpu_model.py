@@ -1,10 +1,12 @@
 #!/usr/bin/env python3
 """Models the time of techniques on GPUs from counts of instructions, bytes and dispatches.
 
-usage: gpu_model.py [--kernels FILE --assembly DIR] [--sensitivity]
+usage: gpu_model.py [--kernels FILE --assembly DIR] [--flagged FRACTION] [--sensitivity]
   --kernels      adds rows of graphs as they are built, whose bytes, occupancy and code size come from
                  `dermis kernels sap separable --unbound scattered_light,albedo,scatter_scale --json
                  --assembly DIR` on navi21; executed instructions are counted in DIR
+  --flagged      fraction of the tiles next to edges in a second row of each graph with two layers
+                 at level 1; default 0.2. In the first row no tile is next to an edge
   --sensitivity  also prints the totals with other latencies, cache misses and fixed costs
 
 No time was measured. Formulas, hardware rows and the assumed fractions of layered work stay fixed,
@@ -29,6 +31,9 @@ from gpu_counts import (AFIS, AFIS_BUILT, AFIS_MIP_DOWN, AFIS_MIP_SETUP, AFIS_PU
 COVERED = 0.5  # fraction of the view
 TILE_FILL = 0.95  # fraction of the pixels of listed tiles that are covered
 LAYERED_FRACTION = {2: 0.35, 3: 0.6, 4: 0.8}  # of subgroups by level; 1 from level 5 on
+# Subgroups of levels 0 and 1 with second layers, as multiples of the tiles next to edges: measured
+# on heads (docs/techniques.md).
+LAYERED_BY_FLAGGED = {0: 1.4, 1: 1.8}
 
 
 @dataclasses.dataclass
@@ -176,8 +181,11 @@ def lists_by_region(model):
     return model.wave(**LIST_REGION)["lat"] + coarse
 
 
-def layered_fraction(level):
-    return LAYERED_FRACTION.get(level, 1.0) if level >= 2 else 0.0
+def layered_fraction(level, flagged=0.0):
+    """Returns the fraction of subgroups with two layers. flagged: of the tiles, next to edges."""
+    if level >= 2:
+        return LAYERED_FRACTION.get(level, 1.0)
+    return min(1.0, LAYERED_BY_FLAGGED[level] * flagged)
 
 
 def mix(fast, slow, fraction):
@@ -284,16 +292,19 @@ def add_target(model):
     model.add(technique, "gather and combine", tiles[0], gather, n * (16 + 8 + 4 + 8))
 
 
-# How often the loops of a kernel run, in the order of the assembly, for subgroups with one layer;
-# those of layered kernels for subgroups with two. Loops over outer seeds are rare: 0, but the second
-# half of a group of sap_coarse_down searches the second layer of all texels.
-TRIPS = {"sap_setup": [2], "sap_down": [2, 0],
-         "sap_down_layered": [2, 4, 4, 0, 0, 4, 4, 4, 4, 0, 0, 4, 4],
-         "sap_down_layered second_surface=unbound": [2, 4, 0, 4, 4, 0, 4], "sap_up_layered": [2],
+# How often the loops of a kernel run, in the order of the assembly, for subgroups with two layers.
+# Loops over outer seeds are rare: 0, but the second half of a group of sap_coarse_down searches the
+# second layer of all texels. The children of the second pipeline of sap_down have one layer.
+TRIPS = {"sap_setup": [2], "sap_down": [2, 4, 4, 0, 0, 4, 4, 4, 4, 0, 0, 4, 4],
+         "sap_down second_surface=unbound": [2, 4, 0, 4, 0], "sap_up": [2],
          # four levels, one after another; a tile is read by one of two loops
          "sap_coarse_down": [1, 1, 4, 1, 1, 4, 4, 0, 0, 4, 4, 16, 16, 4, 4, 2, 1],
          "sap_coarse_up": [1, 2, 1, 1, 5, 1]}  # five levels
-ONE_LAYER = {"sap_down_layered": "sap_down", "sap_up_layered": "sap_up"}  # kernels of the same work
+# The same for subgroups with one layer. Their way down is that of level 1 at every level, without
+# the branch for the second layer.
+ONE_LAYER_TRIPS = {"sap_down": [2, 4, 0, 0, 0], "sap_up": [1], "sap_gather": []}
+# The way down to level 2 where the children have one layer.
+ONE_LAYER_CHILDREN_TRIPS = [2, 4, 0, 0, 0, 4, 0, 4, 0, 0, 0, 4, 0]
 COARSE_TILES = {"sap_coarse_down": 5, "sap_coarse_up": 4}  # the level whose tiles have a group each
 COARSE_SUBGROUPS = 2  # per group
 
@@ -310,12 +321,12 @@ class Built:
         self.graphs = {graph["graph"]: graph["passes"] for graph in report["graphs"]}
         self.assembly = pathlib.Path(assembly)
 
-    def one_layer_of(self, kernel):
-        """Returns the pipeline with the most code of a kernel, which computes one layer."""
-        rows = [row for row in self.rows.values() if row["kernel"].endswith("/subsurface_" + kernel)]
-        return max(rows, key=lambda row: row["values"]["code_bytes"])
+    def one_layer_of(self, row):
+        """Returns the pipeline of the row's kernel with the least code."""
+        rows = [one for one in self.rows.values() if one["kernel"] == row["kernel"]]
+        return min(rows, key=lambda row: row["values"]["code_bytes"])
 
-    def wave(self, model, row):
+    def wave(self, model, row, layers=2, children_layers=2):
         """Returns the clocks of a subgroup on its longest path. Image loads are taken as half 64 and
         half 128 bits. RADV counts occupancy in subgroups of 32."""
         kernel = short_name(row["kernel"])
@@ -324,7 +335,14 @@ class Built:
         values = row["values"]
         with open(self.assembly / row["assembly"], encoding="utf-8") as lines:
             blocks = instruction_mix.read_blocks(lines)
-        mix_of = instruction_mix.count(blocks, TRIPS[max(special, key=len)] if special else [], longest=True)
+        trips, skipped = TRIPS[max(special, key=len)] if special else [], set()
+        if children_layers == 1:
+            trips, skipped = ONE_LAYER_CHILDREN_TRIPS, instruction_mix.second_layer_blocks(blocks)
+        if layers == 1:
+            trips, skipped = ONE_LAYER_TRIPS[kernel], instruction_mix.second_layer_blocks(blocks)
+            if kernel == "sap_down":
+                skipped |= instruction_mix.largest_branch_blocks(blocks)
+        mix_of = instruction_mix.count(blocks, trips, skipped, longest=True)
         get = lambda kind: mix_of.get(kind, 0)
         return model.wave(valu=get("valu"), trans=get("transcendental"), qmul=get("quarter_rate"),
                           img=get("image_load") / 2, img128=get("image_load") / 2,
@@ -335,15 +353,16 @@ class Built:
                           scr=get("scratch_load") + get("scratch_store"))
 
 
-def add_built(model, technique, built, graph):
-    """The passes of a graph as they are built."""
+def add_built(model, technique, built, graph, flagged):
+    """The passes of a graph as they are built. flagged: the fraction of tiles next to edges."""
     for one in built.graphs[graph]:
         if not one["kernel"]:  # a clear of a small buffer, which nothing waits for at once
             continue
         kernel, row = short_name(one["kernel"]), built.rows[one["kernel"], one.get("constants", "")]
         bytes_moved = model.covered * (one["read"] + one["written"])
-        level = re.search(r"_(\d)$", one["pass"])
-        tiles = model.tiles[int(level.group(1)) if level else 0]
+        found = re.search(r"_(\d)$", one["pass"])
+        level = int(found.group(1)) if found else 0
+        tiles = model.tiles[level]
         if kernel == "classify":
             model.add(technique, one["pass"], model.view_tiles / 16, model.wave(**CLASSIFY),
                       bytes_moved)
@@ -355,15 +374,18 @@ def add_built(model, technique, built, graph):
             groups = model.tiles[COARSE_TILES[kernel]]
             model.add(technique, one["pass"], COARSE_SUBGROUPS * groups, built.wave(model, row),
                       bytes_moved)
-        elif kernel in ONE_LAYER:
-            wave = mix(built.wave(model, built.one_layer_of(ONE_LAYER[kernel])), built.wave(model, row),
-                       layered_fraction(int(level.group(1))))
+        elif kernel in ONE_LAYER_TRIPS:
+            both = built.wave(model, row)
+            if one["pass"] == "down_2":
+                both = mix(built.wave(model, row, children_layers=1), both, layered_fraction(1, flagged))
+            wave = mix(built.wave(model, built.one_layer_of(row), layers=1), both,
+                       layered_fraction(level, flagged))
             model.add(technique, one["pass"], tiles, wave, bytes_moved)
         else:
             model.add(technique, one["pass"], tiles, built.wave(model, row), bytes_moved)
 
 
-def run(hardware, factors=Factors(), width=2560, height=1440, built=None):
+def run(hardware, factors=Factors(), width=2560, height=1440, built=None, flagged=0.2):
     model = Model(hardware, factors, width, height)
     add_rivals(model)
     add_pyramid(model, "SAP shipped", BLOCKS, serial_sap_tiles(model))
@@ -373,7 +395,9 @@ def run(hardware, factors=Factors(), width=2560, height=1440, built=None):
                 layered=False)
     add_target(model)
     for graph in built.graphs if built else ():
-        add_built(model, f"{graph} as built", built, graph)
+        add_built(model, f"{graph} as built", built, graph, 0.0)
+        if any(short_name(one["kernel"]) == "sap_gather" for one in built.graphs[graph]):
+            add_built(model, f"{graph}, {flagged:.0%} flagged", built, graph, flagged)
     return model
 
 
@@ -406,6 +430,7 @@ def main():
     parser = argparse.ArgumentParser(usage=__doc__)
     parser.add_argument("--kernels")
     parser.add_argument("--assembly")
+    parser.add_argument("--flagged", type=float, default=0.2)
     parser.add_argument("--sensitivity", action="store_true")
     options = parser.parse_args()
     built = None
@@ -414,7 +439,8 @@ def main():
             built = Built(json.load(file), options.assembly)
     for hardware in (RX_6800, NVIDIA_LIKE, SMALL_RDNA2):
         for width, height in ((2560, 1440), (1920, 1080)):
-            print_model(run(hardware, width=width, height=height, built=built), width, height)
+            print_model(run(hardware, width=width, height=height, built=built,
+                            flagged=options.flagged), width, height)
     if options.sensitivity:
         print("\nsensitivity, RX 6800-class, 2560x1440: total ms")
         for name, factors in SENSITIVITY.items():

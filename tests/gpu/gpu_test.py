@@ -178,6 +178,27 @@ BB3:
         total = instruction_mix.count(blocks, [4], longest=True)
         self.assertEqual((total["transcendental"], total["valu"]), (4, 4 + 2))
 
+    def test_blocks_of_second_layers_are_found(self):
+        # The branch on a sign leaves out BB1; the branch over most instructions BB3.
+        blocks = instruction_mix.read_blocks("""
+BB0:
+\tv_cmpx_gt_i32_e32 0, v6                 ; 7d280c80
+\ts_cbranch_execz BB2                     ; bf880001
+BB1:
+\tv_exp_f32_e32 v0, v0                    ; 7e004b00
+BB2:
+\tv_cmpx_gt_i32_e32 7, v6                 ; 7d280c87
+\ts_cbranch_execz BB4                     ; bf880001
+BB3:
+\tv_add_f32_e32 v0, v1, v2                ; 06000501
+\tv_add_f32_e32 v0, v1, v2                ; 06000501
+BB4:
+\tv_add_f32_e32 v0, v1, v2                ; 06000501
+\ts_endpgm                                ; bf810000
+""".splitlines())
+        self.assertEqual(instruction_mix.second_layer_blocks(blocks), {1})
+        self.assertEqual(instruction_mix.largest_branch_blocks(blocks), {3})
+
 
 class WriteLimits(unittest.TestCase):
     def write_one_ray_query(self, *scratch):

@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
 """Counts the instructions that an invocation of a kernel executes, from the compiler's assembly.
 
-usage: instruction_mix.py [--trips N,N,...] [--skip BB3-BB7,BB9] [--longest] [--limit N]
-                          [--texels N] [--json] FILE
+usage: instruction_mix.py [--trips N,N,...] [--skip BB3-BB7,BB9] [--one-layer] [--longest]
+                          [--limit N] [--texels N] [--json] FILE
   FILE      assembly of RADV, from `dermis kernels --assembly DIR`
   --trips   how often each loop runs, in the order of their first blocks; default: once
   --skip    blocks that the counted path does not execute, as ranges of numbers in the file
+  --one-layer  leaves out what kernels of the pyramid only do for texels with a second layer
   --longest counts only the path with the most vector instructions: an upper limit that assumes
             nothing about branches. Both sides of a divergent branch are on one path
   --limit   exit code 1 if there are more vector instructions
@@ -54,6 +55,7 @@ class Block:
         self.counts = {}
         self.targets = []
         self.falls_through = True  # to the next block
+        self.tests_sign = False  # leaves invocations out whose value is not negative
 
 
 def read_blocks(lines):
@@ -79,6 +81,8 @@ def read_blocks(lines):
                 note_wait("memory_wait", re.search(r"vmcnt|loadcnt|samplecnt", line))
                 note_wait("shared_wait", re.search(r"lgkmcnt|dscnt|kmcnt", line))
             blocks[-1].targets += [int(n) for n in re.findall(r"BB(\d+)", instruction.group(2))]
+            if re.match(r"\s+v_cmpx_gt_i32\S*\s+0, v", line):
+                blocks[-1].tests_sign = True
             if instruction.group(1) in ("s_branch", "s_endpgm"):
                 blocks[-1].falls_through = False
     return blocks
@@ -105,6 +109,26 @@ def parse_ranges(text):
 
 def vector_of(counts):
     return sum(counts.get(kind, 0) for kind in VECTOR)
+
+
+def second_layer_blocks(blocks):
+    """Returns the numbers of the blocks that are left out where texels have no second layer. The
+    sign of a texel's depth says so, and kernels of the pyramid branch on no other sign."""
+    position = {block.number: i for i, block in enumerate(blocks)}
+    return {skipped.number for i, block in enumerate(blocks) if block.tests_sign
+            for target in block.targets for skipped in blocks[i + 1:position[target]]}
+
+
+def largest_branch_blocks(blocks):
+    """Returns the numbers of the blocks that the largest branch leaves out, by vector instructions.
+    Branches to the end of the kernel do not count."""
+    position = {block.number: i for i, block in enumerate(blocks)}
+    vectors = [vector_of(block.counts) for block in blocks]
+    regions = [(i + 1, position.get(target, 0)) for i, block in enumerate(blocks)
+               for target in block.targets]
+    first, last = max((one for one in regions if sum(vectors[one[1]:]) > 0),
+                      key=lambda one: sum(vectors[one[0]:one[1]]), default=(0, 0))
+    return {block.number for block in blocks[first:last]}
 
 
 def on_longest_path(blocks, weights):
@@ -160,6 +184,7 @@ def main():
     parser = argparse.ArgumentParser(usage=__doc__)
     parser.add_argument("--trips", default="")
     parser.add_argument("--skip", default="")
+    parser.add_argument("--one-layer", action="store_true")
     parser.add_argument("--longest", action="store_true")
     parser.add_argument("--limit", type=float)
     parser.add_argument("--texels", type=float, default=1)
@@ -172,7 +197,8 @@ def main():
     if not blocks:
         sys.exit(f"{options.file}: no blocks of instructions")
     trips = [float(trip) for trip in options.trips.split(",") if trip]
-    total = count(blocks, trips, parse_ranges(options.skip), options.texels, options.longest)
+    skipped = parse_ranges(options.skip) | (second_layer_blocks(blocks) if options.one_layer else set())
+    total = count(blocks, trips, skipped, options.texels, options.longest)
     if options.limit is not None and total["vector"] > options.limit:
         sys.exit(f"{options.file}: {total['vector']:.0f} vector instructions, "
                  f"limit {options.limit:.0f}")

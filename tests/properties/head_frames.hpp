@@ -47,7 +47,7 @@ protected:
   // Runs the pyramid's CPU implementation.
   static dermis::subsurface::SapResult<float> cpu_kernel(const dermis::tools::CapturedFrame& frame,
                                                          dermis::subsurface::SapVariant variant,
-                                                         uint32_t first_layered = 2);
+                                                         uint32_t first_layered = 1);
 
   void TearDown() override; // Fails on validation messages.
 

@@ -46,11 +46,10 @@ constexpr Bounds of_the_bust[] = {
     {{5.3, 5.4}, {5.7, 5.9}, 15.4, 48.5, 3.15, 0.27, 0.79, 0.20, 0.15, 0.3},
     {{1.85, 1.88}, {1.85, 1.92}, 3.1, 14, 1.1, 0.21, 0.93, 0.5, 0.1, 0.25}};
 
-// Regression bounds, too: ratios of two layers to one layer on the CPU implementation, from level 2
-// on (sap) and from level 1 on (sap_layered). The first bounds the whole picture's error where
-// layers gain nothing; the others bound errors at edges (measured 1.01; 0.88 and 0.77, the scan
-// from the side; 5 % more).
-constexpr double worst_of_two_layers = 1.06, edge_of_few = 0.92, edge_of_two_layers = 0.81;
+// Regression bounds, too: ratios of two layers to one layer on the CPU implementation. The first
+// bounds the whole picture's error where layers gain nothing; the other bounds errors at edges
+// (measured 1.01 and 0.77, the scan from the side; 5 % more).
+constexpr double worst_of_two_layers = 1.06, edge_of_two_layers = 0.81;
 // Stated for sap_residual in static scenes: close, profile, whole.
 constexpr double max_samples[] = {3, 1.6, 0.6};
 constexpr double to_seed = 1.05; // Stated: relative to 32 samples of afis as published.
@@ -123,9 +122,9 @@ TEST_P(OnAHead, TwoLayers_ReduceEdgeErrorsAndMatchTheCpu) {
   for (size_t i = 0; i < sizes().size(); ++i) {
     show(sizes()[i]);
     if (IsSkipped() || HasFatalFailure()) return;
-    const std::vector<float> device = scatter("sap_layered"),
-                             cpu = cpu_kernel(frame_, SapVariant::smooth, 1).light;
-    const properties::HeadErrors two = errors_of(device), few = errors_of(scatter("sap")),
+    const std::vector<float> device = scatter("sap"),
+                             cpu = cpu_kernel(frame_, SapVariant::smooth).light;
+    const properties::HeadErrors two = errors_of(device),
                                  one = errors_of(cpu_kernel(frame_, SapVariant::smooth,
                                                             dermis::subsurface::sap_level_count)
                                                      .light);
@@ -137,15 +136,11 @@ TEST_P(OnAHead, TwoLayers_ReduceEdgeErrorsAndMatchTheCpu) {
     RecordProperty("rmse_" + std::to_string(sizes()[i].width), std::to_string(two.rmse * 1e3));
     RecordProperty("edge_" + std::to_string(sizes()[i].width), std::to_string(two.edge * 1e3));
     RecordProperty("one_" + std::to_string(sizes()[i].width), std::to_string(one.rmse * 1e3));
-    RecordProperty("few_to_one_" + std::to_string(sizes()[i].width),
-                   std::to_string(few.rmse / one.rmse));
-    RecordProperty("few_edge_to_one_" + std::to_string(sizes()[i].width),
-                   std::to_string(few.edge / one.edge));
+    RecordProperty("edge_to_one_" + std::to_string(sizes()[i].width),
+                   std::to_string(two.edge / one.edge));
     EXPECT_LE(two.rmse, one.rmse * worst_of_two_layers);
-    EXPECT_LE(few.rmse, one.rmse * worst_of_two_layers);
     if (GetParam() % 3 != 1) continue; // Heads show surfaces behind each other from the side.
     EXPECT_LE(two.edge, one.edge * edge_of_two_layers);
-    EXPECT_LE(few.edge, one.edge * edge_of_few);
     if (i > 0) continue;
     const double separable = two.rmse / errors_of(scatter("separable", {{"taps", "25"}})).rmse;
     RecordProperty("to_separable", std::to_string(separable));

@@ -36,7 +36,6 @@ const Technique separable_25{"separable_25", "separable", {{"taps", "\"25\""}}};
 const Technique sap_base{"sap_base", "sap", {{"variant", "\"base\""}}};
 const Technique sap_smooth{"sap_smooth", "sap", {{"variant", "\"smooth\""}}};
 const Technique sap_half{"sap_half", "skin", {{"variant", "\"half\""}}};
-const Technique sap_layered{"sap_layered", "sap_layered", {}};
 
 // Filtered reads compute their weights from coordinates over the image's size, which round.
 const Technique pyramid{"pyramid", "pyramid", {}, 1e-3};
@@ -65,8 +64,8 @@ protected:
 
 INSTANTIATE_TEST_SUITE_P(Properties, EveryTechnique,
                          ::testing::Values(burley_64, separable_11, separable_17, separable_25,
-                                           sap_base, sap_smooth, sap_half, sap_layered, pyramid,
-                                           fixed_16, fixed_published, jimenez_17),
+                                           sap_base, sap_smooth, sap_half, pyramid, fixed_16,
+                                           fixed_published, jimenez_17),
                          [](const auto& one) { return std::string(one.param.name); });
 
 // All except the plain pyramid use profiles and depth.
@@ -74,8 +73,7 @@ class SurfaceTechnique : public EveryTechnique {};
 
 INSTANTIATE_TEST_SUITE_P(Properties, SurfaceTechnique,
                          ::testing::Values(burley_64, separable_11, separable_17, separable_25,
-                                           sap_base, sap_smooth, sap_half, sap_layered, fixed_16,
-                                           jimenez_17),
+                                           sap_base, sap_smooth, sap_half, fixed_16, jimenez_17),
                          [](const auto& one) { return std::string(one.param.name); });
 
 TEST_P(EveryTechnique, WhiteFurnaceStaysWhite) {

@@ -112,7 +112,6 @@ std::span<const PortNeed> needs_of(std::string_view kind) {
   if (kind == clear_type.name) return {};
   const bool step = kind == sap_setup_half_res_type.name || kind == sap_down_type.name ||
                     kind == sap_up_type.name || kind == pyramid_down_type.name ||
-                    kind == sap_down_layered_type.name || kind == sap_up_layered_type.name ||
                     kind == sap_coarse_down_type.name || kind == sap_coarse_up_type.name;
   return std::span(needs).first(step ? buffers : std::size(needs));
 }

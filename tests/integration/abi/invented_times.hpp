@@ -8,8 +8,8 @@ inline constexpr const char* invented_times =
     R"({ "dermis_calibration": 2, "device": "invented", "costs": [
   { "work": "subsurface.sap_up level=1 variant=smooth storage=half", "base_us": 1000, "group_us": 0, "spread": 0 },
   { "work": "subsurface.sap_up level=1 variant=base storage=half", "base_us": 500, "group_us": 0, "spread": 0 },
-  { "work": "subsurface.sap_up_layered level=2 variant=smooth storage=half", "base_us": 1000, "group_us": 0, "spread": 0 },
-  { "work": "subsurface.sap_up_layered level=2 variant=base storage=half", "base_us": 500, "group_us": 0, "spread": 0 },
+  { "work": "subsurface.sap_up level=2 variant=smooth storage=half", "base_us": 1000, "group_us": 0, "spread": 0 },
+  { "work": "subsurface.sap_up level=2 variant=base storage=half", "base_us": 500, "group_us": 0, "spread": 0 },
   { "work": "subsurface.separable axis=horizontal taps=25 kernel=fitted", "base_us": 1000, "group_us": 0, "spread": 0 },
   { "work": "subsurface.separable axis=horizontal taps=11 kernel=fitted", "base_us": 400, "group_us": 0, "spread": 0 },
   { "work": "subsurface.classify", "base_us": 100, "group_us": 0, "spread": 0 },
@@ -17,7 +17,7 @@ inline constexpr const char* invented_times =
   { "work": "subsurface.setup texturing=post", "base_us": 100, "group_us": 0, "spread": 0 },
   { "work": "subsurface.sap_setup texturing=post storage=half", "base_us": 100, "group_us": 0, "spread": 0 },
   { "work": "subsurface.sap_down level=1 storage=half", "base_us": 100, "group_us": 0, "spread": 0 },
-  { "work": "subsurface.sap_down_layered level=2 storage=half", "base_us": 100, "group_us": 0, "spread": 0 },
+  { "work": "subsurface.sap_down level=2 storage=half", "base_us": 100, "group_us": 0, "spread": 0 },
   { "work": "subsurface.sap_gather variant=smooth storage=half", "base_us": 100, "group_us": 0, "spread": 0 },
   { "work": "subsurface.combine texturing=post result=color", "base_us": 100, "group_us": 0, "spread": 0 } ] })";
 

@@ -29,10 +29,6 @@ const Case cases[] = {
      "demodulate",
      {"albedo", "scattered_light", "thickness", "back_lighting"},
      true},
-    {"two_layers",
-     "configs/graphs/papers/sap_layered.json",
-     "post",
-     {"albedo", "scatter_scale", "scattered_light"}},
 };
 
 float noise(uint32_t x, uint32_t y, uint32_t seed) {

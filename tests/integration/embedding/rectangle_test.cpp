@@ -84,8 +84,8 @@ TEST_P(Rectangles, NothingOutsideIsReadOrWritten) {
 INSTANTIATE_TEST_SUITE_P(, Rectangles,
                          ::testing::Values("burley", "afis", "afis_guided", "afis_published",
                                            "afis_seed", "fixed", "separable", "separable_jimenez",
-                                           "sap", "sap_layered", "sap_blend", "sap_residual",
-                                           "pyramid", "hybrid", "hybrid_afis_separable"),
+                                           "sap", "sap_blend", "sap_residual", "pyramid", "hybrid",
+                                           "hybrid_afis_separable"),
                          [](const auto& of) { return std::string(of.param); });
 
 } // namespace

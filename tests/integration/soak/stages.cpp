@@ -56,7 +56,6 @@ std::vector<StageDesc> soak_stages() {
        {{"samples", samples},
         {"min_contrast", {"0", "0.01", "4"}},
         {"taps", {"\"11\"", "\"25\""}}}},
-      {"layered", "sap_layered", {}, {{"variant", {"\"base\"", "\"smooth\""}}}},
       {"blended", "sap_blend", {}, {{"variant", {"\"base\"", "\"smooth\""}}}},
   };
 }

@@ -52,7 +52,7 @@ std::string images_of_levels(bool with_light) {
 std::string steps_down(const std::string& storage) {
   std::string text;
   for (int level = first; level <= last; ++level)
-    text += fmt::format(R"({{ "pass": "down_{0}", "type": "subsurface.sap_down_layered",
+    text += fmt::format(R"({{ "pass": "down_{0}", "type": "subsurface.sap_down",
 "read": {{ "light": "light_{1}", "surface": "surface_{1}", "second_light": "second_light_{1}",
           "second_surface": "second_surface_{1}", {2} }},
 "write": {{ "coarse_light": "light_{0}", "coarse_surface": "surface_{0}",
@@ -71,7 +71,7 @@ std::string steps_up(const std::string& storage, const std::string& variant) {
 "coarse_scattered": "scattered_{0}", "second_coarse_surface": "second_surface_{0}",
 "second_coarse_scattered": "second_scattered_{0}", )",
                                                             level + 1);
-    text += fmt::format(R"({{ "pass": "up_{0}", "type": "subsurface.sap_up_layered",
+    text += fmt::format(R"({{ "pass": "up_{0}", "type": "subsurface.sap_up",
 "read": {{ "light": "light_{0}", "surface": "surface_{0}", "second_light": "second_light_{0}",
           "second_surface": "second_surface_{0}", {1}{2} }},
 "write": {{ "scattered": "scattered_{0}", "second_scattered": "second_scattered_{0}" }},

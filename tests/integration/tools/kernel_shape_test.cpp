@@ -70,10 +70,6 @@ const ShapeCase shape_cases[] = {
      "configs/scenes/bust.json",
      "96x64",
      {"-g", "configs/graphs/sap.json", "--overlay", "configs/overlays/sap_full_precision.json"}},
-    {"layers_from_level_1",
-     "configs/scenes/bust.json",
-     "96x64",
-     {"-g", "configs/graphs/papers/sap_layered.json"}},
     {"hybrid", "configs/scenes/dynamic.json", "96x64", {"-g", "configs/graphs/papers/hybrid.json"}},
     {"residual",
      "configs/scenes/bust.json",
@@ -106,8 +102,7 @@ TEST_F(KernelShapes, BrokenTexelShape_ChangesOnlyPicturesForGpus) {
   const std::filesystem::path copy = path("shaders");
   std::filesystem::create_directories(path("."));
   std::filesystem::copy("shaders", copy, std::filesystem::copy_options::recursive);
-  const char* kernels[] = {"setup",      "down",   "down_layered",   "up",
-                           "up_layered", "gather", "setup_half_res", "gather_half"};
+  const char* kernels[] = {"setup", "down", "up", "gather", "setup_half_res", "gather_half"};
   for (const char* kernel : kernels) {
     SCOPED_TRACE(kernel);
     const std::string file = std::string("shaders/sap/subsurface_sap_") + kernel + ".comp";

@@ -204,7 +204,8 @@ void add_kernels_verb(CLI::App& app, Invocation& invocation) {
       "with\n"
       "the size of its format. Passes over a list touch the covered pixels, others the whole "
       "view;\n"
-      "images of second layers count with the flagged fraction. The sum is divided by the covered\n"
+      "images of second layers count with the flagged fractions. The sum is divided by the "
+      "covered\n"
       "pixels. Not counted: tables, counters, indirect arguments, passes of the host.\n\n"
       "A limits file names values by device, driver and kernel; docs/tools.md describes the "
       "format.",
@@ -227,6 +228,10 @@ void add_kernels_verb(CLI::App& app, Invocation& invocation) {
             ->type_name("FRACTION");
         verb.add_option("--flagged", options.assumptions.flagged,
                         "Fraction of texels that have a second layer [0.5]")
+            ->check(CLI::Range(0.0, 1.0))
+            ->type_name("FRACTION");
+        verb.add_option("--flagged-fine", options.assumptions.flagged_fine,
+                        "The same at half the view's resolution and finer [0.1]")
             ->check(CLI::Range(0.0, 1.0))
             ->type_name("FRACTION");
         verb.add_option("--assembly", options.assembly,

@@ -163,9 +163,10 @@ std::string kernels_as_text(const KernelSurvey& survey, const KernelsOptions& op
             "known.\n";
   text += fmt::format(
       "\nper frame at {}x{}; bytes per covered pixel, with {:g} of the view covered and {:g} "
-      "of the texels flagged\n\n{}",
+      "of the texels flagged ({:g} at half the view's resolution)\n\n{}",
       options.size.width, options.size.height, options.assumptions.covered,
-      options.assumptions.flagged, format_table(graph_table(survey)));
+      options.assumptions.flagged, options.assumptions.flagged_fine,
+      format_table(graph_table(survey)));
   for (const SkippedGraph& skipped : survey.skipped)
     text += fmt::format("{}: skipped, {}\n", skipped.graph, skipped.why);
   return text;
@@ -196,7 +197,8 @@ std::string kernels_as_json(const KernelSurvey& survey, const KernelsOptions& op
   json.member("statistics", survey.statistics);
   json.member("width", options.size.width).member("height", options.size.height);
   json.member("covered", options.assumptions.covered)
-      .member("flagged", options.assumptions.flagged);
+      .member("flagged", options.assumptions.flagged)
+      .member("flagged_fine", options.assumptions.flagged_fine);
   write_kernels(survey, json);
   write_graphs(survey, json);
   write_works(survey, json);

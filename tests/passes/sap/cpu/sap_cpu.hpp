@@ -9,9 +9,9 @@ namespace dermis::subsurface {
 
 struct SapOptions {
   SapVariant variant = SapVariant::smooth;
-  // The first level whose texels can have two surfaces: 2 (sap.json), 1 (sap_layered.json),
+  // The first level whose texels can have two surfaces: 1, or 2 for the variant `half`;
   // sap_level_count: none.
-  uint32_t first_layered = 2;
+  uint32_t first_layered = 1;
   unsigned threads = 0; // 0: one per hardware thread; the result does not depend on it.
 };
 

@@ -134,6 +134,23 @@ SapTexel<Real> reduce(const SapPyramid<Real>& pyramid, Children<Real>& children,
   return parent;
 }
 
+// Returns whether a pixel with a surface is next to another surface: one of another profile, or one
+// that is too far off in depth for a patch.
+bool is_at_edge(const ReferenceInput& input, const Surface& surface, size_t i) {
+  const double z = input.rays.perspective ? input.depth[i] : 1;
+  const auto apart = [&](size_t other, double scale) {
+    const double step = double(input.depth[other]) - double(input.depth[i]);
+    return surface.patches[other].area > 0 &&
+           (input.profile[other] != input.profile[i] ||
+            std::abs(step) > max_patch_slope * std::abs(scale) * z);
+  };
+  const size_t x = i % input.width, y = i / input.width;
+  return (x > 0 && apart(i - 1, input.rays.scale_x)) ||
+         (x + 1 < input.width && apart(i + 1, input.rays.scale_x)) ||
+         (y > 0 && apart(i - input.width, input.rays.scale_y)) ||
+         (y + 1 < input.height && apart(i + input.width, input.rays.scale_y));
+}
+
 template <class Real>
 SapTexel<Real> first_texel(const ReferenceInput& input, const Patch& patch, size_t i) {
   const double x = double(i % input.width), y = double(i / input.width);
@@ -169,8 +186,10 @@ SapPyramid<Real> build_sap_pyramid(const ReferenceInput& input, uint32_t first_l
                        .height = static_cast<int>(input.height)};
   level.layers[0].resize(surface.patches.size());
   parallel_for(level.layers[0].size(), 4096, threads, [&](size_t i) {
-    if (surface.patches[i].area > 0 && input.profile[i] < input.d_m.size())
+    if (surface.patches[i].area > 0 && input.profile[i] < input.d_m.size()) {
       level.layers[0][i] = first_texel<Real>(input, surface.patches[i], i);
+      level.layers[0][i].at_edge = is_at_edge(input, surface, i);
+    }
   });
   pyramid.levels.push_back(std::move(level));
   while (pyramid.levels.size() < sap_level_count) {
@@ -187,6 +206,7 @@ SapPyramid<Real> build_sap_pyramid(const ReferenceInput& input, uint32_t first_l
       const int y = static_cast<int>(row) - 1;
       for (int x = -1; x <= coarse.width; ++x) {
         Children<Real> children{.texels = {}, .left = {}, .spacing = fine.spacing};
+        bool splits = fine.spacing > 1; // The parent may have two layers.
         for (size_t k = 0; k < no_child; ++k) {
           const std::vector<SapTexel<Real>>& texels = fine.layers[k / children_a_layer];
           if (texels.empty()) continue;
@@ -199,8 +219,9 @@ SapPyramid<Real> build_sap_pyramid(const ReferenceInput& input, uint32_t first_l
           if (child.id == 0) continue;
           children.texels[k] = &child;
           children.left[k] = 1;
+          splits = splits || child.at_edge;
         }
-        for (size_t layer = 0; layer < layers; ++layer)
+        for (size_t layer = 0; layer < (splits ? layers : 1); ++layer)
           coarse.layers[layer][coarse.index(x, y)] = reduce(pyramid, children, mass_by_area);
       }
     });

@@ -51,6 +51,7 @@ template <class Real> struct SapTexel {
   Real reach = 0;                // Factor on d: cos^(1/8) to the viewer times the scatter scale.
   Real mass = 0;                 // Fraction of the texel's own kernel that met the surface.
   Real area = 0;                 // Fourth root of the surface's area over its cross-section.
+  bool at_edge = false;          // Level 0: next to another surface.
   std::array<Real, 3> light{};
   uint8_t id = 0; // Profile; 0: no surface.
 
@@ -101,7 +102,8 @@ template <class Real> struct SapPyramid {
   }
 };
 
-// Builds all levels; levels from `first_layered` (1 or more) have two layers per texel.
+// Builds all levels; levels from `first_layered` (1 or more) have two layers per texel. At level 1,
+// only texels with a child at an edge can have a second layer.
 // Deterministic for any number of threads. Real: float or double.
 template <class Real>
 SapPyramid<Real> build_sap_pyramid(const ReferenceInput& input, uint32_t first_layered,
