@@ -15,10 +15,11 @@ import sys
 
 TOP_LEVEL = ("framegraph", "passes", "shaders", "integration", "configs", "tests", "docs")
 CODE = {".cpp", ".hpp", ".h", ".c", ".comp", ".glsl", ".js", ".mjs"}
+SCRIPTS = {".sh", ".py", ".cmake"}
 HASH_COMMENTS = {".sh", ".py", ".cmake", ".txt", ".yml", ".md5"}
 JSON = {".json"}
 OPENERS = ("What", "Of", "Who", "Where", "Likewise")
-PROSE_COLUMNS, TABLE_COLUMNS = 100, 160
+LINE_COLUMNS, TABLE_COLUMNS = 100, 160
 
 
 def tracked(root):
@@ -48,8 +49,22 @@ def wide_markdown(text):
         elif line.lstrip().startswith("|"):
             if len(line) > TABLE_COLUMNS:
                 yield number, "table"
-        elif len(link.sub("]", line)) > PROSE_COLUMNS:
+        elif len(link.sub("]", line)) > LINE_COLUMNS:
             yield number, "prose"
+
+
+def wide_script(name, text):
+    """Yields the numbers of lines that are too wide in a script, a Python or a CMake file.
+
+    Lines that cannot be split are excepted: one word, or wide because of a URL.
+    """
+    path = pathlib.PurePath(name)
+    if not (SCRIPTS.intersection(path.suffixes) or path.name == "CMakeLists.txt"
+            or text.startswith("#!")):
+        return
+    for number, line in enumerate(text.splitlines(), 1):
+        if len(re.sub(r"https?://\S+", "", line)) > LINE_COLUMNS and " " in line.strip():
+            yield number
 
 
 def comments(name, text):
@@ -130,7 +145,7 @@ def main():
     documents = [name for name in names if name.endswith(".md")]
     print(f"lines of documents: {sum(lines[name] for name in documents)} in {len(documents)} files")
 
-    findings = {"prose": [], "table": [], "opener": [], "issue": []}
+    findings = {"prose": [], "table": [], "script": [], "opener": [], "issue": []}
     for name in documents:
         for number, kind in wide_markdown(texts[name]):
             findings[kind].append(f"{name}:{number}")
@@ -138,15 +153,18 @@ def main():
     for name, text in texts.items():
         if text is None:
             continue
+        findings["script"] += [f"{name}:{number}" for number in wide_script(name, text)]
         for number, comment in comments(name, text):
             if opener.match(comment):
                 findings["opener"].append(f"{name}:{number}: {comment}")
         for number, line in enumerate(text.splitlines(), 1):
             if re.search(r"\bissue [0-9]", line):
                 findings["issue"].append(f"{name}:{number}")
-    for kind, title in (("prose", f"Markdown lines over {PROSE_COLUMNS} columns "
+    for kind, title in (("prose", f"Markdown lines over {LINE_COLUMNS} columns "
                                   "outside tables, code and links"),
                         ("table", f"table rows over {TABLE_COLUMNS} columns"),
+                        ("script", f"lines over {LINE_COLUMNS} columns "
+                                   "in scripts, Python and CMake"),
                         ("opener", "comments that begin with " + ", ".join(OPENERS)),
                         ("issue", "mentions of an issue by number")):
         print(f"{title}: {len(findings[kind])} (goal 0)")

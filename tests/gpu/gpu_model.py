@@ -2,9 +2,9 @@
 """Models the time of techniques on GPUs from counts of instructions, bytes and dispatches.
 
 usage: gpu_model.py [--kernels FILE --assembly DIR] [--flagged FRACTION] [--sensitivity]
-  --kernels      adds rows of graphs as they are built, whose bytes, occupancy and code size come from
-                 `dermis kernels sap separable --unbound scattered_light,albedo,scatter_scale --json
-                 --assembly DIR` on navi21; executed instructions are counted in DIR
+  --kernels      adds rows of graphs as they are built, whose bytes, occupancy and code size come
+                 from `dermis kernels sap separable --unbound scattered_light,albedo,scatter_scale
+                 --json --assembly DIR` on navi21; executed instructions are counted in DIR
   --flagged      fraction of the tiles next to edges in a second row of each graph with two layers
                  at level 1; default 0.2. In the first row no tile is next to an edge
   --sensitivity  also prints the totals with other latencies, cache misses and fixed costs
@@ -327,8 +327,8 @@ class Built:
         return min(rows, key=lambda row: row["values"]["code_bytes"])
 
     def wave(self, model, row, layers=2, children_layers=2):
-        """Returns the clocks of a subgroup on its longest path. Image loads are taken as half 64 and
-        half 128 bits. RADV counts occupancy in subgroups of 32."""
+        """Returns the clocks of a subgroup on its longest path. Image loads are taken as half 64
+        and half 128 bits. RADV counts occupancy in subgroups of 32."""
         kernel = short_name(row["kernel"])
         special = [key for key in TRIPS if key.split()[0] == kernel
                    and set(key.split()[1:]) <= set(row.get("constants", "").split())]
@@ -377,7 +377,8 @@ def add_built(model, technique, built, graph, flagged):
         elif kernel in ONE_LAYER_TRIPS:
             both = built.wave(model, row)
             if one["pass"] == "down_2":
-                both = mix(built.wave(model, row, children_layers=1), both, layered_fraction(1, flagged))
+                both = mix(built.wave(model, row, children_layers=1), both,
+                           layered_fraction(1, flagged))
             wave = mix(built.wave(model, built.one_layer_of(row), layers=1), both,
                        layered_fraction(level, flagged))
             model.add(technique, one["pass"], tiles, wave, bytes_moved)

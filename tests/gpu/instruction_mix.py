@@ -197,7 +197,9 @@ def main():
     if not blocks:
         sys.exit(f"{options.file}: no blocks of instructions")
     trips = [float(trip) for trip in options.trips.split(",") if trip]
-    skipped = parse_ranges(options.skip) | (second_layer_blocks(blocks) if options.one_layer else set())
+    skipped = parse_ranges(options.skip)
+    if options.one_layer:
+        skipped |= second_layer_blocks(blocks)
     total = count(blocks, trips, skipped, options.texels, options.longest)
     if options.limit is not None and total["vector"] > options.limit:
         sys.exit(f"{options.file}: {total['vector']:.0f} vector instructions, "
