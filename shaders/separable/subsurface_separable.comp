@@ -39,6 +39,8 @@ struct scattering_pixel {
   float depth;       // mm
   float footprint;   // mm per pixel along the axis
   float d_px;        // of the widest channel, along the axis
+  // Root of the footprints' ratio, along the axis over across it: 1 if pixels are square.
+  float elongation;
   uint kernel;       // first row of its kernels
 };
 
@@ -97,6 +99,22 @@ vec3 normalised(tap_sums sums, vec3 own) {
   return mix(own, sums.light / max(sums.weight, vec3(1e-30)), greaterThan(sums.weight, vec3(0.0)));
 }
 
+// Completes the pass of an axis. The table has kernels of square pixels, whose delta depends on
+// the side. Here the delta is that of a square pixel of the same area, and the axis keeps the
+// kernel's projection on it. `own`, `light`: of the pixel, before this pass and before both passes.
+vec3 complete(scattering_pixel at, kernel_ends ends, vec3 own, vec3 light, vec3 result) {
+  vec3 centre = ends.centre;
+  if (at.elongation != 1.0 && settings.kernel == KERNEL_FITTED) {
+    kernel_place place = find_kernel(at.kernel, settings.taps, at.d_px * at.elongation);
+    vec3 mean_centre = kernel_row(place, place.side + 1).rgb;
+    vec3 fraction = (1.0 - centre) / max(1.0 - mean_centre, vec3(1e-6));
+    // Above 1, the fraction takes weight from the pixel itself, but not more than it has.
+    result = mix(own, result, min(fraction, 1.0 / max(1.0 - ends.own, vec3(1e-6))));
+    centre = mean_centre;
+  }
+  return is_vertical() ? mix(result, light, centre) : result;
+}
+
 // Scatters along the axis with the pixel's own kernel. `light`: before the horizontal pass.
 vec3 scatter_alone(scattering_pixel at, vec3 own, vec3 light) {
   kernel_place place = find_kernel(at.kernel, settings.taps, at.d_px);
@@ -106,8 +124,7 @@ vec3 scatter_alone(scattering_pixel at, vec3 own, vec3 light) {
     kernel_tap tap = find_tap(place, i, ends.core, at.footprint);
     add_read_tap(at, tap, ends.core, tap.offset, sums);
   }
-  vec3 result = normalised(sums, own);
-  return is_vertical() ? mix(result, light, ends.centre) : result;
+  return complete(at, ends, own, light, normalised(sums, own));
 }
 
 // Light and depth of the window, row by row; infinitely deep where another profile is visible.
@@ -202,8 +219,7 @@ vec3 scatter_in_window(scattering_pixel at, kernel_ends ends, vec3 own, vec3 lig
     kernel_tap tap = shared_tap(i);
     add_read_tap(at, tap, ends.core, tap.offset * stretch, sums);
   }
-  vec3 result = normalised(sums, own);
-  return is_vertical() ? mix(result, light, ends.centre) : result;
+  return complete(at, ends, own, light, normalised(sums, own));
 }
 
 void main() {
@@ -215,7 +231,7 @@ void main() {
   vec4 light = vec4(0.0), own = vec4(0.0);
   ivec2 ends_of_line = is_vertical() ? ivec2(pixel.y, frame.rect.w) : ivec2(pixel.x, frame.rect.z);
   scattering_pixel at = scattering_pixel(texel, ends_of_line.x, ends_of_line.y - 1 - ends_of_line.x,
-                                         0.0, 0.0, 1.0, 1.0, 0u);
+                                         0.0, 0.0, 1.0, 1.0, 1.0, 0u);
   bool scatters = false;
   if (listed) {
     light = texelFetch(light_image, texel, 0);
@@ -234,6 +250,7 @@ void main() {
       at.profile = light.a;
       at.depth = depth;
       at.footprint = is_vertical() ? footprints.y : footprints.x;
+      at.elongation = sqrt(at.footprint / (is_vertical() ? footprints.x : footprints.y));
       at.d_px = d / at.footprint;
       at.kernel = row + uint(settings.kernel * separable_rows_per_kernel);
       if (is_vertical())
