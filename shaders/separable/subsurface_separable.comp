@@ -20,6 +20,8 @@
 
 // Relative differences in d and in the footprint of pixels that may share a kernel.
 const float same_kernel = 0.03;
+// Pixels are square up to this difference of the root of their sides' ratio from 1.
+const float same_elongation = 0.001;
 const int reach = most_side_taps; // of dense taps
 const int window_length = 8 + 2 * reach;
 const int window_texels = 8 * window_length;
@@ -104,7 +106,7 @@ vec3 normalised(tap_sums sums, vec3 own) {
 // kernel's projection on it. `own`, `light`: of the pixel, before this pass and before both passes.
 vec3 complete(scattering_pixel at, kernel_ends ends, vec3 own, vec3 light, vec3 result) {
   vec3 centre = ends.centre;
-  if (at.elongation != 1.0 && settings.kernel == KERNEL_FITTED) {
+  if (abs(at.elongation - 1.0) > same_elongation && settings.kernel == KERNEL_FITTED) {
     kernel_place place = find_kernel(at.kernel, settings.taps, at.d_px * at.elongation);
     vec3 mean_centre = kernel_row(place, place.side + 1).rgb;
     vec3 fraction = (1.0 - centre) / max(1.0 - mean_centre, vec3(1e-6));
