@@ -63,18 +63,19 @@ constexpr PassTypeSetting blend_settings[] = {
     samples,
     setting::lod_bias(-1.5),
     setting::per_frame(
-        setting::real("below", 0.8, 0, 2, "", "confidence below which a pixel is sampled")),
-    setting::sample_weight,
+        setting::real("below", 0.93, 0, 2, "", "confidence below which a pixel is sampled")),
+    setting::sample_weight(0.1),
 };
 
 constexpr PassTypeSetting residual_settings[] = {
     samples,
     setting::lod_bias(-1.5),
     setting::per_frame(
-        setting::real("below", 0.988, 0, 2, "", "confidence below which a pixel is sampled")),
+        setting::real("below", 0.985, 0, 2, "", "confidence below which a pixel is sampled")),
     setting::per_frame(setting::real(
         "often_below", 0.85, 0, 2, "",
         "confidence below which a pixel is sampled in one of 4 frames instead of one of 16")),
+    setting::sample_weight(2),
     setting::per_frame(setting::real("alpha", 0.2, 0.01, 1, "",
                                      "minimum weight of new samples in the running ratio")),
     setting::integer("eager", 6, 0, 64, "times samples",

@@ -7,7 +7,7 @@ namespace dermis::subsurface {
 namespace {
 
 constexpr PassTypeSetting below = setting::per_frame(
-    setting::real("below", 0.8, 0, 2, "", "confidence below which a pixel may be sampled"));
+    setting::real("below", 0.93, 0, 2, "", "confidence below which a pixel may be sampled"));
 
 constexpr Format before_formats[] = {Format::rgba16f, Format::rgba32f, Format::rg16f};
 constexpr Port tile_error_ports[] = {
@@ -61,7 +61,7 @@ constexpr auto tile_refine_ports =
 constexpr PassTypeSetting tile_refine_settings[] = {
     setting::lod_bias(-1.5),
     below,
-    setting::sample_weight,
+    setting::sample_weight(0.1),
 };
 
 } // namespace

@@ -16,12 +16,13 @@ constexpr std::string_view light_doc =
     "r, g of the light (the other channels are in the image of the surface); in full storage rgb: "
     "light, a: fourth root of the surface's area divided by its cross-section";
 constexpr std::string_view surface_doc =
-    "depth in mm (bits of a float; sign: a second layer exists, or level 0 is next to another "
-    "surface); slope x, y (halves); then bit by "
-    "bit: b of the light (half), fourth root of the surface's area divided by its cross-section "
-    "(11 bits), fraction of the texel's kernel on its own surface (14 bits), factor on d (15 "
-    "bits), "
-    "profile id (8 bits; 0: no surface)";
+    "depth in mm (float; sign: a second layer exists, or level 0 is next to another surface; last "
+    "7 bits: fraction of the surface under "
+    "the texel that its layers represent); slope x, y (halves; last 4 bits of x: fraction of the "
+    "surface whose profile has no layer); then bit by bit: b of the light (half), fourth root of "
+    "the surface's area divided by its cross-section (10 bits), 0 (6 bits), fraction of the "
+    "texel's kernel on its own surface (11 bits), factor on d (13 bits), profile id (8 bits; 0: no "
+    "surface)";
 constexpr std::string_view scattered_doc =
     "scattered light of this level and coarser levels (3 halves), confidence (half), fraction of "
     "the kernel "

@@ -1,5 +1,5 @@
 #version 460
-// Replaces part of the pyramid's light by samples where confidence is low. Uses no history.
+// Blends samples into the pyramid's light where confidence is low. Uses no history.
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 #include "papers/subsurface_refine.bindings.glsl"
@@ -27,7 +27,8 @@ void main() {
       uvec2 offset = r2_point(offset_from_hash(pcg3d16(uvec3(pixel, 0u)).xy), frame.frame_index);
       vec3 sampled = sap_sampled_light(pixel, own, pixel_light_of_level_0(texel), offset,
                                        count, settings.lod_bias);
-      light.rgb = round_to_half(mix(light.rgb, sampled, settings.sample_weight));
+      float fraction = sample_fraction(light.a, float(count), settings.sample_weight);
+      light.rgb = round_to_half(mix(light.rgb, sampled, fraction));
     }
   }
   imageStore(blended_image, texel, light);

@@ -19,7 +19,6 @@ bool near_written(ivec2 at) { return class_of_tile(classes_data[sap_tile(at)]) !
 
 const float largest_kept = 8.0;  // maximum of a sampled ratio
 const float largest_ratio = 4.0; // maximum factor on light
-const float tile_error = 16.0;        // number of samples that weigh as much as the pyramid
 const float deviation_rate = 0.1;    // rate of the moving mean of the squared deviation
 const float max_squared_deviation =
     0.3; // maximum deviation of a logarithm that counts in this mean
@@ -123,8 +122,9 @@ void main() {
     }
     float pattern_agreement =
         first ? 1.0 : agreement_weight(pattern - kept.x, tolerance_of(all.b, kept.y), all.g);
-    light.rgb *= 1.0 + pattern_agreement * ratio.a / (ratio.a + tile_error) *
-                           (min(ratio.rgb, vec3(largest_ratio)) - 1.0);
+    float fraction = sample_fraction(light.a, ratio.a, settings.sample_weight);
+    light.rgb *=
+        1.0 + pattern_agreement * fraction * (min(ratio.rgb, vec3(largest_ratio)) - 1.0);
   }
   imageStore(refined_image, texel, round_to_half(light));
   imageStore(ratio_out_image, texel, round_to_half(ratio));

@@ -15,7 +15,9 @@ const float sap_depth_width = 2.0;      // distance from the tangent plane: stop
 const float sap_tilt_width_down = 1.0;
 const float sap_tilt_width_tent = 1.25;
 const float sap_confidence_width = 0.87; // distance from the farther plane
+const float sap_relevant_d = 6.0; // distance in d from which a missing surface does not matter
 const float sap_negligible = 1e-12;
+const float sap_max_reach = 65472.0; // largest reach that a texel can store
 
 // exp(-x^2 / (2 width^2)) = exp2(factor * x^2)
 float sap_factor(float width) { return -0.5 * 1.44269504 / (width * width); }
@@ -33,7 +35,7 @@ const float sap_max_mass = 1.5;
 float sap_area_of(vec2 slope) { return min(sqrt(1.0 + dot(slope, slope)), 2.0); }
 
 struct sap_texel {
-  float depth;  // mm
+  float depth;  // mm; its last bits are sap_held()
   vec2 slope;   // change of depth per pixel, in footprints
   float reach;  // factor on d: cos^(1/8) to the viewer times the scatter scale
   float mass;   // fraction of the texel's own kernel that hit the surface; on folds up to
@@ -41,40 +43,66 @@ struct sap_texel {
   uint id;      // profile, 0: no surface
 };
 
-// A texel is stored in two images without loss, 20 bytes in total. Its light has four channels: rgb
-// and the fourth root of the surface's area divided by its cross-section (a, from 1 to below 4).
-// The image `light` holds r and g as halves. The image `surface` holds, from the lowest bit:
-//   x: depth (float, not negative). Sign bit: the texel has a second layer; at level 0, the pixel
-//      is next to another surface, and texels of level 1 that contain the pixel may have a second
-//      layer
-//   y: slope (halves)
-//   z: light.b (half, 16 bits), light.a (half minus the half 1, 11 bits), 5 low bits of the mass
-//   w: 9 high bits of the mass (a half below 2), reach (a half without its sign, 15 bits), profile
-//      id (8 bits)
-// With the setting `storage` = full, `light` holds all four channels as floats; light.a in
-// `surface` is then sap_light_elsewhere.
+// A texel is stored in two images, 20 bytes in total. Its light has four channels: rgb and the
+// fourth root of the surface's area divided by its cross-section (a, from 1 to below 2). The image
+// `light` holds r and g as halves. The image `surface` holds, from the lowest bit:
+//   x: depth (float, not negative), whose last 7 bits are `held`: the fraction of the surface of
+//      this profile under the texel that one of its layers represents, or that is too far off to
+//      matter at the profile's d. Sign bit: the texel has a second layer; at level 0, the
+//      pixel is next to another surface, and texels of level 1 that contain the pixel may have a
+//      second layer
+//   y: slope (halves); the last 4 bits of slope.x are `lost`: the fraction of surface under the
+//      texel whose profile no layer has
+//   z: light.b (half, 16 bits), light.a (half minus the half 1, 10 bits), 6 bits 0
+//   w: mass (a half below 2 without its last 3 bits, 11 bits), reach (a half without its sign and
+//      its last 2 bits, 13 bits), profile id (8 bits)
+// Depth and slope.x are the nearest values that have these bits. With the setting `storage` = full,
+// `light` holds all four channels as floats; light.a in `surface` is then sap_light_elsewhere.
 const uint sap_second_bit = 0x80000000u;
-const uint sap_half_1 = 0x3c000000u, sap_light_elsewhere = 0x07ff0000u;
+const uint sap_half_1 = 0x3c000000u, sap_light_elsewhere = 0x03ff0000u;
+const uint sap_max_held = 127u, sap_max_lost = 15u;
 bool sap_has_second(uvec4 bits) { return (bits.x & sap_second_bit) != 0u; }
 
-// Returns `surface` of a texel with one layer. All values must be representable as halves.
+// Rounds the bits of a float to the nearest ones without the last `dropped`; ties to even.
+uint sap_drop_bits(uint bits, int dropped) {
+  return (bits + (1u << (dropped - 1)) - 1u + (bits >> dropped & 1u)) >> dropped;
+}
+// Returns the bits of the nearest float to `bits` whose last bits are `low`. `largest`: largest
+// value of these bits.
+uint sap_with_low_bits(uint bits, uint low, uint largest) {
+  return (max(bits, low) - low + (largest + 1u) / 2u & ~largest) | low;
+}
+// Replaces held and lost, in units of 1 / sap_max_held and 1 / sap_max_lost.
+uvec4 sap_with_held(uvec4 bits, uint held, uint lost) {
+  bits.x = sap_with_low_bits(bits.x & ~sap_second_bit, held, sap_max_held) |
+           bits.x & sap_second_bit;
+  bits.y = sap_with_low_bits(bits.y & 0x7fffu, lost, sap_max_lost) | bits.y & 0xffff8000u;
+  return bits;
+}
+// Returns `surface` of a texel with one layer, before sap_with_held(). Slope, mass and reach must
+// be representable as halves. `light`: result of sap_pack_light.
 uvec4 sap_pack(sap_texel t, uint light) {
-  uint halves = packHalf2x16(vec2(t.mass, t.reach)), mass = halves & 0x3fffu;
-  return uvec4(floatBitsToUint(t.depth), packHalf2x16(t.slope), light | mass << 27,
-               mass >> 5 | (halves >> 16) << 9 | t.id << 24);
+  uint halves = packHalf2x16(vec2(t.mass, min(t.reach, sap_max_reach)));
+  return uvec4(floatBitsToUint(t.depth), packHalf2x16(t.slope), light,
+               max(sap_drop_bits(halves & 0xffffu, 3), 1u) | sap_drop_bits(halves >> 16, 2) << 11 |
+                   t.id << 24);
 }
 // Returns the part of `surface` that holds light; `storage`: value of the setting.
 uint sap_pack_light(vec4 light, bool full) {
   return full ? sap_light_elsewhere : packHalf2x16(vec2(light.b, max(light.a, 1.0))) - sap_half_1;
 }
+// Returns `held` in units of 1 / sap_max_held.
+uint sap_held(sap_texel t) { return floatBitsToUint(t.depth) & sap_max_held; }
+float sap_not_held(sap_texel t) { return 1.0 - float(sap_held(t)) / float(sap_max_held); }
+float sap_lost(uvec4 bits) { return float(bits.y & sap_max_lost) / float(sap_max_lost); }
 sap_texel sap_unpack(uvec4 bits) {
-  float mass = unpackHalf2x16(bits.z >> 27 | (bits.w & 0x1ffu) << 5).x;
-  float reach = unpackHalf2x16(bits.w >> 9 & 0x7fffu).x;
+  float mass = unpackHalf2x16((bits.w & 0x7ffu) << 3).x;
+  float reach = unpackHalf2x16(bits.w >> 9 & 0x7ffcu).x;
   return sap_texel(abs(uintBitsToFloat(bits.x)), unpackHalf2x16(bits.y), reach, mass,
                    bits.w >> 24);
 }
 // Returns light.b and light.a as halves, from `surface`.
-uint sap_light_ba(uvec4 bits) { return (bits.z & 0x07ffffffu) + sap_half_1; }
+uint sap_light_ba(uvec4 bits) { return bits.z & 0x03ffffffu | sap_half_1; }
 // Returns the light of a texel from `surface` and its texel of `light`.
 vec4 sap_light(uvec4 bits, vec4 stored, bool full) {
   return full ? stored : vec4(stored.rg, unpackHalf2x16(sap_light_ba(bits)));
@@ -90,7 +118,8 @@ const sap_texel sap_flat = sap_texel(0.0, vec2(0.0), 0.0, 1.0, 0u);
 bool sap_has_subsurface(sap_texel t) { return t.mass > 0.0; }
 
 // Values that a level passes to the finer one: light of its own and coarser levels, the fraction of
-// the kernel that hit the surface, and confidence.
+// the kernel that hit the surface, and confidence: the fraction of the surface around that the
+// levels represent.
 struct sap_scattered {
   vec3 light;
   float confidence;
@@ -141,6 +170,14 @@ float sap_off_planes(sap_texel own, sap_texel tap, vec2 offset) {
   return sap_nearer(sap_off_plane(own, tap, offset),
                     tap.depth - own.depth - sap_rise(tap.depth, tap.slope, offset));
 }
+// Returns 1 / the distance in sigmas of a level from which a surface does not matter to a texel.
+float sap_per_relevant(sap_texel own, float spacing) {
+  float d = max(profiles[min(own.id, 255u)].d_mm.a * own.reach, 1e-6);
+  return sap_sigma * spacing * sap_footprint(own.depth) / (sap_relevant_d * d);
+}
+// Returns how much a surface matters at a distance in units of that one.
+float sap_relevance(float off) { return clamp(1.0 - off, 0.0, 1.0); }
+
 ivec2 sap_level_size(int level) { return (sap_view_size + (1 << level) - 1) >> level; }
 // Levels from 1 on have a border of one texel; level 0 has the layout of the view.
 // Returns whether a texel that is not in front of the level is inside it.

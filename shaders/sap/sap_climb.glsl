@@ -13,20 +13,24 @@ const float min_fraction = 0.004; // the tent is not worth its time for a smalle
 uvec4 climb(sap_place place, int level, sap_texel own, vec3 light, int layers, bool smooth_level,
             bool last) {
   vec3 fraction = last ? vec3(1.0) : sap_lookup(own.id, settings.variant, level + 1, sap_d_px(own));
-  sap_sum here = sap_sum(light, vec3(own.mass));
-  if (smooth_level && max(fraction.r, max(fraction.g, fraction.b)) >= min_fraction)
-    here = sap_tent(place, level, own, layers);
-  float confidence = 0.0;
-  sap_sum rest = sap_sum(here.light, vec3(0.0));
+  float mass = own.mass; // of all channels
+  if (smooth_level && max(fraction.r, max(fraction.g, fraction.b)) >= min_fraction) {
+    sap_sum tent = sap_tent(place, level, own, layers);
+    light = tent.light;
+    mass = tent.mass.r;
+  }
+  float confidence = 1.0; // without coarser levels nothing is missing in them
+  sap_sum rest = sap_sum(light, vec3(0.0));
   if (!last)
-    rest = sap_from_coarser(place, level, own, here.light, layers, confidence);
+    rest = sap_from_coarser(place, level, own, light, layers, confidence);
   rest.mass *= max(1.0 - fraction, vec3(0.0));
-  sap_sum blend = sap_blend(fraction * here.mass, here.light, vec3(0.0), here.light, rest);
+  sap_sum blend = sap_blend(fraction * mass, light, vec3(0.0), light, rest);
   float widest = fraction[profiles[min(own.id, 255u)].widest];
-  float sure = mix(confidence, min(here.mass.r, 1.0), widest);
+  confidence = mix(confidence, 1.0 - sap_not_held(own), widest);
   return settings.storage == STORAGE_FULL
-             ? sap_pack_scattered_full(sap_scattered(blend.light, sure, blend.mass))
-             : sap_pack_scattered(sap_scattered(round_to_half(blend.light), round_to_half(sure),
+             ? sap_pack_scattered_full(sap_scattered(blend.light, confidence, blend.mass))
+             : sap_pack_scattered(sap_scattered(round_to_half(blend.light),
+                                                round_to_half(confidence),
                                                 round_to_half(blend.mass)));
 }
 

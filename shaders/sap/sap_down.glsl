@@ -280,132 +280,48 @@ float at_parent(sap_texel child, vec2 offset) {
              nearest_fraction * child.depth);
 }
 
-// Returns the fraction of a child that lies on the surface of a seed. `depth_step` receives the
-// difference of their depths in sigmas.
+// Returns the fraction of a child of a seed's profile that lies on the surface of the seed.
+// `depth_step` and `off` receive the difference of their depths and the child's distance from the
+// surface in sigmas.
 float kept_of(sap_texel seed, sap_texel child, vec2 offset, float per_sigma_mm,
-              out float depth_step) {
+              out float depth_step, out float off) {
   depth_step = (child.depth - seed.depth) * per_sigma_mm;
-  float off =
+  off =
       sap_nearer(depth_step - sap_rise(seed.depth, seed.slope, offset) * per_sigma_mm, depth_step);
-  return child.id == seed.id ? exp2(sap_factor(sap_depth_width) * off * off) : 0.0;
+  return exp2(sap_factor(sap_depth_width) * off * off);
 }
 // Returns the fraction of a child that the layer with seed `before` has not used; 1 without such a
-// layer (id 0).
-float left_of(sap_texel before, sap_texel child, vec2 offset, float spacing) {
+// layer (id 0). `off` receives the child's distance from that layer in its sigmas.
+float left_of(sap_texel before, sap_texel child, vec2 offset, float spacing, out float off) {
+  off = 0.0;
   if (!texel_shape && before.id == 0u)
     return 1.0;
   float depth_step, per_sigma = 1.0 / (sap_sigma * spacing);
   float per_sigma_mm = per_sigma / sap_footprint(before.depth);
-  float left = 1.0 - kept_of(before, child, offset, per_sigma_mm, depth_step);
-  return before.id == 0u ? 1.0 : left;
+  float left = 1.0 - kept_of(before, child, offset, per_sigma_mm, depth_step, off);
+  return before.id == 0u || before.id != child.id ? 1.0 : left;
 }
 bool may_seed(sap_parent parent, sap_texel before, sap_texel child, int c) {
-  return child.id != 0u &&
-         left_of(before, child, offset_of(c, parent.spacing), parent.spacing) >= min_seed_part;
+  float off, left = left_of(before, child, offset_of(c, parent.spacing), parent.spacing, off);
+  return child.id != 0u && left >= min_seed_part;
 }
 
-// Returns the central child: 0 to 3 of the first layer, 4 to 7 of the second.
-int central(int i) {
-#ifdef SAP_BOX
-  return i;
-#else
-  return 5 + (i & 1) + 4 * (i >> 1 & 1);
-#endif
-}
+#include "sap/sap_seed.glsl"
 
-struct seed_search {
-  sap_texel best;
-  float maximum;
-  int child;
+// Sums over the children of a layer's profile: weight, and weight times what the parent holds.
+struct holding {
+  float same, held;
 };
-void consider_outer(sap_parent parent, sap_texel before, int c, bool second,
-                    inout seed_search found) {
-  sap_texel child = child_of(parent, c, second);
-  float weight = may_seed(parent, before, child, c) ? binomial(c) * child.mass : 0.0;
-  if (weight > hysteresis * found.maximum)
-    found = seed_search(child, weight, c);
+// `part`: weight of the child; `left`: its fraction that no layer has used; `off`: its distance
+// from the layer, as sap_relevance() expects.
+void add_holding(sap_texel child, float part, float left, float off, inout holding sum) {
+  float lost = left * sap_relevance(off);
+  sum.same += part;
+  float held = float(sap_held(child));
+  sum.held += part * (held - held * lost);
 }
-
-// Returns the support of a seed's plane by central child b.
-float support_of(sap_parent parent, sap_texel seed, sap_texel near, bool may, int b,
-                 float per_sigma_mm) {
-  float off = sap_off_plane(seed, near, offset_of(central(b), parent.spacing)) * per_sigma_mm;
-  return near.id == seed.id && may ? exp2(sap_factor(sap_depth_width) * off * off) : 0.0;
-}
-// Compares the plane of central child c with the best one so far. `near` and `may`: the central
-// children, and whether each can be a seed.
-void consider_central(sap_parent parent, int layers, sap_texel near[4 * max_layers],
-                      bool may[4 * max_layers], sap_texel seed, bool may_be_seed, int c,
-                      inout seed_search found) {
-  seed.depth = at_parent(seed, offset_of(c, parent.spacing));
-  float per_sigma_mm = 1.0 / (sap_sigma * parent.spacing * sap_footprint(seed.depth)),
-        support = 0.0;
-  [[unroll]] for (int b = 0; b < 4; ++b)
-    support += support_of(parent, seed, near[b], may[b], b, per_sigma_mm);
-  if (layers > 1 && has_second_children(parent))
-    [[unroll]] for (int b = 4; b < 4 * max_layers; ++b)
-      support += support_of(parent, seed, near[b], may[b], b, per_sigma_mm);
-  if (may_be_seed && (found.best.id == 0u || support > hysteresis * found.maximum)) {
-    found.best = seed;
-    found.maximum = support;
-  }
-}
-
-// Returns the child whose plane has the most support among the central children; without a central
-// child, the outer child with the largest weight. Its depth is the depth of its plane at the
-// parent; id 0 means no child.
-sap_texel find_seed(sap_parent parent, int layers, sap_texel before) {
-  sap_texel near[4 * max_layers];
-  bool may[4 * max_layers];
-  [[unroll]] for (int b = 0; b < 4; ++b) {
-    near[b] = child_of(parent, central(b), false);
-    may[b] = may_seed(parent, before, near[b], central(b));
-  }
-  if (layers > 1) {
-    [[unroll]] for (int b = 4; b < 4 * max_layers; ++b) {
-      near[b] = no_texel;
-      may[b] = false;
-    }
-    if (has_second_children(parent)) {
-      [[unroll]] for (int b = 4; b < 4 * max_layers; ++b)
-        near[b] = child_of(parent, central(b), true);
-      [[unroll]] for (int b = 4; b < 4 * max_layers; ++b)
-        may[b] = may_seed(parent, before, near[b], central(b));
-    }
-  }
-  seed_search found = seed_search(no_texel, 0.0, 0);
-  if (texel_shape && layers > 1) { // small enough for the instruction cache
-    [[dont_unroll]] for (int a = 0; a < 4; ++a) {
-      sap_texel seed = child_of(parent, central(a), false);
-      bool may_be_seed = may_seed(parent, before, seed, central(a));
-      consider_central(parent, layers, near, may, seed, may_be_seed, central(a), found);
-    }
-    if (parent.two)
-      [[dont_unroll]] for (int a = 0; a < 4; ++a) {
-        sap_texel seed = child_of(parent, central(a), true);
-        bool may_be_seed = may_seed(parent, before, seed, central(a));
-        consider_central(parent, layers, near, may, seed, may_be_seed, central(a), found);
-      }
-  } else {
-    [[unroll]] for (int a = 0; a < 4 * layers; ++a)
-      consider_central(parent, layers, near, may, near[a], may[a], central(a), found);
-  }
-#ifndef SAP_BOX
-  if (found.best.id != 0u)
-    return found.best;
-  if (texel_shape) {
-    [[dont_unroll]] for (int c = 0; c < children_a_layer; ++c)
-      consider_outer(parent, before, c, false, found);
-    if (layers > 1 && parent.two)
-      [[dont_unroll]] for (int c = 0; c < children_a_layer; ++c)
-        consider_outer(parent, before, c, true, found);
-  } else {
-    [[unroll]] for (int c = 0; c < layers * children_a_layer; ++c)
-      consider_outer(parent, before, c % children_a_layer, c >= children_a_layer, found);
-  }
-  found.best.depth = at_parent(found.best, offset_of(found.child, parent.spacing));
-#endif
-  return found.best;
+uint held_of(holding sum) {
+  return sum.same > 0.0 ? min(uint(sum.held / sum.same + 0.5), sap_max_held) : sap_max_held;
 }
 
 // Sums over the children on the surface of a seed.
@@ -414,22 +330,41 @@ struct reduction {
   vec2 mean_slope;
   vec3 light;
   bool remains; // a child can be the seed of another layer
+  holding own, before; // of this layer and of the layer before
+  float all; // weights of the children
 };
-void add_child(sap_parent parent, sap_texel seed, sap_texel before, int c, bool second,
+// A layer's seed and, for sap_relevance(), 1 / the relevant distance in sigmas.
+struct sap_seed {
+  sap_texel texel;
+  float per_relevant;
+};
+// Returns the sum of the weights of children that all lie on the seed's plane. Opposite children
+// have equal weights.
+float full_weight(sap_texel seed, float spacing) {
+  float sum = 0.0;
+  [[unroll]] for (int c = 0; c < children_a_layer / 2; ++c) {
+    float tilt = dot(seed.slope, offset_of(c, spacing)) / (sap_sigma * spacing);
+    sum += 2.0 * binomial(c) * exp2(sap_factor(sap_tilt_width_down) * tilt * tilt);
+  }
+  return sum;
+}
+void add_child(sap_parent parent, sap_seed own, sap_seed before, int c, bool second,
                inout reduction sum) {
-  sap_texel child = child_of(parent, c, second);
+  sap_texel child = child_of(parent, c, second), seed = own.texel;
   float spacing = parent.spacing;
   float per_sigma = 1.0 / (sap_sigma * spacing),
         per_sigma_mm = per_sigma / sap_footprint(seed.depth);
   vec2 offset = offset_of(c, spacing);
   float tilt = dot(seed.slope, offset) * per_sigma;
-  if (!second)
-    sum.all_weight += binomial(c) * exp2(sap_factor(sap_tilt_width_down) * tilt * tilt);
-  float depth_step, kept = kept_of(seed, child, offset, per_sigma_mm, depth_step);
+  float depth_step, off, off_before;
+  float kept = kept_of(seed, child, offset, per_sigma_mm, depth_step, off);
   float along = sap_nearer(tilt, depth_step);
   float narrowing = exp2(sap_factor(sap_tilt_width_down) * along * along);
-  float flat_weight = binomial(c) * kept * child.mass * left_of(before, child, offset, spacing);
-  sum.remains = sum.remains || child.id != 0u && 1.0 - kept >= min_seed_part;
+  float left = left_of(before.texel, child, offset, spacing, off_before);
+  bool same = child.id == seed.id;
+  float part = binomial(c) * child.mass, own_part = same ? part : 0.0;
+  float flat_weight = own_part * kept * left;
+  sum.remains = sum.remains || child.id != 0u && !(same && 1.0 - kept < min_seed_part);
   vec4 tap = light_of(parent, c, second, child.id);
   float weight = flat_weight * narrowing * tap.a;
   sum.mass += flat_weight * narrowing;
@@ -441,8 +376,13 @@ void add_child(sap_parent parent, sap_texel seed, sap_texel before, int c, bool 
   sum.mean_depth += flat_weight * (child.depth - sap_rise(child.depth, child.slope, offset));
   sum.mean_slope += flat_weight * child.slope;
   sum.mean_reach += flat_weight * child.reach;
+  sum.all += part;
+  add_holding(child, own_part, left - left * kept, off * own.per_relevant, sum.own);
+  if (before.texel.id != 0u)
+    add_holding(child, child.id == before.texel.id ? part : 0.0, same ? left - left * kept : left,
+                off_before * before.per_relevant, sum.before);
 }
-void add_children(sap_parent parent, int layers, sap_texel seed, sap_texel before,
+void add_children(sap_parent parent, int layers, sap_seed seed, sap_seed before,
                   inout reduction sum) {
   if (texel_shape && finer_has_layers()) { // small enough for the instruction cache
     [[dont_unroll]] for (int row = 0; row < 4; ++row)
@@ -463,16 +403,24 @@ struct sap_layer {
   uvec4 bits;    // of the surface; 0 if nothing is left for the layer
   sap_texel seed;
   bool remains;  // a child can be the seed of another layer
+  uint held_before; // held of the layer before, now that this one exists
 };
+const sap_layer no_layer = sap_layer(vec4(0.0), uvec4(0u), no_texel, false, 0u);
 // Computes the layer of the parent that has the seed `seed` and follows the layer with seed
 // `before` (id 0: the first one), from `layers` layers of children.
 sap_layer reduce_to(sap_parent parent, int layers, sap_texel seed, sap_texel before) {
-  sap_layer layer = sap_layer(vec4(0.0), uvec4(0u), seed, false);
+  sap_layer layer = no_layer;
+  layer.seed = seed;
   if (seed.id == 0u)
     return layer;
-  reduction sum = reduction(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, vec2(0.0), vec3(0.0), false);
-  add_children(parent, layers, seed, before, sum);
+  const holding nothing = holding(0.0, 0.0);
+  reduction sum = reduction(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, vec2(0.0), vec3(0.0), false,
+                            nothing, nothing, 0.0);
+  sum.all_weight = full_weight(seed, parent.spacing);
+  add_children(parent, layers, sap_seed(seed, sap_per_relevant(seed, parent.spacing)),
+               sap_seed(before, sap_per_relevant(before, parent.spacing)), sum);
   layer.remains = sum.remains;
+  layer.held_before = held_of(sum.before);
   if (sum.total > sap_negligible) {
     layer.light = sap_stored(vec4(sum.light / sum.total, sum.total / sum.mass));
     vec3 rounded =
@@ -482,10 +430,14 @@ sap_layer reduce_to(sap_parent parent, int layers, sap_texel seed, sap_texel bef
       float area = sap_area_of(sum.mean_slope / sum.total_flat);
       mass = min(sum.area_mass / (area * sum.all_weight), sap_max_mass);
     }
-    layer.bits = sap_pack(
-        sap_texel(max(sum.mean_depth / sum.total_flat, nearest_fraction * seed.depth), rounded.xy,
-                  rounded.z, round_to_half(mass), seed.id),
-        sap_pack_light(layer.light, settings.storage == STORAGE_FULL));
+    sap_texel texel = sap_texel(max(sum.mean_depth / sum.total_flat, nearest_fraction * seed.depth),
+                                rounded.xy, rounded.z, round_to_half(mass), seed.id);
+    // Profiles without a layer.
+    float of_layers = sum.own.same + (before.id != seed.id ? sum.before.same : 0.0);
+    float lost = max(1.0 - of_layers / max(sum.all, sap_negligible), 0.0);
+    layer.bits = sap_pack(texel, sap_pack_light(layer.light, settings.storage == STORAGE_FULL));
+    layer.bits =
+        sap_with_held(layer.bits, held_of(sum.own), uint(lost * float(sap_max_lost) + 0.5));
   }
   return layer;
 }

@@ -23,8 +23,7 @@ vec4 gather(sap_place place, sap_texel own, vec4 centre_light) {
   sap_sum rest = sap_from_coarser(place, 0, own, light, SAP_COARSE_LAYERS, confidence);
   rest.mass *= max(1.0 - centre - tent, vec3(0.0));
   uint widest = profiles[min(own.id, 255u)].widest;
-  confidence =
-      mix(confidence, 1.0, centre[widest] + tent[widest]) - tent[widest] * (1.0 - near.mass.r);
+  confidence = mix(confidence, 1.0, centre[widest] + tent[widest]); // level 0 misses nothing
   // Light that never scatters needs no surface around.
   vec3 direct = profile_direct(own.id);
   vec3 mean = sap_blend(max(centre - direct, vec3(0.0)), light, tent * near.mass,

@@ -19,7 +19,7 @@ sap_texel sap_pixel_surface(ivec2 pixel, uint id, float depth, patch_neighbours 
                     ? clean_scatter_scale(texelFetch(scatter_scale_image, texel_of(pixel), 0).r)
                     : 1.0;
   area_root = sqrt(sqrt(patch_here.area));
-  float reach = min(inversesqrt(area_root) * scale, largest_half);
+  float reach = min(inversesqrt(area_root) * scale, sap_max_reach);
   return sap_texel(depth,
                    round_to_half(vec3(patch_here.slope * sides / sap_footprint(depth), 0.0)).xy,
                    round_to_half(reach), 1.0, id);

@@ -15,6 +15,17 @@ const int last_sample_level = 5;
 // Maximum distance of a texel from the sample's tangent plane, in sigmas of the level.
 const float on_surface = 2.0;
 
+// Maximum odds of 16 samples against the pyramid's light. Confidence does not say by how much the
+// pyramid is wrong, and on folds under fine patterns of light samples are as noisy.
+const float max_sample_odds = 0.3;
+// Returns the weight of the mean of `count` samples in a blend with the pyramid's light, from the
+// variances of both: the pyramid's is taken as proportional to the confidence that it lacks, that
+// of the samples as inverse to their number. `ratio`: odds of 16 samples at a confidence of 0.
+float sample_fraction(float confidence, float count, float ratio) {
+  float odds = min(ratio * max(1.0 - confidence, 0.0), max_sample_odds) * count / 16.0;
+  return odds / (1.0 + odds);
+}
+
 uvec4 level_surface(int level, ivec2 at) {
   switch (level) {
   case 1: return texelFetch(surface_1_image, at, 0);

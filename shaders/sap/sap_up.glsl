@@ -58,14 +58,16 @@ sap_sum sap_tent(sap_place place, int level, sap_texel own, int layers) {
       float off = sap_off_plane(own, tap, offset);
 #if SAP_OWN_LAYERS > 1
       if (layers > 1 && (!texel_shape || has_second_near(bits))) {
-        sap_texel second = sap_unpack(second_near_bits(place, level, n));
+        uvec4 second_bits = second_near_bits(place, level, n);
+        sap_texel second = sap_unpack(second_bits);
         float second_off = sap_off_plane(own, second, offset);
         if (sap_takes_second(own, tap, off, second, second_off)) {
-          tap = second;
+          bits = second_bits;
           light = second_light_near(place, level, n);
           off = second_off;
         }
       }
+      tap = sap_unpack(bits);
 #endif
       off *= off_unit;
       weight *= exp2(-off * off) * (level == 0 ? 1.0 : tap.mass);
@@ -80,9 +82,11 @@ sap_sum sap_tent(sap_place place, int level, sap_texel own, int layers) {
 #endif
 
 // Interpolates bilinearly, along the surface, over the four nearest texels of the coarser level and
-// their first `layers` layers, at the texel at `place`. `confidence` receives the fraction
-// that remains with stricter weights, which use the farther tangent plane: each texel must lie on
-// the plane of the other.
+// their first `layers` layers, at the texel at `place`. `confidence` receives the fraction of the
+// surface around that the coarser levels represent. A texel counts fully if each of both lies on
+// the plane of the other. Else it is as good as lost, unless the surface of the texel is so far off
+// that it does not matter here and no other one was merged into it. Where no surface is, nothing is
+// lost.
 sap_sum sap_from_coarser(sap_place place, int level, sap_texel own, vec3 fallback, int layers,
                          out float confidence) {
   float spacing = float(1 << level);
@@ -90,6 +94,7 @@ sap_sum sap_from_coarser(sap_place place, int level, sap_texel own, vec3 fallbac
   float off_unit = sap_rate(width) / (sap_sigma * spacing * sap_footprint(own.depth));
   vec2 odd = vec2(place.odd), nearer = 0.25 + 0.5 * odd;
   vec3 sum = vec3(0.0), mass = vec3(0.0);
+  float existing = 0.0, per_relevant = sap_per_relevant(own, spacing) / sap_rate(width);
   confidence = 0.0;
   [[unroll]] for (int j = 0; j < 2; ++j)
     [[unroll]] for (int i = 0; i < 2; ++i) {
@@ -127,8 +132,12 @@ sap_sum sap_from_coarser(sap_place place, int level, sap_texel own, vec3 fallbac
                           abs(depth_step - sap_rise(tap.depth, tap.slope, offset))) * off_unit;
       float strictly = exp2(-further * further * (width * width) /
                             (sap_confidence_width * sap_confidence_width));
-      confidence += tap.id == own.id ? bilinear * strictly * theirs.confidence : 0.0;
+      bool same = tap.id == own.id;
+      float lost = (1.0 - strictly) * max(sap_relevance(off * per_relevant), sap_not_held(tap));
+      confidence += same ? bilinear * (1.0 - lost) * theirs.confidence : 0.0;
+      existing += bilinear * (same ? 1.0 : sap_lost(bits));
     }
+  confidence = existing > 1e-6 ? confidence / existing : 1.0;
   vec3 found = vec3(greaterThan(mass, vec3(sap_negligible)));
   return sap_sum(mix(fallback, sum / max(mass, vec3(sap_negligible)), found), mass);
 }

@@ -108,13 +108,13 @@ void compute_tile(uvec2 entry, int level) {
 
 // GPUs: an invocation computes one layer of a texel. A second layer needs only the seed of the
 // first, so both halves of the group compute at once.
-shared uint second_layers[2]; // bit i: texel i of the tile has a second layer
+shared uint changes[64]; // by texel of the tile: change_of_first, 0 without a second layer
 void compute_layers_of_tile(uvec2 entry, int level) {
   int part = int(gl_LocalInvocationIndex & 63u);
   bool second = gl_LocalInvocationIndex > 63u;
   sap_parent parent = take_parent(block_of_entry(entry, part), 0, level - 1);
   bool inside = sap_inside(parent.at, level);
-  sap_layer layer = sap_layer(vec4(0.0), uvec4(0u), no_texel, false);
+  sap_layer layer = no_layer;
   if (inside) {
     sap_texel before = no_texel, seed = find_seed(parent, max_layers, no_texel);
     if (second) {
@@ -122,15 +122,16 @@ void compute_layers_of_tile(uvec2 entry, int level) {
       seed = find_seed(parent, max_layers, before);
     }
     layer = reduce_to(parent, max_layers, seed, before);
+    if (second)
+      changes[part] = layer.bits.w != 0u ? change_of_first(layer) : 0u;
     if (second && layer.bits.w != 0u) {
-      atomicOr(second_layers[part >> 5], 1u << uint(part & 31));
       store_layer(parent, level, true, layer);
     }
   }
   barrier();
   if (inside && !second) {
-    if ((second_layers[part >> 5] >> uint(part & 31) & 1u) != 0u)
-      layer.bits.x |= sap_second_bit;
+    if (changes[part] != 0u)
+      layer.bits = with_second(layer.bits, changes[part]);
     store_layer(parent, level, false, layer);
   }
 }
@@ -140,10 +141,8 @@ void compute_pending() {
   [[dont_unroll]] while (pending_count > 0u) {
     uvec3 next = pending[pending_count - 1u];
     barrier();
-    if (gl_LocalInvocationIndex == 0u) {
+    if (gl_LocalInvocationIndex == 0u)
       --pending_count;
-      second_layers = uint[](0u, 0u);
-    }
     int level = int(next.z);
     texel_block block = block_of_entry(next.xy, 0);
     if (is_computed(level - 1))

@@ -98,6 +98,7 @@ void main() {
       }
       light = sap_stored(light);
       bits = sap_pack(own, sap_pack_light(light, settings.storage == STORAGE_FULL));
+      bits = sap_with_held(bits, own.id != 0u ? sap_max_held : 0u, 0u);
       bits.x |= at_edge ? sap_second_bit : 0u;
     }
     imageStore(light_image, texel, light);

@@ -32,6 +32,8 @@ void compute_child(ivec2 pixel, ivec2 place, out sap_texel child, out vec4 light
   light = vec4(0.0);
   if (profile_at(i) != 0u && depth_at(i) > 0.0) {
     child = surface_at(pixel, place, light.a);
+    uint bits = sap_with_low_bits(floatBitsToUint(child.depth), sap_max_held, sap_max_held);
+    child.depth = uintBitsToFloat(bits); // a pixel represents its whole surface
     light.rgb = pixel_light(lighting_image, albedo_image, has_albedo(), settings.texturing,
                             texel_of(pixel));
   }

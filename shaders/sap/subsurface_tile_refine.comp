@@ -15,8 +15,6 @@ bool near_written(ivec2 at) { return class_of_tile(classes_data[sap_tile(at)]) !
 #include "common/tile_edges.glsl"
 
 const float ramp_px = 4.0; // half a tile
-// Range of confidence below `below` over which the weight rises from 0 to 1.
-const float soft = 0.2;
 
 void main() {
   ivec2 pixel;
@@ -36,8 +34,8 @@ void main() {
     int at = edge_tile(tile, i);
     sampled_tiles |= has_samples(classes_data[at], samples_per_tile_data[at]) ? 1u << uint(i) : 0u;
   }
-  float fraction = settings.sample_weight * edge_weight(sampled_tiles, pixel, ramp_px) *
-                   clamp((settings.below - light.a) / soft, 0.0, 1.0);
+  float fraction = edge_weight(sampled_tiles, pixel, ramp_px) *
+                   sample_fraction(light.a, float(count), settings.sample_weight);
   uvec2 offset = r2_point(offset_from_hash(pcg3d16(uvec3(pixel, 0u)).xy), frame.frame_index);
   vec3 sampled = sap_sampled_light(pixel, own, pixel_light_of_level_0(texel), offset, count,
                                    settings.lod_bias);

@@ -86,7 +86,7 @@ void HeadTest::show(const HeadFraming& framing, uint32_t width, uint32_t height,
   const std::string scene =
       root() + (framing.scan ? "/configs/scenes/head_study.json" : "/configs/scenes/bust.json");
   auto subject = render_subject(
-      {"head", framing.name, scene, framing.camera, {}, framing.scan, false}, options);
+      {"head", framing.name, {}, scene, framing.camera, {}, framing.scan, false}, options);
   ASSERT_TRUE(subject) << subject.error().text;
   frame_ = subject.take().frame;
   Session quiet;

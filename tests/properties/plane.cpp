@@ -99,7 +99,7 @@ void run_frames(const std::string& graph, const Plane& plane, const Settings& se
   request.formats = {{"lighting", VK_FORMAT_R32G32B32A32_SFLOAT},
                      {"depth", VK_FORMAT_R32_SFLOAT},
                      {"scattered_light", VK_FORMAT_R32G32B32A32_SFLOAT}};
-  request.unbound = {"albedo", "velocity"};
+  request.unbound = {"albedo", "velocity", "importance"};
   if (plane.scatter_scale)
     request.formats.emplace_back("scatter_scale", VK_FORMAT_R32_SFLOAT);
   else

@@ -89,7 +89,7 @@ struct Taa : properties::DeviceTest {
 };
 
 TEST_F(Taa, CameraAtRest_RefinedBeatsEightSamples) {
-  judge(true, 3.2); // Regression bound: measured 3.6 dB.
+  judge(true, 1.5); // Regression bound: measured 2.1 dB.
 }
 
 TEST_F(Taa, SubpixelPan_RefinedBeatsEightSamples) {

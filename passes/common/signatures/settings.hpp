@@ -82,7 +82,11 @@ inline constexpr std::string_view weighting_options[] = {"sampler", "profile"};
 inline constexpr std::string_view direct_options[] = {"inscribed", "circumscribed", "none"};
 
 // Refinement by samples where the confidence of a pyramid is below a threshold.
-inline constexpr PassTypeSetting sample_weight =
-    per_frame(real("sample_weight", 0.5, 0, 1, "", "weight of the samples in the result"));
+constexpr PassTypeSetting sample_weight(double standard) {
+  return per_frame(real(
+      "sample_weight", standard, 0, 16, "",
+      "weight of 16 samples relative to the pyramid's light where the confidence is 0; falls in "
+      "proportion to the confidence that is missing, and to the samples"));
+}
 
 } // namespace dermis::subsurface::setting

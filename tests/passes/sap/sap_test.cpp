@@ -336,15 +336,5 @@ TEST(Sap, ThreadCountsAndPrecisionsAgree) {
     ASSERT_NEAR(one[i], exact[i], 1e-5); // Nine levels of fp32 means.
 }
 
-TEST(Sap, ConfidenceFallsAtSurfaceBoundaries) {
-  Scene scene(128, 96, {6, 6, 6});
-  for (uint32_t y = 0; y < 96; ++y)
-    for (uint32_t x = 64; x < 128; ++x)
-      scene.depth[y * 128 + x] = 1.0f;
-  const auto confidence = sap_scatter<float>(scene.input(), smooth_table(), {}).confidence;
-  EXPECT_LT(confidence[48 * 128 + 63], confidence[48 * 128 + 32]);
-  EXPECT_LT(confidence[48 * 128 + 63], 0.8f);
-}
-
 } // namespace
 } // namespace dermis::subsurface

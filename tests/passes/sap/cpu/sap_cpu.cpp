@@ -17,7 +17,7 @@ constexpr double min_fraction_fine = 0.002, min_fraction_coarse = 0.004;
 template <class Real> using Color = std::array<Real, 3>;
 
 // Scattered light of a level and all coarser levels, the fraction of the kernel that met the
-// surface, and the confidence.
+// surface, and the confidence: the fraction of the surface around that the levels represent.
 template <class Real> struct Scattered {
   Color<Real> light{}, mass{};
   Real confidence = 0;
@@ -81,8 +81,11 @@ template <class Real> struct SapClimb {
     const SapLevel<Real>& coarse = pyramid.levels[fine + 1];
     const Real spacing = pyramid.levels[fine].spacing;
     const Real per_metre = 1 / (Real(sap_sigma) * spacing * pyramid.footprint(own.depth));
+    const PerChannel& d = input.d_m[own.id];
+    const Real relevant_d = Real(*std::max_element(d.begin(), d.end())) * own.reach;
     Scattered<Real> result;
     Color<Real> sum{};
+    Real existing = 0;
     for (int j = 0; j < 2; ++j)
       for (int i = 0; i < 2; ++i) {
         const int qx = ((x - 1) >> 1) + i, qy = ((y - 1) >> 1) + j;
@@ -92,7 +95,11 @@ template <class Real> struct SapClimb {
             Real(std::abs(ox) < spacing ? .75 : .25) * Real(std::abs(oy) < spacing ? .75 : .25);
         const auto off = [&](const SapTexel<Real>& tap) { return off_planes(own, tap, ox, oy); };
         const size_t layer = nearer_layer(coarse, qx, qy, own.id, off);
-        if (layer == 2) continue;
+        if (layer == 2) {
+          const SapTexel<Real>* other = coarse.find(0, qx, qy);
+          if (other) existing += bilinear * other->lost;
+          continue;
+        }
         const SapTexel<Real>* tap = coarse.find(layer, qx, qy, own.id);
         const Real step = tap->depth - own.depth;
         const Real kept = sap_falloff(off(*tap) * per_metre, sap_depth_width);
@@ -105,8 +112,12 @@ template <class Real> struct SapClimb {
           sum[c] += mass * theirs.light[c];
         }
         const Real strictly = sap_falloff(further * per_metre, sap_confidence_width);
-        result.confidence += bilinear * strictly * theirs.confidence;
+        const Real lost =
+            (1 - strictly) * std::max(sap_relevance(off(*tap), relevant_d), 1 - tap->held);
+        existing += bilinear;
+        result.confidence += bilinear * (1 - lost) * theirs.confidence;
       }
+    result.confidence = existing > Real(1e-6) ? result.confidence / existing : Real(1);
     for (size_t c = 0; c < 3; ++c) {
       const bool found = result.mass[c] > Real(sap_negligible);
       result.light[c] = found ? sum[c] / result.mass[c] : fallback[c];
@@ -131,7 +142,7 @@ template <class Real> struct SapClimb {
         *std::max_element(fraction.begin(), fraction.end()) >= minimum)
       here = tent(pyramid.levels[l], x, y, own);
     const Scattered<Real> rest =
-        last ? Scattered<Real>{here.light, {}, 0} : from_coarser(l, x, y, own, here.light);
+        last ? Scattered<Real>{here.light, {}, 1} : from_coarser(l, x, y, own, here.light);
     Scattered<Real> result;
     for (size_t c = 0; c < 3; ++c) {
       const Real near = centre[c] * own.mass, mid = fraction[c] * here.mass[c],
@@ -142,9 +153,8 @@ template <class Real> struct SapClimb {
       result.light[c] = std::max(mean, Real(0)); // Differences may round below zero.
       result.mass[c] = total;
     }
-    result.confidence = centre[widest] * own.mass +
-                        fraction[widest] * std::min(here.mass[widest], Real(1)) +
-                        (1 - centre[widest] - fraction[widest]) * rest.confidence;
+    const Real near = centre[widest] + fraction[widest];
+    result.confidence = near * own.held + (1 - near) * rest.confidence;
     return result;
   }
 };

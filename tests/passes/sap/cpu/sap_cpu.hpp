@@ -17,11 +17,9 @@ struct SapOptions {
 
 template <class Real> struct SapResult {
   std::vector<Real> light; // 3 per pixel; pixels without a profile keep their light.
-  std::vector<Real>
-      // In [0, 1]: the fraction of the widest channel's kernel that met the pixel's own tangent
-      // plane, and that saw the pixel on its own planes, under stricter weights. 1 where nothing
-      // scatters.
-      confidence;
+  // In [0, 1]: the fraction of the surface around, weighted by the widest channel's kernel, that
+  // the levels represent at this pixel. Missing surface is no loss. 1 where nothing scatters.
+  std::vector<Real> confidence;
 };
 
 // Scatters the whole input. `table` comes from make_sap_table for the same variant. Each pixel's

@@ -82,13 +82,13 @@ size_t find_seed(const SapPyramid<Real>& pyramid, const Children<Real>& children
 }
 
 // Builds one layer of a parent, and subtracts the used part from what the children have left.
-// `mass_by_area`: see sap_first_area_level.
+// `mass_by_area`: see sap_first_area_level. `plane` receives the seed's plane.
 template <class Real>
-SapTexel<Real> reduce(const SapPyramid<Real>& pyramid, Children<Real>& children,
-                      bool mass_by_area) {
+SapTexel<Real> reduce(const SapPyramid<Real>& pyramid, Children<Real>& children, bool mass_by_area,
+                      SapTexel<Real>& plane) {
   const size_t seed = find_seed(pyramid, children);
   if (seed == no_child) return {};
-  const SapTexel<Real> plane = plane_at_parent(pyramid, children, seed);
+  plane = plane_at_parent(pyramid, children, seed);
   const Real per_sigma = 1 / (Real(sap_sigma) * children.spacing);
   const Real per_metre = per_sigma / pyramid.footprint(plane.depth);
   SapTexel<Real> sum;
@@ -149,6 +149,28 @@ bool is_at_edge(const ReferenceInput& input, const Surface& surface, size_t i) {
          (x + 1 < input.width && apart(i + 1, input.rays.scale_x)) ||
          (y > 0 && apart(i - input.width, input.rays.scale_y)) ||
          (y + 1 < input.height && apart(i + input.width, input.rays.scale_y));
+}
+
+// Sets `held` and `lost` of a parent's layer after all layers have used the children. `ids`:
+// profiles of the layers; `d`: of the layer's profile, in metres.
+template <class Real>
+void set_held(const SapPyramid<Real>& pyramid, const Children<Real>& children,
+              const std::array<uint8_t, 2>& ids, Real d, const SapTexel<Real>& plane,
+              SapTexel<Real>& parent) {
+  Real all = 0, same = 0, held = 0, lost = 0;
+  for (size_t k = 0; k < no_child; ++k) {
+    const SapTexel<Real>* child = children.texels[k];
+    if (!child) continue;
+    const Real part = binomial<Real>(k) * child->mass, step = child->depth - plane.depth;
+    all += part;
+    if (child->id != ids[0] && child->id != ids[1]) lost += part;
+    if (child->id != parent.id) continue;
+    const Real off = sap_nearer(step - pyramid.rise(plane, children.x(k), children.y(k)), step);
+    same += part;
+    held += part * child->held * (1 - children.left[k] * sap_relevance(off, d * plane.reach));
+  }
+  parent.held = same > 0 ? held / same : Real(1);
+  parent.lost = all > 0 ? lost / all : Real(0);
 }
 
 template <class Real>
@@ -221,8 +243,18 @@ SapPyramid<Real> build_sap_pyramid(const ReferenceInput& input, uint32_t first_l
           children.left[k] = 1;
           splits = splits || child.at_edge;
         }
+        std::array<SapTexel<Real>, 2> planes{};
         for (size_t layer = 0; layer < (splits ? layers : 1); ++layer)
-          coarse.layers[layer][coarse.index(x, y)] = reduce(pyramid, children, mass_by_area);
+          coarse.layers[layer][coarse.index(x, y)] =
+              reduce(pyramid, children, mass_by_area, planes[layer]);
+        const std::array<uint8_t, 2> ids = {planes[0].id, planes[1].id};
+        for (size_t layer = 0; layer < layers; ++layer) {
+          SapTexel<Real>& parent = coarse.layers[layer][coarse.index(x, y)];
+          if (parent.id == 0) continue;
+          const PerChannel& d = input.d_m[parent.id];
+          set_held(pyramid, children, ids, Real(*std::max_element(d.begin(), d.end())),
+                   planes[layer], parent);
+        }
       }
     });
     pyramid.levels.push_back(std::move(coarse));

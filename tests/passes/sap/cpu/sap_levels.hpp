@@ -23,6 +23,8 @@ inline constexpr double sap_tilt_width_tent = 1.25;
 // Width of the distance from the further of two tangent planes, used for the confidence: best
 // separates exact from inexact pixels on the framings of the scanned head and the bust.
 inline constexpr double sap_confidence_width = 0.87;
+// Distance in d from which a surface does not matter to a texel; nearer ones matter linearly.
+inline constexpr double sap_relevant_d = 6;
 // Powers of the cosine to the viewer.
 // - A texel is weighted by the fourth root of its area: a tilted surface has more area but is also
 //   further off, which tangent planes capture only partly.
@@ -45,6 +47,12 @@ template <class Real> Real sap_nearer(Real a, Real b) {
   return std::min(std::abs(a), std::abs(b));
 }
 
+// Returns how much a surface matters to a texel at a distance from it.
+template <class Real> Real sap_relevance(Real distance, Real d) {
+  return std::max(1 - std::abs(distance) / (Real(sap_relevant_d) * std::max(d, Real(1e-9))),
+                  Real(0));
+}
+
 template <class Real> struct SapTexel {
   Real depth = 0;                // Metres.
   Real slope_x = 0, slope_y = 0; // Change of depth per pixel, in footprints.
@@ -54,6 +62,10 @@ template <class Real> struct SapTexel {
   bool at_edge = false;          // Level 0: next to another surface.
   std::array<Real, 3> light{};
   uint8_t id = 0; // Profile; 0: no surface.
+  // Fraction of the surface of this profile under the texel that one of its layers represents, or
+  // that is too far off to matter at the profile's d.
+  Real held = 1;
+  Real lost = 0; // Fraction of the surface under the texel whose profile no layer has.
 
   Real slope(Real x, Real y) const { return slope_x * x + slope_y * y; }
   // Returns the area of the surface over its cross-section, from the slope.
@@ -75,12 +87,17 @@ template <class Real> struct SapLevel {
     return static_cast<size_t>(y + border) * static_cast<size_t>(width + 2 * border) +
            static_cast<size_t>(x + border);
   }
-  // Returns the texel of a layer if the position is inside and the profile is `id`, else null.
-  const SapTexel<Real>* find(size_t layer, int x, int y, uint8_t id) const {
+  // Returns the texel of a layer if the position is inside and it has a surface, else null.
+  const SapTexel<Real>* find(size_t layer, int x, int y) const {
     if (x < -border || y < -border || x >= width + border || y >= height + border) return nullptr;
     if (layers[layer].empty()) return nullptr;
     const SapTexel<Real>& texel = layers[layer][index(x, y)];
-    return texel.id == id && id != 0 ? &texel : nullptr;
+    return texel.id != 0 ? &texel : nullptr;
+  }
+  // As find(), if the profile is `id`.
+  const SapTexel<Real>* find(size_t layer, int x, int y, uint8_t id) const {
+    const SapTexel<Real>* texel = find(layer, x, y);
+    return texel != nullptr && texel->id == id ? texel : nullptr;
   }
 };
 

@@ -1,0 +1,100 @@
+// Samples must not make the pyramid's pictures worse: where its confidence is high they are not
+// taken, and elsewhere they weigh as much as their variance allows. On small generated scenes, at
+// rest, with real histories.
+#include "tests/passes/sap/confidence_scenes.hpp"
+#include "tests/properties/plane.hpp"
+
+#include "passes/common/reference/reference.hpp"
+
+#include <cmath>
+
+namespace {
+
+using namespace properties;
+namespace subsurface = dermis::subsurface;
+constexpr uint32_t refined_width = confidence_scenes::width,
+                   refined_height = confidence_scenes::height;
+
+// A scene, and the reference at a part of its pixels.
+struct JudgedScene {
+  Plane plane;
+  std::vector<uint32_t> pixels;
+  std::vector<double> reference; // 3 per pixel of `pixels`.
+
+  explicit JudgedScene(const confidence_scenes::Scene& scene) {
+    plane.width = refined_width;
+    plane.height = refined_height;
+    plane.d_px = {scene.d_px, scene.d_px, scene.d_px};
+    plane.light = [](double x, double y) {
+      return confidence_scenes::light(uint32_t(x), uint32_t(y));
+    };
+    plane.profile = scene.profile;
+    plane.depth_m = scene.depth_m;
+    std::vector<float> light, depth;
+    std::vector<uint8_t> profile;
+    for (uint32_t y = 0; y < refined_height; ++y)
+      for (uint32_t x = 0; x < refined_width; ++x) {
+        light.insert(light.end(), 3, confidence_scenes::light(x, y));
+        depth.push_back(scene.depth_m(int(x), int(y)));
+        profile.push_back(scene.profile(int(x), int(y)));
+        // One pixel of each 4x2 pixels, at a position that varies.
+        const float place = confidence_scenes::hashed(x / 4 + 500, y / 2);
+        const bool picked = uint32_t(place * 8) == (y % 2) * 4 + x % 4;
+        if (picked && profile.back() != 0) pixels.push_back(y * refined_width + x);
+      }
+    const double d = scene.d_px * 1e-3;
+    const std::vector<subsurface::PerChannel> d_m = {{0, 0, 0}, {d, d, d}, {d, d, d}};
+    reference = subsurface::reference_at(
+        {refined_width,
+         refined_height,
+         subsurface::orthographic_rays(refined_width, refined_height, 1e-3),
+         light,
+         depth,
+         profile,
+         {},
+         d_m},
+        pixels, {});
+  }
+  double rmse(const Picture& picture) const {
+    double squares = 0;
+    for (size_t i = 0; i < pixels.size(); ++i) {
+      const double error = double(picture.rgb[3 * size_t{pixels[i]}]) - reference[3 * i];
+      squares += error * error;
+    }
+    return std::sqrt(squares / double(pixels.size()));
+  }
+};
+
+class Refined : public DeviceTest {};
+
+// Compares a graph's RMSE with that of `sap` on every scene.
+void expect_not_worse_than_sap(const std::string& graph, uint32_t frames, double max_mean) {
+  double logs = 0;
+  auto scenes = confidence_scenes::all();
+  std::erase_if(scenes, [](const auto& scene) { return !scene.refined; });
+  for (const auto& scene : scenes) {
+    const JudgedScene judged(scene);
+    const double sap = judged.rmse(run("sap", judged.plane, {}));
+    double refined = 0;
+    run_frames(graph, judged.plane, {}, frames,
+               [&](const Picture& picture) { refined = judged.rmse(picture); });
+    const double ratio = refined / sap;
+    ::testing::Test::RecordProperty(scene.name, std::to_string(ratio));
+    EXPECT_LE(ratio, 1.02) << scene.name;
+    logs += std::log(ratio);
+  }
+  EXPECT_LE(std::exp(logs / double(scenes.size())), max_mean);
+}
+
+// Regression bounds of the geometric means.
+TEST_F(Refined, Blend_IsNeverWorseThanThePyramid) {
+  expect_not_worse_than_sap("sap_blend", 1, 0.99);
+}
+TEST_F(Refined, Hybrid_IsNeverWorseThanThePyramid) {
+  expect_not_worse_than_sap("hybrid", 1, 0.99);
+}
+TEST_F(Refined, Residual_IsNeverWorseThanThePyramid) {
+  expect_not_worse_than_sap("sap_residual", 32, 0.85);
+}
+
+} // namespace
