@@ -384,7 +384,7 @@ void add_child(sap_parent parent, sap_seed own, sap_seed before, int c, bool sec
 }
 void add_children(sap_parent parent, int layers, sap_seed seed, sap_seed before,
                   inout reduction sum) {
-  if (texel_shape && finer_has_layers()) { // small enough for the instruction cache
+  if (texel_shape && max_layers > 1) { // small enough for the instruction cache
     [[dont_unroll]] for (int row = 0; row < 4; ++row)
       [[unroll]] for (int column = 0; column < 4; ++column)
         add_child(parent, seed, before, 4 * row + column, false, sum);
