@@ -107,6 +107,7 @@ bool run_phases(const CompileInput& in, Report& report, Plan& plan, CompileScrat
   plan.graph = in.graph->name;
   plan.view_width = in.view_width;
   plan.view_height = in.view_height;
+  plan.pixel_grid = in.pixel_grid;
   plan.device_profile = in.device->name;
   plan.setting_values = active.settings;
   return true;

@@ -27,6 +27,7 @@ struct CompileInput {
   const PassTypeRegistry* pass_types = nullptr;
   const DeviceProfile* device = nullptr;
   uint32_t view_width = 0, view_height = 0; // allocated view size, 1 .. device->max_image_dimension
+  PixelGrid pixel_grid = 0;                 // of the pixels of the view
   std::vector<SettingValue> settings;       // one per Graph::settings; empty: the defaults
   // One per Graph::resources: whether the host binds the optional import or export. Empty: all are
   // bound. Required slots always count as bound.

@@ -4,6 +4,7 @@
 // table.
 
 #include "framegraph/model/graph.hpp"
+#include "framegraph/model/pixel_grid.hpp"
 
 #include <array>
 #include <cstdint>
@@ -163,6 +164,7 @@ struct PlanHistory {
 struct Plan {
   std::string graph;                        // name
   uint32_t view_width = 0, view_height = 0; // allocated size
+  PixelGrid pixel_grid = 0;                 // of the pixels of the view
   std::string device_profile;               // name
   std::vector<SettingValue> setting_values; // one per Graph::settings: used to evaluate `when`
   std::vector<PlanResource> resources;

@@ -74,6 +74,9 @@ struct SizeResolver {
     if (size.base == SizeExpression::Base::view) {
       base_x = in.view_width;
       base_y = in.view_height;
+    } else if (size.base == SizeExpression::Base::square_view) {
+      base_x = uint64_t{in.view_width} << pixel_doublings(in.pixel_grid, 0);
+      base_y = uint64_t{in.view_height} << pixel_doublings(in.pixel_grid, 1);
     } else if (size.base == SizeExpression::Base::resource) {
       if (mark(size.resource) == Mark::failed) return false; // already reported
       base_x = sizes.extents[size.resource.value].width;

@@ -47,6 +47,7 @@ Lines compiled_from(const SavedPlan& saved, const SavedPlan& other) {
   Lines lines;
   lines.add("graph", fmt::format("{} {}", saved.plan.graph, digest_text(key.graph).substr(0, 16)));
   lines.add("view", fmt::format("{}x{}", key.view_width, key.view_height));
+  lines.add("pixel grid", fmt::format("{}", key.pixel_grid));
   lines.add("device", key.device_profile);
   lines.add(
       "device limits",

@@ -20,10 +20,11 @@ struct Rational {
 
 enum class Rounding : uint8_t { ceil, floor };
 
-// Width and height of an image: rational multiples of the view or of another resource, or absolute
-// texels. value = align_up(round(base * factor), align), at least 1.
+// Width and height of an image: rational multiples of the view, of the view in square pixels
+// (pixel_grid.hpp) or of another resource, or absolute texels. value = align_up(round(base *
+// factor), align), at least 1.
 struct SizeExpression {
-  enum class Base : uint8_t { view, resource, fixed } base = Base::view;
+  enum class Base : uint8_t { view, resource, fixed, square_view } base = Base::view;
   ResourceId resource;
   Rational x, y; // factors; for `fixed`: sizes with denominator 1
   Rounding rounding = Rounding::ceil;

@@ -84,6 +84,7 @@ inline constexpr uint32_t texel_shape = 0; // shaders/common/shape.glsl
 // Masks of optional ports, bit i for port i: bound in every frame, bound in some frames.
 inline constexpr uint32_t bound_ports = 1, changing_ports = 2;
 inline constexpr uint32_t group_lanes = 3;    // local_size_x of kernels with one shape
+inline constexpr uint32_t pixel_grid = 4;     // of the plan (pixel_grid.hpp)
 inline constexpr uint32_t first_setting = 16; // PassType::settings[i] has the id first_setting + i
 } // namespace constant_id
 

@@ -54,6 +54,10 @@ std::optional<SizeExpression> parse_text(const Document& document, NodeId node,
   const int64_t divisor = std::gcd(*numerator, *denominator);
   out.x = out.y = {*numerator / divisor, *denominator / divisor};
   if (base == "view") return out;
+  if (base == "square_view") {
+    out.base = SizeExpression::Base::square_view;
+    return out;
+  }
   out.base = SizeExpression::Base::resource;
   out.resource = find(base);
   if (!out.resource.valid()) return std::nullopt;

@@ -1,5 +1,6 @@
 #pragma once
-// Parses sizes as exact rationals: "view", "view/2", "view*3/4", "name/2", [width, height].
+// Parses sizes as exact rationals: "view", "view/2", "view*3/4", "square_view/2",
+// "name/2", [width, height].
 
 #include "framegraph/model/graph.hpp"
 #include "framegraph/text/document.hpp"

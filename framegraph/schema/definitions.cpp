@@ -122,7 +122,7 @@ std::string resource_definition() {
 }
 
 constexpr std::string_view size_text =
-    R"({ "description": "\"view\", \"view/2\", \"view*3/4\", another image's name with such a factor, or [width, height] in texels",
+    R"({ "description": "\"view\", \"view/2\", \"view*3/4\", \"square_view/2\" (pixels that are not square), another image's name with such a factor, or [width, height] in texels",
       "anyOf": [{ "type": "string" },
         { "type": "array", "minItems": 2, "maxItems": 2, "items": { "type": "integer", "minimum": 1, "maximum": <side> } }] })";
 

@@ -164,6 +164,7 @@ template <class A> void fields(A& a, Of<A, Plan>& plan) {
   a.text("graph", plan.graph, limits::name_bytes);
   a.number("view width", plan.view_width);
   a.number("view height", plan.view_height);
+  a.number("pixel grid", plan.pixel_grid);
   a.text("device profile", plan.device_profile, limits::string_bytes);
   a.list("setting values", plan.setting_values, limits::settings);
   a.list("resources", plan.resources, limits::resources);
@@ -198,6 +199,7 @@ template <class A> void fields(A& a, Of<A, PlanKey>& key) {
     a.number("graph digest", byte);
   a.number("view width", key.view_width);
   a.number("view height", key.view_height);
+  a.number("pixel grid", key.pixel_grid);
   a.text("device profile", key.device_profile, limits::string_bytes);
   a.number("buffer image granularity", key.buffer_image_granularity);
   a.number("max storage buffer bytes", key.max_storage_buffer_bytes);

@@ -65,7 +65,7 @@ std::string first_mismatch(const SavedPlan& saved) {
   if (saved.key.settings.size() != plan.setting_values.size())
     return "key and plan have different numbers of settings";
   if (saved.key.view_width != plan.view_width || saved.key.view_height != plan.view_height ||
-      saved.key.device_profile != plan.device_profile)
+      saved.key.pixel_grid != plan.pixel_grid || saved.key.device_profile != plan.device_profile)
     return "key and plan were made for different views or devices";
   uint64_t accesses = 0, barriers = 0, settings = 0;
   for (const PlanPass& pass : plan.passes) {

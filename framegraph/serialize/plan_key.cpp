@@ -11,6 +11,7 @@ PlanKey plan_key(const CompileInput& input) {
   key.graph = sha256(graph_bytes(graph, *input.pass_types));
   key.view_width = input.view_width;
   key.view_height = input.view_height;
+  key.pixel_grid = input.pixel_grid;
   key.device_profile = device.name;
   key.buffer_image_granularity = device.buffer_image_granularity;
   key.max_storage_buffer_bytes = device.max_storage_buffer_bytes;

@@ -94,7 +94,8 @@ vulkan::Error make_executors(dermis_context_t& context, CompiledGraphInput& inpu
                              vulkan::HistoryReason history, vulkan::KernelStore& kernels,
                              CompiledGraph& compiled_graph) {
   const std::vector<vulkan::KernelCode> codes = kernel_codes(input.shaders);
-  const subsurface::TableUse use = subsurface::table_use(compiled_graph.graph, context.pass_types);
+  subsurface::TableUse use = subsurface::table_use(compiled_graph.graph, context.pass_types);
+  if (use.pyramid.surface || use.pyramid.plain) use.pyramid.pixel_grid = input.pixel_grid;
   if (!input.tables || input.tables->use != use)
     if (vulkan::Error error = make_tables(context, use, input)) return error;
   const KernelEnvironment environment = kernel_environment(*input.tables);
@@ -224,11 +225,10 @@ std::vector<choice::Configuration> described(const PassTypeRegistry& pass_types,
   return configurations;
 }
 
-std::vector<choice::Configuration> configurations_with(const CompiledGraph& compiled_graph,
-                                                       const PassTypeRegistry& pass_types,
-                                                       const choice::ErrorModel& errors,
-                                                       choice::CostEstimator& costs, uint32_t setting,
-                                                       const SettingValue& value) {
+std::vector<choice::Configuration>
+configurations_with(const CompiledGraph& compiled_graph, const PassTypeRegistry& pass_types,
+                    const choice::ErrorModel& errors, choice::CostEstimator& costs,
+                    uint32_t setting, const SettingValue& value) {
   std::vector<choice::Configuration> configurations = compiled_graph.configurations;
   for (choice::Configuration& configuration : configurations)
     configuration.settings[setting] = value;
@@ -280,6 +280,7 @@ dermis_result build_compiled_graph(dermis_context_t& context, CompiledGraphInput
   compile_input.device = &context.profile;
   compile_input.view_width = input.width;
   compile_input.view_height = input.height;
+  compile_input.pixel_grid = input.pixel_grid;
   compile_input.settings = candidate->settings;
   report_unknown_slots(candidate->graph, input.unbound, input.formats, diagnostics);
   compile_input.bound = bound_resources(candidate->graph, input.unbound, diagnostics);

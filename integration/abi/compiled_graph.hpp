@@ -44,6 +44,7 @@ struct CompiledGraphInput {
   // files that `include` delivered; requested again at a reload
   std::map<std::string, SourceText, std::less<>> included;
   uint32_t width = 0, height = 0;
+  PixelGrid pixel_grid = 0;
   std::vector<subsurface::NumberedProfile> profiles;
   std::vector<std::string> unbound;
   std::vector<HostFormat> formats;
@@ -162,8 +163,8 @@ std::vector<choice::Configuration> described(const PassTypeRegistry& pass_types,
 std::vector<choice::Configuration> configurations_with(const CompiledGraph& compiled_graph,
                                                        const PassTypeRegistry& pass_types,
                                                        const choice::ErrorModel& errors,
-                                                       choice::CostEstimator& costs, uint32_t setting,
-                                                       const SettingValue& value);
+                                                       choice::CostEstimator& costs,
+                                                       uint32_t setting, const SettingValue& value);
 
 // Pipelines by plan; see vulkan::Executor::make_pipelines.
 using NewPipelines = std::vector<std::shared_ptr<const vulkan::PlanPipelines>>;

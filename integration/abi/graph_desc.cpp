@@ -9,6 +9,8 @@
 namespace dermis::abi {
 namespace {
 
+constexpr float largest_pixel_aspect = 1e6f;
+
 static_assert(largest_view <= subsurface::sap_max_view_side);
 
 // Calls `use(i, element)` for each element of a caller's array, whose stride is the first element's
@@ -52,6 +54,16 @@ dermis_result read_profiles(const Log& log, const char* function, const dermis_g
         return read_profile_source(log, (field + ".source").c_str(), profile.source, added,
                                    diagnostics);
       });
+}
+
+dermis_result read_pixel_aspect(const Log& log, const char* function, float aspect,
+                                CompiledGraphInput& input) {
+  if (!(aspect >= 0 && aspect <= largest_pixel_aspect) ||
+      (aspect > 0 && aspect < 1 / largest_pixel_aspect))
+    return bad_argument(log, "{}: desc.pixel_aspect is {}, expected 0 or 1/{} .. {}", function,
+                        aspect, largest_pixel_aspect, largest_pixel_aspect);
+  input.pixel_grid = aspect == 0 ? 0 : pixel_grid(double(aspect));
+  return DERMIS_OK;
 }
 
 dermis_result read_unbound(const Log& log, const char* function, const dermis_graph_desc& desc,
@@ -150,6 +162,7 @@ dermis_result read_graph_desc(const Log& log, const char* function, const dermis
     result = check_view_size(log, function, desc.width, desc.height);
     input.width = desc.width;
     input.height = desc.height;
+    if (result == DERMIS_OK) result = read_pixel_aspect(log, function, desc.pixel_aspect, input);
   }
   if (result == DERMIS_OK && replaces(DERMIS_KEEP_UNBOUND)) {
     input.unbound.clear();

@@ -47,6 +47,9 @@ constexpr PassTypeSetting down_settings[] = {
         "binomial: [1 3 3 1] with four filtered reads; box: mean of 2x2 texels with one read"),
     borders,
     alpha,
+    setting::integer("level", 15, 1, 15, "",
+                     "level that the pass writes; needed if the sizes of the levels follow "
+                     "square_view: the first levels of pixels that are not square halve one axis"),
 };
 
 } // namespace

@@ -50,15 +50,16 @@ bool fill_previous(const FrameInput& input, FrameConstants& out) {
   return true;
 }
 
-using SapTables = std::array<float, sap_variant_count * sap_table_floats>; // by SapVariant
+// By shape of pixels, then by SapVariant.
+using SapTables = std::array<float, sap_variant_count * sap_table_floats>;
 
 // Tables of unused variants are 0.
-SapTables sap_tables_of(const ChannelShape& shape, PyramidUse use) {
+SapTables sap_tables_of(const ChannelShape& shape, const PyramidUse& use, const SapShape& pixel) {
   std::vector<SapVariant> used;
   if (use.surface) used = {SapVariant::base, SapVariant::smooth, SapVariant::half};
   if (use.plain) used.push_back(SapVariant::plain);
   SapTables tables{};
-  for (const SapFit& fit : fit_sap_weights(used, shape)) {
+  for (const SapFit& fit : fit_sap_weights(used, shape, pixel)) {
     const std::vector<float> table = make_sap_table(fit);
     std::copy(table.begin(), table.end(),
               tables.begin() + static_cast<size_t>(fit.variant) * sap_table_floats);
@@ -66,18 +67,18 @@ SapTables sap_tables_of(const ChannelShape& shape, PyramidUse use) {
   return tables;
 }
 
-// Returns the tables shared by all graphs, fitted once. They are not on the heap, because the
-// heap's owner may be destroyed before the next graph.
-const SapTables& burley_sap_tables(PyramidUse use) {
+// Returns the tables for square pixels that all graphs share, fitted once. They are not on the
+// heap, because the heap's owner may be destroyed before the next graph.
+const SapTables& burley_sap_tables(const PyramidUse& use) {
   if (!use.plain) {
-    static const SapTables surface = sap_tables_of(burley_shape(1), {true, false});
+    static const SapTables surface = sap_tables_of(burley_shape(1), {true, false}, {});
     return surface;
   }
   if (!use.surface) {
-    static const SapTables plain = sap_tables_of(burley_shape(1), {false, true});
+    static const SapTables plain = sap_tables_of(burley_shape(1), {false, true}, {});
     return plain;
   }
-  static const SapTables both = sap_tables_of(burley_shape(1), {true, true});
+  static const SapTables both = sap_tables_of(burley_shape(1), {true, true}, {});
   return both;
 }
 
@@ -138,7 +139,8 @@ double mean_d_px(const FrameCounters& counters) {
 }
 
 std::vector<ProfileEntry> make_profile_table(std::span<const NumberedProfile> profiles,
-                                             bool with_separable) {
+                                             bool with_separable, PixelGrid pixel_grid) {
+  const auto shapes = static_cast<uint32_t>(sap_shapes(pixel_grid).size());
   ProfileEntry none{};
   none.separable_row = no_separable_row;
   none.radial_row = no_radial_row;
@@ -159,7 +161,7 @@ std::vector<ProfileEntry> make_profile_table(std::span<const NumberedProfile> pr
         entry.separable_row = static_cast<uint32_t>(i) * separable_kernel_rows_per_profile;
       if (other) {
         entry.radial_row = others * radial_rows_per_profile;
-        entry.sap_table = sap_variant_count * (1 + 3 * others);
+        entry.sap_table = sap_variant_count * shapes * (1 + 3 * others);
       }
     }
     others += other ? 1 : 0;
@@ -212,12 +214,14 @@ std::vector<float> make_sap_tables(PyramidUse use, std::span<const NumberedProfi
   const auto add = [&](std::span<const float> shape) {
     tables.insert(tables.end(), shape.begin(), shape.end());
   };
-  add(burley_sap_tables(use));
+  const std::vector<SapShape> pixels = sap_shapes(use.pixel_grid);
+  for (const SapShape& pixel : pixels)
+    add(use.pixel_grid == 0 ? burley_sap_tables(use) : sap_tables_of(burley_shape(1), use, pixel));
   for (const NumberedProfile& numbered : profiles)
-    if (has_own_tables(numbered)) {
+    for (size_t p = 0; has_own_tables(numbered) && p < pixels.size(); ++p) {
       std::array<SapTables, 3> of_channel;
       for (size_t c = 0; c < 3; ++c)
-        of_channel[c] = sap_tables_of(numbered.profile.shape_mm[c], use);
+        of_channel[c] = sap_tables_of(numbered.profile.shape_mm[c], use, pixels[p]);
       for (uint32_t v = 0; v < sap_variant_count; ++v)
         for (const SapTables& channel : of_channel)
           add(std::span(channel).subspan(v * sap_table_floats, sap_table_floats));

@@ -4,6 +4,7 @@
 // SPIR-V reflection.
 
 #include "framegraph/model/graph.hpp"
+#include "framegraph/model/pixel_grid.hpp"
 #include "passes/common/camera.hpp"
 #include "passes/common/profiles/profile.hpp"
 #include "passes/common/profiles/radial_table.hpp"
@@ -152,7 +153,7 @@ struct NumberedProfile {
 // the rows where make_separable_table, make_radial_table and make_sap_tables place them for the
 // same list.
 std::vector<ProfileEntry> make_profile_table(std::span<const NumberedProfile> profiles,
-                                             bool with_separable);
+                                             bool with_separable, PixelGrid pixel_grid = 0);
 // Returns, for each profile in order, the fitted rows (make_separable_rows), then the published
 // kernel's (make_jimenez_rows); one row of zeros without profiles. Takes about 0.1 s per profile.
 std::vector<SeparableRow> make_separable_table(std::span<const NumberedProfile> profiles);
@@ -167,13 +168,15 @@ std::vector<RadialRow> make_radial_table(std::span<const NumberedProfile> profil
 struct PyramidUse {
   bool surface = false; // base, smooth and half: the surface-aware pyramid
   bool plain = false;
+  PixelGrid pixel_grid = 0; // of the plan
   bool operator==(const PyramidUse&) const = default;
 };
 PyramidUse pyramid_use(const Graph& graph, const PassTypeRegistry& pass_types);
 // Returns the tables of make_sap_table (sap_weights.hpp). First the shared tables by SapVariant:
-// base, smooth, half, plain. Then, for each profile that is not Burley's, in order, the tables of
-// red, green and blue for each variant. Unused tables are 0; the result is a single zero if all are
-// unused. Takes about 0.1 s per shared table, and per channel of another profile.
+// base, smooth, half, plain, for each of sap_shapes(use.pixel_grid). Then, for each profile that is
+// not Burley's, in order, the tables of red, green and blue for each variant, for each shape.
+// Unused tables are 0; the result is a single zero if all are unused. Takes about 0.1 s per shared
+// table, and per channel of another profile.
 std::vector<float> make_sap_tables(PyramidUse use, std::span<const NumberedProfile> profiles);
 
 } // namespace dermis::subsurface

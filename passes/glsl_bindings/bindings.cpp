@@ -182,6 +182,10 @@ std::string shared_constants() {
       "const int sap_nodes = {}, sap_table_pairs = {};\n"
       "const float sap_nodes_per_octave = {:.1f};\n"
       "const float sap_log2_d_first = {};\n"
+      "const int sap_shape_nodes = {};\n"
+      "const float sap_last_log2_aspect = {}, sap_log2_aspect_step = {};\n"
+      "const int sap_first_short_tent = {};\n"
+      "const float sap_max_short_variance = {};\n"
       "const uint sap_tiles_per_group_first = {}u; // sap_tiles.hpp\n"
       "const uint sap_tiles_per_group = {}u;\n"
       "const int sap_coarse_words = {};\n"
@@ -210,7 +214,9 @@ std::string shared_constants() {
       static_cast<int>(subsurface::SapVariant::half),
       static_cast<int>(subsurface::SapVariant::plain), subsurface::sap_node_count,
       subsurface::sap_table_pairs, double(subsurface::sap_nodes_per_octave),
-      subsurface::sap_log2_d_first, subsurface::sap_tiles_per_group_first,
+      subsurface::sap_log2_d_first, subsurface::sap_shape_nodes, subsurface::sap_last_log2_aspect,
+      subsurface::sap_log2_aspect_step, subsurface::sap_first_short_tent,
+      subsurface::sap_max_short_variance, subsurface::sap_tiles_per_group_first,
       subsurface::sap_tiles_per_group, subsurface::sap_coarse_words(subsurface::sap_max_view_side),
       subsurface::tiles_per_run_group, subsurface::radial_nodes, subsurface::radial_log2_r_first,
       subsurface::radial_nodes_per_octave, subsurface::radial_inverse_nodes_per_unit,

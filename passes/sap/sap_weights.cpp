@@ -32,16 +32,19 @@ struct Frequency {
   double x, y, weight; // weight of the squared error; the sum is 1
 };
 
-std::vector<Frequency> make_frequencies() {
+std::vector<Frequency> make_frequencies(const SapShape& shape) {
   std::vector<Frequency> list;
+  // The other octant of a quadrant is a mirror image if pixels are square.
+  const bool square = shape.side(0) == shape.side(1);
   double total = 0;
   for (size_t ring = 0; ring < ring_count; ++ring) {
     const double f = sap_min_frequency * std::pow(sap_max_frequency / sap_min_frequency,
                                                   (double(ring) + 0.5) / double(ring_count));
     for (size_t angle = 0; angle < angle_count; ++angle) {
-      const double theta = 0.25 * pi * (double(angle) + 0.5) / double(angle_count);
-      list.push_back(
-          {f * std::cos(theta), f * std::sin(theta), std::pow(f, 2 + spectrum_exponent)});
+      const double theta = (square ? 0.25 : 0.5) * pi * (double(angle) + 0.5) / double(angle_count);
+      const double x = f * std::cos(theta) * shape.side(0), y = f * std::sin(theta) * shape.side(1);
+      if (std::max(x, y) > sap_max_frequency) continue;
+      list.push_back({x, y, std::pow(f, 2 + spectrum_exponent)});
       total += list.back().weight;
     }
   }
@@ -50,8 +53,22 @@ std::vector<Frequency> make_frequencies() {
   return list;
 }
 
-double both_axes(const Frequency& f, double spacing, int power) {
-  return std::pow(std::cos(pi * f.x * spacing) * std::cos(pi * f.y * spacing), power);
+// Return the transfer functions of the step to a level and back, and of a level's tent.
+double chain_step(const Frequency& f, const SapShape& shape, uint32_t level, int power) {
+  double product = 1;
+  for (const uint32_t axis : {0u, 1u})
+    if (shape.halves(axis, level))
+      product *= std::cos(pi * (axis == 0 ? f.x : f.y) * shape.spacing(axis, level - 1));
+  return std::pow(product, power);
+}
+double tent_at(const Frequency& f, const SapShape& shape, uint32_t level) {
+  double product = 1;
+  for (const uint32_t axis : {0u, 1u}) {
+    const auto k = shape.tent(axis, level);
+    const double w = 2 * pi * (axis == 0 ? f.x : f.y) * shape.spacing(axis, level);
+    product *= k[0] + 2 * k[1] * std::cos(w) + 2 * k[2] * std::cos(2 * w);
+  }
+  return product;
 }
 
 // Transfer function of a level read through a cubic B-spline at all pixels: sinc^4 of the spacing,
@@ -63,21 +80,21 @@ double spline_axis(double f, double spacing) {
   return sum;
 }
 
-SapWeights basis_at(const Frequency& f, SapVariant variant) {
+SapWeights basis_at(const Frequency& f, SapVariant variant, const SapShape& shape) {
   const bool plain = variant == SapVariant::plain;
   const bool half = variant == SapVariant::half;
   SapWeights basis{1, plain  ? spline_axis(f.x, 1) * spline_axis(f.y, 1)
                       : half ? 0
-                             : both_axes(f, 1, 2)};
+                             : tent_at(f, shape, 0)};
   double chain = 1;
   for (uint32_t level = 1; level < sap_level_count; ++level) {
-    const double spacing = std::ldexp(1.0, static_cast<int>(level));
-    chain *= both_axes(f, spacing / 2, plain ? 3 : half && level == 1 ? 4 : 6);
+    chain *= chain_step(f, shape, level, plain ? 3 : half && level == 1 ? 4 : 6);
     double filter = 1;
     if (plain)
-      filter = spline_axis(f.x, spacing) * spline_axis(f.y, spacing);
+      filter =
+          spline_axis(f.x, shape.spacing(0, level)) * spline_axis(f.y, shape.spacing(1, level));
     else if (level <= sap_last_tent(variant))
-      filter = both_axes(f, spacing, 2);
+      filter = tent_at(f, shape, level);
     basis[level + 1] = chain * filter;
   }
   return basis;
@@ -90,7 +107,7 @@ struct Folded {
   std::array<std::array<double, copies>, copies> k; // by y, x: radians per pixel
 };
 
-std::vector<Folded> fold(const std::vector<Frequency>& frequencies) {
+std::vector<Folded> fold(const std::vector<Frequency>& frequencies, const SapShape& shape) {
   std::vector<Folded> all(frequencies.size());
   for (size_t i = 0; i < all.size(); ++i)
     for (int n = -folded_copies; n <= folded_copies; ++n) {
@@ -100,7 +117,7 @@ std::vector<Folded> fold(const std::vector<Frequency>& frequencies) {
       all[i].sinc_y[at] = sinc(f.y + n);
       for (int m = -folded_copies; m <= folded_copies; ++m)
         all[i].k[at][static_cast<size_t>(m + folded_copies)] =
-            2 * pi * std::hypot(f.x + m, f.y + n);
+            2 * pi * std::hypot((f.x + m) / shape.side(0), (f.y + n) / shape.side(1));
     }
   return all;
 }
@@ -108,7 +125,8 @@ std::vector<Folded> fold(const std::vector<Frequency>& frequencies) {
 // Returns the reference's transfer function at all frequencies, from the summed pixel-integrated
 // kernel or its closed form.
 std::vector<double> target_of(const std::vector<Frequency>& frequencies,
-                              const std::vector<Folded>& folded, const ChannelShape& shape) {
+                              const std::vector<Folded>& folded, const ChannelShape& shape,
+                              const SapShape& pixel) {
   std::vector<double> target;
   if (shape.d >= closed_form_from_d) {
     for (const Folded& f : folded) {
@@ -121,14 +139,15 @@ std::vector<double> target_of(const std::vector<Frequency>& frequencies,
     return target;
   }
   const double radius = shape_reach(shape) + std::sqrt(0.5);
-  const auto reach = static_cast<size_t>(std::ceil(radius)) + 1;
+  const double side_x = pixel.side(0), side_y = pixel.side(1);
+  const auto reach = static_cast<size_t>(std::ceil(radius / std::min(side_x, side_y))) + 1;
   std::vector<double> kernel((reach + 1) * (reach + 1));
   double total = 0;
   for (size_t y = 0; y <= reach; ++y)
     for (size_t x = 0; x <= reach; ++x) {
       const double copies = (x > 0 ? 2 : 1) * (y > 0 ? 2 : 1); // the other quadrants
       total += kernel[y * (reach + 1) + x] =
-          copies * planar_weight(1, 1, static_cast<int64_t>(x), static_cast<int64_t>(y),
+          copies * planar_weight(side_x, side_y, static_cast<int64_t>(x), static_cast<int64_t>(y),
                                  ProfileShape{shape, {}, {}}, radius)[0];
     }
   std::vector<double> wave(reach + 1);
@@ -155,10 +174,11 @@ struct Problem {
   SapWeights ones = {}; // 1 for each weight that exists
 };
 
-Problem make_problem(const std::vector<Frequency>& frequencies, SapVariant variant) {
+Problem make_problem(const std::vector<Frequency>& frequencies, SapVariant variant,
+                     const SapShape& shape) {
   Problem problem{variant};
   for (const Frequency& f : frequencies) {
-    problem.basis.push_back(basis_at(f, variant));
+    problem.basis.push_back(basis_at(f, variant, shape));
     problem.equations.add_row(problem.basis.back(), f.weight);
   }
   problem.ones.fill(1);
@@ -196,28 +216,62 @@ void solve_node(const Problem& problem, const std::vector<Frequency>& frequencie
 
 } // namespace
 
+double SapShape::side(uint32_t axis) const {
+  return std::exp2((double(halvings) + log2_aspect) * (axis == 0 ? 0.5 : -0.5));
+}
+double SapShape::spacing(uint32_t axis, uint32_t level) const {
+  const uint32_t first = axis == 0 ? halvings : 0;
+  return std::ldexp(1.0, static_cast<int>(level > first ? level - first : 0));
+}
+std::array<double, 3> SapShape::tent(uint32_t axis, uint32_t level) const {
+  std::array<double, 2> before{}, side{}; // variance of the steps to the level; squared side
+  for (const uint32_t k : {0u, 1u}) {
+    const double square = spacing(k, level) * spacing(k, level);
+    before[k] = 0.5 - 0.5 / square; // 3/2 for each step, in squares of its finer spacing
+    side[k] = square * this->side(k) * this->side(k);
+  }
+  // (before[0] + x) side[0] = (before[1] + 1 - x) side[1]
+  const double wide = ((before[1] + 1) * side[1] - before[0] * side[0]) / (side[0] + side[1]);
+  const bool three_taps = level >= sap_first_short_tent;
+  const double limit = three_taps ? sap_max_short_variance : 1,
+               across = std::clamp(wide, 1 - limit, limit),
+               variance = axis == 0 ? across : 1 - across, more = variance - 0.5;
+  if (three_taps || more <= 0) return {1 - variance, variance / 2, 0};
+  return {0.5 - more / 4, 0.25, more / 8}; // [1 2 1] / 4 filtered with variance `more`
+}
+
+std::vector<SapShape> sap_shapes(PixelGrid grid) {
+  if (grid == 0) return {{}};
+  const uint32_t halvings = std::max(pixel_doublings(grid, 0), pixel_doublings(grid, 1));
+  std::vector<SapShape> shapes;
+  for (uint32_t k = halvings == 0 ? sap_shape_nodes / 2 : 0; k < sap_shape_nodes; ++k)
+    shapes.push_back({.halvings = halvings,
+                      .log2_aspect = (double(k) - sap_shape_nodes / 2) * sap_log2_aspect_step});
+  return shapes;
+}
+
 SapFit fit_sap_weights(SapVariant variant) {
   return fit_sap_weights(variant, burley_shape(1));
 }
 
-SapFit fit_sap_weights(SapVariant variant, const ChannelShape& shape) {
-  return fit_sap_weights(std::span(&variant, 1), shape).front();
+SapFit fit_sap_weights(SapVariant variant, const ChannelShape& shape, const SapShape& pixel) {
+  return fit_sap_weights(std::span(&variant, 1), shape, pixel).front();
 }
 
-std::vector<SapFit> fit_sap_weights(std::span<const SapVariant> variants,
-                                    const ChannelShape& shape) {
-  const std::vector<Frequency> frequencies = make_frequencies();
-  const std::vector<Folded> folded = fold(frequencies);
+std::vector<SapFit> fit_sap_weights(std::span<const SapVariant> variants, const ChannelShape& shape,
+                                    const SapShape& pixel) {
+  const std::vector<Frequency> frequencies = make_frequencies(pixel);
+  const std::vector<Folded> folded = fold(frequencies, pixel);
   std::vector<Problem> problems;
   std::vector<SapFit> fits;
   for (const SapVariant variant : variants) {
-    problems.push_back(make_problem(frequencies, variant));
+    problems.push_back(make_problem(frequencies, variant, pixel));
     fits.push_back({.variant = variant, .nodes = {}});
   }
   for (uint32_t k = 0; k < sap_node_count; ++k) {
     const double d_px = std::exp2(sap_log2_d_first + double(k) / sap_nodes_per_octave);
     const std::vector<double> target =
-        target_of(frequencies, folded, scaled(shape, d_px / shape.d));
+        target_of(frequencies, folded, scaled(shape, d_px / shape.d), pixel);
     for (size_t v = 0; v < fits.size(); ++v) {
       fits[v].nodes[k].d_px = d_px;
       solve_node(problems[v], frequencies, target, shape.direct, fits[v].nodes[k]);

@@ -3,6 +3,7 @@
 // kernel, so that the surface-aware pyramid (SAP) reproduces the profile on a plane that faces the
 // viewer.
 
+#include "framegraph/model/pixel_grid.hpp"
 #include "passes/common/profiles/shape.hpp"
 
 #include <array>
@@ -28,6 +29,36 @@ enum class SapVariant : uint8_t { base, smooth, half, plain };
 inline constexpr uint32_t sap_variant_count = 4;
 
 inline constexpr uint32_t sap_level_count = 9; // 0 to 8, spacing 1 to 256 px
+
+// From this level on, tents have three taps on each axis. Their variance is limited, because they
+// amplify the finest waves above it: measured on planes with pixels of 4:3.
+inline constexpr uint32_t sap_first_short_tent = 4;
+inline constexpr double sap_max_short_variance = 0.7;
+
+// How the pyramid follows the shape of a pixel. The first levels halve only the axis with the
+// shorter sides; the tents of all levels are wider along the shorter side of a texel. Here x is the
+// axis of the longer side of a pixel, or of either side if no level halves one axis.
+struct SapShape {
+  uint32_t halvings = 0;  // number of first levels that halve only y
+  double log2_aspect = 0; // log2 of width / height of a texel of level `halvings`
+
+  // Return the sides of a pixel along an axis (0: x, 1: y), whose product is 1, and the distance of
+  // texels of a level in pixels.
+  double side(uint32_t axis) const;
+  double spacing(uint32_t axis, uint32_t level) const;
+  bool halves(uint32_t axis, uint32_t level) const { return axis == 1 || level > halvings; }
+  // Returns the weights of a level's tent along an axis at the distances of 0, 1 and 2 texels.
+  // Their variances give levels equal widths along both axes, in lengths; they are 1/2 (1/2, 1/4,
+  // 0) if pixels are square. shaders/sap/sap_shape.glsl mirrors this function.
+  std::array<double, 3> tent(uint32_t axis, uint32_t level) const;
+};
+// Shapes with tables, for every number of halvings: equal steps of log2_aspect, from
+// -sap_last_log2_aspect to it, or from 0 if no level halves one axis only.
+inline constexpr uint32_t sap_shape_nodes = 5; // odd
+inline constexpr double sap_last_log2_aspect = 0.6, sap_log2_aspect_step = 0.3;
+// Returns the shapes with tables in the order of the tables; a single square for grid 0.
+std::vector<SapShape> sap_shapes(PixelGrid grid);
+
 // centre, tent of level 0, levels 1 to 8
 inline constexpr uint32_t sap_weight_count = sap_level_count + 1;
 // Returns the coarsest level that base, half or smooth filters with a tent.
@@ -59,10 +90,10 @@ struct SapFit {
 SapFit fit_sap_weights(SapVariant variant);
 // Fits the weights for another profile: `shape` in any unit, nodes by its d in pixels. The fraction
 // of light that never scatters is part of the centre's weight.
-SapFit fit_sap_weights(SapVariant variant, const ChannelShape& shape);
+SapFit fit_sap_weights(SapVariant variant, const ChannelShape& shape, const SapShape& pixel = {});
 // Fits several variants in little more time than one, because they have the same target.
-std::vector<SapFit> fit_sap_weights(std::span<const SapVariant> variants,
-                                    const ChannelShape& shape);
+std::vector<SapFit> fit_sap_weights(std::span<const SapVariant> variants, const ChannelShape& shape,
+                                    const SapShape& pixel = {});
 
 // Weights for the kernels, as fractions of the remaining light at each level: out = mix(coarser,
 // level l, t_l). centre and tent are level 0's weights; fraction[l] = W_l / sum of W_k over k >= l

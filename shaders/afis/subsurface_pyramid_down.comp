@@ -1,10 +1,12 @@
 #version 460
 // Computes the next coarser level: [1 3 3 1] x [1 3 3 1] as four reads between texels, each with
-// weights 1/4 and 3/4 per axis, or the mean of 2x2 texels as one read.
+// weights 1/4 and 3/4 per axis, or the mean of 2x2 texels as one read. An axis that the level does
+// not halve is read at its texels.
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 #include "afis/subsurface_pyramid_down.bindings.glsl"
 #include "common/environment.glsl"
+#include "common/pixel_grid.glsl"
 #include "common/half.glsl"
 #include "afis/pyramid.glsl"
 
@@ -26,15 +28,17 @@ void main() {
     return;
   int fine_border = settings.borders == BORDERS_NONE ? 0 : pyramid_border;
   int coarse_border = settings.borders == BORDERS_BOTH ? pyramid_border : 0;
-  vec2 centre = 2.0 * vec2(address - coarse_border) + 0.5; // in texels of the finer level
+  bvec2 halves = greaterThan(step_from_level(settings.level - 1), ivec2(1));
+  vec2 texel = vec2(address - coarse_border), apart = mix(vec2(0.0), vec2(0.75), halves);
+  vec2 centre = mix(texel, 2.0 * texel + 0.5, halves); // in texels of the finer level
   vec4 mean;
   if (settings.halving == HALVING_BOX)
     mean = pyramid_read(fine_image, centre, fine_border);
   else
-    mean = 0.25 * (read_fine(centre + vec2(-0.75, -0.75), fine_border) +
-                   read_fine(centre + vec2(0.75, -0.75), fine_border) +
-                   read_fine(centre + vec2(-0.75, 0.75), fine_border) +
-                   read_fine(centre + vec2(0.75, 0.75), fine_border));
+    mean = 0.25 * (read_fine(centre + vec2(-apart.x, -apart.y), fine_border) +
+                   read_fine(centre + vec2(apart.x, -apart.y), fine_border) +
+                   read_fine(centre + vec2(-apart.x, apart.y), fine_border) +
+                   read_fine(centre + apart, fine_border));
   if (settings.alpha == ALPHA_MASK && spreads_mixed(mean.a))
     mean.a = mixed_mask;
   imageStore(coarse_image, address, round_to_half(mean));

@@ -33,7 +33,7 @@ vec3 add_level(texture2D level, int index, uint id, vec3 d_px, vec2 pixel, vec3 
   vec3 fraction = index == 0 ? sap_lookup(id, sap_plain, 1, d_px)
                              : left * sap_lookup(id, sap_plain, index + 1, d_px);
   if (max(fraction.r, max(fraction.g, fraction.b)) >= min_fraction) {
-    vec4 light = spline_read(level, (pixel + 0.5) * exp2(-float(index)) - 0.5);
+    vec4 light = spline_read(level, (pixel + 0.5) / sap_spacings(index) - 0.5);
     sum += fraction * light.rgb;
     total += fraction * light.a;
   }

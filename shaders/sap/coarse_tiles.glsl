@@ -8,7 +8,8 @@
 #include "sap/sap_lists.glsl"
 
 const int coarse_level = 4;
-shared uint coarse_flags[sap_coarse_words];
+const int coarse_words = sap_coarse_words << pixel_doublings;
+shared uint coarse_flags[coarse_words];
 
 // Returns the words of a row of flags of a level, and the index of its first word.
 int coarse_across(int level) { return (sap_level_tiles(level).x + 3 + 31) >> 5; }

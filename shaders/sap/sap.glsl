@@ -7,6 +7,7 @@
 
 #include "constants.glsl"
 #include "common/environment.glsl"
+#include "common/pixel_grid.glsl"
 
 const float sap_sigma = 0.8660254; // standard deviation of [1 3 3 1] in its own spacings: sqrt(3)/2
 // Widths of the weights in sigmas, by measurement (tests/passes/sap/cpu/sap_levels.hpp).
@@ -178,7 +179,16 @@ float sap_per_relevant(sap_texel own, float spacing) {
 // Returns how much a surface matters at a distance in units of that one.
 float sap_relevance(float off) { return clamp(1.0 - off, 0.0, 1.0); }
 
-ivec2 sap_level_size(int level) { return (sap_view_size + (1 << level) - 1) >> level; }
+ivec2 sap_level_size(int level) {
+  ivec2 halvings = halvings_of_level(level);
+  return (sap_view_size + (ivec2(1) << halvings) - 1) >> halvings;
+}
+// Return the distance of a level's texels in pixels, and the geometric mean of both axes.
+vec2 sap_spacings(int level) { return vec2(ivec2(1) << halvings_of_level(level)); }
+float sap_spacing(int level) {
+  ivec2 halvings = halvings_of_level(level);
+  return square_pixels ? float(1 << level) : exp2(0.5 * float(halvings.x + halvings.y));
+}
 // Levels from 1 on have a border of one texel; level 0 has the layout of the view.
 // Returns whether a texel that is not in front of the level is inside it.
 bool sap_before_end(ivec2 at, int level) {
@@ -193,6 +203,25 @@ bool sap_inside(ivec2 at, int level) {
 // subsurface. Coarser levels write the texels that contain such a pixel.
 int sap_tile(ivec2 pixel) { return (pixel.y >> 3) * frame.tiles.x + (pixel.x >> 3); }
 ivec2 sap_address(ivec2 at, int level) { return level > 0 ? at + 1 : texel_of(at); }
+
+// Returns log2 of the aspect of the first texels that both axes halve, from the frame's pixels:
+// positive if they are longer along the axis that the plan expects, or along any axis if no level
+// halves one axis only.
+float sap_log2_aspect() {
+  float octaves = log2(abs(frame.ray_scale.x / frame.ray_scale.y));
+  octaves = higher_pixels ? -octaves : octaves;
+  return pixel_doublings == 0 ? abs(octaves) : octaves - float(pixel_doublings);
+}
+// Returns the position of the frame's pixels among the shapes with tables
+// (passes/sap/sap_weights.hpp).
+int sap_last_shape_node() {
+  return pixel_doublings == 0 ? sap_shape_nodes / 2 : sap_shape_nodes - 1;
+}
+float sap_shape_node() {
+  float first = pixel_doublings == 0 ? 0.0 : -sap_last_log2_aspect;
+  return clamp((sap_log2_aspect() - first) / sap_log2_aspect_step, 0.0,
+               float(sap_last_shape_node()));
+}
 
 // Returns rows 2 * pair and 2 * pair + 1 of a table at d px, as sap_lookup of
 // passes/sap/sap_weights.cpp.
@@ -211,21 +240,37 @@ ivec3 sap_tables_of(uint id, int variant) {
   int own = int(profiles[min(id, 255u)].sap_table);
   return own == 0 ? ivec3(variant) : own + 3 * variant + ivec3(0, 1, 2);
 }
-// Returns the value of a row per channel.
-vec3 sap_lookup(uint id, int variant, int row, vec3 d_px) {
+// Returns rows 2 * pair and 2 * pair + 1 of a variant's tables per channel.
+void sap_lookup_pairs(uint id, int variant, int pair, vec3 d_px, out vec3 even, out vec3 odd) {
   ivec3 table = sap_tables_of(id, variant);
-  int pair = row / 2;
   vec2 r = sap_lookup_pair(table.r, pair, d_px.r), g = sap_lookup_pair(table.g, pair, d_px.g),
        b = sap_lookup_pair(table.b, pair, d_px.b);
-  return (row & 1) == 0 ? vec3(r.x, g.x, b.x) : vec3(r.y, g.y, b.y);
+  even = vec3(r.x, g.x, b.x);
+  odd = vec3(r.y, g.y, b.y);
+}
+// The same, interpolated between the tables of the two nearest shapes of pixels.
+void sap_lookup_rows(uint id, int variant, int pair, vec3 d_px, out vec3 even, out vec3 odd) {
+  if (square_pixels) {
+    sap_lookup_pairs(id, variant, pair, d_px, even, odd);
+    return;
+  }
+  float at = sap_shape_node(), node = floor(at);
+  vec3 next_even, next_odd;
+  sap_lookup_pairs(id, variant + sap_variants * int(node), pair, d_px, even, odd);
+  sap_lookup_pairs(id, variant + sap_variants * min(int(node) + 1, sap_last_shape_node()), pair,
+                   d_px, next_even, next_odd);
+  even = mix(even, next_even, at - node);
+  odd = mix(odd, next_odd, at - node);
+}
+// Returns the value of a row per channel.
+vec3 sap_lookup(uint id, int variant, int row, vec3 d_px) {
+  vec3 even, odd;
+  sap_lookup_rows(id, variant, row / 2, d_px, even, odd);
+  return (row & 1) == 0 ? even : odd;
 }
 // Returns the weights of a pixel's own light and of the tent of level 0 per channel.
 void sap_weights_of_level_0(uint id, int variant, vec3 d_px, out vec3 centre, out vec3 tent) {
-  ivec3 table = sap_tables_of(id, variant);
-  vec2 r = sap_lookup_pair(table.r, 0, d_px.r), g = sap_lookup_pair(table.g, 0, d_px.g),
-       b = sap_lookup_pair(table.b, 0, d_px.b);
-  centre = vec3(r.x, g.x, b.x);
-  tent = vec3(r.y, g.y, b.y);
+  sap_lookup_rows(id, variant, 0, d_px, centre, tent);
 }
 
 #endif

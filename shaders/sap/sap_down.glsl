@@ -38,8 +38,10 @@ vec4 child_light[max_layers * children_a_layer];
 struct sap_parent {
   ivec2 at;   // texel of its level
   int finer;  // level of its children
-  float spacing; // of the children, in pixels
-  int base;   // texel shape: place of the first child in shared memory
+  float spacing; // of the children, in pixels; geometric mean of both axes
+  vec2 distances; // between the children, in pixels; 0 along an axis that the level does not halve
+  // Texel shape: place of the first child in shared memory; its position if pixels are not square.
+  int base;
   bool two;   // a child has two layers
   bool splits; // the parent may have two layers
 };
@@ -49,9 +51,15 @@ const sap_texel no_texel = sap_texel(0.0, vec2(0.0), 0.0, 0.0, 0u);
 
 // The parents of a block share children.
 const int side = block_width * 2 + children_across - 2;
-int shared_child(int parent, int child) {
-  return (2 * (parent / block_width) + child / children_across) * side +
-         2 * (parent % block_width) + child % children_across;
+int shared_child(int parent, int child, int finer) {
+  ivec2 step = step_from_level(finer);
+  return (step.y * (parent / block_width) + child / children_across) * side +
+         step.x * (parent % block_width) + child % children_across;
+}
+// Prepares the parent at a texel; its children are yet to be read.
+sap_parent parent_at(ivec2 at, int finer) {
+  vec2 distances = sap_spacings(finer) * vec2(step_from_level(finer) - 1);
+  return sap_parent(at, finer, sap_spacing(finer), distances, 0, false, true);
 }
 
 // Returns whether texels of the finer level can have two layers.
@@ -113,15 +121,21 @@ int place_of_texel(int i) {
   return i - x + (x >> 1) + tile_side / 2 * (x & 1);
 }
 int place_of_child(sap_parent parent, int c) {
+  if (!square_pixels) // the first child may be in an odd column
+    return place_in_tile((parent.base & 31) + (c & 3), (parent.base >> 5) + (c >> 2 & 3));
   return parent.base + (c >> 2 & 3) * tile_side + ((c & 3) >> 1) + tile_side / 2 * (c & 1);
 }
 ivec2 address_of_child(sap_parent parent, int c) {
-  return sap_address(2 * parent.at - 1 + ivec2(c & 3, c >> 2 & 3), parent.finer);
+  return sap_address(step_from_level(parent.finer) * parent.at - 1 + ivec2(c & 3, c >> 2 & 3),
+                     parent.finer);
 }
 
 bool child_written(texel_block block, ivec2 at, int finer) {
   ivec2 address = finer > 0 ? at + 1 : at;
-  bool written = tile_written(block.children, (address >> 3) - 2 * block.tile + 1);
+  ivec2 tile = (address >> 3) - step_from_level(finer) * block.tile + 1;
+  bool written = tile_written(block.children, tile);
+  if (!square_pixels)
+    written = written && max(tile.x, tile.y) <= 2;
   return all(bvec2(sap_inside(at, finer), written));
 }
 // Texel shape: reads the children of all parents of the tile. An invocation first loads several
@@ -129,7 +143,7 @@ bool child_written(texel_block block, ivec2 at, int finer) {
 // written, but reads others instead.
 void read_tile(texel_block block, int finer, bool computed) {
   const int batch = 3;
-  ivec2 corner = 2 * (8 * block.tile - 1) - 1;
+  ivec2 corner = step_from_level(finer) * (8 * block.tile - 1) - 1;
   int lane = int(gl_LocalInvocationIndex), lanes = int(group_lanes);
   // Whole rows, so that the children of an invocation are in one column.
   bool whole_rows = lanes >= tile_side;
@@ -178,7 +192,7 @@ void read_tile(texel_block block, int finer, bool computed) {
 // Block shape: reads the children of all parents of a block, starting at parent `first`.
 void read_block(texel_block block, ivec2 first, int finer) {
   [[unroll]] for (int i = 0; i < side * side; ++i) {
-    ivec2 at = 2 * first - 1 + ivec2(i % side, i / side);
+    ivec2 at = step_from_level(finer) * first - 1 + ivec2(i % side, i / side);
     bool needed = child_written(block, at, finer);
     block_surface[i] = needed ? finer_surface(sap_address(at, finer), finer, false) : uvec4(0u);
     block_light[i] =
@@ -188,16 +202,16 @@ void read_block(texel_block block, ivec2 first, int finer) {
 // Prepares the children of parent k of the block.
 sap_parent take_parent(texel_block block, int k, int finer) {
   ivec2 offset = block_offset(k), in_tile = block.first - 8 * block.tile;
-  sap_parent parent =
-      sap_parent(block.first - 1 + offset, finer, float(1 << finer), 0, false, true);
+  sap_parent parent = parent_at(block.first - 1 + offset, finer);
   uint flags = 0u;
   if (texel_shape) {
-    parent.base = place_in_tile(2 * in_tile.x, 2 * in_tile.y);
+    ivec2 first = step_from_level(finer) * in_tile;
+    parent.base = square_pixels ? place_in_tile(first.x, first.y) : first.x | first.y << 5;
     [[unroll]] for (int c = 0; c < children_a_layer; ++c)
       flags |= tile_surface[place_of_child(parent, c)].x;
   } else {
     [[unroll]] for (int c = 0; c < children_a_layer; ++c) {
-      int i = shared_child(k, c);
+      int i = shared_child(k, c, finer);
       children[c] = sap_unpack(block_surface[i]);
       child_light[c] = block_light[i];
       flags |= block_surface[i].x;
@@ -264,16 +278,22 @@ vec4 light_of(sap_parent parent, int c, bool second, uint id) {
   return child_light[second ? children_a_layer + c : c];
 }
 
-vec2 offset_of(int child, float spacing) {
+vec2 offset_of(sap_parent parent, int child) {
   ivec2 place = ivec2(child, child / children_across) & (children_across - 1);
-  return (vec2(place) - 0.5 * float(children_across - 1)) * spacing;
+  return (vec2(place) - 0.5 * float(children_across - 1)) * parent.distances;
 }
-float binomial(int child) {
+// Returns the weight of a child along an axis; an axis that is not halved has one child.
+float binomial(int place, bool halves) {
 #ifdef SAP_BOX
-  return 0.25;
+  return halves ? 0.5 : float(place == 0);
 #else
-  return ((child & 3) % 3 == 0 ? 0.125 : 0.375) * ((child >> 2 & 3) % 3 == 0 ? 0.125 : 0.375);
+  return halves ? (place % 3 == 0 ? 0.125 : 0.375) : float(place == 1);
 #endif
+}
+float binomial(sap_parent parent, int child) {
+  ivec2 place = ivec2(child, child / children_across) & (children_across - 1);
+  bvec2 halves = greaterThan(step_from_level(parent.finer), ivec2(1));
+  return binomial(place.x, halves.x) * binomial(place.y, halves.y);
 }
 float at_parent(sap_texel child, vec2 offset) {
   return max(child.depth - sap_rise(child.depth, child.slope, offset),
@@ -302,8 +322,8 @@ float left_of(sap_texel before, sap_texel child, vec2 offset, float spacing, out
   return before.id == 0u || before.id != child.id ? 1.0 : left;
 }
 bool may_seed(sap_parent parent, sap_texel before, sap_texel child, int c) {
-  float off, left = left_of(before, child, offset_of(c, parent.spacing), parent.spacing, off);
-  return child.id != 0u && left >= min_seed_part;
+  float off, left = left_of(before, child, offset_of(parent, c), parent.spacing, off);
+  return child.id != 0u && (square_pixels || binomial(parent, c) > 0.0) && left >= min_seed_part;
 }
 
 #include "sap/sap_seed.glsl"
@@ -339,12 +359,13 @@ struct sap_seed {
   float per_relevant;
 };
 // Returns the sum of the weights of children that all lie on the seed's plane. Opposite children
-// have equal weights.
-float full_weight(sap_texel seed, float spacing) {
+// have equal weights, unless the level does not halve an axis.
+float full_weight(sap_parent parent, sap_texel seed) {
   float sum = 0.0;
-  [[unroll]] for (int c = 0; c < children_a_layer / 2; ++c) {
-    float tilt = dot(seed.slope, offset_of(c, spacing)) / (sap_sigma * spacing);
-    sum += 2.0 * binomial(c) * exp2(sap_factor(sap_tilt_width_down) * tilt * tilt);
+  [[unroll]] for (int c = 0; c < (square_pixels ? children_a_layer / 2 : children_a_layer); ++c) {
+    float tilt = dot(seed.slope, offset_of(parent, c)) / (sap_sigma * parent.spacing);
+    float weight = (square_pixels ? 2.0 : 1.0) * binomial(parent, c);
+    sum += weight * exp2(sap_factor(sap_tilt_width_down) * tilt * tilt);
   }
   return sum;
 }
@@ -354,7 +375,7 @@ void add_child(sap_parent parent, sap_seed own, sap_seed before, int c, bool sec
   float spacing = parent.spacing;
   float per_sigma = 1.0 / (sap_sigma * spacing),
         per_sigma_mm = per_sigma / sap_footprint(seed.depth);
-  vec2 offset = offset_of(c, spacing);
+  vec2 offset = offset_of(parent, c);
   float tilt = dot(seed.slope, offset) * per_sigma;
   float depth_step, off, off_before;
   float kept = kept_of(seed, child, offset, per_sigma_mm, depth_step, off);
@@ -362,7 +383,7 @@ void add_child(sap_parent parent, sap_seed own, sap_seed before, int c, bool sec
   float narrowing = exp2(sap_factor(sap_tilt_width_down) * along * along);
   float left = left_of(before.texel, child, offset, spacing, off_before);
   bool same = child.id == seed.id;
-  float part = binomial(c) * child.mass, own_part = same ? part : 0.0;
+  float part = binomial(parent, c) * child.mass, own_part = same ? part : 0.0;
   float flat_weight = own_part * kept * left;
   sum.remains = sum.remains || child.id != 0u && !(same && 1.0 - kept < min_seed_part);
   vec4 tap = light_of(parent, c, second, child.id);
@@ -416,7 +437,7 @@ sap_layer reduce_to(sap_parent parent, int layers, sap_texel seed, sap_texel bef
   const holding nothing = holding(0.0, 0.0);
   reduction sum = reduction(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, vec2(0.0), vec3(0.0), false,
                             nothing, nothing, 0.0);
-  sum.all_weight = full_weight(seed, parent.spacing);
+  sum.all_weight = full_weight(parent, seed);
   add_children(parent, layers, sap_seed(seed, sap_per_relevant(seed, parent.spacing)),
                sap_seed(before, sap_per_relevant(before, parent.spacing)), sum);
   layer.remains = sum.remains;

@@ -64,7 +64,7 @@ void gather_block() {
     read_coarser(block, 0);
   finish_reading();
   [[unroll]] for (int k = 0; k < block_texels; ++k) {
-    sap_place place = place_of(block, k);
+    sap_place place = place_of(block, k, 0);
     if (!inside_rect(place.at))
       continue;
     take_near(k);
@@ -72,7 +72,7 @@ void gather_block() {
     vec4 result = vec4(light.rgb, 1.0);
     sap_texel own = sap_unpack(near_bits(place, near_centre));
     if (!block.copy_only && own.id != 0u) {
-      take_corners(k);
+      take_corners(k, 0);
       result = gather(place, own, light);
     }
     write_result(place.at, own, result);

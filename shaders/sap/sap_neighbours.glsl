@@ -19,16 +19,26 @@ struct sap_place {
   int corner; // texel shape: index of its first corner in the tile's coarser texels
 };
 
-const int corner_texels = 4, near_texels = 9, near_centre = 4;
-ivec2 near_step(int n) { return ivec2(n % 3 - 1, n / 3 - 1); }
+// Texels to each side that the tent of a level reads.
+const int tent_reach = square_pixels ? 1 : 2;
+const int near_side = 2 * tent_reach + 1, near_texels = near_side * near_side;
+const int corner_texels = 4, near_centre = near_texels / 2;
+ivec2 near_step(int n) { return ivec2(n % near_side - tent_reach, n / near_side - tent_reach); }
 
 // Texel shape: the tile's texels with a ring around them, and the coarser texels under the tile.
 // The second layers follow the first.
-const int ring_side = 10, ring_texels = ring_side * ring_side;
-const int coarse_side = 6 - border, tile_coarse_texels = coarse_side * coarse_side;
+const int ring_side = 8 + 2 * tent_reach, ring_texels = ring_side * ring_side;
+// An axis that is not halved has as many coarser texels, and one that is not needed.
+const int coarse_side = square_pixels ? 6 - border : 9;
+const int tile_coarse_texels = coarse_side * coarse_side;
 // Indices of texels, without multiplication, because some GPUs multiply 32 bits slowly.
-int ring_index(ivec2 at) { return (at.y << 3) + (at.y << 1) + at.x; }
-int coarse_index(ivec2 at) { return (at.y << 2) + (at.y << (border == 0 ? 1 : 0)) + at.x; }
+int ring_index(ivec2 at) { return (at.y << 3) + (at.y << (square_pixels ? 1 : 2)) + at.x; }
+int coarse_index(ivec2 at) {
+  return square_pixels ? (at.y << 2) + (at.y << (border == 0 ? 1 : 0)) + at.x
+                       : (at.y << 3) + at.y + at.x;
+}
+// Returns i / coarse_side, for i below 128.
+int coarse_row(int i) { return square_pixels ? i * (border == 0 ? 43 : 52) >> 8 : i * 57 >> 9; }
 #ifndef SAP_NO_RING
 shared uvec4 tile_surface[texel_shape ? SAP_OWN_LAYERS * ring_texels : 1];
 // halves, exact unless `storage` is full
@@ -47,7 +57,15 @@ vec4 near_light[SAP_OWN_LAYERS * near_texels];
 
 // Coarser texels of a block. Their second layers follow, unless the level itself has two layers.
 const int block_coarse_layers = SAP_OWN_LAYERS > 1 ? 1 : SAP_COARSE_LAYERS;
-const int coarse_texels = coarse_width * coarse_height;
+const int coarse_columns = square_pixels ? coarse_width : max(coarse_width, block_width + 1);
+const int coarse_rows = square_pixels ? coarse_height : max(coarse_height, block_height + 1);
+const int coarse_texels = coarse_columns * coarse_rows;
+// Returns the first of the two nearest coarser texels along each axis. An axis that is not halved
+// has only this one.
+ivec2 first_corner(ivec2 at, int level) {
+  bvec2 halves = greaterThan(step_from_level(level), ivec2(1));
+  return mix(at, (at - 1) >> 1, halves);
+}
 uvec4 coarse_surface[block_coarse_layers * coarse_texels];
 uvec4 coarse_scattered[block_coarse_layers * coarse_texels];
 
@@ -68,7 +86,8 @@ bool has_second_near(uvec4 bits) {
 #endif
 
 #ifndef SAP_NO_RING
-const int block_ring_width = block_width + 2, block_ring_height = block_height + 2;
+const int block_ring_width = block_width + 2 * tent_reach,
+          block_ring_height = block_height + 2 * tent_reach;
 uvec4 ring_surface[block_ring_width * block_ring_height];
 vec4 ring_light[block_ring_width * block_ring_height];
 
@@ -79,25 +98,40 @@ bool is_written(texel_block block, ivec2 place, int level) {
 // Texel i of the ring around a tile, as an offset from the tile: the row above, the row below, then
 // both columns.
 ivec2 ring_offset(int i) {
+  if (!square_pixels) { // the two rows and columns on each side
+    const int both = 2 * tent_reach;
+    int sides = i - both * ring_side;
+    ivec2 place = sides < 0 ? ivec2(i % ring_side, i / ring_side)
+                            : ivec2(sides % both, tent_reach + sides / both);
+    return place + 8 * ivec2(sides >= 0 && place.x >= tent_reach,
+                             sides < 0 && place.y >= tent_reach) -
+           tent_reach;
+  }
   return i < 2 * ring_side ? ivec2((i < ring_side ? i : i - ring_side) - 1, i < ring_side ? -1 : 8)
                            : ivec2((i & 1) == 0 ? -1 : 8, (i >> 1) - ring_side);
 }
-// Texel shape: reads a texel of the tile and a texel of the ring. With two layers, waits for memory
+// Texel shape: texels that an invocation reads, one in the tile and others in the ring.
+const int tile_reads = 2 + (ring_texels - 65) / 64;
+// Texel shape: reads a texel of the tile and texels of the ring. With two layers, waits for memory
 // once per layer: does not branch around texels that were not written, but reads others instead.
 void read_ring_of_tile(texel_block block, int level, bool with_ring) {
-  int i = int(gl_LocalInvocationIndex);
-  bool in_ring = i < ring_texels - 64;
-  ivec2 offset[2] = ivec2[](block.first - 8 * block.tile, ring_offset(in_ring ? i : 0));
-  bool needed[2] = bool[](
-      true, all(bvec3(in_ring, with_ring, tile_written(block.around, (offset[1] >> 3) + 1))));
-  int place[2];
-  ivec2 address[2];
-  uvec4 bits[2] = uvec4[](uvec4(0u), uvec4(0u));
-  vec4 light[2] = vec4[](vec4(0.0), vec4(0.0));
-  [[unroll]] for (int k = 0; k < 2; ++k) {
-    ivec2 at = 8 * block.tile + offset[k] - border;
-    needed[k] = all(bvec2(needed[k], k == 0 ? sap_before_end(at, level) : sap_inside(at, level)));
-    place[k] = ring_index(offset[k] + 1);
+  bool in_tile[tile_reads], needed[tile_reads];
+  int place[tile_reads];
+  ivec2 address[tile_reads];
+  uvec4 bits[tile_reads];
+  vec4 light[tile_reads];
+  [[unroll]] for (int k = 0; k < tile_reads; ++k) {
+    int i = int(gl_LocalInvocationIndex) + 64 * (k - 1);
+    in_tile[k] = k == 0 || i < ring_texels - 64;
+    ivec2 offset = k == 0 ? block.first - 8 * block.tile : ring_offset(in_tile[k] ? i : 0);
+    ivec2 at = 8 * block.tile + offset - border;
+    bool written =
+        k == 0 ||
+        all(bvec3(in_tile[k], with_ring, tile_written(block.around, (offset >> 3) + 1)));
+    needed[k] = all(bvec2(written, k == 0 ? sap_before_end(at, level) : sap_inside(at, level)));
+    place[k] = ring_index(offset + tent_reach);
+    bits[k] = uvec4(0u);
+    light[k] = vec4(0.0);
     address[k] = sap_address(at, level);
 #if SAP_OWN_LAYERS > 1
     address[k] = mix(ivec2(0), address[k], bvec2(needed[k]));
@@ -112,20 +146,23 @@ void read_ring_of_tile(texel_block block, int level, bool with_ring) {
     }
 #endif
   }
-  [[unroll]] for (int k = 0; k < 2; ++k)
-    if (k == 0 || in_ring) {
+  [[unroll]] for (int k = 0; k < tile_reads; ++k)
+    if (in_tile[k]) {
       tile_surface[place[k]] = bits[k];
       tile_light[place[k]] = uvec2(packHalf2x16(light[k].rg), sap_light_ba(bits[k]));
     }
 #if SAP_OWN_LAYERS > 1
-  if (has_second_near(bits[0] | bits[1])) {
-    [[unroll]] for (int k = 0; k < 2; ++k) {
+  uvec4 flags = uvec4(0u);
+  [[unroll]] for (int k = 0; k < tile_reads; ++k)
+    flags |= bits[k];
+  if (has_second_near(flags)) {
+    [[unroll]] for (int k = 0; k < tile_reads; ++k) {
       address[k] = mix(ivec2(0), address[k], bvec2(sap_has_second(bits[k])));
       bits[k] = texelFetch(second_surface_image, address[k], 0);
       light[k] = texelFetch(second_light_image, address[k], 0);
     }
-    [[unroll]] for (int k = 0; k < 2; ++k)
-      if (k == 0 || in_ring) {
+    [[unroll]] for (int k = 0; k < tile_reads; ++k)
+      if (in_tile[k]) {
         tile_surface[ring_texels + place[k]] = bits[k];
         tile_light[ring_texels + place[k]] =
             uvec2(packHalf2x16(light[k].rg), sap_light_ba(bits[k]));
@@ -139,7 +176,7 @@ void read_ring(texel_block block, int level, bool with_ring) {
     read_ring_of_tile(block, level, with_ring);
   } else {
     [[unroll]] for (int i = 0; i < block_ring_width * block_ring_height; ++i) {
-      int x = i % block_ring_width - 1, y = i / block_ring_width - 1;
+      int x = i % block_ring_width - tent_reach, y = i / block_ring_width - tent_reach;
       bool inner = x >= 0 && y >= 0 && x < block_width && y < block_height;
       ivec2 place = block.first + ivec2(x, y);
       bool needed = (inner || with_ring) && is_written(block, place, level);
@@ -156,12 +193,14 @@ void read_ring(texel_block block, int level, bool with_ring) {
 
 // Reads the coarser texels under the block or tile. They exist if a texel of it exists.
 void read_coarser(texel_block block, int level) {
-  ivec2 first = ((texel_shape ? 8 * block.tile : block.first) - border - 1) >> 1;
+  ivec2 first = first_corner((texel_shape ? 8 * block.tile : block.first) - border, level);
   if (texel_shape) {
     int i = int(gl_LocalInvocationIndex);
-    int row = i * (border == 0 ? 43 : 52) >> 8; // i / coarse_side
-    ivec2 at = first + ivec2(i - coarse_index(ivec2(0, row)), row);
-    if (i < tile_coarse_texels) {
+    [[unroll]] for (int k = 0; k < (tile_coarse_texels + 63) / 64; ++k, i += 64) {
+      int row = coarse_row(i);
+      ivec2 at = first + ivec2(i - coarse_index(ivec2(0, row)), row);
+      if (i >= tile_coarse_texels)
+        continue;
       uvec4 bits = uvec4(0u), scattered = uvec4(0u);
       ivec2 address = sap_address(at, level + 1);
       if (sap_before_end(at, level + 1)) {
@@ -181,7 +220,7 @@ void read_coarser(texel_block block, int level) {
     }
   } else {
     [[unroll]] for (int i = 0; i < coarse_texels; ++i) {
-      ivec2 at = first + ivec2(i % coarse_width, i / coarse_width);
+      ivec2 at = first + ivec2(i % coarse_columns, i / coarse_columns);
       bool needed = sap_inside(at, level + 1);
       coarse_surface[i] =
           needed ? texelFetch(coarse_surface_image, sap_address(at, level + 1), 0) : uvec4(0u);
@@ -205,12 +244,12 @@ void finish_reading() {
     barrier();
 }
 
-sap_place place_of(texel_block block, int k) {
+sap_place place_of(texel_block block, int k, int level) {
   ivec2 offset = block_offset(k);
   if (texel_shape) {
     ivec2 local = block.first - 8 * block.tile, at = block.first - border;
-    ivec2 corner = ((at - 1) >> 1) - ((8 * block.tile - border - 1) >> 1);
-    return sap_place(at, at & 1, ring_index(local + 1), coarse_index(corner));
+    ivec2 corner = first_corner(at, level) - first_corner(8 * block.tile - border, level);
+    return sap_place(at, at & 1, ring_index(local + tent_reach), coarse_index(corner));
   }
   return sap_place(block.first - border + offset, (offset + border) & 1, 0, 0);
 }
@@ -221,7 +260,7 @@ uint take_near(int k) {
   uint bits = 0u;
   if (!texel_shape) {
     [[unroll]] for (int n = 0; n < near_texels; ++n) {
-      ivec2 at = block_offset(k) + 1 + near_step(n);
+      ivec2 at = block_offset(k) + tent_reach + near_step(n);
       int i = at.y * block_ring_width + at.x;
       near_surface[n] = ring_surface[i];
       near_light[n] = ring_light[i];
@@ -232,14 +271,14 @@ uint take_near(int k) {
 }
 #endif
 // Selects the coarser texels under texel k of the block. Returns the union of the words with flags.
-uint take_corners(int k) {
+uint take_corners(int k, int level) {
   uint bits = 0u;
   if (!texel_shape) {
     ivec2 at = block_offset(k) + border; // relative to an even texel
-    ivec2 first = ((at - 1) >> 1) - ((border - 1) >> 1);
+    ivec2 first = first_corner(at, level) - first_corner(ivec2(border), level);
     [[unroll]] for (int n = 0; n < block_coarse_layers * corner_texels; ++n) {
-      int i = n / corner_texels * coarse_texels + (first.y + n % corner_texels / 2) * coarse_width +
-              first.x + n % 2;
+      int row = first.y + n % corner_texels / 2;
+      int i = n / corner_texels * coarse_texels + row * coarse_columns + first.x + n % 2;
       corner_surface[n] = coarse_surface[i];
       corner_scattered[n] = coarse_scattered[i];
       bits |= coarse_surface[i].x;
@@ -270,7 +309,7 @@ void read_near(texel_block block, ivec2 place, int level, bool with_ring) {
 // Block shape: reads both layers of the coarser texels under the texel.
 void read_corners(ivec2 place, int level, bool there) {
   [[unroll]] for (int n = 0; n < corner_texels; ++n) {
-    ivec2 at = ((place - 1) >> 1) + ivec2(n % 2, n / 2);
+    ivec2 at = first_corner(place, level) + ivec2(n % 2, n / 2);
     bool needed = there && sap_inside(at, level + 1);
     corner_surface[n] =
         needed ? texelFetch(coarse_surface_image, sap_address(at, level + 1), 0) : uvec4(0u);

@@ -70,15 +70,15 @@ float sap_scale(sap_texel t, float area) { return t.reach * sqrt(sqrt(sqrt(area)
 vec3 sample_light(ivec2 q, vec2 at, sap_texel tap, float lod) {
   int level = min(int(lod + 0.5), last_sample_level);
   if (level > 0) {
-    ivec2 texel = ivec2(floor((at + 0.5) * exp2(-float(level))));
+    ivec2 texel = ivec2(floor((at + 0.5) / sap_spacings(level)));
     if (sap_inside(texel, level)) {
       ivec2 address = sap_address(texel, level);
       uvec4 bits = level_surface(level, address);
       sap_texel mean = sap_unpack(bits);
-      vec2 offset = (vec2(texel) + 0.5) * float(1 << level) - 0.5 - vec2(q);
+      vec2 offset = (vec2(texel) + 0.5) * sap_spacings(level) - 0.5 - vec2(q);
       float off = abs(mean.depth - tap.depth - sap_rise(tap.depth, tap.slope, offset));
       if (mean.id == tap.id &&
-          off < on_surface * sap_sigma * float(1 << level) * sap_footprint(tap.depth))
+          off < on_surface * sap_sigma * sap_spacing(level) * sap_footprint(tap.depth))
         return sap_light(bits, level_light(level, address)).rgb;
     }
   }

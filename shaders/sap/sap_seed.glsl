@@ -20,7 +20,7 @@ struct seed_search {
 void consider_outer(sap_parent parent, sap_texel before, int c, bool second,
                     inout seed_search found) {
   sap_texel child = child_of(parent, c, second);
-  float weight = may_seed(parent, before, child, c) ? binomial(c) * child.mass : 0.0;
+  float weight = may_seed(parent, before, child, c) ? binomial(parent, c) * child.mass : 0.0;
   if (weight > hysteresis * found.maximum)
     found = seed_search(child, weight, c);
 }
@@ -28,7 +28,7 @@ void consider_outer(sap_parent parent, sap_texel before, int c, bool second,
 // Returns the support of a seed's plane by central child b.
 float support_of(sap_parent parent, sap_texel seed, sap_texel near, bool may, int b,
                  float per_sigma_mm) {
-  float off = sap_off_plane(seed, near, offset_of(central(b), parent.spacing)) * per_sigma_mm;
+  float off = sap_off_plane(seed, near, offset_of(parent, central(b))) * per_sigma_mm;
   return near.id == seed.id && may ? exp2(sap_factor(sap_depth_width) * off * off) : 0.0;
 }
 // Compares the plane of central child c with the best one so far. `near` and `may`: the central
@@ -36,7 +36,7 @@ float support_of(sap_parent parent, sap_texel seed, sap_texel near, bool may, in
 void consider_central(sap_parent parent, int layers, sap_texel near[4 * max_layers],
                       bool may[4 * max_layers], sap_texel seed, bool may_be_seed, int c,
                       inout seed_search found) {
-  seed.depth = at_parent(seed, offset_of(c, parent.spacing));
+  seed.depth = at_parent(seed, offset_of(parent, c));
   float per_sigma_mm = 1.0 / (sap_sigma * parent.spacing * sap_footprint(seed.depth)),
         support = 0.0;
   [[unroll]] for (int b = 0; b < 4; ++b)
@@ -102,7 +102,7 @@ sap_texel find_seed(sap_parent parent, int layers, sap_texel before) {
     [[unroll]] for (int c = 0; c < layers * children_a_layer; ++c)
       consider_outer(parent, before, c % children_a_layer, c >= children_a_layer, found);
   }
-  found.best.depth = at_parent(found.best, offset_of(found.child, parent.spacing));
+  found.best.depth = at_parent(found.best, offset_of(parent, found.child));
 #endif
   return found.best;
 }

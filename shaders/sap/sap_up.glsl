@@ -9,6 +9,7 @@
 #define DERMIS_SAP_UP_GLSL
 
 #include "sap/sap_tiles.glsl"
+#include "sap/sap_tent.glsl"
 #ifndef SAP_OWN_LAYERS
 #define SAP_OWN_LAYERS 1
 #endif
@@ -33,9 +34,11 @@ bool sap_takes_second(sap_texel own, sap_texel first, float first_off, sap_texel
 }
 
 #ifndef SAP_NO_RING
-// Returns a 3x3 tent over the level's own light, over its first `layers` layers.
+// Returns a tent over the level's own light, over its first `layers` layers: 3x3 texels, or more if
+// pixels are not square.
 sap_sum sap_tent(sap_place place, int level, sap_texel own, int layers) {
-  float spacing = float(1 << level);
+  float spacing = sap_spacing(level);
+  vec2 spacings = sap_spacings(level);
   float per_sigma = 1.0 / (sap_sigma * spacing);
   float off_unit = sap_rate(sap_depth_width) * per_sigma / sap_footprint(own.depth);
   // Tilt in units of the tent's width: across, down, and along both diagonals. The tilt is
@@ -45,13 +48,25 @@ sap_sum sap_tent(sap_place place, int level, sap_texel own, int layers) {
   vec4 narrowing = exp2(sap_factor(sap_tilt_width_tent) * tilts * tilts);
   vec3 sum = vec3(0.0);
   float total = 0.0, mass = 0.0;
-  [[unroll]] for (int j = -1; j <= 1; ++j)
-    [[unroll]] for (int i = -1; i <= 1; ++i) {
-      vec2 offset = vec2(i, j) * spacing;
+  float all_weight = 4.0 + 4.0 * (narrowing.x + narrowing.y) + 2.0 * (narrowing.z + narrowing.w);
+  sap_tent_weights weights = sap_tent_of_level(level);
+  if (!square_pixels)
+    all_weight = 0.0;
+  [[unroll]] for (int j = -tent_reach; j <= tent_reach; ++j)
+    [[unroll]] for (int i = -tent_reach; i <= tent_reach; ++i) {
+      vec2 offset = vec2(i, j) * spacings;
       float weight = float((2 - abs(i)) * (2 - abs(j)));
       if (i != 0 || j != 0)
         weight *= j == 0 ? narrowing.x : i == 0 ? narrowing.y : i == j ? narrowing.z : narrowing.w;
-      int n = 3 * (j + 1) + i + 1;
+      if (!square_pixels) {
+        float along = dot(own.slope, offset) * per_sigma;
+        weight = weights.across[abs(i)] * weights.down[abs(j)] *
+                 exp2(sap_factor(sap_tilt_width_tent) * along * along);
+        if (weight == 0.0)
+          continue;
+        all_weight += weight;
+      }
+      int n = (2 * tent_reach + 1) * (j + tent_reach) + i + tent_reach;
       uvec4 bits = near_bits(place, n);
       sap_texel tap = sap_unpack(bits);
       vec4 light = light_near(place, level, n);
@@ -76,7 +91,6 @@ sap_sum sap_tent(sap_place place, int level, sap_texel own, int layers) {
       total += weight * light.a;
       sum += weight * light.a * light.rgb;
     }
-  float all_weight = 4.0 + 4.0 * (narrowing.x + narrowing.y) + 2.0 * (narrowing.z + narrowing.w);
   return sap_sum(sum / total, vec3(mass / all_weight));
 }
 #endif
@@ -89,18 +103,23 @@ sap_sum sap_tent(sap_place place, int level, sap_texel own, int layers) {
 // lost.
 sap_sum sap_from_coarser(sap_place place, int level, sap_texel own, vec3 fallback, int layers,
                          out float confidence) {
-  float spacing = float(1 << level);
   const float width = sap_depth_width;
-  float off_unit = sap_rate(width) / (sap_sigma * spacing * sap_footprint(own.depth));
+  float off_unit = sap_rate(width) / (sap_sigma * sap_spacing(level) * sap_footprint(own.depth));
   vec2 odd = vec2(place.odd), nearer = 0.25 + 0.5 * odd;
+  // An axis that is not halved has one texel, at the same position.
+  bvec2 halves = greaterThan(step_from_level(level), ivec2(1));
+  vec2 distances = mix(vec2(0.0), sap_spacings(level), halves);
+  nearer = mix(vec2(1.0), nearer, halves);
   vec3 sum = vec3(0.0), mass = vec3(0.0);
-  float existing = 0.0, per_relevant = sap_per_relevant(own, spacing) / sap_rate(width);
+  float existing = 0.0, per_relevant = sap_per_relevant(own, sap_spacing(level)) / sap_rate(width);
   confidence = 0.0;
   [[unroll]] for (int j = 0; j < 2; ++j)
     [[unroll]] for (int i = 0; i < 2; ++i) {
     // An odd texel is nearer to its first corner: distances 0.5 and 1.5; an even one to its second.
-    vec2 steps = odd - 1.5 + 2.0 * vec2(i, j), offset = steps * spacing;
+    vec2 steps = odd - 1.5 + 2.0 * vec2(i, j), offset = steps * distances;
     float bilinear = (i == 0 ? nearer.x : 1.0 - nearer.x) * (j == 0 ? nearer.y : 1.0 - nearer.y);
+    if (!square_pixels && bilinear == 0.0)
+      continue; // the texel may not exist
     int n = 2 * j + i;
     uvec4 bits = corner_bits(place, n);
     sap_texel tap = sap_unpack(bits);

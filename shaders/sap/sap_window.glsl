@@ -10,7 +10,7 @@
 #include "sap/sap_levels.glsl"
 #include "sap/sap_tiles.glsl"
 
-const int near_centre = 4, near_texels = 9, corner_texels = 4;
+const int tent_reach = 1, near_centre = 4, near_texels = 9, corner_texels = 4;
 ivec2 near_step(int n) { return ivec2(n % 3 - 1, n / 3 - 1); }
 
 const int tile_ring_texels = 10 * 10;

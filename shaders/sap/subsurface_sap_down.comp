@@ -13,11 +13,12 @@
 
 // Block shape: reads both layers of the children of parent k.
 sap_parent read_children(texel_block block, int k, int finer) {
-  sap_parent parent =
-      sap_parent(block.first - 1 + block_offset(k), finer, float(1 << finer), 0, true, true);
+  sap_parent parent = parent_at(block.first - 1 + block_offset(k), finer);
+  parent.two = true;
   [[unroll]] for (int c = 0; c < children_a_layer; ++c) {
     ivec2 address = address_of_child(parent, c);
-    bool needed = child_written(block, 2 * parent.at - 1 + ivec2(c & 3, c >> 2), finer);
+    ivec2 at = step_from_level(finer) * parent.at - 1 + ivec2(c & 3, c >> 2);
+    bool needed = child_written(block, at, finer);
     uvec4 bits = needed ? texelFetch(surface_image, address, 0) : uvec4(0u);
     children[c] = sap_unpack(bits);
     child_light[c] = needed ? finer_light(address, finer, false, bits) : vec4(0.0);

@@ -47,7 +47,7 @@ void main() {
     read_coarser(block, 0);
   finish_reading();
   [[unroll]] for (int k = 0; k < block_texels; ++k) {
-    sap_place place = place_of(block, k);
+    sap_place place = place_of(block, k, 0);
     if (!inside_rect(place.at))
       continue;
     ivec2 in_block = texel_shape ? block.first - 8 * block.tile : block_offset(k);
@@ -57,7 +57,7 @@ void main() {
       result.rgb = pixel_light(lighting_image, albedo_image, has_albedo(), settings.texturing,
                                texel_of(place.at));
       if (depth_at(i) > 0.0) {
-        take_corners(k);
+        take_corners(k, 0);
         result = gather(place, in_block, result.rgb);
       }
     }

@@ -16,14 +16,16 @@ sap_texel block_children[side * side];
 vec4 block_light[side * side];
 
 void read_pixel(texel_block block, int i, ivec2 pixel) {
-  bool needed =
-      inside_rect(pixel) && tile_written(block.children, (pixel >> 3) - 2 * block.tile + 1);
+  ivec2 tile = (pixel >> 3) - step_from_level(0) * block.tile + 1;
+  bool needed = inside_rect(pixel) && tile_written(block.children, tile);
   keep_pixel(i, pixel, needed, true);
 }
 // Texel shape: reads the pixels of the tile.
 void read_tile(texel_block block) {
   [[dont_unroll]] for (int i = int(gl_LocalInvocationIndex); i < tile_pixels * tile_pixels; i += 64)
-    read_pixel(block, i, 2 * (8 * block.tile - 1) + ivec2(i % tile_pixels, i / tile_pixels));
+    read_pixel(block, i,
+               step_from_level(0) * (8 * block.tile - 1) +
+                   ivec2(i % tile_pixels, i / tile_pixels));
   barrier();
 }
 void compute_child(ivec2 pixel, ivec2 place, out sap_texel child, out vec4 light) {
@@ -41,10 +43,10 @@ void compute_child(ivec2 pixel, ivec2 place, out sap_texel child, out vec4 light
 // Block shape: reads the pixels of a block and computes all children.
 void read_block(texel_block block, ivec2 first) {
   [[unroll]] for (int i = 0; i < side * side; ++i)
-    read_pixel(block, i, 2 * first + ivec2(i % side, i / side));
+    read_pixel(block, i, step_from_level(0) * first + ivec2(i % side, i / side));
   [[unroll]] for (int i = 0; i < side * side; ++i) {
     ivec2 place = ivec2(i % side, i / side);
-    compute_child(2 * first + place, place, block_children[i], block_light[i]);
+    compute_child(step_from_level(0) * first + place, place, block_children[i], block_light[i]);
   }
 }
 
@@ -58,17 +60,19 @@ void main() {
   else
     read_block(block, first);
   [[unroll]] for (int k = 0; k < block_texels; ++k) {
-    sap_parent parent = sap_parent(first + block_offset(k), 0, 1.0, 0, false, false);
+    sap_parent parent = parent_at(first + block_offset(k), 0);
+    parent.splits = false;
     if (!sap_inside(parent.at, 1))
       continue;
     [[unroll]] for (int c = 0; c < children_a_layer; ++c) {
       ivec2 child = ivec2(c % children_across, c / children_across);
       if (texel_shape) {
-        compute_child(2 * parent.at + child, 2 * (block.first - 8 * block.tile) + child,
-                      children[c], child_light[c]);
+        compute_child(step_from_level(0) * parent.at + child,
+                      step_from_level(0) * (block.first - 8 * block.tile) + child, children[c],
+                      child_light[c]);
       } else {
-        children[c] = block_children[shared_child(k, c)];
-        child_light[c] = block_light[shared_child(k, c)];
+        children[c] = block_children[shared_child(k, c, 0)];
+        child_light[c] = block_light[shared_child(k, c, 0)];
       }
     }
     sap_layer layer = reduce(parent, 1, no_texel);

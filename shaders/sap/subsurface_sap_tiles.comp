@@ -74,7 +74,7 @@ void append_region(ivec2 region) {
 }
 
 void list_coarse_levels() {
-  for (int i = lane(); i < sap_coarse_words; i += lanes)
+  for (int i = lane(); i < coarse_words; i += lanes)
     coarse_flags[i] = 0u;
   uint word = lane() < state_words ? state_word(lane()) : 0u;
   if (lane() < sap_levels)
@@ -139,12 +139,9 @@ void write_level_arguments(int level) {
   counters.level_groups[level] = groups;
 }
 
-void main() {
-  ivec2 region = ivec2(gl_WorkGroupID.xy);
+void list_region(ivec2 region, int word) {
   if (lane() < region_levels)
     listed[lane()] = 0u;
-  if (lane() == 0)
-    scatters = 0u;
   clear_flags(lane(), lanes);
   barrier();
   for (int run = lane(); run < class_runs; run += lanes)
@@ -152,7 +149,7 @@ void main() {
       atomicOr(scatters, 1u);
   barrier();
   for (int level = 1; level < region_levels; ++level) {
-    if (lane() < flagged_side(level))
+    if (lane() < flagged_side(level).y)
       reduce_flags(region, level, lane());
     barrier();
   }
@@ -160,10 +157,28 @@ void main() {
   if (children != 0u)
     append_region(region);
   if (lane() == 0) {
-    uint tile = gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x;
-    atomicExchange(list_state_data[uint(state_words) + tile], children);
+    atomicExchange(list_state_data[state_words + word], children);
     if (scatters != 0u)
       atomicOr(list_state_data[state_scatters], 1u);
+  }
+}
+
+void main() {
+  if (lane() == 0)
+    scatters = 0u;
+  if (square_pixels) {
+    list_region(ivec2(gl_WorkGroupID.xy),
+                int(gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x));
+  } else {
+    // Levels that do not halve an axis have several regions per group along it.
+    ivec2 tiles = sap_level_tiles(coarse_level);
+    for (int k = 0; k < 1 << pixel_doublings; ++k) {
+      ivec2 region = ivec2(gl_WorkGroupID.xy) * ivec2(1 << kept_x, 1 << kept_y) +
+                     (higher_pixels ? ivec2(0, k) : ivec2(k, 0));
+      if (all(lessThan(region, tiles)))
+        list_region(region, region.y * tiles.x + region.x);
+      barrier();
+    }
   }
   if (!last_group())
     return;

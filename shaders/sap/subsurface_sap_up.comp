@@ -32,19 +32,19 @@ void main() {
     read_coarser(block, level);
   finish_reading();
   if (texel_shape) {
-    sap_place place = place_of(block, 0);
+    sap_place place = place_of(block, 0, level);
     if (sap_inside(place.at, level))
       compute_layers(place, level, smooth_level, last);
     return;
   }
   uint layered = 0u; // bit k: texel k needs more than one layer
   [[unroll]] for (int k = 0; k < block_width * block_height; ++k) {
-    sap_place place = place_of(block, k);
+    sap_place place = place_of(block, k, level);
     if (!sap_inside(place.at, level))
       continue;
     uint found = take_near(k);
     if (!last)
-      found |= take_corners(k);
+      found |= take_corners(k, level);
     layered |= (found & sap_second_bit) != 0u ? 1u << k : 0u;
     uvec4 bits = uvec4(0u);
     sap_texel own = sap_unpack(near_bits(place, near_centre));

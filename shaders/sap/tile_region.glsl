@@ -16,11 +16,22 @@ const int region_tiles = 16 * 16 + 8 * 8 + 4 * 4 + 2 * 2;
 // A word per row of flags of all levels, and the flags from the 32nd on of the rows of level 0.
 shared uint flags[39 + 19 + 9 + 4], flags_beyond[39];
 
-// Returns the tiles per side of the region, and those per side that have flags: 39, 19, 9, 4.
-int region_side(int level) { return 16 >> level; }
-int flagged_side(int level) { return (40 >> level) - 1; }
-// Returns the number of flagged tiles before the region along an axis.
-int flagged_before(int level) { return (16 >> level) - 1; }
+// Returns the first level from `level` on whose step to the next one halves each axis.
+ivec2 halved_from(int level) {
+  return square_pixels ? ivec2(level) : max(ivec2(level), ivec2(kept_x, kept_y));
+}
+// Returns the tiles per side of the region, and those per side that have flags: 39, 19, 9, 4; less
+// along an axis that is not halved.
+ivec2 region_side(int level) { return ivec2(16) >> halved_from(level); }
+ivec2 flagged_side(int level) {
+  ivec2 halved = halved_from(level);
+  return (ivec2(40) >> halved) - 1 + 2 * (halved - level);
+}
+// Returns the number of flagged tiles before the region along each axis.
+ivec2 flagged_before(int level) {
+  ivec2 halved = halved_from(level);
+  return (ivec2(16) >> halved) - 1 + (halved - level);
+}
 // Returns the index of the level's first row of flags.
 int flags_row(int level) { return 80 - (80 >> level) - level; }
 ivec2 first_flagged(int level, ivec2 region) {
@@ -65,10 +76,12 @@ bool read_classes(ivec2 region, int run) {
 
 // Computes a row of flags of levels 1 to 3 from those of the finer level.
 void reduce_flags(ivec2 region, int level, int row) {
-  int finer = flags_row(level - 1) + 2 * row;
+  ivec2 step = step_from_level(level - 1);
+  int finer = flags_row(level - 1) + step.y * row;
   uint bits = flags[finer] | flags[finer + 1] | flags[finer + 2], beyond = 0u;
-  if (level == 1)
-    beyond = flags_beyond[2 * row] | flags_beyond[2 * row + 1] | flags_beyond[2 * row + 2];
+  if (level == 1 && step.x > 1)
+    beyond = flags_beyond[step.y * row] | flags_beyond[step.y * row + 1] |
+             flags_beyond[step.y * row + 2];
   bits |= bits >> 1 | bits >> 2 | beyond << 31 | beyond << 30;
   beyond |= beyond >> 1 | beyond >> 2;
   ivec2 first = first_flagged(level, region), tiles = sap_level_tiles(level);
@@ -76,7 +89,7 @@ void reduce_flags(ivec2 region, int level, int row) {
   uint inside = bits_below(range.y) & ~bits_below(range.x);
   bool exists = first.y + row >= 0 && first.y + row < tiles.y;
   flags[flags_row(level) + row] =
-      exists ? (even_bits(bits) | even_bits(beyond) << 16) & inside : 0u;
+      exists ? (step.x > 1 ? even_bits(bits) | even_bits(beyond) << 16 : bits) & inside : 0u;
 }
 
 struct region_tile {
@@ -87,18 +100,21 @@ struct region_tile {
 region_tile region_tile_of(int index) {
   int level = index < 256 ? 0 : index < 320 ? 1 : index < 336 ? 2 : 3;
   int first = index < 256 ? 0 : index < 320 ? 256 : index < 336 ? 320 : 336;
-  int side = region_side(level), i = index - first;
+  int side = 16 >> level, i = index - first;
   return region_tile(level, ivec2(i & (side - 1), i >> (4 - level)));
 }
 bool is_flagged(region_tile tile) {
   ivec2 place = tile.place + flagged_before(tile.level);
+  if (!square_pixels && any(greaterThanEqual(tile.place, region_side(tile.level))))
+    return false;
   return (flags[flags_row(tile.level) + place.y] >> uint(place.x) & 1u) != 0u;
 }
 // Returns the flags of the 3x3 tiles of the finer level that the tile reduces, and of those around
 // it.
 uint region_children(region_tile tile) {
   return tile.level > 0
-             ? flags_from(tile.level - 1, 2 * (tile.place + flagged_before(tile.level)))
+             ? flags_from(tile.level - 1, step_from_level(tile.level - 1) *
+                                              (tile.place + flagged_before(tile.level)))
              : 0u;
 }
 uint region_around(region_tile tile) {

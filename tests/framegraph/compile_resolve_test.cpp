@@ -49,6 +49,25 @@ TEST(Sizes, FollowTheViewWithTheStatedRounding) {
   EXPECT_EQ(middle.height, 10u);
 }
 
+TEST(Sizes, SquareViewDoublesTheLongerSideOfPixels) {
+  Chain b;
+  b.middle().size.base = SizeExpression::Base::square_view;
+  b.middle().size.x = b.middle().size.y = {1, 2};
+  const struct {
+    double aspect; // width / height
+    uint32_t width, height;
+  } cases[] = {{1, 32, 16},       {1.05, 32, 16}, {4.0 / 3, 32, 16}, {1.6, 64, 16},
+               {1 / 1.6, 32, 32}, {4, 128, 16},   {0.25, 32, 64},    {1000, 128, 16}};
+  for (const auto& [aspect, width, height] : cases) {
+    CompileInput input = b.input(64, 32);
+    input.pixel_grid = pixel_grid(aspect);
+    const auto plan = compiled(b, input).plan;
+    EXPECT_EQ(resource_of(b, plan, "middle").width, width) << aspect;
+    EXPECT_EQ(resource_of(b, plan, "middle").height, height) << aspect;
+    EXPECT_EQ(plan.pixel_grid, input.pixel_grid);
+  }
+}
+
 TEST(Sizes, AreNeverBelowOneAndChangeWithTheView) {
   Chain b;
   b.middle().size.x = b.middle().size.y = {1, 8};

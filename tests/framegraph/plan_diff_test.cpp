@@ -108,6 +108,7 @@ TEST(PlanDiff, NamesEachChange) {
   const Change changes[] = {
       {"compiled_from", "graph", [](auto& p) { p.key.graph[0] ^= 1; }},
       {"compiled_from", "view", [](auto& p) { ++p.key.view_width; }},
+      {"compiled_from", "pixel grid", [](auto& p) { ++p.key.pixel_grid; }},
       {"compiled_from", "device", [](auto& p) { p.key.device_profile = "another"; }},
       {"compiled_from", "device limits", [](auto& p) { p.key.buffer_image_granularity = 7; }},
       {"compiled_from", "device features",

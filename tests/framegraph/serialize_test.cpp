@@ -151,6 +151,7 @@ TEST(PlanKey, DiffersIfThePlanCanDiffer) {
   };
   EXPECT_TRUE(is_new([](CompileInput&) {}));
   EXPECT_TRUE(is_new([](CompileInput& input) { input.view_width += 1; }));
+  EXPECT_TRUE(is_new([](CompileInput& input) { input.pixel_grid = 1; }));
   EXPECT_TRUE(is_new([](CompileInput& input) { input.view_height += 1; }));
   EXPECT_TRUE(is_new([&](CompileInput& input) { input.device = &other; }));
   EXPECT_TRUE(is_new([](CompileInput& input) { input.order = PassOrder::program; }));

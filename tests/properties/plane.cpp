@@ -82,7 +82,8 @@ Picture run(const std::string& graph, const Plane& plane, const Settings& settin
 
 void run_frames(const std::string& graph, const Plane& plane, const Settings& settings,
                 uint32_t frames, const std::function<void(const Picture&)>& each) {
-  auto host = demo::create_vulkan_host({.validation = true, .device = ""});
+  auto host =
+      demo::create_vulkan_host({.validation = true, .device = "", .kernels = plane.kernels});
   if (!host) {
     ADD_FAILURE() << host.error().text;
     return;
@@ -95,6 +96,7 @@ void run_frames(const std::string& graph, const Plane& plane, const Settings& se
                                                             plane.overlay + ".json")}};
   request.width = plane.width;
   request.height = plane.height;
+  request.pixel_aspect = plane.pixel_aspect;
   request.profiles = {{1, "one", profile_text(plane)}, {2, "two", profile_text(plane)}};
   request.formats = {{"lighting", VK_FORMAT_R32G32B32A32_SFLOAT},
                      {"depth", VK_FORMAT_R32_SFLOAT},
@@ -136,7 +138,9 @@ void run_frames(const std::string& graph, const Plane& plane, const Settings& se
     frame.rect_width = r[2];
     frame.rect_height = r[3];
     const uint32_t w = r[2] != 0 ? r[2] : plane.width, h = r[2] != 0 ? r[3] : plane.height;
-    const auto clip = orthographic(w * plane.pixel_pitch_m, h * plane.pixel_pitch_m);
+    const double stretch = std::sqrt(plane.pixel_aspect);
+    const auto clip =
+        orthographic(w * plane.pixel_pitch_m * stretch, h * plane.pixel_pitch_m / stretch);
     constexpr float identity[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
     for (size_t i = 0; i < 16; ++i) {
       frame.clip_from_view[i] = frame.previous_clip_from_view[i] = clip[i];

@@ -2,6 +2,8 @@
 // Runs a shipped graph on the device, on a plane that faces an orthographic camera, for which
 // closed forms exist.
 
+#include "integration/examples/demo_engine/kernel_shape.hpp"
+
 #include <gtest/gtest.h>
 
 #include <array>
@@ -17,7 +19,8 @@ using Rgb = std::array<double, 3>;
 
 struct Plane {
   uint32_t width = 256, height = 256;
-  double pixel_pitch_m = 1e-3;
+  double pixel_pitch_m = 1e-3;            // Geometric mean of a pixel's width and height.
+  double pixel_aspect = 1;                // Width / height of a pixel, also for the plan.
   std::array<double, 3> d_px = {4, 4, 4}; // d of profile 1 in pixels; profile 2 has the same d.
   std::function<float(double x, double y)> light = [](double, double) {
     return 1.0f;
@@ -34,6 +37,7 @@ struct Plane {
   std::string overlay = {}; // Name in configs/overlays/ without .json; "": none.
   // Text of a profile for both ids, in place of d_px; "": Burley with d_px.
   std::string profile_file = {};
+  demo::KernelShape kernels = demo::KernelShape::by_device;
 };
 
 struct Picture {

@@ -39,9 +39,11 @@ std::vector<Size> sizes_for(const Graph& graph, const Size& view) {
       Size& size = known[chain.back()];
       if (size.width != 0) continue;
       const SizeExpression& from = graph.resources[chain.back()].size;
-      const Size base = from.base == SizeExpression::Base::view       ? view
-                        : from.base == SizeExpression::Base::resource ? known[from.resource.value]
-                                                                      : Size{1, 1};
+      const Size base =
+          from.base == SizeExpression::Base::view || from.base == SizeExpression::Base::square_view
+              ? view
+          : from.base == SizeExpression::Base::resource ? known[from.resource.value]
+                                                        : Size{1, 1};
       size = {side_of(base.width, from.x, from), side_of(base.height, from.y, from)};
     }
   }

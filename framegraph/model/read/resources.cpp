@@ -232,10 +232,12 @@ void declare_resources(GraphReader& reader, NodeId list, Origin origin) {
       declared.type = ResourceType::acceleration_structure;
     bool ok =
         check_name(declared.name, "the name of a resource", declared.where, reader.diagnostics);
-    if (declared.name == "view") {
+    if (declared.name == "view" || declared.name == "square_view") {
       ok = false;
       reader.error(DiagnosticId::bad_name, declared.where,
-                   "'view' is reserved for the size of the view; a resource cannot have this name");
+                   fmt::format("'{}' is reserved for the size of the view; a resource cannot have "
+                               "this name",
+                               declared.name));
     }
     const auto [entry, added] = reader.resource_names.emplace(
         declared.name, ResourceId{static_cast<uint32_t>(reader.graph.resources.size())});

@@ -153,7 +153,8 @@ Error create_kernel(const KernelInput& input, PassTypeId id, Kernel& kernel) {
   for (uint32_t s = 0; s < type.settings.size(); ++s)
     if (!is_constant(type.settings[s])) kernel.pushed_settings.push_back(s);
   for (const SpecialisationConstant& constant : reflection->constants) {
-    if (constant.id == constant_id::bound_ports || constant.id == constant_id::changing_ports)
+    if (constant.id == constant_id::bound_ports || constant.id == constant_id::changing_ports ||
+        constant.id == constant_id::pixel_grid)
       kernel.constants.push_back({constant.id, no_index});
     if (constant.id >= constant_id::first_setting)
       kernel.constants.push_back({constant.id, constant.id - constant_id::first_setting});
@@ -174,8 +175,9 @@ std::vector<uint32_t> constants_of(const PassType& type, const Kernel& kernel, c
   std::vector<uint32_t> values;
   for (const KernelConstant& constant : kernel.constants)
     values.push_back(
-        constant.setting != no_index
-            ? kernel_word(value_of(plan, pass, constant.setting, settings))
+        constant.setting != no_index ? kernel_word(value_of(plan, pass, constant.setting, settings))
+        : constant.id == constant_id::pixel_grid
+            ? plan.pixel_grid
             : (constant.id == constant_id::bound_ports ? masks.bound : masks.changing) & optional);
   return values;
 }

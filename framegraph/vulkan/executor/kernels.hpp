@@ -21,7 +21,7 @@ struct KernelPort {
 // Specialisation constant that a kernel declares.
 struct KernelConstant {
   uint32_t id = 0;             // see constant_id
-  uint32_t setting = no_index; // into PassType::settings; no_index: a mask of ports
+  uint32_t setting = no_index; // into PassType::settings; no_index: of the plan
 };
 
 // One per pass type that dispatches; shared by the executors that run it.

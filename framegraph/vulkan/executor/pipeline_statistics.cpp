@@ -122,10 +122,13 @@ std::string constants_text(const PassType& type, const Pipeline& pipeline) {
     const KernelConstant& constant = pipeline.kernel->constants[i];
     if (constant.setting != no_index)
       words.push_back(setting_text(type.settings[constant.setting], pipeline.constants[i]));
+    else if (constant.id == constant_id::pixel_grid)
+      words.push_back(fmt::format("pixel_grid={}", pipeline.constants[i]));
     else
       (constant.id == constant_id::bound_ports ? masks.bound : masks.changing) =
           pipeline.constants[i];
-    has_masks = has_masks || constant.setting == no_index;
+    has_masks = has_masks || constant.id == constant_id::bound_ports ||
+                constant.id == constant_id::changing_ports;
   }
   for (uint32_t p = 0; has_masks && p < type.ports.size(); ++p)
     if (type.ports[p].optional)

@@ -355,10 +355,11 @@ typedef struct dermis_graph_desc {
   uint32_t overlay_count;
   dermis_include_fn include; /* NULL: no includes; else callable as long as the graph lives */
   void* include_user;
+  float pixel_aspect; /* width / height of a pixel, within 30 %; part of the size; 0: 1 */
 } dermis_graph_desc;
 #define DERMIS_GRAPH_DESC_INIT \
   {sizeof(dermis_graph_desc), DERMIS_SOURCE_INIT, 0, 0, NULL, 0, 0, NULL, NULL, 0, 0, NULL, 0, \
-   NULL, NULL}
+   NULL, NULL, 0}
 /* Checks a graph without a device. The graph must not include other files. *report (may be NULL)
  * gets the messages. Costs: time. Thread: any. Errors: ARGUMENT, VERSION, CONFIG, MEMORY. */
 DERMIS_API dermis_result DERMIS_CALL dermis_validate(

@@ -55,6 +55,9 @@ TEST_F(Fields, OfAGraph_WrongOnesAreNamed) {
   using Change = std::function<void(Description&)>;
   const std::pair<const char*, Change> changes[] = {
       {"desc.keep is 0x1, expected 0", [](auto& d) { d.desc.keep = DERMIS_KEEP_SOURCE; }},
+      {"desc.pixel_aspect is -1", [](auto& d) { d.desc.pixel_aspect = -1; }},
+      {"desc.pixel_aspect is nan", [](auto& d) { d.desc.pixel_aspect = NAN; }},
+      {"desc.pixel_aspect is 1e-07", [](auto& d) { d.desc.pixel_aspect = 1e-7f; }},
       {"desc.source.text is NULL", [](auto& d) { d.desc.source.text = nullptr; }},
       {"desc.source.length is 0", [](auto& d) { d.desc.source.length = 0; }},
       {"at most", [](auto& d) { d.desc.source.length = limits::file_bytes + 1; }},

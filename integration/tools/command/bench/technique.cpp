@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <utility>
 
 namespace dermis::tools {
@@ -102,6 +103,7 @@ demo::Result<> TechniqueRun::prepare(const CapturedFrame& frame, const SlotChoic
   device_request.overlays = loaded_.overlays;
   device_request.width = frame.description.width;
   device_request.height = frame.description.height;
+  device_request.pixel_aspect = std::abs(frame.rays.scale_x / frame.rays.scale_y);
   device_request.profiles = profiles_;
   device_request.settings = settings_as_json(loaded_.graph, request_.set);
   device_request.unbound = slots.unbound;

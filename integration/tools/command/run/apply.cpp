@@ -17,6 +17,7 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace dermis::tools {
@@ -46,6 +47,7 @@ demo::Result<> prepare(ApplyRun& run, const CapturedFrame& frame, const SlotChoi
   request.open = open_included(run.options.graph, run.options.inputs.roots);
   request.width = frame.description.width;
   request.height = frame.description.height;
+  request.pixel_aspect = std::abs(frame.rays.scale_x / frame.rays.scale_y);
   request.settings = settings_as_json(run.loaded.graph, run.options.settings);
   request.unbound = slots.unbound;
   request.hooks = run.hooks;

@@ -1,4 +1,5 @@
 #include "integration/tools/command/run/device_graph.hpp"
+#include "framegraph/model/pixel_grid.hpp"
 #include "integration/examples/demo_engine/render/reported_frame.hpp"
 
 #include "integration/examples/demo_engine/dermis_calls.hpp"
@@ -54,6 +55,7 @@ demo::Result<dermis_graph> create_graph(dermis_context context, const DeviceGrap
   desc.source = demo::source_of(request.graph_name, request.graph_text);
   desc.width = request.width;
   desc.height = request.height;
+  desc.pixel_aspect = static_cast<float>(request.pixel_aspect);
   desc.profiles = profiles.data();
   desc.profile_count = static_cast<uint32_t>(profiles.size());
   desc.unbound = unbound.data();
@@ -95,7 +97,7 @@ dermis_image_state c_state(const demo::ImageState& state) {
 bool same_but_size(const DeviceGraphRequest& a, const DeviceGraphRequest& b) {
   return a.graph_name == b.graph_name && a.graph_text == b.graph_text && a.overlays == b.overlays &&
          a.formats == b.formats && a.unbound == b.unbound && a.profiles == b.profiles &&
-         a.settings == b.settings;
+         a.settings == b.settings && pixel_grid(a.pixel_aspect) == pixel_grid(b.pixel_aspect);
 }
 
 demo::Result<std::unique_ptr<DeviceGraph>> DeviceGraph::create(demo::VulkanHost& host,

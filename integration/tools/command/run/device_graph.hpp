@@ -26,6 +26,7 @@ struct DeviceGraphRequest {
   // opens files that graph and overlays include
   OpenFile open;
   uint32_t width = 0, height = 0; // allocated size, pixels
+  double pixel_aspect = 1;        // width / height of a pixel
   struct Profile {
     uint32_t id = 0;
     std::string name, text; // name for messages, JSON

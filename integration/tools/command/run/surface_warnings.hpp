@@ -9,9 +9,9 @@ namespace dermis::tools {
 
 // Returns the longer side of a pixel over the shorter side; 1 is square.
 double pixel_aspect(const subsurface::PixelRays& rays);
-// The loss of `sap` on a plane stays below 1 dB up to this aspect: -0.8 dB at 1.05, 0.7 dB at 1.07,
-// 3.1 dB at 1.1 (docs/limits.md has the commands).
-inline constexpr double largest_square_aspect = 1.07;
+// Pyramids halve the longer side of a pixel at most two times less than the other, so they follow
+// the shape of a pixel up to this aspect: 2^(max_pixel_doublings + 1 - pixel_doubling_bias).
+inline constexpr double largest_followed_aspect = 6;
 
 // Returns the fraction (0..1) of the 8x8 tiles with subsurface that show a dithered surface. In
 // such a tile at least an eighth of the pixels have two neighbours, along a row or a column, that

@@ -47,17 +47,21 @@ template <class Real> struct SapClimb {
     return second && off(*second) < off(*first) ? 1 : 0;
   }
 
-  Scattered<Real> tent(const SapLevel<Real>& level, int x, int y, const SapTexel<Real>& own) const {
+  Scattered<Real> tent(size_t l, int x, int y, const SapTexel<Real>& own) const {
+    const SapLevel<Real>& level = pyramid.levels[l];
+    const auto across = pyramid.grid.shape.tent(pyramid.grid.axis(0), uint32_t(l)),
+               down = pyramid.grid.shape.tent(pyramid.grid.axis(1), uint32_t(l));
+    const int rx = across[2] > 0 ? 2 : 1, ry = down[2] > 0 ? 2 : 1;
     const Real per_sigma = 1 / (Real(sap_sigma) * level.spacing),
                per_metre = per_sigma / pyramid.footprint(own.depth);
     Color<Real> sum{};
     Real total = 0, mass = 0, all_weight = 0;
-    for (int j = -1; j <= 1; ++j)
-      for (int i = -1; i <= 1; ++i) {
-        const Real ox = Real(i) * level.spacing, oy = Real(j) * level.spacing;
+    for (int j = -ry; j <= ry; ++j)
+      for (int i = -rx; i <= rx; ++i) {
+        const Real ox = Real(i) * level.spacing_x, oy = Real(j) * level.spacing_y;
         const Real tilt = own.slope(ox, oy) * per_sigma;
-        Real weight =
-            Real((2 - std::abs(i)) * (2 - std::abs(j))) * sap_falloff(tilt, sap_tilt_width_tent);
+        Real weight = Real(16 * across[size_t(std::abs(i))] * down[size_t(std::abs(j))]) *
+                      sap_falloff(tilt, sap_tilt_width_tent);
         all_weight += weight;
         const auto off = [&](const SapTexel<Real>& tap) { return off_plane(own, tap, ox, oy); };
         const size_t layer = nearer_layer(level, x + i, y + j, own.id, off);
@@ -79,7 +83,10 @@ template <class Real> struct SapClimb {
   Scattered<Real> from_coarser(size_t fine, int x, int y, const SapTexel<Real>& own,
                                const Color<Real>& fallback) const {
     const SapLevel<Real>& coarse = pyramid.levels[fine + 1];
-    const Real spacing = pyramid.levels[fine].spacing;
+    const Real spacing = pyramid.levels[fine].spacing, spacing_x = pyramid.levels[fine].spacing_x,
+               spacing_y = pyramid.levels[fine].spacing_y;
+    const bool halves_x = pyramid.grid.halves(0, fine + 1),
+               halves_y = pyramid.grid.halves(1, fine + 1);
     const Real per_metre = 1 / (Real(sap_sigma) * spacing * pyramid.footprint(own.depth));
     const PerChannel& d = input.d_m[own.id];
     const Real relevant_d = Real(*std::max_element(d.begin(), d.end())) * own.reach;
@@ -88,11 +95,12 @@ template <class Real> struct SapClimb {
     Real existing = 0;
     for (int j = 0; j < 2; ++j)
       for (int i = 0; i < 2; ++i) {
-        const int qx = ((x - 1) >> 1) + i, qy = ((y - 1) >> 1) + j;
-        const Real ox = (Real(2 * qx - x) + Real(.5)) * spacing,
-                   oy = (Real(2 * qy - y) + Real(.5)) * spacing;
-        const Real bilinear =
-            Real(std::abs(ox) < spacing ? .75 : .25) * Real(std::abs(oy) < spacing ? .75 : .25);
+        if ((i > 0 && !halves_x) || (j > 0 && !halves_y)) continue;
+        const int qx = halves_x ? ((x - 1) >> 1) + i : x, qy = halves_y ? ((y - 1) >> 1) + j : y;
+        const Real ox = halves_x ? (Real(2 * qx - x) + Real(.5)) * spacing_x : Real(0),
+                   oy = halves_y ? (Real(2 * qy - y) + Real(.5)) * spacing_y : Real(0);
+        const Real bilinear = (halves_x ? Real(std::abs(ox) < spacing_x ? .75 : .25) : Real(1)) *
+                              (halves_y ? Real(std::abs(oy) < spacing_y ? .75 : .25) : Real(1));
         const auto off = [&](const SapTexel<Real>& tap) { return off_planes(own, tap, ox, oy); };
         const size_t layer = nearer_layer(coarse, qx, qy, own.id, off);
         if (layer == 2) {
@@ -140,7 +148,7 @@ template <class Real> struct SapClimb {
     const Real minimum = Real(l == 0 ? min_fraction_fine : min_fraction_coarse);
     if (l <= sap_last_tent(variant) &&
         *std::max_element(fraction.begin(), fraction.end()) >= minimum)
-      here = tent(pyramid.levels[l], x, y, own);
+      here = tent(l, x, y, own);
     const Scattered<Real> rest =
         last ? Scattered<Real>{here.light, {}, 1} : from_coarser(l, x, y, own, here.light);
     Scattered<Real> result;
@@ -164,8 +172,9 @@ template <class Real> struct SapClimb {
 template <class Real>
 SapResult<Real> sap_scatter(const ReferenceInput& input, std::span<const float> table,
                             const SapOptions& options) {
-  SapClimb<Real> climb{input, table, options.variant,
-                       build_sap_pyramid<Real>(input, options.first_layered, options.threads)};
+  SapClimb<Real> climb{
+      input, table, options.variant,
+      build_sap_pyramid<Real>(input, options.first_layered, options.threads, options.grid)};
   for (auto& levels : climb.scattered)
     levels.resize(sap_level_count);
   for (size_t l = sap_level_count; l-- > 0;) {

@@ -3,7 +3,7 @@
 // plain arrays. It measures accuracy without a device, and the kernels are tested against it.
 
 #include "passes/common/reference/reference.hpp"
-#include "passes/sap/sap_weights.hpp"
+#include "tests/passes/sap/cpu/sap_levels.hpp"
 
 namespace dermis::subsurface {
 
@@ -12,6 +12,7 @@ struct SapOptions {
   // The first level whose texels can have two surfaces: 1, or 2 for the variant `half`;
   // sap_level_count: none.
   uint32_t first_layered = 1;
+  SapGrid grid{};
   unsigned threads = 0; // 0: one per hardware thread; the result does not depend on it.
 };
 

@@ -19,9 +19,9 @@ constexpr size_t central[8] = {5, 6, 9, 10, 21, 22, 25, 26};
 // first layer.
 constexpr double min_seed_part = 0.9;
 
-template <class Real> Real binomial(size_t child) {
-  child %= children_a_layer;
-  return Real(child % 4 % 3 == 0 ? .125 : .375) * Real(child / 4 % 3 == 0 ? .125 : .375);
+// Weight of a child along an axis; an axis that is not halved has one child.
+template <class Real> Real binomial(size_t child, bool halves) {
+  return halves ? Real(child % 3 == 0 ? .125 : .375) : Real(child == 1 ? 1 : 0);
 }
 
 // The 4x4 children of a parent, of both layers, and their positions.
@@ -29,11 +29,22 @@ template <class Real> struct Children {
   std::array<const SapTexel<Real>*, no_child> texels{}; // Null: no surface.
   // The part that no layer of the parent has taken yet.
   std::array<Real, no_child> left{};
-  Real spacing = 1;
+  Real spacing = 1, spacing_x = 1, spacing_y = 1;
+  bool halves_x = true, halves_y = true;
 
-  bool may_seed(size_t child) const { return texels[child] && left[child] >= Real(min_seed_part); }
-  Real x(size_t child) const { return (Real(child % 4) - Real(1.5)) * spacing; }
-  Real y(size_t child) const { return (Real(child % children_a_layer / 4) - Real(1.5)) * spacing; }
+  Real weight(size_t child) const {
+    return binomial<Real>(child % 4, halves_x) *
+           binomial<Real>(child % children_a_layer / 4, halves_y);
+  }
+  bool may_seed(size_t child) const {
+    return texels[child] && left[child] >= Real(min_seed_part) && weight(child) > 0;
+  }
+  Real x(size_t child) const {
+    return halves_x ? (Real(child % 4) - Real(1.5)) * spacing_x : Real(0);
+  }
+  Real y(size_t child) const {
+    return halves_y ? (Real(child % children_a_layer / 4) - Real(1.5)) * spacing_y : Real(0);
+  }
 };
 
 template <class Real>
@@ -72,7 +83,7 @@ size_t find_seed(const SapPyramid<Real>& pyramid, const Children<Real>& children
   if (best != no_child) return best;
   for (size_t a = 0; a < no_child; ++a) {
     const Real weight =
-        children.may_seed(a) ? binomial<Real>(a) * children.texels[a]->mass : Real(0);
+        children.may_seed(a) ? children.weight(a) * children.texels[a]->mass : Real(0);
     if (weight > Real(hysteresis) * maximum) {
       best = a;
       maximum = weight;
@@ -97,14 +108,14 @@ SapTexel<Real> reduce(const SapPyramid<Real>& pyramid, Children<Real>& children,
     const Real x = children.x(k), y = children.y(k);
     const Real tilt = plane.slope(x, y) * per_sigma;
     if (k < children_a_layer)
-      all_weight += binomial<Real>(k) * sap_falloff(tilt, sap_tilt_width_down);
+      all_weight += children.weight(k) * sap_falloff(tilt, sap_tilt_width_down);
     const SapTexel<Real>* child = children.texels[k];
-    if (!child || child->id != plane.id) continue;
+    if (!child || child->id != plane.id || !(children.weight(k) > 0)) continue;
     const Real step = (child->depth - plane.depth) * per_metre;
     const Real off = sap_nearer(step - pyramid.rise(plane, x, y) * per_metre, step);
     const Real narrowing = sap_falloff(sap_nearer(tilt, step), sap_tilt_width_down);
     const Real kept = sap_falloff(off, sap_depth_width);
-    const Real flat_weight = binomial<Real>(k) * kept * children.left[k] * child->mass;
+    const Real flat_weight = children.weight(k) * kept * children.left[k] * child->mass;
     children.left[k] *= 1 - kept;
     const Real weight = flat_weight * narrowing * child->area;
     sum.mass += flat_weight * narrowing;
@@ -161,7 +172,7 @@ void set_held(const SapPyramid<Real>& pyramid, const Children<Real>& children,
   for (size_t k = 0; k < no_child; ++k) {
     const SapTexel<Real>* child = children.texels[k];
     if (!child) continue;
-    const Real part = binomial<Real>(k) * child->mass, step = child->depth - plane.depth;
+    const Real part = children.weight(k) * child->mass, step = child->depth - plane.depth;
     all += part;
     if (child->id != ids[0] && child->id != ids[1]) lost += part;
     if (child->id != parent.id) continue;
@@ -198,10 +209,11 @@ SapTexel<Real> first_texel(const ReferenceInput& input, const Patch& patch, size
 
 template <class Real>
 SapPyramid<Real> build_sap_pyramid(const ReferenceInput& input, uint32_t first_layered,
-                                   unsigned threads) {
+                                   unsigned threads, SapGrid grid) {
   SapPyramid<Real> pyramid{.side_x = Real(std::abs(input.rays.scale_x)),
                            .side_y = Real(std::abs(input.rays.scale_y)),
-                           .perspective = input.rays.perspective};
+                           .perspective = input.rays.perspective,
+                           .grid = grid};
   const Surface surface =
       build_surface(input.width, input.height, input.rays, input.depth, input.profile, threads);
   SapLevel<Real> level{.width = static_cast<int>(input.width),
@@ -216,10 +228,16 @@ SapPyramid<Real> build_sap_pyramid(const ReferenceInput& input, uint32_t first_l
   pyramid.levels.push_back(std::move(level));
   while (pyramid.levels.size() < sap_level_count) {
     const SapLevel<Real>& fine = pyramid.levels.back();
-    SapLevel<Real> coarse{.width = (fine.width + 1) / 2,
-                          .height = (fine.height + 1) / 2,
+    const bool halves_x = grid.halves(0, pyramid.levels.size()),
+               halves_y = grid.halves(1, pyramid.levels.size());
+    const Real spacing_x = (halves_x ? 2 : 1) * fine.spacing_x,
+               spacing_y = (halves_y ? 2 : 1) * fine.spacing_y;
+    SapLevel<Real> coarse{.width = halves_x ? (fine.width + 1) / 2 : fine.width,
+                          .height = halves_y ? (fine.height + 1) / 2 : fine.height,
                           .border = 1,
-                          .spacing = 2 * fine.spacing};
+                          .spacing = std::sqrt(spacing_x * spacing_y),
+                          .spacing_x = spacing_x,
+                          .spacing_y = spacing_y};
     const size_t layers = pyramid.levels.size() < first_layered ? 1 : 2;
     const bool mass_by_area = layers > 1 && pyramid.levels.size() >= sap_first_area_level;
     for (size_t layer = 0; layer < layers; ++layer)
@@ -227,13 +245,18 @@ SapPyramid<Real> build_sap_pyramid(const ReferenceInput& input, uint32_t first_l
     parallel_for(static_cast<size_t>(coarse.height + 2), 4, threads, [&](size_t row) {
       const int y = static_cast<int>(row) - 1;
       for (int x = -1; x <= coarse.width; ++x) {
-        Children<Real> children{.texels = {}, .left = {}, .spacing = fine.spacing};
+        Children<Real> children{.spacing = fine.spacing,
+                                .spacing_x = fine.spacing_x,
+                                .spacing_y = fine.spacing_y,
+                                .halves_x = halves_x,
+                                .halves_y = halves_y};
         bool splits = fine.spacing > 1; // The parent may have two layers.
         for (size_t k = 0; k < no_child; ++k) {
           const std::vector<SapTexel<Real>>& texels = fine.layers[k / children_a_layer];
           if (texels.empty()) continue;
           const int place = static_cast<int>(k % children_a_layer);
-          const int cx = 2 * x - 1 + place % 4, cy = 2 * y - 1 + place / 4;
+          const int cx = (halves_x ? 2 : 1) * x - 1 + place % 4,
+                    cy = (halves_y ? 2 : 1) * y - 1 + place / 4;
           if (cx < -fine.border || cy < -fine.border || cx >= fine.width + fine.border ||
               cy >= fine.height + fine.border)
             continue;
@@ -261,7 +284,9 @@ SapPyramid<Real> build_sap_pyramid(const ReferenceInput& input, uint32_t first_l
   }
   return pyramid;
 }
-template SapPyramid<float> build_sap_pyramid<float>(const ReferenceInput&, uint32_t, unsigned);
-template SapPyramid<double> build_sap_pyramid<double>(const ReferenceInput&, uint32_t, unsigned);
+template SapPyramid<float> build_sap_pyramid<float>(const ReferenceInput&, uint32_t, unsigned,
+                                                    SapGrid);
+template SapPyramid<double> build_sap_pyramid<double>(const ReferenceInput&, uint32_t, unsigned,
+                                                      SapGrid);
 
 } // namespace dermis::subsurface

@@ -78,7 +78,8 @@ template <class Real> struct SapTexel {
 // last whole texel.
 template <class Real> struct SapLevel {
   int width = 0, height = 0, border = 0; // Texels.
-  Real spacing = 1;                      // Pixels.
+  Real spacing = 1;                      // Pixels; geometric mean of both axes.
+  Real spacing_x = 1, spacing_y = 1;     // Pixels.
   // The first layer is the surface with the most weight in the texel. The second layer is the rest,
   // empty in levels with one layer.
   std::array<std::vector<SapTexel<Real>>, 2> layers{};
@@ -101,9 +102,23 @@ template <class Real> struct SapLevel {
   }
 };
 
+// The first levels halve one axis only.
+struct SapGrid {
+  SapShape shape{};
+  bool flipped = false; // x of the shape is y of the view
+  uint32_t axis(uint32_t of_view) const { return flipped ? 1 - of_view : of_view; }
+  bool halves(uint32_t of_view, size_t level) const {
+    return shape.halves(axis(of_view), uint32_t(level));
+  }
+  double spacing(uint32_t of_view, size_t level) const {
+    return shape.spacing(axis(of_view), uint32_t(level));
+  }
+};
+
 template <class Real> struct SapPyramid {
   Real side_x = 1, side_y = 1; // Sides of a pixel in metres (at depth 1 m if perspective).
   bool perspective = false;
+  SapGrid grid{};
   std::vector<SapLevel<Real>> levels{};
 
   // Return the geometric mean of a pixel's sides at a depth, and its smaller side, in metres.
@@ -124,6 +139,6 @@ template <class Real> struct SapPyramid {
 // Deterministic for any number of threads. Real: float or double.
 template <class Real>
 SapPyramid<Real> build_sap_pyramid(const ReferenceInput& input, uint32_t first_layered,
-                                   unsigned threads);
+                                   unsigned threads, SapGrid grid = {});
 
 } // namespace dermis::subsurface

@@ -1,0 +1,36 @@
+#pragma once
+// The plan for pixels that are not square. "square_view" is the view with twice the pixels along
+// the longer side of a pixel for each doubling, so that its pixels are nearly square. Its halves
+// are the levels of pyramids that first halve only the other axis.
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+namespace dermis {
+
+// Kernels get this value as constant_id::pixel_grid. 0: pixels are square. Otherwise 1 + 2 *
+// doublings + (1 if pixels are higher than wide and there are doublings).
+// shaders/common/pixel_grid.glsl mirrors it.
+using PixelGrid = uint32_t;
+
+inline constexpr uint32_t max_pixel_doublings = 2;
+// The error of square pixels stays below 1 dB up to this aspect (surface_warnings.hpp).
+inline constexpr double largest_square_aspect = 1.07;
+// A doubling begins at an aspect of 2^0.58 and 2^1.58, where both choices have equal errors.
+inline constexpr double pixel_doubling_bias = 0.42;
+
+// `aspect`: width / height of a pixel, positive.
+inline PixelGrid pixel_grid(double aspect) {
+  const double octaves = std::abs(std::log2(aspect));
+  if (!(octaves > std::log2(largest_square_aspect))) return 0;
+  const uint32_t doublings =
+      std::min(static_cast<uint32_t>(octaves + pixel_doubling_bias), max_pixel_doublings);
+  return 1 + 2 * doublings + (doublings > 0 && aspect < 1 ? 1 : 0);
+}
+// Returns the doublings of "square_view" along an axis (0: x, 1: y).
+constexpr uint32_t pixel_doublings(PixelGrid grid, uint32_t axis) {
+  return grid != 0 && (grid - 1) % 2 == axis ? (grid - 1) / 2 : 0;
+}
+
+} // namespace dermis
