@@ -167,10 +167,11 @@ constexpr std::string_view second_input_doc =
 constexpr std::array second_input{
     port::optional(port::where_flagged(read_light("second_light", second_input_doc))),
     port::optional(port::where_flagged(read_surface("second_surface", second_input_doc)))};
-constexpr auto down_ports =
-    join(finer, second_input, level, coarse,
-         std::array{port::where_flagged(written_light("second_coarse_light", second_doc)),
-                    port::where_flagged(written_surface("second_coarse_surface", second_doc))});
+constexpr auto down_ports = join(
+    finer, second_input, level, coarse,
+    std::array{
+        port::where_flagged(port::optional(written_light("second_coarse_light", second_doc))),
+        port::where_flagged(port::optional(written_surface("second_coarse_surface", second_doc)))});
 
 constexpr Port second_scattered =
     port::where_flagged(written_surface("second_scattered", second_doc));

@@ -1,5 +1,6 @@
 // Both layers of a parent on the way down. Include after sap_down.glsl with two layers, and after
-// store_layer(), which writes a layer of a parent to the images of its level.
+// store_layer(), which writes a layer of a parent to the images of its level, and writes_second(),
+// which says whether the level has a second layer.
 #ifndef DERMIS_SAP_DOWN_LAYERS_GLSL
 #define DERMIS_SAP_DOWN_LAYERS_GLSL
 
@@ -19,7 +20,7 @@ uvec4 with_second(uvec4 first, uint change) {
 void compute_both(sap_parent parent, int level, bool computes) {
   sap_texel before = no_texel;
   sap_layer first;
-  int index = 0, count = computes ? max_layers : 1;
+  int index = 0, count = computes && writes_second() ? max_layers : 1;
   [[dont_unroll]] do {
     sap_layer layer = reduce(parent, max_layers, before);
     before = layer.seed;
@@ -38,7 +39,7 @@ void compute_parent(sap_parent parent, int level) {
   if (!sap_inside(parent.at, level))
     return;
   sap_layer first = reduce(parent, max_layers, no_texel);
-  if (parent.two || first.remains && parent.splits) {
+  if (writes_second() && (parent.two || first.remains && parent.splits)) {
     sap_layer second = reduce(parent, max_layers, first.seed);
     if (second.bits.w != 0u) {
       first.bits = with_second(first.bits, change_of_first(second));

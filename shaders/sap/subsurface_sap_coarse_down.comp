@@ -47,6 +47,7 @@ vec4 second_finer_light(ivec2 address, int finer, bool computed, uvec4 bits) {
 }
 #include "sap/sap_down.glsl"
 
+bool writes_second() { return true; }
 void store_layer(sap_parent parent, int level, bool second, sap_layer layer) {
   ivec2 address = sap_address(parent.at, level);
   int offset = second ? 1 : 0;

@@ -1,6 +1,7 @@
 #version 460
 // Computes the next coarser level, with a second layer where one surface does not hold all
-// children; at level 1 only next to another surface. First computes one layer of each parent from the first layer of its children. Then
+// children; at level 1 only next to another surface, and only if the images of the second layer are
+// bound. First computes one layer of each parent from the first layer of its children. Then
 // recomputes, from both layers, the parents with a child off their surface or with a child that has
 // two layers.
 #extension GL_GOOGLE_include_directive : require
@@ -31,6 +32,7 @@ sap_parent read_children(texel_block block, int k, int finer) {
   return parent;
 }
 
+bool writes_second() { return has_second_coarse_light() && has_second_coarse_surface(); }
 void store_layer(sap_parent parent, int level, bool second, sap_layer layer) {
   ivec2 address = sap_address(parent.at, level);
   if (second) {
@@ -60,7 +62,8 @@ void main() {
     if (!sap_inside(parent.at, level))
       continue;
     sap_layer layer = reduce(parent, 1, no_texel);
-    layered |= parent.two || layer.remains && parent.splits ? 1u << k : 0u;
+    layered |=
+        parent.two || layer.remains && parent.splits && writes_second() ? 1u << k : 0u;
     store_layer(parent, level, false, layer);
   }
   if (layered != 0u)

@@ -101,7 +101,7 @@ TEST(SurfaceWarnings, SlopesStepsAndGapsAreNotDithered) {
 
 TEST(SurfaceWarnings, SequenceIsWarnedAboutOnce) {
   CapturedFrame frame = seen([](uint32_t x, uint32_t y) { return (x + y) % 2 == 0 ? 0.45 : 0.5; });
-  frame.rays.scale_x *= 2;
+  frame.rays.scale_x *= 8;
   Diagnostics diagnostics;
   EXPECT_TRUE(warn_of_surfaces(frame, diagnostics));
   EXPECT_FALSE(warn_of_surfaces(frame, diagnostics));
