@@ -102,7 +102,11 @@ demo::Result<> add_subjects(ErrorTimeBench& bench) {
     else if (auto added = add_scene(bench, number, scene, options, *skin); !added)
       return added;
   }
-  if (bench.subjects.empty()) return demo::Error{demo::ErrorKind::usage, "no scene is selected"};
+  if (bench.subjects.empty())
+    return demo::Error{
+        demo::ErrorKind::usage,
+        "no scene is selected: --scenes takes names of scenes in the --file and, with "
+        "--family, classes (plane, fold, hair, ...) and the halves tuning, judging"};
   for (Subject& subject : bench.subjects)
     adopt_profiles(bench, subject.frame);
   return demo::success();

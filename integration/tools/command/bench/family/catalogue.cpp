@@ -1,4 +1,4 @@
-// The list of scenes: kinds with the limits of drawn parameters, and tuned parameters.
+// The list of scenes: kinds with the limits of random parameters, and tuned parameters.
 
 #include "integration/tools/command/bench/family/catalogue.hpp"
 

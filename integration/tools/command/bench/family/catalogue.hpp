@@ -23,7 +23,7 @@ struct FamilyKind {
   bool shaded = false; // may have FamilyPattern::shade
   std::array<FamilyParameter, 4> parameters{};
   double d_low = 0.5, d_high = 16; // limits of d_px in the half "judging"
-  uint32_t judging = 2;            // scenes drawn for that half
+  uint32_t judging = 2;            // random scenes of that half
   FamilyView view = FamilyView::square;
 };
 

@@ -1,7 +1,7 @@
 #pragma once
 // The family of seeded scenes: small generated frames of every kind of surface, to judge a
 // technique on scenes that it was not tuned on. Scenes of the half "tuning" have fixed parameters.
-// Those of the half "judging" are drawn from a seed; no constant may be chosen on them.
+// Those of the half "judging" are generated from a seed; no constant may be chosen on them.
 
 #include "integration/tools/command/bench/subject.hpp"
 
