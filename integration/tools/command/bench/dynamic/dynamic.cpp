@@ -212,10 +212,13 @@ demo::Result<> measure_dynamic(SuiteRun& run, const Emit<DynamicRow>& emit) {
   if (!host) return host.error();
   DynamicBench bench{run, file, **host, techniques.take(),
                      subsurface::make_sap_tables({true, true}, {})};
-  for (const SequenceRequest& request : file.scenes)
+  std::vector<std::string> known;
+  for (const SequenceRequest& request : file.scenes) {
+    known.push_back(fmt::format("{} {}", request.scene, request.framing));
     if (run.is_requested("scenes", request.scene) && run.is_requested("framings", request.framing))
       if (auto done = measure_sequence(bench, request); !done) return done;
-  if (bench.rows.empty()) return demo::Error{demo::ErrorKind::usage, "no scene is selected"};
+  }
+  if (bench.rows.empty()) return none_selected("scene", std::move(known));
   run.add_fact("size", fmt::format("{}x{} pixels", run.size().width, run.size().height));
   run.add_fact("truth", fmt::format("at {} stratified pixels a frame", file.subset));
   run.add_fact("frames", fmt::format("counted from number {} of each sequence on", file.counted));

@@ -4,6 +4,7 @@
 #include "integration/tools/command/bench/restir/claims.hpp"
 #include "integration/tools/command/bench/restir/restir_report.hpp"
 #include "integration/tools/command/bench/suite/statistics.hpp"
+#include "integration/tools/command/bench/suite/techniques.hpp"
 #include "integration/tools/command/bench/technique.hpp"
 #include "integration/tools/command/interrupt.hpp"
 #include "passes/common/environment.hpp"
@@ -155,7 +156,9 @@ demo::Result<> measure_ray_scene(RestirBench& bench, const SceneRequest& request
 // Returns the scenes to measure. Errors: usage (there is none).
 demo::Result<std::vector<SceneRequest>> select_scenes(SuiteRun& run, const RestirFile& file) {
   std::vector<SceneRequest> scenes;
+  std::vector<std::string> known;
   for (const SceneRequest& scene : file.scenes) {
+    known.push_back(scene.scene);
     if (!run.is_requested("scenes", scene.scene)) continue;
     const std::string reason = scene.model ? why_no_head(run.text("head")) : "";
     if (reason.empty())
@@ -163,7 +166,7 @@ demo::Result<std::vector<SceneRequest>> select_scenes(SuiteRun& run, const Resti
     else
       run.add_note(fmt::format("scene {}: {}", scene.scene, reason));
   }
-  if (scenes.empty()) return demo::Error{demo::ErrorKind::usage, "no scene is selected"};
+  if (scenes.empty()) return none_selected("scene", std::move(known));
   return scenes;
 }
 

@@ -25,11 +25,11 @@ bool is_one_of_few(std::string_view technique) {
   return std::find(std::begin(few), std::end(few), technique) != std::end(few);
 }
 
-demo::Error no_technique(std::vector<std::string> known) {
+demo::Error none_selected(std::string_view kind, std::vector<std::string> known) {
   std::sort(known.begin(), known.end());
   known.erase(std::unique(known.begin(), known.end()), known.end());
   return {demo::ErrorKind::usage,
-          fmt::format("no technique is selected; available: {}", format_list(known))};
+          fmt::format("no {} is selected; available: {}", kind, format_list(known))};
 }
 
 } // namespace dermis::tools

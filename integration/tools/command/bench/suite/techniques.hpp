@@ -17,8 +17,8 @@ std::string name_of(const TechniqueRequest& technique);
 bool is_usable(SuiteRun& run, const TechniqueRequest& technique);
 // Returns whether --quick measures the technique: one of each kind.
 bool is_one_of_few(std::string_view technique);
-// The usage error that lists the techniques of a file.
-demo::Error no_technique(std::vector<std::string> known);
+// The usage error that lists what a file offers; `kind` is "technique" or "scene".
+demo::Error none_selected(std::string_view kind, std::vector<std::string> known);
 
 // Keeps the first setting of some techniques, for --quick.
 template <class Request> void keep_few(std::vector<Request>& all) {
@@ -38,7 +38,7 @@ demo::Result<std::vector<Request>> select_techniques(SuiteRun& run,
     known.push_back(one.technique);
     if (is_usable(run, one)) selected.push_back(one);
   }
-  if (selected.empty()) return no_technique(std::move(known));
+  if (selected.empty()) return none_selected("technique", std::move(known));
   return selected;
 }
 
