@@ -1,5 +1,6 @@
 #include "passes/choice/error_model.hpp"
 
+#include "framegraph/text/json_writer.hpp"
 #include "framegraph/text/reader.hpp"
 
 #include <fmt/format.h>
@@ -13,6 +14,7 @@ namespace {
 constexpr size_t max_points = 64, max_techniques = 256, max_pass_types = 16;
 constexpr double largest_through = 10; // maximum error relative to the light that a slab transmits
 constexpr double min_d_px = 1e-3, largest_d_px = 1e4, min_rmse = 1e-9, largest_rmse = 1e3;
+constexpr double largest_spread = 1e3;
 
 std::vector<ErrorPoint> read_curve(const Document& document, ObjectReader& owner,
                                    std::string_view key, Diagnostics& diagnostics) {
@@ -23,22 +25,26 @@ std::vector<ErrorPoint> read_curve(const Document& document, ObjectReader& owner
     const std::string what = fmt::format("point of '{}' of {}", key, owner.what());
     if (!expect_kind(document, node, what, NodeKind::array, diagnostics)) continue;
     const std::vector<NodeId> pair = children(document, node);
-    if (pair.size() != 2) {
+    if (pair.size() != 2 && pair.size() != 3) {
       diagnostics.add(
           DiagnosticId::out_of_range, document.where(node),
-          fmt::format("{} has {} values; expected 2: d in pixels and RMSE", what, pair.size()));
+          fmt::format("{} has {} values; expected 2 or 3: d in pixels, RMSE and its spread", what,
+                      pair.size()));
       continue;
     }
     const auto d_px =
         read_number(document, pair[0], "d of a " + what, min_d_px, largest_d_px, diagnostics);
     const auto rmse =
         read_number(document, pair[1], "RMSE of a " + what, min_rmse, largest_rmse, diagnostics);
-    if (!d_px || !rmse) continue;
+    const auto spread = pair.size() == 2 ? std::optional<double>(1)
+                                         : read_number(document, pair[2], "spread of a " + what, 1,
+                                                       largest_spread, diagnostics);
+    if (!d_px || !rmse || !spread) continue;
     if (!curve.empty() && *d_px <= curve.back().d_px)
       diagnostics.add(DiagnosticId::error_curve, document.where(node),
                       fmt::format("{} has d = {} after d = {}; d must increase from point to point",
                                   what, *d_px, curve.back().d_px));
-    curve.push_back({*d_px, *rmse});
+    curve.push_back({*d_px, *rmse, *spread});
   }
   return curve;
 }
@@ -69,6 +75,16 @@ PassTypeMatch read_pass_type(const Document& document, NodeId node, const std::s
     }
   object.finish();
   return match;
+}
+
+void write_curve(JsonWriter& json, std::string_view key, const std::vector<ErrorPoint>& curve) {
+  json.key(key).open_array(true);
+  for (const ErrorPoint& point : curve) {
+    json.open_array(true).value(point.d_px).value(point.rmse);
+    if (point.spread != 1) json.value(point.spread);
+    json.close();
+  }
+  json.close();
 }
 
 bool holds(const SettingMatch& condition, const RunningPass& pass) {
@@ -116,6 +132,32 @@ std::optional<ErrorModel> read_error_model(const Document& document, Diagnostics
   root.finish();
   if (diagnostics.count(Severity::error) != errors) return std::nullopt;
   return model;
+}
+
+std::string write_error_model(const ErrorModel& model, std::string_view note) {
+  JsonWriter json;
+  json.open_object().member("$schema", "../schema/errors.schema.json").member("dermis_errors", 2);
+  json.member("note", note).member("scenes", std::string_view(model.scenes));
+  write_curve(json, "unscattered", model.unscattered);
+  if (model.unscattered_through > 0) json.member("unscattered_through", model.unscattered_through);
+  json.key("techniques").open_array();
+  for (const TechniqueError& technique : model.techniques) {
+    json.open_object(true).member("name", std::string_view(technique.name));
+    json.key("pass_types").open_array();
+    for (const PassTypeMatch& match : technique.pass_types) {
+      json.open_object().member("type", std::string_view(match.type)).key("set").open_object();
+      for (const SettingMatch& setting : match.settings)
+        json.member(setting.setting, std::string_view(setting.value));
+      json.close().close();
+    }
+    json.close();
+    write_curve(json, "rmse", technique.curve);
+    if (technique.through > 0) json.member("through", technique.through);
+    if (technique.by_rays) json.member("by_rays", true);
+    json.close();
+  }
+  json.close().close();
+  return std::move(json).finish();
 }
 
 int32_t find_technique(const ErrorModel& model, const std::vector<RunningPass>& passes) {

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace dermis::choice {
@@ -14,6 +15,8 @@ namespace dermis::choice {
 struct ErrorPoint {
   double d_px = 1; // d of the widest channel in pixels, > 0
   double rmse = 0; // > 0; exposed such that the 99.9th percentile of light is 1
+  // geometric standard deviation of RMSE between scenes, at least 1; 1: not measured
+  double spread = 1;
 };
 
 struct SettingMatch {
@@ -44,6 +47,8 @@ struct ErrorModel {
 
 // Reads `"dermis_errors": 2`. Returns nullopt with errors in `diagnostics`. Thread: any.
 std::optional<ErrorModel> read_error_model(const Document& document, Diagnostics& diagnostics);
+// Returns the table as JSON with a note for readers. Thread: any.
+std::string write_error_model(const ErrorModel& model, std::string_view note);
 
 // A pass of a plan with its values as texts.
 struct RunningPass {

@@ -332,7 +332,7 @@ TEST(Schema, OfErrorTablesAgreesWithTheParserOnMutatedFiles) {
       parse(text_of(fs::path(DERMIS_SOURCE_DIR) / "configs/choice/errors.json")),
       parse(
           R"({ "dermis_errors": 2, "scenes": "s", "note": "n", "unscattered": [[1, 0.1]], "techniques": [
-        { "name": "t", "note": "n", "rmse": [[1, 2], [2, 3]],
+        { "name": "t", "note": "n", "rmse": [[1, 2], [2, 3, 1.5]],
           "pass_types": [{ "type": "k", "set": { "a": 1, "b": true, "c": "x", "d": 1.5 }, "note": "n" }] } ] })")};
   expect_agreement(schema_in("configs/schema/errors.schema.json"), read_errors_text, files, 3000);
 }

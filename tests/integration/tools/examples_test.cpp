@@ -14,10 +14,10 @@ namespace {
 namespace fs = std::filesystem;
 
 // Suites that take minutes; their own tests run them small: bench_*_test.cpp, choice_test.cpp.
-const std::vector<std::string> too_long = {"bench all",       "bench error-time", "bench budget",
-                                           "bench stability", "bench skip",       "bench truth",
-                                           "bench dynamic",   "bench supplement", "bench compile",
-                                           "bench record",    "bench restir"};
+const std::vector<std::string> too_long = {
+    "bench all",     "bench error-time", "bench budget",  "bench stability",
+    "bench skip",    "bench truth",      "bench dynamic", "bench supplement",
+    "bench compile", "bench record",     "bench restir",  "bench error-table"};
 
 // Options that shorten an example, or let it end.
 const std::map<std::string, std::string> shortened = {

@@ -34,7 +34,7 @@ protected:
 TEST_F(Shell, BashCompletesVerbsOptionsAndValues) {
   ASSERT_EQ(run({"completion", "bash", "--out", path("dermis.bash")}).exit_code, 0);
   EXPECT_EQ(offered("dermis val", 1), "validate\n");
-  EXPECT_EQ(offered("dermis bench err", 2), "error-time\n");
+  EXPECT_EQ(offered("dermis bench error-ti", 2), "error-time\n");
   EXPECT_EQ(offered("dermis graph --htm", 2), "--html\n");
   EXPECT_EQ(offered("dermis bench all --agai", 3), "--again\n");
   EXPECT_EQ(offered("dermis graph --color n", 3), "never\n");

@@ -253,6 +253,39 @@ TEST(ForecastTime, SeparatesSamplesFromOtherWork) {
   EXPECT_TRUE(measured.measured);
 }
 
+TEST_F(Configurations, WrittenErrorTable_ReadsBackEqual) {
+  errors.techniques[0].curve[0].spread = 1.5;
+  Diagnostics other;
+  const std::string text = write_error_model(errors, "made by hand");
+  EXPECT_NE(text.find("made by hand"), std::string::npos);
+  const auto document = parse_document("errors.json", text, other);
+  const auto read = document ? read_error_model(*document, other) : std::nullopt;
+  ASSERT_TRUE(read) << format_as_json(other);
+  EXPECT_EQ(write_error_model(*read, "made by hand"), text);
+  ASSERT_EQ(read->techniques.size(), errors.techniques.size());
+  EXPECT_EQ(read->techniques[0].curve[0].spread, 1.5);
+  EXPECT_EQ(read->techniques[0].curve[1].spread, 1);
+  EXPECT_EQ(read->techniques[0].pass_types[0].settings[0].value, "16");
+  EXPECT_EQ(read->techniques[2].through, 0.5);
+  EXPECT_TRUE(read->techniques[2].by_rays);
+  EXPECT_EQ(read->unscattered_through, errors.unscattered_through);
+}
+
+TEST_F(Configurations, WrongSpread_IsRejected) {
+  for (const char* point : {"[1, 0.1, 0.5]", "[1, 0.1, 1.5, 2]"}) {
+    Diagnostics other;
+    const auto document = parse_document(
+        "errors.json",
+        std::string(R"({ "dermis_errors": 2, "scenes": "s", "techniques": [], "unscattered": [)") +
+            point + "] }",
+        other);
+    ASSERT_TRUE(document);
+    EXPECT_FALSE(read_error_model(*document, other));
+    ASSERT_EQ(other.count(Severity::error), 1u) << format_as_json(other);
+    EXPECT_EQ(other.list[0].id, DiagnosticId::out_of_range);
+  }
+}
+
 TEST_F(Configurations, CurvesThatDoNotIncreaseAreRejected) {
   Diagnostics other;
   const auto document = parse_document("errors.json",

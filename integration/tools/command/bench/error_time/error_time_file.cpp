@@ -1,8 +1,6 @@
 #include "integration/tools/command/bench/error_time/error_time_file.hpp"
 
 namespace dermis::tools {
-namespace {
-
 SceneRequest read_scene(BenchObject& entry) {
   SceneRequest request;
   entry.name("scene", request.scene);
@@ -34,6 +32,8 @@ SceneRequest read_scene(BenchObject& entry) {
         fmt::format("'{}' is no generated scene; another scene needs a 'file'", request.scene));
   return request;
 }
+
+namespace {
 
 void read_self(BenchObject& self, ErrorTimeFile& file) {
   self.name("setting", file.self_setting);

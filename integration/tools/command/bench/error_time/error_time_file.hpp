@@ -32,6 +32,9 @@ struct ErrorTimeFile {
   uint32_t self_window = 0;
 };
 
+// Reads a scene of a bench file.
+SceneRequest read_scene(BenchObject& entry);
+
 // Returns nullopt with located errors.
 std::optional<ErrorTimeFile> read_error_time(const std::string& path, Diagnostics& diagnostics);
 

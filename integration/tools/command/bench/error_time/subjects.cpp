@@ -2,37 +2,13 @@
 
 #include "integration/tools/command/bench/error_time/error_time_bench.hpp"
 #include "integration/tools/command/bench/family/family.hpp"
+#include "integration/tools/command/bench/merged_profiles.hpp"
 #include "integration/tools/command/interrupt.hpp"
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <array>
-
 namespace dermis::tools {
 namespace {
-
-// Merges the frame's profiles into one list for all scenes, so that a technique's tables and
-// pipelines are created once.
-void adopt_profiles(ErrorTimeBench& bench, CapturedFrame& frame) {
-  std::array<uint8_t, 256> renumbered{};
-  std::vector<CaptureProfile> own;
-  for (const CaptureProfile& one : frame.description.profiles) {
-    auto known = std::find_if(
-        bench.profiles.begin(), bench.profiles.end(), [&](const CaptureProfile& other) {
-          return other.profile.name == one.profile.name && other.profile.d_mm == one.profile.d_mm;
-        });
-    if (known == bench.profiles.end()) {
-      bench.profiles.push_back({static_cast<uint32_t>(bench.profiles.size() + 1), one.profile});
-      known = bench.profiles.end() - 1;
-    }
-    renumbered[one.id] = static_cast<uint8_t>(known->id);
-    own.push_back(*known);
-  }
-  for (uint8_t& id : frame.profile)
-    id = renumbered[id];
-  frame.description.profiles = own;
-}
 
 // Returns the reason to leave the scene out, or "".
 std::string why_not(const ErrorTimeBench& bench, const SceneRequest& scene) {
@@ -108,7 +84,7 @@ demo::Result<> add_subjects(ErrorTimeBench& bench) {
         "no scene is selected: --scenes takes names of scenes in the --file and, with "
         "--family, classes (plane, fold, hair, ...) and the halves tuning, judging"};
   for (Subject& subject : bench.subjects)
-    adopt_profiles(bench, subject.frame);
+    merge_profiles(bench.profiles, subject.frame);
   return demo::success();
 }
 

@@ -16,6 +16,7 @@ Suite compile_suite();
 Suite stability_suite();
 Suite budget_suite();
 Suite error_time_suite();
+Suite error_table_suite();
 Suite dynamic_suite();
 Suite restir_suite();
 

@@ -1,0 +1,280 @@
+// dermis bench error-table: measures the error of every technique over the family of scenes at
+// several d, and writes the error table of the choice by budget.
+
+#include "integration/tools/command/bench/error_table/error_table_file.hpp"
+#include "integration/tools/command/bench/error_table/light_contrast.hpp"
+#include "integration/tools/command/bench/error_table/table_fit.hpp"
+#include "integration/tools/command/bench/family/family.hpp"
+#include "integration/tools/command/bench/merged_profiles.hpp"
+#include "integration/tools/command/bench/still_error.hpp"
+#include "integration/tools/command/bench/suite/suites.hpp"
+#include "integration/tools/command/bench/suite/techniques.hpp"
+#include "integration/tools/command/bench/technique.hpp"
+#include "integration/tools/command/interrupt.hpp"
+#include "integration/tools/command/output.hpp"
+#include "integration/tools/command/present.hpp"
+#include "passes/common/environment.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+namespace dermis::tools {
+namespace {
+
+struct ErrorTableRow {
+  MeasuredError error;
+  uint32_t frames = 1;
+  FrameKeys keys = {};
+};
+
+struct ErrorTableBench {
+  SuiteRun& run;
+  const ErrorTableFile& file;
+  demo::VulkanHost& host;
+  std::vector<Subject> subjects = {};
+  std::vector<CaptureProfile> profiles = {}; // of all subjects, renumbered
+  std::vector<float> sap_tables = {};
+  std::vector<TabledTechnique> requests = {};
+  std::vector<std::unique_ptr<TechniqueRun>> techniques = {}; // by request
+  std::set<std::string> of_few = {}; // names of scenes that represent their class
+  std::vector<ErrorTableRow> rows = {};
+};
+
+std::string table_row_name(const TechniqueRequest& request) {
+  return request.setting.empty() ? request.technique : name_of(request);
+}
+
+bool is_selected(const ErrorTableBench& bench, const std::string& scene,
+                 const FamilyMember& member) {
+  return bench.run.is_requested("scenes", scene) ||
+         bench.run.is_requested("scenes", member.scene_class) ||
+         bench.run.is_requested("scenes", member.half);
+}
+
+// Adds the scene at every d of the table, or at its own d if it only judges.
+void add_family_scene(ErrorTableBench& bench, FamilyScene scene, const subsurface::Profile& skin) {
+  const bool judging = scene.member.half == "judging";
+  const std::vector<double> own = {scene.d_px};
+  for (const double d : judging ? own : bench.file.d_px) {
+    scene.d_px = d;
+    bench.subjects.push_back({scene.name, scene.parameters(),
+                              generate_family_scene(scene, family_width, family_height, skin), d,
+                              scene.member, bench.subjects.size()});
+  }
+}
+
+void add_family(ErrorTableBench& bench, const subsurface::Profile& skin) {
+  std::set<std::string> classes; // with half
+  std::set<const FamilyKind*> kinds;
+  for (const FamilyScene& scene : bench.run.quick ? few_family_scenes() : family_scenes()) {
+    // Pixels are square in most hosts, and all techniques follow their shape.
+    if (scene.aspect != 1 || scene.member.scene_class == "square") continue;
+    if (!is_selected(bench, scene.name, scene.member)) continue;
+    // Other scenes of a kind only differ in d or weakly in shape.
+    if (scene.member.half == "tuning" && !kinds.insert(scene.kind).second) continue;
+    if (classes.insert(scene.member.half + scene.member.scene_class).second)
+      bench.of_few.insert(scene.name);
+    add_family_scene(bench, scene, skin);
+  }
+}
+
+demo::Result<> add_subjects(ErrorTableBench& bench) {
+  Diagnostics diagnostics;
+  const auto document = read_document(bench.file.skin, diagnostics);
+  const auto skin = document ? subsurface::read_profile(*document, diagnostics) : std::nullopt;
+  if (!skin) return bench.run.refuse(bench.file.skin, diagnostics);
+  add_family(bench, *skin);
+  for (const SceneRequest& scene : bench.file.scenes) {
+    if (interrupted()) return stopped();
+    if (bench.run.quick || !is_selected(bench, scene.scene, scene.member)) continue;
+    auto subject = render_subject(scene, {family_width, family_height, {}});
+    if (!subject) return subject.error();
+    bench.subjects.push_back(subject.take());
+    bench.subjects.back().member = scene.member;
+    bench.of_few.insert(scene.scene);
+  }
+  if (bench.subjects.empty())
+    return demo::Error{demo::ErrorKind::usage,
+                       "no scene is selected: --scenes takes names of scenes, classes (plane, "
+                       "fold, hair, ...) and the halves tuning, judging"};
+  for (Subject& subject : bench.subjects)
+    merge_profiles(bench.profiles, subject.frame);
+  return demo::success();
+}
+
+demo::Result<> add_techniques(ErrorTableBench& bench) {
+  bench.sap_tables = subsurface::make_sap_tables({true, true}, {});
+  auto selected = select_techniques(bench.run, bench.file.techniques);
+  if (!selected) return selected.error();
+  bench.requests = selected.take();
+  if (bench.run.quick) keep_few(bench.requests);
+  for (const TabledTechnique& request : bench.requests) {
+    auto made = TechniqueRun::create(bench.host, request, bench.profiles, bench.sap_tables);
+    if (!made) return made.error();
+    bench.techniques.push_back(made.take());
+  }
+  return demo::success();
+}
+
+// Returns the light of the last of the technique's frames at rest.
+demo::Result<std::vector<float>> scatter_frames(TechniqueRun& technique, const Subject& subject,
+                                                uint32_t frames) {
+  auto light = technique.scatter(subject.frame);
+  for (uint32_t i = 1; light && i < frames; ++i) {
+    if (interrupted()) return stopped();
+    light = technique.scatter(subject.frame, true);
+  }
+  return light;
+}
+
+demo::Result<> measure_subject(ErrorTableBench& bench, const Subject& subject) {
+  const auto reference =
+      make_reference(bench.run.session, subject.frame,
+                     fmt::format("reference of {} d {:g} px", subject.scene, subject.d_px),
+                     bench.file.subset, bench.run.text("cache"));
+  if (!reference) return stopped();
+  const FrameKeys keys = keys_of(subject.frame, reference->exposure);
+  for (size_t t = 0; t < bench.techniques.size(); ++t) {
+    const TabledTechnique& request = bench.requests[t];
+    if (request.few && !bench.of_few.contains(subject.scene)) continue;
+    const uint32_t frames = bench.run.quick ? std::min(request.frames, 2u) : request.frames;
+    const auto light = scatter_frames(*bench.techniques[t], subject, frames);
+    if (!light) return light.error();
+    bench.rows.push_back(
+        {{table_row_name(request), subject.scene, subject.member.scene_class, subject.member.half,
+          subject.d_px, still_error(*light, *reference).figures.rmse},
+         frames,
+         keys});
+  }
+  return demo::success();
+}
+
+std::vector<MeasuredError> errors_of(const ErrorTableBench& bench) {
+  std::vector<MeasuredError> errors;
+  for (const ErrorTableRow& row : bench.rows)
+    errors.push_back(row.error);
+  return errors;
+}
+
+std::string factor_text(double logarithm) {
+  return fmt::format("{:.3f}", std::exp(logarithm));
+}
+
+// Sets the text of the terminal: how well the table predicts each half.
+void add_predictions(ErrorTableBench& bench, const choice::ErrorModel& table) {
+  const std::vector<MeasuredError> errors = errors_of(bench);
+  Table text;
+  text.columns = {{"technique", false},
+                  {"half", false},
+                  {"scenes", true},
+                  {"mean ratio", true},
+                  {"RMS factor", true}};
+  for (const TabledTechnique& request : bench.requests)
+    for (const char* half : {"tuning", "judging"}) {
+      const PredictionError found = judge_table(table, errors, table_row_name(request), half);
+      if (found.scenes == 0) continue;
+      text.rows.push_back({table_row_name(request), half, fmt::format("{}", found.scenes),
+                           factor_text(found.mean), factor_text(found.rms)});
+    }
+  bench.run.report.text = "Predicted RMSE relative to the measured RMSE\n" + format_table(text);
+}
+
+// Returns how the table was made, for its note.
+std::string note_of(const ErrorTableBench& bench) {
+  return fmt::format(
+      "Written by: dermis bench error-table, {}, {} scenes of {}x{} pixels, {} pixels of each "
+      "compared, except planes. A point is d in pixels, RMSE and its spread between scenes.",
+      bench.run.device, bench.subjects.size(), family_width, family_height, bench.file.subset);
+}
+
+demo::Result<choice::ErrorModel> read_table(const SuiteRun& run) {
+  Diagnostics diagnostics;
+  const std::string path = run.file("table");
+  const auto document = read_document(path, diagnostics);
+  auto table = document ? choice::read_error_model(*document, diagnostics) : std::nullopt;
+  if (!table) return run.refuse(path, diagnostics);
+  return std::move(*table);
+}
+
+demo::Result<> measure_error_table(SuiteRun& run, const Emit<ErrorTableRow>& emit) {
+  auto read = run.read(read_error_table);
+  if (!read) return read.error();
+  ErrorTableFile file = read.take();
+  auto table = read_table(run);
+  if (!table) return table.error();
+  if (run.quick) {
+    file.subset = std::min(file.subset, quick_subset);
+    file.d_px = {file.d_px[file.d_px.size() / 2]};
+  }
+  const auto host = run.open_device();
+  if (!host) return host.error();
+  ErrorTableBench bench{run, file, **host};
+  if (auto ready = add_subjects(bench); !ready) return ready;
+  if (auto ready = add_techniques(bench); !ready) return ready;
+  Progress progress = run.progress("scene", bench.subjects.size());
+  uint64_t done = 0;
+  for (const Subject& subject : bench.subjects) {
+    if (interrupted()) return stopped();
+    if (auto measured = measure_subject(bench, subject); !measured) return measured;
+    progress.update(++done);
+  }
+  run.add_fact("size", fmt::format("{}x{} pixels", family_width, family_height));
+  run.add_fact("truth",
+               fmt::format("everywhere on planes, else at {} stratified pixels", file.subset));
+  fit_table(*table, errors_of(bench), file.d_px);
+  add_predictions(bench, *table);
+  for (const ErrorTableRow& row : bench.rows)
+    emit(row);
+  if (const std::string& out = run.text("out"); !out.empty())
+    if (const std::string problem =
+            deliver_text(out, choice::write_error_model(*table, note_of(bench)));
+        !problem.empty())
+      return demo::Error{demo::ErrorKind::environment, problem};
+  return demo::success();
+}
+
+template <auto Member> ReportValue measured_of(const ErrorTableRow& row) {
+  return row.error.*Member;
+}
+
+template <auto Member> ReportValue frame_key_of(const ErrorTableRow& row) {
+  return row.keys.*Member;
+}
+
+} // namespace
+
+Suite error_table_suite() {
+  using Row = ErrorTableRow;
+  using Error = MeasuredError;
+  return make_suite<Row>(
+      {.name = "error-table",
+       .what = "Measure the error table of the choice by budget",
+       .title = "Error table",
+       .summary = "RMSE of the scattered light before albedo against the fp64 truth on the seeded "
+                  "family of scenes: linear Rec.709 luminance, the scene's 99.9th percentile of "
+                  "light at 1. The half \"tuning\" gives the table, the half \"judging\" judges "
+                  "its predictions.",
+       .options = {{"table", "Table whose curves are replaced", "configs/choice/errors.json",
+                    "FILE"},
+                   {"out", "Write the new table to this file, - for standard output", "", "FILE"},
+                   only_option("scenes"),
+                   only_option("techniques"),
+                   file_option("tests/benchmark/error_table.json"),
+                   cache_option()}},
+      {{"scene", "scene", measured_of<&Error::scene>, {.groups = true}},
+       {"class", "", measured_of<&Error::scene_class>},
+       {"half", "half", measured_of<&Error::half>},
+       {"d_px", "d, px", measured_of<&Error::d_px>, {.groups = true}},
+       {"technique", "technique", measured_of<&Error::technique>},
+       {"frames", "frames", &Row::frames},
+       {"rmse", "RMSE", measured_of<&Error::rmse>},
+       {"tile_contrast", "", frame_key_of<&FrameKeys::tile_contrast>},
+       {"cell_contrast", "", frame_key_of<&FrameKeys::cell_contrast>},
+       {"gaps", "", frame_key_of<&FrameKeys::gaps>}},
+      measure_error_table);
+}
+
+} // namespace dermis::tools
