@@ -32,5 +32,13 @@ inline PixelGrid pixel_grid(double aspect) {
 constexpr uint32_t pixel_doublings(PixelGrid grid, uint32_t axis) {
   return grid != 0 && (grid - 1) % 2 == axis ? (grid - 1) / 2 : 0;
 }
+// Returns how often a level of a pyramid halves an axis (0: x, 1: y).
+constexpr uint32_t halvings_of_level(PixelGrid grid, uint32_t level, uint32_t axis) {
+  return level - std::min(level, pixel_doublings(grid, axis));
+}
+// Returns the pixels of the view per texel of a level.
+constexpr uint64_t pixels_per_texel(PixelGrid grid, uint32_t level) {
+  return uint64_t{1} << (halvings_of_level(grid, level, 0) + halvings_of_level(grid, level, 1));
+}
 
 } // namespace dermis

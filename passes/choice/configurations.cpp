@@ -51,6 +51,11 @@ PassLoad load_of(const Plan& plan, const PlanPass& pass, const PassType& type,
                  const std::vector<SettingValue>& values) {
   PassLoad load;
   load.level = level_of(type, values);
+  if (load.level > 0) {
+    const auto level = static_cast<uint32_t>(load.level);
+    load.multiple = static_cast<uint32_t>(pixels_per_texel(0, level) /
+                                          pixels_per_texel(plan.pixel_grid, level));
+  }
   const TexelSize written = first_written_size(plan, pass, type);
   switch (type.dispatch.domain) {
   case DispatchRule::Domain::rectangle:
@@ -277,7 +282,8 @@ uint64_t groups_of(const PassLoad& pass, const FrameLoad& load) {
   case PassLoad::Groups::listed_tiles:
     // The pyramid is not built if light is copied.
     return pass.level < 0 ? load.listed_tiles
-                          : load.listed_tiles - std::min(load.copied_tiles, load.listed_tiles);
+                          : pass.multiple * (load.listed_tiles -
+                                             std::min(load.copied_tiles, load.listed_tiles));
   case PassLoad::Groups::copied_tiles:
     return load.copied_tiles;
   case PassLoad::Groups::sample_units:

@@ -32,6 +32,8 @@ struct PassLoad {
   bool launches = true; // launches a kernel; clears do not
   // level of the surface-aware pyramid whose tile list the pass runs over; -1: none
   int32_t level = -1;
+  // groups per listed tile: 1 for square pixels, also at coarser levels, to which costs refer
+  uint32_t multiple = 1;
 };
 
 struct Configuration {

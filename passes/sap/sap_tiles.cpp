@@ -24,8 +24,9 @@ struct Flags {
   }
 };
 
-uint32_t tiles_along(uint32_t pixels, uint32_t level) {
-  const uint32_t texels = ((pixels + (1u << level) - 1) >> level) + (level > 0 ? 2 : 0);
+uint32_t tiles_along(uint32_t pixels, PixelGrid grid, uint32_t level, uint32_t axis) {
+  const uint32_t halvings = halvings_of_level(grid, level, axis);
+  const uint32_t texels = ((pixels + (1u << halvings) - 1) >> halvings) + (level > 0 ? 2 : 0);
   return static_cast<uint32_t>(ceil_div(texels, tile_side));
 }
 
@@ -36,27 +37,31 @@ uint32_t SapTileList::groups(size_t level) const {
   return (static_cast<uint32_t>(tiles.size()) + each - 1) / each;
 }
 
-std::array<SapTileList, sap_level_count> list_sap_tiles(uint32_t width, uint32_t height,
-                                                        std::span<const uint32_t> classes) {
+std::array<SapTileList, sap_level_count>
+list_sap_tiles(uint32_t width, uint32_t height, std::span<const uint32_t> classes, PixelGrid grid) {
   constexpr uint32_t scatters = 1;
   const bool any = std::find(classes.begin(), classes.end(), scatters) != classes.end();
   std::array<SapTileList, sap_level_count> lists;
   Flags finer;
   for (uint32_t level = 0; level < sap_level_count; ++level) {
-    Flags own{tiles_along(width, level), tiles_along(height, level)};
+    Flags own{tiles_along(width, grid, level, 0), tiles_along(height, grid, level, 1)};
+    const auto children_of = [&](uint32_t x, uint32_t y) {
+      const auto first = [&](uint32_t tile, uint32_t axis) {
+        return (int64_t{tile} << (level > pixel_doublings(grid, axis) ? 1 : 0)) - 1;
+      };
+      return finer.from(first(x, 0), first(y, 1));
+    };
     for (uint32_t y = 0; y < own.down; ++y)
       for (uint32_t x = 0; x < own.across; ++x)
-        own.set.push_back(level == 0
-                              ? classes[size_t{y} * own.across + x] != 0
-                              : any && finer.from(2 * int64_t{x} - 1, 2 * int64_t{y} - 1) != 0);
+        own.set.push_back(level == 0 ? classes[size_t{y} * own.across + x] != 0
+                                     : any && children_of(x, y) != 0);
     SapTileList& list = lists[level];
     list.across = own.across;
     list.down = own.down;
     for (uint32_t y = 0; y < own.down; ++y)
       for (uint32_t x = 0; x < own.across; ++x)
         if (own.at(x, y))
-          list.tiles.push_back({x, y, finer.from(2 * int64_t{x} - 1, 2 * int64_t{y} - 1),
-                                own.from(int64_t{x} - 1, int64_t{y} - 1)});
+          list.tiles.push_back({x, y, children_of(x, y), own.from(int64_t{x} - 1, int64_t{y} - 1)});
     finer = std::move(own);
   }
   return lists;

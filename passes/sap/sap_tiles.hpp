@@ -29,7 +29,8 @@ constexpr uint32_t sap_coarse_words(uint32_t view_side) {
 }
 struct SapTile {
   uint32_t x = 0, y = 0;
-  // bit i: tile i of the 3x3 of the finer level from (2x - 1, 2y - 1) on is listed
+  // Bit i: tile i of the 3x3 of the finer level from (2x - 1, 2y - 1) on is listed. Along an axis
+  // that the step does not halve, the first tile is x - 1 or y - 1.
   uint32_t children = 0;
   uint32_t around = 0; // bit i: tile i of the 3x3 tiles of its own level around it is listed
 };
@@ -41,10 +42,11 @@ struct SapTileList {
   uint32_t groups(size_t level) const; // groups of an indirect dispatch over the list
 };
 
-// Lists the tiles of all levels. `classes`: classes by subsurface.classify, one per tile of a view
-// of width x height pixels, row by row; 0: no subsurface. If no class is 1 (scatters), only the
-// first level has tiles, which are copied.
+// Lists the tiles of all levels. `grid`: of the view's pixels. `classes`: classes by
+// subsurface.classify, one per tile of a view of width x height pixels, row by row; 0: no
+// subsurface. If no class is 1 (scatters), only the first level has tiles, which are copied.
 std::array<SapTileList, sap_level_count> list_sap_tiles(uint32_t width, uint32_t height,
-                                                        std::span<const uint32_t> classes);
+                                                        std::span<const uint32_t> classes,
+                                                        PixelGrid grid = 0);
 
 } // namespace dermis::subsurface

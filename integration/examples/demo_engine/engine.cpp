@@ -238,6 +238,7 @@ Result<RenderSummary> render(const RenderOptions& options, const RenderCallbacks
   RenderInfo info;
   info.scene = stage.scene->name;
   info.device = host.properties.deviceName;
+  info.pixel_aspect = stage.scene->camera.pixel_aspect;
   info.credits = stage.model.credits;
   info.warnings = stage.model.warnings;
   for (const SceneProfile& profile : stage.scene->profiles)
@@ -246,13 +247,13 @@ Result<RenderSummary> render(const RenderOptions& options, const RenderCallbacks
   auto usage = kept_stage ? usage_for_keeping() : std::array<VkImageUsageFlags, target_count>{};
   DermisHandle dermis;
   if (!options.graph.empty()) {
-    auto made =
-        create_dermis_host(host,
-                           {options.graph, info.profiles, options.settings, options.width,
-                            options.height, options.overlays, options.include, options.shaders,
-                            options.budget_ms, options.deterministic, options.calibration,
-                            options.sampling, options.tile_class, options.hooks},
-                           &stage.slots);
+    auto made = create_dermis_host(host,
+                                   {options.graph, info.profiles, options.settings, options.width,
+                                    options.height, info.pixel_aspect, options.overlays,
+                                    options.include, options.shaders, options.budget_ms,
+                                    options.deterministic, options.calibration, options.sampling,
+                                    options.tile_class, options.hooks},
+                                   &stage.slots);
     if (!made) return made.error();
     dermis = made.take();
     const auto of_graph = usage_for_graph(*dermis);

@@ -65,6 +65,7 @@ struct RenderOptions {
   std::optional<CameraPlace> camera;
   // Magnification by a smaller field of view of the camera; > 0.
   double zoom = 1.0;
+  double pixel_aspect = 0; // width / height of a pixel, 1/8..8; 0: the scene's
   // settings of the graph: name, JSON text
   std::vector<std::pair<std::string, std::string>> settings;
   // Device time per frame for the graph's choices; 0: their defaults.
@@ -189,6 +190,7 @@ struct RenderInfo {
   uint64_t triangles = 0;
   double load_seconds = 0.0;
   float metres_per_unit = 1.0f;
+  double pixel_aspect = 1.0; // width / height of a pixel
   std::vector<ScatteringProfile> profiles;
   std::vector<std::string> credits;  // texts that must be printed: author and licence of the model
   std::vector<std::string> warnings; // warnings of the scene, the model and the graph

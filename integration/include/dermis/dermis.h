@@ -392,9 +392,9 @@ DERMIS_API dermis_result DERMIS_CALL dermis_graph_reload(
  * the library was built without DERMIS_RUNTIME_SHADERS. */
 DERMIS_API dermis_result DERMIS_CALL dermis_graph_reload_shaders(
     dermis_graph graph, dermis_include_fn open, void* user, dermis_report* report);
-/* Changes the allocated size of all views. Histories become invalid, except images declared
- * "on_resize": "rescale". Creates no pipelines of known kernels. Costs: memory, time. Thread:
- * concurrent. Errors: as dermis_graph_create. */
+/* Changes the allocated size of all views and keeps the pixel_aspect. Histories become invalid,
+ * except images declared "on_resize": "rescale". Creates no pipelines of known kernels. Costs:
+ * memory, time. Thread: concurrent. Errors: as dermis_graph_create. */
 DERMIS_API dermis_result DERMIS_CALL dermis_graph_resize(
     dermis_graph graph, uint32_t width, uint32_t height, dermis_report* report);
 /* Destroys the graph and its views. The device must have finished every frame recorded with them.

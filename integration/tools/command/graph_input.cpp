@@ -226,6 +226,7 @@ CompileInput compile_input(const LoadedGraph& loaded, const DeviceProfile& devic
   input.device = &device;
   input.view_width = size.width;
   input.view_height = size.height;
+  input.pixel_grid = choices.pixel_grid;
   input.settings = choices.settings;
   input.bound = choices.bound;
   input.single_queue = !choices.two_queues;

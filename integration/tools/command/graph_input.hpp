@@ -54,6 +54,7 @@ std::optional<LoadedGraph> load_fragment(Document document, const OpenFile& open
 struct CompileChoices {
   std::vector<SettingValue> settings;
   std::vector<bool> bound;
+  PixelGrid pixel_grid = 0;
   bool two_queues = false;
   std::string problem;
 };

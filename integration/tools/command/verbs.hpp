@@ -51,6 +51,7 @@ struct ExplainOptions {
   Size size{1920, 1080};
   std::vector<NamedValue> settings;
   std::vector<std::string> unbound; // optional imports and exports that the host does not bind
+  double pixel_aspect = 0;          // width / height of a pixel; 0: 1, or the scene's
   bool two_queues = false;          // use a second queue for async passes where possible
   bool frame = false;               // explain the choices of a frame of `scene` instead of the plan
   std::string scene = shipped("configs/scenes/bust.json");
@@ -145,6 +146,7 @@ ExitCode doctor(const Session& session, const DoctorOptions& options);
 struct RenderOptions {
   std::string scene, graph, out, capture; // `capture` "": no capture
   Size size{640, 360};
+  double pixel_aspect = 0; // width / height of a pixel; 0: the scene's
   uint32_t frames = 8;
   uint32_t subset = 4096; // pixels per frame compared with the reference; 0: no comparison
   std::vector<NamedValue> settings;
@@ -169,6 +171,7 @@ ExitCode render(const Session& session, const RenderOptions& options);
 struct CaptureOptions {
   std::string scene, out;
   Size size{640, 360};
+  double pixel_aspect = 0; // width / height of a pixel; 0: the scene's
   uint32_t frames = 8, first = 0;
   ModelOptions model;
   std::vector<std::string> roots; // additional folders that scene and model may read from

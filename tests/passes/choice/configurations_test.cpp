@@ -171,6 +171,27 @@ TEST_F(Configurations, CostsGrowWithTheListedTiles) {
   EXPECT_NEAR(ms(3600) - ms(100), 3 * 3500 * group_ms, 1e-9);
 }
 
+// Passes over the tiles of coarse levels launch more groups where pixels are not square.
+TEST_F(Configurations, LevelGroups_FollowThePixelGrid) {
+  const auto groups = [&](double aspect, uint32_t level) {
+    Plan plan;
+    plan.pixel_grid = pixel_grid(aspect);
+    plan.settings.resize(2);
+    plan.settings[0].value.integer = level;
+    plan.passes.emplace_back();
+    plan.passes[0].type = pass_types.find("subsurface.sap_down");
+    const std::vector<Work> works = works_of(pass_types, plan, {});
+    return groups_of(works.at(0).load, {.width = 640, .height = 360, .listed_tiles = 100});
+  };
+  EXPECT_EQ(groups(1, 1), 100u);
+  EXPECT_EQ(groups(1.2, 3), 100u);
+  EXPECT_EQ(groups(2, 1), 200u);
+  EXPECT_EQ(groups(0.5, 4), 200u);
+  EXPECT_EQ(groups(4, 1), 200u);
+  EXPECT_EQ(groups(0.25, 2), 400u);
+  EXPECT_EQ(groups(4, 5), 400u);
+}
+
 // The choice names passes that neither table knows; `off` needs no row.
 TEST_F(Configurations, MissingRows_AreReportedAtTheChoice) {
   const auto report = [&](const Compiled& all, const CostEstimator& known) {

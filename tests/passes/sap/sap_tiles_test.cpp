@@ -78,7 +78,7 @@ struct LevelTiles {
   uint32_t width = 0, height = 0;
   std::array<SapTileList, sap_level_count> lists = {};
 };
-std::vector<LevelTiles> views() {
+std::vector<LevelTiles> views(PixelGrid grid = 0) {
   std::vector<LevelTiles> views;
   for (const auto& [width, height] : {std::pair{1u, 1u},
                                       {1u, 7u},
@@ -92,20 +92,37 @@ std::vector<LevelTiles> views() {
                                       {640u, 360u},
                                       {7680u, 4320u}}) {
     const std::vector<uint32_t> classes(size_t{along(width)} * along(height), 1);
-    views.push_back({width, height, list_sap_tiles(width, height, classes)});
+    views.push_back({width, height, list_sap_tiles(width, height, classes, grid)});
   }
   return views;
 }
 
 TEST(SapTiles, ListsFitTheDeclaredBuffer) {
-  // configs/graphs/sap.json: (view/8 + 64) elements of two entries; the first nine are the heads of
-  // the lists.
-  for (const LevelTiles& view : views()) {
-    size_t entries = sap_level_count;
-    for (const SapTileList& list : view.lists)
-      entries += list.tiles.size();
-    EXPECT_LE(entries, 2 * (view.lists[0].tiles.size() + 64)) << view.width << "x" << view.height;
+  // configs/graphs/sap.json: (square_view/8 + 64) elements of two entries; the first nine are the
+  // heads of the lists.
+  for (const double aspect : {1.0, 2.0, 0.5, 4.0, 0.25}) {
+    const PixelGrid grid = pixel_grid(aspect);
+    for (const LevelTiles& view : views(grid)) {
+      size_t entries = sap_level_count;
+      for (const SapTileList& list : view.lists)
+        entries += list.tiles.size();
+      const size_t square_tiles = size_t{along(view.width << pixel_doublings(grid, 0))} *
+                                  along(view.height << pixel_doublings(grid, 1));
+      EXPECT_LE(entries, 2 * (square_tiles + 64)) << view.width << "x" << view.height;
+    }
   }
+}
+
+TEST(SapTiles, LevelsHaveTheTilesOfThePixelGrid) {
+  const std::vector<uint32_t> classes(size_t{along(640)} * along(360), 1);
+  const auto size = [&](double aspect, size_t level) {
+    const SapTileList list = list_sap_tiles(640, 360, classes, pixel_grid(aspect))[level];
+    return std::pair{list.across, list.down};
+  };
+  EXPECT_EQ(size(1, 1), std::pair(41u, 23u));
+  EXPECT_EQ(size(2, 1), std::pair(81u, 23u));
+  EXPECT_EQ(size(2, 3), std::pair(21u, 6u));
+  EXPECT_EQ(size(0.25, 2), std::pair(21u, 46u));
 }
 
 // A group of the kernel has one tile of level 4, and one word of `list_state` per group.

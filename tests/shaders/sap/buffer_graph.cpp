@@ -57,6 +57,7 @@ void BufferGraphTest::run_graph(const BufferGraph& input, BufferGraphAnswers& an
   compiled.device = &profile;
   compiled.view_width = input.width;
   compiled.view_height = input.height;
+  compiled.pixel_grid = input.grid;
   compiled.bound.assign(graph->resources.size(), true);
   const auto plan = compile(compiled, diagnostics);
   ASSERT_TRUE(plan) << format_as_json(diagnostics);

@@ -22,6 +22,7 @@ inline constexpr uint32_t answer_columns = 1024;
 
 struct BufferGraph {
   uint32_t width = 0, height = 0; // of the view, in pixels
+  PixelGrid grid = 0;
   // Graph that exports only an image `answers`: rgba32_uint, answer_columns x rows.
   std::string text = {};
   uint32_t rows = 0;

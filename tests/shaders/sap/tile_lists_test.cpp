@@ -41,6 +41,7 @@ constexpr Port lists_ports[] = {read_buffer("level_tiles"),
 
 struct View {
   uint32_t width = 0, height = 0;
+  PixelGrid grid = 0;
   uint32_t across() const { return static_cast<uint32_t>(ceil_div(width, tile_side)); }
   uint32_t down() const { return static_cast<uint32_t>(ceil_div(height, tile_side)); }
 };
@@ -54,12 +55,12 @@ std::string graph_text(uint32_t rows, bool with_copies) {
       R"({{ "dermis": 2, "name": "lists",
   "resources": {{
     "classes": {{ "buffer": {{ "stride": 4, "count": "view/8" }} }},
-    "list_state": {{ "buffer": {{ "stride": 4, "count": "view/64", "extra": 8 }} }},
+    "list_state": {{ "buffer": {{ "stride": 4, "count": "square_view/64", "extra": 8 }} }},
     "tiles": {{ "buffer": {{ "stride": 4, "count": "view/8", "extra": 1 }} }},
     "arguments": {{ "buffer": {{ "stride": 4, "count": [4, 1] }} }},
     "plain_tiles": {{ "buffer": {{ "stride": 4, "count": "view/8", "extra": 1 }} }},
     "plain_arguments": {{ "buffer": {{ "stride": 4, "count": [4, 1] }} }},
-    "level_tiles": {{ "buffer": {{ "stride": 16, "count": "view/8", "extra": 64 }} }},
+    "level_tiles": {{ "buffer": {{ "stride": 16, "count": "square_view/8", "extra": 64 }} }},
     "level_arguments": {{ "buffer": {{ "stride": 16, "count": [9, 1] }} }}, {0}
     "answers": {{ "format": "rgba32_uint", "size": [{1}, {2}] }} }},
   "passes": [
@@ -90,8 +91,8 @@ protected:
   // Runs both list kernels on classes of the tiles of a view.
   void run(View view, const std::vector<uint32_t>& classes, bool with_copies, KernelShape shape,
            Answers& answers) {
-    testing::BufferGraph input{view.width, view.height};
-    input.rows = static_cast<uint32_t>(1 + ceil_div(2 * (classes.size() + 64), answer_columns));
+    testing::BufferGraph input{view.width, view.height, view.grid};
+    input.rows = static_cast<uint32_t>(1 + ceil_div(8 * (classes.size() + 64), answer_columns));
     input.text = graph_text(input.rows, with_copies);
     input.questions.assign(classes.begin(), classes.end());
     input.shape = shape;
@@ -145,7 +146,7 @@ void expect_lists(View view, const std::vector<uint32_t>& classes, bool with_cop
   for (const uint32_t entry : classes)
     types.push_back(entry & 3);
   const bool any = std::find(types.begin(), types.end(), scatters) != types.end();
-  const auto lists = list_sap_tiles(view.width, view.height, types);
+  const auto lists = list_sap_tiles(view.width, view.height, types, view.grid);
   size_t first = sap_level_count;
   for (size_t level = 0; level < lists.size(); ++level) {
     const SapTileList& list = lists[level];
@@ -226,6 +227,21 @@ TEST_F(TileLists, OddSizes_EqualTheReferenceAsSets) {
     if (HasFatalFailure()) return;
     expect_lists(view, classes, true, false, answers);
   }
+}
+
+// Levels that do not halve an axis have more tiles along it.
+TEST_F(TileLists, PixelsNotSquare_EqualTheReferenceAsSets) {
+  for (const double aspect : {1.2, 2.0, 0.5, 4.0, 0.25})
+    for (const View view : {View{333, 187}, {1024, 1020}, {16384, 9}, {9, 16384}}) {
+      SCOPED_TRACE(fmt::format("{}x{}, aspect {}", view.width, view.height, aspect));
+      const View shaped{view.width, view.height, pixel_grid(aspect)};
+      const std::vector<uint32_t> classes = mixed_classes(shaped);
+      const bool texels = view.width != 333;
+      Answers answers;
+      run(shaped, classes, true, texels ? KernelShape::texel : KernelShape::block, answers);
+      if (HasFatalFailure()) return;
+      expect_lists(shaped, classes, true, texels, answers);
+    }
 }
 
 // Columns of tiles that level 4 reduces to one column each, at all places of words of flags.

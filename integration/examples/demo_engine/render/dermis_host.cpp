@@ -126,6 +126,7 @@ Result<> build_graph(DermisHost& host, const DermisDesc& desc, const Sources& so
   info.source = source_of(desc.graph_file, sources.graph);
   info.width = desc.width;
   info.height = desc.height;
+  info.pixel_aspect = static_cast<float>(desc.pixel_aspect);
   info.profiles = profiles.data();
   info.profile_count = static_cast<uint32_t>(profiles.size());
   info.unbound = unbound_names.data();

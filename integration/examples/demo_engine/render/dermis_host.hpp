@@ -17,6 +17,7 @@ struct DermisDesc {
   std::vector<ScatteringProfile> profiles;
   std::vector<std::pair<std::string, std::string>> settings;
   uint32_t width = 1, height = 1;
+  double pixel_aspect = 1; // width / height of a pixel
   std::vector<NamedText> overlays = {};
   std::function<std::optional<NamedText>(const std::string&name)> include = {}, shaders = {};
   double budget_ms = 0;

@@ -56,7 +56,7 @@ bool same_stage(const RenderOptions& a, const RenderOptions& b) {
   const auto of = [](const RenderOptions& o) {
     return std::tie(o.scene, o.model, o.roots, o.width, o.height, o.frames_per_second,
                     o.reversed_depth, o.jitter, o.taa, o.validation, o.device, o.kernels, o.camera,
-                    o.zoom);
+                    o.zoom, o.pixel_aspect);
   };
   return of(a) == of(b);
 }
@@ -72,6 +72,7 @@ Result<> load_stage(Stage& stage, const RenderOptions& options) {
   if (!scene) return scene.error();
   if (options.camera) move_camera(*scene, *options.camera);
   zoom_in(scene->camera, options.zoom);
+  if (options.pixel_aspect > 0) scene->camera.pixel_aspect = options.pixel_aspect;
   if (options.frames_per_second > 0) scene->frames_per_second = options.frames_per_second;
   stage.model = {};
   if (!options.model.mesh.empty()) {

@@ -86,6 +86,7 @@ struct SceneReader {
       curve(object, "height", {1e-4, 1000.0}, Need::required, camera.height);
     else
       curve(object, "vertical_fov", {1.0, 150.0}, Need::required, camera.vertical_fov);
+    number(object, "pixel_aspect", 0.125, 8.0, camera.pixel_aspect);
     number(object, "near", 1e-4, 100.0, camera.near_plane);
     number(object, "far", 1e-3, 1e5, camera.far_plane);
     if (object.finish() && camera.near_plane >= camera.far_plane)

@@ -15,6 +15,7 @@ struct Camera {
   Curve<glm::dvec3> position{glm::dvec3(0, 0, 1)}, target{glm::dvec3(0, 0, 0)};
   Curve<double> vertical_fov{25.0}; // degrees; perspective
   Curve<double> height{1.0};        // height of the view in metres; orthographic
+  double pixel_aspect = 1.0;        // width / height of a pixel
   double near_plane = 0.05, far_plane = 20.0;
 };
 

@@ -49,7 +49,7 @@ double halton(uint32_t index, uint32_t base) {
 ViewState view_at(const Camera& camera, double seconds, uint32_t frame, const ViewDesc& desc) {
   ViewState view;
   view.view_from_world = look(value_at(camera.position, seconds), value_at(camera.target, seconds));
-  const double aspect = static_cast<double>(desc.width) / desc.height;
+  const double aspect = camera.pixel_aspect * desc.width / desc.height;
   const double extent = camera.orthographic
                             ? 0.5 * value_at(camera.height, seconds)
                             : std::tan(0.5 * glm::radians(value_at(camera.vertical_fov, seconds)));

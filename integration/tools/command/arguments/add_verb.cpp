@@ -35,6 +35,12 @@ CLI::Option* add_size(CLI::App& verb, Size& size, const char* name) {
       ->check(CLI::Validator(check_size, "WxH"));
 }
 
+void add_pixel_aspect(CLI::App& verb, double& aspect, const char* what) {
+  verb.add_option("--pixel-aspect", aspect, what)
+      ->check(CLI::Range(0.125, 8.0))
+      ->type_name("RATIO");
+}
+
 void add_settings(CLI::App& verb, std::vector<NamedValue>& settings, const char* name) {
   repeat(verb.add_option_function<std::vector<std::string>>(
                  name,

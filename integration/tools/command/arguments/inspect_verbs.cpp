@@ -52,6 +52,8 @@ void add_text_verbs(CLI::App& app, Invocation& invocation) {
         for (const DiagnosticInfo& info : all_diagnostic_infos())
           invocation.offered[graph].emplace_back(info.code);
         add_size(verb, options.size);
+        add_pixel_aspect(verb, options.pixel_aspect,
+                         "Width of a pixel over its height [1, or the scene's]");
         add_settings(verb, options.settings);
         add_unbound(verb, options.unbound);
         add_two_queues(verb, options.two_queues);

@@ -9,6 +9,7 @@ namespace {
 
 constexpr uint32_t max_repeat = 10000;
 constexpr uint32_t max_subset = 1u << 24u; // pixels
+constexpr const char* of_scene = "Width of a pixel over its height [the scene's]";
 
 // Adds the options of the choice by budget.
 void add_budget(CLI::App& verb, RenderOptions& options) {
@@ -69,6 +70,7 @@ void add_picture_verbs(CLI::App& app, Invocation& invocation) {
             ->required();
         add_path(verb, "--out,-o", options.out, "Folder for images", "DIR")->required();
         add_size(verb, options.size);
+        add_pixel_aspect(verb, options.pixel_aspect, of_scene);
         add_frames(verb, options.frames, "Frames to render [8]");
         add_path(verb, "--capture", options.capture,
                  "Also write the graph's inputs as a capture to this folder", "DIR");
@@ -115,6 +117,7 @@ void add_picture_verbs(CLI::App& app, Invocation& invocation) {
         add_path(verb, "scene", options.scene, "Scene file")->required();
         add_path(verb, "--out,-o", options.out, "Folder for the frames", "DIR")->required();
         add_size(verb, options.size);
+        add_pixel_aspect(verb, options.pixel_aspect, of_scene);
         add_frames(verb, options.frames, "Frames to capture [8]");
         verb.add_option("--first", options.first, "First frame of the scene [0]")
             ->check(CLI::Range(0u, max_frames));

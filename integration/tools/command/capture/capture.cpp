@@ -17,6 +17,7 @@ demo::Result<> capture_scene(const Session& session, const CaptureOptions& optio
   engine.model = {options.model.model, options.model.albedo, options.model.normal,
                   options.model.specular, options.model.height};
   engine.width = options.size.width;
+  engine.pixel_aspect = options.pixel_aspect;
   engine.height = options.size.height;
   engine.first_frame = options.first;
   engine.frames = options.frames;

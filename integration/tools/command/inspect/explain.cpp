@@ -67,6 +67,7 @@ ExitCode explain_frame(const Session& session, const ExplainOptions& options,
   engine.graph = options.graph;
   engine.width = options.size.width;
   engine.height = options.size.height;
+  engine.pixel_aspect = options.pixel_aspect;
   engine.frames = frames;
   engine.settings = settings_as_json(loaded.graph, options.settings);
   engine.budget_ms = options.budget_ms;
@@ -82,11 +83,16 @@ ExitCode explain_frame(const Session& session, const ExplainOptions& options,
   HostPasses host_passes(loaded.host_pass_types);
   engine.hooks = host_passes.hooks();
   ChoiceReport report;
+  PixelGrid grid = 0;
   demo::RenderCallbacks callbacks;
+  callbacks.on_start = [&](const demo::RenderInfo& info) -> demo::Result<> {
+    grid = pixel_grid(info.pixel_aspect);
+    return demo::success();
+  };
   callbacks.on_frame = [&](const demo::FrameOutputs& frame) -> demo::Result<> {
     if (frame.choice && frame.frame + 1 == frames)
       report.add(frame.frame, *frame.choice, frame.histories,
-                 tile_costs(loaded, options.size, options.settings, *frame.choice));
+                 tile_costs(loaded, options.size, grid, options.settings, *frame.choice));
     return interrupted() ? demo::Result<>(demo::Error{demo::ErrorKind::environment, "stopped"})
                          : demo::success();
   };
@@ -116,6 +122,7 @@ ExitCode explain(const Session& session, const ExplainOptions& options) {
   if (!loaded) return fail_graph(session, options.graph, diagnostics);
   CompileChoices choices = read_choices(loaded->graph, options.settings, options.unbound);
   choices.two_queues = options.two_queues;
+  if (options.pixel_aspect > 0) choices.pixel_grid = pixel_grid(options.pixel_aspect);
   if (!choices.problem.empty()) return fail(session, ExitCode::usage, choices.problem);
   if (options.frame) return explain_frame(session, options, *loaded);
   const std::optional<CompiledPlan> compiled =

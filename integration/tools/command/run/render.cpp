@@ -275,6 +275,7 @@ ExitCode render(const Session& session, const RenderOptions& options) {
   engine.model = {options.model.model, options.model.albedo, options.model.normal,
                   options.model.specular, options.model.height};
   engine.width = options.size.width;
+  engine.pixel_aspect = options.pixel_aspect;
   engine.height = options.size.height;
   engine.frames = options.frames;
   engine.budget_ms = options.budget_ms;

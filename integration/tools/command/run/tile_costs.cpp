@@ -43,12 +43,14 @@ double TileCosts::total() const {
                          });
 }
 
-TileCosts tile_costs(const LoadedGraph& loaded, const Size& size,
+TileCosts tile_costs(const LoadedGraph& loaded, const Size& size, PixelGrid grid,
                      std::span<const NamedValue> settings, const demo::FrameChoice& choice) {
   std::vector<NamedValue> values(settings.begin(), settings.end());
   add_configuration(loaded.graph, choice.configuration, values);
   Diagnostics scratch; // not reported: the frame ran, so the graph compiles
-  const auto compiled = compile_generic(loaded, size, read_choices(loaded.graph, values), scratch);
+  CompileChoices choices = read_choices(loaded.graph, values);
+  choices.pixel_grid = grid;
+  const auto compiled = compile_generic(loaded, size, choices, scratch);
   TileCosts out;
   if (!compiled) return out;
   const Plan& plan = compiled->plan;
@@ -63,7 +65,8 @@ TileCosts tile_costs(const LoadedGraph& loaded, const Size& size,
     double finer = 1; // level 0 texels per texel of the pass
     for (size_t i = 0; i < type.settings.size(); ++i) {
       own.push_back(plan.settings[pass.first_setting + i].value);
-      if (type.settings[i].name == "level") finer = std::exp2(2.0 * double(own.back().integer));
+      if (type.settings[i].name == "level")
+        finer = double(pixels_per_texel(grid, static_cast<uint32_t>(own.back().integer)));
     }
     subsurface::ReadsQuestion question{
         own, std::vector<bool>(type.ports.size(), false), {d, d, d}, tables};

@@ -28,9 +28,8 @@ struct TileCosts {
 };
 
 // Returns the costs of a frame that ran `choice.configuration` of the graph. `settings` are those
-// of
-// --set. Reads are counted from the kernels' source (image_reads.hpp), not measured.
-TileCosts tile_costs(const LoadedGraph& loaded, const Size& size,
+// of --set. Reads are counted from the kernels' source (image_reads.hpp), not measured.
+TileCosts tile_costs(const LoadedGraph& loaded, const Size& size, PixelGrid grid,
                      std::span<const NamedValue> settings, const demo::FrameChoice& choice);
 // Formats the costs as text, or "" if there are no classes.
 std::string describe_tile_costs(const TileCosts& costs);

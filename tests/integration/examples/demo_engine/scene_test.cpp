@@ -225,6 +225,17 @@ TEST(SceneState, YPointsUpAndJitterIsInPixels) {
   }
 }
 
+TEST(SceneState, PixelsAreAsWideAsTheCameraStates) {
+  for (const bool orthographic : {false, true}) {
+    Scene scene = scene_seen_by(orthographic);
+    const glm::dmat4 square = state_at(scene, 0, {320, 180}).now.clip_from_view;
+    scene.camera.pixel_aspect = 2;
+    const glm::dmat4 wide = state_at(scene, 0, {320, 180}).now.clip_from_view;
+    EXPECT_NEAR(square[0][0] / wide[0][0], 2, 1e-12);
+    EXPECT_EQ(square[1][1], wide[1][1]);
+  }
+}
+
 TEST(SceneState, TheFirstFrameHasNoMotion) {
   Scene scene = scene_seen_by(false);
   scene.objects[0].position.keys = {{0.0, glm::dvec3(0.0)}, {1.0, glm::dvec3(1.0, 0.0, 0.0)}};
