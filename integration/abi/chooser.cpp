@@ -88,6 +88,13 @@ void reduce_optimism(choice::CostEstimator& costs, const choice::Configuration& 
     costs.reduce_optimism(pass.cost);
 }
 
+// Returns the technique whose correction applies. Samples of tiles change a technique's error by
+// almost the same factor on all scenes, so both have one correction.
+int32_t corrected_technique(const choice::Configuration& configuration) {
+  return configuration.without_samples >= 0 ? configuration.without_samples
+                                            : configuration.technique;
+}
+
 // Learns the ratio of the error that the probe measured to the error that the table predicts.
 void learn_error(Chooser& chooser, const choice::Configuration& configuration,
                  const subsurface::FrameCounters& counters) {
@@ -99,7 +106,7 @@ void learn_error(Chooser& chooser, const choice::Configuration& configuration,
     return;
   const double expected = expected_rmse(chooser.errors, configuration, mean_d_px(counters),
                                         counters.sample_units, counters.sample_demand);
-  observe_error(chooser.found, configuration.technique, probed.rmse, expected);
+  observe_error(chooser.found, corrected_technique(configuration), probed.rmse, expected);
 }
 
 uint64_t listed_tiles(const subsurface::FrameCounters& counters) {
@@ -178,7 +185,7 @@ std::span<choice::Forecast> forecast_all(Chooser& chooser, const CompiledGraph& 
   const size_t count = chooser.budget.ms > 0 ? compiled_graph.configurations.size() : 1;
   for (uint32_t i = 0; i < count; ++i) {
     const choice::Configuration& configuration = compiled_graph.configurations[i];
-    const double correction = error_factor(chooser.found, configuration.technique);
+    const double correction = error_factor(chooser.found, corrected_technique(configuration));
     const double missed =
         missed_rmse(chooser.errors, configuration.technique, content.transmitted_rms);
     const auto error_of = [&](int32_t technique) {

@@ -129,6 +129,25 @@ TEST_F(Probe, MeasuredErrorCorrectsTheExpectedError) {
   EXPECT_NEAR(choice.predicted_rmse, std::clamp(found, before / 4.0, before * 4.0), 0.05 * found);
 }
 
+TEST_F(Probe, SampledTilesShareTheirPyramidsCorrection) {
+  const auto from_table = [&](const char* technique) {
+    make(technique, false);
+    run_frame(spread);
+    return double(run_frame(spread).predicted_rmse);
+  };
+  const double sap = from_table("\"sap\""), hybrid = from_table("\"hybrid\"");
+  make("\"sap\"");
+  double corrected = 0;
+  for (int i = 0; i < 30; ++i)
+    corrected = double(run_frame(spread).predicted_rmse);
+  const double factor = corrected / sap;
+  EXPECT_GT(std::abs(std::log(factor)), 0.2); // The light differs from the table's.
+  ASSERT_OK(dermis_graph_set_setting(graph, "technique", "\"hybrid\"", nullptr));
+  make_images(graph);
+  run_frame(spread); // The requested samples are unknown before.
+  EXPECT_NEAR(double(run_frame(spread).predicted_rmse), factor * hybrid, 0.15 * factor * hybrid);
+}
+
 TEST_F(Probe, PyramidIsBetterThanUnscatteredLight) {
   make("\"sap\"");
   const auto with = run_frame(spread);

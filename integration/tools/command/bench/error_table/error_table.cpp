@@ -39,7 +39,6 @@ struct ErrorTableBench {
   std::vector<float> sap_tables = {};
   std::vector<TabledTechnique> requests = {};
   std::vector<std::unique_ptr<TechniqueRun>> techniques = {}; // by request
-  std::set<std::string> of_few = {}; // names of scenes that represent their class
   std::vector<ErrorTableRow> rows = {};
 };
 
@@ -67,16 +66,12 @@ void add_family_scene(ErrorTableBench& bench, FamilyScene scene, const subsurfac
 }
 
 void add_family(ErrorTableBench& bench, const subsurface::Profile& skin) {
-  std::set<std::string> classes; // with half
-  std::set<const FamilyKind*> kinds;
+  std::set<std::string> classes;
   for (const FamilyScene& scene : bench.run.quick ? few_family_scenes() : family_scenes()) {
     // Pixels are square in most hosts, and all techniques follow their shape.
     if (scene.aspect != 1 || scene.member.scene_class == "square") continue;
     if (!is_selected(bench, scene.name, scene.member)) continue;
-    // Other scenes of a kind only differ in d or weakly in shape.
-    if (scene.member.half == "tuning" && !kinds.insert(scene.kind).second) continue;
-    if (classes.insert(scene.member.half + scene.member.scene_class).second)
-      bench.of_few.insert(scene.name);
+    if (scene.member.half == "tuning" && !classes.insert(scene.member.scene_class).second) continue;
     add_family_scene(bench, scene, skin);
   }
 }
@@ -94,7 +89,6 @@ demo::Result<> add_subjects(ErrorTableBench& bench) {
     if (!subject) return subject.error();
     bench.subjects.push_back(subject.take());
     bench.subjects.back().member = scene.member;
-    bench.of_few.insert(scene.scene);
   }
   if (bench.subjects.empty())
     return demo::Error{demo::ErrorKind::usage,
@@ -139,7 +133,6 @@ demo::Result<> measure_subject(ErrorTableBench& bench, const Subject& subject) {
   const FrameKeys keys = keys_of(subject.frame, reference->exposure);
   for (size_t t = 0; t < bench.techniques.size(); ++t) {
     const TabledTechnique& request = bench.requests[t];
-    if (request.few && !bench.of_few.contains(subject.scene)) continue;
     const uint32_t frames = bench.run.quick ? std::min(request.frames, 2u) : request.frames;
     const auto light = scatter_frames(*bench.techniques[t], subject, frames);
     if (!light) return light.error();
@@ -224,6 +217,8 @@ demo::Result<> measure_error_table(SuiteRun& run, const Emit<ErrorTableRow>& emi
   run.add_fact("size", fmt::format("{}x{} pixels", family_width, family_height));
   run.add_fact("truth",
                fmt::format("everywhere on planes, else at {} stratified pixels", file.subset));
+  table->scenes = fmt::format("the seeded family of scenes, d from {:g} to {:g} px",
+                              file.d_px.front(), file.d_px.back());
   fit_table(*table, errors_of(bench), file.d_px);
   add_predictions(bench, *table);
   for (const ErrorTableRow& row : bench.rows)

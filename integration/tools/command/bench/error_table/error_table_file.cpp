@@ -19,7 +19,6 @@ void read_root(BenchObject& root, ErrorTableFile& file) {
   root.entries("techniques", "technique", 1, [&](BenchObject& entry) {
     TabledTechnique& technique = file.techniques.emplace_back();
     entry.count("frames", technique.frames, 1, 4096, Need::optional);
-    entry.flag("few", technique.few);
     entry.technique(technique);
   });
 }

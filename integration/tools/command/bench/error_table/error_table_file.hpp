@@ -14,7 +14,6 @@ namespace dermis::tools {
 // errors. The technique "off" measures unscattered light.
 struct TabledTechnique : TechniqueRequest {
   uint32_t frames = 1; // the error is that of the last of so many frames at rest
-  bool few = false;    // measured only on the first scene of each class, because frames are many
 };
 
 struct ErrorTableFile {
