@@ -90,14 +90,28 @@ constexpr auto guided_ports =
                     port::sampling});
 
 constexpr std::string_view guidance_options[] = {"split_half", "spvg", "ccv", "ocv"};
+constexpr std::string_view control_options[] = {"mean", "own"};
+constexpr std::string_view pool_options[] = {"tile", "pixel"};
 constexpr auto guided_settings = join(
     estimator_settings,
     std::array{
         setting::choice(
             "guidance", guidance_options,
             "value whose variance guides the number of samples. split_half: difference of two half "
-            "sequences; spvg: luminance; ccv: luminance minus that of the pixel's own light; ocv: "
-            "the same with an optimal weight"),
+            "sequences; spvg: luminance of the light from beyond the direct radius; ccv: the same "
+            "minus the control; ocv: the same with an optimal weight of the control"),
+        setting::choice("control", control_options,
+                        "for ccv and ocv. mean: mean light around the pixel, read from a level; "
+                        "own: the pixel's own light, as published"),
+        setting::per_frame(setting::real("control_level", 1, -4, 8, "levels",
+                                         "level of the mean above log2 of d in pixels")),
+        setting::choice("pool", pool_options,
+                        "tile: variance and number of samples are means over the pixels of a "
+                        "profile in a tile; pixel: as published; unused with split_half"),
+        setting::per_frame(
+            setting::real("eps_u", 0.01, 0.01, 1, "",
+                          "fraction of the widest channel's light beyond the circumscribed radius, "
+                          "below which light is copied; classify copies below 0.01")),
         setting::integer("min_samples", 8, 2, 4096, "samples per pixel",
                          "minimum number of samples"),
         setting::integer("max_samples", 64, 2, 4096, "samples per pixel",

@@ -55,36 +55,43 @@ vec2 sequence_point(int sequence, uvec2 offset, sample_set set, int i) {
       r2_point(offset, (sequence == SEQUENCE_CONTINUED ? set.first : 0u) + uint(i)));
 }
 
+struct direct_part {
+  vec3 fraction; // of the light that stays within the direct radius (1 - gamma)
+  float beyond;  // survival of the sampler's density at that radius
+};
+
+// `area`: of the pixel's patch.
+direct_part direct_of(afis_settings settings, scatter_point point, scatter_profile profile,
+                      float area) {
+  if (settings.direct == DIRECT_NONE)
+    return direct_part(vec3(0.0), 1.0);
+  vec2 footprint = pixel_footprint(point.depth);
+  float r0 = settings.direct == DIRECT_INSCRIBED ? 0.5 * min(footprint.x, footprint.y)
+                                                 : 0.5 * length(footprint);
+  vec3 survival = profile_survival(profile, r0);
+  float beyond = draws_mixture(settings, profile) ? dot(mixture_fractions(profile), survival)
+                                                  : survival[profiles[min(point.id, 255u)].widest];
+  // The pixel's own light must cover exactly the radii that the sampler leaves out.
+  r0 = draw(settings, profile, beyond).r;
+  float patch_r0 = settings.surface == SURFACE_PATCH ? r0 * sqrt(area) : r0;
+  return direct_part(1.0 - profile_survival(profile, patch_r0), beyond);
+}
+
 // Returns the scattered light of a pixel. `own`: its own light, and the area of its patch. The
 // textures are the ports of subsurface.afis.
-vec3 scatter(afis_settings settings, sample_set set, scatter_point point, scatter_profile profile,
-             vec4 own, utexture2D material, texture2D depth, texture2D slope, texture2D light,
-             texture2D levels) {
+vec3 scatter(afis_settings settings, direct_part direct, sample_set set, scatter_point point,
+             scatter_profile profile, vec4 own, utexture2D material, texture2D depth,
+             texture2D slope, texture2D light, texture2D levels) {
   vec2 footprint = pixel_footprint(point.depth);
-  uint widest = profiles[min(point.id, 255u)].widest;
-
-  vec3 direct = vec3(0.0);
-  float beyond = 1.0;
-  if (settings.direct != DIRECT_NONE) {
-    float r0 = settings.direct == DIRECT_INSCRIBED ? 0.5 * min(footprint.x, footprint.y)
-                                                   : 0.5 * length(footprint);
-    vec3 survival = profile_survival(profile, r0);
-    beyond = draws_mixture(settings, profile) ? dot(mixture_fractions(profile), survival)
-                                              : survival[widest];
-    // The pixel's own light must cover exactly the radii that the sampler leaves out.
-    r0 = draw(settings, profile, beyond).r;
-    direct =
-        1.0 - profile_survival(profile, settings.surface == SURFACE_PATCH ? r0 * sqrt(own.a) : r0);
-  }
   // Number of pixels that a sample represents: 1 / (samples * density on the view plane). The
   // density on the plane is the density of the radius / (2 pi r).
-  float pixels_per_sample = two_pi * beyond / (float(set.all) * footprint.x * footprint.y);
+  float pixels_per_sample = two_pi * direct.beyond / (float(set.all) * footprint.x * footprint.y);
   uvec2 offset = sequence_offset(settings.sequence, point.pixel, set);
-  float each = beyond / float(set.count);
+  float each = direct.beyond / float(set.count);
   vec3 sum = vec3(0.0), total = vec3(0.0);
   for (int i = 0; i < set.count; ++i) {
     vec2 unit = sequence_point(settings.sequence, offset, set, i);
-    radial_sample radial = draw(settings, profile, unit.x * beyond);
+    radial_sample radial = draw(settings, profile, unit.x * direct.beyond);
     vec2 at =
         vec2(point.pixel) + radial.r * vec2(cos(unit.y * two_pi), sin(unit.y * two_pi)) / footprint;
     surface_tap tap;
@@ -102,13 +109,20 @@ vec3 scatter(afis_settings settings, sample_set set, scatter_point point, scatte
     sum += weight * seen;
     total += weight;
   }
-  vec3 mass = direct + each * total, mean = direct * own.rgb + each * sum;
+  vec3 mass = direct.fraction + each * total;
+  vec3 mean = direct.fraction * own.rgb + each * sum;
   if (settings.estimator == ESTIMATOR_SELF)
     mean = mix(own.rgb, mean / max(mass, vec3(1e-30)), greaterThan(mass, vec3(1e-30)));
   else if (settings.estimator == ESTIMATOR_CENTRED)
     mean += (1.0 - mass) * own.rgb;
   mean = max(mix(own.rgb, mean, greaterThan(profile.d.rgb, vec3(0.0))), vec3(0.0));
   return mix(mean, own.rgb, profile_direct(point.id));
+}
+vec3 scatter(afis_settings settings, sample_set set, scatter_point point, scatter_profile profile,
+             vec4 own, utexture2D material, texture2D depth, texture2D slope, texture2D light,
+             texture2D levels) {
+  return scatter(settings, direct_of(settings, point, profile, own.a), set, point, profile, own,
+                 material, depth, slope, light, levels);
 }
 
 #endif

@@ -17,12 +17,10 @@ const float first_count = 16.0;  // samples of a pixel without history
 // offset in the sequence from frame to frame, whatever number of points a pixel uses
 const uint frame_stride = 61u;
 
-vec3 scatter_light(scatter_point point, scatter_profile profile, vec4 own, sample_set set) {
-  afis_settings chosen = afis_settings(settings.lod_bias, settings.sequence, settings.channels,
-                                       settings.inverse, settings.weighting, settings.surface,
-                                       settings.direct, settings.estimator, settings.mips);
-  return scatter(chosen, set, point, profile, own, material_image, depth_image, slope_image,
-                 light_image, levels_image);
+afis_settings estimator() {
+  return afis_settings(settings.lod_bias, settings.sequence, settings.channels, settings.inverse,
+                       settings.weighting, settings.surface, settings.direct, settings.estimator,
+                       settings.mips);
 }
 
 guidance_settings guidance() {
@@ -31,6 +29,7 @@ guidance_settings guidance() {
 }
 
 bool splits() { return settings.guidance == GUIDANCE_SPLIT_HALF; }
+bool pools() { return settings.pool == POOL_TILE && !splits(); }
 bool has_moments() { return settings.guidance == GUIDANCE_OCV; }
 
 vec4 guide_before(ivec2 pixel) { return texelFetch(guide_image, previous_texel(pixel), 0); }
@@ -90,26 +89,32 @@ guide_state state_before(ivec2 pixel, float depth, uint id, float rise) {
 
 float exposed(vec3 light) { return min(dot(light, luminance_weights) * frame.exposure, 1e4); }
 
-// By pixel of the tile. x: squared half difference of the pixel's two halves, times the number of
-// samples. y: profile, 0 if nothing was sampled.
-shared vec2 spreads[64];
+// Four pixels of the tile per element: a value that guides the number of samples, and the profile, 0
+// if the pixel has no value.
+shared vec4 pooled_values[16], pooled_profiles[16];
 
-// Returns the variance of one sample, pooled over the tile's pixels of a profile, because the
-// difference of a single pixel is too noisy.
-float pooled_spread(float id) {
+// Returns the mean of `value` over the tile's pixels of a profile that have a value, because that
+// of a single pixel is too noisy. Returns the pixel's own value if there is none. All invocations
+// of the group call it.
+float mean_in_tile(float value, uint id, bool has_value) {
+  uint element = gl_LocalInvocationIndex >> 2, component = gl_LocalInvocationIndex & 3u;
+  pooled_values[element][component] = value;
+  pooled_profiles[element][component] = has_value ? float(id) : 0.0;
+  barrier();
   vec2 sum = vec2(0.0);
-  for (uint i = 0u; i < 64u; ++i)
-    sum += spreads[i].y == id ? vec2(spreads[i].x, 1.0) : vec2(0.0);
-  return sum.x / sum.y;
+  for (uint i = 0u; i < 16u; ++i) {
+    vec4 values = pooled_values[i];
+    vec4 same = vec4(equal(pooled_profiles[i], vec4(float(id))));
+    for (uint k = 0u; k < 4u; ++k)
+      sum += same[k] * vec2(values[k], 1.0);
+  }
+  return sum.y > 0.0 ? sum.x / sum.y : value;
 }
 
 struct guided_pixel {
-  ivec2 pixel;
-  vec3 light;
-  float depth;
-  uint id; // 0: nothing to sample
+  scatter_point point; // id 0: nothing to sample
+  vec4 own;            // light, and area of the patch
   scatter_profile profile;
-  float alpha;
 };
 
 struct sampled_light {
@@ -117,15 +122,14 @@ struct sampled_light {
 };
 
 // A loop over the halves, because a driver then compiles the samples only once.
-sampled_light sample_light(guided_pixel at, int count, uint first) {
-  scatter_point point =
-      scatter_point(at.pixel, at.id, at.depth, view_position(vec2(at.pixel), at.depth));
-  vec4 own = vec4(at.light, at.alpha);
+sampled_light sample_light(guided_pixel at, direct_part direct, int count) {
   uint parts = splits() ? 2u : 1u;
   sampled_light light;
   for (uint part = 0u; part < parts; ++part) {
-    light.last = scatter_light(point, at.profile, own,
-                               sample_set(part, count / int(parts), count, first));
+    sample_set set =
+        sample_set(part, count / int(parts), count, frame.frame_index * frame_stride);
+    light.last = scatter(estimator(), direct, set, at.point, at.profile, at.own, material_image,
+                         depth_image, slope_image, light_image, levels_image);
     if (part == 0u)
       light.first = light.last;
   }
@@ -138,10 +142,25 @@ float spread_of(sampled_light light, int count) {
   return half_way * half_way * float(count);
 }
 
-// Updates the moments of the observed value (Algorithms 1 to 3). `before` is the light that was not
-// scattered.
-void watch(vec3 before, vec3 light, inout guide_state state) {
-  float g = exposed(before), f = exposed(light);
+// Holds the values that guidance watches (equations 29, 30 and 37).
+struct observed_light {
+  float distant; // f: the estimate without the direct part
+  float control; // G
+};
+
+observed_light observe(guided_pixel at, direct_part direct, vec3 light) {
+  vec3 control = at.own.rgb;
+  if (settings.control == CONTROL_MEAN) {
+    float level = log2(projected_d(at.profile.d.w, at.point.depth)) + settings.control_level;
+    control = filtered_light(levels_image, MIPS_TRILINEAR, vec2(at.point.pixel), level, control);
+  }
+  return observed_light(exposed(max(light - direct.fraction * at.own.rgb, vec3(0.0))),
+                        exposed((1.0 - direct.fraction) * control));
+}
+
+// Updates the moments of the observed value (Algorithms 1 to 3).
+void watch(observed_light observed, inout guide_state state) {
+  float g = observed.control, f = observed.distant;
   if (state.lost)
     state.moments = moving_covariance(f, g, 0.0, 0.0);
   float weight = settings.guidance == GUIDANCE_SPVG ? 0.0 : 1.0;
@@ -157,67 +176,76 @@ void watch(vec3 before, vec3 light, inout guide_state state) {
     state.moments = add_values(state.moments, f, g, settings.eta_cv);
 }
 
+// Algorithm 1: nothing is sampled if too little light leaves the pixel. gamma as published, beyond
+// the circumscribed radius.
+bool leaves_pixel(scatter_profile profile, uint widest, float depth) {
+  return profile_survival(profile, 0.5 * length(pixel_footprint(depth)))[widest] >= settings.eps_u;
+}
+
 void main() {
-  guided_pixel at;
-  at.pixel = ivec2(0);
+  ivec2 pixel = ivec2(0), texel = ivec2(0);
   bool copy_only = false;
   uint tile = listed_tile();
-  bool listed = tile < tiles_data[0] && pixel_of_tile(tiles_data[1u + tile], at.pixel, copy_only);
-  ivec2 texel = ivec2(0);
-  at.id = 0u;
-  at.depth = 0.0;
-  at.light = vec3(0.0);
-  guide_state state = guide_state(0.0, 0.0, 0.0, moving_covariance(0.0, 0.0, 0.0, 0.0), false);
-  int count = 0;
+  bool listed = tile < tiles_data[0] && pixel_of_tile(tiles_data[1u + tile], pixel, copy_only);
+  guided_pixel at;
+  at.point = scatter_point(pixel, 0u, 0.0, vec3(0.0));
+  at.own = vec4(0.0);
   uint id = 0u;
   if (listed) {
-    texel = texel_of(at.pixel);
+    texel = texel_of(pixel);
     id = texelFetch(material_image, texel, 0).r;
-    vec4 light = texelFetch(light_image, texel, 0);
-    at.light = light.rgb;
-    at.alpha = light.a;
-    at.depth = view_depth(texelFetch(depth_image, texel, 0).r);
-    if (id != 0u && !copy_only && at.depth > 0.0) {
+    at.own = texelFetch(light_image, texel, 0);
+    at.point.depth = view_depth(texelFetch(depth_image, texel, 0).r);
+    if (id != 0u && !copy_only && at.point.depth > 0.0) {
       float scale = has_scatter_scale()
                         ? clean_scatter_scale(texelFetch(scatter_scale_image, texel, 0).r)
                         : 1.0;
       at.profile = find_profile(id, scale);
-      if (projected_d(at.profile.d.w, at.depth) >= copy_below_d_px)
-        at.id = id;
+      if (projected_d(at.profile.d.w, at.point.depth) >= copy_below_d_px &&
+          leaves_pixel(at.profile, profiles[min(id, 255u)].widest, at.point.depth))
+        at.point.id = id;
     }
   }
+  bool sampled = at.point.id != 0u;
+  guide_state state = guide_state(0.0, 0.0, 0.0, moving_covariance(0.0, 0.0, 0.0, 0.0), false);
+  if (sampled) {
+    at.point.position = view_position(vec2(pixel), at.point.depth);
+    state = state_before(
+        pixel, at.point.depth, id,
+        length(texelFetch(slope_image, texel, 0).rg * pixel_footprint(at.point.depth)));
+  }
+  float required = required_samples(state.sd * state.sd, state.mean_count, guidance());
+  if (pools()) // Bounded, so that a few pixels at edges do not decide for all.
+    required = mean_in_tile(min(required, float(settings.max_samples)), at.point.id, !state.lost);
+  int count = 0;
   float spread = 0.0;
-  if (at.id != 0u) {
-    vec2 footprint = pixel_footprint(at.depth);
-    state = state_before(at.pixel, at.depth, at.id,
-                         length(texelFetch(slope_image, texel, 0).rg * footprint));
-    float required = required_samples(state.sd * state.sd, state.mean_count, guidance());
+  vec3 scattered = at.own.rgb;
+  if (sampled) {
     count = clamped_samples(required, guidance());
     if (splits())
       count += count & 1;
-    sampled_light light = sample_light(at, count, frame.frame_index * frame_stride);
+    direct_part direct = direct_of(estimator(), at.point, at.profile, at.own.a);
+    sampled_light light = sample_light(at, direct, count);
     if (splits()) {
       spread = spread_of(light, count);
-      at.light = 0.5 * (light.first + light.last);
+      scattered = 0.5 * (light.first + light.last);
     } else {
-      watch(at.light, light.last, state);
-      at.light = light.last;
+      watch(observe(at, direct, light.last), state);
+      scattered = light.last;
     }
   }
   if (splits()) {
-    spreads[gl_LocalInvocationIndex] = vec2(spread, float(at.id));
-    barrier();
-    if (at.id != 0u && !state.lost)
-      state.sd =
-          sqrt(mix(state.sd * state.sd, pooled_spread(float(at.id)) / float(count), settings.eta));
+    spread = mean_in_tile(spread, at.point.id, true);
+    if (sampled && !state.lost)
+      state.sd = sqrt(mix(state.sd * state.sd, spread / float(count), settings.eta));
   }
   if (!listed)
     return;
-  if (at.id != 0u)
+  if (sampled)
     state.mean_count =
         state.lost ? float(count) : mix(state.mean_count, float(count), settings.eta);
-  imageStore(scattered_image, texel, vec4(round_to_half(at.light), 1.0));
-  float depth = at.depth / mm_per_metre;
+  imageStore(scattered_image, texel, vec4(round_to_half(scattered), 1.0));
+  float depth = at.point.depth / mm_per_metre;
   imageStore(
       guide_out_image, texel,
       round_to_half(vec4(state.sd, state.mean_count, splits() ? depth : state.mean, float(id))));

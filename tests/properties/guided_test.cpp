@@ -1,6 +1,7 @@
 // Guidance changes only the number of samples.
 #include "tests/properties/noise.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace {
@@ -35,6 +36,32 @@ TEST_F(Guided, EqualSampleCounts_GiveEqualBits) {
     });
     EXPECT_EQ(frame, 3u);
   }
+}
+
+// d such that 0.1057 of the light leaves the circle about the pixel: 1 - cdf(0.7071 px).
+Picture little_scattering(const char* eps_u) {
+  Plane plane = step();
+  plane.d_px = {0.12, 0.12, 0.12};
+  Picture last;
+  run_frames("afis_guided", plane, with("ccv", {{"eps_u", eps_u}}), 1,
+             [&](const Picture& one) { last = one; });
+  return last;
+}
+
+TEST_F(Guided, LessThanEpsU_IsCopied) {
+  const Plane plane = step();
+  const Picture copied = little_scattering("0.107"), sampled = little_scattering("0.104");
+  ASSERT_EQ(copied.rgb.size(), sampled.rgb.size());
+  constexpr float contrast = 0.8f; // of the light
+  float largest = 0;
+  for (size_t i = 0; i < copied.rgb.size(); ++i) {
+    const auto pixel = static_cast<uint32_t>(i / 3);
+    // Half floats hold the light within 2^-12.
+    EXPECT_NEAR(copied.rgb[i], plane.light(pixel % plane.width, pixel / plane.width), 3e-4);
+    largest = std::max(largest, std::abs(copied.rgb[i] - sampled.rgb[i]));
+  }
+  EXPECT_GT(largest, 0);
+  EXPECT_LE(largest, 0.107f * contrast); // D5: the step where samples begin
 }
 
 TEST_F(Guided, WhiteLightStaysWhite) {
