@@ -1,6 +1,7 @@
 // Tests the measures of `dermis bench dynamic`, and that its shipped file is valid.
 #include "integration/tools/command/bench/dynamic/accumulation.hpp"
 #include "integration/tools/command/bench/dynamic/combined_reference.hpp"
+#include "integration/tools/command/bench/dynamic/comparison.hpp"
 #include "integration/tools/command/bench/dynamic/dynamic_file.hpp"
 #include "integration/tools/command/bench/dynamic/figures.hpp"
 #include "integration/tools/command/bench/supplement/experiment.hpp"
@@ -42,6 +43,53 @@ TEST(BenchDynamic, DistancesFileIsValidAndHasCameras) {
   ASSERT_TRUE(file.has_value());
   for (const SequenceRequest& scene : file->scenes)
     EXPECT_TRUE(scene.camera.has_value()) << scene.framing;
+  std::set<std::string> techniques;
+  for (const DynamicTechnique& technique : file->techniques)
+    techniques.insert(technique.technique);
+  for (const char* one : {"afis", "separable", "fixed"}) // slides 43 and 45
+    EXPECT_TRUE(techniques.contains(one)) << one;
+}
+
+TEST(BenchDynamic, GuidanceFileIsValidAndJitters) {
+  Diagnostics diagnostics;
+  const auto file = read_dynamic(root + "/tests/benchmark/guidance.json", diagnostics);
+  ASSERT_TRUE(file.has_value());
+  uint32_t jittered = 0;
+  for (const SequenceRequest& scene : file->scenes) {
+    EXPECT_GT(scene.frames, file->counted) << scene.framing;
+    // Frames under jitter show other points, so that their pixels cannot be compared.
+    EXPECT_FALSE(scene.jitter && scene.still) << scene.framing;
+    jittered += scene.jitter ? 1 : 0;
+  }
+  EXPECT_EQ(jittered, 1u);
+}
+
+TEST(BenchDynamic, PublishedTable_HasMaximaAndFixed) {
+  const auto row = [](const char* technique, const char* guidance, std::vector<double> spp,
+                      std::vector<double> psnr_db) {
+    DynamicRow one{"regular", "close", 4, {{technique, "n=16", "", {}, false, {}}, guidance, 8}};
+    one.mean_spp = spp.front();
+    one.spp = std::move(spp);
+    one.figures.psnr_db = std::move(psnr_db); // the first frame is not counted
+    return one;
+  };
+  const std::vector<DynamicRow> rows = {row("afis", "spvg", {20, 60}, {1, 50, 50}),
+                                        row("afis", "ccv", {10, 15}, {1, 45, 51}),
+                                        row("fixed", "none", {16, 16}, {1, 47, 47})};
+  Report report;
+  add_published(report, rows);
+  const auto number = [&](size_t row_index, std::string_view column) {
+    for (size_t i = 0; i < report.more.columns.size(); ++i)
+      if (report.more.columns[i].key == column)
+        return std::get<double>(
+            static_cast<const ReportVariant&>(report.more.rows.at(row_index)[i]));
+    return -1.0;
+  };
+  ASSERT_EQ(report.more.rows.size(), 3u); // AS, AS+CCV, fixed
+  EXPECT_DOUBLE_EQ(number(1, "their_max_ratio"), 4.0);
+  EXPECT_DOUBLE_EQ(number(1, "our_max_ratio"), 4.0);          // 60 / 15
+  EXPECT_DOUBLE_EQ(number(1, "our_max_db_ratio"), 45. / 50.); // farther from 1 than 51 / 50
+  EXPECT_DOUBLE_EQ(number(2, "our_spp"), 16);
 }
 
 TEST(BenchDynamic, UnknownEntry_IsRejectedWithThePlace) {

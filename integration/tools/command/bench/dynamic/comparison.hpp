@@ -8,6 +8,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 namespace dermis::tools {
 
@@ -17,11 +18,13 @@ struct DynamicRow {
   double d_px = 0;
   DynamicTechnique technique;
   double mean_spp = 0, peak_spp = 0;
+  double group_spp = 0; // mean over pixels of the most samples of a pixel in the same 8x8 tile
   std::optional<double> reads_per_pixel = {};
   double mean_ms = 0, max_ms = 0, sampling_ms = 0;
   SequenceFigures figures = {};
   std::optional<double> flicker = {}; // not set if camera or surfaces move
   uint64_t history_bytes = 0;
+  std::vector<double> spp = {}; // samples per pixel of each counted frame
 };
 
 // Adds facts over the `close` sequences with changing light: sap_residual against afis + ccv
@@ -31,7 +34,9 @@ struct DynamicRow {
 void add_comparisons(Report& report, std::span<const DynamicRow> rows);
 
 // Fills the second table: samples, time and 8-bit PSNR of flashing, regular and dynamic light as
-// published (Xie et al. 2021, table 3) and as measured.
+// published (Xie et al. 2021, table 3) and as measured. The maxima are over frames: samples of AS
+// over samples with the control, and PSNR with the control over PSNR of AS. `fixed` stands next to
+// them.
 void add_published(Report& report, std::span<const DynamicRow> rows);
 
 } // namespace dermis::tools

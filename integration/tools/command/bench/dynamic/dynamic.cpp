@@ -21,9 +21,9 @@ namespace dermis::tools {
 namespace {
 
 struct MeasuredSequence {
-  std::vector<FrameLight> light;                   // one per frame
-  std::vector<double> device_ms, sampling_ms, spp; // one per frame
-  Accumulation accumulation;                       // used if camera or surfaces move
+  std::vector<FrameLight> light;                              // one per frame
+  std::vector<double> device_ms, sampling_ms, spp, group_spp; // one per frame
+  Accumulation accumulation;                                  // used if camera or surfaces move
   SequenceFigures figures;
   TechniqueCounts counts;
   uint64_t history_bytes = 0;
@@ -46,16 +46,32 @@ double largest_of(const std::vector<double>& values, uint32_t first) {
   return values.size() <= first ? 0 : *std::max_element(values.begin() + first, values.end());
 }
 
-// Returns the mean of the red channel over pixels with a profile.
-double mean_samples(const std::vector<float>& sampling, const std::vector<uint8_t>& profile) {
-  double sum = 0;
-  uint64_t count = 0;
-  for (size_t i = 0; i < profile.size(); ++i)
-    if (profile[i] != 0) {
-      sum += double(sampling[3 * i]);
-      ++count;
+struct SampleCounts {
+  double mean = 0;     // over pixels with a profile
+  double in_group = 0; // mean over the same pixels of the most samples in the pixel's tile
+};
+
+// `sampling` has 3 values per pixel, of which the first is the number of samples.
+SampleCounts count_samples(const std::vector<float>& sampling, const CapturedFrame& frame) {
+  constexpr uint32_t side = 8; // pixels of a tile, which is a group on a GPU
+  const uint32_t width = frame.description.width, height = frame.description.height;
+  double sum = 0, in_groups = 0, pixels = 0;
+  for (uint32_t top = 0; top < height; top += side)
+    for (uint32_t left = 0; left < width; left += side) {
+      double most = 0, covered = 0;
+      for (uint32_t y = top; y < std::min(top + side, height); ++y)
+        for (uint32_t x = left; x < std::min(left + side, width); ++x) {
+          const size_t pixel = size_t{y} * width + x;
+          if (frame.profile[pixel] == 0) continue;
+          const auto samples = double(sampling[3 * pixel]);
+          sum += samples;
+          most = std::max(most, samples);
+          covered += 1;
+        }
+      in_groups += most * covered;
+      pixels += covered;
     }
-  return count > 0 ? sum / double(count) : 0;
+  return pixels > 0 ? SampleCounts{sum / pixels, in_groups / pixels} : SampleCounts{};
 }
 
 demo::Result<> measure_frame(const DynamicBench& bench, const Sequence& sequence, size_t t,
@@ -81,7 +97,11 @@ demo::Result<> measure_frame(const DynamicBench& bench, const Sequence& sequence
   measured.sampling_ms.push_back(times->sampling);
   auto sampling = run.sampling();
   if (!sampling) return sampling.error();
-  if (!sampling->empty()) measured.spp.push_back(mean_samples(*sampling, frame.captured.profile));
+  if (!sampling->empty()) {
+    const SampleCounts counts = count_samples(*sampling, frame.captured);
+    measured.spp.push_back(counts.mean);
+    measured.group_spp.push_back(counts.in_group);
+  }
   if (t + 1 == sequence.frames.size()) {
     std::optional<double> taken;
     if (!measured.spp.empty()) taken = mean_of(measured.spp, bench.file.counted);
@@ -139,6 +159,7 @@ DynamicRow row_of(const Sequence& sequence, const DynamicTechnique& technique,
   DynamicRow row{sequence.request.scene, sequence.request.framing, sequence.d_px, technique};
   row.mean_spp = one.spp.empty() ? one.counts.mean_spp : mean_of(one.spp, counted);
   row.peak_spp = one.spp.empty() ? one.counts.mean_spp : largest_of(one.spp, counted);
+  row.group_spp = one.spp.empty() ? one.counts.mean_spp : mean_of(one.group_spp, counted);
   row.reads_per_pixel = one.counts.reads_per_pixel;
   row.mean_ms = mean_of(one.device_ms, counted);
   row.max_ms = largest_of(one.device_ms, counted);
@@ -146,6 +167,7 @@ DynamicRow row_of(const Sequence& sequence, const DynamicTechnique& technique,
   row.figures = one.figures;
   if (sequence.request.still) row.flicker = one.figures.flicker;
   row.history_bytes = one.history_bytes;
+  if (one.spp.size() > counted) row.spp.assign(one.spp.begin() + counted, one.spp.end());
   return row;
 }
 
@@ -269,6 +291,7 @@ Suite dynamic_suite() {
        {"min_samples", "least samples", of_technique<&DynamicTechnique::min_samples>, page},
        {"mean_spp", "samples", &Row::mean_spp},
        {"peak_spp", "most samples", &Row::peak_spp},
+       {"group_spp", "most samples in a tile", &Row::group_spp},
        {"reads_per_pixel", "reads a pixel", &Row::reads_per_pixel, page},
        {"mean_ms", "ms", &Row::mean_ms, four},
        {"max_ms", "longest ms", &Row::max_ms, four_on_page},

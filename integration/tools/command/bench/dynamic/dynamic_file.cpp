@@ -14,6 +14,7 @@ void read_sequence(BenchObject& entry, SequenceRequest& request) {
   entry.count("first", request.first, 0, max_sequence_frames, Need::optional);
   entry.count("frames", request.frames, 1, max_sequence_frames);
   entry.flag("still", request.still);
+  entry.flag("jitter", request.jitter);
 }
 
 void read_guided_technique(BenchObject& entry, DynamicTechnique& technique) {

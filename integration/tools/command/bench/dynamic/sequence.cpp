@@ -54,6 +54,7 @@ demo::Result<Sequence> render_sequence(const SequenceRequest& request, uint32_t 
   options.scene = request.file;
   options.model = model;
   options.camera = request.camera;
+  options.jitter = request.jitter;
   options.width = width;
   options.height = height;
   for (int i = 0; i < max_tries && request.d_px > 0; ++i) {

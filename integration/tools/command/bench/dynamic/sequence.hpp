@@ -19,6 +19,7 @@ struct SequenceRequest {
   uint32_t first = 0, frames = 60; // frame numbers of the scene
   // camera and surfaces rest, so that frames are comparable per pixel
   bool still = false;
+  bool jitter = false;                          // sub-pixel jitter of the camera
   std::optional<demo::CameraPlace> camera = {}; // replaces the scene's camera
 };
 
