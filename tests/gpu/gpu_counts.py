@@ -18,17 +18,46 @@ SEPARABLE_BUILT = dict(valu=605, trans=82, qmul=1, img=30, buf=6, st64=1, vm=14,
 SEPARABLE_BUILT_SETUP = dict(valu=100, trans=3, img=3, st64=2, vm=3, lg=15, W=16)
 BURLEY = dict(valu=100 + 32 * 115, trans=10 + 32 * 18, img=4, scat=32 * 4, st64=1,
               vm=3 + 96, vml=260, lg=40, W=10)
-FIXED = dict(valu=260 + 16 * 150, trans=35 + 16 * 32, img=4, scat=16 * 4, st64=1,
-             vm=3 + 48, vml=260, lg=30, W=9)
 AFIS = dict(valu=430 + 16 * 420, trans=60 + 16 * 80, img=6, scat=16 * 9, st64=1,
             vm=4 + 16 * 6, vml=260, lg=60, W=8)
-# One read of a mip chain per sample, as two reads: it interpolates between two mips.
-AFIS_BUILT = dict(valu=200 + 16 * 169, trans=45 + 16 * 30, qmul=7, img=4, scat=16 * 6, st64=1,
-                  vm=4 + 16 * 4, vml=260, lg=60, W=8)
 AFIS_PUBLISHED = dict(valu=125 + 16 * 91, trans=15 + 16 * 21, qmul=7, img=2, scat=16 * 2, st64=1,
                       vm=3 + 16, vml=260, lg=40, W=10)
 AFIS_MIP_SETUP = dict(valu=170, img=4, img128=0, st64=1, vm=3, W=16)
 AFIS_MIP_DOWN = dict(valu=140, trans=2, img=9, st64=1, vm=2, W=16)
+
+
+def fixed(samples):
+    return dict(valu=260 + samples * 150, trans=35 + samples * 32, img=4, scat=samples * 4, st64=1,
+                vm=3 + samples * 3, vml=260, lg=30, W=9)
+
+
+# One read of a mip chain per sample, as two reads: it interpolates between two mips.
+def afis_built(samples):
+    return dict(valu=200 + samples * 169, trans=45 + samples * 30, qmul=7, img=4, scat=samples * 6,
+                st64=1, vm=4 + samples * 4, vml=260, lg=60, W=8)
+
+
+# Once per pixel: reads of the history, the observed value, and writes of the history.
+GUIDED_ONCE = {
+    "spvg": dict(valu=500, trans=50, qmul=5, img=17, st64=3, vm=12, lg=44, W=8),
+    "ccv": dict(valu=545, trans=55, qmul=5, img=18, st64=3, vm=13, lg=45, W=8),
+    "ocv": dict(valu=620, trans=60, qmul=5, img=22, st64=4, vm=13, lg=46, W=7),
+    "split_half": dict(valu=575, trans=60, qmul=6, img=13, st64=2, vm=11, lg=43, W=8),
+}
+GUIDE_BYTES = {"spvg": 10, "ccv": 10, "ocv": 18, "split_half": 8}  # of a pixel's histories
+POOL = dict(valu=330, lg=18, lds=300)  # the mean over the pixels of a tile
+
+
+def guided(samples, guidance, pooled=True):
+    counts = dict(GUIDED_ONCE[guidance])
+    counts["valu"] += samples * 172
+    counts["trans"] += samples * 30
+    counts["vm"] += samples * 4
+    if pooled or guidance == "split_half":
+        counts["valu"] += POOL["valu"]
+        counts["lg"] += POOL["lg"]
+        counts["lds"] = POOL["lds"]
+    return dict(counts, scat=samples * 6, vml=260)
 
 
 @dataclasses.dataclass

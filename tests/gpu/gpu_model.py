@@ -24,9 +24,10 @@ import re
 import sys
 
 import instruction_mix
-from gpu_counts import (AFIS, AFIS_BUILT, AFIS_MIP_DOWN, AFIS_MIP_SETUP, AFIS_PUBLISHED, BLOCKS,
-                        BURLEY, CLASSIFY, COMBINE, FIXED, SEPARABLE, SEPARABLE_BUILT,
-                        SEPARABLE_BUILT_SETUP, SEPARABLE_TUNED, SETUP, TEXELS)
+from gpu_counts import (AFIS, AFIS_MIP_DOWN, AFIS_MIP_SETUP, AFIS_PUBLISHED, BLOCKS, BURLEY,
+                        CLASSIFY, COMBINE, GUIDE_BYTES, SEPARABLE, SEPARABLE_BUILT,
+                        SEPARABLE_BUILT_SETUP, SEPARABLE_TUNED, SETUP, TEXELS, afis_built, fixed,
+                        guided)
 
 COVERED = 0.5  # fraction of the view
 TILE_FILL = 0.95  # fraction of the pixels of listed tiles that are covered
@@ -195,48 +196,77 @@ def mix(fast, slow, fraction):
     return mixed
 
 
-def add_rivals(model):
-    n, tiles0 = model.covered, model.tiles[0]
-    material = 1 * model.pixels + 5 * n
-    combine = model.wave(**COMBINE)
-    setup, setup_with_slope = ((tiles0, model.wave(**SETUP), n * (13 + written))
-                               for written in (8, 12))
+def add_frame(model, technique, setup, passes, as_built=False):
+    tiles0, n = model.tiles[0], model.covered
+    model.add(technique, "classify", model.view_tiles / 16, model.wave(**CLASSIFY),
+              1 * model.pixels + 5 * n)
+    # As built, the list of tiles takes at most as long as one of the regions of sap_tiles.
+    model.add_serial(technique, "tile_list",
+                     model.wave(**LIST_REGION)["lat"] if as_built else serial_tile_list(model))
+    model.add(technique, "setup", *setup)
+    for one in passes:
+        model.add(technique, *one)
+    model.add(technique, "combine", tiles0, model.wave(**COMBINE), n * 17)
 
-    def frame(technique, setup, passes, as_built=False):
-        model.add(technique, "classify", model.view_tiles / 16, model.wave(**CLASSIFY), material)
-        # As built, the list of tiles takes at most as long as one of the regions of sap_tiles.
-        model.add_serial(technique, "tile_list",
-                         model.wave(**LIST_REGION)["lat"] if as_built else serial_tile_list(model))
-        model.add(technique, "setup", *setup)
-        for one in passes:
-            model.add(technique, *one)
-        model.add(technique, "combine", tiles0, combine, n * 17)
 
-    separable, tuned = model.wave(**SEPARABLE), model.wave(**SEPARABLE_TUNED)
-    frame("separable 25", setup, [("horizontal", tiles0, separable, n * 21),
-                                  ("vertical", tiles0, separable, n * 29)])
-    frame("separable tuned*", setup, [("horizontal", tiles0, tuned, n * 24),
-                                      ("vertical", tiles0, tuned, n * 24)])
-    built = model.wave(**SEPARABLE_BUILT)
-    # Light of covered pixels, and depth of all pixels.
-    setup_built = model.wave(**SEPARABLE_BUILT_SETUP)
-    frame("separable 25 as built", (model.view_tiles, setup_built, n * (13 + 8) + model.pixels * 4),
-          [("horizontal", tiles0, built, n * 20), ("vertical", tiles0, built, n * 28)],
-          as_built=True)
-    for suffix in ("", " as built"):
-        for name, counts in (("burley 32", BURLEY), ("fixed 16", FIXED)):
-            frame(name + suffix, setup_with_slope,
-                  [("scatter", tiles0, model.wave(**counts), n * 25)], bool(suffix))
+def setup_with_slope(model):
+    return model.tiles[0], model.wave(**SETUP), model.covered * (13 + 12)
+
+
+def mips_of(model):
     mips = [("mip_setup", model.pixels / 64, model.wave(**AFIS_MIP_SETUP), model.pixels * 13)]
     for level in range(1, 9):
         mips.append((f"mip_down_{level}", max(1, model.pixels / 64 / 4**level),
                      model.wave(**AFIS_MIP_DOWN), model.pixels / 4**level * (8 * 4 + 8)))
-    frame("afis 16", setup_with_slope, mips + [("scatter", tiles0, model.wave(**AFIS), n * 30)])
-    frame("afis 16 as built", setup_with_slope,
-          mips + [("scatter", tiles0, model.wave(**AFIS_BUILT), n * 30)], as_built=True)
+    return mips
+
+
+def add_fixed(model, technique, samples):
+    """`fixed` as built, with any number of samples."""
+    scatter = ("scatter", model.tiles[0], model.wave(**fixed(samples)), model.covered * 25)
+    add_frame(model, technique, setup_with_slope(model), [scatter], as_built=True)
+
+
+def add_afis(model, technique, samples, guidance=None, pooled=True):
+    """`afis` or `afis_guided` as built. samples: the most of the pixels of a subgroup. Guidance
+    reads velocity, reads and writes its histories, and clears one of them."""
+    moved, passes = 30, mips_of(model)
+    counts = afis_built(samples)
+    if guidance:
+        counts = guided(samples, guidance, pooled)
+        moved += 4 + 2 * GUIDE_BYTES[guidance]
+        passes.append(("forget", model.pixels / 64, model.wave(valu=10, st64=1, W=16),
+                       model.pixels * 8))
+    passes.append(("scatter", model.tiles[0], model.wave(**counts), model.covered * moved))
+    add_frame(model, technique, setup_with_slope(model), passes, as_built=True)
+
+
+def add_rivals(model):
+    n, tiles0 = model.covered, model.tiles[0]
+    setup = (tiles0, model.wave(**SETUP), n * (13 + 8))
+    slope, mips = setup_with_slope(model), mips_of(model)
+    separable, tuned = model.wave(**SEPARABLE), model.wave(**SEPARABLE_TUNED)
+    add_frame(model, "separable 25", setup, [("horizontal", tiles0, separable, n * 21),
+                                             ("vertical", tiles0, separable, n * 29)])
+    add_frame(model, "separable tuned*", setup, [("horizontal", tiles0, tuned, n * 24),
+                                                 ("vertical", tiles0, tuned, n * 24)])
+    built = model.wave(**SEPARABLE_BUILT)
+    # Light of covered pixels, and depth of all pixels.
+    setup_built = model.wave(**SEPARABLE_BUILT_SETUP)
+    add_frame(model, "separable 25 as built",
+              (model.view_tiles, setup_built, n * (13 + 8) + model.pixels * 4),
+              [("horizontal", tiles0, built, n * 20), ("vertical", tiles0, built, n * 28)],
+              as_built=True)
+    for suffix in ("", " as built"):
+        for name, counts in (("burley 32", BURLEY), ("fixed 16", fixed(16))):
+            add_frame(model, name + suffix, slope,
+                      [("scatter", tiles0, model.wave(**counts), n * 25)], bool(suffix))
+    add_frame(model, "afis 16", slope, mips + [("scatter", tiles0, model.wave(**AFIS), n * 30)])
+    add_afis(model, "afis 16 as built", 16)
     # Mip 0 replaces light and slope.
-    frame("afis_published 16", mips[0][1:],
-          mips[1:] + [("scatter", tiles0, model.wave(**AFIS_PUBLISHED), n * 22)], as_built=True)
+    add_frame(model, "afis_published 16", mips[0][1:],
+              mips[1:] + [("scatter", tiles0, model.wave(**AFIS_PUBLISHED), n * 22)],
+              as_built=True)
 
 
 def add_pyramid(model, technique, counts, list_clocks, layered=True):
