@@ -325,6 +325,11 @@ double rmse_with(const Forecast& forecast, double units) {
   return std::sqrt(none + fraction * (forecast.rmse * forecast.rmse - none));
 }
 
+double needed_budget_ms(const Forecast& forecast, double units) {
+  return (forecast.time.pessimistic_ms + units * forecast.time.unit_ms) *
+         std::exp((1 + gap_of_margin) * forecast.margin + min_gap);
+}
+
 void restart(DecisionState& state, size_t configurations, size_t unmeasured) {
   state.configurations.assign(configurations, {});
   state.current = no_configuration;
@@ -333,6 +338,12 @@ void restart(DecisionState& state, size_t configurations, size_t unmeasured) {
   state.started_s = state.entered_s = state.clock_s;
   state.tokens = std::max(max_tokens, first_tokens_per_pass * double(unmeasured));
   state.switches = 0;
+}
+
+void allow_switches(DecisionState& state) {
+  state.tokens = max_tokens;
+  state.entered_s = state.started_s = state.clock_s - 2 * first_s;
+  state.units = 0;
 }
 
 void skip_frame(DecisionState& state, double seconds) {

@@ -39,6 +39,9 @@ struct Forecast {
 // between no samples and all samples.
 double rmse_with(const Forecast& forecast, double units);
 
+// Returns the budget within which a configuration is entered for certain with `units` of samples.
+double needed_budget_ms(const Forecast& forecast, double units);
+
 // When the controller may run a configuration only to measure its time.
 enum class Trials : uint8_t {
   on,        // at any time
@@ -111,6 +114,8 @@ struct DecisionState {
 // Forgets everything except the clock. `unmeasured`: number of passes whose time is not known, all
 // of which may be tried in the first seconds. Allocates only if no earlier state was as large.
 void restart(DecisionState& state, size_t configurations, size_t unmeasured);
+// Makes the next decision free of earlier switches: the state is as after a long calm time.
+void allow_switches(DecisionState& state);
 // Advances the clock in a frame without a budget. The next decision is a first one.
 void skip_frame(DecisionState& state, double seconds);
 

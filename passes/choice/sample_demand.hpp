@@ -14,6 +14,7 @@ namespace dermis::choice {
 // the maximum of a tile.
 struct SampleDemand {
   std::array<double, 10> by_octave;
+  std::array<bool, 10> known{};
 
   SampleDemand() { by_octave.fill(max_units); }
 };
@@ -21,5 +22,7 @@ struct SampleDemand {
 // Record or return the units per tile of a frame with this d. d_px > 0.
 void record_units(SampleDemand& demand, double d_px, double units_per_tile);
 double expected_units(const SampleDemand& demand, double d_px);
+// Returns the same, but of the nearest octave with an observation if this one has none.
+double likely_units(const SampleDemand& demand, double d_px);
 
 } // namespace dermis::choice

@@ -2,11 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace dermis::choice {
 namespace {
 
 constexpr uint64_t min_tiles = 8; // with fewer tiles, a change by one tile is no trend
+// A convex area A with perimeter P touches A + 2 P / pi + 1 cells of a unit grid in the mean
+// (Minkowski sum with the cell, all directions). For a disc this is (sqrt(A) + border)^2 + 0.3.
+const double border = 2 / std::sqrt(std::numbers::pi);
 
 } // namespace
 
@@ -26,6 +30,17 @@ double growth_until(const TileGrowth& growth_estimate, uint64_t frame) {
   if (growth_estimate.frame == 0 || frame <= growth_estimate.frame) return 1;
   return std::min(std::pow(growth_estimate.growth, double(frame - growth_estimate.frame)),
                   max_growth * max_growth);
+}
+
+double scaled_tiles(double tiles, double scale) {
+  if (tiles <= 0 || scale == 1) return tiles;
+  const double side = std::max(std::sqrt(tiles) - border, 0.0);
+  return std::max(std::pow(scale * side + border, 2), 1.0);
+}
+
+void rescale(TileGrowth& growth_estimate, double scale) {
+  growth_estimate.tiles =
+      static_cast<uint64_t>(std::lround(scaled_tiles(double(growth_estimate.tiles), scale)));
 }
 
 } // namespace dermis::choice

@@ -63,11 +63,16 @@ choice::Forecast ControlledGraph::forecast(uint32_t configuration, double tiles,
   return out;
 }
 
-choice::Decision ControlledGraph::decide(double budget_ms, std::optional<double> tiles, bool cut) {
+std::span<const choice::Forecast> ControlledGraph::expect(std::optional<double> tiles) {
   const double expected_tiles = tiles.value_or(scenario_.view_tiles);
   const std::span<const choice::CostFactors> factors = costs_.predict(state_.clock_s);
   for (uint32_t i = 0; i < forecasts_.size(); ++i)
     forecasts_[i] = forecast(i, expected_tiles, factors);
+  return forecasts_;
+}
+
+choice::Decision ControlledGraph::decide(double budget_ms, std::optional<double> tiles, bool cut) {
+  expect(tiles);
   const choice::FrameInput frame{budget_ms, frame_seconds, cut, !tiles.has_value(),
                                  options_.trials};
   return choice::decide(forecasts_, frame, state_, assessments_);

@@ -24,6 +24,8 @@ struct LoopOptions {
 class ControlledGraph {
 public:
   ControlledGraph(const Scenario& scenario, const LoopOptions& options);
+  // Returns the forecasts of all configurations for a frame, as decide() uses them.
+  std::span<const choice::Forecast> expect(std::optional<double> tiles);
   // Decides for a frame. `tiles`: last count; nullopt: nothing was counted yet.
   choice::Decision decide(double budget_ms, std::optional<double> tiles, bool cut = false);
   // Learns from a frame that the device has finished.

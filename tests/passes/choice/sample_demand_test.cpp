@@ -32,5 +32,16 @@ TEST(SampleDemand, BeyondTheStoredOctaves_UsesTheNearest) {
   EXPECT_EQ(expected_units(demand, 64), 2);
 }
 
+TEST(SampleDemand, Forecasts_UseTheNearestObservation) {
+  SampleDemand demand;
+  EXPECT_EQ(likely_units(demand, 2), double(max_units));
+  record_units(demand, 0.3, 0.5);
+  record_units(demand, 6, 3);
+  EXPECT_EQ(likely_units(demand, 0.3), 0.5);
+  EXPECT_EQ(likely_units(demand, 0.8), 0.5);
+  EXPECT_EQ(likely_units(demand, 3), 3);
+  EXPECT_EQ(likely_units(demand, 50), 3);
+}
+
 } // namespace
 } // namespace dermis::choice

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace dermis::choice {
@@ -55,6 +56,42 @@ TEST(TileGrowth, FewTiles_AreIgnoredAndGrowthIsBounded) {
 
 TEST(TileGrowth, NoCounts_NoPrediction) {
   EXPECT_EQ(growth_until(TileGrowth{}, 7), 1);
+}
+
+// Counts the cells of a unit grid that an ellipse touches, up to the sampling.
+double cells_of_ellipse(double a, double b) {
+  double cells = 0;
+  for (int y = -60; y < 60; ++y)
+    for (int x = -60; x < 60; ++x) {
+      // The nearest point of the cell to the centre, which is off the grid.
+      const double u = std::clamp(0.0, x + 0.3, x + 1.3), v = std::clamp(0.0, y + 0.4, y + 1.4);
+      cells += u * u / (a * a) + v * v / (b * b) <= 1 ? 1 : 0;
+    }
+  return cells;
+}
+
+TEST(ScaledTiles, FollowCompactShapesAtOtherResolutions) {
+  for (const double aspect : {1.0, 0.7})
+    for (const double from : {6.0, 12.0, 25.0})
+      for (const double scale : {0.5, 0.75, 1.0, 1.5, 2.0}) {
+        const double expected = cells_of_ellipse(scale * from, scale * aspect * from);
+        const double found = scaled_tiles(cells_of_ellipse(from, aspect * from), scale);
+        EXPECT_NEAR(found, expected, 0.05 * expected) << from << " times " << scale;
+      }
+  EXPECT_EQ(scaled_tiles(0, 2), 0);
+  EXPECT_GE(scaled_tiles(1, 0.1), 1);
+}
+
+TEST(ScaledTiles, ResolutionIsNoGrowth) {
+  TileGrowth growth;
+  uint64_t tiles = 1000;
+  for (uint64_t frame = 1; frame < 8; ++frame) {
+    const double larger = scaled_tiles(double(tiles), 1.1);
+    rescale(growth, 1.1);
+    tiles = static_cast<uint64_t>(std::lround(larger));
+    update_growth(growth, frame, tiles);
+  }
+  EXPECT_NEAR(growth_until(growth, 9), 1, 0.01);
 }
 
 } // namespace
