@@ -140,7 +140,7 @@ def main():
               f"{sum(lines.get(name, 0) for name in inside):>7} lines")
     members, struct, file = largest_struct(root, names)
     print(f"members of the largest struct in compile/: {members} ({struct}, {file})")
-    print("lines of the public header: "
+    print("lines of the public headers: "
           f"{sum(lines[name] for name in names if '/include/dermis/' in name)}")
     documents = [name for name in names if name.endswith(".md")]
     print(f"lines of documents: {sum(lines[name] for name in documents)} in {len(documents)} files")

@@ -15,11 +15,10 @@
 namespace dermis::abi {
 namespace {
 
-constexpr float largest_budget_ms = 1e6f;
 constexpr float min_percentile = 0.5f, max_percentile = 0.99f;
 constexpr float max_uncertainty = 100;
-constexpr uint32_t known_flags =
-    DERMIS_BUDGET_DETERMINISTIC | DERMIS_BUDGET_TRIALS_AT_CUTS | DERMIS_BUDGET_NO_TRIALS;
+constexpr uint32_t known_flags = DERMIS_BUDGET_DETERMINISTIC | DERMIS_BUDGET_TRIALS_AT_CUTS |
+                                 DERMIS_BUDGET_NO_TRIALS | DERMIS_BUDGET_ALL_VIEWS;
 
 struct Tables {
   std::optional<choice::ErrorModel> errors;
@@ -134,6 +133,7 @@ Budget budget_of(const dermis_budget& given) {
   Budget budget;
   budget.ms = static_cast<double>(given.milliseconds);
   budget.deterministic = (given.flags & DERMIS_BUDGET_DETERMINISTIC) != 0;
+  budget.all_views = (given.flags & DERMIS_BUDGET_ALL_VIEWS) != 0;
   if (given.percentile != 0) budget.percentile = static_cast<double>(given.percentile);
   if ((given.flags & DERMIS_BUDGET_TRIALS_AT_CUTS) != 0) budget.trials = choice::Trials::cuts_only;
   if ((given.flags & DERMIS_BUDGET_NO_TRIALS) != 0) budget.trials = choice::Trials::off;

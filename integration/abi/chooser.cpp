@@ -113,6 +113,12 @@ uint64_t listed_tiles(const subsurface::FrameCounters& counters) {
   return uint64_t{counters.scattering_tiles} + counters.copied_tiles + counters.uniform_tiles;
 }
 
+// Returns the ratio of the lengths that the same object has in both, in pixels.
+double scale_between(const vulkan::Rectangle& from, const vulkan::Rectangle& to) {
+  const double from_pixels = double(from.width) * from.height;
+  return from_pixels > 0 ? std::sqrt(double(to.width) * to.height / from_pixels) : 1;
+}
+
 void observe_frame(Chooser& chooser, CompiledGraph& compiled_graph, FrameChoice& frame) {
   const choice::Configuration& configuration = compiled_graph.configurations[frame.configuration];
   const RunnablePlan& plan = compiled_graph.plans[frame.plan];
@@ -141,9 +147,12 @@ void observe_frame(Chooser& chooser, CompiledGraph& compiled_graph, FrameChoice&
   if (configuration.takes_samples && frame.counters.scattering_tiles > 0)
     record_units(chooser.demand, subsurface::mean_d_px(frame.counters),
                  double(frame.counters.sample_demand) / frame.counters.scattering_tiles);
+  if (chooser.counted)
+    rescale(chooser.tile_growth, scale_between(chooser.counted_rectangle, frame.rectangle));
   update_growth(chooser.tile_growth, frame.frame_index, listed_tiles(frame.counters));
   chooser.counted = true;
   chooser.counters = frame.counters;
+  chooser.counted_rectangle = frame.rectangle;
 }
 
 // Contents that a frame is expected to show.
@@ -151,38 +160,46 @@ struct Content {
   choice::FrameLoad load;
   uint64_t scattering_tiles = 0;
   double d_px = assumed_d_px;
+  double units_per_tile = choice::max_units; // of samples that scattering tiles request
   double transmitted_rms = 0;
 };
 
-Content expected_content(const Chooser& chooser, const FrameRequest& request) {
+// `growth`: factor on the tiles that were counted last.
+Content expected_content(const Chooser& chooser, const vulkan::Rectangle& rectangle,
+                         double growth) {
   // Before any frame is counted, the whole view may scatter.
-  const uint64_t view_tiles = tiles_of(request.rectangle);
+  const uint64_t view_tiles = tiles_of(rectangle);
   Content out;
-  out.load = {request.rectangle.width, request.rectangle.height, view_tiles, 0, 0};
+  out.load = {rectangle.width, rectangle.height, view_tiles, 0, 0};
   out.scattering_tiles = view_tiles;
   if (!chooser.counted) return out;
-  const double growth = growth_until(chooser.tile_growth, request.index);
-  const auto grown = [&](uint64_t tiles) {
-    return std::min(view_tiles, static_cast<uint64_t>(std::lround(growth * double(tiles))));
+  const uint64_t counted = listed_tiles(chooser.counters);
+  const double scale = scale_between(chooser.counted_rectangle, rectangle);
+  const double factor =
+      counted == tiles_of(chooser.counted_rectangle)
+          ? double(view_tiles) / double(counted) // the whole view
+          : choice::scaled_tiles(double(counted), scale) / double(std::max<uint64_t>(counted, 1));
+  const auto scaled = [&](uint64_t tiles) {
+    return std::min(view_tiles,
+                    static_cast<uint64_t>(std::lround(growth * factor * double(tiles))));
   };
-  out.load = load_of(chooser.counters, request.rectangle);
-  out.load.listed_tiles = grown(out.load.listed_tiles);
-  out.load.copied_tiles = grown(out.load.copied_tiles);
-  out.scattering_tiles = grown(chooser.counters.scattering_tiles);
-  if (out.scattering_tiles > 0) out.d_px = subsurface::mean_d_px(chooser.counters);
+  out.load = load_of(chooser.counters, rectangle);
+  out.load.listed_tiles = scaled(counted);
+  out.load.copied_tiles = chooser.counters.scattering_tiles == 0 ? out.load.listed_tiles : 0;
+  out.scattering_tiles = scaled(chooser.counters.scattering_tiles);
+  if (out.scattering_tiles > 0) out.d_px = scale * subsurface::mean_d_px(chooser.counters);
+  out.units_per_tile = expected_units(chooser.demand, out.d_px);
   out.transmitted_rms = subsurface::transmitted_rms(chooser.counters);
   return out;
 }
 
-std::span<choice::Forecast> forecast_all(Chooser& chooser, const CompiledGraph& compiled_graph,
-                                         const Content& content, double now_s) {
+// `count`: number of configurations, from the first.
+std::span<choice::Forecast> forecast_first(Chooser& chooser, const CompiledGraph& compiled_graph,
+                                           size_t count, const Content& content, double now_s) {
   const bool deterministic = chooser.budget.deterministic;
   const std::span<const choice::CostFactors> factors =
       deterministic ? std::span<const choice::CostFactors>() : chooser.costs.predict(now_s);
-  const double demand =
-      std::floor(expected_units(chooser.demand, content.d_px) * double(content.scattering_tiles));
-  // Without a budget, the defaults run.
-  const size_t count = chooser.budget.ms > 0 ? compiled_graph.configurations.size() : 1;
+  const double demand = std::floor(content.units_per_tile * double(content.scattering_tiles));
   for (uint32_t i = 0; i < count; ++i) {
     const choice::Configuration& configuration = compiled_graph.configurations[i];
     const double correction = error_factor(chooser.found, corrected_technique(configuration));
@@ -214,6 +231,16 @@ choice::Decision without_budget(const choice::Forecast& forecast) {
   decision.rmse = rmse_with(forecast, decision.units);
   decision.measured = forecast.time.measured;
   return decision;
+}
+
+// Returns the milliseconds that the frame may take.
+double budget_of_frame(const Chooser& chooser, const FrameRequest& request,
+                       std::span<const choice::Forecast> forecasts) {
+  if (!chooser.budget.all_views) return chooser.budget.ms;
+  const choice::Offers offers = choice::make_offers(forecasts);
+  const std::lock_guard lock(request.shared->mutex);
+  return request.shared->division.share(*request.share, chooser.budget.ms, offers, chooser.counted,
+                                        request.seconds);
 }
 
 // Returns the limit on the samples of tiles. Units above the demand that fit are allowed, because
@@ -284,21 +311,24 @@ void observe(Chooser& chooser, CompiledGraph& compiled_graph,
 
 FrameChoice choose(Chooser& chooser, const CompiledGraph& compiled_graph,
                    const FrameRequest& request) noexcept {
-  const Content content = expected_content(chooser, request);
+  const Content content = expected_content(chooser, request.rectangle,
+                                           growth_until(chooser.tile_growth, request.index));
   FrameChoice frame;
   frame.frame_index = request.index;
   frame.compiled_graph = compiled_graph.serial;
   frame.rectangle = request.rectangle;
   frame.expected_tiles = content.load.listed_tiles;
-  frame.budget_ms = chooser.budget.ms;
   choice::DecisionState& state = chooser.scratch.state;
   state = chooser.state;
   if (chooser.decided_for != compiled_graph.serial)
     restart(state, compiled_graph.configurations.size(), chooser.costs.unmeasured());
+  // Without a budget, the defaults run.
+  const size_t count = chooser.budget.ms > 0 ? compiled_graph.configurations.size() : 1;
   const std::span<choice::Forecast> forecasts =
-      forecast_all(chooser, compiled_graph, content, state.clock_s);
+      forecast_first(chooser, compiled_graph, count, content, state.clock_s);
+  if (chooser.budget.ms > 0) frame.budget_ms = budget_of_frame(chooser, request, forecasts);
   choice::FrameInput input;
-  input.budget_ms = chooser.budget.ms;
+  input.budget_ms = frame.budget_ms;
   input.seconds = request.seconds;
   input.cut = request.cut;
   input.provisional = !chooser.counted;
@@ -314,6 +344,31 @@ FrameChoice choose(Chooser& chooser, const CompiledGraph& compiled_graph,
   frame.configuration = frame.decision.configuration;
   frame.switches = state.switches;
   return frame;
+}
+
+std::span<const choice::Forecast> forecast(Chooser& chooser, const CompiledGraph& compiled_graph,
+                                           const vulkan::Rectangle& rectangle) noexcept {
+  constexpr double no_growth = 1;
+  Content content = expected_content(chooser, rectangle, no_growth);
+  content.units_per_tile = likely_units(chooser.demand, content.d_px);
+  return forecast_first(chooser, compiled_graph, compiled_graph.configurations.size(), content,
+                        chooser.state.clock_s);
+}
+
+choice::Decision settled_decision(Chooser& chooser, const CompiledGraph& compiled_graph,
+                                  std::span<const choice::Forecast> forecasts,
+                                  double budget_ms) noexcept {
+  if (budget_ms <= 0) return without_budget(forecasts.front());
+  choice::DecisionState& state = chooser.scratch.state;
+  state = chooser.state;
+  if (chooser.decided_for != compiled_graph.serial)
+    restart(state, compiled_graph.configurations.size(), chooser.costs.unmeasured());
+  allow_switches(state);
+  choice::FrameInput input;
+  input.budget_ms = budget_ms;
+  input.trials = choice::Trials::off;
+  return decide(forecasts, input, state,
+                std::span(chooser.scratch.assessments).first(forecasts.size()));
 }
 
 void remember(Chooser& chooser, const FrameChoice& frame) noexcept {

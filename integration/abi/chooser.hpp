@@ -5,6 +5,7 @@
 #include "framegraph/vulkan/executor.hpp"
 #include "integration/include/dermis/dermis.h"
 #include "passes/choice/budget_controller.hpp"
+#include "passes/choice/budget_division.hpp"
 #include "passes/choice/calibration.hpp"
 #include "passes/choice/configurations.hpp"
 #include "passes/choice/defaults.hpp"
@@ -17,6 +18,7 @@
 #include "passes/common/environment.hpp"
 
 #include <array>
+#include <mutex>
 #include <string>
 #include <vector>
 
@@ -61,12 +63,22 @@ struct ChoiceScratch {
   choice::DecisionState state; // becomes Chooser::state by remember()
 };
 
+inline constexpr float largest_budget_ms = 1e6f;
+
 // The values of dermis_budget without its tables.
 struct Budget {
   double ms = 0;              // 0: choices keep their defaults
   bool deterministic = false; // DERMIS_BUDGET_DETERMINISTIC
   double percentile = 0.95;
   choice::Trials trials = choice::Trials::on;
+  bool all_views = false; // DERMIS_BUDGET_ALL_VIEWS
+};
+
+// The division of a budget among the views of a graph. `mutex` guards it and all shares; it is
+// locked after the mutex of a view.
+struct SharedBudget {
+  std::mutex mutex;
+  choice::BudgetDivision division;
 };
 
 struct Chooser {
@@ -79,7 +91,8 @@ struct Chooser {
   choice::DecisionState previous_state; // before the last remember()
   uint64_t decided_for = 0;             // CompiledGraph::serial that `state` belongs to
   uint64_t previously_decided_for = 0;
-  subsurface::FrameCounters counters; // of the newest observed frame
+  subsurface::FrameCounters counters;  // of the newest observed frame
+  vulkan::Rectangle counted_rectangle; // of the same frame
   bool counted = false;
   choice::TileGrowth tile_growth; // of tiles with subsurface
   // of tiles that get samples individually
@@ -113,12 +126,23 @@ struct FrameRequest {
   double seconds = 0; // since the previous frame; 0: unknown
   bool cut = false;
   vulkan::Rectangle rectangle;
+  SharedBudget* shared = nullptr; // of the graph
+  choice::ViewShare* share = nullptr;
 };
 // Returns the choice for a frame. Call remember() once the frame is recorded. Allocates nothing and
 // changes no decision or estimate.
 FrameChoice choose(Chooser& chooser, const CompiledGraph& compiled_graph,
                    const FrameRequest& frame) noexcept;
 void remember(Chooser& chooser, const FrameChoice& frame) noexcept;
+// Returns the forecasts of all configurations for frames that show what was counted last, at the
+// resolution of `rectangle`. They live until the next call with this chooser. Allocates nothing.
+std::span<const choice::Forecast> forecast(Chooser& chooser, const CompiledGraph& compiled_graph,
+                                           const vulkan::Rectangle& rectangle) noexcept;
+// Returns the decision that these forecasts lead to once switches are possible. Changes nothing
+// except `scratch`, and allocates nothing.
+choice::Decision settled_decision(Chooser& chooser, const CompiledGraph& compiled_graph,
+                                  std::span<const choice::Forecast> forecasts,
+                                  double budget_ms) noexcept;
 // Forgets the frame remembered last, which was never submitted: nothing is learned from it, and
 // decisions continue as before it.
 void discard_choice(Chooser& chooser, uint64_t frame_index) noexcept;

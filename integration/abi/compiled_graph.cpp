@@ -6,6 +6,7 @@
 #include "framegraph/text/document.hpp"
 #include "integration/abi/host_files.hpp"
 #include "integration/abi/kernel_environment.hpp"
+#include "integration/abi/memory_budget.hpp"
 #include "integration/abi/slots.hpp"
 #include "passes/choice/missing_rows.hpp"
 #include "passes/common/pass_types.hpp"
@@ -192,6 +193,57 @@ compile_without_bounds(const CompileInput& input,
   return compiled;
 }
 
+// Compiles the plans of all configurations that fit into memory.
+bool make_plans(const dermis_context_t& context, const CompileInput& compile_input,
+                const choice::Combinations& combinations, const CompiledGraphInput& input,
+                PlanCache& cache, const choice::ErrorModel& errors, choice::CostEstimator& costs,
+                Diagnostics& diagnostics, CompiledGraph& candidate) {
+  std::vector<PlanChoice> made;
+  for (const uint32_t first : combinations.first) {
+    CompileInput one = compile_input;
+    one.settings = combinations.settings[first];
+    auto compiled = compile(one, cache, diagnostics);
+    if (!compiled) return false;
+    made.push_back({std::move(*compiled), std::nullopt});
+  }
+  if (diagnostics.has_errors()) return false; // including errors of profiles and slots
+  const auto plans_of = [&] {
+    std::vector<const Plan*> plans;
+    for (const PlanChoice& one : made)
+      plans.push_back(&one.own.plan);
+    return plans;
+  };
+  candidate.configurations =
+      choice::make_configurations(compile_input, combinations, plans_of(), errors, costs);
+  for (uint32_t p = 0; p < made.size(); ++p) {
+    CompiledPlan& own = made[p].own;
+    if (candidate.without_material || !reads_what_is_left_out(context.pass_types, own.plan))
+      continue;
+    made[p].without_bounds =
+        compile_without_bounds(compile_input, candidate.configurations, p, cache, own, diagnostics);
+    if (!made[p].without_bounds) return false;
+  }
+  if (input.max_bytes > 0)
+    keep_within_memory(candidate.graph, errors, input.max_bytes, made, candidate.configurations,
+                       diagnostics);
+  report_missing_rows(candidate.graph, context.pass_types, plans_of(), errors, costs,
+                      candidate.configurations, diagnostics);
+  auto number = static_cast<uint32_t>(made.size()); // of the next plan for empty bounds
+  for (PlanChoice& one : made) {
+    RunnablePlan& plan = candidate.plans.emplace_back();
+    plan.left_out = left_out_without_bounds(context.pass_types, one.own.plan);
+    plan.compiled = std::make_shared<const CompiledPlan>(std::move(one.own));
+    if (one.without_bounds) plan.without_bounds = number++;
+  }
+  for (PlanChoice& one : made) {
+    if (!one.without_bounds) continue;
+    RunnablePlan& plan = candidate.plans.emplace_back();
+    plan.left_out.assign(one.without_bounds->plan.passes.size(), 0);
+    plan.compiled = std::make_shared<const CompiledPlan>(std::move(*one.without_bounds));
+  }
+  return true;
+}
+
 } // namespace
 
 dermis_result rejected(dermis_context_t& context, const vulkan::Error& error,
@@ -200,6 +252,15 @@ dermis_result rejected(dermis_context_t& context, const vulkan::Error& error,
   if (error.kind == vulkan::ErrorKind::device_lost) context.lost = true;
   // The library built the executor's input, so an argument error is a defect of the library.
   return error.kind == vulkan::ErrorKind::argument ? DERMIS_ERROR_INTERNAL : result_of(error.kind);
+}
+
+PlanBytes bytes_of_plan(const CompiledGraph& compiled_graph, uint32_t plan) {
+  const RunnablePlan& own = compiled_graph.plans[plan];
+  PlanBytes bytes{own.compiled->plan.transient_bytes, own.compiled->plan.history_bytes};
+  if (own.without_bounds == no_plan) return bytes;
+  const Plan& instead = compiled_graph.plans[own.without_bounds].compiled->plan;
+  return {std::max(bytes.transient, instead.transient_bytes),
+          bytes.history + instead.history_bytes};
 }
 
 vulkan::Error make_tables(dermis_context_t& context, const subsurface::TableUse& use,
@@ -293,43 +354,10 @@ dermis_result build_compiled_graph(dermis_context_t& context, CompiledGraphInput
   const auto combinations = choice::enumerate_combinations(
       compile_input, diagnostics, pinned_settings(candidate->graph, input.settings));
   if (!combinations) return DERMIS_ERROR_CONFIG;
-  std::vector<CompiledPlan> made;
-  for (const uint32_t first : combinations->first) {
-    CompileInput one = compile_input;
-    one.settings = combinations->settings[first];
-    auto compiled = compile(one, cache, diagnostics);
-    if (!compiled) return DERMIS_ERROR_CONFIG;
-    made.push_back(std::move(*compiled));
-  }
-  if (diagnostics.has_errors())
-    return DERMIS_ERROR_CONFIG; // including errors of profiles and slots
-  std::vector<const Plan*> made_plans;
-  for (const CompiledPlan& one : made)
-    made_plans.push_back(&one.plan);
-  candidate->configurations =
-      choice::make_configurations(compile_input, *combinations, made_plans, errors, costs);
-  report_missing_rows(candidate->graph, context.pass_types, made_plans, errors, costs,
-                      candidate->configurations, diagnostics);
-  std::vector<CompiledPlan> empty_plans;
-  for (uint32_t p = 0; p < made.size(); ++p) {
-    CompiledPlan& compiled = made[p];
-    RunnablePlan plan;
-    plan.left_out = left_out_without_bounds(context.pass_types, compiled.plan);
-    if (!candidate->without_material && reads_what_is_left_out(context.pass_types, compiled.plan)) {
-      auto empty = compile_without_bounds(compile_input, candidate->configurations, p, cache,
-                                          compiled, diagnostics);
-      if (!empty) return DERMIS_ERROR_CONFIG;
-      plan.without_bounds = static_cast<uint32_t>(made.size() + empty_plans.size());
-      empty_plans.push_back(std::move(*empty));
-    }
-    plan.compiled = std::make_shared<const CompiledPlan>(std::move(compiled));
-    candidate->plans.push_back(std::move(plan));
-  }
-  for (CompiledPlan& compiled : empty_plans) {
-    RunnablePlan& plan = candidate->plans.emplace_back();
-    plan.left_out.assign(compiled.plan.passes.size(), 0);
-    plan.compiled = std::make_shared<const CompiledPlan>(std::move(compiled));
-  }
+  if (!make_plans(context, compile_input, *combinations, input, cache, errors, costs, diagnostics,
+                  *candidate))
+    return DERMIS_ERROR_CONFIG;
+  candidate->settings = candidate->configurations.front().settings; // the default may not fit
   candidate->plan = candidate->configurations[candidate->configuration].plan;
   candidate->slots = slots_of(*candidate);
   reserve_bindings(*candidate);

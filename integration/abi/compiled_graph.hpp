@@ -44,6 +44,7 @@ struct CompiledGraphInput {
   // files that `include` delivered; requested again at a reload
   std::map<std::string, SourceText, std::less<>> included;
   uint32_t width = 0, height = 0;
+  uint64_t max_bytes = 0; // memory budget of a view; 0: none
   PixelGrid pixel_grid = 0;
   std::vector<subsurface::NumberedProfile> profiles;
   std::vector<std::string> unbound;
@@ -122,6 +123,12 @@ struct CompiledGraph {
   } // of the configuration
   const RunnablePlan& recorded() const { return plans[plan]; }
 };
+
+// Device memory of one view that a plan needs, with the plan that replaces it for empty bounds.
+struct PlanBytes {
+  uint64_t transient = 0, history = 0;
+};
+PlanBytes bytes_of_plan(const CompiledGraph& compiled_graph, uint32_t plan);
 
 // Parses, compiles and allocates. Plans come from `cache` if it has them, and are added
 // otherwise. On failure `diagnostics` says why and `compiled_graph` is unchanged. Stores files that

@@ -5,7 +5,13 @@
 
 #include <algorithm>
 
+dermis_view_t::~dermis_view_t() {
+  const std::lock_guard lock(graph->shared_budget.mutex);
+  graph->shared_budget.division.remove(share);
+}
+
 dermis_graph_t::dermis_graph_t(dermis_context owner) : context(owner), own(owner, this, nullptr) {
+  shared_budget.division.add(own.share);
   const std::lock_guard lock(context->mutex);
   context->graphs.push_back(this);
 }
@@ -145,6 +151,14 @@ dermis_result reload(dermis_graph_t& graph, const dermis_graph_desc* given, derm
 }
 
 } // namespace
+
+double budget_of_view(const dermis_view_t& view) {
+  const Budget& budget = view.chooser.budget;
+  if (!budget.all_views || budget.ms <= 0) return budget.ms;
+  SharedBudget& shared = view.graph->shared_budget;
+  const std::lock_guard lock(shared.mutex);
+  return shared.division.present_share(view.share, budget.ms);
+}
 
 dermis_result replace_compiled_graphs(dermis_graph_t& graph, CompiledGraphInput&& input,
                                       vulkan::HistoryReason reason, dermis_report* report,

@@ -18,6 +18,9 @@ struct dermis_view_t {
         chooser(dermis::abi::make_chooser(
             dermis::abi::device_class(from->device.properties.deviceType))),
         image_views(from->device) {}
+  ~dermis_view_t();
+  dermis_view_t(const dermis_view_t&) = delete;
+  dermis_view_t& operator=(const dermis_view_t&) = delete;
 
   dermis_context context = nullptr;
   dermis_graph graph = nullptr;
@@ -46,6 +49,7 @@ struct dermis_view_t {
     bool plan_recorded = false;
   } recorded;
   dermis::abi::Chooser chooser;
+  dermis::choice::ViewShare share; // guarded by graph->shared_budget.mutex
   dermis::abi::ImageViews image_views;
   dermis::abi::Capture capture; // commands of the last capture
 };
@@ -59,9 +63,10 @@ struct dermis_graph_t {
   dermis_context context = nullptr;
   // Serialises changes of the graph and guards the rest. Locked before the mutex of a view.
   std::mutex changing;
-  dermis::abi::CompiledGraphInput input; // of the newest program
-  dermis::PlanCache plans;               // of programs built before: what a setting flips back to
-  dermis_view_t own;                     // returned by dermis_graph_view
+  dermis::abi::CompiledGraphInput input;   // of the newest program
+  dermis::PlanCache plans;                 // of programs built before: what a setting flips back to
+  dermis::abi::SharedBudget shared_budget; // outlives the views
+  dermis_view_t own;                       // returned by dermis_graph_view
   std::vector<std::unique_ptr<dermis_view_t>> others;
 };
 
@@ -77,6 +82,10 @@ inline std::shared_ptr<CompiledGraph> keep_newest(const dermis_view_t& view) {
   const std::lock_guard lock(view.mutex);
   return view.next ? view.next : view.running;
 }
+
+// Returns the milliseconds that the next frame of the view may take; 0: no budget. Requires the
+// view's mutex.
+double budget_of_view(const dermis_view_t& view);
 
 // Returns DEVICE_LOST if reading timings of the running program reported a lost device; the whole
 // context is then lost. Requires the view's mutex.

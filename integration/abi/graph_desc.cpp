@@ -172,6 +172,7 @@ dermis_result read_graph_desc(const Log& log, const char* function, const dermis
     input.formats.clear();
     result = read_formats(log, function, desc, input);
   }
+  if (replaces(DERMIS_KEEP_MEMORY)) input.max_bytes = desc.max_bytes;
   if (replaces(DERMIS_KEEP_INCLUDE)) {
     input.include = desc.include;
     input.include_user = desc.include_user;

@@ -102,9 +102,9 @@ dermis_result record(dermis_view_t& view, const dermis_frame* given, Capture* ca
   if (view.running) observe(chooser, *view.running, frame.completed_frame_index);
   if (const dermis_result loss = check_loss(view, function); loss != DERMIS_OK) return loss;
   const bool cut = (frame.flags & DERMIS_FRAME_RESET_HISTORY) != 0;
-  FrameChoice chosen =
-      choose(chooser, compiled_graph,
-             {frame.frame_index, double(frame.delta_seconds), cut, checked.input.rectangle});
+  FrameChoice chosen = choose(chooser, compiled_graph,
+                              {frame.frame_index, double(frame.delta_seconds), cut,
+                               checked.input.rectangle, &view.graph->shared_budget, &view.share});
   const uint32_t plan = plan_of(compiled_graph, chosen.configuration, checked.empty_bounds());
   chosen.plan = plan;
   chosen.first_of_plan = !compiled_graph.plans[plan].recorded;

@@ -19,6 +19,7 @@
  *      submit yourself
  *   5. dermis_graph_destroy, dermis_context_destroy, after the device has finished the frames
  *   More cameras (stereo, split screen): dermis_view_create once each.
+ *   Budgets of time and memory, and what they choose: dermis/choice.h, included at the end.
  *
  * BARRIER CONTRACT
  *   Before dermis_view_record each bound image is in `before.layout`, and its last access is
@@ -338,7 +339,8 @@ typedef uint32_t(DERMIS_CALL* dermis_include_fn)(
 #define DERMIS_KEEP_FORMATS 0x10u
 #define DERMIS_KEEP_OVERLAYS 0x20u
 #define DERMIS_KEEP_INCLUDE 0x40u /* include and include_user */
-#define DERMIS_KEEP_ALL 0x7fu
+#define DERMIS_KEEP_MEMORY 0x80u  /* max_bytes */
+#define DERMIS_KEEP_ALL 0xffu
 
 typedef struct dermis_graph_desc {
   size_t struct_size;
@@ -356,10 +358,14 @@ typedef struct dermis_graph_desc {
   dermis_include_fn include; /* NULL: no includes; else callable as long as the graph lives */
   void* include_user;
   float pixel_aspect; /* width / height of a pixel, within 30 %; part of the size; 0: 1 */
+  /* Budget of transient_bytes + history_bytes (dermis_memory) of one view; 0: none. Configurations
+   * of choices "by": "budget" that do not fit are not offered and allocate nothing (D0405). If none
+   * fits, the smallest one runs (D0406). */
+  uint64_t max_bytes;
 } dermis_graph_desc;
 #define DERMIS_GRAPH_DESC_INIT \
   {sizeof(dermis_graph_desc), DERMIS_SOURCE_INIT, 0, 0, NULL, 0, 0, NULL, NULL, 0, 0, NULL, 0, \
-   NULL, NULL, 0}
+   NULL, NULL, 0, 0}
 /* Checks a graph without a device. The graph must not include other files. *report (may be NULL)
  * gets the messages. Costs: time. Thread: any. Errors: ARGUMENT, VERSION, CONFIG, MEMORY. */
 DERMIS_API dermis_result DERMIS_CALL dermis_validate(
@@ -535,107 +541,6 @@ typedef struct dermis_setting {
  * CONFIG, and those of dermis_graph_create. */
 DERMIS_API dermis_result DERMIS_CALL dermis_graph_set_setting(
     dermis_graph graph, const char* name, const char* json, dermis_report* report);
-
-/* ---- the choice ------------------------------------------------------------------------------ */
-#define DERMIS_BUDGET_DETERMINISTIC 0x1u /* no timestamps: equal choices on every machine */
-/* Trials run a configuration for a few frames to measure its time, and may exceed the budget.
- * Without a flag at any time; or only in frames with DERMIS_FRAME_RESET_HISTORY; or never. */
-#define DERMIS_BUDGET_TRIALS_AT_CUTS 0x2u
-#define DERMIS_BUDGET_NO_TRIALS 0x4u
-
-/* Device time that a frame of one view may take: a fixed part of your frame, never what other work
- * leaves (docs/choice.md). Each record then chooses the settings declared with "by": "budget": the
- * least expected error whose time fits. All plans that this can select exist from creation on, so
- * changing between them allocates nothing. Times are measured with DERMIS_CONTEXT_TIMINGS;
- * otherwise they come from the calibration. */
-typedef struct dermis_budget {
-  size_t struct_size;
-  float milliseconds; /* per frame, > 0; 0: no budget, choices take their defaults */
-  uint32_t flags;     /* DERMIS_BUDGET_.. */
-  const dermis_source* errors;      /* error table (docs/choice.md); NULL: unchanged */
-  const dermis_source* calibration; /* drops measured times; NULL: unchanged */
-  float percentile;   /* fraction of frames that stay within the budget, 0.5..0.99; 0 = 0.95 */
-  float uncertainty;  /* factor by which calibrated times may be wrong, 1..100; 0: the file's */
-} dermis_budget;
-#define DERMIS_BUDGET_INIT {sizeof(dermis_budget), 0, 0, NULL, NULL, 0, 0}
-/* Sets the budget for all views, effective at the next record; kept over reload and resize. Costs:
- * time. Thread: concurrent. Errors: ARGUMENT, VERSION, CONFIG, MEMORY. */
-DERMIS_API dermis_result DERMIS_CALL dermis_graph_set_budget(
-    dermis_graph graph, const dermis_budget* budget, dermis_report* report);
-
-/* Work that a frame did not need (dermis_frame_report.skips). */
-#define DERMIS_SKIP_NO_MATERIAL 0x1u  /* no profile: passes that scatter are not in the plan */
-#define DERMIS_SKIP_NO_BOUNDS 0x2u    /* empty bounds: no kernel that scatters ran */
-#define DERMIS_SKIP_NOTHING_SEEN 0x4u /* no pixel with subsurface: 0 groups are dispatched */
-#define DERMIS_SKIP_SUBPIXEL 0x8u     /* tiles that scatter less than a pixel were copied */
-#define DERMIS_SKIP_UNIFORM_LIGHT 0x10u  /* tiles in uniform light were copied */
-#define DERMIS_SKIP_HISTORY 0x20u     /* history was invalid, so it was not read */
-
-/* The choice for one frame and its result, for a host to show or log. Strings live until the next
- * reload, resize, set_setting or destroy. */
-typedef struct dermis_frame_report {
-  size_t struct_size;
-  uint64_t frame_index;      /* of the frame described here */
-  const char* configuration; /* for example "technique=sap" */
-  const char* reason;        /* why this configuration was chosen; static string */
-  const char* miss;          /* why times deviate from the prediction, or ""; static string */
-  float budget_ms;           /* 0: none */
-  float predicted_ms;
-  float measured_ms;    /* -1: not timed */
-  float predicted_rmse; /* of linear luminance; the light's 99.9th percentile is 1 */
-  uint32_t skips;       /* DERMIS_SKIP_.. */
-} dermis_frame_report;
-#define DERMIS_FRAME_REPORT_INIT {sizeof(dermis_frame_report), 0, NULL, NULL, NULL, 0, 0, 0, 0, 0}
-/* Describes the newest frame whose counters are available, among those up to
- * `completed_frame_index`, as in dermis_frame. Costs: none. Thread: one per view. Errors: ARGUMENT,
- * NOT_READY, DEVICE_LOST. */
-DERMIS_API dermis_result DERMIS_CALL dermis_view_report(
-    dermis_view view, uint64_t completed_frame_index, dermis_frame_report* report);
-
-/* Details of the same frame as dermis_frame_report, for tools. Strings live as long as there. */
-typedef struct dermis_frame_statistics {
-  size_t struct_size;
-  uint64_t frame_index;
-  /* The choice. */
-  const char* technique;        /* name in the error table; "" if none runs */
-  const char* next_better;      /* the next more accurate configuration; "" for none */
-  float next_better_missing_ms; /* time by which next_better exceeds the budget */
-  float predicted_margin_ms;    /* that dermis_budget.percentile of frames stay within */
-  float calibrated_ms;          /* time by the calibration for the tiles that were counted */
-  uint32_t configuration_count;
-  uint32_t switches;   /* since the graph was created */
-  uint32_t dispatches; /* recorded work */
-  uint64_t groups;     /* workgroups of all dispatches */
-  /* 8x8 tiles. */
-  uint32_t view_tiles;       /* of the render rectangle */
-  uint32_t scattering_tiles; /* that ran the technique */
-  uint32_t copied_tiles;     /* that scatter less than a pixel */
-  uint32_t uniform_tiles;    /* in uniform light */
-  uint32_t sampled_tiles[3]; /* scattering tiles with 8, 16 and 32 samples per pixel */
-  uint32_t sample_units;     /* samples taken, in units of 8 samples per pixel of a tile */
-  uint32_t sample_demand;    /* the same without a budget */
-  float mean_d_px;           /* geometric mean over scattering tiles of the widest d; 0: none */
-  /* Measured error, by subsurface.probe (configs/overlays/probe.json). */
-  uint32_t probed_tiles;  /* 0: error unknown */
-  float probed_rmse;      /* of this frame: linear luminance times dermis_frame.exposure */
-  float probed_rmse_low;  /* lower end of the 95 % confidence interval */
-  float probed_rmse_high; /* upper end; infinity if one tile was probed */
-  /* Light through thin parts, by subsurface.transmission_stats: root mean square over tiles with
-   * subsurface, linear luminance times dermis_frame.exposure. 0: none, or not counted. */
-  float transmitted_rms;
-} dermis_frame_statistics;
-#define DERMIS_FRAME_STATISTICS_INIT \
-  {sizeof(dermis_frame_statistics), 0, NULL, NULL, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, {0, 0, 0}, 0, \
-   0, 0, 0, 0, 0, 0, 0}
-/* Returns the statistics of the frame that dermis_view_report describes. Costs: none. Thread: one
- * per view. Errors: as there. */
-DERMIS_API dermis_result DERMIS_CALL dermis_view_statistics(
-    dermis_view view, uint64_t completed_frame_index, dermis_frame_statistics* statistics);
-/* Returns the times measured on this device by the graph's view, as JSON for
- * dermis_budget.calibration at the next start. *size in: capacity of `text`; out: bytes needed with
- * the final 0. text may be NULL. Costs: time. Thread: concurrent. Errors: ARGUMENT, INCOMPLETE. */
-DERMIS_API dermis_result DERMIS_CALL dermis_graph_calibration(
-    dermis_graph graph, size_t* size, char* text);
 
 /* ---- passes of the host ---------------------------------------------------------------------- */
 /* How a pass of the host uses what a graph binds to a port, always in compute shaders: the graph's
@@ -991,4 +896,5 @@ DERMIS_API dermis_result DERMIS_CALL dermis_view_set_setting(
 #ifdef __cplusplus
 }
 #endif
+#include "choice.h"
 #endif

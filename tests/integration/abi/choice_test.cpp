@@ -375,7 +375,7 @@ TEST_F(Choice, WrongBudgetsAreRejectedAndChangeNothing) {
     EXPECT_EQ(dermis_graph_set_budget(graph, &budget, nullptr), DERMIS_ERROR_ARGUMENT) << ms;
   }
   budget.milliseconds = 1;
-  for (const uint32_t flags : {8u, DERMIS_BUDGET_TRIALS_AT_CUTS | DERMIS_BUDGET_NO_TRIALS}) {
+  for (const uint32_t flags : {16u, DERMIS_BUDGET_TRIALS_AT_CUTS | DERMIS_BUDGET_NO_TRIALS}) {
     budget.flags = flags;
     EXPECT_EQ(dermis_graph_set_budget(graph, &budget, nullptr), DERMIS_ERROR_ARGUMENT) << flags;
   }

@@ -6,7 +6,7 @@ set -eu
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
 nm -D --defined-only "$1" | awk '$2 != "A" { print $3 }' | sort > "$scratch/exported"
-grep -o 'DERMIS_CALL dermis_[a-z_]*(' "$2/integration/include/dermis/dermis.h" |
+grep -ho 'DERMIS_CALL dermis_[a-z_]*(' "$2"/integration/include/dermis/*.h |
   sed 's/.* //; s/($//' | sort > "$scratch/declared"
 diff "$scratch/declared" "$scratch/exported" ||
   { echo "the header (<) and the library (>) differ"; exit 1; }

@@ -25,6 +25,8 @@ size_t use(void) {
   dermis_pass_timing timing = DERMIS_PASS_TIMING_INIT;
   dermis_frame frame = DERMIS_FRAME_INIT;
   dermis_budget budget = DERMIS_BUDGET_INIT;
+  dermis_forecast_desc forecast_desc = DERMIS_FORECAST_DESC_INIT;
+  dermis_outcome outcome = DERMIS_OUTCOME_INIT;
   dermis_frame_report report = DERMIS_FRAME_REPORT_INIT;
   dermis_frame_statistics statistics = DERMIS_FRAME_STATISTICS_INIT;
   dermis_port port = DERMIS_PORT_INIT;
@@ -37,10 +39,11 @@ size_t use(void) {
          requirement.struct_size + slot.struct_size + memory.struct_size + timing.struct_size +
          frame.struct_size + budget.struct_size + report.struct_size + statistics.struct_size +
          port.struct_size + setting.struct_size + pass_port.struct_size + call.struct_size +
-         kind.struct_size;
+         kind.struct_size + forecast_desc.struct_size + outcome.struct_size;
 }
 EOF
 cp "$scratch/alone.c" "$scratch/alone.cpp"
+sed 's|<dermis/dermis.h>|<dermis/choice.h>|' "$scratch/alone.c" > "$scratch/choice_first.c"
 { echo '#include <vulkan/vulkan.h>'; cat "$scratch/alone.c"; } > "$scratch/after_vulkan.c"
 {
   echo '#define VK_NO_PROTOTYPES'
@@ -61,7 +64,7 @@ checked=0
 for compiler in gcc clang; do
   command -v $compiler > /dev/null || continue
   for standard in c99 c11 c17; do
-    for file in alone.c after_vulkan.c with_volk.c; do
+    for file in alone.c choice_first.c after_vulkan.c with_volk.c; do
       check $compiler $standard "$scratch/$file"
     done
   done

@@ -75,6 +75,9 @@ TEST(NullArguments, AreNamedByGraphFunctions) {
   expect_argument_error(dermis_graph_describe(nullptr, DERMIS_DESCRIBE_JSON, &size, nullptr),
                         "graph");
   expect_argument_error(dermis_graph_memory(nullptr, &memory), "graph");
+  dermis_outcome outcome = DERMIS_OUTCOME_INIT;
+  expect_argument_error(dermis_graph_frontier(nullptr, nullptr, &count, nullptr), "graph");
+  expect_argument_error(dermis_graph_predict(nullptr, nullptr, &outcome), "graph");
   expect_argument_error(dermis_view_timings(dermis_graph_view(nullptr), 0, &count, nullptr),
                         "view");
   expect_argument_error(dermis_view_histories(dermis_graph_view(nullptr), &count, nullptr), "view");

@@ -76,6 +76,9 @@ TEST_F(TwoCalls, FillAtMostTheCapacity) {
   expect_array_property<dermis_memory_request>([&](uint32_t* count, dermis_memory_request* items) {
     return dermis_graph_heaps(host.graph, count, items);
   });
+  expect_array_property<dermis_outcome>([&](uint32_t* count, dermis_outcome* items) {
+    return dermis_graph_frontier(host.graph, nullptr, count, items);
+  });
   expect_array_property<dermis_pass_timing>([&](uint32_t* count, dermis_pass_timing* items) {
     return dermis_view_timings(dermis_graph_view(host.graph), 1, count, items);
   });

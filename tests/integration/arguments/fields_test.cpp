@@ -126,6 +126,37 @@ TEST_F(Fields, OfTexts_WrongOnesAreReportedWithTheirPlace) {
   }
 }
 
+TEST_F(Fields, OfAForecast_WrongOnesAreNamed) {
+  ASSERT_OK(host.make_graph(64));
+  NullHost other;
+  ASSERT_OK(other.make_context(other.context_desc()));
+  ASSERT_OK(other.make_graph());
+  using Change = std::function<void(dermis_forecast_desc&)>;
+  const std::pair<const char*, Change> changes[] = {
+      {"desc.view belongs to another graph",
+       [&](auto& d) { d.view = dermis_graph_view(other.graph); }},
+      {"desc.width is 8 and desc.height is 0, expected both or neither",
+       [](auto& d) { d.width = 8; }},
+      {"the rectangle is 65x64, larger than the allocated size 64x64",
+       [](auto& d) {
+         d.width = 65;
+         d.height = 64;
+       }},
+      {"desc.milliseconds is -1", [](auto& d) { d.milliseconds = -1; }},
+      {"desc.milliseconds is nan", [](auto& d) { d.milliseconds = NAN; }},
+  };
+  for (const auto& [said, change] : changes) {
+    dermis_forecast_desc wrong = DERMIS_FORECAST_DESC_INIT;
+    change(wrong);
+    dermis_outcome outcome = DERMIS_OUTCOME_INIT;
+    uint32_t count = 0;
+    EXPECT_THAT(dermis_graph_predict(host.graph, &wrong, &outcome),
+                Fails(DERMIS_ERROR_ARGUMENT, said));
+    EXPECT_THAT(dermis_graph_frontier(host.graph, &wrong, &count, nullptr),
+                Fails(DERMIS_ERROR_ARGUMENT, said));
+  }
+}
+
 TEST_F(Fields, OfCallsOnAGraph_NullOnesAreNamed) {
   ASSERT_OK(host.make_graph());
   const auto rejected = [](dermis_result result, const char* said) {
@@ -140,13 +171,15 @@ TEST_F(Fields, OfCallsOnAGraph_NullOnesAreNamed) {
            "dermis_graph_reload: the size is 0x0");
   empty.keep = DERMIS_KEEP_ALL + 1;
   rejected(dermis_graph_reload(host.graph, &empty, nullptr),
-           "desc.keep is 0x80, known bits are 0x7f");
+           "desc.keep is 0x100, known bits are 0xff");
   rejected(dermis_graph_resize(host.graph, 0, 1, nullptr), "dermis_graph_resize: the size is 0x1");
   rejected(dermis_graph_set_setting(host.graph, nullptr, "1", nullptr), "name is NULL");
   rejected(dermis_graph_set_setting(host.graph, "samples", nullptr, nullptr), "json is NULL");
   rejected(dermis_graph_set_budget(host.graph, nullptr, nullptr), "budget is NULL");
   rejected(dermis_graph_set_budget(nullptr, nullptr, nullptr), "graph is NULL");
   rejected(dermis_graph_memory(host.graph, nullptr), "memory is NULL");
+  rejected(dermis_graph_predict(host.graph, nullptr, nullptr), "outcome is NULL");
+  rejected(dermis_graph_frontier(host.graph, nullptr, nullptr, nullptr), "count is NULL");
   const dermis_view view = dermis_graph_view(host.graph);
   rejected(dermis_view_report(view, 0, nullptr), "report is NULL");
   rejected(dermis_view_statistics(view, 0, nullptr), "statistics is NULL");

@@ -107,6 +107,11 @@ TEST_F(StructSizes, GraphViewAndBudget_FollowTheHeader) {
   expect_input_property<dermis_budget>(DERMIS_BUDGET_INIT, [&](const dermis_budget* given) {
     return dermis_graph_set_budget(host.graph, given, nullptr);
   });
+  dermis_outcome outcome = DERMIS_OUTCOME_INIT;
+  expect_input_property<dermis_forecast_desc>(
+      DERMIS_FORECAST_DESC_INIT, [&](const dermis_forecast_desc* given) {
+        return dermis_graph_predict(host.graph, given, &outcome);
+      });
 }
 
 TEST_F(StructSizes, PassTypePortsAndSettings_FollowTheHeader) {
@@ -284,6 +289,9 @@ TEST_F(StructSizes, NestedSources_AreExact) {
 TEST_F(StructSizes, OutputStructs_FollowTheHeader) {
   expect_output_property<dermis_memory>(
       DERMIS_MEMORY_INIT, [&](dermis_memory* out) { return dermis_graph_memory(host.graph, out); });
+  expect_output_property<dermis_outcome>(DERMIS_OUTCOME_INIT, [&](dermis_outcome* out) {
+    return dermis_graph_predict(host.graph, nullptr, out);
+  });
   const dermis_view view = dermis_graph_view(host.graph);
   expect_output_property<dermis_frame_report>(
       DERMIS_FRAME_REPORT_INIT,

@@ -225,6 +225,16 @@ TEST_F(HostMemory, FailedBudget_KeepsTheGraph) {
       [&] { still_records(); });
 }
 
+TEST_F(HostMemory, FailedMemoryBudget_KeepsTheGraph) {
+  make_graph();
+  dermis_graph_desc desc = DERMIS_GRAPH_DESC_INIT;
+  desc.keep = DERMIS_KEEP_ALL & ~DERMIS_KEEP_MEMORY;
+  desc.max_bytes = 1; // no plan fits: reported
+  reject_each(
+      step(), [&] { return dermis_graph_reload(host.graph, &desc, nullptr); },
+      [&] { still_records(); });
+}
+
 TEST_F(HostMemory, FailedView_LeaksNothing) {
   make_graph();
   dermis_view view = nullptr;
@@ -312,6 +322,23 @@ TEST_F(HostMemory, RecordingAFrame_AllocatesNothing) {
   heap.calls = 0;
   EXPECT_OK(host.record()) << "switching plans allocates nothing";
   EXPECT_EQ(heap.calls, 0u);
+}
+
+TEST_F(HostMemory, Forecasts_AllocateNothing) {
+  make_graph();
+  std::vector<dermis_outcome> outcomes(64, dermis_outcome DERMIS_OUTCOME_INIT);
+  dermis_forecast_desc desc = DERMIS_FORECAST_DESC_INIT;
+  desc.width = desc.height = 16;
+  for (const float ms : {0.0f, 1.0f}) { // with and without a budget
+    desc.milliseconds = ms;
+    uint32_t count = 64;
+    heap.calls = 0;
+    heap.rejected = 1;
+    EXPECT_OK(dermis_graph_frontier(host.graph, &desc, &count, outcomes.data()));
+    EXPECT_OK(dermis_graph_predict(host.graph, &desc, outcomes.data()));
+    EXPECT_EQ(heap.calls, 0u);
+    heap.rejected = 0;
+  }
 }
 
 TEST_F(HostMemory, HalfAnAllocatorIsRejected) {

@@ -1,4 +1,4 @@
-"""Makes bindings from dermis.h only, like an author of bindings for another language.
+"""Makes bindings from the public headers only, like an author of bindings for another language.
 
 Reads structs, enumerations and functions from the header and calls the library through them. With
 an engine (bindings_engine.c as a library) the bindings also run a frame of a graph.
@@ -11,7 +11,9 @@ import sys
 
 library_path, source = sys.argv[1:3]
 engine_path = sys.argv[3] if len(sys.argv) > 3 else None
-header = open(source + "/integration/include/dermis/dermis.h", encoding="utf-8").read()
+header = "".join(
+    open(f"{source}/integration/include/dermis/{name}.h", encoding="utf-8").read()
+    for name in ("dermis", "choice"))
 code = re.sub(r"/\*.*?\*/", "", header, flags=re.S)
 
 plain = {

@@ -57,7 +57,7 @@ dll=$(find "$work/build" -name 'libdermis*.dll' | head -1)
 $triple-objdump -p "$dll" > "$work/headers.txt"
 awk '/^\[Ordinal\/Name Pointer\] Table/ { on = 1; next } on && NF == 0 { exit } on { print $NF }' \
   "$work/headers.txt" | LC_ALL=C sort > "$work/exported.txt"
-grep -o 'DERMIS_CALL dermis_[a-z_]*(' "$source/integration/include/dermis/dermis.h" |
+grep -ho 'DERMIS_CALL dermis_[a-z_]*(' "$source"/integration/include/dermis/*.h |
   sed 's/.* //; s/($//' | LC_ALL=C sort > "$work/declared.txt"
 diff "$work/declared.txt" "$work/exported.txt" ||
   { echo "the header (<) and the DLL (>) differ"; exit 1; }

@@ -49,6 +49,7 @@ struct Threads : ::testing::Test {
     case 4: {
       dermis_budget budget = DERMIS_BUDGET_INIT;
       budget.milliseconds = static_cast<float>(number % 3);
+      if (number % 5 == 0) budget.flags = DERMIS_BUDGET_ALL_VIEWS;
       EXPECT_OK(dermis_graph_set_budget(host.graph, &budget, nullptr));
       break;
     }
@@ -71,6 +72,9 @@ struct Threads : ::testing::Test {
       size_t size = 0;
       EXPECT_OK(dermis_graph_describe(host.graph, DERMIS_DESCRIBE_TEXT, &size, nullptr));
       EXPECT_OK(dermis_graph_calibration(host.graph, &size, nullptr));
+      dermis_outcome outcome = DERMIS_OUTCOME_INIT;
+      EXPECT_OK(dermis_graph_frontier(host.graph, nullptr, &count, nullptr));
+      EXPECT_OK(dermis_graph_predict(host.graph, nullptr, &outcome));
       break;
     }
     }

@@ -151,12 +151,14 @@ TEST_F(Readme, ShortCExamplesCompile) {
   auto shown = blocks(text, "c");
   ASSERT_EQ(shown.size(), 1u);
   const auto choice = blocks(text_of(repository / "docs/choice.md"), "c");
-  ASSERT_EQ(choice.size(), 1u);
+  ASSERT_EQ(choice.size(), 2u);
   std::string source = "#include <dermis/dermis.h>\n"
                        "dermis_context context; dermis_graph graph; dermis_report report;\n"
                        "dermis_slot slots[8]; uint32_t count; uint64_t completed_frame_index;\n"
-                       "void create(void); void choose(void);\n";
-  source += "void create(void) {\n" + shown[0] + "}\nvoid choose(void) {\n" + choice[0] + "}\n";
+                       "dermis_frame frame; uint32_t width, height; float frame_ms, others_ms;\n"
+                       "void create(void); void choose(void); void scale(void);\n";
+  source += "void create(void) {\n" + shown[0] + "}\nvoid choose(void) {\n" + choice[0] +
+            "}\nvoid scale(void) {\n" + choice[1] + "}\n";
   const std::string file = write("shown.c", source);
   const std::string line = std::string(DERMIS_C_COMPILER) +
                            " -std=c99 -fsyntax-only -Wno-unused-result -I " +
