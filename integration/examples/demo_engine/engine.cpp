@@ -218,6 +218,9 @@ Result<FrameOutputs> render_frame(Session& session, uint32_t frame, uint64_t fra
   auto choice = graph_choice(*session.dermis, frame_index);
   if (!choice) return choice.error();
   out.choice = choice.take();
+  auto frontier = graph_frontier(*session.dermis);
+  if (!frontier) return frontier.error();
+  out.frontier = frontier.take();
   auto histories = graph_histories(*session.dermis);
   if (!histories) return histories.error();
   out.histories = histories.take();

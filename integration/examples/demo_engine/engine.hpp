@@ -148,6 +148,14 @@ struct FrameChoice {
   std::string miss;           // why the frame exceeded the budget; "": it did not
 };
 
+// Expected time and error of a configuration in a frame like this one.
+struct FrameOutcome {
+  std::string configuration;
+  double expected_ms = 0, percentile_ms = 0, expected_rmse = 0;
+  bool fits = false, dominated = false;
+  uint64_t transient_bytes = 0, history_bytes = 0;
+};
+
 // State of a history of the graph after the frame.
 struct FrameHistory {
   std::string name;
@@ -172,10 +180,11 @@ struct FrameOutputs {
   // 2: class of the tile (0 nothing, 1 scatters, 2 below a pixel, 3 uniform light), profile id.
   // Empty unless requested and exported.
   FloatImage tile_class;
-  FloatImage color;                  // 3: linear radiance times exposure
-  std::vector<uint8_t> display;      // RGB, tonemapped and sRGB encoded
-  std::vector<PassTime> host_times;  // shadows, gbuffer, lighting, composite
-  std::optional<FrameChoice> choice; // none without Dermis
+  FloatImage color;                   // 3: linear radiance times exposure
+  std::vector<uint8_t> display;       // RGB, tonemapped and sRGB encoded
+  std::vector<PassTime> host_times;   // shadows, gbuffer, lighting, composite
+  std::optional<FrameChoice> choice;  // none without Dermis
+  std::vector<FrameOutcome> frontier; // of all configurations, by rising time
   // Histories of the graph, including those of plans that did not run.
   std::vector<FrameHistory> histories;
   // Phases of this frame; "run scene" and "run graph" wait for the device.

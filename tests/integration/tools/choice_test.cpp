@@ -71,6 +71,30 @@ TEST_F(Choice, ExplainDescribesAFrame) {
   EXPECT_EQ(run({"explain", graph, "--budget", "2"}).exit_code, 2); // The frame is missing.
 }
 
+TEST_F(Choice, ExplainListsTheFrontierOfAFrame) {
+  const std::vector<std::string> line = {"explain", graph,   "--frame",
+                                         "--size",  "64x36", "--deterministic"};
+  const Outcome text = run(line);
+  ASSERT_THAT(text, Succeeds("configuration", "at percentile", "technique=off", "  dominated\n"));
+  std::vector<std::string> with_json = line;
+  with_json.insert(with_json.end(), {"--budget", "0.01", "--json"});
+  const Outcome outcome = run(with_json);
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const json frontier = json::parse(outcome.out)[0]["frontier"];
+  ASSERT_GE(frontier.size(), 9u);
+  double before = 0, least = 1;
+  for (const json& one : frontier) {
+    EXPECT_GE(one["expected_ms"], before);
+    before = one["expected_ms"];
+    EXPECT_EQ(one["fits"], false);
+    EXPECT_GT(one["transient_bytes"], 0);
+    if (one["dominated"] == false) {
+      EXPECT_LT(one["expected_rmse"], least) << one["configuration"];
+      least = one["expected_rmse"];
+    }
+  }
+}
+
 TEST_F(Choice, HistoriesAreReportedWithAgeAndReason) {
   constexpr const char* residual = "configs/graphs/papers/sap_residual.json";
   ASSERT_THAT(

@@ -416,6 +416,21 @@ std::vector<PassTime> graph_times(DermisHost& host, uint64_t frame_index) {
   return times;
 }
 
+Result<std::vector<FrameOutcome>> graph_frontier(DermisHost& host) {
+  uint32_t count = 0;
+  dermis_result result = dermis_graph_frontier(host.graph, nullptr, &count, nullptr);
+  std::vector<dermis_outcome> outcomes(count, dermis_outcome DERMIS_OUTCOME_INIT);
+  if (result == DERMIS_OK)
+    result = dermis_graph_frontier(host.graph, nullptr, &count, outcomes.data());
+  if (result != DERMIS_OK) return dermis_error("dermis_graph_frontier", result);
+  std::vector<FrameOutcome> out;
+  for (const dermis_outcome& one : outcomes)
+    out.push_back({one.configuration, double(one.expected_ms), double(one.percentile_ms),
+                   double(one.expected_rmse), one.fits != 0, one.dominated != 0,
+                   one.transient_bytes, one.history_bytes});
+  return out;
+}
+
 Result<FrameChoice> graph_choice(DermisHost& host, uint64_t frame_index) {
   ReportedFrame choice;
   const dermis_result result = read_reported(dermis_graph_view(host.graph), frame_index, choice);

@@ -71,6 +71,8 @@ Result<> record_graph(DermisHost& host, const Renderer& renderer, const SceneSta
 std::vector<PassTime> graph_times(DermisHost& host, uint64_t frame_index);
 // Returns the choice for the frame, which the device must have finished. Errors: internal.
 Result<FrameChoice> graph_choice(DermisHost& host, uint64_t frame_index);
+// Returns what each configuration is expected to take in a frame like the newest one.
+Result<std::vector<FrameOutcome>> graph_frontier(DermisHost& host);
 // Returns the present state of the graph's histories.
 Result<std::vector<FrameHistory>> graph_histories(DermisHost& host);
 // Returns the learned costs of the device, as JSON.

@@ -92,7 +92,8 @@ ExitCode explain_frame(const Session& session, const ExplainOptions& options,
   callbacks.on_frame = [&](const demo::FrameOutputs& frame) -> demo::Result<> {
     if (frame.choice && frame.frame + 1 == frames)
       report.add(frame.frame, *frame.choice, frame.histories,
-                 tile_costs(loaded, options.size, grid, options.settings, *frame.choice));
+                 tile_costs(loaded, options.size, grid, options.settings, *frame.choice),
+                 frame.frontier);
     return interrupted() ? demo::Result<>(demo::Error{demo::ErrorKind::environment, "stopped"})
                          : demo::success();
   };

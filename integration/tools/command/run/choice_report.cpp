@@ -1,6 +1,7 @@
 #include "integration/tools/command/run/choice_report.hpp"
 
 #include "integration/tools/command/present.hpp"
+#include "integration/tools/command/run/frontier_report.hpp"
 #include "integration/tools/command/run/history_report.hpp"
 
 #include <fmt/format.h>
@@ -10,8 +11,9 @@
 namespace dermis::tools {
 
 void ChoiceReport::add(uint32_t frame, const demo::FrameChoice& choice,
-                       std::vector<demo::FrameHistory> histories, TileCosts costs) {
-  frames_.push_back({frame, choice, std::move(histories), std::move(costs)});
+                       std::vector<demo::FrameHistory> histories, TileCosts costs,
+                       std::vector<demo::FrameOutcome> frontier) {
+  frames_.push_back({frame, choice, std::move(histories), std::move(costs), std::move(frontier)});
 }
 
 std::string describe_choice(const demo::FrameChoice& choice) {
@@ -64,7 +66,8 @@ std::string ChoiceReport::text() const {
     }
   }
   return text + fmt::format("frame {}: {}\n", frames_.back().frame, describe_choice(newest)) +
-         describe_tile_costs(frames_.back().costs) + describe_histories(frames_.back().histories);
+         describe_tile_costs(frames_.back().costs) + describe_histories(frames_.back().histories) +
+         describe_frontier(frames_.back().frontier);
 }
 
 void ChoiceReport::write(JsonWriter& writer) const {
@@ -112,6 +115,7 @@ void ChoiceReport::write(JsonWriter& writer) const {
           .member("reads", frame.costs.total());
     }
     write_histories(writer.key("histories"), frame.histories);
+    if (!frame.frontier.empty()) write_frontier(writer.key("frontier"), frame.frontier);
     writer.member("miss", std::string_view(choice.miss));
     writer.member("next_better", std::string_view(choice.next_better));
     writer.member("next_better_missing_ms", choice.next_better_missing_ms).close();

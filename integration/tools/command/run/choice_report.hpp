@@ -13,9 +13,10 @@ namespace dermis::tools {
 
 class ChoiceReport {
 public:
-  // `histories` is the state after the frame.
+  // `histories` is the state after the frame. `frontier`: outcomes to list with the frame.
   void add(uint32_t frame, const demo::FrameChoice& choice,
-           std::vector<demo::FrameHistory> histories, TileCosts costs = {});
+           std::vector<demo::FrameHistory> histories, TileCosts costs = {},
+           std::vector<demo::FrameOutcome> frontier = {});
   bool empty() const { return frames_.empty(); }
 
   // Returns how many frames used each configuration, the choice of the newest frame, and its
@@ -31,6 +32,7 @@ private:
     demo::FrameChoice choice;
     std::vector<demo::FrameHistory> histories;
     TileCosts costs;
+    std::vector<demo::FrameOutcome> frontier;
   };
   std::vector<Frame> frames_;
 };

@@ -1,0 +1,17 @@
+#pragma once
+// Lists what each configuration is expected to take and to err in a frame.
+
+#include "framegraph/text/json_writer.hpp"
+#include "integration/examples/demo_engine/engine.hpp"
+
+#include <span>
+#include <string>
+
+namespace dermis::tools {
+
+// Returns a table; "" for graphs with one configuration. Rows that another one dominates, in time
+// and error, are marked.
+std::string describe_frontier(std::span<const demo::FrameOutcome> outcomes);
+void write_frontier(JsonWriter& writer, std::span<const demo::FrameOutcome> outcomes);
+
+} // namespace dermis::tools
