@@ -16,8 +16,10 @@ namespace subsurface = dermis::subsurface;
 struct Technique {
   const char* name;
   const char* graph;
-  Settings settings;
+  Settings settings = {};
   bool full_only = false;
+  bool folded = false; // on a relief, where confidence is low
+  uint32_t frames = 1;
 };
 void PrintTo(const Technique& technique, std::ostream* out) {
   *out << technique.name;
@@ -34,26 +36,42 @@ float pattern(double x_m, double y_m) {
 struct Scene {
   Plane plane{.width = 72, .height = 56};
 
-  explicit Scene(double aspect) {
+  explicit Scene(double aspect, bool folded = false) {
     plane.pixel_aspect = aspect;
-    plane.light = [this](double x, double y) {
-      return pattern((x - 35.5) * side_x(), (y - 27.5) * side_y());
-    };
+    plane.light = [this](double x, double y) { return mean_pattern(x, y); };
+    if (folded)
+      plane.depth_m = [this](int x, int y) {
+        return float(1 + 0.004 * std::sin((x - 35.5) * side_x() / 0.003) *
+                             std::cos((y - 27.5) * side_y() / 0.004));
+      };
+  }
+  // Returns the mean over the pixel, which changes continuously with the shape of pixels.
+  float mean_pattern(double x, double y) const {
+    constexpr int parts = 4;
+    float sum = 0;
+    for (int i = 0; i < parts * parts; ++i) {
+      const double right = (i % parts + 0.5) / parts - 0.5, down = (i / parts + 0.5) / parts - 0.5;
+      sum += pattern((x - 35.5 + right) * side_x(), (y - 27.5 + down) * side_y());
+    }
+    return sum / (parts * parts);
   }
   Scene(const Scene&) = delete;
   Scene& operator=(const Scene&) = delete;
   double side_x() const { return plane.pixel_pitch_m * std::sqrt(plane.pixel_aspect); }
   double side_y() const { return plane.pixel_pitch_m / std::sqrt(plane.pixel_aspect); }
 
-  std::vector<float> light{}, depth = std::vector<float>(size_t{72} * 56, 1.0f);
+  std::vector<float> light{}, depth{};
   std::vector<uint8_t> profile = std::vector<uint8_t>(size_t{72} * 56, 1);
   std::vector<subsurface::PerChannel> d{};
 
   subsurface::ReferenceInput input() {
     light.clear();
+    depth.clear();
     for (uint32_t y = 0; y < plane.height; ++y)
-      for (uint32_t x = 0; x < plane.width; ++x)
+      for (uint32_t x = 0; x < plane.width; ++x) {
         light.insert(light.end(), 3, plane.light(x, y));
+        depth.push_back(plane.depth_m(int(x), int(y)));
+      }
     d = {{0, 0, 0}, {}};
     for (size_t c = 0; c < 3; ++c)
       d[1][c] = plane.d_px[c] * plane.pixel_pitch_m;
@@ -66,6 +84,21 @@ struct Scene {
   }
 };
 
+double root_mean_square(const std::vector<double>& values) {
+  double squares = 0;
+  for (const double value : values)
+    squares += value * value;
+  return std::sqrt(squares / double(values.size()));
+}
+
+std::vector<double> errors_of(const Picture& picture, Scene& scene) {
+  const auto reference = subsurface::reference_everywhere(scene.input());
+  std::vector<double> errors;
+  for (size_t i = 0; i < picture.rgb.size() && i < reference.size(); ++i)
+    errors.push_back(double(picture.rgb[i]) - reference[i]);
+  return errors;
+}
+
 class PixelShape : public DeviceTest, public ::testing::WithParamInterface<Technique> {
 protected:
   void SetUp() override {
@@ -73,26 +106,29 @@ protected:
     DeviceTest::SetUp();
   }
   double rmse(double aspect) {
-    Scene scene(aspect);
-    const Picture picture = run(GetParam().graph, scene.plane, GetParam().settings);
-    const auto reference = subsurface::reference_everywhere(scene.input());
-    double squares = 0;
-    for (size_t i = 0; i < picture.rgb.size() && i < reference.size(); ++i)
-      squares += std::pow(double(picture.rgb[i]) - reference[i], 2);
-    return std::sqrt(squares / double(reference.size()));
+    Scene scene(aspect, GetParam().folded);
+    Picture picture;
+    run_frames(GetParam().graph, scene.plane, GetParam().settings, GetParam().frames,
+               [&](const Picture& frame) { picture = frame; });
+    return root_mean_square(errors_of(picture, scene));
   }
 };
 
-INSTANTIATE_TEST_SUITE_P(Techniques, PixelShape,
-                         ::testing::Values(Technique{"sap", "sap", {}},
-                                           Technique{"pyramid", "pyramid", {}},
-                                           Technique{"separable", "separable", {}},
-                                           Technique{"burley", "burley", {}, true},
-                                           Technique{"fixed", "fixed", {}, true},
-                                           Technique{"afis", "afis", {}, true},
-                                           Technique{"afis_published", "afis_published", {}, true},
-                                           Technique{"hybrid", "hybrid", {}, true}),
-                         [](const auto& one) { return std::string(one.param.name); });
+INSTANTIATE_TEST_SUITE_P(
+    Techniques, PixelShape,
+    ::testing::Values(Technique{"sap", "sap"}, Technique{"pyramid", "pyramid"},
+                      Technique{"separable", "separable"},
+                      Technique{"sap_residual", "sap_residual", {}, false, true, 16},
+                      Technique{"sap_base", "sap", {{"variant", "\"base\""}}, true},
+                      Technique{"sap_blend", "sap_blend", {}, true, true},
+                      Technique{"hybrid", "hybrid", {}, true, true},
+                      Technique{"hybrid_afis_separable", "hybrid_afis_separable", {}, true, true},
+                      Technique{"burley", "burley", {}, true},
+                      Technique{"fixed", "fixed", {}, true}, Technique{"afis", "afis", {}, true},
+                      Technique{"afis_seed", "afis_seed", {}, true},
+                      Technique{"afis_published", "afis_published", {}, true},
+                      Technique{"afis_guided", "afis_guided", {}, true, false, 8}),
+    [](const auto& one) { return std::string(one.param.name); });
 
 TEST_P(PixelShape, ErrorIsAtMostTwiceThatOfSquares) {
   const double square = rmse(1);
@@ -104,6 +140,45 @@ TEST_P(PixelShape, ErrorIsAtMostTwiceThatOfSquares) {
 }
 
 class SapPixelShape : public DeviceTest {};
+
+TEST_F(SapPixelShape, ErrorStaysNearThatOfSquares) {
+  std::vector<double> aspects{1.1, 1.5, 2.4, 3.2};
+  if (dermis::testing::seeds_to_try(0, 1) != 0) {
+    aspects.clear();
+    for (int i = 11; i <= 40; ++i)
+      aspects.push_back(i / 10.0);
+  }
+  const auto decibels = [this](double aspect) {
+    Scene scene(aspect);
+    return 20 * std::log10(root_mean_square(errors_of(run("sap", scene.plane, {}), scene)));
+  };
+  const double square = decibels(1);
+  double sum = 0;
+  for (const double aspect : aspects)
+    sum += decibels(aspect) - square;
+  RecordProperty("mean_db", std::to_string(sum / double(aspects.size())));
+  EXPECT_LE(sum / double(aspects.size()), 8);
+}
+
+// The plan changes at 1.07 and 2^0.58, and weights of the other shapes are interpolated.
+TEST_F(SapPixelShape, NoStepWhereShapesChange) {
+  const auto errors = [this](double aspect) {
+    Scene scene(aspect);
+    return errors_of(run("sap", scene.plane, {}), scene);
+  };
+  std::vector<std::pair<double, double>> steps{{1.065, 1.075}, {1.49, 1.5}};
+  for (uint64_t i = 100; i < dermis::testing::seeds_to_try(100, 200); i += 5)
+    steps.emplace_back(double(i) / 100, double(i + 1) / 100);
+  for (const auto& [before, after] : steps) {
+    std::vector<double> change = errors(after);
+    const std::vector<double> old = errors(before);
+    for (size_t i = 0; i < change.size(); ++i)
+      change[i] -= old[i];
+    RecordProperty("step_" + std::to_string(int(100 * after)),
+                   std::to_string(root_mean_square(change)));
+    EXPECT_LE(root_mean_square(change), 0.003) << after;
+  }
+}
 
 TEST_F(SapPixelShape, DeviceMatchesTheCpu) {
   for (const double aspect : dermis::testing::seeds_to_try(0, 1) != 0
