@@ -24,6 +24,7 @@ const float max_squared_deviation =
     0.3; // maximum deviation of a logarithm that counts in this mean
 const float new_light_factor =
     0.5; // factor on alpha where light has just appeared that may not stay
+const float sample_noise = 0.4; // squared noise of a ratio, times the number of its samples
 // Number of samples that a moving mean of weight alpha is worth, in n / alpha: (2 - alpha) / alpha.
 const float memory = 1.9;
 
@@ -36,13 +37,14 @@ float agreement_weight(float off, float tolerance, float odds) {
   return same / (1.0 + same);
 }
 
-history_taps taps_of(ivec2 pixel, sap_texel own) {
-  previous_place place =
-      has_velocity() && own.depth > 0.0
-          ? place_before(vec2(pixel), own.depth, texelFetch(velocity_image, texel_of(pixel), 0).rgb)
-          : place_before(vec2(pixel), own.depth);
-  float rise = length(own.slope) * sap_footprint(own.depth);
-  return find_history(place_image, place, own.id, depth_tolerance(place.depth, rise));
+previous_place place_of(ivec2 pixel, sap_texel own) {
+  return has_velocity() && own.depth > 0.0
+             ? place_before(vec2(pixel), own.depth,
+                            texelFetch(velocity_image, texel_of(pixel), 0).rgb)
+             : place_before(vec2(pixel), own.depth);
+}
+float tolerance_around(previous_place place, sap_texel own) {
+  return depth_tolerance(place.depth, length(own.slope) * sap_footprint(own.depth));
 }
 
 // rgb: ratio, a: number of its samples.
@@ -52,6 +54,24 @@ vec4 ratio_before(history_taps taps) {
     if (taps.weight[i] > 0.0)
       sum += taps.weight[i] * texelFetch(ratio_image, previous_texel(tap_pixel(taps, i)), 0);
   return sum;
+}
+
+// Returns the mean with the ratios of the 8 pixels around the previous place that show the surface.
+// Ratios that differ by more than their noise count little.
+vec3 mean_ratio(vec4 ratio, previous_place place, uint id, float tolerance) {
+  vec4 sum = vec4(ratio.rgb, 1.0);
+  ivec2 centre = ivec2(floor(place.pixel + 0.5));
+  for (int i = 0; i < 9; ++i) {
+    ivec2 at = centre + ivec2(i % 3, i / 3) - 1;
+    if (i == 4 || !inside_previous(at) ||
+        !shows_surface(residual_surface_before(place_image, at), place, id, tolerance))
+      continue;
+    vec4 other = texelFetch(ratio_image, previous_texel(at), 0);
+    float off = residual_luminance(other.rgb - ratio.rgb);
+    float weight = exp(-off * off * ratio.a / sample_noise) * min(other.a / ratio.a, 1.0);
+    sum += weight * vec4(other.rgb, 1.0);
+  }
+  return sum.rgb / sum.a;
 }
 
 // Returns whether the tile samples in this frame: one of each 2x2 tiles in four frames, or one of
@@ -74,6 +94,8 @@ void main() {
   vec4 ratio = vec4(1.0, 1.0, 1.0, 0.0);
   int count = 0;
   bool lost = false;
+  previous_place place = previous_place(vec2(0.0), 0.0);
+  float tolerance = 0.0;
   vec2 kept = vec2(never_lit, 0.0); // x: learned pattern, y: squared deviation
   if (own.id != 0u && !copy_only) {
     // change of log luminance, odds that patterns agree, their tolerance
@@ -81,7 +103,9 @@ void main() {
     float pattern = log_luminance(light.rgb) - all.r, agreement = all.g / (1.0 + all.g);
     bool lit = is_lit(light.rgb), turn = is_turn(pixel >> 3, light.a);
     if (history_usable() && own.depth > 0.0) {
-      history_taps taps = taps_of(pixel, own);
+      place = place_of(pixel, own);
+      tolerance = tolerance_around(place, own);
+      history_taps taps = find_history(place_image, place, own.id, tolerance);
       lost = taps.weight == vec4(0.0);
       if (!lost)
         ratio = ratio_before(taps);
@@ -123,8 +147,10 @@ void main() {
     float pattern_agreement =
         first ? 1.0 : agreement_weight(pattern - kept.x, tolerance_of(all.b, kept.y), all.g);
     float fraction = sample_fraction(light.a, ratio.a, settings.sample_weight);
-    light.rgb *=
-        1.0 + pattern_agreement * fraction * (min(ratio.rgb, vec3(largest_ratio)) - 1.0);
+    vec3 mean = ratio.rgb;
+    if (fraction > 0.0 && !first && !lost && place.depth > 0.0)
+      mean = mean_ratio(ratio, place, own.id, tolerance);
+    light.rgb *= 1.0 + pattern_agreement * fraction * (min(mean, vec3(largest_ratio)) - 1.0);
   }
   imageStore(refined_image, texel, round_to_half(light));
   imageStore(ratio_out_image, texel, round_to_half(ratio));

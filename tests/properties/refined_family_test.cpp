@@ -35,8 +35,8 @@ struct RefinedFamily : properties::DeviceTest, ::testing::WithParamInterface<Ref
     quiet.quiet = true;
     std::map<std::string, double> errors;
     for (const FamilyScene& scene : family_scenes()) {
-      constexpr std::array names = {"zigzag_45_d6", "grooves_d4", "step_d6",
-                                    "strips_d4",    "hair_d4",    "plane_d40"};
+      constexpr std::array names = {"zigzag_45_d6", "grooves_d4", "step_d6",  "strips_d4",
+                                    "hair_d4",      "plane_d40",  "bumps_d4", "noise_0.3_d4"};
       if (std::find(names.begin(), names.end(), scene.name) == names.end()) continue;
       const CapturedFrame frame = generate_family_scene(scene, width, height, grey_profile());
       const TechniqueRequest request{
@@ -61,7 +61,7 @@ TEST_P(RefinedFamily, NoSceneIsWorseThanThePyramid) {
   ASSERT_TRUE(host) << host.error().text;
   const auto sap = errors_of(**host, "sap", 1);
   const auto refined = errors_of(**host, GetParam().name, GetParam().frames);
-  ASSERT_EQ(sap.size(), 6u);
+  ASSERT_EQ(sap.size(), 8u);
   ASSERT_EQ(refined.size(), sap.size());
   double logs = 0;
   for (const auto& [scene, error] : refined) {

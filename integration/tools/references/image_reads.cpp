@@ -234,10 +234,11 @@ ImageReads global_light_change(const PassType& type, const ReadsQuestion& questi
 }
 
 // As blend, plus velocity, four texels each of place, ratio and pattern history, and the global
-// light change.
+// light change. Where samples count, also place and ratio of the eight pixels around.
 ImageReads residual(const PassType& type, const ReadsQuestion& question) {
   ImageReads reads = blend(type, question);
-  reads.per_invocation += 1 + one_if(type, question, "velocity", PortSide::read) + 4 * 3 + 1;
+  reads.per_invocation += 1 + one_if(type, question, "velocity", PortSide::read) + 4 * 3 + 1 +
+                          question.sampled_fraction * 8 * 2;
   return reads;
 }
 
