@@ -141,30 +141,27 @@ bool count_up(const Graph& graph, const std::vector<uint32_t>& choices,
   return false;
 }
 
-bool refers_to(const Graph& graph, ExpressionId id, uint32_t setting) {
-  if (!id.valid()) return false;
-  const Expression& one = graph.expressions[id.value];
-  return (one.setting.valid() && one.setting.value == setting) ||
-         refers_to(graph, one.left, setting) || refers_to(graph, one.right, setting);
-}
-
-// Returns whether the setting decides which passes run, or sets a value of a running pass.
-bool matters(const Graph& graph, const Plan& plan, uint32_t setting) {
-  const auto decides = [&](const PassDeclaration& pass) {
-    return refers_to(graph, pass.when, setting);
-  };
+// Returns whether another option of the setting turns passes on or off, or changes a value of a
+// running pass.
+bool matters(const Graph& graph, const Plan& plan, std::vector<SettingValue> values,
+             uint32_t setting) {
   const auto follows = [&](const PlanSetting& value) {
     return value.from.valid() && value.from.value == setting;
   };
-  return std::any_of(graph.passes.begin(), graph.passes.end(), decides) ||
-         std::any_of(plan.settings.begin(), plan.settings.end(), follows);
+  if (std::any_of(plan.settings.begin(), plan.settings.end(), follows)) return true;
+  const std::vector<bool> on = passes_on(graph, values);
+  for (size_t option = 0; option < graph.settings[setting].options.size(); ++option) {
+    values[setting].integer = static_cast<int64_t>(option);
+    if (passes_on(graph, values) != on) return true;
+  }
+  return false;
 }
 
 std::string name_of(const Graph& graph, const Plan& plan, const std::vector<uint32_t>& choices,
                     const std::vector<SettingValue>& values) {
   std::string name;
   for (const uint32_t choice : choices) {
-    if (!matters(graph, plan, choice)) continue;
+    if (!matters(graph, plan, values, choice)) continue;
     const SettingDeclaration& setting = graph.settings[choice];
     name += fmt::format("{}{}={}", name.empty() ? "" : ", ", setting.name,
                         setting.options[static_cast<size_t>(values[choice].integer)]);

@@ -34,6 +34,14 @@ TypeNames types_without_row(const PassTypeRegistry& pass_types, const Plan& plan
   return scattering_types(pass_types, plan, false);
 }
 
+// Returns where the graph leaves a choice to the budget; else its first pass.
+SourceLocation location_of_choice(const Graph& graph) {
+  const auto choice = std::find_if(graph.settings.begin(), graph.settings.end(),
+                                   [](const SettingDeclaration& one) { return one.by_budget; });
+  if (choice != graph.settings.end()) return choice->where;
+  return graph.passes.empty() ? SourceLocation{} : graph.passes.front().where;
+}
+
 std::string list_names(const std::vector<std::string_view>& names) {
   constexpr size_t max_names = 3;
   std::string text = fmt::format(
@@ -44,13 +52,12 @@ std::string list_names(const std::vector<std::string_view>& names) {
 
 } // namespace
 
-void report_missing_rows(const Graph& graph, const PassTypeRegistry& pass_types,
-                         std::span<const Plan* const> plans, const ErrorModel& errors,
-                         const CostEstimator& costs, std::span<const Configuration> configurations,
-                         Diagnostics& diagnostics) {
-  const auto choice = std::find_if(graph.settings.begin(), graph.settings.end(),
-                                   [](const SettingDeclaration& one) { return one.by_budget; });
-  if (choice == graph.settings.end() || configurations.size() < 2) return;
+void report_all_missing_rows(const Graph& graph, const PassTypeRegistry& pass_types,
+                             std::span<const Plan* const> plans, const ErrorModel& errors,
+                             const CostEstimator& costs,
+                             std::span<const Configuration> configurations,
+                             Diagnostics& diagnostics) {
+  const SourceLocation where = location_of_choice(graph);
   std::map<TypeNames, std::vector<std::string_view>> without_row; // names of configurations
   TypeNames without_cost;
   std::vector<std::string_view> run_without_cost; // names of configurations
@@ -68,16 +75,26 @@ void report_missing_rows(const Graph& graph, const PassTypeRegistry& pass_types,
   }
   for (const auto& [types, names] : without_row)
     diagnostics.add(
-        DiagnosticId::error_row_missing, choice->where,
+        DiagnosticId::error_row_missing, where,
         fmt::format("the error table '{}' has no technique for the pass types '{}' of {}; the "
                     "choice takes their error for that of unscattered light",
                     errors.scenes, fmt::join(types, "', '"), list_names(names)));
   if (!without_cost.empty())
     diagnostics.add(
-        DiagnosticId::cost_missing, choice->where,
+        DiagnosticId::cost_missing, where,
         fmt::format("the calibration has no cost of the pass types '{}', which {} runs; "
                     "until they are timed, each counts like the most expensive pass",
                     fmt::join(without_cost, "', '"), list_names(run_without_cost)));
+}
+
+void report_missing_rows(const Graph& graph, const PassTypeRegistry& pass_types,
+                         std::span<const Plan* const> plans, const ErrorModel& errors,
+                         const CostEstimator& costs, std::span<const Configuration> configurations,
+                         Diagnostics& diagnostics) {
+  const bool samples = std::any_of(configurations.begin(), configurations.end(),
+                                   [](const Configuration& one) { return one.takes_samples; });
+  if (configurations.size() > 1 || samples)
+    report_all_missing_rows(graph, pass_types, plans, errors, costs, configurations, diagnostics);
 }
 
 } // namespace dermis::choice

@@ -116,6 +116,42 @@ class WriteCalibrations(unittest.TestCase):
         self.assertAlmostEqual(usual["quarter_rate"] / outer["quarter_rate"],
                                write_calibrations.LOOP)
 
+    def test_sampling_kernels_loop_over_their_samples(self):
+        usual = write_calibrations.executed("subsurface.other samples=32", ASSEMBLY)
+        sampling = write_calibrations.executed("subsurface.afis samples=32", ASSEMBLY)
+        self.assertAlmostEqual(sampling["quarter_rate"] / usual["quarter_rate"],
+                               32 / write_calibrations.LOOP)
+
+    def test_samples_between_limits_are_their_geometric_mean(self):
+        work = "subsurface.guided guidance=spvg min_samples=4 max_samples=64"
+        self.assertEqual(write_calibrations.samples_of(work), 16)
+        self.assertEqual(write_calibrations.nested_trips(work), (16,))
+        halves = work.replace("spvg", "split_half")
+        self.assertEqual(write_calibrations.nested_trips(halves), (2, 8))
+
+    def test_reads_of_samples_are_scattered(self):
+        reads = """
+BB0:
+\timage_load v0, v[1:2], s[0:7]          ; f0000000
+BB1:
+\timage_load v0, v[1:2], s[0:7]          ; f0000000
+\ts_cbranch_scc1 BB1                     ; bf850001
+BB2:
+\ts_endpgm                               ; bf810000
+"""
+        part = write_calibrations.EXECUTED
+        mix = write_calibrations.executed("subsurface.burley samples=8", reads)
+        self.assertEqual((mix["image_load"], mix["scattered"]), (part, 8 * part))
+        other = write_calibrations.executed("subsurface.other", reads)
+        self.assertEqual((other["image_load"], other["scattered"]),
+                         ((1 + write_calibrations.LOOP) * part, 0))
+
+    def test_each_work_has_the_kernel_of_its_settings(self):
+        rows = [{"kernel": "k", "constants": f"axis=vertical taps={taps} albedo=bound"}
+                for taps in (11, 25)] + [{"kernel": "other", "constants": "taps=25"}]
+        work = {"kernel": "k", "work": "subsurface.k axis=vertical taps=25"}
+        self.assertEqual(write_calibrations.rows_of(work, rows), [rows[1]])
+
     def test_files_say_that_they_are_modelled(self):
         report = {"device": "d", "driver": "r"}
         text = write_calibrations.text_of(gpu_model.RX_6800, report, [("w", 1.0, 0.5)])

@@ -2,12 +2,13 @@
 """Writes calibrations for classes of GPUs from kernel statistics and the model of GPU times.
 
 usage: write_calibrations.py KERNELS ASSEMBLY FOLDER
-  KERNELS   output of `dermis kernels skin hybrid --json --assembly ASSEMBLY` on navi21
+  KERNELS   output of `dermis kernels --json --assembly ASSEMBLY` on navi21
   ASSEMBLY  the folder with the assembly of these kernels
   FOLDER    receives large_gpu.json and small_gpu.json
 
 No time is measured. Executed instructions are counted in the assembly: each loop runs as often as
-TRIPS says, and EXECUTED of the instructions of each block count, because subgroups skip branches.
+TRIPS says or as the pass takes samples, and EXECUTED of the instructions of each block count,
+because subgroups skip branches.
 A budget starts from these costs and follows the timestamps of the device, so that their ratios
 matter most.
 """
@@ -29,6 +30,13 @@ UNITS = 4096  # sample units of the modelled frame
 # about five times, the other only for pixels that do not share their tile's kernel.
 TRIPS = {"subsurface.separable": 2, "subsurface.tile_refine": 8}
 LOOP = 4
+# Kernels whose loops run once per sample. Each sample reads at a place of its own.
+SAMPLING = {"subsurface.afis", "subsurface.afis_published", "subsurface.afis_tiles",
+            "subsurface.burley", "subsurface.fixed", "subsurface.guided", "subsurface.refine",
+            "subsurface.residual"}
+HALVES = "guidance=split_half"  # a loop over both halves of the samples is around the other loop
+DEFAULT_SAMPLES = 16
+CHOSEN_BY_BUDGET = {"skin", "hybrid"}  # graphs of which each work has a line
 LANES_ON_GPU = 128  # invocations per group of kernels whose size the host sets
 # How often nested loops run, from outside in: tiles of a group, levels one after another, texels of
 # an invocation. Loops inside these run LOOP times.
@@ -53,15 +61,38 @@ def invocations(kernel):
     return 64
 
 
+def samples_of(work):
+    """Returns the samples per pixel. Between a minimum and a maximum it is their geometric mean."""
+    stated = {name: int(value)
+              for name, value in re.findall(r"\b((?:min_|max_)?samples)=(\d+)", work)}
+    if "min_samples" in stated:
+        return (stated["min_samples"] * stated["max_samples"]) ** 0.5
+    return stated.get("samples", DEFAULT_SAMPLES)
+
+
+def nested_trips(work):
+    """Returns how often the nested loops of a kernel run, from outside in."""
+    name = work.split()[0]
+    if name in SAMPLING:
+        return (2, samples_of(work) / 2) if HALVES in work else (samples_of(work),)
+    return NESTED_TRIPS.get(name, ())
+
+
 def executed(work, assembly):
+    """Returns the executed instructions by class; "scattered": reads of texels in sample loops."""
     blocks = instruction_mix.read_blocks(assembly.splitlines())
     trips = TRIPS.get(work.split()[0], LOOP)
     loops = instruction_mix.find_loops(blocks)
-    nested = NESTED_TRIPS.get(work.split()[0], ())
+    nested = nested_trips(work)
     depths = [sum(first <= loop[0] and loop[1] <= last for first, last in loops) - 1
               for loop in loops]
-    mix = instruction_mix.count(blocks, [nested[depth] if depth < len(nested) else trips
-                                         for depth in depths])
+    counts = [nested[depth] if depth < len(nested) else trips for depth in depths]
+    mix = instruction_mix.count(blocks, counts)
+    mix["scattered"] = 0
+    if work.split()[0] in SAMPLING:
+        outside = instruction_mix.count(blocks, [0 for _ in counts])
+        mix["scattered"] = mix.get("image_load", 0) - outside.get("image_load", 0)
+        mix["image_load"] = outside.get("image_load", 0)
     return {kind: number * EXECUTED for kind, number in mix.items()}
 
 
@@ -70,10 +101,12 @@ def wave_of(model, row, mix):
     values = row["values"]
     return model.wave(valu=mix.get("valu", 0) + mix.get("scalar", 0) / 4,
                       trans=mix.get("transcendental", 0), qmul=mix.get("quarter_rate", 0),
-                      img=mix.get("image_load", 0), st64=mix.get("image_store", 0),
+                      img=mix.get("image_load", 0), scat=mix.get("scattered", 0),
+                      st64=mix.get("image_store", 0),
                       buf=mix.get("buffer_load", 0) + mix.get("buffer_store", 0),
                       lds=4 * mix.get("shared", 0),
-                      vm=(mix.get("image_load", 0) + mix.get("buffer_load", 0)) / 4,
+                      vm=(mix.get("image_load", 0) + mix.get("scattered", 0)
+                          + mix.get("buffer_load", 0)) / 4,
                       lg=mix.get("shared", 0) / 4 + mix.get("scalar_load", 0) / 2,
                       W=values["occupancy"] / 2, code=values["code_bytes"],
                       scr=mix.get("scratch_load", 0) + mix.get("scratch_store", 0))
@@ -95,20 +128,38 @@ def cost_of(model, work, row, assembly):
     model.add(work["work"], work["work"], subgroups, wave, bytes_moved)
     seconds = model.total(work["work"])
     least = model.hardware.fixed + wave["lat"] / model.hardware.clock
-    base = seconds if per == "fixed" else min(seconds, least)
+    base = min(seconds, least) if counted > 1 else seconds
     return base * 1e6, max(0.0, seconds - base) / counted * 1e6
 
 
+def rows_of(work, rows):
+    """Returns the kernel's rows whose constants have most of the work's settings."""
+    settings = set(work["work"].split()[1:])
+    found, most = [], -1
+    for row in rows:
+        if row["kernel"] != work["kernel"]:
+            continue
+        equal = len(settings & set(row.get("constants", "").split()))
+        if equal > most:
+            found, most = [], equal
+        if equal == most:
+            found.append(row)
+    return found
+
+
 def costs_of(report, assembly_folder, hardware):
-    rows = {}
-    for row in report["kernels"]:
-        rows.setdefault(row["kernel"], row)
-    costs = []
+    """Returns the costs of the works. Graphs without a choice need no line for each setting, so
+    equal costs of their pass types count once."""
+    costs, known = [], set()
     for work in report["works"]:
-        name = work["kernel"].replace("/", "_") + ".txt"
-        assembly = (assembly_folder / name).read_text(encoding="utf-8")
-        model = gpu_model.Model(hardware)
-        costs.append((work["work"], *cost_of(model, work, rows[work["kernel"]], assembly)))
+        rows = rows_of(work, report["kernels"])
+        assembly = (assembly_folder / rows[0]["assembly"]).read_text(encoding="utf-8")
+        cost = cost_of(gpu_model.Model(hardware), work, rows[0], assembly)
+        kind = (work["work"].split()[0], *(f"{value:.2g}" for value in cost))
+        if kind not in known or any(not CHOSEN_BY_BUDGET.isdisjoint(row["graphs"])
+                                    for row in rows):
+            costs.append((work["work"], *cost))
+        known.add(kind)
     return costs
 
 

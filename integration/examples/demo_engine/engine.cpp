@@ -253,9 +253,8 @@ Result<RenderSummary> render(const RenderOptions& options, const RenderCallbacks
     auto made = create_dermis_host(host,
                                    {options.graph, info.profiles, options.settings, options.width,
                                     options.height, info.pixel_aspect, options.overlays,
-                                    options.include, options.shaders, options.budget_ms,
-                                    options.deterministic, options.calibration, options.sampling,
-                                    options.tile_class, options.hooks},
+                                    options.include, options.shaders, options.budget,
+                                    options.sampling, options.tile_class, options.hooks},
                                    &stage.slots);
     if (!made) return made.error();
     dermis = made.take();

@@ -2,6 +2,7 @@
 // Renders a scene frame by frame without a window, with or without Dermis. Returns what an engine,
 // its graph and its user see: pictures, the graph's inputs as floats, the camera, device times.
 
+#include "integration/examples/demo_engine/budget.hpp"
 #include "integration/examples/demo_engine/context_hooks.hpp"
 #include "integration/examples/demo_engine/kernel_shape.hpp"
 #include "integration/examples/demo_engine/result.hpp"
@@ -30,10 +31,6 @@ struct CameraPlace {
   std::array<double, 3> position{}, target{}; // metres
   double vertical_fov = 25.0;                 // degrees, 1..150
   bool operator==(const CameraPlace&) const = default;
-};
-
-struct NamedText {
-  std::string name, text; // name of the file, for messages
 };
 
 struct RenderOptions {
@@ -68,10 +65,7 @@ struct RenderOptions {
   double pixel_aspect = 0; // width / height of a pixel, 1/8..8; 0: the scene's
   // settings of the graph: name, JSON text
   std::vector<std::pair<std::string, std::string>> settings;
-  // Device time per frame for the graph's choices; 0: their defaults.
-  double budget_ms = 0;
-  // Decides by the calibration only: the same choices on every machine.
-  bool deterministic = false;
+  Budget budget;
   // Returns texts with which the graph is reloaded before a frame, in order. A text with errors
   // leaves the graph unchanged. May be empty. The graph must include nothing.
   std::function<std::vector<std::string>(uint32_t frame)> reloads = {};
@@ -79,8 +73,6 @@ struct RenderOptions {
   std::function<bool(uint32_t frame)> pictures_of = {};
   // Returns whether a frame's inputs are read back. Empty: if its pictures are.
   std::function<bool(uint32_t frame)> inputs_of = {};
-  // JSON of an earlier run's RenderSummary::calibration; "": the library's own.
-  NamedText calibration;
   ContextHooks hooks = {}; // hooks of a new stage's context
 };
 

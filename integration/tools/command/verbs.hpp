@@ -4,6 +4,7 @@
 // empty, which selects all.
 
 #include "framegraph/explain/traffic.hpp"
+#include "integration/examples/demo_engine/budget.hpp"
 #include "integration/examples/demo_engine/kernel_shape.hpp"
 #include "integration/tools/command/session.hpp"
 #include "integration/tools/command/shipped.hpp"
@@ -45,6 +46,15 @@ struct UpgradeOptions {
 };
 ExitCode upgrade(const Session& session, const UpgradeOptions& options);
 
+// Options of the choice by budget.
+struct BudgetArguments {
+  double ms = 0;         // device time per frame; 0: no budget
+  double percentile = 0; // fraction of frames within the budget; 0: the library's
+  demo::Trials trials = demo::Trials::always;
+  bool deterministic = false;      // judge times only by the calibration
+  std::string calibration, errors; // files; "": the library's
+};
+
 struct ExplainOptions {
   std::string graph; // or the code of a diagnostic: "D0103"
   GraphInputs inputs;
@@ -55,8 +65,8 @@ struct ExplainOptions {
   bool two_queues = false;          // use a second queue for async passes where possible
   bool frame = false;               // explain the choices of a frame of `scene` instead of the plan
   std::string scene = shipped("configs/scenes/bust.json");
-  double budget_ms = 0; // of that frame; 0: no budget
-  bool deterministic = false;
+  BudgetArguments budget; // of that frame
+  bool choices = false;   // list the configurations of the budget instead of the plan
   std::string out = "-";
 };
 ExitCode explain(const Session& session, const ExplainOptions& options);
@@ -152,10 +162,8 @@ struct RenderOptions {
   std::vector<NamedValue> settings;
   GraphInputs inputs;
   ModelOptions model;
-  double budget_ms = 0;       // device time budget for the graph's choices, ms; 0: default choices
-  bool deterministic = false; // judge times only by the calibration
-  std::string calibration;    // file of dermis calibrate; "": the library's calibration
-  bool taa = false;           // temporal anti-aliasing in the engine
+  BudgetArguments budget;
+  bool taa = false; // temporal anti-aliasing in the engine
   demo::KernelShape kernels = demo::KernelShape::by_device;
   enum class Debug : uint8_t {
     none,

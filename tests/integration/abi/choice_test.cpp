@@ -41,7 +41,7 @@ TEST_F(Choice, WithoutABudgetTheDefaultsRun) {
   EXPECT_EQ(choice.budget_ms, 0);
   EXPECT_EQ(
       choice.configuration_count,
-      9u); // sap with three variants, hybrid with two, separable with three numbers of taps, off
+      10u); // sap has three variants, hybrid two, separable three numbers of taps; afis, off
 }
 
 TEST_F(Choice, EachBudgetGetsTheSmallestErrorThatFits) {

@@ -4,6 +4,9 @@
 
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
+#include <map>
+
 namespace dermis::test {
 namespace {
 
@@ -22,10 +25,9 @@ TEST_F(Choice, FramesReportExpectedAndMeasured) {
   const json answer = json::parse(outcome.out);
   ASSERT_EQ(answer["choices"].size(), 4u);
   for (const json& frame : answer["choices"]) {
-    // A second is enough for the smallest error: samples for all tiles, until tiles were counted
-    // and none requested samples.
+    // A second is enough for the smallest error.
     EXPECT_THAT(frame["technique"].get<std::string>(),
-                ::testing::AnyOf("hybrid smooth", "sap base"));
+                ::testing::AnyOf("afis over frames", "hybrid smooth", "sap base"));
     EXPECT_EQ(frame["budget_ms"], 1000);
     EXPECT_GT(frame["measured_ms"], 0);
     EXPECT_GT(frame["calibrated_ms"], 0);
@@ -93,6 +95,141 @@ TEST_F(Choice, ExplainListsTheFrontierOfAFrame) {
       least = one["expected_rmse"];
     }
   }
+}
+
+// Rising budgets select configurations of falling error. A configuration that no budget selects is
+// dominated.
+TEST_F(Choice, RisingBudgetsFollowTheFrontOfTimeAndError) {
+  const Outcome outcome = run({"explain", graph, "--choices", "--json"});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_EQ(outcome.err, "");
+  const json answer = json::parse(outcome.out);
+  ASSERT_EQ(answer["tables"].size(), 3u * 5u); // classes of devices, and distances d
+  for (const json& table : answer["tables"]) {
+    SCOPED_TRACE(table["device"].get<std::string>() + ", d " + table["d_px"].dump());
+    std::map<double, double> rmse_by_budget;
+    for (const json& one : table["configurations"]) {
+      const json& selected = one["selected_from_ms"];
+      if (selected.is_null())
+        EXPECT_NE(one["better"], "") << one.dump();
+      else
+        rmse_by_budget[selected.get<double>()] = one["rmse"].get<double>();
+    }
+    double before = 1;
+    for (const auto& [budget_ms, rmse] : rmse_by_budget) {
+      EXPECT_LE(rmse, before) << budget_ms;
+      before = rmse;
+    }
+    EXPECT_GE(rmse_by_budget.size(), 3u);
+  }
+}
+
+TEST_F(Choice, MemoryIsListedPerPlanAndView) {
+  const json answer = json::parse(run({"explain", graph, "--choices", "--json"}).out);
+  uint64_t largest = 0, histories = 0;
+  for (const json& plan : answer["plans"]) {
+    largest = std::max(largest, plan["transient_bytes"].get<uint64_t>());
+    histories += plan["history_bytes"].get<uint64_t>();
+  }
+  EXPECT_EQ(answer["transient_bytes"], largest);
+  EXPECT_EQ(answer["history_bytes"], histories);
+  EXPECT_GT(histories, 0u);
+}
+
+// Adds separable to afis.json as the other option of a choice.
+constexpr const char* or_separable = R"({ "dermis_overlay": 2, "edits": [
+  { "set": "/settings/technique", "to": { "choice": ["afis", "separable"], "by": "budget",
+    "default": "afis" } },
+  { "set": "/resources/separable_light", "to": { "format": "rgba16f", "size": "view" } },
+  { "set": "/resources/view_depth", "to": { "format": "r32f", "size": "view" } },
+  { "set": "/resources/blurred", "to": { "format": "rgba16f", "size": "view" } },
+  { "set": "/passes/scatter/when", "to": "technique == 'afis'" },
+  { "insert_before": "export_scattered", "passes": [
+    { "pass": "separable_setup", "type": "subsurface.separable_setup",
+      "when": "technique == 'separable'",
+      "read": { "lighting": "lighting", "material": "material", "depth": "depth",
+        "albedo": "albedo", "classes": "classes" },
+      "write": { "light": "separable_light", "view_depth": "view_depth" } },
+    { "pass": "horizontal", "type": "subsurface.separable", "when": "technique == 'separable'",
+      "read": { "light": "separable_light", "view_depth": "view_depth", "tiles": "tiles",
+        "arguments": "arguments" },
+      "write": { "scattered": "blurred" }, "set": { "axis": "horizontal", "taps": "25" } },
+    { "pass": "vertical", "type": "subsurface.separable", "when": "technique == 'separable'",
+      "read": { "light": "separable_light", "blurred": "blurred", "view_depth": "view_depth",
+        "tiles": "tiles", "arguments": "arguments" },
+      "write": { "scattered": "scattered" }, "set": { "axis": "vertical", "taps": "25" } } ] }
+        ] })";
+
+// Returns an error table in which afis errs less than separable.
+constexpr const char* afis_errs_less =
+    R"({ "dermis_errors": 2, "scenes": "invented", "unscattered": [[1, 0.05]],
+  "techniques": [
+    { "name": "afis", "pass_types": [{ "type": "subsurface.afis", "set": {} }],
+      "rmse": [[1, 0.002]] },
+    { "name": "separable", "pass_types": [{ "type": "subsurface.separable", "set": {} }],
+      "rmse": [[1, 0.005]] } ] })";
+
+constexpr const char* afis_takes_more = R"({ "dermis_calibration": 2, "device": "invented",
+  "costs": [
+    { "work": "subsurface.afis samples=16", "base_us": 10000, "group_us": 0, "spread": 0 },
+    { "work": "subsurface.separable taps=25", "base_us": 1000, "group_us": 0, "spread": 0 },
+    { "work": "subsurface.classify texturing=post", "base_us": 10, "group_us": 0,
+      "spread": 0 } ] })";
+
+TEST_F(Choice, ErrorsOfAFileDecideBetweenAfisAndSeparable) {
+  const std::string overlay = write("overlay.json", or_separable);
+  const std::string table = write("errors.json", afis_errs_less);
+  const std::string costs = write("calibration.json", afis_takes_more);
+  const auto chosen = [&](const char* budget) {
+    const Outcome outcome =
+        run({"render",        scene,   "--graph",         "configs/graphs/papers/afis.json",
+             "--overlay",     overlay, "--errors",        table,
+             "--calibration", costs,   "--size",          "64x36",
+             "--frames",      "3",     "--subset",        "0",
+             "--budget",      budget,  "--deterministic", "--out",
+             path("out"),     "--json"});
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    return json::parse(outcome.out)["choices"].back()["configuration"].get<std::string>();
+  };
+  EXPECT_EQ(chosen("500"), "technique=afis");
+  EXPECT_EQ(chosen("30"), "technique=separable");
+}
+
+TEST_F(Choice, InvalidErrorTable_IsRejectedWithItsPlace) {
+  const std::string file = write("errors.json", "{ \"dermis_errors\": 2,\n \"scene\": \"s\" }");
+  EXPECT_THAT(run({"explain", graph, "--errors", file}),
+              FailsWith(1, "2:2", "did you mean 'scenes'?"));
+}
+
+// Without the technique's row the choice cannot judge it, which explain reports like render.
+TEST_F(Choice, ExplainReportsMissingRowsAndCosts) {
+  const std::string table = write("errors.json", R"({ "dermis_errors": 2, "scenes": "invented",
+    "unscattered": [[1, 0.05]], "techniques": [] })");
+  const std::string costs = write("calibration.json", R"({ "dermis_calibration": 2,
+    "device": "invented", "costs": [] })");
+  const Outcome outcome = run({"explain", graph, "--errors", table, "--calibration", costs});
+  EXPECT_EQ(outcome.exit_code, 0);
+  EXPECT_THAT(outcome.err, HasAll("D0403", "subsurface.guided", "D0404", "subsurface.classify"));
+  EXPECT_EQ(run({"explain", graph}).err, "");
+}
+
+TEST_F(Choice, BudgetOptionsAreChecked) {
+  const auto rendered = [&](const char* option, const char* value) {
+    return run({"render", scene, "--graph", graph, "--size", "64x36", "--frames", "1", "--subset",
+                "0", "--budget", "5", option, value, "--out", path("out")});
+  };
+  EXPECT_THAT(rendered("--budget-percentile", "0.9"), Succeeds());
+  EXPECT_THAT(rendered("--trials", "never"), Succeeds());
+  EXPECT_EQ(rendered("--budget-percentile", "1").exit_code, 2);
+  EXPECT_THAT(rendered("--trials", "often"), FailsWith(2, "never"));
+}
+
+TEST_F(Choice, AfisWithoutVelocityHasNoHistory) {
+  const Outcome outcome =
+      run({"explain", graph, "--set", "technique=afis", "--unbound", "velocity"});
+  EXPECT_THAT(outcome,
+              Succeeds("'off' instead of 'velocity'", "'velocity' is not bound", "0 B history"));
+  EXPECT_THAT(outcome.out, HasSubstr("afis_fixed"));
 }
 
 TEST_F(Choice, HistoriesAreReportedWithAgeAndReason) {

@@ -43,7 +43,7 @@ private:
 
 inline constexpr const char* burley = "configs/graphs/burley.json";
 
-// An overlay on configs/graphs/skin.json whose budget only chooses among its four techniques,
+// An overlay on configs/graphs/skin.json whose budget only chooses among its techniques,
 // without their steps, which keeps calibration short.
 inline constexpr const char* techniques_alone = R"({ "dermis_overlay": 2, "edits": [
   { "set": "/settings/variant", "to": { "choice": ["base", "smooth", "half"], "default": "smooth" } },

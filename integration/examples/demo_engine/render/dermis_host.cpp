@@ -160,12 +160,20 @@ Result<> build_graph(DermisHost& host, const DermisDesc& desc, const Sources& so
 }
 
 Result<> set_budget(DermisHost& host, const DermisDesc& desc) {
-  if (desc.budget_ms == 0 && !desc.deterministic && desc.calibration.text.empty()) return success();
-  const dermis_source calibration = source_of(desc.calibration.name, desc.calibration.text);
+  const Budget& given = desc.budget;
+  if (given.ms == 0 && !given.deterministic && given.calibration.text.empty() &&
+      given.errors.text.empty())
+    return success();
+  const dermis_source calibration = source_of(given.calibration.name, given.calibration.text);
+  const dermis_source errors = source_of(given.errors.name, given.errors.text);
   dermis_budget budget = DERMIS_BUDGET_INIT;
-  budget.milliseconds = static_cast<float>(desc.budget_ms);
-  budget.flags = desc.deterministic ? DERMIS_BUDGET_DETERMINISTIC : 0;
-  budget.calibration = desc.calibration.text.empty() ? nullptr : &calibration;
+  budget.milliseconds = static_cast<float>(given.ms);
+  budget.percentile = static_cast<float>(given.percentile);
+  if (given.deterministic) budget.flags |= DERMIS_BUDGET_DETERMINISTIC;
+  if (given.trials == Trials::cuts) budget.flags |= DERMIS_BUDGET_TRIALS_AT_CUTS;
+  if (given.trials == Trials::never) budget.flags |= DERMIS_BUDGET_NO_TRIALS;
+  budget.calibration = given.calibration.text.empty() ? nullptr : &calibration;
+  budget.errors = given.errors.text.empty() ? nullptr : &errors;
   Report report;
   const dermis_result result = dermis_graph_set_budget(host.graph, &budget, &report.handle);
   if (result != DERMIS_OK) return dermis_error("dermis_graph_set_budget", result, report.handle);

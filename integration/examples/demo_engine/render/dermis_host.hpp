@@ -20,9 +20,7 @@ struct DermisDesc {
   double pixel_aspect = 1; // width / height of a pixel
   std::vector<NamedText> overlays = {};
   std::function<std::optional<NamedText>(const std::string&name)> include = {}, shaders = {};
-  double budget_ms = 0;
-  bool deterministic = false;
-  NamedText calibration = {};
+  Budget budget = {};
   bool sampling = false;   // binds `sampling`, which adds a write to the graph
   bool tile_class = false; // binds `tile_class`
   ContextHooks hooks = {};

@@ -110,4 +110,35 @@ std::string parse_size(const std::string& text, uint32_t& width, uint32_t& heigh
   return "";
 }
 
+std::vector<CLI::Option*> add_budget(CLI::App& verb, BudgetArguments& budget) {
+  const char* group = "The choice";
+  constexpr double max_ms = 1e6, min_percentile = 0.5, max_percentile = 0.99;
+  static const std::map<std::string, demo::Trials> trials{{"always", demo::Trials::always},
+                                                          {"cuts", demo::Trials::cuts},
+                                                          {"never", demo::Trials::never}};
+  std::vector<CLI::Option*> of_frame{
+      verb.add_option("--budget", budget.ms,
+                      "Device time per frame, ms, for settings with \"by\": \"budget\"")
+          ->check(CLI::Range(0.0, max_ms))
+          ->type_name("MS"),
+      verb.add_option("--budget-percentile", budget.percentile,
+                      "Fraction of frames that stay within the budget [0.95]")
+          ->check(CLI::Range(min_percentile, max_percentile))
+          ->type_name("FRACTION"),
+      add_choice(verb, "--trials", budget.trials, trials,
+                 "When a technique may run only to measure its time: always, in cuts, or never "
+                 "[always]")
+          ->type_name("WHEN"),
+      verb.add_flag("--deterministic", budget.deterministic,
+                    "Judge times only by the calibration, for equal choices on every machine")};
+  for (CLI::Option* option : of_frame)
+    option->group(group);
+  add_path(verb, "--calibration", budget.calibration, "Costs of passes (dermis calibrate)")
+      ->group(group);
+  add_path(verb, "--errors", budget.errors,
+           "Error table (configs/choice/errors.json) to use instead")
+      ->group(group);
+  return of_frame;
+}
+
 } // namespace dermis::tools

@@ -38,6 +38,8 @@ void add_pixel_aspect(CLI::App& verb, double& aspect, const char* what);
 void add_settings(CLI::App& verb, std::vector<NamedValue>& settings, const char* name = "--set");
 void add_root(CLI::App& verb, std::vector<std::string>& roots, const char* what);
 void add_graph_inputs(CLI::App& verb, GraphInputs& inputs);
+// Adds the options of the choice by budget. Returns those that only a frame uses.
+std::vector<CLI::Option*> add_budget(CLI::App& verb, BudgetArguments& budget);
 // Adds only --pass-types, for verbs without other graph inputs; add_graph_inputs() includes it.
 void add_pass_types(CLI::App& verb, std::vector<std::string>& pass_types);
 void add_common(CLI::App& verb, Session& session, bool json_is_file);

@@ -63,13 +63,12 @@ void add_text_verbs(CLI::App& app, Invocation& invocation) {
                           "Explain the library's choices for a frame instead of the plan");
         add_path(verb, "--scene", options.scene, "Scene of the frame [configs/scenes/bust.json]")
             ->needs(frame);
-        verb.add_option("--budget", options.budget_ms, "Device time budget of the frame, ms")
-            ->needs(frame)
-            ->check(CLI::PositiveNumber)
-            ->type_name("MS");
-        verb.add_flag("--deterministic", options.deterministic,
-                      "Judge the frame's times only by the calibration")
-            ->needs(frame);
+        for (CLI::Option* option : add_budget(verb, options.budget))
+          option->needs(frame);
+        verb.add_flag("--choices", options.choices,
+                      "List the configurations of a choice by budget with time, error and the "
+                      "budgets that select each, instead of the plan")
+            ->excludes(frame);
         add_path(verb, "--out,-o", options.out, "File to write, - for standard output [-]");
       });
   add_verb<GraphOptions>(

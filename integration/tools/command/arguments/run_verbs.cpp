@@ -11,22 +11,6 @@ constexpr uint32_t max_repeat = 10000;
 constexpr uint32_t max_subset = 1u << 24u; // pixels
 constexpr const char* of_scene = "Width of a pixel over its height [the scene's]";
 
-// Adds the options of the choice by budget.
-void add_budget(CLI::App& verb, RenderOptions& options) {
-  const char* group = "The choice";
-  constexpr double max_ms = 1e6;
-  verb.add_option("--budget", options.budget_ms,
-                  "Device time per frame, ms, for settings with \"by\": \"budget\"")
-      ->check(CLI::Range(0.0, max_ms))
-      ->type_name("MS")
-      ->group(group);
-  verb.add_flag("--deterministic", options.deterministic,
-                "Judge times only by the calibration, for equal choices on every machine")
-      ->group(group);
-  add_path(verb, "--calibration", options.calibration, "File of dermis calibrate for this device")
-      ->group(group);
-}
-
 void add_model(CLI::App& verb, ModelOptions& model) {
   const char* group = "Model, for scenes that use one";
   add_path(verb, "--model", model.model, "glTF file")->group(group);
@@ -107,7 +91,7 @@ void add_picture_verbs(CLI::App& app, Invocation& invocation) {
             ->check(CLI::Range(0u, max_subset));
         add_settings(verb, options.settings);
         add_graph_inputs(verb, options.inputs);
-        add_budget(verb, options);
+        add_budget(verb, options.budget);
         add_model(verb, options.model);
       });
   add_verb<CaptureOptions>(

@@ -9,7 +9,9 @@
 #include "integration/tools/command/inspect/diagnostics_page.hpp"
 #include "integration/tools/command/interrupt.hpp"
 #include "integration/tools/command/output.hpp"
+#include "integration/tools/command/run/budget_input.hpp"
 #include "integration/tools/command/run/choice_report.hpp"
+#include "integration/tools/command/run/choice_table.hpp"
 #include "integration/tools/command/run/host_passes.hpp"
 
 #include <fmt/format.h>
@@ -70,8 +72,10 @@ ExitCode explain_frame(const Session& session, const ExplainOptions& options,
   engine.pixel_aspect = options.pixel_aspect;
   engine.frames = frames;
   engine.settings = settings_as_json(loaded.graph, options.settings);
-  engine.budget_ms = options.budget_ms;
-  engine.deterministic = options.deterministic;
+  auto budget = read_budget(options.budget);
+  if (!budget)
+    return fail(session, static_cast<ExitCode>(budget.error().kind), budget.error().text);
+  engine.budget = budget.take();
   for (const auto& [name, text] : loaded.overlays)
     engine.overlays.push_back({name, text});
   engine.include = [open = open_included(options.graph, options.inputs.roots)](
@@ -107,6 +111,30 @@ ExitCode explain_frame(const Session& session, const ExplainOptions& options,
   return deliver(session, options.out, std::move(answer).finish());
 }
 
+// Returns for each setting of the graph whether --set gives its value.
+std::vector<bool> pinned_by(const Graph& graph, const std::vector<NamedValue>& settings) {
+  std::vector<bool> pinned;
+  for (const SettingDeclaration& setting : graph.settings)
+    pinned.push_back(std::any_of(settings.begin(), settings.end(),
+                                 [&](const NamedValue& one) { return one.first == setting.name; }));
+  return pinned;
+}
+
+void add_all(const Diagnostics& from, Diagnostics& diagnostics) {
+  for (const Diagnostic& one : from.list)
+    diagnostics.add(one.id, one.where, one.text);
+}
+
+ExitCode list_choices(const Session& session, const ExplainOptions& options,
+                      const ChoiceTables& tables, Diagnostics& diagnostics) {
+  add_all(tables.missing, diagnostics);
+  print_diagnostics(session, diagnostics);
+  if (!session.json) return deliver(session, options.out, describe_tables(tables));
+  JsonWriter answer;
+  write_tables(answer, tables);
+  return deliver(session, options.out, std::move(answer).finish());
+}
+
 } // namespace
 
 ExitCode explain(const Session& session, const ExplainOptions& options) {
@@ -126,9 +154,18 @@ ExitCode explain(const Session& session, const ExplainOptions& options) {
   if (options.pixel_aspect > 0) choices.pixel_grid = pixel_grid(options.pixel_aspect);
   if (!choices.problem.empty()) return fail(session, ExitCode::usage, choices.problem);
   if (options.frame) return explain_frame(session, options, *loaded);
+  const auto budget = read_budget(options.budget);
+  if (!budget)
+    return fail(session, static_cast<ExitCode>(budget.error().kind), budget.error().text);
+  const auto tables =
+      choice_tables(*loaded, options.size, choices, pinned_by(loaded->graph, options.settings),
+                    *budget, diagnostics);
+  if (!tables) return fail_graph(session, options.graph, diagnostics);
+  if (options.choices) return list_choices(session, options, *tables, diagnostics);
   const std::optional<CompiledPlan> compiled =
       compile_generic(*loaded, options.size, choices, diagnostics);
   if (!compiled) return fail_graph(session, options.graph, diagnostics);
+  add_all(tables->missing, diagnostics);
   print_diagnostics(session, diagnostics);
   return deliver(session, options.out,
                  session.json ? plan_json(loaded->graph, loaded->pass_types, *compiled,

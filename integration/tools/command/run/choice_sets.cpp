@@ -1,10 +1,29 @@
 #include "integration/tools/command/run/choice_sets.hpp"
 
-#include "passes/choice/configurations.hpp"
-
 #include <fmt/format.h>
 
 namespace dermis::tools {
+
+std::optional<ChoiceConfigurations> choice_configurations(const CompileInput& input,
+                                                          const std::vector<bool>& pinned,
+                                                          const choice::ErrorModel& errors,
+                                                          choice::CostEstimator& costs,
+                                                          Diagnostics& diagnostics) {
+  const auto combinations = choice::enumerate_combinations(input, diagnostics, pinned);
+  if (!combinations) return std::nullopt;
+  ChoiceConfigurations out;
+  for (const uint32_t first : combinations->first) {
+    CompileInput one = input;
+    one.settings = combinations->settings[first];
+    auto plan = compile(one, diagnostics);
+    if (!plan) return std::nullopt;
+    out.compiled.push_back(std::move(*plan));
+  }
+  for (const CompiledPlan& one : out.compiled)
+    out.plans.push_back(&one.plan);
+  out.all = choice::make_configurations(input, *combinations, out.plans, errors, costs);
+  return out;
+}
 
 std::vector<std::vector<NamedValue>> choice_sets(const LoadedGraph& loaded, const Size& size,
                                                  Diagnostics& diagnostics) {
@@ -12,22 +31,11 @@ std::vector<std::vector<NamedValue>> choice_sets(const LoadedGraph& loaded, cons
   const CompileChoices choices = read_choices(loaded.graph);
   const CompileInput input = compile_input(loaded, device, size, choices);
   std::vector<std::vector<NamedValue>> sets;
-  const auto combinations = choice::enumerate_combinations(input, diagnostics);
-  if (!combinations) return sets;
-  std::vector<CompiledPlan> compiled;
-  for (const uint32_t first : combinations->first) {
-    CompileInput one = input;
-    one.settings = combinations->settings[first];
-    auto plan = compile(one, diagnostics);
-    if (!plan) return sets;
-    compiled.push_back(std::move(*plan));
-  }
-  std::vector<const Plan*> plans;
-  for (const CompiledPlan& one : compiled)
-    plans.push_back(&one.plan);
   choice::CostEstimator costs;
-  for (const choice::Configuration& configuration :
-       choice::make_configurations(input, *combinations, plans, {"", {{1, 1}}, {}}, costs)) {
+  const auto configurations =
+      choice_configurations(input, {}, {"", {{1, 1}}, {}}, costs, diagnostics);
+  if (!configurations) return sets;
+  for (const choice::Configuration& configuration : configurations->all) {
     std::vector<NamedValue>& set = sets.emplace_back();
     for (size_t i = 0; i < loaded.graph.settings.size(); ++i) {
       const SettingDeclaration& setting = loaded.graph.settings[i];

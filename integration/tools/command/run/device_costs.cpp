@@ -33,7 +33,7 @@ demo::Result<DeviceCosts> measure_costs(const CostsRequest& request,
   engine.height = request.size.height;
   engine.frames = request.frames;
   engine.pictures_of = [](uint32_t) { return false; };
-  engine.calibration.name =
+  engine.budget.calibration.name =
       request.calibration.text.empty() ? "calibration" : request.calibration.name;
   demo::RenderCallbacks callbacks;
   callbacks.on_start = [&](const demo::RenderInfo& info) {
@@ -48,12 +48,12 @@ demo::Result<DeviceCosts> measure_costs(const CostsRequest& request,
     for (const auto& values : request.sets) {
       engine.camera = place;
       engine.settings = values;
-      engine.calibration.text = costs.calibration;
+      engine.budget.calibration.text = costs.calibration;
       const auto summary = demo::render(engine, callbacks, stage.get());
       if (interrupted()) return stopped;
       if (!summary) return summary.error();
       costs.calibration = summary->calibration;
-      engine.calibration.name = "calibration"; // the result of the previous run
+      engine.budget.calibration.name = "calibration"; // the result of the previous run
       on_run();
     }
   return costs;

@@ -6,6 +6,7 @@
 #include "integration/tools/command/graph_input.hpp"
 #include "integration/tools/command/interrupt.hpp"
 #include "integration/tools/command/output.hpp"
+#include "integration/tools/command/run/budget_input.hpp"
 #include "integration/tools/command/run/choice_report.hpp"
 #include "integration/tools/command/run/host_passes.hpp"
 #include "integration/tools/command/run/pass_times.hpp"
@@ -278,8 +279,6 @@ ExitCode render(const Session& session, const RenderOptions& options) {
   engine.pixel_aspect = options.pixel_aspect;
   engine.height = options.size.height;
   engine.frames = options.frames;
-  engine.budget_ms = options.budget_ms;
-  engine.deterministic = options.deterministic;
   engine.taa = options.taa;
   engine.kernels = options.kernels;
   engine.sampling = options.debug == RenderOptions::Debug::samples;
@@ -291,11 +290,10 @@ ExitCode render(const Session& session, const RenderOptions& options) {
         return std::filesystem::path(one).filename() == overlay;
       }))
     inputs.overlays.push_back(shipped(std::string("configs/overlays/") + overlay));
-  if (!options.calibration.empty()) {
-    auto text = demo::read_text_file(options.calibration);
-    if (!text) return fail(session, static_cast<ExitCode>(text.error().kind), text.error().text);
-    engine.calibration = {options.calibration, text.take()};
-  }
+  auto budget = read_budget(options.budget);
+  if (!budget)
+    return fail(session, static_cast<ExitCode>(budget.error().kind), budget.error().text);
+  engine.budget = budget.take();
 
   // Read the graph here first, so that its messages have excerpts and JSON form and --set is
   // checked.

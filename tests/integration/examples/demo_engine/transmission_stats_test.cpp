@@ -38,7 +38,7 @@ RenderOptions ear(const TestFolder& folder, LightFrom from, double budget_ms) {
   std::filesystem::copy_file(source + "/configs/profiles/skin.json", folder / "skin.json",
                              std::filesystem::copy_options::overwrite_existing);
   RenderOptions options = by_rays(path.string(), 48, 5, {});
-  options.budget_ms = budget_ms;
+  options.budget.ms = budget_ms;
   return options;
 }
 
@@ -90,10 +90,10 @@ TEST_F(WithRayQueries, FrontLight_TheBudgetBuysNoRays) {
 TEST_F(WithRayQueries, TooSmallBudget_ReportsTheMissingTime) {
   const TestFolder folder;
   RenderOptions options = ear(folder, LightFrom::behind, 0);
-  options.deterministic = true; // Equal on every machine.
-  options.budget_ms = 20;
+  options.budget.deterministic = true; // Equal on every machine.
+  options.budget.ms = 20;
   // Rays cost more than the budget; passes without a line cost as much per group as the last line.
-  options.calibration = {"invented", R"({ "dermis_calibration": 2, "device": "invented", "costs": [
+  options.budget.calibration = {"invented", R"({ "dermis_calibration": 2, "device": "invented", "costs": [
     { "work": "restir.initial", "base_us": 30000, "group_us": 0, "spread": 0 },
     { "work": "others", "base_us": 0, "group_us": 0.001, "spread": 0 } ] })"};
   const Rendering rendering = rendered(options);

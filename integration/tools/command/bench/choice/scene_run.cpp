@@ -20,9 +20,9 @@ demo::Result<SceneRun> run_scene(const Session& session, const SceneRunRequest& 
   engine.frames = request.frames;
   engine.frames_per_second = request.frames_per_second;
   engine.settings = request.set;
-  engine.budget_ms = request.budget_ms;
-  engine.deterministic = request.deterministic;
-  engine.calibration = request.calibration;
+  engine.budget.ms = request.budget_ms;
+  engine.budget.deterministic = request.deterministic;
+  engine.budget.calibration = request.calibration;
   const auto compared = [&](uint32_t frame) {
     return request.error_every > 0 && frame % request.error_every == request.error_every - 1;
   };
