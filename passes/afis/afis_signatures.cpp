@@ -22,6 +22,16 @@ constexpr auto afis_tiles_ports =
                     port::updated("scattered",
                                   "scattered light of another technique; replaced in place")});
 
+constexpr Port blend_tiles_ports[] = {
+    port::sampled("sampled", "light of the tiles with samples", port::light_formats),
+    port::material,
+    port::classes,
+    port::samples_per_tile,
+    port::tiles,
+    port::arguments,
+    port::updated("scattered", "scattered light of another technique; replaced in place"),
+};
+
 constexpr std::string_view sequence_options[] = {"continued", "hashed", "stratified"};
 constexpr std::string_view channels_options[] = {"widest", "mixture"};
 constexpr std::string_view surface_options[] = {"patch", "distance"};
@@ -83,8 +93,8 @@ constexpr auto guided_ports =
          std::array{port::velocity, port::sampled("guide", guide_doc, guide_formats),
                     port::optional(port::sampled("place", place_doc, place_formats)),
                     port::optional(port::sampled("control", control_doc, port::light_formats)),
-                    port::tiles, port::arguments, port::scattered,
-                    port::written_in_part("guide_out", guide_doc, guide_formats),
+                    port::optional(port::samples_per_tile), port::tiles, port::arguments,
+                    port::scattered, port::written_in_part("guide_out", guide_doc, guide_formats),
                     port::optional(port::written("place_out", place_doc, place_formats)),
                     port::optional(port::written("control_out", control_doc, port::light_formats)),
                     port::sampling});
@@ -165,6 +175,17 @@ const PassType afis_tiles_type{
            "many for each further step.",
     .ports = afis_tiles_ports,
     .settings = afis_settings,
+    .dispatch = over_tiles,
+};
+
+const PassType blend_tiles_type{
+    .name = "subsurface.blend_tiles",
+    .shader = "afis/subsurface_blend_tiles",
+    .doc =
+        "Replaces the light of another technique in tiles that have samples, and blends both next "
+        "to tiles without samples.",
+    .ports = blend_tiles_ports,
+    .settings = {},
     .dispatch = over_tiles,
 };
 

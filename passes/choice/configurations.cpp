@@ -47,6 +47,17 @@ int32_t level_of(const PassType& type, const std::vector<SettingValue>& values) 
   return level < 0 ? 0 : static_cast<int32_t>(values[static_cast<size_t>(level)].integer);
 }
 
+// Returns whether the time of the pass follows the units of samples. In guided sampling they limit
+// the samples of a tile if the port is bound.
+bool takes_units(const Plan& plan, const PlanPass& pass, const PassType& type) {
+  if (type.name != "subsurface.guided") return samples_by_tile(type);
+  const int port = find_port(type, "samples_per_tile", PortSide::read);
+  const auto first = plan.accesses.begin() + pass.first_access;
+  return std::any_of(first, first + pass.access_count, [&](const PlanAccess& access) {
+    return access.port == static_cast<uint32_t>(port);
+  });
+}
+
 PassLoad load_of(const Plan& plan, const PlanPass& pass, const PassType& type,
                  const std::vector<SettingValue>& values) {
   PassLoad load;
@@ -63,7 +74,7 @@ PassLoad load_of(const Plan& plan, const PlanPass& pass, const PassType& type,
     load.rule = type.dispatch;
     break;
   case DispatchRule::Domain::indirect:
-    load.groups = samples_by_tile(type)                  ? PassLoad::Groups::sample_units
+    load.groups = takes_units(plan, pass, type)          ? PassLoad::Groups::sample_units
                   : type.name == "subsurface.copy_tiles" ? PassLoad::Groups::copied_tiles
                                                          : PassLoad::Groups::listed_tiles;
     break;

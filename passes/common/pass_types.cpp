@@ -51,7 +51,9 @@ PassTypeRegistry make_pass_types() {
                                &restir_spatial_type,
                                &sample_demand_type,
                                &sap_coarse_down_type,
-                               &sap_coarse_up_type}) {
+                               &sap_coarse_up_type,
+                               &separable_tiles_type,
+                               &blend_tiles_type}) {
     PassType known = *type;
     known.needs = needs_of(known.name);
     known.serves_scattering =

@@ -1,4 +1,4 @@
-// Variance of the light of each tile: an alternative to the tile error estimate.
+// Variance of the light that reaches each tile: an alternative to the tile error estimate.
 
 #include "passes/common/signatures/signatures.hpp"
 
@@ -7,12 +7,24 @@ namespace dermis::subsurface {
 namespace {
 
 constexpr Port tile_variance_ports[] = {
-    port::light, port::material,  port::importance,
-    port::tiles, port::arguments, port::writer_of(port::tile_errors),
+    port::light,
+    port::sampled("levels", "mip l - 1 is level l, of a pyramid_setup that keeps profiles apart",
+                  port::light_formats),
+    port::material,
+    port::depth,
+    port::scatter_scale,
+    port::importance,
+    port::tiles,
+    port::arguments,
+    port::writer_of(port::tile_errors),
+    port::writer_of(port::tile_d),
 };
 constexpr PassTypeSetting tile_variance_settings[] = {
+    setting::per_frame(setting::real("ratio", 0.75, 0, 100, "",
+                                     "error of separable over that of samples, at d up to 1 pixel "
+                                     "on a surface that faces the viewer")),
     setting::per_frame(setting::real("min_contrast", 0.01, 0, 4, "",
-                                     "mean deviation of exposed luminance from the tile's mean, "
+                                     "mean deviation of exposed luminance from its mean, "
                                      "below which light counts as uniform")),
 };
 
@@ -21,7 +33,7 @@ constexpr PassTypeSetting tile_variance_settings[] = {
 const PassType tile_variance_type{
     .name = "subsurface.tile_variance",
     .shader = "papers/subsurface_tile_variance",
-    .doc = "Computes the variation of light inside each tile, times importance.",
+    .doc = "Computes how much the light that reaches each tile varies, times importance.",
     .ports = tile_variance_ports,
     .settings = tile_variance_settings,
     .dispatch = over_tiles,

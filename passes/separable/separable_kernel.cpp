@@ -194,6 +194,12 @@ SeparableFit fit_to(const std::vector<FitFrequency>& frequencies,
   return fit;
 }
 
+// Returns the offset of the last tap divided by d. Reach and spacing have the smallest fit error
+// over d = 1 .. 32 px, found by scanning (docs/techniques.md).
+double reach_of_d(uint32_t taps) {
+  return taps >= 25 ? 10 : taps >= 17 ? 7 : 5;
+}
+
 } // namespace
 
 double pixel_kernel_transfer(double d_px, double fx, double fy) {
@@ -205,10 +211,8 @@ double pixel_kernel_transfer(const ChannelShape& shape, double fx, double fy) {
 }
 
 std::vector<double> separable_offsets(double d_px, uint32_t taps) {
-  // Reach and spacing with the smallest fit error over d = 1 .. 32 px, found by scanning
-  // (docs/techniques.md).
   const size_t side = (taps - 1) / 2;
-  const double reach = (taps >= 25 ? 10.0 : taps >= 17 ? 7.0 : 5.0) * d_px;
+  const double reach = reach_of_d(taps) * d_px;
   const double power = taps >= 25 ? 3.5 : taps >= 17 ? 2.5 : 2.0;
   std::vector<double> offsets(side);
   double last = 0;
@@ -219,6 +223,13 @@ std::vector<double> separable_offsets(double d_px, uint32_t taps) {
     offsets[i] = last;
   }
   return offsets;
+}
+
+int32_t separable_reach_px(double d_px, uint32_t taps) {
+  constexpr double longer = 1.05; // interpolation between nodes, and another pixel's kernel
+  constexpr int32_t more = 3;
+  const double reach = std::max((taps - 1) / 2.0, longer * reach_of_d(taps) * d_px);
+  return static_cast<int32_t>(std::min(std::ceil(reach), 32768.0)) + more;
 }
 
 SeparableFit fit_separable(double d_px, std::span<const double> offsets) {

@@ -44,6 +44,10 @@ struct SeparableFit {
 // 11, 17 or 25.
 std::vector<double> separable_offsets(double d_px, uint32_t taps);
 
+// Returns the number of pixels to a side that the kernel reads at most, also between nodes and with
+// the kernel of another pixel of the tile. shaders/separable/kernel.glsl mirrors this function.
+int32_t separable_reach_px(double d_px, uint32_t taps);
+
 // Fits a channel of d_px at given offsets. d_px >= 0; 0 gives the delta. Takes less than 1 ms.
 // Thread: any.
 SeparableFit fit_separable(double d_px, std::span<const double> offsets);

@@ -49,7 +49,32 @@ constexpr Port setup_ports[] = {
 };
 constexpr PassTypeSetting setup_settings[] = {setting::texturing};
 
+constexpr std::string_view needed_doc = "1 per tile that the vertical pass reads; cleared before";
+constexpr Port separable_tiles_ports[] = {
+    port::classes,
+    port::samples_per_tile,
+    port::tile_d,
+    {"needed", Usage::storage_buffer_update, false, "uint", needed_doc},
+    port::list_state,
+    port::written_buffer("vertical_tiles", "uint", "tiles of the vertical pass"),
+    port::written_buffer("vertical_arguments", "uint", "group counts of the vertical pass"),
+    port::written_buffer("horizontal_tiles", "uint", "tiles of the horizontal pass"),
+    port::written_buffer("horizontal_arguments", "uint", "group counts of the horizontal pass"),
+};
+constexpr PassTypeSetting separable_tiles_settings[] = {
+    setting::choice("taps", taps_options, "number of reads along each axis", 1, "taps")};
+
 } // namespace
+
+const PassType separable_tiles_type{
+    .name = "subsurface.separable_tiles",
+    .shader = "separable/subsurface_separable_tiles",
+    .doc = "Lists the tiles of both passes of subsurface.separable: tiles without samples of "
+           "another technique, tiles where samples fade out, and tiles that these read.",
+    .ports = separable_tiles_ports,
+    .settings = separable_tiles_settings,
+    .dispatch = over_tile_grid,
+};
 
 const PassType separable_setup_type{
     .name = "subsurface.separable_setup",

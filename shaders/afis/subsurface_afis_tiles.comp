@@ -12,9 +12,6 @@
 #include "afis/afis.glsl"
 #include "common/tile_edges.glsl"
 
-// The ramp covers the whole tile, because replaced light differs by more than blended light.
-const float ramp_px = 8.0;
-
 vec3 scatter_light(scatter_point point, scatter_profile profile, vec4 own, sample_set set) {
   afis_settings chosen = afis_settings(settings.lod_bias, settings.sequence, settings.channels,
                                        settings.inverse, settings.weighting, settings.surface,
@@ -32,26 +29,28 @@ void main() {
   ivec2 texel = texel_of(pixel), tile = pixel >> 3;
   uint id = texelFetch(material_image, texel, 0).r;
   uint steps = samples_per_tile_data[tile.y * frame.tiles.x + tile.x];
-  float depth = view_depth(texelFetch(depth_image, texel, 0).r);
-  if (id == 0u || steps == 0u || depth <= 0.0)
+  if (id == 0u || steps == 0u)
     return;
+  float depth = view_depth(texelFetch(depth_image, texel, 0).r);
   float scale =
       has_scatter_scale() ? clean_scatter_scale(texelFetch(scatter_scale_image, texel, 0).r) : 1.0;
   scatter_profile profile = find_profile(id, scale);
-  if (projected_d(profile.d.w, depth) < copy_below_d_px)
-    return;
   vec4 light = texelFetch(light_image, texel, 0);
-  int count = settings.samples << (steps - 1u);
-  scatter_point point = scatter_point(pixel, id, depth, view_position(vec2(pixel), depth));
-  sample_set set = sample_set(0u, count, count, frame.frame_index * uint(count));
-  vec3 sampled = scatter_light(point, profile, light, set);
+  vec3 sampled = light.rgb;
+  if (depth > 0.0 && projected_d(profile.d.w, depth) >= copy_below_d_px) {
+    int count = settings.samples << (steps - 1u);
+    scatter_point point = scatter_point(pixel, id, depth, view_position(vec2(pixel), depth));
+    sample_set set = sample_set(0u, count, count, frame.frame_index * uint(count));
+    sampled = scatter_light(point, profile, light, set);
+  }
   uint sampled_tiles = 0u;
   for (int i = 0; i < edge_tiles; ++i) {
     int at = edge_tile(tile, i);
     sampled_tiles |= has_samples(classes_data[at], samples_per_tile_data[at]) ? 1u << uint(i) : 0u;
   }
-  vec4 other = imageLoad(scattered_image, texel);
-  float fraction = edge_weight(sampled_tiles, pixel, ramp_px);
-  imageStore(scattered_image, texel,
-             vec4(round_to_half(mix(other.rgb, sampled, fraction)), other.a));
+  float fraction = edge_weight(sampled_tiles, pixel, replaced_ramp_px);
+  // The other technique did not run where all tiles around have samples.
+  if (fraction < 1.0)
+    sampled = mix(imageLoad(scattered_image, texel).rgb, sampled, fraction);
+  imageStore(scattered_image, texel, vec4(round_to_half(sampled), 1.0));
 }

@@ -111,6 +111,13 @@ float mean_in_tile(float value, uint id, bool has_value) {
   return sum.y > 0.0 ? sum.x / sum.y : value;
 }
 
+// Returns the maximum number of samples in a tile. It doubles with each step of samples.
+int max_samples_at(ivec2 tile) {
+  uint steps =
+      has_samples_per_tile() ? samples_per_tile_data[tile.y * frame.tiles.x + tile.x] : 3u;
+  return settings.max_samples >> (3u - min(steps, 3u));
+}
+
 struct guided_pixel {
   scatter_point point; // id 0: nothing to sample
   vec4 own;            // light, and area of the patch
@@ -221,7 +228,7 @@ void main() {
   float spread = 0.0;
   vec3 scattered = at.own.rgb;
   if (sampled) {
-    count = clamped_samples(required, guidance());
+    count = min(clamped_samples(required, guidance()), max_samples_at(pixel >> 3));
     if (splits())
       count += count & 1;
     direct_part direct = direct_of(estimator(), at.point, at.profile, at.own.a);

@@ -7,6 +7,9 @@
 #include "common/tile_packing.glsl"
 
 const int edge_tiles = 9; // a tile and the tiles around, row by row
+// Ramp of light that is replaced: the whole tile, because replaced light differs by more than
+// blended light.
+const float replaced_ramp_px = 8.0;
 
 // Returns the index of tile i of the 3x3 tiles around `tile` in buffers with one element per tile.
 // Beyond the picture, the tile at the edge counts.

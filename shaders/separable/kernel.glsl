@@ -9,9 +9,19 @@
 const int side_taps[3] = int[3](5, 8, 12); // for 11, 17, 25 taps
 const int most_side_taps = 12;
 const float most_pixels = 32768.0; // of a tap's offset
+// separable_offsets(); offsets between nodes and kernels of other pixels of a tile reach further.
+const float reach_of_d[3] = float[3](5.0, 7.0, 10.0);
+const float longer_reach = 1.05;
+const int more_reach = 3; // px
 const int rows_per_node[3] = int[3](10, 13, 18);
 const int first_row[3] = int[3](0, separable_nodes* rows_per_node[0],
                                 separable_nodes*(rows_per_node[0] + rows_per_node[1]));
+
+// Returns the maximum number of pixels to a side that a pass reads. separable_reach_px mirrors it.
+int separable_reach(int choice, float d_px) {
+  float reach = max(float(side_taps[choice]), longer_reach * reach_of_d[choice] * d_px);
+  return int(min(ceil(reach), most_pixels)) + more_reach;
+}
 
 // The place of a pixel's kernel in the table.
 struct kernel_place {

@@ -2,11 +2,14 @@
 """Models the time of techniques on GPUs from counts of instructions, bytes and dispatches.
 
 usage: gpu_model.py [--kernels FILE --assembly DIR] [--flagged FRACTION] [--sensitivity]
+       gpu_model.py --kernels FILE --assembly DIR --pair SAMPLED,VERTICAL,HORIZONTAL,SAMPLES
   --kernels      adds rows of graphs as they are built, whose bytes, occupancy and code size come
                  from `dermis kernels sap separable --unbound scattered_light,albedo,scatter_scale
                  --json --assembly DIR` on navi21; executed instructions are counted in DIR
   --flagged      fraction of the tiles next to edges in a second row of each graph with two layers
                  at level 1; default 0.2. In the first row no tile is next to an edge
+  --pair         prints only the papers' pair (hybrid_afis_separable): fractions of the listed tiles
+                 that have samples and in which the passes of separable run, and samples per pixel
   --sensitivity  also prints the totals with other latencies, cache misses and fixed costs
 
 No time was measured. Formulas, hardware rows and the assumed fractions of layered work stay fixed,
@@ -416,6 +419,49 @@ def add_built(model, technique, built, graph, flagged):
             model.add(technique, one["pass"], tiles, built.wave(model, row), bytes_moved)
 
 
+# Kernels of the pair with an invocation per tile, or per eight tiles.
+SAMPLE_KERNELS = {"guided", "afis_tiles"}
+TILES_PER_SUBGROUP = {"separable_tiles": 64, "sample_demand": 512, "allocate_samples": 512}
+
+
+def add_pair(model, built, sampled, vertical, horizontal, samples):
+    """The papers' pair with fractions of the listed tiles. Bytes of a part of the tiles are that
+    part of the bytes."""
+    n, tiles = model.covered, model.tiles[0]
+    fractions = {"horizontal": horizontal, "vertical": vertical, "blend": sampled,
+                 "accumulate_light": sampled, "blend_accumulated": sampled}
+    for one in built.graphs["hybrid_afis_separable"]:
+        if not one["kernel"]:
+            continue
+        kernel = short_name(one["kernel"])
+        name, moved = one["pass"], n * (one["read"] + one["written"])
+        fraction = sampled if kernel in SAMPLE_KERNELS else fractions.get(name, 1.0)
+        level = re.search(r"down_(\d)$", name)
+        if kernel == "classify":
+            waves, wave = model.view_tiles / 16, model.wave(**CLASSIFY)
+        elif kernel == "tile_list":
+            model.add_serial("pair", name, model.wave(**LIST_RUN)["lat"])
+            continue
+        elif kernel == "pyramid_setup":
+            waves, wave = model.pixels / 64, model.wave(**AFIS_MIP_SETUP)
+        elif level:
+            waves = max(1, model.pixels / 64 / 4**int(level.group(1)))
+            wave = model.wave(**AFIS_MIP_DOWN)
+        elif kernel in SAMPLE_KERNELS:
+            counts = guided(samples, "split_half") if kernel == "guided" else afis_built(samples)
+            waves, wave = tiles * fraction, model.wave(**counts)
+        elif kernel == "separable":
+            waves, wave = tiles * fraction, model.wave(**SEPARABLE_BUILT)
+        elif kernel == "separable_setup":
+            waves, wave = model.view_tiles, model.wave(**SEPARABLE_BUILT_SETUP)
+        else:
+            waves = tiles * fraction
+            if kernel in TILES_PER_SUBGROUP:
+                waves = model.view_tiles / TILES_PER_SUBGROUP[kernel]
+            wave = built.wave(model, built.rows[one["kernel"], one.get("constants", "")])
+        model.add("pair", name, waves, wave, moved * fraction)
+
+
 def run(hardware, factors=Factors(), width=2560, height=1440, built=None, flagged=0.2):
     model = Model(hardware, factors, width, height)
     add_rivals(model)
@@ -463,11 +509,17 @@ def main():
     parser.add_argument("--assembly")
     parser.add_argument("--flagged", type=float, default=0.2)
     parser.add_argument("--sensitivity", action="store_true")
+    parser.add_argument("--pair")
     options = parser.parse_args()
     built = None
     if options.kernels:
         with open(options.kernels, encoding="utf-8") as file:
             built = Built(json.load(file), options.assembly)
+    if options.pair:
+        model = Model(RX_6800)
+        add_pair(model, built, *map(float, options.pair.split(",")))
+        print_model(model, 2560, 1440)
+        return
     for hardware in (RX_6800, NVIDIA_LIKE, SMALL_RDNA2):
         for width, height in ((2560, 1440), (1920, 1080)):
             print_model(run(hardware, width=width, height=height, built=built,

@@ -208,10 +208,17 @@ ImageReads afis_tiles(const PassType& type, const ReadsQuestion& question) {
   return reads;
 }
 
-// Material, light, depth, slope; history at four positions; per sample as in afis.
+// Material and the light of both techniques.
+ImageReads blend_tiles(const PassType&, const ReadsQuestion&) {
+  return {3};
+}
+
+// Material, light, depth, slope; history at four positions; per sample as in afis. If the samples
+// of tiles are limited, they are counted at twice the first step's, as in afis_tiles.
 ImageReads guided(const PassType& type, const ReadsQuestion& question) {
-  const double samples =
-      question.sampled_fraction * static_cast<double>(setting(type, question, "max_samples"));
+  const bool limited = one_if(type, question, "samples_per_tile", PortSide::read) > 0;
+  const double samples = question.sampled_fraction * (limited ? 0.5 : 1) *
+                         static_cast<double>(setting(type, question, "max_samples"));
   const double kept = 1 + one_if(type, question, "place", PortSide::read) +
                       one_if(type, question, "control", PortSide::read);
   constexpr double levels[] = {1, 1, 0}; // trilinear, nearest level, none
@@ -312,7 +319,7 @@ ImageReads tile_error(const PassType& type, const ReadsQuestion& question) {
 
 // Light, material, importance.
 ImageReads contrast(const PassType& type, const ReadsQuestion& question) {
-  return {2 + one_if(type, question, "importance", PortSide::read)};
+  return {5 + scale_read(type, question) + one_if(type, question, "importance", PortSide::read)};
 }
 
 // In tiles with 16 samples: light twice, surface, and per sample its surface and its level's
@@ -405,6 +412,8 @@ constexpr Entry entries[] = {
     {"subsurface.allocate_samples", none},
     {"subsurface.tile_refine", refine_tiles},
     {"subsurface.tile_variance", contrast},
+    {"subsurface.separable_tiles", none},
+    {"subsurface.blend_tiles", blend_tiles},
     {"subsurface.afis_tiles", afis_tiles},
     {"clear", none},
     {"restir.initial", restir_initial},

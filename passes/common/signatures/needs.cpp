@@ -17,6 +17,10 @@ constexpr PortNeed needs[] = {
     {"tiles", tile, word, word},
     {"tile_errors", tile, word},
     {"samples_per_tile", tile, word},
+    {"tile_d", tile, word},
+    {"needed", tile, word},
+    {"vertical_tiles", tile, word, word},
+    {"horizontal_tiles", tile, word, word},
     {"demand", demand_run, demand_bytes}, // 1,024 tiles cover at least as much
     {"before", tile, word},
     {"reservoirs", pixel, reservoir},
@@ -37,6 +41,8 @@ constexpr PortNeed needs[] = {
     // Two entries per tile hold all levels, which together have a third more tiles.
     {"level_tiles", tile, range, level_heads},
     {"arguments", 0, 0, dispatch},
+    {"vertical_arguments", 0, 0, dispatch},
+    {"horizontal_arguments", 0, 0, dispatch},
     {"copy_arguments", 0, 0, dispatch},
     {"level_arguments", 0, 0, levels* dispatch},
     // A word per tile of levels 6 to 8. Such a tile has 512, 1024 or 2048 pixels; the border adds
@@ -66,6 +72,7 @@ constexpr PortNeed needs[] = {
     {"refined", pixel},
     {"accumulated", pixel},
     {"sampling", pixel},
+    {"sampled", pixel},
     {"tile_class", pixel},
     {"guide", pixel},
     {"guide_out", pixel},
@@ -103,7 +110,7 @@ constexpr PortNeed needs[] = {
     {"surface_4", 16},
     {"surface_5", 32},
 };
-constexpr size_t buffers = 25;
+constexpr size_t buffers = 31;
 static_assert(needs[buffers].port == "lighting");
 
 } // namespace

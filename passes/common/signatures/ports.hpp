@@ -140,6 +140,8 @@ inline constexpr Port list_state{
     "and a list leaves them at 0"};
 inline constexpr Port tile_errors = read_buffer(
     "tile_errors", "uint", "per tile of the render rectangle: expected error; 0: no error");
+inline constexpr Port tile_d =
+    read_buffer("tile_d", "uint", "per tile of the render rectangle: bits of the widest d, px");
 inline constexpr Port samples_per_tile = read_buffer(
     "samples_per_tile", "uint", "per tile of the render rectangle: allocated sample steps, 0 to 3");
 

@@ -17,11 +17,12 @@ extern const PassType setup_type, combine_type, export_scattered_type, copy_tile
 // burley/burley_signature.cpp
 extern const PassType burley_type;
 // separable/separable_signature.cpp
-extern const PassType separable_setup_type, separable_type;
+extern const PassType separable_setup_type, separable_type, separable_tiles_type;
 // papers/fixed_signature.cpp
 extern const PassType fixed_type;
 // afis/afis_signatures.cpp
-extern const PassType afis_type, guided_type, afis_tiles_type, afis_published_type;
+extern const PassType afis_type, guided_type, afis_tiles_type, afis_published_type,
+    blend_tiles_type;
 // afis/pyramid_signatures.cpp
 extern const PassType pyramid_setup_type, pyramid_down_type;
 // papers/pyramid_gather_signature.cpp

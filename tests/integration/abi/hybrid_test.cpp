@@ -4,10 +4,13 @@
 #include "integration/examples/demo_engine/render/reported_frame.hpp"
 #include "passes/choice/sample_allocation.hpp"
 #include "passes/choice/time_margin.hpp"
+#include "passes/separable/separable_kernel.hpp"
 #include "tests/integration/abi/dermis_fixture.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <span>
 
 namespace dermis::abi_test {
 namespace {
@@ -64,7 +67,7 @@ struct Hybrid : DermisTest {
   std::vector<std::string> overlays;
 
   // A stepped surface, for which the pyramid has low confidence.
-  void make_hybrid() {
+  virtual void make_hybrid() {
     GraphOptions options = shipped_options(file);
     options.overlays = overlays;
     graph = make_bound_graph(options);
@@ -161,6 +164,13 @@ double rms(const std::vector<float>& a, const std::vector<float>& b, uint32_t fi
         sum += (double(a[i]) - b[i]) * (double(a[i]) - b[i]);
       }
   return std::sqrt(sum / (3.0 * side * (last - first)));
+}
+
+double rms_of_row(std::span<const float> a, std::span<const float> b) {
+  double sum = 0;
+  for (size_t i = 0; i < a.size(); ++i)
+    sum += (double(a[i]) - b[i]) * (double(a[i]) - b[i]);
+  return std::sqrt(sum / double(a.size()));
 }
 
 TEST_F(Hybrid, HalfBudget_ImportantTilesKeepTheirSamples) {
@@ -270,16 +280,68 @@ TEST_F(Hybrid, PartialBudget_BuysSamplesAndReportsTheError) {
 
 // The papers' pair: filtered importance sampling where light varies, separable elsewhere.
 struct Pair : Hybrid {
+  std::string history = "off", taps = "25";
+  bool has_scale = false;
+
   Pair() {
     file = "configs/graphs/papers/hybrid_afis_separable.json";
     times = R"({ "dermis_calibration": 2, "device": "invented", "costs": [
       { "work": "subsurface.allocate_samples", "base_us": 0, "group_us": 0, "spread": 0 },
-      { "work": "subsurface.afis_tiles samples=16", "base_us": 0, "group_us": 1, "spread": 0 } ] })";
+      { "work": "subsurface.guided", "base_us": 0, "group_us": 1, "spread": 0 },
+      { "work": "subsurface.afis_tiles samples=64", "base_us": 0, "group_us": 1, "spread": 0 } ] })";
     for (const char* kind :
-         {"classify", "tile_list", "setup", "separable_setup", "separable", "tile_variance",
-          "sample_demand", "pyramid_setup", "pyramid_down", "export_scattered", "combine"})
+         {"classify", "tile_list", "setup", "separable_setup", "separable_tiles", "separable",
+          "tile_variance", "sample_demand", "pyramid_setup", "pyramid_down", "blend_tiles",
+          "accumulate", "export_scattered", "combine"})
       times.insert(times.rfind("] }"), std::string(", { \"work\": \"subsurface.") + kind +
                                            "\", \"base_us\": 0, \"group_us\": 0, \"spread\": 0 } ");
+  }
+
+  void make_hybrid() override {
+    GraphOptions options = shipped_options(file);
+    options.overlays = overlays;
+    if (has_scale) std::erase(options.unbound, "scatter_scale");
+    graph = make_graph(options);
+    ASSERT_OK(dermis_graph_set_setting(graph, "history", ('"' + history + '"').c_str(), nullptr));
+    ASSERT_OK(dermis_graph_set_setting(graph, "taps", ('"' + taps + '"').c_str(), nullptr));
+    make_images(graph);
+    paint();
+    fill("importance", [](uint32_t, uint32_t) { return 1.0f; });
+    if (has_scale) fill("scatter_scale", [](uint32_t, uint32_t) { return 1.0f; });
+  }
+
+  // Returns the first frame with samples only in the tiles that `matters`.
+  using Tiles = std::function<bool(uint32_t x, uint32_t y)>;
+  std::vector<float> first_picture(const Tiles& matters) {
+    last_frame = 0;
+    make_hybrid();
+    fill("importance", [&](uint32_t x, uint32_t y) { return matters(x / 8, y / 8) ? 1.0f : 0.0f; });
+    reported = run_frame();
+    return texels("lighting");
+  }
+
+  // Returns whether a tile is in a list of the graph, by tile.
+  std::vector<bool> listed(const std::string& list, const Tiles& matters) {
+    overlays = {R"({ "dermis_overlay": 2, "edits": [
+      { "set": "/imports/painted", "to": { "format": "rgba16f", "size": "view" } },
+      { "set": "/passes/combine/read/scattered", "to": "painted" },
+      { "set": "/passes/combine/read/tiles", "to": ")" +
+                list + R"(_tiles" },
+      { "set": "/passes/combine/read/arguments", "to": ")" +
+                list + R"(_arguments" } ] })"};
+    last_frame = 0;
+    make_hybrid();
+    fill("importance", [&](uint32_t x, uint32_t y) { return matters(x / 8, y / 8) ? 1.0f : 0.0f; });
+    constexpr float shown = 3; // more than any light
+    fill("painted", [](uint32_t, uint32_t) { return shown; });
+    run_frame();
+    overlays.clear();
+    const auto light = texels("lighting");
+    std::vector<bool> tiles;
+    for (uint32_t tile = 0; tile < tiles_across * tiles_across; ++tile)
+      tiles.push_back(
+          light[4 * (size_t{tile / tiles_across * 8} * side + tile % tiles_across * 8)] == shown);
+    return tiles;
   }
 };
 
@@ -306,14 +368,84 @@ TEST_F(Pair, NoUnits_ShowSeparable) {
   EXPECT_EQ(texels("lighting"), none);
 }
 
-TEST_F(Pair, TilesWithEvenLightGetNoSamples) {
-  make_hybrid();
-  fill("lighting", [](uint32_t x, uint32_t y) {
-    return x < 32 ? 0.5f : float((x * 37 + y * 61) % 97) / 64.0f;
-  });
-  const demo::ReportedFrame choice = run_frame();
-  EXPECT_EQ(choice.sampled_tiles[0] + choice.sampled_tiles[1] + choice.sampled_tiles[2], 32u);
-  EXPECT_EQ(choice.sample_demand, 4 * 32u);
+TEST_F(Pair, RuleOfATileSeesTheReachOfD) {
+  has_scale = true;
+  const auto sampled = [&](float scale, float slope) { // d = 2.1 px at scale 1
+    make_hybrid();
+    fill("depth", [&](uint32_t x, uint32_t) { return 0.5f + slope * float(pitch_m) * float(x); });
+    fill("lighting", [](uint32_t x, uint32_t y) {
+      return x < 32 ? 0.5f : float((x * 37 + y * 61) % 97) / 64.0f;
+    });
+    fill("scatter_scale", [&](uint32_t, uint32_t) { return scale; });
+    const demo::ReportedFrame choice = run_frame();
+    EXPECT_EQ(choice.sample_demand, 4 * choice.sampled_tiles[2]);
+    return choice.sampled_tiles[2];
+  };
+  EXPECT_EQ(sampled(0.25f, 1), 32u); // The tiles whose own light varies.
+  EXPECT_EQ(sampled(1, 1), 40u);     // And the column of tiles next to them.
+  EXPECT_EQ(sampled(4, 1), 64u);     // Light reaches all tiles.
+  // Separable errs less than samples if d is small and the surface faces the viewer.
+  EXPECT_EQ(sampled(0.25f, 0), 0u);
+  EXPECT_EQ(sampled(1, 0), 40u);
+}
+
+// Half of the tiles, or all but two.
+const std::pair<const char*, Pair::Tiles> sampled_patterns[] = {
+    {"half", [](uint32_t, uint32_t y) { return y >= 4; }},
+    {"but two", [](uint32_t x, uint32_t y) { return !(x == 1 && y == 1) && !(x == 6 && y == 0); }},
+    {"all", [](uint32_t, uint32_t) { return true; }},
+    {"none", [](uint32_t, uint32_t) { return false; }},
+};
+
+TEST_F(Pair, SeparableRunsOnlyInReachOfTilesWithoutSamples) {
+  taps = "11"; // With d = 2.1 px, the kernel reads at most 15 pixels to a side.
+  const auto reach = static_cast<int>((subsurface::separable_reach_px(2.1, 11) + 7) / 8);
+  ASSERT_EQ(reach, 2);
+  const int last = tiles_across - 1;
+  for (const auto& [name, matters] : sampled_patterns) {
+    std::vector<bool> sampled, vertical, horizontal;
+    const auto none_near = [&](int x, int y) {
+      for (int j = std::max(y - 1, 0); j <= std::min(y + 1, last); ++j)
+        for (int i = std::max(x - 1, 0); i <= std::min(x + 1, last); ++i)
+          if (!matters(uint32_t(i), uint32_t(j))) return false;
+      return true;
+    };
+    for (int y = 0; y <= last; ++y)
+      for (int x = 0; x <= last; ++x) {
+        sampled.push_back(matters(uint32_t(x), uint32_t(y)));
+        vertical.push_back(!none_near(x, y));
+        bool read = false;
+        for (int j = std::max(y - reach, 0); j <= std::min(y + reach, last); ++j)
+          read = read || !none_near(x, j);
+        horizontal.push_back(read);
+      }
+    EXPECT_EQ(listed("sampled", matters), sampled) << name;
+    EXPECT_EQ(listed("vertical", matters), vertical) << name;
+    EXPECT_EQ(listed("horizontal", matters), horizontal) << name;
+  }
+}
+
+TEST_F(Pair, TilesWithSamples_HaveLightOfOnlySamples) {
+  for (const char* how : {"off", "velocity"}) {
+    history = how;
+    const auto none = first_picture([](uint32_t, uint32_t) { return false; });
+    const auto all = first_picture([](uint32_t, uint32_t) { return true; });
+    const auto half = first_picture([](uint32_t, uint32_t y) { return y >= 4; });
+    ASSERT_EQ(reported.sampled_tiles[2], 32u);
+    for (uint32_t y = 0; y < side; ++y) {
+      const auto row = [&](const std::vector<float>& picture) {
+        return std::span(picture).subspan(size_t{4} * side * y, size_t{4} * side);
+      };
+      const double from_none = rms_of_row(row(half), row(none));
+      const double from_all = rms_of_row(row(half), row(all));
+      const double between = rms_of_row(row(all), row(none));
+      EXPECT_TRUE(y >= 32 || from_none == 0) << how << ", row " << y;
+      EXPECT_TRUE(y < 40 || from_all == 0) << how << ", row " << y;
+      // The first row next to tiles without samples has 1 % of the samples' light.
+      EXPECT_TRUE(y != 32 || from_none < 0.03 * between) << how << ": " << from_none / between;
+      EXPECT_TRUE(y != 39 || from_all < 0.03 * between) << how << ": " << from_all / between;
+    }
+  }
 }
 
 TEST_F(UnevenPair, TilesLeaveNoSeams) {

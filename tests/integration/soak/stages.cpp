@@ -56,7 +56,11 @@ std::vector<StageDesc> soak_stages() {
        {},
        {{"samples", samples},
         {"min_contrast", {"0", "0.01", "4"}},
-        {"taps", {"\"11\"", "\"25\""}}}},
+        {"history", {"\"off\"", "\"camera\"", "\"velocity\""}},
+        {"taps", {"\"11\"", "\"25\""}}},
+       true,
+       8.0,
+       1.0},
       {"blended", "sap_blend", {}, {{"variant", {"\"base\"", "\"smooth\""}}}},
   };
 }

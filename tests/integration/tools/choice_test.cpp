@@ -259,8 +259,9 @@ TEST_F(Choice, HistoriesAreReportedWithAgeAndReason) {
 }
 
 TEST_F(Choice, ExplainCountsReadsByTileClass) {
-  const Outcome outcome = run({"explain", "configs/graphs/papers/hybrid_afis_separable.json",
-                               "--frame", "--size", "64x36", "--set", "taps=11", "--json"});
+  const Outcome outcome =
+      run({"explain", "configs/graphs/papers/hybrid_afis_separable.json", "--frame", "--size",
+           "64x36", "--set", "taps=11", "--set", "history=off", "--set", "samples=16", "--json"});
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   const json frame = json::parse(outcome.out)[0];
   const json& classes = frame["tile_classes"];

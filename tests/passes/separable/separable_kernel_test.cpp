@@ -49,6 +49,19 @@ std::vector<double> run(const std::vector<double>& image, int size,
   return result;
 }
 
+TEST(SeparableKernel, ReachCoversEveryTap) {
+  const std::vector<SeparableRow> rows = make_separable_rows({1, 0.5, 0.25});
+  for (uint32_t choice = 0; choice < 3; ++choice) {
+    const uint32_t taps = separable_taps[choice], side = (taps - 1) / 2;
+    for (double d = 0.06; d < 180; d *= 1.01)
+      for (const double other : {0.97 * d, d, 1.03 * d}) { // whose kernel the pixel may have
+        const double offset = separable_row(rows, choice, other, side)[3];
+        const int farthest = static_cast<int>(std::max(offset, offset * d / other)) + 1;
+        EXPECT_LE(farthest, separable_reach_px(d, taps)) << taps << " taps, d " << d << " px";
+      }
+  }
+}
+
 TEST(SeparableKernel, WeightsAreNotNegativeAndSumToOneAtEveryNode) {
   for (const uint32_t taps : separable_taps)
     for (const double d : {0.0625, 0.3, 1.0, 5.0, 40.0, 181.0}) {

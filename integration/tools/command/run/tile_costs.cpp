@@ -10,7 +10,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numeric>
+#include <optional>
 
 namespace dermis::tools {
 namespace {
@@ -32,6 +34,35 @@ void add_configuration(const Graph& graph, std::string_view configuration,
     }
     configuration.remove_prefix(std::min(end + 2, configuration.size()));
   }
+}
+
+// Returns the resource at a port of the pass.
+std::optional<uint32_t> resource_at(const Plan& plan, const PlanPass& pass, const PassType& type,
+                                    std::string_view port) {
+  const int index = find_port(type, port, PortSide::read);
+  for (uint32_t a = pass.first_access; a < pass.first_access + pass.access_count; ++a)
+    if (plan.accesses[a].port == static_cast<uint32_t>(index)) return plan.accesses[a].resource;
+  return std::nullopt;
+}
+
+// The tiles of an indirect pass.
+enum class Tiles { all, with_samples, without_samples };
+
+// Lists of tiles, by resource. Tiles next to those without samples, which are in both lists, are
+// not counted as such.
+std::map<uint32_t, Tiles> lists_of(const LoadedGraph& loaded, const Plan& plan) {
+  std::map<uint32_t, Tiles> lists;
+  for (const PlanPass& pass : plan.passes) {
+    const PassType& type = loaded.pass_types[pass.type];
+    const auto tiles = resource_at(plan, pass, type, "tiles");
+    if (tiles && resource_at(plan, pass, type, "samples_per_tile"))
+      lists[*tiles] = Tiles::with_samples;
+    for (const char* written : {"vertical_tiles", "horizontal_tiles"})
+      for (uint32_t a = pass.first_access; a < pass.first_access + pass.access_count; ++a)
+        if (type.ports[plan.accesses[a].port].name == written)
+          lists[plan.accesses[a].resource] = Tiles::without_samples;
+  }
+  return lists;
 }
 
 } // namespace
@@ -56,9 +87,11 @@ TileCosts tile_costs(const LoadedGraph& loaded, const Size& size, PixelGrid grid
   const Plan& plan = compiled->plan;
   const std::vector<float> tables = subsurface::make_sap_tables({true, true}, {});
   const double d = choice.mean_d_px;
-  // reads per pixel of every scattering tile, and of a tile with one step of samples
-  double everywhere = 0, per_step = 0;
+  // Reads per pixel of every scattering tile, of a tile without samples, and of a tile with samples
+  // in addition to those of each sample.
+  double everywhere = 0, without_samples = 0, with_samples = 0;
   double first_step = 0; // samples per pixel
+  const std::map<uint32_t, Tiles> lists = lists_of(loaded, plan);
   for (const PlanPass& pass : plan.passes) {
     const PassType& type = loaded.pass_types[pass.type];
     std::vector<SettingValue> own;
@@ -74,15 +107,19 @@ TileCosts tile_costs(const LoadedGraph& loaded, const Size& size, PixelGrid grid
       question.bound[plan.accesses[pass.first_access + a].port] = true;
     const auto reads = subsurface::image_reads(type, question);
     if (!reads) continue;
-    const bool by_tile = find_port(type, "samples_per_tile", PortSide::read) >= 0;
-    if (by_tile) { // counted at twice the first step's samples
+    const auto list = lists.find(resource_at(plan, pass, type, "tiles").value_or(~0u));
+    const Tiles tiles = list == lists.end() ? Tiles::all : list->second;
+    if (tiles == Tiles::with_samples && reads->samples > 0) { // at twice the first step's samples
       question.sampled_fraction = 0;
       const double without = subsurface::image_reads(type, question)->per_invocation;
       out.reads_per_sample = (reads->per_invocation - without) / reads->samples;
       first_step = reads->samples / 2;
-      per_step += without;
+      with_samples += without;
     } else if (type.dispatch.domain == DispatchRule::Domain::indirect) {
-      everywhere += reads->per_invocation / finer;
+      double& sum = tiles == Tiles::all            ? everywhere
+                    : tiles == Tiles::with_samples ? with_samples
+                                                   : without_samples;
+      sum += reads->per_invocation / finer;
     } else if (type.dispatch.domain == DispatchRule::Domain::written_image) {
       const TexelSize written = first_written_size(plan, pass, type);
       out.reads_per_view += reads->per_invocation * double(written.width) * written.height;
@@ -95,11 +132,11 @@ TileCosts tile_costs(const LoadedGraph& loaded, const Size& size, PixelGrid grid
       std::accumulate(choice.sampled_tiles.begin(), choice.sampled_tiles.end(), uint64_t{0});
   out.classes.push_back(
       {0, choice.scattering_tiles - std::min<uint64_t>(choice.scattering_tiles, sampled),
-       everywhere});
+       everywhere + without_samples});
   for (size_t k = 0; k < choice.sampled_tiles.size(); ++k) {
     const auto samples = static_cast<uint32_t>(first_step) << k;
     out.classes.push_back({samples, choice.sampled_tiles[k],
-                           everywhere + per_step + double(samples) * out.reads_per_sample});
+                           everywhere + with_samples + double(samples) * out.reads_per_sample});
   }
   return out;
 }
