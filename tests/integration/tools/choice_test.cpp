@@ -195,6 +195,27 @@ TEST_F(Choice, ErrorsOfAFileDecideBetweenAfisAndSeparable) {
   EXPECT_EQ(chosen("30"), "technique=separable");
 }
 
+// With the built-in tables, 64 samples err less than separable at wide d, and take more time.
+TEST_F(Choice, AfisIsSelectedWhereItErrsLessAndFits) {
+  const Outcome outcome =
+      run({"explain", "configs/graphs/papers/afis.json", "--overlay",
+           write("overlay.json", or_separable), "--set", "samples=64", "--choices", "--json"});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_EQ(outcome.err, "");
+  int judged = 0;
+  for (const json& table : json::parse(outcome.out)["tables"]) {
+    if (table["d_px"] != 8) continue;
+    ++judged;
+    const json& all = table["configurations"]; // by rising time
+    ASSERT_EQ(all.size(), 2u);
+    EXPECT_EQ(all[0]["configuration"], "technique=separable");
+    EXPECT_EQ(all[1]["configuration"], "technique=afis");
+    ASSERT_FALSE(all[1]["selected_from_ms"].is_null()) << table["device"];
+    EXPECT_GT(all[1]["selected_from_ms"], all[1]["ms"]);
+  }
+  EXPECT_EQ(judged, 3);
+}
+
 TEST_F(Choice, InvalidErrorTable_IsRejectedWithItsPlace) {
   const std::string file = write("errors.json", "{ \"dermis_errors\": 2,\n \"scene\": \"s\" }");
   EXPECT_THAT(run({"explain", graph, "--errors", file}),
