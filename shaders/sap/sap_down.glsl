@@ -19,7 +19,9 @@ const float hysteresis = 1.02;    // keeps the first seed among equals
 const float nearest_fraction = 0.25;
 // A child with less left is no seed of the second layer, because it lies on a bend of the first
 // layer's surface.
-const float min_seed_part = 0.9;
+const float min_seed_part = 0.75;
+// Fraction of a child's mass that counts in the second layer even if the first has used the child.
+const float min_shared_mass = 0.25;
 
 #ifdef SAP_BOX
 const int children_across = 2;
@@ -344,9 +346,10 @@ uint held_of(holding sum) {
   return sum.same > 0.0 ? min(uint(sum.held / sum.same + 0.5), sap_max_held) : sap_max_held;
 }
 
-// Sums over the children on the surface of a seed.
+// Sums over the children near the surface of a seed. Light is that of all of them, also of those on
+// the layer before: both surfaces scatter into each other. Mass and plane count these less.
 struct reduction {
-  float all_weight, mass, area_mass, total, total_flat, mean_depth, mean_reach;
+  float all_weight, light_mass, mass, area_mass, total, total_flat, mean_depth, mean_reach;
   vec2 mean_slope;
   vec3 light;
   bool remains; // a child can be the seed of another layer
@@ -384,10 +387,12 @@ void add_child(sap_parent parent, sap_seed own, sap_seed before, int c, bool sec
   float left = left_of(before.texel, child, offset, spacing, off_before);
   bool same = child.id == seed.id;
   float part = binomial(parent, c) * child.mass, own_part = same ? part : 0.0;
-  float flat_weight = own_part * kept * left;
+  float near_weight = own_part * kept;
+  float flat_weight = near_weight * (min_shared_mass + (1.0 - min_shared_mass) * left);
   sum.remains = sum.remains || child.id != 0u && !(same && 1.0 - kept < min_seed_part);
   vec4 tap = light_of(parent, c, second, child.id);
-  float weight = flat_weight * narrowing * tap.a;
+  float weight = near_weight * narrowing * tap.a;
+  sum.light_mass += near_weight * narrowing;
   sum.mass += flat_weight * narrowing;
   if (finer_has_layers())
     sum.area_mass += flat_weight * narrowing * sap_area_of(child.slope);
@@ -435,7 +440,7 @@ sap_layer reduce_to(sap_parent parent, int layers, sap_texel seed, sap_texel bef
   if (seed.id == 0u)
     return layer;
   const holding nothing = holding(0.0, 0.0);
-  reduction sum = reduction(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, vec2(0.0), vec3(0.0), false,
+  reduction sum = reduction(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, vec2(0.0), vec3(0.0), false,
                             nothing, nothing, 0.0);
   sum.all_weight = full_weight(parent, seed);
   add_children(parent, layers, sap_seed(seed, sap_per_relevant(seed, parent.spacing)),
@@ -443,7 +448,7 @@ sap_layer reduce_to(sap_parent parent, int layers, sap_texel seed, sap_texel bef
   layer.remains = sum.remains;
   layer.held_before = held_of(sum.before);
   if (sum.total > sap_negligible) {
-    layer.light = sap_stored(vec4(sum.light / sum.total, sum.total / sum.mass));
+    layer.light = sap_stored(vec4(sum.light / sum.total, sum.total / sum.light_mass));
     vec3 rounded =
         round_to_half(vec3(sum.mean_slope / sum.total_flat, sum.mean_reach / sum.total_flat));
     float mass = min(sum.mass / sum.all_weight, 1.0);

@@ -17,7 +17,9 @@ constexpr size_t children_a_layer = 16, no_child = 2 * children_a_layer;
 constexpr size_t central[8] = {5, 6, 9, 10, 21, 22, 25, 26};
 // A child with a smaller rest cannot seed the second layer: it belongs to the bent surface of the
 // first layer.
-constexpr double min_seed_part = 0.9;
+constexpr double min_seed_part = 0.75;
+// Fraction of a child's mass that counts in the second layer even if the first has used the child.
+constexpr double min_shared_mass = 0.25;
 
 // Weight of a child along an axis; an axis that is not halved has one child.
 template <class Real> Real binomial(size_t child, bool halves) {
@@ -92,7 +94,9 @@ size_t find_seed(const SapPyramid<Real>& pyramid, const Children<Real>& children
   return best;
 }
 
-// Builds one layer of a parent, and subtracts the used part from what the children have left.
+// Builds one layer of a parent, and subtracts the used part from what the children have left. The
+// light of a layer is that of all children near its plane, also of those on another layer: both
+// surfaces scatter into each other. Mass and plane count children of the layer before less.
 // `mass_by_area`: see sap_first_area_level. `plane` receives the seed's plane.
 template <class Real>
 SapTexel<Real> reduce(const SapPyramid<Real>& pyramid, Children<Real>& children, bool mass_by_area,
@@ -103,7 +107,7 @@ SapTexel<Real> reduce(const SapPyramid<Real>& pyramid, Children<Real>& children,
   const Real per_sigma = 1 / (Real(sap_sigma) * children.spacing);
   const Real per_metre = per_sigma / pyramid.footprint(plane.depth);
   SapTexel<Real> sum;
-  Real all_weight = 0, total = 0, flat = 0, area_mass = 0;
+  Real all_weight = 0, total = 0, flat = 0, light_mass = 0, area_mass = 0;
   for (size_t k = 0; k < no_child; ++k) {
     const Real x = children.x(k), y = children.y(k);
     const Real tilt = plane.slope(x, y) * per_sigma;
@@ -115,9 +119,12 @@ SapTexel<Real> reduce(const SapPyramid<Real>& pyramid, Children<Real>& children,
     const Real off = sap_nearer(step - pyramid.rise(plane, x, y) * per_metre, step);
     const Real narrowing = sap_falloff(sap_nearer(tilt, step), sap_tilt_width_down);
     const Real kept = sap_falloff(off, sap_depth_width);
-    const Real flat_weight = children.weight(k) * kept * children.left[k] * child->mass;
+    const Real near_weight = children.weight(k) * kept * child->mass;
+    const Real flat_weight =
+        near_weight * (Real(min_shared_mass) + Real(1 - min_shared_mass) * children.left[k]);
     children.left[k] *= 1 - kept;
-    const Real weight = flat_weight * narrowing * child->area;
+    const Real weight = near_weight * narrowing * child->area;
+    light_mass += near_weight * narrowing;
     sum.mass += flat_weight * narrowing;
     area_mass += flat_weight * narrowing * child->slope_area();
     total += weight;
@@ -135,7 +142,7 @@ SapTexel<Real> reduce(const SapPyramid<Real>& pyramid, Children<Real>& children,
                         .slope_y = sum.slope_y / flat,
                         .reach = sum.reach / flat,
                         .mass = std::min(Real(1), sum.mass / all_weight),
-                        .area = total / sum.mass,
+                        .area = total / light_mass,
                         .light = {},
                         .id = plane.id};
   if (mass_by_area)
