@@ -1,228 +1,22 @@
 #version 460
-// One pass along an axis of the kernel centre * delta + (1 - centre) * a(x) a(y).
-// passes/separable/separable_kernel.hpp or jimenez_kernel.hpp fits and tabulates the kernel. Taps
-// of another profile are left out and the others renormalised. Filtered reads would mix profiles. A
-// tap at another depth is weighted by nearness().
-//
-// The tile and 12 pixels to both sides are in shared memory, as is the kernel of one of the tile's
-// pixels. Pixels whose kernel differs read their own kernel and taps.
+// One pass along an axis over the tiles with subsurface (separable/separable_pass.glsl).
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
 #extension GL_EXT_samplerless_texture_functions : require
 #include "separable/subsurface_separable.bindings.glsl"
 #include "common/environment.glsl"
 #include "common/half.glsl"
-#include "common/radius.glsl"
+#include "common/sanitise.glsl"
 #include "common/tiles.glsl"
-#include "constants.glsl"
-#include "separable/kernel.glsl"
+#include "separable/separable_pass.glsl"
 #include "separable/surface.glsl"
 
-// Relative differences in d and in the footprint of pixels that may share a kernel.
-const float same_kernel = 0.03;
-// Pixels are square up to this difference of the root of their sides' ratio from 1.
-const float same_elongation = 0.001;
-const int reach = most_side_taps; // of dense taps
-const int window_length = 8 + 2 * reach;
-const int window_texels = 8 * window_length;
-
-bool is_vertical() { return settings.axis == AXIS_VERTICAL; }
-
-// Light of the pass, with the profile in alpha.
 vec4 light_at(ivec2 texel) {
-  return is_vertical() ? texelFetch(blurred_image, texel, 0) : texelFetch(light_image, texel, 0);
+  return settings.axis == AXIS_VERTICAL ? texelFetch(blurred_image, texel, 0)
+                                        : texelFetch(light_image, texel, 0);
 }
 
-// A pixel that scatters.
-struct scattering_pixel {
-  ivec2 texel;
-  int before, after; // pixels to the first and to the last pixel along the axis
-  float profile;     // as stored in the light's alpha
-  float depth;       // mm
-  float footprint;   // mm per pixel along the axis
-  float d_px;        // of the widest channel, along the axis
-  // Root of the footprints' ratio, along the axis over across it: 1 if pixels are square.
-  float elongation;
-  uint kernel;       // first row of its kernels
-};
-
-ivec2 along_axis(int pixels) { return is_vertical() ? ivec2(0, pixels) : ivec2(pixels, 0); }
-
-// Sums over the taps of both sides.
-struct tap_sums {
-  vec3 light, weight;
-};
-
-// Adds a tap. rgb: light, a: rise in mm.
-void add_tap(kernel_tap tap, float core, vec4 before, vec4 after, inout tap_sums sums) {
-  float near_before = nearness(tap, core, before.a), near_after = nearness(tap, core, after.a);
-  sums.light += tap.weight * (near_before * before.rgb + near_after * after.rgb);
-  sums.weight += tap.weight * (near_before + near_after);
-}
-
-// Returns light and rise of a pixel on the axis; rise is infinite if it does not contribute.
-// `inside`: the pixel is in the rectangle; otherwise `texel` is of another pixel.
-vec4 read_tap(scattering_pixel at, ivec2 texel, bool inside) {
-  vec4 light = light_at(texel);
-  float depth = texelFetch(view_depth_image, texel, 0).r;
-  bool counts = inside && is_surface(depth) && light.a == at.profile;
-  return counts ? vec4(light.rgb, depth - at.depth) : vec4(vec3(0.0), no_surface());
-}
-vec4 tap_before(scattering_pixel at, int pixels) {
-  return read_tap(at, at.texel - along_axis(min(pixels, at.before)), pixels <= at.before);
-}
-vec4 tap_after(scattering_pixel at, int pixels) {
-  return read_tap(at, at.texel + along_axis(min(pixels, at.after)), pixels <= at.after);
-}
-
-// Returns whether the kernel has offsets of whole pixels, as separable_whole_taps says. Other kernels
-// interpolate between two pixels: few taps have less error there, and the published kernel has
-// several taps within a pixel.
-bool reads_nearest() { return settings.kernel == KERNEL_FITTED && settings.taps == TAPS_25; }
-
-// Adds a tap at an offset in pixels, read from the images.
-void add_read_tap(scattering_pixel at, kernel_tap tap, float core, float offset,
-                  inout tap_sums sums) {
-  if (reads_nearest()) {
-    int pixels = int(roundEven(offset));
-    add_tap(tap, core, tap_before(at, pixels), tap_after(at, pixels), sums);
-    return;
-  }
-  int below = int(offset);
-  float part = offset - float(below);
-  vec3 weight = tap.weight;
-  for (int k = 0; k < 2; ++k) {
-    tap.weight = weight * (k == 0 ? 1.0 - part : part);
-    add_tap(tap, core, tap_before(at, below + k), tap_after(at, below + k), sums);
-  }
-}
-
-vec3 normalised(tap_sums sums, vec3 own) {
-  return mix(own, sums.light / max(sums.weight, vec3(1e-30)), greaterThan(sums.weight, vec3(0.0)));
-}
-
-// Completes the pass of an axis. The table has kernels of square pixels, whose delta depends on
-// the side. Here the delta is that of a square pixel of the same area, and the axis keeps the
-// kernel's projection on it. `own`, `light`: of the pixel, before this pass and before both passes.
-vec3 complete(scattering_pixel at, kernel_ends ends, vec3 own, vec3 light, vec3 result) {
-  vec3 centre = ends.centre;
-  if (abs(at.elongation - 1.0) > same_elongation && settings.kernel == KERNEL_FITTED) {
-    kernel_place place = find_kernel(at.kernel, settings.taps, at.d_px * at.elongation);
-    vec3 mean_centre = kernel_row(place, place.side + 1).rgb;
-    vec3 fraction = (1.0 - centre) / max(1.0 - mean_centre, vec3(1e-6));
-    // Above 1, the fraction takes weight from the pixel itself, but not more than it has.
-    result = mix(own, result, min(fraction, 1.0 / max(1.0 - ends.own, vec3(1e-6))));
-    centre = mean_centre;
-  }
-  return is_vertical() ? mix(result, light, centre) : result;
-}
-
-// Scatters along the axis with the pixel's own kernel. `light`: before the horizontal pass.
-vec3 scatter_alone(scattering_pixel at, vec3 own, vec3 light) {
-  kernel_place place = find_kernel(at.kernel, settings.taps, at.d_px);
-  kernel_ends ends = find_ends(place, at.footprint);
-  tap_sums sums = tap_sums(ends.own * own, ends.own);
-  for (int i = 1; i <= ends.used; ++i) {
-    kernel_tap tap = find_tap(place, i, ends.core, at.footprint);
-    add_read_tap(at, tap, ends.core, tap.offset, sums);
-  }
-  return complete(at, ends, own, light, normalised(sums, own));
-}
-
-// Light and depth of the window, row by row; infinitely deep where another profile is visible.
-shared vec4 window[window_texels];
-// The kernel of the tile: weight and offset; square, decay and gain.
-shared vec4 shared_weight[most_side_taps + 1];
-shared vec4 shared_nearness[most_side_taps + 1];
-shared uint chosen; // invocation whose kernel is shared
-shared uint chosen_kernel;
-shared float chosen_profile, chosen_d_px, chosen_footprint;
-
-// Chooses the kernel of the first pixel that scatters.
-void choose_kernel(bool scatters, scattering_pixel at) {
-  uint lane = gl_LocalInvocationIndex;
-  if (lane == 0u) {
-    chosen = 64u;
-    chosen_kernel = 0u;
-    chosen_profile = -1.0;
-    chosen_d_px = 1.0;
-    chosen_footprint = 1.0;
-  }
-  barrier();
-  if (scatters)
-    atomicMin(chosen, lane);
-  barrier();
-  if (lane == chosen) {
-    chosen_kernel = at.kernel;
-    chosen_profile = at.profile;
-    chosen_d_px = at.d_px;
-    chosen_footprint = at.footprint;
-  }
-  barrier();
-}
-
-void fill_window(ivec2 tile) {
-  int lane = int(gl_LocalInvocationIndex);
-  // Each invocation reads a column of texels.
-  ivec2 q = tile + (is_vertical() ? ivec2(lane & 7, (lane >> 3) - reach)
-                                  : ivec2((lane & 31) - reach, lane >> 5));
-  int rows = is_vertical() ? 8 : 2;
-  float profile = chosen_profile;
-  [[unroll]] for (int k = 0; k < window_texels / 64; ++k, q.y += rows) {
-    ivec2 texel = texel_of(clamp(q, ivec2(0), frame.rect.zw - 1));
-    vec4 light = light_at(texel);
-    float depth = texelFetch(view_depth_image, texel, 0).r;
-    bool counts = inside_rect(q) && is_surface(depth) && light.a == profile;
-    window[lane + 64 * k] = counts ? vec4(light.rgb, depth) : vec4(vec3(0.0), no_surface());
-  }
-}
-
-kernel_ends share_kernel() {
-  kernel_place place = find_kernel(chosen_kernel, settings.taps, chosen_d_px);
-  kernel_ends ends = find_ends(place, chosen_footprint);
-  int i = int(gl_LocalInvocationIndex);
-  if (i > 0 && i <= place.side) {
-    kernel_tap tap = find_tap(place, i, ends.core, chosen_footprint);
-    shared_weight[i] = vec4(tap.weight, tap.offset);
-    shared_nearness[i] = vec4(tap.square, tap.decay, tap.gain, 0.0);
-  }
-  return ends;
-}
-
-bool shares_kernel(scattering_pixel at) {
-  float profile = chosen_profile, d_px = chosen_d_px, footprint = chosen_footprint;
-  return settings.kernel == KERNEL_FITTED && at.profile == profile &&
-         abs(at.d_px - d_px) <= same_kernel * d_px &&
-         abs(at.footprint - footprint) <= same_kernel * footprint;
-}
-
-kernel_tap shared_tap(int i) {
-  vec4 row = shared_weight[i], near = shared_nearness[i];
-  return kernel_tap(row.rgb, row.a, near.x, near.y, near.z);
-}
-
-// Scatters with the kernel of the tile.
-vec3 scatter_in_window(scattering_pixel at, kernel_ends ends, vec3 own, vec3 light) {
-  float stretch = at.d_px / chosen_d_px;
-  ivec2 local = ivec2(gl_LocalInvocationID.xy);
-  int stride = is_vertical() ? 8 : 1;
-  int first = is_vertical() ? local.x + 8 * local.y : local.x + window_length * local.y;
-  tap_sums sums = tap_sums(ends.own * own, ends.own);
-  [[unroll]] for (int i = 1; i <= most_side_taps; ++i) {
-    if (i > side_taps[settings.taps] || i > min(ends.dense, ends.used))
-      break;
-    vec4 before = window[first + (reach - i) * stride];
-    vec4 after = window[first + (reach + i) * stride];
-    before.a -= at.depth;
-    after.a -= at.depth;
-    add_tap(shared_tap(i), ends.core, before, after, sums);
-  }
-  for (int i = ends.dense + 1; i <= ends.used; ++i) {
-    kernel_tap tap = shared_tap(i);
-    add_read_tap(at, tap, ends.core, tap.offset * stretch, sums);
-  }
-  return complete(at, ends, own, light, normalised(sums, own));
-}
+float depth_at(ivec2 texel) { return texelFetch(view_depth_image, texel, 0).r; }
 
 void main() {
   ivec2 pixel = ivec2(0);
@@ -230,43 +24,21 @@ void main() {
   uint tile = listed_tile();
   bool listed = tile < tiles_data[0] && pixel_of_tile(tiles_data[1u + tile], pixel, copy_only);
   ivec2 texel = texel_of(pixel);
+  bool vertical = settings.axis == AXIS_VERTICAL, scatters = false;
   vec4 light = vec4(0.0), own = vec4(0.0);
-  ivec2 ends_of_line = is_vertical() ? ivec2(pixel.y, frame.rect.w) : ivec2(pixel.x, frame.rect.z);
-  scattering_pixel at = scattering_pixel(texel, ends_of_line.x, ends_of_line.y - 1 - ends_of_line.x,
-                                         0.0, 0.0, 1.0, 1.0, 1.0, 0u);
-  bool scatters = false;
+  float d = 0.0;
   if (listed) {
     light = texelFetch(light_image, texel, 0);
     own = light;
-    float depth = texelFetch(view_depth_image, texel, 0).r;
-    uint id = uint(light.a);
-    float scale = 1.0;
+    d = profiles[uint(light.a)].d_mm.w;
     if (has_scatter_scale())
-      scale = clean_scatter_scale(texelFetch(scatter_scale_image, texel, 0).r);
-    float d = profiles[id].d_mm.w * scale;
-    uint row = profiles[id].separable_row;
-    scatters = id != 0u && !copy_only && is_surface(depth) && row != 0xffffffffu &&
-               projected_d(d, depth) >= copy_below_d_px;
-    if (scatters) {
-      vec2 footprints = pixel_footprint(depth);
-      at.profile = light.a;
-      at.depth = depth;
-      at.footprint = is_vertical() ? footprints.y : footprints.x;
-      at.elongation = sqrt(at.footprint / (is_vertical() ? footprints.x : footprints.y));
-      at.d_px = d / at.footprint;
-      at.kernel = row + uint(settings.kernel * separable_rows_per_kernel);
-      if (is_vertical())
-        own = texelFetch(blurred_image, texel, 0);
-    }
+      d *= clean_scatter_scale(texelFetch(scatter_scale_image, texel, 0).r);
+    scatters = !copy_only && scatters_at(uint(light.a), d, depth_at(texel));
+    if (scatters && vertical)
+      own = texelFetch(blurred_image, texel, 0);
   }
-  choose_kernel(scatters, at);
-  fill_window(pixel - ivec2(gl_LocalInvocationID.xy));
-  kernel_ends ends = share_kernel();
-  barrier();
-  vec3 result = own.rgb;
-  if (scatters)
-    result = shares_kernel(at) ? scatter_in_window(at, ends, own.rgb, light.rgb)
-                               : scatter_alone(at, own.rgb, light.rgb);
+  separable_pass how = separable_pass(vertical, settings.taps, settings.kernel);
+  vec3 result = scatter(how, pixel, scatters, uint(light.a), d, light, own);
   if (listed && light.a > 0.0)
-    imageStore(scattered_image, texel, vec4(round_to_half(result), is_vertical() ? 1.0 : light.a));
+    imageStore(scattered_image, texel, vec4(round_to_half(result), vertical ? 1.0 : light.a));
 }
