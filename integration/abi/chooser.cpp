@@ -144,7 +144,8 @@ void observe_frame(Chooser& chooser, CompiledGraph& compiled_graph, FrameChoice&
   if (frame.frame_index <= chooser.newest.frame_index) return;
   chooser.newest = frame;
   if (!counted || frame.left_out) return; // no tile was classified
-  if (configuration.takes_samples && frame.counters.scattering_tiles > 0)
+  const bool samples = configuration.takes_samples && !configuration.selects_tiles;
+  if (samples && frame.counters.scattering_tiles > 0)
     record_units(chooser.demand, subsurface::mean_d_px(frame.counters),
                  double(frame.counters.sample_demand) / frame.counters.scattering_tiles);
   if (chooser.counted)
@@ -214,7 +215,8 @@ std::span<choice::Forecast> forecast_first(Chooser& chooser, const CompiledGraph
     out.time = forecast_time(configuration, chooser.costs, factors, content.load);
     out.margin = deterministic ? choice::calibrated_margin : compiled_graph.margins.margin(i);
     out.takes_samples = configuration.takes_samples;
-    out.demand = demand;
+    out.demand = configuration.selects_tiles ? double(content.scattering_tiles) : demand;
+    out.concentration = concentration(configuration);
     out.rmse = error_of(configuration.technique);
     out.unsampled_rmse = error_of(configuration.without_samples);
     out.missed_rmse = missed;

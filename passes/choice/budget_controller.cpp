@@ -321,8 +321,9 @@ const char* why_text(const Decision& decision) {
 double rmse_with(const Forecast& forecast, double units) {
   if (!forecast.takes_samples) return forecast.rmse;
   const double fraction = forecast.demand > 0 ? std::min(1.0, units / forecast.demand) : 0;
+  const double all = forecast.rmse * forecast.rmse;
   const double none = forecast.unsampled_rmse * forecast.unsampled_rmse;
-  return std::sqrt(none + fraction * (forecast.rmse * forecast.rmse - none));
+  return std::sqrt(all + std::pow(1 - fraction, forecast.concentration) * (none - all));
 }
 
 double needed_budget_ms(const Forecast& forecast, double units) {

@@ -31,12 +31,15 @@ struct Forecast {
   double demand = 0;         // units of samples that tiles request
   double rmse = 0;           // expected error with all requested samples
   double unsampled_rmse = 0; // with none
+  // The fraction f of the requested samples leaves (1 - f)^concentration of the difference of the
+  // mean squares.
+  double concentration = 1;
   // part of rmse: light transmitted through thin parts that the configuration ignores
   double missed_rmse = 0;
 };
 
-// Returns the error if tiles take `units` of samples: the mean square is interpolated linearly
-// between no samples and all samples.
+// Returns the error if tiles take `units` of samples: interpolates the mean square between no
+// samples and all samples.
 double rmse_with(const Forecast& forecast, double units);
 
 // Returns the budget within which a configuration is entered for certain with `units` of samples.

@@ -3,6 +3,7 @@
 #include "framegraph/compile/availability.hpp"
 #include "framegraph/compile/written_size.hpp"
 #include "framegraph/model/expression.hpp"
+#include "passes/choice/tile_selection.hpp"
 
 #include <fmt/format.h>
 
@@ -11,6 +12,10 @@
 
 namespace dermis::choice {
 namespace {
+
+bool scatters_in_part(const PassType& type) {
+  return type.name == "subsurface.separable_selected";
+}
 
 std::string value_text(const PassTypeSetting& setting, const SettingValue& value) {
   switch (setting.type) {
@@ -50,7 +55,7 @@ int32_t level_of(const PassType& type, const std::vector<SettingValue>& values) 
 // Returns whether the time of the pass follows the units of samples. In guided sampling they limit
 // the samples of a tile if the port is bound.
 bool takes_units(const Plan& plan, const PlanPass& pass, const PassType& type) {
-  if (type.name != "subsurface.guided") return samples_by_tile(type);
+  if (type.name != "subsurface.guided") return runs_by_budget(type);
   const int port = find_port(type, "samples_per_tile", PortSide::read);
   const auto first = plan.accesses.begin() + pass.first_access;
   return std::any_of(first, first + pass.access_count, [&](const PlanAccess& access) {
@@ -74,7 +79,8 @@ PassLoad load_of(const Plan& plan, const PlanPass& pass, const PassType& type,
     load.rule = type.dispatch;
     break;
   case DispatchRule::Domain::indirect:
-    load.groups = takes_units(plan, pass, type)          ? PassLoad::Groups::sample_units
+    load.groups = scatters_in_part(type)                 ? PassLoad::Groups::selected_tiles
+                  : takes_units(plan, pass, type)        ? PassLoad::Groups::sample_units
                   : type.name == "subsurface.copy_tiles" ? PassLoad::Groups::copied_tiles
                                                          : PassLoad::Groups::listed_tiles;
     break;
@@ -104,7 +110,7 @@ void describe(const PassTypeRegistry& pass_types, const Plan& plan, const ErrorM
               CostEstimator& costs, Configuration& configuration) {
   std::vector<RunningPass> passes, without_samples;
   configuration.passes.clear();
-  configuration.takes_samples = false;
+  configuration.takes_samples = configuration.selects_tiles = false;
   for (const PlanPass& pass : plan.passes) {
     const PassType& type = pass_types[pass.type];
     const std::vector<SettingValue> values = values_of(plan, pass, type, configuration.settings);
@@ -112,9 +118,10 @@ void describe(const PassTypeRegistry& pass_types, const Plan& plan, const ErrorM
     load.cost = costs.add(work_name(type, values));
     configuration.passes.push_back(load);
     passes.push_back(running(type, values));
-    const bool samples = load.groups == PassLoad::Groups::sample_units;
-    configuration.takes_samples = configuration.takes_samples || samples;
-    if (!samples) without_samples.push_back(passes.back());
+    const bool by_budget = runs_by_budget(type);
+    configuration.takes_samples = configuration.takes_samples || by_budget;
+    configuration.selects_tiles = configuration.selects_tiles || scatters_in_part(type);
+    if (!by_budget) without_samples.push_back(passes.back());
   }
   configuration.technique = find_technique(errors, passes);
   configuration.without_samples = find_technique(errors, without_samples);
@@ -182,8 +189,9 @@ std::string name_of(const Graph& graph, const Plan& plan, const std::vector<uint
 
 } // namespace
 
-bool samples_by_tile(const PassType& type) {
-  return type.name == "subsurface.tile_refine" || type.name == "subsurface.afis_tiles";
+bool runs_by_budget(const PassType& type) {
+  return type.name == "subsurface.tile_refine" || type.name == "subsurface.afis_tiles" ||
+         scatters_in_part(type);
 }
 
 std::string work_name(const PassType& type, std::span<const SettingValue> values) {
@@ -295,6 +303,7 @@ uint64_t groups_of(const PassLoad& pass, const FrameLoad& load) {
   case PassLoad::Groups::copied_tiles:
     return load.copied_tiles;
   case PassLoad::Groups::sample_units:
+  case PassLoad::Groups::selected_tiles:
     return load.sample_units;
   case PassLoad::Groups::fixed:
     break;
@@ -316,7 +325,8 @@ TimeForecast forecast_time(const Configuration& configuration, const CostEstimat
   sum.measured = !factors.empty();
   for (const PassLoad& pass : configuration.passes) {
     const AffineCost& cost = costs.calibrated_cost(pass.cost);
-    const bool samples = pass.groups == PassLoad::Groups::sample_units;
+    const bool samples = pass.groups == PassLoad::Groups::sample_units ||
+                         pass.groups == PassLoad::Groups::selected_tiles;
     const double ms = cost.ms(samples ? 0 : static_cast<double>(groups_of(pass, load)));
     const double unit_ms = samples ? cost.group_ms : 0;
     CostFactors factor; // all 1
@@ -334,13 +344,18 @@ TimeForecast forecast_time(const Configuration& configuration, const CostEstimat
   return sum;
 }
 
+double concentration(const Configuration& configuration) {
+  return configuration.selects_tiles ? tile_concentration : 1;
+}
+
 double expected_rmse(const ErrorModel& errors, const Configuration& configuration, double d_px,
                      uint32_t given, uint32_t demand) {
   const double all = expected_rmse(errors, configuration.technique, d_px);
   if (!configuration.takes_samples) return all;
   const double none = expected_rmse(errors, configuration.without_samples, d_px);
   const double fraction = demand > 0 ? std::min(1.0, double(given) / double(demand)) : 0.0;
-  return std::sqrt(none * none + fraction * (all * all - none * none));
+  const double left = std::pow(1 - fraction, concentration(configuration));
+  return std::sqrt(all * all + left * (none * none - all * all));
 }
 
 } // namespace dermis::choice

@@ -25,7 +25,8 @@ struct PassLoad {
     rectangle,
     listed_tiles,
     copied_tiles,
-    sample_units
+    sample_units,
+    selected_tiles
   } groups = Groups::fixed;
   uint64_t count = 1;   // for Groups::fixed
   DispatchRule rule;    // for Groups::rectangle
@@ -45,6 +46,7 @@ struct Configuration {
   // tile.
   int32_t without_samples = -1;
   bool takes_samples = false;   // takes samples by tile, as many as the budget allows
+  bool selects_tiles = false;   // scatters in as many tiles as the budget allows; a unit is a tile
   std::vector<PassLoad> passes; // in plan order
 };
 
@@ -55,8 +57,9 @@ struct Combinations {
   std::vector<uint32_t> first; // by plan: the first combination that needs the plan
 };
 
-// Returns whether the pass runs over the tiles that subsurface.allocate_samples lists.
-bool samples_by_tile(const PassType& type);
+// Returns whether the pass runs over tiles that the budget selects: those with samples, or those
+// that scatter.
+bool runs_by_budget(const PassType& type);
 
 // Returns the name of a work, such as "subsurface.separable axis=vertical taps=25". `values`: one
 // per setting of the pass type.
@@ -95,7 +98,8 @@ struct FrameLoad {
   uint64_t width = 0, height = 0; // of the render rectangle, in pixels
   uint64_t listed_tiles = 0;      // tiles with subsurface
   uint64_t copied_tiles = 0;      // all tiles with subsurface if none scatters, else 0
-  uint64_t sample_units = 0;      // units that subsurface.allocate_samples spends
+  // units that subsurface.allocate_samples or subsurface.select_tiles spends
+  uint64_t sample_units = 0;
 };
 uint64_t groups_of(const PassLoad& pass, const FrameLoad& load);
 // Returns the time by the calibration only, which is equal on all machines.
@@ -105,9 +109,11 @@ double calibrated_ms(const Configuration& configuration, const CostEstimator& co
 // CostEstimator::predict(); empty: the time by the calibration only.
 TimeForecast forecast_time(const Configuration& configuration, const CostEstimator& costs,
                            std::span<const CostFactors> factors, const FrameLoad& load);
-// Returns the expected RMSE if `given` of the `demand` units are taken: interpolates linearly
-// between the mean squares without samples and with all samples. Units with the largest benefit
-// come first, so the result is an upper bound of the measured error.
+// Returns Forecast::concentration.
+double concentration(const Configuration& configuration);
+// Returns the expected RMSE if `given` of the `demand` units are taken: interpolates the mean
+// squares without samples and with all samples as Forecast::concentration says. Units with the
+// largest benefit come first, so the result is an upper bound of the measured error.
 double expected_rmse(const ErrorModel& errors, const Configuration& configuration, double d_px,
                      uint32_t given, uint32_t demand);
 

@@ -19,7 +19,7 @@ TypeNames scattering_types(const PassTypeRegistry& pass_types, const Plan& plan,
     const PassType& type = pass_types[pass.type];
     const bool scatters =
         find_port(type, "scattered", PortSide::write) >= 0 && type.name != "subsurface.copy_tiles";
-    if (scatters && samples_by_tile(type) == samples) names.insert(type.name);
+    if (scatters && runs_by_budget(type) == samples) names.insert(type.name);
   }
   return names;
 }

@@ -53,7 +53,11 @@ PassTypeRegistry make_pass_types() {
                                &sap_coarse_down_type,
                                &sap_coarse_up_type,
                                &separable_tiles_type,
-                               &blend_tiles_type}) {
+                               &blend_tiles_type,
+                               &tile_change_type,
+                               &tile_histogram_type,
+                               &select_tiles_type,
+                               &separable_selected_type}) {
     PassType known = *type;
     known.needs = needs_of(known.name);
     known.serves_scattering =

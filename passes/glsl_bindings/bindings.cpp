@@ -1,6 +1,7 @@
 #include "passes/glsl_bindings/bindings.hpp"
 
 #include "passes/choice/sample_allocation.hpp"
+#include "passes/choice/tile_selection.hpp"
 #include "passes/common/accumulate.hpp"
 #include "passes/common/dispatch.hpp"
 #include "passes/common/pass_types.hpp"
@@ -171,6 +172,9 @@ std::string shared_constants() {
       "sample_allocation.hpp\n"
       "const float allocation_stay = {};\n"
       "const int allocation_first_bin = {};\n"
+      "const uint full_tile_weight = {}u, selection_reserve = {}u; // tile_selection.hpp\n"
+      "const float selection_stay = {};\n"
+      "const uint selection_first_bin = {}u;\n"
       "const float min_patch_cosine = {}, max_patch_slope = {}; // reference/surface.hpp\n"
       "const int separable_nodes = {}; // separable_kernel.hpp\n"
       "const float separable_first_log2_d = {:.1f};\n"
@@ -207,11 +211,12 @@ std::string shared_constants() {
       subsurface::copy_below_d_px, subsurface::uniform_reach_d, subsurface::uniform_tolerance,
       subsurface::uniform_max_reach, subsurface::uniform_cell_side, subsurface::probe_max_reach,
       choice::allocation_gain[0], choice::allocation_gain[1], choice::allocation_gain[2],
-      choice::allocation_stay, choice::allocation_first_bin, subsurface::min_patch_cosine,
-      subsurface::max_patch_slope, subsurface::separable_nodes, subsurface::separable_first_log2_d,
-      subsurface::separable_log2_d_step, subsurface::separable_rows_per_profile,
-      subsurface::sap_level_count, subsurface::sap_variant_count,
-      static_cast<int>(subsurface::SapVariant::half),
+      choice::allocation_stay, choice::allocation_first_bin, choice::full_tile_weight,
+      choice::selection_reserve, choice::selection_stay, choice::selection_first_bin,
+      subsurface::min_patch_cosine, subsurface::max_patch_slope, subsurface::separable_nodes,
+      subsurface::separable_first_log2_d, subsurface::separable_log2_d_step,
+      subsurface::separable_rows_per_profile, subsurface::sap_level_count,
+      subsurface::sap_variant_count, static_cast<int>(subsurface::SapVariant::half),
       static_cast<int>(subsurface::SapVariant::plain), subsurface::sap_node_count,
       subsurface::sap_table_pairs, double(subsurface::sap_nodes_per_octave),
       subsurface::sap_log2_d_first, subsurface::sap_shape_nodes, subsurface::sap_last_log2_aspect,

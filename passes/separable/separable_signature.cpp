@@ -38,6 +38,29 @@ constexpr PassTypeSetting separable_settings[] = {
         "artist-friendly kernel"),
 };
 
+constexpr Port separable_selected_ports[] = {
+    port::lighting,
+    port::material,
+    port::depth,
+    port::scatter_scale,
+    port::albedo,
+    port::optional(port::sampled("blurred",
+                                 "result of the horizontal pass; bound for the vertical pass",
+                                 port::light_formats)),
+    port::tile_weights,
+    port::tiles,
+    port::arguments,
+    port::written("scattered",
+                  "scattered light of the listed tiles, undefined elsewhere; a: profile id after "
+                  "the horizontal pass, 1 after the vertical pass",
+                  port::color_formats),
+};
+constexpr PassTypeSetting separable_selected_settings[] = {
+    separable_settings[0],
+    separable_settings[1],
+    setting::texturing,
+};
+
 constexpr Port setup_ports[] = {
     port::where_covered(port::lighting),
     port::where_covered(port::material),
@@ -93,6 +116,16 @@ const PassType separable_type{
            "published kernel.",
     .ports = separable_ports,
     .settings = separable_settings,
+    .dispatch = over_tiles,
+};
+
+const PassType separable_selected_type{
+    .name = "subsurface.separable_selected",
+    .shader = "separable/subsurface_separable_selected",
+    .doc = "Applies one 1-D pass of the fitted separable kernel to the tiles that "
+           "subsurface.select_tiles selected, directly from the host's images.",
+    .ports = separable_selected_ports,
+    .settings = separable_selected_settings,
     .dispatch = over_tiles,
 };
 

@@ -28,7 +28,8 @@ SPREAD = 0.3  # assumed deviation of one frame
 UNITS = 4096  # sample units of the modelled frame
 # How often the loops of a kernel run. Others run LOOP times. Of the loops of separable one runs
 # about five times, the other only for pixels that do not share their tile's kernel.
-TRIPS = {"subsurface.separable": 2, "subsurface.tile_refine": 8}
+TRIPS = {"subsurface.separable": 2, "subsurface.separable_selected": 2,
+         "subsurface.tile_refine": 8}
 LOOP = 4
 # Kernels whose loops run once per sample. Each sample reads at a place of its own.
 SAMPLING = {"subsurface.afis", "subsurface.afis_published", "subsurface.afis_tiles",
@@ -119,7 +120,7 @@ def cost_of(model, work, row, assembly):
     if per in ("listed_tiles", "copied_tiles"):
         counted = model.tiles[0]
         launched = model.tiles[work.get("level", 0)]
-    elif per == "sample_units":
+    elif per in ("sample_units", "selected_tiles"):
         counted = launched = UNITS
         bytes_moved = (work["read"] + work["written"]) * 64 * UNITS
     else:

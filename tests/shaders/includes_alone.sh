@@ -9,9 +9,14 @@ glslang=$1 shaders=$2 generated=$3
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
 
-# GLSL cannot pass a buffer to a function, so these two declare functions that read the buffers of a
-# scene; a kernel defines them.
-declares_functions() { [ "$1" = restir/scene.glsl ] || [ "$1" = restir/surfaces.glsl ]; }
+# GLSL cannot pass a buffer to a function, so these declare functions that read the buffers or the
+# images of a kernel, which defines them.
+declares_functions() {
+  case $1 in
+    restir/scene.glsl | restir/surfaces.glsl | separable/separable_pass.glsl) ;;
+    *) false ;;
+  esac
+}
 
 # Prints why an include depends on its includer; prints nothing if it compiles without one.
 dependence() { # FOLDER NAME

@@ -100,22 +100,40 @@ ImageReads separable_setup(const PassType& type, const ReadsQuestion& question) 
   return {2 + light_reads(type, question)};
 }
 
-// Light and depth of the pixel and of 4 pixels of the window that the tile shares; on the second
-// axis the pixel's light before the first. Taps that are not in the window read light and depth on
-// both sides, of one pixel or of the two that they interpolate.
-ImageReads separable(const PassType& type, const ReadsQuestion& question) {
-  const uint32_t taps = separable_taps[static_cast<size_t>(setting(type, question, "taps"))];
+// Returns the pixels that taps beyond the window of a tile read: one or two on both sides.
+double taps_beyond_window(uint32_t taps, bool fitted, const ReadsQuestion& question) {
   const double d_px = std::max({question.d_px[0], question.d_px[1], question.d_px[2]});
-  const bool fitted = setting(type, question, "kernel") == 0;
   double beyond = double(taps - 1) / 2;
   if (fitted) {
     double next = 1;
     for (const double offset : separable_offsets(d_px, taps))
       beyond -= offset == next++ ? 1 : 0;
   }
-  const double pixels = fitted && taps >= separable_whole_taps ? 1 : 2;
+  return 2 * (fitted && taps >= separable_whole_taps ? 1 : 2) * beyond;
+}
+
+// Light and depth of the pixel, of 4 pixels of the window that the tile shares, and of those
+// beyond; on the second axis the pixel's light before the first.
+ImageReads separable(const PassType& type, const ReadsQuestion& question) {
+  const uint32_t taps = separable_taps[static_cast<size_t>(setting(type, question, "taps"))];
+  const bool fitted = setting(type, question, "kernel") == 0;
   return {2 + scale_read(type, question) + one_if(type, question, "blurred", PortSide::read) +
-          2 * 4 + 2 * 2 * pixels * beyond};
+          2 * (4 + taps_beyond_window(taps, fitted, question))};
+}
+
+// As separable, but light comes from the host's lighting and material; on the second axis only that
+// of the pixel itself.
+ImageReads separable_selected(const PassType& type, const ReadsQuestion& question) {
+  const uint32_t taps = separable_taps[static_cast<size_t>(setting(type, question, "taps"))];
+  const double own = 1 + light_reads(type, question),
+               blurred = one_if(type, question, "blurred", PortSide::read);
+  const double tap = blurred > 0 ? 2 : 1 + own - scale_read(type, question);
+  return {own + 1 + blurred + tap * (4 + taps_beyond_window(taps, true, question))};
+}
+
+// common/subsurface_tile_change.comp: importance of every fourth pixel of the tile.
+ImageReads tile_change(const PassType& type, const ReadsQuestion& question) {
+  return {16 * one_if(type, question, "importance", PortSide::read)};
 }
 
 // sap/subsurface_sap_setup_half_res.comp: material, depth and light of the 4x4 pixels of 2x2
@@ -383,6 +401,10 @@ constexpr Entry entries[] = {
     {"subsurface.burley", burley},
     {"subsurface.separable", separable},
     {"subsurface.separable_setup", separable_setup},
+    {"subsurface.separable_selected", separable_selected},
+    {"subsurface.tile_change", tile_change},
+    {"subsurface.tile_histogram", none},
+    {"subsurface.select_tiles", none},
     {"subsurface.sap_tiles", none},
     {"subsurface.sap_setup", sap_setup},
     {"subsurface.sap_gather", sap_gather},

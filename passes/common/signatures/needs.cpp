@@ -8,7 +8,7 @@ namespace {
 constexpr uint32_t pixel = 1, tile = 8, cell = 32, region = 64;       // sides of squares
 constexpr uint32_t word = 4, range = 16, reservoir = 64, domain = 32; // bytes
 // dispatch: VkDispatchIndirectCommand and one word; level_heads: bytes.
-constexpr uint32_t demand_run = 256, demand_bytes = 1024;
+constexpr uint32_t demand_run = 256, demand_bytes = 1024, histogram_bytes = 2048;
 constexpr uint32_t dispatch = 16, levels = 9, level_heads = 1024;
 
 constexpr PortNeed needs[] = {
@@ -23,6 +23,11 @@ constexpr PortNeed needs[] = {
     {"horizontal_tiles", tile, word, word},
     {"demand", demand_run, demand_bytes}, // 1,024 tiles cover at least as much
     {"before", tile, word},
+    {"tile_changes", tile, word},
+    {"tile_weights", tile, word},
+    {"histogram", demand_run, histogram_bytes},
+    {"selected_tiles", tile, word, word},
+    {"selected_arguments", 0, 0, dispatch},
     {"reservoirs", pixel, reservoir},
     {"reservoirs_before", pixel, reservoir},
     {"merged", pixel, reservoir},
@@ -110,7 +115,7 @@ constexpr PortNeed needs[] = {
     {"surface_4", 16},
     {"surface_5", 32},
 };
-constexpr size_t buffers = 31;
+constexpr size_t buffers = 36;
 static_assert(needs[buffers].port == "lighting");
 
 } // namespace

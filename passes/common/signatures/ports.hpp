@@ -144,6 +144,10 @@ inline constexpr Port tile_d =
     read_buffer("tile_d", "uint", "per tile of the render rectangle: bits of the widest d, px");
 inline constexpr Port samples_per_tile = read_buffer(
     "samples_per_tile", "uint", "per tile of the render rectangle: allocated sample steps, 0 to 3");
+inline constexpr Port tile_weights = read_buffer(
+    "tile_weights", "uint",
+    "per tile of the render rectangle: fraction of scattered light in eighths; 255: does not "
+    "scatter");
 
 // Light before and after scattering.
 inline constexpr Port combined =

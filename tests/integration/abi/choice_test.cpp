@@ -39,8 +39,8 @@ TEST_F(Choice, WithoutABudgetTheDefaultsRun) {
   EXPECT_STREQ(choice.configuration, "technique=sap, variant=smooth");
   EXPECT_STREQ(choice.technique, "sap smooth");
   EXPECT_EQ(choice.budget_ms, 0);
-  EXPECT_EQ(choice.configuration_count,
-            10u); // sap has three variants, hybrid two, separable three numbers of taps; afis, off
+  // sap has three variants, hybrid two, separable three numbers of taps; afis, partial, off
+  EXPECT_EQ(choice.configuration_count, 11u);
 }
 
 TEST_F(Choice, EachBudgetGetsTheSmallestErrorThatFits) {

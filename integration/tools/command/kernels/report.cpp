@@ -117,6 +117,8 @@ std::string_view name_of(choice::PassLoad::Groups groups) {
     return "copied_tiles";
   case Groups::sample_units:
     return "sample_units";
+  case Groups::selected_tiles:
+    return "selected_tiles";
   case Groups::fixed:
     break;
   }

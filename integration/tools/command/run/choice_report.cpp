@@ -42,7 +42,12 @@ std::string describe_choice(const demo::FrameChoice& choice) {
   if (!choice.next_better.empty())
     text += fmt::format("; next better {} would need {:.2f} ms more", choice.next_better,
                         choice.next_better_missing_ms);
-  if (choice.sample_units < choice.sample_demand)
+  const bool in_part =
+      choice.sample_units > 0 && choice.sampled_tiles == decltype(choice.sampled_tiles){};
+  if (in_part)
+    text += fmt::format("; {} of {} tiles that scatter fit the budget", choice.sample_units,
+                        choice.sample_demand);
+  else if (choice.sample_units < choice.sample_demand)
     text += fmt::format("; {} of {} requested samples per tile pixel fit the budget",
                         8 * choice.sample_units, 8 * choice.sample_demand);
   if (!choice.miss.empty()) text += fmt::format("; over the budget: {}", choice.miss);
