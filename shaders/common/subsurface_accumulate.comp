@@ -2,6 +2,7 @@
 // Accumulates scattered light over frames, for hosts without their own temporal anti-aliasing.
 // History keeps only the part of scattered light that the nearest pixels do not explain, relative
 // to the mean light around. Noise is averaged; each frame's own sharp light is shown unchanged.
+#extension GL_EXT_control_flow_attributes : require
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 #include "common/constants_math.glsl"
@@ -189,9 +190,12 @@ void main() {
   bool listed = tile < tiles_data[0] && pixel_of_tile(tiles_data[1u + tile], pixel, copy_only);
   ivec2 local = ivec2(gl_LocalInvocationID.xy), first = pixel - local, texel = texel_of(pixel);
   share_near_light(first);
-  near_field near = share_remainder(first, local);
-  if (gl_LocalInvocationIndex < 36u)
-    share_remainder(first, ring_pixel(int(gl_LocalInvocationIndex)));
+  near_field near;
+  [[dont_unroll]] for (int i = int(gl_LocalInvocationIndex); i < 64 + 36; i += 64) {
+    near_field one = share_remainder(first, i < 64 ? local : ring_pixel(i - 64));
+    if (i < 64)
+      near = one;
+  }
   barrier();
   if (!listed)
     return;
