@@ -9,10 +9,13 @@
 namespace dermis::abi_test {
 namespace {
 
-// An overlay that removes the detection of uniform light.
+// An overlay that removes the detection of uniform light, and what else reads the range of light.
 constexpr const char* without_uniform_light = R"({ "dermis_overlay": 2, "edits": [
   { "remove": "/passes/classify_uniform_light" }, { "remove": "/passes/classify/write/light_range" },
-  { "remove": "/passes/classify/write/light_cells" } ] })";
+  { "remove": "/passes/classify/write/light_cells" }, { "remove": "/passes/tile_change" },
+  { "remove": "/passes/tile_histogram" }, { "remove": "/passes/select_tiles" },
+  { "remove": "/passes/horizontal_tiles" }, { "remove": "/passes/vertical_tiles" },
+  { "remove": "/passes/vertical_and_copies" } ] })";
 
 // Reach of the light test in tiles: a pixel is 0.5 mm, skin's widest d is 3.67 / 3.5 mm.
 const auto reach =

@@ -30,7 +30,10 @@ constexpr double pixels_per_tile = 64;
 // Removes the detection of uniform light from a graph.
 constexpr const char* without_uniform_light = R"({ "dermis_overlay": 2, "edits": [
   { "remove": "/passes/classify_uniform_light" }, { "remove": "/passes/classify/write/light_range" },
-  { "remove": "/passes/classify/write/light_cells" } ] })";
+  { "remove": "/passes/classify/write/light_cells" }, { "remove": "/passes/tile_change" },
+  { "remove": "/passes/tile_histogram" }, { "remove": "/passes/select_tiles" },
+  { "remove": "/passes/horizontal_tiles" }, { "remove": "/passes/vertical_tiles" },
+  { "remove": "/passes/vertical_and_copies" } ] })";
 
 struct SkipFrame {
   SkipCase from;
