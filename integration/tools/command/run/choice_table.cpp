@@ -59,7 +59,9 @@ std::vector<choice::Forecast> forecasts_of(std::span<const choice::Configuration
     one.time = forecast_time(configuration, costs, {}, load);
     one.margin = choice::calibrated_margin;
     one.takes_samples = configuration.takes_samples;
-    one.demand = units_per_tile * static_cast<double>(load.listed_tiles);
+    one.demand =
+        (configuration.selects_tiles ? 1 : units_per_tile) * static_cast<double>(load.listed_tiles);
+    one.concentration = concentration(configuration);
     one.rmse = expected_rmse(errors, configuration.technique, d_px);
     one.unsampled_rmse = expected_rmse(errors, configuration.without_samples, d_px);
   }
@@ -72,13 +74,13 @@ double full_ms(const choice::Forecast& forecast) {
 }
 
 // Returns what a new view runs with this budget.
-uint32_t selected(std::span<const choice::Forecast> forecasts, double budget_ms) {
+choice::Decision selected(std::span<const choice::Forecast> forecasts, double budget_ms) {
   choice::DecisionState state;
   restart(state, forecasts.size(), 0);
   std::vector<choice::Assessment> scratch(forecasts.size());
   choice::FrameInput frame;
   frame.budget_ms = budget_ms;
-  return decide(forecasts, frame, state, scratch).configuration;
+  return decide(forecasts, frame, state, scratch);
 }
 
 // Returns a configuration that takes about as much time as `index`, or less, and errs no more;
@@ -102,14 +104,17 @@ ChoiceTable table_of(const std::string& device, double d_px,
   double least = full_ms(forecasts.front()), largest = least;
   for (size_t i = 0; i < forecasts.size(); ++i) {
     const double ms = full_ms(forecasts[i]);
-    table.rows.push_back({configurations[i].name, ms, forecasts[i].rmse, 0,
+    table.rows.push_back({configurations[i].name, ms, forecasts[i].rmse, 0, 0,
                           better_than(i, forecasts, configurations)});
     least = std::min(least, ms);
     largest = std::max(largest, ms);
   }
   for (double ms = least / 2; ms < 2 * largest; ms *= budget_step) {
-    ChoiceRow& row = table.rows[selected(forecasts, ms)];
-    if (row.first_ms == 0) row.first_ms = ms;
+    const choice::Decision decision = selected(forecasts, ms);
+    ChoiceRow& row = table.rows[decision.configuration];
+    if (row.first_ms > 0) continue;
+    row.first_ms = ms;
+    row.first_rmse = decision.rmse;
   }
   std::stable_sort(table.rows.begin(), table.rows.end(),
                    [](const ChoiceRow& a, const ChoiceRow& b) { return a.ms < b.ms; });
@@ -141,6 +146,13 @@ std::string describe_memory(const ChoiceTables& tables) {
     text += row(one.configuration, one.transient_bytes, one.history_bytes);
   return text +
          row("a view, which shares transients", tables.transient_bytes, tables.history_bytes);
+}
+
+// Returns the error at the least budget, if samples or tiles that do not fit make it larger.
+std::string with_less(const ChoiceRow& row) {
+  constexpr double equal = 1.005;
+  return row.first_rmse > equal * row.rmse ? fmt::format(", RMSE {:.2e} there", row.first_rmse)
+                                           : "";
 }
 
 void add_missing(const Diagnostics& found, Diagnostics& missing) {
@@ -194,10 +206,11 @@ std::string describe_tables(const ChoiceTables& tables) {
     text += fmt::format("\n{}, d = {} px\n{:<34}{:>10}{:>10}  {}\n", table.device, table.d_px,
                         "configuration", "ms", "RMSE", "selected by budgets from");
     for (const ChoiceRow& row : table.rows)
-      text += fmt::format("{:<34}{:>10.3g}{:>10.2e}  {}\n", row.configuration, row.ms, row.rmse,
-                          row.first_ms > 0      ? fmt::format("{:.3g} ms", row.first_ms)
-                          : !row.better.empty() ? "none: " + row.better + " is better"
-                                                : "none");
+      text +=
+          fmt::format("{:<34}{:>10.3g}{:>10.2e}  {}\n", row.configuration, row.ms, row.rmse,
+                      row.first_ms > 0 ? fmt::format("{:.3g} ms{}", row.first_ms, with_less(row))
+                      : !row.better.empty() ? "none: " + row.better + " is better"
+                                            : "none");
   }
   return text;
 }
@@ -219,7 +232,7 @@ void write_tables(JsonWriter& writer, const ChoiceTables& tables) {
       writer.open_object(true).member("configuration", std::string_view(row.configuration));
       writer.member("ms", row.ms).member("rmse", row.rmse).key("selected_from_ms");
       if (row.first_ms > 0)
-        writer.value(row.first_ms);
+        writer.value(row.first_ms).member("first_rmse", row.first_rmse);
       else
         writer.null();
       writer.member("better", std::string_view(row.better)).close();

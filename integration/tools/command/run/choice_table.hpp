@@ -13,10 +13,11 @@ namespace dermis::tools {
 
 struct ChoiceRow {
   std::string configuration;
-  double ms = 0;       // expected time, with all samples that tiles may request
-  double rmse = 0;     // expected error
-  double first_ms = 0; // least budget that selects the configuration; 0: none does
-  std::string better;  // takes about as much time or less and errs no more; "": none
+  double ms = 0;         // expected time, with all samples that tiles may request
+  double rmse = 0;       // expected error
+  double first_ms = 0;   // least budget that selects the configuration; 0: none does
+  double first_rmse = 0; // expected error with what fits that budget
+  std::string better;    // takes about as much time or less and errs no more; "": none
 };
 
 struct ChoiceTable {
