@@ -91,6 +91,11 @@ void insert_setup(TextEdits& edits, NodeId separable, const SeparableInputs& inp
           texturing.empty() ? "" : fmt::format(R"(, "set": {{ "texturing": "{}" }})", texturing)));
 }
 
+// Returns the name of the image whose mips are the levels that a pass reads.
+std::string levels_of(const TextEdits& edits, NodeId pass) {
+  return name_for("levels", edits.at_port(pass, "read", "level_1"), "level_1");
+}
+
 // Renames a level at the ports of a pass that reads or writes single levels.
 void rename_levels(TextEdits& edits, NodeId pass,
                    const std::map<std::string_view, std::string>& mips) {
@@ -171,8 +176,7 @@ void upgrade_levels(TextEdits& edits, const std::vector<NodeId>& passes, AddedRe
     for (size_t level = level_count; level >= 1; --level) {
       const NodeId value = port_of(edits, pass, "read", fmt::format("level_{}", level));
       if (!value.valid()) continue;
-      const std::string levels =
-          name_for("levels", edits.at_port(pass, "read", "level_1"), "level_1");
+      const std::string levels = levels_of(edits, pass);
       mips.emplace(edits.document.text(value), fmt::format("{}#{}", levels, level - 1));
       added.emplace(levels, "levels");
       if (level == 1)
@@ -189,6 +193,29 @@ void upgrade_levels(TextEdits& edits, const std::vector<NodeId>& passes, AddedRe
             resources.valid() ? edits.document.find(resources, image) : NodeId{};
         declared.valid())
       edits.remove_member(declared);
+}
+
+void upgrade_tile_variance(TextEdits& edits, const std::vector<NodeId>& passes,
+                           AddedResources& added) {
+  const auto type_is = [&](std::string_view type) {
+    return [&edits, type](NodeId pass) { return type_of(edits, pass) == type; };
+  };
+  const auto sampling =
+      std::find_if(passes.begin(), passes.end(), type_is("subsurface.afis_tiles"));
+  if (sampling == passes.end()) return;
+  for (const NodeId pass : passes) {
+    const NodeId read = edits.document.find(pass, "read"),
+                 written = edits.document.find(pass, "write");
+    if (!type_is("subsurface.contrast")(pass) || !read.valid() || !written.valid()) continue;
+    std::string ports = fmt::format(R"("levels": "{}", "depth": "{}")", levels_of(edits, *sampling),
+                                    edits.at_port(*sampling, "read", "depth"));
+    if (const auto scale = edits.at_port(*sampling, "read", "scatter_scale"); !scale.empty())
+      ports += fmt::format(R"(, "scatter_scale": "{}")", scale);
+    const std::string d = name_for("tile_d", edits.at_port(pass, "write", "doubts"), "doubts");
+    edits.add_member(read, ports);
+    edits.add_member(written, fmt::format(R"("tile_d": "{}")", d));
+    added.emplace(d, "tile_d");
+  }
 }
 
 } // namespace dermis::tools

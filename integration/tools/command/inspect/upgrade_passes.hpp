@@ -21,5 +21,9 @@ void upgrade_separable(TextEdits& edits, const std::vector<NodeId>& passes, Adde
 void upgrade_level_light(TextEdits& edits, const std::vector<NodeId>& passes);
 // Filtered importance sampling reads levels 1 to 8 as mips of one image.
 void upgrade_levels(TextEdits& edits, const std::vector<NodeId>& passes, AddedResources& added);
+// subsurface.tile_variance reads the levels and the depth that the file's subsurface.afis_tiles
+// reads, and writes tile_d.
+void upgrade_tile_variance(TextEdits& edits, const std::vector<NodeId>& passes,
+                           AddedResources& added);
 
 } // namespace dermis::tools

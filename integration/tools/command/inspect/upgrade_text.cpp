@@ -65,6 +65,7 @@ public:
       upgrade_pass(pass);
     upgrade_separable(*this, objects, added_);
     upgrade_levels(*this, objects, added_);
+    upgrade_tile_variance(*this, objects, added_);
     upgrade_level_light(*this, objects);
   }
 
