@@ -11,7 +11,7 @@ const uint selection_bins = 256u;
 const uint no_bin = 0xffffffffu;
 // Weights of tiles: 0 to full_tile_weight, or not_scattering.
 const uint not_scattering = 255u;
-const float fade_px = 2.0; // of the border next to a tile of less weight
+const float fade_px = 8.0; // across a tile next to one of less weight
 
 bool is_chosen(uint weight) { return weight > 0u && weight <= full_tile_weight; }
 

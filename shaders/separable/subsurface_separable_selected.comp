@@ -42,8 +42,8 @@ float depth_at(ivec2 texel) {
   return depth > 0.0 ? depth : no_surface();
 }
 
-// Returns the fraction of scattered light at a pixel: the weight of its tile, which falls to the
-// weight of each tile around within a few pixels.
+// Returns the fraction of scattered light at a pixel: the weight of its tile, which falls across the
+// tile to the weight of each tile around.
 float fraction_at(ivec2 tile, ivec2 pixel) {
   uint own = weight_of(tile);
   float least = float(own);

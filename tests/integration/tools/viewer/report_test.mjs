@@ -176,8 +176,8 @@ check('light and dark themes are readable, as wide as the window, and rendered',
 check('the index links to the page of each suite, and no link is broken', async () => {
   const { page, problems, close } = await open(index);
   assert.deepEqual(await page.locator('tbody tr td:first-child').allTextContents(),
-    ['record', 'skip', 'truth', 'supplement', 'compile', 'stability', 'budget', 'error-time', 'dynamic', 'restir']);
-  assert.equal(await page.locator('tbody tr', { hasText: 'not measured' }).count(), 8);
+    ['record', 'skip', 'truth', 'supplement', 'compile', 'stability', 'budget', 'error-time', 'error-table', 'dynamic', 'restir']);
+  assert.equal(await page.locator('tbody tr', { hasText: 'not measured' }).count(), 9);
   await page.locator('a', { hasText: /^skip$/ }).click();
   assert.equal(await page.title(), 'Frames that do not need all of a graph');
   assert.match(await page.locator('dl').textContent(), /figures are meaningless/);
