@@ -107,9 +107,10 @@ bool dominates(const dermis_outcome& other, const dermis_outcome& one, bool othe
          other.expected_rmse < one.expected_rmse;
 }
 
-dermis_result get_frontier(dermis_graph_t& graph, const dermis_forecast_desc* desc, uint32_t* count,
-                           dermis_outcome* outcomes) {
-  constexpr const char* function = "dermis_graph_frontier";
+// Calls `use(request, forecasts)` with the forecasts of the requested view, whose mutex is locked.
+template <class Use>
+dermis_result with_forecasts(dermis_graph_t& graph, const char* function,
+                             const dermis_forecast_desc* desc, Use use) {
   Request request;
   if (const dermis_result result = read_request(graph, function, desc, request);
       result != DERMIS_OK)
@@ -119,20 +120,28 @@ dermis_result get_frontier(dermis_graph_t& graph, const dermis_forecast_desc* de
   if (const dermis_result result = make_forecasts(function, request, forecasts);
       result != DERMIS_OK)
     return result;
-  std::array<dermis_outcome, choice::max_configurations> all;
-  const size_t number = forecasts.all.size();
-  for (uint32_t i = 0; i < number; ++i)
-    all[i] = outcome_of(forecasts, i, units_within(forecasts.all[i], forecasts.budget_ms));
-  for (size_t i = 0; i < number; ++i)
-    for (size_t k = 0; k < number && all[i].dominated == 0; ++k)
-      all[i].dominated = k != i && dominates(all[k], all[i], k < i) ? 1 : 0;
-  std::sort(all.begin(), all.begin() + static_cast<ptrdiff_t>(number),
-            [](const dermis_outcome& a, const dermis_outcome& b) {
-              return a.expected_ms != b.expected_ms ? a.expected_ms < b.expected_ms
-                                                    : a.expected_rmse < b.expected_rmse;
-            });
-  return fill_array(graph.context->log, function, count, outcomes, static_cast<uint32_t>(number),
-                    [&](uint32_t i) { return all[i]; });
+  return use(request, forecasts);
+}
+
+dermis_result get_frontier(dermis_graph_t& graph, const dermis_forecast_desc* desc, uint32_t* count,
+                           dermis_outcome* outcomes) {
+  constexpr const char* function = "dermis_graph_frontier";
+  return with_forecasts(graph, function, desc, [&](const Request&, const Forecasts& forecasts) {
+    std::array<dermis_outcome, choice::max_configurations> all;
+    const size_t number = forecasts.all.size();
+    for (uint32_t i = 0; i < number; ++i)
+      all[i] = outcome_of(forecasts, i, units_within(forecasts.all[i], forecasts.budget_ms));
+    for (size_t i = 0; i < number; ++i)
+      for (size_t k = 0; k < number && all[i].dominated == 0; ++k)
+        all[i].dominated = k != i && dominates(all[k], all[i], k < i) ? 1 : 0;
+    std::sort(all.begin(), all.begin() + static_cast<ptrdiff_t>(number),
+              [](const dermis_outcome& a, const dermis_outcome& b) {
+                return a.expected_ms != b.expected_ms ? a.expected_ms < b.expected_ms
+                                                      : a.expected_rmse < b.expected_rmse;
+              });
+    return fill_array(graph.context->log, function, count, outcomes, static_cast<uint32_t>(number),
+                      [&](uint32_t i) { return all[i]; });
+  });
 }
 
 dermis_result predict(dermis_graph_t& graph, const dermis_forecast_desc* desc,
@@ -143,19 +152,13 @@ dermis_result predict(dermis_graph_t& graph, const dermis_forecast_desc* desc,
   const size_t size = stated_size(outcome);
   if (const SizedRead read = check_size<dermis_outcome>(size); read != SizedRead::ok)
     return rejected_size(log, read, function, "outcome", size, sizeof(dermis_outcome));
-  Request request;
-  if (const dermis_result result = read_request(graph, function, desc, request);
-      result != DERMIS_OK)
-    return result;
-  const std::lock_guard lock(request.view->mutex);
-  Forecasts forecasts;
-  if (const dermis_result result = make_forecasts(function, request, forecasts);
-      result != DERMIS_OK)
-    return result;
-  const choice::Decision decision = settled_decision(
-      request.view->chooser, *forecasts.compiled_graph, forecasts.all, forecasts.budget_ms);
-  write_sized(outcome, size, outcome_of(forecasts, decision.configuration, decision.units));
-  return DERMIS_OK;
+  return with_forecasts(
+      graph, function, desc, [&](const Request& request, const Forecasts& forecasts) {
+        const choice::Decision decision = settled_decision(
+            request.view->chooser, *forecasts.compiled_graph, forecasts.all, forecasts.budget_ms);
+        write_sized(outcome, size, outcome_of(forecasts, decision.configuration, decision.units));
+        return DERMIS_OK;
+      });
 }
 
 } // namespace

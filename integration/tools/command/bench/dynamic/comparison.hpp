@@ -35,8 +35,8 @@ void add_comparisons(Report& report, std::span<const DynamicRow> rows);
 
 // Fills the second table: samples, time and 8-bit PSNR of flashing, regular and dynamic light as
 // published (Xie et al. 2021, table 3) and as measured. The maxima are over frames: samples of AS
-// over samples with the control, and PSNR with the control over PSNR of AS. `fixed` stands next to
-// them.
+// over samples with the control, and PSNR with the control over PSNR of AS. Each scene also
+// has a row of `fixed`.
 void add_published(Report& report, std::span<const DynamicRow> rows);
 
 } // namespace dermis::tools
