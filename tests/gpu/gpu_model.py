@@ -62,6 +62,11 @@ NVIDIA_LIKE = Hardware("NVIDIA-like (46 SM, 1.7 GHz, 448 GB/s, 4 MB L2)", 46, 1.
                        448e9, 448e9, 1.4e12, 3.5e-6, 2 * 1.45, 2 * 8, 0.0)
 SMALL_RDNA2 = Hardware("small RDNA2 (28 CU, 2.3 GHz, 224 GB/s + 32 MB IC)", 28, 2.3e9, 56,
                        224e9, 0.5e12, 0.8e12, 4e-6, 2, 8, 0.2)
+# Added before the first measurement on such a device; the time per dispatch is that of the row above.
+H200 = Hardware("H200 (132 SM, 1.98 GHz, 4.8 TB/s, 60 MB L2)", 132, 1.98e9, 528,
+                4.8e12, 5.5e12, 5.5e12, 3.5e-6, 2 * 1.45, 2 * 8, 0.3)
+H100 = Hardware("H100 (132 SM, 1.98 GHz, 3.35 TB/s, 50 MB L2)", 132, 1.98e9, 528,
+                3.35e12, 5.5e12, 5.5e12, 3.5e-6, 2 * 1.45, 2 * 8, 0.25)
 
 
 @dataclasses.dataclass
@@ -520,7 +525,7 @@ def main():
         add_pair(model, built, *map(float, options.pair.split(",")))
         print_model(model, 2560, 1440)
         return
-    for hardware in (RX_6800, NVIDIA_LIKE, SMALL_RDNA2):
+    for hardware in (RX_6800, NVIDIA_LIKE, SMALL_RDNA2, H200, H100):
         for width, height in ((2560, 1440), (1920, 1080)):
             print_model(run(hardware, width=width, height=height, built=built,
                             flagged=options.flagged), width, height)
