@@ -6,7 +6,8 @@
 #   1  dermis doctor, pictures compared with those of another driver, times of passes
 #   2  statistics of kernels, error over time of every technique
 #   3  frames that keep a budget
-# DERMIS: the command. PICTURES: a folder that step 1 wrote on another driver. SIZES: for the times.
+# DERMIS: the command. PICTURES: a folder that step 1 wrote on another driver. SCENE: bust by
+# default. SIZES, TECHNIQUES: of the times.
 set -euo pipefail
 cd "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")"
 [[ -d bin ]] || cd ../..
@@ -14,16 +15,16 @@ dermis=${DERMIS:-./dermis}
 [[ -x $dermis ]] || dermis=build/release/dermis
 step=${1:-} out=${2:-}
 if [[ ! $step =~ ^[123]$ || -z $out ]]; then
-  sed -n '2,/^# DERMIS/s/^# //p' "${BASH_SOURCE[0]}" >&2
+  sed -n '2,/^# default/s/^# //p' "${BASH_SOURCE[0]}" >&2
   exit 2
 fi
 mkdir -p "$out"
-techniques=(sap separable burley papers/fixed papers/afis)
+read -ra techniques <<<"${TECHNIQUES:-sap separable burley papers/fixed papers/afis}"
 failed=0
 
 render() { # technique, size, frames, folder, more options
-  "$dermis" render configs/scenes/bust.json --graph "configs/graphs/$1.json" --size "$2" \
-    --frames "$3" --deterministic --json --out "$4" "${@:5}"
+  "$dermis" render "configs/scenes/${SCENE:-bust}.json" --graph "configs/graphs/$1.json" \
+    --size "$2" --frames "$3" --deterministic --json --out "$4" "${@:5}"
 }
 
 case $step in
@@ -31,13 +32,14 @@ case $step in
     "$dermis" doctor | tee "$out/doctor.txt"
     for technique in "${techniques[@]}"; do
       name=$(basename "$technique")
-      render "$technique" 640x360 4 "$out/pictures/$name" >"$out/picture_$name.json" || failed=1
+      render "$technique" 640x360 4 "$out/pictures/$name" --pictures last \
+        >"$out/picture_$name.json" || failed=1
       if [[ -n ${PICTURES:-} ]]; then
         "$dermis" compare "$out/pictures/$name" "$PICTURES/$name" --least-psnr 60 || failed=1
       fi
       for size in ${SIZES:-1920x1080 2560x1440}; do
-        render "$technique" "$size" 40 "$out/frames" --subset 0 \
-          >"$out/times_${name}_$size.json" || failed=1
+        render "$technique" "$size" 200 "$out/frames" --subset 0 --pictures last \
+          --unbound scattered_light,albedo >"$out/times_${name}_$size.json" || failed=1
       done
     done
     rm -rf "$out/frames"

@@ -250,12 +250,12 @@ Result<RenderSummary> render(const RenderOptions& options, const RenderCallbacks
   auto usage = kept_stage ? usage_for_keeping() : std::array<VkImageUsageFlags, target_count>{};
   DermisHandle dermis;
   if (!options.graph.empty()) {
-    auto made = create_dermis_host(host,
-                                   {options.graph, info.profiles, options.settings, options.width,
-                                    options.height, info.pixel_aspect, options.overlays,
-                                    options.include, options.shaders, options.budget,
-                                    options.sampling, options.tile_class, options.hooks},
-                                   &stage.slots);
+    auto made = create_dermis_host(
+        host,
+        {options.graph, info.profiles, options.settings, options.width, options.height,
+         info.pixel_aspect, options.overlays, options.include, options.shaders, options.budget,
+         options.sampling, options.tile_class, options.hooks, options.unbound},
+        &stage.slots);
     if (!made) return made.error();
     dermis = made.take();
     const auto of_graph = usage_for_graph(*dermis);

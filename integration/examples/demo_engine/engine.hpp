@@ -50,13 +50,14 @@ struct RenderOptions {
   std::vector<std::string> roots = {};
   uint32_t width = 640, height = 360; // pixels, 1..16384
   uint32_t first_frame = 0, frames = 1;
-  double frames_per_second = 0; // 0: the scene's
-  bool reversed_depth = false;  // far plane at depth 0
-  bool jitter = false;          // sub-pixel camera jitter (Halton 2, 3; period 8)
-  bool taa = false;             // temporal anti-aliasing of `color`, with jitter
-  bool sampling = false;        // reads back the graph's `sampling` output
-  bool tile_class = false;      // reads back the graph's `tile_class` output
-  bool validation = false;      // run under the Khronos validation layer
+  double frames_per_second = 0;     // 0: the scene's
+  bool reversed_depth = false;      // far plane at depth 0
+  bool jitter = false;              // sub-pixel camera jitter (Halton 2, 3; period 8)
+  bool taa = false;                 // temporal anti-aliasing of `color`, with jitter
+  bool sampling = false;            // reads back the graph's `sampling` output
+  bool tile_class = false;          // reads back the graph's `tile_class` output
+  std::vector<std::string> unbound; // optional slots of the graph that are not bound
+  bool validation = false;          // run under the Khronos validation layer
   KernelShape kernels = KernelShape::by_device;
   std::string device; // part of the device's name; "" = choose
   std::optional<CameraPlace> camera;

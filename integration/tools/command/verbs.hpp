@@ -171,7 +171,9 @@ struct RenderOptions {
     // also write images of samples or skipped tiles
     tile_class
   } debug = Debug::none;
-  std::string trace;   // Chrome trace output file
+  std::vector<std::string> unbound; // optional slots of the graph that the engine does not bind
+  enum class Pictures : uint8_t { all, last } pictures = Pictures::all; // frames to write
+  std::string trace;                                                    // Chrome trace output file
   std::string shaders; // folder of shaders that replace the built-in ones
 };
 ExitCode render(const Session& session, const RenderOptions& options);

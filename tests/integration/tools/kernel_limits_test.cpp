@@ -33,6 +33,17 @@ TEST(KernelRows, StatisticsGetCommonNames) {
   EXPECT_THAT(rows[0].statistics, SizeIs(4));
 }
 
+// Values as NVIDIA 580 reports them.
+TEST(KernelRows, LocalMemoryBeyond32Bits) {
+  const auto rows = make_rows("k", std::vector{executable({{"Register Count", "", 48},
+                                                           {"Local Memory Size", "", 68719476752},
+                                                           {"Shared Memory Size", "", 2304}})});
+  ASSERT_THAT(rows, SizeIs(1));
+  EXPECT_EQ(rows[0].value(KernelValue::vgprs), 48);
+  EXPECT_EQ(rows[0].value(KernelValue::scratch_bytes), 16);
+  EXPECT_EQ(rows[0].value(KernelValue::shared_bytes), 2304);
+}
+
 TEST(KernelRows, EachProgramHasARow) {
   std::vector programs{executable({{"Instruction Count", "", 10}}),
                        executable({{"Instruction Count", "", 20}})};

@@ -32,6 +32,22 @@ TEST_F(Render, WritesPicturesTimesAndErrors) {
   EXPECT_THAT(outcome.out, HasAll("scatter", " ms", "PSNR", " dB", "RMSE", path("out")));
 }
 
+TEST_F(Render, PicturesOfTheLastFrame_TimesOfAll) {
+  const std::vector<std::string> last{"--frames", "4", "--subset", "64", "--pictures", "last"};
+  EXPECT_THAT(render(bust, burley, last), Succeeds("median of 3", "PSNR"));
+  EXPECT_THAT(files("out"), ElementsAre("color_0003.exr", "frame_0003.png", "scattered_0003.exr"));
+  EXPECT_THAT(render(bust, burley, {"--pictures", "last", "--capture", path("capture")}),
+              FailsWith(2, "--capture", "all frames"));
+}
+
+TEST_F(Render, UnboundSlots) {
+  EXPECT_THAT(render(bust, burley, {"--frames", "1", "--unbound", "scattered_light,albedo"}),
+              Succeeds("does not export 'scattered_light'"));
+  EXPECT_THAT(files("out"), ElementsAre("color_0000.exr", "frame_0000.png"));
+  EXPECT_THAT(render(bust, burley, {"--unbound", "depth"}), FailsWith(2, "needs 'depth'"));
+  EXPECT_THAT(render(bust, burley, {"--unbound", "depht"}), FailsWith(2, "no slot 'depht'"));
+}
+
 TEST_F(Render, JsonOutputIsOneDocument) {
   const Outcome outcome = render(bust, burley, {"--frames", "2", "--subset", "64", "--json"});
   ASSERT_THAT(outcome, Succeeds(IsJson(), "\"psnr_db\"", "\"rmse\"", "\"device_ms\""));

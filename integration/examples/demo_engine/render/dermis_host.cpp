@@ -199,7 +199,12 @@ Result<std::vector<std::string>> find_unbound(const DermisHost& host, const Derm
   for (const dermis_slot& slot : host.slots) {
     if (rays && is_rays(slot)) continue;
     const auto target = target_of(slot.name);
-    if (target && (target != Target::sampling || desc.sampling) &&
+    const bool left_out =
+        std::find(desc.unbound.begin(), desc.unbound.end(), slot.name) != desc.unbound.end();
+    if (left_out && slot.required)
+      return Error{ErrorKind::usage, fmt::format("graph '{}' needs '{}': it cannot be unbound",
+                                                 desc.graph_file, slot.name)};
+    if (target && !left_out && (target != Target::sampling || desc.sampling) &&
         (target != Target::tile_class || desc.tile_class))
       continue;
     if (slot.required)
@@ -212,6 +217,10 @@ Result<std::vector<std::string>> find_unbound(const DermisHost& host, const Derm
               desc.graph_file, slot.name)};
     unbound.emplace_back(slot.name);
   }
+  for (const std::string& name : desc.unbound)
+    if (std::find(host.slot_names.begin(), host.slot_names.end(), name) == host.slot_names.end())
+      return Error{ErrorKind::usage,
+                   fmt::format("graph '{}' has no slot '{}'", desc.graph_file, name)};
   return unbound;
 }
 
@@ -232,7 +241,8 @@ Result<DermisHandle> create_dermis_host(VulkanHost& vulkan, const DermisDesc& de
     return ready.error();
   host->context = vulkan.engine_context;
   host->recorded = desc.hooks.recorded;
-  const bool whole = desc.overlays.empty() && !desc.include && !desc.sampling && !desc.tile_class;
+  const bool whole = desc.overlays.empty() && !desc.include && !desc.sampling && !desc.tile_class &&
+                     desc.unbound.empty();
   if (!whole) known = nullptr;
   std::vector<std::string> unbound;
   if (known && known->graph == sources->graph) {

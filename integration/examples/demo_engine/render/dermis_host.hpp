@@ -24,6 +24,7 @@ struct DermisDesc {
   bool sampling = false;   // binds `sampling`, which adds a write to the graph
   bool tile_class = false; // binds `tile_class`
   ContextHooks hooks = {};
+  std::vector<std::string> unbound = {}; // optional slots that are not bound
 };
 
 struct DermisHost; // opaque: only dermis_host.cpp includes dermis.h

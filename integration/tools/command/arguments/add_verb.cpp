@@ -54,6 +54,12 @@ void add_settings(CLI::App& verb, std::vector<NamedValue>& settings, const char*
              ->check(CLI::Validator(check_named_value, "NAME=VALUE")));
 }
 
+void add_unbound(CLI::App& verb, std::vector<std::string>& unbound, const char* name) {
+  repeat(verb.add_option(name, unbound, "Optional slots that the host does not bind")
+             ->type_name("NAME")
+             ->delimiter(','));
+}
+
 void add_root(CLI::App& verb, std::vector<std::string>& roots, const char* what) {
   repeat(verb.add_option("--root", roots, what)->type_name("DIR"));
 }

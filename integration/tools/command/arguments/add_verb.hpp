@@ -36,6 +36,7 @@ inline CLI::Option* add_frames(CLI::App& verb, uint32_t& frames, const char* wha
 CLI::Option* add_size(CLI::App& verb, Size& size, const char* name = "--size");
 void add_pixel_aspect(CLI::App& verb, double& aspect, const char* what);
 void add_settings(CLI::App& verb, std::vector<NamedValue>& settings, const char* name = "--set");
+void add_unbound(CLI::App& verb, std::vector<std::string>& unbound, const char* name = "--unbound");
 void add_root(CLI::App& verb, std::vector<std::string>& roots, const char* what);
 void add_graph_inputs(CLI::App& verb, GraphInputs& inputs);
 // Adds the options of the choice by budget. Returns those that only a frame uses.

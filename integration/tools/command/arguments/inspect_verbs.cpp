@@ -9,13 +9,6 @@ void add_two_queues(CLI::App& verb, bool& two_queues) {
   verb.add_flag("--two-queues", two_queues, "Use a second queue for async passes where possible");
 }
 
-void add_unbound(CLI::App& verb, std::vector<std::string>& unbound,
-                 const char* name = "--unbound") {
-  repeat(verb.add_option(name, unbound, "Optional slots that the host does not bind")
-             ->type_name("NAME")
-             ->delimiter(','));
-}
-
 } // namespace
 
 void add_text_verbs(CLI::App& app, Invocation& invocation) {

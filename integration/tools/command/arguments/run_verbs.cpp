@@ -86,10 +86,16 @@ void add_picture_verbs(CLI::App& app, Invocation& invocation) {
             "tiles have "
             "uniform light, grey tiles have no subsurface")
             ->type_name("VIEW");
+        static const std::map<std::string, RenderOptions::Pictures> pictures{
+            {"all", RenderOptions::Pictures::all}, {"last", RenderOptions::Pictures::last}};
+        add_choice(verb, "--pictures", options.pictures, pictures,
+                   "Frames to write as images. With last, other frames are only timed [all]")
+            ->type_name("FRAMES");
         verb.add_option("--subset", options.subset,
                         "Pixels of the last frame compared with the reference; 0: none [4096]")
             ->check(CLI::Range(0u, max_subset));
         add_settings(verb, options.settings);
+        add_unbound(verb, options.unbound);
         add_graph_inputs(verb, options.inputs);
         add_budget(verb, options.budget);
         add_model(verb, options.model);

@@ -1,6 +1,7 @@
 #include "integration/tools/command/kernels/rows.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace dermis::tools {
 namespace {
@@ -44,7 +45,10 @@ constexpr DriverName driver_names[] = {
     {"Register Count", KernelValue::vgprs},
     {"Binary Size", KernelValue::code_bytes},
     {"Local Memory Size", KernelValue::scratch_bytes},
+    {"Shared Memory Size", KernelValue::shared_bytes},
 };
+// NVIDIA 580 sets bits above the 32 that hold the bytes of local memory.
+constexpr double memory_modulus = 4294967296.0;
 
 } // namespace
 
@@ -72,7 +76,9 @@ std::vector<KernelRow> make_rows(std::string_view kernel,
     for (const vulkan::PipelineStatistic& statistic : executable.statistics)
       for (const DriverName& known : driver_names)
         if (known.name == statistic.name)
-          row.values[static_cast<size_t>(known.value)] = statistic.value;
+          row.values[static_cast<size_t>(known.value)] =
+              known.value == KernelValue::scratch_bytes ? std::fmod(statistic.value, memory_modulus)
+                                                        : statistic.value;
   }
   if (rows.empty()) rows.emplace_back().kernel = kernel;
   return rows;

@@ -149,8 +149,8 @@ bool scatters_by_rays(const std::string& technique) {
                      [&](const auto& one) { return one.by_rays && one.name == technique; });
 }
 
-demo::Result<> take_frame(RenderRun& run, const demo::FrameOutputs& frame) {
-  if (interrupted()) return demo::Error{demo::ErrorKind::environment, "stopped"};
+// Takes over the images of a frame that was read back.
+demo::Result<> take_pictures(RenderRun& run, const demo::FrameOutputs& frame) {
   if (auto written = write_pictures(run, frame); !written) return written;
   auto captured = captured_frame(frame, run.profiles);
   if (!captured) return captured.error();
@@ -158,7 +158,17 @@ demo::Result<> take_frame(RenderRun& run, const demo::FrameOutputs& frame) {
   std::string problem;
   if (!run.options.capture.empty() && !run.capture.add(*captured, problem))
     return cannot_write(problem);
+  run.exposure.add(captured->lighting.values, captured->profile);
+  run.last = make_reference_frame(*captured);
+  if (run.transmission) add_transmission(*captured, run.last);
+  run.last_scattered = frame.scattered.texels;
+  return demo::success();
+}
 
+demo::Result<> take_frame(RenderRun& run, const demo::FrameOutputs& frame) {
+  if (interrupted()) return demo::Error{demo::ErrorKind::environment, "stopped"};
+  if (!frame.display.empty())
+    if (auto taken = take_pictures(run, frame); !taken) return taken;
   // The first of several frames only warms caches.
   if (frame.frame > 0 || run.options.frames == 1) {
     for (const demo::PassTime& time : frame.dermis_times)
@@ -169,10 +179,6 @@ demo::Result<> take_frame(RenderRun& run, const demo::FrameOutputs& frame) {
   if (frame.choice) run.choices.add(frame.frame, *frame.choice, frame.histories);
   if (!run.options.trace.empty()) run.trace.add(frame);
   run.by_rays = frame.choice && scatters_by_rays(frame.choice->technique);
-  run.exposure.add(captured->lighting.values, captured->profile);
-  run.last = make_reference_frame(*captured);
-  if (run.transmission) add_transmission(*captured, run.last);
-  run.last_scattered = frame.scattered.texels;
   run.progress.update(++run.frames);
   return demo::success();
 }
@@ -253,6 +259,7 @@ ExitCode report(RenderRun& run) {
         .member("out", run.options.out);
     answer.member("width", run.options.size.width)
         .member("height", run.options.size.height)
+        .member("subsurface_pixels", subsurface_pixels(run.last.profile))
         .key("passes");
     write_times(answer, run.graph_times);
     write_times(answer.key("engine_passes"), run.host_times);
@@ -282,7 +289,10 @@ ExitCode render(const Session& session, const RenderOptions& options) {
   engine.taa = options.taa;
   engine.kernels = options.kernels;
   engine.sampling = options.debug == RenderOptions::Debug::samples;
+  engine.unbound = options.unbound;
   engine.tile_class = options.debug == RenderOptions::Debug::tile_class;
+  if (options.pictures == RenderOptions::Pictures::last)
+    engine.pictures_of = [&](uint32_t frame) { return frame + 1 == options.frames; };
   GraphInputs inputs = options.inputs;
   constexpr const char* overlay = "debug_tile_class.json"; // not added again if already given
   if (engine.tile_class &&
@@ -334,6 +344,8 @@ ExitCode render(const Session& session, const RenderOptions& options) {
     return fail(session, ExitCode::usage,
                 "--set, --overlay, --pass-types and --shaders need a graph");
   }
+  if (!options.capture.empty() && options.pictures == RenderOptions::Pictures::last)
+    return fail(session, ExitCode::usage, "--capture needs the images of all frames");
 
   RenderRun run{.session = session,
                 .options = options,
