@@ -57,11 +57,12 @@ PassTypeRegistry make_pass_types() {
                                &tile_change_type,
                                &tile_histogram_type,
                                &select_tiles_type,
-                               &separable_selected_type}) {
+                               &separable_selected_type,
+                               &clear_tiles_type}) {
     PassType known = *type;
     known.needs = needs_of(known.name);
-    known.serves_scattering =
-        type != &export_scattered_type && type != &transmission_type && type != &clear_type;
+    known.serves_scattering = type != &export_scattered_type && type != &transmission_type &&
+                              type != &clear_type && type != &clear_tiles_type;
     registry.add(known);
   }
   return registry;

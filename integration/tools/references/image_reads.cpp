@@ -394,6 +394,7 @@ constexpr Entry entries[] = {
     {"subsurface.classify", classify},
     {"subsurface.tile_list", none},
     {"subsurface.classify_uniform_light", none},
+    {"subsurface.clear_tiles", none},
     {"subsurface.copy_tiles", copy},
     {"subsurface.debug_tile_class", debug_tile_class},
     {"subsurface.probe", probe},

@@ -45,7 +45,7 @@ extern const PassType probe_type;
 // accumulate_signature.cpp
 extern const PassType accumulate_type;
 // clear_signature.cpp
-extern const PassType clear_type;
+extern const PassType clear_type, clear_tiles_type;
 // restir/restir_signatures.cpp
 extern const PassType restir_initial_type, restir_temporal_type, restir_spatial_type,
     restir_resolve_type;
