@@ -15,82 +15,122 @@
 
 const uint lanes = 128u;
 const uint run = tiles_per_run_group / lanes; // tiles of an invocation
+const uint own_bins = allocation_bins / lanes;
+const uint batch = 16u; // runs whose costs an invocation reads at once
+// Sums take two steps: an invocation first adds the values of a chunk.
+const uint chunk = 16u, bin_chunks = allocation_bins / chunk, lane_chunks = lanes / chunk;
 layout(local_size_x = 128, local_size_y = 1, local_size_z = 1) in;
 
 shared uint cost_of_bin[allocation_bins];    // of all tiles
 shared uint earlier_of_bin[allocation_bins]; // of the tiles of earlier groups
-shared uint counts[lanes];
+shared uint cost_of_chunk[bin_chunks];
+shared uint counts[lanes], counts_of_chunk[lane_chunks];
 shared int last_bin;    // bins above are paid in full, bins below not at all
 shared uint last_units; // units for the tiles of this bin
 shared uint listed;     // tiles of the group
 shared uint base;       // index of the first of them in the list
 shared uint units_sum;
 shared uint tiles_by_steps[allocation_steps];
-shared bool is_last;
 
-struct tile_steps {
-  uint bins[allocation_steps];
-};
-tile_steps steps_of(uint tile) {
-  tile_steps steps;
-  bool scatters = class_of_tile(classes_data[tile]) == class_scatter;
-  uint tile_error = scatters ? tile_errors_data[tile] : 0u;
-  uint before = has_before() ? before_data[tile] : 0u;
+// Returns the bins of the steps of a tile, one per byte; no_bin if the tile takes no steps.
+uint bins_of(uint tile) {
+  uint entry = classes_data[tile], tile_error = tile_errors_data[tile];
+  uint before = has_before() ? before_data[tile] : 0u, bins = 0u;
   for (int k = 0; k < allocation_steps; ++k)
-    steps.bins[k] = step_bin(tile_error, k, before);
-  return steps;
+    bins |= step_bin(tile_error, k, before) << uint(8 * k);
+  return class_of_tile(entry) == class_scatter && tile_error > 0u ? bins : no_bin;
 }
+uint bin_of_step(uint bins, int k) { return bins >> uint(8 * k) & 0xffu; }
 
 // Sums the costs by bin, from the sums of each run if another pass has made them.
 void sum_costs(uint lane, uint first, uint tiles) {
-  for (uint bin = lane; bin < allocation_bins; bin += lanes) {
-    uint all = 0u, earlier = 0u;
-    for (uint group = 0u; has_demand() && group < list_groups(); ++group) {
-      uint cost = demand_data[group * allocation_bins + bin];
-      all += cost;
-      earlier += group < gl_WorkGroupID.x ? cost : 0u;
+  uint all[own_bins], earlier[own_bins];
+  [[unroll]] for (uint i = 0u; i < own_bins; ++i)
+    all[i] = earlier[i] = 0u;
+  uint groups = has_demand() ? list_groups() : 0u;
+  [[dont_unroll]] for (uint group = 0u; group < groups; group += batch) {
+    uint costs[batch * own_bins];
+    [[unroll]] for (uint i = 0u; i < batch * own_bins; ++i)
+      costs[i] = demand_data[min(group + i / own_bins, groups - 1u) * allocation_bins +
+                             i % own_bins * lanes + lane];
+    [[unroll]] for (uint i = 0u; i < batch * own_bins; ++i) {
+      uint at = group + i / own_bins;
+      all[i % own_bins] += at < groups ? costs[i] : 0u;
+      earlier[i % own_bins] += at < gl_WorkGroupID.x ? costs[i] : 0u;
     }
-    cost_of_bin[bin] = all;
-    earlier_of_bin[bin] = earlier;
+  }
+  [[unroll]] for (uint i = 0u; i < own_bins; ++i) {
+    cost_of_bin[i * lanes + lane] = all[i];
+    earlier_of_bin[i * lanes + lane] = earlier[i];
   }
   barrier();
-  for (uint tile = lane; !has_demand() && tile < tiles; tile += lanes) {
-    tile_steps steps = steps_of(tile);
-    for (int k = 0; k < allocation_steps; ++k) {
-      if (steps.bins[k] == no_bin)
-        continue;
-      atomicAdd(cost_of_bin[steps.bins[k]], step_cost(k));
+  if (has_demand())
+    return;
+  for (uint tile = lane; tile < tiles; tile += lanes) {
+    uint bins = bins_of(tile);
+    for (int k = 0; k < allocation_steps && bins != no_bin; ++k) {
+      atomicAdd(cost_of_bin[bin_of_step(bins, k)], step_cost(k));
       if (tile < first)
-        atomicAdd(earlier_of_bin[steps.bins[k]], step_cost(k));
+        atomicAdd(earlier_of_bin[bin_of_step(bins, k)], step_cost(k));
     }
   }
   barrier();
 }
 
-void find_last_bin() {
-  uint left = frame.sample_units;
-  last_bin = -1;
-  last_units = 0u;
-  for (int bin = int(allocation_bins) - 1; bin >= 0; --bin) {
-    if (cost_of_bin[bin] > left) {
-      last_bin = bin;
-      last_units = left;
-      return;
-    }
-    left -= cost_of_bin[bin];
+// Finds the bin where the budget ends. First finds its chunk.
+void find_last_bin(uint lane) {
+  if (lane == 0u) {
+    last_bin = -1;
+    last_units = 0u;
   }
+  if (lane < bin_chunks) {
+    uint sum = 0u;
+    [[unroll]] for (uint i = 0u; i < chunk; ++i)
+      sum += cost_of_bin[lane * chunk + i];
+    cost_of_chunk[lane] = sum;
+  }
+  barrier();
+  uint above = 0u;
+  [[unroll]] for (uint i = 0u; i < bin_chunks; ++i)
+    above += i > lane ? cost_of_chunk[i] : 0u;
+  if (lane < bin_chunks && above <= frame.sample_units &&
+      cost_of_chunk[lane] > frame.sample_units - above) {
+    uint left = frame.sample_units - above, bin = (lane + 1u) * chunk - 1u;
+    for (; cost_of_bin[bin] <= left; --bin)
+      left -= cost_of_bin[bin];
+    last_bin = int(bin);
+    last_units = left;
+  }
+  barrier();
+}
+
+// Returns the sum of the values of earlier invocations.
+uint sum_before(uint lane, uint value) {
+  counts[lane] = value;
+  barrier();
+  if (lane < lane_chunks) {
+    uint sum = 0u;
+    [[unroll]] for (uint i = 0u; i < chunk; ++i)
+      sum += counts[lane * chunk + i];
+    counts_of_chunk[lane] = sum;
+  }
+  barrier();
+  uint sum = 0u, own_chunk = lane / chunk;
+  [[unroll]] for (uint i = 0u; i < lane_chunks; ++i)
+    sum += i < own_chunk ? counts_of_chunk[i] : 0u;
+  [[unroll]] for (uint i = 0u; i < chunk; ++i)
+    sum += i < lane % chunk ? counts[own_chunk * chunk + i] : 0u;
+  return sum;
 }
 
 // Returns the steps that a tile takes. `spent` counts the units of the last bin that earlier tiles
 // requested.
-uint take_steps(tile_steps tile, inout uint spent, inout uint units) {
+uint take_steps(uint bins, inout uint spent, inout uint units) {
   uint steps = 0u;
-  for (int k = 0; k < allocation_steps; ++k) {
-    uint bin = tile.bins[k];
-    if (bin == no_bin)
-      break;
-    bool taken = int(bin) > last_bin;
-    if (int(bin) == last_bin) {
+  for (int k = 0; k < allocation_steps && bins != no_bin; ++k) {
+    int bin = int(bin_of_step(bins, k));
+    bool taken = bin > last_bin;
+    if (bin == last_bin) {
       spent += step_cost(k);
       taken = spent <= last_units;
     }
@@ -102,16 +142,13 @@ uint take_steps(tile_steps tile, inout uint spent, inout uint units) {
   return steps;
 }
 
-// Returns, to all invocations, whether this group is the last to call the function. Then all other
-// groups' atomic operations on `list_state` are visible.
-bool last_group() {
+// Returns whether this group is the last to call the function, for one invocation of each group.
+// The invocation's earlier atomic operations on `list_state` are then visible to the last one.
+bool ends_last() {
   memoryBarrierBuffer();
-  barrier();
-  if (gl_LocalInvocationIndex == 0u)
-    is_last = atomicAdd(list_state_data[state_ended], 1u) + 1u == list_groups();
-  barrier();
+  bool last = atomicAdd(list_state_data[state_ended], 1u) + 1u == list_groups();
   memoryBarrierBuffer();
-  return is_last;
+  return last;
 }
 
 void write_arguments() {
@@ -121,8 +158,8 @@ void write_arguments() {
   arguments_data[0] = min(all, tile_groups_per_row);
   arguments_data[1] = (all + tile_groups_per_row - 1u) / tile_groups_per_row;
   arguments_data[2] = 1u;
-  for (uint bin = 0u; bin < allocation_bins; ++bin)
-    demand += cost_of_bin[bin];
+  [[unroll]] for (uint i = 0u; i < bin_chunks; ++i)
+    demand += cost_of_chunk[i];
   counters.sample_demand = demand;
 }
 
@@ -136,34 +173,26 @@ void main() {
     listed = 0u;
     units_sum = 0u;
   }
+  uint bins[run]; // read first, because no read depends on another
+  [[unroll]] for (uint i = 0u; i < run; ++i) {
+    uint of_tile = bins_of(min(first + i, tiles - 1u));
+    bins[i] = first + i < last ? of_tile : no_bin;
+  }
   sum_costs(lane, group_first, tiles);
-  if (lane == 0u)
-    find_last_bin();
-  barrier();
+  find_last_bin(lane);
 
   uint own = 0u; // cost of own steps in the last bin
-  for (uint tile = first; tile < last; ++tile) {
-    tile_steps steps = steps_of(tile);
+  [[unroll]] for (uint i = 0u; i < run; ++i)
     for (int k = 0; k < allocation_steps; ++k)
-      own += int(steps.bins[k]) == last_bin ? step_cost(k) : 0u;
-  }
-  counts[lane] = own;
-  barrier();
-  for (uint stride = 1u; stride < lanes; stride *= 2u) { // inclusive scan, Hillis & Steele 1986
-    uint before = lane >= stride ? counts[lane - stride] : 0u;
-    barrier();
-    counts[lane] += before;
-    barrier();
-  }
-
-  uint spent = counts[lane] - own + (last_bin >= 0 ? earlier_of_bin[last_bin] : 0u);
+      own += bins[i] != no_bin && int(bin_of_step(bins[i], k)) == last_bin ? step_cost(k) : 0u;
+  uint spent = sum_before(lane, own) + (last_bin >= 0 ? earlier_of_bin[last_bin] : 0u);
   uint units = 0u, taking = 0u, steps_by_tile[run];
   [[unroll]] for (uint i = 0u; i < run; ++i) {
     uint tile = first + i;
     steps_by_tile[i] = 0u;
     if (tile >= last)
       continue;
-    steps_by_tile[i] = take_steps(steps_of(tile), spent, units);
+    steps_by_tile[i] = take_steps(bins[i], spent, units);
     samples_per_tile_data[tile] = steps_by_tile[i];
     if (steps_by_tile[i] > 0u) {
       ++taking;
@@ -174,13 +203,11 @@ void main() {
   if (units > 0u)
     atomicAdd(units_sum, units);
   barrier();
-  if (lane == 0u && listed > 0u) {
+  if (lane == 0u && listed > 0u)
     base = atomicAdd(list_state_data[0], listed);
-    atomicAdd(counters.sample_units, units_sum);
-  }
-  if (lane < uint(allocation_steps) && tiles_by_steps[lane] > 0u)
-    atomicAdd(counters.sampled_tiles[lane], tiles_by_steps[lane]);
   barrier();
+  if (lane == 0u && ends_last())
+    write_arguments();
   at += base;
   uint across = uint(frame.tiles.x);
   uvec2 tile = uvec2(first % across, first / across);
@@ -189,6 +216,8 @@ void main() {
       tiles_data[1u + at++] = tile.x | tile.y << 15;
     tile = tile.x + 1u < across ? tile + uvec2(1u, 0u) : uvec2(0u, tile.y + 1u);
   }
-  if (last_group() && lane == 0u)
-    write_arguments();
+  if (lane == 0u && units_sum > 0u)
+    atomicAdd(counters.sample_units, units_sum);
+  if (lane < uint(allocation_steps) && tiles_by_steps[lane] > 0u)
+    atomicAdd(counters.sampled_tiles[lane], tiles_by_steps[lane]);
 }
