@@ -61,8 +61,8 @@ PassTypeRegistry make_pass_types() {
                                &clear_tiles_type}) {
     PassType known = *type;
     known.needs = needs_of(known.name);
-    known.serves_scattering = type != &export_scattered_type && type != &transmission_type &&
-                              type != &clear_type && type != &clear_tiles_type;
+    known.serves_scattering =
+        type != &export_scattered_type && type != &transmission_type && type != &clear_type;
     registry.add(known);
   }
   return registry;

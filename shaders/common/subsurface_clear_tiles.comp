@@ -11,7 +11,7 @@ layout(local_size_x = 8, local_size_y = 8, local_size_z = 1) in;
 void main() {
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
   uint tile = gl_WorkGroupID.y * uint(frame.tiles.x) + gl_WorkGroupID.x;
-  if (!inside_rect(pixel) || has_listed() && class_of_tile(listed_data[tile]) != class_none)
+  if (!inside_rect(pixel) || class_of_tile(listed_data[tile]) != class_none)
     return;
   imageStore(target_image, texel_of(pixel), vec4(0.0));
 }

@@ -7,10 +7,9 @@ namespace dermis::subsurface {
 namespace {
 constexpr Port ports[] = {{"target", Usage::clear, false, "", "an image or a buffer, as a whole"}};
 constexpr Port clear_tiles_ports[] = {
-    port::optional(port::read_buffer("listed", "uint",
-                                     "per tile of the render rectangle: 0 if the list leaves the "
-                                     "tile out ('classes' or 'samples_per_tile'); unbound: the "
-                                     "list is empty")),
+    port::read_buffer("listed", "uint",
+                      "per tile of the render rectangle: 0 if the list leaves the tile out "
+                      "('classes' or 'samples_per_tile')"),
     port::written("target", "0 in all tiles that are not listed; other texels keep no value", {}),
 };
 } // namespace

@@ -91,8 +91,8 @@ TEST_F(Engine, ExportsTheGraphsInputs) {
   EXPECT_EQ(in.profile.texels[0], 0.0f);
   for (const float value : in.lighting.texels)
     ASSERT_TRUE(std::isfinite(value) && value >= 0.0f);
-  for (const float value : in.velocity.texels)
-    ASSERT_EQ(value, 0.0f);
+  for (const float value : in.velocity.texels) // drivers round positions differently
+    ASSERT_NEAR(value, 0.0f, 1e-5f);
   EXPECT_EQ(frames[0].display.size(), 70u * 45u * 3u);
   EXPECT_TRUE(frames[0].scattered.texels.empty());
 }
@@ -138,7 +138,7 @@ TEST_F(Engine, JitterDoesNotChangeVelocity) {
   ASSERT_EQ(frames.size(), 2u);
   EXPECT_NE(frames[0].camera.jitter_pixels, frames[1].camera.jitter_pixels);
   for (const float value : frames[1].inputs.velocity.texels)
-    ASSERT_EQ(value, 0.0f);
+    ASSERT_NEAR(value, 0.0f, 1e-5f);
 }
 
 TEST_F(Engine, EveryShippedGraphRunsAndConservesLight) {
