@@ -52,7 +52,7 @@ void clear_flags(int lane, int lanes) {
     flags_beyond[i] = 0u;
 }
 
-const int run_tiles = 8, runs_per_row = 5, class_runs = 39 * runs_per_row;
+const int run_tiles = 13, runs_per_row = 3, class_runs = 39 * runs_per_row;
 
 // Sets the flags of a run of tiles of level 0. Returns whether any of them scatters.
 bool read_classes(ivec2 region, int run) {
@@ -67,10 +67,11 @@ bool read_classes(ivec2 region, int run) {
     bits |= found != class_none ? 1u << uint(i) : 0u;
     scatters = scatters || found == class_scatter;
   }
-  if (bits != 0u && place.x < 32)
+  if (bits != 0u)
     atomicOr(flags[place.y], bits << uint(place.x));
-  if (bits != 0u && place.x >= 32)
-    atomicOr(flags_beyond[place.y], bits);
+  uint beyond = place.x + run_tiles > 32 ? bits >> uint(32 - place.x) : 0u;
+  if (beyond != 0u)
+    flags_beyond[place.y] = beyond;
   return scatters;
 }
 
