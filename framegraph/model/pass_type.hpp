@@ -85,6 +85,8 @@ inline constexpr uint32_t texel_shape = 0; // shaders/common/shape.glsl
 inline constexpr uint32_t bound_ports = 1, changing_ports = 2;
 inline constexpr uint32_t group_lanes = 3;    // local_size_x of kernels with one shape
 inline constexpr uint32_t pixel_grid = 4;     // of the plan (pixel_grid.hpp)
+// Whether the device allows wide groups, and local_size_x of kernels that use them.
+inline constexpr uint32_t wide_group = 5, wide_lanes = 6;
 inline constexpr uint32_t first_setting = 16; // PassType::settings[i] has the id first_setting + i
 } // namespace constant_id
 

@@ -20,6 +20,12 @@ Error check_handles(const DeviceInput& input) {
   return {ErrorKind::argument, VK_SUCCESS, "a required handle is null: " + null};
 }
 
+bool allows_wide_groups(const VkPhysicalDeviceLimits& limits) {
+  return limits.maxComputeWorkGroupInvocations >= wide_group_lanes &&
+         limits.maxComputeWorkGroupSize[0] >= wide_group_lanes &&
+         limits.maxComputeSharedMemorySize >= 32768;
+}
+
 Error read_queue_family(const DeviceInput& input, Device& device) {
   uint32_t count = 0;
   device.vk.vkGetPhysicalDeviceQueueFamilyProperties(device.physical, &count, nullptr);
@@ -73,6 +79,8 @@ Error make_device(const DeviceInput& input, Device& device) {
   device.texel_shape = input.kernel_shape == KernelShape::by_device
                            ? device.properties.deviceType != VK_PHYSICAL_DEVICE_TYPE_CPU
                            : input.kernel_shape == KernelShape::texel;
+  device.wide_groups =
+      device.texel_shape && !input.small_groups && allows_wide_groups(device.properties.limits);
   device.labels = input.labels;
   device.host_memory = input.host_memory;
   device.timings = input.timings && device.timestamp_valid_bits > 0;

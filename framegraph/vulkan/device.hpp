@@ -66,8 +66,11 @@ struct DeviceInput {
   bool timings = false;                // timestamps around each pass
   bool separate_depth_stencil = false; // separateDepthStencilLayouts is enabled
   KernelShape kernel_shape = KernelShape::by_device;
+  bool small_groups = false; // of at most 128 invocations, whatever the device allows
   HostMemory host_memory{};
 };
+
+inline constexpr uint32_t wide_group_lanes = 512;
 
 struct Device {
   FunctionTable vk;
@@ -84,6 +87,8 @@ struct Device {
   bool timings = false; // requested, and timestamp_valid_bits > 0
   bool separate_depth_stencil = false;
   bool texel_shape = true; // of kernels
+  // Some kernels have groups of wide_group_lanes invocations, with up to 32 KiB of shared memory.
+  bool wide_groups = true;
   HostMemory host_memory{};
 };
 

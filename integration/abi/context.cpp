@@ -63,7 +63,8 @@ namespace {
 
 constexpr uint32_t known_context_flags =
     DERMIS_CONTEXT_TIMINGS | DERMIS_CONTEXT_LABELS | DERMIS_CONTEXT_RAY_QUERY |
-    DERMIS_CONTEXT_SEPARATE_DEPTH_STENCIL | DERMIS_CONTEXT_GPU_KERNELS | DERMIS_CONTEXT_CPU_KERNELS;
+    DERMIS_CONTEXT_SEPARATE_DEPTH_STENCIL | DERMIS_CONTEXT_GPU_KERNELS |
+    DERMIS_CONTEXT_CPU_KERNELS | DERMIS_CONTEXT_SMALL_GROUPS;
 
 dermis_result check_desc(const dermis_context_desc& desc, const Log& log) {
   const auto null = [&](const char* field) {
@@ -183,6 +184,7 @@ dermis_result create(const dermis_context_desc* given, dermis_context* out) {
     input.kernel_shape = vulkan::KernelShape::texel;
   if ((desc.flags & DERMIS_CONTEXT_CPU_KERNELS) != 0)
     input.kernel_shape = vulkan::KernelShape::block;
+  input.small_groups = (desc.flags & DERMIS_CONTEXT_SMALL_GROUPS) != 0;
   input.timings = (desc.flags & DERMIS_CONTEXT_TIMINGS) != 0;
   input.host_memory = host_memory_of(context->device_allocator);
   if (const vulkan::Error error = vulkan::make_device(input, context->device))

@@ -408,8 +408,17 @@ void add_child(sap_parent parent, sap_seed own, sap_seed before, int c, bool sec
     add_holding(child, child.id == before.texel.id ? part : 0.0, same ? left - left * kept : left,
                 off_before * before.per_relevant, sum.before);
 }
+const holding no_holding = holding(0.0, 0.0);
+const reduction no_children = reduction(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, vec2(0.0),
+                                        vec3(0.0), false, no_holding, no_holding, 0.0);
+#ifdef SAP_ROW_SUMS
+#include "sap/sap_row_sums.glsl"
+#endif
 void add_children(sap_parent parent, int layers, sap_seed seed, sap_seed before,
                   inout reduction sum) {
+#ifdef SAP_ROW_SUMS
+  sum = sum_rows(parent, layers, seed, before);
+#else
   if (texel_shape && max_layers > 1) { // small enough for the instruction cache
     [[dont_unroll]] for (int row = 0; row < 4; ++row)
       [[unroll]] for (int column = 0; column < 4; ++column)
@@ -422,6 +431,7 @@ void add_children(sap_parent parent, int layers, sap_seed seed, sap_seed before,
     [[unroll]] for (int c = 0; c < layers * children_a_layer; ++c)
       add_child(parent, seed, before, c % children_a_layer, c >= children_a_layer, sum);
   }
+#endif
 }
 
 struct sap_layer {
@@ -432,19 +442,15 @@ struct sap_layer {
   uint held_before; // held of the layer before, now that this one exists
 };
 const sap_layer no_layer = sap_layer(vec4(0.0), uvec4(0u), no_texel, false, 0u);
-// Computes the layer of the parent that has the seed `seed` and follows the layer with seed
-// `before` (id 0: the first one), from `layers` layers of children.
-sap_layer reduce_to(sap_parent parent, int layers, sap_texel seed, sap_texel before) {
+sap_seed seed_of(sap_parent parent, sap_texel texel) {
+  return sap_seed(texel, sap_per_relevant(texel, parent.spacing));
+}
+// Returns the layer with seed `seed`, which follows the layer with seed `before` (id 0: the first
+// one), from the sums over its children.
+sap_layer layer_of_sums(sap_parent parent, sap_texel seed, sap_texel before, reduction sum) {
   sap_layer layer = no_layer;
   layer.seed = seed;
-  if (seed.id == 0u)
-    return layer;
-  const holding nothing = holding(0.0, 0.0);
-  reduction sum = reduction(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, vec2(0.0), vec3(0.0), false,
-                            nothing, nothing, 0.0);
   sum.all_weight = full_weight(parent, seed);
-  add_children(parent, layers, sap_seed(seed, sap_per_relevant(seed, parent.spacing)),
-               sap_seed(before, sap_per_relevant(before, parent.spacing)), sum);
   layer.remains = sum.remains;
   layer.held_before = held_of(sum.before);
   if (sum.total > sap_negligible) {
@@ -466,6 +472,15 @@ sap_layer reduce_to(sap_parent parent, int layers, sap_texel seed, sap_texel bef
         sap_with_held(layer.bits, held_of(sum.own), uint(lost * float(sap_max_lost) + 0.5));
   }
   return layer;
+}
+// Computes the layer of the parent that has the seed `seed` and follows the layer with seed
+// `before`, from `layers` layers of children.
+sap_layer reduce_to(sap_parent parent, int layers, sap_texel seed, sap_texel before) {
+  if (seed.id == 0u)
+    return no_layer;
+  reduction sum = no_children;
+  add_children(parent, layers, seed_of(parent, seed), seed_of(parent, before), sum);
+  return layer_of_sums(parent, seed, before, sum);
 }
 // Finds the seed, too.
 sap_layer reduce(sap_parent parent, int layers, sap_texel before) {

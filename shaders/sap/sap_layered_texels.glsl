@@ -4,7 +4,7 @@
 #ifndef DERMIS_SAP_LAYERED_TEXELS_GLSL
 #define DERMIS_SAP_LAYERED_TEXELS_GLSL
 
-const bool collects_layered = !texel_lists;
+const bool collects_layered = !wide_group;
 shared uint layered_texels[collects_layered ? 64 : 1];
 shared uint layered_count;
 

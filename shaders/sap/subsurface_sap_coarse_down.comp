@@ -11,6 +11,8 @@
 #define SAP_SECOND
 #define SAP_SECOND_IN_TILE
 #define SAP_WINDOW
+#define SAP_ROW_SUMS
+#define DERMIS_WIDE_GROUP
 #include "sap/sap.glsl"
 #include "sap/sap_levels.glsl"
 
@@ -59,6 +61,7 @@ void store_layer(sap_parent parent, int level, bool second, sap_layer layer) {
 }
 #include "sap/sap_down_layers.glsl"
 #include "sap/sap_layered_texels.glsl"
+#include "sap/sap_wide_tile.glsl"
 
 // Tiles that the group still has to compute: entry in the list, and level. The children of at most
 // 2x2 tiles of a level include a given tile.
@@ -107,36 +110,6 @@ void compute_tile(uvec2 entry, int level) {
   }
 }
 
-// GPUs: an invocation computes one layer of a texel. A second layer needs only the seed of the
-// first, so both halves of the group compute at once.
-shared uint changes[64]; // by texel of the tile: change_of_first, 0 without a second layer
-void compute_layers_of_tile(uvec2 entry, int level) {
-  int part = int(gl_LocalInvocationIndex & 63u);
-  bool second = gl_LocalInvocationIndex > 63u;
-  sap_parent parent = take_parent(block_of_entry(entry, part), 0, level - 1);
-  bool inside = sap_inside(parent.at, level);
-  sap_layer layer = no_layer;
-  if (inside) {
-    sap_texel before = no_texel, seed = find_seed(parent, max_layers, no_texel);
-    if (second) {
-      before = seed;
-      seed = find_seed(parent, max_layers, before);
-    }
-    layer = reduce_to(parent, max_layers, seed, before);
-    if (second)
-      changes[part] = layer.bits.w != 0u ? change_of_first(layer) : 0u;
-    if (second && layer.bits.w != 0u) {
-      store_layer(parent, level, true, layer);
-    }
-  }
-  barrier();
-  if (inside && !second) {
-    if (changes[part] != 0u)
-      layer.bits = with_second(layer.bits, changes[part]);
-    store_layer(parent, level, false, layer);
-  }
-}
-
 // Computes the pending tiles and all tiles that these complete.
 void compute_pending() {
   [[dont_unroll]] while (pending_count > 0u) {
@@ -150,8 +123,8 @@ void compute_pending() {
       read_tile(block, level - 1, true);
     else
       read_tile(block, level - 1, false);
-    if (texel_lists)
-      compute_layers_of_tile(next.xy, level);
+    if (wide_group)
+      compute_tile_together(next.xy, level);
     else
       compute_tile(next.xy, level);
     memoryBarrier(); // the texels are available before the tile counts

@@ -335,8 +335,9 @@ def add_target(model):
 # second layer of all texels. The children of the second pipeline of sap_down have one layer.
 TRIPS = {"sap_setup": [2], "sap_down": [2, 4, 4, 0, 0, 4, 4, 4, 4, 0, 0, 4, 4],
          "sap_down second_surface=unbound": [2, 4, 0, 4, 4, 0, 4], "sap_up": [2],
-         # four levels, one after another; a tile is read by one of two loops
-         "sap_coarse_down": [1, 1, 4, 1, 1, 4, 4, 0, 0, 4, 4, 16, 16, 4, 4, 2, 1],
+         # four levels, one after another; a tile is read by one of two loops; two searches for
+         # outer seeds
+         "sap_coarse_down": [1, 1, 4, 1, 1, 8, 8, 1, 1],
          "sap_coarse_up": [1, 2, 1, 1, 5, 1]}  # five levels
 # The same for subgroups with one layer. Their way down is that of level 1 at every level, without
 # the branch for the second layer.
@@ -344,7 +345,7 @@ ONE_LAYER_TRIPS = {"sap_down": [2, 4, 0, 4, 0, 0, 0], "sap_up": [1], "sap_gather
 # The way down to level 2 where the children have one layer.
 ONE_LAYER_CHILDREN_TRIPS = [2, 4, 0, 0, 0, 4, 0, 4, 0, 0, 0, 4, 0]
 COARSE_TILES = {"sap_coarse_down": 5, "sap_coarse_up": 4}  # the level whose tiles have a group each
-COARSE_SUBGROUPS = 2  # per group
+COARSE_SUBGROUPS = {"sap_coarse_down": 8, "sap_coarse_up": 2}  # per group
 
 
 def short_name(kernel):
@@ -410,7 +411,7 @@ def add_built(model, technique, built, graph, flagged):
             model.add_serial(technique, one["pass"], model.wave(**LIST_RUN)["lat"])
         elif kernel in COARSE_TILES:
             groups = model.tiles[COARSE_TILES[kernel]]
-            model.add(technique, one["pass"], COARSE_SUBGROUPS * groups, built.wave(model, row),
+            model.add(technique, one["pass"], COARSE_SUBGROUPS[kernel] * groups, built.wave(model, row),
                       bytes_moved)
         elif kernel in ONE_LAYER_TRIPS:
             both = built.wave(model, row)

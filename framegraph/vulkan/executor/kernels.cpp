@@ -230,16 +230,20 @@ Error create_pipeline(const Device& device, const std::string& subresource,
                       const std::string& label, std::span<const uint32_t> spirv,
                       const PipelineOptions& options, Pipeline& pipeline) {
   // Kernels ignore constants that they do not declare.
-  std::vector<uint32_t> values{device.texel_shape ? VK_TRUE : VK_FALSE,
-                               device.texel_shape ? lanes_on_gpu : lanes_on_cpu};
-  std::vector<VkSpecializationMapEntry> entries{
-      {constant_id::texel_shape, 0, sizeof(uint32_t)},
-      {constant_id::group_lanes, sizeof(uint32_t), sizeof(uint32_t)}};
-  for (size_t i = 0; i < pipeline.constants.size(); ++i) {
-    entries.push_back({pipeline.kernel->constants[i].id,
-                       static_cast<uint32_t>(sizeof(uint32_t) * values.size()), sizeof(uint32_t)});
-    values.push_back(pipeline.constants[i]);
-  }
+  const uint32_t lanes = device.texel_shape ? lanes_on_gpu : lanes_on_cpu;
+  std::vector<uint32_t> values;
+  std::vector<VkSpecializationMapEntry> entries;
+  const auto add = [&](uint32_t id, uint32_t value) {
+    entries.push_back(
+        {id, static_cast<uint32_t>(sizeof(uint32_t) * values.size()), sizeof(uint32_t)});
+    values.push_back(value);
+  };
+  add(constant_id::texel_shape, device.texel_shape ? VK_TRUE : VK_FALSE);
+  add(constant_id::group_lanes, lanes);
+  add(constant_id::wide_group, device.wide_groups ? VK_TRUE : VK_FALSE);
+  add(constant_id::wide_lanes, device.wide_groups ? wide_group_lanes : lanes);
+  for (size_t i = 0; i < pipeline.constants.size(); ++i)
+    add(pipeline.kernel->constants[i].id, pipeline.constants[i]);
   const VkSpecializationInfo constants{static_cast<uint32_t>(entries.size()), entries.data(),
                                        sizeof(uint32_t) * values.size(), values.data()};
   VkShaderModuleCreateInfo module_info{};

@@ -44,7 +44,9 @@ Result<> make_context(const VulkanHost& host, uint32_t frames_in_flight, bool en
   dermis_context_desc desc = DERMIS_CONTEXT_DESC_INIT;
   if (host.timestamp_mask != 0) desc.flags |= DERMIS_CONTEXT_TIMINGS;
   if (host.ray_query && enable_rays) desc.flags |= DERMIS_CONTEXT_RAY_QUERY;
-  if (host.kernels == KernelShape::gpu) desc.flags |= DERMIS_CONTEXT_GPU_KERNELS;
+  if (host.kernels == KernelShape::gpu || host.kernels == KernelShape::gpu_small)
+    desc.flags |= DERMIS_CONTEXT_GPU_KERNELS;
+  if (host.kernels == KernelShape::gpu_small) desc.flags |= DERMIS_CONTEXT_SMALL_GROUPS;
   if (host.kernels == KernelShape::cpu) desc.flags |= DERMIS_CONTEXT_CPU_KERNELS;
   desc.frames_in_flight = frames_in_flight;
   desc.queue_family = host.queue_family;

@@ -248,6 +248,8 @@ typedef struct dermis_device_allocator {
 /* Use the kernels for GPUs, or those for drivers on the CPU, on any device. Not both; for tests. */
 #define DERMIS_CONTEXT_GPU_KERNELS 0x10u
 #define DERMIS_CONTEXT_CPU_KERNELS 0x20u
+/* Use no group of more than 128 invocations, as on devices that allow no larger one; for tests. */
+#define DERMIS_CONTEXT_SMALL_GROUPS 0x40u
 
 typedef struct dermis_context_desc {
   size_t struct_size;

@@ -38,22 +38,23 @@ protected:
     }
     EXPECT_GT(pictures, 0u);
   }
-  // Returns the text of a kernel that writes nothing in the texel shape.
-  static std::string broken(const std::string& file) {
+  // Returns the text of a kernel that writes nothing if the constant is true.
+  static std::string broken(const std::string& file, const std::string& constant) {
     std::string text = text_of(file);
     const std::string begin = "void main() {";
-    text.insert(text.find(begin) + begin.size(), "\n  if (texel_shape)\n    return;\n");
+    text.insert(text.find(begin) + begin.size(), "\n  if (" + constant + ")\n    return;\n");
     return text;
   }
 };
 
 TEST_P(KernelShape, GivesEqualPictures) {
-  for (const char* shape : {"cpu", "gpu"}) {
+  for (const char* shape : {"cpu", "gpu", "gpu_small"}) {
     const Outcome outcome = render(GetParam(), shape, shape);
     ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
     EXPECT_EQ(outcome.out, "") << "a message of the validation layer";
   }
   expect_equal_pictures("cpu", "gpu");
+  expect_equal_pictures("cpu", "gpu_small");
 }
 
 const ShapeCase shape_cases[] = {
@@ -106,7 +107,7 @@ TEST_F(KernelShapes, BrokenTexelShape_ChangesOnlyPicturesForGpus) {
   for (const char* kernel : kernels) {
     SCOPED_TRACE(kernel);
     const std::string file = std::string("shaders/sap/subsurface_sap_") + kernel + ".comp";
-    write(file, broken(file));
+    write(file, broken(file, "texel_shape"));
     const std::string reference =
         std::string(kernel).find("half") != std::string::npos ? "half" : "smooth";
     ASSERT_EQ(
@@ -117,12 +118,43 @@ TEST_F(KernelShapes, BrokenTexelShape_ChangesOnlyPicturesForGpus) {
   }
   for (const char* kernel : kernels) {
     const std::string file = std::string("shaders/sap/subsurface_sap_") + kernel + ".comp";
-    write(file, broken(file));
+    write(file, broken(file, "texel_shape"));
   }
   ASSERT_EQ(render(smooth, "cpu", "cpu", {"--shaders", copy}).exit_code, 0);
   expect_equal_pictures("smooth", "cpu");
   ASSERT_EQ(render(half, "cpu", "cpu", {"--shaders", copy}).exit_code, 0);
   expect_equal_pictures("half", "cpu");
+}
+
+// The camera is so close that light reaches as far as the coarse levels, which wide groups compute.
+TEST_F(KernelShapes, WideGroups_GiveEqualPictures) {
+  const Outcome has = run({"doctor", "--json"});
+  if (has.out.find("\"shader_compiler\": \"\"") != std::string::npos)
+    GTEST_SKIP() << "built without glslang (package glslang-dev)";
+  std::string scene = text_of("configs/scenes/bust.json");
+  const auto replace = [&](const std::string& old, const std::string& by) {
+    for (size_t at = 0; (at = scene.find(old, at)) != std::string::npos; at += by.size())
+      scene.replace(at, old.size(), by);
+  };
+  replace("../profiles", DERMIS_SOURCE_DIR "/configs/profiles");
+  replace("\"vertical_fov\": 16", "\"vertical_fov\": 1.2");
+  const std::string near = write("near.json", scene);
+  const ShapeCase one{
+      "", near.c_str(), "96x64", {"-g", "configs/graphs/sap.json", "--root", DERMIS_SOURCE_DIR}};
+  for (const char* shape : {"cpu", "gpu", "gpu_small"})
+    ASSERT_EQ(render(one, shape, shape).exit_code, 0);
+  expect_equal_pictures("cpu", "gpu");
+  expect_equal_pictures("cpu", "gpu_small");
+
+  const std::filesystem::path copy = path("shaders");
+  std::filesystem::create_directories(path("."));
+  std::filesystem::copy("shaders", copy, std::filesystem::copy_options::recursive);
+  const std::string file = "shaders/sap/subsurface_sap_coarse_down.comp";
+  write(file, broken(file, "wide_group"));
+  for (const char* shape : {"gpu", "gpu_small"})
+    ASSERT_EQ(render(one, shape, shape, {"--shaders", copy}).exit_code, 0);
+  EXPECT_FALSE(read("cpu/scattered_0001.exr") == read("gpu/scattered_0001.exr"));
+  expect_equal_pictures("cpu", "gpu_small");
 }
 
 } // namespace

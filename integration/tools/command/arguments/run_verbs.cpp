@@ -71,10 +71,11 @@ void add_picture_verbs(CLI::App& app, Invocation& invocation) {
         static const std::map<std::string, demo::KernelShape> shapes{
             {"device", demo::KernelShape::by_device},
             {"gpu", demo::KernelShape::gpu},
+            {"gpu_small", demo::KernelShape::gpu_small},
             {"cpu", demo::KernelShape::cpu}};
         add_choice(verb, "--kernels", options.kernels, shapes,
-                   "Shape of the kernels: for GPUs, for drivers on the CPU, or by the device's "
-                   "type [device]")
+                   "Shape of the kernels: for GPUs, for GPUs with groups of at most 128 "
+                   "invocations, for drivers on the CPU, or by the device's type [device]")
             ->type_name("SHAPE");
         static const std::map<std::string, RenderOptions::Debug> views{
             {"samples", RenderOptions::Debug::samples},
