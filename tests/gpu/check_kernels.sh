@@ -64,6 +64,9 @@ else
   for family in navi21 vega10; do
     compile_for $family "${system[0]}"
   done
+  with_driver "${system[0]}" env RADV_FORCE_FAMILY=navi21 "$dermis" kernels sap --small-groups \
+    --limits tests/gpu/small_group_limits.json >"$out/small_groups.log" 2>&1 ||
+    { sed -n '/dermis: error/,$p' "$out/small_groups.log"; failed=1; }
   # The last step of the pyramid, which also combines: executed vector instructions per pixel, from
   # texels with one layer.
   last_step=$out/last_step

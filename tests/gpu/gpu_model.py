@@ -88,10 +88,10 @@ class Pass:
 
 
 class Model:
-    def __init__(self, hardware, factors=Factors(), width=2560, height=1440):
+    def __init__(self, hardware, factors=Factors(), width=2560, height=1440, covered=COVERED):
         self.hardware, self.factors = hardware, factors
         self.pixels = width * height
-        self.covered = self.pixels * COVERED
+        self.covered = self.pixels * covered
         self.view_tiles = (width // 8) * (height // 8)
         self.tiles = self.tiles_of_levels(self.covered / TILE_FILL / 64)
         self.techniques = {}
@@ -468,8 +468,9 @@ def add_pair(model, built, sampled, vertical, horizontal, samples):
         model.add("pair", name, waves, wave, moved * fraction)
 
 
-def run(hardware, factors=Factors(), width=2560, height=1440, built=None, flagged=0.2):
-    model = Model(hardware, factors, width, height)
+def run(hardware, factors=Factors(), width=2560, height=1440, built=None, flagged=0.2,
+        covered=COVERED):
+    model = Model(hardware, factors, width, height, covered)
     add_rivals(model)
     add_pyramid(model, "SAP shipped", BLOCKS, serial_sap_tiles(model))
     add_pyramid(model, "SAP shipped, 1 layer", BLOCKS, serial_sap_tiles(model), layered=False)

@@ -146,6 +146,7 @@ struct KernelsOptions {
   std::string limits;               // limits file
   std::string assembly;             // output folder
   std::string shaders;              // folder of shaders that replace the built-in ones
+  bool small_groups = false;        // of at most 128 invocations
   TrafficAssumptions assumptions;
 };
 ExitCode kernels(const Session& session, const KernelsOptions& options);

@@ -213,6 +213,9 @@ void add_kernels_verb(CLI::App& app, Invocation& invocation) {
         verb.add_option("--device", options.device,
                         "Part of the device's name [the first discrete GPU]")
             ->type_name("NAME");
+        verb.add_flag("--small-groups", options.small_groups,
+                      "Use no group of more than 128 invocations, as on devices that allow no "
+                      "larger one");
         verb.add_option("--limits", options.limits,
                         "Check the values against this file; exit with 1 if a limit is exceeded")
             ->type_name("FILE");

@@ -113,6 +113,7 @@ public:
     input.physical = host_->physical_device;
     input.device = host_->device;
     input.queue_family = host_->queue_family;
+    input.small_groups = options_.small_groups;
     input.features = host_->ray_query ? bit_of(Feature::ray_query) : Features{0};
     if (const vulkan::Error error = vulkan::make_device(input, device_))
       return demo::Error{demo::ErrorKind::environment, error.text};
