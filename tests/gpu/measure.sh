@@ -19,7 +19,8 @@ if [[ ! $step =~ ^[123]$ || -z $out ]]; then
   exit 2
 fi
 mkdir -p "$out"
-read -ra techniques <<<"${TECHNIQUES:-sap separable burley papers/fixed papers/afis papers/afis_published}"
+defaults="sap separable burley papers/fixed papers/afis papers/afis_published"
+read -ra techniques <<<"${TECHNIQUES:-$defaults}"
 failed=0
 
 render() { # technique, size, frames, folder, more options
