@@ -30,7 +30,7 @@ const PassType clear_tiles_type{
            "texels of the listed tiles. Faster than 'clear', which fills the image.",
     .ports = clear_tiles_ports,
     .settings = {},
-    .dispatch = over_view,
+    .dispatch = over_tile_blocks,
 };
 
 } // namespace dermis::subsurface
