@@ -32,11 +32,13 @@ void count_tiles(uint scattering, uint copied, uint steps) {
   if (copied != 0u)
     atomicAdd(counters.copied_tiles, copied);
 }
-// Moves a tile that was counted as scattering to the tiles with uniform light.
-void recount_as_uniform(float d_px) {
-  atomicAdd(counters.scattering_tiles, 0xffffffffu);
-  atomicAdd(counters.log2_d_sum, 0u - counter_steps(d_px));
-  atomicAdd(counters.uniform_tiles, 1u);
+
+// Moves tiles that were counted as scattering to the tiles with uniform light. `steps` is the sum
+// of their counter_steps.
+void recount_as_uniform(uint tiles, uint steps) {
+  atomicAdd(counters.scattering_tiles, 0u - tiles);
+  atomicAdd(counters.log2_d_sum, 0u - steps);
+  atomicAdd(counters.uniform_tiles, tiles);
 }
 
 #endif

@@ -20,6 +20,13 @@ void unpack_range(uvec4 range, out vec3 low, out vec3 high) {
   high = vec3(r.y, g.y, b.y);
 }
 
+// Returns the range of the light of both. A range without subsurface changes nothing.
+uvec4 join_ranges(uvec4 a, uvec4 b) {
+  // Halves that are not negative are ordered as their bits.
+  uvec3 low = min(a.xyz & 0xffffu, b.xyz & 0xffffu);
+  return uvec4(max(a.xyz, b.xyz) & 0xffff0000u | low, max(a.w, b.w));
+}
+
 // Returns how many tiles light reaches to each side of a tile with this d. In Burley's profile,
 // less than 0.1 % of the light goes further.
 int uniform_reach(float d_px) { return int(ceil(uniform_reach_d * d_px / 8.0)); }
@@ -32,6 +39,15 @@ bool is_alike(uvec4 range, vec3 low, vec3 high) {
   if (other_low.r > other_high.r) // no subsurface
     return true;
   return all(lessThanEqual(max(high, other_high) - min(low, other_low), uniform_tolerance * high));
+}
+
+// Returns whether a tile of a cell with this range is certainly beyond the tolerance of the light
+// between `low` and `high`: each end of the cell's range is that of one of the cell's tiles.
+bool has_unlike(uvec4 cell, vec3 low, vec3 high) {
+  vec3 cell_low, cell_high;
+  unpack_range(cell, cell_low, cell_high);
+  vec3 wide = max(max(high, cell_high) - low, high - min(low, cell_low));
+  return cell_low.r <= cell_high.r && any(greaterThan(wide, uniform_tolerance * high));
 }
 
 #endif
