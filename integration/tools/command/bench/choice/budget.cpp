@@ -87,13 +87,32 @@ std::string name_of(const Single& single) {
   return name;
 }
 
-// Measures errors and modelled times of one row per fraction.
+struct Budget {
+  double x = 0, ms = 0;
+};
+// Returns the budgets of a scene, the first half of the cheapest configuration that scatters.
+std::vector<Budget> budgets_of(const std::vector<Single>& singles) {
+  std::vector<Budget> budgets;
+  for (const double x : fractions)
+    budgets.push_back({x, budget_at(singles, x)});
+  const double first = budget_at(singles, 0), all = budget_at(singles, 1) - first;
+  if (const Single* cheapest = cheapest_scattering(singles); cheapest != nullptr && all > 0) {
+    const double ms = 0.5 * budget_of(*cheapest);
+    budgets.insert(budgets.begin(), {(ms - first) / all, ms});
+  }
+  return budgets;
+}
+
+// Measures errors and modelled times of one row per budget.
 demo::Result<> measure_by_meter(BudgetBench& bench, const std::string& scene) {
   begin_scene(bench, scene);
   const auto singles = measure_singles(bench);
   if (!singles) return singles.error();
-  for (const double x : fractions) {
-    BudgetRow& row = bench.rows.emplace_back(BudgetRow{scene, x, budget_at(*singles, x)});
+  const Single* cheapest = cheapest_scattering(*singles);
+  for (const Budget& budget : budgets_of(*singles)) {
+    BudgetRow& row = bench.rows.emplace_back(BudgetRow{scene, budget.x, budget.ms});
+    if (cheapest != nullptr && budget.ms < budget_of(*cheapest))
+      row.unscattered_rmse = cheapest_of(*singles).rmse;
     bench.request.budget_ms = row.budget_ms;
     const auto run = run_counted(bench);
     if (!run) return run.error();
@@ -200,7 +219,7 @@ demo::Result<> measure_budget(SuiteRun& run, const Emit<BudgetRow>& emit) {
       "{} judged frames after {}; over: more than {} of the budget by timestamps, {} by the "
       "meter; times: median of {}",
       frames, unjudged_frames, measured_tolerance, model_tolerance, repetitions);
-  const uint64_t runs = sets.size() + (1 + repetitions) * std::size(fractions);
+  const uint64_t runs = sets.size() + (1 + repetitions) * (1 + std::size(fractions));
   Progress progress = run.progress("run", run.list("scenes").size() * runs);
   BudgetBench bench{run, std::move(request), std::move(sets), progress};
   if (auto measured = measure_budgets(bench); !measured) return measured;
@@ -245,6 +264,7 @@ Suite budget_suite() {
        {"mean_rmse", "RMSE", &Row::rmse},
        {"best_single_rmse_within_budget", "best single RMSE", &Row::single_rmse},
        {"best_single", "best single", &Row::single},
+       {"unscattered_rmse", "RMSE unscattered", &Row::unscattered_rmse},
        {"switches", "switches",
         [](const Row& row) { return int64_t(median_of(row.timed).switches); }}},
       measure_budget);

@@ -41,6 +41,27 @@ const Single* best_within(const std::vector<Single>& singles, double budget_ms) 
   return best;
 }
 
+double budget_of(const Single& single) {
+  return single.metered_at(within);
+}
+
+const Single& cheapest_of(const std::vector<Single>& singles) {
+  return *std::min_element(singles.begin(), singles.end(), [](const Single& a, const Single& b) {
+    return a.metered_at(within) < b.metered_at(within);
+  });
+}
+
+const Single* cheapest_scattering(const std::vector<Single>& singles) {
+  constexpr double part = 0.75; // of the error without scattering
+  const double most = part * cheapest_of(singles).rmse;
+  const Single* cheapest = nullptr;
+  for (const Single& one : singles)
+    if (one.rmse < most &&
+        (cheapest == nullptr || one.metered_at(within) < cheapest->metered_at(within)))
+      cheapest = &one;
+  return cheapest;
+}
+
 double budget_at(const std::vector<Single>& singles, double fraction) {
   double floor_ms = singles.front().metered_at(within);
   for (const Single& single : singles)
