@@ -220,7 +220,7 @@ TEST_F(Choice, AfisIsSelectedWhereItErrsLessAndFits) {
 TEST_F(Choice, InvalidErrorTable_IsRejectedWithItsPlace) {
   const std::string file = write("errors.json", "{ \"dermis_errors\": 2,\n \"scene\": \"s\" }");
   EXPECT_THAT(run({"explain", graph, "--errors", file}),
-              FailsWith(1, "2:2", "did you mean 'scenes'?"));
+              FailsWith(1, "2:2", "did you mean 'scenes'?", file + ": the choice cannot use"));
 }
 
 // Without the technique's row the choice cannot judge it, which explain reports like render.

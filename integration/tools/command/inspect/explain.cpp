@@ -135,6 +135,22 @@ ExitCode list_choices(const Session& session, const ExplainOptions& options,
   return deliver(session, options.out, std::move(answer).finish());
 }
 
+// Names the table that is wrong, which is not part of the graph.
+ExitCode fail_choice(const Session& session, const ExplainOptions& options,
+                     const Diagnostics& diagnostics) {
+  const auto of_table = [&](const Diagnostic& one) {
+    if (!one.where.file.valid()) return false;
+    const std::string& name = diagnostics.files[one.where.file.value].name;
+    return name == options.budget.errors || name == options.budget.calibration;
+  };
+  const auto wrong = std::find_if(diagnostics.list.begin(), diagnostics.list.end(), of_table);
+  if (wrong == diagnostics.list.end()) return fail_graph(session, options.graph, diagnostics);
+  return fail(session, ExitCode::problems,
+              fmt::format("{}: the choice cannot use this file",
+                          diagnostics.files[wrong->where.file.value].name),
+              &diagnostics);
+}
+
 } // namespace
 
 ExitCode explain(const Session& session, const ExplainOptions& options) {
@@ -160,7 +176,7 @@ ExitCode explain(const Session& session, const ExplainOptions& options) {
   const auto tables =
       choice_tables(*loaded, options.size, choices, pinned_by(loaded->graph, options.settings),
                     *budget, diagnostics);
-  if (!tables) return fail_graph(session, options.graph, diagnostics);
+  if (!tables) return fail_choice(session, options, diagnostics);
   if (options.choices) return list_choices(session, options, *tables, diagnostics);
   const std::optional<CompiledPlan> compiled =
       compile_generic(*loaded, options.size, choices, diagnostics);
