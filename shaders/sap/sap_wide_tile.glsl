@@ -76,7 +76,7 @@ sap_texel find_seed_together(sap_parent parent, bool inside, sap_texel before) {
   }
   int child = chosen < 0 ? -1 : central(chosen) + (chosen > 3 ? 16 : 0);
   if (inside && child < 0)
-    texels_without_seed = 1u;
+    atomicOr(texels_without_seed, 1u);
   barrier();
   if (texels_without_seed != 0u) {
     int outer = find_outer(parent, before);
