@@ -6,6 +6,7 @@
 #extension GL_EXT_samplerless_texture_functions : require
 
 #include "common/environment.glsl"
+#include "common/half.glsl"
 
 layout(set = 1, binding = 3) uniform sampler linear_sampler;
 
@@ -21,6 +22,15 @@ const float mixed_above = 0.003;
 // Returns whether one of the 4 or 16 finer texels of a texel has `mixed_mask`. The smallest weight
 // is 1/64.
 bool spreads_mixed(float mask) { return mask > 2.0; }
+// Rounds light times mask (rgb) and mask (a) for storage. A mask below the normal halves loses
+// digits. Light then follows the rounding of the mask, because reads divide light by mask.
+vec4 round_masked_light(vec4 mean) {
+  const float smallest_normal_half = 6.103515625e-5; // 2^-14
+  float mask = round_to_half(mean.a);
+  if (mean.a > 0.0 && mean.a < smallest_normal_half)
+    mean.rgb *= mask / mean.a;
+  return vec4(round_to_half(mean.rgb), mask);
+}
 
 // Returns a filtered read of a level at texel coordinates. Integers are the centres of texels, 0 is
 // the first texel after the border.

@@ -39,7 +39,8 @@ void main() {
                    read_fine(centre + vec2(apart.x, -apart.y), fine_border) +
                    read_fine(centre + vec2(-apart.x, apart.y), fine_border) +
                    read_fine(centre + apart, fine_border));
-  if (settings.alpha == ALPHA_MASK && spreads_mixed(mean.a))
+  bool masked = settings.alpha == ALPHA_MASK;
+  if (masked && spreads_mixed(mean.a))
     mean.a = mixed_mask;
-  imageStore(coarse_image, address, round_to_half(mean));
+  imageStore(coarse_image, address, masked ? round_masked_light(mean) : round_to_half(mean));
 }
