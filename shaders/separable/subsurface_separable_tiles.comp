@@ -3,6 +3,7 @@
 // technique. The vertical pass runs in tiles without samples and in tiles whose samples fade out
 // towards them. The horizontal pass runs in the tiles that the vertical pass reads.
 #extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_control_flow_attributes : require
 #include "separable/subsurface_separable_tiles.bindings.glsl"
 #include "common/environment.glsl"
 #include "common/list_state.glsl"
@@ -14,73 +15,42 @@ layout(local_size_x = 64, local_size_y = 1, local_size_z = 1) in;
 
 const int vertical_list = 0, horizontal_list = 1; // words of the list's state
 
-shared bool is_last;
+// Tiles that an invocation reads: three columns of five rows around its tile.
+const int columns = 3, rows = 5;
+const int batch = 4;       // tiles that an invocation marks at once
+const int round_rows = 32; // tiles that it marks before the group lists them
+
+shared uint vertical, horizontal;             // tiles of the group
+shared uint first_vertical, first_horizontal; // their first places in the lists
+shared uint most_rows;                        // that an invocation marks
 
 int index_of(ivec2 tile) { return tile.y * frame.tiles.x + tile.x; }
 
-bool runs_vertical(ivec2 tile) {
-  int index = index_of(tile);
-  if (class_of_tile(classes_data[index]) == class_none)
+// Returns whether the vertical pass runs in the tile of row `row` of the middle column. `none` and
+// `sampled` have a bit for each tile: no subsurface, and has_samples. `unsampled`: no samples.
+bool runs_vertical(int row, uint none, uint sampled, uint unsampled) {
+  uint at = uint(row * columns + 1);
+  const uint around = (1u << uint(edge_tiles)) - 1u;
+  if ((none >> at & 1u) != 0u)
     return false;
-  if (samples_per_tile_data[index] == 0u)
-    return true;
-  bool fades = false;
-  for (int i = 0; i < edge_tiles; ++i) {
-    int at = edge_tile(tile, i);
-    fades = fades || !has_samples(classes_data[at], samples_per_tile_data[at]);
-  }
-  return fades;
+  return (unsampled >> at & 1u) != 0u ||
+         (sampled >> uint((row - 1) * columns) & around) != around;
 }
 
 // Returns the number of tiles above and below that the vertical pass of a tile reads.
-int reach_of(ivec2 tile) {
-  int index = index_of(tile);
-  if (class_of_tile(classes_data[index]) != class_scatter)
-    return 0;
-  return (separable_reach(settings.taps, uintBitsToFloat(tile_d_data[index])) + 7) / 8;
+int reach_of(uint entry, uint tile_d) {
+  return class_of_tile(entry) == class_scatter
+             ? (separable_reach(settings.taps, uintBitsToFloat(tile_d)) + 7) / 8
+             : 0;
 }
 
-void need_horizontal(ivec2 tile) {
-  int index = index_of(tile);
-  uint entry = classes_data[index];
-  if (class_of_tile(entry) != class_none && atomicOr(needed_data[index], 1u) == 0u)
-    horizontal_tiles_data[1u + atomicAdd(list_state_data[horizontal_list], 1u)] =
-        pack_tile(uvec2(tile), entry);
-}
-
-// Marks the tiles that the vertical pass reads on one side. If it also runs in the next tile there
-// and reads as far, that tile's invocation marks them.
-void need_side(ivec2 tile, int side, int reach) {
-  int last = side < 0 ? tile.y : frame.tiles.y - 1 - tile.y;
-  reach = min(reach, last);
-  if (reach == 0)
-    return;
-  ivec2 next = tile + ivec2(0, side);
-  if (runs_vertical(next) && reach_of(next) >= reach - 1)
-    return;
-  for (int i = 1; i <= reach; ++i)
-    need_horizontal(tile + ivec2(0, side * i));
-}
-
-void append(ivec2 tile) {
-  vertical_tiles_data[1u + atomicAdd(list_state_data[vertical_list], 1u)] =
-      pack_tile(uvec2(tile), classes_data[index_of(tile)]);
-  need_horizontal(tile);
-  int reach = reach_of(tile);
-  need_side(tile, -1, reach);
-  need_side(tile, 1, reach);
-}
-
-// Returns, to all invocations, whether this group is the last to call the function. Then all other
-// groups' atomic operations on `list_state` are visible.
-bool last_group() {
+// Returns whether this group is the last to call the function, for one invocation of each group.
+// The invocation's earlier atomic operations on `list_state` are then visible to the last one.
+bool ends_last() {
   memoryBarrierBuffer();
-  barrier();
-  if (gl_LocalInvocationIndex == 0u)
-    is_last = atomicAdd(list_state_data[state_ended], 1u) + 1u == list_groups();
-  barrier();
+  bool last = atomicAdd(list_state_data[state_ended], 1u) + 1u == list_groups();
   memoryBarrierBuffer();
-  return is_last;
+  return last;
 }
 
 void write_arguments() {
@@ -97,11 +67,77 @@ void write_arguments() {
   horizontal_arguments_data[2] = 1u;
 }
 
+// Marks tiles that the horizontal pass runs in: rows `from` to `to` of a column of tiles, at most
+// round_rows. Returns a bit for each tile that was not marked before.
+uint mark(int column, int from, int to) {
+  uint fresh = 0u;
+  [[dont_unroll]] for (int row = from; row <= to; row += batch) {
+    uint entries[batch];
+    [[unroll]] for (int i = 0; i < batch; ++i)
+      entries[i] = classes_data[index_of(ivec2(column, min(row + i, to)))];
+    [[unroll]] for (int i = 0; i < batch; ++i) {
+      bool needed = row + i <= to && class_of_tile(entries[i]) != class_none;
+      if (needed && atomicOr(needed_data[index_of(ivec2(column, row + i))], 1u) == 0u)
+        fresh |= 1u << uint(row + i - from);
+    }
+  }
+  return fresh;
+}
+
 void main() {
   int index = int(gl_GlobalInvocationID.x);
+  uint lane = gl_LocalInvocationIndex;
   ivec2 tile = ivec2(index % frame.tiles.x, index / frame.tiles.x);
-  if (tile.y < frame.tiles.y && runs_vertical(tile))
-    append(tile);
-  if (last_group() && gl_LocalInvocationIndex == 0u)
+  uint none = 0u, sampled = 0u, unsampled = 0u;
+  int reaches[rows];
+  [[unroll]] for (int i = 0; i < columns * rows; ++i) {
+    ivec2 near = tile + ivec2(i % columns - 1, i / columns - 2);
+    int at = index_of(clamp(near, ivec2(0), frame.tiles - 1));
+    uint entry = classes_data[at], samples = samples_per_tile_data[at];
+    none |= class_of_tile(entry) == class_none ? 1u << uint(i) : 0u;
+    sampled |= has_samples(entry, samples) ? 1u << uint(i) : 0u;
+    unsampled |= samples == 0u ? 1u << uint(i) : 0u;
+    if (i % columns == 1)
+      reaches[i / columns] = reach_of(entry, tile_d_data[at]);
+  }
+  bool runs = tile.y < frame.tiles.y && runs_vertical(2, none, sampled, unsampled);
+  int above = min(reaches[2], tile.y), below = min(reaches[2], frame.tiles.y - 1 - tile.y);
+  // If the vertical pass also runs in the next tile and reads as far, that tile's invocation marks
+  // the tiles of that side.
+  if (runs_vertical(1, none, sampled, unsampled) && reaches[1] >= above - 1)
+    above = 0;
+  if (runs_vertical(3, none, sampled, unsampled) && reaches[3] >= below - 1)
+    below = 0;
+  if (lane == 0u)
+    vertical = horizontal = most_rows = 0u;
+  barrier();
+  uint at = runs ? atomicAdd(vertical, 1u) : 0u;
+  if (runs)
+    atomicMax(most_rows, uint(above + below + 1));
+  barrier();
+  if (lane == 0u && vertical > 0u)
+    first_vertical = atomicAdd(list_state_data[vertical_list], vertical);
+  int last = runs ? tile.y + below : -1, first = tile.y - above;
+  for (int marked = 0; marked < int(most_rows); marked += round_rows) {
+    int from = first + marked;
+    uint fresh = mark(tile.x, from, min(last, from + round_rows - 1));
+    uint place = fresh != 0u ? atomicAdd(horizontal, uint(bitCount(fresh))) : 0u;
+    barrier();
+    if (lane == 0u && horizontal > 0u) {
+      first_horizontal = atomicAdd(list_state_data[horizontal_list], horizontal);
+      horizontal = 0u;
+    }
+    barrier();
+    place += first_horizontal;
+    [[dont_unroll]] while (fresh != 0u) {
+      ivec2 needed = ivec2(tile.x, from + findLSB(fresh));
+      fresh &= fresh - 1u;
+      horizontal_tiles_data[1u + place++] =
+          pack_tile(uvec2(needed), classes_data[index_of(needed)]);
+    }
+  }
+  if (lane == 0u && ends_last())
     write_arguments();
+  if (runs)
+    vertical_tiles_data[1u + first_vertical + at] = pack_tile(uvec2(tile), classes_data[index]);
 }
