@@ -15,58 +15,106 @@
 
 const uint lanes = 128u;
 const uint run = tiles_per_run_group / lanes; // tiles of an invocation
+const uint own_bins = 2u * selection_bins / lanes;
+const uint batch = 8u; // runs whose tiles an invocation reads at once
+// Sums take two steps: an invocation first adds the values of a chunk.
+const uint chunk = 16u, bin_chunks = selection_bins / chunk, lane_chunks = lanes / chunk;
 layout(local_size_x = 128, local_size_y = 1, local_size_z = 1) in;
 
 // Index 0: all tiles. Index 1: tiles without a weight in the previous frame.
 shared uint tiles_of_bin[2u * selection_bins];
 shared uint earlier_of_bin[2u * selection_bins]; // of earlier groups
-shared uvec2 counts[lanes];
-shared uint sums[2];
+shared uint tiles_of_chunk[2u * bin_chunks];
+shared uvec2 counts[lanes], counts_of_chunk[lane_chunks];
 // Bins above are paid in full, and the first `left` tiles of the bin.
 shared ivec2 last_bin;
 shared uvec2 left;
 shared bool fades;
 shared uint listed; // tiles of the group
 shared uint base;   // index of the first of them in the list
-shared bool is_last;
 
+// Sums the tiles of all runs by bin, and of each chunk of bins.
 void sum_histograms(uint lane) {
-  for (uint bin = lane; bin < 2u * selection_bins; bin += lanes) {
-    uint all = 0u, earlier = 0u;
-    for (uint group = 0u; group < list_groups(); ++group) {
-      uint tiles = histogram_data[group * 2u * selection_bins + bin];
-      all += tiles;
-      earlier += group < gl_WorkGroupID.x ? tiles : 0u;
+  uint all[own_bins], earlier[own_bins], groups = list_groups();
+  [[unroll]] for (uint i = 0u; i < own_bins; ++i)
+    all[i] = earlier[i] = 0u;
+  [[dont_unroll]] for (uint group = 0u; group < groups; group += batch) {
+    uint tiles[batch * own_bins];
+    [[unroll]] for (uint i = 0u; i < batch * own_bins; ++i)
+      tiles[i] = histogram_data[min(group + i / own_bins, groups - 1u) * 2u * selection_bins +
+                                i % own_bins * lanes + lane];
+    [[unroll]] for (uint i = 0u; i < batch * own_bins; ++i) {
+      uint at = group + i / own_bins;
+      all[i % own_bins] += at < groups ? tiles[i] : 0u;
+      earlier[i % own_bins] += at < gl_WorkGroupID.x ? tiles[i] : 0u;
     }
-    tiles_of_bin[bin] = all;
-    earlier_of_bin[bin] = earlier;
-    atomicAdd(sums[bin / selection_bins], all);
   }
+  [[unroll]] for (uint i = 0u; i < own_bins; ++i) {
+    tiles_of_bin[i * lanes + lane] = all[i];
+    earlier_of_bin[i * lanes + lane] = earlier[i];
+  }
+  barrier();
+  if (lane < 2u * bin_chunks) {
+    uint sum = 0u;
+    [[unroll]] for (uint i = 0u; i < chunk; ++i)
+      sum += tiles_of_bin[lane * chunk + i];
+    tiles_of_chunk[lane] = sum;
+  }
+  barrier();
 }
 
-void find_threshold(uint which, uint units) {
-  last_bin[which] = -1;
-  left[which] = 0u;
-  for (int bin = int(selection_bins) - 1; bin >= 0; --bin) {
-    uint tiles = tiles_of_bin[which * selection_bins + uint(bin)];
-    if (tiles > units) {
-      last_bin[which] = bin;
-      left[which] = units;
-      return;
-    }
-    units -= tiles;
-  }
+// Returns the tiles in the chunks of bins from `first` on.
+uint sum_chunks(uint which, uint first) {
+  uint sum = 0u;
+  [[unroll]] for (uint i = 0u; i < bin_chunks; ++i)
+    sum += i >= first ? tiles_of_chunk[which * bin_chunks + i] : 0u;
+  return sum;
+}
+
+// Finds the bin where `units` end, if it is in this chunk.
+void find_threshold(uint which, uint own_chunk, uint units) {
+  uint above = sum_chunks(which, own_chunk + 1u);
+  if (above > units || tiles_of_chunk[which * bin_chunks + own_chunk] <= units - above)
+    return;
+  uint rest = units - above, bin = (own_chunk + 1u) * chunk - 1u;
+  for (; tiles_of_bin[which * selection_bins + bin] <= rest; --bin)
+    rest -= tiles_of_bin[which * selection_bins + bin];
+  last_bin[which] = int(bin);
+  left[which] = rest;
 }
 
 void find_thresholds(uint lane) {
-  uint demand = sums[0], chosen = demand - sums[1];
+  uint demand = sum_chunks(0u, 0u), chosen = demand - sum_chunks(1u, 0u);
   bool may_fade = chosen <= frame.sample_units;
-  if (lane == 0u) {
+  if (lane == 0u)
     fades = may_fade;
-    find_threshold(0u, steady_units(frame.sample_units, demand));
+  if (lane < 2u * bin_chunks) {
+    uint which = lane / bin_chunks;
+    find_threshold(which, lane % bin_chunks,
+                   which == 0u ? steady_units(frame.sample_units, demand)
+                               : may_fade ? frame.sample_units - chosen : 0u);
   }
-  if (lane == 1u)
-    find_threshold(1u, may_fade ? frame.sample_units - chosen : 0u);
+  barrier();
+}
+
+// Returns the sum of the values of earlier invocations.
+uvec2 sum_before(uint lane, uvec2 value) {
+  counts[lane] = value;
+  barrier();
+  if (lane < lane_chunks) {
+    uvec2 sum = uvec2(0u);
+    [[unroll]] for (uint i = 0u; i < chunk; ++i)
+      sum += counts[lane * chunk + i];
+    counts_of_chunk[lane] = sum;
+  }
+  barrier();
+  uint own_chunk = lane / chunk;
+  uvec2 sum = uvec2(0u);
+  [[unroll]] for (uint i = 0u; i < lane_chunks; ++i)
+    sum += i < own_chunk ? counts_of_chunk[i] : uvec2(0u);
+  [[unroll]] for (uint i = 0u; i < chunk; ++i)
+    sum += i < lane % chunk ? counts[own_chunk * chunk + i] : uvec2(0u);
+  return sum;
 }
 
 // Returns whether a tile of this bin is paid. `earlier` counts the tiles of the last bin so far.
@@ -76,16 +124,23 @@ bool is_paid(uint which, uint bin, inout uvec2 earlier) {
   return earlier[which]++ < left[which];
 }
 
-// Returns, to all invocations, whether this group is the last to call the function. Then all other
-// groups' atomic operations on `list_state` are visible.
-bool last_group() {
+// Returns whether this group is the last to call the function, for one invocation of each group.
+// The invocation's earlier atomic operations on `list_state` are then visible to the last one.
+bool ends_last() {
   memoryBarrierBuffer();
-  barrier();
-  if (gl_LocalInvocationIndex == 0u)
-    is_last = atomicAdd(list_state_data[state_ended], 1u) + 1u == list_groups();
-  barrier();
+  bool last = atomicAdd(list_state_data[state_ended], 1u) + 1u == list_groups();
   memoryBarrierBuffer();
-  return is_last;
+  return last;
+}
+
+void write_arguments() {
+  uint all = atomicExchange(list_state_data[0], 0u);
+  list_state_data[state_ended] = 0u;
+  selected_tiles_data[0] = all;
+  selected_arguments_data[0] = min(all, tile_groups_per_row);
+  selected_arguments_data[1] = (all + tile_groups_per_row - 1u) / tile_groups_per_row;
+  selected_arguments_data[2] = 1u;
+  counters.sample_demand = sum_chunks(0u, 0u);
 }
 
 void main() {
@@ -93,38 +148,29 @@ void main() {
   uint first = min(gl_WorkGroupID.x * tiles_per_run_group + lane * run, tiles);
   uint last = min(first + run, tiles);
   bool continues = has_before() && history_usable();
-  if (lane < 2u)
-    sums[lane] = 0u;
-  if (lane == 0u)
+  if (lane == 0u) {
     listed = 0u;
-  barrier();
-  sum_histograms(lane);
-  barrier();
-  find_thresholds(lane);
-  barrier();
-
-  uint bins[run], before[run];
-  uvec2 own = uvec2(0u); // tiles in the last bins
+    last_bin = ivec2(-1);
+    left = uvec2(0u);
+  }
+  uint entries[run], bins[run], before[run]; // read first, because no read depends on another
   [[unroll]] for (uint i = 0u; i < run; ++i) {
     uint tile = min(first + i, tiles - 1u);
     before[i] = continues ? before_data[tile] : 0u;
-    bins[i] = first + i < last
-                  ? selection_bin(classes_data[tile], tile_changes_data[tile], before[i])
-                  : no_bin;
+    entries[i] = classes_data[tile];
+    uint bin = selection_bin(entries[i], tile_changes_data[tile], before[i]);
+    bins[i] = first + i < last ? bin : no_bin;
+  }
+  sum_histograms(lane);
+  find_thresholds(lane);
+
+  uvec2 own = uvec2(0u); // tiles in the last bins
+  [[unroll]] for (uint i = 0u; i < run; ++i) {
     own.x += int(bins[i]) == last_bin.x ? 1u : 0u;
     own.y += int(bins[i]) == last_bin.y && !is_chosen(before[i]) ? 1u : 0u;
   }
   own *= uvec2(last_bin.x >= 0, last_bin.y >= 0); // no_bin equals -1
-  counts[lane] = own;
-  barrier();
-  for (uint stride = 1u; stride < lanes; stride *= 2u) { // inclusive scan, Hillis & Steele 1986
-    uvec2 others = lane >= stride ? counts[lane - stride] : uvec2(0u);
-    barrier();
-    counts[lane] += others;
-    barrier();
-  }
-
-  uvec2 earlier = counts[lane] - own;
+  uvec2 earlier = sum_before(lane, own);
   earlier.x += last_bin.x >= 0 ? earlier_of_bin[last_bin.x] : 0u;
   earlier.y += last_bin.y >= 0 ? earlier_of_bin[selection_bins + uint(last_bin.y)] : 0u;
   uint weights[run], taking = 0u;
@@ -144,15 +190,15 @@ void main() {
     if (weights[i] > 0u)
       ++taking;
     else
-      classes_data[tile] = class_copy | (classes_data[tile] & class_full_bit);
+      classes_data[tile] = class_copy | (entries[i] & class_full_bit);
   }
   uint at = taking > 0u ? atomicAdd(listed, taking) : 0u;
   barrier();
-  if (lane == 0u && listed > 0u) {
+  if (lane == 0u && listed > 0u)
     base = atomicAdd(list_state_data[0], listed);
-    atomicAdd(counters.sample_units, listed);
-  }
   barrier();
+  if (lane == 0u && ends_last())
+    write_arguments();
   at += base;
   uint across = uint(frame.tiles.x);
   uvec2 place = uvec2(first % across, first / across);
@@ -161,13 +207,6 @@ void main() {
       selected_tiles_data[1u + at++] = place.x | place.y << 15;
     place = place.x + 1u < across ? place + uvec2(1u, 0u) : uvec2(0u, place.y + 1u);
   }
-  if (!last_group() || lane != 0u)
-    return;
-  uint all = atomicExchange(list_state_data[0], 0u);
-  list_state_data[state_ended] = 0u;
-  selected_tiles_data[0] = all;
-  selected_arguments_data[0] = min(all, tile_groups_per_row);
-  selected_arguments_data[1] = (all + tile_groups_per_row - 1u) / tile_groups_per_row;
-  selected_arguments_data[2] = 1u;
-  counters.sample_demand = sums[0];
+  if (lane == 0u && listed > 0u)
+    atomicAdd(counters.sample_units, listed);
 }

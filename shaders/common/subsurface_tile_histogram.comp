@@ -2,6 +2,7 @@
 // Counts the tiles that scatter by bin of their expected change, for a run of tiles in row order
 // per group: all of them, then those without a weight in the previous frame.
 #extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_control_flow_attributes : require
 #include "common/subsurface_tile_histogram.bindings.glsl"
 #include "common/environment.glsl"
 #include "constants.glsl"
@@ -9,6 +10,7 @@
 #include "common/tile_selection.glsl"
 
 const uint lanes = 128u;
+const uint run = tiles_per_run_group / lanes; // tiles of an invocation
 layout(local_size_x = 128, local_size_y = 1, local_size_z = 1) in;
 
 shared uint tiles_of_bin[2u * selection_bins];
@@ -18,17 +20,22 @@ void main() {
   bool continues = has_before() && history_usable();
   for (uint bin = lane; bin < 2u * selection_bins; bin += lanes)
     tiles_of_bin[bin] = 0u;
+  uint first = gl_WorkGroupID.x * tiles_per_run_group + lane;
+  uint tiles = uint(frame.tiles.x * frame.tiles.y);
+  uint bins[run], before[run];
+  [[unroll]] for (uint i = 0u; i < run; ++i) {
+    uint tile = first + i * lanes, near = min(tile, tiles - 1u);
+    before[i] = continues ? before_data[near] : 0u;
+    uint bin = selection_bin(classes_data[near], tile_changes_data[near], before[i]);
+    bins[i] = tile == near ? bin : no_bin;
+  }
   barrier();
-  uint first = gl_WorkGroupID.x * tiles_per_run_group;
-  uint last = min(first + tiles_per_run_group, uint(frame.tiles.x * frame.tiles.y));
-  for (uint tile = first + lane; tile < last; tile += lanes) {
-    uint before = continues ? before_data[tile] : 0u;
-    uint bin = selection_bin(classes_data[tile], tile_changes_data[tile], before);
-    if (bin == no_bin)
+  [[unroll]] for (uint i = 0u; i < run; ++i) {
+    if (bins[i] == no_bin)
       continue;
-    atomicAdd(tiles_of_bin[bin], 1u);
-    if (!is_chosen(before))
-      atomicAdd(tiles_of_bin[selection_bins + bin], 1u);
+    atomicAdd(tiles_of_bin[bins[i]], 1u);
+    if (!is_chosen(before[i]))
+      atomicAdd(tiles_of_bin[selection_bins + bins[i]], 1u);
   }
   barrier();
   for (uint bin = lane; bin < 2u * selection_bins; bin += lanes)

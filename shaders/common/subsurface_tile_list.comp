@@ -15,18 +15,23 @@ layout(local_size_x = 128, local_size_y = 1, local_size_z = 1) in;
 
 shared uint listed; // tiles of the group
 shared uint base;   // index of the first of them in the list
-shared bool is_last;
 
-// Returns, to all invocations, whether this group is the last to call the function. Then all other
-// groups' atomic operations on `list_state` are visible.
-bool last_group() {
+// Returns whether this group is the last to call the function, for one invocation of each group.
+// The invocation's earlier atomic operations on `list_state` are then visible to the last one.
+bool ends_last() {
   memoryBarrierBuffer();
-  barrier();
-  if (gl_LocalInvocationIndex == 0u)
-    is_last = atomicAdd(list_state_data[state_ended], 1u) + 1u == list_groups();
-  barrier();
+  bool last = atomicAdd(list_state_data[state_ended], 1u) + 1u == list_groups();
   memoryBarrierBuffer();
-  return is_last;
+  return last;
+}
+
+void write_arguments() {
+  uint all = atomicExchange(list_state_data[0], 0u);
+  list_state_data[state_ended] = 0u;
+  tiles_data[0] = all;
+  arguments_data[0] = min(all, tile_groups_per_row);
+  arguments_data[1] = (all + tile_groups_per_row - 1u) / tile_groups_per_row;
+  arguments_data[2] = 1u;
 }
 
 void main() {
@@ -48,6 +53,8 @@ void main() {
   if (lane == 0u && listed > 0u)
     base = atomicAdd(list_state_data[0], listed);
   barrier();
+  if (lane == 0u && ends_last())
+    write_arguments();
   at += base;
   uint across = uint(frame.tiles.x);
   uvec2 tile = uvec2(first % across, first / across);
@@ -55,15 +62,5 @@ void main() {
     if (class_of_tile(entries[i]) != class_none)
       tiles_data[1u + at++] = pack_tile(tile, entries[i]);
     tile = tile.x + 1u < across ? tile + uvec2(1u, 0u) : uvec2(0u, tile.y + 1u);
-  }
-  if (!last_group())
-    return;
-  if (lane == 0u) {
-    uint all = atomicExchange(list_state_data[0], 0u);
-    list_state_data[state_ended] = 0u;
-    tiles_data[0] = all;
-    arguments_data[0] = min(all, tile_groups_per_row);
-    arguments_data[1] = (all + tile_groups_per_row - 1u) / tile_groups_per_row;
-    arguments_data[2] = 1u;
   }
 }
