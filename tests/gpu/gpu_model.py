@@ -62,7 +62,7 @@ NVIDIA_LIKE = Hardware("NVIDIA-like (46 SM, 1.7 GHz, 448 GB/s, 4 MB L2)", 46, 1.
                        448e9, 448e9, 1.4e12, 3.5e-6, 2 * 1.45, 2 * 8, 0.0)
 SMALL_RDNA2 = Hardware("small RDNA2 (28 CU, 2.3 GHz, 224 GB/s + 32 MB IC)", 28, 2.3e9, 56,
                        224e9, 0.5e12, 0.8e12, 4e-6, 2, 8, 0.2)
-# Added before the first measurement on such a device; the time per dispatch is that of the row above.
+# Added before the first measurement on such a device; time per dispatch as above.
 H200 = Hardware("H200 (132 SM, 1.98 GHz, 4.8 TB/s, 60 MB L2)", 132, 1.98e9, 528,
                 4.8e12, 5.5e12, 5.5e12, 3.5e-6, 2 * 1.45, 2 * 8, 0.3)
 H100 = Hardware("H100 (132 SM, 1.98 GHz, 3.35 TB/s, 50 MB L2)", 132, 1.98e9, 528,
@@ -411,8 +411,8 @@ def add_built(model, technique, built, graph, flagged):
             model.add_serial(technique, one["pass"], model.wave(**LIST_RUN)["lat"])
         elif kernel in COARSE_TILES:
             groups = model.tiles[COARSE_TILES[kernel]]
-            model.add(technique, one["pass"], COARSE_SUBGROUPS[kernel] * groups, built.wave(model, row),
-                      bytes_moved)
+            model.add(technique, one["pass"], COARSE_SUBGROUPS[kernel] * groups,
+                      built.wave(model, row), bytes_moved)
         elif kernel in ONE_LAYER_TRIPS:
             both = built.wave(model, row)
             if one["pass"] == "down_2":

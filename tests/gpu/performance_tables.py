@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Prints the tables of docs/performance.md from what measure.sh wrote on a GPU, next to modelled times.
+"""Prints the measured times of docs/performance.md next to modelled ones.
 
 usage: performance_tables.py MEASURED KERNELS ASSEMBLY [--write FILE]
   MEASURED  output folder of `measure.sh 1`
