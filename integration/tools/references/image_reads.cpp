@@ -267,13 +267,13 @@ ImageReads residual(const PassType& type, const ReadsQuestion& question) {
   return reads;
 }
 
-// near_light.glsl: material, light, scattered light and depth of the group's pixels and a ring of
-// four. Also scattered light of the group with a ring of one, of 3x3 pixels again, and the pixel's
-// own inputs. Of the previous frame: one texel if the camera rests, and its surface twice.
+// near_light.glsl: material, light, scattered light and depth of the group's pixels and a border of
+// three without corners. Also scattered light of a pixel next to the group. Of the previous frame:
+// one texel and its surface if the camera rests.
 ImageReads accumulate(const PassType& type, const ReadsQuestion& question) {
-  return {shared_reads(16 * 16) * (3 + light_reads(type, question) - scale_read(type, question)) +
-          shared_reads(10 * 10) * (1 + scale_read(type, question)) + 9 + 3 +
-          one_if(type, question, "velocity", PortSide::read) + 3};
+  const double scale = scale_read(type, question);
+  return {shared_reads(14 * 14 - 4) * (3 + light_reads(type, question) - scale) + 1 + 2 * scale +
+          one_if(type, question, "velocity", PortSide::read) + 2};
 }
 
 // afis/subsurface_pyramid_setup.comp: material, light, and neighbouring materials if profiles are
