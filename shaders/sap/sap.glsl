@@ -28,12 +28,8 @@ float sap_rate(float width) { return sqrt(0.5 * 1.44269504) / width; }
 // distance from the tangent plane and its difference in depth.
 float sap_nearer(float a, float b) { return min(abs(a), abs(b)); }
 
-// A folded surface has more area within reach than its mean plane. From sap_first_area_level on,
-// mass counts this area, up to sap_max_mass.
-const int sap_first_area_level = 3;
+// Largest mass of a texel, on folded surfaces (sap_folds.glsl).
 const float sap_max_mass = 1.5;
-// Returns the area of a surface divided by its cross-section, at most 2.
-float sap_area_of(vec2 slope) { return min(sqrt(1.0 + dot(slope, slope)), 2.0); }
 
 struct sap_texel {
   float depth;  // mm; its last bits are sap_held()

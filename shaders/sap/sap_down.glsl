@@ -13,6 +13,7 @@
 
 const int block_width = 2, block_height = 2;
 #include "sap/sap_tiles.glsl"
+#include "sap/sap_folds.glsl"
 
 const float hysteresis = 1.02;    // keeps the first seed among equals
 // minimum fraction of a plane's depth to which the plane is extrapolated
@@ -349,12 +350,14 @@ uint held_of(holding sum) {
 // Sums over the children near the surface of a seed. Light is that of all of them, also of those on
 // the layer before: both surfaces scatter into each other. Mass and plane count these less.
 struct reduction {
-  float all_weight, light_mass, mass, area_mass, total, total_flat, mean_depth, mean_reach;
+  float all_weight, light_mass, mass, total, total_flat, mean_depth, mean_reach;
   vec2 mean_slope;
   vec3 light;
   bool remains; // a child can be the seed of another layer
   holding own, before; // of this layer and of the layer before
-  float all; // weights of the children
+  float all, first; // weights of the children, of their first layers
+  float area_mass;  // mass times the area of the child over its cross-section
+  float rise;       // mass times the rises of the child and of the seed's plane, in sigmas
 };
 // A layer's seed and, for sap_relevance(), 1 / the relevant distance in sigmas.
 struct sap_seed {
@@ -394,8 +397,10 @@ void add_child(sap_parent parent, sap_seed own, sap_seed before, int c, bool sec
   float weight = near_weight * narrowing * tap.a;
   sum.light_mass += near_weight * narrowing;
   sum.mass += flat_weight * narrowing;
-  if (finer_has_layers())
+  if (finer_has_layers()) {
     sum.area_mass += flat_weight * narrowing * sap_area_of(child.slope);
+    sum.rise += flat_weight * narrowing * tilt * depth_step;
+  }
   sum.total += weight;
   sum.total_flat += flat_weight;
   sum.light += weight * tap.rgb;
@@ -409,8 +414,8 @@ void add_child(sap_parent parent, sap_seed own, sap_seed before, int c, bool sec
                 off_before * before.per_relevant, sum.before);
 }
 const holding no_holding = holding(0.0, 0.0);
-const reduction no_children = reduction(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, vec2(0.0),
-                                        vec3(0.0), false, no_holding, no_holding, 0.0);
+const reduction no_children = reduction(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, vec2(0.0), vec3(0.0),
+                                        false, no_holding, no_holding, 0.0, 0.0, 0.0, 0.0);
 #ifdef SAP_ROW_SUMS
 #include "sap/sap_row_sums.glsl"
 #endif
@@ -423,13 +428,17 @@ void add_children(sap_parent parent, int layers, sap_seed seed, sap_seed before,
     [[dont_unroll]] for (int row = 0; row < 4; ++row)
       [[unroll]] for (int column = 0; column < 4; ++column)
         add_child(parent, seed, before, 4 * row + column, false, sum);
+    sum.first = sum.all;
     if (layers > 1 && parent.two)
       [[dont_unroll]] for (int row = 0; row < 4; ++row)
         [[unroll]] for (int column = 0; column < 4; ++column)
           add_child(parent, seed, before, 4 * row + column, true, sum);
   } else {
-    [[unroll]] for (int c = 0; c < layers * children_a_layer; ++c)
+    [[unroll]] for (int c = 0; c < layers * children_a_layer; ++c) {
       add_child(parent, seed, before, c % children_a_layer, c >= children_a_layer, sum);
+      if (c == children_a_layer - 1)
+        sum.first = sum.all;
+    }
   }
 #endif
 }
@@ -458,10 +467,9 @@ sap_layer layer_of_sums(sap_parent parent, sap_texel seed, sap_texel before, red
     vec3 rounded =
         round_to_half(vec3(sum.mean_slope / sum.total_flat, sum.mean_reach / sum.total_flat));
     float mass = min(sum.mass / sum.all_weight, 1.0);
-    if (finer_has_layers() && parent.finer + 1 >= sap_first_area_level) {
-      float area = sap_area_of(sum.mean_slope / sum.total_flat);
-      mass = min(sum.area_mass / (area * sum.all_weight), sap_max_mass);
-    }
+    if (finer_has_layers() && parent.finer + 1 >= sap_first_area_level)
+      mass = sap_mass_by_area(sum.mass, sum.area_mass, sum.rise, sum.first, sum.all_weight,
+                              seed.slope, sum.mean_slope / sum.total_flat);
     sap_texel texel = sap_texel(max(sum.mean_depth / sum.total_flat, nearest_fraction * seed.depth),
                                 rounded.xy, rounded.z, round_to_half(mass), seed.id);
     // Profiles without a layer.

@@ -8,6 +8,7 @@ void add_row(sap_parent parent, int layers, sap_seed seed, sap_seed before, int 
              inout reduction sum) {
   [[unroll]] for (int column = 0; column < 4; ++column)
     add_child(parent, seed, before, 4 * row + column, false, sum);
+  sum.first = sum.all;
   if (layers > 1 && parent.two)
     [[unroll]] for (int column = 0; column < 4; ++column)
       add_child(parent, seed, before, 4 * row + column, true, sum);
@@ -20,13 +21,13 @@ void to_vectors(reduction sum, out vec4 vectors[sum_vectors]) {
   vectors[1] = vec4(sum.mass, sum.area_mass, sum.total, sum.total_flat);
   vectors[2] = vec4(sum.mean_depth, sum.mean_reach, sum.mean_slope);
   vectors[3] = vec4(sum.own.same, sum.own.held, sum.before.same, sum.before.held);
-  vectors[4] = vec4(sum.all, sum.remains ? 1.0 : 0.0, 0.0, 0.0);
+  vectors[4] = vec4(sum.all, sum.first, sum.rise, sum.remains ? 1.0 : 0.0);
 }
 reduction from_vectors(vec4 vectors[sum_vectors]) {
-  return reduction(0.0, vectors[0].a, vectors[1].x, vectors[1].y, vectors[1].z, vectors[1].w,
-                   vectors[2].x, vectors[2].y, vectors[2].zw, vectors[0].rgb, vectors[4].y > 0.0,
+  return reduction(0.0, vectors[0].a, vectors[1].x, vectors[1].z, vectors[1].w, vectors[2].x,
+                   vectors[2].y, vectors[2].zw, vectors[0].rgb, vectors[4].w > 0.0,
                    holding(vectors[3].x, vectors[3].y), holding(vectors[3].z, vectors[3].w),
-                   vectors[4].x);
+                   vectors[4].x, vectors[4].y, vectors[1].y, vectors[4].z);
 }
 
 reduction sum_rows(sap_parent parent, int layers, sap_seed seed, sap_seed before) {

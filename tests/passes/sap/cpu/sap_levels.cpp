@@ -94,6 +94,28 @@ size_t find_seed(const SapPyramid<Real>& pyramid, const Children<Real>& children
   return best;
 }
 
+// Sums over the children near a layer that determine the mass of a folded surface.
+template <class Real> struct Folding {
+  Real area_mass = 0; // Mass times the area of the child over its cross-section.
+  Real first = 0;     // Weight times mass of the first layer of all children.
+  Real rise = 0;      // Mass times the rises of the child and of the seed's plane, in sigmas.
+
+  // Returns the mass of a parent by the area of its children, as sap_mass_by_area() of
+  // shaders/sap/sap_folds.glsl. `mass`: of the children; `all_weight`: of a complete plane.
+  Real parent_mass(const SapTexel<Real>& seed, const SapTexel<Real>& parent, Real mass,
+                   Real all_weight) const {
+    // The mean square of a plane's rise in sigmas is the square of its slope.
+    const Real plane = std::max(mass * (seed.slope_x * seed.slope_x + seed.slope_y * seed.slope_y),
+                                Real(sap_negligible));
+    const Real rising = std::clamp(Real(sap_rising) * rise / plane, Real(0), Real(1));
+    const Real ratio = area_mass / (mass * parent.slope_area(rising));
+    const Real squared = std::min(first * first, Real(1)), covered = squared * squared;
+    const Real gain = 1 + (ratio * ratio - 1) * covered * covered;
+    return std::min(std::min(mass / all_weight, std::max(first, Real(1))) * gain,
+                    Real(sap_max_mass));
+  }
+};
+
 // Builds one layer of a parent, and subtracts the used part from what the children have left. The
 // light of a layer is that of all children near its plane, also of those on another layer: both
 // surfaces scatter into each other. Mass and plane count children of the layer before less.
@@ -107,13 +129,15 @@ SapTexel<Real> reduce(const SapPyramid<Real>& pyramid, Children<Real>& children,
   const Real per_sigma = 1 / (Real(sap_sigma) * children.spacing);
   const Real per_metre = per_sigma / pyramid.footprint(plane.depth);
   SapTexel<Real> sum;
-  Real all_weight = 0, total = 0, flat = 0, light_mass = 0, area_mass = 0;
+  Real all_weight = 0, total = 0, flat = 0, light_mass = 0;
+  Folding<Real> folds;
   for (size_t k = 0; k < no_child; ++k) {
     const Real x = children.x(k), y = children.y(k);
     const Real tilt = plane.slope(x, y) * per_sigma;
     if (k < children_a_layer)
       all_weight += children.weight(k) * sap_falloff(tilt, sap_tilt_width_down);
     const SapTexel<Real>* child = children.texels[k];
+    if (child && k < children_a_layer) folds.first += children.weight(k) * child->mass;
     if (!child || child->id != plane.id || !(children.weight(k) > 0)) continue;
     const Real step = (child->depth - plane.depth) * per_metre;
     const Real off = sap_nearer(step - pyramid.rise(plane, x, y) * per_metre, step);
@@ -125,8 +149,10 @@ SapTexel<Real> reduce(const SapPyramid<Real>& pyramid, Children<Real>& children,
     children.left[k] *= 1 - kept;
     const Real weight = near_weight * narrowing * child->area;
     light_mass += near_weight * narrowing;
-    sum.mass += flat_weight * narrowing;
-    area_mass += flat_weight * narrowing * child->slope_area();
+    const Real mass = flat_weight * narrowing;
+    sum.mass += mass;
+    folds.area_mass += mass * child->slope_area();
+    folds.rise += mass * tilt * step;
     total += weight;
     flat += flat_weight;
     for (size_t c = 0; c < 3; ++c)
@@ -145,8 +171,7 @@ SapTexel<Real> reduce(const SapPyramid<Real>& pyramid, Children<Real>& children,
                         .area = total / light_mass,
                         .light = {},
                         .id = plane.id};
-  if (mass_by_area)
-    parent.mass = std::min(Real(sap_max_mass), area_mass / (parent.slope_area() * all_weight));
+  if (mass_by_area) parent.mass = folds.parent_mass(plane, parent, sum.mass, all_weight);
   for (size_t c = 0; c < 3; ++c)
     parent.light[c] = sum.light[c] / total;
   return parent;

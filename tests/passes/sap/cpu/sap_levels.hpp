@@ -35,6 +35,9 @@ inline constexpr double sap_area_power = 0.25, sap_reach_power = 0.125;
 // texels can have two layers, mass counts the area of the children over that of the parent.
 inline constexpr int sap_first_area_level = 3;
 inline constexpr double sap_max_mass = 1.5, sap_max_area = 2;
+// Children whose rise along the slope of their planes is less than 1 / sap_rising of the planes'
+// are on teeth of a saw, measured on the scales of the family.
+inline constexpr double sap_rising = 16;
 inline constexpr double sap_negligible = 1e-12;
 
 template <class Real> Real sap_falloff(Real x, double width) {
@@ -68,9 +71,10 @@ template <class Real> struct SapTexel {
   Real lost = 0; // Fraction of the surface under the texel whose profile no layer has.
 
   Real slope(Real x, Real y) const { return slope_x * x + slope_y * y; }
-  // Returns the area of the surface over its cross-section, from the slope.
-  Real slope_area() const {
-    return std::min(std::sqrt(1 + slope_x * slope_x + slope_y * slope_y), Real(sap_max_area));
+  // Returns the area of a surface over its cross-section that has `part` of the slope.
+  Real slope_area(Real part = 1) const {
+    return std::min(std::sqrt(1 + part * part * (slope_x * slope_x + slope_y * slope_y)),
+                    Real(sap_max_area));
   }
 };
 
