@@ -79,10 +79,10 @@ PassLoad load_of(const Plan& plan, const PlanPass& pass, const PassType& type,
     load.rule = type.dispatch;
     break;
   case DispatchRule::Domain::indirect:
-    load.groups = scatters_in_part(type)                 ? PassLoad::Groups::selected_tiles
-                  : takes_units(plan, pass, type)        ? PassLoad::Groups::sample_units
-                  : type.name == "subsurface.copy_tiles" ? PassLoad::Groups::copied_tiles
-                                                         : PassLoad::Groups::listed_tiles;
+    load.groups = scatters_in_part(type)          ? PassLoad::Groups::selected_tiles
+                  : takes_units(plan, pass, type) ? PassLoad::Groups::sample_units
+                  : copies_all_tiles(type)        ? PassLoad::Groups::copied_tiles
+                                                  : PassLoad::Groups::listed_tiles;
     break;
   case DispatchRule::Domain::written_image:
     load.count =
@@ -192,6 +192,10 @@ std::string name_of(const Graph& graph, const Plan& plan, const std::vector<uint
 bool runs_by_budget(const PassType& type) {
   return type.name == "subsurface.tile_refine" || type.name == "subsurface.afis_tiles" ||
          scatters_in_part(type);
+}
+
+bool copies_all_tiles(const PassType& type) {
+  return type.name == "subsurface.copy_tiles" || type.name == "subsurface.combine_copies";
 }
 
 std::string work_name(const PassType& type, std::span<const SettingValue> values) {

@@ -60,6 +60,8 @@ struct Combinations {
 // Returns whether the pass runs over tiles that the budget selects: those with samples, or those
 // that scatter.
 bool runs_by_budget(const PassType& type);
+// Returns whether the pass has groups only in frames in which no tile scatters.
+bool copies_all_tiles(const PassType& type);
 
 // Returns the name of a work, such as "subsurface.separable axis=vertical taps=25". `values`: one
 // per setting of the pass type.

@@ -18,7 +18,7 @@ TypeNames scattering_types(const PassTypeRegistry& pass_types, const Plan& plan,
   for (const PlanPass& pass : plan.passes) {
     const PassType& type = pass_types[pass.type];
     const bool scatters =
-        find_port(type, "scattered", PortSide::write) >= 0 && type.name != "subsurface.copy_tiles";
+        find_port(type, "scattered", PortSide::write) >= 0 && !copies_all_tiles(type);
     if (scatters && runs_by_budget(type) == samples) names.insert(type.name);
   }
   return names;

@@ -58,7 +58,8 @@ PassTypeRegistry make_pass_types() {
                                &tile_histogram_type,
                                &select_tiles_type,
                                &separable_selected_type,
-                               &clear_tiles_type}) {
+                               &clear_tiles_type,
+                               &combine_copies_type}) {
     PassType known = *type;
     known.needs = needs_of(known.name);
     known.serves_scattering =

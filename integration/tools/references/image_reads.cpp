@@ -416,6 +416,7 @@ constexpr Entry entries[] = {
     {"subsurface.sap_coarse_down", sap_coarse_down},
     {"subsurface.sap_coarse_up", sap_coarse_up},
     {"subsurface.combine", combine},
+    {"subsurface.combine_copies", combine},
     {"subsurface.export_scattered", light},
     {"subsurface.fixed", fixed},
     {"subsurface.pyramid_setup", pyramid_setup},

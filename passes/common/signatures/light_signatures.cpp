@@ -60,6 +60,20 @@ constexpr Port copy_tiles_ports[] = {
     port::updated("scattered", "written if no tile scatters; otherwise unchanged"),
 };
 
+constexpr Port combine_copies_ports[] = {
+    port::own_texels(port::lighting),
+    port::material,
+    port::albedo,
+    port::tiles,
+    port::arguments,
+    port::written(
+        "lighting_out",
+        "if no tile scatters, what subsurface.combine writes; otherwise unchanged. May be "
+        "the image bound to 'lighting'",
+        port::color_formats),
+};
+constexpr PassTypeSetting combine_copies_settings[] = {setting::texturing, setting::result};
+
 constexpr Port export_scattered_ports[] = {
     port::own_texels(port::lighting),
     port::where_covered(own_light("scattered", "scattered light; unbound: no light scatters")),
@@ -157,6 +171,16 @@ const PassType copy_tiles_type{
            "image.",
     .ports = copy_tiles_ports,
     .settings = texturing,
+    .dispatch = over_tiles,
+};
+
+const PassType combine_copies_type{
+    .name = "subsurface.combine_copies",
+    .shader = "common/subsurface_combine_copies",
+    .doc = "Writes unscattered light into the host's lighting if no tile of the screen scatters, "
+           "after a pyramid whose last step does so otherwise.",
+    .ports = combine_copies_ports,
+    .settings = combine_copies_settings,
     .dispatch = over_tiles,
 };
 

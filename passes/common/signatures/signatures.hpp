@@ -14,8 +14,8 @@ extern const PassType classify_type, classify_uniform_light_type, tile_list_type
 // selection_signatures.cpp
 extern const PassType tile_change_type, tile_histogram_type, select_tiles_type;
 // light_signatures.cpp
-extern const PassType setup_type, combine_type, export_scattered_type, copy_tiles_type,
-    transmission_type, transmission_stats_type;
+extern const PassType setup_type, combine_type, combine_copies_type, export_scattered_type,
+    copy_tiles_type, transmission_type, transmission_stats_type;
 // burley/burley_signature.cpp
 extern const PassType burley_type;
 // separable/separable_signature.cpp

@@ -1,9 +1,11 @@
 // Tests that the pyramid's last step writes the same images with and without a pass of its own for
-// `combine`, for both shapes of kernels.
+// `combine`, for both shapes of kernels. Pixels are compared bit by bit.
 
 #include "tests/integration/abi/dermis_fixture.hpp"
 
 #include <fmt/format.h>
+
+#include <algorithm>
 
 namespace dermis::abi_test {
 namespace {
@@ -16,7 +18,11 @@ struct Case {
   const char* texturing;
   std::vector<std::string> bound; // optional slots
   bool transmission = false;
+  std::string variant = "smooth";
+  // Tiles that are copied without scattering.
+  enum class Copied { few, by_light, all } copied = Copied::few;
 };
+constexpr const char* skin = "configs/graphs/skin.json";
 
 const Case cases[] = {
     {"minimal", "configs/graphs/sap.json", "post", {}},
@@ -29,6 +35,25 @@ const Case cases[] = {
      "demodulate",
      {"albedo", "scattered_light", "thickness", "back_lighting"},
      true},
+    {"skin", skin, "pre_post", {"albedo", "scatter_scale"}},
+    {"skin_base", skin, "pre", {"albedo"}, false, "base"},
+    {"skin_half", skin, "post", {"albedo", "scattered_light"}, false, "half"},
+    {"skin_exported", skin, "demodulate", {"albedo", "scatter_scale", "scattered_light"}},
+    {"skin_uniform",
+     skin,
+     "post",
+     {"scatter_scale", "scattered_light"},
+     false,
+     "smooth",
+     Case::Copied::by_light},
+    {"skin_copied", skin, "pre", {"albedo"}, false, "smooth", Case::Copied::all},
+    {"skin_copied_exported",
+     skin,
+     "post",
+     {"albedo", "scattered_light"},
+     false,
+     "base",
+     Case::Copied::all},
 };
 
 float noise(uint32_t x, uint32_t y, uint32_t seed) {
@@ -46,16 +71,21 @@ struct LastStep : DermisTest, testing::WithParamInterface<std::tuple<Case, uint3
   // Two surfaces with a step in depth, holes, pixels without depth, and tiles that do not scatter.
   void paint() {
     fill("material", [](uint32_t x, uint32_t y) { return (x / 5 + y / 7) % 4 == 0 ? 0.0f : 1.0f; });
-    fill("depth", [](uint32_t x, uint32_t y) {
-      if (noise(x, y, 1) < 0.05f) return 0.0f;
+    const Case::Copied copied = std::get<Case>(GetParam()).copied;
+    fill("depth", [&](uint32_t x, uint32_t y) {
+      // a tile with a pixel that does not scatter is not tested for uniform light
+      if (copied != Case::Copied::by_light && noise(x, y, 1) < 0.05f) return 0.0f;
       return (x < 24 ? 0.5f : 0.52f) + 0.0003f * float(x % 8 + y % 6);
     });
-    fill("lighting", [](uint32_t x, uint32_t y) { return 3.0f * noise(x, y, 2); });
+    fill("lighting", [&](uint32_t x, uint32_t y) {
+      return copied == Case::Copied::by_light && x < 32 ? 0.7f : 3.0f * noise(x, y, 2);
+    });
     const auto paint_if_bound = [&](const char* slot, auto value) {
       if (images.contains(slot)) fill(slot, value);
     };
     paint_if_bound("albedo", [](uint32_t x, uint32_t y) { return noise(x, y, 3); });
-    paint_if_bound("scatter_scale", [](uint32_t x, uint32_t y) {
+    paint_if_bound("scatter_scale", [&](uint32_t x, uint32_t y) {
+      if (copied == Case::Copied::by_light) return 0.1f; // light reaches one tile
       return x >= 32 && y < 24 ? 0.0f : noise(x, y, 4);
     });
     paint_if_bound("thickness", [](uint32_t x, uint32_t y) { return 0.004f * noise(x, y, 5); });
@@ -69,20 +99,26 @@ struct LastStep : DermisTest, testing::WithParamInterface<std::tuple<Case, uint3
     options.width = width;
     options.height = height;
     options.unbound = {"albedo", "scatter_scale", "scattered_light", "thickness", "back_lighting"};
-    for (const std::string& slot : one.bound)
-      std::erase(options.unbound, slot);
+    std::erase_if(options.unbound, [&](const std::string& slot) {
+      return std::find(one.bound.begin(), one.bound.end(), slot) != one.bound.end() ||
+             options.text.find(fmt::format("\"{}\": {{", slot)) == std::string::npos;
+    });
     const dermis_graph graph = make_graph(options);
     const auto set = [&](const char* name, const std::string& json) {
       EXPECT_OK(dermis_graph_set_setting(graph, name, json.c_str(), nullptr)) << name;
     };
     set("last_step", fmt::format("\"{}\"", last_step));
     set("texturing", fmt::format("\"{}\"", one.texturing));
+    set("variant", fmt::format("\"{}\"", one.variant));
     if (one.transmission) set("transmission", "true");
     make_images(graph);
     paint();
     last_frame = 0;
     dermis_frame frame = bound_frame(graph, width, height);
-    EXPECT_OK(record(graph, frame));
+    if (one.copied == Case::Copied::all) frame.metres_per_unit = 100; // a pixel is 5 cm
+    const demo::ReportedFrame report = record_and_read(graph, frame);
+    EXPECT_EQ(report.scattering_tiles == 0, one.copied == Case::Copied::all);
+    EXPECT_EQ(report.uniform_tiles > 0, one.copied == Case::Copied::by_light);
     std::vector<std::vector<float>> written{texels("lighting")};
     if (images.contains("scattered_light")) written.push_back(texels("scattered_light"));
     return written;

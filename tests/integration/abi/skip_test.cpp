@@ -174,6 +174,7 @@ TEST_F(Skip, CopiedLight_IsEqualForEveryTexturing) {
       if (through)
         options.overlays = {R"({ "dermis_overlay": 2, "edits": [
           { "set": "/settings/copied", "to": { "enum": ["scattered"], "default": "scattered" } },
+          { "set": "/settings/last_step", "to": { "enum": ["separate"], "default": "separate" } },
           { "set": "/passes/combine/set/copied", "to": "scattered" } ] })"};
       options.unbound = {"scatter_scale", "scattered_light"};
       graph = make_graph(options);

@@ -177,7 +177,7 @@ TEST_F(PortRules, OwnTexelsAreReadAtTheTexelThatIsWritten) {
       ++ports;
     }
   }
-  EXPECT_EQ(ports, 9u);
+  EXPECT_EQ(ports, 10u);
 }
 
 TEST_F(PortRules, OnlyWritersOrderInternally) {

@@ -200,7 +200,8 @@ void add_kernels_verb(CLI::App& app, Invocation& invocation) {
       "view;\n"
       "images of second layers count with the flagged fractions. The sum is divided by the "
       "covered\n"
-      "pixels. Not counted: tables, counters, indirect arguments, passes of the host.\n\n"
+      "pixels. Not counted: tables, counters, indirect arguments, passes of the host, and passes\n"
+      "that only run if nothing scatters.\n\n"
       "A limits file names values by device, driver and kernel; docs/tools.md describes the "
       "format.",
       kernels, [](CLI::App& verb, KernelsOptions& options) {

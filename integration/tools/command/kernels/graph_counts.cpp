@@ -1,6 +1,7 @@
 #include "integration/tools/command/kernels/graph_counts.hpp"
 
 #include "framegraph/vulkan/device_profile.hpp"
+#include "passes/choice/configurations.hpp"
 
 #include <cassert>
 
@@ -110,8 +111,9 @@ std::string CountingDevice::count_commands(const Graph& graph, const PassTypeReg
 
 void count_bytes(const Graph& graph, const PassTypeRegistry& pass_types, const Plan& plan,
                  const TrafficAssumptions& assumptions, GraphCounts& counts) {
-  const std::vector<PassTraffic> traffic = count_traffic(plan, pass_types, assumptions);
+  std::vector<PassTraffic> traffic = count_traffic(plan, pass_types, assumptions);
   for (size_t p = 0; p < plan.passes.size(); ++p) {
+    if (choice::copies_all_tiles(pass_types[plan.passes[p].type])) traffic[p] = {};
     counts.passes.push_back({graph.passes[plan.passes[p].declared.value].name,
                              std::string(pass_types[plan.passes[p].type].shader), traffic[p]});
     counts.read_bytes += traffic[p].read;

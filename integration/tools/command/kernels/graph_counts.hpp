@@ -54,7 +54,7 @@ private:
   vulkan::Device device_;
 };
 
-// Adds names and traffic of the plan's passes to `counts`.
+// Adds names and traffic of the plan's passes to `counts`, for a frame in which tiles scatter.
 void count_bytes(const Graph& graph, const PassTypeRegistry& pass_types, const Plan& plan,
                  const TrafficAssumptions& assumptions, GraphCounts& counts);
 

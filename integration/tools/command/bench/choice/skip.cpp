@@ -136,7 +136,7 @@ double reads_of(const SkipBench& bench, const SkipFrame& one, std::span<const fl
   for (const PlanPass& pass : one.plan.plan.passes) {
     const PassType& type = loaded.pass_types[pass.type];
     // runs if nothing scatters; otherwise the pyramid runs
-    const bool copies = type.name == "subsurface.copy_tiles";
+    const bool copies = choice::copies_all_tiles(type);
     const bool pyramid = find_port(type, "level_tiles", PortSide::read) >= 0;
     if ((copies || pyramid) && copies != (one.choice.scattering_tiles == 0)) continue;
     std::vector<SettingValue> settings;
