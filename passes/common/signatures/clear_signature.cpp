@@ -6,11 +6,14 @@ namespace dermis::subsurface {
 
 namespace {
 constexpr Port ports[] = {{"target", Usage::clear, false, "", "an image or a buffer, as a whole"}};
+constexpr Format cleared_formats[] = {Format::r16f, Format::rg16f, Format::rgba16f,
+                                      Format::r32f, Format::rg32f, Format::rgba32f};
 constexpr Port clear_tiles_ports[] = {
     port::read_buffer("listed", "uint",
                       "per tile of the render rectangle: 0 if the list leaves the tile out "
                       "('classes' or 'samples_per_tile')"),
-    port::written("target", "0 in all tiles that are not listed; other texels keep no value", {}),
+    port::written("target", "0 in all tiles that are not listed; other texels keep no value",
+                  cleared_formats),
 };
 } // namespace
 

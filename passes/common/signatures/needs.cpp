@@ -14,6 +14,7 @@ constexpr uint32_t dispatch = 16, levels = 9, level_heads = 1024;
 constexpr PortNeed needs[] = {
     // Buffers first, because needs_of() returns only the buffers for steps of a pyramid.
     {"classes", tile, word},
+    {"listed", tile, word},
     {"tiles", tile, word, word},
     {"tile_errors", tile, word},
     {"samples_per_tile", tile, word},
@@ -89,6 +90,7 @@ constexpr PortNeed needs[] = {
     {"ratio_out", pixel},
     {"past", pixel},
     {"past_out", pixel},
+    {"target", pixel},
     {"level_0", pixel},
     {"levels", 2},
     {"chain", pixel},
@@ -115,7 +117,7 @@ constexpr PortNeed needs[] = {
     {"surface_4", 16},
     {"surface_5", 32},
 };
-constexpr size_t buffers = 36;
+constexpr size_t buffers = 37;
 static_assert(needs[buffers].port == "lighting");
 
 } // namespace
