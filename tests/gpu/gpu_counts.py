@@ -118,3 +118,18 @@ TEXELS = Pyramid(
     gather=dict(valu=730, trans=35, qmul=10, img=1.6, img128=1.6 + 1.2, st64=1, buf=12, vm=8,
                 lg=39, W=7, lds=9 * 12 + 8 * 8 + 2 * 12),
     slow_down=texel_slow_down, slow_up=texel_slow_up)
+
+# How often the loops of a kernel run, in the order of the assembly, for subgroups with two layers.
+# Loops over outer seeds are rare: 0, but the second half of a group of sap_coarse_down searches the
+# second layer of all texels. The children of the second pipeline of sap_down have one layer.
+TRIPS = {"sap_setup": [2], "sap_down": [2, 4, 4, 0, 0, 4, 4, 4, 4, 0, 0, 4, 4],
+         "sap_down second_surface=unbound": [2, 4, 0, 4, 4, 0, 4], "sap_up": [2],
+         # four levels, one after another; a tile is read by one of two loops; two searches for
+         # outer seeds
+         "sap_coarse_down": [1, 1, 4, 1, 1, 8, 8, 1, 1],
+         "sap_coarse_up": [1, 2, 1, 1, 5, 1]}  # five levels
+# The same for subgroups with one layer. Their way down is that of level 1 at every level, without
+# the branch for the second layer.
+ONE_LAYER_TRIPS = {"sap_down": [2, 4, 0, 4, 0, 0, 0], "sap_up": [1], "sap_gather": []}
+# The way down to level 2 where the children have one layer.
+ONE_LAYER_CHILDREN_TRIPS = [2, 4, 0, 0, 0, 4, 0, 4, 0, 0, 0, 4, 0]

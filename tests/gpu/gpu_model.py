@@ -28,45 +28,16 @@ import sys
 
 import instruction_mix
 from gpu_counts import (AFIS, AFIS_MIP_DOWN, AFIS_MIP_SETUP, AFIS_PUBLISHED, BLOCKS, BURLEY,
-                        CLASSIFY, COMBINE, GUIDE_BYTES, SEPARABLE, SEPARABLE_BUILT,
-                        SEPARABLE_BUILT_SETUP, SEPARABLE_TUNED, SETUP, TEXELS, afis_built, fixed,
-                        guided)
+                        CLASSIFY, COMBINE, GUIDE_BYTES, ONE_LAYER_CHILDREN_TRIPS, ONE_LAYER_TRIPS,
+                        SEPARABLE, SEPARABLE_BUILT, SEPARABLE_BUILT_SETUP, SEPARABLE_TUNED, SETUP,
+                        TEXELS, TRIPS, afis_built, fixed, guided)
+from gpu_hardware import H100, H200, NVIDIA_LIKE, RX_6800, SMALL_RDNA2
 
 COVERED = 0.5  # fraction of the view
 TILE_FILL = 0.95  # fraction of the pixels of listed tiles that are covered
 LAYERED_FRACTION = {2: 0.35, 3: 0.6, 4: 0.8}  # of subgroups by level; 1 from level 5 on
-# Subgroups of levels 0 and 1 with second layers, as multiples of the tiles next to edges: measured
-# on heads (docs/techniques.md).
+# Subgroups of levels 0 and 1 with second layers per tile next to an edge (docs/techniques.md).
 LAYERED_BY_FLAGGED = {0: 1.4, 1: 1.8}
-
-
-@dataclasses.dataclass
-class Hardware:
-    name: str
-    compute_units: int
-    clock: float  # Hz
-    simds: int
-    dram: float  # bytes per second, like the next two
-    cache: float
-    l2: float
-    fixed: float  # seconds per dependent dispatch
-    valu: float  # clocks per instruction, like the next
-    transcendental: float
-    cache_hits: float  # fraction
-
-
-RX_6800 = Hardware("RX 6800-class (60 CU, 2.1 GHz, 512 GB/s + 128 MB IC)", 60, 2.1e9, 120,
-                   512e9, 1.1e12, 1.6e12, 4e-6, 2, 8, 0.55)
-# A transfer of AMD counts: 4 partitions per SM, integer and conversion work shares issue slots.
-NVIDIA_LIKE = Hardware("NVIDIA-like (46 SM, 1.7 GHz, 448 GB/s, 4 MB L2)", 46, 1.7e9, 184,
-                       448e9, 448e9, 1.4e12, 3.5e-6, 2 * 1.45, 2 * 8, 0.0)
-SMALL_RDNA2 = Hardware("small RDNA2 (28 CU, 2.3 GHz, 224 GB/s + 32 MB IC)", 28, 2.3e9, 56,
-                       224e9, 0.5e12, 0.8e12, 4e-6, 2, 8, 0.2)
-# Added before the first measurement on such a device; time per dispatch as above.
-H200 = Hardware("H200 (132 SM, 1.98 GHz, 4.8 TB/s, 60 MB L2)", 132, 1.98e9, 528,
-                4.8e12, 5.5e12, 5.5e12, 3.5e-6, 2 * 1.45, 2 * 8, 0.3)
-H100 = Hardware("H100 (132 SM, 1.98 GHz, 3.35 TB/s, 50 MB L2)", 132, 1.98e9, 528,
-                3.35e12, 5.5e12, 5.5e12, 3.5e-6, 2 * 1.45, 2 * 8, 0.25)
 
 
 @dataclasses.dataclass
@@ -330,20 +301,6 @@ def add_target(model):
     model.add(technique, "gather and combine", tiles[0], gather, n * (16 + 8 + 4 + 8))
 
 
-# How often the loops of a kernel run, in the order of the assembly, for subgroups with two layers.
-# Loops over outer seeds are rare: 0, but the second half of a group of sap_coarse_down searches the
-# second layer of all texels. The children of the second pipeline of sap_down have one layer.
-TRIPS = {"sap_setup": [2], "sap_down": [2, 4, 4, 0, 0, 4, 4, 4, 4, 0, 0, 4, 4],
-         "sap_down second_surface=unbound": [2, 4, 0, 4, 4, 0, 4], "sap_up": [2],
-         # four levels, one after another; a tile is read by one of two loops; two searches for
-         # outer seeds
-         "sap_coarse_down": [1, 1, 4, 1, 1, 8, 8, 1, 1],
-         "sap_coarse_up": [1, 2, 1, 1, 5, 1]}  # five levels
-# The same for subgroups with one layer. Their way down is that of level 1 at every level, without
-# the branch for the second layer.
-ONE_LAYER_TRIPS = {"sap_down": [2, 4, 0, 4, 0, 0, 0], "sap_up": [1], "sap_gather": []}
-# The way down to level 2 where the children have one layer.
-ONE_LAYER_CHILDREN_TRIPS = [2, 4, 0, 0, 0, 4, 0, 4, 0, 0, 0, 4, 0]
 COARSE_TILES = {"sap_coarse_down": 5, "sap_coarse_up": 4}  # the level whose tiles have a group each
 COARSE_SUBGROUPS = {"sap_coarse_down": 8, "sap_coarse_up": 2}  # per group
 

@@ -10,6 +10,8 @@
 #include <string>
 #include <vector>
 
+struct dermis_graph_t; // of dermis.h
+
 namespace demo {
 
 struct DermisDesc {
@@ -27,7 +29,7 @@ struct DermisDesc {
   std::vector<std::string> unbound = {}; // optional slots that are not bound
 };
 
-struct DermisHost; // opaque: only dermis_host.cpp includes dermis.h
+struct DermisHost; // opaque: only dermis_host.cpp and dermis_reports.cpp include dermis.h
 struct DermisHostDeleter {
   void operator()(DermisHost* host) const;
 };
@@ -65,6 +67,7 @@ Result<bool> reload_graph(DermisHost& host, const std::string& text);
 // after. frame_index starts at 1. Errors: environment, internal.
 Result<> record_graph(DermisHost& host, const Renderer& renderer, const SceneState& state,
                       VkCommandBuffer commands, uint64_t frame_index);
+dermis_graph_t* graph_of(const DermisHost& host); // valid as long as the host
 // Returns the device times of the frame, which the device must have finished. Empty if the device
 // has no timestamps.
 std::vector<PassTime> graph_times(DermisHost& host, uint64_t frame_index);

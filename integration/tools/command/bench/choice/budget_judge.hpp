@@ -53,7 +53,7 @@ struct BudgetRow {
   // of the best single configuration that keeps the budget; not set if there is none
   std::optional<double> single_rmse = {};
   std::string single = {}; // settings of that configuration
-  // of the configuration that scatters nothing; set if the budget is below all that scatter
+  // error without scattering; set if the budget is below all configurations that scatter
   std::optional<double> unscattered_rmse = {};
   std::vector<TimedFigures> timed = {}; // one per timed run
 };
@@ -62,8 +62,8 @@ struct BudgetRow {
 double budget_of(const Single& single);
 
 const Single& cheapest_of(const std::vector<Single>& singles);
-// Returns the cheapest configuration that scatters: the others err about as much as the cheapest
-// one of all, which is off. Null if there is none.
+// Returns the cheapest configuration whose error is clearly below that of cheapest_of(), which
+// scatters nothing. Null if there is none.
 const Single* cheapest_scattering(const std::vector<Single>& singles);
 
 double fraction_over_model(const SceneRun& run, double budget_ms);
