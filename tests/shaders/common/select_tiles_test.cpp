@@ -2,24 +2,17 @@
 // groups share.
 #include "passes/choice/tile_selection.hpp"
 #include "passes/common/dispatch.hpp"
-#include "tests/shaders/sap/buffer_graph.hpp"
-
-#include "test_sample_input.spv.h"
-#include "test_sample_output.spv.h"
+#include "tests/shaders/sap/tile_list_graph.hpp"
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <random>
 
 namespace dermis::subsurface::selected_tiles {
 namespace {
 
-using testing::answer_columns;
+using testing::answer_columns, testing::buffer_port;
 
-constexpr Port buffer_port(std::string_view name, Usage usage) {
-  return {name, usage, false, "uint", "", {}};
-}
 constexpr Port input_ports[] = {buffer_port("classes", Usage::storage_buffer_write),
                                 buffer_port("list_state", Usage::storage_buffer_write),
                                 buffer_port("tile_changes", Usage::storage_buffer_write),
@@ -27,7 +20,7 @@ constexpr Port input_ports[] = {buffer_port("classes", Usage::storage_buffer_wri
 constexpr Port output_ports[] = {buffer_port("tile_weights", Usage::storage_buffer_read),
                                  buffer_port("tiles", Usage::storage_buffer_read),
                                  buffer_port("arguments", Usage::storage_buffer_read),
-                                 {"target", Usage::storage_image_write, false, "uimage2D", "", {}}};
+                                 testing::answers_port};
 
 std::string graph_text(uint32_t rows, bool continues) {
   const std::string_view before = continues ? R"(, "before": "before")" : "";
@@ -93,31 +86,20 @@ protected:
     input.text = graph_text(input.rows, continues);
     input.questions = tiles.questions;
     input.sample_units = units;
-    input.own = {
-        {{"test.input", "input", "", input_ports, {}, over_tile_grid}, test_sample_input_spirv},
-        {{"test.output", "output", "", output_ports, {}, over_written_image},
-         test_sample_output_spirv}};
+    input.own = testing::list_pass_types(input_ports, output_ports);
     testing::BufferGraphAnswers answers;
     run_graph(input, answers);
     if (HasFatalFailure()) return;
     const choice::TileSelection expected = choice::select_tiles(tiles.tiles, units, continues);
-    std::vector<uint32_t> weights, listed, expected_tiles;
+    std::vector<uint32_t> weights, expected_tiles;
     for (uint32_t i = 0; i < tiles.tiles.size(); ++i) {
       weights.push_back(answers.texels[i][0]);
       if (expected.weights[i] == 0 || expected.weights[i] == choice::not_scattering) continue;
       expected_tiles.push_back(i % tiles.across | (i / tiles.across) << 15);
     }
     EXPECT_TRUE(weights == expected.weights);
-    const uint32_t count = answers.texels[0][1];
-    ASSERT_EQ(count, expected_tiles.size());
-    for (uint32_t i = 1; i <= count; ++i)
-      listed.push_back(answers.texels[i][1]);
-    std::sort(listed.begin(), listed.end());
-    std::sort(expected_tiles.begin(), expected_tiles.end());
-    EXPECT_TRUE(listed == expected_tiles);
-    EXPECT_EQ(answers.texels[0][2], std::min(count, 32768u));
-    EXPECT_EQ(answers.texels[1][2], ceil_div(count, 32768));
-    EXPECT_EQ(answers.texels[2][2], 1u);
+    testing::expect_list(answers, 1, expected_tiles);
+    testing::expect_arguments(answers, expected_tiles.size());
     EXPECT_EQ(answers.counters.sample_units, expected.units);
     EXPECT_EQ(answers.counters.sample_demand, expected.demand);
   }

@@ -1,10 +1,7 @@
 // Compares the lists of subsurface.separable_tiles with the rule on the CPU, as sets.
 #include "passes/common/dispatch.hpp"
 #include "passes/separable/separable_kernel.hpp"
-#include "tests/shaders/sap/buffer_graph.hpp"
-
-#include "test_sample_input.spv.h"
-#include "test_sample_output.spv.h"
+#include "tests/shaders/sap/tile_list_graph.hpp"
 
 #include <fmt/format.h>
 
@@ -15,11 +12,8 @@
 namespace dermis::subsurface::separable_tiles {
 namespace {
 
-using testing::answer_columns;
+using testing::answer_columns, testing::buffer_port;
 
-constexpr Port buffer_port(std::string_view name, Usage usage) {
-  return {name, usage, false, "uint", "", {}};
-}
 constexpr Port input_ports[] = {buffer_port("classes", Usage::storage_buffer_write),
                                 buffer_port("list_state", Usage::storage_buffer_write),
                                 buffer_port("samples_per_tile", Usage::storage_buffer_write),
@@ -27,7 +21,7 @@ constexpr Port input_ports[] = {buffer_port("classes", Usage::storage_buffer_wri
 constexpr Port output_ports[] = {buffer_port("vertical", Usage::storage_buffer_read),
                                  buffer_port("horizontal", Usage::storage_buffer_read),
                                  buffer_port("arguments", Usage::storage_buffer_read),
-                                 {"target", Usage::storage_image_write, false, "uimage2D", "", {}}};
+                                 testing::answers_port};
 
 std::string graph_text(uint32_t rows) {
   return fmt::format(
@@ -143,26 +137,13 @@ protected:
           horizontal.push_back(view.packed(x, y));
     input.rows = static_cast<uint32_t>(ceil_div(view.tiles.size() + 1, answer_columns));
     input.text = graph_text(input.rows);
-    input.own = {
-        {{"test.input", "input", "", input_ports, {}, over_tile_grid}, test_sample_input_spirv},
-        {{"test.output", "output", "", output_ports, {}, over_written_image},
-         test_sample_output_spirv}};
+    input.own = testing::list_pass_types(input_ports, output_ports);
     testing::BufferGraphAnswers answers;
     run_graph(input, answers);
     if (HasFatalFailure()) return;
-    for (size_t list = 0; list < 2; ++list) {
-      std::vector<uint32_t>& expected = list == 0 ? vertical : horizontal;
-      ASSERT_EQ(answers.texels[0][list], expected.size()) << list;
-      std::vector<uint32_t> listed;
-      for (size_t i = 1; i <= expected.size(); ++i)
-        listed.push_back(answers.texels[i][list]);
-      std::sort(listed.begin(), listed.end());
-      std::sort(expected.begin(), expected.end());
-      EXPECT_TRUE(listed == expected) << list;
-    }
-    EXPECT_EQ(answers.texels[0][2], std::min<size_t>(horizontal.size(), 32768));
-    EXPECT_EQ(answers.texels[1][2], ceil_div(horizontal.size(), 32768));
-    EXPECT_EQ(answers.texels[2][2], 1u);
+    testing::expect_list(answers, 0, vertical);
+    testing::expect_list(answers, 1, horizontal);
+    testing::expect_arguments(answers, horizontal.size());
   }
 };
 

@@ -2,24 +2,17 @@
 // tiles many groups share.
 #include "passes/choice/sample_allocation.hpp"
 #include "passes/common/dispatch.hpp"
-#include "tests/shaders/sap/buffer_graph.hpp"
-
-#include "test_sample_input.spv.h"
-#include "test_sample_output.spv.h"
+#include "tests/shaders/sap/tile_list_graph.hpp"
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <random>
 
 namespace dermis::subsurface::allocated_samples {
 namespace {
 
-using testing::answer_columns;
+using testing::answer_columns, testing::buffer_port;
 
-constexpr Port buffer_port(std::string_view name, Usage usage) {
-  return {name, usage, false, "uint", "", {}};
-}
 constexpr Port input_ports[] = {buffer_port("classes", Usage::storage_buffer_write),
                                 buffer_port("list_state", Usage::storage_buffer_write),
                                 buffer_port("tile_errors", Usage::storage_buffer_write),
@@ -27,7 +20,7 @@ constexpr Port input_ports[] = {buffer_port("classes", Usage::storage_buffer_wri
 constexpr Port output_ports[] = {buffer_port("samples_per_tile", Usage::storage_buffer_read),
                                  buffer_port("tiles", Usage::storage_buffer_read),
                                  buffer_port("arguments", Usage::storage_buffer_read),
-                                 {"target", Usage::storage_image_write, false, "uimage2D", "", {}}};
+                                 testing::answers_port};
 
 std::string graph_text(uint32_t rows, bool with_demand) {
   const std::string_view demand_pass = with_demand ? R"(
@@ -96,16 +89,13 @@ protected:
     input.text = graph_text(input.rows, with_demand);
     input.questions = tiles.questions;
     input.sample_units = units;
-    input.own = {
-        {{"test.input", "input", "", input_ports, {}, over_tile_grid}, test_sample_input_spirv},
-        {{"test.output", "output", "", output_ports, {}, over_written_image},
-         test_sample_output_spirv}};
+    input.own = testing::list_pass_types(input_ports, output_ports);
     testing::BufferGraphAnswers answers;
     run_graph(input, answers);
     if (HasFatalFailure()) return;
     const choice::SampleAllocation expected =
         choice::allocate_samples(tiles.errors, tiles.before, units);
-    std::vector<uint32_t> steps, listed, expected_tiles;
+    std::vector<uint32_t> steps, expected_tiles;
     std::array<uint32_t, choice::allocation_steps> by_steps{};
     for (uint32_t i = 0; i < tiles.errors.size(); ++i) {
       steps.push_back(answers.texels[i][0]);
@@ -114,16 +104,8 @@ protected:
       ++by_steps[expected.steps[i] - 1];
     }
     EXPECT_TRUE(steps == expected.steps);
-    const uint32_t count = answers.texels[0][1];
-    ASSERT_EQ(count, expected_tiles.size());
-    for (uint32_t i = 1; i <= count; ++i)
-      listed.push_back(answers.texels[i][1]);
-    std::sort(listed.begin(), listed.end());
-    std::sort(expected_tiles.begin(), expected_tiles.end());
-    EXPECT_TRUE(listed == expected_tiles);
-    EXPECT_EQ(answers.texels[0][2], std::min(count, 32768u));
-    EXPECT_EQ(answers.texels[1][2], ceil_div(count, 32768));
-    EXPECT_EQ(answers.texels[2][2], 1u);
+    testing::expect_list(answers, 1, expected_tiles);
+    testing::expect_arguments(answers, expected_tiles.size());
     EXPECT_EQ(answers.counters.sample_units, expected.units);
     EXPECT_EQ(answers.counters.sample_demand, expected.demand);
     EXPECT_EQ(answers.counters.sampled_tiles, by_steps);
