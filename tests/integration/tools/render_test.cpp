@@ -45,7 +45,9 @@ TEST_F(Render, UnboundSlots) {
               Succeeds("does not export 'scattered_light'"));
   EXPECT_THAT(files("out"), ElementsAre("color_0000.exr", "frame_0000.png"));
   EXPECT_THAT(render(bust, burley, {"--unbound", "depth"}), FailsWith(2, "needs 'depth'"));
-  EXPECT_THAT(render(bust, burley, {"--unbound", "depht"}), FailsWith(2, "no slot 'depht'"));
+  EXPECT_THAT(render(bust, burley, {"--unbound", "depht"}),
+              FailsWith(2, "no slot 'depht'", "depth, "));
+  EXPECT_THAT(render(bust, "none", {"--unbound", "depth"}), FailsWith(2, "--unbound need a graph"));
 }
 
 TEST_F(Render, JsonOutputIsOneDocument) {

@@ -219,7 +219,8 @@ Result<std::vector<std::string>> find_unbound(const DermisHost& host, const Derm
   for (const std::string& name : desc.unbound)
     if (std::find(host.slot_names.begin(), host.slot_names.end(), name) == host.slot_names.end())
       return Error{ErrorKind::usage,
-                   fmt::format("graph '{}' has no slot '{}'", desc.graph_file, name)};
+                   fmt::format("graph '{}' has no slot '{}'; it has {}", desc.graph_file, name,
+                               fmt::join(host.slot_names, ", "))};
   return unbound;
 }
 

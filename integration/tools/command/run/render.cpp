@@ -340,12 +340,14 @@ ExitCode render(const Session& session, const RenderOptions& options) {
     textured = textured_before(loaded->graph, choices);
     transmission = transmits(loaded->graph, choices);
   } else if (!options.settings.empty() || !options.inputs.overlays.empty() ||
-             !options.inputs.pass_types.empty() || !options.shaders.empty()) {
+             !options.inputs.pass_types.empty() || !options.shaders.empty() ||
+             !options.unbound.empty()) {
     return fail(session, ExitCode::usage,
-                "--set, --overlay, --pass-types and --shaders need a graph");
+                "--set, --overlay, --pass-types, --shaders and --unbound need a graph");
   }
   if (!options.capture.empty() && options.pictures == RenderOptions::Pictures::last)
-    return fail(session, ExitCode::usage, "--capture needs the images of all frames");
+    return fail(session, ExitCode::usage,
+                "--capture needs the images of all frames: --pictures all");
 
   RenderRun run{.session = session,
                 .options = options,
