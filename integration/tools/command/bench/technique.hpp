@@ -64,11 +64,16 @@ public:
   bool was_made_anew() const { return made_anew_; }
   // Returns times of the last run. Errors: environment (no timestamps).
   demo::Result<TechniqueTimes> times();
+  // Returns times of the last run if it was long, else of run_again(): a GPU waits while images are
+  // uploaded and read.
+  demo::Result<TechniqueTimes> times_at_full_clock();
   // Returns the sampling data of the last run, 3 values per pixel: samples, samples behind the
   // history, confidence. Empty if the graph does not export sampling data.
   demo::Result<std::vector<float>> sampling();
   uint64_t history_bytes();
-  // Runs the last frame again, on the light left by the previous run.
+  // Runs the last frame again, on the light left by the previous run. Repeats a short frame until a
+  // GPU, which slows down while it waits, has reached its clock rate. Returns times of the last
+  // run.
   demo::Result<TechniqueTimes> run_again();
   // Returns counts of the last frame. `sampled_fraction` is the fraction of its subsurface pixels
   // that scatter; `d_px` is its median d per channel; `taken` is the number of samples per
@@ -95,6 +100,8 @@ private:
   bool made_anew_ = false;
   dermis_frame frame_ = DERMIS_FRAME_INIT;
   uint64_t next_frame_index_ = 0; // 0: regular numbering
+  bool ran_again_ = false;        // since the last scatter()
+  uint64_t times_ran_again_ = 0;
 };
 
 } // namespace dermis::tools

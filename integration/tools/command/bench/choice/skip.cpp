@@ -13,6 +13,7 @@
 #include "integration/tools/command/run/device_graph.hpp"
 #include "integration/tools/command/run/host_passes.hpp"
 #include "integration/tools/references/image_reads.hpp"
+#include "passes/choice/configurations.hpp"
 #include "passes/common/environment.hpp"
 
 #include <fmt/format.h>
@@ -184,7 +185,7 @@ struct SkipRow {
 };
 
 // Loads the graph and the same without the detection of uniform light.
-demo::Result<> load_graphs(const SuiteRun& run, LoadedGraph& loaded, LoadedGraph& plain,
+demo::Result<> load_graphs(SuiteRun& run, LoadedGraph& loaded, LoadedGraph& plain,
                            std::string& text) {
   const std::string path = run.file("graph");
   Diagnostics diagnostics;

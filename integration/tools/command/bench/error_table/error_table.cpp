@@ -183,7 +183,7 @@ std::string note_of(const ErrorTableBench& bench) {
       bench.run.device, bench.subjects.size(), family_width, family_height, bench.file.subset);
 }
 
-demo::Result<choice::ErrorModel> read_table(const SuiteRun& run) {
+demo::Result<choice::ErrorModel> read_table(SuiteRun& run) {
   Diagnostics diagnostics;
   const std::string path = run.file("table");
   const auto document = read_document(path, diagnostics);

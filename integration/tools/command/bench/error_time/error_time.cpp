@@ -127,12 +127,13 @@ demo::Result<> measure_technique(ErrorTimeBench& bench, TechniqueRun& technique,
   const auto light = scatter_frames(bench, technique, subject);
   if (!light) return light.error();
   if (bench.file.repetitions > 0) {
-    const auto times = technique.times();
-    if (!times) return times.error();
-    if (technique.was_made_anew())
+    if (technique.was_made_anew()) {
       row.to_warm = bench.file.warm_up - 1;
-    else
+    } else {
+      const auto times = technique.times_at_full_clock();
+      if (!times) return times.error();
       add_times(row, *times, start);
+    }
   }
   row.error = still_error(*light, reference);
   if (!pictures.empty()) row.pictures_ratio = paired_ratio(*light, pictures, reference);

@@ -151,7 +151,7 @@ demo::Result<> measure_record(SuiteRun& run, const Emit<RecordRow>& emit) {
   const std::optional<LoadedGraph> known =
       load_pass_types(run.pass_types().pass_types, diagnostics);
   if (!known) {
-    print_diagnostics(run.session, diagnostics);
+    run.rejected = std::move(diagnostics);
     return input_problem("the pass types cannot be used");
   }
   const uint32_t samples = run.quick ? few_samples : all_samples;

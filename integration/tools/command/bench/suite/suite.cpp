@@ -85,8 +85,8 @@ demo::Result<std::unique_ptr<demo::VulkanHost>> SuiteRun::open_device() {
   return host;
 }
 
-demo::Error SuiteRun::refuse(const std::string& path, const Diagnostics& diagnostics) const {
-  print_diagnostics(session, diagnostics);
+demo::Error SuiteRun::refuse(const std::string& path, Diagnostics diagnostics) {
+  rejected = std::move(diagnostics);
   return {demo::ErrorKind::input, fmt::format("'{}' cannot be used", path)};
 }
 
@@ -115,7 +115,9 @@ ExitCode run_suite(const Session& session, const Suite& suite, const SuiteReques
   report.table.columns = suite.columns;
   const auto done = suite.run(run);
   if (interrupted()) return fail(session, ExitCode::interrupted, "stopped");
-  if (!done) return fail(session, static_cast<ExitCode>(done.error().kind), done.error().text);
+  if (!done)
+    return fail(session, static_cast<ExitCode>(done.error().kind), done.error().text,
+                &run.rejected);
   complete_facts(run,
                  std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
 

@@ -47,8 +47,9 @@ struct SuiteRun {
   const Session& session;
   bool quick = false; // smoke test with small images and few repetitions; figures are meaningless
   std::map<std::string, OptionValue> options = {};
-  Report report = {};      // facts, notes, plots and images; rows are emitted
-  std::string device = {}; // for the facts; set by open_device()
+  Report report = {};        // facts, notes, plots and images; rows are emitted
+  std::string device = {};   // for the facts; set by open_device()
+  Diagnostics rejected = {}; // of an input file that cannot be used
 
   template <class T> const T& option(const std::string& name) const {
     return std::get<T>(options.at(name));
@@ -72,14 +73,14 @@ struct SuiteRun {
   // Progress in `unit`s ("frame"), titled with the suite's name or with `what`.
   Progress progress(std::string unit, uint64_t total, std::string what = {}) const;
   demo::Result<std::unique_ptr<demo::VulkanHost>> open_device();
-  // Prints the diagnostics of an input file and returns an error of kind input.
-  demo::Error refuse(const std::string& path, const Diagnostics& diagnostics) const;
+  // Keeps the diagnostics of an input file for the answer; returns an error of kind input.
+  demo::Error refuse(const std::string& path, Diagnostics diagnostics);
   // Reads the file of the option "file".
   template <class File>
-  demo::Result<File> read(std::optional<File> (*reader)(const std::string&, Diagnostics&)) const {
+  demo::Result<File> read(std::optional<File> (*reader)(const std::string&, Diagnostics&)) {
     Diagnostics diagnostics;
     std::optional<File> found = reader(file(), diagnostics);
-    if (!found) return refuse(file(), diagnostics);
+    if (!found) return refuse(file(), std::move(diagnostics));
     return std::move(*found);
   }
 };
