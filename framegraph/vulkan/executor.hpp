@@ -155,9 +155,8 @@ struct ExecutorInput {
   std::shared_ptr<ViewTables> tables = nullptr;
   uint32_t frames_in_flight = 2;                   // 1 to max_frames_in_flight
   VkPipelineCache pipeline_cache = VK_NULL_HANDLE; // may be null
-  // Must have been made for a set of plans that includes this one. The executor's transients use
-  // its memory; no other user of the pool may run at the same time. Null: the executor allocates
-  // its own memory.
+  // Must have been made for a set of plans that includes the one at `kept_plan`. No other user of
+  // the pool may run at the same time. Null: the executor allocates its own memory.
   const HeapPool* heap_pool = nullptr;
   // equal to `plan`, shared from now on; null: `plan` is copied
   std::shared_ptr<const Plan> kept_plan = nullptr;

@@ -7,26 +7,23 @@
 namespace dermis::vulkan {
 
 Error HeapPool::create(const Device& device, std::span<const Plan* const> plans,
-                       std::unique_ptr<HeapPool>& pool) {
+                       HistoryMemory histories, std::unique_ptr<HeapPool>& pool) {
   std::unique_ptr<HeapPool> made(new HeapPool(device));
-  for (const Plan* plan : plans)
-    for (uint32_t h = 0; h < plan->heaps.size(); ++h) {
-      const Heap& heap = plan->heaps[h];
-      if (heap.persistent) continue;
-      auto at = std::find_if(made->blocks_.begin(), made->blocks_.end(), [&](const Block& block) {
-        return block.request.memory_types == heap.memory_type_bits;
-      });
-      if (at == made->blocks_.end()) {
-        at = made->blocks_.emplace(at);
-        at->request.memory_types = heap.memory_type_bits;
-        at->request.preferred = VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT;
-      }
-      at->request.bytes = std::max(at->request.bytes, heap.size);
-      at->request.alignment = std::max(at->request.alignment, heap_alignment(device, *plan, h));
-    }
-  for (Block& block : made->blocks_)
-    if (Error error = allocate_memory(device, block.request, "shared transient heap", block.memory))
+  made->plans_.assign(plans.begin(), plans.end());
+  made->shared_ = share_heaps(plans, histories, [&](const Plan& plan, uint32_t heap) {
+    return std::max(plan.heaps[heap].alignment, heap_alignment(device, plan, heap));
+  });
+  for (const SharedBlock& shared : made->shared_.blocks) {
+    Block& block = made->blocks_.emplace_back();
+    block.request = {shared.history ? MemoryPurpose::history : MemoryPurpose::transient,
+                     shared.memory_type_bits,
+                     shared.bytes,
+                     shared.alignment,
+                     0,
+                     VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT};
+    if (Error error = allocate_memory(device, block.request, "shared heap", block.memory))
       return error;
+  }
   pool = std::move(made);
   return {};
 }
@@ -36,17 +33,18 @@ HeapPool::~HeapPool() {
     give_back_memory(*device_, block.memory);
 }
 
-const HeapPool::Block* HeapPool::find(uint32_t memory_type_bits) const noexcept {
-  for (const Block& block : blocks_)
-    if (block.request.memory_types == memory_type_bits) return &block;
-  return nullptr;
+bool HeapPool::has(const Plan& plan) const noexcept {
+  return std::find(plans_.begin(), plans_.end(), &plan) != plans_.end();
 }
 
-uint64_t HeapPool::bytes() const noexcept {
-  uint64_t sum = 0;
-  for (const Block& block : blocks_)
-    sum += block.request.bytes;
-  return sum;
+std::optional<MemoryBlock> HeapPool::find(const Plan& plan, uint32_t heap) const noexcept {
+  const auto at = std::find(plans_.begin(), plans_.end(), &plan);
+  if (at == plans_.end()) return std::nullopt;
+  const SharedPlace& place = shared_.places[static_cast<size_t>(at - plans_.begin())][heap];
+  if (place.block == no_block) return std::nullopt;
+  MemoryBlock memory = blocks_[place.block].memory;
+  memory.offset += place.offset;
+  return memory;
 }
 
 } // namespace dermis::vulkan

@@ -90,7 +90,7 @@ settings_of_plan(const CompiledGraph& compiled_graph,
   return settings;
 }
 
-// Creates one executor per plan. If there are several plans, their transients share memory.
+// Creates one executor per plan. If there are several plans, they share memory.
 vulkan::Error make_executors(dermis_context_t& context, CompiledGraphInput& input,
                              vulkan::HistoryReason history, vulkan::KernelStore& kernels,
                              CompiledGraph& compiled_graph) {
@@ -119,8 +119,8 @@ vulkan::Error make_executors(dermis_context_t& context, CompiledGraphInput& inpu
     std::vector<const Plan*> plans;
     for (const RunnablePlan& plan : compiled_graph.plans)
       plans.push_back(&plan.compiled->plan);
-    if (vulkan::Error error =
-            vulkan::HeapPool::create(context.device, plans, compiled_graph.heap_pool))
+    if (vulkan::Error error = vulkan::HeapPool::create(
+            context.device, plans, context.history_memory, compiled_graph.heap_pool))
       return error;
   }
   executor.heap_pool = compiled_graph.heap_pool.get();
@@ -224,8 +224,8 @@ bool make_plans(const dermis_context_t& context, const CompileInput& compile_inp
     if (!made[p].without_bounds) return false;
   }
   if (input.max_bytes > 0)
-    keep_within_memory(candidate.graph, errors, input.max_bytes, made, candidate.configurations,
-                       diagnostics);
+    keep_within_memory(candidate.graph, errors, {input.max_bytes, context.history_memory}, made,
+                       candidate.configurations, diagnostics);
   report_missing_rows(candidate.graph, context.pass_types, plans_of(), errors, costs,
                       candidate.configurations, diagnostics);
   auto number = static_cast<uint32_t>(made.size()); // of the next plan for empty bounds

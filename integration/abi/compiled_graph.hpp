@@ -98,7 +98,7 @@ struct CompiledGraph {
   // configurations of the choices by budget; first: the defaults
   std::vector<choice::Configuration> configurations;
   choice::TimeMargins margins; // by configuration, learned
-  // for the transients of all variants; null if there is only one
+  // memory that plans share; null if there is only one plan
   std::unique_ptr<vulkan::HeapPool> heap_pool;
   std::shared_ptr<vulkan::ViewTables> tables; // of all executors
   // new kernels, until the context has them; then null

@@ -64,7 +64,7 @@ namespace {
 constexpr uint32_t known_context_flags =
     DERMIS_CONTEXT_TIMINGS | DERMIS_CONTEXT_LABELS | DERMIS_CONTEXT_RAY_QUERY |
     DERMIS_CONTEXT_SEPARATE_DEPTH_STENCIL | DERMIS_CONTEXT_GPU_KERNELS |
-    DERMIS_CONTEXT_CPU_KERNELS | DERMIS_CONTEXT_SMALL_GROUPS;
+    DERMIS_CONTEXT_CPU_KERNELS | DERMIS_CONTEXT_SMALL_GROUPS | DERMIS_CONTEXT_SEPARATE_HISTORIES;
 
 dermis_result check_desc(const dermis_context_desc& desc, const Log& log) {
   const auto null = [&](const char* field) {
@@ -170,6 +170,8 @@ dermis_result create(const dermis_context_desc* given, dermis_context* out) {
   auto context = std::make_unique<dermis_context_t>();
   context->log = log;
   context->device_allocator = device_allocator;
+  if ((desc.flags & DERMIS_CONTEXT_SEPARATE_HISTORIES) != 0)
+    context->history_memory = HistoryMemory::separate;
   vulkan::DeviceInput input;
   input.get_instance_proc_addr = desc.get_instance_proc_addr;
   input.instance = desc.instance;

@@ -1,6 +1,7 @@
 #pragma once
 // Holds what one device shares between its graphs.
 
+#include "framegraph/compile/shared_heaps.hpp"
 #include "framegraph/model/pass_type.hpp"
 #include "framegraph/vulkan/device.hpp"
 #include "framegraph/vulkan/device_profile.hpp"
@@ -25,6 +26,7 @@ struct dermis_context_t {
   uint32_t queue_family_count = 0;     // of the physical device
   bool has_foreign_queues = false;     // the physical device has VK_EXT_queue_family_foreign
   uint32_t frames_in_flight = 2;
+  dermis::HistoryMemory history_memory = dermis::HistoryMemory::shared;
   std::atomic<bool> lost = false; // if true, every call except destroy returns DEVICE_LOST
   std::mutex mutex;               // guards `graphs`
   std::vector<dermis_graph> graphs;

@@ -60,7 +60,10 @@ dermis_memory describe_view_memory(const CompiledGraph& compiled_graph) {
   for (const auto& [types, bytes] : maximum)
     out.transient_unaliased_bytes += bytes;
   out.constant_bytes += compiled_graph.tables->bytes();
-  if (compiled_graph.heap_pool) out.transient_bytes = compiled_graph.heap_pool->bytes();
+  if (compiled_graph.heap_pool) {
+    out.transient_bytes = compiled_graph.heap_pool->transient_bytes();
+    out.history_bytes = compiled_graph.heap_pool->history_bytes();
+  }
   return out;
 }
 
@@ -77,7 +80,7 @@ dermis_memory describe_memory(dermis_graph_t& graph) {
   return sum;
 }
 
-// Returns the heaps of one view in a stable order: shared transients, then plan by plan.
+// Returns the heaps of one view in a stable order: shared ones, then plan by plan.
 std::vector<vulkan::MemoryRequest> heaps_of(const CompiledGraph& compiled_graph) {
   std::vector<vulkan::MemoryRequest> heaps;
   if (compiled_graph.heap_pool)

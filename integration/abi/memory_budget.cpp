@@ -5,43 +5,31 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <numeric>
 
 namespace dermis::abi {
 namespace {
 
-// Memory of several plans of one view. Transients share memory, as in vulkan::HeapPool.
-class SharedMemory {
+// Memory of several plans of one view.
+class ViewMemory {
 public:
+  explicit ViewMemory(HistoryMemory histories) : histories_(histories) {}
   void add(const PlanChoice& plan) {
-    add(plan.own.plan);
-    if (plan.without_bounds) add(plan.without_bounds->plan);
+    plans_.push_back(&plan.own.plan);
+    if (plan.without_bounds) plans_.push_back(&plan.without_bounds->plan);
   }
   uint64_t bytes() const {
-    uint64_t sum = history_;
-    for (const auto& [types, bytes] : transient_)
-      sum += bytes;
-    return sum;
+    const SharedHeaps heaps = share_heaps(plans_, histories_);
+    return heaps.transient_bytes + heaps.history_bytes;
   }
 
 private:
-  void add(const Plan& plan) {
-    history_ += plan.history_bytes;
-    std::map<uint32_t, uint64_t> own; // a plan may have several heaps of the same memory types
-    for (const Heap& heap : plan.heaps)
-      if (!heap.persistent)
-        own[heap.memory_type_bits] = std::max(own[heap.memory_type_bits], heap.size);
-    for (const auto& [types, bytes] : own)
-      transient_[types] = std::max(transient_[types], bytes);
-  }
-
-  std::map<uint32_t, uint64_t> transient_; // by memory types
-  uint64_t history_ = 0;
+  HistoryMemory histories_;
+  std::vector<const Plan*> plans_;
 };
 
-uint64_t bytes_of(const PlanChoice& plan) {
-  SharedMemory memory;
+uint64_t bytes_of(const PlanChoice& plan, HistoryMemory histories) {
+  ViewMemory memory(histories);
   memory.add(plan);
   return memory.bytes();
 }
@@ -75,8 +63,8 @@ SourceLocation place_in(const Graph& graph) {
 
 } // namespace
 
-void keep_within_memory(const Graph& graph, const choice::ErrorModel& errors, uint64_t max_bytes,
-                        std::vector<PlanChoice>& plans,
+void keep_within_memory(const Graph& graph, const choice::ErrorModel& errors,
+                        const MemoryBudget& budget, std::vector<PlanChoice>& plans,
                         std::vector<choice::Configuration>& configurations,
                         Diagnostics& diagnostics) {
   // The errors of the configurations, and the least error of each plan.
@@ -90,26 +78,26 @@ void keep_within_memory(const Graph& graph, const choice::ErrorModel& errors, ui
   std::stable_sort(order.begin(), order.end(),
                    [&](size_t a, size_t b) { return plan_rmse[a] < plan_rmse[b]; });
   std::vector<uint8_t> kept(plans.size(), 0);
-  SharedMemory memory;
+  ViewMemory memory(budget.histories);
   for (const size_t p : order) {
-    SharedMemory with = memory;
+    ViewMemory with = memory;
     with.add(plans[p]);
-    if (with.bytes() > max_bytes) continue;
+    if (with.bytes() > budget.bytes) continue;
     memory = with;
     kept[p] = 1;
   }
   const Plan& any = plans.front().own.plan;
-  const std::string budget = fmt::format("the memory budget is {} for a view of {}x{}",
-                                         mebibytes(max_bytes), any.view_width, any.view_height);
+  const std::string limit = fmt::format("the memory budget is {} for a view of {}x{}",
+                                        mebibytes(budget.bytes), any.view_width, any.view_height);
   if (std::find(kept.begin(), kept.end(), 1) == kept.end()) {
-    const auto smaller = [](const PlanChoice& a, const PlanChoice& b) {
-      return bytes_of(a) < bytes_of(b);
+    const auto smaller = [&](const PlanChoice& a, const PlanChoice& b) {
+      return bytes_of(a, budget.histories) < bytes_of(b, budget.histories);
     };
     const auto smallest = std::min_element(plans.begin(), plans.end(), smaller);
     kept[static_cast<size_t>(smallest - plans.begin())] = 1;
     memory.add(*smallest);
     diagnostics.add(DiagnosticId::memory_exceeded, place_in(graph),
-                    fmt::format("{}, and no plan fits; the smallest one runs and takes {}", budget,
+                    fmt::format("{}, and no plan fits; the smallest one runs and takes {}", limit,
                                 mebibytes(memory.bytes())));
   }
   std::vector<std::string> removed;
@@ -117,13 +105,13 @@ void keep_within_memory(const Graph& graph, const choice::ErrorModel& errors, ui
   for (const choice::Configuration& one : configurations) {
     if (kept[one.plan] != 0) continue;
     removed.push_back(one.name);
-    least_bytes = std::min(least_bytes, bytes_of(plans[one.plan]));
+    least_bytes = std::min(least_bytes, bytes_of(plans[one.plan], budget.histories));
   }
   if (removed.empty()) return;
   diagnostics.add(DiagnosticId::memory_left_out, place_in(graph),
                   fmt::format("{}; {} is not offered, the smallest plan of which takes {}; the "
                               "others take {} together",
-                              budget, list_names(removed), mebibytes(least_bytes),
+                              limit, list_names(removed), mebibytes(least_bytes),
                               mebibytes(memory.bytes())));
 
   // Remove them, and number the other plans anew.

@@ -12,15 +12,14 @@ namespace dermis::vulkan {
 namespace {
 
 Error create_heaps(State& state) {
+  if (state.heap_pool != nullptr && !state.heap_pool->has(state.plan))
+    return {ErrorKind::argument, VK_SUCCESS, "the heap pool was not created for this plan"};
   state.heaps.assign(state.plan.heaps.size(), {});
   for (uint32_t h = 0; h < state.heaps.size(); ++h) {
     const Heap& heap = state.plan.heaps[h];
     HeapMemory& memory = state.heaps[h];
-    if (!heap.persistent && state.heap_pool != nullptr) {
-      const HeapPool::Block* shared = state.heap_pool->find(heap.memory_type_bits);
-      if (shared == nullptr)
-        return {ErrorKind::argument, VK_SUCCESS, "the heap pool was not created for this plan"};
-      memory.block = shared->memory;
+    if (const auto shared = state.heap_pool ? state.heap_pool->find(state.plan, h) : std::nullopt) {
+      memory.block = *shared;
       continue;
     }
     memory.owned = true;

@@ -250,6 +250,9 @@ typedef struct dermis_device_allocator {
 #define DERMIS_CONTEXT_CPU_KERNELS 0x20u
 /* Use no group of more than 128 invocations, as on devices that allow no larger one; for tests. */
 #define DERMIS_CONTEXT_SMALL_GROUPS 0x40u
+/* Histories share no memory with other configurations of a graph, so that all transients are
+ * DERMIS_MEMORY_TRANSIENT. For hosts that alias this memory with their own. */
+#define DERMIS_CONTEXT_SEPARATE_HISTORIES 0x80u
 
 typedef struct dermis_context_desc {
   size_t struct_size;
@@ -453,9 +456,9 @@ DERMIS_API dermis_result DERMIS_CALL dermis_graph_describe(
 
 typedef struct dermis_memory {
   size_t struct_size;
-  uint64_t transient_bytes;           /* heaps of images and buffers that live within a frame */
-  uint64_t transient_unaliased_bytes; /* the same without aliasing: never less */
-  uint64_t history_bytes;
+  uint64_t transient_bytes; /* heaps of images and buffers that live within a frame, and no others */
+  uint64_t transient_unaliased_bytes; /* all transients of a frame, without aliasing */
+  uint64_t history_bytes;  /* heaps that hold histories, with transients that share their memory */
   uint64_t constant_bytes; /* frame constants, profile and kernel tables */
 } dermis_memory;
 #define DERMIS_MEMORY_INIT {sizeof(dermis_memory), 0, 0, 0, 0}

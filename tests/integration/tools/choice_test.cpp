@@ -126,13 +126,20 @@ TEST_F(Choice, RisingBudgetsFollowTheFrontOfTimeAndError) {
 
 TEST_F(Choice, MemoryIsListedPerPlanAndView) {
   const json answer = json::parse(run({"explain", graph, "--choices", "--json"}).out);
-  uint64_t largest = 0, histories = 0;
+  uint64_t largest = 0, transients = 0, histories = 0;
   for (const json& plan : answer["plans"]) {
-    largest = std::max(largest, plan["transient_bytes"].get<uint64_t>());
-    histories += plan["history_bytes"].get<uint64_t>();
+    const auto transient = plan["transient_bytes"].get<uint64_t>(),
+               history = plan["history_bytes"].get<uint64_t>();
+    largest = std::max(largest, transient + history);
+    transients = std::max(transients, transient);
+    histories += history;
   }
-  EXPECT_EQ(answer["transient_bytes"], largest);
-  EXPECT_EQ(answer["history_bytes"], histories);
+  // Only one plan runs in a frame, and no two plans have the same history.
+  const uint64_t view =
+      answer["transient_bytes"].get<uint64_t>() + answer["history_bytes"].get<uint64_t>();
+  EXPECT_GE(view, largest);
+  EXPECT_LE(view, largest + largest / 100); // alignment
+  EXPECT_LT(view, transients + histories);
   EXPECT_GT(histories, 0u);
 }
 

@@ -1,5 +1,6 @@
 #include "integration/tools/command/run/choice_table.hpp"
 
+#include "framegraph/compile/shared_heaps.hpp"
 #include "passes/choice/budget_controller.hpp"
 #include "passes/choice/calibration.hpp"
 #include "passes/choice/defaults.hpp"
@@ -129,9 +130,10 @@ void add_memory(const ChoiceConfigurations& made, ChoiceTables& tables) {
     if (first != made.all.end()) memory.configuration = first->name;
     for (const Heap& heap : made.plans[p]->heaps)
       (heap.persistent ? memory.history_bytes : memory.transient_bytes) += heap.size;
-    tables.transient_bytes = std::max(tables.transient_bytes, memory.transient_bytes);
-    tables.history_bytes += memory.history_bytes;
   }
+  const SharedHeaps shared = share_heaps(made.plans, HistoryMemory::shared);
+  tables.transient_bytes = shared.transient_bytes;
+  tables.history_bytes = shared.history_bytes;
 }
 
 std::string describe_memory(const ChoiceTables& tables) {
@@ -145,7 +147,7 @@ std::string describe_memory(const ChoiceTables& tables) {
   for (const ChoiceMemory& one : tables.memory)
     text += row(one.configuration, one.transient_bytes, one.history_bytes);
   return text +
-         row("a view, which shares transients", tables.transient_bytes, tables.history_bytes);
+         row("a view, whose plans share memory", tables.transient_bytes, tables.history_bytes);
 }
 
 // Returns the error at the least budget, if samples or tiles that do not fit make it larger.

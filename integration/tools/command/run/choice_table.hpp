@@ -34,10 +34,10 @@ struct ChoiceMemory {
 
 struct ChoiceTables {
   std::vector<ChoiceMemory> memory; // by plan, named after its first configuration
-  uint64_t transient_bytes = 0;     // of a view: plans share their transients
-  uint64_t history_bytes = 0;       // of a view: each plan has its own histories
-  std::vector<ChoiceTable> tables;  // by calibration, then by d
-  Diagnostics missing;              // rows that the error table and the calibrations lack
+  // of a view, whose plans share memory; blocks that also hold histories count as histories
+  uint64_t transient_bytes = 0, history_bytes = 0;
+  std::vector<ChoiceTable> tables; // by calibration, then by d
+  Diagnostics missing;             // rows that the error table and the calibrations lack
 };
 
 // Judges the choices of a graph in frames of which half of the tiles have subsurface. Without a
