@@ -5,9 +5,9 @@
 # usage: measure.sh 1|2|3 OUT
 #   1  dermis doctor, pictures compared with those of another driver, times of passes
 #   2  statistics of kernels, error over time of every technique
-#   3  frames that keep a budget
+#   3  frames that keep a budget, a file per scene of SCENES
 # DERMIS: the command. PICTURES: a folder that step 1 wrote on another driver. SCENE: bust by
-# default. SIZES, TECHNIQUES: of the times.
+# default. SIZES, TECHNIQUES: of the times. SCENES: of step 3, all by default.
 set -euo pipefail
 cd "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")"
 [[ -d bin ]] || cd ../..
@@ -50,6 +50,11 @@ case $step in
     "$dermis" kernels --json >"$out/kernels.json" || failed=1
     "$dermis" bench error-time --json "$out/error_time.json" --cache "$out/references" || failed=1
     ;;
-  3) "$dermis" bench budget --json "$out/budget.json" || failed=1 ;;
+  3)
+    for scene in ${SCENES:-regular flashing dolly dynamic cut}; do
+      "$dermis" bench budget --scenes "$scene" --json "$out/budget_$scene.json" \
+        --cache "$out/references" || failed=1
+    done
+    ;;
 esac
 exit $failed
