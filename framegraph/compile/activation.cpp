@@ -117,4 +117,12 @@ const Activation& evaluate_conditions(const CompileInput& in, Report& report,
   return active;
 }
 
+SettingValue setting_value(const Graph& graph, const Activation& active, PassId pass,
+                           uint32_t setting) {
+  for (const SettingBinding& binding : graph.passes[pass.value].settings)
+    if (binding.setting == setting)
+      return binding.from.valid() ? active.settings[binding.from.value] : binding.literal;
+  return active.type(pass).settings[setting].default_value;
+}
+
 } // namespace dermis

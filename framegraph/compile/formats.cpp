@@ -41,11 +41,23 @@ struct FormatResolver {
   FormatScratch& scratch;
   ResourceMemory& memory = scratch.result;
 
+  // Returns whether the setting that limits the port's formats rejects the format.
+  bool setting_rejects(const Use& use, Format format) const {
+    const PassType& type = active.type(use.pass);
+    const SettingFormats& limit = type.ports[use.port].formats_while;
+    for (uint32_t s = 0; !limit.setting.empty() && s < type.settings.size(); ++s)
+      if (type.settings[s].name == limit.setting &&
+          setting_value(graph, active, use.pass, s).integer == limit.option)
+        return std::find(limit.formats.begin(), limit.formats.end(), format) == limit.formats.end();
+    return false;
+  }
+
   FormatRejection violation(ResourceId id, Format format) const {
     for (uint32_t n = usages.resources[id.value].first_constraint; n != invalid_index;
          n = usages.constraints[n].next) {
       const Use& use = versions.uses[usages.constraints[n].use];
-      if (!works_with(active.type(use.pass).ports[use.port], format))
+      if (!works_with(active.type(use.pass).ports[use.port], format) ||
+          setting_rejects(use, format))
         return {true, usages.constraints[n].use};
     }
     const uint32_t usage = usages.resources[id.value].vk_usage;
@@ -64,8 +76,11 @@ struct FormatResolver {
                             in.device->name, usages.resources[id.value].vk_usage);
       } else {
         const Use& use = versions.uses[why.use];
-        text += fmt::format("port '{}' of pass '{}' cannot work with it",
-                            active.type(use.pass).ports[use.port].name, name_of(graph, use.pass));
+        const Port& port = active.type(use.pass).ports[use.port];
+        text += fmt::format("port '{}' of pass '{}' cannot work with it", port.name,
+                            name_of(graph, use.pass));
+        if (works_with(port, format))
+          text += fmt::format(", because of its setting '{}'", port.formats_while.setting);
       }
     }
     report.diagnostics.add(DiagnosticId::no_usable_format, declared.where, std::move(text));

@@ -17,12 +17,9 @@ void add_settings(const Graph& graph, const Activation& active, PassId pass, Pla
   planned.first_setting = static_cast<uint32_t>(plan.settings.size());
   for (uint32_t s = 0; s < type.settings.size(); ++s) {
     PlanSetting setting;
-    setting.value = type.settings[s].default_value;
-    for (const SettingBinding& binding : declared.settings) {
-      if (binding.setting != s) continue;
-      setting.from = binding.from;
-      setting.value = binding.from.valid() ? active.settings[binding.from.value] : binding.literal;
-    }
+    setting.value = setting_value(graph, active, pass, s);
+    for (const SettingBinding& binding : declared.settings)
+      if (binding.setting == s) setting.from = binding.from;
     plan.settings.push_back(setting);
   }
 }

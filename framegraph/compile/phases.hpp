@@ -33,6 +33,9 @@ struct ActivationScratch {
 // Resolves the settings, and evaluates which passes are on.
 const Activation& evaluate_conditions(const CompileInput& in, Report& report,
                                       ActivationScratch& scratch);
+// Returns the value of a setting of the pass's type.
+SettingValue setting_value(const Graph& graph, const Activation& active, PassId pass,
+                           uint32_t setting);
 
 // ---- subresources.cpp ----
 

@@ -22,6 +22,13 @@ enum class Touched : uint8_t {
   flagged     // covered pixels that another image marks, such as texels with a second layer
 };
 
+// Formats that a port supports while an enumerated setting of the pass has a value.
+struct SettingFormats {
+  std::string_view setting; // of the pass type; empty: none
+  int64_t option = 0;       // its index
+  std::span<const Format> formats = {};
+};
+
 struct Port {
   std::string_view name;
   Usage usage = Usage::sampled_image;
@@ -42,6 +49,8 @@ struct Port {
   // reads nothing that was there before the dispatch. Other ports of the pass must not access the
   // same texels or elements.
   bool internally_ordered = false;
+  // Limits `formats` further.
+  SettingFormats formats_while = {};
 };
 
 // Returns whether a kernel supports the format at the port: one of Port::formats, or, if that is
@@ -83,8 +92,8 @@ namespace constant_id {
 inline constexpr uint32_t texel_shape = 0; // shaders/common/shape.glsl
 // Masks of optional ports, bit i for port i: bound in every frame, bound in some frames.
 inline constexpr uint32_t bound_ports = 1, changing_ports = 2;
-inline constexpr uint32_t group_lanes = 3;    // local_size_x of kernels with one shape
-inline constexpr uint32_t pixel_grid = 4;     // of the plan (pixel_grid.hpp)
+inline constexpr uint32_t group_lanes = 3; // local_size_x of kernels with one shape
+inline constexpr uint32_t pixel_grid = 4;  // of the plan (pixel_grid.hpp)
 // Whether the device allows wide groups, and local_size_x of kernels that use them.
 inline constexpr uint32_t wide_group = 5, wide_lanes = 6;
 inline constexpr uint32_t first_setting = 16; // PassType::settings[i] has the id first_setting + i

@@ -78,14 +78,19 @@ constexpr Port tiles_ports[] = {
         "tiles. If the port is bound, the pyramid's lists are empty when no tile scatters")),
 };
 
+// Limits the formats of light in full storage.
+constexpr Port as_stored(Port light) {
+  light.formats_while = {"storage", 1, port::sap_full_light_formats};
+  return light;
+}
 constexpr Port written_light(std::string_view name, std::string_view doc = light_doc) {
-  return port::written(name, doc, sap_light_formats);
+  return as_stored(port::written(name, doc, sap_light_formats));
 }
 constexpr Port written_surface(std::string_view name, std::string_view doc = surface_doc) {
   return port::written_uint(name, doc, surface_formats);
 }
 constexpr Port read_light(std::string_view name, std::string_view doc) {
-  return port::sampled(name, doc, sap_light_formats);
+  return as_stored(port::sampled(name, doc, sap_light_formats));
 }
 constexpr Port read_surface(std::string_view name, std::string_view doc) {
   return port::sampled_uint(name, doc, surface_formats);

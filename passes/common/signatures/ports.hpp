@@ -37,6 +37,9 @@ inline constexpr Format sap_light_formats[] = {Format::rg16f, Format::rgba32f};
 inline constexpr Format surface_formats[] = {Format::rgba32_uint};
 inline constexpr Format importance_formats[] = {Format::r8_unorm, Format::r16f, Format::r32f};
 
+// The same in full storage, where the surface holds no light.
+inline constexpr Format sap_full_light_formats[] = {Format::rgba32f};
+
 using Formats = std::span<const Format>;
 
 // Declare an image that the kernel samples.

@@ -37,6 +37,17 @@ TEST_F(GraphFiles, TheShippedFilesHaveNoProblems) {
                        "skin.json: profile, no problems", "bust.json: scene, no problems"));
 }
 
+TEST_F(GraphFiles, FormatTooSmallForTheStorage_IsReported) {
+  const std::string overlay = write("full.json", R"({ "dermis_overlay": 2, "edits": [
+    { "set": "/passes/down_1/set/storage", "to": "full" } ] })");
+  EXPECT_THAT(run({"validate", "configs/graphs/sap.json", "--overlay", overlay}),
+              FailsWith(1, "D0304", "'second_light_1'", "not rg16f",
+                        "'second_coarse_light' of pass 'down_1'", "setting 'storage'"));
+  EXPECT_THAT(run({"validate", "configs/graphs/sap.json", "--overlay",
+                   "configs/overlays/sap_full_precision.json"}),
+              Succeeds("no problems"));
+}
+
 TEST_F(GraphFiles, MalformedJsonIsNamedWithFileLineAndColumn) {
   const std::string bad = write("bad.json", "{ \"dermis\": 2,\n  \"name\": }\n");
   const Outcome outcome = run({"validate", bad});
