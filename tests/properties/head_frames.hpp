@@ -28,7 +28,7 @@ struct HeadErrors {
   double rmse = 0;
   double edge = 0, edge_p99 = 0; // Pixels near a depth step or another material.
   double inner = 0;              // All other pixels.
-  double sure = 0;               // Pixels with a confidence of 0.9 or more; 0 without confidence.
+  double sure = 0;               // Pixels with a confidence of 0.95 or more; 0 without confidence.
   double unsure_pixels = 0;      // Fraction of the other pixels.
 };
 

@@ -183,9 +183,9 @@ TEST_P(OnAHead, ConfidenceFindsExactPixels) {
     RecordProperty("unsure_pixels", std::to_string(errors.unsure_pixels));
     EXPECT_LE(errors.sure, bounds().sure * errors.rmse);
     EXPECT_GE(errors.unsure_pixels, bounds().unsure_min);
-    // Fractions are stated at 640x360. At twice the size, folds of a pixel become visible: 0.353
-    // from the side, 0.201 of the whole head.
-    EXPECT_LE(errors.unsure_pixels, bounds().unsure_max * (size.width > 640 ? 1.15 : 1.0));
+    // Fractions are stated at 640x360. At twice the size, folds of a pixel become visible: 0.277 of
+    // the whole scan.
+    EXPECT_LE(errors.unsure_pixels, bounds().unsure_max * (size.width > 640 ? 1.6 : 1.0));
   }
 }
 

@@ -131,9 +131,10 @@ TEST_F(Temporal, MovingShadows_AreRefinedInEachFrame) {
   RecordProperty("sap", std::to_string(sap.mean_psnr_db));
   RecordProperty("residual", std::to_string(residual.mean_psnr_db));
   RecordProperty("blind", std::to_string(blind.mean_psnr_db));
-  // Regression bounds: measured 3.2 dB better on average, 1.7 dB in the worst frame.
-  EXPECT_GT(residual.mean_psnr_db, sap.mean_psnr_db + 2.7);
-  EXPECT_GT(residual.mean_psnr_db, blind.mean_psnr_db + 1);
+  // Regression bounds: measured 4.9 dB better on average than the pyramid. Trust in all light costs
+  // 0.42 dB; it cost 1.5 dB when pixels without a loss were sampled, too.
+  EXPECT_GT(residual.mean_psnr_db, sap.mean_psnr_db + 4.3);
+  EXPECT_GT(residual.mean_psnr_db, blind.mean_psnr_db + 0.2);
   for (const uint32_t t : judged)
     EXPECT_GT(residual.psnr_db.at(t), sap.psnr_db.at(t) + 1.2) << t;
 }
@@ -156,7 +157,8 @@ TEST_F(Temporal, FlashFromAnotherSide_KeepsTheRatio) {
   for (const uint32_t t : lit) {
     // Regression bound: measured 0.0 dB.
     EXPECT_GT(residual.psnr_db.at(t), sap.psnr_db.at(t) - 0.2) << t;
-    EXPECT_LT(blind.psnr_db.at(t), sap.psnr_db.at(t) - 3) << t;
+    // Measured 2.6 dB in the least affected frame.
+    EXPECT_LT(blind.psnr_db.at(t), sap.psnr_db.at(t) - 2) << t;
   }
   for (const uint32_t t : judged)
     if (std::find(lit.begin(), lit.end(), t) == lit.end()) {
@@ -185,8 +187,8 @@ TEST_F(Temporal, NewConstantLight_IsLearned) {
     RecordProperty("gain_" + std::to_string(t - 25), std::to_string(gain));
     EXPECT_GT(gain, -0.2) << t;
   }
-  EXPECT_GT(residual.psnr_db.at(105),
-            sap.psnr_db.at(105) + 1.3); // Regression bound: measured 1.8 dB, 80 frames later.
+  // Regression bound: measured 0.6 dB, 80 frames later (1.8 dB when more pixels were sampled).
+  EXPECT_GT(residual.psnr_db.at(105), sap.psnr_db.at(105) + 0.4);
 }
 
 TEST_F(Temporal, Cut_ErrorRecoversWithinThreeFrames) {
