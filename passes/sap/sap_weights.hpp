@@ -49,7 +49,7 @@ struct SapShape {
   bool halves(uint32_t axis, uint32_t level) const { return axis == 1 || level > halvings; }
   // Returns the weights of a level's tent along an axis at the distances of 0, 1 and 2 texels.
   // Their variances give levels equal widths along both axes, in lengths; they are 1/2 (1/2, 1/4,
-  // 0) if pixels are square. shaders/sap/sap_shape.glsl mirrors this function.
+  // 0) if pixels are square. shaders/sap/sap_tent.glsl mirrors this function.
   std::array<double, 3> tent(uint32_t axis, uint32_t level) const;
 };
 // Shapes with tables, for every number of halvings: equal steps of log2_aspect, from

@@ -11,11 +11,19 @@
 #include "common/environment.glsl"
 #include "common/tiles.glsl"
 #include "common/half.glsl"
-#include "sap/sap.glsl"
-bool near_written(ivec2 at) { return class_of_tile(classes_data[sap_tile(at)]) != class_none; }
 #include "common/reproject.glsl"
 #include "sap/sap_samples.glsl"
 #include "papers/residual.glsl"
+
+bool near_written(ivec2 at) { return class_of_tile(classes_data[sap_tile(at)]) != class_none; }
+uvec4 level_surface(int level, ivec2 address) {
+  return fetch_level(surface_1_image, surface_2_image, surface_3_image, surface_4_image,
+                     surface_5_image, level, address);
+}
+vec4 level_light(int level, ivec2 address) {
+  return fetch_level(light_1_image, light_2_image, light_3_image, light_4_image, light_5_image,
+                     level, address);
+}
 
 const float largest_kept = 8.0;  // maximum of a sampled ratio
 const float largest_ratio = 4.0; // maximum factor on light
@@ -135,7 +143,8 @@ void main() {
       // them.
       uint index = (frame.frame_index >> 2) + (frame.frame_index & 3u) * 0x9e3779u;
       uvec2 offset = r2_point(offset_from_hash(pcg3d16(uvec3(pixel, 0u)).xy), index);
-      vec3 sampled = sap_sampled_light(pixel, own, pixel_light_of_level_0(texel), offset,
+      vec3 own_light = pixel_light_of_level_0(surface_image, light_image, texel);
+      vec3 sampled = sap_sampled_light(surface_image, light_image, pixel, own, own_light, offset,
                                        count, settings.lod_bias);
       vec3 found = clamp(sampled / max(light.rgb, vec3(min_light)), vec3(0.0), vec3(largest_kept));
       found = mix(vec3(1.0), found, greaterThan(light.rgb, vec3(min_light)));

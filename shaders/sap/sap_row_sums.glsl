@@ -1,7 +1,9 @@
-// Sums over the children of a parent as (row 0 + row 1) + (row 2 + row 3), so that invocations which
-// sum a row each get the same result as one that sums all. Include from sap_down.glsl.
+// Sums over the children of a parent as (row 0 + row 1) + (row 2 + row 3), so that invocations
+// which sum a row each get the same result as one that sums all.
 #ifndef DERMIS_SAP_ROW_SUMS_GLSL
 #define DERMIS_SAP_ROW_SUMS_GLSL
+
+#include "sap/sap_down.glsl"
 
 // Adds a row of children: of the first layer, then, if `layers` is 2, of the second.
 void add_row(sap_parent parent, int layers, sap_seed seed, sap_seed before, int row,
@@ -30,7 +32,7 @@ reduction from_vectors(vec4 vectors[sum_vectors]) {
                    vectors[4].x, vectors[4].y, vectors[1].y, vectors[4].z);
 }
 
-reduction sum_rows(sap_parent parent, int layers, sap_seed seed, sap_seed before) {
+reduction sum_children(sap_parent parent, int layers, sap_seed seed, sap_seed before) {
   vec4 pair[sum_vectors], total[sum_vectors];
   [[unroll]] for (int i = 0; i < sum_vectors; ++i)
     pair[i] = total[i] = vec4(0.0);

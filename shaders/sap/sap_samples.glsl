@@ -1,9 +1,10 @@
 // Importance samples of the surface around a pixel, read from the pyramid's own levels. A sample
 // represents an area and reads the texel of that size under it, if that texel lies on the surface
-// that the sample hit. Include after bindings with `light`, `surface` (level 0), `light_1` ..
-// `light_5` and `surface_1` .. `surface_5`, and after `near_written`.
+// that the sample hit.
 #ifndef DERMIS_SAP_SAMPLES_GLSL
 #define DERMIS_SAP_SAMPLES_GLSL
+
+#extension GL_EXT_samplerless_texture_functions : require
 
 #include "common/constants_math.glsl"
 #include "common/profile.glsl"
@@ -26,27 +27,37 @@ float sample_fraction(float confidence, float count, float ratio) {
   return odds / (1.0 + odds);
 }
 
-uvec4 level_surface(int level, ivec2 at) {
+// The kernel that includes this file defines the next three functions.
+// Return the surface and light of a texel of levels 1 to 5 at an address.
+uvec4 level_surface(int level, ivec2 address);
+vec4 level_light(int level, ivec2 address);
+// Returns whether level 0 has a pixel of the view.
+bool near_written(ivec2 pixel);
+
+// Read a texel of levels 1 to 5, one image each.
+uvec4 fetch_level(utexture2D level_1, utexture2D level_2, utexture2D level_3, utexture2D level_4,
+                  utexture2D level_5, int level, ivec2 address) {
   switch (level) {
-  case 1: return texelFetch(surface_1_image, at, 0);
-  case 2: return texelFetch(surface_2_image, at, 0);
-  case 3: return texelFetch(surface_3_image, at, 0);
-  case 4: return texelFetch(surface_4_image, at, 0);
-  default: return texelFetch(surface_5_image, at, 0);
+  case 1: return texelFetch(level_1, address, 0);
+  case 2: return texelFetch(level_2, address, 0);
+  case 3: return texelFetch(level_3, address, 0);
+  case 4: return texelFetch(level_4, address, 0);
+  default: return texelFetch(level_5, address, 0);
   }
 }
-vec4 level_light(int level, ivec2 at) {
+vec4 fetch_level(texture2D level_1, texture2D level_2, texture2D level_3, texture2D level_4,
+                 texture2D level_5, int level, ivec2 address) {
   switch (level) {
-  case 1: return texelFetch(light_1_image, at, 0);
-  case 2: return texelFetch(light_2_image, at, 0);
-  case 3: return texelFetch(light_3_image, at, 0);
-  case 4: return texelFetch(light_4_image, at, 0);
-  default: return texelFetch(light_5_image, at, 0);
+  case 1: return texelFetch(level_1, address, 0);
+  case 2: return texelFetch(level_2, address, 0);
+  case 3: return texelFetch(level_3, address, 0);
+  case 4: return texelFetch(level_4, address, 0);
+  default: return texelFetch(level_5, address, 0);
   }
 }
 // Returns the light of a pixel from level 0.
-vec3 pixel_light_of_level_0(ivec2 texel) {
-  return sap_light(texelFetch(surface_image, texel, 0), texelFetch(light_image, texel, 0)).rgb;
+vec3 pixel_light_of_level_0(utexture2D surface, texture2D light, ivec2 texel) {
+  return sap_light(texelFetch(surface, texel, 0), texelFetch(light, texel, 0)).rgb;
 }
 
 // Returns the area of a pixel's patch divided by the area of the pixel's cross-section: 1 / cos of
@@ -67,7 +78,8 @@ float sap_area(sap_texel t, vec2 pixel) {
 float sap_scale(sap_texel t, float area) { return t.reach * sqrt(sqrt(sqrt(area))); }
 
 // Returns the light around the sample's pixel at a level of detail.
-vec3 sample_light(ivec2 q, vec2 at, sap_texel tap, float lod) {
+vec3 sample_light(utexture2D surface, texture2D light, ivec2 q, vec2 at, sap_texel tap,
+                  float lod) {
   int level = min(int(lod + 0.5), last_sample_level);
   if (level > 0) {
     ivec2 texel = ivec2(floor((at + 0.5) / sap_spacings(level)));
@@ -82,14 +94,14 @@ vec3 sample_light(ivec2 q, vec2 at, sap_texel tap, float lod) {
         return sap_light(bits, level_light(level, address)).rgb;
     }
   }
-  return pixel_light_of_level_0(texel_of(q));
+  return pixel_light_of_level_0(surface, light, texel_of(q));
 }
 
 // Returns the self-normalised mean of `count` samples. Light within the direct radius is the
 // pixel's own light. Radii are stratified and angles are multiples of the golden angle; `offset`
-// shifts both, in units of 2^-32.
-vec3 sap_sampled_light(ivec2 pixel, sap_texel own, vec3 light, uvec2 offset, int count,
-                       float lod_bias) {
+// shifts both, in units of 2^-32. `surface`, `light`: images of level 0. `own_light`: of the pixel.
+vec3 sap_sampled_light(utexture2D surface, texture2D light, ivec2 pixel, sap_texel own,
+                       vec3 own_light, uvec2 offset, int count, float lod_bias) {
   float area = sap_area(own, vec2(pixel));
   scatter_profile profile = find_profile(own.id, sap_scale(own, area));
   uint widest = profiles[min(own.id, 255u)].widest;
@@ -105,7 +117,7 @@ vec3 sap_sampled_light(ivec2 pixel, sap_texel own, vec3 light, uvec2 offset, int
   float pixels_per_sample = two_pi * beyond / (float(count) * footprint.x * footprint.y);
   float each = beyond / float(count);
   vec2 shift = unit_from_fixed(offset);
-  vec3 sum = direct * light, mass = direct;
+  vec3 sum = direct * own_light, mass = direct;
   for (int i = 0; i < count; ++i) {
     radial_sample radial = profile_sample(profile, (float(i) + shift.x) / float(count) * beyond);
     float angle = float(i) * golden_angle + shift.y * two_pi;
@@ -113,7 +125,7 @@ vec3 sap_sampled_light(ivec2 pixel, sap_texel own, vec3 light, uvec2 offset, int
     ivec2 q = ivec2(round(clamp(at, vec2(-1.0), vec2(frame.rect.zw))));
     if (!inside_rect(q) || !near_written(q))
       continue;
-    sap_texel tap = sap_unpack(texelFetch(surface_image, texel_of(q), 0));
+    sap_texel tap = sap_unpack(texelFetch(surface, texel_of(q), 0));
     if (tap.id != own.id)
       continue;
     // Uses the sample's own point on the patch, not the patch's centre, because the reference
@@ -124,12 +136,12 @@ vec3 sap_sampled_light(ivec2 pixel, sap_texel own, vec3 light, uvec2 offset, int
     vec3 weight = profile_falloff(profile, distance_3d) *
                   (each * radial.r / radial.density * sap_area(tap, vec2(q)) * zoom * zoom);
     float lod = 0.5 * log2(max(pixels_per_sample * radial.r / radial.density, 1e-20)) + lod_bias;
-    sum += weight * sample_light(q, at, tap, lod);
+    sum += weight * sample_light(surface, light, q, at, tap, lod);
     mass += weight;
   }
-  vec3 mean = mix(light, sum / max(mass, vec3(1e-30)), greaterThan(mass, vec3(1e-30)));
-  mean = mix(light, mean, greaterThan(profile.d.rgb, vec3(0.0)));
-  return mix(mean, light, profile_direct(own.id));
+  vec3 mean = mix(own_light, sum / max(mass, vec3(1e-30)), greaterThan(mass, vec3(1e-30)));
+  mean = mix(own_light, mean, greaterThan(profile.d.rgb, vec3(0.0)));
+  return mix(mean, own_light, profile_direct(own.id));
 }
 
 #endif

@@ -1,26 +1,37 @@
-// One texel on the way up: its own level, tent-filtered, and the values of the coarser level. Reads
-// the 3x3 neighbourhood of the texel in its own level and the 2x2 nearest texels of the coarser
-// level through sap_neighbours.glsl or, in kernels that compute several levels (SAP_WINDOW),
-// sap_window.glsl. Include after what these files need.
-// - SAP_NO_RING: the kernel reads texels of the level by itself and has no `light` and `surface`.
-// - SAP_OWN_LAYERS, SAP_COARSE_LAYERS: maximum layers of a texel of the level and of the coarser
-//   level; 1 unless defined.
+// One texel on the way up: its own level, tent-filtered, and the values of the coarser level.
 #ifndef DERMIS_SAP_UP_GLSL
 #define DERMIS_SAP_UP_GLSL
 
-#include "sap/sap_tiles.glsl"
+#include "sap/sap_storage.glsl"
 #include "sap/sap_tent.glsl"
-#ifndef SAP_OWN_LAYERS
-#define SAP_OWN_LAYERS 1
-#endif
-#ifndef SAP_COARSE_LAYERS
-#define SAP_COARSE_LAYERS 1
-#endif
-#ifdef SAP_WINDOW
-#include "sap/sap_window.glsl"
-#else
-#include "sap/sap_neighbours.glsl"
-#endif
+
+// The texel that is computed.
+struct sap_place {
+  ivec2 at;   // texel of its level
+  ivec2 odd;  // parity of its position
+  int ring;   // its index among the texels of its level that were read
+  int corner; // index of its first corner among the texels of the coarser level that were read
+  // 0 in kernels that compute one level:
+  int window; // number of its level among those of the dispatch
+  int handed; // index of its first corner among the values of the coarser level
+  int index;  // its own index among the values of its level
+};
+
+// The neighbourhood. sap_window.glsl defines these eight functions; sap_neighbours.glsl defines the
+// last two, and its kernel the others that it uses. `layer`: 0 or 1.
+// Return the surface and light of the neighbour at `step` texels: 0 without a surface.
+uvec4 near_surface(sap_place place, ivec2 step, int layer);
+vec4 near_light(sap_place place, int level, ivec2 step, int layer);
+// Return the surface and the values of corner n of the 2x2 nearest texels of the coarser level.
+uvec4 corner_surface(sap_place place, int n, int layer);
+uvec4 corner_scattered(sap_place place, int level, int n, int layer);
+// Return whether the second layer of a texel of the level and of the coarser level can be read.
+bool has_second_near(uvec4 bits);
+bool has_second_corner(uvec4 bits);
+// Returns the texels to each side that the tent reads.
+int tent_reach();
+// Returns whether to branch around second layers that do not exist. If not, they must read as 0.
+bool branches_on_layers();
 
 struct sap_sum {
   vec3 light;
@@ -33,7 +44,6 @@ bool sap_takes_second(sap_texel own, sap_texel first, float first_off, sap_texel
   return second.id == own.id && (first.id != own.id || second_off < first_off);
 }
 
-#ifndef SAP_NO_RING
 // Returns a tent over the level's own light, over its first `layers` layers: 3x3 texels, or more if
 // pixels are not square.
 sap_sum sap_tent(sap_place place, int level, sap_texel own, int layers) {
@@ -52,9 +62,11 @@ sap_sum sap_tent(sap_place place, int level, sap_texel own, int layers) {
   sap_tent_weights weights = sap_tent_of_level(level);
   if (!square_pixels)
     all_weight = 0.0;
-  [[unroll]] for (int j = -tent_reach; j <= tent_reach; ++j)
-    [[unroll]] for (int i = -tent_reach; i <= tent_reach; ++i) {
-      vec2 offset = vec2(i, j) * spacings;
+  const int reach = tent_reach();
+  [[unroll]] for (int j = -reach; j <= reach; ++j)
+    [[unroll]] for (int i = -reach; i <= reach; ++i) {
+      ivec2 step = ivec2(i, j);
+      vec2 offset = vec2(step) * spacings;
       float weight = float((2 - abs(i)) * (2 - abs(j)));
       if (i != 0 || j != 0)
         weight *= j == 0 ? narrowing.x : i == 0 ? narrowing.y : i == j ? narrowing.z : narrowing.w;
@@ -66,24 +78,21 @@ sap_sum sap_tent(sap_place place, int level, sap_texel own, int layers) {
           continue;
         all_weight += weight;
       }
-      int n = (2 * tent_reach + 1) * (j + tent_reach) + i + tent_reach;
-      uvec4 bits = near_bits(place, n);
+      uvec4 bits = near_surface(place, step, 0);
       sap_texel tap = sap_unpack(bits);
-      vec4 light = light_near(place, level, n);
+      vec4 light = near_light(place, level, step, 0);
       float off = sap_off_plane(own, tap, offset);
-#if SAP_OWN_LAYERS > 1
-      if (layers > 1 && (!texel_shape || has_second_near(bits))) {
-        uvec4 second_bits = second_near_bits(place, level, n);
+      if (layers > 1 && (!branches_on_layers() || has_second_near(bits))) {
+        uvec4 second_bits = near_surface(place, step, 1);
         sap_texel second = sap_unpack(second_bits);
         float second_off = sap_off_plane(own, second, offset);
         if (sap_takes_second(own, tap, off, second, second_off)) {
           bits = second_bits;
-          light = second_light_near(place, level, n);
+          light = near_light(place, level, step, 1);
           off = second_off;
         }
       }
-      tap = sap_unpack(bits);
-#endif
+      tap = sap_unpack(bits); // only the bits stay in registers across the branch
       off *= off_unit;
       weight *= exp2(-off * off) * (level == 0 ? 1.0 : tap.mass);
       weight = tap.id == own.id ? weight : 0.0;
@@ -93,7 +102,6 @@ sap_sum sap_tent(sap_place place, int level, sap_texel own, int layers) {
     }
   return sap_sum(sum / total, vec3(mass / all_weight));
 }
-#endif
 
 // Interpolates bilinearly, along the surface, over the four nearest texels of the coarser level and
 // their first `layers` layers, at the texel at `place`. `confidence` receives the fraction of the
@@ -115,34 +123,31 @@ sap_sum sap_from_coarser(sap_place place, int level, sap_texel own, vec3 fallbac
   confidence = 0.0;
   [[unroll]] for (int j = 0; j < 2; ++j)
     [[unroll]] for (int i = 0; i < 2; ++i) {
-    // An odd texel is nearer to its first corner: distances 0.5 and 1.5; an even one to its second.
-    vec2 steps = odd - 1.5 + 2.0 * vec2(i, j), offset = steps * distances;
-    float bilinear = (i == 0 ? nearer.x : 1.0 - nearer.x) * (j == 0 ? nearer.y : 1.0 - nearer.y);
-    if (!square_pixels && bilinear == 0.0)
-      continue; // the texel may not exist
-    int n = 2 * j + i;
-    uvec4 bits = corner_bits(place, n);
-    sap_texel tap = sap_unpack(bits);
-    uvec4 handed_down = scattered_at_corner(place, n);
-    float off = sap_off_planes(own, tap, offset);
-#if SAP_COARSE_LAYERS > 1
-      if (layers > 1 && (!texel_shape || has_second_corner(bits))) {
-        uvec4 second_bits = second_corner_bits(place, level, n);
+      // An odd texel is nearer to its first corner, an even one to its second: by 0.5 to 1.5.
+      vec2 steps = odd - 1.5 + 2.0 * vec2(i, j), offset = steps * distances;
+      float bilinear = (i == 0 ? nearer.x : 1.0 - nearer.x) * (j == 0 ? nearer.y : 1.0 - nearer.y);
+      if (!square_pixels && bilinear == 0.0)
+        continue; // the texel may not exist
+      int n = 2 * j + i;
+      uvec4 bits = corner_surface(place, n, 0);
+      sap_texel tap = sap_unpack(bits);
+      uvec4 handed_down = corner_scattered(place, level, n, 0);
+      float off = sap_off_planes(own, tap, offset);
+      if (layers > 1 && (!branches_on_layers() || has_second_corner(bits))) {
+        uvec4 second_bits = corner_surface(place, n, 1);
         sap_texel second = sap_unpack(second_bits);
         float second_off = sap_off_planes(own, second, offset);
         if (sap_takes_second(own, tap, off, second, second_off)) {
           bits = second_bits;
-          handed_down = second_scattered_at_corner(place, level, n);
+          handed_down = corner_scattered(place, level, n, 1);
           off = second_off;
         }
       }
       tap = sap_unpack(bits); // only the bits stay in registers across the branch
-#endif
       off *= off_unit;
       float kept = tap.id == own.id ? exp2(-off * off) : 0.0;
-      sap_scattered theirs = settings.storage == STORAGE_FULL
-                                 ? sap_unpack_scattered_full(handed_down)
-                                 : sap_unpack_scattered(handed_down);
+      sap_scattered theirs = stores_full() ? sap_unpack_scattered_full(handed_down)
+                                           : sap_unpack_scattered(handed_down);
       vec3 tap_mass = bilinear * kept * theirs.mass;
       mass += tap_mass;
       sum += tap_mass * theirs.light;

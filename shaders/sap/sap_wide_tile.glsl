@@ -1,9 +1,14 @@
 // GPUs: eight invocations compute a texel, so that a tile takes little time if there are too few
 // tiles to fill the GPU. To find a seed, each considers one central child. Then four compute the
 // first layer and four the second, each a row of the children. Invocations of a subgroup have the
-// same part in different texels. Include after store_layer() and sap_down_layers.glsl.
+// same part in different texels.
 #ifndef DERMIS_SAP_WIDE_TILE_GLSL
 #define DERMIS_SAP_WIDE_TILE_GLSL
+
+#include "sap/sap_down_layers.glsl"
+#include "sap/sap_row_sums.glsl"
+#include "sap/sap_tile_children.glsl"
+#include "sap/wide_group.glsl"
 
 const int parts = 8;
 shared vec4 exchange[wide_group ? parts * 64 : 1];
@@ -104,7 +109,7 @@ reduction add_rows(reduction sum) {
 
 shared uint changes[wide_group ? 64 : 1]; // by texel: change_of_first, 0 without a second layer
 void compute_tile_together(uvec2 entry, int level) {
-  sap_parent parent = take_parent(block_of_entry(entry, texel_of_lane()), 0, level - 1);
+  sap_parent parent = parent_in_tile(texel_of_entry(entry, texel_of_lane()), level - 1);
   bool inside = sap_inside(parent.at, level);
   sap_texel before = no_texel, seed = find_seed_together(parent, inside, no_texel);
   sap_texel second_seed = find_seed_together(parent, inside, seed);
@@ -115,7 +120,7 @@ void compute_tile_together(uvec2 entry, int level) {
   }
   reduction sum = no_children;
   if (inside && seed.id != 0u)
-    add_row(parent, max_layers, seed_of(parent, seed), seed_of(parent, before),
+    add_row(parent, 2, seed_of(parent, seed), seed_of(parent, before),
             part_of_lane() & 3, sum);
   sum = add_rows(sum);
   sap_layer layer = no_layer;

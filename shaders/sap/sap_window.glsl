@@ -1,17 +1,18 @@
-// Neighbourhoods on the way up for a group that computes a tile of level `level` and, before, the
+// Neighbourhoods on the way up for a group that computes a tile of a level and, before, the
 // texels of all coarser levels on which the tile depends. These texels form a window in each level:
 // 8x8, 5x5, 4x4, then 3x3. The group reads both layers of every window with a ring of one texel
 // into shared memory, and passes the values of a window to the next finer one in shared memory.
-// Include after bindings with `light`, `surface`, `second_light`, `second_surface`, `levels` and
-// `level_tiles`, and after `block_width` and `block_height`.
 #ifndef DERMIS_SAP_WINDOW_GLSL
 #define DERMIS_SAP_WINDOW_GLSL
 
-#include "sap/sap_levels.glsl"
 #include "sap/sap_tiles.glsl"
+#include "sap/sap_up.glsl"
 
-const int tent_reach = 1, near_centre = 4, near_texels = 9, corner_texels = 4;
-ivec2 near_step(int n) { return ivec2(n % 3 - 1, n / 3 - 1); }
+// The kernel that includes this file defines both functions. They return the surface and light of
+// a layer (0 or 1) of a texel at an address. `window`: number of its level, 0 for the tile's level.
+// `bits`: its surface.
+uvec4 level_surface(ivec2 address, int window, int layer);
+vec4 level_light(ivec2 address, int window, int layer, uvec4 bits);
 
 const int tile_ring_texels = 10 * 10;
 // Windows of the coarser levels: at most 5x5 texels.
@@ -25,17 +26,6 @@ shared uvec2 ring_light[2 * max_ring_texels]; // halves, exact unless `storage` 
 shared uvec4 window_scattered[2][2][max_window_texels];
 // Tiles of the coarser levels that are listed: 2x2 tiles from the one of the ring's first texel on.
 shared uint listed_tiles[max_windows];
-
-// A texel that is computed.
-struct sap_place {
-  ivec2 at;    // texel of its level
-  ivec2 odd;   // parity of its position
-  int window;  // of its level: 0 for `level`
-  int ring;    // its index in `ring_surface`
-  int corner;  // index of its first corner there
-  int handed;  // index of its first corner in `window_scattered`
-  int index;   // its own index there
-};
 
 struct sap_window {
   ivec2 first; // texel of its level
@@ -60,40 +50,22 @@ sap_window window_of(ivec2 tile, int window) {
 
 // Finds the listed tiles of the coarser levels under the windows of a tile. The invocations divide
 // the levels among them, so that they wait for memory once.
-void find_listed_tiles(ivec2 tile, int windows) {
+void find_listed_tiles(ivec2 tile, int level, int windows, uint lanes) {
   if (gl_LocalInvocationIndex < uint(max_windows))
     listed_tiles[gl_LocalInvocationIndex] = 0u;
   barrier();
-  const uint lanes = group_lanes / uint(max_windows - 1);
+  lanes /= uint(max_windows - 1);
   int w = 1 + int(gl_LocalInvocationIndex / lanes);
   if (w < windows) {
     ivec2 first = window_of(tile, w).first >> 3; // address of the ring's first texel: first - 1 + 1
-    uvec2 list = level_tiles_data[settings.level + w];
+    uvec2 list = level_tiles_at(uint(level + w));
     [[dont_unroll]] for (uint i = gl_LocalInvocationIndex % lanes; i < list.y; i += lanes) {
-      ivec2 away = tile_of_entry(level_tiles_data[list.x + i]) - first;
+      ivec2 away = tile_of_entry(level_tiles_at(list.x + i)) - first;
       if (all(greaterThanEqual(away, ivec2(0))) && all(lessThan(away, ivec2(2))))
         atomicOr(listed_tiles[w], 1u << uint(2 * away.y + away.x));
     }
   }
   barrier();
-}
-
-// Return the surface and light of a texel at an address. `bits`: its surface.
-uvec4 level_surface(ivec2 address, int window, int layer) {
-  if (window > 0)
-    return texelFetch(levels_image,
-                      place_in_levels(address, window - 1, surface_in_levels + layer), 0);
-  return layer == 0 ? texelFetch(surface_image, address, 0)
-                    : texelFetch(second_surface_image, address, 0);
-}
-vec4 level_light(ivec2 address, int window, int layer, uvec4 bits) {
-  if (window > 0)
-    return light_from_bits(texelFetch(
-        levels_image, place_in_levels(address, window - 1, light_in_levels + layer), 0));
-  return sap_light(bits,
-                   layer == 0 ? texelFetch(light_image, address, 0)
-                              : texelFetch(second_light_image, address, 0),
-                   settings.storage == STORAGE_FULL);
 }
 
 // A texel that an invocation reads into shared memory.
@@ -103,7 +75,7 @@ struct ring_texel {
   bool needed; // it was written
 };
 // Returns texel i of the rings of all windows.
-ring_texel ring_texel_of(texel_block block, int i, bool coarser) {
+ring_texel ring_texel_of(texel_block block, int level, int i, bool coarser) {
   ring_texel texel;
   texel.window = coarser ? 1 + int(i >= window_ring(2)) + int(i >= window_ring(3)) +
                                int(i >= window_ring(4))
@@ -117,7 +89,7 @@ ring_texel ring_texel_of(texel_block block, int i, bool coarser) {
   bool written = coarser
                      ? (listed_tiles[texel.window] >> uint(2 * away.y + away.x) & 1u) != 0u
                      : tile_written(block.around, tile - block.tile + 1);
-  int level = settings.level + texel.window;
+  level += texel.window;
   texel.needed = all(bvec2(written, sap_inside(at, level)));
   texel.address = mix(ivec2(0), sap_address(at, level), bvec2(texel.needed));
   return texel;
@@ -126,15 +98,15 @@ ring_texel ring_texel_of(texel_block block, int i, bool coarser) {
 // Reads both layers of texels `begin` to `end` of the rings of window 0 or of all coarser windows.
 // An invocation first loads several texels, so that it waits for memory once per layer; it does not
 // branch around texels that were not written, but reads others instead.
-void read_rings(texel_block block, int begin, int end, bool coarser) {
+void read_rings(texel_block block, int level, int begin, int end, bool coarser, int lanes) {
   const int batch = 2;
   [[dont_unroll]] for (int first = begin + int(gl_LocalInvocationIndex); first < end;
-                       first += batch * int(group_lanes)) {
+                       first += batch * lanes) {
     ring_texel texel[batch];
     uvec4 bits[batch];
     vec4 light[batch];
     [[unroll]] for (int k = 0; k < batch; ++k)
-      texel[k] = ring_texel_of(block, first + k * int(group_lanes), coarser);
+      texel[k] = ring_texel_of(block, level, first + k * lanes, coarser);
     [[unroll]] for (int layer = 0; layer < 2; ++layer) {
       [[unroll]] for (int k = 0; k < batch; ++k) {
         int window = coarser ? max(texel[k].window, 1) : 0;
@@ -142,7 +114,7 @@ void read_rings(texel_block block, int begin, int end, bool coarser) {
         light[k] = level_light(texel[k].address, window, layer, bits[k]);
       }
       [[unroll]] for (int k = 0; k < batch; ++k) {
-        int place = first + k * int(group_lanes);
+        int place = first + k * lanes;
         if (place < end) {
           place += layer * max_ring_texels;
           uvec2 halves = uvec2(packHalf2x16(light[k].rg), packHalf2x16(light[k].ba));
@@ -155,10 +127,12 @@ void read_rings(texel_block block, int begin, int end, bool coarser) {
     }
   }
 }
-void read_windows(texel_block block, int windows) {
-  find_listed_tiles(block.tile, windows);
-  read_rings(block, 0, window_ring(1), false);
-  read_rings(block, window_ring(1), window_ring(windows), true);
+// Reads the windows of a tile of `level` and of the coarser levels, by the `lanes` invocations of
+// the group.
+void read_windows(texel_block block, int level, int windows, int lanes) {
+  find_listed_tiles(block.tile, level, windows, uint(lanes));
+  read_rings(block, level, 0, window_ring(1), false, lanes);
+  read_rings(block, level, window_ring(1), window_ring(windows), true, lanes);
   barrier();
 }
 
@@ -166,50 +140,39 @@ void read_windows(texel_block block, int windows) {
 sap_place place_in_window(sap_window window, sap_window coarser, int w, int i) {
   ivec2 local = ivec2(i % window.side, i / window.side);
   ivec2 at = window.first + local, corner = ((at - 1) >> 1) - coarser.first;
-  return sap_place(at, at & 1, w, window.ring + (local.y + 1) * (window.side + 2) + local.x + 1,
-                   coarser.ring + (corner.y + 1) * (coarser.side + 2) + corner.x + 1,
+  return sap_place(at, at & 1, window.ring + (local.y + 1) * (window.side + 2) + local.x + 1,
+                   coarser.ring + (corner.y + 1) * (coarser.side + 2) + corner.x + 1, w,
                    corner.y * coarser.side + corner.x, i);
 }
 
-int ring_place(sap_place place, int n) {
-  return place.ring + (window_side(place.window) + 2) * near_step(n).y + near_step(n).x;
-}
-uvec4 layer_bits(sap_place place, int n, int layer) {
-  return ring_surface[layer * max_ring_texels + ring_place(place, n)];
-}
-vec4 layer_light(sap_place place, int n, int layer) {
-  if (settings.storage != STORAGE_FULL) {
-    uvec2 bits = ring_light[layer * max_ring_texels + ring_place(place, n)];
-    return vec4(unpackHalf2x16(bits.x), unpackHalf2x16(bits.y));
-  }
-  uvec4 bits = layer_bits(place, n, layer);
-  if (n != near_centre && bits.w == 0u)
-    return vec4(0.0);
-  ivec2 address = sap_address(place.at + near_step(n), settings.level + place.window);
-  return level_light(address, place.window, layer, bits);
-}
-uvec4 near_bits(sap_place place, int n) { return layer_bits(place, n, 0); }
-vec4 light_near(sap_place place, int level, int n) { return layer_light(place, n, 0); }
-uvec4 second_near_bits(sap_place place, int level, int n) { return layer_bits(place, n, 1); }
-vec4 second_light_near(sap_place place, int level, int n) { return layer_light(place, n, 1); }
-
+// The functions of sap_up.glsl.
+int tent_reach() { return 1; }
+bool branches_on_layers() { return true; }
 bool has_second_near(uvec4 bits) { return sap_has_second(bits); }
 bool has_second_corner(uvec4 bits) { return sap_has_second(bits); }
-int corner_place(sap_place place, int n) {
-  return place.corner + n / 2 * (window_side(place.window + 1) + 2) + n % 2;
+int ring_place(sap_place place, ivec2 step, int layer) {
+  return layer * max_ring_texels + place.ring + (window_side(place.window) + 2) * step.y + step.x;
 }
-uvec4 corner_bits(sap_place place, int n) { return ring_surface[corner_place(place, n)]; }
-int handed_place(sap_place place, int n) {
-  return place.handed + n / 2 * window_side(place.window + 1) + n % 2;
+uvec4 near_surface(sap_place place, ivec2 step, int layer) {
+  return ring_surface[ring_place(place, step, layer)];
 }
-uvec4 scattered_at_corner(sap_place place, int n) {
-  return window_scattered[(settings.level + place.window + 1) & 1][0][handed_place(place, n)];
+vec4 near_light(sap_place place, int level, ivec2 step, int layer) {
+  if (!stores_full()) {
+    uvec2 bits = ring_light[ring_place(place, step, layer)];
+    return vec4(unpackHalf2x16(bits.x), unpackHalf2x16(bits.y));
+  }
+  uvec4 bits = near_surface(place, step, layer);
+  if (step != ivec2(0) && bits.w == 0u)
+    return vec4(0.0);
+  return level_light(sap_address(place.at + step, level), place.window, layer, bits);
 }
-uvec4 second_corner_bits(sap_place place, int level, int n) {
-  return ring_surface[max_ring_texels + corner_place(place, n)];
+uvec4 corner_surface(sap_place place, int n, int layer) {
+  return ring_surface[layer * max_ring_texels + place.corner +
+                      n / 2 * (window_side(place.window + 1) + 2) + n % 2];
 }
-uvec4 second_scattered_at_corner(sap_place place, int level, int n) {
-  return window_scattered[(level + 1) & 1][1][handed_place(place, n)];
+uvec4 corner_scattered(sap_place place, int level, int n, int layer) {
+  int i = place.handed + n / 2 * window_side(place.window + 1) + n % 2;
+  return window_scattered[(level + 1) & 1][layer][i];
 }
 
 #endif

@@ -5,13 +5,31 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 #include "sap/subsurface_sap_coarse_up.bindings.glsl"
-#include "common/environment.glsl"
-#include "common/half.glsl"
-#define DERMIS_ONE_SHAPE
-#define SAP_WINDOW
-#define SAP_OWN_LAYERS 2
-#define SAP_COARSE_LAYERS 2
 #include "sap/sap_climb.glsl"
+#include "sap/sap_levels.glsl"
+#include "sap/sap_window.glsl"
+
+layout(constant_id = 0) const bool texel_lists = true; // lists are divided as for the texel shape
+layout(local_size_x = 64, local_size_x_id = 3) in;
+const uint group_lanes = gl_WorkGroupSize.x;
+
+bool stores_full() { return settings.storage == STORAGE_FULL; }
+uvec2 level_tiles_at(uint index) { return level_tiles_data[index]; }
+
+uvec4 level_surface(ivec2 address, int window, int layer) {
+  if (window > 0)
+    return texelFetch(levels_image,
+                      place_in_levels(address, window - 1, surface_in_levels + layer), 0);
+  return layer == 0 ? texelFetch(surface_image, address, 0)
+                    : texelFetch(second_surface_image, address, 0);
+}
+vec4 level_light(ivec2 address, int window, int layer, uvec4 bits) {
+  if (window > 0)
+    return light_from_bits(texelFetch(
+        levels_image, place_in_levels(address, window - 1, light_in_levels + layer), 0));
+  return sap_stored_light(bits, layer == 0 ? texelFetch(light_image, address, 0)
+                                           : texelFetch(second_light_image, address, 0));
+}
 
 void store_scattered(sap_place place, int level, int layer, uvec4 bits) {
   if (level > settings.level)
@@ -21,39 +39,37 @@ void store_scattered(sap_place place, int level, int layer, uvec4 bits) {
   else
     imageStore(second_scattered_image, sap_address(place.at, level), bits);
 }
-#include "sap/sap_up_layers.glsl"
 
 // Computes a layer of texel i of a window, 0 outside the level. GPUs: an invocation computes one
 // layer, because both halves of the group compute at once.
-void compute_layer(sap_place place, int level, int layer, bool smooth_level, bool last) {
-  uvec4 first = near_bits(place, near_centre);
+void compute_layer(sap_step how, sap_place place, int layer) {
+  uvec4 first = near_surface(place, ivec2(0), 0);
   if (layer > 0 && !sap_has_second(first))
     return;
-  sap_texel own = sap_unpack(layer_bits(place, near_centre, layer));
+  sap_texel own = sap_unpack(near_surface(place, ivec2(0), layer));
   uvec4 bits = uvec4(0u);
   if (own.id != 0u)
-    bits = climb(place, level, own, layer_light(place, near_centre, layer).rgb, SAP_OWN_LAYERS,
-                 smooth_level, last);
-  store_scattered(place, level, layer, bits);
+    bits = climb(how, place, own, near_light(place, how.level, ivec2(0), layer).rgb, 2);
+  store_scattered(place, how.level, layer, bits);
 }
 
 // Computes the texels of a window.
 void compute_window(ivec2 tile, int w, bool last) {
   sap_window window = window_of(tile, w), coarser = window_of(tile, last ? w : w + 1);
-  int level = settings.level + w;
-  bool smooth_level = settings.variant == VARIANT_SMOOTH;
+  sap_step how = sap_step(settings.level + w, settings.variant,
+                          settings.variant == VARIANT_SMOOTH, last);
   uint begin = texel_lists ? gl_LocalInvocationIndex & 63u : gl_LocalInvocationIndex;
   int layer = texel_lists ? int(gl_LocalInvocationIndex >> 6u) : 0;
   [[dont_unroll]] for (int i = int(begin); i < window.side * window.side;
                        i += texel_lists ? 64 : int(group_lanes)) {
     sap_place place = place_in_window(window, coarser, w, i);
-    if (!sap_inside(place.at, level)) {
+    if (!sap_inside(place.at, how.level)) {
       if (w > 0 && layer == 0)
-        store_scattered(place, level, 0, uvec4(0u));
+        store_scattered(place, how.level, 0, uvec4(0u));
     } else if (texel_lists) {
-      compute_layer(place, level, layer, smooth_level, last);
+      compute_layer(how, place, layer);
     } else {
-      compute_layers(place, level, smooth_level, last);
+      compute_layers(how, place);
     }
   }
 }
@@ -66,10 +82,9 @@ void main() {
     uint index = dispatched_group() * tiles + k;
     if (index >= list.y)
       return;
-    texel_block block =
-        block_of_entry(level_tiles_data[list.x + index], 0);
+    texel_block block = texel_of_entry(level_tiles_data[list.x + index], 0);
     barrier(); // the last tile is complete
-    read_windows(block, windows);
+    read_windows(block, settings.level, windows, int(group_lanes));
     [[dont_unroll]] for (int w = windows - 1; w >= 0; --w) {
       compute_window(block.tile, w, w == windows - 1);
       barrier();

@@ -4,28 +4,74 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 #include "sap/subsurface_sap_gather_half.bindings.glsl"
-#include "common/environment.glsl"
-#include "common/half.glsl"
-#include "common/radius.glsl"
-const int block_width = 4, block_height = 2, coarse_width = 4, coarse_height = 3, border = 0;
-#define SAP_NO_RING
-#include "sap/sap_up.glsl"
-
-const int pixels_across = block_width, pixels_down = block_height, tile_pixels = 8;
+#include "common/pixel_light.glsl"
+#include "sap/sap_neighbours.glsl"
 #include "sap/sap_pixel_block.glsl"
 
-void read_pixels(texel_block block) {
-  [[unroll]] for (int k = 0; k < block_texels; ++k) {
-    ivec2 pixel = block.first + block_offset(k);
-    keep_pixel(texel_shape ? int(gl_LocalInvocationIndex) : k, pixel, inside_rect(pixel),
-               !block.copy_only);
+bool stores_full() { return settings.storage == STORAGE_FULL; }
+uvec2 level_tiles_at(uint index) { return level_tiles_data[index]; }
+
+uvec4 read_coarse_surface(ivec2 address, int layer) {
+  return texelFetch(coarse_surface_image, address, 0);
+}
+uvec4 read_coarse_scattered(ivec2 address, int layer) {
+  return texelFetch(coarse_scattered_image, address, 0);
+}
+bool has_second_corner(uvec4 bits) { return false; }
+
+// Texel shape: the texels under the group's tile, and the pixels of the tile.
+shared uvec4 tile_coarse_surface[texel_shape ? coarse_under_pixels : 1];
+shared uvec4 tile_coarse_scattered[texel_shape ? coarse_under_pixels : 1];
+shared uint tile_profile[texel_shape ? 64 : 1];
+shared float tile_depth[texel_shape ? 64 : 1];
+// Block shape: those of a block.
+const int block_coarse = square_pixels ? 4 * 3 : 5 * 3;
+uvec4 coarse_surface[block_coarse], coarse_scattered[block_coarse];
+uint block_profile[8];
+float block_depth[8];
+
+void keep_coarse(int i, uvec4 surface, uvec4 scattered) {
+  if (texel_shape) {
+    tile_coarse_surface[i] = surface;
+    tile_coarse_scattered[i] = scattered;
+  } else {
+    coarse_surface[i] = surface;
+    coarse_scattered[i] = scattered;
+  }
+}
+uvec4 corner_surface(sap_place place, int n, int layer) {
+  int i = corner_place(pixel_blocks, place, n);
+  return texel_shape ? tile_coarse_surface[i] : coarse_surface[i];
+}
+uvec4 corner_scattered(sap_place place, int level, int n, int layer) {
+  int i = corner_place(pixel_blocks, place, n);
+  return texel_shape ? tile_coarse_scattered[i] : coarse_scattered[i];
+}
+
+pixel_rows read_rows() { return pixel_rows(texel_shape ? 8 : 4, pixel_blocks.size); }
+uint profile_at(int i) { return texel_shape ? tile_profile[i] : block_profile[i]; }
+float depth_at(int i) { return texel_shape ? tile_depth[i] : block_depth[i]; }
+
+void read_pixel(int i, ivec2 pixel, bool copy_only) {
+  ivec2 texel = texel_of(pixel);
+  uint id = inside_rect(pixel) ? texelFetch(material_image, texel, 0).r : 0u;
+  float depth = 0.0;
+  if (id != 0u && !copy_only)
+    depth = view_depth(texelFetch(depth_image, texel, 0).r);
+  if (texel_shape) {
+    tile_profile[i] = id;
+    tile_depth[i] = depth;
+  } else {
+    block_profile[i] = id;
+    block_depth[i] = depth;
   }
 }
 
 vec4 gather(sap_place place, ivec2 in_block, vec3 light) {
-  uint id = profile_at(pixel_index(in_block));
+  uint id = profile_at(pixel_index(read_rows(), in_block));
   float area_root;
-  sap_texel own = surface_at(place.at, in_block, area_root);
+  sap_texel own = surface_at(scatter_scale_image, has_scatter_scale(), read_rows(), place.at,
+                             in_block, area_root);
   vec3 d_px = sap_d_px(own) * inversesqrt(area_root); // a tilted pixel keeps more of its own light
   vec3 centre = sap_lookup(id, sap_half, 0, d_px);
   float confidence;
@@ -40,28 +86,28 @@ vec4 gather(sap_place place, ivec2 in_block, vec3 light) {
 
 void main() {
   texel_block block;
-  if (!listed_block(0, block))
+  if (!listed_block(pixel_blocks, 0, block))
     return;
-  read_pixels(block);
+  [[unroll]] for (int k = 0; k < block_texels(pixel_blocks); ++k)
+    read_pixel(texel_shape ? int(gl_LocalInvocationIndex) : k,
+               block.first + block_offset(pixel_blocks, k), block.copy_only);
   if (!block.copy_only)
-    read_coarser(block, 0);
+    read_coarser(block, pixel_blocks, 0, 1);
   finish_reading();
-  [[unroll]] for (int k = 0; k < block_texels; ++k) {
-    sap_place place = place_of(block, k, 0);
+  [[unroll]] for (int k = 0; k < block_texels(pixel_blocks); ++k) {
+    sap_place place = place_of(block, pixel_blocks, k, 0);
     if (!inside_rect(place.at))
       continue;
-    ivec2 in_block = texel_shape ? block.first - 8 * block.tile : block_offset(k);
+    ivec2 in_block = texel_shape ? block.first - 8 * block.tile : block_offset(pixel_blocks, k);
     vec4 result = vec4(0.0, 0.0, 0.0, 1.0);
-    int i = pixel_index(in_block);
+    int i = pixel_index(read_rows(), in_block);
     if (profile_at(i) != 0u) {
       result.rgb = pixel_light(lighting_image, albedo_image, has_albedo(), settings.texturing,
                                texel_of(place.at));
-      if (depth_at(i) > 0.0) {
-        take_corners(k, 0);
+      if (depth_at(i) > 0.0)
         result = gather(place, in_block, result.rgb);
-      }
     }
     imageStore(scattered_image, texel_of(place.at),
-               settings.storage == STORAGE_FULL ? result : round_to_half(result));
+               stores_full() ? result : round_to_half(result));
   }
 }

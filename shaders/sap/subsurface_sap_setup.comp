@@ -5,16 +5,19 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 #include "sap/subsurface_sap_setup.bindings.glsl"
-#include "common/environment.glsl"
+#include "common/pixel_light.glsl"
+#include "sap/sap_blocks.glsl"
 #include "sap/sap_pixel.glsl"
-const int block_width = 4, block_height = 2;
-#include "sap/sap_tiles.glsl"
+#include "sap/sap_storage.glsl"
 
-const int ring_width = (texel_shape ? 8 : block_width) + 2,
-          ring_height = (texel_shape ? 8 : block_height) + 2;
+bool stores_full() { return settings.storage == STORAGE_FULL; }
+uvec2 level_tiles_at(uint index) { return level_tiles_data[index]; }
+
+const int ring_width = (texel_shape ? 8 : 4) + 2, ring_height = (texel_shape ? 8 : 2) + 2;
+const int block_pixels = 6 * 4; // with the ring
 // mm; 0 if nothing is visible
-uint block_profile[(block_width + 2) * (block_height + 2)];
-float block_depth[(block_width + 2) * (block_height + 2)];
+uint block_profile[block_pixels];
+float block_depth[block_pixels];
 shared uint tile_profile[texel_shape ? 100 : 1];
 shared float tile_depth[texel_shape ? 100 : 1];
 
@@ -47,7 +50,7 @@ void read_ring(texel_block block) {
                          i += 64) read_pixel(8 * block.tile, i);
     barrier();
   } else {
-    [[unroll]] for (int i = 0; i < (block_width + 2) * (block_height + 2); ++i)
+    [[unroll]] for (int i = 0; i < block_pixels; ++i)
       read_pixel(block.first, i);
   }
 }
@@ -71,14 +74,14 @@ bool is_at_edge(int here) {
 
 void main() {
   texel_block block;
-  if (!listed_block(0, block))
+  if (!listed_block(pixel_blocks, 0, block))
     return;
   read_ring(block);
-  [[unroll]] for (int k = 0; k < block_texels; ++k) {
-    ivec2 pixel = block.first + block_offset(k), texel = texel_of(pixel);
+  [[unroll]] for (int k = 0; k < block_texels(pixel_blocks); ++k) {
+    ivec2 pixel = block.first + block_offset(pixel_blocks, k), texel = texel_of(pixel);
     if (!inside_rect(pixel))
       continue;
-    ivec2 place = texel_shape ? pixel - 8 * block.tile + 1 : block_offset(k) + 1;
+    ivec2 place = texel_shape ? pixel - 8 * block.tile + 1 : block_offset(pixel_blocks, k) + 1;
     int here = place.y * ring_width + place.x;
     uint id = profile_at(here);
     float depth = depth_at(here);
@@ -93,11 +96,12 @@ void main() {
         patch_neighbours around = patch_neighbours(
             vec2(depth_of_profile(here - 1, id), depth_of_profile(here - ring_width, id)),
             vec2(depth_of_profile(here + 1, id), depth_of_profile(here + ring_width, id)));
-        own = sap_pixel_surface(pixel, id, depth, around, light.a);
+        own = sap_pixel_surface(scatter_scale_image, has_scatter_scale(), pixel, id, depth, around,
+                                light.a);
         at_edge = is_at_edge(here);
       }
       light = sap_stored(light);
-      bits = sap_pack(own, sap_pack_light(light, settings.storage == STORAGE_FULL));
+      bits = sap_pack(own, sap_pack_light(light, stores_full()));
       bits = sap_with_held(bits, own.id != 0u ? sap_max_held : 0u, 0u);
       bits.x |= at_edge ? sap_second_bit : 0u;
     }

@@ -5,20 +5,46 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 #include "sap/subsurface_sap_setup_half_res.bindings.glsl"
-#include "common/environment.glsl"
-#include "common/half.glsl"
-#define SAP_BOX
-#include "sap/sap_down.glsl"
-const int pixels_across = side, pixels_down = side, tile_pixels = 16;
+#include "common/pixel_light.glsl"
+#include "sap/sap_blocks.glsl"
+#include "sap/sap_ordered_sums.glsl"
 #include "sap/sap_pixel_block.glsl"
 
-sap_texel block_children[side * side];
-vec4 block_light[side * side];
+bool stores_full() { return settings.storage == STORAGE_FULL; }
+uvec2 level_tiles_at(uint index) { return level_tiles_data[index]; }
+
+// The pixels of the invocation's block, or in the texel shape of the group's tile.
+const int side = 4, tile_pixels = 16;
+pixel_rows read_rows() { return pixel_rows(texel_shape ? tile_pixels : side, ivec2(side)); }
+uint block_profile[side * side];
+float block_depth[side * side];
+shared uint tile_profile[texel_shape ? tile_pixels * tile_pixels : 1];
+shared float tile_depth[texel_shape ? tile_pixels * tile_pixels : 1];
+uint profile_at(int i) { return texel_shape ? tile_profile[i] : block_profile[i]; }
+float depth_at(int i) { return texel_shape ? tile_depth[i] : block_depth[i]; }
+
+// Block shape: the children of a block. Both shapes: those of a parent.
+const int parent_children = 4;
+sap_texel block_children[side * side], children[parent_children];
+vec4 block_light[side * side], child_light[parent_children];
+int children_across() { return 2; }
+bool shares_children() { return false; }
+bool finer_has_layers() { return false; }
+sap_texel child_of(sap_parent parent, int c, bool second) { return children[c]; }
+vec4 light_of(sap_parent parent, int c, bool second, uint id) { return child_light[c]; }
 
 void read_pixel(texel_block block, int i, ivec2 pixel) {
-  ivec2 tile = (pixel >> 3) - step_from_level(0) * block.tile + 1;
+  ivec2 tile = (pixel >> 3) - step_from_level(0) * block.tile + 1, texel = texel_of(pixel);
   bool needed = inside_rect(pixel) && tile_written(block.children, tile);
-  keep_pixel(i, pixel, needed, true);
+  uint id = needed ? texelFetch(material_image, texel, 0).r : 0u;
+  float depth = id != 0u ? view_depth(texelFetch(depth_image, texel, 0).r) : 0.0;
+  if (texel_shape) {
+    tile_profile[i] = id;
+    tile_depth[i] = depth;
+  } else {
+    block_profile[i] = id;
+    block_depth[i] = depth;
+  }
 }
 // Texel shape: reads the pixels of the tile.
 void read_tile(texel_block block) {
@@ -29,11 +55,12 @@ void read_tile(texel_block block) {
   barrier();
 }
 void compute_child(ivec2 pixel, ivec2 place, out sap_texel child, out vec4 light) {
-  int i = pixel_index(place);
+  int i = pixel_index(read_rows(), place);
   child = no_texel;
   light = vec4(0.0);
   if (profile_at(i) != 0u && depth_at(i) > 0.0) {
-    child = surface_at(pixel, place, light.a);
+    child = surface_at(scatter_scale_image, has_scatter_scale(), read_rows(), pixel, place,
+                       light.a);
     uint bits = sap_with_low_bits(floatBitsToUint(child.depth), sap_max_held, sap_max_held);
     child.depth = uintBitsToFloat(bits); // a pixel represents its whole surface
     light.rgb = pixel_light(lighting_image, albedo_image, has_albedo(), settings.texturing,
@@ -52,20 +79,20 @@ void read_block(texel_block block, ivec2 first) {
 
 void main() {
   texel_block block;
-  if (!listed_block(1, block))
+  if (!listed_block(texel_blocks, 1, block))
     return;
   ivec2 first = block.first - 1;
   if (texel_shape)
     read_tile(block);
   else
     read_block(block, first);
-  [[unroll]] for (int k = 0; k < block_texels; ++k) {
-    sap_parent parent = parent_at(first + block_offset(k), 0);
+  [[unroll]] for (int k = 0; k < block_texels(texel_blocks); ++k) {
+    sap_parent parent = parent_at(first + block_offset(texel_blocks, k), 0);
     parent.splits = false;
     if (!sap_inside(parent.at, 1))
       continue;
-    [[unroll]] for (int c = 0; c < children_a_layer; ++c) {
-      ivec2 child = ivec2(c % children_across, c / children_across);
+    [[unroll]] for (int c = 0; c < parent_children; ++c) {
+      ivec2 child = place_of_child(c);
       if (texel_shape) {
         compute_child(step_from_level(0) * parent.at + child,
                       step_from_level(0) * (block.first - 8 * block.tile) + child, children[c],

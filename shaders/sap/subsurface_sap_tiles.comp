@@ -23,6 +23,8 @@ shared uint first_entries[sap_levels]; // of the levels
 shared uint scatters; // whether any tile scatters; if not, only level 0 is needed
 shared bool is_last;
 
+uint class_at(int tile) { return classes_data[tile]; }
+
 int lane() { return int(gl_LocalInvocationIndex); }
 
 // Returns, to all invocations, whether this group is the last to call the function. Then all other

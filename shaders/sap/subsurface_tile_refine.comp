@@ -8,11 +8,19 @@
 #include "common/environment.glsl"
 #include "common/tiles.glsl"
 #include "common/half.glsl"
-#include "sap/sap.glsl"
-bool near_written(ivec2 at) { return class_of_tile(classes_data[sap_tile(at)]) != class_none; }
 #include "sap/sap_samples.glsl"
 #include "sap/sample_allocation.glsl"
 #include "common/tile_edges.glsl"
+
+bool near_written(ivec2 at) { return class_of_tile(classes_data[sap_tile(at)]) != class_none; }
+uvec4 level_surface(int level, ivec2 address) {
+  return fetch_level(surface_1_image, surface_2_image, surface_3_image, surface_4_image,
+                     surface_5_image, level, address);
+}
+vec4 level_light(int level, ivec2 address) {
+  return fetch_level(light_1_image, light_2_image, light_3_image, light_4_image, light_5_image,
+                     level, address);
+}
 
 const float ramp_px = 4.0; // half a tile
 
@@ -37,8 +45,9 @@ void main() {
   float fraction = edge_weight(sampled_tiles, pixel, ramp_px) *
                    sample_fraction(light.a, float(count), settings.sample_weight);
   uvec2 offset = r2_point(offset_from_hash(pcg3d16(uvec3(pixel, 0u)).xy), frame.frame_index);
-  vec3 sampled = sap_sampled_light(pixel, own, pixel_light_of_level_0(texel), offset, count,
-                                   settings.lod_bias);
+  vec3 own_light = pixel_light_of_level_0(surface_image, light_image, texel);
+  vec3 sampled = sap_sampled_light(surface_image, light_image, pixel, own, own_light, offset,
+                                   count, settings.lod_bias);
   imageStore(scattered_image, texel,
              vec4(round_to_half(mix(light.rgb, sampled, fraction)), light.a));
 }

@@ -1,8 +1,7 @@
 // Flags of tiles of levels 0 to 3 in a region and around it: whether a tile can hold surface. A
 // region has one tile of level 4, and twice as many tiles per side in each finer level. A tile
-// reduces 3x3 tiles of the finer level, from twice its position minus one. Level 3 has flags for one
-// tile around the region, so level 0 has flags for 39x39 tiles. Include after bindings with
-// `classes`.
+// reduces 3x3 tiles of the finer level, from twice its position minus one. Level 3 has flags for
+// one tile around the region, so level 0 has flags for 39x39 tiles.
 #ifndef DERMIS_TILE_REGION_GLSL
 #define DERMIS_TILE_REGION_GLSL
 
@@ -10,6 +9,10 @@
 #include "common/even_bits.glsl"
 #include "common/tile_packing.glsl"
 #include "sap/sap_lists.glsl"
+
+// Returns an element of the buffer `classes`. The kernel that includes this file defines the
+// function.
+uint class_at(int tile);
 
 const int region_levels = 4;
 const int region_tiles = 16 * 16 + 8 * 8 + 4 * 4 + 2 * 2;
@@ -62,7 +65,7 @@ bool read_classes(ivec2 region, int run) {
   bool scatters = false;
   [[unroll]] for (int i = 0; i < run_tiles; ++i) {
     ivec2 tile = first + ivec2(i, 0), near = clamp(tile, ivec2(0), frame.tiles - 1);
-    uint entry = classes_data[near.y * frame.tiles.x + near.x];
+    uint entry = class_at(near.y * frame.tiles.x + near.x);
     uint found = tile == near ? class_of_tile(entry) : class_none;
     bits |= found != class_none ? 1u << uint(i) : 0u;
     scatters = scatters || found == class_scatter;

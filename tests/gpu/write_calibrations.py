@@ -40,7 +40,7 @@ DEFAULT_SAMPLES = 16
 CHOSEN_BY_BUDGET = {"skin", "hybrid"}  # graphs of which each work has a line
 # Invocations per group of kernels whose size the host sets.
 LANES_ON_GPU, LANES_OF_WIDE_GROUPS = 128, 512
-WIDE_GROUP = "#define DERMIS_WIDE_GROUP"
+WIDE_GROUP = "local_size_x_id = 6"
 # How often nested loops run, from outside in: tiles of a group, levels one after another, texels of
 # an invocation. Loops inside these run LOOP times.
 NESTED_TRIPS = {"subsurface.sap_coarse_down": (1, 4), "subsurface.sap_coarse_up": (1, 5, 1)}

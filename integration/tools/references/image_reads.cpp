@@ -155,8 +155,8 @@ ImageReads sap_down(const PassType&, const ReadsQuestion&) {
   return {2 * block_reads(6 * 6, 2, 2)};
 }
 
-// sap_up.glsl: surface and light of a block's texels, with a ring if the tent filter is on; surface
-// and scattered light of the coarser level's texels below them.
+// sap_neighbours.glsl: surface and light of a block's texels, with a ring if the tent filter is on;
+// surface and scattered light of the coarser level's texels below them.
 ImageReads sap_up(const PassType& type, const ReadsQuestion& question) {
   const auto variant = static_cast<SapVariant>(setting(type, question, "variant"));
   const bool tent = setting(type, question, "level") <= int64_t{sap_last_tent(variant)};

@@ -156,9 +156,7 @@ TEST_F(PortRules, OwnTexelsAreReadAtTheTexelThatIsWritten) {
   size_t ports = 0;
   for (uint32_t i = 0; i < pass_types.size(); ++i) {
     const PassType& type = pass_types[PassTypeId{i}];
-    std::string shader = without_spaces(shader_text(std::string(type.shader) + ".comp"));
-    if (count(shader, "#include\"sap/sap_gather.glsl\"") > 0)
-      shader += without_spaces(shader_text("sap/sap_gather.glsl"));
+    const std::string shader = without_spaces(shader_text(std::string(type.shader) + ".comp"));
     for (const Port& port : type.ports) {
       if (!port.own_texels) continue;
       const std::string image = std::string(port.name) + "_image";

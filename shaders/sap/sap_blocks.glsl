@@ -1,0 +1,47 @@
+// Division of listed tiles among invocations. Kernels have two shapes:
+// - Texel shape, for GPUs: one texel per invocation and one tile per group. Texels that the group
+//   shares are in shared memory.
+// - Block shape, for drivers on the CPU: one block of texels per invocation. A block reads the
+//   texels that its own texels share once, without shared memory, which is slow there.
+#ifndef DERMIS_SAP_BLOCKS_GLSL
+#define DERMIS_SAP_BLOCKS_GLSL
+
+#include "common/shape.glsl"
+#include "sap/sap_tiles.glsl"
+
+layout(local_size_x = 64, local_size_y = 1, local_size_z = 1) in;
+
+// The blocks of a level.
+struct block_grid {
+  ivec2 size; // texels of a block
+  int border; // 1 if the level has a border, so that the first texel of a tile is odd; else 0
+};
+const block_grid pixel_blocks = block_grid(ivec2(4, 2), 0); // level 0
+const block_grid texel_blocks = block_grid(ivec2(2, 2), 1); // levels from 1 on
+
+// Returns the texels that an invocation computes.
+int block_texels(block_grid grid) { return texel_shape ? 1 : grid.size.x * grid.size.y; }
+// Returns the position of texel k in the block.
+ivec2 block_offset(block_grid grid, int k) { return ivec2(k % grid.size.x, k / grid.size.x); }
+
+// Finds the block of the invocation. Returns false beyond the end of the list. In the texel shape,
+// all invocations of a group have the same tile.
+bool listed_block(block_grid grid, int level, out texel_block block) {
+  int across = 8 / grid.size.x;
+  int per_tile = texel_shape ? 64 : across * (8 / grid.size.y);
+  // In the texel shape the index is uniform, so that the entry is read once for the group.
+  uint index = texel_shape ? dispatched_group()
+                           : dispatched_group() * uint(64 / per_tile) +
+                                 gl_LocalInvocationIndex / uint(per_tile);
+  uvec2 list = level_tiles_at(uint(level));
+  block = texel_block(ivec2(0), ivec2(0), false, 0u, 0u);
+  if (index >= list.y)
+    return false;
+  int part = int(gl_LocalInvocationIndex) & (per_tile - 1);
+  ivec2 offset = texel_shape ? ivec2(part & 7, part >> 3)
+                             : ivec2(part % across, part / across) * grid.size;
+  block = block_of_entry(level_tiles_at(list.x + index), offset);
+  return true;
+}
+
+#endif
