@@ -1,7 +1,7 @@
 #version 460
 // Computes level 1 of the surface-aware pyramid directly from the view, from those of 2x2 pixels
-// that lie on one surface. Level 0 is not stored. Patches ignore pixels beyond blocks of 4x4
-// pixels.
+// that lie on one surface. Level 0 is not stored. Patches ignore pixels beyond those of a block of
+// 2x2 texels.
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 #include "sap/subsurface_sap_setup_half_res.bindings.glsl"
@@ -15,7 +15,9 @@ uvec2 level_tiles_at(uint index) { return level_tiles_data[index]; }
 
 // The pixels of the invocation's block, or in the texel shape of the group's tile.
 const int side = 4, tile_pixels = 16;
-pixel_rows read_rows() { return pixel_rows(texel_shape ? tile_pixels : side, ivec2(side)); }
+pixel_rows read_rows() {
+  return pixel_rows(texel_shape ? tile_pixels : side, 2 * step_from_level(0));
+}
 uint block_profile[side * side];
 float block_depth[side * side];
 shared uint tile_profile[texel_shape ? tile_pixels * tile_pixels : 1];
