@@ -120,6 +120,26 @@ def largest_struct(root, names):
     return best
 
 
+def types_defined_twice(texts):
+    """Yields the files of types that have one name in one namespace. Programs with both call the
+    functions of either."""
+    files = {}
+    definition = re.compile(r"(?:template <[^>]*> )?(?:struct|class|enum class) (\w+)(?: final)?"
+                            r"(?: : [^;(]*)?(?: \{.*)?$")
+    for name, text in texts.items():
+        namespaces = []
+        for line in (text or "").splitlines() if name.endswith((".cpp", ".hpp")) else ():
+            if opening := re.match(r"namespace (?:([\w:]+) )?\{", line):
+                namespaces.append(opening.group(1))
+            elif line.startswith("} // namespace") and namespaces:
+                namespaces.pop()
+            elif (found := definition.match(line)) and None not in namespaces:
+                files.setdefault(("::".join(namespaces), found.group(1)), set()).add(name)
+    for (namespace, kind), places in files.items():
+        if len(places) > 1:
+            yield f"{namespace}::{kind}: {', '.join(sorted(places))}"
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
@@ -145,7 +165,8 @@ def main():
     documents = [name for name in names if name.endswith(".md")]
     print(f"lines of documents: {sum(lines[name] for name in documents)} in {len(documents)} files")
 
-    findings = {"prose": [], "table": [], "script": [], "opener": [], "issue": []}
+    findings = {"prose": [], "table": [], "script": [], "opener": [], "issue": [],
+                "type": list(types_defined_twice(texts))}
     for name in documents:
         for number, kind in wide_markdown(texts[name]):
             findings[kind].append(f"{name}:{number}")
@@ -166,7 +187,8 @@ def main():
                         ("script", f"lines over {LINE_COLUMNS} columns "
                                    "in scripts, Python and CMake"),
                         ("opener", "comments that begin with " + ", ".join(OPENERS)),
-                        ("issue", "mentions of an issue by number")):
+                        ("issue", "mentions of an issue by number"),
+                        ("type", "types defined twice in a namespace")):
         print(f"{title}: {len(findings[kind])} (goal 0)")
         if arguments.list:
             for place in findings[kind]:

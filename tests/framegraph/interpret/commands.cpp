@@ -35,7 +35,8 @@ bool waits(const PieceAccess& later, const PieceAccess& earlier) {
 }
 
 // Returns the accesses to each piece of memory, in command order.
-std::vector<std::vector<PieceAccess>> accesses_by_piece(const Plan& plan, const Memory& memory,
+std::vector<std::vector<PieceAccess>> accesses_by_piece(const Plan& plan,
+                                                        const MemoryPieces& memory,
                                                         const std::vector<Command>& commands) {
   std::vector<std::vector<PieceAccess>> piece_accesses(memory.overlap.size());
   // Adds at most one access per piece.
@@ -68,8 +69,9 @@ std::vector<std::vector<PieceAccess>> accesses_by_piece(const Plan& plan, const 
 
 } // namespace
 
-std::vector<uint32_t> Memory::pieces(const Plan& plan, uint32_t resource, uint32_t frames_back,
-                                     uint32_t frame, const SubresourceRange& range) const {
+std::vector<uint32_t> MemoryPieces::pieces(const Plan& plan, uint32_t resource,
+                                           uint32_t frames_back, uint32_t frame,
+                                           const SubresourceRange& range) const {
   const PlanResource& declared = plan.resources[resource];
   const uint32_t count = declared.instance_count;
   const uint32_t instance = (frame % count + count - frames_back % count) % count;
@@ -81,11 +83,11 @@ std::vector<uint32_t> Memory::pieces(const Plan& plan, uint32_t resource, uint32
   return result;
 }
 
-Memory memory_of(const Plan& plan) {
+MemoryPieces memory_of(const Plan& plan) {
   struct Owner {
     uint32_t resource, instance, placement;
   };
-  Memory memory;
+  MemoryPieces memory;
   std::vector<Owner> owners; // By piece.
   for (uint32_t r = 0; r < plan.resources.size(); ++r) {
     const PlanResource& resource = plan.resources[r];
@@ -146,7 +148,7 @@ std::vector<Command> record(const Plan& plan, uint32_t first, uint32_t end) {
   return commands;
 }
 
-std::vector<uint32_t> legal_order(const Plan& plan, const Memory& memory,
+std::vector<uint32_t> legal_order(const Plan& plan, const MemoryPieces& memory,
                                   const std::vector<Command>& commands, uint64_t seed) {
   std::vector<uint32_t> order(commands.size());
   std::iota(order.begin(), order.end(), 0u);

@@ -11,7 +11,7 @@ namespace dermis {
 
 // Pieces of memory with separate contents: each mip of each layer of an image, or a buffer, in a
 // placement or in a host resource.
-struct Memory {
+struct MemoryPieces {
   std::vector<uint32_t> first; // By resource: the index of its first piece.
   // By piece: all pieces with a common byte, including itself.
   std::vector<std::vector<uint32_t>> overlap;
@@ -22,7 +22,7 @@ struct Memory {
 };
 
 // `plan` must pass verify_structure().
-Memory memory_of(const Plan& plan);
+MemoryPieces memory_of(const Plan& plan);
 
 inline constexpr uint32_t no_wait = 0xffffffffu;
 
@@ -45,7 +45,7 @@ std::vector<Command> record(const Plan& plan, uint32_t first, uint32_t end);
 // - An acquire from the host waits for the release to the host in the previous frame.
 // - A wait waits for commands of the other queue; all later commands of its own queue wait for it.
 // - Nothing else waits.
-std::vector<uint32_t> legal_order(const Plan& plan, const Memory& memory,
+std::vector<uint32_t> legal_order(const Plan& plan, const MemoryPieces& memory,
                                   const std::vector<Command>& commands, uint64_t seed);
 
 } // namespace dermis

@@ -16,7 +16,7 @@ Owner owner_of(Queue queue) {
 struct Interpreter {
   const Plan& plan;
   const InterpretOptions& options;
-  Memory memory;
+  MemoryPieces memory;
   std::vector<Pixels> pieces;
   std::vector<Owner> owners = {}; // By piece.
   uint64_t spoiled = 0;           // Counts lost contents: each loss gives other pixels.
