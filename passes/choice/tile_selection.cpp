@@ -9,19 +9,29 @@ namespace {
 
 using Bins = std::array<uint32_t, selection_bins>;
 
-bool is_chosen(uint32_t weight) {
-  return weight > 0 && weight <= full_tile_weight;
+bool is_kept(uint32_t priority) {
+  return (priority & selection_kept_bit) != 0;
 }
 
-uint32_t bin_of(const TileToSelect& tile) {
-  float priority = static_cast<float>(std::max(tile.change, 1u));
-  if (is_chosen(tile.before)) priority *= selection_stay;
-  return std::min((std::bit_cast<uint32_t>(priority) >> 20) - selection_first_bin,
-                  selection_bins - 1);
+uint32_t bin_of(uint32_t priority) {
+  const uint32_t change = priority & ((1u << selection_level_shift) - 1);
+  const auto value = static_cast<float>(std::max(change, 1u));
+  return std::min((std::bit_cast<uint32_t>(value) >> 20) - selection_first_bin, selection_bins - 1);
 }
 
-uint32_t steady_units(uint32_t units, uint32_t demand) {
-  return demand <= units ? units : units - (units + selection_reserve - 1) / selection_reserve;
+uint32_t steady_units(uint32_t units, uint32_t demand, uint32_t steady) {
+  if (demand <= units) return units;
+  return units / all_steady * steady + units % all_steady * steady / all_steady;
+}
+
+uint32_t next_steady(uint32_t steady, uint32_t units, uint32_t demand, uint32_t kept) {
+  if (demand <= units || units == 0) return all_steady;
+  const auto all = static_cast<int32_t>(units), limit = std::max(all / 8, 1);
+  const int32_t free = std::clamp(all - static_cast<int32_t>(kept), -limit, limit);
+  const int32_t next =
+      static_cast<int32_t>(steady) + free * static_cast<int32_t>(steady_gain) / all;
+  return static_cast<uint32_t>(
+      std::clamp(next, static_cast<int32_t>(least_steady), static_cast<int32_t>(all_steady)));
 }
 
 // The bins above `bin` are paid in full, and the first `left` tiles of `bin`.
@@ -45,41 +55,40 @@ bool is_paid(const Threshold& threshold, uint32_t bin, uint32_t& earlier) {
   return earlier++ < threshold.left;
 }
 
-uint32_t next_weight(uint32_t before, bool stays, bool enters, bool fades, bool continues) {
-  if (!is_chosen(before)) return !enters ? 0 : continues ? 1 : full_tile_weight;
-  if (stays) return std::min(before + 1, full_tile_weight);
-  return fades ? before - 1 : 0;
+TileState state_of(bool kept, bool stays, bool affordable) {
+  if (stays && affordable) return TileState::shown;
+  return kept ? TileState::fading : TileState::unscattered;
 }
 
 } // namespace
 
-TileSelection select_tiles(std::span<const TileToSelect> tiles, uint32_t units, bool continues) {
+TileSelection select_tiles(std::span<const TileToSelect> tiles, uint32_t units, uint32_t steady) {
   TileSelection out;
-  Bins all{}, fresh{}; // fresh: tiles without a weight
-  uint32_t fresh_tiles = 0;
+  Bins all{}, fresh{}; // fresh: tiles that are not kept
+  uint32_t kept = 0;
   for (const TileToSelect& tile : tiles) {
     if (!tile.scatters) continue;
     ++out.demand;
-    ++all[bin_of(tile)];
-    if (is_chosen(tile.before)) continue;
-    ++fresh[bin_of(tile)];
-    ++fresh_tiles;
+    ++all[bin_of(tile.priority)];
+    if (is_kept(tile.priority))
+      ++kept;
+    else
+      ++fresh[bin_of(tile.priority)];
   }
-  const uint32_t chosen = out.demand - fresh_tiles;
-  const bool fades = chosen <= units;
-  const Threshold staying = find_threshold(all, steady_units(units, out.demand));
-  const Threshold entering = find_threshold(fresh, fades ? units - chosen : 0);
+  out.steady = next_steady(steady, units, out.demand, kept);
+  const Threshold staying = find_threshold(all, steady_units(units, out.demand, out.steady));
+  const Threshold entering = find_threshold(fresh, units - std::min(kept, units));
   uint32_t earlier = 0, earlier_fresh = 0;
   for (const TileToSelect& tile : tiles) {
-    uint32_t weight = not_scattering;
+    TileState state = TileState::not_scattering;
     if (tile.scatters) {
-      const uint32_t bin = bin_of(tile);
+      const uint32_t bin = bin_of(tile.priority);
       const bool stays = is_paid(staying, bin, earlier);
-      const bool affordable = !is_chosen(tile.before) && is_paid(entering, bin, earlier_fresh);
-      weight = next_weight(tile.before, stays, stays && affordable, fades, continues);
-      out.units += weight > 0 ? 1 : 0;
+      const bool affordable = is_kept(tile.priority) || is_paid(entering, bin, earlier_fresh);
+      state = state_of(is_kept(tile.priority), stays, affordable);
+      out.units += state != TileState::unscattered ? 1 : 0;
     }
-    out.weights.push_back(weight);
+    out.states.push_back(state);
   }
   return out;
 }

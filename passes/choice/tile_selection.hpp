@@ -10,36 +10,61 @@
 namespace dermis::choice {
 
 inline constexpr uint32_t selection_bins = 256;
-// Weight of a tile that shows all of its scattered light. The weight of a tile changes by at most 1
-// per frame, so a tile appears or disappears within as many frames.
-inline constexpr uint32_t full_tile_weight = 8;
-// Weight of tiles that do not scatter.
-inline constexpr uint32_t not_scattering = 255;
-// factor on the priority of tiles that had a weight in the frame before
-inline constexpr float selection_stay = 1.2f;
-// One unit of this many is kept for tiles that fade out.
-inline constexpr uint32_t selection_reserve = 16;
+// Weight of a pixel that shows all of its scattered light.
+inline constexpr uint32_t full_pixel_weight = 240;
+// Largest change of the weight at a point of a surface per frame, so that light appears or
+// disappears within ten frames. A tile that leaves the list also changes its neighbours' light,
+// by up to a fortieth in a pan (tests/properties). Both are less than an eighth.
+inline constexpr uint32_t pixel_weight_step = 24;
+// Instead of the weight of a pixel without subsurface.
+inline constexpr uint32_t no_pixel_weight = 255;
+// factor on the priority of tiles whose surface had its full weight in the frame before
+inline constexpr float selection_stay = 2.0f;
+// Fractions of the units that steady tiles may use; the others serve tiles that fade out. The
+// fraction falls while more tiles are kept than there are units, as under a moving camera.
+inline constexpr uint32_t all_steady = 4096, least_steady = all_steady / 8;
+// Gain of the fraction per frame: tiles leave after ten frames, so that a gain of 1 would
+// oscillate.
+inline constexpr uint32_t steady_gain = all_steady / 8;
 // Exponent and three bits of 1, the lowest priority.
 inline constexpr uint32_t selection_first_bin = 127 * 8;
+// Bit of a tile's priority: weights in it may not fall to 0 in this frame.
+inline constexpr uint32_t selection_kept_bit = 1u << 31;
+// Bits of a tile's priority above the expected change: its level, by the largest weight that moved
+// into the tile. Taps of neighbours read unscattered light instead of blurred light by the missing
+// fraction of the levels.
+inline constexpr uint32_t selection_level_shift = 28, most_selection_level = 7;
+// Least weight of the highest level. At larger weights, levels would fall together with the weights
+// of the tile itself.
+inline constexpr uint32_t highest_level_weight = 60;
 
 // The mean square error left by the fraction f of the tiles is (1 - f)^tile_concentration of that
 // without scattering: an upper estimate. Exponents of 5.9 to 11 were measured at f = 0.08 to 0.3 on
 // bust, dolly and regular.
 inline constexpr double tile_concentration = 5;
 
+// State of a tile in a frame.
+enum class TileState : uint32_t {
+  unscattered = 0, // not listed
+  fading = 1,      // listed; weights fall to 0
+  shown = 2,       // listed; weights rise to full_pixel_weight
+  not_scattering = 255
+};
+
 struct TileToSelect {
   bool scatters = false;
-  uint32_t change = 0; // expected, by scattering
-  uint32_t before = 0; // weight in the frame before
+  uint32_t priority = 0; // expected change by scattering, level, and selection_kept_bit
 };
 
 struct TileSelection {
-  std::vector<uint32_t> weights; // by tile
-  uint32_t units = 0;            // tiles with a weight
+  std::vector<TileState> states; // by tile
+  uint32_t units = 0;            // listed tiles
   uint32_t demand = 0;           // tiles that scatter
+  uint32_t steady = all_steady;  // for the next frame
 };
-// Selects tiles, row by row. Gives at most `units` tiles a weight. `continues`: the frame before
-// has weights; otherwise tiles have their full weight at once.
-TileSelection select_tiles(std::span<const TileToSelect> tiles, uint32_t units, bool continues);
+// Selects tiles, row by row. Lists at most `units` tiles, or all tiles whose weights may not fall
+// to 0 if these are more. `steady`: of the previous frame.
+TileSelection select_tiles(std::span<const TileToSelect> tiles, uint32_t units,
+                           uint32_t steady = all_steady);
 
 } // namespace dermis::choice

@@ -172,7 +172,11 @@ std::string shared_constants() {
       "sample_allocation.hpp\n"
       "const float allocation_stay = {};\n"
       "const int allocation_first_bin = {};\n"
-      "const uint full_tile_weight = {}u, selection_reserve = {}u; // tile_selection.hpp\n"
+      "const uint full_pixel_weight = {}u, pixel_weight_step = {}u; // tile_selection.hpp\n"
+      "const uint no_pixel_weight = {}u;\n"
+      "const uint all_steady = {}u, least_steady = {}u, steady_gain = {}u;\n"
+      "const uint selection_kept_bit = {}u, selection_level_shift = {}u;\n"
+      "const uint most_selection_level = {}u, highest_level_weight = {}u;\n"
       "const float selection_stay = {};\n"
       "const uint selection_first_bin = {}u;\n"
       "const float min_patch_cosine = {}, max_patch_slope = {}; // reference/surface.hpp\n"
@@ -211,12 +215,15 @@ std::string shared_constants() {
       subsurface::copy_below_d_px, subsurface::uniform_reach_d, subsurface::uniform_tolerance,
       subsurface::uniform_max_reach, subsurface::uniform_cell_side, subsurface::probe_max_reach,
       choice::allocation_gain[0], choice::allocation_gain[1], choice::allocation_gain[2],
-      choice::allocation_stay, choice::allocation_first_bin, choice::full_tile_weight,
-      choice::selection_reserve, choice::selection_stay, choice::selection_first_bin,
-      subsurface::min_patch_cosine, subsurface::max_patch_slope, subsurface::separable_nodes,
-      subsurface::separable_first_log2_d, subsurface::separable_log2_d_step,
-      subsurface::separable_rows_per_profile, subsurface::sap_level_count,
-      subsurface::sap_variant_count, static_cast<int>(subsurface::SapVariant::half),
+      choice::allocation_stay, choice::allocation_first_bin, choice::full_pixel_weight,
+      choice::pixel_weight_step, choice::no_pixel_weight, choice::all_steady, choice::least_steady,
+      choice::steady_gain, choice::selection_kept_bit, choice::selection_level_shift,
+      choice::most_selection_level, choice::highest_level_weight, choice::selection_stay,
+      choice::selection_first_bin, subsurface::min_patch_cosine, subsurface::max_patch_slope,
+      subsurface::separable_nodes, subsurface::separable_first_log2_d,
+      subsurface::separable_log2_d_step, subsurface::separable_rows_per_profile,
+      subsurface::sap_level_count, subsurface::sap_variant_count,
+      static_cast<int>(subsurface::SapVariant::half),
       static_cast<int>(subsurface::SapVariant::plain), subsurface::sap_node_count,
       subsurface::sap_table_pairs, double(subsurface::sap_nodes_per_octave),
       subsurface::sap_log2_d_first, subsurface::sap_shape_nodes, subsurface::sap_last_log2_aspect,

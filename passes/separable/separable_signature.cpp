@@ -47,13 +47,17 @@ constexpr Port separable_selected_ports[] = {
     port::optional(port::sampled("blurred",
                                  "result of the horizontal pass; bound for the vertical pass",
                                  port::light_formats)),
-    port::tile_weights,
+    port::tile_states,
+    port::velocity,
+    port::states_before,
+    port::pixel_weights_before,
     port::tiles,
     port::arguments,
     port::written("scattered",
                   "scattered light of the listed tiles, undefined elsewhere; a: profile id after "
                   "the horizontal pass, 1 after the vertical pass",
                   port::color_formats),
+    port::optional(port::pixel_weights),
 };
 constexpr PassTypeSetting separable_selected_settings[] = {
     separable_settings[0],

@@ -1,8 +1,8 @@
 #version 460
 // Selects the tiles that scatter, as many as the frame's budget allows, and lists them; the others
 // become tiles that are copied. A group handles a run of tiles in row order. Adds the histograms of
-// all runs to find the two thresholds: for tiles with a weight, and for tiles that enter. Integer
-// sums only, so that equal changes give equal selections.
+// all runs to find two thresholds: for all tiles, and for those that need not be kept. Integer sums
+// only, so that equal changes give equal selections.
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
 #include "common/subsurface_select_tiles.bindings.glsl"
@@ -21,7 +21,7 @@ const uint batch = 8u; // runs whose tiles an invocation reads at once
 const uint chunk = 16u, bin_chunks = selection_bins / chunk, lane_chunks = lanes / chunk;
 layout(local_size_x = 128, local_size_y = 1, local_size_z = 1) in;
 
-// Index 0: all tiles. Index 1: tiles without a weight in the previous frame.
+// Index 0: all tiles. Index 1: tiles that need not be kept.
 shared uint tiles_of_bin[2u * selection_bins];
 shared uint earlier_of_bin[2u * selection_bins]; // of earlier groups
 shared uint tiles_of_chunk[2u * bin_chunks];
@@ -29,7 +29,6 @@ shared uvec2 counts[lanes], counts_of_chunk[lane_chunks];
 // Bins above are paid in full, and the first `left` tiles of the bin.
 shared ivec2 last_bin;
 shared uvec2 left;
-shared bool fades;
 shared uint listed; // tiles of the group
 shared uint base;   // index of the first of them in the list
 
@@ -83,16 +82,23 @@ void find_threshold(uint which, uint own_chunk, uint units) {
   left[which] = rest;
 }
 
+// Returns next_steady() of the previous frame.
+uint steady_before() {
+  if (!has_states_before() || !history_usable())
+    return all_steady;
+  ivec2 tiles = (frame.previous_rect.zw + 7) >> 3;
+  return clamp(states_before_data[tiles.x * tiles.y], least_steady, all_steady);
+}
+
 void find_thresholds(uint lane) {
-  uint demand = sum_chunks(0u, 0u), chosen = demand - sum_chunks(1u, 0u);
-  bool may_fade = chosen <= frame.sample_units;
-  if (lane == 0u)
-    fades = may_fade;
+  uint demand = sum_chunks(0u, 0u), kept = demand - sum_chunks(1u, 0u);
+  uint units = frame.sample_units, steady = next_steady(steady_before(), units, demand, kept);
+  if (lane == 0u && gl_WorkGroupID.x == 0u)
+    tile_states_data[frame.tiles.x * frame.tiles.y] = steady;
   if (lane < 2u * bin_chunks) {
     uint which = lane / bin_chunks;
     find_threshold(which, lane % bin_chunks,
-                   which == 0u ? steady_units(frame.sample_units, demand)
-                               : may_fade ? frame.sample_units - chosen : 0u);
+                   which == 0u ? steady_units(units, demand, steady) : units - min(kept, units));
   }
   barrier();
 }
@@ -147,18 +153,18 @@ void main() {
   uint lane = gl_LocalInvocationIndex, tiles = uint(frame.tiles.x * frame.tiles.y);
   uint first = min(gl_WorkGroupID.x * tiles_per_run_group + lane * run, tiles);
   uint last = min(first + run, tiles);
-  bool continues = has_before() && history_usable();
   if (lane == 0u) {
     listed = 0u;
     last_bin = ivec2(-1);
     left = uvec2(0u);
   }
-  uint entries[run], bins[run], before[run]; // read first, because no read depends on another
+  uint entries[run], bins[run]; // read first, because no read depends on another
+  uint priorities[run];
   [[unroll]] for (uint i = 0u; i < run; ++i) {
     uint tile = min(first + i, tiles - 1u);
-    before[i] = continues ? before_data[tile] : 0u;
     entries[i] = classes_data[tile];
-    uint bin = selection_bin(entries[i], tile_changes_data[tile], before[i]);
+    priorities[i] = tile_changes_data[tile];
+    uint bin = selection_bin(entries[i], priorities[i]);
     bins[i] = first + i < last ? bin : no_bin;
   }
   sum_histograms(lane);
@@ -167,27 +173,30 @@ void main() {
   uvec2 own = uvec2(0u); // tiles in the last bins
   [[unroll]] for (uint i = 0u; i < run; ++i) {
     own.x += int(bins[i]) == last_bin.x ? 1u : 0u;
-    own.y += int(bins[i]) == last_bin.y && !is_chosen(before[i]) ? 1u : 0u;
+    own.y += int(bins[i]) == last_bin.y && !is_kept(priorities[i]) ? 1u : 0u;
   }
   own *= uvec2(last_bin.x >= 0, last_bin.y >= 0); // no_bin equals -1
   uvec2 earlier = sum_before(lane, own);
   earlier.x += last_bin.x >= 0 ? earlier_of_bin[last_bin.x] : 0u;
   earlier.y += last_bin.y >= 0 ? earlier_of_bin[selection_bins + uint(last_bin.y)] : 0u;
-  uint weights[run], taking = 0u;
+  uint taking = 0u;
+  bool taken[run];
   [[unroll]] for (uint i = 0u; i < run; ++i) {
-    weights[i] = 0u;
+    taken[i] = false;
     if (first + i >= last)
       continue;
     uint tile = first + i;
     if (bins[i] == no_bin) {
-      tile_weights_data[tile] = not_scattering;
+      tile_states_data[tile] = state_not_scattering;
       continue;
     }
     bool stays = is_paid(0u, bins[i], earlier);
-    bool affordable = !is_chosen(before[i]) && is_paid(1u, bins[i], earlier);
-    weights[i] = next_weight(before[i], stays, stays && affordable, fades, continues);
-    tile_weights_data[tile] = weights[i];
-    if (weights[i] > 0u)
+    bool kept = is_kept(priorities[i]), affordable = kept || is_paid(1u, bins[i], earlier);
+    uint state = state_of(kept, stays, affordable);
+    uint level = priorities[i] >> selection_level_shift & most_selection_level;
+    tile_states_data[tile] = state | level << state_bits;
+    taken[i] = is_listed(state);
+    if (taken[i])
       ++taking;
     else
       classes_data[tile] = class_copy | (entries[i] & class_full_bit);
@@ -203,7 +212,7 @@ void main() {
   uint across = uint(frame.tiles.x);
   uvec2 place = uvec2(first % across, first / across);
   [[unroll]] for (uint i = 0u; i < run; ++i) {
-    if (weights[i] > 0u)
+    if (taken[i])
       selected_tiles_data[1u + at++] = place.x | place.y << 15;
     place = place.x + 1u < across ? place + uvec2(1u, 0u) : uvec2(0u, place.y + 1u);
   }

@@ -1,12 +1,11 @@
 #version 460
 // Counts the tiles that scatter by bin of their expected change, for a run of tiles in row order
-// per group: all of them, then those without a weight in the previous frame.
+// per group: all of them, then those that need not be kept.
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
 #include "common/subsurface_tile_histogram.bindings.glsl"
 #include "common/environment.glsl"
 #include "constants.glsl"
-#include "common/reproject.glsl"
 #include "common/tile_selection.glsl"
 
 const uint lanes = 128u;
@@ -17,16 +16,17 @@ shared uint tiles_of_bin[2u * selection_bins];
 
 void main() {
   uint lane = gl_LocalInvocationIndex;
-  bool continues = has_before() && history_usable();
   for (uint bin = lane; bin < 2u * selection_bins; bin += lanes)
     tiles_of_bin[bin] = 0u;
   uint first = gl_WorkGroupID.x * tiles_per_run_group + lane;
   uint tiles = uint(frame.tiles.x * frame.tiles.y);
-  uint bins[run], before[run];
+  uint bins[run];
+  bool kept[run];
   [[unroll]] for (uint i = 0u; i < run; ++i) {
     uint tile = first + i * lanes, near = min(tile, tiles - 1u);
-    before[i] = continues ? before_data[near] : 0u;
-    uint bin = selection_bin(classes_data[near], tile_changes_data[near], before[i]);
+    uint priority = tile_changes_data[near];
+    uint bin = selection_bin(classes_data[near], priority);
+    kept[i] = is_kept(priority);
     bins[i] = tile == near ? bin : no_bin;
   }
   barrier();
@@ -34,7 +34,7 @@ void main() {
     if (bins[i] == no_bin)
       continue;
     atomicAdd(tiles_of_bin[bins[i]], 1u);
-    if (!is_chosen(before[i]))
+    if (!kept[i])
       atomicAdd(tiles_of_bin[selection_bins + bins[i]], 1u);
   }
   barrier();

@@ -122,18 +122,21 @@ ImageReads separable(const PassType& type, const ReadsQuestion& question) {
 }
 
 // As separable, but light comes from the host's lighting and material; on the second axis only that
-// of the pixel itself.
+// of the pixel itself, and depth and velocity once more for the pixel's earlier place.
 ImageReads separable_selected(const PassType& type, const ReadsQuestion& question) {
   const uint32_t taps = separable_taps[static_cast<size_t>(setting(type, question, "taps"))];
   const double own = 1 + light_reads(type, question),
                blurred = one_if(type, question, "blurred", PortSide::read);
   const double tap = blurred > 0 ? 2 : 1 + own - scale_read(type, question);
-  return {own + 1 + blurred + tap * (4 + taps_beyond_window(taps, true, question))};
+  const double place = blurred > 0 ? 1 + one_if(type, question, "velocity", PortSide::read) : 0;
+  return {own + 1 + blurred + place + tap * (4 + taps_beyond_window(taps, true, question))};
 }
 
-// common/subsurface_tile_change.comp: importance of every fourth pixel of the tile.
+// common/subsurface_tile_change.comp: depth and velocity of a pixel, importance of every fourth
+// pixel of the tile.
 ImageReads tile_change(const PassType& type, const ReadsQuestion& question) {
-  return {16 * one_if(type, question, "importance", PortSide::read)};
+  return {1 + one_if(type, question, "velocity", PortSide::read) +
+          16 * one_if(type, question, "importance", PortSide::read)};
 }
 
 // sap/subsurface_sap_setup_half_res.comp: material, depth and light of the 4x4 pixels of 2x2

@@ -8,7 +8,7 @@ namespace {
 constexpr uint32_t pixel = 1, tile = 8, cell = 32, region = 64;       // sides of squares
 constexpr uint32_t word = 4, range = 16, reservoir = 64, domain = 32; // bytes
 // dispatch: VkDispatchIndirectCommand and one word; level_heads: bytes.
-constexpr uint32_t demand_run = 256, demand_bytes = 1024, histogram_bytes = 2048;
+constexpr uint32_t demand_run = 256, demand_bytes = 1024, histogram_bytes = 2048, weights = 64;
 constexpr uint32_t dispatch = 16, levels = 9, level_heads = 1024;
 
 constexpr PortNeed needs[] = {
@@ -25,7 +25,10 @@ constexpr PortNeed needs[] = {
     {"demand", demand_run, demand_bytes}, // 1,024 tiles cover at least as much
     {"before", tile, word},
     {"tile_changes", tile, word},
-    {"tile_weights", tile, word},
+    {"tile_states", tile, word, word},
+    {"states_before", tile, word, word},
+    {"pixel_weights", tile, weights},
+    {"pixel_weights_before", tile, weights},
     {"histogram", demand_run, histogram_bytes},
     {"selected_tiles", tile, word, word},
     {"selected_arguments", 0, 0, dispatch},
@@ -117,7 +120,7 @@ constexpr PortNeed needs[] = {
     {"surface_4", 16},
     {"surface_5", 32},
 };
-constexpr size_t buffers = 37;
+constexpr size_t buffers = 40;
 static_assert(needs[buffers].port == "lighting");
 
 } // namespace

@@ -147,10 +147,19 @@ inline constexpr Port tile_d =
     read_buffer("tile_d", "uint", "per tile of the render rectangle: bits of the widest d, px");
 inline constexpr Port samples_per_tile = read_buffer(
     "samples_per_tile", "uint", "per tile of the render rectangle: allocated sample steps, 0 to 3");
-inline constexpr Port tile_weights = read_buffer(
-    "tile_weights", "uint",
-    "per tile of the render rectangle: fraction of scattered light in eighths; 255: does not "
-    "scatter");
+inline constexpr Port tile_states = read_buffer(
+    "tile_states", "uint",
+    "per tile of the render rectangle: 0: not selected; 1: fades out; 2: shows scattered light; "
+    "255: does not scatter; from bit 8 on the level, 0 to 7, by which neighbours read blurred "
+    "light. Then the fraction of the budget for tiles that do not fade");
+inline constexpr Port states_before =
+    optional(read_buffer("states_before", "uint", "tile_states of the previous frame"));
+inline constexpr Port pixel_weights = written_buffer(
+    "pixel_weights", "uint",
+    "16 words per tile, written in selected tiles: fraction of scattered light of each pixel, row "
+    "by row, in 240ths; 255: no subsurface");
+inline constexpr Port pixel_weights_before =
+    optional(read_buffer("pixel_weights_before", "uint", "pixel_weights of the previous frame"));
 
 // Light before and after scattering.
 inline constexpr Port combined =

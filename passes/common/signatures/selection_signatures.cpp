@@ -6,27 +6,30 @@ namespace dermis::subsurface {
 
 namespace {
 
-constexpr Port tile_changes =
-    port::read_buffer("tile_changes", "uint",
-                      "per tile of the render rectangle: expected squared change by scattering");
+constexpr Port tile_changes = port::read_buffer(
+    "tile_changes", "uint",
+    "per tile of the render rectangle: expected squared change by scattering; bit "
+    "31: weights in the tile may not fall to 0 in this frame");
 constexpr Port histogram =
     port::read_buffer("histogram", "uint",
                       "per run of 1,024 tiles in row order: number of tiles that scatter by bin of "
-                      "expected change (256 bins), then of those without a weight before");
-constexpr Port before =
-    port::optional(port::read_buffer("before", "uint", "tile_weights of the previous frame"));
+                      "expected change (256 bins), then of those without bit 31");
 
 constexpr Port tile_change_ports[] = {
     port::classes,
     port::read_buffer("light_range", "uvec4", "output of subsurface.classify"),
     port::importance,
+    port::where_covered(port::material),
+    port::where_covered(port::depth),
+    port::where_covered(port::velocity),
+    port::states_before,
+    port::where_covered(port::pixel_weights_before),
     port::writer_of(tile_changes),
 };
 
 constexpr Port tile_histogram_ports[] = {
     port::classes,
     tile_changes,
-    before,
     port::writer_of(histogram),
 };
 
@@ -35,9 +38,9 @@ constexpr Port select_tiles_ports[] = {
      "output of subsurface.classify; tiles that are not selected become copied tiles"},
     tile_changes,
     histogram,
-    before,
+    port::states_before,
     port::list_state,
-    port::writer_of(port::tile_weights),
+    port::writer_of(port::tile_states),
     port::written_buffer("selected_tiles", "uint", "list of the selected tiles, as 'tiles'"),
     port::written_buffer("selected_arguments", "uint",
                          "group counts of an indirect dispatch over the selected tiles"),

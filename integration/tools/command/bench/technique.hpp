@@ -55,6 +55,10 @@ public:
   // change of size if the graph declares so. Otherwise histories restart.
   demo::Result<std::vector<float>> scatter(const CapturedFrame& frame, bool follows = false,
                                            DepthGiven depth = DepthGiven::view_distance);
+  // Sets the budget of the next frames, after the first. Errors: those of DeviceGraph::set_budget.
+  demo::Result<> set_budget(const dermis_budget& budget) { return device_->set_budget(budget); }
+  // Returns the choice of the last frame; nullopt if nothing was counted.
+  std::optional<demo::ReportedFrame> choice() { return device_->choice(); }
   // Makes the next frame the first of a new graph: frame numbers and histories restart.
   void start_anew() { device_.reset(); }
   // Sets the number of the next frame if it is higher than the regular next number.

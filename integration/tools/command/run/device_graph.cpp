@@ -149,6 +149,14 @@ demo::Result<> DeviceGraph::resize(uint32_t width, uint32_t height) {
   return create_images();
 }
 
+demo::Result<> DeviceGraph::set_budget(const dermis_budget& budget) {
+  demo::Report report;
+  const dermis_result result = dermis_graph_set_budget(graph_, &budget, &report.handle);
+  if (result != DERMIS_OK)
+    return demo::dermis_error("dermis_graph_set_budget", result, report.handle);
+  return demo::success();
+}
+
 DeviceGraph::Slot* DeviceGraph::find(std::string_view name) {
   for (Slot& slot : slots_)
     if (slot.name == name) return &slot;

@@ -56,6 +56,9 @@ public:
   // lost. Errors: as create; the graph is unusable after an error.
   demo::Result<> resize(uint32_t width, uint32_t height);
 
+  // Sets the budget of the next frames. Errors: input (the calibration or the error table).
+  demo::Result<> set_budget(const dermis_budget& budget);
+
   bool has(std::string_view slot) const; // whether the slot is bound
   // Fills the image of a slot; missing channels are 0, alpha 1. Unbound slots are ignored.
   demo::Result<> upload(std::string_view slot, std::span<const float> texels, uint32_t channels);
