@@ -56,10 +56,8 @@ void place(const Plan& plan, const std::vector<bool>& shares, const HeapAlignmen
   }
 }
 
-} // namespace
-
-SharedHeaps share_heaps(std::span<const Plan* const> plans, HistoryMemory histories,
-                        const HeapAlignment& alignment_of) {
+SharedHeaps place_all(std::span<const Plan* const> plans, HistoryMemory histories,
+                      const HeapAlignment& alignment_of) {
   SharedHeaps shared;
   for (size_t p = 0; p < plans.size(); ++p) {
     const Plan& plan = *plans[p];
@@ -76,6 +74,20 @@ SharedHeaps share_heaps(std::span<const Plan* const> plans, HistoryMemory histor
   for (const SharedBlock& block : shared.blocks)
     (block.history ? shared.history_bytes : shared.transient_bytes) += block.bytes;
   return shared;
+}
+
+uint64_t bytes_of(const SharedHeaps& heaps) {
+  return heaps.transient_bytes + heaps.history_bytes;
+}
+
+} // namespace
+
+SharedHeaps share_heaps(std::span<const Plan* const> plans, HistoryMemory histories,
+                        const HeapAlignment& alignment_of) {
+  SharedHeaps separate = place_all(plans, HistoryMemory::separate, alignment_of);
+  if (histories == HistoryMemory::separate) return separate;
+  SharedHeaps shared = place_all(plans, HistoryMemory::shared, alignment_of);
+  return bytes_of(shared) < bytes_of(separate) ? shared : separate;
 }
 
 } // namespace dermis

@@ -43,7 +43,8 @@ struct SharedHeaps {
 // one plan follow each other, and those of different plans overlap. Heaps of transients are always
 // shared. A heap of histories is shared if no other plan has one of its histories: frames of other
 // plans make such histories invalid, so their contents need not last. Histories that two plans have
-// are copied from one to the other. A single plan shares nothing.
+// are copied from one to the other. Histories are only shared if this takes less memory. A single
+// plan shares nothing.
 // The plans come from one graph, so that they name resources alike.
 // alignment_of: alignment that a device needs; empty: as the plans say.
 SharedHeaps share_heaps(std::span<const Plan* const> plans, HistoryMemory histories,

@@ -55,6 +55,14 @@ TEST(SharedHeaps, HistoryOfOnePlan_OverlapsOtherTransients) {
   EXPECT_EQ(heaps.places[1][1].offset, 23 * kib) << "not over the transients of its own plan";
 }
 
+// A block with a history cannot be aliased by a host.
+TEST(SharedHeaps, HistoryThatGainsNothing_StaysSeparate) {
+  const SharedHeaps heaps = shared({plan_of(40, 30), plan_of(10, 0)});
+  EXPECT_EQ(heaps.transient_bytes, 40 * kib);
+  EXPECT_EQ(heaps.history_bytes, 30 * kib);
+  EXPECT_EQ(heaps.places[0][1].block, no_block);
+}
+
 TEST(SharedHeaps, HistoryOfTwoPlans_HasItsOwnMemory) {
   const SharedHeaps heaps = shared({plan_of(10, 8, 3), plan_of(20, 8, 3), plan_of(0, 9, 4)});
   EXPECT_EQ(heaps.places[0][1].block, no_block);
@@ -85,12 +93,12 @@ TEST(SharedHeaps, SinglePlanSharesNothing) {
 }
 
 TEST(SharedHeaps, HeapsAreAlignedAsTheDeviceNeeds) {
-  const Plan first = plan_of(1, 0), second = plan_of(3, 2);
+  const Plan first = plan_of(9, 0), second = plan_of(3, 2);
   const Plan* plans[] = {&first, &second};
   const auto alignment = [](const Plan&, uint32_t) { return 4 * kib; };
   const SharedHeaps heaps = share_heaps(plans, HistoryMemory::shared, alignment);
   EXPECT_EQ(heaps.places[1][1].offset, 4 * kib);
-  EXPECT_EQ(heaps.blocks[0].bytes, 6 * kib);
+  EXPECT_EQ(heaps.blocks[0].bytes, 9 * kib);
   EXPECT_EQ(heaps.blocks[0].alignment, 4 * kib);
 }
 
