@@ -49,7 +49,7 @@ struct Port {
   // reads nothing that was there before the dispatch. Other ports of the pass must not access the
   // same texels or elements.
   bool internally_ordered = false;
-  // Limits `formats` further.
+  // Limits `formats` further while a setting has a value.
   SettingFormats formats_while = {};
 };
 

@@ -19,7 +19,7 @@ namespace {
 constexpr double scan_height_m = 0.426;      // 0.24 m from chin to crown.
 constexpr double step_m = 1e-3, step_px = 4; // A depth step is larger than both.
 constexpr double edge_min_px = 2, edge_max_px = 12;
-constexpr float sure_from = 0.95f; // confidence since it says what the levels lost; 0.9 before
+constexpr float sure_from = 0.95f; // confidence
 
 // Returns the pixels within d (2 to 12 pixels) of a depth step or of another material.
 std::vector<bool> near_edges(const ReferenceFrame& frame) {

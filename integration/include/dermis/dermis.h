@@ -456,10 +456,10 @@ DERMIS_API dermis_result DERMIS_CALL dermis_graph_describe(
 
 typedef struct dermis_memory {
   size_t struct_size;
-  uint64_t transient_bytes; /* heaps of images and buffers that live within a frame, and no others */
-  uint64_t transient_unaliased_bytes; /* all transients of a frame, without aliasing */
-  uint64_t history_bytes;  /* heaps that hold histories, with transients that share their memory */
-  uint64_t constant_bytes; /* frame constants, profile and kernel tables */
+  uint64_t transient_bytes;           /* heaps whose contents matter only within a frame */
+  uint64_t transient_unaliased_bytes; /* all transients of the largest plan, without aliasing */
+  uint64_t history_bytes;             /* heaps with histories, and transients that share them */
+  uint64_t constant_bytes;            /* frame constants, profile and kernel tables */
 } dermis_memory;
 #define DERMIS_MEMORY_INIT {sizeof(dermis_memory), 0, 0, 0, 0}
 /* Returns the device memory of all views together. Costs: none. Thread: concurrent. Errors:

@@ -61,11 +61,11 @@ std::vector<float> depth_buffer_of(std::span<const float> distances,
   return depth;
 }
 
-// Work that a GPU needs before it runs at its full clock rate.
+// A GPU that has worked for this long runs at its full clock rate.
 constexpr std::chrono::milliseconds time_to_full_clock{20};
-// More than run_again() runs frames. Frames after it continue at a multiple of this number, so that
-// their samples do not depend on the device's speed.
-constexpr uint64_t max_runs_again = uint64_t{1} << 20;
+// Exceeds the number of frames that one run_again() runs. The next frame's number is a multiple of
+// it, so that samples do not depend on the device's speed.
+constexpr uint64_t frames_apart = uint64_t{1} << 20;
 
 } // namespace
 
@@ -152,7 +152,7 @@ demo::Result<std::vector<float>> TechniqueRun::scatter(const CapturedFrame& fram
   for (const SlotData& data : slots.data)
     if (auto given = device_->upload(data.slot, data.texels, data.channels); !given)
       return given.error();
-  if (std::exchange(ran_again_, false)) device_->skip_to(++times_ran_again_ * max_runs_again);
+  if (std::exchange(ran_again_, false)) device_->skip_to(++restarts_ * frames_apart);
   device_->skip_to(std::exchange(next_frame_index_, 0));
   frame_ = c_frame(frame.description);
   if (depth == DepthGiven::depth_buffer) frame_.depth_kind = DERMIS_DEPTH_DEVICE;

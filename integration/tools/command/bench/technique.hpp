@@ -105,7 +105,7 @@ private:
   dermis_frame frame_ = DERMIS_FRAME_INIT;
   uint64_t next_frame_index_ = 0; // 0: regular numbering
   bool ran_again_ = false;        // since the last scatter()
-  uint64_t times_ran_again_ = 0;
+  uint64_t restarts_ = 0;         // of the numbering after run_again()
 };
 
 } // namespace dermis::tools
