@@ -8,7 +8,19 @@ cd "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/../.."
 seconds=${1:-10}
 shift || true
 targets=("$@")
-[[ ${#targets[@]} -gt 0 ]] || targets=(graph overlay profile scene capture exr plan)
+all=(graph overlay profile scene capture exr plan)
+[[ ${#targets[@]} -gt 0 ]] || targets=("${all[@]}")
+for target in "${targets[@]}"; do
+  [[ " ${all[*]} " == *" $target "* ]] || {
+    echo "run.sh: there is no fuzz target '$target'; expected one of: ${all[*]}" >&2
+    exit 2
+  }
+  [[ -x build/fuzz/fuzz/fuzz_$target ]] || {
+    echo "run.sh: build/fuzz/fuzz/fuzz_$target is not built;" \
+      "run: cmake --preset fuzz && cmake --build --preset fuzz" >&2
+    exit 2
+  }
+done
 
 findings=build/fuzz/findings dictionary=build/fuzz/keys.dict
 mkdir -p "$findings"

@@ -655,7 +655,7 @@ typedef struct dermis_pass_type {
 } dermis_pass_type;
 #define DERMIS_PASS_TYPE_INIT \
   {sizeof(dermis_pass_type), NULL, NULL, NULL, NULL, 0, 0, 0, 0, NULL, NULL}
-/* Registers a kind of pass for the graphs of a context, so that the host's own passes are part of
+/* Registers a pass type for the graphs of a context, so that the host's own passes are part of
  * the graph, with the same barriers, aliased memory and history. Copied, except `record` and
  * `user`, which are used as long as the context lives. Call before the context creates its first
  * graph. Costs: none. Thread: exclusive. Errors: ARGUMENT (also for a name that exists, or if there
@@ -888,8 +888,8 @@ DERMIS_API dermis_result DERMIS_CALL dermis_view_timings(
  * per view. Errors: ARGUMENT, INCOMPLETE. */
 DERMIS_API dermis_result DERMIS_CALL dermis_view_histories(
     dermis_view view, uint32_t* count, dermis_history* histories);
-/* Returns the settings of the graph in the order of the file, with the values of this view. Two-
- * call array. Costs: none. Thread: concurrent. Errors: ARGUMENT, INCOMPLETE, MEMORY. */
+/* Returns the settings of the graph in the order of the file, with the values of this view.
+ * Two-call array. Costs: none. Thread: concurrent. Errors: ARGUMENT, INCOMPLETE, MEMORY. */
 DERMIS_API dermis_result DERMIS_CALL dermis_view_settings(
     dermis_view view, uint32_t* count, dermis_setting* settings);
 /* Gives this view its own value of a setting with per_frame 1, effective at its next record; json
