@@ -37,7 +37,7 @@ case $step in
         >"$out/picture_$name.json" || failed=1
       if [[ -n ${PICTURES:-} ]]; then
         "$dermis" compare {"$out/pictures","$PICTURES"}/"$name"/scattered_0003.exr \
-          --least-psnr 60 || failed=1
+          --min-psnr 60 || failed=1
       fi
       for size in ${SIZES:-1920x1080 2560x1440}; do
         render "$technique" "$size" 200 "$out/frames" --subset 0 --pictures last \

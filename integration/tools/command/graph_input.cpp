@@ -3,6 +3,7 @@
 #include "framegraph/model/read_graph.hpp"
 #include "framegraph/text/limits.hpp"
 #include "framegraph/text/suggest.hpp"
+#include "integration/tools/command/shipped.hpp"
 #include "integration/tools/files/roots.hpp"
 #include "passes/common/pass_types.hpp"
 
@@ -150,9 +151,18 @@ std::optional<std::vector<Document>> read_overlays(const std::vector<std::string
   return read.size() == paths.size() ? std::optional(std::move(read)) : std::nullopt;
 }
 
+std::optional<Document> read_graph_file(const std::string& path, Diagnostics& diagnostics) {
+  std::optional<Document> document = read_input(path, diagnostics);
+  std::error_code error;
+  if (!document && path != "-" && !std::filesystem::exists(path, error))
+    for (Diagnostic& one : diagnostics.list)
+      if (one.id == DiagnosticId::file_unreadable) one.suggestion = did_you_mean_graph(path);
+  return document;
+}
+
 std::optional<LoadedGraph> load_graph(const std::string& path, const GraphInputs& inputs,
                                       Diagnostics& diagnostics) {
-  std::optional<Document> document = read_input(path, diagnostics);
+  std::optional<Document> document = read_graph_file(path, diagnostics);
   auto overlays = read_overlays(inputs.overlays, diagnostics);
   if (!document || !overlays) return std::nullopt;
   return load_graph(std::move(*document), std::move(*overlays), open_included(path, inputs.roots),

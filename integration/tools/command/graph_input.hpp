@@ -32,6 +32,9 @@ std::optional<LoadedGraph> load_pass_types(std::span<const std::string> files,
                                            Diagnostics& diagnostics);
 // Reads a document; `path` "-" is standard input. Returns nullopt with errors in `diagnostics`.
 std::optional<Document> read_input(const std::string& path, Diagnostics& diagnostics);
+// Reads the document of a graph. If the file does not exist, the error suggests a shipped graph of
+// a similar name.
+std::optional<Document> read_graph_file(const std::string& path, Diagnostics& diagnostics);
 // Opens files that graph files include: below the folder of `path`, then below each of `roots`.
 OpenFile open_included(const std::string& path, const std::vector<std::string>& roots);
 // Loads the graph of a document or file with its overlays and included files. `pass_type_files`

@@ -1,5 +1,9 @@
 #include "integration/tools/command/shipped.hpp"
 
+#include "framegraph/text/suggest.hpp"
+
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <filesystem>
 #include <string_view>
@@ -49,6 +53,18 @@ std::vector<std::string> graph_files(const std::string& folder) {
   std::sort(files.begin(), files.end(),
             [](const auto& a, const auto& b) { return a.filename() < b.filename(); });
   return {files.begin(), files.end()};
+}
+
+std::string did_you_mean_graph(const std::string& path) {
+  const std::vector<std::string> files = graph_files(shipped("configs/graphs"));
+  std::vector<std::string> names;
+  for (const std::string& file : files)
+    names.push_back(std::filesystem::path(file).stem().string());
+  const std::vector<std::string_view> words(names.begin(), names.end());
+  const std::string_view name = nearest(std::filesystem::path(path).stem().string(), words);
+  for (size_t i = 0; i < files.size() && !name.empty(); ++i)
+    if (names[i] == name) return fmt::format("did you mean '{}'?", files[i]);
+  return "";
 }
 
 } // namespace dermis::tools

@@ -20,6 +20,10 @@ std::string shipped(std::string_view folder, std::string_view name);
 std::vector<std::string> shipped_files(std::string_view folder,
                                        std::vector<std::string> names_or_paths);
 
+// Returns "did you mean 'configs/graphs/sap.json'?" if a shipped graph has a name like that of
+// `path`, else "".
+std::string did_you_mean_graph(const std::string& path);
+
 // Returns the graph files in a folder and below, sorted by file name; not the expectations.
 std::vector<std::string> graph_files(const std::string& folder);
 

@@ -237,9 +237,11 @@ std::vector<fs::path> find_frames(const fs::path& folder, Diagnostics& diagnosti
     return {};
   }
   if (frames.empty())
-    diagnostics.add(DiagnosticId::capture_empty, place_of(diagnostics, folder),
-                    fmt::format("'{}' holds no frame: neither frame.json nor folders with one{}",
-                                folder.string(), code ? " (" + code.message() + ")" : ""));
+    diagnostics.add(
+        DiagnosticId::capture_empty, place_of(diagnostics, folder),
+        fmt::format("the folder '{}' is not a capture: it contains neither frame.json nor "
+                    "folders with frame.json{}",
+                    folder.string(), code ? " (" + code.message() + ")" : ""));
   return frames;
 }
 

@@ -107,7 +107,7 @@ TEST_F(Captures, FramesAreComparedWithTheirReferences) {
                    "--subset", subset})
                   .exit_code,
               0);
-    EXPECT_THAT(run({"compare", path("out"), path("truth" + subset), "--least-psnr", "35"}),
+    EXPECT_THAT(run({"compare", path("out"), path("truth" + subset), "--min-psnr", "35"}),
                 Succeeds("frame_0000/scattered.exr", "\nall ", subset == "0" ? "1024" : "100"));
   }
   std::filesystem::remove_all(path("out/frame_0001"));

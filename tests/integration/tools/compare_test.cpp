@@ -60,8 +60,8 @@ TEST_F(Compare, ExposesLinearLightBeforeItCompares) {
 
 TEST_F(Compare, FailsBelowTheRequestedPsnr) {
   const std::string a = png("a.png", 100, 151), b = png("b.png", 100, 100);
-  EXPECT_THAT(run({"compare", a, b, "--least-psnr", "60"}), FailsWith(1, "60.00 dB"));
-  EXPECT_EQ(run({"compare", a, b, "--least-psnr", "20"}).exit_code, 0);
+  EXPECT_THAT(run({"compare", a, b, "--min-psnr", "60"}), FailsWith(1, "60.00 dB"));
+  EXPECT_EQ(run({"compare", a, b, "--min-psnr", "20"}).exit_code, 0);
   EXPECT_THAT(
       run({"compare", exr("a.exr", std::numeric_limits<float>::quiet_NaN()), exr("b.exr", 1)}),
       FailsWith(1, "not finite"));

@@ -164,7 +164,7 @@ TEST_F(GraphFiles, CaptureIsCheckedAsAFileOrFolder) {
               FailsWith(1, "profile 'skin' does not exist"));
   write("capture/lighting.exr", "no picture");
   EXPECT_THAT(run({"validate", path("capture")}), FailsWith(1, "lighting.exr"));
-  EXPECT_THAT(run({"validate", "docs"}), FailsWith(1, "holds no frame"));
+  EXPECT_THAT(run({"validate", "docs"}), FailsWith(1, "the folder 'docs' is not a capture"));
 }
 
 TEST_F(GraphFiles, Upgrade_NewestAndUnknownVersions) {

@@ -20,14 +20,16 @@ TEST_F(Usage, HelpNamesTheExitCodes) {
   EXPECT_THAT(run({"--help"}), Succeeds("Exit codes: 0", "130 stopped by Ctrl-C"));
 }
 
-TEST_F(Usage, NoVerbIsAUsageError) {
-  EXPECT_EQ(run({}).exit_code, 2);
+TEST_F(Usage, MissingVerb_SaysWhereVerbsAreListed) {
+  EXPECT_THAT(run({}), FailsWith(2, "a verb is required; 'dermis --help' lists all verbs"));
+  EXPECT_THAT(run({"plan"}), FailsWith(2, "'plan' requires a verb: 'diff', 'save' or 'verify'; "
+                                          "'dermis plan --help' describes them"));
 }
 
 TEST_F(Usage, MisspeltVerb_SuggestsTheNearest) {
   EXPECT_THAT(run({"rendr"}), FailsWith(2, "no verb 'rendr'; did you mean 'render'?"));
   EXPECT_THAT(run({"bench", "stabilty"}),
-              FailsWith(2, "no verb of 'bench' 'stabilty'; did you mean 'stability'?"));
+              FailsWith(2, "'bench' has no verb 'stabilty'; did you mean 'stability'?"));
 }
 
 TEST_F(Usage, MisspeltOption_SuggestsTheNearestFirst) {
@@ -37,6 +39,44 @@ TEST_F(Usage, MisspeltOption_SuggestsTheNearestFirst) {
 
 TEST_F(Usage, AMissingRequiredOptionIsNamed) {
   EXPECT_THAT(run({"apply", "--graph", burley, "--frames", "capture"}), FailsWith(2, "--out"));
+}
+
+TEST_F(Usage, WrongValue_StatesWhatIsExpected) {
+  struct Case {
+    std::vector<std::string> words;
+    const char* message;
+  };
+  const std::vector<std::string> render{"render", "scene.json", "--graph", burley};
+  const auto with = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), render.begin(), render.end());
+    return more;
+  };
+  const Case cases[] = {
+      {render, "--out is required; 'dermis render --help' describes it"},
+      {{"compare", "a.png"}, "argument 'b' is required; 'dermis compare --help' describes it"},
+      {with({"--frames", "0"}), "--frames: expected a number from 1 to 100000, found '0'"},
+      {with({"--budget", "-1"}), "--budget: expected a number from 0 to 1000000, found '-1'"},
+      {with({"--kernels", "fpga"}), "--kernels: expected 'cpu', 'device', 'gpu' or 'gpu_small', "
+                                    "found 'fpga'"},
+      {with({"--frames"}), "--frames: the value is missing; 'dermis render --help' describes it"},
+      {with({"--out", "a", "--out", "b"}), "--out may be given only once"},
+      {with({"--set", "samples", "64"}), "--set: expected NAME=VALUE such as samples=16, found "
+                                         "'samples'"},
+      {{"bench", "all", "--out", "a", "more"},
+       "unexpected argument 'more'; 'dermis bench all --help' lists the arguments"},
+  };
+  for (const Case& one : cases)
+    EXPECT_THAT(run(one.words), FailsWith(2, one.message)) << one.message;
+}
+
+TEST_F(Usage, MissingGraphFile_SuggestsAShippedGraph) {
+  EXPECT_THAT(run({"explain", "burley"}),
+              FailsWith(1, "did you mean 'configs/graphs/burley.json'?"));
+  EXPECT_THAT(run({"explain", "graphs/sap_blent.json"}),
+              FailsWith(1, "did you mean 'configs/graphs/papers/sap_blend.json'?"));
+  EXPECT_THAT(run({"explain", "a_graph_of_mine.json"}).err, Not(HasSubstr("did you mean")));
+  EXPECT_THAT(run({"test", burley}),
+              FailsWith(1, "expected a folder or a file NAME.expect.json next to the graph"));
 }
 
 TEST_F(Usage, InvalidSize_WritesNothing) {

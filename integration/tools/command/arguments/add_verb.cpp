@@ -14,7 +14,7 @@ std::string check_size(const std::string& text) {
 std::string check_named_value(const std::string& text) {
   const size_t equals = text.find('=');
   return equals == std::string::npos || equals == 0 || equals + 1 == text.size()
-             ? fmt::format("'{}' is not name=value", text)
+             ? fmt::format("expected NAME=VALUE such as samples=16, found '{}'", text)
              : "";
 }
 

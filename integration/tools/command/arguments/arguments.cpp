@@ -2,6 +2,7 @@
 
 #include "framegraph/text/suggest.hpp"
 #include "integration/tools/command/arguments/add_verb.hpp"
+#include "integration/tools/command/arguments/usage_error.hpp"
 
 #include <CLI/CLI.hpp>
 #include <dermis/dermis.h>
@@ -16,33 +17,49 @@ std::string_view name_part(std::string_view argument) {
   return argument.substr(0, argument.find('='));
 }
 
-// Returns the subcommand of that name. Returns null and sets `problem` if there is none.
-CLI::App* find_subcommand(CLI::App& app, const std::string& name, std::string_view what,
-                          std::string& problem) {
-  const std::vector<CLI::App*> all = app.get_subcommands([](CLI::App*) { return true; });
+std::vector<CLI::App*> subcommands(CLI::App& app) {
+  return app.get_subcommands([](CLI::App*) { return true; });
+}
+
+std::string list_subcommands(CLI::App& app) {
   std::vector<std::string> names;
-  for (CLI::App* one : all) {
+  for (const CLI::App* one : subcommands(app))
+    names.push_back(one->get_name());
+  return list_words(std::vector<std::string_view>(names.begin(), names.end()));
+}
+
+// Returns the subcommand of that name. Returns null and sets `problem` if there is none. `verb` is
+// the verb that has the subcommands; "": the program.
+CLI::App* find_subcommand(CLI::App& app, const std::string& name, std::string_view verb,
+                          std::string& problem) {
+  std::vector<std::string> names;
+  for (CLI::App* one : subcommands(app)) {
     if (one->get_name() == name) return one;
     names.push_back(one->get_name());
   }
-  const std::vector<std::string_view> words(names.begin(), names.end());
-  const std::string suggestion = did_you_mean(name, words);
-  problem = fmt::format("there is no {} '{}'; {}", what, name,
-                        suggestion.empty() ? "verbs: " + list_words(words) : suggestion);
+  const std::string suggestion =
+      did_you_mean(name, std::vector<std::string_view>(names.begin(), names.end()));
+  problem = fmt::format("{} '{}'; {}",
+                        verb.empty() ? "there is no verb" : fmt::format("'{}' has no verb", verb),
+                        name, suggestion.empty() ? "verbs: " + list_subcommands(app) : suggestion);
   return nullptr;
 }
 
-// Reports a misspelt verb or option before CLI11 reports missing options. Returns "" if all are
-// known.
+// Reports a missing verb and a misspelt verb or option before CLI11 reports missing options.
+// Returns "" if all are known.
 std::string find_misspelling(CLI::App& app, int argc, const char* const* argv) {
-  if (argc < 2 || std::string_view(argv[1]).starts_with("-")) return "";
+  if (argc < 2) return "a verb is required; 'dermis --help' lists all verbs";
+  if (std::string_view(argv[1]).starts_with("-")) return "";
   std::string problem;
-  CLI::App* verb = find_subcommand(app, argv[1], "verb", problem);
+  CLI::App* verb = find_subcommand(app, argv[1], "", problem);
   if (verb == nullptr) return problem;
   int options_from = 2;
-  const bool has_inner = !verb->get_subcommands([](CLI::App*) { return true; }).empty();
+  const bool has_inner = !subcommands(*verb).empty();
+  if (argc == 2 && has_inner)
+    return fmt::format("'{}' requires a verb: {}; 'dermis {} --help' describes them", argv[1],
+                       list_subcommands(*verb), argv[1]);
   if (argc > 2 && has_inner && !std::string_view(argv[2]).starts_with("-")) {
-    verb = find_subcommand(*verb, argv[2], fmt::format("verb of '{}'", argv[1]), problem);
+    verb = find_subcommand(*verb, argv[2], argv[1], problem);
     if (verb == nullptr) return problem;
     options_from = 3;
   }
@@ -60,6 +77,18 @@ std::string find_misspelling(CLI::App& app, int argc, const char* const* argv) {
                                           : suggestion);
   }
   return "";
+}
+
+// Returns the words that name the verb, such as "bench all".
+std::string verb_of(const CLI::App& app) {
+  std::string words;
+  for (const CLI::App* at = &app; at != nullptr;) {
+    const std::vector<const CLI::App*> parsed =
+        at->get_subcommands([](const CLI::App* one) { return one->parsed(); });
+    at = parsed.empty() ? nullptr : parsed.front();
+    if (at != nullptr) words += (words.empty() ? "" : " ") + at->get_name();
+  }
+  return words;
 }
 
 } // namespace
@@ -99,7 +128,7 @@ Invocation read_arguments(int argc, const char* const* argv) {
   } catch (const CLI::CallForVersion& version) {
     invocation.help = std::string(version.what()) + "\n";
   } catch (const CLI::ParseError& error) {
-    invocation.message = error.what();
+    invocation.message = reword_usage_error(error.what(), verb_of(app));
     invocation.run = nullptr;
   }
   return invocation;

@@ -70,14 +70,16 @@ std::string manual_page(const std::vector<DeclaredVerb>& verbs, std::string_view
       page += "    " + roff(line) + "\n";
     if (!verb.examples.empty()) page += ".fi\n";
   }
-  page += ".SH EXIT STATUS\n.TP\n0\nDone.\n.TP\n1\nThe input has problems: a file, the graph, the "
-          "data.\n.TP\n2\n"
-          "A bad option or value.\n.TP\n3\nNo driver, output that cannot be written, or a missing "
-          "package.\n.TP\n4\n"
-          "A defect of the program.\n.TP\n130\nStopped by Ctrl-C.\n.SH "
-          "ENVIRONMENT\n.TP\n\\fBNO_COLOR\\fR\nNo "
-          "colour, unless it is asked "
-          "for.\n";
+  page += ".SH EXIT STATUS\n"
+          ".TP\n0\nDone.\n"
+          ".TP\n1\nThe input has problems: a file, the graph, the data.\n"
+          ".TP\n2\nA bad option or value.\n"
+          ".TP\n3\nNo driver, output that cannot be written, or a missing package.\n"
+          ".TP\n4\nA defect of the program.\n"
+          ".TP\n130\nStopped by Ctrl-C.\n"
+          ".SH ENVIRONMENT\n"
+          ".TP\n\\fBNO_COLOR\\fR\n"
+          "If set, output has no colour unless \\fB--color always\\fR is given.\n";
   return page;
 }
 

@@ -216,7 +216,7 @@ void add_picture_verbs(CLI::App& app, Invocation& invocation) {
       });
   add_verb<ReferenceOptions>(
       app, invocation, "reference", "Compute the exact scattered light of captured frames",
-      "dermis reference --frames capture/ --out truth/", reference,
+      "dermis reference --frames capture/ --out reference/", reference,
       [](CLI::App& verb, ReferenceOptions& options) {
         add_path(verb, "--frames", options.frames, "Capture folder", "DIR")->required();
         add_path(verb, "--out,-o", options.out, "Folder for EXR images", "DIR")->required();
@@ -231,9 +231,8 @@ void add_picture_verbs(CLI::App& app, Invocation& invocation) {
   add_verb<CompareOptions>(
       app, invocation, "compare",
       "Measure the difference of two images or of two folders of images",
-      "dermis compare out/a/frame_0007.png out/b/frame_0007.png --heat out/heat.png\n  dermis "
-      "compare out/a "
-      "out/b --flip --least-psnr 40",
+      "dermis compare out/a/frame_0007.png out/b/frame_0007.png --heat out/heat.png\n"
+      "  dermis compare out/a out/b --flip --min-psnr 40",
       compare, [](CLI::App& verb, CompareOptions& options) {
         verb.add_option("a", options.a, "PNG, EXR, or a folder of them")
             ->required()
@@ -268,7 +267,7 @@ void add_picture_verbs(CLI::App& app, Invocation& invocation) {
             ->check(CLI::Range(0.0, 1.0))
             ->type_name("N");
         constexpr double max_db = 100;
-        verb.add_option("--least-psnr", options.min_psnr,
+        verb.add_option("--min-psnr", options.min_psnr,
                         "Fail if the PSNR of an image or region is lower")
             ->check(CLI::Range(0.0, max_db))
             ->type_name("DB");

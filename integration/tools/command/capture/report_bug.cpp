@@ -206,7 +206,7 @@ ExitCode report_bug(const Session& session, const ReportBugOptions& options) {
 
   Diagnostics diagnostics;
   GraphFiles files;
-  std::optional<Document> document = read_input(options.graph, diagnostics);
+  std::optional<Document> document = read_graph_file(options.graph, diagnostics);
   auto overlays = read_overlays(options.inputs.overlays, diagnostics);
   const OpenFile recorded =
       [&, open = open_included(options.graph, options.inputs.roots)](std::string_view name) {

@@ -35,7 +35,9 @@ std::vector<std::string> find_files(const std::vector<std::string>& paths, std::
     if (!files::is_directory(path, error)) {
       found.push_back(path);
       if (!is_expectation(path))
-        problem = fmt::format("'{}' is neither a folder nor called NAME{}", path, suffix);
+        problem = fmt::format("'{}' is not an expectation file; expected a folder or a file "
+                              "NAME{} next to the graph NAME.json",
+                              path, suffix);
     } else {
       for (files::recursive_directory_iterator entry(path, error), end; !error && entry != end;
            entry.increment(error))

@@ -45,7 +45,7 @@ std::string format_times(const PassTimes& times, const std::string& title) {
   const std::vector<PassTimes::Row> rows = times.rows();
   const size_t frames = rows.empty() ? 0 : rows.front().frames;
   table.columns = {
-      {fmt::format("{}, median of {}", title, frames)}, {"device time", true}, {"share", true}};
+      {fmt::format("{}, median of {}", title, frames)}, {"device time", true}, {"fraction", true}};
   for (const PassTimes::Row& row : rows)
     table.rows.push_back({row.pass, format_milliseconds(row.median), fraction(row.median)});
   table.rows.push_back({});
