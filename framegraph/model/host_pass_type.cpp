@@ -122,7 +122,7 @@ HostPassTypeSetting read_setting(const Document& document, NodeId node, Diagnost
 HostPassTypeDeclaration read_pass_type(const Document& document, NodeId node,
                                        Diagnostics& diagnostics) {
   const uint32_t errors = diagnostics.count(Severity::error);
-  ObjectReader object(document, node, "kind", diagnostics);
+  ObjectReader object(document, node, "pass type", diagnostics);
   HostPassTypeDeclaration type;
   type.name = object.string("name").value_or("");
   type.doc = object.string("doc", Need::optional).value_or("");
@@ -159,10 +159,10 @@ PassTypeProblem problem_of(const HostPassTypeDeclaration& type) {
     return name(fmt::format("name is '{}'; names that begin with '{}' are reserved for the library",
                             type.name, own_prefix));
   if (type.ports.empty() || type.ports.size() > limits::host_pass_type_ports)
-    return count(fmt::format("there are {} ports, expected 1..{}", type.ports.size(),
+    return count(fmt::format("ports has {} entries, expected 1..{}", type.ports.size(),
                              limits::host_pass_type_ports));
   if (type.settings.size() > limits::host_pass_type_settings)
-    return count(fmt::format("there are {} settings, expected 0..{}", type.settings.size(),
+    return count(fmt::format("settings has {} entries, expected 0..{}", type.settings.size(),
                              limits::host_pass_type_settings));
   for (size_t i = 0; i < type.ports.size(); ++i)
     if (!is_name(type.ports[i].name))

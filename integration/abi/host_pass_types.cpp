@@ -30,16 +30,16 @@ constexpr std::array setting_types{SettingType::boolean, SettingType::integer, S
 dermis_result read_ports(const Log& log, const dermis_pass_type& given,
                          HostPassTypeDeclaration& type) {
   if (given.port_count > 0 && given.ports == nullptr)
-    return bad_argument(log, "{}: kind.ports is NULL, port_count is {}", registering,
+    return bad_argument(log, "{}: type.ports is NULL, port_count is {}", registering,
                         given.port_count);
   for (uint32_t i = 0; i < given.port_count; ++i) {
     dermis_port port = DERMIS_PORT_INIT;
     if (const SizedRead read = read_sized(element(given.ports, i), port); read != SizedRead::ok)
-      return rejected_size(log, read, "dermis_register_pass_type: kind.ports",
+      return rejected_size(log, read, "dermis_register_pass_type: type.ports",
                            stated_size(given.ports), sizeof(dermis_port));
     const auto usage = static_cast<size_t>(port.usage);
     if (usage >= usages.size())
-      return bad_argument(log, "{}: kind.ports[{}].usage is {}, expected 0..{}", registering, i,
+      return bad_argument(log, "{}: type.ports[{}].usage is {}, expected 0..{}", registering, i,
                           static_cast<int>(port.usage), usages.size() - 1);
     type.ports.push_back({text_of(port.name), text_of(port.doc), usages[usage], port.optional != 0,
                           port.own_texels != 0, port.internally_ordered != 0});
@@ -50,17 +50,17 @@ dermis_result read_ports(const Log& log, const dermis_pass_type& given,
 dermis_result read_settings(const Log& log, const dermis_pass_type& given,
                             HostPassTypeDeclaration& type) {
   if (given.setting_count > 0 && given.settings == nullptr)
-    return bad_argument(log, "{}: kind.settings is NULL, setting_count is {}", registering,
+    return bad_argument(log, "{}: type.settings is NULL, setting_count is {}", registering,
                         given.setting_count);
   for (uint32_t i = 0; i < given.setting_count; ++i) {
     dermis_pass_setting setting = DERMIS_PASS_SETTING_INIT;
     if (const SizedRead read = read_sized(element(given.settings, i), setting);
         read != SizedRead::ok)
-      return rejected_size(log, read, "dermis_register_pass_type: kind.settings",
+      return rejected_size(log, read, "dermis_register_pass_type: type.settings",
                            stated_size(given.settings), sizeof(dermis_pass_setting));
     const auto value_type = static_cast<size_t>(setting.type);
     if (value_type >= setting_types.size())
-      return bad_argument(log, "{}: kind.settings[{}].type is {}, expected 0..{}", registering, i,
+      return bad_argument(log, "{}: type.settings[{}].type is {}, expected 0..{}", registering, i,
                           static_cast<int>(setting.type), setting_types.size() - 1);
     type.settings.push_back({text_of(setting.name), text_of(setting.unit), text_of(setting.doc),
                              setting_types[value_type], setting.default_value, setting.minimum,
@@ -73,13 +73,13 @@ dermis_result add(dermis_context_t& context, const dermis_pass_type* given) {
   const Log& log = context.log;
   dermis_pass_type desc = DERMIS_PASS_TYPE_INIT;
   if (const SizedRead read = read_sized(given, desc); read != SizedRead::ok)
-    return rejected_size(log, read, "dermis_register_pass_type: kind", stated_size(given),
+    return rejected_size(log, read, "dermis_register_pass_type: type", stated_size(given),
                          sizeof(dermis_pass_type));
-  if (desc.record == nullptr) return bad_argument(log, "{}: kind.record is NULL", registering);
+  if (desc.record == nullptr) return bad_argument(log, "{}: type.record is NULL", registering);
   if (desc.port_count > limits::host_pass_type_ports ||
       desc.setting_count > limits::host_pass_type_settings)
     return bad_argument(
-        log, "{}: kind.port_count is {} and setting_count {}, at most {} and {} are possible",
+        log, "{}: type.port_count is {} and setting_count {}, at most {} and {} are possible",
         registering, desc.port_count, desc.setting_count, limits::host_pass_type_ports,
         limits::host_pass_type_settings);
   HostPassTypeDeclaration type;
@@ -118,7 +118,7 @@ dermis_result add_host_pass_type(dermis_context_t& context, HostPassTypeDeclarat
                                  dermis_pass_fn record, void* user) {
   const Log& log = context.log;
   if (const PassTypeProblem problem = problem_of(type); !problem.text.empty())
-    return bad_argument(log, "{}: kind.{}", registering, problem.text);
+    return bad_argument(log, "{}: type.{}", registering, problem.text);
 
   const std::lock_guard lock(context.mutex);
   if (!context.graphs.empty())
@@ -174,7 +174,7 @@ extern "C" dermis_result DERMIS_CALL dermis_register_pass_type(dermis_context co
   if (context == nullptr) return bad_argument({}, "dermis_register_pass_type: context is NULL");
   return guarded(context->log, registering, [&] {
     if (type == nullptr)
-      return bad_argument(context->log, "dermis_register_pass_type: kind is NULL");
+      return bad_argument(context->log, "dermis_register_pass_type: type is NULL");
     return add(*context, type);
   });
 }

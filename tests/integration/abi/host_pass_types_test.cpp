@@ -160,22 +160,22 @@ TEST_F(HostPassTypes, UnregisteredType_IsAnErrorOfTheGraph) {
 
 TEST_F(HostPassTypes, WrongField_IsNamed) {
   dermis_pass_type wrong = type("bloom", add_ports);
-  expect_rejected(wrong, "kind.name is 'bloom'");
+  expect_rejected(wrong, "type.name is 'bloom'");
   wrong.name = nullptr;
-  expect_rejected(wrong, "kind.name is ''");
+  expect_rejected(wrong, "type.name is ''");
   wrong.name = "subsurface.mine";
   expect_rejected(wrong, "are reserved for the library");
   wrong = type("studio.add", add_ports);
   wrong.record = nullptr;
-  expect_rejected(wrong, "kind.record is NULL");
+  expect_rejected(wrong, "type.record is NULL");
   wrong = type("studio.add", add_ports);
   wrong.port_count = 0;
-  expect_rejected(wrong, "there are 0 ports");
+  expect_rejected(wrong, "type.ports has 0 entries, expected 1..32");
   wrong.port_count = 33;
-  expect_rejected(wrong, "kind.port_count is 33");
+  expect_rejected(wrong, "type.port_count is 33");
   wrong.port_count = 1;
   wrong.ports = nullptr;
-  expect_rejected(wrong, "kind.ports is NULL");
+  expect_rejected(wrong, "type.ports is NULL");
   auto ports = add_ports;
   ports[1].name = "bright";
   expect_rejected(type("studio.add", ports), "have the same name 'bright'");
@@ -183,7 +183,7 @@ TEST_F(HostPassTypes, WrongField_IsNamed) {
   expect_rejected(type("studio.add", ports), "ports[1].name is 'a b'");
   ports = add_ports;
   ports[2].usage = static_cast<dermis_port_usage>(7);
-  expect_rejected(type("studio.add", ports), "kind.ports[2].usage is 7");
+  expect_rejected(type("studio.add", ports), "type.ports[2].usage is 7");
   ports[0].struct_size = 4;
   expect_rejected(type("studio.add", ports), "struct_size");
   wrong = type("studio.add", add_ports);
@@ -195,7 +195,8 @@ TEST_F(HostPassTypes, WrongField_IsNamed) {
   values = settings;
   values[1].default_value = 3.5;
   expect_rejected(wrong, "settings[1] is an int");
-  EXPECT_EQ(dermis_register_pass_type(context, nullptr), DERMIS_ERROR_ARGUMENT);
+  EXPECT_THAT(dermis_register_pass_type(context, nullptr),
+              Fails(DERMIS_ERROR_ARGUMENT, "dermis_register_pass_type: type is NULL"));
   EXPECT_EQ(dermis_register_pass_type(nullptr, &wrong), DERMIS_ERROR_ARGUMENT);
 }
 

@@ -227,10 +227,10 @@ TEST(HostsPassTypes, TooManyPassTypes_AreRejected) {
         << said;
   };
   type.setting_count = 1;
-  rejected("kind.settings is NULL, setting_count is 1");
+  rejected("type.settings is NULL, setting_count is 1");
   type.settings = &setting;
   setting.type = static_cast<dermis_pass_setting_type>(3);
-  rejected("kind.settings[0].type is 3, expected 0..2");
+  rejected("type.settings[0].type is 3, expected 0..2");
   type.setting_count = 33;
   rejected("setting_count 33, at most");
   type.setting_count = 0;
