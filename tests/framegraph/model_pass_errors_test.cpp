@@ -31,7 +31,7 @@ INSTANTIATE_TEST_SUITE_P(
                Id::unknown_key, R"("pas":)", {"pass number 4", "did you mean 'pass'?"}),
         damage("AnUnknownPortHasASuggestion", R"("read": { "source": "light")",
                R"("read": { "sorce": "light")", Id::unknown_port, R"("sorce":)",
-               {"pass 'blur'", "'test.blur'", "did you mean 'source'?"}),
+               {"pass 'blur'", "'test.blur'", "under \"read\"; it has", "did you mean 'source'?"}),
         damage("ARequiredPortIsBound",
                R"("read": { "source": "half" }, "write": { "target": "fixed" })",
                R"("write": { "target": "fixed" })", Id::missing_port, R"("copy", )",

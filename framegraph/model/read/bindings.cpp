@@ -23,8 +23,8 @@ class Bindings {
 public:
   Bindings(GraphReader& reader, ObjectReader& object, PassDeclaration& pass)
       : reader_(reader), object_(object), pass_(pass),
-        kind_(pass.type.valid() ? &reader.pass_types[pass.type] : nullptr),
-        bound_(kind_ ? kind_->ports.size() : 0) {}
+        pass_type_(pass.type.valid() ? &reader.pass_types[pass.type] : nullptr),
+        bound_(pass_type_ ? pass_type_->ports.size() : 0) {}
 
   void read_side(PortSide side) {
     const std::string_view key = side == PortSide::read ? "read" : "write";
@@ -44,15 +44,15 @@ public:
   }
 
   void report_missing() {
-    if (kind_ == nullptr || !complete_) return;
-    for (size_t i = 0; i < kind_->ports.size(); ++i) {
-      const Port& port = kind_->ports[i];
+    if (pass_type_ == nullptr || !complete_) return;
+    for (size_t i = 0; i < pass_type_->ports.size(); ++i) {
+      const Port& port = pass_type_->ports[i];
       if (bound_[i] || port.optional) continue;
       if (side_of(port) == PortSide::write) writes_known_ = false;
       reader_.error(
           DiagnosticId::missing_port, pass_.where,
           fmt::format("{} of type '{}' needs a resource at the port '{}' under \"{}\" ({})",
-                      object_.what(), kind_->name, port.name,
+                      object_.what(), pass_type_->name, port.name,
                       side_of(port) == PortSide::read ? "read" : "write", port.doc));
     }
     report_none_of();
@@ -62,14 +62,15 @@ public:
 
 private:
   void report_none_of() {
-    if (kind_->one_of.empty()) return;
-    for (uint32_t i = 0; i < kind_->ports.size(); ++i)
-      if (bound_[i] && is_one_of(*kind_, i)) return;
-    const Port& first = kind_->ports[static_cast<size_t>(find_port(*kind_, kind_->one_of.front()))];
+    if (pass_type_->one_of.empty()) return;
+    for (uint32_t i = 0; i < pass_type_->ports.size(); ++i)
+      if (bound_[i] && is_one_of(*pass_type_, i)) return;
+    const Port& first =
+        pass_type_->ports[static_cast<size_t>(find_port(*pass_type_, pass_type_->one_of.front()))];
     reader_.error(
         DiagnosticId::missing_port, pass_.where,
         fmt::format("{} of type '{}' needs a resource at one of its ports {} under \"{}\"",
-                    object_.what(), kind_->name, list_words(kind_->one_of),
+                    object_.what(), pass_type_->name, list_words(pass_type_->one_of),
                     side_of(first) == PortSide::read ? "read" : "write"));
   }
 
@@ -99,7 +100,7 @@ private:
     reader_.graph.bind(pass_, side, found.binding, found.where);
     if (found.binding.port != unknown_port &&
         !reader_.broken_resources[found.binding.resource.value])
-      check(kind_->ports[found.binding.port], what, found);
+      check(pass_type_->ports[found.binding.port], what, found);
   }
 
   // Reads { "from": "name@-N", "requires": "valid", "otherwise": "name" }.
@@ -145,7 +146,7 @@ private:
                                                "and that frame may be invalid, too",
                                                what, resource.name, history.binding.frames_back));
     if (history.binding.port == unknown_port) return true;
-    const Port& port = kind_->ports[history.binding.port];
+    const Port& port = pass_type_->ports[history.binding.port];
     if (port.usage == Usage::indirect_arguments)
       return reject(history.where, fmt::format("{} provides the size of the dispatch, which every "
                                                "frame reads; the read cannot be conditional",
@@ -161,36 +162,36 @@ private:
   }
 
   int find(PortSide side, NodeId node) {
-    if (kind_ == nullptr) return -1;
+    if (pass_type_ == nullptr) return -1;
     const std::string_view name = reader_.document.key(node);
-    if (const int port = find_port(*kind_, name, side); port >= 0) {
+    if (const int port = find_port(*pass_type_, name, side); port >= 0) {
       bound_[static_cast<size_t>(port)] = true;
       return port;
     }
-    if (const int other = find_port(*kind_, name); other >= 0) {
+    if (const int other = find_port(*pass_type_, name); other >= 0) {
       bound_[static_cast<size_t>(other)] = true; // reports only one error
-      reader_.error(DiagnosticId::port_direction, reader_.document.where_key(node),
-                    fmt::format("the port '{}' of type '{}' {}; list it under \"{}\"", name,
-                                kind_->name,
-                                usage_info(kind_->ports[static_cast<size_t>(other)].usage).writes
-                                    ? "writes"
-                                    : "only reads",
-                                side == PortSide::read ? "write" : "read"));
+      reader_.error(
+          DiagnosticId::port_direction, reader_.document.where_key(node),
+          fmt::format("the port '{}' of type '{}' {}; list it under \"{}\"", name, pass_type_->name,
+                      usage_info(pass_type_->ports[static_cast<size_t>(other)].usage).writes
+                          ? "writes"
+                          : "only reads",
+                      side == PortSide::read ? "write" : "read"));
       return -1;
     }
     std::vector<std::string_view> names;
-    for (const Port& port : kind_->ports) {
+    for (const Port& port : pass_type_->ports) {
       if (side_of(port) == side) names.push_back(port.name);
     }
     Diagnostic& one = reader_.error(
         DiagnosticId::unknown_port, reader_.document.where_key(node),
         fmt::format("{} is of type '{}', which has no port '{}' under \"{}\"{}", object_.what(),
-                    kind_->name, name, side == PortSide::read ? "read" : "write",
-                    names.empty() ? std::string() : fmt::format(", but {}", list_words(names))));
+                    pass_type_->name, name, side == PortSide::read ? "read" : "write",
+                    names.empty() ? std::string() : fmt::format("; it has {}", list_words(names))));
     one.suggestion = did_you_mean(name, names);
     // A misspelt port is not also reported as missing.
     const std::string_view meant = nearest(name, names);
-    if (!meant.empty()) bound_[static_cast<size_t>(find_port(*kind_, meant, side))] = true;
+    if (!meant.empty()) bound_[static_cast<size_t>(find_port(*pass_type_, meant, side))] = true;
     return -1;
   }
 
@@ -278,7 +279,7 @@ private:
     if (found.binding.port == unknown_port || resource.type != ResourceType::image ||
         resource.mips == 1 || resource.origin == Origin::imported || resource.exported)
       return true;
-    const Usage usage = kind_->ports[found.binding.port].usage;
+    const Usage usage = pass_type_->ports[found.binding.port].usage;
     if (usage != Usage::storage_image_write && usage != Usage::storage_image_update) return true;
     if (found.binding.range.first_mip == 0 && found.binding.range.mips == 0)
       found.binding.range.mips = 1;
@@ -319,7 +320,7 @@ private:
   GraphReader& reader_;
   ObjectReader& object_;
   PassDeclaration& pass_;
-  const PassType* kind_;
+  const PassType* pass_type_;
   std::vector<bool> bound_; // by port: named in the file, correctly or not
   bool complete_ = true;    // all bindings were read
   bool writes_known_ = true;

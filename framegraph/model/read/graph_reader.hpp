@@ -71,7 +71,8 @@ void read_pass_settings(GraphReader& reader, ObjectReader& pass, PassDeclaration
 // Returns a resource by name; invalid after an error at `where`, or silently if some names are
 // unknown.
 ResourceId find_resource(GraphReader& reader, std::string_view name, std::string_view what,
-                         const SourceLocation& where);
+                         const SourceLocation& where,
+                         std::string_view problem = "which is not declared");
 
 // Returns the names of a map in order, for suggestions.
 template <class Id>

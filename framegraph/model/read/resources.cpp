@@ -74,7 +74,8 @@ bool read_size(GraphReader& reader, ObjectReader& object, std::string_view key, 
     rounding.border = static_cast<uint32_t>(
         object.integer("border", 0, limits::image_border, Need::optional).value_or(0));
   const auto find = [&](std::string_view name) {
-    return find_resource(reader, name, what, reader.document.where(node));
+    return find_resource(reader, name, what, reader.document.where(node),
+                         "which is neither \"view\", \"square_view\" nor declared");
   };
   const auto size = parse_size(reader.document, node, what, owner, count, find, reader.diagnostics);
   if (!size) return false;
@@ -200,13 +201,13 @@ bool read_resource(GraphReader& reader, ResourceId id) {
 } // namespace
 
 ResourceId find_resource(GraphReader& reader, std::string_view name, std::string_view what,
-                         const SourceLocation& where) {
+                         const SourceLocation& where, std::string_view problem) {
   const auto found = reader.resource_names.find(name);
   if (found != reader.resource_names.end()) return found->second;
   if (reader.unknown_resources) return {};
   reader
       .error(DiagnosticId::unknown_resource, where,
-             fmt::format("{} names '{}', which is not declared", what, name))
+             fmt::format("{} names '{}', {}", what, name, problem))
       .suggestion = did_you_mean(name, names_of(reader.resource_names));
   return {};
 }
