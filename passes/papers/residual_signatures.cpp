@@ -64,7 +64,7 @@ constexpr PassTypeSetting blend_settings[] = {
     setting::lod_bias(-1.5),
     setting::per_frame(
         setting::real("below", 0.93, 0, 2, "", "confidence below which a pixel is sampled")),
-    setting::sample_weight(0.1),
+    setting::sample_weight(0.05),
 };
 
 constexpr PassTypeSetting residual_settings[] = {

@@ -61,7 +61,7 @@ constexpr auto tile_refine_ports =
 constexpr PassTypeSetting tile_refine_settings[] = {
     setting::lod_bias(-1.5),
     below,
-    setting::sample_weight(0.1),
+    setting::sample_weight(0.05),
 };
 
 } // namespace

@@ -28,8 +28,8 @@ float sap_rate(float width) { return sqrt(0.5 * 1.44269504) / width; }
 // distance from the tangent plane and its difference in depth.
 float sap_nearer(float a, float b) { return min(abs(a), abs(b)); }
 
-// Largest mass of a texel, on folded surfaces (sap_folds.glsl).
-const float sap_max_mass = 1.5;
+// Largest mass of a texel, on folded surfaces (sap_folds.glsl); 255 / sap_max_mass is whole.
+const float sap_max_mass = 1.875;
 
 struct sap_texel {
   float depth;  // mm; its last bits are sap_held()

@@ -75,16 +75,16 @@ float kept_of(sap_texel seed, sap_texel child, vec2 offset, float per_sigma_mm,
       sap_nearer(depth_step - sap_rise(seed.depth, seed.slope, offset) * per_sigma_mm, depth_step);
   return exp2(sap_factor(sap_depth_width) * off * off);
 }
-// Returns the fraction of a child that the layer with seed `before` has not used; 1 without such a
-// layer (id 0). `off` receives the child's distance from that layer in its sigmas.
-float left_of(sap_texel before, sap_texel child, vec2 offset, float spacing, out float off) {
+// Returns the fraction of a child that the layer with seed `before` has used; 0 without such a layer
+// (id 0). `off` receives the child's distance from that layer in its sigmas.
+float used_by(sap_texel before, sap_texel child, vec2 offset, float spacing, out float off) {
   off = 0.0;
   if (!shares_children() && before.id == 0u)
-    return 1.0;
+    return 0.0;
   float depth_step, per_sigma = 1.0 / (sap_sigma * spacing);
   float per_sigma_mm = per_sigma / sap_footprint(before.depth);
-  float left = 1.0 - kept_of(before, child, offset, per_sigma_mm, depth_step, off);
-  return before.id == 0u || before.id != child.id ? 1.0 : left;
+  float kept = kept_of(before, child, offset, per_sigma_mm, depth_step, off);
+  return before.id == 0u || before.id != child.id ? 0.0 : kept;
 }
 
 #endif

@@ -8,8 +8,13 @@
 #include "sap/sap_seed.glsl"
 #include "sap/sap_storage.glsl"
 
-// Fraction of a child's mass that counts in the second layer even if the first has used the child.
-const float min_shared_mass = 0.25;
+// Fraction of a child that counts in the second layer even if the first has used the child.
+const float min_shared = 0.25;
+// Returns what more of the child's mass counts, up to all of it. bend: difference of the slopes of
+// child and seed. Parallel surfaces are two; a bent surface must not count twice.
+float shared_mass(vec2 bend) {
+  return clamp(1.0 - min_shared - abs(bend.x) - abs(bend.y), 0.0, 1.0);
+}
 
 // Sums over the children of a layer's profile: weight, and weight times what the parent holds.
 struct holding {
@@ -28,7 +33,8 @@ uint held_of(holding sum) {
 }
 
 // Sums over the children near the surface of a seed. Light is that of all of them, also of those on
-// the layer before: both surfaces scatter into each other. Mass and plane count these less.
+// the layer before: both surfaces scatter into each other. The plane counts these less, and so does
+// mass unless they are parallel.
 struct reduction {
   float all_weight, light_mass, mass, total, total_flat, mean_depth, mean_reach;
   vec2 mean_slope;
@@ -68,19 +74,21 @@ void add_child(sap_parent parent, sap_seed own, sap_seed before, int c, bool sec
   float kept = kept_of(seed, child, offset, per_sigma_mm, depth_step, off);
   float along = sap_nearer(tilt, depth_step);
   float narrowing = exp2(sap_factor(sap_tilt_width_down) * along * along);
-  float left = left_of(before.texel, child, offset, spacing, off_before);
+  float used = used_by(before.texel, child, offset, spacing, off_before), left = 1.0 - used;
   bool same = child.id == seed.id;
   float part = binomial(parent, c) * child.mass, own_part = same ? part : 0.0;
   float near_weight = own_part * kept;
-  float flat_weight = near_weight * (min_shared_mass + (1.0 - min_shared_mass) * left);
-  sum.remains = sum.remains || child.id != 0u && !(same && 1.0 - kept < min_seed_part);
+  float used_weight = near_weight * used;
+  float flat_weight = near_weight - (1.0 - min_shared) * used_weight;
+  float mass = flat_weight + used_weight * shared_mass(child.slope - seed.slope);
+  sum.remains = sum.remains || child.id != 0u && !(same && kept > max_used_part);
   vec4 tap = light_of(parent, c, second, child.id);
   float weight = near_weight * narrowing * tap.a;
   sum.light_mass += near_weight * narrowing;
-  sum.mass += flat_weight * narrowing;
+  sum.mass += mass * narrowing;
   if (finer_has_layers()) {
-    sum.area_mass += flat_weight * narrowing * sap_area_of(child.slope);
-    sum.rise += flat_weight * narrowing * tilt * depth_step;
+    sum.area_mass += mass * narrowing * sap_area_of(child.slope);
+    sum.rise += mass * narrowing * tilt * depth_step;
   }
   sum.total += weight;
   sum.total_flat += flat_weight;
@@ -126,7 +134,7 @@ sap_layer layer_of_sums(sap_parent parent, sap_texel seed, sap_texel before, red
     vec3 rounded =
         round_to_half(vec3(sum.mean_slope / sum.total_flat, sum.mean_reach / sum.total_flat));
     float mass = min(sum.mass / sum.all_weight, 1.0);
-    if (finer_has_layers() && parent.finer + 1 >= sap_first_area_level)
+    if (finer_has_layers() && (square_pixels || parent.spacing >= sap_first_area_spacing))
       mass = sap_mass_by_area(sum.mass, sum.area_mass, sum.rise, sum.first, sum.all_weight,
                               seed.slope, sum.mean_slope / sum.total_flat);
     sap_texel texel = sap_texel(max(sum.mean_depth / sum.total_flat, nearest_fraction * seed.depth),

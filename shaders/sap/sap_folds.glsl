@@ -5,18 +5,17 @@
 
 #include "sap/sap.glsl"
 
-// The first level whose mass counts area, if texels can have two layers.
-const int sap_first_area_level = 3;
 // See tests/passes/sap/cpu/sap_levels.hpp.
-const float sap_rising = 16.0;
+const float sap_rising = 16.0, sap_max_area = 2.5, sap_gain_power = 1.65;
+const float sap_first_area_spacing = 2.0;
 
-// Returns the area of a surface divided by its cross-section, at most 2.
-float sap_area_of(vec2 slope) { return min(sqrt(1.0 + dot(slope, slope)), 2.0); }
+// Returns the area of a surface divided by its cross-section, at most sap_max_area.
+float sap_area_of(vec2 slope) { return min(sqrt(1.0 + dot(slope, slope)), sap_max_area); }
 
 // Returns the mass of a parent by the area of its children, up to sap_max_mass.
 // - Without a gain of area, mass is at most that of the children: on a bend they are nearer than
 //   the plane of the seed, but the surface is not larger.
-// - The gain is the square of the ratio of areas, because folds also lose mass on the way up.
+// - The gain is a power of the ratio of areas, because folds also lose mass on the way up.
 // - On teeth of a saw, children do not rise as their planes do. The parent then has the area of the
 //   surface along which the children lie.
 // - There is no gain where surface ends. A sphere has no more area within reach than a plane, and
@@ -35,7 +34,7 @@ float sap_mass_by_area(float mass, float area_mass, float rise, float first, flo
   float ratio = area_mass / (mass * sap_area_of(rising * slope));
   float covered = min(first * first, 1.0);
   covered *= covered;
-  float gain = 1.0 + (ratio * ratio - 1.0) * covered * covered;
+  float gain = 1.0 + (pow(ratio, sap_gain_power) - 1.0) * covered * covered;
   return min(min(mass / all_weight, max(first, 1.0)) * gain, sap_max_mass);
 }
 

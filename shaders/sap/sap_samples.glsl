@@ -18,7 +18,7 @@ const float on_surface = 2.0;
 
 // Maximum odds of 16 samples against the pyramid's light. Confidence does not say by how much the
 // pyramid is wrong, and on folds under fine patterns of light samples are as noisy.
-const float max_sample_odds = 0.3;
+const float max_sample_odds = 0.15;
 // Returns the weight of the mean of `count` samples in a blend with the pyramid's light, from the
 // variances of both: the pyramid's is taken as proportional to the confidence that it lacks, that
 // of the samples as inverse to their number. `ratio`: odds of 16 samples at a confidence of 0.

@@ -7,17 +7,18 @@
 const float hysteresis = 1.02;    // keeps the first seed among equals
 // minimum fraction of a plane's depth to which the plane is extrapolated
 const float nearest_fraction = 0.25;
-// A child with less left is no seed of the second layer, because it lies on a bend of the first
-// layer's surface.
-const float min_seed_part = 0.75;
+// A child that the first layer has used more is no seed of the second layer, because it lies on a
+// bend of the first layer's surface.
+const float max_used_part = 0.27;
 
 float at_parent(sap_texel child, vec2 offset) {
   return max(child.depth - sap_rise(child.depth, child.slope, offset),
              nearest_fraction * child.depth);
 }
 bool may_seed(sap_parent parent, sap_texel before, sap_texel child, int c) {
-  float off, left = left_of(before, child, offset_of(parent, c), parent.spacing, off);
-  return child.id != 0u && (square_pixels || binomial(parent, c) > 0.0) && left >= min_seed_part;
+  float off, used = used_by(before, child, offset_of(parent, c), parent.spacing, off);
+  return child.id != 0u && (square_pixels || binomial(parent, c) > 0.0) &&
+         used <= max_used_part;
 }
 
 // Returns the central child: 0 to 3 of the first layer, 4 to 7 of the second.

@@ -55,12 +55,15 @@ void read_ring(texel_block block) {
   }
 }
 
+// Change of depth per pixel, in sides of a pixel, beyond which a pixel is next to another surface.
+const float edge_slope = 3.0;
+
 // Returns whether the pixel at `here` is next to another surface: one of another profile, or one
-// that is too far off in depth for a patch.
+// that is far off in depth.
 bool is_at_edge(int here) {
   uint id = profile_at(here);
   float depth = depth_at(here);
-  vec2 max_step = max_patch_step(depth);
+  vec2 max_step = edge_slope * pixel_footprint(depth);
   bool found = false;
   [[unroll]] for (int i = 0; i < 4; ++i) {
     bool along_row = i < 2;

@@ -77,8 +77,8 @@ TEST_P(RefinedFamily, NoSceneIsWorseThanThePyramid) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Graphs, RefinedFamily,
-                         ::testing::Values(RefinedGraph{"hybrid", 1, 0.99},
-                                           RefinedGraph{"sap_blend", 1, 0.995},
+                         ::testing::Values(RefinedGraph{"hybrid", 1, 0.995},
+                                           RefinedGraph{"sap_blend", 1, 0.999},
                                            RefinedGraph{"sap_residual", 24, 0.92}),
                          [](const auto& one) { return std::string(one.param.name); });
 

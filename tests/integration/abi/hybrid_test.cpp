@@ -19,7 +19,7 @@ constexpr uint32_t side = 64, tiles_across = side / 8;
 
 // A unit of samples costs 1 us, all other work nothing.
 constexpr const char* unit_times = R"({ "dermis_calibration": 2, "device": "invented", "costs": [
-  { "work": "subsurface.tile_refine lod_bias=-1.5 below=0.93 sample_weight=0.1", "base_us": 0, "group_us": 1, "spread": 0 },
+  { "work": "subsurface.tile_refine lod_bias=-1.5 below=0.93 sample_weight=0.05", "base_us": 0, "group_us": 1, "spread": 0 },
   { "work": "subsurface.classify texturing=post", "base_us": 0, "group_us": 0, "spread": 0 },
   { "work": "subsurface.classify_uniform_light", "base_us": 0, "group_us": 0, "spread": 0 },
   { "work": "subsurface.sap_tiles", "base_us": 0, "group_us": 0, "spread": 0 },

@@ -21,7 +21,7 @@ std::vector<StageDesc> soak_stages() {
         {"variant", {"\"base\"", "\"smooth\""}},
         {"taps", {"\"11\"", "\"17\"", "\"25\""}},
         {"below", {"0", "0.93", "2"}},
-        {"sample_weight", {"0", "0.1", "16"}},
+        {"sample_weight", {"0", "0.05", "16"}},
         {"lod_bias", {"-8", "-1.5", "4"}}}},
       {"residual",
        "sap_residual",

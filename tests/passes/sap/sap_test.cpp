@@ -160,16 +160,19 @@ TEST(Sap, Grooves_GainFromLevel1) {
 }
 
 TEST(Sap, PixelsOfOneSurface_KeepOneLayerAtLevel1) {
-  // A zigzag of 56 degrees has folds, but no step above the slope of a patch.
+  // A zigzag of 56 degrees has folds, but no step above sap_edge_slope.
   Scene scene(96, 64, {6, 6, 6});
   scene.paint(texture);
   for (uint32_t i = 0; i < scene.depth.size(); ++i)
     scene.depth[i] = 0.5f + 1.48e-3f * std::abs(float(i % 96 % 24) - 12.0f);
-  EXPECT_EQ(sap_scatter<float>(scene.input(), smooth_table(), {.first_layered = 1}).light,
-            sap_scatter<float>(scene.input(), smooth_table(), {.first_layered = 2}).light);
+  const auto second_texels = [&] {
+    const auto pyramid = build_sap_pyramid<float>(scene.input(), 1, 0);
+    return std::ranges::count_if(pyramid.levels[1].layers[1],
+                                 [](const SapTexel<float>& texel) { return texel.id != 0; });
+  };
+  EXPECT_EQ(second_texels(), 0);
   scene.depth[32 * 96 + 48] = 0.48f; // One pixel far in front of the others.
-  EXPECT_NE(sap_scatter<float>(scene.input(), smooth_table(), {.first_layered = 1}).light,
-            sap_scatter<float>(scene.input(), smooth_table(), {.first_layered = 2}).light);
+  EXPECT_GT(second_texels(), 0);
 }
 
 TEST(Sap, TexturedPlaneMatchesTheReference) {
@@ -282,8 +285,8 @@ TEST(Sap, FoldsMatchTheReference) {
   struct Case {
     double degrees, period, max_rmse;
   };
-  // Regression bounds: measured 9.4e-3 and 3.4e-3; 19e-3 and 10.7e-3 if mass counts no area.
-  for (const Case& one : {Case{56, 24, 10.3e-3}, Case{45, 24, 3.8e-3}}) {
+  // Regression bounds: measured 6.7e-3 and 3.3e-3; 19e-3 and 10.7e-3 if mass counts no area.
+  for (const Case& one : {Case{56, 24, 7.3e-3}, Case{45, 24, 3.7e-3}}) {
     Scene scene(128, 96, {6, 6, 6});
     scene.paint(texture);
     for (uint32_t i = 0; i < scene.depth.size(); ++i) {

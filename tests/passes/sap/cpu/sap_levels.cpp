@@ -15,11 +15,17 @@ constexpr double nearest_fraction = 0.25;
 constexpr size_t children_a_layer = 16, no_child = 2 * children_a_layer;
 // Indices of the central children in the first and the second layer.
 constexpr size_t central[8] = {5, 6, 9, 10, 21, 22, 25, 26};
-// A child with a smaller rest cannot seed the second layer: it belongs to the bent surface of the
-// first layer.
-constexpr double min_seed_part = 0.75;
-// Fraction of a child's mass that counts in the second layer even if the first has used the child.
-constexpr double min_shared_mass = 0.25;
+// A child that the first layer has used more cannot seed the second layer: it belongs to the bent
+// surface of the first layer.
+constexpr double max_used_part = 0.27;
+
+// Fraction of a child that counts in the second layer even if the first has used the child.
+constexpr double min_shared = 0.25;
+// Returns the same fraction for mass: up to 1 if the child is parallel to the layer's seed.
+// Parallel surfaces are two; a bent surface must not count twice.
+template <class Real> Real shared_mass(Real bend_x, Real bend_y) {
+  return std::max(Real(1) - std::abs(bend_x) - std::abs(bend_y), Real(min_shared));
+}
 
 // Weight of a child along an axis; an axis that is not halved has one child.
 template <class Real> Real binomial(size_t child, bool halves) {
@@ -39,7 +45,7 @@ template <class Real> struct Children {
            binomial<Real>(child % children_a_layer / 4, halves_y);
   }
   bool may_seed(size_t child) const {
-    return texels[child] && left[child] >= Real(min_seed_part) && weight(child) > 0;
+    return texels[child] && left[child] >= Real(1 - max_used_part) && weight(child) > 0;
   }
   Real x(size_t child) const {
     return halves_x ? (Real(child % 4) - Real(1.5)) * spacing_x : Real(0);
@@ -110,7 +116,7 @@ template <class Real> struct Folding {
     const Real rising = std::clamp(Real(sap_rising) * rise / plane, Real(0), Real(1));
     const Real ratio = area_mass / (mass * parent.slope_area(rising));
     const Real squared = std::min(first * first, Real(1)), covered = squared * squared;
-    const Real gain = 1 + (ratio * ratio - 1) * covered * covered;
+    const Real gain = 1 + (std::pow(ratio, Real(sap_gain_power)) - 1) * covered * covered;
     return std::min(std::min(mass / all_weight, std::max(first, Real(1))) * gain,
                     Real(sap_max_mass));
   }
@@ -118,8 +124,9 @@ template <class Real> struct Folding {
 
 // Builds one layer of a parent, and subtracts the used part from what the children have left. The
 // light of a layer is that of all children near its plane, also of those on another layer: both
-// surfaces scatter into each other. Mass and plane count children of the layer before less.
-// `mass_by_area`: see sap_first_area_level. `plane` receives the seed's plane.
+// surfaces scatter into each other. The plane counts children of the layer before less, and so does
+// mass unless they are parallel.
+// `mass_by_area`: mass counts area (sap_max_mass). `plane` receives the seed's plane.
 template <class Real>
 SapTexel<Real> reduce(const SapPyramid<Real>& pyramid, Children<Real>& children, bool mass_by_area,
                       SapTexel<Real>& plane) {
@@ -144,12 +151,15 @@ SapTexel<Real> reduce(const SapPyramid<Real>& pyramid, Children<Real>& children,
     const Real narrowing = sap_falloff(sap_nearer(tilt, step), sap_tilt_width_down);
     const Real kept = sap_falloff(off, sap_depth_width);
     const Real near_weight = children.weight(k) * kept * child->mass;
-    const Real flat_weight =
-        near_weight * (Real(min_shared_mass) + Real(1 - min_shared_mass) * children.left[k]);
+    const Real used = 1 - children.left[k];
+    const Real flat_weight = near_weight * (1 - Real(1 - min_shared) * used);
+    const Real near_mass =
+        near_weight * (children.left[k] + used * shared_mass(child->slope_x - plane.slope_x,
+                                                             child->slope_y - plane.slope_y));
     children.left[k] *= 1 - kept;
     const Real weight = near_weight * narrowing * child->area;
     light_mass += near_weight * narrowing;
-    const Real mass = flat_weight * narrowing;
+    const Real mass = near_mass * narrowing;
     sum.mass += mass;
     folds.area_mass += mass * child->slope_area();
     folds.rise += mass * tilt * step;
@@ -178,14 +188,14 @@ SapTexel<Real> reduce(const SapPyramid<Real>& pyramid, Children<Real>& children,
 }
 
 // Returns whether a pixel with a surface is next to another surface: one of another profile, or one
-// that is too far off in depth for a patch.
+// that is far off in depth.
 bool is_at_edge(const ReferenceInput& input, const Surface& surface, size_t i) {
   const double z = input.rays.perspective ? input.depth[i] : 1;
   const auto apart = [&](size_t other, double scale) {
     const double step = double(input.depth[other]) - double(input.depth[i]);
     return surface.patches[other].area > 0 &&
            (input.profile[other] != input.profile[i] ||
-            std::abs(step) > max_patch_slope * std::abs(scale) * z);
+            std::abs(step) > sap_edge_slope * std::abs(scale) * z);
   };
   const size_t x = i % input.width, y = i / input.width;
   return (x > 0 && apart(i - 1, input.rays.scale_x)) ||
@@ -271,7 +281,8 @@ SapPyramid<Real> build_sap_pyramid(const ReferenceInput& input, uint32_t first_l
                           .spacing_x = spacing_x,
                           .spacing_y = spacing_y};
     const size_t layers = pyramid.levels.size() < first_layered ? 1 : 2;
-    const bool mass_by_area = layers > 1 && pyramid.levels.size() >= sap_first_area_level;
+    const bool mass_by_area =
+        pyramid.levels.size() > first_layered && fine.spacing >= Real(sap_first_area_spacing);
     for (size_t layer = 0; layer < layers; ++layer)
       coarse.layers[layer].resize(coarse.index(coarse.width, coarse.height) + 1);
     parallel_for(static_cast<size_t>(coarse.height + 2), 4, threads, [&](size_t row) {

@@ -31,13 +31,17 @@ inline constexpr double sap_relevant_d = 6;
 // - d shrinks with the eighth root, and with the fourth root for level 0's own fractions, since a
 //   tilted pixel keeps more of its light.
 inline constexpr double sap_area_power = 0.25, sap_reach_power = 0.125;
-// A folded surface has more area within reach than its mean plane: from this level on, and where
-// texels can have two layers, mass counts the area of the children over that of the parent.
-inline constexpr int sap_first_area_level = 3;
-inline constexpr double sap_max_mass = 1.5, sap_max_area = 2;
+// A folded surface has more area within reach than its mean plane: where children can have two
+// layers, mass counts their area over that of the parent, to a power measured on the scenes of the
+// family. 255 / sap_max_mass is a whole number, so that a byte of the kernels holds a mass of 1.
+inline constexpr double sap_first_area_spacing = 2; // of the children, in pixels
+inline constexpr double sap_max_mass = 1.875, sap_max_area = 2.5, sap_gain_power = 1.65;
 // Children whose rise along the slope of their planes is less than 1 / sap_rising of the planes'
 // are on teeth of a saw, measured on the scales of the family.
 inline constexpr double sap_rising = 16;
+// Change of depth per pixel, in sides of a pixel, beyond which a pixel is next to another surface.
+// Such steps, of 3.5 sigmas, leave enough of a child for the seed of a second layer.
+inline constexpr double sap_edge_slope = 3;
 inline constexpr double sap_negligible = 1e-12;
 
 template <class Real> Real sap_falloff(Real x, double width) {
