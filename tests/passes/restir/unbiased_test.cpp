@@ -79,7 +79,7 @@ protected:
     pixels = look_at(scene, settings.width, settings.height);
     regions = testing::regions_of(pixels);
     reference =
-        means_of(area_reference(scene, pixels, regions, batches, quality(20000, 40000), 99));
+        means_of(area_reference(scene, pixels, regions, batches, quality(20000, 10000), 99));
     ASSERT_GE(regions.pixels.size(), 5u);
   }
 
