@@ -4,6 +4,7 @@
 #include "framegraph/compose/compose.hpp"
 #include "framegraph/text/limits.hpp"
 #include "tests/framegraph/model_support.hpp"
+#include "tests/support/text_file.hpp"
 
 #include <fmt/format.h>
 
@@ -224,12 +225,12 @@ constexpr const char* tiles_fragment = R"({ "dermis_fragment": 2, "note": "finds
 
 // Returns whole_graph with its first pass and its buffer moved into a fragment.
 std::string including_graph(const std::string& include = R"({ "include": "parts/tiles.json" })") {
-  std::string text = damaged(
-      ",\n    \"list\": { \"buffer\": { \"stride\": 4, \"count\": \"view/8\", \"extra\": 4 } } }",
-      " }");
-  const std::string pass =
-      R"({ "pass": "find", "type": "test.list", "read": { "mask": "material" }, "write": { "tiles": "list" } })";
-  return text.replace(text.find(pass), pass.size(), include);
+  return test::replaced(
+      damaged(",\n    \"list\": { \"buffer\": { \"stride\": 4, \"count\": \"view/8\", \"extra\": 4 "
+              "} } }",
+              " }"),
+      R"({ "pass": "find", "type": "test.list", "read": { "mask": "material" }, "write": { "tiles": "list" } })",
+      include);
 }
 
 TEST(Include, FragmentPassesAreInsertedAtTheInclude) {
@@ -253,8 +254,7 @@ TEST(Include, SharedFileIsIncludedOnce) {
 }
 
 TEST(Include, AMessageAboutAFragmentPointsIntoIt) {
-  std::string wrong = tiles_fragment;
-  wrong.replace(wrong.find("view/8"), 6, "vieww/8");
+  const std::string wrong = test::replaced(tiles_fragment, "view/8", "vieww/8");
   expect_one(put_together(including_graph(), {}, {{"parts/tiles.json", wrong}}),
              Id::unknown_resource, "parts/tiles.json:3:", {"'vieww'"});
   expect_one(put_together(including_graph(), {}, {{"parts/tiles.json", "{ \"dermis\": 2 }"}}),
@@ -262,8 +262,7 @@ TEST(Include, AMessageAboutAFragmentPointsIntoIt) {
 }
 
 TEST(Include, EqualDeclarationsMerge_DifferentAreRejected) {
-  std::string other = tiles_fragment;
-  other.replace(other.find("r8_uint"), 7, "r16_uint");
+  const std::string other = test::replaced(tiles_fragment, "r8_uint", "r16_uint");
   expect_one(
       put_together(including_graph(), {}, {{"parts/tiles.json", other}}), Id::duplicate_name,
       "parts/tiles.json:2:16",

@@ -7,6 +7,7 @@
 #include "framegraph/serialize/plan_file.hpp"
 #include "framegraph/verify/verify.hpp"
 #include "tests/framegraph/damaged_graph.hpp"
+#include "tests/support/text_file.hpp"
 
 #include "framegraph/model/read_graph.hpp"
 
@@ -64,10 +65,7 @@ Read read_with_host(std::string text) {
 }
 
 std::string with(std::string_view from, std::string_view to) {
-  std::string text(traced);
-  const size_t at = text.find(from);
-  EXPECT_NE(at, std::string::npos) << from;
-  return at == std::string::npos ? text : text.replace(at, from.size(), to);
+  return test::replaced(std::string(traced), from, to);
 }
 
 class DamagedHostResources : public ::testing::TestWithParam<Damage> {};

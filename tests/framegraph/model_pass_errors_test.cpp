@@ -2,6 +2,7 @@
 // diagnostic.
 
 #include "tests/framegraph/damaged_graph.hpp"
+#include "tests/support/text_file.hpp"
 
 namespace dermis {
 namespace {
@@ -161,12 +162,10 @@ INSTANTIATE_TEST_SUITE_P(
     property_of);
 
 TEST(ValidHistory, RequiredPortNeedsAnOtherwise) {
-  std::string text = damaged("\"source\": \"light\"",
-                             "\"source\": { \"from\": \"kept@-1\", \"requires\": \"valid\" }");
+  const std::string text = damaged(
+      "\"source\": \"light\"", "\"source\": { \"from\": \"kept@-1\", \"requires\": \"valid\" }");
   EXPECT_TRUE(read(text).graph); // The read gives zeros: the history is cleared first.
-  text.replace(text.find("\"first\": \"clear\", "), std::string("\"first\": \"clear\", ").size(),
-               "");
-  const Read result = read(text);
+  const Read result = read(test::replaced(text, "\"first\": \"clear\", ", ""));
   EXPECT_FALSE(result.graph);
   expect_only(result.diagnostics, Id::bad_requires, 21, 37,
               {"port 'source' of pass 'blur'", "'kept@-1'"});

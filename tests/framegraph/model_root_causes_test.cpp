@@ -2,6 +2,7 @@
 
 #include "framegraph/text/limits.hpp"
 #include "tests/framegraph/model_support.hpp"
+#include "tests/support/text_file.hpp"
 
 namespace dermis {
 namespace {
@@ -44,14 +45,11 @@ TEST(GraphErrors, ResourceNeverWritten_CannotBeRead) {
 TEST(GraphErrors, OnlyRootCausesAreReportedInOneRun) {
   // Gives no diagnostic for readers of `material`.
   std::string text = damaged("\"r8_uint\"", "\"r8uint\"");
-  const auto also = [&](std::string_view from, std::string_view to) {
-    ASSERT_NE(text.find(from), std::string::npos);
-    text.replace(text.find(from), from.size(), to);
-  };
-  also("\"int\": 16", "\"int\": 1.5"); // Gives no diagnostic for "$samples".
+  // Gives no diagnostic for "$samples".
+  text = test::replaced(text, "\"int\": 16", "\"int\": 1.5");
   // Gives no diagnostic for the reader of `list`.
-  also("\"type\": \"test.list\"", "\"type\": \"test.lisst\"");
-  also("\"kept@-2\"", "\"keptt@-2\"");
+  text = test::replaced(text, "\"type\": \"test.list\"", "\"type\": \"test.lisst\"");
+  text = test::replaced(text, "\"kept@-2\"", "\"keptt@-2\"");
   const Read result = read(text);
   EXPECT_FALSE(result.graph);
   ASSERT_EQ(result.diagnostics.list.size(), 4u) << all_messages(result.diagnostics);

@@ -3,6 +3,7 @@
 
 #include "framegraph/model/read_graph.hpp"
 #include "tests/framegraph/text_support.hpp"
+#include "tests/support/text_file.hpp"
 
 namespace dermis::testing {
 
@@ -101,11 +102,9 @@ inline std::string whole_graph() {
 
 // Returns `whole_graph` with the only occurrence of `from` replaced.
 inline std::string damaged(std::string_view from, std::string_view to) {
-  std::string text = whole_graph();
-  const size_t at = text.find(from);
-  EXPECT_NE(at, std::string::npos) << from;
-  EXPECT_EQ(text.find(from, at + 1), std::string::npos) << from << " is ambiguous";
-  return at == std::string::npos ? text : text.replace(at, from.size(), to);
+  const std::string text = whole_graph();
+  EXPECT_EQ(text.find(from), text.rfind(from)) << from << " is ambiguous";
+  return test::replaced(text, from, to);
 }
 
 } // namespace dermis::testing

@@ -1,19 +1,15 @@
 // Checks that docs/ describes files and messages as the code implements them.
 
 #include "tests/framegraph/model_support.hpp"
-
-#include <fstream>
-#include <sstream>
+#include "tests/support/text_file.hpp"
 
 namespace dermis {
 namespace {
 
 std::string read_documentation(const char* name) {
-  std::ifstream stream(std::string(DERMIS_SOURCE_DIR) + "/docs/" + name);
-  std::stringstream text;
-  text << stream.rdbuf();
-  EXPECT_FALSE(text.str().empty()) << name;
-  return text.str();
+  std::string text = test::read_text(std::string(DERMIS_SOURCE_DIR) + "/docs/" + name);
+  EXPECT_FALSE(text.empty()) << name;
+  return text;
 }
 
 TEST(Documentation, EveryDiagnosticHasAnEntry) {

@@ -3,23 +3,15 @@
 #include "integration/tools/command/run/device_graph.hpp"
 #include "passes/common/profiles/burley_profile.hpp"
 #include "tests/support/shipped_graphs.hpp"
+#include "tests/support/text_file.hpp"
 
 #include <fmt/format.h>
 
 #include <cmath>
-#include <fstream>
-#include <sstream>
 
 namespace properties {
 
 namespace {
-
-std::string read_text(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::ostringstream text;
-  text << file.rdbuf();
-  return text.str();
-}
 
 // Returns a profile with the given shape parameters in metres: at albedo 0.33 the scaling is 3.5.
 std::string profile_text(const Plane& plane) {
@@ -90,10 +82,12 @@ void run_frames(const std::string& graph, const Plane& plane, const Settings& se
   }
   dermis::tools::DeviceGraphRequest request;
   request.graph_name = graph + ".json";
-  request.graph_text = read_text(DERMIS_SOURCE_DIR "/" + dermis::shipped::graph_file(graph));
+  request.graph_text =
+      dermis::test::read_text(DERMIS_SOURCE_DIR "/" + dermis::shipped::graph_file(graph));
   if (!plane.overlay.empty())
-    request.overlays = {{plane.overlay + ".json", read_text(DERMIS_SOURCE_DIR "/configs/overlays/" +
-                                                            plane.overlay + ".json")}};
+    request.overlays = {
+        {plane.overlay + ".json", dermis::test::read_text(DERMIS_SOURCE_DIR "/configs/overlays/" +
+                                                          plane.overlay + ".json")}};
   request.width = plane.width;
   request.height = plane.height;
   request.pixel_aspect = plane.pixel_aspect;

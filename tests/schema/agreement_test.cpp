@@ -15,13 +15,12 @@
 #include "passes/common/profiles/profile.hpp"
 #include "tests/framegraph/test_scale.hpp"
 #include "tests/schema/validator.hpp"
+#include "tests/support/text_file.hpp"
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
 #include <gtest/gtest.h>
 #include <random>
-#include <sstream>
 
 namespace dermis::testing {
 namespace {
@@ -100,13 +99,6 @@ std::string structural_errors(Reader reader, const std::string& text) {
     if (std::find(std::begin(structural), std::end(structural), one.id) != std::end(structural))
       out += format_for_people(diagnostics, one, false) + "\n";
   return out;
-}
-
-std::string text_of(const fs::path& path) {
-  std::ifstream stream(path);
-  std::stringstream text;
-  text << stream.rdbuf();
-  return text.str();
 }
 
 json parse(const std::string& text) {
@@ -214,7 +206,7 @@ void expect_agreement(const SchemaFile& schema, Reader reader, const std::vector
 std::vector<json> read_all(const char* folder, bool expectations = false) {
   std::vector<json> out;
   for (const fs::path& path : files_in(folder, expectations))
-    out.push_back(parse(text_of(path)));
+    out.push_back(parse(test::read_text(path)));
   return out;
 }
 
@@ -329,7 +321,7 @@ TEST(Schema, OfCapturesAgreesWithTheParserOnMutatedFiles) {
 
 TEST(Schema, OfErrorTablesAgreesWithTheParserOnMutatedFiles) {
   const std::vector<json> files = {
-      parse(text_of(fs::path(DERMIS_SOURCE_DIR) / "configs/choice/errors.json")),
+      parse(test::read_text(fs::path(DERMIS_SOURCE_DIR) / "configs/choice/errors.json")),
       parse(
           R"({ "dermis_errors": 2, "scenes": "s", "note": "n", "unscattered": [[1, 0.1]], "techniques": [
         { "name": "t", "note": "n", "rmse": [[1, 2], [2, 3, 1.5]],
@@ -338,8 +330,8 @@ TEST(Schema, OfErrorTablesAgreesWithTheParserOnMutatedFiles) {
 }
 
 TEST(Schema, OfCalibrationsAgreesWithTheParserOnMutatedFiles) {
-  const std::vector<json> files = {
-      parse(R"({ "$schema": "x", "dermis_calibration": 2, "device": "d", "note": "n", "uncertainty": 2, "costs": [
+  const std::vector<json> files = {parse(
+      R"({ "$schema": "x", "dermis_calibration": 2, "device": "d", "note": "n", "uncertainty": 2, "costs": [
         { "work": "a", "base_us": 1, "group_us": 0.5, "spread": 0.1, "note": "n" },
         { "work": "b", "base_us": 0, "group_us": 0, "spread": 1 } ] })")};
   expect_agreement(schema_in("configs/schema/calibration.schema.json"), read_calibration_text,
@@ -366,7 +358,7 @@ TEST(Schema, NoSchemaHasAPattern) {
       {"graph", graph_schema(subsurface::make_pass_types())},
       {"fragment", fragment_schema(subsurface::make_pass_types())}};
   for (const fs::path& path : files_in("configs/schema"))
-    schemas[path.string()] = text_of(path);
+    schemas[path.string()] = test::read_text(path);
   for (const auto& [path, schema] : schemas) {
     json text = parse(schema);
     std::vector<json*> all;

@@ -2,10 +2,9 @@
 // Texts of the source tree for the C interface, and the slots of a graph.
 
 #include "tests/integration/abi/results.hpp"
+#include "tests/support/text_file.hpp"
 
-#include <fstream>
 #include <span>
-#include <sstream>
 #include <string>
 #include <vector>
 
@@ -13,11 +12,9 @@ namespace dermis::abi_test {
 
 // The path starts at the root of the sources.
 inline std::string read_text(const std::string& path) {
-  std::ifstream file(std::string(DERMIS_SOURCE_DIR) + "/" + path, std::ios::binary);
-  std::stringstream text;
-  text << file.rdbuf();
-  return text.str();
+  return test::read_text(std::string(DERMIS_SOURCE_DIR) + "/" + path);
 }
+using test::replaced;
 
 // Points into both arguments.
 inline dermis_source source_of(const std::string& text, const char* name) {

@@ -10,12 +10,6 @@ namespace {
 constexpr uint32_t storm_frames = 50, reloads_a_frame = 10; // 500 reloads, half of them broken.
 constexpr uint32_t storm_width = 96, storm_height = 64;     // Pixels.
 
-std::string replaced(std::string text, std::string_view what, std::string_view with) {
-  const size_t at = text.find(what);
-  EXPECT_NE(at, std::string::npos) << what;
-  return text.replace(at, what.size(), with);
-}
-
 // Returns a text as an editor may save it halfway.
 std::string broken(const std::string& text, uint32_t number) {
   switch (number % 5) {

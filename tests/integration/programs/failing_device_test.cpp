@@ -5,10 +5,9 @@
 #include "tests/framegraph/test_scale.hpp"
 #include "tests/integration/abi/sources.hpp"
 #include "tests/support/shipped_graphs.hpp"
+#include "tests/support/text_file.hpp"
 
-#include <fstream>
 #include <functional>
-#include <sstream>
 
 namespace dermis::test {
 namespace {
@@ -17,18 +16,11 @@ namespace {
 constexpr uint64_t max_creations = 2000;
 constexpr uint32_t frames_in_flight = 2;
 
-std::string text_of(const std::string& path) {
-  std::ifstream stream(path);
-  std::ostringstream text;
-  text << stream.rdbuf();
-  return text.str();
-}
-
 struct FailingDevice : ::testing::TestWithParam<const char*> {
   tools::CountedInput input(uint32_t width, uint32_t height) const {
     const std::string graph = dermis::shipped::graph_file(GetParam());
     const std::string profile = "configs/profiles/skin.json";
-    return {graph, text_of(graph), profile, text_of(profile), width, height};
+    return {graph, read_text(graph), profile, read_text(profile), width, height};
   }
   // Step between failing creations, because a new graph fits its kernel tables at each try.
   static uint64_t step() {

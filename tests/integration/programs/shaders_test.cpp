@@ -22,10 +22,7 @@ struct Folder {
   std::map<std::string, std::string> delivered; // Kept for the duration of the call.
 
   std::string change(const std::string& name, const std::string& from, const std::string& to) {
-    std::string text = read_text("shaders/" + name);
-    const size_t at = text.find(from);
-    EXPECT_NE(at, std::string::npos) << from;
-    return changed[name] = at == std::string::npos ? text : text.replace(at, from.size(), to);
+    return changed[name] = replaced(read_text("shaders/" + name), from, to);
   }
 };
 

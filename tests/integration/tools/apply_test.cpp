@@ -154,10 +154,8 @@ TEST_F(Captures, OutsideOfTheRectangle_LightIsUnchanged) {
   plane.light = filled(plane.width, plane.height, 3, 0.25f);
   write_plane(path("capture"), plane);
   write_channel(path("capture"), "albedo", filled(plane.width, plane.height, 3, 0.5f));
-  std::string text = read("capture/frame.json");
-  const std::string whole = "[0, 0, 32, 32]";
-  text.replace(text.find(whole), whole.size(), "[3, 5, 17, 11]");
-  write("capture/frame.json", text);
+  write("capture/frame.json",
+        replaced(read("capture/frame.json"), "[0, 0, 32, 32]", "[3, 5, 17, 11]"));
   ASSERT_THAT(apply(), Succeeds());
   for (const float value : picture("scattered.exr").values)
     EXPECT_NEAR(value, 0.25f, 1e-3f);

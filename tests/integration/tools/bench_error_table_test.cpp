@@ -21,7 +21,7 @@ choice::ErrorModel read_table(const std::string& name, const std::string& text) 
 }
 
 choice::ErrorModel shipped_table() {
-  return read_table("errors.json", text_of(DERMIS_SOURCE_DIR "/configs/choice/errors.json"));
+  return read_table("errors.json", read_text(DERMIS_SOURCE_DIR "/configs/choice/errors.json"));
 }
 
 MeasuredError measured(const std::string& scene_class, double d_px, double rmse,

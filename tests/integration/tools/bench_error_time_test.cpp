@@ -2,7 +2,6 @@
 #include "tests/integration/tools/command_fixture.hpp"
 
 #include <algorithm>
-#include <fstream>
 #include <sstream>
 
 namespace {
@@ -32,12 +31,6 @@ protected:
             "--size", "48x32",          "--cache", path("cache"),
             "--json", path("out.json"), "--csv",   path("out.csv"),
             "--html", path("out.html")};
-  }
-  static std::string read(const std::string& path) {
-    std::ifstream file(path, std::ios::binary);
-    std::ostringstream text;
-    text << file.rdbuf();
-    return text.str();
   }
 };
 

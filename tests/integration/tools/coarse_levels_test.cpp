@@ -2,7 +2,6 @@
 
 #include "tests/integration/tools/command_fixture.hpp"
 
-#include <filesystem>
 #include <fmt/format.h>
 
 namespace dermis::test {
@@ -101,7 +100,7 @@ class CoarseLevels : public CommandTest, public ::testing::WithParamInterface<Co
 protected:
   // Writes a scene whose light scatters so far that coarse levels matter, and returns its path.
   std::string wide_scene(const std::string& name) const {
-    std::string text = text_of("configs/scenes/" + name + ".json");
+    std::string text = read_text("configs/scenes/" + name + ".json");
     const std::string folder = "../profiles/";
     for (size_t at = text.find(folder); at != std::string::npos; at = text.find(folder))
       text.erase(at, folder.size());
@@ -131,8 +130,8 @@ TEST_P(CoarseLevels, EqualOnePassPerLevel) {
   const std::string graph = std::string("configs/graphs/") + GetParam().graph;
   const std::string overlay = "configs/overlays/sap_full_precision.json";
   const bool full = GetParam().full;
-  write("separate.json", separated(text_of(graph), full ? "\"full\"" : "\"half\""));
-  std::string edits = text_of(overlay);
+  write("separate.json", separated(read_text(graph), full ? "\"full\"" : "\"half\""));
+  std::string edits = read_text(overlay);
   replace(edits, "{ \"set\": \"/passes/coarse_down", "{ \"set\": \"/passes/up_3", "");
   write("separate_full.json", edits);
   if (HasFatalFailure()) return;
@@ -143,14 +142,7 @@ TEST_P(CoarseLevels, EqualOnePassPerLevel) {
          overlays(path("separate_full.json")));
   for (const char* shape : {"cpu", "gpu"}) {
     render(GetParam(), graph, shape, shape, overlays(overlay));
-    size_t pictures = 0;
-    for (const std::string& file : files("separate")) {
-      if (!file.ends_with(".exr")) continue;
-      EXPECT_TRUE(read("separate/" + file) == read(std::string(shape) + "/" + file))
-          << file << " differs in kernels for " << shape;
-      ++pictures;
-    }
-    EXPECT_GT(pictures, 0u);
+    expect_equal_pictures("separate", shape);
   }
 }
 
@@ -171,26 +163,20 @@ using BrokenCoarseLevels = CoarseLevels;
 
 // Without this test, equal pictures could be pictures that do not depend on coarse levels.
 TEST_F(BrokenCoarseLevels, ChangePictures) {
-  const Outcome has = run({"doctor", "--json"});
-  if (has.out.find("\"shader_compiler\": \"\"") != std::string::npos)
-    GTEST_SKIP() << "built without glslang (package glslang-dev)";
+  if (!has_shader_compiler()) GTEST_SKIP() << "built without glslang (package glslang-dev)";
   const std::string graph = "configs/graphs/sap.json";
   const CoarseCase one{"", "sap.json", "bust", "96x64"};
   render(one, graph, "gpu", "whole");
-  const std::filesystem::path copy = path("shaders");
-  std::filesystem::copy("shaders", copy, std::filesystem::copy_options::recursive);
+  const std::string copy = copy_shaders();
   for (const char* kernel : {"coarse_down", "coarse_up"}) {
     const std::string file = std::string("shaders/sap/subsurface_sap_") + kernel + ".comp";
-    const std::string begin = "void main() {";
-    std::string text = text_of(file);
-    text.insert(text.find(begin) + begin.size(), "\n  return;\n");
-    write(file, text);
+    write(file, replaced(read_text(file), "void main() {", "void main() {\n  return;\n"));
     for (const char* shape : {"cpu", "gpu"}) {
       render(one, graph, shape, "broken", {"--shaders", copy});
       EXPECT_FALSE(read("whole/scattered_0001.exr") == read("broken/scattered_0001.exr"))
           << kernel << " for " << shape;
     }
-    write(file, text_of(file));
+    write(file, read_text(file));
   }
 }
 

@@ -50,13 +50,6 @@ void PrintTo(const Outcome& outcome, std::ostream* stream) {
   *stream << fmt::format("exit code {}\n{}\n{}", outcome.exit_code, outcome.out, outcome.err);
 }
 
-std::string text_of(const fs::path& path) {
-  std::ifstream stream(path, std::ios::binary);
-  std::ostringstream text;
-  text << stream.rdbuf();
-  return text.str();
-}
-
 Outcome CommandTest::run(const std::vector<std::string>& arguments, const RunOptions& options) {
   const TestFolder streams;
   std::ofstream(streams / "in", std::ios::binary) << options.input;
@@ -72,16 +65,13 @@ Outcome CommandTest::run(const std::vector<std::string>& arguments, const RunOpt
   while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
   }
   outcome.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
-  outcome.out = text_of(streams / "out");
-  outcome.err = text_of(streams / "err");
+  outcome.out = read_text(streams / "out");
+  outcome.err = read_text(streams / "err");
   return outcome;
 }
 
 std::string CommandTest::read(const std::string& name) const {
-  std::ifstream file(path(name), std::ios::binary);
-  std::ostringstream text;
-  text << file.rdbuf();
-  return text.str();
+  return read_text(path(name));
 }
 
 std::string CommandTest::write(const std::string& name, const std::string& text) const {
@@ -98,6 +88,26 @@ std::vector<std::string> CommandTest::files(const std::string& below) const {
     names.push_back(fs::relative(entry.path(), root).string());
   std::sort(names.begin(), names.end());
   return names;
+}
+
+void CommandTest::expect_equal_pictures(const std::string& a, const std::string& b) const {
+  size_t pictures = 0;
+  for (const std::string& file : files(a)) {
+    if (!file.ends_with(".exr")) continue;
+    EXPECT_TRUE(read(a + "/" + file) == read(b + "/" + file))
+        << file << " differs in " << a << " and " << b;
+    ++pictures;
+  }
+  EXPECT_GT(pictures, 0u);
+}
+
+std::string CommandTest::copy_shaders() const {
+  fs::copy("shaders", folder_ / "shaders", fs::copy_options::recursive);
+  return path("shaders");
+}
+
+bool CommandTest::has_shader_compiler() {
+  return run({"doctor", "--json"}).out.find("\"shader_compiler\": \"\"") == std::string::npos;
 }
 
 std::vector<std::string> validation_environment() {

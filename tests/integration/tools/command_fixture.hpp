@@ -3,6 +3,7 @@
 
 #include "tests/support/matchers.hpp"
 #include "tests/support/test_folder.hpp"
+#include "tests/support/text_file.hpp"
 
 #include <filesystem>
 #include <string>
@@ -36,6 +37,11 @@ protected:
   // Returns the files and folders inside, relative and sorted, including hidden and temporary
   // files.
   std::vector<std::string> files(const std::string& below = "") const;
+  // Expects the same bytes in each EXR file of folder `a` and the file of its name in `b`.
+  void expect_equal_pictures(const std::string& a, const std::string& b) const;
+  // Copies the folder of shaders and returns the copy's path.
+  std::string copy_shaders() const;
+  static bool has_shader_compiler();
 
 private:
   const TestFolder folder_;
@@ -48,9 +54,6 @@ inline constexpr const char* burley = "configs/graphs/burley.json";
 inline constexpr const char* techniques_alone = R"({ "dermis_overlay": 2, "edits": [
   { "set": "/settings/variant", "to": { "choice": ["base", "smooth", "half"], "default": "smooth" } },
   { "set": "/settings/taps", "to": { "choice": ["11", "17", "25"], "default": "25" } } ] })";
-
-// Returns the whole file, or "" if it does not exist.
-std::string text_of(const std::filesystem::path& file);
 
 // Returns variables that make the Khronos layer check all driver calls of the command, including
 // synchronization. Messages go to standard output.

@@ -1,9 +1,6 @@
 // dermis docs writes the pages that follow from declarations.
 #include "tests/integration/tools/command_fixture.hpp"
 
-#include <fstream>
-#include <sstream>
-
 namespace dermis::test {
 namespace {
 
@@ -21,10 +18,7 @@ TEST_F(Docs, EveryPageIsWritten) {
 
 TEST_F(Docs, EveryLinkWithinAPageHasAHeading) {
   ASSERT_EQ(run({"docs", "--out", path("pages")}).exit_code, 0);
-  std::ifstream file(path("pages/format_reference.md"));
-  std::ostringstream whole;
-  whole << file.rdbuf();
-  const std::string text = whole.str();
+  const std::string text = read("pages/format_reference.md");
   size_t links = 0;
   for (size_t at = text.find("](#"); at != std::string::npos; at = text.find("](#", at + 1)) {
     const std::string anchor = text.substr(at + 3, text.find(')', at) - at - 3); // name-format

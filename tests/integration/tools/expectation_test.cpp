@@ -4,8 +4,6 @@
 #include "tests/integration/tools/command_fixture.hpp"
 
 #include <filesystem>
-#include <fstream>
-#include <sstream>
 
 namespace dermis::test {
 namespace {
@@ -13,7 +11,7 @@ namespace {
 struct Expectations : CommandTest {
   // Writes the shipped burley.json into the test's folder, with these expectations next to it.
   std::string file_next_to_burley(const std::string& expectations) const {
-    write("burley.json", text_of(DERMIS_SOURCE_DIR "/configs/graphs/burley.json"));
+    write("burley.json", read_text(DERMIS_SOURCE_DIR "/configs/graphs/burley.json"));
     return write("burley.expect.json", expectations);
   }
 };
@@ -46,28 +44,26 @@ TEST_F(Expectations, OnlyStatedFactsAreCompared) {
 }
 
 TEST_F(Expectations, DifferencesAreShownLineByLine) {
-  std::string wrong = two_infos;
-  wrong.replace(wrong.find("\"scatter\", "), 11, "\"sharpen\", ");
+  const std::string wrong = replaced(two_infos, "\"scatter\", ", "\"sharpen\", ");
   const std::string file = file_next_to_burley(wrong);
   const Outcome outcome = run({"test", file});
   EXPECT_THAT(outcome, FailsWith(1, file + ": case 'least'", "-     \"sharpen\"",
                                  "+     \"scatter\"", "      \"setup\"", "--update"));
   EXPECT_THAT(outcome.out, IsEmpty());
-  EXPECT_EQ(text_of(file), wrong);
+  EXPECT_EQ(read_text(file), wrong);
 }
 
 TEST_F(Expectations, UpdateChangesOnlyTheFacts) {
-  std::string wrong = two_infos;
-  wrong.replace(wrong.find("\"history_bytes\": 0"), 18, "\"history_bytes\": 5");
+  const std::string wrong = replaced(two_infos, "\"history_bytes\": 0", "\"history_bytes\": 5");
   const std::string file = file_next_to_burley(wrong);
   EXPECT_EQ(run({"test", file, "--update"}).exit_code, 0);
-  const std::string after = text_of(file);
+  const std::string after = read_text(file);
   EXPECT_THAT(after,
               AllOf(HasSubstr("// what the smallest host gets"), HasSubstr("\"history_bytes\": 0"),
                     HasSubstr("\"size\": [64, 64]"), Not(HasSubstr("barriers"))));
   EXPECT_EQ(run({"test", file}).exit_code, 0);
   EXPECT_EQ(run({"test", file, "--update"}).exit_code, 0);
-  EXPECT_EQ(text_of(file), after);
+  EXPECT_EQ(read_text(file), after);
 }
 
 TEST_F(Expectations, UpdateOfAnEmptyCaseStatesEverything) {
@@ -76,8 +72,8 @@ TEST_F(Expectations, UpdateOfAnEmptyCaseStatesEverything) {
   { "case": "too_large", "device": { "max_image_dimension": 16 } } ] })");
   EXPECT_THAT(run({"test", file}), FailsWith(1, "case 'new': the case has no \"expect\""));
   EXPECT_THAT(run({"test", file, "--update"}), Succeeds());
-  EXPECT_THAT(text_of(file), HasAll("\"transient_bytes\"", "\"diagnostics\""));
-  EXPECT_EQ(run({"test", file}).exit_code, 0) << text_of(file);
+  EXPECT_THAT(read_text(file), HasAll("\"transient_bytes\"", "\"diagnostics\""));
+  EXPECT_EQ(run({"test", file}).exit_code, 0) << read_text(file);
 }
 
 TEST_F(Expectations, UnstatedMessagesAreShown) {
@@ -143,15 +139,14 @@ TEST_F(Expectations, NothingToCompare_IsAFailure) {
 }
 
 TEST_F(Expectations, ResultsAreWrittenAsJUnitAndJson) {
-  std::string wrong = two_infos;
-  wrong.replace(wrong.find("\"least\""), 7, "\"a<b & c\"");
-  wrong.replace(wrong.find("\"history_bytes\": 0"), 18, "\"history_bytes\": 5");
+  const std::string wrong = replaced(replaced(two_infos, "\"least\"", "\"a<b & c\""),
+                                     "\"history_bytes\": 0", "\"history_bytes\": 5");
   const std::string file = file_next_to_burley(wrong);
   const Outcome outcome = run({"test", file, "configs", "--junit", path("results.xml"), "--json"});
   EXPECT_EQ(outcome.exit_code, 1);
   EXPECT_TRUE(is_json(outcome.out)) << outcome.out;
   EXPECT_THAT(outcome.out, StartsWith("{\n  \"ok\": false,"));
-  EXPECT_THAT(text_of(path("results.xml")),
+  EXPECT_THAT(read_text(path("results.xml")),
               AllOf(StartsWith("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites"),
                     HasSubstr("failures=\"1\""), HasSubstr("name=\"a&lt;b &amp; c\""),
                     HasSubstr("&quot;history_bytes&quot;: 5"), HasSubstr("burley.expect.json")));

@@ -6,9 +6,6 @@
 
 #include <fmt/format.h>
 
-#include <fstream>
-#include <sstream>
-
 namespace dermis::test {
 namespace {
 
@@ -16,13 +13,7 @@ using GraphFiles = CommandTest;
 
 // Returns the shipped graph with one part of its text replaced.
 std::string burley_with(const std::string& from, const std::string& to) {
-  std::ifstream stream(std::string(DERMIS_SOURCE_DIR "/") + burley);
-  std::ostringstream text;
-  text << stream.rdbuf();
-  std::string all = text.str();
-  const size_t at = all.find(from);
-  EXPECT_NE(at, std::string::npos) << from;
-  return at == std::string::npos ? all : all.replace(at, from.size(), to);
+  return replaced(read_text(std::string(DERMIS_SOURCE_DIR "/") + burley), from, to);
 }
 
 TEST_F(GraphFiles, TheShippedFilesHaveNoProblems) {
@@ -141,10 +132,7 @@ TEST_F(GraphFiles, MessagesAreWrittenAsSarif) {
   const Outcome log = run({"validate", bad, "--sarif", "-"});
   EXPECT_EQ(log.exit_code, 1);
   ASSERT_TRUE(is_json(log.out)) << log.out;
-  std::ifstream stream(path("out.sarif"));
-  std::ostringstream text;
-  text << stream.rdbuf();
-  EXPECT_EQ(text.str(), log.out);
+  EXPECT_EQ(read("out.sarif"), log.out);
   EXPECT_THAT(log.out, HasAll("\"ruleId\": \"D0103\"", "\"version\": \"2.1.0\""));
   EXPECT_THAT(run({"validate", burley, "--sarif", "-"}), Succeeds(IsJson()));
   EXPECT_EQ(run({"validate", burley, "--sarif", "-", "--json"}).exit_code, 2);

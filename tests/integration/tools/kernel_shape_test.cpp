@@ -2,8 +2,6 @@
 
 #include "tests/integration/tools/command_fixture.hpp"
 
-#include <filesystem>
-
 namespace dermis::test {
 namespace {
 
@@ -28,22 +26,10 @@ protected:
     options.environment = validation_environment();
     return run(words, options);
   }
-  void expect_equal_pictures(const std::string& a, const std::string& b) const {
-    size_t pictures = 0;
-    for (const std::string& file : files(a)) {
-      if (!file.ends_with(".exr")) continue;
-      EXPECT_TRUE(read(a + "/" + file) == read(b + "/" + file))
-          << file << " differs in " << a << " and " << b;
-      ++pictures;
-    }
-    EXPECT_GT(pictures, 0u);
-  }
   // Returns the text of a kernel that writes nothing if the constant is true.
   static std::string broken(const std::string& file, const std::string& constant) {
-    std::string text = text_of(file);
-    const std::string begin = "void main() {";
-    text.insert(text.find(begin) + begin.size(), "\n  if (" + constant + ")\n    return;\n");
-    return text;
+    return replaced(read_text(file), "void main() {",
+                    "void main() {\n  if (" + constant + ")\n    return;\n");
   }
 };
 
@@ -97,9 +83,7 @@ using KernelShapes = KernelShape;
 
 // Without this test, two equal pictures could be two pictures of one shape.
 TEST_F(KernelShapes, BrokenTexelShape_ChangesOnlyPicturesForGpus) {
-  const Outcome has = run({"doctor", "--json"});
-  if (has.out.find("\"shader_compiler\": \"\"") != std::string::npos)
-    GTEST_SKIP() << "built without glslang (package glslang-dev)";
+  if (!has_shader_compiler()) GTEST_SKIP() << "built without glslang (package glslang-dev)";
   const ShapeCase smooth{
       "", "configs/scenes/bust.json", "96x64", {"-g", "configs/graphs/sap.json"}};
   const ShapeCase half{
@@ -109,9 +93,7 @@ TEST_F(KernelShapes, BrokenTexelShape_ChangesOnlyPicturesForGpus) {
       {"-g", "configs/graphs/skin.json", "--set", "technique=sap", "--set", "variant=half"}};
   ASSERT_EQ(render(smooth, "cpu", "smooth").exit_code, 0);
   ASSERT_EQ(render(half, "cpu", "half").exit_code, 0);
-  const std::filesystem::path copy = path("shaders");
-  std::filesystem::create_directories(path("."));
-  std::filesystem::copy("shaders", copy, std::filesystem::copy_options::recursive);
+  const std::string copy = copy_shaders();
   const char* kernels[] = {"setup", "down", "up", "gather", "setup_half_res", "gather_half"};
   for (const char* kernel : kernels) {
     SCOPED_TRACE(kernel);
@@ -123,7 +105,7 @@ TEST_F(KernelShapes, BrokenTexelShape_ChangesOnlyPicturesForGpus) {
         render(reference == "half" ? half : smooth, "gpu", "gpu", {"--shaders", copy}).exit_code,
         0);
     EXPECT_FALSE(read(reference + "/scattered_0001.exr") == read("gpu/scattered_0001.exr"));
-    write(file, text_of(file));
+    write(file, read_text(file));
   }
   for (const char* kernel : kernels) {
     const std::string file = std::string("shaders/sap/subsurface_sap_") + kernel + ".comp";
@@ -137,10 +119,8 @@ TEST_F(KernelShapes, BrokenTexelShape_ChangesOnlyPicturesForGpus) {
 
 // The camera is so close that light reaches as far as the coarse levels, which wide groups compute.
 TEST_F(KernelShapes, WideGroups_GiveEqualPictures) {
-  const Outcome has = run({"doctor", "--json"});
-  if (has.out.find("\"shader_compiler\": \"\"") != std::string::npos)
-    GTEST_SKIP() << "built without glslang (package glslang-dev)";
-  std::string scene = text_of("configs/scenes/bust.json");
+  if (!has_shader_compiler()) GTEST_SKIP() << "built without glslang (package glslang-dev)";
+  std::string scene = read_text("configs/scenes/bust.json");
   const auto replace = [&](const std::string& old, const std::string& by) {
     for (size_t at = 0; (at = scene.find(old, at)) != std::string::npos; at += by.size())
       scene.replace(at, old.size(), by);
@@ -155,9 +135,7 @@ TEST_F(KernelShapes, WideGroups_GiveEqualPictures) {
   expect_equal_pictures("cpu", "gpu");
   expect_equal_pictures("cpu", "gpu_small");
 
-  const std::filesystem::path copy = path("shaders");
-  std::filesystem::create_directories(path("."));
-  std::filesystem::copy("shaders", copy, std::filesystem::copy_options::recursive);
+  const std::string copy = copy_shaders();
   const std::string file = "shaders/sap/subsurface_sap_coarse_down.comp";
   write(file, broken(file, "wide_group"));
   for (const char* shape : {"gpu", "gpu_small"})

@@ -28,17 +28,15 @@ TEST_F(PassTypes, ExportedFile_LetsGraphsBeChecked) {
 
 TEST_F(PassTypes, FileIsChecked) {
   EXPECT_EQ(run({"validate", write("pass_types.json", pass_types)}).exit_code, 0);
-  std::string range = pass_types, own = pass_types;
-  range.replace(range.find("\"default\": 1"), 12, "\"default\": 9");
-  EXPECT_THAT(run({"validate", write("range.json", range)}),
+  const auto validate = [&](const std::string& name, const char* from, const char* to) {
+    return run({"validate", write(name, replaced(pass_types, from, to))});
+  };
+  EXPECT_THAT(validate("range.json", "\"default\": 1", "\"default\": 9"),
               FailsWith(1, "range.json:2:3", "settings[0]"));
-  own.replace(own.find("studio"), 6, "subsurface");
-  EXPECT_THAT(run({"validate", write("own.json", own)}).err,
+  EXPECT_THAT(validate("own.json", "studio", "subsurface").err,
               HasSubstr("are reserved for the library"));
-  std::string reads = pass_types;
-  const std::string sampled = "\"usage\": \"sampled_image\"";
-  reads.replace(reads.find(sampled), sampled.size(), sampled + ", \"internally_ordered\": true");
-  EXPECT_THAT(run({"validate", write("reads.json", reads)}),
+  EXPECT_THAT(validate("reads.json", R"("usage": "sampled_image")",
+                       R"("usage": "sampled_image", "internally_ordered": true)"),
               FailsWith(1, "reads.json:2:3", "D0233", "has usage sampled_image"));
   const std::string graph_file = write("tone.json", tone);
   const std::string kind_file = write("pass_types.json", pass_types);

@@ -4,17 +4,10 @@
 #include "framegraph/serialize/plan_file.hpp"
 #include "tests/integration/tools/command_fixture.hpp"
 
-#include <fstream>
-
 namespace dermis::test {
 namespace {
 
 using PlanFiles = CommandTest;
-
-std::string contents(const std::string& path) {
-  std::ifstream stream(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(stream), {}};
-}
 
 TEST_F(PlanFiles, HelpOfEveryVerbShowsAnExample) {
   for (const std::string verb : {"diff", "save", "verify"}) {
@@ -28,7 +21,7 @@ TEST_F(PlanFiles, EqualGraphs_GiveEqualBytesThatVerify) {
     EXPECT_THAT(run({"plan", "save", burley, "--size", "640x360", "--out", path(file)}),
                 Succeeds("passes"));
   }
-  EXPECT_EQ(contents(path("a.plan")), contents(path("b.plan")));
+  EXPECT_EQ(read_text(path("a.plan")), read_text(path("b.plan")));
   EXPECT_THAT(files(), ElementsAre("a.plan", "b.plan"));
   EXPECT_THAT(run({"plan", "verify", path("a.plan")}), Succeeds("no hazard"));
   const Outcome json = run({"plan", "save", burley, "--json", "--out", path("c.plan")});
@@ -62,7 +55,7 @@ TEST_F(PlanFiles, AsyncPasses_GetAQueueOnRequest) {
 
 TEST_F(PlanFiles, ADamagedPlanIsRejectedWithTheByte) {
   ASSERT_EQ(run({"plan", "save", burley, "--out", path("a.plan")}).exit_code, 0);
-  const std::string whole = contents(path("a.plan"));
+  const std::string whole = read_text(path("a.plan"));
   const std::string cut = write("cut.plan", whole.substr(0, whole.size() - 9));
   EXPECT_THAT(run({"plan", "verify", cut}),
               FailsWith(1, "cut.plan", "D0321 plan_file", "byte ", "the file ends inside"));
@@ -76,7 +69,7 @@ TEST_F(PlanFiles, ADamagedPlanIsRejectedWithTheByte) {
 // Clears the stages that the first barrier waits for; their bytes are found by comparison.
 TEST_F(PlanFiles, PlanWithAHazard_NamesPassAndResource) {
   ASSERT_EQ(run({"plan", "save", burley, "--out", path("a.plan")}).exit_code, 0);
-  const std::string whole = contents(path("a.plan"));
+  const std::string whole = read_text(path("a.plan"));
   // Every barrier from compute to compute contains these 16 bytes: source and destination stages.
   const std::string stages("\0\x08\0\0\0\0\0\0\0\x08\0\0\0\0\0\0", 16);
   const size_t at = whole.find(stages);
@@ -91,7 +84,7 @@ TEST_F(PlanFiles, PlanWithAHazard_NamesPassAndResource) {
 TEST_F(PlanFiles, TooLargePlan_IsNotVerified) {
   ASSERT_EQ(run({"plan", "save", burley, "--out", path("a.plan")}).exit_code, 0);
   Diagnostics diagnostics;
-  std::optional<SavedPlan> saved = read_plan("a.plan", contents(path("a.plan")), diagnostics);
+  std::optional<SavedPlan> saved = read_plan("a.plan", read_text(path("a.plan")), diagnostics);
   ASSERT_TRUE(saved);
   Plan& plan = saved->plan;
   for (uint32_t i = 0; i < 17; ++i) {

@@ -42,7 +42,7 @@ std::vector<std::string> words(const std::string& line) {
 
 class Readme : public CommandTest {
 protected:
-  const std::string text = text_of(repository / "README.md");
+  const std::string text = read_text(repository / "README.md");
 
   // Runs a command line of the text on a small picture, with output in the test's folder.
   void expect_runs(const std::string& line) {
@@ -60,7 +60,7 @@ protected:
 
 // Returns the complete graph of docs/format.md.
 std::string complete_graph() {
-  const std::string text = text_of(repository / "docs/format.md");
+  const std::string text = read_text(repository / "docs/format.md");
   const size_t section = text.find("## A complete graph");
   const auto shown = blocks(text.substr(std::min(section, text.size())), "jsonc");
   return shown.empty() ? "" : shown[0];
@@ -135,7 +135,7 @@ TEST_F(Readme, EveryInlineCommandRuns) {
 }
 
 TEST_F(Readme, ToolsPageListsEveryVerb) {
-  const std::string tools = text_of(repository / "docs/tools.md");
+  const std::string tools = read_text(repository / "docs/tools.md");
   const std::string help = run({"--help"}).out;
   const std::regex verb("\n  ([a-z][a-z-]+) ");
   size_t verbs = 0;
@@ -150,7 +150,7 @@ TEST_F(Readme, ToolsPageListsEveryVerb) {
 TEST_F(Readme, ShortCExamplesCompile) {
   auto shown = blocks(text, "c");
   ASSERT_EQ(shown.size(), 1u);
-  const auto choice = blocks(text_of(repository / "docs/choice.md"), "c");
+  const auto choice = blocks(read_text(repository / "docs/choice.md"), "c");
   ASSERT_EQ(choice.size(), 2u);
   std::string source = "#include <dermis/dermis.h>\n"
                        "dermis_context context; dermis_graph graph; dermis_report report;\n"
@@ -175,7 +175,7 @@ TEST_F(Readme, EveryLinkLeadsToAFile) {
   const std::regex link("\\]\\(([^)#:\\s]+)(#[^)]*)?\\)");
   size_t links = 0;
   for (const fs::path& page : pages) {
-    const std::string contents = text_of(page);
+    const std::string contents = read_text(page);
     for (std::sregex_iterator at(contents.begin(), contents.end(), link), end; at != end; ++at) {
       EXPECT_TRUE(fs::exists(page.parent_path() / (*at)[1].str())) << page << ": " << (*at)[1];
       ++links;

@@ -58,7 +58,7 @@ TEST_F(Render, JsonOutputIsOneDocument) {
 
 // Without the pixels' shape in the graph the error is 2.4 times that of square pixels.
 TEST_F(Render, WidePixels_ScatterAsWellAsSquareOnes) {
-  std::string close = text_of(bust);
+  std::string close = read_text(bust);
   const auto replace = [&](const std::string& old, const std::string& by) {
     for (size_t at = 0; (at = close.find(old, at)) != std::string::npos; at += by.size())
       close.replace(at, old.size(), by);

@@ -2,8 +2,6 @@
 #include "tests/integration/tools/command_fixture.hpp"
 
 #include <cstdlib>
-#include <fstream>
-#include <sstream>
 
 namespace dermis::test {
 namespace {
@@ -13,10 +11,7 @@ protected:
   // Returns the output of a shell line; `code` is its exit status.
   std::string shell(const std::string& line, int& code) const {
     code = std::system((line + " > '" + path("said") + "' 2>&1").c_str());
-    std::ifstream file(path("said"));
-    std::ostringstream text;
-    text << file.rdbuf();
-    return text.str();
+    return read("said");
   }
   static bool has(const char* program) {
     return std::system((std::string("command -v ") + program + " > /dev/null 2>&1").c_str()) == 0;

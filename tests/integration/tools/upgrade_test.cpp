@@ -55,16 +55,16 @@ TEST_F(Upgrade, OldFiles_Validate_OneDiagnosticNamesTheVerb) {
 
 TEST_F(Upgrade, OldFiles_Upgrade_CommentsAndLinesStay) {
   for (const std::string& file : unpack()) {
-    const std::string before = text_of(file);
+    const std::string before = read_text(file);
     EXPECT_EQ(run({"upgrade", "--check", file}).exit_code, 1) << file;
-    EXPECT_EQ(text_of(file), before) << "--check writes nothing";
+    EXPECT_EQ(read_text(file), before) << "--check writes nothing";
     EXPECT_THAT(run({"upgrade", file}), Succeeds("upgraded to version 2"));
-    const std::string after = text_of(file);
+    const std::string after = read_text(file);
     EXPECT_EQ(lines_of(after).size(), lines_of(before).size()) << file;
     EXPECT_EQ(comments_of(after), comments_of(before)) << file;
     EXPECT_EQ(run({"upgrade", "--check", file}).exit_code, 0) << "a second upgrade changes nothing";
     EXPECT_EQ(run({"upgrade", file}).exit_code, 0);
-    EXPECT_EQ(text_of(file), after);
+    EXPECT_EQ(read_text(file), after);
   }
 }
 
@@ -113,7 +113,7 @@ TEST_F(Upgrade, Pass_Upgrade_RenamesTypePortsAndSettings) {
     "read": { "shares": "shares@-1" }, "set": { "share": "$share", "below": 1 } },
     { "pass": "mend2", "kind": "mine.mend", "set": { "share": 1 } } ], "exports": ["doubts"] })");
   EXPECT_EQ(run({"upgrade", good}).exit_code, 0);
-  EXPECT_EQ(text_of(good), R"({ "dermis":   2, "name": "kind", // "kind": stays
+  EXPECT_EQ(read_text(good), R"({ "dermis":   2, "name": "kind", // "kind": stays
   "passes": [ { "pass": "refine_tiles", "type" : "subsurface.tile_refine", // "share"
     "read": { "samples_per_tile": "shares@-1" }, "set": { "sample_weight": "$share", "below": 1 } },
     { "pass": "mend2", "type": "mine.mend", "set": { "share": 1 } } ], "exports": ["doubts"] })");
@@ -126,7 +126,7 @@ TEST_F(Upgrade, Ports_Upgrade_RenamedOnlyInTheirTypes) {
   { "pass": "s", "kind": "subsurface.skips", "write": { "skips": "skips" } },
   { "pass": "m", "kind": "mine.x", "write": { "brightness": "skips" } } ], "exports": ["skips"] })");
   EXPECT_EQ(run({"upgrade", graph}).exit_code, 0);
-  EXPECT_EQ(text_of(graph), R"({ "dermis": 2, "name": "g", "passes": [
+  EXPECT_EQ(read_text(graph), R"({ "dermis": 2, "name": "g", "passes": [
   { "pass": "b", "type": "subsurface.global_light_change", "write": { "luminance_change": "brightness" } },
   { "pass": "r", "type": "subsurface.residual", "read": { "luminance_change": "brightness" } },
   { "pass": "s", "type": "subsurface.debug_tile_class", "write": { "tile_class": "skips" } },
@@ -139,14 +139,14 @@ TEST_F(Upgrade, NewPorts_Upgrade_AreAddedWithTheirResource) {
   { "pass": "c", "kind": "subsurface.classify", "write": { "classes": "classes" } }, // classes
   { "pass": "l", "kind": "subsurface.tile_list", "write": {} } ], "exports": [] })");
   EXPECT_EQ(run({"upgrade", graph}).exit_code, 0);
-  EXPECT_EQ(text_of(graph), R"({ "dermis": 2, "name": "g",
+  EXPECT_EQ(read_text(graph), R"({ "dermis": 2, "name": "g",
   "resources": { "list_state": { "buffer": { "stride": 4, "count": "view/64", "extra": 8 } }, "classes": 1 }, "passes": [
   { "pass": "c", "type": "subsurface.classify", "write": { "list_state": "list_state", "classes": "classes" } }, // classes
   { "pass": "l", "type": "subsurface.tile_list", "write": { "list_state": "list_state" } } ], "exports": [] })");
   const std::string part = write("part.json", R"({ "dermis_fragment": 1, "passes": [
   { "pass": "l", "kind": "subsurface.sap_tiles", "read": { "classes": "props" }, "write": { "tiles": "tiles" } } ] })");
   EXPECT_EQ(run({"upgrade", part}).exit_code, 0);
-  EXPECT_THAT(text_of(part),
+  EXPECT_THAT(read_text(part),
               HasAll("{ \"resources\": { \"list_state_of_props\": { ",
                      "\"write\": { \"list_state\": \"list_state_of_props\", \"tiles\""));
 }
@@ -157,7 +157,7 @@ TEST_F(Upgrade, Overlay_Upgrade_RenamesTargetsAndPaths) {
   { "set": "/passes/doubt/write/doubts", "to": "d" }, { "set": "/passes/x/kind", "to": "subsurface.light" },
   { "set": "/settings/kind", "to": 1 }, { "remove": "/passes/mend/set/share" } ] })");
   EXPECT_EQ(run({"upgrade", overlay}).exit_code, 0);
-  EXPECT_EQ(text_of(overlay), R"({ "dermis_overlay": 2, "edits": [
+  EXPECT_EQ(read_text(overlay), R"({ "dermis_overlay": 2, "edits": [
   { "insert_before": "export_scattered", "passes": [ { "pass": "p", "type": "subsurface.copy_tiles" } ] },
   { "set": "/passes/estimate_tile_error/write/tile_errors", "to": "d" }, { "set": "/passes/x/type", "to": "subsurface.export_scattered" },
   { "set": "/settings/kind", "to": 1 }, { "remove": "/passes/refine_tiles/set/sample_weight" } ] })");
@@ -168,7 +168,7 @@ TEST_F(Upgrade, UnwritableFile_Upgrade_FailsAndKeepsTheFile) {
       write("good.json", R"({ "dermis": 1, "name": "g", "passes": [], "exports": [] })");
   const std::string missing = path("none.json");
   EXPECT_THAT(run({"upgrade", missing, good}), FailsWith(1));
-  EXPECT_THAT(text_of(good), HasSubstr("\"dermis\": 2")) << "other files are upgraded";
+  EXPECT_THAT(read_text(good), HasSubstr("\"dermis\": 2")) << "other files are upgraded";
 }
 
 } // namespace

@@ -2,9 +2,7 @@
 #include "tests/integration/tools/command_fixture.hpp"
 
 #include <chrono>
-#include <fstream>
 #include <functional>
-#include <sstream>
 #include <thread>
 
 namespace dermis::test {
@@ -15,10 +13,7 @@ using namespace std::chrono_literals;
 class Watch : public CommandTest {
 protected:
   std::string copy(const std::string& from, const std::string& to) const {
-    std::ifstream file(from, std::ios::binary);
-    std::ostringstream text;
-    text << file.rdbuf();
-    return write(to, text.str());
+    return write(to, read_text(from));
   }
   std::vector<std::string> arguments(const std::string& graph, const std::string& rounds) const {
     return {"watch",    "configs/scenes/bust.json",
@@ -87,20 +82,12 @@ TEST_F(Watch, ChangedShader_RunsTheBuildCommand) {
 // Renders again with the folder's text: a broken text is reported with its place, a good text takes
 // effect.
 TEST_F(Watch, ChangedShader_IsRendered) {
-  const Outcome has = run({"doctor", "--json"});
-  if (has.out.find("\"shader_compiler\": \"\"") != std::string::npos)
-    GTEST_SKIP() << "built without glslang (package glslang-dev)";
-  std::filesystem::create_directories(path("."));
-  std::filesystem::copy("shaders", path("shaders"), std::filesystem::copy_options::recursive);
+  if (!has_shader_compiler()) GTEST_SKIP() << "built without glslang (package glslang-dev)";
+  copy_shaders();
   const std::string kernel = "shaders/common/subsurface_combine.comp",
                     store = "settings.result, albedo, color)";
   const auto change = [&](const std::string& to) {
-    std::ifstream file(kernel, std::ios::binary);
-    std::ostringstream read;
-    read << file.rdbuf();
-    std::string text = read.str();
-    text.replace(text.find(store), store.size(), to);
-    write(kernel, text);
+    write(kernel, replaced(read_text(kernel), store, to));
   };
   std::thread editor = after_the_first([&] {
     change("settings.result, albedo, colour)");

@@ -11,9 +11,7 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
-#include <fstream>
 #include <set>
-#include <sstream>
 
 namespace {
 
@@ -37,10 +35,8 @@ struct Calibrations : ::testing::TestWithParam<DeviceClass> {
 
   // Returns the input that compiles a shipped graph; nullopt on failure.
   std::optional<CompileInput> input_of(const std::string& name) {
-    std::ifstream file(DERMIS_SOURCE_DIR "/" + shipped::graph_file(name));
-    std::stringstream text;
-    text << file.rdbuf();
-    const auto document = parse_document(name, text.str(), diagnostics);
+    const auto document =
+        read_document(DERMIS_SOURCE_DIR "/" + shipped::graph_file(name), diagnostics);
     graph = document ? read_graph(*document, pass_types, diagnostics) : std::nullopt;
     EXPECT_TRUE(graph) << format_as_json(diagnostics);
     if (!graph) return std::nullopt;

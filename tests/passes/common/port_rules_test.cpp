@@ -5,9 +5,9 @@
 #include "framegraph/model/read_graph.hpp"
 #include "passes/common/pass_types.hpp"
 #include "tests/framegraph/text_support.hpp"
+#include "tests/support/text_file.hpp"
 
 #include <algorithm>
-#include <fstream>
 #include <iterator>
 #include <set>
 
@@ -24,8 +24,7 @@ struct PortRules : ::testing::Test {
   std::optional<Graph> graph;
 
   void SetUp() override {
-    std::ifstream in(DERMIS_SOURCE_DIR "/configs/graphs/burley.json");
-    text.assign(std::istreambuf_iterator<char>(in), {});
+    text = test::read_text(DERMIS_SOURCE_DIR "/configs/graphs/burley.json");
     ASSERT_FALSE(text.empty());
   }
 
@@ -127,8 +126,7 @@ TEST_F(PortRules, EveryPortOfSeveralChannelsNamesItsFormats) {
 }
 
 std::string shader_text(const std::string& name) {
-  std::ifstream in(DERMIS_SOURCE_DIR "/shaders/" + name);
-  return {std::istreambuf_iterator<char>(in), {}};
+  return test::read_text(DERMIS_SOURCE_DIR "/shaders/" + name);
 }
 
 std::string without_spaces(std::string text) {

@@ -1,4 +1,5 @@
 #include "tests/passes/device/kept_pictures.hpp"
+#include "tests/support/text_file.hpp"
 
 #include <fmt/format.h>
 
@@ -8,7 +9,6 @@
 #include <cstring>
 #include <fstream>
 #include <limits>
-#include <sstream>
 
 namespace dermis::testing {
 
@@ -24,10 +24,7 @@ void keep_floats(const std::string& path, const std::vector<float>& values) {
 }
 
 std::vector<float> kept_floats(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::stringstream bytes;
-  bytes << file.rdbuf();
-  const std::string all = bytes.str();
+  const std::string all = test::read_text(path);
   std::vector<float> values(all.size() / sizeof(float));
   std::memcpy(values.data(), all.data(), values.size() * sizeof(float));
   return values;

@@ -5,6 +5,7 @@
 #include "framegraph/text/diagnostic.hpp"
 #include "framegraph/text/document.hpp"
 #include "tests/support/shipped_graphs.hpp"
+#include "tests/support/text_file.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -15,7 +16,6 @@
 #include <filesystem>
 #include <fstream>
 #include <map>
-#include <sstream>
 
 namespace dermis::testing {
 namespace {
@@ -176,10 +176,7 @@ std::vector<std::string> graphs_of_images() {
 
 std::optional<RealGraph> shipped_graph(const std::string& name,
                                        const PassTypeRegistry& pass_types) {
-  std::ifstream file(DERMIS_SOURCE_DIR "/" + shipped::graph_file(name));
-  std::stringstream text;
-  text << file.rdbuf();
-  return made(name, text.str(), pass_types);
+  return made(name, test::read_text(DERMIS_SOURCE_DIR "/" + shipped::graph_file(name)), pass_types);
 }
 
 std::optional<RealGraph> random_real_graph(uint64_t seed, const PassTypeRegistry& pass_types) {

@@ -1,6 +1,7 @@
 #include "tests/integration/examples/demo_engine/rendering.hpp"
 #include "tests/support/shipped_graphs.hpp"
 #include "tests/support/test_folder.hpp"
+#include "tests/support/text_file.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -206,14 +207,10 @@ TEST_F(Engine, ErrorsHaveTheRightKindAndNameTheirSubject) {
 
 TEST_F(Engine, GraphWithUnsupportedInput_IsNamed) {
   const std::string path = (folder / "graph.json").string();
-  std::ifstream shipped_graph(shipped + "graphs/burley.json");
-  std::string text((std::istreambuf_iterator<char>(shipped_graph)), {});
-  const std::string optional =
-      "\"size\": \"view\", \"optional\": true, \"note\": \"factor on the scattering";
-  ASSERT_NE(text.find(optional), std::string::npos);
-  text.replace(text.find(optional), optional.size(),
-               "\"size\": \"view\", \"note\": \"factor on the scattering");
-  std::ofstream(path) << text;
+  std::ofstream(path) << dermis::test::replaced(
+      dermis::test::read_text(shipped + "graphs/burley.json"),
+      R"("size": "view", "optional": true, "note": "factor on the scattering)",
+      R"("size": "view", "note": "factor on the scattering)");
   RenderOptions options = small();
   options.graph = path;
   expect_rejected(options, ErrorKind::input, "scatter_scale");

@@ -2,6 +2,7 @@
 
 #include "integration/examples/demo_engine/model/load_model.hpp"
 #include "tests/support/test_folder.hpp"
+#include "tests/support/text_file.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -48,11 +49,6 @@ struct ModelSparse : ::testing::Test {
     options.mesh = path;
     return load_model(options);
   }
-  static std::string exchanged(std::string text, const std::string& from, const std::string& to) {
-    const size_t at = text.find(from);
-    EXPECT_NE(at, std::string::npos) << from;
-    return at == std::string::npos ? text : text.replace(at, from.size(), to);
-  }
 
   const dermis::test::TestFolder folder;
 };
@@ -61,7 +57,8 @@ TEST_F(ModelSparse, ElementsAreReplaced) {
   for (const char* type :
        {R"("byteOffset": 0, "componentType": 5121)", R"("byteOffset": 4, "componentType": 5123)",
         R"("byteOffset": 8, "componentType": 5125)"}) {
-    const auto model = load(exchanged(sound, R"("byteOffset": 0, "componentType": 5121)", type));
+    const auto model =
+        load(dermis::test::replaced(sound, R"("byteOffset": 0, "componentType": 5121)", type));
     ASSERT_TRUE(model) << type << model.error().text;
     EXPECT_EQ(bounds_of(model->mesh).high - bounds_of(model->mesh).low, glm::vec3(1, 1, 0)) << type;
   }
@@ -119,7 +116,7 @@ TEST_F(ModelSparse, InvalidSparseAccessorsAreRejected) {
       {R"("bufferView": 2)", R"("bufferView": 2, "byteOffset": 4)", "beyond the end"},
   };
   for (const auto& one : cases) {
-    const auto model = load(exchanged(sound, one.from, one.to));
+    const auto model = load(dermis::test::replaced(sound, one.from, one.to));
     ASSERT_FALSE(model) << one.to;
     EXPECT_EQ(model.error().kind, ErrorKind::input) << one.to;
     EXPECT_THAT(model.error().text, ::testing::HasSubstr(one.says)) << one.to;

@@ -2,6 +2,7 @@
 #include "integration/examples/demo_engine/model/load_texture.hpp"
 #include "tests/support/matchers.hpp"
 #include "tests/support/test_folder.hpp"
+#include "tests/support/text_file.hpp"
 
 #include <cstring>
 #include <filesystem>
@@ -15,6 +16,8 @@ namespace {
 
 using dermis::HasAll;
 using dermis::HasSubstr;
+using dermis::test::read_text;
+using dermis::test::replaced;
 
 struct ModelFile : ::testing::Test {
   std::string write(const std::string& name, const std::string& bytes) const {
@@ -84,24 +87,10 @@ TEST_F(ModelFile, NotAGltf_IsReported) {
   EXPECT_THAT(rejected(only(folder.path().string())).text, HasSubstr("not a regular file"));
 }
 
-std::string text_of(const std::string& path) {
-  std::ifstream stream(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(stream), {}};
-}
-
-std::string exchanged(std::string text, const std::string& from, const std::string& to) {
-  const size_t at = text.find(from);
-  if (at == std::string::npos) {
-    ADD_FAILURE() << "the file has no " << from;
-    return text;
-  }
-  return text.replace(at, from.size(), to);
-}
-
 TEST_F(ModelFile, OtherVersionsAreRejectedByName) {
-  const std::string whole = text_of(triangle());
+  const std::string whole = read_text(triangle());
   const auto with_asset = [&](const std::string& asset) {
-    return only(write("version.gltf", exchanged(whole, R"("version": "2.0")", asset)));
+    return only(write("version.gltf", replaced(whole, R"("version": "2.0")", asset)));
   };
   EXPECT_THAT(rejected(with_asset(R"("version": "1.0")")).text,
               HasSubstr("asset.version is '1.0'"));
@@ -121,10 +110,9 @@ TEST_F(ModelFile, OtherVersionsAreRejectedByName) {
 }
 
 TEST_F(ModelFile, RequiredExtensionsAreRejectedByName) {
-  const std::string whole = text_of(triangle());
+  const std::string whole = read_text(triangle());
   const auto with = [&](const std::string& more) {
-    return only(
-        write("required.gltf", exchanged(whole, R"("scene": 0)", R"("scene": 0, )" + more)));
+    return only(write("required.gltf", replaced(whole, R"("scene": 0)", R"("scene": 0, )" + more)));
   };
   EXPECT_THAT(
       rejected(with(R"("extensionsRequired": ["KHR_texture_basisu", "ACME_spheres"])")).text,
@@ -249,7 +237,7 @@ TEST_F(ModelFile, SkinnedMeshesAreRejectedByName) {
   const std::string path = triangle(
       "[0, 1, 2]", "", R"([{ "mesh": 0, "skin": 0, "name": "torso" }, { "name": "joint" }])");
   const std::string whole =
-      exchanged(text_of(path), R"("scene": 0)", R"("scene": 0, "skins": [{ "joints": [1] }])");
+      replaced(read_text(path), R"("scene": 0)", R"("scene": 0, "skins": [{ "joints": [1] }])");
   EXPECT_THAT(rejected(only(write("skin.gltf", whole))).text, HasAll("node 0 'torso'", "skin"));
 }
 
@@ -291,16 +279,8 @@ TEST_F(ModelFile, HeightMustBePositive) {
   }
 }
 
-// Returns a triangle with another buffer name, in a folder next to a secret file.
-std::string with_buffer(std::string text, const std::string& uri) {
-  const size_t at = text.find("triangle.bin");
-  return text.replace(at, 12, uri);
-}
-
 TEST_F(ModelFile, FilesAreOnlyReadInTheModelsFolder) {
-  const std::string path = triangle();
-  std::ifstream stream(path, std::ios::binary);
-  const std::string whole((std::istreambuf_iterator<char>(stream)), {});
+  const std::string whole = read_text(triangle());
   std::filesystem::create_directories(folder / "models");
   std::filesystem::create_symlink(folder.path(), folder / "models" / "link");
   std::filesystem::copy_file(folder / "triangle.bin", folder / "models" / "here.bin");
@@ -308,29 +288,31 @@ TEST_F(ModelFile, FilesAreOnlyReadInTheModelsFolder) {
   for (const std::string& outside :
        {std::string("../triangle.bin"), absolute, std::string("link/triangle.bin"),
         std::string("%2e%2e/triangle.bin"), std::string("../not_there.bin")}) {
-    const std::string model = write("models/a.gltf", with_buffer(whole, outside));
+    const std::string model = write("models/a.gltf", replaced(whole, "triangle.bin", outside));
     EXPECT_THAT(rejected(only(model)).text, HasSubstr("outside the readable folders")) << outside;
     EXPECT_THAT(rejected(only(model)).text, HasSubstr("--root")) << outside;
   }
   const auto declared =
-      load_model(only(write("models/a.gltf", with_buffer(whole, "../triangle.bin"))),
+      load_model(only(write("models/a.gltf", replaced(whole, "triangle.bin", "../triangle.bin"))),
                  {folder.path().string()});
   EXPECT_TRUE(declared) << declared.error().text;
-  const auto inside = load_model(only(write("models/b.gltf", with_buffer(whole, "here.bin"))));
+  const auto inside =
+      load_model(only(write("models/b.gltf", replaced(whole, "triangle.bin", "here.bin"))));
   EXPECT_TRUE(inside) << inside.error().text;
   // Not in the working folder either, where tinygltf would look.
   const std::filesystem::path before = std::filesystem::current_path();
   std::filesystem::current_path(folder.path());
   EXPECT_THAT(rejected(only(write("models/c.gltf", whole))).text, HasSubstr("triangle.bin"));
   std::filesystem::current_path(before);
-  EXPECT_THAT(
-      rejected(only(write("models/d.gltf", with_buffer(whole, std::string(5000, 'a'))))).text,
-      HasSubstr("too long"));
+  EXPECT_THAT(rejected(only(write("models/d.gltf",
+                                  replaced(whole, "triangle.bin", std::string(5000, 'a')))))
+                  .text,
+              HasSubstr("too long"));
 }
 
 TEST_F(ModelFile, FileNamesAreReadLiterally) {
-  const std::string whole = text_of(triangle());
-  const std::string buffer = text_of((folder / "triangle.bin").string());
+  const std::string whole = read_text(triangle());
+  const std::string buffer = read_text((folder / "triangle.bin").string());
   for (const auto& [uri, name] : {std::pair<std::string, std::string>{"a%20b.bin", "a b.bin"},
                                   {"a b.bin", "a b.bin"},
                                   {"\xc3\xb6.bin", "\xc3\xb6.bin"},
@@ -339,7 +321,7 @@ TEST_F(ModelFile, FileNamesAreReadLiterally) {
                                   {"a+b.bin", "a+b.bin"},
                                   {"a%2Bb.bin", "a+b.bin"}}) {
     write(name, buffer);
-    const auto model = load_model(only(write("names.gltf", with_buffer(whole, uri))));
+    const auto model = load_model(only(write("names.gltf", replaced(whole, "triangle.bin", uri))));
     EXPECT_TRUE(model) << uri << ": " << model.error().text;
     std::filesystem::remove(folder / name); // So that no other name finds the file.
   }
@@ -379,11 +361,11 @@ TEST_F(ModelFile, PicturesBeyondTheirBufferAreNotRead) {
 
 TEST_F(ModelFile, PicturesThatAreMissingAreNamed) {
   const std::string whole =
-      exchanged(text_of(triangle()), R"("indices": 1)", R"("indices": 1, "material": 0)");
+      replaced(read_text(triangle()), R"("indices": 1)", R"("indices": 1, "material": 0)");
   const auto warnings = [&](const std::string& texture, const std::string& uri) {
     const auto model = load_model(
-        only(write("picture.gltf", exchanged(whole, R"("scene": 0)",
-                                             R"("scene": 0, "images": [{ "uri": ")" + uri + R"(" }],
+        only(write("picture.gltf", replaced(whole, R"("scene": 0)",
+                                            R"("scene": 0, "images": [{ "uri": ")" + uri + R"(" }],
           "textures": [{ )" + texture + R"( }], "materials": [{ "pbrMetallicRoughness":
           { "baseColorTexture": { "index": 0 } } }])"))));
     EXPECT_TRUE(model) << model.error().text;
@@ -414,11 +396,9 @@ TEST_F(ModelFile, DeepNestingIsRejected) {
 }
 
 TEST_F(ModelFile, DamagedFilesAreRejectedOrRead) {
-  std::ifstream stream(triangle(), std::ios::binary);
-  const std::string text((std::istreambuf_iterator<char>(stream)), {});
+  const std::string text = read_text(triangle());
   const float positions[9] = {0, 0, 0, 1, 0, 0, 0, 2, 0};
-  std::string json = text;
-  json.replace(json.find(R"("uri": "triangle.bin", )"), 23, "");
+  const std::string json = replaced(text, R"("uri": "triangle.bin", )", "");
   const std::string glb = binary(json, std::string(reinterpret_cast<const char*>(positions), 36) +
                                            std::string("\0\0\1\0\2\0\0\0", 8));
   ASSERT_TRUE(load_model(only(write("whole.glb", glb))));
@@ -457,9 +437,7 @@ TEST(Texture, OtherFormatsAreNotParsed) {
 }
 
 TEST_F(ModelFile, EveryTruncationOfAFileIsRejectedOrRead) {
-  const std::string path = triangle();
-  std::ifstream stream(path, std::ios::binary);
-  const std::string whole((std::istreambuf_iterator<char>(stream)), {});
+  const std::string whole = read_text(triangle());
   for (size_t size = 0; size < whole.size(); size += 7) {
     const auto model = load_model(only(write("cut.gltf", whole.substr(0, size))));
     if (!model) {

@@ -14,7 +14,6 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
-#include <sstream>
 #include <unistd.h>
 
 namespace demo {
@@ -108,11 +107,8 @@ std::vector<restir::testing::Pixel> pixels_of(const FrameOutputs& frame,
 }
 
 restir::Vector3 skin_d() {
-  std::ifstream file(source + "/configs/profiles/skin.json");
-  std::stringstream text;
-  text << file.rdbuf();
   dermis::Diagnostics diagnostics;
-  const auto document = dermis::parse_document("skin.json", text.str(), diagnostics);
+  const auto document = dermis::read_document(source + "/configs/profiles/skin.json", diagnostics);
   const auto profile =
       document ? dermis::subsurface::read_profile(*document, diagnostics) : std::nullopt;
   EXPECT_TRUE(profile);

@@ -2,14 +2,16 @@
 // with the reason in the report.
 #include "tests/integration/examples/demo_engine/ray_queries.hpp"
 #include "tests/support/test_folder.hpp"
+#include "tests/support/text_file.hpp"
 
 #include <algorithm>
 #include <fstream>
-#include <sstream>
 
 namespace demo {
 namespace {
 
+using dermis::test::read_text;
+using dermis::test::replaced;
 using dermis::test::TestFolder;
 using testing::AllOf;
 using testing::HasSubstr;
@@ -17,22 +19,14 @@ using testing::Not;
 
 enum class LightFrom { behind, front };
 
-void replace(std::string& text, const std::string& old, const std::string& with) {
-  const size_t at = text.find(old);
-  ASSERT_NE(at, std::string::npos) << old;
-  text.replace(at, old.size(), with);
-}
-
 // The ear of configs/scenes/back_lit_ear.json, lit from behind or from the front. Frames are
 // seconds apart, so no switch has to wait.
 RenderOptions ear(const TestFolder& folder, LightFrom from, double budget_ms) {
-  std::ifstream file(source + "/configs/scenes/back_lit_ear.json");
-  std::stringstream text;
-  text << file.rdbuf();
-  std::string scene = text.str();
-  replace(scene, R"("frames_per_second": 25)", R"("frames_per_second": 1)");
-  replace(scene, "../profiles/skin.json", "skin.json");
-  if (from == LightFrom::front) replace(scene, "[-0.05, 0.05, -0.20]", "[-0.05, 0.05, 0.20]");
+  std::string scene = read_text(source + "/configs/scenes/back_lit_ear.json");
+  scene = replaced(scene, R"("frames_per_second": 25)", R"("frames_per_second": 1)");
+  scene = replaced(scene, "../profiles/skin.json", "skin.json");
+  if (from == LightFrom::front)
+    scene = replaced(scene, "[-0.05, 0.05, -0.20]", "[-0.05, 0.05, 0.20]");
   const std::filesystem::path path = folder / "ear.json";
   std::ofstream(path) << scene;
   std::filesystem::copy_file(source + "/configs/profiles/skin.json", folder / "skin.json",
@@ -93,7 +87,8 @@ TEST_F(WithRayQueries, TooSmallBudget_ReportsTheMissingTime) {
   options.budget.deterministic = true; // Equal on every machine.
   options.budget.ms = 20;
   // Rays cost more than the budget; passes without a line cost as much per group as the last line.
-  options.budget.calibration = {"invented", R"({ "dermis_calibration": 2, "device": "invented", "costs": [
+  options.budget.calibration = {"invented",
+                                R"({ "dermis_calibration": 2, "device": "invented", "costs": [
     { "work": "restir.initial", "base_us": 30000, "group_us": 0, "spread": 0 },
     { "work": "others", "base_us": 0, "group_us": 0.001, "spread": 0 } ] })"};
   const Rendering rendering = rendered(options);

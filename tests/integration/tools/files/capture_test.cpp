@@ -4,6 +4,7 @@
 #include "integration/tools/files/exr.hpp"
 #include "tests/support/matchers.hpp"
 #include "tests/support/test_folder.hpp"
+#include "tests/support/text_file.hpp"
 
 #include <cmath>
 #include <filesystem>
@@ -75,11 +76,8 @@ struct Captures : ::testing::Test {
   }
   // Replaces a part of frame.json.
   void change(const fs::path& frame, const std::string& from, const std::string& to) {
-    const auto bytes = read_bytes(frame / "frame.json", 1 << 20, error);
-    std::string text(bytes->begin(), bytes->end());
-    ASSERT_NE(text.find(from), std::string::npos) << text;
-    text.replace(text.find(from), from.size(), to);
-    ASSERT_TRUE(write_text(frame / "frame.json", text, error));
+    const fs::path file = frame / "frame.json";
+    ASSERT_TRUE(write_text(file, test::replaced(test::read_text(file), from, to), error));
   }
   std::string messages() const {
     std::string all;
