@@ -102,39 +102,8 @@ protected:
     return {first, first + buffer->size};
   }
 
-  // Makes a combined image of the view's size and a depth view of it.
   static demo::Image make_depth(VkFormat format) {
-    demo::Image made;
-    made.host = host.get();
-    made.format = format;
-    made.width = made.height = 64;
-    VkImageCreateInfo info{};
-    info.sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO;
-    info.imageType = VK_IMAGE_TYPE_2D;
-    info.format = format;
-    info.extent = {made.width, made.height, 1};
-    info.mipLevels = info.arrayLayers = 1;
-    info.samples = VK_SAMPLE_COUNT_1_BIT;
-    info.usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT |
-                 VK_IMAGE_USAGE_TRANSFER_DST_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
-    EXPECT_EQ(host->vk.vkCreateImage(host->device, &info, nullptr, &made.image), VK_SUCCESS);
-    VkMemoryRequirements needs{};
-    host->vk.vkGetImageMemoryRequirements(host->device, made.image, &needs);
-    VkMemoryAllocateInfo memory{};
-    memory.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO;
-    memory.allocationSize = needs.size;
-    memory.memoryTypeIndex =
-        demo::find_memory_type(*host, needs.memoryTypeBits, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT, 0);
-    EXPECT_EQ(host->vk.vkAllocateMemory(host->device, &memory, nullptr, &made.memory), VK_SUCCESS);
-    EXPECT_EQ(host->vk.vkBindImageMemory(host->device, made.image, made.memory, 0), VK_SUCCESS);
-    VkImageViewCreateInfo view{};
-    view.sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO;
-    view.image = made.image;
-    view.viewType = VK_IMAGE_VIEW_TYPE_2D;
-    view.format = format;
-    view.subresourceRange = {VK_IMAGE_ASPECT_DEPTH_BIT, 0, 1, 0, 1};
-    EXPECT_EQ(host->vk.vkCreateImageView(host->device, &view, nullptr, &made.view), VK_SUCCESS);
-    return made;
+    return make_depth_image(format, VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT);
   }
 
   static std::vector<VkFormat> formats() {

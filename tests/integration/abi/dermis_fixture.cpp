@@ -246,6 +246,49 @@ dermis_frame DermisTest::bound_frame(dermis_graph graph, uint32_t width, uint32_
   return frame(bound_.emplace_back(bindings(graph)), width, height);
 }
 
+void DermisTest::record_unsubmitted(dermis_graph graph, dermis_frame& frame) {
+  const auto ran = demo::run_commands(*host, [&](VkCommandBuffer commands) -> demo::Result<> {
+    frame.command_buffer = commands;
+    EXPECT_OK(dermis_view_record(dermis_graph_view(graph), &frame));
+    return demo::Error{demo::ErrorKind::internal, "not to be submitted"};
+  });
+  EXPECT_FALSE(ran);
+}
+
+demo::Image DermisTest::make_depth_image(VkFormat format, VkImageUsageFlags usage) {
+  demo::Image made;
+  made.host = host.get();
+  made.format = format;
+  made.aspect = VK_IMAGE_ASPECT_DEPTH_BIT;
+  if (format == VK_FORMAT_D24_UNORM_S8_UINT || format == VK_FORMAT_D32_SFLOAT_S8_UINT)
+    made.aspect |= VK_IMAGE_ASPECT_STENCIL_BIT;
+  made.width = made.height = 64;
+  auto info = demo::vulkan_struct<VkImageCreateInfo>(VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO);
+  info.imageType = VK_IMAGE_TYPE_2D;
+  info.format = format;
+  info.extent = {made.width, made.height, 1};
+  info.mipLevels = info.arrayLayers = 1;
+  info.samples = VK_SAMPLE_COUNT_1_BIT;
+  info.usage =
+      usage | VK_IMAGE_USAGE_TRANSFER_DST_BIT | VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT;
+  EXPECT_EQ(host->vk.vkCreateImage(host->device, &info, nullptr, &made.image), VK_SUCCESS);
+  VkMemoryRequirements needs{};
+  host->vk.vkGetImageMemoryRequirements(host->device, made.image, &needs);
+  auto memory = demo::vulkan_struct<VkMemoryAllocateInfo>(VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO);
+  memory.allocationSize = needs.size;
+  memory.memoryTypeIndex =
+      demo::find_memory_type(*host, needs.memoryTypeBits, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT, 0);
+  EXPECT_EQ(host->vk.vkAllocateMemory(host->device, &memory, nullptr, &made.memory), VK_SUCCESS);
+  EXPECT_EQ(host->vk.vkBindImageMemory(host->device, made.image, made.memory, 0), VK_SUCCESS);
+  auto view = demo::vulkan_struct<VkImageViewCreateInfo>(VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO);
+  view.image = made.image;
+  view.viewType = VK_IMAGE_VIEW_TYPE_2D;
+  view.format = format;
+  view.subresourceRange = {VK_IMAGE_ASPECT_DEPTH_BIT, 0, 1, 0, 1};
+  EXPECT_EQ(host->vk.vkCreateImageView(host->device, &view, nullptr, &made.view), VK_SUCCESS);
+  return made;
+}
+
 demo::ReportedFrame DermisTest::record_and_read(dermis_graph graph, dermis_frame& frame) {
   EXPECT_OK(record(graph, frame));
   demo::ReportedFrame choice;

@@ -79,9 +79,13 @@ struct DermisTest : ::testing::Test {
   // Returns a frame with the present images, whose bindings live as long as the test.
   dermis_frame bound_frame(dermis_graph graph, uint32_t width = 64, uint32_t height = 64);
   dermis_result record(dermis_graph graph, dermis_frame& frame); // Records, submits and waits.
+  // Records a frame into a command buffer that is not submitted.
+  void record_unsubmitted(dermis_graph graph, dermis_frame& frame);
   // Records a frame and returns its report.
   demo::ReportedFrame record_and_read(dermis_graph graph, dermis_frame& frame);
   demo::ReportedFrame run_frame(dermis_graph graph); // Does both with the present images.
+  // Makes a depth buffer of 64 x 64 pixels in device memory; its view has only the depth aspect.
+  static demo::Image make_depth_image(VkFormat format, VkImageUsageFlags usage);
   // Gives an image new contents: `value(x, y)` in every channel.
   void upload(const std::string& slot, const std::vector<float>& values); // Channel by channel.
   void fill(const std::string& slot, const std::function<float(uint32_t, uint32_t)>& value);

@@ -40,42 +40,9 @@ struct Inputs : DermisTest {
     vkGetPhysicalDeviceFormatProperties(host->physical_device, format, &properties);
     return (properties.optimalTilingFeatures & VK_FORMAT_FEATURE_SAMPLED_IMAGE_BIT) != 0;
   }
-  // Makes a depth buffer with one value, like a cleared one; the view has only the depth aspect.
-  demo::Image depth_buffer(VkFormat format, VkImageUsageFlags usage, float value) {
-    const bool stencil =
-        format == VK_FORMAT_D24_UNORM_S8_UINT || format == VK_FORMAT_D32_SFLOAT_S8_UINT;
-    demo::Image image;
-    image.host = host.get();
-    image.format = format;
-    image.aspect = VK_IMAGE_ASPECT_DEPTH_BIT |
-                   (stencil ? VkImageAspectFlags{VK_IMAGE_ASPECT_STENCIL_BIT} : 0u);
-    image.width = image.height = 64;
-    VkImageCreateInfo info{};
-    info.sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO;
-    info.imageType = VK_IMAGE_TYPE_2D;
-    info.format = format;
-    info.extent = {64, 64, 1};
-    info.mipLevels = info.arrayLayers = 1;
-    info.samples = VK_SAMPLE_COUNT_1_BIT;
-    info.usage =
-        usage | VK_IMAGE_USAGE_TRANSFER_DST_BIT | VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT;
-    EXPECT_EQ(host->vk.vkCreateImage(host->device, &info, nullptr, &image.image), VK_SUCCESS);
-    VkMemoryRequirements needs{};
-    host->vk.vkGetImageMemoryRequirements(host->device, image.image, &needs);
-    VkMemoryAllocateInfo allocate{};
-    allocate.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO;
-    allocate.allocationSize = needs.size;
-    allocate.memoryTypeIndex = demo::find_memory_type(*host, needs.memoryTypeBits, 0, 0);
-    EXPECT_EQ(host->vk.vkAllocateMemory(host->device, &allocate, nullptr, &image.memory),
-              VK_SUCCESS);
-    EXPECT_EQ(host->vk.vkBindImageMemory(host->device, image.image, image.memory, 0), VK_SUCCESS);
-    VkImageViewCreateInfo view{};
-    view.sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO;
-    view.image = image.image;
-    view.viewType = VK_IMAGE_VIEW_TYPE_2D;
-    view.format = format;
-    view.subresourceRange = {VK_IMAGE_ASPECT_DEPTH_BIT, 0, 1, 0, 1};
-    EXPECT_EQ(host->vk.vkCreateImageView(host->device, &view, nullptr, &image.view), VK_SUCCESS);
+  // Makes a depth buffer with one value, like a cleared one.
+  static demo::Image depth_buffer(VkFormat format, VkImageUsageFlags usage, float value) {
+    demo::Image image = make_depth_image(format, usage);
     const auto cleared = demo::run_commands(*host, [&](VkCommandBuffer commands) -> demo::Result<> {
       demo::transition(*host, commands, image, {}, resting);
       const VkClearDepthStencilValue to{value, 0};
