@@ -233,32 +233,5 @@ TEST_F(ExecutorTest, EveryPassHasATimeOfACompletedFrame) {
   }
 }
 
-TEST_F(ExecutorTest, AWrongFrameIsRejectedAndRecordsNothing) {
-  SmallGraph g{"in_out light"};
-  g.pass("fill", "test.fill", {}, {{"target", "light"}});
-  make_executor(g, width, height);
-  const TestImage light = bind(g, "light", std::vector<float>(width * height, -1.0f));
-  const vulkan::HostImage bound = images[0];
-
-  images[0].image = VK_NULL_HANDLE;
-  vulkan::RecordResult rejected = frame();
-  EXPECT_EQ(rejected.kind, vulkan::ErrorKind::argument);
-  EXPECT_EQ(rejected.slot, 0);
-  images[0] = bound;
-  images[0].view = VK_NULL_HANDLE;
-  EXPECT_EQ(frame().slot, 0);
-  images[0] = bound;
-  images[0].after.layout = VK_IMAGE_LAYOUT_UNDEFINED;
-  EXPECT_EQ(frame().slot, 0);
-  images[0] = bound;
-  EXPECT_TRUE(frame(0.0f, {12, 0, 10, 10})) << "beyond the right edge";
-  EXPECT_TRUE(frame(0.0f, {0, 0xffffffffu, 1, 1})) << "32-bit wrap";
-  wait();
-  EXPECT_THAT(read(light), Each(FloatEq(-1.0f)));
-  ASSERT_FALSE(frame());
-  --frame_index;
-  EXPECT_TRUE(frame()) << "the same frame index again";
-}
-
 } // namespace
 } // namespace dermis::testing

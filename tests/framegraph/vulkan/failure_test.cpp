@@ -121,11 +121,6 @@ TEST_F(FailureTest, BadInputsAreRejected) {
   input.frames_in_flight = vulkan::max_frames_in_flight + 1;
   EXPECT_THAT(vulkan::Executor::create(input, made).text,
               HasSubstr("9 frames in flight; expected 1 to 8"));
-  input.frames_in_flight = 2;
-  const vulkan::EnvironmentBinding empty[] = {{vulkan::EnvironmentType::uniform_buffer, 0, {}}};
-  input.environment = empty;
-  EXPECT_THAT(vulkan::Executor::create(input, made).text,
-              HasSubstr("environment binding 0 has 0 bytes"));
 }
 
 TEST_F(ExecutorTest, APlanOfTwoQueuesIsRejected) {

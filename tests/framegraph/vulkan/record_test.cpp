@@ -3,6 +3,7 @@
 #include "tests/framegraph/vulkan/executor_fixture.hpp"
 
 #include <functional>
+#include <optional>
 
 namespace dermis::testing {
 namespace {
@@ -32,11 +33,11 @@ struct RejectedFrames : ExecutorTest {
     bind(graph, "light", std::vector<float>(side * side, 2.0f));
     result = bind(graph, "result", {});
   }
-  // Records a correct frame after `change` has made it wrong.
+  // Records and submits a correct frame after `change` has made it wrong.
   vulkan::RecordResult record(const std::function<void(Frame&)>& change) {
     Frame one;
     one.images = images;
-    one.settings = {{SettingType::real, 0, 1.0}};
+    one.settings = {{SettingType::real, 0, 7.0}};
     const SmallFrame values{{0, 0, side, side}, 0, {}};
     const auto bytes = std::as_bytes(std::span(&values, 1));
     one.constants.assign(bytes.begin(), bytes.end());
@@ -47,7 +48,9 @@ struct RejectedFrames : ExecutorTest {
     one.input.images = one.images;
     one.input.settings = one.settings;
     one.input.frame_constants = one.constants;
-    return executor->record(one.input);
+    const vulkan::RecordResult recorded = executor->record(one.input);
+    if (one.input.command_buffer != VK_NULL_HANDLE) submit(one.input.command_buffer);
+    return recorded;
   }
 };
 
@@ -56,7 +59,12 @@ TEST_F(RejectedFrames, ReasonIsGiven_ExecutorIsUnchanged) {
   ASSERT_FALSE(frame());
   const auto light = static_cast<size_t>(graph.slot("light")),
              out = static_cast<size_t>(graph.slot("result"));
-  const std::pair<const char*, std::function<void(Frame&)>> changes[] = {
+  struct Case {
+    const char* said;
+    std::function<void(Frame&)> change;
+    std::optional<size_t> slot = {};
+  };
+  const Case changes[] = {
       {"command buffer is null", [](Frame& f) { f.input.command_buffer = VK_NULL_HANDLE; }},
       {"frame_index must increase", [](Frame& f) { f.input.frame_index = 5; }},
       {"frame_index must increase", [](Frame& f) { f.input.frame_index = 0; }},
@@ -74,18 +82,24 @@ TEST_F(RejectedFrames, ReasonIsGiven_ExecutorIsUnchanged) {
        }},
       {"frame_constants has more bytes",
        [](Frame& f) { f.constants.resize(sizeof(SmallFrame) + 1); }},
-      {"the slot is not bound", [=](Frame& f) { f.images[light].image = VK_NULL_HANDLE; }},
+      {"the slot is not bound", [=](Frame& f) { f.images[light].image = VK_NULL_HANDLE; }, light},
       {"the slot is not bound", [](Frame& f) { f.images.clear(); }},
-      {"the binding has no view", [=](Frame& f) { f.images[light].view = VK_NULL_HANDLE; }},
-      {"after.layout", [=](Frame& f) { f.images[out].after.layout = VK_IMAGE_LAYOUT_UNDEFINED; }},
+      {"the binding has no view", [=](Frame& f) { f.images[light].view = VK_NULL_HANDLE; }, light},
+      {"after.layout", [=](Frame& f) { f.images[out].after.layout = VK_IMAGE_LAYOUT_UNDEFINED; },
+       out},
       {"after.layout",
        [=](Frame& f) { f.images[out].after.layout = VK_IMAGE_LAYOUT_PREINITIALIZED; }},
   };
-  for (const auto& [said, change] : changes) {
+  for (const auto& [said, change, slot] : changes) {
     const vulkan::RecordResult rejected = record(change);
     EXPECT_EQ(rejected.kind, vulkan::ErrorKind::argument) << said;
     EXPECT_THAT(rejected.text, HasSubstr(said));
+    if (slot) {
+      EXPECT_EQ(rejected.slot, static_cast<int32_t>(*slot)) << said;
+    }
   }
+  wait();
+  EXPECT_THAT(read(result), Each(FloatEq(3.0f))) << "nothing was recorded";
   settings.clear();
   ASSERT_FALSE(frame()) << "the next right frame runs";
   EXPECT_THAT(read(result), Each(FloatEq(3.0f)));

@@ -128,20 +128,6 @@ struct KeptHistory : Choice {
     rest(one);
     return record_and_read(graph, one);
   }
-  // Records a frame in the previous frame's light and discards it without submission.
-  void lost_frame(uint32_t flags = 0) {
-    dermis_frame one = bound_frame(graph);
-    one.flags |= flags;
-    const auto ran = demo::run_commands(*host, [&](VkCommandBuffer commands) -> demo::Result<> {
-      one.command_buffer = commands;
-      EXPECT_OK(dermis_view_record(dermis_graph_view(graph), &one));
-      return demo::Error{demo::ErrorKind::internal, "not to be submitted"};
-    });
-    EXPECT_FALSE(ran);
-    EXPECT_OK(dermis_view_discard(dermis_graph_view(graph), one.frame_index));
-    EXPECT_EQ(dermis_view_discard(dermis_graph_view(graph), one.frame_index), DERMIS_ERROR_ARGUMENT)
-        << "once";
-  }
   float middle() {
     const auto light = texels("lighting");
     return (light[4 * (64 * 32 + 31)] + light[4 * (64 * 32 + 32)]) / 2;
@@ -204,27 +190,6 @@ TEST_F(KeptHistory, ReloadedGraph_ReadsItsHistory) {
         EXPECT_OK(reload_text(graph, source_of(text, "skin.json")));
       }
       EXPECT_EQ(lit_frame(float(i + 1) / 8).skips & DERMIS_SKIP_HISTORY, 0u) << "frame " << i;
-    }
-    return texels("lighting");
-  };
-  const auto steady = run(false);
-  EXPECT_EQ(run(true), steady) << "bit by bit";
-}
-
-TEST_F(KeptHistory, DiscardedFrame_HasNoEffect) {
-  const std::string text = read_text("configs/graphs/skin.json");
-  make_accumulating();
-  const auto run = [&](bool lose) {
-    set_budget(0);
-    lit_frame(2, DERMIS_FRAME_RESET_HISTORY);
-    for (int i = 0; i < 8; ++i) {
-      if (i == 2) set_budget(0.5f); // The first frame of another plan.
-      if (i == 4) set_budget(0);
-      if (i == 6) { // The first frame of a recreated graph.
-        EXPECT_OK(reload_text(graph, source_of(text, "skin.json")));
-      }
-      if (lose) lost_frame(i % 3 == 0 ? DERMIS_FRAME_RESET_HISTORY : 0);
-      lit_frame(float(i + 1) / 8);
     }
     return texels("lighting");
   };

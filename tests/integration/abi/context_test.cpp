@@ -21,53 +21,6 @@ TEST_F(Context, RequirementsAreListedWithTheirReasonAndPresence) {
     EXPECT_TRUE(item.required == 0 || item.present == 1) << item.name;
     EXPECT_GT(std::strlen(item.why), 10u) << item.name;
   }
-  uint32_t capacity = count - 1;
-  items.back().name = nullptr;
-  EXPECT_EQ(dermis_query_requirements(vkGetInstanceProcAddr, host->instance, host->physical_device,
-                                      &capacity, items.data()),
-            DERMIS_INCOMPLETE);
-  EXPECT_EQ(capacity, count);
-  EXPECT_EQ(items.back().name, nullptr) << "no element beyond the capacity is written";
-}
-
-// A loader that hides two functions, as by a host's mistake or an old driver.
-PFN_vkVoidFunction VKAPI_CALL hiding_device_proc_addr(VkDevice device, const char* name) {
-  if (std::strcmp(name, "vkCmdPipelineBarrier2") == 0 ||
-      std::strcmp(name, "vkCmdDispatchIndirect") == 0)
-    return nullptr;
-  return vkGetDeviceProcAddr(device, name);
-}
-PFN_vkVoidFunction VKAPI_CALL hiding_proc_addr(VkInstance instance, const char* name) {
-  if (std::strcmp(name, "vkGetDeviceProcAddr") == 0)
-    return reinterpret_cast<PFN_vkVoidFunction>(&hiding_device_proc_addr);
-  return vkGetInstanceProcAddr(instance, name);
-}
-
-TEST_F(Context, EveryMissingFunctionIsNamedAtOnce) {
-  dermis_context_desc desc = context_desc();
-  desc.get_instance_proc_addr = hiding_proc_addr;
-  dermis_context other = nullptr;
-  EXPECT_EQ(dermis_context_create(&desc, &other), DERMIS_ERROR_UNSUPPORTED);
-  EXPECT_EQ(other, nullptr);
-  EXPECT_THAT(dermis_last_error(), HasAll("vkCmdPipelineBarrier2", "vkCmdDispatchIndirect"));
-  EXPECT_FALSE(logged.empty()) << "the log callback gets the same message";
-  EXPECT_EQ(logged.back(), dermis_last_error());
-}
-
-void VKAPI_CALL featureless(VkPhysicalDevice, VkPhysicalDeviceFeatures2*) {}
-PFN_vkVoidFunction VKAPI_CALL featureless_proc_addr(VkInstance instance, const char* name) {
-  if (std::strcmp(name, "vkGetPhysicalDeviceFeatures2") == 0)
-    return reinterpret_cast<PFN_vkVoidFunction>(&featureless);
-  return vkGetInstanceProcAddr(instance, name);
-}
-
-TEST_F(Context, EveryMissingFeatureIsNamedAtOnce) {
-  dermis_context_desc desc = context_desc();
-  desc.get_instance_proc_addr = featureless_proc_addr;
-  dermis_context other = nullptr;
-  EXPECT_THAT(dermis_context_create(&desc, &other),
-              Fails(DERMIS_ERROR_UNSUPPORTED, "synchronization2", "maintenance4",
-                    "shaderStorageImageWriteWithoutFormat"));
 }
 
 TEST_F(Context, OutOfRangeFieldsAreNamed) {
@@ -86,22 +39,10 @@ TEST_F(Context, OutOfRangeFieldsAreNamed) {
   rejected(DERMIS_ERROR_ARGUMENT, "frames_in_flight",
            [](auto& desc) { desc.frames_in_flight = 9; });
   rejected(DERMIS_ERROR_ARGUMENT, "queue family", [](auto& desc) { desc.queue_family = 1000; });
+  ASSERT_FALSE(logged.empty()) << "the log callback gets the same message";
+  EXPECT_EQ(logged.back(), dermis_last_error());
   rejected(DERMIS_ERROR_ARGUMENT, "struct_size", [](auto& desc) { desc.struct_size = 0; });
   rejected(DERMIS_ERROR_ARGUMENT, "struct_size", [](auto& desc) { desc.struct_size = 1; });
-}
-
-TEST_F(Context, NewerHeader_ZeroNewFieldsAreAccepted) {
-  struct Newer {
-    dermis_context_desc known;
-    uint64_t unknown;
-  } newer{context_desc(), 0};
-  newer.known.struct_size = sizeof newer;
-  dermis_context other = nullptr;
-  EXPECT_OK(dermis_context_create(&newer.known, &other));
-  dermis_context_destroy(other);
-  newer.unknown = 1;
-  EXPECT_EQ(dermis_context_create(&newer.known, &other), DERMIS_ERROR_VERSION);
-  EXPECT_EQ(other, nullptr);
 }
 
 TEST_F(Context, GraphOutlivingItsContext_IsDestroyedAndReported) {

@@ -16,10 +16,7 @@ struct GraphLife : DermisTest {
   std::string burley = read_text("configs/graphs/burley.json");
 
   std::string with(const std::string& from, const std::string& to) const {
-    std::string text = burley;
-    const size_t at = text.find(from);
-    EXPECT_NE(at, std::string::npos) << from;
-    return at == std::string::npos ? text : text.replace(at, from.size(), to);
+    return replaced(burley, from, to);
   }
   std::string described(dermis_graph graph, dermis_describe_format format) {
     size_t size = 0;
@@ -130,40 +127,12 @@ TEST_F(GraphLife, WrongSlotsOfTheHostAreReported) {
   graphs.push_back(graph);
 }
 
-TEST_F(GraphLife, SizesAndProfilesOutOfRangeAreRejected) {
-  GraphOptions options;
-  dermis_graph graph = nullptr;
-  for (const auto& [width, height] : {std::pair{0u, 64u}, {64u, 0u}, {16385u, 64u}, {64u, ~0u}}) {
-    options.width = width;
-    options.height = height;
-    EXPECT_THAT(create_graph(options, &graph),
-                Fails(DERMIS_ERROR_ARGUMENT, std::to_string(width) + "x" + std::to_string(height)));
-  }
-  std::array profiles{skin_profile(3), skin_profile(3)};
-  dermis_graph_desc desc = graph_desc(burley, "graph.json", 64);
-  desc.profiles = profiles.data();
-  desc.profile_count = 2;
-  EXPECT_EQ(dermis_graph_create(context, &desc, &graph, nullptr), DERMIS_ERROR_ARGUMENT)
-      << "the same id twice";
-  profiles[1].id = 256;
-  EXPECT_EQ(dermis_graph_create(context, &desc, &graph, nullptr), DERMIS_ERROR_ARGUMENT);
-  profiles[1].id = 4;
-  profiles[1].struct_size += 8;
-  EXPECT_EQ(dermis_graph_create(context, &desc, &graph, nullptr), DERMIS_ERROR_ARGUMENT)
-      << "not the first's size";
-}
-
-TEST_F(GraphLife, DescriptionsAreCompleteOrNotWritten) {
+TEST_F(GraphLife, DescriptionsHaveTheirFormat) {
   const dermis_graph graph = make_graph();
   EXPECT_TRUE(nlohmann::json::accept(described(graph, DERMIS_DESCRIBE_JSON)));
   EXPECT_THAT(described(graph, DERMIS_DESCRIBE_DOT), HasSubstr("digraph"));
   EXPECT_THAT(described(graph, DERMIS_DESCRIBE_TEXT), HasSubstr("scatter"));
-  std::array<char, 4> small{'k', 'e', 'p', 't'};
-  size_t size = small.size();
-  EXPECT_EQ(dermis_graph_describe(graph, DERMIS_DESCRIBE_TEXT, &size, small.data()),
-            DERMIS_INCOMPLETE);
-  EXPECT_GT(size, small.size());
-  EXPECT_EQ(std::string(small.data(), small.size()), "kept");
+  size_t size = 0;
   EXPECT_EQ(dermis_graph_describe(graph, static_cast<dermis_describe_format>(3), &size, nullptr),
             DERMIS_ERROR_ARGUMENT);
 }
@@ -321,35 +290,12 @@ TEST_F(GraphLife, Resize_StartsAtTheNextRecord) {
   EXPECT_EQ(texels("lighting").size(), 96u * 40u * 4u);
 }
 
-TEST_F(GraphLife, SettingsAreCheckedAndNamed) {
-  const dermis_graph graph = make_graph();
-  const auto rejected = [&](const char* name, const char* json, dermis_result result,
-                            const char* said) {
-    dermis_report report = nullptr;
-    EXPECT_EQ(dermis_graph_set_setting(graph, name, json, &report), result)
-        << name << " = " << json;
-    EXPECT_THAT(take(report).all, HasSubstr(said));
-  };
-  rejected("sample", "16", DERMIS_ERROR_ARGUMENT, "'samples'");
-  rejected("samples", "3", DERMIS_ERROR_CONFIG, "4..4096");
-  rejected("samples", "5000", DERMIS_ERROR_CONFIG, "4..4096");
-  rejected("samples", "16.5", DERMIS_ERROR_CONFIG, "an integer");
-  rejected("samples", "\"16\"", DERMIS_ERROR_CONFIG, "an integer");
-  rejected("samples", "", DERMIS_ERROR_CONFIG, "setting samples:1:1");
-  rejected("samples", "16,", DERMIS_ERROR_CONFIG, "setting samples:1:3");
-  rejected("texturing", "\"after\"", DERMIS_ERROR_CONFIG, "\"pre_post\"");
-  EXPECT_OK(dermis_graph_set_setting(graph, "texturing", "\"pre\"", nullptr));
-  EXPECT_EQ(dermis_graph_set_setting(graph, nullptr, "1", nullptr), DERMIS_ERROR_ARGUMENT);
-  EXPECT_EQ(dermis_graph_set_setting(graph, "samples", nullptr, nullptr), DERMIS_ERROR_ARGUMENT);
-}
-
 // Reads internals, because the interface does not show whether a plan was cached or compiled again.
 TEST_F(GraphLife, SettingFlippedBack_ReusesItsPlan) {
-  std::string text = with("\"settings\": {", "\"settings\": { \"combined\": { \"bool\": true },");
-  const std::string pass = "\"pass\": \"combine\",";
-  text.replace(text.find(pass), pass.size(), pass + " \"when\": \"combined\",");
   GraphOptions options;
-  options.text = text;
+  options.text =
+      replaced(with("\"settings\": {", "\"settings\": { \"combined\": { \"bool\": true },"),
+               "\"pass\": \"combine\",", "\"pass\": \"combine\", \"when\": \"combined\",");
   const dermis_graph graph = make_graph(options);
   make_images(graph);
   const auto bound = bindings(graph);

@@ -20,11 +20,11 @@ struct Histories : DermisTest {
          at += resize.size())
       overlay.replace(at, 9, '"' + resize + '"');
     if (!when.empty()) {
-      const std::string pass = R"("pass": "accumulate",)", clear = R"("pass": "forget_past",)";
-      overlay.replace(overlay.find(pass), pass.size(),
-                      pass + R"("when": ")" + when +
-                          R"(", "otherwise": { "accumulated": "scattered" },)");
-      overlay.replace(overlay.find(clear), clear.size(), clear + R"("when": ")" + when + R"(",)");
+      const std::string pass = R"("pass": "accumulate",)", clear = R"("pass": "forget_past",)",
+                        condition = R"("when": ")" + when + R"(",)";
+      overlay = replaced(overlay, pass,
+                         pass + condition + R"( "otherwise": { "accumulated": "scattered" },)");
+      overlay = replaced(overlay, clear, clear + condition);
     }
     GraphOptions options = shipped_options(dermis::shipped::graph_file(graph_name));
     options.overlays = {overlay};
@@ -130,12 +130,9 @@ TEST_F(Histories, Reload_ReportsOnlyRestartedOnes) {
   EXPECT_THAT(restarted(take(report)), IsEmpty());
   GraphOptions changed = keeping("burley");
   std::string& overlay = changed.overlays.front();
-  const std::string past =
-      // Declaration of `past`.
-      R"("size": "view", "history": { "frames": 1, "on_resize": "rescale" })";
-  ASSERT_NE(overlay.find(past), std::string::npos);
-  overlay.replace(
-      overlay.find(past), past.size(),
+  overlay = replaced(
+      overlay, // Declaration of `past`.
+      R"("size": "view", "history": { "frames": 1, "on_resize": "rescale" })",
       R"("size": "view", "border": 1, "history": { "frames": 1, "on_resize": "invalidate" })");
   ASSERT_OK(reload_graph(graph, changed, &report));
   EXPECT_THAT(restarted(take(report)), ElementsAre("past"));
@@ -208,7 +205,7 @@ TEST_F(Histories, NewAfterAReload_AreReportedAsNew) {
        {std::pair<std::string, std::string>{R"("ratio": {)", R"("mending": {)"},
         {R"("ratio@-1")", R"("mending@-1")"},
         {R"("ratio_out": "ratio")", R"("ratio_out": "mending")"}})
-    options.text.replace(options.text.find(from), from.size(), to);
+    options.text = replaced(options.text, from, to);
   options.unbound = {"albedo",        "scatter_scale",   "velocity", "thickness",
                      "back_lighting", "scattered_light", "sampling"};
   make(options);
@@ -257,12 +254,7 @@ TEST_F(Histories, DiscardedFrame_HasNoEffect) {
   run(2);
   dermis_frame one = bound_frame(graph);
   one.flags = DERMIS_FRAME_RESET_HISTORY;
-  const auto ran = demo::run_commands(*host, [&](VkCommandBuffer commands) -> demo::Result<> {
-    one.command_buffer = commands;
-    EXPECT_OK(dermis_view_record(dermis_graph_view(graph), &one));
-    return demo::Error{demo::ErrorKind::internal, "not to be submitted"};
-  });
-  EXPECT_FALSE(ran);
+  record_unsubmitted(graph, one);
   expect(1, DERMIS_HISTORY_CUT, "camera cut");
   ASSERT_OK(dermis_view_discard(dermis_graph_view(graph), one.frame_index));
   expect(2, DERMIS_HISTORY_NEVER_WRITTEN, "valid since its first frame");
@@ -284,37 +276,6 @@ TEST_F(Histories, ViewsHaveSeparateHistories) {
 TEST_F(Histories, GraphWithoutHistories_ReportsNone) {
   graph = make_graph();
   EXPECT_TRUE(reported(graph).empty());
-}
-
-TEST_F(Histories, WrongArgumentsAreNamed) {
-  make(keeping("burley"));
-  uint32_t count = 2;
-  const auto rejected = [](dermis_result result, const char* named) {
-    EXPECT_THAT(result, Fails(DERMIS_ERROR_ARGUMENT, named));
-  };
-  rejected(dermis_view_histories(dermis_graph_view(nullptr), &count, nullptr), "view is NULL");
-  rejected(dermis_view_histories(dermis_graph_view(graph), nullptr, nullptr), "count is NULL");
-  rejected(dermis_view_histories(nullptr, &count, nullptr), "view is NULL");
-  // Every size below that of the first version is rejected; bytes beyond the known size are filled
-  // with zeros.
-  for (size_t size = 0; size < sizeof(dermis_history); ++size) {
-    dermis_history small = DERMIS_HISTORY_INIT;
-    small.struct_size = size;
-    rejected(dermis_view_histories(dermis_graph_view(graph), &count, &small), "struct_size");
-  }
-  struct Newer {
-    dermis_history known;
-    uint64_t later;
-  } newer[2];
-  std::memset(newer, 0xff, sizeof newer);
-  newer[0].known.struct_size = sizeof(Newer);
-  count = 2;
-  ASSERT_OK(dermis_view_histories(dermis_graph_view(graph), &count, &newer[0].known));
-  for (const Newer& one : newer) {
-    EXPECT_EQ(one.known.struct_size, sizeof(Newer));
-    EXPECT_GE(one.known.settles_after, 1u);
-    EXPECT_EQ(one.later, 0u);
-  }
 }
 
 } // namespace

@@ -80,10 +80,17 @@ TEST(NullArguments, AreNamedByGraphFunctions) {
   expect_argument_error(dermis_graph_predict(nullptr, nullptr, &outcome), "graph");
   expect_argument_error(dermis_view_timings(dermis_graph_view(nullptr), 0, &count, nullptr),
                         "view");
-  expect_argument_error(dermis_view_histories(dermis_graph_view(nullptr), &count, nullptr), "view");
   expect_argument_error(dermis_view_histories(nullptr, &count, nullptr), "view");
   expect_argument_error(dermis_view_record(dermis_graph_view(nullptr), &frame), "view");
   expect_argument_error(dermis_view_discard(dermis_graph_view(nullptr), 1), "view");
+  dermis_view view = nullptr;
+  expect_argument_error(dermis_view_create(nullptr, nullptr, &view, nullptr), "graph");
+  const dermis_command* commands = nullptr;
+  expect_argument_error(dermis_view_commands(nullptr, &frame, &count, &commands), "view");
+  dermis_frame_report taken = DERMIS_FRAME_REPORT_INIT;
+  expect_argument_error(dermis_view_report(nullptr, 0, &taken), "view");
+  dermis_frame_statistics statistics = DERMIS_FRAME_STATISTICS_INIT;
+  expect_argument_error(dermis_view_statistics(nullptr, 0, &statistics), "view");
 }
 
 TEST(NullArguments, AreHarmlessToReportsAndDestruction) {

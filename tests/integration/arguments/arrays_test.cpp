@@ -54,9 +54,25 @@ void expect_array_property(const std::function<dermis_result(uint32_t*, T*)>& as
     }
   }
   T item{};
-  item.struct_size = sizeof(size_t);
-  count = 1;
-  EXPECT_THAT(ask(&count, &item), Fails(DERMIS_ERROR_ARGUMENT, "struct_size"));
+  for (const size_t size : {size_t{0}, sizeof(size_t), sizeof(T) - 1}) {
+    item.struct_size = size;
+    count = 1;
+    EXPECT_THAT(ask(&count, &item), Fails(DERMIS_ERROR_ARGUMENT, "struct_size")) << size;
+  }
+  // A newer caller's elements are larger; the library fills their unknown fields with zeros.
+  struct Newer {
+    T known;
+    uint64_t later;
+  };
+  std::vector<Newer> newer(all);
+  std::memset(newer.data(), untouched, all * sizeof(Newer));
+  newer[0].known.struct_size = sizeof(Newer);
+  count = all;
+  ASSERT_OK(ask(&count, &newer[0].known));
+  for (const Newer& one : newer) {
+    EXPECT_EQ(one.known.struct_size, sizeof(Newer));
+    EXPECT_EQ(one.later, 0u);
+  }
 }
 
 TEST_F(TwoCalls, FillAtMostTheCapacity) {

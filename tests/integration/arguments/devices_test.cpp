@@ -5,6 +5,8 @@
 #include "tests/integration/embedding/null_host.hpp"
 
 #include <cstring>
+#include <set>
+#include <string_view>
 
 namespace dermis::abi_test {
 namespace {
@@ -12,8 +14,8 @@ namespace {
 // The null device with missing features. Vulkan functions have no user pointer, so the state is
 // static; tests of this file run sequentially.
 struct Lack {
-  const char* function = ""; // Unknown to the loader.
-  const char* renamed = "";  // A device function that is only known with the suffix "KHR".
+  std::set<std::string_view> functions; // Unknown to the loader.
+  const char* renamed = ""; // A device function that is only known with the suffix "KHR".
   uint32_t api_version = VK_API_VERSION_1_3;
   // The device gives only functions of this version.
   uint32_t instance_version = VK_API_VERSION_1_3;
@@ -70,7 +72,7 @@ VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL less_of_device(VkDevice device, const c
     if (!khr || !lack.extensions_enabled) return nullptr;
     return full<PFN_vkGetDeviceProcAddr>("vkGetDeviceProcAddr")(device, core.c_str());
   }
-  if (requested == lack.function) return nullptr;
+  if (lack.functions.contains(requested)) return nullptr;
   const bool extended =
       requested.ends_with("KHR") && requested.substr(0, requested.size() - 3) == lack.renamed;
   if (requested == lack.renamed) return nullptr;
@@ -78,7 +80,7 @@ VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL less_of_device(VkDevice device, const c
                                                               extended ? lack.renamed : name);
 }
 VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL less(VkInstance instance, const char* name) {
-  if (std::strcmp(name, lack.function) == 0) return nullptr;
+  if (lack.functions.contains(name)) return nullptr;
   if (std::strcmp(name, "vkGetDeviceProcAddr") == 0)
     return reinterpret_cast<PFN_vkVoidFunction>(&less_of_device);
   if (std::strcmp(name, "vkGetPhysicalDeviceProperties") == 0)
@@ -136,11 +138,17 @@ TEST_F(PoorDevice, Vulkan12_NeedsTwoExtensions) {
 
 TEST_F(PoorDevice, NoFeatureQuery_EverythingIsMissing) {
   for (const char* function : {"vkGetPhysicalDeviceProperties", "vkGetPhysicalDeviceFeatures2"}) {
-    lack.function = function;
+    lack.functions = {function};
     EXPECT_THAT(create(), Fails(DERMIS_ERROR_UNSUPPORTED, "synchronization2")) << function;
   }
-  lack.function = "vkEnumerateDeviceExtensionProperties";
+  lack.functions = {"vkEnumerateDeviceExtensionProperties"};
   EXPECT_OK(create()) << "Vulkan 1.3 has all that is needed: ";
+}
+
+TEST_F(PoorDevice, EveryMissingFeatureIsNamedAtOnce) {
+  lack.features_unknown = true;
+  EXPECT_THAT(create(), Fails(DERMIS_ERROR_UNSUPPORTED, "synchronization2", "maintenance4",
+                              "shaderStorageImageWriteWithoutFormat"));
 }
 
 #define DERMIS_NAME(name) #name,
@@ -153,18 +161,28 @@ TEST_F(PoorDevice, MissingFunction_IsNamed) {
   for (const char* name : instance_functions) {
     if (std::string_view(name) == "vkGetPhysicalDeviceProperties")
       continue; // Without this function no feature is queried, as above.
-    lack.function = name;
+    lack.functions = {name};
     EXPECT_THAT(create(), Fails(DERMIS_ERROR_UNSUPPORTED, name)) << name;
   }
   for (const char* name : device_functions) {
-    lack.function = name;
+    lack.functions = {name};
     EXPECT_THAT(create(), Fails(DERMIS_ERROR_UNSUPPORTED, "1 required function:", name)) << name;
-    lack.function = "";
+    lack.functions = {};
     lack.renamed = name;
     EXPECT_OK(create()) << name << " of an extension: ";
     host.destroy();
     lack.renamed = "";
   }
+}
+
+TEST_F(PoorDevice, EveryMissingFunctionIsNamedAtOnce) {
+  lack.functions = {"vkCmdDispatch", "vkCmdPipelineBarrier2",
+                    "vkGetPhysicalDeviceFormatProperties2"};
+  EXPECT_THAT(create(),
+              Fails(DERMIS_ERROR_UNSUPPORTED, "3 required functions", "vkCmdDispatch",
+                    "vkCmdPipelineBarrier2", "vkGetPhysicalDeviceFormatProperties2",
+                    Not(HasSubstr("vkSetDebugUtilsObjectNameEXT")))); // labels are not requested
+  EXPECT_EQ(host.context, nullptr);
 }
 
 TEST_F(PoorDevice, OlderInstance_IsNamedAsTheCause) {
@@ -205,7 +223,7 @@ TEST_F(PoorDevice, Vulkan12WithoutEnabledExtension_NamesIt) {
 
 TEST_F(PoorDevice, MissingLabels_AreAnErrorOnlyIfRequested) {
   for (const char* name : label_functions) {
-    lack.function = name;
+    lack.functions = {name};
     EXPECT_OK(create());
     host.destroy();
     dermis_context_desc desc = host.context_desc();

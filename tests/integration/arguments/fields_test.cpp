@@ -62,7 +62,10 @@ TEST_F(Fields, OfAGraph_WrongOnesAreNamed) {
       {"desc.source.length is 0", [](auto& d) { d.desc.source.length = 0; }},
       {"at most", [](auto& d) { d.desc.source.length = limits::file_bytes + 1; }},
       {"the size is 0x16", [](auto& d) { d.desc.width = 0; }},
+      {"the size is 16x0", [](auto& d) { d.desc.height = 0; }},
+      {"the size is 16385x16", [](auto& d) { d.desc.width = 16385; }},
       {"the size is 16x16385", [](auto& d) { d.desc.height = 16385; }},
+      {"the size is 16x4294967295", [](auto& d) { d.desc.height = ~0u; }},
       {"desc.profiles is NULL and its count is 2", [](auto& d) { d.desc.profiles = nullptr; }},
       {"desc.profiles[1].id is 0", [](auto& d) { d.profiles[1].id = 0; }},
       {"desc.profiles[1].id is 256", [](auto& d) { d.profiles[1].id = 256; }},
@@ -181,6 +184,14 @@ TEST_F(Fields, OfCallsOnAGraph_NullOnesAreNamed) {
   rejected(dermis_graph_predict(host.graph, nullptr, nullptr), "outcome is NULL");
   rejected(dermis_graph_frontier(host.graph, nullptr, nullptr, nullptr), "count is NULL");
   const dermis_view view = dermis_graph_view(host.graph);
+  rejected(dermis_view_create(host.graph, nullptr, nullptr, nullptr), "view is NULL");
+  rejected(dermis_view_record(view, nullptr), "dermis_view_record: frame is NULL");
+  const dermis_frame frame = host.frame_at(1);
+  uint32_t count = 0;
+  const dermis_command* commands = nullptr;
+  rejected(dermis_view_commands(view, nullptr, &count, &commands), "frame is NULL");
+  rejected(dermis_view_commands(view, &frame, nullptr, &commands), "count is NULL");
+  rejected(dermis_view_commands(view, &frame, &count, nullptr), "commands is NULL");
   rejected(dermis_view_report(view, 0, nullptr), "report is NULL");
   rejected(dermis_view_statistics(view, 0, nullptr), "statistics is NULL");
   EXPECT_EQ(dermis_graph_view(nullptr), nullptr);
@@ -241,6 +252,8 @@ TEST_F(Fields, OfSettings_OnlyTypeAndRangeAreAccepted) {
       {"count", "10", "expects an integer in 1..9, found 10"},
       {"count", "0", "expects an integer in 1..9, found 0"},
       {"count", "2.5", "expects an integer, found 2.5"},
+      {"count", "\"4\"", "expects an integer"},
+      {"count", "4,", "setting count:1:2"},
       {"share", "1", nullptr},
       {"share", "0.25", nullptr},
       {"share", "1.5", "expects a number in 0..1, found 1.5"},

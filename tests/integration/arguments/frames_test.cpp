@@ -21,8 +21,11 @@ using Change = std::function<void(dermis_frame&, Bindings&)>;
 TEST_F(Frames, WrongField_IsNamed) {
   const std::pair<const char*, Change> changes[] = {
       {"command_buffer is NULL", [](auto& f, auto&) { f.command_buffer = nullptr; }},
+      {"struct_size", [](auto& f, auto&) { f.struct_size = 12; }},
       {"flags is 0x8", [](auto& f, auto&) { f.flags = 8; }},
+      {"flags", [](auto& f, auto&) { f.flags = 0x100; }},
       {"frame_index is 1", [](auto& f, auto&) { f.frame_index = 1; }},
+      {"frame_index", [](auto& f, auto&) { f.frame_index = f.completed_frame_index = 0; }},
       {"less than frame_index", [](auto& f, auto&) { f.completed_frame_index = 2; }},
       {"with 2 frames in flight", [](auto& f, auto&) { f.frame_index = 4; }},
       {"delta_seconds", [](auto& f, auto&) { f.delta_seconds = nan_value; }},
@@ -33,8 +36,13 @@ TEST_F(Frames, WrongField_IsNamed) {
       {"exposure", [](auto& f, auto&) { f.exposure = -2; }},
       {"jitter", [](auto& f, auto&) { f.jitter_x = nan_value; }},
       {"jitter", [](auto& f, auto&) { f.jitter_y = INFINITY; }},
+      {"depth_kind", [](auto& f, auto&) { f.depth_kind = static_cast<dermis_depth_kind>(2); }},
       {"depth_kind is -1",
        [](auto& f, auto&) { f.depth_kind = static_cast<dermis_depth_kind>(-1); }},
+      {"clip_from_view",
+       [](auto& f, auto&) { std::fill(f.clip_from_view, f.clip_from_view + 16, 0.0f); }},
+      {"clip_from_view", [](auto& f, auto&) { f.clip_from_view[0] = nan_value; }},
+      {"a matrix has an element", [](auto& f, auto&) { f.view_from_world[3] = nan_value; }},
       {"a matrix has an element", [](auto& f, auto&) { f.view_from_world[15] = nan_value; }},
       {"a matrix has an element", [](auto& f, auto&) { f.previous_clip_from_view[0] = nan_value; }},
       {"a matrix has an element", [](auto& f, auto&) { f.previous_view_from_world[7] = INFINITY; }},
@@ -46,10 +54,33 @@ TEST_F(Frames, WrongField_IsNamed) {
          f.rect_width = 1;
          f.rect_height = 65;
        }},
+      {"rectangle",
+       [](auto& f, auto&) {
+         f.rect_width = 65;
+         f.rect_height = 1;
+       }},
+      {"rectangle", [](auto& f, auto&) { f.rect_width = 64; }},
+      {"rectangle",
+       [](auto& f, auto&) {
+         f.rect_width = f.rect_height = 1;
+         f.rect_x = 0xffffffffu;
+       }},
       {"bounds are given", [](auto& f, auto&) { f.bounds_x = 1; }},
       {"bounds are given", [](auto& f, auto&) { f.bounds_y = 1; }},
       {"bounds are given", [](auto& f, auto&) { f.bounds_width = 1; }},
       {"bounds are given", [](auto& f, auto&) { f.bounds_height = 1; }},
+      {"bindings[1].struct_size", [](auto&, auto& b) { b[1].struct_size = 0; }},
+      {"bindings[0].struct_size", [](auto&, auto& b) { b[0].struct_size = 8; }},
+      {"bindings[0].slot is 99", [](auto&, auto& b) { b[0].slot = 99; }},
+      {"bindings[0].image", [](auto&, auto& b) { b[0].image = VK_NULL_HANDLE; }},
+      {"bindings[0].view",
+       [](auto&, auto& b) {
+         b[0].view = VK_NULL_HANDLE;
+         b[0].content_id = 0;
+       }},
+      {"r32f", [](auto&, auto& b) { b[0].format = VK_FORMAT_R32_SFLOAT; }},
+      {"63x64", [](auto&, auto& b) { b[0].width = 63; }},
+      {"before.layout", [](auto&, auto& b) { b[0].before.layout = VK_IMAGE_LAYOUT_UNDEFINED; }},
       {"a format unknown to graphs",
        [](auto&, auto& b) { b[0].format = VK_FORMAT_ASTC_4x4_SRGB_BLOCK; }},
       {"is 64x63, the graph needs at least 64x64", [](auto&, auto& b) { b[0].height = 63; }},
@@ -60,6 +91,8 @@ TEST_F(Frames, WrongField_IsNamed) {
       {"before.layout", [](auto&, auto& b) { b[0].before.layout = VK_IMAGE_LAYOUT_MAX_ENUM; }},
       {"after.layout", [](auto&, auto& b) { b[0].after.layout = VK_IMAGE_LAYOUT_MAX_ENUM; }},
       {"but no stages", [](auto&, auto& b) { b[0].after.stages = 0; }},
+      {"no stages", [](auto&, auto& b) { b[0].before.stages = 0; }},
+      {"queue_family", [](auto&, auto& b) { b[0].after.queue_family = 77; }},
       {"the device has 1 families",
        [](auto&, auto& b) {
          b[0].before.queue_family = 1;
@@ -80,6 +113,11 @@ TEST_F(Frames, WrongField_IsNamed) {
                 Fails(DERMIS_ERROR_ARGUMENT, said))
         << said;
   }
+  dermis_frame unbound = good;
+  unbound.bindings = nullptr;
+  EXPECT_THAT(dermis_view_record(dermis_graph_view(host.graph), &unbound),
+              Fails(DERMIS_ERROR_ARGUMENT, "bindings is NULL"));
+  EXPECT_EQ(dermis_view_record(dermis_graph_view(host.graph), nullptr), DERMIS_ERROR_ARGUMENT);
   EXPECT_EQ(host.device.commands(), commands) << "nothing was recorded";
   EXPECT_OK(host.record());
 }

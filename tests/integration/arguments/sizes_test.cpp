@@ -203,6 +203,24 @@ TEST_F(StructSizes, FrameAndBindings_FollowTheHeader) {
   EXPECT_EQ(dermis_view_record(dermis_graph_view(host.graph), &frame), DERMIS_ERROR_VERSION);
 }
 
+TEST_F(StructSizes, NewerBindings_AreReadByTheirStride) {
+  struct Newer {
+    dermis_image_binding known;
+    uint64_t unknown = 0;
+  };
+  std::vector<Newer> bound;
+  for (const dermis_image_binding& binding : host.bindings()) {
+    bound.push_back({binding});
+    bound.back().known.struct_size = sizeof(Newer);
+  }
+  dermis_frame frame = host.frame_at(host.last_frame + 1);
+  frame.bindings = &bound[0].known;
+  bound[1].unknown = 1;
+  EXPECT_EQ(dermis_view_record(dermis_graph_view(host.graph), &frame), DERMIS_ERROR_VERSION);
+  bound[1].unknown = 0;
+  EXPECT_OK(dermis_view_record(dermis_graph_view(host.graph), &frame));
+}
+
 TEST_F(StructSizes, SourcesProfilesAndFormats_FollowTheHeader) {
   const std::string text = read_text("configs/graphs/burley.json");
   dermis_graph_desc desc = graph_desc(text, "burley.json", 16);

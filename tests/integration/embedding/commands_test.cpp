@@ -196,22 +196,5 @@ TEST_F(Commands, NameTheHostPassesToRecord) {
   ASSERT_OK(dermis_view_discard(dermis_graph_view(graph), frame.frame_index));
 }
 
-TEST_F(Commands, WrongArgumentsAreNamed) {
-  const dermis_graph graph = make_accumulating();
-  const Camera camera = make_camera(graph, 1);
-  const dermis_frame frame = frame_of(camera, 1);
-  uint32_t count = 0;
-  const dermis_command* list = nullptr;
-  const auto expect = [](dermis_result result, const char* named) {
-    EXPECT_THAT(result, Fails(DERMIS_ERROR_ARGUMENT, named));
-  };
-  expect(dermis_view_commands(dermis_graph_view(nullptr), &frame, &count, &list), "view is NULL");
-  expect(dermis_view_commands(dermis_graph_view(graph), nullptr, &count, &list), "frame is NULL");
-  expect(dermis_view_commands(dermis_graph_view(graph), &frame, nullptr, &list), "count is NULL");
-  expect(dermis_view_commands(dermis_graph_view(graph), &frame, &count, nullptr),
-         "commands is NULL");
-  expect(dermis_view_commands(nullptr, &frame, &count, &list), "view is NULL");
-}
-
 } // namespace
 } // namespace dermis::abi_test

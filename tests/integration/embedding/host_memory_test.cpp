@@ -346,10 +346,6 @@ TEST_F(HostMemory, HalfAnAllocatorIsRejected) {
   allocator.free = nullptr;
   EXPECT_THAT(host.make_context(with_heap()),
               Fails(DERMIS_ERROR_ARGUMENT, "desc.allocator.free is NULL"));
-  allocator = heap.allocator();
-  allocator.struct_size = 3;
-  EXPECT_THAT(host.make_context(with_heap()),
-              Fails(DERMIS_ERROR_ARGUMENT, "desc.allocator.struct_size"));
 }
 
 } // namespace

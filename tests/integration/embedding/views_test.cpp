@@ -313,37 +313,5 @@ TEST_F(Views, ReportSeparateTimesAndChoices) {
             DERMIS_NOT_READY);
 }
 
-TEST_F(Views, WrongArgumentsAreNamed) {
-  const dermis_graph graph = make_accumulating();
-  const auto expect = [](dermis_result result, const char* named) {
-    EXPECT_THAT(result, Fails(DERMIS_ERROR_ARGUMENT, named));
-  };
-  dermis_view view = nullptr;
-  dermis_frame frame = DERMIS_FRAME_INIT;
-  demo::ReportedFrame choice;
-  uint32_t count = 0;
-  expect(dermis_view_create(nullptr, nullptr, &view, nullptr), "graph is NULL");
-  expect(dermis_view_create(graph, nullptr, nullptr, nullptr), "view is NULL");
-  expect(dermis_view_record(nullptr, &frame), "view is NULL");
-  expect(dermis_view_discard(nullptr, 1), "view is NULL");
-  expect(demo::read_reported(nullptr, 0, choice), "view is NULL");
-  expect(dermis_view_timings(nullptr, 0, &count, nullptr), "view is NULL");
-  expect(dermis_view_histories(nullptr, &count, nullptr), "view is NULL");
-  dermis_view_desc desc = DERMIS_VIEW_DESC_INIT;
-  desc.struct_size = 0;
-  expect(dermis_view_create(graph, &desc, &view, nullptr), "struct_size");
-  view = make_view(graph);
-  expect(dermis_view_record(view, nullptr), "dermis_view_record: frame is NULL");
-  expect(dermis_view_report(view, 0, nullptr), "report is NULL");
-  expect(dermis_view_statistics(view, 0, nullptr), "statistics is NULL");
-  expect(dermis_view_statistics(nullptr, 0, nullptr), "view is NULL");
-  expect(dermis_view_timings(view, 0, nullptr, nullptr), "count is NULL");
-  Camera camera = make_camera(graph, 1);
-  camera.bound[0].layer = 1;
-  frame = frame_of(camera, 1);
-  frame.command_buffer = commands[0];
-  expect(dermis_view_record(view, &frame), "layer_count");
-}
-
 } // namespace
 } // namespace dermis::abi_test

@@ -2,13 +2,12 @@
 // allocations are reported and leak nothing.
 
 #include "tests/framegraph/test_scale.hpp"
+#include "tests/integration/abi/sources.hpp"
 #include "tests/integration/embedding/recorded_frame.hpp"
 
 #include <cstdlib>
-#include <fstream>
 #include <functional>
 #include <new>
-#include <sstream>
 
 namespace {
 
@@ -65,14 +64,6 @@ void* operator new(size_t size, const std::nothrow_t&) noexcept {
 
 namespace dermis::abi_test {
 namespace {
-
-std::string shipped_graph() {
-  std::ifstream file(std::string(DERMIS_SOURCE_DIR) + "/configs/graphs/burley.json",
-                     std::ios::binary);
-  std::stringstream text;
-  text << file.rdbuf();
-  return text.str();
-}
 
 // Calls `change` with its first allocation failing, then its second, until it succeeds: every one
 // of the first 300, then some.
@@ -140,11 +131,8 @@ TEST_F(Allocation, HostAllocatorIsRejected) {
 }
 
 TEST(AllocationFailure, EachFailureInAValidationIsReported) {
-  const std::string text = shipped_graph();
-  dermis_source source = DERMIS_SOURCE_INIT;
-  source.name = "burley.json";
-  source.text = text.data();
-  source.length = text.size();
+  const std::string text = read_text("configs/graphs/burley.json");
+  const dermis_source source = source_of(text, "burley.json");
   dermis_report report = nullptr;
   fail_each(
       [&] {
