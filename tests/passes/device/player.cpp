@@ -17,10 +17,6 @@ constexpr vulkan::HostState at_rest{VK_IMAGE_LAYOUT_GENERAL, VK_QUEUE_FAMILY_IGN
                                     VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
                                     VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT};
 
-template <class T> std::span<const std::byte> table_bytes(const std::vector<T>& table) {
-  return std::as_bytes(std::span<const T>(table));
-}
-
 subsurface::FrameInput frame_input(const ShownFrame& shown, const vulkan::Rectangle& previous,
                                    uint64_t frame_index, bool history_invalid) {
   subsurface::FrameInput input;
@@ -133,11 +129,11 @@ Played DevicePlayer::play(const RealGraph& graph, const Show& show, const Plan& 
   };
   const vulkan::EnvironmentBinding environment[] = {
       {EnvironmentType::uniform_buffer, sizeof(subsurface::FrameConstants), {}},
-      buffer(table_bytes(tables.profiles)),
-      buffer(table_bytes(tables.separable)),
+      buffer(bytes_of(tables.profiles)),
+      buffer(bytes_of(tables.separable)),
       {EnvironmentType::linear_sampler, 0, {}},
-      buffer(table_bytes(tables.pyramid)),
-      buffer(table_bytes(tables.radial)),
+      buffer(bytes_of(tables.pyramid)),
+      buffer(bytes_of(tables.radial)),
       {EnvironmentType::counters, sizeof(subsurface::FrameCounters), {}},
   };
   std::vector<vulkan::KernelCode> kernels = more_kernels;

@@ -1,6 +1,5 @@
 #pragma once
-// Runs a test kernel whose single image returns results of shared functions, in a host's
-// environment.
+// Runs one frame of kernels in a host's environment. Their single exported image returns results.
 #include "framegraph/vulkan/executor.hpp"
 #include "passes/common/environment.hpp"
 #include "tests/support/vulkan_fixture.hpp"
@@ -20,16 +19,28 @@ struct KernelTables {
   uint32_t frame_flags = 0; // Added to FrameConstants::flags.
 };
 
+// A frame of a graph that exports only an image.
+struct KernelFrame {
+  const Graph& graph;
+  const PassTypeRegistry& pass_types;
+  std::span<const vulkan::KernelCode> kernels;
+  uint32_t width, height; // of the view, in pixels
+  const KernelTables& tables;
+  VkFormat format; // of the image
+  uint32_t image_width, image_height;
+  PixelGrid grid = 0;
+  vulkan::KernelShape shape = vulkan::KernelShape::by_device;
+};
+
 class KernelTest : public VulkanTest {
 protected:
+  // Returns the texels of the image and the counters of the frame; fails the test on errors.
+  void run_frame(const KernelFrame& input, std::vector<std::byte>& texels,
+                 subsurface::FrameCounters& counters);
   // Runs the kernel once over `width` x `height` invocations, with port `target` as an rgba32f
   // image of that size. Returns its texels, 4 values each; empty if the test has failed.
   std::vector<float> answers_of(const vulkan::KernelCode& kernel, uint32_t width, uint32_t height,
                                 const KernelTables& tables = {});
-
-private:
-  void run(const vulkan::KernelCode& kernel, uint32_t width, uint32_t height,
-           const KernelTables& tables, std::vector<float>& answers);
 };
 
 } // namespace dermis::testing

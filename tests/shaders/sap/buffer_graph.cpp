@@ -1,9 +1,7 @@
 #include "tests/shaders/sap/buffer_graph.hpp"
 
-#include "framegraph/compile/compile.hpp"
 #include "framegraph/model/read_graph.hpp"
 #include "framegraph/text/diagnostic.hpp"
-#include "framegraph/vulkan/device_profile.hpp"
 #include "passes/common/dispatch.hpp"
 #include "passes/common/kernels.hpp"
 #include "passes/common/pass_types.hpp"
@@ -12,12 +10,6 @@
 
 namespace dermis::testing {
 namespace {
-
-constexpr std::byte zero_bytes[256] = {};
-
-vulkan::EnvironmentBinding storage_buffer(std::span<const std::byte> bytes) {
-  return {vulkan::EnvironmentType::storage_buffer, bytes.size(), bytes};
-}
 
 subsurface::FrameConstants constants_of(const BufferGraph& input) {
   subsurface::FrameConstants constants{};
@@ -32,11 +24,6 @@ subsurface::FrameConstants constants_of(const BufferGraph& input) {
 } // namespace
 
 void BufferGraphTest::run_graph(const BufferGraph& input, BufferGraphAnswers& answers) {
-  auto host = device_input<vulkan::DeviceInput>();
-  host.kernel_shape = input.shape;
-  vulkan::Device dermis_device;
-  const vulkan::Error made = vulkan::make_device(host, dermis_device);
-  ASSERT_FALSE(made) << made.text;
   PassTypeRegistry pass_types = subsurface::make_pass_types();
   std::vector<vulkan::KernelCode> kernels;
   for (const OwnPassType& own : input.own) {
@@ -50,62 +37,16 @@ void BufferGraphTest::run_graph(const BufferGraph& input, BufferGraphAnswers& an
   ASSERT_TRUE(document) << format_as_json(diagnostics);
   const auto graph = read_graph(*document, pass_types, diagnostics);
   ASSERT_TRUE(graph) << format_as_json(diagnostics);
-  const DeviceProfile profile = vulkan::device_profile(dermis_device);
-  CompileInput compiled;
-  compiled.graph = &*graph;
-  compiled.pass_types = &pass_types;
-  compiled.device = &profile;
-  compiled.view_width = input.width;
-  compiled.view_height = input.height;
-  compiled.pixel_grid = input.grid;
-  compiled.bound.assign(graph->resources.size(), true);
-  const auto plan = compile(compiled, diagnostics);
-  ASSERT_TRUE(plan) << format_as_json(diagnostics);
 
   std::vector<float> questions = input.questions;
   questions.resize(std::max<size_t>(align_up(questions.size(), 4), 64));
-  using vulkan::EnvironmentType;
-  const vulkan::EnvironmentBinding environment[] = {
-      {EnvironmentType::uniform_buffer, sizeof(subsurface::FrameConstants), {}},
-      storage_buffer(zero_bytes),
-      storage_buffer(bytes_of(questions)),
-      {EnvironmentType::linear_sampler, 0, {}},
-      storage_buffer(zero_bytes),
-      storage_buffer(zero_bytes),
-      {EnvironmentType::counters, sizeof(subsurface::FrameCounters), {}},
-  };
-  vulkan::ExecutorInput create;
-  create.device = &dermis_device;
-  create.graph = &*graph;
-  create.pass_types = &pass_types;
-  create.plan = &plan->plan;
-  create.kernels = kernels;
-  create.environment = environment;
-  std::unique_ptr<vulkan::Executor> executor;
-  const vulkan::Error error = vulkan::Executor::create(create, executor);
-  ASSERT_FALSE(error) << error.text;
-
-  const TestImage image = make_image(VK_FORMAT_R32G32B32A32_UINT, answer_columns, input.rows,
-                                     VK_IMAGE_USAGE_STORAGE_BIT);
-  transition(image, VK_IMAGE_LAYOUT_GENERAL);
-  constexpr vulkan::HostState at_rest{VK_IMAGE_LAYOUT_GENERAL, VK_QUEUE_FAMILY_IGNORED,
-                                      VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
-                                      VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT};
-  const vulkan::HostImage bound[] = {{image.image, image.view, at_rest, at_rest}};
   const subsurface::FrameConstants constants = constants_of(input);
-  vulkan::FrameInput frame;
-  frame.command_buffer = begin_commands();
-  frame.images = bound;
-  frame.frame_constants = std::as_bytes(std::span(&constants, 1));
-  frame.rectangle = {0, 0, input.width, input.height};
-  frame.frame_index = 1;
-  const vulkan::RecordResult result = executor->record(frame);
-  ASSERT_FALSE(result) << result.text;
-  submit(frame.command_buffer);
-  answers.texels = values_of<BufferTexel>(download(image, VK_IMAGE_LAYOUT_GENERAL));
-  wait();
-  auto* words = reinterpret_cast<uint32_t*>(&answers.counters);
-  ASSERT_TRUE(executor->read_counters(1, {words, sizeof(answers.counters) / sizeof(uint32_t)}));
+  const KernelTables tables{.questions = bytes_of(questions), .frame = &constants};
+  std::vector<std::byte> texels;
+  run_frame({*graph, pass_types, kernels, input.width, input.height, tables,
+             VK_FORMAT_R32G32B32A32_UINT, answer_columns, input.rows, input.grid, input.shape},
+            texels, answers.counters);
+  answers.texels = values_of<BufferTexel>(texels);
 }
 
 } // namespace dermis::testing

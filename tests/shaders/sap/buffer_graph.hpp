@@ -1,9 +1,7 @@
 #pragma once
 // Runs a graph whose passes exchange only buffers: a kernel of the test fills buffers from a table,
 // shipped kernels work on them, and another kernel of the test copies buffers to an image.
-#include "framegraph/vulkan/executor.hpp"
-#include "passes/common/environment.hpp"
-#include "tests/support/vulkan_fixture.hpp"
+#include "tests/shaders/common/kernel_fixture.hpp"
 
 #include <array>
 #include <span>
@@ -38,7 +36,7 @@ struct BufferGraphAnswers {
   subsurface::FrameCounters counters;
 };
 
-class BufferGraphTest : public VulkanTest {
+class BufferGraphTest : public KernelTest {
 protected:
   // Runs one frame that covers the view.
   void run_graph(const BufferGraph& input, BufferGraphAnswers& answers);
