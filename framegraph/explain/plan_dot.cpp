@@ -59,20 +59,6 @@ std::string arrows(uint32_t pass, uint32_t resource, uint32_t frames_back,
 
 } // namespace
 
-std::string graph_dot(const Graph& graph, const PassTypeRegistry& pass_types) {
-  std::string out = header(graph.name);
-  for (uint32_t r = 0; r < graph.resources.size(); ++r)
-    out += resource_node(graph.resources[r], r, "");
-  for (uint32_t p = 0; p < graph.passes.size(); ++p) {
-    const PassDeclaration& declared = graph.passes[p];
-    out += pass_node(graph, pass_types, p, "", declared.when.valid() ? ", style=dashed" : "");
-    for (const PortBinding& binding : graph.bindings_of(declared))
-      out += arrows(p, binding.resource.value, binding.frames_back, image_range_text(binding.range),
-                    pass_types[declared.type].ports[binding.port]);
-  }
-  return out + "}\n";
-}
-
 std::string plan_dot(const Graph& graph, const PassTypeRegistry& pass_types,
                      const CompiledPlan& compiled) {
   const Plan& plan = compiled.plan;

@@ -110,10 +110,7 @@ void HeadTest::close_host() {
 }
 
 double HeadTest::luminance_at(const std::vector<float>& light, size_t pixel) const {
-  double sum = 0;
-  for (size_t c = 0; c < 3; ++c)
-    sum += rec709[c] * double(light[3 * pixel + c]);
-  return sum * reference_.exposure;
+  return luminance_of(&light[3 * pixel]) * reference_.exposure;
 }
 
 HeadErrors HeadTest::errors_of(const std::vector<float>& light,
@@ -124,9 +121,7 @@ HeadErrors HeadTest::errors_of(const std::vector<float>& light,
   const size_t count = reference_.pixels.size();
   for (size_t i = 0; i < count; ++i) {
     const uint32_t pixel = reference_.pixels[i];
-    double reference = 0;
-    for (size_t c = 0; c < 3; ++c)
-      reference += rec709[c] * reference_.light[3 * i + c] * reference_.exposure;
+    const double reference = luminance_of(&reference_.light[3 * i]) * reference_.exposure;
     const double error = luminance_at(light, pixel) - reference;
     all += error * error;
     (edge_[pixel] ? edge : inner) += error * error;

@@ -66,8 +66,7 @@ protected:
       for (uint32_t x = moves + margin; x < panned_width - margin; ++x) {
         const size_t i = size_t{y} * large_width + x;
         if (large.profile[i] == 0) continue;
-        for (size_t c = 0; c < 3; ++c)
-          values[i] += exposure * rec709[c] * double(light[3 * i + c]);
+        values[i] = exposure * luminance_of(&light[3 * i]);
       }
     return values;
   }

@@ -66,10 +66,6 @@ VkFormat placeholder_format(const Port& port, const ShaderBinding& binding) {
   return VK_FORMAT_R16G16B16A16_SFLOAT;
 }
 
-std::string join_lines(const std::vector<std::string>& lines) {
-  return fmt::format("{}", fmt::join(lines, "\n"));
-}
-
 Error create_set_layout(const Device& device, const PassType& type, Kernel& kernel) {
   std::vector<VkDescriptorSetLayoutBinding> bindings;
   for (uint32_t i = 0; i < kernel.ports.size(); ++i)
@@ -123,7 +119,8 @@ Error create_kernel(const KernelInput& input, PassTypeId id, Kernel& kernel) {
     return {ErrorKind::shader, VK_SUCCESS,
             fmt::format("kernel '{}' cannot be read: {}", type.shader, problem)};
   const std::vector<std::string> mismatches = check_signature(type, input.environment, *reflection);
-  if (!mismatches.empty()) return {ErrorKind::shader, VK_SUCCESS, join_lines(mismatches)};
+  if (!mismatches.empty())
+    return {ErrorKind::shader, VK_SUCCESS, fmt::format("{}", fmt::join(mismatches, "\n"))};
   kernel.type = id;
   kernel.version = code->version;
   kernel.dispatch = type.dispatch;

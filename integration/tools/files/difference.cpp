@@ -82,12 +82,8 @@ Image encoded(const Image& linear) {
 Image exposed_luminance(const Image& light, double exposure) {
   Image out = Image::sized(light.width, light.height, 1);
   for (size_t i = 0; i < out.values.size(); ++i) {
-    double value = double(light.values[i * light.channels]);
-    if (light.channels >= 3) {
-      value = 0;
-      for (size_t c = 0; c < 3; ++c)
-        value += rec709[c] * double(light.values[i * light.channels + c]);
-    }
+    const float* texel = &light.values[i * light.channels];
+    const double value = light.channels >= 3 ? luminance_of(texel) : double(*texel);
     out.values[i] = static_cast<float>(value * exposure);
   }
   return out;

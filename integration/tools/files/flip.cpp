@@ -255,7 +255,7 @@ std::pair<double, double> exposure_range(const std::vector<Color>& reference) {
   const double x = (-b + std::sqrt(b * b - 4 * a * c)) / (2 * a);
   std::vector<double> luminance;
   for (const Color& color : reference)
-    if (const double y = rec709[0] * color[0] + rec709[1] * color[1] + rec709[2] * color[2]; y > 0)
+    if (const double y = luminance_of(color.data()); y > 0)
       luminance.push_back(y); // black stays black at any exposure
   if (luminance.empty()) return {0, 0};
   const double maximum = *std::max_element(luminance.begin(), luminance.end());

@@ -17,16 +17,12 @@ template <class T> T percentile(std::vector<T>& values, double fraction) {
   return *at;
 }
 
-double luminance(double r, double g, double b) {
-  return rec709[0] * r + rec709[1] * g + rec709[2] * b;
-}
-
 } // namespace
 
 void ExposureMeter::add(std::span<const float> light, std::span<const uint8_t> profile) {
   for (size_t i = 0; i < profile.size(); ++i) {
     if (profile[i] == 0) continue;
-    const double value = tools::luminance(light[3 * i], light[3 * i + 1], light[3 * i + 2]);
+    const double value = luminance_of(&light[3 * i]);
     if (std::isfinite(value)) luminance.push_back(static_cast<float>(value));
   }
 }
@@ -58,7 +54,7 @@ ErrorFigures measure_error(std::span<const float> image, std::span<const double>
       if (std::isnan(e[c])) e[c] = std::numeric_limits<double>::infinity();
       squares_rgb[c] += e[c] * e[c];
     }
-    const double error = luminance(e[0], e[1], e[2]);
+    const double error = luminance_of(e.data());
     errors[i] = std::isnan(error) ? std::numeric_limits<double>::infinity() : std::abs(error);
     squares += errors[i] * errors[i];
     fourths += std::pow(errors[i], 4);
@@ -81,14 +77,6 @@ ErrorFigures measure_error(std::span<const float> image, std::span<const double>
   figures.rmse_low = std::sqrt(std::max(0.0, mse - margin));
   figures.rmse_high = std::sqrt(mse + margin);
   return figures;
-}
-
-double sequence_psnr(std::span<const ErrorFigures> frames) {
-  if (frames.empty()) return max_psnr_db;
-  double sum = 0;
-  for (const ErrorFigures& frame : frames)
-    sum += frame.rmse * frame.rmse;
-  return psnr_from_mse(sum / double(frames.size()));
 }
 
 } // namespace dermis::tools

@@ -50,7 +50,5 @@ ErrorFigures measure_error(std::span<const float> image, std::span<const double>
 
 // Returns -10 log10(mse), capped at max_psnr_db.
 double psnr_from_mse(double mse);
-// Returns the PSNR of the mean of the frames' MSE.
-double sequence_psnr(std::span<const ErrorFigures> frames);
 
 } // namespace dermis::tools

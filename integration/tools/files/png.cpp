@@ -24,13 +24,6 @@ float srgb_decode(float encoded) {
   return encoded <= 0.04045f ? encoded / 12.92f : std::pow((encoded + 0.055f) / 1.055f, 2.4f);
 }
 
-std::vector<uint8_t> encode_srgb8(const Image& linear) {
-  std::vector<uint8_t> bytes(linear.values.size());
-  std::transform(linear.values.begin(), linear.values.end(), bytes.begin(),
-                 [](float x) { return static_cast<uint8_t>(std::lround(srgb_encode(x) * 255)); });
-  return bytes;
-}
-
 std::vector<uint8_t> encode_png(uint32_t width, uint32_t height, std::span<const uint8_t> rgb) {
   std::vector<uint8_t> file;
   if (width == 0 || height == 0 || width > max_image_side || height > max_image_side ||

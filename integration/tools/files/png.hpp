@@ -17,9 +17,6 @@ namespace dermis::tools {
 float srgb_encode(float linear);
 float srgb_decode(float encoded);
 
-// Returns a linear 3-channel image as 8-bit sRGB, rounded to nearest.
-std::vector<uint8_t> encode_srgb8(const Image& linear);
-
 // Encodes width * height * 3 bytes as a PNG file. Returns an empty vector if the sizes do not fit.
 std::vector<uint8_t> encode_png(uint32_t width, uint32_t height, std::span<const uint8_t> rgb);
 

@@ -48,10 +48,6 @@ double burley_mtf(double k, double d) {
   return 0.25 / std::sqrt(1 + f) + 0.75 / std::sqrt(1 + 9 * f);
 }
 
-double burley_disc_centre(double rho, double d) {
-  return burley_cdf(rho, d);
-}
-
 double burley_disc(double x, double rho, double d) {
   double sum = 0;
   if (std::abs(x) <= rho) {

@@ -16,10 +16,8 @@ double bessel_k0_integral(double z);
 // k^2 d^2); k in radians per unit.
 double burley_mtf(double k, double d);
 
-// Returns the response at the centre of a disc of light 1 with radius rho, which is the cdf. For an
-// annulus take the difference of two discs.
-double burley_disc_centre(double rho, double d);
-// Returns the response at distance x from the centre of the disc. Absolute error below 1e-6.
+// Returns the response at distance x from the centre of a disc of light 1 with radius rho; at the
+// centre it is the cdf. Absolute error below 1e-6.
 double burley_disc(double x, double rho, double d);
 // Returns the response at the centre of light e^(-r^2 / 2 s^2).
 double burley_gaussian_centre(double s, double d);

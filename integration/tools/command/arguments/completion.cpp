@@ -36,13 +36,6 @@ Operands operands_of(const DeclaredVerb& verb) {
   return operands;
 }
 
-std::string joined(const std::vector<std::string>& words, std::string_view between) {
-  std::string text;
-  for (const std::string& word : words)
-    text.append(text.empty() ? "" : between).append(word);
-  return text;
-}
-
 std::string replaced(std::string text, std::string_view from, std::string_view to) {
   for (size_t at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size()))
     text.replace(at, from.size(), to);
@@ -73,7 +66,7 @@ std::string bash(const std::vector<DeclaredVerb>& verbs) {
       const std::string reply = takes == Takes::file     ? "-f"
                                 : takes == Takes::folder ? "-d"
                                 : takes == Takes::word
-                                    ? fmt::format("-W '{}'", joined(option.offered, " "))
+                                    ? fmt::format("-W '{}'", fmt::join(option.offered, " "))
                                     : "-W ''";
       if (takes != Takes::nothing)
         values +=
@@ -81,8 +74,8 @@ std::string bash(const std::vector<DeclaredVerb>& verbs) {
                         patterns, reply);
     }
     offers += fmt::format("    '{}') words='{}' options='{}' files={} ;;\n", verb.name,
-                          joined(verb.verbs.empty() ? operands.words : verb.verbs, " "),
-                          joined(options, " "), operands.files ? "-f" : "");
+                          fmt::join(verb.verbs.empty() ? operands.words : verb.verbs, " "),
+                          fmt::join(options, " "), operands.files ? "-f" : "");
   }
   return fmt::format(R"(# Completion of dermis for bash, made by: dermis completion bash
 _dermis() {{
@@ -119,7 +112,7 @@ std::string zsh_action(const DeclaredOption& option) {
   case Takes::folder:
     return "_files -/";
   case Takes::word:
-    return fmt::format("({})", joined(option.offered, " "));
+    return fmt::format("({})", fmt::join(option.offered, " "));
   case Takes::nothing:
   case Takes::value:
     break;
@@ -129,7 +122,7 @@ std::string zsh_action(const DeclaredOption& option) {
 
 // Returns the zsh action for positional words.
 std::string zsh_operand(const Operands& operands) {
-  const std::string words = fmt::format("({})", joined(operands.words, " "));
+  const std::string words = fmt::format("({})", fmt::join(operands.words, " "));
   if (operands.words.empty()) return operands.files ? "_files" : " ";
   return operands.files ? fmt::format(R"(_alternative "files:file:_files" "words:word:{}")", words)
                         : words;
@@ -190,7 +183,8 @@ std::string fish_condition(const DeclaredVerb& verb) {
     at = end == std::string::npos ? end : end + 1;
   }
   if (!verb.verbs.empty())
-    condition += "; and not __fish_seen_subcommand_from " + joined(verb.verbs, " ");
+    condition +=
+        fmt::format("; and not __fish_seen_subcommand_from {}", fmt::join(verb.verbs, " "));
   return condition;
 }
 
@@ -210,7 +204,7 @@ std::string fish(const std::vector<DeclaredVerb>& verbs) {
     }
     if (const Operands operands = operands_of(verb); !operands.words.empty())
       text += fmt::format("complete -c dermis{} -n '{}' -a '{}'\n", operands.files ? "" : " -f",
-                          condition, joined(operands.words, " "));
+                          condition, fmt::join(operands.words, " "));
     for (const DeclaredOption& option : verb.options) {
       if (option.positional) continue;
       std::string names;
@@ -221,7 +215,7 @@ std::string fish(const std::vector<DeclaredVerb>& verbs) {
                                 : takes == Takes::file  ? " -r -F"
                                 : takes == Takes::folder
                                     ? " -x -a '(__fish_complete_directories)'"
-                                    : fmt::format(" -x -a '{}'", joined(option.offered, " "));
+                                    : fmt::format(" -x -a '{}'", fmt::join(option.offered, " "));
       text += fmt::format("complete -c dermis -n '{}'{}{} -d '{}'\n", condition, names, value,
                           quoted(option.text));
     }

@@ -1,5 +1,6 @@
 #include "integration/tools/command/inspect/diagnose.hpp"
 
+#include "integration/tools/files/metrics.hpp"
 #include "passes/common/pass_types.hpp"
 
 #include <fmt/format.h>
@@ -19,11 +20,6 @@ double quantile(std::vector<double>& values, double fraction) {
   const auto at = static_cast<std::ptrdiff_t>(fraction * static_cast<double>(values.size() - 1));
   std::nth_element(values.begin(), values.begin() + at, values.end());
   return values[static_cast<size_t>(at)];
-}
-
-double luminance(const Image& image, size_t pixel) { // Rec. 709
-  const float* rgb = &image.values[3 * pixel];
-  return 0.2126 * double{rgb[0]} + 0.7152 * double{rgb[1]} + 0.0722 * double{rgb[2]};
 }
 
 struct FrameFigures {
@@ -149,8 +145,10 @@ private:
     for_each_pair([&](size_t p, size_t q) {
       if (frame_.profile[p] == 0 || frame_.profile[p] != frame_.profile[q]) return;
       if (std::abs(depth(p) - depth(q)) > depth_sides * pixel_side(depth(p))) return;
-      const double albedo_p = luminance(frame_.albedo, p), albedo_q = luminance(frame_.albedo, q);
-      const double light_p = luminance(frame_.lighting, p), light_q = luminance(frame_.lighting, q);
+      const double albedo_p = luminance_of(&frame_.albedo.values[3 * p]),
+                   albedo_q = luminance_of(&frame_.albedo.values[3 * q]);
+      const double light_p = luminance_of(&frame_.lighting.values[3 * p]),
+                   light_q = luminance_of(&frame_.lighting.values[3 * q]);
       if (std::min({albedo_p, albedo_q, light_p, light_q}) < min_value) return;
       const double step = std::log(albedo_q / albedo_p);
       if (std::abs(step) > min_log_step) slopes.push_back(std::log(light_q / light_p) / step);

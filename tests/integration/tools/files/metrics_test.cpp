@@ -105,12 +105,5 @@ TEST(Metrics, RoundingOfBlackIsNotExposed) {
   EXPECT_NEAR(faint.result(), 1e6, 1);
 }
 
-TEST(Metrics, ASequenceAveragesSquaresNotDecibels) {
-  std::vector<ErrorFigures> frames(2);
-  frames[0].rmse = 0.1;
-  frames[1].rmse = 0;
-  EXPECT_NEAR(sequence_psnr(frames), -10 * std::log10(0.005), 1e-9);
-}
-
 } // namespace
 } // namespace dermis::tools

@@ -10,13 +10,6 @@ namespace {
 
 constexpr double accumulation = 0.1; // weight of the new frame
 
-double luminance(const std::vector<double>& light, size_t pixel) {
-  double sum = 0;
-  for (size_t c = 0; c < 3; ++c)
-    sum += rec709[c] * light[3 * pixel + c];
-  return sum;
-}
-
 // Mean of squares over pixels.
 struct MeanSquare {
   double sum = 0;
@@ -42,7 +35,8 @@ SequenceFigures sequence_figures(const std::vector<FrameLight>& frames, uint32_t
     const size_t pixels = now.reference.size() / 3;
     MeanSquare error;
     for (size_t i = 0; i < pixels; ++i)
-      error.add_square(exposure * (luminance(now.found, i) - luminance(now.reference, i)));
+      error.add_square(exposure *
+                       (luminance_of(&now.found[3 * i]) - luminance_of(&now.reference[3 * i])));
     figures.psnr_db.push_back(psnr_from_mse(error.value()));
     if (still) {
       if (found_mean.empty()) {
@@ -60,14 +54,17 @@ SequenceFigures sequence_figures(const std::vector<FrameLight>& frames, uint32_t
     shown_sum += sdr8_mse(now.found, now.reference, exposure);
     MeanSquare accumulated;
     for (size_t i = 0; !still && i < now.accumulated.size() / 3; ++i)
-      accumulated.add_square(exposure *
-                             (luminance(now.accumulated, i) - luminance(now.reference, i)));
+      accumulated.add_square(
+          exposure * (luminance_of(&now.accumulated[3 * i]) - luminance_of(&now.reference[3 * i])));
     for (size_t i = 0; still && i < pixels; ++i) {
-      accumulated.add_square(exposure * (luminance(found_mean, i) - luminance(reference_mean, i)));
+      accumulated.add_square(
+          exposure * (luminance_of(&found_mean[3 * i]) - luminance_of(&reference_mean[3 * i])));
       if (t == 0) continue;
       const FrameLight& last = frames[t - 1];
-      flicker.add_square(exposure * ((luminance(now.found, i) - luminance(last.found, i)) -
-                                     (luminance(now.reference, i) - luminance(last.reference, i))));
+      flicker.add_square(
+          exposure *
+          ((luminance_of(&now.found[3 * i]) - luminance_of(&last.found[3 * i])) -
+           (luminance_of(&now.reference[3 * i]) - luminance_of(&last.reference[3 * i]))));
     }
     accumulated_sum += accumulated.value();
   }
