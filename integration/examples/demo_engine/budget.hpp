@@ -8,6 +8,7 @@ namespace demo {
 
 struct NamedText {
   std::string name, text; // name of the file, for messages
+  bool operator==(const NamedText&) const = default;
 };
 
 // When the choices may run a technique only to measure its time.

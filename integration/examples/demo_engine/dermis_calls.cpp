@@ -38,6 +38,59 @@ dermis_source source_of(const std::string& name, const std::string& text) {
   return source;
 }
 
+uint32_t DERMIS_CALL deliver(void* user, const char* name, dermis_source* source) {
+  auto& delivery = *static_cast<Delivery*>(user);
+  std::optional<NamedText> file = delivery.open(name);
+  if (!file) return 0;
+  const NamedText& kept = delivery.delivered.emplace_back(std::move(*file));
+  *source = source_of(kept.name, kept.text);
+  return 1;
+}
+
+Result<dermis_graph> create_graph(dermis_context context, const GraphRequest& request,
+                                  Report& report) {
+  std::vector<dermis_profile> profiles;
+  for (const GraphRequest::Profile& one : request.profiles) {
+    dermis_profile profile = DERMIS_PROFILE_INIT;
+    profile.id = one.id;
+    profile.source = source_of(one.name, one.text);
+    profiles.push_back(profile);
+  }
+  std::vector<dermis_slot_format> formats;
+  for (const auto& [name, vk_format] : request.formats) {
+    dermis_slot_format format = DERMIS_SLOT_FORMAT_INIT;
+    format.name = name.c_str();
+    format.format = vk_format;
+    formats.push_back(format);
+  }
+  std::vector<const char*> unbound;
+  for (const std::string& name : request.unbound)
+    unbound.push_back(name.c_str());
+  std::vector<dermis_source> overlays;
+  for (const NamedText& overlay : request.overlays)
+    overlays.push_back(source_of(overlay.name, overlay.text));
+  dermis_graph_desc desc = DERMIS_GRAPH_DESC_INIT;
+  desc.source = source_of(request.graph_name, request.graph_text);
+  desc.width = request.width;
+  desc.height = request.height;
+  desc.pixel_aspect = static_cast<float>(request.pixel_aspect);
+  desc.profiles = profiles.data();
+  desc.profile_count = static_cast<uint32_t>(profiles.size());
+  desc.unbound = unbound.data();
+  desc.unbound_count = static_cast<uint32_t>(unbound.size());
+  desc.formats = formats.data();
+  desc.format_count = static_cast<uint32_t>(formats.size());
+  desc.overlays = overlays.data();
+  desc.overlay_count = static_cast<uint32_t>(overlays.size());
+  Delivery includes{request.include};
+  if (request.include) desc.include = deliver;
+  desc.include_user = &includes; // local, because no caller reloads a graph that includes files
+  dermis_graph graph = nullptr;
+  const dermis_result result = dermis_graph_create(context, &desc, &graph, &report.handle);
+  if (result != DERMIS_OK) return dermis_error("dermis_graph_create", result, report.handle);
+  return graph;
+}
+
 Result<> make_context(const VulkanHost& host, uint32_t frames_in_flight, bool enable_rays,
                       std::shared_ptr<dermis_context_t>& context, const ContextHooks& hooks) {
   if (context != nullptr) return success();

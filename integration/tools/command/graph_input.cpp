@@ -143,6 +143,14 @@ OpenFile open_included(const std::string& path, const std::vector<std::string>& 
   return open_below(std::move(folders));
 }
 
+std::function<std::optional<demo::NamedText>(const std::string& name)> for_engine(OpenFile open) {
+  return [open = std::move(open)](const std::string& name) -> std::optional<demo::NamedText> {
+    const FileText file = open(name);
+    return file.problem.empty() ? std::optional(demo::NamedText{file.name, file.text})
+                                : std::nullopt;
+  };
+}
+
 std::optional<std::vector<Document>> read_overlays(const std::vector<std::string>& paths,
                                                    Diagnostics& diagnostics) {
   std::vector<Document> read;
@@ -172,10 +180,10 @@ std::optional<LoadedGraph> load_graph(const std::string& path, const GraphInputs
 std::optional<LoadedGraph> load_graph(Document document, std::vector<Document> overlays,
                                       const OpenFile& open, Diagnostics& diagnostics,
                                       std::span<const std::string> pass_type_files) {
-  std::vector<std::pair<std::string, std::string>> texts;
+  std::vector<demo::NamedText> texts;
   for (const Document& overlay : overlays) {
     const SourceFile& file = diagnostics.files[overlay.file.value];
-    texts.emplace_back(file.name, file.text);
+    texts.push_back({file.name, file.text});
   }
   auto loaded = read_composed(compose(std::move(document), std::move(overlays), open, diagnostics),
                               pass_type_files, diagnostics);

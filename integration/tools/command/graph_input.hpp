@@ -8,6 +8,7 @@
 #include "framegraph/text/document.hpp"
 #include "integration/tools/command/verbs.hpp"
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -19,9 +20,8 @@ struct LoadedGraph {
   PassTypeRegistry pass_types;
   std::shared_ptr<const HostPassTypes> host_pass_types; // owns some of `pass_types`
   Graph graph;
-  std::vector<Change> changes; // changes made by included files and overlays
-  // name and text of each, for the C interface
-  std::vector<std::pair<std::string, std::string>> overlays;
+  std::vector<Change> changes;           // changes made by included files and overlays
+  std::vector<demo::NamedText> overlays; // for the C interface
 };
 
 inline constexpr Size default_size{1920, 1080}; // default of --size
@@ -37,6 +37,8 @@ std::optional<Document> read_input(const std::string& path, Diagnostics& diagnos
 std::optional<Document> read_graph_file(const std::string& path, Diagnostics& diagnostics);
 // Opens files that graph files include: below the folder of `path`, then below each of `roots`.
 OpenFile open_included(const std::string& path, const std::vector<std::string>& roots);
+// Returns `open` as a callback of the demo engine.
+std::function<std::optional<demo::NamedText>(const std::string& name)> for_engine(OpenFile open);
 // Loads the graph of a document or file with its overlays and included files. `pass_type_files`
 // declare pass types of the host.
 std::optional<LoadedGraph> load_graph(Document document, std::vector<Document> overlays,

@@ -26,4 +26,8 @@ bool interrupted() {
   return stop_requested.load(std::memory_order_relaxed);
 }
 
+demo::Error stopped() {
+  return {demo::ErrorKind::environment, "stopped"};
+}
+
 } // namespace dermis::tools

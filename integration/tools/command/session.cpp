@@ -25,6 +25,10 @@ ExitCode fail(const Session& session, ExitCode code, std::string_view message,
   return code;
 }
 
+ExitCode fail(const Session& session, const demo::Error& error, const Diagnostics* diagnostics) {
+  return fail(session, static_cast<ExitCode>(error.kind), error.text, diagnostics);
+}
+
 void print_diagnostics(const Session& session, const Diagnostics& diagnostics) {
   if (session.json) return;
   const bool color = use_color(session.color, STDERR_FILENO);

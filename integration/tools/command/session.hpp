@@ -2,6 +2,7 @@
 // Options common to all verbs, and reporting of failures.
 
 #include "framegraph/text/diagnostic.hpp"
+#include "integration/examples/demo_engine/result.hpp"
 #include "integration/tools/command/exit_code.hpp"
 #include "integration/tools/command/present.hpp"
 
@@ -20,6 +21,9 @@ struct Session {
 // Reports the problem and the remedy, on stderr as text or on stdout as JSON, and returns `code`.
 // `diagnostics` (may be null) are printed first.
 ExitCode fail(const Session& session, ExitCode code, std::string_view message,
+              const Diagnostics* diagnostics = nullptr);
+// Returns the exit code of the error's kind.
+ExitCode fail(const Session& session, const demo::Error& error,
               const Diagnostics* diagnostics = nullptr);
 
 // Prints all diagnostics on stderr; prints nothing with --json, and only errors with --quiet.

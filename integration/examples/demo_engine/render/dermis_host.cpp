@@ -6,16 +6,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <deque>
 #include <optional>
 
 namespace demo {
-
-// Keeps the delivered texts alive until the requesting call returns.
-struct Delivery {
-  std::function<std::optional<NamedText>(const std::string& name)> open;
-  std::deque<NamedText> delivered = {};
-};
 
 struct DermisHost {
   std::shared_ptr<dermis_context_t> context; // the device's context, which its graphs share
@@ -39,23 +32,24 @@ std::optional<Target> target_of(std::string_view slot) {
   return std::nullopt;
 }
 
-// Texts that a dermis_graph_desc points into.
-struct Sources {
-  std::string graph;
-  std::vector<std::string> profiles;
-};
-
-Result<Sources> read_sources(const DermisDesc& desc) {
-  Sources sources;
+// Reads the files of the graph; formats and unbound slots are not known yet.
+Result<GraphRequest> read_request(const DermisDesc& desc) {
+  GraphRequest request;
   auto graph = read_text_file(desc.graph_file);
   if (!graph) return graph.error();
-  sources.graph = graph.take();
+  request.graph_name = desc.graph_file;
+  request.graph_text = graph.take();
   for (const ScatteringProfile& profile : desc.profiles) {
     auto text = read_text_file(profile.file);
     if (!text) return text.error();
-    sources.profiles.push_back(text.take());
+    request.profiles.push_back({profile.id, profile.file, text.take()});
   }
-  return sources;
+  request.overlays = desc.overlays;
+  request.include = desc.include;
+  request.width = desc.width;
+  request.height = desc.height;
+  request.pixel_aspect = desc.pixel_aspect;
+  return request;
 }
 
 // The part of the ray scene that a slot binds, by the name of the slot.
@@ -90,62 +84,15 @@ Result<> query_slots(DermisHost& host) {
   return success();
 }
 
-uint32_t DERMIS_CALL deliver(void* user, const char* name, dermis_source* source) {
-  auto& delivery = *static_cast<Delivery*>(user);
-  std::optional<NamedText> file = delivery.open(name);
-  if (!file) return 0;
-  const NamedText& kept = delivery.delivered.emplace_back(std::move(*file));
-  *source = source_of(kept.name, kept.text);
-  return 1;
-}
-
-// Builds the graph. `unbound` and the formats may only name slots of the graph.
-Result<> build_graph(DermisHost& host, const DermisDesc& desc, const Sources& sources,
-                     const std::vector<std::string>& unbound) {
-  std::vector<dermis_profile> profiles;
-  for (size_t i = 0; i < desc.profiles.size(); ++i) {
-    dermis_profile profile = DERMIS_PROFILE_INIT;
-    profile.id = desc.profiles[i].id;
-    profile.source = source_of(desc.profiles[i].file, sources.profiles[i]);
-    profiles.push_back(profile);
-  }
-  std::vector<dermis_slot_format> formats;
-  for (const std::string& name : host.slot_names) {
-    const auto target = target_of(name);
-    if (!target) continue;
-    dermis_slot_format format = DERMIS_SLOT_FORMAT_INIT;
-    format.name = name.c_str();
-    format.format = target_info(*target).format;
-    formats.push_back(format);
-  }
-  std::vector<const char*> unbound_names;
-  for (const std::string& name : unbound)
-    unbound_names.push_back(name.c_str());
-  dermis_graph_desc info = DERMIS_GRAPH_DESC_INIT;
-  info.source = source_of(desc.graph_file, sources.graph);
-  info.width = desc.width;
-  info.height = desc.height;
-  info.pixel_aspect = static_cast<float>(desc.pixel_aspect);
-  info.profiles = profiles.data();
-  info.profile_count = static_cast<uint32_t>(profiles.size());
-  info.unbound = unbound_names.data();
-  info.unbound_count = static_cast<uint32_t>(unbound_names.size());
-  info.formats = formats.data();
-  info.format_count = static_cast<uint32_t>(formats.size());
-  std::vector<dermis_source> overlays;
-  for (const NamedText& overlay : desc.overlays)
-    overlays.push_back(source_of(overlay.name, overlay.text));
-  info.overlays = overlays.data();
-  info.overlay_count = static_cast<uint32_t>(overlays.size());
-  Delivery includes{desc.include};
-  if (desc.include) info.include = deliver;
-  // Local, because this engine never reloads a graph that includes files.
-  info.include_user = &includes;
+// Builds the graph with the formats of the known slots. `unbound` may only name slots of the graph.
+Result<> build_graph(DermisHost& host, GraphRequest& request, std::vector<std::string> unbound) {
+  for (const std::string& name : host.slot_names)
+    if (const auto target = target_of(name))
+      request.formats.emplace_back(name, target_info(*target).format);
+  request.unbound = std::move(unbound);
   Report report;
-  dermis_graph graph = nullptr;
-  const dermis_result result =
-      dermis_graph_create(host.context.get(), &info, &graph, &report.handle);
-  if (result != DERMIS_OK) return dermis_error("dermis_graph_create", result, report.handle);
+  const auto graph = create_graph(host.context.get(), request, report);
+  if (!graph) return graph.error();
   host.warnings.clear();
   for (uint32_t i = 0; i < dermis_report_count(report.handle); ++i) {
     dermis_message message = DERMIS_MESSAGE_INIT;
@@ -154,7 +101,7 @@ Result<> build_graph(DermisHost& host, const DermisDesc& desc, const Sources& so
           fmt::format("{}:{}:{}: {}", message.file, message.line, message.column, message.text));
   }
   dermis_graph_destroy(host.graph);
-  host.graph = graph;
+  host.graph = *graph;
   return query_slots(host);
 }
 
@@ -233,8 +180,8 @@ void DermisHostDeleter::operator()(DermisHost* host) const {
 
 Result<DermisHandle> create_dermis_host(VulkanHost& vulkan, const DermisDesc& desc,
                                         KnownSlots* known) {
-  auto sources = read_sources(desc);
-  if (!sources) return sources.error();
+  auto request = read_request(desc);
+  if (!request) return request.error();
   DermisHandle host(new DermisHost);
   if (auto ready = make_context(vulkan, frames_in_flight, true, vulkan.engine_context, desc.hooks);
       !ready)
@@ -245,19 +192,19 @@ Result<DermisHandle> create_dermis_host(VulkanHost& vulkan, const DermisDesc& de
                      desc.unbound.empty();
   if (!whole) known = nullptr;
   std::vector<std::string> unbound;
-  if (known && known->graph == sources->graph) {
+  if (known && known->graph == request->graph_text) {
     host->slot_names = known->names;
     unbound = known->unbound;
   } else {
     // The slots are known only after the graph was built. The first build gives their names; the
     // second uses this engine's formats and leaves out the slots that it cannot bind.
-    if (auto done = build_graph(*host, desc, *sources, {}); !done) return done.error();
+    if (auto done = build_graph(*host, *request, {}); !done) return done.error();
     auto found = find_unbound(*host, desc, vulkan.ray_query);
     if (!found) return found.error();
     unbound = found.take();
-    if (known) *known = {sources->graph, host->slot_names, unbound};
+    if (known) *known = {request->graph_text, host->slot_names, unbound};
   }
-  if (auto done = build_graph(*host, desc, *sources, unbound); !done) return done.error();
+  if (auto done = build_graph(*host, *request, std::move(unbound)); !done) return done.error();
   for (const auto& [name, json] : desc.settings) {
     Report report;
     const dermis_result set =

@@ -26,11 +26,8 @@ demo::Result<Subject> render_once(const SceneRequest& request, const SubjectOpti
   std::vector<CaptureProfile> profiles;
   Subject subject{request.scene, request.framing, {}, 0};
   demo::RenderCallbacks callbacks;
-  callbacks.on_start = [&](const demo::RenderInfo& info) -> demo::Result<> {
-    auto read = read_profiles(info.profiles);
-    if (!read) return read.error();
-    profiles = read.take();
-    return demo::success();
+  callbacks.on_start = [&](const demo::RenderInfo& info) {
+    return read_profiles(info.profiles, profiles);
   };
   callbacks.on_frame = [&](const demo::FrameOutputs& frame) -> demo::Result<> {
     auto captured = captured_frame(frame, profiles);

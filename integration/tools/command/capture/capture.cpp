@@ -34,14 +34,12 @@ demo::Result<> capture_scene(const Session& session, const CaptureOptions& optio
       spdlog::warn("{}", warning);
     for (const std::string& credit : info.credits)
       say(session, credit + "\n");
-    auto read = read_profiles(info.profiles);
-    if (!read) return read.error();
-    profiles = read.take();
+    if (auto read = read_profiles(info.profiles, profiles); !read) return read;
     if (writer.begin(options.out, problem)) return demo::success();
     return demo::Error{demo::ErrorKind::environment, problem};
   };
   callbacks.on_frame = [&](const demo::FrameOutputs& frame) -> demo::Result<> {
-    if (interrupted()) return demo::Error{demo::ErrorKind::environment, "stopped"};
+    if (interrupted()) return stopped();
     const auto captured = captured_frame(frame, profiles);
     if (!captured) return captured.error();
     if (!writer.add(*captured, problem)) return demo::Error{demo::ErrorKind::environment, problem};
@@ -57,8 +55,7 @@ demo::Result<> capture_scene(const Session& session, const CaptureOptions& optio
 ExitCode capture(const Session& session, const CaptureOptions& options) {
   const auto captured = capture_scene(session, options);
   if (interrupted()) return fail(session, ExitCode::interrupted, "stopped");
-  if (!captured)
-    return fail(session, static_cast<ExitCode>(captured.error().kind), captured.error().text);
+  if (!captured) return fail(session, captured.error());
   say(session, fmt::format("{} in {}\n", format_count(options.frames, "frame", true), options.out));
   if (session.json) {
     JsonWriter answer;

@@ -238,8 +238,7 @@ ExitCode report_bug(const Session& session, const ReportBugOptions& options) {
   if (!good) return fail(session, ExitCode::environment, bug_report.problem);
   const auto captured = add_frame(session, options, bug_report);
   if (interrupted()) return fail(session, ExitCode::interrupted, "stopped");
-  if (!captured)
-    return fail(session, static_cast<ExitCode>(captured.error().kind), captured.error().text);
+  if (!captured) return fail(session, captured.error());
   if (archived.empty()) fs::remove(named, error); // the target may be an empty folder
   if (!bug_report.finish()) return fail(session, ExitCode::environment, bug_report.problem);
   say(session,

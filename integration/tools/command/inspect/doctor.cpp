@@ -105,7 +105,7 @@ ExitCode doctor(const Session& session, const DoctorOptions&) {
   const demo::Result<demo::DeviceSurvey> survey = demo::survey_devices();
   if (!survey) {
     say(session, screen_without_devices());
-    return fail(session, static_cast<ExitCode>(survey.error().kind), survey.error().text);
+    return fail(session, survey.error());
   }
   const bool fits = any_fits(*survey);
   if (session.json) print(survey_as_json(*survey));

@@ -73,17 +73,10 @@ ExitCode explain_frame(const Session& session, const ExplainOptions& options,
   engine.frames = frames;
   engine.settings = settings_as_json(loaded.graph, options.settings);
   auto budget = read_budget(options.budget);
-  if (!budget)
-    return fail(session, static_cast<ExitCode>(budget.error().kind), budget.error().text);
+  if (!budget) return fail(session, budget.error());
   engine.budget = budget.take();
-  for (const auto& [name, text] : loaded.overlays)
-    engine.overlays.push_back({name, text});
-  engine.include = [open = open_included(options.graph, options.inputs.roots)](
-                       const std::string& name) -> std::optional<demo::NamedText> {
-    const FileText file = open(name);
-    return file.problem.empty() ? std::optional(demo::NamedText{file.name, file.text})
-                                : std::nullopt;
-  };
+  engine.overlays = loaded.overlays;
+  engine.include = for_engine(open_included(options.graph, options.inputs.roots));
   HostPasses host_passes(loaded.host_pass_types);
   engine.hooks = host_passes.hooks();
   ChoiceReport report;
@@ -98,13 +91,11 @@ ExitCode explain_frame(const Session& session, const ExplainOptions& options,
       report.add(frame.frame, *frame.choice, frame.histories,
                  tile_costs(loaded, options.size, grid, options.settings, *frame.choice),
                  frame.frontier);
-    return interrupted() ? demo::Result<>(demo::Error{demo::ErrorKind::environment, "stopped"})
-                         : demo::success();
+    return interrupted() ? demo::Result<>(stopped()) : demo::success();
   };
   const auto summary = demo::render(engine, callbacks);
   if (interrupted()) return fail(session, ExitCode::interrupted, "stopped");
-  if (!summary)
-    return fail(session, static_cast<ExitCode>(summary.error().kind), summary.error().text);
+  if (!summary) return fail(session, summary.error());
   if (!session.json) return deliver(session, options.out, report.text());
   JsonWriter answer;
   report.write(answer);
@@ -171,8 +162,7 @@ ExitCode explain(const Session& session, const ExplainOptions& options) {
   if (!choices.problem.empty()) return fail(session, ExitCode::usage, choices.problem);
   if (options.frame) return explain_frame(session, options, *loaded);
   const auto budget = read_budget(options.budget);
-  if (!budget)
-    return fail(session, static_cast<ExitCode>(budget.error().kind), budget.error().text);
+  if (!budget) return fail(session, budget.error());
   const auto tables =
       choice_tables(*loaded, options.size, choices, pinned_by(loaded->graph, options.settings),
                     *budget, diagnostics);

@@ -222,7 +222,7 @@ private:
     std::set<const vulkan::Pipeline*> used;
     for (const std::vector<SettingValue>& settings :
          settings_of_plans(input, pinned_, diagnostics_)) {
-      if (interrupted()) return demo::Error{demo::ErrorKind::environment, "stopped"};
+      if (interrupted()) return stopped();
       CompileInput one = input;
       one.settings = settings;
       const std::optional<CompiledPlan> compiled = compile(one, diagnostics_);

@@ -44,7 +44,7 @@ demo::Result<> prepare(ApplyRun& run, const CapturedFrame& frame, const SlotChoi
   request.graph_name = run.options.graph;
   request.graph_text = run.graph_text;
   request.overlays = run.loaded.overlays;
-  request.open = open_included(run.options.graph, run.options.inputs.roots);
+  request.include = for_engine(open_included(run.options.graph, run.options.inputs.roots));
   request.width = frame.description.width;
   request.height = frame.description.height;
   request.pixel_aspect = std::abs(frame.rays.scale_x / frame.rays.scale_y);
@@ -124,7 +124,7 @@ demo::Result<> apply_frame(ApplyRun& run, const CapturedFrame& frame, const std:
   if (!slots.problem.empty()) return demo::Error{demo::ErrorKind::input, slots.problem};
   if (auto ready = prepare(run, frame, slots); !ready) return ready;
   for (uint32_t i = 0; i < run.options.repeat; ++i) {
-    if (interrupted()) return demo::Error{demo::ErrorKind::environment, "stopped"};
+    if (interrupted()) return stopped();
     // also on repeats, since the graph may write into its inputs
     for (const SlotData& data : slots.data)
       if (auto given = run.device->upload(data.slot, data.texels, data.channels); !given)
@@ -174,7 +174,7 @@ ExitCode apply(const Session& session, const ApplyOptions& options) {
 
   HostPasses host_passes(loaded->host_pass_types); // outlives the device's context
   auto host = demo::create_vulkan_host({});
-  if (!host) return fail(session, static_cast<ExitCode>(host.error().kind), host.error().text);
+  if (!host) return fail(session, host.error());
   OutputFolder out;
   if (const std::string problem = out.open(options.out); !problem.empty())
     return fail(session, ExitCode::environment, problem);
@@ -191,7 +191,7 @@ ExitCode apply(const Session& session, const ApplyOptions& options) {
     warn_of_surfaces(*frame, surfaces);
     const auto done = apply_frame(run, *frame, sequence->names[i], out);
     if (interrupted()) return fail(session, ExitCode::interrupted, "stopped");
-    if (!done) return fail(session, static_cast<ExitCode>(done.error().kind), done.error().text);
+    if (!done) return fail(session, done.error());
     progress.update(i + 1);
   }
   print_diagnostics(session, surfaces);

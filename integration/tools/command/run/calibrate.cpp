@@ -30,23 +30,17 @@ ExitCode calibrate(const Session& session, const CalibrateOptions& options) {
   request.sets = all;
   if (!options.calibration.empty()) {
     auto text = demo::read_text_file(options.calibration);
-    if (!text) return fail(session, static_cast<ExitCode>(text.error().kind), text.error().text);
+    if (!text) return fail(session, text.error());
     request.calibration = {options.calibration, text.take()};
   }
-  for (const auto& [name, text] : loaded->overlays)
-    request.overlays.push_back({name, text});
-  request.include = [open = open_included(options.graph, options.inputs.roots)](
-                        const std::string& name) -> std::optional<demo::NamedText> {
-    const FileText file = open(name);
-    return file.problem.empty() ? std::optional(demo::NamedText{file.name, file.text})
-                                : std::nullopt;
-  };
+  request.overlays = loaded->overlays;
+  request.include = for_engine(open_included(options.graph, options.inputs.roots));
   Progress progress(progress_style(session.quiet, session.json), "calibrate", "run",
                     count_cost_runs(request));
   uint32_t done = 0;
   const auto costs = measure_costs(request, [&] { progress.update(++done); });
   if (interrupted()) return fail(session, ExitCode::interrupted, "stopped");
-  if (!costs) return fail(session, static_cast<ExitCode>(costs.error().kind), costs.error().text);
+  if (!costs) return fail(session, costs.error());
   if (const std::string problem = deliver_text(options.out, costs->calibration); !problem.empty())
     return fail(session, ExitCode::environment, problem);
   say(session, options.out == "-" ? ""

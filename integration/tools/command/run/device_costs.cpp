@@ -19,7 +19,6 @@ uint32_t count_cost_runs(const CostsRequest& request) {
 
 demo::Result<DeviceCosts> measure_costs(const CostsRequest& request,
                                         const std::function<void()>& on_run) {
-  const demo::Error stopped = {demo::ErrorKind::environment, "stopped"};
   DeviceCosts costs{{}, request.calibration.text};
   const demo::StageHandle stage = demo::make_stage();
   demo::RenderOptions engine;
@@ -41,7 +40,7 @@ demo::Result<DeviceCosts> measure_costs(const CostsRequest& request,
     return demo::success();
   };
   callbacks.on_frame = [&](const demo::FrameOutputs&) -> demo::Result<> {
-    if (interrupted()) return stopped;
+    if (interrupted()) return stopped();
     return demo::success();
   };
   for (const demo::CameraPlace& place : places)
@@ -50,7 +49,7 @@ demo::Result<DeviceCosts> measure_costs(const CostsRequest& request,
       engine.settings = values;
       engine.budget.calibration.text = costs.calibration;
       const auto summary = demo::render(engine, callbacks, stage.get());
-      if (interrupted()) return stopped;
+      if (interrupted()) return stopped();
       if (!summary) return summary.error();
       costs.calibration = summary->calibration;
       engine.budget.calibration.name = "calibration"; // the result of the previous run

@@ -2,11 +2,7 @@
 #include "framegraph/model/pixel_grid.hpp"
 #include "integration/examples/demo_engine/render/reported_frame.hpp"
 
-#include "integration/examples/demo_engine/dermis_calls.hpp"
-
 #include <fmt/format.h>
-
-#include <deque>
 
 namespace dermis::tools {
 namespace {
@@ -16,65 +12,6 @@ demo::ImageState resting_state(VkImageLayout layout) {
   return {layout == VK_IMAGE_LAYOUT_UNDEFINED ? VK_IMAGE_LAYOUT_GENERAL : layout,
           VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
           VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT};
-}
-
-// Keeps delivered texts alive until the call that requests them returns.
-struct Includes {
-  const OpenFile& open;
-  std::deque<FileText> delivered = {};
-};
-
-uint32_t DERMIS_CALL deliver_include(void* user, const char* name, dermis_source* source) {
-  auto& includes = *static_cast<Includes*>(user);
-  const FileText& file = includes.delivered.emplace_back(includes.open(name));
-  if (!file.problem.empty()) return 0;
-  *source = demo::source_of(file.name, file.text);
-  return 1;
-}
-
-demo::Result<dermis_graph> create_graph(dermis_context context, const DeviceGraphRequest& request) {
-  std::vector<dermis_profile> profiles;
-  for (const DeviceGraphRequest::Profile& one : request.profiles) {
-    dermis_profile profile = DERMIS_PROFILE_INIT;
-    profile.id = one.id;
-    profile.source = demo::source_of(one.name, one.text);
-    profiles.push_back(profile);
-  }
-  std::vector<dermis_slot_format> formats;
-  for (const auto& [name, vk_format] : request.formats) {
-    dermis_slot_format format = DERMIS_SLOT_FORMAT_INIT;
-    format.name = name.c_str();
-    format.format = vk_format;
-    formats.push_back(format);
-  }
-  std::vector<const char*> unbound;
-  for (const std::string& name : request.unbound)
-    unbound.push_back(name.c_str());
-
-  dermis_graph_desc desc = DERMIS_GRAPH_DESC_INIT;
-  desc.source = demo::source_of(request.graph_name, request.graph_text);
-  desc.width = request.width;
-  desc.height = request.height;
-  desc.pixel_aspect = static_cast<float>(request.pixel_aspect);
-  desc.profiles = profiles.data();
-  desc.profile_count = static_cast<uint32_t>(profiles.size());
-  desc.unbound = unbound.data();
-  desc.unbound_count = static_cast<uint32_t>(unbound.size());
-  desc.formats = formats.data();
-  desc.format_count = static_cast<uint32_t>(formats.size());
-  std::vector<dermis_source> overlays;
-  for (const auto& [name, text] : request.overlays)
-    overlays.push_back(demo::source_of(name, text));
-  desc.overlays = overlays.data();
-  desc.overlay_count = static_cast<uint32_t>(overlays.size());
-  Includes includes{request.open};
-  if (request.open) desc.include = deliver_include;
-  desc.include_user = &includes; // not used after creation: the command does not reload graphs
-  dermis_graph graph = nullptr;
-  demo::Report report;
-  const dermis_result result = dermis_graph_create(context, &desc, &graph, &report.handle);
-  if (result != DERMIS_OK) return demo::dermis_error("dermis_graph_create", result, report.handle);
-  return graph;
 }
 
 demo::Result<> set_settings(dermis_graph graph, const DeviceGraphRequest& request) {
@@ -107,7 +44,8 @@ demo::Result<std::unique_ptr<DeviceGraph>> DeviceGraph::create(demo::VulkanHost&
     return ready.error();
   made->context_ = host.tool_context;
   made->recorded_ = request.hooks.recorded;
-  auto graph = create_graph(host.tool_context.get(), request);
+  demo::Report report;
+  const auto graph = demo::create_graph(host.tool_context.get(), request, report);
   if (!graph) return graph.error();
   made->graph_ = *graph;
   if (auto set = set_settings(*graph, request); !set) return set.error();

@@ -2,8 +2,7 @@
 // A graph on a device, used only through the C interface: creates images for its slots, runs one
 // frame at a time and waits.
 
-#include "framegraph/compose/compose.hpp"
-#include "integration/examples/demo_engine/context_hooks.hpp"
+#include "integration/examples/demo_engine/dermis_calls.hpp"
 #include "integration/examples/demo_engine/render/reported_frame.hpp"
 #include "integration/examples/demo_engine/vulkan_image.hpp"
 
@@ -20,21 +19,7 @@
 
 namespace dermis::tools {
 
-struct DeviceGraphRequest {
-  std::string graph_name, graph_text;                        // file name for messages, JSON
-  std::vector<std::pair<std::string, std::string>> overlays; // file name for messages, JSON
-  // opens files that graph and overlays include
-  OpenFile open;
-  uint32_t width = 0, height = 0; // allocated size, pixels
-  double pixel_aspect = 1;        // width / height of a pixel
-  struct Profile {
-    uint32_t id = 0;
-    std::string name, text; // name for messages, JSON
-    bool operator==(const Profile&) const = default;
-  };
-  std::vector<Profile> profiles;
-  std::vector<std::pair<std::string, VkFormat>> formats;     // of slots
-  std::vector<std::string> unbound;                          // optional slots
+struct DeviceGraphRequest : demo::GraphRequest {
   std::vector<std::pair<std::string, std::string>> settings; // name, JSON text
   demo::ContextHooks hooks = {}; // for the first graph's context and for each frame
 };

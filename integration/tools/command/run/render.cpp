@@ -68,9 +68,7 @@ demo::Result<> start(RenderRun& run, const demo::RenderInfo& info) {
     spdlog::warn("{}", warning);
   for (const std::string& credit : info.credits)
     say(run.session, credit + "\n");
-  auto profiles = read_profiles(info.profiles);
-  if (!profiles) return profiles.error();
-  run.profiles = profiles.take();
+  if (auto read = read_profiles(info.profiles, run.profiles); !read) return read;
   if (const std::string problem = run.out.open(run.options.out); !problem.empty())
     return cannot_write(problem);
   std::string problem;
@@ -166,7 +164,7 @@ demo::Result<> take_pictures(RenderRun& run, const demo::FrameOutputs& frame) {
 }
 
 demo::Result<> take_frame(RenderRun& run, const demo::FrameOutputs& frame) {
-  if (interrupted()) return demo::Error{demo::ErrorKind::environment, "stopped"};
+  if (interrupted()) return stopped();
   if (!frame.display.empty())
     if (auto taken = take_pictures(run, frame); !taken) return taken;
   // The first of several frames only warms caches.
@@ -301,8 +299,7 @@ ExitCode render(const Session& session, const RenderOptions& options) {
       }))
     inputs.overlays.push_back(shipped(std::string("configs/overlays/") + overlay));
   auto budget = read_budget(options.budget);
-  if (!budget)
-    return fail(session, static_cast<ExitCode>(budget.error().kind), budget.error().text);
+  if (!budget) return fail(session, budget.error());
   engine.budget = budget.take();
 
   // Read the graph here first, so that its messages have excerpts and JSON form and --set is
@@ -325,17 +322,9 @@ ExitCode render(const Session& session, const RenderOptions& options) {
     engine.graph = options.graph;
     host_passes.emplace(loaded->host_pass_types);
     engine.hooks = host_passes->hooks();
-    for (const auto& [name, text] : loaded->overlays)
-      engine.overlays.push_back({name, text});
-    const auto files_of = [](OpenFile open) {
-      return [open = std::move(open)](const std::string& name) -> std::optional<demo::NamedText> {
-        const FileText file = open(name);
-        return file.problem.empty() ? std::optional(demo::NamedText{file.name, file.text})
-                                    : std::nullopt;
-      };
-    };
-    engine.include = files_of(open_included(options.graph, options.inputs.roots));
-    if (!options.shaders.empty()) engine.shaders = files_of(open_below({options.shaders}));
+    engine.overlays = loaded->overlays;
+    engine.include = for_engine(open_included(options.graph, options.inputs.roots));
+    if (!options.shaders.empty()) engine.shaders = for_engine(open_below({options.shaders}));
     engine.settings = settings_as_json(loaded->graph, options.settings);
     textured = textured_before(loaded->graph, choices);
     transmission = transmits(loaded->graph, choices);
@@ -360,8 +349,7 @@ ExitCode render(const Session& session, const RenderOptions& options) {
   callbacks.on_frame = [&](const demo::FrameOutputs& frame) { return take_frame(run, frame); };
   const auto summary = demo::render(engine, callbacks);
   if (interrupted()) return fail(session, ExitCode::interrupted, "stopped");
-  if (!summary)
-    return fail(session, static_cast<ExitCode>(summary.error().kind), summary.error().text);
+  if (!summary) return fail(session, summary.error());
   std::string problem;
   if (!options.capture.empty() && !run.capture.finish(problem))
     return fail(session, ExitCode::environment, problem);

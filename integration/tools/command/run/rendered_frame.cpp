@@ -10,16 +10,15 @@ Image to_image(const demo::FloatImage& image) {
   return {image.width, image.height, image.channels, image.texels};
 }
 
-demo::Result<std::vector<CaptureProfile>>
-read_profiles(std::span<const demo::ScatteringProfile> profiles) {
-  std::vector<CaptureProfile> all;
+demo::Result<> read_profiles(std::span<const demo::ScatteringProfile> profiles,
+                             std::vector<CaptureProfile>& read) {
   Diagnostics diagnostics;
   for (const demo::ScatteringProfile& one : profiles) {
     const auto document = read_document(one.file, diagnostics);
     const auto profile = document ? subsurface::read_profile(*document, diagnostics) : std::nullopt;
-    if (profile) all.push_back({one.id, *profile});
+    if (profile) read.push_back({one.id, *profile});
   }
-  if (!diagnostics.has_errors()) return all;
+  if (!diagnostics.has_errors()) return demo::success();
   std::string text;
   for (const Diagnostic& one : diagnostics.list)
     text += format_for_people(diagnostics, one) + '\n';

@@ -12,8 +12,8 @@ namespace dermis::tools {
 Image to_image(const demo::FloatImage& image);
 
 // Reads the profiles of a scene from their files. Errors: input, with all located messages.
-demo::Result<std::vector<CaptureProfile>>
-read_profiles(std::span<const demo::ScatteringProfile> profiles);
+demo::Result<> read_profiles(std::span<const demo::ScatteringProfile> profiles,
+                             std::vector<CaptureProfile>& read);
 
 // Returns the graph's inputs of this frame. Errors: internal (a camera that captures cannot
 // describe).

@@ -104,8 +104,7 @@ ExitCode sheet(const Session& session, const SheetOptions& options) {
       };
       const auto summary = demo::render(engine, callbacks);
       if (interrupted()) return fail(session, ExitCode::interrupted, "stopped");
-      if (!summary)
-        return fail(session, static_cast<ExitCode>(summary.error().kind), summary.error().text);
+      if (!summary) return fail(session, summary.error());
       progress.update(static_cast<uint32_t>(row * columns + column + 1));
     }
   std::string problem;

@@ -33,12 +33,9 @@ demo::Result<SceneRun> run_scene(const Session& session, const SceneRunRequest& 
   SceneRun run;
   std::vector<CaptureProfile> profiles;
   demo::RenderCallbacks callbacks;
-  callbacks.on_start = [&](const demo::RenderInfo& info) -> demo::Result<> {
+  callbacks.on_start = [&](const demo::RenderInfo& info) {
     run.device = info.device;
-    auto read = read_profiles(info.profiles);
-    if (!read) return read.error();
-    profiles = read.take();
-    return demo::success();
+    return read_profiles(info.profiles, profiles);
   };
   callbacks.on_frame = [&](const demo::FrameOutputs& frame) -> demo::Result<> {
     if (interrupted()) return stopped();

@@ -71,7 +71,7 @@ demo::Result<> prepare_frame(SkipBench& bench, SkipCase from) {
   request.graph_text = bench.text;
   request.width = bench.run.size().width;
   request.height = bench.run.size().height;
-  if (!one.from.skips) request.overlays.emplace_back("without flat light", without_uniform_light);
+  if (!one.from.skips) request.overlays.push_back({"without flat light", without_uniform_light});
   if (!one.from.no_profiles)
     for (const CaptureProfile& profile : bench.profiles)
       request.profiles.push_back(

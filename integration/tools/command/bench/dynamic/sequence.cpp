@@ -20,11 +20,8 @@ demo::Result<Sequence> render_frames(const SequenceRequest& request, demo::Rende
   ExposureMeter meter;
   std::vector<CaptureProfile> profiles;
   demo::RenderCallbacks callbacks;
-  callbacks.on_start = [&](const demo::RenderInfo& info) -> demo::Result<> {
-    auto read = read_profiles(info.profiles);
-    if (!read) return read.error();
-    profiles = read.take();
-    return demo::success();
+  callbacks.on_start = [&](const demo::RenderInfo& info) {
+    return read_profiles(info.profiles, profiles);
   };
   callbacks.on_frame = [&](const demo::FrameOutputs& frame) -> demo::Result<> {
     auto captured = captured_frame(frame, profiles);

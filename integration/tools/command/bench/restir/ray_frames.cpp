@@ -42,7 +42,7 @@ scatter_by_rays(const RayRequest& request, const SceneRequest& scene, const Subj
     return demo::success();
   };
   callbacks.on_frame = [&](const demo::FrameOutputs& frame) -> demo::Result<> {
-    if (interrupted()) return demo::Error{demo::ErrorKind::environment, "stopped"};
+    if (interrupted()) return stopped();
     if (frame.dermis_times.empty())
       return demo::Error{demo::ErrorKind::environment,
                          "the device has no timestamps; nothing can be compared"};

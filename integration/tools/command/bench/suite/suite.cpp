@@ -90,10 +90,6 @@ demo::Error SuiteRun::refuse(const std::string& path, Diagnostics diagnostics) {
   return {demo::ErrorKind::input, fmt::format("'{}' cannot be used", path)};
 }
 
-demo::Error stopped() {
-  return {demo::ErrorKind::environment, "stopped"};
-}
-
 SuiteRequest default_request(const Suite& suite) {
   SuiteRequest request;
   for (const SuiteOption& option : suite.options)
@@ -115,9 +111,7 @@ ExitCode run_suite(const Session& session, const Suite& suite, const SuiteReques
   report.table.columns = suite.columns;
   const auto done = suite.run(run);
   if (interrupted()) return fail(session, ExitCode::interrupted, "stopped");
-  if (!done)
-    return fail(session, static_cast<ExitCode>(done.error().kind), done.error().text,
-                &run.rejected);
+  if (!done) return fail(session, done.error(), &run.rejected);
   complete_facts(run,
                  std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
 

@@ -121,9 +121,6 @@ Suite make_suite(Suite suite, std::vector<Column<Row>> columns,
   return suite;
 }
 
-// The error of an interrupted run.
-demo::Error stopped();
-
 struct SuiteRequest {
   std::map<std::string, OptionValue> options; // of every option of the suite
   std::string json, csv, html;                // output files; "": none, "-": standard output
