@@ -197,7 +197,7 @@ TEST_F(Fields, OfCallsOnAGraph_NullOnesAreNamed) {
   EXPECT_EQ(dermis_graph_view(nullptr), nullptr);
   rejected(dermis_graph_calibration(nullptr, nullptr, nullptr), "graph is NULL");
   rejected(dermis_graph_heaps(nullptr, nullptr, nullptr), "graph is NULL");
-  rejected(dermis_register_pass_type(host.context, nullptr), "kind is NULL");
+  rejected(dermis_register_pass_type(host.context, nullptr), "type is NULL");
   dermis_report report = nullptr;
   ASSERT_EQ(dermis_graph_set_setting(host.graph, "samples", "{}", &report), DERMIS_ERROR_CONFIG);
   rejected(dermis_report_message(report, 0, nullptr), "message is NULL");
