@@ -13,7 +13,7 @@
 namespace dermis::subsurface {
 
 // One pass of a plan, and the surface that the pass works on.
-struct ReadsQuestion {
+struct ReadsInput {
   std::span<const SettingValue> settings; // resolved, one per PassTypeSetting
   std::vector<bool> bound;                // one per port of the pass type
   PerChannel d_px{};                      // projected d, pixels
@@ -34,7 +34,7 @@ struct ImageReads {
 
 // Returns nullopt for an unlisted pass type. Reads that a kernel skips at another profile, at
 // missing depth or at the border are counted; branches on d are followed. Thread: any.
-std::optional<ImageReads> image_reads(const PassType& type, const ReadsQuestion& question);
+std::optional<ImageReads> image_reads(const PassType& type, const ReadsInput& input);
 
 // Returns the pass types with known reads.
 std::vector<std::string_view> pass_types_with_known_reads();

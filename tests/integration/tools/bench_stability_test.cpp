@@ -31,7 +31,7 @@ TEST_F(BenchStability, GivesARowForEachCaseAndTechnique) {
     EXPECT_LE(row["max_abs_error"], row["bound"]) << row;
     EXPECT_EQ(row["recovered_after_frames"].is_null(), row["case"] != "history_poisoned") << row;
   }
-  EXPECT_THAT(outcome.out, HasSubstr("0 of 19 rows do not hold"));
+  EXPECT_THAT(outcome.out, HasSubstr("all goals of 19 rows are met"));
 }
 
 TEST_F(BenchStability, UnevenRatio_DisturbsTheHistory) {

@@ -61,9 +61,9 @@ void paint_disc(Painter& painter) {
   struct Disc {
     double x, y, radius; // picture heights
   };
-  constexpr Disc discs[] = {{.35, .5, .25},   {.80, .30, .11},   {.82, .74, .055},
-                            {1.05, .5, .028}, {1.2, .25, .014},  {1.22, .72, .007},
-                            {1.42, .4, .16},  {1.45, .82, .0035}};
+  constexpr Disc discs[] = {{0.35, 0.5, 0.25},  {0.80, 0.30, 0.11},  {0.82, 0.74, 0.055},
+                            {1.05, 0.5, 0.028}, {1.2, 0.25, 0.014},  {1.22, 0.72, 0.007},
+                            {1.42, 0.4, 0.16},  {1.45, 0.82, 0.0035}};
   painter.light([&](Place p) {
     for (const Disc& one : discs)
       if (std::hypot(p.x / painter.height - one.x, p.y / painter.height - one.y) < one.radius)

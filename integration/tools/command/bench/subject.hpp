@@ -72,8 +72,8 @@ CapturedFrame generate_scene(const std::string& scene, const std::string& framin
 // of view is changed until the median is within 2 % of it. Errors: those of demo::render.
 demo::Result<Subject> render_subject(const SceneRequest& request, const SubjectOptions& options);
 
-// Returns the scan in the folder of --head, from the bottom of the shoulders to the crown. ""
-// returns no model.
+// Returns the scan in the folder of --head, from the bottom of the shoulders to the crown. Returns
+// no model if `folder` is "".
 demo::ModelOptions head_model(const std::string& folder);
 // Returns the reason why the scan cannot be shown, or "".
 std::string why_no_head(const std::string& folder);

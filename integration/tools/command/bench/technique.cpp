@@ -225,14 +225,14 @@ TechniqueCounts TechniqueRun::counts(double sampled_fraction, const subsurface::
     std::vector<SettingValue> settings;
     for (size_t i = 0; i < type.settings.size(); ++i)
       settings.push_back(plan.settings[pass.first_setting + i].value);
-    subsurface::ReadsQuestion question{settings, std::vector<bool>(type.ports.size(), false), d_px,
-                                       sap_tables_};
+    subsurface::ReadsInput input{settings, std::vector<bool>(type.ports.size(), false), d_px,
+                                 sap_tables_};
     for (uint32_t i = 0; i < pass.access_count; ++i)
-      question.bound[plan.accesses[pass.first_access + i].port] = true;
-    auto reads = subsurface::image_reads(type, question);
+      input.bound[plan.accesses[pass.first_access + i].port] = true;
+    auto reads = subsurface::image_reads(type, input);
     if (reads && taken && reads->samples > 0) {
-      question.sampled_fraction = *taken / reads->samples;
-      reads = subsurface::image_reads(type, question);
+      input.sampled_fraction = *taken / reads->samples;
+      reads = subsurface::image_reads(type, input);
       // image_reads assumed samples in all pixels
       counts.mean_spp += reads->samples * (1 - sampled_fraction);
     }

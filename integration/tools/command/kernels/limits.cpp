@@ -31,7 +31,7 @@ public:
     ok_ &= complete;
     if (has_kernel == has_graph) {
       if (complete)
-        refuse(node,
+        reject(node,
                "a rule is either about kernels or about graphs: give one of 'kernel' and 'graph'");
       return rule;
     }
@@ -42,14 +42,14 @@ public:
         for (const NodeId value : children(document_, limits[minimum]))
           add_limit(value, minimum != 0, rule);
     if (rule.limits.empty() && complete && ok_)
-      refuse(node, "a rule needs a limit in 'max' or 'min'");
+      reject(node, "a rule needs a limit in 'max' or 'min'");
     return rule;
   }
 
   bool ok() const { return ok_; }
 
 private:
-  void refuse(NodeId node, std::string text) {
+  void reject(NodeId node, std::string text) {
     diagnostics_.add(DiagnosticId::invalid_value, document_.where(node), std::move(text));
     ok_ = false;
   }
@@ -66,7 +66,7 @@ private:
     }
     const std::vector<NodeId> all = children(document_, node);
     if (all.empty() || all.size() > max_patterns)
-      refuse(node, fmt::format("{} has {} patterns; 1 to {} are possible", what, all.size(),
+      reject(node, fmt::format("{} has {} patterns; 1 to {} are possible", what, all.size(),
                                max_patterns));
     for (const NodeId one : all)
       add_pattern(one, what, out);
@@ -111,7 +111,7 @@ private:
       const bool good = object.finish();
       ok_ &= good;
       if (good && (minimum ? limit.now >= limit.goal : limit.now <= limit.goal))
-        refuse(node, fmt::format("{}: 'now' reaches the goal; write {} without 'goal' and 'now'",
+        reject(node, fmt::format("{}: 'now' reaches the goal; write {} without 'goal' and 'now'",
                                  what, limit.goal));
     } else {
       const auto value = read_number(document_, node, what, 0, largest_limit, diagnostics_);

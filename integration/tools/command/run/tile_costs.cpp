@@ -101,17 +101,17 @@ TileCosts tile_costs(const LoadedGraph& loaded, const Size& size, PixelGrid grid
       if (type.settings[i].name == "level")
         finer = double(pixels_per_texel(grid, static_cast<uint32_t>(own.back().integer)));
     }
-    subsurface::ReadsQuestion question{
+    subsurface::ReadsInput input{
         own, std::vector<bool>(type.ports.size(), false), {d, d, d}, tables};
     for (uint32_t a = 0; a < pass.access_count; ++a)
-      question.bound[plan.accesses[pass.first_access + a].port] = true;
-    const auto reads = subsurface::image_reads(type, question);
+      input.bound[plan.accesses[pass.first_access + a].port] = true;
+    const auto reads = subsurface::image_reads(type, input);
     if (!reads) continue;
     const auto list = lists.find(resource_at(plan, pass, type, "tiles").value_or(~0u));
     const Tiles tiles = list == lists.end() ? Tiles::all : list->second;
     if (tiles == Tiles::with_samples && reads->samples > 0) { // at twice the first step's samples
-      question.sampled_fraction = 0;
-      const double without = subsurface::image_reads(type, question)->per_invocation;
+      input.sampled_fraction = 0;
+      const double without = subsurface::image_reads(type, input)->per_invocation;
       out.reads_per_sample = (reads->per_invocation - without) / reads->samples;
       first_step = reads->samples / 2;
       with_samples += without;

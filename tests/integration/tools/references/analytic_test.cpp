@@ -8,8 +8,8 @@ namespace dermis::subsurface {
 namespace {
 
 TEST(Analytic, EdgeHasItsTabulatedValues) {
-  const double x[] = {.1, .25, .5, 1, 2, 4, 8};
-  const double expected[] = {.563178, .621756, .689769, .776990, .870563, .947619, .989248};
+  const double x[] = {0.1, 0.25, 0.5, 1, 2, 4, 8};
+  const double expected[] = {0.563178, 0.621756, 0.689769, 0.776990, 0.870563, 0.947619, 0.989248};
   for (int i = 0; i < 7; ++i) {
     EXPECT_NEAR(burley_edge(3 * x[i], 3), expected[i], 6e-7);
     EXPECT_NEAR(burley_edge(-3 * x[i], 3), 1 - expected[i], 6e-7);
@@ -22,8 +22,8 @@ TEST(Analytic, BesselIntegralEndsAtHalfPi) {
 }
 
 TEST(Analytic, TransferFunctionHasItsTabulatedValues) {
-  const double k[] = {.1, .5, 1, 2, 5};
-  const double expected[] = {.967129, .639632, .413948, .235103, .098918};
+  const double k[] = {0.1, 0.5, 1, 2, 5};
+  const double expected[] = {0.967129, 0.639632, 0.413948, 0.235103, 0.098918};
   for (int i = 0; i < 5; ++i)
     EXPECT_NEAR(burley_mtf(k[i] / 7, 7), expected[i], 6e-7);
 }
@@ -41,8 +41,8 @@ TEST(Analytic, RimOfAHugeDiscIsAnEdge) {
 }
 
 TEST(Analytic, GaussianLightHasItsTabulatedValues) {
-  EXPECT_NEAR(burley_gaussian_centre(.5, 1), .247374, 6e-7);
-  EXPECT_NEAR(burley_gaussian_centre(2, 1), .605886, 6e-7);
+  EXPECT_NEAR(burley_gaussian_centre(0.5, 1), 0.247374, 6e-7);
+  EXPECT_NEAR(burley_gaussian_centre(2, 1), 0.605886, 6e-7);
   EXPECT_NEAR(burley_gaussian_centre(1e4, 1), 1, 1e-6); // Wide light: the furnace.
 }
 

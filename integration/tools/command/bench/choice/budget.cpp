@@ -197,10 +197,10 @@ demo::Result<> measure_budget(SuiteRun& run, const Emit<BudgetRow>& emit) {
   Diagnostics diagnostics;
   const std::string graph = run.file("graph");
   const std::optional<LoadedGraph> loaded = load_graph(graph, run.pass_types(), diagnostics);
-  if (!loaded) return run.refuse(graph, diagnostics);
+  if (!loaded) return run.reject(graph, diagnostics);
   auto sets = choice_sets(*loaded, run.size(), diagnostics);
-  if (sets.empty()) return run.refuse(graph, diagnostics);
-  HostPasses host_passes(loaded->host_pass_types); // outlives the stage of the runs
+  if (sets.empty()) return run.reject(graph, diagnostics);
+  HostPasses host_passes(loaded->host_pass_types); // outlives the cache of the runs
   SceneRunRequest request;
   request.graph = graph;
   request.hooks = host_passes.hooks();

@@ -148,16 +148,16 @@ double reads_of(const SkipBench& bench, const SkipFrame& one, std::span<const fl
         finer = std::exp2(2.0 * double(settings.back().integer));
       }
     }
-    subsurface::ReadsQuestion question{
+    subsurface::ReadsInput input{
         settings, std::vector<bool>(type.ports.size(), false), {d_px, d_px, d_px}, sap_tables};
     for (uint32_t i = 0; i < pass.access_count; ++i)
-      question.bound[one.plan.plan.accesses[pass.first_access + i].port] = true;
+      input.bound[one.plan.plan.accesses[pass.first_access + i].port] = true;
     if (one.choice.view_tiles > 0) {
-      question.subsurface_fraction = listed / one.choice.view_tiles;
-      question.scattering_fraction =
+      input.subsurface_fraction = listed / one.choice.view_tiles;
+      input.scattering_fraction =
           (double(one.choice.scattering_tiles) + one.choice.uniform_tiles) / one.choice.view_tiles;
     }
-    const auto reads = subsurface::image_reads(type, question);
+    const auto reads = subsurface::image_reads(type, input);
     const bool over_all = type.dispatch.domain == DispatchRule::Domain::rectangle &&
                           type.dispatch.cells_per_group == 1;
     const double tiles = over_all ? double(one.choice.view_tiles) : listed;
@@ -190,7 +190,7 @@ demo::Result<> load_graphs(SuiteRun& run, LoadedGraph& loaded, LoadedGraph& plai
   const std::string path = run.file("graph");
   Diagnostics diagnostics;
   auto whole = load_graph(path, run.pass_types(), diagnostics);
-  if (!whole) return run.refuse(path, diagnostics);
+  if (!whole) return run.reject(path, diagnostics);
   text = diagnostics.files.front().text;
   std::vector<Document> overlays;
   if (auto overlay = parse_document("without flat light", without_uniform_light, diagnostics))
@@ -200,7 +200,7 @@ demo::Result<> load_graphs(SuiteRun& run, LoadedGraph& loaded, LoadedGraph& plai
                   ? load_graph(std::move(*document), std::move(overlays), open_included(path, {}),
                                diagnostics, run.pass_types().pass_types)
                   : std::nullopt;
-  if (!part) return run.refuse(path, diagnostics);
+  if (!part) return run.reject(path, diagnostics);
   loaded = std::move(*whole);
   plain = std::move(*part);
   return demo::success();
@@ -214,7 +214,7 @@ demo::Result<> measure_skip(SuiteRun& run, const Emit<SkipRow>& emit) {
   const auto profile_text = read_document(run.file("profile"), diagnostics);
   const auto profile =
       profile_text ? subsurface::read_profile(*profile_text, diagnostics) : std::nullopt;
-  if (!profile) return run.refuse(run.file("profile"), diagnostics);
+  if (!profile) return run.reject(run.file("profile"), diagnostics);
 
   HostPasses host_passes(loaded.host_pass_types); // outlives the device's context
   const auto host = run.open_device();
@@ -229,8 +229,8 @@ demo::Result<> measure_skip(SuiteRun& run, const Emit<SkipRow>& emit) {
   run.report.summary = fmt::format("{}, {}x{}, d = {} px; medians of {}, all cases interleaved",
                                    run.file("graph"), run.size().width, run.size().height, d_px,
                                    format_count(run.number("repetitions"), "frame"));
-  run.add_fact("full", "the whole image scatters and nothing is skipped");
-  run.add_fact("reads",
+  run.add_info("full", "the whole image scatters and nothing is skipped");
+  run.add_info("reads",
                "texels read by the groups that ran, counted from the kernels' source for an "
                "environment that scatters");
   const std::vector<float> sap_tables = subsurface::make_sap_tables({true, true}, {});

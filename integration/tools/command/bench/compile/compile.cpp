@@ -254,11 +254,11 @@ demo::Result<> measure_compile(SuiteRun& run, const Emit<CompileRow>& emit) {
   const PassTypeRegistry pass_types = benchmark_pass_types();
   if (run.text("graphs").empty()) {
     file = read_shapes(source, diagnostics);
-    if (!file) return run.refuse(source, diagnostics);
+    if (!file) return run.reject(source, diagnostics);
     add_times(tasks, effort, *file, pass_types);
     add_memory(tasks, effort, *file, pass_types, run.flag("optimize"));
   } else if (!add_given(tasks, run, loaded, diagnostics)) {
-    return run.refuse(source, diagnostics);
+    return run.reject(source, diagnostics);
   }
   run.report.constants = {{"clock", "CPU time of the thread"}};
   run.report.plots_title = "Time over size";
@@ -271,7 +271,7 @@ demo::Result<> measure_compile(SuiteRun& run, const Emit<CompileRow>& emit) {
     for (const CompileOptions& options : task.options) {
       if (interrupted()) return stopped();
       const auto row = measure_set(set, options, task.timed ? effort.time_per_row : 0, diagnostics);
-      if (!row) return run.refuse(source, diagnostics);
+      if (!row) return run.reject(source, diagnostics);
       add_point(plot, *row);
       emit(*row);
     }

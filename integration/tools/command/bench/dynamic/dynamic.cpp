@@ -241,9 +241,9 @@ demo::Result<> measure_dynamic(SuiteRun& run, const Emit<DynamicRow>& emit) {
       if (auto done = measure_sequence(bench, request); !done) return done;
   }
   if (bench.rows.empty()) return none_selected("scene", std::move(known));
-  run.add_fact("size", fmt::format("{}x{} pixels", run.size().width, run.size().height));
-  run.add_fact("truth", fmt::format("at {} stratified pixels a frame", file.subset));
-  run.add_fact("frames", fmt::format("counted from number {} of each sequence on", file.counted));
+  run.add_info("size", fmt::format("{}x{} pixels", run.size().width, run.size().height));
+  run.add_info("truth", fmt::format("at {} stratified pixels a frame", file.subset));
+  run.add_info("frames", fmt::format("counted from number {} of each sequence on", file.counted));
   add_comparisons(run.report, bench.rows);
   add_published(run.report, bench.rows);
   for (const DynamicRow& row : bench.rows)
@@ -269,7 +269,7 @@ Suite dynamic_suite() {
       {.name = "dynamic",
        .what = "Measure samples, time, error and flicker with changing light, camera or objects",
        .title = "Changing light, cameras and objects",
-       .summary = "Error of the scattered light before albedo against the fp64 truth of each "
+       .summary = "Error of the scattered light before albedo against the fp64 reference of each "
                   "frame: linear "
                   "Rec.709 luminance, the sequence's 99.9th percentile of light at 1. Samples are "
                   "counted on "

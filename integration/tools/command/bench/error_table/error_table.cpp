@@ -80,7 +80,7 @@ demo::Result<> add_subjects(ErrorTableBench& bench) {
   Diagnostics diagnostics;
   const auto document = read_document(bench.file.skin, diagnostics);
   const auto skin = document ? subsurface::read_profile(*document, diagnostics) : std::nullopt;
-  if (!skin) return bench.run.refuse(bench.file.skin, diagnostics);
+  if (!skin) return bench.run.reject(bench.file.skin, diagnostics);
   add_family(bench, *skin);
   for (const SceneRequest& scene : bench.file.scenes) {
     if (interrupted()) return stopped();
@@ -188,7 +188,7 @@ demo::Result<choice::ErrorModel> read_table(SuiteRun& run) {
   const std::string path = run.file("table");
   const auto document = read_document(path, diagnostics);
   auto table = document ? choice::read_error_model(*document, diagnostics) : std::nullopt;
-  if (!table) return run.refuse(path, diagnostics);
+  if (!table) return run.reject(path, diagnostics);
   return std::move(*table);
 }
 
@@ -214,8 +214,8 @@ demo::Result<> measure_error_table(SuiteRun& run, const Emit<ErrorTableRow>& emi
     if (auto measured = measure_subject(bench, subject); !measured) return measured;
     progress.update(++done);
   }
-  run.add_fact("size", fmt::format("{}x{} pixels", family_width, family_height));
-  run.add_fact("truth",
+  run.add_info("size", fmt::format("{}x{} pixels", family_width, family_height));
+  run.add_info("truth",
                fmt::format("everywhere on planes, else at {} stratified pixels", file.subset));
   table->scenes = fmt::format("the seeded family of scenes, d from {:g} to {:g} px",
                               file.d_px.front(), file.d_px.back());
@@ -248,10 +248,11 @@ Suite error_table_suite() {
       {.name = "error-table",
        .what = "Measure the error table of the choice by budget",
        .title = "Error table",
-       .summary = "RMSE of the scattered light before albedo against the fp64 truth on the seeded "
-                  "family of scenes: linear Rec.709 luminance, the scene's 99.9th percentile of "
-                  "light at 1. The half \"tuning\" gives the table, the half \"judging\" judges "
-                  "its predictions.",
+       .summary =
+           "RMSE of the scattered light before albedo against the fp64 reference on the seeded "
+           "family of scenes: linear Rec.709 luminance, the scene's 99.9th percentile of "
+           "light at 1. The half \"tuning\" gives the table, the half \"judging\" judges "
+           "its predictions.",
        .options = {{"table", "Table whose curves are replaced", "configs/choice/errors.json",
                     "FILE"},
                    {"out", "Write the new table to this file, - for standard output", "", "FILE"},

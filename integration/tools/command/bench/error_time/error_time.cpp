@@ -260,18 +260,18 @@ void complete_rows(const ErrorTimeFile& file, std::span<ErrorTimeRow> rows) {
 void add_error_time_report(const ErrorTimeBench& bench) {
   SuiteRun& run = bench.run;
   const ErrorTimeFile& file = bench.file;
-  run.add_fact("size", fmt::format("{}x{} pixels", bench.size.width, bench.size.height));
+  run.add_info("size", fmt::format("{}x{} pixels", bench.size.width, bench.size.height));
   if (file.repetitions > 0)
-    run.add_fact("repetitions",
+    run.add_info("repetitions",
                  fmt::format("median of {} after {} to warm up, all techniques in turn{}",
                              file.repetitions, file.warm_up, early_end(file)));
-  run.add_fact("truth",
+  run.add_info("truth",
                fmt::format("everywhere on planes, else at {} stratified pixels", file.subset));
-  run.add_fact(
+  run.add_info(
       "reads a pixel",
       "counted from the kernels' source (integration/tools/references/image_reads.cpp) times the "
       "texels each pass computes for a pixel of the view");
-  run.add_fact("baseline", fmt::format("{} {}", file.baseline_technique, file.baseline_setting));
+  run.add_info("baseline", fmt::format("{} {}", file.baseline_technique, file.baseline_setting));
   run.report.pictures = {scene_pictures(bench.subjects), bench.maps};
   if (file.repetitions == 0) return;
   for (const Subject& subject : bench.subjects)
@@ -358,7 +358,7 @@ Suite error_time_suite() {
        .what = "Measure run time and error of every technique on every still scene",
        .title = "Run time and error",
        .summary =
-           "Error of the scattered light before albedo against the fp64 truth: linear Rec.709 "
+           "Error of the scattered light before albedo against the fp64 reference: linear Rec.709 "
            "luminance, the scene's 99.9th percentile of light at 1. Time is the sum of the "
            "device's "
            "timestamps over all passes of a technique.",

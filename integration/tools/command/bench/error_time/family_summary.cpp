@@ -13,7 +13,7 @@
 namespace dermis::tools {
 namespace {
 
-constexpr double least_rmse = 1e-5; // 100 dB: smaller figures only measure rounding
+constexpr double min_rmse = 1e-5; // 100 dB: smaller figures only measure rounding
 constexpr const char* all_classes = "all";
 
 struct Mean {
@@ -21,7 +21,7 @@ struct Mean {
   size_t count = 0;
 
   void add(double value) {
-    sum += std::log(std::max(value, least_rmse));
+    sum += std::log(std::max(value, min_rmse));
     ++count;
   }
   double result() const { return std::exp(sum / double(count)); }

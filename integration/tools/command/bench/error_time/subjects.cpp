@@ -63,7 +63,7 @@ demo::Result<> add_subjects(ErrorTimeBench& bench) {
   Diagnostics diagnostics;
   const auto document = read_document(bench.file.skin, diagnostics);
   const auto skin = document ? subsurface::read_profile(*document, diagnostics) : std::nullopt;
-  if (!skin) return bench.run.refuse(bench.file.skin, diagnostics);
+  if (!skin) return bench.run.reject(bench.file.skin, diagnostics);
   const SubjectOptions options{bench.size.width, bench.size.height,
                                head_model(bench.run.text("head"))};
   size_t number = 0;

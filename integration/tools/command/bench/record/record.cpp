@@ -157,7 +157,7 @@ demo::Result<> measure_record(SuiteRun& run, const Emit<RecordRow>& emit) {
   const uint32_t samples = run.quick ? few_samples : all_samples;
   run.report.constants = {{"clock", "CPU time of the thread"},
                           {"frames_per_sample", frames_per_sample}};
-  run.add_fact("repetitions", fmt::format("{} samples of {} frames", samples, frames_per_sample));
+  run.add_info("repetitions", fmt::format("{} samples of {} frames", samples, frames_per_sample));
   run.report.plots = {{"time of a frame", "passes", "µs", {{"graphs", {}}}}};
   run.report.plots_title = "Over passes";
   run.report.plots_text = "Point at a graph to see its name.";

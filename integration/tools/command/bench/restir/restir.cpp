@@ -69,7 +69,7 @@ demo::Result<RestirRow> measure_variant(RestirBench& bench, const SceneRequest& 
                               });
   if (!done) return done.error();
   for (const std::string& credit : *done)
-    bench.run.add_fact("credit", credit);
+    bench.run.add_info("credit", credit);
   row.error = mean_of(errors);
   row.device_ms = median(times);
   return row;
@@ -201,7 +201,7 @@ demo::Result<> measure_restir(SuiteRun& run, const Emit<RestirRow>& emit) {
   if (run.quick) quicken(file);
   Diagnostics diagnostics;
   const std::optional<LoadedGraph> loaded = load_graph(file.graph, {}, diagnostics);
-  if (!loaded) return run.refuse(file.graph, diagnostics);
+  if (!loaded) return run.reject(file.graph, diagnostics);
   const auto host = run.open_device();
   if (!host) return host.error();
   RestirBench bench{run, file, *loaded, **host};

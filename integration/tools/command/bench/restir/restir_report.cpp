@@ -64,17 +64,17 @@ void add_pictures(Report& report, const RestirScene& scene) {
 }
 
 void start_restir_report(SuiteRun& run, const RestirFile& file) {
-  run.add_fact("reference",
+  run.add_info("reference",
                fmt::format("the same kernels without reuse, {} paths a pixel in each of {} frames",
                            file.reference.samples, file.reference.frames));
-  run.add_fact("expected", expectation_text());
-  run.add_fact("frames", fmt::format("{} counted, after {} where there is history", file.frames,
+  run.add_info("expected", expectation_text());
+  run.add_info("frames", fmt::format("{} counted, after {} where there is history", file.frames,
                                      file.settle));
-  run.add_fact(
+  run.add_info(
       "through",
       fmt::format("pixels with more back light than front light, and a thickness of at most {} mm",
                   file.thin_mm));
-  run.add_fact("size", fmt::format("{}x{} pixels", run.size().width, run.size().height));
+  run.add_info("size", fmt::format("{}x{} pixels", run.size().width, run.size().height));
   run.report.pictures = {{"Light", "Scattered light before albedo, exposed and tonemapped.", {}},
                          {"Error maps", heat_map_explanation(), {}}};
 }

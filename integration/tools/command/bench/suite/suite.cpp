@@ -13,16 +13,16 @@ namespace {
 constexpr Size quick_size{96, 54};
 
 // Facts of the machine precede those of the suite.
-void complete_facts(SuiteRun& run, double seconds) {
-  auto facts = machine_info(run.session.command, run.device);
+void complete_info(SuiteRun& run, double seconds) {
+  auto info = machine_info(run.session.command, run.device);
   std::vector<std::pair<std::string, std::string>>& own = run.report.info;
-  own.insert(own.begin(), facts.begin(), facts.end());
+  own.insert(own.begin(), info.begin(), info.end());
   if (run.quick)
-    run.add_fact(
+    run.add_info(
         "quick",
         "a smoke test with small images and few repetitions, scenes or techniques; figures "
         "are meaningless");
-  run.add_fact("took", format_duration(seconds));
+  run.add_info("took", format_duration(seconds));
 }
 
 } // namespace
@@ -63,8 +63,8 @@ GraphInputs SuiteRun::pass_types() const {
   return {.overlays = {}, .roots = {}, .pass_types = list("pass-types")};
 }
 
-void SuiteRun::add_fact(std::string name, std::string fact) {
-  std::pair<std::string, std::string> added{std::move(name), std::move(fact)};
+void SuiteRun::add_info(std::string name, std::string value) {
+  std::pair<std::string, std::string> added{std::move(name), std::move(value)};
   if (std::find(report.info.begin(), report.info.end(), added) == report.info.end())
     report.info.push_back(std::move(added));
 }
@@ -85,7 +85,7 @@ demo::Result<std::unique_ptr<demo::VulkanHost>> SuiteRun::open_device() {
   return host;
 }
 
-demo::Error SuiteRun::refuse(const std::string& path, Diagnostics diagnostics) {
+demo::Error SuiteRun::reject(const std::string& path, Diagnostics diagnostics) {
   rejected = std::move(diagnostics);
   return {demo::ErrorKind::input, fmt::format("'{}' cannot be used", path)};
 }
@@ -112,12 +112,14 @@ ExitCode run_suite(const Session& session, const Suite& suite, const SuiteReques
   const auto done = suite.run(run);
   if (interrupted()) return fail(session, ExitCode::interrupted, "stopped");
   if (!done) return fail(session, done.error(), &run.rejected);
-  complete_facts(run,
-                 std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+  complete_info(run,
+                std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
 
   const GoalCount goals = count_goals(report.table, Goal::required);
-  const std::string verdict =
-      fmt::format("{} of {} rows do not hold", goals.missed, report.table.rows.size());
+  const size_t rows = report.table.rows.size();
+  const std::string verdict = goals.missed == 0
+                                  ? fmt::format("all goals of {} rows are met", rows)
+                                  : fmt::format("{} of {} rows miss a goal", goals.missed, rows);
   if (!session.quiet && request.json != "-" && request.csv != "-" && request.html != "-")
     print(report_as_text(report) + (goals.rows > 0 ? verdict + "\n" : ""));
   const std::string problem = deliver_report(report, request.json, request.csv, request.html);

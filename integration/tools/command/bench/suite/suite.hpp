@@ -67,20 +67,20 @@ struct SuiteRun {
   bool is_requested(const std::string& name, std::string_view word) const;
   GraphInputs pass_types() const;
 
-  // Equal facts and equal notes are added once. A note names an omitted part and the reason.
-  void add_fact(std::string name, std::string fact);
+  // Equal entries and equal notes are added once. A note names an omitted part and the reason.
+  void add_info(std::string name, std::string value);
   void add_note(std::string note);
   // Progress in `unit`s ("frame"), titled with the suite's name or with `what`.
   Progress progress(std::string unit, uint64_t total, std::string what = {}) const;
   demo::Result<std::unique_ptr<demo::VulkanHost>> open_device();
   // Keeps the diagnostics of an input file for the answer; returns an error of kind input.
-  demo::Error refuse(const std::string& path, Diagnostics diagnostics);
+  demo::Error reject(const std::string& path, Diagnostics diagnostics);
   // Reads the file of the option "file".
   template <class File>
   demo::Result<File> read(std::optional<File> (*reader)(const std::string&, Diagnostics&)) {
     Diagnostics diagnostics;
     std::optional<File> found = reader(file(), diagnostics);
-    if (!found) return refuse(file(), std::move(diagnostics));
+    if (!found) return reject(file(), std::move(diagnostics));
     return std::move(*found);
   }
 };

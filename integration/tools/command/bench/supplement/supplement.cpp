@@ -15,10 +15,10 @@ namespace {
 
 // Values printed in the supplement, and medians of 20,000 runs of an independent program (both:
 // static, dynamic).
-constexpr double printed[2][6] = {{.0325, .0160, .0058, .0070, .0324, .0055},
-                                  {.5585, .3797, .3742, .1295, .0732, .1243}};
-constexpr double medians[2][6] = {{.0321, .0161, .0069, .0078, .0329, .0057},
-                                  {.5761, .3763, .3743, .1369, .0770, .1336}};
+constexpr double printed[2][6] = {{0.0325, 0.0160, 0.0058, 0.0070, 0.0324, 0.0055},
+                                  {0.5585, 0.3797, 0.3742, 0.1295, 0.0732, 0.1243}};
+constexpr double medians[2][6] = {{0.0321, 0.0161, 0.0069, 0.0078, 0.0329, 0.0057},
+                                  {0.5761, 0.3763, 0.3743, 0.1369, 0.0770, 0.1336}};
 constexpr double median_tolerance = 0.015; // of the median, which is rounded to four digits
 constexpr double printed_tolerance = 0.20; // of a single run, as printed
 
@@ -67,12 +67,12 @@ void emit_weight(const Emit<SupplementRow>& emit, bool dynamic, double found, do
 
 demo::Result<> measure_supplement(SuiteRun& run, const Emit<SupplementRow>& emit) {
   const uint64_t runs = run.number("runs");
-  run.add_fact("runs", fmt::format("{} of 100 frames with 16 samples each", runs));
+  run.add_info("runs", fmt::format("{} of 100 frames with 16 samples each", runs));
   Progress progress = run.progress("run", 2 * runs);
   for (const bool dynamic : {false, true})
     if (auto done = measure_residuals(emit, dynamic, runs, progress); !done) return done;
   constexpr uint32_t static_samples = 100000, dynamic_samples = 1024, dynamic_runs = 200;
-  emit_weight(emit, false, sampled_control_weight(false, static_samples, 3), .477, 1e-3);
+  emit_weight(emit, false, sampled_control_weight(false, static_samples, 3), 0.477, 1e-3);
   double moving = 0;
   for (uint32_t i = 0; i < dynamic_runs; ++i)
     moving += sampled_control_weight(true, dynamic_samples, i) / dynamic_runs;

@@ -27,17 +27,17 @@ struct Rows {
 };
 
 void add_profile(Rows& rows) {
-  constexpr double r[] = {.5, 1, 2, 3, 5, 10},
-                   cdf[] = {.213506, .370632, .581103, .711644, .856659, .973233};
+  constexpr double r[] = {0.5, 1, 2, 3, 5, 10},
+                   cdf[] = {0.213506, 0.370632, 0.581103, 0.711644, 0.856659, 0.973233};
   for (size_t i = 0; i < std::size(r); ++i)
     rows.add(fmt::format("cdf({} d)", r[i]), cdf[i], subsurface::burley_cdf(r[i], 1), six_digits);
-  constexpr double xi[] = {.5, .9, .99, .997, .999},
+  constexpr double xi[] = {0.5, 0.9, 0.99, 0.997, 0.999},
                    radius[] = {1.55218, 6.06223, 12.95264, 16.56440, 19.86022};
   for (size_t i = 0; i < std::size(xi); ++i)
     rows.add(fmt::format("inverse cdf({})", xi[i]), radius[i],
              subsurface::burley_inverse_survival(1 - xi[i], 1), 6e-6);
-  rows.add("scaling s(A = .8), dmfp", 8.3797, subsurface::burley_scaling_dmfp(.8), 5e-5);
-  rows.add("scaling s(A = .33), dmfp", 3.5, subsurface::burley_scaling_dmfp(.33), 1e-12);
+  rows.add("scaling s(A = 0.8), dmfp", 8.3797, subsurface::burley_scaling_dmfp(0.8), 5e-5);
+  rows.add("scaling s(A = 0.33), dmfp", 3.5, subsurface::burley_scaling_dmfp(0.33), 1e-12);
   rows.add("scaling s(A = 1), dmfp", 23.6511, subsurface::burley_scaling_dmfp(1), 6e-5);
 }
 
@@ -66,19 +66,20 @@ void add_sampler(Rows& rows) {
 }
 
 void add_plane(Rows& rows) {
-  constexpr double x[] = {.1, .25, .5, 1, 2, 4, 8};
-  constexpr double edge[] = {.563178, .621756, .689769, .776990, .870563, .947619, .989248};
+  constexpr double x[] = {0.1, 0.25, 0.5, 1, 2, 4, 8};
+  constexpr double edge[] = {0.563178, 0.621756, 0.689769, 0.776990, 0.870563, 0.947619, 0.989248};
   for (size_t i = 0; i < std::size(x); ++i)
     rows.add(fmt::format("edge at {} d", x[i]), edge[i], subsurface::burley_edge(x[i], 1),
              six_digits);
-  constexpr double k[] = {.1, .5, 1, 2, 5}, mtf[] = {.967129, .639632, .413948, .235103, .098918};
+  constexpr double k[] = {0.1, 0.5, 1, 2, 5},
+                   mtf[] = {0.967129, 0.639632, 0.413948, 0.235103, 0.098918};
   for (size_t i = 0; i < std::size(k); ++i)
     rows.add(fmt::format("contrast of a sinusoid, k d = {}", k[i]), mtf[i],
              subsurface::burley_mtf(k[i], 1), six_digits);
-  rows.add("centre of a disc, radius 2 d", .581103, subsurface::burley_disc(0, 2, 1), six_digits);
-  rows.add("centre of a Gaussian, s = .5 d", .247374, subsurface::burley_gaussian_centre(.5, 1),
+  rows.add("centre of a disc, radius 2 d", 0.581103, subsurface::burley_disc(0, 2, 1), six_digits);
+  rows.add("centre of a Gaussian, s = 0.5 d", 0.247374, subsurface::burley_gaussian_centre(0.5, 1),
            six_digits);
-  rows.add("centre of a Gaussian, s = 2 d", .605886, subsurface::burley_gaussian_centre(2, 1),
+  rows.add("centre of a Gaussian, s = 2 d", 0.605886, subsurface::burley_gaussian_centre(2, 1),
            six_digits);
 }
 
@@ -98,7 +99,7 @@ void add_centre(Rows& rows) {
 // Chords of a sphere: remaining fraction of a harmonic of degree l, by Simpson's rule.
 void add_sphere(Rows& rows) {
   constexpr double radius = 5; // in d
-  constexpr double tabulated[] = {.973233, .788511, .635578, .525471, .445382};
+  constexpr double tabulated[] = {0.973233, 0.788511, 0.635578, 0.525471, 0.445382};
   const auto legendre = [](int l, double x) {
     double before = 1, now = x;
     if (l == 0) return 1.0;
