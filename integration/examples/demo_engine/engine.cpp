@@ -2,7 +2,7 @@
 
 #include "integration/examples/demo_engine/render/dermis_host.hpp"
 #include "integration/examples/demo_engine/render/ray_placing.hpp"
-#include "integration/examples/demo_engine/render/stage.hpp"
+#include "integration/examples/demo_engine/render/render_cache.hpp"
 #include "integration/examples/demo_engine/render/taa.hpp"
 
 #include <fmt/format.h>
@@ -230,24 +230,24 @@ Result<FrameOutputs> render_frame(Session& session, uint32_t frame, uint64_t fra
 } // namespace
 
 Result<RenderSummary> render(const RenderOptions& options, const RenderCallbacks& callbacks,
-                             Stage* kept_stage) {
+                             RenderCache* kept_cache) {
   const Clock::time_point start = Clock::now();
   if (auto done = check(options); !done) return done.error();
-  Stage own;
-  Stage& stage = kept_stage ? *kept_stage : own;
-  if (auto done = load_stage(stage, options); !done) return done.error();
-  VulkanHost& host = *stage.host;
+  RenderCache own;
+  RenderCache& cache = kept_cache ? *kept_cache : own;
+  if (auto done = load_scene_and_device(cache, options); !done) return done.error();
+  VulkanHost& host = *cache.host;
 
   RenderInfo info;
-  info.scene = stage.scene->name;
+  info.scene = cache.scene->name;
   info.device = host.properties.deviceName;
-  info.pixel_aspect = stage.scene->camera.pixel_aspect;
-  info.credits = stage.model.credits;
-  info.warnings = stage.model.warnings;
-  for (const SceneProfile& profile : stage.scene->profiles)
+  info.pixel_aspect = cache.scene->camera.pixel_aspect;
+  info.credits = cache.model.credits;
+  info.warnings = cache.model.warnings;
+  for (const SceneProfile& profile : cache.scene->profiles)
     info.profiles.push_back({static_cast<uint32_t>(info.profiles.size()) + 1, profile.name,
                              options.profile.empty() ? profile.file : options.profile});
-  auto usage = kept_stage ? usage_for_keeping() : std::array<VkImageUsageFlags, target_count>{};
+  auto usage = kept_cache ? usage_for_keeping() : std::array<VkImageUsageFlags, target_count>{};
   DermisHandle dermis;
   if (!options.graph.empty()) {
     auto made = create_dermis_host(
@@ -255,7 +255,7 @@ Result<RenderSummary> render(const RenderOptions& options, const RenderCallbacks
         {options.graph, info.profiles, options.settings, options.width, options.height,
          info.pixel_aspect, options.overlays, options.include, options.shaders, options.budget,
          options.sampling, options.tile_class, options.hooks, options.unbound},
-        &stage.slots);
+        &cache.slots);
     if (!made) return made.error();
     dermis = made.take();
     const auto of_graph = usage_for_graph(*dermis);
@@ -264,21 +264,21 @@ Result<RenderSummary> render(const RenderOptions& options, const RenderCallbacks
     for (const std::string& warning : warnings_of(*dermis))
       info.warnings.push_back(warning);
   }
-  if (auto done = prepare_stage(stage, options, usage); !done) return done.error();
+  if (auto done = prepare_renderer(cache, options, usage); !done) return done.error();
   std::unique_ptr<Taa> taa;
   if (options.taa) {
-    auto made = create_taa(*stage.renderer);
+    auto made = create_taa(*cache.renderer);
     if (!made) return made.error();
     taa = made.take();
   }
-  info.triangles = stage.renderer->gpu.triangles;
+  info.triangles = cache.renderer->gpu.triangles;
   info.load_seconds = seconds_since(start);
   if (callbacks.on_start)
     if (auto done = callbacks.on_start(info); !done) return done.error();
 
   RenderSummary summary;
-  Session session{host,      *stage.renderer, dermis.get(),
-                  taa.get(), *stage.scene,    kept_stage ? &stage.kept : nullptr,
+  Session session{host,      *cache.renderer, dermis.get(),
+                  taa.get(), *cache.scene,    kept_cache ? &cache.kept : nullptr,
                   start};
   for (uint32_t i = 0; i < options.frames; ++i) {
     if (dermis && options.reloads)

@@ -74,7 +74,7 @@ struct RenderOptions {
   std::function<bool(uint32_t frame)> pictures_of = {};
   // Returns whether a frame's inputs are read back. Empty: if its pictures are.
   std::function<bool(uint32_t frame)> inputs_of = {};
-  ContextHooks hooks = {}; // hooks of a new stage's context
+  ContextHooks hooks = {}; // hooks of a new cache's context
 };
 
 // Pixels row by row from the top left; `channels` floats per pixel.
@@ -213,22 +213,22 @@ struct RenderCallbacks {
 };
 
 // A device, a scene that is loaded on it, and up to 1 GiB of frames with the graph's inputs. A
-// stage is kept from one call of render() to the next, so that only the graph is rebuilt. Belongs
+// cache is kept from one call of render() to the next, so that only the graph is rebuilt. Belongs
 // to one thread.
-struct Stage;
-struct StageDeleter {
-  void operator()(Stage* stage) const;
+struct RenderCache;
+struct RenderCacheDeleter {
+  void operator()(RenderCache* cache) const;
 };
-using StageHandle = std::unique_ptr<Stage, StageDeleter>;
-StageHandle make_stage();
+using RenderCacheHandle = std::unique_ptr<RenderCache, RenderCacheDeleter>;
+RenderCacheHandle make_render_cache();
 
-// Renders on the calling thread (loading uses two more threads). With a stage, kept frames are
-// bit-identical to rendered frames, and `host_times` has no times for them. The stage is rebuilt if
+// Renders on the calling thread (loading uses two more threads). With a cache, kept frames are
+// bit-identical to rendered frames, and `host_times` has no times for them. The cache is rebuilt if
 // a call needs another device, scene, model, camera or size. Errors: input (scene, model, graph,
 // profile; the text holds all located messages), usage (size, frames), environment (no driver, no
 // memory), internal.
 Result<RenderSummary> render(const RenderOptions& options, const RenderCallbacks& callbacks,
-                             Stage* stage = nullptr);
+                             RenderCache* cache = nullptr);
 
 // Applies a filmic curve after Narkowicz 2016, "ACES Filmic Tone Mapping Curve", then the sRGB
 // curve; returns 8 bits per channel.

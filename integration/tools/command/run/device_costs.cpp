@@ -20,7 +20,7 @@ uint32_t count_cost_runs(const CostsRequest& request) {
 demo::Result<DeviceCosts> measure_costs(const CostsRequest& request,
                                         const std::function<void()>& on_run) {
   DeviceCosts costs{{}, request.calibration.text};
-  const demo::StageHandle stage = demo::make_stage();
+  const demo::RenderCacheHandle cache = demo::make_render_cache();
   demo::RenderOptions engine;
   engine.scene = request.scene;
   engine.roots = request.roots;
@@ -48,7 +48,7 @@ demo::Result<DeviceCosts> measure_costs(const CostsRequest& request,
       engine.camera = place;
       engine.settings = values;
       engine.budget.calibration.text = costs.calibration;
-      const auto summary = demo::render(engine, callbacks, stage.get());
+      const auto summary = demo::render(engine, callbacks, cache.get());
       if (interrupted()) return stopped();
       if (!summary) return summary.error();
       costs.calibration = summary->calibration;

@@ -15,7 +15,7 @@ struct Rendering {
   std::vector<std::string> warnings;
 };
 
-inline Rendering rendered(const RenderOptions& options, Stage* stage = nullptr) {
+inline Rendering rendered(const RenderOptions& options, RenderCache* cache = nullptr) {
   Rendering out;
   RenderCallbacks callbacks;
   callbacks.on_start = [&](const RenderInfo& info) {
@@ -26,7 +26,7 @@ inline Rendering rendered(const RenderOptions& options, Stage* stage = nullptr) 
     out.frames.push_back(frame);
     return success();
   };
-  const auto summary = render(options, callbacks, stage);
+  const auto summary = render(options, callbacks, cache);
   if (!summary) {
     ADD_FAILURE() << summary.error().text;
     return {};

@@ -59,7 +59,7 @@ demo::Result<SceneRun> run_scene(const Session& session, const SceneRunRequest& 
                      .rmse;
     return demo::success();
   };
-  const auto summary = demo::render(engine, callbacks, shared.stage.get());
+  const auto summary = demo::render(engine, callbacks, shared.cache.get());
   if (interrupted()) return stopped();
   if (!summary) return summary.error();
   return run;

@@ -31,7 +31,7 @@ struct SceneRunRequest {
 
 // State shared by runs of one scene, size and rate.
 struct SharedScene {
-  demo::StageHandle stage = demo::make_stage();
+  demo::RenderCacheHandle cache = demo::make_render_cache();
   std::map<uint32_t, Reference> references; // by frame number
 };
 

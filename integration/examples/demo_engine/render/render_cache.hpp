@@ -1,6 +1,6 @@
 #pragma once
-// The stage of a rendering: device, scene, renderer and kept frames. Each part is rebuilt only if a
-// call needs another.
+// Keeps device, scene, renderer and rendered inputs between calls of render(). Rebuilds a part only
+// if a call needs another one.
 
 #include "integration/examples/demo_engine/engine.hpp"
 #include "integration/examples/demo_engine/render/dermis_host.hpp"
@@ -12,7 +12,7 @@
 namespace demo {
 
 // Members are destroyed from the last to the first.
-struct Stage {
+struct RenderCache {
   std::optional<RenderOptions> made_for; // options for which scene, camera and device were made
   std::unique_ptr<VulkanHost> host;
   std::unique_ptr<const Scene> scene;
@@ -23,12 +23,12 @@ struct Stage {
   KnownSlots slots;
 };
 
-// Loads scene and model and selects a device, unless the stage was made for equal options. Errors:
+// Loads scene and model and selects a device, unless the cache was made for equal options. Errors:
 // input, usage, environment.
-Result<> load_stage(Stage& stage, const RenderOptions& options);
+Result<> load_scene_and_device(RenderCache& cache, const RenderOptions& options);
 // Makes the renderer, unless there is one whose targets have this usage. Errors: usage,
 // environment.
-Result<> prepare_stage(Stage& stage, const RenderOptions& options,
-                       const std::array<VkImageUsageFlags, target_count>& usage);
+Result<> prepare_renderer(RenderCache& cache, const RenderOptions& options,
+                          const std::array<VkImageUsageFlags, target_count>& usage);
 
 } // namespace demo

@@ -1,4 +1,4 @@
-#include "integration/examples/demo_engine/render/stage.hpp"
+#include "integration/examples/demo_engine/render/render_cache.hpp"
 
 #include "integration/examples/demo_engine/model/load_model.hpp"
 #include "integration/examples/demo_engine/scene/read_scene.hpp"
@@ -52,7 +52,7 @@ void zoom_in(Camera& camera, double zoom) {
     key.value /= zoom;
 }
 
-bool same_stage(const RenderOptions& a, const RenderOptions& b) {
+bool can_share_cache(const RenderOptions& a, const RenderOptions& b) {
   const auto of = [](const RenderOptions& o) {
     return std::tie(o.scene, o.model, o.roots, o.width, o.height, o.frames_per_second,
                     o.reversed_depth, o.jitter, o.taa, o.validation, o.device, o.kernels, o.camera,
@@ -63,60 +63,60 @@ bool same_stage(const RenderOptions& a, const RenderOptions& b) {
 
 } // namespace
 
-Result<> load_stage(Stage& stage, const RenderOptions& options) {
-  if (stage.made_for && same_stage(*stage.made_for, options)) return success();
-  stage.kept = {};
-  stage.renderer.reset();
-  stage.made_for.reset();
+Result<> load_scene_and_device(RenderCache& cache, const RenderOptions& options) {
+  if (cache.made_for && can_share_cache(*cache.made_for, options)) return success();
+  cache.kept = {};
+  cache.renderer.reset();
+  cache.made_for.reset();
   auto scene = read(options.scene, options.roots);
   if (!scene) return scene.error();
   if (options.camera) move_camera(*scene, *options.camera);
   zoom_in(scene->camera, options.zoom);
   if (options.pixel_aspect > 0) scene->camera.pixel_aspect = options.pixel_aspect;
   if (options.frames_per_second > 0) scene->frames_per_second = options.frames_per_second;
-  stage.model = {};
+  cache.model = {};
   if (!options.model.mesh.empty()) {
     auto loaded = load_model(options.model, options.roots);
     if (!loaded) return loaded.error();
-    stage.model = loaded.take();
+    cache.model = loaded.take();
     put_in_place(*scene);
   }
-  stage.scene = std::make_unique<const Scene>(scene.take());
+  cache.scene = std::make_unique<const Scene>(scene.take());
   HostOptions host_options;
   host_options.validation = options.validation;
   host_options.device = options.device;
   host_options.kernels = options.kernels;
   auto host = create_vulkan_host(host_options);
   if (!host) return host.error();
-  stage.host = host.take();
-  stage.slots = {}; // another device may have other slots
-  stage.made_for = options;
+  cache.host = host.take();
+  cache.slots = {}; // another device may have other slots
+  cache.made_for = options;
   return success();
 }
 
-Result<> prepare_stage(Stage& stage, const RenderOptions& options,
-                       const std::array<VkImageUsageFlags, target_count>& usage) {
-  bool fits = stage.renderer != nullptr;
+Result<> prepare_renderer(RenderCache& cache, const RenderOptions& options,
+                          const std::array<VkImageUsageFlags, target_count>& usage) {
+  bool fits = cache.renderer != nullptr;
   for (size_t i = 0; i < target_count; ++i)
-    fits = fits && (usage[i] & ~stage.desc.more_usage[i]) == 0;
+    fits = fits && (usage[i] & ~cache.desc.more_usage[i]) == 0;
   if (fits) return success();
-  stage.kept = {};
-  stage.renderer.reset();
-  stage.desc = {
+  cache.kept = {};
+  cache.renderer.reset();
+  cache.desc = {
       {options.width, options.height, options.reversed_depth, options.jitter || options.taa},
       usage};
-  auto renderer = create_renderer(*stage.host, *stage.scene, stage.model, stage.desc);
+  auto renderer = create_renderer(*cache.host, *cache.scene, cache.model, cache.desc);
   if (!renderer) return renderer.error();
-  stage.renderer = renderer.take();
+  cache.renderer = renderer.take();
   return success();
 }
 
-void StageDeleter::operator()(Stage* stage) const {
-  delete stage;
+void RenderCacheDeleter::operator()(RenderCache* cache) const {
+  delete cache;
 }
 
-StageHandle make_stage() {
-  return StageHandle(new Stage);
+RenderCacheHandle make_render_cache() {
+  return RenderCacheHandle(new RenderCache);
 }
 
 } // namespace demo

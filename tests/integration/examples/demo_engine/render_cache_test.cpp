@@ -1,4 +1,4 @@
-// Frames of a kept stage equal frames that are rendered without one, bit for bit.
+// Frames of a kept cache equal frames that are rendered without one, bit for bit.
 #include "tests/integration/examples/demo_engine/rendering.hpp"
 #include "tests/support/shipped_graphs.hpp"
 #include "tests/support/test_folder.hpp"
@@ -11,7 +11,7 @@ namespace demo {
 namespace {
 
 // A ball of skin in front of a wall, with a moving camera and shadow, and a cut within five frames.
-struct KeptStage : ::testing::Test {
+struct KeptCache : ::testing::Test {
   RenderOptions moving(const std::string& graph, const std::string& intensity = "0.8") const {
     RenderOptions options;
     options.scene = (folder / ("scene_" + intensity + ".json")).string();
@@ -61,12 +61,12 @@ size_t rendered_frames(const std::vector<FrameOutputs>& frames) {
                     [](const FrameOutputs& frame) { return !frame.host_times.empty(); }));
 }
 
-TEST_F(KeptStage, ReproducesFramesBitForBit) {
+TEST_F(KeptCache, ReproducesFramesBitForBit) {
   const RenderOptions options = moving("sap");
-  const StageHandle stage = make_stage();
+  const RenderCacheHandle cache = make_render_cache();
   const auto separate = rendered(options).frames;
-  const auto first = rendered(options, stage.get()).frames;
-  const auto second = rendered(options, stage.get()).frames;
+  const auto first = rendered(options, cache.get()).frames;
+  const auto second = rendered(options, cache.get()).frames;
   EXPECT_EQ(rendered_frames(separate), 5u);
   EXPECT_EQ(rendered_frames(first), 5u);
   EXPECT_EQ(rendered_frames(second), 0u);
@@ -74,36 +74,36 @@ TEST_F(KeptStage, ReproducesFramesBitForBit) {
   expect_same(separate, second);
 }
 
-TEST_F(KeptStage, OtherGraph_UsesTheKeptFrames) {
-  const StageHandle stage = make_stage();
-  ASSERT_EQ(rendered(moving("sap"), stage.get()).frames.size(), 5u);
+TEST_F(KeptCache, OtherGraph_UsesTheKeptFrames) {
+  const RenderCacheHandle cache = make_render_cache();
+  ASSERT_EQ(rendered(moving("sap"), cache.get()).frames.size(), 5u);
   const RenderOptions options = moving("burley");
-  expect_same(rendered(options).frames, rendered(options, stage.get()).frames);
+  expect_same(rendered(options).frames, rendered(options, cache.get()).frames);
 }
 
-TEST_F(KeptStage, OtherPictureOrScene_IsRebuilt) {
-  const StageHandle stage = make_stage();
+TEST_F(KeptCache, OtherPictureOrScene_IsRebuilt) {
+  const RenderCacheHandle cache = make_render_cache();
   RenderOptions options = moving("sap");
-  ASSERT_EQ(rendered(options, stage.get()).frames.size(), 5u);
+  ASSERT_EQ(rendered(options, cache.get()).frames.size(), 5u);
   options.width = 33;
-  expect_same(rendered(options).frames, rendered(options, stage.get()).frames);
+  expect_same(rendered(options).frames, rendered(options, cache.get()).frames);
   options.scene = moving("sap", "0.4").scene;
-  const auto frames = rendered(options, stage.get()).frames;
+  const auto frames = rendered(options, cache.get()).frames;
   EXPECT_EQ(rendered_frames(frames), 5u);
   expect_same(rendered(options).frames, frames);
 }
 
-TEST_F(KeptStage, AfterAnError_TheNextCallWorks) {
-  const StageHandle stage = make_stage();
+TEST_F(KeptCache, AfterAnError_TheNextCallWorks) {
+  const RenderCacheHandle cache = make_render_cache();
   RenderOptions options = moving("sap");
   options.scene = "no/such/scene.json";
-  const auto rejected = render(options, {}, stage.get());
+  const auto rejected = render(options, {}, cache.get());
   ASSERT_FALSE(rejected);
   EXPECT_EQ(rejected.error().kind, ErrorKind::input);
-  EXPECT_EQ(rendered(moving("sap"), stage.get()).frames.size(), 5u);
+  EXPECT_EQ(rendered(moving("sap"), cache.get()).frames.size(), 5u);
 }
 
-TEST_F(KeptStage, UnrequestedPicturesAreEmpty) {
+TEST_F(KeptCache, UnrequestedPicturesAreEmpty) {
   RenderOptions options = moving("sap");
   options.pictures_of = [](uint32_t frame) { return frame == 3; };
   options.inputs_of = [](uint32_t frame) { return frame == 1; };
