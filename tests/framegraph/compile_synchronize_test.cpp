@@ -260,7 +260,7 @@ TEST(InternalOrder, IsPlannedAsAWriteThatAlsoReads) {
   EXPECT_EQ(waits, 1u);
 }
 
-TEST(InternalOrder, VerifierRejectsTheReadWithoutIt) {
+TEST(InternalOrder, VerifierRejectsReadsWithoutDeclaration) {
   Plan plan = compiled(levels()).plan;
   EXPECT_THAT(verify(plan).violations, IsEmpty());
   EXPECT_EQ(first_hazard(plan), "");
@@ -270,7 +270,7 @@ TEST(InternalOrder, VerifierRejectsTheReadWithoutIt) {
   EXPECT_NE(first_hazard(plan), "");
 }
 
-TEST(InternalOrder, VerifierRejectsItOnARead) {
+TEST(InternalOrder, VerifierRejectsDeclarationsOnReads) {
   Plan plan = compiled(levels()).plan;
   for (PlanAccess& access : plan.accesses)
     access.internally_ordered = (access.access & all_write_access) == 0;

@@ -13,7 +13,7 @@ std::string bytes(const std::optional<CompiledPlan>& compiled) {
   return compiled ? plan_bytes(compiled->plan) : "none";
 }
 
-TEST(PlanCache, GivesTheBytesAndTheReasonsThatCompilingGives) {
+TEST(PlanCache, HasTheBytesAndReasonsOfCompiling) {
   for (uint64_t seed = 0; seed < 100; ++seed) {
     const GraphBuilder builder = random_graph(seed);
     PlanCache cache;

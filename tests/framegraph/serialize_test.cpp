@@ -51,7 +51,7 @@ TEST(SavedPlan, ReadsBackAsWritten) {
   }
 }
 
-TEST(SavedPlan, OfTheSameInputHasTheSameBytes) {
+TEST(SavedPlan, EqualInputs_GiveEqualBytes) {
   for (uint64_t seed = 0; seed < 100; ++seed)
     EXPECT_EQ(file_of(seed), file_of(seed));
 }

@@ -118,7 +118,7 @@ TEST(Reader, ValuesOutOfRangeNameTheRange) {
   EXPECT_EQ(out[0], 0.0) << "untouched on error";
 }
 
-TEST(Reader, ArraysOfAnotherLengthAreRejected) {
+TEST(Reader, ArraysOfWrongLengthAreRejected) {
   Parsed numbers = parse("{ \"k\": [1, 2] }");
   std::array<double, 3> out{};
   EXPECT_FALSE(

@@ -237,14 +237,14 @@ constexpr const char* every_feature =
     { "include": "parts/more.json", "note": "n" } ],
   "exports": ["fixed"] })";
 
-TEST(Schema, OfGraphsAgreesWithTheParserOnMutatedFiles) {
+TEST(Schema, GraphSchema_AgreesWithParserOnMutatedFiles) {
   std::vector<json> files = read_all("configs/graphs");
   files.push_back(parse(every_feature));
   expect_agreement(SchemaFile(parse(graph_schema(subsurface::make_pass_types()))), read_graph_text,
                    files, static_cast<int>(dermis::testing::seeds_to_try(4000, 10000)));
 }
 
-TEST(Schema, OfFragmentsAgreesWithTheParserOnMutatedFiles) {
+TEST(Schema, FragmentSchema_AgreesWithParserOnMutatedFiles) {
   json fragment = parse(every_feature);
   fragment.erase("dermis");
   fragment.erase("name");
@@ -254,7 +254,7 @@ TEST(Schema, OfFragmentsAgreesWithTheParserOnMutatedFiles) {
                    read_fragment_text, {fragment, small}, 3000);
 }
 
-TEST(Schema, OfOverlaysAgreesWithTheParserOnMutatedFiles) {
+TEST(Schema, OverlaySchema_AgreesWithParserOnMutatedFiles) {
   std::vector<json> files = read_all("configs/overlays");
   files.push_back(parse(R"({ "$schema": "x", "dermis_overlay": 2, "note": "n", "edits": [
     { "insert_before": "combine", "passes": [ { "pass": "a", "type": "k" } ], "note": "n" },
@@ -264,7 +264,7 @@ TEST(Schema, OfOverlaysAgreesWithTheParserOnMutatedFiles) {
   expect_agreement(schema_in("configs/schema/overlay.schema.json"), read_overlay_text, files, 3000);
 }
 
-TEST(Schema, OfExpectationsAgreesWithTheParserOnMutatedFiles) {
+TEST(Schema, ExpectationSchema_AgreesWithParserOnMutatedFiles) {
   std::vector<json> files = read_all("configs/graphs", true);
   files.push_back(parse(
       R"({ "$schema": "x", "dermis_expect": 1, "note": "n", "cases": [ { "case": "all", "note": "n",
@@ -277,7 +277,7 @@ TEST(Schema, OfExpectationsAgreesWithTheParserOnMutatedFiles) {
                    files, 6000);
 }
 
-TEST(Schema, OfProfilesAgreesWithTheParserOnMutatedFiles) {
+TEST(Schema, ProfileSchema_AgreesWithParserOnMutatedFiles) {
   std::vector<json> files = read_all("configs/profiles");
   files.push_back(
       parse(R"({ "dermis_profile": 1, "name": "m", "source": "s", "model": "burley", "note": "n",
@@ -290,7 +290,7 @@ TEST(Schema, OfProfilesAgreesWithTheParserOnMutatedFiles) {
   expect_agreement(schema_in("configs/schema/profile.schema.json"), read_profile_text, files, 6000);
 }
 
-TEST(Schema, OfScenesAgreesWithTheParserOnMutatedFiles) {
+TEST(Schema, SceneSchema_AgreesWithParserOnMutatedFiles) {
   std::vector<json> files = read_all("configs/scenes");
   files.push_back(
       parse(R"({ "dermis_scene": 1, "name": "s", "profiles": [ { "name": "skin", "file": "a" } ],
@@ -302,7 +302,7 @@ TEST(Schema, OfScenesAgreesWithTheParserOnMutatedFiles) {
   expect_agreement(schema_in("configs/schema/scene.schema.json"), read_scene_text, files, 6000);
 }
 
-TEST(Schema, OfCapturesAgreesWithTheParserOnMutatedFiles) {
+TEST(Schema, CaptureSchema_AgreesWithParserOnMutatedFiles) {
   const std::vector<json> files = {
       parse(R"({ "dermis_capture": 1, "width": 256, "height": 128, "projection": "orthographic",
         "pixel_pitch_m": 0.0005, "jitter_px": [0.5, 0], "exposure": 2, "frame_index": 7,
@@ -319,7 +319,7 @@ TEST(Schema, OfCapturesAgreesWithTheParserOnMutatedFiles) {
   expect_agreement(schema_in("configs/schema/capture.schema.json"), read_capture_text, files, 3000);
 }
 
-TEST(Schema, OfErrorTablesAgreesWithTheParserOnMutatedFiles) {
+TEST(Schema, ErrorTableSchema_AgreesWithParserOnMutatedFiles) {
   const std::vector<json> files = {
       parse(test::read_text(fs::path(DERMIS_SOURCE_DIR) / "configs/choice/errors.json")),
       parse(
@@ -329,7 +329,7 @@ TEST(Schema, OfErrorTablesAgreesWithTheParserOnMutatedFiles) {
   expect_agreement(schema_in("configs/schema/errors.schema.json"), read_errors_text, files, 3000);
 }
 
-TEST(Schema, OfCalibrationsAgreesWithTheParserOnMutatedFiles) {
+TEST(Schema, CalibrationSchema_AgreesWithParserOnMutatedFiles) {
   const std::vector<json> files = {parse(
       R"({ "$schema": "x", "dermis_calibration": 2, "device": "d", "note": "n", "uncertainty": 2, "costs": [
         { "work": "a", "base_us": 1, "group_us": 0.5, "spread": 0.1, "note": "n" },
@@ -338,7 +338,7 @@ TEST(Schema, OfCalibrationsAgreesWithTheParserOnMutatedFiles) {
                    files, 3000);
 }
 
-TEST(Schema, OfPassTypesAgreesWithTheParserOnMutatedFiles) {
+TEST(Schema, PassTypeSchema_AgreesWithParserOnMutatedFiles) {
   const std::vector<json> files = {
       parse(R"({ "$schema": "x", "dermis_pass_types": 2, "note": "n", "pass_types": [
         { "name": "studio.bloom", "doc": "d", "side_effects": true, "serves_scattering": true, "note": "n",

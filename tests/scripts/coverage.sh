@@ -18,7 +18,7 @@ tests=(test_framegraph test_integration_abi test_integration_embedding test_sche
   test_framegraph_vulkan test_shared_shaders test_integration_shaders test_integration_null_device
   test_integration_arguments test_integration_static_library)
 # Long repetitive tests without additional coverage: mutated files, and hundreds of reloads.
-left_out='Schema.OfGraphsAgreesWithTheParserOnMutatedFiles:ReloadStorm.*'
+left_out='Schema.GraphSchema_AgreesWithParserOnMutatedFiles:ReloadStorm.*'
 build=build/coverage
 
 # shellcheck disable=SC2317 # xargs calls it

@@ -143,7 +143,7 @@ struct KeptHistory : Choice {
   }
 };
 
-TEST_F(KeptHistory, NextPlan_ReadsTheHistoryOfTheOther) {
+TEST_F(KeptHistory, NextPlan_ReadsHistoryOfPreviousPlan) {
   make_accumulating();
   const auto [scattered, copied] = levels();
   EXPECT_GT(copied, scattered + 0.3f);
@@ -167,7 +167,7 @@ TEST_F(KeptHistory, NextPlan_ReadsTheHistoryOfTheOther) {
               tolerance); // This differs from what this plan stored four frames ago.
 }
 
-TEST_F(KeptHistory, CutInTheSwitchingFrame_ResetsIt) {
+TEST_F(KeptHistory, CutInTheSwitchingFrame_ResetsHistory) {
   make_accumulating();
   const float copied = levels().second;
   set_budget(0);

@@ -180,7 +180,7 @@ TEST_F(Histories, ReenabledPasses_RestartTheirHistories) {
   }
 }
 
-TEST_F(Histories, RemovingTheLastProfile_DropsThem) {
+TEST_F(Histories, RemovingTheLastProfile_DropsHistories) {
   make(keeping("burley"));
   run(2);
   const std::string skin = read_text("configs/profiles/skin.json");
@@ -224,7 +224,7 @@ TEST_F(Histories, NewAfterAReload_AreReportedAsNew) {
   EXPECT_EQ(named(after, "place").reason, DERMIS_HISTORY_NEVER_WRITTEN);
 }
 
-TEST_F(Histories, EmptyFrames_InvalidateThem) {
+TEST_F(Histories, EmptyFrames_InvalidateHistories) {
   make(keeping("burley"));
   run(2);
   run(1, DERMIS_FRAME_BOUNDS); // Empty bounds.
@@ -233,7 +233,7 @@ TEST_F(Histories, EmptyFrames_InvalidateThem) {
   expect(1, DERMIS_HISTORY_LEFT_OUT, "without the passes that write it");
 }
 
-TEST_F(Histories, OfAPlanThatDidNotRun_AreInvalid) {
+TEST_F(Histories, PlanThatDidNotRun_HasInvalidHistories) {
   make(keeping("skin", "rescale", "technique == 'sap'"));
   expect(0, DERMIS_HISTORY_NEVER_WRITTEN, "nothing has been recorded");
   run(2);

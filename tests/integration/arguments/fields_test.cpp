@@ -51,7 +51,7 @@ struct Fields : ::testing::Test {
   void SetUp() override { ASSERT_OK(host.make_context(host.context_desc())); }
 };
 
-TEST_F(Fields, OfAGraph_WrongOnesAreNamed) {
+TEST_F(Fields, GraphDesc_WrongFieldsAreNamed) {
   using Change = std::function<void(Description&)>;
   const std::pair<const char*, Change> changes[] = {
       {"desc.keep is 0x1, expected 0", [](auto& d) { d.desc.keep = DERMIS_KEEP_SOURCE; }},
@@ -105,7 +105,7 @@ TEST_F(Fields, OfAGraph_WrongOnesAreNamed) {
 }
 
 // Sources without a name are named by their role.
-TEST_F(Fields, OfTexts_WrongOnesAreReportedWithTheirPlace) {
+TEST_F(Fields, Texts_WrongFieldsAreLocated) {
   const std::string broken = "{ \"dermis\": 2, }", not_a_profile = "{ \"scale\": 1 }";
   const std::pair<const char*, std::function<void(Description&)>> changes[] = {
       {"profile 2:1:", [&](auto& d) { d.profiles[1].source = source_of(broken, nullptr); }},
@@ -129,7 +129,7 @@ TEST_F(Fields, OfTexts_WrongOnesAreReportedWithTheirPlace) {
   }
 }
 
-TEST_F(Fields, OfAForecast_WrongOnesAreNamed) {
+TEST_F(Fields, Forecast_WrongFieldsAreNamed) {
   ASSERT_OK(host.make_graph(64));
   NullHost other;
   ASSERT_OK(other.make_context(other.context_desc()));
@@ -160,7 +160,7 @@ TEST_F(Fields, OfAForecast_WrongOnesAreNamed) {
   }
 }
 
-TEST_F(Fields, OfCallsOnAGraph_NullOnesAreNamed) {
+TEST_F(Fields, GraphCalls_NullArgumentsAreNamed) {
   ASSERT_OK(host.make_graph());
   const auto rejected = [](dermis_result result, const char* said) {
     EXPECT_THAT(result, Fails(DERMIS_ERROR_ARGUMENT, said)) << said;
@@ -211,7 +211,7 @@ TEST_F(Fields, OfCallsOnAGraph_NullOnesAreNamed) {
            "frame_index is 1, expected that of the frame recorded last, 0");
 }
 
-TEST_F(Fields, OfABudget_WrongTablesChangeNothing) {
+TEST_F(Fields, Budget_WrongTablesChangeNothing) {
   ASSERT_OK(host.make_graph());
   const std::string broken = "{ \"dermis_errors\": 2, }";
   const dermis_source bad = source_of(broken, nullptr);
@@ -231,7 +231,7 @@ TEST_F(Fields, OfABudget_WrongTablesChangeNothing) {
 }
 
 // Gives each setting of a graph with all types of settings a value of a wrong type or range.
-TEST_F(Fields, OfSettings_OnlyTypeAndRangeAreAccepted) {
+TEST_F(Fields, Settings_OnlyTypeAndRangeAreAccepted) {
   const std::string text = R"({ "dermis": 2, "name": "settings",
     "settings": { "on": { "bool": true }, "count": { "int": 4, "min": 1, "max": 9 },
                   "share": { "real": 0.5, "min": 0, "max": 1 },

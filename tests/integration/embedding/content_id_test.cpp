@@ -111,7 +111,7 @@ struct DescriptorWrites : ::testing::Test {
 };
 
 // The graph has histories: their images alternate in step with two frames in flight only.
-TEST_F(DescriptorWrites, OfUnchangedImages_AreNone) {
+TEST_F(DescriptorWrites, UnchangedImages_WriteNothing) {
   for (const uint32_t frames : {1u, 2u, 3u}) {
     ASSERT_NO_FATAL_FAILURE(start(frames));
     host.number_images();
@@ -127,7 +127,7 @@ TEST_F(DescriptorWrites, OfUnchangedImages_AreNone) {
   }
 }
 
-TEST_F(DescriptorWrites, WithoutIds_AreThoseOfTheHostsImages) {
+TEST_F(DescriptorWrites, WithoutIds_AllHostImagesAreWritten) {
   ASSERT_NO_FATAL_FAILURE(start(2));
   const uint64_t all = writes_of_a_frame();
   writes_of_frames(warm_frames);
@@ -138,7 +138,7 @@ TEST_F(DescriptorWrites, WithoutIds_AreThoseOfTheHostsImages) {
   EXPECT_EQ(writes_of_frames(3), (std::vector<uint64_t>{each, each, 0}));
 }
 
-TEST_F(DescriptorWrites, OfAChangedImage_AreThoseOfItsPorts) {
+TEST_F(DescriptorWrites, ChangedImage_IsWrittenAtItsPorts) {
   ASSERT_NO_FATAL_FAILURE(start(2));
   host.number_images();
   writes_of_frames(warm_frames);

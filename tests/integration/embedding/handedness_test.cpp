@@ -109,7 +109,7 @@ struct Handedness : DermisTest {
   }
 };
 
-TEST_F(Handedness, OfViewSpaceDoesNotChangeThePicture) {
+TEST_F(Handedness, ViewSpace_DoesNotChangeThePicture) {
   const View views[] = {
       {Lens::perspective, Range::forward, DERMIS_DEPTH_DEVICE},
       {Lens::perspective, Range::reversed, DERMIS_DEPTH_DEVICE},

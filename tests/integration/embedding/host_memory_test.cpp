@@ -102,7 +102,7 @@ struct HostMemory : ::testing::Test {
   static uint64_t step() { return dermis::testing::seeds_to_try(61, 1); }
 };
 
-TEST_F(HostMemory, AllOfItIsFreed) {
+TEST_F(HostMemory, AllAllocationsAreFreed) {
   make_graph();
   const uint64_t running = heap.blocks;
   EXPECT_GT(running, 100u) << "the graph uses the host's memory";

@@ -27,7 +27,7 @@ struct Pipelines : ::testing::Test {
   }
 };
 
-TEST_F(Pipelines, NewValueOfASetting_CreatesThemOnce) {
+TEST_F(Pipelines, NewValueOfASetting_CreatesPipelinesOnce) {
   const uint64_t before = host.device.alive();
   const uint64_t created = pipelines_of("texturing", "\"pre\"");
   EXPECT_GT(created, 0u);
@@ -54,7 +54,7 @@ TEST_F(Pipelines, FailedCreation_KeepsTheValue) {
   EXPECT_GT(pipelines_of("texturing", "\"pre\""), 0u);
 }
 
-TEST_F(Pipelines, AllViewsGetThem) {
+TEST_F(Pipelines, NewValue_CreatesPipelinesForAllViews) {
   dermis_view view = nullptr;
   ASSERT_OK(dermis_view_create(host.graph, nullptr, &view, nullptr));
   NullHost single;
@@ -68,7 +68,7 @@ TEST_F(Pipelines, AllViewsGetThem) {
   EXPECT_EQ(host.device.creations(), before);
 }
 
-TEST_F(Pipelines, LaterGraph_SharesThoseOfNewValues) {
+TEST_F(Pipelines, LaterGraph_SharesPipelinesOfNewValues) {
   EXPECT_GT(pipelines_of("texturing", "\"pre\""), 0u);
   const dermis_graph first = host.graph;
   const uint64_t pipelines = host.device.pipelines();

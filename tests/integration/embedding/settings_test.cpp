@@ -163,7 +163,7 @@ TEST_F(Settings, ShippedGraph_ReportsViewSettings) {
   EXPECT_EQ(named(all, "texturing").per_frame, 0u);
 }
 
-TEST_F(Settings, Chosen_AreReportedUntilTheHostSetsThem) {
+TEST_F(Settings, ChosenValues_AreReportedUntilTheHostSetsOne) {
   const std::string text = read_text("configs/graphs/skin.json");
   make(text);
   EXPECT_EQ(named(settings_of(host.graph), "technique").chosen, 1u);

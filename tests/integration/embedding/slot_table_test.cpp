@@ -183,7 +183,7 @@ void follow(const std::vector<TableRow>& table, const std::string& name, bool wi
   EXPECT_OK(dermis_view_record(dermis_graph_view(host.graph), &frame));
 }
 
-TEST(SlotTable, FollowingItBindsEveryShippedGraph) {
+TEST(SlotTable, FollowingTheTable_BindsEveryShippedGraph) {
   const std::vector<TableRow> table = slot_table();
   ASSERT_GT(table.size(), 8u);
   size_t graphs = 0;

@@ -79,7 +79,7 @@ protected:
   }
 };
 
-TEST_F(Examples, OfEveryVerbRunUnchanged) {
+TEST_F(Examples, ExamplesOfEveryVerb_RunUnchanged) {
   // Files that the examples expect.
   write("few.json", techniques_alone);
   write("limits.json", R"({ "dermis_kernel_limits": 1, "rules": [

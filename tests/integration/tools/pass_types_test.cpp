@@ -19,11 +19,11 @@ constexpr const char* tone = R"({ "dermis": 2, "name": "tone",
 class PassTypes : public CommandTest {};
 
 TEST_F(PassTypes, ExportedFile_LetsGraphsBeChecked) {
-  const std::string kind_file = write("pass_types.json", pass_types),
+  const std::string pass_types_file = write("pass_types.json", pass_types),
                     graph_file = write("tone.json", tone);
   EXPECT_THAT(run({"validate", graph_file}), FailsWith(1, "studio.tone"));
-  EXPECT_THAT(run({"validate", graph_file, "--pass-types", kind_file}), Succeeds());
-  EXPECT_THAT(run({"explain", graph_file, "--pass-types", kind_file}), Succeeds("tone"));
+  EXPECT_THAT(run({"validate", graph_file, "--pass-types", pass_types_file}), Succeeds());
+  EXPECT_THAT(run({"explain", graph_file, "--pass-types", pass_types_file}), Succeeds("tone"));
 }
 
 TEST_F(PassTypes, FileIsChecked) {
@@ -39,8 +39,9 @@ TEST_F(PassTypes, FileIsChecked) {
                        R"("usage": "sampled_image", "internally_ordered": true)"),
               FailsWith(1, "reads.json:2:3", "D0233", "has usage sampled_image"));
   const std::string graph_file = write("tone.json", tone);
-  const std::string kind_file = write("pass_types.json", pass_types);
-  EXPECT_THAT(run({"validate", graph_file, "--pass-types", kind_file, "--pass-types", kind_file}),
+  const std::string pass_types_file = write("pass_types.json", pass_types);
+  EXPECT_THAT(run({"validate", graph_file, "--pass-types", pass_types_file, "--pass-types",
+                   pass_types_file}),
               FailsWith(1, "there is a pass type 'studio.tone' already"));
 }
 
@@ -53,13 +54,13 @@ constexpr const char* toned = R"({ "dermis_overlay": 2, "edits": [
     "read": { "light": "lighting" }, "write": { "toned": "toned_light" } } ] } ] })";
 
 TEST_F(PassTypes, RepeatedOption_KeepsTheGraphArgument) {
-  const std::string kind_file = write("pass_types.json", pass_types),
+  const std::string pass_types_file = write("pass_types.json", pass_types),
                     graph_file = write("tone.json", tone);
   const std::vector<std::vector<std::string>> lines{
-      {"explain", "--pass-types", kind_file, graph_file, "--size", "64x64"},
-      {"explain", "--pass-types", kind_file, "--root", path(""), graph_file},
-      {"validate", "--pass-types", kind_file, graph_file},
-      {"graph", "--pass-types", kind_file, graph_file},
+      {"explain", "--pass-types", pass_types_file, graph_file, "--size", "64x64"},
+      {"explain", "--pass-types", pass_types_file, "--root", path(""), graph_file},
+      {"validate", "--pass-types", pass_types_file, graph_file},
+      {"graph", "--pass-types", pass_types_file, graph_file},
       {"explain", "--unbound", "albedo", burley},
       {"explain", "--set", "samples=16", burley, "--set", "texturing=pre"}};
   for (const auto& line : lines) {
@@ -69,23 +70,23 @@ TEST_F(PassTypes, RepeatedOption_KeepsTheGraphArgument) {
   }
 }
 
-TEST_F(PassTypes, ExpectationsKnowThem) {
-  const std::string kind_file = write("pass_types.json", pass_types);
+TEST_F(PassTypes, Expectations_AcceptHostPassTypes) {
+  const std::string pass_types_file = write("pass_types.json", pass_types);
   write("tone.json", tone);
   const std::string expectations = write("tone.expect.json", R"({ "dermis_expect": 1, "cases": [
   { "case": "as_it_is" } ] })");
-  EXPECT_THAT(run({"test", "--pass-types", kind_file, expectations, "--update"}), Succeeds());
-  EXPECT_EQ(run({"test", expectations, "--pass-types", kind_file}).exit_code, 0);
+  EXPECT_THAT(run({"test", "--pass-types", pass_types_file, expectations, "--update"}), Succeeds());
+  EXPECT_EQ(run({"test", expectations, "--pass-types", pass_types_file}).exit_code, 0);
   EXPECT_EQ(run({"test", expectations}).exit_code, 1);
 }
 
 TEST_F(PassTypes, DisabledPass_DoesNotPreventRendering) {
-  const std::string kind_file = write("pass_types.json", pass_types),
+  const std::string pass_types_file = write("pass_types.json", pass_types),
                     overlay = write("toned.json", toned);
   const std::vector<std::string> line{"render",       "configs/scenes/bust.json",
                                       "--graph",      burley,
                                       "--overlay",    overlay,
-                                      "--pass-types", kind_file,
+                                      "--pass-types", pass_types_file,
                                       "--out",        path("out"),
                                       "--size",       "32x24",
                                       "--frames",     "1",
@@ -120,11 +121,11 @@ TEST_F(PassTypes, EnabledPass_IsRejectedByName) {
   EXPECT_THAT(run(applying), FailsWith(1, "pass 'look' (studio.look) has no kernel here"));
 }
 
-TEST_F(PassTypes, BugReportNamesThemInItsLine) {
-  const std::string kind_file = write("pass_types.json", pass_types),
+TEST_F(PassTypes, BugReport_NamesHostPassTypesInItsCommand) {
+  const std::string pass_types_file = write("pass_types.json", pass_types),
                     overlay = write("toned.json", toned);
-  ASSERT_THAT(run({"report-bug", burley, "--overlay", overlay, "--pass-types", kind_file, "--size",
-                   "32x18", "--count", "1", "--out", path("bug")}),
+  ASSERT_THAT(run({"report-bug", burley, "--overlay", overlay, "--pass-types", pass_types_file,
+                   "--size", "32x18", "--count", "1", "--out", path("bug")}),
               Succeeds());
   EXPECT_THAT(read("bug/README.txt"),
               HasSubstr("dermis apply --graph burley.json --frames capture --out replay --overlay "

@@ -106,7 +106,7 @@ TEST_F(Watch, ChangedShader_IsRendered) {
   EXPECT_THAT(outcome.out, ::testing::ContainsRegex("PSNR [0-9.]+ dB \\([+-][0-9.]+\\)"));
 }
 
-TEST_F(Watch, CtrlC_EndsIt) {
+TEST_F(Watch, CtrlC_EndsWatching) {
   RunOptions options;
   options.interrupt_after = path("out/color_0000.exr");
   EXPECT_EQ(run(arguments("configs/graphs/burley.json", "0"), options).exit_code, 130);

@@ -32,7 +32,7 @@ choice::Forecast forecast_of(double ms, double rmse) {
   return out;
 }
 
-TEST(Offers, AreThoseThatAreWorthTheirTime) {
+TEST(Offers, OnlyConfigurationsWorthTheirTime) {
   const std::vector<choice::Forecast> forecasts = {forecast_of(3, 0.1), forecast_of(1, 0.5),
                                                    forecast_of(2, 0.6), forecast_of(4, 0.1),
                                                    forecast_of(5, 0.05)};

@@ -113,7 +113,7 @@ TEST_P(Calibrations, ErrorsAndCosts_CoverEachShippedGraph) {
   }
 }
 
-TEST_P(Calibrations, OfGpusAreLabelledAsModelled) {
+TEST_P(Calibrations, GpuCalibrationsAreLabelledAsModelled) {
   const bool modelled = built_in().device.ends_with(", modelled");
   EXPECT_EQ(modelled, GetParam() != DeviceClass::cpu);
 }

@@ -70,7 +70,7 @@ INSTANTIATE_TEST_SUITE_P(Graphs, ListOrder,
                                            "hybrid", "skin"),
                          [](const auto& graph) { return graph.param; });
 
-TEST_P(ListOrder, PicturesAndCountersDoNotDependOnIt) {
+TEST_P(ListOrder, PicturesAndCountersDoNotDependOnOrder) {
   const auto graph = shipped_graph(GetParam(), pass_types);
   ASSERT_TRUE(graph);
   const auto other = shuffled(*graph);

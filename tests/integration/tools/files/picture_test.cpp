@@ -231,7 +231,7 @@ std::vector<uint8_t> png_of_16_bits(const std::vector<uint16_t>& pixels) {
   return file;
 }
 
-TEST_F(Pictures, PngsOf16BitsKeepThem) {
+TEST_F(Pictures, PngsOf16Bits_KeepAllBits) {
   const std::vector<uint16_t> values = {0, 1, 100, 255, 257, 65535};
   ASSERT_TRUE(write_bytes(folder / "a.png", png_of_16_bits(values), error));
   const auto image = read_png(folder / "a.png", error);
