@@ -59,8 +59,8 @@ public:
     step();
   }
 
-  ExpressionId whole() {
-    const auto value = either();
+  ExpressionId parse() {
+    const auto value = disjunction();
     if (!value) return {};
     if (token_.sort != Token::Sort::end) {
       fail(DiagnosticId::bad_expression, token_.at, fmt::format("unexpected {}", describe(token_)));
@@ -114,8 +114,8 @@ private:
     return append(std::move(expression), Type::boolean, at);
   }
 
-  std::optional<Operand> either() { return chain("or", Op::logical_or, &Parser::both); }
-  std::optional<Operand> both() { return chain("and", Op::logical_and, &Parser::negation); }
+  std::optional<Operand> disjunction() { return chain("or", Op::logical_or, &Parser::conjunction); }
+  std::optional<Operand> conjunction() { return chain("and", Op::logical_and, &Parser::negation); }
 
   std::optional<Operand> chain(std::string_view word, Op op,
                                std::optional<Operand> (Parser::*part)()) {
@@ -234,7 +234,7 @@ private:
     if (is_symbol("(")) {
       if (!enter(token.at)) return std::nullopt;
       step();
-      auto inner = either();
+      auto inner = disjunction();
       --depth_;
       if (!inner) return std::nullopt;
       if (!is_symbol(")")) {
@@ -332,7 +332,7 @@ ExpressionId parse_expression(const Document& document, NodeId node, std::string
     return {};
   }
   const size_t before = graph.expressions.size();
-  const ExpressionId id = Parser(document, node, what, graph, broken, diagnostics).whole();
+  const ExpressionId id = Parser(document, node, what, graph, broken, diagnostics).parse();
   if (!id.valid()) graph.expressions.resize(before);
   return id;
 }

@@ -49,7 +49,7 @@ struct Checker {
            range.layers >= 1 && uint32_t{range.first_layer} + range.layers <= resource.layers;
   }
 
-  void resources() {
+  void check_resources() {
     for (size_t i = 0; i < plan.resources.size(); ++i) {
       const PlanResource& resource = plan.resources[i];
       const bool buffer = resource.type != ResourceType::image;
@@ -77,7 +77,7 @@ struct Checker {
     }
   }
 
-  void placements() {
+  void check_placements() {
     for (size_t i = 0; i < plan.placements.size(); ++i) {
       const Placement& placement = plan.placements[i];
       expect(placement.resource < plan.resources.size(), "a placement belongs to no resource", i);
@@ -93,7 +93,7 @@ struct Checker {
                  placement.last_use < std::max<size_t>(plan.passes.size(), 1),
              "a placement is alive outside of the frame", i);
     }
-    shared_memory();
+    check_shared_memory();
   }
 
   static std::pair<uint32_t, uint32_t> lifetime(const Placement& placement) {
@@ -103,7 +103,7 @@ struct Checker {
 
   // Checks histories against histories and transients against transients. Memory that a history
   // shares with transients can only be judged by a run over several frames.
-  void shared_memory() {
+  void check_shared_memory() {
     std::vector<size_t> sorted(plan.placements.size());
     for (size_t i = 0; i < sorted.size(); ++i)
       sorted[i] = i;
@@ -118,14 +118,14 @@ struct Checker {
       while (end < sorted.size() && plan.placements[sorted[end]].persistent == first.persistent &&
              plan.placements[sorted[end]].heap == first.heap)
         ++end;
-      shared_memory({sorted.data() + i, end - i});
+      check_shared_memory({sorted.data() + i, end - i});
       i = end;
     }
   }
 
   // Checks placements of one heap, sorted by first use. Live placements share no byte, so a new
   // placement is compared with its two neighbours only.
-  void shared_memory(std::span<const size_t> sorted) {
+  void check_shared_memory(std::span<const size_t> sorted) {
     std::map<uint64_t, size_t> alive; // by offset
     // last use and offset of each live placement
     std::set<std::pair<uint32_t, uint64_t>> by_last_use;
@@ -161,7 +161,7 @@ struct Checker {
     return before.when == ReadWhen::history_valid && before.port == access.port;
   }
 
-  void passes() {
+  void check_passes() {
     for (size_t p = 0; p < plan.passes.size(); ++p) {
       const PlanPass& pass = plan.passes[p];
       const bool accesses = range_in(pass.first_access, pass.access_count, plan.accesses.size());
@@ -204,7 +204,7 @@ struct Checker {
     }
   }
 
-  void orderings() {
+  void check_orderings() {
     for (size_t o = 0; o < plan.orderings.size(); ++o)
       expect(plan.orderings[o].earlier < plan.passes.size() &&
                  plan.orderings[o].later < plan.passes.size(),
@@ -213,7 +213,7 @@ struct Checker {
            "orderings are not sorted by their passes", 0);
   }
 
-  void histories() {
+  void check_histories() {
     std::vector<uint32_t> described(plan.resources.size(), 0);
     for (size_t h = 0; h < plan.histories.size(); ++h) {
       const PlanHistory& history = plan.histories[h];
@@ -261,11 +261,11 @@ bool share_memory(const Placement& a, const Placement& b) {
 std::vector<std::string> verify_structure(const Plan& plan) {
   Checker checker{plan, {}};
   checker.find_histories();
-  checker.resources();
-  checker.placements();
-  checker.passes();
-  checker.orderings();
-  checker.histories();
+  checker.check_resources();
+  checker.check_placements();
+  checker.check_passes();
+  checker.check_orderings();
+  checker.check_histories();
   return std::move(checker.violations);
 }
 

@@ -14,7 +14,7 @@ namespace dermis::vulkan {
 enum class MemoryPurpose : uint8_t {
   transient, // contents are valid only within one recorded frame
   history,   // contents live from frame to frame
-  // constants: tables that the host writes and kernels read, counters that kernels write, and
+  // constants: tables that the CPU writes and kernels read, counters that kernels write, and
   // placeholders of unbound ports
   constants
 };
@@ -36,9 +36,9 @@ struct MemoryBlock {
 
 // A host's own device memory allocator. Neither function may throw.
 struct HostMemory {
-  VkResult (*take)(void* user, const MemoryRequest& request,
-                   MemoryBlock& block) = nullptr; // null: memory comes from Vulkan
-  void (*give_back)(void* user, const MemoryBlock& block) = nullptr;
+  VkResult (*allocate)(void* user, const MemoryRequest& request,
+                       MemoryBlock& block) = nullptr; // null: memory comes from Vulkan
+  void (*free)(void* user, const MemoryBlock& block) = nullptr;
   void* user = nullptr;
 };
 

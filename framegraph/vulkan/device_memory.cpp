@@ -30,10 +30,10 @@ std::optional<uint32_t> choose_type(const Device& device, const MemoryRequest& r
   return fallback;
 }
 
-Error take_from_host(const Device& device, const MemoryRequest& request,
-                     const std::string& subresource, MemoryBlock& block) {
+Error allocate_from_host(const Device& device, const MemoryRequest& request,
+                         const std::string& subresource, MemoryBlock& block) {
   MemoryBlock given;
-  const VkResult result = device.host_memory.take(device.host_memory.user, request, given);
+  const VkResult result = device.host_memory.allocate(device.host_memory.user, request, given);
   if (result != VK_SUCCESS)
     return call_error(result, "the host's allocator",
                       fmt::format("{}, {} bytes", subresource, request.bytes));
@@ -43,7 +43,7 @@ Error take_from_host(const Device& device, const MemoryRequest& request,
     block = given;
     return {};
   }
-  give_back_memory(device, given);
+  free_memory(device, given);
   return {ErrorKind::vulkan, VK_SUCCESS,
           fmt::format("{}: the host's allocator returned {}", subresource,
                       given.memory == VK_NULL_HANDLE ? std::string("no memory")
@@ -56,8 +56,8 @@ Error take_from_host(const Device& device, const MemoryRequest& request,
 
 Error allocate_memory(const Device& device, const MemoryRequest& request,
                       const std::string& subresource, MemoryBlock& block) {
-  if (device.host_memory.take != nullptr)
-    return take_from_host(device, request, subresource, block);
+  if (device.host_memory.allocate != nullptr)
+    return allocate_from_host(device, request, subresource, block);
   const auto type = choose_type(device, request);
   if (!type)
     return {ErrorKind::unsupported, VK_SUCCESS,
@@ -77,7 +77,7 @@ Error allocate_memory(const Device& device, const MemoryRequest& request,
   if ((request.required & VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT) != 0) {
     result = device.vk.vkMapMemory(device.device, taken.memory, 0, VK_WHOLE_SIZE, 0, &taken.mapped);
     if (result != VK_SUCCESS) {
-      give_back_memory(device, taken);
+      free_memory(device, taken);
       return call_error(result, "vkMapMemory", subresource);
     }
   }
@@ -95,11 +95,11 @@ bool has_memory_type(const Device& device, uint32_t memory_types,
   return choose_type(device, request).has_value();
 }
 
-void give_back_memory(const Device& device, const MemoryBlock& block) {
-  if (device.host_memory.take == nullptr)
+void free_memory(const Device& device, const MemoryBlock& block) {
+  if (device.host_memory.allocate == nullptr)
     device.vk.vkFreeMemory(device.device, block.memory, device.allocator); // unmaps
   else if (block.memory != VK_NULL_HANDLE)
-    device.host_memory.give_back(device.host_memory.user, block);
+    device.host_memory.free(device.host_memory.user, block);
 }
 
 uint64_t heap_alignment(const Device& device, const Plan& plan, uint32_t heap) {

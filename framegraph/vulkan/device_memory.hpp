@@ -21,7 +21,7 @@ Error allocate_memory(const Device& device, const MemoryRequest& request,
 // Returns whether a memory type among `memory_types` has all of the properties. Free-threaded.
 bool has_memory_type(const Device& device, uint32_t memory_types, VkMemoryPropertyFlags properties);
 // Frees the block; does nothing if the block is empty. Free-threaded.
-void give_back_memory(const Device& device, const MemoryBlock& block);
+void free_memory(const Device& device, const MemoryBlock& block);
 
 // Returns the alignment in bytes that every image and buffer in heap `heap` of the plan needs.
 // Free-threaded.

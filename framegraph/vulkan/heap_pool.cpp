@@ -30,7 +30,7 @@ Error HeapPool::create(const Device& device, std::span<const Plan* const> plans,
 
 HeapPool::~HeapPool() {
   for (const Block& block : blocks_)
-    give_back_memory(*device_, block.memory);
+    free_memory(*device_, block.memory);
 }
 
 bool HeapPool::has(const Plan& plan) const noexcept {

@@ -49,8 +49,8 @@ dermis_result read_tables(const Log& log, const dermis_budget& budget, Tables& o
   return DERMIS_OK;
 }
 
-// Holds the parts of a view that depend on new tables. The programs are recorded by name, because
-// recording may replace `running` by `next` meanwhile.
+// Holds the parts of a view that depend on new tables. Keeps references to the running and the next
+// compiled graph, because recording may replace `running` by `next` meanwhile.
 struct ViewTables {
   choice::ErrorModel errors;
   choice::ErrorCorrection found;
@@ -82,7 +82,7 @@ ViewTables tables_of(const dermis_view_t& view, const Tables& given) {
   return out;
 }
 
-// Reports what new tables lack for the program that the view will record next.
+// Reports what new tables lack for the compiled graph that the view will record next.
 void report_lacking(const dermis_view_t& view, const ViewTables& tables, Diagnostics& diagnostics) {
   const auto& [running, next] = tables.compiled_graphs;
   const ViewTables::Described& newest = next.compiled_graph ? next : running;
@@ -263,7 +263,7 @@ dermis_frame_statistics make_statistics(const Chooser& chooser,
   return out;
 }
 
-// Writes make(chooser, program) of the newest frame whose counters are available to *out.
+// Writes make(chooser, compiled_graph) of the newest frame whose counters are available to *out.
 template <class T, class Make>
 dermis_result write_newest(dermis_view_t& view, const char* function, const char* name,
                            uint64_t completed, T* out, Make make) {

@@ -99,7 +99,7 @@ struct Chooser {
   choice::SampleDemand demand;
   std::array<FrameChoice, vulkan::max_frames_in_flight + 2> frames; // by frame_index
   FrameChoice newest;                                               // the newest observed frame
-  // number of programs adopted so far
+  // number of compiled graphs adopted so far
   uint64_t compiled_graphs = 0;
   // Preallocated by adopt(), so that recording allocates nothing.
   std::vector<vulkan::PassTiming> times;
@@ -112,8 +112,8 @@ choice::DeviceClass device_class(VkPhysicalDeviceType type);
 // Returns a chooser with the library's built-in tables.
 Chooser make_chooser(choice::DeviceClass device);
 
-// Prepares a program for this chooser: allocates everything that deciding and observing need. Must
-// be called before the program's first record.
+// Prepares a compiled graph for this chooser: allocates everything that deciding and observing
+// need. Must be called before the compiled graph's first record.
 void adopt(Chooser& chooser, const PassTypeRegistry& pass_types, CompiledGraph& compiled_graph);
 
 // Learns from frames of `compiled_graph` that the device has finished. Allocates nothing.

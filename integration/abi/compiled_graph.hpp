@@ -1,5 +1,6 @@
 #pragma once
-// A compiled graph, ready to record. It is built next to the running program and then swapped in.
+// Holds a compiled graph, ready to record. It is built next to the running one, which it then
+// replaces.
 
 #include "framegraph/compile/compile.hpp"
 #include "framegraph/compose/compose.hpp"
@@ -35,7 +36,7 @@ struct SourceText {
   std::string name, text;
 };
 
-// Input of a program; copied from the host and kept for reload and resize.
+// Input of a compiled graph; copied from the host and kept for reload and resize.
 struct CompiledGraphInput {
   std::string source_name, source_text;
   std::vector<SourceText> overlays;
@@ -51,7 +52,7 @@ struct CompiledGraphInput {
   std::vector<HostFormat> formats;
   std::vector<HostSetting> settings;
   RuntimeShaders shaders;
-  // of `profiles`, for the last program; may be null
+  // of `profiles`, for the last compiled graph; may be null
   std::shared_ptr<const subsurface::KernelTables> tables;
   // `tables` in device memory, shared by all views; may be null
   std::shared_ptr<const vulkan::EnvironmentTables> device_tables;
@@ -87,11 +88,11 @@ struct RunnablePlan {
   std::vector<choice::PassLoad> loads{};
 };
 
-// The program of one view. Views of one graph share compiled plans and pipelines; everything else
-// is per view.
+// Holds the compiled graph of one view. Views of one graph share compiled plans and pipelines;
+// everything else is per view.
 struct CompiledGraph {
   bool without_material = false; // no profile: passes that serve scattering are off
-  uint64_t serial = 0;           // unique among the programs of a graph
+  uint64_t serial = 0;           // unique among the compiled graphs of a graph
   Graph graph;
   std::vector<Change> changes;   // changes made by overlays and included files
   std::vector<SourceFile> files; // files of the changes, without their texts
@@ -114,7 +115,7 @@ struct CompiledGraph {
   std::vector<vulkan::HostImage> images;
   std::vector<vulkan::HostBuffer> buffers;       // by slot, like `images`
   std::vector<vulkan::HostStructure> structures; // by slot, like `images`
-  // last frame_index recorded with this program; 0: never
+  // last frame_index recorded with this compiled graph; 0: never
   uint64_t last_frame = 0;
   std::array<double, 2> last_jitter_px{}; // of that frame
 
@@ -148,11 +149,11 @@ dermis_result rejected(dermis_context_t& context, const vulkan::Error& error,
 vulkan::Error make_tables(dermis_context_t& context, const subsurface::TableUse& use,
                           CompiledGraphInput& input);
 
-// Shares the program's new kernels with all graphs of the context. Call it once nothing can fail
-// any more.
+// Shares the compiled graph's new kernels with all graphs of the context. Call it once nothing can
+// fail any more.
 void share_kernels(CompiledGraph& compiled_graph) noexcept;
 
-// Copies the program for another view. `input` must be the input that `of` was built from.
+// Copies the compiled graph for another view. `input` must be the input that `of` was built from.
 dermis_result copy_compiled_graph(dermis_context_t& context, CompiledGraphInput& input,
                                   const CompiledGraph& of, vulkan::HistoryReason history,
                                   Diagnostics& diagnostics,
@@ -176,8 +177,8 @@ std::vector<choice::Configuration> configurations_with(const CompiledGraph& comp
 // Pipelines by plan; see vulkan::Executor::make_pipelines.
 using NewPipelines = std::vector<std::shared_ptr<const vulkan::PlanPipelines>>;
 
-// Creates the pipelines that `configurations` need. Changes neither the program nor its executors,
-// so that frames may be recorded meanwhile. New pipelines are added to `kernels`.
+// Creates the pipelines that `configurations` need. Changes neither the compiled graph nor its
+// executors, so that frames may be recorded meanwhile. New pipelines are added to `kernels`.
 vulkan::Error make_pipelines(dermis_context_t& context, const CompiledGraphInput& input,
                              const CompiledGraph& compiled_graph,
                              std::span<const choice::Configuration> configurations,

@@ -1,12 +1,12 @@
 #pragma once
-// Checks a host's frame against the program that will record it. Allocates no host memory and
-// leaves the graph unchanged, except that it creates image views for bindings without one.
+// Checks a host's frame against the compiled graph that will record it. Allocates no host memory
+// and leaves the graph unchanged, except that it creates image views for bindings without one.
 
 #include "integration/abi/graph.hpp"
 
 namespace dermis::abi {
 
-// A checked frame, ready for the executor. Spans refer to the program or to `constants`.
+// A checked frame, ready for the executor. Spans refer to the compiled graph or to `constants`.
 struct CheckedFrame {
   vulkan::FrameInput input;
   subsurface::FrameConstants constants{};
@@ -16,13 +16,13 @@ struct CheckedFrame {
   bool empty_bounds() const { return bounds[2] == 0 || bounds[3] == 0; }
 };
 
-// Checks every field, and fills program.images and the parts of `checked` that do not depend on the
-// chosen configuration. Returns ARGUMENT or VERSION with a message that names the field.
+// Checks every field, and fills compiled_graph.images and the parts of `checked` that do not depend
+// on the chosen configuration. Returns ARGUMENT or VERSION with a message that names the field.
 dermis_result check_frame(dermis_view_t& view, CompiledGraph& compiled_graph,
                           const dermis_frame& frame, CheckedFrame& checked);
 // The plan that records the frame.
 struct Chosen {
-  uint32_t configuration = 0, plan = 0; // into the program
+  uint32_t configuration = 0, plan = 0; // into the compiled graph
   // executor of the last frame, if it differs from the variant's
   const vulkan::Executor* before = nullptr;
   uint32_t sample_units = 0; // see FrameConstants

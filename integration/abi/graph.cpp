@@ -45,7 +45,8 @@ void report_lost_histories(const dermis_view_t& view, const CompiledGraph& compi
   }
 }
 
-// Builds a program for every view next to the running one. Changes nothing visible to the views.
+// Builds a compiled graph for every view next to the running one. Changes nothing visible to the
+// views.
 dermis_result build_candidates(dermis_graph_t& graph, CompiledGraphInput& input,
                                vulkan::HistoryReason reason, Diagnostics& diagnostics,
                                Candidates& candidates) {
@@ -87,8 +88,8 @@ dermis_result build_candidates(dermis_graph_t& graph, CompiledGraphInput& input,
   return DERMIS_OK;
 }
 
-// Makes the candidates take over at the next record of each view. A program that was still waiting
-// was never recorded.
+// Makes the candidates take over at the next record of each view. A compiled graph that was still
+// waiting was never recorded.
 void hand_over(dermis_graph_t& graph, Candidates& candidates) noexcept {
   for (const std::shared_ptr<CompiledGraph>& candidate : candidates)
     share_kernels(*candidate); // before any view is locked, so that recording does not wait

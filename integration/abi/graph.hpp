@@ -1,6 +1,6 @@
 #pragma once
-// A graph of the host and its views. Each view holds its running program, the program that takes
-// over at its next record, and replaced programs that the device may still execute.
+// Holds a graph of the host and its views. Each view has the running compiled graph, the next one,
+// which takes over at the next record, and replaced ones that the device may still execute.
 
 #include "integration/abi/chooser.hpp"
 #include "integration/abi/commands/capture.hpp"
@@ -31,7 +31,7 @@ struct dermis_view_t {
   std::shared_ptr<dermis::abi::CompiledGraph>
       running;                                      // recorded last; null before the first record
   std::shared_ptr<dermis::abi::CompiledGraph> next; // takes over at the next record; null: none
-  // Replaced programs, until their last recorded frame has completed. Each was replaced at a
+  // Replaced compiled graphs, until their last recorded frame has completed. Each was replaced at a
   // different frame, and at most frames_in_flight frames are incomplete.
   std::array<std::shared_ptr<dermis::abi::CompiledGraph>, dermis::vulkan::max_frames_in_flight + 1>
       retired;
@@ -40,8 +40,8 @@ struct dermis_view_t {
   struct Recorded {
     bool known = false;
     uint64_t last_frame = 0; // of the view
-    bool took_over = false;  // a new program, formerly `next`, took over
-    // index of the previous program in `retired`; retired.size(): not stored
+    bool took_over = false;  // a new compiled graph, formerly `next`, took over
+    // index of the previous compiled graph in `retired`; retired.size(): not stored
     size_t retired = 0;
     uint64_t compiled_graph_last_frame = 0;
     std::array<double, 2> last_jitter_px{};
@@ -63,8 +63,9 @@ struct dermis_graph_t {
   dermis_context context = nullptr;
   // Serialises changes of the graph and guards the rest. Locked before the mutex of a view.
   std::mutex changing;
-  dermis::abi::CompiledGraphInput input;   // of the newest program
-  dermis::PlanCache plans;                 // of programs built before: what a setting flips back to
+  dermis::abi::CompiledGraphInput input; // of the newest compiled graph
+  // Plans of earlier compiled graphs, for a setting that returns to an earlier value.
+  dermis::PlanCache plans;
   dermis::abi::SharedBudget shared_budget; // outlives the views
   dermis_view_t own;                       // returned by dermis_graph_view
   std::vector<std::unique_ptr<dermis_view_t>> others;
@@ -72,11 +73,11 @@ struct dermis_graph_t {
 
 namespace dermis::abi {
 
-// Returns the program that the next record will use. Requires the view's mutex.
+// Returns the compiled graph that the next record will use. Requires the view's mutex.
 inline CompiledGraph& newest(dermis_view_t& view) {
   return view.next ? *view.next : *view.running;
 }
-// Returns the program that the next record will use, and keeps it alive while another thread
+// Returns the compiled graph that the next record will use, and keeps it alive while another thread
 // records.
 inline std::shared_ptr<CompiledGraph> keep_newest(const dermis_view_t& view) {
   const std::lock_guard lock(view.mutex);
@@ -87,8 +88,8 @@ inline std::shared_ptr<CompiledGraph> keep_newest(const dermis_view_t& view) {
 // view's mutex.
 double budget_of_view(const dermis_view_t& view);
 
-// Returns DEVICE_LOST if reading timings of the running program reported a lost device; the whole
-// context is then lost. Requires the view's mutex.
+// Returns DEVICE_LOST if reading timings of the running compiled graph reported a lost device; the
+// whole context is then lost. Requires the view's mutex.
 dermis_result check_loss(const dermis_view_t& view, const char* function);
 
 // Calls use(view) for each view of the graph, its own first. Requires graph.changing.
@@ -99,19 +100,19 @@ template <class Use> void for_each_view(dermis_graph_t& graph, Use use) {
 }
 
 // Returns the executor of the previous frame if it is not that of `plan`: another plan of this
-// program, or of the program that it replaces. Requires the view's mutex.
+// compiled graph, or of the compiled graph that it replaces. Requires the view's mutex.
 const vulkan::Executor* recorded_before(const dermis_view_t& view,
                                         const CompiledGraph& compiled_graph, uint32_t plan);
 
-// Builds programs for all views from `input`; they take over at the next record. On failure nothing
-// has changed. Requires graph.changing. `diagnostics` holds findings of reading `input`; an error
-// in it fails the call.
+// Builds compiled graphs for all views from `input`; they take over at the next record. On failure
+// nothing has changed. Requires graph.changing. `diagnostics` holds findings of reading `input`; an
+// error in it fails the call.
 dermis_result replace_compiled_graphs(dermis_graph_t& graph, CompiledGraphInput&& input,
                                       vulkan::HistoryReason reason, dermis_report* report,
                                       Diagnostics&& diagnostics = {});
 
-// Applies the view's own settings to a program that it will record. Reports settings that no longer
-// fit.
+// Applies the view's own settings to a compiled graph that it will record. Reports settings that no
+// longer fit.
 void apply_own_settings(const dermis_view_t& view, CompiledGraph& compiled_graph,
                         Diagnostics& diagnostics);
 

@@ -1,6 +1,6 @@
 #pragma once
-// Checks buffers and acceleration structures of a host's frame against the slots of the program
-// that will record it.
+// Checks buffers and acceleration structures of a host's frame against the slots of the compiled
+// graph that will record it.
 
 #include "integration/abi/graph.hpp"
 
@@ -17,8 +17,8 @@ using FamilyText = std::array<char, 256>;
 std::string_view family_problem(const dermis_context_t& context, ResourceType type,
                                 const dermis_image_state& state, FamilyText& text);
 
-// Checks every field and fills program.buffers and program.structures. Returns ARGUMENT or VERSION
-// with a message that names the field. Allocates nothing.
+// Checks every field and fills compiled_graph.buffers and compiled_graph.structures. Returns
+// ARGUMENT or VERSION with a message that names the field. Allocates nothing.
 dermis_result check_memory_bindings(dermis_view_t& view, CompiledGraph& compiled_graph,
                                     const dermis_frame& frame);
 

@@ -101,17 +101,17 @@ void keep_within_memory(const Graph& graph, const choice::ErrorModel& errors,
                                 mebibytes(memory.bytes())));
   }
   std::vector<std::string> removed;
-  uint64_t least_bytes = UINT64_MAX;
+  uint64_t min_bytes = UINT64_MAX;
   for (const choice::Configuration& one : configurations) {
     if (kept[one.plan] != 0) continue;
     removed.push_back(one.name);
-    least_bytes = std::min(least_bytes, bytes_of(plans[one.plan], budget.histories));
+    min_bytes = std::min(min_bytes, bytes_of(plans[one.plan], budget.histories));
   }
   if (removed.empty()) return;
   diagnostics.add(DiagnosticId::memory_left_out, place_in(graph),
                   fmt::format("{}; {} is not offered, the smallest plan of which takes {}; the "
                               "others take {} together",
-                              limit, list_names(removed), mebibytes(least_bytes),
+                              limit, list_names(removed), mebibytes(min_bytes),
                               mebibytes(memory.bytes())));
 
   // Remove them, and number the other plans anew.
@@ -123,14 +123,14 @@ void keep_within_memory(const Graph& graph, const choice::ErrorModel& errors,
   }
   std::vector<choice::Configuration> kept_configurations;
   const bool default_fits = kept[configurations.front().plan] != 0;
-  double least_rmse = HUGE_VAL;
+  double min_rmse = HUGE_VAL;
   for (size_t i = 0; i < configurations.size(); ++i) {
     choice::Configuration& one = configurations[i];
     if (kept[one.plan] == 0) continue;
     one.plan = number[one.plan];
     kept_configurations.push_back(std::move(one));
-    if (default_fits || rmse[i] >= least_rmse) continue;
-    least_rmse = rmse[i];
+    if (default_fits || rmse[i] >= min_rmse) continue;
+    min_rmse = rmse[i];
     std::rotate(kept_configurations.begin(), kept_configurations.end() - 1,
                 kept_configurations.end());
   }

@@ -6,7 +6,7 @@
 namespace dermis::abi {
 namespace {
 
-// Destroys replaced programs whose last frame the device has finished.
+// Destroys replaced compiled graphs whose last frame the device has finished.
 void collect(dermis_view_t& view, uint64_t completed) {
   for (auto& old : view.retired)
     if (old && old->last_frame <= completed) old.reset();

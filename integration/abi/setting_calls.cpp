@@ -31,7 +31,7 @@ bool is_set(const std::vector<HostSetting>& given, const std::string& name) {
                      [&](const HostSetting& one) { return one.name == name; });
 }
 
-// Returns the settings of the program that the view will record next.
+// Returns the settings of the compiled graph that the view will record next.
 dermis_result get_settings(dermis_view_t& view, const char* function, uint32_t* count,
                            dermis_setting* out) {
   const Log& log = view.context->log;

@@ -7,7 +7,7 @@
 namespace dermis::abi {
 namespace {
 
-// Creates a view of the graph's current program, which takes over at the first record.
+// Creates a view of the graph's current compiled graph, which takes over at the first record.
 dermis_result create(dermis_graph_t& graph, const dermis_view_desc* given, dermis_view* out,
                      dermis_report* report) {
   const Log& log = graph.context->log;

@@ -55,8 +55,8 @@ constexpr std::array estimator_settings{
         "approximate (c = 2.5715)",
         1),
     setting::choice("weighting", setting::weighting_options,
-                    "density that divides a sample: sampler: the sampler's own; profile: the "
-                    "profile's, as published"),
+                    "probability density by which a sample is divided. sampler: that of the "
+                    "sampler; profile: that of the profile, as published"),
     setting::choice("surface", surface_options,
                     "patch: profile at the 3-D distance times the area of the surface patch; "
                     "distance: without the area"),

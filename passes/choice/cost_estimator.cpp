@@ -121,7 +121,7 @@ double CostEstimator::factor(const Line& line) const {
 std::span<const CostFactors> CostEstimator::predict(double now_s) {
   // Without timestamps, running work does not show what it takes.
   const bool timed = now_s - observed_s_ <= absent_s;
-  const double least_unmeasured = std::exp(-std::max(0.0, unmeasured_)) / uncertainty_;
+  const double min_unmeasured = std::exp(-std::max(0.0, unmeasured_)) / uncertainty_;
   double last_age = 0, remembered = 1; // lines that stopped in the same frame share the power
   for (size_t l = 0; l < lines_.size(); ++l) {
     const Line& line = lines_[l];
@@ -137,7 +137,7 @@ std::span<const CostFactors> CostEstimator::predict(double now_s) {
       last_age = age;
       remembered = std::exp(-forgotten * std::log2(1 + age / forgotten_after_s));
     }
-    if (never) out.optimistic *= least_unmeasured * remembered;
+    if (never) out.optimistic *= min_unmeasured * remembered;
     out.undisturbed = never ? out.optimistic : out.undisturbed * line.usual_ratio * remembered;
   }
   return factors_;

@@ -23,8 +23,8 @@ void update_growth(TileGrowth& growth_estimate, uint64_t frame, uint64_t tiles);
 // because an overestimate of time is harmless.
 double growth_until(const TileGrowth& growth_estimate, uint64_t frame);
 
-// Returns the expected number of tiles with subsurface, of which there are `tiles`, if the same
-// picture has `scale` times as many pixels along each side.
+// Returns how many tiles with subsurface to expect if a picture with `tiles` of them is rendered
+// with `scale` times as many pixels along each side.
 double scaled_tiles(double tiles, double scale);
 // Makes the last count that of the same picture at another scale.
 void rescale(TileGrowth& growth_estimate, double scale);

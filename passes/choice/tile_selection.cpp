@@ -31,7 +31,7 @@ uint32_t next_steady(uint32_t steady, uint32_t units, uint32_t demand, uint32_t 
   const int32_t next =
       static_cast<int32_t>(steady) + free * static_cast<int32_t>(steady_gain) / all;
   return static_cast<uint32_t>(
-      std::clamp(next, static_cast<int32_t>(least_steady), static_cast<int32_t>(all_steady)));
+      std::clamp(next, static_cast<int32_t>(min_steady), static_cast<int32_t>(all_steady)));
 }
 
 // The bins above `bin` are paid in full, and the first `left` tiles of `bin`.

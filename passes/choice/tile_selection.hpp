@@ -22,7 +22,7 @@ inline constexpr uint32_t no_pixel_weight = 255;
 inline constexpr float selection_stay = 2.0f;
 // Fractions of the units that steady tiles may use; the others serve tiles that fade out. The
 // fraction falls while more tiles are kept than there are units, as under a moving camera.
-inline constexpr uint32_t all_steady = 4096, least_steady = all_steady / 8;
+inline constexpr uint32_t all_steady = 4096, min_steady = all_steady / 8;
 // Gain of the fraction per frame: tiles leave after ten frames, so that a gain of 1 would
 // oscillate.
 inline constexpr uint32_t steady_gain = all_steady / 8;
@@ -33,7 +33,7 @@ inline constexpr uint32_t selection_kept_bit = 1u << 31;
 // Bits of a tile's priority above the expected change: its level, by the largest weight that moved
 // into the tile. Taps of neighbours read unscattered light instead of blurred light by the missing
 // fraction of the levels.
-inline constexpr uint32_t selection_level_shift = 28, most_selection_level = 7;
+inline constexpr uint32_t selection_level_shift = 28, max_selection_level = 7;
 // Least weight of the highest level. At larger weights, levels would fall together with the weights
 // of the tile itself.
 inline constexpr uint32_t highest_level_weight = 60;

@@ -33,8 +33,8 @@ inline constexpr double accumulate_min_mean = 1e-6;
 // brightest light around.
 inline constexpr double accumulate_largest_remainder = 4.5;
 
-// Returns the part of a pixel's scattered light that history keeps: the light that the nearest
-// pixels (`near`) do not explain, divided by the mean light around.
+// Returns what the history stores of a pixel's scattered light: the difference from the light that
+// the nearest pixels predict (`near`), divided by the mean light around.
 std::array<double, 3> remainder_of(const std::array<double, 3>& light,
                                    const std::array<double, 3>& near,
                                    const std::array<double, 3>& local_mean);

@@ -174,9 +174,9 @@ std::string shared_constants() {
       "const int allocation_first_bin = {};\n"
       "const uint full_pixel_weight = {}u, pixel_weight_step = {}u; // tile_selection.hpp\n"
       "const uint no_pixel_weight = {}u;\n"
-      "const uint all_steady = {}u, least_steady = {}u, steady_gain = {}u;\n"
+      "const uint all_steady = {}u, min_steady = {}u, steady_gain = {}u;\n"
       "const uint selection_kept_bit = {}u, selection_level_shift = {}u;\n"
-      "const uint most_selection_level = {}u, highest_level_weight = {}u;\n"
+      "const uint max_selection_level = {}u, highest_level_weight = {}u;\n"
       "const float selection_stay = {};\n"
       "const uint selection_first_bin = {}u;\n"
       "const float min_patch_cosine = {}, max_patch_slope = {}; // reference/surface.hpp\n"
@@ -216,9 +216,9 @@ std::string shared_constants() {
       subsurface::uniform_max_reach, subsurface::uniform_cell_side, subsurface::probe_max_reach,
       choice::allocation_gain[0], choice::allocation_gain[1], choice::allocation_gain[2],
       choice::allocation_stay, choice::allocation_first_bin, choice::full_pixel_weight,
-      choice::pixel_weight_step, choice::no_pixel_weight, choice::all_steady, choice::least_steady,
+      choice::pixel_weight_step, choice::no_pixel_weight, choice::all_steady, choice::min_steady,
       choice::steady_gain, choice::selection_kept_bit, choice::selection_level_shift,
-      choice::most_selection_level, choice::highest_level_weight, choice::selection_stay,
+      choice::max_selection_level, choice::highest_level_weight, choice::selection_stay,
       choice::selection_first_bin, subsurface::min_patch_cosine, subsurface::max_patch_slope,
       subsurface::separable_nodes, subsurface::separable_first_log2_d,
       subsurface::separable_log2_d_step, subsurface::separable_rows_per_profile,

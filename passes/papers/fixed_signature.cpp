@@ -16,8 +16,8 @@ constexpr PassTypeSetting fixed_settings[] = {
         "(c = 2.5715, Golubev 2019). Other profiles use a table"),
     setting::choice(
         "weighting", setting::weighting_options,
-        "density that divides a sample: sampler: the sampler's own (unbiased); profile: the "
-        "profile's, as published"),
+        "probability density by which a sample is divided. sampler: that of the sampler "
+        "(unbiased); profile: that of the profile, as published"),
     setting::choice(
         "normalise", normalise_options,
         "normalisation. self: divide by the sum of weights; none: unbiased, loses light of "

@@ -87,7 +87,7 @@ uint steady_before() {
   if (!has_states_before() || !history_usable())
     return all_steady;
   ivec2 tiles = (frame.previous_rect.zw + 7) >> 3;
-  return clamp(states_before_data[tiles.x * tiles.y], least_steady, all_steady);
+  return clamp(states_before_data[tiles.x * tiles.y], min_steady, all_steady);
 }
 
 void find_thresholds(uint lane) {
@@ -193,7 +193,7 @@ void main() {
     bool stays = is_paid(0u, bins[i], earlier);
     bool kept = is_kept(priorities[i]), affordable = kept || is_paid(1u, bins[i], earlier);
     uint state = state_of(kept, stays, affordable);
-    uint level = priorities[i] >> selection_level_shift & most_selection_level;
+    uint level = priorities[i] >> selection_level_shift & max_selection_level;
     tile_states_data[tile] = state | level << state_bits;
     taken[i] = is_listed(state);
     if (taken[i])

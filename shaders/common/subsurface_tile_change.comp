@@ -112,7 +112,7 @@ earlier_weights weights_before(ivec2 tile, bool full) {
       has_velocity() ? place_before(vec2(pixel), depth, texelFetch(velocity_image, texel, 0).rgb)
                      : place_before(vec2(pixel), depth);
   if (!(place.depth > 0.0) || !all(lessThan(abs(place.pixel), vec2(reproject_largest_velocity))))
-    return earlier_weights(0.0, false, most_selection_level);
+    return earlier_weights(0.0, false, max_selection_level);
   vec2 corner = vec2(8 * tile - pixel) + place.pixel;
   ivec2 end = frame.previous_rect.zw - 1, first = max(ivec2(floor(corner)), ivec2(0)),
         last = min(ivec2(ceil(corner)) + 7, end);
@@ -135,9 +135,9 @@ earlier_weights weights_before(ivec2 tile, bool full) {
     }
     at = next > last.x ? ivec2(first.x, at.y + 1) : ivec2(next, at.y);
   }
-  uint level = min(largest * most_selection_level / highest_level_weight, most_selection_level);
+  uint level = min(largest * max_selection_level / highest_level_weight, max_selection_level);
   return earlier_weights(float(sum) / float(max(count, 1u) * full_pixel_weight),
-                         largest > pixel_weight_step, count > 0u ? level : most_selection_level);
+                         largest > pixel_weight_step, count > 0u ? level : max_selection_level);
 }
 
 void main() {
@@ -153,7 +153,7 @@ void main() {
         mean_squared_range(tile) + reached_fraction * squared_range_around(tile, reach);
     float importance = mean_importance(tile);
     float amount = ranges * importance * importance * min(d_px / full_change_d_px, 1.0);
-    earlier_weights before = earlier_weights(0.0, false, most_selection_level);
+    earlier_weights before = earlier_weights(0.0, false, max_selection_level);
     if (has_states_before() && has_pixel_weights_before() && history_usable())
       before = weights_before(tile, (entry & class_full_bit) != 0u);
     amount *= mix(1.0, selection_stay, before.mean);

@@ -49,7 +49,7 @@ uint next_steady(uint steady, uint units, uint demand, uint kept) {
     return all_steady;
   int all = int(units), limit = max(all / 8, 1);
   int free = clamp(all - int(kept), -limit, limit);
-  return uint(clamp(int(steady) + free * int(steady_gain) / all, int(least_steady),
+  return uint(clamp(int(steady) + free * int(steady_gain) / all, int(min_steady),
                     int(all_steady)));
 }
 

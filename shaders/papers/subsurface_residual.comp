@@ -82,8 +82,8 @@ vec3 mean_ratio(vec4 ratio, previous_place place, uint id, float tolerance) {
   return sum.rgb / sum.a;
 }
 
-// Returns whether the tile samples in this frame: one of each 2x2 tiles in four frames, or one of
-// each 4x4 tiles in sixteen.
+// Returns whether the tile takes samples in this frame. Tiles take turns: within 2x2 tiles each is
+// sampled in every fourth frame, within 4x4 tiles in every sixteenth.
 bool is_turn(ivec2 tile, float confidence) {
   if (confidence < settings.often_below)
     return (uint(tile.x & 1) + 2u * uint(tile.y & 1)) == (frame.frame_index & 3u);

@@ -7,8 +7,8 @@
 #include "constants.glsl"
 
 const int side_taps[3] = int[3](5, 8, 12); // for 11, 17, 25 taps
-const int most_side_taps = 12;
-const float most_pixels = 32768.0; // of a tap's offset
+const int max_side_taps = 12;
+const float max_offset_pixels = 32768.0; // of a tap's offset
 // separable_offsets(); offsets between nodes and kernels of other pixels of a tile reach further.
 const float reach_of_d[3] = float[3](5.0, 7.0, 10.0);
 const float longer_reach = 1.05;
@@ -20,7 +20,7 @@ const int first_row[3] = int[3](0, separable_nodes* rows_per_node[0],
 // Returns the maximum number of pixels to a side that a pass reads. separable_reach_px mirrors it.
 int separable_reach(int choice, float d_px) {
   float reach = max(float(side_taps[choice]), longer_reach * reach_of_d[choice] * d_px);
-  return int(min(ceil(reach), most_pixels)) + more_reach;
+  return int(min(ceil(reach), max_offset_pixels)) + more_reach;
 }
 
 // The place of a pixel's kernel in the table.
@@ -65,7 +65,7 @@ kernel_tap find_tap(kernel_place place, int i, float core, float footprint) {
   int decays = place.low + place.side + 3 + ((i - 1) >> 2), at = (i - 1) & 3;
   kernel_tap tap;
   tap.weight = row.rgb;
-  tap.offset = clamp(row.w * place.stretch, 1e-6, most_pixels);
+  tap.offset = clamp(row.w * place.stretch, 1e-6, max_offset_pixels);
   float mm = tap.offset * footprint;
   tap.square = mm * mm;
   tap.decay = mix(separable_rows[decays][at], separable_rows[decays + place.step][at], place.part) /

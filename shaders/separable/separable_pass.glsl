@@ -21,7 +21,7 @@
 const float same_kernel = 0.03;
 // Pixels are square up to this difference of the root of their sides' ratio from 1.
 const float same_elongation = 0.001;
-const int reach = most_side_taps; // of dense taps
+const int reach = max_side_taps; // of dense taps
 const int window_length = 8 + 2 * reach;
 const int window_texels = 8 * window_length;
 
@@ -141,8 +141,8 @@ vec3 scatter_alone(separable_pass how, scattering_pixel at, vec3 own, vec3 light
 // Light and depth of the window, row by row; infinitely deep where another profile is visible.
 shared vec4 window[window_texels];
 // The kernel of the tile: weight and offset; square, decay and gain.
-shared vec4 shared_weight[most_side_taps + 1];
-shared vec4 shared_nearness[most_side_taps + 1];
+shared vec4 shared_weight[max_side_taps + 1];
+shared vec4 shared_nearness[max_side_taps + 1];
 shared uint chosen; // invocation whose kernel is shared
 shared uint chosen_kernel;
 shared float chosen_profile, chosen_d_px, chosen_footprint;
@@ -218,7 +218,7 @@ vec3 scatter_in_window(separable_pass how, scattering_pixel at, kernel_ends ends
   int stride = how.vertical ? 8 : 1;
   int first = how.vertical ? local.x + 8 * local.y : local.x + window_length * local.y;
   tap_sums sums = tap_sums(ends.own * own, ends.own);
-  [[unroll]] for (int i = 1; i <= most_side_taps; ++i) {
+  [[unroll]] for (int i = 1; i <= max_side_taps; ++i) {
     if (i > side_taps[how.taps] || i > min(ends.dense, ends.used))
       break;
     vec4 before = window[first + (reach - i) * stride];

@@ -40,10 +40,10 @@ vec4 light_at(ivec2 texel) {
   // Tiles that enter or leave the list change slowly from unscattered to blurred light.
   uint word = word_of_tile((texel - frame.rect.xy) >> 3);
   bool listed = is_listed(state_of_word(word));
-  if (listed && level_of_word(word) == most_selection_level)
+  if (listed && level_of_word(word) == max_selection_level)
     return texelFetch(blurred_image, texel, 0);
   vec4 light = unscattered_at(texel);
-  float part = float(level_of_word(word) + 1u) / float(most_selection_level + 1u);
+  float part = float(level_of_word(word) + 1u) / float(max_selection_level + 1u);
   if (listed)
     light.rgb = mix(light.rgb, texelFetch(blurred_image, texel, 0).rgb, part);
   return light;

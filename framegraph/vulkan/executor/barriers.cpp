@@ -178,7 +178,7 @@ struct AliasBarrier {
   bool needed() const { return scopes.source_stages != 0; }
 };
 
-void submit_batch(const State& state, VkCommandBuffer commands, const Batch& batch) {
+void record_batch(const State& state, VkCommandBuffer commands, const Batch& batch) {
   if (batch.images == 0 && batch.buffers == 0 && batch.memory == 0) return;
   VkDependencyInfo info{};
   info.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO;
@@ -300,7 +300,7 @@ void record_barriers(State& state, const FrameInput& frame, const BarrierBatch& 
     else
       state.buffer_barriers[batch.buffers++] = buffer_barrier(placeholder.buffer, in_order);
   }
-  submit_batch(state, frame.command_buffer, batch);
+  record_batch(state, frame.command_buffer, batch);
 }
 
 void record_memory_acquire(State& state, const FrameInput& frame) noexcept {
@@ -332,7 +332,7 @@ void record_transfers(State& state, const FrameInput& frame, bool acquire, const
     if (resource.type == ResourceType::image) transfer(state.image_barriers[batch.images - 1]);
     if (resource.type == ResourceType::buffer) transfer(state.buffer_barriers[batch.buffers - 1]);
   }
-  submit_batch(state, frame.command_buffer, batch);
+  record_batch(state, frame.command_buffer, batch);
 }
 
 // placeholder; replaced by each image's layout

@@ -219,7 +219,7 @@ void destroy_environment(State& state) {
   device.vk.vkDestroyDescriptorSetLayout(device.device, environment.set_layout, device.allocator);
   device.vk.vkDestroySampler(device.device, environment.sampler, device.allocator);
   device.vk.vkDestroyBuffer(device.device, environment.buffer, device.allocator);
-  give_back_memory(device, environment.memory);
+  free_memory(device, environment.memory);
 }
 
 void clear_counters(State& state, uint32_t frame_slot) noexcept {

@@ -39,7 +39,7 @@ bool is_table(size_t binding, const EnvironmentBinding& given) {
 
 EnvironmentTables::State::~State() {
   device.vk.vkDestroyBuffer(device.device, buffer, device.allocator);
-  give_back_memory(device, memory);
+  free_memory(device, memory);
 }
 
 EnvironmentTables::EnvironmentTables(std::unique_ptr<State> state) : state_(std::move(state)) {}
@@ -79,7 +79,7 @@ Error EnvironmentTables::create(const Device& device,
 ViewTables::State::~State() {
   const Device& device = source->state().device;
   device.vk.vkDestroyBuffer(device.device, copy, device.allocator);
-  give_back_memory(device, memory);
+  free_memory(device, memory);
 }
 
 ViewTables::ViewTables(std::unique_ptr<State> state) : state_(std::move(state)) {}

@@ -215,7 +215,7 @@ void destroy_memory(State& state) {
     device.vk.vkDestroyBuffer(device.device, instance.buffer, device.allocator);
   }
   for (const HeapMemory& heap : state.heaps)
-    if (heap.owned) give_back_memory(device, heap.block);
+    if (heap.owned) free_memory(device, heap.block);
 }
 
 } // namespace dermis::vulkan

@@ -104,7 +104,7 @@ void destroy_placeholders(State& state) {
     device.vk.vkDestroyImageView(device.device, placeholder.view, device.allocator);
     device.vk.vkDestroyImage(device.device, placeholder.image, device.allocator);
     device.vk.vkDestroyBuffer(device.device, placeholder.buffer, device.allocator);
-    give_back_memory(device, placeholder.memory);
+    free_memory(device, placeholder.memory);
   }
 }
 

@@ -12,7 +12,7 @@ constexpr Port clear_tiles_ports[] = {
     port::read_buffer("listed", "uint",
                       "per tile of the render rectangle: 0 if the list leaves the tile out "
                       "('classes' or 'samples_per_tile')"),
-    port::written("target", "0 in all tiles that are not listed; other texels keep no value",
+    port::written("target", "0 in all tiles that are not listed; undefined in the listed tiles",
                   cleared_formats),
 };
 } // namespace

@@ -125,11 +125,11 @@ static_assert(needs[buffers].port == "lighting");
 
 } // namespace
 
-std::span<const PortNeed> needs_of(std::string_view kind) {
-  if (kind == clear_type.name) return {};
-  const bool step = kind == sap_setup_half_res_type.name || kind == sap_down_type.name ||
-                    kind == sap_up_type.name || kind == pyramid_down_type.name ||
-                    kind == sap_coarse_down_type.name || kind == sap_coarse_up_type.name;
+std::span<const PortNeed> needs_of(std::string_view pass_type) {
+  if (pass_type == clear_type.name) return {};
+  const bool step = pass_type == sap_setup_half_res_type.name || pass_type == sap_down_type.name ||
+                    pass_type == sap_up_type.name || pass_type == pyramid_down_type.name ||
+                    pass_type == sap_coarse_down_type.name || pass_type == sap_coarse_up_type.name;
   return std::span(needs).first(step ? buffers : std::size(needs));
 }
 

@@ -10,6 +10,6 @@
 namespace dermis::subsurface {
 
 // Returns the needs of a pass type by its name.
-std::span<const PortNeed> needs_of(std::string_view kind);
+std::span<const PortNeed> needs_of(std::string_view pass_type);
 
 } // namespace dermis::subsurface

@@ -200,8 +200,8 @@ TEST_F(Frontier, LargerBudgets_NeverPredictMoreError) {
   EXPECT_EQ(predict(allocated, 1e-3f).fits, 0u);
 }
 
-// A host whose other passes take `others_ms` at the allocated size holds one budget for all of
-// them with its resolution.
+// The host keeps all passes of a frame within one budget by lowering its resolution. Its own passes
+// take `others_ms` at the allocated size.
 TEST_F(Frontier, Resolution_HoldsOneBudget) {
   make();
   draw(allocated);

@@ -14,7 +14,7 @@ constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 TEST(Burley, CdfHasTheValuesOfTheClosedForm) {
   // Reference table T4, six digits.
   const double r[] = {0.5, 1, 2, 3, 5, 10};
-  const double expected[] = {.213506, .370632, .581103, .711644, .856659, .973233};
+  const double expected[] = {0.213506, 0.370632, 0.581103, 0.711644, 0.856659, 0.973233};
   for (int i = 0; i < 6; ++i)
     EXPECT_NEAR(burley_cdf(2.5 * r[i], 2.5), expected[i], 5e-7);
 }
@@ -53,7 +53,7 @@ TEST(Burley, ExactInverseInvertsTheCdf) {
 }
 
 TEST(Burley, ExactInverseHasTheTabulatedRadii) {
-  const double xi[] = {.5, .9, .99, .997, .999};
+  const double xi[] = {0.5, 0.9, 0.99, 0.997, 0.999};
   const double expected[] = {1.55218, 6.06223, 12.95264, 16.56440, 19.86022};
   for (int i = 0; i < 5; ++i)
     EXPECT_NEAR(burley_inverse_survival(1 - xi[i], 1), expected[i], 6e-6);

@@ -104,8 +104,8 @@ TEST_P(EveryShape, ScalesWithLengths) {
 
 TEST(Dipole, MatchesThePapersConstantsAndReflectance) {
   EXPECT_NEAR(dipole_fdr(1.3), 0.444763, 1e-6);
-  // Skin1 and wholemilk of figure 5: printed diffuse reflectances 0.44 0.22 0.13 and 0.91 0.88
-  // 0.76.
+  // Skin1 and wholemilk in figure 5 of Jensen et al. 2001, which prints the diffuse reflectances
+  // 0.44 0.22 0.13 and 0.91 0.88 0.76.
   EXPECT_NEAR(dipole_albedo(0.032, 0.74), 0.44, 0.01);
   EXPECT_NEAR(dipole_albedo(0.17, 0.88), 0.22, 0.01);
   EXPECT_NEAR(dipole_albedo(0.48, 1.01), 0.13, 0.01);

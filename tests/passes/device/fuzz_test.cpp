@@ -82,7 +82,7 @@ protected:
                                       uint64_t seed) const {
     std::vector<Decisions> all = {
         {"nothing shared, order of the file", PassOrder::program, 0, PackingLevel::fast, false},
-        {"as it ships"},
+        {"shipped options"},
         {"packed fast, poison", PassOrder::memory, 0, PackingLevel::fast, true, true, true},
         {"another order", PassOrder::random, 2 * seed + 1},
         {"a third order, packed fast", PassOrder::random, 2 * seed + 2, PackingLevel::fast},
@@ -96,7 +96,7 @@ protected:
     const auto shipped = plan_of(graph, show, all[1]);
     for (uint32_t h = 0; shipped && h < shipped->histories.size(); ++h)
       if (is_aliased(*shipped, h)) {
-        Decisions without = {"as it ships, a history lends nothing"};
+        Decisions without = {"shipped options, without aliasing into one history"};
         without.keep_alive = shipped->resources[shipped->histories[h].resource].declared;
         all.push_back(without);
         break;

@@ -134,13 +134,13 @@ struct View {
   JsonWriter out = {};
 
   // Writes the location of a declaration, for the page's list of files.
-  void place(const SourceLocation& where) {
+  void write_location(const SourceLocation& where) {
     out.key("file");
     where.file.valid() ? out.value(where.file.value) : out.null();
     out.member("line", where.line);
   }
 
-  void declarations() {
+  void write_declarations() {
     const Graph& graph = loaded.graph;
     out.key("files").open_array();
     for (const SourceFile& file : diagnostics.files)
@@ -150,13 +150,13 @@ struct View {
       out.open_object(true)
           .member("name", pass.name)
           .member("kind", loaded.pass_types[pass.type].name);
-      place(pass.where);
+      write_location(pass.where);
       out.member("note", pass.note).close();
     }
     out.close().key("resources").open_array();
     for (const ResourceDeclaration& resource : graph.resources) {
       out.open_object(true).member("name", resource.name);
-      place(resource.where);
+      write_location(resource.where);
       out.member("note", resource.note).close();
     }
     out.close().key("settings").open_array();
@@ -252,7 +252,7 @@ ViewAnswer make_view(const LoadedGraph& loaded, const ViewOptions& options,
   View view{loaded, options, diagnostics, switched_settings(loaded.graph)};
   view.out.open_object().member("dermis_view", 1).member("graph", loaded.graph.name);
   view.out.member("command", options.command);
-  view.declarations();
+  view.write_declarations();
   const bool compiled = view.plans();
   diagnostics.files = all;
   if (!compiled) return {};

@@ -19,7 +19,7 @@ namespace dermis::tools {
 namespace {
 
 // Results at their image positions. Other pixels hold the input light.
-struct Answer {
+struct FrameReference {
   Image light, mask; // mask: 1 where the reference was computed
   uint64_t pixels = 0;
 };
@@ -47,14 +47,16 @@ std::optional<std::vector<double>> solve(const Session& session, const Reference
   return chosen;
 }
 
-std::optional<Answer> answer(const Session& session, const CapturedFrame& captured,
-                             const std::string& name, uint32_t subset) {
+std::optional<FrameReference> compute_reference(const Session& session,
+                                                const CapturedFrame& captured,
+                                                const std::string& name, uint32_t subset) {
   const ReferenceFrame frame = make_reference_frame(captured);
   const std::vector<uint32_t> pixels = chosen_pixels(frame, subset);
   const auto reference = solve(session, frame, name, pixels);
   if (!reference) return std::nullopt;
-  Answer made{captured.lighting, Image::sized(captured.lighting.width, captured.lighting.height, 1),
-              pixels.size()};
+  FrameReference made{captured.lighting,
+                      Image::sized(captured.lighting.width, captured.lighting.height, 1),
+                      pixels.size()};
   const Rectangle& render = captured.description.render;
   for (size_t i = 0; i < pixels.size(); ++i) {
     const uint32_t x = render.x + pixels[i] % frame.width, y = render.y + pixels[i] / frame.width;
@@ -65,8 +67,8 @@ std::optional<Answer> answer(const Session& session, const CapturedFrame& captur
   return made;
 }
 
-std::string write_answer(const Answer& made, const std::string& name, bool with_mask,
-                         OutputFolder& out) {
+std::string write_reference(const FrameReference& made, const std::string& name, bool with_mask,
+                            OutputFolder& out) {
   std::string problem = out.open_below(name);
   if (!problem.empty()) return problem;
   if (!write_exr(out.path_of(name + "/reference.exr"), made.light, {"R", "G", "B"}, problem))
@@ -91,10 +93,10 @@ ExitCode reference(const Session& session, const ReferenceOptions& options) {
     const std::optional<CapturedFrame> captured = load_frame(*sequence, i);
     if (!captured)
       return fail(session, ExitCode::problems, "the capture changed while it was read");
-    const std::optional<Answer> made =
-        answer(session, *captured, sequence->names[i], options.subset);
+    const std::optional<FrameReference> made =
+        compute_reference(session, *captured, sequence->names[i], options.subset);
     if (!made || interrupted()) return fail(session, ExitCode::interrupted, "stopped");
-    const std::string problem = write_answer(*made, sequence->names[i], options.subset > 0, out);
+    const std::string problem = write_reference(*made, sequence->names[i], options.subset > 0, out);
     if (!problem.empty()) return fail(session, ExitCode::environment, problem);
     pixels += made->pixels;
   }

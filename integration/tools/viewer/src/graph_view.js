@@ -6,11 +6,11 @@ import { make_flow } from './flow.js';
 import { place } from './layout.js';
 import { color } from './theme.js';
 
-const most_passes_with_resources = 150; // with more passes, edges connect passes directly
+const max_passes_with_resources = 150; // with more passes, edges connect passes directly
 const labels_legible = 7; // pixels on screen
-const most_curves = 900; // edges drawn as curves; with more, edges are straight
+const max_curves = 900; // edges drawn as curves; with more, edges are straight
 // smaller labels are illegible: the view then shows the start of the graph
-const least_first_zoom = 0.55;
+const min_first_zoom = 0.55;
 
 function measure(label, font) {
   measure.context ??= document.createElement('canvas').getContext('2d');
@@ -68,14 +68,14 @@ export function make_graph_view(container, choose, describe) {
 
   // Shows the left end at half height.
   function show_start() {
-    view.zoom(least_first_zoom);
+    view.zoom(min_first_zoom);
     const box = view.elements().boundingBox(), first = view.nodes('[kind = "pass"]')[0].position();
-    view.pan({ x: 20 - box.x1 * least_first_zoom, y: container.clientHeight / 2 - first.y * least_first_zoom });
+    view.pan({ x: 20 - box.x1 * min_first_zoom, y: container.clientHeight / 2 - first.y * min_first_zoom });
   }
 
   return {
     show(plan, times) {
-      const { nodes, edges } = make_flow(plan, plan.passes.length <= most_passes_with_resources);
+      const { nodes, edges } = make_flow(plan, plan.passes.length <= max_passes_with_resources);
       const slowest = Math.max(0, ...Object.values(times));
       for (const node of nodes) {
         const time = node.kind === 'pass' ? times[node.name] : undefined;
@@ -90,11 +90,11 @@ export function make_graph_view(container, choose, describe) {
         view.elements().remove();
         view.add([
           ...nodes.map((data) => ({ group: 'nodes', data, position: places.get(data.id) })),
-          ...edges.map((edge) => ({ group: 'edges', data: { id: edge.id, source: edge.from, target: edge.to, kind: edge.kind, straight: edges.length > most_curves ? 1 : 0 } })),
+          ...edges.map((edge) => ({ group: 'edges', data: { id: edge.id, source: edge.from, target: edge.to, kind: edge.kind, straight: edges.length > max_curves ? 1 : 0 } })),
         ]);
       });
       view.fit(undefined, 20);
-      if (view.zoom() < least_first_zoom) show_start();
+      if (view.zoom() < min_first_zoom) show_start();
     },
     select(kind, name) {
       view.batch(() => {
