@@ -11,8 +11,9 @@
 
 namespace dermis::test {
 
-// Returns the contents of the file; "" if it cannot be read.
+// Returns the contents of the file; "" if it cannot be read, as a folder.
 inline std::string read_text(const std::filesystem::path& path) {
+  if (std::filesystem::is_directory(path)) return {};
   std::ifstream file(path, std::ios::binary);
   return {std::istreambuf_iterator<char>(file), {}};
 }
