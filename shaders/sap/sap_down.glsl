@@ -10,9 +10,9 @@
 
 // Fraction of a child that counts in the second layer even if the first has used the child.
 const float min_shared = 0.25;
-// Returns what more of the child's mass counts, up to all of it. bend: difference of the slopes of
-// child and seed. Parallel surfaces are two; a bent surface must not count twice.
-float shared_mass(vec2 bend) {
+// Returns the fraction that counts in addition for the mass if child and seed are parallel, because
+// they are two surfaces then; a bent one must not count twice. bend: difference of their slopes.
+float parallel_share(vec2 bend) {
   return clamp(1.0 - min_shared - abs(bend.x) - abs(bend.y), 0.0, 1.0);
 }
 
@@ -80,7 +80,7 @@ void add_child(sap_parent parent, sap_seed own, sap_seed before, int c, bool sec
   float near_weight = own_part * kept;
   float used_weight = near_weight * used;
   float flat_weight = near_weight - (1.0 - min_shared) * used_weight;
-  float mass = flat_weight + used_weight * shared_mass(child.slope - seed.slope);
+  float mass = flat_weight + used_weight * parallel_share(child.slope - seed.slope);
   sum.remains = sum.remains || child.id != 0u && !(same && kept > max_used_part);
   vec4 tap = light_of(parent, c, second, child.id);
   float weight = near_weight * narrowing * tap.a;

@@ -21,10 +21,10 @@ constexpr double max_used_part = 0.27;
 
 // Fraction of a child that counts in the second layer even if the first has used the child.
 constexpr double min_shared = 0.25;
-// Returns the same fraction for mass: up to 1 if the child is parallel to the layer's seed.
-// Parallel surfaces are two; a bent surface must not count twice.
-template <class Real> Real shared_mass(Real bend_x, Real bend_y) {
-  return std::max(Real(1) - std::abs(bend_x) - std::abs(bend_y), Real(min_shared));
+// Returns the fraction that counts in addition for the mass if child and seed are parallel, because
+// they are two surfaces then; a bent one must not count twice. `bend`: difference of their slopes.
+template <class Real> Real parallel_share(Real bend_x, Real bend_y) {
+  return std::max(Real(1 - min_shared) - std::abs(bend_x) - std::abs(bend_y), Real(0));
 }
 
 // Weight of a child along an axis; an axis that is not halved has one child.
@@ -153,9 +153,9 @@ SapTexel<Real> reduce(const SapPyramid<Real>& pyramid, Children<Real>& children,
     const Real near_weight = children.weight(k) * kept * child->mass;
     const Real used = 1 - children.left[k];
     const Real flat_weight = near_weight * (1 - Real(1 - min_shared) * used);
-    const Real near_mass =
-        near_weight * (children.left[k] + used * shared_mass(child->slope_x - plane.slope_x,
-                                                             child->slope_y - plane.slope_y));
+    const Real parallel =
+        parallel_share(child->slope_x - plane.slope_x, child->slope_y - plane.slope_y);
+    const Real near_mass = flat_weight + near_weight * used * parallel;
     children.left[k] *= 1 - kept;
     const Real weight = near_weight * narrowing * child->area;
     light_mass += near_weight * narrowing;
