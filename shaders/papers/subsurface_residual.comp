@@ -33,6 +33,8 @@ const float max_squared_deviation =
 const float new_light_factor =
     0.5; // factor on alpha where light has just appeared that may not stay
 const float sample_noise = 0.4; // squared noise of a ratio, times the number of its samples
+// The same for `shrinkage`, of the ratio of one pixel and of the mean with those around it.
+const float single_noise = 0.9, averaged_noise = 0.05;
 // Number of samples that a moving mean of weight alpha is worth, in n / alpha: (2 - alpha) / alpha.
 const float memory = 1.9;
 
@@ -43,6 +45,14 @@ const float memory = 1.9;
 float agreement_weight(float off, float tolerance, float odds) {
   float same = odds * exp(-off * off / (tolerance * tolerance));
   return same / (1.0 + same);
+}
+
+// Returns how much of a ratio's distance from 1 is more than the noise of its samples. Where the
+// pyramid is right, few samples only add noise.
+float shrinkage(vec3 mean, float count, bool averaged) {
+  float off = residual_luminance(mean - 1.0);
+  float noise = (averaged ? averaged_noise : single_noise) / max(count, 1.0);
+  return off * off / (off * off + noise);
 }
 
 previous_place place_of(ivec2 pixel, sap_texel own) {
@@ -156,10 +166,11 @@ void main() {
     float pattern_agreement =
         first ? 1.0 : agreement_weight(pattern - kept.x, tolerance_of(all.b, kept.y), all.g);
     float fraction = sample_fraction(light.a, ratio.a, settings.sample_weight);
-    vec3 mean = ratio.rgb;
-    if (fraction > 0.0 && !first && !lost && place.depth > 0.0)
-      mean = mean_ratio(ratio, place, own.id, tolerance);
-    light.rgb *= 1.0 + pattern_agreement * fraction * (min(mean, vec3(largest_ratio)) - 1.0);
+    bool averaged = fraction > 0.0 && !first && !lost && place.depth > 0.0;
+    vec3 mean = averaged ? mean_ratio(ratio, place, own.id, tolerance) : ratio.rgb;
+    // The first samples of a surface are noisy.
+    float trust = ratio.a < 4.0 * n ? shrinkage(mean, ratio.a, averaged) : 1.0;
+    light.rgb *= 1.0 + pattern_agreement * fraction * trust * (min(mean, vec3(largest_ratio)) - 1.0);
   }
   imageStore(refined_image, texel, round_to_half(light));
   imageStore(ratio_out_image, texel, round_to_half(ratio));

@@ -131,10 +131,10 @@ TEST_F(Temporal, MovingShadows_AreRefinedInEachFrame) {
   RecordProperty("sap", std::to_string(sap.mean_psnr_db));
   RecordProperty("residual", std::to_string(residual.mean_psnr_db));
   RecordProperty("blind", std::to_string(blind.mean_psnr_db));
-  // Regression bounds: measured 4.9 dB better on average than the pyramid. Trust in all light costs
-  // 0.42 dB; it cost 1.5 dB when pixels without a loss were sampled, too.
-  EXPECT_GT(residual.mean_psnr_db, sap.mean_psnr_db + 4.3);
-  EXPECT_GT(residual.mean_psnr_db, blind.mean_psnr_db + 0.2);
+  // Regression bounds: measured 4.0 dB better on average than the pyramid. Trust in all light gains
+  // 0.04 dB, because samples weigh little; it cost 0.42 dB when they weighed twice as much.
+  EXPECT_GT(residual.mean_psnr_db, sap.mean_psnr_db + 3.7);
+  EXPECT_GT(residual.mean_psnr_db, blind.mean_psnr_db - 0.15);
   for (const uint32_t t : judged)
     EXPECT_GT(residual.psnr_db.at(t), sap.psnr_db.at(t) + 1.2) << t;
 }
@@ -157,8 +157,8 @@ TEST_F(Temporal, FlashFromAnotherSide_KeepsTheRatio) {
   for (const uint32_t t : lit) {
     // Regression bound: measured 0.0 dB.
     EXPECT_GT(residual.psnr_db.at(t), sap.psnr_db.at(t) - 0.2) << t;
-    // Measured 2.6 dB in the least affected frame.
-    EXPECT_LT(blind.psnr_db.at(t), sap.psnr_db.at(t) - 2) << t;
+    // Measured 1.3 dB in the least affected frame.
+    EXPECT_LT(blind.psnr_db.at(t), sap.psnr_db.at(t) - 1) << t;
   }
   for (const uint32_t t : judged)
     if (std::find(lit.begin(), lit.end(), t) == lit.end()) {
