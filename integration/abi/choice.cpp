@@ -254,6 +254,7 @@ dermis_frame_statistics make_statistics(const Chooser& chooser,
   out.sample_units = frame.counters.sample_units;
   out.sample_demand = frame.counters.sample_demand;
   out.mean_d_px = static_cast<float>(subsurface::mean_d_px(frame.counters));
+  out.mean_relief = static_cast<float>(subsurface::mean_relief(frame.counters));
   const subsurface::ProbedError probed = subsurface::probed_error(frame.counters);
   out.probed_tiles = probed.tiles;
   out.probed_rmse = static_cast<float>(probed.rmse);

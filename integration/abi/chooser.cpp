@@ -21,7 +21,9 @@ choice::ErrorModel default_errors() {
   const auto document =
       parse_document("errors", std::string(choice::default_errors_text()), diagnostics);
   auto read = document ? choice::read_error_model(*document, diagnostics) : std::nullopt;
-  return read ? std::move(*read) : choice::ErrorModel{"", {{1, 1}}, {}, 0};
+  choice::ErrorModel unknown;
+  unknown.unscattered = {{1, 1}};
+  return read ? std::move(*read) : unknown;
 }
 
 choice::Calibration default_calibration(choice::DeviceClass device) {
@@ -104,8 +106,9 @@ void learn_error(Chooser& chooser, const choice::Configuration& configuration,
   if (configuration.technique >= 0 &&
       chooser.errors.techniques[static_cast<size_t>(configuration.technique)].by_rays)
     return;
-  const double expected = expected_rmse(chooser.errors, configuration, mean_d_px(counters),
-                                        counters.sample_units, counters.sample_demand);
+  const double expected =
+      expected_rmse(chooser.errors, configuration, {mean_d_px(counters), mean_relief(counters)},
+                    counters.sample_units, counters.sample_demand);
   observe_error(chooser.found, corrected_technique(configuration), probed.rmse, expected);
 }
 
@@ -160,7 +163,7 @@ void observe_frame(Chooser& chooser, CompiledGraph& compiled_graph, FrameChoice&
 struct Content {
   choice::FrameLoad load;
   uint64_t scattering_tiles = 0;
-  double d_px = assumed_d_px;
+  choice::FrameKey key{assumed_d_px};
   double units_per_tile = choice::max_units; // of samples that scattering tiles request
   double transmitted_rms = 0;
 };
@@ -188,8 +191,10 @@ Content expected_content(const Chooser& chooser, const vulkan::Rectangle& rectan
   out.load.listed_tiles = scaled(counted);
   out.load.copied_tiles = chooser.counters.scattering_tiles == 0 ? out.load.listed_tiles : 0;
   out.scattering_tiles = scaled(chooser.counters.scattering_tiles);
-  if (out.scattering_tiles > 0) out.d_px = scale * subsurface::mean_d_px(chooser.counters);
-  out.units_per_tile = expected_units(chooser.demand, out.d_px);
+  if (out.scattering_tiles > 0)
+    out.key = {scale * subsurface::mean_d_px(chooser.counters),
+               subsurface::mean_relief(chooser.counters)};
+  out.units_per_tile = expected_units(chooser.demand, out.key.d_px);
   out.transmitted_rms = subsurface::transmitted_rms(chooser.counters);
   return out;
 }
@@ -207,8 +212,7 @@ std::span<choice::Forecast> forecast_first(Chooser& chooser, const CompiledGraph
     const double missed =
         missed_rmse(chooser.errors, configuration.technique, content.transmitted_rms);
     const auto error_of = [&](int32_t technique) {
-      return std::hypot(expected_rmse(chooser.errors, technique, content.d_px) * correction,
-                        missed);
+      return std::hypot(expected_rmse(chooser.errors, technique, content.key) * correction, missed);
     };
     choice::Forecast& out = chooser.scratch.forecasts[i];
     out = {};
@@ -352,7 +356,7 @@ std::span<const choice::Forecast> forecast(Chooser& chooser, const CompiledGraph
                                            const vulkan::Rectangle& rectangle) noexcept {
   constexpr double no_growth = 1;
   Content content = expected_content(chooser, rectangle, no_growth);
-  content.units_per_tile = likely_units(chooser.demand, content.d_px);
+  content.units_per_tile = likely_units(chooser.demand, content.key.d_px);
   return forecast_first(chooser, compiled_graph, compiled_graph.configurations.size(), content,
                         chooser.state.clock_s);
 }

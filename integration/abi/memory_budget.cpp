@@ -39,7 +39,7 @@ double rmse_of(const choice::ErrorModel& errors, const choice::Configuration& co
   constexpr double usual_d_px[] = {1, 4, 16};
   double product = 1;
   for (const double d_px : usual_d_px)
-    product *= expected_rmse(errors, configuration.technique, d_px);
+    product *= expected_rmse(errors, configuration.technique, {d_px});
   return std::cbrt(product);
 }
 

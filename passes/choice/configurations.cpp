@@ -352,11 +352,11 @@ double concentration(const Configuration& configuration) {
   return configuration.selects_tiles ? tile_concentration : 1;
 }
 
-double expected_rmse(const ErrorModel& errors, const Configuration& configuration, double d_px,
-                     uint32_t given, uint32_t demand) {
-  const double all = expected_rmse(errors, configuration.technique, d_px);
+double expected_rmse(const ErrorModel& errors, const Configuration& configuration,
+                     const FrameKey& key, uint32_t given, uint32_t demand) {
+  const double all = expected_rmse(errors, configuration.technique, key);
   if (!configuration.takes_samples) return all;
-  const double none = expected_rmse(errors, configuration.without_samples, d_px);
+  const double none = expected_rmse(errors, configuration.without_samples, key);
   const double fraction = demand > 0 ? std::min(1.0, double(given) / double(demand)) : 0.0;
   const double left = std::pow(1 - fraction, concentration(configuration));
   return std::sqrt(all * all + left * (none * none - all * all));

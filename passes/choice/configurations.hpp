@@ -116,7 +116,7 @@ double concentration(const Configuration& configuration);
 // Returns the expected RMSE if `given` of the `demand` units are taken: interpolates the mean
 // squares without samples and with all samples as Forecast::concentration says. Units with the
 // largest benefit come first, so the result is an upper bound of the measured error.
-double expected_rmse(const ErrorModel& errors, const Configuration& configuration, double d_px,
-                     uint32_t given, uint32_t demand);
+double expected_rmse(const ErrorModel& errors, const Configuration& configuration,
+                     const FrameKey& key, uint32_t given, uint32_t demand);
 
 } // namespace dermis::choice

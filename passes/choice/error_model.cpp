@@ -14,7 +14,7 @@ namespace {
 constexpr size_t max_points = 64, max_techniques = 256, max_pass_types = 16;
 constexpr double largest_through = 10; // maximum error relative to the light that a slab transmits
 constexpr double min_d_px = 1e-3, largest_d_px = 1e4, min_rmse = 1e-9, largest_rmse = 1e3;
-constexpr double largest_spread = 1e3;
+constexpr double largest_spread = 1e3, largest_power = 2;
 
 std::vector<ErrorPoint> read_curve(const Document& document, ObjectReader& owner,
                                    std::string_view key, Diagnostics& diagnostics) {
@@ -49,6 +49,10 @@ std::vector<ErrorPoint> read_curve(const Document& document, ObjectReader& owner
   return curve;
 }
 
+double read_power(ObjectReader& owner, std::string_view key) {
+  return owner.number(key, -largest_power, largest_power, Need::optional).value_or(0);
+}
+
 PassTypeMatch read_pass_type(const Document& document, NodeId node, const std::string& of,
                              Diagnostics& diagnostics) {
   PassTypeMatch match;
@@ -77,6 +81,43 @@ PassTypeMatch read_pass_type(const Document& document, NodeId node, const std::s
   return match;
 }
 
+std::vector<ReliefPoint> read_relief(const Document& document, ObjectReader& root,
+                                     Diagnostics& diagnostics) {
+  std::vector<ReliefPoint> curve;
+  const NodeId list = root.array("relief", 1, max_points, Need::optional);
+  if (!list.valid()) return curve;
+  const std::string what = "point of 'relief'";
+  for (const NodeId node : children(document, list)) {
+    if (!expect_kind(document, node, what, NodeKind::array, diagnostics)) continue;
+    const std::vector<NodeId> pair = children(document, node);
+    if (pair.size() != 2) {
+      diagnostics.add(
+          DiagnosticId::out_of_range, document.where(node),
+          fmt::format("{} has {} values; expected 2: d in pixels and relief", what, pair.size()));
+      continue;
+    }
+    const auto d_px =
+        read_number(document, pair[0], "d of a " + what, min_d_px, largest_d_px, diagnostics);
+    const auto relief =
+        read_number(document, pair[1], "relief of a " + what, relief_floor, 1, diagnostics);
+    if (!d_px || !relief) continue;
+    if (!curve.empty() && *d_px <= curve.back().d_px)
+      diagnostics.add(DiagnosticId::error_curve, document.where(node),
+                      fmt::format("{} has d = {} after d = {}; d must increase from point to point",
+                                  what, *d_px, curve.back().d_px));
+    curve.push_back({*d_px, *relief});
+  }
+  return curve;
+}
+
+void write_relief(JsonWriter& json, const ErrorModel& model) {
+  if (model.relief.empty()) return;
+  json.key("relief").open_array(true);
+  for (const ReliefPoint& point : model.relief)
+    json.open_array(true).value(point.d_px).value(point.relief).close();
+  json.close();
+}
+
 void write_curve(JsonWriter& json, std::string_view key, const std::vector<ErrorPoint>& curve) {
   json.key(key).open_array(true);
   for (const ErrorPoint& point : curve) {
@@ -85,6 +126,19 @@ void write_curve(JsonWriter& json, std::string_view key, const std::vector<Error
     json.close();
   }
   json.close();
+}
+
+// Returns the value at d, linear between points on logarithmic axes. Values are positive.
+template <class Point>
+double interpolate(const std::vector<Point>& curve, double d_px, double Point::*value) {
+  if (d_px <= curve.front().d_px) return curve.front().*value;
+  for (size_t i = 1; i < curve.size(); ++i) {
+    const Point &low = curve[i - 1], &high = curve[i];
+    if (d_px > high.d_px) continue;
+    const double part = std::log(d_px / low.d_px) / std::log(high.d_px / low.d_px);
+    return low.*value * std::pow(high.*value / low.*value, part);
+  }
+  return curve.back().*value;
 }
 
 bool holds(const SettingMatch& condition, const RunningPass& pass) {
@@ -113,6 +167,8 @@ std::optional<ErrorModel> read_error_model(const Document& document, Diagnostics
   model.unscattered = read_curve(document, root, "unscattered", diagnostics);
   model.unscattered_through =
       root.number("unscattered_through", 0, largest_through, Need::optional).value_or(0);
+  model.unscattered_relief_power = read_power(root, "unscattered_relief_power");
+  model.relief = read_relief(document, root, diagnostics);
   const NodeId techniques = root.array("techniques", 0, max_techniques);
   if (techniques.valid())
     for (const NodeId node : children(document, techniques)) {
@@ -125,6 +181,7 @@ std::optional<ErrorModel> read_error_model(const Document& document, Diagnostics
         for (const NodeId type : children(document, pass_types))
           technique.pass_types.push_back(read_pass_type(document, type, what, diagnostics));
       technique.curve = read_curve(document, object, "rmse", diagnostics);
+      technique.relief_power = read_power(object, "relief_power");
       technique.through = object.number("through", 0, largest_through, Need::optional).value_or(0);
       technique.by_rays = object.boolean("by_rays", Need::optional).value_or(false);
       object.finish();
@@ -139,7 +196,10 @@ std::string write_error_model(const ErrorModel& model, std::string_view note) {
   json.open_object().member("$schema", "../schema/errors.schema.json").member("dermis_errors", 2);
   json.member("note", note).member("scenes", std::string_view(model.scenes));
   write_curve(json, "unscattered", model.unscattered);
+  if (model.unscattered_relief_power != 0)
+    json.member("unscattered_relief_power", model.unscattered_relief_power);
   if (model.unscattered_through > 0) json.member("unscattered_through", model.unscattered_through);
+  write_relief(json, model);
   json.key("techniques").open_array();
   for (const TechniqueError& technique : model.techniques) {
     json.open_object(true).member("name", std::string_view(technique.name));
@@ -152,6 +212,7 @@ std::string write_error_model(const ErrorModel& model, std::string_view note) {
     }
     json.close();
     write_curve(json, "rmse", technique.curve);
+    if (technique.relief_power != 0) json.member("relief_power", technique.relief_power);
     if (technique.through > 0) json.member("through", technique.through);
     if (technique.by_rays) json.member("by_rays", true);
     json.close();
@@ -178,17 +239,15 @@ int32_t find_technique(const ErrorModel& model, const std::vector<RunningPass>& 
   return found;
 }
 
-double expected_rmse(const ErrorModel& model, int32_t technique, double d_px) {
-  const std::vector<ErrorPoint>& curve =
-      technique < 0 ? model.unscattered : model.techniques[static_cast<size_t>(technique)].curve;
-  if (d_px <= curve.front().d_px) return curve.front().rmse;
-  for (size_t i = 1; i < curve.size(); ++i) {
-    if (d_px > curve[i].d_px) continue;
-    const double part =
-        std::log(d_px / curve[i - 1].d_px) / std::log(curve[i].d_px / curve[i - 1].d_px);
-    return curve[i - 1].rmse * std::pow(curve[i].rmse / curve[i - 1].rmse, part);
-  }
-  return curve.back().rmse;
+double expected_rmse(const ErrorModel& model, int32_t technique, const FrameKey& key) {
+  const TechniqueError* row =
+      technique < 0 ? nullptr : &model.techniques[static_cast<size_t>(technique)];
+  const double at_usual_relief =
+      interpolate(row ? row->curve : model.unscattered, key.d_px, &ErrorPoint::rmse);
+  const double power = row ? row->relief_power : model.unscattered_relief_power;
+  if (key.relief < 0 || model.relief.empty() || power == 0) return at_usual_relief;
+  const double usual = interpolate(model.relief, key.d_px, &ReliefPoint::relief);
+  return at_usual_relief * std::pow((key.relief + relief_floor) / usual, power);
 }
 
 double missed_rmse(const ErrorModel& model, int32_t technique, double transmitted_rms) {

@@ -1,6 +1,7 @@
 #pragma once
-// Error model: measured RMSE of linear luminance over the projected shape parameter, for each
-// technique and quality setting. docs/choice.md describes how the tables are made.
+// Error model: measured RMSE of linear luminance over the projected shape parameter and the relief
+// of a frame, for each technique and quality setting. docs/choice.md describes how the tables are
+// made.
 
 #include "framegraph/text/document.hpp"
 
@@ -33,9 +34,23 @@ struct TechniqueError {
   std::string name;                      // name for people: "separable 25"
   std::vector<PassTypeMatch> pass_types; // passes that a graph must run, all of them
   std::vector<ErrorPoint> curve;         // ascending d_px; at least one point
+  double relief_power = 0;               // see expected_rmse
   double through = 0;                    // error relative to light transmitted through thin parts
   // whether the curve was measured against a ray-traced reference, not a screen-space one
   bool by_rays = false;
+};
+
+inline constexpr double relief_floor =
+    1e-3; // added to relief, so that flat scenes have a logarithm
+struct ReliefPoint {
+  double d_px = 1;
+  double relief = 0; // geometric mean of relief + relief_floor
+};
+
+// Properties of a frame by which the errors of techniques differ.
+struct FrameKey {
+  double d_px = 1;    // geometric mean over scattering tiles of the widest d
+  double relief = -1; // subsurface::mean_relief; negative: not known
 };
 
 struct ErrorModel {
@@ -43,6 +58,9 @@ struct ErrorModel {
   std::vector<ErrorPoint> unscattered; // curve without a technique
   std::vector<TechniqueError> techniques;
   double unscattered_through = 0; // as TechniqueError::through
+  // Usual relief of the scenes, for which the curves hold; ascending d_px. Empty: relief is no key.
+  std::vector<ReliefPoint> relief;
+  double unscattered_relief_power = 0; // as TechniqueError::relief_power
 };
 
 // Reads `"dermis_errors": 2`. Returns nullopt with errors in `diagnostics`. Thread: any.
@@ -58,9 +76,10 @@ struct RunningPass {
 // Returns the technique with most conditions among those whose conditions all hold; -1: none.
 int32_t find_technique(const ErrorModel& model, const std::vector<RunningPass>& passes);
 
-// Returns the RMSE from the curve: linear between points on logarithmic axes, constant beyond the
-// ends. technique -1: unscattered.
-double expected_rmse(const ErrorModel& model, int32_t technique, double d_px);
+// Returns the RMSE from the curve, times ((relief + relief_floor) / usual relief) to the power
+// `relief_power`; without relief the factor is 1. Curves are linear between points on logarithmic
+// axes, and constant beyond the ends. technique -1: unscattered.
+double expected_rmse(const ErrorModel& model, int32_t technique, const FrameKey& key);
 // Returns the error that the curve does not include: light transmitted through thin parts, whose
 // RMS is `transmitted_rms` (as subsurface::transmitted_rms).
 double missed_rmse(const ErrorModel& model, int32_t technique, double transmitted_rms);

@@ -131,6 +131,11 @@ double transmitted_rms(const FrameCounters& counters) {
              : 0;
 }
 
+double mean_relief(const FrameCounters& counters) {
+  if (counters.relief_pixels == 0) return -1;
+  return double(counters.relief_sum) / (double(relief_steps) * counters.relief_pixels);
+}
+
 double mean_d_px(const FrameCounters& counters) {
   if (counters.scattering_tiles == 0) return 0;
   constexpr double half_step = 0.5; // mean of what rounding down removes

@@ -52,6 +52,9 @@ struct FrameCounters {
   // Written by subsurface.transmission_stats: the mean square, over tiles with subsurface, of the
   // exposed transmitted light, at most 1, in steps of 1 / through_square_steps.
   uint32_t through_steps = 0;
+  // Written by subsurface.classify with the setting `relief`: the sum of relief_of (relief.glsl)
+  // over pixels of scattering tiles in steps of 1 / relief_steps, and the number of these pixels.
+  uint32_t relief_sum = 0, relief_pixels = 0;
   // For each probed tile, as bits of floats: the sum of squared errors and the number of pixels in
   // this sum, both times the number of tiles that the tile represents.
   std::array<std::array<uint32_t, 2>, max_probes> probes{};
@@ -59,6 +62,9 @@ struct FrameCounters {
 inline constexpr float counter_log2_shift = 8;      // d from 1/256 pixel
 inline constexpr float counter_log2_steps = 16;     // per octave; the sum of 4 M tiles fits 32 bits
 inline constexpr float through_square_steps = 1023; // the sum of 4 M tiles fits 32 bits
+inline constexpr float relief_steps = 255;          // the sum of 4 pixels of 4 M tiles fits 32 bits
+// Returns the mean relief (reference/relief.hpp), 0 to 1; -1: not counted.
+double mean_relief(const FrameCounters& counters);
 // Returns the root mean square of transmitted light over the tiles with subsurface, in exposed
 // luminance.
 double transmitted_rms(const FrameCounters& counters);

@@ -6,6 +6,7 @@
 #include "passes/common/dispatch.hpp"
 #include "passes/common/pass_types.hpp"
 #include "passes/common/profiles/radial_table.hpp"
+#include "passes/common/reference/relief.hpp"
 #include "passes/common/reference/surface.hpp"
 #include "passes/common/reproject.hpp"
 #include "passes/common/uniform_light.hpp"
@@ -180,6 +181,8 @@ std::string shared_constants() {
       "const float selection_stay = {};\n"
       "const uint selection_first_bin = {}u;\n"
       "const float min_patch_cosine = {}, max_patch_slope = {}; // reference/surface.hpp\n"
+      "const float relief_near_d = {}, relief_far_d = {}; // reference/relief.hpp\n"
+      "const float relief_turn = {}, relief_width = {}, relief_range_d = {:.1f};\n"
       "const int separable_nodes = {}; // separable_kernel.hpp\n"
       "const float separable_first_log2_d = {:.1f};\n"
       "const float separable_log2_d_step = {:.1f};\n"
@@ -211,7 +214,7 @@ std::string shared_constants() {
       "const float accumulate_largest_remainder = {:.1f};\n"
       "const float counter_log2_shift = {:.1f}; // environment.hpp\n"
       "const float counter_log2_steps = {:.1f};\n"
-      "const float through_square_steps = {:.1f};\n\n#endif\n",
+      "const float through_square_steps = {:.1f}, relief_steps = {:.1f};\n\n#endif\n",
       subsurface::copy_below_d_px, subsurface::uniform_reach_d, subsurface::uniform_tolerance,
       subsurface::uniform_max_reach, subsurface::uniform_cell_side, subsurface::probe_max_reach,
       choice::allocation_gain[0], choice::allocation_gain[1], choice::allocation_gain[2],
@@ -220,10 +223,11 @@ std::string shared_constants() {
       choice::steady_gain, choice::selection_kept_bit, choice::selection_level_shift,
       choice::max_selection_level, choice::highest_level_weight, choice::selection_stay,
       choice::selection_first_bin, subsurface::min_patch_cosine, subsurface::max_patch_slope,
-      subsurface::separable_nodes, subsurface::separable_first_log2_d,
-      subsurface::separable_log2_d_step, subsurface::separable_rows_per_profile,
-      subsurface::sap_level_count, subsurface::sap_variant_count,
-      static_cast<int>(subsurface::SapVariant::half),
+      subsurface::relief_near_d, subsurface::relief_far_d, subsurface::relief_turn,
+      subsurface::relief_width, subsurface::relief_range_d, subsurface::separable_nodes,
+      subsurface::separable_first_log2_d, subsurface::separable_log2_d_step,
+      subsurface::separable_rows_per_profile, subsurface::sap_level_count,
+      subsurface::sap_variant_count, static_cast<int>(subsurface::SapVariant::half),
       static_cast<int>(subsurface::SapVariant::plain), subsurface::sap_node_count,
       subsurface::sap_table_pairs, double(subsurface::sap_nodes_per_octave),
       subsurface::sap_log2_d_first, subsurface::sap_shape_nodes, subsurface::sap_last_log2_aspect,
@@ -236,7 +240,7 @@ std::string shared_constants() {
       subsurface::reproject_depth_fraction, subsurface::reproject_slope_pixels,
       subsurface::reproject_min_weight, subsurface::accumulate_min_mean,
       subsurface::accumulate_largest_remainder, subsurface::counter_log2_shift,
-      subsurface::counter_log2_steps, subsurface::through_square_steps);
+      subsurface::counter_log2_steps, subsurface::through_square_steps, subsurface::relief_steps);
 }
 
 } // namespace

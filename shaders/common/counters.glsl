@@ -15,6 +15,8 @@ layout(std430, set = 1, binding = 6) buffer counter_block {
   uint sample_demand;
   uint probe_count;
   uint through_steps;
+  uint relief_sum;
+  uint relief_pixels;
   uvec2 probes[32];
 } counters;
 

@@ -16,6 +16,7 @@
 #include "common/list_state.glsl"
 #include "common/pixel_light.glsl"
 #include "common/radius.glsl"
+#include "common/relief.glsl"
 #include "common/sanitise.glsl"
 #include "common/tile_packing.glsl"
 
@@ -30,6 +31,7 @@ const uint below_a_pixel = 1u;
 shared uint widest_of[block_tiles];
 shared uint holes_of[block_tiles]; // whether any pixel has no subsurface
 shared uvec3 low_of[block_tiles], high_of[block_tiles];
+shared uint relief_sum, relief_pixels; // of the group
 
 uint class_of(uint widest) {
   return widest > below_a_pixel ? class_scatter : widest == below_a_pixel ? class_copy : class_none;
@@ -123,6 +125,18 @@ void gather_light(ivec2 first, uint mask, uint tile) {
   }
 }
 
+// Adds the relief of one pixel of a run that has subsurface.
+void gather_relief(ivec2 first, uint mask, uint turn) {
+  const int middle = 4;
+  bool at_middle = (mask >> uint(middle) & 1u) != 0u;
+  ivec2 pixel = run_pixel(first, at_middle ? middle : findLSB(mask));
+  float relief = relief_of(material_image, depth_image, pixel, turn);
+  if (relief < 0.0)
+    return;
+  atomicAdd(relief_sum, uint(round(relief_steps * relief)));
+  atomicAdd(relief_pixels, 1u);
+}
+
 void main() {
   uint lane = gl_LocalInvocationIndex;
   ivec2 block = ivec2(gl_WorkGroupID.xy) * int(uniform_cell_side);
@@ -134,6 +148,10 @@ void main() {
   if (has_list_state() && gl_WorkGroupID.xy == uvec2(0) && lane < uint(state_words))
     list_state_data[lane] = 0u;
 
+  if (lane == 0u) {
+    relief_sum = 0u;
+    relief_pixels = 0u;
+  }
   if (lane < block_tiles) {
     widest_of[lane] = 0u;
     holes_of[lane] = 0u;
@@ -150,10 +168,15 @@ void main() {
   if (any_hole)
     atomicOr(holes_of[tile_of_run], 1u);
   barrier();
-  if (ranged) {
-    gather_light(first, class_of(widest_of[tile_of_run]) == class_scatter ? mask : 0u, tile_of_run);
+  bool counts_relief = settings.relief != 0 && counts_relief_in(gl_WorkGroupID.xy);
+  uint scattering_mask = class_of(widest_of[tile_of_run]) == class_scatter ? mask : 0u;
+  if (ranged)
+    gather_light(first, scattering_mask, tile_of_run);
+  if (counts_relief && scattering_mask != 0u)
+    gather_relief(first, scattering_mask,
+                  lane + 5u * gl_WorkGroupID.x + 11u * gl_WorkGroupID.y & 63u);
+  if (ranged || counts_relief)
     barrier();
-  }
 
   ivec2 tile = block + ivec2(lane % uniform_cell_side, lane / uniform_cell_side);
   if (lane < block_tiles && all(lessThan(tile, frame.tiles))) {
@@ -185,4 +208,8 @@ void main() {
     light_cells_data[gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x] =
         copied > 0u ? any_light() : pack_range(uintBitsToFloat(low), uintBitsToFloat(high), 0.0);
   count_tiles(scattering, copied, steps);
+  if (counts_relief && relief_pixels != 0u) {
+    atomicAdd(counters.relief_sum, relief_sum);
+    atomicAdd(counters.relief_pixels, relief_pixels);
+  }
 }

@@ -130,6 +130,7 @@ struct FrameChoice {
   double budget_ms = 0, predicted_ms = 0, predicted_margin_ms = 0, measured_ms = -1,
          calibrated_ms = 0, predicted_rmse = 0;
   double next_better_missing_ms = 0, mean_d_px = 0;
+  double mean_relief = -1; // negative: not counted
   uint32_t configurations = 1, view_tiles = 0, scattering_tiles = 0, copied_tiles = 0, switches = 0;
   uint32_t uniform_tiles = 0, dispatches = 0;
   uint64_t groups = 0;

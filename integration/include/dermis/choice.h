@@ -98,6 +98,9 @@ typedef struct dermis_frame_statistics {
   uint32_t sample_units;     /* samples taken, in units of 8 samples per pixel of a tile */
   uint32_t sample_demand;    /* the same without a budget */
   float mean_d_px;           /* geometric mean over scattering tiles of the widest d; 0: none */
+  /* Fraction of the surface within reach of scattering that leaves the pixels' tangent planes, by
+   * subsurface.classify with the setting `relief`; negative: not counted. */
+  float mean_relief;
   /* Measured error, by subsurface.probe (configs/overlays/probe.json). */
   uint32_t probed_tiles;  /* 0: error unknown */
   float probed_rmse;      /* of this frame: linear luminance times dermis_frame.exposure */
@@ -109,7 +112,7 @@ typedef struct dermis_frame_statistics {
 } dermis_frame_statistics;
 #define DERMIS_FRAME_STATISTICS_INIT \
   {sizeof(dermis_frame_statistics), 0, NULL, NULL, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, {0, 0, 0}, 0, \
-   0, 0, 0, 0, 0, 0, 0}
+   0, 0, 0, 0, 0, 0, 0, 0}
 /* Returns the statistics of the frame that dermis_view_report describes. Costs: none. Thread: one
  * per view. Errors: as there. */
 DERMIS_API dermis_result DERMIS_CALL dermis_view_statistics(

@@ -30,7 +30,11 @@ constexpr Port classify_ports[] = {
     port::optional(port::writer_of(light_cells)),
     port::optional(port::writer_of(port::list_state)),
 };
-constexpr PassTypeSetting classify_settings[] = {setting::texturing};
+constexpr PassTypeSetting classify_settings[] = {
+    setting::texturing,
+    setting::boolean("relief", "counts how much of the surface leaves the pixels' tangent planes, "
+                               "from which the choice by budget expects errors"),
+};
 
 constexpr Port uniform_light_ports[] = {
     light_range,

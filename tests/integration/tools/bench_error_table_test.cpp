@@ -43,6 +43,27 @@ TEST(ErrorTableFit, ClassesHaveEqualWeight) {
   EXPECT_NEAR(std::log(curve[0].spread), std::sqrt((2 * square + square) / 2), 2e-3);
 }
 
+TEST(ErrorTableFit, FindsThePowerOfRelief) {
+  std::vector<MeasuredError> errors;
+  for (const double d_px : {1.0, 4.0})
+    for (const double relief : {0.0, 0.001, 0.01, 0.1}) {
+      errors.push_back(measured("fold", d_px, 0.05 * d_px * std::pow(relief + 0.001, 0.25)));
+      errors.back().relief = relief;
+    }
+  errors.push_back(measured("plane", 1, 1, "judging"));
+  choice::ErrorModel table;
+  table.unscattered = {{1, 1}};
+  table.techniques.push_back({"sap smooth", {}, {{1, 1}}});
+  const std::vector<double> d_px = {1, 4};
+  fit_table(table, errors, d_px);
+  EXPECT_NEAR(table.techniques[0].relief_power, 0.25, 1e-3);
+  EXPECT_EQ(table.unscattered_relief_power, 0) << "not measured";
+  ASSERT_EQ(table.relief.size(), 2u);
+  // The curve is rounded to three digits.
+  EXPECT_NEAR(expected_rmse(table, 0, {4, 0.01}) / errors[6].rmse, 1, 0.01);
+  EXPECT_LT(judge_table(table, errors, "sap smooth", "tuning").rms, 0.01);
+}
+
 TEST(ErrorTableFit, JudgesOneHalfOnly) {
   choice::ErrorModel table;
   table.unscattered = {{1, 1}};
@@ -115,6 +136,12 @@ TEST_F(BenchErrorTable, ReplacesMeasuredCurvesOnly) {
     EXPECT_EQ(now.pass_types.size(), old.pass_types.size());
     EXPECT_EQ(now.curve.size(), now.name == "separable 25" ? 1u : old.curve.size()) << now.name;
   }
+  // The table of the same rows, fitted without measuring.
+  ASSERT_THAT(run({"bench", "error-table", "--quick", "--rows", path("rows.json"), "--out",
+                   path("again.json")}),
+              Succeeds("separable 25", "device of the rows"));
+  EXPECT_EQ(read("again.json"), read("errors.json"));
+  EXPECT_THAT(run({"bench", "error-table", "--rows", path("errors.json")}), FailsWith(1, "report"));
   EXPECT_THAT(read("rows.json"), HasAll(R"("technique": "separable 25")", R"("rmse": 0.0)"));
   EXPECT_EQ(run({"bench", "error-table", "--scenes", "nowhere"}).exit_code, 2);
 }

@@ -14,8 +14,9 @@ using namespace dermis::choice;
 
 constexpr const char* errors_text = R"({ "dermis_errors": 2, "scenes": "invented",
 "unscattered": [[1, 0.02], [4, 0.04]], "unscattered_through": 1.5,
+"relief": [[1, 0.004], [4, 0.016]], "unscattered_relief_power": -0.1,
 "techniques": [
- { "name": "burley 16", "pass_types": [{ "type": "subsurface.burley", "set": { "samples": 16 } }], "rmse": [[1, 0.004], [16, 0.016]] },
+ { "name": "burley 16", "pass_types": [{ "type": "subsurface.burley", "set": { "samples": 16 } }], "rmse": [[1, 0.004], [16, 0.016]], "relief_power": 0.5 },
  { "name": "separable", "pass_types": [{ "type": "subsurface.separable" }], "rmse": [[1, 0.003]] },
  { "name": "separable 11", "pass_types": [{ "type": "subsurface.separable", "set": { "taps": "11" } }], "rmse": [[1, 0.005]],
    "through": 0.5, "by_rays": true }] })";
@@ -125,10 +126,38 @@ TEST_F(Configurations, EqualWork_IsOneConfiguration) {
 }
 
 TEST_F(Configurations, ErrorsAreLinearOnLogarithmicAxes) {
-  EXPECT_NEAR(expected_rmse(errors, 0, 4), 0.008, 1e-12);
-  EXPECT_NEAR(expected_rmse(errors, 0, 0.1), 0.004, 1e-12);
-  EXPECT_NEAR(expected_rmse(errors, 0, 100), 0.016, 1e-12);
-  EXPECT_NEAR(expected_rmse(errors, -1, 2), std::sqrt(0.02 * 0.04), 1e-12);
+  EXPECT_NEAR(expected_rmse(errors, 0, {4}), 0.008, 1e-12);
+  EXPECT_NEAR(expected_rmse(errors, 0, {0.1}), 0.004, 1e-12);
+  EXPECT_NEAR(expected_rmse(errors, 0, {100}), 0.016, 1e-12);
+  EXPECT_NEAR(expected_rmse(errors, -1, {2}), std::sqrt(0.02 * 0.04), 1e-12);
+}
+
+TEST_F(Configurations, ErrorsFollowRelief) {
+  // Usual relief at d = 2 is 0.008; the table adds 0.001 to that of a frame.
+  const double usual = expected_rmse(errors, 0, {2});
+  EXPECT_NEAR(expected_rmse(errors, 0, {2, 0.007}), usual, 1e-12);
+  EXPECT_NEAR(expected_rmse(errors, 0, {2, 0.031}), 2 * usual, 1e-12);
+  EXPECT_NEAR(expected_rmse(errors, 0, {2, 0}), usual * std::sqrt(0.125), 1e-12);
+  EXPECT_NEAR(expected_rmse(errors, 1, {2, 0.9}), expected_rmse(errors, 1, {2}), 1e-12)
+      << "a row without power";
+  EXPECT_NEAR(expected_rmse(errors, -1, {2, 0.031}),
+              expected_rmse(errors, -1, {2}) * std::pow(4, -0.1), 1e-12);
+}
+
+TEST_F(Configurations, WrongRelief_IsRejected) {
+  for (const char* relief :
+       {"[[1, 0.1, 2]]", "[[1, 0]]", "[[1, 2]]", "[[2, 0.1], [1, 0.1]]", "[]", "[0.1]"}) {
+    Diagnostics other;
+    const auto document = parse_document(
+        "errors.json",
+        std::string(R"({ "dermis_errors": 2, "scenes": "s", "techniques": [], )") +
+            R"("unscattered": [[1, 0.1]], "relief": )" + relief + "}",
+        other);
+    ASSERT_TRUE(document);
+    EXPECT_FALSE(read_error_model(*document, other)) << relief;
+    ASSERT_EQ(other.list.size(), 1u) << relief << format_as_json(other);
+    EXPECT_GT(other.list[0].where.line, 0u) << relief;
+  }
 }
 
 TEST_F(Configurations, MissedTransmission_MatchesTheTable) {
@@ -144,17 +173,17 @@ TEST_F(Configurations, PartialSamples_InterpolateTheSquaredError) {
   configuration.technique = 0;
   configuration.without_samples = -1;
   configuration.takes_samples = true;
-  const double all = expected_rmse(errors, 0, 4), none = expected_rmse(errors, -1, 4);
-  EXPECT_NEAR(expected_rmse(errors, configuration, 4, 0, 100), none, 1e-12);
-  EXPECT_NEAR(expected_rmse(errors, configuration, 4, 100, 100), all, 1e-12);
-  EXPECT_NEAR(expected_rmse(errors, configuration, 4, 25, 100),
+  const double all = expected_rmse(errors, 0, {4}), none = expected_rmse(errors, -1, {4});
+  EXPECT_NEAR(expected_rmse(errors, configuration, {4}, 0, 100), none, 1e-12);
+  EXPECT_NEAR(expected_rmse(errors, configuration, {4}, 100, 100), all, 1e-12);
+  EXPECT_NEAR(expected_rmse(errors, configuration, {4}, 25, 100),
               std::sqrt(0.75 * none * none + 0.25 * all * all), 1e-12);
   // More samples than requested have no effect.
-  EXPECT_NEAR(expected_rmse(errors, configuration, 4, 200, 100), all, 1e-12);
-  EXPECT_NEAR(expected_rmse(errors, configuration, 4, 5, 0), none,
+  EXPECT_NEAR(expected_rmse(errors, configuration, {4}, 200, 100), all, 1e-12);
+  EXPECT_NEAR(expected_rmse(errors, configuration, {4}, 5, 0), none,
               1e-12); // No tile requests samples.
   configuration.takes_samples = false;
-  EXPECT_NEAR(expected_rmse(errors, configuration, 4, 0, 100), all, 1e-12);
+  EXPECT_NEAR(expected_rmse(errors, configuration, {4}, 0, 100), all, 1e-12);
 }
 
 TEST_F(Configurations, CostsGrowWithTheListedTiles) {
@@ -290,6 +319,10 @@ TEST_F(Configurations, WrittenErrorTable_ReadsBackEqual) {
   EXPECT_EQ(read->techniques[2].through, 0.5);
   EXPECT_TRUE(read->techniques[2].by_rays);
   EXPECT_EQ(read->unscattered_through, errors.unscattered_through);
+  EXPECT_EQ(read->unscattered_relief_power, -0.1);
+  EXPECT_EQ(read->techniques[0].relief_power, 0.5);
+  ASSERT_EQ(read->relief.size(), 2u);
+  EXPECT_EQ(read->relief[1].relief, 0.016);
 }
 
 TEST_F(Configurations, WrongSpread_IsRejected) {

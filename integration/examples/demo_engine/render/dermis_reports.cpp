@@ -57,6 +57,7 @@ Result<FrameChoice> graph_choice(DermisHost& host, uint64_t frame_index) {
   out.predicted_rmse = choice.predicted_rmse;
   out.next_better_missing_ms = choice.next_better_missing_ms;
   out.mean_d_px = choice.mean_d_px;
+  out.mean_relief = choice.mean_relief;
   out.configurations = choice.configuration_count;
   out.view_tiles = choice.view_tiles;
   out.scattering_tiles = choice.scattering_tiles;

@@ -92,6 +92,7 @@ void ChoiceReport::write(JsonWriter& writer) const {
       writer.value(choice.measured_ms);
     writer.member("calibrated_ms", choice.calibrated_ms);
     writer.member("predicted_rmse", choice.predicted_rmse).member("mean_d_px", choice.mean_d_px);
+    if (choice.mean_relief >= 0) writer.member("mean_relief", choice.mean_relief);
     writer.member("view_tiles", choice.view_tiles)
         .member("scattering_tiles", choice.scattering_tiles);
     writer.member("copied_tiles", choice.copied_tiles).member("switches", choice.switches);

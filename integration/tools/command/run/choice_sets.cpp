@@ -32,8 +32,10 @@ std::vector<std::vector<NamedValue>> choice_sets(const LoadedGraph& loaded, cons
   const CompileInput input = compile_input(loaded, device, size, choices);
   std::vector<std::vector<NamedValue>> sets;
   choice::CostEstimator costs;
+  choice::ErrorModel no_errors;
+  no_errors.unscattered = {{1, 1}};
   const auto configurations =
-      choice_configurations(input, {}, {"", {{1, 1}}, {}}, costs, diagnostics);
+      choice_configurations(input, {}, no_errors, costs, diagnostics);
   if (!configurations) return sets;
   for (const choice::Configuration& configuration : configurations->all) {
     std::vector<NamedValue>& set = sets.emplace_back();

@@ -63,8 +63,8 @@ std::vector<choice::Forecast> forecasts_of(std::span<const choice::Configuration
     one.demand =
         (configuration.selects_tiles ? 1 : units_per_tile) * static_cast<double>(load.listed_tiles);
     one.concentration = concentration(configuration);
-    one.rmse = expected_rmse(errors, configuration.technique, d_px);
-    one.unsampled_rmse = expected_rmse(errors, configuration.without_samples, d_px);
+    one.rmse = expected_rmse(errors, configuration.technique, {d_px});
+    one.unsampled_rmse = expected_rmse(errors, configuration.without_samples, {d_px});
   }
   return out;
 }

@@ -2,7 +2,7 @@
 // several d, and writes the error table of the choice by budget.
 
 #include "integration/tools/command/bench/error_table/error_table_file.hpp"
-#include "integration/tools/command/bench/error_table/light_contrast.hpp"
+#include "integration/tools/command/bench/error_table/measured_rows.hpp"
 #include "integration/tools/command/bench/error_table/table_fit.hpp"
 #include "integration/tools/command/bench/family/family.hpp"
 #include "integration/tools/command/bench/merged_profiles.hpp"
@@ -13,22 +13,19 @@
 #include "integration/tools/command/interrupt.hpp"
 #include "integration/tools/command/output.hpp"
 #include "integration/tools/command/present.hpp"
+#include "integration/tools/files/capture_reference.hpp"
 #include "passes/common/environment.hpp"
+#include "passes/common/reference/relief.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
+#include <iterator>
+#include <ranges>
 #include <set>
 
 namespace dermis::tools {
 namespace {
-
-struct ErrorTableRow {
-  MeasuredError error;
-  uint32_t frames = 1;
-  FrameKeys keys = {};
-};
 
 struct ErrorTableBench {
   SuiteRun& run;
@@ -130,7 +127,7 @@ demo::Result<> measure_subject(ErrorTableBench& bench, const Subject& subject) {
                      fmt::format("reference of {} d {:g} px", subject.scene, subject.d_px),
                      bench.file.subset, bench.run.text("cache"));
   if (!reference) return stopped();
-  const FrameKeys keys = keys_of(subject.frame, reference->exposure);
+  const double relief = subsurface::mean_relief(make_reference_frame(subject.frame).input());
   for (size_t t = 0; t < bench.techniques.size(); ++t) {
     const TabledTechnique& request = bench.requests[t];
     const uint32_t frames = bench.run.quick ? std::min(request.frames, 2u) : request.frames;
@@ -138,16 +135,15 @@ demo::Result<> measure_subject(ErrorTableBench& bench, const Subject& subject) {
     if (!light) return light.error();
     bench.rows.push_back(
         {{table_row_name(request), subject.scene, subject.member.scene_class, subject.member.half,
-          subject.d_px, still_error(*light, *reference).figures.rmse},
-         frames,
-         keys});
+          subject.d_px, still_error(*light, *reference).figures.rmse, relief},
+         frames});
   }
   return demo::success();
 }
 
-std::vector<MeasuredError> errors_of(const ErrorTableBench& bench) {
+std::vector<MeasuredError> errors_of(std::span<const ErrorTableRow> rows) {
   std::vector<MeasuredError> errors;
-  for (const ErrorTableRow& row : bench.rows)
+  for (const ErrorTableRow& row : rows)
     errors.push_back(row.error);
   return errors;
 }
@@ -157,30 +153,36 @@ std::string factor_text(double logarithm) {
 }
 
 // Sets the text of the terminal: how well the table predicts each half.
-void add_predictions(ErrorTableBench& bench, const choice::ErrorModel& table) {
-  const std::vector<MeasuredError> errors = errors_of(bench);
+void add_predictions(SuiteRun& run, std::span<const MeasuredError> errors,
+                     const choice::ErrorModel& table) {
   Table text;
   text.columns = {{"technique", false},
                   {"half", false},
                   {"scenes", true},
                   {"mean ratio", true},
                   {"RMS factor", true}};
-  for (const TabledTechnique& request : bench.requests)
+  std::vector<std::string> names;
+  for (const MeasuredError& error : errors)
+    if (std::ranges::find(names, error.technique) == names.end()) names.push_back(error.technique);
+  for (const std::string& name : names)
     for (const char* half : {"tuning", "judging"}) {
-      const PredictionError found = judge_table(table, errors, table_row_name(request), half);
+      const PredictionError found = judge_table(table, errors, name, half);
       if (found.scenes == 0) continue;
-      text.rows.push_back({table_row_name(request), half, fmt::format("{}", found.scenes),
-                           factor_text(found.mean), factor_text(found.rms)});
+      text.rows.push_back({name, half, fmt::format("{}", found.scenes), factor_text(found.mean),
+                           factor_text(found.rms)});
     }
-  bench.run.report.text = "Predicted RMSE relative to the measured RMSE\n" + format_table(text);
+  run.report.text = "Predicted RMSE relative to the measured RMSE\n" + format_table(text);
 }
 
 // Returns how the table was made, for its note.
-std::string note_of(const ErrorTableBench& bench) {
+std::string note_of(const MeasuredRows& measured, const ErrorTableFile& file) {
+  std::set<std::pair<std::string, double>> scenes;
+  for (const ErrorTableRow& row : measured.rows)
+    scenes.emplace(row.error.scene, row.error.d_px);
   return fmt::format(
       "Written by: dermis bench error-table, {}, {} scenes of {}x{} pixels, {} pixels of each "
       "compared, except planes. A point is d in pixels, RMSE and its spread between scenes.",
-      bench.run.device, bench.subjects.size(), family_width, family_height, bench.file.subset);
+      measured.device, scenes.size(), family_width, family_height, file.subset);
 }
 
 demo::Result<choice::ErrorModel> read_table(SuiteRun& run) {
@@ -190,6 +192,37 @@ demo::Result<choice::ErrorModel> read_table(SuiteRun& run) {
   auto table = document ? choice::read_error_model(*document, diagnostics) : std::nullopt;
   if (!table) return run.reject(path, diagnostics);
   return std::move(*table);
+}
+
+demo::Result<MeasuredRows> measure_rows(SuiteRun& run, const ErrorTableFile& file) {
+  const auto host = run.open_device();
+  if (!host) return host.error();
+  ErrorTableBench bench{run, file, **host};
+  if (auto ready = add_subjects(bench); !ready) return ready.error();
+  if (auto ready = add_techniques(bench); !ready) return ready.error();
+  Progress progress = run.progress("scene", bench.subjects.size());
+  uint64_t done = 0;
+  for (const Subject& subject : bench.subjects) {
+    if (interrupted()) return stopped();
+    if (auto measured = measure_subject(bench, subject); !measured) return measured.error();
+    progress.update(++done);
+  }
+  return MeasuredRows{run.device, std::move(bench.rows)};
+}
+
+// Reads the rows of earlier runs, in place of measuring.
+demo::Result<MeasuredRows> read_rows(SuiteRun& run) {
+  MeasuredRows all;
+  for (const std::string& path : run.list("rows")) {
+    Diagnostics diagnostics;
+    auto read = read_measured_rows(path, diagnostics);
+    if (!read) return run.reject(path, diagnostics);
+    if (all.device.find(read->device) == std::string::npos)
+      all.device += (all.device.empty() ? "" : " and ") + read->device;
+    std::ranges::move(read->rows, std::back_inserter(all.rows));
+  }
+  run.add_info("device of the rows", all.device);
+  return all;
 }
 
 demo::Result<> measure_error_table(SuiteRun& run, const Emit<ErrorTableRow>& emit) {
@@ -202,30 +235,22 @@ demo::Result<> measure_error_table(SuiteRun& run, const Emit<ErrorTableRow>& emi
     file.subset = std::min(file.subset, quick_subset);
     file.d_px = {file.d_px[file.d_px.size() / 2]};
   }
-  const auto host = run.open_device();
-  if (!host) return host.error();
-  ErrorTableBench bench{run, file, **host};
-  if (auto ready = add_subjects(bench); !ready) return ready;
-  if (auto ready = add_techniques(bench); !ready) return ready;
-  Progress progress = run.progress("scene", bench.subjects.size());
-  uint64_t done = 0;
-  for (const Subject& subject : bench.subjects) {
-    if (interrupted()) return stopped();
-    if (auto measured = measure_subject(bench, subject); !measured) return measured;
-    progress.update(++done);
-  }
+  auto measured = run.list("rows").empty() ? measure_rows(run, file) : read_rows(run);
+  if (!measured) return measured.error();
+  const MeasuredRows rows = measured.take();
   run.add_info("size", fmt::format("{}x{} pixels", family_width, family_height));
   run.add_info("truth",
                fmt::format("everywhere on planes, else at {} stratified pixels", file.subset));
   table->scenes = fmt::format("the seeded family of scenes, d from {:g} to {:g} px",
                               file.d_px.front(), file.d_px.back());
-  fit_table(*table, errors_of(bench), file.d_px);
-  add_predictions(bench, *table);
-  for (const ErrorTableRow& row : bench.rows)
+  const std::vector<MeasuredError> errors = errors_of(rows.rows);
+  fit_table(*table, errors, file.d_px);
+  add_predictions(run, errors, *table);
+  for (const ErrorTableRow& row : rows.rows)
     emit(row);
   if (const std::string& out = run.text("out"); !out.empty())
     if (const std::string problem =
-            deliver_text(out, choice::write_error_model(*table, note_of(bench)));
+            deliver_text(out, choice::write_error_model(*table, note_of(rows, file)));
         !problem.empty())
       return demo::Error{demo::ErrorKind::environment, problem};
   return demo::success();
@@ -233,10 +258,6 @@ demo::Result<> measure_error_table(SuiteRun& run, const Emit<ErrorTableRow>& emi
 
 template <auto Member> ReportValue measured_of(const ErrorTableRow& row) {
   return row.error.*Member;
-}
-
-template <auto Member> ReportValue frame_key_of(const ErrorTableRow& row) {
-  return row.keys.*Member;
 }
 
 } // namespace
@@ -255,6 +276,10 @@ Suite error_table_suite() {
            "its predictions.",
        .options = {{"table", "Table whose curves are replaced", "configs/choice/errors.json",
                     "FILE"},
+                   {"rows",
+                    "Rows that an earlier run wrote with --json, to fit without measuring; may be "
+                    "repeated",
+                    std::vector<std::string>(), "FILE"},
                    {"out", "Write the new table to this file, - for standard output", "", "FILE"},
                    only_option("scenes"),
                    only_option("techniques"),
@@ -267,9 +292,7 @@ Suite error_table_suite() {
        {"technique", "technique", measured_of<&Error::technique>},
        {"frames", "frames", &Row::frames},
        {"rmse", "RMSE", measured_of<&Error::rmse>},
-       {"tile_contrast", "", frame_key_of<&FrameKeys::tile_contrast>},
-       {"cell_contrast", "", frame_key_of<&FrameKeys::cell_contrast>},
-       {"gaps", "", frame_key_of<&FrameKeys::gaps>}},
+       {"relief", "relief", measured_of<&Error::relief>}},
       measure_error_table);
 }
 

@@ -16,6 +16,11 @@ double log_rmse(const MeasuredError& error) {
   return std::log(std::max(error.rmse, min_counted_rmse));
 }
 
+// Returns whether the error counts for the table's point at d.
+bool is_at(const MeasuredError& error, double d) {
+  return error.half == "tuning" && std::abs(error.d_px / d - 1) <= same_d;
+}
+
 // Returns the mean over classes of the means of their values.
 double class_mean(const std::map<std::string, std::vector<double>>& by_class) {
   double sum = 0;
@@ -46,8 +51,7 @@ std::vector<choice::ErrorPoint> fit_curve(std::span<const MeasuredError> errors,
   for (const double d : d_px) {
     std::map<std::string, std::vector<double>> logs;
     for (const MeasuredError& error : errors)
-      if (error.technique == technique && error.half == "tuning" &&
-          std::abs(error.d_px / d - 1) <= same_d)
+      if (error.technique == technique && is_at(error, d))
         logs[error.scene_class].push_back(log_rmse(error));
     if (logs.empty()) continue;
     const double mean = class_mean(logs);
@@ -60,15 +64,54 @@ std::vector<choice::ErrorPoint> fit_curve(std::span<const MeasuredError> errors,
   return curve;
 }
 
+std::vector<choice::ReliefPoint> fit_relief(std::span<const MeasuredError> errors,
+                                            std::span<const double> d_px) {
+  std::vector<choice::ReliefPoint> curve;
+  for (const double d : d_px) {
+    std::map<std::string, std::vector<double>> logs;
+    for (const MeasuredError& error : errors) // every technique has an error on the same scenes
+      if (is_at(error, d) && error.relief >= 0)
+        logs[error.scene_class].push_back(std::log(error.relief + choice::relief_floor));
+    if (!logs.empty()) curve.push_back({d, to_three_digits(std::exp(class_mean(logs)))});
+  }
+  return curve;
+}
+
+double fit_relief_power(const choice::ErrorModel& table, int32_t row,
+                        std::span<const MeasuredError> errors, const std::string& technique) {
+  choice::ErrorModel with = table;
+  double& power = row < 0 ? with.unscattered_relief_power
+                          : with.techniques[static_cast<size_t>(row)].relief_power;
+  // Both are deviations of one scene from the table, so their ratio is a slope through 0.
+  std::map<std::string, std::vector<double>> products, squares;
+  for (const MeasuredError& error : errors) {
+    if (error.technique != technique || error.half != "tuning" || error.relief < 0) continue;
+    power = 0;
+    const double usual = std::log(expected_rmse(with, row, {error.d_px, error.relief}));
+    power = 1;
+    const double by_relief = std::log(expected_rmse(with, row, {error.d_px, error.relief})) - usual;
+    products[error.scene_class].push_back(by_relief * (log_rmse(error) - usual));
+    squares[error.scene_class].push_back(by_relief * by_relief);
+  }
+  const double square = squares.empty() ? 0 : class_mean(squares);
+  return square > 0 ? to_three_digits(class_mean(products) / square) : 0;
+}
+
 void fit_table(choice::ErrorModel& table, std::span<const MeasuredError> errors,
                std::span<const double> d_px) {
-  const auto fit = [&](const std::string& technique, std::vector<choice::ErrorPoint>& curve) {
+  if (std::vector<choice::ReliefPoint> relief = fit_relief(errors, d_px); !relief.empty())
+    table.relief = std::move(relief);
+  const auto fit = [&](const std::string& technique, int32_t row,
+                       std::vector<choice::ErrorPoint>& curve, double& power) {
     std::vector<choice::ErrorPoint> fitted = fit_curve(errors, technique, d_px);
-    if (!fitted.empty()) curve = std::move(fitted);
+    if (fitted.empty()) return;
+    curve = std::move(fitted);
+    power = fit_relief_power(table, row, errors, technique);
   };
-  fit("off", table.unscattered);
-  for (choice::TechniqueError& row : table.techniques)
-    if (!row.by_rays) fit(row_technique(row.name), row.curve);
+  fit("off", -1, table.unscattered, table.unscattered_relief_power);
+  for (size_t i = 0; i < table.techniques.size(); ++i)
+    if (choice::TechniqueError& row = table.techniques[i]; !row.by_rays)
+      fit(row_technique(row.name), static_cast<int32_t>(i), row.curve, row.relief_power);
 }
 
 PredictionError judge_table(const choice::ErrorModel& table, std::span<const MeasuredError> errors,
@@ -81,7 +124,8 @@ PredictionError judge_table(const choice::ErrorModel& table, std::span<const Mea
   double squares = 0;
   for (const MeasuredError& error : errors) {
     if (error.technique != technique || error.half != half) continue;
-    const double ratio = std::log(expected_rmse(table, row, error.d_px)) - log_rmse(error);
+    const double ratio =
+        std::log(expected_rmse(table, row, {error.d_px, error.relief})) - log_rmse(error);
     ++out.scenes;
     out.mean += ratio;
     squares += ratio * ratio;

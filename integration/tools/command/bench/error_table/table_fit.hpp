@@ -13,6 +13,7 @@ struct MeasuredError {
   std::string technique; // name of its row; "off": unscattered
   std::string scene, scene_class, half;
   double d_px = 0, rmse = 0;
+  double relief = -1; // subsurface::mean_relief; negative: nothing scatters
 };
 
 // Returns a point per d: the geometric mean over classes of equal weight of the geometric means of
@@ -22,7 +23,16 @@ std::vector<choice::ErrorPoint> fit_curve(std::span<const MeasuredError> errors,
                                           const std::string& technique,
                                           std::span<const double> d_px);
 
-// Replaces the curve of each row whose name, up to a comma, is that of a measured technique.
+// Returns the geometric mean of relief + relief_floor at each d, over classes of equal weight.
+std::vector<choice::ReliefPoint> fit_relief(std::span<const MeasuredError> errors,
+                                            std::span<const double> d_px);
+
+// Returns the power of relief that fits the errors of the half "tuning" best around the table's
+// curve, by least squares over classes of equal weight.
+double fit_relief_power(const choice::ErrorModel& table, int32_t row,
+                        std::span<const MeasuredError> errors, const std::string& technique);
+
+// Replaces curve and power of each row whose name, up to a comma, is that of a measured technique.
 void fit_table(choice::ErrorModel& table, std::span<const MeasuredError> errors,
                std::span<const double> d_px);
 
