@@ -142,6 +142,9 @@ TEST_F(BenchErrorTable, ReplacesMeasuredCurvesOnly) {
               Succeeds("separable 25", "device of the rows"));
   EXPECT_EQ(read("again.json"), read("errors.json"));
   EXPECT_THAT(run({"bench", "error-table", "--rows", path("errors.json")}), FailsWith(1, "report"));
+  EXPECT_THAT(
+      run({"bench", "error-table", "--rows", path("rows.json"), "--techniques", "separable"}),
+      FailsWith(2, "leave out --scenes and --techniques"));
   EXPECT_THAT(read("rows.json"), HasAll(R"("technique": "separable 25")", R"("rmse": 0.0)"));
   EXPECT_EQ(run({"bench", "error-table", "--scenes", "nowhere"}).exit_code, 2);
 }

@@ -148,11 +148,11 @@ TEST_F(Configurations, WrongRelief_IsRejected) {
   for (const char* relief :
        {"[[1, 0.1, 2]]", "[[1, 0]]", "[[1, 2]]", "[[2, 0.1], [1, 0.1]]", "[]", "[0.1]"}) {
     Diagnostics other;
-    const auto document = parse_document(
-        "errors.json",
-        std::string(R"({ "dermis_errors": 2, "scenes": "s", "techniques": [], )") +
-            R"("unscattered": [[1, 0.1]], "relief": )" + relief + "}",
-        other);
+    const auto document =
+        parse_document("errors.json",
+                       std::string(R"({ "dermis_errors": 2, "scenes": "s", "techniques": [], )") +
+                           R"("unscattered": [[1, 0.1]], "relief": )" + relief + "}",
+                       other);
     ASSERT_TRUE(document);
     EXPECT_FALSE(read_error_model(*document, other)) << relief;
     ASSERT_EQ(other.list.size(), 1u) << relief << format_as_json(other);

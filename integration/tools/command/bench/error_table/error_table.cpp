@@ -212,6 +212,9 @@ demo::Result<MeasuredRows> measure_rows(SuiteRun& run, const ErrorTableFile& fil
 
 // Reads the rows of earlier runs, in place of measuring.
 demo::Result<MeasuredRows> read_rows(SuiteRun& run) {
+  if (!run.list("scenes").empty() || !run.list("techniques").empty())
+    return demo::Error{demo::ErrorKind::usage, "--rows fits all rows of its files and measures "
+                                               "nothing: leave out --scenes and --techniques"};
   MeasuredRows all;
   for (const std::string& path : run.list("rows")) {
     Diagnostics diagnostics;
