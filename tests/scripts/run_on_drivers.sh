@@ -20,8 +20,8 @@ fail() { # message
 build=${1:-build/release}
 shift || true
 suites=("$@")
-[[ $# -gt 0 ]] || suites=(framegraph_vulkan shaders passes_device integration_abi
-  integration_embedding integration_examples_demo_engine)
+[[ $# -gt 0 ]] || suites=(integration_abi passes_device shaders integration_embedding
+  integration_examples_demo_engine framegraph_vulkan)
 for suite in "${suites[@]}"; do
   program=$build/tests/test_${suite%%:*}
   [[ -x $program ]] || fail "there is no suite '$suite': $program is not built"
@@ -53,38 +53,59 @@ DERMIS_PICTURES=$pictures DERMIS_PICTURES_KEEP=1 "$build/tests/test_passes_devic
   --gtest_filter='*OfAnotherDriver*' >"$pictures/log" 2>&1 ||
   { echo "pictures of the system's driver failed; the log: $pictures/log"; exit 1; }
 
-failed=0
-for manifest in "${drivers[@]}"; do
-  name=$(basename "$manifest" .json)
+name_of() { # manifest
+  local name
+  name=$(basename "$1" .json)
   name=${name#vk_}
-  name=${name%_icd}
-  known=tests/scripts/known/$name
-  left_out=$(grep -v '^#' "$known" 2>/dev/null | grep . | awk '{ print $1 }' | paste -sd: || true)
-  for suite in "${suites[@]}"; do
-    program=$build/tests/test_${suite%%:*}
-    log=$build/drivers_${name}_$(tr ':/' '__' <<<"$suite").log
-    begin=$SECONDS
-    rc=0
-    (
-      ulimit -v $memory
-      if [[ $suite == *:* ]]; then
-        part=${suite#*:}
-        export GTEST_TOTAL_SHARDS=${part#*/} GTEST_SHARD_INDEX=$((${part%/*} - 1))
-      fi
-      VK_DRIVER_FILES=$manifest VK_ICD_FILENAMES=$manifest DERMIS_PICTURES=$pictures \
-        timeout $seconds "$program" --gtest_filter="-$left_out"
-    ) >"$log" 2>&1 || rc=$?
-    of_suite=0 # number of tests left out
-    if [[ -n $left_out ]]; then
-      of_suite=$("$program" --gtest_list_tests --gtest_filter="$left_out" | grep -c '^  ' || true)
+  echo "${name%_icd}"
+}
+
+# Runs a suite on a driver and prints a row of the table.
+run_suite() { # manifest, suite
+  local manifest=$1 suite=$2 begin=$SECONDS rc=0 of_suite=0 # of_suite: number of tests left out
+  local name program left_out log
+  name=$(name_of "$manifest")
+  program=$build/tests/test_${suite%%:*}
+  left_out=$(grep -v '^#' "tests/scripts/known/$name" 2>/dev/null | grep . | awk '{ print $1 }' |
+    paste -sd: || true)
+  log=$build/drivers_${name}_$(tr ':/' '__' <<<"$suite").log
+  (
+    ulimit -v $memory
+    if [[ $suite == *:* ]]; then
+      part=${suite#*:}
+      export GTEST_TOTAL_SHARDS=${part#*/} GTEST_SHARD_INDEX=$((${part%/*} - 1))
     fi
-    printf '%-14s %-24s %4s passed, %2s failed, %2s skipped, %3s known, %4s s%s\n' \
-      "$name" "$suite" "$(grep -c '^\[       OK \]' "$log" || true)" \
-      "$(grep -c '^\[  FAILED  \].* (.* ms)$' "$log" || true)" \
-      "$(grep -c '^\[  SKIPPED \].* (.* ms)$' "$log" || true)" "$of_suite" "$((SECONDS - begin))" \
-      "$([[ $rc -eq 0 ]] || echo "; ended with $rc; the log: $log")"
-    [[ $rc -eq 0 ]] || failed=1
+    VK_DRIVER_FILES=$manifest VK_ICD_FILENAMES=$manifest DERMIS_PICTURES=$pictures \
+      timeout $seconds "$program" --gtest_filter="-$left_out"
+  ) >"$log" 2>&1 || rc=$?
+  if [[ -n $left_out ]]; then
+    of_suite=$("$program" --gtest_list_tests --gtest_filter="$left_out" | grep -c '^  ' || true)
+  fi
+  printf '%-14s %-32s %4s passed, %2s failed, %2s skipped, %3s known, %4s s%s\n' \
+    "$name" "$suite" "$(grep -c '^\[       OK \]' "$log" || true)" \
+    "$(grep -c '^\[  FAILED  \].* (.* ms)$' "$log" || true)" \
+    "$(grep -c '^\[  SKIPPED \].* (.* ms)$' "$log" || true)" "$of_suite" "$((SECONDS - begin))" \
+    "$([[ $rc -eq 0 ]] || echo "; ended with $rc; the log: $log")"
+  return $((rc == 0 ? 0 : 1))
+}
+
+# As many suites at once as there are processors, each with one thread of the driver.
+export LP_NUM_THREADS=${LP_NUM_THREADS:-1}
+failed=0 running=0
+wait_for_one() {
+  wait -n || failed=1
+  running=$((running - 1))
+}
+for suite in "${suites[@]}"; do
+  for manifest in "${drivers[@]}"; do
+    [[ $running -lt $(nproc) ]] || wait_for_one
+    run_suite "$manifest" "$suite" &
+    running=$((running + 1))
   done
-  grep -h '^pictures' "$build/drivers_${name}_passes_device.log" 2>/dev/null | cut -f 3- || true
+done
+while [[ $running -gt 0 ]]; do wait_for_one; done
+for manifest in "${drivers[@]}"; do
+  grep -h '^pictures' "$build/drivers_$(name_of "$manifest")_passes_device.log" 2>/dev/null |
+    cut -f 3- || true
 done
 exit $failed
