@@ -75,8 +75,9 @@ void HeadTest::show(const HeadFraming& framing, uint32_t width, uint32_t height,
   SubjectOptions options{width, height, {}};
   if (framing.scan) {
     const char* named = std::getenv("DERMIS_HEAD");
-    const std::string folder = named != nullptr ? named : root() + "/../shared/data/head";
-    if (named == nullptr && !std::filesystem::exists(folder))
+    const bool is_named = named != nullptr && *named != '\0';
+    const std::string folder = is_named ? named : root() + "/../shared/data/head";
+    if (!is_named && !std::filesystem::exists(folder))
       GTEST_SKIP() << "no scanned head: DERMIS_HEAD names no folder, and " << folder
                    << " is not there";
     options.model = {folder + "/LeePerrySmith.glb", folder + "/Map-COL.jpg",

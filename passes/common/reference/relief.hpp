@@ -16,8 +16,8 @@ inline constexpr double relief_width = 0.87;
 inline constexpr double relief_range_d = 2;
 
 // Returns the mean relief as subsurface.classify counts it: in half of the blocks of 4x4 tiles, at
-// a pixel of every second row of each tile that scatters. 0: the surface is flat within reach of
-// scattering, to 1. -1: nothing scatters. Thread: any.
+// one pixel per two rows of each tile that scatters. 0: all surfaces are flat within reach of
+// scattering; at most 1; -1: nothing scatters. Thread: any.
 double mean_relief(const ReferenceInput& input);
 
 } // namespace dermis::subsurface
