@@ -78,21 +78,22 @@ sap_sum sap_tent(sap_place place, int level, sap_texel own, int layers) {
           continue;
         all_weight += weight;
       }
-      uvec4 bits = near_surface(place, step, 0);
-      sap_texel tap = sap_unpack(bits);
-      vec4 light = near_light(place, level, step, 0);
-      float off = sap_off_plane(own, tap, offset);
-      if (layers > 1 && (!branches_on_layers() || has_second_near(bits))) {
-        uvec4 second_bits = near_surface(place, step, 1);
-        sap_texel second = sap_unpack(second_bits);
-        float second_off = sap_off_plane(own, second, offset);
-        if (sap_takes_second(own, tap, off, second, second_off)) {
-          bits = second_bits;
-          light = near_light(place, level, step, 1);
-          off = second_off;
+      uvec4 bits = uvec4(0u);
+      vec4 light = vec4(0.0);
+      float off = 0.0;
+      [[unroll]] for (int layer = 0; layer < layers; ++layer) {
+        if (layer > 0 && branches_on_layers() && !has_second_near(bits))
+          continue;
+        uvec4 layer_bits = near_surface(place, step, layer);
+        sap_texel texel = sap_unpack(layer_bits);
+        float layer_off = sap_off_plane(own, texel, offset);
+        if (layer == 0 || sap_takes_second(own, sap_unpack(bits), off, texel, layer_off)) {
+          bits = layer_bits;
+          light = near_light(place, level, step, layer);
+          off = layer_off;
         }
       }
-      tap = sap_unpack(bits); // only the bits stay in registers across the branch
+      sap_texel tap = sap_unpack(bits); // only the bits stay in registers across the branch
       off *= off_unit;
       weight *= exp2(-off * off) * (level == 0 ? 1.0 : tap.mass);
       weight = tap.id == own.id ? weight : 0.0;
@@ -129,21 +130,22 @@ sap_sum sap_from_coarser(sap_place place, int level, sap_texel own, vec3 fallbac
       if (!square_pixels && bilinear == 0.0)
         continue; // the texel may not exist
       int n = 2 * j + i;
-      uvec4 bits = corner_surface(place, n, 0);
-      sap_texel tap = sap_unpack(bits);
-      uvec4 handed_down = corner_scattered(place, level, n, 0);
-      float off = sap_off_planes(own, tap, offset);
-      if (layers > 1 && (!branches_on_layers() || has_second_corner(bits))) {
-        uvec4 second_bits = corner_surface(place, n, 1);
-        sap_texel second = sap_unpack(second_bits);
-        float second_off = sap_off_planes(own, second, offset);
-        if (sap_takes_second(own, tap, off, second, second_off)) {
-          bits = second_bits;
-          handed_down = corner_scattered(place, level, n, 1);
-          off = second_off;
+      uvec4 bits = uvec4(0u);
+      float off = 0.0;
+      uvec4 handed_down = uvec4(0u);
+      [[unroll]] for (int layer = 0; layer < layers; ++layer) {
+        if (layer > 0 && branches_on_layers() && !has_second_corner(bits))
+          continue;
+        uvec4 layer_bits = corner_surface(place, n, layer);
+        sap_texel texel = sap_unpack(layer_bits);
+        float layer_off = sap_off_planes(own, texel, offset);
+        if (layer == 0 || sap_takes_second(own, sap_unpack(bits), off, texel, layer_off)) {
+          bits = layer_bits;
+          off = layer_off;
+          handed_down = corner_scattered(place, level, n, layer);
         }
       }
-      tap = sap_unpack(bits); // only the bits stay in registers across the branch
+      sap_texel tap = sap_unpack(bits); // only the bits stay in registers across the branch
       off *= off_unit;
       float kept = tap.id == own.id ? exp2(-off * off) : 0.0;
       sap_scattered theirs = stores_full() ? sap_unpack_scattered_full(handed_down)
