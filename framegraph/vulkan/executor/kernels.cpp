@@ -3,8 +3,8 @@
 #include "framegraph/vulkan/create_infos.hpp"
 #include "framegraph/vulkan/executor/state.hpp"
 #include "framegraph/vulkan/kernel_store.hpp"
-#include "framegraph/vulkan/shader/loop_hints.hpp"
 #include "framegraph/vulkan/shader/signature_check.hpp"
+#include "framegraph/vulkan/shader/swiftshader.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -245,10 +245,10 @@ Error create_pipeline(const Device& device, const std::string& subresource,
                                        sizeof(uint32_t) * values.size(), values.data()};
   VkShaderModuleCreateInfo module_info{};
   module_info.sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO;
-  std::vector<uint32_t> refined;
-  if (unrolls_without_end(device.properties)) {
-    refined = without_unrolling(spirv);
-    spirv = refined;
+  std::vector<uint32_t> simplified;
+  if (is_swiftshader(device.properties)) {
+    simplified = simplify_for_swiftshader(spirv, constants);
+    spirv = simplified;
   }
   module_info.codeSize = spirv.size_bytes();
   module_info.pCode = spirv.data();

@@ -1,6 +1,6 @@
 #pragma once
-// Lists the SPIR-V 1.6 constants that reflect.cpp and loop_hints.cpp need (SPIR-V specification,
-// section 3).
+// Lists the SPIR-V 1.6 constants that reflect.cpp and swiftshader.cpp need (SPIR-V
+// specification, section 3).
 
 #include <cstdint>
 
@@ -33,11 +33,16 @@ enum Op : uint32_t {
   op_spec_constant_false = 49,
   op_spec_constant = 50,
   op_spec_constant_composite = 51,
+  op_spec_constant_op = 52,
   op_function = 54,
   op_variable = 59,
   op_decorate = 71,
   op_member_decorate = 72,
+  op_logical_not = 168,
   op_loop_merge = 246,
+  op_selection_merge = 247,
+  op_branch = 249,
+  op_branch_conditional = 250,
   op_execution_mode_id = 331,
   op_type_acceleration_structure = 5341 // SPV_KHR_ray_query
 };
