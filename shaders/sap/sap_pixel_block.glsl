@@ -12,16 +12,18 @@ float depth_at(int i);
 
 struct pixel_rows {
   int pixels;  // of a row of those that the kernel has read
-  ivec2 block; // size of a block
+  ivec2 block; // size of a block, powers of two
 };
 int pixel_index(pixel_rows rows, ivec2 place) { return place.y * rows.pixels + place.x; }
 
 // Returns the depth of the pixel next to `place`; 0 in another block or with another profile.
 float depth_next_to(pixel_rows rows, ivec2 place, ivec2 offset, uint id) {
   ivec2 next = place + offset;
-  bool inside = all(greaterThanEqual(next, ivec2(0))) && next / rows.block == place / rows.block;
+  bool inside = ((next ^ place) & -rows.block) == ivec2(0);
   int i = inside ? pixel_index(rows, next) : 0;
-  return inside && profile_at(i) == id ? depth_at(i) : 0.0;
+  bool same = profile_at(i) == id;
+  float depth = depth_at(i);
+  return inside && same ? depth : 0.0;
 }
 
 // Returns the surface of the pixel at `place`, whose depth must be above 0, as sap_pixel_surface.

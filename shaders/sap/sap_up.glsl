@@ -119,6 +119,7 @@ sap_sum sap_from_coarser(sap_place place, int level, sap_texel own, vec3 fallbac
   bvec2 halves = greaterThan(step_from_level(level), ivec2(1));
   vec2 distances = mix(vec2(0.0), sap_spacings(level), halves);
   nearer = mix(vec2(1.0), nearer, halves);
+  vec2 farther = 1.0 - nearer;
   vec3 sum = vec3(0.0), mass = vec3(0.0);
   float existing = 0.0, per_relevant = sap_per_relevant(own, sap_spacing(level)) / sap_rate(width);
   confidence = 0.0;
@@ -126,7 +127,7 @@ sap_sum sap_from_coarser(sap_place place, int level, sap_texel own, vec3 fallbac
     [[unroll]] for (int i = 0; i < 2; ++i) {
       // An odd texel is nearer to its first corner, an even one to its second: by 0.5 to 1.5.
       vec2 steps = odd - 1.5 + 2.0 * vec2(i, j), offset = steps * distances;
-      float bilinear = (i == 0 ? nearer.x : 1.0 - nearer.x) * (j == 0 ? nearer.y : 1.0 - nearer.y);
+      float bilinear = (i == 0 ? nearer.x : farther.x) * (j == 0 ? nearer.y : farther.y);
       if (!square_pixels && bilinear == 0.0)
         continue; // the texel may not exist
       int n = 2 * j + i;
@@ -147,7 +148,9 @@ sap_sum sap_from_coarser(sap_place place, int level, sap_texel own, vec3 fallbac
       }
       sap_texel tap = sap_unpack(bits); // only the bits stay in registers across the branch
       off *= off_unit;
-      float kept = tap.id == own.id ? exp2(-off * off) : 0.0;
+      bool same = tap.id == own.id;
+      float kept = exp2(-off * off);
+      kept = same ? kept : 0.0;
       sap_scattered theirs = stores_full() ? sap_unpack_scattered_full(handed_down)
                                            : sap_unpack_scattered(handed_down);
       vec3 tap_mass = bilinear * kept * theirs.mass;
@@ -158,10 +161,10 @@ sap_sum sap_from_coarser(sap_place place, int level, sap_texel own, vec3 fallbac
                           abs(depth_step - sap_rise(tap.depth, tap.slope, offset))) * off_unit;
       float strictly = exp2(-further * further * (width * width) /
                             (sap_confidence_width * sap_confidence_width));
-      bool same = tap.id == own.id;
       float lost = (1.0 - strictly) * max(sap_relevance(off * per_relevant), sap_not_held(tap));
-      confidence += same ? bilinear * (1.0 - lost) * theirs.confidence : 0.0;
-      existing += bilinear * (same ? 1.0 : sap_lost(bits));
+      float known = bilinear * (1.0 - lost) * theirs.confidence, lost_here = sap_lost(bits);
+      confidence += same ? known : 0.0;
+      existing += bilinear * (same ? 1.0 : lost_here);
     }
   confidence = existing > 1e-6 ? confidence / existing : 1.0;
   vec3 found = vec3(greaterThan(mass, vec3(sap_negligible)));
