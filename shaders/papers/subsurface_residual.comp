@@ -33,7 +33,7 @@ const float max_squared_deviation =
 const float new_light_factor =
     0.5; // factor on alpha where light has just appeared that may not stay
 const float sample_noise = 0.4; // squared noise of a ratio, times the number of its samples
-// The same for `shrinkage`, of the ratio of one pixel and of the mean with those around it.
+// The same for young histories, of the ratio of one pixel and of the mean with those around it.
 const float single_noise = 0.9, averaged_noise = 0.05;
 // Number of samples that a moving mean of weight alpha is worth, in n / alpha: (2 - alpha) / alpha.
 const float memory = 1.9;
@@ -47,12 +47,14 @@ float agreement_weight(float off, float tolerance, float odds) {
   return same / (1.0 + same);
 }
 
-// Returns how much of a ratio's distance from 1 is more than the noise of its samples. Where the
-// pyramid is right, few samples only add noise.
-float shrinkage(vec3 mean, float count, bool averaged) {
-  float off = residual_luminance(mean - 1.0);
-  float noise = (averaged ? averaged_noise : single_noise) / max(count, 1.0);
-  return off * off / (off * off + noise);
+// Returns how much of the distance of a ratio from 1 is more than noise. Where the pyramid is right,
+// samples only add noise. mean: ratio and its squared noise, as mean_ratio(); count: number of its
+// samples. With a `young` history the noise of neighbours says little.
+float part_beyond_noise(vec4 mean, float count, bool averaged, bool young) {
+  float off = residual_luminance(mean.rgb - 1.0), square = max(off * off, 1e-12);
+  float part = max(1.0 - mean.a / square, 0.0);
+  float expected = (averaged ? averaged_noise : single_noise) / max(count, 1.0);
+  return young ? min(part, square / (square + expected)) : part;
 }
 
 previous_place place_of(ivec2 pixel, sap_texel own) {
@@ -74,22 +76,39 @@ vec4 ratio_before(history_taps taps) {
   return sum;
 }
 
+// Adds a ratio next to `ratio` to the sum of ratios and weights. Ratios that differ by more than
+// their noise count little. Returns the difference of their luminances, and whether `at` shows the
+// surface.
+bool add_ratio(ivec2 at, vec4 ratio, previous_place place, uint id, float tolerance,
+               inout vec4 sum, out float off) {
+  off = 0.0;
+  if (!inside_previous(at) ||
+      !shows_surface(residual_surface_before(place_image, at), place, id, tolerance))
+    return false;
+  vec4 other = texelFetch(ratio_image, previous_texel(at), 0);
+  off = residual_luminance(other.rgb - ratio.rgb);
+  float weight = exp(-off * off * ratio.a / sample_noise) * min(other.a / ratio.a, 1.0);
+  sum += weight * vec4(other.rgb, 1.0);
+  return true;
+}
+
 // Returns the mean with the ratios of the 8 pixels around the previous place that show the surface.
-// Ratios that differ by more than their noise count little.
-vec3 mean_ratio(vec4 ratio, previous_place place, uint id, float tolerance) {
+// a: squared noise of its luminance, from the second differences along four axes, to which an even
+// change of the ratio adds nothing.
+vec4 mean_ratio(vec4 ratio, previous_place place, uint id, float tolerance) {
+  const ivec2 axes[4] = ivec2[](ivec2(1, 0), ivec2(0, 1), ivec2(1, 1), ivec2(1, -1));
   vec4 sum = vec4(ratio.rgb, 1.0);
+  vec2 bends = vec2(0.0); // squares of the second differences, and their number
   ivec2 centre = ivec2(floor(place.pixel + 0.5));
-  for (int i = 0; i < 9; ++i) {
-    ivec2 at = centre + ivec2(i % 3, i / 3) - 1;
-    if (i == 4 || !inside_previous(at) ||
-        !shows_surface(residual_surface_before(place_image, at), place, id, tolerance))
-      continue;
-    vec4 other = texelFetch(ratio_image, previous_texel(at), 0);
-    float off = residual_luminance(other.rgb - ratio.rgb);
-    float weight = exp(-off * off * ratio.a / sample_noise) * min(other.a / ratio.a, 1.0);
-    sum += weight * vec4(other.rgb, 1.0);
+  for (int i = 0; i < 4; ++i) {
+    float before, after;
+    bool has_before = add_ratio(centre - axes[i], ratio, place, id, tolerance, sum, before),
+         has_after = add_ratio(centre + axes[i], ratio, place, id, tolerance, sum, after);
+    float bend = before + after;
+    bends += has_before && has_after ? vec2(bend * bend, 1.0) : vec2(0.0);
   }
-  return sum.rgb / sum.a;
+  float variance = bends.x / (6.0 * max(bends.y, 1.0)); // of one ratio
+  return vec4(sum.rgb / sum.a, variance / sum.a);
 }
 
 // Returns whether the tile takes samples in this frame. Tiles take turns: within 2x2 tiles each is
@@ -167,10 +186,9 @@ void main() {
         first ? 1.0 : agreement_weight(pattern - kept.x, tolerance_of(all.b, kept.y), all.g);
     float fraction = sample_fraction(light.a, ratio.a, settings.sample_weight);
     bool averaged = fraction > 0.0 && !first && !lost && place.depth > 0.0;
-    vec3 mean = averaged ? mean_ratio(ratio, place, own.id, tolerance) : ratio.rgb;
-    // The first samples of a surface are noisy.
-    float trust = ratio.a < 4.0 * n ? shrinkage(mean, ratio.a, averaged) : 1.0;
-    light.rgb *= 1.0 + pattern_agreement * fraction * trust * (min(mean, vec3(largest_ratio)) - 1.0);
+    vec4 mean = averaged ? mean_ratio(ratio, place, own.id, tolerance) : vec4(ratio.rgb, 0.0);
+    float trust = part_beyond_noise(mean, ratio.a, averaged, ratio.a < 4.0 * n);
+    light.rgb *= 1.0 + pattern_agreement * fraction * trust * (min(mean.rgb, vec3(largest_ratio)) - 1.0);
   }
   imageStore(refined_image, texel, round_to_half(light));
   imageStore(ratio_out_image, texel, round_to_half(ratio));
