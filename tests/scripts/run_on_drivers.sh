@@ -20,7 +20,7 @@ fail() { # message
 build=${1:-build/release}
 shift || true
 suites=("$@")
-[[ $# -gt 0 ]] || suites=(integration_abi passes_device shaders integration_embedding
+[[ $# -gt 0 ]] || suites=(integration_abi:{1,2}/2 passes_device shaders integration_embedding
   integration_examples_demo_engine framegraph_vulkan)
 for suite in "${suites[@]}"; do
   program=$build/tests/test_${suite%%:*}
