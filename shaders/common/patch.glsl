@@ -40,6 +40,8 @@ struct surface_patch {
   float area;
 };
 
+// Computes both sides of most choices and selects, because each branch in a loop multiplies the
+// time that some drivers take to compile it.
 surface_patch build_patch(ivec2 pixel, float depth, patch_neighbours around) {
   vec3 position = view_position(vec2(pixel), depth);
   vec3 ray = position / depth;

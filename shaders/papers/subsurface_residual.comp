@@ -47,9 +47,10 @@ float agreement_weight(float off, float tolerance, float odds) {
   return same / (1.0 + same);
 }
 
-// Returns how much of the distance of a ratio from 1 is more than noise. Where the pyramid is right,
-// samples only add noise. mean: ratio and its squared noise, as mean_ratio(); count: number of its
-// samples. With a `young` history the noise of neighbours says little.
+// Returns the part, 0 to 1, of a ratio's distance from 1 that is not noise: where the pyramid is
+// right, samples only add noise. mean: ratio and its squared noise, as mean_ratio() returns them.
+// count: number of its samples. In a `young` history too few ratios have been measured, so the
+// noise is also estimated from the number of samples.
 float part_beyond_noise(vec4 mean, float count, bool averaged, bool young) {
   float off = residual_luminance(mean.rgb - 1.0), square = max(off * off, 1e-12);
   float part = max(1.0 - mean.a / square, 0.0);
@@ -76,9 +77,9 @@ vec4 ratio_before(history_taps taps) {
   return sum;
 }
 
-// Adds a ratio next to `ratio` to the sum of ratios and weights. Ratios that differ by more than
-// their noise count little. Returns the difference of their luminances, and whether `at` shows the
-// surface.
+// Adds the ratio at `at`, next to `ratio`, to the sum of ratios and weights. Ratios that differ by
+// more than their noise count little. `off` receives the difference of their luminances. Returns
+// false, and adds nothing, if `at` does not show the surface.
 bool add_ratio(ivec2 at, vec4 ratio, previous_place place, uint id, float tolerance,
                inout vec4 sum, out float off) {
   off = 0.0;
@@ -187,8 +188,9 @@ void main() {
     float fraction = sample_fraction(light.a, ratio.a, settings.sample_weight);
     bool averaged = fraction > 0.0 && !first && !lost && place.depth > 0.0;
     vec4 mean = averaged ? mean_ratio(ratio, place, own.id, tolerance) : vec4(ratio.rgb, 0.0);
-    float trust = part_beyond_noise(mean, ratio.a, averaged, ratio.a < 4.0 * n);
-    light.rgb *= 1.0 + pattern_agreement * fraction * trust * (min(mean.rgb, vec3(largest_ratio)) - 1.0);
+    float beyond = part_beyond_noise(mean, ratio.a, averaged, ratio.a < 4.0 * n);
+    light.rgb *= 1.0 + pattern_agreement * fraction * beyond *
+                           (min(mean.rgb, vec3(largest_ratio)) - 1.0);
   }
   imageStore(refined_image, texel, round_to_half(light));
   imageStore(ratio_out_image, texel, round_to_half(ratio));
