@@ -122,6 +122,9 @@ constexpr auto guided_settings = join(
             setting::real("eps_u", 0.01, 0.01, 1, "",
                           "fraction of the widest channel's light beyond the circumscribed radius, "
                           "below which light is copied; classify copies below 0.01")),
+        setting::per_frame(setting::integer("first_samples", 16, 2, 4096, "samples per pixel",
+                                            "number of samples of a pixel without history, within "
+                                            "min_samples and max_samples")),
         setting::integer("min_samples", 8, 2, 4096, "samples per pixel",
                          "minimum number of samples"),
         setting::integer("max_samples", 64, 2, 4096, "samples per pixel",

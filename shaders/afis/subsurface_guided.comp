@@ -13,7 +13,6 @@
 #include "common/radius.glsl"
 #include "common/reproject.glsl"
 
-const float first_count = 16.0;  // samples of a pixel without history
 // offset in the sequence from frame to frame, whatever number of points a pixel uses
 const uint frame_stride = 61u;
 
@@ -60,7 +59,7 @@ struct guide_state {
 };
 
 guide_state state_before(ivec2 pixel, float depth, uint id, float rise) {
-  guide_state state = guide_state(sqrt(settings.sigma2_target), first_count, 0.0,
+  guide_state state = guide_state(sqrt(settings.sigma2_target), float(settings.first_samples), 0.0,
                                   moving_covariance(0.0, 0.0, 0.0, 0.0), true);
   if (!(history_usable() && depth > 0.0))
     return state;

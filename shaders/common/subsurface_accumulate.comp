@@ -186,6 +186,13 @@ neighbourhood look_around(ivec2 local) {
   return around;
 }
 
+// Returns the share of the 3x3 mean in what a pixel shows after `count` frames of history. It hides
+// the noise of the first frames; only the pixel's own light enters its history.
+float spatial_share(float count) {
+  float frames = settings.disocclusion_frames;
+  return frames > 0.0 ? max(1.0 - count / frames, 0.0) : 0.0;
+}
+
 struct shown_and_kept {
   vec3 shown;
   accumulated_light kept;
@@ -198,19 +205,23 @@ shown_and_kept with_history(accumulated_light history, vec3 light, near_field ne
   now = mix(history.light, now, lit);
   if (!can_be_kept(now))
     return shown_and_kept(light, accumulated_light(vec3(0.0), 0.0));
-  if (!(history.count > 0.0))
+  vec3 limit = vec3(accumulate_largest_remainder);
+  float spatial = spatial_share(history.count);
+  if (!(history.count > 0.0) && !(spatial > 0.0))
     return shown_and_kept(light, accumulated_light(now, 1.0));
-  history.light =
-      clamp(history.light, vec3(-accumulate_largest_remainder), vec3(accumulate_largest_remainder));
-  bool clips = settings.clip > 0.0;
+  history.light = clamp(history.light, -limit, limit);
+  bool clips = settings.clip > 0.0 && history.count > 0.0;
   neighbourhood around;
-  if (clips) {
+  if (clips || spatial > 0.0)
     around = look_around(local);
+  if (clips) {
     history = clip_to_neighbours(history, mix(history.light, around.mean, lit), around.deviation,
                                  settings.clip);
   }
   accumulated_light sum = add_frame(history, now, settings.weight);
-  vec3 shown = mix(light, light_of_remainder(sum.light, near.light, near.local_mean), lit);
+  vec3 remainder =
+      spatial > 0.0 ? mix(sum.light, clamp(around.mean, -limit, limit), spatial) : sum.light;
+  vec3 shown = mix(light, light_of_remainder(remainder, near.light, near.local_mean), lit);
   if (clips)
     shown = clamp(shown, around.minimum, around.largest);
   return shown_and_kept(shown, sum);

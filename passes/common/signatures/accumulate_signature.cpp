@@ -36,6 +36,10 @@ constexpr PassTypeSetting settings[] = {
     setting::per_frame(setting::real(
         "clip", 1.5, 0, 64, "standard deviations",
         "largest distance of the history from the mean of the 3x3 neighbourhood; 0: no limit")),
+    setting::per_frame(
+        setting::real("disocclusion_frames", 0, 0, 64, "frames",
+                      "number of frames of history from which on a pixel shows its own mean; with "
+                      "less history, it shows more of the mean of the 3x3 neighbourhood; 0: off")),
     setting::texturing,
 };
 

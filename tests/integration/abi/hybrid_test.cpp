@@ -434,6 +434,8 @@ TEST_F(Pair, TilesWithSamples_HaveLightOfOnlySamples) {
     const auto all = first_picture([](uint32_t, uint32_t) { return true; });
     const auto half = first_picture([](uint32_t, uint32_t y) { return y >= 4; });
     ASSERT_EQ(reported.sampled_tiles[2], 32u);
+    // The first frame shows 3x3 means of remainders, which depend on light within 3 pixels.
+    const uint32_t only_samples = history == "off" ? 40 : 44;
     for (uint32_t y = 0; y < side; ++y) {
       const auto row = [&](const std::vector<float>& picture) {
         return std::span(picture).subspan(size_t{4} * side * y, size_t{4} * side);
@@ -442,7 +444,7 @@ TEST_F(Pair, TilesWithSamples_HaveLightOfOnlySamples) {
       const double from_all = rms_of_row(row(half), row(all));
       const double between = rms_of_row(row(all), row(none));
       EXPECT_TRUE(y >= 32 || from_none == 0) << how << ", row " << y;
-      EXPECT_TRUE(y < 40 || from_all == 0) << how << ", row " << y;
+      EXPECT_TRUE(y < only_samples || from_all == 0) << how << ", row " << y;
       // The first row next to tiles without samples has 1 % of the samples' light.
       EXPECT_TRUE(y != 32 || from_none < 0.03 * between) << how << ": " << from_none / between;
       EXPECT_TRUE(y != 39 || from_all < 0.03 * between) << how << ": " << from_all / between;
