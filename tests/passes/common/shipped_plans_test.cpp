@@ -1,8 +1,8 @@
 // Checks every shipped graph with combinations of optional slots: the plan is verified, nothing in
 // it can be removed, and it computes the graph's result.
-// DERMIS_TESTS_FULL tries every combination of optional slots, 2048 of restir. Without
-// DERMIS_TESTS_FULL, graphs with more than five such slots are tried with up to two bound and with
-// up to two unbound.
+// DERMIS_TESTS_FULL tries every combination of optional slots, 2048 of restir, each with fewer
+// orders. Without DERMIS_TESTS_FULL, graphs with more than five such slots are tried with up to two
+// bound and with up to two unbound.
 
 #include "tests/framegraph/graph_reference.hpp"
 #include "tests/framegraph/hazard_oracle.hpp"
@@ -145,7 +145,8 @@ TEST_F(ShippedPlans, EveryLegalOrder_GivesTheReferencePixels) {
     if (bound == Bound::all) {
       EXPECT_TRUE(agrees(recorded, graph_reference(graph, pass_types, frames, 1)));
     }
-    for (uint64_t seed = 1; seed <= seeds_to_try(8, 20); ++seed) {
+    const uint64_t orders = bound == Bound::some ? seeds_to_try(8, 2) : seeds_to_try(8, 20);
+    for (uint64_t seed = 1; seed <= orders; ++seed) {
       EXPECT_EQ(interpret(compiled.plan, {frames, 1, seed, seed}), recorded);
       EXPECT_EQ(interpret(without_aliasing(compiled.plan), {frames, 1, seed, seed}), recorded);
     }
