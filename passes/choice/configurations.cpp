@@ -115,7 +115,7 @@ void describe(const PassTypeRegistry& pass_types, const Plan& plan, const ErrorM
     const PassType& type = pass_types[pass.type];
     const std::vector<SettingValue> values = values_of(plan, pass, type, configuration.settings);
     PassLoad load = load_of(plan, pass, type, values);
-    load.cost = costs.add(work_name(type, values));
+    load.cost = costs.add(work_name(type, values), load.launches);
     configuration.passes.push_back(load);
     passes.push_back(running(type, values));
     const bool by_budget = runs_by_budget(type);

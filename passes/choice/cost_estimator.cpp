@@ -29,6 +29,7 @@ constexpr double pessimism = 1.0 / 3; // fraction of the uncertainty that the up
 constexpr double kept_optimism = 0.25;
 // Cost of unknown work without any calibration: a small dispatch on a slow device.
 constexpr AffineCost unknown_cost = {0.01, 1e-4};
+constexpr AffineCost unknown_command = {0.005, 0}; // for example a clear of a small buffer
 
 std::string_view next_word(std::string_view& text) {
   const size_t end = std::min(text.find(' '), text.size());
@@ -67,7 +68,7 @@ void CostEstimator::set_uncertainty(double uncertainty) {
   pessimism_ = std::pow(uncertainty, pessimism);
 }
 
-CostId CostEstimator::add(std::string_view work) {
+CostId CostEstimator::add(std::string_view work, bool launches) {
   for (uint32_t i = 0; i < lines_.size(); ++i)
     if (lines_[i].work == work) {
       lines_[i].used = true;
@@ -76,9 +77,10 @@ CostId CostEstimator::add(std::string_view work) {
   Line line;
   line.work = work;
   line.used = true;
-  line.prior = unknown_cost;
+  line.prior = launches ? unknown_cost : unknown_command;
   line.guess = true;
-  if (const Line* like = placeholder_for(work)) {
+  const Line* like = placeholder_for(work);
+  if (like != nullptr && (launches || words_alike(like->work, work) > 0)) {
     line.prior = like->has_prior ? like->prior : solve(like->fit, like->prior, false);
     line.has_prior = line.placeholder = true;
     line.guess = like->guess || words_alike(like->work, work) == 0;

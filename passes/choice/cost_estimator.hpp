@@ -64,8 +64,9 @@ public:
 
   // Returns the entry of a kind of work; creates it if necessary. Until its first measurement, the
   // work of the same pass type with most equal settings is its placeholder; without any, the work
-  // with the largest cost per group. Must not be called while frames are recorded.
-  CostId add(std::string_view work);
+  // with the largest cost per group, or a small fixed time if it launches no kernel. Must not be
+  // called while frames are recorded.
+  CostId add(std::string_view work, bool launches = true);
   // Returns whether the calibration, or an earlier measurement, has work of the same pass type.
   bool has_calibration(CostId id) const;
 

@@ -161,6 +161,12 @@ TEST(CostEstimator, UnknownWork_CostsLikeSimilarWorkAndNever0) {
   EXPECT_GT(expected_ms(empty, empty.add("never heard of"), 1000, 0), 0);
 }
 
+TEST(CostEstimator, UnknownCommand_CostsLittle) {
+  CostEstimator costs({{"heavy", 300, 9, 0.1}, {"clear depth=1", 20, 0, 0.1}});
+  EXPECT_LE(expected_ms(costs, costs.add("copy", false), 1, 0), 0.01);
+  EXPECT_NEAR(expected_ms(costs, costs.add("clear depth=0", false), 1, 0), 0.02, 1e-9);
+}
+
 TEST(CostEstimator, InvalidTimes_AreIgnored) {
   CostEstimator costs({{"work", 10, 1, 0.1}});
   const CostId id = costs.add("work");
