@@ -42,14 +42,14 @@ inline constexpr Port add_ports[] = {
 inline const PassTypeRegistry& pass_types() {
   static const PassTypeRegistry registry = [] {
     PassTypeRegistry out;
-    out.add({"test.blur", "blur", "blurs", blur_ports, blur_settings});
+    out.add({"test.blur", "", "blurs", blur_ports, blur_settings});
     static constexpr PortNeed list_needs[] = {
         {"tiles", 8, 4, 4}, {"mask", 1}, {"no_port", 1, 1000}};
-    PassType list{"test.list", "list", "lists tiles", list_ports, {}};
+    PassType list{"test.list", "", "lists tiles", list_ports, {}};
     list.needs = list_needs;
     out.add(list);
-    out.add({"test.mix", "mix", "adds in place", mix_ports, {}});
-    out.add({"test.add", "add", "adds", add_ports, {}});
+    out.add({"test.mix", "", "adds in place", mix_ports, {}});
+    out.add({"test.add", "", "adds", add_ports, {}});
     return out;
   }();
   return registry;

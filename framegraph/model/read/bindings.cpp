@@ -82,7 +82,9 @@ private:
     if (side == PortSide::read && reader_.document[node].kind == NodeKind::object)
       return read_condition(node, port, what);
     Found found;
-    if (!read_reference(side, node, port, what, found) || !choose_mip(what, found)) return false;
+    if (!read_reference(side, node, port, what, found) || !choose_mip(what, found) ||
+        !check_layers(what, found))
+      return false;
     keep(side, what, found);
     return true;
   }
@@ -112,7 +114,9 @@ private:
     const NodeId otherwise = object.any("otherwise", Need::optional);
     bool ok = object.finish();
     Found history, instead;
-    ok &= from.valid() && read_reference(PortSide::read, from, port, "'from' of " + what, history);
+    ok &= from.valid() &&
+          read_reference(PortSide::read, from, port, "'from' of " + what, history) &&
+          check_layers("'from' of " + what, history);
     ok &= !otherwise.valid() ||
           read_reference(PortSide::read, otherwise, port, "'otherwise' of " + what, instead);
     if (!ok || !condition_fits(what, history, instead)) return false;
@@ -288,6 +292,31 @@ private:
         .error(DiagnosticId::bad_subresource, found.where,
                fmt::format("{} writes one mip, but '{}{}' names several", what, resource.name,
                            image_range_text(found.binding.range)))
+        .related.emplace_back(resource.where, fmt::format("'{}' is declared here", resource.name));
+    return false;
+  }
+
+  // Checks that a kernel that declares one layer, or an array of layers, gets it. Host passes see
+  // what the graph binds.
+  bool check_layers(const std::string& what, const Found& found) {
+    const ResourceDeclaration& resource = reader_.graph.resources[found.binding.resource.value];
+    if (found.binding.port == unknown_port || resource.type != ResourceType::image ||
+        reader_.broken_resources[found.binding.resource.value])
+      return true;
+    const std::string_view glsl_type = pass_type_->ports[found.binding.port].glsl_type;
+    if (pass_type_->shader.empty() || glsl_type.empty()) return true;
+    const ImageRange& range = found.binding.range;
+    const uint32_t layers = range.layers == 0 ? resource.layers - range.first_layer : range.layers;
+    const bool array = glsl_type.ends_with("Array");
+    if (array == (layers > 1)) return true;
+    reader_
+        .error(DiagnosticId::bad_subresource, found.where,
+               array ? fmt::format("{} accesses several layers, but '{}{}' has one", what,
+                                   resource.name, image_range_text(range))
+                     : fmt::format("{} accesses one layer, but '{}{}' has {}; name one, as in "
+                                   "'{}[0]'",
+                                   what, resource.name, image_range_text(range), layers,
+                                   resource.name))
         .related.emplace_back(resource.where, fmt::format("'{}' is declared here", resource.name));
     return false;
   }

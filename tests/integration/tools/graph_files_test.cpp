@@ -39,6 +39,18 @@ TEST_F(GraphFiles, FormatTooSmallForTheStorage_IsReported) {
               Succeeds("no problems"));
 }
 
+TEST_F(GraphFiles, LayersThatAKernelDoesNotDeclare_AreRejected) {
+  const std::string light = R"("light": { "format": "rgba16f", "size": "view",)";
+  const std::string layered = burley_with(light, light + R"( "layers": 2,)");
+  EXPECT_THAT(run({"validate", write("whole.json", layered)}),
+              FailsWith(1, "D0228", "port 'light' of pass", "accesses one layer, but 'light' has 2",
+                        "'light[0]'"));
+  const std::string one = replaced(
+      replaced(layered, R"("write": { "light": "light",)", R"("write": { "light": "light[0]",)"),
+      R"("read": { "light": "light",)", R"("read": { "light": "light[0]",)");
+  EXPECT_THAT(run({"validate", write("one.json", one)}), Succeeds("no problems"));
+}
+
 TEST_F(GraphFiles, MalformedJsonIsNamedWithFileLineAndColumn) {
   const std::string bad = write("bad.json", "{ \"dermis\": 2,\n  \"name\": }\n");
   const Outcome outcome = run({"validate", bad});
