@@ -72,6 +72,7 @@ dermis_result build_candidates(dermis_graph_t& graph, CompiledGraphInput& input,
         copy_compiled_graph(context, input, *candidates[0], history, diagnostics, candidates[v]);
   for (size_t v = 1; v < candidates.size() && result == DERMIS_OK; ++v)
     apply_own_settings(*graph.others[v - 1], *candidates[v], diagnostics);
+  if (result == DERMIS_OK) apply_own_settings(graph.own, *candidates[0], diagnostics);
   // the caller handles errors of profiles
   if (result != DERMIS_OK || diagnostics.has_errors()) return result;
   size_t v = 0;

@@ -111,6 +111,9 @@ dermis_result replace_compiled_graphs(dermis_graph_t& graph, CompiledGraphInput&
                                       vulkan::HistoryReason reason, dermis_report* report,
                                       Diagnostics&& diagnostics = {});
 
+// Gives a copy of the view's compiled graph the graph's values of settings that the view has
+// itself.
+void drop_own_settings(const dermis_view_t& view, CompiledGraph& compiled_graph);
 // Applies the view's own settings to a compiled graph that it will record. Reports settings that no
 // longer fit.
 void apply_own_settings(const dermis_view_t& view, CompiledGraph& compiled_graph,

@@ -96,6 +96,18 @@ void set_in(std::vector<HostSetting>& given, const std::string& name, const std:
     at->json = json;
 }
 
+// Returns the value that applies to views without their own.
+SettingValue value_of_graph(const dermis_graph_t& graph, const SettingDeclaration& declared) {
+  const auto& given = graph.input.settings;
+  const auto at = std::find_if(given.begin(), given.end(), [&](const HostSetting& setting) {
+    return setting.name == declared.name;
+  });
+  Diagnostics scratch; // the value was accepted before
+  const auto value =
+      at != given.end() ? read_setting(declared, at->json, scratch) : std::optional<SettingValue>();
+  return value.value_or(declared.default_value);
+}
+
 // Returns whether the new values change which passes run.
 bool changes_passes(const CompiledGraph& compiled_graph, const std::vector<SettingValue>& values) {
   for (const PassDeclaration& pass : compiled_graph.graph.passes)
@@ -175,6 +187,7 @@ dermis_result set_setting(dermis_graph_t& graph, const std::string& name, const 
     CompiledGraph& changed = newest(view);
     changed.settings[index] = *value;
     changed.configurations.swap(change.configurations);
+    ++changed.revision;
     for (size_t p = 0; p < change.pipelines.size(); ++p)
       changed.plans[p].executor->set_pipelines(change.pipelines[p]);
   });
@@ -219,7 +232,7 @@ dermis_result set_view_setting(dermis_view_t& view, const std::string& name, con
     set_in(settings, name, json);
   } else {
     std::erase_if(settings, [&](const HostSetting& setting) { return setting.name == name; });
-    value = keep_newest(view.graph->own)->settings[index];
+    value = value_of_graph(*view.graph, *at);
   }
   std::vector<choice::Configuration> configurations;
   {
@@ -233,11 +246,24 @@ dermis_result set_view_setting(dermis_view_t& view, const std::string& name, con
   CompiledGraph& changed = newest(view);
   changed.settings[index] = *value;
   changed.configurations.swap(configurations);
+  ++changed.revision;
   view.settings.swap(settings);
   return result;
 }
 
 } // namespace
+
+void drop_own_settings(const dermis_view_t& view, CompiledGraph& compiled_graph) {
+  for (const HostSetting& own : view.settings) {
+    const auto at = find_declared(compiled_graph.graph, own.name);
+    if (at == compiled_graph.graph.settings.end()) continue;
+    const auto index = static_cast<size_t>(at - compiled_graph.graph.settings.begin());
+    const SettingValue value = value_of_graph(*view.graph, *at);
+    compiled_graph.settings[index] = value;
+    for (choice::Configuration& configuration : compiled_graph.configurations)
+      configuration.settings[index] = value;
+  }
+}
 
 void apply_own_settings(const dermis_view_t& view, CompiledGraph& compiled_graph,
                         Diagnostics& diagnostics) {

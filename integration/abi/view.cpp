@@ -22,6 +22,7 @@ dermis_result create(dermis_graph_t& graph, const dermis_view_desc* given, dermi
     const std::lock_guard lock(graph.own.mutex);
     const Chooser& from = graph.own.chooser;
     view->chooser.errors = from.errors;
+    view->chooser.found = choice::make_error_correction(from.errors.techniques.size());
     view->chooser.calibration = from.calibration;
     view->chooser.costs = from.costs;
     view->chooser.budget = from.budget;
@@ -34,6 +35,7 @@ dermis_result create(dermis_graph_t& graph, const dermis_view_desc* given, dermi
                           vulkan::HistoryReason::first_frame, diagnostics, compiled_graph);
   const dermis_result result = conclude(log, made, std::move(diagnostics), report);
   if (result != DERMIS_OK) return result;
+  drop_own_settings(graph.own, *compiled_graph);
   reserve(view->image_views, compiled_graph->slots.size());
   adopt(view->chooser, graph.context->pass_types, *compiled_graph);
   view->next = compiled_graph;

@@ -208,6 +208,29 @@ TEST_F(Settings, ViewSettings_SurviveAReloadThatAcceptsThem) {
   EXPECT_EQ(weight_of_view("one"), 0.5);
 }
 
+TEST_F(Settings, OwnValueOfTheGraphsView_StaysInThatView) {
+  make(graph_text);
+  host.make_bindings();
+  view = dermis_graph_view(host.graph);
+  set_for_view("weight", "0.75");
+  EXPECT_EQ(weight_of_graph("one"), 0.75);
+  ASSERT_OK(host.reload(graph_text));
+  EXPECT_EQ(weight_of_graph("one"), 0.75);
+  dermis_view other = nullptr;
+  ASSERT_OK(dermis_view_create(host.graph, nullptr, &other, nullptr));
+  EXPECT_EQ(named(settings_of(other), "weight").value, 0.5);
+  EXPECT_EQ(named(settings_of(other), "weight").set, 0u);
+  std::swap(view, other);
+  set_for_view("weight", "0.25");
+  set_for_view("weight", nullptr);
+  EXPECT_EQ(named(settings_of(view), "weight").value, 0.5);
+  std::swap(view, other);
+  set("weight", "0.125");
+  EXPECT_EQ(weight_of_graph("one"), 0.75);
+  set_for_view("weight", nullptr);
+  EXPECT_EQ(weight_of_graph("one"), 0.125);
+}
+
 TEST_F(Settings, GraphSetting_IsRejectedForAView) {
   make_with_view();
   for (const char* name : {"on", "count", "how", "radius", "both", "threshold"}) {
