@@ -100,7 +100,10 @@ void take_over(dermis_view_t& view, ViewTables& tables) noexcept {
   std::swap(view.chooser.calibration, tables.calibration);
   std::swap(view.chooser.costs, tables.costs);
   for (auto& [compiled_graph, configurations] : tables.compiled_graphs)
-    if (compiled_graph) compiled_graph->configurations.swap(configurations);
+    if (compiled_graph) {
+      compiled_graph->configurations.swap(configurations);
+      ++compiled_graph->revision;
+    }
 }
 
 // Returns DERMIS_OK if all values are in range. The comparisons also reject NaN.

@@ -68,7 +68,7 @@ FrameChoice& place_of(Chooser& chooser, uint64_t frame_index) {
 }
 
 void learn(Chooser& chooser, std::span<const choice::PassLoad> passes, choice::TimeMargins& margins,
-           FrameChoice& frame) {
+           bool same_work, FrameChoice& frame) {
   const choice::FrameLoad load = load_of(frame.counters, frame.rectangle);
   frame.measured_ms = 0;
   chooser.pass_times.clear();
@@ -77,12 +77,12 @@ void learn(Chooser& chooser, std::span<const choice::PassLoad> passes, choice::T
     frame.measured_ms += ms;
     chooser.pass_times.push_back({passes[p].cost, groups_of(passes[p], load), ms});
   }
-  if (frame.first_of_plan || frame.left_out) return;
+  if (frame.begins || frame.left_out || !same_work) return;
   chooser.costs.observe(chooser.pass_times, chooser.state.clock_s);
   // After a step of the device the times before do not count.
   if (frame.decision.measured && !chooser.costs.device_stepped())
-    margins.observe(frame.configuration, frame.decision.expected_ms, frame.measured_ms,
-                    chooser.budget.percentile);
+    chooser.last_margin = margins.observe(frame.configuration, frame.decision.expected_ms,
+                                          frame.measured_ms, chooser.budget.percentile);
 }
 
 void reduce_optimism(choice::CostEstimator& costs, const choice::Configuration& configuration) {
@@ -139,10 +139,12 @@ void observe_frame(Chooser& chooser, CompiledGraph& compiled_graph, FrameChoice&
   if (!frame.left_out)
     frame.calibrated_ms =
         calibrated_ms(configuration, chooser.costs, load_of(frame.counters, frame.rectangle));
-  if (counted && frame.timed) learn(chooser, passes, compiled_graph.margins, frame);
+  // Other settings than those of the frame cost and err otherwise.
+  const bool same_work = frame.revision == compiled_graph.revision;
+  if (counted && frame.timed) learn(chooser, passes, compiled_graph.margins, same_work, frame);
   if (frame.decision.rejected != choice::no_configuration)
     reduce_optimism(chooser.costs, compiled_graph.configurations[frame.decision.rejected]);
-  if (counted) learn_error(chooser, configuration, frame.counters);
+  if (counted && same_work) learn_error(chooser, configuration, frame.counters);
   frame.observed = true;
   if (frame.frame_index <= chooser.newest.frame_index) return;
   chooser.newest = frame;
@@ -228,6 +230,11 @@ std::span<choice::Forecast> forecast_first(Chooser& chooser, const CompiledGraph
   return std::span(chooser.scratch.forecasts).first(count);
 }
 
+// Returns the number of passes whose time is not known; 0 if measured times do not count.
+size_t unmeasured(const Chooser& chooser) {
+  return chooser.budget.deterministic ? 0 : chooser.costs.unmeasured();
+}
+
 choice::Decision without_budget(const choice::Forecast& forecast) {
   choice::Decision decision;
   decision.why = choice::ReasonKind::no_budget;
@@ -303,7 +310,7 @@ void adopt(Chooser& chooser, const PassTypeRegistry& pass_types, CompiledGraph& 
   for (choice::DecisionState* state :
        {&chooser.state, &chooser.previous_state, &chooser.scratch.state})
     state->configurations.reserve(configurations);
-  compiled_graph.margins.resize(compiled_graph.configurations.size());
+  compiled_graph.margins.restart(compiled_graph.configurations.size(), chooser.last_margin);
   compiled_graph.serial = ++chooser.compiled_graphs;
 }
 
@@ -322,12 +329,13 @@ FrameChoice choose(Chooser& chooser, const CompiledGraph& compiled_graph,
   FrameChoice frame;
   frame.frame_index = request.index;
   frame.compiled_graph = compiled_graph.serial;
+  frame.revision = compiled_graph.revision;
   frame.rectangle = request.rectangle;
   frame.expected_tiles = content.load.listed_tiles;
   choice::DecisionState& state = chooser.scratch.state;
   state = chooser.state;
   if (chooser.decided_for != compiled_graph.serial)
-    restart(state, compiled_graph.configurations.size(), chooser.costs.unmeasured());
+    restart(state, compiled_graph.configurations.size(), unmeasured(chooser));
   // Without a budget, the defaults run.
   const size_t count = chooser.budget.ms > 0 ? compiled_graph.configurations.size() : 1;
   const std::span<choice::Forecast> forecasts =
@@ -368,7 +376,7 @@ choice::Decision settled_decision(Chooser& chooser, const CompiledGraph& compile
   choice::DecisionState& state = chooser.scratch.state;
   state = chooser.state;
   if (chooser.decided_for != compiled_graph.serial)
-    restart(state, compiled_graph.configurations.size(), chooser.costs.unmeasured());
+    restart(state, compiled_graph.configurations.size(), unmeasured(chooser));
   allow_switches(state);
   choice::FrameInput input;
   input.budget_ms = budget_ms;

@@ -34,6 +34,7 @@ inline uint64_t tiles_of(const vulkan::Rectangle& rectangle) {
 struct FrameChoice {
   uint64_t frame_index = 0;    // 0: none
   uint64_t compiled_graph = 0; // CompiledGraph::serial
+  uint64_t revision = 0;       // CompiledGraph::revision
   uint32_t configuration = 0;  // into CompiledGraph::configurations
   // into CompiledGraph::plans: the configuration's plan, or its replacement for empty bounds
   uint32_t plan = 0;
@@ -41,8 +42,9 @@ struct FrameChoice {
   uint32_t switches = 0; // since the graph was created
   double budget_ms = 0;  // 0: no budget
   vulkan::Rectangle rectangle;
-  // drivers finish kernels at their first run, so such a frame is not learned from
-  bool first_of_plan = false;
+  // First frame of the configuration after another. Such a frame is not learned from: drivers
+  // finish kernels at their first run, caches are cold, and histories begin.
+  bool begins = false;
   bool left_out = false; // empty bounds: passes that serve scattering did not run
   bool history_invalid = false;
   uint64_t expected_tiles = 0;        // number of tiles that the forecast assumed
@@ -97,6 +99,7 @@ struct Chooser {
   choice::TileGrowth tile_growth; // of tiles with subsurface
   // of tiles that get samples individually
   choice::SampleDemand demand;
+  double last_margin = choice::first_margin;                        // of the frame observed last
   std::array<FrameChoice, vulkan::max_frames_in_flight + 2> frames; // by frame_index
   FrameChoice newest;                                               // the newest observed frame
   // number of compiled graphs adopted so far

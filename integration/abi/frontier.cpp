@@ -76,7 +76,7 @@ dermis_result make_forecasts(const char* function, const Request& request, Forec
 double units_within(const choice::Forecast& forecast, double budget_ms) {
   if (!forecast.takes_samples) return 0;
   if (budget_ms <= 0 || forecast.time.unit_ms <= 0) return forecast.demand;
-  const double left_ms = budget_ms * std::exp(-forecast.margin) - forecast.time.expected_ms;
+  const double left_ms = budget_ms * std::exp(-forecast.margin) - forecast.time.pessimistic_ms;
   return std::clamp(left_ms / forecast.time.unit_ms, 0.0, forecast.demand);
 }
 

@@ -107,7 +107,8 @@ dermis_result record(dermis_view_t& view, const dermis_frame* given, Capture* ca
                                checked.input.rectangle, &view.graph->shared_budget, &view.share});
   const uint32_t plan = plan_of(compiled_graph, chosen.configuration, checked.empty_bounds());
   chosen.plan = plan;
-  chosen.first_of_plan = !compiled_graph.plans[plan].recorded;
+  chosen.begins = !compiled_graph.plans[plan].recorded || compiled_graph.last_frame == 0 ||
+                  chosen.configuration != compiled_graph.configuration;
   const vulkan::Executor* before = recorded_before(view, compiled_graph, plan);
   const std::array<double, 2> jitter_before = compiled_graph.last_jitter_px;
   const bool replaces = compiled_graph.last_frame == 0 && before != nullptr;

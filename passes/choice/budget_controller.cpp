@@ -20,6 +20,8 @@ constexpr double switches_per_second = 0.5, max_tokens = 2;
 constexpr double trial_tokens = 2, known_tokens = 1; // a trial needs another one to come back
 // Until the first seconds have passed, each pass may be tried.
 constexpr double first_s = 3, first_tokens_per_pass = 2;
+// A frame counts as at most this time of the first seconds: after a pause, nothing was tried yet.
+constexpr double longest_first_frame_s = 0.1;
 constexpr double trial_s = 1; // left sooner, a trial failed
 // A configuration that was left is not tried again for its back-off, which doubles each time, and
 // restarts after the configuration ran for this many back-offs.
@@ -69,6 +71,7 @@ private:
     const double seconds = seconds_of(frame_.seconds);
     const double before = state_.clock_s - state_.started_s;
     state_.clock_s += seconds;
+    if (before <= first_s) state_.started_s += std::max(0.0, seconds - longest_first_frame_s);
     const double after = state_.clock_s - state_.started_s;
     if (after > first_s)
       state_.tokens = std::min(max_tokens, state_.tokens + switches_per_second * seconds);
@@ -102,7 +105,7 @@ private:
     out.units = out.entering_units = 0;
     if (forecast.takes_samples && forecast.demand > 0) {
       const double entering_unit_ms = rested && may_try() ? time.undisturbed_unit_ms : time.unit_ms;
-      out.units = units_within(out.fill_ms - time.expected_ms, time.unit_ms, forecast.demand);
+      out.units = units_within(out.fill_ms - time.pessimistic_ms, time.unit_ms, forecast.demand);
       out.entering_units =
           units_within(out.enter_ms - entering_ms, entering_unit_ms, forecast.demand);
     }
@@ -145,10 +148,18 @@ private:
     const bool tried = state_.clock_s - state_.entered_s < trial_s;
     choose_known(tried ? &Assessment::fill_ms : &Assessment::enter_ms, decision,
                  tried ? ReasonKind::trial_failed : ReasonKind::over_budget);
+    if (tried || state_.tokens < trial_tokens || !may_try()) return;
+    if (decision.why == ReasonKind::nothing_fits) {
+      const uint32_t might_fit =
+          best([&](uint32_t i) { return assessed_[i].entering_ms <= assessed_[i].enter_ms; });
+      if (might_fit == no_configuration || might_fit == state_.current) return;
+      decision.configuration = might_fit;
+      decision.why = ReasonKind::trial;
+      return;
+    }
     // Once the first trials are over, one that never ran may serve if it should fit.
     const bool first_trials = state_.clock_s - state_.started_s <= first_s;
-    if (first_trials || tried || state_.tokens < trial_tokens || frame_.trials != Trials::on)
-      return;
+    if (first_trials || frame_.trials != Trials::on) return;
     const uint32_t expected = best([&](uint32_t i) {
       return assessed_[i].entering_ms < never_ms &&
              forecasts_[i].time.expected_ms <= assessed_[i].enter_ms;
@@ -230,7 +241,7 @@ private:
     const bool more = fits > units_factor * state_.units + units_step || fits >= forecast.demand;
     if (switched || fits < state_.units || more) state_.units = fits;
     decision.units = forecast.takes_samples ? state_.units : 0;
-    const double affordable = (assessed_[decision.configuration].fill_ms - time.expected_ms) /
+    const double affordable = (assessed_[decision.configuration].fill_ms - time.pessimistic_ms) /
                               std::max(time.unit_ms, min_ms);
     decision.max_units =
         state_.units >= forecast.demand ? std::max(affordable, 0.0) : decision.units;
@@ -338,7 +349,6 @@ void restart(DecisionState& state, size_t configurations, size_t unmeasured) {
   state.units = 0;
   state.started_s = state.entered_s = state.clock_s;
   state.tokens = std::max(max_tokens, first_tokens_per_pass * double(unmeasured));
-  state.switches = 0;
 }
 
 void allow_switches(DecisionState& state) {
@@ -349,6 +359,8 @@ void allow_switches(DecisionState& state) {
 
 void skip_frame(DecisionState& state, double seconds) {
   state.clock_s += seconds_of(seconds);
+  state.started_s = state.clock_s;
+  state.tokens = std::max(max_tokens, state.tokens);
   state.current = no_configuration;
 }
 

@@ -111,15 +111,17 @@ struct DecisionState {
   double clock_s = 0;                        // sum of the seconds of all frames
   double started_s = 0, entered_s = 0;       // clock at restart(), and at the last switch
   double tokens = 0;                         // switches that may follow at once (token bucket)
-  uint32_t switches = 0;                     // since restart()
+  uint32_t switches = 0;                     // since the state was created
 };
 
-// Forgets everything except the clock. `unmeasured`: number of passes whose time is not known, all
-// of which may be tried in the first seconds. Allocates only if no earlier state was as large.
+// Forgets everything except the clock and the number of switches. `unmeasured`: number of passes
+// whose time is not known, all of which may be tried in the first seconds. Allocates only if no
+// earlier state was as large.
 void restart(DecisionState& state, size_t configurations, size_t unmeasured);
 // Makes the next decision free of earlier switches: the state is as after a long calm time.
 void allow_switches(DecisionState& state);
-// Advances the clock in a frame without a budget. The next decision is a first one.
+// Advances the clock in a frame without a budget. The next decision is a first one, and begins the
+// first seconds.
 void skip_frame(DecisionState& state, double seconds);
 
 // Values of one configuration that decide() needs in between.

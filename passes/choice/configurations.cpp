@@ -331,7 +331,8 @@ TimeForecast forecast_time(const Configuration& configuration, const CostEstimat
     const AffineCost& cost = costs.calibrated_cost(pass.cost);
     const bool samples = pass.groups == PassLoad::Groups::sample_units ||
                          pass.groups == PassLoad::Groups::selected_tiles;
-    const double ms = cost.ms(samples ? 0 : static_cast<double>(groups_of(pass, load)));
+    const uint64_t groups = groups_of(pass, load);
+    const double ms = cost.ms(samples ? 0 : static_cast<double>(groups));
     const double unit_ms = samples ? cost.group_ms : 0;
     CostFactors factor; // all 1
     if (!factors.empty()) factor = factors[pass.cost.value];
@@ -342,8 +343,8 @@ TimeForecast forecast_time(const Configuration& configuration, const CostEstimat
     sum.undisturbed_ms += factor.undisturbed * known_ms;
     sum.unit_ms += factor.expected * unit_ms;
     sum.undisturbed_unit_ms += factor.undisturbed * unit_ms;
-    // samples may be absent for long, because none fit
-    sum.measured = sum.measured && (samples || factor.measured);
+    // Passes without groups are not observed. Samples may be absent for long, because none fit.
+    sum.measured = sum.measured && (samples || groups == 0 || factor.measured);
   }
   return sum;
 }

@@ -21,7 +21,8 @@ constexpr double usual_fall = 0.002, usual_rise = 0.001;
 // Without it the split into device and work drifts, and work that does not run is misjudged.
 constexpr double recenter_gain = 0.05;
 constexpr double disturbed = 0.10; // above the usual level by more: disturbed, as a logarithm
-constexpr double absent_s = 0.5; // seconds without observation after which a line may have changed
+// A line may have changed after this time without observation, and at least this many frames.
+constexpr double absent_s = 0.5, absent_frames = 4;
 // Work that does not run may have become cheaper: as a logarithm, for each doubling of 30 minutes.
 constexpr double forgotten = 0.2, forgotten_after_s = 1800;
 constexpr double pessimism = 1.0 / 3; // fraction of the uncertainty that the upper bound adds
@@ -122,14 +123,15 @@ double CostEstimator::factor(const Line& line) const {
 
 std::span<const CostFactors> CostEstimator::predict(double now_s) {
   // Without timestamps, running work does not show what it takes.
-  const bool timed = now_s - observed_s_ <= absent_s;
+  const bool timed = !is_absent(observed_s_, now_s);
   const double min_unmeasured = std::exp(-std::max(0.0, unmeasured_)) / uncertainty_;
   double last_age = 0, remembered = 1; // lines that stopped in the same frame share the power
   for (size_t l = 0; l < lines_.size(); ++l) {
-    const Line& line = lines_[l];
+    Line& line = lines_[l];
     if (!line.used) continue;
+    if (line.seen_s < 0) line.seen_s = now_s;
     const double age = std::max(0.0, now_s - line.seen_s);
-    const bool never = line.own.observations == 0, absent = age >= absent_s;
+    const bool never = line.own.observations == 0, absent = is_absent(line.seen_s, now_s);
     CostFactors& out = factors_[l];
     out.expected = out.pessimistic = out.optimistic = out.undisturbed = factor(line);
     out.measured = !never && !absent && line.own.since_restart >= known_after;
@@ -151,7 +153,15 @@ size_t CostEstimator::unmeasured() const {
   }));
 }
 
+bool CostEstimator::is_absent(double seen_s, double now_s) const {
+  return now_s - seen_s > std::max(absent_s, absent_frames * interval_s_);
+}
+
 void CostEstimator::observe(std::span<const PassTime> passes, double now_s) {
+  // The shorter of two intervals: a single pause is not the frame rate.
+  const double interval_s = observed_s_ >= 0 ? now_s - observed_s_ : 0;
+  interval_s_ = std::min(interval_s, last_interval_s_);
+  last_interval_s_ = interval_s;
   observed_s_ = now_s;
   collect(passes, now_s);
   follow_device();
@@ -180,7 +190,7 @@ void CostEstimator::collect(std::span<const PassTime> passes, double now_s) {
   for (const uint32_t l : timed()) {
     Line& line = lines_[l];
     line.in_frame = false;
-    if (line.own.observations == 0 || now_s - line.seen_s <= absent_s) continue;
+    if (line.own.observations == 0 || !is_absent(line.seen_s, now_s)) continue;
     line.own.level = std::min(line.own.level, line.usual);
     line.own_factor = std::exp(line.own.level);
     restart(line.own);

@@ -105,7 +105,7 @@ private:
     double own_factor = 1;
     double usual = 0;       // `own` where nothing disturbs the work
     double usual_ratio = 1; // usual time to that of the last observation, if that was disturbed
-    double seen_s = 0;      // time of the last observation
+    double seen_s = -1;     // time of the last observation, or of the first prediction
     AffineFit fit;          // for calibration()
     double frame_ms = 0;    // of the frame that is being observed: calibrated
     double frame_measured_ms = 0;
@@ -114,6 +114,7 @@ private:
   double factor(const Line& line) const; // on the calibrated time
   std::span<const uint32_t> timed() const { return std::span(timed_).first(timed_count_); }
   double log_error(const Line& line) const;
+  bool is_absent(double seen_s, double now_s) const;
   const Line* placeholder_for(std::string_view work) const;
   void collect(std::span<const PassTime> passes, double now_s);
   void follow_device();
@@ -131,7 +132,8 @@ private:
   double device_factor_ = 1;
   double unmeasured_ = 0, unmeasured_factor_ = 1; // `own` of work that never ran
   double uncertainty_ = 1, pessimism_ = 1;
-  double observed_s_ = -1e9; // time of the last frame with times
+  double observed_s_ = -1e9;                    // time of the last frame with times
+  double last_interval_s_ = 0, interval_s_ = 0; // between frames with times
 };
 
 } // namespace dermis::choice

@@ -18,7 +18,7 @@ size_t octave_of(const SampleDemand& demand, double d_px) {
 void record_units(SampleDemand& demand, double d_px, double units_per_tile) {
   if (d_px <= 0) return;
   const size_t octave = octave_of(demand, d_px);
-  demand.by_octave[octave] = units_per_tile;
+  demand.by_octave[octave] = std::max(units_per_tile, min_units_per_tile);
   demand.known[octave] = true;
 }
 

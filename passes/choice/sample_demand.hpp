@@ -1,5 +1,5 @@
 #pragma once
-// Predicts the sample demand of an configuration with samples by tile in frames where it does not
+// Predicts the sample demand of a configuration with samples by tile in frames where it does not
 // run, from its last frame with a similar d on the screen. The demand depends on d: there is none
 // far away.
 
@@ -9,6 +9,10 @@
 #include <cstddef>
 
 namespace dermis::choice {
+
+// Least demand that is expected. With 0, as where all importance was 0, samples would never be
+// tried again.
+inline constexpr double min_units_per_tile = 1.0 / 16;
 
 // Units per scattering tile, by octave of d from 1/8 pixel on. An octave without observations has
 // the maximum of a tile.

@@ -13,18 +13,24 @@ constexpr double reserve = 0.2;
 
 } // namespace
 
+void TimeMargins::restart(size_t configurations, double margin) {
+  margins_.assign(configurations, 0);
+  last_ = margin;
+}
+
 double TimeMargins::margin(uint32_t configuration) const {
   const double own = configuration < margins_.size() ? margins_[configuration] : 0;
   return own > 0 ? own : last_;
 }
 
-void TimeMargins::observe(uint32_t configuration, double expected_ms, double measured_ms,
-                          double percentile) {
+double TimeMargins::observe(uint32_t configuration, double expected_ms, double measured_ms,
+                            double percentile) {
   const double before = margin(configuration);
   const double aim = percentile + reserve * (1 - percentile);
   const bool late = measured_ms > expected_ms * std::exp(before);
   last_ = std::clamp(before * (1 + step * (late ? aim : aim - 1)), min_margin, max_margin);
   margins_[configuration] = last_;
+  return last_;
 }
 
 } // namespace dermis::choice

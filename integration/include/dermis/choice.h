@@ -55,7 +55,7 @@ DERMIS_API dermis_result DERMIS_CALL dermis_graph_set_budget(
 #define DERMIS_SKIP_HISTORY 0x20u     /* history was invalid, so it was not read */
 
 /* The choice for one frame and its result, for a host to show or log. Strings live until the next
- * reload, resize, set_setting or destroy. */
+ * reload, resize, set_setting, set_budget or destroy. */
 typedef struct dermis_frame_report {
   size_t struct_size;
   uint64_t frame_index;      /* of the frame described here */
@@ -130,7 +130,7 @@ typedef struct dermis_forecast_desc {
  * the resolution of the given rectangle. Until tiles are counted, the whole view scatters. */
 typedef struct dermis_outcome {
   size_t struct_size;
-  const char* configuration; /* lives until the next reload, resize, set_setting or destroy */
+  const char* configuration; /* lives until the next reload, resize, set_setting, set_budget or destroy */
   float expected_ms;         /* with as many samples by tile as fit; without a budget, with all */
   float percentile_ms;       /* that dermis_budget.percentile of frames stay within */
   float expected_rmse;       /* as dermis_frame_report.predicted_rmse */

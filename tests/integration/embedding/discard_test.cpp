@@ -168,7 +168,8 @@ TEST_F(Discard, RestoresTheLastDecision) {
   const auto run = [&](const std::vector<Shot>& lost) {
     make();
     std::vector<std::string> choices;
-    submit({.budget_ms = 30, .seconds = 4}); // until the first seconds are over
+    for (int i = 0; i < 40; ++i) // until the first seconds are over
+      submit({.budget_ms = 30, .seconds = 0.1f});
     for (const float budget : {30.0f, 0.5f, 30.0f, 0.5f})
       choices.push_back(submit({.budget_ms = budget, .seconds = 0.1f}).choice);
     for (const Shot& shot : lost)

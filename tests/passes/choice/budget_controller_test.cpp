@@ -65,6 +65,46 @@ TEST_F(Decide, NothingFits_TheFastestRuns) {
   EXPECT_EQ(decision.why, ReasonKind::nothing_fits);
 }
 
+TEST_F(Decide, NothingFits_TriesWhatMightFit) {
+  EXPECT_EQ(decide({known(3, 5e-3), unknown(4, 9e-3)}, 2).configuration, 0u);
+  Decision decision;
+  for (int i = 0; i < 300 && decision.why != ReasonKind::trial; ++i)
+    decision = decide({known(3, 5e-3), unknown(4, 9e-3)}, 2);
+  EXPECT_EQ(decision.why, ReasonKind::trial);
+  EXPECT_EQ(decision.configuration, 1u);
+  decision = decide({known(3, 5e-3), known(1.5, 9e-3)}, 2);
+  EXPECT_EQ(decision.configuration, 1u);
+  EXPECT_EQ(decision.why, ReasonKind::fits_best);
+}
+
+// The first seconds are for trials. A long first frame, as after a level was loaded, and frames
+// without a budget do not count.
+TEST_F(Decide, FirstSecondsBeginWithTheBudget) {
+  const std::vector<Forecast> untried{known(1, 9e-3), unknown(3, 2e-3)};
+  for (const bool skips : {false, true}) {
+    state = {};
+    restart(state, untried.size(), 1);
+    if (skips)
+      for (int i = 0; i < 600; ++i)
+        skip_frame(state, frame_seconds);
+    decide({known(1, 9e-3), unknown(30, 2e-3)}, 4, 10); // costs look wrong before the first times
+    for (int i = 0; i < 60; ++i)
+      decide(untried, 4);
+    EXPECT_EQ(state.current, 1u) << skips;
+  }
+}
+
+TEST_F(Decide, SamplesOfUntriedWork_FitPessimistically) {
+  Forecast sampled = unknown(2, 2e-3);
+  sampled.takes_samples = true;
+  sampled.demand = 1000;
+  sampled.unsampled_rmse = 5e-3;
+  sampled.time.unit_ms = sampled.time.undisturbed_unit_ms = 0.01;
+  const Decision decision = decide({sampled}, 4);
+  EXPECT_GT(decision.units, 0);
+  EXPECT_LE(decision.bound_ms, 4 + 1e-9);
+}
+
 TEST_F(Decide, ConfigurationOverBudget_IsLeftAtOnce) {
   EXPECT_EQ(decide(three, 5.0).configuration, 2u);
   const Decision decision = decide(three, 3.0);

@@ -303,6 +303,24 @@ TEST(ForecastTime, SeparatesSamplesFromOtherWork) {
   EXPECT_TRUE(measured.measured);
 }
 
+// Passes without groups have no times: combine_copies of frames in which all tiles scatter.
+TEST(ForecastTime, EmptyPass_DoesNotLeaveTheTimeUnknown) {
+  CostEstimator costs({{"work", 100, 1, 0.1}, {"copies", 50, 1, 0.1}});
+  PassLoad work, copies;
+  work.cost = costs.add("work");
+  copies.cost = costs.add("copies");
+  copies.groups = PassLoad::Groups::copied_tiles;
+  Configuration configuration;
+  configuration.passes = {work, copies};
+  const PassTime frame[] = {{work.cost, 1, 0.1}, {copies.cost, 0, 0.05}};
+  for (int i = 1; i <= 10; ++i)
+    costs.observe(frame, i / 60.0);
+  FrameLoad load;
+  EXPECT_TRUE(forecast_time(configuration, costs, costs.predict(0.2), load).measured);
+  load.copied_tiles = 1;
+  EXPECT_FALSE(forecast_time(configuration, costs, costs.predict(0.2), load).measured);
+}
+
 TEST_F(Configurations, WrittenErrorTable_ReadsBackEqual) {
   errors.techniques[0].curve[0].spread = 1.5;
   Diagnostics other;

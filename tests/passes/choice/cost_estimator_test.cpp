@@ -167,6 +167,32 @@ TEST(CostEstimator, UnknownCommand_CostsLittle) {
   EXPECT_NEAR(expected_ms(costs, costs.add("clear depth=0", false), 1, 0), 0.02, 1e-9);
 }
 
+TEST(CostEstimator, SlowFrames_AreKnown) {
+  CostEstimator costs({{"a", 10, 1, 0.1}});
+  const CostId a = costs.add("a");
+  const PassTime frame[] = {{a, 1000, 1.5}};
+  double clock_s = 0;
+  for (int i = 0; i < 10; ++i)
+    costs.observe(frame, clock_s += 0.8);
+  EXPECT_TRUE(costs.predict(clock_s + 0.8)[a.value].measured);
+  EXPECT_FALSE(costs.predict(clock_s + 10)[a.value].measured);
+  // A single pause among fast frames is not the frame rate.
+  observe(costs, {{a, 1000, 1.5}}, 10, clock_s);
+  costs.observe(frame, clock_s += 3);
+  EXPECT_FALSE(costs.predict(clock_s + 0.6)[a.value].measured);
+}
+
+// Hours do not make work uncertain that is added then.
+TEST(CostEstimator, WorkAddedLater_IsNotForgotten) {
+  CostEstimator early({{"a", 10, 1, 0.1}, {"b", 10, 1, 0.1}}), late = early;
+  const auto optimistic = [](CostEstimator& costs, double clock_s) {
+    const CostId a = costs.add("a"), b = costs.add("b");
+    observe(costs, {{a, 1000, 1.01}}, 2, clock_s);
+    return double(costs.predict(clock_s)[b.value].optimistic);
+  };
+  EXPECT_DOUBLE_EQ(optimistic(early, 0), optimistic(late, 36000));
+}
+
 TEST(CostEstimator, InvalidTimes_AreIgnored) {
   CostEstimator costs({{"work", 10, 1, 0.1}});
   const CostId id = costs.add("work");

@@ -13,15 +13,15 @@ TEST(SampleDemand, NeverMeasured_IsTheMaximum) {
 }
 
 // A distant camera, for which no tile requests samples, moves close. The earlier demand of zero
-// must not be used here.
+// must not be used here, and samples may be tried again at a distance.
 TEST(SampleDemand, DistantCamera_DoesNotPredictACloseOne) {
   SampleDemand demand;
   record_units(demand, 0.13, 0);
-  EXPECT_EQ(expected_units(demand, 0.14), 0);
+  EXPECT_EQ(expected_units(demand, 0.14), min_units_per_tile);
   EXPECT_EQ(expected_units(demand, 1.2), double(max_units));
   record_units(demand, 1.3, 0.5);
   EXPECT_EQ(expected_units(demand, 1.2), 0.5);
-  EXPECT_EQ(expected_units(demand, 0.14), 0);
+  EXPECT_EQ(expected_units(demand, 0.14), min_units_per_tile);
 }
 
 TEST(SampleDemand, BeyondTheStoredOctaves_UsesTheNearest) {
