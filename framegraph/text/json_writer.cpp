@@ -1,5 +1,7 @@
 #include "framegraph/text/json_writer.hpp"
 
+#include "framegraph/text/utf8.hpp"
+
 #include <fmt/format.h>
 
 #include <cmath>
@@ -60,7 +62,14 @@ JsonWriter& JsonWriter::raw(std::string_view text) {
 
 void JsonWriter::quote(std::string_view text) {
   text_ += '"';
-  for (const char c : text) {
+  for (size_t at = 0; at < text.size(); ++at) {
+    const char c = text[at];
+    const size_t bytes = utf8_sequence_bytes(text.substr(at, 4));
+    if (bytes != 1) { // the replacement character stands for a byte that is not UTF-8
+      text_ += bytes == 0 ? std::string_view("\xef\xbf\xbd") : text.substr(at, bytes);
+      at += bytes == 0 ? 0 : bytes - 1;
+      continue;
+    }
     switch (c) {
     case '"':
       text_ += "\\\"";

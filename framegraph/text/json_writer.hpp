@@ -18,7 +18,7 @@ public:
   JsonWriter& close(); // closes the innermost object or array
   JsonWriter& key(std::string_view name);
 
-  JsonWriter& value(std::string_view text); // UTF-8; control characters, '"' and '\' are escaped
+  JsonWriter& value(std::string_view text); // control characters, '"' and '\' are escaped, bytes that are not UTF-8 replaced
   JsonWriter& value(const char* text) { return value(std::string_view(text)); }
   JsonWriter& value(bool flag) { return raw(flag ? "true" : "false"); }
   JsonWriter& value(double number); // null if not finite

@@ -1,14 +1,32 @@
 #include "integration/tools/command/session.hpp"
 
 #include "framegraph/text/json_writer.hpp"
+#include "framegraph/text/utf8.hpp"
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <unistd.h>
 
 namespace dermis::tools {
+
+namespace {
+
+// Returns text for a terminal: lines as they are, other control characters as \xNN.
+std::string for_terminal(std::string_view text) {
+  std::string out;
+  while (!text.empty()) {
+    const size_t end = std::min(text.find_first_of("\n\t"), text.size());
+    append_printable(out, text.substr(0, end), end);
+    out += text.substr(end, 1);
+    text.remove_prefix(std::min(end + 1, text.size()));
+  }
+  return out;
+}
+
+} // namespace
 
 ExitCode fail(const Session& session, ExitCode code, std::string_view message,
               const Diagnostics* diagnostics) {
@@ -20,7 +38,7 @@ ExitCode fail(const Session& session, ExitCode code, std::string_view message,
     answer.json(diagnostics != nullptr ? format_as_json(*diagnostics) : "[]").close();
     print(std::move(answer).finish());
   } else {
-    spdlog::error("{}", message);
+    spdlog::error("{}", for_terminal(message));
   }
   return code;
 }
@@ -40,7 +58,7 @@ void print_diagnostics(const Session& session, const Diagnostics& diagnostics) {
 }
 
 void say(const Session& session, std::string_view text) {
-  if (!session.json && !session.quiet) print(text);
+  if (!session.json && !session.quiet) print(for_terminal(text));
 }
 
 void print(std::string_view text) {

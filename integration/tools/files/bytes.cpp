@@ -59,9 +59,12 @@ fs::path temporary_path(const fs::path& path) {
   return result;
 }
 
-bool write_bytes(const fs::path& path, std::span<const uint8_t> bytes, std::string& error) {
-  const fs::path part = temporary_path(path);
+bool write_bytes(const fs::path& given, std::span<const uint8_t> bytes, std::string& error) {
   std::error_code code;
+  // A link stays: the file to which it leads is replaced.
+  const fs::path linked = fs::is_symlink(given, code) ? fs::canonical(given, code) : fs::path();
+  const fs::path& path = linked.empty() ? given : linked;
+  const fs::path part = temporary_path(path);
   bool complete = false;
   {
     File file(std::fopen(part.c_str(), "wb"));
@@ -72,6 +75,8 @@ bool write_bytes(const fs::path& path, std::span<const uint8_t> bytes, std::stri
   if (!complete) {
     error = fmt::format("'{}' cannot be written: {}", path.string(), last_error());
   } else {
+    if (const fs::file_status old = fs::status(path, code); fs::is_regular_file(old))
+      fs::permissions(part, old.permissions(), code);
     fs::rename(part, path, code);
     if (!code) return true;
     error = fmt::format("'{}' cannot be put in place: {}", path.string(), code.message());

@@ -53,6 +53,17 @@ TEST_F(Upgrade, OldFiles_Validate_OneDiagnosticNamesTheVerb) {
   }
 }
 
+TEST_F(Upgrade, LinksAndPermissionsStay) {
+  namespace fs = std::filesystem;
+  const std::string file = unpack().front(), link = path("link.json");
+  fs::permissions(file, fs::perms::owner_read | fs::perms::owner_write);
+  fs::create_symlink(file, link);
+  EXPECT_THAT(run({"upgrade", link}), Succeeds("upgraded"));
+  EXPECT_TRUE(fs::is_symlink(link));
+  EXPECT_EQ(run({"upgrade", "--check", file}).exit_code, 0);
+  EXPECT_EQ(fs::status(file).permissions(), fs::perms::owner_read | fs::perms::owner_write);
+}
+
 TEST_F(Upgrade, OldFiles_Upgrade_CommentsAndLinesStay) {
   for (const std::string& file : unpack()) {
     const std::string before = read_text(file);

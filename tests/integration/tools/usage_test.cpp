@@ -56,6 +56,11 @@ TEST_F(Usage, WrongValue_StatesWhatIsExpected) {
       {{"compare", "a.png"}, "argument 'b' is required; 'dermis compare --help' describes it"},
       {with({"--frames", "0"}), "--frames: expected a number from 1 to 100000, found '0'"},
       {with({"--budget", "-1"}), "--budget: expected a number from 0 to 1000000, found '-1'"},
+      {with({"--budget", "nan"}), "--budget: expected a number from 0 to 1000000, found 'nan'"},
+      {{"compare", "a.png", "b.png", "--flip", "--pixels-per-degree", "nan"},
+       "--pixels-per-degree: expected a number from 1 to 1000, found 'nan'"},
+      {{"kernels", "--limits", ""}, "--limits: the value is empty; 'dermis kernels --help'"},
+      {{"validate", ""}, "files: the value is empty; 'dermis validate --help'"},
       {with({"--kernels", "fpga"}), "--kernels: expected 'cpu', 'device', 'gpu' or 'gpu_small', "
                                     "found 'fpga'"},
       {with({"--frames"}), "--frames: the value is missing; 'dermis render --help' describes it"},
@@ -77,6 +82,27 @@ TEST_F(Usage, MissingGraphFile_SuggestsAShippedGraph) {
   EXPECT_THAT(run({"explain", "a_graph_of_mine.json"}).err, Not(HasSubstr("did you mean")));
   EXPECT_THAT(run({"test", burley}),
               FailsWith(1, "expected a folder or a file NAME.expect.json next to the graph"));
+}
+
+TEST_F(Usage, NamesThatAreNotUtf8_GiveValidJson) {
+  const Outcome outcome = run({"validate", "no\xff.json", "--json"});
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_THAT(outcome.out, AllOf(HasSubstr("no\xef\xbf\xbd.json"), Not(HasSubstr("no\xff"))));
+}
+
+TEST_F(Usage, ControlCharactersOfFiles_DoNotReachTheTerminal) {
+  const std::string profile = write("p.json", R"({ "dermis_profile": 1, "name": "\u001b[31mred",
+    "source": "s", "dmfp_mm": [1, 1, 1], "albedo": [0.5, 0.5, 0.5] })");
+  EXPECT_THAT(run({"validate", profile}), Succeeds("\\x1b[31mred"));
+}
+
+TEST_F(Usage, EmptyTable_IsAnError) {
+  const std::string empty = write("empty.json", "");
+  for (const char* option : {"--calibration", "--errors"})
+    EXPECT_THAT(run({"explain", "configs/graphs/skin.json", "--choices", option, empty}),
+                FailsWith(1, "is empty"));
+  EXPECT_THAT(run({"bench", "compile", "--quick", "--graphs", path("none")}),
+              FailsWith(1, "has no graph files"));
 }
 
 TEST_F(Usage, InvalidSize_WritesNothing) {

@@ -20,6 +20,16 @@ std::string check_named_value(const std::string& text) {
 
 } // namespace
 
+CLI::Validator in_range(double minimum, double maximum) {
+  const auto check = [=](const std::string& text) {
+    double value = 0;
+    return CLI::detail::lexical_cast(text, value) && value >= minimum && value <= maximum
+               ? std::string()
+               : fmt::format("Value {} not in range {} to {}", text, minimum, maximum);
+  };
+  return {check, fmt::format("FLOAT in [{} - {}]", minimum, maximum)};
+}
+
 CLI::Option* repeat(CLI::Option* option) {
   return option->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
@@ -37,7 +47,7 @@ CLI::Option* add_size(CLI::App& verb, Size& size, const char* name) {
 
 void add_pixel_aspect(CLI::App& verb, double& aspect, const char* what) {
   verb.add_option("--pixel-aspect", aspect, what)
-      ->check(CLI::Range(0.125, 8.0))
+      ->check(in_range(0.125, 8.0))
       ->type_name("RATIO");
 }
 
@@ -125,11 +135,11 @@ std::vector<CLI::Option*> add_budget(CLI::App& verb, BudgetArguments& budget) {
   std::vector<CLI::Option*> of_frame{
       verb.add_option("--budget", budget.ms,
                       "Device time per frame, ms, for settings with \"by\": \"budget\"")
-          ->check(CLI::Range(0.0, max_ms))
+          ->check(in_range(0.0, max_ms))
           ->type_name("MS"),
       verb.add_option("--budget-percentile", budget.percentile,
                       "Fraction of frames that stay within the budget [0.95]")
-          ->check(CLI::Range(min_percentile, max_percentile))
+          ->check(in_range(min_percentile, max_percentile))
           ->type_name("FRACTION"),
       add_choice(verb, "--trials", budget.trials, trials,
                  "When a technique may run only to measure its time: always, in cuts, or never "

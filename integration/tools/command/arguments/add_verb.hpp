@@ -20,6 +20,9 @@ inline constexpr uint32_t max_frames = 100000;
 // Allows repetition with one value each time, so that a positional may follow.
 CLI::Option* repeat(CLI::Option* option);
 
+// Accepts finite numbers of a range. CLI::Range accepts nan.
+CLI::Validator in_range(double minimum, double maximum);
+
 // Adds an option whose value is the path of a file or, by `type`, of a folder.
 template <class Value>
 CLI::Option* add_path(CLI::App& verb, const char* name, Value& value, const char* what,

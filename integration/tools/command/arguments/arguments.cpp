@@ -91,6 +91,20 @@ std::string verb_of(const CLI::App& app) {
   return words;
 }
 
+// Returns the first option of the verb that was given an empty value, as from an unset variable of a
+// shell; "" if there is none. --cache '' means no cache.
+std::string find_empty_value(const CLI::App& app) {
+  for (const CLI::Option* option : app.get_options()) {
+    const std::vector<std::string>& values = option->results();
+    if (option->get_name() != "--cache" && option->get_expected_max() > 0 &&
+        std::find(values.begin(), values.end(), "") != values.end())
+      return option->get_name();
+  }
+  for (const CLI::App* inner : app.get_subcommands())
+    if (std::string found = find_empty_value(*inner); !found.empty()) return found;
+  return "";
+}
+
 } // namespace
 
 Invocation read_arguments(int argc, const char* const* argv) {
@@ -123,6 +137,11 @@ Invocation read_arguments(int argc, const char* const* argv) {
   if (!invocation.message.empty()) return invocation;
   try {
     app.parse(argc, argv);
+    if (const std::string option = find_empty_value(app); !option.empty()) {
+      invocation.message = fmt::format("{}: the value is empty; 'dermis {} --help' describes it",
+                                       option, verb_of(app));
+      invocation.run = nullptr;
+    }
   } catch (const CLI::CallForHelp&) {
     invocation.help = app.help(); // of the selected verb, with its full name
   } catch (const CLI::CallForVersion& version) {

@@ -222,15 +222,15 @@ void add_kernels_verb(CLI::App& app, Invocation& invocation) {
             ->type_name("FILE");
         verb.add_option("--covered", options.assumptions.covered,
                         "Fraction of the view with subsurface [0.5]")
-            ->check(CLI::Range(0.001, 1.0))
+            ->check(in_range(0.001, 1.0))
             ->type_name("FRACTION");
         verb.add_option("--flagged", options.assumptions.flagged,
                         "Fraction of texels that have a second layer [0.5]")
-            ->check(CLI::Range(0.0, 1.0))
+            ->check(in_range(0.0, 1.0))
             ->type_name("FRACTION");
         verb.add_option("--flagged-fine", options.assumptions.flagged_fine,
                         "The same at half the view's resolution and finer [0.1]")
-            ->check(CLI::Range(0.0, 1.0))
+            ->check(in_range(0.0, 1.0))
             ->type_name("FRACTION");
         verb.add_option("--assembly", options.assembly,
                         "Write the kernels' assembly to this folder")

@@ -18,7 +18,7 @@ void add_model(CLI::App& verb, ModelOptions& model) {
   add_path(verb, "--normal", model.normal, "Tangent-space normal map")->group(group);
   add_path(verb, "--specular", model.specular, "Specular image, linear")->group(group);
   verb.add_option("--height", model.height, "Scale the model to this height, metres")
-      ->check(CLI::Range(1e-3, 1e3))
+      ->check(in_range(1e-3, 1e3))
       ->group(group);
 }
 
@@ -259,17 +259,17 @@ void add_picture_verbs(CLI::App& app, Invocation& invocation) {
         verb.add_option("--pixels-per-degree", options.pixels_per_degree,
                         "Pixels per degree of the viewer's field of view [67]")
             ->needs(flip)
-            ->check(CLI::Range(1.0, 1000.0))
+            ->check(in_range(1.0, 1000.0))
             ->type_name("N");
         verb.add_option("--most-flip", options.max_flip,
                         "Fail if the mean FLIP of an image or region is higher")
             ->needs(flip)
-            ->check(CLI::Range(0.0, 1.0))
+            ->check(in_range(0.0, 1.0))
             ->type_name("N");
         constexpr double max_db = 100;
         verb.add_option("--min-psnr", options.min_psnr,
                         "Fail if the PSNR of an image or region is lower")
-            ->check(CLI::Range(0.0, max_db))
+            ->check(in_range(0.0, max_db))
             ->type_name("DB");
       });
 }

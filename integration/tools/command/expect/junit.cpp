@@ -1,5 +1,7 @@
 #include "integration/tools/command/expect/junit.hpp"
 
+#include "framegraph/text/utf8.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -16,9 +18,16 @@ int64_t failures_of(const TestSuite& suite) {
 
 std::string xml_text(std::string_view text) {
   std::string out;
-  for (const char c : text) {
+  for (size_t at = 0; at < text.size(); ++at) {
+    const char c = text[at];
     const auto code = static_cast<unsigned char>(c);
-    if (c == '&')
+    const size_t bytes = utf8_sequence_bytes(text.substr(at, 4));
+    if (bytes > 1) {
+      out += text.substr(at, bytes);
+      at += bytes - 1;
+    } else if (bytes == 0) {
+      out += '?';
+    } else if (c == '&')
       out += "&amp;";
     else if (c == '<')
       out += "&lt;";

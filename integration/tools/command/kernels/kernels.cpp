@@ -62,7 +62,8 @@ ExitCode kernels(const Session& session, const KernelsOptions& options) {
   std::optional<LimitsCheck> check;
   if (rules)
     check = check_limits(*rules, {survey->device, survey->driver}, survey->kernels, survey->graphs);
-  const bool good = !check || (check->device_known && check->exceeded.empty());
+  const bool none = check && check->device_known && check->checked == 0;
+  const bool good = !check || (check->device_known && check->exceeded.empty() && !none);
   if (session.json) {
     print(kernels_as_json(*survey, options, check, diagnostics));
     return good ? ExitCode::ok : ExitCode::problems;
@@ -75,6 +76,10 @@ ExitCode kernels(const Session& session, const KernelsOptions& options) {
     return fail(session, ExitCode::problems,
                 fmt::format("{} has no rule for {} with {}", options.limits, survey->device,
                             survey->driver));
+  if (none)
+    return fail(session, ExitCode::problems,
+                fmt::format("{}: no rule for this device names one of these kernels or graphs",
+                            options.limits));
   return fail(session, ExitCode::problems,
               fmt::format("{} of {} exceeded:\n{}", format_count(check->exceeded.size(), "limit"),
                           options.limits, findings_as_text(check->exceeded, diagnostics)));

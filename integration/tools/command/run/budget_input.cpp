@@ -2,6 +2,8 @@
 
 #include "integration/examples/demo_engine/files.hpp"
 
+#include <fmt/format.h>
+
 namespace dermis::tools {
 namespace {
 
@@ -9,6 +11,8 @@ demo::Result<demo::NamedText> read_named(const std::string& path) {
   if (path.empty()) return demo::NamedText{};
   auto text = demo::read_text_file(path);
   if (!text) return text.error();
+  if (text->empty()) 
+    return demo::Error{demo::ErrorKind::input, fmt::format("'{}' is empty", path)};
   return demo::NamedText{path, text.take()};
 }
 

@@ -259,6 +259,9 @@ demo::Result<> measure_compile(SuiteRun& run, const Emit<CompileRow>& emit) {
     add_memory(tasks, effort, *file, pass_types, run.flag("optimize"));
   } else if (!add_given(tasks, run, loaded, diagnostics)) {
     return run.reject(source, diagnostics);
+  } else if (tasks.empty()) {
+    return demo::Error{demo::ErrorKind::input,
+                       fmt::format("'{}' has no graph files; name a folder with --graphs", source)};
   }
   run.report.constants = {{"clock", "CPU time of the thread"}};
   run.report.plots_title = "Time over size";
