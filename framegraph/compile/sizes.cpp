@@ -100,7 +100,7 @@ struct SizeResolver {
     const uint32_t limit = in.device->max_image_dimension;
     if (extent.width > limit || extent.height > limit) {
       report_too_large(declared,
-                       fmt::format("is {}x{} texels; the device '{}' holds at most {} a side",
+                       fmt::format("is {}x{} texels; the device '{}' holds at most {} per side",
                                    extent.width, extent.height, in.device->name, limit));
       return false;
     }

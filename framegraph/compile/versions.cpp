@@ -256,7 +256,7 @@ struct VersionResolver {
           graph.resources[through.instead.value].type) {
         report.diagnostics.add(
             DiagnosticId::otherwise_mismatch, through.where,
-            fmt::format("'{}' cannot stand in for '{}': one is {}, the other {}",
+            fmt::format("'{}' cannot replace '{}': one is {}, the other {}",
                         name_of(graph, through.instead), name_of(graph, through.output),
                         type_phrase(graph.resources[through.instead.value].type),
                         type_phrase(graph.resources[through.output.value].type)));
@@ -265,7 +265,7 @@ struct VersionResolver {
       if (subresources.divided(through.output) || subresources.divided(through.instead)) {
         report.diagnostics.add(
             DiagnosticId::otherwise_mismatch, through.where,
-            fmt::format("'{}' cannot stand in for '{}': ports name mips or layers of '{}'",
+            fmt::format("'{}' cannot replace '{}': ports name mips or layers of '{}'",
                         name_of(graph, through.instead), name_of(graph, through.output),
                         name_of(graph, subresources.divided(through.output) ? through.output
                                                                             : through.instead)));

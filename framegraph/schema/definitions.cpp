@@ -87,7 +87,7 @@ std::string setting_definition() {
   const std::string choice =
       form(R"("choice", "default")",
            R"("choice": { )" + options + R"( }, "default": { "type": "string" },
-        "by": { "enum": ["host", "budget"], "description": "who selects the option; budget: the library" },
+        "by": { "enum": ["host", "budget"], "description": "selects the option; with budget, the library does" },
         "requires": { "type": "object", "description": "requirements of each option; an option whose requirements are not met is not available",
           "additionalProperties": { "type": "array", "items": { "type": "string", "description": "device feature, or optional import that the host binds" } } })");
   const auto branch = [](std::string_view key, const std::string& then,
@@ -176,7 +176,7 @@ constexpr std::string_view pass_text =
         "read": { "type": "object", "description": "port: resource, or resource#1[0] of a mip and a layer, or resource@-N of N frames earlier, or an object that requires this frame to be valid" },
         "write": { "type": "object", "description": "port: resource, or resource#1[0] of a mip and a layer" },
         "set": { "type": "object", "description": "setting of the pass type: value, or \"$name\" of a setting of the graph" },
-        "otherwise": { "type": "object", "additionalProperties": { "type": "string" }, "description": "what readers of an output read when the pass is off" },
+        "otherwise": { "type": "object", "additionalProperties": { "type": "string" }, "description": "replacement that readers of an output get while the pass is off" },
         "after": { "type": "array", "maxItems": <passes>, "items": { "type": "object", "required": ["pass", "reason"], "additionalProperties": false, "properties": {
           "pass": { "type": "string" }, "reason": { "type": "string", "minLength": 1 }, <note> } } }, <note> },
       "allOf": [{ "$ref": "#/definitions/pass_of_a_kind" }] })";

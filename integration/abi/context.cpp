@@ -71,9 +71,10 @@ dermis_result check_desc(const dermis_context_desc& desc, const Log& log) {
     return bad_argument(log, "dermis_context_create: desc.{} is NULL", field);
   };
   if (desc.abi_version == 0 || desc.abi_version > DERMIS_ABI_VERSION)
-    return fail(log, DERMIS_ERROR_VERSION, DiagnosticId::host_struct_version,
-                "dermis_context_create: desc.abi_version is {}, this library speaks 1..{}",
-                desc.abi_version, DERMIS_ABI_VERSION);
+    return fail(
+        log, DERMIS_ERROR_VERSION, DiagnosticId::host_struct_version,
+        "dermis_context_create: desc.abi_version is {}, this library supports versions 1..{}",
+        desc.abi_version, DERMIS_ABI_VERSION);
   if ((desc.flags & ~known_context_flags) != 0)
     return bad_argument(log, "dermis_context_create: desc.flags is {:#x}, known bits are {:#x}",
                         desc.flags, known_context_flags);

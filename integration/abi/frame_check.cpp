@@ -155,7 +155,7 @@ dermis_result check_binding(const dermis_view_t& view, uint32_t index, const Slo
   if (binding.after.layout == VK_IMAGE_LAYOUT_UNDEFINED ||
       binding.after.layout == VK_IMAGE_LAYOUT_PREINITIALIZED)
     return bad_argument(
-        log, "{}: bindings[{}].after.layout ('{}') is {}, to which no image can be brought",
+        log, "{}: bindings[{}].after.layout ('{}') is {}, to which an image cannot be transitioned",
         function, index, slot.name,
         binding.after.layout == VK_IMAGE_LAYOUT_UNDEFINED ? "UNDEFINED" : "PREINITIALIZED");
   if (binding.layer > 0 && binding.layer_count == 0)
@@ -188,11 +188,11 @@ dermis_result find_view(dermis_view_t& view, uint32_t index, const Slot& slot,
       find_image_view(view.image_views, key, frame.frame_index, frame.completed_frame_index, found);
   if (result == VK_SUCCESS) return DERMIS_OK;
   if (result == VK_ERROR_TOO_MANY_OBJECTS)
-    return bad_argument(
-        log,
-        "{}: bindings[{}] ('{}') takes turns with more than {} images within the frames in flight; "
-        "give views for them",
-        function, index, slot.name, image_views_a_slot);
+    return bad_argument(log,
+                        "{}: bindings[{}] ('{}') alternates between more than {} images within the "
+                        "frames in flight; "
+                        "give views for them",
+                        function, index, slot.name, image_views_a_slot);
   const vulkan::ErrorKind kind = vulkan::kind_of(result);
   if (kind == vulkan::ErrorKind::device_lost) view.context->lost = true;
   return fail(log, result_of(kind), diagnostic_of(kind),

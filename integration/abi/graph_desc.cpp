@@ -144,8 +144,8 @@ dermis_result read_profile_source(const Log& log, const char* what, const dermis
 dermis_result check_view_size(const Log& log, const char* of, uint32_t width, uint32_t height) {
   if (width >= 1 && width <= largest_view && height >= 1 && height <= largest_view)
     return DERMIS_OK;
-  return bad_argument(log, "{}: the size is {}x{}, expected 1..{} pixels a side", of, width, height,
-                      largest_view);
+  return bad_argument(log, "{}: the size is {}x{}, expected 1..{} pixels per side", of, width,
+                      height, largest_view);
 }
 
 dermis_result read_graph_desc(const Log& log, const char* function, const dermis_graph_desc& desc,

@@ -17,20 +17,22 @@ extern "C" {
 
 #define DERMIS_BUDGET_DETERMINISTIC 0x1u /* no timestamps: equal choices on every machine */
 /* Trials run a configuration for a few frames to measure its time, and may exceed the budget.
- * Without a flag at any time; or only in frames with DERMIS_FRAME_RESET_HISTORY; or never. */
+ * Default: at any time. TRIALS_AT_CUTS: only in frames with DERMIS_FRAME_RESET_HISTORY. NO_TRIALS:
+ * never. */
 #define DERMIS_BUDGET_TRIALS_AT_CUTS 0x2u
 #define DERMIS_BUDGET_NO_TRIALS 0x4u
 /* The budget is for one frame of all views of the graph together. It is divided so that the sum of
- * their expected squared errors is least, anew at most once per second. Each view gets at least
- * what its cheapest configuration needs, if the budget suffices for all. A view that misses eight
- * frames gives its part to the others. */
+ * their expected squared errors is least; the division is recomputed at most once per second, and
+ * at once if a view comes or goes or the budget changes. Each view gets at least what its cheapest
+ * configuration needs, if the budget suffices for all. After eight missed frames, a view's part
+ * goes to the other views. */
 #define DERMIS_BUDGET_ALL_VIEWS 0x8u
 
 /* Device time that a frame of one view, or of all views, may take: a fixed part of your frame,
- * never what other work leaves (docs/choice.md). Each record then chooses the settings declared
- * with "by": "budget": the least expected error whose time fits. All plans that this can select
- * exist from creation on, so changing between them allocates nothing. Times are measured with
- * DERMIS_CONTEXT_TIMINGS; otherwise they come from the calibration. */
+ * never the time that other work leaves (docs/choice.md). Each record then chooses the settings
+ * declared with "by": "budget": the least expected error whose time fits. All plans that this can
+ * select exist from creation on, so changing between them allocates nothing. Times are measured
+ * with DERMIS_CONTEXT_TIMINGS; otherwise they come from the calibration. */
 typedef struct dermis_budget {
   size_t struct_size;
   float milliseconds; /* per frame, > 0; 0: no budget, choices take their defaults */
@@ -75,7 +77,7 @@ typedef struct dermis_frame_report {
 DERMIS_API dermis_result DERMIS_CALL dermis_view_report(
     dermis_view view, uint64_t completed_frame_index, dermis_frame_report* report);
 
-/* Details of the same frame as dermis_frame_report, for tools. Strings live as long as there. */
+/* Details of the same frame as dermis_frame_report, for tools. Strings have the same lifetime. */
 typedef struct dermis_frame_statistics {
   size_t struct_size;
   uint64_t frame_index;
@@ -130,7 +132,7 @@ typedef struct dermis_forecast_desc {
  * the resolution of the given rectangle. Until tiles are counted, the whole view scatters. */
 typedef struct dermis_outcome {
   size_t struct_size;
-  const char* configuration; /* lives until the next reload, resize, set_setting, set_budget or destroy */
+  const char* configuration; /* lifetime as in dermis_frame_report */
   float expected_ms;         /* with as many samples by tile as fit; without a budget, with all */
   float percentile_ms;       /* that dermis_budget.percentile of frames stay within */
   float expected_rmse;       /* as dermis_frame_report.predicted_rmse */

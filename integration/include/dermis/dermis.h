@@ -165,7 +165,7 @@ typedef struct dermis_requirement {
 #define DERMIS_REQUIREMENT_INIT \
   {sizeof(dermis_requirement), DERMIS_REQUIREMENT_API_VERSION, 0, NULL, 0, 0, NULL}
 /* Lists the requirements on a device. Create the instance with VkApplicationInfo.apiVersion
- * VK_API_VERSION_1_3: older instances answer that features are absent which the device has.
+ * VK_API_VERSION_1_3: older instances hide features that the device has.
  * Two-call array. Costs: time. Thread: any. Errors: ARGUMENT, INCOMPLETE. */
 DERMIS_API dermis_result DERMIS_CALL dermis_query_requirements(
     PFN_vkGetInstanceProcAddr get_instance_proc_addr, VkInstance instance,
@@ -180,9 +180,9 @@ typedef void*(DERMIS_CALL* dermis_allocate_fn)(void* user, size_t size, size_t a
 typedef void(DERMIS_CALL* dermis_free_fn)(void* user, void* memory, size_t size, size_t alignment);
 
 /* Both functions must be callable until the last object and report that use them are destroyed.
- * They do not serve dermis_validate, which has no context, and the few bytes that the C++ run time
- * needs to throw std::bad_alloc. The static library and builds with sanitizers leave memory to the
- * program and return UNSUPPORTED. */
+ * Not used by dermis_validate, which has no context, nor for the few bytes that the C++ run time
+ * needs to throw std::bad_alloc. In the static library and in builds with sanitizers,
+ * dermis_context_create rejects an allocator with UNSUPPORTED. */
 typedef struct dermis_allocator {
   size_t struct_size;
   dermis_allocate_fn allocate;
@@ -743,7 +743,7 @@ typedef enum dermis_depth_kind {
   DERMIS_DEPTH_KIND_FORCE_32BIT = 0x7fffffff
 } dermis_depth_kind;
 
-#define DERMIS_FRAME_RESET_HISTORY 0x1u /* camera cut, teleport, new level; invites trials */
+#define DERMIS_FRAME_RESET_HISTORY 0x1u /* camera cut, teleport, new level; trials may run */
 #define DERMIS_FRAME_BOUNDS 0x2u        /* all subsurface is inside dermis_frame.bounds_... */
 #define DERMIS_FRAME_LEFT_HANDED 0x4u   /* the camera looks along +z; see dermis_frame */
 

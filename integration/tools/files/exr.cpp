@@ -174,8 +174,8 @@ std::string check_sizes(const Imf::Header& header, bool tiled, size_t read_chann
   if (tiled) {
     const Imf::TileDescription& tile = header.tileDescription();
     if (tile.xSize > max_image_side || tile.ySize > max_image_side)
-      return fmt::format("its tiles measure {} x {} pixels; at most {} a side are read", tile.xSize,
-                         tile.ySize, max_image_side);
+      return fmt::format("its tiles measure {} x {} pixels; at most {} per side are read",
+                         tile.xSize, tile.ySize, max_image_side);
     chunk = uint64_t{tile.xSize} * tile.ySize;
   }
   if (chunk > max_chunk_bytes / pixel_bytes)

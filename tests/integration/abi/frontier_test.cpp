@@ -1,5 +1,5 @@
 // Tests the forecasts for the host: what each configuration takes, and what a budget would choose
-// at another resolution. The meter (calibrated times) makes them equal on every machine.
+// at another resolution. Calibrated times make them equal on every machine.
 
 #include "integration/examples/demo_engine/render/reported_frame.hpp"
 #include "tests/integration/abi/dermis_fixture.hpp"
@@ -23,7 +23,7 @@ constexpr Extent allocated = {320, 192};
 constexpr std::pair<Extent, Extent> changes[] = {{allocated, allocated},  {allocated, {240, 144}},
                                                  {allocated, {160, 96}},  {{160, 96}, allocated},
                                                  {{160, 96}, {256, 192}}, {{256, 192}, {160, 96}}};
-constexpr double tolerance = 0.10; // of metered times
+constexpr double tolerance = 0.10; // of calibrated times
 
 struct Frontier : DermisTest {
   dermis_graph graph = nullptr;
@@ -78,7 +78,7 @@ struct Frontier : DermisTest {
   };
   // Predictions for the budget and for others near it. A running configuration is left at 0.97 of
   // the budget and entered at 0.92, so two configurations can be right between, and predicted times
-  // differ from metered ones by about 1 %.
+  // differ from calibrated ones by about 1 %.
   std::vector<Prediction> predictions_near(Extent size, float budget) const {
     std::vector<Prediction> found;
     for (const float factor : {1.0f, 0.94f, 0.98f, 1.02f}) {

@@ -1,5 +1,5 @@
 // Tests that `dermis validate FRAMES --diagnose` names each error of an engine's first frame that a
-// capture can show: the rows of "Mistakes of the first hour" in docs/integration.md.
+// capture can show: the rows of "Common integration mistakes" in docs/integration.md.
 
 #include "tests/integration/tools/capture_builder.hpp"
 #include "tests/integration/tools/command_fixture.hpp"

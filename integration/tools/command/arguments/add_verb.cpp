@@ -46,9 +46,7 @@ CLI::Option* add_size(CLI::App& verb, Size& size, const char* name) {
 }
 
 void add_pixel_aspect(CLI::App& verb, double& aspect, const char* what) {
-  verb.add_option("--pixel-aspect", aspect, what)
-      ->check(in_range(0.125, 8.0))
-      ->type_name("RATIO");
+  verb.add_option("--pixel-aspect", aspect, what)->check(in_range(0.125, 8.0))->type_name("RATIO");
 }
 
 void add_settings(CLI::App& verb, std::vector<NamedValue>& settings, const char* name) {

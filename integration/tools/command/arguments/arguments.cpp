@@ -91,8 +91,8 @@ std::string verb_of(const CLI::App& app) {
   return words;
 }
 
-// Returns the first option of the verb that was given an empty value, as from an unset variable of a
-// shell; "" if there is none. --cache '' means no cache.
+// Returns the first option of the verb that was given an empty value, as from an unset variable of
+// a shell; "" if there is none. --cache '' means no cache.
 std::string find_empty_value(const CLI::App& app) {
   for (const CLI::Option* option : app.get_options()) {
     const std::vector<std::string>& values = option->results();

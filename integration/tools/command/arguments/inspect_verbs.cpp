@@ -184,7 +184,8 @@ void add_docs_verb(CLI::App& app, Invocation& invocation) {
 
 void add_kernels_verb(CLI::App& app, Invocation& invocation) {
   add_verb<KernelsOptions>(
-      app, invocation, "kernels", "Show what the driver's compiler made of the kernels of graphs",
+      app, invocation, "kernels",
+      "Show compiler statistics (registers, spills, occupancy) of graphs' kernels",
       "dermis kernels\n"
       "  dermis kernels sap --unbound scattered_light --limits limits.json\n\n"
       "Compiles the pipelines of the graphs' plans on a device and prints the driver's "
@@ -196,7 +197,7 @@ void add_kernels_verb(CLI::App& app, Invocation& invocation) {
       "Dispatches, barrier calls and bytes are those of the default settings.\n\n"
       "Bytes: each texel of an image and each element of a list counts once per pass and port, "
       "with\n"
-      "the size of its format. Passes over a list touch the covered pixels, others the whole "
+      "the size of its format. Passes over a list access the covered pixels, others the whole "
       "view;\n"
       "images of second layers count with the flagged fractions. The sum is divided by the "
       "covered\n"

@@ -261,7 +261,7 @@ void add_picture_verbs(CLI::App& app, Invocation& invocation) {
             ->needs(flip)
             ->check(in_range(1.0, 1000.0))
             ->type_name("N");
-        verb.add_option("--most-flip", options.max_flip,
+        verb.add_option("--max-flip", options.max_flip,
                         "Fail if the mean FLIP of an image or region is higher")
             ->needs(flip)
             ->check(in_range(0.0, 1.0))

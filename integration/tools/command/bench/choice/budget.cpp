@@ -104,7 +104,7 @@ std::vector<Budget> budgets_of(const std::vector<Single>& singles) {
 }
 
 // Measures errors and modelled times of one row per budget.
-demo::Result<> measure_by_meter(BudgetBench& bench, const std::string& scene) {
+demo::Result<> measure_by_calibration(BudgetBench& bench, const std::string& scene) {
   begin_scene(bench, scene);
   const auto singles = measure_singles(bench);
   if (!singles) return singles.error();
@@ -145,7 +145,7 @@ demo::Result<> measure_by_time(BudgetBench& bench, const std::string& scene) {
 // other scenes are timed between two runs of one budget.
 demo::Result<> measure_budgets(BudgetBench& bench) {
   for (const std::string& scene : bench.run.list("scenes"))
-    if (auto measured = measure_by_meter(bench, scene); !measured) return measured;
+    if (auto measured = measure_by_calibration(bench, scene); !measured) return measured;
   for (uint64_t i = 0; i < bench.run.number("repetitions"); ++i)
     for (const std::string& scene : bench.run.list("scenes"))
       if (auto measured = measure_by_time(bench, scene); !measured) return measured;
@@ -216,8 +216,8 @@ demo::Result<> measure_budget(SuiteRun& run, const Emit<BudgetRow>& emit) {
     return demo::Error{demo::ErrorKind::usage, problem};
   const uint64_t frames = run.number("frames"), repetitions = run.number("repetitions");
   run.report.summary = fmt::format(
-      "{} judged frames after {}; over: more than {} of the budget by timestamps, {} by the "
-      "meter; times: median of {}",
+      "{} judged frames after {}; over: more than {} of the budget by timestamps, {} by "
+      "calibrated times; times: median of {}",
       frames, unjudged_frames, measured_tolerance, model_tolerance, repetitions);
   const uint64_t runs = sets.size() + (1 + repetitions) * (1 + std::size(fractions));
   Progress progress = run.progress("run", run.list("scenes").size() * runs);
@@ -245,7 +245,8 @@ Suite budget_suite() {
        .options = {size_option({480, 270}),
                    {"graph", "Graph with choices by budget", "configs/graphs/skin.json", "FILE"},
                    pass_types_option(),
-                   {"calibration", "What dermis calibrate wrote for this device", "", "FILE"},
+                   {"calibration", "Calibration file for this device (dermis calibrate)", "",
+                    "FILE"},
                    {"scenes", "Scenes of configs/scenes, separated by commas",
                     List{"flashing", "regular", "dynamic", "dolly", "cut"}, "NAME",
                     List{"flashing", "dolly"}}, // changing light, and changing size
@@ -260,7 +261,7 @@ Suite budget_suite() {
        {"mean_ms", "mean, ms", timed<&TimedFigures::mean_ms>},
        {"p95_ms", "95 %, ms", timed<&TimedFigures::p95_ms>},
        {"over_budget_fraction", "over, timed", timed<&TimedFigures::over>, {2}},
-       {"over_budget_fraction_meter", "over, meter", &Row::over_model, {2}},
+       {"over_budget_fraction_calibrated", "over, calibrated", &Row::over_model, {2}},
        {"mean_rmse", "RMSE", &Row::rmse},
        {"best_single_rmse_within_budget", "best single RMSE", &Row::single_rmse},
        {"best_single", "best single", &Row::single},

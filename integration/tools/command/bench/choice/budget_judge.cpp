@@ -18,7 +18,7 @@ std::span<const RunFrame> judged_frames(const SceneRun& run) {
 
 } // namespace
 
-double Single::metered_at(double fraction) const {
+double Single::calibrated_at(double fraction) const {
   std::vector<double> sorted = calibrated_ms;
   std::sort(sorted.begin(), sorted.end());
   const auto rank = static_cast<size_t>(std::ceil(fraction * double(sorted.size())));
@@ -35,19 +35,19 @@ Single single_of(const SceneRun& run, std::vector<NamedValue> set) {
 const Single* best_within(const std::vector<Single>& singles, double budget_ms) {
   const Single* best = nullptr;
   for (const Single& one : singles)
-    if (one.metered_at(within) <= model_tolerance * budget_ms &&
+    if (one.calibrated_at(within) <= model_tolerance * budget_ms &&
         (best == nullptr || one.rmse < best->rmse))
       best = &one;
   return best;
 }
 
 double budget_of(const Single& single) {
-  return single.metered_at(within);
+  return single.calibrated_at(within);
 }
 
 const Single& cheapest_of(const std::vector<Single>& singles) {
   return *std::min_element(singles.begin(), singles.end(), [](const Single& a, const Single& b) {
-    return a.metered_at(within) < b.metered_at(within);
+    return a.calibrated_at(within) < b.calibrated_at(within);
   });
 }
 
@@ -57,19 +57,19 @@ const Single* cheapest_scattering(const std::vector<Single>& singles) {
   const Single* cheapest = nullptr;
   for (const Single& one : singles)
     if (one.rmse < most &&
-        (cheapest == nullptr || one.metered_at(within) < cheapest->metered_at(within)))
+        (cheapest == nullptr || one.calibrated_at(within) < cheapest->calibrated_at(within)))
       cheapest = &one;
   return cheapest;
 }
 
 double budget_at(const std::vector<Single>& singles, double fraction) {
-  double floor_ms = singles.front().metered_at(within);
+  double floor_ms = singles.front().calibrated_at(within);
   for (const Single& single : singles)
-    floor_ms = std::min(floor_ms, single.metered_at(within));
+    floor_ms = std::min(floor_ms, single.calibrated_at(within));
   const auto best =
       std::min_element(singles.begin(), singles.end(),
                        [](const Single& a, const Single& b) { return a.rmse < b.rmse; });
-  return floor_ms + fraction * (best->metered_at(within) - floor_ms);
+  return floor_ms + fraction * (best->calibrated_at(within) - floor_ms);
 }
 
 TimedFigures judge_times(const SceneRun& run, double budget_ms) {

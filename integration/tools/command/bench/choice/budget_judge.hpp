@@ -21,7 +21,7 @@ struct Single {
   std::vector<double> calibrated_ms;
   double rmse = 0;
 
-  double metered_at(double fraction) const; // percentile by nearest rank
+  double calibrated_at(double fraction) const; // percentile by nearest rank
 };
 
 Single single_of(const SceneRun& run, std::vector<NamedValue> set);
@@ -58,7 +58,7 @@ struct BudgetRow {
   std::vector<TimedFigures> timed = {}; // one per timed run
 };
 
-// Returns the metered time that a budget must have for a configuration, ms.
+// Returns the calibrated time that a budget must have for a configuration, ms.
 double budget_of(const Single& single);
 
 const Single& cheapest_of(const std::vector<Single>& singles);

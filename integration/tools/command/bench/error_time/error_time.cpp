@@ -379,7 +379,7 @@ Suite error_time_suite() {
                     .help = "Frames at rest per scene, for techniques with a history",
                     .value = uint64_t{1},
                     .minimum = 1},
-                   {"study", "Also measure the framings that study one head", false},
+                   {"study", "Also measure close-up, profile and whole head", false},
                    only_option("scenes"),
                    only_option("techniques"),
                    file_option("tests/benchmark/error_time.json"),

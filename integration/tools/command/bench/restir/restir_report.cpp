@@ -91,15 +91,9 @@ Suite restir_suite() {
        .title = "Ray-traced light and screen-space techniques",
        .summary =
            "Error of the scattered light before albedo against a reference by rays: linear Rec.709 "
-           "luminance, the 99.9th percentile of the reference's own light at 1 (what falls on the "
-           "side that "
-           "is seen says little where light comes from behind). At equal time: mean square error "
-           "times "
-           "device time, over the same without reuse at as many samples, since the error of "
-           "independent "
-           "samples falls as one over their number; below 1 is better. Light: mean over the "
-           "reference's "
-           "mean, 1 where nothing is missing.",
+           "luminance, normalised so that the 99.9th percentile of the reference is 1. At equal "
+           "time: mean square error times device time, relative to no reuse with equally many "
+           "samples; below 1 is better. Light: mean relative to the reference's mean.",
        .options = {size, head_option(), only_option("scenes"), only_option("shifts"),
                    file_option("tests/benchmark/restir.json"), cache_option()},
        .why_not = why_no_rays},

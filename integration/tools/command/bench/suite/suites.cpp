@@ -3,9 +3,9 @@
 namespace dermis::tools {
 
 std::vector<Suite> bench_suites() {
-  return {record_suite(),  skip_suite(),      truth_suite(),  supplement_suite(),
-          compile_suite(), stability_suite(), budget_suite(), error_time_suite(),
-          error_table_suite(), dynamic_suite(), restir_suite()};
+  return {record_suite(),      skip_suite(),      truth_suite(),  supplement_suite(),
+          compile_suite(),     stability_suite(), budget_suite(), error_time_suite(),
+          error_table_suite(), dynamic_suite(),   restir_suite()};
 }
 
 std::vector<std::string> bench_suite_names() {

@@ -86,7 +86,7 @@ Suite supplement_suite() {
   using Row = SupplementRow;
   return make_suite<Row>(
       {.name = "supplement",
-       .what = "Reproduce table 1 of the supplement on control variates from many runs",
+       .what = "Reproduce table 1 of the control-variates supplement",
        .title = "Control variates: table 1 of the supplement",
        .summary = "Mean over frames 25 to 100 of the root of the moving variance of six residuals, "
                   "and the best "

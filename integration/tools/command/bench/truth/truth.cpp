@@ -87,7 +87,7 @@ Suite truth_suite() {
                   "tolerance "
                   "are only reported.",
        .options = {file_option("tests/benchmark/truth.json", "Techniques and tolerances")}},
-      {{"law", "law", &Row::property},
+      {{"property", "property", &Row::property},
        {"technique", "technique", &Row::technique, {.groups = true}},
        {"expected", "expected", &Row::expected, {7}},
        {"measured", "measured", &Row::measured, {7}},
