@@ -325,9 +325,12 @@ extern "C" dermis_result DERMIS_CALL dermis_graph_calibration(dermis_graph graph
   return guarded(log, "dermis_graph_calibration", [&] {
     if (size == nullptr) return bad_argument(log, "dermis_graph_calibration: size is NULL");
     const std::lock_guard lock(graph->own.mutex);
+    const dermis::choice::CostEstimator& costs = graph->own.chooser.costs;
+    // Costs that were not measured are as uncertain as they were.
+    const double uncertainty =
+        costs.unmeasured() == 0 ? dermis::choice::same_device_uncertainty : costs.uncertainty();
     const std::string json = dermis::choice::write_calibration(
-        {graph->context->device.properties.deviceName, dermis::choice::same_device_uncertainty,
-         graph->own.chooser.costs.calibration()});
+        {graph->context->device.properties.deviceName, uncertainty, costs.calibration()});
     const size_t capacity = *size;
     *size = json.size() + 1;
     if (text == nullptr) return DERMIS_OK;

@@ -46,6 +46,13 @@ std::vector<SettingValue> values_of(const Plan& plan, const PlanPass& pass, cons
   return out;
 }
 
+// Returns the value as the name of a work states it. A host may change real numbers in each frame,
+// and each name takes memory, so these have one digit: costs hardly depend on them.
+std::string work_value(const PassTypeSetting& setting, const SettingValue& value) {
+  return setting.per_frame && setting.type == SettingType::real ? fmt::format("{:.1g}", value.real)
+                                                                : value_text(setting, value);
+}
+
 int32_t level_of(const PassType& type, const std::vector<SettingValue>& values) {
   if (find_port(type, "level_tiles", PortSide::read) < 0) return -1;
   const int level = find_setting(type, "level");
@@ -201,7 +208,7 @@ bool copies_all_tiles(const PassType& type) {
 std::string work_name(const PassType& type, std::span<const SettingValue> values) {
   std::string name(type.name);
   for (size_t i = 0; i < values.size(); ++i)
-    name += fmt::format(" {}={}", type.settings[i].name, value_text(type.settings[i], values[i]));
+    name += fmt::format(" {}={}", type.settings[i].name, work_value(type.settings[i], values[i]));
   return name;
 }
 

@@ -110,6 +110,7 @@ void derive(Profile& profile) {
     ChannelShape& shape = profile.shape_mm[c];
     switch (profile.model) {
     case ProfileModel::burley:
+      if (profile.dmfp_mm[c] < smallest_dmfp_mm) profile.dmfp_mm[c] = 0;
       shape = burley_shape(burley_d_from_dmfp(profile.dmfp_mm[c], profile.albedo[c]));
       break;
     case ProfileModel::dipole:

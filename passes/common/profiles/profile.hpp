@@ -29,6 +29,7 @@ struct Profile {
   int widest = 0;               // channel with the largest d (not dmfp)
 };
 
+inline constexpr double smallest_dmfp_mm = 1e-6; // below, a channel does not scatter
 inline constexpr double largest_dmfp_mm = 1e6; // 1 km: beyond any use, and within fp32
 inline constexpr double largest_mfp_mm = 1e4;
 // coefficients of the dipole, 1/mm

@@ -158,11 +158,10 @@ TEST_F(Compare, FlipIsReportedOnRequest) {
   EXPECT_EQ(rows[1]["flip"], 0.0);
   EXPECT_FALSE(
       nlohmann::json::parse(run({"compare", a, b, "--json"}).out)["rows"][0].contains("flip"));
-  EXPECT_EQ(run({"compare", path("one"), path("two"), "--flip", "--max-flip", "0.9"}).exit_code,
-            1);
-  EXPECT_EQ(run({"compare", path("one/b.png"), path("two/b.png"), "--flip", "--max-flip", "0"})
-                .exit_code,
-            0);
+  EXPECT_EQ(run({"compare", path("one"), path("two"), "--flip", "--max-flip", "0.9"}).exit_code, 1);
+  EXPECT_EQ(
+      run({"compare", path("one/b.png"), path("two/b.png"), "--flip", "--max-flip", "0"}).exit_code,
+      0);
 }
 
 TEST_F(Compare, FlipOfLinearLightIgnoresTheUnit) {

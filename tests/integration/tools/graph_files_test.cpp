@@ -51,6 +51,14 @@ TEST_F(GraphFiles, LayersThatAKernelDoesNotDeclare_AreRejected) {
   EXPECT_THAT(run({"validate", write("one.json", one)}), Succeeds("no problems"));
 }
 
+TEST_F(GraphFiles, ConfigurationsOfABudget_AreCompiled) {
+  const std::string scatter = R"("type": "subsurface.burley",)";
+  std::string graph = burley_with(R"("settings": {)", R"("settings": {
+    "t": { "choice": ["a", "b"], "by": "budget", "default": "a" },)");
+  graph = replaced(graph, scatter, scatter + R"( "when": "t == 'a'",)");
+  EXPECT_THAT(run({"validate", write("choice.json", graph)}), FailsWith(1, "D0307"));
+}
+
 TEST_F(GraphFiles, MalformedJsonIsNamedWithFileLineAndColumn) {
   const std::string bad = write("bad.json", "{ \"dermis\": 2,\n  \"name\": }\n");
   const Outcome outcome = run({"validate", bad});
@@ -245,7 +253,12 @@ TEST_F(GraphFiles, SceneProfilesAreReadInFolderAndRoots) {
         << words[0];
     EXPECT_FALSE(std::filesystem::exists(path("out"))) << words[0];
   }
-  EXPECT_EQ(run({"validate", scene, "--root", path("elsewhere")}).exit_code, 0);
+  const std::vector<std::string> words{"validate", scene, "--root", path("elsewhere")};
+  EXPECT_THAT(run(words), FailsWith(1, "secret.json:1:1: error[D0105"));
+  std::filesystem::copy(DERMIS_SOURCE_DIR "/configs/profiles/skin.json",
+                        path("elsewhere/secret.json"),
+                        std::filesystem::copy_options::overwrite_existing);
+  EXPECT_THAT(run(words), Succeeds("no problems"));
 }
 
 } // namespace

@@ -61,6 +61,8 @@ TEST_F(Usage, WrongValue_StatesWhatIsExpected) {
        "--pixels-per-degree: expected a number from 1 to 1000, found 'nan'"},
       {{"kernels", "--limits", ""}, "--limits: the value is empty; 'dermis kernels --help'"},
       {{"validate", ""}, "files: the value is empty; 'dermis validate --help'"},
+      {with({"--out", "o", "--height", "1"}), "--height requires --model"},
+      {with({"--shaders", "none"}), "--shaders: there is no folder 'none'"},
       {with({"--kernels", "fpga"}), "--kernels: expected 'cpu', 'device', 'gpu' or 'gpu_small', "
                                     "found 'fpga'"},
       {with({"--frames"}), "--frames: the value is missing; 'dermis render --help' describes it"},

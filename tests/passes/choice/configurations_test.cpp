@@ -303,6 +303,25 @@ TEST(ForecastTime, SeparatesSamplesFromOtherWork) {
   EXPECT_TRUE(measured.measured);
 }
 
+// Hosts animate settings; each name of a work takes memory.
+TEST(WorkNames, RealsPerFrame_HaveOneDigit) {
+  PassTypeSetting settings[2];
+  settings[0].name = "weight";
+  settings[0].per_frame = true;
+  settings[1].name = "radius";
+  for (PassTypeSetting& one : settings)
+    one.type = SettingType::real;
+  PassType type;
+  type.name = "pass";
+  type.settings = settings;
+  const auto name = [&](double weight, double radius) {
+    const SettingValue values[] = {{SettingType::real, 0, weight}, {SettingType::real, 0, radius}};
+    return work_name(type, values);
+  };
+  EXPECT_EQ(name(0.127, 1.25), "pass weight=0.1 radius=1.25");
+  EXPECT_EQ(name(0.13, 1.25), name(0.127, 1.25));
+}
+
 // Passes without groups have no times: combine_copies of frames in which all tiles scatter.
 TEST(ForecastTime, EmptyPass_DoesNotLeaveTheTimeUnknown) {
   CostEstimator costs({{"work", 100, 1, 0.1}, {"copies", 50, 1, 0.1}});

@@ -35,6 +35,17 @@ TEST(Profile, WidestChannelHasTheLargestShapeParameter) {
   EXPECT_EQ(profile->widest, 1); // d = 5/23.65, 4/3.5, 1/3.5
 }
 
+TEST(Profile, DistancesBelowAnyMaterial_DoNotScatter) {
+  Diagnostics diagnostics;
+  const auto profile = parsed(R"({"dermis_profile": 1, "name": "p", "dmfp_mm": [1, 1e-300, 1e-7],
+                                "albedo": [0.5, 0.5, 0.5], "source": "test"})",
+                              diagnostics);
+  ASSERT_TRUE(profile) << format_as_json(diagnostics);
+  EXPECT_GT(profile->d_mm[0], 0);
+  EXPECT_EQ(profile->d_mm[1], 0);
+  EXPECT_EQ(profile->d_mm[2], 0);
+}
+
 TEST(Profile, AMeanFreePathOfZeroMeansNoScattering) {
   Diagnostics diagnostics;
   const auto profile = parsed(

@@ -1,6 +1,7 @@
 #include "integration/tools/command/arguments/add_verb.hpp"
 
 #include <charconv>
+#include <filesystem>
 #include <map>
 
 namespace dermis::tools {
@@ -28,6 +29,16 @@ CLI::Validator in_range(double minimum, double maximum) {
                : fmt::format("Value {} not in range {} to {}", text, minimum, maximum);
   };
   return {check, fmt::format("FLOAT in [{} - {}]", minimum, maximum)};
+}
+
+CLI::Validator folder_exists() {
+  const auto check = [](const std::string& path) {
+    std::error_code ignored;
+    return std::filesystem::is_directory(path, ignored)
+               ? std::string()
+               : fmt::format("there is no folder '{}'", path);
+  };
+  return {check, ""};
 }
 
 CLI::Option* repeat(CLI::Option* option) {

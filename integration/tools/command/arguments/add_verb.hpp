@@ -22,6 +22,8 @@ CLI::Option* repeat(CLI::Option* option);
 
 // Accepts finite numbers of a range. CLI::Range accepts nan.
 CLI::Validator in_range(double minimum, double maximum);
+// Accepts folders that exist.
+CLI::Validator folder_exists();
 
 // Adds an option whose value is the path of a file or, by `type`, of a folder.
 template <class Value>

@@ -238,7 +238,8 @@ void add_kernels_verb(CLI::App& app, Invocation& invocation) {
             ->type_name("DIR");
         verb.add_option("--shaders", options.shaders,
                         "Folder of shaders that replace the built-in ones")
-            ->type_name("DIR");
+            ->type_name("DIR")
+            ->check(folder_exists());
       });
 }
 

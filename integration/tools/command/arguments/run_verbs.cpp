@@ -13,13 +13,17 @@ constexpr const char* of_scene = "Width of a pixel over its height [the scene's]
 
 void add_model(CLI::App& verb, ModelOptions& model) {
   const char* group = "Model, for scenes that use one";
-  add_path(verb, "--model", model.model, "glTF file")->group(group);
-  add_path(verb, "--albedo", model.albedo, "Albedo image, sRGB")->group(group);
-  add_path(verb, "--normal", model.normal, "Tangent-space normal map")->group(group);
-  add_path(verb, "--specular", model.specular, "Specular image, linear")->group(group);
+  CLI::Option* file = add_path(verb, "--model", model.model, "glTF file")->group(group);
+  const auto add_map = [&](const char* name, std::string& path, const char* what) {
+    add_path(verb, name, path, what)->group(group)->needs(file);
+  };
+  add_map("--albedo", model.albedo, "Albedo image, sRGB");
+  add_map("--normal", model.normal, "Tangent-space normal map");
+  add_map("--specular", model.specular, "Specular image, linear");
   verb.add_option("--height", model.height, "Scale the model to this height, metres")
       ->check(in_range(1e-3, 1e3))
-      ->group(group);
+      ->group(group)
+      ->needs(file);
 }
 
 // Parses X,Y,WxH: the corner, then the size.
@@ -64,7 +68,8 @@ void add_picture_verbs(CLI::App& app, Invocation& invocation) {
         add_path(verb, "--shaders", options.shaders,
                  "Folder of shaders, laid out like shaders/ of this project, that replace the "
                  "built-in ones",
-                 "DIR");
+                 "DIR")
+            ->check(folder_exists());
         verb.add_flag("--taa", options.taa,
                       "Use temporal anti-aliasing in the engine, after the graph, with sub-pixel "
                       "jitter (Halton 2, 3)");
@@ -140,7 +145,8 @@ void add_picture_verbs(CLI::App& app, Invocation& invocation) {
                 "shaders at run time")
             ->type_name("LINE");
         add_path(verb, "--shaders", options.shaders,
-                 "Folder of the shaders to render with [shaders]", "DIR");
+                 "Folder of the shaders to render with [shaders]", "DIR")
+            ->check(folder_exists());
         verb.add_option("--rounds", options.rounds, "Number of renderings; 0: until Ctrl-C [0]");
         add_settings(verb, options.settings);
         add_graph_inputs(verb, options.inputs);

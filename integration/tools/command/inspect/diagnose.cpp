@@ -53,6 +53,8 @@ public:
           "every surface were white");
     check_albedo_in_lighting();
     check_pixel_shape();
+    if (figures_.profile_pixels < min_samples)
+      return fmt::format("{} pixels have a profile: too few to judge", figures_.profile_pixels);
     if (figures_.depth_pixels < min_samples) {
       add(DiagnosticId::first_frame_depth,
           fmt::format("{} of {} pixels with a profile have a depth above 0", figures_.depth_pixels,

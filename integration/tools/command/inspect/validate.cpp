@@ -11,6 +11,7 @@
 #include "integration/tools/command/inspect/file_kind.hpp"
 #include "integration/tools/command/output.hpp"
 #include "integration/tools/command/run/captured.hpp"
+#include "integration/tools/command/run/choice_sets.hpp"
 #include "integration/tools/files/capture_pictures.hpp"
 #include "passes/choice/calibration.hpp"
 #include "passes/choice/error_model.hpp"
@@ -23,6 +24,25 @@
 
 namespace dermis::tools {
 namespace {
+
+// Returns whether all configurations compile that a budget can choose, which a graph needs to be
+// created.
+bool choices_compile(const LoadedGraph& loaded, const CompileChoices& choices,
+                     Diagnostics& diagnostics) {
+  const auto& settings = loaded.graph.settings;
+  if (std::none_of(settings.begin(), settings.end(), [](const auto& one) { return one.by_budget; }))
+    return true;
+  Diagnostics found = diagnostics; // keeps repeated notes of configurations apart
+  choice::CostEstimator costs;
+  choice::ErrorModel errors;
+  errors.unscattered = {{1, 1}};
+  const DeviceProfile device = generic_profile();
+  if (choice_configurations(compile_input(loaded, device, default_size, choices), {}, errors, costs,
+                            found))
+    return true;
+  diagnostics = std::move(found);
+  return false;
+}
 
 bool check_graph(const Document& document, const std::string& path, const GraphInputs& inputs,
                  Diagnostics& diagnostics, bool& verified) {
@@ -40,6 +60,7 @@ bool check_graph(const Document& document, const std::string& path, const GraphI
   for (const std::string& violation : verdict.violations)
     diagnostics.add(DiagnosticId::internal_defect, document.where(document.root()),
                     fmt::format("the verifier rejects the plan: {}", violation));
+  if (!choices_compile(*loaded, choices, diagnostics)) return false;
   verified = verdict.not_verified.empty();
   if (!verified)
     diagnostics.add(DiagnosticId::plan_not_verified, document.where(document.root()),
@@ -57,7 +78,14 @@ bool check_profile(const Document& document, Diagnostics& diagnostics, std::stri
 bool check_scene(const Document& document, const std::vector<std::string>& roots,
                  Diagnostics& diagnostics) {
   const SourceFile file = diagnostics.files[document.file.value];
-  return demo::parse_scene(file.name, file.text, diagnostics, roots).has_value();
+  const auto scene = demo::parse_scene(file.name, file.text, diagnostics, roots);
+  if (!scene) return false;
+  bool good = true;
+  for (const demo::SceneProfile& one : scene->profiles) {
+    const auto profile = read_document(one.file, diagnostics);
+    good = profile && subsurface::read_profile(*profile, diagnostics) && good;
+  }
+  return good;
 }
 
 bool check_expectations(const Document& document, Diagnostics& diagnostics) {

@@ -47,6 +47,12 @@ ExitCode plan_diff(const Session& session, const PlanDiffOptions& options) {
     return fail(session, ExitCode::usage,
                 options.files.back() + ": is a saved plan; --b-set, --b-size, --b-unbound and "
                                        "--b-overlay need a graph to compile");
+  const bool changed =
+      !options.settings.empty() || !options.unbound.empty() || !options.inputs.overlays.empty();
+  if (!plans.front().from_graph && changed)
+    return fail(session, ExitCode::usage,
+                options.files.front() +
+                    ": is a saved plan; --set, --unbound and --overlay need a graph to compile");
   print_diagnostics(session, diagnostics);
   const PlanDiff diff = diff_plans(plans[0].saved, plans[1].saved);
   print(session.json ? plan_diff_json(diff, plans[0].name, plans[1].name)

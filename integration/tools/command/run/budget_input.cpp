@@ -11,8 +11,7 @@ demo::Result<demo::NamedText> read_named(const std::string& path) {
   if (path.empty()) return demo::NamedText{};
   auto text = demo::read_text_file(path);
   if (!text) return text.error();
-  if (text->empty()) 
-    return demo::Error{demo::ErrorKind::input, fmt::format("'{}' is empty", path)};
+  if (text->empty()) return demo::Error{demo::ErrorKind::input, fmt::format("'{}' is empty", path)};
   return demo::NamedText{path, text.take()};
 }
 

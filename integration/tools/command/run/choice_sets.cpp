@@ -34,8 +34,7 @@ std::vector<std::vector<NamedValue>> choice_sets(const LoadedGraph& loaded, cons
   choice::CostEstimator costs;
   choice::ErrorModel no_errors;
   no_errors.unscattered = {{1, 1}};
-  const auto configurations =
-      choice_configurations(input, {}, no_errors, costs, diagnostics);
+  const auto configurations = choice_configurations(input, {}, no_errors, costs, diagnostics);
   if (!configurations) return sets;
   for (const choice::Configuration& configuration : configurations->all) {
     std::vector<NamedValue>& set = sets.emplace_back();
