@@ -9,6 +9,9 @@ namespace {
 constexpr size_t steps = 256;         // of the budget, in which offers are rounded up
 constexpr double period_s = 1;        // between divisions
 constexpr uint64_t absent_rounds = 8; // a view that misses as many gives its share to the others
+// A view that is recorded regularly, but rarely, is absent after this many of its intervals. Views
+// that are rarer than once in longest_interval rounds come and go.
+constexpr uint64_t absent_intervals = 2, longest_interval = 60;
 // A division replaces the previous one if it has at most this fraction of the squared error.
 constexpr double worth_a_change = 0.96;
 
@@ -124,7 +127,8 @@ void BudgetDivision::remove(const ViewShare& view) noexcept {
 size_t BudgetDivision::list_active() noexcept {
   active_.clear();
   for (ViewShare* view : views_)
-    if (round_ - view->round <= absent_rounds) active_.push_back(view);
+    if (round_ - view->round <= std::max(absent_rounds, absent_intervals * view->interval))
+      active_.push_back(view);
   return active_.size();
 }
 
@@ -172,6 +176,8 @@ double BudgetDivision::share(ViewShare& view, double budget_ms, const Offers& of
   const size_t before = active_.size();
   view.offers = offers;
   view.counted = counted;
+  const uint64_t interval = round_ - view.round;
+  view.interval = interval <= longest_interval ? interval : 0;
   view.round = round_;
   const bool changed = list_active() != before || budget_ms != budget_ms_ || view.fraction <= 0;
   budget_ms_ = budget_ms;

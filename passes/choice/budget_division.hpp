@@ -32,9 +32,10 @@ Offers make_offers(std::span<const Forecast> forecasts);
 // The part of one view. Managed by BudgetDivision.
 struct ViewShare {
   Offers offers;
-  double fraction = 0;  // of the budget
-  uint64_t round = 0;   // of its last frame; 0: none
-  bool counted = false; // its tiles were counted, so that its offers are known
+  double fraction = 0;   // of the budget
+  uint64_t round = 0;    // of its last frame; 0: none
+  uint64_t interval = 0; // rounds between its last two frames; 0: longer than is waited for
+  bool counted = false;  // its tiles were counted, so that its offers are known
 };
 
 // Returns the least sum of squared errors with which the offers fit into `budget_ms`, up to

@@ -189,6 +189,18 @@ TEST_F(Rounds, AbsentView_GivesItsPartToTheOthers) {
   EXPECT_DOUBLE_EQ(of_a, 10);
 }
 
+// A mirror that is rendered in each twelfth frame.
+TEST_F(Rounds, RareView_KeepsItsPart) {
+  for (int i = 0; i < 120; ++i) {
+    const bool with_b = i % 12 == 0;
+    of_a = division.share(a, 10, large, true, 0.016);
+    if (with_b) of_b = division.share(b, 10, small, true, 0.2);
+    if (i < 60) continue;
+    EXPECT_DOUBLE_EQ(of_a, 7.5) << i;
+    EXPECT_DOUBLE_EQ(of_b, 2.5) << i;
+  }
+}
+
 // Views of one graph on one device, that show different amounts of subsurface.
 class SimulatedViews {
 public:
