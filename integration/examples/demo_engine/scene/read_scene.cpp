@@ -2,6 +2,7 @@
 
 #include "framegraph/text/file_roots.hpp"
 #include "framegraph/text/reader.hpp"
+#include "framegraph/text/suggest.hpp"
 #include "integration/examples/demo_engine/scene/read_curve.hpp"
 #include "integration/examples/demo_engine/scene/scene_state.hpp"
 
@@ -151,12 +152,12 @@ struct SceneReader {
       for (uint32_t i = 0; i < scene.profiles.size(); ++i)
         if (scene.profiles[i].name == *name) subresource.profile = i + 1;
       if (subresource.profile == 0) {
-        std::string known;
+        std::vector<std::string_view> known;
         for (const SceneProfile& one : scene.profiles)
-          known += fmt::format(" '{}'", one.name);
+          known.push_back(one.name);
         diagnostics.add(DiagnosticId::scene_profile, document.where(document.find(node, "profile")),
-                        fmt::format("there is no profile '{}'; the scene lists{}", *name,
-                                    known.empty() ? " none" : known));
+                        fmt::format("there is no profile '{}'; the scene lists {}", *name,
+                                    known.empty() ? "none" : dermis::list_words(known)));
       }
     }
     object.finish();

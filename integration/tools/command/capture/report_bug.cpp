@@ -202,7 +202,7 @@ ExitCode report_bug(const Session& session, const ReportBugOptions& options) {
   if (fs::exists(named, error) && (!archived.empty() || !fs::is_empty(named, error)))
     return fail(session, ExitCode::environment,
                 fmt::format("'{}' exists{}: choose another name", options.out,
-                            archived.empty() ? " and not empty" : ""));
+                            archived.empty() ? " and is not empty" : ""));
 
   Diagnostics diagnostics;
   GraphFiles files;
