@@ -214,7 +214,7 @@ def add_afis(model, technique, samples, guidance=None, pooled=True):
     if guidance:
         counts = guided(samples, guidance, pooled)
         moved += 4 + 2 * GUIDE_BYTES[guidance]
-        passes.append(("forget", model.pixels / 64, model.wave(valu=10, st64=1, W=16),
+        passes.append(("clear_history", model.pixels / 64, model.wave(valu=10, st64=1, W=16),
                        model.pixels * 8))
     passes.append(("scatter", model.tiles[0], model.wave(**counts), model.covered * moved))
     add_frame(model, technique, setup_with_slope(model), passes, as_built=True)

@@ -20,7 +20,7 @@ struct Histories : DermisTest {
          at += resize.size())
       overlay.replace(at, 9, '"' + resize + '"');
     if (!when.empty()) {
-      const std::string pass = R"("pass": "accumulate",)", clear = R"("pass": "forget_past",)",
+      const std::string pass = R"("pass": "accumulate",)", clear = R"("pass": "clear_past",)",
                         condition = R"("when": ")" + when + R"(",)";
       overlay = replaced(overlay, pass,
                          pass + condition + R"( "otherwise": { "accumulated": "scattered" },)");

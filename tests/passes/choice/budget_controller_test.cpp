@@ -77,21 +77,27 @@ TEST_F(Decide, NothingFits_TriesWhatMightFit) {
   EXPECT_EQ(decision.why, ReasonKind::fits_best);
 }
 
-// The first seconds are for trials. A long first frame, as after a level was loaded, and frames
-// without a budget do not count.
-TEST_F(Decide, FirstSecondsBeginWithTheBudget) {
-  const std::vector<Forecast> untried{known(1, 9e-3), unknown(3, 2e-3)};
-  for (const bool skips : {false, true}) {
-    state = {};
-    restart(state, untried.size(), 1);
-    if (skips)
-      for (int i = 0; i < 600; ++i)
-        skip_frame(state, frame_seconds);
-    decide({known(1, 9e-3), unknown(30, 2e-3)}, 4, 10); // costs look wrong before the first times
-    for (int i = 0; i < 60; ++i)
-      decide(untried, 4);
-    EXPECT_EQ(state.current, 1u) << skips;
-  }
+// The first seconds are for trials. A long first frame, as after a level was loaded, does not end
+// them before any time was measured.
+TEST_F(Decide, LongFirstFrame_DoesNotEndTheTrials) {
+  Forecast untimed = known(6, 2e-3); // without timestamps the optimistic time is the expected one
+  untimed.time.measured = false;
+  EXPECT_EQ(decide({known(1, 9e-3), untimed}, 4, 10).configuration, 0u);
+  for (int i = 0; i < 60; ++i)
+    decide({known(1, 9e-3), unknown(6, 2e-3)}, 4);
+  EXPECT_EQ(state.current, 1u);
+}
+
+TEST_F(Decide, BudgetSetLater_StillBeginsWithTrials) {
+  restart(state, 4, 3);
+  for (int i = 0; i < 600; ++i)
+    skip_frame(state, frame_seconds);
+  std::vector<Forecast> all{known(1, 9e-3), unknown(6, 2e-3), unknown(6, 3e-3), unknown(6, 4e-3)};
+  for (int i = 0; i < 90; ++i)
+    if (const uint32_t now = decide(all, 4).configuration; now != 0)
+      all[now] = known(9, all[now].rmse); // it takes longer than the budget
+  for (uint32_t i = 1; i < 4; ++i)
+    EXPECT_TRUE(state.configurations[i].ran) << i;
 }
 
 TEST_F(Decide, SamplesOfUntriedWork_FitPessimistically) {

@@ -41,7 +41,7 @@ TEST(WithoutRayQueries, FallsBackToThePyramidAndReportsIt) {
   ASSERT_EQ(rendering.frames.size(), 1u);
   if (!withheld(rendering)) GTEST_SKIP() << "this device has ray queries";
   EXPECT_TRUE(ran(rendering.frames[0], "gather"));
-  EXPECT_FALSE(ran(rendering.frames[0], "draw"));
+  EXPECT_FALSE(ran(rendering.frames[0], "sample_paths"));
 }
 
 restir::Vector3 vector_of(const glm::dvec3& v) {
@@ -121,7 +121,7 @@ TEST_F(WithRayQueries, TransmissionMatchesTheReference) {
   const Rendering rays = rendered(back_lit("restir", samples, frames));
   ASSERT_EQ(rays.frames.size(), frames);
   ASSERT_FALSE(withheld(rays));
-  EXPECT_TRUE(ran(rays.frames[0], "draw"));
+  EXPECT_TRUE(ran(rays.frames[0], "sample_paths"));
   EXPECT_TRUE(ran(rays.frames[0], "resolve"));
   EXPECT_FALSE(ran(rays.frames[0], "gather"));
 

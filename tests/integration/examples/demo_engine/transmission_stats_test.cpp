@@ -44,7 +44,7 @@ TEST(WithoutRayQueries, BudgetHasNoRays_TheReportSaysWhy) {
   ASSERT_EQ(rendering.frames.size(), 5u);
   // The first frame is chosen before anything was counted; one of the other frames uses rays.
   if (std::any_of(rendering.frames.begin(), rendering.frames.end(),
-                  [](const FrameOutputs& frame) { return ran(frame, "draw"); }))
+                  [](const FrameOutputs& frame) { return ran(frame, "sample_paths"); }))
     GTEST_SKIP() << "this device has ray queries";
   EXPECT_THAT(rendering.warnings,
               testing::Contains(HasSubstr("does not offer 'restir': the device lacks ray_query")));
@@ -63,7 +63,7 @@ TEST_F(WithRayQueries, BackLight_TheBudgetBuysRays) {
   EXPECT_EQ(choice.configuration, "technique=restir");
   EXPECT_THAT(choice.why, HasSubstr("considering transmitted light"));
   EXPECT_GT(choice.transmitted_rms, 0.05);
-  EXPECT_TRUE(ran(rendering.frames.back(), "draw"));
+  EXPECT_TRUE(ran(rendering.frames.back(), "sample_paths"));
   EXPECT_FALSE(ran(rendering.frames.back(), "gather"));
   EXPECT_NE(rendering.frames[0].choice->configuration, choice.configuration)
       << "no transmission is known before the first count";
