@@ -73,8 +73,8 @@ private:
     state_.clock_s += seconds;
     if (before <= first_s) state_.started_s += std::max(0.0, seconds - longest_first_frame_s);
     const double after = state_.clock_s - state_.started_s;
-    if (after > first_s)
-      state_.tokens = std::min(max_tokens, state_.tokens + switches_per_second * seconds);
+    const double refilled = std::min(max_tokens, state_.tokens + switches_per_second * seconds);
+    state_.tokens = after > first_s ? refilled : std::max(refilled, state_.tokens);
     return before <= first_s && after > first_s;
   }
 
