@@ -1,6 +1,8 @@
 #include "integration/tools/command/bench/choice/budget_judge.hpp"
 
 #include "integration/tools/command/bench/suite/statistics.hpp"
+#include "passes/choice/budget_controller.hpp"
+#include "passes/choice/time_margin.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -32,10 +34,17 @@ Single single_of(const SceneRun& run, std::vector<NamedValue> set) {
   return single;
 }
 
+double controller_room() {
+  choice::Forecast forecast;
+  forecast.time.pessimistic_ms = 1;
+  forecast.margin = choice::calibrated_margin;
+  return 1 / needed_budget_ms(forecast, 0);
+}
+
 const Single* best_within(const std::vector<Single>& singles, double budget_ms) {
   const Single* best = nullptr;
   for (const Single& one : singles)
-    if (one.calibrated_at(within) <= model_tolerance * budget_ms &&
+    if (one.calibrated_at(within) <= controller_room() * budget_ms &&
         (best == nullptr || one.rmse < best->rmse))
       best = &one;
   return best;

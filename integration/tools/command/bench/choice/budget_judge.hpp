@@ -26,8 +26,11 @@ struct Single {
 
 Single single_of(const SceneRun& run, std::vector<NamedValue> set);
 
-// Returns the single with the least error of those whose modelled time keeps the budget in 99 % of
-// the frames, or null.
+// Returns the fraction of the budget within which the controller enters a configuration, with the
+// margin of calibrated times.
+double controller_room();
+// Returns the single with the least error of those whose calibrated time stays within this fraction
+// of the budget in 99 % of the frames, or null.
 const Single* best_within(const std::vector<Single>& singles, double budget_ms);
 
 // Interpolates between the cheapest (0) and the best configuration (1), milliseconds. `singles`
