@@ -17,7 +17,9 @@ constexpr double min_gap = 0.02, gap_of_margin = 0.3;
 constexpr double worth_a_switch = 0.98;
 // Token bucket: at most T + 1 switches in any T >= 1 seconds.
 constexpr double switches_per_second = 0.5, max_tokens = 2;
-constexpr double trial_tokens = 2, known_tokens = 1; // a trial needs another one to come back
+// A trial needs another switch to come back. So may what should fit for certain, if times were
+// disturbed when it was judged: then it is left after at most a second.
+constexpr double trial_tokens = 2, better_tokens = 1.5, leaving_tokens = 1;
 // Until the first seconds have passed, each pass may be tried.
 constexpr double first_s = 3, first_tokens_per_pass = 2;
 // A frame counts as at most this time of the first seconds: after a pause, nothing was tried yet.
@@ -177,7 +179,7 @@ private:
     decision.configuration = now;
     if (assessed_[now].running_ms > assessed_[now].leave_ms) {
       choose_other(decision);
-      if (decision.configuration == now || state_.tokens >= known_tokens) return;
+      if (decision.configuration == now || state_.tokens >= leaving_tokens) return;
       decision.configuration = now;
       decision.why = ReasonKind::held;
       return;
@@ -191,7 +193,7 @@ private:
     decision.why = ReasonKind::held;
     const bool trial = assessed_[better].trial;
     if (assessed_[better].entering_rmse > worth_a_switch * assessed_[now].rmse ||
-        state_.tokens < (trial ? trial_tokens : known_tokens))
+        state_.tokens < (trial ? trial_tokens : better_tokens))
       return;
     decision.configuration = better;
     decision.why = trial && may_try() ? ReasonKind::trial : ReasonKind::better_fits;

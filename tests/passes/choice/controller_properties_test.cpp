@@ -71,6 +71,18 @@ TEST(Controller, RandomDevices_KeepAllGuarantees) {
   EXPECT_LT(quantile(all.excess_errors, 0.95), 0.25);
 }
 
+// Several long frames in a row make a configuration leave and another one look fast. The switch to
+// one that takes too long must not use the last token: it would stay for two seconds.
+TEST(Controller, LongFramesInARow_KeepNothingLate) {
+  const Scenario scenario = make_scenario(Disturbance::thermal, 53048);
+  Judgement sums;
+  for (size_t b = 0; b < scenario.budgets_ms.size(); ++b)
+    judge(scenario, scenario.budgets_ms[b],
+          run_scenario(scenario, scenario.budgets_ms[b], scenario.seed * 3 + 1 + b, {}), sums);
+  EXPECT_EQ(sums.often_late, 0);
+  EXPECT_LT(sums.worst_late_fraction, 0.045);
+}
+
 // Without trials, unknown and disturbed configurations are not found again.
 TEST(Controller, TrialsRestricted_StaysWithinTheBudget) {
   for (const choice::Trials trials : {choice::Trials::cuts_only, choice::Trials::off}) {
