@@ -150,6 +150,7 @@ private:
     const bool tried = state_.clock_s - state_.entered_s < trial_s;
     choose_known(tried ? &Assessment::fill_ms : &Assessment::enter_ms, decision,
                  tried ? ReasonKind::trial_failed : ReasonKind::over_budget);
+    if (tried) return_from_trial(decision);
     if (tried || state_.tokens < trial_tokens || !may_try()) return;
     if (decision.why == ReasonKind::nothing_fits) {
       const uint32_t might_fit =
@@ -170,6 +171,19 @@ private:
         assessed_[expected].entering_rmse <
             worth_a_switch * assessed_[decision.configuration].entering_rmse)
       decision.configuration = expected;
+  }
+
+  // A configuration that ran well before a trial may return, even if it would not be entered now.
+  void return_from_trial(Decision& decision) const {
+    const uint32_t before = state_.before;
+    if (before == no_configuration || before == state_.current ||
+        forecasts_[before].time.pessimistic_ms > assessed_[before].leave_ms)
+      return;
+    if (decision.why != ReasonKind::nothing_fits &&
+        assessed_[before].rmse >= assessed_[decision.configuration].entering_rmse)
+      return;
+    decision.configuration = before;
+    decision.why = ReasonKind::trial_failed;
   }
 
   void choose(Decision& decision) const {
@@ -216,6 +230,7 @@ private:
     if (switched && !state_.provisional) leave(before, decision);
     if (switched && !state_.provisional) ++state_.switches;
     if (switched || before == no_configuration) state_.entered_s = state_.clock_s;
+    if (switched) state_.before = before;
     state_.current = now;
     state_.provisional = frame_.provisional;
     DecisionState::Configuration& kept = state_.configurations[now];
@@ -346,7 +361,7 @@ double needed_budget_ms(const Forecast& forecast, double units) {
 
 void restart(DecisionState& state, size_t configurations, size_t unmeasured) {
   state.configurations.assign(configurations, {});
-  state.current = no_configuration;
+  state.current = state.before = no_configuration;
   state.provisional = true;
   state.units = 0;
   state.started_s = state.entered_s = state.clock_s;
@@ -363,7 +378,7 @@ void skip_frame(DecisionState& state, double seconds) {
   state.clock_s += seconds_of(seconds);
   state.started_s = state.clock_s;
   state.tokens = std::max(max_tokens, state.tokens);
-  state.current = no_configuration;
+  state.current = state.before = no_configuration;
 }
 
 Decision decide(std::span<const Forecast> forecasts, const FrameInput& frame, DecisionState& state,

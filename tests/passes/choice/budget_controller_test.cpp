@@ -77,6 +77,21 @@ TEST_F(Decide, NothingFits_TriesWhatMightFit) {
   EXPECT_EQ(decision.why, ReasonKind::fits_best);
 }
 
+// It ran between the limits of entering and leaving, so it may also return there.
+TEST_F(Decide, FailedTrial_ReturnsToWhatRan) {
+  std::vector<Forecast> all{known(1, 5e-2), known(3.5, 5e-3), known(9, 2e-3)};
+  for (int i = 0; i < 300; ++i)
+    decide(all, 4);
+  all[1] = known(3.83, 5e-3);
+  EXPECT_EQ(decide(all, 4).configuration, 1u);
+  all[2] = unknown(6, 2e-3);
+  EXPECT_EQ(decide(all, 4).why, ReasonKind::trial);
+  all[2] = known(9, 2e-3);
+  const Decision decision = decide(all, 4);
+  EXPECT_EQ(decision.configuration, 1u);
+  EXPECT_EQ(decision.why, ReasonKind::trial_failed);
+}
+
 // The first seconds are for trials. A long first frame, as after a level was loaded, does not end
 // them before any time was measured.
 TEST_F(Decide, LongFirstFrame_DoesNotEndTheTrials) {
