@@ -65,7 +65,7 @@ void JsonWriter::quote(std::string_view text) {
   for (size_t at = 0; at < text.size(); ++at) {
     const char c = text[at];
     const size_t bytes = utf8_sequence_bytes(text.substr(at, 4));
-    if (bytes != 1) { // the replacement character stands for a byte that is not UTF-8
+    if (bytes != 1) { // a byte that is not UTF-8 becomes U+FFFD
       text_ += bytes == 0 ? std::string_view("\xef\xbf\xbd") : text.substr(at, bytes);
       at += bytes == 0 ? 0 : bytes - 1;
       continue;

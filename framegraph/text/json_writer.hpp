@@ -18,7 +18,8 @@ public:
   JsonWriter& close(); // closes the innermost object or array
   JsonWriter& key(std::string_view name);
 
-  JsonWriter& value(std::string_view text); // control characters, '"' and '\' are escaped, bytes that are not UTF-8 replaced
+  // Escapes control characters, '"' and '\', and replaces bytes that are not UTF-8.
+  JsonWriter& value(std::string_view text);
   JsonWriter& value(const char* text) { return value(std::string_view(text)); }
   JsonWriter& value(bool flag) { return raw(flag ? "true" : "false"); }
   JsonWriter& value(double number); // null if not finite

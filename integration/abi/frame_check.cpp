@@ -190,8 +190,7 @@ dermis_result find_view(dermis_view_t& view, uint32_t index, const Slot& slot,
   if (result == VK_ERROR_TOO_MANY_OBJECTS)
     return bad_argument(log,
                         "{}: bindings[{}] ('{}') alternates between more than {} images within the "
-                        "frames in flight; "
-                        "give views for them",
+                        "frames in flight; give views for them",
                         function, index, slot.name, image_views_a_slot);
   const vulkan::ErrorKind kind = vulkan::kind_of(result);
   if (kind == vulkan::ErrorKind::device_lost) view.context->lost = true;

@@ -27,19 +27,12 @@ namespace {
 
 // Returns whether all configurations compile that a budget can choose, which a graph needs to be
 // created.
-bool choices_compile(const LoadedGraph& loaded, const CompileChoices& choices,
-                     Diagnostics& diagnostics) {
+bool choices_compile(const LoadedGraph& loaded, Diagnostics& diagnostics) {
   const auto& settings = loaded.graph.settings;
   if (std::none_of(settings.begin(), settings.end(), [](const auto& one) { return one.by_budget; }))
     return true;
-  Diagnostics found = diagnostics; // keeps repeated notes of configurations apart
-  choice::CostEstimator costs;
-  choice::ErrorModel errors;
-  errors.unscattered = {{1, 1}};
-  const DeviceProfile device = generic_profile();
-  if (choice_configurations(compile_input(loaded, device, default_size, choices), {}, errors, costs,
-                            found))
-    return true;
+  Diagnostics found = diagnostics; // of a good graph, repeated notes of configurations are dropped
+  if (!choice_sets(loaded, default_size, found).empty()) return true;
   diagnostics = std::move(found);
   return false;
 }
@@ -60,7 +53,7 @@ bool check_graph(const Document& document, const std::string& path, const GraphI
   for (const std::string& violation : verdict.violations)
     diagnostics.add(DiagnosticId::internal_defect, document.where(document.root()),
                     fmt::format("the verifier rejects the plan: {}", violation));
-  if (!choices_compile(*loaded, choices, diagnostics)) return false;
+  if (!choices_compile(*loaded, diagnostics)) return false;
   verified = verdict.not_verified.empty();
   if (!verified)
     diagnostics.add(DiagnosticId::plan_not_verified, document.where(document.root()),

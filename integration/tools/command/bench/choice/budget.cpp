@@ -218,8 +218,7 @@ demo::Result<> measure_budget(SuiteRun& run, const Emit<BudgetRow>& emit) {
   run.report.summary = fmt::format(
       "{} judged frames after {}; over: more than {} of the budget by timestamps, {} by "
       "calibrated times; times: median of {}; the best single configuration takes at most {:.3f} "
-      "of "
-      "the budget, as much as the controller fills",
+      "of the budget, as much as the controller fills",
       frames, unjudged_frames, measured_tolerance, model_tolerance, repetitions, controller_room());
   const uint64_t runs = sets.size() + (1 + repetitions) * (1 + std::size(fractions));
   Progress progress = run.progress("run", run.list("scenes").size() * runs);
