@@ -63,9 +63,12 @@ struct BindErrorReporter {
     reported[use.requested.value] = 1;
     const auto report_error = [&](DiagnosticId id, std::string text) {
       auto& diagnostic = report.diagnostics.add(id, location_of(graph, use), std::move(text));
-      diagnostic.related.emplace_back(
-          graph.resources[use.requested.value].where,
-          fmt::format("'{}' is declared here", name_of(graph, use.requested)));
+      const auto relate_declaration = [&](ResourceId id) {
+        diagnostic.related.emplace_back(graph.resources[id.value].where,
+                                        fmt::format("'{}' is declared here", name_of(graph, id)));
+      };
+      relate_declaration(use.requested);
+      if (use.resource != use.requested) relate_declaration(use.resource);
       relate_producers(diagnostic, use);
     };
     const std::string reader =
@@ -77,7 +80,12 @@ struct BindErrorReporter {
     case Use::BindError::unbound:
       return report_error(
           DiagnosticId::unbound_import,
-          fmt::format("{} needs '{}', which the host leaves unbound", reader, resource));
+          use.resource == use.requested
+              ? fmt::format("{} needs '{}', which the host leaves unbound", reader, resource)
+              : fmt::format("{} needs '{}', which is replaced by '{}' because its producer is off, "
+                            "and the host leaves '{}' unbound",
+                            reader, resource, name_of(graph, use.resource),
+                            name_of(graph, use.resource)));
     case Use::BindError::unwritten:
       return report_error(DiagnosticId::read_before_write,
                           fmt::format("{} reads '{}', which no pass that is on writes before it",

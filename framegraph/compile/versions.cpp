@@ -298,6 +298,7 @@ struct VersionResolver {
           definition.first_version != invalid_index && writes(use.pass, subresource);
       if (subresource < graph.resources.size() && unbound_import(ResourceId{subresource})) {
         use.bind_error = Use::BindError::unbound;
+        use.resource = ResourceId{subresource};
         return;
       }
       if (definition.producers == 1 && !writes_it)

@@ -6,6 +6,8 @@
 namespace dermis::abi {
 namespace {
 
+constexpr const char* function_record = "dermis_view_record";
+
 // Destroys replaced compiled graphs whose last frame the device has finished.
 void collect(dermis_view_t& view, uint64_t completed) {
   for (auto& old : view.retired)
@@ -28,6 +30,12 @@ void take_over(dermis_view_t& view) {
         view.recorded.retired = i;
       }
   view.running = std::move(view.next);
+}
+
+// The view's next frame replaces one that was not recorded or that was discarded.
+void repeat_share(dermis_view_t& view) {
+  const std::lock_guard lock(view.graph->shared_budget.mutex);
+  view.graph->shared_budget.division.repeat(view.share);
 }
 
 // Restores the state before the frame was recorded. Host memory is not released.
@@ -57,6 +65,7 @@ dermis_result discard(dermis_view_t& view, const char* function, uint64_t frame_
   compiled_graph.configuration = recorded.configuration;
   compiled_graph.plan = recorded.compiled_graph_plan;
   discard_choice(view.chooser, frame_index);
+  repeat_share(view);
   if (recorded.took_over) {
     view.next = std::move(view.running);
     if (recorded.retired < view.retired.size())
@@ -83,28 +92,9 @@ uint32_t plan_of(const CompiledGraph& compiled_graph, uint32_t configuration, bo
   return empty_bounds && instead != no_plan ? instead : plan;
 }
 
-// `capture` receives the commands instead of the frame's command buffer; may be null.
-dermis_result record(dermis_view_t& view, const dermis_frame* given, Capture* capture) {
+dermis_result record_chosen(dermis_view_t& view, CompiledGraph& compiled_graph, FrameChoice& chosen,
+                            const dermis_frame& frame, CheckedFrame& checked, Capture* capture) {
   const Log& log = view.context->log;
-  const char* const function = "dermis_view_record";
-  if (const dermis_result alive = check_alive(*view.context, function); alive != DERMIS_OK)
-    return alive;
-  dermis_frame frame = DERMIS_FRAME_INIT;
-  if (const SizedRead read = read_sized(given, frame); read != SizedRead::ok)
-    return rejected_size(log, read, function, "frame", stated_size(given), sizeof(dermis_frame));
-  if (capture != nullptr) frame.command_buffer = handle_of(*capture);
-  CompiledGraph& compiled_graph = newest(view);
-  CheckedFrame checked;
-  if (const dermis_result result = check_frame(view, compiled_graph, frame, checked);
-      result != DERMIS_OK)
-    return result;
-  Chooser& chooser = view.chooser;
-  if (view.running) observe(chooser, *view.running, frame.completed_frame_index);
-  if (const dermis_result loss = check_loss(view, function); loss != DERMIS_OK) return loss;
-  const bool cut = (frame.flags & DERMIS_FRAME_RESET_HISTORY) != 0;
-  FrameChoice chosen = choose(chooser, compiled_graph,
-                              {frame.frame_index, double(frame.delta_seconds), cut,
-                               checked.input.rectangle, &view.graph->shared_budget, &view.share});
   const uint32_t plan = plan_of(compiled_graph, chosen.configuration, checked.empty_bounds());
   chosen.plan = plan;
   chosen.begins = !compiled_graph.plans[plan].recorded || compiled_graph.last_frame == 0 ||
@@ -130,8 +120,8 @@ dermis_result record(dermis_view_t& view, const dermis_frame* given, Capture* ca
     if (error.kind == vulkan::ErrorKind::device_lost) view.context->lost = true;
     const bool has_slot =
         error.slot >= 0 && static_cast<size_t>(error.slot) < compiled_graph.slots.size();
-    return fail(log, result_of(error.kind), diagnostic_of(error.kind), "{}: {}{}{}{}", function,
-                error.text, has_slot ? " (slot '" : "",
+    return fail(log, result_of(error.kind), diagnostic_of(error.kind), "{}: {}{}{}{}",
+                function_record, error.text, has_slot ? " (slot '" : "",
                 has_slot ? compiled_graph.slots[static_cast<size_t>(error.slot)].name : "",
                 has_slot ? "')" : "");
   }
@@ -139,7 +129,7 @@ dermis_result record(dermis_view_t& view, const dermis_frame* given, Capture* ca
     compiled_graph.plans[plan].executor->discard_frame(frame.frame_index);
     compiled_graph.last_jitter_px = jitter_before;
     return fail(log, DERMIS_ERROR_MEMORY, DiagnosticId::host_memory, "{}: out of host memory",
-                function);
+                function_record);
   }
   view.recorded = {};
   view.recorded.known = true;
@@ -157,10 +147,37 @@ dermis_result record(dermis_view_t& view, const dermis_frame* given, Capture* ca
   compiled_graph.configuration = chosen.configuration;
   compiled_graph.plan = plan;
   compiled_graph.plans[plan].recorded = true;
-  remember(chooser, chosen);
+  remember(view.chooser, chosen);
   view.last_frame = frame.frame_index;
   take_over(view);
   return DERMIS_OK;
+}
+
+// `capture` receives the commands instead of the frame's command buffer; may be null.
+dermis_result record(dermis_view_t& view, const dermis_frame* given, Capture* capture) {
+  const Log& log = view.context->log;
+  if (const dermis_result alive = check_alive(*view.context, function_record); alive != DERMIS_OK)
+    return alive;
+  dermis_frame frame = DERMIS_FRAME_INIT;
+  if (const SizedRead read = read_sized(given, frame); read != SizedRead::ok)
+    return rejected_size(log, read, function_record, "frame", stated_size(given),
+                         sizeof(dermis_frame));
+  if (capture != nullptr) frame.command_buffer = handle_of(*capture);
+  CompiledGraph& compiled_graph = newest(view);
+  CheckedFrame checked;
+  if (const dermis_result result = check_frame(view, compiled_graph, frame, checked);
+      result != DERMIS_OK)
+    return result;
+  Chooser& chooser = view.chooser;
+  if (view.running) observe(chooser, *view.running, frame.completed_frame_index);
+  if (const dermis_result loss = check_loss(view, function_record); loss != DERMIS_OK) return loss;
+  const bool cut = (frame.flags & DERMIS_FRAME_RESET_HISTORY) != 0;
+  FrameChoice chosen = choose(chooser, compiled_graph,
+                              {frame.frame_index, double(frame.delta_seconds), cut,
+                               checked.input.rectangle, &view.graph->shared_budget, &view.share});
+  const dermis_result result = record_chosen(view, compiled_graph, chosen, frame, checked, capture);
+  if (result != DERMIS_OK) repeat_share(view);
+  return result;
 }
 
 } // namespace
@@ -184,7 +201,7 @@ dermis_result check_loss(const dermis_view_t& view, const char* function) {
 
 dermis_result record_frame(dermis_view_t& view, const dermis_frame* frame) {
   if (frame == nullptr)
-    return bad_argument(view.context->log, "{}: frame is NULL", "dermis_view_record");
+    return bad_argument(view.context->log, "{}: frame is NULL", function_record);
   const std::lock_guard lock(view.mutex);
   return record(view, frame, nullptr);
 }

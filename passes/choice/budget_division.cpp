@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace dermis::choice {
 namespace {
@@ -168,7 +169,9 @@ void BudgetDivision::make_room() noexcept {
 
 double BudgetDivision::share(ViewShare& view, double budget_ms, const Offers& offers, bool counted,
                              double seconds) noexcept {
-  const bool new_round = view.round == round_;
+  const bool again = view.round == round_;
+  const bool repeats = std::exchange(view.repeats, false) && again;
+  const bool new_round = again && !repeats;
   if (new_round) {
     ++round_;
     elapsed_s_ += seconds > 0 ? seconds : 1.0 / 60;
@@ -176,9 +179,11 @@ double BudgetDivision::share(ViewShare& view, double budget_ms, const Offers& of
   const size_t before = active_.size();
   view.offers = offers;
   view.counted = counted;
-  const uint64_t interval = round_ - view.round;
-  view.interval = interval <= longest_interval ? interval : 0;
-  view.round = round_;
+  if (!repeats) {
+    const uint64_t interval = round_ - view.round;
+    view.interval = interval <= longest_interval ? interval : 0;
+    view.round = round_;
+  }
   const bool changed = list_active() != before || budget_ms != budget_ms_ || view.fraction <= 0;
   budget_ms_ = budget_ms;
   if (changed || new_round) divide_anew(changed);

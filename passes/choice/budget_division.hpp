@@ -36,6 +36,7 @@ struct ViewShare {
   uint64_t round = 0;    // of its last frame; 0: none
   uint64_t interval = 0; // rounds between its last two frames; 0: longer than is waited for
   bool counted = false;  // its tiles were counted, so that its offers are known
+  bool repeats = false;  // its last frame was not recorded, so that the next one replaces it
 };
 
 // Returns the least sum of squared errors with which the offers fit into `budget_ms`, up to
@@ -59,6 +60,8 @@ public:
   // where a view returns that was not recorded in the last rounds. Allocates nothing.
   double share(ViewShare& view, double budget_ms, const Offers& offers, bool counted,
                double seconds) noexcept;
+  // The view's last frame was discarded: its next frame belongs to the same round.
+  void repeat(ViewShare& view) noexcept { view.repeats = true; }
   // Returns the same for the present division; of a view without frames, its equal part.
   double present_share(const ViewShare& view, double budget_ms) const noexcept;
 

@@ -144,6 +144,25 @@ TEST(Choice, DisabledPass_ReadersGetItsOtherwise) {
   EXPECT_THAT(reasons(b, plan, Reason::About::pass, b.pass_id("blur").value), HasSubstr("off"));
 }
 
+TEST(Choice, OtherwiseIsAnUnboundImport_NamesBoth) {
+  GraphBuilder b{"import light", "image blurred", "export result"};
+  b.import("mask").optional = true;
+  b.boolean("on", false);
+  auto& blur = b.pass("blur", "test.shade", {{"a", "light"}}, {{"out", "blurred"}});
+  blur.when = b.when("on");
+  b.otherwise(blur, "blurred", "mask");
+  b.pass("finish", "test.need", {{"a", "blurred"}}, {{"out", "result"}});
+  auto input = b.input();
+  input.bound.assign(b.graph.resources.size(), true);
+  input.bound[b.resource("mask").value] = false;
+  const Diagnostic error =
+      rejected_once(b, input, DiagnosticId::unbound_import,
+                    "needs 'blurred', which is replaced by 'mask' because its producer is off, and "
+                    "the host leaves 'mask' unbound");
+  ASSERT_THAT(error.related, SizeIs(3));
+  EXPECT_THAT(error.related[1].second, HasSubstr("'mask' is declared here"));
+}
+
 TEST(Choice, Otherwise_IsTheVersionThePassWouldHaveRead) {
   // 'light' is updated in place after the disabled pass, whose readers get the version before the
   // update.

@@ -71,7 +71,6 @@ std::vector<HeadFraming> head_framings() {
 
 void HeadTest::show(const HeadFraming& framing, uint32_t width, uint32_t height, uint32_t maximum) {
   // Rendering creates another device, and Vulkan functions are loaded for one device at a time.
-  close_host();
   SubjectOptions options{width, height, {}};
   if (framing.scan) {
     const char* named = std::getenv("DERMIS_HEAD");
@@ -94,20 +93,6 @@ void HeadTest::show(const HeadFraming& framing, uint32_t width, uint32_t height,
   quiet.quiet = true;
   reference_ = *make_reference(quiet, frame_, "truth", maximum, "");
   edge_ = near_edges(make_reference_frame(frame_));
-}
-
-void HeadTest::TearDown() {
-  close_host();
-}
-
-void HeadTest::close_host() {
-  if (host_ == nullptr) return;
-  {
-    const std::lock_guard lock(host_->log.mutex);
-    for (const std::string& message : host_->log.messages)
-      ADD_FAILURE() << message;
-  }
-  host_.reset();
 }
 
 double HeadTest::luminance_at(const std::vector<float>& light, size_t pixel) const {
@@ -145,15 +130,9 @@ HeadErrors HeadTest::errors_of(const std::vector<float>& light,
 
 std::vector<float> HeadTest::scatter(const std::string& graph, const std::vector<NamedValue>& set,
                                      uint32_t frames, double* samples) {
-  if (host_ == nullptr) {
-    auto made = demo::create_vulkan_host({.validation = true, .device = ""});
-    EXPECT_TRUE(made) << made.error().text;
-    if (!made) return {};
-    host_ = made.take();
-  }
   TechniqueRequest request = request_of(graph, set);
   if (!overlay_.empty()) request.overlays = {root() + "/configs/overlays/" + overlay_ + ".json"};
-  auto run = TechniqueRun::create(*host_, request, frame_.description.profiles, {});
+  auto run = TechniqueRun::create(shared_host(), request, frame_.description.profiles, {});
   EXPECT_TRUE(run) << run.error().text;
   if (!run) return {};
   CapturedFrame frame = frame_;

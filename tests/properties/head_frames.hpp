@@ -49,17 +49,11 @@ protected:
                                                          dermis::subsurface::SapVariant variant,
                                                          uint32_t first_layered = 1);
 
-  void TearDown() override; // Fails on validation messages.
 
   dermis::tools::CapturedFrame frame_;
   dermis::tools::Reference reference_;
   std::vector<bool> edge_; // By pixel.
   std::string overlay_;    // Name in configs/overlays/ without .json, for scatter(); "" means none.
-
-private:
-  void close_host();
-
-  std::unique_ptr<demo::VulkanHost> host_;
 };
 
 } // namespace properties

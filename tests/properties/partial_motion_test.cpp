@@ -61,15 +61,9 @@ protected:
   }
 
   std::unique_ptr<TechniqueRun> make_run(const Sequence& sequence, const char* technique) {
-    if (host_ == nullptr) {
-      auto made = demo::create_vulkan_host({.validation = true, .device = ""});
-      EXPECT_TRUE(made) << made.error().text;
-      if (!made) return nullptr;
-      host_ = made.take();
-    }
-    auto run =
-        TechniqueRun::create(*host_, properties::request_of("skin", {{"technique", technique}}),
-                             sequence.frames.front().captured.description.profiles, {});
+    auto run = TechniqueRun::create(properties::shared_host(),
+                                    properties::request_of("skin", {{"technique", technique}}),
+                                    sequence.frames.front().captured.description.profiles, {});
     EXPECT_TRUE(run) << run.error().text;
     return run ? run.take() : nullptr;
   }

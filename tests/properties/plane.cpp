@@ -8,6 +8,9 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <map>
+#include <memory>
+#include <stdexcept>
 
 namespace properties {
 
@@ -56,7 +59,36 @@ Uploads fill(const Plane& plane) {
   return out;
 }
 
+// Destroys the hosts before main() returns: validation layers do not live longer.
+class Hosts : public ::testing::Environment {
+public:
+  void TearDown() override { hosts.clear(); }
+
+  std::map<demo::KernelShape, std::unique_ptr<demo::VulkanHost>> hosts;
+};
+
+Hosts& all = static_cast<Hosts&>(*::testing::AddGlobalTestEnvironment(new Hosts));
+
 } // namespace
+
+demo::VulkanHost& shared_host(demo::KernelShape kernels) {
+  std::unique_ptr<demo::VulkanHost>& host = all.hosts[kernels];
+  if (host == nullptr) {
+    auto made = demo::create_vulkan_host({.validation = true, .device = "", .kernels = kernels});
+    if (!made) throw std::runtime_error(made.error().text);
+    host = made.take();
+  }
+  return *host;
+}
+
+void report_messages() {
+  for (const auto& [kernels, host] : all.hosts) {
+    const std::lock_guard lock(host->log.mutex);
+    for (const std::string& message : host->log.messages)
+      ADD_FAILURE() << message;
+    host->log.messages.clear();
+  }
+}
 
 const std::string& missing() {
   static const std::string reason = [] {
@@ -74,12 +106,6 @@ Picture run(const std::string& graph, const Plane& plane, const Settings& settin
 
 void run_frames(const std::string& graph, const Plane& plane, const Settings& settings,
                 uint32_t frames, const std::function<void(const Picture&)>& each) {
-  auto host =
-      demo::create_vulkan_host({.validation = true, .device = "", .kernels = plane.kernels});
-  if (!host) {
-    ADD_FAILURE() << host.error().text;
-    return;
-  }
   dermis::tools::DeviceGraphRequest request;
   request.graph_name = graph + ".json";
   request.graph_text =
@@ -108,7 +134,7 @@ void run_frames(const std::string& graph, const Plane& plane, const Settings& se
   }
   request.settings = settings;
   {
-    auto device = dermis::tools::DeviceGraph::create(**host, request);
+    auto device = dermis::tools::DeviceGraph::create(shared_host(plane.kernels), request);
     if (!device) {
       ADD_FAILURE() << device.error().text;
       return;
@@ -157,9 +183,7 @@ void run_frames(const std::string& graph, const Plane& plane, const Settings& se
       each({plane.width, plane.height, std::move(*pixels)});
     }
   }
-  const std::lock_guard lock((*host)->log.mutex);
-  for (const std::string& message : (*host)->log.messages)
-    ADD_FAILURE() << message;
+  report_messages();
 }
 
 } // namespace properties

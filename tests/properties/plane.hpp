@@ -2,7 +2,7 @@
 // Runs a shipped graph on the device, on a plane that faces an orthographic camera, for which
 // closed forms exist.
 
-#include "integration/examples/demo_engine/kernel_shape.hpp"
+#include "integration/examples/demo_engine/vulkan_host.hpp"
 
 #include <gtest/gtest.h>
 
@@ -58,14 +58,22 @@ Picture run(const std::string& graph, const Plane& plane, const Settings& settin
 void run_frames(const std::string& graph, const Plane& plane, const Settings& settings,
                 uint32_t frames, const std::function<void(const Picture&)>& each);
 
+// Returns the program's host with these kernels, whose context keeps compiled kernels: drivers on
+// the CPU take seconds to compile them. Throws if there is no device.
+demo::VulkanHost& shared_host(demo::KernelShape kernels = demo::KernelShape::by_device);
+// Fails the test for each validation message of these hosts since the last call.
+void report_messages();
+
 // Returns why tests of this folder cannot run here, or "" if they can. The result is cached.
 const std::string& missing();
 
+// Validation messages fail the test.
 class DeviceTest : public ::testing::Test {
 protected:
   void SetUp() override {
     if (!missing().empty()) GTEST_SKIP() << missing();
   }
+  void TearDown() override { report_messages(); }
 };
 
 } // namespace properties

@@ -70,13 +70,6 @@ Sequence standing_still(Sequence sequence, uint32_t count) {
   return sequence;
 }
 
-void SequenceTest::TearDown() {
-  if (host_ == nullptr) return;
-  const std::lock_guard lock(host_->log.mutex);
-  for (const std::string& message : host_->log.messages)
-    ADD_FAILURE() << message;
-}
-
 Sequence SequenceTest::frames_of(const std::string& scene, uint32_t first, uint32_t count) {
   auto sequence = render_sequence({scene, "close", root() + "/configs/scenes/" + scene + ".json",
                                    close_d_px, first, count, false},
@@ -88,14 +81,7 @@ Sequence SequenceTest::frames_of(const std::string& scene, uint32_t first, uint3
 SequenceRun SequenceTest::run(Judge& judge, const TechniqueRequest& request, const Frames& judged,
                               const Follows& follows) {
   SequenceRun result;
-  // Created after the frames were rendered, because the engine has its own device.
-  if (host_ == nullptr) {
-    auto made = demo::create_vulkan_host({.validation = true, .device = ""});
-    EXPECT_TRUE(made) << made.error().text;
-    if (!made) return result;
-    host_ = made.take();
-  }
-  auto made = TechniqueRun::create(*host_, request,
+  auto made = TechniqueRun::create(shared_host(), request,
                                    judge.sequence.frames.front().captured.description.profiles, {});
   EXPECT_TRUE(made) << made.error().text;
   if (!made) return result;

@@ -51,13 +51,10 @@ dermis::tools::Sequence standing_still(dermis::tools::Sequence sequence, uint32_
 // compared frames, or all frames if none is compared.
 class SequenceTest : public DeviceTest {
 protected:
-  void TearDown() override;
   static dermis::tools::Sequence frames_of(const std::string& scene, uint32_t first,
                                            uint32_t count);
   SequenceRun run(Judge& judge, const dermis::tools::TechniqueRequest& request,
                   const Frames& judged, const Follows& follows = {});
-
-  std::unique_ptr<demo::VulkanHost> host_;
 };
 
 } // namespace properties

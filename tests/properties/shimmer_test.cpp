@@ -71,18 +71,12 @@ protected:
     return values;
   }
 
-  void make_host() {
-    auto made = demo::create_vulkan_host({.validation = true, .device = ""});
-    ASSERT_TRUE(made) << made.error().text;
-    host_ = made.take();
-  }
-
   // Returns the RMS over pixels of the deviation over eight positions of the rectangle.
   double deviation(const Still& still, const TechniqueRequest& request) {
     constexpr std::array<std::array<uint32_t, 2>, 8> places = {
         {{0, 0}, {1, 0}, {2, 1}, {3, 3}, {5, 2}, {6, 6}, {7, 4}, {12, 9}}};
-    if (host_ == nullptr) make_host();
-    auto run = TechniqueRun::create(*host_, request, still.large.description.profiles, {});
+    auto run = TechniqueRun::create(properties::shared_host(), request,
+                                    still.large.description.profiles, {});
     EXPECT_TRUE(run) << run.error().text;
     if (!run) return 1;
     std::vector<double> sum(still.large.profile.size()), square(sum.size());
@@ -108,8 +102,8 @@ protected:
   // Returns the RMS of the change between frames on the surface, while the camera moves one pixel
   // per frame.
   double change_in_pan(const Still& still, const TechniqueRequest& request) {
-    if (host_ == nullptr) make_host();
-    auto run = TechniqueRun::create(*host_, request, still.large.description.profiles, {});
+    auto run = TechniqueRun::create(properties::shared_host(), request,
+                                    still.large.description.profiles, {});
     EXPECT_TRUE(run) << run.error().text;
     if (!run) return 1;
     std::vector<double> last;

@@ -17,27 +17,14 @@ using namespace dermis::tools;
 
 class ReferenceSuite : public properties::DeviceTest {
 protected:
-  void SetUp() override {
-    DeviceTest::SetUp();
-    if (IsSkipped()) return;
-    auto made = demo::create_vulkan_host({.validation = true, .device = ""});
-    ASSERT_TRUE(made) << made.error().text;
-    host_ = made.take();
-  }
-  void TearDown() override {
-    if (host_ == nullptr) return;
-    const std::lock_guard lock(host_->log.mutex);
-    for (const std::string& message : host_->log.messages)
-      ADD_FAILURE() << message;
-  }
-
   // Returns the mean of `frames` frames of a technique.
   std::vector<float> scatter(const CapturedFrame& frame, const std::string& graph,
                              std::vector<NamedValue> set, uint32_t frames = 1) {
     const TechniqueRequest request{graph, "",
                                    DERMIS_SOURCE_DIR "/" + dermis::shipped::graph_file(graph),
                                    std::move(set), false};
-    auto run = TechniqueRun::create(*host_, request, frame.description.profiles, {});
+    auto run =
+        TechniqueRun::create(properties::shared_host(), request, frame.description.profiles, {});
     if (!run) {
       ADD_FAILURE() << run.error().text;
       return {};
@@ -66,8 +53,6 @@ protected:
                                 const std::string& framing = "plane") {
     return generate_scene("texture_plane", framing, width, height, d_px, grey_profile());
   }
-
-  std::unique_ptr<demo::VulkanHost> host_;
 };
 
 TEST_F(ReferenceSuite, StratifiedSamples_ConvergeFasterThanRootN) {

@@ -24,7 +24,8 @@ ErrorKind kind_of(dermis_result result) {
 } // namespace
 
 Error dermis_error(const char* call, dermis_result result, dermis_report report) {
-  if (dermis_report_count(report) > 0) return {kind_of(result), dermis_report_text(report)};
+  if (dermis_report_count(report) > 0)
+    return {kind_of(result), dermis_report_text(report), dermis_report_json(report)};
   const char* detail = dermis_last_error();
   return {kind_of(result), fmt::format("{}: {}{}{}", call, dermis_result_name(result),
                                        detail ? ": " : "", detail ? detail : "")};

@@ -20,6 +20,7 @@ enum class ErrorKind : int {
 struct Error {
   ErrorKind kind = ErrorKind::internal;
   std::string text;
+  std::string diagnostics = {}; // of Dermis, which `text` contains: a JSON array; "": none
 };
 
 struct Nothing {};

@@ -135,6 +135,8 @@ Result<> create_device(VulkanHost& host, const HostOptions& options) {
 } // namespace
 
 VulkanHost::~VulkanHost() {
+  // a later host may have loaded its own functions
+  if (instance != VK_NULL_HANDLE) volkLoadInstanceOnly(instance);
   if (device != VK_NULL_HANDLE) {
     if (pool != VK_NULL_HANDLE) vk.vkDeviceWaitIdle(device);
     engine_context.reset();

@@ -26,25 +26,33 @@ std::string for_terminal(std::string_view text) {
   return out;
 }
 
+// `diagnostics`: a JSON array.
+void print_failure(ExitCode code, std::string_view message, std::string_view diagnostics) {
+  JsonWriter answer;
+  answer.open_object().member("ok", false).member("exit_code", static_cast<int32_t>(code));
+  answer.member("error", message).key("diagnostics").json(diagnostics).close();
+  print(std::move(answer).finish());
+}
+
 } // namespace
 
 ExitCode fail(const Session& session, ExitCode code, std::string_view message,
               const Diagnostics* diagnostics) {
   if (diagnostics != nullptr) print_diagnostics(session, *diagnostics);
-  if (session.json) {
-    JsonWriter answer;
-    answer.open_object().member("ok", false).member("exit_code", static_cast<int32_t>(code));
-    answer.member("error", message).key("diagnostics");
-    answer.json(diagnostics != nullptr ? format_as_json(*diagnostics) : "[]").close();
-    print(std::move(answer).finish());
-  } else {
+  if (session.json)
+    print_failure(code, message, diagnostics != nullptr ? format_as_json(*diagnostics) : "[]");
+  else
     spdlog::error("{}", for_terminal(message));
-  }
   return code;
 }
 
 ExitCode fail(const Session& session, const demo::Error& error, const Diagnostics* diagnostics) {
-  return fail(session, static_cast<ExitCode>(error.kind), error.text, diagnostics);
+  const auto code = static_cast<ExitCode>(error.kind);
+  const bool of_library = diagnostics == nullptr && !error.diagnostics.empty();
+  if (!session.json || !of_library) return fail(session, code, error.text, diagnostics);
+  print_failure(code, std::string_view(error.text).substr(0, error.text.find('\n')),
+                error.diagnostics);
+  return code;
 }
 
 void print_diagnostics(const Session& session, const Diagnostics& diagnostics) {

@@ -31,9 +31,10 @@ SourceLocation place_of(Diagnostics& diagnostics, const fs::path& path) {
 void read_rectangle(const Document& document, ObjectReader& reader, FrameDescription& frame,
                     Diagnostics& diagnostics) {
   frame.render = {0, 0, frame.width, frame.height};
+  const bool has_size = reader.ok();
   if (!reader.has("render_rectangle")) return;
   std::array<double, 4> r{};
-  if (!reader.numbers("render_rectangle", r, 0, limits::image_side)) return;
+  if (!reader.numbers("render_rectangle", r, 0, limits::image_side) || !has_size) return;
   const bool whole = std::all_of(r.begin(), r.end(), [](double v) { return v == std::floor(v); });
   if (!whole || r[2] < 1 || r[3] < 1 || r[0] + r[2] > frame.width || r[1] + r[3] > frame.height) {
     diagnostics.add(
@@ -61,6 +62,16 @@ subsurface::CameraMatrices read_matrices(ObjectReader& reader, bool has_pitch) {
   reader.numbers("previous_view_from_world", camera.previous_view_from_world, -largest_number,
                  largest_number, Need::optional);
   return camera;
+}
+
+std::string singular(std::string_view key) {
+  return fmt::format("'{}' has no inverse, or its last row is not 0 0 0 1 (row-major, "
+                     "column vectors)",
+                     key);
+}
+
+bool is_projection(const subsurface::Matrix4& clip_from_view) {
+  return subsurface::pixel_rays(clip_from_view, 1, 1, 1, {0, 0}).has_value();
 }
 
 void read_projection(const Document& document, ObjectReader& reader, CapturedFrame& captured,
@@ -102,6 +113,13 @@ void read_projection(const Document& document, ObjectReader& reader, CapturedFra
   frame.view_from_world = camera.view_from_world;
   frame.previous_clip_from_view = camera.previous_clip_from_view;
   frame.previous_view_from_world = camera.previous_view_from_world;
+  if (!subsurface::invert_affine(camera.view_from_world))
+    return reject("view_from_world", singular("view_from_world"));
+  if (!subsurface::invert_affine(camera.previous_view_from_world))
+    return reject("previous_view_from_world", singular("previous_view_from_world"));
+  if (fault == subsurface::CameraFault::none && !is_projection(frame.previous_clip_from_view))
+    return reject("previous_clip_from_view",
+                  "'previous_clip_from_view' is not an axis-aligned projection");
   if (fault == subsurface::CameraFault::none && complete_projection(frame, captured.rays) &&
       captured.rays.perspective == frame.perspective)
     return;
@@ -203,7 +221,7 @@ std::optional<CapturedFrame> read_view(const Document& document, const fs::path&
       static_cast<uint32_t>(reader.integer("width", 1, limits::image_side).value_or(0));
   description.height =
       static_cast<uint32_t>(reader.integer("height", 1, limits::image_side).value_or(0));
-  if (reader.ok()) read_rectangle(document, reader, description, diagnostics);
+  read_rectangle(document, reader, description, diagnostics);
   read_projection(document, reader, frame, handedness, diagnostics);
   const int64_t index = reader.integer("frame_index", 0, INT64_MAX, Need::optional).value_or(0);
   description.frame_index = static_cast<uint64_t>(index);

@@ -31,6 +31,15 @@ struct Choice : DermisTest {
   }
 
   demo::ReportedFrame run_frame() { return DermisTest::run_frame(graph); }
+
+  std::string exported() const {
+    size_t size = 0;
+    EXPECT_OK(dermis_graph_calibration(graph, &size, nullptr));
+    std::string text(size, ' ');
+    EXPECT_OK(dermis_graph_calibration(graph, &size, text.data()));
+    text.resize(size - 1);
+    return text;
+  }
 };
 
 TEST_F(Choice, WithoutABudgetTheDefaultsRun) {
@@ -307,6 +316,63 @@ TEST_F(Choice, LearnsAndExportsTheDevicesTimes) {
   dermis_budget budget = DERMIS_BUDGET_INIT;
   budget.calibration = &calibration;
   EXPECT_OK(dermis_graph_set_budget(graph, &budget, nullptr));
+}
+
+TEST_F(Choice, ExportedTimesOfAllPasses_AreCertain) {
+  graph = make_bound_graph(); // one configuration
+  set_budget(0, 0);
+  EXPECT_THAT(exported(), HasSubstr("\"uncertainty\": 3.3"));
+  for (int i = 0; i < 3; ++i)
+    run_frame();
+  EXPECT_THAT(exported(), HasSubstr("\"uncertainty\": 1.35"));
+}
+
+TEST_F(Choice, ExportedTimesOfOneConfiguration_AreUncertain) {
+  make();
+  set_budget(0, 0);
+  for (int i = 0; i < 3; ++i)
+    run_frame();
+  EXPECT_THAT(exported(), HasSubstr("\"uncertainty\": 3.3"));
+}
+
+TEST_F(Choice, FirstFrame_IsNotLearned) {
+  graph = make_bound_graph();
+  set_budget(0, 0);
+  const std::string before = exported();
+  run_frame();
+  EXPECT_EQ(exported(), before);
+  run_frame();
+  EXPECT_NE(exported(), before);
+}
+
+TEST_F(Choice, FrameOfOldSettings_IsNotLearned) {
+  graph = make_bound_graph();
+  set_budget(0, 0);
+  run_frame();
+  const std::string before = exported();
+  dermis_frame old = bound_frame(graph);
+  ASSERT_OK(record(graph, old));
+  ASSERT_OK(dermis_graph_set_setting(graph, "samples", "64", nullptr));
+  demo::ReportedFrame report;
+  ASSERT_OK(demo::read_reported(dermis_graph_view(graph), last_frame, report));
+  EXPECT_EQ(exported(), before);
+  run_frame();
+  EXPECT_NE(exported(), before);
+}
+
+TEST_F(Choice, MarginOutlivesAReload) {
+  constexpr double first = 0.10; // of a new graph
+  const auto margin = [](const demo::ReportedFrame& frame) {
+    return std::log1p(double(frame.predicted_margin_ms) / frame.predicted_ms);
+  };
+  graph = make_bound_graph();
+  set_budget(0, 0);
+  double last = first;
+  for (int i = 0; i < 100 && std::abs(last - first) < 0.005; ++i)
+    last = margin(run_frame());
+  ASSERT_GE(std::abs(last - first), 0.005);
+  ASSERT_OK(reload_graph(graph, {}));
+  EXPECT_NEAR(margin(run_frame()), last, 0.03 * last); // one frame changes it by 3 % at most
 }
 
 TEST_F(Choice, ConfigurationsShareTheLargestMemory) {

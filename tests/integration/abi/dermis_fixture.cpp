@@ -10,8 +10,11 @@ namespace {
 const demo::ImageState sampled{VK_IMAGE_LAYOUT_GENERAL, VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT,
                                VK_ACCESS_2_TRANSFER_READ_BIT | VK_ACCESS_2_TRANSFER_WRITE_BIT};
 
-void DERMIS_CALL log_message(void* user, const dermis_message* message) {
-  static_cast<DermisTest*>(user)->logged.emplace_back(message->text);
+DermisTest* running_test = nullptr;
+std::map<uint32_t, dermis_context> shared_contexts; // by flags
+
+void DERMIS_CALL log_message(void*, const dermis_message* message) {
+  if (running_test != nullptr) running_test->logged.emplace_back(message->text);
 }
 
 std::vector<float> contents(const std::string& slot, uint32_t width, uint32_t height,
@@ -52,20 +55,47 @@ void DermisTest::SetUpTestSuite() {
 }
 
 void DermisTest::TearDownTestSuite() {
+  for (const auto& [flags, context] : shared_contexts)
+    dermis_context_destroy(context);
+  shared_contexts.clear();
   host.reset();
 }
 
 void DermisTest::SetUp() {
+  running_test = this;
   if (!host) GTEST_SKIP() << "no Vulkan device with the validation layer";
-  const dermis_context_desc desc = context_desc();
+  share_context();
+}
+
+void DermisTest::share_context(uint32_t flags) {
+  drop_context();
+  dermis_context& shared = shared_contexts[flags];
+  if (shared == nullptr) {
+    dermis_context_desc desc = context_desc();
+    desc.flags |= flags;
+    ASSERT_OK(dermis_context_create(&desc, &shared));
+  }
+  context = shared;
+}
+
+void DermisTest::own_context(const dermis_context_desc& desc) {
+  drop_context();
   ASSERT_OK(dermis_context_create(&desc, &context));
+}
+
+void DermisTest::drop_context() {
+  const bool is_shared = std::any_of(shared_contexts.begin(), shared_contexts.end(),
+                                     [&](const auto& one) { return one.second == context; });
+  if (!is_shared) dermis_context_destroy(context);
+  context = nullptr;
 }
 
 void DermisTest::TearDown() {
   for (const dermis_graph graph : graphs)
     dermis_graph_destroy(graph);
-  dermis_context_destroy(context);
+  drop_context();
   images.clear();
+  running_test = nullptr;
   if (!host) return;
   EXPECT_THAT(host->log.messages, IsEmpty());
   host->log.messages.clear();
@@ -80,7 +110,6 @@ dermis_context_desc DermisTest::context_desc() {
   desc.device = host->device;
   desc.get_instance_proc_addr = vkGetInstanceProcAddr;
   desc.log = log_message;
-  desc.log_user = this;
   return desc;
 }
 

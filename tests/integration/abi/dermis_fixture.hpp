@@ -60,6 +60,11 @@ struct DermisTest : ::testing::Test {
   void TearDown() override;
 
   dermis_context_desc context_desc();
+  // Uses the context with these flags, which all tests of the suite share: it keeps kernels, which
+  // take seconds to compile. SetUp() shares one without flags.
+  void share_context(uint32_t flags = 0);
+  // Uses a context of this test only.
+  void own_context(const dermis_context_desc& desc);
   dermis_result create_graph(const GraphOptions& options, dermis_graph* graph,
                              dermis_report* report = nullptr);
   dermis_result reload_graph(dermis_graph graph, const GraphOptions& options,
@@ -99,6 +104,7 @@ struct DermisTest : ::testing::Test {
   uint64_t last_frame = 0;
 
 private:
+  void drop_context();
   std::deque<std::vector<dermis_image_binding>> bound_; // By frame.
 };
 

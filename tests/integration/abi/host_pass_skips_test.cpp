@@ -36,6 +36,7 @@ struct HostPassSkips : DermisTest {
   void SetUp() override {
     DermisTest::SetUp();
     if (IsSkipped()) return;
+    own_context(context_desc()); // pass types stay registered
     add("studio.make", {written}, false);
     add("studio.tone", {port_of("from"), written}, false);
     add("studio.maybe", {maybe, written}, false);

@@ -41,6 +41,7 @@ struct HostPassTypes : DermisTest {
   void SetUp() override {
     DermisTest::SetUp();
     if (IsSkipped()) return;
+    own_context(context_desc()); // pass types stay registered
     threshold_ports = {port_of("light"), port_of("bright", DERMIS_PORT_STORAGE_IMAGE_WRITE),
                        port_of("sums", DERMIS_PORT_STORAGE_BUFFER_WRITE),
                        port_of("mask", DERMIS_PORT_SAMPLED_IMAGE, true)};

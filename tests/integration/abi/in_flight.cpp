@@ -5,10 +5,9 @@ namespace dermis::abi_test {
 void InFlightTest::SetUp() {
   DermisTest::SetUp();
   if (!host) return;
-  dermis_context_destroy(context);
   dermis_context_desc desc = context_desc();
   desc.frames_in_flight = frames;
-  ASSERT_OK(dermis_context_create(&desc, &context));
+  own_context(desc);
   auto allocate = demo::vulkan_struct<VkCommandBufferAllocateInfo>(
       VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO);
   allocate.commandPool = host->pool;

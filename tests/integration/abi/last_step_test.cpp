@@ -62,10 +62,9 @@ float noise(uint32_t x, uint32_t y, uint32_t seed) {
 
 struct LastStep : DermisTest, testing::WithParamInterface<std::tuple<Case, uint32_t>> {
   void SetUp() override {
-    if (!host) GTEST_SKIP() << "no Vulkan device with the validation layer";
-    dermis_context_desc desc = context_desc();
-    desc.flags |= std::get<uint32_t>(GetParam());
-    ASSERT_OK(dermis_context_create(&desc, &context));
+    DermisTest::SetUp();
+    if (IsSkipped()) return;
+    share_context(std::get<uint32_t>(GetParam()));
   }
 
   // Two surfaces with a step in depth, holes, pixels without depth, and tiles that do not scatter.

@@ -16,10 +16,7 @@ struct SharedMemory : DermisTest {
     graphs.clear();
     images.clear();
     last_frame = 0;
-    dermis_context_destroy(context);
-    dermis_context_desc desc = context_desc();
-    desc.flags |= flags;
-    ASSERT_OK(dermis_context_create(&desc, &context));
+    share_context(flags);
   }
   // Makes the row of the error table the best one, so that the choice takes its technique.
   static void prefer(dermis_graph graph, const std::string& row) {

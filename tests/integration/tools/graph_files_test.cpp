@@ -71,6 +71,15 @@ TEST_F(GraphFiles, UnknownKey_SuggestsTheNearest) {
   EXPECT_THAT(run({"validate", bad}), FailsWith(1, "D0103", "did you mean 'imports'?"));
 }
 
+TEST_F(GraphFiles, FileOfNoKnownKind_ListsTheKinds) {
+  const std::string scene = write("scene.json", R"({ "camera": {}, "objects": [] })");
+  EXPECT_THAT(run({"validate", scene}),
+              FailsWith(1, "scene.json:1:1", "must state its kind", "\"dermis_scene\": 1 (scene)"));
+  EXPECT_THAT(run({"upgrade", "--check", scene}), FailsWith(1, "must state its kind"));
+  const std::string misspelt = write("misspelt.json", R"({ "dermis_scen": 1, "camera": {} })");
+  EXPECT_THAT(run({"validate", misspelt}), FailsWith(1, "did you mean 'dermis_scene'?"));
+}
+
 TEST_F(GraphFiles, MissingImportIsNamedWithItsReader) {
   const std::string bad =
       write("bad.json", burley_with("\"depth\": { \"format\"", "\"other\": { \"format\""));

@@ -64,6 +64,20 @@ TEST_F(PlanFiles, ADamagedPlanIsRejectedWithTheByte) {
               HasSubstr("a saved plan must begin with DERMPLAN"));
   EXPECT_THAT(run({"plan", "verify", path("none.plan")}).err, HasSubstr("does not exist"));
   EXPECT_TRUE(is_json(run({"plan", "verify", cut, "--json"}).out));
+  EXPECT_THAT(run({"validate", cut}), FailsWith(1, "cut.plan", "D0321 plan_file", "byte "));
+}
+
+TEST_F(PlanFiles, VerifiedPlans_AreListedAsJson) {
+  ASSERT_EQ(run({"plan", "save", burley, "--out", path("a.plan")}).exit_code, 0);
+  const std::string bad = write("bad.plan", "DERMPLAN");
+  const Outcome good = run({"plan", "verify", path("a.plan"), "--json"});
+  EXPECT_TRUE(is_json(good.out)) << good.out;
+  EXPECT_THAT(good.out, HasAll("\"ok\": true", "\"passes\": ", "\"barriers\": "));
+  const Outcome mixed = run({"plan", "verify", path("a.plan"), bad, "--json"});
+  EXPECT_EQ(mixed.exit_code, 1);
+  EXPECT_TRUE(is_json(mixed.out)) << mixed.out;
+  EXPECT_THAT(mixed.out, HasAll("\"ok\": false", "\"ok\": true", "bad.plan", "plan_file"));
+  EXPECT_THAT(run({"validate", path("a.plan")}), Succeeds("plan, no problems"));
 }
 
 // Clears the stages that the first barrier waits for; their bytes are found by comparison.

@@ -159,6 +159,15 @@ TEST_F(Render, GraphWithErrors_WritesNothing) {
   EXPECT_THAT(files("out"), IsEmpty());
 }
 
+TEST_F(Render, ImportLargerThanTheView_IsNamed) {
+  const std::string depth = "\"depth\": { \"format\": \"depth\",";
+  const std::string graph =
+      write("graph.json", replaced(read_text(std::string(DERMIS_SOURCE_DIR "/") + burley), depth,
+                                   depth + " \"border\": 4,"));
+  EXPECT_THAT(render(bust, graph),
+              FailsWith(1, "needs 'depth' with 72x44 pixels", "images of the view's size, 64x36"));
+}
+
 TEST_F(Render, ModelThatIsNotGltf_IsNamed) {
   const std::string model = write("model.glb", "this is no model");
   EXPECT_THAT(render("configs/scenes/head.json", burley, {"--model", model}),

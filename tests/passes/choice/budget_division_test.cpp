@@ -201,6 +201,20 @@ TEST_F(Rounds, RareView_KeepsItsPart) {
   }
 }
 
+TEST_F(Rounds, DiscardedFrames_EndNoRound) {
+  constexpr int discarded = 10; // more rounds than a rare view is waited for, if each ended one
+  for (int i = 0; i < 120; ++i) {
+    for (int frame = 0; frame <= discarded; ++frame) {
+      of_a = division.share(a, 10, large, true, 0.016);
+      if (frame < discarded) division.repeat(a);
+    }
+    if (i % 12 == 0) of_b = division.share(b, 10, small, true, 0.2);
+    if (i < 60) continue;
+    EXPECT_DOUBLE_EQ(of_a, 7.5) << i;
+    EXPECT_DOUBLE_EQ(of_b, 2.5) << i;
+  }
+}
+
 // Views of one graph on one device, that show different amounts of subsurface.
 class SimulatedViews {
 public:

@@ -305,10 +305,9 @@ void bind_rays(const dermis_slot& slot, const RayScene& rays,
   binding.before.access = binding.after.access = VK_ACCESS_2_TRANSFER_WRITE_BIT;
 }
 
-} // namespace
-
-Result<> record_graph(DermisHost& host, const Renderer& renderer, const SceneState& state,
-                      VkCommandBuffer commands, uint64_t frame_index) {
+// Errors: input (the graph needs larger images than those of this engine).
+Result<std::vector<dermis_image_binding>> bind_images(const DermisHost& host,
+                                                      const Renderer& renderer) {
   dermis_image_state rests{};
   rests.layout = resting.layout;
   rests.stages = resting.stages;
@@ -318,6 +317,12 @@ Result<> record_graph(DermisHost& host, const Renderer& renderer, const SceneSta
     const auto target = target_of(slot.name);
     if (!target || !slot.bound) continue;
     const Image& image = renderer[*target];
+    if (image.width < slot.width || image.height < slot.height)
+      return Error{ErrorKind::input,
+                   fmt::format("the graph needs '{}' with {}x{} pixels, but the demo engine makes "
+                               "images of the view's size, {}x{}: 'size', 'align' and 'border' of "
+                               "imports must not ask for more",
+                               slot.name, slot.width, slot.height, image.width, image.height)};
     dermis_image_binding binding = DERMIS_IMAGE_BINDING_INIT;
     binding.slot = slot.id;
     binding.format = image.format;
@@ -330,6 +335,15 @@ Result<> record_graph(DermisHost& host, const Renderer& renderer, const SceneSta
     binding.content_id = image.id;
     bindings.push_back(binding);
   }
+  return bindings;
+}
+
+} // namespace
+
+Result<> record_graph(DermisHost& host, const Renderer& renderer, const SceneState& state,
+                      VkCommandBuffer commands, uint64_t frame_index) {
+  auto bindings = bind_images(host, renderer);
+  if (!bindings) return bindings.error();
   std::vector<dermis_buffer_binding> buffers;
   dermis_acceleration_structure_binding structure = DERMIS_ACCELERATION_STRUCTURE_BINDING_INIT;
   for (const dermis_slot& slot : host.slots)
@@ -340,8 +354,8 @@ Result<> record_graph(DermisHost& host, const Renderer& renderer, const SceneSta
   frame.structures = &structure;
   frame.structure_count = structure.structure != VK_NULL_HANDLE ? 1 : 0;
   frame.command_buffer = commands;
-  frame.bindings = bindings.data();
-  frame.binding_count = static_cast<uint32_t>(bindings.size());
+  frame.bindings = (*bindings).data();
+  frame.binding_count = static_cast<uint32_t>((*bindings).size());
   frame.frame_index = frame_index;
   if (state.cut) frame.flags |= DERMIS_FRAME_RESET_HISTORY;
   frame.completed_frame_index = frame_index - 1; // this engine waits for every frame

@@ -13,7 +13,8 @@ void add_two_queues(CLI::App& verb, bool& two_queues) {
 
 void add_text_verbs(CLI::App& app, Invocation& invocation) {
   add_verb<ValidateOptions>(
-      app, invocation, "validate", "Check graphs, profiles, scenes, expectations and captures",
+      app, invocation, "validate",
+      "Check graphs, profiles, scenes, captures, tables and saved plans",
       "dermis validate configs/graphs/burley.json\n  dermis validate capture/ --sarif "
       "results.sarif",
       validate, [](CLI::App& verb, ValidateOptions& options) {

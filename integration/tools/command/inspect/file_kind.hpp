@@ -4,6 +4,7 @@
 #include "framegraph/text/document.hpp"
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string_view>
 
@@ -29,7 +30,7 @@ enum class FileKindId : uint8_t {
 
 std::span<const FileKind> file_kinds(); // by FileKindId
 
-// A file with a missing or misspelt key counts as a graph, whose reader reports the problem.
-FileKindId file_kind_of(const Document& document);
+// Returns nullopt with an error if no version key is known.
+std::optional<FileKindId> file_kind_of(const Document& document, Diagnostics& diagnostics);
 
 } // namespace dermis::tools

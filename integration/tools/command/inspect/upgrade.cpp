@@ -29,12 +29,13 @@ Upgraded upgrade_file(const std::string& path, Diagnostics& diagnostics) {
   const std::optional<Document> document = read_input(path, diagnostics);
   if (!document) return {path};
   const std::string& text = diagnostics.files[document->file.value].text;
-  const FileKindId id = file_kind_of(*document);
-  const FileKind& kind = file_kinds()[static_cast<size_t>(id)];
+  const std::optional<FileKindId> id = file_kind_of(*document, diagnostics);
+  if (!id) return {path};
+  const FileKind& kind = file_kinds()[static_cast<size_t>(*id)];
   const bool old =
       version_of(*document, kind.version_key) == 1 || version_of(*document, old_pass_type_key) == 1;
   if (kind.version > 1 && old)
-    return {path, kind.name, kind.version, upgraded_text(*document, id, text)};
+    return {path, kind.name, kind.version, upgraded_text(*document, *id, text)};
   const bool known = check_version(*document, kind.version_key, kind.version, diagnostics);
   return {path, kind.name, known ? kind.version : 0, std::nullopt};
 }

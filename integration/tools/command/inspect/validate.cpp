@@ -1,5 +1,5 @@
 // dermis validate: reads files strictly, compiles graphs with the generic device profile and
-// verifies their plans, and reads the images of captures.
+// verifies their plans and saved ones, and reads the images of captures.
 
 #include "framegraph/text/document.hpp"
 #include "framegraph/text/json_writer.hpp"
@@ -10,6 +10,8 @@
 #include "integration/tools/command/inspect/diagnose.hpp"
 #include "integration/tools/command/inspect/file_kind.hpp"
 #include "integration/tools/command/output.hpp"
+#include "integration/tools/command/plan/input.hpp"
+#include "integration/tools/command/plan/verify.hpp"
 #include "integration/tools/command/run/captured.hpp"
 #include "integration/tools/command/run/choice_sets.hpp"
 #include "integration/tools/files/capture_pictures.hpp"
@@ -90,7 +92,7 @@ struct CheckedFile {
   std::string_view kind = "unreadable";
   bool good = false;
   std::string about = {}; // one line on the contents of the file
-  bool verified = true;   // of a graph's plan; false: the verifier gave up
+  bool verified = true;   // of a plan; false: the verifier gave up
 };
 
 void check_capture(const Document& document, const ValidateOptions& options,
@@ -107,13 +109,23 @@ void check_capture(const Document& document, const ValidateOptions& options,
   checked.good = diagnostics.count(Severity::warning) == warnings;
 }
 
+CheckedFile check_plan(const std::string& path, Diagnostics& diagnostics) {
+  const VerifiedPlan plan = verify_plan_file(path, diagnostics);
+  CheckedFile checked{path, "plan", plan.good};
+  if (plan.read) checked.about = describe(plan);
+  checked.verified = plan.verified;
+  return checked;
+}
+
 CheckedFile check_file(const std::string& path, const ValidateOptions& options,
                        Diagnostics& diagnostics) {
+  if (holds_plan(path)) return check_plan(path, diagnostics);
   const std::optional<Document> document = read_input(path, diagnostics);
   if (!document) return {path};
-  const FileKindId kind = file_kind_of(*document);
-  CheckedFile checked{path, file_kinds()[static_cast<size_t>(kind)].name};
-  switch (kind) {
+  const std::optional<FileKindId> kind = file_kind_of(*document, diagnostics);
+  if (!kind) return {path, "unknown"};
+  CheckedFile checked{path, file_kinds()[static_cast<size_t>(*kind)].name};
+  switch (*kind) {
   case FileKindId::graph:
     checked.good = check_graph(*document, path, options.inputs, diagnostics, checked.verified);
     break;

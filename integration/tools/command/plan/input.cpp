@@ -10,15 +10,6 @@
 namespace dermis::tools {
 namespace {
 
-// Standard input is always a graph. A file is recognised by its first bytes.
-bool holds_plan(const std::string& path) {
-  if (path == "-") return false;
-  char first[16] = {};
-  std::ifstream stream(path, std::ios::binary);
-  stream.read(first, sizeof first);
-  return is_plan_file({first, static_cast<size_t>(stream.gcount())});
-}
-
 std::string name_of(const PlanSource& source) {
   std::string name = fmt::format("{}, {}x{}", source.file, source.size.width, source.size.height);
   for (const std::string& overlay : source.inputs.overlays)
@@ -31,6 +22,14 @@ std::string name_of(const PlanSource& source) {
 }
 
 } // namespace
+
+bool holds_plan(const std::string& path) {
+  if (path == "-") return false;
+  char first[16] = {};
+  std::ifstream stream(path, std::ios::binary);
+  stream.read(first, sizeof first);
+  return is_plan_file({first, static_cast<size_t>(stream.gcount())});
+}
 
 std::optional<std::string> read_plan_bytes(const std::string& path, Diagnostics& diagnostics) {
   std::string error;

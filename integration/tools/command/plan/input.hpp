@@ -27,6 +27,9 @@ struct NamedPlan {
   SavedPlan saved;
 };
 
+// Returns whether the file begins like a saved plan. Standard input ("-") is always a graph.
+bool holds_plan(const std::string& path);
+
 // Returns the bytes of a file of at most limits::file_bytes, or nullopt with an error in
 // `diagnostics`.
 std::optional<std::string> read_plan_bytes(const std::string& path, Diagnostics& diagnostics);

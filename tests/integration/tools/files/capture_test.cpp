@@ -457,6 +457,7 @@ TEST_P(WrongFrames, AreRejectedWithThePlace) {
   const fs::path folder = write(sample());
   change(folder, wrong.from, wrong.to);
   expect_rejected(folder, wrong.id, wrong.pointer, wrong.text);
+  EXPECT_EQ(diagnostics.count(Severity::error), 1u) << messages();
 }
 
 const WrongFrame wrong_frames[] = {
@@ -466,6 +467,14 @@ const WrongFrame wrong_frames[] = {
      DiagnosticId::capture_profile, "/profiles/1/id", "declared twice"},
     {"NotAProjection", "[1.1, 0, 0, 0", "[1.1, 0.5, 0, 0", DiagnosticId::capture_projection,
      "/clip_from_view", "axis-aligned perspective"},
+    {"NoPreviousProjection", R"("previous_clip_from_view": [1.1, 0)",
+     R"("previous_clip_from_view": [1.1, 0.5)", DiagnosticId::capture_projection,
+     "/previous_clip_from_view", "axis-aligned projection"},
+    {"SingularView", R"("view_from_world": [1, 0)", R"("view_from_world": [0, 0)",
+     DiagnosticId::capture_projection, "/view_from_world", "no inverse"},
+    {"SingularPreviousView", R"("previous_view_from_world": [1, 0)",
+     R"("previous_view_from_world": [0, 0)", DiagnosticId::capture_projection,
+     "/previous_view_from_world", "no inverse"},
     {"ProjectionTypeAgainstTheMatrix", R"("perspective")", R"("orthographic")",
      DiagnosticId::capture_projection, "/clip_from_view", "axis-aligned orthographic"},
     {"PixelPitchAndMatrix", R"("perspective")", R"("orthographic", "pixel_pitch_m": 0.001)",
