@@ -63,9 +63,10 @@ struct BindErrorReporter {
     reported[use.requested.value] = 1;
     const auto report_error = [&](DiagnosticId id, std::string text) {
       auto& diagnostic = report.diagnostics.add(id, location_of(graph, use), std::move(text));
-      const auto relate_declaration = [&](ResourceId id) {
-        diagnostic.related.emplace_back(graph.resources[id.value].where,
-                                        fmt::format("'{}' is declared here", name_of(graph, id)));
+      const auto relate_declaration = [&](ResourceId declared) {
+        diagnostic.related.emplace_back(
+            graph.resources[declared.value].where,
+            fmt::format("'{}' is declared here", name_of(graph, declared)));
       };
       relate_declaration(use.requested);
       if (use.resource != use.requested) relate_declaration(use.resource);

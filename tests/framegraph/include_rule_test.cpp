@@ -65,9 +65,9 @@ struct Order {
 };
 const Order orders[] = {
     {"framegraph/",
-     {"text", "compose", "model", "schema", "compile", "verify", "serial", "explain", "vulkan"}},
+     {"text", "compose", "model", "schema", "compile", "verify", "serialize", "explain", "vulkan"}},
     {"integration/tools/command/",
-     {"expect", "run", "bench", "inspect", "plan", "capture", "watch", "arguments"}},
+     {"expect", "run", "bench", "plan", "inspect", "capture", "watch", "arguments"}},
     {"integration/",
      {"include", "abi", "tools/references", "tools/files", "tools/null_device",
       "examples/demo_engine", "tools/viewer", "tools/command"}},

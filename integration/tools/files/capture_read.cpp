@@ -64,10 +64,12 @@ subsurface::CameraMatrices read_matrices(ObjectReader& reader, bool has_pitch) {
   return camera;
 }
 
-std::string singular(std::string_view key) {
-  return fmt::format("'{}' has no inverse, or its last row is not 0 0 0 1 (row-major, "
-                     "column vectors)",
-                     key);
+// A transposed matrix, as other engines store it, is no fault here: `validate --diagnose` finds it.
+bool is_singular(const subsurface::Matrix4& m) {
+  subsurface::Matrix4 transposed;
+  for (size_t i = 0; i < m.size(); ++i)
+    transposed[i] = m[i % 4 * 4 + i / 4];
+  return !subsurface::invert_affine(m) && !subsurface::invert_affine(transposed);
 }
 
 bool is_projection(const subsurface::Matrix4& clip_from_view) {
@@ -113,10 +115,12 @@ void read_projection(const Document& document, ObjectReader& reader, CapturedFra
   frame.view_from_world = camera.view_from_world;
   frame.previous_clip_from_view = camera.previous_clip_from_view;
   frame.previous_view_from_world = camera.previous_view_from_world;
-  if (!subsurface::invert_affine(camera.view_from_world))
-    return reject("view_from_world", singular("view_from_world"));
-  if (!subsurface::invert_affine(camera.previous_view_from_world))
-    return reject("previous_view_from_world", singular("previous_view_from_world"));
+  const auto reject_singular = [&](std::string_view key) {
+    reject(key, fmt::format("'{}' has no inverse that is affine", key));
+  };
+  if (is_singular(camera.view_from_world)) return reject_singular("view_from_world");
+  if (is_singular(camera.previous_view_from_world))
+    return reject_singular("previous_view_from_world");
   if (fault == subsurface::CameraFault::none && !is_projection(frame.previous_clip_from_view))
     return reject("previous_clip_from_view",
                   "'previous_clip_from_view' is not an axis-aligned projection");
