@@ -106,10 +106,12 @@ void learn_error(Chooser& chooser, const choice::Configuration& configuration,
   if (configuration.technique >= 0 &&
       chooser.errors.techniques[static_cast<size_t>(configuration.technique)].by_rays)
     return;
-  const double expected =
-      expected_rmse(chooser.errors, configuration, {mean_d_px(counters), mean_relief(counters)},
-                    counters.sample_units, counters.sample_demand);
-  observe_error(chooser.found, corrected_technique(configuration), probed.rmse, expected);
+  const choice::FrameKey key = {mean_d_px(counters), mean_relief(counters)};
+  const double expected = expected_rmse(chooser.errors, configuration, key, counters.sample_units,
+                                        counters.sample_demand);
+  observe_error(chooser.found,
+                {corrected_technique(configuration), probed.square, probed.unscattered_square,
+                 expected, expected_rmse(chooser.errors, -1, key), key, chooser.state.clock_s});
 }
 
 uint64_t listed_tiles(const subsurface::FrameCounters& counters) {
@@ -210,7 +212,8 @@ std::span<choice::Forecast> forecast_first(Chooser& chooser, const CompiledGraph
   const double demand = std::floor(content.units_per_tile * double(content.scattering_tiles));
   for (uint32_t i = 0; i < count; ++i) {
     const choice::Configuration& configuration = compiled_graph.configurations[i];
-    const double correction = error_factor(chooser.found, corrected_technique(configuration));
+    const double correction =
+        error_factor(chooser.found, corrected_technique(configuration), content.key, now_s);
     const double missed =
         missed_rmse(chooser.errors, configuration.technique, content.transmitted_rms);
     const auto error_of = [&](int32_t technique) {
@@ -357,6 +360,7 @@ FrameChoice choose(Chooser& chooser, const CompiledGraph& compiled_graph,
   }
   frame.configuration = frame.decision.configuration;
   frame.switches = state.switches;
+  frame.cut = request.cut;
   return frame;
 }
 
@@ -391,6 +395,7 @@ void remember(Chooser& chooser, const FrameChoice& frame) noexcept {
   std::swap(chooser.state, chooser.scratch.state);
   chooser.previously_decided_for = chooser.decided_for;
   chooser.decided_for = frame.compiled_graph;
+  if (frame.cut) forget_errors(chooser.found);
 }
 
 void discard_choice(Chooser& chooser, uint64_t frame_index) noexcept {

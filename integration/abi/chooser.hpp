@@ -47,6 +47,7 @@ struct FrameChoice {
   bool begins = false;
   bool left_out = false; // empty bounds: passes that serve scattering did not run
   bool history_invalid = false;
+  bool cut = false;
   uint64_t expected_tiles = 0;        // number of tiles that the forecast assumed
   uint32_t sample_units = UINT32_MAX; // limit on the samples of tiles
   bool observed = false;

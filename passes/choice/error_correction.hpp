@@ -1,6 +1,11 @@
 #pragma once
-// Error correction: a factor on a technique's expected error for the present content, from error
-// probes. Robust against frames in which the probe hit rare content; old frames are forgotten.
+// Error correction: factors on expected errors for the present content, from error probes. One
+// factor, of unscattered light, is common to all techniques: how bright and how detailed the light
+// is. Others are those of single techniques. Robust against frames in which the probe hit rare
+// content. What was measured holds until the content changes, so that a choice between techniques
+// settles.
+
+#include "passes/choice/error_model.hpp"
 
 #include <cstddef>
 #include <cstdint>
@@ -8,22 +13,37 @@
 
 namespace dermis::choice {
 
-// Sums of squares with exponential decay per probed frame. Plain data.
+// Sums of squares of recent probed frames. Plain data.
 struct ErrorCorrection {
   struct Line {
     double probed = 0, expected = 0;
-    double newest = 0; // expected square of the newest frame
+    double newest = 0; // expected square of the newest frame; 0: none
+    double seen_s = 0; // time and content of that frame
+    FrameKey key;
   };
-  std::vector<Line> lines; // by technique + 1; the first is for frames without a technique
+  std::vector<Line> lines; // by technique + 1; the first is that of unscattered light
+};
+
+// A frame whose error was probed.
+struct ProbedFrame {
+  int32_t technique = -1; // -1: none ran
+  // mean squared errors of the picture and of its light before scattering; noisy, may be negative
+  double square = 0, unscattered_square = 0;
+  double expected = 0, expected_unscattered = 0; // RMSE by the table
+  FrameKey key;
+  double now_s = 0; // seconds
 };
 
 // Creates a correction for `techniques` of an error table, without observations.
 ErrorCorrection make_error_correction(size_t techniques);
-// Adds one probed frame: `technique` (-1: none ran) had the error `probed`, while the table expects
-// `expected`. Both are root mean squares. Ignores values that are not finite, a negative `probed`,
-// and `expected` <= 0. Knowledge of the other techniques fades. Allocates nothing.
-void observe_error(ErrorCorrection& correction, int32_t technique, double probed, double expected);
-// Returns the factor, 1/4 .. 4; 1 without observations.
-double error_factor(const ErrorCorrection& correction, int32_t technique);
+// Adds a frame. Ignores values that are not finite, and frames whose expected errors are not
+// positive. Allocates nothing.
+void observe_error(ErrorCorrection& correction, const ProbedFrame& frame);
+// Returns the factor for a frame with this content at this time. It returns to 1 as the last probed
+// frame ages, and as the content deviates from that frame's.
+double error_factor(const ErrorCorrection& correction, int32_t technique, const FrameKey& key,
+                    double now_s);
+// The content was replaced, as by a cut: the factors of techniques that do not run return to 1.
+void forget_errors(ErrorCorrection& correction);
 
 } // namespace dermis::choice

@@ -58,6 +58,8 @@ struct FrameCounters {
   // For each probed tile, as bits of floats: the sum of squared errors and the number of pixels in
   // this sum, both times the number of tiles that the tile represents.
   std::array<std::array<uint32_t, 2>, max_probes> probes{};
+  // The same sum for the light before scattering.
+  std::array<uint32_t, max_probes> probed_unscattered{};
 };
 inline constexpr float counter_log2_shift = 8;      // d from 1/256 pixel
 inline constexpr float counter_log2_steps = 16;     // per octave; the sum of 4 M tiles fits 32 bits

@@ -15,8 +15,4 @@ PassTypeRegistry make_pass_types();
 // contrast. The idea is epsilon_u of Xie, Xu & Boksansky 2021, sec. 7.
 inline constexpr double copy_below_d_px = 0.0546;
 
-// Pixels whose light reaches further, in pixels, are not probed: a reference reads the square of
-// the reach.
-inline constexpr int32_t probe_max_reach = 320;
-
 } // namespace dermis::subsurface

@@ -23,31 +23,35 @@ double student_t(double freedom) {
 
 ProbedError probed_error(const FrameCounters& counters) {
   const auto count = std::min<size_t>(counters.probe_count, counters.probes.size());
-  double errors = 0, pixels = 0;
-  std::array<std::array<double, 2>, max_probes> tiles{};
+  double errors = 0, unscattered = 0, pixels = 0;
+  std::array<std::array<double, 3>, max_probes> tiles{};
+  const auto value = [](uint32_t bits) { return double(std::bit_cast<float>(bits)); };
   for (size_t i = 0; i < count; ++i)
-    tiles[i] = {double(std::bit_cast<float>(counters.probes[i][0])),
-                double(std::bit_cast<float>(counters.probes[i][1]))};
+    tiles[i] = {value(counters.probes[i][0]), value(counters.probed_unscattered[i]),
+                value(counters.probes[i][1])};
   // the device writes them in any order
   std::sort(tiles.begin(), tiles.begin() + std::ptrdiff_t(count));
-  for (const auto& [error, weight] : tiles) {
+  for (const auto& [error, unscattered_error, weight] : tiles) {
     errors += error;
+    unscattered += unscattered_error;
     pixels += weight;
   }
   if (!(pixels > 0)) return {};
   ProbedError out;
   out.tiles = static_cast<uint32_t>(count);
   const double mean = errors / pixels;
-  out.rmse = std::sqrt(mean);
+  out.square = mean;
+  out.unscattered_square = unscattered / pixels;
+  out.rmse = std::sqrt(std::max(mean, 0.0));
   out.high = std::numeric_limits<double>::infinity();
   if (count < 2) return out;
   double squares = 0;
   for (size_t i = 0; i < count; ++i)
-    squares += std::pow(tiles[i][0] - mean * tiles[i][1], 2);
+    squares += std::pow(tiles[i][0] - mean * tiles[i][2], 2);
   const auto n = double(count);
   const double half = student_t(n - 1) * std::sqrt(squares * n / (n - 1)) / pixels;
   out.low = std::sqrt(std::max(mean - half, 0.0));
-  out.high = std::sqrt(mean + half);
+  out.high = std::sqrt(std::max(mean + half, 0.0));
   return out;
 }
 

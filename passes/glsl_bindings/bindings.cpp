@@ -168,7 +168,6 @@ std::string shared_constants() {
       "const float uniform_tolerance = {};\n"
       "const int uniform_max_reach = {};\n"
       "const uint uniform_cell_side = {}u;\n"
-      "const int probe_max_reach = {}; // pass_types.hpp\n"
       "const float allot_gain_0 = {}, allot_gain_1 = {}, allot_gain_2 = {}; // "
       "sample_allocation.hpp\n"
       "const float allocation_stay = {};\n"
@@ -216,18 +215,18 @@ std::string shared_constants() {
       "const float counter_log2_steps = {:.1f};\n"
       "const float through_square_steps = {:.1f}, relief_steps = {:.1f};\n\n#endif\n",
       subsurface::copy_below_d_px, subsurface::uniform_reach_d, subsurface::uniform_tolerance,
-      subsurface::uniform_max_reach, subsurface::uniform_cell_side, subsurface::probe_max_reach,
-      choice::allocation_gain[0], choice::allocation_gain[1], choice::allocation_gain[2],
-      choice::allocation_stay, choice::allocation_first_bin, choice::full_pixel_weight,
-      choice::pixel_weight_step, choice::no_pixel_weight, choice::all_steady, choice::min_steady,
-      choice::steady_gain, choice::selection_kept_bit, choice::selection_level_shift,
-      choice::max_selection_level, choice::highest_level_weight, choice::selection_stay,
-      choice::selection_first_bin, subsurface::min_patch_cosine, subsurface::max_patch_slope,
-      subsurface::relief_near_d, subsurface::relief_far_d, subsurface::relief_turn,
-      subsurface::relief_width, subsurface::relief_range_d, subsurface::separable_nodes,
-      subsurface::separable_first_log2_d, subsurface::separable_log2_d_step,
-      subsurface::separable_rows_per_profile, subsurface::sap_level_count,
-      subsurface::sap_variant_count, static_cast<int>(subsurface::SapVariant::half),
+      subsurface::uniform_max_reach, subsurface::uniform_cell_side, choice::allocation_gain[0],
+      choice::allocation_gain[1], choice::allocation_gain[2], choice::allocation_stay,
+      choice::allocation_first_bin, choice::full_pixel_weight, choice::pixel_weight_step,
+      choice::no_pixel_weight, choice::all_steady, choice::min_steady, choice::steady_gain,
+      choice::selection_kept_bit, choice::selection_level_shift, choice::max_selection_level,
+      choice::highest_level_weight, choice::selection_stay, choice::selection_first_bin,
+      subsurface::min_patch_cosine, subsurface::max_patch_slope, subsurface::relief_near_d,
+      subsurface::relief_far_d, subsurface::relief_turn, subsurface::relief_width,
+      subsurface::relief_range_d, subsurface::separable_nodes, subsurface::separable_first_log2_d,
+      subsurface::separable_log2_d_step, subsurface::separable_rows_per_profile,
+      subsurface::sap_level_count, subsurface::sap_variant_count,
+      static_cast<int>(subsurface::SapVariant::half),
       static_cast<int>(subsurface::SapVariant::plain), subsurface::sap_node_count,
       subsurface::sap_table_pairs, double(subsurface::sap_nodes_per_octave),
       subsurface::sap_log2_d_first, subsurface::sap_shape_nodes, subsurface::sap_last_log2_aspect,

@@ -1,10 +1,11 @@
 #version 460
 // Estimates the error of the picture from a few tiles, selected at random with known probabilities.
-// In each tile, the reference is computed at four pixels, one per quarter. The tiles are divided
-// into runs of 64; every n-th run, from a random start, provides one of its tiles with subsurface.
-// passes/common/probe.hpp evaluates the result on the host.
-// The reference is that of passes/common/reference/reference.hpp in fp32:
-//   L_c(p) = sum_q K_c a_q B_c(q) / sum_q K_c a_q
+// In each tile, two independent estimates of the scattered light are made at four pixels, one per
+// quarter. The product of the picture's differences from both estimates its squared error: the
+// estimates' noise has no mean, so it adds none. The tiles are divided into runs of 64; every n-th run,
+// from a random start, provides one of its tiles with subsurface. passes/common/probe.hpp evaluates
+// the result on the host.
+// Each estimate importance-samples the profile as subsurface.burley does, on patches from depth.
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 #include "common/constants_math.glsl"
@@ -19,20 +20,20 @@
 #include "common/profile.glsl"
 #include "common/radius.glsl"
 #include "common/sanitise.glsl"
+#include "common/tap.glsl"
 #include "common/tile_packing.glsl"
 
-const uint lanes = 64u;
-layout(local_size_x = 64, local_size_y = 1, local_size_z = 1) in;
+const uint run_tiles = 64u;
+const uint lanes = 128u;
+layout(local_size_x = 128, local_size_y = 1, local_size_z = 1) in;
 
-const uint quarters = 4u;
-// Within near_px pixels the kernel is averaged over 8x8 points of a patch.
-const int near_px = 4, near_points = 8;
-// A midpoint sum over cells of side h with the pole of 1/r at a shared corner of four cells misses
-// this factor times h of the integral. The factor is the regularised sum over (i + 1/2, j + 1/2) of
-// 1/r: -4 (sqrt 2 - 1) zeta(1/2) beta(1/2).
-const float pole_lack = 1.6155;
+const uint quarters = 4u, quarters_at_once = 2u;
+const uint quarter_lanes = lanes / quarters_at_once;
+const uint half_lanes = quarter_lanes / 2u; // of one estimate
+const int taps_per_lane = 16;
+const int taps = int(half_lanes) * taps_per_lane; // of one estimate
 
-shared uint listed[lanes];   // tiles of the run with subsurface, in order
+shared uint listed[run_tiles]; // tiles of the run with subsurface, in order
 shared uint listed_count;
 shared vec3 sums[lanes], weights[lanes];
 
@@ -55,41 +56,27 @@ vec3 own_light(ivec2 texel) {
   return pixel_light(lighting_image, albedo_image, has_albedo(), settings.texturing, texel);
 }
 
-// Returns the intersection of the patch's plane with the ray through a point `offset` pixels from
-// the centre of `pixel`.
-vec3 patch_point(ivec2 pixel, float depth, vec2 slope, vec2 offset) {
-  float there = max(depth + dot(slope, offset * pixel_footprint(depth)), 0.1 * depth);
-  return view_position(vec2(pixel) + offset, there);
+// Adds one sample of the light around `point`, whose radius has survival `u`.
+void add_tap(scatter_point point, scatter_profile profile, float u, vec2 direction, inout vec3 sum,
+             inout vec3 total) {
+  radial_sample radial = profile_sample(profile, u);
+  surface_tap tap;
+  tap.at = vec2(point.pixel) + direction * radial.r / pixel_footprint(point.depth);
+  tap.pixel = ivec2(round(clamp(tap.at, vec2(-1.0), vec2(frame.rect.zw))));
+  tap.depth = depth_of(tap.pixel, point.id);
+  if (tap.depth <= 0.0)
+    return;
+  surface_patch surface = patch_of(tap.pixel, point.id, tap.depth);
+  tap.slope = surface.slope;
+  vec3 weight = tap_weight(point, profile, tap, radial, surface.area);
+  sum += weight * own_light(texel_of(tap.pixel));
+  total += weight;
 }
 
-// Returns K_c of a patch `q` at its distance from `p`: 2 pi times the profile, averaged over points
-// of the patch.
-vec3 kernel(scatter_profile profile, vec3 p, ivec2 pixel, ivec2 q, float depth,
-            surface_patch surface) {
-  ivec2 apart = abs(q - pixel);
-  if (max(apart.x, apart.y) > near_px)
-    return profile_falloff(profile,
-                           max(length(patch_point(q, depth, surface.slope, vec2(0.0)) - p), 1e-6));
-  vec3 sum = vec3(0.0);
-  float step = 1.0 / float(near_points);
-  for (int i = 0; i < near_points * near_points; ++i) {
-    vec2 offset = (vec2(i % near_points, i / near_points) + 0.5) * step - 0.5;
-    sum += profile_falloff(profile,
-                           max(length(patch_point(q, depth, surface.slope, offset) - p), 1e-6));
-  }
-  sum *= step * step;
-  if (q == pixel) { // adds the part of the pole that the sum misses
-    vec2 sides = pixel_footprint(depth);
-    float side = sqrt(sides.x * sides.y * surface.area), small = 1e-3 * profile.d.w;
-    sum += pole_lack * step / side * small * profile_falloff(profile, small);
-  }
-  return sum;
-}
-
-// Returns the squared error of the exposed luminance at a pixel, computed by all invocations
-// together; a negative value means that the pixel does not count. `copied`: the pixel shows its own
-// light.
-float squared_error(ivec2 pixel, uint lane, bool copied) {
+// Returns estimates, made by quarter_lanes invocations together, of the squared error of the exposed
+// luminance at a pixel: of the picture, and of the light before scattering. `counts`: whether the pixel
+// scatters. `copied`: it shows its own light.
+vec2 squared_errors(ivec2 pixel, uint lane, bool copied, out bool counts) {
   ivec2 texel = texel_of(pixel);
   bool inside = inside_rect(pixel) && inside_bounds(pixel);
   uint id = inside ? texelFetch(material_image, texel, 0).r : 0u;
@@ -98,44 +85,45 @@ float squared_error(ivec2 pixel, uint lane, bool copied) {
                     ? clean_scatter_scale(texelFetch(scatter_scale_image, texel, 0).r)
                     : 1.0;
   scatter_profile profile = find_profile(id, scale);
-  float reach = depth > 0.0 ? uniform_reach_d * projected_d(profile.d.w, depth) : 0.0;
-  bool counts =
-      depth > 0.0 && reach >= uniform_reach_d * copy_below_d_px && reach <= float(probe_max_reach);
+  counts = depth > 0.0 && projected_d(profile.d.w, depth) >= copy_below_d_px;
   vec3 light = vec3(0.0), weight = vec3(0.0);
   if (counts) {
-    vec3 p = view_position(vec2(pixel), depth);
-    int radius = int(ceil(reach)), side = 2 * radius + 1;
-    float reach_mm = uniform_reach_d * profile.d.w;
-    for (int i = int(lane); i < side * side; i += int(lanes)) {
-      ivec2 q = pixel + ivec2(i % side, i / side) - radius;
-      float there = depth_of(q, id);
-      if (there <= 0.0 || distance(view_position(vec2(q), there), p) > reach_mm)
-        continue;
-      surface_patch surface = patch_of(q, id, there);
-      vec2 sides = pixel_footprint(there);
-      vec3 k = kernel(profile, p, pixel, q, there, surface) * (sides.x * sides.y * surface.area);
-      weight += k;
-      light += k * own_light(texel_of(q));
+    scatter_point point = scatter_point(pixel, id, depth, view_position(vec2(pixel), depth));
+    vec3 random = unit_from_hash(
+        pcg3d(uvec3(pixel, 2u * frame.frame_index + (lane / half_lanes & 1u)) ^
+              uvec3(0u, 0x9e3779b9u, 0u)));
+    for (int i = 0; i < taps_per_lane; ++i) {
+      float tap = float(i * int(half_lanes) + int(lane % half_lanes));
+      float angle = two_pi * random.y + golden_angle * tap;
+      add_tap(point, profile, 1.0 - (tap + random.x) / float(taps), vec2(cos(angle), sin(angle)),
+              light, weight);
     }
   }
   sums[lane] = light;
   weights[lane] = weight;
   barrier();
-  for (uint stride = lanes / 2u; stride > 0u; stride /= 2u) {
-    if (lane < stride) {
+  for (uint stride = half_lanes / 2u; stride > 0u; stride /= 2u) {
+    if (lane % half_lanes < stride) {
       sums[lane] += sums[lane + stride];
       weights[lane] += weights[lane + stride];
     }
     barrier();
   }
   if (!counts)
-    return -1.0;
+    return vec2(0.0);
   vec3 own = own_light(texel), direct = profile_direct(id);
-  vec3 reference = mix(sums[0] / max(weights[0], vec3(1e-30)), own, direct);
-  reference = mix(own, reference, vec3(greaterThan(profile.d.rgb, vec3(0.0))));
   vec3 shown = has_scattered() && !copied ? texelFetch(scattered_image, texel, 0).rgb : own;
-  float off = dot(shown - reference, luminance_weights) * frame.exposure;
-  return off * off;
+  vec2 products = vec2(1.0);
+  for (uint estimate = 0u; estimate < 2u; ++estimate) {
+    uint first = lane - lane % quarter_lanes + estimate * half_lanes;
+    vec3 total = weights[first];
+    vec3 found = sums[first] / max(total, vec3(1e-30));
+    found = mix(own, found, vec3(greaterThan(min(total, profile.d.rgb), vec3(1e-30))));
+    found = mix(found, own, direct);
+    products *= frame.exposure *
+                vec2(dot(shown - found, luminance_weights), dot(own - found, luminance_weights));
+  }
+  return products;
 }
 
 void main() {
@@ -146,15 +134,17 @@ void main() {
   if (fraction < 1.0 &&
       floor((float(run) + 1.0) * fraction + start) <= floor(float(run) * fraction + start))
     return;
-  uint tile = run * lanes + lane;
-  listed[lane] =
-      tile < uint(frame.tiles.x * frame.tiles.y) ? class_of_tile(classes_data[tile]) : class_none;
+  if (lane < run_tiles) {
+    uint tile = run * run_tiles + lane;
+    listed[lane] =
+        tile < uint(frame.tiles.x * frame.tiles.y) ? class_of_tile(classes_data[tile]) : class_none;
+  }
   barrier();
   if (lane == 0u) {
     listed_count = 0u;
-    for (uint i = 0u; i < lanes; ++i)
+    for (uint i = 0u; i < run_tiles; ++i)
       if (listed[i] != class_none)
-        listed[listed_count++] = run * lanes + i;
+        listed[listed_count++] = run * run_tiles + i;
   }
   barrier();
   uint count = listed_count;
@@ -163,24 +153,27 @@ void main() {
   uvec3 random_bits = pcg3d(uvec3(frame.frame_index, run, 1u));
   uint chosen = listed[min(uint(unit_from_hash(random_bits).x * float(count)), count - 1u)];
   ivec2 first = 8 * ivec2(chosen % uint(frame.tiles.x), chosen / uint(frame.tiles.x));
-  float errors = 0.0, pixels = 0.0;
-  for (uint quarter = 0u; quarter < quarters; ++quarter) {
+  vec3 found = vec3(0.0); // of the invocation's quarters: errors of both kinds, pixels
+  for (uint i = 0u; i < quarters; i += quarters_at_once) {
+    uint quarter = i + lane / quarter_lanes;
     uvec3 place = pcg3d(uvec3(frame.frame_index, chosen, 2u + quarter));
     ivec2 pixel = first + 4 * ivec2(quarter % 2u, quarter / 2u) + ivec2(place.xy >> 30);
-    float squared =
-        squared_error(pixel, lane, class_of_tile(classes_data[chosen]) != class_scatter);
+    bool counts;
+    vec2 errors =
+        squared_errors(pixel, lane, class_of_tile(classes_data[chosen]) != class_scatter, counts);
+    found += vec3(errors, counts ? 1.0 : 0.0);
     barrier();
-    if (squared >= 0.0) {
-      errors += squared;
-      pixels += 1.0;
-    }
   }
+  sums[lane] = found;
+  barrier();
   if (lane != 0u)
     return;
-  float stands_for = float(count) / fraction; // number of tiles that the selected tile represents
+  // Times the number of tiles that the selected tile represents.
+  found = (found + sums[quarter_lanes]) * (float(count) / fraction);
   uint place = atomicAdd(counters.probe_count, 1u);
   if (place < counters.probes.length()) {
     counters.probes[place] =
-        uvec2(floatBitsToUint(stands_for * errors), floatBitsToUint(stands_for * pixels));
+        uvec2(floatBitsToUint(found.x), floatBitsToUint(found.z));
+    counters.probed_unscattered[place] = floatBitsToUint(found.y);
   }
 }

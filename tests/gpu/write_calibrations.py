@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
 """Writes calibrations for classes of GPUs from kernel statistics and the model of GPU times.
 
-usage: write_calibrations.py KERNELS ASSEMBLY FOLDER
-  KERNELS   output of `dermis kernels --json --assembly ASSEMBLY` on navi21
-  ASSEMBLY  the folder with the assembly of these kernels
+usage: write_calibrations.py FOLDER RUN...
   FOLDER    receives large_gpu.json and small_gpu.json
+  RUN       a folder with the assembly and the output, kernels.json, of
+            `dermis kernels --json --assembly RUN` on navi21: of all graphs, then of
+            skin with `--overlay configs/overlays/probe.json`
 
 No time is measured. Executed instructions are counted in the assembly: each loop runs as often as
 TRIPS says or as the pass takes samples, and EXECUTED of the instructions of each block count,
@@ -31,6 +32,8 @@ UNITS = 4096  # sample units of the modelled frame
 TRIPS = {"subsurface.separable": 2, "subsurface.separable_selected": 2,
          "subsurface.tile_refine": 8}
 LOOP = 4
+# Number of groups that work, of kernels in which all others return at once.
+WORKING_GROUPS = {"subsurface.probe": 8}
 # Kernels whose loops run once per sample. Each sample reads at a place of its own.
 SAMPLING = {"subsurface.afis", "subsurface.afis_published", "subsurface.afis_tiles",
             "subsurface.burley", "subsurface.fixed", "subsurface.guided", "subsurface.refine",
@@ -44,7 +47,7 @@ WIDE_GROUP = "local_size_x_id = 6"
 # How often nested loops run, from outside in: tiles of a group, levels one after another, texels of
 # an invocation. Loops inside these run LOOP times. Most tiles fail the first uniformity checks.
 NESTED_TRIPS = {"subsurface.sap_coarse_down": (1, 4), "subsurface.sap_coarse_up": (1, 5, 1),
-                "subsurface.classify_uniform_light": (1, 1, 1, 1)}
+                "subsurface.classify_uniform_light": (1, 1, 1, 1), "subsurface.probe": (2, 16)}
 
 
 def invocations(kernel):
@@ -130,12 +133,35 @@ def cost_of(model, work, row, assembly):
         bytes_moved = (work["read"] + work["written"]) * 64 * UNITS
     else:
         counted = launched = work["groups"]
+    working = WORKING_GROUPS.get(work["work"].split()[0])
+    if working is not None:
+        launched, counted, bytes_moved = working, 1, 0
     subgroups = launched * max(1, invocations(work["kernel"]) / 64)
     model.add(work["work"], work["work"], subgroups, wave, bytes_moved)
     seconds = model.total(work["work"])
     least = model.hardware.fixed + wave["lat"] / model.hardware.clock
     base = min(seconds, least) if counted > 1 else seconds
     return base * 1e6, max(0.0, seconds - base) / counted * 1e6
+
+
+def read_run(folder):
+    """Returns the report of a run, with the paths of its assembly."""
+    report = json.loads((folder / "kernels.json").read_text(encoding="utf-8"))
+    if not report["statistics"]:
+        sys.exit(f"{folder}: {report['driver']} reports no statistics of kernels")
+    for row in report["kernels"]:
+        row["assembly"] = folder / row["assembly"]
+    return report
+
+
+def merged(reports):
+    """Returns the first report with the works that only the others have."""
+    out = reports[0]
+    for report in reports[1:]:
+        known = {work["work"] for work in out["works"]}
+        out["works"] += [work for work in report["works"] if work["work"] not in known]
+        out["kernels"] += report["kernels"]
+    return out
 
 
 def rows_of(work, rows):
@@ -153,13 +179,13 @@ def rows_of(work, rows):
     return found
 
 
-def costs_of(report, assembly_folder, hardware):
+def costs_of(report, hardware):
     """Returns the costs of the works. Graphs without a choice need no line for each setting, so
     equal costs of their pass types count once."""
     costs, known = [("clear", hardware.fixed * 1e6, 0.0)], set()  # small buffers
     for work in report["works"]:
         rows = rows_of(work, report["kernels"])
-        assembly = (assembly_folder / rows[0]["assembly"]).read_text(encoding="utf-8")
+        assembly = rows[0]["assembly"].read_text(encoding="utf-8")
         cost = cost_of(gpu_model.Model(hardware), work, rows[0], assembly)
         kind = (work["work"].split()[0], *(f"{value:.2g}" for value in cost))
         if kind not in known or any(not CHOSEN_BY_BUDGET.isdisjoint(row["graphs"])
@@ -184,17 +210,13 @@ def text_of(hardware, report, costs):
 
 def main():
     parser = argparse.ArgumentParser(usage=__doc__)
-    parser.add_argument("kernels")
-    parser.add_argument("assembly", type=pathlib.Path)
     parser.add_argument("folder", type=pathlib.Path)
+    parser.add_argument("runs", type=pathlib.Path, nargs="+")
     options = parser.parse_args()
-    with open(options.kernels, encoding="utf-8") as file:
-        report = json.load(file)
-    if not report["statistics"]:
-        sys.exit(f"{options.kernels}: {report['driver']} reports no statistics of kernels")
+    report = merged([read_run(run) for run in options.runs])
     for name, hardware in CLASSES.items():
         path = options.folder / f"{name}.json"
-        costs = costs_of(report, options.assembly, hardware)
+        costs = costs_of(report, hardware)
         path.write_text(text_of(hardware, report, costs), encoding="utf-8")
 
 

@@ -105,7 +105,7 @@ typedef struct dermis_frame_statistics {
   float mean_relief;
   /* Measured error, by subsurface.probe (configs/overlays/probe.json). */
   uint32_t probed_tiles;  /* 0: error unknown */
-  float probed_rmse;      /* of this frame: linear luminance times dermis_frame.exposure */
+  float probed_rmse;      /* noisy; linear luminance times dermis_frame.exposure */
   float probed_rmse_low;  /* lower end of the 95 % confidence interval */
   float probed_rmse_high; /* upper end; infinity if one tile was probed */
   /* Light through thin parts, by subsurface.transmission_stats: root mean square over tiles with

@@ -1,4 +1,4 @@
-// The error probe: the reference at a few pixels of the frame.
+// The error probe: independent estimates of the scattered light at a few pixels of the frame.
 
 #include "passes/common/signatures/signatures.hpp"
 
@@ -6,6 +6,9 @@ namespace dermis::subsurface {
 
 namespace {
 
+// One group per run of 64 tiles of the render rectangle, row by row.
+constexpr DispatchRule probed_tiles{
+    .name = "probed_tiles", .cell_side = tile_side, .cells_per_group = 64, .invocations = 128};
 constexpr Port probe_ports[] = {
     port::optional(
         port::sampled("scattered",
@@ -23,7 +26,7 @@ constexpr PassTypeSetting probe_settings[] = {
     setting::texturing,
     setting::integer(
         "tiles", 8, 1, 32, "tiles",
-        "number of tiles per frame; the reference is computed at four pixels of each tile"),
+        "number of tiles per frame; the error is estimated at four pixels of each tile"),
 };
 
 } // namespace
@@ -31,12 +34,11 @@ constexpr PassTypeSetting probe_settings[] = {
 const PassType probe_type{
     .name = "subsurface.probe",
     .shader = "common/subsurface_probe",
-    .doc = "Computes the reference at pixels of a few tiles, sampled with known probabilities, to "
-           "estimate "
-           "the frame's error and its uncertainty.",
+    .doc = "Estimates the frame's error and its uncertainty at pixels of a few tiles, sampled with "
+           "known probabilities: compares with two independent estimates of 512 samples each.",
     .ports = probe_ports,
     .settings = probe_settings,
-    .dispatch = over_tile_grid,
+    .dispatch = probed_tiles,
     .side_effects = true, // reports to the host
 };
 

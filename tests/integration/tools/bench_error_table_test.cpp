@@ -1,5 +1,6 @@
 // Tests `dermis bench error-table`: the table that it writes, and how it fits and judges curves.
 #include "integration/tools/command/bench/error_table/error_table_file.hpp"
+#include "integration/tools/command/bench/error_table/judge_choice.hpp"
 #include "integration/tools/command/bench/error_table/table_fit.hpp"
 #include "integration/tools/command/graph_input.hpp"
 #include "passes/choice/configurations.hpp"
@@ -96,6 +97,27 @@ std::string row_found(const choice::ErrorModel& table, const TechniqueRequest& r
   return configuration.technique < 0
              ? "off"
              : table.techniques[static_cast<size_t>(configuration.technique)].name;
+}
+
+TEST(ErrorTableChoice, MeasuredErrorsLeadToTheBestTechnique) {
+  choice::ErrorModel table;
+  table.unscattered = {{1, 1}};
+  table.techniques = {{"a", {}, {{1, 1e-3}}}, {"b", {}, {{1, 2e-3}}}};
+  const std::vector<MeasuredError> errors = {
+      {"off", "worse", "fold", "judging", 1, 1},    {"off", "as said", "fold", "judging", 1, 1},
+      {"a", "worse", "fold", "judging", 1, 8e-3},   {"b", "worse", "fold", "judging", 1, 2e-3},
+      {"a", "as said", "fold", "judging", 1, 1e-3}, {"b", "as said", "fold", "judging", 1, 2e-3},
+      {"a", "not in b", "fold", "judging", 1, 1},   {"a", "other half", "fold", "tuning", 1, 1}};
+  const std::vector<std::string> techniques = {"a", "b"};
+  const ChoiceError by_table = judge_choice(table, errors, techniques, "judging");
+  EXPECT_EQ(by_table.scenes, 2u);
+  EXPECT_NEAR(by_table.mean, 2, 1e-9);
+  EXPECT_NEAR(by_table.worst, 4, 1e-9);
+  EXPECT_EQ(by_table.switches, 0);
+  const ChoiceError measuring = judge_measuring_choice(table, errors, techniques, "judging");
+  EXPECT_NEAR(measuring.mean, 1, 1e-9);
+  EXPECT_EQ(measuring.switches, 0.5);
+  EXPECT_EQ(judge_choice(table, errors, techniques, "tuning").scenes, 0u);
 }
 
 TEST(ErrorTableFile, EachTechniqueFindsItsRow) {

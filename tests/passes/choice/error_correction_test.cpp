@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace {
@@ -12,11 +14,26 @@ using namespace dermis;
 using namespace dermis::choice;
 
 constexpr double expected = 0.002;
+constexpr FrameKey content = {3, 0.01};
+constexpr double interval_s = 1.0 / 60;
+
+constexpr double unscattered = 0.02; // as expected by the table
+
+ProbedFrame frame_of(int32_t technique, double square, double table = expected, double now_s = 0) {
+  return {technique, square, unscattered * unscattered, table, unscattered, content, now_s};
+}
+
+// Observes `frames` frames of a technique, from `now_s` on.
+void observe(ErrorCorrection& correction, int32_t technique, double probed, int frames,
+             double& now_s) {
+  for (int i = 0; i < frames; ++i, now_s += interval_s)
+    observe_error(correction, frame_of(technique, probed * probed, expected, now_s));
+}
 
 TEST(ErrorCorrection, NoProbe_KeepsTheTable) {
   const ErrorCorrection none = make_error_correction(2);
   for (const int32_t technique : {-1, 0, 1, 7})
-    EXPECT_EQ(error_factor(none, technique), 1);
+    EXPECT_EQ(error_factor(none, technique, content, 0), 1);
 }
 
 TEST(ErrorCorrection, FindsTheFactorInNoisyProbes) {
@@ -24,49 +41,149 @@ TEST(ErrorCorrection, FindsTheFactorInNoisyProbes) {
   ErrorCorrection correction = make_error_correction(2);
   constexpr double factor = 2;
   for (int i = 0; i < 100; ++i) {
-    // Squares are uniform between 0 and twice their mean.
-    const double square = 2 * static_cast<double>(random.next() >> 11) * 0x1p-53;
-    observe_error(correction, 1, factor * expected * std::sqrt(square), expected);
+    // Squares are uniform between -1 and 3 times their mean.
+    const double square = 4 * static_cast<double>(random.next() >> 11) * 0x1p-53 - 1;
+    observe_error(correction, frame_of(1, std::pow(factor * expected, 2) * square));
   }
-  // Tolerance: 25 frames of squares with a deviation of 1/sqrt(3) of their mean give 12 % of the
-  // square, so 6 % of the root. The table's 4 of 29 frames add 5 % of the root. The bound is three
+  // Tolerance: 25 frames of squares with a deviation of 2/sqrt(3) of their mean give 23 % of the
+  // square, so 12 % of the root. The table's 4 of 29 frames add 5 % of the root. The bound is two
   // deviations plus the table's part.
-  EXPECT_NEAR(error_factor(correction, 1), factor, factor * (3 * 0.06 + 0.06));
-  EXPECT_EQ(error_factor(correction, 0), 1);
-  EXPECT_EQ(error_factor(correction, -1), 1);
+  EXPECT_NEAR(error_factor(correction, 1, content, 0), factor, factor * (2 * 0.12 + 0.06));
+  EXPECT_EQ(error_factor(correction, 0, content, 0), 1);
+  EXPECT_EQ(error_factor(correction, -1, content, 0), 1);
 }
 
 TEST(ErrorCorrection, Outlier_CountsAtMostThreeTimesTheEstimate) {
   ErrorCorrection correction = make_error_correction(1);
   for (int i = 0; i < 100; ++i)
-    observe_error(correction, 0, expected, expected);
-  observe_error(correction, 0, 1e6 * expected, expected);
+    observe_error(correction, frame_of(0, expected * expected));
+  observe_error(correction, frame_of(0, 1e6));
   // One of 25 + 4 frames has nine times the square, the others have the expected square.
-  EXPECT_NEAR(error_factor(correction, 0), std::sqrt((28 + 9.0) / 29), 0.02);
+  EXPECT_NEAR(error_factor(correction, 0, content, 0), std::sqrt((28 + 9.0) / 29), 0.02);
 }
 
-TEST(ErrorCorrection, OldMeasurementsAreForgotten) {
+TEST(ErrorCorrection, MeasurementsHold_WhileOtherTechniquesRun) {
   ErrorCorrection correction = make_error_correction(2);
-  for (int i = 0; i < 50; ++i)
-    observe_error(correction, 0, 3 * expected, expected);
-  const double known = error_factor(correction, 0);
+  double now_s = 0;
+  observe(correction, 0, 3 * expected, 50, now_s);
+  const double known = error_factor(correction, 0, content, now_s);
   EXPECT_GT(known, 2.5);
-  double before = known;
-  for (int i = 0; i < 200; ++i) {
-    observe_error(correction, 1, expected, expected);
-    EXPECT_LE(error_factor(correction, 0), before);
-    before = error_factor(correction, 0);
+  observe(correction, 1, expected, 300, now_s); // 5 s
+  EXPECT_NEAR(error_factor(correction, 0, content, now_s), known, 0.1 * known);
+  observe(correction, 1, expected, 60 * 300, now_s); // 5 minutes
+  EXPECT_NEAR(error_factor(correction, 0, content, now_s), 1, 0.02);
+}
+
+TEST(ErrorCorrection, MeasurementsHold_WhileTheContentIsSimilar) {
+  ErrorCorrection correction = make_error_correction(1);
+  double now_s = 0;
+  observe(correction, 0, 3 * expected, 50, now_s);
+  const double known = error_factor(correction, 0, content, now_s);
+  const auto at = [&](double d_px, double relief) {
+    return error_factor(correction, 0, {d_px, relief}, now_s);
+  };
+  EXPECT_GT(at(1.2 * content.d_px, content.relief), 0.9 * known);
+  EXPECT_GT(at(content.d_px, 1.3 * content.relief), 0.9 * known);
+  EXPECT_LT(at(4 * content.d_px, content.relief), 1.1);
+  EXPECT_LT(at(content.d_px, 20 * content.relief), 1.1);
+  EXPECT_NEAR(at(content.d_px, -1), known, 0.01 * known) << "relief is not known";
+}
+
+TEST(ErrorCorrection, CutForgetsAllButTheRunningTechnique) {
+  ErrorCorrection correction = make_error_correction(2);
+  double now_s = 0;
+  observe(correction, 0, 3 * expected, 50, now_s);
+  observe(correction, 1, 3 * expected, 50, now_s);
+  forget_errors(correction);
+  observe(correction, 1, 3 * expected, 25, now_s);
+  EXPECT_NEAR(error_factor(correction, 0, content, now_s), 1, 0.1);
+  EXPECT_GT(error_factor(correction, 1, content, now_s), 2);
+}
+
+// A choice takes the technique with the least expected error, where each technique's true error
+// deviates from the table. Returns the geometric mean over frames of its error, relative to the
+// best technique's, and the number of switches.
+std::pair<double, int> choose_by_measurements(uint64_t seed, bool corrected) {
+  SplitMix64 random{seed};
+  const auto uniform = [&] { return static_cast<double>(random.next() >> 11) * 0x1p-53; };
+  std::array<double, 4> table{}, truth{};
+  for (size_t t = 0; t < table.size(); ++t) {
+    table[t] = expected * std::exp(uniform());
+    truth[t] = table[t] * std::exp(2.6 * (uniform() - 0.5));
   }
-  EXPECT_NEAR(before, 1, 0.01);
+  ErrorCorrection correction = make_error_correction(table.size());
+  constexpr int frames = 1200;
+  size_t running = table.size();
+  int switches = -1;
+  double now_s = 0, logs = 0;
+  for (int i = 0; i < frames; ++i, now_s += interval_s) {
+    const auto error = [&](size_t t) {
+      return table[t] * (corrected ? error_factor(correction, int32_t(t), content, now_s) : 1);
+    };
+    size_t best = 0;
+    for (size_t t = 1; t < table.size(); ++t)
+      if (error(t) < error(best)) best = t;
+    if (running == table.size() || error(best) < 0.95 * error(running)) {
+      ++switches;
+      running = best;
+    }
+    const double square = std::pow(truth[running], 2) * (4 * uniform() - 1); // noisy
+    observe_error(correction, frame_of(int32_t(running), square, table[running], now_s));
+    logs += std::log(truth[running] / *std::min_element(truth.begin(), truth.end()));
+  }
+  return {std::exp(logs / frames), switches};
+}
+
+TEST(ErrorCorrection, ChoiceSettlesNearTheBestTechnique) {
+  constexpr int runs = 60;
+  double with = 0, without = 0;
+  int switches = 0;
+  for (uint64_t seed = 1; seed <= runs; ++seed) {
+    const auto [error, changes] = choose_by_measurements(seed, true);
+    with += std::log(error) / runs;
+    without += std::log(choose_by_measurements(seed, false).first) / runs;
+    switches = std::max(switches, changes);
+  }
+  RecordProperty("with", std::to_string(std::exp(with)));
+  RecordProperty("without", std::to_string(std::exp(without)));
+  RecordProperty("switches", switches);
+  EXPECT_LE(std::exp(with), 1.15);
+  EXPECT_GE(std::exp(without), 1.5) << "the table is wrong enough";
+  EXPECT_LE(switches, 12) << "in 20 s";
+}
+
+// Brightness, exposure and detail of the light change the errors of all techniques.
+TEST(ErrorCorrection, UnitsOfTheLight_AreCommonToAllTechniques) {
+  for (const double unit : {0.01, 0.2, 5.0, 300.0}) {
+    ErrorCorrection correction = make_error_correction(2);
+    for (int i = 0; i < 50; ++i) {
+      ProbedFrame frame = frame_of(0, std::pow(2 * unit * expected, 2));
+      frame.unscattered_square *= unit * unit;
+      observe_error(correction, frame);
+    }
+    EXPECT_NEAR(error_factor(correction, -1, content, 0), unit, 0.02 * unit);
+    EXPECT_NEAR(error_factor(correction, 0, content, 0), 2 * unit, 0.2 * unit);
+    EXPECT_NEAR(error_factor(correction, 1, content, 0), unit, 0.02 * unit);
+  }
+}
+
+TEST(ErrorCorrection, EvenLight_SaysNothingAboutTechniques) {
+  ErrorCorrection correction = make_error_correction(1);
+  for (int i = 0; i < 50; ++i) {
+    ProbedFrame frame = frame_of(0, 1e-9);
+    frame.unscattered_square = 0;
+    observe_error(correction, frame);
+  }
+  EXPECT_LT(error_factor(correction, 0, content, 0), 1e-3);
 }
 
 TEST(ErrorCorrection, InvalidErrors_AreIgnored) {
   ErrorCorrection correction = make_error_correction(1);
-  for (const double wrong : {std::nan(""), double{INFINITY}, -1.0})
-    observe_error(correction, 0, wrong, expected);
-  observe_error(correction, 0, expected, 0);
-  observe_error(correction, 5, expected, expected);
-  EXPECT_EQ(error_factor(correction, 0), 1);
+  for (const double wrong : {std::nan(""), double{INFINITY}})
+    observe_error(correction, frame_of(0, wrong));
+  observe_error(correction, frame_of(0, expected * expected, 0));
+  observe_error(correction, frame_of(5, expected * expected));
+  EXPECT_EQ(error_factor(correction, 0, content, 0), 1);
 }
 
 } // namespace

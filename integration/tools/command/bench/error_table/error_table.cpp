@@ -2,6 +2,7 @@
 // several d, and writes the error table of the choice by budget.
 
 #include "integration/tools/command/bench/error_table/error_table_file.hpp"
+#include "integration/tools/command/bench/error_table/judge_choice.hpp"
 #include "integration/tools/command/bench/error_table/measured_rows.hpp"
 #include "integration/tools/command/bench/error_table/table_fit.hpp"
 #include "integration/tools/command/bench/family/family.hpp"
@@ -174,6 +175,27 @@ void add_predictions(SuiteRun& run, std::span<const MeasuredError> errors,
   run.report.text = "Predicted RMSE relative to the measured RMSE\n" + format_table(text);
 }
 
+// Adds to the text of the terminal how far a choice among the techniques is from the best.
+void add_choice(SuiteRun& run, std::span<const MeasuredError> errors,
+                const choice::ErrorModel& table, const std::vector<std::string>& techniques) {
+  Table text;
+  text.columns = {{"choice by", false}, {"half", false}, {"scenes", true},
+                  {"mean ratio", true}, {"worst", true}, {"switches", true}};
+  for (const char* half : {"tuning", "judging"}) {
+    const auto add = [&](const char* name, const ChoiceError& error) {
+      if (error.scenes > 0)
+        text.rows.push_back({name, half, fmt::format("{}", error.scenes),
+                             fmt::format("{:.3f}", error.mean), fmt::format("{:.2f}", error.worst),
+                             fmt::format("{:.1f}", error.switches)});
+    };
+    add("table", judge_choice(table, errors, techniques, half));
+    add("table and probe", judge_measuring_choice(table, errors, techniques, half));
+  }
+  if (text.rows.empty()) return;
+  run.report.text += fmt::format("\nRMSE of a choice among {}, relative to the best of them\n{}",
+                                 fmt::join(techniques, ", "), format_table(text));
+}
+
 // Returns how the table was made, for its note.
 std::string note_of(const MeasuredRows& measured, const ErrorTableFile& file) {
   std::set<std::pair<std::string, double>> scenes;
@@ -249,6 +271,7 @@ demo::Result<> measure_error_table(SuiteRun& run, const Emit<ErrorTableRow>& emi
   const std::vector<MeasuredError> errors = errors_of(rows.rows);
   fit_table(*table, errors, file.d_px);
   add_predictions(run, errors, *table);
+  add_choice(run, errors, *table, file.choice);
   for (const ErrorTableRow& row : rows.rows)
     emit(row);
   if (const std::string& out = run.text("out"); !out.empty())

@@ -14,6 +14,12 @@ void read_root(BenchObject& root, ErrorTableFile& file) {
       if (const auto d = read_number(root.document, one, "'d_px' of the bench file", min_d_px,
                                      max_d_px, root.diagnostics))
         file.d_px.push_back(*d);
+  const NodeId choice = root.reader.array("choice", 0, max_bench_entries, Need::optional);
+  if (choice.valid())
+    for (const NodeId one : children(root.document, choice))
+      if (const auto name =
+              read_string(root.document, one, "'choice' of the bench file", root.diagnostics))
+        file.choice.emplace_back(*name);
   root.entries("scenes", "scene", 0,
                [&](BenchObject& entry) { file.scenes.push_back(read_scene(entry)); });
   root.entries("techniques", "technique", 1, [&](BenchObject& entry) {

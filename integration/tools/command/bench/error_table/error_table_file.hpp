@@ -22,6 +22,7 @@ struct ErrorTableFile {
   std::vector<double> d_px;         // of the table, ascending
   std::vector<SceneRequest> scenes; // rendered scenes in addition to the family
   std::vector<TabledTechnique> techniques;
+  std::vector<std::string> choice; // names of rows among which a budget without limit would choose
 };
 
 // Returns nullopt with located errors.
