@@ -67,7 +67,8 @@ typedef struct dermis_frame_report {
   float budget_ms;           /* of this view; 0: none */
   float predicted_ms;
   float measured_ms;    /* -1: not timed */
-  float predicted_rmse; /* of linear luminance; the light's 99.9th percentile is 1 */
+  /* Of linear luminance: the light's 99.9th percentile is 1; with a probe, as probed_rmse. */
+  float predicted_rmse;
   uint32_t skips;       /* DERMIS_SKIP_.. */
 } dermis_frame_report;
 #define DERMIS_FRAME_REPORT_INIT {sizeof(dermis_frame_report), 0, NULL, NULL, NULL, 0, 0, 0, 0, 0}
