@@ -168,6 +168,17 @@ TEST_F(Render, ImportLargerThanTheView_IsNamed) {
               FailsWith(1, "needs 'depth' with 72x44 pixels", "images of the view's size, 64x36"));
 }
 
+TEST_F(Render, ErrorsOfTheLibrary_AreDiagnosticsInJson) {
+  const std::string depth = "\"depth\": { \"format\": \"depth\",";
+  const std::string graph =
+      write("graph.json", replaced(read_text(std::string(DERMIS_SOURCE_DIR "/") + burley), depth,
+                                   depth + " \"optional\": true,"));
+  const Outcome outcome = render(bust, graph, {"--unbound", "depth", "--json"});
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_TRUE(is_json(outcome.out)) << outcome.out;
+  EXPECT_THAT(outcome.out, HasAll("\"id\": \"D0311\"", "\"error\": \""));
+}
+
 TEST_F(Render, ModelThatIsNotGltf_IsNamed) {
   const std::string model = write("model.glb", "this is no model");
   EXPECT_THAT(render("configs/scenes/head.json", burley, {"--model", model}),
