@@ -8,7 +8,7 @@ namespace {
 
 // weight of the past at each probed frame: a memory of 25 frames, as for times
 constexpr double error_memory = 0.96;
-// How a factor is bounded.
+// Bounds of a factor.
 struct Belief {
   double table_frames = 0; // weight of the table
   double maximum = 1;      // in both directions
@@ -61,6 +61,14 @@ void observe_line(ErrorCorrection::Line& line, double square, double expected, c
   line.key = frame.key;
 }
 
+// Whether the light changed at once, as if a lamp was switched: earlier frames would blame the
+// technique for it.
+bool is_step(const ErrorCorrection::Line& common, const ProbedFrame& frame) {
+  const double known = std::pow(factor_of(common, common_belief) * frame.expected_unscattered, 2);
+  return frame.unscattered_square > known * wild * wild ||
+         frame.unscattered_square < known / (wild * wild);
+}
+
 } // namespace
 
 ErrorCorrection make_error_correction(size_t techniques) {
@@ -76,6 +84,7 @@ void observe_error(ErrorCorrection& correction, const ProbedFrame& frame) {
       frame.expected_unscattered <= 0)
     return;
   ErrorCorrection::Line& common = correction.lines.front();
+  if (is_step(common, frame)) common = {};
   observe_line(common, frame.unscattered_square, frame.expected_unscattered, common_belief, frame);
   if (index == 0) return;
   const double unit = std::pow(factor_of(common, common_belief), 2);

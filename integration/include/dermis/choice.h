@@ -67,7 +67,7 @@ typedef struct dermis_frame_report {
   float budget_ms;           /* of this view; 0: none */
   float predicted_ms;
   float measured_ms;    /* -1: not timed */
-  /* Of linear luminance: the light's 99.9th percentile is 1; with a probe, as probed_rmse. */
+  /* RMSE of linear luminance: the light's 99.9th percentile is 1; with a probe, as probed_rmse. */
   float predicted_rmse;
   uint32_t skips;       /* DERMIS_SKIP_.. */
 } dermis_frame_report;

@@ -177,6 +177,18 @@ TEST(ErrorCorrection, EvenLight_SaysNothingAboutTechniques) {
   EXPECT_LT(error_factor(correction, 0, content, 0), 1e-3);
 }
 
+TEST(ErrorCorrection, LightThatIsSwitchedOn_IsNoErrorOfTheTechnique) {
+  ErrorCorrection correction = make_error_correction(1);
+  ProbedFrame dark = frame_of(0, 0);
+  dark.unscattered_square = 0;
+  for (int i = 0; i < 50; ++i)
+    observe_error(correction, dark);
+  for (int i = 0; i < 5; ++i) {
+    observe_error(correction, frame_of(0, expected * expected));
+    EXPECT_NEAR(error_factor(correction, 0, content, 0), 1, 0.1) << i;
+  }
+}
+
 TEST(ErrorCorrection, InvalidErrors_AreIgnored) {
   ErrorCorrection correction = make_error_correction(1);
   for (const double wrong : {std::nan(""), double{INFINITY}})
