@@ -1,5 +1,5 @@
-// Finds what must wait for what. Read this file first; barrier_walk.hpp lists the steps in other
-// files.
+// Computes which pass must wait for which earlier access. Read this file first; barrier_walk.hpp
+// lists the steps in other files.
 //
 // The phase walks through the frame once, pass by pass. For each object (one subresource range of
 // one frame of a resource) it keeps the state after the last access. Each access of a pass is one
@@ -8,13 +8,13 @@
 //   the contents are visible, in the right layout     no barrier
 //   the first access in this frame                    begin_lifetime: the memory's previous
 //                                                     occupant, the host, or the same history in
-//                                                     the frame before
+//                                                     the previous frame
 //   the last access was on the other queue            transfer_ownership: release, wait, acquire
 //   otherwise                                         one barrier from the last access to this one
 //
-// Objects of histories start as the frame before left them, so their states are computed first, by
-// walking without emitting barriers. The occupants that a frame's first uses wait for in the frame
-// before are known only at the end: resolve_aliasing_barriers.
+// Objects of histories start as the previous frame left them, so their states are computed first,
+// by walking without emitting barriers. The occupants that a frame's first uses wait for in the
+// frame before are known only at the end: resolve_aliasing_barriers.
 //
 // Barriers share batches: a barrier may be recorded at any boundary between the pass that it waits
 // for and its own pass, and as few boundaries as possible get a batch. That is interval stabbing:
@@ -69,6 +69,9 @@ inline void BarrierWalk::fill_dependency(const ObjectState& state, const UsageSe
     barrier.why = PlanBarrier::ReasonKind::read_after_write;
     barrier.source_stages =
         set.writes ? everything.stages | state.source_stages : state.source_stages;
+    // If an earlier barrier made the write available to other stages, this one does not follow it.
+    if (!pending_write && (state.readers & barrier.source_stages) == 0)
+      barrier.source_access = state.written;
   } else {
     barrier.why = pending_write ? PlanBarrier::ReasonKind::write_after_write
                                 : PlanBarrier::ReasonKind::write_after_read;
@@ -129,7 +132,7 @@ inline void BarrierWalk::apply_access(const PassAccess& access, uint32_t positio
   }
   if (set.writes || transition) {
     state.source_stages = set.stages;
-    state.source_access = set.access & all_write_access;
+    state.source_access = state.written = set.access & all_write_access;
     state.readers = 0;
     state.visible = 0;
     state.always_read = false;

@@ -32,13 +32,14 @@ struct ObjectState {
   Stage source_stages =
       0; // of the last write, or that the last layout transition was made visible to
   Access source_access = 0; // 0 after that write was made available
+  Access written = 0;       // accesses of the last write, also after that
   Stage readers = 0;        // stages that read since then
   Layout layout = Layout::undefined;
-  uint32_t last_pass = invalid_index; // position; in the frame before if `carried`
+  uint32_t last_pass = invalid_index; // position; in the previous frame if `carried`
   uint16_t visible = 0;               // usages that may read without another barrier
   Queue queue = Queue::main;          // of the last access
   bool accessed = false;
-  bool carried = false; // the last access was in the frame before
+  bool carried = false; // the last access was in the previous frame
   bool always_read =
       false; // a reader runs in every frame: waiting for the readers includes the last write
 };

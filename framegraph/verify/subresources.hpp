@@ -71,6 +71,8 @@ struct Event {
   // by queue: the first pass that `ordered` holds for
   std::array<int64_t, queues> since{never, never};
   bool available = false;
+  // by queue: stages of later work that happens after the write was made available
+  std::array<Stage, queues> after_available{};
   std::vector<Visible> visible;
 
   bool operator==(const Event&) const = default;

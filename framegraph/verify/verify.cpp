@@ -172,9 +172,12 @@ struct Machine {
         event.queue == queue && event.stages != 0 && (event.stages & ~barrier.source_stages) == 0;
     order(event, barrier.destination_stages);
     if (!event.is_write) return;
-    if (direct && (event.writes & ~barrier.source_access) == 0) event.available = true;
-    if (event.available)
-      show(event, {queue, barrier.destination_stages, barrier.destination_access});
+    Stage& after = event.after_available[index_of(queue)];
+    const bool makes_available = direct && (event.writes & ~barrier.source_access) == 0;
+    if (!makes_available && (after & barrier.source_stages) == 0) return;
+    event.available = true;
+    after |= barrier.destination_stages;
+    show(event, {queue, barrier.destination_stages, barrier.destination_access});
   }
 
   // Applies waits: a wait orders and makes visible everything that the other queue had done, or had
@@ -190,6 +193,7 @@ struct Machine {
       event.ordered[q] = everything;
       event.since[q] = std::min(event.since[q], waits[q].since(needed_time));
       event.available = true;
+      event.after_available[q] = everything;
       if (event.is_write) show(event, {static_cast<Queue>(q), everything, everything});
       unchanged = 0;
     }
@@ -227,6 +231,7 @@ struct Machine {
     event.queue = queue;
     event.at = now;
     order(event, barrier.destination_stages);
+    event.after_available[index_of(queue)] = barrier.destination_stages;
     event.visible = {{queue, barrier.destination_stages, barrier.destination_access}};
     return event;
   }

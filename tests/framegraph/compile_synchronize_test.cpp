@@ -85,6 +85,18 @@ TEST(Synchronize, ReadAtAnotherStage_GetsItsOwnBarrier) {
   EXPECT_EQ(barrier_on(b, whole.plan, "three", "tiles").resource, no_instance);
 }
 
+TEST(Synchronize, ClearedBufferIsMadeAvailableToEachKindOfReader) {
+  // No barrier of the first reader ends at the stage of the clear, where the second one's begins.
+  GraphBuilder b{"buffer tiles", "export first", "export second"};
+  b.pass("clear", "test.fill", {}, {{"target", "tiles"}});
+  b.pass("one", "test.tiles", {{"tiles", "tiles"}}, {{"out", "first"}});
+  b.pass("two", "test.tiles", {{"arguments", "tiles"}}, {{"out", "second"}});
+  const auto whole = compiled(b);
+  const auto barrier = barrier_on(b, whole.plan, "two", "tiles");
+  EXPECT_EQ(barrier.source_stages, usage_info(Usage::clear).stages);
+  EXPECT_EQ(barrier.source_access, usage_info(Usage::clear).access);
+}
+
 TEST(Synchronize, UpdateWaitsForReadersAndTheWriteItReads) {
   GraphBuilder b{"buffer tiles", "export first", "export second"};
   b.pass("list", "test.list", {}, {{"tiles", "tiles"}});

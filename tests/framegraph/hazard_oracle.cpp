@@ -67,7 +67,8 @@ struct Oracle {
     // By queue: the first step from which stages wait.
     uint32_t since[2] = {no_instance, no_instance};
     bool available = false;
-    bool visible = false; // Visible to the reads of the second operation.
+    Stage after_available[2] = {0, 0}; // By queue: stages that wait until it is available.
+    bool visible = false;              // Visible to the reads of the second operation.
     bool visible_to_write = false;
   };
 
@@ -85,12 +86,17 @@ struct Oracle {
       p.since[queue_index(by.queue)] = std::min(p.since[queue_index(by.queue)], by.step);
   }
 
+  static void make_available(Path& p, const Operation& by, Stage stages) {
+    p.available = true;
+    p.after_available[queue_index(by.queue)] |= stages;
+  }
+
   Path path(size_t first, size_t second, uint64_t byte) const {
     const Operation& a = all[first];
     Path p;
     if (is_barrier(a)) {
       reach(p, a, a.barrier->destination_stages);
-      p.available = true;
+      make_available(p, a, a.barrier->destination_stages);
       show(p, all[second], a.queue, a.barrier->destination_stages, a.barrier->destination_access);
     }
     for (size_t k = first + 1; k < second; ++k) {
@@ -100,7 +106,7 @@ struct Oracle {
         const bool done = queue_index(a.queue) == other && a.step <= o.until;
         if (!done && p.since[other] > o.until) continue;
         reach(p, o, ~uint64_t{0});
-        p.available = true;
+        make_available(p, o, ~uint64_t{0});
         show(p, all[second], o.queue, ~uint64_t{0}, ~uint64_t{0});
         continue;
       }
@@ -110,7 +116,11 @@ struct Oracle {
           accesses(a) && a.queue == o.queue && (a.access->stages & ~b.source_stages) == 0;
       if (!directly && (p.ordered[queue_index(o.queue)] & b.source_stages) == 0) continue;
       reach(p, o, b.destination_stages);
-      p.available |= directly && (written(a) & ~b.source_access) == 0;
+      // A barrier that makes nothing available only helps after one that did.
+      if (!(directly && (written(a) & ~b.source_access) == 0) &&
+          (p.after_available[queue_index(o.queue)] & b.source_stages) == 0)
+        continue;
+      make_available(p, o, b.destination_stages);
       show(p, all[second], o.queue, b.destination_stages, b.destination_access);
     }
     return p;
@@ -421,7 +431,7 @@ std::string first_hazard(const Plan& plan) {
   // Instances need enough frames for each to become the oldest.
   for (const PlanResource& resource : plan.resources)
     frames = std::max(frames, 2 * resource.instance_count + 1);
-  // The beginning of the last frame checks how the frame before ended.
+  // The beginning of the last frame checks how the previous frame ended.
   UnrolledPlan unrolled = unroll(plan, frames + 1);
   if (!unrolled.misplaced.empty()) return unrolled.misplaced;
   Oracle oracle{plan, std::move(unrolled.operations)};

@@ -244,6 +244,13 @@ uint32_t instance_of(const State& state, const PlanResource& resource,
   return resource.first_instance + (phase + count - frames_back % count) % count;
 }
 
+// Returns whether the barrier precedes the first write of this frame's instance of a history. Then
+// other resources may have used the memory while the instance was idle.
+bool begins_history(const PlanResource& resource, const PlanBarrier& barrier) {
+  return resource.type == ResourceType::buffer && barrier.frames_back == 0 &&
+         barrier.why == PlanBarrier::ReasonKind::history;
+}
+
 void record_barriers(State& state, const FrameInput& frame, const BarrierBatch& of) noexcept {
   Batch batch;
   AliasBarrier alias_barrier;
@@ -259,7 +266,7 @@ void record_barriers(State& state, const FrameInput& frame, const BarrierBatch& 
     }
     const Instance& instance = state.instances[instance_of(state, resource, barrier.frames_back)];
     const bool discarded = discards(state.plan, barrier), poison = state.poison && discarded;
-    if (discarded && instance.aliased) {
+    if ((discarded || begins_history(resource, barrier)) && instance.aliased) {
       alias_barrier.add(s);
       // the fill must come after the other resource's writes
       if (poison) record_alias_barrier(state, frame.command_buffer, alias_barrier);
