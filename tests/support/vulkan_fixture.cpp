@@ -64,6 +64,7 @@ struct VulkanTest::Parts {
   VkCommandPool pool = VK_NULL_HANDLE;
   VkPhysicalDeviceMemoryProperties memory{};
   std::vector<TestImage> images;
+  std::vector<Staging> buffers;
   std::mutex mutex;
   std::vector<std::string> messages;
 
@@ -216,6 +217,10 @@ void VulkanTest::TearDown() {
       p.vkDestroyImage(device, image.image, nullptr);
       p.vkFreeMemory(device, image.memory, nullptr);
     }
+    for (const Staging& buffer : p.buffers) {
+      p.vkDestroyBuffer(device, buffer.buffer, nullptr);
+      p.vkFreeMemory(device, buffer.memory, nullptr);
+    }
     p.vkDestroyCommandPool(device, p.pool, nullptr);
     p.vkDestroyDevice(device, nullptr); // Validation reports everything that still exists.
   }
@@ -296,12 +301,17 @@ VkBufferImageCopy whole_copy(const TestImage& image) {
   return copy;
 }
 
-template <class Parts> Staging make_staging(Parts& p, VkDevice device, uint64_t bytes) {
+constexpr VkBufferUsageFlags transfers =
+    VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT;
+
+template <class Parts>
+Staging make_staging(Parts& p, VkDevice device, uint64_t bytes,
+                     VkBufferUsageFlags usage = transfers) {
   Staging staging;
   VkBufferCreateInfo info{};
   info.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO;
   info.size = bytes;
-  info.usage = VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT;
+  info.usage = usage;
   EXPECT_EQ(p.vkCreateBuffer(device, &info, nullptr, &staging.buffer), VK_SUCCESS);
   VkMemoryRequirements needs{};
   p.vkGetBufferMemoryRequirements(device, staging.buffer, &needs);
@@ -336,6 +346,14 @@ void record_barrier(Parts& p, VkCommandBuffer commands, const TestImage& image, 
 }
 
 } // namespace
+
+VkBuffer VulkanTest::make_buffer(std::span<const std::byte> contents, VkBufferUsageFlags usage) {
+  Parts& p = *parts_;
+  const Staging made = make_staging(p, device, contents.size(), usage);
+  std::memcpy(made.mapped, contents.data(), contents.size());
+  p.buffers.push_back(made);
+  return made.buffer;
+}
 
 void VulkanTest::upload(const TestImage& image, std::span<const std::byte> texels,
                         VkImageLayout layout) {

@@ -34,6 +34,8 @@ protected:
 
   // Adds transfer usage; TearDown frees the image. Contents and layout are undefined.
   TestImage make_image(VkFormat format, uint32_t width, uint32_t height, VkImageUsageFlags usage);
+  // Makes a buffer in host memory with these contents; TearDown frees it.
+  VkBuffer make_buffer(std::span<const std::byte> contents, VkBufferUsageFlags usage);
   // Fills mip 0 with texels, row by row, and leaves the image in `layout`. Waits.
   void upload(const TestImage& image, std::span<const std::byte> texels, VkImageLayout layout);
   // Moves the image to `layout`; the contents are undefined. Waits.

@@ -57,12 +57,17 @@ const PortNeed* need_of(const PassType& type, uint32_t port) {
 }
 
 // Returns what is missing; "" if the resource is large enough.
+// Returns whether the host decides the size. It must still provide the arguments of a dispatch,
+// whose size the declaration states.
+bool is_sized_by_host(const ResourceDeclaration& resource, const Port& port) {
+  return resource.type == ResourceType::buffer && resource.origin == Origin::imported &&
+         port.usage != Usage::indirect_arguments;
+}
+
 std::string unmet(const ResourceDeclaration& resource, const PortNeed& need, const Size& size,
                   const Size& view) {
   const uint64_t columns = need.square > 0 ? ceil_div(view.width, need.square) : 0;
   const uint64_t rows = need.square > 0 ? ceil_div(view.height, need.square) : 0;
-  // the host's
-  if (resource.type == ResourceType::buffer && resource.origin == Origin::imported) return "";
   if (resource.type == ResourceType::image)
     return size.width >= columns && size.height >= rows
                ? ""
@@ -91,6 +96,7 @@ void check_needs(const GraphReader& reader) {
         const PortNeed* need = need_of(type, binding.port);
         if (need == nullptr || reported[r] || binding.range.first_mip > 0 || sizes[r].width == 0)
           continue;
+        if (is_sized_by_host(graph.resources[r], type.ports[binding.port])) continue;
         const std::string missing = unmet(graph.resources[r], *need, sizes[r], view);
         if (missing.empty()) continue;
         reported[r] = true;

@@ -82,6 +82,43 @@ Error create_set_layout(const Device& device, const PassType& type, Kernel& kern
                     fmt::format("pass type '{}'", type.name));
 }
 
+// Compares the descriptors of a kernel, its ports and the environment, with the limits of a stage.
+Error check_descriptors(const Device& device, const KernelInput& input, const PassType& type,
+                        const Kernel& kernel) {
+  uint32_t storage_buffers = 0, uniform_buffers = 0, sampled_images = 0, storage_images = 0;
+  for (const KernelPort& port : kernel.ports) {
+    if (!port.type) continue;
+    storage_buffers += *port.type == VK_DESCRIPTOR_TYPE_STORAGE_BUFFER ? 1 : 0;
+    sampled_images += *port.type == VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE ? 1 : 0;
+    storage_images += *port.type == VK_DESCRIPTOR_TYPE_STORAGE_IMAGE ? 1 : 0;
+  }
+  for (const EnvironmentBinding& binding : input.environment) {
+    storage_buffers +=
+        binding.type == EnvironmentType::storage_buffer || binding.type == EnvironmentType::counters
+            ? 1
+            : 0;
+    uniform_buffers += binding.type == EnvironmentType::uniform_buffer ? 1 : 0;
+  }
+  const VkPhysicalDeviceLimits& limits = device.properties.limits;
+  const struct {
+    const char* what;
+    uint32_t needed, limit;
+  } checks[] = {
+      {"storage buffers", storage_buffers, limits.maxPerStageDescriptorStorageBuffers},
+      {"uniform buffers", uniform_buffers, limits.maxPerStageDescriptorUniformBuffers},
+      {"sampled images", sampled_images, limits.maxPerStageDescriptorSampledImages},
+      {"storage images", storage_images, limits.maxPerStageDescriptorStorageImages},
+      {"resources", storage_buffers + uniform_buffers + sampled_images + storage_images,
+       limits.maxPerStageResources},
+  };
+  for (const auto& [what, needed, limit] : checks)
+    if (needed > limit)
+      return {ErrorKind::unsupported, VK_SUCCESS,
+              fmt::format("pass type '{}' binds {} {}; the device '{}' allows {} per stage",
+                          type.name, needed, what, device.properties.deviceName, limit)};
+  return {};
+}
+
 Error create_layout(const Device& device, VkDescriptorSetLayout environment, const PassType& type,
                     Kernel& kernel) {
   const VkDescriptorSetLayout sets[] = {kernel.set_layout, environment};
@@ -156,6 +193,7 @@ Error create_kernel(const KernelInput& input, PassTypeId id, Kernel& kernel) {
     if (constant.id >= constant_id::first_setting)
       kernel.constants.push_back({constant.id, constant.id - constant_id::first_setting});
   }
+  if (Error error = check_descriptors(input.device, input, type, kernel)) return error;
   if (Error error = create_set_layout(input.device, type, kernel)) return error;
   return create_layout(input.device, input.environment_layout, type, kernel);
 }
@@ -163,7 +201,7 @@ Error create_kernel(const KernelInput& input, PassTypeId id, Kernel& kernel) {
 // Returns the constants of a pass's kernel in frames with `settings` (empty: the plan's values).
 std::vector<uint32_t> constants_of(const PassType& type, const Kernel& kernel, const Plan& plan,
                                    const PlanPass& pass, std::span<const SettingValue> settings) {
-  uint32_t optional = 0; // the presence of other ports is no difference
+  uint32_t optional = 0; // the presence of other ports makes no difference
   for (uint32_t p = 0; p < type.ports.size(); ++p)
     if (type.ports[p].optional) optional |= uint32_t{1} << p;
   PortMasks masks = port_masks(plan, pass);

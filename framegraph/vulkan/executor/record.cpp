@@ -24,6 +24,12 @@ RecordResult check_buffer(const State& state, const FrameInput& frame,
   if (bound.offset % std::max<VkDeviceSize>(limits.minStorageBufferOffsetAlignment, 1) != 0)
     return reject("the buffer's offset is not a multiple of minStorageBufferOffsetAlignment",
                   resource.slot);
+  constexpr VkDeviceSize indirect_alignment = 4;
+  if ((resource.vk_usage & VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT) != 0 &&
+      bound.offset % indirect_alignment != 0)
+    return reject("the buffer's offset is not a multiple of 4, as the arguments of an indirect "
+                  "dispatch need",
+                  resource.slot);
   return {};
 }
 
@@ -85,7 +91,7 @@ std::span<const SettingValue> followed_settings(const State& state, const FrameI
   return frame.settings.first(std::min(frame.settings.size(), state.plan.setting_values.size()));
 }
 
-// Chooses the pipelines of all passes. Most frames have the settings of the frame before.
+// Chooses the pipelines of all passes. Most frames have the settings of the previous frame.
 RecordResult choose_pipelines(State& state, const FrameInput& frame) {
   const auto is_same = [](const SettingValue& a, const SettingValue& b) {
     return a.integer == b.integer && a.real == b.real;
@@ -138,11 +144,21 @@ void push_settings(State& state, const FrameInput& frame, const PlanPass& planne
                                      state.push_constants.data());
 }
 
-VkBuffer indirect_buffer(const State& state, const Pass& pass, const Kernel& kernel) {
+// The buffer that holds the arguments of a dispatch, and the offset of its first entry, bytes.
+struct IndirectArguments {
+  VkBuffer buffer = VK_NULL_HANDLE;
+  VkDeviceSize offset = 0;
+};
+
+IndirectArguments indirect_arguments(const State& state, const FrameInput& frame, const Pass& pass,
+                                     const Kernel& kernel) {
   const PlanAccess& access = state.plan.accesses[pass.ports[kernel.indirect_port].access];
-  return state
-      .instances[instance_of(state, state.plan.resources[access.resource], access.frames_back)]
-      .buffer;
+  const PlanResource& resource = state.plan.resources[access.resource];
+  if (resource.first_instance == no_instance) {
+    const HostBuffer& bound = frame.buffers[static_cast<size_t>(resource.slot)];
+    return {bound.buffer, bound.offset};
+  }
+  return {state.instances[instance_of(state, resource, access.frames_back)].buffer, 0};
 }
 
 // Returns the byte offset of the pass's entry in the indirect arguments. An index beyond the end
@@ -158,9 +174,12 @@ uint64_t indirect_offset(const State& state, const FrameInput& frame, const Plan
 void dispatch(State& state, const FrameInput& frame, const PlanPass& planned, const Pass& pass,
               const Kernel& kernel, const Rectangle& r) {
   const FunctionTable& vk = *state.commands;
-  if (kernel.dispatch.domain == DispatchRule::Domain::indirect)
-    return vk.vkCmdDispatchIndirect(frame.command_buffer, indirect_buffer(state, pass, kernel),
-                                    indirect_offset(state, frame, planned, pass, kernel));
+  if (kernel.dispatch.domain == DispatchRule::Domain::indirect) {
+    const IndirectArguments arguments = indirect_arguments(state, frame, pass, kernel);
+    return vk.vkCmdDispatchIndirect(frame.command_buffer, arguments.buffer,
+                                    arguments.offset +
+                                        indirect_offset(state, frame, planned, pass, kernel));
+  }
   const bool by_image = kernel.dispatch.domain == DispatchRule::Domain::written_image;
   const GroupCount groups =
       by_image ? pass.written_groups : group_count(kernel.dispatch, r.width, r.height);

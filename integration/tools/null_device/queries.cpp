@@ -20,6 +20,9 @@ VKAPI_ATTR void VKAPI_CALL properties(VkPhysicalDevice, VkPhysicalDeviceProperti
   limits.maxUniformBufferRange = 65536;
   limits.maxStorageBufferRange = 1u << 30;
   limits.maxPushConstantsSize = 128; // the minimum that Vulkan guarantees
+  limits.maxPerStageDescriptorStorageBuffers = limits.maxPerStageDescriptorUniformBuffers =
+      limits.maxPerStageDescriptorSampledImages = limits.maxPerStageDescriptorStorageImages = 64;
+  limits.maxPerStageResources = 256;
   limits.bufferImageGranularity = 1;
   limits.maxComputeSharedMemorySize = 32768;
   limits.maxComputeWorkGroupInvocations = 1024;

@@ -91,6 +91,7 @@ vulkan::RecordResult ExecutorTest::frame(float time, vulkan::Rectangle rectangle
   vulkan::FrameInput input;
   input.command_buffer = begin_commands();
   input.images = images;
+  input.buffers = buffers;
   input.frame_constants = std::as_bytes(std::span(&constants, 1));
   input.settings = settings;
   input.rectangle = rectangle;

@@ -41,6 +41,7 @@ protected:
   std::unique_ptr<vulkan::Executor> executor;
   std::unique_ptr<vulkan::Executor> replaced; // Value of FrameInput::before, or null.
   std::vector<vulkan::HostImage> images;      // By slot.
+  std::vector<vulkan::HostBuffer> buffers;    // By slot.
   std::vector<SettingValue> settings;
   std::vector<std::vector<SettingValue>> prepared; // ExecutorInput::settings of the next executor.
   uint64_t frame_index = 0;

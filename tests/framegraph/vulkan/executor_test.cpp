@@ -154,6 +154,50 @@ TEST_F(ExecutorTest, AnIndirectDispatchRunsOverTheListedTiles) {
       ASSERT_EQ(texels[y * 200 + x], (y / 8 * 25 + x / 8) % 3 == 0 ? 2.0f : 0.0f) << x << ' ' << y;
 }
 
+TEST_F(ExecutorTest, IndirectArgumentsOfTheHost_AreReadAtTheirOffset) {
+  SmallGraph g{"in_out light"};
+  for (const char* name : {"tiles", "arguments"})
+    g.buffer(name, 1).origin = Origin::imported;
+  g.pass("mark", "test.mark", {{"tiles", "tiles"}, {"arguments", "arguments"}},
+         {{"target", "light"}});
+  make_executor(g, 32, 16); // 8 tiles
+  const TestImage light = bind(g, "light", std::vector<float>(32 * 16, 0.0f));
+  const VkDeviceSize alignment = dermis_device.properties.limits.minStorageBufferOffsetAlignment;
+  const auto skipped = static_cast<size_t>(std::max<VkDeviceSize>(alignment / 4, 4));
+  const auto give = [&](const char* name, const std::vector<uint32_t>& words,
+                        VkBufferUsageFlags usage) {
+    std::vector<uint32_t> all(skipped, 0);
+    all.insert(all.end(), words.begin(), words.end());
+    all.resize(skipped + 16);
+    const auto slot = static_cast<size_t>(g.slot(name));
+    buffers.resize(std::max(buffers.size(), slot + 1));
+    buffers[slot] = {make_buffer(bytes_of(all), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | usage),
+                     4 * skipped,
+                     4 * 16,
+                     {},
+                     {}};
+  };
+  give("tiles", {1, 2 | 1 << 16}, 0);
+  give("arguments", {2, 1, 1}, VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT);
+  ASSERT_FALSE(frame());
+  const std::vector<float> texels = read(light);
+  for (uint32_t y = 0; y < 16; ++y)
+    for (uint32_t x = 0; x < 32; ++x)
+      ASSERT_EQ(texels[y * 32 + x], (x / 8 == 1 && y < 8) || (x / 8 == 2 && y >= 8) ? 1.0f : 0.0f)
+          << x << ' ' << y;
+}
+
+TEST_F(ExecutorTest, MoreDescriptorsThanADeviceAllows_AreUnsupported) {
+  SmallGraph g{"export result"};
+  g.pass("fill", "test.fill", {}, {{"target", "result"}});
+  const Plan plan = g.compile(profile, 16, 16);
+  dermis_device.properties.limits.maxPerStageDescriptorStorageImages = 0;
+  std::unique_ptr<vulkan::Executor> none;
+  const vulkan::Error error = try_executor(g, plan, dermis_device, none);
+  EXPECT_EQ(error.kind, vulkan::ErrorKind::unsupported);
+  EXPECT_THAT(error.text, HasAll("'test.fill' binds 1 storage images", "allows 0 per stage"));
+}
+
 TEST_F(ExecutorTest, AClearZeroesImagesAndBuffers) {
   SmallGraph g{"export result", "import light"};
   g.buffer("weights", 1);

@@ -245,7 +245,7 @@ int32_t SmallGraph::slot(const std::string& name) const {
     if (declared.name == name) return number;
     ++number;
   }
-  ADD_FAILURE() << name << " is no slot";
+  ADD_FAILURE() << name << " is not a slot";
   return 0;
 }
 
