@@ -66,10 +66,11 @@ private:
 
   // Returns the fraction of the resource that the pass accesses at the port.
   double fraction(const PassType& type, const Port& port, const PlanAccess& access) const {
+    if (port.extent == AccessExtent::few) return 0;
     const bool listed = type.dispatch.domain == DispatchRule::Domain::indirect;
     const double covered =
-        listed || port.touched != Touched::dispatched ? assumptions_.covered : 1.0;
-    if (port.touched != Touched::flagged) return covered;
+        listed || port.extent != AccessExtent::dispatched ? assumptions_.covered : 1.0;
+    if (port.extent != AccessExtent::flagged) return covered;
     const bool fine = 4 * texels_of(plan_.resources[access.resource], access.range) >= view_pixels_;
     return covered * (fine ? assumptions_.flagged_fine : assumptions_.flagged);
   }

@@ -103,4 +103,11 @@ std::optional<bool> evaluate_partly(const Graph& graph, ExpressionId id,
   return value ? std::optional(value->integer != 0) : std::nullopt;
 }
 
+bool reads_setting(const Graph& graph, ExpressionId id, SettingId setting) {
+  if (!id.valid()) return false;
+  const Expression& node = graph.expressions[id.value];
+  return (node.op == Expression::Op::setting && node.setting.value == setting.value) ||
+         reads_setting(graph, node.left, setting) || reads_setting(graph, node.right, setting);
+}
+
 } // namespace dermis

@@ -49,4 +49,7 @@ using PartialValues = std::vector<std::optional<SettingValue>>;
 std::optional<bool> evaluate_partly(const Graph& graph, ExpressionId id,
                                     const PartialValues& values);
 
+// Returns whether the expression reads the setting.
+bool reads_setting(const Graph& graph, ExpressionId id, SettingId setting);
+
 } // namespace dermis

@@ -17,6 +17,19 @@ std::vector<uint8_t> frame_settings(const Graph& graph, const PassTypeRegistry& 
   return followed;
 }
 
+bool selects_formats(const Graph& graph, const PassTypeRegistry& pass_types, SettingId setting) {
+  for (const PassDeclaration& pass : graph.passes) {
+    const PassType& type = pass_types[pass.type];
+    for (const SettingBinding& binding : pass.settings) {
+      if (!binding.from.valid() || binding.from.value != setting.value) continue;
+      const std::string_view name = type.settings[binding.setting].name;
+      for (const Port& port : type.ports)
+        if (port.formats_while.setting == name) return true;
+    }
+  }
+  return false;
+}
+
 bool selects_pipelines(const Graph& graph, const PassTypeRegistry& pass_types, SettingId setting) {
   for (const PassDeclaration& pass : graph.passes)
     for (const SettingBinding& binding : pass.settings)

@@ -16,10 +16,11 @@ namespace dermis {
 
 // Texels that a kernel accesses at a port, within the area that its dispatch covers. Counts of
 // bytes use this; compilation does not.
-enum class Touched : uint8_t {
+enum class AccessExtent : uint8_t {
   dispatched, // all
   covered,    // pixels to which the graph's effect applies; a dispatch over a list has only these
-  flagged     // covered pixels that another image marks, such as texels with a second layer
+  flagged,    // covered pixels that another image marks, such as texels with a second layer
+  few         // so few that they are not counted
 };
 
 // Formats that a port supports while an enumerated setting of the pass has a value.
@@ -43,7 +44,7 @@ struct Port {
   // before writing it. The pass may then write what this port reads. Update ports do not need the
   // flag for their own accesses.
   bool own_texels = false;
-  Touched touched = Touched::dispatched;
+  AccessExtent extent = AccessExtent::dispatched;
   // Only for usages that write without reading. True: the kernel also reads, through this port,
   // what other invocations of the same dispatch wrote. It orders these accesses by itself, and
   // reads nothing that was there before the dispatch. Other ports of the pass must not access the
@@ -67,6 +68,7 @@ struct SettingValue {
   SettingType type = SettingType::integer;
   int64_t integer = 0; // boolean (0/1), integer, enumeration, choice
   double real = 0.0;   // real
+  bool operator==(const SettingValue&) const = default;
 };
 
 struct PassTypeSetting {

@@ -49,32 +49,35 @@ dermis_result read_tables(const Log& log, const dermis_budget& budget, Tables& o
   return DERMIS_OK;
 }
 
-// Holds the parts of a view that depend on new tables. Keeps references to the running and the next
-// compiled graph, because recording may replace `running` by `next` meanwhile.
+// Holds the parts of a view that depend on new tables. Keeps references to the compiled graphs,
+// because recording may replace `running` by `next` meanwhile.
 struct ViewTables {
   choice::ErrorModel errors;
-  choice::ErrorCorrection found;
+  choice::ErrorCorrection error_correction;
   choice::Calibration calibration;
   choice::CostEstimator costs;
   struct Described {
     std::shared_ptr<CompiledGraph> compiled_graph; // may be null
     std::vector<choice::Configuration> configurations;
   };
-  std::array<Described, 2> compiled_graphs;
+  // The running and the next one, and the one that runs again if the last record is discarded.
+  std::array<Described, 3> compiled_graphs;
 };
 
 ViewTables tables_of(const dermis_view_t& view, const Tables& given) {
   ViewTables out;
   const Chooser& now = view.chooser;
   out.errors = given.errors ? *given.errors : now.errors;
-  out.found =
-      given.errors ? choice::make_error_correction(out.errors.techniques.size()) : now.found;
+  out.error_correction = given.errors ? choice::make_error_correction(out.errors.techniques.size())
+                                      : now.error_correction;
   out.calibration = given.calibration ? *given.calibration : now.calibration;
   out.costs = given.calibration
                   ? choice::CostEstimator(out.calibration.costs, out.calibration.uncertainty)
                   : now.costs;
   out.compiled_graphs[0].compiled_graph = view.running;
   out.compiled_graphs[1].compiled_graph = view.next;
+  if (view.recorded.took_over && view.recorded.retired < view.retired.size())
+    out.compiled_graphs[2].compiled_graph = view.retired[view.recorded.retired];
   for (auto& [compiled_graph, configurations] : out.compiled_graphs)
     if (compiled_graph)
       configurations = described(view.context->pass_types, *compiled_graph, out.errors, out.costs,
@@ -84,8 +87,9 @@ ViewTables tables_of(const dermis_view_t& view, const Tables& given) {
 
 // Reports what new tables lack for the compiled graph that the view will record next.
 void report_lacking(const dermis_view_t& view, const ViewTables& tables, Diagnostics& diagnostics) {
-  const auto& [running, next] = tables.compiled_graphs;
-  const ViewTables::Described& newest = next.compiled_graph ? next : running;
+  const ViewTables::Described &running = tables.compiled_graphs[0],
+                              &next = tables.compiled_graphs[1],
+                              &newest = next.compiled_graph ? next : running;
   if (!newest.compiled_graph) return;
   std::vector<const Plan*> plans;
   for (const RunnablePlan& plan : newest.compiled_graph->plans)
@@ -96,7 +100,7 @@ void report_lacking(const dermis_view_t& view, const ViewTables& tables, Diagnos
 
 void take_over(dermis_view_t& view, ViewTables& tables) noexcept {
   std::swap(view.chooser.errors, tables.errors);
-  std::swap(view.chooser.found, tables.found);
+  std::swap(view.chooser.error_correction, tables.error_correction);
   std::swap(view.chooser.calibration, tables.calibration);
   std::swap(view.chooser.costs, tables.costs);
   for (auto& [compiled_graph, configurations] : tables.compiled_graphs)
@@ -174,10 +178,12 @@ dermis_result set_budget(dermis_graph_t& graph, const dermis_budget* given, derm
     const std::lock_guard lock(view.mutex);
     Chooser& chooser = view.chooser;
     if (rebuild_tables) take_over(view, views[v++]);
-    if (tables.calibration) chooser.decided_for = 0; // decisions start anew
+    if (tables.calibration) chooser.decided_for = 0; // decisions restart
     chooser.budget = budget_of(budget);
-    chooser.costs.set_uncertainty(budget.uncertainty != 0 ? double(budget.uncertainty)
-                                                          : chooser.calibration.uncertainty);
+    if (budget.uncertainty != 0)
+      chooser.costs.set_uncertainty(double(budget.uncertainty), true);
+    else
+      chooser.costs.set_uncertainty(chooser.calibration.uncertainty);
   });
   return DERMIS_OK;
 }
@@ -326,11 +332,9 @@ extern "C" dermis_result DERMIS_CALL dermis_graph_calibration(dermis_graph graph
     if (size == nullptr) return bad_argument(log, "dermis_graph_calibration: size is NULL");
     const std::lock_guard lock(graph->own.mutex);
     const dermis::choice::CostEstimator& costs = graph->own.chooser.costs;
-    // Costs that were not measured are as uncertain as they were.
-    const double uncertainty =
-        costs.unmeasured() == 0 ? dermis::choice::same_device_uncertainty : costs.uncertainty();
+    // Costs that were not measured are as uncertain as they were; the others state their own.
     const std::string json = dermis::choice::write_calibration(
-        {graph->context->device.properties.deviceName, uncertainty, costs.calibration()});
+        {graph->context->device.properties.deviceName, costs.uncertainty(), costs.calibration()});
     const size_t capacity = *size;
     *size = json.size() + 1;
     if (text == nullptr) return DERMIS_OK;

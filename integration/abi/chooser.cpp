@@ -102,14 +102,14 @@ void learn_error(Chooser& chooser, const choice::Configuration& configuration,
                  const subsurface::FrameCounters& counters) {
   const subsurface::ProbedError probed = subsurface::probed_error(counters);
   if (probed.tiles == 0 || counters.scattering_tiles == 0) return;
-  // The probe's reference only sees the screen, so light that rays find beyond it is no error.
+  // The probe's reference only sees the screen, so light that rays find beyond it is not an error.
   if (configuration.technique >= 0 &&
       chooser.errors.techniques[static_cast<size_t>(configuration.technique)].by_rays)
     return;
   const choice::FrameKey key = {mean_d_px(counters), mean_relief(counters)};
   const double expected = expected_rmse(chooser.errors, configuration, key, counters.sample_units,
                                         counters.sample_demand);
-  observe_error(chooser.found,
+  observe_error(chooser.error_correction,
                 {corrected_technique(configuration), probed.square, probed.unscattered_square,
                  expected, expected_rmse(chooser.errors, -1, key), key, chooser.state.clock_s});
 }
@@ -141,7 +141,7 @@ void observe_frame(Chooser& chooser, CompiledGraph& compiled_graph, FrameChoice&
   if (!frame.left_out)
     frame.calibrated_ms =
         calibrated_ms(configuration, chooser.costs, load_of(frame.counters, frame.rectangle));
-  // Other settings than those of the frame cost and err otherwise.
+  // Settings other than those of the frame have another cost and error.
   const bool same_work = frame.revision == compiled_graph.revision;
   if (counted && frame.timed) learn(chooser, passes, compiled_graph.margins, same_work, frame);
   if (frame.decision.rejected != choice::no_configuration)
@@ -212,8 +212,8 @@ std::span<choice::Forecast> forecast_first(Chooser& chooser, const CompiledGraph
   const double demand = std::floor(content.units_per_tile * double(content.scattering_tiles));
   for (uint32_t i = 0; i < count; ++i) {
     const choice::Configuration& configuration = compiled_graph.configurations[i];
-    const double correction =
-        error_factor(chooser.found, corrected_technique(configuration), content.key, now_s);
+    const double correction = error_factor(chooser.error_correction,
+                                           corrected_technique(configuration), content.key, now_s);
     const double missed =
         missed_rmse(chooser.errors, configuration.technique, content.transmitted_rms);
     const auto error_of = [&](int32_t technique) {
@@ -283,7 +283,7 @@ choice::DeviceClass device_class(VkPhysicalDeviceType type) {
 Chooser make_chooser(choice::DeviceClass device) {
   Chooser chooser;
   chooser.errors = default_errors();
-  chooser.found = choice::make_error_correction(chooser.errors.techniques.size());
+  chooser.error_correction = choice::make_error_correction(chooser.errors.techniques.size());
   chooser.calibration = default_calibration(device);
   chooser.costs = choice::CostEstimator(chooser.calibration.costs, chooser.calibration.uncertainty);
   return chooser;
@@ -395,12 +395,15 @@ void remember(Chooser& chooser, const FrameChoice& frame) noexcept {
   std::swap(chooser.state, chooser.scratch.state);
   chooser.previously_decided_for = chooser.decided_for;
   chooser.decided_for = frame.compiled_graph;
-  if (frame.cut) forget_errors(chooser.found);
+  if (frame.cut) forget_errors(chooser.error_correction);
 }
 
 void discard_choice(Chooser& chooser, uint64_t frame_index) noexcept {
   FrameChoice& frame = place_of(chooser, frame_index);
-  if (frame.frame_index == frame_index) frame = {};
+  if (frame.frame_index == frame_index) {
+    if (frame.cut) recall_errors(chooser.error_correction);
+    frame = {};
+  }
   std::swap(chooser.state, chooser.previous_state);
   chooser.decided_for = chooser.previously_decided_for;
 }

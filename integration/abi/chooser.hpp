@@ -42,8 +42,8 @@ struct FrameChoice {
   uint32_t switches = 0; // since the graph was created
   double budget_ms = 0;  // 0: no budget
   vulkan::Rectangle rectangle;
-  // First frame of the configuration after another. Such a frame is not learned from: drivers
-  // finish kernels at their first run, caches are cold, and histories begin.
+  // First frame of the configuration after another. Excluded from estimates:
+  // drivers finish compiling kernels on first use, caches are cold, and histories begin.
   bool begins = false;
   bool left_out = false; // empty bounds: passes that serve scattering did not run
   bool history_invalid = false;
@@ -88,7 +88,7 @@ struct Chooser {
   choice::ErrorModel errors;
   choice::Calibration calibration; // initial values of `costs`
   choice::CostEstimator costs;
-  choice::ErrorCorrection found; // measured by the error probe; corrects `errors`
+  choice::ErrorCorrection error_correction; // measured by the error probe; corrects `errors`
   Budget budget;
   choice::DecisionState state;
   choice::DecisionState previous_state; // before the last remember()

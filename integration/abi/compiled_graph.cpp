@@ -29,7 +29,7 @@ std::vector<SettingValue> settings_of(const Graph& graph, const std::vector<Host
     const auto at = std::find_if(
         graph.settings.begin(), graph.settings.end(),
         [&](const SettingDeclaration& declared) { return declared.name == setting.name; });
-    Diagnostics scratch; // the value fitted the previous graph, so it is no error of this graph
+    Diagnostics scratch; // the value fitted the previous graph, so it is not an error of this graph
     std::optional<SettingValue> value;
     if (at != graph.settings.end()) value = read_setting(*at, setting.json, scratch);
     if (value)
@@ -149,18 +149,35 @@ void name_options(CompiledGraph& compiled_graph) {
   }
 }
 
+bool is_accessed(const Slot& slot) {
+  return slot.read || slot.written;
+}
+
+// Adds what another plan requires of a slot. Format, size and layout are those of the first plan
+// that accesses the slot.
+void merge_slot(Slot& slot, const Slot& other, const Graph& graph, Diagnostics& diagnostics) {
+  if (is_accessed(slot) && is_accessed(other) && slot.format != other.format)
+    diagnostics.add(
+        DiagnosticId::host_format, graph.resources[slot.resource.value].where,
+        fmt::format("slot '{}' has format {} in some configurations and {} in others; name a "
+                    "format that all can use in dermis_graph_desc.formats",
+                    slot.name, format_info(slot.format).name, format_info(other.format).name));
+  Slot merged = is_accessed(slot) ? slot : other;
+  merged.vk_usage = slot.vk_usage | other.vk_usage;
+  merged.read = slot.read || other.read;
+  merged.written = slot.written || other.written;
+  merged.in_plan = slot.in_plan || other.in_plan;
+  slot = std::move(merged);
+}
+
 // Merges the plans' requirements on images that the host must provide.
-std::vector<Slot> slots_of(const CompiledGraph& compiled_graph) {
+std::vector<Slot> slots_of(const CompiledGraph& compiled_graph, Diagnostics& diagnostics) {
   std::vector<Slot> slots =
       make_slots(compiled_graph.graph, compiled_graph.plans.front().compiled->plan);
   for (const RunnablePlan& plan : compiled_graph.plans) {
     const std::vector<Slot> others = make_slots(compiled_graph.graph, plan.compiled->plan);
-    for (size_t i = 0; i < slots.size(); ++i) {
-      slots[i].vk_usage |= others[i].vk_usage;
-      slots[i].read = slots[i].read || others[i].read;
-      slots[i].written = slots[i].written || others[i].written;
-      slots[i].in_plan = slots[i].in_plan || others[i].in_plan;
-    }
+    for (size_t i = 0; i < slots.size(); ++i)
+      merge_slot(slots[i], others[i], compiled_graph.graph, diagnostics);
   }
   return slots;
 }
@@ -359,7 +376,8 @@ dermis_result build_compiled_graph(dermis_context_t& context, CompiledGraphInput
     return DERMIS_ERROR_CONFIG;
   candidate->settings = candidate->configurations.front().settings; // the default may not fit
   candidate->plan = candidate->configurations[candidate->configuration].plan;
-  candidate->slots = slots_of(*candidate);
+  candidate->slots = slots_of(*candidate, diagnostics);
+  if (diagnostics.has_errors()) return DERMIS_ERROR_CONFIG;
   reserve_bindings(*candidate);
   name_options(*candidate);
 

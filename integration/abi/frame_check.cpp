@@ -25,7 +25,7 @@ dermis_result check_numbers(const dermis_view_t& view, const dermis_frame& frame
                         known_frame_flags);
   if (frame.frame_index <= view.last_frame)
     return bad_argument(log,
-                        "{}: frame_index is {}, expected more than that of the frame before, {}",
+                        "{}: frame_index is {}, expected more than that of the previous frame, {}",
                         function, frame.frame_index, view.last_frame);
   if (frame.completed_frame_index >= frame.frame_index)
     return bad_argument(log, "{}: completed_frame_index is {}, expected less than frame_index, {}",
@@ -128,6 +128,11 @@ dermis_result check_state(const dermis_view_t& view, uint32_t index, const Slot&
   return DERMIS_OK;
 }
 
+// An image without contents has none to hand over, and Vulkan allows no such transfer.
+bool is_empty_layout(VkImageLayout layout) {
+  return layout == VK_IMAGE_LAYOUT_UNDEFINED || layout == VK_IMAGE_LAYOUT_PREINITIALIZED;
+}
+
 dermis_result check_binding(const dermis_view_t& view, uint32_t index, const Slot& slot,
                             const dermis_image_binding& binding) {
   const Log& log = view.context->log;
@@ -152,8 +157,15 @@ dermis_result check_binding(const dermis_view_t& view, uint32_t index, const Slo
         log,
         "{}: bindings[{}].before.layout ('{}') is UNDEFINED, which discards what the graph reads",
         function, index, slot.name);
-  if (binding.after.layout == VK_IMAGE_LAYOUT_UNDEFINED ||
-      binding.after.layout == VK_IMAGE_LAYOUT_PREINITIALIZED)
+  if (binding.before.transfer != 0 && is_empty_layout(binding.before.layout) &&
+      binding.before.queue_family != view.context->device.queue_family)
+    return bad_argument(
+        log,
+        "{}: bindings[{}].before ('{}') transfers an image from another queue family in layout {}, "
+        "which has no contents to transfer; set transfer to 0",
+        function, index, slot.name,
+        binding.before.layout == VK_IMAGE_LAYOUT_UNDEFINED ? "UNDEFINED" : "PREINITIALIZED");
+  if (is_empty_layout(binding.after.layout))
     return bad_argument(
         log, "{}: bindings[{}].after.layout ('{}') is {}, to which an image cannot be transitioned",
         function, index, slot.name,

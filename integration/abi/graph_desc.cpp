@@ -11,7 +11,7 @@ namespace {
 
 constexpr float largest_pixel_aspect = 1e6f;
 
-static_assert(largest_view <= subsurface::sap_max_view_side);
+static_assert(max_view_side <= subsurface::sap_max_view_side);
 
 // Calls `use(i, element)` for each element of a caller's array, whose stride is the first element's
 // struct_size.
@@ -142,10 +142,10 @@ dermis_result read_profile_source(const Log& log, const char* what, const dermis
 }
 
 dermis_result check_view_size(const Log& log, const char* of, uint32_t width, uint32_t height) {
-  if (width >= 1 && width <= largest_view && height >= 1 && height <= largest_view)
+  if (width >= 1 && width <= max_view_side && height >= 1 && height <= max_view_side)
     return DERMIS_OK;
   return bad_argument(log, "{}: the size is {}x{}, expected 1..{} pixels per side", of, width,
-                      height, largest_view);
+                      height, max_view_side);
 }
 
 dermis_result read_graph_desc(const Log& log, const char* function, const dermis_graph_desc& desc,

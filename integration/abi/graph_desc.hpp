@@ -5,7 +5,7 @@
 
 namespace dermis::abi {
 
-inline constexpr uint32_t largest_view = 16384; // pixels per side
+inline constexpr uint32_t max_view_side = 16384; // pixels per side
 inline constexpr uint32_t largest_profile_id = 255;
 
 // Checks name, text and length of a source. `what` names the function and the field.

@@ -93,6 +93,25 @@ std::vector<vulkan::MemoryRequest> heaps_of(const CompiledGraph& compiled_graph)
   return heaps;
 }
 
+struct TimedPlan {
+  const RunnablePlan* plan = nullptr;
+  uint64_t frame_index = 0;
+  std::vector<vulkan::PassTiming> times; // by pass
+};
+
+// Finds the plan that ran the newest frame up to `completed` whose times can be read.
+TimedPlan find_timed_plan(const CompiledGraph& compiled_graph, uint64_t completed) {
+  TimedPlan newest;
+  for (const RunnablePlan& plan : compiled_graph.plans) {
+    TimedPlan found{&plan, 0, {}};
+    found.times.resize(plan.compiled->plan.passes.size());
+    if (plan.executor->read_timings(completed, found.frame_index, found.times) &&
+        found.frame_index > newest.frame_index)
+      newest = std::move(found);
+  }
+  return newest;
+}
+
 } // namespace
 
 dermis_result get_timings(dermis_view_t& view, const char* function, uint64_t completed,
@@ -104,26 +123,26 @@ dermis_result get_timings(dermis_view_t& view, const char* function, uint64_t co
     return bad_argument(log, "{}: completed_frame_index is {}, the newest recorded frame is {}",
                         function, completed, view.last_frame);
   CompiledGraph& compiled_graph = view.running ? *view.running : newest(view);
-  const RunnablePlan& plan = compiled_graph.recorded();
-  const auto passes = static_cast<uint32_t>(plan.compiled->plan.passes.size());
+  const TimedPlan timed = find_timed_plan(compiled_graph, completed);
+  const RunnablePlan& plan = timed.plan != nullptr ? *timed.plan : compiled_graph.recorded();
+  const std::vector<PlanPass>& passes = plan.compiled->plan.passes;
   if (out == nullptr) {
-    *count = passes;
+    *count = static_cast<uint32_t>(passes.size());
     return DERMIS_OK;
   }
-  std::vector<vulkan::PassTiming> times(passes);
-  uint64_t frame_index = 0;
-  if (!plan.executor->read_timings(completed, frame_index, times)) {
+  if (timed.plan == nullptr) {
     const dermis_result loss = check_loss(view, function);
     return loss != DERMIS_OK ? loss : DERMIS_NOT_READY;
   }
-  return fill_array(log, function, count, out, passes, [&](uint32_t i) {
-    dermis_pass_timing timing = DERMIS_PASS_TIMING_INIT;
-    const PassId declared = plan.compiled->plan.passes[i].declared;
-    timing.pass = compiled_graph.graph.passes[declared.value].name.c_str();
-    timing.frame_index = frame_index;
-    timing.nanoseconds = times[i].nanoseconds;
-    return timing;
-  });
+  return fill_array(log, function, count, out, static_cast<uint32_t>(passes.size()),
+                    [&](uint32_t i) {
+                      dermis_pass_timing timing = DERMIS_PASS_TIMING_INIT;
+                      const PassId declared = passes[i].declared;
+                      timing.pass = compiled_graph.graph.passes[declared.value].name.c_str();
+                      timing.frame_index = timed.frame_index;
+                      timing.nanoseconds = timed.times[i].nanoseconds;
+                      return timing;
+                    });
 }
 
 } // namespace dermis::abi

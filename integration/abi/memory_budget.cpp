@@ -114,7 +114,7 @@ void keep_within_memory(const Graph& graph, const choice::ErrorModel& errors,
                               limit, list_names(removed), mebibytes(min_bytes),
                               mebibytes(memory.bytes())));
 
-  // Remove them, and number the other plans anew.
+  // Remove them, and renumber the other plans.
   std::vector<uint32_t> number(plans.size());
   std::vector<PlanChoice> kept_plans;
   for (size_t p = 0; p < plans.size(); ++p) {

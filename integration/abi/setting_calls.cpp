@@ -108,13 +108,35 @@ SettingValue value_of_graph(const dermis_graph_t& graph, const SettingDeclaratio
   return value.value_or(declared.default_value);
 }
 
-// Returns whether the new values change which passes run.
-bool changes_passes(const CompiledGraph& compiled_graph, const std::vector<SettingValue>& values) {
-  for (const PassDeclaration& pass : compiled_graph.graph.passes)
-    if (pass.when.valid() && evaluate(compiled_graph.graph, pass.when, compiled_graph.settings) !=
-                                 evaluate(compiled_graph.graph, pass.when, values))
-      return true;
+// Returns whether a new value of the setting changes which passes run, with any values of the
+// choices that are made by budget.
+bool changes_passes(const CompiledGraph& compiled_graph, const std::vector<HostSetting>& given,
+                    SettingId setting, const SettingValue& value) {
+  const Graph& graph = compiled_graph.graph;
+  PartialValues before;
+  for (uint32_t i = 0; i < graph.settings.size(); ++i) {
+    const SettingDeclaration& declared = graph.settings[i];
+    const bool open = declared.by_budget && !is_set(given, declared.name);
+    before.push_back(open ? std::nullopt : std::optional(compiled_graph.settings[i]));
+  }
+  PartialValues after = before;
+  after[setting.value] = value;
+  for (const PassDeclaration& pass : graph.passes) {
+    if (!pass.when.valid() || !reads_setting(graph, pass.when, setting)) continue;
+    const std::optional<bool> ran = evaluate_partly(graph, pass.when, before),
+                              runs = evaluate_partly(graph, pass.when, after);
+    if (ran != runs || !ran) return true; // unknown: some choice may make a difference
+  }
   return false;
+}
+
+bool changes_plans(const CompiledGraph& compiled_graph, const PassTypeRegistry& pass_types,
+                   const std::vector<HostSetting>& given, SettingId setting,
+                   const SettingValue& value) {
+  if (compiled_graph.graph.settings[setting.value].by_budget) return true;
+  if (compiled_graph.settings[setting.value] == value) return false;
+  return changes_passes(compiled_graph, given, setting, value) ||
+         selects_formats(compiled_graph.graph, pass_types, setting);
 }
 
 // A new value of a setting in one view.
@@ -153,12 +175,11 @@ dermis_result set_setting(dermis_graph_t& graph, const std::string& name, const 
   const auto value = read_setting(*at, json, diagnostics);
   if (!value) return conclude(log, DERMIS_ERROR_CONFIG, std::move(diagnostics), report);
 
-  std::vector<SettingValue> values = compiled_graph.settings;
-  values[static_cast<size_t>(at - declared.begin())] = *value;
   CompiledGraphInput input = graph.input;
   set_in(input.settings, name, json);
   const auto index = static_cast<uint32_t>(at - declared.begin());
-  if (at->by_budget || changes_passes(compiled_graph, values))
+  if (changes_plans(compiled_graph, graph.context->pass_types, graph.input.settings, {index},
+                    *value))
     return replace_compiled_graphs(graph, std::move(input), vulkan::HistoryReason::reloaded,
                                    report);
   std::vector<ViewChange> changes; // by view without its own value
@@ -273,7 +294,7 @@ void apply_own_settings(const dermis_view_t& view, CompiledGraph& compiled_graph
   for (const HostSetting& own : view.settings) {
     const auto at = find_declared(graph, own.name);
     const auto index = static_cast<size_t>(at - graph.settings.begin());
-    Diagnostics scratch; // the value fitted the previous graph, so it is no error of this graph
+    Diagnostics scratch; // the value fitted the previous graph, so it is not an error of this graph
     std::optional<SettingValue> value;
     if (at != graph.settings.end() && per_frame[index] != 0)
       value = read_setting(*at, own.json, scratch);

@@ -42,7 +42,7 @@ void check_name(const Graph& graph, const char* list, std::span<const std::strin
   }
   diagnostics
       .add(DiagnosticId::host_names_no_slot, {},
-           fmt::format("{} names '{}', which is no import or export of graph '{}'", list, name,
+           fmt::format("{} names '{}', which is not an import or export of graph '{}'", list, name,
                        graph.name))
       .suggestion = std::move(suggestion);
 }

@@ -11,8 +11,8 @@ namespace dermis::abi {
 // Position i is PlanResource::slot i, the host's slot id.
 std::vector<Slot> make_slots(const Graph& graph, const Plan& plan);
 
-// Reports names in the host's lists that are no slot of the graph. Each probably misspelt name gets
-// a warning; all others share one note, so that a list may serve several graphs.
+// Reports names in the host's lists that are not slots of the graph. Each probably misspelt name
+// gets a warning; all others share one note, so that a list may serve several graphs.
 void report_unknown_slots(const Graph& graph, std::span<const std::string> unbound,
                           std::span<const HostFormat> formats, Diagnostics& diagnostics);
 

@@ -93,7 +93,7 @@ struct Decision {
   bool measured = false; // all passes were measured: the frame's time shows whether the margin fits
 };
 
-const char* why_text(const Decision& decision); // Returns a static text for people.
+const char* why_text(const Decision& decision); // Returns a static human-readable string.
 
 // Memory of decisions. Plain data: copies are independent histories. A copy into a
 // state that had as many configurations allocates nothing.

@@ -123,14 +123,18 @@ void BudgetDivision::add(ViewShare& view) {
 
 void BudgetDivision::remove(const ViewShare& view) noexcept {
   std::erase(views_, &view);
+  changed_ = changed_ || view.active;
 }
 
-size_t BudgetDivision::list_active() noexcept {
+void BudgetDivision::list_active() noexcept {
   active_.clear();
-  for (ViewShare* view : views_)
-    if (round_ - view->round <= std::max(absent_rounds, absent_intervals * view->interval))
-      active_.push_back(view);
-  return active_.size();
+  for (ViewShare* view : views_) {
+    const bool active =
+        round_ - view->round <= std::max(absent_rounds, absent_intervals * view->interval);
+    changed_ = changed_ || view->active != active;
+    view->active = active;
+    if (active) active_.push_back(view);
+  }
 }
 
 // `at_once`: the old division does not serve any more.
@@ -176,7 +180,6 @@ double BudgetDivision::share(ViewShare& view, double budget_ms, const Offers& of
     ++round_;
     elapsed_s_ += seconds > 0 ? seconds : 1.0 / 60;
   }
-  const size_t before = active_.size();
   view.offers = offers;
   view.counted = counted;
   if (!repeats) {
@@ -184,7 +187,9 @@ double BudgetDivision::share(ViewShare& view, double budget_ms, const Offers& of
     view.interval = interval <= longest_interval ? interval : 0;
     view.round = round_;
   }
-  const bool changed = list_active() != before || budget_ms != budget_ms_ || view.fraction <= 0;
+  list_active();
+  const bool changed =
+      std::exchange(changed_, false) || budget_ms != budget_ms_ || view.fraction <= 0;
   budget_ms_ = budget_ms;
   if (changed || new_round) divide_anew(changed);
   return view.fraction * budget_ms;

@@ -37,6 +37,7 @@ struct ViewShare {
   uint64_t interval = 0; // rounds between its last two frames; 0: longer than is waited for
   bool counted = false;  // its tiles were counted, so that its offers are known
   bool repeats = false;  // its last frame was not recorded, so that the next one replaces it
+  bool active = false;   // the budget is divided among active views
 };
 
 // Returns the least sum of squared errors with which the offers fit into `budget_ms`, up to
@@ -66,11 +67,12 @@ public:
   double present_share(const ViewShare& view, double budget_ms) const noexcept;
 
 private:
-  size_t list_active() noexcept;
+  void list_active() noexcept;
   void divide_anew(bool at_once) noexcept;
   void make_room() noexcept;
 
   std::vector<ViewShare*> views_, active_;
+  bool changed_ = false; // other views are active than at the last division
   std::vector<double> table_, fractions_;
   double budget_ms_ = 0;
   double elapsed_s_ = 0; // since the last division

@@ -32,6 +32,8 @@ std::optional<Calibration> read_calibration(const Document& document, Diagnostic
       cost.base_us = object.number("base_us", 0, max_us).value_or(0);
       cost.group_us = object.number("group_us", 0, max_us).value_or(0);
       cost.spread = object.number("spread", 0, 1).value_or(0);
+      cost.uncertainty =
+          object.number("uncertainty", 1, max_uncertainty, Need::optional).value_or(0);
       object.finish();
     }
   root.finish();
@@ -52,6 +54,7 @@ std::string write_calibration(const Calibration& calibration) {
     json.member("base_us", cost.base_us)
         .member("group_us", cost.group_us)
         .member("spread", cost.spread);
+    if (cost.uncertainty > 0) json.member("uncertainty", cost.uncertainty);
     json.close();
   }
   json.close().close();

@@ -12,8 +12,8 @@
 namespace dermis::choice {
 
 struct Calibration {
-  std::string device; // name for people
-  // factor >= 1 by which times may be wrong on the device that uses them
+  std::string device; // human-readable name
+  // factor >= 1 by which times may be wrong on the device that uses them; costs may state their own
   double uncertainty = other_device_uncertainty;
   std::vector<Cost> costs;
 };

@@ -3,6 +3,7 @@
 #include "framegraph/compile/availability.hpp"
 #include "framegraph/compile/written_size.hpp"
 #include "framegraph/model/expression.hpp"
+#include "framegraph/model/frame_settings.hpp"
 #include "passes/choice/tile_selection.hpp"
 
 #include <fmt/format.h>
@@ -148,6 +149,20 @@ std::vector<bool> passes_on(const Graph& graph, const std::vector<SettingValue>&
   return on;
 }
 
+// A plan depends on which passes run, and on the values of choices that formats follow.
+struct PlanKey {
+  std::vector<bool> on;
+  std::vector<int64_t> formats;
+  bool operator==(const PlanKey&) const = default;
+};
+PlanKey plan_key(const Graph& graph, const PassTypeRegistry& pass_types,
+                 const std::vector<uint32_t>& choices, const std::vector<SettingValue>& values) {
+  PlanKey key{passes_on(graph, values), {}};
+  for (const uint32_t choice : choices)
+    if (selects_formats(graph, pass_types, {choice})) key.formats.push_back(values[choice].integer);
+  return key;
+}
+
 std::vector<uint32_t> choices_of(const Graph& graph) {
   std::vector<uint32_t> out;
   for (uint32_t i = 0; i < graph.settings.size(); ++i)
@@ -248,14 +263,14 @@ std::optional<Combinations> enumerate_combinations(const CompileInput& input,
   }
 
   Combinations out;
-  std::vector<std::vector<bool>> on_of_plan;
+  std::vector<PlanKey> keys; // by plan
   const auto add = [&](std::vector<SettingValue> values) {
-    std::vector<bool> on = passes_on(graph, values);
-    const auto known = std::find(on_of_plan.begin(), on_of_plan.end(), on);
-    out.plans.push_back(static_cast<uint32_t>(known - on_of_plan.begin()));
-    if (known == on_of_plan.end()) {
+    PlanKey key = plan_key(graph, *input.pass_types, open, values);
+    const auto known = std::find(keys.begin(), keys.end(), key);
+    out.plans.push_back(static_cast<uint32_t>(known - keys.begin()));
+    if (known == keys.end()) {
       out.first.push_back(static_cast<uint32_t>(out.settings.size()));
-      on_of_plan.push_back(std::move(on));
+      keys.push_back(std::move(key));
     }
     out.settings.push_back(std::move(values));
   };

@@ -57,6 +57,7 @@ CostEstimator::CostEstimator(std::vector<Cost> calibration, double uncertainty) 
     line.work = std::move(cost.work);
     line.prior = {cost.base_us * 1e-3, cost.group_us * 1e-3};
     line.fit.deviation = cost.spread;
+    line.stated = cost.uncertainty;
     line.has_prior = true;
   }
   factors_.resize(lines_.size());
@@ -64,9 +65,12 @@ CostEstimator::CostEstimator(std::vector<Cost> calibration, double uncertainty) 
   set_uncertainty(uncertainty);
 }
 
-void CostEstimator::set_uncertainty(double uncertainty) {
+void CostEstimator::set_uncertainty(double uncertainty, bool for_all) {
   uncertainty_ = uncertainty;
-  pessimism_ = std::pow(uncertainty, pessimism);
+  for (Line& line : lines_) {
+    line.uncertainty = for_all || line.stated == 0 ? uncertainty : line.stated;
+    line.pessimism = std::pow(line.uncertainty, pessimism);
+  }
 }
 
 CostId CostEstimator::add(std::string_view work, bool launches) {
@@ -80,6 +84,8 @@ CostId CostEstimator::add(std::string_view work, bool launches) {
   line.used = true;
   line.prior = launches ? unknown_cost : unknown_command;
   line.guess = true;
+  line.uncertainty = uncertainty_;
+  line.pessimism = std::pow(uncertainty_, pessimism);
   const Line* like = placeholder_for(work);
   if (like != nullptr && (launches || words_alike(like->work, work) > 0)) {
     line.prior = like->has_prior ? like->prior : solve(like->fit, like->prior, false);
@@ -124,7 +130,7 @@ double CostEstimator::factor(const Line& line) const {
 std::span<const CostFactors> CostEstimator::predict(double now_s) {
   // Without timestamps, running work does not show what it takes.
   const bool timed = !is_absent(observed_s_, now_s);
-  const double min_unmeasured = std::exp(-std::max(0.0, unmeasured_)) / uncertainty_;
+  const double min_unmeasured = std::exp(-std::max(0.0, unmeasured_));
   double last_age = 0, remembered = 1; // lines that stopped in the same frame share the power
   for (size_t l = 0; l < lines_.size(); ++l) {
     Line& line = lines_[l];
@@ -135,13 +141,13 @@ std::span<const CostFactors> CostEstimator::predict(double now_s) {
     CostFactors& out = factors_[l];
     out.expected = out.pessimistic = out.optimistic = out.undisturbed = factor(line);
     out.measured = !never && !absent && line.own.since_restart >= known_after;
-    if (never) out.pessimistic *= pessimism_;
+    if (never) out.pessimistic *= line.pessimism;
     if (!timed || (!never && !absent)) continue;
     if (age != last_age) {
       last_age = age;
       remembered = std::exp(-forgotten * std::log2(1 + age / forgotten_after_s));
     }
-    if (never) out.optimistic *= min_unmeasured * remembered;
+    if (never) out.optimistic *= min_unmeasured / line.uncertainty * remembered;
     out.undisturbed = never ? out.optimistic : out.undisturbed * line.usual_ratio * remembered;
   }
   return factors_;
@@ -234,7 +240,7 @@ void CostEstimator::follow_lines(double now_s) {
     if (line.own.observations == 0) line.own.level = unmeasured_;
     follow(line.own, error, own_gain, line.own.deviation);
     line.seen_s = now_s;
-    if (line.own.observations == 1) line.usual = line.own.level - std::log(uncertainty_);
+    if (line.own.observations == 1) line.usual = line.own.level - std::log(line.uncertainty);
     if (line.own.observations == usual_after) line.usual = line.own.level;
     const double above = line.own.level - line.usual;
     if (line.own.observations > usual_after)
@@ -242,7 +248,7 @@ void CostEstimator::follow_lines(double now_s) {
   }
 }
 
-// Moves to the device what lines are off their usual levels by, in the mean.
+// Moves the mean deviation of the lines from their usual levels into the factor of the device.
 void CostEstimator::recenter() {
   double sum = 0, count = 0;
   for (const uint32_t l : timed())
@@ -292,7 +298,9 @@ std::vector<Cost> CostEstimator::calibration() const {
     const double scale = device_factor_ * unmeasured_factor_;
     const AffineCost cost =
         solve(line.fit, {line.prior.base_ms * scale, line.prior.group_ms * scale}, line.has_prior);
-    out.push_back({line.work, cost.base_ms * 1e3, cost.group_ms * 1e3, line.fit.deviation});
+    const bool measured = line.own.observations > 0;
+    out.push_back({line.work, cost.base_ms * 1e3, cost.group_ms * 1e3, line.fit.deviation,
+                   measured ? same_device_uncertainty : line.stated});
   }
   std::sort(out.begin(), out.end(), [](const Cost& a, const Cost& b) { return a.work < b.work; });
   return out;

@@ -28,6 +28,8 @@ struct Cost {
   double base_us = 0;  // microseconds per dispatch, >= 0
   double group_us = 0; // microseconds per workgroup, >= 0
   double spread = 0;   // typical relative deviation of one frame, 0 .. 1
+  // factor >= 1 by which the time may be wrong; 0: that of the calibration
+  double uncertainty = 0;
 };
 
 // Factor by which a time of a calibration may be wrong, in both directions: for another device, and
@@ -63,9 +65,9 @@ public:
                          double uncertainty = other_device_uncertainty);
 
   // Returns the entry of a kind of work; creates it if necessary. Until its first measurement, the
-  // work of the same pass type with most equal settings is its placeholder; without any, the work
-  // with the largest cost per group, or a small fixed time if it launches no kernel. Must not be
-  // called while frames are recorded.
+  // work of the same pass type with the most equal settings is its placeholder; without any, the
+  // work with the largest cost per group, or a small fixed time if it launches no kernel. Must not
+  // be called while frames are recorded.
   CostId add(std::string_view work, bool launches = true);
   // Returns whether the calibration, or an earlier measurement, has work of the same pass type.
   bool has_calibration(CostId id) const;
@@ -86,8 +88,8 @@ public:
   // Makes the optimistic times of this work less optimistic, because running it took too long.
   void reduce_optimism(CostId id);
 
-  // Sets the factor of the constructor.
-  void set_uncertainty(double uncertainty);
+  // Sets the factor of the constructor. If `for_all`, it replaces those of single costs.
+  void set_uncertainty(double uncertainty, bool for_all = false);
   double uncertainty() const { return uncertainty_; }
 
   // Returns the current knowledge as a calibration of this device, sorted by name. Work that was
@@ -101,7 +103,9 @@ private:
     bool has_prior = false, placeholder = false; // placeholder: the prior is that of other work
     bool guess = false; // the prior is that of another pass type: unusable for the device's scale
     bool used = false;  // by add()
-    LevelTracker own;   // logarithm of the factor of this work
+    double stated = 0;  // Cost::uncertainty
+    double uncertainty = 1, pessimism = 1; // factors on the time of work that never ran
+    LevelTracker own;                      // logarithm of the factor of this work
     double own_factor = 1;
     double usual = 0;       // `own` where nothing disturbs the work
     double usual_ratio = 1; // usual time to that of the last observation, if that was disturbed
@@ -131,7 +135,7 @@ private:
   LevelTracker device_;
   double device_factor_ = 1;
   double unmeasured_ = 0, unmeasured_factor_ = 1; // `own` of work that never ran
-  double uncertainty_ = 1, pessimism_ = 1;
+  double uncertainty_ = 1;
   double observed_s_ = -1e9;                    // time of the last frame with times
   double last_interval_s_ = 0, interval_s_ = 0; // between frames with times
 };

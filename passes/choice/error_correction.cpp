@@ -9,24 +9,26 @@ namespace {
 // weight of the past at each probed frame: a memory of 25 frames, as for times
 constexpr double error_memory = 0.96;
 // Bounds of a factor.
-struct Belief {
+struct Prior {
   double table_frames = 0; // weight of the table
   double maximum = 1;      // in both directions
 };
 // The table is for other content if a technique deviates more. Light may have any unit.
-constexpr Belief own_belief = {4, 4}, common_belief = {0, 1e4};
-constexpr double wild = 3; // a frame counts at most this many times the known error
+constexpr Prior technique_prior = {4, 4}, common_prior = {0, 1e4};
+constexpr double outlier_limit = 3; // a frame counts at most this many times the known error
+constexpr int frames_of_a_step = 3; // that deviate more, in the same direction
 // Time after which a technique that does not run is worth another try.
 constexpr double forgotten_s = 60;
+constexpr double age_of_a_cut = 3; // times forgotten_s
 // Factors between the contents of two frames that make measurements of one worth little to the
 // other.
 constexpr double other_d = 2, other_relief = 4;
 
-double factor_of(const ErrorCorrection::Line& line, const Belief& belief) {
-  if (line.newest <= 0) return 1;
-  const double table = belief.table_frames * line.newest;
+double factor_of(const ErrorCorrection::Line& line, const Prior& prior) {
+  if (line.frames <= 0) return 1;
+  const double table = prior.table_frames * line.expected / line.frames;
   return std::clamp(std::sqrt(std::max(line.probed + table, 0.0) / (line.expected + table)),
-                    1 / belief.maximum, belief.maximum);
+                    1 / prior.maximum, prior.maximum);
 }
 
 // Returns how much the measurements of the line say about a frame, 0 to 1.
@@ -38,35 +40,49 @@ double validity(const ErrorCorrection::Line& line, const FrameKey& key, double n
           ? 0
           : std::log((key.relief + relief_floor) / (line.key.relief + relief_floor)) /
                 std::log(other_relief);
-  return std::exp(-d * d - relief * relief - std::max(0.0, now_s - line.seen_s) / forgotten_s);
+  const double age = std::max(0.0, now_s - line.seen_s) / forgotten_s + age_of_a_cut * line.cuts;
+  return std::exp(-d * d - relief * relief - age);
 }
 
-double valid_factor(const ErrorCorrection::Line& line, const Belief& belief, const FrameKey& key,
+double valid_factor(const ErrorCorrection::Line& line, const Prior& prior, const FrameKey& key,
                     double now_s) {
-  return line.newest > 0 ? std::pow(factor_of(line, belief), validity(line, key, now_s)) : 1;
+  return line.frames > 0 ? std::pow(factor_of(line, prior), validity(line, key, now_s)) : 1;
 }
 
-// `square`: measured, in units of the table.
-void observe_line(ErrorCorrection::Line& line, double square, double expected, const Belief& belief,
+// Adds squares of a frame: measured, and expected by the table.
+void observe_line(ErrorCorrection::Line& line, double square, double expected, const Prior& prior,
                   const ProbedFrame& frame) {
-  const bool first = line.newest <= 0;
-  const double most = first && belief.table_frames == 0
+  const bool first = line.frames <= 0;
+  const double most = first && prior.table_frames == 0
                           ? HUGE_VAL // nothing is known
-                          : std::pow(wild * factor_of(line, belief) * expected, 2);
+                          : std::pow(outlier_limit * factor_of(line, prior), 2) * expected;
   const double kept = first ? 0 : error_memory * validity(line, frame.key, frame.now_s);
   line.probed = kept * line.probed + std::clamp(square, -most, most);
-  line.expected = kept * line.expected + expected * expected;
-  line.newest = expected * expected;
+  line.expected = kept * line.expected + expected;
+  line.frames = kept * line.frames + 1;
   line.seen_s = frame.now_s;
+  line.cuts = 0;
   line.key = frame.key;
 }
 
-// Whether the light changed at once, as if a lamp was switched: earlier frames would blame the
-// technique for it.
-bool is_step(const ErrorCorrection::Line& common, const ProbedFrame& frame) {
-  const double known = std::pow(factor_of(common, common_belief) * frame.expected_unscattered, 2);
-  return frame.unscattered_square > known * wild * wild ||
-         frame.unscattered_square < known / (wild * wild);
+// Returns the square of unscattered light that the common factor predicts.
+double known_square(const ErrorCorrection& correction, const ProbedFrame& frame) {
+  return std::pow(factor_of(correction.lines.front(), common_prior) * frame.expected_unscattered,
+                  2);
+}
+
+// Restarts the common factor once the light has changed at once, as if a lamp was switched. Single
+// frames tell nothing: the few tiles that are probed may miss all detail, or only hit detail.
+void follow_step(ErrorCorrection& correction, const ProbedFrame& frame) {
+  constexpr double limit = outlier_limit * outlier_limit;
+  const double known = known_square(correction, frame);
+  const int sign = frame.unscattered_square > known * limit   ? 1
+                   : frame.unscattered_square < known / limit ? -1
+                                                              : 0;
+  correction.steps = sign != 0 && sign * correction.steps > 0 ? correction.steps + sign : sign;
+  if (std::abs(correction.steps) < frames_of_a_step) return;
+  correction.lines.front() = {};
+  correction.steps = 0;
 }
 
 } // namespace
@@ -83,28 +99,37 @@ void observe_error(ErrorCorrection& correction, const ProbedFrame& frame) {
   if (frame.technique < -1 || index >= correction.lines.size() || frame.expected <= 0 ||
       frame.expected_unscattered <= 0)
     return;
-  ErrorCorrection::Line& common = correction.lines.front();
-  if (is_step(common, frame)) common = {};
-  observe_line(common, frame.unscattered_square, frame.expected_unscattered, common_belief, frame);
-  if (index == 0) return;
-  const double unit = std::pow(factor_of(common, common_belief), 2);
-  if (unit <= std::pow(2 / common_belief.maximum, 2)) return; // even light
-  observe_line(correction.lines[index], frame.square / unit, frame.expected, own_belief, frame);
+  follow_step(correction, frame);
+  const double table = frame.expected_unscattered * frame.expected_unscattered;
+  observe_line(correction.lines.front(), frame.unscattered_square, table, common_prior, frame);
+  const double light = frame.unscattered_square / table; // in units of the table's light
+  if (index == 0 || light <= std::pow(2 / common_prior.maximum, 2)) return; // or uniform light
+  // The technique is compared with the light of the same pixels: what they happen to show, and how
+  // bright it is, are no error of the technique. A frame of rare light does not outweigh others.
+  const double most =
+      std::pow(outlier_limit * factor_of(correction.lines.front(), common_prior), 2);
+  const double weight = std::min(1.0, most / light);
+  observe_line(correction.lines[index], weight * frame.square,
+               weight * light * frame.expected * frame.expected, technique_prior, frame);
 }
 
 double error_factor(const ErrorCorrection& correction, int32_t technique, const FrameKey& key,
                     double now_s) {
   const auto index = static_cast<size_t>(technique + 1);
   if (technique < -1 || index >= correction.lines.size()) return 1;
-  const double common = valid_factor(correction.lines.front(), common_belief, key, now_s);
+  const double common = valid_factor(correction.lines.front(), common_prior, key, now_s);
   return index == 0 ? common
-                    : common * valid_factor(correction.lines[index], own_belief, key, now_s);
+                    : common * valid_factor(correction.lines[index], technique_prior, key, now_s);
 }
 
 void forget_errors(ErrorCorrection& correction) {
-  constexpr double age_s = 3 * forgotten_s;
   for (ErrorCorrection::Line& line : correction.lines)
-    line.seen_s -= age_s;
+    ++line.cuts;
+}
+
+void recall_errors(ErrorCorrection& correction) {
+  for (ErrorCorrection::Line& line : correction.lines)
+    line.cuts -= line.cuts > 0 ? 1 : 0;
 }
 
 } // namespace dermis::choice

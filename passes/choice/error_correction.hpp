@@ -1,9 +1,9 @@
 #pragma once
 // Error correction: factors on expected errors for the present content, from error probes. One
 // factor, of unscattered light, is common to all techniques: how bright and how detailed the light
-// is. Others are those of single techniques. Robust against frames in which the probe hit rare
-// content. What was measured holds until the content changes, so that a choice between techniques
-// settles.
+// is. Others are those of single techniques, relative to it in the same frames. Robust against
+// frames in which the probe hit rare content. What was measured holds until the content changes, so
+// that a choice between techniques settles.
 
 #include "passes/choice/error_model.hpp"
 
@@ -16,12 +16,15 @@ namespace dermis::choice {
 // Sums of squares of recent probed frames. Plain data.
 struct ErrorCorrection {
   struct Line {
-    double probed = 0, expected = 0;
-    double newest = 0; // expected square of the newest frame; 0: none
-    double seen_s = 0; // time and content of that frame
+    double probed = 0, expected = 0; // sums
+    double frames = 0;               // number of frames in the sums; 0: none
+    double seen_s = 0;               // time and content of the newest frame
+    uint32_t cuts = 0;               // since then
     FrameKey key;
   };
   std::vector<Line> lines; // by technique + 1; the first is that of unscattered light
+  // Newest frames in a row whose light was much brighter, or if negative darker, than known.
+  int steps = 0;
 };
 
 // A frame whose error was probed.
@@ -45,5 +48,7 @@ double error_factor(const ErrorCorrection& correction, int32_t technique, const 
                     double now_s);
 // The content was replaced, as by a cut: the factors of techniques that do not run return to 1.
 void forget_errors(ErrorCorrection& correction);
+// Takes back the last forget_errors(), whose frame was discarded.
+void recall_errors(ErrorCorrection& correction);
 
 } // namespace dermis::choice

@@ -14,7 +14,7 @@ namespace {
 constexpr size_t max_points = 64, max_techniques = 256, max_pass_types = 16;
 constexpr double largest_through = 10; // maximum error relative to the light that a slab transmits
 constexpr double min_d_px = 1e-3, largest_d_px = 1e4, min_rmse = 1e-9, largest_rmse = 1e3;
-constexpr double largest_spread = 1e3, largest_power = 2;
+constexpr double max_spread = 1e3, max_exponent = 2;
 
 std::vector<ErrorPoint> read_curve(const Document& document, ObjectReader& owner,
                                    std::string_view key, Diagnostics& diagnostics) {
@@ -38,7 +38,7 @@ std::vector<ErrorPoint> read_curve(const Document& document, ObjectReader& owner
         read_number(document, pair[1], "RMSE of a " + what, min_rmse, largest_rmse, diagnostics);
     const auto spread = pair.size() == 2 ? std::optional<double>(1)
                                          : read_number(document, pair[2], "spread of a " + what, 1,
-                                                       largest_spread, diagnostics);
+                                                       max_spread, diagnostics);
     if (!d_px || !rmse || !spread) continue;
     if (!curve.empty() && *d_px <= curve.back().d_px)
       diagnostics.add(DiagnosticId::error_curve, document.where(node),
@@ -49,8 +49,8 @@ std::vector<ErrorPoint> read_curve(const Document& document, ObjectReader& owner
   return curve;
 }
 
-double read_power(ObjectReader& owner, std::string_view key) {
-  return owner.number(key, -largest_power, largest_power, Need::optional).value_or(0);
+double read_exponent(ObjectReader& owner, std::string_view key) {
+  return owner.number(key, -max_exponent, max_exponent, Need::optional).value_or(0);
 }
 
 PassTypeMatch read_pass_type(const Document& document, NodeId node, const std::string& of,
@@ -167,7 +167,7 @@ std::optional<ErrorModel> read_error_model(const Document& document, Diagnostics
   model.unscattered = read_curve(document, root, "unscattered", diagnostics);
   model.unscattered_through =
       root.number("unscattered_through", 0, largest_through, Need::optional).value_or(0);
-  model.unscattered_relief_power = read_power(root, "unscattered_relief_power");
+  model.unscattered_relief_power = read_exponent(root, "unscattered_relief_power");
   model.relief = read_relief(document, root, diagnostics);
   const NodeId techniques = root.array("techniques", 0, max_techniques);
   if (techniques.valid())
@@ -181,7 +181,7 @@ std::optional<ErrorModel> read_error_model(const Document& document, Diagnostics
         for (const NodeId type : children(document, pass_types))
           technique.pass_types.push_back(read_pass_type(document, type, what, diagnostics));
       technique.curve = read_curve(document, object, "rmse", diagnostics);
-      technique.relief_power = read_power(object, "relief_power");
+      technique.relief_power = read_exponent(object, "relief_power");
       technique.through = object.number("through", 0, largest_through, Need::optional).value_or(0);
       technique.by_rays = object.boolean("by_rays", Need::optional).value_or(false);
       object.finish();

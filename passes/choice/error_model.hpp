@@ -31,7 +31,7 @@ struct PassTypeMatch {
 };
 
 struct TechniqueError {
-  std::string name;                      // name for people: "separable 25"
+  std::string name;                      // human-readable: "separable 25"
   std::vector<PassTypeMatch> pass_types; // passes that a graph must run, all of them
   std::vector<ErrorPoint> curve;         // ascending d_px; at least one point
   double relief_power = 0;               // see expected_rmse
@@ -54,11 +54,12 @@ struct FrameKey {
 };
 
 struct ErrorModel {
-  std::string scenes;                  // scenes on which the curves were measured, for people
+  std::string scenes;                  // scenes on which the curves were measured, human-readable
   std::vector<ErrorPoint> unscattered; // curve without a technique
   std::vector<TechniqueError> techniques;
   double unscattered_through = 0; // as TechniqueError::through
-  // Usual relief of the scenes, for which the curves hold; ascending d_px. Empty: relief is no key.
+  // Usual relief of the scenes, for which the curves hold; ascending d_px. If empty, relief is
+  // ignored.
   std::vector<ReliefPoint> relief;
   double unscattered_relief_power = 0; // as TechniqueError::relief_power
 };
@@ -68,12 +69,12 @@ std::optional<ErrorModel> read_error_model(const Document& document, Diagnostics
 // Returns the table as JSON with a note for readers. Thread: any.
 std::string write_error_model(const ErrorModel& model, std::string_view note);
 
-// A pass of a plan with its values as texts.
+// A pass of a plan with its values as strings.
 struct RunningPass {
   std::string_view type;
   std::vector<SettingMatch> settings;
 };
-// Returns the technique with most conditions among those whose conditions all hold; -1: none.
+// Returns the technique with the most conditions among those whose conditions all hold; -1: none.
 int32_t find_technique(const ErrorModel& model, const std::vector<RunningPass>& passes);
 
 // Returns the RMSE from the curve, times ((relief + relief_floor) / usual relief) to the power

@@ -1,6 +1,6 @@
 #pragma once
-// Follows the level of a noisy value, here the logarithm of a ratio of times. Slow against noise,
-// immune to single outliers, and at once where the level steps.
+// Follows the level of a noisy value, here the logarithm of a ratio of times. Smooths noise,
+// ignores single outliers, and follows a step of the level immediately.
 
 namespace dermis::choice {
 

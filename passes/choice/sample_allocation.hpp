@@ -19,7 +19,7 @@ inline constexpr uint32_t no_bin = 0xffffffffu;
 // 0.75, 0.654, 0.595 at 0, 8, 16, 32 samples, which cost 0, 1, 2 and 4 units.
 inline constexpr std::array<float, allocation_steps> allocation_gain = {0.25f, 0.096f, 0.0295f};
 inline constexpr double max_units = 4; // cost of all steps of a tile, in units
-// factor on the priority of steps that a tile had in the frame before
+// factor on the priority of steps that a tile had in the previous frame
 inline constexpr float allocation_stay = 1.2f;
 // Exponent and three bits of 2^-12, the lowest priority with its own bin: the smallest error of a
 // single pixel.
@@ -37,7 +37,7 @@ struct SampleAllocation {
   uint32_t units = 0;          // units spent
   uint32_t demand = 0;         // units that all tiles would take
 };
-// Allocates samples. `tile_errors`: by tile, row by row. `before`: steps of the frame before by
+// Allocates samples. `tile_errors`: by tile, row by row. `before`: steps of the previous frame by
 // tile, or empty. Spends at most `units`.
 SampleAllocation allocate_samples(std::span<const uint32_t> tile_errors,
                                   std::span<const uint32_t> before, uint32_t units);

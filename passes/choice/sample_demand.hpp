@@ -26,7 +26,7 @@ struct SampleDemand {
 // Record or return the units per tile of a frame with this d. d_px > 0.
 void record_units(SampleDemand& demand, double d_px, double units_per_tile);
 double expected_units(const SampleDemand& demand, double d_px);
-// Returns the same, but of the nearest octave with an observation if this one has none.
+// Like expected_units, but falls back to the nearest octave with an observation.
 double likely_units(const SampleDemand& demand, double d_px);
 
 } // namespace dermis::choice

@@ -1,7 +1,7 @@
 #pragma once
-// Predicts the number of tiles with subsurface in a frame whose counts are not back yet. A camera
-// that approaches a face adds tiles with each frame, and the budget must hold in the new frame, not
-// only in the frame that was counted last.
+// Predicts the number of tiles with subsurface in a frame whose counts have not been read back yet.
+// A camera that approaches a face adds tiles with each frame, and the budget must hold in the new
+// frame, not only in the frame that was counted last.
 
 #include <cstdint>
 
@@ -16,7 +16,7 @@ struct TileGrowth {
 inline constexpr double max_growth = 1.5;
 
 // Adds the count `tiles` of tiles with subsurface in `frame`, which must be newer than earlier
-// frames. Growth between three counts is expected to continue; a cut grows only once and is not.
+// frames. Growth over three counts is expected to continue; a single jump, as at a cut, is not.
 void update_growth(TileGrowth& growth_estimate, uint64_t frame, uint64_t tiles);
 
 // Returns the expected factor on the last count in `frame`: 1 .. max_growth^2. Never below 1,

@@ -18,7 +18,7 @@ inline constexpr uint32_t full_pixel_weight = 240;
 inline constexpr uint32_t pixel_weight_step = 24;
 // Instead of the weight of a pixel without subsurface.
 inline constexpr uint32_t no_pixel_weight = 255;
-// factor on the priority of tiles whose surface had its full weight in the frame before
+// factor on the priority of tiles whose surface had its full weight in the previous frame
 inline constexpr float selection_stay = 2.0f;
 // Fractions of the units that steady tiles may use; the others serve tiles that fade out. The
 // fraction falls while more tiles are kept than there are units, as under a moving camera.

@@ -32,8 +32,9 @@ protected:
     plan.resources.push_back(resource);
     return static_cast<uint32_t>(plan.resources.size() - 1);
   }
-  PlanAccess& access(Usage usage, uint32_t resource, Touched touched = Touched::dispatched) {
-    ports.push_back({"port", usage, false, "texture2D", "", {}, false, touched});
+  PlanAccess& access(Usage usage, uint32_t resource,
+                     AccessExtent extent = AccessExtent::dispatched) {
+    ports.push_back({"port", usage, false, "texture2D", "", {}, false, extent});
     PlanAccess made;
     made.port = static_cast<uint32_t>(ports.size() - 1);
     made.resource = resource;
@@ -70,16 +71,16 @@ TEST_F(Traffic, ListedPassesCountTheirTexels) {
 
 TEST_F(Traffic, PassesOverTheViewReadUncoveredPixels) {
   access(Usage::sampled_image, image(Format::r8_uint, 64));
-  access(Usage::sampled_image, image(Format::d32f, 64), Touched::covered);
-  access(Usage::storage_image_write, image(Format::rgba16f, 64), Touched::flagged);
+  access(Usage::sampled_image, image(Format::d32f, 64), AccessExtent::covered);
+  access(Usage::storage_image_write, image(Format::rgba16f, 64), AccessExtent::flagged);
   const PassTraffic traffic = count(whole_view);
   EXPECT_NEAR(traffic.read, 1.0 / 0.25 + 4.0, tolerance);
   EXPECT_NEAR(traffic.written, 8.0 * 0.125, tolerance);
 }
 
 TEST_F(Traffic, FlaggedTexels_DependOnTheResolution) {
-  access(Usage::sampled_image, image(Format::rgba16f, 32), Touched::flagged);
-  access(Usage::storage_image_write, image(Format::rgba16f, 31), Touched::flagged);
+  access(Usage::sampled_image, image(Format::rgba16f, 32), AccessExtent::flagged);
+  access(Usage::storage_image_write, image(Format::rgba16f, 31), AccessExtent::flagged);
   const PassTraffic traffic = count(listed);
   EXPECT_NEAR(traffic.read, 8.0 / 4 * 0.125, tolerance);
   EXPECT_NEAR(traffic.written, 8.0 * 31 * 31 / (64 * 64) * 0.5, tolerance);

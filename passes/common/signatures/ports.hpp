@@ -97,14 +97,19 @@ constexpr Port internally_ordered(Port port) {
   return port;
 }
 
-// See Touched. Passes over a list need no where_covered.
+// See AccessExtent. Passes over a list need no where_covered.
 constexpr Port where_covered(Port port) {
-  port.touched = Touched::covered;
+  port.extent = AccessExtent::covered;
   return port;
 }
 constexpr Port where_flagged(Port port) {
-  port.touched = Touched::flagged;
+  port.extent = AccessExtent::flagged;
   return port;
+}
+template <size_t N> constexpr std::array<Port, N> at_few_texels(std::array<Port, N> ports) {
+  for (Port& port : ports)
+    port.extent = AccessExtent::few;
+  return ports;
 }
 
 // Inputs of the host.

@@ -80,6 +80,42 @@ TEST_F(Choice, SettingsOfTheHostAreNotChosen) {
   }
 }
 
+// The default technique has no history, so the plan of the first configuration stays the same.
+TEST_F(Choice, SettingOfAnotherConfiguration_TakesEffect) {
+  make();
+  const uint64_t with = memory_of(graph).history_bytes;
+  ASSERT_OK(dermis_graph_set_setting(graph, "history", "\"off\"", nullptr));
+  EXPECT_LT(memory_of(graph).history_bytes, 0.7 * double(with));
+}
+
+TEST_F(Choice, SlotsOfOtherConfigurations_HaveTheirLayout) {
+  make();
+  for (const dermis_slot& slot : slots_of(graph))
+    if (slot.read == 1 && slot.written == 0) {
+      EXPECT_EQ(slot.best_layout, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL) << slot.name;
+    }
+}
+
+TEST_F(Choice, DiscardAfterNewTables_NamesTheRightTechnique) {
+  make();
+  for (int i = 0; i < 3; ++i)
+    run_frame();
+  ASSERT_OK(reload_graph(graph, shipped_options("configs/graphs/skin.json")));
+  dermis_frame discarded = bound_frame(graph);
+  record_unsubmitted(graph, discarded); // The new graph takes over.
+  const std::string table = R"({ "dermis_errors": 2, "scenes": "invented",
+    "unscattered": [[1, 0.001]], "techniques": [{ "name": "only", "rmse": [[1, 0.003]],
+    "pass_types": [{ "type": "subsurface.sap_gather" }] }] })";
+  const dermis_source errors = source_of(table, "invented");
+  dermis_budget budget = budget_of(0, 0);
+  budget.errors = &errors;
+  ASSERT_OK(dermis_graph_set_budget(graph, &budget, nullptr));
+  ASSERT_OK(dermis_view_discard(dermis_graph_view(graph), discarded.frame_index));
+  demo::ReportedFrame found;
+  ASSERT_OK(demo::read_reported(dermis_graph_view(graph), discarded.frame_index - 1, found));
+  EXPECT_STREQ(found.technique, "only");
+}
+
 TEST_F(Choice, SwitchingPlans_ShowsTheRunningPlansPicture) {
   make();
   const auto picture = [&] {

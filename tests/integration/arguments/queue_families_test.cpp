@@ -118,5 +118,15 @@ TEST_F(QueueFamilies, InvalidFamilies_AreRejectedByName) {
   }
 }
 
+TEST_F(QueueFamilies, TransferOfNoContents_IsRejected) {
+  make(false);
+  bindings[0].before.queue_family = 2;
+  bindings[0].before.transfer = 1;
+  bindings[0].before.layout = VK_IMAGE_LAYOUT_PREINITIALIZED;
+  EXPECT_THAT(dermis_view_record(dermis_graph_view(host.graph), &frame),
+              Fails(DERMIS_ERROR_ARGUMENT, "bindings[0].before ('lighting') transfers an image",
+                    "PREINITIALIZED"));
+}
+
 } // namespace
 } // namespace dermis::abi_test

@@ -109,7 +109,7 @@ TEST_F(UnboundNames, OneListForShippedGraphs_GivesNoWarning) {
   }
 }
 
-TEST_F(UnboundNames, NamesWithoutSlot_AreOneNote) {
+TEST_F(UnboundNames, UnknownNames_GiveOneNote) {
   dermis_slot_format format = slot_format("importance", VK_FORMAT_R8_UNORM);
   host.graph = create("configs/graphs/burley.json", {"albedo", "velocity", "sampling"}, {format});
   const std::vector<Message> said = about_slots();

@@ -192,7 +192,7 @@ TEST_F(Decide, TransmissionIsTheReasonIfItDecides) {
 
 TEST_F(Decide, UnknownTime_IsTriedIfItMightFit) {
   const std::vector<Forecast> forecasts{known(1, 9e-3), unknown(3, 2e-3)};
-  EXPECT_EQ(decide(forecasts, 2.5).configuration, 0u); // the first frame is no trial
+  EXPECT_EQ(decide(forecasts, 2.5).configuration, 0u); // the first frame is not a trial
   const Decision tried = decide(forecasts, 2.5);
   EXPECT_EQ(tried.configuration, 1u);
   EXPECT_EQ(tried.why, ReasonKind::trial);

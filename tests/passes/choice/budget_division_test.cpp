@@ -189,6 +189,22 @@ TEST_F(Rounds, AbsentView_GivesItsPartToTheOthers) {
   EXPECT_DOUBLE_EQ(of_a, 10);
 }
 
+TEST_F(Rounds, ViewThatReturnsAsAnotherGoes_DoesNotExceedTheBudget) {
+  ViewShare c;
+  division.add(c);
+  for (int i = 0; i < 4; ++i) {
+    frame();
+    division.share(c, 10, small, true, 0.1);
+  }
+  for (int i = 0; i < 12; ++i)
+    frame(); // without c
+  division.remove(b);
+  const double of_c = division.share(c, 10, small, true, 0.1); // in the next frame, before a
+  of_a = division.share(a, 10, large, true, 0.1);
+  EXPECT_LE(of_a + of_c, 10 * (1 + 1e-9));
+  division.remove(c);
+}
+
 // A mirror that is rendered in each twelfth frame.
 TEST_F(Rounds, RareView_KeepsItsPart) {
   for (int i = 0; i < 120; ++i) {
@@ -201,7 +217,7 @@ TEST_F(Rounds, RareView_KeepsItsPart) {
   }
 }
 
-TEST_F(Rounds, DiscardedFrames_EndNoRound) {
+TEST_F(Rounds, DiscardedFrames_DoNotEndARound) {
   constexpr int discarded = 10; // more rounds than a rare view is waited for, if each ended one
   for (int i = 0; i < 120; ++i) {
     for (int frame = 0; frame <= discarded; ++frame) {

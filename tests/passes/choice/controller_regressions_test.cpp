@@ -36,6 +36,10 @@ struct Case {
   bool timestamps = true;
 };
 
+void PrintTo(const Case& one, std::ostream* out) {
+  *out << one.name;
+}
+
 Scenario make(const Case& tried) {
   Scenario scenario;
   scenario.view_tiles = scenario.tiles = tiles;

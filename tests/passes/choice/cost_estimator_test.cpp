@@ -100,6 +100,24 @@ TEST(CostEstimator, Uncertainty_SetsTheRangeOfUnmeasuredWork) {
   EXPECT_NEAR(costs.predict(clock_s)[b.value].pessimistic, 2, 1e-3); // the cubic root
 }
 
+// A calibration contains costs that were measured, and others that the library only assumes.
+TEST(CostEstimator, CostsMayStateTheirOwnUncertainty) {
+  CostEstimator costs({{"a", 10, 1, 0.1}, {"b", 10, 1, 0.1, 2}, {"c", 10, 1, 0.1}}, 4);
+  const CostId a = costs.add("a"), b = costs.add("b"), c = costs.add("c");
+  double clock_s = 0;
+  observe(costs, {{a, 1000, 1.01}}, 50, clock_s);
+  const auto optimistic = [&](CostId id) { return costs.predict(clock_s)[id.value].optimistic; };
+  EXPECT_NEAR(optimistic(b), 1.0 / 2, 1e-3);
+  EXPECT_NEAR(optimistic(c), 1.0 / 4, 1e-3);
+  costs.set_uncertainty(8, true); // by the host
+  EXPECT_NEAR(optimistic(b), 1.0 / 8, 1e-3);
+  const std::vector<Cost> exported = costs.calibration();
+  ASSERT_EQ(exported.size(), 3u);
+  EXPECT_EQ(exported[0].uncertainty, same_device_uncertainty);
+  EXPECT_EQ(exported[1].uncertainty, 2);
+  EXPECT_EQ(exported[2].uncertainty, 0);
+}
+
 // After half an hour, work that does not run may have become cheaper.
 TEST(CostEstimator, UnseenWork_BecomesUncertain) {
   CostEstimator costs({{"shared", 10, 1, 0.1}, {"one", 10, 1, 0.1}});
@@ -234,6 +252,7 @@ TEST(Calibration, ReadsBackFromItsFile) {
   ASSERT_TRUE(back) << format_as_json(diagnostics);
   EXPECT_EQ(write_calibration(*back), text);
   EXPECT_EQ(back->uncertainty, same_device_uncertainty);
+  EXPECT_EQ(back->costs[0].uncertainty, same_device_uncertainty);
 }
 
 TEST(Calibration, InvalidEntries_AreRejectedWithTheirPlace) {

@@ -100,6 +100,17 @@ TEST(ErrorCorrection, CutForgetsAllButTheRunningTechnique) {
   EXPECT_GT(error_factor(correction, 1, content, now_s), 2);
 }
 
+TEST(ErrorCorrection, DiscardedCut_ForgetsNothing) {
+  ErrorCorrection correction = make_error_correction(2);
+  double now_s = 0;
+  observe(correction, 0, 3 * expected, 50, now_s);
+  const double before = error_factor(correction, 0, content, now_s);
+  forget_errors(correction);
+  EXPECT_LT(error_factor(correction, 0, content, now_s), 1.1);
+  recall_errors(correction);
+  EXPECT_EQ(error_factor(correction, 0, content, now_s), before);
+}
+
 // A choice takes the technique with the least expected error, where each technique's true error
 // deviates from the table. Returns the geometric mean over frames of its error, relative to the
 // best technique's, and the number of switches.
@@ -167,7 +178,7 @@ TEST(ErrorCorrection, UnitsOfTheLight_AreCommonToAllTechniques) {
   }
 }
 
-TEST(ErrorCorrection, EvenLight_SaysNothingAboutTechniques) {
+TEST(ErrorCorrection, UniformLight_LeavesFactorsUnchanged) {
   ErrorCorrection correction = make_error_correction(1);
   for (int i = 0; i < 50; ++i) {
     ProbedFrame frame = frame_of(0, 1e-9);
@@ -183,10 +194,49 @@ TEST(ErrorCorrection, LightThatIsSwitchedOn_IsNoErrorOfTheTechnique) {
   dark.unscattered_square = 0;
   for (int i = 0; i < 50; ++i)
     observe_error(correction, dark);
-  for (int i = 0; i < 5; ++i) {
+  ErrorCorrection always_lit = make_error_correction(1);
+  for (int i = 0; i < 8; ++i) {
     observe_error(correction, frame_of(0, expected * expected));
-    EXPECT_NEAR(error_factor(correction, 0, content, 0), 1, 0.1) << i;
+    observe_error(always_lit, frame_of(0, expected * expected));
+    const auto own = [](const ErrorCorrection& one) {
+      return error_factor(one, 0, content, 0) / error_factor(one, -1, content, 0);
+    };
+    EXPECT_NEAR(own(correction), own(always_lit), 1e-3) << i;
+    if (i < 2) continue; // Three frames make a step.
+    EXPECT_NEAR(error_factor(correction, -1, content, 0), 1, 0.1) << i;
   }
+}
+
+// The errors of single tiles differ by orders of magnitude, and a frame probes few tiles.
+TEST(ErrorCorrection, NoisyLight_LeavesFactorsOfTheTechniqueNearOne) {
+  constexpr int tiles = 8, frames = 4000;
+  constexpr double spread = 2.5, own_spread = 0.5; // of the logarithm
+  SplitMix64 random{11};
+  const auto normal = [&] { // with variance 1
+    double sum = -6;
+    for (int i = 0; i < 12; ++i)
+      sum += static_cast<double>(random.next() >> 11) * 0x1p-53;
+    return sum;
+  };
+  ErrorCorrection correction = make_error_correction(1);
+  double own = 0, worst = 1;
+  for (int i = 0; i < frames; ++i) {
+    ProbedFrame frame = frame_of(0, 0);
+    frame.unscattered_square = 0;
+    for (int t = 0; t < tiles; ++t) {
+      const double light = std::exp(spread * normal() - spread * spread / 2) / tiles;
+      frame.unscattered_square += light * unscattered * unscattered;
+      frame.square += light * std::exp(own_spread * normal() - own_spread * own_spread / 2) *
+                      expected * expected;
+    }
+    observe_error(correction, frame);
+    const double factor =
+        error_factor(correction, 0, content, 0) / error_factor(correction, -1, content, 0);
+    own += std::log(factor) / frames;
+    worst = std::max({worst, factor, 1 / factor});
+  }
+  EXPECT_NEAR(own, 0, 0.03);
+  EXPECT_LT(worst, 1.3);
 }
 
 TEST(ErrorCorrection, InvalidErrors_AreIgnored) {

@@ -72,7 +72,7 @@ struct Scenario {
   std::vector<SimulatedPass> passes;
   std::vector<SimulatedConfiguration> configurations;
   double view_tiles = 0, tiles = 0;
-  // Noise of a frame: standard deviation of the logarithm, and correlation with the frame before.
+  // Noise of a frame: standard deviation of the logarithm, and correlation with the previous frame.
   double frame_noise = 0, correlation = 0;
   double timestamp_ms = 1e-6; // resolution
   double untimed = 0;         // fraction of frames without timestamps
