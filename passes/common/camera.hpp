@@ -37,7 +37,7 @@ struct DepthDecode {
 // in a right-handed view space and along +z in a left-handed view space.
 enum class Handedness : uint8_t { right, left };
 
-// The host's matrices of a frame and of the frame before. Both clip_from_view exclude the jitter,
+// The host's matrices of a frame and of the previous frame. Both clip_from_view exclude the jitter,
 // or both include it.
 struct CameraMatrices {
   Matrix4 clip_from_view{}, view_from_world{}, previous_clip_from_view{},

@@ -20,7 +20,8 @@ bool has_own_tables(const NumberedProfile& numbered) {
   return numbered.profile.model != ProfileModel::burley;
 }
 
-// Fills the part of `out` that describes the frame before. Returns false if that frame is unusable.
+// Fills the part of `out` that describes the previous frame. Returns false if that frame is
+// unusable.
 bool fill_previous(const FrameInput& input, FrameConstants& out) {
   const auto rays =
       pixel_rays(input.camera.previous_clip_from_view, input.previous_width, input.previous_height,

@@ -92,8 +92,8 @@ struct FrameConstants {
   float depth_unit;      // mm per unit of view distance
   float exposure;
   float jitter[2]; // pixels
-  // The frame before, down to previous_jitter; valid if bit 2 of flags is not set.
-  // Rows of M: the view position (mm) in the frame before of a static point = M * (view position,
+  // The previous frame, down to previous_jitter; valid if bit 2 of flags is not set.
+  // Rows of M: the view position (mm) in the previous frame of a static point = M * (view position,
   // 1).
   float previous_from_view[3][4];
   // same convention as ray_scale and ray_offset
@@ -131,7 +131,7 @@ struct FrameInput {
   uint32_t rect_x = 0, rect_y = 0, rect_width = 0, rect_height = 0;
   std::array<int32_t, 4> bounds{}; // as FrameConstants::bounds
   // Right-handed matrices. clip_from_view excludes the jitter; previous_clip_from_view includes the
-  // jitter of the frame before. History counts as invalid if the previous matrices are no
+  // jitter of the previous frame. History counts as invalid if the previous matrices are no
   // projection.
   CameraMatrices camera;
   Handedness handedness = Handedness::right; // handedness of the view space of normal images

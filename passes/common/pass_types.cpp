@@ -59,7 +59,8 @@ PassTypeRegistry make_pass_types() {
                                &select_tiles_type,
                                &separable_selected_type,
                                &clear_tiles_type,
-                               &combine_copies_type}) {
+                               &combine_copies_type,
+                               &sap_gather_probed_type}) {
     PassType known = *type;
     known.needs = needs_of(known.name);
     known.serves_scattering =

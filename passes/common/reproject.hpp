@@ -1,5 +1,5 @@
 #pragma once
-// Reprojection into the frame before: finds the position of a pixel's surface, and which of the
+// Reprojection into the previous frame: finds the position of a pixel's surface, and which of the
 // four texels around it show the same surface. shaders/common/reproject.glsl mirrors these
 // functions under the same names, except find_history: GLSL cannot pass functions, so a kernel
 // calls taps_around, shows_surface and normalised_taps.

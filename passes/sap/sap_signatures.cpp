@@ -164,6 +164,12 @@ constexpr auto gather_ports =
 constexpr PassTypeSetting gather_settings[] = {variant, storage, setting::texturing,
                                                setting::result};
 
+constexpr auto gather_probed_ports =
+    join(port::at_few_texels(join(level_0, level_1, second_coarser)), std::array{port::classes},
+         port::at_few_texels(std::array{written_scattered}));
+constexpr PassTypeSetting gather_probed_settings[] = {variant, storage, setting::probed_tiles,
+                                                      setting::probe_interval};
+
 constexpr auto half_gather_ports = join(view, level_1, level, std::array{written_scattered});
 
 // Second layer of the finer level on the way down, and of the own level on the way up.
@@ -253,6 +259,16 @@ const PassType sap_gather_type{
     .settings = gather_settings,
     .dispatch = over_tiles,
     .one_of = last_one_of,
+};
+
+const PassType sap_gather_probed_type{
+    .name = "subsurface.sap_gather_probed",
+    .shader = "sap/subsurface_sap_gather_probed",
+    .doc = "Like subsurface.sap_gather, but only in the tiles that subsurface.probe with equal "
+           "settings selects. Elsewhere 'scattered' is undefined.",
+    .ports = gather_probed_ports,
+    .settings = gather_probed_settings,
+    .dispatch = over_tile_grid,
 };
 
 const PassType sap_setup_half_res_type{

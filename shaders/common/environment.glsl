@@ -16,8 +16,8 @@ layout(std140, set = 1, binding = 0) uniform frame_block {
   float depth_unit;  // mm per unit of view distance
   float exposure;
   vec2 jitter;       // pixels
-  // The frame before, down to previous_jitter; valid if bit 2 of flags is not set.
-  // Rows of M: the view position (mm) in the frame before of a static point = M * (view position,
+  // The previous frame, down to previous_jitter; valid if bit 2 of flags is not set.
+  // Rows of M: the view position (mm) in the previous frame of a static point = M * (view position,
   // 1).
   vec4 previous_from_view[3];
   vec2 previous_ray_scale;    // same convention as ray_scale, ray_offset

@@ -19,7 +19,7 @@ const int near_border = 3;
 const int near_side = 8 + 2 * near_border; // side of the shared square, pixels
 const int near_columns = 8 + 2;            // columns of the group and a ring of neighbours
 const int near_texels_each = 3;            // texels that an invocation stores
-// Weight of scattered light in the mean, which keeps shadows next to light above 0.
+// Weight of scattered light in the average, which keeps shadows next to light above 0.
 const float near_scattered_fraction = 0.5;
 const float inverse_pi = 0.31830989;
 

@@ -1,4 +1,4 @@
-// Reprojection into the frame before: finds the position of a pixel's surface, and which of the
+// Reprojection into the previous frame: finds the position of a pixel's surface, and which of the
 // four texels around it show the same surface. passes/common/reproject.hpp mirrors these functions
 // under the same names; find_history there is taps_around, shows_surface and normalised_taps here.
 #ifndef DERMIS_REPROJECT_GLSL
@@ -81,8 +81,8 @@ history_taps taps_around(previous_place place) {
   return taps;
 }
 
-// Returns whether `surface` of the frame before (x: view depth in mm, y: profile id; 0, 0 if there
-// was no surface) has profile `id` and is within `tolerance` (mm) of the expected depth.
+// Returns whether `surface` of the previous frame (x: view depth in mm, y: profile id; 0, 0: no
+// surface) has profile `id` and is within `tolerance` (mm) of the expected depth.
 bool shows_surface(vec2 surface, previous_place place, uint id, float tolerance) {
   return uint(surface.y) == id && abs(surface.x - place.depth) <= tolerance;
 }

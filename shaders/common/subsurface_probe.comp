@@ -1,10 +1,9 @@
 #version 460
 // Estimates the error of the picture from a few tiles, selected at random with known probabilities.
 // In each tile, two independent estimates of the scattered light are made at four pixels, one per
-// quarter. The product of the picture's differences from both estimates its squared error: the
-// estimates' noise has no mean, so it adds none. The tiles are divided into runs of 64; every n-th run,
-// from a random start, provides one of its tiles with subsurface. passes/common/probe.hpp evaluates
-// the result on the host.
+// quarter. The mean product of the picture's differences from both is its squared error: the noise
+// of the estimates has zero mean, so it adds no bias. passes/common/probe.hpp evaluates the result
+// on the host.
 // Each estimate importance-samples the profile as subsurface.burley does, on patches from depth.
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
@@ -14,16 +13,14 @@
 #include "constants.glsl"
 #include "common/counters.glsl"
 #include "common/half.glsl"
-#include "common/hash.glsl"
 #include "common/patch.glsl"
 #include "common/pixel_light.glsl"
+#include "common/probed_tile.glsl"
 #include "common/profile.glsl"
 #include "common/radius.glsl"
 #include "common/sanitise.glsl"
 #include "common/tap.glsl"
-#include "common/tile_packing.glsl"
 
-const uint run_tiles = 64u;
 const uint lanes = 128u;
 layout(local_size_x = 128, local_size_y = 1, local_size_z = 1) in;
 
@@ -33,9 +30,9 @@ const uint half_lanes = quarter_lanes / 2u; // of one estimate
 const int taps_per_lane = 16;
 const int taps = int(half_lanes) * taps_per_lane; // of one estimate
 
-shared uint listed[run_tiles]; // tiles of the run with subsurface, in order
-shared uint listed_count;
 shared vec3 sums[lanes], weights[lanes];
+
+uint class_at(int tile) { return classes_data[tile]; }
 
 // Returns the depth of a pixel of the profile in mm, else 0.
 float depth_of(ivec2 pixel, uint id) {
@@ -73,9 +70,9 @@ void add_tap(scatter_point point, scatter_profile profile, float u, vec2 directi
   total += weight;
 }
 
-// Returns estimates, made by quarter_lanes invocations together, of the squared error of the exposed
-// luminance at a pixel: of the picture, and of the light before scattering. `counts`: whether the pixel
-// scatters. `copied`: it shows its own light.
+// Returns estimates, made by quarter_lanes invocations together, of the squared error of the
+// exposed luminance at a pixel: of the picture, and of the light before scattering. `counts`:
+// whether the pixel scatters. `copied`: it shows its own light.
 vec2 squared_errors(ivec2 pixel, uint lane, bool copied, out bool counts) {
   ivec2 texel = texel_of(pixel);
   bool inside = inside_rect(pixel) && inside_bounds(pixel);
@@ -127,40 +124,19 @@ vec2 squared_errors(ivec2 pixel, uint lane, bool copied, out bool counts) {
 }
 
 void main() {
-  uint lane = gl_LocalInvocationIndex, run = gl_WorkGroupID.x, runs = gl_NumWorkGroups.x;
-  // Fraction of the runs that are selected, which is the probability of selecting this run.
-  float fraction = min(float(settings.tiles) / float(runs), 1.0);
-  float start = unit_from_hash(pcg3d(uvec3(frame.frame_index, 0u, 0u))).x;
-  if (fraction < 1.0 &&
-      floor((float(run) + 1.0) * fraction + start) <= floor(float(run) * fraction + start))
+  probed_tile selected;
+  if (!find_probed_tile(settings.tiles, settings.interval, selected))
     return;
-  if (lane < run_tiles) {
-    uint tile = run * run_tiles + lane;
-    listed[lane] =
-        tile < uint(frame.tiles.x * frame.tiles.y) ? class_of_tile(classes_data[tile]) : class_none;
-  }
-  barrier();
-  if (lane == 0u) {
-    listed_count = 0u;
-    for (uint i = 0u; i < run_tiles; ++i)
-      if (listed[i] != class_none)
-        listed[listed_count++] = run * run_tiles + i;
-  }
-  barrier();
-  uint count = listed_count;
-  if (count == 0u)
-    return;
-  uvec3 random_bits = pcg3d(uvec3(frame.frame_index, run, 1u));
-  uint chosen = listed[min(uint(unit_from_hash(random_bits).x * float(count)), count - 1u)];
-  ivec2 first = 8 * ivec2(chosen % uint(frame.tiles.x), chosen / uint(frame.tiles.x));
+  uint lane = gl_LocalInvocationIndex;
+  bool copied = class_of_tile(class_at(selected.tile)) != class_scatter;
+  ivec2 first = 8 * position_of_tile(selected.tile);
   vec3 found = vec3(0.0); // of the invocation's quarters: errors of both kinds, pixels
   for (uint i = 0u; i < quarters; i += quarters_at_once) {
     uint quarter = i + lane / quarter_lanes;
-    uvec3 place = pcg3d(uvec3(frame.frame_index, chosen, 2u + quarter));
+    uvec3 place = pcg3d(uvec3(frame.frame_index, selected.tile, 2u + quarter));
     ivec2 pixel = first + 4 * ivec2(quarter % 2u, quarter / 2u) + ivec2(place.xy >> 30);
     bool counts;
-    vec2 errors =
-        squared_errors(pixel, lane, class_of_tile(classes_data[chosen]) != class_scatter, counts);
+    vec2 errors = squared_errors(pixel, lane, copied, counts);
     found += vec3(errors, counts ? 1.0 : 0.0);
     barrier();
   }
@@ -168,8 +144,7 @@ void main() {
   barrier();
   if (lane != 0u)
     return;
-  // Times the number of tiles that the selected tile represents.
-  found = (found + sums[quarter_lanes]) * (float(count) / fraction);
+  found = (found + sums[quarter_lanes]) * selected.representing;
   uint place = atomicAdd(counters.probe_count, 1u);
   if (place < counters.probes.length()) {
     counters.probes[place] =

@@ -2,7 +2,7 @@
 // Estimates by how much scattering changes each tile, from squares of ranges of exposed light:
 // their mean over the tile and those around, plus a fraction of that of all light that scattering
 // reaches; times the fraction that a short d leaves, times the square of the host's importance.
-// Finds the weights that the tile's surface had in the frame before: they raise the estimate, and
+// Finds the weights that the tile's surface had in the previous frame: they raise the estimate, and
 // decide whether the tile is kept. An invocation handles a tile.
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require

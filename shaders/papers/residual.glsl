@@ -40,7 +40,7 @@ float log_luminance(vec3 light) { return log(max(residual_luminance(light), min_
 
 bool has_pattern(vec2 kept) { return kept.x > 0.5 * never_lit; }
 
-// Returns the pattern and the squared deviation that the frame before kept; never_lit if it knew
+// Returns the pattern and the squared deviation that the previous frame kept; never_lit if it knew
 // neither.
 vec2 pattern_before(texture2D place_image, history_taps taps) {
   vec3 sum = vec3(0.0);

@@ -1,5 +1,5 @@
 #version 460
-// Merges each pixel's path with the path that its surface had in the frame before, and keeps the
+// Merges each pixel's path with the path that its surface had in the previous frame, and keeps the
 // domains and the lights for the next frame.
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require

@@ -92,7 +92,7 @@ reservoir merge_temporal(reuse_settings settings, scatter_domain domain, reservo
   float target = 0.0, back_target = 0.0, back_jacobian = 0.0;
   moved_path moved;
   for (uint i = 0u; i < 2u; ++i) {
-    // The own path moves to the frame before.
+    // The own path moves to the previous frame.
     moved = move_path(settings, true, i == 0u ? lights_before : lights_now, own, history.domain,
                       random);
     if (i == 0u) {

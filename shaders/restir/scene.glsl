@@ -23,7 +23,7 @@ surface_point surface_at(uint instance, uint primitive, vec2 barycentrics);
 bool visible(surface_point from, vec3 target);
 uint light_count();
 light_source light_at(uint index);
-// Returns the same light in the frame before.
+// Returns the same light in the previous frame.
 light_source previous_light_at(uint index);
 
 // Returns the first light whose `until` is above u; the last light if none is.

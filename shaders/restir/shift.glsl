@@ -11,7 +11,7 @@ const uint shift_reconnection = 0u, shift_delayed = 1u, shift_hybrid = 2u, shift
 const uint stage_temporal = 0u, stage_spatial_first = 1u, stage_spatial_second = 2u;
 const uint index_traced = 0u, index_sampled = 1u;
 // How shift_path lights a path in the new pixel: reconnected paths keep their light; or all paths
-// are lit by the lights of this frame or of the frame before.
+// are lit by the lights of this frame or of the previous frame.
 const uint lights_kept = 0u, lights_now = 1u, lights_before = 2u;
 
 const float connectable_cosine = 0.5, connectable_distance_in_d = 2.0;

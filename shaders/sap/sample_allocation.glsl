@@ -25,7 +25,7 @@ uint step_bin(uint tile_error, int k, uint before) {
     return no_bin;
   float priority = float(tile_error) * step_gain(k);
   if (before > uint(k))
-    // Makes a tile keep the samples that it had in the frame before.
+    // Makes a tile keep the samples that it had in the previous frame.
     priority *= allocation_stay;
   return uint(clamp(int(floatBitsToUint(priority) >> 20) - allocation_first_bin, 0,
                     int(allocation_bins) - 1));

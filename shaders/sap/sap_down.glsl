@@ -10,8 +10,8 @@
 
 // Fraction of a child that counts in the second layer even if the first has used the child.
 const float min_shared = 0.25;
-// Returns the fraction that counts in addition for the mass if child and seed are parallel, because
-// they are two surfaces then; a bent one must not count twice. bend: difference of their slopes.
+// Returns the additional fraction of mass of a child that is parallel to the seed, because the two
+// are then separate surfaces. A child on a bend gets none. bend: difference of their slopes.
 float parallel_share(vec2 bend) {
   return clamp(1.0 - min_shared - abs(bend.x) - abs(bend.y), 0.0, 1.0);
 }

@@ -16,8 +16,8 @@ float sap_area_of(vec2 slope) { return min(sqrt(1.0 + dot(slope, slope)), sap_ma
 // - Without a gain of area, mass is at most that of the children: on a bend they are nearer than
 //   the plane of the seed, but the surface is not larger.
 // - The gain is a power of the ratio of areas, because folds also lose mass on the way up.
-// - On teeth of a saw, children do not rise as their planes do. The parent then has the area of the
-//   surface along which the children lie.
+// - On a sawtooth surface, the depths of the children do not follow the slopes of their planes. The
+//   parent then has the area of the surface along which the children lie.
 // - There is no gain where surface ends. A sphere has no more area within reach than a plane, and
 //   bends most where the coarse levels reach its rim.
 // Sums over the children near the seed's plane:

@@ -7,7 +7,7 @@
 const float hysteresis = 1.02;    // keeps the first seed among equals
 // minimum fraction of a plane's depth to which the plane is extrapolated
 const float nearest_fraction = 0.25;
-// A child that the first layer has used more is no seed of the second layer, because it lies on a
+// A child that the first layer has used more cannot seed the second layer, because it lies on a
 // bend of the first layer's surface.
 const float max_used_part = 0.27;
 

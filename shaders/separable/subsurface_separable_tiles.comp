@@ -22,7 +22,7 @@ const int round_rows = 32; // tiles that it marks before the group lists them
 
 shared uint vertical, horizontal;             // tiles of the group
 shared uint first_vertical, first_horizontal; // their first places in the lists
-shared uint most_rows;                        // that an invocation marks
+shared uint max_rows;                        // that an invocation marks
 
 int index_of(ivec2 tile) { return tile.y * frame.tiles.x + tile.x; }
 
@@ -109,16 +109,16 @@ void main() {
   if (runs_vertical(3, none, sampled, unsampled) && reaches[3] >= below - 1)
     below = 0;
   if (lane == 0u)
-    vertical = horizontal = most_rows = 0u;
+    vertical = horizontal = max_rows = 0u;
   barrier();
   uint at = runs ? atomicAdd(vertical, 1u) : 0u;
   if (runs)
-    atomicMax(most_rows, uint(above + below + 1));
+    atomicMax(max_rows, uint(above + below + 1));
   barrier();
   if (lane == 0u && vertical > 0u)
     first_vertical = atomicAdd(list_state_data[vertical_list], vertical);
   int last = runs ? tile.y + below : -1, first = tile.y - above;
-  for (int marked = 0; marked < int(most_rows); marked += round_rows) {
+  for (int marked = 0; marked < int(max_rows); marked += round_rows) {
     int from = first + marked;
     uint fresh = mark(tile.x, from, min(last, from + round_rows - 1));
     uint place = fresh != 0u ? atomicAdd(horizontal, uint(bitCount(fresh))) : 0u;

@@ -4,8 +4,8 @@
 usage: write_calibrations.py FOLDER RUN...
   FOLDER    receives large_gpu.json and small_gpu.json
   RUN       a folder with the assembly and the output, kernels.json, of
-            `dermis kernels --json --assembly RUN` on navi21: of all graphs, then of
-            skin with `--overlay configs/overlays/probe.json`
+            `dermis kernels --json --assembly RUN` on navi21: of all graphs. Further runs add
+            what the first lacks
 
 No time is measured. Executed instructions are counted in the assembly: each loop runs as often as
 TRIPS says or as the pass takes samples, and EXECUTED of the instructions of each block count,
@@ -33,7 +33,7 @@ TRIPS = {"subsurface.separable": 2, "subsurface.separable_selected": 2,
          "subsurface.tile_refine": 8}
 LOOP = 4
 # Number of groups that work, of kernels in which all others return at once.
-WORKING_GROUPS = {"subsurface.probe": 8}
+WORKING_GROUPS = {"subsurface.probe": 8, "subsurface.sap_gather_probed": 8}
 # Kernels whose loops run once per sample. Each sample reads at a place of its own.
 SAMPLING = {"subsurface.afis", "subsurface.afis_published", "subsurface.afis_tiles",
             "subsurface.burley", "subsurface.fixed", "subsurface.guided", "subsurface.refine",
@@ -121,6 +121,12 @@ def wave_of(model, row, mix):
                       scr=mix.get("scratch_load", 0) + mix.get("scratch_store", 0))
 
 
+def interval_of(work):
+    """Returns the mean number of frames from one in which the kernel works to the next."""
+    stated = re.search(r"\binterval=(\d+)", work)
+    return int(stated.group(1)) if stated else 1
+
+
 def cost_of(model, work, row, assembly):
     wave = wave_of(model, row, executed(work["work"], assembly))
     bytes_moved = (work["read"] + work["written"]) * model.covered
@@ -138,8 +144,9 @@ def cost_of(model, work, row, assembly):
         launched, counted, bytes_moved = working, 1, 0
     subgroups = launched * max(1, invocations(work["kernel"]) / 64)
     model.add(work["work"], work["work"], subgroups, wave, bytes_moved)
-    seconds = model.total(work["work"])
-    least = model.hardware.fixed + wave["lat"] / model.hardware.clock
+    fixed = model.hardware.fixed
+    seconds = fixed + (model.total(work["work"]) - fixed) / interval_of(work["work"])
+    least = fixed + wave["lat"] / model.hardware.clock
     base = min(seconds, least) if counted > 1 else seconds
     return base * 1e6, max(0.0, seconds - base) / counted * 1e6
 

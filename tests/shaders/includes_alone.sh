@@ -15,6 +15,7 @@ declares_functions() {
   case $1 in
     restir/scene.glsl | restir/surfaces.glsl | separable/separable_pass.glsl) ;;
     # These read a buffer, or one of several images that a number selects.
+    common/probed_tile.glsl) ;;
     sap/sap_tiles.glsl | sap/sap_samples.glsl | sap/tile_region.glsl | sap/sap_window.glsl) ;;
     # The setting of all passes of a pyramid; a constant.
     sap/sap_storage.glsl) ;;

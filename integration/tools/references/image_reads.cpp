@@ -123,7 +123,8 @@ ImageReads separable(const PassType& type, const ReadsInput& input) {
 }
 
 // As separable, but light comes from the host's lighting and material. On the second axis only the
-// pixel itself reads them; depth and velocity are read again to find the pixel in the frame before.
+// pixel itself reads them; depth and velocity are read again to find the pixel in the previous
+// frame.
 ImageReads separable_selected(const PassType& type, const ReadsInput& input) {
   const uint32_t taps = separable_taps[static_cast<size_t>(setting(type, input, "taps"))];
   const double own = 1 + light_reads(type, input),
@@ -205,6 +206,11 @@ ImageReads sap_gather(const PassType& type, const ReadsInput& input) {
                      : 2 * block_reads(6 * 4, 4, 2) + 2 * block_reads(4 * 3, 4, 2))};
 }
 
+// In each selected tile, like probe().
+ImageReads sap_gather_probed(const PassType& type, const ReadsInput& input) {
+  return {input.sampled_fraction * sap_gather(type, input).per_invocation};
+}
+
 // As fixed, plus one read of the mip levels per sample, or none if `mips` is none.
 ImageReads afis(const PassType& type, const ReadsInput& input) {
   ImageReads reads = burley(type, input);
@@ -236,7 +242,7 @@ ImageReads blend_tiles(const PassType&, const ReadsInput&) {
 }
 
 // Material, light, depth, slope; history at four positions; per sample as in afis. If the samples
-// of tiles are limited, they are counted at twice the first step's, as in afis_tiles.
+// of tiles are limited, half of max_samples is assumed.
 ImageReads guided(const PassType& type, const ReadsInput& input) {
   const bool limited = one_if(type, input, "samples_per_tile", PortSide::read) > 0;
   const double samples = input.sampled_fraction * (limited ? 0.5 : 1) *
@@ -413,6 +419,7 @@ constexpr Entry entries[] = {
     {"subsurface.sap_tiles", none},
     {"subsurface.sap_setup", sap_setup},
     {"subsurface.sap_gather", sap_gather},
+    {"subsurface.sap_gather_probed", sap_gather_probed},
     {"subsurface.sap_setup_half_res", sap_setup_half_res},
     {"subsurface.sap_gather_half", sap_gather_half},
     {"subsurface.sap_down", sap_down},

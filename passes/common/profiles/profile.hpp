@@ -30,7 +30,7 @@ struct Profile {
 };
 
 inline constexpr double smallest_dmfp_mm = 1e-6; // below, a channel does not scatter
-inline constexpr double largest_dmfp_mm = 1e6; // 1 km: beyond any use, and within fp32
+inline constexpr double largest_dmfp_mm = 1e6;   // 1 km: beyond any use, and within fp32
 inline constexpr double largest_mfp_mm = 1e4;
 // coefficients of the dipole, 1/mm
 inline constexpr double min_coefficient = 1e-5, largest_coefficient = 1e5;
@@ -52,7 +52,7 @@ std::optional<Profile> read_inline_profile(const Document& document, NodeId obje
 // Returns the members of a JSON object with the profile's model and numbers, such as "dmfp_mm": [1,
 // 2, 3], "albedo": [0.5, 0.5, 0.5]. Reading restores the numbers bit for bit.
 std::string profile_members(const Profile& profile);
-// Returns one line for people: model, dmfp, A and d per channel with their units.
+// Returns one human-readable line: model, dmfp, A and d per channel with their units.
 std::string describe_profile(const Profile& profile);
 
 } // namespace dermis::subsurface

@@ -1,6 +1,7 @@
 #pragma once
 // Relief of a frame: how much of the surface around its pixels leaves their tangent planes. A key
-// of the error table: techniques that take the surface around a pixel as flat err with it.
+// of the error table: techniques that assume a flat surface around a pixel become less accurate as
+// relief grows.
 
 #include "passes/common/reference/reference.hpp"
 

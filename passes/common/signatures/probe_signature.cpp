@@ -9,24 +9,19 @@ namespace {
 // One group per run of 64 tiles of the render rectangle, row by row.
 constexpr DispatchRule probed_tiles{
     .name = "probed_tiles", .cell_side = tile_side, .cells_per_group = 64, .invocations = 128};
-constexpr Port probe_ports[] = {
-    port::optional(
-        port::sampled("scattered",
-                      "scattered light whose error is measured; tiles that do not scatter show "
-                      "their own light, as do all tiles if the port is unbound",
-                      port::color_formats)),
-    port::lighting,
-    port::material,
-    port::depth,
-    port::scatter_scale,
-    port::albedo,
-    port::classes,
-};
+constexpr auto probe_ports =
+    join(port::at_few_texels(std::array{
+             port::optional(port::sampled(
+                 "scattered",
+                 "scattered light whose error is measured; tiles that do not scatter show "
+                 "their own light, as do all tiles if the port is unbound",
+                 port::color_formats)),
+             port::lighting, port::material, port::depth, port::scatter_scale, port::albedo}),
+         std::array{port::classes});
 constexpr PassTypeSetting probe_settings[] = {
     setting::texturing,
-    setting::integer(
-        "tiles", 8, 1, 32, "tiles",
-        "number of tiles per frame; the error is estimated at four pixels of each tile"),
+    setting::probed_tiles,
+    setting::probe_interval,
 };
 
 } // namespace

@@ -69,6 +69,15 @@ inline constexpr PassTypeSetting result = choice(
     "color: scattered light times albedo; light: only scattered light, for hosts that apply albedo "
     "later");
 
+// Tiles in which the error is estimated.
+inline constexpr PassTypeSetting probed_tiles =
+    integer("tiles", 8, 1, 32, "tiles",
+            "number of tiles per probed frame; the error is estimated at four pixels of each tile");
+inline constexpr PassTypeSetting probe_interval =
+    integer("interval", 1, 1, 256, "frames",
+            "mean number of frames from one probed frame to the next, which are selected at "
+            "random");
+
 // Samples.
 constexpr PassTypeSetting samples(int64_t standard, double minimum, std::string_view doc) {
   return integer("samples", standard, minimum, 4096, "samples per pixel", doc);

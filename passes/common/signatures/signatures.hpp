@@ -32,7 +32,8 @@ extern const PassType pyramid_setup_type, pyramid_down_type;
 extern const PassType pyramid_gather_type;
 // sap/sap_signatures.cpp
 extern const PassType sap_tiles_type, sap_setup_type, sap_down_type, sap_up_type, sap_gather_type,
-    sap_setup_half_res_type, sap_gather_half_type, sap_coarse_down_type, sap_coarse_up_type;
+    sap_gather_probed_type, sap_setup_half_res_type, sap_gather_half_type, sap_coarse_down_type,
+    sap_coarse_up_type;
 // papers/residual_signatures.cpp
 extern const PassType refine_type, global_light_change_type, residual_type;
 // sap/sample_signatures.cpp

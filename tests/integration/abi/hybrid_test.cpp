@@ -35,6 +35,7 @@ constexpr const char* unit_times = R"({ "dermis_calibration": 2, "device": "inve
   { "work": "subsurface.tile_error_estimate below=0.93", "base_us": 0, "group_us": 0, "spread": 0 },
   { "work": "subsurface.sample_demand", "base_us": 0, "group_us": 0, "spread": 0 },
   { "work": "subsurface.allocate_samples", "base_us": 0, "group_us": 0, "spread": 0 },
+  { "work": "subsurface.probe texturing=post tiles=8 interval=4", "base_us": 0, "group_us": 0, "spread": 0 },
   { "work": "subsurface.export_scattered texturing=post", "base_us": 0, "group_us": 0, "spread": 0 },
   { "work": "subsurface.combine texturing=post result=color", "base_us": 0, "group_us": 0, "spread": 0 } ] })";
 
@@ -386,7 +387,7 @@ TEST_F(Pair, RuleOfATileSeesTheReachOfD) {
   EXPECT_EQ(sampled(0.25f, 1), 32u); // The tiles whose own light varies.
   EXPECT_EQ(sampled(1, 1), 40u);     // And the column of tiles next to them.
   EXPECT_EQ(sampled(4, 1), 64u);     // Light reaches all tiles.
-  // Separable errs less than samples if d is small and the surface faces the viewer.
+  // Separable has less error than samples if d is small and the surface faces the viewer.
   EXPECT_EQ(sampled(0.25f, 0), 0u);
   EXPECT_EQ(sampled(1, 0), 40u);
 }

@@ -19,6 +19,8 @@ inline constexpr const char* invented_times =
   { "work": "subsurface.sap_down level=1 storage=half", "base_us": 100, "group_us": 0, "spread": 0 },
   { "work": "subsurface.sap_down level=2 storage=half", "base_us": 100, "group_us": 0, "spread": 0 },
   { "work": "subsurface.sap_gather variant=smooth storage=half", "base_us": 100, "group_us": 0, "spread": 0 },
+  { "work": "subsurface.probe texturing=post tiles=8 interval=4", "base_us": 0, "group_us": 0, "spread": 0 },
+  { "work": "subsurface.sap_gather_probed variant=smooth storage=half tiles=8 interval=4", "base_us": 0, "group_us": 0, "spread": 0 },
   { "work": "subsurface.combine texturing=post result=color", "base_us": 100, "group_us": 0, "spread": 0 } ] })";
 
 } // namespace dermis::abi_test

@@ -20,11 +20,15 @@ struct Probe : DermisTest {
   dermis_graph graph = nullptr;
   using Light = float (*)(uint32_t x, uint32_t y);
 
-  void make(const char* technique, bool probing = true) {
-    GraphOptions options = shipped_options("configs/graphs/skin.json");
-    if (probing) options.overlays = {read_text("configs/overlays/probe.json")};
-    graph = make_graph(options);
-    ASSERT_OK(dermis_graph_set_setting(graph, "technique", technique, nullptr));
+  void set(const char* setting, const char* json) {
+    ASSERT_OK(dermis_graph_set_setting(graph, setting, json, nullptr));
+  }
+  void make(const char* technique, bool probing = true, const char* last_step = "\"fused\"") {
+    graph = make_graph(shipped_options("configs/graphs/skin.json"));
+    set("technique", technique);
+    set("last_step", last_step);
+    set("probe", probing ? "\"on\"" : "\"off\"");
+    set("probe_interval", "1");
     make_images(graph);
   }
 
@@ -138,7 +142,7 @@ TEST_F(Probe, MeasuredErrorCorrectsTheExpectedError) {
   EXPECT_NEAR(choice.predicted_rmse, choice.probed_rmse, 0.02 * choice.probed_rmse);
 }
 
-// Single frames tell little about a picture that errs little, but their mean is right.
+// Single frames tell little about a small error, but their mean is right.
 TEST_F(Probe, SmallErrors_AreFoundInTheMean) {
   for (const char* technique : {"\"separable\"", "\"sap\""}) {
     make(technique, false);
@@ -189,6 +193,46 @@ TEST_F(Probe, PyramidIsBetterThanUnscatteredLight) {
   const auto with = run_frame(spread);
   EXPECT_EQ(with.probed_tiles, 1u);
   EXPECT_LT(with.probed_rmse, 0.05 * std::sqrt(unscattered_error(spread)));
+}
+
+// The fused last step writes the host's light, so the probe needs the light of a pass of its own.
+TEST_F(Probe, FusedLastStep_HasTheSameErrors) {
+  const auto errors = [&](const char* variant, const char* last_step) {
+    make("\"sap\"", true, last_step);
+    set("variant", variant);
+    make_images(graph);
+    fill("depth", [](uint32_t x, uint32_t y) { return (x / 24 + y / 20) % 2 == 0 ? 0.5f : 0.51f; });
+    std::vector<float> found;
+    for (int i = 0; i < 12; ++i)
+      found.push_back(run_frame(spread).probed_rmse);
+    return found;
+  };
+  for (const char* variant : {"\"smooth\"", "\"base\""}) {
+    last_frame = 0; // Each frame number has its tiles.
+    const std::vector<float> separate = errors(variant, "\"separate\"");
+    last_frame = 0;
+    const std::vector<float> fused = errors(variant, "\"fused\"");
+    EXPECT_EQ(fused, separate) << variant;
+    EXPECT_GT(*std::max_element(fused.begin(), fused.end()), 1e-3f) << variant;
+  }
+}
+
+TEST_F(Probe, ProbesOneOfSoManyFrames) {
+  make("\"off\"");
+  set("probe_interval", "4");
+  constexpr int frames = 200;
+  int probed = 0;
+  for (int i = 0; i < frames; ++i)
+    probed += run_frame(checks).probed_tiles > 0 ? 1 : 0;
+  EXPECT_NEAR(probed, frames / 4, 20); // Three standard deviations.
+}
+
+TEST_F(Probe, OverlayProbesOtherGraphs) {
+  GraphOptions options = shipped_options("configs/graphs/sap.json");
+  options.overlays = {read_text("configs/overlays/probe.json")};
+  graph = make_graph(options);
+  make_images(graph);
+  EXPECT_EQ(run_frame(spread).probed_tiles, 1u);
 }
 
 TEST_F(Probe, DoesNotChangeThePicture) {

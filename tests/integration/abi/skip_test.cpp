@@ -30,7 +30,10 @@ struct Skip : DermisTest {
     options.profiles = profiles;
     if (!skips) options.overlays = {without_uniform_light};
     if (handed_out) options.unbound = {"albedo", "scatter_scale"};
-    graph = make_bound_graph(options);
+    graph = make_graph(options);
+    // The probe has groups of its own, in some frames.
+    ASSERT_OK(dermis_graph_set_setting(graph, "probe", "\"off\"", nullptr));
+    make_images(graph);
     fill("lighting", [](uint32_t x, uint32_t y) { return float((x * 37 + y * 61) % 97) / 64.0f; });
   }
 
@@ -48,6 +51,24 @@ struct Skip : DermisTest {
     fill("material", [](uint32_t, uint32_t) { return 0.0f; });
   }
 };
+
+// A frame with empty bounds runs another plan.
+TEST_F(Skip, TimesAreThoseOfTheNewestCompletedFrame) {
+  make();
+  run_frame();
+  const uint64_t first = last_frame;
+  const auto newest = [&](uint64_t completed) {
+    uint32_t count = 0;
+    EXPECT_OK(dermis_view_timings(dermis_graph_view(graph), completed, &count, nullptr));
+    std::vector<dermis_pass_timing> times(count, dermis_pass_timing DERMIS_PASS_TIMING_INIT);
+    EXPECT_OK(dermis_view_timings(dermis_graph_view(graph), completed, &count, times.data()));
+    return times.empty() ? 0 : times.front().frame_index;
+  };
+  EXPECT_EQ(newest(first), first);
+  run_frame(DERMIS_FRAME_BOUNDS);
+  EXPECT_EQ(newest(first), first);
+  EXPECT_EQ(newest(last_frame), last_frame);
+}
 
 TEST_F(Skip, NoProfile_EmptyPlanAndUnchangedLight) {
   make(false);
