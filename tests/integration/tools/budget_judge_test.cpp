@@ -52,6 +52,20 @@ TEST(BudgetJudge, PoolsSquaresOfTheComparedFrames) {
   EXPECT_DOUBLE_EQ(pooled_rmse(run), std::sqrt(5.0));
 }
 
+TEST(BudgetJudge, RatiosLeaveOutBudgetsWithoutABestSingle) {
+  BudgetRow good{"good", 1, 10}, bad{"bad", 1, 10}, partial{"partial", 1, 10}, none{"none", 1, 10};
+  good.rmse = bad.rmse = partial.rmse = none.rmse = 0.4;
+  good.single_rmse = 0.4;
+  bad.single_rmse = 0.1;
+  partial.single_rmse = 0.2;
+  partial.unscattered_rmse = 0.8; // Below all configurations that scatter.
+  const RatioSummary summary = summarise_ratios({&good, &bad, &partial, &none});
+  EXPECT_EQ(summary.scenes, 2u);
+  EXPECT_DOUBLE_EQ(summary.mean, 2); // Geometric: of 1 and 4.
+  EXPECT_DOUBLE_EQ(summary.worst, 4);
+  EXPECT_EQ(summary.worst_scene, "bad");
+}
+
 TEST(BudgetJudge, BestSingle_KeepsTheControllersRoomIn99Percent) {
   EXPECT_NEAR(controller_room(), 0.9185, 1e-4);
   std::vector<Single> singles = {single(8, 0.3), single(9.18, 0.2), single(9.19, 0.1)};

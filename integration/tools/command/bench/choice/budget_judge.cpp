@@ -96,6 +96,7 @@ TimedFigures judge_times(const SceneRun& run, double budget_ms) {
 }
 
 TimedFigures median_of(const std::vector<TimedFigures>& runs) {
+  if (runs.empty()) return {};
   const auto middle = [&](double TimedFigures::*figure) {
     std::vector<double> values;
     for (const TimedFigures& run : runs)
@@ -104,6 +105,28 @@ TimedFigures median_of(const std::vector<TimedFigures>& runs) {
   };
   return {middle(&TimedFigures::mean_ms), middle(&TimedFigures::p95_ms),
           middle(&TimedFigures::over), middle(&TimedFigures::switches)};
+}
+
+std::optional<double> BudgetRow::ratio() const {
+  if (!single_rmse || !(*single_rmse > 0) || unscattered_rmse) return std::nullopt;
+  return rmse / *single_rmse;
+}
+
+RatioSummary summarise_ratios(const std::vector<const BudgetRow*>& rows) {
+  RatioSummary out;
+  double logs = 0;
+  for (const BudgetRow* row : rows) {
+    const std::optional<double> ratio = row->ratio();
+    if (!ratio || !(*ratio > 0)) continue;
+    ++out.scenes;
+    logs += std::log(*ratio);
+    if (*ratio > out.worst) {
+      out.worst = *ratio;
+      out.worst_scene = row->scene;
+    }
+  }
+  if (out.scenes > 0) out.mean = std::exp(logs / double(out.scenes));
+  return out;
 }
 
 double fraction_over_model(const SceneRun& run, double budget_ms) {

@@ -45,7 +45,7 @@ struct TimedFigures {
 
 TimedFigures judge_times(const SceneRun& run, double budget_ms);
 
-// Returns the median of each figure, the larger of the middle two. `runs` must not be empty.
+// Returns the median of each figure, the larger of the middle two; 0 without runs.
 TimedFigures median_of(const std::vector<TimedFigures>& runs);
 
 // Results for one budget of a scene.
@@ -58,8 +58,21 @@ struct BudgetRow {
   std::string single = {}; // settings of that configuration
   // error without scattering; set if the budget is below all configurations that scatter
   std::optional<double> unscattered_rmse = {};
-  std::vector<TimedFigures> timed = {}; // one per timed run
+  std::vector<TimedFigures> timed = {}; // one per timed run; none for still scenes
+  std::string half = {};                // of the family; "": a scene of configs/scenes
+
+  // Returns the ratio to the RMSE of the best single configuration, if there is one that scatters.
+  std::optional<double> ratio() const;
 };
+
+// Errors relative to the best single configuration, over scenes.
+struct RatioSummary {
+  size_t scenes = 0;
+  double mean = 0, worst = 0; // mean: geometric
+  std::string worst_scene = {};
+};
+// Summarises the rows with a ratio.
+RatioSummary summarise_ratios(const std::vector<const BudgetRow*>& rows);
 
 // Returns the calibrated time that a budget must have for a configuration, ms.
 double budget_of(const Single& single);
