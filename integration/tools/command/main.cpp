@@ -42,7 +42,12 @@ ExitCode run(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   try {
-    return static_cast<int>(run(argc, argv));
+    const ExitCode code = run(argc, argv);
+    if (code == ExitCode::ok && is_output_lost()) {
+      spdlog::error("the result cannot be written to standard output");
+      return static_cast<int>(ExitCode::environment);
+    }
+    return static_cast<int>(code);
   } catch (const std::bad_alloc&) {
     return static_cast<int>(fail({}, ExitCode::environment, "out of memory"));
   } catch (const std::exception& error) {

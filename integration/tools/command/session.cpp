@@ -14,6 +14,8 @@ namespace dermis::tools {
 
 namespace {
 
+bool output_lost = false; // some text could not be written to stdout
+
 // Returns text for a terminal: lines as they are, other control characters as \xNN.
 std::string for_terminal(std::string_view text) {
   std::string out;
@@ -56,7 +58,10 @@ ExitCode fail(const Session& session, const demo::Error& error, const Diagnostic
 }
 
 void print_diagnostics(const Session& session, const Diagnostics& diagnostics) {
-  if (session.json) return;
+  if (!session.json) print_beside_document(session, diagnostics);
+}
+
+void print_beside_document(const Session& session, const Diagnostics& diagnostics) {
   const bool color = use_color(session.color, STDERR_FILENO);
   for (const Diagnostic& one : diagnostics.list) {
     if (session.quiet && diagnostic_info(one.id).severity != Severity::error) continue;
@@ -70,8 +75,12 @@ void say(const Session& session, std::string_view text) {
 }
 
 void print(std::string_view text) {
-  std::fwrite(text.data(), 1, text.size(), stdout);
-  std::fflush(stdout);
+  const bool written = std::fwrite(text.data(), 1, text.size(), stdout) == text.size();
+  if (std::fflush(stdout) != 0 || !written) output_lost = true;
+}
+
+bool is_output_lost() {
+  return output_lost;
 }
 
 } // namespace dermis::tools

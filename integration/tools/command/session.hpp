@@ -34,5 +34,11 @@ void say(const Session& session, std::string_view text);
 
 // Prints machine-readable text on stdout.
 void print(std::string_view text);
+// Returns whether some text could not be written to stdout.
+bool is_output_lost();
+
+// Prints all diagnostics on stderr, also with --json, for verbs whose JSON document does not
+// contain them; only errors with --quiet.
+void print_beside_document(const Session& session, const Diagnostics& diagnostics);
 
 } // namespace dermis::tools

@@ -256,7 +256,7 @@ struct CompareOptions {
   std::string a, b;
   std::vector<PictureRegion> regions;
   std::string heat;              // output file for an image of the differences
-  double min_psnr = 0;           // dB; fail below
+  double min_psnr = -HUGE_VAL;   // dB; fail below
   bool flip = false;             // also compute FLIP
   std::string flip_map;          // output file for an image of FLIP
   double pixels_per_degree = 67; // of the viewer, for FLIP

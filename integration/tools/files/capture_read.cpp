@@ -64,7 +64,8 @@ subsurface::CameraMatrices read_matrices(ObjectReader& reader, bool has_pitch) {
   return camera;
 }
 
-// A transposed matrix, as other engines store it, is no fault here: `validate --diagnose` finds it.
+// A transposed matrix, as other engines store it, is not an error here: `validate --diagnose` finds
+// it.
 bool is_singular(const subsurface::Matrix4& m) {
   subsurface::Matrix4 transposed;
   for (size_t i = 0; i < m.size(); ++i)

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <system_error>
 
 namespace dermis::tools {
@@ -22,14 +23,49 @@ std::string matrix_text(const subsurface::Matrix4& m) {
   return text + "]";
 }
 
-// Returns whether the folder is absent, empty or a capture.
-bool may_replace(const fs::path& folder) {
+bool is_file_of_frame(const fs::path& file) {
+  if (file.filename() == "frame.json") return true;
+  const std::string name = file.stem().string();
+  return file.extension() == ".exr" &&
+         (name == "profile" || std::ranges::any_of(picture_kinds(), [&](const PictureKind& kind) {
+            return name == kind.name;
+          }));
+}
+
+// Returns a path in the folder that is no part of a frame, or "".
+fs::path foreign_in_frame(const fs::path& folder) {
   std::error_code code;
-  if (!fs::exists(folder, code)) return true;
-  if (!fs::is_directory(folder, code)) return false;
-  if (fs::is_empty(folder, code)) return true;
-  Diagnostics unreported;
-  return !find_frames(folder, unreported).empty();
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, code))
+    if (!entry.is_regular_file(code) || !is_file_of_frame(entry.path())) return entry.path();
+  return {};
+}
+
+// Returns a path in the folder that is no part of a capture and would be lost, or "".
+fs::path foreign_in_capture(const fs::path& folder) {
+  std::error_code code;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, code)) {
+    const fs::path& path = entry.path();
+    const bool frame = entry.is_directory(code) && fs::exists(path / "frame.json", code);
+    const fs::path foreign = frame ? foreign_in_frame(path)
+                             : entry.is_regular_file(code) && is_file_of_frame(path) ? fs::path()
+                                                                                     : path;
+    if (!foreign.empty()) return foreign;
+  }
+  return {};
+}
+
+// Returns why the folder cannot be replaced by a capture, or "".
+std::string why_kept(const fs::path& folder) {
+  std::error_code code;
+  if (!fs::exists(folder, code)) return "";
+  if (!fs::is_directory(folder, code))
+    return fmt::format("'{}' exists and is not a folder", folder.string());
+  const fs::path foreign = foreign_in_capture(folder);
+  return foreign.empty()
+             ? ""
+             : fmt::format("'{}' holds '{}', which is not part of a capture and would be deleted; "
+                           "choose another folder",
+                           folder.string(), foreign.lexically_relative(folder).string());
 }
 
 } // namespace
@@ -65,10 +101,8 @@ bool CaptureWriter::begin(const fs::path& folder, std::string& error) {
   std::error_code code;
   target_ = fs::absolute(folder, code).lexically_normal();
   if (!target_.has_filename()) target_ = target_.parent_path(); // path ended with a slash
-  if (!may_replace(target_)) {
-    error = fmt::format("'{}' exists and is not a capture; choose another folder", folder.string());
-    return false;
-  }
+  error = why_kept(target_);
+  if (!error.empty()) return false;
   part_ = temporary_path(target_);
   frames_ = 0;
   fs::create_directories(part_, code);

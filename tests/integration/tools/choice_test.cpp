@@ -167,8 +167,8 @@ constexpr const char* or_separable = R"({ "dermis_overlay": 2, "edits": [
       "write": { "scattered": "scattered" }, "set": { "axis": "vertical", "taps": "25" } } ] }
         ] })";
 
-// Returns an error table in which afis errs less than separable.
-constexpr const char* afis_errs_less =
+// An error table in which afis has less error than separable.
+constexpr const char* afis_is_better =
     R"({ "dermis_errors": 2, "scenes": "invented", "unscattered": [[1, 0.05]],
   "techniques": [
     { "name": "afis", "pass_types": [{ "type": "subsurface.afis", "set": {} }],
@@ -185,7 +185,7 @@ constexpr const char* afis_takes_more = R"({ "dermis_calibration": 2, "device": 
 
 TEST_F(Choice, ErrorsOfAFileDecideBetweenAfisAndSeparable) {
   const std::string overlay = write("overlay.json", or_separable);
-  const std::string table = write("errors.json", afis_errs_less);
+  const std::string table = write("errors.json", afis_is_better);
   const std::string costs = write("calibration.json", afis_takes_more);
   const auto chosen = [&](const char* budget) {
     const Outcome outcome =
@@ -202,7 +202,8 @@ TEST_F(Choice, ErrorsOfAFileDecideBetweenAfisAndSeparable) {
   EXPECT_EQ(chosen("30"), "technique=separable");
 }
 
-// With the built-in tables, 64 samples err less than separable at wide d, and take more time.
+// With the built-in tables, 64 samples have less error than separable at wide d, and take more
+// time.
 TEST_F(Choice, AfisIsSelectedWhereItErrsLessAndFits) {
   const Outcome outcome =
       run({"explain", "configs/graphs/papers/afis.json", "--overlay",
@@ -315,6 +316,23 @@ TEST_F(Choice, ExplainCountsReadsByTileClass) {
   EXPECT_EQ(classes[1]["samples"], 16);
 }
 
+TEST_F(Choice, FreeConfigurationsAreListed) {
+  const std::string free = write("free.json", R"({ "dermis_calibration": 2, "device": "free",
+    "costs": [{ "work": "subsurface.classify", "base_us": 0, "group_us": 0, "spread": 0 }] })");
+  EXPECT_THAT(run({"explain", graph, "--choices", "--calibration", free}), Succeeds("any budget"));
+}
+
+TEST_F(Choice, WarningsAreShownBesideJson) {
+  const std::string empty =
+      write("empty.json", R"({ "dermis_calibration": 2, "device": "none", "costs": [] })");
+  for (const char* choices : {"--choices", "--two-queues"}) {
+    const Outcome outcome = run({"explain", graph, choices, "--calibration", empty, "--json"});
+    EXPECT_EQ(outcome.exit_code, 0);
+    EXPECT_THAT(outcome.err, HasSubstr("D0404"));
+    EXPECT_TRUE(json::accept(outcome.out));
+  }
+}
+
 TEST_F(Choice, BenchSkipGivesARowForEachCase) {
   DERMIS_FULL_TESTS_ONLY(); // BenchAll runs it, too.
   const std::string file = path("skip.json");
@@ -325,8 +343,8 @@ TEST_F(Choice, BenchSkipGivesARowForEachCase) {
 TEST_F(Choice, BenchBudgetGivesARowForEachSceneAndBudget) {
   DERMIS_FULL_TESTS_ONLY(); // BudgetJudge tests the evaluation without a device.
   const std::string file = path("budget.json");
-  ASSERT_THAT(run({"bench", "budget", "--size", "48x27", "--frames", "4", "--scenes", "flashing",
-                   "--repetitions", "1", "--cache", "", "--json", file}),
+  ASSERT_THAT(run({"bench", "budget", "--size", "48x27", "--frames", "4", "--scenes",
+                   "flashing,zigzag_j1", "--repetitions", "1", "--cache", "", "--json", file}),
               Succeeds());
 }
 

@@ -30,7 +30,8 @@ void redirect(int target, const fs::path& path, int flags) {
 [[noreturn]] void become_command(const std::vector<std::string>& arguments,
                                  const RunOptions& options, const TestFolder& streams) {
   redirect(STDIN_FILENO, streams / "in", O_RDONLY);
-  redirect(STDOUT_FILENO, streams / "out", O_WRONLY | O_CREAT);
+  redirect(STDOUT_FILENO, options.output.empty() ? streams / "out" : fs::path(options.output),
+           O_WRONLY | O_CREAT);
   redirect(STDERR_FILENO, streams / "err", O_WRONLY | O_CREAT);
   for (const std::string& one : options.environment)
     setenv(one.substr(0, one.find('=')).c_str(), one.substr(one.find('=') + 1).c_str(), 1);

@@ -19,9 +19,10 @@ struct Outcome {
 void PrintTo(const Outcome& outcome, std::ostream* stream); // for messages of GoogleTest
 
 struct RunOptions {
-  std::vector<std::string> environment; // Additional variables, "NAME=value".
-  std::string input;                    // Standard input.
-  std::string interrupt_after;          // Sends SIGINT as soon as this path exists; "": never.
+  std::vector<std::string> environment = {}; // Additional variables, "NAME=value".
+  std::string input = {};                    // Standard input.
+  std::string interrupt_after = {};          // Sends SIGINT as soon as this path exists; "": never.
+  std::string output = {};                   // File for standard output; "": Outcome::out.
 };
 
 class CommandTest : public ::testing::Test {

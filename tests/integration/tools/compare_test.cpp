@@ -145,6 +145,25 @@ TEST_F(Compare, RejectsIncomparablePictures) {
   EXPECT_EQ(run({"compare", a}).exit_code, 2);
 }
 
+TEST_F(Compare, LargeDifferencesAreNoFailure_WithoutALimit) {
+  const std::string a = exr("a.exr", 8), b = exr("b.exr", 0.5f);
+  const Outcome outcome = run({"compare", a, b, "--json"});
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  const nlohmann::json answer = nlohmann::json::parse(outcome.out);
+  EXPECT_EQ(answer["ok"], true);
+  EXPECT_LT(answer["rows"][0]["psnr_db"], 0);
+  EXPECT_THAT(run({"compare", a, b, "--min-psnr", "0"}), FailsWith(1, "differ by more than 0"));
+}
+
+TEST_F(Compare, RejectsFilesOfDifferentTypes) {
+  const std::string light = exr("light.exr", 0.5f), shown = path("shown.png");
+  std::string error;
+  const std::vector<uint8_t> rgb(16 * 16 * 3, 188);
+  ASSERT_TRUE(tools::write_png(shown, 16, 16, rgb, error)) << error;
+  for (const auto& [a, b] : {std::pair(light, shown), std::pair(shown, light)})
+    EXPECT_THAT(run({"compare", a, b}), FailsWith(1, "files of different types"));
+}
+
 TEST_F(Compare, FlipIsReportedOnRequest) {
   const std::string a = png("one/a.png", 0, 0), b = png("two/a.png", 255, 255);
   png("one/b.png", 90, 90);

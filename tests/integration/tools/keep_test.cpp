@@ -25,6 +25,25 @@ TEST_F(Keep, CapturedSceneIsValidAndCanBeApplied) {
   EXPECT_THAT(files("out"), Contains("frame_0001/scattered.exr"));
 }
 
+TEST_F(Keep, CaptureReplacesACaptureButNoOtherFiles) {
+  const std::vector<std::string> command = {"capture",  "configs/scenes/bust.json",
+                                            "--out",    path("capture"),
+                                            "--size",   "48x27",
+                                            "--frames", "1"};
+  ASSERT_THAT(run(command), Succeeds());
+  ASSERT_THAT(run(command), Succeeds()) << "replaces the first";
+  for (const char* name :
+       {"capture/notes.txt", "capture/frame_0000/light.blend", "capture/mine/a"}) {
+    std::filesystem::create_directories(std::filesystem::path(path(name)).parent_path());
+    write(name, "mine");
+    const std::string shown = std::filesystem::path(name).lexically_relative("capture").string();
+    EXPECT_THAT(run(command), FailsWith(3, shown.substr(0, shown.rfind("/a")))) << name;
+    EXPECT_EQ(read(name), "mine");
+    std::filesystem::remove(path(name));
+    std::filesystem::remove(path("capture/mine"));
+  }
+}
+
 TEST_F(Keep, CaptureMatchesTheCaptureOfARendering) {
   ASSERT_EQ(run({"capture", "configs/scenes/bust.json", "--out", path("a"), "--size", "48x27",
                  "--frames", "1"})

@@ -156,6 +156,17 @@ TEST_F(Usage, ColourIsUsedOnRequestAndNeverInFiles) {
   EXPECT_EQ(run({"validate", bad, "--color", "sometimes"}).exit_code, 2);
 }
 
+TEST_F(Usage, ResultThatCannotBeWritten_IsAFailure) {
+  const std::string full = "/dev/full"; // has no space
+  if (!std::filesystem::exists(full)) GTEST_SKIP() << "there is no " << full;
+  for (const std::vector<std::string>& command :
+       {std::vector<std::string>{"validate", burley, "--json"}, {"explain", burley}, {"--help"}}) {
+    const Outcome outcome = run(command, {.output = full});
+    EXPECT_EQ(outcome.exit_code, 3) << command.front();
+    EXPECT_THAT(outcome.err, HasSubstr("standard output")) << command.front();
+  }
+}
+
 TEST_F(Usage, SchemasArePrintedOneByOneOrWrittenTogether) {
   for (const char* name :
        {"graph", "fragment", "overlay", "expectation", "profile", "scene", "capture", "plan"}) {
@@ -163,6 +174,9 @@ TEST_F(Usage, SchemasArePrintedOneByOneOrWrittenTogether) {
   }
   EXPECT_EQ(run({"schema", "--out", path("schemas")}).exit_code, 0);
   EXPECT_THAT(files("schemas"), Contains(HasSubstr("graph.schema.json")));
+  const Outcome listed = run({"schema", "--out", path("schemas"), "--json"});
+  EXPECT_EQ(listed.exit_code, 0);
+  EXPECT_THAT(listed.out, AllOf(IsJson(), HasSubstr("graph.schema.json")));
   EXPECT_THAT(run({"schema", "grahp"}), FailsWith(2, "did you mean 'graph'?"));
   EXPECT_EQ(run({"schema"}).exit_code, 2);
 }

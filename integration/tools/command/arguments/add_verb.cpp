@@ -155,7 +155,8 @@ std::vector<CLI::Option*> add_budget(CLI::App& verb, BudgetArguments& budget) {
                  "[always]")
           ->type_name("WHEN"),
       verb.add_flag("--deterministic", budget.deterministic,
-                    "Judge times only by the calibration, for equal choices on every machine")};
+                    "Judge times only by the calibration, for choices that do not depend on the "
+                    "machine's speed")};
   for (CLI::Option* option : of_frame)
     option->group(group);
   add_path(verb, "--calibration", budget.calibration, "Costs of passes (dermis calibrate)")

@@ -151,8 +151,10 @@ demo::Result<> add_frame(const Session& session, const ReportBugOptions& options
                                                  options.inputs.roots);
   if (!frame) {
     print_diagnostics(session, diagnostics);
-    return demo::Error{demo::ErrorKind::input,
-                       fmt::format("the capture '{}' cannot be used", options.frames)};
+    demo::Error error{demo::ErrorKind::input,
+                      fmt::format("the capture '{}' cannot be used", options.frames)};
+    error.diagnostics = format_as_json(diagnostics);
+    return error;
   }
   CaptureWriter writer;
   std::string problem;

@@ -72,6 +72,7 @@ ExitCode explain_frame(const Session& session, const ExplainOptions& options,
   engine.pixel_aspect = options.pixel_aspect;
   engine.frames = frames;
   engine.settings = settings_as_json(loaded.graph, options.settings);
+  engine.unbound = options.unbound;
   auto budget = read_budget(options.budget);
   if (!budget) return fail(session, budget.error());
   engine.budget = budget.take();
@@ -119,7 +120,7 @@ void add_all(const Diagnostics& from, Diagnostics& diagnostics) {
 ExitCode list_choices(const Session& session, const ExplainOptions& options,
                       const ChoiceTables& tables, Diagnostics& diagnostics) {
   add_all(tables.missing, diagnostics);
-  print_diagnostics(session, diagnostics);
+  print_beside_document(session, diagnostics);
   if (!session.json) return deliver(session, options.out, describe_tables(tables));
   JsonWriter answer;
   write_tables(answer, tables);
@@ -172,7 +173,7 @@ ExitCode explain(const Session& session, const ExplainOptions& options) {
       compile_generic(*loaded, options.size, choices, diagnostics);
   if (!compiled) return fail_graph(session, options.graph, diagnostics);
   add_all(tables->missing, diagnostics);
-  print_diagnostics(session, diagnostics);
+  print_beside_document(session, diagnostics);
   return deliver(session, options.out,
                  session.json ? plan_json(loaded->graph, loaded->pass_types, *compiled,
                                           {loaded->changes, diagnostics.files})

@@ -17,7 +17,7 @@ ExitCode write_view(const Session& session, const GraphOptions& options, const L
       make_view(loaded, {options.size, session.command, options.frame, choices}, diagnostics);
   if (!view.problem.empty()) return fail(session, ExitCode::environment, view.problem);
   if (view.page.empty()) return fail_graph(session, options.graph, diagnostics);
-  print_diagnostics(session, diagnostics);
+  print_beside_document(session, diagnostics);
   const std::string problem = deliver_page(options.html, view.page);
   if (!problem.empty()) return fail(session, ExitCode::environment, problem);
   if (options.html != "-")
@@ -39,7 +39,7 @@ ExitCode graph(const Session& session, const GraphOptions& options) {
   const std::optional<CompiledPlan> compiled =
       compile_generic(*loaded, options.size, choices, diagnostics);
   if (!compiled) return fail_graph(session, options.graph, diagnostics);
-  print_diagnostics(session, diagnostics);
+  print_beside_document(session, diagnostics);
   const std::string problem = deliver_text(
       options.out, session.json ? plan_json(loaded->graph, loaded->pass_types, *compiled,
                                             {loaded->changes, diagnostics.files})

@@ -35,11 +35,20 @@ ExitCode write_all(const Session& session, const std::string& path) {
   OutputFolder folder;
   if (const std::string problem = folder.open(path); !problem.empty())
     return fail(session, ExitCode::environment, problem);
+  std::vector<std::string> files;
   for (const auto& [name, text] : all_schemas()) {
     const std::string file = folder.path_of(fmt::format("{}.schema.json", name));
     if (const std::string problem = deliver_text(file, text); !problem.empty())
       return fail(session, ExitCode::environment, problem);
     say(session, fmt::format("{}\n", file));
+    files.push_back(file);
+  }
+  if (session.json) {
+    JsonWriter answer;
+    answer.open_object().member("ok", true).key("files").open_array();
+    for (const std::string& file : files)
+      answer.value(file);
+    print(std::move(answer.close().close()).finish());
   }
   return ExitCode::ok;
 }

@@ -66,7 +66,8 @@ ExitCode upgrade(const Session& session, const UpgradeOptions& options) {
   print_diagnostics(session, diagnostics);
   if (!unwritten.empty()) return fail(session, ExitCode::environment, unwritten);
   for (const Upgraded& one : files)
-    if (one.version > 0) say(session, answer(one, options.check));
+    if (one.version > 0 && (one.path != "-" || options.check)) // "-": stdout holds the result
+      say(session, answer(one, options.check));
   if (session.json) {
     JsonWriter out;
     out.open_object().member("ok", good).key("files").open_array();

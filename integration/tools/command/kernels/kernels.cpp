@@ -55,7 +55,7 @@ ExitCode kernels(const Session& session, const KernelsOptions& options) {
   demo::Result<KernelSurvey> survey = survey_kernels(options, session, diagnostics);
   if (interrupted()) return fail(session, ExitCode::interrupted, "stopped");
   if (!survey) return fail(session, survey.error(), &diagnostics);
-  print_diagnostics(session, diagnostics);
+  print_beside_document(session, diagnostics);
   if (!options.assembly.empty())
     if (const std::string problem = write_assembly(options.assembly, *survey); !problem.empty())
       return fail(session, ExitCode::environment, problem);

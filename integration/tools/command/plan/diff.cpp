@@ -53,7 +53,7 @@ ExitCode plan_diff(const Session& session, const PlanDiffOptions& options) {
     return fail(session, ExitCode::usage,
                 options.files.front() +
                     ": is a saved plan; --set, --unbound and --overlay need a graph to compile");
-  print_diagnostics(session, diagnostics);
+  print_beside_document(session, diagnostics);
   const PlanDiff diff = diff_plans(plans[0].saved, plans[1].saved);
   print(session.json ? plan_diff_json(diff, plans[0].name, plans[1].name)
                      : plan_diff_text(diff, plans[0].name, plans[1].name));

@@ -18,7 +18,7 @@ ExitCode plan_save(const Session& session, const PlanSaveOptions& options) {
   if (!plan) return fail_graph(session, options.graph, diagnostics);
   if (!plan->from_graph)
     return fail(session, ExitCode::usage, options.graph + ": is already a saved plan");
-  print_diagnostics(session, diagnostics);
+  print_beside_document(session, diagnostics);
   const std::string bytes = write_plan(plan->saved);
   if (session.json && options.out == "-")
     return fail(session, ExitCode::usage, "--json and --out - both write to standard output");
@@ -26,7 +26,10 @@ ExitCode plan_save(const Session& session, const PlanSaveOptions& options) {
     return fail(session, ExitCode::environment, error);
   if (session.json) {
     JsonWriter answer;
-    answer.open_object().member("file", options.out).member("bytes", bytes.size());
+    answer.open_object()
+        .member("ok", true)
+        .member("file", options.out)
+        .member("bytes", bytes.size());
     answer.member("sha256", digest_text(sha256(bytes))).close();
     print(std::move(answer).finish());
   } else if (options.out != "-") {

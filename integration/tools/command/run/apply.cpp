@@ -194,7 +194,7 @@ ExitCode apply(const Session& session, const ApplyOptions& options) {
     if (!done) return fail(session, done.error());
     progress.update(i + 1);
   }
-  print_diagnostics(session, surfaces);
+  print_beside_document(session, surfaces);
   return report(run, *sequence, surfaces);
 }
 

@@ -53,7 +53,7 @@ std::optional<CapturedSequence> check_sequence(const Session& session, const std
          &diagnostics);
     return std::nullopt;
   }
-  print_diagnostics(session, diagnostics);
+  print_beside_document(session, diagnostics);
   return sequence;
 }
 

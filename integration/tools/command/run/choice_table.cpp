@@ -84,7 +84,7 @@ choice::Decision selected(std::span<const choice::Forecast> forecasts, double bu
   return decide(forecasts, frame, state, scratch);
 }
 
-// Returns a configuration that takes about as much time as `index`, or less, and errs no more;
+// Returns a configuration that takes about as much time as `index`, or less, and has no more error;
 // "": none.
 std::string better_than(size_t index, std::span<const choice::Forecast> forecasts,
                         std::span<const choice::Configuration> configurations) {
@@ -105,16 +105,21 @@ ChoiceTable table_of(const std::string& device, double d_px,
   double least = full_ms(forecasts.front()), largest = least;
   for (size_t i = 0; i < forecasts.size(); ++i) {
     const double ms = full_ms(forecasts[i]);
-    table.rows.push_back({configurations[i].name, ms, forecasts[i].rmse, 0, 0,
-                          better_than(i, forecasts, configurations)});
+    table.rows.push_back({.configuration = configurations[i].name,
+                          .ms = ms,
+                          .rmse = forecasts[i].rmse,
+                          .better = better_than(i, forecasts, configurations)});
     least = std::min(least, ms);
     largest = std::max(largest, ms);
   }
-  for (double ms = least / 2; ms < 2 * largest; ms *= budget_step) {
+  // A configuration may cost nothing.
+  const double smallest = std::max(least / 2, 1e-6 * largest);
+  for (double ms = smallest; ms < 2 * largest; ms *= budget_step) {
     const choice::Decision decision = selected(forecasts, ms);
     ChoiceRow& row = table.rows[decision.configuration];
-    if (row.first_ms > 0) continue;
-    row.first_ms = ms;
+    if (row.selected) continue;
+    row.selected = true;
+    row.first_ms = ms > smallest ? ms : 0;
     row.first_rmse = decision.rmse;
   }
   std::stable_sort(table.rows.begin(), table.rows.end(),
@@ -200,6 +205,10 @@ std::optional<ChoiceTables> choice_tables(const LoadedGraph& loaded, const Size&
   return out;
 }
 
+std::string starting_at(const ChoiceRow& row) {
+  return row.first_ms > 0 ? fmt::format("{:.3g} ms{}", row.first_ms, with_less(row)) : "any budget";
+}
+
 std::string describe_tables(const ChoiceTables& tables) {
   std::string text = describe_memory(tables) +
                      "\nhalf of the tiles have subsurface; RMSE relative to the light's 99.9th "
@@ -208,11 +217,10 @@ std::string describe_tables(const ChoiceTables& tables) {
     text += fmt::format("\n{}, d = {} px\n{:<34}{:>10}{:>10}  {}\n", table.device, table.d_px,
                         "configuration", "ms", "RMSE", "selected by budgets from");
     for (const ChoiceRow& row : table.rows)
-      text +=
-          fmt::format("{:<34}{:>10.3g}{:>10.2e}  {}\n", row.configuration, row.ms, row.rmse,
-                      row.first_ms > 0 ? fmt::format("{:.3g} ms{}", row.first_ms, with_less(row))
-                      : !row.better.empty() ? "none: " + row.better + " is better"
-                                            : "none");
+      text += fmt::format("{:<34}{:>10.3g}{:>10.2e}  {}\n", row.configuration, row.ms, row.rmse,
+                          row.selected          ? starting_at(row)
+                          : !row.better.empty() ? "none: " + row.better + " is better"
+                                                : "none");
   }
   return text;
 }
@@ -233,7 +241,7 @@ void write_tables(JsonWriter& writer, const ChoiceTables& tables) {
     for (const ChoiceRow& row : table.rows) {
       writer.open_object(true).member("configuration", std::string_view(row.configuration));
       writer.member("ms", row.ms).member("rmse", row.rmse).key("selected_from_ms");
-      if (row.first_ms > 0)
+      if (row.selected)
         writer.value(row.first_ms).member("first_rmse", row.first_rmse);
       else
         writer.null();

@@ -15,9 +15,10 @@ struct ChoiceRow {
   std::string configuration;
   double ms = 0;         // expected time, with all samples that tiles may request
   double rmse = 0;       // expected error
-  double first_ms = 0;   // least budget that selects the configuration; 0: none does
+  bool selected = false; // by some budget
+  double first_ms = 0;   // least budget that selects the configuration; 0: any budget
   double first_rmse = 0; // expected error with what fits that budget
-  std::string better;    // takes about as much time or less and errs no more; "": none
+  std::string better;    // takes no more time, or little more, with no more error; "": none
 };
 
 struct ChoiceTable {

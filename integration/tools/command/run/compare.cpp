@@ -165,6 +165,12 @@ bool read_both(const Pair& pair, const CompareOptions& options, Loaded& loaded,
                           second->width, second->height, second->channels);
     return false;
   }
+  if (pair.a.extension() != pair.b.extension()) {
+    problem = fmt::format("'{}' and '{}' are files of different types, whose values mean different "
+                          "things; compare two PNG or two EXR files",
+                          pair.a.string(), pair.b.string());
+    return false;
+  }
   const bool is_png = pair.a.extension() == ".png";
   if (!read_mask(pair, *second, loaded.mask, problem)) return false;
   if (options.flip && loaded.mask) {
@@ -365,12 +371,14 @@ ExitCode compare(const Session& session, const CompareOptions& options) {
   if (ok) return ExitCode::ok;
   if (session.json) return ExitCode::problems;
   std::string allowed;
-  if (options.min_psnr > 0) allowed = format_decibels(options.min_psnr);
+  if (std::isfinite(options.min_psnr)) allowed = format_decibels(options.min_psnr);
   if (options.max_flip < 1)
     allowed += fmt::format("{}a FLIP of {}", allowed.empty() ? "" : " and ", options.max_flip);
+  const bool finite = std::all_of(
+      rows.begin(), rows.end(), [](const Compared& row) { return row.difference.nonfinite == 0; });
   return fail(session, ExitCode::problems,
-              allowed.empty() ? "some values are not finite"
-                              : fmt::format("the images differ by more than {} permit", allowed));
+              finite ? fmt::format("the images differ by more than {} permit", allowed)
+                     : "some values are not finite");
 }
 
 } // namespace dermis::tools

@@ -1,5 +1,5 @@
 #pragma once
-// Lists what each configuration is expected to take and to err in a frame.
+// Lists the expected time and error of each configuration in a frame.
 
 #include "framegraph/text/json_writer.hpp"
 #include "integration/examples/demo_engine/engine.hpp"

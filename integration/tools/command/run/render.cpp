@@ -58,8 +58,9 @@ struct RenderRun {
   ChoiceReport choices{};
   Trace trace{};
   bool transmission = false; // the graph adds back light before it scatters
-  bool by_rays = false;      // the last frame scattered by rays, which see more than the screen
-  Diagnostics surfaces{};    // warnings of frames, each once
+  std::vector<std::string> ray_techniques = {};
+  bool by_rays = false;   // the last frame scattered by rays, which see more than the screen
+  Diagnostics surfaces{}; // warnings of frames, each once
 };
 
 demo::Result<> start(RenderRun& run, const demo::RenderInfo& info) {
@@ -137,14 +138,18 @@ demo::Result<> write_pictures(RenderRun& run, const demo::FrameOutputs& frame) {
   return demo::success();
 }
 
-bool scatters_by_rays(const std::string& technique) {
+// Returns the names of the techniques of an error table that scatter by rays. `given`: the host's
+// table, which the library has accepted; empty: the built-in one.
+std::vector<std::string> ray_techniques(const std::string& given) {
   Diagnostics ignored;
-  const auto document =
-      parse_document("errors", std::string(choice::default_errors_text()), ignored);
+  const auto document = parse_document(
+      "errors", given.empty() ? std::string(choice::default_errors_text()) : given, ignored);
   const auto errors = document ? choice::read_error_model(*document, ignored) : std::nullopt;
-  return errors &&
-         std::any_of(errors->techniques.begin(), errors->techniques.end(),
-                     [&](const auto& one) { return one.by_rays && one.name == technique; });
+  std::vector<std::string> names;
+  if (errors)
+    for (const choice::TechniqueError& one : errors->techniques)
+      if (one.by_rays) names.push_back(one.name);
+  return names;
 }
 
 // Takes over the images of a frame that was read back.
@@ -176,7 +181,8 @@ demo::Result<> take_frame(RenderRun& run, const demo::FrameOutputs& frame) {
   }
   if (frame.choice) run.choices.add(frame.frame, *frame.choice, frame.histories);
   if (!run.options.trace.empty()) run.trace.add(frame);
-  run.by_rays = frame.choice && scatters_by_rays(frame.choice->technique);
+  run.by_rays = frame.choice && std::ranges::find(run.ray_techniques, frame.choice->technique) !=
+                                    run.ray_techniques.end();
   run.progress.update(++run.frames);
   return demo::success();
 }
@@ -343,7 +349,8 @@ ExitCode render(const Session& session, const RenderOptions& options) {
                 .progress = Progress(progress_style(session.quiet, session.json), "render", "frame",
                                      options.frames),
                 .textured_before = textured,
-                .transmission = transmission};
+                .transmission = transmission,
+                .ray_techniques = ray_techniques(engine.budget.errors.text)};
   demo::RenderCallbacks callbacks;
   callbacks.on_start = [&](const demo::RenderInfo& info) { return start(run, info); };
   callbacks.on_frame = [&](const demo::FrameOutputs& frame) { return take_frame(run, frame); };
@@ -356,7 +363,7 @@ ExitCode render(const Session& session, const RenderOptions& options) {
   if (!options.trace.empty())
     problem = deliver_text(options.trace, run.trace.json(session.command, run.info.device));
   if (!problem.empty()) return fail(session, ExitCode::environment, problem);
-  print_diagnostics(session, run.surfaces);
+  print_beside_document(session, run.surfaces);
   return report(run);
 }
 
