@@ -209,7 +209,7 @@ void BarrierWalk::resolve_aliasing_barriers() {
     if (memory.first_barrier[r] != invalid_index && info(r).ranges == 1)
       wait_for_occupant({0, 0, r, 0}, r, memory.first_barrier[r], true);
   for (const FirstUse& use : memory.first_uses) {
-    // In the frame before, idle memory of a history was that of the next instance.
+    // In the previous frame, idle memory of a history was that of the next instance.
     const bool idle = use.memory >= plan.heaps.size();
     const std::vector<HeapRange>& ranges = memory.ranges[use.memory + (idle ? 1 : 0)];
     for (size_t i = first_ending_after(ranges, use.begin);
@@ -221,8 +221,8 @@ void BarrierWalk::resolve_aliasing_barriers() {
 }
 
 // Each range waits for the previous occupants of the resource's memory, and for its own last use in
-// the frame before. The barrier that acquired the memory is resolved last, because the others copy
-// from it.
+// the previous frame. The barrier that acquired the memory is resolved last, because the others
+// copy from it.
 void BarrierWalk::resolve_divided_first_uses() {
   for (size_t i = memory.divided_first_uses.size(); i-- > 0;) {
     const DividedFirstUse& use = memory.divided_first_uses[i];

@@ -43,7 +43,7 @@ struct BarrierWalk {
   // ---- barriers.cpp ----
 
   // Starts a frame: the state of an earlier frame of a history is that of the frame one younger at
-  // the end of the frame before; all other objects have not been accessed.
+  // the end of the previous frame; all other objects have not been accessed.
   void begin_frame();
 
   // Walks frames without emitting barriers until the states at the end of a frame repeat.
@@ -94,7 +94,7 @@ struct BarrierWalk {
   void begin_lifetime(const PassAccess& access, const UsageSet& set, uint32_t position);
 
   // The resource becomes the occupant of its bytes; the barrier waits for the occupants before it
-  // in this frame. Unoccupied bytes wait for the last occupants of the frame before: see
+  // in this frame. Unoccupied bytes wait for the last occupants of the previous frame: see
   // resolve_aliasing_barriers. Older occupants need no wait, because the last occupant has waited
   // for them. Returns the last pass of this frame that accessed the bytes, or invalid_index.
   uint32_t acquire_memory(uint32_t resource, uint32_t barrier);
@@ -106,9 +106,9 @@ struct BarrierWalk {
                            uint32_t barrier, bool frame_before);
   void wait_for_state(const ObjectState& state, uint32_t barrier, bool frame_before);
 
-  // Completes the first barriers with the occupants of the frame before, whose last accesses are
-  // known when the walk is over. A resource always waits for its own last use in the frame before,
-  // so that a plan whose placements are moved apart stays correct.
+  // Completes the first barriers with the occupants of the previous frame, whose last accesses are
+  // known when the walk is over. A resource always waits for its own last use in the previous
+  // frame, so that a plan whose placements are moved apart stays correct.
   void resolve_aliasing_barriers();
   void resolve_divided_first_uses();
 };

@@ -42,7 +42,7 @@ struct BindErrorReporter {
     return true;
   }
 
-  // Reports a port without a version. A missing version is no error at an optional port.
+  // Reports a port without a version. A missing version is not an error at an optional port.
   void report_use(const Use& use) {
     const Port& port = active.type(use.pass).ports[use.port];
     const bool missing = use.bind_error == Use::BindError::unbound ||

@@ -68,8 +68,8 @@ enum class Queue : uint8_t { main, async };
 
 // Timeline points, one sequence for each queue: a pass waits until the other queue has signalled a
 // point, and signals a point of its own queue when it is complete. Points count from 1 in each
-// frame; 0 is the last point of the frame before. Value of a timeline semaphore: frame * (points of
-// a frame) + point.
+// frame; 0 is the last point of the previous frame. Value of a timeline semaphore: frame * (points
+// of a frame) + point.
 inline constexpr uint32_t no_point = 0xffffffffu;
 
 struct PlanAccess { // one bound port of one pass
@@ -220,7 +220,7 @@ struct Reason {
     overwritten_in_place, // this frame overwrites frame a after its last read; b: 1 by the same
                           // pass
     aliases_history, // of resource a; b: 0 before its write, 1 after its oldest frame's last read
-    // of a barrier; b: 1 if the earlier access was in the frame before
+    // of a barrier; b: 1 if the earlier access was in the previous frame
     from_host,       // the first access to resource a, which the host passed in
     oldest_instance, // of resource a becomes this frame's
     first_use,       // of resource a

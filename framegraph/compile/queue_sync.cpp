@@ -54,7 +54,7 @@ void QueueSync::add_orderings(const Graph& graph, const Activation& active, Repo
 
 void QueueSync::assign_points(Plan& plan) {
   // By queue, encoded as in `waits`: the last pass that the queue has waited for so far. That wait
-  // includes all earlier passes and the frame before.
+  // includes all earlier passes and the previous frame.
   std::array<uint32_t, 2> waited{0, 0};
   uint32_t last_of_main = 0, last_of_async = 0; // that the next frame waits for
   std::vector<uint8_t> awaited(plan.passes.size(), 0);
@@ -67,9 +67,9 @@ void QueueSync::assign_points(Plan& plan) {
     const Queue queue = plan.passes[position].queue;
     uint32_t& wait = waits[position];
     uint32_t& before = waited[queue_index(queue)];
-    // No wait in this frame implies the frame before yet.
+    // No wait in this frame implies the previous frame yet.
     const bool frame_before = waits_frame_before[position] != 0 && std::max(wait, before) <= 1;
-    // In the frame before, the async queue has waited for the passes up to awaited_by_async.
+    // In the previous frame, the async queue has waited for the passes up to awaited_by_async.
     if (frame_before && queue == Queue::async && waits_frame_before[position] > awaited_by_async) {
       wait = 1;
       last_of_main = std::max(last_of_main, waits_frame_before[position]);
@@ -111,7 +111,7 @@ void QueueSync::find_round_trips(const Plan& plan) {
   };
   std::array<Complete, 2> known{};               // by queue that knows
   std::array<std::vector<Point>, 2> signalled{}; // in this frame
-  std::array<Point, 2> last{};                   // of the frame before
+  std::array<Point, 2> last{};                   // of the previous frame
   round_trips.assign(count, {});
   for (const size_t begin : {size_t{0}, count, 2 * count}) {
     const auto wait = [&](Queue queue, uint32_t point) {

@@ -32,7 +32,7 @@ struct OwnQueueWait { // what a barrier waits for on its own queue
 struct QueueSync {
   bool two_queues = false;
   // By position: position + 2 of the last pass of the other queue that the pass waits for, in this
-  // frame and in the frame before. 1: all of the frame before. 0: none.
+  // frame and in the previous frame. 1: all of the previous frame. 0: none.
   std::vector<uint32_t> waits, waits_frame_before;
   std::vector<LastAccess> last_access, last_access_at_frame_end; // by object
   std::vector<OwnQueueWait> draft_waits;                         // by draft

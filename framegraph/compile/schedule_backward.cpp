@@ -125,10 +125,10 @@ void report_cycle(const Graph& graph, std::vector<uint8_t> unsorted,
   std::string names;
   for (const Edge* edge : cycle)
     names += fmt::format("'{}' -> ", name_of(graph, edge->before));
-  auto& diagnostic = report.diagnostics.add(DiagnosticId::pass_cycle,
-                                            graph.passes[cycle.front()->before.value].where,
-                                            fmt::format("passes wait for each other: {}'{}'", names,
-                                                        name_of(graph, cycle.front()->before)));
+  auto& diagnostic = report.diagnostics.add(
+      DiagnosticId::pass_cycle, graph.passes[cycle.front()->before.value].where,
+      fmt::format("dependency cycle between passes: {}'{}'", names,
+                  name_of(graph, cycle.front()->before)));
   for (const Edge* edge : cycle)
     diagnostic.related.emplace_back(graph.passes[edge->after.value].where, explain(graph, *edge));
 }

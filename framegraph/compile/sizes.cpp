@@ -59,7 +59,7 @@ struct SizeResolver {
       names += fmt::format("{}'{}'", at == start ? "" : " -> ", name_of(graph, *at));
     auto& diagnostic =
         report.diagnostics.add(DiagnosticId::size_cycle, graph.resources[start->value].where,
-                               fmt::format("sizes refer to each other in a circle: {}", names));
+                               fmt::format("circular size dependency: {}", names));
     for (auto at = start + 1; at + 1 < chain.end(); ++at)
       diagnostic.related.emplace_back(graph.resources[at->value].where,
                                       fmt::format("'{}' is declared here", name_of(graph, *at)));

@@ -36,8 +36,8 @@ struct PlanDiff {
 
 PlanDiff diff_plans(const SavedPlan& a, const SavedPlan& b);
 
-// Returns text for people: '-' only in a, '+' only in b, '~' in both. Sections without differences
-// are omitted. `name_a` and `name_b` say where the plans come from.
+// Returns human-readable text: '-' only in a, '+' only in b, '~' in both. Sections without
+// differences are omitted. `name_a` and `name_b` say where the plans come from.
 std::string plan_diff_text(const PlanDiff& diff, std::string_view name_a, std::string_view name_b);
 // Returns JSON for programs; docs/plans.md describes the layout.
 std::string plan_diff_json(const PlanDiff& diff, std::string_view name_a, std::string_view name_b);

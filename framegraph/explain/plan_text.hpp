@@ -1,5 +1,5 @@
 #pragma once
-// Writes the plan as text for people: what runs, what waits for what and why, and the memory
+// Writes the plan as human-readable text: what runs, what waits for what and why, and the memory
 // layout.
 
 #include "framegraph/compile/plan.hpp"

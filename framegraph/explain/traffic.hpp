@@ -10,7 +10,7 @@ namespace dermis {
 // Properties of a picture that a plan does not contain, as fractions.
 struct TrafficAssumptions {
   double covered = 0.5; // of the view's pixels: pixels to which the effect applies
-  double flagged = 0.5; // of the texels of a port with Touched::flagged
+  double flagged = 0.5; // of the texels of a port with AccessExtent::flagged
   // The same in images of at least a quarter of the view's texels, where fewer are next to edges.
   double flagged_fine = 0.1;
 };
@@ -24,7 +24,7 @@ struct PassTraffic { // bytes per covered pixel of the view
 // - Image: bytes per texel, times the texels of the port's mips and layers.
 // - Buffer: its bytes, times the texels of the largest image that the pass writes per pixel of the
 //   view (a coarse level reads only its part of a list).
-// - A dispatch over a list accesses the covered fraction, as do ports with Touched::covered.
+// - A dispatch over a list accesses the covered fraction, as do ports with AccessExtent::covered.
 // - An updated resource counts as read and as written.
 // Not counted: indirect arguments, acceleration structures, constants, tables, counters, passes of
 // the host, and the fallback of an invalid history.

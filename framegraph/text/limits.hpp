@@ -1,5 +1,5 @@
 #pragma once
-// Limits the size of input texts, so that a hostile file costs bounded memory and time.
+// Limits the size of input text, so that a hostile file costs bounded memory and time.
 // docs/format.md lists the limits.
 
 #include <cstddef>

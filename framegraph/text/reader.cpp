@@ -65,8 +65,9 @@ std::optional<int64_t> read_integer(const Document& document, NodeId node, std::
   if (!expect_kind(document, node, what, NodeKind::integer, diagnostics)) return std::nullopt;
   const int64_t value = document[node].integer;
   if (value >= minimum && value <= maximum) return value;
-  diagnostics.add(DiagnosticId::out_of_range, document.where(node),
-                  fmt::format("{} is {}; it must lie in {} .. {}", what, value, minimum, maximum));
+  diagnostics.add(
+      DiagnosticId::out_of_range, document.where(node),
+      fmt::format("{} is {}; expected a value in {} .. {}", what, value, minimum, maximum));
   return std::nullopt;
 }
 
@@ -75,8 +76,9 @@ std::optional<double> read_number(const Document& document, NodeId node, std::st
   if (!expect_kind(document, node, what, NodeKind::real, diagnostics)) return std::nullopt;
   const double value = document[node].real;
   if (value >= minimum && value <= maximum) return value;
-  diagnostics.add(DiagnosticId::out_of_range, document.where(node),
-                  fmt::format("{} is {}; it must lie in {} .. {}", what, value, minimum, maximum));
+  diagnostics.add(
+      DiagnosticId::out_of_range, document.where(node),
+      fmt::format("{} is {}; expected a value in {} .. {}", what, value, minimum, maximum));
   return std::nullopt;
 }
 

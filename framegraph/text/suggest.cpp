@@ -46,7 +46,7 @@ std::string_view nearest(std::string_view word, std::span<const std::string_view
   for (std::string_view candidate : candidates) {
     if (candidate.empty() || candidate.size() > longest_compared) continue;
     const size_t distance = edit_distance(word, candidate, best_distance - 1);
-    // A word that shares no characters with the candidate is no typing mistake.
+    // A word that shares no characters with the candidate is not a typing mistake.
     if (distance < best_distance && distance < std::max(word.size(), candidate.size())) {
       best_distance = distance;
       best = candidate;

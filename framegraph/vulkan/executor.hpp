@@ -98,7 +98,7 @@ enum class HistoryReason : uint8_t {
   switched,    // frames ran with another plan
   left_out     // a frame ran without some passes: FrameInput::left_out
 };
-// Returns a static string for people, e.g. "camera cut". Free-threaded.
+// Returns a static human-readable string, e.g. "camera cut". Free-threaded.
 const char* history_reason_text(HistoryReason reason);
 // Returns the text for a history that is valid again, e.g. "valid since a camera cut". `lost` is
 // why it was last invalid. Free-threaded.
@@ -163,7 +163,7 @@ struct ExecutorInput {
   // null: the executor compiles all kernels itself
   KernelStore* kernel_store = nullptr;
   // Values that FrameInput::settings may have, one per Graph::settings each: the executor creates
-  // their pipelines. Settings that are no constants of kernels may also differ. Empty: only the
+  // their pipelines. Settings that are not constants of kernels may also differ. Empty: only the
   // plan's values.
   std::span<const std::vector<SettingValue>> settings{};
   HistoryReason history = HistoryReason::first_frame; // why histories start invalid

@@ -42,6 +42,10 @@ struct Case {
   DiagnosticId id = DiagnosticId::in_place_race;
 };
 
+void PrintTo(const Case& one, std::ostream* out) {
+  *out << one.name;
+}
+
 struct Outcome {
   Diagnostics diagnostics;
   std::optional<Graph> graph;

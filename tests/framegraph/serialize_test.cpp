@@ -56,7 +56,7 @@ TEST(SavedPlan, EqualInputs_GiveEqualBytes) {
     EXPECT_EQ(file_of(seed), file_of(seed));
 }
 
-TEST(SavedPlan, KeepsNumbersOf64Bits) {
+TEST(SavedPlan, Preserves64BitIntegers) {
   const GraphBuilder builder = random_graph(3);
   SavedPlan plan = saved(builder.input());
   plan.key.order_seed = 0xfedcba9876543210ull;

@@ -41,7 +41,7 @@ inline void expect_only(const Diagnostics& diagnostics, DiagnosticId id, uint32_
     EXPECT_NE(whole.find(word), std::string::npos) << word << "\n" << whole;
 }
 
-// Expects that the text is no document, for one reason as in expect_only().
+// Expects that the text is not a document, for one reason as in expect_only().
 inline void expect_rejected(const std::string& text, DiagnosticId id, uint32_t line,
                             uint32_t column, const std::vector<std::string>& words = {}) {
   const Parsed parsed = parse(text);

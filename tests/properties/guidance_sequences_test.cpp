@@ -131,7 +131,7 @@ Sequence plane_of_noise(uint32_t frames) {
   return properties::standing_still(std::move(sequence), frames);
 }
 
-// A group of a GPU runs as long as its pixel with most samples.
+// A group of a GPU runs as long as its pixel with the most samples.
 TEST_F(GuidedSequence, PooledTile_HasOneSampleCount) {
   constexpr uint32_t frames = 6, side = 128, tile = 8;
   const Sequence still = plane_of_noise(frames);

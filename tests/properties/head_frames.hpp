@@ -1,7 +1,6 @@
 #pragma once
 // Heads in perspective, in colour: the scanned head and the sculpted bust in three framings, and
-// errors by kind of pixel. The definitions of framings, edges and sure pixels are those of the
-// notes with the acceptance numbers.
+// errors by kind of pixel.
 
 #include "tests/properties/plane.hpp"
 
@@ -48,7 +47,6 @@ protected:
   static dermis::subsurface::SapResult<float> cpu_kernel(const dermis::tools::CapturedFrame& frame,
                                                          dermis::subsurface::SapVariant variant,
                                                          uint32_t first_layered = 1);
-
 
   dermis::tools::CapturedFrame frame_;
   dermis::tools::Reference reference_;

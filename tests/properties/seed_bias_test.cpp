@@ -1,6 +1,6 @@
 // Measures the bias of the published choices, each alone and all together (docs/papers.md, "As
-// published"): the error that remains in the mean of any number of frames. Random light shows even
-// the smallest displacement of a kernel.
+// published"): the error that remains in the average of any number of frames. Random light shows
+// even the smallest displacement of a kernel.
 #include "tests/properties/noise.hpp"
 
 #include <cmath>

@@ -27,7 +27,7 @@ for suite in "${suites[@]}"; do
   program=$build/tests/test_${suite%%:*}
   [[ -x $program ]] || fail "there is no suite '$suite': $program is not built"
   [[ $suite =~ ^[a-z_]+(:[1-9][0-9]*/[1-9][0-9]*)?$ ]] ||
-    fail "'$suite' is no suite, nor a part of one such as 'properties:2/8'"
+    fail "'$suite' is not a suite or a part of one, such as 'properties:2/8'"
 done
 of_decisions='Choice.*:Frontier.*:Probe.*'
 seconds=1800       # per suite or part of a suite

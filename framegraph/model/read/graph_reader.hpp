@@ -29,7 +29,7 @@ struct GraphReader {
   std::map<std::string, PassId, std::less<>> pass_names;
   // Declared with errors; anything that depends on them is not checked.
   std::vector<bool> broken_settings, broken_resources;
-  // Some names could not be read, so an unknown name may be among them and is no error.
+  // Some names could not be read, so an unknown name may be among them and is not an error.
   bool unknown_settings = false, unknown_resources = false;
   bool unknown_writes = false; // some pass writes something that could not be read
   // By resource: index into Diagnostics::list of its format error, to which further ports are

@@ -61,8 +61,8 @@ void collect(GraphReader& reader, PassId id, std::vector<Producers>& all) {
     producers.any = true;
     if (continues) continue;
     producers.fresh = true;
-    // Two producers are no error if one has a `when`, since they may exclude each other, or if its
-    // port is unknown, since that port may update the earlier contents.
+    // Two producers are not an error if one has a `when`, since they may exclude each other, or if
+    // its port is unknown, since that port may update the earlier contents.
     const bool sometimes = reader.document.find(reader.pass_nodes[id.value], "when").valid();
     // The compiler checks ranges of images, because it knows how many mips and layers there are.
     if (sometimes || binding.port == unknown_port || resource.origin == Origin::imported ||

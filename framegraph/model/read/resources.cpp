@@ -35,7 +35,7 @@ bool read_format(GraphReader& reader, NodeId node, const std::string& what, Form
     for (Format format : depth_class)
       add(format);
   } else {
-    add(static_cast<Format>(*word)); // words follow the enumeration, whose value 0 is no format
+    add(static_cast<Format>(*word)); // words follow the enumeration, whose value 0 is not a format
   }
   return true;
 }

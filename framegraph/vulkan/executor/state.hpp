@@ -84,7 +84,7 @@ struct ViewTables::State {
 
 // Descriptor set 1.
 struct Environment {
-  uint64_t constants_bytes = 0;  // 0: binding 0 is no uniform buffer
+  uint64_t constants_bytes = 0;  // 0: binding 0 is not a uniform buffer
   uint64_t constants_stride = 0; // from one frame in flight to the next
   uint64_t counters_bytes = 0;   // 0: no binding has counters
   uint64_t counters_offset = 0, counters_stride = 0;

@@ -18,7 +18,7 @@ struct Budget {
   double ms = 0;         // device time per frame; 0: the choices take their defaults
   double percentile = 0; // fraction of frames within the budget; 0: the library's
   Trials trials = Trials::always;
-  bool deterministic = false; // decides by the calibration only: equal on every machine
+  bool deterministic = false; // decides by the calibration only
   NamedText calibration = {}; // JSON, as of RenderSummary::calibration; "": the library's
   NamedText errors = {};      // JSON of an error table; "": the library's
 };

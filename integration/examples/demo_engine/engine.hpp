@@ -118,8 +118,8 @@ struct GraphInputs {
   FloatImage profile;  // 1: id, 0 = no subsurface
   FloatImage velocity; // 2: pixels, now - previous, +x right, +y down, without jitter
   FloatImage specular; // 3: reflected light, not an input of the graph
-  // For the light with most transmission from behind: thickness of the object along its direction,
-  // metres (1), and irradiance on the far side (3).
+  // For the light with the most transmission from behind: thickness of the object along its
+  // direction, metres (1), and irradiance on the far side (3).
   FloatImage thickness, back_lighting;
 };
 
@@ -162,7 +162,7 @@ struct FrameHistory {
 struct FrameOutputs {
   uint32_t frame = 0;   // first_frame .. first_frame + frames - 1
   double seconds = 0.0; // scene time
-  bool cut = false;     // the camera has jumped since the frame before
+  bool cut = false;     // the camera has jumped since the previous frame
   float exposure = 1.0f;
   FrameCamera camera;
   GraphInputs inputs;

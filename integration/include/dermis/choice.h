@@ -15,7 +15,7 @@
 extern "C" {
 #endif
 
-#define DERMIS_BUDGET_DETERMINISTIC 0x1u /* no timestamps: equal choices on every machine */
+#define DERMIS_BUDGET_DETERMINISTIC 0x1u /* no timestamps: equal calibrations give equal choices */
 /* Trials run a configuration for a few frames to measure its time, and may exceed the budget.
  * Default: at any time. TRIALS_AT_CUTS: only in frames with DERMIS_FRAME_RESET_HISTORY. NO_TRIALS:
  * never. */
@@ -49,15 +49,15 @@ DERMIS_API dermis_result DERMIS_CALL dermis_graph_set_budget(
     dermis_graph graph, const dermis_budget* budget, dermis_report* report);
 
 /* Work that a frame did not need (dermis_frame_report.skips). */
-#define DERMIS_SKIP_NO_MATERIAL 0x1u  /* no profile: passes that scatter are not in the plan */
-#define DERMIS_SKIP_NO_BOUNDS 0x2u    /* empty bounds: no kernel that scatters ran */
+#define DERMIS_SKIP_NO_MATERIAL 0x1u  /* no profile: the plan has no passes that scatter */
+#define DERMIS_SKIP_NO_BOUNDS 0x2u    /* the bounds are empty: no kernel that scatters ran */
 #define DERMIS_SKIP_NOTHING_SEEN 0x4u /* no pixel with subsurface: 0 groups are dispatched */
 #define DERMIS_SKIP_SUBPIXEL 0x8u     /* tiles that scatter less than a pixel were copied */
 #define DERMIS_SKIP_UNIFORM_LIGHT 0x10u  /* tiles in uniform light were copied */
 #define DERMIS_SKIP_HISTORY 0x20u     /* history was invalid, so it was not read */
 
-/* The choice for one frame and its result, for a host to show or log. Strings live until the next
- * reload, resize, set_setting, set_budget or destroy. */
+/* The choice for one frame and its result, for a host to show or log. Strings are valid until the
+ * next reload, resize, set_setting, set_budget or destroy. */
 typedef struct dermis_frame_report {
   size_t struct_size;
   uint64_t frame_index;      /* of the frame described here */
@@ -104,8 +104,8 @@ typedef struct dermis_frame_statistics {
   /* Fraction of the surface within reach of scattering that leaves the pixels' tangent planes, by
    * subsurface.classify with the setting `relief`; negative: not counted. */
   float mean_relief;
-  /* Measured error, by subsurface.probe (configs/overlays/probe.json). */
-  uint32_t probed_tiles;  /* 0: error unknown */
+  /* Measured error, by subsurface.probe. */
+  uint32_t probed_tiles;  /* 0: error of this frame unknown */
   float probed_rmse;      /* noisy; linear luminance times dermis_frame.exposure */
   float probed_rmse_low;  /* lower end of the 95 % confidence interval */
   float probed_rmse_high; /* upper end; infinity if one tile was probed */

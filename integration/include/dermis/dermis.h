@@ -259,7 +259,7 @@ typedef struct dermis_context_desc {
   uint32_t abi_version;      /* DERMIS_ABI_VERSION */
   uint32_t flags;            /* DERMIS_CONTEXT_.. */
   uint32_t frames_in_flight; /* 1..8; 0 = 2 */
-  uint32_t queue_family;     /* of your command buffers; needs compute, not graphics */
+  uint32_t queue_family;     /* of your command buffers; must support compute */
   VkInstance instance;
   VkPhysicalDevice physical_device;
   VkDevice device;
@@ -283,8 +283,8 @@ DERMIS_API dermis_result DERMIS_CALL dermis_context_create(
  * recorded through the context, and must still exist. Graphs that still exist are destroyed and
  * logged. NULL is ignored. Costs: time. Thread: exclusive. */
 DERMIS_API void DERMIS_CALL dermis_context_destroy(dermis_context context);
-/* Returns the last failure on this thread; NULL if there was none. A call that succeeds keeps it.
- * The text lives until the next Dermis call on this thread. Costs: none. Thread: any. */
+/* Returns the last failure on this thread; NULL if there was none. A successful call does not clear
+ * it. The text is valid until the next Dermis call on this thread. Costs: none. Thread: any. */
 DERMIS_API const char* DERMIS_CALL dermis_last_error(void);
 
 /* ---- reports --------------------------------------------------------------------------------- */
@@ -308,7 +308,7 @@ DERMIS_API void DERMIS_CALL dermis_report_destroy(dermis_report report);
 typedef struct dermis_source {
   size_t struct_size;
   const char* name; /* for messages only, for example a file name; may be NULL */
-  const char* text; /* need not end in 0 */
+  const char* text; /* need not be null-terminated */
   size_t length;    /* bytes */
 } dermis_source;
 #define DERMIS_SOURCE_INIT {sizeof(dermis_source), NULL, NULL, 0}
@@ -423,7 +423,7 @@ typedef struct dermis_slot {
   size_t struct_size;
   uint32_t id;               /* for the binding */
   uint32_t required;         /* 0: may stay unbound if named so at creation */
-  const char* name;          /* lives until the next reload, resize, set_setting or destroy */
+  const char* name;          /* valid until the next reload, resize, set_setting or destroy */
   uint32_t written;          /* 1: the graph writes it */
   uint32_t read;             /* 1: the graph reads its contents */
   VkFormat format;           /* that the plan was compiled for */
@@ -485,14 +485,14 @@ typedef enum dermis_history_reason {
   DERMIS_HISTORY_CUT = 1,           /* DERMIS_FRAME_RESET_HISTORY */
   DERMIS_HISTORY_RESIZED = 2,       /* and it is not declared "on_resize": "rescale" */
   DERMIS_HISTORY_RELOADED = 3,      /* the graph before the reload has no matching history */
-  DERMIS_HISTORY_OTHER_PLAN = 4,    /* the plan of the frame before has no matching history */
-  DERMIS_HISTORY_LEFT_OUT = 5,      /* the frame before had nothing to scatter */
+  DERMIS_HISTORY_OTHER_PLAN = 4,    /* the plan of the previous frame has no matching history */
+  DERMIS_HISTORY_LEFT_OUT = 5,      /* the previous frame had nothing to scatter */
   DERMIS_HISTORY_REASON_FORCE_32BIT = 0x7fffffff
 } dermis_history_reason;
 
 typedef struct dermis_history {
   size_t struct_size;
-  const char* name;             /* lives until the next reload, resize, set_setting or destroy */
+  const char* name;             /* valid until the next reload, resize, set_setting or destroy */
   uint32_t valid;               /* 1: the next frame reads the contents, unless it is a cut */
   uint32_t age;                 /* number of consecutive frames in it; 0 if it is not valid */
   dermis_history_reason reason; /* why it is not valid, or why it last was not */
@@ -755,9 +755,9 @@ typedef enum dermis_depth_kind {
  * view space is left-handed. All matrices of a frame and normal images use the same view space.
  * Matrices that contradict the flag, each other or the depth range (all of it behind the camera)
  * return DERMIS_ERROR_ARGUMENT. clip_from_view is the matrix that the picture was rendered with;
- * jitter_x and jitter_y state its sub-pixel shift. The previous matrices are those of the frame
- * before; if they are no projection (all 0), histories that follow surfaces restart in each
- * frame. */
+ * jitter_x and jitter_y state its sub-pixel shift. The previous matrices are those of the previous
+ * frame; if they are not projection matrices (all 0), histories that follow surfaces restart in
+ * each frame. */
 typedef struct dermis_frame {
   size_t struct_size;
   VkCommandBuffer command_buffer; /* recording, outside a render pass, of the context's family */

@@ -1,5 +1,5 @@
 #pragma once
-// Formats text for people: tables, units, colour and progress.
+// Formats human-readable text: tables, units, colour and progress.
 
 #include <chrono>
 #include <cstdint>

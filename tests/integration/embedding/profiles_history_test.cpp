@@ -17,6 +17,10 @@ struct HistoryCase {
   bool accumulated;
 };
 
+void PrintTo(const HistoryCase& one, std::ostream* out) {
+  *out << one.name;
+}
+
 struct ProfilesOfHistories : TwoViewsTest, ::testing::WithParamInterface<HistoryCase> {
   static constexpr uint32_t side = 48;
 

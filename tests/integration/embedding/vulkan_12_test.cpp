@@ -37,8 +37,7 @@ struct Vulkan12 : CameraTest {
     }
     InFlightTest::TearDown(); // No message of the validation layer.
     graphs.clear();
-    context = nullptr;
-    host.reset();
+    CameraTest::TearDownTestSuite(); // Also the contexts, which belong to the device.
     return out;
   }
 };

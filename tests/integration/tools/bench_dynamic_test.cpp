@@ -204,7 +204,7 @@ TEST(BenchDynamic, SumOfLights_ReferenceIsTheSum) {
   ASSERT_EQ(combined->pixels, computed->pixels);
   for (size_t i = 0; i < computed->light.size(); ++i)
     EXPECT_NEAR(combined->light[i], computed->light[i], 1e-5 * 20); // Floats, for light up to 20.
-  // A pixel that is no sum of known light needs a new reference.
+  // A pixel that is not a sum of known light needs a new reference.
   frame.lighting.values[300] += 1;
   ASSERT_TRUE(make_reference_of_still(quiet, frame, "truth", 64, "", known));
   EXPECT_EQ(known.known.size(), 3u);

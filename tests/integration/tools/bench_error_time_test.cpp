@@ -80,10 +80,10 @@ TEST_F(BenchErrorTime, InvalidFile_IsReported) {
   const std::string file = write("bad.json", R"({ "dermis_benchmark": 1, "repetitions": 0,
   "scenes": [ { "scene": "nowhere", "framing": "close", "d_px": [1] } ] })");
   EXPECT_THAT(run({"bench", "error-time", "--file", file}),
-              FailsWith(1, "bad.json:1:", "'nowhere' is no generated scene", "repetitions"));
+              FailsWith(1, "bad.json:1:", "'nowhere' is not a generated scene", "repetitions"));
   const Outcome as_json = run({"bench", "error-time", "--file", file, "--json", path("out.json")});
   EXPECT_EQ(as_json.exit_code, 1);
-  EXPECT_THAT(as_json.out, HasSubstr("'nowhere' is no generated scene"));
+  EXPECT_THAT(as_json.out, HasSubstr("'nowhere' is not a generated scene"));
 }
 
 TEST_F(BenchErrorTime, NothingToMeasure_IsReported) {

@@ -114,13 +114,13 @@ TEST(RestirClaims, ExpectationsOfReuseAreChecked) {
                                  row_of("spatiotemporal", "delayed", 0.3),
                                  row_of("spatiotemporal", "sequential", 0.4)};
   expect_of_reuse(rows);
-  EXPECT_FALSE(rows[0].mse_at_most);
+  EXPECT_FALSE(rows[0].max_mse);
   const std::vector<double> at_most = {1.1, 1.1, 1.32, 0.5, 0.25, 0.33};
   for (size_t i = 0; i < at_most.size(); ++i)
-    EXPECT_NEAR(rows[i + 1].mse_at_most.value_or(0), at_most[i], 1e-12) << i;
+    EXPECT_NEAR(rows[i + 1].max_mse.value_or(0), at_most[i], 1e-12) << i;
   std::vector<RestirRow> sequential = {row_of("none", "", 1), row_of("spatial", "sequential", 2)};
   expect_of_reuse(sequential); // A sequence whose parts were not measured has no expectation.
-  EXPECT_FALSE(sequential[1].mse_at_most);
+  EXPECT_FALSE(sequential[1].max_mse);
 }
 
 struct BenchRestir : test::CommandTest {

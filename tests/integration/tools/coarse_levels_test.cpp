@@ -16,6 +16,10 @@ struct CoarseCase {
   bool full = false; // storage
 };
 
+void PrintTo(const CoarseCase& one, std::ostream* out) {
+  *out << one.name;
+}
+
 // Replaces the text from `begin` up to the next `end`.
 void replace(std::string& text, const std::string& begin, const std::string& end,
              const std::string& by) {

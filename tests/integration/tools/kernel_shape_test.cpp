@@ -12,6 +12,10 @@ struct ShapeCase {
   std::vector<std::string> graph;
 };
 
+void PrintTo(const ShapeCase& one, std::ostream* out) {
+  *out << one.name;
+}
+
 class KernelShape : public CommandTest, public ::testing::WithParamInterface<ShapeCase> {
 protected:
   // Renders with kernels of the shape into the folder `out`.

@@ -135,7 +135,7 @@ TEST_F(PlanFiles, GraphsDifferByTheirOwnPasses) {
   const Outcome diff = run({"plan", "diff", burley, "configs/graphs/separable.json"});
   EXPECT_THAT(diff, Succeeds("the plans differ", "- scatter: subsurface.burley", "+ ",
                              "subsurface.separable", "totals"))
-      << "differences are no failure unless requested";
+      << "differences are not a failure unless requested";
   EXPECT_EQ(run({"plan", "diff", burley, "configs/graphs/separable.json", "--exit-code"}).exit_code,
             1);
   const Outcome json = run({"plan", "diff", burley, "configs/graphs/separable.json", "--json"});

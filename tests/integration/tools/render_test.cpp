@@ -180,7 +180,7 @@ TEST_F(Render, ErrorsOfTheLibrary_AreDiagnosticsInJson) {
 }
 
 TEST_F(Render, ModelThatIsNotGltf_IsNamed) {
-  const std::string model = write("model.glb", "this is no model");
+  const std::string model = write("model.glb", "this is not a model");
   EXPECT_THAT(render("configs/scenes/head.json", burley, {"--model", model}),
               FailsWith(1, "model.glb"));
   EXPECT_THAT(files("out"), IsEmpty());

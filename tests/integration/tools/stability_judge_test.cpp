@@ -8,12 +8,12 @@
 namespace dermis::tools {
 namespace {
 
-StabilityCase white(Judged judged) {
+StabilityCase white(Metric metric) {
   StabilityCase made;
   made.name = "white";
   made.given = [](uint32_t) { return sound_frame(); };
   made.expected = [](uint32_t) { return 1.0; };
-  made.judged = judged;
+  made.metric = metric;
   return made;
 }
 
@@ -28,7 +28,7 @@ size_t index(uint32_t x, uint32_t y, uint32_t channel = 0) {
 }
 
 TEST(StabilityJudge, DetectsSinglePixelsAndNonFiniteValues) {
-  const StabilityCase requested = white(Judged::light);
+  const StabilityCase requested = white(Metric::light);
   StabilityAnswer found = white_answer();
   EXPECT_EQ(judge(requested, 0, found, nullptr).error, 0);
   found.light[index(3, 5, 1)] = 0.75f;
@@ -40,7 +40,7 @@ TEST(StabilityJudge, DetectsSinglePixelsAndNonFiniteValues) {
 
 // An error may be within its bound although light is negative.
 TEST(StabilityJudge, CountsNegativePixels) {
-  StabilityCase requested = white(Judged::light);
+  StabilityCase requested = white(Metric::light);
   requested.margin = 4;
   requested.finite_only = true;
   StabilityAnswer found = white_answer();
@@ -54,7 +54,7 @@ TEST(StabilityJudge, CountsNegativePixels) {
 }
 
 TEST(StabilityJudge, LightUpToTheBrightestIsAccepted) {
-  StabilityCase requested = white(Judged::light_beyond);
+  StabilityCase requested = white(Metric::light_beyond);
   requested.scale = 2;
   StabilityAnswer found = white_answer();
   found.light[index(3, 3)] = 0;
@@ -67,7 +67,7 @@ TEST(StabilityJudge, LightUpToTheBrightestIsAccepted) {
 }
 
 TEST(StabilityJudge, ChecksOnlyItsChannelsInsideTheMargin) {
-  StabilityCase requested = white(Judged::light);
+  StabilityCase requested = white(Metric::light);
   requested.first_channel = 2;
   requested.margin = 4;
   StabilityAnswer found = white_answer();
@@ -78,7 +78,7 @@ TEST(StabilityJudge, ChecksOnlyItsChannelsInsideTheMargin) {
 }
 
 TEST(StabilityJudge, NoExpectation_TheLightMustStay) {
-  StabilityCase requested = white(Judged::light);
+  StabilityCase requested = white(Metric::light);
   requested.expected = nullptr;
   requested.given = [](uint32_t) { return textured_frame(); };
   StabilityAnswer found{textured_frame().lighting.values, {}};
@@ -88,7 +88,7 @@ TEST(StabilityJudge, NoExpectation_TheLightMustStay) {
 }
 
 TEST(StabilityJudge, SeamsAreEdgesOfAllTiles) {
-  const StabilityCase requested = white(Judged::tile_edges);
+  const StabilityCase requested = white(Metric::tile_edges);
   StabilityAnswer all = white_answer(), pixel = white_answer(), columns = white_answer(),
                   rows = white_answer();
   for (uint32_t y = 0; y < stability_side; ++y)
@@ -107,15 +107,15 @@ TEST(StabilityJudge, SeamsAreEdgesOfAllTiles) {
 }
 
 TEST(StabilityJudge, SamplesAreComparedByTheirMeans) {
-  EXPECT_DOUBLE_EQ(judge(white(Judged::samples_at_edge), 0, white_answer(32), nullptr).error, 0.25);
-  EXPECT_DOUBLE_EQ(judge(white(Judged::samples_at_edge), 0, white_answer(8), nullptr).error, 1);
+  EXPECT_DOUBLE_EQ(judge(white(Metric::samples_at_edge), 0, white_answer(32), nullptr).error, 0.25);
+  EXPECT_DOUBLE_EQ(judge(white(Metric::samples_at_edge), 0, white_answer(8), nullptr).error, 1);
   const StabilityAnswer sound = white_answer(20);
-  StabilityCase other = white(Judged::mean_samples);
+  StabilityCase other = white(Metric::mean_samples);
   other.same_as = other.given;
   EXPECT_NEAR(judge(other, 0, white_answer(21), &sound).error, 0.05, 1e-12);
   StabilityAnswer uneven = white_answer(8);
   uneven.samples[index(20, 20)] = 64;
-  EXPECT_DOUBLE_EQ(judge(white(Judged::samples_in_tile), 0, uneven, nullptr).error,
+  EXPECT_DOUBLE_EQ(judge(white(Metric::samples_in_tile), 0, uneven, nullptr).error,
                    64 / (8 + 56.0 / 64));
 }
 
@@ -123,10 +123,10 @@ TEST(StabilityJudge, MissingSamples_Fail) {
   StabilityAnswer none = white_answer();
   none.samples.clear();
   const StabilityAnswer zero = white_answer(0);
-  for (const Judged judged :
-       {Judged::samples_at_edge, Judged::samples_in_tile, Judged::mean_samples})
+  for (const Metric metric :
+       {Metric::samples_at_edge, Metric::samples_in_tile, Metric::mean_samples})
     for (const StabilityAnswer& found : {none, zero})
-      EXPECT_GT(judge(white(judged), 0, found, &zero).error, 1e30);
+      EXPECT_GT(judge(white(metric), 0, found, &zero).error, 1e30);
 }
 
 } // namespace

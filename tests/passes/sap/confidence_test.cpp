@@ -85,7 +85,7 @@ TEST(SapConfidence, ErrorFallsWithConfidence) {
   constexpr std::array<double, bounds.size()> max_rmse = {12.1e-3, 5.5e-3, 5.0e-3, 1.6e-3, 1.9e-3};
   for (size_t i = 0; i < bounds.size(); ++i)
     EXPECT_LT(rmse[i], max_rmse[i]) << bounds[i];
-  // Pixels above 0.8 err as little as sure ones.
+  // Pixels above 0.8 have as little error as sure ones.
   EXPECT_GT(rmse[0], 1.5 * rmse[2]);
   EXPECT_GT(rmse[1], 2.5 * rmse[4]);
   EXPECT_GT(rmse[2], 2.5 * std::max(rmse[3], rmse[4]));

@@ -122,14 +122,14 @@ bool is_read(std::string_view extension) {
 }
 
 // Returns "" for a supported version of glTF, else the fault in `asset`.
-std::string wrong_version(const Json& file) {
+std::string version_error(const Json& file) {
   const auto asset = file.find("asset");
   if (asset == file.end() || !asset->is_object() || !asset->contains("version"))
     return "asset.version is missing; expected 2.0";
   for (const char* key : {"version", "minVersion"}) {
     const auto found = asset->find(key);
     if (found == asset->end()) continue;
-    if (!found->is_string()) return fmt::format("asset.{} is no text; expected \"2.0\"", key);
+    if (!found->is_string()) return fmt::format("asset.{} is not a string; expected \"2.0\"", key);
     const std::string& text = found->get_ref<const std::string&>();
     const bool digits =
         text.size() > 2 && text.find_first_not_of("0123456789", 2) == std::string::npos;
@@ -137,8 +137,8 @@ std::string wrong_version(const Json& file) {
     const bool needs_more = key == std::string_view("minVersion") && text != "2.0";
     if (!read || needs_more)
       return fmt::format(
-          "asset.{} is '{}', which is not read; expected 2.0: export the model as glTF 2.0", key,
-          text);
+          "asset.{} is '{}', which is not supported; expected 2.0: export the model as glTF 2.0",
+          key, text);
   }
   return "";
 }
@@ -147,10 +147,10 @@ std::string wrong_version(const Json& file) {
 std::string unknown_extensions(const Json& file) {
   const auto required = file.find("extensionsRequired");
   if (required == file.end()) return "";
-  if (!required->is_array()) return "extensionsRequired is no array";
+  if (!required->is_array()) return "extensionsRequired is not an array";
   std::string unknown;
   for (const Json& name : *required) {
-    if (!name.is_string()) return "extensionsRequired holds something that is no name";
+    if (!name.is_string()) return "extensionsRequired holds something that is not a string";
     const std::string& text = name.get_ref<const std::string&>();
     if (is_read(text)) continue;
     unknown += fmt::format("{}'{}'", unknown.empty() ? "" : ", ", text);
@@ -279,7 +279,7 @@ Result<tinygltf::Model> parse_gltf(const std::string& path, std::span<const std:
 
   Json json = Json::parse(text, nullptr, false);
   if (json.is_object()) { // otherwise tinygltf reports the fault
-    if (const std::string wrong = wrong_version(json); !wrong.empty()) return reject(wrong);
+    if (const std::string wrong = version_error(json); !wrong.empty()) return reject(wrong);
     if (const std::string unknown = unknown_extensions(json); !unknown.empty())
       return reject(unknown);
   }

@@ -27,7 +27,7 @@ enum class Target : uint8_t {
   specular,
   scattered, // light before albedo, if the graph exports it
   color,
-  // Thickness in metres for the light with most transmission from behind.
+  // Thickness in metres for the light with the most transmission from behind.
   thickness,
   back_lighting, // irradiance of this light on the far side
   sampling,      // the graph's `sampling` output, if requested
@@ -95,7 +95,7 @@ Result<std::unique_ptr<Renderer>> create_renderer(VulkanHost& host, const Scene&
 
 // Fills the frame's constants. The device must be idle.
 void set_frame(Renderer& renderer, const SceneState& state, Scattering scattering);
-// Resets the timestamps of the frame before; call this at the beginning of each frame.
+// Resets the timestamps of the previous frame; call this at the beginning of each frame.
 void record_new_times(Renderer& renderer, VkCommandBuffer commands);
 // Records shadow maps (those that changed), G-buffer, lighting. All targets are in the resting
 // state afterwards.

@@ -200,8 +200,9 @@ struct SceneReader {
   }
 };
 
-std::optional<Scene> interpret(const std::string& name, const Document& document,
-                               Diagnostics& diagnostics, std::span<const std::string> roots) {
+std::optional<Scene> read_scene_document(const std::string& name, const Document& document,
+                                         Diagnostics& diagnostics,
+                                         std::span<const std::string> roots) {
   if (!dermis::check_version(document, "dermis_scene", format_version, diagnostics))
     return std::nullopt;
   const uint32_t errors = diagnostics.count(dermis::Severity::error);
@@ -222,13 +223,13 @@ std::optional<Scene> interpret(const std::string& name, const Document& document
 std::optional<Scene> read_scene(const std::string& path, Diagnostics& diagnostics,
                                 std::span<const std::string> roots) {
   const auto document = dermis::read_document(path, diagnostics);
-  return document ? interpret(path, *document, diagnostics, roots) : std::nullopt;
+  return document ? read_scene_document(path, *document, diagnostics, roots) : std::nullopt;
 }
 
 std::optional<Scene> parse_scene(const std::string& name, std::string text,
                                  Diagnostics& diagnostics, std::span<const std::string> roots) {
   const auto document = dermis::parse_document(name, std::move(text), diagnostics);
-  return document ? interpret(name, *document, diagnostics, roots) : std::nullopt;
+  return document ? read_scene_document(name, *document, diagnostics, roots) : std::nullopt;
 }
 
 } // namespace demo

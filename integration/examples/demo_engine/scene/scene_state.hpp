@@ -26,7 +26,7 @@ struct ViewState {
 
 struct SceneState {
   double seconds = 0.0;
-  bool cut = false; // the camera has jumped since the frame before
+  bool cut = false; // the camera has jumped since the previous frame
   ViewState now, previous;
   std::vector<glm::dmat4> world, previous_world; // by object
   std::vector<uint32_t> first_layer;             // by light; no_layer: no shadow

@@ -124,7 +124,7 @@ void main() {
       if (type == light_spot)
         falloff *= smoothstep(light.direction.w, light.intensity.w, -dot(l, light.direction.xyz));
       float behind = -dot(n, l);
-      // Keeps the light from behind with most transmission.
+      // Keeps the light from behind with the most transmission.
       if (falloff > 0.0 && behind > 0.0) {
         // Metres; only ranks lights, because the graph's profile decides the transmission.
         const float reach = 0.005;

@@ -99,7 +99,7 @@ TEST_F(ModelFile, OtherVersionsAreRejectedByName) {
   EXPECT_THAT(rejected(with_asset(R"("version": "20.0")")).text,
               HasSubstr("asset.version is '20.0'"));
   EXPECT_THAT(rejected(with_asset(R"("version": 2.0)")).text,
-              HasSubstr("asset.version is no text"));
+              HasSubstr("asset.version is not a string"));
   EXPECT_THAT(rejected(with_asset(R"("generator": "a")")).text,
               HasSubstr("asset.version is missing"));
   EXPECT_THAT(rejected(with_asset(R"("version": "3.1", "minVersion": "3.0")")).text,

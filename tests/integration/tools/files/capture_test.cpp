@@ -443,6 +443,7 @@ struct WrongFrame {
   const char *from, *to; // Part of frame.json.
   DiagnosticId id;
   const char *pointer, *text;
+  friend void PrintTo(const WrongFrame& one, std::ostream* out) { *out << one.name; }
 };
 
 struct WrongFrames : Captures, ::testing::WithParamInterface<WrongFrame> {};

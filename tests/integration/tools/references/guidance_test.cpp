@@ -101,7 +101,7 @@ TEST(Guidance, VarianceOnTarget_KeepsTheSampleCount) {
       EXPECT_NEAR(required_samples(1e-4, count, {.kappa = kappa}), count, 1e-9);
 }
 
-TEST(Guidance, KappaOne_IsTheFormOfTheSlides) {
+TEST(Guidance, KappaOne_MatchesTheSlides) {
   const GuidanceSettings settings{.kappa = 1};
   for (const double variance : {2e-5, 1e-4, 3e-4}) {
     const double slides = 20 * (1 + (variance / 1e-4 - 1) * (2 / settings.eta - 1));

@@ -19,7 +19,8 @@ struct SapOptions {
 template <class Real> struct SapResult {
   std::vector<Real> light; // 3 per pixel; pixels without a profile keep their light.
   // In [0, 1]: the fraction of the surface around, weighted by the widest channel's kernel, that
-  // the levels represent at this pixel. Missing surface is no loss. 1 where nothing scatters.
+  // the levels represent at this pixel. Missing surface does not count as a loss. 1 where nothing
+  // scatters.
   std::vector<Real> confidence;
 };
 

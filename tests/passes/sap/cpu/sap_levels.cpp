@@ -21,8 +21,8 @@ constexpr double max_used_part = 0.27;
 
 // Fraction of a child that counts in the second layer even if the first has used the child.
 constexpr double min_shared = 0.25;
-// Returns the fraction that counts in addition for the mass if child and seed are parallel, because
-// they are two surfaces then; a bent one must not count twice. `bend`: difference of their slopes.
+// Returns the additional fraction of mass of a child that is parallel to the seed, because the two
+// are then separate surfaces. A child on a bend gets none. `bend`: difference of their slopes.
 template <class Real> Real parallel_share(Real bend_x, Real bend_y) {
   return std::max(Real(1 - min_shared) - std::abs(bend_x) - std::abs(bend_y), Real(0));
 }

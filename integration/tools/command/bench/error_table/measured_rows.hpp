@@ -19,7 +19,7 @@ struct ErrorTableRow {
 };
 
 struct MeasuredRows {
-  std::string device; // for people
+  std::string device; // human-readable
   std::vector<ErrorTableRow> rows;
 };
 

@@ -29,7 +29,7 @@ SceneRequest read_scene(BenchObject& entry) {
     entry.diagnostics.add(
         DiagnosticId::invalid_value,
         entry.document.where(entry.document.find(entry.reader.node(), "scene")),
-        fmt::format("'{}' is no generated scene; another scene needs a 'file'", request.scene));
+        fmt::format("'{}' is not a generated scene; another scene needs a 'file'", request.scene));
   return request;
 }
 
@@ -50,7 +50,7 @@ void read_error_time_root(BenchObject& root, ErrorTimeFile& file) {
   root.count("repetitions", file.repetitions, 0, 1000);
   root.count("warm_up", file.warm_up, 1, 100);
   root.count("row_milliseconds", file.row_milliseconds, 0, 1'000'000, Need::optional);
-  root.count("least_repetitions", file.min_repetitions, 1, 1000, Need::optional);
+  root.count("min_repetitions", file.min_repetitions, 1, 1000, Need::optional);
   root.count("subset", file.subset, 1, 1 << 24);
   root.file("skin", file.skin);
   root.flag("family", file.family);

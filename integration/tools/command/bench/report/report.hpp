@@ -1,6 +1,6 @@
 #pragma once
 // The results of a bench and their output formats: JSON and CSV for programs, one self-contained
-// HTML page for people. All benches use these structs.
+// HTML page. All benches use these structs.
 
 #include <concepts>
 #include <cstdint>

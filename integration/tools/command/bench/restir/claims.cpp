@@ -48,7 +48,7 @@ std::string expectation_text() {
 
 void expect_of_reuse(std::span<RestirRow> rows) {
   for (RestirRow& row : rows)
-    if (row.samples > 0) row.mse_at_most = limit_of(rows, row);
+    if (row.samples > 0) row.max_mse = limit_of(rows, row);
 }
 
 } // namespace dermis::tools

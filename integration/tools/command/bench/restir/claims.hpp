@@ -8,9 +8,9 @@
 
 namespace dermis::tools {
 
-// Describes the expectations for people.
+// Describes the expectations in words.
 std::string expectation_text();
-// Sets mse_at_most of the rows of one scene per number of paths:
+// Sets max_mse of the rows of one scene per number of paths:
 // - spatial reuse: the error without reuse
 // - temporal reuse: half of the error without reuse
 // - spatiotemporal reuse: half of the smaller error of no reuse and of spatial reuse with its shift

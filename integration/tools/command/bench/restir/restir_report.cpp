@@ -113,12 +113,11 @@ Suite restir_suite() {
        {"device_ms", "ms", &Row::device_ms, {4}},
        {"mse", "MSE", [](const Row& row) { return row.error.all.mse; }},
        {"mse_ratio_to_none_at_equal_time", "MSE at equal time / none", &Row::ratio_to_none},
-       {"mse_at_most", "MSE expected at most", &Row::mse_at_most, page},
+       {"max_mse", "MSE expected at most", &Row::max_mse, page},
        {"holds",
         "holds",
         [](const Row& row) {
-          return row.mse_at_most ? std::optional(row.error.all.mse <= *row.mse_at_most)
-                                 : std::nullopt;
+          return row.max_mse ? std::optional(row.error.all.mse <= *row.max_mse) : std::nullopt;
         },
         {.goal = Goal::required}},
        {"rmse_through", "RMSE through",

@@ -18,8 +18,8 @@ struct RestirRow {
   double device_ms = 0;       // median
   LightError error = {};      // mean of the counted frames
   std::optional<double> ratio_to_none = {};
-  std::optional<double> mse_at_most = {}; // expected limit (claims.hpp)
-  std::vector<float> light = {};          // of the last frame
+  std::optional<double> max_mse = {}; // expected limit (claims.hpp)
+  std::vector<float> light = {};      // of the last frame
   bool heat_map = false;
   const RestirScene* scene = nullptr; // set when the scene is complete
 };

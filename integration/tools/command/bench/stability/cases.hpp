@@ -16,7 +16,7 @@
 namespace dermis::tools {
 
 // The quantity of a run that is compared with the required result.
-enum class Judged : uint8_t {
+enum class Metric : uint8_t {
   light,           // largest error of a pixel
   light_rms,       // RMS error of a frame
   light_beyond,    // amount by which light is below 0 or above `scale`, in units of `scale`
@@ -27,7 +27,7 @@ enum class Judged : uint8_t {
 };
 
 // The techniques that a case applies to.
-enum class Asked : uint8_t {
+enum class AppliesTo : uint8_t {
   all,
   with_history, // techniques with history
   guided,       // techniques with an adaptive number of samples
@@ -43,8 +43,8 @@ struct StabilityCase {
   // profile keep their light.
   std::function<CapturedFrame(uint32_t frame)> same_as = nullptr;
   std::function<double(uint32_t frame)> expected = nullptr;
-  Judged judged = Judged::light;
-  Asked requested = Asked::all;
+  Metric metric = Metric::light;
+  AppliesTo applies_to = AppliesTo::all;
   double bound = 0;           // of the error, in units of `scale`
   double scale = 1;           // brightest light of the judged frames
   uint32_t first_channel = 0; // first judged channel

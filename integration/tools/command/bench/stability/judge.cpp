@@ -109,8 +109,8 @@ double samples_error(const StabilityCase& requested, const CapturedFrame& frame,
                      const StabilityAnswer& found, const StabilityAnswer* sound) {
   // the graph does not export samples
   if (found.samples.size() != frame.lighting.values.size()) return infinity;
-  if (requested.judged == Judged::samples_at_edge) return samples_at_edge(frame, found);
-  if (requested.judged == Judged::samples_in_tile) return samples_in_tile(frame, found);
+  if (requested.metric == Metric::samples_at_edge) return samples_at_edge(frame, found);
+  if (requested.metric == Metric::samples_in_tile) return samples_in_tile(frame, found);
   return sound != nullptr ? mean_samples(frame, found, *sound) : infinity;
 }
 
@@ -139,27 +139,27 @@ Judgement judge(const StabilityCase& requested, uint32_t t, const StabilityAnswe
                           y >= requested.margin && y + requested.margin < height;
       if (!finite || requested.finite_only || frame.profile[i] == 0 || !inside) continue;
       for (size_t c = requested.first_channel; c < 3; ++c)
-        if (requested.judged == Judged::light_beyond)
+        if (requested.metric == Metric::light_beyond)
           errors.add(x, y, beyond(double(found.light[3 * i + c]) / requested.scale));
         else
           errors.add(x, y,
                      (double(found.light[3 * i + c]) - double(expected[3 * i + c])) /
                          requested.scale);
     }
-  switch (requested.judged) {
-  case Judged::light:
-  case Judged::light_beyond:
+  switch (requested.metric) {
+  case Metric::light:
+  case Metric::light_beyond:
     judgement.error = errors.largest;
     break;
-  case Judged::light_rms:
+  case Metric::light_rms:
     judgement.error = std::sqrt(errors.squares.value());
     break;
-  case Judged::tile_edges:
+  case Metric::tile_edges:
     judgement.error = errors.edges();
     break;
-  case Judged::mean_samples:
-  case Judged::samples_at_edge:
-  case Judged::samples_in_tile:
+  case Metric::mean_samples:
+  case Metric::samples_at_edge:
+  case Metric::samples_in_tile:
     judgement.error = samples_error(requested, frame, found, sound);
     break;
   }

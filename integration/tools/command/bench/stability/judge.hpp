@@ -15,7 +15,7 @@ struct StabilityAnswer {
 struct Judgement {
   uint64_t nonfinite = 0; // pixels
   uint64_t negative = 0;  // number of finite pixels with a negative value
-  double error = 0;       // as defined by StabilityCase::judged
+  double error = 0;       // as defined by StabilityCase::metric
 };
 
 // Judges frame `t` of the case. `sound` is the result of `same_as`, if the case has it.

@@ -7,9 +7,9 @@
 namespace dermis::tools {
 namespace {
 
-bool judges_samples(Judged judged) {
-  return judged == Judged::mean_samples || judged == Judged::samples_at_edge ||
-         judged == Judged::samples_in_tile;
+bool judges_samples(Metric metric) {
+  return metric == Metric::mean_samples || metric == Metric::samples_at_edge ||
+         metric == Metric::samples_in_tile;
 }
 
 bool is_guided(const TechniqueRequest& request) {
@@ -29,7 +29,7 @@ demo::Result<std::vector<StabilityAnswer>> run_all(TechniqueRun& run,
                              reference ? DepthGiven::view_distance : requested.depth);
     if (!light) return light.error();
     StabilityAnswer answer{light.take(), {}};
-    if (judges_samples(requested.judged)) {
+    if (judges_samples(requested.metric)) {
       auto samples = run.sampling();
       if (!samples) return samples.error();
       answer.samples = samples.take();
@@ -43,11 +43,12 @@ demo::Result<std::vector<StabilityAnswer>> run_all(TechniqueRun& run,
 
 demo::Result<std::optional<StabilityRow>>
 run_case(TechniqueRun& run, const StabilityCase& requested, const std::string& name) {
-  if (requested.requested == Asked::guided && !is_guided(run.request()))
+  if (requested.applies_to == AppliesTo::guided && !is_guided(run.request()))
     return std::optional<StabilityRow>();
-  if (requested.requested == Asked::of_profile && run.request().technique == "separable_jimenez")
+  if (requested.applies_to == AppliesTo::of_profile &&
+      run.request().technique == "separable_jimenez")
     return std::optional<StabilityRow>();
-  if (requested.requested == Asked::with_history) {
+  if (requested.applies_to == AppliesTo::with_history) {
     if (auto once = run.scatter(requested.given(0)); !once) return once.error();
     if (run.history_bytes() == 0) return std::optional<StabilityRow>();
   }

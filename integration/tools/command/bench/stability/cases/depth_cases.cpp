@@ -84,7 +84,7 @@ StabilityCase depth_buffer(std::string_view name, View view, Range range, double
   return {.name = name,
           .given = make,
           .same_as = make,
-          .judged = Judged::light_rms,
+          .metric = Metric::light_rms,
           .bound = furnace, // a float step is 1 micrometre there, a thousandth of d
           .depth = DepthGiven::depth_buffer};
 }

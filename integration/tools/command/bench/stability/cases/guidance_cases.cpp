@@ -22,8 +22,8 @@ StabilityCase wakes_up() {
   return {.name = "samples_after_600_even_frames",
           .frames = comes + 3,
           .given = [](uint32_t frame) { return frame < comes ? sound_frame() : edge_frame(); },
-          .judged = Judged::samples_at_edge,
-          .requested = Asked::guided,
+          .metric = Metric::samples_at_edge,
+          .applies_to = AppliesTo::guided,
           .bound = 0.5,
           .first_judged = comes + 1,
           .large = true};
@@ -45,8 +45,8 @@ StabilityCase in_other_units() {
           .frames = 24,
           .given = with(16),
           .same_as = with(1),
-          .judged = Judged::mean_samples,
-          .requested = Asked::guided,
+          .metric = Metric::mean_samples,
+          .applies_to = AppliesTo::guided,
           .bound = 0.02};
 }
 
@@ -56,8 +56,8 @@ StabilityCase uneven() {
   return {.name = "samples_in_a_tile",
           .frames = 24,
           .given = [](uint32_t) { return edge_frame(); },
-          .judged = Judged::samples_in_tile,
-          .requested = Asked::guided,
+          .metric = Metric::samples_in_tile,
+          .applies_to = AppliesTo::guided,
           .bound = 8};
 }
 

@@ -24,7 +24,7 @@ StabilityCase velocity(std::string_view name, float value) {
           .frames = 4,
           .given = given,
           .expected = white,
-          .requested = Asked::with_history,
+          .applies_to = AppliesTo::with_history,
           .bound = furnace};
 }
 
@@ -49,7 +49,7 @@ StabilityCase striped(std::string_view name, std::array<Velocity, 3> broken) {
           .frames = 5,
           .given = with(true),
           .same_as = with(false),
-          .requested = Asked::with_history};
+          .applies_to = AppliesTo::with_history};
 }
 
 // Terraces on which pyramids have low confidence. First red light falls on a single pixel, where
@@ -73,7 +73,7 @@ StabilityCase red_comes() {
           .frames = 16,
           .given = given,
           .expected = [](uint32_t) { return double(level); },
-          .requested = Asked::with_history,
+          .applies_to = AppliesTo::with_history,
           .bound = largest_ratio - 1,
           .scale = level,
           .first_judged = comes};

@@ -54,7 +54,7 @@ std::vector<StabilityCase> random_cases() {
   StabilityCase anywhere = anything("anything_anywhere", Lighting::any);
   anywhere.finite_only = true;
   StabilityCase most_1 = anything("anything_under_light_up_to_1", Lighting::at_most_1);
-  most_1.judged = Judged::light_beyond;
+  most_1.metric = Metric::light_beyond;
   return {anywhere, anything("anything_under_even_light", Lighting::even), most_1};
 }
 

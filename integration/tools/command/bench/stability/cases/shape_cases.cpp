@@ -81,7 +81,7 @@ StabilityCase begins_to_scatter() {
   };
   return {.name = "d_begins_to_scatter",
           .given = given,
-          .requested = Asked::of_profile,
+          .applies_to = AppliesTo::of_profile,
           .bound = std::max(leaves, sample) + furnace};
 }
 

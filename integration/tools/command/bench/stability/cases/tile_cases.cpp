@@ -18,7 +18,7 @@ StabilityCase seams() {
   };
   return {.name = "tile_edges_in_a_ramp",
           .given = given,
-          .judged = Judged::tile_edges,
+          .metric = Metric::tile_edges,
           .bound = 0x1p-11, // one half float step below 1
           .margin = 32};    // 16 d: all but 4e-3 of a pixel's light comes from within
 }

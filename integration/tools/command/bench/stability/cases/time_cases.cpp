@@ -82,7 +82,7 @@ StabilityCase frame_number(std::string_view name, uint64_t index) {
           .frames = 3,
           .given = textured,
           .same_as = textured,
-          .judged = Judged::light_rms,
+          .metric = Metric::light_rms,
           // For light in 0.1..0.9: noise of two frames with 16 samples, 0.057 for the noisiest
           // technique.
           .bound = 0.08,
