@@ -445,7 +445,6 @@ struct WrongFrame {
   const char *pointer, *text;
   friend void PrintTo(const WrongFrame& one, std::ostream* out) { *out << one.name; }
 };
-
 struct WrongFrames : Captures, ::testing::WithParamInterface<WrongFrame> {};
 
 TEST_P(WrongFrames, AreRejectedWithThePlace) {
