@@ -14,7 +14,7 @@ struct Prior {
   double maximum = 1;      // in both directions
 };
 // The table is for other content if a technique deviates more. Light may have any unit.
-constexpr Prior technique_prior = {4, 4}, common_prior = {0, 1e4};
+constexpr Prior technique_prior = {2, 4}, common_prior = {0, 1e4};
 constexpr double outlier_limit = 3; // a frame counts at most this many times the known error
 constexpr int frames_of_a_step = 3; // that deviate more, in the same direction
 // Time after which a technique that does not run is worth another try.

@@ -46,9 +46,9 @@ TEST(ErrorCorrection, FindsTheFactorInNoisyProbes) {
     observe_error(correction, frame_of(1, std::pow(factor * expected, 2) * square));
   }
   // Tolerance: 25 frames of squares with a deviation of 2/sqrt(3) of their mean give 23 % of the
-  // square, so 12 % of the root. The table's 4 of 29 frames add 5 % of the root. The bound is two
+  // square, so 12 % of the root. The table's 2 of 27 frames add 3 % of the root. The bound is two
   // deviations plus the table's part.
-  EXPECT_NEAR(error_factor(correction, 1, content, 0), factor, factor * (2 * 0.12 + 0.06));
+  EXPECT_NEAR(error_factor(correction, 1, content, 0), factor, factor * (2 * 0.12 + 0.03));
   EXPECT_EQ(error_factor(correction, 0, content, 0), 1);
   EXPECT_EQ(error_factor(correction, -1, content, 0), 1);
 }
@@ -58,8 +58,8 @@ TEST(ErrorCorrection, Outlier_CountsAtMostThreeTimesTheEstimate) {
   for (int i = 0; i < 100; ++i)
     observe_error(correction, frame_of(0, expected * expected));
   observe_error(correction, frame_of(0, 1e6));
-  // One of 25 + 4 frames has nine times the square, the others have the expected square.
-  EXPECT_NEAR(error_factor(correction, 0, content, 0), std::sqrt((28 + 9.0) / 29), 0.02);
+  // One of 25 + 2 frames has nine times the square, the others have the expected square.
+  EXPECT_NEAR(error_factor(correction, 0, content, 0), std::sqrt((26 + 9.0) / 27), 0.02);
 }
 
 TEST(ErrorCorrection, MeasurementsHold_WhileOtherTechniquesRun) {

@@ -13,6 +13,7 @@ namespace {
 
 constexpr int frames = 600;
 constexpr double frame_s = 1.0 / 60;
+constexpr int probe_interval = 4;       // frames; the default of skin.json
 constexpr double worth_a_switch = 0.95; // of the error of the technique that runs
 
 // A technique on a scene.
@@ -87,9 +88,10 @@ double choose_by_measurements(const Scene& scene, size_t rows, double& switches)
       running = &best;
       ++switches;
     }
-    observe_error(correction, {running->row, running->measured * running->measured,
-                               scene.unscattered * scene.unscattered, running->expected,
-                               scene.expected_unscattered, scene.key, now_s});
+    if (i % probe_interval == 0)
+      observe_error(correction, {running->row, running->measured * running->measured,
+                                 scene.unscattered * scene.unscattered, running->expected,
+                                 scene.expected_unscattered, scene.key, now_s});
     if (i >= frames / 2) logs += std::log(running->measured) / (frames - frames / 2);
   }
   return std::exp(logs);
