@@ -37,6 +37,7 @@ const std::string tile_times = R"({ "dermis_calibration": 2, "device": "invented
   { "work": "subsurface.tile_histogram", "base_us": 0, "group_us": 0, "spread": 0 },
   { "work": "subsurface.select_tiles", "base_us": 0, "group_us": 0, "spread": 0 },
   { "work": "subsurface.tile_list", "base_us": 0, "group_us": 0, "spread": 0 },
+  { "work": "subsurface.probe texturing=post tiles=8 interval=4", "base_us": 0, "group_us": 0, "spread": 0 },
   { "work": "subsurface.export_scattered texturing=post leave_scattered=false", "base_us": 0, "group_us": 0, "spread": 0 },
   { "work": "subsurface.combine texturing=post result=color copied=unscattered", "base_us": 0, "group_us": 0, "spread": 0 } ] })";
 
