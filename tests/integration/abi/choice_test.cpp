@@ -98,6 +98,8 @@ TEST_F(Choice, SlotsOfOtherConfigurations_HaveTheirLayout) {
 
 TEST_F(Choice, DiscardAfterNewTables_NamesTheRightTechnique) {
   make();
+  ASSERT_OK(dermis_graph_set_setting(graph, "technique", "\"separable\"", nullptr));
+  make_images(graph);
   for (int i = 0; i < 3; ++i)
     run_frame();
   ASSERT_OK(reload_graph(graph, shipped_options("configs/graphs/skin.json")));
@@ -105,7 +107,7 @@ TEST_F(Choice, DiscardAfterNewTables_NamesTheRightTechnique) {
   record_unsubmitted(graph, discarded); // The new graph takes over.
   const std::string table = R"({ "dermis_errors": 2, "scenes": "invented",
     "unscattered": [[1, 0.001]], "techniques": [{ "name": "only", "rmse": [[1, 0.003]],
-    "pass_types": [{ "type": "subsurface.sap_gather" }] }] })";
+    "pass_types": [{ "type": "subsurface.separable" }] }] })";
   const dermis_source errors = source_of(table, "invented");
   dermis_budget budget = budget_of(0, 0);
   budget.errors = &errors;
@@ -114,6 +116,25 @@ TEST_F(Choice, DiscardAfterNewTables_NamesTheRightTechnique) {
   demo::ReportedFrame found;
   ASSERT_OK(demo::read_reported(dermis_graph_view(graph), discarded.frame_index - 1, found));
   EXPECT_STREQ(found.technique, "only");
+}
+
+TEST_F(Choice, TimesAreThoseOfTheNewestCompletedFrame) {
+  make();
+  set_budget(30);
+  run_frame();
+  const uint64_t first = last_frame;
+  const auto newest = [&](uint64_t completed) {
+    uint32_t count = 0;
+    EXPECT_OK(dermis_view_timings(dermis_graph_view(graph), completed, &count, nullptr));
+    std::vector<dermis_pass_timing> times(count, dermis_pass_timing DERMIS_PASS_TIMING_INIT);
+    EXPECT_OK(dermis_view_timings(dermis_graph_view(graph), completed, &count, times.data()));
+    return times.empty() ? 0 : times.front().frame_index;
+  };
+  EXPECT_EQ(newest(first), first);
+  set_budget(0.5f); // another plan
+  run_frame();
+  EXPECT_EQ(newest(first), first);
+  EXPECT_EQ(newest(last_frame), last_frame);
 }
 
 TEST_F(Choice, SwitchingPlans_ShowsTheRunningPlansPicture) {

@@ -52,24 +52,6 @@ struct Skip : DermisTest {
   }
 };
 
-// A frame with empty bounds runs another plan.
-TEST_F(Skip, TimesAreThoseOfTheNewestCompletedFrame) {
-  make();
-  run_frame();
-  const uint64_t first = last_frame;
-  const auto newest = [&](uint64_t completed) {
-    uint32_t count = 0;
-    EXPECT_OK(dermis_view_timings(dermis_graph_view(graph), completed, &count, nullptr));
-    std::vector<dermis_pass_timing> times(count, dermis_pass_timing DERMIS_PASS_TIMING_INIT);
-    EXPECT_OK(dermis_view_timings(dermis_graph_view(graph), completed, &count, times.data()));
-    return times.empty() ? 0 : times.front().frame_index;
-  };
-  EXPECT_EQ(newest(first), first);
-  run_frame(DERMIS_FRAME_BOUNDS);
-  EXPECT_EQ(newest(first), first);
-  EXPECT_EQ(newest(last_frame), last_frame);
-}
-
 TEST_F(Skip, NoProfile_EmptyPlanAndUnchangedLight) {
   make(false);
   no_subsurface();
