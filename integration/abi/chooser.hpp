@@ -42,8 +42,8 @@ struct FrameChoice {
   uint32_t switches = 0; // since the graph was created
   double budget_ms = 0;  // 0: no budget
   vulkan::Rectangle rectangle;
-  // First frame of the configuration after another. Excluded from estimates:
-  // drivers finish compiling kernels on first use, caches are cold, and histories begin.
+  // First frame after a switch of the configuration. Excluded from estimates: drivers finish
+  // compiling kernels on first use, caches are cold, and histories begin.
   bool begins = false;
   bool left_out = false; // empty bounds: passes that serve scattering did not run
   bool history_invalid = false;

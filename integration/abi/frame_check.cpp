@@ -128,8 +128,8 @@ dermis_result check_state(const dermis_view_t& view, uint32_t index, const Slot&
   return DERMIS_OK;
 }
 
-// An image without contents has none to hand over, and Vulkan allows no such transfer.
-bool is_empty_layout(VkImageLayout layout) {
+// Vulkan allows no barrier to these layouts, and so no ownership transfer in them.
+bool is_only_initial(VkImageLayout layout) {
   return layout == VK_IMAGE_LAYOUT_UNDEFINED || layout == VK_IMAGE_LAYOUT_PREINITIALIZED;
 }
 
@@ -157,15 +157,15 @@ dermis_result check_binding(const dermis_view_t& view, uint32_t index, const Slo
         log,
         "{}: bindings[{}].before.layout ('{}') is UNDEFINED, which discards what the graph reads",
         function, index, slot.name);
-  if (binding.before.transfer != 0 && is_empty_layout(binding.before.layout) &&
+  if (binding.before.transfer != 0 && is_only_initial(binding.before.layout) &&
       binding.before.queue_family != view.context->device.queue_family)
     return bad_argument(
         log,
         "{}: bindings[{}].before ('{}') transfers an image from another queue family in layout {}, "
-        "which has no contents to transfer; set transfer to 0",
+        "in which Vulkan allows no transfer; set transfer to 0",
         function, index, slot.name,
         binding.before.layout == VK_IMAGE_LAYOUT_UNDEFINED ? "UNDEFINED" : "PREINITIALIZED");
-  if (is_empty_layout(binding.after.layout))
+  if (is_only_initial(binding.after.layout))
     return bad_argument(
         log, "{}: bindings[{}].after.layout ('{}') is {}, to which an image cannot be transitioned",
         function, index, slot.name,

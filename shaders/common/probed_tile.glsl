@@ -18,7 +18,7 @@ shared uint listed_count;
 
 struct probed_tile {
   int tile;           // index in the render rectangle
-  float representing; // number of tiles with subsurface that the tile stands for
+  float represented;  // number of tiles with subsurface that the tile represents
 };
 
 // Returns whether this frame is probed: one in `interval` frames, at random, so that light that
@@ -28,9 +28,8 @@ bool is_frame_probed(int interval) {
          unit_from_hash(pcg3d(uvec3(frame.frame_index, 0u, 7u))).x * float(interval) < 1.0;
 }
 
-// Finds the tile that the run with the number of the workgroup provides; the frame has up to
-// `tiles` of them. Returns false if the run provides none. All invocations of the group, at least
-// 64, call the function.
+// Finds the probed tile of run gl_WorkGroupID.x; a frame has up to `tiles` of them. Returns false
+// if the run has none. All invocations of the group, at least 64, call the function.
 bool find_probed_tile(int tiles, int interval, out probed_tile found) {
   uint lane = gl_LocalInvocationIndex, run = gl_WorkGroupID.x, runs = gl_NumWorkGroups.x;
   found = probed_tile(0, 0.0);

@@ -144,7 +144,7 @@ void main() {
   barrier();
   if (lane != 0u)
     return;
-  found = (found + sums[quarter_lanes]) * selected.representing;
+  found = (found + sums[quarter_lanes]) * selected.represented;
   uint place = atomicAdd(counters.probe_count, 1u);
   if (place < counters.probes.length()) {
     counters.probes[place] =

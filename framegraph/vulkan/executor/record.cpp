@@ -27,9 +27,9 @@ RecordResult check_buffer(const State& state, const FrameInput& frame,
   constexpr VkDeviceSize indirect_alignment = 4;
   if ((resource.vk_usage & VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT) != 0 &&
       bound.offset % indirect_alignment != 0)
-    return reject("the buffer's offset is not a multiple of 4, as the arguments of an indirect "
-                  "dispatch need",
-                  resource.slot);
+    return reject(
+        "the buffer's offset is not a multiple of 4, which indirect dispatch arguments require",
+        resource.slot);
   return {};
 }
 

@@ -75,8 +75,7 @@ inline constexpr PassTypeSetting probed_tiles =
             "number of tiles per probed frame; the error is estimated at four pixels of each tile");
 inline constexpr PassTypeSetting probe_interval =
     integer("interval", 1, 1, 256, "frames",
-            "mean number of frames from one probed frame to the next, which are selected at "
-            "random");
+            "mean number of frames between probed frames, which are selected at random");
 
 // Samples.
 constexpr PassTypeSetting samples(int64_t standard, double minimum, std::string_view doc) {

@@ -15,8 +15,8 @@ namespace dermis::tools {
 // Returns the scenes of the family with this name, of this class or of this half.
 std::vector<const FamilyScene*> find_family_scenes(const std::string& name);
 
-// Keeps one graph per set of settings on the device, in which scene follows scene after a cut. One
-// thread. Destroy before the host.
+// Keeps one graph per set of settings on the device; each scene starts with a cut. One thread.
+// Destroy before the host.
 class StillRuns {
 public:
   // `skin`: profile of scenes with three different d.
