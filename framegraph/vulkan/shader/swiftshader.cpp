@@ -2,9 +2,12 @@
 
 #include "framegraph/vulkan/shader/spirv.hpp"
 
+#include <algorithm>
+#include <cstddef>
 #include <cstring>
 #include <map>
 #include <optional>
+#include <set>
 
 namespace dermis::vulkan {
 namespace {
@@ -69,11 +72,36 @@ private:
   std::map<uint32_t, bool> values_;
 };
 
+// Calls `visit(instruction)` in order. Returns false if the module is not SPIR-V.
+template <class Visit> bool for_each_instruction(std::span<const uint32_t> spirv, Visit visit) {
+  for (size_t at = spirv::header_words; at < spirv.size();) {
+    const uint32_t words = spirv[at] >> 16u;
+    if (words == 0 || words > spirv.size() - at) return false;
+    visit(spirv.subspan(at, words));
+    at += words;
+  }
+  return spirv.size() >= spirv::header_words;
+}
+
+// Labels of the blocks whose values depend on the block that control comes from.
+using Labels = std::set<uint32_t>;
+
+Labels labels_with_phi(std::span<const uint32_t> spirv) {
+  Labels labels;
+  uint32_t last_label = 0;
+  for_each_instruction(spirv, [&](Instruction one) {
+    if (operation_of(one) == spirv::op_label && one.size() > 1) last_label = one[1];
+    if (operation_of(one) == spirv::op_phi) labels.insert(last_label);
+  });
+  return labels;
+}
+
 // Adds an instruction to a module whose last instruction begins at `last`. Returns its position.
-size_t append(Instruction one, const Booleans& booleans, size_t last, std::vector<uint32_t>& out) {
+size_t append(Instruction one, const Booleans& booleans, const Labels& with_phi, size_t last,
+              std::vector<uint32_t>& out) {
   const bool branches = operation_of(one) == spirv::op_branch_conditional && one.size() > 3;
   const std::optional<bool> value = branches ? booleans.value_of(one[1]) : std::nullopt;
-  if (value) {
+  if (value && !with_phi.contains(*value ? one[3] : one[2])) {
     if (operation_of(std::span(out).subspan(last)) == spirv::op_selection_merge) out.resize(last);
     const size_t at = out.size();
     out.insert(out.end(), {words_of_branch << 16u | spirv::op_branch, *value ? one[2] : one[3]});
@@ -95,20 +123,16 @@ bool is_swiftshader(const VkPhysicalDeviceProperties& device) {
 
 std::vector<uint32_t> simplify_for_swiftshader(std::span<const uint32_t> spirv,
                                                const VkSpecializationInfo& constants) {
-  const std::vector<uint32_t> unchanged(spirv.begin(), spirv.end());
-  if (spirv.size() < spirv::header_words) return unchanged;
+  const Labels with_phi = labels_with_phi(spirv);
   Booleans booleans(constants);
-  std::vector<uint32_t> out(spirv.begin(), spirv.begin() + spirv::header_words);
+  std::vector<uint32_t> out(spirv.begin(), spirv.begin() + std::ptrdiff_t(std::min<size_t>(
+                                                               spirv.size(), spirv::header_words)));
   size_t last = 0;
-  for (size_t at = spirv::header_words; at < spirv.size();) {
-    const uint32_t words = spirv[at] >> 16u;
-    if (words == 0 || words > spirv.size() - at) return unchanged;
-    const Instruction one = spirv.subspan(at, words);
+  const bool read = for_each_instruction(spirv, [&](Instruction one) {
     booleans.add(one);
-    last = append(one, booleans, last, out);
-    at += words;
-  }
-  return out;
+    last = append(one, booleans, with_phi, last, out);
+  });
+  return read ? out : std::vector<uint32_t>(spirv.begin(), spirv.end());
 }
 
 } // namespace dermis::vulkan

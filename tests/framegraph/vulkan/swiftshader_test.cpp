@@ -11,7 +11,7 @@ using namespace dermis::vulkan;
 // Operations of the SPIR-V specification.
 constexpr uint32_t loop_merge = 246, store = 62, selection_merge = 247, branch = 249,
                    branch_conditional = 250, decorate = 71, spec_true = 48, spec_false = 49,
-                   spec_op = 52, logical_not = 168, spec_id = 1, label = 248;
+                   spec_op = 52, logical_not = 168, spec_id = 1, phi = 245, label = 248;
 constexpr uint32_t header[] = {0x07230203, 0x10600, 0, 99, 0};
 
 std::vector<uint32_t> module_of(std::initializer_list<std::vector<uint32_t>> instructions) {
@@ -72,6 +72,18 @@ TEST(SwiftShader, BranchesOnConstantsBecomeJumps) {
                            {selection_merge, 34, 0},
                            {branch_conditional, 13, 26, 27}});
   EXPECT_EQ(simplify_for_swiftshader(before, constants), after);
+}
+
+// The block after `constant && value` takes its value from the block that it comes from.
+TEST(SwiftShader, BranchesPastAPhiStay) {
+  const auto module = module_of({{spec_false, 1, 10},
+                                 {selection_merge, 21, 0},
+                                 {branch_conditional, 10, 21, 20},
+                                 {label, 20},
+                                 {branch, 21},
+                                 {label, 21},
+                                 {phi, 1, 30, 10, 5, 31, 20}});
+  EXPECT_EQ(simplified(module), module);
 }
 
 TEST(SwiftShader, BrokenModulesStayUnchanged) {
