@@ -35,6 +35,7 @@ DeviceProfile generic_profile() {
   DeviceProfile profile;
   profile.features = (Features{1} << static_cast<uint32_t>(Feature::count)) - 1;
   profile.supports = usable;
+  profile.filters = [](Format format) { return !has_unsigned_components(format); };
   profile.image_needs = needs_of_image;
   profile.buffer_needs = [](const BufferDescription& buffer) { return whole_pages(buffer.bytes); };
   return profile;

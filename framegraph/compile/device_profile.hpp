@@ -41,6 +41,7 @@ struct DeviceProfile {
   Features features = 0; // supported and enabled
   // Whether the device supports the format with these VkImageUsageFlags.
   std::function<bool(Format, uint32_t vk_usage)> supports;
+  std::function<bool(Format)> filters; // whether the device filters it linearly
   std::function<MemoryNeeds(const ImageDescription&)> image_needs;
   std::function<MemoryNeeds(const BufferDescription&)> buffer_needs;
 };

@@ -14,7 +14,8 @@ namespace {
 struct FormatRejection { // why a format cannot be used for a resource
   bool exists = false;
   uint32_t use =
-      invalid_index; // use whose port cannot work with the format; invalid_index: the device
+      invalid_index;       // use whose port cannot work with the format; invalid_index: the device
+  bool unfiltered = false; // the device cannot filter it, as the port requires
 };
 
 bool same_description(const PlanResource& a, const PlanResource& b) {
@@ -59,6 +60,8 @@ struct FormatResolver {
       if (!works_with(active.type(use.pass).ports[use.port], format) ||
           setting_rejects(use, format))
         return {true, usages.constraints[n].use};
+      if (active.type(use.pass).ports[use.port].filtered && !in.device->filters(format))
+        return {true, usages.constraints[n].use, true};
     }
     const uint32_t usage = usages.resources[id.value].vk_usage;
     return {usage != 0 && !in.device->supports(format, usage), invalid_index};
@@ -77,9 +80,13 @@ struct FormatResolver {
       } else {
         const Use& use = versions.uses[why.use];
         const Port& port = active.type(use.pass).ports[use.port];
-        text += fmt::format("port '{}' of pass '{}' cannot work with it", port.name,
-                            name_of(graph, use.pass));
-        if (works_with(port, format))
+        text += why.unfiltered
+                    ? fmt::format("the device '{}' does not filter it linearly, as port '{}' of "
+                                  "pass '{}' needs",
+                                  in.device->name, port.name, name_of(graph, use.pass))
+                    : fmt::format("port '{}' of pass '{}' cannot work with it", port.name,
+                                  name_of(graph, use.pass));
+        if (works_with(port, format) && !why.unfiltered)
           text += fmt::format(", because of its setting '{}'", port.formats_while.setting);
       }
     }
@@ -122,6 +129,9 @@ struct FormatResolver {
       if (why.use == invalid_index)
         record_reason(Reason::ReasonKind::format_unsupported, format,
                       usages.resources[id.value].vk_usage);
+      else if (why.unfiltered)
+        record_reason(Reason::ReasonKind::format_unfiltered, format,
+                      versions.uses[why.use].pass.value, versions.uses[why.use].port);
       else
         record_reason(Reason::ReasonKind::format_not_ported, format,
                       versions.uses[why.use].pass.value, versions.uses[why.use].port);

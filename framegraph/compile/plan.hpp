@@ -214,6 +214,7 @@ struct Reason {
     format,             // Format a; b: 0 first of the list, 1 first usable one, 2 bound by the host
     format_not_ported,  // not Format a: port c of pass b cannot work with it
     format_unsupported, // not Format a: the device does not support image usage b
+    format_unfiltered,  // not Format a: port c of pass b needs a filter that the device lacks
     history_unused,     // no pass that runs uses it
     history_unread,     // no pass that runs reads its earlier frames
     history_read,       // earlier frames are read, down to a

@@ -30,7 +30,7 @@ void add_use(const Graph& graph, const Versions& versions, uint32_t u, const Pas
   usage.vk_usage |= usage_info(use.usage).vk_usage;
   usage.deepest_read = std::max(usage.deepest_read, use.frames_back);
   const Port& port = type.ports[use.port];
-  if (port.formats.empty() && takes_all_formats(graph, use, port)) return;
+  if (port.formats.empty() && !port.filtered && takes_all_formats(graph, use, port)) return;
   usages.constraints.push_back({u, usage.first_constraint});
   usage.first_constraint = static_cast<uint32_t>(usages.constraints.size() - 1);
 }

@@ -168,6 +168,10 @@ struct ReasonFormatter {
     case Reason::ReasonKind::format_not_ported:
       return fmt::format("not {}: port '{}' of pass '{}' does not support it", format(),
                          port(reason.b, reason.c), pass(reason.b));
+    case Reason::ReasonKind::format_unfiltered:
+      return fmt::format("not {}: the device '{}' does not filter it, as port '{}' of pass '{}' "
+                         "needs",
+                         format(), plan.device_profile, port(reason.b, reason.c), pass(reason.b));
     case Reason::ReasonKind::format_unsupported:
       return fmt::format("not {}: the device '{}' does not support it with usage {}", format(),
                          plan.device_profile, usage_text(ResourceType::image, reason.b));

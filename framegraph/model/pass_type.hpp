@@ -52,6 +52,7 @@ struct Port {
   bool internally_ordered = false;
   // Limits `formats` further while a setting has a value.
   SettingFormats formats_while = {};
+  bool filtered = false; // the kernel reads the image with linear filtering
 };
 
 // Returns whether a kernel supports the format at the port: one of Port::formats, or, if that is

@@ -26,6 +26,14 @@ bool supports(const Device& device, Format format, uint32_t vk_usage) {
          VK_SUCCESS;
 }
 
+bool filters(const Device& device, Format format) {
+  VkFormatProperties2 properties{};
+  properties.sType = VK_STRUCTURE_TYPE_FORMAT_PROPERTIES_2;
+  device.vk.vkGetPhysicalDeviceFormatProperties2(device.physical, vk_format(format), &properties);
+  return (properties.formatProperties.optimalTilingFeatures &
+          VK_FORMAT_FEATURE_SAMPLED_IMAGE_FILTER_LINEAR_BIT) != 0;
+}
+
 MemoryNeeds image_needs(const Device& device, const ImageDescription& image) {
   const VkImageCreateInfo create = image_create_info(image);
   const VkDeviceImageMemoryRequirements query{VK_STRUCTURE_TYPE_DEVICE_IMAGE_MEMORY_REQUIREMENTS,
@@ -73,6 +81,7 @@ DeviceProfile device_profile(const Device& device) {
   profile.supports = [&device](Format format, uint32_t vk_usage) {
     return supports(device, format, vk_usage);
   };
+  profile.filters = [&device](Format format) { return filters(device, format); };
   profile.image_needs = [&device](const ImageDescription& image) {
     return image_needs(device, image);
   };

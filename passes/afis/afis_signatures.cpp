@@ -9,9 +9,9 @@ namespace {
 
 constexpr std::array surface{port::material, port::depth, port::scatter_scale};
 
-constexpr Port levels = port::sampled(
+constexpr Port levels = port::filtered(port::sampled(
     "levels", "mip l - 1 is level l: rgb: light times mask; a: scaled mask, as pyramid_setup says",
-    port::light_formats);
+    port::light_formats));
 
 constexpr auto afis_ports = join(std::array{port::light, port::slope, levels}, surface,
                                  std::array{port::tiles, port::arguments, port::scattered});
@@ -147,7 +147,8 @@ constexpr auto guided_settings = join(
 constexpr HistoryWeight guided_mixes[] = {{"guide_out", "eta"}, {"control_out", "eta_cv"}};
 
 constexpr auto published_ports = std::array{
-    port::sampled("chain", "mip l: light, with view depth in metres in alpha", port::light_formats),
+    port::filtered(port::sampled("chain", "mip l: light, with view depth in metres in alpha",
+                                 port::light_formats)),
     port::material,
     port::scatter_scale,
     port::tiles,

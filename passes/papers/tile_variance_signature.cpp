@@ -8,8 +8,9 @@ namespace {
 
 constexpr Port tile_variance_ports[] = {
     port::light,
-    port::sampled("levels", "mip l - 1 is level l, of a pyramid_setup that keeps profiles apart",
-                  port::light_formats),
+    port::filtered(port::sampled(
+        "levels", "mip l - 1 is level l, of a pyramid_setup that keeps profiles apart",
+        port::light_formats)),
     port::material,
     port::depth,
     port::scatter_scale,

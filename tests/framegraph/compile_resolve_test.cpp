@@ -152,6 +152,21 @@ TEST(Formats, FirstFormatUsableByPortsAndDeviceIsTaken) {
   rejected_once(b, DiagnosticId::no_usable_format);
 }
 
+TEST(Formats, FilteredPortsNeedADeviceThatFilters) {
+  Chain b;
+  b.middle().formats = {Format::rgba32f, Format::rgba16f};
+  b.graph.passes[1].type = b.pass_types.find("test.filter");
+  EXPECT_EQ(resource_of(b, compiled(b).plan, "middle").format, Format::rgba32f);
+  b.device.filters = [](Format format) { return format != Format::rgba32f; };
+  const auto whole = compiled(b);
+  EXPECT_EQ(resource_of(b, whole.plan, "middle").format, Format::rgba16f);
+  EXPECT_THAT(reasons(b, whole, Reason::About::resource, 1),
+              HasSubstr("not rgba32f: the device 'generic' does not filter it, as port 'a' of pass "
+                        "'second' needs"));
+  b.middle().formats = {Format::rgba32f};
+  rejected_once(b, DiagnosticId::no_usable_format, "does not filter it linearly, as port 'a'");
+}
+
 TEST(Formats, ComponentTypeIsRespected) {
   GraphBuilder b;
   b.image("ids").formats = {Format::r8_unorm, Format::r8_uint};

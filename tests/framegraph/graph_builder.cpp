@@ -37,6 +37,12 @@ constexpr Port probe_ports[] = {{"a", Usage::sampled_image, true, "texture2D", "
 constexpr Port narrow_ports[] = {
     {"a", Usage::sampled_image, true, "texture2D", "", one_half4},
     {"out", Usage::storage_image_write, false, "image2D", "", one_half4}};
+constexpr Port filter_ports[] = {{.name = "a",
+                                  .usage = Usage::sampled_image,
+                                  .glsl_type = "texture2D",
+                                  .doc = "",
+                                  .filtered = true},
+                                 {"out", Usage::storage_image_write, false, "image2D", ""}};
 constexpr Port levels_ports[] = {{"a", Usage::sampled_image, true, "texture2D", ""},
                                  {.name = "out",
                                   .usage = Usage::storage_image_write,
@@ -65,6 +71,7 @@ PassTypeRegistry test_pass_types() {
   pass_types.add(type("test.count", count_ports));
   pass_types.add(type("test.tiles", tiles_ports));
   pass_types.add(type("test.narrow", narrow_ports));
+  pass_types.add(type("test.filter", filter_ports));
   pass_types.add(type("test.blend", blend_ports));
   pass_types.add(type("test.ids", ids_ports));
   pass_types.add(type("test.levels", levels_ports));

@@ -25,6 +25,7 @@ using Bindings = std::vector<std::pair<std::string, std::string>>;
 // - test.tiles (tiles as list and indirect arguments, a -> out)
 // - test.probe (reads a, has side effects)
 // - test.narrow (a -> out, only rgba16f)
+// - test.filter (a with linear filtering -> out)
 // - test.blend (a, own texel by texel -> out)
 // - test.ids (ids, whole numbers -> out)
 // - test.levels (a -> out, internally ordered)

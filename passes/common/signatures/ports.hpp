@@ -97,6 +97,12 @@ constexpr Port internally_ordered(Port port) {
   return port;
 }
 
+// See Port::filtered.
+constexpr Port filtered(Port port) {
+  port.filtered = true;
+  return port;
+}
+
 // See AccessExtent. Passes over a list need no where_covered.
 constexpr Port where_covered(Port port) {
   port.extent = AccessExtent::covered;
@@ -188,7 +194,7 @@ inline constexpr Port burley_ports[] = {
 inline constexpr std::string_view level_doc =
     "rgb: light times mask; a: mask, the fraction of the texel with subsurface";
 constexpr Port level(std::string_view name) {
-  return sampled(name, level_doc, light_formats);
+  return filtered(sampled(name, level_doc, light_formats));
 }
 inline constexpr std::array levels_1_to_8{level("level_1"), level("level_2"), level("level_3"),
                                           level("level_4"), level("level_5"), level("level_6"),

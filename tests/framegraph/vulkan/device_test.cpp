@@ -76,6 +76,8 @@ TEST_F(DeviceTest, ProfileMatchesTheDriver) {
   EXPECT_FALSE(profile.supports(Format::rgba8_srgb, VK_IMAGE_USAGE_STORAGE_BIT))
       << "no driver here stores sRGB";
   EXPECT_FALSE(profile.supports(Format::undefined, VK_IMAGE_USAGE_SAMPLED_BIT));
+  EXPECT_TRUE(profile.filters(Format::rgba16f)) << "required of every Vulkan device";
+  EXPECT_FALSE(profile.filters(Format::r32_uint)) << "integers cannot be filtered";
   const MemoryNeeds image =
       profile.image_needs({Format::rgba16f, 100, 50, 1, 1, VK_IMAGE_USAGE_SAMPLED_BIT});
   EXPECT_GE(image.size, 100u * 50u * 8u);
