@@ -68,8 +68,7 @@ ViewTables tables_of(const dermis_view_t& view, const Tables& given) {
   ViewTables out;
   const Chooser& now = view.chooser;
   out.errors = given.errors ? *given.errors : now.errors;
-  out.error_correction = given.errors ? choice::make_error_correction(out.errors.techniques.size())
-                                      : now.error_correction;
+  out.error_correction = given.errors ? make_error_correction(out.errors) : now.error_correction;
   out.calibration = given.calibration ? *given.calibration : now.calibration;
   out.costs = given.calibration
                   ? choice::CostEstimator(out.calibration.costs, out.calibration.uncertainty)

@@ -91,8 +91,11 @@ void reduce_optimism(choice::CostEstimator& costs, const choice::Configuration& 
 }
 
 // Returns the technique whose correction applies. Samples of tiles change a technique's error by
-// almost the same factor on all scenes, so both have one correction.
-int32_t corrected_technique(const choice::Configuration& configuration) {
+// almost the same factor on all scenes, so both have one correction. Selected tiles show the
+// technique that probes measure in all tiles.
+int32_t corrected_technique(const choice::ErrorCorrection& correction,
+                            const choice::Configuration& configuration) {
+  if (configuration.selects_tiles && correction.compared >= 0) return correction.compared;
   return configuration.without_samples >= 0 ? configuration.without_samples
                                             : configuration.technique;
 }
@@ -107,11 +110,24 @@ void learn_error(Chooser& chooser, const choice::Configuration& configuration,
       chooser.errors.techniques[static_cast<size_t>(configuration.technique)].by_rays)
     return;
   const choice::FrameKey key = {mean_d_px(counters), mean_relief(counters)};
-  const double expected = expected_rmse(chooser.errors, configuration, key, counters.sample_units,
-                                        counters.sample_demand);
-  observe_error(chooser.error_correction,
-                {corrected_technique(configuration), probed.square, probed.unscattered_square,
-                 expected, expected_rmse(chooser.errors, -1, key), key, chooser.state.clock_s});
+  choice::ProbedFrame frame;
+  frame.technique = corrected_technique(chooser.error_correction, configuration);
+  frame.square = probed.square;
+  frame.expected = expected_rmse(chooser.errors, configuration, key, counters.sample_units,
+                                 counters.sample_demand);
+  frame.unscattered_square = probed.unscattered_square;
+  frame.expected_unscattered = expected_rmse(chooser.errors, -1, key);
+  if (const int32_t compared = chooser.error_correction.compared; compared >= 0) {
+    frame.compared_square = probed.separable_square;
+    frame.compared_expected = expected_rmse(chooser.errors, compared, key);
+    if (configuration.selects_tiles) { // only a part of the picture shows it
+      frame.square = frame.compared_square;
+      frame.expected = frame.compared_expected;
+    }
+  }
+  frame.key = key;
+  frame.now_s = chooser.state.clock_s;
+  observe_error(chooser.error_correction, frame);
 }
 
 uint64_t listed_tiles(const subsurface::FrameCounters& counters) {
@@ -212,12 +228,13 @@ std::span<choice::Forecast> forecast_first(Chooser& chooser, const CompiledGraph
   const double demand = std::floor(content.units_per_tile * double(content.scattering_tiles));
   for (uint32_t i = 0; i < count; ++i) {
     const choice::Configuration& configuration = compiled_graph.configurations[i];
-    const double correction = error_factor(chooser.error_correction,
-                                           corrected_technique(configuration), content.key, now_s);
+    const auto factor_of = [&](int32_t technique) {
+      return error_factor(chooser.error_correction, technique, content.key, now_s);
+    };
     const double missed =
         missed_rmse(chooser.errors, configuration.technique, content.transmitted_rms);
-    const auto error_of = [&](int32_t technique) {
-      return std::hypot(expected_rmse(chooser.errors, technique, content.key) * correction, missed);
+    const auto error_of = [&](int32_t technique, double factor) {
+      return std::hypot(expected_rmse(chooser.errors, technique, content.key) * factor, missed);
     };
     choice::Forecast& out = chooser.scratch.forecasts[i];
     out = {};
@@ -226,8 +243,10 @@ std::span<choice::Forecast> forecast_first(Chooser& chooser, const CompiledGraph
     out.takes_samples = configuration.takes_samples;
     out.demand = configuration.selects_tiles ? double(content.scattering_tiles) : demand;
     out.concentration = concentration(configuration);
-    out.rmse = error_of(configuration.technique);
-    out.unsampled_rmse = error_of(configuration.without_samples);
+    out.rmse = error_of(configuration.technique,
+                        factor_of(corrected_technique(chooser.error_correction, configuration)));
+    out.unsampled_rmse =
+        error_of(configuration.without_samples, factor_of(configuration.without_samples));
     out.missed_rmse = missed;
   }
   return std::span(chooser.scratch.forecasts).first(count);
@@ -283,7 +302,7 @@ choice::DeviceClass device_class(VkPhysicalDeviceType type) {
 Chooser make_chooser(choice::DeviceClass device) {
   Chooser chooser;
   chooser.errors = default_errors();
-  chooser.error_correction = choice::make_error_correction(chooser.errors.techniques.size());
+  chooser.error_correction = make_error_correction(chooser.errors);
   chooser.calibration = default_calibration(device);
   chooser.costs = choice::CostEstimator(chooser.calibration.costs, chooser.calibration.uncertainty);
   return chooser;

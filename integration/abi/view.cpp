@@ -22,7 +22,7 @@ dermis_result create(dermis_graph_t& graph, const dermis_view_desc* given, dermi
     const std::lock_guard lock(graph.own.mutex);
     const Chooser& from = graph.own.chooser;
     view->chooser.errors = from.errors;
-    view->chooser.error_correction = choice::make_error_correction(from.errors.techniques.size());
+    view->chooser.error_correction = make_error_correction(from.errors);
     view->chooser.calibration = from.calibration;
     view->chooser.costs = from.costs;
     view->chooser.budget = from.budget;

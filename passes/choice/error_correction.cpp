@@ -12,9 +12,10 @@ constexpr double error_memory = 0.96;
 struct Prior {
   double table_frames = 0; // weight of the table
   double maximum = 1;      // in both directions
+  double factor = 1;       // on the table, before any measurement
 };
-// The table is for other content if a technique deviates more. Light may have any unit.
-constexpr Prior technique_prior = {2, 4}, common_prior = {0, 1e4};
+// A factor beyond is noise. Light may have any unit.
+constexpr Prior technique_prior = {2, 16}, common_prior = {0, 1e4};
 constexpr double outlier_limit = 3; // a frame counts at most this many times the known error
 constexpr int frames_of_a_step = 3; // that deviate more, in the same direction
 // Time after which a technique that does not run is worth another try.
@@ -24,11 +25,19 @@ constexpr double age_of_a_cut = 3; // times forgotten_s
 // other.
 constexpr double other_d = 2, other_relief = 4;
 
+bool are_variants(const TechniqueError& a, const TechniqueError& b) {
+  if (a.pass_types.empty() || b.pass_types.empty()) return false;
+  const std::string &first = a.pass_types.front().type, &second = b.pass_types.front().type;
+  return first.starts_with(second) || second.starts_with(first);
+}
+
 double factor_of(const ErrorCorrection::Line& line, const Prior& prior) {
-  if (line.frames <= 0) return 1;
+  if (line.frames <= 0) return prior.factor;
   const double table = prior.table_frames * line.expected / line.frames;
-  return std::clamp(std::sqrt(std::max(line.probed + table, 0.0) / (line.expected + table)),
-                    1 / prior.maximum, prior.maximum);
+  const double expected_by_table = prior.factor * prior.factor * table;
+  return std::clamp(
+      std::sqrt(std::max(line.probed + expected_by_table, 0.0) / (line.expected + table)),
+      1 / prior.maximum, prior.maximum);
 }
 
 // Returns how much the measurements of the line say about a frame, 0 to 1.
@@ -46,7 +55,25 @@ double validity(const ErrorCorrection::Line& line, const FrameKey& key, double n
 
 double valid_factor(const ErrorCorrection::Line& line, const Prior& prior, const FrameKey& key,
                     double now_s) {
-  return line.frames > 0 ? std::pow(factor_of(line, prior), validity(line, key, now_s)) : 1;
+  const double valid = line.frames > 0 ? validity(line, key, now_s) : 0;
+  return std::pow(factor_of(line, prior), valid) * std::pow(prior.factor, 1 - valid);
+}
+
+// Returns what measurements of the other variants of a technique say about it.
+Prior prior_of(const ErrorCorrection& correction, size_t technique, const FrameKey& key,
+               double now_s) {
+  double logs = 0, frames = 0;
+  for (size_t t = 0; t < correction.variants.size(); ++t) {
+    const ErrorCorrection::Line& line = correction.lines[t + 1];
+    if (t == technique || correction.variants[t] != correction.variants[technique] ||
+        line.frames <= 0)
+      continue;
+    logs += line.frames * std::log(valid_factor(line, technique_prior, key, now_s));
+    frames += line.frames;
+  }
+  Prior prior = technique_prior;
+  if (frames > 0) prior.factor = std::exp(logs / frames);
+  return prior;
 }
 
 // Adds squares of a frame: measured, and expected by the table.
@@ -63,6 +90,19 @@ void observe_line(ErrorCorrection::Line& line, double square, double expected, c
   line.seen_s = frame.now_s;
   line.cuts = 0;
   line.key = frame.key;
+}
+
+// Adds the square of a technique, compared with the light of the same pixels: what they happen to
+// show, and how bright it is, are no error of the technique. `light`: square of that light in units
+// of the table's. A frame of rare light does not outweigh others.
+void observe_technique(ErrorCorrection& correction, size_t index, double square, double expected,
+                       double light, const ProbedFrame& frame) {
+  const double most =
+      std::pow(outlier_limit * factor_of(correction.lines.front(), common_prior), 2);
+  const double weight = std::min(1.0, most / light);
+  const Prior prior = prior_of(correction, index - 1, frame.key, frame.now_s);
+  observe_line(correction.lines[index], weight * square, weight * light * expected * expected,
+               prior, frame);
 }
 
 // Returns the square of unscattered light that the common factor predicts.
@@ -87,14 +127,24 @@ void follow_step(ErrorCorrection& correction, const ProbedFrame& frame) {
 
 } // namespace
 
-ErrorCorrection make_error_correction(size_t techniques) {
-  return {std::vector<ErrorCorrection::Line>(techniques + 1)};
+ErrorCorrection make_error_correction(const ErrorModel& table) {
+  ErrorCorrection correction;
+  correction.lines.resize(table.techniques.size() + 1);
+  correction.compared =
+      find_technique(table, {{"subsurface.separable", {{"taps", "25"}, {"kernel", "fitted"}}}});
+  for (uint32_t t = 0; t < table.techniques.size(); ++t) {
+    uint32_t first = 0;
+    while (first < t && !are_variants(table.techniques[first], table.techniques[t]))
+      ++first;
+    correction.variants.push_back(first);
+  }
+  return correction;
 }
 
 void observe_error(ErrorCorrection& correction, const ProbedFrame& frame) {
   const auto index = static_cast<size_t>(frame.technique + 1);
-  for (const double value :
-       {frame.square, frame.unscattered_square, frame.expected, frame.expected_unscattered})
+  for (const double value : {frame.square, frame.unscattered_square, frame.expected,
+                             frame.expected_unscattered, frame.compared_square})
     if (!std::isfinite(value)) return;
   if (frame.technique < -1 || index >= correction.lines.size() || frame.expected <= 0 ||
       frame.expected_unscattered <= 0)
@@ -102,15 +152,13 @@ void observe_error(ErrorCorrection& correction, const ProbedFrame& frame) {
   follow_step(correction, frame);
   const double table = frame.expected_unscattered * frame.expected_unscattered;
   observe_line(correction.lines.front(), frame.unscattered_square, table, common_prior, frame);
-  const double light = frame.unscattered_square / table; // in units of the table's light
-  if (index == 0 || light <= std::pow(2 / common_prior.maximum, 2)) return; // or uniform light
-  // The technique is compared with the light of the same pixels: what they happen to show, and how
-  // bright it is, are no error of the technique. A frame of rare light does not outweigh others.
-  const double most =
-      std::pow(outlier_limit * factor_of(correction.lines.front(), common_prior), 2);
-  const double weight = std::min(1.0, most / light);
-  observe_line(correction.lines[index], weight * frame.square,
-               weight * light * frame.expected * frame.expected, technique_prior, frame);
+  const double light = frame.unscattered_square / table;      // in units of the table's light
+  if (light <= std::pow(2 / common_prior.maximum, 2)) return; // uniform light
+  if (index != 0) observe_technique(correction, index, frame.square, frame.expected, light, frame);
+  if (correction.compared >= 0 && correction.compared != frame.technique &&
+      frame.compared_expected > 0)
+    observe_technique(correction, static_cast<size_t>(correction.compared + 1),
+                      frame.compared_square, frame.compared_expected, light, frame);
 }
 
 double error_factor(const ErrorCorrection& correction, int32_t technique, const FrameKey& key,
@@ -118,8 +166,9 @@ double error_factor(const ErrorCorrection& correction, int32_t technique, const 
   const auto index = static_cast<size_t>(technique + 1);
   if (technique < -1 || index >= correction.lines.size()) return 1;
   const double common = valid_factor(correction.lines.front(), common_prior, key, now_s);
-  return index == 0 ? common
-                    : common * valid_factor(correction.lines[index], technique_prior, key, now_s);
+  if (index == 0) return common;
+  const Prior prior = prior_of(correction, index - 1, key, now_s);
+  return common * valid_factor(correction.lines[index], prior, key, now_s);
 }
 
 void forget_errors(ErrorCorrection& correction) {

@@ -23,6 +23,9 @@ struct ErrorCorrection {
     FrameKey key;
   };
   std::vector<Line> lines; // by technique + 1; the first is that of unscattered light
+  // By technique: the first of its variants, whose errors rise and fall together.
+  std::vector<uint32_t> variants;
+  int32_t compared = -1; // technique that all probed frames measure; -1: none
   // Newest frames in a row whose light was much brighter, or if negative darker, than known.
   int steps = 0;
 };
@@ -35,15 +38,20 @@ struct ProbedFrame {
   double expected = 0, expected_unscattered = 0; // RMSE by the table
   FrameKey key;
   double now_s = 0; // seconds
+  // The same of ErrorCorrection::compared, whether or not it runs, in the same pixels.
+  double compared_square = 0, compared_expected = 0;
 };
 
-// Creates a correction for `techniques` of an error table, without observations.
-ErrorCorrection make_error_correction(size_t techniques);
+// Creates a correction of an error table, without observations. Techniques are variants if the type
+// of their first pass is equal, or continues that of the other: subsurface.sap_gather and
+// subsurface.sap_gather_half. `compared` is subsurface.separable with 25 taps, as of the probe.
+ErrorCorrection make_error_correction(const ErrorModel& table);
 // Adds a frame. Ignores values that are not finite, and frames whose expected errors are not
 // positive. Allocates nothing.
 void observe_error(ErrorCorrection& correction, const ProbedFrame& frame);
-// Returns the factor for a frame with this content at this time. It returns to 1 as the last probed
-// frame ages, and as the content deviates from that frame's.
+// Returns the factor for a frame with this content at this time. It returns to that of the
+// technique's variants, and theirs to 1, as the last probed frame ages, and as the content deviates
+// from that frame's.
 double error_factor(const ErrorCorrection& correction, int32_t technique, const FrameKey& key,
                     double now_s);
 // The content was replaced, as by a cut: the factors of techniques that do not run return to 1.

@@ -60,6 +60,8 @@ struct FrameCounters {
   std::array<std::array<uint32_t, 2>, max_probes> probes{};
   // The same sum for the light before scattering.
   std::array<uint32_t, max_probes> probed_unscattered{};
+  // The same sum for the result of subsurface.separable with 25 taps.
+  std::array<uint32_t, max_probes> probed_separable{};
 };
 inline constexpr float counter_log2_shift = 8;      // d from 1/256 pixel
 inline constexpr float counter_log2_steps = 16;     // per octave; the sum of 4 M tiles fits 32 bits

@@ -23,17 +23,18 @@ double student_t(double freedom) {
 
 ProbedError probed_error(const FrameCounters& counters) {
   const auto count = std::min<size_t>(counters.probe_count, counters.probes.size());
-  double errors = 0, unscattered = 0, pixels = 0;
-  std::array<std::array<double, 3>, max_probes> tiles{};
+  double errors = 0, unscattered = 0, separable = 0, pixels = 0;
+  std::array<std::array<double, 4>, max_probes> tiles{};
   const auto value = [](uint32_t bits) { return double(std::bit_cast<float>(bits)); };
   for (size_t i = 0; i < count; ++i)
     tiles[i] = {value(counters.probes[i][0]), value(counters.probed_unscattered[i]),
-                value(counters.probes[i][1])};
+                value(counters.probes[i][1]), value(counters.probed_separable[i])};
   // the device writes them in any order
   std::sort(tiles.begin(), tiles.begin() + std::ptrdiff_t(count));
-  for (const auto& [error, unscattered_error, weight] : tiles) {
+  for (const auto& [error, unscattered_error, weight, separable_error] : tiles) {
     errors += error;
     unscattered += unscattered_error;
+    separable += separable_error;
     pixels += weight;
   }
   if (!(pixels > 0)) return {};
@@ -42,6 +43,7 @@ ProbedError probed_error(const FrameCounters& counters) {
   const double mean = errors / pixels;
   out.square = mean;
   out.unscattered_square = unscattered / pixels;
+  out.separable_square = separable / pixels;
   out.rmse = std::sqrt(std::max(mean, 0.0));
   out.high = std::numeric_limits<double>::infinity();
   if (count < 2) return out;

@@ -7,8 +7,9 @@ namespace dermis::subsurface {
 
 struct ProbedError {  // error of exposed linear luminance over the pixels that scatter
   uint32_t tiles = 0; // number of probed tiles
-  // mean squared errors of the picture, and of the light before scattering; noise may exceed them
-  double square = 0, unscattered_square = 0;
+  // mean squared errors of the picture, of the light before scattering, and of what
+  // subsurface.separable with 25 taps would show; noise may exceed them
+  double square = 0, unscattered_square = 0, separable_square = 0;
   double rmse = 0;          // root of `square`, or 0
   double low = 0, high = 0; // 95 % confidence interval; 0 and infinity for fewer than two tiles
 };

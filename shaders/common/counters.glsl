@@ -19,6 +19,7 @@ layout(std430, set = 1, binding = 6) buffer counter_block {
   uint relief_pixels;
   uvec2 probes[32];
   uint probed_unscattered[32];
+  uint probed_separable[32];
 } counters;
 
 uint counter_steps(float d_px) {

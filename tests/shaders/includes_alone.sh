@@ -13,7 +13,8 @@ trap 'rm -rf "$scratch"' EXIT
 # images of a kernel, which defines them.
 declares_functions() {
   case $1 in
-    restir/scene.glsl | restir/surfaces.glsl | separable/separable_pass.glsl) ;;
+    restir/scene.glsl | restir/surfaces.glsl) ;;
+    separable/pixel_scatter.glsl | separable/separable_at_pixel.glsl) ;;
     # These read a buffer, or one of several images that a number selects.
     common/probed_tile.glsl) ;;
     sap/sap_tiles.glsl | sap/sap_samples.glsl | sap/tile_region.glsl | sap/sap_window.glsl) ;;

@@ -30,7 +30,9 @@ const PassType probe_type{
     .name = "subsurface.probe",
     .shader = "common/subsurface_probe",
     .doc = "Estimates the frame's error and its uncertainty at pixels of a few tiles, sampled with "
-           "known probabilities: compares with two independent estimates of 512 samples each.",
+           "known probabilities: compares with four independent estimates of 256 samples each. Does "
+           "the same for the light before scattering and for subsurface.separable with 25 taps, so "
+           "that a choice knows the error of both although they do not run.",
     .ports = probe_ports,
     .settings = probe_settings,
     .dispatch = probed_tiles,

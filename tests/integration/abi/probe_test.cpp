@@ -99,7 +99,7 @@ TEST_F(Probe, MatchesTheExactReference) {
   // Each pixel of a chequered light has an equal error, except near the picture's border: 1 % from
   // tile to tile, 0.5 % of a mean over frames. The pole of the centre pixel contributes 2 %.
   make("\"off\"");
-  constexpr int frames = 16;
+  constexpr int frames = 64;
   double mean = 0;
   for (int i = 0; i < frames; ++i) {
     const demo::ReportedFrame choice = run_frame(checks);
@@ -186,6 +186,36 @@ TEST_F(Probe, SampledTilesShareTheirPyramidsCorrection) {
   run_frame(spread); // The requested samples are unknown before.
   // Both frames were probed, too, in one tile each.
   EXPECT_NEAR(double(run_frame(spread).predicted_rmse), factor * hybrid, 0.35 * factor * hybrid);
+}
+
+// While another technique runs, the probe computes what the separable technique would show.
+TEST_F(Probe, MeasuresSeparable_WhileOthersRun) {
+  const auto fill_surface = [&] {
+    fill("depth", [](uint32_t x, uint32_t y) {
+      return (x / 24 + y / 20) % 2 == 0 ? 0.5f + 0.0002f * float(x % 24) : 0.51f;
+    });
+    fill("material", [](uint32_t x, uint32_t y) { return (x + 2 * y) % 31 < 4 ? 0.0f : 1.0f; });
+  };
+  const auto error_after = [&](const char* technique) {
+    last_frame = 0; // Each frame number has its tiles.
+    make(technique);
+    fill_surface();
+    for (int i = 0; i < 60; ++i)
+      run_frame(spread);
+    set("technique", "\"separable\"");
+    make_images(graph);
+    fill_surface();
+    run_frame(spread);
+    return double(run_frame(spread).predicted_rmse);
+  };
+  const double own = error_after("\"separable\"");
+  for (const char* other : {"\"sap\"", "\"off\"", "\"partial\""})
+    EXPECT_NEAR(error_after(other), own, 0.02 * own) << other;
+  make("\"separable\"", false);
+  fill_surface();
+  run_frame(spread);
+  EXPECT_GT(std::abs(std::log(double(run_frame(spread).predicted_rmse) / own)), 0.2)
+      << "the table has this error, too";
 }
 
 TEST_F(Probe, PyramidIsBetterThanUnscatteredLight) {

@@ -23,6 +23,17 @@ ProbedFrame frame_of(int32_t technique, double square, double table = expected, 
   return {technique, square, unscattered * unscattered, table, unscattered, content, now_s};
 }
 
+// Returns the correction of techniques that are no variants of each other.
+ErrorCorrection correction_for(size_t techniques, int32_t compared = -1) {
+  ErrorModel table;
+  for (size_t t = 0; t < techniques; ++t)
+    table.techniques.push_back(
+        {std::string(1, char('a' + t)), {{std::string(1, char('a' + t)), {}}}, {{1, 1}}});
+  ErrorCorrection correction = make_error_correction(table);
+  correction.compared = compared;
+  return correction;
+}
+
 // Observes `frames` frames of a technique, from `now_s` on.
 void observe(ErrorCorrection& correction, int32_t technique, double probed, int frames,
              double& now_s) {
@@ -31,14 +42,14 @@ void observe(ErrorCorrection& correction, int32_t technique, double probed, int 
 }
 
 TEST(ErrorCorrection, NoProbe_KeepsTheTable) {
-  const ErrorCorrection none = make_error_correction(2);
+  const ErrorCorrection none = correction_for(2);
   for (const int32_t technique : {-1, 0, 1, 7})
     EXPECT_EQ(error_factor(none, technique, content, 0), 1);
 }
 
 TEST(ErrorCorrection, FindsTheFactorInNoisyProbes) {
   SplitMix64 random{7};
-  ErrorCorrection correction = make_error_correction(2);
+  ErrorCorrection correction = correction_for(2);
   constexpr double factor = 2;
   for (int i = 0; i < 100; ++i) {
     // Squares are uniform between -1 and 3 times their mean.
@@ -53,8 +64,62 @@ TEST(ErrorCorrection, FindsTheFactorInNoisyProbes) {
   EXPECT_EQ(error_factor(correction, -1, content, 0), 1);
 }
 
+// A variant is expected to deviate from the table as much as the one that ran.
+TEST(ErrorCorrection, VariantsShareWhatIsMeasured) {
+  ErrorModel table;
+  for (const char* type : {"sap", "sap_half", "separable"})
+    table.techniques.push_back({type, {{type, {}}}, {{1, 1}}});
+  ErrorCorrection correction = make_error_correction(table);
+  double now_s = 0;
+  observe(correction, 0, 8 * expected, 200, now_s);
+  const double measured = error_factor(correction, 0, content, now_s);
+  EXPECT_NEAR(measured, 8, 0.4);
+  EXPECT_NEAR(error_factor(correction, 1, content, now_s), measured, 1e-9);
+  EXPECT_EQ(error_factor(correction, 2, content, now_s), 1);
+  observe(correction, 1, 2 * expected, 200, now_s);
+  // The variant weighs two frames beside a memory of 25.
+  EXPECT_NEAR(error_factor(correction, 1, content, now_s), std::sqrt((25 * 4 + 2 * 64) / 27.0),
+              0.3);
+  EXPECT_NEAR(error_factor(correction, 0, content, now_s), measured, 0.1 * measured);
+}
+
+TEST(ErrorCorrection, ProbesCompareSeparableWith25Taps) {
+  ErrorModel table;
+  for (const char* taps : {"11", "25"})
+    table.techniques.push_back(
+        {taps, {{"subsurface.separable", {{"taps", taps}, {"kernel", "fitted"}}}}, {{1, 1}}});
+  EXPECT_EQ(make_error_correction(table).compared, 1);
+  EXPECT_EQ(make_error_correction({}).compared, -1);
+}
+
+TEST(ErrorCorrection, ComparedTechnique_NeedNotRun) {
+  constexpr int32_t running = 0, compared = 1, other = 2;
+  ErrorCorrection correction = correction_for(3, compared);
+  ProbedFrame frame = frame_of(running, std::pow(1.5 * expected, 2));
+  frame.compared_expected = 2 * expected;
+  frame.compared_square = std::pow(0.5 * frame.compared_expected, 2);
+  for (int i = 0; i < 200; ++i)
+    observe_error(correction, frame);
+  // Tolerance: the table has 2 of 27 frames.
+  EXPECT_NEAR(error_factor(correction, running, content, 0), 1.5, 0.1);
+  EXPECT_NEAR(error_factor(correction, compared, content, 0), 0.5, 0.1);
+  EXPECT_EQ(error_factor(correction, other, content, 0), 1);
+}
+
+TEST(ErrorCorrection, ComparedTechnique_CountsOnceIfItRuns) {
+  ErrorCorrection running_only = correction_for(2), both = correction_for(2, 1);
+  ProbedFrame frame = frame_of(1, std::pow(1.5 * expected, 2));
+  for (int i = 0; i < 5; ++i) {
+    observe_error(running_only, frame);
+    frame.compared_square = frame.square;
+    frame.compared_expected = expected;
+    observe_error(both, frame);
+  }
+  EXPECT_EQ(error_factor(both, 1, content, 0), error_factor(running_only, 1, content, 0));
+}
+
 TEST(ErrorCorrection, Outlier_CountsAtMostThreeTimesTheEstimate) {
-  ErrorCorrection correction = make_error_correction(1);
+  ErrorCorrection correction = correction_for(1);
   for (int i = 0; i < 100; ++i)
     observe_error(correction, frame_of(0, expected * expected));
   observe_error(correction, frame_of(0, 1e6));
@@ -63,7 +128,7 @@ TEST(ErrorCorrection, Outlier_CountsAtMostThreeTimesTheEstimate) {
 }
 
 TEST(ErrorCorrection, MeasurementsHold_WhileOtherTechniquesRun) {
-  ErrorCorrection correction = make_error_correction(2);
+  ErrorCorrection correction = correction_for(2);
   double now_s = 0;
   observe(correction, 0, 3 * expected, 50, now_s);
   const double known = error_factor(correction, 0, content, now_s);
@@ -75,7 +140,7 @@ TEST(ErrorCorrection, MeasurementsHold_WhileOtherTechniquesRun) {
 }
 
 TEST(ErrorCorrection, MeasurementsHold_WhileTheContentIsSimilar) {
-  ErrorCorrection correction = make_error_correction(1);
+  ErrorCorrection correction = correction_for(1);
   double now_s = 0;
   observe(correction, 0, 3 * expected, 50, now_s);
   const double known = error_factor(correction, 0, content, now_s);
@@ -90,7 +155,7 @@ TEST(ErrorCorrection, MeasurementsHold_WhileTheContentIsSimilar) {
 }
 
 TEST(ErrorCorrection, CutForgetsAllButTheRunningTechnique) {
-  ErrorCorrection correction = make_error_correction(2);
+  ErrorCorrection correction = correction_for(2);
   double now_s = 0;
   observe(correction, 0, 3 * expected, 50, now_s);
   observe(correction, 1, 3 * expected, 50, now_s);
@@ -101,7 +166,7 @@ TEST(ErrorCorrection, CutForgetsAllButTheRunningTechnique) {
 }
 
 TEST(ErrorCorrection, DiscardedCut_ForgetsNothing) {
-  ErrorCorrection correction = make_error_correction(2);
+  ErrorCorrection correction = correction_for(2);
   double now_s = 0;
   observe(correction, 0, 3 * expected, 50, now_s);
   const double before = error_factor(correction, 0, content, now_s);
@@ -122,7 +187,7 @@ std::pair<double, int> choose_by_measurements(uint64_t seed, bool corrected) {
     table[t] = expected * std::exp(uniform());
     truth[t] = table[t] * std::exp(2.6 * (uniform() - 0.5));
   }
-  ErrorCorrection correction = make_error_correction(table.size());
+  ErrorCorrection correction = correction_for(table.size());
   constexpr int frames = 1200;
   size_t running = table.size();
   int switches = -1;
@@ -166,7 +231,7 @@ TEST(ErrorCorrection, ChoiceSettlesNearTheBestTechnique) {
 // Brightness, exposure and detail of the light change the errors of all techniques.
 TEST(ErrorCorrection, UnitsOfTheLight_AreCommonToAllTechniques) {
   for (const double unit : {0.01, 0.2, 5.0, 300.0}) {
-    ErrorCorrection correction = make_error_correction(2);
+    ErrorCorrection correction = correction_for(2);
     for (int i = 0; i < 50; ++i) {
       ProbedFrame frame = frame_of(0, std::pow(2 * unit * expected, 2));
       frame.unscattered_square *= unit * unit;
@@ -179,7 +244,7 @@ TEST(ErrorCorrection, UnitsOfTheLight_AreCommonToAllTechniques) {
 }
 
 TEST(ErrorCorrection, UniformLight_LeavesFactorsUnchanged) {
-  ErrorCorrection correction = make_error_correction(1);
+  ErrorCorrection correction = correction_for(1);
   for (int i = 0; i < 50; ++i) {
     ProbedFrame frame = frame_of(0, 1e-9);
     frame.unscattered_square = 0;
@@ -189,12 +254,12 @@ TEST(ErrorCorrection, UniformLight_LeavesFactorsUnchanged) {
 }
 
 TEST(ErrorCorrection, LightThatIsSwitchedOn_IsNoErrorOfTheTechnique) {
-  ErrorCorrection correction = make_error_correction(1);
+  ErrorCorrection correction = correction_for(1);
   ProbedFrame dark = frame_of(0, 0);
   dark.unscattered_square = 0;
   for (int i = 0; i < 50; ++i)
     observe_error(correction, dark);
-  ErrorCorrection always_lit = make_error_correction(1);
+  ErrorCorrection always_lit = correction_for(1);
   for (int i = 0; i < 8; ++i) {
     observe_error(correction, frame_of(0, expected * expected));
     observe_error(always_lit, frame_of(0, expected * expected));
@@ -218,7 +283,7 @@ TEST(ErrorCorrection, NoisyLight_LeavesFactorsOfTheTechniqueNearOne) {
       sum += static_cast<double>(random.next() >> 11) * 0x1p-53;
     return sum;
   };
-  ErrorCorrection correction = make_error_correction(1);
+  ErrorCorrection correction = correction_for(1);
   double own = 0, worst = 1;
   for (int i = 0; i < frames; ++i) {
     ProbedFrame frame = frame_of(0, 0);
@@ -240,7 +305,7 @@ TEST(ErrorCorrection, NoisyLight_LeavesFactorsOfTheTechniqueNearOne) {
 }
 
 TEST(ErrorCorrection, InvalidErrors_AreIgnored) {
-  ErrorCorrection correction = make_error_correction(1);
+  ErrorCorrection correction = correction_for(1);
   for (const double wrong : {std::nan(""), double{INFINITY}})
     observe_error(correction, frame_of(0, wrong));
   observe_error(correction, frame_of(0, expected * expected, 0));

@@ -75,8 +75,12 @@ template <class Choose> ChoiceError judge(const std::vector<Scene>& scenes, Choo
 }
 
 // Returns the geometric mean over the second half of the frames.
-double choose_by_measurements(const Scene& scene, size_t rows, double& switches) {
-  choice::ErrorCorrection correction = choice::make_error_correction(rows);
+double choose_by_measurements(const Scene& scene, const choice::ErrorModel& table,
+                              double& switches) {
+  choice::ErrorCorrection correction = make_error_correction(table);
+  const auto compared = std::ranges::find(scene.options, correction.compared, &Option::row);
+  const bool compares = compared != scene.options.end();
+  if (!compares) correction.compared = -1; // not among the techniques
   const Option* running = &best_of(scene, &Option::expected);
   double now_s = 0, logs = 0;
   for (int i = 0; i < frames; ++i, now_s += frame_s) {
@@ -91,7 +95,9 @@ double choose_by_measurements(const Scene& scene, size_t rows, double& switches)
     if (i % probe_interval == 0)
       observe_error(correction, {running->row, running->measured * running->measured,
                                  scene.unscattered * scene.unscattered, running->expected,
-                                 scene.expected_unscattered, scene.key, now_s});
+                                 scene.expected_unscattered, scene.key, now_s,
+                                 compares ? compared->measured * compared->measured : 0,
+                                 compares ? compared->expected : 0});
     if (i >= frames / 2) logs += std::log(running->measured) / (frames - frames / 2);
   }
   return std::exp(logs);
@@ -112,7 +118,7 @@ ChoiceError judge_measuring_choice(const choice::ErrorModel& table,
                                    const std::string& half) {
   return judge(scenes_of(table, errors, techniques, half),
                [&](const Scene& scene, double& switches) {
-                 return choose_by_measurements(scene, table.techniques.size(), switches);
+                 return choose_by_measurements(scene, table, switches);
                });
 }
 
