@@ -156,6 +156,7 @@ demo::Result<std::vector<float>> TechniqueRun::scatter(const CapturedFrame& fram
   device_->skip_to(std::exchange(next_frame_index_, 0));
   frame_ = c_frame(frame.description);
   if (depth == DepthGiven::depth_buffer) frame_.depth_kind = DERMIS_DEPTH_DEVICE;
+  frame_.delta_seconds = frame_seconds_;
   if (!follows) frame_.flags |= DERMIS_FRAME_RESET_HISTORY;
   if (auto ran = device_->run(frame_); !ran) return ran.error();
   return device_->read_rgb("scattered_light");

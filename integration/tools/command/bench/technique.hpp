@@ -61,6 +61,8 @@ public:
   std::optional<demo::ReportedFrame> choice() { return device_->choice(); }
   // Makes the next frame the first of a new graph: frame numbers and histories restart.
   void start_anew() { device_.reset(); }
+  // Sets the seconds that the host states between frames; 0: not stated.
+  void set_frame_seconds(float seconds) { frame_seconds_ = seconds; }
   // Sets the number of the next frame if it is higher than the regular next number.
   void skip_to(uint64_t frame_index);
   // Returns whether the last scatter created its graph. The driver then compiled, and times are
@@ -103,6 +105,7 @@ private:
   std::unique_ptr<DeviceGraph> device_;
   bool made_anew_ = false;
   dermis_frame frame_ = DERMIS_FRAME_INIT;
+  float frame_seconds_ = 0;
   uint64_t next_frame_index_ = 0; // 0: regular numbering
   bool ran_again_ = false;        // since the last scatter()
   uint64_t restarts_ = 0;         // of the numbering after run_again()

@@ -9,6 +9,11 @@
 namespace dermis::tools {
 namespace {
 
+// The scenes are still, so few frames represent a long time, in which the choice measures errors
+// and may switch.
+constexpr float frame_seconds = 1.0f / 8;
+constexpr uint32_t settling_frames = 30; // with a budget, before those of the result
+
 demo::Result<> set_budget(TechniqueRun& run, const SceneRunRequest& request) {
   const dermis_source calibration =
       demo::source_of(request.calibration.name, request.calibration.text);
@@ -92,14 +97,17 @@ demo::Result<SceneRun> StillRuns::run(const SceneRunRequest& request, const Fami
   }
   SceneRun out;
   out.device = host_.properties.deviceName;
-  for (uint32_t i = 0; i < request.frames; ++i) {
+  technique.set_frame_seconds(frame_seconds);
+  const uint32_t first = with_budget ? settling_frames : 0;
+  for (uint32_t i = 0; i < first + request.frames; ++i) {
     if (interrupted()) return stopped();
     const auto light = technique.scatter(frame_, i > 0);
     if (!light) return light.error();
     if (i == 0)
       if (auto set = set_budget(technique, request); !set) return set.error();
+    if (i < first) continue;
     RunFrame& frame = out.frames.emplace_back(frame_of(technique));
-    if (request.error_every > 0 && i % request.error_every == request.error_every - 1)
+    if (request.error_every > 0 && (i - first) % request.error_every == request.error_every - 1)
       frame.rmse = still_error(*light, reference->second).figures.rmse;
   }
   return out;

@@ -23,8 +23,9 @@ public:
   StillRuns(const Session& session, demo::VulkanHost& host, subsurface::Profile skin)
       : session_(session), host_(host), skin_(std::move(skin)) {}
 
-  // Uses graph, set, size, frames, error_every, subset, budget_ms, calibration and cache of
-  // `request`; runs are deterministic. Errors: those of TechniqueRun; environment "stopped".
+  // Runs frames at 8 per second; with a budget, 30 more before those of the result. Uses graph, set,
+  // size, frames, error_every, subset, budget_ms, calibration and cache of `request`; runs are
+  // deterministic. Errors: those of TechniqueRun; environment "stopped".
   demo::Result<SceneRun> run(const SceneRunRequest& request, const FamilyScene& scene,
                              SharedScene& shared);
 
