@@ -22,7 +22,7 @@ float d_at(ivec2 texel, uint profile);
 // Pixels of the column, at most: the pixel itself, then its taps above and below.
 const uint column_pixels = 1u + 2u * uint(max_side_taps);
 
-// What one invocation knows of the result.
+// The part of the result that one invocation computes.
 struct column_part {
   tap_sums sums; // the contribution of its pixel of the column
   vec3 blurred;  // light of its pixel after the horizontal pass, if that contributes
