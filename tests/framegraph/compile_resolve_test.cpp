@@ -156,6 +156,8 @@ TEST(Formats, FilteredPortsNeedADeviceThatFilters) {
   Chain b;
   b.middle().formats = {Format::rgba32f, Format::rgba16f};
   b.graph.passes[1].type = b.pass_types.find("test.filter");
+  b.read(1, 0).port = 0;
+  b.written(1, 0).port = 1;
   EXPECT_EQ(resource_of(b, compiled(b).plan, "middle").format, Format::rgba32f);
   b.device.filters = [](Format format) { return format != Format::rgba32f; };
   const auto whole = compiled(b);
