@@ -77,7 +77,7 @@ TEST(ErrorCorrection, VariantsShareWhatIsMeasured) {
   EXPECT_NEAR(error_factor(correction, 1, content, now_s), measured, 1e-9);
   EXPECT_EQ(error_factor(correction, 2, content, now_s), 1);
   observe(correction, 1, 2 * expected, 200, now_s);
-  // The variant weighs two frames beside a memory of 25.
+  // Two frames of the variant, 25 of its own.
   EXPECT_NEAR(error_factor(correction, 1, content, now_s), std::sqrt((25 * 4 + 2 * 64) / 27.0),
               0.3);
   EXPECT_NEAR(error_factor(correction, 0, content, now_s), measured, 0.1 * measured);
