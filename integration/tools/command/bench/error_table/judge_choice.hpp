@@ -1,7 +1,7 @@
 #pragma once
 // How far the error of a choice is from that of the best technique: of a choice by the error table
-// only, and of one that also measures the error of the technique that runs (configs/overlays/
-// probe.json).
+// only, and of one that also measures the errors of the technique that runs and of separable
+// (subsurface.probe).
 
 #include "integration/tools/command/bench/error_table/table_fit.hpp"
 
