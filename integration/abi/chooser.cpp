@@ -162,7 +162,11 @@ void observe_frame(Chooser& chooser, CompiledGraph& compiled_graph, FrameChoice&
   if (counted && frame.timed) learn(chooser, passes, compiled_graph.margins, same_work, frame);
   if (frame.decision.rejected != choice::no_configuration)
     reduce_optimism(chooser.costs, compiled_graph.configurations[frame.decision.rejected]);
-  if (counted && same_work) learn_error(chooser, configuration, frame.counters);
+  // Errors of the content before a cut would count as those of the present content.
+  const bool before_cut = std::ranges::any_of(chooser.frames, [&](const FrameChoice& other) {
+    return other.cut && other.frame_index > frame.frame_index;
+  });
+  if (counted && same_work && !before_cut) learn_error(chooser, configuration, frame.counters);
   frame.observed = true;
   if (frame.frame_index <= chooser.newest.frame_index) return;
   chooser.newest = frame;
@@ -186,6 +190,7 @@ struct Content {
   choice::FrameKey key{assumed_d_px};
   double units_per_tile = choice::max_units; // of samples that scattering tiles request
   double transmitted_rms = 0;
+  bool cut = false; // the frame replaces the content
 };
 
 // `growth`: factor on the tiles that were counted last.
@@ -229,7 +234,7 @@ std::span<choice::Forecast> forecast_first(Chooser& chooser, const CompiledGraph
   for (uint32_t i = 0; i < count; ++i) {
     const choice::Configuration& configuration = compiled_graph.configurations[i];
     const auto factor_of = [&](int32_t technique) {
-      return error_factor(chooser.error_correction, technique, content.key, now_s);
+      return error_factor(chooser.error_correction, technique, content.key, now_s, content.cut);
     };
     const double missed =
         missed_rmse(chooser.errors, configuration.technique, content.transmitted_rms);
@@ -346,8 +351,9 @@ void observe(Chooser& chooser, CompiledGraph& compiled_graph,
 
 FrameChoice choose(Chooser& chooser, const CompiledGraph& compiled_graph,
                    const FrameRequest& request) noexcept {
-  const Content content = expected_content(chooser, request.rectangle,
-                                           growth_until(chooser.tile_growth, request.index));
+  Content content = expected_content(chooser, request.rectangle,
+                                     growth_until(chooser.tile_growth, request.index));
+  content.cut = request.cut;
   FrameChoice frame;
   frame.frame_index = request.index;
   frame.compiled_graph = compiled_graph.serial;

@@ -41,7 +41,8 @@ double factor_of(const ErrorCorrection::Line& line, const Prior& prior) {
 }
 
 // Returns how much the measurements of the line say about a frame, 0 to 1.
-double validity(const ErrorCorrection::Line& line, const FrameKey& key, double now_s) {
+double validity(const ErrorCorrection::Line& line, const FrameKey& key, double now_s,
+                bool cut = false) {
   const double d =
       std::log(std::max(key.d_px, 1e-9) / std::max(line.key.d_px, 1e-9)) / std::log(other_d);
   const double relief =
@@ -49,26 +50,27 @@ double validity(const ErrorCorrection::Line& line, const FrameKey& key, double n
           ? 0
           : std::log((key.relief + relief_floor) / (line.key.relief + relief_floor)) /
                 std::log(other_relief);
-  const double age = std::max(0.0, now_s - line.seen_s) / forgotten_s + age_of_a_cut * line.cuts;
+  const double age =
+      std::max(0.0, now_s - line.seen_s) / forgotten_s + age_of_a_cut * (line.cuts + (cut ? 1 : 0));
   return std::exp(-d * d - relief * relief - age);
 }
 
 double valid_factor(const ErrorCorrection::Line& line, const Prior& prior, const FrameKey& key,
-                    double now_s) {
-  const double valid = line.frames > 0 ? validity(line, key, now_s) : 0;
+                    double now_s, bool cut) {
+  const double valid = line.frames > 0 ? validity(line, key, now_s, cut) : 0;
   return std::pow(factor_of(line, prior), valid) * std::pow(prior.factor, 1 - valid);
 }
 
 // Returns what measurements of the other variants of a technique say about it.
 Prior prior_of(const ErrorCorrection& correction, size_t technique, const FrameKey& key,
-               double now_s) {
+               double now_s, bool cut = false) {
   double logs = 0, frames = 0;
   for (size_t t = 0; t < correction.variants.size(); ++t) {
     const ErrorCorrection::Line& line = correction.lines[t + 1];
     if (t == technique || correction.variants[t] != correction.variants[technique] ||
         line.frames <= 0)
       continue;
-    logs += line.frames * std::log(valid_factor(line, technique_prior, key, now_s));
+    logs += line.frames * std::log(valid_factor(line, technique_prior, key, now_s, cut));
     frames += line.frames;
   }
   Prior prior = technique_prior;
@@ -162,13 +164,13 @@ void observe_error(ErrorCorrection& correction, const ProbedFrame& frame) {
 }
 
 double error_factor(const ErrorCorrection& correction, int32_t technique, const FrameKey& key,
-                    double now_s) {
+                    double now_s, bool cut) {
   const auto index = static_cast<size_t>(technique + 1);
   if (technique < -1 || index >= correction.lines.size()) return 1;
-  const double common = valid_factor(correction.lines.front(), common_prior, key, now_s);
+  const double common = valid_factor(correction.lines.front(), common_prior, key, now_s, cut);
   if (index == 0) return common;
-  const Prior prior = prior_of(correction, index - 1, key, now_s);
-  return common * valid_factor(correction.lines[index], prior, key, now_s);
+  const Prior prior = prior_of(correction, index - 1, key, now_s, cut);
+  return common * valid_factor(correction.lines[index], prior, key, now_s, cut);
 }
 
 void forget_errors(ErrorCorrection& correction) {

@@ -51,9 +51,10 @@ ErrorCorrection make_error_correction(const ErrorModel& table);
 void observe_error(ErrorCorrection& correction, const ProbedFrame& frame);
 // Returns the factor for a frame with this content at this time. It returns to that of the
 // technique's variants, and theirs to 1, as the last probed frame ages, and as the content deviates
-// from that frame's.
+// from that frame's. `cut`: the frame replaces the content, and forget_errors() is yet to be
+// called.
 double error_factor(const ErrorCorrection& correction, int32_t technique, const FrameKey& key,
-                    double now_s);
+                    double now_s, bool cut = false);
 // The content was replaced, as by a cut: the factors of techniques that do not run return to 1.
 void forget_errors(ErrorCorrection& correction);
 // Takes back the last forget_errors(), whose frame was discarded.

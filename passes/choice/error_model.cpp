@@ -14,7 +14,7 @@ namespace {
 constexpr size_t max_points = 64, max_techniques = 256, max_pass_types = 16;
 constexpr double largest_through = 10; // maximum error relative to the light that a slab transmits
 constexpr double min_d_px = 1e-3, largest_d_px = 1e4, min_rmse = 1e-9, largest_rmse = 1e3;
-constexpr double max_spread = 1e3, max_exponent = 2;
+constexpr double max_spread = 1e3;
 
 std::vector<ErrorPoint> read_curve(const Document& document, ObjectReader& owner,
                                    std::string_view key, Diagnostics& diagnostics) {
@@ -50,7 +50,7 @@ std::vector<ErrorPoint> read_curve(const Document& document, ObjectReader& owner
 }
 
 double read_exponent(ObjectReader& owner, std::string_view key) {
-  return owner.number(key, -max_exponent, max_exponent, Need::optional).value_or(0);
+  return owner.number(key, -max_relief_power, max_relief_power, Need::optional).value_or(0);
 }
 
 PassTypeMatch read_pass_type(const Document& document, NodeId node, const std::string& of,

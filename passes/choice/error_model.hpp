@@ -40,6 +40,7 @@ struct TechniqueError {
   bool by_rays = false;
 };
 
+inline constexpr double max_relief_power = 2;
 inline constexpr double relief_floor =
     1e-3; // added to relief, so that flat scenes have a logarithm
 struct ReliefPoint {

@@ -198,16 +198,17 @@ std::vector<SeparableRow> make_separable_table(std::span<const NumberedProfile> 
 }
 
 bool uses_separable(const Graph& graph, const PassTypeRegistry& pass_types) {
-  const PassTypeId separable = pass_types.find("subsurface.separable");
-  return std::any_of(graph.passes.begin(), graph.passes.end(),
-                     [&](const PassDeclaration& pass) { return pass.type == separable; });
+  return std::ranges::any_of(graph.passes, [&](const PassDeclaration& pass) {
+    const std::string_view type = pass_types[pass.type].name;
+    return type.starts_with("subsurface.separable") || type == "subsurface.probe";
+  });
 }
 
 PyramidUse pyramid_use(const Graph& graph, const PassTypeRegistry& pass_types) {
   const auto has = [&](std::string_view type) {
-    return std::any_of(
-        graph.passes.begin(), graph.passes.end(),
-        [id = pass_types.find(type)](const PassDeclaration& pass) { return pass.type == id; });
+    return std::ranges::any_of(graph.passes, [&](const PassDeclaration& pass) {
+      return pass_types[pass.type].name == type;
+    });
   };
   const bool surface = has("subsurface.sap_gather") || has("subsurface.sap_up") ||
                        has("subsurface.sap_gather_half") || has("subsurface.sap_coarse_up");

@@ -29,6 +29,8 @@ ProbedError probed_error(const FrameCounters& counters) {
   for (size_t i = 0; i < count; ++i)
     tiles[i] = {value(counters.probes[i][0]), value(counters.probed_unscattered[i]),
                 value(counters.probes[i][1]), value(counters.probed_separable[i])};
+  for (const auto& tile : tiles) // extreme exposures overflow
+    if (!std::ranges::all_of(tile, [](double one) { return std::isfinite(one); })) return {};
   // the device writes them in any order
   std::sort(tiles.begin(), tiles.begin() + std::ptrdiff_t(count));
   for (const auto& [error, unscattered_error, weight, separable_error] : tiles) {

@@ -10,14 +10,14 @@ struct guidance_settings {
   int min_samples, max_samples;
 };
 
-// Equations 8 to 10 (A4): returns kappa * Delta + E, not clamped.
+// Returns kappa * Delta + E, not clamped (equations 8 to 10, A4).
 float required_samples(float variance, float mean_count, guidance_settings settings) {
   float ratio = variance / settings.sigma2_target;
   float change = (ratio - 1.0) * mean_count * (2.0 / settings.eta - 2.0);
   return settings.kappa * change + ratio * mean_count;
 }
 
-// A6: returns a whole number within the range.
+// Returns a whole number within the range (A6).
 int clamped_samples(float required, guidance_settings settings) {
   return int(round(clamp(required, float(settings.min_samples), float(settings.max_samples))));
 }

@@ -27,7 +27,7 @@ void main() {
   if (listed >= tiles_data[0] || !pixel_of_tile(tiles_data[1u + listed], pixel, copy_only))
     return;
   ivec2 texel = texel_of(pixel), tile = pixel >> 3;
-  uint id = texelFetch(material_image, texel, 0).r;
+  uint id = profile_of(texelFetch(material_image, texel, 0).r);
   uint steps = samples_per_tile_data[tile.y * frame.tiles.x + tile.x];
   if (id == 0u || steps == 0u)
     return;

@@ -88,8 +88,8 @@ guide_state state_before(ivec2 pixel, float depth, uint id, float rise) {
 
 float exposed(vec3 light) { return min(dot(light, luminance_weights) * frame.exposure, 1e4); }
 
-// Four pixels of the tile per element: a value that guides the number of samples, and the profile, 0
-// if the pixel has no value.
+// Four pixels of the tile per element: a value that guides the number of samples, and the profile,
+// 0 if the pixel has no value.
 shared vec4 pooled_values[16], pooled_profiles[16];
 
 // Returns the mean of `value` over the tile's pixels of a profile that have a value, because that
@@ -114,7 +114,7 @@ float mean_in_tile(float value, uint id, bool has_value) {
 int max_samples_at(ivec2 tile) {
   uint steps =
       has_samples_per_tile() ? samples_per_tile_data[tile.y * frame.tiles.x + tile.x] : 3u;
-  return settings.max_samples >> (3u - min(steps, 3u));
+  return max(settings.max_samples >> (3u - min(steps, 3u)), splits() ? 2 : 1);
 }
 
 struct guided_pixel {
@@ -199,7 +199,7 @@ void main() {
   uint id = 0u;
   if (listed) {
     texel = texel_of(pixel);
-    id = texelFetch(material_image, texel, 0).r;
+    id = profile_of(texelFetch(material_image, texel, 0).r);
     at.own = texelFetch(light_image, texel, 0);
     at.point.depth = view_depth(texelFetch(depth_image, texel, 0).r);
     if (id != 0u && !copy_only && at.point.depth > 0.0) {
@@ -252,9 +252,9 @@ void main() {
         state.lost ? float(count) : mix(state.mean_count, float(count), settings.eta);
   imageStore(scattered_image, texel, vec4(round_to_half(scattered), 1.0));
   float depth = at.point.depth / mm_per_metre;
-  imageStore(
-      guide_out_image, texel,
-      round_to_half(vec4(state.sd, state.mean_count, splits() ? depth : state.mean, float(id))));
+  // Without samples there is no history: the pixel starts anew when it scatters.
+  vec4 guide = vec4(state.sd, state.mean_count, splits() ? depth : state.mean, float(at.point.id));
+  imageStore(guide_out_image, texel, round_to_half(guide));
   if (has_place_out())
     imageStore(place_out_image, texel, vec4(round_to_half(depth), 0.0, 0.0, 0.0));
   if (has_control_out()) {

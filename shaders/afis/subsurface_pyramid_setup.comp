@@ -18,7 +18,7 @@ bool beside_another_profile(ivec2 pixel, uint id) {
       ivec2 q = pixel + ivec2(x, y);
       if (!inside_rect(q))
         continue;
-      uint other = texelFetch(material_image, texel_of(q), 0).r;
+      uint other = profile_of(texelFetch(material_image, texel_of(q), 0).r);
       if (other != 0u && other != id)
         return true;
     }
@@ -33,7 +33,7 @@ void main() {
   vec4 light = vec4(0.0);
   if (inside_rect(pixel)) {
     ivec2 texel = texel_of(pixel);
-    uint id = texelFetch(material_image, texel, 0).r;
+    uint id = profile_of(texelFetch(material_image, texel, 0).r);
     if (id != 0u) {
       light.rgb =
           pixel_light(lighting_image, albedo_image, has_albedo(), settings.texturing, texel);

@@ -7,13 +7,13 @@ layout(std140, set = 1, binding = 0) uniform frame_block {
   ivec4 rect;        // x, y, width, height of the render rectangle, pixels
   ivec2 tiles;       // 8x8 tiles of the rectangle
   uint frame_index;
-  // bit 0: perspective, bit 1: depth is view distance, bit 2: history invalid, bit 3: the frame
+  // bit 0: perspective, bit 1: depth is view depth, bit 2: history invalid, bit 3: the frame
   // before was perspective, bit 4: normal images are left-handed
   uint flags;
   vec2 ray_scale;    // view x, y = (scale * pixel + offset) * (perspective ? depth : 1), mm
   vec2 ray_offset;
   vec4 depth_decode; // depth mm = (a * value + b) / (c * value + e)
-  float depth_unit;  // mm per unit of view distance
+  float depth_unit;  // mm per unit of view depth
   float exposure;
   vec2 jitter;       // pixels
   // The previous frame, down to previous_jitter; valid if bit 2 of flags is not set.
@@ -24,9 +24,9 @@ layout(std140, set = 1, binding = 0) uniform frame_block {
   vec2 previous_ray_offset;
   ivec4 previous_rect;
   vec2 previous_jitter; // pixels
-  uint sample_units;    // samples that subsurface.allocate_samples may spend, in units
+  uint sample_units; // that subsurface.allocate_samples may spend
   float unused;
-  // units of samples that subsurface.allocate_samples may spend
+  // x, y, width, height of the area that may have subsurface, from the rectangle's corner
   ivec4 bounds;
   // Rows of M: view position (mm) = M * (world position in the host's units, 1).
   vec4 view_from_world[3];
@@ -48,11 +48,14 @@ layout(std430, set = 1, binding = 2) readonly buffer separable_block { vec4 sepa
 // Returns the fraction of light that never scatters.
 vec3 profile_direct(uint id) { return profiles[min(id, 255u)].direct.rgb; }
 
+// Returns the profile of a material id: ids above 255 count as 255.
+uint profile_of(uint material) { return min(material, 255u); }
+
 const float largest_depth_mm = 1e9; // 1000 km; sky and infinite far planes are beyond
 
 bool is_perspective() { return (frame.flags & 1u) != 0u; }
 
-// Returns the view distance in mm from a value of the depth import, 0 if nothing is visible. Both
+// Returns the view depth in mm from a value of the depth import, 0 if nothing is visible. Both
 // decodings are computed, because some drivers compile a kernel again at each bind for a branch
 // that is uniform over the dispatch.
 float view_depth(float value) {

@@ -29,7 +29,7 @@ uvec4 join_ranges(uvec4 a, uvec4 b) {
 
 // Returns how many tiles light reaches to each side of a tile with this d. In Burley's profile,
 // less than 0.1 % of the light goes further.
-int uniform_reach(float d_px) { return int(ceil(uniform_reach_d * d_px / 8.0)); }
+int uniform_reach(float d_px) { return int(min(ceil(uniform_reach_d * d_px / 8.0), 1e6)); }
 
 // Returns whether all of `range` is within the tolerance of the light between `low` and `high`. The
 // result then also holds for every range inside `range`.

@@ -20,7 +20,7 @@ surface_sample sample_surface(utexture2D material, texture2D depth, ivec2 pixel)
     return surface_sample(0.0, 0u);
   ivec2 texel = texel_of(pixel);
   return surface_sample(view_depth(texelFetch(depth, texel, 0).r),
-                        texelFetch(material, texel, 0).r);
+                        profile_of(texelFetch(material, texel, 0).r));
 }
 
 // Returns a function of depth that is linear in the pixel on a plane.

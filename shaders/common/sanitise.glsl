@@ -9,4 +9,6 @@ vec3 clean_light(vec3 v) { return vec3(clean_light(v.x), clean_light(v.y), clean
 float clean_albedo(float x) { return x > 0.0 ? min(x, 1.0) : 0.0; }
 vec3 clean_albedo(vec3 v) { return vec3(clean_albedo(v.x), clean_albedo(v.y), clean_albedo(v.z)); }
 
+float clean_importance(float x) { return clean_albedo(x); }
+
 #endif

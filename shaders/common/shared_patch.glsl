@@ -15,7 +15,7 @@ shared float patch_depth[patch_side * patch_side]; // mm; 0 if nothing is visibl
 void share_patches(utexture2D material, texture2D depth, ivec2 first) {
   for (int i = int(gl_LocalInvocationIndex); i < patch_side * patch_side; i += 64) {
     ivec2 pixel = first + ivec2(i % patch_side, i / patch_side) - 1, texel = texel_of(pixel);
-    uint id = inside_rect(pixel) ? texelFetch(material, texel, 0).r : 0u;
+    uint id = inside_rect(pixel) ? profile_of(texelFetch(material, texel, 0).r) : 0u;
     patch_profile[i] = id;
     patch_depth[i] = id != 0u ? view_depth(texelFetch(depth, texel, 0).r) : 0.0;
   }

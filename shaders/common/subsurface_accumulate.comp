@@ -142,7 +142,7 @@ near_texel_values load_near_texel(ivec2 pixel) {
   // All loads are unconditional, so that one wait covers them.
   ivec2 texel = texel_of(clamp(pixel, ivec2(0), frame.rect.zw - 1));
   near_texel_values values;
-  values.id = texelFetch(material_image, texel, 0).r;
+  values.id = profile_of(texelFetch(material_image, texel, 0).r);
   values.light = pixel_light(lighting_image, albedo_image, has_albedo(), settings.texturing, texel);
   values.scattered = texelFetch(scattered_image, texel, 0).rgb;
   values.depth = view_depth(texelFetch(depth_image, texel, 0).r);

@@ -53,7 +53,7 @@ uint find_subsurface(ivec2 first, out uint ids[run]) {
   uint mask = run_inside(first);
   ivec2 last = texel_of(frame.rect.zw - 1);
   [[unroll]] for (int i = 0; i < run; ++i) {
-    ids[i] = texelFetch(material_image, min(texel_of(run_pixel(first, i)), last), 0).r;
+    ids[i] = profile_of(texelFetch(material_image, min(texel_of(run_pixel(first, i)), last), 0).r);
     mask &= ids[i] != 0u ? ~0u : ~(1u << uint(i));
   }
   return mask;
@@ -62,7 +62,7 @@ uint find_subsurface(ivec2 first, out uint ids[run]) {
 uint look_at(ivec2 pixel) {
   ivec2 texel = texel_of(pixel);
   // Reads the id again, because indexing the array of ids at run time would cost every pixel.
-  uint id = texelFetch(material_image, texel, 0).r;
+  uint id = profile_of(texelFetch(material_image, texel, 0).r);
   float depth = view_depth(texelFetch(depth_image, texel, 0).r);
   float scale =
       has_scatter_scale() ? clean_scatter_scale(texelFetch(scatter_scale_image, texel, 0).r) : 1.0;

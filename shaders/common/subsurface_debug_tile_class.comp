@@ -15,6 +15,6 @@ void main() {
   ivec2 texel = texel_of(pixel);
   uint tile_class =
       class_of_tile(classes_data[gl_WorkGroupID.y * uint(frame.tiles.x) + gl_WorkGroupID.x]);
-  uint id = texelFetch(material_image, texel, 0).r;
+  uint id = profile_of(texelFetch(material_image, texel, 0).r);
   imageStore(tile_class_image, texel, vec4(float(tile_class), float(id), 0.0, 1.0));
 }

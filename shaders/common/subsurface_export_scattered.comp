@@ -18,7 +18,7 @@ void main() {
   ivec2 texel = texel_of(pixel);
   bool left = settings.leave_scattered != 0;
   vec4 light = vec4(clean_light(texelFetch(lighting_image, texel, 0).rgb), 1.0);
-  uint id = texelFetch(material_image, texel, 0).r;
+  uint id = profile_of(texelFetch(material_image, texel, 0).r);
   if (id != 0u && inside_bounds(pixel)) {
     vec4 d = profiles[min(id, 255u)].d_mm;
     if (has_scatter_scale())

@@ -45,7 +45,7 @@ uint class_at(int tile) { return classes_data[tile]; }
 // Returns the depth of a pixel of the profile in mm, else 0.
 float depth_of(ivec2 pixel, uint id) {
   if (!inside_rect(pixel) || !inside_bounds(pixel) ||
-      texelFetch(material_image, texel_of(pixel), 0).r != id)
+      profile_of(texelFetch(material_image, texel_of(pixel), 0).r) != id)
     return 0.0;
   return view_depth(texelFetch(depth_image, texel_of(pixel), 0).r);
 }
@@ -80,7 +80,7 @@ void add_tap(scatter_point point, scatter_profile profile, float u, vec2 directi
 
 uint profile_at(ivec2 pixel) {
   bool inside = inside_rect(pixel) && inside_bounds(pixel);
-  return inside ? texelFetch(material_image, texel_of(pixel), 0).r : 0u;
+  return inside ? profile_of(texelFetch(material_image, texel_of(pixel), 0).r) : 0u;
 }
 
 float scale_at(ivec2 texel) {
@@ -212,9 +212,12 @@ void main() {
   if (!find_probed_tile(settings.tiles, settings.interval, selected))
     return;
   uint lane = gl_LocalInvocationIndex;
-  bool copied = class_of_tile(class_at(selected.tile)) != class_scatter;
+  uint tile_class = class_of_tile(class_at(selected.tile));
+  bool copied = tile_class != class_scatter;
   ivec2 first = 8 * position_of_tile(selected.tile);
-  scatter_separably(probed_pixel(selected, first, lane / column_lanes), lane, copied);
+  // The separable technique would also run in tiles that a budget leaves out.
+  scatter_separably(probed_pixel(selected, first, lane / column_lanes), lane,
+                    tile_class == class_uniform);
   vec3 found = vec3(0.0); // errors of the invocation's quarters
   float pixels = 0.0;
   for (uint i = 0u; i < quarters; i += quarters_at_once) {

@@ -10,6 +10,7 @@
 #include "common/subsurface_tile_change.bindings.glsl"
 #include "common/constants_math.glsl"
 #include "common/environment.glsl"
+#include "common/sanitise.glsl"
 #include "common/light_range.glsl"
 #include "common/reproject.glsl"
 #include "common/tile_packing.glsl"
@@ -80,7 +81,7 @@ float mean_importance(ivec2 tile) {
   ivec2 last = frame.rect.zw - 1;
   for (int i = importance_step / 2; i < 64; i += importance_step * (i % 8 < 6 ? 1 : 5)) {
     ivec2 pixel = min(8 * tile + ivec2(i & 7, i >> 3), last);
-    sum += clamp(texelFetch(importance_image, texel_of(pixel), 0).r, 0.0, 1.0);
+    sum += clean_importance(texelFetch(importance_image, texel_of(pixel), 0).r);
   }
   return sum / 16.0;
 }

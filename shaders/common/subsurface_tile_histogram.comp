@@ -1,6 +1,6 @@
 #version 460
-// Counts the tiles that scatter by bin of their expected change, for a run of tiles in row order
-// per group: all of them, then those that need not be kept.
+// Builds a histogram of the scattering tiles over bins of their expected change, per group for a
+// run of tiles in row order: of all of them, then of those that need not be kept.
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
 #include "common/subsurface_tile_histogram.bindings.glsl"

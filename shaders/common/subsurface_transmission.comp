@@ -17,7 +17,7 @@ void main() {
     return;
   ivec2 texel = texel_of(pixel);
   vec4 light = texelFetch(lighting_image, texel, 0);
-  uint id = texelFetch(material_image, texel, 0).r;
+  uint id = profile_of(texelFetch(material_image, texel, 0).r);
   if (id != 0u) {
     float scale = 1.0, metres = texelFetch(thickness_image, texel, 0).r;
     if (has_scatter_scale())

@@ -37,7 +37,7 @@ void main() {
   uint listed = listed_tile();
   if (listed < tiles_data[0] && pixel_of_tile(tiles_data[1u + listed], pixel, copy_only)) {
     ivec2 texel = texel_of(pixel);
-    uint id = texelFetch(material_image, texel, 0).r;
+    uint id = profile_of(texelFetch(material_image, texel, 0).r);
     if (id != 0u) {
       vec3 light = transmitted_light(texel, id);
       float exposed = min(frame.exposure * dot(luminance_weights, light), 1.0);

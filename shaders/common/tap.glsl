@@ -32,7 +32,7 @@ bool find_tap(utexture2D material, texture2D depth, texture2D slope, uint id, ve
   if (!inside_rect(tap.pixel))
     return false;
   ivec2 texel = texel_of(tap.pixel);
-  if (texelFetch(material, texel, 0).r != id)
+  if (profile_of(texelFetch(material, texel, 0).r) != id)
     return false;
   tap.depth = view_depth(texelFetch(depth, texel, 0).r);
   tap.slope = texelFetch(slope, texel, 0).rg;

@@ -62,7 +62,7 @@ void main() {
   if (listed >= tiles_data[0] || !pixel_of_tile(tiles_data[1u + listed], pixel, copy_only))
     return;
   ivec2 texel = texel_of(pixel);
-  uint id = texelFetch(material_image, texel, 0).r;
+  uint id = profile_of(texelFetch(material_image, texel, 0).r);
   if (id == 0u)
     return;
   vec4 light = texelFetch(light_image, texel, 0);

@@ -10,6 +10,7 @@
 #include "common/constants_math.glsl"
 #include "papers/subsurface_tile_variance.bindings.glsl"
 #include "common/environment.glsl"
+#include "common/sanitise.glsl"
 #include "common/radius.glsl"
 #include "common/tiles.glsl"
 #include "afis/mips.glsl"
@@ -52,10 +53,10 @@ void main() {
   bool copy_only = false;
   bool listed = tile < tiles_data[0] && pixel_of_tile(tiles_data[1u + tile], pixel, copy_only);
   ivec2 texel = texel_of(pixel);
-  uint id = listed && !copy_only ? texelFetch(material_image, texel, 0).r : 0u;
+  uint id = listed && !copy_only ? profile_of(texelFetch(material_image, texel, 0).r) : 0u;
   if (id != 0u) {
     float importance =
-        has_importance() ? clamp(texelFetch(importance_image, texel, 0).r, 0.0, 1.0) : 1.0;
+        has_importance() ? clean_importance(texelFetch(importance_image, texel, 0).r) : 1.0;
     float own_d = scattering_d(texel, id);
     float weight = importance * benefit_of(own_d, texelFetch(light_image, texel, 0).a);
     if (own_d > 0.0) {

@@ -19,7 +19,7 @@ struct probe_numbers {
   float pick;     // selects one of the hits
 };
 struct probe_ray {
-  vec3 origin, direction; // unit length
+  vec3 origin, direction; // direction: unit length
   float reach;            // length of the ray
 };
 struct probe_hit {

@@ -45,7 +45,7 @@ bool is_neighbour(ivec2 pixel, uint medium) {
     return false;
   ivec2 tile = pixel >> 3;
   return class_of_tile(classes_data[tile.y * frame.tiles.x + tile.x]) != class_none &&
-         texelFetch(material_image, texel_of(pixel), 0).r == medium;
+         profile_of(texelFetch(material_image, texel_of(pixel), 0).r) == medium;
 }
 
 // Tests pixels around `pixel` until one is a neighbour. `tested` counts them; at most

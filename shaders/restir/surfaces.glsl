@@ -61,11 +61,11 @@ vec3 world_direction(vec3 in_view) {
 scatter_domain domain_of(utexture2D material, texture2D depth_texture, texture2D normal_texture,
                          texture2D scatter_scale, bool scale_bound, ivec2 pixel) {
   ivec2 texel = texel_of(pixel);
-  uint id = texelFetch(material, texel, 0).r;
+  uint id = profile_of(texelFetch(material, texel, 0).r);
   float depth = view_depth(texelFetch(depth_texture, texel, 0).r);
   vec3 normal = view_normal(texelFetch(normal_texture, texel, 0).xyz);
   float square = dot(normal, normal);
-  if (id == 0u || !(depth > 0.0) || !(square > 0.0))
+  if (id == 0u || !(depth > 0.0) || !(square > 0.0 && square < 3e38)) // not finite: no surface
     return scatter_domain(vec3(0.0), vec3(0.0, 0.0, 1.0), vec3(0.0), 0u);
   float scale = scale_bound ? clean_scatter_scale(texelFetch(scatter_scale, texel, 0).r) : 1.0;
   vec3 from_eye =

@@ -18,7 +18,8 @@ const float sap_tilt_width_tent = 1.25;
 const float sap_confidence_width = 0.87; // distance from the farther plane
 const float sap_relevant_d = 6.0; // distance in d from which a missing surface does not matter
 const float sap_negligible = 1e-12;
-const float sap_max_reach = 65472.0; // largest reach that a texel can store
+// Largest reach that a texel can store: a larger half becomes infinite when it drops two bits.
+const float sap_max_reach = 65408.0;
 
 // exp(-x^2 / (2 width^2)) = exp2(factor * x^2)
 float sap_factor(float width) { return -0.5 * 1.44269504 / (width * width); }
@@ -227,7 +228,7 @@ vec2 sap_lookup_pair(int table, int pair, float d_px) {
   int node = min(int(clamped), sap_nodes - 2);
   vec4 nodes = sap_table[(table * sap_table_pairs + pair) * sap_nodes + node];
   vec2 values = mix(nodes.xy, nodes.zw, clamped - float(node));
-  // Below the first node, all weights except the centre's fade to 0.
+  // Below the first node, the weight of the centre rises to 1 and that of the tent falls to 0.
   float fraction = position < 0.0 ? d_px / exp2(sap_log2_d_first) : 1.0;
   return pair == 0 ? vec2(1.0 - fraction * (1.0 - values.x), fraction * values.y) : values;
 }

@@ -11,7 +11,7 @@ shared uvec4 tile_surface[texel_shape ? ring_texels : 1];
 shared uvec2 tile_light[texel_shape ? ring_texels : 1];
 shared uvec4 tile_coarse_surface[texel_shape ? 2 * coarse_under_pixels : 1];
 shared uvec4 tile_coarse_scattered[texel_shape ? 2 * coarse_under_pixels : 1];
-// Block shape: those of a block.
+// Block shape: the texels of a block and its ring, in registers.
 const int block_ring = (4 + 2 * ring_reach) * (2 + 2 * ring_reach);
 const int block_coarse = square_pixels ? 4 * 3 : 5 * 3;
 uvec4 ring_surface[block_ring];

@@ -54,7 +54,7 @@ float depth_at(int i) { return texel_shape ? tile_depth[i] : block_depth[i]; }
 
 void read_pixel(int i, ivec2 pixel, bool copy_only) {
   ivec2 texel = texel_of(pixel);
-  uint id = inside_rect(pixel) ? texelFetch(material_image, texel, 0).r : 0u;
+  uint id = inside_rect(pixel) ? profile_of(texelFetch(material_image, texel, 0).r) : 0u;
   float depth = 0.0;
   if (id != 0u && !copy_only)
     depth = view_depth(texelFetch(depth_image, texel, 0).r);

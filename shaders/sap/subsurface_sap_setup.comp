@@ -33,7 +33,7 @@ void read_pixel(ivec2 first, int i) {
   uint id = 0u;
   float depth = 0.0;
   if (!corner && inside_rect(pixel))
-    id = texelFetch(material_image, texel, 0).r;
+    id = profile_of(texelFetch(material_image, texel, 0).r);
   if (id != 0u)
     depth = view_depth(texelFetch(depth_image, texel, 0).r);
   if (texel_shape) {

@@ -38,7 +38,7 @@ vec4 light_of(sap_parent parent, int c, bool second, uint id) { return child_lig
 void read_pixel(texel_block block, int i, ivec2 pixel) {
   ivec2 tile = (pixel >> 3) - step_from_level(0) * block.tile + 1, texel = texel_of(pixel);
   bool needed = inside_rect(pixel) && tile_written(block.children, tile);
-  uint id = needed ? texelFetch(material_image, texel, 0).r : 0u;
+  uint id = needed ? profile_of(texelFetch(material_image, texel, 0).r) : 0u;
   float depth = id != 0u ? view_depth(texelFetch(depth_image, texel, 0).r) : 0.0;
   if (texel_shape) {
     tile_profile[i] = id;

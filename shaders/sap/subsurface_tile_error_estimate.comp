@@ -7,6 +7,7 @@
 #include "common/constants_math.glsl"
 #include "sap/subsurface_tile_error_estimate.bindings.glsl"
 #include "common/environment.glsl"
+#include "common/sanitise.glsl"
 #include "common/tiles.glsl"
 #include "sap/sap.glsl"
 
@@ -37,7 +38,7 @@ void main() {
       }
       float exposed_error = clamp(pixel_error * frame.exposure, 0.0, 4.0);
       float importance =
-          has_importance() ? clamp(texelFetch(importance_image, texel, 0).r, 0.0, 1.0) : 1.0;
+          has_importance() ? clean_importance(texelFetch(importance_image, texel, 0).r) : 1.0;
       atomicAdd(sum, uint(missing_confidence * exposed_error * importance * error_steps + 0.5));
     }
   }

@@ -29,7 +29,7 @@ uint state_of_tile(ivec2 tile) { return state_of_word(word_of_tile(tile)); }
 
 // Light before both passes.
 vec4 unscattered_at(ivec2 texel) {
-  uint id = texelFetch(material_image, texel, 0).r;
+  uint id = profile_of(texelFetch(material_image, texel, 0).r);
   vec3 light = pixel_light(lighting_image, albedo_image, has_albedo(), settings.texturing, texel);
   return vec4(id != 0u ? round_to_half(light) : vec3(0.0), stored_profile(id));
 }
@@ -153,7 +153,8 @@ void main() {
     store_weights(tile, weight);
   separable_pass how = separable_pass(vertical, settings.taps, KERNEL_FITTED);
   vec3 result = scatter(how, pixel, scatters, uint(light.a), d, light, own);
-  if (!listed || light.a == 0.0)
+  // The vertical pass reads all texels of the tiles that the horizontal pass blurs.
+  if (!listed || (vertical && light.a == 0.0))
     return;
   if (scatters && vertical)
     result = mix(light.rgb, result, float(weight) / float(full_pixel_weight));

@@ -21,7 +21,7 @@ void main() {
   bool listed = class_of_tile(classes_data[tile.y * uint(frame.tiles.x) + tile.x]) != class_none;
   float surface = no_surface();
   if (listed) {
-    uint id = texelFetch(material_image, texel, 0).r;
+    uint id = profile_of(texelFetch(material_image, texel, 0).r);
     vec4 light = vec4(0.0);
     if (id != 0u) {
       light.rgb =

@@ -159,6 +159,64 @@ TEST_F(InputFormats, MaterialMayBeAnyUnsignedInteger) {
   }
 }
 
+// Id 257 is neither profile 1, its low byte, nor none.
+TEST_F(InputFormats, MaterialIdsAbove255_CountAs255) {
+  for (const char* graph_name : {"burley", "sap", "afis"}) {
+    GraphOptions options = options_of(graph_name);
+    options.formats.emplace_back("material", VK_FORMAT_R16_UINT);
+    options.profile_count = 255;
+    std::vector<std::vector<float>> pictures;
+    for (const float id : {255.0f, 257.0f, 511.0f}) {
+      const dermis_graph graph = make_bound_graph(options);
+      fill("material", [&](uint32_t x, uint32_t) { return x / 4 % 2 == 0 ? id : 1.0f; });
+      pictures.push_back(picture(graph));
+    }
+    EXPECT_EQ(pictures[1], pictures[0]) << graph_name;
+    EXPECT_EQ(pictures[2], pictures[0]) << graph_name;
+  }
+}
+
+TEST_F(InputFormats, InfiniteScatterScale_GivesFiniteLight) {
+  for (const char* graph_name : {"burley", "sap", "separable", "afis"}) {
+    GraphOptions options = options_of(graph_name);
+    std::erase(options.unbound, "scatter_scale");
+    options.formats.emplace_back("scatter_scale", VK_FORMAT_R16_SFLOAT);
+    options.profile_count = 2;
+    const dermis_graph graph = make_bound_graph(options);
+    fill("material", [](uint32_t x, uint32_t) { return x < image_side / 2 ? 1.0f : 2.0f; });
+    fill("scatter_scale",
+         [](uint32_t x, uint32_t) { return x < image_side / 2 ? HUGE_VALF : 1.0f; });
+    for (const float value : picture(graph))
+      ASSERT_TRUE(std::isfinite(value)) << graph_name;
+  }
+}
+
+// Texels without subsurface in tiles that scatter: old light must not come from there.
+TEST_F(InputFormats, PartialScattering_ReadsNoLightOfEarlierFrames) {
+  dermis_graph graph = nullptr;
+  const auto make = [&] {
+    graph = make_graph(options_of("skin"));
+    ASSERT_OK(dermis_graph_set_setting(graph, "technique", "\"partial\"", nullptr));
+    make_images(graph);
+  };
+  const auto fill_stripes = [&] {
+    fill("material", [](uint32_t x, uint32_t) { return x / 4 % 2 == 0 ? 0.0f : 1.0f; });
+    fill("lighting", [](uint32_t x, uint32_t) { return x % 5 == 0 ? 1.0f : 0.25f; });
+  };
+  make();
+  fill_stripes();
+  picture(graph);
+  const std::vector<float> expected = texels("lighting");
+  make();
+  fill("lighting", [](uint32_t, uint32_t) { return 16.0f; });
+  picture(graph);
+  fill_stripes();
+  dermis_frame cut = bound_frame(graph);
+  cut.flags |= DERMIS_FRAME_RESET_HISTORY;
+  ASSERT_OK(record(graph, cut));
+  expect_equal_rgb(texels("lighting"), expected);
+}
+
 // Runs integration/examples/material_ids.comp over `source` into the image of slot `material`.
 struct IdExtraction : InputFormats {
   void extract_ids(VkImageView source, int32_t first_bit, int32_t bits) {

@@ -218,6 +218,59 @@ TEST_F(Probe, MeasuresSeparable_WhileOthersRun) {
       << "the table has this error, too";
 }
 
+// Tiles that the budget leaves out are measured, too.
+TEST_F(Probe, MeasuresSeparable_WhileABudgetLeavesTilesOut) {
+  const auto factor = [&](float ms) {
+    last_frame = 0;
+    make("\"partial\"");
+    dermis_budget budget = DERMIS_BUDGET_INIT;
+    budget.milliseconds = ms;
+    budget.flags = DERMIS_BUDGET_DETERMINISTIC;
+    EXPECT_OK(dermis_graph_set_budget(graph, &budget, nullptr));
+    demo::ReportedFrame shown;
+    for (int i = 0; i < 40; ++i)
+      shown = run_frame(spread);
+    set("technique", "\"separable\"");
+    budget.milliseconds = 0; // 25 taps, which the probe measures
+    EXPECT_OK(dermis_graph_set_budget(graph, &budget, nullptr));
+    make_images(graph);
+    run_frame(spread);
+    return std::pair(double(run_frame(spread).predicted_rmse), shown);
+  };
+  const auto [all, shown] = factor(1000);
+  ASSERT_EQ(shown.sample_units, shown.sample_demand);
+  float ms = shown.predicted_ms;
+  for (; ms > 1e-3f; ms *= 0.8f)
+    if (const auto [found, part] = factor(ms); part.sample_units < part.sample_demand / 2) {
+      EXPECT_GT(part.sample_units, 0u);
+      EXPECT_NEAR(found, all, 0.02 * all);
+      return;
+    }
+  FAIL() << "no budget leaves tiles out";
+}
+
+TEST_F(Probe, FramesBeforeACut_DoNotCountAfterIt) {
+  const auto settle = [&](bool probing) {
+    make("\"separable\"", probing);
+    for (int i = 0; i < 6; ++i)
+      run_frame(spread);
+    return double(run_frame(spread).predicted_rmse);
+  };
+  const double by_table = settle(false), corrected = std::abs(std::log(settle(true) / by_table));
+  ASSERT_GT(corrected, 0.3);
+  // The frame before the cut completes after the cut is recorded.
+  dermis_frame before = bound_frame(graph);
+  ASSERT_OK(record(graph, before));
+  dermis_frame cut = bound_frame(graph);
+  cut.completed_frame_index = before.frame_index - 1;
+  cut.flags |= DERMIS_FRAME_RESET_HISTORY;
+  ASSERT_OK(record(graph, cut));
+  dermis_frame after = bound_frame(graph);
+  after.completed_frame_index = before.frame_index;
+  const double predicted = record_and_read(graph, after).predicted_rmse;
+  EXPECT_LT(std::abs(std::log(predicted / by_table)), 0.2 * corrected);
+}
+
 TEST_F(Probe, PyramidIsBetterThanUnscatteredLight) {
   make("\"sap\"");
   const auto with = run_frame(spread);

@@ -170,8 +170,10 @@ TEST(ErrorCorrection, DiscardedCut_ForgetsNothing) {
   double now_s = 0;
   observe(correction, 0, 3 * expected, 50, now_s);
   const double before = error_factor(correction, 0, content, now_s);
+  const double of_the_cut = error_factor(correction, 0, content, now_s, true);
   forget_errors(correction);
-  EXPECT_LT(error_factor(correction, 0, content, now_s), 1.1);
+  EXPECT_LT(of_the_cut, 1.1);
+  EXPECT_EQ(error_factor(correction, 0, content, now_s), of_the_cut);
   recall_errors(correction);
   EXPECT_EQ(error_factor(correction, 0, content, now_s), before);
 }

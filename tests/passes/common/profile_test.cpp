@@ -1,9 +1,14 @@
 #include "passes/common/environment.hpp"
+#include "passes/common/kernel_tables.hpp"
+#include "passes/common/pass_types.hpp"
 #include "passes/common/profiles/profile.hpp"
+#include "tests/support/text_file.hpp"
 
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <set>
+#include <sstream>
 
 namespace {
 
@@ -107,6 +112,34 @@ TEST(Environment, UndeclaredProfilesPassLightThrough) {
   EXPECT_EQ(table[0].d_max_mm, 0.0f);
   EXPECT_FLOAT_EQ(table[7].d_max_mm, 1.0f);
   EXPECT_EQ(table[8].d_max_mm, 0.0f);
+}
+
+// Returns whether the shader, with all that it includes, has the text.
+bool source_has(const std::string& shader, const std::string& text, std::set<std::string>& seen) {
+  if (!seen.insert(shader).second) return false;
+  std::istringstream lines(test::read_text(DERMIS_SOURCE_DIR "/shaders/" + shader));
+  for (std::string line; std::getline(lines, line);) {
+    if (line.find(text) != std::string::npos) return true;
+    if (line.starts_with("#include \"") &&
+        source_has(line.substr(10, line.rfind('"') - 10), text, seen))
+      return true;
+  }
+  return false;
+}
+
+TEST(KernelTables, GraphsHaveTheSeparableTableThatTheirKernelsRead) {
+  const PassTypeRegistry pass_types = make_pass_types();
+  uint32_t readers = 0;
+  for (uint32_t i = 0; i < pass_types.size(); ++i) {
+    const PassType& type = pass_types[PassTypeId{i}];
+    std::set<std::string> seen;
+    if (!source_has(std::string(type.shader) + ".comp", "separable_rows[place", seen)) continue;
+    ++readers;
+    Graph graph;
+    graph.passes.emplace_back().type = PassTypeId{i};
+    EXPECT_TRUE(table_use(graph, pass_types).separable) << type.name;
+  }
+  EXPECT_GE(readers, 3u);
 }
 
 TEST(Environment, FrameConstantsReconstructViewPositions) {
