@@ -177,7 +177,8 @@ dermis_result set_budget(dermis_graph_t& graph, const dermis_budget* given, derm
     const std::lock_guard lock(view.mutex);
     Chooser& chooser = view.chooser;
     if (rebuild_tables) take_over(view, views[v++]);
-    if (tables.calibration) chooser.decided_for = 0; // decisions restart
+    // Decisions restart, also if the last frame is discarded.
+    if (tables.calibration) chooser.decided_for = chooser.previously_decided_for = 0;
     chooser.budget = budget_of(budget);
     if (budget.uncertainty != 0)
       chooser.costs.set_uncertainty(double(budget.uncertainty), true);
@@ -282,11 +283,8 @@ dermis_result write_newest(dermis_view_t& view, const char* function, const char
   if (const SizedRead read = check_size<T>(size); read != SizedRead::ok)
     return rejected_size(log, read, function, name, size, sizeof(T));
   const std::lock_guard lock(view.mutex);
-  if (completed > view.last_frame)
-    return bad_argument(log, "{}: completed_frame_index is {}, the newest recorded frame is {}",
-                        function, completed, view.last_frame);
   if (!view.running) return DERMIS_NOT_READY;
-  observe(view.chooser, *view.running, completed);
+  observe(view.chooser, *view.running, std::min(completed, view.last_frame));
   if (const dermis_result loss = check_loss(view, function); loss != DERMIS_OK) return loss;
   if (view.chooser.newest.frame_index == 0 ||
       view.chooser.newest.compiled_graph != view.running->serial)

@@ -35,8 +35,8 @@ dermis_result read_ports(const Log& log, const dermis_pass_type& given,
   for (uint32_t i = 0; i < given.port_count; ++i) {
     dermis_port port = DERMIS_PORT_INIT;
     if (const SizedRead read = read_sized(element(given.ports, i), port); read != SizedRead::ok)
-      return rejected_size(log, read, "dermis_register_pass_type: type.ports",
-                           stated_size(given.ports), sizeof(dermis_port));
+      return rejected_size(log, read, fmt::format("{}: type.ports[{}]", registering, i),
+                           stated_size(element(given.ports, i)), sizeof(dermis_port));
     const auto usage = static_cast<size_t>(port.usage);
     if (usage >= usages.size())
       return bad_argument(log, "{}: type.ports[{}].usage is {}, expected 0..{}", registering, i,
@@ -56,8 +56,8 @@ dermis_result read_settings(const Log& log, const dermis_pass_type& given,
     dermis_pass_setting setting = DERMIS_PASS_SETTING_INIT;
     if (const SizedRead read = read_sized(element(given.settings, i), setting);
         read != SizedRead::ok)
-      return rejected_size(log, read, "dermis_register_pass_type: type.settings",
-                           stated_size(given.settings), sizeof(dermis_pass_setting));
+      return rejected_size(log, read, fmt::format("{}: type.settings[{}]", registering, i),
+                           stated_size(element(given.settings, i)), sizeof(dermis_pass_setting));
     const auto value_type = static_cast<size_t>(setting.type);
     if (value_type >= setting_types.size())
       return bad_argument(log, "{}: type.settings[{}].type is {}, expected 0..{}", registering, i,

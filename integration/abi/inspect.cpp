@@ -119,11 +119,8 @@ dermis_result get_timings(dermis_view_t& view, const char* function, uint64_t co
   const Log& log = view.context->log;
   if (count == nullptr) return bad_argument(log, "{}: count is NULL", function);
   const std::lock_guard lock(view.mutex);
-  if (completed > view.last_frame)
-    return bad_argument(log, "{}: completed_frame_index is {}, the newest recorded frame is {}",
-                        function, completed, view.last_frame);
   CompiledGraph& compiled_graph = view.running ? *view.running : newest(view);
-  const TimedPlan timed = find_timed_plan(compiled_graph, completed);
+  const TimedPlan timed = find_timed_plan(compiled_graph, std::min(completed, view.last_frame));
   const RunnablePlan& plan = timed.plan != nullptr ? *timed.plan : compiled_graph.recorded();
   const std::vector<PlanPass>& passes = plan.compiled->plan.passes;
   if (out == nullptr) {

@@ -108,11 +108,10 @@ void keep_within_memory(const Graph& graph, const choice::ErrorModel& errors,
     min_bytes = std::min(min_bytes, bytes_of(plans[one.plan], budget.histories));
   }
   if (removed.empty()) return;
-  diagnostics.add(DiagnosticId::memory_left_out, place_in(graph),
-                  fmt::format("{}; {} is not offered, the smallest plan of which takes {}; the "
-                              "others take {} together",
-                              limit, list_names(removed), mebibytes(min_bytes),
-                              mebibytes(memory.bytes())));
+  diagnostics.add(
+      DiagnosticId::memory_left_out, place_in(graph),
+      fmt::format("{}; not offered: {} (smallest plan: {}); the others take {} together", limit,
+                  list_names(removed), mebibytes(min_bytes), mebibytes(memory.bytes())));
 
   // Remove them, and renumber the other plans.
   std::vector<uint32_t> number(plans.size());

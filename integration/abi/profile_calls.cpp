@@ -57,7 +57,7 @@ dermis_result replace_tables(dermis_graph_t& graph, CompiledGraphInput&& input, 
   }
   {
     const std::shared_ptr<CompiledGraph> kept = keep_newest(graph.own);
-    const std::lock_guard lock(graph.own.mutex); // recording chooses an configuration
+    const std::lock_guard lock(graph.own.mutex); // recording chooses a configuration
     add_settling(context.pass_types, *kept, kept->configuration, id, diagnostics);
   }
   const dermis_result result = conclude(context.log, DERMIS_OK, std::move(diagnostics), report);

@@ -1,9 +1,11 @@
 // Lists and changes settings of a graph.
+#include "framegraph/compile/availability.hpp"
 #include "framegraph/model/expression.hpp"
 #include "framegraph/model/frame_settings.hpp"
 #include "integration/abi/graph.hpp"
 #include "integration/abi/host_pass_types.hpp"
 #include "integration/abi/report.hpp"
+#include "integration/abi/slots.hpp"
 #include "integration/abi/two_call.hpp"
 
 #include <algorithm>
@@ -40,7 +42,7 @@ dermis_result get_settings(dermis_view_t& view, const char* function, uint32_t* 
   const Graph& graph = kept->graph;
   std::vector<SettingValue> values;
   {
-    const std::lock_guard lock(view.mutex); // recording chooses an configuration
+    const std::lock_guard lock(view.mutex); // recording chooses a configuration
     values = kept->configurations[kept->configuration].settings;
   }
   const std::vector<uint8_t> per_frame = frame_settings(graph, view.context->pass_types);
@@ -96,8 +98,29 @@ void set_in(std::vector<HostSetting>& given, const std::string& name, const std:
     at->json = json;
 }
 
+// Returns what runs for a value: the value, unless its option needs what is missing, as in
+// dermis_graph_create.
+SettingValue offered_value(const dermis_graph_t& graph, const Graph& compiled,
+                           const SettingDeclaration& setting, const SettingValue& value,
+                           Diagnostics& diagnostics) {
+  if (setting.needs.empty()) return value;
+  const Features features = graph.context->profile.features;
+  Diagnostics scratch; // reported when the graph was created
+  const std::vector<bool> bound = bound_resources(compiled, graph.input.unbound, scratch);
+  const auto missing = missing_requirements(setting, value.integer, features, bound);
+  if (!missing.any()) return value;
+  const SettingValue instead = available_option(setting, value, features, bound);
+  diagnostics.add(DiagnosticId::option_unavailable, setting.where,
+                  fmt::format("setting '{}' does not offer '{}': {}; '{}' runs instead",
+                              setting.name, setting.options[static_cast<size_t>(value.integer)],
+                              missing_text(compiled, missing),
+                              setting.options[static_cast<size_t>(instead.integer)]));
+  return instead;
+}
+
 // Returns the value that applies to views without their own.
-SettingValue value_of_graph(const dermis_graph_t& graph, const SettingDeclaration& declared) {
+SettingValue value_of_graph(const dermis_graph_t& graph, const Graph& compiled,
+                            const SettingDeclaration& declared) {
   const auto& given = graph.input.settings;
   const auto at = std::find_if(given.begin(), given.end(), [&](const HostSetting& setting) {
     return setting.name == declared.name;
@@ -105,7 +128,7 @@ SettingValue value_of_graph(const dermis_graph_t& graph, const SettingDeclaratio
   Diagnostics scratch; // the value was accepted before
   const auto value =
       at != given.end() ? read_setting(declared, at->json, scratch) : std::optional<SettingValue>();
-  return value.value_or(declared.default_value);
+  return offered_value(graph, compiled, declared, value.value_or(declared.default_value), scratch);
 }
 
 // Returns whether a new value of the setting changes which passes run, with any values of the
@@ -172,14 +195,15 @@ dermis_result set_setting(dermis_graph_t& graph, const std::string& name, const 
     add_unknown("dermis_graph_set_setting", compiled_graph.graph, name, diagnostics);
     return conclude(log, DERMIS_ERROR_ARGUMENT, std::move(diagnostics), report);
   }
-  const auto value = read_setting(*at, json, diagnostics);
-  if (!value) return conclude(log, DERMIS_ERROR_CONFIG, std::move(diagnostics), report);
+  const auto given = read_setting(*at, json, diagnostics);
+  if (!given) return conclude(log, DERMIS_ERROR_CONFIG, std::move(diagnostics), report);
+  const SettingValue value = offered_value(graph, compiled_graph.graph, *at, *given, diagnostics);
 
   CompiledGraphInput input = graph.input;
   set_in(input.settings, name, json);
   const auto index = static_cast<uint32_t>(at - declared.begin());
   if (changes_plans(compiled_graph, graph.context->pass_types, graph.input.settings, {index},
-                    *value))
+                    value))
     return replace_compiled_graphs(graph, std::move(input), vulkan::HistoryReason::reloaded,
                                    report);
   std::vector<ViewChange> changes; // by view without its own value
@@ -187,7 +211,7 @@ dermis_result set_setting(dermis_graph_t& graph, const std::string& name, const 
     if (is_set(view.settings, name)) return;
     const std::lock_guard lock(view.mutex);
     changes.push_back({configurations_with(newest(view), graph.context->pass_types,
-                                           view.chooser.errors, view.chooser.costs, index, *value),
+                                           view.chooser.errors, view.chooser.costs, index, value),
                        {}});
   });
   vulkan::KernelStore kernels(graph.context->kernels);
@@ -206,7 +230,7 @@ dermis_result set_setting(dermis_graph_t& graph, const std::string& name, const 
     ViewChange& change = changes[v++];
     const std::lock_guard lock(view.mutex);
     CompiledGraph& changed = newest(view);
-    changed.settings[index] = *value;
+    changed.settings[index] = value;
     changed.configurations.swap(change.configurations);
     ++changed.revision;
     for (size_t p = 0; p < change.pipelines.size(); ++p)
@@ -250,10 +274,11 @@ dermis_result set_view_setting(dermis_view_t& view, const std::string& name, con
   if (json != nullptr) {
     value = read_setting(*at, json, diagnostics);
     if (!value) return conclude(log, DERMIS_ERROR_CONFIG, std::move(diagnostics), report);
+    value = offered_value(*view.graph, graph, *at, *value, diagnostics);
     set_in(settings, name, json);
   } else {
     std::erase_if(settings, [&](const HostSetting& setting) { return setting.name == name; });
-    value = value_of_graph(*view.graph, *at);
+    value = value_of_graph(*view.graph, graph, *at);
   }
   std::vector<choice::Configuration> configurations;
   {
@@ -279,7 +304,7 @@ void drop_own_settings(const dermis_view_t& view, CompiledGraph& compiled_graph)
     const auto at = find_declared(compiled_graph.graph, own.name);
     if (at == compiled_graph.graph.settings.end()) continue;
     const auto index = static_cast<size_t>(at - compiled_graph.graph.settings.begin());
-    const SettingValue value = value_of_graph(*view.graph, *at);
+    const SettingValue value = value_of_graph(*view.graph, compiled_graph.graph, *at);
     compiled_graph.settings[index] = value;
     for (choice::Configuration& configuration : compiled_graph.configurations)
       configuration.settings[index] = value;
@@ -303,10 +328,11 @@ void apply_own_settings(const dermis_view_t& view, CompiledGraph& compiled_graph
           DiagnosticId::setting_not_carried,
           at != graph.settings.end() ? at->where : SourceLocation{},
           fmt::format("setting '{}' = {} of a view is not carried over: the new graph has no such "
-                      "setting per frame, or does not accept the value",
+                      "per-frame setting, or does not accept the value",
                       own.name, own.json));
       continue;
     }
+    value = offered_value(*view.graph, graph, *at, *value, scratch);
     compiled_graph.settings[index] = *value;
     for (choice::Configuration& configuration : compiled_graph.configurations)
       configuration.settings[index] = *value;

@@ -63,7 +63,7 @@ public:
     if (first_seconds_end && frame_.trials == Trials::on) set_aside_untried();
     enter(decision);
     find_next_better(decision);
-    decision.transmission_stats = decided_by_transmission(decision);
+    decision.by_transmission = decided_by_transmission(decision);
     return decision;
   }
 
@@ -327,7 +327,7 @@ const char* text_of(ReasonKind why) {
 } // namespace
 
 const char* why_text(const Decision& decision) {
-  if (!decision.transmission_stats) return text_of(decision.why);
+  if (!decision.by_transmission) return text_of(decision.why);
   switch (decision.why) {
   case ReasonKind::first_frame:
     return "least error within the budget, considering transmitted light; first frame";

@@ -87,7 +87,7 @@ struct Decision {
   uint32_t next_better = no_configuration;
   double missing_ms = 0; // milliseconds by which next_better exceeds the budget
   // Whether another configuration that fits would have less error without transmitted light.
-  bool transmission_stats = false;
+  bool by_transmission = false;
   // Configuration that was left because it took too long: its passes lose optimism.
   uint32_t rejected = no_configuration;
   bool measured = false; // all passes were measured: the frame's time shows whether the margin fits

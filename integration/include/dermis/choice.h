@@ -57,7 +57,7 @@ DERMIS_API dermis_result DERMIS_CALL dermis_graph_set_budget(
 #define DERMIS_SKIP_HISTORY 0x20u     /* history was invalid, so it was not read */
 
 /* The choice for one frame and its result, for a host to show or log. Strings are valid until the
- * next reload, resize, set_setting, set_budget or destroy. */
+ * next reload, resize, set_setting, set_profile, set_budget or destroy. */
 typedef struct dermis_frame_report {
   size_t struct_size;
   uint64_t frame_index;      /* of the frame described here */
@@ -158,7 +158,8 @@ DERMIS_API dermis_result DERMIS_CALL dermis_graph_predict(
 
 /* Returns the times measured on this device by the graph's view, as JSON for
  * dermis_budget.calibration at the next start. *size in: capacity of `text`; out: bytes needed with
- * the final 0. text may be NULL. Costs: time. Thread: concurrent. Errors: ARGUMENT, INCOMPLETE. */
+ * the final 0. text may be NULL. Costs: time. Thread: concurrent. Errors: ARGUMENT, INCOMPLETE,
+ * MEMORY. */
 DERMIS_API dermis_result DERMIS_CALL dermis_graph_calibration(
     dermis_graph graph, size_t* size, char* text);
 

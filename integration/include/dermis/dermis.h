@@ -40,9 +40,10 @@
  *   (dermis_source, dermis_image_state) never grow.
  *
  * ERRORS
- *   A function whose comment has no "Errors:" cannot fail. The result (for logic), the report (all
- *   messages), the log callback (as they occur) and dermis_last_error have the same content. A
- *   failed call changes nothing. NULL for a required pointer and a null handle return
+ *   A function whose comment has no "Errors:" cannot fail. The result is for logic; the log callback
+ *   gets all messages as they occur, dermis_last_error has the first error. The report has all
+ *   messages about files, settings and the device; it stays NULL where a call fails with ARGUMENT,
+ *   VERSION or MEMORY before it reads them, or after a device loss. A failed call changes nothing. NULL for a required pointer and a null handle return
  *   DERMIS_ERROR_ARGUMENT; destroy functions ignore NULL. After DERMIS_ERROR_DEVICE_LOST only
  *   destroy.
  *
@@ -166,7 +167,7 @@ typedef struct dermis_requirement {
   {sizeof(dermis_requirement), DERMIS_REQUIREMENT_API_VERSION, 0, NULL, 0, 0, NULL}
 /* Lists the requirements on a device. Create the instance with VkApplicationInfo.apiVersion
  * VK_API_VERSION_1_3: older instances hide features that the device has.
- * Two-call array. Costs: time. Thread: any. Errors: ARGUMENT, INCOMPLETE. */
+ * Two-call array. Costs: time. Thread: any. Errors: ARGUMENT, INCOMPLETE, MEMORY. */
 DERMIS_API dermis_result DERMIS_CALL dermis_query_requirements(
     PFN_vkGetInstanceProcAddr get_instance_proc_addr, VkInstance instance,
     VkPhysicalDevice physical_device, uint32_t* count, dermis_requirement* items);
@@ -396,7 +397,7 @@ DERMIS_API dermis_result DERMIS_CALL dermis_graph_reload(
 /* Replaces kernels by GLSL of the host, so that shaders can be edited while the program runs.
  * `open` provides "common/subsurface_combine.comp" and the files it includes, such as
  * "common/tiles.glsl"; the library provides bindings and constants. Kernels for which `open`
- * returns 0 stay; NULL restores all. `open` must be callable until it is replaced or the graph is
+ * returns 0 are the library's; NULL restores all. The call fails if `open` has none of the graph's. `open` must be callable until it is replaced or the graph is
  * destroyed. Otherwise like a reload: errors have file and line, on failure nothing changes,
  * histories and settings continue. The compiler uses the C library's memory. Takes seconds. Costs:
  * as dermis_graph_create. Thread: concurrent. Errors: as dermis_graph_create; UNSUPPORTED also if
@@ -423,7 +424,7 @@ typedef struct dermis_slot {
   size_t struct_size;
   uint32_t id;               /* for the binding */
   uint32_t required;         /* 0: may stay unbound if named so at creation */
-  const char* name;          /* valid until the next reload, resize, set_setting or destroy */
+  const char* name;          /* valid until a call replaces the slots, see dermis_graph_slots */
   uint32_t written;          /* 1: the graph writes it */
   uint32_t read;             /* 1: the graph reads its contents */
   VkFormat format;           /* that the plan was compiled for */
@@ -438,8 +439,10 @@ typedef struct dermis_slot {
 #define DERMIS_SLOT_INIT \
   {sizeof(dermis_slot), 0, 0, NULL, 0, 0, VK_FORMAT_UNDEFINED, 0, VK_IMAGE_LAYOUT_UNDEFINED, 0, \
    0, 0, DERMIS_SLOT_IMAGE, 0, 0}
-/* Returns the slots that the next record expects. Call again after a reload. Equal for all views.
- * Two-call array. Costs: none. Thread: concurrent. Errors: ARGUMENT, INCOMPLETE. */
+/* Returns the slots that the next record expects. Equal for all views. Call again after a reload, a
+ * resize, set_setting, and set_profile that adds the first profile or removes the last: these
+ * replace the slots. Two-call array. Costs: none. Thread: concurrent. Errors: ARGUMENT,
+ * INCOMPLETE. */
 DERMIS_API dermis_result DERMIS_CALL dermis_graph_slots(
     dermis_graph graph, uint32_t* count, dermis_slot* slots);
 
@@ -450,7 +453,7 @@ typedef enum dermis_describe_format {
   DERMIS_DESCRIBE_FORMAT_FORCE_32BIT = 0x7fffffff
 } dermis_describe_format;
 /* Describes the plan. *size in: capacity of `text`; out: bytes needed with the final 0. text may be
- * NULL. Costs: time. Thread: concurrent. Errors: ARGUMENT, INCOMPLETE. */
+ * NULL. Costs: time. Thread: concurrent. Errors: ARGUMENT, INCOMPLETE, MEMORY. */
 DERMIS_API dermis_result DERMIS_CALL dermis_graph_describe(
     dermis_graph graph, dermis_describe_format format, size_t* size, char* text);
 
@@ -462,12 +465,12 @@ typedef struct dermis_memory {
   uint64_t constant_bytes;            /* frame constants, profile and kernel tables */
 } dermis_memory;
 #define DERMIS_MEMORY_INIT {sizeof(dermis_memory), 0, 0, 0, 0}
-/* Returns the device memory of all views together. Costs: none. Thread: concurrent. Errors:
- * ARGUMENT. */
+/* Returns the device memory of all views together. Costs: none, but waits while another thread
+ * changes the graph. Thread: concurrent. Errors: ARGUMENT, MEMORY. */
 DERMIS_API dermis_result DERMIS_CALL dermis_graph_memory(dermis_graph graph, dermis_memory* memory);
 /* Returns the memory blocks that one view of the graph needs for transients and histories, so that
  * a host can reserve them before it creates more views. Two-call array. Costs: none. Thread:
- * concurrent. Errors: ARGUMENT, INCOMPLETE. */
+ * concurrent. Errors: ARGUMENT, INCOMPLETE, MEMORY. */
 DERMIS_API dermis_result DERMIS_CALL dermis_graph_heaps(
     dermis_graph graph, uint32_t* count, dermis_memory_request* heaps);
 
@@ -492,7 +495,7 @@ typedef enum dermis_history_reason {
 
 typedef struct dermis_history {
   size_t struct_size;
-  const char* name;             /* valid until the next reload, resize, set_setting or destroy */
+  const char* name;             /* lives as dermis_slot.name */
   uint32_t valid;               /* 1: the next frame reads the contents, unless it is a cut */
   uint32_t age;                 /* number of consecutive frames in it; 0 if it is not valid */
   dermis_history_reason reason; /* why it is not valid, or why it last was not */
@@ -563,7 +566,8 @@ typedef enum dermis_port_usage {
 
 typedef struct dermis_port {
   size_t struct_size;
-  const char* name; /* key in "read" or "write" of a pass: a-z, 0-9, '_' */
+  const char* name; /* key in "read" or "write" of a pass: a letter or '_', then letters, digits,
+                     * '_'; at most 64 bytes */
   const char* doc;  /* for schemas and messages; may be NULL */
   dermis_port_usage usage;
   uint32_t optional; /* 1: a graph may omit it */
@@ -640,7 +644,7 @@ typedef void(DERMIS_CALL* dermis_pass_fn)(void* user, const dermis_pass_call* ca
 
 typedef struct dermis_pass_type {
   size_t struct_size;
-  const char* name; /* "studio.bloom": contains a dot, does not begin with "subsurface." */
+  const char* name; /* "studio.bloom": two names with a dot between them, not "subsurface." */
   const char* doc;  /* may be NULL */
   const dermis_port* ports;
   const dermis_pass_setting* settings;
@@ -756,8 +760,8 @@ typedef enum dermis_depth_kind {
  * Matrices that contradict the flag, each other or the depth range (all of it behind the camera)
  * return DERMIS_ERROR_ARGUMENT. clip_from_view is the matrix that the picture was rendered with;
  * jitter_x and jitter_y state its sub-pixel shift. The previous matrices are those of the previous
- * frame; if they are not projection matrices (all 0), histories that follow surfaces restart in
- * each frame. */
+ * frame; if they are not projection matrices (all 0), or view_from_world is not affine and
+ * invertible, histories that follow surfaces restart in each frame. */
 typedef struct dermis_frame {
   size_t struct_size;
   VkCommandBuffer command_buffer; /* recording, outside a render pass, of the context's family */
@@ -861,8 +865,9 @@ DERMIS_API dermis_result DERMIS_CALL dermis_view_create(
 DERMIS_API void DERMIS_CALL dermis_view_destroy(dermis_view view);
 /* Records the plan. Never submits, waits for the device, prints, creates pipelines or allocates
  * host or device memory, except image views for bindings without one. On an error nothing was
- * recorded. Costs: none, except the image views. Thread: one per view. Errors: ARGUMENT, VERSION,
- * VULKAN, DEVICE_LOST, DEVICE_MEMORY. */
+ * recorded. Costs: none, except the image views, and the destruction of a replaced graph once its
+ * last frame has completed. Thread: one per view. Errors: ARGUMENT, VERSION, VULKAN, DEVICE_LOST,
+ * MEMORY, DEVICE_MEMORY. */
 DERMIS_API dermis_result DERMIS_CALL dermis_view_record(
     dermis_view view, const dermis_frame* frame);
 /* Like dermis_view_record, but returns the commands and ignores frame.command_buffer. They count as
@@ -870,7 +875,7 @@ DERMIS_API dermis_result DERMIS_CALL dermis_view_record(
  * context's family, or discard the frame with dermis_view_discard. The stride of *commands is its
  * first struct_size; the array lives until the next call that records this view, or its end.
  * Allocates host memory until the list has its final length. Costs: none. Thread: one per view.
- * Errors: as dermis_view_record, and MEMORY. */
+ * Errors: as dermis_view_record. */
 DERMIS_API dermis_result DERMIS_CALL dermis_view_commands(
     dermis_view view, const dermis_frame* frame, uint32_t* count, const dermis_command** commands);
 /* Discards the frame recorded last, which will never be submitted: the view is as before that
@@ -879,22 +884,25 @@ DERMIS_API dermis_result DERMIS_CALL dermis_view_commands(
  * none. Thread: one per view. Errors: ARGUMENT. */
 DERMIS_API dermis_result DERMIS_CALL dermis_view_discard(dermis_view view, uint64_t frame_index);
 /* Returns the device times of the newest completed frame, in plan order. Needs
- * DERMIS_CONTEXT_TIMINGS. `completed_frame_index` as in dermis_frame. Two-call array. Costs: none.
- * Thread: one per view. Errors: ARGUMENT, INCOMPLETE, NOT_READY, DEVICE_LOST. */
+ * DERMIS_CONTEXT_TIMINGS and a queue with timestamps. `completed_frame_index` as in dermis_frame.
+ * Two-call array. Costs: none. Thread: one per view. Errors: ARGUMENT, INCOMPLETE, NOT_READY,
+ * MEMORY, DEVICE_LOST. */
 DERMIS_API dermis_result DERMIS_CALL dermis_view_timings(
     dermis_view view, uint64_t completed_frame_index, uint32_t* count, dermis_pass_timing* timings);
 /* Returns each history of the graph, including those of plans that do not run now, as the plan that
  * ran last would find it. Discarded frames do not count. Two-call array. Costs: none. Thread: one
- * per view. Errors: ARGUMENT, INCOMPLETE. */
+ * per view. Errors: ARGUMENT, INCOMPLETE, MEMORY. */
 DERMIS_API dermis_result DERMIS_CALL dermis_view_histories(
     dermis_view view, uint32_t* count, dermis_history* histories);
 /* Returns the settings of the graph in the order of the file, with the values of this view.
- * Two-call array. Costs: none. Thread: concurrent. Errors: ARGUMENT, INCOMPLETE, MEMORY. */
+ * Two-call array. Costs: as dermis_graph_memory. Thread: concurrent. Errors: ARGUMENT, INCOMPLETE,
+ * MEMORY. */
 DERMIS_API dermis_result DERMIS_CALL dermis_view_settings(
     dermis_view view, uint32_t* count, dermis_setting* settings);
 /* Gives this view its own value of a setting with per_frame 1, effective at its next record; json
  * NULL restores the graph's value. Settings with per_frame 0 are rejected. Kept over reload and
- * resize. Costs: none. Thread: concurrent. Errors: ARGUMENT, CONFIG, MEMORY. */
+ * resize. Costs: as dermis_graph_memory. Thread: concurrent. Errors: ARGUMENT, CONFIG, MEMORY,
+ * DEVICE_LOST. */
 DERMIS_API dermis_result DERMIS_CALL dermis_view_set_setting(
     dermis_view view, const char* name, const char* json, dermis_report* report);
 

@@ -121,7 +121,7 @@ struct Commands : CameraTest {
   }
 };
 
-TEST_F(Commands, GraphWithHistory_GivesEqualPictures) {
+TEST_F(Commands, GraphWithHistory_PlaysBackAsRecorded) {
   expect_the_same(accumulating());
   EXPECT_TRUE(passes.contains("accumulate"));
   EXPECT_TRUE(passes.contains("")) << "barriers between the passes";

@@ -73,7 +73,7 @@ struct Inputs : DermisTest {
     EXPECT_OK(record(graph, one));
     return texels("lighting");
   }
-  // Returns the same light with view distances in a float image.
+  // Returns the same light with view depths in a float image.
   std::vector<float> wall_in_units(float metres) {
     GraphOptions options = shipped_options("configs/graphs/separable.json");
     const dermis_graph graph = make_graph(options);

@@ -127,6 +127,22 @@ TEST_F(Settings, AreListedWithTypeRangeUnitAndOptions) {
   EXPECT_STREQ(weight.note, "");
 }
 
+TEST_F(Settings, OptionThatIsNotOffered_IsReplacedAtOnce) {
+  std::string text = graph_text;
+  const std::string options = R"("enum": ["fast", "good", "best"], "default": "good")";
+  text.replace(text.find(options), options.size(),
+               R"("choice": ["fast", "good", "best"], "default": "good",
+                  "requires": { "best": ["ray_query"] })");
+  make(text);
+  set("how", "\"fast\"");
+  dermis_report report = nullptr;
+  ASSERT_OK(dermis_graph_set_setting(host.graph, "how", "\"best\"", &report));
+  EXPECT_THAT(dermis_report_text(report),
+              AllOf(HasSubstr("does not offer 'best'"), HasSubstr("'good' runs instead")));
+  dermis_report_destroy(report);
+  EXPECT_EQ(named(settings_of(host.graph), "how").value, 1.0);
+}
+
 TEST_F(Settings, ReadBackAsSet) {
   make(graph_text);
   set("on", "false");

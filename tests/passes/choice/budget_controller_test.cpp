@@ -173,11 +173,11 @@ TEST_F(Decide, TransmissionIsTheReasonIfItDecides) {
   const std::vector<Forecast> lit_behind{known(1, 0.3, 0.2999), known(4, 0.1)};
   const Decision front = decide(lit_in_front, 5.0);
   EXPECT_EQ(front.configuration, 0u);
-  EXPECT_FALSE(front.transmission_stats);
+  EXPECT_FALSE(front.by_transmission);
   EXPECT_STREQ(why_text(front), "least error within the budget; first frame");
   const Decision behind = decide(lit_behind, 5.0, 1.5);
   EXPECT_EQ(behind.configuration, 1u);
-  EXPECT_TRUE(behind.transmission_stats);
+  EXPECT_TRUE(behind.by_transmission);
   EXPECT_STREQ(
       why_text(behind),
       "a configuration with less error now fits the budget, considering transmitted light");
@@ -186,7 +186,7 @@ TEST_F(Decide, TransmissionIsTheReasonIfItDecides) {
   // The rays do not fit, so transmission did not change the decision.
   const Decision dear = decide(lit_behind, 2.0, 1.5);
   EXPECT_EQ(dear.configuration, 0u);
-  EXPECT_FALSE(dear.transmission_stats);
+  EXPECT_FALSE(dear.by_transmission);
   EXPECT_EQ(dear.next_better, 1u);
 }
 

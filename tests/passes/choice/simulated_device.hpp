@@ -31,7 +31,7 @@ private:
 
 enum class Disturbance : uint8_t {
   none,
-  calibration,   // wrong for each pass
+  calibration,   // costs are wrong by another factor per pass
   clock_steps,   // of the whole device
   device_hitch,  // up to a second
   pass_hitch,    // of the passes of one configuration, up to 2 s
@@ -76,7 +76,7 @@ struct Scenario {
   double frame_noise = 0, correlation = 0;
   double timestamp_ms = 1e-6; // resolution
   double untimed = 0;         // fraction of frames without timestamps
-  bool strange_frames = true; // 1 % take 1.5 to 3 times
+  bool strange_frames = true; // 1 % take 1.5 to 3 times as long
   int latency = 3;            // frames until counts and times are known
   std::array<double, 3> budgets_ms{};
   int disturbed_until = first_disturbed; // frame
