@@ -145,6 +145,7 @@ static inline size_t headless_read_file(const char* path, char* text, size_t cap
   if (file == NULL) headless_die("cannot read", path);
   length = fread(text, 1, capacity, file);
   fclose(file);
+  if (length == capacity) headless_die("the file is too large", path);
   return length;
 }
 

@@ -252,9 +252,9 @@ Result<RenderSummary> render(const RenderOptions& options, const RenderCallbacks
   if (!options.graph.empty()) {
     auto made = create_dermis_host(
         host,
-        {options.graph, info.profiles, options.settings, options.width, options.height,
-         info.pixel_aspect, options.overlays, options.include, options.shaders, options.budget,
-         options.sampling, options.tile_class, options.hooks, options.unbound},
+        {options.graph, options.graph_text, info.profiles, options.settings, options.width,
+         options.height, info.pixel_aspect, options.overlays, options.include, options.shaders,
+         options.budget, options.sampling, options.tile_class, options.hooks, options.unbound},
         &cache.slots);
     if (!made) return made.error();
     dermis = made.take();

@@ -37,6 +37,7 @@ struct RenderOptions {
   std::string scene; // scene file
   // Graph file; "" = without Dermis: light times albedo, as in an engine before the integration.
   std::string graph;
+  std::string graph_text;          // text of the graph; "" = that of the file
   std::vector<NamedText> overlays; // overlays of the graph, in order
   // Opens files that the graph includes.
   std::function<std::optional<NamedText>(const std::string& name)> include;

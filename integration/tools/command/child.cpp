@@ -59,9 +59,16 @@ std::optional<ChildAnswer> run_child(const std::vector<std::string>& words, std:
   }
   int status = 0;
   bool requested = false;
-  while (waitpid(child, &status, WNOHANG) == 0) {
+  pid_t ended = 0;
+  while ((ended = waitpid(child, &status, WNOHANG)) == 0 || (ended < 0 && errno == EINTR)) {
     if (interrupted() && !requested) requested = kill(child, SIGINT) == 0;
     std::this_thread::sleep_for(nap);
+  }
+  if (ended < 0) { // the parent process ignores SIGCHLD
+    problem =
+        fmt::format("the exit code of '{}' is unknown: {}", words.front(), std::strerror(errno));
+    std::fclose(out);
+    return std::nullopt;
   }
   ChildAnswer answer;
   answer.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);

@@ -14,7 +14,7 @@ struct ChildAnswer {
 
 // Runs `words[0]` with the remaining words as arguments; standard error is inherited. An interrupt
 // of this program also interrupts the child. Returns nullopt and sets `problem` if the program
-// could not be started.
+// could not be started, or its exit code is unknown.
 std::optional<ChildAnswer> run_child(const std::vector<std::string>& words, std::string& problem);
 
 } // namespace dermis::tools

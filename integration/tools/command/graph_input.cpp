@@ -113,7 +113,7 @@ std::optional<LoadedGraph> read_composed(std::optional<Composition> composed,
 
 std::optional<LoadedGraph> load_pass_types(std::span<const std::string> files,
                                            Diagnostics& diagnostics) {
-  LoadedGraph loaded{subsurface::make_pass_types(), nullptr, {}, {}, {}};
+  LoadedGraph loaded{subsurface::make_pass_types(), nullptr, {}, {}, {}, {}};
   const auto host = std::make_shared<HostPassTypes>();
   const uint32_t errors = diagnostics.count(Severity::error);
   for (const std::string& file : files) {
@@ -180,6 +180,7 @@ std::optional<LoadedGraph> load_graph(const std::string& path, const GraphInputs
 std::optional<LoadedGraph> load_graph(Document document, std::vector<Document> overlays,
                                       const OpenFile& open, Diagnostics& diagnostics,
                                       std::span<const std::string> pass_type_files) {
+  const std::string text = diagnostics.files[document.file.value].text;
   std::vector<demo::NamedText> texts;
   for (const Document& overlay : overlays) {
     const SourceFile& file = diagnostics.files[overlay.file.value];
@@ -187,7 +188,9 @@ std::optional<LoadedGraph> load_graph(Document document, std::vector<Document> o
   }
   auto loaded = read_composed(compose(std::move(document), std::move(overlays), open, diagnostics),
                               pass_type_files, diagnostics);
-  if (loaded) loaded->overlays = std::move(texts);
+  if (!loaded) return std::nullopt;
+  loaded->text = text;
+  loaded->overlays = std::move(texts);
   return loaded;
 }
 
@@ -230,8 +233,15 @@ std::vector<NamedValue> settings_as_json(const Graph& graph, std::span<const Nam
   std::vector<NamedValue> all;
   for (const auto& [name, text] : settings) {
     const int index = find_by_name(graph.settings, name);
-    const bool word = index >= 0 && !graph.settings[static_cast<size_t>(index)].options.empty();
-    all.emplace_back(name, word ? fmt::format("\"{}\"", without_quotes(text)) : text);
+    SettingValue value;
+    std::string json = text;
+    if (index >= 0 &&
+        parse_setting(graph.settings[static_cast<size_t>(index)], text, value).empty())
+      json = value.type == SettingType::integer   ? fmt::to_string(value.integer)
+             : value.type == SettingType::real    ? fmt::to_string(value.real)
+             : value.type == SettingType::boolean ? text
+                                                  : fmt::format("\"{}\"", without_quotes(text));
+    all.emplace_back(name, std::move(json));
   }
   return all;
 }

@@ -20,6 +20,7 @@ struct LoadedGraph {
   PassTypeRegistry pass_types;
   std::shared_ptr<const HostPassTypes> host_pass_types; // owns some of `pass_types`
   Graph graph;
+  std::string text;                      // of its file
   std::vector<Change> changes;           // changes made by included files and overlays
   std::vector<demo::NamedText> overlays; // for the C interface
 };

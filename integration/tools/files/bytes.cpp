@@ -22,6 +22,14 @@ struct Close {
 };
 using File = std::unique_ptr<std::FILE, Close>;
 
+// Returns whether everything was written; else errno states the reason.
+bool write_file(const fs::path& path, std::span<const uint8_t> bytes) {
+  File file(std::fopen(path.c_str(), "wb"));
+  if (!file || std::fwrite(bytes.data(), 1, bytes.size(), file.get()) != bytes.size()) return false;
+  // A full disk may only be reported when the buffer is flushed.
+  return std::fclose(file.release()) == 0;
+}
+
 std::string last_error() {
   return std::generic_category().message(errno);
 }
@@ -61,18 +69,18 @@ fs::path temporary_path(const fs::path& path) {
 
 bool write_bytes(const fs::path& given, std::span<const uint8_t> bytes, std::string& error) {
   std::error_code code;
+  const fs::file_status target = fs::status(given, code);
+  if (fs::exists(target) && !fs::is_regular_file(target) && !fs::is_directory(target)) {
+    // A device or a pipe takes the bytes; a rename would replace it.
+    if (write_file(given, bytes)) return true;
+    error = fmt::format("'{}' cannot be written: {}", given.string(), last_error());
+    return false;
+  }
   // A link stays: the file to which it leads is replaced.
   const fs::path linked = fs::is_symlink(given, code) ? fs::canonical(given, code) : fs::path();
   const fs::path& path = linked.empty() ? given : linked;
   const fs::path part = temporary_path(path);
-  bool complete = false;
-  {
-    File file(std::fopen(part.c_str(), "wb"));
-    complete = file && std::fwrite(bytes.data(), 1, bytes.size(), file.get()) == bytes.size();
-    // A full disk may only be reported when the buffer is flushed.
-    complete = complete && std::fclose(file.release()) == 0;
-  }
-  if (!complete) {
+  if (!write_file(part, bytes)) {
     error = fmt::format("'{}' cannot be written: {}", path.string(), last_error());
   } else {
     if (const fs::file_status old = fs::status(path, code); fs::is_regular_file(old))

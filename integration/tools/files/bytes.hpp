@@ -17,7 +17,7 @@ std::optional<std::vector<uint8_t>> read_bytes(const std::filesystem::path& path
 
 // Writes a temporary file next to the target and renames it over the target (atomic on POSIX file
 // systems). On failure returns false, sets `error`, and leaves the target unchanged and no
-// temporary file.
+// temporary file. Devices and pipes are written to.
 bool write_bytes(const std::filesystem::path& path, std::span<const uint8_t> bytes,
                  std::string& error);
 bool write_text(const std::filesystem::path& path, std::string_view text, std::string& error);

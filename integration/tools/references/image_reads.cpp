@@ -346,7 +346,8 @@ ImageReads tile_error_estimate(const PassType& type, const ReadsInput& input) {
   return {2 + one_if(type, input, "importance", PortSide::read)};
 }
 
-// Light, material, importance.
+// Material, depth and light of the pixel; material and light of a tap, whose filtered read of the
+// mips is not counted; importance.
 ImageReads tile_variance(const PassType& type, const ReadsInput& input) {
   return {5 + scale_read(type, input) + one_if(type, input, "importance", PortSide::read)};
 }

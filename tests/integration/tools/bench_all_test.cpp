@@ -51,6 +51,16 @@ TEST_F(BenchAll, FailedSuite_LeavesNoOldPage) {
   EXPECT_THAT(read("out/index.html"), HasSubstr("<td class=t>failed"));
 }
 
+TEST_F(BenchAll, SuiteThatCannotRun_KeepsItsFiles) {
+  RunOptions no_driver;
+  no_driver.environment = {"VK_ICD_FILENAMES=/nonexistent.json",
+                           "VK_DRIVER_FILES=/nonexistent.json"};
+  write("out/restir.json", "earlier");
+  EXPECT_EQ(run({"bench", "all", "--suites", "restir", "--out", path("out")}, no_driver).exit_code,
+            0);
+  EXPECT_EQ(read("out/restir.json"), "earlier");
+}
+
 TEST_F(BenchAll, StoppedRun_ContinuesInItsMode) {
   std::vector<std::string> arguments = {"bench",          "all",       "--quick",
                                         "--out",          path("out"), "--suites",

@@ -81,8 +81,11 @@ TEST_F(BenchErrorTime, InvalidFile_IsReported) {
   "scenes": [ { "scene": "nowhere", "framing": "close", "d_px": [1] } ] })");
   EXPECT_THAT(run({"bench", "error-time", "--file", file}),
               FailsWith(1, "bad.json:1:", "'nowhere' is not a generated scene", "repetitions"));
-  const Outcome as_json = run({"bench", "error-time", "--file", file, "--json", path("out.json")});
+  EXPECT_THAT(run({"bench", "error-time", "--file", file, "--json", path("out.json")}),
+              FailsWith(1, "'nowhere' is not a generated scene"));
+  const Outcome as_json = run({"bench", "error-time", "--file", file, "--json", "-"});
   EXPECT_EQ(as_json.exit_code, 1);
+  EXPECT_TRUE(is_json(as_json.out));
   EXPECT_THAT(as_json.out, HasSubstr("'nowhere' is not a generated scene"));
 }
 

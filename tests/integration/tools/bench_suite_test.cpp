@@ -75,6 +75,39 @@ TEST_F(BenchSuite, MissedGoal_FailsAndStillWritesFiles) {
   EXPECT_EQ(document()["rows"][2]["holds"], false);
 }
 
+TEST_F(BenchSuite, MissedGoal_OutputIsOneDocument) {
+  SuiteRequest request = default_request(squares());
+  request.options["limit"] = uint64_t{4};
+  request.json = "-";
+  Session as_json = session;
+  as_json.json = true;
+  ::testing::internal::CaptureStdout();
+  const ExitCode code = run_suite(as_json, squares(), request);
+  const std::string out = ::testing::internal::GetCapturedStdout();
+  EXPECT_EQ(code, ExitCode::problems);
+  EXPECT_THAT(out, ::testing::HasSubstr("\"rows\""));
+  EXPECT_THAT(out, ::testing::Not(::testing::HasSubstr("\"ok\""))) << "a second document";
+}
+
+TEST_F(BenchSuite, UnwritableFile_DoesNotPreventTheOthers) {
+  SuiteRequest request = default_request(squares());
+  request.json = (folder / "none/rows.json").string();
+  request.csv = (folder / "rows.csv").string();
+  EXPECT_EQ(run_suite(session, squares(), request), ExitCode::environment);
+  EXPECT_TRUE(std::filesystem::exists(folder / "rows.csv"));
+  Suite more = squares();
+  const auto measure = more.run;
+  more.run = [&](SuiteRun& run) {
+    run.files.emplace_back((folder / "none/table").string(), "text");
+    run.files.emplace_back((folder / "table").string(), "text");
+    return measure(run);
+  };
+  request.json = (folder / "rows.json").string();
+  EXPECT_EQ(run_suite(session, more, request), ExitCode::environment);
+  EXPECT_TRUE(std::filesystem::exists(folder / "rows.json")) << "rows are not lost";
+  EXPECT_TRUE(std::filesystem::exists(folder / "table"));
+}
+
 TEST_F(BenchSuite, QuickRun_TakesQuickValuesAndSaysSo) {
   SuiteRequest request = default_request(squares());
   request.quick = true;

@@ -54,6 +54,19 @@ TEST_F(Choice, CalibrateWritesAFileForValidateAndRender) {
   EXPECT_THAT(run({"render", scene, "--graph", graph, "--size", "64x36", "--frames", "2",
                    "--subset", "0", "--calibration", file, "--budget", "5", "--out", path("out")}),
               Succeeds());
+  RunOptions options;
+  options.input = read_text(burley);
+  EXPECT_THAT(run({"calibrate", "-", "--size", "64x36", "--frames", "2", "--out", file}, options),
+              Succeeds("holds the costs of <stdin>"));
+}
+
+TEST_F(Choice, EmptyCalibration_IsRejected) {
+  const std::string file = write("empty.json", "");
+  for (const char* verb : {"calibrate", "bench"})
+    EXPECT_THAT(verb == std::string("bench")
+                    ? run({"bench", "budget", "--calibration", file, "--size", "64x36"})
+                    : run({"calibrate", burley, "--calibration", file, "--out", path("out.json")}),
+                FailsWith(1, "is empty"));
 }
 
 TEST_F(Choice, InvalidCalibration_IsRejectedWithItsPlace) {

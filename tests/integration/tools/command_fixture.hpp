@@ -63,7 +63,7 @@ std::vector<std::string> validation_environment();
 // Returns the verbs of a help text: the lines between "Subcommands:" and the next empty line.
 std::vector<std::string> verbs_of_help(const std::string& help);
 
-// Whether `text` is exactly one JSON document.
+// Returns whether `text` is exactly one JSON document.
 bool is_json(const std::string& text);
 
 MATCHER(IsJson, "is one JSON document") {

@@ -152,7 +152,8 @@ TEST_F(Compare, LargeDifferencesAreNoFailure_WithoutALimit) {
   const nlohmann::json answer = nlohmann::json::parse(outcome.out);
   EXPECT_EQ(answer["ok"], true);
   EXPECT_LT(answer["rows"][0]["psnr_db"], 0);
-  EXPECT_THAT(run({"compare", a, b, "--min-psnr", "0"}), FailsWith(1, "differ by more than 0"));
+  EXPECT_THAT(run({"compare", a, b, "--min-psnr", "0"}),
+              FailsWith(1, "differ more than allowed: at least 0"));
 }
 
 TEST_F(Compare, RejectsFilesOfDifferentTypes) {

@@ -67,7 +67,7 @@ TEST(Family, HasFiftyScenesInTwoHalves) {
                                        "strand",  "hole",    "thin",   "perspective", "pixels"}));
 }
 
-TEST(Family, EqualScenesAreEqualAndOthersDiffer) {
+TEST(Family, GenerationIsRepeatableAndScenesDiffer) {
   std::set<uint64_t> hashes;
   for (const FamilyScene& scene : family_scenes()) {
     const uint64_t hash = hash_of(frame_of(scene));

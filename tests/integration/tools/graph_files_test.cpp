@@ -6,6 +6,10 @@
 
 #include <fmt/format.h>
 
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
 namespace dermis::test {
 namespace {
 
@@ -153,6 +157,19 @@ TEST_F(GraphFiles, UnwritableOutput_IsAnEnvironmentError) {
   EXPECT_THAT(run({"graph", burley, "--out", path("no/such/folder.dot")}),
               FailsWith(3, "no/such/folder.dot"));
   EXPECT_THAT(files(), IsEmpty());
+}
+
+TEST_F(GraphFiles, OutputIntoAPipe_KeepsThePipe) {
+  const std::string pipe = path("pipe");
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  const int reader = ::open(pipe.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
+  ASSERT_GE(reader, 0);
+  EXPECT_THAT(run({"graph", burley, "--out", pipe}), Succeeds());
+  EXPECT_TRUE(std::filesystem::is_fifo(pipe));
+  char text[8] = {};
+  EXPECT_EQ(::read(reader, text, 7), 7);
+  EXPECT_STREQ(text, "digraph");
+  ::close(reader);
 }
 
 TEST_F(GraphFiles, MessagesAreWrittenAsSarif) {

@@ -65,8 +65,8 @@ TEST_F(Keep, BugReportIsCompleteAndReproducible) {
                                "--size", "48x27", "--count", "1", "--out", path("bug"), "--json"});
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   for (const char* file :
-       {"burley.json", "overlays/0_full_precision.json", "settings.json", "plan.json", "graph.plan",
-        "device.json", "README.txt", "capture/frame_0000/frame.json"})
+       {"graph/burley.json", "overlays/0_full_precision.json", "settings.json", "plan.json",
+        "graph.plan", "device.json", "README.txt", "capture/frame_0000/frame.json"})
     EXPECT_THAT(files("bug"), Contains(file));
   EXPECT_EQ(json::parse(read("bug/settings.json"))["samples"], 8);
   EXPECT_TRUE(json::parse(read("bug/plan.json")).contains("reasons"));
@@ -74,13 +74,14 @@ TEST_F(Keep, BugReportIsCompleteAndReproducible) {
   EXPECT_EQ(run({"plan", "verify", path("bug/graph.plan")}).exit_code, 0);
 
   const std::string replay = json::parse(outcome.out)["replay"];
-  EXPECT_EQ(replay, "dermis apply --graph burley.json --frames capture --out replay --overlay "
-                    "overlays/0_full_precision.json --set samples=8");
+  EXPECT_EQ(replay,
+            "dermis apply --graph graph/burley.json --frames capture --out replay --overlay "
+            "overlays/0_full_precision.json --set samples=8");
   EXPECT_THAT(read("bug/README.txt"), HasSubstr(replay));
   // The line of the report, run from the test's working folder.
-  EXPECT_THAT(run({"apply", "--graph", path("bug/burley.json"), "--frames", path("bug/capture"),
-                   "--out", path("replay"), "--overlay", path("bug/overlays/0_full_precision.json"),
-                   "--set", "samples=8"}),
+  EXPECT_THAT(run({"apply", "--graph", path("bug/graph/burley.json"), "--frames",
+                   path("bug/capture"), "--out", path("replay"), "--overlay",
+                   path("bug/overlays/0_full_precision.json"), "--set", "samples=8"}),
               Succeeds());
   EXPECT_THAT(files("replay"), Contains("frame_0000/combined.exr"));
 }
@@ -110,9 +111,17 @@ TEST_F(Keep, BugReport_HasTheLastFrameAndIncludedFiles) {
   ASSERT_THAT(run({"report-bug", graph, "--frames", path("capture"), "--size", "32x18", "--out",
                    path("bug")}),
               Succeeds());
-  EXPECT_THAT(files("bug"), Contains("parts/back.json"));
+  EXPECT_THAT(files("bug"), Contains("graph/parts/back.json"));
   EXPECT_THAT(files("bug/capture"), Not(Contains("frame_0001")));
-  EXPECT_EQ(run({"validate", path("bug/main.json"), path("bug/capture")}).exit_code, 0);
+  EXPECT_EQ(run({"validate", path("bug/graph/main.json"), path("bug/capture")}).exit_code, 0);
+}
+
+TEST_F(Keep, BugReport_GraphMayHaveTheNameOfAnotherFile) {
+  const std::string graph = write("plan.json", read_text("configs/graphs/burley.json"));
+  ASSERT_THAT(run({"report-bug", graph, "--size", "32x18", "--count", "1", "--out", path("bug")}),
+              Succeeds());
+  EXPECT_EQ(read("bug/graph/plan.json"), read_text(graph));
+  EXPECT_TRUE(json::parse(read("bug/plan.json")).contains("reasons"));
 }
 
 TEST_F(Keep, BugReportCanBeAnArchive) {
@@ -125,8 +134,8 @@ TEST_F(Keep, BugReportCanBeAnArchive) {
   EXPECT_THAT(run({"report-bug", "configs/graphs/burley.json", "--out", path("bug.zip")}),
               FailsWith(2, ".tar.gz or .tgz"));
   ASSERT_EQ(std::system(("tar -xzf " + path("bug.tar.gz") + " -C " + path(".")).c_str()), 0);
-  EXPECT_THAT(run({"apply", "--graph", path("bug/burley.json"), "--frames", path("bug/capture"),
-                   "--out", path("replay")}),
+  EXPECT_THAT(run({"apply", "--graph", path("bug/graph/burley.json"), "--frames",
+                   path("bug/capture"), "--out", path("replay")}),
               Succeeds());
 }
 

@@ -127,13 +127,15 @@ TEST_F(PassTypes, BugReport_NamesHostPassTypesInItsCommand) {
   ASSERT_THAT(run({"report-bug", burley, "--overlay", overlay, "--pass-types", pass_types_file,
                    "--size", "32x18", "--count", "1", "--out", path("bug")}),
               Succeeds());
-  EXPECT_THAT(read("bug/README.txt"),
-              HasSubstr("dermis apply --graph burley.json --frames capture --out replay --overlay "
-                        "overlays/0_toned.json --pass-types pass_types/0_pass_types.json\n"));
-  EXPECT_THAT(run({"apply", "--graph", path("bug/burley.json"), "--frames", path("bug/capture"),
-                   "--out", path("replay"), "--overlay", path("bug/overlays/0_toned.json"),
-                   "--pass-types", path("bug/pass_types/0_pass_types.json")}),
-              Succeeds());
+  EXPECT_THAT(
+      read("bug/README.txt"),
+      HasSubstr("dermis apply --graph graph/burley.json --frames capture --out replay --overlay "
+                "overlays/0_toned.json --pass-types pass_types/0_pass_types.json\n"));
+  EXPECT_THAT(
+      run({"apply", "--graph", path("bug/graph/burley.json"), "--frames", path("bug/capture"),
+           "--out", path("replay"), "--overlay", path("bug/overlays/0_toned.json"), "--pass-types",
+           path("bug/pass_types/0_pass_types.json")}),
+      Succeeds());
 }
 
 TEST_F(PassTypes, PageCreatesItsFolder) {

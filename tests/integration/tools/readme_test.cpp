@@ -66,7 +66,7 @@ std::string complete_graph() {
   return shown.empty() ? "" : shown[0];
 }
 
-// Whether each member and element of `part` is in `whole`, at the same key.
+// Returns whether each member and element of `part` is in `whole`, at the same key.
 bool contains(const json& whole, const json& part) {
   const auto is_in_whole = [&](const json& one) {
     return std::any_of(whole.begin(), whole.end(),

@@ -50,6 +50,19 @@ TEST_F(Render, UnboundSlots) {
   EXPECT_THAT(render(bust, "none", {"--unbound", "depth"}), FailsWith(2, "--unbound need a graph"));
 }
 
+TEST_F(Render, GraphOnStandardInput) {
+  RunOptions options;
+  options.input = read_text(burley);
+  EXPECT_THAT(render(bust, "-", {"--frames", "1", "--subset", "64"}, options), Succeeds("PSNR"));
+  EXPECT_THAT(run({"explain", "-", "--frame", "--size", "64x36"}, options), Succeeds());
+}
+
+TEST_F(Render, SettingsMayBeWrittenAsForExplain) {
+  EXPECT_THAT(run({"explain", burley, "--set", "samples=008"}), Succeeds());
+  EXPECT_THAT(render(bust, burley, {"--frames", "1", "--subset", "0", "--set", "samples=008"}),
+              Succeeds());
+}
+
 TEST_F(Render, JsonOutputIsOneDocument) {
   const Outcome outcome = render(bust, burley, {"--frames", "2", "--subset", "64", "--json"});
   ASSERT_THAT(outcome, Succeeds(IsJson(), "\"psnr_db\"", "\"rmse\"", "\"device_ms\""));

@@ -3,6 +3,9 @@
 
 #include "tests/integration/tools/command_fixture.hpp"
 
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
 #include <algorithm>
 #include <cstdlib>
 #include <sstream>
@@ -160,6 +163,71 @@ TEST_F(Upgrade, NewPorts_Upgrade_AreAddedWithTheirResource) {
   EXPECT_THAT(read_text(part),
               HasAll("{ \"resources\": { \"list_state_of_props\": { ",
                      "\"write\": { \"list_state\": \"list_state_of_props\", \"tiles\""));
+}
+
+// Removed members may be neighbours, all members of an object, and next to a comment.
+TEST_F(Upgrade, Levels_Upgrade_BecomeOneImage) {
+  const std::string types[] = {"afis", "afis_tiles", "guided"};
+  const std::string reads[] = {R"("level_1": "l1", "level_2": "l2", "level_3": "l3")",
+                               R"("level_2": "l2", "level_1": "l1", "light": "light")",
+                               R"("light": "light", "level_1": "l1", "level_2": "l2" // the last
+    )",
+                               R"("level_1": "l1",
+      "level_2": "l2", // second
+      "level_3": "l3" // third
+      , "light": "light")"};
+  const std::string resources[] = {
+      R"("l1": { "image": 1 }, "l2": { "image": 1 }, "l3": { "image": 1 })",
+      R"("other": {}, // stays
+    "l1": { "image": 1 },
+    "l2": { "image": 1 })",
+      R"("l2": { "image": 1 }, "other": {}, "l1": { "image": 1 } // last
+    )"};
+  for (const std::string& type : types)
+    for (const std::string& read : reads)
+      for (const std::string& declared : resources) {
+        const std::string old = fmt::format(
+            R"({{ "dermis": 1, "name": "g", "resources": {{ {} }}, "passes": [
+  {{ "pass": "p", "kind": "subsurface.{}", "read": {{ {} }} }} ], "exports": [] }})",
+            declared, type, read);
+        const std::string graph = write("graph.json", old);
+        ASSERT_THAT(run({"upgrade", graph}), Succeeds("upgraded")) << old;
+        const std::string text = read_text(graph);
+        EXPECT_EQ(comments_of(text), comments_of(old)) << text;
+        EXPECT_EQ(lines_of(text).size(), lines_of(old).size()) << text;
+        const auto json = nlohmann::json::parse(text, nullptr, false, true);
+        ASSERT_FALSE(json.is_discarded()) << text;
+        EXPECT_EQ(json["passes"][0]["read"].count("levels"), 1u) << text;
+        for (const char* gone : {"level_1", "level_2", "level_3"})
+          EXPECT_EQ(json["passes"][0]["read"].count(gone), 0u) << text;
+        for (const char* gone : {"l1", "l2"})
+          EXPECT_EQ(json["resources"].count(gone), 0u) << text;
+        EXPECT_EQ(json["resources"].count("levels_of_l1"), 1u) << text;
+      }
+}
+
+TEST_F(Upgrade, EscapedText_StaysJson) {
+  const std::string overlay = write("overlay.json", R"({ "dermis_overlay": 1, "edits": [
+  { "remove": "/passes/mend/set/a\"b\\" } ] })");
+  EXPECT_EQ(run({"upgrade", overlay}).exit_code, 0);
+  EXPECT_THAT(read_text(overlay), HasSubstr(R"("/passes/refine_tiles/set/a\"b\\")"));
+}
+
+TEST_F(Upgrade, PassTypesWithTheNewKey_Upgrade) {
+  const std::string file = write("types.json", R"({ "dermis_pass_types": 1, "pass_types": [] })");
+  EXPECT_THAT(run({"upgrade", file}), Succeeds("upgraded to version 2"));
+  EXPECT_EQ(read_text(file), R"({ "dermis_pass_types": 2, "pass_types": [] })");
+}
+
+TEST_F(Upgrade, StandardInput_ResultIsTheWholeOutput) {
+  RunOptions options;
+  options.input = R"({ "dermis": 1, "name": "g", "passes": [], "exports": [] })";
+  const Outcome upgraded = run({"upgrade", "-"}, options);
+  EXPECT_EQ(upgraded.out, R"({ "dermis": 2, "name": "g", "passes": [], "exports": [] })");
+  options.input = upgraded.out;
+  EXPECT_EQ(run({"upgrade", "-"}, options).out, upgraded.out) << "nothing to do";
+  EXPECT_EQ(run({"upgrade", "-", "--json"}, options).exit_code, 2);
+  EXPECT_THAT(run({"upgrade", "-", "--check", "--json"}, options), Succeeds(IsJson()));
 }
 
 TEST_F(Upgrade, Overlay_Upgrade_RenamesTargetsAndPaths) {

@@ -35,10 +35,13 @@ std::optional<Target> target_of(std::string_view slot) {
 // Reads the files of the graph; formats and unbound slots are not known yet.
 Result<GraphRequest> read_request(const DermisDesc& desc) {
   GraphRequest request;
-  auto graph = read_text_file(desc.graph_file);
-  if (!graph) return graph.error();
   request.graph_name = desc.graph_file;
-  request.graph_text = graph.take();
+  request.graph_text = desc.graph_text;
+  if (desc.graph_text.empty()) {
+    auto graph = read_text_file(desc.graph_file);
+    if (!graph) return graph.error();
+    request.graph_text = graph.take();
+  }
   for (const ScatteringProfile& profile : desc.profiles) {
     auto text = read_text_file(profile.file);
     if (!text) return text.error();
@@ -211,7 +214,8 @@ Result<DermisHandle> create_dermis_host(VulkanHost& vulkan, const DermisDesc& de
         dermis_graph_set_setting(host->graph, name.c_str(), json.c_str(), &report.handle);
     if (set == DERMIS_OK) continue;
     Error error = dermis_error("dermis_graph_set_setting", set, report.handle);
-    error.kind = ErrorKind::usage; // names and values come from the user
+    // names and values come from the user
+    if (error.kind != ErrorKind::environment) error.kind = ErrorKind::usage;
     return error;
   }
   if (auto done = set_budget(*host, desc); !done) return done.error();

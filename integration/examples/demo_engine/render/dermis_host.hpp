@@ -15,7 +15,7 @@ struct dermis_graph_t; // of dermis.h
 namespace demo {
 
 struct DermisDesc {
-  std::string graph_file;
+  std::string graph_file, graph_text; // text "": that of the file
   std::vector<ScatteringProfile> profiles;
   std::vector<std::pair<std::string, std::string>> settings;
   uint32_t width = 1, height = 1;

@@ -25,7 +25,8 @@ struct Taa {
 Result<std::unique_ptr<Taa>> create_taa(const Renderer& renderer);
 
 // Records the pass after record_composite. All images are in the resting state before and after.
-// The device must be idle. After a cut, and in the first frame, the picture is the frame's own.
+// The device must be idle. After a cut, and in the first frame, the result is
+// the frame without history.
 void record_taa(Taa& taa, const Renderer& renderer, VkCommandBuffer commands,
                 const SceneState& state);
 

@@ -133,25 +133,25 @@ struct SceneReader {
   void read_object(NodeId node) {
     ObjectReader object(document, node, fmt::format("object {}", scene.objects.size()),
                         diagnostics);
-    Object subresource;
-    if (const auto name = object.name("name", Need::optional)) subresource.name = *name;
-    subresource.shape = static_cast<Shape>(object.word("shape", shapes).value_or(0));
-    curve(object, "position", places, Need::optional, subresource.position);
-    curve(object, "rotation", degrees, Need::optional, subresource.rotation);
+    Object made;
+    if (const auto name = object.name("name", Need::optional)) made.name = *name;
+    made.shape = static_cast<Shape>(object.word("shape", shapes).value_or(0));
+    curve(object, "position", places, Need::optional, made.position);
+    curve(object, "rotation", degrees, Need::optional, made.rotation);
     std::array<double, 3> scale{1.0, 1.0, 1.0};
     object.numbers("scale", scale, 1e-4, 1e4, Need::optional);
-    subresource.scale = {scale[0], scale[1], scale[2]};
-    color(object, "albedo", 1.0, subresource.albedo);
-    number(object, "roughness", 0.05, 1.0, subresource.roughness);
-    number(object, "reflectance", 0.0, 1.0, subresource.reflectance);
-    number(object, "emission", 0.0, 16.0, subresource.emission);
-    subresource.pattern =
+    made.scale = {scale[0], scale[1], scale[2]};
+    color(object, "albedo", 1.0, made.albedo);
+    number(object, "roughness", 0.05, 1.0, made.roughness);
+    number(object, "reflectance", 0.0, 1.0, made.reflectance);
+    number(object, "emission", 0.0, 16.0, made.emission);
+    made.pattern =
         static_cast<Pattern>(object.word("pattern", patterns, Need::optional).value_or(0));
-    subresource.casts_shadow = object.boolean("shadow", Need::optional).value_or(true);
+    made.casts_shadow = object.boolean("shadow", Need::optional).value_or(true);
     if (const auto name = object.string("profile", Need::optional)) {
       for (uint32_t i = 0; i < scene.profiles.size(); ++i)
-        if (scene.profiles[i].name == *name) subresource.profile = i + 1;
-      if (subresource.profile == 0) {
+        if (scene.profiles[i].name == *name) made.profile = i + 1;
+      if (made.profile == 0) {
         std::vector<std::string_view> known;
         for (const SceneProfile& one : scene.profiles)
           known.push_back(one.name);
@@ -161,7 +161,7 @@ struct SceneReader {
       }
     }
     object.finish();
-    scene.objects.push_back(subresource);
+    scene.objects.push_back(made);
   }
 
   void read_root() {

@@ -165,7 +165,8 @@ void add_schema_verb(CLI::App& app, Invocation& invocation) {
       [&invocation](CLI::App& verb, SchemaOptions& options) {
         const CLI::Option* name =
             verb.add_option("name", options.name,
-                            fmt::format("One of {} [all]", format_list(schema_names())))
+                            fmt::format("One of {}; without it --out is a folder for all",
+                                        format_list(schema_names())))
                 ->type_name("NAME");
         invocation.offered[name] = schema_names();
         add_path(verb, "--out,-o", options.out,

@@ -138,12 +138,12 @@ ExitCode measure_suite(const Session& session, const Suite& suite, const SuiteRe
   of_suite.json = false;
   of_suite.command = outcome.line;
   const auto start = std::chrono::steady_clock::now();
+  if (suite.why_not != nullptr) outcome.left_out = suite.why_not();
+  if (!outcome.left_out.empty()) return ExitCode::ok;
   // removes old files, which would be mistaken for results of a failing run
   std::error_code ignored;
   for (const std::string& file : {request.json, request.csv, request.html})
     std::filesystem::remove(file, ignored);
-  if (suite.why_not != nullptr) outcome.left_out = suite.why_not();
-  if (!outcome.left_out.empty()) return ExitCode::ok;
   const ExitCode code = run_suite(of_suite, suite, request);
   outcome.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   outcome.exit_code = static_cast<int64_t>(code);

@@ -47,7 +47,7 @@ double invocations_per_pixel(const Plan& plan, const PlanPass& pass, const PassT
   return 1;
 }
 
-// Converts view distances in host units to Vulkan's depth, 0..1. Distance 0 is background.
+// Converts view depths in host units to Vulkan's depth, 0..1. Distance 0 is background.
 std::vector<float> depth_buffer_of(std::span<const float> distances,
                                    const subsurface::Matrix4& clip_from_view) {
   const subsurface::Matrix4& m = clip_from_view;

@@ -91,7 +91,9 @@ struct GraphFiles {
 // resolve.
 bool add_graph(BugReport& bug_report, const ReportBugOptions& options,
                const Diagnostics& diagnostics, GraphFiles& files) {
-  files.graph = options.graph == "-" ? "graph.json" : fs::path(options.graph).filename().string();
+  // in a folder of its own: its name may be that of another file of the report
+  files.graph = "graph/" +
+                (options.graph == "-" ? "graph.json" : fs::path(options.graph).filename().string());
   bool good = bug_report.add(files.graph, diagnostics.files.front().text);
   const auto add_all = [&](const char* folder, const std::vector<std::string>& paths,
                            std::vector<std::string>& names) {
@@ -105,7 +107,7 @@ bool add_graph(BugReport& bug_report, const ReportBugOptions& options,
   add_all("overlays", options.inputs.overlays, files.overlays);
   add_all("pass_types", options.inputs.pass_types, files.pass_types);
   for (const auto& [name, text] : files.included)
-    good = good && bug_report.add(name, text);
+    good = good && bug_report.add("graph/" + name, text);
   return good;
 }
 
@@ -197,10 +199,9 @@ ExitCode report_bug(const Session& session, const ReportBugOptions& options) {
     if (archived.empty() && named.extension() == ending)
       return fail(
           session, ExitCode::usage,
-          fmt::format(
-              "'{}': archives are written as .tar.gz or .tgz; a name without such an ending is "
-              "a folder's",
-              options.out));
+          fmt::format("'{}': archives are written as .tar.gz or .tgz; any other name is that of a "
+                      "folder",
+                      options.out));
   if (fs::exists(named, error) && (!archived.empty() || !fs::is_empty(named, error)))
     return fail(session, ExitCode::environment,
                 fmt::format("'{}' exists{}: choose another name", options.out,

@@ -67,6 +67,7 @@ ExitCode explain_frame(const Session& session, const ExplainOptions& options,
   engine.scene = options.scene;
   engine.roots = options.inputs.roots;
   engine.graph = options.graph;
+  engine.graph_text = loaded.text;
   engine.width = options.size.width;
   engine.height = options.size.height;
   engine.pixel_aspect = options.pixel_aspect;

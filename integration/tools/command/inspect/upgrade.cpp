@@ -8,14 +8,17 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace dermis::tools {
 namespace {
 
 struct Upgraded {
   std::string path;
   std::string_view kind = "unreadable";
-  int64_t version = 0;                  // version after the call; 0: unknown
-  std::optional<std::string> text = {}; // in the newest version; nullopt: no change
+  int64_t version = 0;   // version after the call; 0: unknown
+  std::string text = {}; // in that version
+  bool changed = false;
 };
 
 constexpr std::string_view old_pass_type_key = "dermis_kinds"; // pass type files of version 1
@@ -35,13 +38,20 @@ Upgraded upgrade_file(const std::string& path, Diagnostics& diagnostics) {
   const bool old =
       version_of(*document, kind.version_key) == 1 || version_of(*document, old_pass_type_key) == 1;
   if (kind.version > 1 && old)
-    return {path, kind.name, kind.version, upgraded_text(*document, *id, text)};
+    if (std::optional<std::string> upgraded = upgraded_text(*document, *id, text))
+      return {path, kind.name, kind.version, std::move(*upgraded), true};
   const bool known = check_version(*document, kind.version_key, kind.version, diagnostics);
-  return {path, kind.name, known ? kind.version : 0, std::nullopt};
+  return {path, kind.name, known ? kind.version : 0, text};
+}
+
+// Returns whether the new text is JSON, as which the old one was read.
+bool is_readable(const Upgraded& one) {
+  Diagnostics ignored;
+  return !one.changed || parse_document(one.path, one.text, ignored);
 }
 
 std::string answer(const Upgraded& one, bool check) {
-  if (!one.text)
+  if (!one.changed)
     return fmt::format("{}: {}, version {} is the newest: nothing to {}\n", one.path, one.kind,
                        one.version, check ? "upgrade" : "do");
   return fmt::format("{}: {}, {} version {}\n", one.path, one.kind,
@@ -51,16 +61,28 @@ std::string answer(const Upgraded& one, bool check) {
 } // namespace
 
 ExitCode upgrade(const Session& session, const UpgradeOptions& options) {
+  const bool prints =
+      !options.check && std::ranges::find(options.files, "-") != options.files.end();
+  if (prints && session.json)
+    return fail(session, ExitCode::usage,
+                "--json and '-' both need standard output; give the graph as a file, or --check");
   Diagnostics diagnostics;
   std::vector<Upgraded> files;
   for (const std::string& path : options.files)
     files.push_back(upgrade_file(path, diagnostics));
+  for (const Upgraded& one : files)
+    if (!is_readable(one))
+      return fail(session, ExitCode::internal,
+                  fmt::format("{}: the upgraded text would not be JSON; no file was changed. This "
+                              "is a defect of the program, please report it",
+                              one.path));
   bool good = true;
   std::string unwritten;
   for (const Upgraded& one : files) {
-    good = good && one.version > 0 && !(options.check && one.text);
-    if (options.check || !one.text || !unwritten.empty()) continue;
-    if (const std::string problem = deliver_text(one.path, *one.text); !problem.empty())
+    good = good && one.version > 0 && !(options.check && one.changed);
+    const bool delivers = one.changed || (one.path == "-" && one.version > 0);
+    if (options.check || !delivers || !unwritten.empty()) continue;
+    if (const std::string problem = deliver_text(one.path, one.text); !problem.empty())
       unwritten = problem;
   }
   print_diagnostics(session, diagnostics);
@@ -74,7 +96,7 @@ ExitCode upgrade(const Session& session, const UpgradeOptions& options) {
     for (const Upgraded& one : files) {
       out.open_object(true).member("file", one.path).member("kind", one.kind).key("version");
       one.version > 0 ? out.value(one.version) : out.null();
-      out.member("changed", one.text.has_value()).close();
+      out.member("changed", one.changed).close();
     }
     out.close().key("diagnostics").json(format_as_json(diagnostics)).close();
     print(std::move(out).finish());

@@ -1,5 +1,7 @@
 #include "integration/tools/command/inspect/upgrade_edits.hpp"
 
+#include "framegraph/text/json_writer.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,6 +10,15 @@ namespace dermis::tools {
 namespace {
 
 constexpr std::string_view spaces = " \n\r\t";
+
+// Returns the text as a JSON string with its quotes.
+std::string quoted(std::string_view text) {
+  JsonWriter json;
+  json.value(text);
+  std::string line = std::move(json).finish();
+  line.pop_back(); // the newline
+  return line;
+}
 
 } // namespace
 
@@ -18,13 +29,17 @@ TextEdits::TextEdits(const Document& source, std::string_view json) : document(s
 }
 
 std::string TextEdits::result() {
-  std::sort(edits_.begin(), edits_.end(),
-            [](const Edit& a, const Edit& b) { return a.begin < b.begin; });
+  for (const size_t begin : removed_last_)
+    remove_comma_before(begin);
+  removed_last_.clear();
+  std::stable_sort(edits_.begin(), edits_.end(),
+                   [](const Edit& a, const Edit& b) { return a.begin < b.begin; });
   std::string out;
   size_t at = 0;
   for (const Edit& edit : edits_) {
-    out.append(text.substr(at, edit.begin - at)).append(edit.text);
-    at = edit.end;
+    const size_t begin = std::max(edit.begin, at); // removed members share the blanks between them
+    out.append(text.substr(at, begin - at)).append(edit.text);
+    at = std::max(at, edit.end);
   }
   return out.append(text.substr(at));
 }
@@ -51,18 +66,19 @@ void TextEdits::replace(size_t begin, size_t end, std::string with) {
 
 void TextEdits::rename(NodeId string, std::string_view name) {
   const size_t begin = document[string].offset;
-  if (!name.empty()) replace(begin, end_of_string(begin), fmt::format("\"{}\"", name));
+  if (!name.empty()) replace(begin, end_of_string(begin), quoted(name));
 }
 
 void TextEdits::rename_key(NodeId value, std::string_view name) {
   const size_t begin = key_begin(value);
-  if (!name.empty()) replace(begin, end_of_string(begin), fmt::format("\"{}\"", name));
+  if (!name.empty()) replace(begin, end_of_string(begin), quoted(name));
 }
 
 void TextEdits::add_member(NodeId object, std::string_view member) {
   const size_t begin = document[object].offset + 1;
   const bool empty = children(document, object).empty();
-  replace(begin, begin, fmt::format(" {}{}", member, empty ? " " : ","));
+  replace(begin, begin, fmt::format(" {}", member));
+  replace(begin, begin, empty ? " " : ",");
 }
 
 void TextEdits::replace_member(NodeId value, std::string member) {
@@ -70,18 +86,67 @@ void TextEdits::replace_member(NodeId value, std::string member) {
 }
 
 void TextEdits::remove_member(NodeId value) {
-  size_t begin = key_begin(value), end = end_of_value(value);
-  const size_t after = text.find_first_not_of(spaces, end);
-  if (text[after] == ',') {
-    end = text.find_first_not_of(" \t", after + 1);
-    const size_t line = text.find_last_not_of(" \t", begin - 1) + 1;
-    if (text[end] == '\n' && text[line - 1] == '\n') begin = line; // nothing else on the line
-  } else if (const size_t before = text.find_last_not_of(spaces, begin - 1); text[before] == ',') {
-    begin = before;
+  const size_t begin = key_begin(value), value_end = end_of_value(value);
+  const size_t line = text.find_last_not_of(" \t", begin - 1) + 1; // before the blanks
+  const size_t after = next_token(value_end);
+  const auto alone = [&](size_t end) { return text[end] == '\n' && text[line - 1] == '\n'; };
+  if (text[after] != ',') {
+    remove(line, value_end);
+    removed_last_.push_back(begin);
+  } else if (text.find_first_not_of(spaces, value_end) != after) { // a comment before the comma
+    remove(begin, value_end);
+    remove(after, after + 1);
+  } else {
+    const size_t end = text.find_first_not_of(" \t", after + 1);
+    remove(alone(end) ? line : begin, end);
   }
+}
+
+void TextEdits::remove(size_t begin, size_t end) {
   const std::string_view removed = text.substr(begin, end - begin);
   replace(begin, end,
           std::string(static_cast<size_t>(std::count(removed.begin(), removed.end(), '\n')), '\n'));
+}
+
+void TextEdits::remove_comma_before(size_t begin) {
+  const auto covers = [](size_t at) {
+    return [at](const Edit& edit) { return edit.begin <= at && at < edit.end; };
+  };
+  size_t at = separator_before(begin);
+  while (text[at] == ',' && std::any_of(edits_.begin(), edits_.end(), covers(at)))
+    at = separator_before(at); // the comma of a removed member
+  if (text[at] == ',') return replace(at, at + 1, "");
+  std::erase_if(edits_, [&](const Edit& edit) { // that of add_member
+    return edit.begin == at + 1 && edit.end == at + 1 && edit.text == ",";
+  });
+}
+
+size_t TextEdits::next_token(size_t at) const {
+  for (;;) {
+    at = text.find_first_not_of(spaces, at);
+    if (text[at] != '/') return at;
+    at = text.find('\n', at); // a comment
+  }
+}
+
+size_t TextEdits::separator_before(size_t begin) const {
+  std::vector<size_t> separators; // one per open object or array
+  for (size_t at = 0; at < begin;) {
+    const char c = text[at];
+    if (c == '"') {
+      at = end_of_string(at);
+      continue;
+    }
+    if (c == '/') {
+      at = text.find('\n', at);
+      continue;
+    }
+    if (c == '{' || c == '[') separators.push_back(at);
+    if (c == '}' || c == ']') separators.pop_back();
+    if (c == ',') separators.back() = at;
+    ++at;
+  }
+  return separators.back();
 }
 
 size_t TextEdits::key_begin(NodeId value) const {

@@ -9,7 +9,8 @@
 
 namespace dermis::tools {
 
-// Edits apply together, in result(); they must not overlap. `source` and `json` must outlive it.
+// Edits apply together, in result(); only removed members may be neighbours. `source` and `json`
+// must outlive it.
 class TextEdits {
 public:
   TextEdits(const Document& source, std::string_view json);
@@ -42,12 +43,20 @@ private:
     std::string text;
   };
 
+  // Replaces a part of the text by its line breaks.
+  void remove(size_t begin, size_t end);
+  // Removes the comma before the member at `begin`, or before the removed members in front of it.
+  void remove_comma_before(size_t begin);
+  size_t next_token(size_t at) const; // skips blanks and comments
+  // Returns the comma before the member or comma at `begin`; the brace before the first member.
+  size_t separator_before(size_t begin) const;
   size_t key_begin(NodeId value) const;
   size_t end_of_string(size_t begin) const;
   size_t end_of_value(NodeId value) const;
 
   std::vector<size_t> line_begins_;
   std::vector<Edit> edits_;
+  std::vector<size_t> removed_last_; // begins of removed members that no comma follows
 };
 
 } // namespace dermis::tools

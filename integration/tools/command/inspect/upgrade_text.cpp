@@ -49,6 +49,7 @@ public:
   using TextEdits::result;
   using TextEdits::TextEdits;
 
+  // `key`: of the version in the file.
   void version(std::string_view key) {
     const NodeId node = document.find(document.root(), key);
     size_t end = document[node].offset;
@@ -256,10 +257,8 @@ std::optional<std::string> upgraded_text(const Document& document, FileKindId ki
   default:
     return std::nullopt;
   }
-  const std::string_view key = kind == FileKindId::pass_types
-                                   ? "dermis_kinds"
-                                   : file_kinds()[static_cast<size_t>(kind)].version_key;
-  upgrade.version(key);
+  const bool old_key = document.find(document.root(), "dermis_kinds").valid();
+  upgrade.version(old_key ? "dermis_kinds" : file_kinds()[static_cast<size_t>(kind)].version_key);
   return upgrade.result();
 }
 

@@ -27,7 +27,6 @@ struct ApplyRun {
   const Session& session;
   const ApplyOptions& options;
   const LoadedGraph& loaded;
-  std::string graph_text;
   demo::VulkanHost& host;
   std::unique_ptr<DeviceGraph> device; // for one size and one choice of slots
   DeviceGraphRequest request;
@@ -42,7 +41,7 @@ struct ApplyRun {
 demo::Result<> prepare(ApplyRun& run, const CapturedFrame& frame, const SlotChoice& slots) {
   DeviceGraphRequest request;
   request.graph_name = run.options.graph;
-  request.graph_text = run.graph_text;
+  request.graph_text = run.loaded.text;
   request.overlays = run.loaded.overlays;
   request.include = for_engine(open_included(run.options.graph, run.options.inputs.roots));
   request.width = frame.description.width;
@@ -179,7 +178,7 @@ ExitCode apply(const Session& session, const ApplyOptions& options) {
   if (const std::string problem = out.open(options.out); !problem.empty())
     return fail(session, ExitCode::environment, problem);
 
-  ApplyRun run{session, options, *loaded, diagnostics.files.front().text, **host, nullptr, {}, {}};
+  ApplyRun run{session, options, *loaded, **host, nullptr, {}, {}};
   run.hooks = host_passes.hooks();
   run.all_runs = sequence->folders.size() * uint64_t{options.repeat};
   Progress progress(progress_style(session.quiet, session.json), "apply", "frame",

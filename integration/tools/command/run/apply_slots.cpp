@@ -10,7 +10,7 @@
 namespace dermis::tools {
 namespace {
 
-// Slots that a captured frame can fill, most exact format first. Depth is passed as view distance,
+// Slots that a captured frame can fill, most exact format first. Depth is passed as view depth,
 // which requires a colour format.
 struct Fillable {
   std::string_view slot;

@@ -5,7 +5,6 @@
 #include <fmt/format.h>
 
 namespace dermis::tools {
-namespace {
 
 demo::Result<demo::NamedText> read_named(const std::string& path) {
   if (path.empty()) return demo::NamedText{};
@@ -14,8 +13,6 @@ demo::Result<demo::NamedText> read_named(const std::string& path) {
   if (text->empty()) return demo::Error{demo::ErrorKind::input, fmt::format("'{}' is empty", path)};
   return demo::NamedText{path, text.take()};
 }
-
-} // namespace
 
 demo::Result<demo::Budget> read_budget(const BudgetArguments& arguments) {
   auto calibration = read_named(arguments.calibration);

@@ -2,9 +2,9 @@
 // budgets.
 
 #include "framegraph/text/json_writer.hpp"
-#include "integration/examples/demo_engine/files.hpp"
 #include "integration/tools/command/interrupt.hpp"
 #include "integration/tools/command/output.hpp"
+#include "integration/tools/command/run/budget_input.hpp"
 #include "integration/tools/command/run/choice_sets.hpp"
 #include "integration/tools/command/run/device_costs.hpp"
 #include "integration/tools/command/run/host_passes.hpp"
@@ -23,16 +23,15 @@ ExitCode calibrate(const Session& session, const CalibrateOptions& options) {
   CostsRequest request;
   request.hooks = host_passes.hooks();
   request.graph = options.graph;
+  request.graph_text = loaded->text;
   request.scene = options.scene;
   request.roots = options.inputs.roots;
   request.size = options.size;
   request.frames = options.frames;
   request.sets = all;
-  if (!options.calibration.empty()) {
-    auto text = demo::read_text_file(options.calibration);
-    if (!text) return fail(session, text.error());
-    request.calibration = {options.calibration, text.take()};
-  }
+  auto calibration = read_named(options.calibration);
+  if (!calibration) return fail(session, calibration.error());
+  request.calibration = calibration.take();
   request.overlays = loaded->overlays;
   request.include = for_engine(open_included(options.graph, options.inputs.roots));
   Progress progress(progress_style(session.quiet, session.json), "calibrate", "run",
@@ -45,7 +44,7 @@ ExitCode calibrate(const Session& session, const CalibrateOptions& options) {
     return fail(session, ExitCode::environment, problem);
   say(session, options.out == "-" ? ""
                                   : fmt::format("{} holds the costs of {} on {}\n", options.out,
-                                                options.graph, costs->device));
+                                                diagnostics.files.front().name, costs->device));
   if (session.json && options.out != "-") {
     JsonWriter answer;
     answer.open_object()

@@ -23,14 +23,14 @@ std::string describe_choice(const demo::FrameChoice& choice) {
   for (size_t k = 0; k < choice.sampled_tiles.size(); ++k)
     if (choice.sampled_tiles[k] > 0)
       text += fmt::format(", {} of them sampled x{}", choice.sampled_tiles[k], 1u << k);
-  if (choice.uniform_tiles > 0) text += fmt::format(", flat {}", choice.uniform_tiles);
+  if (choice.uniform_tiles > 0) text += fmt::format(", uniform {}", choice.uniform_tiles);
   text += fmt::format(", copied {}, skipped {}: {:.2f} ms predicted", choice.copied_tiles,
                       choice.view_tiles - std::min(choice.view_tiles, listed), choice.predicted_ms);
   text +=
       choice.measured_ms < 0 ? ", not timed" : fmt::format(", {:.2f} measured", choice.measured_ms);
   if (choice.budget_ms > 0) text += fmt::format(", budget {:.2f}", choice.budget_ms);
   if (choice.budget_ms > 0)
-    text += fmt::format("; RMSE {:.1e} of the scattered light expected ({})", choice.predicted_rmse,
+    text += fmt::format("; expected RMSE of the scattered light {:.1e} ({})", choice.predicted_rmse,
                         choice.why);
   if (choice.probed_tiles > 0)
     text += choice.probed_tiles > 1
@@ -48,8 +48,9 @@ std::string describe_choice(const demo::FrameChoice& choice) {
     text += fmt::format("; {} of {} tiles that scatter fit the budget", choice.sample_units,
                         choice.sample_demand);
   else if (choice.sample_units < choice.sample_demand)
-    text += fmt::format("; {} of {} requested samples per tile pixel fit the budget",
-                        8 * choice.sample_units, 8 * choice.sample_demand);
+    text += fmt::format("; {} of {} requested sample units (8 samples per pixel of a tile) fit the "
+                        "budget",
+                        choice.sample_units, choice.sample_demand);
   if (!choice.miss.empty()) text += fmt::format("; over the budget: {}", choice.miss);
   return text;
 }

@@ -53,13 +53,15 @@ bool is_mask(const fs::path& path) {
   return path.filename() == mask_name && fs::exists(path.parent_path() / reference, ignored);
 }
 
-std::vector<std::string> pictures_below(const fs::path& folder) {
+std::vector<std::string> pictures_below(const fs::path& folder, std::string& problem) {
   std::vector<std::string> names;
   std::error_code error;
   for (fs::recursive_directory_iterator at(folder, error), end; !error && at != end;
        at.increment(error))
     if (at->is_regular_file(error) && is_picture(at->path()) && !is_mask(at->path()))
       names.push_back(fs::relative(at->path(), folder).string());
+  if (error)
+    problem = fmt::format("cannot list the folder '{}': {}", folder.string(), error.message());
   std::sort(names.begin(), names.end());
   return names;
 }
@@ -90,7 +92,8 @@ std::vector<Pair> pairs_of(const std::string& a, const std::string& b, std::stri
     return {};
   }
   if (!folder) return {{fs::path(a).filename().string(), a, b}};
-  std::vector<std::string> in_a = pictures_below(a), in_b = pictures_below(b);
+  std::vector<std::string> in_a = pictures_below(a, problem), in_b = pictures_below(b, problem);
+  if (!problem.empty()) return {};
   // Output of apply and of reference: compare the scattered light of each frame.
   const auto are = [](const std::vector<std::string>& first,
                       const std::vector<std::string>& second) {
@@ -344,8 +347,8 @@ ExitCode compare(const Session& session, const CompareOptions& options) {
       if (uint64_t{region.x} + region.size.width > a.width ||
           uint64_t{region.y} + region.size.height > a.height)
         return fail(session, ExitCode::usage,
-                    fmt::format("the region {} is not inside of the {}x{} pixels of '{}'",
-                                region.text, a.width, a.height, pair.name));
+                    fmt::format("the region {} is outside the {}x{} pixels of '{}'", region.text,
+                                a.width, a.height, pair.name));
       rows.push_back(compare_region(pair.name, region.text, loaded,
                                     {region.x, region.y, region.size.width, region.size.height}));
     }
@@ -371,13 +374,15 @@ ExitCode compare(const Session& session, const CompareOptions& options) {
   if (ok) return ExitCode::ok;
   if (session.json) return ExitCode::problems;
   std::string allowed;
-  if (std::isfinite(options.min_psnr)) allowed = format_decibels(options.min_psnr);
+  if (std::isfinite(options.min_psnr))
+    allowed = fmt::format("at least {}", format_decibels(options.min_psnr));
   if (options.max_flip < 1)
-    allowed += fmt::format("{}a FLIP of {}", allowed.empty() ? "" : " and ", options.max_flip);
+    allowed +=
+        fmt::format("{}a FLIP of at most {}", allowed.empty() ? "" : " and ", options.max_flip);
   const bool finite = std::all_of(
       rows.begin(), rows.end(), [](const Compared& row) { return row.difference.nonfinite == 0; });
   return fail(session, ExitCode::problems,
-              finite ? fmt::format("the images differ by more than {} permit", allowed)
+              finite ? fmt::format("the images differ more than allowed: {}", allowed)
                      : "some values are not finite");
 }
 

@@ -25,6 +25,7 @@ demo::Result<DeviceCosts> measure_costs(const CostsRequest& request,
   engine.scene = request.scene;
   engine.roots = request.roots;
   engine.graph = request.graph;
+  engine.graph_text = request.graph_text;
   engine.overlays = request.overlays;
   engine.include = request.include;
   engine.hooks = request.hooks;

@@ -14,6 +14,7 @@ namespace dermis::tools {
 
 struct CostsRequest {
   std::string graph, scene; // files
+  std::string graph_text;   // "": that of the file
   std::vector<std::string> roots = {};
   std::vector<demo::NamedText> overlays = {};
   std::function<std::optional<demo::NamedText>(const std::string& name)> include = {};

@@ -326,6 +326,7 @@ ExitCode render(const Session& session, const RenderOptions& options) {
     if (!compile_generic(*loaded, options.size, choices, diagnostics))
       return fail_graph(session, options.graph, diagnostics);
     engine.graph = options.graph;
+    engine.graph_text = loaded->text;
     host_passes.emplace(loaded->host_pass_types);
     engine.hooks = host_passes->hooks();
     engine.overlays = loaded->overlays;

@@ -84,7 +84,10 @@ std::string Trace::json(const std::string& command, const std::string& device) c
     out.close().close();
     begin_event(out, "tiles", "C", one.at_ms);
     out.key("args").open_object().member("scatter", choice.scattering_tiles);
-    out.member("flat", choice.uniform_tiles).member("copied", choice.copied_tiles).close().close();
+    out.member("uniform", choice.uniform_tiles)
+        .member("copied", choice.copied_tiles)
+        .close()
+        .close();
     if (choice.configuration != before) {
       begin_event(out, choice.configuration, "i", one.at_ms);
       out.member("s", "p").member("cat", "choice").member("tid", host_track);

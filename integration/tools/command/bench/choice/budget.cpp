@@ -9,6 +9,7 @@
 #include "integration/tools/command/bench/subject.hpp"
 #include "integration/tools/command/bench/suite/suites.hpp"
 #include "integration/tools/command/graph_input.hpp"
+#include "integration/tools/command/run/budget_input.hpp"
 #include "integration/tools/command/run/choice_sets.hpp"
 #include "integration/tools/command/run/host_passes.hpp"
 
@@ -266,11 +267,9 @@ demo::Result<> measure_budget(SuiteRun& run, const Emit<BudgetRow>& emit) {
   request.size = run.size();
   request.cache = run.text("cache");
   request.model = head_model(run.text("head"));
-  if (const std::string path = run.text("calibration"); !path.empty()) {
-    auto text = demo::read_text_file(path);
-    if (!text) return text.error();
-    request.calibration = {path, text.take()};
-  }
+  auto calibration = read_named(run.text("calibration"));
+  if (!calibration) return calibration.error();
+  request.calibration = calibration.take();
   std::vector<BudgetScene> scenes;
   if (const std::string problem = find_scenes(run, scenes); !problem.empty())
     return demo::Error{demo::ErrorKind::usage, problem};
@@ -279,8 +278,9 @@ demo::Result<> measure_budget(SuiteRun& run, const Emit<BudgetRow>& emit) {
   if (auto ready = prepare_stills(run, scenes, host, stills); !ready) return ready;
   const uint64_t frames = run.number("frames"), repetitions = run.number("repetitions");
   run.report.summary = fmt::format(
-      "{} judged frames after {}; over: more than {} of the budget by timestamps, {} by "
-      "calibrated times; times: median of {}; the best single configuration takes at most {:.3f} "
+      "{} judged frames after {}; over: a frame that takes more than {} times the budget by "
+      "timestamps, or {} times by calibrated times; times: median of {}; the best single "
+      "configuration takes at most {:.3f} "
       "of the budget, as much as the controller fills",
       frames, unjudged_frames, measured_tolerance, model_tolerance, repetitions, controller_room());
   uint64_t runs = 0;

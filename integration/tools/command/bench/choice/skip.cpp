@@ -71,7 +71,7 @@ demo::Result<> prepare_frame(SkipBench& bench, SkipCase from) {
   request.graph_text = bench.text;
   request.width = bench.run.size().width;
   request.height = bench.run.size().height;
-  if (!one.from.skips) request.overlays.push_back({"without flat light", without_uniform_light});
+  if (!one.from.skips) request.overlays.push_back({"without uniform light", without_uniform_light});
   if (!one.from.no_profiles)
     for (const CaptureProfile& profile : bench.profiles)
       request.profiles.push_back(
@@ -193,7 +193,7 @@ demo::Result<> load_graphs(SuiteRun& run, LoadedGraph& loaded, LoadedGraph& plai
   if (!whole) return run.reject(path, diagnostics);
   text = diagnostics.files.front().text;
   std::vector<Document> overlays;
-  if (auto overlay = parse_document("without flat light", without_uniform_light, diagnostics))
+  if (auto overlay = parse_document("without uniform light", without_uniform_light, diagnostics))
     overlays.push_back(std::move(*overlay));
   auto document = read_document(path, diagnostics);
   auto part = document

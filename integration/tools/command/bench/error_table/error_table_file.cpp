@@ -2,6 +2,8 @@
 
 #include "integration/tools/command/bench/error_time/error_time_file.hpp"
 
+#include <algorithm>
+
 namespace dermis::tools {
 namespace {
 
@@ -14,6 +16,8 @@ void read_root(BenchObject& root, ErrorTableFile& file) {
       if (const auto d = read_number(root.document, one, "'d_px' of the bench file", min_d_px,
                                      max_d_px, root.diagnostics))
         file.d_px.push_back(*d);
+  std::ranges::sort(file.d_px); // as the curves of a table
+  file.d_px.erase(std::ranges::unique(file.d_px).begin(), file.d_px.end());
   const NodeId choice = root.reader.array("choice", 0, max_bench_entries, Need::optional);
   if (choice.valid())
     for (const NodeId one : children(root.document, choice))

@@ -94,7 +94,8 @@ double fit_relief_power(const choice::ErrorModel& table, int32_t row,
     squares[error.scene_class].push_back(by_relief * by_relief);
   }
   const double square = squares.empty() ? 0 : class_mean(squares);
-  return square > 0 ? to_three_digits(class_mean(products) / square) : 0;
+  const double fitted = square > 0 ? class_mean(products) / square : 0;
+  return to_three_digits(std::clamp(fitted, -choice::max_relief_power, choice::max_relief_power));
 }
 
 void fit_table(choice::ErrorModel& table, std::span<const MeasuredError> errors,

@@ -194,13 +194,14 @@ std::string report_as_csv(const Report& report) {
 
 std::string deliver_report(const Report& report, const std::string& json, const std::string& csv,
                            const std::string& html) {
-  if (!json.empty())
-    if (std::string problem = deliver_text(json, report_as_json(report)); !problem.empty())
-      return problem;
-  if (!csv.empty())
-    if (std::string problem = deliver_text(csv, report_as_csv(report)); !problem.empty())
-      return problem;
-  return html.empty() ? "" : deliver_page(html, report_as_html(report));
+  const std::string problems[] = {
+      json.empty() ? "" : deliver_text(json, report_as_json(report)),
+      csv.empty() ? "" : deliver_text(csv, report_as_csv(report)),
+      html.empty() ? "" : deliver_page(html, report_as_html(report)),
+  };
+  for (const std::string& problem : problems)
+    if (!problem.empty()) return problem;
+  return "";
 }
 
 } // namespace dermis::tools

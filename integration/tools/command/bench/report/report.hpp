@@ -122,7 +122,8 @@ std::string report_as_csv(const Report& report);
 // enabled, a click on a title sorts the table.
 std::string report_as_html(const Report& report);
 
-// Writes the requested files: "" omits a file, "-" is standard output. Returns the problem, or "".
+// Writes the requested files: "" omits a file, "-" is standard output. A file that cannot be
+// written does not prevent the others. Returns the first problem, or "".
 std::string deliver_report(const Report& report, const std::string& json, const std::string& csv,
                            const std::string& html);
 

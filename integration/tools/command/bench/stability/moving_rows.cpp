@@ -1,4 +1,5 @@
-// Compares moving values rounded to half floats a million times with fp64 references.
+// Compares exponential moving averages that are stored as half floats with fp64, over `updates`
+// updates.
 #include "integration/tools/command/bench/stability/rows.hpp"
 
 #include "framegraph/model/splitmix.hpp"
@@ -22,15 +23,15 @@ float as_half(double value) {
 // tenth.
 StabilityRow moving(std::string name, double level, uint64_t updates) {
   constexpr double eta = 0.2; // GuidanceSettings::eta
-  subsurface::MovingVariance cpu_kernel;
+  subsurface::MovingVariance exact;
   float mean = 0, deviation = 0;
   SplitMix64 random{7};
-  double squares = 0, cpu_kernel_squares = 0;
+  double squares = 0, exact_squares = 0;
   bool finite = true;
   for (uint64_t i = 0; i < updates; ++i) {
     const double noise = static_cast<double>(random.next() >> 11) * 0x1p-53;
     const double x = level * (1 + 0.02 * (2 * noise - 1));
-    cpu_kernel.add(x, eta);
+    exact.add(x, eta);
     if (i == 0) mean = as_half(x);
     const double step = x - double(mean);
     mean = as_half(double(mean) + eta * step);
@@ -39,13 +40,13 @@ StabilityRow moving(std::string name, double level, uint64_t updates) {
     finite = finite && std::isfinite(mean) && std::isfinite(deviation);
     if (i >= updates - updates / 10) {
       squares += double(deviation) * double(deviation);
-      cpu_kernel_squares += cpu_kernel.variance;
+      exact_squares += exact.variance;
     }
   }
-  // Each rounding of the mean adds at most half a step to the next deviation, which is 2 % of the
-  // mean or more.
-  StabilityRow made = formula_row(
-      std::move(name), std::abs(std::sqrt(squares / cpu_kernel_squares) - 1), 0.02, finite);
+  // Each rounding of the mean adds at most half a step to the next deviation, which is about 1.1 %
+  // of the mean.
+  StabilityRow made =
+      formula_row(std::move(name), std::abs(std::sqrt(squares / exact_squares) - 1), 0.02, finite);
   made.frames = updates;
   return made;
 }
@@ -60,7 +61,7 @@ StabilityRow closed_loop(std::string name, double spread, uint64_t updates) {
     int count = 0;
   };
   const subsurface::GuidanceSettings settings;
-  Loop kept, cpu_kernel;
+  Loop kept, exact;
   const auto frame = [&](Loop& loop, double draw, bool halves) {
     const auto store = [&](double value) { return halves ? double(as_half(value)) : value; };
     const bool begun = loop.moments.begun;
@@ -82,15 +83,15 @@ StabilityRow closed_loop(std::string name, double spread, uint64_t updates) {
     const double even = static_cast<double>(random.next() >> 11) * 0x1p-53;
     const double draw = std::sqrt(12.0) * (even - 0.5); // variance 1
     frame(kept, draw, true);
-    frame(cpu_kernel, draw, false);
+    frame(exact, draw, false);
   }
-  StabilityRow made = formula_row(std::move(name), std::abs(kept.samples / cpu_kernel.samples - 1),
-                                  0.02, std::isfinite(kept.samples));
+  StabilityRow made = formula_row(std::move(name), std::abs(kept.samples / exact.samples - 1), 0.02,
+                                  std::isfinite(kept.samples));
   made.frames = updates;
   return made;
 }
 
-// The mean must follow a step to within one half float step over (1 - eta) / eta, and not freeze.
+// The mean must follow a step to within (1 - eta) / eta half steps of a half float, and not freeze.
 StabilityRow following(std::string name, double eta, double bound) {
   float mean = as_half(0);
   for (uint32_t i = 0; i < 10000; ++i)
@@ -135,14 +136,14 @@ double in_float(double value) {
 StabilityRow control_over_frames(std::string name, double swing, double eta, double eps_alpha,
                                  Store store) {
   constexpr uint64_t frames = 36000; // ten minutes at 60 Hz
-  subsurface::MovingCovariance cpu_kernel, kept;
+  subsurface::MovingCovariance exact, kept;
   SplitMix64 random{13};
   const auto noise = [&] { return static_cast<double>(random.next() >> 11) * 0x1p-52 - 1; };
   double error = 0;
   bool finite = true;
   for (uint64_t i = 0; i < frames; ++i) {
     const double own = swing * noise(), f = 1 + own / 2 + 0.03 * noise(), g = 1 + own;
-    cpu_kernel.add(f, g, eta);
+    exact.add(f, g, eta);
     kept.add(f, g, eta);
     const double weight = store(kept.variance_g > 0 ? kept.covariance / kept.variance_g : 1);
     const double deviation = store(std::sqrt(kept.variance_g));
@@ -154,7 +155,7 @@ StabilityRow control_over_frames(std::string name, double swing, double eta, dou
     // at most 1 + mean_f / mean_g
     finite = finite && std::isfinite(found) && found >= 0 && found <= 2.1;
     if (i >= frames - frames / 10)
-      error = std::max(error, std::abs(found - subsurface::control_weight(cpu_kernel, eps_alpha)));
+      error = std::max(error, std::abs(found - subsurface::control_weight(exact, eps_alpha)));
   }
   StabilityRow made = formula_row(std::move(name), error, 0.02, finite);
   made.frames = frames;

@@ -1,6 +1,7 @@
 #include "integration/tools/command/bench/suite/suite.hpp"
 
 #include "integration/tools/command/interrupt.hpp"
+#include "integration/tools/command/output.hpp"
 
 #include <fmt/format.h>
 
@@ -97,7 +98,10 @@ SuiteRequest default_request(const Suite& suite) {
   return request;
 }
 
-ExitCode run_suite(const Session& session, const Suite& suite, const SuiteRequest& request) {
+ExitCode run_suite(const Session& given, const Suite& suite, const SuiteRequest& request) {
+  // An error is the document on standard output only where the rows would be.
+  Session session = given;
+  session.json = request.json == "-";
   const auto start = std::chrono::steady_clock::now();
   if (const std::string reason = suite.why_not != nullptr ? suite.why_not() : ""; !reason.empty())
     return fail(session, ExitCode::environment, reason);
@@ -120,9 +124,15 @@ ExitCode run_suite(const Session& session, const Suite& suite, const SuiteReques
   const std::string verdict = goals.missed == 0
                                   ? fmt::format("all goals of {} rows are met", rows)
                                   : fmt::format("{} of {} rows miss a goal", goals.missed, rows);
-  if (!session.quiet && request.json != "-" && request.csv != "-" && request.html != "-")
-    print(report_as_text(report) + (goals.rows > 0 ? verdict + "\n" : ""));
-  const std::string problem = deliver_report(report, request.json, request.csv, request.html);
+  bool prints = !session.quiet && request.json != "-" && request.csv != "-" && request.html != "-";
+  for (const auto& [path, text] : run.files)
+    prints = prints && path != "-";
+  if (prints) print(report_as_text(report) + (goals.rows > 0 ? verdict + "\n" : ""));
+  session.json = false; // standard output may have the rows
+  std::string problem = deliver_report(report, request.json, request.csv, request.html);
+  for (const auto& [path, text] : run.files)
+    if (std::string unwritten = deliver_text(path, text); problem.empty())
+      problem = std::move(unwritten);
   if (!problem.empty()) return fail(session, ExitCode::environment, problem);
   return goals.missed == 0 ? ExitCode::ok : fail(session, ExitCode::problems, verdict);
 }

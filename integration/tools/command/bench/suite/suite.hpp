@@ -50,6 +50,8 @@ struct SuiteRun {
   Report report = {};        // facts, notes, plots and images; rows are emitted
   std::string device = {};   // for the facts; set by open_device()
   Diagnostics rejected = {}; // of an input file that cannot be used
+  // Further outputs, path and text: written after the report, so that no row is lost with them.
+  std::vector<std::pair<std::string, std::string>> files = {};
 
   template <class T> const T& option(const std::string& name) const {
     return std::get<T>(options.at(name));
@@ -93,7 +95,7 @@ struct Suite {
   // Returns what this machine lacks for the suite, or "". Null means no requirements.
   std::string (*why_not)() = nullptr;
   std::vector<ReportColumn> columns = {};
-  // Fills run.report. Errors: of the measurement; `stopped()` if interrupted.
+  // Fills run.report. Returns errors of the measurement, or `stopped()` if interrupted.
   std::function<demo::Result<>(SuiteRun& run)> run = {};
 };
 

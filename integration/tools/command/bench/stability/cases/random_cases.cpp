@@ -41,7 +41,7 @@ CapturedFrame spoiled(uint32_t t, Lighting light) {
   return frame;
 }
 
-StabilityCase anything(std::string_view name, Lighting light) {
+StabilityCase random_damage(std::string_view name, Lighting light) {
   return {.name = name,
           .frames = 24,
           .given = [light](uint32_t t) { return spoiled(t, light); },
@@ -51,11 +51,11 @@ StabilityCase anything(std::string_view name, Lighting light) {
 } // namespace
 
 std::vector<StabilityCase> random_cases() {
-  StabilityCase anywhere = anything("anything_anywhere", Lighting::any);
+  StabilityCase anywhere = random_damage("anything_anywhere", Lighting::any);
   anywhere.finite_only = true;
-  StabilityCase most_1 = anything("anything_under_light_up_to_1", Lighting::at_most_1);
+  StabilityCase most_1 = random_damage("anything_under_light_up_to_1", Lighting::at_most_1);
   most_1.metric = Metric::light_beyond;
-  return {anywhere, anything("anything_under_even_light", Lighting::even), most_1};
+  return {anywhere, random_damage("anything_under_even_light", Lighting::even), most_1};
 }
 
 } // namespace dermis::tools
