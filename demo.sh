@@ -4,9 +4,8 @@
 # with sudo, the script first installs missing packages.
 set -euo pipefail
 root=$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")
-cd "$root"
 # shellcheck source=.ci/common.sh
-source .ci/common.sh
+source "$root/.ci/common.sh"
 
 usage="usage: ./demo.sh [--head FOLDER]
 Builds the library and the dermis command into build/release and renders a bust with three graphs
@@ -21,13 +20,18 @@ while [[ $# -gt 0 ]]; do
   case "$1" in
     --head)
       [[ $# -ge 2 ]] || fail 2 "--head needs a folder"$'\n'"$usage"
-      head=$2
+      head=$(realpath -m "$2")
+      for file in LeePerrySmith.glb Map-COL.jpg Map-SPEC.jpg \
+        Infinite-Level_02_Tangent_SmoothUV.jpg; do
+        [[ -f $head/$file ]] || fail 2 "'$head' has no $file"$'\n'"$usage"
+      done
       shift 2
       ;;
     -h | --help) say "$usage"; exit 0 ;;
     *) fail 2 "unknown option '$1'"$'\n'"$usage" ;;
   esac
 done
+cd "$root"
 
 install_packages
 # Builds everything that cmake --install needs, without tests.
@@ -54,11 +58,9 @@ build/release/dermis sheet --size 240x135 --out out/sheet.png
 say
 if [[ -z "$head" ]]; then
   say "Head scan: skipped, no folder given (./demo.sh --head FOLDER)."
-elif [[ ! -f "$head/LeePerrySmith.glb" ]]; then
-  say "Head scan: skipped, '$head' has no LeePerrySmith.glb."
 else
   for graph in sap burley separable; do
-    render head "$graph" "head_$graph" --model "$head/LeePerrySmith.glb" --height 0.24 \
+    render head "$graph" "head_$graph" --model "$head/LeePerrySmith.glb" --height 0.426 \
       --albedo "$head/Map-COL.jpg" --specular "$head/Map-SPEC.jpg" \
       --normal "$head/Infinite-Level_02_Tangent_SmoothUV.jpg"
   done

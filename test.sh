@@ -29,14 +29,11 @@ for argument in "$@"; do
   esac
 done
 
-fuzz=no
-if can_fuzz; then
-  fuzz=yes
-  packages+=("${fuzz_packages[@]}")
-fi
 # A test opens the viewer's page in chromium.
-optional_packages+=("${interface_packages[@]}" chromium)
+optional_packages+=("${fuzz_packages[@]}" "${interface_packages[@]}" chromium)
 install_packages
+fuzz=no
+if can_fuzz; then fuzz=yes; fi
 
 # Runs one step: the function named like the step, with '_' for spaces. Exit code 77 means skipped.
 times=() # "step <tab> seconds <tab> note"
@@ -54,21 +51,21 @@ print_times() {
     END { printf "%-16s %4d min %02d s\n", "all", all / 60, all % 60 }'
 }
 
-run_tests() { # preset, more arguments of ctest
-  build_preset "$1"
+run_tests() { # preset, target, more arguments of ctest
+  build_preset "$1" --target "$2"
   # One test per processor, each with one thread of the software driver.
-  LP_NUM_THREADS=${LP_NUM_THREADS:-1} ctest --preset "$1" -j "$(nproc)" --progress "${@:2}" ||
+  LP_NUM_THREADS=${LP_NUM_THREADS:-1} ctest --preset "$1" -j "$(nproc)" --progress "${@:3}" ||
     fail 1 "tests failed in '$1'; the log: build/$1/Testing/Temporary/LastTest.log"
 }
 # Suffix of suites that need ray queries, which run in a separate step.
 ray_suites=WithRayQueries
-release() { run_tests release -E "$ray_suites\\."; }
+release() { run_tests release all -E "$ray_suites\\."; }
 # Runs without the additional cases of --full, which find nothing more with sanitizers or other
 # drivers.
 quick() { (unset DERMIS_TESTS_FULL && "$@"); }
 # ReuseWithRayQueries measures pictures, and takes minutes with sanitizers; WithRayQueries runs the
 # same code.
-asan() { quick run_tests asan -L "memory|device" -E "ReuseWithRayQueries\."; }
+asan() { quick run_tests asan dermis_labelled_tests -L "memory|device" -E "ReuseWithRayQueries\."; }
 tsan() {
   build_preset tsan --target test_integration_static_library
   TSAN_OPTIONS=halt_on_error=1 build/tsan/tests/test_integration_static_library \
@@ -114,7 +111,7 @@ kernels() {
 other_drivers() { quick tests/scripts/run_on_drivers.sh build/release; }
 coverage() { tests/scripts/coverage.sh; }
 benches() {
-  built dermis
+  built dermis_command
   build/release/dermis bench all --quick --out build/bench
 }
 fuzzers() { # also compares the plans of two compilers

@@ -60,7 +60,8 @@ void BarrierWalk::unify_layouts(std::span<const Use> uses) {
 
 namespace {
 
-// Whether the pass writes the resource that `read` reads, in this frame or over an earlier one.
+// Returns whether the pass writes the resource that `read` reads, in this frame or over an earlier
+// one.
 bool writes_too(const Use& read, std::span<const Use> uses) {
   return std::any_of(uses.begin(), uses.end(), [&](const Use& other) {
     return other.writes && other.resource == read.resource &&
@@ -100,7 +101,7 @@ void BarrierWalk::add_accesses(PlanPass& pass, std::span<const Use> uses) {
       continue;
     }
     const bool own_texels = ports[use.port].own_texels && !use.writes && writes_too(use, uses);
-    // A placeholder is read in every frame if its history has no version.
+    // A substitute is read in every frame if its history has no version.
     const Use* history = history_of(use);
     const bool always = history && history->bind_error != Use::BindError::none;
     plan.accesses.push_back({use.port, access.resource, use.frames_back, range, usage.stages,

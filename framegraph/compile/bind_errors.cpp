@@ -19,17 +19,18 @@ struct BindErrorReporter {
   Report& report;
   std::vector<uint8_t>& reported; // by resource: one root cause gives one diagnostic
 
-  // Whether the port reads its placeholder in every frame, because no pass writes the history.
-  bool has_placeholder(const Use& use) const {
+  // Returns whether the port reads its substitute in every frame, because no pass writes the
+  // history.
+  bool has_substitute(const Use& use) const {
     if (use.when != ReadWhen::history_valid || use.bind_error != Use::BindError::history_unwritten)
       return false;
-    const Use* next = &use + 1; // the placeholder follows the history at the same port
+    const Use* next = &use + 1; // the substitute follows the history at the same port
     const bool last = next == end_of_pass(use);
     return !last && next->when == ReadWhen::history_invalid && next->port == use.port &&
            next->bind_error == Use::BindError::none;
   }
 
-  // Whether the pass cannot run without the port. Of several alternative ports the first is
+  // Returns whether the pass cannot run without the port. Of several alternative ports the first is
   // reported.
   bool is_required(const Use& use) const {
     const PassType& type = active.type(use.pass);
@@ -48,7 +49,7 @@ struct BindErrorReporter {
     const bool missing = use.bind_error == Use::BindError::unbound ||
                          use.bind_error == Use::BindError::unwritten ||
                          use.bind_error == Use::BindError::history_unwritten;
-    if (has_placeholder(use)) {
+    if (has_substitute(use)) {
       report.record_reason(Reason::About::pass, use.pass.value,
                            Reason::ReasonKind::always_otherwise, use.port, use.requested.value);
       return;
@@ -83,7 +84,7 @@ struct BindErrorReporter {
           DiagnosticId::unbound_import,
           use.resource == use.requested
               ? fmt::format("{} needs '{}', which the host leaves unbound", reader, resource)
-              : fmt::format("{} needs '{}', which is replaced by '{}' because its producer is off, "
+              : fmt::format("{} needs '{}', whose producer is off, so that '{}' replaces it, "
                             "and the host leaves '{}' unbound",
                             reader, resource, name_of(graph, use.resource),
                             name_of(graph, use.resource)));
@@ -100,7 +101,7 @@ struct BindErrorReporter {
       return report_error(
           DiagnosticId::replaced_update,
           fmt::format(
-              "{} updates '{}' in place, but it is replaced by '{}' because its producer is off",
+              "{0} updates '{1}' in place, but the producer of '{1}' is off and '{2}' replaces it",
               reader, resource, name_of(graph, use.resource)));
     case Use::BindError::history_unwritten:
       return report_error(DiagnosticId::history_unwritten,

@@ -7,8 +7,8 @@
 namespace dermis {
 namespace {
 
-// Whether each list of the input is empty or has one entry per declaration, and the device supports
-// the view.
+// Returns whether each list of the input is empty or has one entry per declaration, and the device
+// supports the view.
 bool acceptable(const CompileInput& input, Diagnostics& diagnostics) {
   const uint32_t errors = diagnostics.count(Severity::error);
   const auto report_input = [&](std::string text) {
@@ -16,7 +16,7 @@ bool acceptable(const CompileInput& input, Diagnostics& diagnostics) {
   };
   const auto check_length = [&](const char* what, size_t given, size_t expected) {
     if (given != 0 && given != expected)
-      report_input(fmt::format("{} {} given, the graph has {}", given, what, expected));
+      report_input(fmt::format("got {} {}, but the graph has {}", given, what, expected));
   };
   const uint32_t limit = input.device->max_image_dimension;
   if (input.view_width < 1 || input.view_height < 1 || input.view_width > limit ||

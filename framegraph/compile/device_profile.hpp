@@ -39,7 +39,7 @@ struct DeviceProfile {
   uint32_t max_workgroup_count = 65535; // minimum of the three dimensions
   uint32_t max_push_constants_bytes = 128;
   Features features = 0; // supported and enabled
-  // Whether the device supports the format with these VkImageUsageFlags.
+  // Returns whether the device supports the format with these VkImageUsageFlags.
   std::function<bool(Format, uint32_t vk_usage)> supports;
   std::function<bool(Format)> filters; // whether the device filters it linearly
   std::function<MemoryNeeds(const ImageDescription&)> image_needs;

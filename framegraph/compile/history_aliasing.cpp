@@ -60,8 +60,8 @@ struct HistoryAliaser {
            aliases[resource].target == invalid_index;
   }
 
-  // Whether the transient fits into the target in an idle time and allows the memory types of its
-  // heap.
+  // Returns whether the transient fits into the target in an idle time and allows the memory types
+  // of its heap.
   bool can_alias(uint32_t resource, uint32_t target, bool after_last_read) const {
     const Placement &own = placement(resource), &there = placement(target);
     const bool in_time = after_last_read ? life(resource).first > history(target).last_read

@@ -61,7 +61,7 @@ struct VersionScratch {
     uint32_t producers = 0; // passes that are on and write the subresource
     uint32_t first_version = invalid_index;
     bool replaced = false; // by `otherwise` of a pass that is off
-    Binding placeholder;
+    Binding substitute;
   };
   struct ForwardReference { // a use that reads before any pass in file order has written
     uint32_t use = 0, subresource = 0;

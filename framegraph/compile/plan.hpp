@@ -149,9 +149,9 @@ struct PlanOrdering { // positions in Plan::passes
   friend bool operator<(const PlanOrdering& a, const PlanOrdering& b) { return a.later < b.later; }
 };
 
-// A history as the executor keeps it. New or invalidated instances must be cleared, or transitioned
-// with their contents discarded, into their layout at the start of a frame before the first frame
-// that reads them.
+// A history as the executor keeps it. Before the first frame that reads a new or invalidated
+// instance, the executor clears it, or discards its contents in a transition, so that it has the
+// layout that its frame starts with.
 struct PlanHistory {
   uint32_t resource = 0;                     // into Plan::resources
   uint32_t frames = 1;                       // deepest `@-N` this plan reads

@@ -13,7 +13,7 @@ bool is_race(const Activation& active, const Use& read, const Use& write) {
   if (read.resource != write.resource || active.type(read.pass).ports[read.port].own_texels)
     return false;
   return read.requested != read.resource ||
-         read.subresource == write.subresource; // a placeholder is never divided
+         read.subresource == write.subresource; // a substitute is never divided
 }
 
 } // namespace
@@ -35,7 +35,7 @@ void report_races(const CompileInput& in, const Activation& active, const Versio
       race.writing_port = type.ports[write.port].name;
       race.read = name_of(graph, read.requested);
       race.written = name_of(graph, write.requested);
-      if (read.requested != read.resource) race.placeholder = name_of(graph, read.resource);
+      if (read.requested != read.resource) race.substitute = name_of(graph, read.resource);
       report.diagnostics.add(DiagnosticId::in_place_race, location_of(graph, read), text_of(race))
           .related.emplace_back(location_of(graph, write), "it is written here");
     }

@@ -140,8 +140,8 @@ bool same(Rational a, Rational b) {
   return a.numerator == b.numerator && a.denominator == b.denominator;
 }
 
-// Whether two declarations whose sizes follow no other resource have equal sizes and formats at
-// every view.
+// Returns whether two declarations whose sizes follow no other resource have equal sizes and
+// formats at every view.
 bool alike(const ResourceDeclaration& a, const ResourceDeclaration& b) {
   return same(a.size.x, b.size.x) && same(a.size.y, b.size.y) && a.size.base == b.size.base &&
          a.size.rounding == b.size.rounding && a.size.align == b.size.align &&

@@ -42,7 +42,7 @@ struct SubresourceSplitter {
     const ResourceDeclaration& resource = graph.resources[binding.resource.value];
     const Extent& extent = sizes.extents[binding.resource.value];
     report.diagnostics
-        .add(DiagnosticId::part_missing, graph.place_of(binding),
+        .add(DiagnosticId::subresource_missing, graph.place_of(binding),
              fmt::format(
                  "pass '{}' binds '{}{}', but at {}x{} texels '{}' has {} mip{} and {} layer{}",
                  name_of(graph, pass), resource.name, image_range_text(binding.range), extent.width,

@@ -11,8 +11,8 @@ namespace {
 constexpr uint32_t transfer_source_usage =
     0x1; // VK_IMAGE_USAGE_TRANSFER_SRC_BIT, the same bit for buffers
 
-// Whether the port, which names no formats, works with every format that the resource may get.
-// read_graph has checked single formats, except those of a placeholder.
+// Returns whether the port, which names no formats, works with every format that the resource may
+// get. read_graph has checked single formats, except those of a substitute.
 bool takes_all_formats(const Graph& graph, const Use& use, const Port& port) {
   const FormatList& formats = graph.resources[use.resource.value].formats;
   if (formats.size() <= 1 && use.resource == use.requested) return true;

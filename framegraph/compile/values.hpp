@@ -93,7 +93,7 @@ struct Subresources {
   uint32_t index_of(const Use& use) const; // within the requested resource
 };
 
-// Whether a port that names `seen` accesses some of the range.
+// Returns whether a port that names `seen` accesses some of the range.
 inline bool overlaps(const ImageRange& seen, const SubresourceRange& range) {
   const auto meet = [](uint32_t first, uint32_t count, uint32_t other,
                        uint32_t others) { // count 0: all
@@ -151,14 +151,14 @@ struct Versions {
     return {uses.data() + first_use[pass], first_use[pass + 1] - first_use[pass]};
   }
   std::span<const Use> uses_of(PassId pass) const { return uses_of(pass.value); }
-  // Whether some pass writes what the use reads.
+  // Returns whether some pass writes what the use reads.
   bool is_written(const Use& use) const {
     return (use.frames_back > 0 ? final_version[use.subresource] : use.read_version) !=
            invalid_index;
   }
 };
 
-// Returns the use of a history at the same port for which `use` is the placeholder, or nullptr.
+// Returns the use of a history at the same port for which `use` is the substitute, or nullptr.
 inline const Use* history_of(const Use& use) {
   if (use.when != ReadWhen::history_invalid) return nullptr;
   const Use* at = &use;

@@ -106,7 +106,7 @@ struct VersionResolver {
     }
   }
 
-  // Whether all passes that would write what the use reads are off because the graph has no
+  // Returns whether all passes that would write what the use reads are off because the graph has no
   // profile.
   bool lacks_profile(const Use& use) const {
     bool unmet = false;
@@ -282,7 +282,7 @@ struct VersionResolver {
       VersionScratch::ResourceDef& definition = scratch.definitions[output.value];
       if (!definition.replaced) {
         definition.replaced = true;
-        definition.placeholder = binding;
+        definition.substitute = binding;
       }
       scratch.current[output.value] = binding;
     }
@@ -308,9 +308,9 @@ struct VersionResolver {
         return;
       }
       if (!definition.replaced) break;
-      if (definition.placeholder.version != invalid_index)
-        return bind_version(use, definition.placeholder.version);
-      subresource = definition.placeholder.later.value;
+      if (definition.substitute.version != invalid_index)
+        return bind_version(use, definition.substitute.version);
+      subresource = definition.substitute.later.value;
     }
     use.bind_error = Use::BindError::unwritten;
   }
@@ -354,7 +354,8 @@ const Versions& resolve_versions(const CompileInput& in, const Sizes& sizes,
     if (resolver.divided_uses <= limits::range_uses) continue;
     report.diagnostics.add(
         DiagnosticId::limit_exceeded, graph.passes[i].where,
-        fmt::format("ports access more than {} subresource ranges", limits::range_uses));
+        fmt::format("the ports of the graph together access more than {} subresource ranges",
+                    limits::range_uses));
     return versions;
   }
   versions.first_use.push_back(static_cast<uint32_t>(versions.uses.size()));

@@ -6,7 +6,7 @@ namespace dermis {
 
 std::string text_of(const InPlaceRace& race) {
   const std::string replaced =
-      race.placeholder.empty() ? "" : fmt::format(", which '{}' replaces,", race.placeholder);
+      race.substitute.empty() ? "" : fmt::format(", which '{}' replaces,", race.substitute);
   return fmt::format(
       "pass '{}' reads '{}'{} through its port '{}' and writes '{}' through '{}': an "
       "invocation may read what another invocation has already written",

@@ -10,7 +10,7 @@ namespace dermis {
 struct InPlaceRace {
   std::string_view pass, reading_port, writing_port;
   std::string read, written; // as the pass names them
-  std::string placeholder;   // resource that replaces `read`; "": none
+  std::string substitute;    // resource that replaces `read`; "": none
 };
 std::string text_of(const InPlaceRace& race);
 

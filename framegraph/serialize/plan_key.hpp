@@ -14,7 +14,8 @@ struct PlanKey {
   Digest graph{}; // of graph_bytes()
   uint32_t view_width = 0, view_height = 0;
   PixelGrid pixel_grid = 0;
-  // Device profile. Its name represents its formats and memory requirements.
+  // Device profile. Its name stands for its formats and memory requirements: two devices of one
+  // name must have equal ones.
   std::string device_profile;
   uint64_t buffer_image_granularity = 1, max_storage_buffer_bytes = 0;
   uint32_t max_image_dimension = 0, max_image_layers = 0, device_local_type_bits = 0;
@@ -34,8 +35,8 @@ struct PlanKey {
 // bound, first formats.
 PlanKey plan_key(const CompileInput& input);
 
-// Returns the canonical bytes of what compiling reads of a graph and its pass types, without notes
-// and source locations.
+// Returns the canonical bytes of everything that the compiler reads from a graph and its pass
+// types, without notes and source locations.
 std::string graph_bytes(const Graph& graph, const PassTypeRegistry& pass_types);
 
 std::string key_bytes(const PlanKey& key); // equal exactly if the keys are equal

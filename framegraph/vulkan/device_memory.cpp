@@ -31,12 +31,12 @@ std::optional<uint32_t> choose_type(const Device& device, const MemoryRequest& r
 }
 
 Error allocate_from_host(const Device& device, const MemoryRequest& request,
-                         const std::string& subresource, MemoryBlock& block) {
+                         const std::string& object, MemoryBlock& block) {
   MemoryBlock given;
   const VkResult result = device.host_memory.allocate(device.host_memory.user, request, given);
   if (result != VK_SUCCESS)
     return call_error(result, "the host's allocator",
-                      fmt::format("{}, {} bytes", subresource, request.bytes));
+                      fmt::format("{}, {} bytes", object, request.bytes));
   const bool unmapped =
       (request.required & VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT) != 0 && given.mapped == nullptr;
   if (given.memory != VK_NULL_HANDLE && given.offset % request.alignment == 0 && !unmapped) {
@@ -45,7 +45,7 @@ Error allocate_from_host(const Device& device, const MemoryRequest& request,
   }
   free_memory(device, given);
   return {ErrorKind::vulkan, VK_SUCCESS,
-          fmt::format("{}: the host's allocator returned {}", subresource,
+          fmt::format("{}: the host's allocator returned {}", object,
                       given.memory == VK_NULL_HANDLE ? std::string("no memory")
                       : unmapped                     ? std::string("memory that is not mapped")
                                  : fmt::format("offset {}, which is not a multiple of {}",
@@ -54,15 +54,15 @@ Error allocate_from_host(const Device& device, const MemoryRequest& request,
 
 } // namespace
 
-Error allocate_memory(const Device& device, const MemoryRequest& request,
-                      const std::string& subresource, MemoryBlock& block) {
+Error allocate_memory(const Device& device, const MemoryRequest& request, const std::string& object,
+                      MemoryBlock& block) {
   if (device.host_memory.allocate != nullptr)
-    return allocate_from_host(device, request, subresource, block);
+    return allocate_from_host(device, request, object, block);
   const auto type = choose_type(device, request);
   if (!type)
-    return {ErrorKind::unsupported, VK_SUCCESS,
-            fmt::format("{}: the device has no memory type among {:#x}", subresource,
-                        request.memory_types)};
+    return {
+        ErrorKind::unsupported, VK_SUCCESS,
+        fmt::format("{}: the device has no memory type among {:#x}", object, request.memory_types)};
   VkMemoryAllocateInfo info{};
   info.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO;
   info.allocationSize = request.bytes;
@@ -71,18 +71,17 @@ Error allocate_memory(const Device& device, const MemoryRequest& request,
   VkResult result =
       device.vk.vkAllocateMemory(device.device, &info, device.allocator, &taken.memory);
   if (result != VK_SUCCESS)
-    return call_error(
-        result, "vkAllocateMemory",
-        fmt::format("{}, {} bytes of memory type {}", subresource, request.bytes, *type));
+    return call_error(result, "vkAllocateMemory",
+                      fmt::format("{}, {} bytes of memory type {}", object, request.bytes, *type));
   if ((request.required & VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT) != 0) {
     result = device.vk.vkMapMemory(device.device, taken.memory, 0, VK_WHOLE_SIZE, 0, &taken.mapped);
     if (result != VK_SUCCESS) {
       free_memory(device, taken);
-      return call_error(result, "vkMapMemory", subresource);
+      return call_error(result, "vkMapMemory", object);
     }
   }
   name_object(device, VK_OBJECT_TYPE_DEVICE_MEMORY, reinterpret_cast<uint64_t>(taken.memory),
-              subresource.c_str());
+              object.c_str());
   block = taken;
   return {};
 }

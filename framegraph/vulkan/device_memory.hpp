@@ -13,11 +13,11 @@ struct Plan;
 namespace dermis::vulkan {
 
 // Allocates from a type among `request.memory_types` that has all required properties; types with
-// the preferred properties come first. `subresource` names the memory in messages. Errors:
+// the preferred properties come first. `object` names the memory in messages. Errors:
 // unsupported (no such type), device_memory, host_memory, device_lost, vulkan; `block` is then
 // unchanged. Free-threaded.
-Error allocate_memory(const Device& device, const MemoryRequest& request,
-                      const std::string& subresource, MemoryBlock& block);
+Error allocate_memory(const Device& device, const MemoryRequest& request, const std::string& object,
+                      MemoryBlock& block);
 // Returns whether a memory type among `memory_types` has all of the properties. Free-threaded.
 bool has_memory_type(const Device& device, uint32_t memory_types, VkMemoryPropertyFlags properties);
 // Frees the block; does nothing if the block is empty. Free-threaded.

@@ -66,11 +66,11 @@ ErrorKind kind_of(VkResult result) {
   }
 }
 
-Error call_error(VkResult result, const char* call, const std::string& subresource) {
+Error call_error(VkResult result, const char* call, const std::string& object) {
   if (result == VK_SUCCESS) return {};
   return {kind_of(result), result,
           fmt::format("{} failed ({}, {}): {}", call, result_name(result), static_cast<int>(result),
-                      subresource)};
+                      object)};
 }
 
 } // namespace dermis::vulkan

@@ -33,8 +33,8 @@ struct Error {
 const char* result_name(VkResult result);
 // Returns the kind of error that a failed call belongs to; none for VK_SUCCESS. Free-threaded.
 ErrorKind kind_of(VkResult result);
-// Returns the error of a failed call on `subresource`; no error if `result` is VK_SUCCESS.
+// Returns the error of a failed call on `object`; no error if `result` is VK_SUCCESS.
 // Free-threaded.
-Error call_error(VkResult result, const char* call, const std::string& subresource);
+Error call_error(VkResult result, const char* call, const std::string& object);
 
 } // namespace dermis::vulkan

@@ -4,13 +4,14 @@
 # usage: bundle.sh [BUILD] [ARCHIVE]
 #   BUILD: default build/release; ARCHIVE: default BUILD/dermis-VERSION-linux-x86_64.tar.gz
 set -euo pipefail
-cd "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/../.."
-
-build=${1:-build/release}
+source=$(readlink -f "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/../..")
+build=$(realpath -m "${1:-$source/build/release}")
+archive=${2:+$(realpath -m "$2")}
+cd "$source"
 [[ -x $build/dermis ]] || { echo "bundle.sh: $build/dermis is not built" >&2; exit 2; }
 version=$("$build/dermis" --version | grep -oE '[0-9]+\.[0-9]+\.[0-9]+' | head -n 1)
 name=dermis-$version-linux-x86_64
-archive=$(realpath -m "${2:-$build/$name.tar.gz}")
+archive=${archive:-$build/$name.tar.gz}
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 root=$work/$name

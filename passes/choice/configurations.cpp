@@ -47,7 +47,7 @@ std::vector<SettingValue> values_of(const Plan& plan, const PlanPass& pass, cons
   return out;
 }
 
-// Returns the value as the name of a work states it. A host may change real numbers in each frame,
+// Returns the value as work_name() states it. A host may change real numbers in each frame,
 // and each name takes memory, so these have one digit: costs hardly depend on them.
 std::string work_value(const PassTypeSetting& setting, const SettingValue& value) {
   return setting.per_frame && setting.type == SettingType::real ? fmt::format("{:.1g}", value.real)

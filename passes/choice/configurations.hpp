@@ -63,15 +63,15 @@ bool runs_by_budget(const PassType& type);
 // Returns whether the pass has groups only in frames in which no tile scatters.
 bool copies_all_tiles(const PassType& type);
 
-// Returns the name of a work, such as "subsurface.separable axis=vertical taps=25". `values`: one
-// per setting of the pass type.
+// Returns the name under which a calibration lists a pass with its settings, such as
+// "subsurface.separable axis=vertical taps=25". `values`: one per setting of the pass type.
 std::string work_name(const PassType& type, std::span<const SettingValue> values);
 
 struct Work {
   std::string name; // work_name()
   PassLoad load;    // without a cost
 };
-// Returns the work of each pass of a plan with these settings of the graph.
+// Returns the name and load of each pass of a plan with these settings of the graph.
 std::vector<Work> works_of(const PassTypeRegistry& pass_types, const Plan& plan,
                            const std::vector<SettingValue>& settings);
 

@@ -83,7 +83,7 @@ struct FrameConstants {
   int32_t rect[4];      // x, y, width, height of the render rectangle, pixels
   int32_t tiles[2];     // 8x8 tiles of the rectangle, x and y
   uint32_t frame_index; // low 32 bits
-  // bit 0: perspective, bit 1: depth is view distance, bit 2: history invalid, bit 3: the frame
+  // bit 0: perspective, bit 1: depth is view depth, bit 2: history invalid, bit 3: the frame
   // before was perspective, bit 4: normal images are left-handed
   uint32_t flags;
   // View x, y = (scale * pixel + offset) * (perspective ? depth : 1), in mm (per mm of depth if
@@ -91,7 +91,7 @@ struct FrameConstants {
   float ray_scale[2];
   float ray_offset[2];
   float depth_decode[4]; // depth mm = (a * value + b) / (c * value + e)
-  float depth_unit;      // mm per unit of view distance
+  float depth_unit;      // mm per unit of view depth
   float exposure;
   float jitter[2]; // pixels
   // The previous frame, down to previous_jitter; valid if bit 2 of flags is not set.

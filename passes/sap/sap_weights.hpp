@@ -112,8 +112,9 @@ inline constexpr uint32_t sap_table_pairs = sap_table_rows / 2;
 inline constexpr size_t sap_table_floats = size_t{sap_table_pairs} * sap_node_count * 4;
 std::vector<float> make_sap_table(const SapFit& fit);
 
-// Returns row `row` of the table at d px, linear in log2 d. Below the first node all weights except
-// the centre's fade linearly to 0 at d = 0; beyond the last node the last value applies.
+// Returns row `row` of the table at d px, linear in log2 d. From the first node to d = 0 the weight
+// of the centre (row 0) rises to 1 and that of the tent (row 1) falls to 0, linearly in d; other
+// rows keep the first value. Beyond the last node the last value applies.
 // shaders/sap/sap.glsl mirrors this function.
 template <class Real> Real sap_lookup(std::span<const float> table, uint32_t row, Real d_px);
 

@@ -79,7 +79,7 @@ TEST(SharedHeaps, SeparateHistories_LeaveTransientBlocks) {
   EXPECT_EQ(heaps.history_bytes, 79 * kib);
 }
 
-TEST(SharedHeaps, OtherMemoryTypes_HaveTheirOwnBlocks) {
+TEST(SharedHeaps, DifferentMemoryTypes_HaveSeparateBlocks) {
   const SharedHeaps heaps = shared({plan_of(4, 0, 0, 1), plan_of(5, 0, 0, 2)});
   EXPECT_EQ(heaps.blocks.size(), 2u);
   EXPECT_EQ(heaps.transient_bytes, 9 * kib);

@@ -212,7 +212,7 @@ TEST(Subresources, MipsBeyondTheViewAreRejected) {
   const auto errors = rejected(b);
   ASSERT_EQ(errors.size(), 2u);
   for (const Diagnostic& error : errors) {
-    EXPECT_EQ(error.id, DiagnosticId::part_missing);
+    EXPECT_EQ(error.id, DiagnosticId::subresource_missing);
     EXPECT_THAT(error.text, HasSubstr("at 64x64 texels 'chain' has 7 mips and 1 layer"));
     EXPECT_EQ(error.related.size(), 1u);
   }
@@ -231,7 +231,7 @@ TEST(Subresources, OpenRangeEndsWithTheImage) {
   }
 }
 
-TEST(Subresources, OtherwiseForAPart_IsRejected) {
+TEST(Subresources, OtherwiseForMipsOrLayers_IsRejected) {
   auto b = pyramid();
   b.boolean("small", true);
   b.image("half");

@@ -157,7 +157,7 @@ TEST(Choice, OtherwiseIsAnUnboundImport_NamesBoth) {
   input.bound[b.resource("mask").value] = false;
   const Diagnostic error =
       rejected_once(b, input, DiagnosticId::unbound_import,
-                    "needs 'blurred', which is replaced by 'mask' because its producer is off, and "
+                    "needs 'blurred', whose producer is off, so that 'mask' replaces it, and "
                     "the host leaves 'mask' unbound");
   ASSERT_THAT(error.related, SizeIs(3));
   EXPECT_THAT(error.related[1].second, HasSubstr("'mask' is declared here"));
@@ -218,7 +218,8 @@ TEST(Choice, AReplacedResourceCannotBeUpdatedInPlace) {
   b.pass("finish", "test.need", {{"a", "blurred"}}, {{"out", "result"}});
   rejected_once(
       b, DiagnosticId::replaced_update,
-      "'sharpen', port 'image' updates 'blurred' in place, but it is replaced by 'light'");
+      "'sharpen', port 'image' updates 'blurred' in place, but the producer of 'blurred' is off "
+      "and 'light' replaces it");
 }
 
 TEST(Choice, AnOtherwiseOfAnotherTypeIsRejected) {

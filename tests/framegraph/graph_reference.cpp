@@ -52,7 +52,7 @@ Interpretation graph_reference(const Graph& graph, const PassTypeRegistry& pass_
       if (import) contents_of[r].back().assign(1, host_pixels(contents, frame, slot));
       slot += is_slot(graph.resources[r]) ? 1 : 0;
     }
-    // Whether enough frames were written since the last cut.
+    // Returns whether enough frames were written since the last cut.
     const auto in_history = [&](const PortBinding& binding) {
       const HistoryDeclaration& history = graph.resources[binding.resource.value].history;
       const bool cuts_count = history.on_cut == HistoryDeclaration::OnCut::invalidate;

@@ -33,10 +33,9 @@ struct Oracle {
     if (a.heap != b.heap || std::max(a.begin, b.begin) >= std::min(a.end, b.end)) return false;
     return !same_instance(a, b) || same_subresource(a, b);
   }
-  // Whether the operation covers this byte of the heap of `subresource`, or `subresource` itself.
-  bool reaches(const Operation& o, const Operation& subresource, uint64_t byte) const {
-    return overlap(o, subresource) &&
-           (same_instance(o, subresource) || (o.begin <= byte && byte < o.end));
+  // Returns whether the operation covers this byte of the heap, or the subresource of `other`.
+  bool reaches(const Operation& o, const Operation& other, uint64_t byte) const {
+    return overlap(o, other) && (same_instance(o, other) || (o.begin <= byte && byte < o.end));
   }
   // Returns one byte of each piece of the common range of two operations, cut where other
   // placements begin or end.
@@ -51,7 +50,8 @@ struct Oracle {
     bytes.erase(std::unique(bytes.begin(), bytes.end()), bytes.end());
     return bytes;
   }
-  // Whether the operation is a barrier that changes the contents: a change of layout or owner.
+  // Returns whether the operation is a barrier that changes the contents: a change of layout or
+  // owner.
   bool transition(const Operation& o) const {
     return is_barrier(o) && (o.barrier->from_host || o.barrier->to_host ||
                              o.barrier->transfer != PlanBarrier::Transfer::none ||
@@ -126,7 +126,7 @@ struct Oracle {
     return p;
   }
 
-  // Whether an operation between the two overwrites the result of `first`. The overwriting
+  // Returns whether an operation between the two overwrites the result of `first`. The overwriting
   // operation waits for `first`, and `second` waits for the overwriting operation.
   bool replaced(size_t first, size_t second) const {
     const size_t k = next_write[first];
@@ -155,8 +155,8 @@ struct Oracle {
     return false;
   }
 
-  // Whether another instance has overwritten this byte between the two operations: every part of it
-  // that the plan uses was written. Then the result of `first` is not the last write.
+  // Returns whether another instance has overwritten this byte between the two operations: every
+  // part of it that the plan uses was written. Then the result of `first` is not the last write.
   bool overwritten(size_t first, size_t second, uint64_t byte) const {
     std::map<std::array<uint32_t, 2>, std::set<std::array<uint32_t, 2>>> parts; // By instance.
     for (size_t k = first + 1; k < second; ++k) {
@@ -216,7 +216,7 @@ struct Oracle {
     return history && plan.resources[resource].instance_count == history->frames;
   }
 
-  // Whether another access of the same pass writes the bytes of operation `at`.
+  // Returns whether another access of the same pass writes the bytes of operation `at`.
   bool raced(size_t at) const {
     const Operation& o = all[at];
     const bool own = written(o) == 0 && o.access->own_texels;
@@ -230,7 +230,7 @@ struct Oracle {
     return false;
   }
 
-  // Whether operation `second` reads the requested frame.
+  // Returns whether operation `second` reads the requested frame.
   bool right_frame(size_t second) const {
     const Operation& o = all[second];
     if (!history_of(o.resource)) return true;
@@ -241,7 +241,7 @@ struct Oracle {
     return o.frame < first_frames; // The executor clears histories before their first frame.
   }
 
-  // Whether the contents that operation `second` reads are defined.
+  // Returns whether the contents that operation `second` reads are defined.
   bool defined(size_t second) const {
     for (size_t k = second; k-- > 0;) {
       const Operation& o = all[k];
@@ -299,7 +299,8 @@ struct Oracle {
     return true;
   }
 
-  // Whether the resource was released to the host in the frame that ends before operation `at`.
+  // Returns whether the resource was released to the host in the frame that ends before operation
+  // `at`.
   bool handed_back(size_t at) const {
     if (all[at].frame == 0) return true;
     for (size_t k = at; k-- > 0 && all[k].frame + 1 >= all[at].frame;)

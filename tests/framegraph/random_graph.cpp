@@ -71,7 +71,7 @@ struct Draft {
     return result;
   }
 
-  // Whether a source of a reading port may be (part of) `image` in this frame.
+  // Returns whether a source of a reading port may be (part of) `image` in this frame.
   static bool may_meet(const std::string& source, const std::string& image) {
     // The otherwise value, or the whole source: npos + 1 is 0.
     const std::string now = source.substr(source.find('?') + 1);

@@ -6,6 +6,7 @@ set -euo pipefail
 cd "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/../.."
 
 seconds=${1:-10}
+[[ $seconds =~ ^[1-9][0-9]*$ ]] || { echo "usage: run.sh [SECONDS [TARGET...]]" >&2; exit 2; }
 shift || true
 targets=("$@")
 all=(graph overlay profile scene capture exr plan)

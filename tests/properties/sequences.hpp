@@ -41,7 +41,7 @@ struct Judge {
   const dermis::tools::Reference& at(uint32_t frame);
 };
 
-// Whether a frame continues the previous frame; empty: as the scene states.
+// Returns whether a frame continues the previous frame; empty: as the scene states.
 using Follows = std::function<bool(uint32_t frame)>;
 
 // Repeats one frame, like a host with a static scene.

@@ -111,8 +111,8 @@ TEST_F(ReferenceSuite, Pyramid_MatchesAtEveryD) {
 
 TEST_F(ReferenceSuite, HalfResolutionPyramid_BeatsFewTaps) {
   DERMIS_FULL_TESTS_ONLY();
-  // Regression bounds: measured 3.5, 2.7, 2.2 and 1.8e-3 at 640x360; separable with 11 taps has 7
-  // to 17e-3.
+  // Regression bounds: measured 3.5e-3, 2.7e-3, 2.2e-3 and 1.8e-3 at 640x360; separable with 11
+  // taps has 7e-3 to 17e-3.
   for (const double d_px : {2.0, 4.0, 8.0, 16.0}) {
     const CapturedFrame frame = textured(320, 180, d_px);
     const Reference reference = reference_of(frame);

@@ -1,4 +1,4 @@
-// Tests that the command's output for other programs follows the formats of these programs.
+// Tests that SARIF and JUnit output follow their standards.
 #include "framegraph/model/read_graph.hpp"
 #include "framegraph/text/document.hpp"
 #include "integration/tools/command/expect/junit.hpp"

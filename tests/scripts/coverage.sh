@@ -34,6 +34,10 @@ run_test() { # name
 export -f run_test
 export build left_out
 
+case ${1:-} in
+  "" | --report) ;;
+  *) echo "usage: coverage.sh [--report]" >&2; exit 2 ;;
+esac
 if [[ ${1:-} != --report ]]; then
   cmake --preset coverage --log-level=WARNING >/dev/null
   known=$(cmake --build --preset coverage --target help)

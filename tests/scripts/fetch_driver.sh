@@ -14,6 +14,7 @@ cd "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/../.."
 part=lavapipe
 case ${1:-} in
   --radeon | --shim) part=${1#--}; shift ;;
+  -*) echo "usage: fetch_driver.sh [--radeon | --shim] [FOLDER]" >&2; exit 2 ;;
 esac
 folder=${1:-build/drivers}
 keyring=/usr/share/keyrings/debian-archive-keyring.gpg # from the package debian-archive-keyring
@@ -66,7 +67,9 @@ unpack() { # package, prefix
   archive=$(echo "$1"_*.deb)
   version=$(dpkg-deb -f "$archive" Version)
   unpacked=$folder/$2-${version#*:} # without the epoch
-  dpkg-deb -x "$archive" "$unpacked"
+  rm -rf "$folder/unpacking" # of a run that was stopped
+  dpkg-deb -x "$archive" "$folder/unpacking"
+  mv "$folder/unpacking" "$unpacked"
   rm "$archive"
   cd "$here"
 }

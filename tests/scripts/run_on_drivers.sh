@@ -39,9 +39,9 @@ drivers=()
 fetched=$(tests/scripts/fetch_driver.sh) && drivers+=("$(readlink -f "$fetched")")
 [[ -e $swiftshader ]] && drivers+=("$swiftshader") ||
   echo "SwiftShader: skipped, chromium-common is not installed" >&2
-named=${DERMIS_DRIVERS:-}
-for manifest in ${named//:/ }; do
-  [[ -e $manifest ]] && drivers+=("$manifest") ||
+IFS=: read -ra named <<<"${DERMIS_DRIVERS:-}"
+for manifest in "${named[@]}"; do
+  [[ -e $manifest ]] && drivers+=("$(readlink -f "$manifest")") ||
     echo "$manifest: skipped, there is no such file" >&2
 done
 if [[ ${#drivers[@]} -eq 0 ]]; then

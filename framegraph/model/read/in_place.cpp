@@ -143,7 +143,7 @@ private:
     race.writing_port = reader_.pass_types[pass.type].ports[written.port].name;
     race.read = name_of(*read_);
     race.written = name_of(written);
-    if (!steps_.empty()) race.placeholder = graph().resources[written.resource.value].name;
+    if (!steps_.empty()) race.substitute = graph().resources[written.resource.value].name;
     Diagnostic& diagnostic =
         reader_.error(DiagnosticId::in_place_race, graph().place_of(*read_), text_of(race));
     diagnostic.related.emplace_back(graph().place_of(written),

@@ -43,9 +43,9 @@ const char* valid_since_text(HistoryReason lost) {
   case HistoryReason::reloaded:
     return "valid since the graph was reloaded";
   case HistoryReason::switched:
-    return "valid since frames ran with another plan";
+    return "valid again after frames with another plan";
   case HistoryReason::left_out:
-    return "valid since a frame ran without the passes that write it";
+    return "valid again after a frame without the passes that write it";
   case HistoryReason::valid:
   case HistoryReason::first_frame:
     break;

@@ -261,9 +261,9 @@ uint32_t kernel_word(const SettingValue& value) {
 // executes the other vectors of a group even if their lanes are off.
 constexpr uint32_t lanes_on_cpu = 8, lanes_on_gpu = 128;
 
-Error create_pipeline(const Device& device, const std::string& subresource,
-                      const std::string& label, std::span<const uint32_t> spirv,
-                      const PipelineOptions& options, Pipeline& pipeline) {
+Error create_pipeline(const Device& device, const std::string& object, const std::string& label,
+                      std::span<const uint32_t> spirv, const PipelineOptions& options,
+                      Pipeline& pipeline) {
   // Kernels ignore constants that they do not declare.
   const uint32_t lanes = device.texel_shape ? lanes_on_gpu : lanes_on_cpu;
   std::vector<uint32_t> values;
@@ -293,7 +293,7 @@ Error create_pipeline(const Device& device, const std::string& subresource,
   VkShaderModule module = VK_NULL_HANDLE;
   VkResult result =
       device.vk.vkCreateShaderModule(device.device, &module_info, device.allocator, &module);
-  if (result != VK_SUCCESS) return call_error(result, "vkCreateShaderModule", subresource);
+  if (result != VK_SUCCESS) return call_error(result, "vkCreateShaderModule", object);
   VkComputePipelineCreateInfo info{};
   info.sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO;
   info.stage.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO;
@@ -308,7 +308,7 @@ Error create_pipeline(const Device& device, const std::string& subresource,
   device.vk.vkDestroyShaderModule(device.device, module, device.allocator);
   if (result != VK_SUCCESS) {
     pipeline.handle = VK_NULL_HANDLE;
-    return call_error(result, "vkCreateComputePipelines", subresource);
+    return call_error(result, "vkCreateComputePipelines", object);
   }
   name_object(device, VK_OBJECT_TYPE_PIPELINE, reinterpret_cast<uint64_t>(pipeline.handle),
               label.c_str());

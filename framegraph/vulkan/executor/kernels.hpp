@@ -102,10 +102,10 @@ struct PipelineOptions {
   VkPipelineCache cache = VK_NULL_HANDLE;
   VkPipelineCreateFlags flags = 0;
 };
-// Creates `pipeline.handle` for its kernel and constants. `subresource` names it in errors, `label`
+// Creates `pipeline.handle` for its kernel and constants. `object` names it in errors, `label`
 // in debuggers.
-Error create_pipeline(const Device& device, const std::string& subresource,
-                      const std::string& label, std::span<const uint32_t> spirv,
-                      const PipelineOptions& options, Pipeline& pipeline);
+Error create_pipeline(const Device& device, const std::string& object, const std::string& label,
+                      std::span<const uint32_t> spirv, const PipelineOptions& options,
+                      Pipeline& pipeline);
 
 } // namespace dermis::vulkan

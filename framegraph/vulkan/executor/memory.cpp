@@ -29,9 +29,9 @@ Error create_heaps(State& state) {
                       heap_alignment(*state.device, state.plan, h),
                       0,
                       VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT};
-    const std::string subresource =
+    const std::string object =
         fmt::format("{} heap {}", heap.persistent ? "history" : "transient", h);
-    if (Error error = allocate_memory(*state.device, memory.request, subresource, memory.block))
+    if (Error error = allocate_memory(*state.device, memory.request, object, memory.block))
       return error;
   }
   return {};

@@ -82,7 +82,7 @@ void convolve_channel(const ReferenceInput& input, const Region& region, uint8_t
 
 } // namespace
 
-double pixel_reach(const PixelRays& rays, double depth) {
+double half_pixel_diagonal(const PixelRays& rays, double depth) {
   return 0.5 * std::hypot(rays.scale_x, rays.scale_y) * (rays.perspective ? depth : 1);
 }
 
@@ -128,7 +128,7 @@ std::vector<double> planar_reference(const ReferenceInput& input, unsigned threa
     const Region& region = regions[id];
     const ProfileShape shape = input.shape_of(id);
     if (region.x0 > region.x1 || !(std::max({shape[0].d, shape[1].d, shape[2].d}) > 0)) continue;
-    const double radius = reach_of(shape) + pixel_reach(input.rays, 1);
+    const double radius = reach_of(shape) + half_pixel_diagonal(input.rays, 1);
     const auto reach_x =
         static_cast<size_t>(std::min(radius / pitch_x, double(region.width() - 1)));
     const auto reach_y =

@@ -6,7 +6,7 @@
 namespace dermis::subsurface {
 
 // Returns half the diagonal of a pixel's footprint at the given depth, metres.
-double pixel_reach(const PixelRays& rays, double depth);
+double half_pixel_diagonal(const PixelRays& rays, double depth);
 
 // Returns K_c integrated over the pixel at integer offset (dx, dy) on a plane facing the viewer:
 // the fraction of light that a pixel receives from there. 0 beyond the reference's radius. Pixel

@@ -104,7 +104,7 @@ PerChannel scatter_at(const ReferenceInput& input, const Surface& surface, uint3
   if (!(std::max({shape[0].d, shape[1].d, shape[2].d}) > 0)) return own;
 
   // A pixel's nearest part is at most half a patch's diagonal nearer than its centre.
-  const double radius = reach_of(shape) + pixel_reach(input.rays, -here.position[2]);
+  const double radius = reach_of(shape) + half_pixel_diagonal(input.rays, -here.position[2]);
   const PixelRange range = pixels_within(input, here.position, radius);
   const int64_t px = pixel % input.width, py = pixel / input.width;
   Gathered gathered(shape);

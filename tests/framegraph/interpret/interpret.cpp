@@ -77,7 +77,7 @@ struct Interpreter {
            (cuts >> frame & 1u) != 0;
   }
 
-  // Whether enough frames were written since the history began.
+  // Returns whether enough frames were written since the history began.
   bool valid(const PlanAccess& access, uint32_t frame) const {
     for (const PlanHistory& history : plan.histories) {
       if (history.resource != access.resource) continue;

@@ -16,7 +16,7 @@ run() { # a host
 
 if [[ ${3:-} == --subdirectory ]]; then
   cmake -G Ninja -S "$source/tests/integration/packaging/subdirectory" -B "$scratch/build" \
-    -DDERMIS="$source" -DCMAKE_BUILD_TYPE=Release \
+    -DDERMIS="$source" -DCMAKE_BUILD_TYPE=Debug \
     ${DERMIS_LAUNCHER:+-DCMAKE_CXX_COMPILER_LAUNCHER="$DERMIS_LAUNCHER"} >/dev/null
   cmake --build "$scratch/build" >/dev/null
   run "$scratch/build/host_dermis"
@@ -53,9 +53,15 @@ for languages in C "C;CXX"; do # a C project must also find the C++ run time
   run "$scratch/build_${languages/;/_}/host_dermis_static"
 done
 
+# README.md builds only three targets. They must make everything that is installed.
+ninja -C "$build" -t query integration/packaging/dermis_shell_files |
+  grep -q dermis_reference_pages ||
+  { echo "the targets of README.md do not make the reference pages"; exit 1; }
+
 # Runs the commands of README.md, unchanged except for the folders.
 if command -v pkg-config >/dev/null; then
-  sed -n '/^```console$/,/^```$/s/^\$ //p' "$source/README.md" | grep -v '^cmake --build' |
+  sed -n '/^```console$/,/^```$/s/^\$ //p' "$source/README.md" |
+    grep -v '^cmake --\(build\|preset\)' |
     sed -e "s#\$PWD/out#out#g" -e "s#out/#$scratch/readme/#g" -e "s#build/release#$build#g" \
       >"$scratch/lines"
   [[ $(wc -l <"$scratch/lines") -eq 4 ]] ||

@@ -36,6 +36,7 @@ set(CMAKE_RC_COMPILER $triple-windres)
 TOOLCHAIN
 cmake -G Ninja -S "$source" -B "$work/build" \
   -DCMAKE_TOOLCHAIN_FILE="$work/toolchain.cmake" -DCMAKE_BUILD_TYPE=Release \
+  -DCMAKE_UNITY_BUILD=ON -DCMAKE_UNITY_BUILD_BATCH_SIZE=10 \
   -DDERMIS_BUILD_TOOLS=OFF -DDERMIS_BUILD_TESTS=OFF -DDERMIS_INSTALL=OFF \
   -DDERMIS_WARNINGS_AS_ERRORS=ON \
   -Dfmt_DIR="$work/cmake/fmt" -Dnlohmann_json_DIR="$work/cmake/nlohmann_json" \

@@ -12,7 +12,7 @@ namespace {
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 TEST(Burley, CdfHasTheValuesOfTheClosedForm) {
-  // Reference table T4, six digits.
+  // Closed form, six digits.
   const double r[] = {0.5, 1, 2, 3, 5, 10};
   const double expected[] = {0.213506, 0.370632, 0.581103, 0.711644, 0.856659, 0.973233};
   for (int i = 0; i < 6; ++i)
@@ -69,7 +69,8 @@ TEST(Burley, InverseIsFiniteAndNotNegativeForAnyInput) {
 }
 
 TEST(Burley, SamplerStaysWithinItsStatedErrors) {
-  // Table T4: relative radius < 0.0052, distance to the cdf < 0.0016, |W - 1| < 0.0125, mean W = 1
+  // Stated errors: relative radius < 0.0052, distance to the cdf < 0.0016, |W - 1| < 0.0125, mean W
+  // = 1
   // +- 1e-5.
   const int n = 200000;
   double mean = 0;

@@ -31,7 +31,7 @@ using namespace dermis::testing;
 constexpr uint32_t frames = 5;
 constexpr size_t few_slots = 5, few_bound = 2;
 
-// Whether this run tries the combination; `unbound` has a bit for each of `slots` slots.
+// Returns whether this run tries the combination; `unbound` has a bit for each of `slots` slots.
 bool tried(uint32_t unbound, size_t slots) {
   const auto missing = static_cast<size_t>(std::popcount(unbound));
   return slots <= few_slots || missing <= few_bound || slots - missing <= few_bound ||
@@ -93,8 +93,8 @@ TEST_F(ShippedPlans, AreAcceptedByVerifierAndOracle) {
   });
 }
 
-// Whether the barrier acquires memory. Buffers that acquire the memory of one resource together
-// each have a barrier, and any of these barriers is enough.
+// Returns whether the barrier acquires memory. Buffers that acquire the memory of one resource
+// together each have a barrier, and any of these barriers is enough.
 bool takes_over_memory(const Plan& plan, uint32_t barrier) {
   const PlanBarrier& one = plan.barriers[barrier];
   return one.why == PlanBarrier::ReasonKind::alias && one.source_access == 0 &&

@@ -43,8 +43,8 @@ bool is_aliased(const Plan& plan, uint32_t history) {
   return false;
 }
 
-// Whether everything is bound and every pass is enabled. The reference does not define an optional
-// port without a producer.
+// Returns whether everything is bound and every pass is enabled. The reference does not define an
+// optional port without a producer.
 bool whole(const Graph& graph, const Show& show) {
   std::vector<SettingValue> settings;
   for (const SettingDeclaration& setting : graph.settings)

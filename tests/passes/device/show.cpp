@@ -15,7 +15,7 @@ using abi_test::unit;
 constexpr uint32_t min_side = 16, random_frames = 4, golden_frames = 6;
 constexpr uint32_t golden_width = 64, golden_height = 48;
 
-// Whether the tests can fill the format.
+// Returns whether the tests can fill the format.
 bool usable(Format format) {
   constexpr std::array known = {Format::r8_uint,    Format::r16f,    Format::r32f,
                                 Format::d32f,       Format::rg16f,   Format::rgba8_unorm,

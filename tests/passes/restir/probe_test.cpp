@@ -36,7 +36,7 @@ Domain slanted_domain() {
 }
 
 TEST(Probe, ReachMatchesTheEnergyFraction) {
-  EXPECT_NEAR(reach_in_d(), 19.86022, 1e-5); // subsurface.md T5
+  EXPECT_NEAR(reach_in_d(), 19.86022, 1e-5);
   EXPECT_NEAR(subsurface::burley_cdf(reach_in_d(), 1), probe_fraction, 1e-12);
 }
 

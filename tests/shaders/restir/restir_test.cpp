@@ -350,7 +350,7 @@ TEST_F(RestirKernel, HitsAreFoundByDistance) {
   EXPECT_GT(more_than_limit, 100u);
 }
 
-TEST_F(RestirKernel, NeighbourOffsetsAreEqual) {
+TEST_F(RestirKernel, NeighbourOffsetsMatchTheCpu) {
   ASSERT_FALSE(answers.empty());
   int same = 0;
   for (uint32_t x = 0; x < cases; ++x) {

@@ -20,7 +20,7 @@ struct Domain {
 };
 
 // Probes reach up to the radius that contains this fraction of a channel's energy (KIT's
-// implementation of Werner, Schuessler & Dachsbacher 2024; subsurface.md R11).
+// implementation of Werner, Schuessler & Dachsbacher 2024).
 inline constexpr double probe_fraction = 0.999;
 // Returns that radius for d = 1: 1 - probe_fraction = (e^-r + 3 e^(-r/3)) / 4.
 double reach_in_d();

@@ -12,7 +12,7 @@ namespace dermis::restir {
 
 using Barycentrics = std::array<double, 2>; // Weights of the second and third vertex.
 
-// Normal, tangents (R11).
+// Normal, tangents.
 inline constexpr std::array<double, 3> probe_axis_fraction = {0.5, 0.25, 0.25};
 // Maximum number of surfaces along one probe; more are ignored.
 inline constexpr uint32_t max_probe_hits = 16;

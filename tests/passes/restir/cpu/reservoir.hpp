@@ -24,7 +24,7 @@ struct Reservoir {
   double confidence = 0;  // Number of samples that the reservoir represents.
 };
 
-// Whether the reservoir holds a path with a positive weight.
+// Returns whether the reservoir holds a path with a positive weight.
 bool has_sample(const Reservoir& reservoir);
 
 // Returns a valid reservoir for untrusted data: a sample with an infinite, NaN or negative value is
@@ -52,7 +52,7 @@ void stream_add(Stream& stream, const Reservoir& candidate, double target, doubl
 // Returns the chosen candidate with weight sum / target.
 Reservoir stream_end(const Stream& stream);
 
-// The confidence of a history is at most this many times the frame's confidence (R11).
+// The confidence of a history is at most this many times the frame's confidence.
 inline constexpr double confidence_cap = 20;
 
 } // namespace dermis::restir

@@ -28,8 +28,8 @@ struct Scene {
                       ProbeHits& hits) = nullptr;
   SurfacePoint (*surface_at)(const void* of, uint32_t instance, uint32_t primitive,
                              const Barycentrics& barycentrics) = nullptr;
-  // Whether the segment from the surface to the target is free; ray origins are lifted off the
-  // surface.
+  // Returns whether the segment from the surface to the target is free; ray origins are lifted off
+  // the surface.
   bool (*visible)(const void* of, const SurfacePoint& from, const Vector3& target) = nullptr;
   std::span<const Light> lights; // Their fractions sum to 1.
   // Lights of the previous frame, one for one, if they changed; else empty. Only merge_temporal

@@ -7,7 +7,7 @@ namespace dermis::restir {
 namespace {
 
 // Surfaces whose normals have at least this cosine may belong to one sheet. Points this many d
-// apart count as connected through the body (KIT's implementation; R4).
+// apart count as connected through the body (KIT's implementation).
 constexpr double connectable_cosine = 0.5, connectable_distance_in_d = 2;
 
 SurfacePoint surface_of(const Scene& scene, const Reservoir& path) {

@@ -17,8 +17,8 @@ enum class Stage : uint32_t { temporal, spatial_first, spatial_second };
 // spatial pass (R5).
 Shift shift_of_stage(Shift shift, Stage stage);
 
-// Whether the hybrid shift reconnects x1 - x2, which it does if this holds at both ends: the
-// surfaces' normals differ by 60 degrees or more, or the points are 2 max d apart (R4).
+// Returns whether the hybrid shift reconnects x1 - x2, which it does if this holds at both ends:
+// the surfaces' normals differ by 60 degrees or more, or the points are 2 max d apart.
 bool connectable(const Domain& domain, const Vector3& position, const Vector3& normal);
 
 // Returns the Jacobian of reconnection per solid angle (eq. 2): directions x -> v become y -> v;
@@ -35,8 +35,8 @@ double replay_jacobian(double from_density, uint32_t from_hits, double to_densit
 double target_of(const Scene& scene, const Domain& domain, const Reservoir& path);
 Vector3 contribution_of(const Scene& scene, const Domain& domain, const Reservoir& path);
 
-// Whether inversion traces the probe to find the hit's index, or samples the index and assumes
-// equal hit counts of both probes. Sampling saves a probe, but biases the sequential shift
+// Returns whether inversion traces the probe to find the hit's index, or samples the index and
+// assumes equal hit counts of both probes. Sampling saves a probe, but biases the sequential shift
 // (supplement, section 6).
 enum class Index : uint32_t { traced, sampled };
 
