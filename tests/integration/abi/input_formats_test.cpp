@@ -176,17 +176,24 @@ TEST_F(InputFormats, MaterialIdsAbove255_CountAs255) {
   }
 }
 
-TEST_F(InputFormats, InfiniteScatterScale_GivesFiniteLight) {
+// Light of the other profile must not change, either.
+TEST_F(InputFormats, InfiniteScatterScale_ActsAsALargeOne) {
   for (const char* graph_name : {"burley", "sap", "separable", "afis"}) {
     GraphOptions options = options_of(graph_name);
     std::erase(options.unbound, "scatter_scale");
     options.formats.emplace_back("scatter_scale", VK_FORMAT_R16_SFLOAT);
     options.profile_count = 2;
-    const dermis_graph graph = make_bound_graph(options);
-    fill("material", [](uint32_t x, uint32_t) { return x < image_side / 2 ? 1.0f : 2.0f; });
-    fill("scatter_scale",
-         [](uint32_t x, uint32_t) { return x < image_side / 2 ? HUGE_VALF : 1.0f; });
-    for (const float value : picture(graph))
+    std::vector<std::vector<float>> pictures;
+    for (const float scale : {HUGE_VALF, 6e4f}) {
+      const dermis_graph graph = make_bound_graph(options);
+      fill("lighting", [](uint32_t x, uint32_t y) { return (x / 3 + y / 5) % 2 == 0 ? 1 : 0.25f; });
+      fill("material", [](uint32_t x, uint32_t y) { return (x / 20 + y / 12) % 2 == 0 ? 1 : 2; });
+      fill("scatter_scale",
+           [&](uint32_t x, uint32_t y) { return (x / 20 + y / 12) % 2 == 0 ? scale : 1; });
+      pictures.push_back(picture(graph));
+    }
+    EXPECT_LT(largest_gap(pictures[0], pictures[1]), 0.02f) << graph_name;
+    for (const float value : pictures[0])
       ASSERT_TRUE(std::isfinite(value)) << graph_name;
   }
 }
@@ -200,7 +207,7 @@ TEST_F(InputFormats, PartialScattering_ReadsNoLightOfEarlierFrames) {
     make_images(graph);
   };
   const auto fill_stripes = [&] {
-    fill("material", [](uint32_t x, uint32_t) { return x / 4 % 2 == 0 ? 0.0f : 1.0f; });
+    fill("material", [](uint32_t, uint32_t y) { return y / 4 % 2 == 0 ? 0.0f : 1.0f; });
     fill("lighting", [](uint32_t x, uint32_t) { return x % 5 == 0 ? 1.0f : 0.25f; });
   };
   make();
