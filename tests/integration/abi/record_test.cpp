@@ -121,8 +121,8 @@ TEST_F(Record, TimesOfTheNewestCompletedFrameComeInPlanOrder) {
     EXPECT_GT(times[i].nanoseconds, 0u);
     EXPECT_LT(times[i].nanoseconds, 10'000'000'000u);
   }
-  EXPECT_EQ(dermis_view_timings(dermis_graph_view(graph), last_frame + 1, &count, times.data()),
-            DERMIS_ERROR_ARGUMENT);
+  ASSERT_OK(dermis_view_timings(dermis_graph_view(graph), last_frame + 1, &count, times.data()));
+  EXPECT_EQ(times[0].frame_index, last_frame);
 }
 
 TEST_F(Record, EveryMissingSlotIsNamedAtOnce) {

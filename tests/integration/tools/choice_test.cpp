@@ -40,7 +40,7 @@ TEST_F(Choice, TextOutputIsASentence) {
   ASSERT_THAT(
       run({"render", scene, "--graph", graph, "--size", "64x36", "--frames", "2", "--subset", "0",
            "--budget", "0.001", "--deterministic", "--out", path("out")}),
-      Succeeds("frame 1: technique=off", "budget 0.00; RMSE",
+      Succeeds("frame 1: technique=off", "budget 0.00; expected RMSE",
                "(no configuration fits the budget: the fastest runs); next better technique="));
 }
 
