@@ -14,7 +14,7 @@ struct PlanKey {
   Digest graph{}; // of graph_bytes()
   uint32_t view_width = 0, view_height = 0;
   PixelGrid pixel_grid = 0;
-  // Device profile. Its name stands for its formats and memory requirements: two devices of one
+  // Device profile. Its name represents its formats and memory requirements: two devices of one
   // name must have equal ones.
   std::string device_profile;
   uint64_t buffer_image_granularity = 1, max_storage_buffer_bytes = 0;

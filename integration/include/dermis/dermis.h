@@ -40,12 +40,12 @@
  *   (dermis_source, dermis_image_state) never grow.
  *
  * ERRORS
- *   A function whose comment has no "Errors:" cannot fail. The result is for logic; the log callback
- *   gets all messages as they occur, dermis_last_error has the first error. The report has all
- *   messages about files, settings and the device; it stays NULL where a call fails with ARGUMENT,
- *   VERSION or MEMORY before it reads them, or after a device loss. A failed call changes nothing. NULL for a required pointer and a null handle return
- *   DERMIS_ERROR_ARGUMENT; destroy functions ignore NULL. After DERMIS_ERROR_DEVICE_LOST only
- *   destroy.
+ *   A function whose comment has no "Errors:" cannot fail. The result is for logic; the log
+ *   callback gets all messages as they occur, dermis_last_error has the first error. The report has
+ *   all messages about files, settings and the device; it stays NULL where a call fails with
+ *   ARGUMENT, VERSION or MEMORY before it reads them, or after a device loss. A failed call changes
+ *   nothing. NULL for a required pointer and a null handle return DERMIS_ERROR_ARGUMENT; destroy
+ *   functions ignore NULL. After DERMIS_ERROR_DEVICE_LOST only destroy.
  *
  * THREADS
  *   Each function states its threads:
@@ -397,11 +397,12 @@ DERMIS_API dermis_result DERMIS_CALL dermis_graph_reload(
 /* Replaces kernels by GLSL of the host, so that shaders can be edited while the program runs.
  * `open` provides "common/subsurface_combine.comp" and the files it includes, such as
  * "common/tiles.glsl"; the library provides bindings and constants. Kernels for which `open`
- * returns 0 are the library's; NULL restores all. The call fails if `open` has none of the graph's. `open` must be callable until it is replaced or the graph is
- * destroyed. Otherwise like a reload: errors have file and line, on failure nothing changes,
- * histories and settings continue. The compiler uses the C library's memory. Takes seconds. Costs:
- * as dermis_graph_create. Thread: concurrent. Errors: as dermis_graph_create; UNSUPPORTED also if
- * the library was built without DERMIS_RUNTIME_SHADERS. */
+ * returns 0 are the library's; NULL restores all. The call fails if `open` has none of the graph's.
+ * `open` must be callable until it is replaced or the graph is destroyed. Otherwise like a reload:
+ * errors have file and line, on failure nothing changes, histories and settings continue. The
+ * compiler uses the C library's memory. Takes seconds. Costs: as dermis_graph_create. Thread:
+ * concurrent. Errors: as dermis_graph_create; UNSUPPORTED also if the library was built without
+ * DERMIS_RUNTIME_SHADERS. */
 DERMIS_API dermis_result DERMIS_CALL dermis_graph_reload_shaders(
     dermis_graph graph, dermis_include_fn open, void* user, dermis_report* report);
 /* Changes the allocated size of all views and keeps the pixel_aspect. Histories become invalid,

@@ -6,7 +6,7 @@
 
 namespace dermis::tools {
 
-// Reads a file that may not be empty, because an empty text stands for the library's. Path "":
+// Reads a file that may not be empty, because an empty text selects the library's. Path "":
 // none.
 demo::Result<demo::NamedText> read_named(const std::string& path);
 demo::Result<demo::Budget> read_budget(const BudgetArguments& arguments);
