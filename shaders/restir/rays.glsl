@@ -27,7 +27,7 @@ chosen_hit trace_probe(accelerationStructureEXT scene, rayQueryEXT query, probe_
     while (rayQueryProceedEXT(query)) {
       probe_hit met;
       met.instance = uint(rayQueryGetIntersectionInstanceCustomIndexEXT(query, false));
-      if (instance_at(met.instance).place.z != medium)
+      if (profile_of(instance_at(met.instance).place.z) != medium)
         continue;
       met.primitive = uint(rayQueryGetIntersectionPrimitiveIndexEXT(query, false));
       met.barycentrics = rayQueryGetIntersectionBarycentricsEXT(query, false);

@@ -45,7 +45,8 @@ surface_point surface_at(uint instance, uint primitive, vec2 barycentrics) {
   }
   float square = dot(shading, shading);
   return surface_point(fraction.x * p[0] + fraction.y * p[1] + fraction.z * p[2], geometric,
-                       square > 0.0 ? shading * inversesqrt(square) : geometric, one.place.z);
+                       square > 0.0 ? shading * inversesqrt(square) : geometric,
+                       profile_of(one.place.z));
 }
 
 float mm_per_world_unit() { return length(frame.view_from_world[0].xyz); }
