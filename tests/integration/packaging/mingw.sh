@@ -54,7 +54,7 @@ $triple-dlltool -d "$work/vulkan.def" -l "$work/libvulkan-1.dll.a"
 
 cmake --build "$work/build" -j "${JOBS:-$(nproc)}" --target dermis_library >/dev/null ||
   { cmake --build "$work/build" --target dermis_library; exit 1; }
-dll=$(find "$work/build" -name 'libdermis*.dll' | head -1)
+dll=$(find "$work/build" -name 'libdermis*.dll' -print -quit)
 $triple-objdump -p "$dll" > "$work/headers.txt"
 awk '/^\[Ordinal\/Name Pointer\] Table/ { on = 1; next } on && NF == 0 { exit } on { print $NF }' \
   "$work/headers.txt" | LC_ALL=C sort > "$work/exported.txt"
@@ -66,7 +66,7 @@ others=$(sed -n 's/.*DLL Name: //p' "$work/headers.txt" |
   grep -viE '^(kernel32|msvcrt|ucrtbase|api-ms-win-.*)\.dll$' || true)
 [[ -z $others ]] ||
   { echo "the DLL needs more than the system's libraries:"; echo "$others"; exit 1; }
-import=$(find "$work/build" -name 'libdermis*.dll.a' | head -1)
+import=$(find "$work/build" -name 'libdermis*.dll.a' -print -quit)
 for language in c c++; do
   $triple-g++-posix -x $language -Wall -Wextra -Werror \
     -I"$work/include" -I"$source/integration/include" -I"$examples" \
