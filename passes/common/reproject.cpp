@@ -53,8 +53,12 @@ PreviousPlace place_before(const FrameConstants& frame, double x, double y, doub
                           : 0};
 }
 
-double depth_tolerance(double depth, double rise) {
-  return std::max(reproject_depth_fraction * depth, reproject_slope_pixels * rise);
+double depth_tolerance(const FrameConstants& frame, double depth, double rise) {
+  const double pixel = std::max(std::abs(double(frame.previous_ray_scale[0])),
+                                std::abs(double(frame.previous_ray_scale[1])));
+  const bool perspective = (frame.flags & previous_perspective) != 0;
+  return std::max(perspective ? reproject_depth_fraction * depth : reproject_depth_pixels * pixel,
+                  reproject_slope_pixels * rise);
 }
 
 HistoryTaps find_history(const FrameConstants& frame, const PreviousPlace& place, uint32_t id,

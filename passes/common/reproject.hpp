@@ -17,10 +17,12 @@ namespace dermis::subsurface {
 inline constexpr double reproject_snap_px = 1.0 / 1024;
 // pixels; larger values and NaN are invalid
 inline constexpr double reproject_largest_velocity = 65536;
-// Two depths are on one surface within this fraction of the depth, or within this many pixels of
-// its slope. A surface was not visible if the sum of valid bilinear weights is below
+// Two depths are on one surface within this fraction of the depth under a perspective camera,
+// within this many pixel sides under an orthographic one, or within this many pixels of the
+// surface's slope. A surface was not visible if the sum of valid bilinear weights is below
 // reproject_min_weight.
 inline constexpr double reproject_depth_fraction = 0.02;
+inline constexpr double reproject_depth_pixels = 8;
 inline constexpr double reproject_slope_pixels = 2;
 inline constexpr double reproject_min_weight = 0.25;
 
@@ -39,9 +41,9 @@ PreviousPlace place_before(const FrameConstants& frame, double x, double y, doub
 PreviousPlace place_before(const FrameConstants& frame, double x, double y, double depth,
                            const std::array<double, 3>& velocity);
 
-// Returns the distance in depth up to which two places are on one surface, mm. `rise`: change of
-// the surface's depth over a pixel, mm.
-double depth_tolerance(double depth, double rise);
+// Returns the distance in depth up to which two places are on one surface, mm. `depth`: in the
+// previous view, mm. `rise`: change of the surface's depth over a pixel, mm.
+double depth_tolerance(const FrameConstants& frame, double depth, double rise);
 
 struct SurfaceBefore {
   double depth = 0; // mm

@@ -8,6 +8,7 @@
 #include "common/environment.glsl"
 
 bool history_usable() { return (frame.flags & 4u) == 0u; }
+bool previous_is_perspective() { return (frame.flags & 8u) != 0u; }
 
 struct previous_place {
   vec2 pixel;  // position in the previous rectangle; integers are centres
@@ -19,7 +20,7 @@ previous_place place_before(vec2 pixel, float depth) {
   vec4 at = vec4(view_position(pixel, depth), 1.0);
   vec3 before = vec3(dot(frame.previous_from_view[0], at), dot(frame.previous_from_view[1], at),
                      dot(frame.previous_from_view[2], at));
-  float k = (frame.flags & 8u) != 0u ? -before.z : 1.0;
+  float k = previous_is_perspective() ? -before.z : 1.0;
   if (!(before.z < 0.0))
     return previous_place(vec2(0.0), 0.0);
   vec2 place = (before.xy / k - frame.previous_ray_offset) / frame.previous_ray_scale;
@@ -50,10 +51,13 @@ bool inside_previous(ivec2 pixel) {
 }
 ivec2 previous_texel(ivec2 pixel) { return pixel + frame.previous_rect.xy; }
 
-// Returns the distance in depth up to which two places are on one surface. `rise`: change of the
-// surface's depth over a pixel, mm.
+// Returns the distance in depth up to which two places are on one surface, mm. `depth`: in the
+// previous view, mm. `rise`: change of the surface's depth over a pixel, mm.
 float depth_tolerance(float depth, float rise) {
-  return max(reproject_depth_fraction * depth, reproject_slope_pixels * rise);
+  vec2 pixel = abs(frame.previous_ray_scale);
+  return max(previous_is_perspective() ? reproject_depth_fraction * depth
+                                       : reproject_depth_pixels * max(pixel.x, pixel.y),
+             reproject_slope_pixels * rise);
 }
 
 struct history_taps {

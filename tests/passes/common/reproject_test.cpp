@@ -33,8 +33,17 @@ struct View {
   uint32_t x = 0, y = 0, width = 320, height = 180;
   double zoom = 3;
   std::array<double, 2> jitter{};
+  bool parallel = false; // rays
 
-  Matrix4 clip() const { return lens(zoom, double(width) / height); }
+  Matrix4 clip() const {
+    Matrix4 m = lens(zoom, double(width) / height);
+    if (parallel) {
+      m[11] = m[15] = 1; // depth from 0 to 10 m, and w = 1
+      m[10] = 0.1;
+      m[14] = 0;
+    }
+    return m;
+  }
   Matrix4 clip_with_jitter() const {
     Matrix4 m = clip();
     m[2] -= 2 * jitter[0] / width; // w = -z
@@ -172,10 +181,10 @@ TEST(Reproject, CameraAtRest_FindsEachPixelExactly) {
       const PreviousPlace found = place_before(constants, x, y, 700 + x + y);
       ASSERT_EQ(found.x, x);
       ASSERT_EQ(found.y, y);
-      const HistoryTaps taps =
-          find_history(constants, found, 1, depth_tolerance(700, 0), [&](int tx, int ty) {
-            return SurfaceBefore{double(700 + tx + ty), 1};
-          });
+      const HistoryTaps taps = find_history(constants, found, 1, depth_tolerance(constants, 700, 0),
+                                            [&](int tx, int ty) {
+                                              return SurfaceBefore{double(700 + tx + ty), 1};
+                                            });
       ASSERT_EQ(taps.weight[0], 1) << x << " " << y; // No other pixel contributes.
     }
 }
@@ -184,7 +193,7 @@ TEST(Reproject, TapsOfOtherSurfacesAreRejected) {
   const FrameConstants constants = constants_of({}, {});
   const PreviousPlace place{100.25, 50.5, 800};
   const auto taps_where = [&](const std::function<SurfaceBefore(int, int)>& at) {
-    return find_history(constants, place, 3, depth_tolerance(place.depth, 0), at);
+    return find_history(constants, place, 3, depth_tolerance(constants, place.depth, 0), at);
   };
   const HistoryTaps all = taps_where([](int, int) { return SurfaceBefore{800, 3}; });
   EXPECT_NEAR(all.weight[0], 0.75 * 0.5, 1e-12);
@@ -213,8 +222,20 @@ TEST(Reproject, TapsOfOtherSurfacesAreRejected) {
 }
 
 TEST(Reproject, SlopeWidensTheTolerance) {
-  EXPECT_EQ(depth_tolerance(500, 0), 10);
-  EXPECT_EQ(depth_tolerance(500, 20), 40);
+  const FrameConstants constants = constants_of({}, {});
+  EXPECT_EQ(depth_tolerance(constants, 500, 0), 10);
+  EXPECT_EQ(depth_tolerance(constants, 500, 20), 40);
+}
+
+TEST(Reproject, ParallelRays_ToleranceIsOneForAllDepths) {
+  View parallel;
+  parallel.parallel = true;
+  const FrameConstants constants = constants_of({}, parallel);
+  const double pixel = 2000 / parallel.zoom / parallel.height; // mm
+  for (const double depth : {5.0, 500.0, 50'000.0}) {
+    EXPECT_NEAR(depth_tolerance(constants, depth, 0), 8 * pixel, 1e-6);
+    EXPECT_EQ(depth_tolerance(constants, depth, 20), 40);
+  }
 }
 
 TEST(Reproject, OutsideOrBehindTheCamera_HasNoHistory) {

@@ -242,8 +242,7 @@ TEST_F(ReprojectKernel, PlacesEqualTheReference) {
       const PreviousPlace moving =
           place_before(answers.frame, one.x, one.y, one.depth,
                        {one.velocity[0], one.velocity[1], one.velocity[2]});
-      const double steep =
-          std::max(reproject_depth_fraction * one.depth, reproject_slope_pixels * one.rise);
+      const double steep = depth_tolerance(answers.frame, one.depth, one.rise);
       // A constant and a product.
       EXPECT_NEAR(answers.at(i, 1, 3), steep, 2 * ulp * steep) << where;
       EXPECT_EQ(answers.at(i, 0, 2) > 0, still.depth > 0) << where;

@@ -128,9 +128,9 @@ Accumulation::add(const CapturedFrame& frame, const std::vector<float>& light, b
         const PreviousPlace place = moves
                                         ? place_before(constants, x, y, double(depth[i]), velocity)
                                         : place_before(constants, x, y, double(depth[i]));
-        before = find_light(
-            constants, past, place, id,
-            depth_tolerance(place.depth, rise_of(depth, frame.profile, width, height, x, y)));
+        before = find_light(constants, past, place, id,
+                            depth_tolerance(constants, place.depth,
+                                            rise_of(depth, frame.profile, width, height, x, y)));
       }
       now[i] = add_frame(before,
                          {double(light[3 * i]), double(light[3 * i + 1]), double(light[3 * i + 2])},
