@@ -4,6 +4,7 @@
 #ifndef DERMIS_SAMPLE_ALLOCATION_GLSL
 #define DERMIS_SAMPLE_ALLOCATION_GLSL
 
+#include "common/environment.glsl"
 #include "constants.glsl"
 
 const int allocation_steps = 3;
@@ -17,6 +18,15 @@ int samples_of(uint steps) { return steps == 0u ? 0 : 4 << steps; }
 
 // Returns by how much step `k` reduces a tile's error, per unit.
 float step_gain(int k) { return k == 0 ? allot_gain_0 : k == 1 ? allot_gain_1 : allot_gain_2; }
+
+// Returns the index of a tile's place in the previous frame's rectangle.
+uint previous_tile(uint tile) {
+  uvec2 now = uvec2(frame.tiles), before = uvec2(frame.previous_rect.zw + 7) / 8u;
+  if (now == before)
+    return tile;
+  uvec2 place = (2u * uvec2(tile % now.x, tile / now.x) + 1u) * before / (2u * now);
+  return place.y * before.x + place.x;
+}
 
 // Returns the bin of benefit over cost on a logarithmic scale with eight bins per octave: exponent
 // and first bits of the product, whose rounding is the same on all devices.

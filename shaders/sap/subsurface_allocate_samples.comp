@@ -35,7 +35,7 @@ shared uint tiles_by_steps[allocation_steps];
 // Returns the bins of the steps of a tile, one per byte; no_bin if the tile takes no steps.
 uint bins_of(uint tile) {
   uint entry = classes_data[tile], tile_error = tile_errors_data[tile];
-  uint before = has_before() ? before_data[tile] : 0u, bins = 0u;
+  uint before = has_before() ? before_data[previous_tile(tile)] : 0u, bins = 0u;
   for (int k = 0; k < allocation_steps; ++k)
     bins |= step_bin(tile_error, k, before) << uint(8 * k);
   return class_of_tile(entry) == class_scatter && tile_error > 0u ? bins : no_bin;

@@ -25,7 +25,7 @@ void main() {
   [[unroll]] for (uint i = 0u; i < run; ++i) {
     uint tile = first + i * lanes, near = min(tile, tiles - 1u);
     uint entry = classes_data[near], tile_error = tile_errors_data[near];
-    before[i] = has_before() ? before_data[near] : 0u;
+    before[i] = has_before() ? before_data[previous_tile(near)] : 0u;
     tile_errors[i] = tile == near && class_of_tile(entry) == class_scatter ? tile_error : 0u;
   }
   barrier();

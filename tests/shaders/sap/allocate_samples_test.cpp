@@ -62,10 +62,11 @@ struct Tiles {
   uint32_t width = 0, height = 0, across = 0;
   std::vector<float> questions; // class, error and earlier steps of each tile
   std::vector<uint32_t> errors, before;
+  uint32_t previous_width = 0, previous_height = 0; // of the previous frame; 0: equal
 };
 
 Tiles random_tiles(uint32_t width, uint32_t height) {
-  Tiles tiles{width, height, static_cast<uint32_t>(ceil_div(width, tile_side)), {}, {}, {}};
+  Tiles tiles{width, height, static_cast<uint32_t>(ceil_div(width, tile_side)), {}, {}, {}, 0, 0};
   std::mt19937 random(width);
   for (uint64_t i = 0; i < tile_count(width, height); ++i) {
     const uint32_t type = random() % 4, before = random() % 4;
@@ -79,6 +80,21 @@ Tiles random_tiles(uint32_t width, uint32_t height) {
   return tiles;
 }
 
+// Sets the size of the previous frame, and finds the earlier steps at each tile's place there.
+void resize(Tiles& tiles, uint32_t previous_width, uint32_t previous_height) {
+  tiles.previous_width = previous_width;
+  tiles.previous_height = previous_height;
+  const auto previous_across = static_cast<uint32_t>(ceil_div(previous_width, tile_side));
+  const auto rows = static_cast<double>(ceil_div(tiles.height, tile_side)),
+             previous_rows = static_cast<double>(ceil_div(previous_height, tile_side));
+  const std::vector<uint32_t> stored = tiles.before;
+  for (uint32_t i = 0; i < stored.size(); ++i) {
+    const double x = (i % tiles.across + 0.5) * previous_across / tiles.across,
+                 y = (i / tiles.across + 0.5) * previous_rows / rows;
+    tiles.before[i] = stored[uint32_t(y) * previous_across + uint32_t(x)];
+  }
+}
+
 class AllocatedSamples : public testing::BufferGraphTest {
 protected:
   void expect_allocation(const Tiles& tiles, uint32_t units, bool with_demand) {
@@ -89,6 +105,8 @@ protected:
     input.text = graph_text(input.rows, with_demand);
     input.questions = tiles.questions;
     input.sample_units = units;
+    input.previous_width = tiles.previous_width;
+    input.previous_height = tiles.previous_height;
     input.own = testing::list_pass_types(input_ports, output_ports);
     testing::BufferGraphAnswers answers;
     run_graph(input, answers);
@@ -118,6 +136,16 @@ TEST_F(AllocatedSamples, EqualTheRuleOnTheCpu) {
     const uint32_t demand = choice::allocate_samples(tiles.errors, tiles.before, 0).demand;
     for (const uint32_t units : {0u, demand / 7, demand / 2, demand - 1, UINT32_MAX})
       expect_allocation(tiles, units, true);
+  }
+}
+
+TEST_F(AllocatedSamples, OtherSize_KeepsTheSamplesOfTheNearestTile) {
+  for (const auto& [width, height] : {std::pair{632u, 363u}, {641u, 300u}, {97u, 55u}}) {
+    Tiles tiles = random_tiles(641, 363);
+    resize(tiles, width, height);
+    const uint32_t demand = choice::allocate_samples(tiles.errors, tiles.before, 0).demand;
+    for (const bool with_demand : {true, false})
+      expect_allocation(tiles, demand / 3, with_demand);
   }
 }
 

@@ -27,7 +27,8 @@ struct BufferGraph {
   std::vector<float> questions = {}; // rows of the separable table, which no other kernel reads
   std::vector<OwnPassType> own = {};
   vulkan::KernelShape shape = vulkan::KernelShape::by_device;
-  uint32_t sample_units = 0; // as FrameConstants::sample_units
+  uint32_t sample_units = 0;                        // as FrameConstants::sample_units
+  uint32_t previous_width = 0, previous_height = 0; // of the previous frame; 0: as the view
 };
 
 using BufferTexel = std::array<uint32_t, 4>;
