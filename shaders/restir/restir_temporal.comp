@@ -113,6 +113,22 @@ bool find_past(ivec2 pixel, uint id, float u, out ivec2 past) {
   return found;
 }
 
+// Returns whether the scene has the path's triangle, in a surface of `medium`. Objects may have been
+// removed since the previous frame.
+bool is_in_scene(reservoir path, uint medium) {
+  if (path.instance >= uint(instances_data.length()))
+    return false;
+  uvec4 place = instances_data[path.instance].place;
+  uint indices = uint(indices_data.length()), vertices = uint(vertices_data.length()) / 2u;
+  if (profile_of(place.z) != medium || place.y > indices ||
+      path.primitive >= (indices - place.y) / 3u)
+    return false;
+  bool inside = place.x < vertices;
+  for (uint i = 0u; i < 3u; ++i)
+    inside = inside && index_at(place.y + 3u * path.primitive + i) < vertices - place.x;
+  return inside;
+}
+
 void main() {
   keep_lights();
   ivec2 pixel;
@@ -135,8 +151,11 @@ void main() {
       before.words[i] = reservoirs_before_data[4u * element_before(past) + i];
     reuse_settings reuse = reuse_settings(shift_of_stage(uint(settings.shift), stage_temporal),
                                           index_traced, settings.cap);
+    reservoir previous = unpack_reservoir(before);
+    if (!is_in_scene(previous, domain.medium))
+      previous = no_reservoir(previous.confidence);
     own = pack_reservoir(merge_temporal(reuse, domain, unpack_reservoir(own), domain_before(past),
-                                        unpack_reservoir(before), random));
+                                        previous, random));
   }
   for (uint i = 0u; i < 4u; ++i)
     merged_data[4u * element + i] = own.words[i];
