@@ -52,6 +52,14 @@ TEST(BudgetJudge, PoolsSquaresOfTheComparedFrames) {
   EXPECT_DOUBLE_EQ(pooled_rmse(run), std::sqrt(5.0));
 }
 
+TEST(BudgetJudge, NamesTheChosenConfigurationsByShare) {
+  SceneRun run = run_of({8, 8, 8, 8});
+  const char* names[] = {"technique=off", "technique=sap", "technique=sap", "technique=sap"};
+  for (size_t i = 0; i < 4; ++i)
+    run.frames[unjudged_frames + i].choice.configuration = names[i];
+  EXPECT_EQ(chosen_of(run), "technique=sap 75 %, technique=off 25 %");
+}
+
 TEST(BudgetJudge, RatiosLeaveOutBudgetsWithoutABestSingle) {
   BudgetRow good{"good", 1, 10}, bad{"bad", 1, 10}, partial{"partial", 1, 10}, none{"none", 1, 10};
   good.rmse = bad.rmse = partial.rmse = none.rmse = 0.4;
@@ -64,6 +72,14 @@ TEST(BudgetJudge, RatiosLeaveOutBudgetsWithoutABestSingle) {
   EXPECT_DOUBLE_EQ(summary.mean, 2); // Geometric: of 1 and 4.
   EXPECT_DOUBLE_EQ(summary.worst, 4);
   EXPECT_EQ(summary.worst_scene, "bad");
+}
+
+TEST(BudgetJudge, BudgetsWithoutRoomToScatterAreReportedApart) {
+  const std::vector<Single> singles = {single(2, 0.4), single(8, 0.1), single(9, 0.05)};
+  EXPECT_TRUE(none_scatters_within(singles, 8)); // 8 ms need 8.71
+  EXPECT_TRUE(none_scatters_within(singles, 8.7));
+  EXPECT_FALSE(none_scatters_within(singles, 8.72));
+  EXPECT_FALSE(none_scatters_within({single(2, 0.4)}, 1)); // nothing scatters at any budget
 }
 
 TEST(BudgetJudge, BestSingle_KeepsTheControllersRoomIn99Percent) {

@@ -125,17 +125,17 @@ demo::Result<> measure_by_calibration(BudgetBench& bench, const BudgetScene& sce
   begin_scene(bench, scene);
   const auto singles = measure_singles(bench);
   if (!singles) return singles.error();
-  const Single* cheapest = cheapest_scattering(*singles);
   for (const Budget& budget : budgets_of(*singles)) {
     BudgetRow& row = bench.rows.emplace_back(BudgetRow{scene.name, budget.x, budget.ms});
     if (scene.still != nullptr) row.half = scene.still->member.half;
-    if (cheapest != nullptr && budget.ms < budget_of(*cheapest))
+    if (none_scatters_within(*singles, budget.ms))
       row.unscattered_rmse = cheapest_of(*singles).rmse;
     bench.request.budget_ms = row.budget_ms;
     const auto run = run_counted(bench);
     if (!run) return run.error();
     row.over_model = fraction_over_model(*run, row.budget_ms);
     row.rmse = pooled_rmse(*run);
+    row.chosen = chosen_of(*run);
     if (const Single* single = best_within(*singles, row.budget_ms)) {
       row.single_rmse = single->rmse;
       row.single = name_of(*single);
@@ -338,6 +338,7 @@ Suite budget_suite() {
        {"best_single_rmse_within_budget", "best single RMSE", &Row::single_rmse},
        {"rmse_ratio", "ratio", [](const Row& row) { return row.ratio(); }, {3}},
        {"best_single", "best single", &Row::single},
+       {"chosen", "chosen", &Row::chosen},
        {"unscattered_rmse", "RMSE unscattered", &Row::unscattered_rmse},
        {"switches", "switches",
         [](const Row& row) { return int64_t(median_of(row.timed).switches); }}},

@@ -4,9 +4,14 @@
 #include "passes/choice/budget_controller.hpp"
 #include "passes/choice/time_margin.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <map>
 #include <span>
+#include <utility>
 
 namespace dermis::tools {
 namespace {
@@ -71,6 +76,11 @@ const Single* cheapest_scattering(const std::vector<Single>& singles) {
   return cheapest;
 }
 
+bool none_scatters_within(const std::vector<Single>& singles, double budget_ms) {
+  const Single* cheapest = cheapest_scattering(singles);
+  return cheapest != nullptr && budget_of(*cheapest) > controller_room() * budget_ms;
+}
+
 double budget_at(const std::vector<Single>& singles, double fraction) {
   double floor_ms = singles.front().calibrated_at(within);
   for (const Single& single : singles)
@@ -127,6 +137,20 @@ RatioSummary summarise_ratios(const std::vector<const BudgetRow*>& rows) {
   }
   if (out.scenes > 0) out.mean = std::exp(logs / double(out.scenes));
   return out;
+}
+
+std::string chosen_of(const SceneRun& run) {
+  std::map<std::string, size_t> count;
+  const auto frames = judged_frames(run);
+  for (const RunFrame& frame : frames)
+    ++count[frame.choice.configuration];
+  std::vector<std::pair<std::string, size_t>> sorted(count.begin(), count.end());
+  std::ranges::stable_sort(sorted, std::greater<>(), &std::pair<std::string, size_t>::second);
+  std::string text;
+  for (const auto& [name, frames_of_name] : sorted)
+    text += fmt::format("{}{} {:.0f} %", text.empty() ? "" : ", ", name,
+                        100 * double(frames_of_name) / double(frames.size()));
+  return text;
 }
 
 double fraction_over_model(const SceneRun& run, double budget_ms) {

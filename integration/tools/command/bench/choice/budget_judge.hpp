@@ -53,10 +53,11 @@ struct BudgetRow {
   std::string scene;
   double x = 0, budget_ms = 0;
   double over_model = 0, rmse = 0; // of the deterministic run
+  std::string chosen = {};         // chosen_of(the deterministic run)
   // of the best single configuration that keeps the budget; not set if there is none
   std::optional<double> single_rmse = {};
   std::string single = {}; // settings of that configuration
-  // error without scattering; set if the budget is below all configurations that scatter
+  // error without scattering; set if none_scatters_within the budget
   std::optional<double> unscattered_rmse = {};
   std::vector<TimedFigures> timed = {}; // one per timed run; none for still scenes
   std::string half = {};                // of the family; "": a scene of configs/scenes
@@ -81,6 +82,12 @@ const Single& cheapest_of(const std::vector<Single>& singles);
 // Returns the cheapest configuration whose error is clearly below that of cheapest_of(), which
 // scatters nothing. Null if there is none.
 const Single* cheapest_scattering(const std::vector<Single>& singles);
+// Returns whether best_within() the budget there are only configurations that scatter nothing.
+bool none_scatters_within(const std::vector<Single>& singles, double budget_ms);
+
+// Returns the configurations of the judged frames and their shares, the most frequent first:
+// "technique=sap variant=base 75 %, technique=partial 25 %".
+std::string chosen_of(const SceneRun& run);
 
 double fraction_over_model(const SceneRun& run, double budget_ms);
 
