@@ -3,6 +3,7 @@
 #include "framegraph/text/document.hpp"
 #include "integration/abi/compiled_graph.hpp"
 #include "passes/choice/defaults.hpp"
+#include "passes/choice/tile_selection.hpp"
 #include "passes/common/probe.hpp"
 
 #include <algorithm>
@@ -100,9 +101,17 @@ int32_t corrected_technique(const choice::ErrorCorrection& correction,
                                             : configuration.technique;
 }
 
+// Returns the fraction of the tiles that a frame selected; 0 while their weights still change.
+double selected_fraction(const FrameChoice& frame) {
+  const subsurface::FrameCounters& counters = frame.counters;
+  if (frame.age < choice::fading_frames || counters.sample_demand == 0) return 0;
+  return std::min(1.0, double(counters.sample_units) / counters.sample_demand);
+}
+
 // Learns the ratio of the error that the probe measured to the error that the table predicts.
 void learn_error(Chooser& chooser, const choice::Configuration& configuration,
-                 const subsurface::FrameCounters& counters) {
+                 const FrameChoice& of_frame) {
+  const subsurface::FrameCounters& counters = of_frame.counters;
   const subsurface::ProbedError probed = subsurface::probed_error(counters);
   if (probed.tiles == 0 || counters.scattering_tiles == 0) return;
   // The probe's reference only sees the screen, so light that rays find beyond it is not an error.
@@ -121,6 +130,8 @@ void learn_error(Chooser& chooser, const choice::Configuration& configuration,
     frame.compared_square = probed.separable_square;
     frame.compared_expected = expected_rmse(chooser.errors, compared, key);
     if (configuration.selects_tiles) { // only a part of the picture shows it
+      frame.selection_square = probed.square;
+      frame.selected = selected_fraction(of_frame);
       frame.square = frame.compared_square;
       frame.expected = frame.compared_expected;
     }
@@ -166,7 +177,7 @@ void observe_frame(Chooser& chooser, CompiledGraph& compiled_graph, FrameChoice&
   const bool before_cut = std::ranges::any_of(chooser.frames, [&](const FrameChoice& other) {
     return other.cut && other.frame_index > frame.frame_index;
   });
-  if (counted && same_work && !before_cut) learn_error(chooser, configuration, frame.counters);
+  if (counted && same_work && !before_cut) learn_error(chooser, configuration, frame);
   frame.observed = true;
   if (frame.frame_index <= chooser.newest.frame_index) return;
   chooser.newest = frame;
@@ -248,6 +259,9 @@ std::span<choice::Forecast> forecast_first(Chooser& chooser, const CompiledGraph
     out.takes_samples = configuration.takes_samples;
     out.demand = configuration.selects_tiles ? double(content.scattering_tiles) : demand;
     out.concentration = concentration(configuration);
+    if (configuration.selects_tiles)
+      out.concentration = selection_concentration(chooser.error_correction, out.concentration,
+                                                  content.key, now_s, content.cut);
     out.rmse = error_of(configuration.technique,
                         factor_of(corrected_technique(chooser.error_correction, configuration)));
     out.unsampled_rmse =
@@ -415,7 +429,9 @@ choice::Decision settled_decision(Chooser& chooser, const CompiledGraph& compile
 }
 
 void remember(Chooser& chooser, const FrameChoice& frame) noexcept {
+  chooser.age = frame.begins ? 0 : chooser.age + 1;
   place_of(chooser, frame.frame_index) = frame;
+  place_of(chooser, frame.frame_index).age = chooser.age;
   std::swap(chooser.previous_state, chooser.state);
   std::swap(chooser.state, chooser.scratch.state);
   chooser.previously_decided_for = chooser.decided_for;

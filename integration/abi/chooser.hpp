@@ -45,6 +45,7 @@ struct FrameChoice {
   // First frame after a switch of the configuration. Excluded from estimates: drivers finish
   // compiling kernels on first use, caches are cold, and histories begin.
   bool begins = false;
+  uint32_t age = 0;      // frames since the last one that `begins`
   bool left_out = false; // empty bounds: passes that serve scattering did not run
   bool history_invalid = false;
   bool cut = false;
@@ -103,6 +104,7 @@ struct Chooser {
   double last_margin = choice::first_margin;                        // of the frame observed last
   std::array<FrameChoice, vulkan::max_frames_in_flight + 2> frames; // by frame_index
   FrameChoice newest;                                               // the newest observed frame
+  uint32_t age = 0;                                                 // of the newest recorded frame
   // number of compiled graphs adopted so far
   uint64_t compiled_graphs = 0;
   // Preallocated by adopt(), so that recording allocates nothing.

@@ -18,6 +18,9 @@ struct Prior {
 constexpr Prior technique_prior = {2, 16}, common_prior = {0, 1e4};
 constexpr double outlier_limit = 3; // a frame counts at most this many times the known error
 constexpr int frames_of_a_step = 3; // that deviate more, in the same direction
+// Fractions of selected tiles below, or of others, tell nothing.
+constexpr double min_selected = 0.02;
+constexpr double min_concentration = 0.05, max_concentration = 12;
 // Time after which a technique that does not run is worth another try.
 constexpr double forgotten_s = 60;
 constexpr double age_of_a_cut = 3; // times forgotten_s
@@ -94,17 +97,39 @@ void observe_line(ErrorCorrection::Line& line, double square, double expected, c
   line.key = frame.key;
 }
 
+// Returns the light, in units of the table's, above which a frame counts less: a frame of rare
+// light does not outweigh others.
+double light_limit(const ErrorCorrection& correction) {
+  return std::pow(outlier_limit * factor_of(correction.lines.front(), common_prior), 2);
+}
+
 // Adds the square of a technique, compared with the light of the same pixels: what they happen to
 // show, and how bright it is, are no error of the technique. `light`: square of that light in units
-// of the table's. A frame of rare light does not outweigh others.
+// of the table's.
 void observe_technique(ErrorCorrection& correction, size_t index, double square, double expected,
                        double light, const ProbedFrame& frame) {
-  const double most =
-      std::pow(outlier_limit * factor_of(correction.lines.front(), common_prior), 2);
-  const double weight = std::min(1.0, most / light);
+  const double weight = std::min(1.0, light_limit(correction) / light);
   const Prior prior = prior_of(correction, index - 1, frame.key, frame.now_s);
   observe_line(correction.lines[index], weight * square, weight * light * expected * expected,
                prior, frame);
+}
+
+// Adds what a selection of tiles left of the light's error. `light`: as above.
+void observe_selection(ErrorCorrection& correction, double light, const ProbedFrame& frame) {
+  if (!(frame.selected > min_selected && frame.selected < 1 - min_selected)) return;
+  ErrorCorrection::Line& line = correction.selection;
+  const double kept = line.frames > 0 ? error_memory * validity(line, frame.key, frame.now_s) : 0;
+  const double weight = std::min(1.0, light_limit(correction) / light);
+  correction.selection_log =
+      (kept * line.frames * correction.selection_log + std::log1p(-frame.selected)) /
+      (kept * line.frames + 1);
+  line.probed = kept * line.probed + weight * (frame.selection_square - frame.compared_square);
+  line.expected =
+      kept * line.expected + weight * (frame.unscattered_square - frame.compared_square);
+  line.frames = kept * line.frames + 1;
+  line.seen_s = frame.now_s;
+  line.cuts = 0;
+  line.key = frame.key;
 }
 
 // Returns the square of unscattered light that the common factor predicts.
@@ -145,8 +170,9 @@ ErrorCorrection make_error_correction(const ErrorModel& table) {
 
 void observe_error(ErrorCorrection& correction, const ProbedFrame& frame) {
   const auto index = static_cast<size_t>(frame.technique + 1);
-  for (const double value : {frame.square, frame.unscattered_square, frame.expected,
-                             frame.expected_unscattered, frame.compared_square})
+  for (const double value :
+       {frame.square, frame.unscattered_square, frame.expected, frame.expected_unscattered,
+        frame.compared_square, frame.selection_square})
     if (!std::isfinite(value)) return;
   if (frame.technique < -1 || index >= correction.lines.size() || frame.expected <= 0 ||
       frame.expected_unscattered <= 0)
@@ -161,6 +187,7 @@ void observe_error(ErrorCorrection& correction, const ProbedFrame& frame) {
       frame.compared_expected > 0)
     observe_technique(correction, static_cast<size_t>(correction.compared + 1),
                       frame.compared_square, frame.compared_expected, light, frame);
+  observe_selection(correction, light, frame);
 }
 
 double error_factor(const ErrorCorrection& correction, int32_t technique, const FrameKey& key,
@@ -173,14 +200,29 @@ double error_factor(const ErrorCorrection& correction, int32_t technique, const 
   return common * valid_factor(correction.lines[index], prior, key, now_s, cut);
 }
 
+double selection_concentration(const ErrorCorrection& correction, double expected,
+                               const FrameKey& key, double now_s, bool cut) {
+  const ErrorCorrection::Line& line = correction.selection;
+  if (line.frames <= 0 || !(line.expected > 0)) return expected;
+  const double mean = line.expected / line.frames, prior = technique_prior.table_frames * mean;
+  const double left = (line.probed + prior * std::exp(expected * correction.selection_log)) /
+                      (line.expected + prior);
+  const double measured =
+      std::clamp(std::log(std::clamp(left, 1e-6, 1.0)) / correction.selection_log,
+                 min_concentration, max_concentration);
+  return expected * std::pow(measured / expected, validity(line, key, now_s, cut));
+}
+
 void forget_errors(ErrorCorrection& correction) {
   for (ErrorCorrection::Line& line : correction.lines)
     ++line.cuts;
+  ++correction.selection.cuts;
 }
 
 void recall_errors(ErrorCorrection& correction) {
   for (ErrorCorrection::Line& line : correction.lines)
     line.cuts -= line.cuts > 0 ? 1 : 0;
+  correction.selection.cuts -= correction.selection.cuts > 0 ? 1 : 0;
 }
 
 } // namespace dermis::choice

@@ -23,6 +23,11 @@ struct ErrorCorrection {
     FrameKey key;
   };
   std::vector<Line> lines; // by technique + 1; the first is that of unscattered light
+  // Frames in which only selected tiles scattered: the squares that were left, of those without
+  // scattering, both less those with all tiles; and the mean logarithm of the fraction of the tiles
+  // that did not scatter.
+  Line selection;
+  double selection_log = 0;
   // By technique: the first of its variants, whose errors rise and fall together.
   std::vector<uint32_t> variants;
   int32_t compared = -1; // technique that all probed frames measure; -1: none
@@ -40,6 +45,9 @@ struct ProbedFrame {
   double now_s = 0; // seconds
   // The same of ErrorCorrection::compared, whether or not it runs, in the same pixels.
   double compared_square = 0, compared_expected = 0;
+  // If only selected tiles show `compared`: mean squared error of the picture, and the selected
+  // fraction of the tiles; else 0.
+  double selection_square = 0, selected = 0;
 };
 
 // Creates a correction of an error table, without observations. Techniques are variants if the type
@@ -55,6 +63,10 @@ void observe_error(ErrorCorrection& correction, const ProbedFrame& frame);
 // called.
 double error_factor(const ErrorCorrection& correction, int32_t technique, const FrameKey& key,
                     double now_s, bool cut = false);
+// Returns the exponent of (1 - selected fraction) in the mean squared error that is left if only
+// selected tiles scatter: as measured, or `expected` where the measurements do not apply.
+double selection_concentration(const ErrorCorrection& correction, double expected,
+                               const FrameKey& key, double now_s, bool cut = false);
 // The content was replaced, as by a cut: the factors of techniques that do not run return to 1.
 void forget_errors(ErrorCorrection& correction);
 // Takes back the last forget_errors(), whose frame was discarded.

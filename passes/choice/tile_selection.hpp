@@ -16,6 +16,7 @@ inline constexpr uint32_t full_pixel_weight = 240;
 // disappears within ten frames. A tile that leaves the list also changes its neighbours' light,
 // by up to a fortieth in a pan (tests/properties). Both are less than an eighth.
 inline constexpr uint32_t pixel_weight_step = 24;
+inline constexpr uint32_t fading_frames = full_pixel_weight / pixel_weight_step;
 // Instead of the weight of a pixel without subsurface.
 inline constexpr uint32_t no_pixel_weight = 255;
 // factor on the priority of tiles whose surface had its full weight in the previous frame
@@ -39,8 +40,9 @@ inline constexpr uint32_t selection_level_shift = 28, max_selection_level = 7;
 inline constexpr uint32_t highest_level_weight = 60;
 
 // The mean square error left by the fraction f of the tiles is (1 - f)^tile_concentration of that
-// without scattering: an upper estimate. Exponents of 5.9 to 11 were measured at f = 0.08 to 0.3 on
-// bust, dolly and regular.
+// without scattering, until probes measure another exponent (error_correction.hpp). Exponents
+// of 5.9 to 11 were measured at f = 0.08 to 0.3 on bust, dolly and regular, 0.3 at f = 0.4 on a
+// zigzag whose tiles all change alike.
 inline constexpr double tile_concentration = 5;
 
 // State of a tile in a frame.

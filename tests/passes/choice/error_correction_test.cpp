@@ -47,6 +47,34 @@ TEST(ErrorCorrection, NoProbe_KeepsTheTable) {
     EXPECT_EQ(error_factor(none, technique, content, 0), 1);
 }
 
+TEST(ErrorCorrection, SelectedTiles_LeaveTheMeasuredPartOfTheError) {
+  constexpr double exponent = 0.5, selected = 0.4, by_table = 5;
+  ErrorCorrection correction = correction_for(2, 1);
+  const auto concentration = [&](const FrameKey& key, bool cut = false) {
+    return selection_concentration(correction, by_table, key, 0, cut);
+  };
+  EXPECT_EQ(concentration(content), by_table);
+  ProbedFrame frame = frame_of(1, expected * expected);
+  frame.compared_square = frame.square;
+  frame.compared_expected = expected;
+  frame.selection_square =
+      frame.square + std::pow(1 - selected, exponent) * (frame.unscattered_square - frame.square);
+  observe_error(correction, frame); // weights of tiles still change
+  EXPECT_EQ(concentration(content), by_table);
+  frame.selected = selected;
+  for (int i = 0; i < 200; ++i)
+    observe_error(correction, frame);
+  // Two frames of the table beside 25 that were measured.
+  const double left = (25 * std::pow(0.6, exponent) + 2 * std::pow(0.6, by_table)) / 27;
+  EXPECT_NEAR(concentration(content), std::log(left) / std::log(0.6), 0.01);
+  EXPECT_NEAR(concentration({16 * content.d_px, content.relief}), by_table, 0.01);
+  EXPECT_GT(concentration(content, true), 4);
+  forget_errors(correction);
+  EXPECT_GT(concentration(content), 4);
+  recall_errors(correction);
+  EXPECT_LT(concentration(content), 1);
+}
+
 TEST(ErrorCorrection, FindsTheFactorInNoisyProbes) {
   SplitMix64 random{7};
   ErrorCorrection correction = correction_for(2);
