@@ -18,11 +18,12 @@ inline constexpr double reproject_snap_px = 1.0 / 1024;
 // pixels; larger values and NaN are invalid
 inline constexpr double reproject_largest_velocity = 65536;
 // Two depths are on one surface within this fraction of the depth under a perspective camera,
-// within this many pixel sides under an orthographic one, or within this many pixels of the
-// surface's slope. A surface was not visible if the sum of valid bilinear weights is below
-// reproject_min_weight.
+// within this many pixel sides and the rounding of kept depths (halves) under an orthographic one,
+// or within this many pixels of the surface's slope. A surface was not visible if the sum of valid
+// bilinear weights is below reproject_min_weight.
 inline constexpr double reproject_depth_fraction = 0.02;
 inline constexpr double reproject_depth_pixels = 8;
+inline constexpr double reproject_depth_rounding = 1.0 / 1024;
 inline constexpr double reproject_slope_pixels = 2;
 inline constexpr double reproject_min_weight = 0.25;
 

@@ -208,6 +208,7 @@ std::string shared_constants() {
       "const float reproject_largest_velocity = {:.1f};\n"
       "const float reproject_depth_fraction = {};\n"
       "const float reproject_depth_pixels = {:.1f};\n"
+      "const float reproject_depth_rounding = {};\n"
       "const float reproject_slope_pixels = {:.1f};\n"
       "const float reproject_min_weight = {};\n"
       "const float accumulate_min_mean = {}; // accumulate.hpp\n"
@@ -238,10 +239,10 @@ std::string shared_constants() {
       subsurface::radial_nodes_per_octave, subsurface::radial_inverse_nodes_per_unit,
       subsurface::reproject_snap_px, subsurface::reproject_largest_velocity,
       subsurface::reproject_depth_fraction, subsurface::reproject_depth_pixels,
-      subsurface::reproject_slope_pixels, subsurface::reproject_min_weight,
-      subsurface::accumulate_min_mean, subsurface::accumulate_largest_remainder,
-      subsurface::counter_log2_shift, subsurface::counter_log2_steps,
-      subsurface::through_square_steps, subsurface::relief_steps);
+      subsurface::reproject_depth_rounding, subsurface::reproject_slope_pixels,
+      subsurface::reproject_min_weight, subsurface::accumulate_min_mean,
+      subsurface::accumulate_largest_remainder, subsurface::counter_log2_shift,
+      subsurface::counter_log2_steps, subsurface::through_square_steps, subsurface::relief_steps);
 }
 
 } // namespace

@@ -227,14 +227,19 @@ TEST(Reproject, SlopeWidensTheTolerance) {
   EXPECT_EQ(depth_tolerance(constants, 500, 20), 40);
 }
 
-TEST(Reproject, ParallelRays_ToleranceIsOneForAllDepths) {
+TEST(Reproject, ParallelRays_ToleranceIsInPixelsAndCoversRounding) {
   View parallel;
   parallel.parallel = true;
   const FrameConstants constants = constants_of({}, parallel);
   const double pixel = 2000 / parallel.zoom / parallel.height; // mm
-  for (const double depth : {5.0, 500.0, 50'000.0}) {
-    EXPECT_NEAR(depth_tolerance(constants, depth, 0), 8 * pixel, 1e-6);
-    EXPECT_EQ(depth_tolerance(constants, depth, 20), 40);
+  EXPECT_NEAR(depth_tolerance(constants, 0, 0), 8 * pixel, 1e-6);
+  EXPECT_EQ(depth_tolerance(constants, 500, 20), 40);
+  for (const double depth : {500.0, 5'001.0, 50'003.0}) {
+    EXPECT_LT(depth_tolerance(constants, depth, 0), 8 * pixel + 0.002 * depth);
+    for (double z = depth; z < 1.1 * depth; z += 0.7) { // kept as a half, which a driver truncates
+      const double step = std::ldexp(1.0, std::ilogb(z) - 10);
+      ASSERT_LT(z - step * std::floor(z / step), depth_tolerance(constants, z, 0)) << z;
+    }
   }
 }
 
