@@ -62,7 +62,7 @@ struct Tiles {
   uint32_t width = 0, height = 0, across = 0;
   std::vector<float> questions; // class, error and earlier steps of each tile
   std::vector<uint32_t> errors, before;
-  uint32_t previous_width = 0, previous_height = 0; // of the previous frame; 0: equal
+  uint32_t previous_width = 0, previous_height = 0; // 0: no previous camera
 };
 
 Tiles random_tiles(uint32_t width, uint32_t height) {
@@ -140,7 +140,8 @@ TEST_F(AllocatedSamples, EqualTheRuleOnTheCpu) {
 }
 
 TEST_F(AllocatedSamples, OtherSize_KeepsTheSamplesOfTheNearestTile) {
-  for (const auto& [width, height] : {std::pair{632u, 363u}, {641u, 300u}, {97u, 55u}}) {
+  for (const auto& [width, height] :
+       {std::pair{641u, 363u}, {632u, 363u}, {641u, 300u}, {97u, 55u}}) {
     Tiles tiles = random_tiles(641, 363);
     resize(tiles, width, height);
     const uint32_t demand = choice::allocate_samples(tiles.errors, tiles.before, 0).demand;

@@ -18,9 +18,8 @@ subsurface::FrameConstants constants_of(const BufferGraph& input) {
   constants.tiles[0] = static_cast<int32_t>(ceil_div(input.width, subsurface::tile_side));
   constants.tiles[1] = static_cast<int32_t>(ceil_div(input.height, subsurface::tile_side));
   constants.sample_units = input.sample_units;
-  const bool resized = input.previous_width > 0;
-  constants.previous_rect[2] = resized ? int32_t(input.previous_width) : constants.rect[2];
-  constants.previous_rect[3] = resized ? int32_t(input.previous_height) : constants.rect[3];
+  constants.previous_rect[2] = static_cast<int32_t>(input.previous_width);
+  constants.previous_rect[3] = static_cast<int32_t>(input.previous_height);
   return constants;
 }
 

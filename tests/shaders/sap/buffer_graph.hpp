@@ -28,7 +28,7 @@ struct BufferGraph {
   std::vector<OwnPassType> own = {};
   vulkan::KernelShape shape = vulkan::KernelShape::by_device;
   uint32_t sample_units = 0;                        // as FrameConstants::sample_units
-  uint32_t previous_width = 0, previous_height = 0; // of the previous frame; 0: as the view
+  uint32_t previous_width = 0, previous_height = 0; // 0: no previous camera
 };
 
 using BufferTexel = std::array<uint32_t, 4>;
