@@ -104,7 +104,7 @@ int32_t corrected_technique(const choice::ErrorCorrection& correction,
 // Returns the fraction of the tiles that a frame selected; 0 while their weights still change.
 double selected_fraction(const FrameChoice& frame) {
   const subsurface::FrameCounters& counters = frame.counters;
-  if (frame.age < choice::fading_frames || counters.sample_demand == 0) return 0;
+  if (frame.fading || counters.sample_demand == 0) return 0;
   return std::min(1.0, double(counters.sample_units) / counters.sample_demand);
 }
 
@@ -297,6 +297,17 @@ double budget_of_frame(const Chooser& chooser, const FrameRequest& request,
                                         request.seconds);
 }
 
+SelectionChange next_selection(const SelectionChange& before, const FrameChoice& frame) {
+  constexpr double same = 0.05; // relative change of units that counts as none
+  const double units = frame.decision.units;
+  SelectionChange now{units, before.frames_to_final > 0 ? before.frames_to_final - 1 : 0};
+  if (frame.begins)
+    now.frames_to_final = 0;
+  else if (std::abs(units - before.units) > same * std::max(units, before.units))
+    now.frames_to_final = choice::fading_frames;
+  return now;
+}
+
 // Returns the limit on the samples of tiles. Units above the demand that fit are allowed, because
 // the demand may grow.
 uint32_t units_of(const choice::Decision& decision, const choice::Forecast& forecast) {
@@ -429,9 +440,10 @@ choice::Decision settled_decision(Chooser& chooser, const CompiledGraph& compile
 }
 
 void remember(Chooser& chooser, const FrameChoice& frame) noexcept {
-  chooser.age = frame.begins ? 0 : chooser.age + 1;
+  chooser.previous_selection = chooser.selection;
+  chooser.selection = next_selection(chooser.selection, frame);
   place_of(chooser, frame.frame_index) = frame;
-  place_of(chooser, frame.frame_index).age = chooser.age;
+  place_of(chooser, frame.frame_index).fading = chooser.selection.frames_to_final > 0;
   std::swap(chooser.previous_state, chooser.state);
   std::swap(chooser.state, chooser.scratch.state);
   chooser.previously_decided_for = chooser.decided_for;
@@ -446,6 +458,7 @@ void discard_choice(Chooser& chooser, uint64_t frame_index) noexcept {
     frame = {};
   }
   std::swap(chooser.state, chooser.previous_state);
+  chooser.selection = chooser.previous_selection;
   chooser.decided_for = chooser.previously_decided_for;
 }
 

@@ -45,7 +45,7 @@ struct FrameChoice {
   // First frame after a switch of the configuration. Excluded from estimates: drivers finish
   // compiling kernels on first use, caches are cold, and histories begin.
   bool begins = false;
-  uint32_t age = 0;      // frames since the last one that `begins`
+  bool fading = false;   // weights of selected tiles may still change
   bool left_out = false; // empty bounds: passes that serve scattering did not run
   bool history_invalid = false;
   bool cut = false;
@@ -58,6 +58,13 @@ struct FrameChoice {
   uint32_t dispatches = 0;
   uint64_t groups = 0; // launched by the dispatches
   subsurface::FrameCounters counters;
+};
+
+// Tells when the weights of selected tiles are final: at once after a switch of the configuration,
+// and a few frames after a change of the number of tiles.
+struct SelectionChange {
+  double units = 0;             // of samples or tiles in the frame
+  uint32_t frames_to_final = 0; // 0: final
 };
 
 // Values of choose() for one frame.
@@ -104,7 +111,7 @@ struct Chooser {
   double last_margin = choice::first_margin;                        // of the frame observed last
   std::array<FrameChoice, vulkan::max_frames_in_flight + 2> frames; // by frame_index
   FrameChoice newest;                                               // the newest observed frame
-  uint32_t age = 0;                                                 // of the newest recorded frame
+  SelectionChange selection, previous_selection; // of the newest recorded frame; before it
   // number of compiled graphs adopted so far
   uint64_t compiled_graphs = 0;
   // Preallocated by adopt(), so that recording allocates nothing.

@@ -18,8 +18,9 @@ struct Prior {
 constexpr Prior technique_prior = {2, 16}, common_prior = {0, 1e4};
 constexpr double outlier_limit = 3; // a frame counts at most this many times the known error
 constexpr int frames_of_a_step = 3; // that deviate more, in the same direction
-// Fractions of selected tiles below, or of others, tell nothing.
+// Frames in which a smaller fraction of the tiles is selected, or left out, are ignored.
 constexpr double min_selected = 0.02;
+// Bounds of the exponent, beyond those measured: 0.3 (tile_selection.hpp) to 11.
 constexpr double min_concentration = 0.05, max_concentration = 12;
 // Time after which a technique that does not run is worth another try.
 constexpr double forgotten_s = 60;

@@ -16,6 +16,7 @@ inline constexpr uint32_t full_pixel_weight = 240;
 // disappears within ten frames. A tile that leaves the list also changes its neighbours' light,
 // by up to a fortieth in a pan (tests/properties). Both are less than an eighth.
 inline constexpr uint32_t pixel_weight_step = 24;
+// Frames until a weight that changes by this step is final.
 inline constexpr uint32_t fading_frames = full_pixel_weight / pixel_weight_step;
 // Instead of the weight of a pixel without subsurface.
 inline constexpr uint32_t no_pixel_weight = 255;
