@@ -52,7 +52,7 @@ TEST(BudgetJudge, PoolsSquaresOfTheComparedFrames) {
   EXPECT_DOUBLE_EQ(pooled_rmse(run), std::sqrt(5.0));
 }
 
-TEST(BudgetJudge, NamesTheChosenConfigurationsByShare) {
+TEST(BudgetJudge, NamesTheChosenConfigurationsByFraction) {
   SceneRun run = run_of({8, 8, 8, 8});
   const char* names[] = {"technique=off", "technique=sap", "technique=sap", "technique=sap"};
   for (size_t i = 0; i < 4; ++i)
@@ -79,6 +79,7 @@ TEST(BudgetJudge, BudgetsWithoutRoomToScatterAreReportedApart) {
   EXPECT_TRUE(none_scatters_within(singles, 8)); // 8 ms need 8.71
   EXPECT_TRUE(none_scatters_within(singles, 8.7));
   EXPECT_FALSE(none_scatters_within(singles, 8.72));
+  EXPECT_TRUE(none_scatters_within(singles, 1));
   EXPECT_FALSE(none_scatters_within({single(2, 0.4)}, 1)); // nothing scatters at any budget
 }
 

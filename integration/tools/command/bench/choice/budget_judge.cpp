@@ -16,6 +16,8 @@
 namespace dermis::tools {
 namespace {
 
+// A configuration with less than this fraction of the error without scattering scatters.
+constexpr double scatters_below = 0.75;
 // fraction of frames in which a single technique must keep the budget
 constexpr double within = 0.99;
 
@@ -66,8 +68,7 @@ const Single& cheapest_of(const std::vector<Single>& singles) {
 }
 
 const Single* cheapest_scattering(const std::vector<Single>& singles) {
-  constexpr double part = 0.75; // of the error without scattering
-  const double most = part * cheapest_of(singles).rmse;
+  const double most = scatters_below * cheapest_of(singles).rmse;
   const Single* cheapest = nullptr;
   for (const Single& one : singles)
     if (one.rmse < most &&
@@ -77,8 +78,9 @@ const Single* cheapest_scattering(const std::vector<Single>& singles) {
 }
 
 bool none_scatters_within(const std::vector<Single>& singles, double budget_ms) {
-  const Single* cheapest = cheapest_scattering(singles);
-  return cheapest != nullptr && budget_of(*cheapest) > controller_room() * budget_ms;
+  const Single* best = best_within(singles, budget_ms);
+  return cheapest_scattering(singles) != nullptr &&
+         (best == nullptr || best->rmse >= scatters_below * cheapest_of(singles).rmse);
 }
 
 double budget_at(const std::vector<Single>& singles, double fraction) {

@@ -85,8 +85,8 @@ const Single* cheapest_scattering(const std::vector<Single>& singles);
 // Returns whether best_within() the budget there are only configurations that scatter nothing.
 bool none_scatters_within(const std::vector<Single>& singles, double budget_ms);
 
-// Returns the configurations of the judged frames and their shares, the most frequent first:
-// "technique=sap variant=base 75 %, technique=partial 25 %".
+// Returns the configurations of the judged frames and the fraction of frames of each, the most
+// frequent first: "technique=sap variant=base 75 %, technique=partial 25 %".
 std::string chosen_of(const SceneRun& run);
 
 double fraction_over_model(const SceneRun& run, double budget_ms);
