@@ -229,6 +229,8 @@ struct SheetOptions {
   std::vector<std::string> pass_types;       // files that declare the host's pass types
   std::vector<std::string> roots;            // additional folders that the scene may read from
   Size size{320, 180};                       // of one image
+  std::vector<double> budgets;               // ms by calibrated times; a row each. None: no budget
+  std::string calibration;                   // file; "": the library's
 };
 ExitCode sheet(const Session& session, const SheetOptions& options);
 

@@ -39,6 +39,18 @@ TEST_F(Sheet, HasARowPerGraphAndAColumnPerMaterial) {
   EXPECT_NE(tile(1, 0), tile(1, 1));
 }
 
+TEST_F(Sheet, HasARowPerBudget) {
+  ASSERT_THAT(
+      sheet({"--budgets", "0.001,1000", "--profiles", "skin"}),
+      Succeeds("none, skin within 0.001 ms (technique=off)", "skin within 1000 ms (technique="));
+  std::string problem;
+  const auto picture = tools::read_png(path("sheet.png"), problem);
+  ASSERT_TRUE(picture) << problem;
+  EXPECT_EQ(picture->height, 27u * 3 + 2 * 4);
+  EXPECT_THAT(sheet({"--budgets", "0"}), FailsWith(2, "--budgets"));
+  EXPECT_THAT(sheet({"--calibration", "x.json"}), FailsWith(2, "--budgets"));
+}
+
 TEST_F(Sheet, JsonOutputIsOneDocument) {
   ASSERT_THAT(sheet({"--graphs", "configs/graphs/sap.json", "--profiles",
                      "configs/profiles/skin.json", "--json"}),

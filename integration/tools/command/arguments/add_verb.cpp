@@ -137,14 +137,14 @@ std::string parse_size(const std::string& text, uint32_t& width, uint32_t& heigh
 
 std::vector<CLI::Option*> add_budget(CLI::App& verb, BudgetArguments& budget) {
   const char* group = "The choice";
-  constexpr double max_ms = 1e6, min_percentile = 0.5, max_percentile = 0.99;
+  constexpr double min_percentile = 0.5, max_percentile = 0.99;
   static const std::map<std::string, demo::Trials> trials{{"always", demo::Trials::always},
                                                           {"cuts", demo::Trials::cuts},
                                                           {"never", demo::Trials::never}};
   std::vector<CLI::Option*> of_frame{
       verb.add_option("--budget", budget.ms,
                       "Device time per frame, ms, for settings with \"by\": \"budget\"")
-          ->check(in_range(0.0, max_ms))
+          ->check(in_range(0.0, max_budget_ms))
           ->type_name("MS"),
       verb.add_option("--budget-percentile", budget.percentile,
                       "Fraction of frames that stay within the budget [0.95]")

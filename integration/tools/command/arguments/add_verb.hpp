@@ -21,6 +21,7 @@ inline constexpr uint32_t max_frames = 100000;
 CLI::Option* repeat(CLI::Option* option);
 
 // Accepts finite numbers of a range. CLI::Range accepts nan.
+inline constexpr double max_budget_ms = 1e6;
 CLI::Validator in_range(double minimum, double maximum);
 // Accepts folders that exist.
 CLI::Validator folder_exists();

@@ -181,7 +181,7 @@ void add_picture_verbs(CLI::App& app, Invocation& invocation) {
         repeat(
             add_path(verb, "--graphs", options.graphs,
                      "Graph files, separated by commas; one row each, below a row without a graph "
-                     "[shipped graphs]")
+                     "[shipped graphs; skin with --budgets]")
                 ->delimiter(','));
         add_pass_types(verb, options.pass_types);
         repeat(add_path(verb, "--profiles", options.profiles,
@@ -189,6 +189,13 @@ void add_picture_verbs(CLI::App& app, Invocation& invocation) {
                         "that scatter [skin, jade, marble, wax, ketchup, milk]")
                    ->delimiter(','));
         add_size(verb, options.size);
+        CLI::Option* budgets = verb.add_option("--budgets", options.budgets,
+                                               "Budgets in milliseconds, separated by commas; one "
+                                               "row each per graph, after 24 frames, by "
+                                               "calibrated times");
+        repeat(budgets->check(in_range(1e-6, max_budget_ms))->type_name("MS")->delimiter(','));
+        add_path(verb, "--calibration", options.calibration, "Costs of passes (dermis calibrate)")
+            ->needs(budgets);
         add_root(verb, options.roots,
                  "Additional folder that the scene may read from; may be repeated");
       });
