@@ -44,6 +44,10 @@ bool read_need(GraphReader& reader, NodeId node, const std::string& what, Option
     needs.imports.push_back(found->second);
     return true;
   }
+  const NodeId optional =
+      reader.document.find(reader.resource_nodes[found->second.value], "optional");
+  if (optional.valid() && reader.document[optional].kind != NodeKind::boolean)
+    return false; // reported at the import
   reader
       .error(DiagnosticId::bad_option_requires, where,
              fmt::format("{} is '{}', which is not an optional import", what, *word))
