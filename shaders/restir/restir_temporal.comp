@@ -113,8 +113,8 @@ bool find_past(ivec2 pixel, uint id, float u, out ivec2 past) {
   return found;
 }
 
-// Returns whether the scene has the path's triangle, in a surface of `medium`. Objects may have been
-// removed since the previous frame.
+// Returns whether the scene has the path's triangle, in a surface of `medium`. Objects may have
+// been removed since the previous frame.
 bool is_in_scene(reservoir path, uint medium) {
   if (path.instance >= uint(instances_data.length()))
     return false;
