@@ -36,6 +36,15 @@ struct Probe : DermisTest {
     fill("lighting", light);
     return DermisTest::run_frame(graph);
   }
+  void set_budget(float ms) {
+    dermis_budget budget = DERMIS_BUDGET_INIT;
+    budget.milliseconds = ms;
+    budget.flags = DERMIS_BUDGET_DETERMINISTIC;
+    ASSERT_OK(dermis_graph_set_budget(graph, &budget, nullptr));
+  }
+  // Runs frames of `technique=partial` within a budget, in light that changes all tiles alike.
+  // Returns the last frame; adds the probed squares to `squares`.
+  demo::ReportedFrame run_partial(float ms, int frames, double* squares = nullptr);
 
   // Returns the light, three values per pixel.
   static std::vector<float> lit_by(Light light) {
@@ -86,6 +95,18 @@ float waves(uint32_t x, uint32_t y) {
 }
 float spread(uint32_t x, uint32_t y) {
   return float((x * 37 + y * 61) % 97) / 64.0f;
+}
+
+demo::ReportedFrame Probe::run_partial(float ms, int frames, double* squares) {
+  last_frame = 0;
+  make("\"partial\"");
+  set_budget(ms);
+  demo::ReportedFrame shown;
+  for (int i = 0; i < frames; ++i) {
+    shown = run_frame(spread);
+    if (squares != nullptr) *squares += std::pow(double(shown.probed_rmse), 2);
+  }
+  return shown;
 }
 
 TEST_F(Probe, WithoutProbe_TheErrorIsUnknown) {
@@ -221,18 +242,9 @@ TEST_F(Probe, MeasuresSeparable_WhileOthersRun) {
 // Tiles that the budget leaves out are measured, too.
 TEST_F(Probe, MeasuresSeparable_WhileABudgetLeavesTilesOut) {
   const auto factor = [&](float ms) {
-    last_frame = 0;
-    make("\"partial\"");
-    dermis_budget budget = DERMIS_BUDGET_INIT;
-    budget.milliseconds = ms;
-    budget.flags = DERMIS_BUDGET_DETERMINISTIC;
-    EXPECT_OK(dermis_graph_set_budget(graph, &budget, nullptr));
-    demo::ReportedFrame shown;
-    for (int i = 0; i < 40; ++i)
-      shown = run_frame(spread);
+    const demo::ReportedFrame shown = run_partial(ms, 40);
     set("technique", "\"separable\"");
-    budget.milliseconds = 0; // 25 taps, which the probe measures
-    EXPECT_OK(dermis_graph_set_budget(graph, &budget, nullptr));
+    set_budget(0); // 25 taps, which the probe measures
     make_images(graph);
     run_frame(spread);
     return std::pair(double(run_frame(spread).predicted_rmse), shown);
@@ -247,6 +259,21 @@ TEST_F(Probe, MeasuresSeparable_WhileABudgetLeavesTilesOut) {
       return;
     }
   FAIL() << "no budget leaves tiles out";
+}
+
+TEST_F(Probe, MeasuresWhatSelectedTilesLeave) {
+  float ms = run_partial(1000, 2).predicted_ms; // all tiles
+  demo::ReportedFrame shown;
+  do {
+    ms *= 0.9f;
+    shown = run_partial(ms, 2);
+  } while (ms > 1e-3f && shown.sample_units >= shown.sample_demand / 2);
+  ASSERT_GT(shown.sample_units, 0u);
+  constexpr int frames = 80;
+  double squares = 0;
+  shown = run_partial(ms, frames, &squares);
+  const double measured = std::sqrt(squares / frames);
+  EXPECT_NEAR(shown.predicted_rmse, measured, 0.2 * measured);
 }
 
 TEST_F(Probe, FramesBeforeACut_DoNotCountAfterIt) {
