@@ -36,18 +36,28 @@ cp shaders/restir/instances.glsl shaders/restir/lights.glsl "$one_ray_query/rest
 cp tests/gpu/one_ray_query.comp "$one_ray_query/restir/restir_initial.comp"
 
 compile_for() { # family, manifest
-  local json=$out/$1.json log=$out/$1.log begin=$SECONDS rc=0
+  local json=$out/$1.json log=$out/$1.log rc=0
   local one=$out/$1.one_ray_query.json own=$out/$1.limits.json # with the lines of $limits
   with_driver "$2" env RADV_FORCE_FAMILY="$1" "$dermis" kernels restir --shaders "$one_ray_query" \
-    --json >"$one" 2>"$log" || { cat "$log" "$one"; failed=1; return; }
+    --json >"$one" 2>"$log" || { cat "$log" "$one"; return 1; }
   python3 -B tests/gpu/device_limits.py $limits "$one" >"$own"
-  with_driver "$2" env RADV_FORCE_FAMILY="$1" "$dermis" kernels --limits "$own" >"$log" 2>&1 || rc=1
-  with_driver "$2" env RADV_FORCE_FAMILY="$1" "$dermis" kernels --json >"$json" 2>>"$log" || rc=1
-  echo "kernels on $1 ($(sed -n '/Null hardware/{s/.*, //p;q}' "$log")):" \
-    "$(grep -h ' checked: ' "$log" || echo failed), $((SECONDS - begin)) s"
-  grep -h ': skipped, ' "$log" || true
-  [[ $rc -eq 0 ]] || { sed -n '/dermis: error/,$p' "$log"; failed=1; }
-  compiled=$((compiled + 1))
+  with_driver "$2" env RADV_FORCE_FAMILY="$1" "$dermis" kernels --json --limits "$own" \
+    >"$json" 2>"$log" || rc=1
+  python3 -B tests/gpu/summarise_kernels.py "$1" "$json" || rc=1
+  [[ $rc -eq 0 ]] || cat "$log"
+  return $rc
+}
+
+# Compiles for two families at once, because the compiler uses one processor.
+compile_for_both() { # manifest, family, family
+  local begin=$SECONDS first
+  compile_for "$2" "$1" >"$out/$2.txt" 2>&1 &
+  first=$!
+  compile_for "$3" "$1" >"$out/$3.txt" 2>&1 || failed=1
+  wait $first || failed=1
+  cat "$out/$2.txt" "$out/$3.txt"
+  echo "$2 and $3 took $((SECONDS - begin)) s"
+  compiled=$((compiled + 2))
 }
 
 shopt -s nullglob
@@ -61,9 +71,7 @@ elif ! version=$(with_driver "${system[0]}" env RADV_FORCE_FAMILY=navi21 \
   echo "kernels on navi21 and vega10: skipped, the limits are for $measured_with," \
     "but the driver is '$version'"
 else
-  for family in navi21 vega10; do
-    compile_for $family "${system[0]}"
-  done
+  compile_for_both "${system[0]}" navi21 vega10
   with_driver "${system[0]}" env RADV_FORCE_FAMILY=navi21 "$dermis" kernels sap --small-groups \
     --limits tests/gpu/small_group_limits.json >"$out/small_groups.log" 2>&1 ||
     { sed -n '/dermis: error/,$p' "$out/small_groups.log"; failed=1; }
@@ -105,9 +113,7 @@ if [[ $full == yes ]]; then
   shim=""
   [[ -z $radeon ]] || shim=$(tests/scripts/fetch_driver.sh --shim) || shim=""
   if [[ -n $radeon ]]; then
-    for family in navi31 gfx1201; do
-      compile_for $family "$radeon"
-    done
+    compile_for_both "$radeon" navi31 gfx1201
   else
     echo "kernels on navi31 and gfx1201: skipped, there is no driver"
   fi

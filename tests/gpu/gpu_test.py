@@ -10,6 +10,7 @@ import unittest
 import device_limits
 import gpu_model
 import instruction_mix
+import summarise_kernels
 import write_calibrations
 
 HERE = pathlib.Path(__file__).resolve().parent
@@ -49,6 +50,35 @@ BB4:
 \tds_read_b32 v1, v0                      ; d8d80000
 \ts_endpgm                                ; bf810000
 """
+
+
+class Summary(unittest.TestCase):
+    report = {"ok": False, "driver": "radv", "skipped": [{"graph": "restir", "why": "no rays"}],
+              "limits": {"checked": 2, "open": [], "exceeded": [
+                  {"subject": "sap/down", "value": "vgprs", "found": 97, "limit": 96,
+                   "minimum": False, "place": "limits.json:9"}]}}
+
+    def test_names_what_is_exceeded_or_skipped(self):
+        lines = list(summarise_kernels.lines_of("navi21", self.report))
+        self.assertEqual(lines, [
+            "kernels on navi21 (radv): 2 limits checked: 1 exceeded, 0 not yet at their goal",
+            "restir: skipped, no rays",
+            "  sap/down: vgprs is 97, at most 96 is allowed  (limits.json:9)"])
+
+    def test_says_why_nothing_was_compiled(self):
+        report = {"ok": False, "error": "no device", "diagnostics": [{"text": "no driver"}]}
+        self.assertEqual(list(summarise_kernels.lines_of("navi21", report)),
+                         ["kernels on navi21: no device", "no driver"])
+
+    def test_exit_code_is_that_of_the_limits(self):
+        for ok in (True, False):
+            with tempfile.NamedTemporaryFile("w", suffix=".json") as file:
+                json.dump(self.report | {"ok": ok}, file)
+                file.flush()
+                done = subprocess.run(
+                    [sys.executable, "-B", HERE / "summarise_kernels.py", "navi21", file.name],
+                    check=False, capture_output=True)
+                self.assertEqual(done.returncode, 0 if ok else 1)
 
 
 class Model(unittest.TestCase):
