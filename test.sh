@@ -80,13 +80,20 @@ random_graphs() {
 # The tests find the driver in the folder of fetch_driver.sh. With the driver present, no test may
 # be skipped.
 ray_queries() {
-  local log=build/ray_queries.log rc=0 program
+  local log=build/ray_queries.log rc=0 program shard part parts
   tests/scripts/fetch_driver.sh >/dev/null || return 77
   built test_integration_examples_demo_engine test_integration_tools
   for program in integration_examples_demo_engine integration_tools; do
-    LP_NUM_THREADS=$(nproc) quick "build/release/tests/test_$program" \
-      --gtest_filter="*$ray_suites.*" || rc=1
-  done >"$log" 2>&1
+    parts=()
+    for ((shard = 0; shard < $(nproc); ++shard)); do
+      GTEST_TOTAL_SHARDS=$(nproc) GTEST_SHARD_INDEX=$shard LP_NUM_THREADS=1 quick \
+        "build/release/tests/test_$program" --gtest_filter="*$ray_suites.*" >"$log.$shard" 2>&1 &
+      parts+=($!)
+    done
+    for part in "${parts[@]}"; do wait "$part" || rc=1; done
+    cat "$log".[0-9]*
+    rm "$log".[0-9]*
+  done >"$log"
   if [[ $rc -ne 0 ]]; then
     grep -B20 'FAILED' "$log" | tail -60
     fail 1 "tests on ray queries failed; the log: $log"
