@@ -58,9 +58,9 @@ std::vector<Row> rows_of(const std::vector<std::string>& graphs,
   return rows;
 }
 
-// Adds the configuration that runs in the row's last frame.
+// Adds the configuration that runs in the row's last frame, if the graph has a choice.
 void add_configuration(Row& row, const demo::FrameOutputs& frame) {
-  if (row.budget_ms <= 0 || !frame.choice) return;
+  if (row.budget_ms <= 0 || !frame.choice || frame.choice->configurations < 2) return;
   const std::string text = fmt::format(" ({})", frame.choice->configuration);
   if (row.name.find(text) == std::string::npos) row.name += text;
 }
