@@ -65,6 +65,21 @@ TEST_F(Sheet, AMissingProfileIsNamed) {
   EXPECT_THAT(outcome.err, HasSubstr("nowhere.json"));
 }
 
+TEST_F(Sheet, UnwritableFolder_IsReportedBeforeRendering) {
+  ASSERT_THAT(sheet({"--graphs", "separable", "--profiles", "skin"}), Succeeds("none"));
+  const Outcome outcome = run({"sheet", "--out", path("sheet.png/below.png"), "--size", "48x27",
+                               "--graphs", "separable", "--profiles", "skin"});
+  EXPECT_THAT(outcome, FailsWith(3, "sheet.png"));
+  EXPECT_THAT(outcome.err, Not(HasSubstr("pictures/s"))); // no progress
+}
+
+TEST_F(Sheet, MissingFolder_IsCreated) {
+  EXPECT_THAT(run({"sheet", "--out", path("new/sheet.png"), "--size", "48x27", "--graphs",
+                   "separable", "--profiles", "skin"}),
+              Succeeds("none"));
+  EXPECT_TRUE(std::filesystem::exists(path("new/sheet.png")));
+}
+
 TEST_F(Sheet, TooManyPixels_AreAUsageError) {
   EXPECT_THAT(run({"sheet", "--out", path("sheet.png"), "--size", "8192x16"}),
               FailsWith(2, "--size"));
