@@ -115,7 +115,7 @@ void observe_technique(ErrorCorrection& correction, size_t index, double square,
                prior, frame);
 }
 
-// Adds what a selection of tiles left of the light's error. `light`: as above.
+// Adds what a selection of tiles left of the light's error. `light`: as in observe_technique.
 void observe_selection(ErrorCorrection& correction, double light, const ProbedFrame& frame) {
   if (!(frame.selected > min_selected && frame.selected < 1 - min_selected)) return;
   ErrorCorrection::Line& line = correction.selection;

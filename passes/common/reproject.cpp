@@ -56,10 +56,10 @@ PreviousPlace place_before(const FrameConstants& frame, double x, double y, doub
 double depth_tolerance(const FrameConstants& frame, double depth, double rise) {
   const double pixel = std::max(std::abs(double(frame.previous_ray_scale[0])),
                                 std::abs(double(frame.previous_ray_scale[1])));
-  const double still = (frame.flags & previous_perspective) != 0
+  const double least = (frame.flags & previous_perspective) != 0
                            ? reproject_depth_fraction * depth
                            : reproject_depth_pixels * pixel + reproject_depth_rounding * depth;
-  return std::max(still, reproject_slope_pixels * rise);
+  return std::max(least, reproject_slope_pixels * rise);
 }
 
 HistoryTaps find_history(const FrameConstants& frame, const PreviousPlace& place, uint32_t id,

@@ -55,10 +55,10 @@ ivec2 previous_texel(ivec2 pixel) { return pixel + frame.previous_rect.xy; }
 // previous view, mm. `rise`: change of the surface's depth over a pixel, mm.
 float depth_tolerance(float depth, float rise) {
   vec2 pixel = abs(frame.previous_ray_scale);
-  float still = previous_is_perspective() ? reproject_depth_fraction * depth
+  float least = previous_is_perspective() ? reproject_depth_fraction * depth
                                           : reproject_depth_pixels * max(pixel.x, pixel.y) +
                                                 reproject_depth_rounding * depth;
-  return max(still, reproject_slope_pixels * rise);
+  return max(least, reproject_slope_pixels * rise);
 }
 
 struct history_taps {

@@ -1,6 +1,6 @@
 // The rule that allocates samples to tiles. passes/choice/sample_allocation.cpp mirrors it function
-// by function, except previous_tile. A tile takes steps 0 -> 1 -> 2 -> 3. Each step costs units and reduces the tile's
-// error; steps with the largest reduction per cost come first.
+// by function, except previous_tile. A tile takes steps 0 -> 1 -> 2 -> 3. Each step costs units and
+// reduces the tile's error; steps with the largest reduction per cost come first.
 #ifndef DERMIS_SAMPLE_ALLOCATION_GLSL
 #define DERMIS_SAMPLE_ALLOCATION_GLSL
 
@@ -19,8 +19,8 @@ int samples_of(uint steps) { return steps == 0u ? 0 : 4 << steps; }
 // Returns by how much step `k` reduces a tile's error, per unit.
 float step_gain(int k) { return k == 0 ? allot_gain_0 : k == 1 ? allot_gain_1 : allot_gain_2; }
 
-// Returns the index of a tile's place in the previous frame's rectangle; that of the tile if the host
-// gave no previous camera.
+// Returns the index of a tile's place in the previous frame's rectangle; that of the tile if the
+// host gave no previous camera.
 uint previous_tile(uint tile) {
   uvec2 now = uvec2(frame.tiles), before = uvec2(frame.previous_rect.zw + 7) / 8u;
   if (now == before || before.x * before.y == 0u)

@@ -75,8 +75,8 @@ float kept_of(sap_texel seed, sap_texel child, vec2 offset, float per_sigma_mm,
       sap_nearer(depth_step - sap_rise(seed.depth, seed.slope, offset) * per_sigma_mm, depth_step);
   return exp2(sap_factor(sap_depth_width) * off * off);
 }
-// Returns the fraction of a child that the layer with seed `before` has used; 0 without such a layer
-// (id 0). `off` receives the child's distance from that layer in its sigmas.
+// Returns the fraction of a child that the layer with seed `before` has used; 0 without such a
+// layer (id 0). `off` receives the child's distance from that layer in its sigmas.
 float used_by(sap_texel before, sap_texel child, vec2 offset, float spacing, out float off) {
   off = 0.0;
   if (!shares_children() && before.id == 0u)

@@ -1,6 +1,6 @@
-// The result of subsurface.separable with 25 taps at a single pixel, without its intermediate image:
-// each invocation computes the horizontal pass at one pixel of the column that the vertical pass
-// reads. Reads one tap at a time, so that the code is short.
+// The result of subsurface.separable with 25 taps at a single pixel, without its intermediate
+// image: each invocation computes the horizontal pass at one pixel of the column that the vertical
+// pass reads. Reads one tap at a time, so that the code is short.
 #ifndef DERMIS_SEPARABLE_AT_PIXEL_GLSL
 #define DERMIS_SEPARABLE_AT_PIXEL_GLSL
 

@@ -64,7 +64,7 @@ TEST(ErrorCorrection, SelectedTiles_LeaveTheMeasuredPartOfTheError) {
   frame.selected = selected;
   for (int i = 0; i < 200; ++i)
     observe_error(correction, frame);
-  // Two frames of the table beside 25 that were measured.
+  // The table counts as 2 frames, the measurements as 25.
   const double left = (25 * std::pow(0.6, exponent) + 2 * std::pow(0.6, by_table)) / 27;
   EXPECT_NEAR(concentration(content), std::log(left) / std::log(0.6), 0.01);
   EXPECT_NEAR(concentration({16 * content.d_px, content.relief}), by_table, 0.01);

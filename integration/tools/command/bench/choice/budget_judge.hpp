@@ -82,7 +82,7 @@ const Single& cheapest_of(const std::vector<Single>& singles);
 // Returns the cheapest configuration whose error is clearly below that of cheapest_of(), which
 // scatters nothing. Null if there is none.
 const Single* cheapest_scattering(const std::vector<Single>& singles);
-// Returns whether best_within() the budget there are only configurations that scatter nothing.
+// Returns whether a configuration scatters, but best_within() the budget finds none that does.
 bool none_scatters_within(const std::vector<Single>& singles, double budget_ms);
 
 // Returns the configurations of the judged frames and the fraction of frames of each, the most
