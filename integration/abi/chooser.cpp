@@ -181,7 +181,8 @@ void observe_frame(Chooser& chooser, CompiledGraph& compiled_graph, FrameChoice&
   frame.observed = true;
   if (frame.frame_index <= chooser.newest.frame_index) return;
   chooser.newest = frame;
-  if (!counted || frame.left_out) return; // no tile was classified
+  // no tile was classified
+  if (!counted || frame.left_out || compiled_graph.without_material) return;
   const bool samples = configuration.takes_samples && !configuration.selects_tiles;
   if (samples && frame.counters.scattering_tiles > 0)
     record_units(chooser.demand, subsurface::mean_d_px(frame.counters),

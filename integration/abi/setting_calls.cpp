@@ -28,9 +28,17 @@ dermis_setting_type type_of(SettingType type) {
   return DERMIS_SETTING_OPTION;
 }
 
-bool is_set(const std::vector<HostSetting>& given, const std::string& name) {
-  return std::any_of(given.begin(), given.end(),
-                     [&](const HostSetting& one) { return one.name == name; });
+// Returns whether the host set a value that applies. A value that a reload did not carry over is
+// kept, for a later graph that accepts it.
+bool is_set(const std::vector<HostSetting>& given, const SettingDeclaration& declared) {
+  return std::any_of(given.begin(), given.end(), [&](const HostSetting& one) {
+    Diagnostics scratch; // reported when the graph was created
+    return one.name == declared.name && read_setting(declared, one.json, scratch);
+  });
+}
+bool has_own(const dermis_view_t& view, const CompiledGraph& compiled_graph, uint32_t setting) {
+  return is_set(view.settings, compiled_graph.graph.settings[setting]) &&
+         frame_settings(compiled_graph.graph, view.context->pass_types)[setting] != 0;
 }
 
 // Returns the settings of the compiled graph that the view will record next.
@@ -64,9 +72,9 @@ dermis_result get_settings(dermis_view_t& view, const char* function, uint32_t* 
                               : double(declared.options.size()) - 1;
         setting.default_value = number_of(declared.default_value);
         setting.value = number_of(values[i]);
-        setting.set = is_set(view.settings, declared.name)                ? 2
-                      : is_set(view.graph->input.settings, declared.name) ? 1
-                                                                          : 0;
+        setting.set = per_frame[i] != 0 && is_set(view.settings, declared) ? 2
+                      : is_set(view.graph->input.settings, declared)       ? 1
+                                                                           : 0;
         setting.chosen = declared.by_budget && setting.set == 0 ? 1 : 0;
         setting.option_count = static_cast<uint32_t>(declared.options.size());
         setting.options = declared.options.empty() ? nullptr : kept->option_names[i].data();
@@ -96,6 +104,10 @@ void set_in(std::vector<HostSetting>& given, const std::string& name, const std:
     given.push_back({name, json});
   else
     at->json = json;
+}
+
+bool remove_from(std::vector<HostSetting>& given, const std::string& name) {
+  return std::erase_if(given, [&](const HostSetting& one) { return one.name == name; }) > 0;
 }
 
 // Returns what runs for a value: the value, unless its option needs what is missing, as in
@@ -139,7 +151,7 @@ bool changes_passes(const CompiledGraph& compiled_graph, const std::vector<HostS
   PartialValues before;
   for (uint32_t i = 0; i < graph.settings.size(); ++i) {
     const SettingDeclaration& declared = graph.settings[i];
-    const bool open = declared.by_budget && !is_set(given, declared.name);
+    const bool open = declared.by_budget && !is_set(given, declared);
     before.push_back(open ? std::nullopt : std::optional(compiled_graph.settings[i]));
   }
   PartialValues after = before;
@@ -164,23 +176,19 @@ bool changes_plans(const CompiledGraph& compiled_graph, const PassTypeRegistry& 
 
 // A new value of a setting in one view.
 struct ViewChange {
+  dermis_view_t* view = nullptr;
   std::vector<choice::Configuration> configurations;
   NewPipelines pipelines; // empty: those of before
 };
 
-// Creates the pipelines of all views in `changes`: those without their own value of the setting.
-vulkan::Error make_pipelines_of_views(dermis_graph_t& graph, const std::string& name,
-                                      vulkan::KernelStore& kernels,
-                                      std::vector<ViewChange>& changes) {
-  vulkan::Error error;
-  size_t v = 0;
-  for_each_view(graph, [&](dermis_view_t& view) {
-    if (error || is_set(view.settings, name)) return;
-    ViewChange& change = changes[v++];
-    error = make_pipelines(*graph.context, graph.input, *keep_newest(view), change.configurations,
-                           kernels, change.pipelines);
-  });
-  return error;
+// Makes the view run with a new value of the setting. Frames that were recorded before tell about
+// the new configurations only if these are the same work.
+void adopt_value(CompiledGraph& changed, uint32_t setting, const SettingValue& value,
+                 std::vector<choice::Configuration>& configurations) noexcept {
+  if (!std::ranges::equal(changed.configurations, configurations, choice::is_same_work))
+    ++changed.revision;
+  changed.settings[setting] = value;
+  changed.configurations.swap(configurations);
 }
 
 dermis_result set_setting(dermis_graph_t& graph, const std::string& name, const std::string& json,
@@ -206,36 +214,35 @@ dermis_result set_setting(dermis_graph_t& graph, const std::string& name, const 
                     value))
     return replace_compiled_graphs(graph, std::move(input), vulkan::HistoryReason::reloaded,
                                    report);
-  std::vector<ViewChange> changes; // by view without its own value
+  std::vector<ViewChange> changes; // of views without their own value
   for_each_view(graph, [&](dermis_view_t& view) {
-    if (is_set(view.settings, name)) return;
     const std::lock_guard lock(view.mutex);
-    changes.push_back({configurations_with(newest(view), graph.context->pass_types,
+    if (has_own(view, newest(view), index)) return;
+    changes.push_back({&view,
+                       configurations_with(newest(view), graph.context->pass_types,
                                            view.chooser.errors, view.chooser.costs, index, value),
                        {}});
   });
   vulkan::KernelStore kernels(graph.context->kernels);
   if (selects_pipelines(compiled_graph.graph, graph.context->pass_types, {index})) {
-    if (const vulkan::Error error = make_pipelines_of_views(graph, name, kernels, changes)) {
-      const dermis_result failed = rejected(*graph.context, error, diagnostics);
-      return conclude(log, failed, std::move(diagnostics), report);
-    }
+    for (ViewChange& change : changes)
+      if (const vulkan::Error error =
+              make_pipelines(*graph.context, graph.input, *keep_newest(*change.view),
+                             change.configurations, kernels, change.pipelines)) {
+        const dermis_result failed = rejected(*graph.context, error, diagnostics);
+        return conclude(log, failed, std::move(diagnostics), report);
+      }
   }
   const dermis_result result = conclude(log, DERMIS_OK, std::move(diagnostics), report);
   if (result != DERMIS_OK) return result;
   kernels.hand_over();
-  size_t v = 0; // nothing fails from here on
-  for_each_view(graph, [&](dermis_view_t& view) {
-    if (is_set(view.settings, name)) return;
-    ViewChange& change = changes[v++];
-    const std::lock_guard lock(view.mutex);
-    CompiledGraph& changed = newest(view);
-    changed.settings[index] = value;
-    changed.configurations.swap(change.configurations);
-    ++changed.revision;
+  for (ViewChange& change : changes) { // nothing fails from here on
+    const std::lock_guard lock(change.view->mutex);
+    CompiledGraph& changed = newest(*change.view);
+    adopt_value(changed, index, value, change.configurations);
     for (size_t p = 0; p < change.pipelines.size(); ++p)
       changed.plans[p].executor->set_pipelines(change.pipelines[p]);
-  });
+  }
   graph.input = std::move(input);
   return result;
 }
@@ -250,13 +257,17 @@ dermis_result set_view_setting(dermis_view_t& view, const std::string& name, con
   const Graph& graph = kept->graph;
   Diagnostics diagnostics;
   const auto at = find_declared(graph, name);
+  const std::vector<uint8_t> per_frame = frame_settings(graph, view.context->pass_types);
+  const auto index = static_cast<uint32_t>(at - graph.settings.begin());
+  const bool applies = at != graph.settings.end() && per_frame[index] != 0;
+  // a value that a reload did not carry over can be removed
+  if (!applies && json == nullptr && remove_from(view.settings, name))
+    return conclude(log, DERMIS_OK, std::move(diagnostics), report);
   if (at == graph.settings.end()) {
     add_unknown(function, graph, name, diagnostics);
     return conclude(log, DERMIS_ERROR_ARGUMENT, std::move(diagnostics), report);
   }
-  const auto index = static_cast<uint32_t>(at - graph.settings.begin());
-  const std::vector<uint8_t> per_frame = frame_settings(graph, view.context->pass_types);
-  if (per_frame[index] == 0) {
+  if (!applies) {
     std::string own;
     for (size_t i = 0; i < graph.settings.size(); ++i)
       if (per_frame[i] != 0)
@@ -277,7 +288,7 @@ dermis_result set_view_setting(dermis_view_t& view, const std::string& name, con
     value = offered_value(*view.graph, graph, *at, *value, diagnostics);
     set_in(settings, name, json);
   } else {
-    std::erase_if(settings, [&](const HostSetting& setting) { return setting.name == name; });
+    remove_from(settings, name);
     value = value_of_graph(*view.graph, graph, *at);
   }
   std::vector<choice::Configuration> configurations;
@@ -289,10 +300,7 @@ dermis_result set_view_setting(dermis_view_t& view, const std::string& name, con
   const dermis_result result = conclude(log, DERMIS_OK, std::move(diagnostics), report);
   if (result != DERMIS_OK) return result;
   const std::lock_guard lock(view.mutex); // nothing fails from here on
-  CompiledGraph& changed = newest(view);
-  changed.settings[index] = *value;
-  changed.configurations.swap(configurations);
-  ++changed.revision;
+  adopt_value(newest(view), index, *value, configurations);
   view.settings.swap(settings);
   return result;
 }

@@ -5,10 +5,12 @@
 
 #include <fmt/format.h>
 
+#include <string>
+#include <unordered_set>
+
 namespace dermis::choice {
 namespace {
 
-constexpr size_t max_costs = 4096;
 constexpr double max_us = 1e9;
 constexpr double max_uncertainty = 100;
 
@@ -23,18 +25,26 @@ std::optional<Calibration> read_calibration(const Document& document, Diagnostic
   out.device = root.string("device").value_or("");
   out.uncertainty = root.number("uncertainty", 1, max_uncertainty, Need::optional)
                         .value_or(other_device_uncertainty);
-  const NodeId costs = root.array("costs", 0, max_costs);
+  std::unordered_set<std::string> works;
+  const NodeId costs = root.array("costs", 0, max_calibrated_costs);
   if (costs.valid())
     for (const NodeId node : children(document, costs)) {
       ObjectReader object(document, node, "cost", diagnostics);
       Cost& cost = out.costs.emplace_back();
       cost.work = object.string("work").value_or("");
+      const bool named = object.ok();
       cost.base_us = object.number("base_us", 0, max_us).value_or(0);
       cost.group_us = object.number("group_us", 0, max_us).value_or(0);
       cost.spread = object.number("spread", 0, 1).value_or(0);
       cost.uncertainty =
           object.number("uncertainty", 1, max_uncertainty, Need::optional).value_or(0);
       object.finish();
+      if (named && cost.work.empty())
+        diagnostics.add(DiagnosticId::bad_name, document.where(node),
+                        "'work' of a cost is empty, expected a pass type and its settings");
+      if (named && !works.insert(cost.work).second)
+        diagnostics.add(DiagnosticId::duplicate_name, document.where(node),
+                        fmt::format("two costs are those of '{}'", cost.work));
     }
   root.finish();
   if (diagnostics.count(Severity::error) != errors) return std::nullopt;

@@ -47,11 +47,23 @@ std::vector<SettingValue> values_of(const Plan& plan, const PlanPass& pass, cons
   return out;
 }
 
-// Returns the value as work_name() states it. A host may change real numbers in each frame,
-// and each name takes memory, so these have one digit: costs hardly depend on them.
+// Returns the integer rounded towards 0 to two significant digits.
+int64_t with_two_digits(int64_t value) {
+  int64_t power = 1;
+  while (std::abs(value / power) >= 100)
+    power *= 10;
+  return value / power * power;
+}
+
+// Returns the value as work_name() states it. A host may change numbers in each frame, and each
+// name takes memory, so real numbers have one digit, because costs hardly depend on them, and
+// integers two.
 std::string work_value(const PassTypeSetting& setting, const SettingValue& value) {
-  return setting.per_frame && setting.type == SettingType::real ? fmt::format("{:.1g}", value.real)
-                                                                : value_text(setting, value);
+  if (setting.per_frame && setting.type == SettingType::real)
+    return fmt::format("{:.1g}", value.real);
+  if (setting.per_frame && setting.type == SettingType::integer)
+    return fmt::format("{}", with_two_digits(value.integer));
+  return value_text(setting, value);
 }
 
 int32_t level_of(const PassType& type, const std::vector<SettingValue>& values) {
@@ -133,13 +145,6 @@ void describe(const PassTypeRegistry& pass_types, const Plan& plan, const ErrorM
   }
   configuration.technique = find_technique(errors, passes);
   configuration.without_samples = find_technique(errors, without_samples);
-}
-
-bool same_work(const Configuration& a, const Configuration& b) {
-  return a.plan == b.plan && std::equal(a.passes.begin(), a.passes.end(), b.passes.begin(),
-                                        b.passes.end(), [](const PassLoad& x, const PassLoad& y) {
-                                          return x.cost.value == y.cost.value;
-                                        });
 }
 
 std::vector<bool> passes_on(const Graph& graph, const std::vector<SettingValue>& values) {
@@ -303,8 +308,9 @@ std::vector<Configuration> make_configurations(const CompileInput& input,
     made.plan = combinations.plans[i];
     made.name = name_of(*input.graph, *plans[made.plan], choices, made.settings);
     describe(*input.pass_types, *plans[made.plan], errors, costs, made);
-    const bool twice = std::any_of(
-        out.begin(), out.end(), [&](const Configuration& other) { return same_work(other, made); });
+    const bool twice = std::any_of(out.begin(), out.end(), [&](const Configuration& other) {
+      return is_same_work(other, made);
+    });
     if (!twice) out.push_back(std::move(made));
   }
   return out;
@@ -315,6 +321,13 @@ void describe_configurations(const PassTypeRegistry& pass_types, std::span<const
                              std::span<Configuration> configurations) {
   for (Configuration& configuration : configurations)
     describe(pass_types, *plans[configuration.plan], errors, costs, configuration);
+}
+
+bool is_same_work(const Configuration& a, const Configuration& b) {
+  return a.plan == b.plan && a.technique == b.technique && a.without_samples == b.without_samples &&
+         std::ranges::equal(
+             a.passes, b.passes, {}, [](const PassLoad& x) { return x.cost.value; },
+             [](const PassLoad& x) { return x.cost.value; });
 }
 
 uint64_t groups_of(const PassLoad& pass, const FrameLoad& load) {

@@ -95,6 +95,10 @@ void describe_configurations(const PassTypeRegistry& pass_types, std::span<const
                              const ErrorModel& errors, CostEstimator& costs,
                              std::span<Configuration> configurations);
 
+// Returns whether frames of both tell equally much about costs and errors: the plan, the work of
+// its passes and the technique are equal.
+bool is_same_work(const Configuration& a, const Configuration& b);
+
 // Properties of a frame that affect costs.
 struct FrameLoad {
   uint64_t width = 0, height = 0; // of the render rectangle, in pixels

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace dermis::choice {
 namespace {
@@ -47,6 +48,19 @@ size_t words_alike(std::string_view a, std::string_view b) {
   while (!a.empty() && !b.empty())
     count += next_word(a) == next_word(b) ? 1 : 0;
   return count;
+}
+
+// Keeps as many costs as a calibration may have: those with the most observations.
+void keep_most_observed(std::vector<Cost>& costs, const std::vector<int>& observations) {
+  std::vector<size_t> order(costs.size());
+  std::iota(order.begin(), order.end(), size_t{0});
+  std::stable_sort(order.begin(), order.end(),
+                   [&](size_t a, size_t b) { return observations[a] > observations[b]; });
+  order.resize(max_calibrated_costs);
+  std::vector<Cost> kept;
+  for (const size_t i : order)
+    kept.push_back(std::move(costs[i]));
+  costs = std::move(kept);
 }
 
 } // namespace
@@ -293,6 +307,7 @@ void CostEstimator::reduce_optimism(CostId id) {
 
 std::vector<Cost> CostEstimator::calibration() const {
   std::vector<Cost> out;
+  std::vector<int> observations; // of the costs in `out`
   for (const Line& line : lines_) {
     if (line.own.observations == 0 && (line.placeholder || !line.has_prior)) continue;
     const double scale = device_factor_ * unmeasured_factor_;
@@ -301,7 +316,9 @@ std::vector<Cost> CostEstimator::calibration() const {
     const bool measured = line.own.observations > 0;
     out.push_back({line.work, cost.base_ms * 1e3, cost.group_ms * 1e3, line.fit.deviation,
                    measured ? same_device_uncertainty : line.stated});
+    observations.push_back(line.own.observations);
   }
+  if (out.size() > max_calibrated_costs) keep_most_observed(out, observations);
   std::sort(out.begin(), out.end(), [](const Cost& a, const Cost& b) { return a.work < b.work; });
   return out;
 }

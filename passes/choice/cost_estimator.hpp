@@ -32,6 +32,9 @@ struct Cost {
   double uncertainty = 0;
 };
 
+// Costs that a calibration may have.
+inline constexpr size_t max_calibrated_costs = 4096;
+
 // Factor by which a time of a calibration may be wrong, in both directions: for another device, and
 // for the device on which the calibration was measured.
 inline constexpr double other_device_uncertainty = 3.3, same_device_uncertainty = 1.35;

@@ -184,7 +184,13 @@ std::optional<ErrorModel> read_error_model(const Document& document, Diagnostics
       technique.relief_power = read_exponent(object, "relief_power");
       technique.through = object.number("through", 0, largest_through, Need::optional).value_or(0);
       technique.by_rays = object.boolean("by_rays", Need::optional).value_or(false);
-      object.finish();
+      if (!object.finish()) continue;
+      const auto is_known = [&](const TechniqueError& other) {
+        return &other != &technique && other.name == technique.name;
+      };
+      if (std::ranges::any_of(model.techniques, is_known))
+        diagnostics.add(DiagnosticId::duplicate_name, document.where(node),
+                        fmt::format("two techniques are called '{}'", technique.name));
     }
   root.finish();
   if (diagnostics.count(Severity::error) != errors) return std::nullopt;

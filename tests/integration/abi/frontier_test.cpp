@@ -203,6 +203,27 @@ TEST_F(Frontier, LargerBudgets_NeverPredictMoreError) {
   EXPECT_EQ(predict(allocated, 1e-3f).fits, 0u);
 }
 
+// Frames without a profile count no tiles, which says nothing about frames with one.
+TEST_F(Frontier, FramesWithoutProfile_TellNothing) {
+  make();
+  set_budget(0);
+  const dermis_outcome fresh = predict(allocated, 10);
+  GraphOptions options = shipped_options("configs/graphs/skin.json");
+  options.width = allocated.width;
+  options.height = allocated.height;
+  options.profiles = false;
+  graph = make_graph(options);
+  ASSERT_OK(dermis_graph_set_setting(graph, "probe", "\"off\"", nullptr));
+  make_images(graph);
+  set_budget(0);
+  run(allocated, 3);
+  const dermis_profile skin = skin_profile();
+  ASSERT_OK(dermis_graph_set_profile(graph, 1, &skin.source, nullptr));
+  const dermis_outcome later = predict(allocated, 10);
+  EXPECT_STREQ(later.configuration, fresh.configuration);
+  EXPECT_FLOAT_EQ(later.expected_ms, fresh.expected_ms);
+}
+
 // The host keeps all passes of a frame within one budget by lowering its resolution. Its own passes
 // take `others_ms` at the allocated size.
 TEST_F(Frontier, Resolution_HoldsOneBudget) {

@@ -222,6 +222,26 @@ TEST_F(Settings, ViewSettings_SurviveAReloadThatAcceptsThem) {
               HasSubstr("setting 'weight' = 0.75 of a view is not carried over"));
   dermis_report_destroy(report);
   EXPECT_EQ(weight_of_view("one"), 0.5);
+  EXPECT_EQ(named(settings_of(view), "weight").set, 0u);
+  set("weight", "0.25"); // the graph's value applies, because the view has none
+  EXPECT_EQ(weight_of_view("one"), 0.25);
+  EXPECT_EQ(named(settings_of(view), "weight").set, 1u);
+  ASSERT_OK(host.reload(graph_text));
+  EXPECT_EQ(weight_of_view("one"), 0.75) << "this graph accepts the view's value again";
+}
+
+TEST_F(Settings, ValueThatWasNotCarriedOver_CanBeRemoved) {
+  make_with_view();
+  set_for_view("weight", "0.75");
+  const std::string fixed =
+      replaced(graph_text, R"("when": "threshold > 0.1")", R"("when": "weight > 0.1")");
+  ASSERT_OK(host.reload(fixed));
+  EXPECT_EQ(weight_of_view("one"), 0.5);
+  set_for_view("weight", nullptr);
+  EXPECT_THAT(dermis_view_set_setting(view, "weight", nullptr, nullptr),
+              Fails(DERMIS_ERROR_ARGUMENT, "belongs to the graph"));
+  ASSERT_OK(host.reload(graph_text));
+  EXPECT_EQ(weight_of_view("one"), 0.5);
 }
 
 TEST_F(Settings, OwnValueOfTheGraphsView_StaysInThatView) {
@@ -263,6 +283,27 @@ TEST_F(Settings, GraphSetting_IsRejectedForAView) {
               Fails(DERMIS_ERROR_ARGUMENT, "name is NULL"));
   EXPECT_THAT(dermis_view_set_setting(nullptr, "weight", "1", nullptr),
               Fails(DERMIS_ERROR_ARGUMENT, "view is NULL"));
+}
+
+// The null device reports 0 for each pass, so learned times show at once.
+TEST(SettingsOnANullDevice, AnimatedSetting_TimesAreLearned) {
+  NullHost host;
+  ASSERT_OK(host.start());
+  const auto calibration = [&] {
+    size_t size = 0;
+    EXPECT_OK(dermis_graph_calibration(host.graph, &size, nullptr));
+    std::string text(size, ' ');
+    EXPECT_OK(dermis_graph_calibration(host.graph, &size, text.data()));
+    return text;
+  };
+  const std::string before = calibration();
+  for (int frame = 0; frame < 10; ++frame) {
+    const std::string weight = std::to_string(0.5 + 0.001 * frame);
+    ASSERT_OK(dermis_view_set_setting(dermis_graph_view(host.graph), "accumulate_weight",
+                                      weight.c_str(), nullptr));
+    ASSERT_OK(host.record());
+  }
+  EXPECT_FALSE(calibration() == before);
 }
 
 } // namespace

@@ -18,6 +18,24 @@ namespace {
 using namespace dermis;
 using namespace dermis::choice;
 
+TEST(CalibrationFile, DuplicateOrUnnamedCosts_AreRejected) {
+  const auto read = [](const std::string& costs, Diagnostics& diagnostics) {
+    const auto document = parse_document(
+        "c.json", R"({ "dermis_calibration": 2, "device": "d", "costs": [)" + costs + "] }",
+        diagnostics);
+    return document && read_calibration(*document, diagnostics);
+  };
+  const auto cost = [](const std::string& work) {
+    return R"({ "work": ")" + work + R"(", "base_us": 1, "group_us": 1, "spread": 0 })";
+  };
+  Diagnostics good, twice, unnamed;
+  EXPECT_TRUE(read(cost("a") + ", " + cost("b"), good)) << format_as_json(good);
+  EXPECT_FALSE(read(cost("a") + ", " + cost("a"), twice));
+  ASSERT_EQ(twice.list.size(), 1u);
+  EXPECT_EQ(twice.list[0].id, DiagnosticId::duplicate_name);
+  EXPECT_FALSE(read(cost(""), unnamed));
+}
+
 struct Calibrations : ::testing::TestWithParam<DeviceClass> {
   Diagnostics diagnostics;
 

@@ -322,6 +322,40 @@ TEST(WorkNames, RealsPerFrame_HaveOneDigit) {
   EXPECT_EQ(name(0.13, 1.25), name(0.127, 1.25));
 }
 
+TEST(WorkNames, IntegersPerFrame_HaveTwoDigits) {
+  PassTypeSetting settings[2];
+  settings[0].name = "seed";
+  settings[0].per_frame = true;
+  settings[1].name = "count";
+  for (PassTypeSetting& one : settings)
+    one.type = SettingType::integer;
+  PassType type;
+  type.name = "pass";
+  type.settings = settings;
+  const auto name = [&](int64_t seed, int64_t count) {
+    const SettingValue values[] = {{SettingType::integer, seed, 0},
+                                   {SettingType::integer, count, 0}};
+    return work_name(type, values);
+  };
+  EXPECT_EQ(name(32, 1234), "pass seed=32 count=1234");
+  EXPECT_EQ(name(128, 1), "pass seed=120 count=1");
+  EXPECT_EQ(name(-1999999999, 1), "pass seed=-1900000000 count=1");
+}
+
+TEST(SameWork, ValuesThatCostTheSame_AreTheSame) {
+  CostEstimator costs;
+  Configuration a;
+  a.passes.resize(1);
+  a.passes.front().cost = costs.add("pass weight=0.1");
+  Configuration b = a;
+  EXPECT_TRUE(is_same_work(a, b));
+  b.passes.front().cost = costs.add("pass weight=0.2");
+  EXPECT_FALSE(is_same_work(a, b));
+  b = a;
+  b.technique = 3;
+  EXPECT_FALSE(is_same_work(a, b));
+}
+
 // Passes without groups have no times: combine_copies of frames in which all tiles scatter.
 TEST(ForecastTime, EmptyPass_DoesNotLeaveTheTimeUnknown) {
   CostEstimator costs({{"work", 100, 1, 0.1}, {"copies", 50, 1, 0.1}});

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace {
@@ -144,6 +145,22 @@ TEST(CostEstimator, RejectedWork_IsLessOptimistic) {
   const double before = costs.predict(clock_s)[one.value].undisturbed;
   costs.reduce_optimism(one);
   EXPECT_GT(costs.predict(clock_s)[one.value].undisturbed, 2 * before);
+}
+
+TEST(CostEstimator, ManyWorks_ExportAReadableCalibration) {
+  CostEstimator costs;
+  std::vector<PassTime> once, often;
+  for (size_t i = 0; i < max_calibrated_costs + 100; ++i)
+    (i < 100 ? often : once).push_back({costs.add("work seed=" + std::to_string(i)), 1, 0.01});
+  double clock_s = 0;
+  observe(costs, once, 1, clock_s);
+  observe(costs, often, 3, clock_s);
+  const Calibration exported{"device", other_device_uncertainty, costs.calibration()};
+  EXPECT_EQ(exported.costs.size(), max_calibrated_costs);
+  EXPECT_EQ(std::ranges::count(exported.costs, "work seed=0", &Cost::work), 1);
+  Diagnostics diagnostics;
+  const auto document = parse_document("c.json", write_calibration(exported), diagnostics);
+  EXPECT_TRUE(document && read_calibration(*document, diagnostics)) << format_as_json(diagnostics);
 }
 
 TEST(CostEstimator, EmptyDispatches_TeachNothing) {
