@@ -182,10 +182,8 @@ PassTypeProblem problem_of(const HostPassTypeDeclaration& type) {
   return duplicate_in(type.settings, "settings");
 }
 
-PassTypeId HostPassTypes::add(HostPassTypeDeclaration type, PassTypeRegistry& registry) {
-  if (registry.find(type.name).valid()) return {};
-  Kept& kept = pass_types_.emplace_back();
-  kept.declared = std::move(type);
+// The name and texts of the registered type point into `kept`.
+PassTypeId HostPassTypes::add_kept(Kept& kept, PassTypeRegistry& registry) {
   for (const HostPassTypePort& port : kept.declared.ports) {
     Port& added = kept.ports.emplace_back();
     added.name = port.name;
@@ -215,6 +213,18 @@ PassTypeId HostPassTypes::add(HostPassTypeDeclaration type, PassTypeRegistry& re
   made.side_effects = kept.declared.side_effects;
   made.serves_scattering = kept.declared.serves_scattering;
   return registry.add(made);
+}
+
+PassTypeId HostPassTypes::add(HostPassTypeDeclaration type, PassTypeRegistry& registry) {
+  if (registry.find(type.name).valid()) return {};
+  Kept& kept = pass_types_.emplace_back();
+  try {
+    kept.declared = std::move(type);
+    return add_kept(kept, registry);
+  } catch (...) { // out of memory: nothing is registered
+    pass_types_.pop_back();
+    throw;
+  }
 }
 
 std::string write_host_pass_types(const HostPassTypes& pass_types) {

@@ -64,6 +64,8 @@ private:
     std::vector<Port> ports;
     std::vector<PassTypeSetting> settings;
   };
+  static PassTypeId add_kept(Kept& kept, PassTypeRegistry& registry);
+
   std::deque<Kept> pass_types_; // a deque, so that addresses stay valid
 };
 

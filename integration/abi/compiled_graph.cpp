@@ -172,10 +172,14 @@ void merge_slot(Slot& slot, const Slot& other, const Graph& graph, Diagnostics& 
 
 // Merges the plans' requirements on images that the host must provide.
 std::vector<Slot> slots_of(const CompiledGraph& compiled_graph, Diagnostics& diagnostics) {
-  std::vector<Slot> slots =
-      make_slots(compiled_graph.graph, compiled_graph.plans.front().compiled->plan);
+  const auto slots_of_plan = [&](const RunnablePlan& plan) {
+    const bool replaced = plan.without_bounds != no_plan; // passes are left out in that plan
+    return make_slots(compiled_graph.graph, plan.compiled->plan,
+                      replaced ? std::span<const uint8_t>() : plan.left_out);
+  };
+  std::vector<Slot> slots = slots_of_plan(compiled_graph.plans.front());
   for (const RunnablePlan& plan : compiled_graph.plans) {
-    const std::vector<Slot> others = make_slots(compiled_graph.graph, plan.compiled->plan);
+    const std::vector<Slot> others = slots_of_plan(plan);
     for (size_t i = 0; i < slots.size(); ++i)
       merge_slot(slots[i], others[i], compiled_graph.graph, diagnostics);
   }

@@ -130,7 +130,7 @@ dermis_result add_host_pass_type(dermis_context_t& context, HostPassTypeDeclarat
                         limits::host_pass_types);
   if (context.pass_types.find(type.name).valid())
     return bad_argument(log, "{}: there is a pass type '{}' already", registering, type.name);
-  // nothing may fail between here and the end
+  // reserved first, so that nothing fails once the pass type is registered
   passes.recorders.reserve(passes.recorders.size() + 1);
   const PassTypeId id = passes.pass_types.add(std::move(type), context.pass_types);
   passes.recorders.push_back({id, record, user});

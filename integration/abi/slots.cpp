@@ -61,11 +61,13 @@ struct SlotAccess {
   bool read = false, written = false;
 };
 
-// Returns how the plan uses the host's contents: `read` if the first pass that accesses them reads
-// them.
-SlotAccess access_of(const Plan& plan, uint32_t resource) {
+// Returns how the plan uses the host's contents without the passes in `left_out`: `read` if the
+// first pass that accesses them reads them.
+SlotAccess access_of(const Plan& plan, uint32_t resource, std::span<const uint8_t> left_out = {}) {
   SlotAccess result;
-  for (const PlanPass& pass : plan.passes) {
+  for (size_t p = 0; p < plan.passes.size(); ++p) {
+    if (p < left_out.size() && left_out[p] != 0) continue;
+    const PlanPass& pass = plan.passes[p];
     bool reads = false, writes = false;
     for (uint32_t i = 0; i < pass.access_count; ++i) {
       const PlanAccess& access = plan.accesses[pass.first_access + i];
@@ -102,7 +104,8 @@ void report_unknown_slots(const Graph& graph, std::span<const std::string> unbou
           graph.name, fmt::join(others, "', '"), known));
 }
 
-std::vector<Slot> make_slots(const Graph& graph, const Plan& plan) {
+std::vector<Slot> make_slots(const Graph& graph, const Plan& plan,
+                             std::span<const uint8_t> left_out) {
   std::vector<Slot> slots;
   for (uint32_t i = 0; i < graph.resources.size(); ++i) {
     const ResourceDeclaration& declared = graph.resources[i];
@@ -127,7 +130,8 @@ std::vector<Slot> make_slots(const Graph& graph, const Plan& plan) {
       slot.height = resource.height;
       slot.first_layout = first_layout(plan, r);
       const SlotAccess slot_access = access_of(plan, r);
-      slot.read = slot_access.read;
+      // A pass that is left out in frames with empty bounds may write what others read.
+      slot.read = slot_access.read || access_of(plan, r, left_out).read;
       slot.written = slot_access.written;
     }
     slots.push_back(std::move(slot));

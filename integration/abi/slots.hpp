@@ -8,8 +8,10 @@
 
 namespace dermis::abi {
 
-// Position i is PlanResource::slot i, the host's slot id.
-std::vector<Slot> make_slots(const Graph& graph, const Plan& plan);
+// Position i is PlanResource::slot i, the host's slot id. `left_out`: by plan pass whether frames
+// with empty bounds leave it out.
+std::vector<Slot> make_slots(const Graph& graph, const Plan& plan,
+                             std::span<const uint8_t> left_out);
 
 // Reports names in the host's lists that are not slots of the graph. Each probably misspelt name
 // gets a warning; all others share one note, so that a list may serve several graphs.

@@ -189,8 +189,10 @@ void reserve_for_recording(State& state) {
   state.push_constants.resize(max_settings);
   state.chosen_pipelines.resize(state.passes.size());
   state.chosen_settings.reserve(state.plan.setting_values.size());
-  state.before_frame.histories.resize(state.histories.size());
-  state.before_frame.ready.resize(state.instances.size());
+  for (BeforeFrame* before : {&state.before_frame, &state.before_earlier_frame}) {
+    before->histories.resize(state.histories.size());
+    before->ready.resize(state.instances.size());
+  }
 }
 
 } // namespace

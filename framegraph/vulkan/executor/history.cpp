@@ -102,6 +102,7 @@ Rectangle Executor::previous_rectangle(const Executor* before) const noexcept {
 }
 
 void remember_before_frame(State& state) noexcept {
+  std::swap(state.before_frame, state.before_earlier_frame);
   BeforeFrame& before = state.before_frame;
   for (size_t h = 0; h < state.histories.size(); ++h)
     before.histories[h] = {state.histories[h].age, state.histories[h].reason,
@@ -136,7 +137,15 @@ bool Executor::discard_frame(uint64_t frame_index) noexcept {
   if (state.timestamps.pool != VK_NULL_HANDLE) state.timestamps.frame_of_slot[frame_slot] = 0;
   --state.frame_counter;
   before.known = false;
+  state.before_earlier_frame.known = false;
   return true;
+}
+
+void Executor::cancel_frame(uint64_t frame_index) noexcept {
+  const bool earlier_known = state_->before_earlier_frame.known;
+  if (!discard_frame(frame_index)) return;
+  state_->before_earlier_frame.known = earlier_known;
+  std::swap(state_->before_frame, state_->before_earlier_frame);
 }
 
 } // namespace dermis::vulkan

@@ -272,6 +272,7 @@ struct Executor::State {
   std::vector<uint64_t> frame_of_slot; // last frame_index recorded there; 0: none
   Rectangle previous_rectangle;
   BeforeFrame before_frame;
+  BeforeFrame before_earlier_frame; // of the frame before; see Executor::cancel_frame
 
   explicit State(std::shared_ptr<const Plan> from)
       : shared_plan(std::move(from)), plan(*shared_plan) {}

@@ -221,6 +221,16 @@ TEST_F(HostPassSkips, DiscardedFrame_IsRevertedInBothPlans) {
   EXPECT_EQ(age(), 2u);
 }
 
+// In frames with empty bounds `tone` reads what the host provides, because `scatter` is left out.
+TEST_F(HostPassSkips, SlotThatOnlyEmptyBoundsRead_NeedsContents) {
+  run(pass("scatter", "", "given") + ", " + pass("tone", "given"));
+  for (const dermis_slot& slot : list_of(dermis_slot DERMIS_SLOT_INIT, dermis_graph_slots, graph))
+    EXPECT_EQ(slot.read, slot.name == std::string("given") ? 1u : 0u) << slot.name;
+  run(pass("make", "", "given") + ", " + pass("tone", "given")); // never left out
+  for (const dermis_slot& slot : list_of(dermis_slot DERMIS_SLOT_INIT, dermis_graph_slots, graph))
+    EXPECT_EQ(slot.read, 0u) << slot.name;
+}
+
 TEST_F(HostPassSkips, AlternatingPlans_KeepTheHostsHistory) {
   run(remembering);
   for (const uint32_t flags :

@@ -275,6 +275,55 @@ TEST_F(HostMemory, FailedCommandList_LeavesNoFrame) {
   }
 }
 
+// A list keeps its capacity, so each failure has a view of its own.
+TEST_F(HostMemory, FailedCommandList_FrameBeforeCanBeDiscarded) {
+  make_graph();
+  for (uint64_t number = 1;; ++number) {
+    dermis_view view = view_of(host.graph);
+    ASSERT_OK(host.record(view, 1));
+    const dermis_frame frame = host.frame_at(2);
+    uint32_t count = 0;
+    const dermis_command* commands = nullptr;
+    heap.calls = 0;
+    heap.rejected = number;
+    const dermis_result result = dermis_view_commands(view, &frame, &count, &commands);
+    heap.rejected = 0;
+    if (result == DERMIS_OK) {
+      dermis_view_destroy(view);
+      break;
+    }
+    ASSERT_EQ(result, DERMIS_ERROR_MEMORY);
+    ASSERT_EQ(dermis_view_discard(view, 1), DERMIS_OK)
+        << "allocation " << number << ": " << dermis_last_error();
+    EXPECT_EQ(dermis_view_discard(view, 1), DERMIS_ERROR_ARGUMENT) << "only once";
+    EXPECT_OK(host.record(view, 1));
+    dermis_view_destroy(view);
+  }
+}
+
+TEST_F(HostMemory, FailedPassType_IsNotRegistered) {
+  const auto exported = [&] {
+    size_t size = 0;
+    EXPECT_OK(dermis_export_pass_types(host.context, &size, nullptr));
+    std::string text(size, ' ');
+    EXPECT_OK(dermis_export_pass_types(host.context, &size, text.data()));
+    return text;
+  };
+  const std::string before = exported();
+  const dermis_port ports[] = {
+      port_of("a_picture_that_is_changed", DERMIS_PORT_STORAGE_IMAGE_UPDATE),
+      port_of("a_picture_that_is_only_read", DERMIS_PORT_SAMPLED_IMAGE)};
+  dermis_pass_setting weight = real_setting("weight", 1);
+  dermis_pass_type type = pass_type_of(
+      "studio.mix", ports, [](void*, const dermis_pass_call*) {}, nullptr);
+  type.settings = &weight;
+  type.setting_count = 1;
+  reject_each(
+      1, [&] { return dermis_register_pass_type(host.context, &type); },
+      [&] { ASSERT_EQ(exported(), before); });
+  EXPECT_NE(exported(), before);
+}
+
 // Queries change nothing; a rejected query can be repeated.
 TEST_F(HostMemory, FailedQuery_CanBeRepeated) {
   make_graph();
