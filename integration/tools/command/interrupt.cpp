@@ -18,8 +18,12 @@ extern "C" void note_interrupt(int signal) {
 } // namespace
 
 void listen_for_interrupts() {
-  std::signal(SIGINT, note_interrupt);
-  std::signal(SIGTERM, note_interrupt);
+  // Without SA_RESTART, a system call that waits returns, and the verb sees the request.
+  struct sigaction action {};
+  action.sa_handler = note_interrupt;
+  sigemptyset(&action.sa_mask);
+  sigaction(SIGINT, &action, nullptr);
+  sigaction(SIGTERM, &action, nullptr);
 }
 
 bool interrupted() {

@@ -70,6 +70,13 @@ std::string OutputFolder::open(const std::string& path) {
   return "";
 }
 
+std::string OutputFolder::open_for(const std::string& file) {
+  std::error_code ignored;
+  if (file == "-" || (files::exists(file, ignored) && files::is_other(file, ignored))) return "";
+  const files::path parent = files::path(file).parent_path();
+  return open(parent.empty() ? "." : parent.string());
+}
+
 std::string OutputFolder::open_below(const std::string& name) {
   std::error_code problem;
   files::create_directories(path_of(name), problem);

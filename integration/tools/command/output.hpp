@@ -23,6 +23,10 @@ public:
 
   // Creates the folder and checks that it is writable. Returns the problem, or "".
   std::string open(const std::string& path);
+  // Creates the folder of a file and checks that it is writable, before minutes are spent on what
+  // the file is to hold. Standard output ("-"), devices and pipes need no folder. Returns the
+  // problem, or "".
+  std::string open_for(const std::string& file);
   // Creates a subfolder. Returns the problem, or "".
   std::string open_below(const std::string& name);
   std::string path_of(std::string_view name) const;

@@ -141,6 +141,8 @@ bool CaptureWriter::add(const CapturedFrame& frame, std::string& error) {
 }
 
 bool CaptureWriter::finish(std::string& error) {
+  error = why_kept(target_); // files may have come since begin()
+  if (!error.empty()) return false;
   std::error_code code;
   if (fs::exists(target_, code)) {
     // Folders cannot be exchanged in one step. The old folder is renamed first, so that a complete

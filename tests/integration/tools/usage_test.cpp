@@ -2,6 +2,8 @@
 
 #include "tests/integration/tools/command_fixture.hpp"
 
+#include <sys/stat.h>
+
 namespace dermis::test {
 namespace {
 
@@ -74,6 +76,83 @@ TEST_F(Usage, WrongValue_StatesWhatIsExpected) {
   };
   for (const Case& one : cases)
     EXPECT_THAT(run(one.words), FailsWith(2, one.message)) << one.message;
+}
+
+TEST_F(Usage, OutputThatIsAnInput_IsRejectedAndKept) {
+  const std::string text = read_text(burley), graph = write("my.json", text);
+  const std::string picture = write("a.png", "not a picture");
+  std::filesystem::create_symlink(graph, path("link.json"));
+  const std::vector<std::string> commands[] = {
+      {"explain", graph, "-o", graph},
+      {"explain", graph, "-o", path("link.json")},
+      {"graph", graph, "--html", graph},
+      {"validate", graph, "--sarif", graph},
+      {"plan", "save", graph, "-o", graph},
+      {"calibrate", graph, "-o", graph},
+      {"render", "scene.json", "-g", graph, "-o", path("out"), "--trace", graph},
+      {"sheet", graph, "-o", graph},
+      {"compare", picture, picture, "--heat", picture},
+  };
+  for (const std::vector<std::string>& words : commands)
+    EXPECT_THAT(run(words), FailsWith(2, "is an input of this command; choose another file"))
+        << ::testing::PrintToString(words);
+  EXPECT_TRUE(read("my.json") == text);
+  EXPECT_EQ(read("a.png"), "not a picture");
+}
+
+TEST_F(Usage, OutputsThatOverlap_AreRejected) {
+  EXPECT_THAT(run({"compare", "a.png", "b.png", "--heat", path("x.png"), "--flip", "--flip-map",
+                   path("./x.png")}),
+              FailsWith(2, "--heat and --flip-map overlap"));
+  for (const char* capture : {"o", "o/in", "./o/"}) {
+    EXPECT_THAT(
+        run({"render", "scene.json", "-g", burley, "--out", path("o"), "--capture", path(capture)}),
+        FailsWith(2, "--out and --capture overlap"))
+        << capture;
+  }
+  EXPECT_THAT(run({"render", "no_scene.json", "-g", burley, "--out", path("o"), "--trace",
+                   path("o/trace.json")}),
+              FailsWith(1, "no_scene.json"));
+}
+
+TEST_F(Usage, EmptyEntryOfAList_IsRejected) {
+  for (const char* list : {",", ",,", "a.json,", ",a.json", "a.json,,b.json"})
+    EXPECT_THAT(run({"sheet", "-o", path("x.png"), "--graphs", list, "--size", "16x16"}),
+                FailsWith(2, std::string("--graphs: the list '") + list + "' has an empty entry"));
+  EXPECT_THAT(run({"sheet", "-o", path("x.png"), "--budgets=1,"}),
+              FailsWith(2, "--budgets: the list '1,' has an empty entry"));
+}
+
+TEST_F(Usage, FolderThatDoesNotExist_IsNamed) {
+  EXPECT_THAT(run({"explain", burley, "--root", "none"}),
+              FailsWith(2, "--root: there is no folder 'none'"));
+  EXPECT_THAT(run({"apply", "-g", burley, "--frames", ".", "-o", path("o"), "--profiles", "none"}),
+              FailsWith(2, "--profiles: there is no folder 'none'"));
+  EXPECT_THAT(run({"docs", "--graphs", "none", "-o", path("docs")}),
+              FailsWith(2, "--graphs: there is no folder 'none'"));
+}
+
+TEST_F(Usage, PipeIsNotRead) {
+  ASSERT_EQ(::mkfifo(path("pipe").c_str(), 0600), 0);
+  EXPECT_THAT(run({"validate", path("pipe")}), FailsWith(1, "not a regular file"));
+  EXPECT_THAT(run({"plan", "diff", path("pipe"), burley}), FailsWith(1, "not a regular file"));
+}
+
+TEST_F(Usage, UnwritableFile_IsReportedBeforeTheWork) {
+  const std::string below_a_file = write("file", "") + "/x.json";
+  EXPECT_THAT(run({"render", "configs/scenes/bust.json", "-g", burley, "--size", "16x16", "-o",
+                   path("o"), "--trace", below_a_file}),
+              FailsWith(3, "output folder"));
+  EXPECT_THAT(files(), ElementsAre("file"));
+  EXPECT_THAT(run({"calibrate", burley, "-o", below_a_file}), FailsWith(3, "output folder"));
+  EXPECT_THAT(run({"test", "configs/graphs", "--junit", below_a_file}),
+              FailsWith(3, "output folder"));
+}
+
+TEST_F(Usage, ChoiceWithoutAGraph_IsRejected) {
+  EXPECT_THAT(
+      run({"render", "configs/scenes/bust.json", "-g", "none", "--budget", "5", "-o", path("o")}),
+      FailsWith(2, "need a graph"));
 }
 
 TEST_F(Usage, MissingGraphFile_SuggestsAShippedGraph) {

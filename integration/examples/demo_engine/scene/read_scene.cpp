@@ -41,6 +41,12 @@ struct SceneReader {
   Scene& scene;
   std::filesystem::path folder;
   std::vector<std::filesystem::path> roots; // folders below which profiles may be read
+  bool profiles_read = true; // false: unknown names of profiles are no errors of their own
+
+  static bool always_equal(const Curve<glm::dvec3>& a, const Curve<glm::dvec3>& b) {
+    return a.keys.size() == 1 && b.keys.size() == 1 && a.amplitude == 0 && b.amplitude == 0 &&
+           a.keys.front().value == b.keys.front().value;
+  }
 
   void curve(ObjectReader& object, string_view key, const ValueRange& range, Need need,
              auto& out) const {
@@ -90,7 +96,11 @@ struct SceneReader {
     number(object, "pixel_aspect", 0.125, 8.0, camera.pixel_aspect);
     number(object, "near", 1e-4, 100.0, camera.near_plane);
     number(object, "far", 1e-3, 1e5, camera.far_plane);
-    if (object.finish() && camera.near_plane >= camera.far_plane)
+    const bool read = object.finish();
+    if (read && always_equal(camera.position, camera.target))
+      diagnostics.add(DiagnosticId::scene_range, document.where(node),
+                      "the camera's position and target are equal, so it has no direction");
+    if (read && camera.near_plane >= camera.far_plane)
       diagnostics.add(
           DiagnosticId::scene_range, document.where(node),
           fmt::format("the camera's near plane ({} m) must be nearer than its far plane ({} m)",
@@ -126,7 +136,12 @@ struct SceneReader {
     }
     if (light.type == LightType::directional) number(object, "extent", 0.01, 1000.0, light.extent);
     light.shadow = object.boolean("shadow", Need::optional).value_or(true);
-    object.finish();
+    if (object.finish() && light.type != LightType::point &&
+        always_equal(light.position, light.target))
+      diagnostics.add(DiagnosticId::scene_range, document.where(node),
+                      fmt::format("the position and target of light {} are equal, so it has no "
+                                  "direction",
+                                  scene.lights.size()));
     scene.lights.push_back(light);
   }
 
@@ -151,7 +166,7 @@ struct SceneReader {
     if (const auto name = object.string("profile", Need::optional)) {
       for (uint32_t i = 0; i < scene.profiles.size(); ++i)
         if (scene.profiles[i].name == *name) made.profile = i + 1;
-      if (made.profile == 0) {
+      if (made.profile == 0 && profiles_read) {
         std::vector<std::string_view> known;
         for (const SceneProfile& one : scene.profiles)
           known.push_back(one.name);
@@ -179,7 +194,10 @@ struct SceneReader {
     const NodeId lights = object.array("lights", 0, max_lights, Need::optional);
     const NodeId objects = object.array("objects", 1, max_objects);
     object.finish();
+    profiles_read = profiles.valid() || !document.find(document.root(), "profiles").valid();
+    const size_t problems = diagnostics.list.size();
     if (profiles.valid()) read_profiles(profiles);
+    profiles_read = profiles_read && diagnostics.list.size() == problems;
     if (camera.valid()) read_camera(camera);
     if (cuts.valid()) read_cuts(cuts);
     if (lights.valid())

@@ -80,7 +80,7 @@ void add_unbound(CLI::App& verb, std::vector<std::string>& unbound, const char* 
 }
 
 void add_root(CLI::App& verb, std::vector<std::string>& roots, const char* what) {
-  repeat(verb.add_option("--root", roots, what)->type_name("DIR"));
+  repeat(verb.add_option("--root", roots, what)->type_name("DIR")->check(folder_exists()));
 }
 
 void add_graph_inputs(CLI::App& verb, GraphInputs& inputs) {

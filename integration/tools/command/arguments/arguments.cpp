@@ -2,6 +2,7 @@
 
 #include "framegraph/text/suggest.hpp"
 #include "integration/tools/command/arguments/add_verb.hpp"
+#include "integration/tools/command/arguments/lost_files.hpp"
 #include "integration/tools/command/arguments/usage_error.hpp"
 
 #include <CLI/CLI.hpp>
@@ -45,8 +46,17 @@ CLI::App* find_subcommand(CLI::App& app, const std::string& name, std::string_vi
   return nullptr;
 }
 
-// Reports a missing verb and a misspelt verb or option before CLI11 reports missing options.
-// Returns "" if all are known.
+// Returns whether the value of an option that takes a list has nothing between two separators.
+// CLI11 ignores such entries, and without any other takes the next argument as the value.
+bool has_empty_entry(const CLI::Option& option, std::string_view list) {
+  const char separator = option.get_delimiter();
+  return separator != '\0' && !list.empty() &&
+         (list.front() == separator || list.back() == separator ||
+          list.find(std::string(2, separator)) != std::string_view::npos);
+}
+
+// Reports a missing verb, a misspelt verb or option, and an empty entry of a list before CLI11
+// reports missing options. Returns "" if all are known.
 std::string find_misspelling(CLI::App& app, int argc, const char* const* argv) {
   if (argc < 2) return "a verb is required; 'dermis --help' lists all verbs";
   if (std::string_view(argv[1]).starts_with("-")) return "";
@@ -65,7 +75,16 @@ std::string find_misspelling(CLI::App& app, int argc, const char* const* argv) {
   }
   for (int i = options_from; i < argc && std::string_view(argv[i]) != "--"; ++i) {
     const std::string name(name_part(argv[i]));
-    if (!name.starts_with("--") || verb->get_option_no_throw(name) != nullptr) continue;
+    if (!name.starts_with("--")) continue;
+    if (const CLI::Option* option = verb->get_option_no_throw(name)) {
+      const std::string_view argument(argv[i]);
+      const std::string_view list = name.size() < argument.size() ? argument.substr(name.size() + 1)
+                                    : i + 1 < argc                ? std::string_view(argv[i + 1])
+                                                                  : std::string_view();
+      if (has_empty_entry(*option, list))
+        return fmt::format("{}: the list '{}' has an empty entry", name, list);
+      continue;
+    }
     std::vector<std::string> names;
     for (const CLI::Option* one : verb->get_options())
       for (const std::string& known : one->get_lnames())
@@ -140,6 +159,9 @@ Invocation read_arguments(int argc, const char* const* argv) {
     if (const std::string option = find_empty_value(app); !option.empty()) {
       invocation.message = fmt::format("{}: the value is empty; 'dermis {} --help' describes it",
                                        option, verb_of(app));
+      invocation.run = nullptr;
+    } else if (std::string lost = find_lost_file(app); !lost.empty()) {
+      invocation.message = std::move(lost);
       invocation.run = nullptr;
     }
   } catch (const CLI::CallForHelp&) {

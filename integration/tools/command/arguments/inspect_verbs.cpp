@@ -180,7 +180,8 @@ void add_docs_verb(CLI::App& app, Invocation& invocation) {
       "Write the documentation generated from schemas, pass types and graphs",
       "dermis docs --out build/docs", docs, [](CLI::App& verb, DocsOptions& options) {
         add_path(verb, "--out,-o", options.out, "Folder of the pages [build/docs]", "DIR");
-        add_path(verb, "--graphs", options.graphs, "Folder of graph files [configs/graphs]", "DIR");
+        add_path(verb, "--graphs", options.graphs, "Folder of graph files [configs/graphs]", "DIR")
+            ->check(folder_exists());
       });
 }
 

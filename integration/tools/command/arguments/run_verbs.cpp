@@ -221,7 +221,8 @@ void add_picture_verbs(CLI::App& app, Invocation& invocation) {
         add_path(verb, "--frames", options.frames, "Capture folder", "DIR")->required();
         add_path(verb, "--out,-o", options.out, "Folder for EXR images", "DIR")->required();
         add_path(verb, "--profiles", options.profiles,
-                 "Folder of the frames' profiles [configs/profiles]", "DIR");
+                 "Folder of the frames' profiles [configs/profiles]", "DIR")
+            ->check(folder_exists());
         verb.add_option("--repeat", options.repeat, "Runs per frame; times are medians [1]")
             ->check(CLI::Range(1u, max_repeat));
         add_settings(verb, options.settings);
@@ -234,7 +235,8 @@ void add_picture_verbs(CLI::App& app, Invocation& invocation) {
         add_path(verb, "--frames", options.frames, "Capture folder", "DIR")->required();
         add_path(verb, "--out,-o", options.out, "Folder for EXR images", "DIR")->required();
         add_path(verb, "--profiles", options.profiles,
-                 "Folder of the frames' profiles [configs/profiles]", "DIR");
+                 "Folder of the frames' profiles [configs/profiles]", "DIR")
+            ->check(folder_exists());
         verb.add_option("--subset", options.subset,
                         "Pixels per frame, evenly distributed; 0: all [0]")
             ->check(CLI::Range(0u, max_subset));

@@ -222,6 +222,9 @@ ExitCode test(const Session& session, const TestOptions& options) {
   std::error_code ignored;
   for (const std::string& path : options.paths)
     if (files::is_directory(path, ignored)) roots.push_back(path);
+  OutputFolder junit_folder;
+  if (!options.junit.empty()) problem = junit_folder.open_for(options.junit);
+  if (!problem.empty()) return fail(session, ExitCode::environment, problem);
   std::vector<TestRun> runs;
   for (const std::string& path : paths) {
     runs.push_back(run_file(path, options, roots));
@@ -240,9 +243,8 @@ ExitCode test(const Session& session, const TestOptions& options) {
   if (bad == 0) return ExitCode::ok;
   return fail(
       session, ExitCode::problems,
-      fmt::format(
-          "{} of {} expectation files fail; if the change is intended, update them with --update",
-          bad, runs.size()));
+      fmt::format("{} of {} expectation files fail{}", bad, runs.size(),
+                  options.update ? "" : "; if the change is intended, update them with --update"));
 }
 
 } // namespace dermis::tools

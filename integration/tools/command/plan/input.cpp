@@ -24,7 +24,8 @@ std::string name_of(const PlanSource& source) {
 } // namespace
 
 bool holds_plan(const std::string& path) {
-  if (path == "-") return false;
+  std::error_code ignored;
+  if (path == "-" || !std::filesystem::is_regular_file(path, ignored)) return false;
   char first[16] = {};
   std::ifstream stream(path, std::ios::binary);
   stream.read(first, sizeof first);

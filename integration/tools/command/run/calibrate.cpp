@@ -19,6 +19,9 @@ ExitCode calibrate(const Session& session, const CalibrateOptions& options) {
   if (!loaded) return fail_graph(session, options.graph, diagnostics);
   const auto all = choice_sets(*loaded, options.size, diagnostics);
   if (all.empty()) return fail_graph(session, options.graph, diagnostics);
+  OutputFolder folder;
+  if (const std::string problem = folder.open_for(options.out); !problem.empty())
+    return fail(session, ExitCode::environment, problem);
   HostPasses host_passes(loaded->host_pass_types);
   CostsRequest request;
   request.hooks = host_passes.hooks();

@@ -337,13 +337,20 @@ ExitCode render(const Session& session, const RenderOptions& options) {
     transmission = transmits(loaded->graph, choices);
   } else if (!options.settings.empty() || !options.inputs.overlays.empty() ||
              !options.inputs.pass_types.empty() || !options.shaders.empty() ||
-             !options.unbound.empty()) {
+             !options.unbound.empty() || options.budget.ms > 0 ||
+             !options.budget.calibration.empty() || !options.budget.errors.empty()) {
     return fail(session, ExitCode::usage,
-                "--set, --overlay, --pass-types, --shaders and --unbound need a graph");
+                "--set, --overlay, --pass-types, --shaders, --unbound, --budget, --calibration and "
+                "--errors need a graph");
   }
   if (!options.capture.empty() && options.pictures == RenderOptions::Pictures::last)
     return fail(session, ExitCode::usage,
                 "--capture needs the images of all frames: --pictures all");
+
+  OutputFolder trace_folder;
+  if (!options.trace.empty())
+    if (const std::string problem = trace_folder.open_for(options.trace); !problem.empty())
+      return fail(session, ExitCode::environment, problem);
 
   RenderRun run{.session = session,
                 .options = options,

@@ -40,15 +40,6 @@ std::vector<std::string> stems(const std::vector<std::string>& files) {
   return names;
 }
 
-// Creates the folder of a file and checks that it is writable, before minutes are spent on
-// rendering. Devices and pipes need no folder. Returns the problem, or "".
-std::string open_folder_of(const std::filesystem::path& file, OutputFolder& folder) {
-  std::error_code ignored;
-  if (std::filesystem::exists(file, ignored) && std::filesystem::is_other(file, ignored)) return "";
-  const std::filesystem::path parent = file.parent_path();
-  return folder.open(parent.empty() ? "." : parent.string());
-}
-
 struct Row {
   std::string graph; // file; "": no technique
   double budget_ms = 0;
@@ -120,7 +111,7 @@ ExitCode sheet(const Session& session, const SheetOptions& options) {
                 fmt::format("the sheet exceeds {} pixels along a side; use a smaller --size",
                             longest_side));
   OutputFolder folder;
-  if (const std::string problem = open_folder_of(options.out, folder); !problem.empty())
+  if (const std::string problem = folder.open_for(options.out); !problem.empty())
     return fail(session, ExitCode::environment, problem);
   Diagnostics diagnostics;
   const std::optional<LoadedGraph> known = load_pass_types(options.pass_types, diagnostics);

@@ -139,6 +139,9 @@ TEST(SceneFile, ErrorsAreReportedWithTheirPlace) {
       scene_with(
           R"({ "position": [0, 0, 1], "target": [0, 0, 0], "vertical_fov": 30, "near": 30 })"),
       DiagnosticId::scene_range, 3, "near plane");
+  expect_rejected(
+      scene_with(R"({ "position": [1, 0, 1], "target": [1, 0, 1], "vertical_fov": 30 })"),
+      DiagnosticId::scene_range, 3, "no direction");
   expect_rejected(scene_with(plain_camera, R"(, "profile": "skim")").replace(0, 0, ""),
                   DiagnosticId::duplicate_key, 4, "profile");
 }
@@ -147,6 +150,30 @@ TEST(SceneFile, AnUnknownProfileListsTheKnownOnes) {
   std::string text = scene_with(plain_camera);
   text.replace(text.rfind("\"skin\""), 6, "\"wood\"");
   expect_rejected(text, dermis::DiagnosticId::scene_profile, 4, "'skin'");
+}
+
+TEST(SceneFile, BrokenProfile_CausesNoFurtherError) {
+  std::string text = scene_with(plain_camera);
+  text.replace(text.find("\"name\": \"skin\""), 14, "\"name\": \"s k\"");
+  dermis::Diagnostics diagnostics;
+  EXPECT_FALSE(parse_scene("scenes/s.json", text, diagnostics));
+  EXPECT_EQ(diagnostics.list.size(), 1u) << dermis::format_as_json(diagnostics);
+}
+
+TEST(SceneFile, LightsHaveADirection) {
+  for (const char* type : {"point", "spot", "directional"}) {
+    std::string text = scene_with(plain_camera);
+    const std::string target = type == std::string("point") ? "" : R"(, "target": [0, 1, 0])";
+    text.insert(text.rfind('}'), R"(, "lights": [ { "type": ")" + std::string(type) +
+                                     R"(", "position": [0, 1, 0], "intensity": 1)" + target +
+                                     " } ]");
+    if (!target.empty()) {
+      expect_rejected(text, dermis::DiagnosticId::scene_range, 4, "light 0 are equal");
+      continue;
+    }
+    dermis::Diagnostics diagnostics;
+    EXPECT_TRUE(parse_scene("scenes/s.json", text, diagnostics));
+  }
 }
 
 TEST(SceneFile, KeyframesAscendAndASineStaysInRange) {
