@@ -15,12 +15,15 @@ run() { # a host
 }
 
 if [[ ${3:-} == --subdirectory ]]; then
-  cmake -G Ninja -S "$source/tests/integration/packaging/subdirectory" -B "$scratch/build" \
+  # not in the scratch folder, so that ccache finds the same paths again
+  host=$build/host_in_subdirectory
+  launcher=$(command -v ccache || true)
+  cmake -G Ninja -S "$source/tests/integration/packaging/subdirectory" -B "$host" \
     -DDERMIS="$source" -DCMAKE_BUILD_TYPE=Debug \
-    ${DERMIS_LAUNCHER:+-DCMAKE_CXX_COMPILER_LAUNCHER="$DERMIS_LAUNCHER"} >/dev/null
-  cmake --build "$scratch/build" >/dev/null
-  run "$scratch/build/host_dermis"
-  run "$scratch/build/host_dermis_static"
+    ${launcher:+-DCMAKE_CXX_COMPILER_LAUNCHER="$launcher"} >/dev/null
+  cmake --build "$host" -j "$(nproc)" >/dev/null
+  run "$host/host_dermis"
+  run "$host/host_dermis_static"
   exit
 fi
 
