@@ -303,43 +303,38 @@ TEST(ForecastTime, SeparatesSamplesFromOtherWork) {
   EXPECT_TRUE(measured.measured);
 }
 
-// Hosts animate settings; each name of a work takes memory.
-TEST(WorkNames, RealsPerFrame_HaveOneDigit) {
+// Returns the name of the work of a pass with two settings, of which the first is per frame.
+std::string name_with(const SettingValue& per_frame, const SettingValue& other) {
   PassTypeSetting settings[2];
   settings[0].name = "weight";
+  settings[0].type = per_frame.type;
   settings[0].per_frame = true;
   settings[1].name = "radius";
-  for (PassTypeSetting& one : settings)
-    one.type = SettingType::real;
+  settings[1].type = other.type;
   PassType type;
   type.name = "pass";
   type.settings = settings;
-  const auto name = [&](double weight, double radius) {
-    const SettingValue values[] = {{SettingType::real, 0, weight}, {SettingType::real, 0, radius}};
-    return work_name(type, values);
-  };
-  EXPECT_EQ(name(0.127, 1.25), "pass weight=0.1 radius=1.25");
-  EXPECT_EQ(name(0.13, 1.25), name(0.127, 1.25));
+  const SettingValue values[] = {per_frame, other};
+  return work_name(type, values);
+}
+SettingValue real_value(double value) {
+  return {SettingType::real, 0, value};
+}
+SettingValue integer_value(int64_t value) {
+  return {SettingType::integer, value, 0};
+}
+
+// Hosts animate settings; each name of a work takes memory.
+TEST(WorkNames, RealsPerFrame_HaveOneDigit) {
+  EXPECT_EQ(name_with(real_value(0.127), real_value(1.25)), "pass weight=0.1 radius=1.25");
+  EXPECT_EQ(name_with(real_value(0.13), real_value(1.25)), "pass weight=0.1 radius=1.25");
 }
 
 TEST(WorkNames, IntegersPerFrame_HaveTwoDigits) {
-  PassTypeSetting settings[2];
-  settings[0].name = "seed";
-  settings[0].per_frame = true;
-  settings[1].name = "count";
-  for (PassTypeSetting& one : settings)
-    one.type = SettingType::integer;
-  PassType type;
-  type.name = "pass";
-  type.settings = settings;
-  const auto name = [&](int64_t seed, int64_t count) {
-    const SettingValue values[] = {{SettingType::integer, seed, 0},
-                                   {SettingType::integer, count, 0}};
-    return work_name(type, values);
-  };
-  EXPECT_EQ(name(32, 1234), "pass seed=32 count=1234");
-  EXPECT_EQ(name(128, 1), "pass seed=120 count=1");
-  EXPECT_EQ(name(-1999999999, 1), "pass seed=-1900000000 count=1");
+  EXPECT_EQ(name_with(integer_value(32), integer_value(1234)), "pass weight=32 radius=1234");
+  EXPECT_EQ(name_with(integer_value(128), integer_value(1)), "pass weight=120 radius=1");
+  EXPECT_EQ(name_with(integer_value(-1999999999), integer_value(1)),
+            "pass weight=-1900000000 radius=1");
 }
 
 TEST(SameWork, ValuesThatCostTheSame_AreTheSame) {
