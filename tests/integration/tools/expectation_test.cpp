@@ -150,7 +150,10 @@ TEST_F(Expectations, ResultsAreWrittenAsJUnitAndJson) {
               AllOf(StartsWith("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites"),
                     HasSubstr("failures=\"1\""), HasSubstr("name=\"a&lt;b &amp; c\""),
                     HasSubstr("&quot;history_bytes&quot;: 5"), HasSubstr("burley.expect.json")));
-  EXPECT_THAT(run({"test", "configs", "--junit", path("no/such/results.xml")}), FailsWith(3));
+  EXPECT_THAT(run({"test", file, "--junit", path("new/folder/results.xml")}), FailsWith(1));
+  EXPECT_FALSE(read("new/folder/results.xml").empty());
+  EXPECT_THAT(run({"test", "configs", "--junit", write("file", "") + "/results.xml"}),
+              FailsWith(3));
 }
 
 TEST_F(Expectations, OverlaysComeOnlyFromDeclaredFolders) {

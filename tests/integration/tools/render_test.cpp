@@ -47,7 +47,8 @@ TEST_F(Render, UnboundSlots) {
   EXPECT_THAT(render(bust, burley, {"--unbound", "depth"}), FailsWith(2, "needs 'depth'"));
   EXPECT_THAT(render(bust, burley, {"--unbound", "depht"}),
               FailsWith(2, "no slot 'depht'", "depth, "));
-  EXPECT_THAT(render(bust, "none", {"--unbound", "depth"}), FailsWith(2, "--unbound need a graph"));
+  EXPECT_THAT(render(bust, "none", {"--unbound", "depth"}),
+              FailsWith(2, "--unbound", "need a graph"));
 }
 
 TEST_F(Render, GraphOnStandardInput) {
