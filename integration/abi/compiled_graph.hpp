@@ -93,7 +93,7 @@ struct RunnablePlan {
 struct CompiledGraph {
   bool without_material = false; // no profile: passes that serve scattering are off
   uint64_t serial = 0;           // unique among the compiled graphs of a graph
-  uint64_t revision = 0;         // of `configurations`: counts changes of settings and tables
+  uint64_t revision = 0;         // counts changes of work or techniques, and of tables
   Graph graph;
   std::vector<Change> changes;   // changes made by overlays and included files
   std::vector<SourceFile> files; // files of the changes, without their texts

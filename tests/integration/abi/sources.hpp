@@ -99,6 +99,16 @@ std::vector<Item> list_of(const Item& init, Query query, Arguments... arguments)
   return items;
 }
 
+// Calls query(arguments..., &size, NULL), then query(arguments..., &size, text).
+template <class Query, class... Arguments>
+std::string text_from(Query query, Arguments... arguments) {
+  size_t size = 0;
+  EXPECT_OK(query(arguments..., &size, nullptr));
+  std::string text(size, ' ');
+  EXPECT_OK(query(arguments..., &size, text.data()));
+  return text;
+}
+
 inline std::vector<dermis_slot> slots_of(dermis_graph graph) { // Empty on failure.
   uint32_t count = 0;
   if (dermis_graph_slots(graph, &count, nullptr) != DERMIS_OK) return {};

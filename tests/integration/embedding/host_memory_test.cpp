@@ -302,13 +302,7 @@ TEST_F(HostMemory, FailedCommandList_FrameBeforeCanBeDiscarded) {
 }
 
 TEST_F(HostMemory, FailedPassType_IsNotRegistered) {
-  const auto exported = [&] {
-    size_t size = 0;
-    EXPECT_OK(dermis_export_pass_types(host.context, &size, nullptr));
-    std::string text(size, ' ');
-    EXPECT_OK(dermis_export_pass_types(host.context, &size, text.data()));
-    return text;
-  };
+  const auto exported = [&] { return text_from(dermis_export_pass_types, host.context); };
   const std::string before = exported();
   const dermis_port ports[] = {
       port_of("a_picture_that_is_changed", DERMIS_PORT_STORAGE_IMAGE_UPDATE),

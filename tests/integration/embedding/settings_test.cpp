@@ -289,21 +289,14 @@ TEST_F(Settings, GraphSetting_IsRejectedForAView) {
 TEST(SettingsOnANullDevice, AnimatedSetting_TimesAreLearned) {
   NullHost host;
   ASSERT_OK(host.start());
-  const auto calibration = [&] {
-    size_t size = 0;
-    EXPECT_OK(dermis_graph_calibration(host.graph, &size, nullptr));
-    std::string text(size, ' ');
-    EXPECT_OK(dermis_graph_calibration(host.graph, &size, text.data()));
-    return text;
-  };
-  const std::string before = calibration();
+  const std::string before = text_from(dermis_graph_calibration, host.graph);
   for (int frame = 0; frame < 10; ++frame) {
     const std::string weight = std::to_string(0.5 + 0.001 * frame);
     ASSERT_OK(dermis_view_set_setting(dermis_graph_view(host.graph), "accumulate_weight",
                                       weight.c_str(), nullptr));
     ASSERT_OK(host.record());
   }
-  EXPECT_FALSE(calibration() == before);
+  EXPECT_FALSE(text_from(dermis_graph_calibration, host.graph) == before);
 }
 
 } // namespace
