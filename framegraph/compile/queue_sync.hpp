@@ -36,8 +36,8 @@ struct QueueSync {
   std::vector<uint32_t> waits, waits_frame_before;
   std::vector<LastAccess> last_access, last_access_at_frame_end; // by object
   std::vector<OwnQueueWait> draft_waits;                         // by draft
-  // By position: the passes of the same queue that are complete and visible because the other queue
-  // waited for them, and this queue waited for the other one afterwards.
+  // Indexed by position: how many passes of the same queue are complete and visible because of a
+  // transitive wait: the other queue waited for them, and later this queue for the other one.
   std::vector<FrameCounts> round_trips;
 
   void begin(bool two, size_t objects, size_t passes);

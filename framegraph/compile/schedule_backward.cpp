@@ -13,6 +13,7 @@ namespace dermis {
 namespace {
 
 struct Edge { // `before` must run before `after`
+  // read after write, write after read, write after write, or declared with "after"
   enum class Kind : uint8_t { reads, overwritten, overwrites, ordered };
   PassId before, after;
   Kind kind = Kind::reads;
@@ -50,21 +51,22 @@ std::vector<Edge> find_dependencies(const Graph& graph, const Versions& versions
   return edges;
 }
 
+// Returns why the edge exists, as a clause of the message on a cycle.
 std::string explain(const Graph& graph, const Edge& edge) {
   const std::string &before = name_of(graph, edge.before), &after = name_of(graph, edge.after);
   switch (edge.kind) {
   case Edge::Kind::reads:
     return fmt::format("'{}' reads '{}' from '{}'", after, name_of(graph, edge.resource), before);
   case Edge::Kind::overwritten:
-    return fmt::format("'{}' writes over '{}', which '{}' still reads", after,
+    return fmt::format("'{}' overwrites '{}', which '{}' reads", after,
                        name_of(graph, edge.resource), before);
   case Edge::Kind::overwrites:
-    return fmt::format("'{}' writes over '{}' from '{}'", after, name_of(graph, edge.resource),
-                       before);
+    return fmt::format("'{}' overwrites the '{}' that '{}' writes", after,
+                       name_of(graph, edge.resource), before);
   case Edge::Kind::ordered:
     break;
   }
-  return fmt::format("'{}' is to run after '{}': {}", after, before,
+  return fmt::format("'{}' must run after '{}': {}", after, before,
                      graph.passes[edge.after.value].after[edge.ordering].reason);
 }
 

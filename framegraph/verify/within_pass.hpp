@@ -1,7 +1,8 @@
 #pragma once
-// Finds races inside one pass. Its invocations run in no order, so no other access may use what one
-// access writes, except to read the same texels (PlanAccess::own_texels). The kernel orders the
-// accesses of one port by itself (PlanAccess::internally_ordered).
+// Finds races between invocations of one pass, which run concurrently. A subresource that one
+// access writes may have no other access in the pass. Exceptions: each invocation reads only the
+// texels that it writes (PlanAccess::own_texels), or the kernel synchronizes the accesses of the
+// port (PlanAccess::internally_ordered).
 
 #include "framegraph/compile/plan.hpp"
 

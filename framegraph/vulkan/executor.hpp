@@ -315,7 +315,7 @@ public:
   bool discard_frame(uint64_t frame_index) noexcept;
   // Undoes the last recorded frame as if record() had failed: the frame before it can be discarded
   // again. One thread at a time per executor.
-  void cancel_frame(uint64_t frame_index) noexcept;
+  void undo_last_record(uint64_t frame_index) noexcept;
 
   // Reads the device time of each pass, in plan order, of the newest recorded frame <=
   // completed_frame_index. Writes its index to `frame_index` and one entry per plan pass to

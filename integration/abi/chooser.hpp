@@ -151,8 +151,8 @@ void remember(Chooser& chooser, const FrameChoice& frame) noexcept;
 // resolution of `rectangle`. They live until the next call with this chooser. Allocates nothing.
 std::span<const choice::Forecast> forecast(Chooser& chooser, const CompiledGraph& compiled_graph,
                                            const vulkan::Rectangle& rectangle) noexcept;
-// Returns the decision that these forecasts lead to once switches are possible. Changes nothing
-// except `scratch`, and allocates nothing.
+// Returns the configuration that these forecasts of time and error lead to, as if the hysteresis
+// between switches had passed. Changes nothing except `scratch`, and allocates nothing.
 choice::Decision settled_decision(Chooser& chooser, const CompiledGraph& compiled_graph,
                                   std::span<const choice::Forecast> forecasts,
                                   double budget_ms) noexcept;

@@ -46,7 +46,7 @@ BytesByTypes unaliased_bytes(const Plan& plan) {
   return sums;
 }
 
-dermis_memory describe_view_memory(const CompiledGraph& compiled_graph) {
+dermis_memory memory_of(const CompiledGraph& compiled_graph) {
   dermis_memory out = DERMIS_MEMORY_INIT;
   BytesByTypes maximum; // over the plans, because only one runs per frame
   for (const RunnablePlan& runnable : compiled_graph.plans) {
@@ -67,10 +67,11 @@ dermis_memory describe_view_memory(const CompiledGraph& compiled_graph) {
   return out;
 }
 
-dermis_memory describe_memory(dermis_graph_t& graph) {
+// Adds up the device memory of all views, and the tables that they share.
+dermis_memory total_memory(dermis_graph_t& graph) {
   dermis_memory sum = DERMIS_MEMORY_INIT;
   for_each_view(graph, [&](const dermis_view_t& view) {
-    const dermis_memory one = describe_view_memory(*keep_newest(view));
+    const dermis_memory one = memory_of(*keep_newest(view));
     sum.transient_bytes += one.transient_bytes;
     sum.transient_unaliased_bytes += one.transient_unaliased_bytes;
     sum.history_bytes += one.history_bytes;
@@ -208,7 +209,7 @@ extern "C" dermis_result DERMIS_CALL dermis_graph_memory(dermis_graph graph,
     if (const SizedRead read = check_size<dermis_memory>(size); read != SizedRead::ok)
       return rejected_size(log, read, "dermis_graph_memory: memory", size, sizeof(dermis_memory));
     const std::lock_guard changing(graph->changing);
-    write_sized(memory, size, describe_memory(*graph));
+    write_sized(memory, size, total_memory(*graph));
     return DERMIS_OK;
   });
 }

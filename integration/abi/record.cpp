@@ -126,7 +126,7 @@ dermis_result record_chosen(dermis_view_t& view, CompiledGraph& compiled_graph, 
                 has_slot ? "')" : "");
   }
   if (capture != nullptr && capture->failed) {
-    compiled_graph.plans[plan].executor->cancel_frame(frame.frame_index);
+    compiled_graph.plans[plan].executor->undo_last_record(frame.frame_index);
     compiled_graph.last_jitter_px = jitter_before;
     return fail(log, DERMIS_ERROR_MEMORY, DiagnosticId::host_memory, "{}: out of host memory",
                 function_record);

@@ -58,7 +58,7 @@ int64_t with_two_digits(int64_t value) {
 // Returns the value as work_name() states it. A host may change numbers in each frame, and each
 // name takes memory, so real numbers have one digit, because costs hardly depend on them, and
 // integers two.
-std::string work_value(const PassTypeSetting& setting, const SettingValue& value) {
+std::string rounded_value_text(const PassTypeSetting& setting, const SettingValue& value) {
   if (setting.per_frame && setting.type == SettingType::real)
     return fmt::format("{:.1g}", value.real);
   if (setting.per_frame && setting.type == SettingType::integer)
@@ -228,7 +228,8 @@ bool copies_all_tiles(const PassType& type) {
 std::string work_name(const PassType& type, std::span<const SettingValue> values) {
   std::string name(type.name);
   for (size_t i = 0; i < values.size(); ++i)
-    name += fmt::format(" {}={}", type.settings[i].name, work_value(type.settings[i], values[i]));
+    name += fmt::format(" {}={}", type.settings[i].name,
+                        rounded_value_text(type.settings[i], values[i]));
   return name;
 }
 

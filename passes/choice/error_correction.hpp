@@ -67,8 +67,9 @@ double error_factor(const ErrorCorrection& correction, int32_t technique, const 
 // selected tiles scatter: as measured, or `expected` where the measurements do not apply.
 double selection_concentration(const ErrorCorrection& correction, double expected,
                                const FrameKey& key, double now_s, bool cut = false);
-// The content was replaced, as by a cut: the factors of techniques that do not run return to 1, and
-// the exponent of selected tiles to that of the table.
+// Call it when the content was replaced, for example by a camera cut. Sets the factors of
+// techniques that do not run to 1, and the exponent of selection_concentration() to that of the
+// error table.
 void forget_errors(ErrorCorrection& correction);
 // Takes back the last forget_errors(), whose frame was discarded.
 void recall_errors(ErrorCorrection& correction);

@@ -82,8 +82,9 @@ int32_t find_technique(const ErrorModel& model, const std::vector<RunningPass>& 
 // `relief_power`; without relief the factor is 1. Curves are linear between points on logarithmic
 // axes, and constant beyond the ends. technique -1: unscattered.
 double expected_rmse(const ErrorModel& model, int32_t technique, const FrameKey& key);
-// Returns the error that the curve does not include: light transmitted through thin parts, whose
-// RMS is `transmitted_rms` (as subsurface::transmitted_rms).
+// Returns the part of the RMSE that expected_rmse() does not include: the error of light
+// transmitted through thin parts. `transmitted_rms`: the RMS of that light in the unit of
+// subsurface::transmitted_rms. The result is a measured fraction of it per technique.
 double missed_rmse(const ErrorModel& model, int32_t technique, double transmitted_rms);
 
 } // namespace dermis::choice

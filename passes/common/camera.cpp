@@ -145,9 +145,9 @@ std::optional<PixelRays> pixel_rays(const Matrix4& m, uint32_t width, uint32_t h
     return std::nullopt;
   const bool perspective = projection == Projection::right_perspective;
 
-  // With z = -depth and w = -m[14] depth (perspective) or m[15]: ndc * w = m[0] x - m[2] depth +
-  // m[3], solved for x. Orthographic lengths are in host units; the slopes of a perspective
-  // projection have no unit.
+  // The matrix is row-major, and view z is -depth. Row 0 gives ndc_x * clip_w = m[0] * x - m[2] *
+  // depth + m[3], with clip_w = -m[14] * depth (perspective) or m[15] (orthographic). Solved for x,
+  // the view-space position (orthographic, host units), or for x / depth (perspective, no unit).
   const double w = perspective ? -m[14] : m[15], unit = perspective ? 1 : metres_per_unit;
   const double shift_x = perspective ? m[2] : -m[3], shift_y = perspective ? m[6] : -m[7];
   const double first_x = 2 * (0.5 - jitter_px[0]) / width - 1,

@@ -19,7 +19,7 @@ bool history_usable(const FrameConstants& frame) {
   return (frame.flags & history_invalid) == 0;
 }
 
-PreviousPlace place_before(const FrameConstants& frame, double x, double y, double depth) {
+PreviousPosition reproject(const FrameConstants& frame, double x, double y, double depth) {
   const double zoom = (frame.flags & 1) != 0 ? depth : 1;
   const double at[4] = {(double(frame.ray_scale[0]) * x + double(frame.ray_offset[0])) * zoom,
                         (double(frame.ray_scale[1]) * y + double(frame.ray_offset[1])) * zoom,
@@ -37,20 +37,21 @@ PreviousPlace place_before(const FrameConstants& frame, double x, double y, doub
   return {pixel(0), pixel(1), -before[2]};
 }
 
-PreviousPlace place_before(const FrameConstants& frame, double x, double y, double depth,
+PreviousPosition reproject(const FrameConstants& frame, double x, double y, double depth,
                            const std::array<double, 3>& velocity) {
-  const PreviousPlace still = place_before(frame, x, y, depth);
+  const PreviousPosition by_camera = reproject(frame, x, y, depth);
   for (const double v : velocity)
     if (!(std::abs(v) < reproject_largest_velocity)) return {};
   const auto pixel = [&](size_t axis, double now) {
-    const double steady = (now - double(frame.jitter[axis]) - velocity[axis] + 0.5) *
-                              frame.previous_rect[2 + axis] / frame.rect[2 + axis] -
-                          0.5;
-    return snap(steady + double(frame.previous_jitter[axis]));
+    const double unjittered = (now - double(frame.jitter[axis]) - velocity[axis] + 0.5) *
+                                  frame.previous_rect[2 + axis] / frame.rect[2 + axis] -
+                              0.5;
+    return snap(unjittered + double(frame.previous_jitter[axis]));
   };
   return {pixel(0, x), pixel(1, y),
-          still.depth > 0 ? std::max(still.depth - velocity[2] * double(frame.depth_unit), 0.0)
-                          : 0};
+          by_camera.depth > 0
+              ? std::max(by_camera.depth - velocity[2] * double(frame.depth_unit), 0.0)
+              : 0};
 }
 
 double depth_tolerance(const FrameConstants& frame, double depth, double rise) {
@@ -62,7 +63,7 @@ double depth_tolerance(const FrameConstants& frame, double depth, double rise) {
   return std::max(least, reproject_slope_pixels * rise);
 }
 
-HistoryTaps find_history(const FrameConstants& frame, const PreviousPlace& place, uint32_t id,
+HistoryTaps find_history(const FrameConstants& frame, const PreviousPosition& place, uint32_t id,
                          double tolerance, const std::function<SurfaceBefore(int x, int y)>& at) {
   if (!(place.depth > 0) || !(std::abs(place.x) < reproject_largest_velocity) ||
       !(std::abs(place.y) < reproject_largest_velocity))

@@ -29,17 +29,19 @@ inline constexpr double reproject_min_weight = 0.25;
 
 bool history_usable(const FrameConstants& frame);
 
-struct PreviousPlace {
+struct PreviousPosition {
   double x = 0, y = 0; // position in the previous rectangle, pixels; integers are centres
-  double depth = 0;    // depth of the surface in the previous view, mm; 0: no place
+  double depth = 0;    // depth of the surface in the previous view, mm; 0: none
 };
 
-// Returns the previous place of a point that is static in the world. `depth` in mm.
-PreviousPlace place_before(const FrameConstants& frame, double x, double y, double depth);
-// Returns the previous place of a point with a velocity. x, y: position now - before in pixels of
-// this frame's rectangle, without jitter. z: change of view depth now - before that the camera does
-// not explain, world units.
-PreviousPlace place_before(const FrameConstants& frame, double x, double y, double depth,
+// Returns the position in the previous frame of a point that is static in the world. x, y: pixel
+// now, integers are centres. `depth`: view depth now, mm.
+PreviousPosition reproject(const FrameConstants& frame, double x, double y, double depth);
+// Returns the position in the previous frame of a point with a velocity. velocity[0], velocity[1]:
+// movement since the previous frame, including that of the camera, in pixels of this frame's
+// rectangle without jitter. velocity[2]: change of the view depth by the movement of the point
+// only, without the camera, world units.
+PreviousPosition reproject(const FrameConstants& frame, double x, double y, double depth,
                            const std::array<double, 3>& velocity);
 
 // Returns the distance in depth up to which two places are on one surface, mm. `depth`: in the
@@ -58,7 +60,7 @@ struct HistoryTaps {
 
 // Returns bilinear weights of the taps that show profile `id` within `tolerance` (mm) of the
 // expected depth. Calls `at` only for pixels of the previous rectangle.
-HistoryTaps find_history(const FrameConstants& frame, const PreviousPlace& place, uint32_t id,
+HistoryTaps find_history(const FrameConstants& frame, const PreviousPosition& place, uint32_t id,
                          double tolerance, const std::function<SurfaceBefore(int x, int y)>& at);
 
 } // namespace dermis::subsurface

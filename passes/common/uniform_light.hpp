@@ -14,8 +14,8 @@ inline constexpr double uniform_reach_d = 20;
 // step of 8 bits. The picture changes by at most this fraction, plus the weight of the tail beyond
 // the reach.
 inline constexpr double uniform_tolerance = 1.0 / 512;
-// Maximum reach in tiles to a side: with wider scattering, a tile would read more tiles than the
-// pixels that it saves.
+// Maximum reach in tiles in each direction. With wider scattering the test is left out, because it
+// would read more than the kernel whose work it saves.
 inline constexpr int32_t uniform_max_reach = 24;
 // Side of a cell in tiles; the light of a cell is tested in one step.
 inline constexpr uint32_t uniform_cell_side = 4;

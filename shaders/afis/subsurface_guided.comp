@@ -41,7 +41,7 @@ vec2 surface_before(ivec2 pixel) {
   return vec2(depth * mm_per_metre, kept.g);
 }
 
-history_taps find_history(previous_place place, uint id, float tolerance) {
+history_taps find_history(previous_position place, uint id, float tolerance) {
   history_taps taps = taps_around(place);
   for (int i = 0; i < 4; ++i)
     if (taps.weight[i] > 0.0 &&
@@ -63,10 +63,10 @@ guide_state state_before(ivec2 pixel, float depth, uint id, float rise) {
                                   moving_covariance(0.0, 0.0, 0.0, 0.0), true);
   if (!(history_usable() && depth > 0.0))
     return state;
-  previous_place place =
+  previous_position place =
       has_velocity() && depth > 0.0
-          ? place_before(vec2(pixel), depth, texelFetch(velocity_image, texel_of(pixel), 0).rgb)
-          : place_before(vec2(pixel), depth);
+          ? reproject(vec2(pixel), depth, texelFetch(velocity_image, texel_of(pixel), 0).rgb)
+          : reproject(vec2(pixel), depth);
   history_taps taps = find_history(place, id, depth_tolerance(place.depth, rise));
   if (taps.weight == vec4(0.0))
     return state;

@@ -10,40 +10,42 @@
 bool history_usable() { return (frame.flags & 4u) == 0u; }
 bool previous_is_perspective() { return (frame.flags & 8u) != 0u; }
 
-struct previous_place {
+struct previous_position {
   vec2 pixel;  // position in the previous rectangle; integers are centres
-  float depth; // depth of the surface in the previous view, mm; 0: no place
+  float depth; // depth of the surface in the previous view, mm; 0: none
 };
 
-// Returns the previous place of a point that is static in the world.
-previous_place place_before(vec2 pixel, float depth) {
+// Returns the position in the previous frame of a point that is static in the world. `pixel`: now,
+// integers are centres. `depth`: view depth now, mm.
+previous_position reproject(vec2 pixel, float depth) {
   vec4 at = vec4(view_position(pixel, depth), 1.0);
   vec3 before = vec3(dot(frame.previous_from_view[0], at), dot(frame.previous_from_view[1], at),
                      dot(frame.previous_from_view[2], at));
   float k = previous_is_perspective() ? -before.z : 1.0;
   if (!(before.z < 0.0))
-    return previous_place(vec2(0.0), 0.0);
+    return previous_position(vec2(0.0), 0.0);
   vec2 place = (before.xy / k - frame.previous_ray_offset) / frame.previous_ray_scale;
   // A static camera must not blur: steps below 0.001 pixel are rounding errors.
   vec2 whole = round(place);
-  return previous_place(mix(place, whole, lessThan(abs(place - whole), vec2(reproject_snap_px))),
-                        -before.z);
+  return previous_position(mix(place, whole, lessThan(abs(place - whole), vec2(reproject_snap_px))),
+                           -before.z);
 }
 
-// Returns the previous place of a point with a velocity. xy: position now - before in pixels of
-// this frame's rectangle, without jitter. z: change of view depth now - before that the camera does
-// not explain, world units.
-previous_place place_before(vec2 pixel, float depth, vec3 velocity) {
-  previous_place still = place_before(pixel, depth);
+// Returns the position in the previous frame of a point with a velocity. xy: movement since the
+// previous frame, including that of the camera, in pixels of this frame's rectangle without jitter.
+// z: change of the view depth by the movement of the point only, without the camera, world units.
+previous_position reproject(vec2 pixel, float depth, vec3 velocity) {
+  previous_position by_camera = reproject(pixel, depth);
   if (!all(lessThan(abs(velocity), vec3(reproject_largest_velocity)))) // NaN compares false
-    return previous_place(vec2(0.0), 0.0);
-  vec2 steady = (pixel - frame.jitter - velocity.xy + 0.5) * vec2(frame.previous_rect.zw) /
-                    vec2(frame.rect.zw) -
-                0.5;
-  vec2 place = steady + frame.previous_jitter, whole = round(place);
-  return previous_place(mix(place, whole, lessThan(abs(place - whole), vec2(reproject_snap_px))),
-                        still.depth > 0.0 ? max(still.depth - velocity.z * frame.depth_unit, 0.0)
-                                          : 0.0);
+    return previous_position(vec2(0.0), 0.0);
+  vec2 unjittered = (pixel - frame.jitter - velocity.xy + 0.5) * vec2(frame.previous_rect.zw) /
+                        vec2(frame.rect.zw) -
+                    0.5;
+  vec2 place = unjittered + frame.previous_jitter, whole = round(place);
+  return previous_position(mix(place, whole, lessThan(abs(place - whole), vec2(reproject_snap_px))),
+                           by_camera.depth > 0.0
+                               ? max(by_camera.depth - velocity.z * frame.depth_unit, 0.0)
+                               : 0.0);
 }
 
 bool inside_previous(ivec2 pixel) {
@@ -71,7 +73,7 @@ ivec2 tap_pixel(history_taps taps, int i) { return taps.first + ivec2(i & 1, i >
 
 // Returns bilinear weights of the taps in the previous rectangle. A kernel clears the weights of
 // taps that do not show the surface (shows_surface) and calls normalised_taps.
-history_taps taps_around(previous_place place) {
+history_taps taps_around(previous_position place) {
   history_taps none = history_taps(ivec2(0), vec4(0.0));
   if (!(place.depth > 0.0) || !all(lessThan(abs(place.pixel), vec2(reproject_largest_velocity))))
     return none;
@@ -88,7 +90,7 @@ history_taps taps_around(previous_place place) {
 
 // Returns whether `surface` of the previous frame (x: view depth in mm, y: profile id; 0, 0: no
 // surface) has profile `id` and is within `tolerance` (mm) of the expected depth.
-bool shows_surface(vec2 surface, previous_place place, uint id, float tolerance) {
+bool shows_surface(vec2 surface, previous_position place, uint id, float tolerance) {
   return uint(surface.y) == id && abs(surface.x - place.depth) <= tolerance;
 }
 

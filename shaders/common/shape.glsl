@@ -1,6 +1,6 @@
-// Kernels have two shapes. Texel shape, for GPUs: one texel per invocation. Block shape, for
-// drivers on the CPU: one block of texels per invocation. The host sets the constant by the
-// device's type (framegraph/vulkan/device.hpp).
+// A compute shader has two variants. Texel shape, for GPUs: an invocation computes one texel. Block
+// shape, for software drivers: an invocation computes a block of texels. The executor sets the
+// constant according to the device's type (framegraph/vulkan/device.hpp).
 #ifndef DERMIS_SHAPE_GLSL
 #define DERMIS_SHAPE_GLSL
 

@@ -28,7 +28,7 @@ vec2 surface_before(ivec2 pixel) {
 
 // Reads history with cubic weights from the 4x4 texels around the place. Returns false unless all
 // texels with a weight show the surface. One wait covers the independent loads of a row.
-bool sharp_history(previous_place place, uint id, float tolerance, out accumulated_light found) {
+bool sharp_history(previous_position place, uint id, float tolerance, out accumulated_light found) {
   ivec2 first = ivec2(floor(place.pixel));
   vec2 part = place.pixel - vec2(first);
   vec4 across = catmull_rom(part.x), down = catmull_rom(part.y);
@@ -62,7 +62,7 @@ bool sharp_history(previous_place place, uint id, float tolerance, out accumulat
 }
 
 // Reads history with bilinear weights from the texels that show the surface.
-accumulated_light smooth_history(previous_place place, uint id, float tolerance) {
+accumulated_light smooth_history(previous_position place, uint id, float tolerance) {
   history_taps taps = taps_around(place);
   ivec2 limit = frame.previous_rect.zw - 1;
   accumulated_light texels[4];
@@ -87,10 +87,10 @@ accumulated_light history_of(ivec2 pixel, float depth, uint id, float rise) {
   accumulated_light found = accumulated_light(vec3(0.0), 0.0);
   if (!history_usable())
     return found;
-  previous_place place =
-      has_velocity() ? place_before(vec2(pixel), depth,
-                                    texelFetch(velocity_image, texel_of(pixel), 0).rgb)
-                     : place_before(vec2(pixel), depth);
+  previous_position place =
+      has_velocity() ? reproject(vec2(pixel), depth,
+                                 texelFetch(velocity_image, texel_of(pixel), 0).rgb)
+                     : reproject(vec2(pixel), depth);
   float tolerance = depth_tolerance(place.depth, rise);
   if (!(place.depth > 0.0) || !all(lessThan(abs(place.pixel), vec2(reproject_largest_velocity))))
     return found;

@@ -21,7 +21,7 @@
 #include "common/tile_packing.glsl"
 
 const uint block_tiles = uniform_cell_side * uniform_cell_side;
-const int run = 16; // pixels of an invocation: two rows of a tile
+const int run = 16; // pixels of an invocation: two rows of 8 pixels of a tile
 layout(local_size_x = 64, local_size_y = 1, local_size_z = 1) in;
 
 // By tile. widest_of: 0 nothing, 1 subsurface that scatters below a pixel, else the bits of the
@@ -39,8 +39,9 @@ uint class_of(uint widest) {
 
 ivec2 run_pixel(ivec2 first, int i) { return first + ivec2(i & 7, i >> 3); }
 
-// Returns a bit for each pixel of the run that is inside the bounds of subsurface.
-uint run_inside(ivec2 first) {
+// Returns a bit for each pixel of an invocation, from `first` on, that is inside the rectangle and
+// the bounds of subsurface. Bits 0 to 7 are the first row.
+uint mask_inside(ivec2 first) {
   ivec2 from = clamp(frame.bounds.xy - first, ivec2(0), ivec2(8, 2));
   ivec2 to =
       clamp(min(frame.bounds.xy + frame.bounds.zw, frame.rect.zw) - first, ivec2(0), ivec2(8, 2));
@@ -50,7 +51,7 @@ uint run_inside(ivec2 first) {
 
 // Returns a bit for each pixel of the run that has subsurface.
 uint find_subsurface(ivec2 first, out uint ids[run]) {
-  uint mask = run_inside(first);
+  uint mask = mask_inside(first);
   ivec2 last = texel_of(frame.rect.zw - 1);
   [[unroll]] for (int i = 0; i < run; ++i) {
     ids[i] = profile_of(texelFetch(material_image, min(texel_of(run_pixel(first, i)), last), 0).r);

@@ -109,9 +109,9 @@ struct earlier_weights {
 earlier_weights weights_before(ivec2 tile, bool full) {
   ivec2 pixel = pixel_with_subsurface(tile, full), texel = texel_of(pixel);
   float depth = view_depth(texelFetch(depth_image, texel, 0).r);
-  previous_place place =
-      has_velocity() ? place_before(vec2(pixel), depth, texelFetch(velocity_image, texel, 0).rgb)
-                     : place_before(vec2(pixel), depth);
+  previous_position place =
+      has_velocity() ? reproject(vec2(pixel), depth, texelFetch(velocity_image, texel, 0).rgb)
+                     : reproject(vec2(pixel), depth);
   if (!(place.depth > 0.0) || !all(lessThan(abs(place.pixel), vec2(reproject_largest_velocity))))
     return earlier_weights(0.0, false, max_selection_level);
   vec2 corner = vec2(8 * tile - pixel) + place.pixel;

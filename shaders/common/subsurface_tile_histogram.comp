@@ -1,6 +1,7 @@
 #version 460
-// Builds a histogram of the scattering tiles over bins of their expected change, per group for a
-// run of tiles in row order: of all of them, then of those that need not be kept.
+// Each workgroup reads a range of tiles in row order and writes two histograms of their importance
+// (expected change of a pixel): one of all scattering tiles, and one of those that the selection
+// may leave out.
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
 #include "common/subsurface_tile_histogram.bindings.glsl"

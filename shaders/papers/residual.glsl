@@ -23,7 +23,8 @@ vec2 residual_surface_before(texture2D place_image, ivec2 pixel) {
   return vec2(kept.r * mm_per_metre, kept.g);
 }
 
-history_taps find_history(texture2D place_image, previous_place place, uint id, float tolerance) {
+history_taps find_history(texture2D place_image, previous_position place, uint id,
+                          float tolerance) {
   history_taps taps = taps_around(place);
   for (int i = 0; i < 4; ++i)
     if (taps.weight[i] > 0.0 &&

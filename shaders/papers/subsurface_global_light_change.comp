@@ -46,9 +46,9 @@ bool offset_of(ivec2 pixel, out float offset, out float squared_deviation) {
   vec3 light = texelFetch(scattered_image, texel, 0).rgb;
   if (own.id == 0u || !is_lit(light))
     return false;
-  previous_place place = has_velocity() ? place_before(vec2(pixel), own.depth,
+  previous_position place = has_velocity() ? reproject(vec2(pixel), own.depth,
                                                        texelFetch(velocity_image, texel, 0).rgb)
-                                        : place_before(vec2(pixel), own.depth);
+                                        : reproject(vec2(pixel), own.depth);
   float tolerance = depth_tolerance(place.depth, length(own.slope) * sap_footprint(own.depth));
   history_taps taps = find_history(place_image, place, own.id, tolerance);
   vec2 kept = pattern_before(place_image, taps);

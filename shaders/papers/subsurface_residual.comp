@@ -58,13 +58,13 @@ float part_beyond_noise(vec4 mean, float count, bool averaged, bool young) {
   return young ? min(part, square / (square + expected)) : part;
 }
 
-previous_place place_of(ivec2 pixel, sap_texel own) {
+previous_position place_of(ivec2 pixel, sap_texel own) {
   return has_velocity() && own.depth > 0.0
-             ? place_before(vec2(pixel), own.depth,
-                            texelFetch(velocity_image, texel_of(pixel), 0).rgb)
-             : place_before(vec2(pixel), own.depth);
+             ? reproject(vec2(pixel), own.depth,
+                         texelFetch(velocity_image, texel_of(pixel), 0).rgb)
+             : reproject(vec2(pixel), own.depth);
 }
-float tolerance_around(previous_place place, sap_texel own) {
+float tolerance_around(previous_position place, sap_texel own) {
   return depth_tolerance(place.depth, length(own.slope) * sap_footprint(own.depth));
 }
 
@@ -80,7 +80,7 @@ vec4 ratio_before(history_taps taps) {
 // Adds the ratio at `at`, next to `ratio`, to the sum of ratios and weights. Ratios that differ by
 // more than their noise count little. `off` receives the difference of their luminances. Returns
 // false, and adds nothing, if `at` does not show the surface.
-bool add_ratio(ivec2 at, vec4 ratio, previous_place place, uint id, float tolerance,
+bool add_ratio(ivec2 at, vec4 ratio, previous_position place, uint id, float tolerance,
                inout vec4 sum, out float off) {
   off = 0.0;
   if (!inside_previous(at) ||
@@ -96,7 +96,7 @@ bool add_ratio(ivec2 at, vec4 ratio, previous_place place, uint id, float tolera
 // Returns the mean with the ratios of the 8 pixels around the previous place that show the surface.
 // a: squared noise of its luminance, from the second differences along four axes, to which an even
 // change of the ratio adds nothing.
-vec4 mean_ratio(vec4 ratio, previous_place place, uint id, float tolerance) {
+vec4 mean_ratio(vec4 ratio, previous_position place, uint id, float tolerance) {
   const ivec2 axes[4] = ivec2[](ivec2(1, 0), ivec2(0, 1), ivec2(1, 1), ivec2(1, -1));
   vec4 sum = vec4(ratio.rgb, 1.0);
   vec2 bends = vec2(0.0); // squares of the second differences, and their number
@@ -132,7 +132,7 @@ void main() {
   vec4 ratio = vec4(1.0, 1.0, 1.0, 0.0);
   int count = 0;
   bool lost = false;
-  previous_place place = previous_place(vec2(0.0), 0.0);
+  previous_position place = previous_position(vec2(0.0), 0.0);
   float tolerance = 0.0;
   vec2 kept = vec2(never_lit, 0.0); // x: learned pattern, y: squared deviation
   if (own.id != 0u && !copy_only) {

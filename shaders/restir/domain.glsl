@@ -30,7 +30,8 @@ float scattering_reach(vec3 d) { return reach_in_d * max(d.r, max(d.g, d.b)); }
 // Returns R(r), per unit of area.
 float burley_R(float r, float d) { return burley_pdf(r, d) / (2.0 * restir_pi * r); }
 
-// Returns the fraction of the energy within r. Exact for small r, where 1 - exp loses digits.
+// Returns the fraction of the energy within r, in the unit of d. Exact for small r, where 1 - exp
+// loses digits.
 float burley_cdf(float r, float d) {
   float x = r / (3.0 * d);
   if (x < 0.01) // series of 1 - e^(-3x)/4 - 3 e^(-x)/4 = 3x/2 - 3x^2/2 + 5x^3/4 - ...

@@ -69,7 +69,7 @@ vec2 surface_before(ivec2 pixel) {
   return vec2(-dot(frame.previous_from_view[2], view), float(domain.medium));
 }
 
-history_taps find_history(previous_place place, uint id, float tolerance) {
+history_taps find_history(previous_position place, uint id, float tolerance) {
   history_taps taps = taps_around(place);
   for (int i = 0; i < 4; ++i)
     if (taps.weight[i] > 0.0 &&
@@ -94,10 +94,10 @@ bool find_past(ivec2 pixel, uint id, float u, out ivec2 past) {
   if (!history_usable())
     return false;
   float depth = view_depth(texelFetch(depth_image, texel_of(pixel), 0).r);
-  previous_place place =
+  previous_position place =
       has_velocity()
-          ? place_before(vec2(pixel), depth, texelFetch(velocity_image, texel_of(pixel), 0).rgb)
-          : place_before(vec2(pixel), depth);
+          ? reproject(vec2(pixel), depth, texelFetch(velocity_image, texel_of(pixel), 0).rgb)
+          : reproject(vec2(pixel), depth);
   history_taps taps =
       find_history(place, id, depth_tolerance(place.depth, rise_over_pixel(pixel, depth)));
   bool found = false;

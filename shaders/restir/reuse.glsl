@@ -12,8 +12,11 @@ struct reuse_settings {
   float cap;  // confidence_cap
 };
 
-// Samples one x2 by a probe, one place on one light, and one shadow ray. Confidence is 1, even
-// without a sample.
+// Returns the initial candidate of a pixel. A probe ray finds surfaces near the shading point; one
+// hit becomes x2, where light enters. Then one position on one light is sampled, and one shadow ray
+// is traced. Without a hit or light, the reservoir has no sample, but its confidence is 1. Always
+// draws seven random numbers: four of the probe, which the reservoir stores (the last of them
+// selects the hit), one of the light, and two of the position on the light.
 reservoir draw_initial(scatter_domain domain, inout random_state random) {
   reservoir none = no_reservoir(1.0), candidate = none;
   float u[7];

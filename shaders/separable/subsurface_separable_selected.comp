@@ -86,10 +86,10 @@ uint weight_before(ivec2 pixel) {
 
 // Returns the weight in the previous frame of the surface at a pixel; negative if unknown.
 float followed_weight(ivec2 pixel, float depth) {
-  previous_place place =
+  previous_position place =
       has_velocity()
-          ? place_before(vec2(pixel), depth, texelFetch(velocity_image, texel_of(pixel), 0).rgb)
-          : place_before(vec2(pixel), depth);
+          ? reproject(vec2(pixel), depth, texelFetch(velocity_image, texel_of(pixel), 0).rgb)
+          : reproject(vec2(pixel), depth);
   history_taps taps = taps_around(place);
   float sum = 0.0, total = 0.0;
   [[dont_unroll]] for (int i = 0; i < 4; ++i) {

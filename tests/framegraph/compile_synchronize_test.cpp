@@ -397,7 +397,8 @@ TEST(History, ReadWaitsForPreviousFrame_NewestReusesOldest) {
   EXPECT_EQ(newest.source_access, access::none);
 }
 
-// `list` is read only in frames in which `old@-1` is not valid.
+// "old@-1?list" reads `old` of the previous frame, or `list` in frames in which that is not valid.
+// Pass `count` then writes `list` again.
 GraphBuilder with_conditional_reader() {
   GraphBuilder b{"import light", "buffer list"};
   b.buffer("old").history.frames = 1;

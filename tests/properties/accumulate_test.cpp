@@ -1,6 +1,6 @@
-// Tests accumulation of light over frames (subsurface.accumulate,
-// configs/overlays/accumulate.json). It converges in static scenes, and restarts at camera cuts and
-// disocclusions.
+// Tests the pass type subsurface.accumulate (configs/overlays/accumulate.json), which averages
+// light over frames. The average converges in static scenes, and restarts after camera cuts and
+// where disocclusion uncovers surfaces.
 #include "tests/framegraph/test_scale.hpp"
 #include "tests/properties/sequences.hpp"
 

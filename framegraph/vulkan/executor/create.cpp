@@ -189,7 +189,7 @@ void reserve_for_recording(State& state) {
   state.push_constants.resize(max_settings);
   state.chosen_pipelines.resize(state.passes.size());
   state.chosen_settings.reserve(state.plan.setting_values.size());
-  for (BeforeFrame* before : {&state.before_frame, &state.before_earlier_frame}) {
+  for (FrameSnapshot* before : {&state.snapshot, &state.earlier_snapshot}) {
     before->histories.resize(state.histories.size());
     before->ready.resize(state.instances.size());
   }

@@ -123,7 +123,7 @@ void record_table_copy(State& state, VkCommandBuffer commands) noexcept {
   info.pMemoryBarriers = &copied;
   vk.vkCmdPipelineBarrier2(commands, &info);
   tables.is_copied = true;
-  state.before_frame.copied_tables = state.environment.tables;
+  state.snapshot.copied_tables = state.environment.tables;
 }
 
 void refresh_tables(State& state, uint32_t frame_slot) noexcept {

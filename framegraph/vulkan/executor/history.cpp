@@ -101,51 +101,51 @@ Rectangle Executor::previous_rectangle(const Executor* before) const noexcept {
                            : carried_rectangle(*state_, *before->state_);
 }
 
-void remember_before_frame(State& state) noexcept {
-  std::swap(state.before_frame, state.before_earlier_frame);
-  BeforeFrame& before = state.before_frame;
+void save_snapshot(State& state) noexcept {
+  std::swap(state.snapshot, state.earlier_snapshot);
+  FrameSnapshot& snapshot = state.snapshot;
   for (size_t h = 0; h < state.histories.size(); ++h)
-    before.histories[h] = {state.histories[h].age, state.histories[h].reason,
-                           state.histories[h].lost};
+    snapshot.histories[h] = {state.histories[h].age, state.histories[h].reason,
+                             state.histories[h].lost};
   for (size_t i = 0; i < state.instances.size(); ++i)
-    before.ready[i] = state.instances[i].ready;
-  before.placeholders_ready = state.placeholders_ready;
-  before.copied_tables.reset();
-  before.previous_rectangle = state.previous_rectangle;
-  before.last_frame_index = state.last_frame_index;
-  before.known = true;
+    snapshot.ready[i] = state.instances[i].ready;
+  snapshot.placeholders_ready = state.placeholders_ready;
+  snapshot.copied_tables.reset();
+  snapshot.previous_rectangle = state.previous_rectangle;
+  snapshot.last_frame_index = state.last_frame_index;
+  snapshot.is_valid = true;
 }
 
 bool Executor::discard_frame(uint64_t frame_index) noexcept {
   State& state = *state_;
-  BeforeFrame& before = state.before_frame;
-  if (!before.known || state.last_frame_index != frame_index) return false;
+  FrameSnapshot& snapshot = state.snapshot;
+  if (!snapshot.is_valid || state.last_frame_index != frame_index) return false;
   const auto frame_slot = static_cast<uint32_t>(frame_index % state.frames_in_flight);
   for (size_t h = 0; h < state.histories.size(); ++h) {
-    state.histories[h].age = before.histories[h].age;
-    state.histories[h].reason = before.histories[h].reason;
-    state.histories[h].lost = before.histories[h].lost;
+    state.histories[h].age = snapshot.histories[h].age;
+    state.histories[h].reason = snapshot.histories[h].reason;
+    state.histories[h].lost = snapshot.histories[h].lost;
   }
   for (size_t i = 0; i < state.instances.size(); ++i)
-    state.instances[i].ready = before.ready[i] != 0;
-  state.placeholders_ready = before.placeholders_ready;
-  if (before.copied_tables != nullptr) before.copied_tables->state().is_copied = false;
-  before.copied_tables.reset();
-  state.previous_rectangle = before.previous_rectangle;
-  state.last_frame_index = before.last_frame_index;
+    state.instances[i].ready = snapshot.ready[i] != 0;
+  state.placeholders_ready = snapshot.placeholders_ready;
+  if (snapshot.copied_tables != nullptr) snapshot.copied_tables->state().is_copied = false;
+  snapshot.copied_tables.reset();
+  state.previous_rectangle = snapshot.previous_rectangle;
+  state.last_frame_index = snapshot.last_frame_index;
   state.frame_of_slot[frame_slot] = 0; // recording cleared the counters of the slot's earlier frame
   if (state.timestamps.pool != VK_NULL_HANDLE) state.timestamps.frame_of_slot[frame_slot] = 0;
   --state.frame_counter;
-  before.known = false;
-  state.before_earlier_frame.known = false;
+  snapshot.is_valid = false;
+  state.earlier_snapshot.is_valid = false;
   return true;
 }
 
-void Executor::cancel_frame(uint64_t frame_index) noexcept {
-  const bool earlier_known = state_->before_earlier_frame.known;
+void Executor::undo_last_record(uint64_t frame_index) noexcept {
+  const bool earlier_is_valid = state_->earlier_snapshot.is_valid;
   if (!discard_frame(frame_index)) return;
-  state_->before_earlier_frame.known = earlier_known;
-  std::swap(state_->before_frame, state_->before_earlier_frame);
+  state_->earlier_snapshot.is_valid = earlier_is_valid;
+  std::swap(state_->snapshot, state_->earlier_snapshot);
 }
 
 } // namespace dermis::vulkan

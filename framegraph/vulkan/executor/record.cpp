@@ -321,7 +321,7 @@ RecordResult Executor::record(const FrameInput& frame) noexcept {
   const VkCommandBuffer commands = frame.command_buffer;
   const auto frame_slot = static_cast<uint32_t>(frame.frame_index % state.frames_in_flight);
   state.pipelines_of_slot[frame_slot] = state.pipelines;
-  remember_before_frame(state);
+  save_snapshot(state);
   if (frame.reset_history) invalidate_for_cut(state);
 
   if (frame.memory_overwritten) invalidate_histories(state, HistoryReason::switched);

@@ -201,14 +201,14 @@ struct Timestamps {
   uint64_t kept_frame = 0;             // index of that frame; 0: none
 };
 
-// State before the last recorded frame: see Executor::discard_frame.
-struct BeforeFrame {
+// Copy of the state that recording a frame changes, from before that frame.
+struct FrameSnapshot {
   struct History {
     uint32_t age = 0;
     HistoryReason reason = HistoryReason::first_frame;
     HistoryReason lost = HistoryReason::first_frame;
   };
-  bool known = false;
+  bool is_valid = false;
   bool placeholders_ready = false;
   std::shared_ptr<ViewTables> copied_tables; // that the frame fills; null: none
   std::vector<History> histories;            // by history
@@ -271,8 +271,8 @@ struct Executor::State {
   uint64_t last_frame_index = 0;
   std::vector<uint64_t> frame_of_slot; // last frame_index recorded there; 0: none
   Rectangle previous_rectangle;
-  BeforeFrame before_frame;
-  BeforeFrame before_earlier_frame; // of the frame before; see Executor::cancel_frame
+  FrameSnapshot snapshot;         // before the last recorded frame; Executor::discard_frame
+  FrameSnapshot earlier_snapshot; // before the second to last frame
 
   explicit State(std::shared_ptr<const Plan> from)
       : shared_plan(std::move(from)), plan(*shared_plan) {}
@@ -328,7 +328,7 @@ void write_frame_constants(State& state, uint32_t frame_slot,
                            std::span<const std::byte> constants) noexcept;
 
 // ---- history.cpp
-void remember_before_frame(State& state) noexcept;
+void save_snapshot(State& state) noexcept;
 // Returns the access that the port binds in the current frame: an index into Plan::accesses, or
 // no_index.
 uint32_t access_now(const State& state, const PortAccess& port) noexcept;

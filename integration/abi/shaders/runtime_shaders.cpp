@@ -20,8 +20,8 @@ std::atomic<uint64_t> versions = 0;
 RuntimeShaders::Kernel versioned(RuntimeShaders& shaders, const std::string& shader,
                                  std::vector<uint32_t>&& spirv) {
   if (spirv.empty() || std::ranges::equal(spirv, find_kernel(shader))) return {};
-  const auto before = shaders.before.find(shader);
-  if (before != shaders.before.end() && before->second.spirv && *before->second.spirv == spirv)
+  const auto before = shaders.replaced.find(shader);
+  if (before != shaders.replaced.end() && before->second.spirv && *before->second.spirv == spirv)
     return before->second;
   return {std::make_shared<const std::vector<uint32_t>>(std::move(spirv)), ++versions};
 }
@@ -38,7 +38,7 @@ std::string list_files(const std::vector<std::string>& shaders) {
 void use_shaders(RuntimeShaders& shaders, dermis_include_fn open, void* user) {
   shaders.open = open;
   shaders.user = user;
-  shaders.before = std::move(shaders.kernels);
+  shaders.replaced = std::move(shaders.kernels);
   shaders.kernels.clear();
 }
 
@@ -69,7 +69,7 @@ bool compile_missing(RuntimeShaders& shaders, const Graph& graph,
   }
   for (size_t i = 0; i < missing.size(); ++i)
     shaders.kernels.emplace(missing[i], versioned(shaders, missing[i], std::move(spirv[i])));
-  shaders.before.clear();
+  shaders.replaced.clear();
   return true;
 }
 

@@ -24,8 +24,8 @@ struct RuntimeShaders {
   // null: all kernels come from the build
   dermis_include_fn open = nullptr;
   void* user = nullptr;
-  Kernels kernels; // kernels compiled or looked up so far
-  Kernels before;  // kernels that `kernels` replaces
+  Kernels kernels;  // kernels compiled or looked up so far
+  Kernels replaced; // kernels of the previous sources, kept until all are compiled again
 };
 
 // Makes kernels come from `open`, compiled again; null: from the build.

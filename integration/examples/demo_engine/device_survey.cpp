@@ -136,7 +136,7 @@ Result<DeviceSurvey> survey_devices() {
   if (Result<> loaded = load_vulkan(); !loaded) return loaded.error();
   DeviceSurvey survey;
   survey.loader_version = volkGetInstanceVersion();
-  survey.validation_layer = validation_layer_is_there();
+  survey.validation_layer = has_validation_layer();
   ValidationLog log;
   VulkanInstance made;
   if (Result<> created = create_instance({}, log, made); !created) return created.error();

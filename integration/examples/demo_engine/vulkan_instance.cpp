@@ -62,7 +62,7 @@ Result<> load_vulkan() {
                "the Vulkan loader (libvulkan.so.1) was not found; install it (Debian: libvulkan1)"};
 }
 
-bool validation_layer_is_there() {
+bool has_validation_layer() {
   uint32_t count = 0;
   vkEnumerateInstanceLayerProperties(&count, nullptr);
   std::vector<VkLayerProperties> layers(count);
@@ -95,7 +95,7 @@ Result<> create_instance(const HostOptions& options, ValidationLog& log, VulkanI
   const char* extensions[] = {VK_EXT_DEBUG_UTILS_EXTENSION_NAME,
                               VK_EXT_VALIDATION_FEATURES_EXTENSION_NAME};
   if (options.validation) {
-    if (!validation_layer_is_there()) {
+    if (!has_validation_layer()) {
       return Error{
           ErrorKind::environment,
           fmt::format("validation was requested, but the layer {} is not installed (Debian: "

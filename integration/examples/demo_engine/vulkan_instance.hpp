@@ -48,7 +48,7 @@ struct ChosenDevice {
 Result<> load_vulkan();
 
 // Returns whether the Khronos layer is installed. Call load_vulkan() first.
-bool validation_layer_is_there();
+bool has_validation_layer();
 
 // Creates an instance for Vulkan 1.3 (or 1.2), whose messages go to `log`. On failure, `made` holds
 // what was created so far. Errors: environment if there is no driver or no layer.

@@ -32,8 +32,10 @@ struct ImageReads {
   double samples = 0;        // those of the texels at random positions (stochastic samples)
 };
 
-// Returns nullopt for an unlisted pass type. Reads that a kernel skips at another profile, at
-// missing depth or at the border are counted; branches on d are followed. Thread: any.
+// Returns the texels that an invocation reads; nullopt for other pass types than those of
+// pass_types_with_known_reads(). Counts reads that the kernel skips where a neighbour has another
+// profile, no depth, or is outside the image; branches on the scattering distance are those of
+// `input`. Callable from any thread.
 std::optional<ImageReads> image_reads(const PassType& type, const ReadsInput& input);
 
 // Returns the pass types with known reads.

@@ -1,5 +1,5 @@
-// Tests the STRUCTS paragraph of the header for every struct of the interface: the sizes that a
-// caller may state, and the treatment of fields that only one side knows.
+// Tests the rules on struct_size in dermis.h for every struct of the C interface: accepted sizes,
+// and fields that only the newer of host and library has.
 
 #include "integration/abi/sized_struct.hpp"
 #include "tests/integration/abi/sources.hpp"

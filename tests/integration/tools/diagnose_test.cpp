@@ -191,8 +191,9 @@ TEST_F(DiagnoseTest, NotANumberInLighting) {
 }
 
 #ifdef DERMIS_EXAMPLES
-// Runs integration/examples/write_capture.c, as C and as C++, under the validation layer. The wall
-// faces the camera, which is the only finding.
+// Runs integration/examples/write_capture.c, compiled as C and as C++, with the validation layer.
+// The only finding in the capture is that all pixels have one depth: the example's scene is a wall
+// parallel to the image.
 TEST_F(DiagnoseTest, ReadsWhatTheExampleWrites) {
   std::string variables;
   for (const std::string& one : validation_environment())

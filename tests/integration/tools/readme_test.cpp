@@ -119,19 +119,7 @@ TEST_F(Readme, EveryShellLineRuns) {
       ++lines;
     }
   }
-  EXPECT_GE(lines, 2u);
-}
-
-TEST_F(Readme, EveryInlineCommandRuns) {
-  const std::regex command("`(dermis [a-z][^`]* --[^`]*)`");
-  size_t commands = 0;
-  for (std::sregex_iterator at(text.begin(), text.end(), command), end; at != end; ++at) {
-    const std::string line = (*at)[1];
-    if (line.find("...") != std::string::npos) continue; // Shortened in the text.
-    expect_runs(line);
-    ++commands;
-  }
-  EXPECT_GE(commands, 2u);
+  EXPECT_GE(lines, 3u);
 }
 
 TEST_F(Readme, ToolsPageListsEveryVerb) {

@@ -51,7 +51,7 @@ struct View {
     return m;
   }
   // Returns the pixel of the rectangle (integers are centres) and the view depth in mm.
-  PreviousPlace see(const Point& world, bool steady = false) const {
+  PreviousPosition see(const Point& world, bool steady = false) const {
     const Point p = transform(view_from_world, world);
     const Matrix4 m = clip();
     const double px = ((m[0] * p[0]) / -p[2] * 0.5 + 0.5) * width - 0.5 + (steady ? 0 : jitter[0]);
@@ -100,8 +100,8 @@ void expect_places(const View& now, const View& before, const char* what) {
   const FrameConstants constants = constants_of(now, before);
   EXPECT_TRUE(history_usable(constants)) << what;
   for (const Point& point : points()) {
-    const PreviousPlace here = now.see(point), there = before.see(point);
-    const PreviousPlace found = place_before(constants, here.x, here.y, here.depth);
+    const PreviousPosition here = now.see(point), there = before.see(point);
+    const PreviousPosition found = reproject(constants, here.x, here.y, here.depth);
     ASSERT_NEAR(found.x, there.x, px_tolerance) << what;
     ASSERT_NEAR(found.y, there.y, px_tolerance) << what;
     ASSERT_NEAR(found.depth, there.depth, depth_tolerance_mm) << what;
@@ -142,8 +142,8 @@ TEST(Reproject, OtherRectangleSize_UsesItsOwnPixels) {
   EXPECT_EQ(constants.previous_rect[0], 8);
   // A velocity is in pixels of the current rectangle.
   for (const Point& point : points()) {
-    const PreviousPlace here = now.see(point), there = before.see(point);
-    const PreviousPlace found = place_before(constants, here.x, here.y, here.depth, {0, 0, 0});
+    const PreviousPosition here = now.see(point), there = before.see(point);
+    const PreviousPosition found = reproject(constants, here.x, here.y, here.depth, {0, 0, 0});
     ASSERT_NEAR(found.x, there.x, px_tolerance);
     ASSERT_NEAR(found.y, there.y, px_tolerance);
   }
@@ -158,14 +158,14 @@ TEST(Reproject, MovingObjectIsFoundByItsVelocity) {
   const Point moved = {0.006, -0.003, 0.05}; // Metres since the previous frame.
   for (const Point& point : points()) {
     const Point earlier = {point[0] - moved[0], point[1] - moved[1], point[2] - moved[2]};
-    const PreviousPlace here = now.see(point), there = before.see(earlier);
-    const PreviousPlace here_steady = now.see(point, true),
-                        there_steady = before.see(earlier, true);
-    const PreviousPlace still = place_before(constants, here.x, here.y, here.depth);
+    const PreviousPosition here = now.see(point), there = before.see(earlier);
+    const PreviousPosition here_steady = now.see(point, true),
+                           there_steady = before.see(earlier, true);
+    const PreviousPosition still = reproject(constants, here.x, here.y, here.depth);
     const double own_z = (still.depth - there.depth) / 1000; // World units are metres.
-    const PreviousPlace found =
-        place_before(constants, here.x, here.y, here.depth,
-                     {here_steady.x - there_steady.x, here_steady.y - there_steady.y, own_z});
+    const PreviousPosition found =
+        reproject(constants, here.x, here.y, here.depth,
+                  {here_steady.x - there_steady.x, here_steady.y - there_steady.y, own_z});
     ASSERT_NEAR(found.x, there.x, px_tolerance);
     ASSERT_NEAR(found.y, there.y, px_tolerance);
     ASSERT_NEAR(found.depth, there.depth, depth_tolerance_mm);
@@ -178,7 +178,7 @@ TEST(Reproject, CameraAtRest_FindsEachPixelExactly) {
   const FrameConstants constants = constants_of(view, view);
   for (int y = 0; y < 180; y += 7)
     for (int x = 0; x < 320; x += 7) {
-      const PreviousPlace found = place_before(constants, x, y, 700 + x + y);
+      const PreviousPosition found = reproject(constants, x, y, 700 + x + y);
       ASSERT_EQ(found.x, x);
       ASSERT_EQ(found.y, y);
       const HistoryTaps taps = find_history(constants, found, 1, depth_tolerance(constants, 700, 0),
@@ -191,7 +191,7 @@ TEST(Reproject, CameraAtRest_FindsEachPixelExactly) {
 
 TEST(Reproject, TapsOfOtherSurfacesAreRejected) {
   const FrameConstants constants = constants_of({}, {});
-  const PreviousPlace place{100.25, 50.5, 800};
+  const PreviousPosition place{100.25, 50.5, 800};
   const auto taps_where = [&](const std::function<SurfaceBefore(int, int)>& at) {
     return find_history(constants, place, 3, depth_tolerance(constants, place.depth, 0), at);
   };
@@ -256,8 +256,8 @@ TEST(Reproject, OutsideOrBehindTheCamera_HasNoHistory) {
   View before;
   before.view_from_world = camera({0, 0, -1}, 0); // All points are behind the camera.
   const FrameConstants behind = constants_of({}, before);
-  EXPECT_EQ(place_before(behind, 160, 90, 900).depth, 0);
-  EXPECT_EQ(find_history(behind, place_before(behind, 160, 90, 900), 1, 16, never).weight[0], 0);
+  EXPECT_EQ(reproject(behind, 160, 90, 900).depth, 0);
+  EXPECT_EQ(find_history(behind, reproject(behind, 160, 90, 900), 1, 16, never).weight[0], 0);
 }
 
 TEST(Reproject, NaNOrHugeVelocity_HasNoHistory) {
@@ -266,7 +266,7 @@ TEST(Reproject, NaNOrHugeVelocity_HasNoHistory) {
                inf = std::numeric_limits<double>::infinity();
   for (const std::array<double, 3>& velocity :
        {std::array{nan, 0.0, 0.0}, {0.0, inf, 0.0}, {1e30, 0.0, 0.0}, {0.0, 0.0, nan}}) {
-    const PreviousPlace place = place_before(constants, 100, 50, 800, velocity);
+    const PreviousPosition place = reproject(constants, 100, 50, 800, velocity);
     EXPECT_EQ(place.depth, 0);
     const HistoryTaps taps = find_history(constants, place, 1, 16, [](int, int) {
       return SurfaceBefore{800, 1};

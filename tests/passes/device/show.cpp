@@ -16,7 +16,7 @@ constexpr uint32_t min_side = 16, random_frames = 4, golden_frames = 6;
 constexpr uint32_t golden_width = 64, golden_height = 48;
 
 // Returns whether the tests can fill the format.
-bool usable(Format format) {
+bool is_testable(Format format) {
   constexpr std::array known = {Format::r8_uint,    Format::r16f,    Format::r32f,
                                 Format::d32f,       Format::rg16f,   Format::rgba8_unorm,
                                 Format::rgba8_srgb, Format::rgba16f, Format::rgba32f};
@@ -27,10 +27,10 @@ bool is_bound_by_host(const ResourceDeclaration& resource) {
   return resource.origin == Origin::imported || resource.exported;
 }
 
-std::vector<Format> usable_formats(const ResourceDeclaration& resource) {
+std::vector<Format> testable_formats(const ResourceDeclaration& resource) {
   std::vector<Format> formats;
   for (const Format format : resource.formats)
-    if (usable(format)) formats.push_back(format);
+    if (is_testable(format)) formats.push_back(format);
   return formats;
 }
 
@@ -88,7 +88,7 @@ Show random_show(uint64_t seed, const Graph& graph) {
                           !transmission && random.below(100) < 30;
     show.bound.push_back(!left_out);
     show.formats.push_back(Format::undefined);
-    if (const auto formats = usable_formats(resource);
+    if (const auto formats = testable_formats(resource);
         is_bound_by_host(resource) && !formats.empty())
       show.formats.back() = formats[random.below(formats.size())];
   }
@@ -126,7 +126,7 @@ Show golden_show(const Graph& graph) {
     const bool light = resource.name == "lighting" || resource.name == "scattered_light";
     show.bound.push_back(!is_bound_by_host(resource) || resource.origin == Origin::imported ||
                          light);
-    const auto formats = usable_formats(resource);
+    const auto formats = testable_formats(resource);
     show.formats.push_back(is_bound_by_host(resource) && !formats.empty() ? formats.front()
                                                                           : Format::undefined);
   }

@@ -25,8 +25,8 @@ struct Case { // The layout that test_reproject.comp reads.
 };
 static_assert(sizeof(Case) == 3 * 4 * sizeof(float));
 
-// The images of the previous frame, 16x16 texels. All texels show a surface, also outside of the
-// rectangle, so that reads there are detected.
+// Images of the previous frame, 16x16 texels. Texels outside the frame's rectangle contain a
+// surface as well, so that a kernel that reads them gives a wrong result.
 struct Texel {
   float depth, id, unused[2];
 };
@@ -129,7 +129,7 @@ struct Bounded {
   double value = 0, bound = 0;
 };
 
-// Computes place_before with rounding bounds, before positions next to whole pixels snap to them.
+// Computes reproject with rounding bounds, before positions next to whole pixels snap to them.
 struct PlaceBounds {
   std::array<Bounded, 2> pixel;
   Bounded depth;
@@ -237,11 +237,11 @@ TEST_F(ReprojectKernel, PlacesEqualTheReference) {
       const Case& one = answers.requested[i];
       const std::string where = std::string(scene.name) + ", case " + std::to_string(i);
       EXPECT_EQ(answers.at(i, 0, 3), history_usable(answers.frame) ? 1 : 0) << where;
-      const PreviousPlace still = place_before(answers.frame, one.x, one.y, one.depth);
+      const PreviousPosition still = reproject(answers.frame, one.x, one.y, one.depth);
       const PlaceBounds bounds = still_bounds(answers.frame, one);
-      const PreviousPlace moving =
-          place_before(answers.frame, one.x, one.y, one.depth,
-                       {one.velocity[0], one.velocity[1], one.velocity[2]});
+      const PreviousPosition moving =
+          reproject(answers.frame, one.x, one.y, one.depth,
+                    {one.velocity[0], one.velocity[1], one.velocity[2]});
       const double steep = depth_tolerance(answers.frame, one.depth, one.rise);
       // A constant and a product.
       EXPECT_NEAR(answers.at(i, 1, 3), steep, 2 * ulp * steep) << where;

@@ -1,7 +1,7 @@
 #version 460
 // Evaluates the functions of reproject.glsl for case x, one row per question:
-//   row 0  place_before of a static point: pixel, depth; history_usable
-//   row 1  place_before of a point with a velocity: pixel, depth; depth_tolerance
+//   row 0  reproject of a static point: pixel, depth; history_usable
+//   row 1  reproject of a point with a velocity: pixel, depth; depth_tolerance
 //   row 2  the taps that show the surface: the first texel, the number of valid taps
 //   row 3  the taps that show the surface: the weights
 // A case is three rows of the table of questions, followed by depth and profile of the texels of
@@ -27,7 +27,7 @@ void main() {
   vec4 seen = separable_rows[rows_of_case * at.x]; // pixel, depth, rise
   vec4 moved = separable_rows[rows_of_case * at.x + 1]; // velocity, profile
   vec4 requested = separable_rows[rows_of_case * at.x + 2]; // place, depth, tolerance
-  previous_place expected = previous_place(requested.xy, requested.z);
+  previous_position expected = previous_position(requested.xy, requested.z);
   history_taps taps = taps_around(expected);
   for (int i = 0; i < 4; ++i)
     if (taps.weight[i] > 0.0 &&
@@ -36,11 +36,11 @@ void main() {
   taps = normalised_taps(taps);
   vec4 answer = taps.weight;
   if (at.y == 0) {
-    previous_place place = place_before(seen.xy, seen.z);
+    previous_position place = reproject(seen.xy, seen.z);
     answer = vec4(place.pixel, place.depth, float(history_usable()));
   }
   if (at.y == 1) {
-    previous_place place = place_before(seen.xy, seen.z, moved.xyz);
+    previous_position place = reproject(seen.xy, seen.z, moved.xyz);
     answer = vec4(place.pixel, place.depth, depth_tolerance(seen.z, seen.w));
   }
   if (at.y == 2)

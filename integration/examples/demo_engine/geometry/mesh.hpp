@@ -31,8 +31,8 @@ struct Bounds {
 
 // Returns the bounds of all vertices; zero for an empty mesh.
 Bounds bounds_of(const Mesh& mesh);
-// Computes normals as plain averages of face normals, without area or angle weights, for meshes
-// without normals. Thread: any.
+// Sets each vertex normal to the normalised unweighted sum of the normals of its faces. For meshes
+// without normals.
 void compute_normals(Mesh& mesh);
 // Computes per-vertex tangents from uv gradients (Lengyel 2001, orthonormalised). Thread: any.
 void compute_tangents(Mesh& mesh);

@@ -198,8 +198,9 @@ bool fill_fallbacks(Json& file) {
   return changed;
 }
 
-// Removes the indices of compressed primitives: they have no view, which tinygltf 2.7 rejects, and
-// decompress replaces them.
+// Removes "indices" from primitives with Draco compression, and returns whether there were any.
+// Their accessor has no bufferView, which tinygltf 2.7 rejects; decompress() adds the indices
+// again.
 bool drop_packed_indices(Json& file) {
   const auto meshes = file.find("meshes");
   if (!reads_draco || meshes == file.end() || !meshes->is_array()) return false;

@@ -35,16 +35,17 @@ struct DermisHostDeleter {
 };
 using DermisHandle = std::unique_ptr<DermisHost, DermisHostDeleter>;
 
-// Slots of a graph from an earlier build, which saves the first of two builds.
+// Cache of a graph's slots. Slots that this engine has no image for must be declared as unbound,
+// and finding them takes a build of the graph; with the cache one build is enough.
 struct KnownSlots {
   std::string graph; // text of the graph; "": none
   std::vector<std::string> names, unbound;
 };
 
-// Reads graph and profile files, builds the graph, and declares the slots that this engine cannot
-// fill as unbound. `known` may be null; it is read and updated for a graph that consists of one
-// file. Errors: input (with all messages of the report), environment (the device lacks something),
-// internal.
+// Reads graph and profile files, and builds the graph. Declares as unbound the slots that this
+// engine has no image for. `known` may be null; it is ignored if the graph includes files or has
+// overlays. Errors: input (the message lists all diagnostics), environment (the device lacks a
+// required feature), internal.
 Result<DermisHandle> create_dermis_host(VulkanHost& host, const DermisDesc& desc,
                                         KnownSlots* known = nullptr);
 

@@ -53,7 +53,7 @@ struct Past {
 // Interpolates cubically if all neighbouring texels show the surface, otherwise bilinearly over
 // those that do, as common/subsurface_accumulate.comp.
 AccumulatedLight find_light(const FrameConstants& frame, const Past& past,
-                            const PreviousPlace& place, uint32_t id, double tolerance) {
+                            const PreviousPosition& place, uint32_t id, double tolerance) {
   const HistoryTaps taps = find_history(frame, place, id, tolerance, [&](int x, int y) {
     const size_t i = past.index(x, y);
     return SurfaceBefore{double(past.depth[i]), past.profile[i]};
@@ -125,9 +125,9 @@ Accumulation::add(const CapturedFrame& frame, const std::vector<float>& light, b
         if (moves)
           for (size_t c = 0; c < 2; ++c)
             velocity[c] = double(frame.velocity.at(uint32_t(x), uint32_t(row), uint32_t(c)));
-        const PreviousPlace place = moves
-                                        ? place_before(constants, x, y, double(depth[i]), velocity)
-                                        : place_before(constants, x, y, double(depth[i]));
+        const PreviousPosition place = moves
+                                           ? reproject(constants, x, y, double(depth[i]), velocity)
+                                           : reproject(constants, x, y, double(depth[i]));
         before = find_light(constants, past, place, id,
                             depth_tolerance(constants, place.depth,
                                             rise_of(depth, frame.profile, width, height, x, y)));

@@ -69,7 +69,7 @@ std::string number_text(double value, int digits) {
 }
 
 // Quotes text for CSV (RFC 4180).
-std::string csv_text(const std::string& text) {
+std::string csv_field(const std::string& text) {
   if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
   std::string quoted(1, '"');
   for (const char c : text)
@@ -83,7 +83,7 @@ std::string csv_value(const ReportValue& value) {
   if (const auto* whole = std::get_if<int64_t>(&value)) return fmt::format("{}", *whole);
   if (const auto* number = std::get_if<double>(&value))
     return std::isfinite(*number) ? fmt::format("{}", *number) : "";
-  if (const auto* text = std::get_if<std::string>(&value)) return csv_text(*text);
+  if (const auto* text = std::get_if<std::string>(&value)) return csv_field(*text);
   return "";
 }
 
@@ -186,7 +186,7 @@ std::string report_as_csv(const Report& report) {
       text.append(i == 0 ? "" : ",").append(cell(i));
     text += "\r\n";
   };
-  line([&](size_t i) { return csv_text(report.table.columns[i].key); });
+  line([&](size_t i) { return csv_field(report.table.columns[i].key); });
   for (const auto& row : report.table.rows)
     line([&](size_t i) { return csv_value(row[i]); });
   return text;

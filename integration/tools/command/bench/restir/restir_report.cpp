@@ -47,12 +47,13 @@ void add_pictures(Report& report, const RestirScene& scene) {
   ReportPictures& maps = report.pictures[1];
   const CapturedFrame& frame = scene.subject.frame;
   const Reference& reference = scene.reference.reference;
-  std::vector<float> everywhere(3 * frame.profile.size());
+  std::vector<float> reference_image(3 * frame.profile.size());
   for (size_t i = 0; i < reference.light.size(); ++i)
-    everywhere[size_t{3} * reference.pixels[i / 3] + i % 3] =
+    reference_image[size_t{3} * reference.pixels[i / 3] + i % 3] =
         static_cast<float>(reference.light[i]);
   light.pictures.push_back(picture_of(scene.subject.scene + ", reference", frame,
-                                      reference.exposure, [&](size_t i) { return everywhere[i]; }));
+                                      reference.exposure,
+                                      [&](size_t i) { return reference_image[i]; }));
   for (const RestirRow& row : scene.rows) {
     if (!row.heat_map) continue;
     const std::string caption = fmt::format("{}, {}", scene.subject.scene, row_name(row));

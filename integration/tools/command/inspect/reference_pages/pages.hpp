@@ -29,8 +29,9 @@ struct NamedGraph {
   std::string name; // file name without its extension
   Graph graph;
 };
-// Returns a table of all slots of `graphs`: direction, formats, the graphs that require the slot,
-// and the note of its declaration. If graphs differ, a cell names the graphs of each text.
+// Returns a Markdown table of all slots of `graphs`: direction, formats, the graphs that require
+// the slot, and the "note" of its declaration. Where graphs differ, the cell lists each variant
+// with the graphs that have it.
 std::string slots_page(std::span<const NamedGraph> graphs);
 
 } // namespace dermis::tools
