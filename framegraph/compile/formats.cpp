@@ -104,7 +104,7 @@ struct FormatResolver {
         for (const Format format : candidates)
           list += fmt::format("{}{}", list.empty() ? "" : ", ", format_info(format).name);
         report.diagnostics.add(DiagnosticId::host_format, declared.where,
-                               fmt::format("the host binds '{}' as {}; declared are {}",
+                               fmt::format("the host binds '{}' as {}; the graph declares {}",
                                            declared.name, format_info(bound).name, list));
         return;
       }

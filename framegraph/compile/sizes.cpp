@@ -186,7 +186,7 @@ void resolve_slot(const CompileInput& in, ResourceId id, ResourceInfo& info, Rep
   if (!info.history) return;
   report.diagnostics.add(
       DiagnosticId::history_of_host_memory, declared.where,
-      fmt::format("'{}' is bound by the host, so its earlier frames are not the graph's to keep",
+      fmt::format("'{}' is bound by the host, so the graph cannot keep its earlier frames",
                   declared.name));
 }
 

@@ -45,6 +45,17 @@ std::optional<uint32_t> open_fragment(Composer& composer, const std::string& nam
   return static_cast<uint32_t>(composer.tree.documents.size() - 1);
 }
 
+// Relates diagnostics from index `first` on, which reading a fragment reported in other files, to
+// the include.
+void relate_to_include(Composer& composer, size_t first, const std::string& name,
+                       const SourceLocation& where) {
+  for (size_t i = first; i < composer.diagnostics.list.size(); ++i) {
+    Diagnostic& one = composer.diagnostics.list[i];
+    if (one.where.file != where.file)
+      one.related.emplace_back(where, fmt::format("'{}' is included here", name));
+  }
+}
+
 // Adds the members of a fragment's section to the graph's section with that name.
 void join_section(Composer& composer, std::string_view section, uint32_t document, NodeId list) {
   EditTree& tree = composer.tree;
@@ -116,11 +127,13 @@ void include(Composer& composer, uint32_t document, NodeId entry, std::vector<It
     return;
   }
   composer.included.push_back({name, where});
-  const std::optional<uint32_t> fragment = open_fragment(composer, name, where);
-  if (!fragment) return;
-  composer.chain.push_back({name, where});
-  join_fragment(composer, *fragment, out);
-  composer.chain.pop_back();
+  const size_t reported = composer.diagnostics.list.size();
+  if (const std::optional<uint32_t> fragment = open_fragment(composer, name, where)) {
+    composer.chain.push_back({name, where});
+    join_fragment(composer, *fragment, out);
+    composer.chain.pop_back();
+  }
+  relate_to_include(composer, reported, name, where);
 }
 
 } // namespace

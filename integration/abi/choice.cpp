@@ -214,8 +214,8 @@ const char* miss_of(const FrameChoice& frame) {
       static_cast<double>(uint64_t{frame.counters.scattering_tiles} + frame.counters.copied_tiles +
                           frame.counters.uniform_tiles);
   return std::abs(seen - expected) > changed_by * std::max(expected, 1.0)
-             ? "the scene changed"
-             : "the times were not as learned";
+             ? "the number of tiles changed"
+             : "passes took longer than their learned times";
 }
 
 dermis_frame_report make_report(const Chooser& chooser, const CompiledGraph& compiled_graph) {

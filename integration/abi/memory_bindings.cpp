@@ -147,8 +147,9 @@ std::string_view family_problem(const dermis_context_t& context, ResourceType ty
         family);
   }
   if (type == ResourceType::acceleration_structure)
-    return "transfer is 1, expected 0: the host transfers the memory below an acceleration "
-           "structure";
+    return "transfer is 1, expected 0: an acceleration structure has no ownership transfer; "
+           "transfer "
+           "the buffer that holds it";
   switch (state.queue_family) {
   case VK_QUEUE_FAMILY_EXTERNAL:
     return {};

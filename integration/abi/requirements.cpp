@@ -116,10 +116,12 @@ requirements_of(PFN_vkGetInstanceProcAddr get_instance_proc_addr, VkInstance ins
     return item;
   };
   return {api,
-          extension(VK_KHR_SYNCHRONIZATION_2_EXTENSION_NAME, has_synchronization2,
-                    "needed, and to be enabled, only on a device that is used as Vulkan 1.2"),
-          extension(VK_KHR_MAINTENANCE_4_EXTENSION_NAME, has_maintenance4,
-                    "needed, and to be enabled, only on a device that is used as Vulkan 1.2"),
+          extension(
+              VK_KHR_SYNCHRONIZATION_2_EXTENSION_NAME, has_synchronization2,
+              "part of Vulkan 1.3; enable the extension only if you use the device as Vulkan 1.2"),
+          extension(
+              VK_KHR_MAINTENANCE_4_EXTENSION_NAME, has_maintenance4,
+              "part of Vulkan 1.3; enable the extension only if you use the device as Vulkan 1.2"),
           feature("synchronization2", synchronization2.synchronization2,
                   "barriers are vkCmdPipelineBarrier2 with 64-bit masks"),
           feature("maintenance4", maintenance4.maintenance4,

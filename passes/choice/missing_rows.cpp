@@ -77,7 +77,7 @@ void report_all_missing_rows(const Graph& graph, const PassTypeRegistry& pass_ty
     diagnostics.add(
         DiagnosticId::error_row_missing, where,
         fmt::format("the error table '{}' has no technique for the pass types '{}' of {}; the "
-                    "choice takes their error for that of unscattered light",
+                    "choice uses the error of unscattered light instead",
                     errors.scenes, fmt::join(types, "', '"), list_names(names)));
   if (!without_cost.empty())
     diagnostics.add(

@@ -253,7 +253,7 @@ TEST(Formats, HostFormatMustBeDeclared) {
   const auto errors = rejected(b, input);
   EXPECT_EQ(errors[0].id, DiagnosticId::host_format);
   EXPECT_THAT(errors[0].text,
-              HasSubstr("binds 'light' as r8_unorm; declared are rgba16f, b10g11r11f"));
+              HasSubstr("binds 'light' as r8_unorm; the graph declares rgba16f, b10g11r11f"));
 }
 
 TEST(Limits, DeviceLimitsAreEnforced) {

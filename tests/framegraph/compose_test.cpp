@@ -318,6 +318,16 @@ TEST(Include, CyclesAreRejectedWithTheWholeChain) {
              Id::include_cycle, "a.json:1:50", {"'a.json' includes 'a.json'"});
 }
 
+TEST(Include, ErrorsInAFragmentNameEachInclude) {
+  const Files files{
+      {"a.json", R"({ "dermis_fragment": 2, "passes": [ { "include": "b.json" } ] })"},
+      {"b.json", R"({ "dermis": 2, "passes": [] })"}};
+  expect_one(put_together(including_graph(R"({ "include": "a.json" })"), {}, files),
+             Id::missing_key, "b.json:1:1",
+             {"dermis_fragment", "a.json:1:50", "'b.json' is included here", "graph.json:18:18",
+              "'a.json' is included here"});
+}
+
 TEST(Include, DepthAndNumberOfFilesAreLimited) {
   Files chain, many;
   std::string includes;

@@ -29,10 +29,11 @@ extern "C" {
 #define DERMIS_BUDGET_ALL_VIEWS 0x8u
 
 /* Device time that a frame of one view, or of all views, may take: a fixed part of your frame,
- * never the time that other work leaves (docs/choice.md). Each record then chooses the settings
- * declared with "by": "budget": the least expected error whose time fits. All plans that this can
- * select exist from creation on, so changing between them allocates nothing. Times are measured
- * with DERMIS_CONTEXT_TIMINGS; otherwise they come from the calibration. */
+ * never the time that other work leaves (docs/choice.md). Each record then picks, for the settings
+ * declared with "by": "budget", the options with the least expected error whose expected time fits.
+ * All plans that this can select exist from creation on, so changing between them allocates
+ * nothing. Times are measured with DERMIS_CONTEXT_TIMINGS; otherwise they come from the
+ * calibration. */
 typedef struct dermis_budget {
   size_t struct_size;
   float milliseconds; /* per frame, > 0; 0: no budget, choices take their defaults */
@@ -86,7 +87,8 @@ typedef struct dermis_frame_statistics {
   const char* technique;        /* name in the error table; "" if none runs */
   const char* next_better;      /* the next more accurate configuration; "" for none */
   float next_better_missing_ms; /* time by which next_better exceeds the budget */
-  float predicted_margin_ms;    /* that dermis_budget.percentile of frames stay within */
+  /* predicted_ms + predicted_margin_ms is the time that dermis_budget.percentile of frames keep */
+  float predicted_margin_ms;
   float calibrated_ms;          /* time by the calibration for the tiles that were counted */
   uint32_t configuration_count;
   uint32_t switches;   /* since the graph was created */
@@ -157,9 +159,9 @@ DERMIS_API dermis_result DERMIS_CALL dermis_graph_predict(
     dermis_graph graph, const dermis_forecast_desc* desc, dermis_outcome* outcome);
 
 /* Returns the times measured on this device by the graph's view, as JSON for
- * dermis_budget.calibration at the next start. *size in: capacity of `text`; out: bytes needed with
- * the final 0. text may be NULL. Costs: time. Thread: concurrent. Errors: ARGUMENT, INCOMPLETE,
- * MEMORY. */
+ * dermis_budget.calibration at the next start. *size in: capacity of `text`; out: required bytes,
+ * including the terminating null. text may be NULL. Costs: time. Thread: concurrent. Errors:
+ * ARGUMENT, INCOMPLETE, MEMORY. */
 DERMIS_API dermis_result DERMIS_CALL dermis_graph_calibration(
     dermis_graph graph, size_t* size, char* text);
 

@@ -32,11 +32,11 @@
  *   DERMIS_CONTEXT_SEPARATE_DEPTH_STENCIL.
  *
  * STRUCTS
- *   Every struct starts with `struct_size`; use its DERMIS_..._INIT. Zero means default. A struct
- *   smaller than the library's returns DERMIS_ERROR_ARGUMENT. A struct of a newer header is
- *   accepted if the part unknown to the library is zero; otherwise the call returns
- *   DERMIS_ERROR_VERSION. The struct_size of the first element is the stride of an array,
- *   and the library writes no more than that per element. Structs that are members of others
+ *   Every struct starts with `struct_size`; use its DERMIS_..._INIT. Zero means default. A call
+ *   with a struct smaller than the library's returns DERMIS_ERROR_ARGUMENT. A struct of a newer header
+ *   is accepted if the part unknown to the library is zero; otherwise the call returns
+ *   DERMIS_ERROR_VERSION. The struct_size of the first element is the stride of an array, and the
+ *   library writes at most that many bytes per element. Structs that are members of others
  *   (dermis_source, dermis_image_state) never grow.
  *
  * ERRORS
@@ -45,7 +45,8 @@
  *   all messages about files, settings and the device; it stays NULL where a call fails with
  *   ARGUMENT, VERSION or MEMORY before it reads them, or after a device loss. A failed call changes
  *   nothing. NULL for a required pointer and a null handle return DERMIS_ERROR_ARGUMENT; destroy
- *   functions ignore NULL. After DERMIS_ERROR_DEVICE_LOST only destroy.
+ *   functions ignore NULL. After DERMIS_ERROR_DEVICE_LOST, calls that create, change or record
+ *   return it again; queries and destroy functions still work.
  *
  * THREADS
  *   Each function states its threads:
@@ -396,13 +397,13 @@ DERMIS_API dermis_result DERMIS_CALL dermis_graph_reload(
     dermis_graph graph, const dermis_graph_desc* desc, dermis_report* report);
 /* Replaces kernels by GLSL of the host, so that shaders can be edited while the program runs.
  * `open` provides "common/subsurface_combine.comp" and the files it includes, such as
- * "common/tiles.glsl"; the library provides bindings and constants. Kernels for which `open`
- * returns 0 are the library's; NULL restores all. The call fails if `open` has none of the graph's.
- * `open` must be callable until it is replaced or the graph is destroyed. Otherwise like a reload:
- * errors have file and line, on failure nothing changes, histories and settings continue. The
- * compiler uses the C library's memory. Takes seconds. Costs: as dermis_graph_create. Thread:
- * concurrent. Errors: as dermis_graph_create; UNSUPPORTED also if the library was built without
- * DERMIS_RUNTIME_SHADERS. */
+ * "common/tiles.glsl"; the library provides bindings and constants. A kernel for which `open`
+ * returns 0 is the library's; NULL as `open` restores all. The call fails if `open` provides none
+ * of the graph's kernels. `open` must be callable until it is replaced or the graph is destroyed.
+ * Otherwise like a reload: errors have file and line, on failure nothing changes, histories and
+ * settings continue. The compiler uses the C library's memory. Takes seconds. Costs: as
+ * dermis_graph_create. Thread: concurrent. Errors: as dermis_graph_create; UNSUPPORTED also if the
+ * library was built without DERMIS_RUNTIME_SHADERS. */
 DERMIS_API dermis_result DERMIS_CALL dermis_graph_reload_shaders(
     dermis_graph graph, dermis_include_fn open, void* user, dermis_report* report);
 /* Changes the allocated size of all views and keeps the pixel_aspect. Histories become invalid,
@@ -424,7 +425,7 @@ typedef enum dermis_slot_type {
 typedef struct dermis_slot {
   size_t struct_size;
   uint32_t id;               /* for the binding */
-  uint32_t required;         /* 0: may stay unbound if named so at creation */
+  uint32_t required;         /* 0: may stay unbound if listed in dermis_graph_desc.unbound */
   const char* name;          /* valid until a call replaces the slots, see dermis_graph_slots */
   uint32_t written;          /* 1: the graph writes it */
   uint32_t read;             /* 1: the graph reads its contents */
@@ -453,8 +454,8 @@ typedef enum dermis_describe_format {
   DERMIS_DESCRIBE_TEXT = 2,
   DERMIS_DESCRIBE_FORMAT_FORCE_32BIT = 0x7fffffff
 } dermis_describe_format;
-/* Describes the plan. *size in: capacity of `text`; out: bytes needed with the final 0. text may be
- * NULL. Costs: time. Thread: concurrent. Errors: ARGUMENT, INCOMPLETE, MEMORY. */
+/* Describes the plan. *size in: capacity of `text`; out: required bytes, including the terminating
+ * null. text may be NULL. Costs: time. Thread: concurrent. Errors: ARGUMENT, INCOMPLETE, MEMORY. */
 DERMIS_API dermis_result DERMIS_CALL dermis_graph_describe(
     dermis_graph graph, dermis_describe_format format, size_t* size, char* text);
 
@@ -500,8 +501,8 @@ typedef struct dermis_history {
   uint32_t valid;               /* 1: the next frame reads the contents, unless it is a cut */
   uint32_t age;                 /* number of consecutive frames in it; 0 if it is not valid */
   dermis_history_reason reason; /* why it is not valid, or why it last was not */
-  /* Frames after a change of a profile or of light until at most 1 % of the history is from before
-   * the change, by the current weights. 1: the last frame only. */
+  /* Number of frames after a change of a profile or of light until at most 1 % of the history is
+   * from before the change, by the current weights. 1: the history holds only the last frame. */
   uint32_t settles_after;
   const char* text; /* the reason as a sentence, or "valid since ..."; static string */
 } dermis_history;
@@ -668,9 +669,9 @@ typedef struct dermis_pass_type {
 DERMIS_API dermis_result DERMIS_CALL dermis_register_pass_type(
     dermis_context context, const dermis_pass_type* type);
 /* Returns the registered pass types as a JSON file for `dermis validate --pass-types FILE`, so that
- * graphs with them can be checked without the host. *size in: capacity of `text`; out: bytes needed
- * with the final 0. text may be NULL. Costs: time. Thread: any. Errors: ARGUMENT, INCOMPLETE,
- * MEMORY. */
+ * graphs with them can be checked without the host. *size in: capacity of `text`; out: required
+ * bytes, including the terminating null. text may be NULL. Costs: time. Thread: any. Errors:
+ * ARGUMENT, INCOMPLETE, MEMORY. */
 DERMIS_API dermis_result DERMIS_CALL dermis_export_pass_types(
     dermis_context context, size_t* size, char* text);
 

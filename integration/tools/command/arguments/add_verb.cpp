@@ -162,7 +162,7 @@ std::vector<CLI::Option*> add_budget(CLI::App& verb, BudgetArguments& budget) {
   add_path(verb, "--calibration", budget.calibration, "Costs of passes (dermis calibrate)")
       ->group(group);
   add_path(verb, "--errors", budget.errors,
-           "Error table (configs/choice/errors.json) to use instead")
+           "Error table to use instead of the built-in configs/choice/errors.json")
       ->group(group);
   return of_frame;
 }

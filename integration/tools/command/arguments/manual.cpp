@@ -58,7 +58,7 @@ std::string manual_page(const std::vector<DeclaredVerb>& verbs, std::string_view
       ".\\\" Made by: dermis man\n.TH DERMIS 1 \"\" \"dermis {}\" \"Dermis\"\n.SH NAME\n"
       "dermis \\- {}\n.SH SYNOPSIS\n.B dermis\nverb [options]\n.SH DESCRIPTION\n"
       "{}\nEach verb explains itself with \\fB\\-\\-help\\fR.\n.SH VERBS\n",
-      version, "frame graphs that scatter light under the skin", roff(verbs.front().text));
+      version, "frame graphs for subsurface scattering", roff(verbs.front().text));
   for (const DeclaredVerb& verb : verbs) {
     if (verb.name.empty() || !verb.verbs.empty()) continue;
     page +=

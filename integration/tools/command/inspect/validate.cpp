@@ -76,9 +76,15 @@ bool check_scene(const Document& document, const std::vector<std::string>& roots
   const auto scene = demo::parse_scene(file.name, file.text, diagnostics, roots);
   if (!scene) return false;
   bool good = true;
-  for (const demo::SceneProfile& one : scene->profiles) {
-    const auto profile = read_document(one.file, diagnostics);
+  const NodeId list = document.find(document.root(), "profiles");
+  for (size_t i = 0; i < scene->profiles.size(); ++i) {
+    const size_t reported = diagnostics.list.size();
+    const auto profile = read_document(scene->profiles[i].file, diagnostics);
     good = profile && subsurface::read_profile(*profile, diagnostics) && good;
+    for (size_t k = reported; k < diagnostics.list.size(); ++k)
+      diagnostics.list[k].related.emplace_back(
+          document.where(children(document, list)[i]),
+          fmt::format("profile '{}' of the scene", scene->profiles[i].name));
   }
   return good;
 }
