@@ -8,6 +8,10 @@
 
 namespace dermis::vulkan {
 
+// An image needs one of these usages to have a view that passes can use; images that are only
+// cleared or copied have none.
+inline constexpr uint32_t viewable_usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_STORAGE_BIT;
+
 // Returns info for a 2-D image with optimal tiling, one sample and exclusive sharing.
 // Free-threaded.
 VkImageCreateInfo image_create_info(const ImageDescription& image);

@@ -58,21 +58,29 @@ Error allocate_memory(const Device& device, const MemoryRequest& request, const 
                       MemoryBlock& block) {
   if (device.host_memory.allocate != nullptr)
     return allocate_from_host(device, request, object, block);
-  const auto type = choose_type(device, request);
-  if (!type)
-    return {
-        ErrorKind::unsupported, VK_SUCCESS,
-        fmt::format("{}: the device has no memory type among {:#x}", object, request.memory_types)};
-  VkMemoryAllocateInfo info{};
-  info.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO;
-  info.allocationSize = request.bytes;
-  info.memoryTypeIndex = *type;
+  MemoryRequest untried = request;
   MemoryBlock taken;
-  VkResult result =
-      device.vk.vkAllocateMemory(device.device, &info, device.allocator, &taken.memory);
-  if (result != VK_SUCCESS)
-    return call_error(result, "vkAllocateMemory",
-                      fmt::format("{}, {} bytes of memory type {}", object, request.bytes, *type));
+  Error failed; // of the best type
+  VkResult result = VK_ERROR_OUT_OF_DEVICE_MEMORY;
+  while (result == VK_ERROR_OUT_OF_DEVICE_MEMORY) { // of one heap; another may have space
+    const auto type = choose_type(device, untried);
+    if (!type && failed) return failed;
+    if (!type)
+      return {ErrorKind::unsupported, VK_SUCCESS,
+              fmt::format("{}: the device has no memory type among {:#x}", object,
+                          request.memory_types)};
+    VkMemoryAllocateInfo info{};
+    info.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO;
+    info.allocationSize = request.bytes;
+    info.memoryTypeIndex = *type;
+    result = device.vk.vkAllocateMemory(device.device, &info, device.allocator, &taken.memory);
+    if (result != VK_SUCCESS && !failed)
+      failed =
+          call_error(result, "vkAllocateMemory",
+                     fmt::format("{}, {} bytes of memory type {}", object, request.bytes, *type));
+    untried.memory_types &= ~(1u << *type);
+  }
+  if (result != VK_SUCCESS) return failed;
   if ((request.required & VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT) != 0) {
     result = device.vk.vkMapMemory(device.device, taken.memory, 0, VK_WHOLE_SIZE, 0, &taken.mapped);
     if (result != VK_SUCCESS) {

@@ -1,5 +1,6 @@
 #include "integration/abi/frame_check.hpp"
 
+#include "framegraph/vulkan/create_infos.hpp"
 #include "integration/abi/memory_bindings.hpp"
 #include "integration/abi/shared_resources.hpp"
 
@@ -185,7 +186,8 @@ dermis_result find_view(dermis_view_t& view, uint32_t index, const Slot& slot,
                         const dermis_frame& frame, const dermis_image_binding& binding,
                         KnownView& found) {
   found = {binding.view, 0};
-  if (binding.view != VK_NULL_HANDLE) return DERMIS_OK;
+  if (binding.view != VK_NULL_HANDLE || (slot.vk_usage & vulkan::viewable_usage) == 0)
+    return DERMIS_OK;
   const Log& log = view.context->log;
   const char* const function = "dermis_view_record";
   const ImageViewKey key{binding.slot,

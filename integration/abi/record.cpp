@@ -6,6 +6,13 @@
 namespace dermis::abi {
 namespace {
 
+// Returns the time since the frame before. A longer pause changes no decision, and an absurd value
+// would make the clock too large for the times of later frames.
+double seconds_of(const dermis_frame& frame) {
+  constexpr double longest_pause_s = 3600;
+  return std::min(double(frame.delta_seconds), longest_pause_s);
+}
+
 constexpr const char* function_record = "dermis_view_record";
 
 // Destroys replaced compiled graphs whose last frame the device has finished.
@@ -173,8 +180,8 @@ dermis_result record(dermis_view_t& view, const dermis_frame* given, Capture* ca
   if (const dermis_result loss = check_loss(view, function_record); loss != DERMIS_OK) return loss;
   const bool cut = (frame.flags & DERMIS_FRAME_RESET_HISTORY) != 0;
   FrameChoice chosen = choose(chooser, compiled_graph,
-                              {frame.frame_index, double(frame.delta_seconds), cut,
-                               checked.input.rectangle, &view.graph->shared_budget, &view.share});
+                              {frame.frame_index, seconds_of(frame), cut, checked.input.rectangle,
+                               &view.graph->shared_budget, &view.share});
   const dermis_result result = record_chosen(view, compiled_graph, chosen, frame, checked, capture);
   if (result != DERMIS_OK) repeat_share(view);
   return result;

@@ -240,6 +240,7 @@ dermis_result set_setting(dermis_graph_t& graph, const std::string& name, const 
     const std::lock_guard lock(change.view->mutex);
     CompiledGraph& changed = newest(*change.view);
     adopt_value(changed, index, value, change.configurations);
+    retire_other_costs(change.view->chooser, changed);
     for (size_t p = 0; p < change.pipelines.size(); ++p)
       changed.plans[p].executor->set_pipelines(change.pipelines[p]);
   }
@@ -301,6 +302,7 @@ dermis_result set_view_setting(dermis_view_t& view, const std::string& name, con
   if (result != DERMIS_OK) return result;
   const std::lock_guard lock(view.mutex); // nothing fails from here on
   adopt_value(newest(view), index, *value, configurations);
+  retire_other_costs(view.chooser, newest(view));
   view.settings.swap(settings);
   return result;
 }
@@ -308,10 +310,13 @@ dermis_result set_view_setting(dermis_view_t& view, const std::string& name, con
 } // namespace
 
 void drop_own_settings(const dermis_view_t& view, CompiledGraph& compiled_graph) {
+  const std::vector<uint8_t> per_frame =
+      frame_settings(compiled_graph.graph, view.context->pass_types);
   for (const HostSetting& own : view.settings) {
     const auto at = find_declared(compiled_graph.graph, own.name);
-    if (at == compiled_graph.graph.settings.end()) continue;
     const auto index = static_cast<size_t>(at - compiled_graph.graph.settings.begin());
+    // A value that a reload did not carry over may name a setting of another kind.
+    if (at == compiled_graph.graph.settings.end() || per_frame[index] == 0) continue;
     const SettingValue value = value_of_graph(*view.graph, compiled_graph.graph, *at);
     compiled_graph.settings[index] = value;
     for (choice::Configuration& configuration : compiled_graph.configurations)

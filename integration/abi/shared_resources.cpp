@@ -35,6 +35,7 @@ bool overlap(const Slot& a, const vulkan::HostImage& x, const Slot& b, const vul
 bool may_share(const Slot& a, const vulkan::HostImage& x, const Slot& b,
                const vulkan::HostImage& y) {
   const auto rests = [&](const Slot& slot) {
+    if (slot.first_layout == Layout::undefined) return x.before.layout == x.after.layout; // unused
     const auto used = static_cast<VkImageLayout>(slot.first_layout);
     return x.before.layout == used && x.after.layout == used;
   };

@@ -113,6 +113,11 @@ CostId CostEstimator::add(std::string_view work, bool launches) {
   return {static_cast<uint32_t>(lines_.size() - 1)};
 }
 
+void CostEstimator::retire_all() noexcept {
+  for (Line& line : lines_)
+    line.used = false;
+}
+
 const CostEstimator::Line* CostEstimator::placeholder_for(std::string_view work) const {
   const Line* best = nullptr;
   size_t maximum = 0;

@@ -72,15 +72,19 @@ public:
   // work with the largest cost per group, or a small fixed time if it launches no kernel. Must not
   // be called while frames are recorded.
   CostId add(std::string_view work, bool launches = true);
+  // Makes predict() and unmeasured() ignore all work until add() or use() names it again. What is
+  // known of its cost stays.
+  void retire_all() noexcept;
+  void use(CostId id) noexcept { lines_[id.value].used = true; }
   // Returns whether the calibration, or an earlier measurement, has work of the same pass type.
   bool has_calibration(CostId id) const;
 
   // Returns the cost by the calibration only, which is equal on all machines and in all runs.
   const AffineCost& calibrated_cost(CostId id) const { return lines_[id.value].prior; }
-  // Returns the factors of all work that was added, by CostId, at time `now_s` of observe(). They
+  // Returns the factors of all work in use, by CostId, at time `now_s` of observe(). They
   // live until the next call.
   std::span<const CostFactors> predict(double now_s);
-  // Returns the number of kinds of work that were added but never timed.
+  // Returns the number of kinds of work in use that were never timed.
   size_t unmeasured() const;
 
   // Adds one timed frame, all passes of it. Ignores times that are not finite or negative, and

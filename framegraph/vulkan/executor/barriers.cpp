@@ -9,6 +9,16 @@ constexpr VkPipelineStageFlags2 compute = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT
 constexpr VkAccessFlags2 shader_write =
     VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT;
 
+// Reads of a host. Any other access counts as a write.
+constexpr VkAccessFlags2 host_reads =
+    VK_ACCESS_2_INDIRECT_COMMAND_READ_BIT | VK_ACCESS_2_INDEX_READ_BIT |
+    VK_ACCESS_2_VERTEX_ATTRIBUTE_READ_BIT | VK_ACCESS_2_UNIFORM_READ_BIT |
+    VK_ACCESS_2_INPUT_ATTACHMENT_READ_BIT | VK_ACCESS_2_SHADER_READ_BIT |
+    VK_ACCESS_2_COLOR_ATTACHMENT_READ_BIT | VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_READ_BIT |
+    VK_ACCESS_2_TRANSFER_READ_BIT | VK_ACCESS_2_HOST_READ_BIT | VK_ACCESS_2_MEMORY_READ_BIT |
+    VK_ACCESS_2_SHADER_SAMPLED_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_READ_BIT |
+    VK_ACCESS_2_ACCELERATION_STRUCTURE_READ_BIT_KHR;
+
 bool foreign(const Device& device, uint32_t queue_family) {
   return queue_family != VK_QUEUE_FAMILY_IGNORED && queue_family != device.queue_family;
 }
@@ -78,12 +88,16 @@ Scopes scopes_of(const Device& device, const PlanBarrier& barrier, const HostSta
   return s;
 }
 
-// Returns whether the barrier has nothing to wait for and no layout to change. The host's states
-// only hold at the frame's borders: if the plan does not use the image, the host orders its own
-// accesses.
-bool is_redundant(const PlanBarrier& barrier, const Scopes& s) {
+// Returns whether the barrier has nothing to wait for and no layout to change. If the plan does not
+// use the resource, the barrier lies between two accesses of the host. Two reads need none, and an
+// ownership transfer orders all accesses.
+bool is_redundant(const Device& device, const PlanBarrier& barrier, const HostStates& host,
+                  const Scopes& s) {
   if (s.old_layout != s.new_layout) return false;
-  if (barrier.from_host && barrier.to_host) return true;
+  if (barrier.from_host && barrier.to_host)
+    return s.source_stages == 0 || s.destination_stages == 0 ||
+           ((s.source_access | s.destination_access) & ~host_reads) == 0 ||
+           foreign(device, host.before->queue_family) || foreign(device, host.after->queue_family);
   if (barrier.from_host || barrier.to_host) return s.source_stages == 0 && s.source_access == 0;
   return false;
 }
@@ -258,8 +272,9 @@ void record_barriers(State& state, const FrameInput& frame, const BarrierBatch& 
     const PlanBarrier& barrier = state.plan.barriers[i];
     const PlanResource& resource = state.plan.resources[barrier.resource];
     const bool host_owned = resource.first_instance == no_instance;
-    Scopes s = scopes_of(*state.device, barrier, host_states(frame, resource));
-    if (is_redundant(barrier, s)) continue;
+    const HostStates host = host_states(frame, resource);
+    Scopes s = scopes_of(*state.device, barrier, host);
+    if (is_redundant(*state.device, barrier, host, s)) continue;
     if (host_owned) {
       add_host_barrier(state, frame, resource, s, batch);
       continue;

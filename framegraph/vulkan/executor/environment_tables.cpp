@@ -5,6 +5,7 @@
 #include "framegraph/vulkan/shader/signature_check.hpp"
 
 #include <cstring>
+#include <utility>
 
 namespace dermis::vulkan {
 namespace {
@@ -62,11 +63,22 @@ Error EnvironmentTables::create(const Device& device,
   }
   if (state->bytes > 0) {
     state->device_local = can_write_device_memory(device, state->bytes);
-    EnvironmentBuffer tables_buffer{"environment tables", state->bytes, source_usage};
-    if (state->device_local) tables_buffer.required |= VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT;
-    if (Error error =
-            create_environment_buffer(device, tables_buffer, state->buffer, state->memory))
-      return error;
+    const EnvironmentBuffer tables_buffer{"environment tables", state->bytes, source_usage};
+    if (state->device_local) {
+      EnvironmentBuffer local = tables_buffer;
+      local.required |= VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT;
+      const Error error = create_environment_buffer(device, local, state->buffer, state->memory);
+      // Memory that is both local and visible may be small; views then copy the tables.
+      if (error && error.kind != ErrorKind::device_memory) return error;
+      state->device_local = !error;
+    }
+    if (!state->device_local) {
+      device.vk.vkDestroyBuffer(device.device, state->buffer, device.allocator);
+      free_memory(device, std::exchange(state->memory, {}));
+      if (Error error =
+              create_environment_buffer(device, tables_buffer, state->buffer, state->memory))
+        return error;
+    }
     auto* const to = static_cast<std::byte*>(state->memory.mapped);
     for (const TableBinding& table : state->bindings)
       if (const auto& contents = environment[table.binding].contents; !contents.empty())

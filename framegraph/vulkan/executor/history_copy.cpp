@@ -149,9 +149,14 @@ bool usable(const State& to, uint32_t to_history, const State& from, uint32_t fr
                     &old_history = from.plan.histories[from_history];
   const PlanResource &a = to.plan.resources[new_history.resource],
                      &b = from.plan.resources[old_history.resource];
+  // Contents may depend on the size of the view, also if their own size does not: a kernel finds
+  // the row of a tile with the width of the previous rectangle.
+  const bool same_view =
+      to.plan.view_width == from.plan.view_width && to.plan.view_height == from.plan.view_height;
   const bool scales = to.histories[to_history].scales && from.histories[from_history].scales;
   return to.histories[to_history].name == from.histories[from_history].name && same_texels(a, b) &&
-         (same_size(a, b) || scales) && writer_of(to, new_history) == writer_of(from, old_history);
+         ((same_view && same_size(a, b)) || scales) &&
+         writer_of(to, new_history) == writer_of(from, old_history);
 }
 
 } // namespace

@@ -93,8 +93,7 @@ Error create_image(State& state, const PlanResource& resource, const Placement& 
                                    heap.block.offset + placement.offset};
   result = device.vk.vkBindImageMemory2(device.device, 1, &bind);
   if (result != VK_SUCCESS) return call_error(result, "vkBindImageMemory2", name);
-  constexpr uint32_t viewable = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_STORAGE_BIT;
-  if ((resource.vk_usage & viewable) == 0) return {}; // only cleared: a view would be invalid
+  if ((resource.vk_usage & viewable_usage) == 0) return {}; // only cleared
   SubresourceRange range = resource.whole();
   if (Error error = create_view(device, resource, instance.image, range, name, instance.all_mips))
     return error;

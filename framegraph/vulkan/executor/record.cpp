@@ -1,4 +1,5 @@
 // Records one frame of the plan into the host's command buffer.
+#include "framegraph/vulkan/create_infos.hpp"
 #include "framegraph/vulkan/executor/state.hpp"
 
 #include <algorithm>
@@ -49,7 +50,8 @@ RecordResult check_slots(const State& state, const FrameInput& frame) {
     }
     if (slot >= frame.images.size() || frame.images[slot].image == VK_NULL_HANDLE)
       return reject("the slot is not bound", number);
-    if (frame.images[slot].view == VK_NULL_HANDLE) return reject("the binding has no view", number);
+    if (frame.images[slot].view == VK_NULL_HANDLE && (resource.vk_usage & viewable_usage) != 0)
+      return reject("the binding has no view", number);
     const VkImageLayout after = frame.images[slot].after.layout;
     if (after == VK_IMAGE_LAYOUT_UNDEFINED || after == VK_IMAGE_LAYOUT_PREINITIALIZED)
       return reject("after.layout must be a layout to which an image can be transitioned", number);

@@ -380,8 +380,9 @@ DERMIS_API dermis_result DERMIS_CALL dermis_validate(
 /* Parses, checks and compiles a graph, creates its pipelines and allocates device memory. Takes
  * tens of milliseconds; seconds if kernels are compiled. *graph is NULL on failure. *report (may be
  * NULL) gets the messages; destroy it also on success. Graphs of a context share pipelines: a graph
- * compiles only kernels that no other graph had. Pipelines of the library's kernels exist until the
- * context is destroyed, those of your shaders as long as a graph uses them. Costs: pipelines,
+ * compiles only kernels that no other graph had. The context keeps the pipelines of the library's
+ * kernels, but at most 16 unused variants of a kernel; pipelines of your shaders live as long as a
+ * graph uses them. Costs: pipelines,
  * memory, time. Thread: any. Errors: ARGUMENT, VERSION, CONFIG, SHADER, UNSUPPORTED, MEMORY,
  * DEVICE_MEMORY, VULKAN, DEVICE_LOST. */
 DERMIS_API dermis_result DERMIS_CALL dermis_graph_create(
