@@ -323,9 +323,9 @@ TEST(Include, ErrorsInAFragmentNameEachInclude) {
       {"a.json", R"({ "dermis_fragment": 2, "passes": [ { "include": "b.json" } ] })"},
       {"b.json", R"({ "dermis": 2, "passes": [] })"}};
   expect_one(put_together(including_graph(R"({ "include": "a.json" })"), {}, files),
-             Id::missing_key, "b.json:1:1",
-             {"dermis_fragment", "a.json:1:50", "'b.json' is included here", "graph.json:18:18",
-              "'a.json' is included here"});
+             Id::other_kind_of_file, "b.json:1:3",
+             {"'dermis_fragment' is expected", "a.json:1:50", "'b.json' is included here",
+              "graph.json:18:18", "'a.json' is included here"});
 }
 
 TEST(Include, DepthAndNumberOfFilesAreLimited) {

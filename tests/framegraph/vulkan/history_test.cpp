@@ -170,10 +170,14 @@ TEST_F(ReplacedHistory, SameGraph_KeepsBuffers) {
     wait();
     replaced.reset();
   }
-  take_over(g, side, side / 2); // Another size restarts the history.
-  EXPECT_FALSE(executor->history_state(0, false, replaced.get()).valid);
-  wait();
-  replaced.reset();
+  for (const uint32_t width :
+       {side, side - 1}) { // A width with the same number of tiles, then back.
+    take_over(g, width == side ? side - 1 : side, side);
+    EXPECT_FALSE(executor->history_state(0, false, replaced.get()).valid) << width;
+    ASSERT_FALSE(frame());
+    wait();
+    replaced.reset();
+  }
 }
 
 TEST_F(ReplacedHistory, OtherSize_KeepsOnlyRescaledHistories) {

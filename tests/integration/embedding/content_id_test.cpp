@@ -172,5 +172,25 @@ TEST_F(DescriptorWrites, SurviveADiscardedFrame) {
   EXPECT_EQ(writes_of_frames(3), (std::vector<uint64_t>{0, changed, 0}));
 }
 
+// An image that is only cleared has no usage with which it may have a view.
+TEST(ContentIdOnTheNullDevice, ImageThatIsOnlyCleared_GetsNoView) {
+  NullHost host;
+  ASSERT_OK(host.make_context(host.context_desc()));
+  const std::string text = R"({ "dermis": 2, "name": "cleared",
+    "resources": { "cleared": { "format": "rgba16f", "size": "view" } },
+    "passes": [ { "pass": "clear", "type": "clear", "write": { "target": "cleared" } } ],
+    "exports": ["cleared"] })";
+  const dermis_graph_desc desc = graph_desc(text, "cleared.json", 16);
+  ASSERT_OK(dermis_graph_create(host.context, &desc, &host.graph, nullptr));
+  const auto slots = list_of(dermis_slot DERMIS_SLOT_INIT, dermis_graph_slots, host.graph);
+  ASSERT_EQ(slots.size(), 1u);
+  EXPECT_EQ(slots[0].usage, VkImageUsageFlags{VK_IMAGE_USAGE_TRANSFER_DST_BIT});
+  host.make_bindings();
+  host.give_up_views();
+  const uint64_t before = host.device.creations();
+  EXPECT_OK(host.record());
+  EXPECT_EQ(host.device.creations(), before);
+}
+
 } // namespace
 } // namespace dermis::abi_test

@@ -170,5 +170,47 @@ TEST_F(MemoryBudget, GraphWithoutChoices_IsReported) {
   EXPECT_EQ(frontier().size(), 1u);
 }
 
+// A value of the view named a setting that is another kind of setting since a reload.
+TEST_F(MemoryBudget, DroppedValueOfAView_DoesNotReachNewViews) {
+  dermis_port port = port_of("picture", DERMIS_PORT_STORAGE_IMAGE_UPDATE);
+  dermis_pass_setting weight = real_setting("weight", 1);
+  weight.per_frame = 1;
+  dermis_pass_type type =
+      pass_type_of("studio.mix", {&port, 1}, [](void*, const dermis_pass_call*) {});
+  type.settings = &weight;
+  type.setting_count = 1;
+  ASSERT_OK(dermis_register_pass_type(host.context, &type));
+  const std::string shipped = text;
+  text =
+      R"({ "dermis": 2, "name": "before", "settings": { "variant": { "real": 0.5, "min": 0, "max": 1 } },
+    "imports": { "lighting": { "format": "rgba16f", "size": "view" } },
+    "passes": [ { "pass": "mix", "type": "studio.mix", "write": { "picture": "lighting" },
+      "set": { "weight": "$variant" } } ], "exports": ["lighting"] })";
+  const dermis_profile profile = skin_profile();
+  dermis_graph_desc desc = graph_desc(text, "before.json", side);
+  desc.profiles = &profile;
+  desc.profile_count = 1;
+  ASSERT_OK(dermis_graph_create(host.context, &desc, &host.graph, nullptr));
+  ASSERT_OK(dermis_view_set_setting(dermis_graph_view(host.graph), "variant", "0.75", nullptr));
+  desc = graph_desc(shipped, "skin.json", side);
+  desc.keep = DERMIS_KEEP_ALL & ~DERMIS_KEEP_SOURCE;
+  ASSERT_OK(dermis_graph_reload(host.graph, &desc, nullptr));
+  dermis_view other = nullptr;
+  ASSERT_OK(dermis_view_create(host.graph, nullptr, &other, nullptr));
+  dermis_forecast_desc of_view = DERMIS_FORECAST_DESC_INIT;
+  of_view.view = other;
+  const auto expected = frontier();
+  const auto found = list_of<dermis_outcome>(DERMIS_OUTCOME_INIT, dermis_graph_frontier, host.graph,
+                                             static_cast<const dermis_forecast_desc*>(&of_view));
+  ASSERT_EQ(found.size(), expected.size());
+  ASSERT_GT(found.size(), 4u);
+  for (size_t i = 0; i < found.size(); ++i) {
+    EXPECT_STREQ(found[i].configuration, expected[i].configuration);
+    EXPECT_EQ(found[i].expected_rmse, expected[i].expected_rmse) << found[i].configuration;
+    EXPECT_EQ(found[i].expected_ms, expected[i].expected_ms) << found[i].configuration;
+  }
+  dermis_view_destroy(other);
+}
+
 } // namespace
 } // namespace dermis::abi_test

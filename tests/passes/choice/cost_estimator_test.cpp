@@ -163,6 +163,20 @@ TEST(CostEstimator, ManyWorks_ExportAReadableCalibration) {
   EXPECT_TRUE(document && read_calibration(*document, diagnostics)) << format_as_json(diagnostics);
 }
 
+TEST(CostEstimator, RetiredWork_IsNotCounted) {
+  CostEstimator costs;
+  const CostId a = costs.add("a"), b = costs.add("b");
+  EXPECT_EQ(costs.unmeasured(), 2u);
+  costs.retire_all();
+  EXPECT_EQ(costs.unmeasured(), 0u);
+  costs.use(a);
+  EXPECT_EQ(costs.unmeasured(), 1u);
+  double clock_s = 0;
+  observe(costs, {{b, 1000, 2.0}}, 100, clock_s); // A frame from before may still arrive.
+  EXPECT_EQ(costs.add("b").value, b.value);
+  EXPECT_NEAR(expected_ms(costs, b, 1000, clock_s), 2.0, 0.1) << "what was learned stays";
+}
+
 TEST(CostEstimator, EmptyDispatches_TeachNothing) {
   CostEstimator costs({{"samples", 0, 1, 0.1}, {"a", 10, 1, 0.1}});
   const CostId samples = costs.add("samples"), a = costs.add("a");
