@@ -122,7 +122,7 @@ other_drivers() { quick tests/scripts/run_on_drivers.sh build/release; }
 coverage() { tests/scripts/coverage.sh; }
 benches() {
   built dermis_command
-  build/release/dermis bench all --quick --out build/bench
+  build/release/dermis bench all --quick --again --out build/bench
 }
 fuzzers() { # also compares the plans of two compilers
   if [[ $fuzz == no ]]; then

@@ -190,13 +190,14 @@ Result<FrameOutputs> render_frame(Session& session, uint32_t frame, uint64_t fra
     done = place_rays(renderer, state);
     if (!done) return done.error();
   }
+  const bool composites = requested.pictures || session.taa != nullptr;
   clock.begin("record graph");
   done = run_commands(host, [&](VkCommandBuffer commands) -> Result<> {
     if (session.dermis) {
       auto recorded = record_graph(*session.dermis, renderer, state, commands, frame_index);
       if (!recorded) return recorded;
     }
-    if (requested.pictures || session.taa) record_composite(renderer, commands);
+    if (composites) record_composite(renderer, commands);
     if (session.taa) record_taa(*session.taa, renderer, commands, state);
     clock.begin("run graph");
     return success();
@@ -208,11 +209,13 @@ Result<FrameOutputs> render_frame(Session& session, uint32_t frame, uint64_t fra
     if (!done) return done.error();
   }
   clock.end();
-  if (renderer.queries.host && rendered)
+  if (renderer.queries.host && rendered) {
     out.host_times = {{"shadows", elapsed_ms(renderer, at_start, after_shadows)},
                       {"gbuffer", elapsed_ms(renderer, after_shadows, after_gbuffer)},
-                      {"lighting", elapsed_ms(renderer, after_gbuffer, after_lighting)},
-                      {"composite", elapsed_ms(renderer, at_composite, at_end)}};
+                      {"lighting", elapsed_ms(renderer, after_gbuffer, after_lighting)}};
+    if (composites)
+      out.host_times.push_back({"composite", elapsed_ms(renderer, at_composite, at_end)});
+  }
   if (!session.dermis) return out;
   out.dermis_times = graph_times(*session.dermis, frame_index);
   auto choice = graph_choice(*session.dermis, frame_index);

@@ -27,6 +27,12 @@ std::string read_standard_input() {
   return text;
 }
 
+// Returns the text of standard input, which can be read only once but may be parsed again.
+const std::string& standard_input() {
+  static const std::string text = read_standard_input();
+  return text;
+}
+
 std::string_view without_quotes(std::string_view text) {
   return text.size() >= 2 && text.front() == '"' && text.back() == '"'
              ? text.substr(1, text.size() - 2)
@@ -133,7 +139,7 @@ std::optional<LoadedGraph> load_pass_types(std::span<const std::string> files,
 }
 
 std::optional<Document> read_input(const std::string& path, Diagnostics& diagnostics) {
-  return path == "-" ? parse_document("<stdin>", read_standard_input(), diagnostics)
+  return path == "-" ? parse_document("<stdin>", standard_input(), diagnostics)
                      : read_document(path, diagnostics);
 }
 

@@ -89,4 +89,9 @@ std::string OutputFolder::path_of(std::string_view name) const {
   return (files::path(path_) / name).string();
 }
 
+void OutputFolder::remove(std::string_view name) const {
+  std::error_code ignored; // a file that stays is one that cannot be written either
+  files::remove(path_of(name), ignored);
+}
+
 } // namespace dermis::tools

@@ -30,6 +30,8 @@ public:
   // Creates a subfolder. Returns the problem, or "".
   std::string open_below(const std::string& name);
   std::string path_of(std::string_view name) const;
+  // Removes a file that an earlier run wrote and this run does not; does nothing if there is none.
+  void remove(std::string_view name) const;
 
 private:
   std::string path_;

@@ -27,11 +27,6 @@ namespace dermis::tools {
 
 namespace {
 
-// An image of at most `always_read` decoded bytes is read whatever the file's size. For a larger
-// image the file must have at least 1/1032 of the decoded size: deflate packs at most 258 bytes
-// into 2 bits.
-constexpr uint64_t always_read = uint64_t{1} << 30;
-constexpr uint64_t max_packing = 258 * 8 / 2;
 // decoded; OpenEXR allocates a few chunks at a time
 constexpr uint64_t max_chunk_bytes = uint64_t{512} << 20;
 
@@ -162,8 +157,7 @@ std::string check_sizes(const Imf::Header& header, bool tiled, size_t read_chann
   uint64_t pixel_bytes = 0, channels = 0;
   for (auto c = header.channels().begin(); c != header.channels().end(); ++c, ++channels)
     pixel_bytes += c.channel().type == Imf::HALF ? 2 : 4;
-  const uint64_t maximum =
-      std::min(max_image_bytes, std::max(always_read, max_packing * uint64_t{file_bytes}));
+  const uint64_t maximum = max_decoded_bytes(file_bytes);
   if (pixel_bytes > maximum || data.pixels() > maximum / pixel_bytes)
     return fmt::format("its {} channels hold more than {} bytes", channels, maximum);
   if (display.pixels() > maximum / (read_channels * sizeof(float)))

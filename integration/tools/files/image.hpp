@@ -1,6 +1,7 @@
 #pragma once
 // An image in memory, used by files and metrics.
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -29,5 +30,12 @@ struct Image {
 inline constexpr uint32_t max_image_side = 32768;
 inline constexpr uint64_t max_image_bytes = uint64_t{4} << 30; // decoded
 inline constexpr uint64_t max_image_file_bytes = uint64_t{1} << 30;
+
+// Returns how many decoded bytes are read from a file. Above 1 GiB the file must have at least
+// 1/1032 of them: deflate packs at most 258 bytes into 2 bits.
+constexpr uint64_t max_decoded_bytes(uint64_t file_bytes) {
+  constexpr uint64_t always_read = uint64_t{1} << 30, max_packing = 258 * 8 / 2;
+  return std::min(max_image_bytes, std::max(always_read, max_packing * file_bytes));
+}
 
 } // namespace dermis::tools

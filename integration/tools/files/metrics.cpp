@@ -35,6 +35,7 @@ double ExposureMeter::result() const {
 }
 
 double psnr_from_mse(double mse) {
+  if (std::isnan(mse)) return -std::numeric_limits<double>::infinity();
   return mse > 0 ? std::min(max_psnr_db, -10 * std::log10(mse)) : max_psnr_db;
 }
 

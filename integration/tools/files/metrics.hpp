@@ -48,7 +48,7 @@ struct ExposureMeter {
 ErrorFigures measure_error(std::span<const float> image, std::span<const double> reference,
                            std::span<const uint32_t> pixels, double exposure, uint64_t population);
 
-// Returns -10 log10(mse), capped at max_psnr_db.
+// Returns -10 log10(mse), capped at max_psnr_db; minus infinity if `mse` is infinite or NaN.
 double psnr_from_mse(double mse);
 
 } // namespace dermis::tools

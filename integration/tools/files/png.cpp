@@ -64,13 +64,20 @@ std::optional<Image> read_png(const std::filesystem::path& path, std::string& er
                         max_image_side);
     return std::nullopt;
   }
-  Image image = Image::sized(static_cast<uint32_t>(width), static_cast<uint32_t>(height), 3);
+  const uint64_t decoded = uint64_t(width) * uint64_t(height) * 3 * sizeof(float);
+  if (const uint64_t maximum = max_decoded_bytes(bytes->size()); decoded > maximum) {
+    error = fmt::format("'{}' holds {} x {} pixels, {} bytes decoded; at most {} are read",
+                        path.string(), width, height, decoded, maximum);
+    return std::nullopt;
+  }
+  Image image;
   const auto take = [&](auto* pixels, float white) {
-    if (pixels != nullptr)
-      std::transform(pixels, pixels + image.values.size(), image.values.begin(),
-                     [white](auto x) { return srgb_decode(static_cast<float>(x) / white); });
+    if (pixels == nullptr) return false;
+    image = Image::sized(static_cast<uint32_t>(width), static_cast<uint32_t>(height), 3);
+    std::transform(pixels, pixels + image.values.size(), image.values.begin(),
+                   [white](auto x) { return srgb_decode(static_cast<float>(x) / white); });
     stbi_image_free(pixels);
-    return pixels != nullptr;
+    return true;
   };
   const bool read =
       stbi_is_16_bit_from_memory(bytes->data(), size)

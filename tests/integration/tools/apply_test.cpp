@@ -121,6 +121,41 @@ TEST_F(Captures, SubsetHasAMaskOfItsPixels) {
   EXPECT_EQ(std::count(mask.values.begin(), mask.values.end(), 1.0f), 100);
 }
 
+TEST_F(Captures, FilesOfAnEarlierRun_AreRemoved) {
+  write_plane(path("capture"));
+  ASSERT_THAT(reference({"--subset", "100"}), Succeeds());
+  ASSERT_THAT(reference(), Succeeds());
+  ASSERT_THAT(apply(), Succeeds());
+  EXPECT_THAT(run({"compare", path("out"), path("out")}), Succeeds("\nall ", "1024"))
+      << "the mask was that of 100 pixels";
+  const std::string graph = write("light_only.json", read_text(burley));
+  ASSERT_THAT(run({"apply", "--graph", graph, "--overlay", write("overlay.json", R"({
+    "dermis_overlay": 2, "edits": [ { "remove": "/passes/export_scattered" },
+      { "set": "/exports", "to": ["lighting"] } ] })"),
+                   "--frames", path("capture"), "--out", path("out")}),
+              Succeeds());
+  EXPECT_THAT(files("out"), Not(Contains(HasSubstr("scattered.exr"))));
+}
+
+// Noise follows frame_index, and repetitions for times change no picture.
+TEST_F(Captures, FrameIndexSeedsTheSamples) {
+  Plane plane;
+  plane.light = tools::Image::sized(plane.width, plane.height, 3);
+  for (size_t i = 0; i < plane.light.values.size(); ++i)
+    plane.light.values[i] = i % 7 == 0 ? 4.0f : 0.0f;
+  write_plane(path("capture"), plane);
+  const std::string frame = read("capture/frame.json");
+  const auto pictures = [&](const char* index, const char* repeat) {
+    write("capture/frame.json",
+          replaced(frame, "{", fmt::format("{{ \"frame_index\": {},", index)));
+    EXPECT_THAT(apply({"--repeat", repeat}), Succeeds());
+    return picture("scattered.exr").values;
+  };
+  const std::vector<float> first = pictures("3", "1");
+  EXPECT_EQ(pictures("3", "4"), first);
+  EXPECT_NE(pictures("4", "1"), first);
+}
+
 TEST_F(Captures, NonFiniteValues_AreZeroCountedAndReported) {
   Plane plane;
   plane.light = filled(plane.width, plane.height, 3, 0.5f);

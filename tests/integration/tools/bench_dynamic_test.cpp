@@ -5,11 +5,13 @@
 #include "integration/tools/command/bench/dynamic/dynamic_file.hpp"
 #include "integration/tools/command/bench/dynamic/figures.hpp"
 #include "integration/tools/command/bench/supplement/experiment.hpp"
+#include "integration/tools/files/metrics.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <filesystem>
+#include <limits>
 #include <set>
 
 namespace dermis::tools {
@@ -113,6 +115,19 @@ TEST(BenchDynamic, ConstantError_IsNoFlicker) {
   EXPECT_EQ(figures.psnr_db.size(), 10u);
   // Exposed.
   EXPECT_NEAR(sequence_figures(frames, 2, true, 2).psnr_db_frame, 20 - 20 * std::log10(2), 1e-9);
+}
+
+TEST(BenchDynamic, NotANumber_IsAnInfiniteError) {
+  std::vector<FrameLight> frames(10, grey(0.5, 0.6, 0.4, 0.5));
+  frames[5].found[2] = std::numeric_limits<double>::quiet_NaN();
+  for (const bool still : {true, false}) {
+    const SequenceFigures figures = sequence_figures(frames, 2, still, 1);
+    EXPECT_EQ(figures.psnr_db_frame, -std::numeric_limits<double>::infinity());
+    EXPECT_EQ(figures.psnr_db[5], -std::numeric_limits<double>::infinity());
+    EXPECT_NEAR(figures.psnr_db[4], 20, 1e-9);
+  }
+  EXPECT_EQ(psnr_from_mse(std::numeric_limits<double>::quiet_NaN()),
+            -std::numeric_limits<double>::infinity());
 }
 
 TEST(BenchDynamic, AlternatingError_FlickersByTwiceItsSize) {

@@ -1,7 +1,7 @@
 // Tests the frame of the bench suites with a suite that needs no device.
-#include "integration/tools/command/bench/suite/statistics.hpp"
 #include "integration/tools/command/bench/suite/suites.hpp"
 #include "integration/tools/command/bench/suite/techniques.hpp"
+#include "integration/tools/command/statistics.hpp"
 #include "tests/support/test_folder.hpp"
 
 #include <gmock/gmock.h>
@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include <fstream>
+#include <numeric>
 #include <set>
 
 namespace dermis::tools {
@@ -168,6 +169,11 @@ TEST(BenchStatistics, QuantilesAreNearestRanks) {
   EXPECT_EQ(quantile(values, 0), 1);
   EXPECT_EQ(quantile(values, 1), 5);
   EXPECT_EQ(spread_of(values).p90, 5);
+  std::vector<double> many(32);
+  std::iota(many.begin(), many.end(), 1.0);
+  EXPECT_EQ(quantile(many, 0.95), 31) << "30 values are only 93.75 %";
+  EXPECT_EQ(quantile(many, 0.25), 8);
+  EXPECT_EQ(median({1, 100}), 50.5);
 }
 
 } // namespace

@@ -127,6 +127,16 @@ TEST_F(GraphFiles, AGraphIsReadFromStandardInput) {
   EXPECT_THAT(run({"validate", "-"}, options), FailsWith(1, "<stdin>:1:13"));
 }
 
+TEST_F(GraphFiles, StandardInput_CanBeBothSidesOfADiff) {
+  RunOptions options;
+  options.input = read_text(burley);
+  const Outcome from_file = run({"plan", "diff", burley, "--b-size", "960x540"});
+  const Outcome from_input = run({"plan", "diff", "-", "--b-size", "960x540"}, options);
+  ASSERT_THAT(from_file, Succeeds());
+  ASSERT_THAT(from_input, Succeeds());
+  EXPECT_EQ(replaced(from_input.out, "<stdin>", "-"), replaced(from_file.out, burley, "-"));
+}
+
 TEST_F(GraphFiles, ExplainShowsEachPassOfThePlan) {
   const Outcome outcome = run({"explain", burley, "--size", "640x360"});
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;

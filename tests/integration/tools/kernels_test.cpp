@@ -149,6 +149,15 @@ TEST_F(KernelsOnNullHardware, AnExceededLimitFails) {
   const Outcome other = run_on("vega10", {"burley", "--limits", limits});
   EXPECT_EQ(other.exit_code, 1);
   EXPECT_THAT(other.err, HasSubstr("has no rule for"));
+  // A rule for kernels that were not asked for checks nothing.
+  const std::string about_sap = write("sap.json", R"({ "dermis_kernel_limits": 1, "rules": [
+    { "device": "*NAVI21*", "kernel": "sap/*", "max": { "code_bytes": 99999 } } ] })");
+  for (const auto& [device, file] : {std::pair("navi21", about_sap), std::pair("vega10", limits)}) {
+    const Outcome nothing = run_on(device, {"burley", "--limits", file, "--json"});
+    EXPECT_EQ(nothing.exit_code, 1);
+    ASSERT_TRUE(is_json(nothing.out));
+    EXPECT_FALSE(json::parse(nothing.out).at("ok")) << device;
+  }
 }
 
 TEST_F(KernelsOnNullHardware, GraphsThatNeedRaysAreSkippedByName) {

@@ -71,6 +71,14 @@ TEST_F(Usage, WrongValue_StatesWhatIsExpected) {
       {with({"--out", "a", "--out", "b"}), "--out may be given only once"},
       {with({"--set", "samples", "64"}), "--set: expected NAME=VALUE such as samples=16, found "
                                          "'samples'"},
+      {with({"--out", "o", "--trials", "never"}), "--trials requires --budget"},
+      {with({"--out", "o", "--budget-percentile", "0.9"}), "--budget-percentile requires --budget"},
+      {{"render", "configs/scenes/bust.json", "--graph", "none", "--debug", "samples", "--out",
+        "o"},
+       "--debug, --budget, --calibration and --errors need a graph"},
+      {{"explain", burley, "--frame", "--two-queues"}, "--frame excludes --two-queues"},
+      {{"watch", "scene.json", "--graph", "-", "--out", "o"},
+       "standard input does not change; name a graph file to watch"},
       {{"bench", "all", "--out", "a", "more"},
        "unexpected argument 'more'; 'dermis bench all --help' lists the arguments"},
   };

@@ -17,6 +17,7 @@ namespace demo {
 namespace {
 
 constexpr size_t max_vertices = size_t{1} << 25;
+constexpr size_t max_indices = size_t{1} << 26; // of all instances
 constexpr uint32_t deepest_node = 256;
 constexpr std::string_view head_scan = "LeePerrySmith";
 constexpr const char* head_scan_credit = "\"Infinite, 3D Head Scan\" by Lee Perry-Smith "
@@ -115,6 +116,7 @@ struct Gathering {
   bool is_head_scan = false;
   std::vector<Part> parts;
   uint32_t skipped = 0;
+  std::vector<bool> visited = std::vector<bool>(file.nodes.size()); // by node
 
   const tinygltf::Material* first_material() const {
     const bool there = material >= 0 && static_cast<size_t>(material) < file.materials.size();
@@ -216,6 +218,9 @@ struct Gathering {
       indices = read.take();
     }
     indices = as_triangles(std::move(indices), mode);
+    if (indices.size() > max_indices - model.mesh.indices.size())
+      return Error{ErrorKind::input,
+                   fmt::format("{}: more than {} indices of triangles", path, max_indices)};
     if (mirrored)
       for (size_t i = 0; i < indices.size(); i += 3)
         std::swap(indices[i + 1], indices[i + 2]);
@@ -229,9 +234,14 @@ struct Gathering {
     if (index < 0 || static_cast<size_t>(index) >= file.nodes.size())
       return Error{ErrorKind::input, fmt::format("{}: node {} does not exist", path, index)};
     if (depth > deepest_node)
+      return Error{ErrorKind::input,
+                   fmt::format("{}: nodes are nested deeper than {}", path, deepest_node)};
+    if (visited[static_cast<size_t>(index)])
       return Error{
           ErrorKind::input,
-          fmt::format("{}: nodes are nested deeper than {}, or in a circle", path, deepest_node)};
+          fmt::format("{}: node {} has two parents, or is its own ancestor; glTF requires trees",
+                      path, index)};
+    visited[static_cast<size_t>(index)] = true;
     const tinygltf::Node& node = file.nodes[static_cast<size_t>(index)];
     const glm::dmat4 place = parent * local_matrix(node);
     if (node.mesh >= 0) {

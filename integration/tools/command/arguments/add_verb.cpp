@@ -157,6 +157,8 @@ std::vector<CLI::Option*> add_budget(CLI::App& verb, BudgetArguments& budget) {
       verb.add_flag("--deterministic", budget.deterministic,
                     "Judge times only by the calibration, for choices that do not depend on the "
                     "machine's speed")};
+  of_frame[1]->needs(of_frame[0]);
+  of_frame[2]->needs(of_frame[0]);
   for (CLI::Option* option : of_frame)
     option->group(group);
   add_path(verb, "--calibration", budget.calibration, "Costs of passes (dermis calibrate)")

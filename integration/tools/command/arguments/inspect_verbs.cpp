@@ -5,8 +5,9 @@
 namespace dermis::tools {
 namespace {
 
-void add_two_queues(CLI::App& verb, bool& two_queues) {
-  verb.add_flag("--two-queues", two_queues, "Use a second queue for async passes where possible");
+CLI::Option* add_two_queues(CLI::App& verb, bool& two_queues) {
+  return verb.add_flag("--two-queues", two_queues,
+                       "Use a second queue for async passes where possible");
 }
 
 } // namespace
@@ -50,11 +51,12 @@ void add_text_verbs(CLI::App& app, Invocation& invocation) {
                          "Width of a pixel over its height [1, or the scene's]");
         add_settings(verb, options.settings);
         add_unbound(verb, options.unbound);
-        add_two_queues(verb, options.two_queues);
+        CLI::Option* two_queues = add_two_queues(verb, options.two_queues);
         add_graph_inputs(verb, options.inputs);
         CLI::Option* frame =
             verb.add_flag("--frame", options.frame,
-                          "Explain the library's choices for a frame instead of the plan");
+                          "Explain the library's choices for a frame instead of the plan")
+                ->excludes(two_queues);
         add_path(verb, "--scene", options.scene, "Scene of the frame [configs/scenes/bust.json]")
             ->needs(frame);
         for (CLI::Option* option : add_budget(verb, options.budget))

@@ -20,6 +20,20 @@ std::filesystem::path path_of(const std::string& cache, const Hash& hash) {
 
 } // namespace
 
+void add_shapes(Hash& hash, std::span<const subsurface::ProfileShape> shapes) {
+  for (const subsurface::ProfileShape& shape : shapes)
+    for (const subsurface::ChannelShape& channel : shape) {
+      const double numbers[] = {static_cast<double>(channel.model),
+                                channel.d,
+                                channel.direct,
+                                channel.width,
+                                channel.dipole.z_real,
+                                channel.dipole.z_virtual,
+                                channel.dipole.sigma_tr};
+      hash.add(std::span<const double>(numbers));
+    }
+}
+
 std::optional<std::vector<double>> read_kept(const std::string& cache, const Hash& hash,
                                              size_t count) {
   if (cache.empty()) return std::nullopt;

@@ -1,6 +1,8 @@
 #pragma once
 // Caches expensive results in files named by a hash of their inputs.
 
+#include "passes/common/profiles/shape.hpp"
+
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -23,6 +25,9 @@ struct Hash {
   }
   template <class T> void add(const std::vector<T>& values) { add(std::span<const T>(values)); }
 };
+
+// Adds all parameters of the profiles.
+void add_shapes(Hash& hash, std::span<const subsurface::ProfileShape> shapes);
 
 // Reads from the folder `cache`; "" disables the cache. Also returns nullopt for an invalid file.
 std::optional<std::vector<double>> read_kept(const std::string& cache, const Hash& hash,

@@ -8,7 +8,7 @@ namespace dermis::tools {
 namespace {
 
 // Increment when the definition of the reference changes.
-constexpr uint64_t definition_version = 2;
+constexpr uint64_t definition_version = 3;
 
 Hash hash_of(const ReferenceFrame& frame, std::span<const uint32_t> pixels) {
   Hash hash;
@@ -22,6 +22,7 @@ Hash hash_of(const ReferenceFrame& frame, std::span<const uint32_t> pixels) {
   hash.add(frame.scatter_scale);
   hash.add(frame.profile);
   hash.add(frame.d_m);
+  add_shapes(hash, frame.shapes);
   hash.add(pixels);
   return hash;
 }

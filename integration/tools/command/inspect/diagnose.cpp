@@ -1,5 +1,6 @@
 #include "integration/tools/command/inspect/diagnose.hpp"
 
+#include "integration/tools/command/statistics.hpp"
 #include "integration/tools/files/metrics.hpp"
 #include "passes/common/pass_types.hpp"
 
@@ -14,13 +15,6 @@ namespace {
 
 // Minimum number of pixels or pairs of pixels for a finding.
 constexpr size_t min_samples = 64;
-
-// `fraction` 0.5 is the median. `values` must not be empty.
-double quantile(std::vector<double>& values, double fraction) {
-  const auto at = static_cast<std::ptrdiff_t>(fraction * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), values.begin() + at, values.end());
-  return values[static_cast<size_t>(at)];
-}
 
 struct FrameFigures {
   uint64_t profile_pixels = 0; // inside the render rectangle, with or without depth

@@ -63,7 +63,7 @@ ExitCode kernels(const Session& session, const KernelsOptions& options) {
   if (rules)
     check = check_limits(*rules, {survey->device, survey->driver}, survey->kernels, survey->graphs);
   const bool none = check && check->device_known && check->checked == 0;
-  const bool good = !check || (check->device_known && check->exceeded.empty() && !none);
+  const bool good = !check || check->is_good();
   if (session.json) {
     print(kernels_as_json(*survey, options, check, diagnostics));
     return good ? ExitCode::ok : ExitCode::problems;

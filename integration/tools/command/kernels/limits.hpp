@@ -60,6 +60,8 @@ struct LimitsCheck {
   std::vector<LimitFinding> exceeded;
   std::vector<LimitFinding> open;  // within `now`, but the goal is not reached
   std::vector<LimitFinding> loose; // better than `now`, which can be tightened
+
+  bool is_good() const { return device_known && checked > 0 && exceeded.empty(); }
 };
 
 struct LimitedDevice {

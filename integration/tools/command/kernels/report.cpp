@@ -194,7 +194,7 @@ std::string limits_as_text(const LimitsCheck& check, const Diagnostics& files) {
 std::string kernels_as_json(const KernelSurvey& survey, const KernelsOptions& options,
                             const std::optional<LimitsCheck>& check, const Diagnostics& files) {
   JsonWriter json;
-  json.open_object().member("ok", !check || (check->device_known && check->exceeded.empty()));
+  json.open_object().member("ok", !check || check->is_good());
   json.member("device", survey.device).member("driver", survey.driver);
   json.member("statistics", survey.statistics);
   json.member("width", options.size.width).member("height", options.size.height);

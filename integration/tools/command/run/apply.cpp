@@ -28,9 +28,11 @@ struct ApplyRun {
   const ApplyOptions& options;
   const LoadedGraph& loaded;
   demo::VulkanHost& host;
-  std::unique_ptr<DeviceGraph> device; // for one size and one choice of slots
-  DeviceGraphRequest request;
-  PassTimes times;
+  // For one size and one choice of slots. `timed` runs only for times, so that neither the number
+  // of repetitions nor their histories change a picture; null without repetitions.
+  std::unique_ptr<DeviceGraph> device = {}, timed = {};
+  DeviceGraphRequest request = {};
+  PassTimes times = {};
   uint64_t runs = 0, all_runs = 0; // runs so far, and runs in total
   demo::ContextHooks hooks = {};
 };
@@ -39,7 +41,7 @@ struct ApplyRun {
 // restarts. A frame of another size resizes the graph, which keeps the history that survives a
 // resize.
 demo::Result<> prepare(ApplyRun& run, const CapturedFrame& frame, const SlotChoice& slots) {
-  DeviceGraphRequest request;
+  DeviceGraphRequest request = {};
   request.graph_name = run.options.graph;
   request.graph_text = run.loaded.text;
   request.overlays = run.loaded.overlays;
@@ -58,12 +60,17 @@ demo::Result<> prepare(ApplyRun& run, const CapturedFrame& frame, const SlotChoi
     if (request.width == run.request.width && request.height == run.request.height)
       return demo::success();
     run.request = std::move(request);
-    return run.device->resize(run.request.width, run.request.height);
+    auto resized = run.device->resize(run.request.width, run.request.height);
+    if (resized && run.timed) resized = run.timed->resize(run.request.width, run.request.height);
+    return resized;
   }
-  run.device.reset();
-  auto made = DeviceGraph::create(run.host, request);
-  if (!made) return made.error();
-  run.device = made.take();
+  for (std::unique_ptr<DeviceGraph>* device : {&run.device, &run.timed}) {
+    device->reset();
+    if (device == &run.timed && run.options.repeat == 1) break;
+    auto made = DeviceGraph::create(run.host, request);
+    if (!made) return made.error();
+    *device = made.take();
+  }
   run.request = std::move(request);
   return demo::success();
 }
@@ -111,7 +118,10 @@ demo::Result<> write_frame(const CapturedFrame& frame, const std::string& name, 
   auto lighting = device.read_rgb("lighting");
   if (!lighting) return lighting.error();
   if (auto written = write("combined.exr", combine(frame, *lighting)); !written) return written;
-  if (!device.has("scattered_light")) return demo::success();
+  if (!device.has("scattered_light")) {
+    out.remove(name + "/scattered.exr"); // of an earlier run
+    return demo::success();
+  }
   auto scattered = device.read_rgb("scattered_light");
   if (!scattered) return scattered.error();
   return write("scattered.exr", scattered_light(frame, scattered.take()));
@@ -122,16 +132,22 @@ demo::Result<> apply_frame(ApplyRun& run, const CapturedFrame& frame, const std:
   const SlotChoice slots = choose_slots(run.loaded.graph, frame);
   if (!slots.problem.empty()) return demo::Error{demo::ErrorKind::input, slots.problem};
   if (auto ready = prepare(run, frame, slots); !ready) return ready;
-  for (uint32_t i = 0; i < run.options.repeat; ++i) {
+  const auto run_on = [&](DeviceGraph& device) -> demo::Result<> {
     if (interrupted()) return stopped();
+    device.skip_to(frame.description.frame_index);
     // also on repeats, since the graph may write into its inputs
     for (const SlotData& data : slots.data)
-      if (auto given = run.device->upload(data.slot, data.texels, data.channels); !given)
-        return given;
-    if (auto ran = run.device->run(c_frame(frame.description)); !ran) return ran;
+      if (auto given = device.upload(data.slot, data.texels, data.channels); !given) return given;
+    return device.run(c_frame(frame.description));
+  };
+  if (auto ran = run_on(*run.device); !ran) return ran;
+  DeviceGraph& timed = run.timed ? *run.timed : *run.device;
+  for (uint32_t i = 0; i < run.options.repeat; ++i) {
+    if (run.timed)
+      if (auto ran = run_on(timed); !ran) return ran;
     // the first of several runs only warms caches
     if (run.runs++ == 0 && run.all_runs > 1) continue;
-    for (const DeviceGraph::PassTime& time : run.device->times())
+    for (const DeviceGraph::PassTime& time : timed.times())
       run.times.add(time.pass, time.milliseconds);
   }
   return write_frame(frame, name, *run.device, out);

@@ -1,20 +1,12 @@
 #include "integration/tools/command/run/pass_times.hpp"
 
+#include "integration/tools/command/statistics.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
 
 namespace dermis::tools {
-namespace {
-
-double median(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  const size_t middle = values.size() / 2;
-  return values.size() % 2 == 1 ? values[middle] : 0.5 * (values[middle - 1] + values[middle]);
-}
-
-} // namespace
-
 void PassTimes::add(std::string_view pass, double milliseconds) {
   auto found = std::find_if(samples_.begin(), samples_.end(),
                             [&](const Samples& one) { return one.pass == pass; });

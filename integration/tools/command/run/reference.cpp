@@ -73,6 +73,7 @@ std::string write_reference(const FrameReference& made, const std::string& name,
   if (!problem.empty()) return problem;
   if (!write_exr(out.path_of(name + "/reference.exr"), made.light, {"R", "G", "B"}, problem))
     return problem;
+  if (!with_mask) out.remove(name + "/mask.exr"); // of an earlier run
   if (with_mask && !write_exr(out.path_of(name + "/mask.exr"), made.mask, {"Y"}, problem))
     return problem;
   return "";

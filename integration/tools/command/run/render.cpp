@@ -338,10 +338,11 @@ ExitCode render(const Session& session, const RenderOptions& options) {
   } else if (!options.settings.empty() || !options.inputs.overlays.empty() ||
              !options.inputs.pass_types.empty() || !options.shaders.empty() ||
              !options.unbound.empty() || options.budget.ms > 0 ||
-             !options.budget.calibration.empty() || !options.budget.errors.empty()) {
+             !options.budget.calibration.empty() || !options.budget.errors.empty() ||
+             engine.sampling || engine.tile_class) {
     return fail(session, ExitCode::usage,
-                "--set, --overlay, --pass-types, --shaders, --unbound, --budget, --calibration and "
-                "--errors need a graph");
+                "--set, --overlay, --pass-types, --shaders, --unbound, --debug, --budget, "
+                "--calibration and --errors need a graph");
   }
   if (!options.capture.empty() && options.pictures == RenderOptions::Pictures::last)
     return fail(session, ExitCode::usage,

@@ -204,6 +204,9 @@ void take_shaders(const Watch& watch, const std::vector<std::string>& shaders) {
 } // namespace
 
 ExitCode watch(const Session& session, const WatchOptions& options) {
+  if (options.graph == "-")
+    return fail(session, ExitCode::usage,
+                "--graph -: standard input does not change; name a graph file to watch");
   std::error_code error;
   Watch state{session, options, std::filesystem::read_symlink("/proc/self/exe", error).string()};
   if (error)

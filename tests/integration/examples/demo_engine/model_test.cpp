@@ -4,6 +4,8 @@
 #include "tests/support/test_folder.hpp"
 #include "tests/support/text_file.hpp"
 
+#include <fmt/format.h>
+
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -257,7 +259,49 @@ TEST_F(ModelFile, NodeCyclesAreRejected) {
   EXPECT_THAT(
       rejected(only(triangle("[0, 1, 2]", "", R"([{ "children": [1] }, { "children": [0] }])")))
           .text,
-      HasSubstr("circle"));
+      HasSubstr("node 0 has two parents, or is its own ancestor"));
+}
+
+// 2^60 paths lead to the last node.
+TEST_F(ModelFile, NodesWithTwoParentsAreRejected) {
+  std::string nodes = "[";
+  for (int i = 1; i <= 60; ++i)
+    nodes += fmt::format("{{ \"children\": [{0}, {0}] }}, ", i);
+  EXPECT_THAT(rejected(only(triangle("[0, 1, 2]", "", nodes + R"({ "mesh": 0 }])"))).text,
+              HasSubstr("node 60 has two parents"));
+}
+
+// An instance has 3 * 2^20 indices; 22 instances have more than 2^26.
+TEST_F(ModelFile, IndicesOfAllInstancesAreLimited) {
+  constexpr size_t indices = size_t{3} << 20, corners = 36;
+  std::string buffer(corners + indices, '\0');
+  const float positions[] = {0, 0, 0, 1, 0, 0, 0, 2, 0};
+  std::memcpy(buffer.data(), positions, corners);
+  for (size_t i = 0; i < indices; ++i)
+    buffer[corners + i] = static_cast<char>(i % 3);
+  write("many.bin", buffer);
+  for (const int instances : {21, 22}) {
+    std::string nodes, all;
+    for (int i = 0; i < instances; ++i) {
+      nodes += fmt::format("{}{{ \"mesh\": 0 }}", i == 0 ? "" : ", ");
+      all += fmt::format("{}{}", i == 0 ? "" : ", ", i);
+    }
+    const std::string path = write(
+        "many.gltf",
+        fmt::format(
+            R"({{ "asset": {{ "version": "2.0" }}, "buffers": [{{ "uri": "many.bin", "byteLength": {} }}],
+      "bufferViews": [{{ "buffer": 0, "byteLength": 36 }}, {{ "buffer": 0, "byteOffset": 36, "byteLength": {} }}],
+      "accessors": [{{ "bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3" }},
+        {{ "bufferView": 1, "componentType": 5121, "count": {}, "type": "SCALAR" }}],
+      "meshes": [{{ "primitives": [{{ "attributes": {{ "POSITION": 0 }}, "indices": 1 }}] }}],
+      "nodes": [{}], "scenes": [{{ "nodes": [{}] }}], "scene": 0 }})",
+            buffer.size(), indices, indices, nodes, all));
+    auto model = load_model(only(path));
+    EXPECT_EQ(static_cast<bool>(model), instances == 21);
+    if (!model) {
+      EXPECT_THAT(model.error().text, HasSubstr("more than 67108864 indices"));
+    }
+  }
 }
 
 TEST_F(ModelFile, ASceneWithoutTrianglesIsRejected) {

@@ -255,6 +255,16 @@ TEST_F(Pictures, BadPngsAreRejected) {
   }
 }
 
+// The file has only a header, which promises 12 GiB of pixels.
+TEST_F(Pictures, PngBeyondItsFile_IsRejectedByItsHeader) {
+  const std::vector<uint8_t> header = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n', 0, 0, 0,
+                                       13,   'I', 'H', 'D', 'R',  0,    0,    0x80, 0, 0, 0,
+                                       0x80, 0,   8,   0,   0,    0,    0,    0,    0, 0, 0};
+  ASSERT_TRUE(write_bytes(folder / "a.png", header, error));
+  EXPECT_FALSE(read_png(folder / "a.png", error));
+  EXPECT_THAT(error, HasSubstr("a.png' holds 32768 x 32768 pixels"));
+}
+
 TEST(Srgb, CurveIsItsOwnInverseAndClamps) {
   for (float x = 0; x <= 1; x += 1.0f / 64)
     EXPECT_NEAR(srgb_decode(srgb_encode(x)), x, 1e-6);

@@ -1,6 +1,6 @@
 #include "integration/tools/command/bench/choice/budget_judge.hpp"
 
-#include "integration/tools/command/bench/suite/statistics.hpp"
+#include "integration/tools/command/statistics.hpp"
 #include "passes/choice/budget_controller.hpp"
 #include "passes/choice/time_margin.hpp"
 

@@ -3,11 +3,11 @@
 
 #include "framegraph/compile/compile.hpp"
 #include "integration/tools/command/bench/compile/shapes.hpp"
-#include "integration/tools/command/bench/suite/statistics.hpp"
 #include "integration/tools/command/bench/suite/suites.hpp"
 #include "integration/tools/command/bench/thread_time.hpp"
 #include "integration/tools/command/graph_input.hpp"
 #include "integration/tools/command/interrupt.hpp"
+#include "integration/tools/command/statistics.hpp"
 
 #include <fmt/format.h>
 

@@ -4,18 +4,19 @@
 #include "integration/tools/files/metrics.hpp"
 
 #include <cmath>
+#include <limits>
 
 namespace dermis::tools {
 namespace {
 
 constexpr double accumulation = 0.1; // weight of the new frame
 
-// Mean of squares over pixels.
+// Mean of squares over pixels. A value that is not a number counts as infinite.
 struct MeanSquare {
   double sum = 0;
   uint64_t count = 0;
   void add_square(double x) {
-    sum += x * x;
+    sum += std::isnan(x) ? std::numeric_limits<double>::infinity() : x * x;
     ++count;
   }
   double value() const { return count > 0 ? sum / double(count) : 0; }

@@ -4,9 +4,9 @@
 #include "integration/tools/command/bench/error_time/error_time_file.hpp"
 #include "integration/tools/command/bench/error_time/pictures.hpp"
 #include "integration/tools/command/bench/still_error.hpp"
-#include "integration/tools/command/bench/suite/statistics.hpp"
 #include "integration/tools/command/bench/suite/suite.hpp"
 #include "integration/tools/command/bench/technique.hpp"
+#include "integration/tools/command/statistics.hpp"
 
 #include <memory>
 #include <optional>

@@ -4,12 +4,12 @@
 #include "framegraph/text/limits.hpp"
 #include "integration/tools/command/bench/record/allocation_count.hpp"
 #include "integration/tools/command/bench/record/counted_host.hpp"
-#include "integration/tools/command/bench/suite/statistics.hpp"
 #include "integration/tools/command/bench/suite/suites.hpp"
 #include "integration/tools/command/bench/thread_time.hpp"
 #include "integration/tools/command/graph_input.hpp"
 #include "integration/tools/command/interrupt.hpp"
 #include "integration/tools/command/run/host_passes.hpp"
+#include "integration/tools/command/statistics.hpp"
 #include "integration/tools/files/bytes.hpp"
 
 #include <fmt/format.h>

@@ -11,7 +11,7 @@ namespace dermis::tools {
 namespace {
 
 // "ray", 1: change with the contents of the cache
-constexpr uint64_t ray_definition_version = 0x7261790000000001u;
+constexpr uint64_t ray_definition_version = 0x7261790000000002u;
 
 Hash hash_of(const RayReferenceSize& size, const std::string& scene, const CapturedFrame& frame) {
   Hash hash;
@@ -27,7 +27,7 @@ Hash hash_of(const RayReferenceSize& size, const std::string& scene, const Captu
   hash.add(frame.back_lighting.values);
   hash.add(frame.profile);
   for (const CaptureProfile& one : frame.description.profiles)
-    hash.add(std::span<const double>(one.profile.d_mm));
+    add_shapes(hash, {&one.profile.shape_mm, 1});
   return hash;
 }
 

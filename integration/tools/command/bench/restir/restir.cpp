@@ -3,10 +3,10 @@
 
 #include "integration/tools/command/bench/restir/claims.hpp"
 #include "integration/tools/command/bench/restir/restir_report.hpp"
-#include "integration/tools/command/bench/suite/statistics.hpp"
 #include "integration/tools/command/bench/suite/techniques.hpp"
 #include "integration/tools/command/bench/technique.hpp"
 #include "integration/tools/command/interrupt.hpp"
+#include "integration/tools/command/statistics.hpp"
 #include "passes/common/environment.hpp"
 
 #include <fmt/format.h>

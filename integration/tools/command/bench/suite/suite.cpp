@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 
 namespace dermis::tools {
@@ -108,6 +109,14 @@ ExitCode run_suite(const Session& given, const Suite& suite, const SuiteRequest&
   SuiteRun run{session, request.quick, request.options};
   for (const SuiteOption& option : suite.options)
     if (request.quick && option.quick) run.options.at(option.name) = *option.quick;
+  // Before minutes or hours of measuring.
+  std::array<OutputFolder, 4> folders;
+  std::vector<std::string> files{request.json, request.csv, request.html};
+  if (run.options.contains("out")) files.push_back(run.text("out"));
+  for (size_t i = 0; i < files.size(); ++i)
+    if (const std::string problem = files[i].empty() ? "" : folders[i].open_for(files[i]);
+        !problem.empty())
+      return fail(session, ExitCode::environment, problem);
   Report& report = run.report;
   report.bench = suite.name;
   report.title = suite.title;

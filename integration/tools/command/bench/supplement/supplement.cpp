@@ -1,10 +1,10 @@
 // dermis bench supplement: reproduces table 1 of the 2021 paper's supplement from many runs, next
 // to the printed values.
 
-#include "integration/tools/command/bench/suite/statistics.hpp"
 #include "integration/tools/command/bench/suite/suites.hpp"
 #include "integration/tools/command/bench/supplement/experiment.hpp"
 #include "integration/tools/command/interrupt.hpp"
+#include "integration/tools/command/statistics.hpp"
 
 #include <fmt/format.h>
 
