@@ -59,7 +59,6 @@ struct ViewTables {
   struct Described {
     std::shared_ptr<CompiledGraph> compiled_graph; // may be null
     std::vector<choice::Configuration> configurations;
-    std::vector<std::vector<choice::PassLoad>> loads; // by plan
   };
   // The running and the next one, and the one that runs again if the last record is discarded.
   std::array<Described, 3> compiled_graphs;
@@ -78,12 +77,10 @@ ViewTables tables_of(const dermis_view_t& view, const Tables& given) {
   out.compiled_graphs[1].compiled_graph = view.next;
   if (view.recorded.took_over && view.recorded.retired < view.retired.size())
     out.compiled_graphs[2].compiled_graph = view.retired[view.recorded.retired];
-  for (auto& [compiled_graph, configurations, loads] : out.compiled_graphs) {
-    if (!compiled_graph) continue;
-    configurations = described(view.context->pass_types, *compiled_graph, out.errors, out.costs,
-                               compiled_graph->configurations);
-    loads = loads_without_bounds(view.context->pass_types, *compiled_graph, out.errors, out.costs);
-  }
+  for (auto& [compiled_graph, configurations] : out.compiled_graphs)
+    if (compiled_graph)
+      configurations = described(view.context->pass_types, *compiled_graph, out.errors, out.costs,
+                                 compiled_graph->configurations);
   return out;
 }
 
@@ -105,13 +102,11 @@ void take_over(dermis_view_t& view, ViewTables& tables) noexcept {
   std::swap(view.chooser.error_correction, tables.error_correction);
   std::swap(view.chooser.calibration, tables.calibration);
   std::swap(view.chooser.costs, tables.costs);
-  for (auto& [compiled_graph, configurations, loads] : tables.compiled_graphs) {
-    if (!compiled_graph) continue;
-    compiled_graph->configurations.swap(configurations);
-    for (size_t i = 0; i < loads.size(); ++i)
-      compiled_graph->plans[i].loads.swap(loads[i]);
-    ++compiled_graph->revision;
-  }
+  for (auto& [compiled_graph, configurations] : tables.compiled_graphs)
+    if (compiled_graph) {
+      compiled_graph->configurations.swap(configurations);
+      ++compiled_graph->revision;
+    }
   retire_other_costs(view.chooser, newest(view));
 }
 

@@ -339,27 +339,18 @@ Chooser make_chooser(choice::DeviceClass device) {
   return chooser;
 }
 
-std::vector<std::vector<choice::PassLoad>> loads_without_bounds(const PassTypeRegistry& pass_types,
-                                                                const CompiledGraph& compiled_graph,
-                                                                const choice::ErrorModel& errors,
-                                                                choice::CostEstimator& costs) {
-  std::vector<std::vector<choice::PassLoad>> loads(compiled_graph.plans.size());
-  for (choice::Configuration empty : compiled_graph.configurations) {
-    empty.plan = compiled_graph.plans[empty.plan].without_bounds;
-    if (empty.plan == no_plan) continue;
-    loads[empty.plan] =
-        described(pass_types, compiled_graph, errors, costs, {empty}).front().passes;
-  }
-  return loads;
-}
-
 void adopt(Chooser& chooser, const PassTypeRegistry& pass_types, CompiledGraph& compiled_graph) {
   compiled_graph.configurations =
       described(pass_types, compiled_graph, chooser.errors, chooser.costs,
                 std::move(compiled_graph.configurations));
-  auto loads = loads_without_bounds(pass_types, compiled_graph, chooser.errors, chooser.costs);
-  for (size_t i = 0; i < loads.size(); ++i)
-    compiled_graph.plans[i].loads = std::move(loads[i]);
+  for (choice::Configuration empty : compiled_graph.configurations) {
+    empty.plan = compiled_graph.plans[empty.plan].without_bounds;
+    if (empty.plan == no_plan) continue;
+    compiled_graph.plans[empty.plan].loads =
+        described(pass_types, compiled_graph, chooser.errors, chooser.costs, {empty})
+            .front()
+            .passes;
+  }
   size_t passes = chooser.times.size();
   for (const RunnablePlan& plan : compiled_graph.plans)
     passes = std::max(passes, plan.compiled->plan.passes.size());
@@ -379,14 +370,9 @@ void adopt(Chooser& chooser, const PassTypeRegistry& pass_types, CompiledGraph& 
 
 void retire_other_costs(Chooser& chooser, const CompiledGraph& compiled_graph) noexcept {
   chooser.costs.retire_all();
-  const auto use = [&](const std::vector<choice::PassLoad>& passes) {
-    for (const choice::PassLoad& pass : passes)
-      chooser.costs.use(pass.cost);
-  };
   for (const choice::Configuration& configuration : compiled_graph.configurations)
-    use(configuration.passes);
-  for (const RunnablePlan& plan : compiled_graph.plans)
-    use(plan.loads);
+    for (const choice::PassLoad& pass : configuration.passes)
+      chooser.costs.use(pass.cost);
 }
 
 void observe(Chooser& chooser, CompiledGraph& compiled_graph,

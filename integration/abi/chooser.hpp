@@ -125,12 +125,6 @@ choice::DeviceClass device_class(VkPhysicalDeviceType type);
 // Returns a chooser with the library's built-in tables.
 Chooser make_chooser(choice::DeviceClass device);
 
-// Returns RunnablePlan::loads of each plan, with costs in `costs`.
-std::vector<std::vector<choice::PassLoad>> loads_without_bounds(const PassTypeRegistry& pass_types,
-                                                                const CompiledGraph& compiled_graph,
-                                                                const choice::ErrorModel& errors,
-                                                                choice::CostEstimator& costs);
-
 // Prepares a compiled graph for this chooser: allocates everything that deciding and observing
 // need. Must be called before the compiled graph's first record.
 void adopt(Chooser& chooser, const PassTypeRegistry& pass_types, CompiledGraph& compiled_graph);

@@ -11,8 +11,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <regex>
-#include <set>
 
 namespace dermis::abi_test {
 namespace {
@@ -375,36 +373,6 @@ TEST_F(Choice, LearnsAndExportsTheDevicesTimes) {
   dermis_budget budget = DERMIS_BUDGET_INIT;
   budget.calibration = &calibration;
   EXPECT_OK(dermis_graph_set_budget(graph, &budget, nullptr));
-}
-
-// Frames with empty bounds run other passes than frames that scatter.
-TEST_F(Choice, NewCalibration_KnowsThePassesOfEmptyFrames) {
-  const std::string text = R"({ "dermis_calibration": 2, "device": "other", "costs": [
-    { "work": "test.other", "base_us": 5, "group_us": 1, "spread": 0 } ] })";
-  std::vector<std::set<std::string>> works;
-  for (const bool reloaded : {false, true}) {
-    make();
-    const dermis_source calibration = source_of(text, "other");
-    dermis_budget budget = DERMIS_BUDGET_INIT;
-    budget.calibration = &calibration;
-    ASSERT_OK(dermis_graph_set_budget(graph, &budget, nullptr));
-    if (reloaded) {
-      const std::string skin = read_text("configs/graphs/skin.json");
-      ASSERT_OK(reload_text(graph, source_of(skin, "skin.json")));
-    }
-    for (int i = 0; i < 4; ++i) {
-      dermis_frame one = bound_frame(graph);
-      one.flags = DERMIS_FRAME_BOUNDS;
-      record_and_read(graph, one);
-    }
-    works.emplace_back();
-    const std::string learned = exported();
-    const std::regex work("\"work\": \"([^\"]*)\"");
-    for (std::sregex_iterator at(learned.begin(), learned.end(), work), end; at != end; ++at)
-      works.back().insert((*at)[1]);
-  }
-  EXPECT_EQ(works[0], works[1]);
-  EXPECT_EQ(works[0].size(), 2u) << "the calibrated work, and the copy of the light";
 }
 
 TEST_F(Choice, ExportedTimesOfAllPasses_AreCertain) {

@@ -33,7 +33,7 @@ struct UnusedSlots : RecordedFrame {
       for (const dermis_slot& slot : slots)
         if (slot.id == binding.slot && slot.best_layout == VK_IMAGE_LAYOUT_UNDEFINED)
           images.insert(binding.image);
-    EXPECT_GT(images.size(), 1u);
+    EXPECT_GT(images.size(), 0u);
     return images;
   }
   // Returns the barriers of these images in a frame in which all bindings have these states.

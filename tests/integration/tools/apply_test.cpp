@@ -6,6 +6,8 @@
 
 #include "integration/tools/files/exr.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
