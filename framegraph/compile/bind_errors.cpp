@@ -24,10 +24,12 @@ struct BindErrorReporter {
   bool has_substitute(const Use& use) const {
     if (use.when != ReadWhen::history_valid || use.bind_error != Use::BindError::history_unwritten)
       return false;
-    const Use* next = &use + 1; // the substitute follows the history at the same port
-    const bool last = next == end_of_pass(use);
-    return !last && next->when == ReadWhen::history_invalid && next->port == use.port &&
-           next->bind_error == Use::BindError::none;
+    // The substitute follows all subresources of the history, at the same port.
+    const Use* next = &use + 1;
+    while (next != end_of_pass(use) && next->binding == use.binding)
+      ++next;
+    return next != end_of_pass(use) && next->when == ReadWhen::history_invalid &&
+           next->port == use.port && next->bind_error == Use::BindError::none;
   }
 
   // Returns whether the pass cannot run without the port. Of several alternative ports the first is
@@ -50,8 +52,9 @@ struct BindErrorReporter {
                          use.bind_error == Use::BindError::unwritten ||
                          use.bind_error == Use::BindError::history_unwritten;
     if (has_substitute(use)) {
-      report.record_reason(Reason::About::pass, use.pass.value,
-                           Reason::ReasonKind::always_otherwise, use.port, use.requested.value);
+      if (first_of_binding(use))
+        report.record_reason(Reason::About::pass, use.pass.value,
+                             Reason::ReasonKind::always_otherwise, use.port, use.requested.value);
       return;
     }
     if (missing && !is_required(use)) {

@@ -10,7 +10,7 @@ namespace {
 // Returns whether each list of the input is empty or has one entry per declaration, and the device
 // supports the view.
 bool acceptable(const CompileInput& input, Diagnostics& diagnostics) {
-  const uint32_t errors = diagnostics.count(Severity::error);
+  const uint64_t errors = diagnostics.errors();
   const auto report_input = [&](std::string text) {
     diagnostics.add(DiagnosticId::compile_input, {}, std::move(text));
   };
@@ -26,7 +26,7 @@ bool acceptable(const CompileInput& input, Diagnostics& diagnostics) {
   check_length("setting values", input.settings.size(), input.graph->settings.size());
   check_length("bound flags", input.bound.size(), input.graph->resources.size());
   check_length("host formats", input.host_formats.size(), input.graph->resources.size());
-  return diagnostics.count(Severity::error) == errors;
+  return diagnostics.errors() == errors;
 }
 
 void clear(CompiledPlan& out) {
@@ -125,7 +125,7 @@ Compiler::~Compiler() = default;
 bool Compiler::compile(const CompileInput& input, Diagnostics& diagnostics, CompiledPlan& out) {
   clear(out);
   if (!acceptable(input, diagnostics)) return false;
-  Report report{diagnostics, out.reasons, input.reasons, diagnostics.count(Severity::error)};
+  Report report{diagnostics, out.reasons, input.reasons, diagnostics.errors()};
   if (run_phases(input, report, out.plan, *scratch_)) return true;
   clear(out);
   return false;

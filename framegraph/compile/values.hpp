@@ -16,9 +16,9 @@ struct Report {
   Diagnostics& diagnostics;
   std::vector<Reason>& reasons;
   bool reasons_requested = true;
-  uint32_t errors_before = 0; // errors in `diagnostics` before compilation
+  uint64_t errors_before = 0; // errors in `diagnostics` before compilation
 
-  bool failed() const { return diagnostics.count(Severity::error) != errors_before; }
+  bool failed() const { return diagnostics.errors() != errors_before; }
   void record_reason(Reason::About about, uint32_t index, Reason::ReasonKind why, uint32_t a = 0,
                      uint32_t b = 0, uint32_t c = 0) {
     if (reasons_requested) add_reason({about, why, index, a, b, c});

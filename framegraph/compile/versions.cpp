@@ -50,8 +50,8 @@ struct VersionResolver {
     return static_cast<uint32_t>(versions.list.size() - 1);
   }
 
-  // Finds the exports that the host leaves unbound and that only passes that write them read:
-  // nobody needs their contents, so optional ports are unbound too.
+  // Finds the exports that the host leaves unbound and that are only read at optional ports of
+  // passes that write them: nobody needs their contents, so optional ports are unbound too.
   void find_unneeded() {
     const auto unbound_export = [](const ResourceInfo& info) {
       return info.exported && !info.imported && !info.bound && !info.history;
@@ -60,14 +60,20 @@ struct VersionResolver {
     if (std::none_of(sizes.info.begin(), sizes.info.end(), unbound_export)) return;
     for (const ResourceInfo& info : sizes.info)
       scratch.unneeded.push_back(unbound_export(info));
-    for (const PassDeclaration& pass : graph.passes) {
+    for (uint32_t i = 0; i < graph.passes.size(); ++i) {
+      const PassDeclaration& pass = graph.passes[i];
+      const std::span<const Port> ports = active.type(PassId{i}).ports;
+      const auto writes = graph.writes(pass);
       for (const PortBinding& read : graph.reads(pass)) {
-        const auto writes = graph.writes(pass);
-        if (std::none_of(writes.begin(), writes.end(), [&](const PortBinding& written) {
+        if (!ports[read.port].optional ||
+            std::none_of(writes.begin(), writes.end(), [&](const PortBinding& written) {
               return written.resource == read.resource;
             }))
           scratch.unneeded[read.resource.value] = 0;
       }
+      for (const PortBinding& written : writes)
+        if (!ports[written.port].optional && usage_info(ports[written.port].usage).reads)
+          scratch.unneeded[written.resource.value] = 0;
       for (const PassThrough& through : pass.otherwise)
         scratch.unneeded[through.instead.value] = 0;
     }
@@ -324,15 +330,8 @@ struct VersionResolver {
   }
 
   void find_final_versions() {
-    versions.final_version.assign(scratch.current.size(), invalid_index);
-    const size_t resources = graph.resources.size();
-    for (uint32_t i = 0; i < versions.final_version.size(); ++i) {
-      const uint32_t last = scratch.current[i].version;
-      if (last == invalid_index) continue;
-      // A divided image has no `otherwise`, so ranges numbered after all resources are their own.
-      if (i >= resources || versions[last].resource == ResourceId{i})
-        versions.final_version[i] = last;
-    }
+    // `otherwise` redirects readers; the resource itself keeps what the last pass that is on wrote.
+    versions.final_version = scratch.last_version;
   }
 };
 

@@ -96,10 +96,7 @@ std::optional<Composition> compose(Document graph, std::vector<Document> overlay
                                    const OpenFile& open, Diagnostics& diagnostics) {
   if (overlays.empty() && !has_includes(graph)) return Composition{std::move(graph), {}};
   if (!check_version(graph, "dermis", graph_format_version, diagnostics)) return std::nullopt;
-  const auto errors = [&] {
-    return diagnostics.count(Severity::error) + diagnostics.dropped_errors;
-  };
-  const uint64_t errors_before = errors();
+  const uint64_t errors_before = diagnostics.errors();
   Composer composer{open, diagnostics};
   const SourceLocation root = graph.where(graph.root());
   if (!add_document(composer, std::move(graph), root)) return std::nullopt;
@@ -110,16 +107,13 @@ std::optional<Composition> compose(Document graph, std::vector<Document> overlay
     if (!add_document(composer, std::move(overlay), where)) break;
     apply_overlay(composer, static_cast<uint32_t>(composer.tree.documents.size() - 1));
   }
-  if (errors() != errors_before) return std::nullopt;
+  if (diagnostics.errors() != errors_before) return std::nullopt;
   return Composition{flatten(std::move(composer.tree)), std::move(composer.changes)};
 }
 
 std::optional<Composition> compose_fragment(Document fragment, const OpenFile& open,
                                             Diagnostics& diagnostics) {
-  const auto errors = [&] {
-    return diagnostics.count(Severity::error) + diagnostics.dropped_errors;
-  };
-  const uint64_t errors_before = errors();
+  const uint64_t errors_before = diagnostics.errors();
   const SourceLocation where = fragment.where(fragment.root());
   auto graph = parse_document("<graph of only the fragment>",
                               R"({ "dermis": 2, "name": "fragment", "passes": [], "exports": [] })",
@@ -131,7 +125,7 @@ std::optional<Composition> compose_fragment(Document fragment, const OpenFile& o
   composer.tree.insert_copy(0, composer.tree.documents.front().root());
   std::vector<ItemId> passes;
   join_fragment(composer, 1, passes);
-  if (errors() != errors_before) return std::nullopt;
+  if (diagnostics.errors() != errors_before) return std::nullopt;
   composer.tree[composer.tree.find({0}, "passes")].children = std::move(passes);
   return Composition{flatten(std::move(composer.tree)), std::move(composer.changes)};
 }

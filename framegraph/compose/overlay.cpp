@@ -242,12 +242,9 @@ std::vector<std::optional<EditDeclaration>> read_edits(const Document& document,
 } // namespace
 
 bool check_overlay(const Document& document, Diagnostics& diagnostics) {
-  const auto errors = [&] {
-    return diagnostics.count(Severity::error) + diagnostics.dropped_errors;
-  };
-  const uint64_t before = errors();
+  const uint64_t before = diagnostics.errors();
   read_edits(document, diagnostics);
-  return errors() == before;
+  return diagnostics.errors() == before;
 }
 
 void apply_overlay(Composer& composer, uint32_t overlay) {

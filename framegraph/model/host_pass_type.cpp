@@ -121,7 +121,7 @@ HostPassTypeSetting read_setting(const Document& document, NodeId node, Diagnost
 
 HostPassTypeDeclaration read_pass_type(const Document& document, NodeId node,
                                        Diagnostics& diagnostics) {
-  const uint32_t errors = diagnostics.count(Severity::error);
+  const uint64_t errors = diagnostics.errors();
   ObjectReader object(document, node, "pass type", diagnostics);
   HostPassTypeDeclaration type;
   type.name = object.string("name").value_or("");
@@ -137,7 +137,7 @@ HostPassTypeDeclaration read_pass_type(const Document& document, NodeId node,
     for (const NodeId setting : children(document, settings))
       type.settings.push_back(read_setting(document, setting, diagnostics));
   object.finish();
-  if (diagnostics.count(Severity::error) != errors) return type;
+  if (diagnostics.errors() != errors) return type;
   if (const PassTypeProblem problem = problem_of(type); !problem.text.empty())
     diagnostics.add(problem.id, document.where(node), problem.text);
   return type;
@@ -266,7 +266,7 @@ std::string write_host_pass_types(const HostPassTypes& pass_types) {
 
 std::optional<std::vector<HostPassTypeDeclaration>> read_host_pass_types(const Document& document,
                                                                          Diagnostics& diagnostics) {
-  const uint32_t errors = diagnostics.count(Severity::error);
+  const uint64_t errors = diagnostics.errors();
   if (!check_version(document, "dermis_pass_types", 2, diagnostics)) return std::nullopt;
   ObjectReader root(document, document.root(), "file of pass types", diagnostics);
   root.any("dermis_pass_types");
@@ -283,7 +283,7 @@ std::optional<std::vector<HostPassTypeDeclaration>> read_host_pass_types(const D
             fmt::format("the pass type '{}' is declared twice", pass_types.back().name));
     }
   root.finish();
-  if (diagnostics.count(Severity::error) != errors) return std::nullopt;
+  if (diagnostics.errors() != errors) return std::nullopt;
   return pass_types;
 }
 

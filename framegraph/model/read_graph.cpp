@@ -15,10 +15,7 @@ std::string note_of(const Document& document, NodeId object) {
 std::optional<Graph> read_graph(const Document& document, const PassTypeRegistry& pass_types,
                                 Diagnostics& diagnostics) {
   if (!check_version(document, "dermis", graph_format_version, diagnostics)) return std::nullopt;
-  const auto errors = [&] {
-    return diagnostics.count(Severity::error) + diagnostics.dropped_errors;
-  };
-  const uint64_t errors_before = errors();
+  const uint64_t errors_before = diagnostics.errors();
 
   GraphReader reader(document, pass_types, diagnostics);
   ObjectReader root(document, document.root(), "the graph", diagnostics);
@@ -30,11 +27,11 @@ std::optional<Graph> read_graph(const Document& document, const PassTypeRegistry
   const NodeId resources = root.object("resources", Need::optional);
   const NodeId passes = root.array("passes", 0, limits::passes);
   const NodeId exports = root.array("exports", 0, limits::resources);
-  const uint64_t errors_so_far = errors();
+  const uint64_t errors_so_far = diagnostics.errors();
   root.finish();
   // A section is unread if it has the wrong type, or possibly if it is absent while there is an
   // unknown key.
-  const bool misspelt = errors() != errors_so_far;
+  const bool misspelt = diagnostics.errors() != errors_so_far;
   const auto unread = [&](std::string_view key, NodeId section) {
     return !section.valid() && (misspelt || root.has(key));
   };
@@ -53,8 +50,8 @@ std::optional<Graph> read_graph(const Document& document, const PassTypeRegistry
   read_passes(reader);
   check_producers(reader);
   check_reads(reader);
-  if (errors() == errors_before) check_needs(reader);
-  if (errors() != errors_before) return std::nullopt;
+  if (diagnostics.errors() == errors_before) check_needs(reader);
+  if (diagnostics.errors() != errors_before) return std::nullopt;
   return std::move(reader.graph);
 }
 

@@ -101,10 +101,16 @@ struct GraphWriter {
       text(port.name);
       word(port.usage);
       number(port.optional);
+      text(port.glsl_type);
       all(port.formats, [&](Format format) { word(format); });
+      text(port.formats_while.setting);
+      number(static_cast<uint64_t>(port.formats_while.option));
+      all(port.formats_while.formats, [&](Format format) { word(format); });
+      number(port.filtered);
       number(port.own_texels);
       number(port.internally_ordered);
     });
+    all(type.one_of, [&](std::string_view port) { text(port); });
     all(type.settings, [&](const PassTypeSetting& setting) {
       text(setting.name);
       word(setting.type);

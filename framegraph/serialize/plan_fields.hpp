@@ -11,6 +11,8 @@ namespace dermis::serial {
 
 // only bounded by the size of the file
 inline constexpr size_t many = std::numeric_limits<uint32_t>::max();
+// the name of a host's pass type has two parts and a dot
+inline constexpr size_t plan_name_bytes = 2 * limits::name_bytes + 1;
 // an option in quotes, or a number
 inline constexpr size_t setting_text_bytes = 2 * limits::name_bytes;
 
@@ -19,7 +21,7 @@ template <class A> void fields(A& a, Of<A, uint8_t>& value) {
 }
 
 template <class A> void fields(A& a, Of<A, std::string>& value) {
-  a.text("name", value, limits::name_bytes);
+  a.text("name", value, plan_name_bytes);
 }
 
 template <class A> void fields(A& a, Of<A, Format>& value) {

@@ -63,7 +63,11 @@ bool Diagnostics::full() const {
 }
 
 bool Diagnostics::has_errors() const {
-  return dropped_errors > 0 || count(Severity::error) > 0;
+  return errors() > 0;
+}
+
+uint64_t Diagnostics::errors() const {
+  return count(Severity::error) + dropped_errors;
 }
 
 uint32_t Diagnostics::count(Severity severity) const {

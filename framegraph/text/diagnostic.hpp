@@ -67,7 +67,10 @@ struct Diagnostics {
   // Returns true if nothing more will be listed, so that readers may stop.
   bool full() const;
   bool has_errors() const;
-  uint32_t count(Severity severity) const;
+  uint32_t count(Severity severity) const; // in `list`
+  // Returns the number of errors so far, including dropped ones. Compare it to learn whether a step
+  // reported an error.
+  uint64_t errors() const;
 };
 
 // Returns "file:line:column: error[D0101 unknown_key]: text", an excerpt with a caret, and the

@@ -55,12 +55,12 @@ public:
     return true;
   }
   bool number_unsigned(number_unsigned_t value) {
-    if (value > static_cast<number_unsigned_t>(INT64_MAX)) return reject_integer();
+    if (value > static_cast<number_unsigned_t>(INT64_MAX))
+      return reject_integer(fmt::to_string(value));
     return number_integer(static_cast<number_integer_t>(value));
   }
-  bool number_float(number_float_t value, const string_t&) {
-    const std::string_view token = number_token();
-    if (token.find_first_of(".eE") == std::string_view::npos) return reject_integer();
+  bool number_float(number_float_t value, const string_t& token) {
+    if (token.find_first_of(".eE") == std::string_view::npos) return reject_integer(token);
     Node* node = add(NodeKind::real);
     if (node == nullptr) return false;
     // The parser converts with strtod, which depends on the host's locale; from_chars does not.
@@ -108,19 +108,14 @@ private:
     failed_ = true;
     return false;
   }
-  bool reject_integer() {
-    return reject(
-        DiagnosticId::integer_precision, cursor_.value_position(),
-        fmt::format("the integer {} does not fit in 64 signed bits", shown_token(number_token())));
+  bool reject_integer(std::string_view token) {
+    return reject(DiagnosticId::integer_precision, cursor_.value_position(),
+                  fmt::format("the integer {} does not fit in 64 signed bits", shown_token(token)));
   }
   bool check_no_nul(std::string_view value) {
     if (value.find('\0') == std::string_view::npos) return true;
     return reject(DiagnosticId::syntax, cursor_.value_position(),
                   "strings may not contain \\u0000");
-  }
-  std::string_view number_token() const {
-    const std::string_view rest = text_.substr(cursor_.value_position().offset);
-    return rest.substr(0, rest.find_first_not_of("+-.0123456789eE"));
   }
   uint32_t keep(std::string_view characters) {
     const auto begin = static_cast<uint32_t>(document_.characters.size());

@@ -179,6 +179,9 @@ struct Checker {
         expect(!access.internally_ordered || (access.access & all_write_access) != 0,
                "an internally ordered access does not write", p);
         expect(exists, "a pass accesses a resource or an earlier frame that does not exist", p);
+        expect(!exists || plan.resources[access.resource].type != ResourceType::image ||
+                   access.layout != Layout::undefined,
+               "a pass accesses an image in an undefined layout", p);
         expect(!exists || has(access.resource, access.range),
                "a pass accesses mips or layers that do not exist", p);
         if (!exists || plan.resources[access.resource].first_instance >= plan.placements.size())
@@ -222,7 +225,8 @@ struct Checker {
       if (!exists) continue;
       ++described[history.resource];
       const uint32_t instances = plan.resources[history.resource].instance_count;
-      expect(history.frames >= 1 && history.range_count >= 1 && instances <= history.frames + 1 &&
+      expect(history.frames >= 1 && history.frames <= limits::history_frames &&
+                 history.range_count >= 1 && instances <= history.frames + 1 &&
                  instances >= history.frames &&
                  range_in(history.first_range, history.range_count, plan.history_ranges.size()) &&
                  range_in(history.first_layout,

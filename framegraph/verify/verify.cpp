@@ -130,6 +130,7 @@ struct Machine {
   }
 
   void begin_frame() {
+    work_done += memory.subresources.size();
     for (Subresource& subresource : memory.subresources)
       subresource.returned_to_host = false;
     for (uint32_t r = 0; r < plan.resources.size(); ++r) {
@@ -274,6 +275,7 @@ struct Machine {
   }
 
   void run(const PlanBarrier& barrier, uint32_t index, const std::string& where) {
+    ++work_done;
     if (is_over()) return;
     Subresource& subresource = memory.subresources[index];
     const auto wrong = [&](const char* what) {
@@ -305,6 +307,9 @@ struct Machine {
     if (subresource.image && barrier.old_layout == Layout::undefined) {
       if (!barrier.to_host && barrier.new_layout == Layout::undefined)
         wrong("has a barrier whose new layout is undefined");
+      if (subresource.defined && (subresource.placement == no_instance ||
+                                  subresource.of_frame == int64_t{frame} - barrier.frames_back))
+        wrong("has a barrier that discards its contents, which are still needed");
       subresource.defined = false;
     }
     memory.isolate(index);
@@ -486,7 +491,7 @@ Verdict verify(const Plan& plan) {
   Verdict verdict{std::move(machine.violations), ""};
   if (machine.is_over())
     verdict.not_verified =
-        fmt::format("its accesses overlap in memory more than {} times", max_work);
+        fmt::format("the verifier would take more than {} steps for it", max_work);
   return verdict;
 }
 

@@ -17,7 +17,7 @@ constexpr double max_uncertainty = 100;
 } // namespace
 
 std::optional<Calibration> read_calibration(const Document& document, Diagnostics& diagnostics) {
-  const uint32_t errors = diagnostics.count(Severity::error);
+  const uint64_t errors = diagnostics.errors();
   if (!check_version(document, "dermis_calibration", 2, diagnostics)) return std::nullopt;
   Calibration out;
   ObjectReader root(document, document.root(), "calibration", diagnostics);
@@ -47,7 +47,7 @@ std::optional<Calibration> read_calibration(const Document& document, Diagnostic
                         fmt::format("two costs are those of '{}'", cost.work));
     }
   root.finish();
-  if (diagnostics.count(Severity::error) != errors) return std::nullopt;
+  if (diagnostics.errors() != errors) return std::nullopt;
   return out;
 }
 

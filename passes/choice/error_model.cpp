@@ -158,7 +158,7 @@ bool runs(const PassTypeMatch& match, const std::vector<RunningPass>& passes) {
 } // namespace
 
 std::optional<ErrorModel> read_error_model(const Document& document, Diagnostics& diagnostics) {
-  const uint32_t errors = diagnostics.count(Severity::error);
+  const uint64_t errors = diagnostics.errors();
   if (!check_version(document, "dermis_errors", 2, diagnostics)) return std::nullopt;
   ErrorModel model;
   ObjectReader root(document, document.root(), "error table", diagnostics);
@@ -193,7 +193,7 @@ std::optional<ErrorModel> read_error_model(const Document& document, Diagnostics
                         fmt::format("two techniques are called '{}'", technique.name));
     }
   root.finish();
-  if (diagnostics.count(Severity::error) != errors) return std::nullopt;
+  if (diagnostics.errors() != errors) return std::nullopt;
   return model;
 }
 

@@ -106,6 +106,21 @@ TEST(Subresources, HistoryOfUnwrittenMip_IsRejected) {
                 "'kept#2@-1', but no pass that is on writes 'kept#2'");
 }
 
+// No pass writes the history, so both ports read their substitute in every frame.
+TEST(Subresources, UnwrittenDividedHistory_IsReplaced) {
+  GraphBuilder b{"import light", "history kept", "export late", "export required"};
+  b.graph.resources[b.resource("kept").value].mips = 2;
+  b.boolean("on", false);
+  for (const char* mip : {"kept#0", "kept#1"})
+    b.pass(mip, "test.need", {{"a", "light"}}, {{"out", mip}}).when = b.when("on");
+  b.pass("late", "test.shade", {{"a", "kept@-1?light"}, {"b", "kept#0@-1?light"}},
+         {{"out", "late"}});
+  b.pass("needs", "test.need", {{"a", "kept@-1?light"}}, {{"out", "required"}});
+  const Plan plan = compiled(b).plan;
+  EXPECT_EQ(pass_names(b, plan), "late needs");
+  EXPECT_EQ(plan.passes[0].access_count, 3u);
+}
+
 // Expects the diagnostic for an optional port that reads a mip chain with unwritten mips.
 Diagnostic half_written(const GraphBuilder& b, DiagnosticId id = DiagnosticId::read_before_write) {
   const auto errors = rejected(b);

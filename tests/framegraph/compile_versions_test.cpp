@@ -97,6 +97,38 @@ TEST(Culling, UnboundExportOnlyExtended_IsNotWritten) {
               HasSubstr("optional port 'debug' is unbound"));
 }
 
+// As extending_ports, but the pass cannot run without the earlier contents.
+const Port continuing_ports[] = {{"light", Usage::sampled_image, false, "texture2D", ""},
+                                 {"before", Usage::sampled_image, false, "texture2D", "", {}, true},
+                                 {"out", Usage::storage_image_write, false, "image2D", ""},
+                                 {"debug", Usage::storage_image_write, true, "image2D", ""}};
+
+TEST(Culling, UnboundExportThatAPassNeeds_IsWritten) {
+  GraphBuilder b = chain();
+  PassType drawing, continuing;
+  drawing.name = "test.draw";
+  drawing.ports = extending_ports;
+  continuing.name = "test.continue";
+  continuing.ports = continuing_ports;
+  b.pass_types.add(drawing);
+  b.pass_types.add(continuing);
+  b.exported("debug").optional = true;
+  b.exported("first");
+  b.exported("second");
+  b.pass("draw", "test.draw", {{"light", "blurred"}}, {{"out", "first"}, {"debug", "debug"}});
+  b.pass("go_on", "test.continue", {{"light", "blurred"}, {"before", "debug"}},
+         {{"out", "second"}, {"debug", "debug"}});
+  auto input = b.input();
+  input.bound.assign(b.graph.resources.size(), true);
+  for (const bool bound : {true, false}) {
+    input.bound[b.resource("debug").value] = bound;
+    const Plan plan = compiled(b, input).plan;
+    EXPECT_EQ(pass_names(b, plan), "blur finish draw go_on");
+    EXPECT_EQ(plan.passes[2].access_count, 3u) << bound;
+    EXPECT_EQ(plan.passes[3].access_count, 4u) << bound;
+  }
+}
+
 TEST(Culling, ARequiredPortOfALivePassNeedsItsImport) {
   GraphBuilder b = chain();
   b.import("mask").optional = true;
@@ -255,6 +287,19 @@ TEST(Exports, ARequiredExportThatNothingWritesIsRejected) {
   EXPECT_THAT(error.related[0].second, HasSubstr("'finish' writes it and is off"));
 }
 
+// The `otherwise` of the last writer redirects readers; the export itself has the contents of the
+// writer before.
+TEST(Exports, OtherwiseOfTheLastWriter_KeepsEarlierContents) {
+  GraphBuilder b = chain();
+  b.boolean("on", false);
+  b.exported("kept");
+  b.pass("write", "test.shade", {{"a", "light"}}, {{"out", "kept"}});
+  auto& update = b.pass("update", "test.update", {}, {{"image", "kept"}});
+  update.when = b.when("on");
+  b.otherwise(update, "kept", "light");
+  EXPECT_EQ(pass_names(b, compiled(b).plan), "blur finish write");
+}
+
 TEST(Exports, ImportUpdatedInPlace_PassesOff_IsUnchanged) {
   GraphBuilder b;
   b.boolean("on", false);
@@ -321,6 +366,24 @@ TEST(Order, CycleIsRejectedWithThePlaceOfEachPass) {
   EXPECT_THAT(error.related[0].second, HasSubstr("'second' reads 'x' from 'first'"));
   EXPECT_EQ(error.related[0].first.line, b.graph.passes[3].where.line);
   EXPECT_THAT(error.related[1].second, HasSubstr("'first' reads 'y' from 'second'"));
+}
+
+// Errors that are no longer listed stop the compiler, too.
+TEST(Order, CycleAfterTooManyDiagnostics_IsRejected) {
+  GraphBuilder b = chain();
+  b.image("x");
+  b.image("y");
+  b.exported("z");
+  b.pass("first", "test.need", {{"a", "y"}}, {{"out", "x"}});
+  b.pass("second", "test.need", {{"a", "x"}}, {{"out", "y"}});
+  b.pass("third", "test.need", {{"a", "y"}}, {{"out", "z"}});
+  Diagnostics diagnostics;
+  while (!diagnostics.full())
+    diagnostics.add(DiagnosticId::option_unavailable, {}, "a note");
+  EXPECT_FALSE(diagnostics.has_errors());
+  EXPECT_FALSE(compile(b.input(), diagnostics));
+  EXPECT_GT(diagnostics.dropped_errors, 0u);
+  EXPECT_TRUE(compile(chain().input(), diagnostics)) << "errors of an earlier graph do not count";
 }
 
 TEST(Order, CycleAmongUnneededPassesIsRejected) {

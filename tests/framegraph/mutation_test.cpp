@@ -55,6 +55,22 @@ TEST(Mutation, DroppedBarrier_IsRejected) {
   EXPECT_GT(dropped, 10000u);
 }
 
+TEST(Mutation, DiscardedContents_AreRejected) {
+  uint64_t discarded = 0;
+  for_random_plans(300, 3000, [&](const GraphBuilder&, const Plan& plan, uint64_t seed) {
+    for (uint32_t b = 0; b < plan.barriers.size(); ++b) {
+      const PlanBarrier& barrier = plan.barriers[b];
+      const bool of_image = plan.resources[barrier.resource].type == ResourceType::image;
+      if (!of_image || barrier.from_host || barrier.old_layout == Layout::undefined) continue;
+      Plan mutant = plan;
+      mutant.barriers[b].old_layout = Layout::undefined;
+      ++discarded;
+      ASSERT_FALSE(verify(mutant).violations.empty()) << "seed " << seed << ", barrier " << b;
+    }
+  });
+  EXPECT_GT(discarded, 1000u);
+}
+
 // Alias barriers name the accesses of every earlier occupant, including those that a later occupant
 // waited for. Few other masks may be wider than necessary.
 TEST(Mutation, WeakerMask_IsRejectedIfHazardous) {

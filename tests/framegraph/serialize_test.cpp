@@ -51,6 +51,17 @@ TEST(SavedPlan, ReadsBackAsWritten) {
   }
 }
 
+// The name of a host's pass type has two parts of up to 64 bytes.
+TEST(SavedPlan, LongestNamesOfPassTypes_AreRead) {
+  SavedPlan before = saved(random_graph(1).input());
+  ASSERT_FALSE(before.names.pass_types.empty());
+  before.names.pass_types[0] = std::string(64, 'a') + "." + std::string(64, 'b');
+  Diagnostics diagnostics;
+  const auto after = read_plan("p.plan", write_plan(before), diagnostics);
+  ASSERT_TRUE(after) << format_as_json(diagnostics);
+  EXPECT_EQ(after->names.pass_types[0], before.names.pass_types[0]);
+}
+
 TEST(SavedPlan, EqualInputs_GiveEqualBytes) {
   for (uint64_t seed = 0; seed < 100; ++seed)
     EXPECT_EQ(file_of(seed), file_of(seed));
@@ -176,6 +187,31 @@ TEST(PlanKey, DiffersIfThePlanCanDiffer) {
   EXPECT_FALSE(is_new([](CompileInput& input) { input.reasons = false; }));
   EXPECT_FALSE(is_new([](CompileInput& input) { input.order_seed = 4; }))
       << "no random number is used";
+}
+
+TEST(PlanKey, DiffersWithWhatThePassTypeSupports) {
+  static constexpr Format narrow[] = {Format::rgba16f};
+  const Port plain{"a", Usage::sampled_image, false, "texture2D", ""};
+  std::vector<Port> variants(6, plain);
+  variants[1].filtered = true;
+  variants[2].glsl_type = "utexture2D";
+  variants[3].formats = narrow;
+  variants[4].formats_while = {"mode", 1, narrow};
+  variants[5].own_texels = true;
+  std::set<std::string> keys;
+  for (const Port& port : variants)
+    for (const bool alternative : {false, true}) {
+      GraphBuilder builder{"import light", "export result"};
+      const Port ports[] = {port, {"out", Usage::storage_image_write, false, "image2D", ""}};
+      static constexpr std::string_view one_of[] = {"a"};
+      PassType type;
+      type.name = "test.variant";
+      type.ports = ports;
+      if (alternative) type.one_of = one_of;
+      builder.pass_types.add(type);
+      builder.pass("only", "test.variant", {{"a", "light"}}, {{"out", "result"}});
+      EXPECT_TRUE(keys.insert(key_bytes(plan_key(builder.input()))).second);
+    }
 }
 
 TEST(PlanKey, FillsInDefaults) {

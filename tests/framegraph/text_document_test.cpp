@@ -72,7 +72,8 @@ TEST(Document, ExtraAndMissingCommasAreNamed) {
     ASSERT_EQ(parsed.diagnostics.list.size(), 1u) << text;
     EXPECT_THAT(parsed.diagnostics.list[0].text, HasSubstr("remove the comma before it"));
   }
-  for (const char* text : {"{ \"a\": 1 \"b\": 2 }", "[1 2]", "[\"a\" \"b\"]", "[{} {}]"}) {
+  for (const char* text : {"{ \"a\": 1 \"b\": 2 }", "[1 2]", "[\"a\" \"b\"]", "[{} {}]",
+                           "{ \"a\": 0.5\"b\": 2 }", "[0.5[", "[0.5{", "[5\"b\"]", "[1e3\"b\"]"}) {
     const Parsed parsed = parse(text);
     ASSERT_EQ(parsed.diagnostics.list.size(), 1u) << text;
     EXPECT_THAT(parsed.diagnostics.list[0].text, HasSubstr("add a comma before it"));

@@ -199,6 +199,32 @@ TEST(Verify, RejectsAWrongLayout) {
   expect_rejected([](Plan& plan) { plan.history_layouts[1] = Layout::transfer_source; }, "layout");
 }
 
+TEST(Verify, RejectsImagesInAnUndefinedLayout) {
+  expect_rejected(
+      [](Plan& plan) {
+        for (PlanAccess& access : plan.accesses)
+          if (access.layout == Layout::general) access.layout = Layout::undefined;
+      },
+      "an image in an undefined layout");
+}
+
+TEST(Verify, RejectsMoreHistoryThanAGraphMayHave) {
+  expect_rejected(
+      [](Plan& plan) {
+        PlanHistory& history = plan.histories.at(0);
+        history.frames = 300000;
+        plan.resources[history.resource].instance_count = 300000;
+        const Placement placement = plan.placements.back();
+        plan.resources[history.resource].first_instance =
+            static_cast<uint32_t>(plan.placements.size());
+        plan.placements.resize(plan.placements.size() + 300000, placement);
+        history.first_layout = static_cast<uint32_t>(plan.history_layouts.size());
+        plan.history_layouts.resize(plan.history_layouts.size() +
+                                    300001 * size_t{history.range_count});
+      },
+      "a history has the wrong number of instances");
+}
+
 TEST(Verify, RejectsAReadOutsideItsLifetime) {
   expect_rejected(
       [](Plan& plan) {

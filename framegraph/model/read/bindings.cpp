@@ -118,7 +118,8 @@ private:
           read_reference(PortSide::read, from, port, "'from' of " + what, history) &&
           check_layers("'from' of " + what, history);
     ok &= !otherwise.valid() ||
-          read_reference(PortSide::read, otherwise, port, "'otherwise' of " + what, instead);
+          (read_reference(PortSide::read, otherwise, port, "'otherwise' of " + what, instead) &&
+           check_layers("'otherwise' of " + what, instead));
     if (!ok || !condition_fits(what, history, instead)) return false;
     const HistoryDeclaration& declared =
         reader_.graph.resources[history.binding.resource.value].history;
@@ -303,12 +304,11 @@ private:
     if (found.binding.port == unknown_port || resource.type != ResourceType::image ||
         reader_.broken_resources[found.binding.resource.value])
       return true;
-    const std::string_view glsl_type = pass_type_->ports[found.binding.port].glsl_type;
-    if (pass_type_->shader.empty() || glsl_type.empty()) return true;
+    const Port& port = pass_type_->ports[found.binding.port];
     const ImageRange& range = found.binding.range;
     const uint32_t layers = range.layers == 0 ? resource.layers - range.first_layer : range.layers;
-    const bool array = glsl_type.ends_with("Array");
-    if (array == (layers > 1)) return true;
+    if (layers_fit(*pass_type_, port, layers)) return true;
+    const bool array = port.glsl_type.ends_with("Array");
     reader_
         .error(DiagnosticId::bad_subresource, found.where,
                array ? fmt::format("{} accesses several layers, but '{}{}' has one", what,

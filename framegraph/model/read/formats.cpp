@@ -25,6 +25,11 @@ bool formats_fit(const Port& port, const ResourceDeclaration& resource) {
              : std::any_of(resource.formats.begin(), resource.formats.end(), fits);
 }
 
+bool layers_fit(const PassType& type, const Port& port, uint32_t layers) {
+  if (type.shader.empty() || port.glsl_type.empty()) return true;
+  return port.glsl_type.ends_with("Array") == (layers > 1);
+}
+
 std::string formats_taken(const Port& port) {
   std::vector<Format> taken;
   for (size_t i = 1; i < static_cast<size_t>(Format::count); ++i)

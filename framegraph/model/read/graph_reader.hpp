@@ -92,6 +92,9 @@ inline bool may_be_host_owned(const ResourceDeclaration& resource) {
 // Returns whether the port supports the resource. For host-owned resources all declared formats
 // must fit; for others at least one, because the compiler chooses.
 bool formats_fit(const Port& port, const ResourceDeclaration& resource);
+// Returns whether the kernel's image type, of one layer or an array, fits this number of layers.
+// Host passes see what the graph binds.
+bool layers_fit(const PassType& type, const Port& port, uint32_t layers);
 // Returns all formats that the port supports: "'r16f' or 'r32f'".
 std::string formats_taken(const Port& port);
 // Reports unsupported formats, with one message per resource for all ports. `port` describes the

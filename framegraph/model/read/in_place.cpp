@@ -110,16 +110,19 @@ private:
   bool done(ResourceId resource, const Write* write) {
     const PortBinding* written = port_->own_texels ? nullptr : written_too(resource);
     const ResourceDeclaration& declared = graph().resources[resource.value];
-    const bool unusable = !steps_.empty() && declared.type == ResourceType::image &&
-                          !reader_.broken_resources[resource.value] &&
-                          !formats_fit(*port_, declared);
-    if (!written && !unusable) return false;
+    const bool replaces = !steps_.empty() && declared.type == ResourceType::image &&
+                          !reader_.broken_resources[resource.value];
+    const PassType& type = reader_.pass_types[graph().passes[pass_.value].type];
+    const bool unusable = replaces && !formats_fit(*port_, declared);
+    const bool other_layers = replaces && !layers_fit(type, *port_, declared.layers);
+    if (!written && !unusable && !other_layers) return false;
     conditions_.push_back({write ? graph().passes[write->pass.value].when : ExpressionId(), true});
     const bool possible = can_hold(graph(), conditions_);
     conditions_.pop_back();
     if (!possible) return false;
     if (written) report_race(*written);
     if (unusable) report_unusable(resource);
+    if (other_layers) report_layers(resource);
     return true;
   }
 
@@ -157,6 +160,16 @@ private:
         fmt::format("port '{}' of pass '{}' reads the replacement of '{}' and supports {}",
                     port_->name, graph().passes[pass_.value].name, name_of(*read_),
                     formats_taken(*port_)));
+  }
+
+  void report_layers(ResourceId resource) {
+    const ResourceDeclaration& declared = graph().resources[resource.value];
+    relate_steps(reader_.error(
+        DiagnosticId::bad_subresource, graph().place_of(*read_),
+        fmt::format("port '{}' of pass '{}' accesses {}, but the replacement '{}' of '{}' has {}",
+                    port_->name, graph().passes[pass_.value].name,
+                    port_->glsl_type.ends_with("Array") ? "several layers" : "one layer",
+                    declared.name, name_of(*read_), declared.layers)));
   }
 
   void relate_steps(Diagnostic& diagnostic) const {

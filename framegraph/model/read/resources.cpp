@@ -283,6 +283,15 @@ void read_exports(GraphReader& reader, NodeId exports) {
                  fmt::format("'{}' is {}; only images can be exported", *name,
                              type_phrase(resource.type)))
           .related.emplace_back(resource.where, fmt::format("'{}' is declared here", *name));
+    } else if (resource.mips != 1 || resource.layers != 1) {
+      const char* const key = resource.mips != 1 ? "mips" : "layers";
+      const NodeId at = reader.document.find(reader.resource_nodes[id.value], key);
+      reader
+          .error(DiagnosticId::bad_export, at.valid() ? reader.document.where(at) : resource.where,
+                 fmt::format("'{}' is exported and has several {}; images that the host binds have "
+                             "one mip and one layer",
+                             *name, key))
+          .related.emplace_back(where, "exported here");
     }
     resource.exported = true;
   }

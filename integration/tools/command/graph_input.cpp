@@ -121,7 +121,7 @@ std::optional<LoadedGraph> load_pass_types(std::span<const std::string> files,
                                            Diagnostics& diagnostics) {
   LoadedGraph loaded{subsurface::make_pass_types(), nullptr, {}, {}, {}, {}};
   const auto host = std::make_shared<HostPassTypes>();
-  const uint32_t errors = diagnostics.count(Severity::error);
+  const uint64_t errors = diagnostics.errors();
   for (const std::string& file : files) {
     const std::optional<Document> document = read_document(file, diagnostics);
     auto pass_types = document ? read_host_pass_types(*document, diagnostics) : std::nullopt;
@@ -134,8 +134,7 @@ std::optional<LoadedGraph> load_pass_types(std::span<const std::string> files,
     }
   }
   loaded.host_pass_types = host;
-  return diagnostics.count(Severity::error) == errors ? std::optional(std::move(loaded))
-                                                      : std::nullopt;
+  return diagnostics.errors() == errors ? std::optional(std::move(loaded)) : std::nullopt;
 }
 
 std::optional<Document> read_input(const std::string& path, Diagnostics& diagnostics) {
@@ -276,7 +275,7 @@ std::optional<CompiledPlan> compile_generic(const LoadedGraph& loaded, const Siz
 
 ExitCode fail_graph(const Session& session, const std::string& path,
                     const Diagnostics& diagnostics) {
-  const uint32_t errors = diagnostics.count(Severity::error);
+  const uint64_t errors = diagnostics.errors();
   return fail(
       session, ExitCode::problems,
       fmt::format("{}: {} error{}; the graph cannot be used", path, errors, errors == 1 ? "" : "s"),

@@ -215,7 +215,7 @@ void read_profiles(const Document& document, ObjectReader& reader, const fs::pat
 std::optional<CapturedFrame> read_view(const Document& document, const fs::path& folder,
                                        const fs::path& profile_folder, Diagnostics& diagnostics,
                                        FileRoots roots, subsurface::Handedness& handedness) {
-  const uint32_t errors = diagnostics.count(Severity::error);
+  const uint64_t errors = diagnostics.errors();
   if (!check_version(document, "dermis_capture", capture_format_version, diagnostics))
     return std::nullopt;
   CapturedFrame frame;
@@ -233,7 +233,7 @@ std::optional<CapturedFrame> read_view(const Document& document, const fs::path&
   description.exposure = reader.number("exposure", 1e-12, 1e12, Need::optional).value_or(1);
   read_profiles(document, reader, folder, profile_folder, roots, description, diagnostics);
   reader.finish();
-  if (diagnostics.count(Severity::error) != errors) return std::nullopt;
+  if (diagnostics.errors() != errors) return std::nullopt;
   return frame;
 }
 
@@ -301,12 +301,12 @@ std::optional<CapturedFrame> read_frame(const fs::path& folder, const fs::path& 
                                         Diagnostics& diagnostics, FileRoots roots) {
   const auto document = read_document((folder / "frame.json").string(), diagnostics);
   if (!document) return std::nullopt;
-  const uint32_t errors = diagnostics.count(Severity::error);
+  const uint64_t errors = diagnostics.errors();
   subsurface::Handedness handedness = subsurface::Handedness::right;
   std::optional<CapturedFrame> frame =
       read_view(*document, folder, profile_folder, diagnostics, roots, handedness);
   if (frame) read_pictures(folder, *document, *frame, diagnostics, roots);
-  if (diagnostics.count(Severity::error) != errors) return std::nullopt;
+  if (diagnostics.errors() != errors) return std::nullopt;
   if (handedness == subsurface::Handedness::left) mirror_normals(frame->normal);
   return frame;
 }

@@ -68,7 +68,7 @@ void read_burley(const Document& document, ObjectReader& reader, Profile& profil
 // Returns false if the object has keys of two models.
 bool read_numbers_into(const Document& document, ObjectReader& reader, Profile& profile,
                        Diagnostics& diagnostics) {
-  const uint32_t errors = diagnostics.count(Severity::error);
+  const uint64_t errors = diagnostics.errors();
   profile.model =
       static_cast<ProfileModel>(reader.word("model", model_names, Need::optional).value_or(0));
   for (const ModelKey& known : model_keys) {
@@ -96,7 +96,7 @@ bool read_numbers_into(const Document& document, ObjectReader& reader, Profile& 
     reader.numbers("strength", profile.strength, 0.0, 1.0);
     break;
   }
-  return diagnostics.count(Severity::error) == errors;
+  return diagnostics.errors() == errors;
 }
 
 std::string three(const std::array<double, 3>& values) {

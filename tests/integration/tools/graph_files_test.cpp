@@ -127,6 +127,26 @@ TEST_F(GraphFiles, AGraphIsReadFromStandardInput) {
   EXPECT_THAT(run({"validate", "-"}, options), FailsWith(1, "<stdin>:1:13"));
 }
 
+// A kernel that reads one layer gets no image of several, in any frame.
+TEST_F(GraphFiles, ReplacementWithOtherLayers_IsRejected) {
+  const std::string stack =
+      R"({ "set": "/resources/stack", "to": { "format": "rgba16f", "size": "view", "layers": 4 } })";
+  const auto overlay = [&](const std::string& edit) {
+    return write("stack.json",
+                 R"({ "dermis_overlay": 2, "edits": [ )" + stack + ", " + edit + "] }");
+  };
+  EXPECT_THAT(run({"validate", burley, "--overlay", "configs/overlays/accumulate.json", "--overlay",
+                   overlay(R"({ "set": "/passes/accumulate/read/past",
+             "to": { "from": "past@-1", "requires": "valid", "otherwise": "stack" } })")}),
+              FailsWith(1, "'otherwise' of port 'past' of pass 'accumulate' accesses one layer",
+                        "'stack' has 4"));
+  EXPECT_THAT(run({"validate", burley, "--overlay",
+                   overlay(R"({ "set": "/settings/on", "to": { "bool": true } },
+                     { "set": "/passes/scatter/when", "to": "on" },
+                     { "set": "/passes/scatter/otherwise", "to": { "scattered": "stack" } })")}),
+              FailsWith(1, "accesses one layer, but the replacement 'stack' of 'scattered' has 4"));
+}
+
 TEST_F(GraphFiles, StandardInput_CanBeBothSidesOfADiff) {
   RunOptions options;
   options.input = read_text(burley);

@@ -104,12 +104,12 @@ struct CheckedFile {
 void check_capture(const Document& document, const ValidateOptions& options,
                    Diagnostics& diagnostics, CheckedFile& checked) {
   const std::filesystem::path folder = std::filesystem::path(checked.path).parent_path();
-  const uint32_t errors = diagnostics.count(Severity::error);
+  const uint64_t errors = diagnostics.errors();
   const uint32_t warnings = diagnostics.count(Severity::warning);
   std::optional<CapturedFrame> frame = read_description(
       document, folder, profiles_folder(options.profiles), diagnostics, options.inputs.roots);
   if (frame) read_pictures(folder, document, *frame, diagnostics, options.inputs.roots);
-  checked.good = diagnostics.count(Severity::error) == errors;
+  checked.good = diagnostics.errors() == errors;
   if (!checked.good || !options.diagnose) return;
   checked.about = diagnose_frame(*frame, document.where(document.root()), diagnostics);
   checked.good = diagnostics.count(Severity::warning) == warnings;

@@ -43,7 +43,7 @@ std::optional<MeasuredRows> read_measured_rows(const std::string& path, Diagnost
       out.device = document->text(fact);
   for (const NodeId row : children(*document, rows))
     out.rows.push_back(read_row(*document, row, diagnostics));
-  if (diagnostics.count(Severity::error) > 0) return std::nullopt;
+  if (diagnostics.errors() > 0) return std::nullopt;
   return out;
 }
 
