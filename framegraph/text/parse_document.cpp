@@ -218,14 +218,14 @@ bool NodeBuilder::end_object() {
   return true;
 }
 
-bool NodeBuilder::parse_error(size_t position, const std::string&,
+bool NodeBuilder::parse_error(size_t position, const std::string& last_token,
                               const nlohmann::detail::exception& exception) {
   failed_ = true;
   if (cursor_.early_end() != EarlyEnd::none) return false; // the caller reports the limit
   if (exception.id == out_of_range_exception) {
     return reject(DiagnosticId::out_of_range, cursor_.value_position(),
                   fmt::format("the number {} is beyond the range of double precision",
-                              shown_token(number_token())));
+                              shown_token(last_token)));
   }
   // Format: "[json.exception...] parse error at line L, column C: syntax error while parsing W -
   // what; last read: '...'"

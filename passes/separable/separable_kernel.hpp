@@ -25,8 +25,8 @@ inline constexpr uint32_t separable_max_side = 12; // maximum number of taps on 
 // error.
 inline constexpr uint32_t separable_whole_taps = 25;
 
-// Nodes over log2 of the widest channel's d in pixels. Below the first node, its kernel is mixed
-// with the delta in proportion to d. Above the last node, offsets grow with d.
+// Nodes over log2 of the widest channel's d in pixels. Below the first node, that node's
+// kernel applies. Above the last node, offsets grow with d.
 inline constexpr double separable_first_log2_d = -4.0; // 1/16 px
 inline constexpr double separable_log2_d_step = 0.5;
 inline constexpr uint32_t separable_nodes = 24; // up to 181 px

@@ -60,9 +60,9 @@ struct direct_part {
   float beyond;  // survival of the sampler's density at that radius
 };
 
-// `area`: of the pixel's patch.
+// `footprints`: of the pixel's patch, as surface_patch.
 direct_part direct_of(afis_settings settings, scatter_point point, scatter_profile profile,
-                      float area) {
+                      float footprints) {
   if (settings.direct == DIRECT_NONE)
     return direct_part(vec3(0.0), 1.0);
   vec2 footprint = pixel_footprint(point.depth);
@@ -73,12 +73,12 @@ direct_part direct_of(afis_settings settings, scatter_point point, scatter_profi
                                                   : survival[profiles[min(point.id, 255u)].widest];
   // The pixel's own light must cover exactly the radii that the sampler leaves out.
   r0 = draw(settings, profile, beyond).r;
-  float patch_r0 = settings.surface == SURFACE_PATCH ? r0 * sqrt(area) : r0;
+  float patch_r0 = settings.surface == SURFACE_PATCH ? r0 * sqrt(footprints) : r0;
   return direct_part(1.0 - profile_survival(profile, patch_r0), beyond);
 }
 
-// Returns the scattered light of a pixel. `own`: its own light, and the area of its patch. The
-// textures are the ports of subsurface.afis.
+// Returns the scattered light of a pixel. `own`: its own light, and the footprints of its patch.
+// The textures are the ports of subsurface.afis.
 vec3 scatter(afis_settings settings, direct_part direct, sample_set set, scatter_point point,
              scatter_profile profile, vec4 own, utexture2D material, texture2D depth,
              texture2D slope, texture2D light, texture2D levels) {

@@ -38,6 +38,9 @@ struct surface_patch {
   // Area divided by the area of the pixel's cross-section: 1 / cos of the angle to the viewer,
   // capped.
   float area;
+  // Area divided by that of the pixel's footprint on the plane across the view axis. Rays of a
+  // perspective view meet that plane at an angle, which makes the cross-section smaller.
+  float footprints;
 };
 
 // Computes both sides of most choices and selects, because each branch in a loop multiplies the
@@ -74,6 +77,7 @@ surface_patch build_patch(ivec2 pixel, float depth, patch_neighbours around) {
   float along_view = is_perspective() ? -dot(normal, ray) : normal.z;
   result.slope = normal.xy * signs / along_view;
   result.area = 1.0 / cosine;
+  result.footprints = result.area / length(ray);
   return result;
 }
 

@@ -7,6 +7,7 @@
 
 #include "constants.glsl"
 #include "common/environment.glsl"
+#include "common/radius.glsl"
 
 // Half of the groups of subsurface.classify count relief.
 bool counts_relief_in(uvec2 group) { return (group.x + group.y & 1u) == 0u; }
@@ -56,11 +57,12 @@ float relief_at(utexture2D material, texture2D depth, ivec2 pixel, surface_sampl
 }
 
 // Returns the mean of relief_at over two points around a pixel, in directions that follow from
-// `turn`; -1: neither has subsurface.
-float relief_of(utexture2D material, texture2D depth, ivec2 pixel, uint turn) {
+// `turn`; -1: neither has subsurface, or the pixel scatters less than a pixel far. `scale`: the
+// pixel's factor on d.
+float relief_of(utexture2D material, texture2D depth, ivec2 pixel, uint turn, float scale) {
   surface_sample own = sample_surface(material, depth, pixel);
-  float d_mm = profiles[min(own.id, 255u)].d_mm.w;
-  if (own.depth <= 0.0 || d_mm <= 0.0)
+  float d_mm = profiles[min(own.id, 255u)].d_mm.w * scale;
+  if (own.depth <= 0.0 || !(projected_d(d_mm, own.depth) >= copy_below_d_px))
     return -1.0;
   vec2 side = pixel_footprint(own.depth);
   vec2 gradient = vec2(depth_gradient(material, depth, pixel, ivec2(1, 0), own, side.x),

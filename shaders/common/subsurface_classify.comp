@@ -131,7 +131,10 @@ void gather_relief(ivec2 first, uint mask, uint turn) {
   const int middle = 4;
   bool at_middle = (mask >> uint(middle) & 1u) != 0u;
   ivec2 pixel = run_pixel(first, at_middle ? middle : findLSB(mask));
-  float relief = relief_of(material_image, depth_image, pixel, turn);
+  ivec2 texel = texel_of(pixel);
+  float scale =
+      has_scatter_scale() ? clean_scatter_scale(texelFetch(scatter_scale_image, texel, 0).r) : 1.0;
+  float relief = relief_of(material_image, depth_image, pixel, turn, scale);
   if (relief < 0.0)
     return;
   atomicAdd(relief_sum, uint(round(relief_steps * relief)));

@@ -73,7 +73,7 @@ void add_tap(scatter_point point, scatter_profile profile, float u, vec2 directi
     return;
   surface_patch surface = patch_of(tap.pixel, point.id, tap.depth);
   tap.slope = surface.slope;
-  vec3 weight = tap_weight(point, profile, tap, radial, surface.area);
+  vec3 weight = tap_weight(point, profile, tap, radial, surface.footprints);
   sum += weight * own_light(texel_of(tap.pixel));
   total += weight;
 }

@@ -27,7 +27,7 @@ void main() {
     light.a = 1.0;
     if (depth > 0.0 && !copy_only) {
       surface_patch surface = build_patch(pixel);
-      light.a = surface.area;
+      light.a = surface.footprints;
       slope = surface.slope;
     }
   }

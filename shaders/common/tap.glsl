@@ -39,18 +39,27 @@ bool find_tap(utexture2D material, texture2D depth, texture2D slope, uint id, ve
   return tap.depth > 0.0;
 }
 
+// Returns the distance of a sample, mm, at least what its radius across the view allows. Without
+// this limit, an offset that rounds to none would have the infinite weight of R at 0.
+float tap_distance(float distance_3d, float radius, float zoom) {
+  const float min_part = 0.5; // of the radius, for rays up to 60 degrees off the axis
+  return max(distance_3d, max(min_part * radius * min(zoom, 1.0), 1e-12));
+}
+
 // Returns weight_c = R_c(distance) * area / density on the plane; its mean is the fraction of the
 // kernel that hits the surface. `radial`: the sample's radius across the view, with its density.
-// `area`: that of the tap's patch, as surface_patch.
+// `footprints`: of the tap's patch, as surface_patch.
 vec3 tap_weight(scatter_point point, scatter_profile profile, surface_tap tap, radial_sample radial,
-                float area) {
+                float footprints) {
   // Uses the sample's own point on the patch, not the patch's centre, because the reference
   // averages over the patch.
   float depth = tap.depth + dot(tap.slope * pixel_footprint(tap.depth), tap.at - vec2(tap.pixel));
-  float distance_3d = max(length(view_position(tap.at, depth) - point.position), 1e-12);
   // The density on the view plane at the pixel's depth is the density of the radius / (2 pi r).
   float zoom = is_perspective() ? tap.depth / point.depth : 1.0;
-  return profile_falloff(profile, distance_3d) * (radial.r / radial.density * area * zoom * zoom);
+  float distance_3d =
+      tap_distance(length(view_position(tap.at, depth) - point.position), radial.r, zoom);
+  return profile_falloff(profile, distance_3d) *
+         (radial.r / radial.density * footprints * zoom * zoom);
 }
 
 #endif

@@ -14,7 +14,8 @@
 #include "common/tap.glsl"
 #include "common/radial_draw.glsl"
 
-vec3 scatter(scatter_point point, scatter_profile profile, float area, vec3 own) {
+// `footprints`: of the pixel's patch, as surface_patch.
+vec3 scatter(scatter_point point, scatter_profile profile, float footprints, vec3 own) {
   vec2 footprint = pixel_footprint(point.depth);
   uvec3 hash = pcg3d(uvec3(point.pixel, frame.frame_index));
   uint widest = profiles[min(point.id, 255u)].widest;
@@ -28,7 +29,7 @@ vec3 scatter(scatter_point point, scatter_profile profile, float area, vec3 own)
                                                    : 0.5 * length(footprint);
     beyond = profile_survival(profile, r0)[widest];
     r0 = radial_draw(profile, beyond, settings.inverse, settings.weighting).r;
-    direct = 1.0 - profile_survival(profile, r0 * sqrt(area));
+    direct = 1.0 - profile_survival(profile, r0 * sqrt(footprints));
   }
   vec3 sum = vec3(0.0), total = vec3(0.0);
   for (int i = 0; i < settings.samples; ++i) {

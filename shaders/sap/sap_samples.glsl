@@ -10,6 +10,7 @@
 #include "common/profile.glsl"
 #include "sap/sap.glsl"
 #include "common/sequence.glsl"
+#include "common/tap.glsl"
 
 // 16 samples at a d of 20 px reach this level within 3 d.
 const int last_sample_level = 5;
@@ -60,9 +61,10 @@ vec3 pixel_light_of_level_0(utexture2D surface, texture2D light, ivec2 texel) {
   return sap_light(texelFetch(surface, texel, 0), texelFetch(light, texel, 0)).rgb;
 }
 
-// Returns the area of a pixel's patch divided by the area of the pixel's cross-section: 1 / cos of
-// the angle to the viewer, from the slope in level 0.
-float sap_area(sap_texel t, vec2 pixel) {
+// Returns the area of a pixel's patch from the slope in level 0, divided by that of the pixel's
+// footprint: surface_patch.footprints. `ray_length`: of the pixel's ray; times it, the result is
+// surface_patch.area.
+float sap_footprints(sap_texel t, vec2 pixel, out float ray_length) {
   vec2 rise = t.slope * sap_footprint(t.depth); // mm per pixel
   float zoom = is_perspective() ? t.depth : 1.0;
   vec3 ray =
@@ -70,8 +72,10 @@ float sap_area(sap_texel t, vec2 pixel) {
   vec3 along_x = rise.x * ray + vec3(frame.ray_scale.x * zoom, 0.0, 0.0);
   vec3 along_y = rise.y * ray + vec3(0.0, frame.ray_scale.y * zoom, 0.0);
   float cross_section = abs(frame.ray_scale.x * frame.ray_scale.y) * zoom * zoom;
-  return clamp(length(cross(along_x, along_y)) * length(ray) / cross_section, 1.0,
-               1.0 / min_patch_cosine);
+  ray_length = length(ray);
+  return clamp(length(cross(along_x, along_y)) * ray_length / cross_section, 1.0,
+               1.0 / min_patch_cosine) /
+         ray_length;
 }
 
 // Returns the factor on d of the pixel's scatter_scale, from its reach.
@@ -102,8 +106,9 @@ vec3 sample_light(utexture2D surface, texture2D light, ivec2 q, vec2 at, sap_tex
 // shifts both, in units of 2^-32. `surface`, `light`: images of level 0. `own_light`: of the pixel.
 vec3 sap_sampled_light(utexture2D surface, texture2D light, ivec2 pixel, sap_texel own,
                        vec3 own_light, uvec2 offset, int count, float lod_bias) {
-  float area = sap_area(own, vec2(pixel));
-  scatter_profile profile = find_profile(own.id, sap_scale(own, area));
+  float ray_length;
+  float footprints = sap_footprints(own, vec2(pixel), ray_length);
+  scatter_profile profile = find_profile(own.id, sap_scale(own, footprints * ray_length));
   uint widest = profiles[min(own.id, 255u)].widest;
   vec2 footprint = pixel_footprint(own.depth);
   vec3 position = view_position(vec2(pixel), own.depth);
@@ -112,7 +117,7 @@ vec3 sap_sampled_light(utexture2D surface, texture2D light, ivec2 pixel, sap_tex
   float beyond = profile_survival(profile, r0)[widest];
   // The pixel's own light must cover exactly the radii that the sampler leaves out.
   r0 = profile_sample(profile, beyond).r;
-  vec3 direct = 1.0 - profile_survival(profile, r0 * sqrt(area));
+  vec3 direct = 1.0 - profile_survival(profile, r0 * sqrt(footprints));
 
   float pixels_per_sample = two_pi * beyond / (float(count) * footprint.x * footprint.y);
   float each = beyond / float(count);
@@ -131,10 +136,12 @@ vec3 sap_sampled_light(utexture2D surface, texture2D light, ivec2 pixel, sap_tex
     // Uses the sample's own point on the patch, not the patch's centre, because the reference
     // averages over the patch.
     float depth = tap.depth + sap_rise(tap.depth, tap.slope, at - vec2(q));
-    float distance_3d = max(length(view_position(at, depth) - position), 1e-12);
     float zoom = is_perspective() ? tap.depth / own.depth : 1.0;
-    vec3 weight = profile_falloff(profile, distance_3d) *
-                  (each * radial.r / radial.density * sap_area(tap, vec2(q)) * zoom * zoom);
+    float distance_3d = tap_distance(length(view_position(at, depth) - position), radial.r, zoom);
+    float tap_ray;
+    vec3 weight =
+        profile_falloff(profile, distance_3d) *
+        (each * radial.r / radial.density * sap_footprints(tap, vec2(q), tap_ray) * zoom * zoom);
     float lod = 0.5 * log2(max(pixels_per_sample * radial.r / radial.density, 1e-20)) + lod_bias;
     sum += weight * sample_light(surface, light, q, at, tap, lod);
     mass += weight;

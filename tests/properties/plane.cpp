@@ -39,6 +39,18 @@ std::array<float, 16> orthographic(double width_m, double height_m) {
   return m;
 }
 
+// As orthographic() at a depth of 1 m.
+std::array<float, 16> perspective(double width_m, double height_m) {
+  constexpr float near = 0.01f, far = 100.0f;
+  std::array<float, 16> m{};
+  m[0] = static_cast<float>(2 / width_m);
+  m[5] = static_cast<float>(-2 / height_m);
+  m[10] = far / (near - far);
+  m[11] = near * far / (near - far);
+  m[14] = -1;
+  return m;
+}
+
 struct Uploads {
   std::vector<float> light, depth, id, earlier_id, scale, thickness;
 };
@@ -159,8 +171,10 @@ void run_frames(const std::string& graph, const Plane& plane, const Settings& se
     frame.rect_height = r[3];
     const uint32_t w = r[2] != 0 ? r[2] : plane.width, h = r[2] != 0 ? r[3] : plane.height;
     const double stretch = std::sqrt(plane.pixel_aspect);
+    const double width_m = w * plane.pixel_pitch_m * stretch,
+                 height_m = h * plane.pixel_pitch_m / stretch;
     const auto clip =
-        orthographic(w * plane.pixel_pitch_m * stretch, h * plane.pixel_pitch_m / stretch);
+        plane.perspective ? perspective(width_m, height_m) : orthographic(width_m, height_m);
     constexpr float identity[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
     for (size_t i = 0; i < 16; ++i) {
       frame.clip_from_view[i] = frame.previous_clip_from_view[i] = clip[i];

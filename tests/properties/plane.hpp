@@ -1,6 +1,6 @@
 #pragma once
-// Runs a shipped graph on the device, on a plane that faces an orthographic camera, for which
-// closed forms exist.
+// Runs a shipped graph on the device, on a plane that faces the camera, for which closed forms
+// exist.
 
 #include "integration/examples/demo_engine/vulkan_host.hpp"
 
@@ -19,8 +19,11 @@ using Rgb = std::array<double, 3>;
 
 struct Plane {
   uint32_t width = 256, height = 256;
-  double pixel_pitch_m = 1e-3;            // Geometric mean of a pixel's width and height.
-  double pixel_aspect = 1;                // Width / height of a pixel, also for the plan.
+  double pixel_pitch_m = 1e-3; // Geometric mean of a pixel's width and height.
+  double pixel_aspect = 1;     // Width / height of a pixel, also for the plan.
+  // False: the camera is orthographic. True: it is 1 m above the plane at a depth of 1 m, on which
+  // the pixels have their pitch.
+  bool perspective = false;
   std::array<double, 3> d_px = {4, 4, 4}; // d of profile 1 in pixels; profile 2 has the same d.
   std::function<float(double x, double y)> light = [](double, double) {
     return 1.0f;

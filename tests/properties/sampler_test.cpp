@@ -1,6 +1,7 @@
 // Properties of sampling: means, their bias, and the decrease of errors with the number of samples.
 #include "tests/properties/noise.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace {
@@ -81,6 +82,44 @@ TEST_F(Sampler, ErrorFallsFasterThanForIndependentSamples) {
   // Regression bounds of the present implementation.
   EXPECT_LT(slope, -0.6);
   EXPECT_GT(slope, -0.9);
+}
+
+// Samples cover the same surface in the middle of a wide view and in its corners, where rays meet
+// the plane at 54 degrees.
+TEST_F(Sampler, PerspectiveViewsKeepTheMass) {
+  Plane plane{.width = 64, .height = 64, .pixel_pitch_m = 2.0 / 64, .d_px = {0.6, 0.6, 0.6}};
+  plane.perspective = true;
+  struct Block {
+    uint32_t x, y;
+    double mean = 0;
+  };
+  Block blocks[] = {{30, 30}, {6, 30}, {30, 54}, {6, 6}, {54, 54}};
+  constexpr uint32_t side = 4, frames = 16;
+  run_frames("fixed", plane,
+             {{"samples", "64"}, {"normalise", "\"none\""}, {"inverse", "\"exact\""}}, frames,
+             [&](const Picture& picture) {
+               for (Block& block : blocks)
+                 for (uint32_t i = 0; i < side * side; ++i)
+                   block.mean += picture.at(block.x + i % side, block.y + i / side, 1) /
+                                 (double(side) * side * frames);
+             });
+  for (const Block& block : blocks)
+    EXPECT_NEAR(block.mean, 1, 0.02) << block.x << ", " << block.y;
+}
+
+// At coordinates near 2048 small offsets round to none, so that samples hit their own centre.
+TEST_F(Sampler, OffsetsThatRoundToNone_HaveFiniteWeights) {
+  constexpr uint32_t side = 2048;
+  Plane plane{.width = side, .height = side, .d_px = {0.5, 0.5, 0.5}};
+  plane.profile = [](int x, int y) { return uint8_t{x >= 1984 && y >= 1984}; };
+  float maximum = 0;
+  run_frames("fixed", plane, {{"samples", "16"}, {"normalise", "\"none\""}, {"direct", "\"none\""}},
+             4, [&](const Picture& picture) {
+               for (const float value : picture.rgb)
+                 maximum = std::max(maximum, value);
+             });
+  EXPECT_GT(maximum, 1);
+  EXPECT_LT(maximum, 20);
 }
 
 } // namespace

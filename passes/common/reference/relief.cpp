@@ -60,15 +60,21 @@ private:
     return {std::abs(input.rays.scale_x) * scale, std::abs(input.rays.scale_y) * scale};
   }
 
+  // Returns the scattering distance of a pixel, with its factor.
+  double scaled_d(size_t pixel) const {
+    return widest_d(pixel) * (input.scatter_scale.empty() ? 1 : double(input.scatter_scale[pixel]));
+  }
+  bool scatters(size_t pixel) const {
+    const std::array<double, 2> side = footprint(double(input.depth[pixel]));
+    return scaled_d(pixel) / std::min(side[0], side[1]) >= double(copy_below_d_px);
+  }
+
   bool scatters(int tile_x, int tile_y) const {
     for (int y = side_of_tile * tile_y; y < side_of_tile * (tile_y + 1); ++y)
       for (int x = side_of_tile * tile_x; x < side_of_tile * (tile_x + 1); ++x) {
         if (!has_surface(x, y)) continue;
         const size_t pixel = index(x, y);
-        const double scale = input.scatter_scale.empty() ? 1 : double(input.scatter_scale[pixel]);
-        const std::array<double, 2> side = footprint(double(input.depth[pixel]));
-        if (widest_d(pixel) * scale / std::min(side[0], side[1]) >= double(copy_below_d_px))
-          return true;
+        if (scatters(pixel)) return true;
       }
     return false;
   }
@@ -95,8 +101,8 @@ private:
 
   void add_pixel(int x, int y, int turn) {
     const size_t pixel = index(x, y);
-    const double d = widest_d(pixel);
-    if (!has_surface(x, y) || d <= 0) return;
+    const double d = scaled_d(pixel);
+    if (!has_surface(x, y) || !scatters(pixel)) return;
     const std::array<double, 2> side = footprint(double(input.depth[pixel]));
     double total = 0;
     int points = 0;
