@@ -61,9 +61,11 @@ TEST(Mutation, DiscardedContents_AreRejected) {
     for (uint32_t b = 0; b < plan.barriers.size(); ++b) {
       const PlanBarrier& barrier = plan.barriers[b];
       const PlanResource& resource = plan.resources[barrier.resource];
-      // A frame may discard the oldest frame of a history, which it overwrites.
-      const bool of_oldest = resource.instance_count > 1 && barrier.frames_back == 0;
-      if (resource.type != ResourceType::image || of_oldest || barrier.from_host ||
+      // A frame may discard the oldest frame of a history, which it overwrites, and mips that no
+      // pass has written yet.
+      const bool discardable = resource.mips > 1 || resource.layers > 1 ||
+                               (resource.instance_count > 1 && barrier.frames_back == 0);
+      if (resource.type != ResourceType::image || discardable || barrier.from_host ||
           barrier.old_layout == Layout::undefined)
         continue;
       Plan mutant = plan;

@@ -209,19 +209,23 @@ TEST(Verify, RejectsImagesInAnUndefinedLayout) {
 }
 
 TEST(Verify, RejectsMoreHistoryThanAGraphMayHave) {
+  constexpr uint32_t frames = 300000;
   expect_rejected(
       [](Plan& plan) {
         PlanHistory& history = plan.histories.at(0);
-        history.frames = 300000;
-        plan.resources[history.resource].instance_count = 300000;
-        const Placement placement =
-            plan.placements[plan.resources[history.resource].first_instance];
-        plan.resources[history.resource].first_instance =
-            static_cast<uint32_t>(plan.placements.size());
-        plan.placements.resize(plan.placements.size() + 300000, placement);
+        PlanResource& resource = plan.resources[history.resource];
+        Placement placement = plan.placements[resource.first_instance];
+        history.frames = resource.instance_count = frames;
+        resource.first_instance = static_cast<uint32_t>(plan.placements.size());
+        for (uint32_t i = 0; i < frames; ++i) {
+          placement.offset = plan.heaps[placement.heap].size;
+          plan.heaps[placement.heap].size += placement.size + placement.alignment;
+          plan.heaps[placement.heap].size -= plan.heaps[placement.heap].size % placement.alignment;
+          plan.placements.push_back(placement);
+        }
         history.first_layout = static_cast<uint32_t>(plan.history_layouts.size());
-        plan.history_layouts.resize(plan.history_layouts.size() +
-                                    300001 * size_t{history.range_count});
+        plan.history_layouts.resize(history.first_layout +
+                                    (size_t{frames} + 1) * history.range_count);
       },
       "a history has the wrong number of instances");
 }

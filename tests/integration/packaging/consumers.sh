@@ -20,6 +20,7 @@ if [[ ${3:-} == --subdirectory ]]; then
   launcher=$(command -v ccache || true)
   cmake -G Ninja -S "$source/tests/integration/packaging/subdirectory" -B "$host" \
     -DDERMIS="$source" -DCMAKE_BUILD_TYPE=Debug \
+    -DCMAKE_UNITY_BUILD=ON -DCMAKE_UNITY_BUILD_BATCH_SIZE=10 \
     ${launcher:+-DCMAKE_CXX_COMPILER_LAUNCHER="$launcher"} >/dev/null
   cmake --build "$host" -j "$(nproc)" >/dev/null
   run "$host/host_dermis"
