@@ -84,7 +84,7 @@ random_graphs() {
 # be skipped.
 ray_queries() {
   local log=build/ray_queries.log rc=0 program shard part parts
-  tests/scripts/fetch_driver.sh >/dev/null || return 77
+  tests/scripts/fetch_driver.sh >/dev/null || return $? # 77: there is none
   built test_integration_examples_demo_engine test_integration_tools
   for program in integration_examples_demo_engine integration_tools; do
     parts=()
