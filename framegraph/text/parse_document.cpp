@@ -60,13 +60,14 @@ public:
     return number_integer(static_cast<number_integer_t>(value));
   }
   bool number_float(number_float_t value, const string_t& token) {
-    if (token.find_first_of(".eE") == std::string_view::npos) return reject_integer(token);
+    const std::string_view text = number_text(token.size());
+    if (text.find_first_of(".eE") == std::string_view::npos) return reject_integer(text);
     Node* node = add(NodeKind::real);
     if (node == nullptr) return false;
     // The parser converts with strtod, which depends on the host's locale; from_chars does not.
     // from_chars may reject denormals, for which the parser's value is used.
     double exact = 0.0;
-    const auto result = std::from_chars(token.data(), token.data() + token.size(), exact);
+    const auto result = std::from_chars(text.data(), text.data() + text.size(), exact);
     node->real = result.ec == std::errc() ? exact : value;
     return true;
   }
@@ -116,6 +117,15 @@ private:
     if (value.find('\0') == std::string_view::npos) return true;
     return reject(DiagnosticId::syntax, cursor_.value_position(),
                   "strings may not contain \\u0000");
+  }
+  // Returns the last number as the file has it. The parser's copy of it, of equal size, has the
+  // decimal point of the host's locale.
+  std::string_view number_text(size_t size) const {
+    const size_t at = cursor_.value_position().offset;
+    const std::string_view rest = text_.substr(at);
+    // The parser has read one character beyond the number, which may begin the next value.
+    const bool is_next = rest.empty() || (rest[0] != '-' && (rest[0] < '0' || rest[0] > '9'));
+    return text_.substr(is_next ? at - std::min(at, size) : at, size);
   }
   uint32_t keep(std::string_view characters) {
     const auto begin = static_cast<uint32_t>(document_.characters.size());
@@ -225,7 +235,7 @@ bool NodeBuilder::parse_error(size_t position, const std::string& last_token,
   if (exception.id == out_of_range_exception) {
     return reject(DiagnosticId::out_of_range, cursor_.value_position(),
                   fmt::format("the number {} is beyond the range of double precision",
-                              shown_token(last_token)));
+                              shown_token(number_text(last_token.size()))));
   }
   // Format: "[json.exception...] parse error at line L, column C: syntax error while parsing W -
   // what; last read: '...'"

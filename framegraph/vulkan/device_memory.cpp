@@ -58,28 +58,33 @@ Error allocate_memory(const Device& device, const MemoryRequest& request, const 
                       MemoryBlock& block) {
   if (device.host_memory.allocate != nullptr)
     return allocate_from_host(device, request, object, block);
+  // Memory that is device-local and visible to the host may be a small heap of its own, and full.
+  // Other memory that the host sees is then slower, but sufficient.
+  const bool may_retry = (request.required & VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT) != 0;
   MemoryRequest untried = request;
   MemoryBlock taken;
-  Error failed; // of the best type
+  Error failed; // with the best type
   VkResult result = VK_ERROR_OUT_OF_DEVICE_MEMORY;
-  while (result == VK_ERROR_OUT_OF_DEVICE_MEMORY) { // of one heap; another may have space
+  do {
     const auto type = choose_type(device, untried);
     if (!type && failed) return failed;
     if (!type)
       return {ErrorKind::unsupported, VK_SUCCESS,
               fmt::format("{}: the device has no memory type among {:#x}", object,
                           request.memory_types)};
+    untried.memory_types &= ~(1u << *type);
+    const VkMemoryType& memory_type = device.memory.memoryTypes[*type];
+    if (failed && device.memory.memoryHeaps[memory_type.heapIndex].size < request.bytes) continue;
     VkMemoryAllocateInfo info{};
     info.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO;
     info.allocationSize = request.bytes;
     info.memoryTypeIndex = *type;
     result = device.vk.vkAllocateMemory(device.device, &info, device.allocator, &taken.memory);
-    if (result != VK_SUCCESS && !failed)
-      failed =
-          call_error(result, "vkAllocateMemory",
-                     fmt::format("{}, {} bytes of memory type {}", object, request.bytes, *type));
-    untried.memory_types &= ~(1u << *type);
-  }
+    if (result == VK_SUCCESS || (failed && result == VK_ERROR_OUT_OF_DEVICE_MEMORY)) continue;
+    failed =
+        call_error(result, "vkAllocateMemory",
+                   fmt::format("{}, {} bytes of memory type {}", object, request.bytes, *type));
+  } while (result == VK_ERROR_OUT_OF_DEVICE_MEMORY && may_retry);
   if (result != VK_SUCCESS) return failed;
   if ((request.required & VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT) != 0) {
     result = device.vk.vkMapMemory(device.device, taken.memory, 0, VK_WHOLE_SIZE, 0, &taken.mapped);

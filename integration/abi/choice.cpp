@@ -317,6 +317,9 @@ extern "C" dermis_result DERMIS_CALL dermis_graph_set_budget(dermis_graph graph,
   if (graph == nullptr) return bad_argument({}, "dermis_graph_set_budget: graph is NULL");
   const Log& log = graph->context->log;
   return guarded(log, "dermis_graph_set_budget", [&] {
+    if (const dermis_result alive = check_alive(*graph->context, "dermis_graph_set_budget");
+        alive != DERMIS_OK)
+      return alive;
     if (budget == nullptr) return bad_argument(log, "dermis_graph_set_budget: budget is NULL");
     return set_budget(*graph, budget, report);
   });

@@ -365,7 +365,6 @@ void adopt(Chooser& chooser, const PassTypeRegistry& pass_types, CompiledGraph& 
     state->configurations.reserve(configurations);
   compiled_graph.margins.restart(compiled_graph.configurations.size(), chooser.last_margin);
   compiled_graph.serial = ++chooser.compiled_graphs;
-  retire_other_costs(chooser, compiled_graph);
 }
 
 void retire_other_costs(Chooser& chooser, const CompiledGraph& compiled_graph) noexcept {

@@ -98,6 +98,7 @@ void hand_over(dermis_graph_t& graph, Candidates& candidates) noexcept {
   for_each_view(graph, [&](dermis_view_t& view) {
     const std::lock_guard lock(view.mutex);
     view.next.swap(candidates[v++]);
+    retire_other_costs(view.chooser, *view.next);
   });
 }
 

@@ -39,6 +39,7 @@ dermis_result create(dermis_graph_t& graph, const dermis_view_desc* given, dermi
   reserve(view->image_views, compiled_graph->slots.size());
   adopt(view->chooser, graph.context->pass_types, *compiled_graph);
   view->next = compiled_graph;
+  retire_other_costs(view->chooser, *compiled_graph);
   {
     const std::lock_guard lock(graph.shared_budget.mutex);
     graph.shared_budget.division.add(view->share);

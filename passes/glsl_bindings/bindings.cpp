@@ -181,6 +181,7 @@ std::string shared_constants() {
       "const uint selection_first_bin = {}u;\n"
       "const float min_patch_cosine = {}, max_patch_slope = {}; // reference/surface.hpp\n"
       "const float relief_near_d = {}, relief_far_d = {}; // reference/relief.hpp\n"
+      "const float relief_max_offset = {}; // pixels\n"
       "const float relief_turn = {}, relief_width = {}, relief_range_d = {:.1f};\n"
       "const int separable_nodes = {}; // separable_kernel.hpp\n"
       "const float separable_first_log2_d = {:.1f};\n"
@@ -224,11 +225,11 @@ std::string shared_constants() {
       choice::selection_kept_bit, choice::selection_level_shift, choice::max_selection_level,
       choice::highest_level_weight, choice::selection_stay, choice::selection_first_bin,
       subsurface::min_patch_cosine, subsurface::max_patch_slope, subsurface::relief_near_d,
-      subsurface::relief_far_d, subsurface::relief_turn, subsurface::relief_width,
-      subsurface::relief_range_d, subsurface::separable_nodes, subsurface::separable_first_log2_d,
-      subsurface::separable_log2_d_step, subsurface::separable_rows_per_profile,
-      subsurface::sap_level_count, subsurface::sap_variant_count,
-      static_cast<int>(subsurface::SapVariant::half),
+      subsurface::relief_far_d, subsurface::relief_max_offset, subsurface::relief_turn,
+      subsurface::relief_width, subsurface::relief_range_d, subsurface::separable_nodes,
+      subsurface::separable_first_log2_d, subsurface::separable_log2_d_step,
+      subsurface::separable_rows_per_profile, subsurface::sap_level_count,
+      subsurface::sap_variant_count, static_cast<int>(subsurface::SapVariant::half),
       static_cast<int>(subsurface::SapVariant::plain), subsurface::sap_node_count,
       subsurface::sap_table_pairs, double(subsurface::sap_nodes_per_octave),
       subsurface::sap_log2_d_first, subsurface::sap_shape_nodes, subsurface::sap_last_log2_aspect,

@@ -73,6 +73,7 @@ float relief_of(utexture2D material, texture2D depth, ivec2 pixel, uint turn, fl
     vec2 offset =
         (i == 0u ? relief_far_d : relief_near_d) * d_mm * vec2(cos(angle), sin(angle)) / side;
     offset *= max(1.0, 1.0 / max(length(offset), 1e-6));
+    offset = clamp(offset, vec2(-relief_max_offset), vec2(relief_max_offset));
     float relief = relief_at(material, depth, pixel, own, gradient, ivec2(round(offset)), d_mm);
     sum += max(relief, 0.0);
     count += relief >= 0.0 ? 1.0 : 0.0;

@@ -89,14 +89,16 @@ Scopes scopes_of(const Device& device, const PlanBarrier& barrier, const HostSta
 }
 
 // Returns whether the barrier has nothing to wait for and no layout to change. If the plan does not
-// use the resource, the barrier lies between two accesses of the host. Two reads need none, and an
-// ownership transfer orders all accesses.
+// use the resource, the barrier lies between two accesses of the host. A read after reads of the
+// same kind needs none, and an ownership transfer orders all accesses.
 bool is_redundant(const Device& device, const PlanBarrier& barrier, const HostStates& host,
                   const Scopes& s) {
   if (s.old_layout != s.new_layout) return false;
   if (barrier.from_host && barrier.to_host)
     return s.source_stages == 0 || s.destination_stages == 0 ||
-           ((s.source_access | s.destination_access) & ~host_reads) == 0 ||
+           (((s.source_access | s.destination_access) & ~host_reads) == 0 &&
+            (s.destination_access & ~s.source_access) == 0 &&
+            (s.destination_stages & ~s.source_stages) == 0) ||
            foreign(device, host.before->queue_family) || foreign(device, host.after->queue_family);
   if (barrier.from_host || barrier.to_host) return s.source_stages == 0 && s.source_access == 0;
   return false;

@@ -69,7 +69,9 @@ Error EnvironmentTables::create(const Device& device,
       local.required |= VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT;
       const Error error = create_environment_buffer(device, local, state->buffer, state->memory);
       // Memory that is both local and visible may be small; views then copy the tables.
-      if (error && error.kind != ErrorKind::device_memory) return error;
+      const bool may_retry =
+          error.kind == ErrorKind::device_memory && device.host_memory.allocate == nullptr;
+      if (error && !may_retry) return error;
       state->device_local = !error;
     }
     if (!state->device_local) {

@@ -45,8 +45,8 @@
  *   all messages about files, settings and the device; it stays NULL where a call fails with
  *   ARGUMENT, VERSION or MEMORY before it reads them, or after a device loss. A failed call changes
  *   nothing. NULL for a required pointer and a null handle return DERMIS_ERROR_ARGUMENT; destroy
- *   functions ignore NULL. After DERMIS_ERROR_DEVICE_LOST, calls that create, change or record
- *   return it again; queries and destroy functions still work.
+ *   functions ignore NULL. After DERMIS_ERROR_DEVICE_LOST, calls that create, change, record or
+ *   report times of frames return it again; other queries and destroy functions still work.
  *
  * THREADS
  *   Each function states its threads:
@@ -695,8 +695,8 @@ typedef struct dermis_image_state {
 /* Two slots of a frame may be bound to the same aspect and layers of an image, the same bytes of a
  * buffer, or the same acceleration structure only if the graph writes neither slot
  * (dermis_slot.written), their states are equal and transfer nothing, and, for images,
- * `before.layout` and `after.layout` are dermis_slot.best_layout. Depth and stencil are different
- * aspects. */
+ * `before.layout` and `after.layout` are dermis_slot.best_layout, or equal to each other if that is
+ * UNDEFINED. Depth and stencil are different aspects. */
 typedef struct dermis_image_binding {
   size_t struct_size;
   uint32_t slot; /* dermis_slot.id */

@@ -64,10 +64,13 @@ std::optional<Image> read_png(const std::filesystem::path& path, std::string& er
                         max_image_side);
     return std::nullopt;
   }
-  const uint64_t decoded = uint64_t(width) * uint64_t(height) * 3 * sizeof(float);
-  if (const uint64_t maximum = max_decoded_bytes(bytes->size()); decoded > maximum) {
-    error = fmt::format("'{}' holds {} x {} pixels, {} bytes decoded; at most {} are read",
-                        path.string(), width, height, decoded, maximum);
+  const bool wide = stbi_is_16_bit_from_memory(bytes->data(), size) != 0;
+  const uint64_t pixels = uint64_t(width) * uint64_t(height), packed = pixels * uint64_t(channels);
+  if (pixels * 3 * sizeof(float) > max_image_bytes ||
+      (wide ? 2 : 1) * packed > max_decoded_bytes(bytes->size())) {
+    error = fmt::format("'{}' holds {} x {} pixels, more than {} bytes or more than its {} bytes "
+                        "can hold",
+                        path.string(), width, height, max_image_bytes, bytes->size());
     return std::nullopt;
   }
   Image image;
@@ -80,10 +83,9 @@ std::optional<Image> read_png(const std::filesystem::path& path, std::string& er
     return true;
   };
   const bool read =
-      stbi_is_16_bit_from_memory(bytes->data(), size)
-          ? take(stbi_load_16_from_memory(bytes->data(), size, &width, &height, &channels, 3),
-                 65535)
-          : take(stbi_load_from_memory(bytes->data(), size, &width, &height, &channels, 3), 255);
+      wide ? take(stbi_load_16_from_memory(bytes->data(), size, &width, &height, &channels, 3),
+                  65535)
+           : take(stbi_load_from_memory(bytes->data(), size, &width, &height, &channels, 3), 255);
   if (!read) {
     error = fmt::format("'{}' is damaged: {}", path.string(), stbi_failure_reason());
     return std::nullopt;

@@ -112,6 +112,9 @@ uint64_t NullDevice::buffer_copies() const {
 void NullDevice::make_discrete() {
   state_->discrete = true;
 }
+void NullDevice::make_discrete_with_full_bar() {
+  state_->discrete = state_->full_bar = true;
+}
 
 uint64_t NullDevice::descriptor_writes() const {
   return state_->descriptor_writes;

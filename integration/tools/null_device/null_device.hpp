@@ -43,6 +43,8 @@ public:
 
   // Makes device-local memory invisible to the host. Call it before contexts are created.
   void make_discrete();
+  // As make_discrete, with a heap of 256 MiB that is device-local and host-visible, but full.
+  void make_discrete_with_full_bar();
   // Sets the capabilities of the queue family. Default: graphics, compute and transfer.
   void set_queue_flags(VkQueueFlags flags);
   // Makes the creation call number `creation` from now (1 is the next) fail with `result`. 0

@@ -34,6 +34,9 @@ VKAPI_ATTR VkResult VKAPI_CALL create(VkDevice device, const Info* info,
                                       const VkAllocationCallbacks*, Handle* handle) {
   NullDeviceState& state = state_of(device);
   if (const VkResult result = count_creation(state); result != VK_SUCCESS) return result;
+  if constexpr (requires { info->memoryTypeIndex; })
+    if (state.full_bar && info->memoryTypeIndex == bar_memory_type)
+      return VK_ERROR_OUT_OF_DEVICE_MEMORY;
   uint64_t bytes = 0;
   if constexpr (requires { info->allocationSize; }) bytes = info->allocationSize;
   NullObject* object = add_object(state, bytes);

@@ -45,6 +45,13 @@ VKAPI_ATTR void VKAPI_CALL memory_properties(VkPhysicalDevice physical,
         VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT, 1};
     out->memoryHeaps[0] = {VkDeviceSize{1} << 40, VK_MEMORY_HEAP_DEVICE_LOCAL_BIT};
     out->memoryHeaps[1] = {VkDeviceSize{1} << 40, 0};
+    if (state_of(physical).full_bar) {
+      out->memoryTypeCount = out->memoryHeapCount = 3;
+      out->memoryTypes[bar_memory_type] = {out->memoryTypes[device_memory_type].propertyFlags |
+                                               out->memoryTypes[host_memory_type].propertyFlags,
+                                           2};
+      out->memoryHeaps[2] = {VkDeviceSize{1} << 28, VK_MEMORY_HEAP_DEVICE_LOCAL_BIT};
+    }
     return;
   }
   out->memoryTypeCount = out->memoryHeapCount = 1;

@@ -28,6 +28,7 @@ struct NullDeviceState {
   std::atomic<VkQueueFlags> queue_flags =
       VK_QUEUE_GRAPHICS_BIT | VK_QUEUE_COMPUTE_BIT | VK_QUEUE_TRANSFER_BIT;
   std::atomic<bool> discrete = false; // device-local memory is not host-visible
+  std::atomic<bool> full_bar = false; // with a full heap of memory that is both
   std::mutex mutex;                   // guards all following members
   uint64_t memory_bytes = 0, creations = 0;
   uint64_t failing_creation = 0;
@@ -36,10 +37,12 @@ struct NullDeviceState {
   ~NullDeviceState();
 };
 
-// Memory types of a device whose device-local memory is not host-visible.
-inline constexpr uint32_t device_memory_type = 0, host_memory_type = 1;
+// Memory types of a device whose device-local memory is not host-visible, except for a small heap.
+inline constexpr uint32_t device_memory_type = 0, host_memory_type = 1, bar_memory_type = 2;
 inline uint32_t memory_types(const NullDeviceState& state) {
-  return state.discrete ? 1u << device_memory_type | 1u << host_memory_type : 1u;
+  if (!state.discrete) return 1;
+  return 1u << device_memory_type | 1u << host_memory_type |
+         (state.full_bar ? 1u << bar_memory_type : 0u);
 }
 
 template <class Handle> NullDeviceState& state_of(Handle dispatchable) {

@@ -111,8 +111,11 @@ private:
                    radius = (i == 0 ? relief_far_d : relief_near_d) * d;
       double across = radius * std::cos(angle) / side[0], down = radius * std::sin(angle) / side[1];
       const double least = std::max(1.0, 1 / std::max(std::hypot(across, down), 1e-6));
-      const int to_x = x + static_cast<int>(std::round(across * least)),
-                to_y = y + static_cast<int>(std::round(down * least));
+      const auto step = [&](double offset) {
+        return static_cast<int>(
+            std::round(std::clamp(offset * least, -relief_max_offset, relief_max_offset)));
+      };
+      const int to_x = x + step(across), to_y = y + step(down);
       if (!has_surface(to_x, to_y)) continue;
       total += relief_between(x, y, to_x, to_y, d, side);
       ++points;

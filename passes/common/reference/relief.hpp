@@ -9,6 +9,7 @@ namespace dermis::subsurface {
 
 // Points at these distances, in d of the widest channel, are compared with the plane.
 inline constexpr double relief_near_d = 1.25, relief_far_d = 3.5;
+inline constexpr double relief_max_offset = 32768; // pixels; beyond any picture
 inline constexpr double relief_turn = 2.39996323; // angle between points, radians: the golden angle
 // Standard deviation of the distance from the plane that counts as on it, relative to the distance
 // of the point.

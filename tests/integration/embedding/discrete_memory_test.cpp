@@ -211,33 +211,14 @@ TEST_F(TableCopies, AreRepeatedAfterADiscardedFrame) {
   EXPECT_EQ(copies_of_a_frame(), 0u) << "an earlier frame made it";
 }
 
-// Returns for how many failing creations a graph is created nevertheless.
-size_t survived_failures(bool discrete) {
-  NullHost host;
-  if (discrete) host.device.make_discrete();
-  EXPECT_OK(host.make_context(host.context_desc()));
-  size_t survived = 0;
-  uint64_t used = 1;
-  for (uint64_t failing = 1; failing <= used; ++failing) {
-    const uint64_t before = host.device.creations();
-    host.device.fail_creation(failing, VK_ERROR_OUT_OF_DEVICE_MEMORY);
-    const dermis_result result = host.make_graph();
-    host.device.fail_creation(0, VK_SUCCESS);
-    used = host.device.creations() - before;
-    if (result != DERMIS_OK) {
-      EXPECT_EQ(result, DERMIS_ERROR_DEVICE_MEMORY);
-      used = std::max(used, failing + 1);
-      continue;
-    }
-    survived += failing <= used ? 1 : 0;
-    dermis_graph_destroy(host.graph);
-    host.graph = nullptr;
-  }
-  return survived;
-}
-
-TEST(FullHeaps, OtherMemoryTypesAreUsed) {
-  EXPECT_GT(survived_failures(true), survived_failures(false));
+// Constants and tables that prefer memory which is full take the host's.
+TEST_F(TableCopies, AreMadeIfHostVisibleDeviceMemoryIsFull) {
+  host.device.make_discrete_with_full_bar();
+  ASSERT_NO_FATAL_FAILURE(start(true));
+  EXPECT_EQ(copies_of_a_frame(), 1u);
+  EXPECT_EQ(copies_of_a_frame(), 0u);
+  host.destroy();
+  EXPECT_EQ(host.device.alive(), 0u);
 }
 
 TEST_F(TableCopies, AreFreedAfterTheirFrames) {
