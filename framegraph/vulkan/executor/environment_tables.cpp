@@ -4,6 +4,7 @@
 #include "framegraph/vulkan/executor/state.hpp"
 #include "framegraph/vulkan/shader/signature_check.hpp"
 
+#include <algorithm>
 #include <cstring>
 #include <utility>
 
@@ -29,6 +30,15 @@ bool can_write_device_memory(const Device& device, uint64_t bytes) {
   device.vk.vkGetDeviceBufferMemoryRequirements(device.device, &query, &needs);
   return has_memory_type(device, needs.memoryRequirements.memoryTypeBits,
                          host_memory_properties | VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT);
+}
+
+// Returns whether the host also sees memory that is not device-local.
+bool has_other_host_memory(const Device& device) {
+  const VkMemoryType* const types = device.memory.memoryTypes;
+  return std::any_of(types, types + device.memory.memoryTypeCount, [](const VkMemoryType& type) {
+    return (type.propertyFlags & host_memory_properties) == host_memory_properties &&
+           (type.propertyFlags & VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT) == 0;
+  });
 }
 
 } // namespace
@@ -69,8 +79,9 @@ Error EnvironmentTables::create(const Device& device,
       local.required |= VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT;
       const Error error = create_environment_buffer(device, local, state->buffer, state->memory);
       // Memory that is both local and visible may be small; views then copy the tables.
-      const bool may_retry =
-          error.kind == ErrorKind::device_memory && device.host_memory.allocate == nullptr;
+      const bool may_retry = error.kind == ErrorKind::device_memory &&
+                             device.host_memory.allocate == nullptr &&
+                             has_other_host_memory(device);
       if (error && !may_retry) return error;
       state->device_local = !error;
     }

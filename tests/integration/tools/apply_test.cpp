@@ -133,6 +133,7 @@ TEST_F(Captures, FilesOfAnEarlierRun_AreRemoved) {
   const std::string graph = write("light_only.json", read_text(burley));
   ASSERT_THAT(run({"apply", "--graph", graph, "--overlay", write("overlay.json", R"({
     "dermis_overlay": 2, "edits": [ { "remove": "/passes/export_scattered" },
+      { "remove": "/resources/scattered_light" },
       { "set": "/exports", "to": ["lighting"] } ] })"),
                    "--frames", path("capture"), "--out", path("out")}),
               Succeeds());
@@ -149,7 +150,7 @@ TEST_F(Captures, FrameIndexSeedsTheSamples) {
   const std::string frame = read("capture/frame.json");
   const auto pictures = [&](const char* index, const char* repeat) {
     write("capture/frame.json",
-          replaced(frame, "{", fmt::format("{{ \"frame_index\": {},", index)));
+          replaced(frame, "\"frame_index\": 1,", fmt::format("\"frame_index\": {},", index)));
     EXPECT_THAT(apply({"--repeat", repeat}), Succeeds());
     return picture("scattered.exr").values;
   };

@@ -92,10 +92,14 @@ TEST_F(BenchSuite, MissedGoal_OutputIsOneDocument) {
 
 TEST_F(BenchSuite, UnwritableFile_DoesNotPreventTheOthers) {
   SuiteRequest request = default_request(squares());
-  request.json = (folder / "none/rows.json").string();
+  std::ofstream(folder / "file") << "no folder";
+  request.json = (folder / "file/rows.json").string();
   request.csv = (folder / "rows.csv").string();
   EXPECT_EQ(run_suite(session, squares(), request), ExitCode::environment);
-  EXPECT_TRUE(std::filesystem::exists(folder / "rows.csv"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "rows.csv")) << "nothing is measured";
+  request.json = (folder / "new/rows.json").string();
+  EXPECT_EQ(run_suite(session, squares(), request), ExitCode::ok);
+  EXPECT_TRUE(std::filesystem::exists(folder / "new/rows.json"));
   Suite more = squares();
   const auto measure = more.run;
   more.run = [&](SuiteRun& run) {

@@ -76,7 +76,7 @@ TEST_F(Usage, WrongValue_StatesWhatIsExpected) {
       {{"render", "configs/scenes/bust.json", "--graph", "none", "--debug", "samples", "--out",
         "o"},
        "--debug, --budget, --calibration and --errors need a graph"},
-      {{"explain", burley, "--frame", "--two-queues"}, "--frame excludes --two-queues"},
+      {{"explain", burley, "--frame", "--two-queues"}, "--two-queues excludes --frame"},
       {{"watch", "scene.json", "--graph", "-", "--out", "o"},
        "standard input does not change; name a graph file to watch"},
       {{"bench", "all", "--out", "a", "more"},
