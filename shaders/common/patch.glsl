@@ -43,11 +43,6 @@ struct surface_patch {
   float footprints;
 };
 
-// Returns the length of a pixel's ray per length along the view axis.
-float patch_ray_length(ivec2 pixel) {
-  return is_perspective() ? length(view_position(vec2(pixel), 1.0)) : 1.0;
-}
-
 // Computes both sides of most choices and selects, because each branch in a loop multiplies the
 // time that some drivers take to compile it.
 surface_patch build_patch(ivec2 pixel, float depth, patch_neighbours around) {

@@ -24,7 +24,7 @@ void main() {
   if (id != 0u) {
     light.rgb = pixel_light(lighting_image, albedo_image, has_albedo(), settings.texturing, texel);
     float depth = own_depth();
-    light.a = 1.0 / patch_ray_length(pixel);
+    light.a = 1.0;
     if (depth > 0.0 && !copy_only) {
       surface_patch surface = build_patch(pixel);
       light.a = surface.footprints;

@@ -240,7 +240,7 @@ TEST_F(Engine, KernelsAreCompiledInTheFirstFrames) {
     if (!software) GTEST_SKIP() << "the device is not Mesa's software driver";
     ASSERT_EQ(code_bytes.size(), 8u);
     EXPECT_GT(code_bytes[3], 0u);
-    EXPECT_EQ(code_bytes[7], code_bytes[3]);
+    EXPECT_EQ(code_bytes[7], code_bytes[3]) << ::testing::PrintToString(code_bytes);
   }
 }
 
