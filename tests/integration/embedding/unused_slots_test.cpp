@@ -8,6 +8,7 @@
 #include <iterator>
 #include <set>
 #include <span>
+#include <utility>
 
 namespace dermis::abi_test {
 namespace {
@@ -89,6 +90,31 @@ TEST_F(UnusedSlots, StateWithoutStages_HasNoBarrier) {
   constexpr dermis_image_state none{VK_IMAGE_LAYOUT_GENERAL, 0, 0, 0, 0};
   EXPECT_EQ(barriers(none, sampled).size(), 0u);
   EXPECT_EQ(barriers(written, none).size(), 0u);
+}
+
+TEST_F(UnusedSlots, MayShareAnImageInAnyLayout) {
+  const std::set<VkImage> unused = unused_images();
+  const auto slots = list_of(dermis_slot DERMIS_SLOT_INIT, dermis_graph_slots, host.graph);
+  std::vector<dermis_image_binding*> sharing;
+  for (dermis_image_binding& binding : host.bindings())
+    for (const dermis_slot& slot : slots)
+      if (slot.id == binding.slot && slot.written == 0 &&
+          (unused.contains(binding.image) ||
+           slot.best_layout == VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL))
+        sharing.push_back(&binding);
+  ASSERT_GT(sharing.size(), unused.size());
+  dermis_image_state read = sampled;
+  read.layout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
+  uint64_t frame = host.last_frame;
+  for (dermis_image_binding* binding : sharing)
+    binding->before = binding->after = read;
+  for (dermis_image_binding* binding : sharing) {
+    if (!unused.contains(binding->image)) continue;
+    const VkImage own = std::exchange(binding->image, sharing.front()->image);
+    if (own == binding->image) binding->image = sharing.back()->image;
+    EXPECT_OK(host.record(dermis_graph_view(host.graph), ++frame));
+    binding->image = own;
+  }
 }
 
 } // namespace
