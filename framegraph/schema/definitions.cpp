@@ -10,8 +10,8 @@
 namespace dermis {
 namespace {
 
-// Returns the names of a format as JSON strings with commas. "depth" stands for all depth formats;
-// the first enumerator is no format.
+// Returns the names of a format as JSON strings with commas. "depth" means any depth format; the
+// first enumerator is no format.
 std::string format_names() {
   std::string out = "\"depth\"";
   for (size_t i = 1; i < static_cast<size_t>(Format::count); ++i)

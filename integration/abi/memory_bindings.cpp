@@ -148,8 +148,7 @@ std::string_view family_problem(const dermis_context_t& context, ResourceType ty
   }
   if (type == ResourceType::acceleration_structure)
     return "transfer is 1, expected 0: an acceleration structure has no ownership transfer; "
-           "transfer "
-           "the buffer that holds it";
+           "transfer the buffer that holds it";
   switch (state.queue_family) {
   case VK_QUEUE_FAMILY_EXTERNAL:
     return {};

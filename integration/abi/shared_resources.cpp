@@ -61,8 +61,7 @@ dermis_result check_pair(const dermis_view_t& view, const CompiledGraph& compile
         "aspect and layers of an image",
         "two slots share them only if the graph writes neither, their states are equal without a "
         "queue family transfer, and both layouts are dermis_slot.best_layout, or equal to each "
-        "other "
-        "if that is UNDEFINED");
+        "other if that is UNDEFINED");
   const vulkan::HostBuffer &buffer = compiled_graph.buffers[i],
                            &other_buffer = compiled_graph.buffers[j];
   if (buffer.buffer != VK_NULL_HANDLE && overlap(buffer, other_buffer) &&

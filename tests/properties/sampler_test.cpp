@@ -84,8 +84,8 @@ TEST_F(Sampler, ErrorFallsFasterThanForIndependentSamples) {
   EXPECT_GT(slope, -0.9);
 }
 
-// Samples cover the same surface in the middle of a wide view and in its corners, where rays meet
-// the plane at 54 degrees.
+// Samples cover the same surface in the middle of a wide view and near its corners, where rays are
+// 46 degrees off the axis.
 TEST_F(Sampler, PerspectiveViewsKeepTheMass) {
   Plane plane{.width = 64, .height = 64, .pixel_pitch_m = 2.0 / 64, .d_px = {0.6, 0.6, 0.6}};
   plane.perspective = true;

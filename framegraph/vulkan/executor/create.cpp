@@ -189,9 +189,9 @@ void reserve_for_recording(State& state) {
   state.push_constants.resize(max_settings);
   state.chosen_pipelines.resize(state.passes.size());
   state.chosen_settings.reserve(state.plan.setting_values.size());
-  for (FrameSnapshot* before : {&state.snapshot, &state.earlier_snapshot}) {
-    before->histories.resize(state.histories.size());
-    before->ready.resize(state.instances.size());
+  for (FrameSnapshot* one : {&state.snapshot, &state.earlier_snapshot}) {
+    one->histories.resize(state.histories.size());
+    one->ready.resize(state.instances.size());
   }
 }
 

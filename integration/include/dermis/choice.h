@@ -74,8 +74,8 @@ typedef struct dermis_frame_report {
 } dermis_frame_report;
 #define DERMIS_FRAME_REPORT_INIT {sizeof(dermis_frame_report), 0, NULL, NULL, NULL, 0, 0, 0, 0, 0}
 /* Reads the counters of frames up to `completed_frame_index`, as in dermis_frame, and describes the
- * newest frame whose counters were read, by this or an earlier call. Costs: none. Thread: one per view. Errors: ARGUMENT,
- * NOT_READY, DEVICE_LOST. */
+ * newest frame whose counters were read, by this or an earlier call. Costs: none. Thread: one per
+ * view. Errors: ARGUMENT, NOT_READY, DEVICE_LOST. */
 DERMIS_API dermis_result DERMIS_CALL dermis_view_report(
     dermis_view view, uint64_t completed_frame_index, dermis_frame_report* report);
 
@@ -126,7 +126,8 @@ DERMIS_API dermis_result DERMIS_CALL dermis_view_statistics(
 typedef struct dermis_forecast_desc {
   size_t struct_size;
   dermis_view view;       /* NULL: the graph's own */
-  uint32_t width, height; /* of the render rectangle; 0: as in the frame that dermis_view_report describes */
+  /* Size of the render rectangle, pixels. 0: as in the frame that dermis_view_report describes. */
+  uint32_t width, height;
   float milliseconds;     /* budget of a frame of the view; 0: the present one */
 } dermis_forecast_desc;
 #define DERMIS_FORECAST_DESC_INIT {sizeof(dermis_forecast_desc), NULL, 0, 0, 0}

@@ -33,8 +33,8 @@
  *
  * STRUCTS
  *   Every struct starts with `struct_size`; use its DERMIS_..._INIT. Zero means default. A call
- *   with a struct smaller than the library's returns DERMIS_ERROR_ARGUMENT. A struct of a newer header
- *   is accepted if the part unknown to the library is zero; otherwise the call returns
+ *   with a struct smaller than the library's returns DERMIS_ERROR_ARGUMENT. A struct of a newer
+ *   header is accepted if the part unknown to the library is zero; otherwise the call returns
  *   DERMIS_ERROR_VERSION. The struct_size of the first element is the stride of an array, and the
  *   library writes at most that many bytes per element. Structs that are members of others
  *   (dermis_source, dermis_image_state) never grow.
@@ -382,9 +382,8 @@ DERMIS_API dermis_result DERMIS_CALL dermis_validate(
  * NULL) gets the messages; destroy it also on success. Graphs of a context share pipelines: a graph
  * compiles only kernels that no other graph had. The context keeps the pipelines of the library's
  * kernels, but at most 16 unused variants of a kernel; pipelines of your shaders live as long as a
- * graph uses them. Costs: pipelines,
- * memory, time. Thread: any. Errors: ARGUMENT, VERSION, CONFIG, SHADER, UNSUPPORTED, MEMORY,
- * DEVICE_MEMORY, VULKAN, DEVICE_LOST. */
+ * graph uses them. Costs: pipelines, memory, time. Thread: any. Errors: ARGUMENT, VERSION, CONFIG,
+ * SHADER, UNSUPPORTED, MEMORY, DEVICE_MEMORY, VULKAN, DEVICE_LOST. */
 DERMIS_API dermis_result DERMIS_CALL dermis_graph_create(
     dermis_context context, const dermis_graph_desc* desc, dermis_graph* graph,
     dermis_report* report);

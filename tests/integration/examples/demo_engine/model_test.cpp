@@ -262,7 +262,6 @@ TEST_F(ModelFile, NodeCyclesAreRejected) {
       HasSubstr("node 0 has two parents, or is its own ancestor"));
 }
 
-// 2^60 paths lead to the last node.
 TEST_F(ModelFile, NodesWithTwoParentsAreRejected) {
   std::string nodes = "[";
   for (int i = 1; i <= 60; ++i)
@@ -274,19 +273,15 @@ TEST_F(ModelFile, NodesWithTwoParentsAreRejected) {
 // An instance has 3 * 2^20 indices; 22 instances have more than 2^26.
 TEST_F(ModelFile, IndicesOfAllInstancesAreLimited) {
   constexpr size_t indices = size_t{3} << 20, corners = 36;
-  std::string buffer(corners + indices, '\0');
-  const float positions[] = {0, 0, 0, 1, 0, 0, 0, 2, 0};
-  std::memcpy(buffer.data(), positions, corners);
-  for (size_t i = 0; i < indices; ++i)
-    buffer[corners + i] = static_cast<char>(i % 3);
+  std::string buffer(corners + indices, '\0'); // all corners are at the origin
   write("many.bin", buffer);
   for (const int instances : {21, 22}) {
-    std::string nodes, all;
-    for (int i = 0; i < instances; ++i) {
-      nodes += fmt::format("{}{{ \"mesh\": 0 }}", i == 0 ? "" : ", ");
-      all += fmt::format("{}{}", i == 0 ? "" : ", ", i);
+    std::string nodes = R"({ "mesh": 0 })", all = "0";
+    for (int i = 1; i < instances; ++i) {
+      nodes += R"(, { "mesh": 0 })";
+      all += fmt::format(", {}", i);
     }
-    const std::string path = write(
+    auto model = load_model(only(write(
         "many.gltf",
         fmt::format(
             R"({{ "asset": {{ "version": "2.0" }}, "buffers": [{{ "uri": "many.bin", "byteLength": {} }}],
@@ -295,12 +290,9 @@ TEST_F(ModelFile, IndicesOfAllInstancesAreLimited) {
         {{ "bufferView": 1, "componentType": 5121, "count": {}, "type": "SCALAR" }}],
       "meshes": [{{ "primitives": [{{ "attributes": {{ "POSITION": 0 }}, "indices": 1 }}] }}],
       "nodes": [{}], "scenes": [{{ "nodes": [{}] }}], "scene": 0 }})",
-            buffer.size(), indices, indices, nodes, all));
-    auto model = load_model(only(path));
-    EXPECT_EQ(static_cast<bool>(model), instances == 21);
-    if (!model) {
-      EXPECT_THAT(model.error().text, HasSubstr("more than 67108864 indices"));
-    }
+            buffer.size(), indices, indices, nodes, all))));
+    EXPECT_THAT(model ? "" : model.error().text,
+                HasSubstr(instances == 21 ? "" : "more than 67108864 indices"));
   }
 }
 
