@@ -77,7 +77,7 @@ TEST_F(GuidedSequence, Jitter_TakesAtMostAFifthMoreSamples) {
     request.frames = frames;
     request.jitter = jitter;
     auto rendered =
-        render_sequence(request, properties::sequence_width, properties::sequence_height, {});
+        render_sequence(request, properties::larger_width, properties::larger_height, {});
     EXPECT_TRUE(rendered) << rendered.error().text;
     return rendered ? rendered.take() : Sequence{};
   };
@@ -197,7 +197,8 @@ TEST_F(GuidedSequence, FlashingLight_SamplesFollowTheVariance) {
 
 // A choice may switch from `hybrid` to `afis`, which then has no history.
 TEST_F(GuidedSequence, FirstFramesAfterASwitch_AreNotNoisy) {
-  const Sequence sequence = properties::standing_still(frames_of("pan", 40, 1), 3);
+  const Sequence sequence = properties::standing_still(
+      frames_of("pan", 40, 1, properties::larger_width, properties::larger_height), 3);
   Judge judge{sequence};
   const auto psnr_db = [&](const char* technique) {
     return run(judge,

@@ -18,7 +18,7 @@ using properties::standing_still;
 struct Size {
   uint32_t width, height;
 };
-constexpr Size before{properties::sequence_width, properties::sequence_height};
+constexpr Size before{properties::larger_width, properties::larger_height};
 constexpr Size larger{361, 203}, smaller{163, 91}, odd{241, 135};
 // Frames before the view is resized, and frames from then on.
 constexpr uint32_t learned = 24, after = 3;

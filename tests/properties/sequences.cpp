@@ -70,10 +70,11 @@ Sequence standing_still(Sequence sequence, uint32_t count) {
   return sequence;
 }
 
-Sequence SequenceTest::frames_of(const std::string& scene, uint32_t first, uint32_t count) {
+Sequence SequenceTest::frames_of(const std::string& scene, uint32_t first, uint32_t count,
+                                 uint32_t width, uint32_t height) {
   auto sequence = render_sequence({scene, "close", root() + "/configs/scenes/" + scene + ".json",
                                    close_d_px, first, count, false},
-                                  sequence_width, sequence_height, {});
+                                  width, height, {});
   EXPECT_TRUE(sequence) << sequence.error().text;
   return sequence ? sequence.take() : Sequence{};
 }

@@ -13,7 +13,9 @@
 
 namespace properties {
 
-inline constexpr uint32_t sequence_width = 240, sequence_height = 136; // Pixels.
+// Pixels. The larger size is for effects that are few pixels wide.
+inline constexpr uint32_t sequence_width = 160, sequence_height = 90;
+inline constexpr uint32_t larger_width = 240, larger_height = 136;
 inline constexpr double close_d_px = 4;
 
 std::string root(); // Returns the root of the source tree.
@@ -51,8 +53,9 @@ dermis::tools::Sequence standing_still(dermis::tools::Sequence sequence, uint32_
 // compared frames, or all frames if none is compared.
 class SequenceTest : public DeviceTest {
 protected:
-  static dermis::tools::Sequence frames_of(const std::string& scene, uint32_t first,
-                                           uint32_t count);
+  static dermis::tools::Sequence frames_of(const std::string& scene, uint32_t first, uint32_t count,
+                                           uint32_t width = sequence_width,
+                                           uint32_t height = sequence_height);
   SequenceRun run(Judge& judge, const dermis::tools::TechniqueRequest& request,
                   const Frames& judged, const Follows& follows = {});
 };

@@ -248,13 +248,13 @@ TEST_F(Temporal, ChangedRectangle_HistoryIsFound) {
   // Every fifth frame is rendered at 0.8 of the size, at another position.
   Sequence sequence = standing_still(frames_of("pan", 40, 1), 30);
   SequenceRequest request = sequence.request;
-  constexpr uint32_t small_width = width * 4 / 5, small_height = 108;
+  constexpr uint32_t small_width = width * 4 / 5, small_height = height * 4 / 5;
   request.d_px = close_d_px * small_height / height;
   request.frames = 1;
   auto small = render_sequence(request, small_width, small_height, {});
   ASSERT_TRUE(small) << small.error().text;
   SequenceFrame other = standing_still(small.take(), 1).frames.front();
-  other.captured = embedded(other.captured, 16, 24);
+  other.captured = embedded(other.captured, 16, 8);
   for (size_t t = 3; t < sequence.frames.size(); t += 5)
     sequence.frames[t] = other;
   for (size_t t = 1; t < sequence.frames.size(); ++t) {
