@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
 # Checks that two builds make byte-identical plans of all shipped graphs and 200 random graphs.
-# usage: compare.sh [BUILD_FOLDER BUILD_FOLDER]; default: build/release (gcc) and build/fuzz (clang)
+# usage: compare.sh [BUILD_FOLDER BUILD_FOLDER]; default: build/release (gcc) and build/asan (clang)
 set -euo pipefail
 cd "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/../.."
 
-first=${1:-build/release} second=${2:-build/fuzz}
+first=${1:-build/release} second=${2:-build/asan}
 digests() { "$1/tests/plan_digests" configs/graphs 200; }
 a=$(digests "$first")
 b=$(digests "$second")

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Runs fuzz targets, one per processor, on the committed corpus, the shipped files and a dictionary
-# of their words. The exit code is 1 after a finding, which is kept in build/fuzz/findings.
+# of their words. The exit code is 1 after a finding, which is kept in build/asan/findings.
 # usage: run.sh [SECONDS [TARGET...]]; default: 10 seconds, all targets
 set -euo pipefail
 cd "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/../.."
@@ -16,27 +16,27 @@ for target in "${targets[@]}"; do
     echo "run.sh: there is no fuzz target '$target'; expected one of: ${all[*]}" >&2
     exit 2
   }
-  [[ -x build/fuzz/fuzz/fuzz_$target ]] || {
-    echo "run.sh: build/fuzz/fuzz/fuzz_$target is not built;" \
-      "run: cmake --preset fuzz && cmake --build --preset fuzz" >&2
+  [[ -x build/asan/fuzz/fuzz_$target ]] || {
+    echo "run.sh: build/asan/fuzz/fuzz_$target is not built;" \
+      "run: cmake --preset asan && cmake --build --preset asan --target fuzzers" >&2
     exit 2
   }
 done
 
-findings=build/fuzz/findings dictionary=build/fuzz/keys.dict
+findings=build/asan/findings dictionary=build/asan/keys.dict
 mkdir -p "$findings"
 # Every short quoted word of a schema or shipped file: the keys and values of all formats.
 grep -ohE '"[$A-Za-z0-9_./@-]{1,32}"' configs/{schema,graphs,overlays,profiles,scenes}/*.json |
   sort -u | sed 's/^"\(.*\)"$/"\\"\1\\""/' >"$dictionary"
 run_one() { # target, seconds, folder of findings
-  local target=$1 seconds=$2 findings=$3 grown=build/fuzz/corpus/$1 log=build/fuzz/$1.log
+  local target=$1 seconds=$2 findings=$3 grown=build/asan/corpus/$1 log=build/asan/$1.log
   local runs covered
   mkdir -p "$grown" # keeps the inputs of earlier runs
   local folders=("$grown" "tests/fuzz/corpus/$target")
   case $target in
     graph | overlay | profile | scene) folders+=("configs/${target}s") ;;
   esac
-  if build/fuzz/fuzz/fuzz_"$target" -max_total_time="$seconds" -timeout=5 -rss_limit_mb=2048 \
+  if build/asan/fuzz/fuzz_"$target" -max_total_time="$seconds" -timeout=5 -rss_limit_mb=2048 \
     -max_len=65536 -dict="$dictionary" -artifact_prefix="$findings/$target-" \
     -print_final_stats=1 -verbosity=1 "${folders[@]}" >"$log" 2>&1; then
     runs=$(sed -n 's/^stat::number_of_executed_units: *//p' "$log")

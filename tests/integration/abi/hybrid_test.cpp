@@ -407,7 +407,7 @@ TEST_F(Pair, SeparableRunsOnlyInReachOfTilesWithoutSamples) {
   const int last = tiles_across - 1;
   for (const auto& [name, matters] : sampled_patterns) {
     std::vector<bool> sampled, vertical, horizontal;
-    const auto none_near = [&](int x, int y) {
+    const auto none_near = [&, &matters = matters](int x, int y) {
       for (int j = std::max(y - 1, 0); j <= std::min(y + 1, last); ++j)
         for (int i = std::max(x - 1, 0); i <= std::min(x + 1, last); ++i)
           if (!matters(uint32_t(i), uint32_t(j))) return false;

@@ -190,8 +190,9 @@ struct Soak : DermisTest {
     if (view == nullptr) return;
     const auto& [name, values] = any(stage.desc.settings);
     const auto settings = list_of(dermis_setting DERMIS_SETTING_INIT, dermis_view_settings, view);
-    const auto found = std::find_if(settings.begin(), settings.end(),
-                                    [&](const dermis_setting& one) { return one.name == name; });
+    const auto found =
+        std::find_if(settings.begin(), settings.end(),
+                     [&, &name = name](const dermis_setting& one) { return one.name == name; });
     ASSERT_NE(found, settings.end()) << name;
     const dermis_result expected = found->per_frame != 0 ? DERMIS_OK : DERMIS_ERROR_ARGUMENT;
     EXPECT_EQ(dermis_view_set_setting(view, name.c_str(),

@@ -113,7 +113,10 @@ Plan without_batch_mates(const Plan& plan, uint32_t barrier) {
 }
 
 TEST_F(ShippedPlans, DroppedBarrier_IsRejected) {
-  for_each_plan([](const Graph&, const CompiledPlan& compiled, Bound) {
+  // Of plans that differ in few bindings, the full mode tries every fourth, because it visits many.
+  uint64_t similar = 0;
+  for_each_plan([&](const Graph&, const CompiledPlan& compiled, Bound bound) {
+    if (bound == Bound::some && ++similar % seeds_to_try(1, 4) != 0) return;
     for (uint32_t b = 0; b < compiled.plan.barriers.size(); ++b) {
       if (!verify(without_barrier(compiled.plan, b)).violations.empty()) continue;
       EXPECT_TRUE(takes_over_memory(compiled.plan, b)) << "barrier " << b;

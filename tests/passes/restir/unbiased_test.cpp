@@ -1,6 +1,6 @@
 // Every unbiased shift converges to a reference with an independent sampler. Region means over
 // independent restarts are within 3 sigma over all comparisons (Bonferroni, Student's t).
-// DERMIS_TESTS_FULL uses 32x32 pixels.
+// DERMIS_TESTS_FULL uses 24x24 pixels.
 #include "passes/common/reference/parallel.hpp"
 #include "tests/framegraph/test_scale.hpp"
 #include "tests/passes/restir/sequence.hpp"
@@ -34,7 +34,7 @@ SequenceSettings settings_of(Shift shift, Reuse reuse) {
   SequenceSettings settings;
   settings.shift = shift;
   settings.reuse = reuse;
-  settings.width = settings.height = quality(16, 32);
+  settings.width = settings.height = quality(16, 24);
   settings.frames = quality(12, 8); // Frames are independent.
   if ((static_cast<uint32_t>(reuse) & 1u) != 0) {
     // More frames than the confidence cap lets a history count for.

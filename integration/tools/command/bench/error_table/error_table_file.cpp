@@ -17,7 +17,7 @@ void read_root(BenchObject& root, ErrorTableFile& file) {
                                      max_d_px, root.diagnostics))
         file.d_px.push_back(*d);
   std::ranges::sort(file.d_px); // as the curves of a table
-  file.d_px.erase(std::ranges::unique(file.d_px).begin(), file.d_px.end());
+  file.d_px.erase(std::unique(file.d_px.begin(), file.d_px.end()), file.d_px.end());
   const NodeId choice = root.reader.array("choice", 0, max_bench_entries, Need::optional);
   if (choice.valid())
     for (const NodeId one : children(root.document, choice))
