@@ -113,7 +113,7 @@ Plan without_batch_mates(const Plan& plan, uint32_t barrier) {
 }
 
 TEST_F(ShippedPlans, DroppedBarrier_IsRejected) {
-  // Of plans that differ in few bindings, the full mode tries every fourth, because it visits many.
+  // The full mode visits many plans that differ in few bindings, so it tries every fourth of them.
   uint64_t similar = 0;
   for_each_plan([&](const Graph&, const CompiledPlan& compiled, Bound bound) {
     if (bound == Bound::some && ++similar % seeds_to_try(1, 4) != 0) return;
