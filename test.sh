@@ -13,8 +13,9 @@ usage="usage: ./test.sh [--full]
   --full   run more cases per test, check kernels on more GPUs, and run each graph on the drivers
            of absent GPUs. Then run code coverage (gcovr), the thread sanitizer, random graphs on a
            device, the device tests on other drivers, every bench with --quick, and the suites that
-           manage memory or use a device with the address and undefined-behaviour sanitizers. Takes
-           about 100 minutes on two cores. CONTRIBUTING.md lists the commands for longer runs."
+           manage memory or use a device with the address and undefined-behaviour sanitizers, if
+           clang can be installed. Takes more than an hour. CONTRIBUTING.md lists the commands for
+           longer runs."
 
 full=no
 for argument in "$@"; do
@@ -64,9 +65,11 @@ release() { run_tests release all -E "$ray_suites\\."; }
 # drivers.
 quick() { (unset DERMIS_TESTS_FULL && "$@"); }
 # Left out: suites that only compare pictures and take minutes with sanitizers. Other tests run the
-# same code. GTEST_FILTER applies to programs that run as a whole (<suite>_processes).
-asan() { # clang
-  if [[ $fuzz == no ]]; then return 77; fi # the step of the fuzz targets names the packages
+# same code. GTEST_FILTER applies to programs that run as a whole (<suite>_processes). The build
+# precedes it, because the build lists the tests of all other programs.
+asan() {
+  if [[ $fuzz == no ]]; then return 77; fi # no clang; the step of the fuzz targets says so
+  build_preset asan --target dermis_labelled_tests
   GTEST_FILTER='-*Demodulation*:*LastStep*:InputFormats.*:*Probe.*:*Hybrid.*:*Pair.*' \
     quick run_tests asan dermis_labelled_tests -L "memory|device" \
     -E "WithRayQueries\.|Golden\.|ListOrder\.|Engine\.(Frames|Kernels)"

@@ -97,7 +97,7 @@ protected:
   struct Row {
     std::string graph;
     std::vector<NamedValue> set;
-    // Regression bounds in dB: measured with a mean of the light itself.
+    // Regression bounds in dB: measured with a mean of the light itself, at 320x180.
     double gain_at_rest_natural, gain_at_rest_close;
   };
   static std::vector<Row> rows() {

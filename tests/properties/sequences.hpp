@@ -13,7 +13,8 @@
 
 namespace properties {
 
-// Pixels. The larger size is for effects that are few pixels wide.
+// Pixels. The larger size is for effects that are few pixels wide. What comments of the tests call
+// measured was measured at the larger size.
 inline constexpr uint32_t sequence_width = 160, sequence_height = 90;
 inline constexpr uint32_t larger_width = 240, larger_height = 136;
 inline constexpr double close_d_px = 4;
