@@ -148,7 +148,7 @@ TEST_F(SapPixelShape, ErrorStaysNearThatOfSquares) {
     for (int i = 11; i <= 40; ++i)
       aspects.push_back(i / 10.0);
   }
-  const auto decibels = [this](double aspect) {
+  const auto decibels = [](double aspect) {
     Scene scene(aspect);
     return 20 * std::log10(root_mean_square(errors_of(run("sap", scene.plane, {}), scene)));
   };
@@ -162,7 +162,7 @@ TEST_F(SapPixelShape, ErrorStaysNearThatOfSquares) {
 
 // The plan changes at 1.07 and 2^0.58, and weights of the other shapes are interpolated.
 TEST_F(SapPixelShape, NoStepWhereShapesChange) {
-  const auto errors = [this](double aspect) {
+  const auto errors = [](double aspect) {
     Scene scene(aspect);
     return errors_of(run("sap", scene.plane, {}), scene);
   };

@@ -158,7 +158,7 @@ struct MovingRow {
   // Returns the number of listed tiles.
   uint32_t next_frame(uint32_t units, uint32_t pixels) {
     for (std::vector<uint32_t>* values : {&light, &weights})
-      std::ranges::rotate(*values, values->begin() + pixels);
+      std::rotate(values->begin(), values->begin() + pixels, values->end());
     std::vector<TileToSelect> questions;
     for (size_t i = 0; i < light.size(); i += 8) {
       const bool kept = *std::max_element(&weights[i], &weights[i] + 8) > pixel_weight_step;
