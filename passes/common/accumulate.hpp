@@ -1,5 +1,5 @@
 #pragma once
-// Mixes a frame's light with that of earlier frames. shaders/common/accumulate.glsl mirrors these
+// Mixes a frame's light with that of earlier frames. shaders/common/accumulate.glsl has the same
 // functions under the same names.
 
 #include <array>
@@ -15,12 +15,6 @@ struct AccumulatedLight {
   double count = 0; // number of accumulated frames; 0: none
 };
 
-// Variance clipping (Salvi 2016): moves history along the line to the mean of the neighbourhood
-// until history is within `reach` standard deviations. The frame count shrinks by the same factor.
-AccumulatedLight clip_to_neighbours(const AccumulatedLight& history,
-                                    const std::array<double, 3>& mean,
-                                    const std::array<double, 3>& deviation, double reach);
-
 // Returns the weight of a new frame against `count` frames of history. All frames weigh the same
 // until the weight would fall below `minimum` (0..1].
 double frame_weight(double count, double minimum);
@@ -32,16 +26,5 @@ inline constexpr double accumulate_min_mean = 1e-6;
 // A larger remainder is not kept. Accumulated light is then at most 1 + 1.5 * 4.5 = 7.75 times the
 // brightest light around.
 inline constexpr double accumulate_largest_remainder = 4.5;
-
-// Returns what the history stores of a pixel's scattered light: the difference from the light that
-// the nearest pixels predict (`near`), divided by the mean light around.
-std::array<double, 3> remainder_of(const std::array<double, 3>& light,
-                                   const std::array<double, 3>& near,
-                                   const std::array<double, 3>& local_mean);
-bool can_be_kept(const std::array<double, 3>& remainder);
-// Returns the light that a remainder represents under the light of this frame; never below 0.
-std::array<double, 3> light_of_remainder(const std::array<double, 3>& remainder,
-                                         const std::array<double, 3>& near,
-                                         const std::array<double, 3>& local_mean);
 
 } // namespace dermis::subsurface

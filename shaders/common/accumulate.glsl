@@ -1,5 +1,5 @@
-// Mixes this frame's light with that of earlier frames. passes/common/accumulate.hpp mirrors these
-// functions under the same names.
+// Mixes this frame's light with that of earlier frames. passes/common/accumulate.hpp has catmull_rom
+// and the functions for sums, for tools.
 #ifndef DERMIS_ACCUMULATE_GLSL
 #define DERMIS_ACCUMULATE_GLSL
 

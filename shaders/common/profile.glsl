@@ -1,6 +1,5 @@
 // A pixel's profile for any model: Burley's closed forms, or the rows of
-// passes/common/profiles/radial_table.cpp, which mirrors radial_* under the same names. Lengths are
-// in mm.
+// passes/common/profiles/radial_table.hpp. Lengths are in mm.
 #ifndef DERMIS_PROFILE_GLSL
 #define DERMIS_PROFILE_GLSL
 

@@ -1,10 +1,9 @@
 #pragma once
 // Device tables of a profile without closed forms: density, survival and inverse as rows over
-// radius. shaders/common/profile.glsl reads them under the same names.
+// radius. shaders/common/profile.glsl reads them (radial_*).
 
 #include "passes/common/profiles/shape.hpp"
 
-#include <span>
 #include <vector>
 
 namespace dermis::subsurface {
@@ -28,17 +27,5 @@ inline constexpr uint32_t radial_rows_per_profile = 2 * radial_nodes;
 // Makes the rows. `shape` is in mm; `widest` is the channel with the largest d, which must be
 // positive. Takes about 10 ms.
 std::vector<RadialRow> make_radial_rows(const ProfileShape& shape, int widest);
-
-// Return the values that the kernels read from the rows, in fp32; r is in mm, d_mm is that of the
-// widest channel.
-// 2 pi R_c
-std::array<float, 3> radial_falloff(std::span<const RadialRow> rows, float d_mm, float r);
-// 1 - cdf_c
-std::array<float, 3> radial_survival(std::span<const RadialRow> rows, float d_mm, float r);
-struct RadialSample {
-  // mm, 1/mm: the exact density with which uniform u in (0, 1] gives r.
-  float r = 0, density = 0;
-};
-RadialSample radial_sample(std::span<const RadialRow> rows, float u);
 
 } // namespace dermis::subsurface

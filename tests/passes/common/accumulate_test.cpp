@@ -5,7 +5,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <random>
 
 namespace dermis::subsurface {
 namespace {
@@ -27,66 +26,6 @@ TEST(Accumulate, CubicWeightsSumToOneAndFollowParabolasExactly) {
   }
   // A camera at rest reads one texel.
   EXPECT_EQ(catmull_rom(0), (std::array<double, 4>{0, 1, 0, 0}));
-}
-
-TEST(Accumulate, HistoryNearItsNeighboursIsUnchanged) {
-  const AccumulatedLight history{{1.0, 2.0, 3.0}, 7};
-  const AccumulatedLight kept = clip_to_neighbours(history, {1.1, 2.1, 2.9}, {0.1, 0.1, 0.1}, 1.5);
-  EXPECT_EQ(kept.light, history.light);
-  EXPECT_EQ(kept.count, 7);
-}
-
-TEST(Accumulate, HistoryFarFromNeighbours_IsClippedAndCountsLess) {
-  const AccumulatedLight far{{3.0, 2.0, 1.0}, 8};
-  const AccumulatedLight clipped = clip_to_neighbours(far, {1, 1, 1}, {0.25, 1, 1}, 2);
-  // Red is 2 from the mean with a limit of 0.5, so all channels keep a quarter of the difference.
-  EXPECT_NEAR(clipped.light[0], 1.5, 1e-15);
-  EXPECT_NEAR(clipped.light[1], 1.25, 1e-15);
-  EXPECT_NEAR(clipped.light[2], 1.0, 1e-15);
-  EXPECT_NEAR(clipped.count, 2, 1e-15);
-  // If all neighbours are equal, only their value is accepted.
-  const AccumulatedLight flat = clip_to_neighbours(far, {1, 1, 1}, {0, 0, 0}, 2);
-  EXPECT_EQ(flat.light, (std::array<double, 3>{1, 1, 1}));
-  EXPECT_EQ(flat.count, 0);
-}
-
-constexpr std::array<double, 3> near_light = {0.2, 0.5, 0.0}, local_mean = {0.4, 0.6, 0.3};
-
-TEST(Accumulate, RemaindersReproduceTheLight) {
-  const std::array<double, 3> light = {0.25, 0.4, 0.1};
-  const std::array<double, 3> remainder = remainder_of(light, near_light, local_mean);
-  EXPECT_NEAR(remainder[1], (0.4 - 0.5) / 0.6, 1e-15); // Signed.
-  const std::array<double, 3> found = light_of_remainder(remainder, near_light, local_mean);
-  for (size_t c = 0; c < 3; ++c)
-    EXPECT_NEAR(found[c], light[c], 1e-15);
-}
-
-TEST(Accumulate, RemainderIsIndependentOfTheBrightness) {
-  const std::array<double, 3> light = {0.25, 0.4, 0.1};
-  const std::array<double, 3> dim = remainder_of(light, near_light, local_mean);
-  for (const double factor : {1e-4, 0.5, 60.0}) {
-    const auto scaled = [&](std::array<double, 3> values) {
-      for (double& value : values)
-        value *= factor;
-      return values;
-    };
-    const std::array<double, 3> bright =
-        remainder_of(scaled(light), scaled(near_light), scaled(local_mean));
-    for (size_t c = 0; c < 3; ++c)
-      EXPECT_NEAR(bright[c], dim[c], 1e-12) << factor;
-  }
-}
-
-TEST(Accumulate, LightOfARemainderIsNeverBelowZero) {
-  EXPECT_EQ(light_of_remainder({-4, -4, -4}, near_light, local_mean),
-            (std::array<double, 3>{0, 0, 0}));
-}
-
-TEST(Accumulate, ExcessiveRemaindersAreDiscarded) {
-  EXPECT_TRUE(can_be_kept({0, 4.5, -4.5}));
-  EXPECT_FALSE(can_be_kept({0, 0, 4.51}));
-  EXPECT_FALSE(can_be_kept({-4.51, 0, 0}));
-  EXPECT_FALSE(can_be_kept(remainder_of({1, 1, 1}, {0, 0, 0}, {0, 0, 0}))); // In the dark.
 }
 
 TEST(Accumulate, FirstFramesAverageEvenly_LaterOnesMove) {

@@ -1,6 +1,6 @@
 // Tests the sampling table of profiles without closed forms against the profiles it was made of.
 #include "passes/common/profiles/burley_profile.hpp"
-#include "passes/common/profiles/radial_table.hpp"
+#include "tests/passes/common/cpu/radial_lookup.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,6 @@
 // Properties of the tile lists that the surface-aware pyramid runs over.
-#include "passes/sap/sap_tiles.hpp"
-
 #include "passes/common/dispatch.hpp"
+#include "tests/passes/sap/cpu/tile_lists.hpp"
 
 #include <gtest/gtest.h>
 

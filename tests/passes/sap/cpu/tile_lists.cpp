@@ -1,4 +1,4 @@
-#include "passes/sap/sap_tiles.hpp"
+#include "tests/passes/sap/cpu/tile_lists.hpp"
 
 #include "passes/common/dispatch.hpp"
 
