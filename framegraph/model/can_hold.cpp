@@ -10,7 +10,7 @@
 namespace dermis {
 namespace {
 
-constexpr uint32_t max_steps = 20000; // maximum number of values tried
+constexpr uint32_t max_tries = 20000; // maximum number of values tried
 
 struct Search {
   const Graph& graph;
@@ -18,7 +18,15 @@ struct Search {
   std::vector<SettingId> settings = {}; // settings that the conditions name
   std::vector<double> numbers = {};     // candidates for settings with a number type
   PartialValues values = {};
-  uint32_t steps = 0;
+  uint64_t& steps;    // left; a step is a visit of a node or of a candidate
+  uint64_t nodes = 0; // of all conditions
+  uint32_t tries = 0;
+
+  // Returns false if no steps are left.
+  bool spend(uint64_t count) {
+    steps -= std::min(steps, count);
+    return steps > 0;
+  }
 
   static bool is_number(SettingType type) {
     return type == SettingType::integer || type == SettingType::real;
@@ -32,6 +40,7 @@ struct Search {
 
   void collect(ExpressionId id) {
     if (!id.valid()) return;
+    ++nodes;
     const Expression& node = graph.expressions[id.value];
     if (node.op == Expression::Op::literal) add_number(node.literal);
     for (const SettingValue& one : node.list)
@@ -48,8 +57,9 @@ struct Search {
   }
 
   // Adds candidates around and between the known numbers: as many whole numbers and as many
-  // fractions as there are number settings, so that all settings can differ.
-  void add_between() {
+  // fractions as there are number settings, so that all settings can differ. Returns false if no
+  // steps are left.
+  bool add_between() {
     const auto count = std::count_if(settings.begin(), settings.end(), [&](SettingId id) {
       return is_number(graph.settings[id.value].type);
     });
@@ -58,6 +68,8 @@ struct Search {
       numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
     };
     sort();
+    const auto added = static_cast<uint64_t>(count);
+    if (!spend(numbers.size() * (1 + 2 * added) * (1 + added))) return false;
     for (size_t i = numbers.size(); i-- > 0;)
       for (std::ptrdiff_t k = 1; k <= count; ++k) {
         numbers.push_back(std::floor(numbers[i]) + static_cast<double>(k));
@@ -70,6 +82,7 @@ struct Search {
       for (std::ptrdiff_t k = 1; k <= count; ++k)
         numbers.push_back(from + step * static_cast<double>(k));
     }
+    return true;
   }
 
   bool contradicted() const {
@@ -98,11 +111,12 @@ struct Search {
   }
 
   bool try_from(size_t next) {
+    if (!spend(1 + nodes + numbers.size())) return true;
     if (contradicted()) return false;
     if (next == settings.size()) return true;
     std::optional<SettingValue>& value = values[settings[next].value];
     for (const SettingValue& one : candidates(graph.settings[settings[next].value])) {
-      if (++steps > max_steps) return true;
+      if (++tries > max_tries) return true;
       value = one;
       if (try_from(next + 1)) return true;
     }
@@ -113,11 +127,11 @@ struct Search {
 
 } // namespace
 
-bool can_hold(const Graph& graph, std::span<const Condition> conditions) {
-  Search search{graph, conditions};
+bool can_hold(const Graph& graph, std::span<const Condition> conditions, uint64_t& steps) {
+  Search search{.graph = graph, .conditions = conditions, .steps = steps};
   for (const Condition& condition : conditions)
     search.collect(condition.when);
-  search.add_between();
+  if (!search.spend(search.nodes) || !search.add_between()) return true;
   search.values.resize(graph.settings.size());
   return search.try_from(0);
 }

@@ -37,8 +37,9 @@ struct Condition {
   bool holds = true;
 };
 // Returns whether some values of the graph's settings satisfy all conditions. Also returns true if
-// the search takes too long.
-bool can_hold(const Graph& graph, std::span<const Condition> conditions);
+// the search takes too long. `steps` limits the search together with others: each step reduces it
+// by 1. If it reaches 0, the result is true and means nothing.
+bool can_hold(const Graph& graph, std::span<const Condition> conditions, uint64_t& steps);
 
 // Returns the value of a boolean expression; values[i] belongs to graph.settings[i] and has its
 // type.

@@ -31,6 +31,8 @@ inline constexpr size_t options = 64;              // per setting
 inline constexpr size_t formats = 32;              // per resource
 inline constexpr size_t expression_bytes = 4096;   // one `when`
 inline constexpr uint32_t expression_nesting = 64; // parentheses and `not`
+// steps of the search for everything that a graph's passes may read, for all values of `when`
+inline constexpr uint64_t read_search_steps = 1ull << 25;
 inline constexpr uint32_t history_frames = 8;
 inline constexpr uint32_t image_side = 16384; // absolute sizes and alignments, texels
 inline constexpr int64_t size_factor = 65536; // numerator and denominator of a size

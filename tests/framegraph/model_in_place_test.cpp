@@ -212,5 +212,32 @@ std::string name_of(const ::testing::TestParamInfo<Case>& one) {
 INSTANTIATE_TEST_SUITE_P(Rejected, InPlace, ::testing::ValuesIn(rejected_cases), name_of);
 INSTANTIATE_TEST_SUITE_P(Accepted, InPlace, ::testing::ValuesIn(accepted_cases), name_of);
 
+// The last pass reads a chain of replacements that ends at what it writes. Whether that can happen
+// depends on 1000 conditions with as many numbers.
+TEST(InPlaceLimit, LongChainsOfConditionsAreRejected) {
+  std::string resources, passes;
+  for (int i = 0; i < 1000; ++i) {
+    resources += fmt::format(R"("x{}": {{ "format": "rgba16f", "size": "view" }}, )", i);
+    passes += fmt::format(R"({{ "pass": "p{0}", "type": "t.blur", "when": "n == 3 or r > {2}",
+      "read": {{ "a": "{1}" }}, "write": {{ "o": "x{0}" }}, "otherwise": {{ "x{0}": "{1}" }} }}, )",
+                          i, i == 0 ? "light" : fmt::format("x{}", i - 1), i * 0.004);
+  }
+  const std::string text = fmt::format(R"({{ "dermis": 2, "name": "g",
+  "settings": {{ "n": {{ "int": 16, "min": 0, "max": 64 }}, "r": {{ "real": 1.5, "min": 0, "max": 8 }} }},
+  "imports": {{ "light": {{ "format": "rgba16f", "size": "view" }} }},
+  "resources": {{ {} "out": {{ "format": "rgba16f", "size": "view" }} }},
+  "passes": [ {} {{ "pass": "last", "type": "t.blur", "when": "n > 8 and r > 5",
+    "read": {{ "a": "x999" }}, "write": {{ "o": "light" }} }}, {} ],
+  "exports": ["light", "out"] }})",
+                                       resources, passes, SHOW("light"));
+  Diagnostics diagnostics;
+  const auto document = parse_document("graph.json", text, diagnostics);
+  ASSERT_TRUE(document) << all_messages(diagnostics);
+  EXPECT_FALSE(read_graph(*document, pass_types(), diagnostics));
+  ASSERT_EQ(diagnostics.list.size(), 1u) << all_messages(diagnostics);
+  EXPECT_EQ(diagnostics.list[0].id, DiagnosticId::limit_exceeded);
+  EXPECT_THAT(diagnostics.list[0].text, HasSubstr("port 'a' of pass 'last'"));
+}
+
 } // namespace
 } // namespace dermis::testing

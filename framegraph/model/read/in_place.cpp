@@ -6,6 +6,7 @@
 #include "framegraph/model/expression.hpp"
 #include "framegraph/model/image_range.hpp"
 #include "framegraph/model/read/graph_reader.hpp"
+#include "framegraph/text/limits.hpp"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -36,16 +37,22 @@ public:
       }
   }
 
-  void check(PassId id) {
+  // Returns false if no steps of the search are left.
+  bool check(PassId id) {
     const PassDeclaration& pass = graph().passes[id.value];
-    if (!pass.type.valid() || !condition_known(id)) return;
+    if (!pass.type.valid() || !condition_known(id)) return true;
     for (const PortBinding& binding : graph().reads(pass)) {
       if (binding.port == unknown_port || binding.frames_back > 0) continue;
       pass_ = id;
       read_ = &binding;
       port_ = &reader_.pass_types[pass.type].ports[binding.port];
       follow();
+      if (steps_left_ == 0) {
+        report_limit();
+        return false;
+      }
     }
+    return true;
   }
 
 private:
@@ -72,6 +79,7 @@ private:
       const Write* replaced = nullptr;
       for (auto at = end; at != writes.begin() && !replaced;) {
         --at;
+        if (!spend_step()) return;
         if (!overlap(at->range, seen_)) continue;
         if (!condition_known(at->pass)) return;
         if (done(resource, &*at) || !turn_off(at->pass)) return;
@@ -85,6 +93,7 @@ private:
         // No earlier pass writes the resource: its only producer counts, or, if all are off, the
         // first replacement.
         for (auto at = end; at != writes.end(); ++at) {
+          if (!spend_step()) return;
           if (!condition_known(at->pass) || !turn_off(at->pass)) return;
           if (!replaced && at->instead.valid()) replaced = &*at;
         }
@@ -98,6 +107,8 @@ private:
     }
   }
 
+  bool spend_step() { return steps_left_ > 0 && --steps_left_ > 0; }
+
   // Adds the condition that the pass is off. Returns false if the pass is always on.
   bool turn_off(PassId pass) {
     const ExpressionId when = graph().passes[pass.value].when;
@@ -105,8 +116,8 @@ private:
     return when.valid();
   }
 
-  // Checks the read of `write`, or of the host's contents if it is null. Returns true if an error
-  // was reported.
+  // Checks the read of `write`, or of the host's contents if it is null. Returns true if the walk
+  // ends here: an error was reported, or no steps are left.
   bool done(ResourceId resource, const Write* write) {
     const PortBinding* written = port_->own_texels ? nullptr : written_too(resource);
     const ResourceDeclaration& declared = graph().resources[resource.value];
@@ -117,8 +128,9 @@ private:
     const bool other_layers = replaces && !layers_fit(type, *port_, declared.layers);
     if (!written && !unusable && !other_layers) return false;
     conditions_.push_back({write ? graph().passes[write->pass.value].when : ExpressionId(), true});
-    const bool possible = can_hold(graph(), conditions_);
+    const bool possible = can_hold(graph(), conditions_, steps_left_);
     conditions_.pop_back();
+    if (steps_left_ == 0) return true; // `check` reports it
     if (!possible) return false;
     if (written) report_race(*written);
     if (unusable) report_unusable(resource);
@@ -172,6 +184,16 @@ private:
                     declared.name, name_of(*read_), declared.layers)));
   }
 
+  void report_limit() {
+    reader_
+        .error(DiagnosticId::limit_exceeded, graph().place_of(*read_),
+               fmt::format("checking the graph's reads for all values of 'when' takes more than {} "
+                           "steps; port '{}' of pass '{}' and the passes after it are not checked",
+                           limits::read_search_steps, port_->name,
+                           graph().passes[pass_.value].name))
+        .suggestion = "use fewer passes with 'when' and 'otherwise' that write the same resources";
+  }
+
   void relate_steps(Diagnostic& diagnostic) const {
     for (const Step& step : steps_)
       diagnostic.related.emplace_back(
@@ -188,6 +210,7 @@ private:
 
   GraphReader& reader_;
   std::vector<std::vector<Write>> writes_; // by resource, in file order
+  uint64_t steps_left_ = limits::read_search_steps;
   PassId pass_;
   const PortBinding* read_ = nullptr;
   const Port* port_ = nullptr;
@@ -201,7 +224,7 @@ private:
 void check_reads(GraphReader& reader) {
   Reads reads(reader);
   for (uint32_t i = 0; i < reader.graph.passes.size(); ++i)
-    reads.check({i});
+    if (!reads.check({i})) break;
 }
 
 } // namespace dermis
