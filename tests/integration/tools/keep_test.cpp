@@ -108,9 +108,9 @@ TEST_F(Keep, BugReport_HasTheLastFrameAndIncludedFiles) {
         "tiles": "tiles", "arguments": "arguments" }, "write": { "light": "light" } },
       { "include": "parts/back.json" } ],
     "exports": ["lighting"] })");
-  ASSERT_THAT(run({"report-bug", graph, "--frames", path("capture"), "--size", "32x18", "--out",
-                   path("bug")}),
+  ASSERT_THAT(run({"report-bug", graph, "--frames", path("capture"), "--out", path("bug")}),
               Succeeds());
+  EXPECT_EQ(json::parse(read("bug/plan.json"))["view"], json({32, 18}));
   EXPECT_THAT(files("bug"), Contains("graph/parts/back.json"));
   EXPECT_THAT(files("bug/capture"), Not(Contains("frame_0001")));
   EXPECT_EQ(run({"validate", path("bug/graph/main.json"), path("bug/capture")}).exit_code, 0);

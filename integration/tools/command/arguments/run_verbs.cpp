@@ -169,7 +169,7 @@ void add_picture_verbs(CLI::App& app, Invocation& invocation) {
         verb.add_option("--count,-n", options.count, "Number of the scene's frame, from 1 [8]")
             ->excludes(frames)
             ->check(CLI::Range(1u, max_frames));
-        add_size(verb, options.size);
+        add_size(verb, options.size)->excludes(frames);
         add_settings(verb, options.settings);
         add_graph_inputs(verb, options.inputs);
       });

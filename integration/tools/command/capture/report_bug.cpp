@@ -129,11 +129,27 @@ std::string device_json() {
   return std::move(out).finish();
 }
 
-// Adds the last frame of the given capture, or a frame of the scene.
+demo::Result<CapturedFrame> read_last_frame(const Session& session,
+                                            const ReportBugOptions& options) {
+  Diagnostics diagnostics;
+  const std::vector<fs::path> frames =
+      find_frames(options.frames, diagnostics, options.inputs.roots);
+  auto frame = frames.empty() ? std::nullopt
+                              : read_frame(frames.back(), profiles_folder(""), diagnostics,
+                                           options.inputs.roots);
+  if (frame) return std::move(*frame);
+  print_diagnostics(session, diagnostics);
+  demo::Error error{demo::ErrorKind::input,
+                    fmt::format("the capture '{}' cannot be used", options.frames)};
+  error.diagnostics = format_as_json(diagnostics);
+  return error;
+}
+
+// Adds the frame, or a frame of the scene if there is none.
 demo::Result<> add_frame(const Session& session, const ReportBugOptions& options,
-                         BugReport& bug_report) {
+                         const std::optional<CapturedFrame>& frame, BugReport& bug_report) {
   const std::string folder = (bug_report.folder() / "capture").string();
-  if (options.frames.empty()) {
+  if (!frame) {
     Session quiet = session;
     quiet.quiet = true; // no progress for one frame
     CaptureOptions one;
@@ -144,19 +160,6 @@ demo::Result<> add_frame(const Session& session, const ReportBugOptions& options
     one.first = options.count - 1;
     one.roots = options.inputs.roots;
     return capture_scene(quiet, one);
-  }
-  Diagnostics diagnostics;
-  const std::vector<fs::path> frames =
-      find_frames(options.frames, diagnostics, options.inputs.roots);
-  const auto frame = frames.empty() ? std::nullopt
-                                    : read_frame(frames.back(), profiles_folder(""), diagnostics,
-                                                 options.inputs.roots);
-  if (!frame) {
-    print_diagnostics(session, diagnostics);
-    demo::Error error{demo::ErrorKind::input,
-                      fmt::format("the capture '{}' cannot be used", options.frames)};
-    error.diagnostics = format_as_json(diagnostics);
-    return error;
   }
   CaptureWriter writer;
   std::string problem;
@@ -224,11 +227,19 @@ ExitCode report_bug(const Session& session, const ReportBugOptions& options) {
   if (!loaded) return fail_graph(session, options.graph, diagnostics);
   const CompileChoices choices = read_choices(loaded->graph, options.settings);
   if (!choices.problem.empty()) return fail(session, ExitCode::usage, choices.problem);
-  const auto compiled = compile_generic(*loaded, options.size, choices, diagnostics);
+  std::optional<CapturedFrame> frame;
+  Size size = options.size;
+  if (!options.frames.empty()) {
+    auto last = read_last_frame(session, options);
+    if (!last) return fail(session, last.error());
+    frame = std::move(*last);
+    size = {frame->description.width, frame->description.height};
+  }
+  const auto compiled = compile_generic(*loaded, size, choices, diagnostics);
   if (!compiled) return fail_graph(session, options.graph, diagnostics);
   const DeviceProfile generic = generic_profile();
   const SavedPlan saved =
-      saved_plan(compile_input(*loaded, generic, options.size, choices), compiled->plan);
+      saved_plan(compile_input(*loaded, generic, size, choices), compiled->plan);
 
   BugReport bug_report{named, temporary_path(named), archived};
   bool good = add_graph(bug_report, options, diagnostics, files) &&
@@ -239,7 +250,7 @@ ExitCode report_bug(const Session& session, const ReportBugOptions& options) {
               bug_report.add("device.json", device_json()) &&
               bug_report.add("README.txt", about(session, replay_line(options, files)));
   if (!good) return fail(session, ExitCode::environment, bug_report.problem);
-  const auto captured = add_frame(session, options, bug_report);
+  const auto captured = add_frame(session, options, frame, bug_report);
   if (interrupted()) return fail(session, ExitCode::interrupted, "stopped");
   if (!captured) return fail(session, captured.error());
   if (archived.empty()) fs::remove(named, error); // the target may be an empty folder
