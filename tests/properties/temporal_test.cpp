@@ -123,7 +123,8 @@ constexpr const char* trusting = "100";
 TEST_F(Temporal, MovingShadows_AreRefinedInEachFrame) {
   DERMIS_FULL_TESTS_ONLY();
   // Boids cross the face from frame 88 to 140.
-  const Sequence sequence = frames_of("dynamic", 88, 36);
+  const Sequence sequence =
+      frames_of("dynamic", 88, 36, properties::larger_width, properties::larger_height);
   Judge judge{sequence};
   const Frames judged = range(24, 36);
   const SequenceRun sap = run(judge, "sap", judged), residual = run(judge, "sap_residual", judged),
@@ -141,7 +142,9 @@ TEST_F(Temporal, MovingShadows_AreRefinedInEachFrame) {
 
 TEST_F(Temporal, FlashFromAnotherSide_KeepsTheRatio) {
   DERMIS_FULL_TESTS_ONLY();
-  const Sequence sequence = frames_of("strobe", 10, 34); // Shots at frames 30 .. 32 and 38 .. 39.
+  // Shots at frames 30 .. 32 and 38 .. 39.
+  const Sequence sequence =
+      frames_of("strobe", 10, 34, properties::larger_width, properties::larger_height);
   Judge judge{sequence};
   const Frames judged = range(18, 34), lit = {20, 21, 22, 28, 29};
   const SequenceRun sap = run(judge, "sap", judged), residual = run(judge, "sap_residual", judged),

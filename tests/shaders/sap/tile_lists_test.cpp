@@ -1,8 +1,7 @@
 // Compares the lists of tiles that kernels make of synthetic tile classes with list_sap_tiles, as
 // sets: the order of a list varies.
-#include "passes/sap/sap_tiles.hpp"
-
 #include "passes/common/dispatch.hpp"
+#include "tests/passes/sap/cpu/tile_lists.hpp"
 #include "tests/shaders/sap/buffer_graph.hpp"
 
 #include "test_tile_classes.spv.h"
