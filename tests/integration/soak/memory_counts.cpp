@@ -6,8 +6,8 @@
 #include <fstream>
 #include <string>
 #include <unistd.h>
-// A function of the sanitizer's runtime; Debian's gcc has no header that declares it.
-#ifdef __SANITIZE_ADDRESS__
+// A function of the sanitizer's runtime; gcc has no header that declares it.
+#ifdef DERMIS_ADDRESS_SANITIZER
 extern "C" size_t __sanitizer_get_current_allocated_bytes(void);
 #elif defined(__GLIBC__)
 #include <malloc.h>
@@ -87,7 +87,7 @@ dermis_device_allocator CountedDeviceMemory::allocator() {
 
 ProcessMemory process_memory() {
   ProcessMemory out;
-#ifdef __SANITIZE_ADDRESS__
+#ifdef DERMIS_ADDRESS_SANITIZER
   out.heap = static_cast<int64_t>(__sanitizer_get_current_allocated_bytes());
 #elif defined(__GLIBC__)
   malloc_trim(0);
@@ -95,7 +95,7 @@ ProcessMemory process_memory() {
   out.heap = static_cast<int64_t>(reported.uordblks + reported.hblkhd);
 #endif
 // The sanitizer keeps up to 256 MiB of freed blocks, to detect their use.
-#ifndef __SANITIZE_ADDRESS__
+#ifndef DERMIS_ADDRESS_SANITIZER
   int64_t pages = 0, resident = 0;
   std::ifstream("/proc/self/statm") >> pages >> resident;
   out.resident = resident * static_cast<int64_t>(sysconf(_SC_PAGESIZE));
