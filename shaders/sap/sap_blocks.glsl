@@ -9,8 +9,6 @@
 #include "common/shape.glsl"
 #include "sap/sap_tiles.glsl"
 
-layout(local_size_x = 64, local_size_y = 1, local_size_z = 1) in;
-
 // The blocks of a level.
 struct block_grid {
   ivec2 size; // texels of a block
@@ -24,20 +22,19 @@ int block_texels(block_grid grid) { return texel_shape ? 1 : grid.size.x * grid.
 // Returns the position of texel k in the block.
 ivec2 block_offset(block_grid grid, int k) { return ivec2(k % grid.size.x, k / grid.size.x); }
 
-// Finds the block of the invocation. Returns false beyond the end of the list. In the texel shape,
-// all invocations of a group have the same tile.
-bool listed_block(block_grid grid, int level, out texel_block block) {
+// Finds block `i` of the 64 blocks of the group. Returns false beyond the end of the list. In the
+// texel shape, i is the invocation, and all blocks of a group have the same tile.
+bool listed_block(block_grid grid, int level, uint i, out texel_block block) {
   int across = 8 / grid.size.x;
   int per_tile = texel_shape ? 64 : across * (8 / grid.size.y);
   // In the texel shape the index is uniform, so that the entry is read once for the group.
   uint index = texel_shape ? dispatched_group()
-                           : dispatched_group() * uint(64 / per_tile) +
-                                 gl_LocalInvocationIndex / uint(per_tile);
+                           : dispatched_group() * uint(64 / per_tile) + i / uint(per_tile);
   uvec2 list = level_tiles_at(uint(level));
   block = texel_block(ivec2(0), ivec2(0), false, 0u, 0u);
   if (index >= list.y)
     return false;
-  int part = int(gl_LocalInvocationIndex) & (per_tile - 1);
+  int part = int(i) & (per_tile - 1);
   ivec2 offset = texel_shape ? ivec2(part & 7, part >> 3)
                              : ivec2(part % across, part / across) * grid.size;
   block = block_of_entry(level_tiles_at(list.x + index), offset);

@@ -10,6 +10,7 @@
 #include "sap/sap_blocks.glsl"
 #include "sap/sap_down_layers.glsl"
 #include "sap/sap_ordered_sums.glsl"
+#include "sap/sap_rounds.glsl"
 #include "sap/sap_tile_children.glsl"
 
 bool stores_full() { return settings.storage == STORAGE_FULL; }
@@ -137,27 +138,33 @@ void compute_both(sap_parent parent, int level, bool computes) {
 void main() {
   int level = settings.level, finer = level - 1;
   texel_block block;
-  if (!listed_block(texel_blocks, level, block))
-    return;
   if (texel_shape) {
+    if (!listed_block(texel_blocks, level, gl_LocalInvocationIndex, block))
+      return;
     read_tile(block, finer, false, 64);
     compute_parent(parent_in_tile(block, finer), level);
     return;
   }
-  read_block(block, block.first - 1, finer);
-  uint layered = 0u; // bit k: parent k needs more than one layer
-  [[unroll]] for (int k = 0; k < block_texels(texel_blocks); ++k) {
-    sap_parent parent = take_parent(block, k, finer);
-    if (!sap_inside(parent.at, level))
+  uint layered = 0u; // bit 4 r + k: parent k of round r needs more than one layer
+  [[dont_unroll]] for (int round = 0; round < block_rounds; ++round) {
+    if (!listed_block(texel_blocks, level, block_of_round(round), block))
       continue;
-    sap_layer layer = reduce(parent, 1, no_texel);
-    layered |=
-        parent.two || layer.remains && parent.splits && writes_second() ? 1u << k : 0u;
-    store_layer(parent, level, false, layer);
+    read_block(block, block.first - 1, finer);
+    [[unroll]] for (int k = 0; k < block_texels(texel_blocks); ++k) {
+      sap_parent parent = take_parent(block, k, finer);
+      if (!sap_inside(parent.at, level))
+        continue;
+      sap_layer layer = reduce(parent, 1, no_texel);
+      bool again = parent.two || layer.remains && parent.splits && writes_second();
+      layered |= again ? 1u << (4 * round + k) : 0u;
+      store_layer(parent, level, false, layer);
+    }
   }
   if (layered != 0u)
     do {
-      sap_parent parent = read_children(block, findLSB(layered), finer);
+      int next = findLSB(layered);
+      listed_block(texel_blocks, level, block_of_round(next >> 2), block);
+      sap_parent parent = read_children(block, next & 3, finer);
       compute_both(parent, level, layered != 0u);
       layered &= layered - 1u;
     } while (layered != 0u);

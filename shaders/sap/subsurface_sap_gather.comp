@@ -7,6 +7,8 @@
 #include "common/combined_light.glsl"
 #include "sap/sap_gather.glsl"
 
+layout(local_size_x = 64, local_size_y = 1, local_size_z = 1) in;
+
 bool stores_full() { return settings.storage == STORAGE_FULL; }
 uvec2 level_tiles_at(uint index) { return level_tiles_data[index]; }
 
@@ -49,7 +51,7 @@ void write_result(ivec2 pixel, sap_texel own, vec4 result) {
 
 void main() {
   texel_block block;
-  if (!listed_block(pixel_blocks, 0, block))
+  if (!listed_block(pixel_blocks, 0, gl_LocalInvocationIndex, block))
     return;
   read_ring(block, pixel_blocks, 0, 1, !block.copy_only);
   if (!block.copy_only)

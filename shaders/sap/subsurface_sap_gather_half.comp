@@ -8,6 +8,8 @@
 #include "sap/sap_neighbours.glsl"
 #include "sap/sap_pixel_block.glsl"
 
+layout(local_size_x = 64, local_size_y = 1, local_size_z = 1) in;
+
 bool stores_full() { return settings.storage == STORAGE_FULL; }
 uvec2 level_tiles_at(uint index) { return level_tiles_data[index]; }
 
@@ -86,7 +88,7 @@ vec4 gather(sap_place place, ivec2 in_block, vec3 light) {
 
 void main() {
   texel_block block;
-  if (!listed_block(pixel_blocks, 0, block))
+  if (!listed_block(pixel_blocks, 0, gl_LocalInvocationIndex, block))
     return;
   [[unroll]] for (int k = 0; k < block_texels(pixel_blocks); ++k)
     read_pixel(texel_shape ? int(gl_LocalInvocationIndex) : k,

@@ -8,6 +8,8 @@
 #include "common/probed_tile.glsl"
 #include "sap/sap_gather.glsl"
 
+layout(local_size_x = 64, local_size_y = 1, local_size_z = 1) in;
+
 bool stores_full() { return settings.storage == STORAGE_FULL; }
 uint class_at(int tile) { return classes_data[tile]; }
 uvec2 level_tiles_at(uint index) { return uvec2(0u); } // tiles do not come from a list

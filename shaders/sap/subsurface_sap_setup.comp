@@ -10,6 +10,8 @@
 #include "sap/sap_pixel.glsl"
 #include "sap/sap_storage.glsl"
 
+layout(local_size_x = 64, local_size_y = 1, local_size_z = 1) in;
+
 bool stores_full() { return settings.storage == STORAGE_FULL; }
 uvec2 level_tiles_at(uint index) { return level_tiles_data[index]; }
 
@@ -77,7 +79,7 @@ bool is_at_edge(int here) {
 
 void main() {
   texel_block block;
-  if (!listed_block(pixel_blocks, 0, block))
+  if (!listed_block(pixel_blocks, 0, gl_LocalInvocationIndex, block))
     return;
   read_ring(block);
   [[unroll]] for (int k = 0; k < block_texels(pixel_blocks); ++k) {

@@ -10,6 +10,8 @@
 #include "sap/sap_ordered_sums.glsl"
 #include "sap/sap_pixel_block.glsl"
 
+layout(local_size_x = 64, local_size_y = 1, local_size_z = 1) in;
+
 bool stores_full() { return settings.storage == STORAGE_FULL; }
 uvec2 level_tiles_at(uint index) { return level_tiles_data[index]; }
 
@@ -81,7 +83,7 @@ void read_block(texel_block block, ivec2 first) {
 
 void main() {
   texel_block block;
-  if (!listed_block(texel_blocks, 1, block))
+  if (!listed_block(texel_blocks, 1, gl_LocalInvocationIndex, block))
     return;
   ivec2 first = block.first - 1;
   if (texel_shape)

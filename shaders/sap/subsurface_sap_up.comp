@@ -8,6 +8,7 @@
 #include "sap/subsurface_sap_up.bindings.glsl"
 #include "sap/sap_climb.glsl"
 #include "sap/sap_neighbours.glsl"
+#include "sap/sap_rounds.glsl"
 
 bool stores_full() { return settings.storage == STORAGE_FULL; }
 uvec2 level_tiles_at(uint index) { return level_tiles_data[index]; }
@@ -156,37 +157,46 @@ void store_scattered(sap_place place, int level, int layer, uvec4 bits) {
 void main() {
   int level = settings.level;
   texel_block block;
-  if (!listed_block(texel_blocks, level, block))
-    return;
   sap_step how = sap_step(level, settings.variant,
                           settings.variant == VARIANT_SMOOTH || level == 1,
                           !has_coarse_scattered());
-  read_ring(block, texel_blocks, level, 2, how.smooth_level);
-  if (!how.last)
-    read_coarser(block, texel_blocks, level, 1);
-  finish_reading();
   if (texel_shape) {
+    if (!listed_block(texel_blocks, level, gl_LocalInvocationIndex, block))
+      return;
+    read_ring(block, texel_blocks, level, 2, how.smooth_level);
+    if (!how.last)
+      read_coarser(block, texel_blocks, level, 1);
+    finish_reading();
     sap_place place = place_of(block, texel_blocks, 0, level);
     if (sap_inside(place.at, level))
       compute_layers(how, place);
     return;
   }
-  uint layered = 0u; // bit k: texel k needs more than one layer
-  [[unroll]] for (int k = 0; k < block_texels(texel_blocks); ++k) {
-    sap_place place = place_of(block, texel_blocks, k, level);
-    if (!sap_inside(place.at, level))
+  uint layered = 0u; // bit 4 r + k: texel k of round r needs more than one layer
+  [[dont_unroll]] for (int round = 0; round < block_rounds; ++round) {
+    if (!listed_block(texel_blocks, level, block_of_round(round), block))
       continue;
-    uint found = take_neighbourhood(place, how.last);
-    layered |= (found & sap_second_bit) != 0u ? 1u << k : 0u;
-    uvec4 bits = uvec4(0u);
-    sap_texel own = sap_unpack(near_surface(place, ivec2(0), 0));
-    if (own.id != 0u)
-      bits = climb(how, place, own, near_light(place, level, ivec2(0), 0).rgb, 1);
-    store_scattered(place, level, 0, bits);
+    read_ring(block, texel_blocks, level, 1, how.smooth_level);
+    if (!how.last)
+      read_coarser(block, texel_blocks, level, 1);
+    [[unroll]] for (int k = 0; k < block_texels(texel_blocks); ++k) {
+      sap_place place = place_of(block, texel_blocks, k, level);
+      if (!sap_inside(place.at, level))
+        continue;
+      uint found = take_neighbourhood(place, how.last);
+      layered |= (found & sap_second_bit) != 0u ? 1u << (4 * round + k) : 0u;
+      uvec4 bits = uvec4(0u);
+      sap_texel own = sap_unpack(near_surface(place, ivec2(0), 0));
+      if (own.id != 0u)
+        bits = climb(how, place, own, near_light(place, level, ivec2(0), 0).rgb, 1);
+      store_scattered(place, level, 0, bits);
+    }
   }
   if (layered != 0u)
     do {
-      ivec2 from_corner = block.first + block_offset(texel_blocks, findLSB(layered));
+      int next = findLSB(layered);
+      listed_block(texel_blocks, level, block_of_round(next >> 2), block);
+      ivec2 from_corner = block.first + block_offset(texel_blocks, next & 3);
       ivec2 at = from_corner - texel_blocks.border;
       read_near(block, from_corner, level, how.smooth_level);
       read_corners(at, level, !how.last);

@@ -260,6 +260,7 @@ uint32_t kernel_word(const SettingValue& value) {
 // Invocations per group of kernels with one shape. On the CPU one vector of lavapipe, which
 // executes the other vectors of a group even if their lanes are off.
 constexpr uint32_t lanes_on_cpu = 8, lanes_on_gpu = 128;
+constexpr uint32_t tile_lanes_on_gpu = 64; // the texels of a tile
 
 Error create_pipeline(const Device& device, const std::string& object, const std::string& label,
                       std::span<const uint32_t> spirv, const PipelineOptions& options,
@@ -277,6 +278,7 @@ Error create_pipeline(const Device& device, const std::string& object, const std
   add(constant_id::group_lanes, lanes);
   add(constant_id::wide_group, device.wide_groups ? VK_TRUE : VK_FALSE);
   add(constant_id::wide_lanes, device.wide_groups ? wide_group_lanes : lanes);
+  add(constant_id::tile_lanes, device.texel_shape ? tile_lanes_on_gpu : lanes_on_cpu);
   for (size_t i = 0; i < pipeline.constants.size(); ++i)
     add(pipeline.kernel->constants[i].id, pipeline.constants[i]);
   const VkSpecializationInfo constants{static_cast<uint32_t>(entries.size()), entries.data(),
