@@ -145,6 +145,7 @@ void main() {
     compute_parent(parent_in_tile(block, finer), level);
     return;
   }
+  begin_rounds();
   uint layered = 0u; // bit 4 r + k: parent k of round r needs more than one layer
   [[dont_unroll]] for (int round = 0; round < block_rounds; ++round) {
     if (!listed_block(texel_blocks, level, block_of_round(round), block))
@@ -160,12 +161,14 @@ void main() {
       store_layer(parent, level, false, layer);
     }
   }
-  if (layered != 0u)
+  finish_rounds(layered);
+  uint i = gl_LocalInvocationIndex;
+  if (i < count_again())
     do {
-      int next = findLSB(layered);
-      listed_block(texel_blocks, level, block_of_round(next >> 2), block);
-      sap_parent parent = read_children(block, next & 3, finer);
-      compute_both(parent, level, layered != 0u);
-      layered &= layered - 1u;
-    } while (layered != 0u);
+      uint next = texel_again(i);
+      listed_block(texel_blocks, level, next >> 2, block);
+      sap_parent parent = read_children(block, int(next & 3u), finer);
+      compute_both(parent, level, i < count_again());
+      i += round_lanes;
+    } while (i < count_again());
 }

@@ -172,6 +172,7 @@ void main() {
       compute_layers(how, place);
     return;
   }
+  begin_rounds();
   uint layered = 0u; // bit 4 r + k: texel k of round r needs more than one layer
   [[dont_unroll]] for (int round = 0; round < block_rounds; ++round) {
     if (!listed_block(texel_blocks, level, block_of_round(round), block))
@@ -192,15 +193,17 @@ void main() {
       store_scattered(place, level, 0, bits);
     }
   }
-  if (layered != 0u)
+  finish_rounds(layered);
+  uint i = gl_LocalInvocationIndex;
+  if (i < count_again())
     do {
-      int next = findLSB(layered);
-      listed_block(texel_blocks, level, block_of_round(next >> 2), block);
-      ivec2 from_corner = block.first + block_offset(texel_blocks, next & 3);
+      uint next = texel_again(i);
+      listed_block(texel_blocks, level, next >> 2, block);
+      ivec2 from_corner = block.first + block_offset(texel_blocks, int(next & 3u));
       ivec2 at = from_corner - texel_blocks.border;
       read_near(block, from_corner, level, how.smooth_level);
       read_corners(at, level, !how.last);
       compute_layers(how, sap_place(at, at & 1, 0, 0, 0, 0, 0));
-      layered &= layered - 1u;
-    } while (layered != 0u);
+      i += round_lanes;
+    } while (i < count_again());
 }
