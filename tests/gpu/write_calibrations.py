@@ -41,9 +41,8 @@ SAMPLING = {"subsurface.afis", "subsurface.afis_published", "subsurface.afis_til
 HALVES = "guidance=split_half"  # a loop over both halves of the samples is around the other loop
 DEFAULT_SAMPLES = 16
 CHOSEN_BY_BUDGET = {"skin", "hybrid"}  # graphs of which each work has a line
-# Invocations per group of kernels whose size the host sets.
-LANES_ON_GPU, LANES_OF_WIDE_GROUPS = 128, 512
-WIDE_GROUP = "local_size_x_id = 6"
+# Invocations per group of kernels whose size the host sets, by the id of the constant.
+LANES_BY_ID = {3: 128, 6: 512, 7: 64}
 # How often nested loops run, from outside in: tiles of a group, levels one after another, texels of
 # an invocation. Loops inside these run LOOP times. Most tiles fail the first uniformity checks.
 NESTED_TRIPS = {"subsurface.sap_coarse_down": (1, 4), "subsurface.sap_coarse_up": (1, 5, 1),
@@ -52,17 +51,16 @@ NESTED_TRIPS = {"subsurface.sap_coarse_down": (1, 4), "subsurface.sap_coarse_up"
 
 def invocations(kernel):
     """Returns the invocations per group, from the kernel's source and its includes."""
-    pending, seen, lanes = [SHADERS / f"{kernel}.comp"], set(), LANES_ON_GPU
+    pending, seen = [SHADERS / f"{kernel}.comp"], set()
     while pending:
         path = pending.pop(0)
         if path in seen or not path.exists():
             continue
         seen.add(path)
         text = path.read_text(encoding="utf-8")
-        if WIDE_GROUP in text:
-            lanes = LANES_OF_WIDE_GROUPS
-        if "local_size_x_id" in text:
-            return lanes
+        by_id = re.search(r"local_size_x_id = (\d+)", text)
+        if by_id:
+            return LANES_BY_ID[int(by_id.group(1))]
         sizes = re.search(r"local_size_x = (\d+), local_size_y = (\d+)", text)
         if sizes:
             return int(sizes.group(1)) * int(sizes.group(2))
