@@ -46,7 +46,7 @@ struct HostMemory {
 enum class KernelShape : uint8_t {
   by_device, // block for devices of type CPU, otherwise texel
   texel,     // one texel per invocation, shared memory
-  block      // one block of texels per invocation, no shared memory
+  block      // blocks of texels per invocation, inputs not in shared memory
 };
 
 // All handles belong to the host and must outlive the Device.

@@ -158,7 +158,8 @@ void main() {
       sap_layer layer = reduce(parent, 1, no_texel);
       bool again = parent.two || layer.remains && parent.splits && writes_second();
       layered |= again ? 1u << (4 * round + k) : 0u;
-      store_layer(parent, level, false, layer);
+      if (!again)
+        store_layer(parent, level, false, layer);
     }
   }
   finish_rounds(layered);
@@ -166,7 +167,7 @@ void main() {
   if (i < count_again())
     do {
       uint next = texel_again(i);
-      listed_block(texel_blocks, level, next >> 2, block);
+      block = known_block(texel_blocks, level, next >> 2);
       sap_parent parent = read_children(block, int(next & 3u), finer);
       compute_both(parent, level, i < count_again());
       i += round_lanes;

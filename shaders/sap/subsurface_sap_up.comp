@@ -184,13 +184,14 @@ void main() {
       sap_place place = place_of(block, texel_blocks, k, level);
       if (!sap_inside(place.at, level))
         continue;
-      uint found = take_neighbourhood(place, how.last);
-      layered |= (found & sap_second_bit) != 0u ? 1u << (4 * round + k) : 0u;
+      bool again = (take_neighbourhood(place, how.last) & sap_second_bit) != 0u;
+      layered |= again ? 1u << (4 * round + k) : 0u;
       uvec4 bits = uvec4(0u);
       sap_texel own = sap_unpack(near_surface(place, ivec2(0), 0));
       if (own.id != 0u)
         bits = climb(how, place, own, near_light(place, level, ivec2(0), 0).rgb, 1);
-      store_scattered(place, level, 0, bits);
+      if (!again)
+        store_scattered(place, level, 0, bits);
     }
   }
   finish_rounds(layered);
@@ -198,7 +199,7 @@ void main() {
   if (i < count_again())
     do {
       uint next = texel_again(i);
-      listed_block(texel_blocks, level, next >> 2, block);
+      block = known_block(texel_blocks, level, next >> 2);
       ivec2 from_corner = block.first + block_offset(texel_blocks, int(next & 3u));
       ivec2 at = from_corner - texel_blocks.border;
       read_near(block, from_corner, level, how.smooth_level);

@@ -257,10 +257,11 @@ uint32_t kernel_word(const SettingValue& value) {
              : static_cast<uint32_t>(static_cast<int32_t>(value.integer));
 }
 
-// Invocations per group of kernels with one shape. On the CPU one vector of lavapipe, which
-// executes the other vectors of a group even if their lanes are off.
+// Invocations per group of kernels whose size the executor sets. On the CPU one vector of lavapipe,
+// which executes the other vectors of a group even if their lanes are off.
 constexpr uint32_t lanes_on_cpu = 8, lanes_on_gpu = 128;
 constexpr uint32_t tile_lanes_on_gpu = 64; // the texels of a tile
+static_assert(tile_lanes_on_gpu % lanes_on_cpu == 0 && lanes_on_cpu >= 8, "sap_rounds.glsl");
 
 Error create_pipeline(const Device& device, const std::string& object, const std::string& label,
                       std::span<const uint32_t> spirv, const PipelineOptions& options,
