@@ -5,6 +5,7 @@
 #ifndef DERMIS_SAP_ROUNDS_GLSL
 #define DERMIS_SAP_ROUNDS_GLSL
 
+#extension GL_EXT_control_flow_attributes : require
 #include "common/shape.glsl"
 
 layout(local_size_x = 64, local_size_x_id = 7) in;
