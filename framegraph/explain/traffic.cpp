@@ -29,7 +29,7 @@ public:
       const Port& port = type.ports[access.port];
       if (access.when == ReadWhen::history_invalid || port.usage == Usage::indirect_arguments)
         continue;
-      const double bytes = bytes_of(access, written_area) * fraction(type, port, access) /
+      const double bytes = bytes_of(port, access, written_area) * fraction(type, port, access) /
                            (assumptions_.covered * view_pixels_);
       if (usage_info(port.usage).reads) traffic.read += bytes;
       if (usage_info(port.usage).writes) traffic.written += bytes;
@@ -51,13 +51,14 @@ private:
     return largest > 0.0 ? largest : view_pixels_;
   }
 
-  double bytes_of(const PlanAccess& access, double written_area) const {
+  double bytes_of(const Port& port, const PlanAccess& access, double written_area) const {
     const PlanResource& resource = plan_.resources[access.resource];
     switch (resource.type) {
     case ResourceType::image:
       return texels_of(resource, access.range) * format_info(resource.format).bytes_per_texel;
     case ResourceType::buffer:
-      return static_cast<double>(resource.bytes) * written_area;
+      return port.bytes_per_tile > 0 ? port.bytes_per_tile * written_area * view_pixels_ / 64.0
+                                     : static_cast<double>(resource.bytes) * written_area;
     case ResourceType::acceleration_structure:
       break;
     }

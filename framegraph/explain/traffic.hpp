@@ -23,7 +23,8 @@ struct PassTraffic { // bytes per covered pixel of the view
 // and port: caches serve neighbours and repeated reads.
 // - Image: bytes per texel, times the texels of the port's mips and layers.
 // - Buffer: its bytes, times the texels of the largest image that the pass writes per pixel of the
-//   view (a coarse level reads only its part of a list).
+//   view (a coarse level reads only its part of a list). If the port declares bytes per tile, these
+//   times the tiles of that image.
 // - A dispatch over a list accesses the covered fraction, as do ports with AccessExtent::covered.
 // - An updated resource counts as read and as written.
 // Not counted: indirect arguments, acceleration structures, constants, tables, counters, passes of

@@ -45,6 +45,9 @@ struct Port {
   // flag for their own accesses.
   bool own_texels = false;
   AccessExtent extent = AccessExtent::dispatched;
+  // Buffers, for counts of bytes: what the kernel accesses per 8x8 texels that the pass writes.
+  // 0: the whole buffer.
+  uint32_t bytes_per_tile = 0;
   // Only for usages that write without reading. True: the kernel also reads, through this port,
   // what other invocations of the same dispatch wrote. It orders these accesses by itself, and
   // reads nothing that was there before the dispatch. Other ports of the pass must not access the

@@ -99,7 +99,7 @@ constexpr Port read_surface(std::string_view name, std::string_view doc) {
 // Ports that read the view, and the tiles of a level.
 constexpr std::array view{port::lighting, port::material, port::depth, port::scatter_scale,
                           port::albedo};
-constexpr std::array level{level_tiles, level_arguments};
+constexpr std::array level{port::with_bytes_per_tile(level_tiles, 8), level_arguments};
 
 constexpr auto setup_ports =
     join(view, level, std::array{written_light("light"), written_surface("surface")});
@@ -195,8 +195,9 @@ constexpr int first_of_levels = 5; // level; needs.cpp has the size of `computed
 constexpr std::string_view levels_doc =
     "levels from the first one on in array layers, four per level: surface, second surface, light, "
     "second light. Light is stored as bits: 4 halves in 2 words, or 4 floats in full storage";
+constexpr std::array several_levels{level_tiles, level_arguments};
 constexpr auto coarse_down_ports =
-    join(finer, second_input, level,
+    join(finer, second_input, several_levels,
          std::array{port::internally_ordered(Port{.name = "levels",
                                                   .usage = Usage::storage_image_write,
                                                   .glsl_type = "uimage2DArray",
@@ -222,7 +223,7 @@ constexpr auto coarse_up_ports =
                          .glsl_type = "utexture2DArray",
                          .doc = "output of subsurface.sap_coarse_down from the next level on",
                          .formats = bits_formats}},
-         level, up_result, std::array{second_scattered});
+         several_levels, up_result, std::array{second_scattered});
 constexpr PassTypeSetting coarse_up_settings[] = {
     setting::integer("level", first_of_levels - 1, first_of_levels - 1, sap_level_count - 2, "",
                      "level that the pass writes"),

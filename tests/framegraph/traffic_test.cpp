@@ -106,6 +106,13 @@ TEST_F(Traffic, ListsShrinkWithTheWrittenImage) {
   EXPECT_NEAR(count(listed).read, 2.0 / 16, tolerance);
 }
 
+TEST_F(Traffic, ListsWithBytesPerTile_CountTheWrittenTiles) {
+  access(Usage::storage_buffer_read, buffer(64 * 64 * 2));
+  ports.back().bytes_per_tile = 8;
+  access(Usage::storage_image_write, image(Format::r32f, 32));
+  EXPECT_NEAR(count(listed).read, 8.0 * (4 * 4) / (64 * 64), tolerance);
+}
+
 TEST_F(Traffic, FallbacksOfHistoriesDoNotCount) {
   const uint32_t history = image(Format::rgba16f, 64);
   access(Usage::sampled_image, history).when = ReadWhen::history_valid;

@@ -118,6 +118,12 @@ template <size_t N> constexpr std::array<Port, N> at_few_texels(std::array<Port,
   return ports;
 }
 
+// See Port::bytes_per_tile.
+constexpr Port with_bytes_per_tile(Port port, uint32_t bytes) {
+  port.bytes_per_tile = bytes;
+  return port;
+}
+
 // Inputs of the host.
 inline constexpr Port lighting =
     sampled("lighting", "diffuse irradiance before albedo, linear", color_formats);
