@@ -1,12 +1,14 @@
 #!/usr/bin/env python3
-"""Prints the measured times of docs/performance.md next to modelled ones.
+"""Prints the tables of docs/performance.md: modelled times, and measured next to modelled ones.
 
-usage: performance_tables.py MEASURED KERNELS ASSEMBLY [--write FILE]
-  MEASURED  output folder of `measure.sh 1`
-  KERNELS, ASSEMBLY  as gpu_model.py takes them: `dermis kernels sap separable --unbound
-            scattered_light,albedo,scatter_scale --json --assembly ASSEMBLY` on navi21
-  --write   replaces the text between the lines "<!-- begin measured -->" and "<!-- end measured
-            -->" of the file
+usage: performance_tables.py KERNELS ASSEMBLY [--measured FOLDER] [--write FILE]
+  KERNELS, ASSEMBLY  as gpu_model.py takes them: `dermis kernels sap separable burley fixed afis
+            afis_published --size 2560x1440 --unbound scattered_light,albedo,scatter_scale --json
+            --assembly ASSEMBLY` on navi21
+  --measured  output folder of `measure.sh 1` with the same kernels; without it, only the modelled
+            times are printed
+  --write   replaces the text between the lines "<!-- begin NAME -->" and "<!-- end NAME -->" of
+            the file; NAME: modelled, measured
 """
 import argparse
 import json
@@ -17,6 +19,14 @@ import gpu_model
 
 HARDWARE = {"NVIDIA H200": gpu_model.H200, "NVIDIA H100 80GB HBM3": gpu_model.H100}
 SIZES = ("2560x1440", "1920x1080")
+GAMING = {"RX 6800-class": gpu_model.RX_6800, "NVIDIA-like": gpu_model.NVIDIA_LIKE,
+          "small RDNA2": gpu_model.SMALL_RDNA2}
+ROWS = {"`sap`, no tile next to an edge": "sap as built",
+        "`sap`, 20 % of the tiles next to edges": "sap, 20% flagged",
+        "`separable`, 25 taps": "separable as built",
+        "`burley`, 32 samples": "burley 32 as built", "`fixed`, 16 samples": "fixed 16 as built",
+        "`afis`, 16 samples": "afis 16 as built",
+        "`afis_published`, 16 samples": "afis_published 16"}
 MODELLED = {"sap": "sap, 20% flagged", "separable": "separable as built",
             "burley": "burley 32 as built", "fixed": "fixed 16 as built",
             "afis": "afis 16 as built", "afis_published": "afis_published 16"}
@@ -72,7 +82,19 @@ def pictures(folder):
                f"{error['rmse_low']:.5f} | {error['rmse_high']:.5f} |")
 
 
-def tables(folder, built):
+def modelled(built):
+    yield "| technique | " + " | ".join(
+        f"{name}, {size.split('x')[1]}p" for name in GAMING for size in SIZES) + " |"
+    yield "|---|" + "---|" * (len(GAMING) * len(SIZES))
+    models = [gpu_model.run(hardware, width=width, height=height, built=built)
+              for hardware in GAMING.values()
+              for width, height in (map(int, size.split("x")) for size in SIZES)]
+    for row, technique in ROWS.items():
+        cells = (f"{1e3 * model.total(technique):.2f}" for model in models)
+        yield f"| {row} | " + " | ".join(cells) + " |"
+
+
+def measured(folder, built):
     reports = read_times(folder)
     first = next(iter(reports.values()))
     share = first["subsurface_pixels"] / (first["width"] * first["height"])
@@ -94,23 +116,32 @@ def tables(folder, built):
     yield from pictures(folder)
 
 
+def replaced(page, name, text):
+    begin, end = f"<!-- begin {name} -->\n", f"\n<!-- end {name} -->"
+    first, last = page.index(begin) + len(begin), page.index(end)
+    return page[:first] + text + page[last:]
+
+
 def main():
     parser = argparse.ArgumentParser(usage=__doc__)
-    parser.add_argument("measured", type=pathlib.Path)
-    parser.add_argument("kernels")
+    parser.add_argument("kernels", type=pathlib.Path)
     parser.add_argument("assembly")
+    parser.add_argument("--measured", type=pathlib.Path)
     parser.add_argument("--write", type=pathlib.Path)
     options = parser.parse_args()
-    with open(options.kernels, encoding="utf-8") as file:
-        built = gpu_model.Built(json.load(file), options.assembly)
-    text = "\n".join(tables(options.measured, built))
+    built = gpu_model.Built(json.loads(options.kernels.read_text(encoding="utf-8")),
+                            options.assembly)
+    sections = {"modelled": modelled(built)}
+    if options.measured:
+        sections["measured"] = measured(options.measured, built)
+    texts = {name: "\n".join(lines) for name, lines in sections.items()}
     if not options.write:
-        print(text)
+        print("\n\n".join(texts.values()))
         return
-    begin, end = "<!-- begin measured -->\n", "\n<!-- end measured -->"
     page = options.write.read_text(encoding="utf-8")
-    first, last = page.index(begin) + len(begin), page.index(end)
-    options.write.write_text(page[:first] + text + page[last:], encoding="utf-8")
+    for name, text in texts.items():
+        page = replaced(page, name, text)
+    options.write.write_text(page, encoding="utf-8")
 
 
 if __name__ == "__main__":
