@@ -102,7 +102,7 @@ inline constexpr uint32_t group_lanes = 3; // local_size_x of kernels with one s
 inline constexpr uint32_t pixel_grid = 4;  // of the plan (pixel_grid.hpp)
 // Whether the device allows wide groups, and local_size_x of kernels that use them.
 inline constexpr uint32_t wide_group = 5, wide_lanes = 6;
-inline constexpr uint32_t tile_lanes = 7; // local_size_x of shaders/sap/sap_rounds.glsl
+inline constexpr uint32_t tile_lanes = 7;     // local_size_x of shaders/sap/sap_rounds.glsl
 inline constexpr uint32_t first_setting = 16; // PassType::settings[i] has the id first_setting + i
 } // namespace constant_id
 

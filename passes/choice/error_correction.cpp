@@ -24,15 +24,22 @@ constexpr double min_selected = 0.02;
 constexpr double min_concentration = 0.05, max_concentration = 12;
 // Time after which a technique that does not run is worth another try.
 constexpr double forgotten_s = 60;
-constexpr double age_of_a_cut = 3; // times forgotten_s
+constexpr double age_of_a_cut = 3;          // times forgotten_s
+constexpr double min_table_deviation = 0.1; // also of rows whose spread was not measured
 // Factors between the contents of two frames that make measurements of one worth little to the
 // other.
 constexpr double other_d = 2, other_relief = 4;
 
+// Returns whether the errors of two techniques rise and fall together between scenes. A technique
+// at half resolution is not a variant: its errors are others.
 bool are_variants(const TechniqueError& a, const TechniqueError& b) {
-  if (a.pass_types.empty() || b.pass_types.empty()) return false;
-  const std::string &first = a.pass_types.front().type, &second = b.pass_types.front().type;
-  return first.starts_with(second) || second.starts_with(first);
+  return !a.pass_types.empty() && !b.pass_types.empty() &&
+         a.pass_types.front().type == b.pass_types.front().type;
+}
+
+// Returns the logarithm of the spread of a technique's errors between scenes.
+double deviation_at(const TechniqueError& technique, double d_px) {
+  return std::max(std::log(spread_at(technique.curve, d_px)), min_table_deviation);
 }
 
 double factor_of(const ErrorCorrection::Line& line, const Prior& prior) {
@@ -65,16 +72,19 @@ double valid_factor(const ErrorCorrection::Line& line, const Prior& prior, const
   return std::pow(factor_of(line, prior), valid) * std::pow(prior.factor, 1 - valid);
 }
 
-// Returns what measurements of the other variants of a technique say about it.
+// Returns what measurements of the other variants of a technique say about it: its factor is
+// expected to deviate from 1 as theirs do, in units of the spreads between scenes.
 Prior prior_of(const ErrorCorrection& correction, size_t technique, const FrameKey& key,
                double now_s, bool cut = false) {
+  const TechniqueError& own = correction.techniques[technique];
   double logs = 0, frames = 0;
-  for (size_t t = 0; t < correction.variants.size(); ++t) {
+  for (size_t t = 0; t < correction.techniques.size(); ++t) {
     const ErrorCorrection::Line& line = correction.lines[t + 1];
-    if (t == technique || correction.variants[t] != correction.variants[technique] ||
-        line.frames <= 0)
-      continue;
-    logs += line.frames * std::log(valid_factor(line, technique_prior, key, now_s, cut));
+    const TechniqueError& other = correction.techniques[t];
+    if (t == technique || line.frames <= 0 || !are_variants(own, other)) continue;
+    const double units = deviation_at(own, key.d_px) / deviation_at(other, key.d_px);
+    logs += line.frames * std::min(units, 1.0) *
+            std::log(valid_factor(line, technique_prior, key, now_s, cut));
     frames += line.frames;
   }
   Prior prior = technique_prior;
@@ -158,14 +168,9 @@ void follow_step(ErrorCorrection& correction, const ProbedFrame& frame) {
 ErrorCorrection make_error_correction(const ErrorModel& table) {
   ErrorCorrection correction;
   correction.lines.resize(table.techniques.size() + 1);
+  correction.techniques = table.techniques;
   correction.compared =
       find_technique(table, {{"subsurface.separable", {{"taps", "25"}, {"kernel", "fitted"}}}});
-  for (uint32_t t = 0; t < table.techniques.size(); ++t) {
-    uint32_t first = 0;
-    while (first < t && !are_variants(table.techniques[first], table.techniques[t]))
-      ++first;
-    correction.variants.push_back(first);
-  }
   return correction;
 }
 

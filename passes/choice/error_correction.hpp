@@ -28,9 +28,8 @@ struct ErrorCorrection {
   // that did not scatter.
   Line selection;
   double selection_log = 0;
-  // By technique: the first of its variants, whose errors rise and fall together.
-  std::vector<uint32_t> variants;
-  int32_t compared = -1; // technique that all probed frames measure; -1: none
+  std::vector<TechniqueError> techniques; // rows of the table
+  int32_t compared = -1;                  // technique that all probed frames measure; -1: none
   // Newest frames in a row whose light was much brighter, or if negative darker, than known.
   int steps = 0;
 };
@@ -51,8 +50,7 @@ struct ProbedFrame {
 };
 
 // Creates a correction of an error table, without observations. Techniques are variants if the type
-// of their first pass is equal, or continues that of the other: subsurface.sap_gather and
-// subsurface.sap_gather_half. `compared` is subsurface.separable with 25 taps, as of the probe.
+// of their first pass is equal. `compared` is subsurface.separable with 25 taps, as of the probe.
 ErrorCorrection make_error_correction(const ErrorModel& table);
 // Adds a frame. Ignores values that are not finite, and frames whose expected errors are not
 // positive. Allocates nothing.

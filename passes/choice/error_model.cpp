@@ -256,6 +256,10 @@ double expected_rmse(const ErrorModel& model, int32_t technique, const FrameKey&
   return at_usual_relief * std::pow((key.relief + relief_floor) / usual, power);
 }
 
+double spread_at(const std::vector<ErrorPoint>& curve, double d_px) {
+  return interpolate(curve, d_px, &ErrorPoint::spread);
+}
+
 double missed_rmse(const ErrorModel& model, int32_t technique, double transmitted_rms) {
   return transmitted_rms * (technique < 0
                                 ? model.unscattered_through

@@ -82,6 +82,8 @@ int32_t find_technique(const ErrorModel& model, const std::vector<RunningPass>& 
 // `relief_power`; without relief the factor is 1. Curves are linear between points on logarithmic
 // axes, and constant beyond the ends. technique -1: unscattered.
 double expected_rmse(const ErrorModel& model, int32_t technique, const FrameKey& key);
+// Returns the spread of RMSE between scenes at this d, at least 1. Interpolates as expected_rmse().
+double spread_at(const std::vector<ErrorPoint>& curve, double d_px);
 // Returns the part of the RMSE that expected_rmse() does not include: the error of light
 // transmitted through thin parts. `transmitted_rms`: the RMS of that light in the unit of
 // subsurface::transmitted_rms. The result is a measured fraction of it per technique.

@@ -92,12 +92,17 @@ TEST(ErrorCorrection, FindsTheFactorInNoisyProbes) {
   EXPECT_EQ(error_factor(correction, -1, content, 0), 1);
 }
 
+// A table of techniques without samples, whose first pass has the type. All have the same spread.
+ErrorModel table_of(std::initializer_list<const char*> pass_types) {
+  ErrorModel table;
+  for (const char* type : pass_types)
+    table.techniques.push_back({type, {{type, {}}}, {{1, 1, 2}}});
+  return table;
+}
+
 // A variant is expected to deviate from the table as much as the one that ran.
 TEST(ErrorCorrection, VariantsShareWhatIsMeasured) {
-  ErrorModel table;
-  for (const char* type : {"sap", "sap_half", "separable"})
-    table.techniques.push_back({type, {{type, {}}}, {{1, 1}}});
-  ErrorCorrection correction = make_error_correction(table);
+  ErrorCorrection correction = make_error_correction(table_of({"sap", "sap", "separable"}));
   double now_s = 0;
   observe(correction, 0, 8 * expected, 200, now_s);
   const double measured = error_factor(correction, 0, content, now_s);
@@ -109,6 +114,28 @@ TEST(ErrorCorrection, VariantsShareWhatIsMeasured) {
   EXPECT_NEAR(error_factor(correction, 1, content, now_s), std::sqrt((25 * 4 + 2 * 64) / 27.0),
               0.3);
   EXPECT_NEAR(error_factor(correction, 0, content, now_s), measured, 0.1 * measured);
+}
+
+// The errors of a variant whose rows have half the spread deviate half as much from the table.
+TEST(ErrorCorrection, VariantsWithLessSpread_DeviateLess) {
+  ErrorModel table = table_of({"sap", "sap", "sap"});
+  table.techniques[0].curve.front().spread = 4;
+  table.techniques[2].curve.front().spread = 16;
+  ErrorCorrection correction = make_error_correction(table);
+  double now_s = 0;
+  observe(correction, 0, 8 * expected, 200, now_s);
+  const double measured = std::log(error_factor(correction, 0, content, now_s));
+  EXPECT_NEAR(std::log(error_factor(correction, 1, content, now_s)), measured / 2, 1e-9);
+  EXPECT_NEAR(std::log(error_factor(correction, 2, content, now_s)), measured, 1e-9)
+      << "more spread is no reason to expect a larger deviation than measured";
+}
+
+// At half resolution, other errors prevail.
+TEST(ErrorCorrection, HalfResolutionIsNoVariant) {
+  ErrorCorrection correction = make_error_correction(table_of({"sap", "sap_half"}));
+  double now_s = 0;
+  observe(correction, 0, 8 * expected, 200, now_s);
+  EXPECT_EQ(error_factor(correction, 1, content, now_s), 1);
 }
 
 TEST(ErrorCorrection, ProbesCompareSeparableWith25Taps) {
