@@ -309,6 +309,21 @@ SelectionChange next_selection(const SelectionChange& before, const FrameChoice&
   return now;
 }
 
+// Returns the run of probed frames that a frame belongs to.
+ProbeRun next_probes(const Chooser& chooser, const choice::Configuration& configuration,
+                     const Content& content) {
+  constexpr uint32_t first_probes = 16; // enough that single pixels do not decide
+  if (chooser.budget.ms <= 0) return {};
+  const choice::ErrorCorrection& correction = chooser.error_correction;
+  ProbeRun run = {corrected_technique(correction, configuration), 0};
+  if (run.technique == chooser.probes.technique && !content.cut)
+    run.left = chooser.probes.left > 0 ? chooser.probes.left - 1 : 0;
+  else if (measured_frames(correction, run.technique, content.key, chooser.state.clock_s,
+                           content.cut) < first_probes)
+    run.left = first_probes;
+  return run;
+}
+
 // Returns the limit on the samples of tiles. Units above the demand that fit are allowed, because
 // the demand may grow.
 uint32_t units_of(const choice::Decision& decision, const choice::Forecast& forecast) {
@@ -419,6 +434,7 @@ FrameChoice choose(Chooser& chooser, const CompiledGraph& compiled_graph,
   frame.configuration = frame.decision.configuration;
   frame.switches = state.switches;
   frame.cut = request.cut;
+  frame.probes = next_probes(chooser, compiled_graph.configurations[frame.configuration], content);
   return frame;
 }
 
@@ -448,6 +464,8 @@ choice::Decision settled_decision(Chooser& chooser, const CompiledGraph& compile
 }
 
 void remember(Chooser& chooser, const FrameChoice& frame) noexcept {
+  chooser.previous_probes = chooser.probes;
+  chooser.probes = frame.probes;
   chooser.previous_selection = chooser.selection;
   chooser.selection = next_selection(chooser.selection, frame);
   place_of(chooser, frame.frame_index) = frame;
@@ -467,6 +485,7 @@ void discard_choice(Chooser& chooser, uint64_t frame_index) noexcept {
   }
   std::swap(chooser.state, chooser.previous_state);
   chooser.selection = chooser.previous_selection;
+  chooser.probes = chooser.previous_probes;
   chooser.decided_for = chooser.previously_decided_for;
 }
 

@@ -30,6 +30,12 @@ inline uint64_t tiles_of(const vulkan::Rectangle& rectangle) {
   return subsurface::tile_count(rectangle.width, rectangle.height);
 }
 
+// Frames that are probed in a row, because the error of the technique that runs is not known.
+struct ProbeRun {
+  int32_t technique = -2; // that the error correction observes; -2: none
+  uint32_t left = 0;      // frames, from the present one on
+};
+
 // A recorded frame: its forecast and, once the device has finished the frame, its measurements.
 struct FrameChoice {
   uint64_t frame_index = 0;    // 0: none
@@ -51,6 +57,7 @@ struct FrameChoice {
   bool cut = false;
   uint64_t expected_tiles = 0;        // number of tiles that the forecast assumed
   uint32_t sample_units = UINT32_MAX; // limit on the samples of tiles
+  ProbeRun probes;
   bool observed = false;
   bool timed = false;
   double measured_ms = 0;   // valid if `timed`
@@ -112,6 +119,7 @@ struct Chooser {
   std::array<FrameChoice, vulkan::max_frames_in_flight + 2> frames; // by frame_index
   FrameChoice newest;                                               // the newest observed frame
   SelectionChange selection, previous_selection; // of the newest recorded frame; before it
+  ProbeRun probes, previous_probes;              // the same
   // number of compiled graphs adopted so far
   uint64_t compiled_graphs = 0;
   // Preallocated by adopt(), so that recording allocates nothing.

@@ -26,6 +26,7 @@ struct Chosen {
   // executor of the last frame, if it differs from the variant's
   const vulkan::Executor* before = nullptr;
   uint32_t sample_units = 0; // see FrameConstants
+  bool probed = false;       // see subsurface::always_probed
 };
 // Fills the rest of `checked`.
 dermis_result fill_frame(const dermis_view_t& view, const CompiledGraph& compiled_graph,

@@ -112,9 +112,10 @@ dermis_result record_chosen(dermis_view_t& view, CompiledGraph& compiled_graph, 
   if (replaces)
     compiled_graph.last_jitter_px =
         rescaled_jitter(view, *compiled_graph.plans[plan].executor, *before);
-  if (const dermis_result result =
-          fill_frame(view, compiled_graph,
-                     {chosen.configuration, plan, before, chosen.sample_units}, frame, checked);
+  if (const dermis_result result = fill_frame(
+          view, compiled_graph,
+          {chosen.configuration, plan, before, chosen.sample_units, chosen.probes.left > 0}, frame,
+          checked);
       result != DERMIS_OK)
     return result;
   chosen.left_out = checked.empty_bounds();

@@ -206,6 +206,14 @@ double error_factor(const ErrorCorrection& correction, int32_t technique, const 
   return common * valid_factor(correction.lines[index], prior, key, now_s, cut);
 }
 
+double measured_frames(const ErrorCorrection& correction, int32_t technique, const FrameKey& key,
+                       double now_s, bool cut) {
+  const auto index = static_cast<size_t>(technique + 1);
+  if (technique < -1 || index >= correction.lines.size()) return 0;
+  const ErrorCorrection::Line& line = correction.lines[index];
+  return line.frames > 0 ? line.frames * validity(line, key, now_s, cut) : 0;
+}
+
 double selection_concentration(const ErrorCorrection& correction, double expected,
                                const FrameKey& key, double now_s, bool cut) {
   const ErrorCorrection::Line& line = correction.selection;

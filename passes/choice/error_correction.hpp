@@ -61,6 +61,10 @@ void observe_error(ErrorCorrection& correction, const ProbedFrame& frame);
 // called.
 double error_factor(const ErrorCorrection& correction, int32_t technique, const FrameKey& key,
                     double now_s, bool cut = false);
+// Returns the number of probed frames that say something about the technique's error in a frame
+// with this content at this time; older and different ones count less.
+double measured_frames(const ErrorCorrection& correction, int32_t technique, const FrameKey& key,
+                       double now_s, bool cut = false);
 // Returns the exponent of (1 - selected fraction) in the mean squared error that is left if only
 // selected tiles scatter: as measured, or `expected` where the measurements do not apply.
 double selection_concentration(const ErrorCorrection& correction, double expected,

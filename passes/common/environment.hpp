@@ -77,6 +77,10 @@ double mean_d_px(const FrameCounters& counters);
 
 enum class DepthKind : uint32_t { device = 0, view_units = 1 };
 
+// Bit of FrameConstants::flags: the frame's error is probed, whatever the interval between probed
+// frames.
+inline constexpr uint32_t always_probed = 32;
+
 // Frame constants in std140. Lengths on the device are in millimetres: fp32 resolves a micrometre
 // at 10 m.
 struct FrameConstants {
@@ -84,7 +88,7 @@ struct FrameConstants {
   int32_t tiles[2];     // 8x8 tiles of the rectangle, x and y
   uint32_t frame_index; // low 32 bits
   // bit 0: perspective, bit 1: depth is view depth, bit 2: history invalid, bit 3: the frame
-  // before was perspective, bit 4: normal images are left-handed
+  // before was perspective, bit 4: normal images are left-handed, bit 5: always_probed
   uint32_t flags;
   // View x, y = (scale * pixel + offset) * (perspective ? depth : 1), in mm (per mm of depth if
   // perspective). `pixel` counts from the rectangle's corner; integers are pixel centres.

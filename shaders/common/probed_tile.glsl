@@ -21,10 +21,10 @@ struct probed_tile {
   float represented;  // number of tiles with subsurface that the tile represents
 };
 
-// Returns whether this frame is probed: one in `interval` frames, at random, so that light that
-// changes periodically is seen at all its phases.
+// Returns whether this frame is probed: if the choice by budget asks for it, and one in `interval`
+// frames, at random, so that light that changes periodically is seen at all its phases.
 bool is_frame_probed(int interval) {
-  return interval <= 1 ||
+  return interval <= 1 || (frame.flags & 32u) != 0u ||
          unit_from_hash(pcg3d(uvec3(frame.frame_index, 0u, 7u))).x * float(interval) < 1.0;
 }
 

@@ -337,6 +337,42 @@ TEST_F(Probe, ProbesOneOfSoManyFrames) {
   EXPECT_NEAR(probed, frames / 4, 20); // Three standard deviations.
 }
 
+// While the choice does not know the error of what runs, single pixels must not decide.
+TEST_F(Probe, FirstFramesOfATechnique_AreAllProbed) {
+  make("\"off\"");
+  set("probe_interval", "256");
+  const auto probed_of = [&](int frames) {
+    int probed = 0;
+    for (int i = 0; i < frames; ++i)
+      probed += run_frame(checks).probed_tiles > 0 ? 1 : 0;
+    return probed;
+  };
+  EXPECT_LE(probed_of(48), 2) << "without a budget, nothing is chosen";
+  set_budget(1000);
+  EXPECT_EQ(probed_of(16), 16);
+  EXPECT_LE(probed_of(48), 2);
+  set("technique", "\"separable\"");
+  make_images(graph);
+  EXPECT_EQ(probed_of(16), 16) << "of another technique";
+  EXPECT_LE(probed_of(48), 2);
+  set("technique", "\"off\"");
+  make_images(graph);
+  EXPECT_LE(probed_of(48), 2) << "its error is known";
+}
+
+TEST_F(Probe, FirstFramesAfterACut_AreAllProbed) {
+  make("\"off\"");
+  set("probe_interval", "256");
+  set_budget(1000);
+  for (int i = 0; i < 20; ++i)
+    run_frame(checks);
+  dermis_frame cut = bound_frame(graph);
+  cut.flags |= DERMIS_FRAME_RESET_HISTORY;
+  EXPECT_EQ(record_and_read(graph, cut).probed_tiles, 1u);
+  for (int i = 1; i < 16; ++i)
+    EXPECT_EQ(run_frame(checks).probed_tiles, 1u) << i;
+}
+
 TEST_F(Probe, OverlayProbesOtherGraphs) {
   GraphOptions options = shipped_options("configs/graphs/sap.json");
   options.overlays = {read_text("configs/overlays/probe.json")};

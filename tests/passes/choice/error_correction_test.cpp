@@ -182,6 +182,20 @@ TEST(ErrorCorrection, Outlier_CountsAtMostThreeTimesTheEstimate) {
   EXPECT_NEAR(error_factor(correction, 0, content, 0), std::sqrt((26 + 9.0) / 27), 0.02);
 }
 
+TEST(ErrorCorrection, MeasuredFramesAgeWithTheContent) {
+  ErrorCorrection correction = correction_for(2);
+  EXPECT_EQ(measured_frames(correction, 0, content, 0), 0);
+  double now_s = 0;
+  observe(correction, 0, expected, 10, now_s);
+  const double measured = measured_frames(correction, 0, content, now_s);
+  EXPECT_NEAR(measured, 10, 2); // Older frames count less.
+  EXPECT_EQ(measured_frames(correction, 1, content, now_s), 0);
+  EXPECT_LT(measured_frames(correction, 0, {4 * content.d_px, content.relief}, now_s), 1);
+  EXPECT_LT(measured_frames(correction, 0, content, now_s, true), 1) << "after a cut";
+  for (const int32_t none : {-2, 2})
+    EXPECT_EQ(measured_frames(correction, none, content, now_s), 0);
+}
+
 TEST(ErrorCorrection, MeasurementsHold_WhileOtherTechniquesRun) {
   ErrorCorrection correction = correction_for(2);
   double now_s = 0;
