@@ -136,6 +136,7 @@ void learn_error(Chooser& chooser, const choice::Configuration& configuration,
       frame.expected = frame.compared_expected;
     }
   }
+  if (of_frame.converging) frame.technique = -1; // only the light is observed
   frame.key = key;
   frame.now_s = chooser.state.clock_s;
   observe_error(chooser.error_correction, frame);
@@ -268,6 +269,9 @@ std::span<choice::Forecast> forecast_first(Chooser& chooser, const CompiledGraph
     out.unsampled_rmse =
         error_of(configuration.without_samples, factor_of(configuration.without_samples));
     out.missed_rmse = missed;
+    out.error_frames = measured_frames(chooser.error_correction,
+                                       corrected_technique(chooser.error_correction, configuration),
+                                       content.key, now_s, content.cut);
   }
   return std::span(chooser.scratch.forecasts).first(count);
 }
@@ -309,19 +313,43 @@ SelectionChange next_selection(const SelectionChange& before, const FrameChoice&
   return now;
 }
 
-// Returns the run of probed frames that a frame belongs to.
-ProbeRun next_probes(const Chooser& chooser, const choice::Configuration& configuration,
-                     const Content& content) {
-  constexpr uint32_t first_probes = 16; // enough that single pixels do not decide
-  if (chooser.budget.ms <= 0) return {};
+constexpr uint32_t first_probes = 16; // enough that single pixels do not decide
+constexpr uint32_t converging_frames =
+    16; // until histories hold about what the error table assumes
+
+TechniqueRun next_run(const Chooser& chooser, const choice::Configuration& configuration,
+                      const Content& content) {
   const choice::ErrorCorrection& correction = chooser.error_correction;
-  ProbeRun run = {corrected_technique(correction, configuration), 0};
-  if (run.technique == chooser.probes.technique && !content.cut)
-    run.left = chooser.probes.left > 0 ? chooser.probes.left - 1 : 0;
-  else if (measured_frames(correction, run.technique, content.key, chooser.state.clock_s,
-                           content.cut) < first_probes)
-    run.left = first_probes;
-  return run;
+  const int32_t technique = corrected_technique(correction, configuration);
+  if (technique == chooser.run.technique && !content.cut)
+    return {technique, chooser.run.frames + 1, chooser.run.known};
+  return {technique, 0,
+          measured_frames(correction, technique, content.key, chooser.state.clock_s, content.cut) >=
+              first_probes};
+}
+
+// Returns the first frame of a run whose error is the technique's.
+uint32_t first_valid_frame(const choice::Configuration& configuration) {
+  return configuration.accumulates ? converging_frames : 0;
+}
+
+// Returns whether the error of what runs is being measured.
+bool is_learning(const Chooser& chooser, const CompiledGraph& compiled_graph) {
+  const uint32_t current = chooser.state.current;
+  return chooser.run.technique >= -1 && !chooser.run.known &&
+         current < compiled_graph.configurations.size() &&
+         chooser.run.frames <
+             first_valid_frame(compiled_graph.configurations[current]) + first_probes;
+}
+
+// Decides whether the frame's error is probed, and whether it is the technique's.
+void plan_probe(FrameChoice& frame, const Chooser& chooser,
+                const choice::Configuration& configuration, const Content& content) {
+  if (chooser.budget.ms <= 0) return; // nothing is chosen
+  frame.run = next_run(chooser, configuration, content);
+  const uint32_t first = first_valid_frame(configuration);
+  frame.converging = frame.run.frames < first;
+  frame.probed = !frame.run.known && !frame.converging && frame.run.frames < first + first_probes;
 }
 
 // Returns the limit on the samples of tiles. Units above the demand that fit are allowed, because
@@ -423,6 +451,7 @@ FrameChoice choose(Chooser& chooser, const CompiledGraph& compiled_graph,
   input.cut = request.cut;
   input.provisional = !chooser.counted;
   input.trials = chooser.budget.trials;
+  input.learning = is_learning(chooser, compiled_graph);
   if (chooser.budget.ms > 0) {
     frame.decision = decide(forecasts, input, state,
                             std::span(chooser.scratch.assessments).first(forecasts.size()));
@@ -434,7 +463,7 @@ FrameChoice choose(Chooser& chooser, const CompiledGraph& compiled_graph,
   frame.configuration = frame.decision.configuration;
   frame.switches = state.switches;
   frame.cut = request.cut;
-  frame.probes = next_probes(chooser, compiled_graph.configurations[frame.configuration], content);
+  plan_probe(frame, chooser, compiled_graph.configurations[frame.configuration], content);
   return frame;
 }
 
@@ -464,8 +493,8 @@ choice::Decision settled_decision(Chooser& chooser, const CompiledGraph& compile
 }
 
 void remember(Chooser& chooser, const FrameChoice& frame) noexcept {
-  chooser.previous_probes = chooser.probes;
-  chooser.probes = frame.probes;
+  chooser.previous_run = chooser.run;
+  chooser.run = frame.run;
   chooser.previous_selection = chooser.selection;
   chooser.selection = next_selection(chooser.selection, frame);
   place_of(chooser, frame.frame_index) = frame;
@@ -485,7 +514,7 @@ void discard_choice(Chooser& chooser, uint64_t frame_index) noexcept {
   }
   std::swap(chooser.state, chooser.previous_state);
   chooser.selection = chooser.previous_selection;
-  chooser.probes = chooser.previous_probes;
+  chooser.run = chooser.previous_run;
   chooser.decided_for = chooser.previously_decided_for;
 }
 

@@ -30,10 +30,11 @@ inline uint64_t tiles_of(const vulkan::Rectangle& rectangle) {
   return subsurface::tile_count(rectangle.width, rectangle.height);
 }
 
-// Frames that are probed in a row, because the error of the technique that runs is not known.
-struct ProbeRun {
+// Frames in a row of one technique, without a cut.
+struct TechniqueRun {
   int32_t technique = -2; // that the error correction observes; -2: none
-  uint32_t left = 0;      // frames, from the present one on
+  uint32_t frames = 0;    // before the present one
+  bool known = false;     // its error was known in the first frame
 };
 
 // A recorded frame: its forecast and, once the device has finished the frame, its measurements.
@@ -57,7 +58,9 @@ struct FrameChoice {
   bool cut = false;
   uint64_t expected_tiles = 0;        // number of tiles that the forecast assumed
   uint32_t sample_units = UINT32_MAX; // limit on the samples of tiles
-  ProbeRun probes;
+  TechniqueRun run;
+  bool converging = false; // histories began so recently that the error is not the technique's
+  bool probed = false;     // whatever the interval between probed frames
   bool observed = false;
   bool timed = false;
   double measured_ms = 0;   // valid if `timed`
@@ -119,7 +122,7 @@ struct Chooser {
   std::array<FrameChoice, vulkan::max_frames_in_flight + 2> frames; // by frame_index
   FrameChoice newest;                                               // the newest observed frame
   SelectionChange selection, previous_selection; // of the newest recorded frame; before it
-  ProbeRun probes, previous_probes;              // the same
+  TechniqueRun run, previous_run;                // the same
   // number of compiled graphs adopted so far
   uint64_t compiled_graphs = 0;
   // Preallocated by adopt(), so that recording allocates nothing.

@@ -114,8 +114,7 @@ dermis_result record_chosen(dermis_view_t& view, CompiledGraph& compiled_graph, 
         rescaled_jitter(view, *compiled_graph.plans[plan].executor, *before);
   if (const dermis_result result = fill_frame(
           view, compiled_graph,
-          {chosen.configuration, plan, before, chosen.sample_units, chosen.probes.left > 0}, frame,
-          checked);
+          {chosen.configuration, plan, before, chosen.sample_units, chosen.probed}, frame, checked);
       result != DERMIS_OK)
     return result;
   chosen.left_out = checked.empty_bounds();

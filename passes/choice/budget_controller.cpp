@@ -15,10 +15,14 @@ constexpr double min_gap = 0.02, gap_of_margin = 0.3;
 // A switch needs an error below this fraction of the running configuration's. Trials rank behind
 // known configurations by the same factor.
 constexpr double worth_a_switch = 0.98;
+// A configuration whose error is known from fewer probed frames is unproven, if the error of what
+// runs is measured: it is entered only for an error below this fraction.
+constexpr double proven_frames = 8, worth_a_try = 0.9;
 // Token bucket: at most T + 1 switches in any T >= 1 seconds.
 constexpr double switches_per_second = 0.5, max_tokens = 2;
 // A trial needs another switch to come back. So may what should fit for certain, if times were
-// disturbed when it was judged: then it is left after at most a second.
+// disturbed when it was judged: then it is left after at most a second. So may an unproven one:
+// then the configuration before returns at once.
 constexpr double trial_tokens = 2, better_tokens = 1.5, leaving_tokens = 1;
 // Until the first seconds have passed, each pass may be tried.
 constexpr double first_s = 3, first_tokens_per_pass = 2;
@@ -119,11 +123,18 @@ private:
     return std::clamp(ms / std::max(unit_ms, min_ms), 0.0, demand);
   }
 
+  bool unproven(uint32_t i) const {
+    return i != state_.current && state_.current != no_configuration &&
+           forecasts_[state_.current].error_frames > 0 &&
+           forecasts_[i].error_frames < proven_frames;
+  }
+
   template <class Fits> uint32_t best(Fits fits) const {
     uint32_t found = no_configuration;
     double least = 0;
     for (uint32_t i = 0; i < assessed_.size(); ++i) {
-      const double rmse = assessed_[i].entering_rmse / (assessed_[i].trial ? worth_a_switch : 1);
+      const double gain = unproven(i) ? worth_a_try : assessed_[i].trial ? worth_a_switch : 1;
+      const double rmse = assessed_[i].entering_rmse / gain;
       if (!fits(i) || (found != no_configuration && rmse >= least)) continue;
       found = i;
       least = rmse;
@@ -205,9 +216,13 @@ private:
         assessed_[better].entering_rmse >= assessed_[now].rmse)
       return;
     decision.why = ReasonKind::held;
-    const bool trial = assessed_[better].trial;
-    if (assessed_[better].entering_rmse > worth_a_switch * assessed_[now].rmse ||
-        state_.tokens < (trial ? trial_tokens : better_tokens))
+    const bool trial = assessed_[better].trial, unknown = unproven(better);
+    const double tokens = trial || unknown          ? trial_tokens
+                          : better == state_.before ? leaving_tokens
+                                                    : better_tokens;
+    const double gain = unknown ? worth_a_try : worth_a_switch;
+    if (assessed_[better].entering_rmse > gain * assessed_[now].rmse || state_.tokens < tokens ||
+        (unknown && frame_.learning))
       return;
     decision.configuration = better;
     decision.why = trial && may_try() ? ReasonKind::trial : ReasonKind::better_fits;

@@ -34,6 +34,7 @@ struct Forecast {
   // The fraction f of the requested samples leaves (1 - f)^concentration of the difference of the
   // mean squares.
   double concentration = 1;
+  double error_frames = 0; // number of probed frames that rmse is known from; 0: the error table
   // part of rmse: light transmitted through thin parts that the configuration ignores
   double missed_rmse = 0;
 };
@@ -71,6 +72,7 @@ struct FrameInput {
   bool cut = false;         // a change is not visible in this frame
   bool provisional = false; // tiles were not counted yet: the next decision is free
   Trials trials = Trials::on;
+  bool learning = false; // the error of what runs is being measured
 };
 
 inline constexpr uint32_t no_configuration = UINT32_MAX;

@@ -130,7 +130,7 @@ void describe(const PassTypeRegistry& pass_types, const Plan& plan, const ErrorM
               CostEstimator& costs, Configuration& configuration) {
   std::vector<RunningPass> passes, without_samples;
   configuration.passes.clear();
-  configuration.takes_samples = configuration.selects_tiles = false;
+  configuration.takes_samples = configuration.selects_tiles = configuration.accumulates = false;
   for (const PlanPass& pass : plan.passes) {
     const PassType& type = pass_types[pass.type];
     const std::vector<SettingValue> values = values_of(plan, pass, type, configuration.settings);
@@ -141,6 +141,7 @@ void describe(const PassTypeRegistry& pass_types, const Plan& plan, const ErrorM
     const bool by_budget = runs_by_budget(type);
     configuration.takes_samples = configuration.takes_samples || by_budget;
     configuration.selects_tiles = configuration.selects_tiles || scatters_in_part(type);
+    configuration.accumulates = configuration.accumulates || !type.mixes.empty();
     if (!by_budget) without_samples.push_back(passes.back());
   }
   configuration.technique = find_technique(errors, passes);

@@ -46,6 +46,7 @@ struct Configuration {
   // tile.
   int32_t without_samples = -1;
   bool takes_samples = false;   // takes samples by tile, as many as the budget allows
+  bool accumulates = false;     // blends frames into a history: its error decreases over frames
   bool selects_tiles = false;   // scatters in as many tiles as the budget allows; a unit is a tile
   std::vector<PassLoad> passes; // in plan order
 };
