@@ -364,13 +364,13 @@ void Packer::search(uint64_t steps, Packing& out) {
 // Tries other orders if the first placement is far from the bound: among equal sizes the last end
 // first, then products of powers of size and time.
 void Packer::try_again(Packing& out) {
-  // Worth a try if more than this fraction of the bound is wasted. Large graphs have a lower
-  // threshold, and profit from fewer orders.
+  // Worth a try if more than 1 / waste_divisor of the lower bound is wasted. In large graphs fewer
+  // orders help, and a smaller waste is worth them.
   constexpr size_t many_items = 4096;
   const bool large = items_.size() >= many_items;
-  const uint64_t wasted_fraction = large ? 16 : 11;
+  const uint64_t waste_divisor = large ? 16 : 11;
   const auto worth_a_try = [&] {
-    return out.size - out.lower_bound > out.lower_bound / wasted_fraction;
+    return out.size - out.lower_bound > out.lower_bound / waste_divisor;
   };
   if (!worth_a_try()) return;
   if (!large) {

@@ -158,7 +158,8 @@ struct Versions {
   }
 };
 
-// Returns the use of a history at the same port for which `use` is the substitute, or nullptr.
+// If `use` is read only while a history is invalid, returns the use of that history at the same
+// port; otherwise nullptr.
 inline const Use* history_of(const Use& use) {
   if (use.when != ReadWhen::history_invalid) return nullptr;
   const Use* at = &use;

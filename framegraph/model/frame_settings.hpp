@@ -12,8 +12,8 @@ namespace dermis {
 // the setting's value. Thread: any.
 std::vector<uint8_t> frame_settings(const Graph& graph, const PassTypeRegistry& pass_types);
 
-// Returns whether the formats that a port supports follow the graph setting (Port::formats_while),
-// so that a plan depends on its value. Thread: any.
+// Returns whether the formats that any port of a pass supports depend on the graph setting
+// (Port::formats_while), so that another value needs another plan. Thread: any.
 bool selects_formats(const Graph& graph, const PassTypeRegistry& pass_types, SettingId setting);
 
 // Returns whether a pass setting that is a constant of kernels follows the graph setting. Thread:

@@ -192,8 +192,9 @@ struct HostImage {
   HostState before, after;
   // layers of the image that barriers apply to; 0 layers: all from first_layer
   uint32_t first_layer = 0, layers = 0;
-  // Equal numbers and handles in two frames: the image and its view are the same objects, because
-  // Vulkan reuses handles. content_id 0: not known.
+  // Handles alone do not identify an object, because Vulkan reuses them. If ids and handles of two
+  // frames are equal, so are the image and its view, and their descriptors are not rewritten.
+  // content_id 0: not known; descriptors are always rewritten.
   uint64_t content_id = 0, view_id = 0;
 };
 

@@ -29,7 +29,7 @@ public:
   explicit KernelStore(KernelStore& shared) : shared_(&shared) {}
   // Returns null if no pipeline has a kernel with that pass type and KernelCode::version.
   std::shared_ptr<const Kernel> find_kernel(PassTypeId type, uint64_t version) const;
-  // Returns the pipeline of such a kernel with these values of its constants, or null.
+  // Returns the pipeline of the pass type's kernel with this version and these constants, or null.
   std::shared_ptr<const Pipeline> find(PassTypeId type, uint64_t version,
                                        std::span<const uint32_t> constants) const;
   void add(std::shared_ptr<const Pipeline> pipeline);

@@ -2,9 +2,9 @@
 
 #include "framegraph/text/document.hpp"
 #include "integration/abi/compiled_graph.hpp"
+#include "integration/abi/error_learning.hpp"
 #include "passes/choice/defaults.hpp"
 #include "passes/choice/tile_selection.hpp"
-#include "passes/common/probe.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -89,57 +89,6 @@ void learn(Chooser& chooser, std::span<const choice::PassLoad> passes, choice::T
 void reduce_optimism(choice::CostEstimator& costs, const choice::Configuration& configuration) {
   for (const choice::PassLoad& pass : configuration.passes)
     costs.reduce_optimism(pass.cost);
-}
-
-// Returns the technique whose correction applies. Samples of tiles change a technique's error by
-// almost the same factor on all scenes, so both have one correction. Selected tiles show the
-// technique that probes measure in all tiles.
-int32_t corrected_technique(const choice::ErrorCorrection& correction,
-                            const choice::Configuration& configuration) {
-  if (configuration.selects_tiles && correction.compared >= 0) return correction.compared;
-  return configuration.without_samples >= 0 ? configuration.without_samples
-                                            : configuration.technique;
-}
-
-// Returns the fraction of the tiles that a frame selected; 0 while their weights still change.
-double selected_fraction(const FrameChoice& frame) {
-  const subsurface::FrameCounters& counters = frame.counters;
-  if (frame.fading || counters.sample_demand == 0) return 0;
-  return std::min(1.0, double(counters.sample_units) / counters.sample_demand);
-}
-
-// Learns the ratio of the error that the probe measured to the error that the table predicts.
-void learn_error(Chooser& chooser, const choice::Configuration& configuration,
-                 const FrameChoice& of_frame) {
-  const subsurface::FrameCounters& counters = of_frame.counters;
-  const subsurface::ProbedError probed = subsurface::probed_error(counters);
-  if (probed.tiles == 0 || counters.scattering_tiles == 0) return;
-  // The probe's reference only sees the screen, so light that rays find beyond it is not an error.
-  if (configuration.technique >= 0 &&
-      chooser.errors.techniques[static_cast<size_t>(configuration.technique)].by_rays)
-    return;
-  const choice::FrameKey key = {mean_d_px(counters), mean_relief(counters)};
-  choice::ProbedFrame frame;
-  frame.technique = corrected_technique(chooser.error_correction, configuration);
-  frame.square = probed.square;
-  frame.expected = expected_rmse(chooser.errors, configuration, key, counters.sample_units,
-                                 counters.sample_demand);
-  frame.unscattered_square = probed.unscattered_square;
-  frame.expected_unscattered = expected_rmse(chooser.errors, -1, key);
-  if (const int32_t compared = chooser.error_correction.compared; compared >= 0) {
-    frame.compared_square = probed.separable_square;
-    frame.compared_expected = expected_rmse(chooser.errors, compared, key);
-    if (configuration.selects_tiles) { // only a part of the picture shows it
-      frame.selection_square = probed.square;
-      frame.selected = selected_fraction(of_frame);
-      frame.square = frame.compared_square;
-      frame.expected = frame.compared_expected;
-    }
-  }
-  if (of_frame.converging) frame.technique = -1; // only the light is observed
-  frame.key = key;
-  frame.now_s = chooser.state.clock_s;
-  observe_error(chooser.error_correction, frame);
 }
 
 uint64_t listed_tiles(const subsurface::FrameCounters& counters) {
@@ -313,45 +262,6 @@ SelectionChange next_selection(const SelectionChange& before, const FrameChoice&
   return now;
 }
 
-constexpr uint32_t first_probes = 16; // enough that single pixels do not decide
-constexpr uint32_t converging_frames =
-    16; // until histories hold about what the error table assumes
-
-TechniqueRun next_run(const Chooser& chooser, const choice::Configuration& configuration,
-                      const Content& content) {
-  const choice::ErrorCorrection& correction = chooser.error_correction;
-  const int32_t technique = corrected_technique(correction, configuration);
-  if (technique == chooser.run.technique && !content.cut)
-    return {technique, chooser.run.frames + 1, chooser.run.known};
-  return {technique, 0,
-          measured_frames(correction, technique, content.key, chooser.state.clock_s, content.cut) >=
-              first_probes};
-}
-
-// Returns the first frame of a run whose error is the technique's.
-uint32_t first_valid_frame(const choice::Configuration& configuration) {
-  return configuration.accumulates ? converging_frames : 0;
-}
-
-// Returns whether the error of what runs is being measured.
-bool is_learning(const Chooser& chooser, const CompiledGraph& compiled_graph) {
-  const uint32_t current = chooser.state.current;
-  return chooser.run.technique >= -1 && !chooser.run.known &&
-         current < compiled_graph.configurations.size() &&
-         chooser.run.frames <
-             first_valid_frame(compiled_graph.configurations[current]) + first_probes;
-}
-
-// Decides whether the frame's error is probed, and whether it is the technique's.
-void plan_probe(FrameChoice& frame, const Chooser& chooser,
-                const choice::Configuration& configuration, const Content& content) {
-  if (chooser.budget.ms <= 0) return; // nothing is chosen
-  frame.run = next_run(chooser, configuration, content);
-  const uint32_t first = first_valid_frame(configuration);
-  frame.converging = frame.run.frames < first;
-  frame.probed = !frame.run.known && !frame.converging && frame.run.frames < first + first_probes;
-}
-
 // Returns the limit on the samples of tiles. Units above the demand that fit are allowed, because
 // the demand may grow.
 uint32_t units_of(const choice::Decision& decision, const choice::Forecast& forecast) {
@@ -463,7 +373,7 @@ FrameChoice choose(Chooser& chooser, const CompiledGraph& compiled_graph,
   frame.configuration = frame.decision.configuration;
   frame.switches = state.switches;
   frame.cut = request.cut;
-  plan_probe(frame, chooser, compiled_graph.configurations[frame.configuration], content);
+  plan_probe(frame, chooser, compiled_graph.configurations[frame.configuration], content.key);
   return frame;
 }
 

@@ -24,8 +24,8 @@ void give(vec4 value) {
   barrier();
 }
 
-// Returns the outer child that find_seed() would choose, plus 16 if it is of the second layer; -1
-// if there is none.
+// Returns the outer child that find_seed() would choose for a texel without a central one: the
+// heaviest that may be a seed. Adds 16 if it is of the second layer; -1 if there is none.
 int find_outer(sap_parent parent, sap_texel before) {
   vec4 weights;
   int row = part_of_lane() & 3;

@@ -8,10 +8,10 @@ namespace dermis::subsurface {
 // Returns half the diagonal of a pixel's footprint at the given depth, metres.
 double half_pixel_diagonal(const PixelRays& rays, double depth);
 
-// Returns K_c integrated over the pixel at integer offset (dx, dy) on a plane facing the viewer:
-// the fraction of light that a pixel receives from there. 0 beyond the reference's radius. Pixel
-// pitches and d are in metres; d > 0 in some channel. The second form takes any profile and a
-// radius (at least reach_of plus half a diagonal).
+// Returns the fraction of its light that a pixel receives from the pixel at integer offset (dx, dy)
+// on a plane facing the viewer: R_c integrated over that pixel. 0 beyond the reference's radius.
+// Pixel pitches and d are in metres; d > 0 in at least one channel. The second overload takes any
+// profile and a cut-off radius (at least reach_of plus half a diagonal).
 PerChannel planar_weight(double pitch_x, double pitch_y, int64_t dx, int64_t dy,
                          const PerChannel& d);
 PerChannel planar_weight(double pitch_x, double pitch_y, int64_t dx, int64_t dy,

@@ -373,6 +373,27 @@ TEST_F(Probe, FirstFramesAfterACut_AreAllProbed) {
     EXPECT_EQ(run_frame(checks).probed_tiles, 1u) << i;
 }
 
+// The table holds the error of a technique whose histories have converged.
+TEST_F(Probe, FirstFramesOfAHistory_AreNoErrorOfTheTechnique) {
+  const auto predictions = [&](const char* technique) {
+    last_frame = 0; // Each frame number has its tiles.
+    make(technique);
+    set("history", "\"camera\"");
+    set_budget(1000);
+    make_images(graph);
+    std::vector<double> predicted;
+    for (int i = 0; i < 40; ++i)
+      predicted.push_back(run_frame(checks).predicted_rmse);
+    return predicted;
+  };
+  const std::vector<double> light = predictions("\"off\""), afis = predictions("\"afis\"");
+  // Both follow the light, which is the same.
+  const auto factor = [&](int frame) { return afis[frame] / light[frame]; };
+  for (int i = 3; i < 15; ++i)
+    EXPECT_NEAR(factor(i), factor(2), 1e-3 * factor(2)) << i;
+  EXPECT_GT(std::abs(std::log(factor(39) / factor(2))), 0.2) << "then its error is measured";
+}
+
 TEST_F(Probe, OverlayProbesOtherGraphs) {
   GraphOptions options = shipped_options("configs/graphs/sap.json");
   options.overlays = {read_text("configs/overlays/probe.json")};

@@ -168,6 +168,55 @@ TEST_F(Decide, ErrorsAlmostEqual_DoNotSwitch) {
 
 // The second configuration includes transmission. The first has less error in views without
 // transmission.
+// A forecast whose error was measured in probed frames.
+Forecast measured(double rmse, double frames = 20) {
+  Forecast forecast = known(1, rmse);
+  forecast.error_frames = frames;
+  return forecast;
+}
+
+TEST_F(Decide, UnprovenError_MustBeMuchSmaller) {
+  decide({measured(5e-3), known(1, 6e-3)}, 2);
+  EXPECT_EQ(decide({measured(5e-3), known(1, 4.7e-3)}, 2).configuration, 0u);
+  EXPECT_EQ(decide({measured(5e-3), measured(4.7e-3, 2)}, 2).configuration, 0u);
+  EXPECT_EQ(decide({measured(5e-3), known(1, 4.2e-3)}, 2).configuration, 1u);
+}
+
+TEST_F(Decide, ProvenError_OrNoProbe_IsTakenIfSmaller) {
+  for (const double frames : {0.0, 20.0}) {
+    state = {};
+    decide({measured(5e-3, frames), known(1, 6e-3)}, 2);
+    EXPECT_EQ(decide({measured(5e-3, frames), measured(4.7e-3, frames)}, 2).configuration, 1u);
+  }
+}
+
+TEST_F(Decide, UnprovenError_WaitsForTheErrorOfWhatRuns) {
+  decide({measured(5e-3), known(1, 6e-3)}, 2);
+  frame.learning = true;
+  const Decision decision = decide({measured(5e-3), known(1, 3e-3)}, 2);
+  EXPECT_EQ(decision.configuration, 0u);
+  EXPECT_EQ(decision.why, ReasonKind::held);
+  EXPECT_EQ(decide({measured(5e-3), measured(3e-3)}, 2).configuration, 1u) << "it is proven";
+}
+
+TEST_F(Decide, UnprovenError_IsLeftAtOnceIfItWasWrong) {
+  decide({measured(5e-3), known(1, 6e-3)}, 2);
+  ASSERT_EQ(decide({measured(5e-3), known(1, 3e-3)}, 2).configuration, 1u);
+  EXPECT_EQ(decide({measured(5e-3), measured(8e-3, 1)}, 2).configuration, 0u);
+  // The next one waits until it, too, can be left at once.
+  for (int i = 0; i < 230; ++i) // 3.8 s
+    ASSERT_EQ(decide({measured(5e-3), measured(3e-3, 1)}, 2).configuration, 0u) << i;
+  for (int i = 0; i < 20; ++i)
+    decide({measured(5e-3), measured(3e-3, 1)}, 2);
+  EXPECT_EQ(state.current, 1u);
+}
+
+// A proven configuration is taken instead of an unproven one with slightly less error.
+TEST_F(Decide, ProvenError_IsPreferred) {
+  decide({measured(5e-3), known(1, 6e-3), known(1, 6e-3)}, 2);
+  EXPECT_EQ(decide({measured(5e-3), known(1, 3.9e-3), measured(4e-3)}, 2).configuration, 2u);
+}
+
 TEST_F(Decide, TransmissionIsTheReasonIfItDecides) {
   const std::vector<Forecast> lit_in_front{known(1, 2e-3), known(4, 0.1)};
   const std::vector<Forecast> lit_behind{known(1, 0.3, 0.2999), known(4, 0.1)};

@@ -81,14 +81,14 @@ bool warn_of_surfaces(const CapturedFrame& frame, Diagnostics& diagnostics) {
     return fmt::format("frame {}: {}", frame.description.frame_index, text);
   };
   if (const double aspect = pixel_aspect(frame.rays);
-      aspect > largest_followed_aspect && !holds(diagnostics, DiagnosticId::pixels_not_square))
+      aspect > largest_compensated_aspect && !holds(diagnostics, DiagnosticId::pixels_not_square))
     diagnostics.add(
         DiagnosticId::pixels_not_square, {},
         of_frame(fmt::format(
             "pixels are {:.2f} times as {} as in the other direction; pyramids "
             "follow the shape of pixels up to {:.0f}, and scatter too far along the longer side",
             aspect, std::abs(frame.rays.scale_x) > std::abs(frame.rays.scale_y) ? "wide" : "high",
-            largest_followed_aspect)));
+            largest_compensated_aspect)));
   if (!holds(diagnostics, DiagnosticId::surface_dithered))
     if (const double tiles = dithered_tiles(frame); tiles > largest_folded_tiles)
       diagnostics.add(DiagnosticId::surface_dithered, {},

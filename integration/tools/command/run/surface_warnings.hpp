@@ -9,9 +9,9 @@ namespace dermis::tools {
 
 // Returns the longer side of a pixel over the shorter side; 1 is square.
 double pixel_aspect(const subsurface::PixelRays& rays);
-// Pyramids halve the longer side of a pixel at most two times less than the other, so they follow
-// the shape of a pixel up to this aspect: 2^(max_pixel_doublings + 1 - pixel_doubling_bias).
-inline constexpr double largest_followed_aspect = 6;
+// Along the axis in which pixels are longer, a pyramid skips up to two halvings, so it compensates
+// for non-square pixels up to this aspect: 2^(max_pixel_doublings + 1 - pixel_doubling_bias).
+inline constexpr double largest_compensated_aspect = 6;
 
 // Returns the fraction (0..1) of the 8x8 tiles with subsurface that show a dithered surface. In
 // such a tile at least an eighth of the pixels have two neighbours, along a row or a column, that

@@ -130,7 +130,8 @@ std::string deliver_report(const Report& report, const std::string& json, const 
 // Returns whether a technique is not one of the project's own, by its name in the reports.
 bool is_baseline(std::string_view technique);
 
-// A series of the page's plots. Each has its own style; baselines differ only by their lines.
+// A series of the page's plots. Each has its own colour; baselines are all grey and differ in the
+// dashes of their lines.
 struct SeriesName {
   std::string name;
   bool baseline = false;
