@@ -100,6 +100,7 @@ void report_lacking(const dermis_view_t& view, const ViewTables& tables, Diagnos
 void take_over(dermis_view_t& view, ViewTables& tables) noexcept {
   std::swap(view.chooser.errors, tables.errors);
   std::swap(view.chooser.error_correction, tables.error_correction);
+  view.chooser.run = view.chooser.previous_run = {}; // its technique is of the old table
   std::swap(view.chooser.calibration, tables.calibration);
   std::swap(view.chooser.costs, tables.costs);
   for (auto& [compiled_graph, configurations] : tables.compiled_graphs)

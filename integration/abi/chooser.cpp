@@ -218,6 +218,7 @@ std::span<choice::Forecast> forecast_first(Chooser& chooser, const CompiledGraph
     out.unsampled_rmse =
         error_of(configuration.without_samples, factor_of(configuration.without_samples));
     out.missed_rmse = missed;
+    out.is_probed = is_probed(chooser.errors, configuration);
     out.error_frames = measured_frames(chooser.error_correction,
                                        corrected_technique(chooser.error_correction, configuration),
                                        content.key, now_s, content.cut);

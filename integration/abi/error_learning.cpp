@@ -25,10 +25,12 @@ TechniqueRun next_run(const Chooser& chooser, const choice::Configuration& confi
                       const choice::FrameKey& key, bool cut) {
   const choice::ErrorCorrection& correction = chooser.error_correction;
   const int32_t technique = corrected_technique(correction, configuration);
+  const bool can_be_probed = !chooser.counted || chooser.counters.scattering_tiles > 0;
   if (technique == chooser.run.technique && !cut)
-    return {technique, chooser.run.frames + 1, chooser.run.known};
+    return {technique, chooser.run.frames + (can_be_probed ? 1 : 0), chooser.run.known};
   return {technique, 0,
-          measured_frames(correction, technique, key, chooser.state.clock_s, cut) >= first_probes};
+          measured_frames(correction, technique, key, chooser.state.clock_s, cut) >=
+              choice::proven_frames};
 }
 
 // Returns the first frame of a run whose error is the technique's.
@@ -37,6 +39,11 @@ uint32_t first_valid_frame(const choice::Configuration& configuration) {
 }
 
 } // namespace
+
+bool is_probed(const choice::ErrorModel& errors, const choice::Configuration& configuration) {
+  return configuration.technique < 0 ||
+         !errors.techniques[static_cast<size_t>(configuration.technique)].by_rays;
+}
 
 int32_t corrected_technique(const choice::ErrorCorrection& correction,
                             const choice::Configuration& configuration) {
@@ -50,10 +57,7 @@ void learn_error(Chooser& chooser, const choice::Configuration& configuration,
   const subsurface::FrameCounters& counters = of_frame.counters;
   const subsurface::ProbedError probed = subsurface::probed_error(counters);
   if (probed.tiles == 0 || counters.scattering_tiles == 0) return;
-  // The probe's reference only sees the screen, so light that rays find beyond it is not an error.
-  if (configuration.technique >= 0 &&
-      chooser.errors.techniques[static_cast<size_t>(configuration.technique)].by_rays)
-    return;
+  if (!is_probed(chooser.errors, configuration)) return;
   const choice::FrameKey key = {mean_d_px(counters), mean_relief(counters)};
   choice::ProbedFrame frame;
   frame.technique = corrected_technique(chooser.error_correction, configuration);
@@ -92,7 +96,15 @@ void plan_probe(FrameChoice& frame, const Chooser& chooser,
   frame.run = next_run(chooser, configuration, key, frame.cut);
   const uint32_t first = first_valid_frame(configuration);
   frame.converging = frame.run.frames < first;
-  frame.probed = !frame.run.known && !frame.converging && frame.run.frames < first + first_probes;
+  frame.probed = !frame.run.known && !frame.converging && frame.run.frames < first + first_probes &&
+                 is_probed(chooser.errors, configuration);
+}
+
+void restart_histories(FrameChoice& frame, const choice::Configuration& configuration) {
+  if (frame.run.technique == TechniqueRun{}.technique || !configuration.accumulates) return;
+  frame.run.frames = 0;
+  frame.converging = true;
+  frame.probed = false;
 }
 
 } // namespace dermis::abi

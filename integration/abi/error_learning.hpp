@@ -6,6 +6,9 @@
 
 namespace dermis::abi {
 
+// Returns whether probes can tell the configuration's error. Their reference only sees the screen,
+// so light that rays find beyond it is not an error.
+bool is_probed(const choice::ErrorModel& errors, const choice::Configuration& configuration);
 // Returns the technique whose correction applies. Samples of tiles change a technique's error by
 // almost the same factor on all scenes, so both have one correction. Selected tiles show the
 // technique that probes measure in all tiles.
@@ -22,5 +25,7 @@ bool is_learning(const Chooser& chooser, const CompiledGraph& compiled_graph);
 // error is the technique's. Expects FrameChoice::cut.
 void plan_probe(FrameChoice& frame, const Chooser& chooser,
                 const choice::Configuration& configuration, const choice::FrameKey& key);
+// Corrects the plan of a frame in which a history is invalid.
+void restart_histories(FrameChoice& frame, const choice::Configuration& configuration);
 
 } // namespace dermis::abi

@@ -1,3 +1,4 @@
+#include "integration/abi/error_learning.hpp"
 #include "integration/abi/frame_check.hpp"
 
 #include <algorithm>
@@ -119,6 +120,8 @@ dermis_result record_chosen(dermis_view_t& view, CompiledGraph& compiled_graph, 
     return result;
   chosen.left_out = checked.empty_bounds();
   chosen.history_invalid = checked.history_invalid;
+  if (chosen.history_invalid)
+    restart_histories(chosen, compiled_graph.configurations[chosen.configuration]);
   if (chosen.left_out) chosen.decision.expected_ms = chosen.decision.bound_ms = 0;
   collect(view, frame.completed_frame_index);
   if (capture != nullptr) capture_into(*capture, checked.input);

@@ -15,14 +15,16 @@ constexpr double min_gap = 0.02, gap_of_margin = 0.3;
 // A switch needs an error below this fraction of the running configuration's. Trials rank behind
 // known configurations by the same factor.
 constexpr double worth_a_switch = 0.98;
-// A configuration whose error is known from fewer probed frames is unproven, if the error of what
-// runs is measured: it is entered only for an error below this fraction.
-constexpr double proven_frames = 8, worth_a_try = 0.9;
+// A configuration whose error is known from fewer than proven_frames is unproven, if the error of
+// what runs is measured. It is entered only for an error below this fraction. The same gain is
+// needed to leave what runs because of its first few probed frames.
+constexpr double worth_a_try = 0.9, few_frames = 4;
+constexpr double min_frames = 0.5; // fewer measure nothing, because they are old
 // Token bucket: at most T + 1 switches in any T >= 1 seconds.
 constexpr double switches_per_second = 0.5, max_tokens = 2;
 // A trial needs another switch to come back. So may what should fit for certain, if times were
-// disturbed when it was judged: then it is left after at most a second. So may an unproven one:
-// then the configuration before returns at once.
+// disturbed when it was judged: then it is left after at most a second. So may an unproven one,
+// from which the configuration before returns at once.
 constexpr double trial_tokens = 2, better_tokens = 1.5, leaving_tokens = 1;
 // Until the first seconds have passed, each pass may be tried.
 constexpr double first_s = 3, first_tokens_per_pass = 2;
@@ -123,10 +125,25 @@ private:
     return std::clamp(ms / std::max(unit_ms, min_ms), 0.0, demand);
   }
 
+  // Returns the number of probed frames of what runs; 0: its error is not measured.
+  double frames_of_current() const {
+    if (state_.current == no_configuration) return 0;
+    const double frames = forecasts_[state_.current].error_frames;
+    return frames > min_frames ? frames : 0;
+  }
+  // In the frame of a cut, a change is not visible.
   bool unproven(uint32_t i) const {
-    return i != state_.current && state_.current != no_configuration &&
-           forecasts_[state_.current].error_frames > 0 &&
-           forecasts_[i].error_frames < proven_frames;
+    return i != state_.current && !frame_.cut && frames_of_current() > 0 &&
+           forecasts_[i].is_probed && forecasts_[i].error_frames < proven_frames;
+  }
+  bool may_enter_unproven(uint32_t i) const {
+    const bool first_trial = assessed_[i].trial && state_.clock_s - state_.started_s <= first_s;
+    return state_.tokens >= trial_tokens && (!frame_.learning || first_trial);
+  }
+  // Returns whether the running configuration was entered unproven, and its error is being learned.
+  bool is_tried() const {
+    const double frames = frames_of_current();
+    return frames > 0 && (frames < proven_frames || frame_.learning);
   }
 
   template <class Fits> uint32_t best(Fits fits) const {
@@ -209,20 +226,23 @@ private:
       decision.why = ReasonKind::held;
       return;
     }
-    const uint32_t better =
-        best([&](uint32_t i) { return assessed_[i].entering_ms <= assessed_[i].enter_ms; });
-    decision.why = ReasonKind::fits_best;
+    const auto fits = [&](uint32_t i) { return assessed_[i].entering_ms <= assessed_[i].enter_ms; };
+    uint32_t better = best(fits);
+    const bool barred =
+        better != no_configuration && unproven(better) && !may_enter_unproven(better);
+    if (barred) better = best([&](uint32_t i) { return fits(i) && !unproven(i); });
+    decision.why = barred ? ReasonKind::held : ReasonKind::fits_best;
     if (better == no_configuration || better == now ||
         assessed_[better].entering_rmse >= assessed_[now].rmse)
       return;
     decision.why = ReasonKind::held;
-    const bool trial = assessed_[better].trial, unknown = unproven(better);
-    const double tokens = trial || unknown          ? trial_tokens
-                          : better == state_.before ? leaving_tokens
-                                                    : better_tokens;
-    const double gain = unknown ? worth_a_try : worth_a_switch;
-    if (assessed_[better].entering_rmse > gain * assessed_[now].rmse || state_.tokens < tokens ||
-        (unknown && frame_.learning))
+    const bool trial = assessed_[better].trial;
+    const double tokens = trial || unproven(better)               ? trial_tokens
+                          : better == state_.before && is_tried() ? leaving_tokens
+                                                                  : better_tokens;
+    const bool few = frames_of_current() > 0 && frames_of_current() < few_frames;
+    const double gain = few || unproven(better) ? worth_a_try : worth_a_switch;
+    if (assessed_[better].entering_rmse > gain * assessed_[now].rmse || state_.tokens < tokens)
       return;
     decision.configuration = better;
     decision.why = trial && may_try() ? ReasonKind::trial : ReasonKind::better_fits;

@@ -35,6 +35,7 @@ struct Forecast {
   // mean squares.
   double concentration = 1;
   double error_frames = 0; // number of probed frames that rmse is known from; 0: the error table
+  bool is_probed = true;   // probed frames can tell its error
   // part of rmse: light transmitted through thin parts that the configuration ignores
   double missed_rmse = 0;
 };
@@ -76,6 +77,8 @@ struct FrameInput {
 };
 
 inline constexpr uint32_t no_configuration = UINT32_MAX;
+// Number of probed frames from which an error is known well enough to rely on it.
+inline constexpr double proven_frames = 8;
 
 struct Decision {
   uint32_t configuration = 0;

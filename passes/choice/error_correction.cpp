@@ -24,8 +24,7 @@ constexpr double min_selected = 0.02;
 constexpr double min_concentration = 0.05, max_concentration = 12;
 // Time after which a technique that does not run is worth another try.
 constexpr double forgotten_s = 60;
-constexpr double age_of_a_cut = 3;          // times forgotten_s
-constexpr double min_table_deviation = 0.1; // also of rows whose spread was not measured
+constexpr double age_of_a_cut = 3; // times forgotten_s
 // Factors between the contents of two frames that make measurements of one worth little to the
 // other.
 constexpr double other_d = 2, other_relief = 4;
@@ -37,9 +36,12 @@ bool are_variants(const TechniqueError& a, const TechniqueError& b) {
          a.pass_types.front().type == b.pass_types.front().type;
 }
 
-// Returns the logarithm of the spread of a technique's errors between scenes.
-double deviation_at(const TechniqueError& technique, double d_px) {
-  return std::max(std::log(spread_at(technique.curve, d_px)), min_table_deviation);
+// Returns the exponent with which the factor of a measured technique holds for a variant of it: the
+// ratio of the spreads of their errors, at most 1. 1 if a spread was not measured.
+double shared_fraction(const TechniqueError& measured, const TechniqueError& variant, double d_px) {
+  const double from = std::log(spread_at(measured.curve, d_px)),
+               to = std::log(spread_at(variant.curve, d_px));
+  return from > 0 && to > 0 ? std::min(to / from, 1.0) : 1;
 }
 
 double factor_of(const ErrorCorrection::Line& line, const Prior& prior) {
@@ -82,8 +84,7 @@ Prior prior_of(const ErrorCorrection& correction, size_t technique, const FrameK
     const ErrorCorrection::Line& line = correction.lines[t + 1];
     const TechniqueError& other = correction.techniques[t];
     if (t == technique || line.frames <= 0 || !are_variants(own, other)) continue;
-    const double units = deviation_at(own, key.d_px) / deviation_at(other, key.d_px);
-    logs += line.frames * std::min(units, 1.0) *
+    logs += line.frames * shared_fraction(other, own, key.d_px) *
             std::log(valid_factor(line, technique_prior, key, now_s, cut));
     frames += line.frames;
   }

@@ -13,7 +13,7 @@
 
 namespace dermis::choice {
 
-// Sums of squares of recent probed frames. Plain data.
+// Sums of squares of recent probed frames, and the table that they correct. Plain data.
 struct ErrorCorrection {
   struct Line {
     double probed = 0, expected = 0; // sums

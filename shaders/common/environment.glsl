@@ -8,7 +8,8 @@ layout(std140, set = 1, binding = 0) uniform frame_block {
   ivec2 tiles;       // 8x8 tiles of the rectangle
   uint frame_index;
   // bit 0: perspective, bit 1: depth is view depth, bit 2: history invalid, bit 3: the frame
-  // before was perspective, bit 4: normal images are left-handed
+  // before was perspective, bit 4: normal images are left-handed, bit 5: the error is probed
+  // whatever the interval between probed frames
   uint flags;
   vec2 ray_scale;    // view x, y = (scale * pixel + offset) * (perspective ? depth : 1), mm
   vec2 ray_offset;

@@ -351,13 +351,31 @@ TEST_F(Probe, FirstFramesOfATechnique_AreAllProbed) {
   set_budget(1000);
   EXPECT_EQ(probed_of(16), 16);
   EXPECT_LE(probed_of(48), 2);
-  set("technique", "\"separable\"");
+  set("technique", "\"sap\"");
   make_images(graph);
   EXPECT_EQ(probed_of(16), 16) << "of another technique";
   EXPECT_LE(probed_of(48), 2);
-  set("technique", "\"off\"");
+  set("technique", "\"separable\"");
+  make_images(graph);
+  EXPECT_LE(probed_of(48), 2) << "each probed frame measures it";
+  set("technique", "\"sap\"");
   make_images(graph);
   EXPECT_LE(probed_of(48), 2) << "its error is known";
+}
+
+// Frames without subsurface tell nothing.
+TEST_F(Probe, FirstFramesWithSubsurface_AreAllProbed) {
+  make("\"separable\"");
+  set("probe_interval", "256");
+  set_budget(1000);
+  fill("material", [](uint32_t, uint32_t) { return 0.0f; });
+  for (int i = 0; i < 40; ++i)
+    run_frame(checks);
+  fill("material", [](uint32_t, uint32_t) { return 1.0f; });
+  int probed = 0;
+  for (int i = 0; i < 16; ++i)
+    probed += run_frame(checks).probed_tiles > 0 ? 1 : 0;
+  EXPECT_GE(probed, 12) << "up to the latency of counters less";
 }
 
 TEST_F(Probe, FirstFramesAfterACut_AreAllProbed) {

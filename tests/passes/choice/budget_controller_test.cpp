@@ -166,8 +166,6 @@ TEST_F(Decide, ErrorsAlmostEqual_DoNotSwitch) {
   EXPECT_LE(state.switches, 0u);
 }
 
-// The second configuration includes transmission. The first has less error in views without
-// transmission.
 // A forecast whose error was measured in probed frames.
 Forecast measured(double rmse, double frames = 20) {
   Forecast forecast = known(1, rmse);
@@ -211,12 +209,43 @@ TEST_F(Decide, UnprovenError_IsLeftAtOnceIfItWasWrong) {
   EXPECT_EQ(state.current, 1u);
 }
 
+// Another unproven configuration does not keep the way back from being taken.
+TEST_F(Decide, UnprovenError_DoesNotHideTheWayBack) {
+  decide({measured(5e-3), known(1, 6e-3), known(1, 6e-3)}, 2);
+  ASSERT_EQ(decide({measured(5e-3), known(1, 3e-3), known(1, 4.4e-3)}, 2).configuration, 1u);
+  EXPECT_EQ(decide({measured(5e-3), measured(8e-3, 2), known(1, 4.4e-3)}, 2).configuration, 0u);
+}
+
+TEST_F(Decide, UnprovenError_IsNotLeftForASmallDifference) {
+  decide({measured(5e-3), known(1, 6e-3)}, 2);
+  ASSERT_EQ(decide({measured(5e-3), known(1, 3e-3)}, 2).configuration, 1u);
+  EXPECT_EQ(decide({measured(5e-3), measured(5.3e-3, 2)}, 2).configuration, 1u)
+      << "two frames tell little";
+  EXPECT_EQ(decide({measured(5e-3), measured(5.3e-3, 6)}, 2).configuration, 0u);
+}
+
+TEST_F(Decide, CutsTakeUnprovenErrors) {
+  decide({measured(5e-3), known(1, 6e-3)}, 2);
+  frame.cut = frame.learning = true;
+  EXPECT_EQ(decide({measured(5e-3), known(1, 4.7e-3)}, 2).configuration, 1u);
+}
+
+// Rays find light beyond the screen, which the probe's reference lacks.
+TEST_F(Decide, ErrorsThatProbesCannotTell_AreThoseOfTheTable) {
+  Forecast rays = known(1, 4.7e-3);
+  rays.is_probed = false;
+  decide({measured(5e-3), known(1, 6e-3)}, 2);
+  EXPECT_EQ(decide({measured(5e-3), rays}, 2).configuration, 1u);
+}
+
 // A proven configuration is taken instead of an unproven one with slightly less error.
 TEST_F(Decide, ProvenError_IsPreferred) {
   decide({measured(5e-3), known(1, 6e-3), known(1, 6e-3)}, 2);
   EXPECT_EQ(decide({measured(5e-3), known(1, 3.9e-3), measured(4e-3)}, 2).configuration, 2u);
 }
 
+// The second configuration includes transmission. The first has less error in views without
+// transmission.
 TEST_F(Decide, TransmissionIsTheReasonIfItDecides) {
   const std::vector<Forecast> lit_in_front{known(1, 2e-3), known(4, 0.1)};
   const std::vector<Forecast> lit_behind{known(1, 0.3, 0.2999), known(4, 0.1)};
