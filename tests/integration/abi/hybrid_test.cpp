@@ -267,7 +267,7 @@ TEST_F(Hybrid, PartialBudget_BuysSamplesAndReportsTheError) {
   overlays = {R"({ "dermis_overlay": 2, "edits": [
       { "set": "/settings/probe/default", "to": "off" } ] })"}; // Errors are those of the table.
   times.insert(times.rfind("] }"), R"(, { "work": "subsurface.guided", "base_us": 1e9,
-      "group_us": 0, "spread": 0 } )"); // AFIS exceeds each budget.
+      "group_us": 0, "spread": 0 } )");                         // AFIS exceeds each budget.
   const auto run = [&](uint32_t units) {
     picture(units);
     return reported;

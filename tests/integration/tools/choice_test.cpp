@@ -25,9 +25,10 @@ TEST_F(Choice, FramesReportExpectedAndMeasured) {
   const json answer = json::parse(outcome.out);
   ASSERT_EQ(answer["choices"].size(), 4u);
   for (const json& frame : answer["choices"]) {
-    // A second is enough for the smallest error.
+    // A second is enough for the smallest error. At d = 0.2 px these techniques are about equal.
     EXPECT_THAT(frame["technique"].get<std::string>(),
-                ::testing::AnyOf("afis over frames", "hybrid smooth", "sap base", "separable 11"));
+                ::testing::AnyOf("afis over frames", "hybrid smooth", "hybrid base", "sap base",
+                                 "separable 11"));
     EXPECT_EQ(frame["budget_ms"], 1000);
     EXPECT_GT(frame["measured_ms"], 0);
     EXPECT_GT(frame["calibrated_ms"], 0);
