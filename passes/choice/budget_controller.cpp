@@ -237,7 +237,7 @@ private:
       return;
     decision.why = ReasonKind::held;
     const bool trial = assessed_[better].trial;
-    const double tokens = trial || unproven(better)               ? trial_tokens
+    const double tokens = trial                                   ? trial_tokens
                           : better == state_.before && is_tried() ? leaving_tokens
                                                                   : better_tokens;
     const bool few = frames_of_current() > 0 && frames_of_current() < few_frames;
