@@ -35,8 +35,12 @@ const float new_light_factor =
 const float sample_noise = 0.4; // squared noise of a ratio, times the number of its samples
 // The same for young histories, of the ratio of one pixel and of the mean with those around it.
 const float single_noise = 0.9, averaged_noise = 0.05;
-// Number of samples that a moving mean of weight alpha is worth, in n / alpha: (2 - alpha) / alpha.
-const float memory = 1.9;
+// Factors on the estimated noise: inside a surface, and on one that ends nearby, where samples are
+// noisier. Smaller ones make light worse where the pyramid is right.
+const float inner_factor = 1.2, edge_factor = 1.5;
+const float unknown_noise = 1e3; // squared noise of a ratio without neighbours
+// Maximum distance of a neighbour from the tangent plane, in pixel sides.
+const float plane_distance = 2.0;
 
 // Returns how much a ratio applies to light whose pattern differs by `off` from the pattern in
 // which the ratio was learned. The result is the odds of unchanged light against light that changed
@@ -79,12 +83,13 @@ vec4 ratio_before(history_taps taps) {
 
 // Adds the ratio at `at`, next to `ratio`, to the sum of ratios and weights. Ratios that differ by
 // more than their noise count little. `off` receives the difference of their luminances. Returns
-// false, and adds nothing, if `at` does not show the surface.
-bool add_ratio(ivec2 at, vec4 ratio, previous_position place, uint id, float tolerance,
-               inout vec4 sum, out float off) {
+// false, and adds nothing, if `at` does not show profile `id` at `depth` (mm).
+bool add_ratio(ivec2 at, vec4 ratio, float depth, uint id, float tolerance, inout vec4 sum,
+               out float off) {
   off = 0.0;
   if (!inside_previous(at) ||
-      !shows_surface(residual_surface_before(place_image, at), place, id, tolerance))
+      !shows_surface(residual_surface_before(place_image, at), previous_position(vec2(at), depth),
+                     id, tolerance))
     return false;
   vec4 other = texelFetch(ratio_image, previous_texel(at), 0);
   off = residual_luminance(other.rgb - ratio.rgb);
@@ -93,22 +98,38 @@ bool add_ratio(ivec2 at, vec4 ratio, previous_position place, uint id, float tol
   return true;
 }
 
-// Returns the mean with the ratios of the 8 pixels around the previous place that show the surface.
-// a: squared noise of its luminance, from the second differences along four axes, to which an even
-// change of the ratio adds nothing.
-vec4 mean_ratio(vec4 ratio, previous_position place, uint id, float tolerance) {
+// Returns the mean with the ratios of the neighbours that lie on the tangent plane. (The tolerance
+// of the history would let other layers of a dithered surface through.)
+// a: squared noise of its luminance, from the second differences along the axes, to which an even
+// change of the ratio adds nothing. Without any the noise is unknown, and the ratio does not apply.
+vec4 mean_ratio(vec4 ratio, previous_position place, sap_texel own) {
   const ivec2 axes[4] = ivec2[](ivec2(1, 0), ivec2(0, 1), ivec2(1, 1), ivec2(1, -1));
   vec4 sum = vec4(ratio.rgb, 1.0);
+  bool inner = false; // whether all axes stay on the surface
   vec2 bends = vec2(0.0); // squares of the second differences, and their number
   ivec2 centre = ivec2(floor(place.pixel + 0.5));
-  for (int i = 0; i < 4; ++i) {
-    float before, after;
-    bool has_before = add_ratio(centre - axes[i], ratio, place, id, tolerance, sum, before),
-         has_after = add_ratio(centre + axes[i], ratio, place, id, tolerance, sum, after);
+  // A velocity may not tell how the depth changed, so the depth is the one kept at the centre.
+  float depth = place.depth + sap_rise(own.depth, own.slope, vec2(centre) - place.pixel);
+  if (inside_previous(centre)) {
+    vec2 kept = residual_surface_before(place_image, centre);
+    if (shows_surface(kept, place, own.id, tolerance_around(place, own)))
+      depth = kept.x;
+  }
+  float tolerance =
+      plane_distance * sap_footprint(own.depth) + reproject_depth_rounding * place.depth;
+  // The next eight pixels are read only where an axis leaves the surface.
+  for (int i = 0; i < 8 && !inner; ++i) {
+    ivec2 step = axes[i & 3] * (1 + i / 4);
+    float rise = sap_rise(own.depth, own.slope, vec2(step)), before, after;
+    bool has_before = add_ratio(centre - step, ratio, depth - rise, own.id, tolerance, sum, before),
+         has_after = add_ratio(centre + step, ratio, depth + rise, own.id, tolerance, sum, after);
     float bend = before + after;
     bends += has_before && has_after ? vec2(bend * bend, 1.0) : vec2(0.0);
+    inner = inner || (i == 3 && bends.y == 4.0);
   }
-  float variance = bends.x / (6.0 * max(bends.y, 1.0)); // of one ratio
+  // A sixth of the mean square is the squared noise of one ratio. Few squares may be small by chance.
+  float variance = bends.y > 0.0 ? bends.x / (6.0 * bends.y) : unknown_noise;
+  variance *= inner ? inner_factor : edge_factor * (1.0 + 4.0 / max(bends.y, 1.0));
   return vec4(sum.rgb / sum.a, variance / sum.a);
 }
 
@@ -133,7 +154,6 @@ void main() {
   int count = 0;
   bool lost = false;
   previous_position place = previous_position(vec2(0.0), 0.0);
-  float tolerance = 0.0;
   vec2 kept = vec2(never_lit, 0.0); // x: learned pattern, y: squared deviation
   if (own.id != 0u && !copy_only) {
     // change of log luminance, odds that patterns agree, their tolerance
@@ -142,8 +162,7 @@ void main() {
     bool lit = is_lit(light.rgb), turn = is_turn(pixel >> 3, light.a);
     if (history_usable() && own.depth > 0.0) {
       place = place_of(pixel, own);
-      tolerance = tolerance_around(place, own);
-      history_taps taps = find_history(place_image, place, own.id, tolerance);
+      history_taps taps = find_history(place_image, place, own.id, tolerance_around(place, own));
       lost = taps.weight == vec4(0.0);
       if (!lost)
         ratio = ratio_before(taps);
@@ -181,13 +200,14 @@ void main() {
       float weight = max(alpha, float(count) / (ratio.a + float(count)));
       ratio.rgb = mix(ratio.rgb, found, weight);
       kept.x = mix(kept.x, pattern, weight);
-      ratio.a = min(ratio.a + float(count), memory * n / settings.alpha);
+      // A moving mean of weight alpha is worth (2 - alpha) / alpha estimates.
+      ratio.a = min(ratio.a + float(count), (2.0 - settings.alpha) / settings.alpha * n);
     }
     float pattern_agreement =
         first ? 1.0 : agreement_weight(pattern - kept.x, tolerance_of(all.b, kept.y), all.g);
     float fraction = sample_fraction(light.a, ratio.a, settings.sample_weight);
     bool averaged = fraction > 0.0 && !first && !lost && place.depth > 0.0;
-    vec4 mean = averaged ? mean_ratio(ratio, place, own.id, tolerance) : vec4(ratio.rgb, 0.0);
+    vec4 mean = averaged ? mean_ratio(ratio, place, own) : vec4(ratio.rgb, 0.0);
     float beyond = part_beyond_noise(mean, ratio.a, averaged, ratio.a < 4.0 * n);
     light.rgb *= 1.0 + pattern_agreement * fraction * beyond *
                            (min(mean.rgb, vec3(largest_ratio)) - 1.0);

@@ -88,7 +88,7 @@ std::pair<double, double> errors_of(const Refinement& refinement, const JudgedSc
 }
 
 // Compares with the RMSE of `sap` on every scene: at most 1.02 of it, 1.05 in the first of several
-// frames. Measured means: 0.9945, 0.984 and 0.799.
+// frames. Measured means: 0.9945, 0.984 and 0.846.
 TEST_F(Refined, SamplesAreNeverWorseThanThePyramid) {
   Refinement refinements[] = {{"sap_blend", 1, 0.995, "zigzag_56"}, // 1.0202
                               {"hybrid", 1, 0.995},
@@ -119,11 +119,13 @@ TEST_F(Refined, SamplesAreNeverWorseThanThePyramid) {
 // of the present implementation; without the comparison with noise: 1.59 and 3.29.
 TEST_F(Refined, NoiseIsHeldBackWhereSurfacesMix) {
   for (const auto& scene : confidence_scenes::all()) {
-    const double limit = scene.name == "grooves" ? 1.4 : scene.name == "dither" ? 2.5 : 0;
+    const double limit = scene.name == "grooves" ? 1.2 : scene.name == "dither" ? 1.5 : 0;
     if (limit == 0) continue;
     const JudgedScene judged(scene);
     const double sap = judged.rmse(run("sap", judged.plane, {}));
-    EXPECT_LE(errors_of({"sap_residual", 32, 1}, judged).second / sap, limit) << scene.name;
+    const double ratio = errors_of({"sap_residual", 32, 1}, judged).second / sap;
+    RecordProperty(scene.name, std::to_string(ratio));
+    EXPECT_LE(ratio, limit) << scene.name;
   }
 }
 
