@@ -143,6 +143,10 @@ void observe_frame(Chooser& chooser, CompiledGraph& compiled_graph, FrameChoice&
   chooser.counted = true;
   chooser.counters = frame.counters;
   chooser.counted_rectangle = frame.rectangle;
+  if (frame.counters.scattering_tiles == 0) return;
+  chooser.scattering_key = {subsurface::mean_d_px(frame.counters),
+                            subsurface::mean_relief(frame.counters)};
+  chooser.scattering_rectangle = frame.rectangle;
 }
 
 // Contents that a frame is expected to show.
@@ -178,9 +182,9 @@ Content expected_content(const Chooser& chooser, const vulkan::Rectangle& rectan
   out.load.listed_tiles = scaled(counted);
   out.load.copied_tiles = chooser.counters.scattering_tiles == 0 ? out.load.listed_tiles : 0;
   out.scattering_tiles = scaled(chooser.counters.scattering_tiles);
-  if (out.scattering_tiles > 0)
-    out.key = {scale * subsurface::mean_d_px(chooser.counters),
-               subsurface::mean_relief(chooser.counters)};
+  if (chooser.scattering_rectangle.width > 0)
+    out.key = {scale_between(chooser.scattering_rectangle, rectangle) * chooser.scattering_key.d_px,
+               chooser.scattering_key.relief};
   out.units_per_tile = expected_units(chooser.demand, out.key.d_px);
   out.transmitted_rms = subsurface::transmitted_rms(chooser.counters);
   return out;

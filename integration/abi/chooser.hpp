@@ -115,7 +115,11 @@ struct Chooser {
   subsurface::FrameCounters counters;  // of the newest observed frame
   vulkan::Rectangle counted_rectangle; // of the same frame
   bool counted = false;
-  choice::TileGrowth tile_growth; // of tiles with subsurface
+  // Of the newest observed frame in which tiles scattered: light that is off for a frame changes
+  // neither d nor relief.
+  choice::FrameKey scattering_key;
+  vulkan::Rectangle scattering_rectangle; // width 0: no such frame
+  choice::TileGrowth tile_growth;         // of tiles with subsurface
   // of tiles that get samples individually
   choice::SampleDemand demand;
   double last_margin = choice::first_margin;                        // of the frame observed last

@@ -224,6 +224,20 @@ TEST_F(Frontier, FramesWithoutProfile_TellNothing) {
   EXPECT_FLOAT_EQ(later.expected_ms, fresh.expected_ms);
 }
 
+// While light is off no tile scatters, but d and relief are those of the frames before.
+TEST_F(Frontier, DarkFrames_KeepTheExpectedErrors) {
+  make();
+  draw(allocated);
+  set_budget(0);
+  run(allocated, 2);
+  const dermis_outcome lit = predict(allocated, 1000);
+  fill("lighting", [](uint32_t, uint32_t) { return 0.0f; });
+  EXPECT_EQ(run(allocated, 2).scattering_tiles, 0u);
+  const dermis_outcome dark = predict(allocated, 1000);
+  // No tile requests samples, which reduce the error a little.
+  EXPECT_NEAR(dark.expected_rmse / lit.expected_rmse, 1, 0.02);
+}
+
 // The host keeps all passes of a frame within one budget by lowering its resolution. Its own passes
 // take `others_ms` at the allocated size.
 TEST_F(Frontier, Resolution_HoldsOneBudget) {
