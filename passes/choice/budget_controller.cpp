@@ -236,16 +236,27 @@ private:
         assessed_[better].entering_rmse >= assessed_[now].rmse)
       return;
     decision.why = ReasonKind::held;
-    const bool trial = assessed_[better].trial;
-    const double tokens = trial                                   ? trial_tokens
-                          : better == state_.before && is_tried() ? leaving_tokens
-                                                                  : better_tokens;
-    const bool few = frames_of_current() > 0 && frames_of_current() < few_frames;
-    const double gain = few || unproven(better) ? worth_a_try : worth_a_switch;
-    if (assessed_[better].entering_rmse > gain * assessed_[now].rmse || state_.tokens < tokens)
-      return;
+    if (!is_worth_a_switch(better) && is_way_back(state_.before) && fits(state_.before))
+      better = state_.before;
+    if (!is_worth_a_switch(better)) return;
     decision.configuration = better;
-    decision.why = trial && may_try() ? ReasonKind::trial : ReasonKind::better_fits;
+    decision.why =
+        assessed_[better].trial && may_try() ? ReasonKind::trial : ReasonKind::better_fits;
+  }
+
+  // Returns whether the configuration ran before the one that is being tried.
+  bool is_way_back(uint32_t i) const {
+    return i != no_configuration && i == state_.before && is_tried() && !unproven(i);
+  }
+
+  bool is_worth_a_switch(uint32_t i) const {
+    const double tokens = assessed_[i].trial                 ? trial_tokens
+                          : i == state_.before && is_tried() ? leaving_tokens
+                                                             : better_tokens;
+    const bool few = frames_of_current() > 0 && frames_of_current() < few_frames;
+    const double gain = few || unproven(i) ? worth_a_try : worth_a_switch;
+    return state_.tokens >= tokens &&
+           assessed_[i].entering_rmse <= gain * assessed_[state_.current].rmse;
   }
 
   // Configurations that do not fit at best are not tried because of noise.

@@ -216,6 +216,13 @@ TEST_F(Decide, UnprovenError_DoesNotHideTheWayBack) {
   EXPECT_EQ(decide({measured(5e-3), measured(8e-3, 2), known(1, 4.4e-3)}, 2).configuration, 0u);
 }
 
+// A third configuration that is a little better, but needs another token, does not do so either.
+TEST_F(Decide, BetterConfiguration_DoesNotHideTheWayBack) {
+  decide({measured(5e-3), known(1, 6e-3), measured(6e-3)}, 2);
+  ASSERT_EQ(decide({measured(5e-3), known(1, 3e-3), measured(6e-3)}, 2).configuration, 1u);
+  EXPECT_EQ(decide({measured(5e-3), measured(8e-3, 2), measured(4.9e-3)}, 2).configuration, 0u);
+}
+
 TEST_F(Decide, UnprovenError_IsNotLeftForASmallDifference) {
   decide({measured(5e-3), known(1, 6e-3)}, 2);
   ASSERT_EQ(decide({measured(5e-3), known(1, 3e-3)}, 2).configuration, 1u);
