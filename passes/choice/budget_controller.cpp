@@ -19,6 +19,8 @@ constexpr double worth_a_switch = 0.98;
 // what runs is measured. It is entered only for an error below this fraction. The same gain is
 // needed to leave what runs because of its first few probed frames.
 constexpr double worth_a_try = 0.9, few_frames = 4;
+// An unproven error below this fraction is worth a switch without a token to come back.
+constexpr double far_better = 0.5;
 constexpr double min_frames = 0.5; // fewer measure nothing, because they are old
 // Token bucket: at most T + 1 switches in any T >= 1 seconds.
 constexpr double switches_per_second = 0.5, max_tokens = 2;
@@ -138,7 +140,12 @@ private:
   }
   bool may_enter_unproven(uint32_t i) const {
     const bool first_trial = assessed_[i].trial && state_.clock_s - state_.started_s <= first_s;
-    return state_.tokens >= trial_tokens && (!frame_.learning || first_trial);
+    return state_.tokens >= (is_far_better(i) ? leaving_tokens : trial_tokens) &&
+           (!frame_.learning || first_trial);
+  }
+  bool is_far_better(uint32_t i) const {
+    return unproven(i) && !assessed_[i].trial &&
+           assessed_[i].entering_rmse < far_better * assessed_[state_.current].rmse;
   }
   // Returns whether the running configuration was entered unproven, and its error is being learned.
   bool is_tried() const {
@@ -250,9 +257,10 @@ private:
   }
 
   bool is_worth_a_switch(uint32_t i) const {
-    const double tokens = assessed_[i].trial                 ? trial_tokens
-                          : i == state_.before && is_tried() ? leaving_tokens
-                                                             : better_tokens;
+    const bool returns = i == state_.before && is_tried();
+    const double tokens = assessed_[i].trial            ? trial_tokens
+                          : returns || is_far_better(i) ? leaving_tokens
+                                                        : better_tokens;
     const bool few = frames_of_current() > 0 && frames_of_current() < few_frames;
     const double gain = few || unproven(i) ? worth_a_try : worth_a_switch;
     return state_.tokens >= tokens &&

@@ -223,6 +223,15 @@ TEST_F(Decide, BetterConfiguration_DoesNotHideTheWayBack) {
   EXPECT_EQ(decide({measured(5e-3), measured(8e-3, 2), measured(4.9e-3)}, 2).configuration, 0u);
 }
 
+TEST_F(Decide, FarSmallerError_NeedsNoTokenToComeBack) {
+  for (const double rmse : {3e-3, 2e-3}) {
+    state = {};
+    decide({measured(5e-3), known(1, 6e-3)}, 2);
+    state.tokens = 1.2;
+    EXPECT_EQ(decide({measured(5e-3), known(1, rmse)}, 2).configuration, rmse < 2.5e-3 ? 1u : 0u);
+  }
+}
+
 TEST_F(Decide, UnprovenError_IsNotLeftForASmallDifference) {
   decide({measured(5e-3), known(1, 6e-3)}, 2);
   ASSERT_EQ(decide({measured(5e-3), known(1, 3e-3)}, 2).configuration, 1u);
