@@ -143,6 +143,8 @@ void observe_frame(Chooser& chooser, CompiledGraph& compiled_graph, FrameChoice&
   chooser.counted = true;
   chooser.counters = frame.counters;
   chooser.counted_rectangle = frame.rectangle;
+  const double transmitted = subsurface::transmitted_rms(frame.counters);
+  if (frame.counters.scattering_tiles > 0 || transmitted > 0) chooser.transmitted_rms = transmitted;
   if (frame.counters.scattering_tiles == 0) return;
   chooser.scattering_key = {subsurface::mean_d_px(frame.counters),
                             subsurface::mean_relief(frame.counters)};
@@ -186,7 +188,7 @@ Content expected_content(const Chooser& chooser, const vulkan::Rectangle& rectan
     out.key = {scale_between(chooser.scattering_rectangle, rectangle) * chooser.scattering_key.d_px,
                chooser.scattering_key.relief};
   out.units_per_tile = expected_units(chooser.demand, out.key.d_px);
-  out.transmitted_rms = subsurface::transmitted_rms(chooser.counters);
+  out.transmitted_rms = chooser.transmitted_rms;
   return out;
 }
 

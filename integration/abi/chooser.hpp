@@ -115,8 +115,9 @@ struct Chooser {
   subsurface::FrameCounters counters;  // of the newest observed frame
   vulkan::Rectangle counted_rectangle; // of the same frame
   bool counted = false;
-  // Values of the newest observed frame in which tiles scattered: light that is off for a frame
-  // changes neither d nor relief.
+  // Values of the newest observed frame in which tiles scattered, or light was transmitted: light
+  // that is off for a frame changes no expected error.
+  double transmitted_rms = 0;
   choice::FrameKey scattering_key;
   vulkan::Rectangle scattering_rectangle; // width 0: no such frame
   choice::TileGrowth tile_growth;         // of tiles with subsurface

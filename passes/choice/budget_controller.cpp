@@ -19,14 +19,15 @@ constexpr double worth_a_switch = 0.98;
 // what runs is measured. It is entered only for an error below this fraction. The same gain is
 // needed to leave what runs because of its first few probed frames.
 constexpr double worth_a_try = 0.9, few_frames = 4;
-// An unproven error below this fraction is worth a switch without a token to come back.
+// An unproven error below this fraction is entered as what fits for certain.
 constexpr double far_better = 0.5;
 constexpr double min_frames = 0.5; // fewer measure nothing, because they are old
 // Token bucket: at most T + 1 switches in any T >= 1 seconds.
 constexpr double switches_per_second = 0.5, max_tokens = 2;
 // A trial needs another switch to come back. So may what should fit for certain, if times were
 // disturbed when it was judged: then it is left after at most a second. So may an unproven one,
-// from which the configuration before returns at once.
+// from which the configuration before returns at once, or after at most a second if its error was
+// expected to be far smaller.
 constexpr double trial_tokens = 2, better_tokens = 1.5, leaving_tokens = 1;
 // Until the first seconds have passed, each pass may be tried.
 constexpr double first_s = 3, first_tokens_per_pass = 2;
@@ -140,7 +141,7 @@ private:
   }
   bool may_enter_unproven(uint32_t i) const {
     const bool first_trial = assessed_[i].trial && state_.clock_s - state_.started_s <= first_s;
-    return state_.tokens >= (is_far_better(i) ? leaving_tokens : trial_tokens) &&
+    return state_.tokens >= (is_far_better(i) ? better_tokens : trial_tokens) &&
            (!frame_.learning || first_trial);
   }
   bool is_far_better(uint32_t i) const {
@@ -150,7 +151,7 @@ private:
   // Returns whether the running configuration was entered unproven, and its error is being learned.
   bool is_tried() const {
     const double frames = frames_of_current();
-    return frames > 0 && (frames < proven_frames || frame_.learning);
+    return frames > 0 && (state_.tried || frames < proven_frames || frame_.learning);
   }
 
   template <class Fits> uint32_t best(Fits fits) const {
@@ -237,14 +238,16 @@ private:
     uint32_t better = best(fits);
     const bool barred =
         better != no_configuration && unproven(better) && !may_enter_unproven(better);
-    if (barred) better = best([&](uint32_t i) { return fits(i) && !unproven(i); });
+    if (barred)
+      better = best([&](uint32_t i) { return fits(i) && (!unproven(i) || may_enter_unproven(i)); });
     decision.why = barred ? ReasonKind::held : ReasonKind::fits_best;
     if (better == no_configuration || better == now ||
         assessed_[better].entering_rmse >= assessed_[now].rmse)
       return;
     decision.why = ReasonKind::held;
-    if (!is_worth_a_switch(better) && is_way_back(state_.before) && fits(state_.before))
-      better = state_.before;
+    if (!is_worth_a_switch(better) && is_way_back(state_.before) && fits(state_.before) &&
+        worth_a_try * assessed_[state_.before].entering_rmse <= assessed_[better].entering_rmse)
+      better = state_.before; // it is about as good, and needs fewer tokens
     if (!is_worth_a_switch(better)) return;
     decision.configuration = better;
     decision.why =
@@ -257,10 +260,9 @@ private:
   }
 
   bool is_worth_a_switch(uint32_t i) const {
-    const bool returns = i == state_.before && is_tried();
-    const double tokens = assessed_[i].trial            ? trial_tokens
-                          : returns || is_far_better(i) ? leaving_tokens
-                                                        : better_tokens;
+    const double tokens = assessed_[i].trial                 ? trial_tokens
+                          : i == state_.before && is_tried() ? leaving_tokens
+                                                             : better_tokens;
     const bool few = frames_of_current() > 0 && frames_of_current() < few_frames;
     const double gain = few || unproven(i) ? worth_a_try : worth_a_switch;
     return state_.tokens >= tokens &&
@@ -285,6 +287,7 @@ private:
     if (switched && !state_.provisional) ++state_.switches;
     if (switched || before == no_configuration) state_.entered_s = state_.clock_s;
     if (switched) state_.before = before;
+    if (switched) state_.tried = unproven(now);
     state_.current = now;
     state_.provisional = frame_.provisional;
     DecisionState::Configuration& kept = state_.configurations[now];
@@ -417,6 +420,7 @@ void restart(DecisionState& state, size_t configurations, size_t unmeasured) {
   state.configurations.assign(configurations, {});
   state.current = state.before = no_configuration;
   state.provisional = true;
+  state.tried = false;
   state.units = 0;
   state.started_s = state.entered_s = state.clock_s;
   state.tokens = std::max(max_tokens, first_tokens_per_pass * double(unmeasured));

@@ -112,6 +112,7 @@ struct DecisionState {
   std::vector<Configuration> configurations; // empty: restart() was not called
   uint32_t current = no_configuration;       // of the last frame
   uint32_t before = no_configuration;        // ran before `current`
+  bool tried = false;                        // the error of `current` was unproven when it entered
   bool provisional = true;                   // the last decision
   double units = 0;                          // of samples in the last frame
   double clock_s = 0;                        // sum of the seconds of all frames

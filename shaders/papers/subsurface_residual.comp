@@ -112,7 +112,7 @@ vec4 mean_ratio(vec4 ratio, previous_position place, sap_texel own) {
   float depth = place.depth + sap_rise(own.depth, own.slope, vec2(centre) - place.pixel);
   if (inside_previous(centre)) {
     vec2 kept = residual_surface_before(place_image, centre);
-    if (shows_surface(kept, place, own.id, tolerance_around(place, own)))
+    if (has_velocity() && shows_surface(kept, place, own.id, tolerance_around(place, own)))
       depth = kept.x;
   }
   float tolerance =
@@ -180,14 +180,17 @@ void main() {
     float alpha = settings.alpha * mix(new_light_factor, 1.0, agreement);
     bool first = ratio.a == 0.0;
     float n = float(settings.samples);
+    // A moving mean of weight alpha is worth (2 - alpha) / alpha estimates. A half may round down.
+    float most = (2.0 - settings.alpha) / settings.alpha * n;
+    float eager = min(float(settings.eager) * n, 0.95 * most);
     if (light.a >= settings.below) {
       // No ratio is learned here; patterns are, so that they can be compared.
       ratio.a *= 1.0 - 0.25 * settings.alpha;
       if (turn && lit)
         kept.x = mix(kept.x, pattern, alpha);
     } else if (any(greaterThan(light.rgb, vec3(min_light))) && // not in the dark
-               (turn || ratio.a < float(settings.eager) * n)) {
-      count = ratio.a < float(settings.eager) * n ? 2 * settings.samples : settings.samples;
+               (turn || ratio.a < eager)) {
+      count = ratio.a < eager ? 2 * settings.samples : settings.samples;
       // Frames in which the tile samples are consecutive in the sequence; other frames are far from
       // them.
       uint index = (frame.frame_index >> 2) + (frame.frame_index & 3u) * 0x9e3779u;
@@ -200,8 +203,7 @@ void main() {
       float weight = max(alpha, float(count) / (ratio.a + float(count)));
       ratio.rgb = mix(ratio.rgb, found, weight);
       kept.x = mix(kept.x, pattern, weight);
-      // A moving mean of weight alpha is worth (2 - alpha) / alpha estimates.
-      ratio.a = min(ratio.a + float(count), (2.0 - settings.alpha) / settings.alpha * n);
+      ratio.a = min(ratio.a + float(count), most);
     }
     float pattern_agreement =
         first ? 1.0 : agreement_weight(pattern - kept.x, tolerance_of(all.b, kept.y), all.g);

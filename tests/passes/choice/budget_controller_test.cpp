@@ -223,13 +223,30 @@ TEST_F(Decide, BetterConfiguration_DoesNotHideTheWayBack) {
   EXPECT_EQ(decide({measured(5e-3), measured(8e-3, 2), measured(4.9e-3)}, 2).configuration, 0u);
 }
 
-TEST_F(Decide, FarSmallerError_NeedsNoTokenToComeBack) {
+TEST_F(Decide, FarSmallerError_NeedsFewerTokens) {
   for (const double rmse : {3e-3, 2e-3}) {
     state = {};
     decide({measured(5e-3), known(1, 6e-3)}, 2);
-    state.tokens = 1.2;
+    state.tokens = 1.6;
     EXPECT_EQ(decide({measured(5e-3), known(1, rmse)}, 2).configuration, rmse < 2.5e-3 ? 1u : 0u);
   }
+}
+
+// Also if its error is known well by then.
+TEST_F(Decide, FarSmallerErrorThatWasWrong_IsLeftAfterASecond) {
+  decide({measured(5e-3), known(1, 6e-3)}, 2);
+  state.tokens = 1.6;
+  ASSERT_EQ(decide({measured(5e-3), known(1, 2e-3)}, 2).configuration, 1u);
+  for (int i = 0; i < 60; ++i)
+    decide({measured(5e-3), measured(8e-3)}, 2);
+  EXPECT_EQ(state.current, 0u);
+}
+
+// An unproven one that only might fit does not keep a certain one from running.
+TEST_F(Decide, Trial_DoesNotHideAFarSmallerError) {
+  decide({measured(5e-3), known(1, 6e-3), known(1, 6e-3)}, 2);
+  state.tokens = 1.6;
+  EXPECT_EQ(decide({measured(5e-3), unknown(1.5, 1.9e-3), known(1, 2e-3)}, 2).configuration, 2u);
 }
 
 TEST_F(Decide, UnprovenError_IsNotLeftForASmallDifference) {
