@@ -148,7 +148,7 @@ private:
     return unproven(i) && !assessed_[i].trial &&
            assessed_[i].entering_rmse < far_better * assessed_[state_.current].rmse;
   }
-  // Returns whether the running configuration was entered unproven, and its error is being learned.
+  // Returns whether the running configuration was entered unproven, or its error is being learned.
   bool is_tried() const {
     const double frames = frames_of_current();
     return frames > 0 && (state_.tried || frames < proven_frames || frame_.learning);
@@ -286,8 +286,10 @@ private:
     if (switched && !state_.provisional) leave(before, decision);
     if (switched && !state_.provisional) ++state_.switches;
     if (switched || before == no_configuration) state_.entered_s = state_.clock_s;
-    if (switched) state_.before = before;
-    if (switched) state_.tried = unproven(now);
+    if (switched) {
+      state_.before = before;
+      state_.tried = unproven(now);
+    }
     state_.current = now;
     state_.provisional = frame_.provisional;
     DecisionState::Configuration& kept = state_.configurations[now];

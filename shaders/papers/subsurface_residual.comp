@@ -110,9 +110,9 @@ vec4 mean_ratio(vec4 ratio, previous_position place, sap_texel own) {
   ivec2 centre = ivec2(floor(place.pixel + 0.5));
   // A velocity may not tell how the depth changed, so the depth is the one kept at the centre.
   float depth = place.depth + sap_rise(own.depth, own.slope, vec2(centre) - place.pixel);
-  if (inside_previous(centre)) {
+  if (has_velocity() && inside_previous(centre)) {
     vec2 kept = residual_surface_before(place_image, centre);
-    if (has_velocity() && shows_surface(kept, place, own.id, tolerance_around(place, own)))
+    if (shows_surface(kept, place, own.id, tolerance_around(place, own)))
       depth = kept.x;
   }
   float tolerance =

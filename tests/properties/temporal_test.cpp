@@ -65,6 +65,14 @@ TEST_F(Temporal, StaticScene_RatioRefinesThePyramid) {
   EXPECT_LE(residual.history_bytes, 2 * (8 + 8) * size_t{width} * height + (1 << 16));
 }
 
+// A short memory holds fewer samples than `eager` asks for; pixels must not sample for ever.
+TEST_F(Temporal, ShortMemory_EndsTheFirstSamples) {
+  const Sequence sequence = standing_still(frames_of("pan", 40, 1), 24);
+  Judge judge{sequence};
+  const SequenceRun residual = run(judge, "sap_residual", {23}, {{"alpha", "0.5"}});
+  EXPECT_LE(residual.samples.back(), 4.1);
+}
+
 TEST_F(Temporal, FlashingLight_RatioDoesNotLag) {
   const Sequence sequence = frames_of("flashing", 0, 48);
   Judge judge{sequence};
