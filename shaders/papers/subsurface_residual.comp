@@ -127,7 +127,7 @@ vec4 mean_ratio(vec4 ratio, previous_position place, sap_texel own) {
     bends += has_before && has_after ? vec2(bend * bend, 1.0) : vec2(0.0);
     inner = inner || (i == 3 && bends.y == 4.0);
   }
-  // A sixth of the mean square is the squared noise of one ratio. Few squares may be small by chance.
+  // A sixth of the mean square is a ratio's squared noise. Few squares may be small by chance.
   float variance = bends.y > 0.0 ? bends.x / (6.0 * bends.y) : unknown_noise;
   variance *= inner ? inner_factor : edge_factor * (1.0 + 4.0 / max(bends.y, 1.0));
   return vec4(sum.rgb / sum.a, variance / sum.a);
