@@ -12,10 +12,10 @@ usage="usage: ./test.sh [--full]
   10 seconds, if clang can be installed.
   --full   run more cases per test, check kernels on more GPUs, and run each graph on the drivers
            of absent GPUs. Then run code coverage (gcovr), the thread sanitizer, random graphs on a
-           device, the device tests on other drivers, every bench with --quick, and the suites that
-           manage memory or use a device with the address and undefined-behaviour sanitizers, if
-           clang can be installed. Takes more than an hour. CONTRIBUTING.md lists the commands for
-           longer runs."
+           device, the device tests on other drivers, every bench with --quick, the benches of known
+           answers and of stability in full, and the suites that manage memory or use a device with
+           the address and undefined-behaviour sanitizers, if clang can be installed. Takes more
+           than an hour. CONTRIBUTING.md lists the commands for longer runs."
 
 full=no
 for argument in "$@"; do
@@ -125,9 +125,11 @@ kernels() {
 }
 other_drivers() { quick tests/scripts/run_on_drivers.sh build/release; }
 coverage() { tests/scripts/coverage.sh; }
+# --quick leaves out cases of the suites that are deterministic, so those run in full.
 benches() {
   built dermis_command
   build/release/dermis bench all --quick --again --out build/bench
+  build/release/dermis bench all --suites truth,stability --again --out build/bench_complete
 }
 fuzzers() { # also compares the plans of two compilers
   if [[ $fuzz == no ]]; then

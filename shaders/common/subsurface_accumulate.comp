@@ -211,8 +211,9 @@ shown_and_kept with_history(accumulated_light history, vec3 light, near_field ne
     return shown_and_kept(light, accumulated_light(now, 1.0));
   history.light = clamp(history.light, -limit, limit);
   bool clips = settings.clip > 0.0 && history.count > 0.0;
+  bool looks = clips || spatial > 0.0;
   neighbourhood around;
-  if (clips || spatial > 0.0)
+  if (looks)
     around = look_around(local);
   if (clips) {
     history = clip_to_neighbours(history, mix(history.light, around.mean, lit), around.deviation,
@@ -222,7 +223,7 @@ shown_and_kept with_history(accumulated_light history, vec3 light, near_field ne
   vec3 remainder =
       spatial > 0.0 ? mix(sum.light, clamp(around.mean, -limit, limit), spatial) : sum.light;
   vec3 shown = mix(light, light_of_remainder(remainder, near.light, near.local_mean), lit);
-  if (clips)
+  if (looks)
     shown = clamp(shown, around.minimum, around.largest);
   return shown_and_kept(shown, sum);
 }

@@ -81,6 +81,13 @@ TEST_F(BenchStability, TestsOnlyTheOutputsOfATechnique) {
   EXPECT_EQ(requested["afis_guided ccv"], of_all);
 }
 
+// A pixel that was not visible before shows the mean of its neighbours' remainders.
+TEST_F(BenchStability, NewPixels_AreNotBrighterThanAllLight) {
+  EXPECT_THAT(run({"bench", "stability", "--techniques", "hybrid_afis_separable,skin", "--cases",
+                   "anything_under_light_up_to_1", "--updates", "1000"}),
+              Succeeds());
+}
+
 TEST_F(BenchStability, UnknownNames_AreRejected) {
   EXPECT_THAT(
       run({"bench", "stability", "--techniques", "none", "--cases", "none", "--updates", "1000"}),
