@@ -14,6 +14,7 @@ namespace dermis::abi {
 namespace {
 
 constexpr double assumed_d_px = 1; // pixels; before any frame has been counted
+constexpr double dark_s = 1;       // so long without transmitted light, none is expected
 constexpr double ns_per_ms = 1e6;
 
 // Tests ensure that both built-in files read without errors.
@@ -144,10 +145,14 @@ void observe_frame(Chooser& chooser, CompiledGraph& compiled_graph, FrameChoice&
   chooser.counters = frame.counters;
   chooser.counted_rectangle = frame.rectangle;
   const double transmitted = subsurface::transmitted_rms(frame.counters);
-  if (frame.counters.scattering_tiles > 0 || transmitted > 0) chooser.transmitted_rms = transmitted;
+  if (transmitted > 0) chooser.transmitted_s = chooser.state.clock_s;
+  if (transmitted > 0 || chooser.state.clock_s - chooser.transmitted_s > dark_s)
+    chooser.transmitted_rms = transmitted;
   if (frame.counters.scattering_tiles == 0) return;
-  chooser.scattering_key = {subsurface::mean_d_px(frame.counters),
-                            subsurface::mean_relief(frame.counters)};
+  chooser.scattering_key.d_px = subsurface::mean_d_px(frame.counters);
+  // Few tiles may all be among those in which relief is not counted.
+  if (const double relief = subsurface::mean_relief(frame.counters); relief >= 0)
+    chooser.scattering_key.relief = relief;
   chooser.scattering_rectangle = frame.rectangle;
 }
 
@@ -252,10 +257,11 @@ choice::Decision without_budget(const choice::Forecast& forecast) {
 double budget_of_frame(const Chooser& chooser, const FrameRequest& request,
                        std::span<const choice::Forecast> forecasts) {
   if (!chooser.budget.all_views) return chooser.budget.ms;
-  const choice::Offers offers = choice::make_offers(forecasts);
+  const choice::Offers offers =
+      request.empty_bounds ? choice::offers_of_no_work() : choice::make_offers(forecasts);
   const std::lock_guard lock(request.shared->mutex);
-  return request.shared->division.share(*request.share, chooser.budget.ms, offers, chooser.counted,
-                                        request.seconds);
+  return request.shared->division.share(*request.share, chooser.budget.ms, offers,
+                                        chooser.counted || request.empty_bounds, request.seconds);
 }
 
 SelectionChange next_selection(const SelectionChange& before, const FrameChoice& frame) {
@@ -366,9 +372,12 @@ FrameChoice choose(Chooser& chooser, const CompiledGraph& compiled_graph,
   input.budget_ms = frame.budget_ms;
   input.seconds = request.seconds;
   input.cut = request.cut;
-  input.provisional = !chooser.counted;
+  input.provisional =
+      !chooser.counted || (request.empty_bounds && state.current == choice::no_configuration);
   input.trials = chooser.budget.trials;
   input.learning = is_learning(chooser, compiled_graph);
+  input.empty = request.empty_bounds;
+  input.idle = input.empty || (chooser.counted && chooser.counters.scattering_tiles == 0);
   if (chooser.budget.ms > 0) {
     frame.decision = decide(forecasts, input, state,
                             std::span(chooser.scratch.assessments).first(forecasts.size()));
@@ -380,7 +389,8 @@ FrameChoice choose(Chooser& chooser, const CompiledGraph& compiled_graph,
   frame.configuration = frame.decision.configuration;
   frame.switches = state.switches;
   frame.cut = request.cut;
-  plan_probe(frame, chooser, compiled_graph.configurations[frame.configuration], content.key);
+  plan_probe(frame, chooser, compiled_graph.configurations[frame.configuration], content.key,
+             !input.idle);
   return frame;
 }
 

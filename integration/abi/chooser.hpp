@@ -115,9 +115,10 @@ struct Chooser {
   subsurface::FrameCounters counters;  // of the newest observed frame
   vulkan::Rectangle counted_rectangle; // of the same frame
   bool counted = false;
-  // Values of the newest observed frame in which tiles scattered, or light was transmitted: light
-  // that is off for a frame changes no expected error.
-  double transmitted_rms = 0;
+  // Light that is off for a moment changes no expected error. So transmitted light counts until
+  // none was seen for a second, and these are of the newest observed frame in which tiles
+  // scattered.
+  double transmitted_rms = 0, transmitted_s = 0; // of the newest frame with any; its clock
   choice::FrameKey scattering_key;
   vulkan::Rectangle scattering_rectangle; // width 0: no such frame
   choice::TileGrowth tile_growth;         // of tiles with subsurface
@@ -157,6 +158,7 @@ struct FrameRequest {
   uint64_t index = 0;
   double seconds = 0; // since the previous frame; 0: unknown
   bool cut = false;
+  bool empty_bounds = false; // nothing runs
   vulkan::Rectangle rectangle;
   SharedBudget* shared = nullptr; // of the graph
   choice::ViewShare* share = nullptr;

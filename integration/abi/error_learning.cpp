@@ -22,12 +22,11 @@ double selected_fraction(const FrameChoice& frame) {
 
 // Returns the run that a frame belongs to.
 TechniqueRun next_run(const Chooser& chooser, const choice::Configuration& configuration,
-                      const choice::FrameKey& key, bool cut) {
+                      const choice::FrameKey& key, bool cut, bool scatters) {
   const choice::ErrorCorrection& correction = chooser.error_correction;
   const int32_t technique = corrected_technique(correction, configuration);
-  const bool can_be_probed = !chooser.counted || chooser.counters.scattering_tiles > 0;
   if (technique == chooser.run.technique && !cut)
-    return {technique, chooser.run.frames + (can_be_probed ? 1 : 0), chooser.run.known};
+    return {technique, chooser.run.frames + (scatters ? 1 : 0), chooser.run.known};
   return {technique, 0,
           measured_frames(correction, technique, key, chooser.state.clock_s, cut) >=
               choice::proven_frames};
@@ -91,9 +90,10 @@ bool is_learning(const Chooser& chooser, const CompiledGraph& compiled_graph) {
 }
 
 void plan_probe(FrameChoice& frame, const Chooser& chooser,
-                const choice::Configuration& configuration, const choice::FrameKey& key) {
+                const choice::Configuration& configuration, const choice::FrameKey& key,
+                bool scatters) {
   if (chooser.budget.ms <= 0) return; // nothing is chosen
-  frame.run = next_run(chooser, configuration, key, frame.cut);
+  frame.run = next_run(chooser, configuration, key, frame.cut, scatters);
   const uint32_t first = first_valid_frame(configuration);
   frame.converging = frame.run.frames < first;
   frame.probed = !frame.run.known && !frame.converging && frame.run.frames < first + first_probes &&

@@ -22,9 +22,10 @@ void learn_error(Chooser& chooser, const choice::Configuration& configuration,
 // the first ones of a technique whose error was not known.
 bool is_learning(const Chooser& chooser, const CompiledGraph& compiled_graph);
 // Decides whether the error of a frame with this content is probed in any case, and whether its
-// error is the technique's. Expects FrameChoice::cut.
+// error is the technique's. Expects FrameChoice::cut. `scatters`: there is something to probe.
 void plan_probe(FrameChoice& frame, const Chooser& chooser,
-                const choice::Configuration& configuration, const choice::FrameKey& key);
+                const choice::Configuration& configuration, const choice::FrameKey& key,
+                bool scatters);
 // Corrects the plan of a frame in which a history is invalid.
 void restart_histories(FrameChoice& frame, const choice::Configuration& configuration);
 

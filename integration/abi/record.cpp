@@ -183,8 +183,8 @@ dermis_result record(dermis_view_t& view, const dermis_frame* given, Capture* ca
   if (const dermis_result loss = check_loss(view, function_record); loss != DERMIS_OK) return loss;
   const bool cut = (frame.flags & DERMIS_FRAME_RESET_HISTORY) != 0;
   FrameChoice chosen = choose(chooser, compiled_graph,
-                              {frame.frame_index, seconds_of(frame), cut, checked.input.rectangle,
-                               &view.graph->shared_budget, &view.share});
+                              {frame.frame_index, seconds_of(frame), cut, checked.empty_bounds(),
+                               checked.input.rectangle, &view.graph->shared_budget, &view.share});
   const dermis_result result = record_chosen(view, compiled_graph, chosen, frame, checked, capture);
   if (result != DERMIS_OK) repeat_share(view);
   return result;

@@ -227,6 +227,10 @@ private:
     if (now == no_configuration || state_.provisional)
       return choose_known(&Assessment::enter_ms, decision, ReasonKind::first_frame);
     decision.configuration = now;
+    if (frame_.empty) {
+      decision.why = ReasonKind::held;
+      return;
+    }
     if (assessed_[now].running_ms > assessed_[now].leave_ms) {
       choose_other(decision);
       if (decision.configuration == now || state_.tokens >= leaving_tokens) return;
@@ -235,46 +239,67 @@ private:
       return;
     }
     const auto fits = [&](uint32_t i) { return assessed_[i].entering_ms <= assessed_[i].enter_ms; };
+    if (frame_.idle) { // no configuration would have an error
+      decision.why = ReasonKind::held;
+      return;
+    }
     uint32_t better = best(fits);
     const bool barred =
         better != no_configuration && unproven(better) && !may_enter_unproven(better);
     if (barred)
       better = best([&](uint32_t i) { return fits(i) && (!unproven(i) || may_enter_unproven(i)); });
     decision.why = barred ? ReasonKind::held : ReasonKind::fits_best;
+    if (returns_before(better)) {
+      decision.configuration = state_.before;
+      decision.why = ReasonKind::better_fits;
+      return;
+    }
     if (better == no_configuration || better == now ||
         assessed_[better].entering_rmse >= assessed_[now].rmse)
       return;
     decision.why = ReasonKind::held;
-    if (!is_worth_a_switch(better) && is_way_back(state_.before) && fits(state_.before) &&
-        worth_a_try * assessed_[state_.before].entering_rmse <= assessed_[better].entering_rmse)
-      better = state_.before; // it is about as good, and needs fewer tokens
     if (!is_worth_a_switch(better)) return;
     decision.configuration = better;
     decision.why =
         assessed_[better].trial && may_try() ? ReasonKind::trial : ReasonKind::better_fits;
   }
 
-  // Returns whether the configuration ran before the one that is being tried.
-  bool is_way_back(uint32_t i) const {
-    return i != no_configuration && i == state_.before && is_tried() && !unproven(i);
+  // Returns whether the configuration that ran before the one that is being tried returns. It may
+  // run even if it would not be entered now. `better`: the least error that fits. If that has to
+  // wait for tokens, what ran before need not be as good.
+  bool returns_before(uint32_t better) const {
+    const uint32_t i = state_.before, now = state_.current;
+    if (i == no_configuration || !is_tried() || unproven(i) || state_.tokens < leaving_tokens ||
+        assessed_[i].entering_ms == never_ms ||
+        forecasts_[i].time.pessimistic_ms > assessed_[i].leave_ms ||
+        assessed_[i].rmse > gain_to_leave() * assessed_[now].rmse)
+      return false;
+    if (better == no_configuration || better == now) return true;
+    return (is_worth_a_switch(better) ? 1 : worth_a_try) * assessed_[i].rmse <=
+           assessed_[better].entering_rmse;
+  }
+
+  double gain_to_leave() const {
+    const bool few = frames_of_current() > 0 && frames_of_current() < few_frames;
+    return few ? worth_a_try : worth_a_switch;
   }
 
   bool is_worth_a_switch(uint32_t i) const {
-    const double tokens = assessed_[i].trial                 ? trial_tokens
-                          : i == state_.before && is_tried() ? leaving_tokens
-                                                             : better_tokens;
-    const bool few = frames_of_current() > 0 && frames_of_current() < few_frames;
-    const double gain = few || unproven(i) ? worth_a_try : worth_a_switch;
-    return state_.tokens >= tokens &&
-           assessed_[i].entering_rmse <= gain * assessed_[state_.current].rmse;
+    return state_.tokens >= (assessed_[i].trial ? trial_tokens : better_tokens) &&
+           assessed_[i].entering_rmse <=
+               (unproven(i) ? worth_a_try : gain_to_leave()) * assessed_[state_.current].rmse;
   }
 
-  // Configurations that do not fit at best are not tried because of noise.
+  // Configurations that do not fit at best are not tried because of noise. Where times are certain,
+  // nothing has to be tried.
   void set_aside_untried() {
     for (uint32_t i = 0; i < assessed_.size(); ++i) {
       DecisionState::Configuration& kept = state_.configurations[i];
-      if (kept.ran || assessed_[i].entering_ms <= assessed_[i].enter_ms) continue;
-      kept.left_ratio = forecasts_[i].time.expected_ms / frame_.budget_ms;
+      const TimeForecast& time = forecasts_[i].time;
+      if (kept.ran || assessed_[i].entering_ms <= assessed_[i].enter_ms ||
+          time.optimistic_ms >= time.expected_ms)
+        continue;
+      kept.left_ratio = time.expected_ms / frame_.budget_ms;
       kept.left_s = state_.clock_s;
       kept.backoff_s = untried_backoff_s;
     }
@@ -293,6 +318,7 @@ private:
     state_.current = now;
     state_.provisional = frame_.provisional;
     DecisionState::Configuration& kept = state_.configurations[now];
+    if (!kept.ran) kept.backoff_s = first_backoff_s; // it was only set aside
     kept.ran = true;
     if (state_.clock_s - state_.entered_s > calm_backoffs * kept.backoff_s)
       kept.backoff_s = first_backoff_s;

@@ -74,6 +74,8 @@ struct FrameInput {
   bool provisional = false; // tiles were not counted yet: the next decision is free
   Trials trials = Trials::on;
   bool learning = false; // the error of what runs is being measured
+  bool idle = false;     // nothing scatters, so errors say nothing: only time may cause a switch
+  bool empty = false;    // nothing runs: nothing causes a switch
 };
 
 inline constexpr uint32_t no_configuration = UINT32_MAX;

@@ -16,6 +16,8 @@ constexpr uint64_t absent_intervals = 2, longest_interval = 60;
 // A division replaces the previous one if it has at most this fraction of the squared error.
 constexpr double worth_a_change = 0.96;
 
+constexpr double least_ms = 1e-6; // also where work costs nothing: a budget is above 0
+
 double square(double value) {
   return value * value;
 }
@@ -59,10 +61,16 @@ Offers make_offers(std::span<const Forecast> forecasts) {
     one.time.pessimistic_ms = one.time.expected_ms;
     for (const double fraction : sampled) {
       const double units = one.takes_samples ? fraction * one.demand : 0;
-      insert(offers, {needed_budget_ms(one, units), rmse_with(one, units)});
+      insert(offers, {std::max(needed_budget_ms(one, units), least_ms), rmse_with(one, units)});
       if (!one.takes_samples) break;
     }
   }
+  return offers;
+}
+
+Offers offers_of_no_work() {
+  Offers offers;
+  insert(offers, {least_ms, 0});
   return offers;
 }
 

@@ -28,6 +28,8 @@ struct Offers {
 
 // Returns the offers of a view's configurations. The first one is the cheapest.
 Offers make_offers(std::span<const Forecast> forecasts);
+// Returns the offers of a view in which nothing runs.
+Offers offers_of_no_work();
 
 // The part of one view. Managed by BudgetDivision.
 struct ViewShare {

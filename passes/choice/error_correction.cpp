@@ -84,9 +84,10 @@ Prior prior_of(const ErrorCorrection& correction, size_t technique, const FrameK
     const ErrorCorrection::Line& line = correction.lines[t + 1];
     const TechniqueError& other = correction.techniques[t];
     if (t == technique || line.frames <= 0 || !are_variants(own, other)) continue;
-    logs += line.frames * shared_fraction(other, own, key.d_px) *
+    const double valid_frames = line.frames * validity(line, key, now_s, cut);
+    logs += valid_frames * shared_fraction(other, own, key.d_px) *
             std::log(valid_factor(line, technique_prior, key, now_s, cut));
-    frames += line.frames;
+    frames += valid_frames;
   }
   Prior prior = technique_prior;
   if (frames > 0) prior.factor = std::exp(logs / frames);

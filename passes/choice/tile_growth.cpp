@@ -8,6 +8,8 @@ namespace dermis::choice {
 namespace {
 
 constexpr uint64_t min_tiles = 8; // with fewer tiles, a change by one tile is no trend
+// Growth does not go on for longer: counts are missing because nothing was recorded.
+constexpr uint64_t max_growing_frames = 8;
 // A convex area A with perimeter P touches A + 2 P / pi + 1 cells of a unit grid in the mean
 // (Minkowski sum with the cell, all directions). For a disc this is (sqrt(A) + border)^2 + 0.3.
 const double border = 2 / std::sqrt(std::numbers::pi);
@@ -28,8 +30,8 @@ void update_growth(TileGrowth& growth_estimate, uint64_t frame, uint64_t tiles) 
 
 double growth_until(const TileGrowth& growth_estimate, uint64_t frame) {
   if (growth_estimate.frame == 0 || frame <= growth_estimate.frame) return 1;
-  return std::min(std::pow(growth_estimate.growth, double(frame - growth_estimate.frame)),
-                  max_growth * max_growth);
+  const uint64_t frames = std::min(frame - growth_estimate.frame, max_growing_frames);
+  return std::min(std::pow(growth_estimate.growth, double(frames)), max_growth * max_growth);
 }
 
 double scaled_tiles(double tiles, double scale) {

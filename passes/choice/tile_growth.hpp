@@ -19,8 +19,8 @@ inline constexpr double max_growth = 1.5;
 // frames. Growth over three counts is expected to continue; a single jump, as at a cut, is not.
 void update_growth(TileGrowth& growth_estimate, uint64_t frame, uint64_t tiles);
 
-// Returns the expected factor on the last count in `frame`: 1 .. max_growth^2. Never below 1,
-// because an overestimate of time is harmless.
+// Returns the expected factor on the last count in `frame`: 1 .. max_growth^2, that of at most 8
+// frames. Never below 1, because an overestimate of time is harmless.
 double growth_until(const TileGrowth& growth_estimate, uint64_t frame);
 
 // Returns how many tiles with subsurface to expect if a picture with `tiles` of them is rendered

@@ -100,6 +100,7 @@ bool fill_frame_constants(const FrameInput& input, FrameConstants& out) {
   out.tiles[0] = tiles_of(input.rect_width);
   out.tiles[1] = tiles_of(input.rect_height);
   out.frame_index = static_cast<uint32_t>(input.frame_index);
+  out.view_frame = out.frame_index; // for callers that count no frames of a view
   out.flags = (rays->perspective ? 1u : 0u) |
               (input.depth_kind == DepthKind::view_units ? 2u : 0u) |
               (input.history_invalid ? 4u : 0u) | (input.handedness == Handedness::left ? 16u : 0u);

@@ -86,16 +86,24 @@ float mean_importance(ivec2 tile) {
   return sum / 16.0;
 }
 
-// Returns a pixel of the tile with subsurface. `full`: all pixels have subsurface.
-ivec2 pixel_with_subsurface(ivec2 tile, bool full) {
+// Returns a pixel of the tile with subsurface, and its view depth; depth 0: no pixel has a depth.
+// `full`: all pixels have subsurface.
+ivec2 pixel_with_subsurface(ivec2 tile, bool full, out float depth) {
   ivec2 pixel = 8 * tile + 4, last = frame.rect.zw - 1;
-  for (int i = 0; i < 64 && !full; ++i) {
+  depth = 0.0;
+  for (int i = 0; i < 64 && !(depth > 0.0); ++i) {
     // From pixels near the centre to all others: an odd factor permutes the 64 pixels.
     int at = (36 + 27 * i) & 63;
     pixel = min(8 * tile + ivec2(at & 7, at >> 3), last);
-    full = texelFetch(material_image, texel_of(pixel), 0).r != 0u;
+    ivec2 texel = texel_of(pixel);
+    if (full || texelFetch(material_image, texel, 0).r != 0u)
+      depth = view_depth(texelFetch(depth_image, texel, 0).r);
   }
-  return min(pixel, last);
+  return pixel;
+}
+
+bool is_known(previous_position place) {
+  return place.depth > 0.0 && all(lessThan(abs(place.pixel), vec2(reproject_largest_velocity)));
 }
 
 struct earlier_weights {
@@ -107,12 +115,16 @@ struct earlier_weights {
 // Returns the weights of the part of the previous frame that moved into the tile. All of the tile
 // moves as one of its pixels.
 earlier_weights weights_before(ivec2 tile, bool full) {
-  ivec2 pixel = pixel_with_subsurface(tile, full), texel = texel_of(pixel);
-  float depth = view_depth(texelFetch(depth_image, texel, 0).r);
-  previous_position place =
-      has_velocity() ? reproject(vec2(pixel), depth, texelFetch(velocity_image, texel, 0).rgb)
-                     : reproject(vec2(pixel), depth);
-  if (!(place.depth > 0.0) || !all(lessThan(abs(place.pixel), vec2(reproject_largest_velocity))))
+  float depth;
+  ivec2 pixel = pixel_with_subsurface(tile, full, depth), texel = texel_of(pixel);
+  previous_position place = reproject(vec2(pixel), depth);
+  if (has_velocity()) {
+    previous_position moved =
+        reproject(vec2(pixel), depth, texelFetch(velocity_image, texel, 0).rgb);
+    if (is_known(moved)) // a velocity may be no number
+      place = moved;
+  }
+  if (!(depth > 0.0) || !is_known(place))
     return earlier_weights(0.0, false, max_selection_level);
   vec2 corner = vec2(8 * tile - pixel) + place.pixel;
   ivec2 end = frame.previous_rect.zw - 1, first = max(ivec2(floor(corner)), ivec2(0)),

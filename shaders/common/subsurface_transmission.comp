@@ -1,5 +1,7 @@
 #version 460
-// Adds the light transmitted from the far side (slab.glsl) to the light that will scatter.
+// Adds the light transmitted from the far side (slab.glsl) to the light that will scatter. Where
+// that contains albedo, it is divided by it before it scatters, so transmitted light is multiplied
+// by albedo here.
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 #include "common/subsurface_transmission.bindings.glsl"
@@ -8,6 +10,7 @@
 #include "common/radius.glsl"
 #include "common/sanitise.glsl"
 #include "common/slab.glsl"
+#include "common/texturing.glsl"
 
 layout(local_size_x = 8, local_size_y = 8, local_size_z = 1) in;
 
@@ -23,7 +26,12 @@ void main() {
     if (has_scatter_scale())
       scale = clean_scatter_scale(texelFetch(scatter_scale_image, texel, 0).r);
     vec3 back_lighting = texelFetch(back_lighting_image, texel, 0).rgb;
-    light.rgb = clean_light(light.rgb) + light_through_slab(id, scale, metres, back_lighting);
+    vec3 transmitted = light_through_slab(id, scale, metres, back_lighting);
+    if (settings.texturing == TEXTURING_DEMODULATE && has_albedo())
+      transmitted = apply_albedo_after(settings.texturing,
+                                       clean_albedo(texelFetch(albedo_image, texel, 0).rgb),
+                                       transmitted);
+    light.rgb = clean_light(light.rgb) + transmitted;
   }
   imageStore(lit_image, texel, vec4(round_to_half(light.rgb), light.a));
 }

@@ -9,6 +9,7 @@
 #extension GL_EXT_samplerless_texture_functions : require
 #include "papers/subsurface_global_light_change.bindings.glsl"
 #include "common/environment.glsl"
+#include "common/hash.glsl"
 #include "common/tile_packing.glsl"
 #include "sap/sap.glsl"
 #include "common/reproject.glsl"
@@ -129,7 +130,8 @@ void main() {
   uint stride = max((tiles + lanes * each - 1u) / (lanes * each), 1u);
   uint known = 0u; // bit k: pixel k of the lane has an offset
   for (uint k = 0u; k < each; ++k) {
-    uint i = k * lanes + lane, tile = i * stride;
+    // A random tile of each stride: a width that divides the stride would select one column.
+    uint i = k * lanes + lane, tile = i * stride + pcg3d(uvec3(i, 0u, 0u)).x % stride;
     ivec2 pixel = ivec2(tile % uint(frame.tiles.x), tile / uint(frame.tiles.x)) * 8 + 3;
     float offset = 0.0, squared_deviation = 0.0;
     if (history_usable() && tile < tiles && offset_of(pixel, offset, squared_deviation))

@@ -134,11 +134,12 @@ vec4 mean_ratio(vec4 ratio, previous_position place, sap_texel own) {
 }
 
 // Returns whether the tile takes samples in this frame. Tiles take turns: within 2x2 tiles each is
-// sampled in every fourth frame, within 4x4 tiles in every sixteenth.
+// sampled in every fourth frame, within 4x4 tiles in every sixteenth. Frame indices may advance by
+// any number, so frames of the view count.
 bool is_turn(ivec2 tile, float confidence) {
   if (confidence < settings.often_below)
-    return (uint(tile.x & 1) + 2u * uint(tile.y & 1)) == (frame.frame_index & 3u);
-  return (uint(tile.x & 3) + 4u * uint(tile.y & 3)) == (frame.frame_index & 15u);
+    return (uint(tile.x & 1) + 2u * uint(tile.y & 1)) == (frame.view_frame & 3u);
+  return (uint(tile.x & 3) + 4u * uint(tile.y & 3)) == (frame.view_frame & 15u);
 }
 
 void main() {
@@ -193,7 +194,7 @@ void main() {
       count = ratio.a < eager ? 2 * settings.samples : settings.samples;
       // Frames in which the tile samples are consecutive in the sequence; other frames are far from
       // them.
-      uint index = (frame.frame_index >> 2) + (frame.frame_index & 3u) * 0x9e3779u;
+      uint index = (frame.view_frame >> 2) + (frame.view_frame & 3u) * 0x9e3779u;
       uvec2 offset = r2_point(offset_from_hash(pcg3d16(uvec3(pixel, 0u)).xy), index);
       vec3 own_light = pixel_light_of_level_0(surface_image, light_image, texel);
       vec3 sampled = sap_sampled_light(surface_image, light_image, pixel, own, own_light, offset,

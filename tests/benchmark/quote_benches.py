@@ -2,7 +2,7 @@
 """Writes the figures of `dermis bench all` into the documents.
 
 usage: quote_benches.py FOLDER [--commit HASH] [--write]
-  FOLDER    as `dermis bench all --out FOLDER` wrote it; suites that are missing are left as they are
+  FOLDER    as `dermis bench all --out FOLDER` wrote it; tables of missing suites are not changed
   --commit  the measured commit, for the text above the tables
   --write   replaces the text between the lines "<!-- begin NAME -->" and "<!-- end NAME -->" of
             README.md and docs/*.md; without it, the tables are printed
@@ -19,7 +19,7 @@ PAPER_TITLE = "Comparison with the paper's table 3"
 
 
 class Tables(html.parser.HTMLParser):
-    """Collects the tables of a page by the heading above: rows of cells, the first one of titles."""
+    """Collects the tables of a page by the heading above, as rows of cells; the first: titles."""
 
     def __init__(self, page):
         super().__init__()

@@ -187,6 +187,7 @@ void run_frames(const std::string& graph, const Plane& plane, const Settings& se
         upload("material", i + 1 < frames ? uploads.earlier_id : uploads.id, 1);
       // The graph has written scattered light there.
       if (i > 0) upload("lighting", uploads.light, 3);
+      (*device)->skip_to(1 + uint64_t{i} * plane.frame_step);
       const auto ran = (*device)->run(frame);
       EXPECT_TRUE(ran) << ran.error().text;
       auto pixels = (*device)->read_rgb("scattered_light");

@@ -37,6 +37,7 @@ struct Plane {
   std::array<uint32_t, 4> rectangle = {0, 0, 0, 0};
   // Empty: neither thickness nor back lighting is bound. Back lighting is 1.
   std::function<float(int x, int y)> thickness_m = {};
+  uint32_t frame_step = 1;  // Difference of the indices of two frames.
   std::string overlay = {}; // Name in configs/overlays/ without .json; "": none.
   // Text of a profile for both ids, in place of d_px; "": Burley with d_px.
   std::string profile_file = {};

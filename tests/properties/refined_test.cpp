@@ -6,6 +6,7 @@
 
 #include "passes/common/reference/reference.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace {
@@ -127,6 +128,48 @@ TEST_F(Refined, NoiseIsHeldBackWhereSurfacesMix) {
     RecordProperty(scene.name, std::to_string(ratio));
     EXPECT_LE(ratio, limit) << scene.name;
   }
+}
+
+// Grooves, on whose sides the pyramid is unsure.
+Plane grooves(uint32_t width, uint32_t height, int first_column = 0) {
+  Plane plane{.width = width, .height = height};
+  plane.light = [](double x, double y) {
+    return confidence_scenes::light(uint32_t(x), uint32_t(y));
+  };
+  plane.depth_m = [](int, int y) { return y / 6 % 2 == 0 ? 1.0f : 1.012f; };
+  plane.profile = [=](int x, int) { return uint8_t(x >= first_column ? 1 : 0); };
+  return plane;
+}
+
+std::vector<Picture> frames_of(const char* graph, const Plane& plane, uint32_t frames) {
+  std::vector<Picture> pictures;
+  run_frames(graph, plane, {}, frames,
+             [&](const Picture& picture) { pictures.push_back(picture); });
+  return pictures;
+}
+
+// Hosts may number the frames of several views together. Each tile still takes its turn.
+TEST_F(Refined, FrameIndices_MayAdvanceByAnyNumber) {
+  Plane plane = grooves(64, 64);
+  const std::vector<Picture> expected = frames_of("sap_residual", plane, 8);
+  plane.frame_step = 2;
+  const std::vector<Picture> found = frames_of("sap_residual", plane, 8);
+  ASSERT_EQ(found.size(), expected.size());
+  for (size_t i = 0; i < found.size(); ++i)
+    EXPECT_EQ(found[i].rgb, expected[i].rgb) << i;
+}
+
+// The change of light is measured in a part of the tiles of a large view, here in every second one,
+// which must not be a column without subsurface.
+TEST_F(Refined, LargeViews_AreSampledInAllColumns) {
+  const Plane plane = grooves(16, 8192, 8);
+  const std::vector<Picture> plain = frames_of("sap", plane, 1),
+                             refined = frames_of("sap_residual", plane, 3);
+  ASSERT_EQ(refined.size(), 3u);
+  float largest = 0;
+  for (size_t i = 0; i < plain.front().rgb.size(); ++i)
+    largest = std::max(largest, std::abs(refined.back().rgb[i] - plain.front().rgb[i]));
+  EXPECT_GT(largest, 0.01f);
 }
 
 } // namespace

@@ -113,6 +113,7 @@ constexpr Port transmission_ports[] = {
     port::where_covered(thickness),
     port::material,
     port::where_covered(port::scatter_scale),
+    port::where_covered(port::albedo),
     port::written("lit", "lighting plus transmitted light", port::color_formats),
 };
 
@@ -137,7 +138,7 @@ const PassType transmission_type{
            "their "
            "thickness.",
     .ports = transmission_ports,
-    .settings = {},
+    .settings = texturing,
     .dispatch = over_view,
 };
 

@@ -354,6 +354,11 @@ TEST_F(TransmissionStats, AddErrorToTechniquesWithoutTransmission) {
   ASSERT_OK(dermis_graph_set_budget(graph, &budget, nullptr));
   const double through = counted(0.8e-3f, 0.5f);
   EXPECT_NEAR(double(run_frame().predicted_rmse), std::hypot(0.003, 0.5 * through), 1e-6);
+  EXPECT_EQ(counted(0.8e-3f, 0), 0); // Light from behind goes off, maybe for a moment.
+  EXPECT_NEAR(double(run_frame().predicted_rmse), std::hypot(0.003, 0.5 * through), 1e-6);
+  for (int i = 0; i < 70; ++i)
+    run_frame();
+  EXPECT_NEAR(double(run_frame().predicted_rmse), 0.003, 1e-6);
 }
 
 TEST_F(Choice, LearnsAndExportsTheDevicesTimes) {

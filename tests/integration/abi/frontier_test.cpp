@@ -238,6 +238,51 @@ TEST_F(Frontier, DarkFrames_KeepTheExpectedErrors) {
   EXPECT_NEAR(dark.expected_rmse / lit.expected_rmse, 1, 0.02);
 }
 
+// Relief is counted in half of the blocks of 32x32 pixels, so a small object may have none.
+TEST_F(Frontier, SmallObjects_KeepTheKnownRelief) {
+  make();
+  draw(allocated);
+  set_budget(0);
+  run(allocated, 2);
+  const dermis_outcome whole = predict(allocated, 1000);
+  for (const uint32_t block : {0u, 1u}) {
+    fill("material", [&](uint32_t x, uint32_t y) {
+      return x / 8 == 4 * block + 1 && y / 8 == 1 ? 1.0f : 0.0f;
+    });
+    EXPECT_GT(run(allocated, 2).scattering_tiles, 0u);
+    EXPECT_NEAR(predict(allocated, 1000).expected_rmse / whole.expected_rmse, 1, 0.1) << block;
+  }
+}
+
+// A view in which nothing is shown leaves the budget to the others.
+TEST_F(Frontier, ViewWithEmptyBounds_NeedsNoPart) {
+  make();
+  draw(allocated);
+  const dermis_view other = view_of(graph);
+  const dermis_budget budget = budget_of(20, DERMIS_BUDGET_DETERMINISTIC | DERMIS_BUDGET_ALL_VIEWS);
+  ASSERT_OK(dermis_graph_set_budget(graph, &budget, nullptr));
+  demo::ReportedFrame shown;
+  for (int i = 0; i < 6; ++i) {
+    dermis_frame one = bound_frame(graph, allocated.width, allocated.height);
+    one.delta_seconds = 1;
+    rest(one);
+    shown = record_and_read(graph, one);
+    dermis_frame empty = bound_frame(graph, allocated.width, allocated.height);
+    empty.frame_index = shown.frame_index;
+    empty.completed_frame_index = shown.frame_index - 1;
+    empty.flags = DERMIS_FRAME_BOUNDS;
+    rest(empty);
+    const auto ran = demo::run_commands(*host, [&](VkCommandBuffer commands) -> demo::Result<> {
+      empty.command_buffer = commands;
+      EXPECT_OK(dermis_view_record(other, &empty));
+      return demo::success();
+    });
+    ASSERT_TRUE(ran) << ran.error().text;
+  }
+  EXPECT_GT(shown.budget_ms, 0.95f * budget.milliseconds);
+  dermis_view_destroy(other);
+}
+
 // The host keeps all passes of a frame within one budget by lowering its resolution. Its own passes
 // take `others_ms` at the allocated size.
 TEST_F(Frontier, Resolution_HoldsOneBudget) {

@@ -7,6 +7,7 @@
 
 #include "material_ids.spv.h" // Needs the types of the headers above.
 
+#include <algorithm>
 #include <cmath>
 
 namespace dermis::abi_test {
@@ -111,6 +112,28 @@ TEST_P(Demodulation, EqualsIrradianceTexturedAfterwards) {
            return irradiance(x, y, c) * albedo(x, y, c);
          }));
   EXPECT_LT(largest_gap(picture(graph), expected), 2 * 0x1p-10f);
+}
+
+// Transmitted light gets albedo once, whether lighting contains albedo or not.
+TEST_F(InputFormats, TransmittedLightGetsAlbedo) {
+  std::vector<std::vector<float>> pictures;
+  for (const char* texturing : {"\"post\"", "\"demodulate\""}) {
+    GraphOptions options = options_of("sap");
+    options.unbound = {"scatter_scale", "scattered_light"};
+    for (const char* slot : {"lighting", "albedo", "back_lighting"})
+      options.formats.emplace_back(slot, VK_FORMAT_R32G32B32A32_SFLOAT);
+    const dermis_graph graph = make_graph(options);
+    ASSERT_OK(dermis_graph_set_setting(graph, "texturing", texturing, nullptr));
+    ASSERT_OK(dermis_graph_set_setting(graph, "transmission", "true", nullptr));
+    make_images(graph);
+    upload("albedo", image_of(albedo_at));
+    fill("lighting", [](uint32_t, uint32_t) { return 0.0f; });
+    fill("thickness", [](uint32_t, uint32_t) { return 0.0f; });
+    fill("back_lighting", [](uint32_t x, uint32_t) { return x < 32 ? 1.0f : 0.25f; });
+    pictures.push_back(picture(graph));
+  }
+  EXPECT_GT(*std::ranges::max_element(pictures[0]), 0.5f);
+  EXPECT_LT(largest_gap(pictures[0], pictures[1]), 2 * 0x1p-10f);
 }
 
 INSTANTIATE_TEST_SUITE_P(Graphs, Demodulation, testing::Values("burley", "pyramid", "sap", "skin"),

@@ -223,6 +223,57 @@ TEST_F(Decide, BetterConfiguration_DoesNotHideTheWayBack) {
   EXPECT_EQ(decide({measured(5e-3), measured(8e-3, 2), measured(4.9e-3)}, 2).configuration, 0u);
 }
 
+// The configuration before may return up to the time at which it would have been left.
+TEST_F(Decide, WrongError_IsLeftForWhatWouldNotBeEntered) {
+  Forecast before = measured(5e-3);
+  const auto takes = [](Forecast forecast, double ms) {
+    forecast.time = known(ms, 0).time;
+    return forecast;
+  };
+  decide({takes(before, 3.5), known(1, 6e-3)}, 4);
+  before = takes(before, 3.8);
+  ASSERT_EQ(decide({before, known(1, 6e-3)}, 4).configuration, 0u);
+  ASSERT_EQ(decide({before, known(1, 3e-3)}, 4).configuration, 1u);
+  EXPECT_EQ(decide({before, measured(8e-3)}, 4).configuration, 0u);
+}
+
+// If nothing scatters, times and errors are those of no work.
+TEST_F(Decide, IdleFrames_SwitchOnlyIfOverBudget) {
+  decide({measured(5e-3), known(4, 1e-3)}, 2);
+  frame.idle = true;
+  for (int i = 0; i < 300; ++i)
+    ASSERT_EQ(decide({measured(5e-3), known(1, 1e-3)}, 2).configuration, 0u);
+  EXPECT_EQ(decide({known(3, 5e-3), known(1, 1e-3)}, 2).configuration, 1u);
+}
+
+// Without timestamps, and in deterministic mode, there is nothing to try.
+TEST_F(Decide, CertainTimes_AreEnteredWhenTheyFit) {
+  for (int i = 0; i < 600; ++i)
+    ASSERT_EQ(decide({known(0.5, 9e-3), known(0.95, 2e-3)}, 1).configuration, 0u);
+  decide({known(0.5, 9e-3), known(0.95, 2e-3)}, 1.05);
+  EXPECT_EQ(state.current, 1u);
+}
+
+// The long pause of what was not tried at first ends when it runs.
+TEST_F(Decide, ConfigurationThatWasSetAside_ReturnsLikeOthers) {
+  const Forecast cheap = known(1, 9e-3);
+  Forecast better = unknown(9, 2e-3);
+  for (int i = 0; i < 300; ++i)
+    decide({cheap, better}, 2);
+  ASSERT_EQ(state.configurations[1].backoff_s, 300);
+  better = unknown(1.2, 2e-3);
+  for (int i = 0; i < 300; ++i)
+    decide({cheap, better}, 2);
+  ASSERT_EQ(state.current, 1u);
+  better = known(1.2, 2e-3);
+  for (int i = 0; i < 600; ++i)
+    decide({cheap, better}, 2);
+  for (int i = 0; i < 10; ++i)
+    decide({cheap, known(3, 2e-3)}, 2);
+  ASSERT_EQ(state.current, 0u);
+  EXPECT_LE(state.configurations[1].backoff_s, 2);
+}
+
 TEST_F(Decide, FarSmallerError_NeedsFewerTokens) {
   for (const double rmse : {3e-3, 2e-3}) {
     state = {};

@@ -130,6 +130,15 @@ TEST(ErrorCorrection, VariantsWithLessSpread_DeviateLess) {
       << "more spread is no reason to expect a larger deviation than measured";
 }
 
+TEST(ErrorCorrection, OldMeasurementsOfVariants_CountLess) {
+  ErrorCorrection correction = make_error_correction(table_of({"sap", "sap", "sap"}));
+  double now_s = 0;
+  observe(correction, 0, expected, 200, now_s);
+  now_s += 600;
+  observe(correction, 1, 3 * expected, 200, now_s);
+  EXPECT_NEAR(error_factor(correction, 2, content, now_s), 3, 0.2);
+}
+
 // At half resolution, other errors prevail.
 TEST(ErrorCorrection, HalfResolutionIsNoVariant) {
   ErrorCorrection correction = make_error_correction(table_of({"sap", "sap_half"}));

@@ -54,6 +54,16 @@ TEST(TileGrowth, FewTiles_AreIgnoredAndGrowthIsBounded) {
   EXPECT_EQ(growth_until(growth_estimate, 1000), max_growth * max_growth);
 }
 
+// As of a character that was hidden for a while.
+TEST(TileGrowth, SlowGrowth_EndsWithTheCounts) {
+  TileGrowth growth_estimate;
+  for (uint64_t frame = 1; frame <= 20; ++frame)
+    update_growth(growth_estimate, frame,
+                  static_cast<uint64_t>(1e5 * std::pow(1.01, double(frame))));
+  EXPECT_NEAR(growth_until(growth_estimate, 22), std::pow(1.01, 2), 1e-3);
+  EXPECT_NEAR(growth_until(growth_estimate, 1000), std::pow(1.01, 8), 1e-3);
+}
+
 TEST(TileGrowth, NoCounts_NoPrediction) {
   EXPECT_EQ(growth_until(TileGrowth{}, 7), 1);
 }

@@ -94,7 +94,8 @@ bool warn_of_surfaces(const CapturedFrame& frame, Diagnostics& diagnostics) {
       diagnostics.add(DiagnosticId::surface_dithered, {},
                       of_frame(fmt::format(
                           "{:.0f} % of the tiles with subsurface alternate between two depths "
-                          "from pixel to pixel, as dithered surfaces do; light mixes between them",
+                          "from pixel to pixel, as dithered surfaces do; techniques that are not "
+                          "based on 'sap' mix the light of both",
                           100 * tiles)));
   return diagnostics.list.size() > before;
 }

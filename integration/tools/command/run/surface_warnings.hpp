@@ -18,8 +18,8 @@ inline constexpr double largest_compensated_aspect = 6;
 // are both nearer or both farther by more than max_patch_slope pixel sides. A screen door of a
 // quarter of the pixels reaches twice an eighth.
 double dithered_tiles(const CapturedFrame& frame);
-// `sap` has an RMSE of 0.087 where a quarter of the pixels is 5 cm in front (docs/limits.md). This
-// fraction of such tiles on its own limits a frame to 0.087 * sqrt(0.02) = 0.012, 38 dB. Shipped
+// `afis` has an RMSE of 0.096 where a quarter of the pixels is 5 cm in front (docs/limits.md). This
+// fraction of such tiles on its own limits a frame to 0.096 * sqrt(0.02) = 0.014, 37 dB. Shipped
 // scenes have no such tile; thin parts and folds of heads flag a smaller fraction.
 inline constexpr double largest_folded_tiles = 0.02;
 
