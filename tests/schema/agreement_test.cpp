@@ -305,7 +305,7 @@ TEST(Schema, SceneSchema_AgreesWithParserOnMutatedFiles) {
 TEST(Schema, CaptureSchema_AgreesWithParserOnMutatedFiles) {
   const std::vector<json> files = {
       parse(R"({ "dermis_capture": 1, "width": 256, "height": 128, "projection": "orthographic",
-        "pixel_pitch_m": 0.0005, "jitter_px": [0.5, 0], "exposure": 2, "frame_index": 7,
+        "pixel_pitch_m": 0.0005, "jitter_px": [0.5, 0], "exposure": 2, "frame_index": 7, "cut": true,
         "render_rectangle": [0, 0, 128, 64],
         "profiles": [ { "id": 1, "file": "skin", "note": "n" }, { "id": 2, "dmfp_mm": [1, 2, 3], "albedo": [0, 0.5, 1] },
                       { "id": 3, "model": "dipole", "sigma_a_per_mm": [1, 2, 3], "sigma_s_prime_per_mm": [1, 1, 1] },

@@ -54,6 +54,7 @@ struct FrameDescription {
   double metres_per_unit = 1;
   std::array<double, 2> jitter_px{};
   uint64_t frame_index = 0;
+  bool cut = false; // the camera jumped: histories of the frame before are of no use
   double exposure = 1;
   std::vector<CaptureProfile> profiles;
 };

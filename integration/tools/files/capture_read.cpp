@@ -230,6 +230,7 @@ std::optional<CapturedFrame> read_view(const Document& document, const fs::path&
   read_projection(document, reader, frame, handedness, diagnostics);
   const int64_t index = reader.integer("frame_index", 0, INT64_MAX, Need::optional).value_or(0);
   description.frame_index = static_cast<uint64_t>(index);
+  description.cut = reader.boolean("cut", Need::optional).value_or(false);
   description.exposure = reader.number("exposure", 1e-12, 1e12, Need::optional).value_or(1);
   read_profiles(document, reader, folder, profile_folder, roots, description, diagnostics);
   reader.finish();

@@ -88,8 +88,9 @@ std::string describe_frame(const FrameDescription& f) {
   text += fmt::format("  \"view_from_world\": {},\n  \"previous_view_from_world\": {},\n",
                       matrix_text(f.view_from_world), matrix_text(f.previous_view_from_world));
   text += fmt::format(
-      "  \"jitter_px\": [{}, {}],\n  \"frame_index\": {},\n  \"exposure\": {},\n  \"profiles\": [",
-      f.jitter_px[0], f.jitter_px[1], f.frame_index, f.exposure);
+      "  \"jitter_px\": [{}, {}],\n  \"frame_index\": {},\n  \"cut\": {},\n  \"exposure\": {},\n  "
+      "\"profiles\": [",
+      f.jitter_px[0], f.jitter_px[1], f.frame_index, f.cut, f.exposure);
   for (size_t i = 0; i < f.profiles.size(); ++i) {
     text += fmt::format("{}\n    {{ \"id\": {}, {} }}", i == 0 ? "" : ",", f.profiles[i].id,
                         subsurface::profile_members(f.profiles[i].profile));

@@ -17,6 +17,7 @@ std::array<uint8_t, 3> heat_color(double error) {
   constexpr double stops[][3] = {{12, 12, 40},  {60, 20, 110},  {160, 40, 110},
                                  {235, 95, 60}, {252, 180, 60}, {252, 250, 190}};
   constexpr size_t last = std::size(stops) - 1;
+  if (std::isnan(error)) error = HUGE_VAL;
   const double t =
       std::clamp((std::log10(std::max(error, 1e-30)) - minimum) / (maximum - minimum), 0.0, 1.0) *
       double(last);

@@ -6,6 +6,7 @@
 #include "integration/tools/command/bench/dynamic/figures.hpp"
 #include "integration/tools/command/bench/supplement/experiment.hpp"
 #include "integration/tools/files/metrics.hpp"
+#include "tests/integration/tools/command_fixture.hpp"
 
 #include <gtest/gtest.h>
 
@@ -246,3 +247,16 @@ TEST(BenchSupplement, BestWeightMatchesTheClosedForm) {
 
 } // namespace
 } // namespace dermis::tools
+
+namespace dermis::test {
+namespace {
+
+class BenchDynamicCommand : public CommandTest {};
+
+TEST_F(BenchDynamicCommand, NeedsMoreFramesThanItSkips) {
+  EXPECT_THAT(run({"bench", "dynamic", "--scenes", "flashing", "--frames", "20"}),
+              FailsWith(2, "flashing close has 20 frames"));
+}
+
+} // namespace
+} // namespace dermis::test

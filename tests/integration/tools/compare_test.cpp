@@ -114,6 +114,8 @@ TEST_F(Compare, ComparesOnlyPixelsOfTheReferencesMask) {
     EXPECT_FALSE(rows[0].contains("ssim")); // Its windows would include ignored pixels.
     EXPECT_EQ(rows[1]["pixels"], 4);
   }
+  EXPECT_THAT(run({"compare", path("ours"), path("truth"), "--region", "8,0,2x2"}),
+              FailsWith(1, "region 8,0,2x2 has no pixel to compare"));
   EXPECT_THAT(run({"compare", path("ours"), path("truth"), "--flip"}).err, HasSubstr("--subset"));
   EXPECT_EQ(run({"compare", path("ours"), path("truth"), "--heat", path("heat.png")}).exit_code, 0);
 }

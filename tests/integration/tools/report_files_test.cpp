@@ -3,8 +3,10 @@
 #include "integration/tools/command/bench/report/pareto.hpp"
 #include "integration/tools/command/bench/report/report.hpp"
 #include "integration/tools/command/bench/subject.hpp"
+#include "integration/tools/command/run/pass_times.hpp"
 #include "integration/tools/command/run/reference_run.hpp"
 #include "integration/tools/files/capture_reference.hpp"
+#include "integration/tools/files/heat_color.hpp"
 #include "tests/integration/tools/command_fixture.hpp"
 
 #include <cmath>
@@ -44,6 +46,37 @@ TEST(ReportFiles, HtmlEscapesTextAndLoadsNothingFromElsewhere) {
                            "data:image/png;base64,iVBORw0KGgo", "prefers-color-scheme:dark"));
   for (const char* loaded : {"http:", "https:", "<link", "src='/", "@import"})
     EXPECT_THAT(page, Not(HasSubstr(loaded)));
+}
+
+// A logarithmic axis has no place for 0 and for infinity.
+TEST(ReportFiles, PlotsLeaveOutPointsWithoutAPlace) {
+  Report report = small_report();
+  for (const double value : {0.0, -1.0, HUGE_VAL, double(NAN)})
+    for (const auto& [x, y] : {std::pair(value, 1.0), std::pair(1.0, value)})
+      report.plots[0].series[0].points.push_back({x, y, "unseen", true});
+  EXPECT_THAT(report_as_html(report), AllOf(HasSubstr("<title>other</title>"),
+                                            Not(HasSubstr("unseen")), Not(HasSubstr("nan"))));
+  for (PlotSeries& series : report.plots[0].series)
+    series.points = {{0, HUGE_VAL, "unseen", false}};
+  EXPECT_THAT(report_as_html(report), Not(HasSubstr("unseen")));
+}
+
+TEST(HeatColor, NotANumber_IsTheLargestError) {
+  EXPECT_EQ(heat_color(NAN), heat_color(1));
+  EXPECT_NE(heat_color(NAN), heat_color(0));
+}
+
+// A frame may run other passes than the frame before.
+TEST(PassTimes, TotalIsOfWhatAFrameRan) {
+  PassTimes times;
+  for (int i = 0; i < 3; ++i) {
+    times.begin_frame();
+    times.add("list", 1);
+    times.add(i == 1 ? "sap" : "separable", 2);
+  }
+  EXPECT_EQ(times.total(), 3);
+  EXPECT_EQ(times.frames(), 3u);
+  EXPECT_EQ(times.rows().size(), 3u);
 }
 
 TEST(ReportFiles, BaselinesAreGreyAndOwnTechniquesAreNot) {

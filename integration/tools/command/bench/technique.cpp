@@ -15,9 +15,19 @@ namespace dermis::tools {
 namespace {
 
 // Passes before and after scattering, common to all techniques.
-constexpr std::array<std::string_view, 6> common_pass_types = {
-    "subsurface.classify",  "subsurface.tile_list",     "subsurface.setup",
-    "subsurface.sap_setup", "subsurface.pyramid_setup", "subsurface.combine"};
+constexpr std::array<std::string_view, 13> common_pass_types = {"clear",
+                                                                "subsurface.classify",
+                                                                "subsurface.classify_uniform_light",
+                                                                "subsurface.tile_list",
+                                                                "subsurface.sap_tiles",
+                                                                "subsurface.setup",
+                                                                "subsurface.separable_setup",
+                                                                "subsurface.sap_setup",
+                                                                "subsurface.sap_setup_half_res",
+                                                                "subsurface.pyramid_setup",
+                                                                "subsurface.combine",
+                                                                "subsurface.combine_copies",
+                                                                "subsurface.export_scattered"};
 
 std::string text_of(const Diagnostics& diagnostics) {
   std::string text;
@@ -157,7 +167,7 @@ demo::Result<std::vector<float>> TechniqueRun::scatter(const CapturedFrame& fram
   frame_ = c_frame(frame.description);
   if (depth == DepthGiven::depth_buffer) frame_.depth_kind = DERMIS_DEPTH_DEVICE;
   frame_.delta_seconds = frame_seconds_;
-  if (!follows) frame_.flags |= DERMIS_FRAME_RESET_HISTORY;
+  frame_.flags = follows ? 0 : DERMIS_FRAME_RESET_HISTORY;
   if (auto ran = device_->run(frame_); !ran) return ran.error();
   return device_->read_rgb("scattered_light");
 }

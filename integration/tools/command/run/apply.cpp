@@ -147,6 +147,7 @@ demo::Result<> apply_frame(ApplyRun& run, const CapturedFrame& frame, const std:
       if (auto ran = run_on(timed); !ran) return ran;
     // the first of several runs only warms caches
     if (run.runs++ == 0 && run.all_runs > 1) continue;
+    run.times.begin_frame();
     for (const DeviceGraph::PassTime& time : timed.times())
       run.times.add(time.pass, time.milliseconds);
   }

@@ -85,6 +85,7 @@ dermis_frame c_frame(const FrameDescription& frame) {
   out.jitter_y = static_cast<float>(frame.jitter_px[1]);
   out.metres_per_unit = static_cast<float>(frame.metres_per_unit);
   out.exposure = static_cast<float>(frame.exposure);
+  out.flags = frame.cut ? DERMIS_FRAME_RESET_HISTORY : 0;
   out.depth_kind = DERMIS_DEPTH_VIEW_UNITS;
   return out;
 }

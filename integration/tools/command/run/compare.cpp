@@ -358,8 +358,8 @@ ExitCode compare(const Session& session, const CompareOptions& options) {
     if (!problem.empty()) return fail(session, ExitCode::environment, problem);
   }
   const bool ok = std::all_of(rows.begin(), rows.end(), [&](const Compared& row) {
-    return row.difference.nonfinite == 0 && row.difference.psnr_db >= options.min_psnr &&
-           row.flip <= options.max_flip;
+    return row.difference.nonfinite == 0 && row.difference.pixels > 0 &&
+           row.difference.psnr_db >= options.min_psnr && row.flip <= options.max_flip;
   });
   say(session, as_table(rows, pairs.size() > 1));
   if (!options.heat.empty())
@@ -379,6 +379,13 @@ ExitCode compare(const Session& session, const CompareOptions& options) {
   if (options.max_flip < 1)
     allowed +=
         fmt::format("{}a FLIP of at most {}", allowed.empty() ? "" : " and ", options.max_flip);
+  if (const auto empty = std::ranges::find(
+          rows, uint64_t{0}, [](const Compared& row) -> uint64_t { return row.difference.pixels; });
+      empty != rows.end())
+    return fail(session, ExitCode::problems,
+                fmt::format("'{}'{}{} has no pixel to compare: the mask beside the reference has "
+                            "none there",
+                            empty->name, empty->region.empty() ? "" : ", region ", empty->region));
   const bool finite = std::all_of(
       rows.begin(), rows.end(), [](const Compared& row) { return row.difference.nonfinite == 0; });
   return fail(session, ExitCode::problems,

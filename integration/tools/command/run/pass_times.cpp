@@ -12,6 +12,7 @@ void PassTimes::add(std::string_view pass, double milliseconds) {
                             [&](const Samples& one) { return one.pass == pass; });
   if (found == samples_.end()) found = samples_.insert(found, {std::string(pass), {}});
   found->milliseconds.push_back(milliseconds);
+  frames_.back() += milliseconds;
 }
 
 std::vector<PassTimes::Row> PassTimes::rows() const {
@@ -22,10 +23,7 @@ std::vector<PassTimes::Row> PassTimes::rows() const {
 }
 
 double PassTimes::total() const {
-  double sum = 0.0;
-  for (const Row& row : rows())
-    sum += row.median;
-  return sum;
+  return frames_.empty() ? 0 : median(frames_);
 }
 
 std::string format_times(const PassTimes& times, const std::string& title) {
@@ -35,9 +33,9 @@ std::string format_times(const PassTimes& times, const std::string& title) {
   };
   Table table;
   const std::vector<PassTimes::Row> rows = times.rows();
-  const size_t frames = rows.empty() ? 0 : rows.front().frames;
-  table.columns = {
-      {fmt::format("{}, median of {}", title, frames)}, {"device time", true}, {"fraction", true}};
+  table.columns = {{fmt::format("{}, median of {}", title, times.frames())},
+                   {"device time", true},
+                   {"fraction", true}};
   for (const PassTimes::Row& row : rows)
     table.rows.push_back({row.pass, format_milliseconds(row.median), fraction(row.median)});
   table.rows.push_back({});

@@ -12,6 +12,8 @@ namespace dermis::tools {
 
 class PassTimes {
 public:
+  void begin_frame() { frames_.push_back(0); }
+  // Adds a pass of the frame that began last.
   void add(std::string_view pass, double milliseconds);
 
   struct Row {
@@ -20,7 +22,8 @@ public:
     size_t frames = 0;   // number of measured frames
   };
   std::vector<Row> rows() const; // in order of first appearance
-  double total() const;          // sum of the medians
+  double total() const;          // median of the sums of the frames; not all run all passes
+  size_t frames() const { return frames_.size(); }
   bool empty() const { return samples_.empty(); }
 
 private:
@@ -29,6 +32,7 @@ private:
     std::vector<double> milliseconds;
   };
   std::vector<Samples> samples_;
+  std::vector<double> frames_; // sums, milliseconds
 };
 
 // Suffix for titles of tables: caches and clocks are cold.

@@ -174,6 +174,8 @@ demo::Result<> take_frame(RenderRun& run, const demo::FrameOutputs& frame) {
     if (auto taken = take_pictures(run, frame); !taken) return taken;
   // The first of several frames only warms caches.
   if (frame.frame > 0 || run.options.frames == 1) {
+    run.graph_times.begin_frame();
+    run.host_times.begin_frame();
     for (const demo::PassTime& time : frame.dermis_times)
       run.graph_times.add(time.pass, time.milliseconds);
     for (const demo::PassTime& time : frame.host_times)

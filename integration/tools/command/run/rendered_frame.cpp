@@ -45,6 +45,7 @@ demo::Result<CapturedFrame> captured_frame(const demo::FrameOutputs& frame,
   description.clip_from_view = without_jitter(description.clip_from_view, description);
   description.metres_per_unit = static_cast<double>(frame.camera.metres_per_unit);
   description.frame_index = frame.frame;
+  description.cut = frame.cut;
   description.exposure = static_cast<double>(frame.exposure);
   description.profiles.assign(profiles.begin(), profiles.end());
   if (!complete_projection(description, captured.rays))

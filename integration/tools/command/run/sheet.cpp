@@ -143,6 +143,8 @@ ExitCode sheet(const Session& session, const SheetOptions& options) {
         engine.budget.deterministic = true;
         engine.budget.calibration = *calibration;
         engine.frames = frames_of_budget;
+      } else if (!options.budgets.empty()) {
+        engine.first_frame = frames_of_budget - 1; // the frame that the other rows show
       }
       demo::RenderCallbacks callbacks;
       callbacks.on_frame = [&](const demo::FrameOutputs& frame) -> demo::Result<> {

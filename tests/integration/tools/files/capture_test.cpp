@@ -37,6 +37,7 @@ struct Captures : ::testing::Test {
     d.metres_per_unit = 0.01;
     d.jitter_px = {0.25, -0.125};
     d.frame_index = 12345678901;
+    d.cut = true;
     d.exposure = 0.7;
     CaptureProfile skin;
     skin.id = 3;
@@ -107,6 +108,7 @@ TEST_F(Captures, RoundTripIsBitForBit) {
   EXPECT_EQ(back->description.previous_view_from_world, frame.description.previous_view_from_world);
   EXPECT_EQ(back->description.jitter_px, frame.description.jitter_px);
   EXPECT_EQ(back->description.frame_index, frame.description.frame_index);
+  EXPECT_TRUE(back->description.cut);
   EXPECT_EQ(back->description.exposure, frame.description.exposure);
   EXPECT_EQ(back->description.metres_per_unit, frame.description.metres_per_unit);
   EXPECT_EQ(std::pair(back->description.render.x, back->description.render.width),

@@ -174,6 +174,12 @@ DynamicRow row_of(const Sequence& sequence, const DynamicTechnique& technique,
 demo::Result<> measure_sequence(DynamicBench& bench, SequenceRequest request) {
   SuiteRun& run = bench.run;
   if (const uint64_t frames = run.number("frames"); frames > 0) request.frames = uint32_t(frames);
+  if (request.frames <= bench.file.counted)
+    return demo::Error{demo::ErrorKind::usage,
+                       fmt::format("{} {} has {} frames, but frames are counted from number {} on; "
+                                   "expected more frames",
+                                   request.scene, request.framing, request.frames,
+                                   bench.file.counted)};
   auto rendered =
       render_sequence(request, run.size().width, run.size().height, head_model(run.text("head")));
   if (!rendered) return rendered.error();

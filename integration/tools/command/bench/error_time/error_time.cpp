@@ -78,6 +78,14 @@ demo::Result<std::optional<std::vector<float>>> self_reference(ErrorTimeBench& b
   return std::optional<std::vector<float>>(light.take());
 }
 
+// Returns what self_reference() depends on, of one subject.
+std::string self_name(const ErrorTimeFile& file, const TechniqueRequest& request) {
+  std::string name = fmt::format("{} {}", request.graph, fmt::join(request.overlays, " "));
+  for (const auto& [setting, value] : request.set)
+    if (setting != file.self_setting) name += fmt::format(" {}={}", setting, value);
+  return name;
+}
+
 void add_times(ErrorTimeRow& row, const TechniqueTimes& times,
                std::chrono::steady_clock::time_point start) {
   row.spent_ms +=
@@ -182,15 +190,16 @@ demo::Result<> measure_subject(ErrorTimeBench& bench, const Subject& subject, Pr
   const CapturedFrame window = window_of(subject.frame, bench.file.self_window);
   const Reference in_window = inside(window, *reference);
   std::optional<std::vector<float>> self;
-  std::string self_of; // graph of `self`, which settings of one technique share
+  std::string self_of; // technique of `self`, which numbers of samples share
   for (const auto& technique : bench.techniques) {
     if (interrupted()) return stopped();
     ErrorTimeRow one{&subject, &technique->request()};
-    if (self_of != technique->request().graph) {
+    const std::string of = self_name(bench.file, technique->request());
+    if (self_of != of) {
       auto found = self_reference(bench, *technique, subject, window);
       if (!found) return found.error();
       self = found.take();
-      self_of = technique->request().graph;
+      self_of = of;
     }
     if (self && !in_window.pixels.empty()) { // the other size creates the graph twice more
       const auto part = technique->scatter(window);

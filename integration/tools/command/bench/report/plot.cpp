@@ -26,6 +26,20 @@ struct Axis {
   }
 };
 
+// Returns whether the plot can show the point: a zero or an infinite value has no place on a
+// logarithmic axis.
+bool is_shown(const Plot& plot, const PlotPoint& point) {
+  const auto has_place = [](double value) { return std::isfinite(value) && value > 0; };
+  return has_place(point.y) && (plot.over_frames ? std::isfinite(point.x) : has_place(point.x));
+}
+
+// Returns the plot without the points that it cannot show.
+Plot shown_part(Plot plot) {
+  for (PlotSeries& series : plot.series)
+    std::erase_if(series.points, [&](const PlotPoint& point) { return !is_shown(plot, point); });
+  return plot;
+}
+
 Axis frames_axis(const Plot& plot, double from, double to) {
   double last = 1;
   for (const PlotSeries& series : plot.series)
@@ -125,7 +139,8 @@ std::string series_class(const std::vector<SeriesName>& names, size_t place) {
   return fmt::format("s{} base b{}", place, before % lines);
 }
 
-std::string plot_as_svg(const Plot& plot, const std::vector<SeriesName>& names) {
+std::string plot_as_svg(const Plot& whole, const std::vector<SeriesName>& names) {
+  const Plot plot = shown_part(whole);
   const Axis x = plot.over_frames ? frames_axis(plot, left, width - right)
                                   : axis_over(plot, &PlotPoint::x, left, width - right);
   const Axis y = axis_over(plot, &PlotPoint::y, height - bottom, top);

@@ -13,8 +13,13 @@ namespace {
 // "ray", 1: change with the contents of the cache
 constexpr uint64_t ray_definition_version = 0x7261790000000002u;
 
-Hash hash_of(const RayReferenceSize& size, const std::string& scene, const CapturedFrame& frame) {
+Hash hash_of(const RayReferenceSize& size, const RayRequest& request, const std::string& scene,
+             const CapturedFrame& frame) {
   Hash hash;
+  std::string graph = request.loaded.text;
+  for (const auto& [setting, value] : request.set)
+    graph += fmt::format("\n{}={}", setting, value);
+  hash.add(std::span<const char>(graph.data(), graph.size()));
   const uint64_t sizes[] = {ray_definition_version, size.samples, size.frames,
                             frame.description.width, frame.description.height};
   hash.add(std::span<const uint64_t>(sizes));
@@ -56,7 +61,7 @@ demo::Result<RayReference> make_ray_reference(const RayReferenceSize& size,
     return demo::Error{demo::ErrorKind::input,
                        fmt::format("no pixel of '{}' has a profile", scene.file)};
 
-  const Hash hash = hash_of(size, *text, frame);
+  const Hash hash = hash_of(size, request, *text, frame);
   const size_t count = 3 * reference.pixels.size();
   if (auto kept = read_kept(cache, hash, count + 1)) {
     made.own_mse = kept->back();

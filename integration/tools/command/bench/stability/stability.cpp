@@ -81,6 +81,12 @@ demo::Result<> measure_stability(SuiteRun& run, const Emit<StabilityRow>& emit) 
         rows.push_back(std::move(row));
   const std::vector<StabilityCase> cases = requested_cases(run);
   const std::vector<CaptureProfile> profiles = stability_profiles();
+  // A graph that cannot be used ends the bench before anything is measured.
+  for (const TechniqueRequest& request : techniques) {
+    auto made = TechniqueRun::create(**host, request, profiles, {});
+    if (!made) return made.error();
+    if (auto tried = (*made)->scatter(sound_frame()); !tried) return tried.error();
+  }
   Progress progress = run.progress("case", cases.size() * techniques.size());
   uint64_t done = 0;
   for (const TechniqueRequest& request : techniques) {

@@ -181,8 +181,8 @@ std::vector<StabilityCase> light_cases() {
       damaged_light("light_minus_infinity", -infinity, 0),
       damaged_light("light_infinity", infinity, largest_half),
       damaged_light("light_beyond_half", 1e30f, largest_half),
-      uniform("light_denormal", 1e-40f, 1e30), // may become 0
-      uniform("light_faint", 1e-4f, 4e-3),     // half floats are 6e-8 apart below 6e-5
+      uniform("light_denormal", 1e-40f, 2 * 0x1p-24 / 1e-30), // two steps of a half float
+      uniform("light_faint", 1e-4f, 2 * 0x1p-24 / 1e-4),
       uniform("light_brightest", 6e4f, furnace),
       uniform("light_too_bright", 1e6f, furnace),
       trembling(),
