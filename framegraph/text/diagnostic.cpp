@@ -40,16 +40,18 @@ std::span<const DiagnosticInfo> all_diagnostic_infos() {
 }
 
 Diagnostic& Diagnostics::add(DiagnosticId id, SourceLocation where, std::string text) {
-  const bool was_full = full();
-  if (was_full && diagnostic_info(id).severity == Severity::error) ++dropped_errors;
+  const bool was_full = full(), is_error = diagnostic_info(id).severity == Severity::error;
+  // The first error is listed in any case, in place of the last note or warning.
+  const bool replaces = was_full && is_error && !has_errors();
+  if (was_full && is_error && !replaces) ++dropped_errors;
   if (!was_full) list.emplace_back();
-  const size_t index = list.size() - 1;
+  const size_t index = replaces ? limits::diagnostics - 1 : list.size() - 1;
   if (list.size() == limits::diagnostics) {
     Diagnostic& last = list.emplace_back();
     last.id = DiagnosticId::too_many_diagnostics;
     last.text = fmt::format("only the first {} diagnostics are listed", limits::diagnostics);
   }
-  Diagnostic& one = was_full ? dropped : list[index];
+  Diagnostic& one = was_full && !replaces ? dropped : list[index];
   one.id = id;
   one.where = std::move(where);
   one.text = std::move(text);

@@ -307,9 +307,6 @@ public:
   HistoryState history_state(uint32_t index, bool reset_history = false,
                              const Executor* before = nullptr) const noexcept;
   uint32_t history_count() const noexcept;
-  // Returns the number of frames recorded, without those that were discarded. One thread at a time
-  // per executor.
-  uint64_t frames_recorded() const noexcept;
   // Returns the rectangle of the last recorded frame, which is the area that histories cover. With
   // `before`, returns the rectangle of that executor in pixels of this plan's view. Width 0: no
   // frame yet.

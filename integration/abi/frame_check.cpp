@@ -198,8 +198,8 @@ dermis_result find_view(dermis_view_t& view, uint32_t index, const Slot& slot,
                              ? VkImageAspectFlags{VK_IMAGE_ASPECT_DEPTH_BIT}
                              : VkImageAspectFlags{VK_IMAGE_ASPECT_COLOR_BIT},
                          binding.layer};
-  const VkResult result =
-      find_image_view(view.image_views, key, frame.frame_index, frame.completed_frame_index, found);
+  const VkResult result = find_image_view(view.image_views, key, frame.frame_index, view.last_frame,
+                                          frame.completed_frame_index, found);
   if (result == VK_SUCCESS) return DERMIS_OK;
   if (result == VK_ERROR_TOO_MANY_OBJECTS)
     return bad_argument(log,
@@ -393,7 +393,7 @@ dermis_result fill_frame(const dermis_view_t& view, const CompiledGraph& compile
       fault != subsurface::CameraFault::none)
     return bad_argument(log, "{}: {}{}", function, subsurface::text_of(fault), hint_of(fault));
   checked.constants.sample_units = chosen.sample_units;
-  checked.constants.view_frame = static_cast<uint32_t>(executor.frames_recorded() + 1);
+  checked.constants.view_frame = static_cast<uint32_t>(view.frames + 1);
   if (chosen.probed) checked.constants.flags |= subsurface::always_probed;
   checked.input.command_buffer = frame.command_buffer;
   checked.input.images = compiled_graph.images;

@@ -36,6 +36,7 @@ struct dermis_view_t {
   std::array<std::shared_ptr<dermis::abi::CompiledGraph>, dermis::vulkan::max_frames_in_flight + 1>
       retired;
   uint64_t last_frame = 0;
+  uint64_t frames = 0; // recorded and not discarded
   // State before the last record, until that is discarded or another frame is recorded.
   struct Recorded {
     bool known = false;

@@ -21,6 +21,12 @@ template <class T> const void* element(const T* items, uint32_t i) {
   return reinterpret_cast<const std::byte*>(items) + i * stated_size(items);
 }
 
+// Reads one element of an array, all of which have the size that the first one states.
+template <class T> SizedRead read_element(const T* items, uint32_t i, T& to) {
+  const void* from = element(items, i);
+  return stated_size(from) == stated_size(items) ? read_sized(from, to) : SizedRead::too_small;
+}
+
 constexpr std::array usages{Usage::sampled_image,         Usage::storage_image_write,
                             Usage::storage_image_update,  Usage::storage_buffer_read,
                             Usage::storage_buffer_write,  Usage::storage_buffer_update,
@@ -34,7 +40,7 @@ dermis_result read_ports(const Log& log, const dermis_pass_type& given,
                         given.port_count);
   for (uint32_t i = 0; i < given.port_count; ++i) {
     dermis_port port = DERMIS_PORT_INIT;
-    if (const SizedRead read = read_sized(element(given.ports, i), port); read != SizedRead::ok)
+    if (const SizedRead read = read_element(given.ports, i, port); read != SizedRead::ok)
       return rejected_size(log, read, fmt::format("{}: type.ports[{}]", registering, i),
                            stated_size(element(given.ports, i)), sizeof(dermis_port));
     const auto usage = static_cast<size_t>(port.usage);
@@ -54,8 +60,7 @@ dermis_result read_settings(const Log& log, const dermis_pass_type& given,
                         given.setting_count);
   for (uint32_t i = 0; i < given.setting_count; ++i) {
     dermis_pass_setting setting = DERMIS_PASS_SETTING_INIT;
-    if (const SizedRead read = read_sized(element(given.settings, i), setting);
-        read != SizedRead::ok)
+    if (const SizedRead read = read_element(given.settings, i, setting); read != SizedRead::ok)
       return rejected_size(log, read, fmt::format("{}: type.settings[{}]", registering, i),
                            stated_size(element(given.settings, i)), sizeof(dermis_pass_setting));
     const auto value_type = static_cast<size_t>(setting.type);

@@ -29,7 +29,7 @@ void reserve(ImageViews& views, size_t slots) {
 }
 
 VkResult find_image_view(ImageViews& views, const ImageViewKey& key, uint64_t frame_index,
-                         uint64_t completed, KnownView& view) noexcept {
+                         uint64_t recorded, uint64_t completed, KnownView& view) noexcept {
   const auto slot =
       std::span(views.entries).subspan(key.slot * image_views_a_slot, image_views_a_slot);
   const auto known = std::find_if(slot.begin(), slot.end(), [&](const ImageViews::Entry& entry) {
@@ -45,7 +45,7 @@ VkResult find_image_view(ImageViews& views, const ImageViewKey& key, uint64_t fr
                                        [](const ImageViews::Entry& a, const ImageViews::Entry& b) {
                                          return a.last_frame < b.last_frame;
                                        });
-  if (oldest->view != VK_NULL_HANDLE && oldest->last_frame > completed)
+  if (oldest->view != VK_NULL_HANDLE && std::min(oldest->last_frame, recorded) > completed)
     return VK_ERROR_TOO_MANY_OBJECTS;
   VkImageView made = VK_NULL_HANDLE;
   if (const VkResult result = create(views.device, key, made); result != VK_SUCCESS) return result;

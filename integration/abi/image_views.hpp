@@ -47,9 +47,10 @@ struct KnownView {
 };
 
 // Returns the view for `key`, for use by frame `frame_index`. Replaces views that no frame after
-// `completed` uses. Errors: those of vkCreateImageView; VK_ERROR_TOO_MANY_OBJECTS if more images
-// alternate than there are entries. Allocates no host memory of the library.
+// `completed` uses; frames after `recorded` were discarded or rejected, and use none. Errors: those
+// of vkCreateImageView; VK_ERROR_TOO_MANY_OBJECTS if more images alternate than there are entries.
+// Allocates no host memory of the library.
 VkResult find_image_view(ImageViews& views, const ImageViewKey& key, uint64_t frame_index,
-                         uint64_t completed, KnownView& view) noexcept;
+                         uint64_t recorded, uint64_t completed, KnownView& view) noexcept;
 
 } // namespace dermis::abi

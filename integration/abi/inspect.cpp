@@ -120,6 +120,7 @@ dermis_result get_timings(dermis_view_t& view, const char* function, uint64_t co
   const Log& log = view.context->log;
   if (count == nullptr) return bad_argument(log, "{}: count is NULL", function);
   const std::lock_guard lock(view.mutex);
+  if (const dermis_result loss = check_loss(view, function); loss != DERMIS_OK) return loss;
   CompiledGraph& compiled_graph = view.running ? *view.running : newest(view);
   const TimedPlan timed = find_timed_plan(compiled_graph, std::min(completed, view.last_frame));
   const RunnablePlan& plan = timed.plan != nullptr ? *timed.plan : compiled_graph.recorded();

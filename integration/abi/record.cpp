@@ -80,6 +80,7 @@ dermis_result discard(dermis_view_t& view, const char* function, uint64_t frame_
       view.running = std::move(view.retired[recorded.retired]);
   }
   view.last_frame = recorded.last_frame;
+  --view.frames;
   recorded = {};
   return DERMIS_OK;
 }
@@ -159,6 +160,7 @@ dermis_result record_chosen(dermis_view_t& view, CompiledGraph& compiled_graph, 
   compiled_graph.plans[plan].recorded = true;
   remember(view.chooser, chosen);
   view.last_frame = frame.frame_index;
+  ++view.frames;
   take_over(view);
   return DERMIS_OK;
 }

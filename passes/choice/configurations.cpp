@@ -57,12 +57,13 @@ int64_t with_two_digits(int64_t value) {
 
 // Returns the value as work_name() states it. A host may change numbers in each frame, and each
 // name takes memory, so real numbers have one digit, because costs hardly depend on them, and
-// integers two.
+// integers two. Real numbers that change the kernel, as by a slider, have two.
 std::string rounded_value_text(const PassTypeSetting& setting, const SettingValue& value) {
   if (setting.per_frame && setting.type == SettingType::real)
     return fmt::format("{:.1g}", value.real);
   if (setting.per_frame && setting.type == SettingType::integer)
     return fmt::format("{}", with_two_digits(value.integer));
+  if (setting.type == SettingType::real) return fmt::format("{:.2g}", value.real);
   return value_text(setting, value);
 }
 

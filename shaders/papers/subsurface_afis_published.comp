@@ -37,6 +37,9 @@ vec3 scatter(ivec2 pixel, uint id, scatter_profile profile, vec4 own) {
         radial_draw(profile, unit.x * beyond, INVERSE_POLYNOMIAL, WEIGHTING_SAMPLER);
     vec2 at =
         vec2(pixel) + radial.r * vec2(cos(unit.y * two_pi), sin(unit.y * two_pi)) / footprint;
+    // The sampler would repeat the first row and column beyond the picture.
+    if (any(lessThan(at, vec2(-0.5))) || any(greaterThanEqual(at, vec2(frame.rect.zw) - 0.5)))
+      continue;
     float lod =
         0.5 * log2(max(pixels_per_sample * radial.r / radial.density, 1e-20)) + settings.lod_bias;
     vec4 tap = textureLod(sampler2D(chain_image, linear_sampler), (at + 0.5) * texel,

@@ -25,9 +25,10 @@ const float square_side_d = 8.0;
 shared uint light_sum, tap_count, contrast_sum, weight_sum, widest_d;
 
 // Returns the error of the separable technique relative to that of samples, minus 1. `area`: of the
-// pixel's patch.
+// pixel's patch in footprints, below 1 off the axis of a perspective view.
 float benefit_of(float d_px, float area) {
-  return max(settings.ratio * sqrt(max(d_px, 1.0)) * (1.0 + 4.0 * (area - 1.0)) - 1.0, 0.0);
+  float tilt = max(area - 1.0, 0.0);
+  return max(settings.ratio * sqrt(max(d_px, 1.0)) * (1.0 + 4.0 * tilt) - 1.0, 0.0);
 }
 
 uint exposed_steps(vec3 light) {

@@ -39,13 +39,14 @@ chosen_hit trace_probe(accelerationStructureEXT scene, rayQueryEXT query, probe_
   return chosen;
 }
 
-// Offset of a ray's origin above the surface, relative to 1 plus the distance to the world's
+// Offset of a ray's origin above the surface, relative to a metre plus the distance to the world's
 // origin: a few rounding errors of a position's coordinates.
 const float ray_lift = 2e-5;
 
 // As visible of scene.glsl, through an acceleration structure.
 bool visible(accelerationStructureEXT scene, rayQueryEXT query, surface_point from, vec3 target) {
-  float size = 1.0 + max(abs(from.position.x), max(abs(from.position.y), abs(from.position.z)));
+  float size = mm_per_metre / mm_per_world_unit() +
+               max(abs(from.position.x), max(abs(from.position.y), abs(from.position.z)));
   vec3 origin = from.position + ray_lift * size * from.normal;
   rayQueryInitializeEXT(query, scene, gl_RayFlagsOpaqueEXT | gl_RayFlagsTerminateOnFirstHitEXT,
                         ray_any, origin, 0.0, target - origin, 1.0 - ray_lift);

@@ -69,6 +69,8 @@ scatter_domain domain_of(utexture2D material, texture2D depth_texture, texture2D
   if (id == 0u || !(depth > 0.0) || !(square > 0.0 && square < 3e38)) // not finite: no surface
     return scatter_domain(vec3(0.0), vec3(0.0, 0.0, 1.0), vec3(0.0), 0u);
   float scale = scale_bound ? clean_scatter_scale(texelFetch(scatter_scale, texel, 0).r) : 1.0;
+  if (!(projected_d(find_profile(id, scale).d.w, depth) >= copy_below_d_px))
+    return scatter_domain(vec3(0.0), vec3(0.0, 0.0, 1.0), vec3(0.0), 0u);
   vec3 from_eye =
       view_position(vec2(pixel), depth) -
       vec3(frame.view_from_world[0].w, frame.view_from_world[1].w, frame.view_from_world[2].w);

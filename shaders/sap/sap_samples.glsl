@@ -84,6 +84,8 @@ float sap_scale(sap_texel t, float area) { return t.reach * sqrt(sqrt(sqrt(area)
 // Returns the light around the sample's pixel at a level of detail.
 vec3 sample_light(utexture2D surface, texture2D light, ivec2 q, vec2 at, sap_texel tap,
                   float lod) {
+  // A texel of the first levels has 2^level pixels where pixels are not square.
+  lod = lod > 0.0 ? min(2.0 * lod, lod + 0.5 * float(pixel_doublings)) : lod;
   int level = min(int(lod + 0.5), last_sample_level);
   if (level > 0) {
     ivec2 texel = ivec2(floor((at + 0.5) / sap_spacings(level)));

@@ -90,9 +90,14 @@ TEST(Diagnostic, ErrorsBeyondTheListLimitStillCount) {
     all.add(DiagnosticId::too_many_diagnostics, {}, "a mere note");
   EXPECT_FALSE(all.has_errors());
   EXPECT_TRUE(all.full());
-  all.add(DiagnosticId::syntax, {}, "an error").suggestion = "kept nowhere";
+  all.add(DiagnosticId::syntax, {}, "an error").suggestion = "kept with it";
   EXPECT_TRUE(all.has_errors());
   EXPECT_EQ(all.list.size(), limits::diagnostics + 1);
+  all.add(DiagnosticId::syntax, {}, "another error");
+  EXPECT_EQ(all.errors(), 2u);
+  // The first error is listed, because a report without one explains nothing.
+  EXPECT_EQ(all.list[limits::diagnostics - 1].text, "an error");
+  EXPECT_EQ(all.list.back().id, DiagnosticId::too_many_diagnostics);
 }
 
 TEST(Diagnostic, EveryIdHasANameAHintAndItsNumberInItsCode) {

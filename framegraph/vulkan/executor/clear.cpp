@@ -84,11 +84,14 @@ void add_history_targets(State& state, const PlanHistory& history, uint32_t back
   const Instance& instance = state.instances[instance_of(state, resource, back)];
   for (uint32_t number = 0; number < history.range_count; ++number) {
     const SubresourceRange& range = state.plan.history_ranges[history.first_range + number];
+    const auto layout = static_cast<VkImageLayout>(
+        state.plan.history_layouts[history.first_layout + back * history.range_count + number]);
+    if (instance.image != VK_NULL_HANDLE && layout == VK_IMAGE_LAYOUT_UNDEFINED)
+      continue; // no pass accesses the range
     ClearTarget& target = state.clear_targets.emplace_back();
     target.image = instance.image;
     target.buffer = instance.buffer;
-    target.layout = static_cast<VkImageLayout>(
-        state.plan.history_layouts[history.first_layout + back * history.range_count + number]);
+    target.layout = layout;
     target.range = {VK_IMAGE_ASPECT_COLOR_BIT, range.first_mip, range.mips, range.first_layer,
                     range.layers};
     // the bit has the same value for buffers

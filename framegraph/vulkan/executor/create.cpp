@@ -155,11 +155,14 @@ void make_slots(State& state) {
 void make_histories(State& state, const ExecutorInput& input) {
   for (const PlanHistory& history : state.plan.histories) {
     HistoryRecord& record = state.histories.emplace_back();
-    record.name =
-        input.graph->resources[state.plan.resources[history.resource].declared.value].name;
+    const ResourceDeclaration& declared =
+        input.graph->resources[state.plan.resources[history.resource].declared.value];
+    record.name = declared.name;
     invalidate_history(record, input.history == HistoryReason::valid ? HistoryReason::first_frame
                                                                      : input.history);
+    // Contents that padding surrounds do not scale as the image does.
     record.scales =
+        declared.size.align == 1 && declared.size.border == 0 &&
         can_rescale(*state.device, state.plan.resources[history.resource], history.declaration);
     for (const PlanPass& planned : state.plan.passes)
       for (uint32_t a = planned.first_access; a < planned.first_access + planned.access_count;

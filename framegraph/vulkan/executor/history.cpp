@@ -75,10 +75,6 @@ void invalidate_histories(State& state, HistoryReason reason) noexcept {
   }
 }
 
-uint64_t Executor::frames_recorded() const noexcept {
-  return state_->frame_counter;
-}
-
 uint32_t Executor::history_count() const noexcept {
   return static_cast<uint32_t>(state_->histories.size());
 }

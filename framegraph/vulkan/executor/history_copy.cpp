@@ -93,6 +93,7 @@ void change_layouts(const FunctionTable& vk, VkCommandBuffer commands, const Cop
     const auto own = static_cast<VkImageLayout>(
         plan.history_layouts[frame.history.first_layout +
                              frame.frames_back * frame.history.range_count + number]);
+    if (!before && own == VK_IMAGE_LAYOUT_UNDEFINED) continue; // no pass accesses the range
     VkImageMemoryBarrier2 change =
         layout_change(frame.instance().image,
                       {barrier_aspects(frame.resource().format), range.first_mip, range.mips,
@@ -130,18 +131,36 @@ void copy_image(const FunctionTable& vk, VkCommandBuffer commands, const History
   change_layouts(vk, commands, transfer, to, target, false);
 }
 
-// Returns the type of the pass that writes the newest frame last. Another pass type may store other
-// data.
-PassTypeId writer_of(const State& state, const PlanHistory& history) {
-  PassTypeId writer;
+// Calls `visit(pass type, access)` for each write of the newest frame.
+template <class Visit>
+void for_each_write(const State& state, const PlanHistory& history, const Visit& visit) {
   for (const PlanPass& pass : state.plan.passes)
     for (uint32_t a = pass.first_access; a < pass.first_access + pass.access_count; ++a) {
       const PlanAccess& access = state.plan.accesses[a];
       if (access.resource == history.resource && access.frames_back == 0 &&
           (access.access & all_write_access) != 0)
-        writer = pass.type;
+        visit(pass.type, access);
     }
-  return writer;
+}
+
+size_t writes_like(const State& state, const PlanHistory& history, PassTypeId type,
+                   const PlanAccess& write) {
+  size_t count = 0;
+  for_each_write(state, history, [&](PassTypeId other, const PlanAccess& access) {
+    count += other == type && access.port == write.port && access.range == write.range ? 1 : 0;
+  });
+  return count;
+}
+
+// Returns whether `b` has every write of `a`, as often. Other pass types may store other data, and
+// a missing pass leaves data of earlier frames.
+bool has_writes_of(const State& b, const PlanHistory& of_b, const State& a,
+                   const PlanHistory& of_a) {
+  bool all = true;
+  for_each_write(a, of_a, [&](PassTypeId type, const PlanAccess& write) {
+    all = all && writes_like(a, of_a, type, write) == writes_like(b, of_b, type, write);
+  });
+  return all;
 }
 
 bool usable(const State& to, uint32_t to_history, const State& from, uint32_t from_history) {
@@ -156,7 +175,8 @@ bool usable(const State& to, uint32_t to_history, const State& from, uint32_t fr
   const bool scales = to.histories[to_history].scales && from.histories[from_history].scales;
   return to.histories[to_history].name == from.histories[from_history].name && same_texels(a, b) &&
          ((same_view && same_size(a, b)) || scales) &&
-         writer_of(to, new_history) == writer_of(from, old_history);
+         has_writes_of(from, old_history, to, new_history) &&
+         has_writes_of(to, new_history, from, old_history);
 }
 
 } // namespace

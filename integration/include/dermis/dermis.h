@@ -225,7 +225,8 @@ typedef struct dermis_memory_block {
  * after a recorded frame if a barrier over ALL_COMMANDS and MEMORY_WRITE | MEMORY_READ orders them
  * with the frame; the block's contents are then undefined. Blocks are freed one by one when no
  * frame can use them any more. Called inside create, reload, resize, set_setting, set_profile,
- * record and destroy, by their threads. Must not call Dermis. */
+ * record and destroy, by their threads; free also inside queries that run while a graph is
+ * replaced. Must not call Dermis. */
 typedef VkResult(DERMIS_CALL* dermis_allocate_memory_fn)(
     void* user, const dermis_memory_request* request, dermis_memory_block* block);
 typedef void(DERMIS_CALL* dermis_free_memory_fn)(void* user, const dermis_memory_block* block);
@@ -512,8 +513,8 @@ typedef struct dermis_history {
  * built again and no history is lost; only the first profile of a graph and the removal of the last
  * one act like a reload. Frames in flight keep the old profile; each view uses the new one from its
  * next record on. Light accumulated over frames still shows the old profile for
- * dermis_history.settles_after frames; the report contains the number (D0625). Takes up to 0.3 s,
- * next to recording. Kept over reloads with DERMIS_KEEP_PROFILES and over resizes. Costs: memory,
+ * dermis_history.settles_after frames; the report contains the number (D0625). Takes up to 0.3 s
+ * per profile of the graph, next to recording. Kept over reloads with DERMIS_KEEP_PROFILES and over resizes. Costs: memory,
  * time. Thread: concurrent. Errors: as dermis_graph_create. */
 DERMIS_API dermis_result DERMIS_CALL dermis_graph_set_profile(
     dermis_graph graph, uint32_t id, const dermis_source* source, dermis_report* report);
@@ -526,8 +527,8 @@ typedef enum dermis_setting_type {
   DERMIS_SETTING_TYPE_FORCE_32BIT = 0x7fffffff
 } dermis_setting_type;
 
-/* A setting that the graph declares. Strings live until the next reload, resize, set_setting or
- * destroy. */
+/* A setting that the graph declares. Strings live until the next reload, resize, set_setting,
+ * set_profile, reload_shaders or destroy. */
 typedef struct dermis_setting {
   size_t struct_size;
   const char* name;
@@ -622,8 +623,10 @@ typedef struct dermis_pass_port {
    VK_IMAGE_LAYOUT_UNDEFINED, 0, 0, VK_NULL_HANDLE, 0, 0, VK_NULL_HANDLE}
 
 /* Valid until the function returns. The images and views of a dermis_view stay the same from frame
- * to frame until it is reloaded, resized or given a setting that changes its passes. Histories
- * alternate between images. */
+ * to frame until it is reloaded, resized or given a setting that changes its passes, and while the
+ * same passes run: configurations of a choice by budget, and frames with empty bounds, may have
+ * other images. Histories alternate between images. Descriptors that are kept have to be compared
+ * with the ports. */
 typedef struct dermis_pass_call {
   size_t struct_size;
   const char* pass; /* name of the pass in the graph */
@@ -882,7 +885,8 @@ DERMIS_API dermis_result DERMIS_CALL dermis_view_commands(
     dermis_view view, const dermis_frame* frame, uint32_t* count, const dermis_command** commands);
 /* Discards the frame recorded last, which will never be submitted: the view is as before that
  * record, including histories, and frame_index may be used again. At most one frame, before the
- * next record, dermis_graph_reload or dermis_graph_resize. The command buffer must not run. Costs:
+ * next record, and before any call that compiles the graph again (reload, resize, reload_shaders,
+ * set_setting, set_profile). The command buffer must not run. Costs:
  * none. Thread: one per view. Errors: ARGUMENT. */
 DERMIS_API dermis_result DERMIS_CALL dermis_view_discard(dermis_view view, uint64_t frame_index);
 /* Returns the device times of the newest completed frame, in plan order. Needs

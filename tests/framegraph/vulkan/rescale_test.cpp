@@ -122,6 +122,24 @@ TEST_F(RescaledHistory, HasTheNearestTexelsInEveryMipAndLayer) {
     }
 }
 
+// Padding around the contents does not scale with them.
+TEST_F(RescaledHistory, PaddedImagesRestart) {
+  for (const auto& [align, border] : {std::pair{64u, 0u}, {1u, 2u}}) {
+    SmallGraph g = make_graph({Format::r32f, 1, 1, 1});
+    for (ResourceDeclaration& one : g.graph.resources)
+      if (one.name == "kept") one.size.align = align, one.size.border = border;
+    make_executor(g, 32, 32);
+    bind_results(g, {Format::r32f, 1, 1, 1});
+    ASSERT_FALSE(frame());
+    replaced = std::move(executor);
+    make_executor(g, 40, 40);
+    EXPECT_FALSE(executor->history_state(0, false, replaced.get()).valid) << align;
+    wait();
+    replaced.reset();
+    executor.reset();
+  }
+}
+
 TEST_F(RescaledHistory, HasTheNearestTexelsOfEveryFrame) {
   resize({Format::r32f, 2, 1, 2}, {16, 16}, {9, 31});
 }

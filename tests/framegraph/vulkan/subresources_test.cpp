@@ -71,6 +71,19 @@ TEST_F(PartsTest, HistoryMipsComeFromTheRequestedFrame) {
   }
 }
 
+// No pass accesses mip 1 of the history, which has no layout then.
+TEST_F(PartsTest, HistoryMipsWithoutAccess_AreLeftAlone) {
+  SmallGraph g{"export result"};
+  g.history("kept", 1).mips = 2;
+  g.set(g.pass("count", "test.add", {{"a", "kept#0@-1"}}, {{"target", "kept#0"}}), "bias", 1);
+  g.pass("show", "test.add", {{"a", "kept#0"}}, {{"target", "result"}});
+  const TestImage result = start(g, whole, whole);
+  for (const float expected : {1.0f, 2.0f, 3.0f}) {
+    ASSERT_FALSE(frame());
+    EXPECT_EQ(read(result)[0], expected);
+  }
+}
+
 // Nothing reads mip 1 of this frame, so it keeps the layout of its write; mip 0 keeps the layout of
 // its read.
 TEST_F(PartsTest, HistoryMipsKeepSeparateLayouts) {

@@ -7,6 +7,7 @@
 
 #include <cstring>
 #include <functional>
+#include <utility>
 
 namespace dermis::abi_test {
 namespace {
@@ -143,6 +144,28 @@ TEST_F(StructSizes, PassTypePortsAndSettings_FollowTheHeader) {
     type.settings = given;
     return add(&type);
   });
+}
+
+// The first element states the size of all: no other is read beyond it.
+TEST_F(StructSizes, ElementsOfPassTypes_HaveOneSize) {
+  dermis_port ports[2] = {port_of("a", DERMIS_PORT_SAMPLED_IMAGE),
+                          port_of("b", DERMIS_PORT_STORAGE_IMAGE_UPDATE)};
+  dermis_pass_setting settings[2] = {DERMIS_PASS_SETTING_INIT, DERMIS_PASS_SETTING_INIT};
+  settings[0].name = "one", settings[1].name = "two";
+  dermis_pass_type type = DERMIS_PASS_TYPE_INIT;
+  type.name = "studio.sizes";
+  type.ports = ports;
+  type.settings = settings;
+  type.port_count = type.setting_count = 2;
+  type.record = record_nothing;
+  dermis_graph_destroy(host.graph);
+  host.graph = nullptr;
+  for (size_t* size : {&ports[1].struct_size, &settings[1].struct_size}) {
+    const size_t right = std::exchange(*size, 4000);
+    EXPECT_EQ(dermis_register_pass_type(host.context, &type), DERMIS_ERROR_ARGUMENT);
+    *size = right;
+  }
+  EXPECT_OK(dermis_register_pass_type(host.context, &type));
 }
 
 TEST_F(StructSizes, Allocators_FollowTheHeader) {

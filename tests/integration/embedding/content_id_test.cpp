@@ -83,6 +83,21 @@ TEST(ContentIdOnTheNullDevice, CreatesAViewOnceAndDestroysIt) {
   EXPECT_EQ(host.device.creations(), creations);
 }
 
+// Frames that were recorded, but never ran, keep no view from being replaced.
+TEST(ContentIdOnTheNullDevice, DiscardedFrames_KeepNoViews) {
+  NullHost host;
+  ASSERT_OK(host.start());
+  host.give_up_views();
+  ASSERT_OK(host.record());
+  const dermis_view view = dermis_graph_view(host.graph);
+  const uint64_t next = host.last_frame + 1;
+  for (int i = 0; i < 20; ++i) {
+    host.number_images();
+    ASSERT_OK(host.record(view, next)) << i;
+    ASSERT_OK(dermis_view_discard(view, next));
+  }
+}
+
 // Descriptors that recording writes, on a device that counts them.
 struct DescriptorWrites : ::testing::Test {
   static constexpr uint64_t warm_frames = 8;

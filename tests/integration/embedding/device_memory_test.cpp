@@ -339,6 +339,23 @@ TEST(LostDevice, LossInTimestamps_EndsTheContext) {
   }
 }
 
+TEST(LostDevice, KnownTimesAreNotHandedOutAfterIt) {
+  NullHost host;
+  ASSERT_OK(host.start());
+  ASSERT_OK(host.record());
+  const dermis_view view = dermis_graph_view(host.graph);
+  uint32_t count = 64;
+  std::vector<dermis_pass_timing> times(count, dermis_pass_timing DERMIS_PASS_TIMING_INIT);
+  ASSERT_OK(dermis_view_timings(view, 1, &count, times.data()));
+  ASSERT_OK(host.record());
+  host.device.fail_queries(VK_ERROR_DEVICE_LOST);
+  demo::ReportedFrame choice;
+  ASSERT_EQ(demo::read_reported(view, 2, choice), DERMIS_ERROR_DEVICE_LOST);
+  host.device.fail_queries(VK_SUCCESS);
+  count = 64;
+  EXPECT_EQ(dermis_view_timings(view, 1, &count, times.data()), DERMIS_ERROR_DEVICE_LOST);
+}
+
 TEST(TwoContexts, TwoDevices_AreIndependent) {
   NullHost first, second;
   for (NullHost* host : {&first, &second}) {

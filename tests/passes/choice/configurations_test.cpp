@@ -326,8 +326,10 @@ SettingValue integer_value(int64_t value) {
 
 // Hosts animate settings; each name of a work takes memory.
 TEST(WorkNames, RealsPerFrame_HaveOneDigit) {
-  EXPECT_EQ(name_with(real_value(0.127), real_value(1.25)), "pass weight=0.1 radius=1.25");
-  EXPECT_EQ(name_with(real_value(0.13), real_value(1.25)), "pass weight=0.1 radius=1.25");
+  EXPECT_EQ(name_with(real_value(0.127), real_value(1.25)), "pass weight=0.1 radius=1.2");
+  EXPECT_EQ(name_with(real_value(0.13), real_value(1.5)), "pass weight=0.1 radius=1.5");
+  // Others have two: a slider may change them, too.
+  EXPECT_EQ(name_with(real_value(1), real_value(-2.1234)), "pass weight=1 radius=-2.1");
 }
 
 TEST(WorkNames, IntegersPerFrame_HaveTwoDigits) {
