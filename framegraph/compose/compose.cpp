@@ -102,6 +102,10 @@ std::optional<Composition> compose(Document graph, std::vector<Document> overlay
   if (!add_document(composer, std::move(graph), root)) return std::nullopt;
   composer.tree.insert_copy(0, composer.tree.documents.front().root());
   expand_graph(composer);
+  // Errors of the graph are its own: edits of what is missing would hide them.
+  if (diagnostics.errors() != errors_before) return std::nullopt;
+  if (!composer.tree.find({0}, "passes").valid())
+    return Composition{flatten(std::move(composer.tree)), {}}; // the graph's reader reports it
   for (Document& overlay : overlays) {
     const SourceLocation where = overlay.where(overlay.root());
     if (!add_document(composer, std::move(overlay), where)) break;

@@ -10,6 +10,7 @@ namespace {
 
 constexpr size_t longest_compared = 64; // longer words are not typing mistakes
 constexpr size_t longest_list = 12;
+constexpr size_t most_compared = size_t{1} << 22; // pairs of characters, of all candidates
 
 char lower(char c) {
   return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
@@ -42,9 +43,11 @@ size_t edit_distance(std::string_view a, std::string_view b, size_t limit) {
 std::string_view nearest(std::string_view word, std::span<const std::string_view> candidates) {
   if (word.empty() || word.size() > longest_compared) return {};
   std::string_view best;
-  size_t best_distance = word.size() / 3 + 2;
+  size_t best_distance = word.size() / 3 + 2, left = most_compared;
   for (std::string_view candidate : candidates) {
     if (candidate.empty() || candidate.size() > longest_compared) continue;
+    left -= std::min(left, word.size() * candidate.size());
+    if (left == 0) break;
     const size_t distance = edit_distance(word, candidate, best_distance - 1);
     // A word that shares no characters with the candidate is not a typing mistake.
     if (distance < best_distance && distance < std::max(word.size(), candidate.size())) {

@@ -26,6 +26,12 @@ static void DERMIS_CALL say(void* user, const dermis_message* message) {
 
 /* ---- the pass: a pipeline, and a set that points to the images at its two ports ---- */
 
+/* Push constants of host_pass.comp. */
+typedef struct tone_constants {
+  int32_t rect[4]; /* x, y, width, height of the rendered part, pixels */
+  float level;
+} tone_constants;
+
 typedef struct tone {
   VkDevice device;
   VkDescriptorSetLayout set_layout;
@@ -50,7 +56,7 @@ static tone make_tone(const headless* host) {
       {1, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, 1, VK_SHADER_STAGE_COMPUTE_BIT, NULL}};
   const VkDescriptorPoolSize sizes[2] = {{VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, 1},
                                          {VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, 1}};
-  const VkPushConstantRange level = {VK_SHADER_STAGE_COMPUTE_BIT, 0, sizeof(float)};
+  const VkPushConstantRange constants = {VK_SHADER_STAGE_COMPUTE_BIT, 0, sizeof(tone_constants)};
   made.device = host->device;
   set_info.bindingCount = 2;
   set_info.pBindings = bindings;
@@ -66,7 +72,7 @@ static tone make_tone(const headless* host) {
   layout_info.setLayoutCount = 1;
   layout_info.pSetLayouts = &made.set_layout;
   layout_info.pushConstantRangeCount = 1;
-  layout_info.pPushConstantRanges = &level;
+  layout_info.pPushConstantRanges = &constants;
   HEADLESS_CHECK(vkCreatePipelineLayout(host->device, &layout_info, NULL, &made.layout));
   module_info.codeSize = sizeof host_pass_spirv;
   module_info.pCode = host_pass_spirv;
@@ -90,7 +96,7 @@ static void free_tone(tone* pass) {
 /* Called by dermis_view_record. The ports come in the order in which the pass type declares them. */
 static void DERMIS_CALL record_tone(void* user, const dermis_pass_call* call) {
   const tone* pass = (const tone*)user;
-  const float level = (float)call->settings[0];
+  tone_constants constants;
   VkDescriptorImageInfo images[2];
   VkWriteDescriptorSet writes[2];
   uint32_t i;
@@ -110,12 +116,17 @@ static void DERMIS_CALL record_tone(void* user, const dermis_pass_call* call) {
   vkCmdBindPipeline(call->command_buffer, VK_PIPELINE_BIND_POINT_COMPUTE, pass->pipeline);
   vkCmdBindDescriptorSets(call->command_buffer, VK_PIPELINE_BIND_POINT_COMPUTE, pass->layout, 0, 1,
                           &pass->set, 0, NULL);
-  vkCmdPushConstants(call->command_buffer, pass->layout, VK_SHADER_STAGE_COMPUTE_BIT, 0, sizeof level,
-                     &level);
+  constants.rect[0] = (int32_t)call->rect_x;
+  constants.rect[1] = (int32_t)call->rect_y;
+  constants.rect[2] = (int32_t)call->rect_width;
+  constants.rect[3] = (int32_t)call->rect_height;
+  constants.level = (float)call->settings[0];
+  vkCmdPushConstants(call->command_buffer, pass->layout, VK_SHADER_STAGE_COMPUTE_BIT, 0,
+                     sizeof constants, &constants);
   vkCmdDispatch(call->command_buffer, (call->rect_width + TILE - 1) / TILE,
                 (call->rect_height + TILE - 1) / TILE, 1);
   printf("the host records '%s' at %ux%u, level %.2f\n", call->pass, call->rect_width, call->rect_height,
-         (double)level);
+         (double)constants.level);
 }
 
 static void register_tone(dermis_context context, tone* pass) {

@@ -354,5 +354,18 @@ TEST(Include, FragmentCanBeCheckedOnItsOwn) {
       << all_messages(diagnostics);
 }
 
+// An overlay whose edits miss what the graph fails to declare is not to blame.
+TEST(Compose, ErrorsOfTheGraph_AreNotBlamedOnTheOverlay) {
+  for (
+      const char* graph :
+      {R"({ "dermis": 2, "name": "g", "pases": [], "exports": [] })",
+       R"({ "dermis": 2, "name": "g", "passes": [ { "include": "none.json" } ], "exports": [] })"}) {
+    const Composed composed = put_together(graph, {overlay(R"({ "remove": "/passes/scatter" })")});
+    EXPECT_FALSE(composed.graph);
+    for (const Diagnostic& one : composed.diagnostics.list)
+      EXPECT_EQ(composed.diagnostics.files[one.where.file.value].name, "graph.json") << one.text;
+  }
+}
+
 } // namespace
 } // namespace dermis

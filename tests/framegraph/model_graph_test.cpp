@@ -142,5 +142,20 @@ TEST(Graph, DamagedGraphsAreAcceptedOrExplained) {
   }
 }
 
+TEST(Graph, AlignedBuffers_AreRoundedUpToAMultiple) {
+  Diagnostics diagnostics;
+  const auto document = parse_document("graph.json", R"({ "dermis": 2, "name": "g",
+  "imports": { "light": { "format": "rgba16f", "size": "view" } },
+  "resources": { "list": { "buffer": { "stride": 4, "count": 1000, "align": 256 } } },
+  "passes": [], "exports": ["light"] })",
+                                       diagnostics);
+  ASSERT_TRUE(document);
+  const auto graph = read_graph(*document, pass_types(), diagnostics);
+  ASSERT_TRUE(graph) << all_messages(diagnostics);
+  const SizeExpression& size = graph->resources[1].size;
+  EXPECT_EQ(size.x.numerator, 1024);
+  EXPECT_EQ(size.y.numerator * size.align, 1u);
+}
+
 } // namespace
 } // namespace dermis

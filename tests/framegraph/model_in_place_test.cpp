@@ -239,5 +239,26 @@ TEST(InPlaceLimit, LongChainsOfConditionsAreRejected) {
   EXPECT_THAT(diagnostics.list[0].text, HasSubstr("port 'a' of pass 'last'"));
 }
 
+// The order of the operands of a condition does not matter, even if the settings with most values
+// come first.
+TEST(InPlace, ConditionsOfManySettings_AreDecided) {
+  Diagnostics diagnostics;
+  const auto document = parse_document("graph.json", R"({ "dermis": 2, "name": "g",
+  "settings": { "q": { "enum": ["low", "mid", "high"], "default": "high" },
+    "r1": { "real": 1, "min": 0, "max": 8 }, "r2": { "real": 1, "min": 0, "max": 8 },
+    "r3": { "real": 1, "min": 0, "max": 8 } },
+  "imports": { "light": { "format": "rgba16f", "size": "view" } },
+  "resources": { "x": { "format": "rgba16f", "size": "view" } },
+  "passes": [
+    { "pass": "make", "type": "t.blur", "when": "q == 'high'", "read": { "a": "light" },
+      "write": { "o": "x" }, "otherwise": { "x": "light" } },
+    { "pass": "blur", "type": "t.blur", "when": "r1 > 0 and r2 > 0 and r3 > 0 and q == 'high'",
+      "read": { "a": "x" }, "write": { "o": "light" } } ],
+  "exports": ["light"] })",
+                                       diagnostics);
+  ASSERT_TRUE(document);
+  EXPECT_TRUE(read_graph(*document, pass_types(), diagnostics)) << all_messages(diagnostics);
+}
+
 } // namespace
 } // namespace dermis::testing

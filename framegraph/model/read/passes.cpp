@@ -135,10 +135,11 @@ void read_after(GraphReader& reader, ObjectReader& object, PassDeclaration& pass
                                "requires needs a reason",
                                entry.what()));
     } else if (found == reader.pass_names.end()) {
-      reader
-          .error(DiagnosticId::unknown_pass, where,
-                 fmt::format("{} names the pass '{}', which does not exist", entry.what(), *name))
-          .suggestion = did_you_mean(*name, names_of(reader.pass_names));
+      Diagnostic& one = reader.error(
+          DiagnosticId::unknown_pass, where,
+          fmt::format("{} names the pass '{}', which does not exist", entry.what(), *name));
+      if (!reader.diagnostics.full())
+        one.suggestion = did_you_mean(*name, names_of(reader.pass_names));
     } else if (found->second == self) {
       reader.error(DiagnosticId::unknown_pass, where,
                    fmt::format("{} names the pass itself", entry.what()));

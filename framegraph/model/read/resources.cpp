@@ -83,6 +83,10 @@ bool read_size(GraphReader& reader, ObjectReader& object, std::string_view key, 
   out.rounding = rounding.rounding;
   out.align = rounding.align;
   out.border = rounding.border;
+  if (reader.document[node].kind == NodeKind::integer) { // elements of a buffer, without a height
+    out.x.numerator = (out.x.numerator + out.align - 1) / out.align * out.align;
+    out.align = 1;
+  }
   if (out.base != SizeExpression::Base::resource) return true;
   const ResourceDeclaration& base = reader.graph.resources[out.resource.value];
   if (base.type == ResourceType::image) return true;
@@ -205,10 +209,10 @@ ResourceId find_resource(GraphReader& reader, std::string_view name, std::string
   const auto found = reader.resource_names.find(name);
   if (found != reader.resource_names.end()) return found->second;
   if (reader.unknown_resources) return {};
-  reader
-      .error(DiagnosticId::unknown_resource, where,
-             fmt::format("{} names '{}', {}", what, name, problem))
-      .suggestion = did_you_mean(name, names_of(reader.resource_names));
+  Diagnostic& one = reader.error(DiagnosticId::unknown_resource, where,
+                                 fmt::format("{} names '{}', {}", what, name, problem));
+  if (!reader.diagnostics.full())
+    one.suggestion = did_you_mean(name, names_of(reader.resource_names));
   return {};
 }
 

@@ -313,9 +313,12 @@ ImageReads pyramid_gather(const PassType& type, const ReadsInput& input) {
   return {reads};
 }
 
-// Lighting, material, back light, thickness.
+// Lighting, material, back light, thickness; albedo if lighting contains it.
 ImageReads transmission(const PassType& type, const ReadsInput& input) {
-  return {4 + scale_read(type, input)};
+  constexpr int64_t demodulate = 3; // of the setting `texturing`
+  const bool divided = setting(type, input, "texturing") == demodulate;
+  return {4 + scale_read(type, input) +
+          (divided ? one_if(type, input, "albedo", PortSide::read) : 0)};
 }
 
 // Material, back light, thickness.

@@ -66,6 +66,15 @@ TEST_F(Expectations, UpdateChangesOnlyTheFacts) {
   EXPECT_EQ(read_text(file), after);
 }
 
+// A carriage return ends a comment, too.
+TEST_F(Expectations, UpdateKeepsWhatFollowsAComment) {
+  const std::string file =
+      file_next_to_burley("{ \"dermis_expect\": 1, \"cases\": [ { \"case\": "
+                          "\"a\", \"expect\": {//x\r\"passes\": [\"old\"]}}]}");
+  EXPECT_EQ(run({"test", file, "--update"}).exit_code, 0);
+  EXPECT_EQ(run({"test", file}).exit_code, 0) << read_text(file);
+}
+
 TEST_F(Expectations, UpdateOfAnEmptyCaseStatesEverything) {
   const std::string file = file_next_to_burley(R"({ "dermis_expect": 1, "cases": [
   { "case": "new" },

@@ -82,6 +82,16 @@ TEST_F(Upgrade, OldFiles_Upgrade_CommentsAndLinesStay) {
   }
 }
 
+// A carriage return ends a comment, too.
+TEST_F(Upgrade, CommentsMayEndWithACarriageReturn) {
+  const std::string file = write(
+      "old.json", "//x\r{\"dermis\":1,\"name\":\"g\",\"passes\":[{\"pass\":\"s\",\"kind\":"
+                  "\"subsurface.separable\",\"read\":{\"light\":\"l\",\"material\":\"m\",\"depth\":"
+                  "\"d\"},\"write\":{\"scattered\":\"o\"}}],\"exports\":[]}");
+  EXPECT_THAT(run({"upgrade", file}), Succeeds("upgraded to version 2"));
+  EXPECT_THAT(read_text(file), HasAll("//x\r{", "\"type\":"));
+}
+
 TEST_F(Upgrade, OldShippedFiles_Upgrade_Compile) {
   for (const std::string& file : unpack())
     ASSERT_EQ(run({"upgrade", file}).exit_code, 0) << file;

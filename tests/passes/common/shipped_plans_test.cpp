@@ -1,6 +1,6 @@
 // Checks every shipped graph with combinations of optional slots: the plan is verified, nothing in
 // it can be removed, and it computes the graph's result.
-// DERMIS_TESTS_FULL tries every combination of optional slots, 2048 of restir, each with fewer
+// DERMIS_TESTS_FULL tries every combination of optional slots, 4,096 of restir, each with fewer
 // orders. Without DERMIS_TESTS_FULL, graphs with more than five such slots are tried with up to two
 // bound and with up to two unbound.
 

@@ -312,7 +312,10 @@ Result<> read_maps(Gathering& gathering, const ModelOptions& options) {
     };
     if (options.albedo.empty())
       model.albedo = own(material.pbrMetallicRoughness.baseColorTexture, "base colour");
-    if (options.normal.empty()) model.normal = own(material.normalTexture, "normal");
+    if (options.normal.empty()) {
+      model.normal = own(material.normalTexture, "normal");
+      model.normal_scale = material.normalTexture.scale;
+    }
   }
   struct SeparateMap {
     const std::string& path;

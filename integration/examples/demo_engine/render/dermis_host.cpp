@@ -273,7 +273,12 @@ bool exports_tile_class(const DermisHost& host) {
 }
 
 Scattering scattering_of(const DermisHost& host) {
-  if (writes(host, Target::lighting)) return Scattering::in_place;
+  const bool with_albedo =
+      std::any_of(host.slots.begin(), host.slots.end(), [](const dermis_slot& slot) {
+        return slot.bound != 0 && std::string_view(slot.name) == "albedo";
+      });
+  // Without albedo the graph writes irradiance, like that of a frame without a graph.
+  if (writes(host, Target::lighting)) return with_albedo ? Scattering::in_place : Scattering::none;
   return exports_light(host) ? Scattering::apart : Scattering::none;
 }
 

@@ -142,12 +142,9 @@ void dispatch(Renderer& renderer, VkCommandBuffer commands, const Program& progr
 
 LightData light_data(const Light& light, const SceneState& state, uint32_t first_layer) {
   const glm::dvec3 from = value_at(light.position, state.seconds),
-                   to = value_at(light.target, state.seconds);
+                   direction = direction_of(light, state.seconds);
   const glm::dmat4& view = state.now.view_from_world;
   LightData data{};
-  const glm::dvec3 along = to - from;
-  const glm::dvec3 direction =
-      glm::length(along) > 0.0 ? glm::normalize(along) : glm::dvec3(0, 0, -1);
   data.position =
       glm::vec4(glm::vec3(view * glm::dvec4(from, 1.0)), static_cast<float>(light.type));
   const double outer = glm::radians(0.5 * light.angle);

@@ -45,13 +45,6 @@ void move_camera(Scene& scene, const CameraPlace& place) {
   scene.camera.vertical_fov = Curve<double>(place.vertical_fov);
 }
 
-void zoom_in(Camera& camera, double zoom) {
-  for (auto& key : camera.vertical_fov.keys)
-    key.value = 2.0 * glm::degrees(std::atan(std::tan(0.5 * glm::radians(key.value)) / zoom));
-  for (auto& key : camera.height.keys)
-    key.value /= zoom;
-}
-
 bool can_share_cache(const RenderOptions& a, const RenderOptions& b) {
   const auto of = [](const RenderOptions& o) {
     return std::tie(o.scene, o.model, o.roots, o.width, o.height, o.frames_per_second,
@@ -71,7 +64,7 @@ Result<> load_scene_and_device(RenderCache& cache, const RenderOptions& options)
   auto scene = read(options.scene, options.roots);
   if (!scene) return scene.error();
   if (options.camera) move_camera(*scene, *options.camera);
-  zoom_in(scene->camera, options.zoom);
+  scene->camera.zoom = options.zoom;
   if (options.pixel_aspect > 0) scene->camera.pixel_aspect = options.pixel_aspect;
   if (options.frames_per_second > 0) scene->frames_per_second = options.frames_per_second;
   cache.model = {};

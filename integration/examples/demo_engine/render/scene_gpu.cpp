@@ -75,7 +75,8 @@ MaterialData material_of(const Object& object, const Model& model) {
   const glm::dvec3 albedo = is_model ? object.albedo * model.albedo_factor : object.albedo;
   MaterialData data{};
   data.albedo = glm::vec4(glm::vec3(albedo), static_cast<float>(object.roughness));
-  data.finish = glm::vec4(object.reflectance, object.emission, 1.0f, 0.0f);
+  data.finish =
+      glm::vec4(object.reflectance, object.emission, is_model ? model.normal_scale : 1.0, 0.0f);
   data.kind = glm::uvec4(object.profile, static_cast<uint32_t>(object.pattern), 0u, 0u);
   return data;
 }

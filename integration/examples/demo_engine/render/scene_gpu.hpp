@@ -22,6 +22,7 @@ struct Model {
   Mesh mesh; // empty: none
   Texture albedo, normal, specular;
   glm::dvec3 albedo_factor{1.0};
+  double normal_scale = 1.0; // of the normal map's x and y
   std::vector<std::string> credits, warnings;
 };
 

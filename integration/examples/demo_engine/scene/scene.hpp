@@ -16,6 +16,7 @@ struct Camera {
   Curve<double> vertical_fov{25.0}; // degrees; perspective
   Curve<double> height{1.0};        // height of the view in metres; orthographic
   double pixel_aspect = 1.0;        // width / height of a pixel
+  double zoom = 1.0;                // the view is narrower by this factor
   double near_plane = 0.05, far_plane = 20.0;
 };
 

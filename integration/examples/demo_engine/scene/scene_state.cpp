@@ -50,9 +50,10 @@ ViewState view_at(const Camera& camera, double seconds, uint32_t frame, const Vi
   ViewState view;
   view.view_from_world = look(value_at(camera.position, seconds), value_at(camera.target, seconds));
   const double aspect = camera.pixel_aspect * desc.width / desc.height;
-  const double extent = camera.orthographic
-                            ? 0.5 * value_at(camera.height, seconds)
-                            : std::tan(0.5 * glm::radians(value_at(camera.vertical_fov, seconds)));
+  const double half = camera.orthographic
+                          ? 0.5 * value_at(camera.height, seconds)
+                          : std::tan(0.5 * glm::radians(value_at(camera.vertical_fov, seconds)));
+  const double extent = half / camera.zoom;
   view.clip_from_view_steady = project(camera.orthographic, extent, aspect, camera.near_plane,
                                        camera.far_plane, desc.reversed_depth);
   view.clip_from_view = view.clip_from_view_steady;
@@ -81,7 +82,7 @@ void add_shadow_layers(const Light& light, double seconds, std::vector<glm::dmat
   const glm::dvec3 from = value_at(light.position, seconds), to = value_at(light.target, seconds);
   switch (light.type) {
   case LightType::directional: {
-    const glm::dvec3 along = glm::normalize(to - from);
+    const glm::dvec3 along = direction_of(light, seconds);
     const double depth = 8.0 * light.extent;
     layers.push_back(project(true, light.extent, 1.0, 0.0, depth, false) *
                      look(to - along * (0.5 * depth), to));
@@ -106,6 +107,11 @@ void add_shadow_layers(const Light& light, double seconds, std::vector<glm::dmat
 }
 
 } // namespace
+
+glm::dvec3 direction_of(const Light& light, double seconds) {
+  const glm::dvec3 along = value_at(light.target, seconds) - value_at(light.position, seconds);
+  return glm::length(along) > 0.0 ? glm::normalize(along) : glm::dvec3(0, 0, -1);
+}
 
 uint32_t shadow_layers_of(const Light& light) {
   if (!light.shadow) return 0;

@@ -39,6 +39,8 @@ inline constexpr uint32_t shadow_map_size = 1024; // texels per side
 
 // Returns the number of shadow maps that a light needs.
 uint32_t shadow_layers_of(const Light& light);
+// Returns the direction from the light to its target, in the world; -z if both coincide.
+glm::dvec3 direction_of(const Light& light, double seconds);
 
 // Returns the state of a frame. In frame 0 and in the first frame after a cut, the previous state
 // equals the present one.

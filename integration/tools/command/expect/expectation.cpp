@@ -190,7 +190,7 @@ size_t end_of_value(const std::string& text, size_t begin) {
     else if (quoted)
       continue;
     else if (c == '/')
-      i = std::min(text.find('\n', i), text.size());
+      i = std::min(text.find_first_of("\r\n", i), text.size());
     else if (c == '{' || c == '[')
       ++depth;
     else if (c == '}' || c == ']')

@@ -125,7 +125,7 @@ size_t TextEdits::next_token(size_t at) const {
   for (;;) {
     at = text.find_first_not_of(spaces, at);
     if (text[at] != '/') return at;
-    at = text.find('\n', at); // a comment
+    at = text.find_first_of("\r\n", at); // a comment
   }
 }
 
@@ -138,7 +138,7 @@ size_t TextEdits::separator_before(size_t begin) const {
       continue;
     }
     if (c == '/') {
-      at = text.find('\n', at);
+      at = text.find_first_of("\r\n", at);
       continue;
     }
     if (c == '{' || c == '[') separators.push_back(at);
@@ -171,7 +171,7 @@ size_t TextEdits::end_of_value(NodeId value) const {
       continue;
     }
     if (c == '/') { // a comment
-      at = text.find('\n', at);
+      at = text.find_first_of("\r\n", at);
       continue;
     }
     if (depth == 0 && (c == ',' || c == '}' || c == ']')) return at;
