@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 
 namespace dermis::test {
 namespace {
@@ -49,6 +50,19 @@ TEST_F(Render, UnboundSlots) {
               FailsWith(2, "no slot 'depht'", "depth, "));
   EXPECT_THAT(render(bust, "none", {"--unbound", "depth"}),
               FailsWith(2, "--unbound", "need a graph"));
+}
+
+// Without the slot the graph writes irradiance, and the engine multiplies it by albedo.
+TEST_F(Render, UnboundAlbedo_IsAppliedByTheEngine) {
+  const std::vector<std::string> off{"--frames", "1", "--set", "technique=\"off\""};
+  EXPECT_THAT(render(bust, "configs/graphs/skin.json", off), Succeeds());
+  std::filesystem::rename(path("out"), path("bound"));
+  std::vector<std::string> unbound = off;
+  unbound.insert(unbound.end(), {"--unbound", "albedo"});
+  EXPECT_THAT(render(bust, "configs/graphs/skin.json", unbound), Succeeds());
+  EXPECT_THAT(run({"compare", path("out/color_0000.exr"), path("bound/color_0000.exr"),
+                   "--min-psnr", "60"}),
+              Succeeds());
 }
 
 TEST_F(Render, GraphOnStandardInput) {

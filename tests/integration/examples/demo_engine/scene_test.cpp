@@ -263,6 +263,34 @@ TEST(SceneState, PixelsAreAsWideAsTheCameraStates) {
   }
 }
 
+TEST(SceneState, ZoomHoldsForAnyCurve) {
+  Scene scene = scene_seen_by(true);
+  scene.camera.height = Curve<double>(1);
+  scene.camera.height.amplitude = 0.5;
+  scene.camera.height.hertz = 0.25;
+  for (uint32_t frame = 0; frame < 100; frame += 10) {
+    scene.camera.zoom = 1;
+    const glm::dmat4 whole = state_at(scene, frame, {320, 180}).now.clip_from_view;
+    scene.camera.zoom = 4;
+    const glm::dmat4 close = state_at(scene, frame, {320, 180}).now.clip_from_view;
+    EXPECT_NEAR(close[1][1] / whole[1][1], 4, 1e-9) << frame;
+  }
+}
+
+// A light may pass through its target while it moves.
+TEST(SceneState, LightAtItsTarget_HasADirection) {
+  Scene scene = scene_seen_by(false);
+  Light light;
+  light.position = Curve<glm::dvec3>(light.target.keys.front().value);
+  scene.lights.push_back(light);
+  EXPECT_EQ(direction_of(light, 0), glm::dvec3(0, 0, -1));
+  const SceneState state = state_at(scene, 0, {320, 180});
+  ASSERT_EQ(state.shadow_from_world.size(), 1u);
+  for (int c = 0; c < 4; ++c)
+    for (int r = 0; r < 4; ++r)
+      EXPECT_TRUE(std::isfinite(state.shadow_from_world[0][c][r]));
+}
+
 TEST(SceneState, TheFirstFrameHasNoMotion) {
   Scene scene = scene_seen_by(false);
   scene.objects[0].position.keys = {{0.0, glm::dvec3(0.0)}, {1.0, glm::dvec3(1.0, 0.0, 0.0)}};
