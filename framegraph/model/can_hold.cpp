@@ -133,7 +133,7 @@ bool can_hold(const Graph& graph, std::span<const Condition> conditions, uint64_
     search.collect(condition.when);
   if (!search.spend(search.nodes) || !search.add_between()) return true;
   // Settings with few values first: they contradict conditions after few tries.
-  std::ranges::stable_partition(search.settings, [&](SettingId id) {
+  std::stable_partition(search.settings.begin(), search.settings.end(), [&](SettingId id) {
     return !Search::is_number(graph.settings[id.value].type);
   });
   search.values.resize(graph.settings.size());
