@@ -115,9 +115,8 @@ struct Chooser {
   subsurface::FrameCounters counters;  // of the newest observed frame
   vulkan::Rectangle counted_rectangle; // of the same frame
   bool counted = false;
-  // Light that is off for a moment changes no expected error. So transmitted light counts until
-  // none was seen for a second, and these are of the newest observed frame in which tiles
-  // scattered.
+  // Light that is off for a moment changes no expected error: transmitted light counts until none
+  // was seen for a second, d and relief are those of the newest frame in which tiles scattered.
   double transmitted_rms = 0, transmitted_s = 0; // of the newest frame with any; its clock
   choice::FrameKey scattering_key;
   vulkan::Rectangle scattering_rectangle; // width 0: no such frame

@@ -192,7 +192,7 @@ TEST_F(PartialMotion, Dolly_NoPointChangesByMoreThanAnEighth) {
   expect_slow_changes(frames_of("dolly", 90, 28), 0.3);
 }
 
-// `damaged`: the pixel that stands for a full tile has no depth, and one of them no velocity.
+// With damaged inputs, the pixels that represent full tiles have no depth or no velocity.
 class PartialCut : public PartialMotion, public ::testing::WithParamInterface<bool> {};
 INSTANTIATE_TEST_SUITE_P(Inputs, PartialCut, ::testing::Bool(), [](const auto& one) {
   return std::string(one.param ? "Damaged" : "Sound");

@@ -300,8 +300,7 @@ struct TransmissionStats : Choice {
     fill("back_lighting", [&](uint32_t, uint32_t) { return light; });
     dermis_frame one = bound_frame(graph);
     one.exposure = exposure;
-    const demo::ReportedFrame choice = record_and_read(graph, one);
-    return double(choice.transmitted_rms);
+    return double(record_and_read(graph, one).transmitted_rms);
   }
 };
 

@@ -379,11 +379,11 @@ ExitCode compare(const Session& session, const CompareOptions& options) {
   if (options.max_flip < 1)
     allowed +=
         fmt::format("{}a FLIP of at most {}", allowed.empty() ? "" : " and ", options.max_flip);
-  if (const auto empty = std::ranges::find(
-          rows, uint64_t{0}, [](const Compared& row) -> uint64_t { return row.difference.pixels; });
-      empty != rows.end())
+  const auto empty = std::find_if(rows.begin(), rows.end(),
+                                  [](const Compared& row) { return row.difference.pixels == 0; });
+  if (empty != rows.end())
     return fail(session, ExitCode::problems,
-                fmt::format("'{}'{}{} has no pixel to compare: the mask beside the reference has "
+                fmt::format("'{}'{}{} has no pixel to compare: the mask of the reference has "
                             "none there",
                             empty->name, empty->region.empty() ? "" : ", region ", empty->region));
   const bool finite = std::all_of(
