@@ -2,10 +2,12 @@
 
 #include "framegraph/compose/composer.hpp"
 #include "framegraph/compose/format_version.hpp"
+#include "framegraph/compose/path.hpp"
 #include "framegraph/text/limits.hpp"
 
 #include <algorithm>
 #include <fmt/format.h>
+#include <unordered_set>
 
 namespace dermis {
 
@@ -36,6 +38,30 @@ bool has_includes(const Document& graph) {
                      [&](NodeId entry) { return is_include(graph, entry); });
 }
 
+// Completes what only the composed graph tells about changes: what they removed for good.
+void find_removals(Composer& composer) {
+  const EditTree& tree = composer.tree;
+  const auto exists = [&](const Change& change) {
+    ItemId at{0};
+    for (const std::string& step : split_path(change.at)) {
+      const int child = find_step(tree, at, step);
+      if (child < 0) return false;
+      at = tree[at].children[static_cast<size_t>(child)];
+    }
+    return true;
+  };
+  std::unordered_set<std::string> written;
+  for (const ItemId pass : tree[tree.find({0}, "passes")].children)
+    for (std::string& resource : written_by(tree, pass))
+      written.insert(std::move(resource));
+  for (Change& change : composer.changes) {
+    change.gone = (change.what == Change::What::remove || change.what == Change::What::replace) &&
+                  !exists(change);
+    std::erase_if(change.unwritten,
+                  [&](const std::string& resource) { return written.contains(resource); });
+  }
+}
+
 } // namespace
 
 std::string_view change_name(Change::What what) {
@@ -47,6 +73,24 @@ std::string Provenance::place(const Change& change) const {
   const uint32_t file = change.where.file.value;
   return fmt::format("{}:{}:{}", file < files.size() ? files[file].name : std::string(),
                      change.where.line, change.where.column);
+}
+
+void relate_to_removals(std::span<const Change> changes, size_t first, Diagnostics& diagnostics) {
+  for (size_t i = first; i < diagnostics.list.size(); ++i) {
+    Diagnostic& one = diagnostics.list[i];
+    if (diagnostic_info(one.id).severity != Severity::error) continue;
+    const auto names = [&](std::string_view name) {
+      return one.text.find(fmt::format("'{}'", name)) != std::string::npos;
+    };
+    for (const Change& change : changes) {
+      if (change.gone && names(split_path(change.at).back()))
+        one.related.emplace_back(change.where, fmt::format("'{}' is removed here", change.at));
+      const auto found = std::find_if(change.unwritten.begin(), change.unwritten.end(), names);
+      if (found != change.unwritten.end())
+        one.related.emplace_back(change.where,
+                                 fmt::format("no pass writes '{}' after this edit", *found));
+    }
+  }
 }
 
 bool check_file_name(std::string_view name, std::string_view what, const SourceLocation& where,
@@ -112,6 +156,7 @@ std::optional<Composition> compose(Document graph, std::vector<Document> overlay
     apply_overlay(composer, static_cast<uint32_t>(composer.tree.documents.size() - 1));
   }
   if (diagnostics.errors() != errors_before) return std::nullopt;
+  find_removals(composer);
   return Composition{flatten(std::move(composer.tree)), std::move(composer.changes)};
 }
 

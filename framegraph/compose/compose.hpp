@@ -31,6 +31,9 @@ struct Change {
   enum class What : uint8_t { include, insert, replace, remove, set } what;
   std::string at; // path in the graph as an overlay writes it: "/passes/scatter/set/samples"
   SourceLocation where;
+  bool gone = false; // no later change restored what `at` names
+  // Resources that a pass wrote before this change, and that no pass of the result writes.
+  std::vector<std::string> unwritten = {};
 };
 
 std::string_view change_name(Change::What what);
@@ -43,6 +46,10 @@ struct Provenance {
 
   std::string place(const Change& change) const; // "file:line:column"
 };
+
+// Relates errors of the composed graph, those from index `first` of diagnostics.list on, to the
+// changes that removed what they name.
+void relate_to_removals(std::span<const Change> changes, size_t first, Diagnostics& diagnostics);
 
 struct Composition {
   Document document;

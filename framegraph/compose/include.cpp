@@ -7,6 +7,8 @@
 
 #include <algorithm>
 #include <fmt/format.h>
+#include <unordered_map>
+#include <unordered_set>
 
 namespace dermis {
 
@@ -66,19 +68,22 @@ void join_section(Composer& composer, std::string_view section, uint32_t documen
     tree[{0}].children.push_back(into);
   }
   if (tree.kind(into) != NodeKind::object) return; // the graph's reader reports it
+  std::unordered_map<std::string, ItemId> known;
+  for (const ItemId member : tree[into].children)
+    known.emplace(tree[member].key, member);
   for (const NodeId node : children(tree.documents[document], list)) {
     const ItemId fresh = tree.insert_copy(document, node);
     const std::string key = tree[fresh].key;
-    const ItemId known = tree.find(into, key);
-    if (!known.valid()) {
+    const auto [first, added] = known.emplace(key, fresh);
+    if (added) {
       tree[into].children.push_back(fresh);
       composer.changes.push_back(
           {Change::What::include, fmt::format("/{}/{}", section, key), tree.where_key(fresh)});
-    } else if (!same_value(tree, known, fresh)) {
+    } else if (!same_value(tree, first->second, fresh)) {
       composer
           .error(DiagnosticId::duplicate_name, tree.where_key(fresh),
                  fmt::format("'{}' of \"{}\" is declared differently in two files", key, section))
-          .related.emplace_back(tree.where_key(known), "first declared here");
+          .related.emplace_back(tree.where_key(first->second), "first declared here");
     }
   }
 }
@@ -87,14 +92,12 @@ void join_exports(Composer& composer, uint32_t document, NodeId list) {
   EditTree& tree = composer.tree;
   const ItemId into = tree.find({0}, "exports");
   if (!into.valid() || tree.kind(into) != NodeKind::array) return; // the graph's reader reports it
+  std::unordered_set<std::string> known;
+  for (const ItemId one : tree[into].children)
+    if (tree.kind(one) == NodeKind::string) known.emplace(tree.text(one));
   for (const NodeId node : children(tree.documents[document], list)) {
     const ItemId fresh = tree.insert_copy(document, node);
-    const std::vector<ItemId>& known = tree[into].children;
-    if (tree.kind(fresh) == NodeKind::string &&
-        std::any_of(known.begin(), known.end(), [&](ItemId one) {
-          return tree.kind(one) == NodeKind::string && tree.text(one) == tree.text(fresh);
-        }))
-      continue;
+    if (tree.kind(fresh) == NodeKind::string && !known.emplace(tree.text(fresh)).second) continue;
     composer.changes.push_back(
         {Change::What::include, fmt::format("/exports/{}", tree.text(fresh)), tree.where(fresh)});
     tree[into].children.push_back(fresh);

@@ -47,8 +47,8 @@ struct Edit {
     }
   }
 
-  void log(Change::What did, std::string at) const {
-    composer.changes.push_back({did, std::move(at), target_place()});
+  void log(Change::What did, std::string at, std::vector<std::string> unwritten = {}) const {
+    composer.changes.push_back({did, std::move(at), target_place(), false, std::move(unwritten)});
   }
 
   // Returns the graph's list of passes and the position of the named pass; -1 after an error.
@@ -68,9 +68,22 @@ struct Edit {
     const auto [passes, at] = named_pass(name);
     if (at < 0) return;
     std::vector<ItemId> fresh;
-    if (verb == Verb::replace) log(Change::What::replace, fmt::format("/passes/{}", name));
+    const uint64_t errors_before = composer.diagnostics.errors();
+    if (verb == Verb::replace)
+      log(Change::What::replace, fmt::format("/passes/{}", name),
+          written_by(tree(), tree()[passes].children[static_cast<size_t>(at)]));
     for (const NodeId pass : children(tree().documents[overlay], list))
       expand_pass(composer, overlay, pass, Change::What::insert, fresh);
+    if (verb == Verb::replace && fresh.empty()) {
+      if (composer.diagnostics.errors() == errors_before)
+        composer.error(
+            DiagnosticId::edit_target, target_place(),
+            fmt::format("{} replaces the pass '{}' by no pass: the files that it includes "
+                        "have no passes, or were included before; use 'remove' to remove "
+                        "the pass",
+                        what, shown(name)));
+      return;
+    }
     std::vector<ItemId>& all = tree()[passes].children;
     auto place = all.begin() + at;
     if (verb == Verb::replace) place = all.erase(place);
@@ -133,8 +146,9 @@ struct Edit {
     const int at = find_step(tree(), parent, steps.back());
     if (at < 0) return missing(parent, path, steps.back());
     std::vector<ItemId>& all = tree()[parent].children;
+    log(Change::What::remove, std::string(path),
+        written_at(tree(), steps, all[static_cast<size_t>(at)]));
     all.erase(all.begin() + at);
-    log(Change::What::remove, std::string(path));
   }
 
   void set(std::string_view path, NodeId value) const {
@@ -162,11 +176,14 @@ struct Edit {
     tree()[fresh].key = array ? std::string() : steps.back();
     tree()[fresh].key_node = target_node;
     std::vector<ItemId>& all = tree()[parent].children;
-    if (at < 0)
+    std::vector<std::string> unwritten;
+    if (at < 0) {
       all.push_back(fresh);
-    else
+    } else {
+      unwritten = written_at(tree(), steps, all[static_cast<size_t>(at)]);
       all[static_cast<size_t>(at)] = fresh;
-    log(Change::What::set, std::string(path));
+    }
+    log(Change::What::set, std::string(path), std::move(unwritten));
   }
 };
 

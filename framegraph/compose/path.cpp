@@ -13,6 +13,12 @@ std::string_view element_name(const EditTree& tree, ItemId element) {
   return pass.valid() ? tree.text(pass) : std::string_view();
 }
 
+// Returns the name in "name#mips[layers]@-N".
+std::string resource_name(const EditTree& tree, ItemId reference) {
+  const std::string_view text = tree.text(reference);
+  return std::string(text.substr(0, text.find_first_of("#[@")));
+}
+
 } // namespace
 
 std::vector<std::string> split_path(std::string_view path) {
@@ -62,6 +68,26 @@ int find_pass(const EditTree& tree, ItemId passes, std::string_view name) {
     if (key.valid() && tree.text(key) == name) return static_cast<int>(i);
   }
   return -1;
+}
+
+std::vector<std::string> written_by(const EditTree& tree, ItemId pass) {
+  std::vector<std::string> names;
+  if (const ItemId write = tree.find(pass, "write"); write.valid())
+    for (const ItemId port : tree[write].children)
+      names.push_back(resource_name(tree, port));
+  return names;
+}
+
+std::vector<std::string> written_at(const EditTree& tree, const std::vector<std::string>& steps,
+                                    ItemId item) {
+  if (steps.size() < 2 || steps[0] != "passes") return {};
+  if (steps.size() == 2) return written_by(tree, item);
+  if (steps[2] != "write" || steps.size() > 4) return {};
+  if (steps.size() == 4) return {resource_name(tree, item)};
+  std::vector<std::string> names;
+  for (const ItemId port : tree[item].children)
+    names.push_back(resource_name(tree, port));
+  return names;
 }
 
 } // namespace dermis

@@ -23,4 +23,12 @@ std::vector<std::string_view> steps_into(const EditTree& tree, ItemId parent);
 // Returns the position of a pass in a list of passes; -1 if no pass has that name.
 int find_pass(const EditTree& tree, ItemId passes, std::string_view name);
 
+// Returns the names of the resources that a pass writes.
+std::vector<std::string> written_by(const EditTree& tree, ItemId pass);
+
+// Returns the names of the resources that a pass writes because of `item`, to which a path with
+// these steps leads: a pass, its "write", or one port of that.
+std::vector<std::string> written_at(const EditTree& tree, const std::vector<std::string>& steps,
+                                    ItemId item);
+
 } // namespace dermis

@@ -7,8 +7,6 @@ namespace dermis {
 
 namespace {
 
-constexpr size_t max_compared = 256; // members of an object; comparing takes quadratic time
-
 // Recursion is as deep as the tree, which limits::nesting bounds.
 ItemId copy(EditTree& tree, uint32_t document, NodeId node) {
   const ItemId id{static_cast<uint32_t>(tree.items.size())};
@@ -22,6 +20,15 @@ ItemId copy(EditTree& tree, uint32_t document, NodeId node) {
     tree[id].children.push_back(made);
   }
   return id;
+}
+
+// Returns the members of an object except "note", sorted by key.
+std::vector<ItemId> sorted_members(const EditTree& tree, ItemId object) {
+  std::vector<ItemId> members = tree[object].children;
+  std::erase_if(members, [&](ItemId member) { return tree[member].key == "note"; });
+  std::sort(members.begin(), members.end(),
+            [&](ItemId a, ItemId b) { return tree[a].key < tree[b].key; });
+  return members;
 }
 
 struct Flattener {
@@ -104,19 +111,11 @@ bool same_value(const EditTree& tree, ItemId a, ItemId b) {
                       tree[b].children.end(),
                       [&](ItemId x, ItemId y) { return same_value(tree, x, y); });
   if (kind != NodeKind::object) return left.integer == right.integer && left.real == right.real;
-  if (std::max(tree[a].children.size(), tree[b].children.size()) > max_compared) return false;
-  const auto covers = [&](ItemId some, ItemId all) {
-    return std::all_of(tree[some].children.begin(), tree[some].children.end(), [&](ItemId child) {
-      if (tree[child].key == "note") return true;
-      const ItemId other = tree.find(all, tree[child].key);
-      return other.valid() && same_value(tree, child, other);
-    });
-  };
-  const auto meaningful = [&](ItemId object) {
-    return std::count_if(tree[object].children.begin(), tree[object].children.end(),
-                         [&](ItemId child) { return tree[child].key != "note"; });
-  };
-  return meaningful(a) == meaningful(b) && covers(a, b);
+  const std::vector<ItemId> of_a = sorted_members(tree, a);
+  const std::vector<ItemId> of_b = sorted_members(tree, b);
+  return std::equal(of_a.begin(), of_a.end(), of_b.begin(), of_b.end(), [&](ItemId x, ItemId y) {
+    return tree[x].key == tree[y].key && same_value(tree, x, y);
+  });
 }
 
 uint32_t height_of(const EditTree& tree, ItemId id) {

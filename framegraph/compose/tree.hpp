@@ -39,8 +39,7 @@ struct EditTree {
   ItemId insert_copy(uint32_t document, NodeId node);
 };
 
-// Returns whether both values are equal, ignoring "note"s and the order of members. Objects with
-// more than 256 members count as different.
+// Returns whether both values are equal, ignoring "note"s and the order of members.
 bool same_value(const EditTree& tree, ItemId a, ItemId b);
 
 // Returns how many objects and arrays are nested, including this one; 0 for other values.

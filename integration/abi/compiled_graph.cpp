@@ -265,6 +265,42 @@ bool make_plans(const dermis_context_t& context, const CompileInput& compile_inp
   return true;
 }
 
+// Compiles the plans of candidate.graph and what depends on them. Returns false with errors in
+// `diagnostics`.
+bool compile_plans(const dermis_context_t& context, const CompiledGraphInput& input,
+                   PlanCache& cache, const choice::ErrorModel& errors, choice::CostEstimator& costs,
+                   Diagnostics& diagnostics, CompiledGraph& candidate) {
+  candidate.without_material = input.profiles.empty();
+  if (candidate.without_material) turn_scattering_off(candidate.graph, context.pass_types);
+  candidate.settings = settings_of(candidate.graph, input.settings, diagnostics);
+
+  CompileInput compile_input;
+  compile_input.graph = &candidate.graph;
+  compile_input.pass_types = &context.pass_types;
+  compile_input.device = &context.profile;
+  compile_input.view_width = input.width;
+  compile_input.view_height = input.height;
+  compile_input.pixel_grid = input.pixel_grid;
+  compile_input.settings = candidate.settings;
+  report_unknown_slots(candidate.graph, input.unbound, input.formats, diagnostics);
+  compile_input.bound = bound_resources(candidate.graph, input.unbound, diagnostics);
+  compile_input.host_formats = host_formats(candidate.graph, input.formats);
+  report_unavailable(candidate.graph, context.profile, compile_input.bound, diagnostics);
+  for (size_t i = 0; i < candidate.settings.size(); ++i)
+    candidate.settings[i] = available_option(candidate.graph.settings[i], candidate.settings[i],
+                                             context.profile.features, compile_input.bound);
+  compile_input.settings = candidate.settings;
+  const auto combinations = choice::enumerate_combinations(
+      compile_input, diagnostics, pinned_settings(candidate.graph, input.settings));
+  if (!combinations || !make_plans(context, compile_input, *combinations, input, cache, errors,
+                                   costs, diagnostics, candidate))
+    return false;
+  candidate.settings = candidate.configurations.front().settings; // the default may not fit
+  candidate.plan = candidate.configurations[candidate.configuration].plan;
+  candidate.slots = slots_of(candidate, diagnostics);
+  return !diagnostics.has_errors();
+}
+
 } // namespace
 
 dermis_result rejected(dermis_context_t& context, const vulkan::Error& error,
@@ -345,43 +381,21 @@ dermis_result build_compiled_graph(dermis_context_t& context, CompiledGraphInput
                                    std::shared_ptr<CompiledGraph>& compiled_graph) {
   auto composition = compose_sources(input, diagnostics);
   if (!composition) return DERMIS_ERROR_CONFIG;
+  const size_t reported = diagnostics.list.size();
   auto graph = read_graph(composition->document, context.pass_types, diagnostics);
-  if (!graph) return DERMIS_ERROR_CONFIG;
+  if (!graph) {
+    relate_to_removals(composition->changes, reported, diagnostics);
+    return DERMIS_ERROR_CONFIG;
+  }
   auto candidate = std::make_shared<CompiledGraph>();
   candidate->graph = std::move(*graph);
   candidate->changes = std::move(composition->changes);
   for (const SourceFile& file : diagnostics.files)
     candidate->files.push_back({file.name, ""});
-  candidate->without_material = input.profiles.empty();
-  if (candidate->without_material) turn_scattering_off(candidate->graph, context.pass_types);
-  candidate->settings = settings_of(candidate->graph, input.settings, diagnostics);
-
-  CompileInput compile_input;
-  compile_input.graph = &candidate->graph;
-  compile_input.pass_types = &context.pass_types;
-  compile_input.device = &context.profile;
-  compile_input.view_width = input.width;
-  compile_input.view_height = input.height;
-  compile_input.pixel_grid = input.pixel_grid;
-  compile_input.settings = candidate->settings;
-  report_unknown_slots(candidate->graph, input.unbound, input.formats, diagnostics);
-  compile_input.bound = bound_resources(candidate->graph, input.unbound, diagnostics);
-  compile_input.host_formats = host_formats(candidate->graph, input.formats);
-  report_unavailable(candidate->graph, context.profile, compile_input.bound, diagnostics);
-  for (size_t i = 0; i < candidate->settings.size(); ++i)
-    candidate->settings[i] = available_option(candidate->graph.settings[i], candidate->settings[i],
-                                              context.profile.features, compile_input.bound);
-  compile_input.settings = candidate->settings;
-  const auto combinations = choice::enumerate_combinations(
-      compile_input, diagnostics, pinned_settings(candidate->graph, input.settings));
-  if (!combinations) return DERMIS_ERROR_CONFIG;
-  if (!make_plans(context, compile_input, *combinations, input, cache, errors, costs, diagnostics,
-                  *candidate))
-    return DERMIS_ERROR_CONFIG;
-  candidate->settings = candidate->configurations.front().settings; // the default may not fit
-  candidate->plan = candidate->configurations[candidate->configuration].plan;
-  candidate->slots = slots_of(*candidate, diagnostics);
-  if (diagnostics.has_errors()) return DERMIS_ERROR_CONFIG;
+  const bool compiled =
+      compile_plans(context, input, cache, errors, costs, diagnostics, *candidate);
+  relate_to_removals(candidate->changes, reported, diagnostics);
+  if (!compiled) return DERMIS_ERROR_CONFIG;
   reserve_bindings(*candidate);
   name_options(*candidate);
 

@@ -40,8 +40,9 @@ Composed put_together(const std::string& graph, const std::vector<std::string>& 
                                 : FileText{std::string(name), found->second, ""};
   };
   out.composition = compose(std::move(*document), std::move(read), open, out.diagnostics);
-  if (out.composition)
-    out.graph = read_graph(out.composition->document, pass_types(), out.diagnostics);
+  if (!out.composition) return out;
+  out.graph = read_graph(out.composition->document, pass_types(), out.diagnostics);
+  relate_to_removals(out.composition->changes, 0, out.diagnostics);
   return out;
 }
 
@@ -192,6 +193,36 @@ TEST(Overlay, EditOfARemovedTarget_NamesTheRemover) {
       {"'copy' does not exist when", "overlay0.json:2:13", "'/passes/copy' is removed here"});
 }
 
+TEST(Overlay, ErrorsNameTheEditThatRemovedWhatIsMissing) {
+  using Texts = std::vector<std::string>;
+  const auto related = [](const Composed& composed) {
+    EXPECT_FALSE(composed.graph);
+    Texts out;
+    for (const Diagnostic& one : composed.diagnostics.list)
+      for (const auto& [where, text] : one.related)
+        if (file_of(composed, where).starts_with("overlay"))
+          out.push_back(fmt::format("{}: {}", file_of(composed, where), text));
+    return out;
+  };
+  const auto contains = [&](const std::string& edits, const char* text) {
+    const Texts all = related(edited(edits));
+    return std::find(all.begin(), all.end(), text) != all.end();
+  };
+  EXPECT_TRUE(contains(R"({ "remove": "/resources/half" })",
+                       "overlay0.json: '/resources/half' is removed here"));
+  EXPECT_TRUE(contains(R"({ "remove": "/passes/blur/write/target" })",
+                       "overlay0.json: '/passes/blur/write/target' is removed here"));
+  const std::string remove_find =
+      R"({ "remove": "/passes/copy/after" }, { "remove": "/passes/find" })";
+  EXPECT_EQ(related(edited(remove_find)),
+            (Texts{"overlay0.json: no pass writes 'list' after this edit"}));
+  // Another pass writes it again.
+  const Composed restored = put_together(
+      whole_graph(), {overlay(remove_find), overlay(R"({ "insert_before": "blur", "passes": [
+        { "pass": "find", "type": "test.list", "write": { "tiles": "list" } }] })")});
+  EXPECT_EQ(related(restored), Texts{}) << all_messages(restored.diagnostics);
+}
+
 TEST(Overlay, EachOverlayErrorIsReportedOnce) {
   expect_one(put_together(whole_graph(), {"{ \"dermis_overlay\": 3, \"edits\": [] }"}),
              Id::unsupported_version, "overlay0.json:1:21", {});
@@ -267,6 +298,49 @@ TEST(Include, EqualDeclarationsMerge_DifferentAreRejected) {
       put_together(including_graph(), {}, {{"parts/tiles.json", other}}), Id::duplicate_name,
       "parts/tiles.json:2:16",
       {"'material' of \"imports\"", "declared differently", "graph.json:", "first declared here"});
+}
+
+TEST(Include, LongEqualDeclarationsMerge) {
+  std::string words;
+  for (int i = 0; i < 300; ++i)
+    words += fmt::format("{}\"o{}\": {{}}", i == 0 ? "" : ", ", i);
+  // Settings have no such objects: only the reader of the graph may say so, once.
+  const std::string settings = fmt::format(R"("settings": {{ "style": {{ {} }} }})", words);
+  const Composed composed = put_together(
+      fmt::format(R"({{ "dermis": 2, "name": "g", {}, "passes": [ {{ "include": "a.json" }} ] }})",
+                  settings),
+      {}, {{"a.json", fmt::format(R"({{ "dermis_fragment": 2, {} }})", settings)}});
+  for (const Diagnostic& one : composed.diagnostics.list)
+    EXPECT_NE(one.id, Id::duplicate_name) << one.text;
+}
+
+TEST(Include, ManyDeclarationsJoinInLinearTime) {
+  std::string settings;
+  for (int i = 0; i < 60000; ++i)
+    settings += fmt::format("{}\"s{}\": true", i == 0 ? "" : ", ", i);
+  Diagnostics diagnostics;
+  auto graph = parse_document(
+      "graph.json", R"({ "dermis": 2, "name": "g", "passes": [ { "include": "a.json" } ] })",
+      diagnostics);
+  const auto composition = compose(
+      std::move(*graph), {},
+      [&](std::string_view name) {
+        return FileText{
+            std::string(name),
+            fmt::format(R"({{ "dermis_fragment": 2, "settings": {{ {} }} }})", settings), ""};
+      },
+      diagnostics);
+  ASSERT_TRUE(composition) << all_messages(diagnostics);
+  EXPECT_EQ(composition->changes.size(), 60000u);
+}
+
+TEST(Include, ReplacementWithoutPasses_IsRejected) {
+  const Composed composed = put_together(
+      including_graph(),
+      {overlay(R"({ "replace": "copy", "passes": [{ "include": "parts/tiles.json" }] })")},
+      {{"parts/tiles.json", tiles_fragment}});
+  expect_one(composed, Id::edit_target, "overlay0.json:2:14",
+             {"replaces the pass 'copy' by no pass", "were included before", "use 'remove'"});
 }
 
 TEST(Include, OverlaysSeeIncludesAndCanInclude) {

@@ -17,6 +17,7 @@ namespace {
 struct Found {
   PortBinding binding;
   SourceLocation where;
+  std::string_view range_text; // as written: "#0..[1]"; "" if the reference names no range
 };
 
 class Bindings {
@@ -217,7 +218,8 @@ private:
       out.binding.frames_back = static_cast<uint32_t>(-frame);
     }
     const size_t end = std::min(text.find_first_of("#[@"), text.size());
-    const auto image_range = parse_image_range(text.substr(end, std::min(at, text.size()) - end));
+    const std::string_view range_text = text.substr(end, std::min(at, text.size()) - end);
+    const auto image_range = parse_image_range(range_text);
     if (!image_range) {
       reader_.error(
           DiagnosticId::bad_reference, where,
@@ -228,6 +230,7 @@ private:
       return false;
     }
     out.binding.range = *image_range;
+    out.range_text = range_text;
     out.binding.resource = find_resource(reader_, text.substr(0, end), what, where);
     if (!out.binding.resource.valid()) return false;
     const ResourceDeclaration& resource = reader_.graph.resources[out.binding.resource.value];
@@ -248,7 +251,7 @@ private:
                                 fmt::format("'{}' is declared here", resource.name));
       return false;
     }
-    return out.binding.range.whole() || check_image_range(text, what, out);
+    return range_text.empty() || check_image_range(text, what, out);
   }
 
   // Checks that the resource has the named mips and layers, as far as this is known without a view.
@@ -286,13 +289,12 @@ private:
       return true;
     const Usage usage = pass_type_->ports[found.binding.port].usage;
     if (usage != Usage::storage_image_write && usage != Usage::storage_image_update) return true;
-    if (found.binding.range.first_mip == 0 && found.binding.range.mips == 0)
-      found.binding.range.mips = 1;
+    if (!found.range_text.starts_with('#')) found.binding.range.mips = 1;
     if (found.binding.range.mips == 1) return true;
     reader_
         .error(DiagnosticId::bad_subresource, found.where,
                fmt::format("{} writes one mip, but '{}{}' names several", what, resource.name,
-                           image_range_text(found.binding.range)))
+                           found.range_text))
         .related.emplace_back(resource.where, fmt::format("'{}' is declared here", resource.name));
     return false;
   }
@@ -312,11 +314,10 @@ private:
     reader_
         .error(DiagnosticId::bad_subresource, found.where,
                array ? fmt::format("{} accesses several layers, but '{}{}' has one", what,
-                                   resource.name, image_range_text(range))
+                                   resource.name, found.range_text)
                      : fmt::format("{} accesses one layer, but '{}{}' has {}; name one, as in "
                                    "'{}[0]'",
-                                   what, resource.name, image_range_text(range), layers,
-                                   resource.name))
+                                   what, resource.name, found.range_text, layers, resource.name))
         .related.emplace_back(resource.where, fmt::format("'{}' is declared here", resource.name));
     return false;
   }

@@ -109,7 +109,9 @@ std::optional<LoadedGraph> read_composed(std::optional<Composition> composed,
   if (!known) return std::nullopt;
   LoadedGraph& loaded = *known;
   loaded.changes = std::move(composed->changes);
+  const size_t reported = diagnostics.list.size();
   std::optional<Graph> graph = read_graph(composed->document, loaded.pass_types, diagnostics);
+  relate_to_removals(loaded.changes, reported, diagnostics);
   if (!graph) return std::nullopt;
   loaded.graph = std::move(*graph);
   return known;
@@ -266,11 +268,19 @@ CompileInput compile_input(const LoadedGraph& loaded, const DeviceProfile& devic
   return input;
 }
 
+std::optional<CompiledPlan> compile_loaded(const LoadedGraph& loaded, const CompileInput& input,
+                                           Diagnostics& diagnostics) {
+  const size_t reported = diagnostics.list.size();
+  auto compiled = compile(input, diagnostics);
+  relate_to_removals(loaded.changes, reported, diagnostics);
+  return compiled;
+}
+
 std::optional<CompiledPlan> compile_generic(const LoadedGraph& loaded, const Size& size,
                                             const CompileChoices& choices,
                                             Diagnostics& diagnostics) {
   const DeviceProfile device = generic_profile();
-  return compile(compile_input(loaded, device, size, choices), diagnostics);
+  return compile_loaded(loaded, compile_input(loaded, device, size, choices), diagnostics);
 }
 
 ExitCode fail_graph(const Session& session, const std::string& path,

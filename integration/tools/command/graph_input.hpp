@@ -74,7 +74,12 @@ std::vector<NamedValue> settings_as_json(const Graph& graph, std::span<const Nam
 CompileInput compile_input(const LoadedGraph& loaded, const DeviceProfile& device, const Size& size,
                            const CompileChoices& choices);
 
-// Returns nullopt with errors in `diagnostics`.
+// Compiles `input`, which refers to the loaded graph. Returns nullopt with errors in `diagnostics`,
+// which also name the overlays that removed what is missing.
+std::optional<CompiledPlan> compile_loaded(const LoadedGraph& loaded, const CompileInput& input,
+                                           Diagnostics& diagnostics);
+
+// The same for a generic device.
 std::optional<CompiledPlan> compile_generic(const LoadedGraph& loaded, const Size& size,
                                             const CompileChoices& choices,
                                             Diagnostics& diagnostics);

@@ -56,7 +56,7 @@ std::optional<NamedPlan> load_plan(const PlanSource& source, Diagnostics& diagno
   if (!problem.empty()) return std::nullopt;
   const DeviceProfile device = generic_profile();
   const CompileInput input = compile_input(*loaded, device, source.size, choices);
-  const std::optional<CompiledPlan> compiled = compile(input, diagnostics);
+  const std::optional<CompiledPlan> compiled = compile_loaded(*loaded, input, diagnostics);
   if (!compiled) return std::nullopt;
   return NamedPlan{name_of(source), true, saved_plan(input, compiled->plan)};
 }
