@@ -323,7 +323,7 @@ PlanBytes bytes_of_plan(const CompiledGraph& compiled_graph, uint32_t plan) {
 vulkan::Error make_tables(dermis_context_t& context, const subsurface::TableUse& use,
                           CompiledGraphInput& input) {
   auto tables = std::make_shared<const subsurface::KernelTables>(
-      subsurface::make_kernel_tables(use, input.profiles));
+      subsurface::make_kernel_tables(use, input.profiles, input.tables.get()));
   if (vulkan::Error error = vulkan::EnvironmentTables::create(
           context.device, kernel_environment(*tables), input.device_tables))
     return error;

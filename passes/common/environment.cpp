@@ -9,15 +9,15 @@
 
 namespace dermis::subsurface {
 
+bool has_own_tables(const NumberedProfile& numbered) {
+  return numbered.profile.model != ProfileModel::burley;
+}
+
 namespace {
 constexpr double mm_per_metre = 1000.0;
 
 int32_t tiles_of(uint32_t pixels) {
   return static_cast<int32_t>(ceil_div(pixels, tile_side));
-}
-// Burley's profile has closed forms and shared tables; all other profiles have their own.
-bool has_own_tables(const NumberedProfile& numbered) {
-  return numbered.profile.model != ProfileModel::burley;
 }
 
 // Fills the part of `out` that describes the previous frame. Returns false if that frame is
@@ -187,14 +187,11 @@ std::vector<RadialRow> make_radial_table(std::span<const NumberedProfile> profil
   return table;
 }
 
-std::vector<SeparableRow> make_separable_table(std::span<const NumberedProfile> profiles) {
+std::vector<SeparableRow> make_separable_table(const NumberedProfile& numbered) {
   std::vector<SeparableRow> table;
-  for (const NumberedProfile& numbered : profiles) {
-    for (const auto& rows : {make_separable_rows(numbered.profile.shape_mm),
-                             make_jimenez_rows(numbered.profile.shape_mm)})
-      table.insert(table.end(), rows.begin(), rows.end());
-  }
-  if (table.empty()) table.emplace_back();
+  for (const auto& rows : {make_separable_rows(numbered.profile.shape_mm),
+                           make_jimenez_rows(numbered.profile.shape_mm)})
+    table.insert(table.end(), rows.begin(), rows.end());
   return table;
 }
 
@@ -216,24 +213,30 @@ PyramidUse pyramid_use(const Graph& graph, const PassTypeRegistry& pass_types) {
   return {surface, has("subsurface.pyramid_gather")};
 }
 
-std::vector<float> make_sap_tables(PyramidUse use, std::span<const NumberedProfile> profiles) {
+std::vector<float> make_shared_sap_tables(PyramidUse use) {
   if (!use.surface && !use.plain) return {0.0f};
   std::vector<float> tables;
-  const auto add = [&](std::span<const float> shape) {
-    tables.insert(tables.end(), shape.begin(), shape.end());
-  };
-  const std::vector<SapShape> pixels = sap_shapes(use.pixel_grid);
-  for (const SapShape& pixel : pixels)
-    add(use.pixel_grid == 0 ? burley_sap_tables(use) : sap_tables_of(burley_shape(1), use, pixel));
-  for (const NumberedProfile& numbered : profiles)
-    for (size_t p = 0; has_own_tables(numbered) && p < pixels.size(); ++p) {
-      std::array<SapTables, 3> of_channel;
-      for (size_t c = 0; c < 3; ++c)
-        of_channel[c] = sap_tables_of(numbered.profile.shape_mm[c], use, pixels[p]);
-      for (uint32_t v = 0; v < sap_variant_count; ++v)
-        for (const SapTables& channel : of_channel)
-          add(std::span(channel).subspan(v * sap_table_floats, sap_table_floats));
-    }
+  for (const SapShape& pixel : sap_shapes(use.pixel_grid)) {
+    const auto of_pixel =
+        use.pixel_grid == 0 ? burley_sap_tables(use) : sap_tables_of(burley_shape(1), use, pixel);
+    tables.insert(tables.end(), of_pixel.begin(), of_pixel.end());
+  }
+  return tables;
+}
+
+std::vector<float> make_own_sap_tables(PyramidUse use, const NumberedProfile& numbered) {
+  std::vector<float> tables;
+  if ((!use.surface && !use.plain) || !has_own_tables(numbered)) return tables;
+  for (const SapShape& pixel : sap_shapes(use.pixel_grid)) {
+    std::array<SapTables, 3> of_channel;
+    for (size_t c = 0; c < 3; ++c)
+      of_channel[c] = sap_tables_of(numbered.profile.shape_mm[c], use, pixel);
+    for (uint32_t v = 0; v < sap_variant_count; ++v)
+      for (const SapTables& channel : of_channel) {
+        const auto one = std::span(channel).subspan(v * sap_table_floats, sap_table_floats);
+        tables.insert(tables.end(), one.begin(), one.end());
+      }
+  }
   return tables;
 }
 

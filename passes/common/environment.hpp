@@ -162,15 +162,17 @@ struct NumberedProfile {
   uint32_t id = 0; // 1..255
   Profile profile;
 };
+// Returns whether the profile has its own radial and pyramid tables. Profiles of Burley's model,
+// which has closed forms, share theirs.
+bool has_own_tables(const NumberedProfile& numbered);
 
 // Returns profile_capacity entries. Ignores ids outside 1..255. Expects the tables of a profile at
-// the rows where make_separable_table, make_radial_table and make_sap_tables place them for the
-// same list.
+// the rows where make_kernel_tables (kernel_tables.hpp) places them for the same list.
 std::vector<ProfileEntry> make_profile_table(std::span<const NumberedProfile> profiles,
                                              bool with_separable, PixelGrid pixel_grid = 0);
-// Returns, for each profile in order, the fitted rows (make_separable_rows), then the published
-// kernel's (make_jimenez_rows); one row of zeros without profiles. Takes about 0.1 s per profile.
-std::vector<SeparableRow> make_separable_table(std::span<const NumberedProfile> profiles);
+// Returns a profile's fitted rows (make_separable_rows), then the published kernel's
+// (make_jimenez_rows): separable_kernel_rows_per_profile rows. Takes about 0.1 s.
+std::vector<SeparableRow> make_separable_table(const NumberedProfile& numbered);
 // Returns whether the graph has a pass that reads the separable table.
 bool uses_separable(const Graph& graph, const PassTypeRegistry& pass_types);
 
@@ -186,11 +188,12 @@ struct PyramidUse {
   bool operator==(const PyramidUse&) const = default;
 };
 PyramidUse pyramid_use(const Graph& graph, const PassTypeRegistry& pass_types);
-// Returns the tables of make_sap_table (sap_weights.hpp). First the shared tables by SapVariant:
-// base, smooth, half, plain, for each of sap_shapes(use.pixel_grid). Then, for each profile that is
-// not Burley's, in order, the tables of red, green and blue for each variant, for each shape.
-// Unused tables are 0; the result is a single zero if all are unused. Takes about 0.1 s per shared
-// table, and per channel of another profile.
-std::vector<float> make_sap_tables(PyramidUse use, std::span<const NumberedProfile> profiles);
+// Returns the tables of make_sap_table (sap_weights.hpp) that all Burley profiles share, by
+// SapVariant: base, smooth, half, plain, for each of sap_shapes(use.pixel_grid). Unused tables are
+// 0; the result is a single zero if all are unused. Takes about 0.1 s per table.
+std::vector<float> make_shared_sap_tables(PyramidUse use);
+// Returns a profile's own tables, which follow the shared ones: those of red, green and blue for
+// each variant, for each shape; empty for Burley's model. Takes about 0.1 s per channel.
+std::vector<float> make_own_sap_tables(PyramidUse use, const NumberedProfile& numbered);
 
 } // namespace dermis::subsurface

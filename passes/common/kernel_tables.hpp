@@ -21,13 +21,16 @@ struct KernelTables {
   TableUse use;
   std::vector<ProfileEntry> profiles;
   std::vector<SeparableRow> separable;
-  std::vector<float> pyramid;
+  std::vector<float> pyramid; // shared tables, then the profiles' own
+  size_t shared_floats = 0;   // in `pyramid`
   std::vector<RadialRow> radial;
+  std::vector<NumberedProfile> fitted; // the profiles that the tables belong to, in order
 };
 
 TableUse table_use(const Graph& graph, const PassTypeRegistry& pass_types);
-// Fits the used tables: up to 0.2 s for the pyramids and 0.1 s per profile for separable. Thread:
-// any.
-KernelTables make_kernel_tables(const TableUse& use, std::span<const NumberedProfile> profiles);
+// Fits the used tables: up to 0.2 s for the pyramids and 0.1 s per profile for separable. Copies
+// tables of profiles that `before` has, too. Thread: any.
+KernelTables make_kernel_tables(const TableUse& use, std::span<const NumberedProfile> profiles,
+                                const KernelTables* before = nullptr);
 
 } // namespace dermis::subsurface

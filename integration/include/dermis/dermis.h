@@ -513,9 +513,9 @@ typedef struct dermis_history {
  * built again and no history is lost; only the first profile of a graph and the removal of the last
  * one act like a reload. Frames in flight keep the old profile; each view uses the new one from its
  * next record on. Light accumulated over frames still shows the old profile for
- * dermis_history.settles_after frames; the report contains the number (D0625). Takes up to 0.3 s
- * per profile of the graph, next to recording. Kept over reloads with DERMIS_KEEP_PROFILES and over resizes. Costs: memory,
- * time. Thread: concurrent. Errors: as dermis_graph_create. */
+ * dermis_history.settles_after frames; the report contains the number (D0625). Fits only the new
+ * profile, which takes up to 0.3 s next to recording. Kept over reloads with DERMIS_KEEP_PROFILES
+ * and over resizes. Costs: memory, time. Thread: concurrent. Errors: as dermis_graph_create. */
 DERMIS_API dermis_result DERMIS_CALL dermis_graph_set_profile(
     dermis_graph graph, uint32_t id, const dermis_source* source, dermis_report* report);
 

@@ -17,7 +17,7 @@ struct ReadsInput {
   std::span<const SettingValue> settings; // resolved, one per PassTypeSetting
   std::vector<bool> bound;                // one per port of the pass type
   PerChannel d_px{};                      // projected d, pixels
-  // make_sap_tables({true, true}, {}); only read by pass types of the pyramid
+  // make_shared_sap_tables({true, true}); only read by pass types of the pyramid
   std::span<const float> sap_tables;
   // Fraction of the pixels that take samples in this frame, for pass types that do not sample
   // everywhere.

@@ -11,6 +11,7 @@ struct Dipole {
   double z_real = 0;    // depth of the source below the surface: 1 / sigma_t'
   double z_virtual = 0; // height of the mirror image of the source: z_real (1 + 4 A / 3)
   double sigma_tr = 0;  // effective transport coefficient: sqrt(3 sigma_a sigma_t')
+  bool operator==(const Dipole&) const = default;
 };
 
 // Index of refraction of skin, milk, marble and similar materials in the measurements of 2001.

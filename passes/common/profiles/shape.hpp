@@ -28,6 +28,7 @@ struct ChannelShape {
   double direct = 0;
   Dipole dipole{};  // only model dipole
   double width = 0; // only model artist
+  bool operator==(const ChannelShape&) const = default;
 };
 using ProfileShape = std::array<ChannelShape, 3>; // red, green, blue
 

@@ -142,6 +142,43 @@ TEST(KernelTables, GraphsHaveTheSeparableTableThatTheirKernelsRead) {
   EXPECT_GE(readers, 3u);
 }
 
+NumberedProfile shipped_profile(uint32_t id, const std::string& name) {
+  Diagnostics diagnostics;
+  const auto document =
+      read_document(DERMIS_SOURCE_DIR "/configs/profiles/" + name + ".json", diagnostics);
+  return {id, read_profile(*document, diagnostics).value()};
+}
+
+// The tables of `before` are changed here, so that a copied table differs from a fitted one.
+TEST(KernelTables, UnchangedProfilesAreCopied) {
+  TableUse use;
+  use.separable = use.pyramid.surface = true;
+  const std::vector<NumberedProfile> old{shipped_profile(1, "skin"),
+                                         shipped_profile(2, "skin_dipole")};
+  KernelTables before = make_kernel_tables(use, old);
+  const size_t rows = before.separable.size() / 2;
+  const size_t floats = before.pyramid.size() - before.shared_floats; // of one dipole
+  for (SeparableRow& row : before.separable)
+    row[3] += 100;
+  for (float& value : before.pyramid)
+    value += 100;
+  const std::vector<NumberedProfile> replaced{shipped_profile(9, "skin_artist"), old[1], old[0]};
+  const KernelTables fitted = make_kernel_tables(use, replaced);
+  const KernelTables reused = make_kernel_tables(use, replaced, &before);
+  ASSERT_EQ(reused.separable.size(), fitted.separable.size());
+  for (size_t i = 0; i < fitted.separable.size(); ++i)
+    ASSERT_EQ(reused.separable[i][3], fitted.separable[i][3] + (i < rows ? 0 : 100)) << i;
+  ASSERT_EQ(reused.pyramid.size(), fitted.pyramid.size());
+  ASSERT_EQ(fitted.pyramid.size(), fitted.shared_floats + 2 * floats);
+  for (size_t i = 0; i < fitted.pyramid.size(); ++i) {
+    const bool fresh = i >= fitted.shared_floats && i < fitted.shared_floats + floats;
+    ASSERT_EQ(reused.pyramid[i], fitted.pyramid[i] + (fresh ? 0 : 100)) << i;
+  }
+  use.pyramid.pixel_grid = 1; // other shared tables
+  EXPECT_EQ(make_kernel_tables(use, replaced, &before).pyramid,
+            make_kernel_tables(use, replaced).pyramid);
+}
+
 TEST(Environment, FrameConstantsReconstructViewPositions) {
   // 90 degrees, 4:2 view, reversed infinite depth, units of 10 m.
   FrameInput input;

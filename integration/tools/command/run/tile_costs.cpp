@@ -85,7 +85,7 @@ TileCosts tile_costs(const LoadedGraph& loaded, const Size& size, PixelGrid grid
   TileCosts out;
   if (!compiled) return out;
   const Plan& plan = compiled->plan;
-  const std::vector<float> tables = subsurface::make_sap_tables({true, true}, {});
+  const std::vector<float> tables = subsurface::make_shared_sap_tables({true, true});
   const double d = choice.mean_d_px;
   // Reads per pixel of every scattering tile, of a tile without samples, and of a tile with samples
   // in addition to those of each sample.

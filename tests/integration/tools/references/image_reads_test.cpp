@@ -18,7 +18,7 @@ const PassTypeRegistry& pass_types() {
 // Returns the reads with all ports bound and all settings except one at their defaults.
 ImageReads reads_of(std::string_view kind_name, std::string_view setting = "", int64_t value = 0,
                     PerChannel d_px = {4, 2, 1}) {
-  static const std::vector<float> tables = make_sap_tables({true, true}, {});
+  static const std::vector<float> tables = make_shared_sap_tables({true, true});
   const PassType& type = pass_types()[pass_types().find(kind_name)];
   std::vector<SettingValue> settings;
   for (const PassTypeSetting& one : type.settings) {

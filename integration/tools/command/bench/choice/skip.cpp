@@ -233,7 +233,7 @@ demo::Result<> measure_skip(SuiteRun& run, const Emit<SkipRow>& emit) {
   run.add_info("reads",
                "texels read by the groups that ran, counted from the kernels' source for an "
                "environment that scatters");
-  const std::vector<float> sap_tables = subsurface::make_sap_tables({true, true}, {});
+  const std::vector<float> sap_tables = subsurface::make_shared_sap_tables({true, true});
   const double full_ms = median(bench.cases.front().device_ms);
   for (const SkipFrame& one : bench.cases)
     emit({one.from.name, one.choice.dispatches, one.choice.groups,

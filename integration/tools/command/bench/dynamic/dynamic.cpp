@@ -239,7 +239,7 @@ demo::Result<> measure_dynamic(SuiteRun& run, const Emit<DynamicRow>& emit) {
   const auto host = run.open_device();
   if (!host) return host.error();
   DynamicBench bench{run, file, **host, techniques.take(),
-                     subsurface::make_sap_tables({true, true}, {})};
+                     subsurface::make_shared_sap_tables({true, true})};
   std::vector<std::string> known;
   for (const SequenceRequest& request : file.scenes) {
     known.push_back(fmt::format("{} {}", request.scene, request.framing));

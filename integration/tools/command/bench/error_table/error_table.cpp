@@ -98,7 +98,7 @@ demo::Result<> add_subjects(ErrorTableBench& bench) {
 }
 
 demo::Result<> add_techniques(ErrorTableBench& bench) {
-  bench.sap_tables = subsurface::make_sap_tables({true, true}, {});
+  bench.sap_tables = subsurface::make_shared_sap_tables({true, true});
   auto selected = select_techniques(bench.run, bench.file.techniques);
   if (!selected) return selected.error();
   bench.requests = selected.take();

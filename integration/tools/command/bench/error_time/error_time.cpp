@@ -27,7 +27,7 @@ std::string name_of(const Subject& subject) {
 }
 
 demo::Result<> add_techniques(ErrorTimeBench& bench) {
-  bench.sap_tables = subsurface::make_sap_tables({true, true}, {});
+  bench.sap_tables = subsurface::make_shared_sap_tables({true, true});
   const auto selected = select_techniques(bench.run, bench.file.techniques);
   if (!selected) return selected.error();
   for (const TechniqueRequest& request : *selected) {

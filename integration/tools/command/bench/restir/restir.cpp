@@ -138,7 +138,7 @@ demo::Result<> measure_ray_scene(RestirBench& bench, const SceneRequest& request
   scene.slab_rms *= scene.reference.reference.exposure;
   if (!bench.run.quick) expect_of_reuse(scene.rows); // a few frames are not significant
   choose_pictures(scene.rows);
-  const std::vector<float> sap_tables = subsurface::make_sap_tables({true, true}, {});
+  const std::vector<float> sap_tables = subsurface::make_shared_sap_tables({true, true});
   for (const TechniqueRequest& technique : bench.file.screen_space) {
     if (interrupted()) return stopped();
     auto row = measure_in_screen_space(bench, technique, scene.subject, scene.regions, sap_tables);
