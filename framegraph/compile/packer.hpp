@@ -60,6 +60,7 @@ private:
   bool try_order(std::span<const uint32_t> order, Fit fit, Packing& out);
   void sort_by_size(const std::vector<uint32_t>& given, std::vector<uint32_t>& sorted);
   void try_again(Packing& out);
+  void stack(Packing& out);
   void by_weight(uint32_t a, uint32_t b, std::vector<uint32_t>& sorted);
   void try_orders(Packing& out);
   void search(uint64_t steps, Packing& out);

@@ -63,6 +63,8 @@ inline constexpr Stage host = 0x4000;
 inline constexpr Stage all_commands = 0x10000;
 inline constexpr Stage copy = 0x100000000ull;
 inline constexpr Stage clear = 0x800000000ull;
+inline constexpr Stage known =
+    draw_indirect | compute_shader | all_transfer | host | all_commands | copy | clear;
 } // namespace stage
 
 namespace access {
@@ -135,5 +137,9 @@ inline constexpr Access all_write_access =
     access::transfer_write | access::memory_write | access::shader_storage_write |
     0x40 /* shader write */ | 0x100 /* colour attachment write */ |
     0x400 /* depth stencil write */ | 0x4000 /* host write */;
+inline constexpr Access all_known_access =
+    all_write_access | access::indirect_command_read | access::uniform_read |
+    access::transfer_read | access::memory_read | access::acceleration_structure_read |
+    access::shader_sampled_read | access::shader_storage_read;
 
 } // namespace dermis

@@ -84,15 +84,22 @@ struct Checker {
       expect(placement.heap < plan.heaps.size(), "a placement is not in a heap", i);
       expect(placement.alignment > 0 && placement.offset % placement.alignment == 0,
              "a placement is misaligned", i);
-      if (placement.heap < plan.heaps.size())
-        expect(placement.size <= plan.heaps[placement.heap].size &&
-                   placement.offset <= plan.heaps[placement.heap].size - placement.size,
+      if (placement.heap < plan.heaps.size()) {
+        const Heap& heap = plan.heaps[placement.heap];
+        expect(placement.size <= heap.size && placement.offset <= heap.size - placement.size,
                "a placement exceeds its heap", i);
+        expect(placement.alignment > 0 && heap.alignment % placement.alignment == 0,
+               "a heap is less aligned than a placement in it", i);
+        expect(heap.persistent || !placement.persistent,
+               "a history is in a heap whose contents do not last", i);
+      }
       expect(placement.size > 0, "a placement has no bytes", i);
       expect(placement.first_use <= placement.last_use &&
                  placement.last_use < std::max<size_t>(plan.passes.size(), 1),
              "a placement is alive outside of the frame", i);
     }
+    for (size_t h = 0; h < plan.heaps.size(); ++h)
+      expect(plan.heaps[h].memory_type_bits != 0, "no memory type suits a heap", h);
     check_shared_memory();
   }
 
@@ -161,6 +168,15 @@ struct Checker {
     return before.when == ReadWhen::history_valid && before.port == access.port;
   }
 
+  void check_lifetimes(const PlanResource& resource, size_t pass) {
+    if (!range_in(resource.first_instance, resource.instance_count, plan.placements.size())) return;
+    for (uint32_t i = 0; i < resource.instance_count; ++i) {
+      const Placement& placement = plan.placements[resource.first_instance + i];
+      expect(placement.first_use <= pass && pass <= placement.last_use,
+             "a pass accesses memory outside its lifetime", pass);
+    }
+  }
+
   void check_passes() {
     for (size_t p = 0; p < plan.passes.size(); ++p) {
       const PlanPass& pass = plan.passes[p];
@@ -184,12 +200,10 @@ struct Checker {
                "a pass accesses an image in an undefined layout", p);
         expect(!exists || has(access.resource, access.range),
                "a pass accesses mips or layers that do not exist", p);
-        if (!exists || plan.resources[access.resource].first_instance >= plan.placements.size())
-          continue;
-        const Placement& placement =
-            plan.placements[plan.resources[access.resource].first_instance];
-        expect(placement.first_use <= p && p <= placement.last_use,
-               "a pass accesses memory outside its lifetime", p);
+        expect((access.stages & ~stage::known) == 0 && (access.access & ~all_known_access) == 0 &&
+                   access.stages != 0,
+               "an access has no stages, or stages or accesses that do not exist", p);
+        if (exists) check_lifetimes(plan.resources[access.resource], p);
       }
     }
     expect(range_in(plan.first_final_barrier, plan.final_barrier_count, plan.barriers.size()),
@@ -198,6 +212,9 @@ struct Checker {
       const PlanBarrier& barrier = plan.barriers[b];
       const bool exists = object_exists(barrier.resource, barrier.frames_back);
       expect(exists, "a barrier names a resource or an earlier frame that does not exist", b);
+      expect(((barrier.source_stages | barrier.destination_stages) & ~stage::known) == 0 &&
+                 ((barrier.source_access | barrier.destination_access) & ~all_known_access) == 0,
+             "a barrier has stages or accesses that do not exist", b);
       expect(!exists || has(barrier.resource, barrier.range),
              "a barrier names mips or layers that do not exist", b);
       const bool own = exists && plan.resources[barrier.resource].first_instance != no_instance &&
@@ -216,14 +233,30 @@ struct Checker {
            "orderings are not sorted by their passes", 0);
   }
 
+  // Checks that the ranges of a history are as large as its resource.
+  void check_ranges(const PlanHistory& history, size_t index) {
+    const SubresourceRange whole = plan.resources[history.resource].whole();
+    uint64_t size = 0; // number of mips of layers
+    for (uint32_t r = 0; r < history.range_count; ++r) {
+      const SubresourceRange& range = plan.history_ranges[history.first_range + r];
+      expect(has(history.resource, range), "a history has mips or layers that do not exist", index);
+      size += uint64_t{range.mips} * range.layers;
+    }
+    expect(size == uint64_t{whole.mips} * whole.layers,
+           "the subresource ranges of a history are not its whole resource", index);
+  }
+
   void check_histories() {
     std::vector<uint32_t> described(plan.resources.size(), 0);
+    uint64_t next_range = 0, next_layout = 0; // each history's follow those of the history before
     for (size_t h = 0; h < plan.histories.size(); ++h) {
       const PlanHistory& history = plan.histories[h];
       const bool exists = history.resource < plan.resources.size();
       expect(exists, "a history belongs to no resource", h);
       if (!exists) continue;
       ++described[history.resource];
+      expect(plan.resources[history.resource].first_instance != no_instance,
+             "a history is in memory of the host", h);
       const uint32_t instances = plan.resources[history.resource].instance_count;
       expect(history.frames >= 1 && history.frames <= limits::history_frames &&
                  history.range_count >= 1 && instances <= history.frames + 1 &&
@@ -233,11 +266,13 @@ struct Checker {
                           (uint64_t{history.frames} + 1) * history.range_count,
                           plan.history_layouts.size()),
              "a history has the wrong number of instances, subresource ranges or layouts", h);
-      const bool ranges_exist =
-          range_in(history.first_range, history.range_count, plan.history_ranges.size());
-      for (uint32_t r = 0; ranges_exist && r < history.range_count; ++r)
-        expect(has(history.resource, plan.history_ranges[history.first_range + r]),
-               "a history has mips or layers that do not exist", h);
+      const bool in_order =
+          history.first_range == next_range && history.first_layout == next_layout;
+      expect(in_order, "the subresource ranges of histories are not in the order of the histories",
+             h);
+      next_range += history.range_count;
+      next_layout += (uint64_t{history.frames} + 1) * history.range_count;
+      if (in_order && next_range <= plan.history_ranges.size()) check_ranges(history, h);
     }
     // An alias in history memory has as many instances as the history.
     uint32_t maximum = 1;

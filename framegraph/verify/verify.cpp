@@ -123,8 +123,10 @@ struct Machine {
     memory.for_each_overlap(index, [&](SubresourceEvents& there, bool own) {
       work_done += 1 + there.events.size();
       if (is_over()) return;
-      for (Event& event : there.events)
+      for (Event& event : there.events) {
+        work_done += event.visible.size();
         apply_waits(event);
+      }
       visit(there, own);
     });
   }
@@ -330,7 +332,7 @@ struct Machine {
   }
 
   void run(const PlanBarrier* barriers, uint32_t count, bool releases, const std::string& where) {
-    for (uint32_t b = 0; b < count; ++b) {
+    for (uint32_t b = 0; b < count && !is_over(); ++b) {
       if ((barriers[b].transfer == PlanBarrier::Transfer::release) != releases)
         report_violation(fmt::format(
             "frame {}, {}: a release belongs after a pass, and all other barriers belong before it",
@@ -429,7 +431,7 @@ struct Machine {
     wait(pass.wait, where);
     check_orderings(static_cast<uint32_t>(&pass - plan.passes.data()), where);
     run(plan.barriers.data() + pass.first_barrier, pass.barrier_count, false, where);
-    for (uint32_t a = 0; a < pass.access_count; ++a)
+    for (uint32_t a = 0; a < pass.access_count && !is_over(); ++a)
       check(accesses[a], where);
     work_done += uint64_t{pass.access_count} * pass.access_count;
     if (is_over()) return;

@@ -301,6 +301,24 @@ TEST(Packing, ItemsThatFollowEachOtherShareTheirMemory) {
   EXPECT_EQ(pack_items({}).size, 0u);
 }
 
+// A graph may keep 36,000 instances of histories, which all live for the whole frame.
+TEST(Packing, ThousandsOfHistoriesAreStacked) {
+  constexpr uint32_t count = 20000, passes = 4096;
+  std::vector<PackItem> items;
+  for (uint32_t i = 0; i < count; ++i)
+    items.push_back({100 + i % 7, i % 3 == 0 ? 256u : 64u, 0, passes - 1});
+  const Packing packing = pack_items(items);
+  std::vector<std::pair<uint64_t, uint64_t>> ranges;
+  for (uint32_t i = 0; i < count; ++i) {
+    EXPECT_EQ(packing.offsets[i] % items[i].alignment, 0u);
+    ranges.emplace_back(packing.offsets[i], packing.offsets[i] + items[i].size);
+  }
+  std::sort(ranges.begin(), ranges.end());
+  for (uint32_t i = 1; i < count; ++i)
+    ASSERT_LE(ranges[i - 1].second, ranges[i].first);
+  EXPECT_EQ(packing.size, ranges.back().second);
+}
+
 TEST(Packing, CommonBitsAreFoundOnEveryProcessor) {
   SplitMix64 random{1};
   for (uint32_t round = 0; round < 1000; ++round) {

@@ -73,7 +73,7 @@ TEST(SavedPlan, Preserves64BitIntegers) {
   plan.key.order_seed = 0xfedcba9876543210ull;
   plan.plan.transient_bytes = 0xffffffff00000001ull;
   ASSERT_FALSE(plan.plan.barriers.empty());
-  plan.plan.barriers[0].source_stages = 0x8000000800000001ull;
+  plan.plan.barriers[0].source_stages = stage::clear | stage::compute_shader;
   Diagnostics diagnostics;
   const auto after = read_plan("p.plan", write_plan(plan), diagnostics);
   ASSERT_TRUE(after);

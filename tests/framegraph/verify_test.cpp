@@ -230,6 +230,65 @@ TEST(Verify, RejectsMoreHistoryThanAGraphMayHave) {
       "a history has the wrong number of instances");
 }
 
+TEST(Verify, RejectsHistoriesThatNoDeviceCanKeep) {
+  expect_rejected(
+      [](Plan& plan) {
+        for (uint32_t r = 0; r < plan.resources.size(); ++r)
+          if (plan.resources[r].first_instance == no_instance) plan.histories[0].resource = r;
+      },
+      "a history is in memory of the host");
+  expect_rejected(
+      [](Plan& plan) {
+        for (Heap& heap : plan.heaps)
+          heap.persistent = false;
+      },
+      "a history is in a heap whose contents do not last");
+}
+
+// Overlapping ranges of many histories would take hours to simulate.
+TEST(Verify, RejectsHistoryRangesThatAreNotTheWholeResource) {
+  expect_rejected(
+      [](Plan& plan) {
+        plan.history_ranges.push_back(plan.history_ranges[0]);
+        plan.histories[0].range_count = 2;
+        plan.history_layouts.resize(2 * plan.history_layouts.size());
+      },
+      "the subresource ranges of a history are not its whole resource");
+  expect_rejected([](Plan& plan) { plan.histories.push_back(plan.histories[0]); },
+                  "not in the order of the histories");
+}
+
+TEST(Verify, RejectsHeapsThatNoMemorySuits) {
+  expect_rejected([](Plan& plan) { plan.heaps[0].alignment = 1; },
+                  "a heap is less aligned than a placement in it");
+  expect_rejected([](Plan& plan) { plan.heaps[0].memory_type_bits = 0; },
+                  "no memory type suits a heap");
+}
+
+TEST(Verify, RejectsStagesAndAccessesThatDoNotExist) {
+  constexpr uint64_t unknown = 1ull << 63;
+  expect_rejected([](Plan& plan) { plan.accesses[0].stages |= unknown; }, "an access has");
+  expect_rejected([](Plan& plan) { plan.accesses[0].access |= unknown; }, "an access has");
+  expect_rejected([](Plan& plan) { plan.accesses[0].stages = 0; }, "an access has no stages");
+  expect_rejected([](Plan& plan) { plan.barriers[0].source_stages |= unknown; }, "a barrier has");
+  expect_rejected([](Plan& plan) { plan.barriers[0].destination_stages |= unknown; },
+                  "a barrier has");
+  expect_rejected([](Plan& plan) { plan.barriers[0].source_access |= unknown; }, "a barrier has");
+  expect_rejected([](Plan& plan) { plan.barriers[0].destination_access |= unknown; },
+                  "a barrier has");
+}
+
+TEST(Verify, RejectsAnInstanceOutsideItsLifetime) {
+  expect_rejected(
+      [](Plan& plan) {
+        for (Placement& placement : plan.placements)
+          if (placement.persistent && &placement != &plan.placements[0] &&
+              placement.resource == (&placement - 1)->resource)
+            placement.last_use = 0; // of every instance except the first
+      },
+      "outside its lifetime");
+}
+
 TEST(Verify, RejectsAReadOutsideItsLifetime) {
   expect_rejected(
       [](Plan& plan) {

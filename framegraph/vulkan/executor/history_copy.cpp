@@ -188,8 +188,12 @@ Rectangle carried_rectangle(const State& to, const State& from) noexcept {
   Rectangle out = from.previous_rectangle;
   out.x = scaled(out.x, to.plan.view_width, from.plan.view_width);
   out.y = scaled(out.y, to.plan.view_height, from.plan.view_height);
-  out.width = scaled(out.width, to.plan.view_width, from.plan.view_width);
-  out.height = scaled(out.height, to.plan.view_height, from.plan.view_height);
+  // 0 would mean that there is no earlier frame.
+  const auto scaled_side = [&](uint32_t side, uint32_t now, uint32_t before) {
+    return side == 0 ? 0 : std::max(scaled(side, now, before), 1u);
+  };
+  out.width = scaled_side(out.width, to.plan.view_width, from.plan.view_width);
+  out.height = scaled_side(out.height, to.plan.view_height, from.plan.view_height);
   return out;
 }
 

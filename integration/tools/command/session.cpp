@@ -16,7 +16,16 @@ namespace {
 
 bool output_lost = false; // some text could not be written to stdout
 
-// Returns text for a terminal: lines as they are, other control characters as \xNN.
+// `diagnostics`: a JSON array.
+void print_failure(ExitCode code, std::string_view message, std::string_view diagnostics) {
+  JsonWriter answer;
+  answer.open_object().member("ok", false).member("exit_code", static_cast<int32_t>(code));
+  answer.member("error", message).key("diagnostics").json(diagnostics).close();
+  print(std::move(answer).finish());
+}
+
+} // namespace
+
 std::string for_terminal(std::string_view text) {
   std::string out;
   while (!text.empty()) {
@@ -27,16 +36,6 @@ std::string for_terminal(std::string_view text) {
   }
   return out;
 }
-
-// `diagnostics`: a JSON array.
-void print_failure(ExitCode code, std::string_view message, std::string_view diagnostics) {
-  JsonWriter answer;
-  answer.open_object().member("ok", false).member("exit_code", static_cast<int32_t>(code));
-  answer.member("error", message).key("diagnostics").json(diagnostics).close();
-  print(std::move(answer).finish());
-}
-
-} // namespace
 
 ExitCode fail(const Session& session, ExitCode code, std::string_view message,
               const Diagnostics* diagnostics) {

@@ -32,6 +32,9 @@ void print_diagnostics(const Session& session, const Diagnostics& diagnostics);
 // Prints text on stdout; prints nothing with --json or --quiet.
 void say(const Session& session, std::string_view text);
 
+// Returns text for a terminal: lines as they are, other control characters as \xNN.
+std::string for_terminal(std::string_view text);
+
 // Prints machine-readable text on stdout.
 void print(std::string_view text);
 // Returns whether some text could not be written to stdout.

@@ -197,6 +197,23 @@ TEST_F(ReplacedHistory, OtherSize_KeepsOnlyRescaledHistories) {
   }
 }
 
+// A previous rectangle without pixels would mean that there was no frame.
+TEST_F(ReplacedHistory, OtherSize_KeepsAPixelOfTheRectangle) {
+  SmallGraph g = counter();
+  for (ResourceDeclaration& resource : g.graph.resources)
+    resource.history.on_resize = HistoryDeclaration::OnResize::rescale;
+  start(g, side, side);
+  [[maybe_unused]] const TestImage result = bind(g, "result", {}); // keeps the image
+  ASSERT_FALSE(frame(0.0f, {side - 1, 0, 1, 1}));
+  take_over(g, side / 2, side / 2);
+  const vulkan::Rectangle carried = executor->previous_rectangle(replaced.get());
+  EXPECT_EQ(carried.x, side / 2 - 1);
+  EXPECT_EQ(carried.width, 1u);
+  EXPECT_EQ(carried.height, 1u);
+  wait();
+  replaced.reset();
+}
+
 TEST_F(ReplacedHistory, OtherSizeWithACut_StartsAnew) {
   SmallGraph g = counter();
   for (ResourceDeclaration& resource : g.graph.resources)

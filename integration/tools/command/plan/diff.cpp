@@ -56,7 +56,7 @@ ExitCode plan_diff(const Session& session, const PlanDiffOptions& options) {
   print_beside_document(session, diagnostics);
   const PlanDiff diff = diff_plans(plans[0].saved, plans[1].saved);
   print(session.json ? plan_diff_json(diff, plans[0].name, plans[1].name)
-                     : plan_diff_text(diff, plans[0].name, plans[1].name));
+                     : for_terminal(plan_diff_text(diff, plans[0].name, plans[1].name)));
   return options.exit_code && !diff.same ? ExitCode::problems : ExitCode::ok;
 }
 
