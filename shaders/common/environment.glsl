@@ -88,7 +88,8 @@ bool inside_rect(ivec2 pixel) {
   return all(greaterThanEqual(pixel, ivec2(0))) && all(lessThan(pixel, frame.rect.zw));
 }
 
-// Returns whether the pixel is in the area that may have subsurface, according to the host.
+// Returns whether the pixel is in the area of the rectangle that may have subsurface, according to
+// the host.
 bool inside_bounds(ivec2 pixel) {
   ivec2 from = pixel - frame.bounds.xy;
   return all(greaterThanEqual(from, ivec2(0))) && all(lessThan(from, frame.bounds.zw));

@@ -29,7 +29,7 @@ struct surface_tap {
 bool find_tap(utexture2D material, texture2D depth, texture2D slope, uint id, vec2 at,
               out surface_tap tap) {
   tap = surface_tap(at, ivec2(round(clamp(at, vec2(-1.0), vec2(frame.rect.zw)))), 0.0, vec2(0.0));
-  if (!inside_rect(tap.pixel))
+  if (!inside_bounds(tap.pixel))
     return false;
   ivec2 texel = texel_of(tap.pixel);
   if (profile_of(texelFetch(material, texel, 0).r) != id)

@@ -72,7 +72,7 @@ void main() {
   vec2 at = vec2(pixel) + in_tile * (spacing - 1.0);
   ivec2 place = ivec2(floor(at + 0.5));
   bool taps =
-      d_px > 0.0 && inside_rect(place) && texelFetch(material_image, texel_of(place), 0).r != 0u;
+      d_px > 0.0 && inside_bounds(place) && texelFetch(material_image, texel_of(place), 0).r != 0u;
   uint seen = 0u;
   if (taps) {
     vec3 nearest = texelFetch(light_image, texel_of(place), 0).rgb;

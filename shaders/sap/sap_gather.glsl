@@ -62,7 +62,7 @@ const float min_fraction = 0.002; // the tent is not worth its time for a smalle
 vec4 gather(sap_place place, sap_texel own, vec4 centre_light, int variant) {
   vec3 light = centre_light.rgb;
   // a tilted pixel keeps more of its own light
-  vec3 d_px = sap_d_px(own) * inversesqrt(centre_light.a);
+  vec3 across_px = sap_d_px(own), d_px = across_px * inversesqrt(centre_light.a);
   vec3 centre, tent;
   sap_weights_of_level_0(own.id, variant, d_px, centre, tent);
   sap_sum near = sap_sum(light, vec3(1.0));
@@ -78,7 +78,7 @@ vec4 gather(sap_place place, sap_texel own, vec4 centre_light, int variant) {
   vec3 mean = sap_blend(max(centre - direct, vec3(0.0)), light, tent * near.mass,
                         near.light, rest)
                   .light;
-  return vec4(mix(mean, light, direct), confidence);
+  return vec4(sap_keep_unscattered(across_px, light, mix(mean, light, direct)), confidence);
 }
 
 #endif

@@ -2,6 +2,7 @@
 #ifndef DERMIS_SAP_UP_GLSL
 #define DERMIS_SAP_UP_GLSL
 
+#include "constants.glsl"
 #include "sap/sap_storage.glsl"
 #include "sap/sap_tent.glsl"
 
@@ -174,6 +175,13 @@ sap_sum sap_from_coarser(sap_place place, int level, sap_texel own, vec3 fallbac
 // Returns d per channel in pixels along the surface.
 vec3 sap_d_px(sap_texel own) {
   return profiles[min(own.id, 255u)].d_mm.rgb * (own.reach / sap_footprint(own.depth));
+}
+
+// Returns `mean`, or the pixel's own light in channels that do not scatter, and in all channels if d
+// is too small. (Rounding would mix them with bright light around.)
+vec3 sap_keep_unscattered(vec3 d_px, vec3 light, vec3 mean) {
+  float least = max(d_px.r, max(d_px.g, d_px.b)) < copy_below_d_px ? largest_half : 0.0;
+  return mix(light, mean, greaterThan(d_px, vec3(least)));
 }
 
 // Returns the mean of three lights weighted by mass, as a convex combination that returns equal

@@ -74,7 +74,8 @@ vec4 gather(sap_place place, ivec2 in_block, vec3 light) {
   float area_root;
   sap_texel own = surface_at(scatter_scale_image, has_scatter_scale(), read_rows(), place.at,
                              in_block, area_root);
-  vec3 d_px = sap_d_px(own) * inversesqrt(area_root); // a tilted pixel keeps more of its own light
+  // a tilted pixel keeps more of its own light
+  vec3 across_px = sap_d_px(own), d_px = across_px * inversesqrt(area_root);
   vec3 centre = sap_lookup(id, sap_half, 0, d_px);
   float confidence;
   sap_sum rest = sap_from_coarser(place, 0, own, light, 1, confidence);
@@ -83,7 +84,7 @@ vec4 gather(sap_place place, ivec2 in_block, vec3 light) {
   // Light that never scatters needs no surface around.
   vec3 direct = profile_direct(id);
   vec3 mean = sap_blend(max(centre - direct, vec3(0.0)), light, vec3(0.0), light, rest).light;
-  return vec4(mix(mean, light, direct), confidence);
+  return vec4(sap_keep_unscattered(across_px, light, mix(mean, light, direct)), confidence);
 }
 
 void main() {
