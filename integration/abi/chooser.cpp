@@ -13,6 +13,10 @@
 namespace dermis::abi {
 namespace {
 
+uint64_t listed_tiles(const subsurface::FrameCounters& counters) {
+  return uint64_t{counters.scattering_tiles} + counters.copied_tiles + counters.uniform_tiles;
+}
+
 constexpr double assumed_d_px = 1; // pixels; before any frame has been counted
 constexpr double dark_s = 1;       // so long without transmitted light, none is expected
 constexpr double ns_per_ms = 1e6;
@@ -81,8 +85,9 @@ void learn(Chooser& chooser, std::span<const choice::PassLoad> passes, choice::T
   }
   if (frame.begins || frame.left_out || !same_work) return;
   chooser.costs.observe(chooser.pass_times, chooser.state.clock_s);
-  // After a step of the device the times before do not count.
-  if (frame.decision.measured && !chooser.costs.device_stepped())
+  // After a step of the device the times before do not count. Empty dispatches teach nothing.
+  if (frame.decision.measured && !chooser.costs.device_stepped() &&
+      listed_tiles(frame.counters) > 0)
     chooser.last_margin = margins.observe(frame.configuration, frame.decision.expected_ms,
                                           frame.measured_ms, chooser.budget.percentile);
 }
@@ -90,10 +95,6 @@ void learn(Chooser& chooser, std::span<const choice::PassLoad> passes, choice::T
 void reduce_optimism(choice::CostEstimator& costs, const choice::Configuration& configuration) {
   for (const choice::PassLoad& pass : configuration.passes)
     costs.reduce_optimism(pass.cost);
-}
-
-uint64_t listed_tiles(const subsurface::FrameCounters& counters) {
-  return uint64_t{counters.scattering_tiles} + counters.copied_tiles + counters.uniform_tiles;
 }
 
 // Returns the ratio of the lengths that the same object has in both, in pixels.
@@ -257,8 +258,9 @@ choice::Decision without_budget(const choice::Forecast& forecast) {
 double budget_of_frame(const Chooser& chooser, const FrameRequest& request,
                        std::span<const choice::Forecast> forecasts) {
   if (!chooser.budget.all_views) return chooser.budget.ms;
-  const choice::Offers offers =
-      request.empty_bounds ? choice::offers_of_no_work() : choice::make_offers(forecasts);
+  const choice::Offers offers = request.empty_bounds
+                                    ? choice::offers_of_no_work()
+                                    : choice::make_offers(forecasts, chooser.scratch.state);
   const std::lock_guard lock(request.shared->mutex);
   return request.shared->division.share(*request.share, chooser.budget.ms, offers,
                                         chooser.counted || request.empty_bounds, request.seconds);

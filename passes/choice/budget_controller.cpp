@@ -34,15 +34,17 @@ constexpr double first_s = 3, first_tokens_per_pass = 2;
 // A frame counts as at most this time of the first seconds: after a pause, nothing was tried yet.
 constexpr double longest_first_frame_s = 0.1;
 constexpr double trial_s = 1; // left sooner, a trial failed
-// A configuration that was left is not tried again for its back-off, which doubles each time, and
-// restarts after the configuration ran for this many back-offs.
-constexpr double first_backoff_s = 1, calm_backoffs = 10;
+// A configuration that was left is not tried again for its back-off, which doubles each time up to
+// a maximum, and restarts after the configuration ran for this many back-offs.
+constexpr double first_backoff_s = 1, max_backoff_s = 64, calm_backoffs = 10;
 // Without trials, disturbances count as over after this many back-offs.
 constexpr double forgotten_backoffs = 10;
 // A configuration that was not tried in the first seconds is not tried for this time.
 constexpr double untried_backoff_s = 300;
 // During its back-off, a configuration is tried only if it became cheaper by this logarithm.
 constexpr double changed = 0.10;
+// Times within this factor count as equal where nothing fits.
+constexpr double equally_fast = 1.03;
 constexpr double never_ms = 1e30;
 constexpr double usual_frame_s = 1.0 / 60; // if the host gives no time
 constexpr double min_ms = 1e-12;
@@ -82,7 +84,10 @@ private:
     const double seconds = seconds_of(frame_.seconds);
     const double before = state_.clock_s - state_.started_s;
     state_.clock_s += seconds;
-    if (before <= first_s) state_.started_s += std::max(0.0, seconds - longest_first_frame_s);
+    // Without anything that scatters, nothing can be tried.
+    const bool waits = frame_.empty || frame_.idle;
+    if (before <= first_s)
+      state_.started_s += waits ? seconds : std::max(0.0, seconds - longest_first_frame_s);
     const double after = state_.clock_s - state_.started_s;
     const double refilled = std::min(max_tokens, state_.tokens + switches_per_second * seconds);
     state_.tokens = after > first_s ? refilled : std::max(refilled, state_.tokens);
@@ -174,11 +179,20 @@ private:
         best([&](uint32_t i) { return forecasts_[i].time.pessimistic_ms <= assessed_[i].*limit; });
     if (decision.configuration != no_configuration) return;
     decision.why = ReasonKind::nothing_fits;
+    decision.configuration = fastest();
+  }
+
+  // Returns the fastest configuration; what runs, if it is as fast within the noise of times.
+  uint32_t fastest() const {
     const auto faster = [](const Forecast& a, const Forecast& b) {
       return a.time.pessimistic_ms < b.time.pessimistic_ms;
     };
-    decision.configuration = static_cast<uint32_t>(
-        std::min_element(forecasts_.begin(), forecasts_.end(), faster) - forecasts_.begin());
+    const auto least = std::min_element(forecasts_.begin(), forecasts_.end(), faster);
+    const uint32_t now = state_.current;
+    return now != no_configuration &&
+                   forecasts_[now].time.pessimistic_ms <= equally_fast * least->time.pessimistic_ms
+               ? now
+               : static_cast<uint32_t>(least - forecasts_.begin());
   }
 
   // Leaves the running configuration, which exceeds the budget.
@@ -332,7 +346,7 @@ private:
     DecisionState::Configuration& kept = state_.configurations[before];
     kept.left_ratio = forecasts_[before].time.pessimistic_ms / frame_.budget_ms;
     kept.left_s = state_.clock_s;
-    kept.backoff_s *= 2;
+    kept.backoff_s = std::min(2 * kept.backoff_s, max_backoff_s);
     decision.rejected = before;
   }
 
@@ -458,6 +472,12 @@ void allow_switches(DecisionState& state) {
   state.tokens = max_tokens;
   state.entered_s = state.started_s = state.clock_s - 2 * first_s;
   state.units = 0;
+}
+
+bool may_return(const DecisionState& state, uint32_t configuration) {
+  if (configuration >= state.configurations.size() || configuration == state.current) return false;
+  const DecisionState::Configuration& kept = state.configurations[configuration];
+  return kept.ran && state.clock_s - kept.left_s > kept.backoff_s;
 }
 
 void skip_frame(DecisionState& state, double seconds) {

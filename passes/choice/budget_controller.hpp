@@ -17,6 +17,7 @@ struct TimeForecast {
   double optimistic_ms = 0;  // passes that never ran take their least time
   // in addition, passes that were disturbed when they ran last take their usual time
   double undisturbed_ms = 0;
+  double usual_ms = 0;            // only well-known passes that were disturbed do
   double unit_ms = 0;             // of a unit of samples
   double undisturbed_unit_ms = 0; // the same as undisturbed_ms
   bool measured = false;          // all passes were measured recently
@@ -132,6 +133,9 @@ void allow_switches(DecisionState& state);
 // Advances the clock in a frame without a budget. The next decision is a first one, and begins the
 // first seconds.
 void skip_frame(DecisionState& state, double seconds);
+
+// Returns whether a configuration that ran before may be tried again, as far as its back-off says.
+bool may_return(const DecisionState& state, uint32_t configuration);
 
 // Values of one configuration that decide() needs in between.
 struct Assessment {

@@ -38,6 +38,14 @@ void insert(Offers& offers, const Offer& one) {
   ++offers.count;
 }
 
+bool has_part(const ViewShare& view) {
+  return view.counted && view.fraction > 0;
+}
+
+bool is_no_work(const Offers& offers) {
+  return offers.count > 0 && offers.all[0].ms <= least_ms;
+}
+
 // Returns the squared error with a share of `ms`; the cheapest offer runs in any case.
 double square_within(const Offers& offers, double ms) {
   double rmse = offers.all[0].rmse;
@@ -53,12 +61,14 @@ size_t steps_of(const Offer& offer, double budget_ms) {
 
 } // namespace
 
-Offers make_offers(std::span<const Forecast> forecasts) {
+Offers make_offers(std::span<const Forecast> forecasts, const DecisionState& state) {
   constexpr double sampled[] = {0, 0.25, 0.5, 0.75, 1}; // fractions of the requested samples
   Offers offers;
-  for (Forecast one : forecasts) {
-    // Pessimism would keep a configuration that never ran from a trial.
-    one.time.pessimistic_ms = one.time.expected_ms;
+  for (uint32_t i = 0; i < forecasts.size(); ++i) {
+    Forecast one = forecasts[i];
+    // Pessimism would keep a configuration that never ran from a trial, and a disturbance that may
+    // be over one that was left because of it.
+    one.time.pessimistic_ms = may_return(state, i) ? one.time.usual_ms : one.time.expected_ms;
     for (const double fraction : sampled) {
       const double units = one.takes_samples ? fraction * one.demand : 0;
       insert(offers, {std::max(needed_budget_ms(one, units), least_ms), rmse_with(one, units)});
@@ -166,17 +176,19 @@ void BudgetDivision::divide_anew(bool at_once) noexcept {
     active_[v]->fraction = fractions_[v];
 }
 
-// Gives each view whose tiles were not counted an equal part; the others keep their proportions.
+// Gives each view whose tiles were not counted, or that has no part yet, an equal part; the others
+// keep their proportions.
 void BudgetDivision::make_room() noexcept {
   double counted = 0;
-  for (const ViewShare* view : active_)
-    counted += view->counted ? 1 : 0;
-  const double equal = 1 / double(active_.size());
   double sum = 0;
   for (const ViewShare* view : active_)
-    sum += view->counted ? view->fraction : 0;
+    if (has_part(*view)) {
+      counted += 1;
+      sum += view->fraction;
+    }
+  const double equal = 1 / double(active_.size());
   for (ViewShare* view : active_)
-    view->fraction = view->counted && sum > 0 ? view->fraction / sum * counted * equal : equal;
+    view->fraction = has_part(*view) ? view->fraction / sum * counted * equal : equal;
 }
 
 double BudgetDivision::share(ViewShare& view, double budget_ms, const Offers& offers, bool counted,
@@ -188,6 +200,7 @@ double BudgetDivision::share(ViewShare& view, double budget_ms, const Offers& of
     ++round_;
     elapsed_s_ += seconds > 0 ? seconds : 1.0 / 60;
   }
+  changed_ = changed_ || (is_no_work(view.offers) && !is_no_work(offers)); // it needs a part now
   view.offers = offers;
   view.counted = counted;
   if (!repeats) {

@@ -27,7 +27,7 @@ struct Offers {
 };
 
 // Returns the offers of a view's configurations. The first one is the cheapest.
-Offers make_offers(std::span<const Forecast> forecasts);
+Offers make_offers(std::span<const Forecast> forecasts, const DecisionState& state);
 // Returns the offers of a view in which nothing runs.
 Offers offers_of_no_work();
 

@@ -379,6 +379,7 @@ TimeForecast forecast_time(const Configuration& configuration, const CostEstimat
     sum.pessimistic_ms += factor.pessimistic * known_ms;
     sum.optimistic_ms += factor.optimistic * known_ms;
     sum.undisturbed_ms += factor.undisturbed * known_ms;
+    sum.usual_ms += factor.usual * known_ms;
     sum.unit_ms += factor.expected * unit_ms;
     sum.undisturbed_unit_ms += factor.undisturbed * unit_ms;
     // Passes without groups are not observed. Samples may be absent for long, because none fit.

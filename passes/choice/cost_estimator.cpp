@@ -104,6 +104,11 @@ CostId CostEstimator::add(std::string_view work, bool launches) {
   if (like != nullptr && (launches || words_alike(like->work, work) > 0)) {
     line.prior = like->has_prior ? like->prior : solve(like->fit, like->prior, false);
     line.has_prior = line.placeholder = true;
+    // With another setting the pass will take about as much as it took.
+    if (like->has_prior && like->own.observations > 0 && words_alike(like->work, work) > 0) {
+      const double measured = like->own_factor / unmeasured_factor_;
+      line.prior = {measured * line.prior.base_ms, measured * line.prior.group_ms};
+    }
     line.guess = like->guess || words_alike(like->work, work) == 0;
   }
   // first, so that a failure leaves enough elements for all lines
@@ -158,7 +163,7 @@ std::span<const CostFactors> CostEstimator::predict(double now_s) {
     const double age = std::max(0.0, now_s - line.seen_s);
     const bool never = line.own.observations == 0, absent = is_absent(line.seen_s, now_s);
     CostFactors& out = factors_[l];
-    out.expected = out.pessimistic = out.optimistic = out.undisturbed = factor(line);
+    out.expected = out.pessimistic = out.optimistic = out.undisturbed = out.usual = factor(line);
     out.measured = !never && !absent && line.own.since_restart >= known_after;
     if (never) out.pessimistic *= line.pessimism;
     if (!timed || (!never && !absent)) continue;
@@ -167,6 +172,7 @@ std::span<const CostFactors> CostEstimator::predict(double now_s) {
       remembered = std::exp(-forgotten * std::log2(1 + age / forgotten_after_s));
     }
     if (never) out.optimistic *= min_unmeasured / line.uncertainty * remembered;
+    if (line.own.observations > usual_after) out.usual *= line.usual_ratio;
     out.undisturbed = never ? out.optimistic : out.undisturbed * line.usual_ratio * remembered;
   }
   return factors_;

@@ -56,6 +56,8 @@ struct CostFactors {
   double optimistic = 1;  // work that never ran takes its least time
   // in addition, work that was disturbed when it ran last takes its usual time
   double undisturbed = 1;
+  // Work that is well known and was disturbed when it ran last takes its usual time.
+  double usual = 1;
   bool measured = false; // at least known_after times, and recently
 };
 

@@ -27,7 +27,7 @@ Offers offers_of(std::vector<choice::Offer> list) {
 choice::Forecast forecast_of(double ms, double rmse) {
   choice::Forecast out;
   out.time.expected_ms = out.time.pessimistic_ms = out.time.optimistic_ms = ms;
-  out.time.undisturbed_ms = ms;
+  out.time.undisturbed_ms = out.time.usual_ms = ms;
   out.rmse = out.unsampled_rmse = rmse;
   return out;
 }
@@ -36,7 +36,7 @@ TEST(Offers, OnlyConfigurationsWorthTheirTime) {
   const std::vector<choice::Forecast> forecasts = {forecast_of(3, 0.1), forecast_of(1, 0.5),
                                                    forecast_of(2, 0.6), forecast_of(4, 0.1),
                                                    forecast_of(5, 0.05)};
-  const Offers offers = choice::make_offers(forecasts);
+  const Offers offers = choice::make_offers(forecasts, {});
   ASSERT_EQ(offers.count, 3u);
   const double gap = needed_budget_ms(forecasts[1], 0); // of 1 ms
   EXPECT_GT(gap, 1);
@@ -53,7 +53,7 @@ TEST(Offers, IncludePartsOfTheSamples) {
   sampled.demand = 100;
   sampled.time.unit_ms = 0.01;
   sampled.unsampled_rmse = 0.3;
-  const Offers offers = choice::make_offers(std::span(&sampled, 1));
+  const Offers offers = choice::make_offers(std::span(&sampled, 1), {});
   ASSERT_EQ(offers.count, 5u);
   EXPECT_NEAR(offers.all[4].ms / offers.all[0].ms, 2, 1e-12);
   EXPECT_DOUBLE_EQ(offers.all[4].rmse, 0.1);
@@ -123,6 +123,23 @@ TEST(Division, NothingFits_PartsFollowTheCheapest) {
   choice::divide(2, views, table, parts);
   EXPECT_DOUBLE_EQ(parts[0], 0.75);
   EXPECT_DOUBLE_EQ(parts[1], 0.25);
+}
+
+// A disturbance that may be over keeps no configuration from the part that it would need.
+TEST(Offers, ConfigurationThatMayReturn_TakesItsUsualTime) {
+  std::vector<choice::Forecast> forecasts = {forecast_of(1, 0.5), forecast_of(6, 0.1)};
+  forecasts[1].time.usual_ms = 2;
+  choice::DecisionState state;
+  restart(state, 2, 0);
+  state.current = 0;
+  state.configurations[1] = {.backoff_s = 4, .left_s = 10, .left_ratio = 1, .ran = true};
+  const double gap = needed_budget_ms(forecasts[0], 0); // of 1 ms
+  for (const auto& [clock_s, ms] : {std::pair{13.0, 6.0}, {14.1, 2.0}}) {
+    state.clock_s = clock_s;
+    EXPECT_NEAR(choice::make_offers(forecasts, state).all[1].ms, gap * ms, 1e-12) << clock_s;
+  }
+  state.current = 1;
+  EXPECT_NEAR(choice::make_offers(forecasts, state).all[1].ms, gap * 6, 1e-12) << "runs";
 }
 
 struct Rounds : ::testing::Test {
@@ -205,6 +222,27 @@ TEST_F(Rounds, ViewThatReturnsAsAnotherGoes_DoesNotExceedTheBudget) {
   division.remove(c);
 }
 
+// A character enters the view of a security camera, which was recorded all the time.
+TEST_F(Rounds, EmptyViewThatHasWorkAgain_GetsItsPartAtOnce) {
+  for (int i = 0; i < 30; ++i) {
+    of_a = division.share(a, 10, large, true, 0.1);
+    division.share(b, 10, choice::offers_of_no_work(), true, 0.1);
+  }
+  EXPECT_GT(of_a, 9.99);
+  of_a = division.share(a, 10, large, true, 0.1);
+  EXPECT_DOUBLE_EQ(division.share(b, 10, small, true, 0.1), 2.5);
+}
+
+// Another new view keeps the parts from being divided.
+TEST_F(Rounds, NewView_HasAPartFromItsFirstFrame) {
+  for (int i = 0; i < 4; ++i)
+    of_a = division.share(a, 10, large, true, 0.1);
+  ViewShare c;
+  division.add(c);
+  EXPECT_GT(division.share(b, 10, choice::offers_of_no_work(), true, 0.1), 0.1);
+  division.remove(c);
+}
+
 // A mirror that is rendered in each twelfth frame.
 TEST_F(Rounds, RareView_KeepsItsPart) {
   for (int i = 0; i < 120; ++i) {
@@ -264,9 +302,8 @@ public:
         one.pipeline->finish_oldest();
         const std::optional<double> tiles =
             t >= one.scenario.latency ? std::optional(one.scenario.tiles) : std::nullopt;
-        const double divided =
-            division_.share(one.share, budget_ms_, choice::make_offers(one.graph->expect(tiles)),
-                            tiles.has_value(), frame_seconds);
+        const double divided = division_.share(one.share, budget_ms_, one.graph->offers(tiles),
+                                               tiles.has_value(), frame_seconds);
         const double part = equal_parts_ ? budget_ms_ / double(views_.size()) : divided;
         choice::Decision decision = one.graph->decide(part, tiles);
         decision.units = std::min(std::floor(decision.units), requested_units(one.scenario.tiles));

@@ -51,6 +51,7 @@ choice::Forecast ControlledGraph::forecast(uint32_t configuration, double tiles,
     out.time.pessimistic_ms += factor.pessimistic * ms;
     out.time.optimistic_ms += factor.optimistic * ms;
     out.time.undisturbed_ms += factor.undisturbed * ms;
+    out.time.usual_ms += factor.usual * ms;
     out.time.measured = out.time.measured && factor.measured;
   }
   if (one.samples < 0) return out;

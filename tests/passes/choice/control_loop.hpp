@@ -3,6 +3,7 @@
 // integration/abi/chooser.cpp uses them, without Vulkan.
 
 #include "passes/choice/budget_controller.hpp"
+#include "passes/choice/budget_division.hpp"
 #include "passes/choice/cost_estimator.hpp"
 #include "passes/choice/time_margin.hpp"
 #include "tests/passes/choice/simulated_device.hpp"
@@ -26,6 +27,9 @@ public:
   ControlledGraph(const Scenario& scenario, const LoopOptions& options);
   // Returns the forecasts of all configurations for a frame, as decide() uses them.
   std::span<const choice::Forecast> expect(std::optional<double> tiles);
+  choice::Offers offers(std::optional<double> tiles) {
+    return choice::make_offers(expect(tiles), state_);
+  }
   // Decides for a frame. `tiles`: last count; nullopt: nothing was counted yet.
   choice::Decision decide(double budget_ms, std::optional<double> tiles, bool cut = false);
   // Learns from a frame that the device has finished.

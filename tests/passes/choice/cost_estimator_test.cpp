@@ -1,5 +1,6 @@
 #include "passes/choice/calibration.hpp"
 #include "passes/choice/cost_estimator.hpp"
+#include "passes/choice/time_margin.hpp"
 
 #include <gtest/gtest.h>
 
@@ -208,6 +209,33 @@ TEST(CostEstimator, UnknownWork_CostsLikeSimilarWorkAndNever0) {
   EXPECT_NEAR(expected_ms(costs, unknown, 1000, 0), 9.01, 1e-9);
   CostEstimator empty;
   EXPECT_GT(expected_ms(empty, empty.add("never heard of"), 1000, 0), 0);
+}
+
+// A slider of a host's pass that is not in the calibration, and cheap.
+TEST(CostEstimator, OtherSettingOfMeasuredWork_CostsAsMuch) {
+  CostEstimator costs({{"heavy", 300, 9, 0.1}});
+  const CostId first = costs.add("host.grade strength=1"), heavy = costs.add("heavy");
+  double clock_s = 0;
+  observe(costs, {{first, 1, 0.01}, {heavy, 100, 1.2}}, 100, clock_s);
+  ASSERT_NEAR(expected_ms(costs, first, 1, clock_s), 0.01, 2e-3);
+  const CostId other = costs.add("host.grade strength=2");
+  EXPECT_NEAR(expected_ms(costs, other, 1, clock_s), 0.01, 2e-3);
+}
+
+// Noise that widened a margin may be over while another configuration runs.
+TEST(TimeMargins, MarginOfWhatDoesNotRun_ApproachesThatOfWhatRuns) {
+  TimeMargins margins;
+  margins.restart(2, 0.05);
+  for (int i = 0; i < 200; ++i)
+    margins.observe(0, 1, i % 4 == 0 ? 1.4 : 1, 0.95);
+  const double wide = margins.margin(0);
+  EXPECT_GT(wide, 0.15);
+  for (int i = 0; i < 1000; ++i)
+    margins.observe(1, 1, i % 30 == 0 ? 1.1 : 1, 0.95);
+  EXPECT_GT(margins.margin(0), 0.8 * wide) << "not at once";
+  for (int i = 0; i < 30000; ++i)
+    margins.observe(1, 1, i % 30 == 0 ? 1.1 : 1, 0.95);
+  EXPECT_NEAR(margins.margin(0), margins.margin(1), 1e-3);
 }
 
 TEST(CostEstimator, UnknownCommand_CostsLittle) {
