@@ -199,7 +199,7 @@ uint32_t skips_of(const FrameChoice& frame, const CompiledGraph& compiled_graph)
     skips |= DERMIS_SKIP_NOTHING_SEEN;
   if (seen.copied_tiles > 0) skips |= DERMIS_SKIP_SUBPIXEL;
   if (seen.uniform_tiles > 0) skips |= DERMIS_SKIP_UNIFORM_LIGHT;
-  if (frame.history_invalid) skips |= DERMIS_SKIP_HISTORY;
+  if (frame.history_unread) skips |= DERMIS_SKIP_HISTORY;
   return skips;
 }
 

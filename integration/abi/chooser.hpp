@@ -55,6 +55,7 @@ struct FrameChoice {
   bool fading = false;   // weights of selected tiles may still change
   bool left_out = false; // empty bounds: passes that serve scattering did not run
   bool history_invalid = false;
+  bool history_unread = false; // also if only the previous camera is unusable
   bool cut = false;
   uint64_t expected_tiles = 0;        // number of tiles that the forecast assumed
   uint32_t sample_units = UINT32_MAX; // limit on the samples of tiles

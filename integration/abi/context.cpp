@@ -150,24 +150,8 @@ dermis_result read_allocators(const dermis_context_desc& desc, const Log& log, H
   return DERMIS_OK;
 }
 
-dermis_result create(const dermis_context_desc* given, dermis_context* out) {
-  if (out == nullptr) return bad_argument({}, "dermis_context_create: context is NULL");
-  *out = nullptr;
-  if (given == nullptr) return bad_argument({}, "dermis_context_create: desc is NULL");
-  dermis_context_desc desc = DERMIS_CONTEXT_DESC_INIT;
-  if (const SizedRead read = read_sized(given, desc); read != SizedRead::ok)
-    return rejected_size({}, read, "dermis_context_create: desc", stated_size(given),
-                         sizeof(dermis_context_desc));
-  Log log{desc.log, desc.log_user};
-  if (const dermis_result result = check_desc(desc, log); result != DERMIS_OK) return result;
-  if (const dermis_result result = check_requirements(desc, log); result != DERMIS_OK)
-    return result;
-
-  DeviceAllocator device_allocator;
-  if (const dermis_result result = read_allocators(desc, log, log.memory, device_allocator);
-      result != DERMIS_OK)
-    return result;
-  const MemoryScope memory(log.memory);
+dermis_result create(const dermis_context_desc& desc, const Log& log,
+                     const DeviceAllocator& device_allocator, dermis_context* out) {
   auto context = std::make_unique<dermis_context_t>();
   context->log = log;
   context->device_allocator = device_allocator;
@@ -205,6 +189,28 @@ dermis_result create(const dermis_context_desc* given, dermis_context* out) {
       desc.frames_in_flight == 0 ? default_frames_in_flight : desc.frames_in_flight;
   *out = context.release();
   return DERMIS_OK;
+}
+
+dermis_result create(const dermis_context_desc* given, dermis_context* out) {
+  if (out == nullptr) return bad_argument({}, "dermis_context_create: context is NULL");
+  *out = nullptr;
+  if (given == nullptr) return bad_argument({}, "dermis_context_create: desc is NULL");
+  dermis_context_desc desc = DERMIS_CONTEXT_DESC_INIT;
+  if (const SizedRead read = read_sized(given, desc); read != SizedRead::ok)
+    return rejected_size({}, read, "dermis_context_create: desc", stated_size(given),
+                         sizeof(dermis_context_desc));
+  Log log{desc.log, desc.log_user};
+  if (const dermis_result result = check_desc(desc, log); result != DERMIS_OK) return result;
+  if (const dermis_result result = check_requirements(desc, log); result != DERMIS_OK)
+    return result;
+
+  DeviceAllocator device_allocator;
+  if (const dermis_result result = read_allocators(desc, log, log.memory, device_allocator);
+      result != DERMIS_OK)
+    return result;
+  // from here on with the host's allocator and log
+  return guarded(log, "dermis_context_create",
+                 [&] { return create(desc, log, device_allocator, out); });
 }
 
 } // namespace

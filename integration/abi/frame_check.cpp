@@ -408,6 +408,8 @@ dermis_result fill_frame(const dermis_view_t& view, const CompiledGraph& compile
   checked.input.before = before;
   checked.input.view_user = view.user;
   checked.history_invalid = history_invalid;
+  checked.history_unread = executor.history_count() > 0 &&
+                           (checked.constants.flags & subsurface::no_previous_frame) != 0;
   if (checked.empty_bounds()) checked.input.left_out = plan.left_out;
   return DERMIS_OK;
 }

@@ -12,6 +12,7 @@ struct CheckedFrame {
   subsurface::FrameConstants constants{};
   std::array<int32_t, 4> bounds{}; // see FrameConstants::bounds
   bool history_invalid = false;    // some history is invalid
+  bool history_unread = false;     // no history is read: one is invalid, or the previous camera is
 
   bool empty_bounds() const { return bounds[2] == 0 || bounds[3] == 0; }
 };

@@ -146,7 +146,8 @@ dermis_result reload(dermis_graph_t& graph, const dermis_graph_desc* given, derm
   if (const dermis_result result = read_graph_desc(log, function, desc, input, diagnostics);
       result != DERMIS_OK)
     return result;
-  const bool resized = input.width != graph.input.width || input.height != graph.input.height;
+  const bool resized = input.width != graph.input.width || input.height != graph.input.height ||
+                       input.pixel_grid != graph.input.pixel_grid;
   return replace_compiled_graphs(graph, std::move(input),
                                  resized ? vulkan::HistoryReason::resized
                                          : vulkan::HistoryReason::reloaded,

@@ -16,6 +16,11 @@ VkResult create(const vulkan::Device& device, const ImageViewKey& key, VkImageVi
   return device.vk.vkCreateImageView(device.device, &info, device.allocator, &view);
 }
 
+// Returns the last recorded frame that used the view; 0: none.
+uint64_t last_use(const ImageViews::Entry& entry, uint64_t recorded) {
+  return entry.last_frame > recorded ? entry.frame_before : entry.last_frame;
+}
+
 } // namespace
 
 ImageViews::~ImageViews() {
@@ -36,21 +41,22 @@ VkResult find_image_view(ImageViews& views, const ImageViewKey& key, uint64_t fr
     return entry.view != VK_NULL_HANDLE && entry.key == key;
   });
   if (known != slot.end()) {
+    known->frame_before = last_use(*known, recorded);
     known->last_frame = frame_index;
     view = {known->view, known->id};
     return VK_SUCCESS;
   }
   // Selects the least recently used entry; unused entries come first.
   const auto oldest = std::min_element(slot.begin(), slot.end(),
-                                       [](const ImageViews::Entry& a, const ImageViews::Entry& b) {
-                                         return a.last_frame < b.last_frame;
+                                       [&](const ImageViews::Entry& a, const ImageViews::Entry& b) {
+                                         return last_use(a, recorded) < last_use(b, recorded);
                                        });
-  if (oldest->view != VK_NULL_HANDLE && std::min(oldest->last_frame, recorded) > completed)
+  if (oldest->view != VK_NULL_HANDLE && last_use(*oldest, recorded) > completed)
     return VK_ERROR_TOO_MANY_OBJECTS;
   VkImageView made = VK_NULL_HANDLE;
   if (const VkResult result = create(views.device, key, made); result != VK_SUCCESS) return result;
   views.device.vk.vkDestroyImageView(views.device.device, oldest->view, views.device.allocator);
-  *oldest = {key, made, frame_index, ++views.last_id};
+  *oldest = {key, made, frame_index, 0, ++views.last_id};
   view = {made, oldest->id};
   return VK_SUCCESS;
 }

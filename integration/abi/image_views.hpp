@@ -30,8 +30,9 @@ struct ImageViews {
   struct Entry {
     ImageViewKey key;
     VkImageView view = VK_NULL_HANDLE;
-    uint64_t last_frame = 0; // last frame that used the view
-    uint64_t id = 0;         // of the view; unlike the handle, never reused
+    uint64_t last_frame = 0;   // last frame that used the view, if it was recorded
+    uint64_t frame_before = 0; // last frame that used the view before that
+    uint64_t id = 0;           // of the view; unlike the handle, never reused
   };
   const vulkan::Device& device;
   std::vector<Entry> entries; // entries of one slot are adjacent

@@ -121,6 +121,7 @@ dermis_result record_chosen(dermis_view_t& view, CompiledGraph& compiled_graph, 
     return result;
   chosen.left_out = checked.empty_bounds();
   chosen.history_invalid = checked.history_invalid;
+  chosen.history_unread = checked.history_unread;
   if (chosen.history_invalid)
     restart_histories(chosen, compiled_graph.configurations[chosen.configuration]);
   if (chosen.left_out) chosen.decision.expected_ms = chosen.decision.bound_ms = 0;

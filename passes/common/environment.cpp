@@ -103,7 +103,8 @@ bool fill_frame_constants(const FrameInput& input, FrameConstants& out) {
   out.view_frame = out.frame_index; // for callers that count no frames of a view
   out.flags = (rays->perspective ? 1u : 0u) |
               (input.depth_kind == DepthKind::view_units ? 2u : 0u) |
-              (input.history_invalid ? 4u : 0u) | (input.handedness == Handedness::left ? 16u : 0u);
+              (input.history_invalid ? no_previous_frame : 0u) |
+              (input.handedness == Handedness::left ? 16u : 0u);
   out.ray_scale[0] = static_cast<float>(rays->scale_x * ray_unit);
   out.ray_scale[1] = static_cast<float>(rays->scale_y * ray_unit);
   out.ray_offset[0] = static_cast<float>(rays->offset_x * ray_unit);
@@ -121,7 +122,7 @@ bool fill_frame_constants(const FrameInput& input, FrameConstants& out) {
   out.sample_units = input.sample_units;
   out.jitter[0] = static_cast<float>(input.jitter_px[0]);
   out.jitter[1] = static_cast<float>(input.jitter_px[1]);
-  if (!fill_previous(input, out)) out.flags |= 4u;
+  if (!fill_previous(input, out)) out.flags |= no_previous_frame;
   return true;
 }
 

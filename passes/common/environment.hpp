@@ -77,6 +77,8 @@ double mean_d_px(const FrameCounters& counters);
 
 enum class DepthKind : uint32_t { device = 0, view_units = 1 };
 
+// Bit of FrameConstants::flags: kernels read no history.
+inline constexpr uint32_t no_previous_frame = 4;
 // Bit of FrameConstants::flags: the frame's error is probed, whatever the interval between probed
 // frames.
 inline constexpr uint32_t always_probed = 32;

@@ -64,7 +64,7 @@ bool compile_missing(RuntimeShaders& shaders, const Graph& graph,
   if (shaders.kernels.empty() && std::ranges::all_of(spirv, is_empty)) {
     diagnostics.add(
         DiagnosticId::shader_error, {},
-        fmt::format("the host has none of the graph's kernels: {}", list_files(missing)));
+        fmt::format("the host delivers none of the graph's kernels: {}", list_files(missing)));
     return false;
   }
   for (size_t i = 0; i < missing.size(); ++i)

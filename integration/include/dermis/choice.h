@@ -55,7 +55,7 @@ DERMIS_API dermis_result DERMIS_CALL dermis_graph_set_budget(
 #define DERMIS_SKIP_NOTHING_SEEN 0x4u /* no pixel with subsurface: 0 groups are dispatched */
 #define DERMIS_SKIP_SUBPIXEL 0x8u     /* tiles that scatter less than a pixel were copied */
 #define DERMIS_SKIP_UNIFORM_LIGHT 0x10u  /* tiles in uniform light were copied */
-#define DERMIS_SKIP_HISTORY 0x20u     /* history was invalid, so it was not read */
+#define DERMIS_SKIP_HISTORY 0x20u     /* history was not read: it, or the previous camera, was invalid */
 
 /* The choice for one frame and its result, for a host to show or log. Strings are valid until the
  * next reload, resize, set_setting, set_profile, set_budget or destroy. */
@@ -74,8 +74,9 @@ typedef struct dermis_frame_report {
 } dermis_frame_report;
 #define DERMIS_FRAME_REPORT_INIT {sizeof(dermis_frame_report), 0, NULL, NULL, NULL, 0, 0, 0, 0, 0}
 /* Reads the counters of frames up to `completed_frame_index`, as in dermis_frame, and describes the
- * newest frame whose counters were read, by this or an earlier call. Costs: none. Thread: one per
- * view. Errors: ARGUMENT, NOT_READY, DEVICE_LOST. */
+ * newest frame whose counters were read, by this or an earlier call. NOT_READY after a call that
+ * compiles the graph again, until a frame recorded after it has completed. Costs: none. Thread: one
+ * per view. Errors: ARGUMENT, NOT_READY, DEVICE_LOST. */
 DERMIS_API dermis_result DERMIS_CALL dermis_view_report(
     dermis_view view, uint64_t completed_frame_index, dermis_frame_report* report);
 

@@ -889,7 +889,8 @@ DERMIS_API dermis_result DERMIS_CALL dermis_view_commands(
  * set_setting, set_profile). The command buffer must not run. Costs:
  * none. Thread: one per view. Errors: ARGUMENT. */
 DERMIS_API dermis_result DERMIS_CALL dermis_view_discard(dermis_view view, uint64_t frame_index);
-/* Returns the device times of the newest completed frame, in plan order. Needs
+/* Returns the device times of the newest completed frame, in plan order. NOT_READY after a call that
+ * compiles the graph again, until a frame recorded after it has completed. Needs
  * DERMIS_CONTEXT_TIMINGS and a queue with timestamps. `completed_frame_index` as in dermis_frame.
  * Two-call array. Costs: none. Thread: one per view. Errors: ARGUMENT, INCOMPLETE, NOT_READY,
  * MEMORY, DEVICE_LOST. */
