@@ -51,9 +51,10 @@ void find_removals(Composer& composer) {
     return true;
   };
   std::unordered_set<std::string> written;
-  for (const ItemId pass : tree[tree.find({0}, "passes")].children)
-    for (std::string& resource : written_by(tree, pass))
-      written.insert(std::move(resource));
+  if (const ItemId passes = tree.find({0}, "passes"); passes.valid())
+    for (const ItemId pass : tree[passes].children)
+      for (std::string& resource : written_by(tree, pass))
+        written.insert(std::move(resource));
   for (Change& change : composer.changes) {
     change.gone = (change.what == Change::What::remove || change.what == Change::What::replace) &&
                   !exists(change);
@@ -80,10 +81,11 @@ void relate_to_removals(std::span<const Change> changes, size_t first, Diagnosti
     Diagnostic& one = diagnostics.list[i];
     if (diagnostic_info(one.id).severity != Severity::error) continue;
     const auto names = [&](std::string_view name) {
-      return one.text.find(fmt::format("'{}'", name)) != std::string::npos;
+      return one.text.find(fmt::format("'{}'", name)) != std::string::npos ||
+             one.text.find(fmt::format("\"{}\"", name)) != std::string::npos;
     };
     for (const Change& change : changes) {
-      if (change.gone && names(split_path(change.at).back()))
+      if (change.gone && std::any_of(change.removed.begin(), change.removed.end(), names))
         one.related.emplace_back(change.where, fmt::format("'{}' is removed here", change.at));
       const auto found = std::find_if(change.unwritten.begin(), change.unwritten.end(), names);
       if (found != change.unwritten.end())

@@ -47,8 +47,20 @@ struct Edit {
     }
   }
 
-  void log(Change::What did, std::string at, std::vector<std::string> unwritten = {}) const {
-    composer.changes.push_back({did, std::move(at), target_place(), false, std::move(unwritten)});
+  void log(Change::What did, std::string at, std::vector<std::string> unwritten = {},
+           std::vector<std::string> removed = {}) const {
+    composer.changes.push_back(
+        {did, std::move(at), target_place(), false, std::move(removed), std::move(unwritten)});
+  }
+
+  // Returns Change::removed for an item that is removed.
+  std::vector<std::string> names_of(const std::vector<std::string>& steps, ItemId item) const {
+    std::vector<std::string> names{steps.back()};
+    if (steps.size() > 2) names.push_back(steps[1]);
+    if (steps.size() == 1 && tree().kind(item) == NodeKind::object)
+      for (const ItemId member : tree()[item].children)
+        names.push_back(tree()[member].key);
+    return names;
   }
 
   // Returns the graph's list of passes and the position of the named pass; -1 after an error.
@@ -71,7 +83,8 @@ struct Edit {
     const uint64_t errors_before = composer.diagnostics.errors();
     if (verb == Verb::replace)
       log(Change::What::replace, fmt::format("/passes/{}", name),
-          written_by(tree(), tree()[passes].children[static_cast<size_t>(at)]));
+          written_by(tree(), tree()[passes].children[static_cast<size_t>(at)]),
+          {std::string(name)});
     for (const NodeId pass : children(tree().documents[overlay], list))
       expand_pass(composer, overlay, pass, Change::What::insert, fresh);
     if (verb == Verb::replace && fresh.empty()) {
@@ -146,8 +159,9 @@ struct Edit {
     const int at = find_step(tree(), parent, steps.back());
     if (at < 0) return missing(parent, path, steps.back());
     std::vector<ItemId>& all = tree()[parent].children;
-    log(Change::What::remove, std::string(path),
-        written_at(tree(), steps, all[static_cast<size_t>(at)]));
+    const ItemId item = all[static_cast<size_t>(at)];
+    log(Change::What::remove, std::string(path), written_at(tree(), steps, item),
+        names_of(steps, item));
     all.erase(all.begin() + at);
   }
 

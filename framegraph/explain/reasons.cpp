@@ -44,7 +44,7 @@ struct ReasonFormatter {
     const SettingDeclaration& declared = graph.settings[reason.index];
     MissingRequirements unmet{reason.b, {}};
     if (reason.b == 0) unmet.imports.push_back(ResourceId{reason.c});
-    return fmt::format("{} instead of '{}', which is not available: {}",
+    return fmt::format("{} = {} instead of '{}', which is not available: {}", declared.name,
                        setting_text(declared, plan.setting_values[reason.index]),
                        declared.options[reason.a], missing_text(graph, unmet));
   }

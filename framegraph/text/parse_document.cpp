@@ -322,6 +322,11 @@ std::optional<Document> parse_document(std::string name, std::string text,
     return std::nullopt;
   }
   const std::string_view all = diagnostics.files.back().text;
+  if (all.starts_with("DERMPLAN")) {
+    diagnostics.add(DiagnosticId::other_kind_of_file, {document.file, 1, 1, ""},
+                    "this is a saved plan; `dermis plan` reads those");
+    return std::nullopt;
+  }
   if (const size_t bad = find_invalid_utf8(all); bad != std::string_view::npos) {
     const TextPosition position = locate(all, bad);
     diagnostics.add(DiagnosticId::invalid_utf8, {document.file, position.line, position.column, ""},

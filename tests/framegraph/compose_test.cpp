@@ -212,6 +212,12 @@ TEST(Overlay, ErrorsNameTheEditThatRemovedWhatIsMissing) {
                        "overlay0.json: '/resources/half' is removed here"));
   EXPECT_TRUE(contains(R"({ "remove": "/passes/blur/write/target" })",
                        "overlay0.json: '/passes/blur/write/target' is removed here"));
+  for (const char* section : {"/imports", "/resources", "/passes", "/exports"}) {
+    const std::string text = fmt::format("overlay0.json: '{}' is removed here", section);
+    EXPECT_TRUE(contains(fmt::format(R"({{ "remove": "{}" }})", section), text.c_str())) << section;
+  }
+  EXPECT_TRUE(contains(R"({ "remove": "/resources/list/buffer" })",
+                       "overlay0.json: '/resources/list/buffer' is removed here"));
   const std::string remove_find =
       R"({ "remove": "/passes/copy/after" }, { "remove": "/passes/find" })";
   EXPECT_EQ(related(edited(remove_find)),

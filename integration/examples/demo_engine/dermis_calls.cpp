@@ -34,8 +34,9 @@ Error dermis_error(const char* call, dermis_result result, dermis_report report)
 dermis_source source_of(const std::string& name, const std::string& text) {
   dermis_source source = DERMIS_SOURCE_INIT;
   source.name = name.c_str();
-  source.text = text.data();
-  source.length = text.size();
+  // An empty file as a space, so that the library says what is missing, and where.
+  source.text = text.empty() ? " " : text.data();
+  source.length = text.empty() ? 1 : text.size();
   return source;
 }
 

@@ -288,7 +288,7 @@ ExitCode fail_graph(const Session& session, const std::string& path,
   const uint64_t errors = diagnostics.errors();
   return fail(
       session, ExitCode::problems,
-      fmt::format("{}: {} error{}; the graph cannot be used", path, errors, errors == 1 ? "" : "s"),
+      fmt::format("{}: {} error{}; it cannot be used", path, errors, errors == 1 ? "" : "s"),
       &diagnostics);
 }
 

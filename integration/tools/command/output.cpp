@@ -52,6 +52,7 @@ OutputFolder::~OutputFolder() {
 }
 
 std::string OutputFolder::open(const std::string& path) {
+  if (path == "-") return "'-' is standard output; pictures need a folder (./- for this name)";
   path_ = path;
   std::error_code problem;
   files::path outermost = files::absolute(path, problem).lexically_normal();

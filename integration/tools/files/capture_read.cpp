@@ -77,6 +77,13 @@ bool is_projection(const subsurface::Matrix4& clip_from_view) {
   return subsurface::pixel_rays(clip_from_view, 1, 1, 1, {0, 0}).has_value();
 }
 
+// Returns whether the library accepts pixels of this shape.
+bool has_usable_pixels(const subsurface::PixelRays& rays) {
+  constexpr double most = 1e6; // dermis_graph_desc.pixel_aspect
+  const double aspect = std::abs(rays.scale_x / rays.scale_y);
+  return aspect >= 1 / most && aspect <= most;
+}
+
 void read_projection(const Document& document, ObjectReader& reader, CapturedFrame& captured,
                      subsurface::Handedness& handedness, Diagnostics& diagnostics) {
   FrameDescription& frame = captured.description;
@@ -126,8 +133,12 @@ void read_projection(const Document& document, ObjectReader& reader, CapturedFra
     return reject("previous_clip_from_view",
                   "'previous_clip_from_view' is not an axis-aligned projection");
   if (fault == subsurface::CameraFault::none && complete_projection(frame, captured.rays) &&
-      captured.rays.perspective == frame.perspective)
+      captured.rays.perspective == frame.perspective) {
+    if (!has_usable_pixels(captured.rays))
+      reject("clip_from_view", "the pixels of 'clip_from_view' are more than 1000000 times as long "
+                               "as wide, or as wide as long");
     return;
+  }
   if (fault == subsurface::CameraFault::none || fault == subsurface::CameraFault::no_projection)
     return reject("clip_from_view",
                   fmt::format("'clip_from_view' is not an axis-aligned {} projection "

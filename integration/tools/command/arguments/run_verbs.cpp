@@ -147,7 +147,8 @@ void add_picture_verbs(CLI::App& app, Invocation& invocation) {
         add_path(verb, "--shaders", options.shaders,
                  "Folder of the shaders to render with [shaders]", "DIR")
             ->check(folder_exists());
-        verb.add_option("--rounds", options.rounds, "Number of renderings; 0: until Ctrl-C [0]");
+        verb.add_option("--rounds", options.rounds, "Number of renderings; 0: until Ctrl-C [0]")
+            ->check(CLI::Range(0u, 1000000u));
         add_settings(verb, options.settings);
         add_graph_inputs(verb, options.inputs);
       },

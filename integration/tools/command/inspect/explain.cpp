@@ -55,7 +55,8 @@ std::string describe_code(const DiagnosticInfo& info, bool json) {
 }
 
 ExitCode deliver(const Session& session, const std::string& path, std::string_view text) {
-  const std::string problem = deliver_text(path, text);
+  const bool for_people = path == "-" && !session.json;
+  const std::string problem = deliver_text(path, for_people ? for_terminal(text) : text);
   return problem.empty() ? ExitCode::ok : fail(session, ExitCode::environment, problem);
 }
 

@@ -16,7 +16,8 @@ ExitCode write_view(const Session& session, const GraphOptions& options, const L
   const ViewAnswer view =
       make_view(loaded, {options.size, session.command, options.frame, choices}, diagnostics);
   if (!view.problem.empty()) return fail(session, ExitCode::environment, view.problem);
-  if (view.page.empty()) return fail_graph(session, options.graph, diagnostics);
+  if (view.page.empty())
+    return fail_graph(session, view.bad_file.empty() ? options.graph : view.bad_file, diagnostics);
   print_beside_document(session, diagnostics);
   const std::string problem = deliver_page(options.html, view.page);
   if (!problem.empty()) return fail(session, ExitCode::environment, problem);

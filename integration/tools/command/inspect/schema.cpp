@@ -111,7 +111,7 @@ ExitCode docs(const Session& session, const DocsOptions& options) {
   const auto graphs = graphs_in(shipped(options.graphs), diagnostics);
   if (!graphs) return fail_graph(session, options.graphs, diagnostics);
   if (graphs->empty())
-    return fail(session, ExitCode::environment, fmt::format("{} holds no graphs", options.graphs));
+    return fail(session, ExitCode::problems, fmt::format("{} holds no graphs", options.graphs));
   const std::pair<std::string, std::string> pages[] = {
       {"format_reference.md", format_page(all_schemas())},
       {"pass_types.md", pass_types_page(subsurface::make_pass_types())},

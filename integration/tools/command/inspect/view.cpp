@@ -245,7 +245,7 @@ ViewAnswer make_view(const LoadedGraph& loaded, const ViewOptions& options,
   const size_t files = diagnostics.files.size(); // the report is not a file of the graph
   if (!options.frame.empty()) {
     report = read_document(options.frame, diagnostics);
-    if (!report || !check_report(*report, diagnostics)) return {};
+    if (!report || !check_report(*report, diagnostics)) return {"", "", options.frame};
   }
   const std::vector<SourceFile> all = diagnostics.files;
   diagnostics.files.resize(files);

@@ -189,14 +189,14 @@ demo::Result<> take_frame(RenderRun& run, const demo::FrameOutputs& frame) {
   return demo::success();
 }
 
-// Only 'post' scatters the light that the reference scatters: irradiance before albedo.
-bool textured_before(const Graph& graph, const CompileChoices& choices) {
+// Returns the chosen option of the setting 'texturing'; "post" if the graph has none.
+std::string_view texturing_of(const Graph& graph, const CompileChoices& choices) {
   for (size_t i = 0; i < graph.settings.size(); ++i) {
     const SettingDeclaration& setting = graph.settings[i];
     if (setting.name == "texturing" && setting.type == SettingType::enumeration)
-      return setting.options[static_cast<size_t>(choices.settings[i].integer)] != "post";
+      return setting.options[static_cast<size_t>(choices.settings[i].integer)];
   }
-  return false;
+  return "post";
 }
 
 bool exports_samples(const Graph& graph) {
@@ -335,7 +335,11 @@ ExitCode render(const Session& session, const RenderOptions& options) {
     engine.include = for_engine(open_included(options.graph, options.inputs.roots));
     if (!options.shaders.empty()) engine.shaders = for_engine(open_below({options.shaders}));
     engine.settings = settings_as_json(loaded->graph, options.settings);
-    textured = textured_before(loaded->graph, choices);
+    // Only 'post' scatters the light that the reference scatters: irradiance before albedo.
+    textured = texturing_of(loaded->graph, choices) != "post";
+    if (texturing_of(loaded->graph, choices) == "demodulate")
+      spdlog::warn("texturing=demodulate expects lighting that contains albedo; that of `render` "
+                   "does not, so that surfaces with subsurface appear without their albedo");
     transmission = transmits(loaded->graph, choices);
   } else if (!options.settings.empty() || !options.inputs.overlays.empty() ||
              !options.inputs.pass_types.empty() || !options.shaders.empty() ||

@@ -75,7 +75,8 @@ std::string CountedHost::create(const dermis_graph_desc& desc) {
   const dermis_result result = dermis_graph_create(context_, &desc, &graph_, &report);
   std::string text = dermis_report_text(report);
   dermis_report_destroy(report);
-  return result == DERMIS_OK ? "" : text;
+  if (result == DERMIS_OK) return "";
+  return text.empty() ? dermis_last_error() : text; // errors of arguments are in no report
 }
 
 std::vector<dermis_slot> CountedHost::slots() const {
