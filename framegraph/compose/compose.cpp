@@ -38,7 +38,7 @@ bool has_includes(const Document& graph) {
                      [&](NodeId entry) { return is_include(graph, entry); });
 }
 
-// Completes what only the composed graph tells about changes: what they removed for good.
+// Completes `gone` and `unwritten` of all changes, which depend on the composed graph.
 void find_removals(Composer& composer) {
   const EditTree& tree = composer.tree;
   const auto exists = [&](const Change& change) {
@@ -81,8 +81,7 @@ void relate_to_removals(std::span<const Change> changes, size_t first, Diagnosti
     Diagnostic& one = diagnostics.list[i];
     if (diagnostic_info(one.id).severity != Severity::error) continue;
     const auto names = [&](std::string_view name) {
-      return one.text.find(fmt::format("'{}'", name)) != std::string::npos ||
-             one.text.find(fmt::format("\"{}\"", name)) != std::string::npos;
+      return one.text.find(fmt::format("'{}'", name)) != std::string::npos;
     };
     for (const Change& change : changes) {
       if (change.gone && std::any_of(change.removed.begin(), change.removed.end(), names))

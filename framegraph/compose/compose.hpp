@@ -32,8 +32,8 @@ struct Change {
   std::string at; // path in the graph as an overlay writes it: "/passes/scatter/set/samples"
   SourceLocation where;
   bool gone = false; // no later change restored what `at` names
-  // Names that errors may contain if `gone`: the last step of `at`, and the member of a section
-  // that it belongs to, or all members of a section.
+  // Names that errors contain if `gone`: the pass, setting or resource that `at` belongs to, or a
+  // section and all its members.
   std::vector<std::string> removed = {};
   // Resources that a pass wrote before this change, and that no pass of the result writes.
   std::vector<std::string> unwritten = {};

@@ -55,8 +55,7 @@ struct Edit {
 
   // Returns Change::removed for an item that is removed.
   std::vector<std::string> names_of(const std::vector<std::string>& steps, ItemId item) const {
-    std::vector<std::string> names{steps.back()};
-    if (steps.size() > 2) names.push_back(steps[1]);
+    std::vector<std::string> names{steps[steps.size() > 1 ? 1 : 0]};
     if (steps.size() == 1 && tree().kind(item) == NodeKind::object)
       for (const ItemId member : tree()[item].children)
         names.push_back(tree()[member].key);
@@ -91,7 +90,7 @@ struct Edit {
       if (composer.diagnostics.errors() == errors_before)
         composer.error(
             DiagnosticId::edit_target, target_place(),
-            fmt::format("{} replaces the pass '{}' by no pass: the files that it includes "
+            fmt::format("{} would replace the pass '{}' with no pass: the files that it includes "
                         "have no passes, or were included before; use 'remove' to remove "
                         "the pass",
                         what, shown(name)));

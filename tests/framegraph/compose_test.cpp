@@ -345,8 +345,9 @@ TEST(Include, ReplacementWithoutPasses_IsRejected) {
       including_graph(),
       {overlay(R"({ "replace": "copy", "passes": [{ "include": "parts/tiles.json" }] })")},
       {{"parts/tiles.json", tiles_fragment}});
-  expect_one(composed, Id::edit_target, "overlay0.json:2:14",
-             {"replaces the pass 'copy' by no pass", "were included before", "use 'remove'"});
+  expect_one(
+      composed, Id::edit_target, "overlay0.json:2:14",
+      {"would replace the pass 'copy' with no pass", "were included before", "use 'remove'"});
 }
 
 TEST(Include, OverlaysSeeIncludesAndCanInclude) {

@@ -9,6 +9,21 @@ namespace {
 using namespace dermis::choice;
 using namespace dermis::deciding;
 
+const std::vector<Forecast> three_untried{known(1, 9e-3), unknown(6, 2e-3), unknown(6, 3e-3),
+                                          unknown(6, 4e-3)};
+
+struct FirstTrials : Decide {
+  // Each of three_untried, which take longer than the budget, runs within 1.5 s.
+  void expect_all_tried() {
+    std::vector<Forecast> all = three_untried;
+    for (int i = 0; i < 90; ++i)
+      if (const uint32_t now = decide(all, 4).configuration; now != 0)
+        all[now] = known(9, all[now].rmse);
+    for (uint32_t i = 1; i < 4; ++i)
+      EXPECT_TRUE(state.configurations[i].ran) << i;
+  }
+};
+
 TEST_F(Decide, NothingFits_TriesWhatMightFit) {
   EXPECT_EQ(decide({known(3, 5e-3), unknown(4, 9e-3)}, 2).configuration, 0u);
   Decision decision;
@@ -44,32 +59,22 @@ TEST_F(Decide, LongFirstFrame_DoesNotEndTheTrials) {
   EXPECT_EQ(state.current, 1u);
 }
 
-TEST_F(Decide, BudgetSetLater_StillBeginsWithTrials) {
+TEST_F(FirstTrials, BudgetSetLater_StillBeginsWithTrials) {
   restart(state, 4, 3);
   for (int i = 0; i < 600; ++i)
     skip_frame(state, frame_seconds);
-  std::vector<Forecast> all{known(1, 9e-3), unknown(6, 2e-3), unknown(6, 3e-3), unknown(6, 4e-3)};
-  for (int i = 0; i < 90; ++i)
-    if (const uint32_t now = decide(all, 4).configuration; now != 0)
-      all[now] = known(9, all[now].rmse); // it takes longer than the budget
-  for (uint32_t i = 1; i < 4; ++i)
-    EXPECT_TRUE(state.configurations[i].ran) << i;
+  expect_all_tried();
 }
 
-TEST_F(Decide, FramesWithoutWork_DoNotEndTheTrials) {
+TEST_F(FirstTrials, FramesWithoutWork_DoNotEndTheTrials) {
   for (const bool empty : {false, true}) {
     state = {};
     restart(state, 4, 3);
-    std::vector<Forecast> all{known(1, 9e-3), unknown(6, 2e-3), unknown(6, 3e-3), unknown(6, 4e-3)};
     (empty ? frame.empty : frame.idle) = true;
     for (int i = 0; i < 600; ++i)
-      decide(all, 1.5);
+      decide(three_untried, 1.5);
     frame.empty = frame.idle = false;
-    for (int i = 0; i < 90; ++i)
-      if (const uint32_t now = decide(all, 4).configuration; now != 0)
-        all[now] = known(9, all[now].rmse); // it takes longer than the budget
-    for (uint32_t i = 1; i < 4; ++i)
-      EXPECT_TRUE(state.configurations[i].ran) << i;
+    expect_all_tried();
   }
 }
 
