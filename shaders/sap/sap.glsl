@@ -12,6 +12,8 @@
 const float sap_sigma = 0.8660254; // standard deviation of [1 3 3 1] in its own spacings: sqrt(3)/2
 // Widths of the weights in sigmas, by measurement (tests/passes/sap/cpu/sap_levels.hpp).
 const float sap_depth_width = 2.0;      // distance from the tangent plane: stops at depth steps
+// the same on the way up, if texels of the finer level are farther apart than that, in pixels
+const float sap_depth_width_up = 2.1, sap_first_wide_spacing = 2.5;
 // depth along the tangent plane: narrows the kernel on slopes
 const float sap_tilt_width_down = 1.0;
 const float sap_tilt_width_tent = 1.25;

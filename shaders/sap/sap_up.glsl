@@ -113,7 +113,8 @@ sap_sum sap_tent(sap_place place, int level, sap_texel own, int layers) {
 // lost.
 sap_sum sap_from_coarser(sap_place place, int level, sap_texel own, vec3 fallback, int layers,
                          out float confidence) {
-  const float width = sap_depth_width;
+  float width =
+      sap_spacing(level) < sap_first_wide_spacing ? sap_depth_width : sap_depth_width_up;
   float off_unit = sap_rate(width) / (sap_sigma * sap_spacing(level) * sap_footprint(own.depth));
   vec2 odd = vec2(place.odd), nearer = 0.25 + 0.5 * odd;
   // An axis that is not halved has one texel, at the same position.

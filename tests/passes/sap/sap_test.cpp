@@ -302,6 +302,16 @@ TEST(Sap, FoldsMatchTheReference) {
   }
 }
 
+TEST(Sap, HairMatchesTheReference) {
+  // Hair one pixel wide, 20 pixels in front of skin.
+  // Regression bound: measured 2.75e-3; 3.25e-3 if the way up is as narrow as the way down.
+  Scene scene(128, 96, {4, 4, 4});
+  scene.paint(texture);
+  for (uint32_t i = 0; i < scene.depth.size(); ++i)
+    scene.depth[i] = i % 16 == 3 ? 0.48f : 0.5f;
+  EXPECT_LT(rmse_of(scene), 3.0e-3);
+}
+
 TEST(Sap, TeethOfASawMatchTheReference) {
   // Teeth of 45 degrees: all pixels have the same slope, but the surface does not rise.
   Scene scene(128, 96, {4, 4, 4});

@@ -88,6 +88,8 @@ template <class Real> struct SapClimb {
     const bool halves_x = pyramid.grid.halves(0, fine + 1),
                halves_y = pyramid.grid.halves(1, fine + 1);
     const Real per_metre = 1 / (Real(sap_sigma) * spacing * pyramid.footprint(own.depth));
+    const double width =
+        spacing < Real(sap_first_wide_spacing) ? sap_depth_width : sap_depth_width_up;
     const PerChannel& d = input.d_m[own.id];
     const Real relevant_d = Real(*std::max_element(d.begin(), d.end())) * own.reach;
     Scattered<Real> result;
@@ -110,7 +112,7 @@ template <class Real> struct SapClimb {
         }
         const SapTexel<Real>* tap = coarse.find(layer, qx, qy, own.id);
         const Real step = tap->depth - own.depth;
-        const Real kept = sap_falloff(off(*tap) * per_metre, sap_depth_width);
+        const Real kept = sap_falloff(off(*tap) * per_metre, width);
         const Real further = std::max(std::abs(step - pyramid.rise(own, ox, oy)),
                                       std::abs(step - pyramid.rise(*tap, ox, oy)));
         const Scattered<Real>& theirs = scattered[layer][fine + 1][coarse.index(qx, qy)];

@@ -16,6 +16,10 @@ inline constexpr double sap_sigma = 0.8660254;
 // (docs/techniques.md).
 // Distance from the tangent plane: stops at depth steps.
 inline constexpr double sap_depth_width = 2;
+// The same on the way up, if texels of the finer level are farther apart than that, in pixels. Much
+// of the light of coarse levels comes from still coarser ones, whose kernels are wider. Wider from
+// level 0 on, low steps and narrow grooves get worse.
+inline constexpr double sap_depth_width_up = 2.1, sap_first_wide_spacing = 2.5;
 // Depth along the tangent plane: narrows the kernel on slopes. 1 makes the downward pass a Gaussian
 // of distance in space; the upward pass narrows nothing.
 inline constexpr double sap_tilt_width_down = 1;
