@@ -181,12 +181,22 @@ struct BindErrorReporter {
   }
 
   void relate_producers(Diagnostic& diagnostic, ResourceId resource, const auto& counts) {
+    constexpr size_t most = 16; // places; a graph may have thousands of passes
+    size_t found = 0;
+    SourceLocation next; // the first place that is left out
     for (uint32_t i = 0; i < graph.passes.size(); ++i)
-      for (const PortBinding& binding : graph.writes(graph.passes[i]))
-        if (binding.resource == resource && counts(binding))
+      for (const PortBinding& binding : graph.writes(graph.passes[i])) {
+        if (binding.resource != resource || !counts(binding)) continue;
+        if (++found <= most)
           diagnostic.related.emplace_back(
               graph.place_of(binding), fmt::format("'{}' writes it and is {}",
                                                    name_of(graph, PassId{i}), state_of(PassId{i})));
+        else if (found == most + 1)
+          next = graph.place_of(binding);
+      }
+    if (found > most)
+      diagnostic.related.emplace_back(
+          next, fmt::format("this pass and {} more write it, too", found - most - 1));
   }
 
   // Reports a bound export that no pass writes.

@@ -80,20 +80,26 @@ struct Edit {
     if (at < 0) return;
     std::vector<ItemId> fresh;
     const uint64_t errors_before = composer.diagnostics.errors();
+    const size_t included_before = composer.included.size();
     if (verb == Verb::replace)
       log(Change::What::replace, fmt::format("/passes/{}", name),
           written_by(tree(), tree()[passes].children[static_cast<size_t>(at)]),
           {std::string(name)});
     for (const NodeId pass : children(tree().documents[overlay], list))
       expand_pass(composer, overlay, pass, Change::What::insert, fresh);
-    if (verb == Verb::replace && fresh.empty()) {
-      if (composer.diagnostics.errors() == errors_before)
+    if (fresh.empty()) {
+      if (composer.diagnostics.errors() != errors_before) return;
+      if (verb == Verb::replace)
         composer.error(
             DiagnosticId::edit_target, target_place(),
             fmt::format("{} would replace the pass '{}' with no pass: the files that it includes "
                         "have no passes, or were included before; use 'remove' to remove "
                         "the pass",
                         what, shown(name)));
+      else if (composer.included.size() == included_before &&
+               !children(tree().documents[overlay], list).empty())
+        composer.error(DiagnosticId::edit_target, target_place(),
+                       fmt::format("{} adds nothing: what it includes was included before", what));
       return;
     }
     std::vector<ItemId>& all = tree()[passes].children;

@@ -71,13 +71,17 @@ void append_excerpt(std::string& out, const Diagnostics& all, const SourceLocati
 
   // Uses one terminal column per code point, so that the caret is below its character.
   const auto one_column_each = [](std::string_view part) {
-    std::string columns(part);
-    for (char& c : columns) {
-      if (static_cast<uint8_t>(c) < 0x20 || c == 0x7f) c = ' ';
+    std::string columns;
+    for (size_t at = 0; at < part.size();) {
+      const size_t bytes = std::max<size_t>(utf8_sequence_bytes(part.substr(at, 4)), 1);
+      const std::string_view one = part.substr(at, bytes);
+      if (find_invalid_utf8(one) != std::string_view::npos)
+        columns += '?';
+      else
+        columns += acts_on_terminal(one) ? std::string_view(" ") : one;
+      at += bytes;
     }
-    std::string safe;
-    append_printable(safe, columns, columns.size());
-    return safe;
+    return columns;
   };
   const std::string before =
       (first > 0 ? "..." : "") + one_column_each(line.substr(first, column - first));

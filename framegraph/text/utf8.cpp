@@ -5,6 +5,19 @@
 #include <iterator>
 
 namespace dermis {
+namespace {
+
+// Returns the code point of a valid sequence.
+uint32_t code_point(std::string_view sequence) {
+  const auto lead = static_cast<uint8_t>(sequence[0]);
+  const size_t length = sequence.size();
+  uint32_t code = length == 1 ? lead : lead & (0x7fu >> length);
+  for (size_t i = 1; i < length; ++i)
+    code = code << 6 | (static_cast<uint8_t>(sequence[i]) & 0x3fu);
+  return code;
+}
+
+} // namespace
 
 size_t utf8_sequence_bytes(std::string_view text) {
   if (text.empty()) return 0;
@@ -35,6 +48,14 @@ size_t find_invalid_utf8(std::string_view text) {
   return std::string_view::npos;
 }
 
+bool acts_on_terminal(std::string_view sequence) {
+  const uint32_t code = code_point(sequence);
+  const auto within = [&](uint32_t first, uint32_t last) { return code >= first && code <= last; };
+  return code < 0x20 || within(0x7f, 0x9f) ||                // control characters
+         within(0x200e, 0x200f) || within(0x2028, 0x202e) || // direction of text, new lines
+         within(0x2066, 0x2069) || code == 0xfeff;
+}
+
 std::string shown_token(std::string_view text) {
   std::string out;
   append_printable(out, text, 80);
@@ -52,9 +73,12 @@ void append_printable(std::string& out, std::string_view text, size_t max_bytes)
     if (length == 0) {
       out += '?';
       ++at;
-    } else if (length == 1 && (static_cast<uint8_t>(text[at]) < 0x20 || text[at] == 0x7f)) {
-      fmt::format_to(std::back_inserter(out), "\\x{:02x}", static_cast<unsigned>(text[at]));
-      ++at;
+    } else if (const std::string_view one = text.substr(at, length); acts_on_terminal(one)) {
+      if (length == 1)
+        fmt::format_to(std::back_inserter(out), "\\x{:02x}", code_point(one));
+      else
+        fmt::format_to(std::back_inserter(out), "\\u{:04x}", code_point(one));
+      at += length;
     } else {
       out += text.substr(at, length);
       at += length;

@@ -15,8 +15,13 @@ size_t find_invalid_utf8(std::string_view text);
 // none or `text` is empty.
 size_t utf8_sequence_bytes(std::string_view text);
 
-// Appends `text` made safe for a terminal or a log: control characters become \xNN, ill-formed
-// bytes '?'. Keeps at most `max_bytes` of the input, cut between code points, and marks a cut with
+// Returns whether a well-formed sequence, which is not empty, is a control character, begins a new
+// line or changes the direction of text.
+bool acts_on_terminal(std::string_view sequence);
+
+// Appends `text` made safe for a terminal or a log: what acts_on_terminal() finds becomes \xNN or
+// \uNNNN, ill-formed bytes '?'. Keeps at most `max_bytes` of the input, cut between code points,
+// and marks a cut with
 // "...".
 void append_printable(std::string& out, std::string_view text, size_t max_bytes);
 inline constexpr size_t longest_text = 4096; // bytes of a message, name or pointer

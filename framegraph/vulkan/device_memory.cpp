@@ -43,7 +43,7 @@ Error allocate_from_host(const Device& device, const MemoryRequest& request,
     block = given;
     return {};
   }
-  free_memory(device, given);
+  if (given.memory != VK_NULL_HANDLE) free_memory(device, given);
   return {ErrorKind::vulkan, VK_SUCCESS,
           fmt::format("{}: the host's allocator returned {}", object,
                       given.memory == VK_NULL_HANDLE ? std::string("no memory")

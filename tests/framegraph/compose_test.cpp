@@ -350,6 +350,14 @@ TEST(Include, ReplacementWithoutPasses_IsRejected) {
       {"would replace the pass 'copy' with no pass", "were included before", "use 'remove'"});
 }
 
+TEST(Include, InsertionOfWhatIsIncluded_IsRejected) {
+  const Composed composed = put_together(
+      including_graph(),
+      {overlay(R"({ "insert_after": "copy", "passes": [{ "include": "parts/tiles.json" }] })")},
+      {{"parts/tiles.json", tiles_fragment}});
+  expect_one(composed, Id::edit_target, "overlay0.json:2:19", {"adds nothing", "included before"});
+}
+
 TEST(Include, OverlaysSeeIncludesAndCanInclude) {
   const Composed changed = put_together(
       including_graph(), {overlay(R"({ "set": "/resources/list/buffer/extra", "to": 8 })")},

@@ -30,6 +30,9 @@ const PassTypeRegistry& pass_types() {
     out.add({"t.list", "", "", list_ports, {}});
     out.add({"t.ids", "", "", ids_ports, {}});
     out.add({"t.clear", "", "", clear_ports, {}});
+    PassType scatter{"t.scatter", "", "", blur_ports, {}};
+    scatter.serves_scattering = true;
+    out.add(scatter);
     return out;
   }();
   return registry;
@@ -126,6 +129,10 @@ const Case rejected_cases[] = {
         { "pass": "more", "type": "t.blur", "read": { "a": "light" }, "write": { "o": "h" } }, )" SHOW(
          "light"),
      {"reads 'light' through its port 'a'"}},
+    {"WhereNothingScatters",
+     R"({ "pass": "make", "type": "t.scatter", "read": { "a": "light" }, "write": { "o": "x" },
+          "otherwise": { "x": "light" } }, )" BLUR_X("") SHOW("light"),
+     {"pass 'blur' reads 'x', which 'light' replaces, through its port 'a' and writes 'light'"}},
     {"UnderConditionsThatMeet",
      X_FROM_LIGHT("n > 8 or r < 2") BLUR_X(R"(, "when": "n <= 8 and r > 1.9")") SHOW("light"),
      {"pass 'blur'"}},
@@ -167,6 +174,11 @@ const Case accepted_cases[] = {
      R"({ "pass": "keep", "type": "t.blur", "read": { "a": "h@-1" }, "write": { "o": "h" } }, )" SHOW(
          "h")},
     {"UnderEqualConditions", X_FROM_LIGHT("sharp") BLUR_X(R"(, "when": "sharp")") SHOW("light")},
+    {"WhereNothingScatters_AndTheReaderIsOff",
+     R"({ "pass": "make", "type": "t.scatter", "read": { "a": "light" }, "write": { "o": "x" },
+          "otherwise": { "x": "light" } },
+        { "pass": "more", "type": "t.scatter", "read": { "a": "x" }, "write": { "o": "light" } }, )" SHOW(
+         "light")},
     {"UnderNumbersThatExcludeEachOther",
      X_FROM_LIGHT("n > 4 or r <= 2.5") BLUR_X(R"(, "when": "n >= 5 and r > 2.5 or n == 5")")
          SHOW("light")},

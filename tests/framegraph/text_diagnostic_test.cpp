@@ -46,8 +46,9 @@ TEST(Diagnostic, LongLinesAreCutOnBothSides) {
 }
 
 TEST(Diagnostic, NothingUnprintableReachesTheTerminal) {
-  Diagnostics all = with_text("[\x1b[31m\xff\x7f]");
-  all.add(DiagnosticId::syntax, {{0}, 1, 3, "/\x1b"}, "bad \x1b[0m \xfe")
+  // also control characters beyond ASCII, and text that runs from right to left
+  Diagnostics all = with_text("[\x1b[31m\xff\x7f\xc2\x9b\xe2\x80\xae\xe2\x81\xa6]");
+  all.add(DiagnosticId::syntax, {{0}, 1, 3, "/\x1b"}, "bad \x1b[0m \xfe \xc2\x9b \xe2\x80\xae")
       .related.emplace_back(SourceLocation{{0}, 1, 8, ""}, "\x07");
   const std::string text = format_for_people(all, all.list[0]);
   for (char c : text) {

@@ -32,6 +32,7 @@ public:
           if (through.output == binding.resource) {
             write.instead = through.instead;
             write.where = through.where;
+            replaces_scattering_ = replaces_scattering_ || serves_scattering({p});
           }
         writes_[binding.resource.value].push_back(write);
       }
@@ -46,7 +47,14 @@ public:
       pass_ = id;
       read_ = &binding;
       port_ = &reader_.pass_types[pass.type].ports[binding.port];
+      const uint64_t errors = reader_.diagnostics.errors();
+      nothing_scatters_ = false;
       follow();
+      if (replaces_scattering_ && !serves_scattering(id) &&
+          reader_.diagnostics.errors() == errors) {
+        nothing_scatters_ = true;
+        follow();
+      }
       if (steps_left_ == 0) {
         report_limit();
         return false;
@@ -62,6 +70,11 @@ private:
   bool condition_known(PassId id) const {
     return graph().passes[id.value].when.valid() ||
            !reader_.document.find(reader_.pass_nodes[id.value], "when").valid();
+  }
+
+  bool serves_scattering(PassId id) const {
+    const PassTypeId type = graph().passes[id.value].type;
+    return type.valid() && reader_.pass_types[type].serves_scattering;
   }
 
   // Walks from the pass backwards. A read sees the last earlier write whose pass is on.
@@ -82,7 +95,7 @@ private:
         if (!spend_step()) return;
         if (!overlap(at->range, seen_)) continue;
         if (!condition_known(at->pass)) return;
-        if (done(resource, &*at) || !turn_off(at->pass)) return;
+        if (!turned_off(at->pass) && (done(resource, &*at) || !turn_off(at->pass))) return;
         if (at->instead.valid()) replaced = &*at;
       }
       if (!replaced) {
@@ -94,7 +107,8 @@ private:
         // first replacement.
         for (auto at = end; at != writes.end(); ++at) {
           if (!spend_step()) return;
-          if (!condition_known(at->pass) || !turn_off(at->pass)) return;
+          if (!condition_known(at->pass)) return;
+          if (!turned_off(at->pass) && !turn_off(at->pass)) return;
           if (!replaced && at->instead.valid()) replaced = &*at;
         }
         if (!replaced) return;
@@ -108,6 +122,9 @@ private:
   }
 
   bool spend_step() { return steps_left_ > 0 && --steps_left_ > 0; }
+
+  // Returns whether the pass is off because nothing scatters, whatever its `when` says.
+  bool turned_off(PassId pass) const { return nothing_scatters_ && serves_scattering(pass); }
 
   // Adds the condition that the pass is off. Returns false if the pass is always on.
   bool turn_off(PassId pass) {
@@ -210,6 +227,8 @@ private:
 
   GraphReader& reader_;
   std::vector<std::vector<Write>> writes_; // by resource, in file order
+  bool replaces_scattering_ = false;       // a pass that serves scattering has `otherwise`
+  bool nothing_scatters_ = false;          // during a second walk, with such passes off
   uint64_t steps_left_ = limits::read_search_steps;
   PassId pass_;
   const PortBinding* read_ = nullptr;

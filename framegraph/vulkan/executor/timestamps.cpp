@@ -94,6 +94,7 @@ bool Executor::read_timings(uint64_t completed_frame_index, uint64_t& frame_inde
   const double period = static_cast<double>(device.properties.limits.timestampPeriod);
   for (size_t p = 0; p < state.passes.size() && p < timings.size(); ++p) {
     const uint64_t ticks = (t.ticks[p + 1] - t.ticks[p]) & mask; // the mask handles timer wrap
+    if (ticks > mask / 2) return false;                          // the timer went backwards
     timings[p] = {state.passes[p].name, static_cast<uint64_t>(static_cast<double>(ticks) * period)};
   }
   frame_index = kept ? t.kept_frame : t.frame_of_slot[newest];
