@@ -255,12 +255,13 @@ choice::Decision without_budget(const choice::Forecast& forecast) {
 }
 
 // Returns the milliseconds that the frame may take.
-double budget_of_frame(const Chooser& chooser, const FrameRequest& request,
+double budget_of_frame(const Chooser& chooser, const FrameRequest& request, bool idle,
                        std::span<const choice::Forecast> forecasts) {
   if (!chooser.budget.all_views) return chooser.budget.ms;
-  const choice::Offers offers = request.empty_bounds
-                                    ? choice::offers_of_no_work()
-                                    : choice::make_offers(forecasts, chooser.scratch.state);
+  const choice::DecisionState& state = chooser.scratch.state;
+  const choice::Offers offers = request.empty_bounds ? choice::offers_of_no_work()
+                                : idle               ? choice::offers_of_idle(forecasts, state)
+                                                     : choice::make_offers(forecasts, state);
   const std::lock_guard lock(request.shared->mutex);
   return request.shared->division.share(*request.share, chooser.budget.ms, offers,
                                         chooser.counted || request.empty_bounds, request.seconds);
@@ -369,8 +370,11 @@ FrameChoice choose(Chooser& chooser, const CompiledGraph& compiled_graph,
   const size_t count = chooser.budget.ms > 0 ? compiled_graph.configurations.size() : 1;
   const std::span<choice::Forecast> forecasts =
       forecast_first(chooser, compiled_graph, count, content, state.clock_s);
-  if (chooser.budget.ms > 0) frame.budget_ms = budget_of_frame(chooser, request, forecasts);
   choice::FrameInput input;
+  input.empty = request.empty_bounds;
+  input.idle = input.empty || (chooser.counted && chooser.counters.scattering_tiles == 0);
+  if (chooser.budget.ms > 0)
+    frame.budget_ms = budget_of_frame(chooser, request, input.idle, forecasts);
   input.budget_ms = frame.budget_ms;
   input.seconds = request.seconds;
   input.cut = request.cut;
@@ -378,8 +382,6 @@ FrameChoice choose(Chooser& chooser, const CompiledGraph& compiled_graph,
       !chooser.counted || (request.empty_bounds && state.current == choice::no_configuration);
   input.trials = chooser.budget.trials;
   input.learning = is_learning(chooser, compiled_graph);
-  input.empty = request.empty_bounds;
-  input.idle = input.empty || (chooser.counted && chooser.counters.scattering_tiles == 0);
   if (chooser.budget.ms > 0) {
     frame.decision = decide(forecasts, input, state,
                             std::span(chooser.scratch.assessments).first(forecasts.size()));

@@ -54,6 +54,14 @@ double square_within(const Offers& offers, double ms) {
   return square(rmse);
 }
 
+// Pessimism would keep a configuration that never ran from a trial, and a disturbance that may be
+// over one that was left because of it.
+Forecast as_offered(std::span<const Forecast> forecasts, const DecisionState& state, uint32_t i) {
+  Forecast one = forecasts[i];
+  one.time.pessimistic_ms = may_return(state, i) ? one.time.usual_ms : one.time.expected_ms;
+  return one;
+}
+
 size_t steps_of(const Offer& offer, double budget_ms) {
   return static_cast<size_t>(
       std::min(std::ceil(offer.ms / budget_ms * double(steps)), double(steps + 1)));
@@ -62,19 +70,26 @@ size_t steps_of(const Offer& offer, double budget_ms) {
 } // namespace
 
 Offers make_offers(std::span<const Forecast> forecasts, const DecisionState& state) {
-  constexpr double sampled[] = {0, 0.25, 0.5, 0.75, 1}; // fractions of the requested samples
+  // Fractions of the requested samples. There is a place for each configuration without samples.
+  constexpr double sampled[] = {0, 0.25, 0.5, 0.75, 1};
   Offers offers;
-  for (uint32_t i = 0; i < forecasts.size(); ++i) {
-    Forecast one = forecasts[i];
-    // Pessimism would keep a configuration that never ran from a trial, and a disturbance that may
-    // be over one that was left because of it.
-    one.time.pessimistic_ms = may_return(state, i) ? one.time.usual_ms : one.time.expected_ms;
-    for (const double fraction : sampled) {
+  for (const double fraction : sampled)
+    for (uint32_t i = 0; i < forecasts.size(); ++i) {
+      if (fraction > 0 && !forecasts[i].takes_samples) continue;
+      const Forecast one = as_offered(forecasts, state, i);
       const double units = one.takes_samples ? fraction * one.demand : 0;
       insert(offers, {std::max(needed_budget_ms(one, units), least_ms), rmse_with(one, units)});
-      if (!one.takes_samples) break;
     }
-  }
+  return offers;
+}
+
+Offers offers_of_idle(std::span<const Forecast> forecasts, const DecisionState& state) {
+  double ms = HUGE_VAL;
+  for (uint32_t i = 0; i < forecasts.size(); ++i)
+    if (state.current == no_configuration || i == state.current)
+      ms = std::min(ms, needed_budget_ms(as_offered(forecasts, state, i), 0));
+  Offers offers;
+  insert(offers, {std::max(ms, 2 * least_ms), 0});
   return offers;
 }
 
@@ -167,6 +182,9 @@ void BudgetDivision::divide_anew(bool at_once) noexcept {
   if (!at_once && divided_ && elapsed_s_ < period_s) return;
   elapsed_s_ = 0;
   divided_ = true;
+  at_once = at_once || std::ranges::any_of(active_, [&](const ViewShare* view) {
+              return view->fraction * budget_ms_ < view->offers.all[0].ms; // it grew
+            });
   const double squares = divide(budget_ms_, active_, table_, fractions_);
   double before = 0;
   for (const ViewShare* view : active_)
@@ -200,7 +218,10 @@ double BudgetDivision::share(ViewShare& view, double budget_ms, const Offers& of
     ++round_;
     elapsed_s_ += seconds > 0 ? seconds : 1.0 / 60;
   }
-  changed_ = changed_ || (is_no_work(view.offers) && !is_no_work(offers)); // it needs a part now
+  if (is_no_work(view.offers) && !is_no_work(offers)) { // it needs a part now
+    changed_ = true;
+    view.fraction = 0;
+  }
   view.offers = offers;
   view.counted = counted;
   if (!repeats) {
@@ -217,7 +238,8 @@ double BudgetDivision::share(ViewShare& view, double budget_ms, const Offers& of
 }
 
 double BudgetDivision::present_share(const ViewShare& view, double budget_ms) const noexcept {
-  return (view.fraction > 0 ? view.fraction : 1 / double(views_.size())) * budget_ms;
+  const bool has_part = view.fraction > 0 && !is_no_work(view.offers);
+  return (has_part ? view.fraction : 1 / double(views_.size())) * budget_ms;
 }
 
 } // namespace dermis::choice

@@ -28,6 +28,9 @@ struct Offers {
 
 // Returns the offers of a view's configurations. The first one is the cheapest.
 Offers make_offers(std::span<const Forecast> forecasts, const DecisionState& state);
+// Returns the offer of a view in which nothing scatters: no error, in the time of what runs, or of
+// the cheapest configuration if none does.
+Offers offers_of_idle(std::span<const Forecast> forecasts, const DecisionState& state);
 // Returns the offers of a view in which nothing runs.
 Offers offers_of_no_work();
 

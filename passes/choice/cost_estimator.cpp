@@ -102,13 +102,11 @@ CostId CostEstimator::add(std::string_view work, bool launches) {
   line.pessimism = std::pow(uncertainty_, pessimism);
   const Line* like = placeholder_for(work);
   if (like != nullptr && (launches || words_alike(like->work, work) > 0)) {
-    line.prior = like->has_prior ? like->prior : solve(like->fit, like->prior, false);
+    line.prior = like->prior; // without measurements, for choices by the calibration only
     line.has_prior = line.placeholder = true;
     // With another setting the pass will take about as much as it took.
-    if (like->has_prior && like->own.observations > 0 && words_alike(like->work, work) > 0) {
-      const double measured = like->own_factor / unmeasured_factor_;
-      line.prior = {measured * line.prior.base_ms, measured * line.prior.group_ms};
-    }
+    if (like->own.observations > 0 && (!like->has_prior || words_alike(like->work, work) > 0))
+      line.measured_like = like->own_factor / unmeasured_factor_;
     line.guess = like->guess || words_alike(like->work, work) == 0;
   }
   // first, so that a failure leaves enough elements for all lines
@@ -148,7 +146,14 @@ bool CostEstimator::has_calibration(CostId id) const {
 }
 
 double CostEstimator::factor(const Line& line) const {
-  return device_factor_ * (line.own.observations > 0 ? line.own_factor : unmeasured_factor_);
+  return device_factor_ *
+         (line.own.observations > 0 ? line.own_factor : unmeasured_factor_ * line.measured_like);
+}
+
+// Returns what the calibration expects of a line on this device.
+AffineCost CostEstimator::expected_cost(const Line& line) const {
+  const double scale = device_factor_ * unmeasured_factor_ * line.measured_like;
+  return {line.prior.base_ms * scale, line.prior.group_ms * scale};
 }
 
 std::span<const CostFactors> CostEstimator::predict(double now_s) {
@@ -190,19 +195,22 @@ bool CostEstimator::is_absent(double seen_s, double now_s) const {
 
 void CostEstimator::observe(std::span<const PassTime> passes, double now_s) {
   // The shorter of two intervals: a single pause is not the frame rate.
-  const double interval_s = observed_s_ >= 0 ? now_s - observed_s_ : 0;
+  const double before_s = observed_s_;
+  const double interval_s = before_s >= 0 ? now_s - before_s : 0;
   interval_s_ = std::min(interval_s, last_interval_s_);
   last_interval_s_ = interval_s;
   observed_s_ = now_s;
-  collect(passes, now_s);
+  collect(passes, now_s, before_s);
   follow_device();
   follow_lines(now_s);
   recenter();
   update_factors();
 }
 
-// Sums the passes of each line, and restarts lines that did not run for a while.
-void CostEstimator::collect(std::span<const PassTime> passes, double now_s) {
+// Sums the passes of each line, and restarts lines that did not run for a while. After a pause of
+// all work, lines that ran before it continue: their first frame may be slow. `before_s`: time of
+// the previous frame.
+void CostEstimator::collect(std::span<const PassTime> passes, double now_s, double before_s) {
   timed_count_ = 0;
   for (const PassTime& pass : passes) {
     if (!std::isfinite(pass.ms) || pass.ms < 0 || pass.groups == 0) continue;
@@ -214,14 +222,14 @@ void CostEstimator::collect(std::span<const PassTime> passes, double now_s) {
     }
     line.frame_ms += std::max(line.prior.ms(static_cast<double>(pass.groups)), min_calibrated_ms);
     line.frame_measured_ms += pass.ms;
-    const AffineCost prior = {line.prior.base_ms * device_factor_ * unmeasured_factor_,
-                              line.prior.group_ms * device_factor_ * unmeasured_factor_};
-    choice::observe(line.fit, prior, line.has_prior, static_cast<double>(pass.groups), pass.ms);
+    choice::observe(line.fit, expected_cost(line), line.has_prior, static_cast<double>(pass.groups),
+                    pass.ms);
   }
   for (const uint32_t l : timed()) {
     Line& line = lines_[l];
     line.in_frame = false;
-    if (line.own.observations == 0 || !is_absent(line.seen_s, now_s)) continue;
+    if (line.own.observations == 0 || !is_absent(line.seen_s, now_s) || line.seen_s >= before_s)
+      continue;
     line.own.level = std::min(line.own.level, line.usual);
     line.own_factor = std::exp(line.own.level);
     restart(line.own);
@@ -262,10 +270,13 @@ void CostEstimator::follow_lines(double now_s) {
   for (const uint32_t l : timed()) {
     Line& line = lines_[l];
     const double error = log_error(line);
-    if (line.own.observations == 0) line.own.level = unmeasured_;
+    if (line.own.observations == 0) line.own.level = unmeasured_ + std::log(line.measured_like);
     follow(line.own, error, own_gain, line.own.deviation);
     line.seen_s = now_s;
-    if (line.own.observations == 1) line.usual = line.own.level - std::log(line.uncertainty);
+    // The first frame may be slow, so it alone does not show what is usual.
+    if (line.own.observations == 1)
+      line.usual = std::min(line.own.level, unmeasured_ + std::log(line.measured_like)) -
+                   std::log(line.uncertainty);
     if (line.own.observations == usual_after) line.usual = line.own.level;
     const double above = line.own.level - line.usual;
     if (line.own.observations > usual_after)
@@ -297,7 +308,7 @@ void CostEstimator::update_factors() {
   double sum = 0, count = 0;
   for (const Line& line : lines_)
     if (line.own.observations > 0 && !line.guess) {
-      sum += line.own.level;
+      sum += line.own.level - std::log(line.measured_like);
       ++count;
     }
   unmeasured_ = sum / (count + 1); // counts the calibration like one line
@@ -311,7 +322,7 @@ void CostEstimator::update_usual_ratio(Line& line) {
 
 void CostEstimator::reduce_optimism(CostId id) {
   Line& line = lines_[id.value];
-  if (line.own.observations >= usual_after) return;
+  if (line.own.observations < known_after || line.own.observations >= usual_after) return;
   line.usual += (1 - kept_optimism) * (line.own.level - line.usual);
   update_usual_ratio(line);
 }
@@ -321,9 +332,7 @@ std::vector<Cost> CostEstimator::calibration() const {
   std::vector<int> observations; // of the costs in `out`
   for (const Line& line : lines_) {
     if (line.own.observations == 0 && (line.placeholder || !line.has_prior)) continue;
-    const double scale = device_factor_ * unmeasured_factor_;
-    const AffineCost cost =
-        solve(line.fit, {line.prior.base_ms * scale, line.prior.group_ms * scale}, line.has_prior);
+    const AffineCost cost = solve(line.fit, expected_cost(line), line.has_prior);
     const bool measured = line.own.observations > 0;
     out.push_back({line.work, cost.base_ms * 1e3, cost.group_ms * 1e3, line.fit.deviation,
                    measured ? same_device_uncertainty : line.stated});

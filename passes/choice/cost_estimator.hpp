@@ -108,7 +108,8 @@ public:
 private:
   struct Line {
     std::string work;
-    AffineCost prior;
+    AffineCost prior;         // by the calibration
+    double measured_like = 1; // factor on a placeholder, measured of the work that it stands for
     bool has_prior = false, placeholder = false; // placeholder: the prior is that of other work
     bool guess = false; // the prior is that of another pass type: unusable for the device's scale
     bool used = false;  // by add()
@@ -125,11 +126,12 @@ private:
     bool in_frame = false;
   };
   double factor(const Line& line) const; // on the calibrated time
+  AffineCost expected_cost(const Line& line) const;
   std::span<const uint32_t> timed() const { return std::span(timed_).first(timed_count_); }
   double log_error(const Line& line) const;
   bool is_absent(double seen_s, double now_s) const;
   const Line* placeholder_for(std::string_view work) const;
-  void collect(std::span<const PassTime> passes, double now_s);
+  void collect(std::span<const PassTime> passes, double now_s, double before_s);
   void follow_device();
   void follow_lines(double now_s);
   void recenter();

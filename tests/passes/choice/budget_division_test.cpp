@@ -59,6 +59,32 @@ TEST(Offers, IncludePartsOfTheSamples) {
   EXPECT_DOUBLE_EQ(offers.all[4].rmse, 0.1);
 }
 
+TEST(Offers, CheapestOfMany_IsKept) {
+  std::vector<choice::Forecast> forecasts;
+  for (int i = 20; i > 0; --i) {
+    choice::Forecast& one = forecasts.emplace_back(forecast_of(i, 1.0 / i));
+    one.takes_samples = true;
+    one.demand = 100;
+    one.time.unit_ms = 0.001;
+    one.unsampled_rmse = 1.01 / i;
+  }
+  const Offers offers = choice::make_offers(forecasts, {});
+  EXPECT_NEAR(offers.all[0].ms, needed_budget_ms(forecasts.back(), 0), 1e-12);
+}
+
+TEST(Offers, NothingThatScatters_NeedsTheTimeOfWhatRuns) {
+  const std::vector<choice::Forecast> forecasts = {forecast_of(3, 0.1), forecast_of(1, 0.5)};
+  choice::DecisionState state;
+  restart(state, 2, 0);
+  for (const auto& [current, ms] : {std::pair{choice::no_configuration, 1.0}, {0u, 3.0}}) {
+    state.current = current;
+    const Offers offers = choice::offers_of_idle(forecasts, state);
+    ASSERT_EQ(offers.count, 1u);
+    EXPECT_NEAR(offers.all[0].ms, ms * needed_budget_ms(forecasts[1], 0), 1e-12);
+    EXPECT_EQ(offers.all[0].rmse, 0);
+  }
+}
+
 // The least squared error within the budget, by trying everything.
 double least_square(const std::vector<ViewShare>& views, size_t from, double budget_ms) {
   if (from == views.size()) return 0;
@@ -231,6 +257,37 @@ TEST_F(Rounds, EmptyViewThatHasWorkAgain_GetsItsPartAtOnce) {
   EXPECT_GT(of_a, 9.99);
   of_a = division.share(a, 10, large, true, 0.1);
   EXPECT_DOUBLE_EQ(division.share(b, 10, small, true, 0.1), 2.5);
+}
+
+// A camera approaches, so that what `b` needs at least grows.
+TEST_F(Rounds, CheapestOfferThatGrew_GetsItsPart) {
+  large = offers_of({{1, 0.05}, {7.9, 0.01}});
+  small = offers_of({{0.5, 0.05}});
+  for (int i = 0; i < 4; ++i)
+    frame();
+  EXPECT_LT(of_b, 1);
+  small = offers_of({{3, 0.05}});
+  for (int i = 0; i < 12; ++i)
+    frame();
+  EXPECT_GE(of_b, 3);
+  large = offers_of({{8, 0.05}}); // not both fit
+  small = offers_of({{4, 0.05}});
+  for (int i = 0; i < 12; ++i)
+    frame();
+  EXPECT_NEAR(of_b, 10.0 / 3, 1e-9);
+}
+
+TEST_F(Rounds, EmptyViewThatHasWorkAgain_NextToANewOne_HasAPart) {
+  for (int i = 0; i < 4; ++i) {
+    division.share(a, 10, large, true, 0.1);
+    division.share(b, 10, choice::offers_of_no_work(), true, 0.1);
+  }
+  ViewShare c;
+  division.add(c);
+  division.share(a, 10, large, true, 0.1);
+  division.share(c, 10, small, false, 0.1);
+  EXPECT_GT(division.share(b, 10, small, true, 0.1), 1);
+  division.remove(c);
 }
 
 // Another new view keeps the parts from being divided.

@@ -27,7 +27,7 @@ ControlledGraph::ControlledGraph(const Scenario& scenario, const LoopOptions& op
   const size_t configurations = scenario.configurations.size();
   forecasts_.resize(configurations);
   assessments_.resize(configurations);
-  margins_.restart(configurations, first_margin);
+  margins_.restart(configurations, choice::first_margin);
   times_.reserve(scenario.passes.size());
   restart(state_, configurations, costs_.unmeasured());
 }

@@ -148,6 +148,40 @@ TEST(CostEstimator, RejectedWork_IsLessOptimistic) {
   EXPECT_GT(costs.predict(clock_s)[one.value].undisturbed, 2 * before);
 }
 
+// With one frame in flight the first frame counts alone.
+TEST(CostEstimator, SlowFirstFrame_IsNotUsual) {
+  CostEstimator costs({{"shared", 10, 1, 0.1}, {"one", 10, 1, 0.1}});
+  const CostId shared = costs.add("shared"), one = costs.add("one");
+  double clock_s = 0;
+  observe(costs, {{shared, 1000, 1.01}}, 60, clock_s);
+  observe(costs, {{shared, 1000, 1.01}, {one, 1000, 3.03}}, 1, clock_s);
+  costs.reduce_optimism(one);
+  observe(costs, {{shared, 1000, 1.01}}, 120, clock_s);
+  EXPECT_LT(costs.predict(clock_s)[one.value].undisturbed, 1);
+}
+
+// After a loading stall the first frame is the one most likely to be slow.
+TEST(CostEstimator, SlowFrameAfterAPause_ChangesLittle) {
+  CostEstimator costs({{"a", 10, 1, 0.1}, {"b", 10, 1, 0.1}});
+  const CostId a = costs.add("a"), b = costs.add("b");
+  double clock_s = 0;
+  observe(costs, {{a, 1000, 1.01}, {b, 1000, 1.01}}, 100, clock_s);
+  clock_s += 0.6;
+  observe(costs, {{a, 1000, 3.03}, {b, 1000, 1.01}}, 1, clock_s);
+  EXPECT_NEAR(expected_ms(costs, a, 1000, clock_s), 1.01, 0.05);
+}
+
+// Deterministic choices do not depend on the device.
+TEST(CostEstimator, CalibratedCostOfANewSetting_IsNotMeasured) {
+  CostEstimator costs({{"work samples=16", 10, 1, 0.1}});
+  const CostId first = costs.add("work samples=16");
+  double clock_s = 0;
+  observe(costs, {{first, 1000, 2.02}}, 100, clock_s);
+  const CostId other = costs.add("work samples=32");
+  EXPECT_NEAR(expected_ms(costs, other, 1000, clock_s), 2.02, 0.05);
+  EXPECT_DOUBLE_EQ(costs.calibrated_cost(other).ms(1000), costs.calibrated_cost(first).ms(1000));
+}
+
 TEST(CostEstimator, ManyWorks_ExportAReadableCalibration) {
   CostEstimator costs;
   std::vector<PassTime> once, often;
