@@ -336,7 +336,8 @@ extern "C" dermis_result DERMIS_CALL dermis_graph_calibration(dermis_graph graph
     const dermis::choice::CostEstimator& costs = graph->own.chooser.costs;
     // Costs that were not measured are as uncertain as they were; the others state their own.
     const std::string json = dermis::choice::write_calibration(
-        {graph->context->device.properties.deviceName, costs.uncertainty(), costs.calibration()});
+        {graph->context->device.properties.deviceName, graph->own.chooser.calibration.uncertainty,
+         costs.calibration()});
     const size_t capacity = *size;
     *size = json.size() + 1;
     if (text == nullptr) return DERMIS_OK;

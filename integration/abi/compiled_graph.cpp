@@ -238,7 +238,8 @@ bool make_plans(const dermis_context_t& context, const CompileInput& compile_inp
       choice::make_configurations(compile_input, combinations, plans_of(), errors, costs);
   for (uint32_t p = 0; p < made.size(); ++p) {
     CompiledPlan& own = made[p].own;
-    if (candidate.without_material || !reads_what_is_left_out(context.pass_types, own.plan))
+    if (candidate.without_material ||
+        !reads_what_is_left_out(candidate.graph, context.pass_types, own.plan))
       continue;
     made[p].without_bounds =
         compile_without_bounds(compile_input, candidate.configurations, p, cache, own, diagnostics);

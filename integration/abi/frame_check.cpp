@@ -331,6 +331,10 @@ subsurface::CameraFault fill_constants(const dermis_frame& frame,
   const subsurface::CameraFault fault =
       subsurface::to_right_handed(input.camera, declared, input.handedness);
   if (fault != subsurface::CameraFault::none) return fault;
+  const subsurface::Matrix4& clip = input.camera.clip_from_view;
+  const double depth_changes = clip[14] != 0 ? clip[11] : clip[10]; // perspective, orthographic
+  if (frame.depth_kind == DERMIS_DEPTH_DEVICE && depth_changes == 0)
+    return subsurface::CameraFault::no_depth;
   input.jitter_px = {frame.jitter_x, frame.jitter_y};
   input.metres_per_unit = frame.metres_per_unit == 0 ? 1.0 : frame.metres_per_unit;
   input.exposure = frame.exposure == 0 ? 1.0f : frame.exposure;
@@ -351,6 +355,7 @@ subsurface::CameraFault fill_constants(const dermis_frame& frame,
 // Returns advice on how to declare view space, if that may be the cause.
 std::string_view hint_of(subsurface::CameraFault fault) {
   const bool of_handedness = fault != subsurface::CameraFault::no_projection &&
+                             fault != subsurface::CameraFault::no_depth &&
                              fault != subsurface::CameraFault::stored_by_columns;
   return of_handedness ? "; the camera looks down -z, or along +z in an orthographic frame with "
                          "DERMIS_FRAME_LEFT_HANDED and in a perspective with w = z"

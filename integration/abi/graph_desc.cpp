@@ -107,6 +107,10 @@ dermis_result read_formats(const Log& log, const char* function, const dermis_gr
               log,
               "{}: desc.formats[{}].format is VkFormat {}, which no graph can declare (slot '{}')",
               function, i, static_cast<uint32_t>(given.format), given.name);
+        const auto same = [&](const auto& other) { return other.slot == given.name; };
+        if (std::any_of(input.formats.begin(), input.formats.end(), same))
+          return bad_argument(log, "{}: desc.formats[{}] names the slot '{}' again", function, i,
+                              given.name);
         input.formats.push_back({given.name, *format});
         return DERMIS_OK;
       });

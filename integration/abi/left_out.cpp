@@ -174,15 +174,22 @@ std::vector<uint8_t> left_out_without_bounds(const PassTypeRegistry& pass_types,
   return left_out;
 }
 
-bool reads_what_is_left_out(const PassTypeRegistry& pass_types, const Plan& plan) {
+bool reads_what_is_left_out(const Graph& graph, const PassTypeRegistry& pass_types,
+                            const Plan& plan) {
   Subresources written(plan.resources.size());
+  std::vector<uint8_t> replaced(graph.resources.size(), 0); // by `otherwise` of a left-out pass
   for (uint32_t r = 0; r < plan.resources.size(); ++r)
     if (plan.resources[r].origin == Origin::imported) written.add(r, plan.resources[r].whole());
   for (size_t p = 0; p < plan.passes.size(); ++p) {
-    if (pass_types[plan.passes[p].type].serves_scattering) continue;
+    if (pass_types[plan.passes[p].type].serves_scattering) {
+      for (const PassThrough& through : graph.passes[plan.passes[p].declared.value].otherwise)
+        replaced[through.output.value] = 1;
+      continue;
+    }
     for (const PlanAccess& access : accesses_of(plan, p))
       if ((access.access & ~all_write_access) != 0 && access.frames_back == 0 &&
-          !written.has(access.resource, access.range))
+          (!written.has(access.resource, access.range) ||
+           replaced[plan.resources[access.resource].declared.value] != 0))
         return true;
     for (const PlanAccess& access : accesses_of(plan, p))
       if ((access.access & all_write_access) != 0) written.add(access.resource, access.range);

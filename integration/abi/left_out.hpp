@@ -18,9 +18,11 @@ void turn_scattering_off(Graph& graph, const PassTypeRegistry& pass_types);
 std::vector<uint8_t> left_out_without_bounds(const PassTypeRegistry& pass_types, const Plan& plan);
 
 // Returns whether a pass that does not serve scattering reads what only earlier passes that do
-// serve scattering have written. A frame with empty bounds then needs its own plan, in which each
-// such port gets its `otherwise`, is unbound, or turns the pass off.
-bool reads_what_is_left_out(const PassTypeRegistry& pass_types, const Plan& plan);
+// serve scattering have written, or what their `otherwise` replaces. A frame with empty bounds then
+// needs its own plan, in which each such port gets its `otherwise`, is unbound, or turns the pass
+// off. `graph`: of the plan.
+bool reads_what_is_left_out(const Graph& graph, const PassTypeRegistry& pass_types,
+                            const Plan& plan);
 
 // Adds a reason for each pass of the plan that turn_scattering_off() turned off in
 // `without_scattering` for lack of an input.

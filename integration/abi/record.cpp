@@ -50,13 +50,14 @@ void repeat_share(dermis_view_t& view) {
 dermis_result discard(dermis_view_t& view, const char* function, uint64_t frame_index) {
   const Log& log = view.context->log;
   dermis_view_t::Recorded& recorded = view.recorded;
-  if (!recorded.known || frame_index != view.last_frame)
+  if (!recorded.known)
     return bad_argument(log,
-                        "{}: frame_index is {}, expected that of the frame recorded last, {}{}",
-                        function, frame_index, view.last_frame,
-                        recorded.known || view.last_frame == 0
-                            ? ""
-                            : "; only that frame can be discarded, and only once");
+                        "{}: no frame can be discarded: none was recorded since the view was "
+                        "created or the last frame was discarded",
+                        function);
+  if (frame_index != view.last_frame)
+    return bad_argument(log, "{}: frame_index is {}, expected that of the frame recorded last, {}",
+                        function, frame_index, view.last_frame);
   if (recorded.took_over && view.next)
     return bad_argument(
         log,

@@ -112,6 +112,8 @@ std::string_view text_of(CameraFault fault) {
   case CameraFault::no_projection:
     return "clip_from_view (without the jitter) is not an axis-aligned perspective or orthographic "
            "projection with finite elements";
+  case CameraFault::no_depth:
+    return "clip_from_view maps all points to one depth: elements 8 to 11 are its depth row";
   case CameraFault::stored_by_columns:
     return "clip_from_view is not a projection because it is stored column by column; store row r, "
            "column c "

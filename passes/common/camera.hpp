@@ -48,6 +48,7 @@ struct CameraMatrices {
 enum class CameraFault : uint8_t {
   none,
   no_projection,
+  no_depth,               // the depth row maps all points to one depth
   stored_by_columns,      // as GLM and shaders store matrices
   declared_left,          // and clip_from_view has w = -z
   declared_right,         // and clip_from_view has w = z

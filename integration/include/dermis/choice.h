@@ -58,7 +58,8 @@ DERMIS_API dermis_result DERMIS_CALL dermis_graph_set_budget(
 #define DERMIS_SKIP_HISTORY 0x20u     /* history was not read: it, or the previous camera, was invalid */
 
 /* The choice for one frame and its result, for a host to show or log. Strings are valid until the
- * next reload, resize, set_setting, set_profile, set_budget or destroy. */
+ * next reload, reload_shaders, resize, set_setting of the graph or the view, set_profile, set_budget
+ * or destroy; no other thread may make such a call while they are used. */
 typedef struct dermis_frame_report {
   size_t struct_size;
   uint64_t frame_index;      /* of the frame described here */
@@ -74,9 +75,10 @@ typedef struct dermis_frame_report {
 } dermis_frame_report;
 #define DERMIS_FRAME_REPORT_INIT {sizeof(dermis_frame_report), 0, NULL, NULL, NULL, 0, 0, 0, 0, 0}
 /* Reads the counters of frames up to `completed_frame_index`, as in dermis_frame, and describes the
- * newest frame whose counters were read, by this or an earlier call. NOT_READY after a call that
- * compiles the graph again, until a frame recorded after it has completed. Costs: none. Thread: one
- * per view. Errors: ARGUMENT, NOT_READY, DEVICE_LOST. */
+ * newest frame whose counters were read, by this or an earlier call. After a call that compiles the
+ * graph again, earlier frames are described until the next record, which ends the strings; then
+ * NOT_READY until a frame recorded since has completed. Costs: none. Thread: one per view. Errors:
+ * ARGUMENT, NOT_READY, DEVICE_LOST. */
 DERMIS_API dermis_result DERMIS_CALL dermis_view_report(
     dermis_view view, uint64_t completed_frame_index, dermis_frame_report* report);
 

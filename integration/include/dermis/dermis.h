@@ -267,7 +267,7 @@ typedef struct dermis_context_desc {
   VkPhysicalDevice physical_device;
   VkDevice device;
   PFN_vkGetInstanceProcAddr get_instance_proc_addr;
-  VkPipelineCache pipeline_cache;            /* may be null */
+  VkPipelineCache pipeline_cache;            /* may be null; must outlive the context */
   const VkAllocationCallbacks* vk_allocator; /* may be NULL; must outlive the context */
   dermis_log_fn log;                         /* may be NULL */
   void* log_user;
@@ -404,7 +404,7 @@ DERMIS_API dermis_result DERMIS_CALL dermis_graph_reload(
  * Otherwise like a reload: errors have file and line, on failure nothing changes, histories and
  * settings continue. The compiler uses the C library's memory. Takes seconds. Costs: as
  * dermis_graph_create. Thread: concurrent. Errors: as dermis_graph_create; UNSUPPORTED also if the
- * library was built without DERMIS_RUNTIME_SHADERS. */
+ * library was built without DERMIS_RUNTIME_SHADERS and `open` is not NULL. */
 DERMIS_API dermis_result DERMIS_CALL dermis_graph_reload_shaders(
     dermis_graph graph, dermis_include_fn open, void* user, dermis_report* report);
 /* Changes the allocated size of all views and keeps the pixel_aspect. Histories become invalid,
@@ -889,11 +889,11 @@ DERMIS_API dermis_result DERMIS_CALL dermis_view_commands(
  * set_setting, set_profile). The command buffer must not run. Costs:
  * none. Thread: one per view. Errors: ARGUMENT. */
 DERMIS_API dermis_result DERMIS_CALL dermis_view_discard(dermis_view view, uint64_t frame_index);
-/* Returns the device times of the newest completed frame, in plan order. NOT_READY after a call that
- * compiles the graph again, until a frame recorded after it has completed. Needs
- * DERMIS_CONTEXT_TIMINGS and a queue with timestamps. `completed_frame_index` as in dermis_frame.
- * Two-call array. Costs: none. Thread: one per view. Errors: ARGUMENT, INCOMPLETE, NOT_READY,
- * MEMORY, DEVICE_LOST. */
+/* Returns the device times of the newest completed frame, in plan order. After a call that compiles
+ * the graph again, they are those of earlier frames until the next record; then NOT_READY until a
+ * frame recorded since has completed. Needs DERMIS_CONTEXT_TIMINGS and a queue with timestamps.
+ * `completed_frame_index` as in dermis_frame. Two-call array. Costs: none. Thread: one per view.
+ * Errors: ARGUMENT, INCOMPLETE, NOT_READY, MEMORY, DEVICE_LOST. */
 DERMIS_API dermis_result DERMIS_CALL dermis_view_timings(
     dermis_view view, uint64_t completed_frame_index, uint32_t* count, dermis_pass_timing* timings);
 /* Returns each history of the graph, including those of plans that do not run now, as the plan that

@@ -458,6 +458,20 @@ TEST_F(Choice, UnfinishedFrame_IsNotReady) {
     EXPECT_EQ(demo::read_reported(dermis_graph_view(graph), completed, choice), DERMIS_NOT_READY);
 }
 
+TEST_F(Choice, CompiledAgain_IsNotReadyFromItsFirstRecordOn) {
+  make();
+  run_frame();
+  demo::ReportedFrame choice;
+  const dermis_view view = dermis_graph_view(graph);
+  ASSERT_OK(dermis_graph_set_setting(graph, "technique", "\"separable\"", nullptr));
+  ASSERT_OK(demo::read_reported(view, last_frame, choice)) << "of the graph before";
+  make_images(graph);
+  dermis_frame frame = bound_frame(graph);
+  record_unsubmitted(graph, frame);
+  EXPECT_EQ(demo::read_reported(view, last_frame, choice), DERMIS_NOT_READY);
+  ASSERT_OK(dermis_view_discard(view, frame.frame_index));
+}
+
 TEST_F(Choice, WrongBudgetsAreRejectedAndChangeNothing) {
   make();
   set_budget(30);

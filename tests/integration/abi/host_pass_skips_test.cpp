@@ -43,6 +43,7 @@ struct HostPassSkips : DermisTest {
     add("studio.scatter", {written}, true);
     add("studio.count", {written}, false, true);
     add("studio.change", {port_of("out", DERMIS_PORT_STORAGE_IMAGE_UPDATE)}, false);
+    add("studio.rescatter", {port_of("out", DERMIS_PORT_STORAGE_IMAGE_UPDATE)}, true);
     add("studio.scatter_list", {port_of("list", DERMIS_PORT_STORAGE_BUFFER_WRITE)}, true);
     add("studio.use_list", {port_of("list", DERMIS_PORT_STORAGE_BUFFER_READ), written}, false);
     add("studio.remember",
@@ -132,6 +133,19 @@ TEST_F(HostPassSkips, OtherwiseIsRead) {
     EXPECT_THAT(
         described(),
         HasSubstr("off: its pass type only serves scattering, and the graph has no profile"));
+  }
+}
+
+// The replacement is read although another pass has written the resource before.
+TEST_F(HostPassSkips, OtherwiseOfAnUpdate_IsRead) {
+  for (const Way& way : nothing_scatters) {
+    run(pass("make", "", "lit") +
+            R"(, { "pass": "again", "type": "studio.rescatter", "write": { "out": "lit" }, "otherwise": { "lit": "given" } }, )" +
+            pass("tone", "lit"),
+        way);
+    EXPECT_THAT(calls, ElementsAre("tone")) << way.profiles;
+    for (const dermis_slot& slot : list_of(dermis_slot DERMIS_SLOT_INIT, dermis_graph_slots, graph))
+      EXPECT_EQ(slot.read, slot.name == std::string("given") ? 1u : 0u) << slot.name;
   }
 }
 

@@ -101,6 +101,11 @@ TEST_F(Frames, WrongField_IsNamed) {
       {"layer_count 0, which means all layers", [](auto&, auto& b) { b[0].layer = 1; }},
       {"a second time", [](auto&, auto& b) { b[1].slot = b[0].slot; }},
       {"clip_from_view", [](auto& f, auto&) { f.clip_from_view[1] = 1; }},
+      {"maps all points to one depth",
+       [](auto& f, auto&) {
+         f.depth_kind = DERMIS_DEPTH_DEVICE;
+         f.clip_from_view[10] = 0; // orthographic
+       }},
   };
   const dermis_frame good = host.frame_at(2);
   const uint64_t commands = host.device.commands();
@@ -187,7 +192,7 @@ TEST_F(Frames, Discard_WorksOnceAndNotAcrossAReload) {
   ASSERT_OK(host.record());
   rejected(1, "expected that of the frame recorded last, 2");
   EXPECT_OK(dermis_view_discard(dermis_graph_view(host.graph), 2));
-  rejected(1, "only that frame can be discarded, and only once");
+  rejected(1, "no frame can be discarded: none was recorded since");
   // The first frame of a reloaded graph, after the next reload.
   ASSERT_OK(host.reload());
   host.last_frame = 1;
