@@ -9,8 +9,8 @@ source "$root/.ci/common.sh"
 
 usage="usage: ./demo.sh [--head FOLDER]
 Builds the library and the dermis command into build/release and renders a bust with three graphs
-into out/. Prints device times and errors, then renders a sheet of every technique and material. On
-Debian, as root or with sudo, the script first installs missing packages; elsewhere they must be
+into out/. Prints device times and errors, then renders a sheet of six techniques and materials.
+On Debian, as root or with sudo, the script first installs missing packages; elsewhere they must be
 installed. The first run takes several minutes.
   --head FOLDER   also render the head scan in FOLDER, which must contain LeePerrySmith.glb,
                   Map-COL.jpg, Map-SPEC.jpg and Infinite-Level_02_Tangent_SmoothUV.jpg"

@@ -1,4 +1,5 @@
 #include "integration/tools/command/present.hpp"
+#include "integration/tools/command/session.hpp"
 
 #include <fmt/format.h>
 
@@ -154,12 +155,12 @@ void Progress::draw(uint64_t done, double elapsed_seconds) {
   const std::string pace = fmt::format("{} of {} {}s, {:.3g} {}s/s, {} left", done, total_, unit_,
                                        rate, unit_, format_duration(left));
   if (style_ == ProgressStyle::lines) {
-    fmt::print(stderr, "{}: {}\n", what_, pace);
+    print_message(fmt::format("{}: {}\n", what_, pace));
     return;
   }
   const uint64_t filled = bar_cells * done / total_;
-  fmt::print(stderr, "\r{} [{}{}] {:3}% {}\x1b[K", what_, std::string(filled, '#'),
-             std::string(bar_cells - filled, '.'), 100 * done / total_, pace);
+  print_message(fmt::format("\r{} [{}{}] {:3}% {}\x1b[K", what_, std::string(filled, '#'),
+                            std::string(bar_cells - filled, '.'), 100 * done / total_, pace));
   std::fflush(stderr);
   bar_visible_ = true;
 }

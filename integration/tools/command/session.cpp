@@ -65,12 +65,16 @@ void print_beside_document(const Session& session, const Diagnostics& diagnostic
   for (const Diagnostic& one : diagnostics.list) {
     if (session.quiet && diagnostic_info(one.id).severity != Severity::error) continue;
     const std::string text = format_for_people(diagnostics, one);
-    fmt::print(stderr, "{}\n", color ? color_diagnostic(text) : text);
+    print_message((color ? color_diagnostic(text) : text) + "\n");
   }
 }
 
 void say(const Session& session, std::string_view text) {
   if (!session.json && !session.quiet) print(for_terminal(text));
+}
+
+void print_message(std::string_view text) {
+  std::fwrite(text.data(), 1, text.size(), stderr);
 }
 
 void print(std::string_view text) {

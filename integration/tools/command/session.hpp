@@ -40,6 +40,9 @@ void print(std::string_view text);
 // Returns whether some text could not be written to stdout.
 bool is_output_lost();
 
+// Prints text on stderr. Ignores failures: work goes on if nobody can read its messages.
+void print_message(std::string_view text);
+
 // Prints all diagnostics on stderr, also with --json, for verbs whose JSON document does not
 // contain them; only errors with --quiet.
 void print_beside_document(const Session& session, const Diagnostics& diagnostics);

@@ -175,7 +175,8 @@ void add_picture_verbs(CLI::App& app, Invocation& invocation) {
         add_graph_inputs(verb, options.inputs);
       });
   add_verb<SheetOptions>(
-      app, invocation, "sheet", "Render a scene with every technique and material into one image",
+      app, invocation, "sheet",
+      "Render a scene with several techniques and materials into one image",
       "dermis sheet --out out/sheet.png", sheet, [](CLI::App& verb, SheetOptions& options) {
         add_path(verb, "scene", options.scene, "Scene file [configs/scenes/bust.json]");
         add_path(verb, "--out,-o", options.out, "PNG file to write")->required();

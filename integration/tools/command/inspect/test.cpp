@@ -189,9 +189,8 @@ void print_result(const Session& session, const TestRun& run) {
   if (session.json) return;
   for (const TestResult& one : run.suite.results)
     if (!one.message.empty())
-      fmt::print(stderr, "{}",
-                 for_terminal(fmt::format("{}: case '{}': {}\n{}", run.suite.name, one.name,
-                                          one.message, one.details)));
+      print_message(for_terminal(fmt::format("{}: case '{}': {}\n{}", run.suite.name, one.name,
+                                             one.message, one.details)));
   const size_t count = run.suite.results.size();
   if (run.updated > 0)
     say(session, fmt::format("{}: {} of {} cases updated\n", run.suite.name, run.updated, count));
