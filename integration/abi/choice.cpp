@@ -195,7 +195,8 @@ uint32_t skips_of(const FrameChoice& frame, const CompiledGraph& compiled_graph)
   if (compiled_graph.without_material) return DERMIS_SKIP_NO_MATERIAL;
   if (frame.left_out) return DERMIS_SKIP_NO_BOUNDS;
   uint32_t skips = 0;
-  if (seen.scattering_tiles + seen.copied_tiles + seen.uniform_tiles == 0)
+  if (compiled_graph.plans[frame.plan].counts_tiles &&
+      seen.scattering_tiles + seen.copied_tiles + seen.uniform_tiles == 0)
     skips |= DERMIS_SKIP_NOTHING_SEEN;
   if (seen.copied_tiles > 0) skips |= DERMIS_SKIP_SUBPIXEL;
   if (seen.uniform_tiles > 0) skips |= DERMIS_SKIP_UNIFORM_LIGHT;
@@ -204,7 +205,7 @@ uint32_t skips_of(const FrameChoice& frame, const CompiledGraph& compiled_graph)
 }
 
 // Returns why a frame took longer than its budget and its prediction.
-const char* miss_of(const FrameChoice& frame) {
+const char* miss_of(const FrameChoice& frame, bool counts_tiles) {
   constexpr double tolerance = 1.15; // times the budget, as in dermis bench budget
   constexpr double changed_by = 0.1; // fraction of the tiles
   if (!frame.timed || frame.budget_ms <= 0 || frame.measured_ms <= tolerance * frame.budget_ms)
@@ -215,7 +216,7 @@ const char* miss_of(const FrameChoice& frame) {
   const double seen =
       static_cast<double>(uint64_t{frame.counters.scattering_tiles} + frame.counters.copied_tiles +
                           frame.counters.uniform_tiles);
-  return std::abs(seen - expected) > changed_by * std::max(expected, 1.0)
+  return counts_tiles && std::abs(seen - expected) > changed_by * std::max(expected, 1.0)
              ? "the number of tiles changed"
              : "passes took longer than their learned times";
 }
@@ -226,7 +227,7 @@ dermis_frame_report make_report(const Chooser& chooser, const CompiledGraph& com
   out.frame_index = frame.frame_index;
   out.configuration = compiled_graph.configurations[frame.configuration].name.c_str();
   out.reason = choice::why_text(frame.decision);
-  out.miss = miss_of(frame);
+  out.miss = miss_of(frame, compiled_graph.plans[frame.plan].counts_tiles);
   out.budget_ms = static_cast<float>(frame.budget_ms);
   out.predicted_ms = static_cast<float>(frame.decision.expected_ms);
   out.measured_ms = frame.timed ? static_cast<float>(frame.measured_ms) : -1.0f;

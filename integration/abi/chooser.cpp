@@ -20,6 +20,7 @@ uint64_t listed_tiles(const subsurface::FrameCounters& counters) {
 constexpr double assumed_d_px = 1; // pixels; before any frame has been counted
 constexpr double dark_s = 1;       // so long without transmitted light, none is expected
 constexpr double ns_per_ms = 1e6;
+constexpr std::string_view counting_pass_type = "subsurface.classify"; // writes counters of tiles
 
 // Tests ensure that both built-in files read without errors.
 choice::ErrorModel default_errors() {
@@ -74,7 +75,7 @@ FrameChoice& place_of(Chooser& chooser, uint64_t frame_index) {
 }
 
 void learn(Chooser& chooser, std::span<const choice::PassLoad> passes, choice::TimeMargins& margins,
-           bool same_work, FrameChoice& frame) {
+           bool same_work, bool counts_tiles, FrameChoice& frame) {
   const choice::FrameLoad load = load_of(frame.counters, frame.rectangle);
   frame.measured_ms = 0;
   chooser.pass_times.clear();
@@ -87,7 +88,7 @@ void learn(Chooser& chooser, std::span<const choice::PassLoad> passes, choice::T
   chooser.costs.observe(chooser.pass_times, chooser.state.clock_s);
   // After a step of the device the times before do not count. Empty dispatches teach nothing.
   if (frame.decision.measured && !chooser.costs.device_stepped() &&
-      listed_tiles(frame.counters) > 0)
+      (listed_tiles(frame.counters) > 0 || !counts_tiles))
     chooser.last_margin = margins.observe(frame.configuration, frame.decision.expected_ms,
                                           frame.measured_ms, chooser.budget.percentile);
 }
@@ -122,7 +123,8 @@ void observe_frame(Chooser& chooser, CompiledGraph& compiled_graph, FrameChoice&
         calibrated_ms(configuration, chooser.costs, load_of(frame.counters, frame.rectangle));
   // Settings other than those of the frame have another cost and error.
   const bool same_work = frame.revision == compiled_graph.revision;
-  if (counted && frame.timed) learn(chooser, passes, compiled_graph.margins, same_work, frame);
+  if (counted && frame.timed)
+    learn(chooser, passes, compiled_graph.margins, same_work, plan.counts_tiles, frame);
   if (frame.decision.rejected != choice::no_configuration)
     reduce_optimism(chooser.costs, compiled_graph.configurations[frame.decision.rejected]);
   // Errors of the content before a cut would count as those of the present content.
@@ -133,8 +135,7 @@ void observe_frame(Chooser& chooser, CompiledGraph& compiled_graph, FrameChoice&
   frame.observed = true;
   if (frame.frame_index <= chooser.newest.frame_index) return;
   chooser.newest = frame;
-  // no tile was classified
-  if (!counted || frame.left_out || compiled_graph.without_material) return;
+  if (!counted || frame.left_out || !plan.counts_tiles) return;
   const bool samples = configuration.takes_samples && !configuration.selects_tiles;
   if (samples && frame.counters.scattering_tiles > 0)
     record_units(chooser.demand, subsurface::mean_d_px(frame.counters),
@@ -255,7 +256,7 @@ choice::Decision without_budget(const choice::Forecast& forecast) {
 }
 
 // Returns the milliseconds that the frame may take.
-double budget_of_frame(const Chooser& chooser, const FrameRequest& request, bool idle,
+double budget_of_frame(const Chooser& chooser, const FrameRequest& request, bool idle, bool counted,
                        std::span<const choice::Forecast> forecasts) {
   if (!chooser.budget.all_views) return chooser.budget.ms;
   const choice::DecisionState& state = chooser.scratch.state;
@@ -264,7 +265,7 @@ double budget_of_frame(const Chooser& chooser, const FrameRequest& request, bool
                                                      : choice::make_offers(forecasts, state);
   const std::lock_guard lock(request.shared->mutex);
   return request.shared->division.share(*request.share, chooser.budget.ms, offers,
-                                        chooser.counted || request.empty_bounds, request.seconds);
+                                        counted || request.empty_bounds, request.seconds);
 }
 
 SelectionChange next_selection(const SelectionChange& before, const FrameChoice& frame) {
@@ -284,6 +285,19 @@ uint32_t units_of(const choice::Decision& decision, const choice::Forecast& fore
   return forecast.takes_samples
              ? static_cast<uint32_t>(std::min(decision.max_units, double(UINT32_MAX)))
              : UINT32_MAX;
+}
+
+bool counts_tiles(const CompiledPlan& compiled, const PassTypeRegistry& pass_types) {
+  return std::ranges::any_of(compiled.plan.passes, [&](const PlanPass& pass) {
+    return pass_types[pass.type].name == counting_pass_type;
+  });
+}
+
+// Returns whether frames with the configuration that runs count tiles; before the first frame,
+// whether those with the defaults do.
+bool counts_tiles(const CompiledGraph& compiled_graph, uint32_t current) {
+  const bool first = current >= compiled_graph.configurations.size();
+  return compiled_graph.plans[compiled_graph.configurations[first ? 0 : current].plan].counts_tiles;
 }
 
 } // namespace
@@ -321,8 +335,10 @@ void adopt(Chooser& chooser, const PassTypeRegistry& pass_types, CompiledGraph& 
             .passes;
   }
   size_t passes = chooser.times.size();
-  for (const RunnablePlan& plan : compiled_graph.plans)
+  for (RunnablePlan& plan : compiled_graph.plans) {
     passes = std::max(passes, plan.compiled->plan.passes.size());
+    plan.counts_tiles = counts_tiles(*plan.compiled, pass_types);
+  }
   chooser.times.resize(passes);
   chooser.pass_times.reserve(passes);
   const size_t configurations =
@@ -372,14 +388,17 @@ FrameChoice choose(Chooser& chooser, const CompiledGraph& compiled_graph,
       forecast_first(chooser, compiled_graph, count, content, state.clock_s);
   choice::FrameInput input;
   input.empty = request.empty_bounds;
-  input.idle = input.empty || (chooser.counted && chooser.counters.scattering_tiles == 0);
+  // Frames of a plan that counts no tiles do not show whether anything scatters.
+  const bool counts = counts_tiles(compiled_graph, state.current);
+  const bool counted = chooser.counted || !counts;
+  input.idle = input.empty || (counts && counted && chooser.counters.scattering_tiles == 0);
   if (chooser.budget.ms > 0)
-    frame.budget_ms = budget_of_frame(chooser, request, input.idle, forecasts);
+    frame.budget_ms = budget_of_frame(chooser, request, input.idle, counted, forecasts);
   input.budget_ms = frame.budget_ms;
   input.seconds = request.seconds;
   input.cut = request.cut;
   input.provisional =
-      !chooser.counted || (request.empty_bounds && state.current == choice::no_configuration);
+      !counted || (request.empty_bounds && state.current == choice::no_configuration);
   input.trials = chooser.budget.trials;
   input.learning = is_learning(chooser, compiled_graph);
   if (chooser.budget.ms > 0) {
@@ -394,7 +413,7 @@ FrameChoice choose(Chooser& chooser, const CompiledGraph& compiled_graph,
   frame.switches = state.switches;
   frame.cut = request.cut;
   plan_probe(frame, chooser, compiled_graph.configurations[frame.configuration], content.key,
-             !input.idle);
+             counts && !input.idle);
   return frame;
 }
 

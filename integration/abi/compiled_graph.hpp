@@ -86,6 +86,7 @@ struct RunnablePlan {
   std::vector<uint8_t> left_out{};
   // by plan pass; only for plans of frames with empty bounds, others use Configuration::passes
   std::vector<choice::PassLoad> loads{};
+  bool counts_tiles = false; // a pass counts the tiles that scatter; set by adopt()
 };
 
 // Holds the compiled graph of one view. Views of one graph share compiled plans and pipelines;

@@ -41,6 +41,9 @@ constexpr double first_backoff_s = 1, max_backoff_s = 64, calm_backoffs = 10;
 constexpr double forgotten_backoffs = 10;
 // A configuration that was not tried in the first seconds is not tried for this time.
 constexpr double untried_backoff_s = 300;
+// A configuration that is left within this time because it takes longer than expected was
+// misjudged. An equal expectation is wrong again.
+constexpr double misjudged_s = 2;
 // During its back-off, a configuration is tried only if it became cheaper by this logarithm.
 constexpr double changed = 0.10;
 // Times within this factor count as equal where nothing fits.
@@ -299,7 +302,8 @@ private:
   }
 
   bool is_worth_a_switch(uint32_t i) const {
-    return state_.tokens >= (assessed_[i].trial ? trial_tokens : better_tokens) &&
+    const bool may_fail = assessed_[i].trial || state_.configurations[i].misjudged;
+    return state_.tokens >= (may_fail ? trial_tokens : better_tokens) &&
            assessed_[i].entering_rmse <=
                (unproven(i) ? worth_a_try : gain_to_leave()) * assessed_[state_.current].rmse;
   }
@@ -324,7 +328,10 @@ private:
     const bool switched = before != no_configuration && now != before;
     if (switched && !state_.provisional) leave(before, decision);
     if (switched && !state_.provisional) ++state_.switches;
-    if (switched || before == no_configuration) state_.entered_s = state_.clock_s;
+    if (switched || before == no_configuration) {
+      state_.entered_s = state_.clock_s;
+      state_.entered_ms = assessed_[now].trial ? HUGE_VAL : forecasts_[now].time.expected_ms;
+    }
     if (switched) {
       state_.before = before;
       state_.tried = unproven(now);
@@ -336,6 +343,7 @@ private:
     kept.ran = true;
     if (state_.clock_s - state_.entered_s > calm_backoffs * kept.backoff_s)
       kept.backoff_s = first_backoff_s;
+    if (state_.clock_s - state_.entered_s > misjudged_s) kept.misjudged = false;
     take_units(switched, decision);
   }
 
@@ -344,7 +352,13 @@ private:
     const bool over = assessed_[before].running_ms > assessed_[before].leave_ms;
     if (!over) return;
     DecisionState::Configuration& kept = state_.configurations[before];
-    kept.left_ratio = forecasts_[before].time.pessimistic_ms / frame_.budget_ms;
+    double ms = forecasts_[before].time.pessimistic_ms;
+    if (state_.clock_s - state_.entered_s < misjudged_s &&
+        state_.entered_ms < ms * std::exp(-changed)) {
+      ms = state_.entered_ms;
+      kept.misjudged = true;
+    }
+    kept.left_ratio = ms / frame_.budget_ms;
     kept.left_s = state_.clock_s;
     kept.backoff_s = std::min(2 * kept.backoff_s, max_backoff_s);
     decision.rejected = before;

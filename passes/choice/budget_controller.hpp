@@ -109,8 +109,9 @@ struct DecisionState {
   struct Configuration {
     double backoff_s = 1;  // time without a trial after the configuration was left
     double left_s = -1e9;  // when it was left over budget
-    double left_ratio = 0; // its time over the budget then
+    double left_ratio = 0; // its time over the budget then, or the time expected when it entered
     bool ran = false;
+    bool misjudged = false; // it took longer than expected when it entered, and was left soon
   };
   std::vector<Configuration> configurations; // empty: restart() was not called
   uint32_t current = no_configuration;       // of the last frame
@@ -120,8 +121,9 @@ struct DecisionState {
   double units = 0;                          // of samples in the last frame
   double clock_s = 0;                        // sum of the seconds of all frames
   double started_s = 0, entered_s = 0;       // clock at restart(), and at the last switch
-  double tokens = 0;                         // switches that may follow at once (token bucket)
-  uint32_t switches = 0;                     // since the state was created
+  double entered_ms = 0; // expected time of `current` at the last switch; infinite for a trial
+  double tokens = 0;     // switches that may follow at once (token bucket)
+  uint32_t switches = 0; // since the state was created
 };
 
 // Forgets everything except the clock and the number of switches. `unmeasured`: number of passes
