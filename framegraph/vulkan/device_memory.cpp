@@ -44,7 +44,7 @@ Error allocate_from_host(const Device& device, const MemoryRequest& request,
     return {};
   }
   if (given.memory != VK_NULL_HANDLE) free_memory(device, given);
-  return {ErrorKind::vulkan, VK_SUCCESS,
+  return {ErrorKind::allocator, VK_SUCCESS,
           fmt::format("{}: the host's allocator returned {}", object,
                       given.memory == VK_NULL_HANDLE ? std::string("no memory")
                       : unmapped                     ? std::string("memory that is not mapped")

@@ -11,6 +11,7 @@ namespace dermis::vulkan {
 enum class ErrorKind : uint8_t {
   none,
   argument,      // the caller's input does not fit the plan
+  allocator,     // the host's allocator returned memory that cannot be used
   unsupported,   // the device lacks something
   shader,        // a kernel does not fit its signature
   host_memory,   // VK_ERROR_OUT_OF_HOST_MEMORY

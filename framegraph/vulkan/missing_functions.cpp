@@ -1,5 +1,7 @@
 #include "framegraph/vulkan/missing_functions.hpp"
 
+#include "framegraph/vulkan/function_table.hpp"
+
 #include <algorithm>
 #include <array>
 #include <fmt/format.h>
@@ -57,6 +59,11 @@ std::string explain_missing(std::span<const std::string> missing, uint32_t devic
       std::erase(unexplained, name);
     }
   }
+  std::string of_labels;
+#define DERMIS_TAKE(name)                                                                          \
+  if (std::erase(unexplained, #name) > 0) append(of_labels, ", ", #name);
+  DERMIS_LABEL_FUNCTIONS(DERMIS_TAKE)
+#undef DERMIS_TAKE
   std::string text;
   if (!of_instance.empty())
     text =
@@ -71,6 +78,12 @@ std::string explain_missing(std::span<const std::string> missing, uint32_t devic
            fmt::format("the device was created without the functions {}; enable {} in "
                        "VkDeviceCreateInfo.ppEnabledExtensionNames",
                        of_extensions, extensions));
+  if (!of_labels.empty())
+    append(
+        text, "; ",
+        fmt::format("labels need {}, of {}, which the instance was created without; enable it in "
+                    "VkInstanceCreateInfo.ppEnabledExtensionNames, or ask for no labels",
+                    of_labels, VK_EXT_DEBUG_UTILS_EXTENSION_NAME));
   if (!unexplained.empty())
     append(text, "; ",
            fmt::format("the device does not provide {} required function{}: {}", unexplained.size(),

@@ -15,6 +15,7 @@ dermis_result result_of(vulkan::ErrorKind kind) {
   case vulkan::ErrorKind::none:
     return DERMIS_OK;
   case vulkan::ErrorKind::argument:
+  case vulkan::ErrorKind::allocator:
     return DERMIS_ERROR_ARGUMENT;
   case vulkan::ErrorKind::unsupported:
     return DERMIS_ERROR_UNSUPPORTED;
@@ -35,6 +36,7 @@ dermis_result result_of(vulkan::ErrorKind kind) {
 DiagnosticId diagnostic_of(vulkan::ErrorKind kind) {
   switch (kind) {
   case vulkan::ErrorKind::argument:
+  case vulkan::ErrorKind::allocator:
     return DiagnosticId::host_argument;
   case vulkan::ErrorKind::unsupported:
     return DiagnosticId::device_unsupported;

@@ -72,6 +72,22 @@ inline dermis_result rejected_size(const Log& log, SizedRead why, const char* fu
   return rejected_size(log, why, fmt::format("{}: {}", function, argument), stated, minimum);
 }
 
+// Rejects what read_element did not accept. `array`: its name. Allocates nothing.
+template <class T>
+dermis_result rejected_element(const Log& log, SizedRead why, const char* function,
+                               const char* array, const T* items, uint32_t i) noexcept {
+  const size_t stated = stated_size(element(items, i)), first = stated_size(items);
+  if (stated != first)
+    return bad_argument(log, "{}: {}[{}].struct_size is {}, expected {} as in {}[0]", function,
+                        array, i, stated, first, array);
+  if (why == SizedRead::unknown_fields)
+    return fail(log, DERMIS_ERROR_VERSION, DiagnosticId::host_struct_version,
+                "{}: {}[{}] has fields beyond those this library knows that are not zero", function,
+                array, i);
+  return bad_argument(log, "{}: {}[{}].struct_size is {}, expected {}..{}: use its INIT macro",
+                      function, array, i, stated, sizeof(T), largest_struct_size);
+}
+
 // Runs the body of an exported function with the host's allocator. Converts every exception, e.g.
 // of the standard library or fmt, into a result.
 template <class Body>

@@ -17,7 +17,7 @@ constexpr uint32_t known_frame_flags =
 
 dermis_result check_numbers(const dermis_view_t& view, const dermis_frame& frame) {
   const Log& log = view.context->log;
-  const char* const function = "dermis_view_record";
+  const char* const function = view.function;
   const uint32_t in_flight = view.context->frames_in_flight;
   if (frame.command_buffer == VK_NULL_HANDLE)
     return bad_argument(log, "{}: command_buffer is NULL", function);
@@ -114,7 +114,7 @@ std::string_view format_name(VkFormat format) {
 dermis_result check_state(const dermis_view_t& view, uint32_t index, const Slot& slot,
                           const char* which, const dermis_image_state& state) {
   const Log& log = view.context->log;
-  const char* const function = "dermis_view_record";
+  const char* const function = view.function;
   if (state.access != 0 && state.stages == 0)
     return bad_argument(log, "{}: bindings[{}].{} ('{}') has access {:#x} but no stages", function,
                         index, which, slot.name, state.access);
@@ -137,7 +137,7 @@ bool is_only_initial(VkImageLayout layout) {
 dermis_result check_binding(const dermis_view_t& view, uint32_t index, const Slot& slot,
                             const dermis_image_binding& binding) {
   const Log& log = view.context->log;
-  const char* const function = "dermis_view_record";
+  const char* const function = view.function;
   if (binding.image == VK_NULL_HANDLE ||
       (binding.view == VK_NULL_HANDLE && binding.content_id == 0))
     return bad_argument(log, "{}: bindings[{}].{} ('{}') is null", function, index,
@@ -189,7 +189,7 @@ dermis_result find_view(dermis_view_t& view, uint32_t index, const Slot& slot,
   if (binding.view != VK_NULL_HANDLE || (slot.vk_usage & vulkan::viewable_usage) == 0)
     return DERMIS_OK;
   const Log& log = view.context->log;
-  const char* const function = "dermis_view_record";
+  const char* const function = view.function;
   const ImageViewKey key{binding.slot,
                          binding.image,
                          binding.content_id,
@@ -243,28 +243,15 @@ dermis_result check_complete(const Log& log, const char* function,
 dermis_result check_bindings(dermis_view_t& view, CompiledGraph& compiled_graph,
                              const dermis_frame& frame) {
   const Log& log = view.context->log;
-  const char* const function = "dermis_view_record";
+  const char* const function = view.function;
   if (frame.binding_count > 0 && frame.bindings == nullptr)
     return bad_argument(log, "{}: bindings is NULL and binding_count is {}", function,
                         frame.binding_count);
   std::fill(compiled_graph.images.begin(), compiled_graph.images.end(), vulkan::HostImage{});
-  const auto* at = reinterpret_cast<const std::byte*>(frame.bindings);
-  const size_t step = frame.binding_count > 0 ? stated_size(at) : 0;
   for (uint32_t i = 0; i < frame.binding_count; ++i) {
-    const std::byte* from = at + i * step;
     dermis_image_binding binding = DERMIS_IMAGE_BINDING_INIT;
-    const SizedRead read =
-        stated_size(from) == step ? read_sized(from, binding) : SizedRead::too_small;
-    if (read == SizedRead::unknown_fields)
-      return fail(log, DERMIS_ERROR_VERSION, DiagnosticId::host_struct_version,
-                  "{}: bindings[{}] has fields beyond those this library knows that are not zero",
-                  function, i);
-    if (read != SizedRead::ok)
-      return bad_argument(
-          log,
-          "{}: bindings[{}].struct_size is {}, expected {} as in bindings[0], at least {}: use "
-          "DERMIS_IMAGE_BINDING_INIT",
-          function, i, stated_size(from), step, sizeof(dermis_image_binding));
+    if (const SizedRead read = read_element(frame.bindings, i, binding); read != SizedRead::ok)
+      return rejected_element(log, read, function, "bindings", frame.bindings, i);
     if (binding.slot >= compiled_graph.slots.size())
       return bad_argument(log, "{}: bindings[{}].slot is {}, the graph has slots 0..{}", function,
                           i, binding.slot, static_cast<int64_t>(compiled_graph.slots.size()) - 1);
@@ -367,7 +354,7 @@ std::string_view hint_of(subsurface::CameraFault fault) {
 dermis_result check_frame(dermis_view_t& view, CompiledGraph& compiled_graph,
                           const dermis_frame& frame, CheckedFrame& checked) {
   const Log& log = view.context->log;
-  const char* const function = "dermis_view_record";
+  const char* const function = view.function;
   if (const dermis_result result = check_numbers(view, frame); result != DERMIS_OK) return result;
   if (const dermis_result result =
           check_rectangle(log, function, compiled_graph.plans.front().compiled->plan, frame,
@@ -384,7 +371,7 @@ dermis_result check_frame(dermis_view_t& view, CompiledGraph& compiled_graph,
 dermis_result fill_frame(const dermis_view_t& view, const CompiledGraph& compiled_graph,
                          const Chosen& chosen, const dermis_frame& frame, CheckedFrame& checked) {
   const Log& log = view.context->log;
-  const char* const function = "dermis_view_record";
+  const char* const function = view.function;
   const RunnablePlan& plan = compiled_graph.plans[chosen.plan];
   const vulkan::Executor& executor = *plan.executor;
   const vulkan::Executor* const before = chosen.before;

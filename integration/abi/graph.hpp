@@ -52,7 +52,8 @@ struct dermis_view_t {
   dermis::abi::Chooser chooser;
   dermis::choice::ViewShare share; // guarded by graph->shared_budget.mutex
   dermis::abi::ImageViews image_views;
-  dermis::abi::Capture capture; // commands of the last capture
+  dermis::abi::Capture capture;                // commands of the last capture
+  const char* function = "dermis_view_record"; // that records now; errors name it
 };
 
 struct dermis_graph_t {
@@ -121,7 +122,7 @@ void apply_own_settings(const dermis_view_t& view, CompiledGraph& compiled_graph
                         Diagnostics& diagnostics);
 
 // The functions of a view; `function` names the one that was called.
-dermis_result record_frame(dermis_view_t& view, const dermis_frame* frame);
+dermis_result record_frame(dermis_view_t& view, const char* function, const dermis_frame* frame);
 dermis_result capture_frame(dermis_view_t& view, const char* function, const dermis_frame* frame,
                             uint32_t* count, const dermis_command** commands);
 dermis_result discard_frame(dermis_view_t& view, const char* function, uint64_t frame_index);

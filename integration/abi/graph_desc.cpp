@@ -13,24 +13,17 @@ constexpr float largest_pixel_aspect = 1e6f;
 
 static_assert(max_view_side <= subsurface::sap_max_view_side);
 
-// Calls `use(i, element)` for each element of a caller's array, whose stride is the first element's
-// struct_size.
+// Calls `use(i, element)` for each element of a caller's array. `name`: of the array.
 template <class T, class Use>
-dermis_result for_each(const Log& log, const char* function, const char* field, const T* items,
+dermis_result for_each(const Log& log, const char* function, const char* name, const T* items,
                        uint32_t count, const T& defaults, Use use) {
   if (count == 0) return DERMIS_OK;
   if (items == nullptr)
-    return bad_argument(log, "{}: desc.{} is NULL and its count is {}", function, field, count);
-  const size_t step = stated_size(items);
-  const auto* at = reinterpret_cast<const std::byte*>(items);
+    return bad_argument(log, "{}: {} is NULL and its count is {}", function, name, count);
   for (uint32_t i = 0; i < count; ++i) {
     T item = defaults;
-    const std::byte* from = at + i * step;
-    const SizedRead read =
-        stated_size(from) == step ? read_sized(from, item) : SizedRead::too_small;
-    if (read != SizedRead::ok)
-      return rejected_size(log, read, fmt::format("{}: desc.{}[{}]", function, field, i),
-                           stated_size(from), std::max(i == 0 ? 0 : step, sizeof(T)));
+    if (const SizedRead read = read_element(items, i, item); read != SizedRead::ok)
+      return rejected_element(log, read, function, name, items, i);
     if (const dermis_result result = use(i, item); result != DERMIS_OK) return result;
   }
   return DERMIS_OK;
@@ -39,7 +32,7 @@ dermis_result for_each(const Log& log, const char* function, const char* field, 
 dermis_result read_profiles(const Log& log, const char* function, const dermis_graph_desc& desc,
                             CompiledGraphInput& input, Diagnostics& diagnostics) {
   return for_each<dermis_profile>(
-      log, function, "profiles", desc.profiles, desc.profile_count, DERMIS_PROFILE_INIT,
+      log, function, "desc.profiles", desc.profiles, desc.profile_count, DERMIS_PROFILE_INIT,
       [&](uint32_t i, const dermis_profile& profile) {
         const std::string field = fmt::format("{}: desc.profiles[{}]", function, i);
         if (profile.id == 0 || profile.id > largest_profile_id)
@@ -82,7 +75,7 @@ dermis_result read_unbound(const Log& log, const char* function, const dermis_gr
 dermis_result read_overlays(const Log& log, const char* function, const dermis_graph_desc& desc,
                             CompiledGraphInput& input) {
   return for_each<dermis_source>(
-      log, function, "overlays", desc.overlays, desc.overlay_count, DERMIS_SOURCE_INIT,
+      log, function, "desc.overlays", desc.overlays, desc.overlay_count, DERMIS_SOURCE_INIT,
       [&](uint32_t i, const dermis_source& source) {
         SourceText overlay;
         const dermis_result result =
@@ -97,7 +90,7 @@ dermis_result read_overlays(const Log& log, const char* function, const dermis_g
 dermis_result read_formats(const Log& log, const char* function, const dermis_graph_desc& desc,
                            CompiledGraphInput& input) {
   return for_each<dermis_slot_format>(
-      log, function, "formats", desc.formats, desc.format_count, DERMIS_SLOT_FORMAT_INIT,
+      log, function, "desc.formats", desc.formats, desc.format_count, DERMIS_SLOT_FORMAT_INIT,
       [&](uint32_t i, const dermis_slot_format& given) {
         if (given.name == nullptr)
           return bad_argument(log, "{}: desc.formats[{}].name is NULL", function, i);

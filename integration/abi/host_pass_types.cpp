@@ -16,17 +16,6 @@ std::string text_of(const char* text) {
   return text == nullptr ? "" : text;
 }
 
-// Returns an element of an array whose stride is the first element's struct_size.
-template <class T> const void* element(const T* items, uint32_t i) {
-  return reinterpret_cast<const std::byte*>(items) + i * stated_size(items);
-}
-
-// Reads one element of an array, all of which have the size that the first one states.
-template <class T> SizedRead read_element(const T* items, uint32_t i, T& to) {
-  const void* from = element(items, i);
-  return stated_size(from) == stated_size(items) ? read_sized(from, to) : SizedRead::too_small;
-}
-
 constexpr std::array usages{Usage::sampled_image,         Usage::storage_image_write,
                             Usage::storage_image_update,  Usage::storage_buffer_read,
                             Usage::storage_buffer_write,  Usage::storage_buffer_update,
@@ -41,8 +30,7 @@ dermis_result read_ports(const Log& log, const dermis_pass_type& given,
   for (uint32_t i = 0; i < given.port_count; ++i) {
     dermis_port port = DERMIS_PORT_INIT;
     if (const SizedRead read = read_element(given.ports, i, port); read != SizedRead::ok)
-      return rejected_size(log, read, fmt::format("{}: type.ports[{}]", registering, i),
-                           stated_size(element(given.ports, i)), sizeof(dermis_port));
+      return rejected_element(log, read, registering, "type.ports", given.ports, i);
     const auto usage = static_cast<size_t>(port.usage);
     if (usage >= usages.size())
       return bad_argument(log, "{}: type.ports[{}].usage is {}, expected 0..{}", registering, i,
@@ -61,8 +49,7 @@ dermis_result read_settings(const Log& log, const dermis_pass_type& given,
   for (uint32_t i = 0; i < given.setting_count; ++i) {
     dermis_pass_setting setting = DERMIS_PASS_SETTING_INIT;
     if (const SizedRead read = read_element(given.settings, i, setting); read != SizedRead::ok)
-      return rejected_size(log, read, fmt::format("{}: type.settings[{}]", registering, i),
-                           stated_size(element(given.settings, i)), sizeof(dermis_pass_setting));
+      return rejected_element(log, read, registering, "type.settings", given.settings, i);
     const auto value_type = static_cast<size_t>(setting.type);
     if (value_type >= setting_types.size())
       return bad_argument(log, "{}: type.settings[{}].type is {}, expected 0..{}", registering, i,

@@ -51,8 +51,7 @@ const Slot* find_slot(const BindingPlace& place, const CompiledGraph& compiled_g
   return result == DERMIS_OK && slot.in_plan ? &slot : nullptr;
 }
 
-// Calls `use(place, binding)` for each element of a caller's array, whose stride is the first
-// element's struct_size.
+// Calls `use(place, binding)` for each element of a caller's array.
 template <class T, class Use>
 dermis_result for_each(const BindingPlace& array, const CompiledGraph& compiled_graph,
                        const T* items, uint32_t count, const T& defaults, Use use) {
@@ -60,22 +59,11 @@ dermis_result for_each(const BindingPlace& array, const CompiledGraph& compiled_
   if (items == nullptr)
     return bad_argument(array.log, "{}: {} is NULL and its count is {}", array.function,
                         array.array, count);
-  const size_t step = stated_size(items);
-  const auto* at = reinterpret_cast<const std::byte*>(items);
   for (uint32_t i = 0; i < count; ++i) {
     const BindingPlace place{array.log, array.function, array.array, i};
     T item = defaults;
-    const std::byte* from = at + i * step;
-    const SizedRead read =
-        stated_size(from) == step ? read_sized(from, item) : SizedRead::too_small;
-    if (read == SizedRead::unknown_fields)
-      return fail(array.log, DERMIS_ERROR_VERSION, DiagnosticId::host_struct_version,
-                  "{}: {}[{}] has fields beyond those this library knows that are not zero",
-                  array.function, array.array, i);
-    if (read != SizedRead::ok)
-      return reject(place,
-                    ".struct_size is {}, expected {} as in the first, at least {}: use its INIT",
-                    stated_size(from), step, sizeof(T));
+    if (const SizedRead read = read_element(items, i, item); read != SizedRead::ok)
+      return rejected_element(array.log, read, array.function, array.array, items, i);
     if (item.slot >= compiled_graph.slots.size())
       return reject(place, ".slot is {}, the graph has slots 0..{}", item.slot,
                     static_cast<int64_t>(compiled_graph.slots.size()) - 1);
@@ -171,7 +159,7 @@ std::string_view family_problem(const dermis_context_t& context, ResourceType ty
 dermis_result check_memory_bindings(dermis_view_t& view, CompiledGraph& compiled_graph,
                                     const dermis_frame& frame) {
   const Log& log = view.context->log;
-  const char* const function = "dermis_view_record";
+  const char* const function = view.function;
   std::fill(compiled_graph.buffers.begin(), compiled_graph.buffers.end(), vulkan::HostBuffer{});
   std::fill(compiled_graph.structures.begin(), compiled_graph.structures.end(),
             vulkan::HostStructure{});

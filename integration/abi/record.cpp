@@ -14,8 +14,6 @@ double seconds_of(const dermis_frame& frame) {
   return std::min(double(frame.delta_seconds), longest_pause_s);
 }
 
-constexpr const char* function_record = "dermis_view_record";
-
 // Destroys replaced compiled graphs whose last frame the device has finished.
 void collect(dermis_view_t& view, uint64_t completed) {
   for (auto& old : view.retired)
@@ -134,7 +132,7 @@ dermis_result record_chosen(dermis_view_t& view, CompiledGraph& compiled_graph, 
     const bool has_slot =
         error.slot >= 0 && static_cast<size_t>(error.slot) < compiled_graph.slots.size();
     return fail(log, result_of(error.kind), diagnostic_of(error.kind), "{}: {}{}{}{}",
-                function_record, error.text, has_slot ? " (slot '" : "",
+                view.function, error.text, has_slot ? " (slot '" : "",
                 has_slot ? compiled_graph.slots[static_cast<size_t>(error.slot)].name : "",
                 has_slot ? "')" : "");
   }
@@ -142,7 +140,7 @@ dermis_result record_chosen(dermis_view_t& view, CompiledGraph& compiled_graph, 
     compiled_graph.plans[plan].executor->undo_last_record(frame.frame_index);
     compiled_graph.last_jitter_px = jitter_before;
     return fail(log, DERMIS_ERROR_MEMORY, DiagnosticId::host_memory, "{}: out of host memory",
-                function_record);
+                view.function);
   }
   view.recorded = {};
   view.recorded.known = true;
@@ -170,11 +168,11 @@ dermis_result record_chosen(dermis_view_t& view, CompiledGraph& compiled_graph, 
 // `capture` receives the commands instead of the frame's command buffer; may be null.
 dermis_result record(dermis_view_t& view, const dermis_frame* given, Capture* capture) {
   const Log& log = view.context->log;
-  if (const dermis_result alive = check_alive(*view.context, function_record); alive != DERMIS_OK)
+  if (const dermis_result alive = check_alive(*view.context, view.function); alive != DERMIS_OK)
     return alive;
   dermis_frame frame = DERMIS_FRAME_INIT;
   if (const SizedRead read = read_sized(given, frame); read != SizedRead::ok)
-    return rejected_size(log, read, function_record, "frame", stated_size(given),
+    return rejected_size(log, read, view.function, "frame", stated_size(given),
                          sizeof(dermis_frame));
   if (capture != nullptr) frame.command_buffer = handle_of(*capture);
   CompiledGraph& compiled_graph = newest(view);
@@ -184,7 +182,7 @@ dermis_result record(dermis_view_t& view, const dermis_frame* given, Capture* ca
     return result;
   Chooser& chooser = view.chooser;
   if (view.running) observe(chooser, *view.running, frame.completed_frame_index);
-  if (const dermis_result loss = check_loss(view, function_record); loss != DERMIS_OK) return loss;
+  if (const dermis_result loss = check_loss(view, view.function); loss != DERMIS_OK) return loss;
   const bool cut = (frame.flags & DERMIS_FRAME_RESET_HISTORY) != 0;
   FrameChoice chosen = choose(chooser, compiled_graph,
                               {frame.frame_index, seconds_of(frame), cut, checked.empty_bounds(),
@@ -213,10 +211,10 @@ dermis_result check_loss(const dermis_view_t& view, const char* function) {
   return check_alive(*view.context, function);
 }
 
-dermis_result record_frame(dermis_view_t& view, const dermis_frame* frame) {
-  if (frame == nullptr)
-    return bad_argument(view.context->log, "{}: frame is NULL", function_record);
+dermis_result record_frame(dermis_view_t& view, const char* function, const dermis_frame* frame) {
+  if (frame == nullptr) return bad_argument(view.context->log, "{}: frame is NULL", function);
   const std::lock_guard lock(view.mutex);
+  view.function = function;
   return record(view, frame, nullptr);
 }
 
@@ -229,6 +227,7 @@ dermis_result capture_frame(dermis_view_t& view, const char* function, const der
   *count = 0;
   *commands = nullptr;
   const std::lock_guard lock(view.mutex);
+  view.function = function;
   clear(view.capture);
   const dermis_result result = record(view, frame, &view.capture);
   if (result != DERMIS_OK) return result;

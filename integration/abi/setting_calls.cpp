@@ -191,7 +191,8 @@ void adopt_value(CompiledGraph& changed, uint32_t setting, const SettingValue& v
   changed.configurations.swap(configurations);
 }
 
-dermis_result set_setting(dermis_graph_t& graph, const std::string& name, const std::string& json,
+// `json` NULL: the default applies again, and a choice is made by the budget again.
+dermis_result set_setting(dermis_graph_t& graph, const std::string& name, const char* json,
                           dermis_report* report) {
   const Log& log = graph.context->log;
   const std::shared_ptr<CompiledGraph> kept = keep_newest(graph.own);
@@ -199,16 +200,20 @@ dermis_result set_setting(dermis_graph_t& graph, const std::string& name, const 
   const auto& declared = compiled_graph.graph.settings;
   Diagnostics diagnostics;
   const auto at = find_declared(compiled_graph.graph, name);
+  CompiledGraphInput input = graph.input;
+  const bool removed = json == nullptr && remove_from(input.settings, name);
+  if (at == declared.end() && removed) { // a reload did not carry it over
+    graph.input = std::move(input);
+    return conclude(log, DERMIS_OK, std::move(diagnostics), report);
+  }
   if (at == declared.end()) {
     add_unknown("dermis_graph_set_setting", compiled_graph.graph, name, diagnostics);
     return conclude(log, DERMIS_ERROR_ARGUMENT, std::move(diagnostics), report);
   }
-  const auto given = read_setting(*at, json, diagnostics);
+  const auto given = json != nullptr ? read_setting(*at, json, diagnostics) : at->default_value;
   if (!given) return conclude(log, DERMIS_ERROR_CONFIG, std::move(diagnostics), report);
   const SettingValue value = offered_value(graph, compiled_graph.graph, *at, *given, diagnostics);
-
-  CompiledGraphInput input = graph.input;
-  set_in(input.settings, name, json);
+  if (json != nullptr) set_in(input.settings, name, json);
   const auto index = static_cast<uint32_t>(at - declared.begin());
   if (changes_plans(compiled_graph, graph.context->pass_types, graph.input.settings, {index},
                     value))
@@ -364,7 +369,6 @@ extern "C" dermis_result DERMIS_CALL dermis_graph_set_setting(dermis_graph graph
   const Log& log = graph->context->log;
   return guarded(log, "dermis_graph_set_setting", [&] {
     if (name == nullptr) return bad_argument(log, "dermis_graph_set_setting: name is NULL");
-    if (json == nullptr) return bad_argument(log, "dermis_graph_set_setting: json is NULL");
     if (const dermis_result alive = check_alive(*graph->context, "dermis_graph_set_setting");
         alive != DERMIS_OK)
       return alive;

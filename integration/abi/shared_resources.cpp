@@ -51,7 +51,7 @@ dermis_result check_pair(const dermis_view_t& view, const CompiledGraph& compile
   const Slot &a = compiled_graph.slots[i], &b = compiled_graph.slots[j];
   const auto reject = [&](const char* what, const char* rule) {
     return bad_argument(view.context->log, "{}: slots '{}' and '{}' are bound to the same {}; {}",
-                        "dermis_view_record", a.name, b.name, what, rule);
+                        view.function, a.name, b.name, what, rule);
   };
   const vulkan::HostImage &image = compiled_graph.images[i],
                           &other_image = compiled_graph.images[j];

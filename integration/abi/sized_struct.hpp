@@ -38,6 +38,17 @@ template <class T> SizedRead read_sized(const void* from, T& to) {
   return SizedRead::ok;
 }
 
+// Returns element i of a caller's array, whose stride is the first element's struct_size.
+inline const void* element(const void* items, uint32_t i) {
+  return static_cast<const std::byte*>(items) + i * stated_size(items);
+}
+
+// Reads one element of an array, all of which have the size that the first one states.
+template <class T> SizedRead read_element(const T* items, uint32_t i, T& to) {
+  const void* from = element(items, i);
+  return stated_size(from) == stated_size(items) ? read_sized(from, to) : SizedRead::too_small;
+}
+
 // Writes `value` to a struct of `size` bytes, at least sizeof(T); fields that this library does not
 // know become zero.
 template <class T> void write_sized(void* to, size_t size, T value) {

@@ -21,7 +21,7 @@ dermis_result fill_array(const Log& log, const char* what, uint32_t* count, T* i
   if (capacity > 0) {
     const size_t size = stated_size(items);
     if (const SizedRead read = check_size<T>(size); read != SizedRead::ok)
-      return rejected_size(log, read, what, size, sizeof(T));
+      return rejected_size(log, read, what, "array[0]", size, sizeof(T));
     auto* to = reinterpret_cast<std::byte*>(items);
     for (uint32_t i = 0; i < std::min(capacity, available); ++i)
       write_sized(to + i * size, size, T(at(i)));

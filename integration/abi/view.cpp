@@ -86,7 +86,8 @@ extern "C" dermis_result DERMIS_CALL dermis_view_record(dermis_view view,
                                                         const dermis_frame* frame) {
   constexpr const char* function = "dermis_view_record";
   if (view == nullptr) return bad_argument({}, "{}: view is NULL", function);
-  return guarded(view->context->log, function, [&] { return record_frame(*view, frame); });
+  return guarded(view->context->log, function,
+                 [&] { return record_frame(*view, function, frame); });
 }
 
 extern "C" dermis_result DERMIS_CALL dermis_view_commands(dermis_view view,

@@ -107,7 +107,7 @@ typedef enum dermis_result {
   DERMIS_ERROR_DEVICE_LOST = -9, /* destroy everything */
   DERMIS_ERROR_INTERNAL = -10, /* a defect of the library; please report it with the message */
   DERMIS_INCOMPLETE = 1,       /* the array was too short; count holds the required size */
-  DERMIS_NOT_READY = 2,        /* no completed frame yet */
+  DERMIS_NOT_READY = 2, /* no frame has completed since the graph was created or replaced */
   DERMIS_RESULT_FORCE_32BIT = 0x7fffffff
 } dermis_result;
 
@@ -468,8 +468,9 @@ typedef struct dermis_memory {
   uint64_t constant_bytes;            /* frame constants, profile and kernel tables */
 } dermis_memory;
 #define DERMIS_MEMORY_INIT {sizeof(dermis_memory), 0, 0, 0, 0}
-/* Returns the device memory of all views together. Costs: none, but waits while another thread
- * changes the graph. Thread: concurrent. Errors: ARGUMENT, MEMORY. */
+/* Returns the device memory of all views together, without that of replaced graphs, which is freed
+ * once their last frame has completed. Costs: none, but waits while another thread changes the
+ * graph. Thread: concurrent. Errors: ARGUMENT, MEMORY. */
 DERMIS_API dermis_result DERMIS_CALL dermis_graph_memory(dermis_graph graph, dermis_memory* memory);
 /* Returns the memory blocks that one view of the graph needs for transients and histories, so that
  * a host can reserve them before it creates more views. Two-call array. Costs: none. Thread:
@@ -547,7 +548,8 @@ typedef struct dermis_setting {
 #define DERMIS_SETTING_INIT \
   {sizeof(dermis_setting), NULL, DERMIS_SETTING_BOOL, 0, NULL, NULL, 0, 0, 0, 0, 0, 0, NULL, 0}
 /* Sets a setting for all views from JSON text ("16", "true", "\"post\""), effective at the next
- * record. A value that changes which passes run compiles a plan here; a new value of a switch or an
+ * record. json NULL: the graph file's default applies again, and a choice is made by the budget
+ * again. A value that changes which passes run compiles a plan here; a new value of a switch or an
  * option creates pipelines. Costs: pipelines, memory, time. Thread: concurrent. Errors: ARGUMENT,
  * CONFIG, and those of dermis_graph_create. */
 DERMIS_API dermis_result DERMIS_CALL dermis_graph_set_setting(
@@ -599,7 +601,7 @@ typedef struct dermis_pass_setting {
   dermis_pass_setting_type type;
   uint32_t per_frame;      /* 1: may differ between frames and views; 0: one value per graph */
   double default_value;    /* bool: 0 or 1 */
-  double minimum, maximum; /* inclusive; of int and real */
+  double minimum, maximum; /* inclusive, within +-1e9; of int and real */
 } dermis_pass_setting;
 #define DERMIS_PASS_SETTING_INIT \
   {sizeof(dermis_pass_setting), NULL, NULL, NULL, DERMIS_PASS_SETTING_BOOL, 0, 0, 0, 0}

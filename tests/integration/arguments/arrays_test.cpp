@@ -57,7 +57,7 @@ void expect_array_property(const std::function<dermis_result(uint32_t*, T*)>& as
   for (const size_t size : {size_t{0}, sizeof(size_t), sizeof(T) - 1}) {
     item.struct_size = size;
     count = 1;
-    EXPECT_THAT(ask(&count, &item), Fails(DERMIS_ERROR_ARGUMENT, "struct_size")) << size;
+    EXPECT_THAT(ask(&count, &item), Fails(DERMIS_ERROR_ARGUMENT, "array[0].struct_size")) << size;
   }
   // A newer caller's elements are larger; the library fills their unknown fields with zeros.
   struct Newer {

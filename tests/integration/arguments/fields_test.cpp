@@ -183,7 +183,6 @@ TEST_F(Fields, GraphCalls_NullArgumentsAreNamed) {
            "desc.keep is 0x100, known bits are 0xff");
   rejected(dermis_graph_resize(host.graph, 0, 1, nullptr), "dermis_graph_resize: the size is 0x1");
   rejected(dermis_graph_set_setting(host.graph, nullptr, "1", nullptr), "name is NULL");
-  rejected(dermis_graph_set_setting(host.graph, "samples", nullptr, nullptr), "json is NULL");
   rejected(dermis_graph_set_budget(host.graph, nullptr, nullptr), "budget is NULL");
   rejected(dermis_graph_set_budget(nullptr, nullptr, nullptr), "graph is NULL");
   rejected(dermis_graph_memory(host.graph, nullptr), "memory is NULL");
@@ -198,6 +197,13 @@ TEST_F(Fields, GraphCalls_NullArgumentsAreNamed) {
   rejected(dermis_view_commands(view, nullptr, &count, &commands), "frame is NULL");
   rejected(dermis_view_commands(view, &frame, nullptr, &commands), "count is NULL");
   rejected(dermis_view_commands(view, &frame, &count, nullptr), "commands is NULL");
+  dermis_frame wrong = frame;
+  wrong.bindings = nullptr;
+  rejected(dermis_view_commands(view, &wrong, &count, &commands),
+           "dermis_view_commands: nothing is bound");
+  rejected(dermis_view_record(view, &wrong), "dermis_view_record: nothing is bound");
+  wrong.exposure = -1;
+  rejected(dermis_view_commands(view, &wrong, &count, &commands), "dermis_view_commands: exposure");
   rejected(dermis_view_report(view, 0, nullptr), "report is NULL");
   rejected(dermis_view_statistics(view, 0, nullptr), "statistics is NULL");
   EXPECT_EQ(dermis_graph_view(nullptr), nullptr);

@@ -19,7 +19,7 @@ using Bindings = std::vector<dermis_image_binding>;
 using Change = std::function<void(dermis_frame&, Bindings&)>;
 
 TEST_F(Frames, WrongField_IsNamed) {
-  const std::pair<const char*, Change> changes[] = {
+  const std::pair<std::string, Change> changes[] = {
       {"command_buffer is NULL", [](auto& f, auto&) { f.command_buffer = nullptr; }},
       {"struct_size", [](auto& f, auto&) { f.struct_size = 12; }},
       {"flags is 0x8", [](auto& f, auto&) { f.flags = 8; }},
@@ -69,8 +69,10 @@ TEST_F(Frames, WrongField_IsNamed) {
       {"bounds are given", [](auto& f, auto&) { f.bounds_y = 1; }},
       {"bounds are given", [](auto& f, auto&) { f.bounds_width = 1; }},
       {"bounds are given", [](auto& f, auto&) { f.bounds_height = 1; }},
-      {"bindings[1].struct_size", [](auto&, auto& b) { b[1].struct_size = 0; }},
-      {"bindings[0].struct_size", [](auto&, auto& b) { b[0].struct_size = 8; }},
+      {"as in bindings[0]", [](auto&, auto& b) { b[1].struct_size = 0; }},
+      {"bindings[0].struct_size is 8, expected " +
+           std::to_string(sizeof(dermis_image_binding)) + "..4096",
+       [](auto&, auto& b) { b[0].struct_size = 8; }},
       {"bindings[0].slot is 99", [](auto&, auto& b) { b[0].slot = 99; }},
       {"bindings[0].image", [](auto&, auto& b) { b[0].image = VK_NULL_HANDLE; }},
       {"bindings[0].view",

@@ -190,6 +190,46 @@ TEST_F(Settings, ChosenValues_AreReportedUntilTheHostSetsOne) {
   EXPECT_STREQ(technique.options[static_cast<size_t>(technique.value)], "separable");
 }
 
+TEST_F(Settings, WithoutAValue_TheBudgetChoosesAgain) {
+  make(read_text("configs/graphs/skin.json"));
+  const dermis_setting before = named(settings_of(host.graph), "technique");
+  set("technique", "\"separable\"");
+  set("technique", nullptr);
+  const dermis_setting after = named(settings_of(host.graph), "technique");
+  EXPECT_EQ(after.chosen, 1u);
+  EXPECT_EQ(after.set, 0u);
+  EXPECT_EQ(after.value, before.value);
+}
+
+TEST_F(Settings, WithoutAValue_TheDefaultApplies) {
+  make(graph_text);
+  host.make_bindings();
+  set("weight", "0.75");
+  EXPECT_EQ(weight_of_graph("one"), 0.75);
+  set("weight", nullptr);
+  EXPECT_EQ(weight_of_graph("one"), 0.5);
+  EXPECT_EQ(named(settings_of(host.graph), "weight").set, 0u);
+  set("threshold", "0.05"); // the pass is off
+  EXPECT_OK(host.record());
+  calls.clear();
+  set("threshold", nullptr);
+  EXPECT_EQ(weight_of_graph("three"), 0.5);
+  EXPECT_THAT(dermis_graph_set_setting(host.graph, "none", nullptr, nullptr),
+              Fails(DERMIS_ERROR_ARGUMENT, "has no setting 'none'"));
+}
+
+TEST_F(Settings, ValueOfAnEarlierGraph_CanBeRemoved) {
+  make(graph_text);
+  host.make_bindings();
+  set("weight", "0.75");
+  ASSERT_OK(
+      host.reload(replaced(replaced(graph_text, R"("weight": { "real")", R"("heft": { "real")"),
+                           R"("$weight")", R"("$heft")")));
+  set("weight", nullptr);
+  ASSERT_OK(host.reload(graph_text));
+  EXPECT_EQ(weight_of_graph("one"), 0.5);
+}
+
 TEST_F(Settings, PerFrame_ViewsHaveSeparateValues) {
   make_with_view();
   set_for_view("weight", "0.75");
