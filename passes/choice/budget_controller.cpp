@@ -42,8 +42,10 @@ constexpr double forgotten_backoffs = 10;
 // A configuration that was not tried in the first seconds is not tried for this time.
 constexpr double untried_backoff_s = 300;
 // A configuration that is left within this time because it takes longer than expected was
-// misjudged. An equal expectation is wrong again.
+// misjudged. The first time, a disturbance may be the reason; then an equal expectation is wrong
+// again.
 constexpr double misjudged_s = 2;
+constexpr uint32_t often_misjudged = 2;
 // During its back-off, a configuration is tried only if it became cheaper by this logarithm.
 constexpr double changed = 0.10;
 // Times within this factor count as equal where nothing fits.
@@ -60,6 +62,10 @@ double seconds_of(double seconds) {
 
 double seen_square(const Forecast& forecast, double rmse) {
   return rmse * rmse - forecast.missed_rmse * forecast.missed_rmse;
+}
+
+double calibrated_of(const TimeForecast& time) {
+  return time.calibrated_ms > 0 ? time.calibrated_ms : 1;
 }
 
 class Controller {
@@ -301,8 +307,12 @@ private:
     return few ? worth_a_try : worth_a_switch;
   }
 
+  bool is_often_misjudged(uint32_t i) const {
+    return state_.configurations[i].misjudged >= often_misjudged;
+  }
+
   bool is_worth_a_switch(uint32_t i) const {
-    const bool may_fail = assessed_[i].trial || state_.configurations[i].misjudged;
+    const bool may_fail = assessed_[i].trial || is_often_misjudged(i);
     return state_.tokens >= (may_fail ? trial_tokens : better_tokens) &&
            assessed_[i].entering_rmse <=
                (unproven(i) ? worth_a_try : gain_to_leave()) * assessed_[state_.current].rmse;
@@ -330,7 +340,9 @@ private:
     if (switched && !state_.provisional) ++state_.switches;
     if (switched || before == no_configuration) {
       state_.entered_s = state_.clock_s;
-      state_.entered_ms = assessed_[now].trial ? HUGE_VAL : forecasts_[now].time.expected_ms;
+      const TimeForecast& time = forecasts_[now].time;
+      state_.entered_factor =
+          assessed_[now].trial ? HUGE_VAL : time.expected_ms / calibrated_of(time);
     }
     if (switched) {
       state_.before = before;
@@ -343,7 +355,7 @@ private:
     kept.ran = true;
     if (state_.clock_s - state_.entered_s > calm_backoffs * kept.backoff_s)
       kept.backoff_s = first_backoff_s;
-    if (state_.clock_s - state_.entered_s > misjudged_s) kept.misjudged = false;
+    if (state_.clock_s - state_.entered_s > misjudged_s) kept.misjudged = 0;
     take_units(switched, decision);
   }
 
@@ -352,11 +364,12 @@ private:
     const bool over = assessed_[before].running_ms > assessed_[before].leave_ms;
     if (!over) return;
     DecisionState::Configuration& kept = state_.configurations[before];
-    double ms = forecasts_[before].time.pessimistic_ms;
-    if (state_.clock_s - state_.entered_s < misjudged_s &&
-        state_.entered_ms < ms * std::exp(-changed)) {
-      ms = state_.entered_ms;
-      kept.misjudged = true;
+    const TimeForecast& time = forecasts_[before].time;
+    const double expected_ms = state_.entered_factor * calibrated_of(time); // for this content
+    double ms = time.pessimistic_ms;
+    if (state_.clock_s - state_.entered_s < misjudged_s && expected_ms < ms * std::exp(-changed)) {
+      ++kept.misjudged;
+      if (is_often_misjudged(before)) ms = expected_ms;
     }
     kept.left_ratio = ms / frame_.budget_ms;
     kept.left_s = state_.clock_s;

@@ -12,6 +12,7 @@ namespace dermis::choice {
 
 // Device time of one configuration in the next frame, in milliseconds, without samples by tile.
 struct TimeForecast {
+  double calibrated_ms = 0; // by the calibration only; 0: unknown
   double expected_ms = 0;
   double pessimistic_ms = 0; // passes that never ran take more than expected
   double optimistic_ms = 0;  // passes that never ran take their least time
@@ -111,7 +112,8 @@ struct DecisionState {
     double left_s = -1e9;  // when it was left over budget
     double left_ratio = 0; // its time over the budget then, or the time expected when it entered
     bool ran = false;
-    bool misjudged = false; // it took longer than expected when it entered, and was left soon
+    // how often in a row it took longer than expected when it entered, and was left soon
+    uint32_t misjudged = 0;
   };
   std::vector<Configuration> configurations; // empty: restart() was not called
   uint32_t current = no_configuration;       // of the last frame
@@ -121,7 +123,8 @@ struct DecisionState {
   double units = 0;                          // of samples in the last frame
   double clock_s = 0;                        // sum of the seconds of all frames
   double started_s = 0, entered_s = 0;       // clock at restart(), and at the last switch
-  double entered_ms = 0; // expected time of `current` at the last switch; infinite for a trial
+  // expected time of `current` over the calibrated one at the last switch; infinite for a trial
+  double entered_factor = 0;
   double tokens = 0;     // switches that may follow at once (token bucket)
   uint32_t switches = 0; // since the state was created
 };

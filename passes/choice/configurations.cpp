@@ -375,6 +375,7 @@ TimeForecast forecast_time(const Configuration& configuration, const CostEstimat
     CostFactors factor; // all 1
     if (!factors.empty()) factor = factors[pass.cost.value];
     const double known_ms = factors.empty() ? ms : std::max(ms, min_calibrated_ms);
+    sum.calibrated_ms += known_ms;
     sum.expected_ms += factor.expected * known_ms;
     sum.pessimistic_ms += factor.pessimistic * known_ms;
     sum.optimistic_ms += factor.optimistic * known_ms;

@@ -47,6 +47,7 @@ choice::Forecast ControlledGraph::forecast(uint32_t configuration, double tiles,
     const double ms =
         costs_.calibrated_cost(ids_[pass]).ms(std::floor(groups_of(scenario_, pass, tiles)));
     const choice::CostFactors factor = factor_of(pass);
+    out.time.calibrated_ms += ms;
     out.time.expected_ms += factor.expected * ms;
     out.time.pessimistic_ms += factor.pessimistic * ms;
     out.time.optimistic_ms += factor.optimistic * ms;
