@@ -72,8 +72,9 @@ bool run_phases(const CompileInput& in, Report& report, Plan& plan, CompileScrat
   report_races(in, active, versions, report);
   if (report.failed()) return false;
 
-  // Keeps the passes that a bound export needs. Only they have to bind all required ports.
+  // Keeps the passes that a bound export needs. Only they need sizes and all required ports.
   const LiveSet& live = cull(in, sizes, active, versions, report, scratch.cull);
+  report_size_errors(in, sizes, versions, live, report);
   report_bind_errors(in, sizes, active, subresources, versions, live, report, scratch.bind_errors);
   if (report.failed()) return false;
 

@@ -22,8 +22,11 @@ struct SizeScratch {
   std::array<uint32_t, 32> last_shape_of{}; // by remainder of a hash: the shape found last
   std::vector<ResourceId> chain;            // resources whose sizes follow each other
 };
-// Computes the size of each resource, and which slots the host binds.
+// Computes the size of each resource, and which slots the host binds. Errors of sizes are returned.
 const Sizes& resolve_sizes(const CompileInput& in, Report& report, SizeScratch& scratch);
+// Reports the errors of sizes that live passes and bound exports need.
+void report_size_errors(const CompileInput& in, const Sizes& sizes, const Versions& versions,
+                        const LiveSet& live, Report& report);
 
 // ---- activation.cpp ----
 

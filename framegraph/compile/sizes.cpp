@@ -1,8 +1,10 @@
-// Computes the size of each resource and which slots the host binds.
+// Computes the size of each resource and which slots the host binds. An error of a size is reported
+// only if the plan needs the resource, which a later phase decides.
 
 #include "framegraph/compile/hardware.hpp"
 #include "framegraph/compile/phases.hpp"
 #include "framegraph/model/scaled_side.hpp"
+#include "framegraph/text/limits.hpp"
 
 #include <fmt/format.h>
 
@@ -19,16 +21,19 @@ uint32_t full_chain(uint32_t width, uint32_t height) {
 struct SizeResolver {
   const CompileInput& in;
   const Graph& graph;
-  Report& report;
   SizeScratch& scratch;
   Sizes& sizes = scratch.result;
   using Mark = SizeScratch::Mark;
 
   Mark& mark(ResourceId id) { return scratch.marks[id.value]; }
 
-  void report_too_large(const ResourceDeclaration& declared, const std::string& what) {
-    report.diagnostics.add(DiagnosticId::size_out_of_range, declared.where,
-                           fmt::format("'{}' {}", declared.name, what));
+  void add_error(ResourceId id, DiagnosticId what, std::string text) {
+    sizes.errors.push_back({id, {what, graph.resources[id.value].where, std::move(text), "", {}}});
+  }
+
+  void report_too_large(ResourceId id, const std::string& what) {
+    add_error(id, DiagnosticId::size_out_of_range,
+              fmt::format("'{}' {}", name_of(graph, id), what));
   }
 
   // Evaluates a size that follows another resource's. Not recursive: a file may chain thousands.
@@ -57,12 +62,11 @@ struct SizeResolver {
     std::string names;
     for (auto at = start; at != chain.end(); ++at)
       names += fmt::format("{}'{}'", at == start ? "" : " -> ", name_of(graph, *at));
-    auto& diagnostic =
-        report.diagnostics.add(DiagnosticId::size_cycle, graph.resources[start->value].where,
-                               fmt::format("circular size dependency: {}", names));
+    add_error(*start, DiagnosticId::size_cycle, fmt::format("circular size dependency: {}", names));
     for (auto at = start + 1; at + 1 < chain.end(); ++at)
-      diagnostic.related.emplace_back(graph.resources[at->value].where,
-                                      fmt::format("'{}' is declared here", name_of(graph, *at)));
+      sizes.errors.back().diagnostic.related.emplace_back(
+          graph.resources[at->value].where,
+          fmt::format("'{}' is declared here", name_of(graph, *at)));
     for (const ResourceId id : chain)
       mark(id) = Mark::failed;
   }
@@ -78,34 +82,34 @@ struct SizeResolver {
       base_x = uint64_t{in.view_width} << pixel_doublings(in.pixel_grid, 0);
       base_y = uint64_t{in.view_height} << pixel_doublings(in.pixel_grid, 1);
     } else if (size.base == SizeExpression::Base::resource) {
-      if (mark(size.resource) == Mark::failed) return false; // already reported
+      if (mark(size.resource) == Mark::failed) return false; // an error already
       base_x = sizes.extents[size.resource.value].width;
       base_y = sizes.extents[size.resource.value].height;
     }
     const auto width = scaled_side(base_x, size.x, size);
     const auto height = scaled_side(base_y, size.y, size);
     if (!width || !height) {
-      report_too_large(declared, "has a size beyond 32 bits");
+      report_too_large(id, "has a size beyond 32 bits");
       return false;
     }
     Extent& extent = sizes.extents[id.value];
     extent.width = *width;
     extent.height = *height;
     if (declared.type == ResourceType::acceleration_structure) return true; // it has no size
-    return declared.type == ResourceType::image ? finish_image(declared, extent)
-                                                : finish_buffer(declared, extent);
+    return declared.type == ResourceType::image ? finish_image(id, extent)
+                                                : finish_buffer(id, extent);
   }
 
-  bool finish_image(const ResourceDeclaration& declared, Extent& extent) {
+  bool finish_image(ResourceId id, Extent& extent) {
+    const ResourceDeclaration& declared = graph.resources[id.value];
     const uint32_t limit = in.device->max_image_dimension;
     if (extent.width > limit || extent.height > limit) {
-      report_too_large(declared,
-                       fmt::format("is {}x{} texels; the device '{}' holds at most {} per side",
-                                   extent.width, extent.height, in.device->name, limit));
+      report_too_large(id, fmt::format("is {}x{} texels; the device '{}' holds at most {} per side",
+                                       extent.width, extent.height, in.device->name, limit));
       return false;
     }
     if (declared.layers < 1 || declared.layers > in.device->max_image_layers) {
-      report_too_large(declared,
+      report_too_large(id,
                        fmt::format("has {} layers; the device '{}' holds 1 .. {}", declared.layers,
                                    in.device->name, in.device->max_image_layers));
       return false;
@@ -113,26 +117,37 @@ struct SizeResolver {
     const uint32_t full = full_chain(extent.width, extent.height);
     extent.mips = declared.mips == 0 ? full : declared.mips;
     if (extent.mips > full) {
-      report_too_large(declared, fmt::format("asks for {} mip levels; {}x{} has {}", extent.mips,
-                                             extent.width, extent.height, full));
+      report_too_large(id, fmt::format("asks for {} mip levels; {}x{} has {}", extent.mips,
+                                       extent.width, extent.height, full));
       return false;
     }
     return true;
   }
 
-  bool finish_buffer(const ResourceDeclaration& declared, Extent& extent) {
+  bool finish_buffer(ResourceId id, Extent& extent) {
+    const ResourceDeclaration& declared = graph.resources[id.value];
     const uint64_t elements = uint64_t{extent.width} * extent.height;
     const uint64_t limit = in.device->max_storage_buffer_bytes;
     const uint64_t stride = std::max<uint32_t>(declared.stride, 1);
     if (elements > limit / stride || declared.extra_elements > limit / stride - elements) {
       report_too_large(
-          declared,
+          id,
           fmt::format("has {} + {} elements of {} bytes; the device '{}' holds at most {} bytes",
                       elements, declared.extra_elements, stride, in.device->name, limit));
       return false;
     }
     extent.bytes = (elements + declared.extra_elements) * stride;
     return true;
+  }
+
+  // Marks the sizes with errors. Ports may name any mip that is declared or that images can have,
+  // because the error of the size is the root cause.
+  void clear_failed() {
+    for (uint32_t i = 0; i < graph.resources.size(); ++i) {
+      if (scratch.marks[i] != Mark::failed) continue;
+      const uint32_t mips = graph.resources[i].mips;
+      sizes.extents[i] = {0, 0, mips != 0 ? mips : limits::image_mips, 0};
+    }
   }
 };
 
@@ -200,10 +215,11 @@ const Sizes& resolve_sizes(const CompileInput& in, Report& report, SizeScratch& 
   sizes.info.assign(count, {});
   sizes.shape_of.assign(count, invalid_index);
   sizes.shape_count = 0;
+  sizes.errors.clear();
   scratch.marks.assign(count, SizeScratch::Mark::unvisited);
   scratch.first_of_shape.clear();
   scratch.last_shape_of.fill(invalid_index);
-  SizeResolver resolver{in, graph, report, scratch};
+  SizeResolver resolver{in, graph, scratch};
   bool any_follows_resource = false;
   constexpr size_t ahead = 6;
   for (uint32_t i = 0; i < count; ++i) {
@@ -229,7 +245,31 @@ const Sizes& resolve_sizes(const CompileInput& in, Report& report, SizeScratch& 
   }
   for (uint32_t i = 0; any_follows_resource && i < count; ++i)
     resolver.resolve(ResourceId{i});
+  if (!sizes.errors.empty()) resolver.clear_failed();
   return sizes;
+}
+
+void report_size_errors(const CompileInput& in, const Sizes& sizes, const Versions& versions,
+                        const LiveSet& live, Report& report) {
+  if (sizes.errors.empty()) return;
+  const Graph& graph = *in.graph;
+  std::vector<uint8_t> needed(graph.resources.size(), 0);
+  const auto need = [&](ResourceId id) { // and what its size follows
+    while (needed[id.value] == 0) {
+      needed[id.value] = 1;
+      const SizeExpression& size = graph.resources[id.value].size;
+      if (size.base == SizeExpression::Base::resource) id = size.resource;
+    }
+  };
+  for (const Use& use : versions.uses)
+    if (live.contains(use.pass) && use.bind_error != Use::BindError::unbound) need(use.resource);
+  for (uint32_t i = 0; i < needed.size(); ++i)
+    if (sizes.info[i].exported && sizes.info[i].bound) need(ResourceId{i});
+  for (const SizeError& error : sizes.errors) {
+    if (needed[error.resource.value] == 0) continue;
+    const Diagnostic& found = error.diagnostic;
+    report.diagnostics.add(found.id, found.where, found.text).related = found.related;
+  }
 }
 
 } // namespace dermis

@@ -56,7 +56,7 @@ struct SubresourceSplitter {
       if (binding.range.whole()) continue;
       SubresourceRange range;
       if (!range_of(binding, range)) {
-        report_missing_range(pass, binding);
+        if (sizes.extents[binding.resource.value].known()) report_missing_range(pass, binding);
         continue;
       }
       auto& cuts = scratch.cuts[binding.resource.value];

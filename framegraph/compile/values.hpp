@@ -49,6 +49,13 @@ struct ResourceInfo {
 struct Extent {
   uint32_t width = 1, height = 1, mips = 1; // texels; buffers: elements
   uint64_t bytes = 0;                       // buffers only
+
+  bool known() const { return width != 0; } // false: the size has an error
+};
+
+struct SizeError { // reported if the plan needs the resource or a size that follows its size
+  ResourceId resource;
+  Diagnostic diagnostic;
 };
 
 struct Sizes {
@@ -58,6 +65,7 @@ struct Sizes {
   // formats. invalid_index: the size follows another resource's.
   std::vector<uint32_t> shape_of;
   uint32_t shape_count = 0;
+  std::vector<SizeError> errors;
 };
 
 // ---- Activation: see activation.cpp ----

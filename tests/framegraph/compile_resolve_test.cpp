@@ -111,6 +111,53 @@ TEST(Sizes, BeyondTheDevice_IsRejectedOnce) {
   EXPECT_EQ(rejected(b)[0].id, DiagnosticId::size_out_of_range);
 }
 
+// `spare` is 64000 texels wide, beyond the device.
+TEST(Sizes, WithoutLiveUsers_CannotFail) {
+  const auto chain = [] {
+    Chain b;
+    ResourceDeclaration& spare = b.image("spare");
+    spare.size.x = {1000, 1};
+    spare.mips = 0;
+    b.image("follower").size.base = SizeExpression::Base::resource;
+    b.graph.resources.back().size.resource = b.resource("spare");
+    return b;
+  };
+  compiled(chain());
+  Chain culled = chain();
+  culled.graph.names_ranges = true;
+  culled.pass("spare_low", "test.shade", {{"a", "light"}}, {{"out", "spare#0"}});
+  culled.pass("spare_high", "test.shade", {{"a", "spare#0"}}, {{"out", "spare#3"}});
+  culled.pass("more", "test.shade", {{"a", "light"}}, {{"out", "follower"}});
+  compiled(culled);
+  Chain off = chain();
+  off.boolean("wide", false);
+  off.pass("fill", "test.shade", {{"a", "light"}}, {{"out", "follower"}}).when = off.when("wide");
+  off.read(1, 0) = off.reference(0, "follower");
+  off.otherwise(off.graph.passes[2], "follower", "light");
+  compiled(off);
+  Chain cycle = chain();
+  cycle.graph.resources[3].size = cycle.graph.resources[4].size;
+  cycle.graph.resources[3].size.resource = cycle.resource("follower");
+  compiled(cycle);
+}
+
+TEST(Sizes, OfResourcesThatLivePassesNeed_AreRejected) {
+  Chain written;
+  written.image("spare").size.x = {1000, 1};
+  written.image("follower").size.base = SizeExpression::Base::resource;
+  written.graph.resources.back().size.resource = written.resource("spare");
+  Chain followed = written;
+  written.pass("fill", "test.probe", {{"a", "spare"}}, {});
+  written.pass("source", "test.shade", {{"a", "light"}}, {{"out", "spare"}});
+  followed.pass("fill", "test.probe", {{"a", "follower"}}, {});
+  followed.pass("source", "test.shade", {{"a", "light"}}, {{"out", "follower"}});
+  for (const Chain* b : {&written, &followed})
+    rejected_once(*b, DiagnosticId::size_out_of_range, "'spare' is 64000x64 texels");
+  followed.graph.resources[3].size = followed.graph.resources[4].size;
+  followed.graph.resources[3].size.resource = followed.resource("follower");
+  rejected_once(followed, DiagnosticId::size_cycle, "'spare' -> 'follower' -> 'spare'");
+}
+
 TEST(Sizes, BuffersCountTilesAndExtraElements) {
   GraphBuilder b{"buffer tiles", "export result"};
   b.pass("list", "test.list", {}, {{"tiles", "tiles"}});
