@@ -1,8 +1,11 @@
 #include "framegraph/compile/compile.hpp"
 
 #include "framegraph/compile/scratch.hpp"
+#include "framegraph/model/frame_settings.hpp"
 
 #include <fmt/format.h>
+
+#include <algorithm>
 
 namespace dermis {
 namespace {
@@ -49,17 +52,30 @@ void clear(CompiledPlan& out) {
   out.reasons.clear();
 }
 
-// Compilation from top to bottom. Each phase returns a value that later phases read; it stays valid
-// until the next compilation. Stops after a phase that reported errors.
-bool run_phases(const CompileInput& in, Report& report, Plan& plan, CompileScratch& scratch) {
-  // Computes the size of each resource, and which slots the host binds.
-  const Sizes& sizes = resolve_sizes(in, report, scratch.sizes);
-  if (report.failed()) return false;
+// Returns the settings whose values select passes or formats and differ from the defaults, for
+// messages: ", with 'technique' = 'separable'".
+std::string selection_text(const CompileInput& in, const std::vector<SettingValue>& values) {
+  const Graph& graph = *in.graph;
+  std::vector<uint8_t> in_conditions(graph.settings.size(), 0);
+  for (const Expression& expression : graph.expressions)
+    if (expression.op == Expression::Op::setting) in_conditions[expression.setting.value] = 1;
+  std::string text;
+  for (uint32_t i = 0; i < graph.settings.size(); ++i) {
+    const SettingDeclaration& setting = graph.settings[i];
+    const SettingValue &value = values[i], &usual = setting.default_value;
+    if (value.integer == usual.integer && value.real == usual.real) continue;
+    if (in_conditions[i] != 0 || setting.by_budget ||
+        selects_formats(graph, *in.pass_types, SettingId{i}))
+      text += fmt::format("{} '{}' = {}", text.empty() ? ", with" : ",", setting.name,
+                          setting_text(setting, value));
+  }
+  return text;
+}
 
-  // Resolves settings, and which passes are on.
-  const Activation& active = evaluate_conditions(in, report, scratch.activation);
-  if (report.failed()) return false;
-
+// Compilation from top to bottom, after the conditions. Each phase returns a value that later
+// phases read; it stays valid until the next compilation. Stops after a phase that reported errors.
+bool plan_graph(const CompileInput& in, const Sizes& sizes, const Activation& active,
+                Report& report, Plan& plan, CompileScratch& scratch) {
   // Divides images into the subresource ranges that ports name.
   const Subresources& subresources =
       split_subresources(in, sizes, active, report, scratch.subresources);
@@ -112,6 +128,46 @@ bool run_phases(const CompileInput& in, Report& report, Plan& plan, CompileScrat
   plan.device_profile = in.device->name;
   plan.setting_values = active.settings;
   return true;
+}
+
+bool run_phases(const CompileInput& in, Report& report, Plan& plan, CompileScratch& scratch);
+
+// Appends the text to the errors from index `first` of diagnostics.list on that do not occur with
+// the default settings.
+void append_selection(const CompileInput& in, const std::string& selection, size_t first,
+                      Diagnostics& diagnostics, CompileScratch& scratch) {
+  if (selection.empty() || in.settings.empty()) return;
+  CompileInput usual = in;
+  usual.settings.clear();
+  Diagnostics of_defaults;
+  CompiledPlan plan;
+  Report report{of_defaults, plan.reasons, false};
+  run_phases(usual, report, plan.plan, scratch);
+  for (size_t i = first; i < diagnostics.list.size(); ++i) {
+    Diagnostic& one = diagnostics.list[i];
+    const auto same = [&](const Diagnostic& other) {
+      return other.id == one.id && other.text == one.text;
+    };
+    if (diagnostic_info(one.id).severity == Severity::error &&
+        std::none_of(of_defaults.list.begin(), of_defaults.list.end(), same))
+      one.text += selection;
+  }
+}
+
+bool run_phases(const CompileInput& in, Report& report, Plan& plan, CompileScratch& scratch) {
+  // Computes the size of each resource, and which slots the host binds.
+  const Sizes& sizes = resolve_sizes(in, report, scratch.sizes);
+  if (report.failed()) return false;
+
+  // Resolves settings, and which passes are on.
+  const Activation& active = evaluate_conditions(in, report, scratch.activation);
+  if (report.failed()) return false;
+
+  // Errors that other settings avoid name the settings.
+  const size_t reported = report.diagnostics.list.size();
+  if (plan_graph(in, sizes, active, report, plan, scratch)) return true;
+  append_selection(in, selection_text(in, active.settings), reported, report.diagnostics, scratch);
+  return false;
 }
 
 } // namespace

@@ -158,6 +158,39 @@ TEST(Sizes, OfResourcesThatLivePassesNeed_AreRejected) {
   rejected_once(followed, DiagnosticId::size_cycle, "'spare' -> 'follower' -> 'spare'");
 }
 
+// Only the second option of the choice fails.
+TEST(Settings, ErrorsNameTheSettingsThatSelectPasses) {
+  Chain b;
+  b.image("spare").size.x = {1000, 1};
+  b.boolean("sharp", false);
+  SettingDeclaration& choice = b.boolean("technique", false);
+  choice.type = SettingType::choice;
+  choice.default_value.type = SettingType::choice;
+  choice.options = {"fast", "separable"};
+  choice.by_budget = true;
+  SettingDeclaration& samples = b.boolean("unrelated", false);
+  samples.note = "no pass depends on it";
+  b.pass("fill", "test.shade", {{"a", "light"}}, {{"out", "spare"}});
+  b.pass("use", "test.probe", {{"a", "spare"}}, {}).when = b.when("technique");
+  compiled(b);
+  CompileInput input = b.input();
+  for (const SettingDeclaration& one : b.graph.settings)
+    input.settings.push_back(one.default_value);
+  input.settings[1].integer = input.settings[2].integer = 1;
+  Diagnostics diagnostics;
+  EXPECT_FALSE(compile(input, diagnostics));
+  ASSERT_EQ(diagnostics.list.size(), 1u);
+  EXPECT_THAT(diagnostics.list[0].text, ::testing::EndsWith(", with 'technique' = 'separable'"));
+  b.graph.passes.back().when = b.when("sharp");
+  input.settings[0].integer = 1;
+  diagnostics = {};
+  EXPECT_FALSE(compile(input, diagnostics));
+  EXPECT_THAT(diagnostics.list[0].text,
+              ::testing::EndsWith(", with 'sharp' = true, 'technique' = 'separable'"));
+  b.graph.passes.back().when = {}; // The error occurs with all settings.
+  EXPECT_THAT(rejected(b, input)[0].text, Not(HasSubstr("with '")));
+}
+
 TEST(Sizes, BuffersCountTilesAndExtraElements) {
   GraphBuilder b{"buffer tiles", "export result"};
   b.pass("list", "test.list", {}, {{"tiles", "tiles"}});
