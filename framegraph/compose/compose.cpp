@@ -38,7 +38,21 @@ bool has_includes(const Document& graph) {
                      [&](NodeId entry) { return is_include(graph, entry); });
 }
 
-// Completes `gone` and `unwritten` of all changes, which depend on the composed graph.
+// Clears `affected` of `set` edits whose value a later edit replaced.
+void find_replaced_values(std::vector<Change>& changes) {
+  std::unordered_set<std::string_view> later; // paths of later edits
+  for (auto change = changes.rbegin(); change != changes.rend(); ++change) {
+    if (change->what == Change::What::include || change->what == Change::What::insert) continue;
+    const std::string_view path = change->at;
+    for (size_t end = path.find('/', 1); true; end = path.find('/', end + 1)) {
+      if (later.contains(path.substr(0, end)) && !path.ends_with("/-")) change->affected.clear();
+      if (end == std::string_view::npos) break;
+    }
+    later.insert(path);
+  }
+}
+
+// Completes `gone`, `unwritten` and `affected` of all changes, which depend on the composed graph.
 void find_removals(Composer& composer) {
   const EditTree& tree = composer.tree;
   const auto exists = [&](const Change& change) {
@@ -61,6 +75,19 @@ void find_removals(Composer& composer) {
     std::erase_if(change.unwritten,
                   [&](const std::string& resource) { return written.contains(resource); });
   }
+  find_replaced_values(composer.changes);
+}
+
+// Returns whether the diagnostic already refers to a place of the edit: "/edits/3/to/format".
+bool shows_edit(const Diagnostic& one, const Change& change) {
+  const SourceLocation& edit = change.where;
+  const std::string_view edit_path =
+      std::string_view(edit.pointer).substr(0, edit.pointer.rfind('/') + 1);
+  const auto is_in_edit = [&](const SourceLocation& where) {
+    return where.file == edit.file && where.pointer.starts_with(edit_path);
+  };
+  return is_in_edit(one.where) || std::any_of(one.related.begin(), one.related.end(),
+                                              [&](const auto& at) { return is_in_edit(at.first); });
 }
 
 } // namespace
@@ -90,6 +117,9 @@ void relate_to_removals(std::span<const Change> changes, size_t first, Diagnosti
       if (found != change.unwritten.end())
         one.related.emplace_back(change.where,
                                  fmt::format("no pass writes '{}' after this edit", *found));
+      if (std::any_of(change.affected.begin(), change.affected.end(), names) &&
+          (change.affected_pass.empty() || names(change.affected_pass)) && !shows_edit(one, change))
+        one.related.emplace_back(change.where, fmt::format("'{}' is set here", change.at));
     }
   }
 }

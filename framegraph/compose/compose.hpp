@@ -37,6 +37,10 @@ struct Change {
   std::vector<std::string> removed = {};
   // Resources that a pass wrote before this change, and that no pass of the result writes.
   std::vector<std::string> unwritten = {};
+  // Names one of which an error contains if a `set` edit may have caused it: the pass, setting or
+  // resource that `at` belongs to. Empty if a later edit replaced the value.
+  std::vector<std::string> affected = {};
+  std::string affected_pass = {}; // for settings of a pass: an error contains this name as well
 };
 
 std::string_view change_name(Change::What what);
@@ -51,7 +55,7 @@ struct Provenance {
 };
 
 // Relates errors of the composed graph, those from index `first` of diagnostics.list on, to the
-// changes that removed what they name.
+// changes that removed or set what they name.
 void relate_to_removals(std::span<const Change> changes, size_t first, Diagnostics& diagnostics);
 
 struct Composition {

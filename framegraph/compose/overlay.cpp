@@ -53,6 +53,23 @@ struct Edit {
         {did, std::move(at), target_place(), false, std::move(removed), std::move(unwritten)});
   }
 
+  // Completes Change::affected for a value that was set.
+  void name_affected(const std::vector<std::string>& steps, ItemId value, Change& change) const {
+    if (steps.size() < 2 || steps[0] != "passes") return;
+    if (steps.size() > 3 && steps[2] == "set") {
+      change.affected = {steps[3]};
+      change.affected_pass = steps[1];
+      return;
+    }
+    if (steps.size() > 2 && steps[2] == "type") change.affected.emplace_back(tree().text(value));
+    const ItemId passes = tree().find({0}, "passes");
+    const int at = find_pass(tree(), passes, steps[1]);
+    if (at < 0) return;
+    for (std::string& resource :
+         written_by(tree(), tree()[passes].children[static_cast<size_t>(at)]))
+      change.affected.push_back(std::move(resource)); // which `when` may leave unwritten
+  }
+
   // Returns Change::removed for an item that is removed.
   std::vector<std::string> names_of(const std::vector<std::string>& steps, ItemId item) const {
     std::vector<std::string> names{steps[steps.size() > 1 ? 1 : 0]};
@@ -195,14 +212,18 @@ struct Edit {
     tree()[fresh].key = array ? std::string() : steps.back();
     tree()[fresh].key_node = target_node;
     std::vector<ItemId>& all = tree()[parent].children;
-    std::vector<std::string> unwritten;
+    std::vector<std::string> unwritten, affected = names_of(steps, fresh);
     if (at < 0) {
       all.push_back(fresh);
     } else {
+      for (std::string& name : names_of(steps, all[static_cast<size_t>(at)]))
+        affected.push_back(std::move(name));
       unwritten = written_at(tree(), steps, all[static_cast<size_t>(at)]);
       all[static_cast<size_t>(at)] = fresh;
     }
     log(Change::What::set, std::string(path), std::move(unwritten));
+    composer.changes.back().affected = std::move(affected);
+    name_affected(steps, fresh, composer.changes.back());
   }
 };
 

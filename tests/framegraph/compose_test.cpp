@@ -229,6 +229,38 @@ TEST(Overlay, ErrorsNameTheEditThatRemovedWhatIsMissing) {
   EXPECT_EQ(related(restored), Texts{}) << all_messages(restored.diagnostics);
 }
 
+TEST(Overlay, ErrorsNameTheSetEditThatCausedThem) {
+  const auto contains = [](const Composed& composed, const char* text) {
+    EXPECT_FALSE(composed.graph);
+    const std::string all = all_messages(composed.diagnostics);
+    return all.find(text) != std::string::npos;
+  };
+  const struct {
+    const char *edit, *text;
+  } cases[] = {
+      // The error is located at the pass type.
+      {R"({ "set": "/passes/mix/read", "to": {} })",
+       "overlay0.json:2:10: '/passes/mix/read' is set here"},
+      {R"({ "set": "/passes/find/type", "to": "test.blur" })", "'/passes/find/type' is set here"},
+      {R"({ "set": "/resources/half/format", "to": "r8_uint" })",
+       "'/resources/half/format' is set here"},
+      {R"({ "set": "/settings/quality/choice", "to": ["fast", "good", "fine"] })",
+       "'/settings/quality/choice' is set here"},
+      {R"({ "set": "/settings", "to": {} })", "'/settings' is set here"},
+  };
+  for (const auto& [edit, text] : cases)
+    EXPECT_TRUE(contains(edited(edit), text)) << edit << all_messages(edited(edit).diagnostics);
+  // Not an edit that the error's place shows, one that a later edit replaced, or an unrelated one.
+  const std::string wrong = R"({ "set": "/resources/half/format", "to": "r8_uint" })";
+  EXPECT_FALSE(contains(edited(R"({ "set": "/resources/half/size", "to": "vieww" })"), "set here"));
+  EXPECT_FALSE(
+      contains(edited(R"({ "set": "/resources/half/mips", "to": 1 }, { "set": "/resources/half",
+      "to": { "format": "r8_uint", "size": "view" } })"),
+               "'/resources/half/mips' is set here"));
+  EXPECT_FALSE(contains(edited(wrong + R"(, { "set": "/passes/copy/set/radius", "to": 1 })"),
+                        "'/passes/copy/set/radius' is set here"));
+}
+
 TEST(Overlay, EachOverlayErrorIsReportedOnce) {
   expect_one(put_together(whole_graph(), {"{ \"dermis_overlay\": 3, \"edits\": [] }"}),
              Id::unsupported_version, "overlay0.json:1:21", {});
