@@ -116,9 +116,14 @@ std::string pass_text(const SavedPlan& saved, size_t p) {
   const size_t settings_end = p + 1 < saved.plan.passes.size()
                                   ? saved.plan.passes[p + 1].first_setting
                                   : saved.plan.settings.size();
-  for (size_t s = pass.first_setting; s < settings_end; ++s)
-    text +=
-        fmt::format(" {}={}", saved.names.pass_settings[s].name, saved.names.pass_settings[s].text);
+  for (size_t s = pass.first_setting; s < settings_end; ++s) {
+    const NamedSettingValue& setting = saved.names.pass_settings[s];
+    const SettingId from = saved.plan.settings[s].from;
+    text += fmt::format(" {}={}{}", setting.name,
+                        from.valid() ? fmt::format("${}=", saved.names.settings[from.value].name)
+                                     : std::string(),
+                        setting.text);
+  }
   return text;
 }
 
@@ -149,6 +154,18 @@ Lines resources(const SavedPlan& saved) {
   return lines;
 }
 
+Lines heaps(const SavedPlan& saved) {
+  Lines lines;
+  for (size_t h = 0; h < saved.plan.heaps.size(); ++h) {
+    const Heap& heap = saved.plan.heaps[h];
+    lines.add(fmt::format("heap {}", h),
+              fmt::format("{} B, alignment {} B, memory types {:#x}, {}, at most {} B live",
+                          heap.size, heap.alignment, heap.memory_type_bits,
+                          heap.persistent ? "histories" : "transients", heap.max_live_bytes));
+  }
+  return lines;
+}
+
 Lines placements(const SavedPlan& saved) {
   Lines lines;
   for (const Placement& placement : saved.plan.placements)
@@ -163,10 +180,17 @@ Lines placements(const SavedPlan& saved) {
 
 Lines histories(const SavedPlan& saved) {
   Lines lines;
-  for (const PlanHistory& history : saved.plan.histories)
-    lines.add(saved.names.resources[history.resource],
-              fmt::format("{} frames in {} instances", history.frames,
-                          saved.plan.resources[history.resource].instance_count));
+  for (const PlanHistory& history : saved.plan.histories) {
+    const HistoryDeclaration& declared = history.declaration;
+    lines.add(
+        saved.names.resources[history.resource],
+        fmt::format("{} frames in {} instances, first={} on_cut={} on_resize={}", history.frames,
+                    saved.plan.resources[history.resource].instance_count,
+                    declared.first == HistoryDeclaration::First::clear ? "clear" : "discard",
+                    declared.on_cut == HistoryDeclaration::OnCut::keep ? "keep" : "invalidate",
+                    declared.on_resize == HistoryDeclaration::OnResize::rescale ? "rescale"
+                                                                                : "invalidate"));
+  }
   return lines;
 }
 
@@ -277,6 +301,7 @@ PlanDiff diff_plans(const SavedPlan& a, const SavedPlan& b) {
   compare("passes", passes);
   diff.sections.push_back({"order", moved(a, b)});
   compare("resources", resources);
+  compare("heaps", heaps);
   compare("placements", placements);
   compare("histories", histories);
   compare("barriers", barriers);

@@ -22,8 +22,8 @@ struct PlanDifference {
 };
 
 struct PlanDiffSection {
-  // "compiled_from", "settings", "passes", "order", "resources", "placements", "histories",
-  // "barriers"
+  // "compiled_from", "settings", "passes", "order", "resources", "heaps", "placements",
+  // "histories", "barriers"
   std::string_view name;
   std::vector<PlanDifference> differences;
 };

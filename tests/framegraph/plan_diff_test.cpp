@@ -139,6 +139,20 @@ TEST(PlanDiff, NamesEachChange) {
       {"placements", "lit",
        [=](auto& p) { p.plan.placements[p.plan.resources[lit].first_instance].persistent = true; }},
       {"histories", "sum", [](auto& p) { ++p.plan.histories[0].frames; }},
+      {"histories", "sum",
+       [](auto& p) { p.plan.histories[0].declaration.first = HistoryDeclaration::First::clear; }},
+      {"histories", "sum",
+       [](auto& p) { p.plan.histories[0].declaration.on_cut = HistoryDeclaration::OnCut::keep; }},
+      {"histories", "sum",
+       [](auto& p) {
+         p.plan.histories[0].declaration.on_resize = HistoryDeclaration::OnResize::rescale;
+       }},
+      {"heaps", "heap 0", [](auto& p) { ++p.plan.heaps[0].size; }},
+      {"heaps", "heap 0", [](auto& p) { p.plan.heaps[0].memory_type_bits ^= 2; }},
+      {"heaps", "heap 0", [](auto& p) { p.plan.heaps[0].alignment = 3; }},
+      {"heaps", "heap 0", [](auto& p) { p.plan.heaps[0].max_live_bytes = 3; }},
+      {"heaps", "heap 0", [](auto& p) { p.plan.heaps[0].persistent ^= true; }},
+      {"heaps", "heap 9", [](auto& p) { p.plan.heaps.resize(10); }},
       {"barriers", "before show: lit",
        [](auto& p) { p.plan.barriers[p.plan.passes[2].first_barrier].source_stages = 0; }},
   };
@@ -155,6 +169,21 @@ TEST(PlanDiff, NamesEachChange) {
     EXPECT_EQ(diff.same, in_key) << change.section << ": " << change.name;
     EXPECT_THAT(plan_diff_text(diff, "a", "b"), HasSubstr(change.name));
   }
+}
+
+TEST(PlanDiff, SettingReplacedByItsValueIsADifference) {
+  const GraphBuilder builder = sample();
+  SavedPlan plan = saved(builder.input());
+  plan.names.pass_settings.push_back({"round", "true"}); // of the last pass
+  plan.plan.settings.push_back({SettingId{0}, plan.plan.setting_values[0]});
+  SavedPlan literal = plan;
+  literal.plan.settings[0].from = {};
+  const PlanDiff diff = diff_plans(plan, literal);
+  EXPECT_FALSE(diff.same);
+  const auto& found = section(diff, "passes").differences;
+  ASSERT_EQ(found.size(), 1u) << plan_diff_text(diff, "a", "b");
+  EXPECT_THAT(found[0].a, HasSubstr(" round=$smooth=true"));
+  EXPECT_THAT(found[0].b, HasSubstr(" round=true"));
 }
 
 TEST(PlanDiff, ReportsTheFewestMovedPasses) {
